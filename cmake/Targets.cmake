@@ -1,0 +1,30 @@
+# How this project builds a library, a program and a test: one definition each.
+add_library(bevloc_options INTERFACE)
+target_compile_features(bevloc_options INTERFACE cxx_std_20)
+target_include_directories(bevloc_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(bevloc_options INTERFACE
+  -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
+  $<$<BOOL:${BEVLOC_WARNINGS_AS_ERRORS}>:-Werror>)
+if(BEVLOC_SANITIZE)
+  target_compile_options(bevloc_options INTERFACE
+    -fsanitize=${BEVLOC_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(bevloc_options INTERFACE -fsanitize=${BEVLOC_SANITIZE})
+endif()
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+# bevloc_library(NAME SOURCES... [LINK libs...])
+function(bevloc_library name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
+  target_link_libraries(${name} PUBLIC bevloc_options ${ARG_LINK})
+endfunction()
+
+# bevloc_test(NAME SOURCES... [LINK libs...]): a GoogleTest program; each of its cases is a CTest test.
+include(GoogleTest)
+function(bevloc_test name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
+  target_link_libraries(${name} PRIVATE bevloc_options ${ARG_LINK} GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE BEVLOC_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+endfunction()

@@ -1,0 +1,30 @@
+// The one clock type of the project.
+#pragma once
+
+#include <chrono>
+
+namespace bevloc {
+
+/// Steady nanoseconds. It has no now(): whoever needs the time is given a drivers::Clock, so that
+/// a test or a `--fast` drive can hand it virtual time.
+struct SteadyTimescale {
+  using duration = std::chrono::nanoseconds;
+  using rep = duration::rep;
+  using period = duration::period;
+  using time_point = std::chrono::time_point<SteadyTimescale>;
+  static constexpr bool is_steady = true;
+};
+
+using Time = SteadyTimescale::time_point;
+using Duration = SteadyTimescale::duration;
+
+constexpr double to_seconds(Duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+/// Rounds towards zero to whole nanoseconds.
+constexpr Duration from_seconds(double seconds) {
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
+}
+
+}  // namespace bevloc

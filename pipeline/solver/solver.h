@@ -1,0 +1,74 @@
+// Pose solvers: where must the BEV features lie on the map features?
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "common/se2.h"
+#include "pipeline/bev_grid.h"
+
+namespace bevloc {
+
+/// Borrowed features [channels, rows, cols] on a grid.
+struct FeatureView {
+  std::span<const float> data;
+  int channels = 0;
+  BevGrid grid;
+};
+
+/// Equally spaced hypotheses around zero: -range ... +range.
+struct HypothesisAxis {
+  double range = 0.0;
+  double step = 0.0;
+
+  int count() const { return 2 * half_count() + 1; }
+  int half_count() const { return static_cast<int>(range / step + 0.5); }
+  double value(int i) const { return (i - half_count()) * step; }
+};
+
+/// The paper's sampling: 21 x 11 x 21 hypotheses.
+struct HypothesisGrid {
+  HypothesisAxis x_m{2.0, 0.2};
+  HypothesisAxis y_m{1.0, 0.2};
+  HypothesisAxis yaw_rad{radians(2.0), radians(0.2)};
+};
+
+/// Why a solution may not be used.
+enum class Evidence {
+  kGood,      ///< use it
+  kNone,      ///< a side is constant, empty or not finite: there is nothing to match
+};
+
+struct SolverResult {
+  Evidence evidence = Evidence::kNone;
+  Se2 correction;  ///< dT = T0^-1 T, zero without evidence
+  /// Covariance of the correction, in T0's frame: (x m, y m, yaw rad).
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  /// Probabilities over the hypotheses of each axis; each sums to 1.
+  std::vector<float> x_probability;
+  std::vector<float> y_probability;
+  std::vector<float> yaw_probability;
+};
+
+/// What training learned for the solver; it travels in the model file.
+struct SolverParameters {
+  float joint_scale = 100.0F;    ///< inverse temperature of the joint (2-D) ZNCC
+  float x_scale = 100.0F;        ///< of the longitudinal axis ZNCC
+  float y_scale = 100.0F;        ///< of the lateral axis ZNCC
+  float yaw_scale = 100.0F;      ///< of the yaw features' -MSE
+  float gem_omega = 1.0F;        ///< GeM exponent of the axis features (eq. 12)
+};
+
+/// Scratch memory is made in the constructor; solve() allocates nothing once `result` has been
+/// filled before. Not thread safe.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  /// Finds the correction under which `bev` (perceived, vehicle frame) lies best on `map` (drawn at
+  /// T0). Both must have the grid and channels the solver was made for. Never gives a NaN.
+  virtual void solve(const FeatureView& bev, const FeatureView& map, SolverResult& result) = 0;
+};
+
+}  // namespace bevloc
