@@ -1,8 +1,9 @@
 // One camera: pinhole with radial-tangential distortion, mounted on the vehicle.
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
+
+#include <Eigen/Core>
 
 namespace bevloc {
 
@@ -17,9 +18,7 @@ struct Se3 {
   Se3 operator*(const Se3& other) const {
     return {rotation * other.rotation, rotation * other.translation_m + translation_m};
   }
-  Se3 inverse() const {
-    return {rotation.transpose(), -(rotation.transpose() * translation_m)};
-  }
+  Se3 inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation_m)}; }
 };
 
 /// OpenCV's "plumb bob" model: u = fx * x_d + cx, with x_d the distorted normalised coordinate.

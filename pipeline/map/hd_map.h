@@ -1,10 +1,11 @@
 // The vectorised HD map, independent of the file it came from.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace bevloc {
 

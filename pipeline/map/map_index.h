@@ -1,12 +1,11 @@
 // Finds the map elements near a place.
 #pragma once
 
-#include <Eigen/Core>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <cstdint>
+#include <memory>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "pipeline/map/hd_map.h"
 
@@ -23,21 +22,24 @@ class MapIndex {
   };
 
   explicit MapIndex(const HdMap& map);
+  explicit MapIndex(HdMap&& map) = delete;
+  MapIndex(const MapIndex&) = delete;
+  MapIndex& operator=(const MapIndex&) = delete;
+  ~MapIndex();
 
   const HdMap& map() const { return map_; }
 
   /// Replaces `found` with the segments whose bounding box meets the given one, in a fixed order
-  /// (by element, then by point). Time grows with the result, not with the map.
+  /// (by element, then by point). Time grows with the result, not with the map. No allocation
+  /// beyond the growth of `found`.
   void query(const Eigen::Vector2d& min_corner, const Eigen::Vector2d& max_corner,
              std::vector<Segment>& found) const;
 
  private:
-  using Point = boost::geometry::model::point<double, 2, boost::geometry::cs::cartesian>;
-  using Box = boost::geometry::model::box<Point>;
-  using Entry = std::pair<Box, Segment>;
+  struct Tree;
 
   const HdMap& map_;
-  boost::geometry::index::rtree<Entry, boost::geometry::index::rstar<16>> tree_;
+  std::unique_ptr<const Tree> tree_;
 };
 
 }  // namespace bevloc

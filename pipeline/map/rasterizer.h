@@ -32,7 +32,6 @@ class MapRasterizer {
  private:
   const MapIndex& index_;
   std::vector<MapIndex::Segment> found_;
-  std::vector<int> fixed_point_vertices_;
 };
 
 }  // namespace bevloc

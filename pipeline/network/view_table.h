@@ -33,4 +33,7 @@ struct ViewTable {
 /// border, so that nothing jumps where cameras overlap. `rig` is the network rig (network_rig()).
 ViewTable make_view_table(const Rig& rig, CameraMask available, const BevGrid& grid);
 
+/// The same into a table that is there already: no allocation once it has been filled before.
+void update_view_table(const Rig& rig, CameraMask available, const BevGrid& grid, ViewTable& table);
+
 }  // namespace bevloc

@@ -1,9 +1,10 @@
 // Pose solvers: where must the BEV features lie on the map features?
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "common/se2.h"
 #include "pipeline/bev_grid.h"
@@ -36,15 +37,19 @@ struct HypothesisGrid {
 
 /// Why a solution may not be used.
 enum class Evidence {
-  kGood,      ///< use it
-  kNone,      ///< a side is constant, empty or not finite: there is nothing to match
+  kGood,  ///< use it
+  kNone,  ///< a side is constant, empty or not finite: there is nothing to match
 };
 
-struct SolverResult {
+/// What a solution says about the pose.
+struct Correction {
   Evidence evidence = Evidence::kNone;
   Se2 correction;  ///< dT = T0^-1 T, zero without evidence
   /// Covariance of the correction, in T0's frame: (x m, y m, yaw rad).
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+struct SolverResult : Correction {
   /// Probabilities over the hypotheses of each axis; each sums to 1.
   std::vector<float> x_probability;
   std::vector<float> y_probability;
@@ -53,11 +58,11 @@ struct SolverResult {
 
 /// What training learned for the solver; it travels in the model file.
 struct SolverParameters {
-  float joint_scale = 100.0F;    ///< inverse temperature of the joint (2-D) ZNCC
-  float x_scale = 100.0F;        ///< of the longitudinal axis ZNCC
-  float y_scale = 100.0F;        ///< of the lateral axis ZNCC
-  float yaw_scale = 100.0F;      ///< of the yaw features' -MSE
-  float gem_omega = 1.0F;        ///< GeM exponent of the axis features (eq. 12)
+  float joint_scale = 100.0F;  ///< inverse temperature of the joint (2-D) ZNCC
+  float x_scale = 100.0F;      ///< of the longitudinal axis ZNCC
+  float y_scale = 100.0F;      ///< of the lateral axis ZNCC
+  float yaw_scale = 100.0F;    ///< of the yaw features' -MSE
+  float gem_omega = 1.0F;      ///< GeM exponent of the axis features (eq. 12)
 };
 
 /// Scratch memory is made in the constructor; solve() allocates nothing once `result` has been

@@ -1,9 +1,10 @@
 // Everything the simulated cameras can see, as plain geometry in the map frame.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "pipeline/map/hd_map.h"
 

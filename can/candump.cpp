@@ -1,0 +1,162 @@
+#include "can/candump.h"
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <fstream>
+#include <istream>
+#include <iterator>
+#include <optional>
+
+namespace bevloc::can {
+namespace {
+
+using std::chrono::nanoseconds;
+
+constexpr uint32_t kErrorFlag = 0x20000000;
+constexpr uint32_t kMaxExtendedId = 0x1FFFFFFF;
+constexpr size_t kMaxFdDigits = 128;
+
+/// Takes the whole text as a number without sign, or nothing.
+template <typename T>
+std::optional<T> number(std::string_view text, int base) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
+  if (text.empty() || text.front() == '-' || error != std::errc() ||
+      end != text.data() + text.size()) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+bool is_hex(std::string_view text) {
+  return std::ranges::all_of(text, [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+  });
+}
+
+/// "1436509052.249713", with 6 or 9 digits after the point.
+std::optional<nanoseconds> parse_time(std::string_view text) {
+  constexpr int64_t kMaxSeconds = INT64_MAX / 1'000'000'000 - 1;
+  const size_t point = text.find('.');
+  if (point == std::string_view::npos) return std::nullopt;
+  const std::string_view fraction = text.substr(point + 1);
+  const auto seconds = number<int64_t>(text.substr(0, point), 10);
+  const auto parts = number<int64_t>(fraction, 10);
+  if (!seconds || !parts || *seconds > kMaxSeconds) return std::nullopt;
+  if (fraction.size() != 6 && fraction.size() != 9) return std::nullopt;
+  return nanoseconds(*seconds * 1'000'000'000 + *parts * (fraction.size() == 6 ? 1000 : 1));
+}
+
+struct ParsedFrame {
+  CandumpKind kind = CandumpKind::kData;
+  Frame frame;
+};
+
+std::optional<ParsedFrame> parse_fd(uint32_t id, std::string_view flags_and_data) {
+  if (id > kMaxExtendedId || flags_and_data.empty() || !is_hex(flags_and_data)) return std::nullopt;
+  const size_t digits = flags_and_data.size() - 1;
+  if (digits % 2 != 0 || digits > kMaxFdDigits) return std::nullopt;
+  return ParsedFrame{CandumpKind::kFd, {}};
+}
+
+/// candump writes R, R and a length digit, or these and "_" and the raw length code.
+std::optional<ParsedFrame> parse_remote(uint32_t id, std::string_view length) {
+  const bool sound = length.empty() || (length.size() == 1 && length[0] >= '0' && length[0] <= '8');
+  if (!sound || id > kMaxExtendedId) return std::nullopt;
+  return ParsedFrame{CandumpKind::kRemote, {}};
+}
+
+/// A length code beyond 8 bytes is written as "_" and a digit from 9 to F behind eight bytes.
+std::string_view without_length_code(std::string_view data) {
+  constexpr size_t kFullDigits = 2 * kMaxFrameLength;
+  const bool has_code = data.size() == kFullDigits + 2 && data[kFullDigits] == '_' &&
+                        is_hex(data.substr(kFullDigits + 1)) && data[kFullDigits + 1] >= '9';
+  return has_code ? data.substr(0, kFullDigits) : data;
+}
+
+/// "044#2A366C2BBA", "123##1AABB", "7DF#R", "20000004#0000000000000000".
+std::optional<ParsedFrame> parse_frame(std::string_view text) {
+  const size_t hash = text.find('#');
+  if (hash != 3 && hash != 8) return std::nullopt;
+  const auto id = number<uint32_t>(text.substr(0, hash), 16);
+  if (!id || (hash == 3 && *id > kMaxStandardId)) return std::nullopt;
+
+  std::string_view data = text.substr(hash + 1);
+  if (data.starts_with('#')) return parse_fd(*id, data.substr(1));
+  if (data.starts_with('R')) return parse_remote(*id, data.substr(1));
+  data = without_length_code(data);
+  if (!is_hex(data) || data.size() % 2 != 0 || data.size() > 2 * kMaxFrameLength) {
+    return std::nullopt;
+  }
+  if (hash == 8 && (*id & kErrorFlag) != 0 && (*id & ~(kErrorFlag | kMaxExtendedId)) == 0) {
+    return ParsedFrame{CandumpKind::kError, {}};
+  }
+  if (*id > kMaxExtendedId) return std::nullopt;
+  if (hash == 8) return ParsedFrame{CandumpKind::kExtended, {}};
+
+  Frame frame{.id = *id, .length = static_cast<uint8_t>(data.size() / 2)};
+  for (size_t i = 0; i < frame.length; ++i) {
+    frame.data[i] = *number<uint8_t>(data.substr(2 * i, 2), 16);
+  }
+  return ParsedFrame{CandumpKind::kData, frame};
+}
+
+}  // namespace
+
+std::string candump_line(nanoseconds time, std::string_view interface, const Frame& frame,
+                         CandumpDigits digits) {
+  assert(time >= nanoseconds::zero());
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
+  const int64_t fraction = (time - seconds).count();
+  const bool micro = digits == CandumpDigits::kMicroseconds;
+  std::string line =
+      fmt::format("({:010}.{:0{}}) {} {:03X}#", seconds.count(), micro ? fraction / 1000 : fraction,
+                  static_cast<int>(digits), interface, frame.id);
+  for (const uint8_t byte : frame.payload())
+    fmt::format_to(std::back_inserter(line), "{:02X}", byte);
+  return line;
+}
+
+Result<CandumpEntry> parse_candump_line(std::string_view line, std::string_view place) {
+  const auto refuse = [&] {
+    return fail(
+        "{}: found '{}', wanted '(seconds.micros) interface id#data' as candump -l writes it",
+        place, line.substr(0, 80));
+  };
+  const size_t time_end = line.find(") ");
+  if (!line.starts_with('(') || time_end == std::string_view::npos) return refuse();
+  const std::string_view rest = line.substr(time_end + 2);
+  const size_t interface_end = rest.find(' ');
+  if (interface_end == std::string_view::npos || interface_end == 0) return refuse();
+  std::string_view frame_text = rest.substr(interface_end + 1);
+  // Newer versions of candump append the direction.
+  if (frame_text.ends_with(" R") || frame_text.ends_with(" T")) frame_text.remove_suffix(2);
+
+  const auto time = parse_time(line.substr(1, time_end - 1));
+  const auto parsed = parse_frame(frame_text);
+  if (!time || !parsed) return refuse();
+  return CandumpEntry{*time, std::string(rest.substr(0, interface_end)), parsed->kind,
+                      parsed->frame};
+}
+
+Result<std::vector<CandumpEntry>> read_candump(std::istream& log, std::string_view name) {
+  std::vector<CandumpEntry> entries;
+  std::string line;
+  for (int number_of_line = 1; std::getline(log, line); ++number_of_line) {
+    if (line.ends_with('\r')) line.pop_back();
+    if (line.empty()) continue;
+    auto entry = parse_candump_line(line, fmt::format("{}:{}", name, number_of_line));
+    if (!entry) return tl::unexpected(entry.error());
+    entries.push_back(std::move(*entry));
+  }
+  return entries;
+}
+
+Result<std::vector<CandumpEntry>> read_candump_file(const std::string& path) {
+  std::ifstream log(path);
+  if (!log) return fail("{}: cannot be opened, wanted a candump log", path);
+  return read_candump(log, path);
+}
+
+}  // namespace bevloc::can

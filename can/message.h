@@ -1,0 +1,62 @@
+// A CAN message: its signals and how it is sent and protected.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "can/frame.h"
+#include "can/signal.h"
+
+namespace bevloc::can {
+
+enum class Sender : uint8_t { kLocalizer, kVehicle };
+
+/// Where the two families of messages start on the bus; each message adds its own offset.
+struct BaseIds {
+  uint32_t localizer = 0x500;
+  uint32_t vehicle = 0x400;
+};
+
+struct Message {
+  std::string_view name;
+  Sender sender = Sender::kLocalizer;
+  uint32_t id_offset = 0;
+  uint8_t length = kMaxFrameLength;
+  int cycle_ms = 0;
+  uint8_t data_id = 0;  ///< of the E2E protection; the same for all counter values
+  std::span<const Signal* const> signals{};  ///< after the E2E header
+  std::string_view comment{};
+
+  constexpr uint32_t id(const BaseIds& base) const {
+    return (sender == Sender::kLocalizer ? base.localizer : base.vehicle) + id_offset;
+  }
+};
+
+/// The header of every message: E2E profile P02, with the epoch in the nibble that the profile
+/// leaves free.
+inline constexpr Signal kChecksum{
+    .name = "CHECKSUM",
+    .start_bit = 0,
+    .length_bits = 8,
+    .max = 255,
+    .comment =
+        "AUTOSAR E2E profile P02: CRC-8H2F over bytes 1 to the last, then the message's "
+        "E2EDataId."};
+inline constexpr Signal kCounter{.name = "COUNTER",
+                                 .start_bit = 8,
+                                 .length_bits = 4,
+                                 .max = 15,
+                                 .comment = "Counts the frames of this message, 0 to 15."};
+inline constexpr Signal kEpoch{
+    .name = "EPOCH",
+    .start_bit = 12,
+    .length_bits = 4,
+    .max = 15,
+    .comment = "The same in all frames of one solution (one measurement): combine no others."};
+inline constexpr const Signal* kE2eHeader[] = {&kChecksum, &kCounter, &kEpoch};
+
+/// A frame of this message with every signal not available, or 0 where a signal has no such value.
+Frame blank_frame(const Message& message, const BaseIds& base);
+
+}  // namespace bevloc::can

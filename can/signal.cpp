@@ -1,0 +1,57 @@
+#include "can/signal.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace bevloc::can {
+namespace {
+
+uint64_t mask_of(const Signal& signal) {
+  assert(signal.length_bits > 0 && signal.length_bits < 64);
+  return (uint64_t{1} << signal.length_bits) - 1;
+}
+
+uint64_t load(const Frame& frame) {
+  uint64_t word = 0;
+  for (size_t i = 0; i < frame.data.size(); ++i) word |= uint64_t{frame.data[i]} << (8 * i);
+  return word;
+}
+
+void store(Frame& frame, uint64_t word) {
+  for (size_t i = 0; i < frame.data.size(); ++i) {
+    frame.data[i] = static_cast<uint8_t>(word >> (8 * i));
+  }
+}
+
+}  // namespace
+
+int64_t raw_from_physical(const Signal& signal, double physical) {
+  assert(signal.has_sna);
+  if (!std::isfinite(physical)) return signal.sna_raw();
+  return signal.nearest_raw(std::clamp(physical, signal.min, signal.max));
+}
+
+std::optional<double> physical_from_raw(const Signal& signal, int64_t raw) {
+  if (signal.has_sna && raw == signal.sna_raw()) return std::nullopt;
+  if (raw < signal.min_raw() || raw > signal.max_raw()) return std::nullopt;
+  return signal.physical(raw);
+}
+
+void insert_raw(Frame& frame, const Signal& signal, int64_t raw) {
+  assert(raw >= signal.lowest_raw() && raw <= signal.highest_raw());
+  assert(signal.start_bit + signal.length_bits <= 8 * frame.length);
+  const uint64_t mask = mask_of(signal) << signal.start_bit;
+  const uint64_t bits = (static_cast<uint64_t>(raw) << signal.start_bit) & mask;
+  store(frame, (load(frame) & ~mask) | bits);
+}
+
+int64_t extract_raw(const Frame& frame, const Signal& signal) {
+  assert(signal.start_bit + signal.length_bits <= 8 * frame.length);
+  const uint64_t bits = (load(frame) >> signal.start_bit) & mask_of(signal);
+  const uint64_t sign_bit = uint64_t{1} << (signal.length_bits - 1);
+  if (!signal.is_signed || (bits & sign_bit) == 0) return static_cast<int64_t>(bits);
+  return static_cast<int64_t>(bits | ~mask_of(signal));
+}
+
+}  // namespace bevloc::can

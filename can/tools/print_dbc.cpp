@@ -1,0 +1,23 @@
+// Prints the DBC file of the message table: bevloc_dbc > can/bevloc.dbc
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "can/dbc_writer.h"
+#include "can/markdown_writer.h"
+
+int main(int argc, char** argv) {
+  CLI::App app("Prints the DBC file of bevloc's CAN messages.");
+  bevloc::can::BaseIds base;
+  bool markdown = false;
+  const CLI::Range base_range(0u, 0x7F0u);
+  app.add_option("--localizer-base", base.localizer, "first id of the LOC_ messages")
+      ->check(base_range)
+      ->capture_default_str();
+  app.add_option("--vehicle-base", base.vehicle, "first id of the VEH_ messages")
+      ->check(base_range)
+      ->capture_default_str();
+  app.add_flag("--markdown", markdown, "print the tables of docs/can.md instead");
+  CLI11_PARSE(app, argc, argv);
+  std::cout << (markdown ? bevloc::can::markdown_tables(base) : bevloc::can::dbc_text(base));
+}

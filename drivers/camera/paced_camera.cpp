@@ -1,0 +1,102 @@
+#include "drivers/camera/paced_camera.h"
+
+#include <utility>
+
+#include "pipeline/calibration/rig.h"
+
+namespace bevloc::drivers {
+namespace {
+
+/// A picture is made when it is due within this time: what comes later than that, after a silence,
+/// can wait.
+constexpr Duration kDrawAhead = std::chrono::seconds(1);
+
+}  // namespace
+
+PacedCamera::PacedCamera(const CameraDescription& description, Duration exposure, Clock& clock)
+    : description_(description),
+      exposure_(exposure),
+      clock_(clock),
+      pool_(FramePool::create(description.buffers, description.width_px, description.height_px)) {}
+
+Status PacedCamera::start() {
+  if (running_) return fail("camera {}: already started", kCameraNames[description_.camera]);
+  if (Status opened = open(clock_.now()); !opened) return opened;
+  running_ = true;
+  advance();
+  return {};
+}
+
+void PacedCamera::stop() {
+  running_ = false;
+  next_.reset();
+  drawn_ = {};
+}
+
+Result<FrameEvent> PacedCamera::next_frame(Duration timeout, Frame& frame) {
+  if (!running_) return fail("camera {}: not started", kCameraNames[description_.camera]);
+  const Time give_up = clock_.now() + timeout;
+  do {
+    drop_overdue();
+    if (!next_) return FrameEvent::kEnded;
+    if (next_->due <= give_up + kDrawAhead) {
+      if (Status drawn = draw_next(); !drawn) {
+        advance();
+        return tl::unexpected(drawn.error());
+      }
+    }
+    if (is_overdue()) continue;  // making it took too long
+    if (next_->due > give_up) {
+      clock_.sleep_until(give_up);
+      return FrameEvent::kTimeout;
+    }
+    clock_.sleep_until(next_->due);
+    if (hand_over(frame)) return FrameEvent::kFrame;
+  } while (clock_.now() <= give_up);
+  return FrameEvent::kTimeout;
+}
+
+/// Gives out the picture of next_ and goes on to the one after; false when no buffer was free.
+bool PacedCamera::hand_over(Frame& frame) {
+  const bool has_buffer = static_cast<bool>(drawn_);
+  if (has_buffer) {
+    frame = Frame{description_.camera, next_->exposure_start, next_->sequence, exposure_,
+                  std::move(drawn_)};
+  }
+  std::atomic<uint64_t>& counter = has_buffer ? counters_.delivered : counters_.no_buffer;
+  counter.fetch_add(1, std::memory_order_relaxed);
+  advance();
+  return has_buffer;
+}
+
+CameraCounters PacedCamera::counters() const {
+  return {counters_.delivered.load(std::memory_order_relaxed),
+          counters_.no_buffer.load(std::memory_order_relaxed),
+          counters_.overrun.load(std::memory_order_relaxed)};
+}
+
+bool PacedCamera::is_overdue() const {
+  return next_ && clock_.now() - next_->due >= shelf_life_;
+}
+
+void PacedCamera::drop_overdue() {
+  while (is_overdue()) {
+    counters_.overrun.fetch_add(1, std::memory_order_relaxed);
+    advance();
+  }
+}
+
+/// Makes the picture of next_ unless that is done or no buffer is free.
+Status PacedCamera::draw_next() {
+  if (drawn_) return {};
+  drawn_ = pool_->borrow();
+  if (!drawn_) return {};
+  return draw(*next_, drawn_.image());
+}
+
+void PacedCamera::advance() {
+  drawn_ = {};
+  next_ = next_delivery();
+}
+
+}  // namespace bevloc::drivers

@@ -1,0 +1,140 @@
+#include "drivers/frameset/synchronizer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace bevloc::drivers {
+
+void FramesetSynchronizer::CameraQueue::push(Frame frame) {
+  if (size == kQueueCapacity) {
+    pop();
+    ++counters.overflow;
+  }
+  frames[(first + size) % kQueueCapacity] = std::move(frame);
+  ++size;
+}
+
+Frame FramesetSynchronizer::CameraQueue::pop() {
+  assert(size > 0);
+  Frame frame = std::move(frames[first]);
+  first = (first + 1) % kQueueCapacity;
+  --size;
+  return frame;
+}
+
+FramesetSynchronizer::FramesetSynchronizer(const SynchronizerConfig& config) : config_(config) {
+  assert(config.tolerance >= Duration::zero() && config.wait >= config.tolerance);
+  assert(config.min_cameras >= 1 && config.min_cameras <= kCameraCount);
+}
+
+FrameFate FramesetSynchronizer::add(Frame frame, Time now) {
+  assert(frame.camera >= 0 && frame.camera < kCameraCount);
+  CameraQueue& camera = cameras_[frame.camera];
+  SynchronizerCounters& counters = camera.counters;
+  ++counters.added;
+  const FrameFate fate = judge(camera, frame.time, now);
+  if (fate == FrameFate::kAccepted || fate == FrameFate::kLate) camera.newest = frame.time;
+  switch (fate) {
+    case FrameFate::kAccepted:
+      camera.push(std::move(frame));
+      break;
+    case FrameFate::kDuplicate:
+      ++counters.duplicate;
+      break;
+    case FrameFate::kOutOfOrder:
+      ++counters.out_of_order;
+      break;
+    case FrameFate::kLate:
+      ++counters.late;
+      break;
+    case FrameFate::kFuture:
+      ++counters.future;
+      break;
+  }
+  // Whatever it brought, the camera is alive and worth waiting for.
+  camera.missed_in_a_row = 0;
+  return fate;
+}
+
+FrameFate FramesetSynchronizer::judge(const CameraQueue& camera, Time time, Time now) const {
+  if (time > now) return FrameFate::kFuture;
+  if (time == camera.newest) return FrameFate::kDuplicate;
+  if (time < camera.newest) return FrameFate::kOutOfOrder;
+  if (time <= closed_until_) return FrameFate::kLate;
+  return FrameFate::kAccepted;
+}
+
+std::optional<Frameset> FramesetSynchronizer::poll(Time now) {
+  while (const std::optional<Time> opening = opening_time()) {
+    const CameraMask waited_for = blockers();
+    if (waited_for.any() && now < *opening + config_.wait) return std::nullopt;
+    const CameraMask found = members(*opening);
+    closed_until_ = *opening + config_.tolerance;
+    if (static_cast<int>(found.count()) >= config_.min_cameras) {
+      return emit(*opening, found, waited_for);
+    }
+    discard(found);
+  }
+  return std::nullopt;
+}
+
+std::optional<Time> FramesetSynchronizer::deadline() const {
+  const std::optional<Time> opening = opening_time();
+  if (!opening) return std::nullopt;
+  return *opening + config_.wait;
+}
+
+CameraMask FramesetSynchronizer::blockers() const {
+  CameraMask mask;
+  if (!opening_time()) return mask;
+  for (int i = 0; i < kCameraCount; ++i) {
+    mask[i] = cameras_[i].size == 0 && cameras_[i].missed_in_a_row < kPatience;
+  }
+  return mask;
+}
+
+std::optional<Time> FramesetSynchronizer::opening_time() const {
+  std::optional<Time> earliest;
+  for (const CameraQueue& camera : cameras_) {
+    if (camera.size > 0) earliest = std::min(earliest.value_or(Time::max()), camera.front().time);
+  }
+  return earliest;
+}
+
+CameraMask FramesetSynchronizer::members(Time opening) const {
+  CameraMask mask;
+  for (int i = 0; i < kCameraCount; ++i) {
+    mask[i] = cameras_[i].size > 0 && cameras_[i].front().time <= opening + config_.tolerance;
+  }
+  return mask;
+}
+
+Frameset FramesetSynchronizer::emit(Time opening, CameraMask found, CameraMask waited_for) {
+  Frameset set;
+  set.time = opening;
+  set.present = found;
+  for (int i = 0; i < kCameraCount; ++i) {
+    CameraQueue& camera = cameras_[i];
+    if (found[i]) {
+      set.frames[i] = camera.pop();
+      set.spread = std::max(set.spread, set.frames[i].time - opening);
+      ++camera.counters.emitted;
+      continue;
+    }
+    ++camera.counters.missing;
+    camera.missed_in_a_row = std::min(camera.missed_in_a_row + 1, kPatience);
+    if (waited_for[i]) ++camera.counters.waited_for;
+  }
+  return set;
+}
+
+void FramesetSynchronizer::discard(CameraMask found) {
+  for (int i = 0; i < kCameraCount; ++i) {
+    if (!found[i]) continue;
+    cameras_[i].pop();
+    ++cameras_[i].counters.unmatched;
+  }
+}
+
+}  // namespace bevloc::drivers

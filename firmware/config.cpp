@@ -1,0 +1,207 @@
+#include "firmware/config.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "common/strict_yaml.h"
+#include "firmware/simulation_config.h"
+#include "sim/world/world_generator.h"
+
+namespace bevloc::firmware {
+namespace {
+
+Duration milliseconds_of(YamlMap& yaml, std::string_view key, Duration fallback,
+                         const Wanted<double>& wanted) {
+  return from_seconds(1e-3 * yaml.optional<double>(key, 1e3 * to_seconds(fallback), wanted));
+}
+
+std::filesystem::path path_of(YamlMap& yaml, std::string_view key,
+                              const std::filesystem::path& folder) {
+  const Wanted<std::string> named{"the name of a file",
+                                  [](const std::string& name) { return !name.empty(); }};
+  return folder / yaml.require<std::string>(key, named);
+}
+
+CameraConfig read_cameras(YamlMap yaml, const std::filesystem::path& folder) {
+  CameraConfig cameras;
+  cameras.driver = yaml.require_choice<CameraDriver>(
+      "driver", {{"mock", CameraDriver::kMock}, {"replay", CameraDriver::kReplay}});
+  if (cameras.driver == CameraDriver::kMock) {
+    cameras.rate_hz = yaml.require<double>("rate_hz", between(1.0, 60.0));
+  } else {
+    cameras.recording = path_of(yaml, "recording", folder);
+  }
+  cameras.buffers = yaml.optional<int>("buffers", cameras.buffers, between(2, 64));
+  drivers::SynchronizerConfig& synchronizer = cameras.synchronizer;
+  synchronizer.tolerance =
+      milliseconds_of(yaml, "tolerance_ms", synchronizer.tolerance, between(0.0, 50.0));
+  synchronizer.wait = milliseconds_of(yaml, "wait_ms", synchronizer.wait, between(1.0, 1000.0));
+  synchronizer.min_cameras =
+      yaml.optional<int>("min_cameras", synchronizer.min_cameras, between(1, kCameraCount));
+  if (synchronizer.wait < synchronizer.tolerance) {
+    yaml.reject("wait_ms", "less than tolerance_ms", "at least tolerance_ms");
+  }
+  return cameras;
+}
+
+MapConfig read_map(YamlMap yaml, CameraDriver camera_driver, const std::filesystem::path& folder) {
+  MapConfig map;
+  if (!yaml.has("procedural_seed")) {
+    map.file = path_of(yaml, "file", folder);
+    return map;
+  }
+  map.procedural_seed =
+      yaml.require<uint64_t>("procedural_seed", between(uint64_t{0}, sim::kFirstTrainingSeed - 1));
+  if (camera_driver != CameraDriver::kMock) {
+    yaml.reject("procedural_seed", "a made-up map", "`file`: the cameras are not mocks");
+  }
+  return map;
+}
+
+/// Range and step of one axis, `key_range` and `key_step` in YAML's unit.
+HypothesisAxis read_axis(YamlMap& yaml, std::string_view range_key, std::string_view step_key,
+                         const HypothesisAxis& fallback, double unit) {
+  HypothesisAxis axis;
+  axis.range = unit * yaml.optional<double>(range_key, fallback.range / unit, between(0.1, 20.0));
+  axis.step = unit * yaml.optional<double>(step_key, fallback.step / unit, between(0.01, 5.0));
+  if (axis.step > axis.range) yaml.reject(step_key, "more than the range", "at most the range");
+  return axis;
+}
+
+HypothesisGrid read_hypotheses(std::optional<YamlMap> yaml, const HypothesisGrid& fallback) {
+  if (!yaml) return fallback;
+  const double degree_rad = radians(1.0);
+  HypothesisGrid grid;
+  grid.x_m = read_axis(*yaml, "x_range_m", "x_step_m", fallback.x_m, 1.0);
+  grid.y_m = read_axis(*yaml, "y_range_m", "y_step_m", fallback.y_m, 1.0);
+  grid.yaw_rad = read_axis(*yaml, "yaw_range_deg", "yaw_step_deg", fallback.yaw_rad, degree_rad);
+  return grid;
+}
+
+SolverConfig read_solver(std::optional<YamlMap> yaml) {
+  SolverConfig solver;
+  if (!yaml) return solver;
+  const auto kind =
+      solver_kind_from(yaml->optional<std::string>("kind", std::string(name_of(solver.kind))));
+  if (kind) {
+    solver.kind = *kind;
+  } else {
+    yaml->reject("kind", "an unknown solver", kind.error().message);
+  }
+  solver.tracking = read_hypotheses(yaml->optional_map("tracking"), solver.tracking);
+  solver.acquiring = read_hypotheses(yaml->optional_map("acquiring"), solver.acquiring);
+  return solver;
+}
+
+CanConfig read_can(YamlMap yaml) {
+  CanConfig config;
+  config.driver = yaml.require_choice<CanDriver>(
+      "driver", {{"mock", CanDriver::kMock}, {"socketcan", CanDriver::kSocketCan}});
+  if (config.driver == CanDriver::kSocketCan) {
+    // A longer name does not fit into IFNAMSIZ.
+    const Wanted<std::string> interface_name{
+        "the name of a network interface, 1 to 15 characters",
+        [](const std::string& name) { return !name.empty() && name.size() <= 15; }};
+    config.interface = yaml.require<std::string>("interface", interface_name);
+  }
+  // Each family of messages takes less than 0x40 of the 11-bit identifiers.
+  constexpr uint32_t kFamily = 0x40;
+  const auto base_id = between(uint32_t{1}, 0x800 - kFamily);
+  can::BaseIds& base = config.base_ids;
+  base.localizer = yaml.optional<uint32_t>("localizer_base_id", base.localizer, base_id);
+  base.vehicle = yaml.optional<uint32_t>("vehicle_base_id", base.vehicle, base_id);
+  const auto [low, high] = std::minmax(base.localizer, base.vehicle);
+  if (high - low < kFamily) {
+    yaml.reject("localizer_base_id", "less than 0x40 apart from vehicle_base_id",
+                "0x40 or more, or messages would share identifiers");
+  }
+  return config;
+}
+
+TrackerParameters read_tracker(std::optional<YamlMap> yaml) {
+  TrackerParameters tracker;
+  if (!yaml) return tracker;
+  const auto noise = between(1e-5, 10.0);
+  MotionNoise& motion = tracker.motion;
+  motion.longitudinal_m_per_sqrt_m = yaml->optional<double>(
+      "longitudinal_noise_m_per_sqrt_m", motion.longitudinal_m_per_sqrt_m, noise);
+  motion.lateral_m_per_sqrt_m =
+      yaml->optional<double>("lateral_noise_m_per_sqrt_m", motion.lateral_m_per_sqrt_m, noise);
+  motion.yaw_rad_per_sqrt_s = radians(yaml->optional<double>(
+      "yaw_noise_deg_per_sqrt_s", degrees(motion.yaw_rad_per_sqrt_s), noise));
+  tracker.initial_speed_scale_sigma = yaml->optional<double>(
+      "speed_scale_sigma", tracker.initial_speed_scale_sigma, between(1e-4, 0.5));
+  tracker.initial_yaw_rate_bias_sigma_radps = radians(yaml->optional<double>(
+      "yaw_rate_bias_sigma_degps", degrees(tracker.initial_yaw_rate_bias_sigma_radps), noise));
+  const auto correlation_s = between(0.0, 600.0);
+  tracker.gnss_correlation_s =
+      yaml->optional<double>("gnss_correlation_s", tracker.gnss_correlation_s, correlation_s);
+  tracker.correction_correlation_s = yaml->optional<double>(
+      "correction_correlation_s", tracker.correction_correlation_s, correlation_s);
+  tracker.gate_squared_distance = yaml->optional<double>(
+      "gate_squared_distance", tracker.gate_squared_distance, between(1.0, 1000.0));
+  return tracker;
+}
+
+HealthLimits read_health(std::optional<YamlMap> yaml) {
+  HealthLimits limits;
+  if (!yaml) return limits;
+  const auto timeout = between(10.0, 60'000.0);
+  limits.odometry_timeout =
+      milliseconds_of(*yaml, "odometry_timeout_ms", limits.odometry_timeout, timeout);
+  limits.gnss_timeout = milliseconds_of(*yaml, "gnss_timeout_ms", limits.gnss_timeout, timeout);
+  limits.correction_timeout =
+      milliseconds_of(*yaml, "degraded_after_ms", limits.correction_timeout, timeout);
+  limits.lost_timeout = milliseconds_of(*yaml, "lost_after_ms", limits.lost_timeout, timeout);
+  const auto count = between(1, 1000);
+  limits.corrections_to_track =
+      yaml->optional<int>("corrections_to_track", limits.corrections_to_track, count);
+  limits.refusals_to_lose = yaml->optional<int>("refusals_to_lose", limits.refusals_to_lose, count);
+  const auto sigma_m = between(0.01, 10.0);
+  limits.longitudinal_sigma_m =
+      yaml->optional<double>("max_longitudinal_sigma_m", limits.longitudinal_sigma_m, sigma_m);
+  limits.lateral_sigma_m =
+      yaml->optional<double>("max_lateral_sigma_m", limits.lateral_sigma_m, sigma_m);
+  limits.yaw_sigma_rad = radians(yaml->optional<double>(
+      "max_yaw_sigma_deg", degrees(limits.yaw_sigma_rad), between(0.01, 45.0)));
+  if (limits.lost_timeout <= limits.correction_timeout) {
+    yaml->reject("lost_after_ms", "not more than degraded_after_ms", "more than degraded_after_ms");
+  }
+  return limits;
+}
+
+LogLevel read_log_level(std::optional<YamlMap> yaml) {
+  if (!yaml) return LogLevel::kInfo;
+  return yaml->require_choice<LogLevel>("level", {{"debug", LogLevel::kDebug},
+                                                  {"info", LogLevel::kInfo},
+                                                  {"warning", LogLevel::kWarning},
+                                                  {"error", LogLevel::kError}});
+}
+
+}  // namespace
+
+Result<Config> load_config(const std::filesystem::path& file) {
+  Result<YamlMap> yaml = YamlMap::read_file(file);
+  if (!yaml) return tl::unexpected(yaml.error());
+  const std::filesystem::path folder = file.parent_path();
+  Config config;
+  config.cameras = read_cameras(yaml->require_map("cameras"), folder);
+  YamlMap calibration = yaml->require_map("calibration");
+  config.rig_file = path_of(calibration, "rig", folder);
+  config.map = read_map(yaml->require_map("map"), config.cameras.driver, folder);
+  YamlMap model = yaml->require_map("model");
+  config.model_file = path_of(model, "file", folder);
+  config.solver = read_solver(yaml->optional_map("solver"));
+  config.can = read_can(yaml->require_map("can"));
+  config.tracker = read_tracker(yaml->optional_map("tracker"));
+  config.health = read_health(yaml->optional_map("health"));
+  config.log_level = read_log_level(yaml->optional_map("log"));
+  if (config.cameras.driver == CameraDriver::kMock) {
+    config.simulation = read_simulation(yaml->require_map("simulation"));
+  }
+  if (Status finished = yaml->finish(); !finished) return tl::unexpected(finished.error());
+  return config;
+}
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,85 @@
+// The configuration file of bevlocd.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "can/message.h"
+#include "common/result.h"
+#include "drivers/camera/mock_schedule.h"
+#include "drivers/camera/true_rig.h"
+#include "drivers/frameset/synchronizer.h"
+#include "firmware/health.h"
+#include "pipeline/calibration/rig.h"
+#include "pipeline/solver/solver_factory.h"
+#include "pipeline/tracker/tracker.h"
+#include "sim/render/renderer.h"
+
+namespace bevloc::firmware {
+
+enum class CameraDriver : uint8_t { kMock, kReplay };
+enum class CanDriver : uint8_t { kMock, kSocketCan };
+enum class LogLevel : uint8_t { kDebug, kInfo, kWarning, kError };
+
+struct CameraConfig {
+  CameraDriver driver = CameraDriver::kMock;
+  int buffers = 6;  ///< per camera
+  drivers::SynchronizerConfig synchronizer;
+  double rate_hz = 10.0;            ///< of mock cameras
+  std::filesystem::path recording;  ///< of replay cameras: holds a folder for each of kCameraNames
+};
+
+/// The map comes from a file or, for mock cameras, from the seed of a made-up town.
+struct MapConfig {
+  std::filesystem::path file;  ///< empty when procedural
+  std::optional<uint64_t> procedural_seed;
+};
+
+struct SolverConfig {
+  SolverKind kind = SolverKind::kDecoupled;
+  HypothesisGrid tracking;
+  HypothesisGrid acquiring{{6.0, 0.2}, {4.0, 0.2}, {radians(4.0), radians(0.2)}};
+};
+
+struct CanConfig {
+  CanDriver driver = CanDriver::kMock;
+  std::string interface;  ///< of SocketCAN
+  can::BaseIds base_ids;
+};
+
+/// The drive that mock cameras see.
+struct SimulationConfig {
+  uint64_t seed = 1;
+  double duration_s = 60.0;
+  sim::Conditions conditions;
+  drivers::CalibrationError calibration_error;  ///< 1 sigma
+  std::array<std::vector<drivers::CameraFault>, kCameraCount> camera_faults;
+};
+
+struct Config {
+  CameraConfig cameras;
+  std::filesystem::path rig_file;
+  MapConfig map;
+  std::filesystem::path model_file;
+  SolverConfig solver;
+  CanConfig can;
+  TrackerParameters tracker;
+  HealthLimits health;
+  LogLevel log_level = LogLevel::kInfo;
+  std::optional<SimulationConfig> simulation;  ///< there with mock cameras, and only then
+};
+
+/// Reads a configuration file; docs/configuration.md describes each key. Every key must be known,
+/// there once, of the right type and in range; else the error names file, line and key. Paths in
+/// the file are relative to its folder; those in the result are ready to open.
+Result<Config> load_config(const std::filesystem::path& file);
+
+/// Looks whether what the configuration names is there: rig and recording can be read, map and
+/// model exist. What bevlocd --check-config does.
+Status check_config(const Config& config);
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,36 @@
+// The poses that the estimator predicted lately, for whoever needs one at an earlier time.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "pipeline/tracker/tracker.h"
+
+namespace bevloc::firmware {
+
+/// A ring of the newest predictions. The vision stage keeps one so that it finds T0 at the time of
+/// exposure without asking the estimator's thread. Not thread safe; never allocates.
+class PoseTrail {
+ public:
+  /// At most this far beyond the newest pose one is still given.
+  static constexpr Duration kReach = std::chrono::milliseconds(150);
+
+  /// A pose that is not newer than the latest one replaces it and all that came after it.
+  void add(const TrackedPose& pose);
+
+  /// Between two poses by interpolation, past the newest by its speed and yaw rate; nothing outside.
+  std::optional<Se2> at(Time time) const;
+
+ private:
+  static constexpr int kCapacity = 128;
+
+  const TrackedPose& nth_newest(int n) const {
+    return poses_[(next_ + kCapacity - 1 - n) % kCapacity];
+  }
+
+  std::array<TrackedPose, kCapacity> poses_{};
+  int next_ = 0;
+  int size_ = 0;
+};
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,91 @@
+#include "firmware/runner.h"
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "can/localizer_messages.h"
+
+namespace bevloc::firmware {
+namespace {
+
+// No thread waits longer than this before it looks whether the end has come.
+constexpr Duration kPatience = std::chrono::milliseconds(50);
+constexpr Duration kBusCycle = std::chrono::milliseconds(can::kSolutionCycleMs);
+constexpr Duration kSupervisionPeriod = std::chrono::milliseconds(100);
+
+void publish_on_cycle(Appliance& appliance, const std::atomic<bool>& running) {
+  Time due = appliance.clock().now();
+  while (running) {
+    appliance.clock().sleep_until(due);
+    const Time now = appliance.clock().now();
+    appliance.estimation().tick(now);
+    due += kBusCycle;
+    // After a stall: go on from here instead of sending a burst.
+    if (due < now) due = now;
+  }
+}
+
+void act_when_due(drivers::Clock& clock, const Companion& companion,
+                  const std::atomic<bool>& running) {
+  while (running) {
+    clock.sleep_until(std::min(companion.next_due(), clock.now() + kPatience));
+    companion.act(clock.now());
+  }
+}
+
+}  // namespace
+
+void run_threads(Appliance& appliance, const Companion* companion, const Supervise& supervise) {
+  std::atomic<bool> running{true};
+  drivers::Clock& clock = appliance.clock();
+  std::vector<std::jthread> threads;
+  for (CaptureStage& stage : appliance.capture()) {
+    threads.emplace_back([&stage, &running] {
+      while (running && stage.step(kPatience)) {
+      }
+      stage.stop();
+    });
+  }
+  threads.emplace_back([&] {
+    while (running) appliance.vision().step(clock, kPatience);
+  });
+  threads.emplace_back([&] {
+    while (running) appliance.vehicle_input().step(kPatience);
+  });
+  threads.emplace_back([&] { publish_on_cycle(appliance, running); });
+  if (companion != nullptr) {
+    threads.emplace_back([&] { act_when_due(clock, *companion, running); });
+    threads.emplace_back([&] {
+      while (running) companion->listen(kPatience);
+    });
+  }
+  Time next = clock.now();
+  do {
+    next += kSupervisionPeriod;
+    clock.sleep_until(next);
+  } while (supervise(clock.now()));
+  running = false;
+  appliance.close();
+}
+
+void run_lockstep(Appliance& appliance, drivers::VirtualClock& clock, const Companion* companion,
+                  const Supervise& supervise) {
+  Time next_supervision = clock.now();
+  for (bool running = true; running; clock.advance(kBusCycle)) {
+    const Time now = clock.now();
+    if (companion != nullptr) companion->act(now);
+    appliance.vehicle_input().step(Duration::zero());
+    for (CaptureStage& stage : appliance.capture()) stage.step(Duration::zero());
+    appliance.vision().step(clock, Duration::zero());
+    appliance.estimation().tick(now);
+    if (companion != nullptr) companion->listen(Duration::zero());
+    if (now >= next_supervision) {
+      next_supervision = now + kSupervisionPeriod;
+      running = supervise(now);
+    }
+  }
+  for (CaptureStage& stage : appliance.capture()) stage.stop();
+}
+
+}  // namespace bevloc::firmware

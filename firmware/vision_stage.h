@@ -1,0 +1,68 @@
+// Frames in, corrections of the pose out: the stage that sees.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "drivers/clock/clock.h"
+#include "drivers/frameset/synchronizer.h"
+#include "firmware/messages.h"
+#include "firmware/pose_trail.h"
+#include "pipeline/localization/localizer.h"
+
+namespace bevloc::firmware {
+
+/// A whole localization, as an observer (recording, demo) may look at it while it lasts.
+struct VisionSnapshot {
+  const drivers::Frameset& frameset;
+  const VisionReport& report;
+  const SolverResult& solution;
+  SearchRange range;
+  Localizer& localizer;
+};
+
+/// Totals since start; readable from any thread.
+struct VisionCounters {
+  std::atomic<uint64_t> steps{0};      ///< the thread's own heartbeat
+  std::atomic<uint64_t> framesets{0};  ///< localized
+  std::atomic<uint64_t> frames_used{0};
+  std::atomic<uint64_t> framesets_skipped{0};  ///< a newer one was already there
+  std::atomic<uint64_t> frames_skipped{0};     ///< of those
+  std::atomic<uint64_t> no_prior{0};  ///< framesets at whose time no prediction was known
+  std::atomic<uint64_t> refused{0};   ///< framesets with an image of the wrong size
+};
+
+/// Thread: one, the vision thread; counters() from any.
+class VisionStage {
+ public:
+  VisionStage(Localizer& localizer, const drivers::SynchronizerConfig& synchronizer,
+              FrameQueue& frames, PredictionQueue& predictions, VisionQueue& reports);
+
+  /// Called with every localization, in the vision thread, before its report is handed on.
+  void observe(std::function<void(const VisionSnapshot&)> observer);
+
+  /// Waits for a frame, `timeout` at most, takes in all that has arrived, and localizes the newest
+  /// complete frameset, if there is one. Says whether it did.
+  bool step(const drivers::Clock& clock, Duration timeout);
+
+  const VisionCounters& counters() const { return counters_; }
+  const drivers::FramesetSynchronizer& synchronizer() const { return synchronizer_; }
+
+ private:
+  void take_in(const drivers::Clock& clock, Duration timeout);
+  std::optional<drivers::Frameset> newest_frameset(Time now);
+  void localize(const drivers::Frameset& frameset);
+
+  Localizer& localizer_;
+  drivers::FramesetSynchronizer synchronizer_;
+  FrameQueue& frames_;
+  PredictionQueue& predictions_;
+  VisionQueue& reports_;
+  PoseTrail trail_;
+  bool acquiring_ = true;
+  SolverResult solution_;
+  std::function<void(const VisionSnapshot&)> observer_;
+  VisionCounters counters_;
+};
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,75 @@
+#include "pipeline/calibration/camera_model.h"
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
+
+namespace bevloc {
+namespace {
+
+/// Squared radius (of the normalised coordinate) up to which r (1 + k1 r^2 + k2 r^4) grows: the
+/// smallest positive root of its derivative 1 + 3 k1 s + 5 k2 s^2 in s = r^2.
+double growing_radius_squared(double k1, double k2) {
+  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+  const double discriminant = 9.0 * k1 * k1 - 20.0 * k2;
+  if (discriminant < 0.0 || (k1 >= 0.0 && k2 >= 0.0)) return kUnbounded;
+  // -2 / (b - sqrt(b^2 - 4ac)) is the stable form of the root and also holds for k2 = 0.
+  const double root = -2.0 / (3.0 * k1 - std::sqrt(discriminant));
+  return root > 0.0 ? root : kUnbounded;
+}
+
+struct Distorted {
+  Eigen::Vector2d point;
+  Eigen::Matrix2d jacobian;
+};
+
+/// OpenCV's radial-tangential model with its derivative.
+Distorted distort(const Intrinsics& camera, const Eigen::Vector2d& normalised) {
+  const double x = normalised.x();
+  const double y = normalised.y();
+  const double r2 = x * x + y * y;
+  const double radial = 1.0 + r2 * (camera.k1 + r2 * camera.k2);
+  const double radial_slope = camera.k1 + 2.0 * camera.k2 * r2;
+  const double p1 = camera.p1;
+  const double p2 = camera.p2;
+  Distorted result;
+  result.point = {x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
+                  y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
+  const double mixed = 2.0 * x * y * radial_slope + 2.0 * p1 * x + 2.0 * p2 * y;
+  result.jacobian << radial + 2.0 * x * x * radial_slope + 2.0 * p1 * y + 6.0 * p2 * x, mixed,
+      mixed, radial + 2.0 * y * y * radial_slope + 6.0 * p1 * y + 2.0 * p2 * x;
+  return result;
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector2d> Intrinsics::project(const Eigen::Vector3d& point_camera) const {
+  if (!(point_camera.z() > 0.0)) return std::nullopt;
+  const Eigen::Vector2d normalised = point_camera.head<2>() / point_camera.z();
+  if (!(normalised.squaredNorm() < growing_radius_squared(k1, k2))) return std::nullopt;
+  const Eigen::Vector2d distorted = distort(*this, normalised).point;
+  return Eigen::Vector2d(fx_px * distorted.x() + cx_px, fy_px * distorted.y() + cy_px);
+}
+
+Eigen::Vector3d Intrinsics::ray(const Eigen::Vector2d& pixel) const {
+  constexpr int kMaxSteps = 30;
+  constexpr double kConverged = 1e-13;
+  const Eigen::Vector2d target((pixel.x() - cx_px) / fx_px, (pixel.y() - cy_px) / fy_px);
+  const double limit_squared = growing_radius_squared(k1, k2);
+  // Newton's method; a pixel that no ray reaches ends on the widest ray in its direction.
+  const auto within_limit = [limit_squared](const Eigen::Vector2d& point) -> Eigen::Vector2d {
+    const double r2 = point.squaredNorm();
+    return r2 < limit_squared ? point : 0.999 * std::sqrt(limit_squared / r2) * point;
+  };
+  Eigen::Vector2d normalised = within_limit(target);
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const Distorted distorted = distort(*this, normalised);
+    const Eigen::Vector2d change = distorted.jacobian.inverse() * (target - distorted.point);
+    normalised = within_limit(normalised + change);
+    if (change.lpNorm<Eigen::Infinity>() < kConverged) break;
+  }
+  return {normalised.x(), normalised.y(), 1.0};
+}
+
+}  // namespace bevloc

@@ -1,0 +1,135 @@
+#include "pipeline/calibration/rig_yaml.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "common/files.h"
+#include "common/strict_yaml.h"
+
+namespace bevloc {
+namespace {
+
+constexpr int kMaxImageSizePx = 16384;
+constexpr double kMaxPixel = 2.0 * kMaxImageSizePx;
+constexpr double kMaxFromVehicleOriginM = 50.0;
+
+/// Whether every pixel has a ray of its own: looked at in the corners, where distortion is largest.
+bool covers_its_image(const Intrinsics& camera) {
+  constexpr double kTolerancePx = 0.01;
+  for (const double u : {0.0, camera.width_px - 1.0}) {
+    for (const double v : {0.0, camera.height_px - 1.0}) {
+      const Eigen::Vector2d corner(u, v);
+      const auto again = camera.project(camera.ray(corner));
+      if (!again || !((*again - corner).norm() < kTolerancePx)) return false;
+    }
+  }
+  return true;
+}
+
+Intrinsics read_intrinsics(YamlMap& yaml) {
+  Intrinsics camera;
+  const auto size = yaml.require_list<int>("image_size_px", 2, between(1, kMaxImageSizePx));
+  camera.width_px = size[0];
+  camera.height_px = size[1];
+  camera.fx_px = yaml.require<double>("fx_px", more_than(0.0));
+  camera.fy_px = yaml.require<double>("fy_px", more_than(0.0));
+  camera.cx_px = yaml.require<double>("cx_px", between(-kMaxPixel, kMaxPixel));
+  camera.cy_px = yaml.require<double>("cy_px", between(-kMaxPixel, kMaxPixel));
+  const auto distortion = yaml.require_list<double>("distortion", 4);
+  camera.k1 = distortion[0];
+  camera.k2 = distortion[1];
+  camera.p1 = distortion[2];
+  camera.p2 = distortion[3];
+  if (!covers_its_image(camera)) {
+    yaml.reject("distortion", "numbers that fold the image back before its corners",
+                "a distortion that grows up to the corners");
+  }
+  return camera;
+}
+
+Se3 read_vehicle_from_camera(YamlMap yaml) {
+  constexpr double kNormTolerance = 1e-3;
+  Se3 transform;
+  const auto translation = yaml.require_list<double>(
+      "translation_m", 3, between(-kMaxFromVehicleOriginM, kMaxFromVehicleOriginM));
+  transform.translation_m = {translation[0], translation[1], translation[2]};
+  const auto wxyz = yaml.require_list<double>("rotation_wxyz", 4);
+  const Eigen::Quaterniond rotation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  if (!(std::abs(rotation.norm() - 1.0) <= kNormTolerance)) {
+    yaml.reject("rotation_wxyz", fmt::format("a quaternion of norm {:.6g}", rotation.norm()),
+                "a unit quaternion");
+    return transform;
+  }
+  transform.rotation = rotation.normalized().toRotationMatrix();
+  return transform;
+}
+
+/// Nine decimals without trailing zeros and without "-0".
+std::string format_number(double value) {
+  constexpr double kUnit = 1e9;
+  return fmt::format("{:.15g}", std::round(value * kUnit) / kUnit + 0.0);
+}
+
+template <typename... Numbers>
+std::string format_list(Numbers... numbers) {
+  const std::array<std::string, sizeof...(numbers)> texts = {format_number(numbers)...};
+  return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+std::string format_camera(const CameraModel& camera) {
+  const Intrinsics& k = camera.intrinsics;
+  const Eigen::Vector3d& t = camera.vehicle_from_camera.translation_m;
+  Eigen::Quaterniond q(camera.vehicle_from_camera.rotation);
+  if (q.w() < 0.0) q.coeffs() *= -1.0;
+  return fmt::format(
+      "    image_size_px: [{}, {}]\n"
+      "    fx_px: {}\n"
+      "    fy_px: {}\n"
+      "    cx_px: {}\n"
+      "    cy_px: {}\n"
+      "    distortion: {}\n"
+      "    vehicle_from_camera:\n"
+      "      translation_m: {}\n"
+      "      rotation_wxyz: {}\n",
+      k.width_px, k.height_px, format_number(k.fx_px), format_number(k.fy_px),
+      format_number(k.cx_px), format_number(k.cy_px), format_list(k.k1, k.k2, k.p1, k.p2),
+      format_list(t.x(), t.y(), t.z()), format_list(q.w(), q.x(), q.y(), q.z()));
+}
+
+}  // namespace
+
+Result<Rig> read_rig(const std::filesystem::path& path) {
+  const Result<std::string> text = read_file(path);
+  if (!text) return tl::unexpected(text.error());
+  return parse_rig(*text, path.string());
+}
+
+Result<Rig> parse_rig(const std::string& text, const std::string& name) {
+  Result<YamlMap> yaml = YamlMap::parse(text, name);
+  if (!yaml) return tl::unexpected(yaml.error());
+  Rig rig;
+  YamlMap cameras = yaml->require_map("cameras");
+  for (size_t i = 0; i < kCameraCount; ++i) {
+    YamlMap camera = cameras.require_map(kCameraNames[i]);
+    rig.cameras[i].intrinsics = read_intrinsics(camera);
+    rig.cameras[i].vehicle_from_camera =
+        read_vehicle_from_camera(camera.require_map("vehicle_from_camera"));
+  }
+  if (const Status status = yaml->finish(); !status) return tl::unexpected(status.error());
+  return rig;
+}
+
+std::string format_rig(const Rig& rig) {
+  std::string text =
+      "# Calibration of the six cameras. Pixel (0, 0) is the centre of the top left pixel;\n"
+      "# distortion is k1, k2, p1, p2 as OpenCV names them. Camera axes: x right, y down,\n"
+      "# z forward; vehicle axes: x forward, y left, z up, from the ground under the rear axle.\n"
+      "cameras:\n";
+  for (size_t i = 0; i < kCameraCount; ++i) {
+    text += fmt::format("  {}:\n{}", kCameraNames[i], format_camera(rig.cameras[i]));
+  }
+  return text;
+}
+
+}  // namespace bevloc

@@ -1,0 +1,39 @@
+// The calibration file of a vehicle.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "common/result.h"
+#include "pipeline/calibration/rig.h"
+
+namespace bevloc {
+
+/// A rig file has one entry for each of the six cameras (kCameraNames) and nothing else:
+///
+///     cameras:
+///       front_left:
+///         image_size_px: [640, 360]
+///         fx_px: 509.04
+///         fy_px: 509.04
+///         cx_px: 330.34
+///         cy_px: 191.62
+///         distortion: [-0.06, 0.01, 0, 0]        # k1, k2, p1, p2 as OpenCV names them
+///         vehicle_from_camera:
+///           translation_m: [1.524, 0.495, 1.509] # the camera's place on the vehicle
+///           rotation_wxyz: [0.66, -0.66, 0.25, -0.26]
+///       front: ...
+///
+/// The rotation is a unit quaternion that turns camera axes (x right, y down, z forward) into
+/// vehicle axes (x forward, y left, z up); a norm within 0.001 of 1 is accepted and made 1. Pixel
+/// (0, 0) is the centre of the top left pixel. Fails with file, line and key on anything else, and
+/// on a distortion that folds back within the image.
+Result<Rig> read_rig(const std::filesystem::path& path);
+
+/// The same for text that is there already; `name` stands in the messages for the file.
+Result<Rig> parse_rig(const std::string& text, const std::string& name);
+
+/// A rig file's text, numbers to nine decimals.
+std::string format_rig(const Rig& rig);
+
+}  // namespace bevloc

@@ -1,0 +1,76 @@
+#include "pipeline/localization/localizer.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "pipeline/network/view_table.h"
+#include "pipeline/preprocessing/network_camera.h"
+
+namespace bevloc {
+
+Result<std::unique_ptr<Localizer>> Localizer::create(const Rig& rig, const MapIndex& map,
+                                                     const std::string& model_path,
+                                                     const LocalizerOptions& options) {
+  auto network = Network::load(model_path, options.network);
+  if (!network) return tl::unexpected(network.error());
+  auto localizer = std::unique_ptr<Localizer>(new Localizer(rig, map, std::move(*network), options));
+  const Network& loaded = *localizer->network_;
+  for (const SearchRange range : {SearchRange::kTracking, SearchRange::kAcquiring}) {
+    auto solver = make_solver(options.solver, kFeatureGrid, loaded.bev_features().channels,
+                              localizer->hypotheses(range), loaded.solver_parameters());
+    if (!solver) return tl::unexpected(solver.error());
+    localizer->solvers_[static_cast<size_t>(range)] = std::move(*solver);
+  }
+  return localizer;
+}
+
+Localizer::Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Network> network,
+                     const LocalizerOptions& options)
+    : network_rig_(network_rig(rig)),
+      options_(options),
+      network_(std::move(network)),
+      rasterizer_(map) {
+  for (const CameraModel& camera : rig.cameras) preprocessors_.emplace_back(camera);
+}
+
+Status Localizer::localize(const std::array<RgbView, kCameraCount>& images, CameraMask present,
+                           const Se2& prior, SearchRange range, SolverResult& result) {
+  use_cameras(present);
+  const std::span<int8_t> input = network_->image_input();
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const auto planes = input.subspan(camera * kNetworkImageSize, kNetworkImageSize);
+    if (!present[camera]) {
+      std::fill(planes.begin(), planes.end(), kNetworkBlack);
+    } else if (Status status = preprocessors_[camera].run(images[camera], planes); !status) {
+      return status;
+    }
+  }
+  network_->run_image_branch();
+  rasterizer_.draw(prior, network_->raster_input());
+  network_->run_map_branch();
+  solvers_[static_cast<size_t>(range)]->solve(network_->bev_features(), network_->map_features(),
+                                              result);
+  return {};
+}
+
+void Localizer::use_cameras(CameraMask present) {
+  if (table_cameras_ == present) return;
+  network_->set_view_table(make_view_table(network_rig_, present, kFeatureGrid));
+  table_cameras_ = present;
+}
+
+bool Localizer::map_nearby() const {
+  const std::span<const uint8_t> raster = map_raster();
+  return std::any_of(raster.begin(), raster.end(), [](uint8_t cell) { return cell != 0; });
+}
+
+std::span<const float> Localizer::perceived_mask() {
+  network_->run_mask_head();
+  return network_->mask_logits();
+}
+
+const HypothesisGrid& Localizer::hypotheses(SearchRange range) const {
+  return range == SearchRange::kTracking ? options_.tracking : options_.acquiring;
+}
+
+}  // namespace bevloc

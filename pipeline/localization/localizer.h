@@ -1,0 +1,75 @@
+// One localization: six images and a rough pose in, the correction of that pose out.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/image.h"
+#include "common/result.h"
+#include "common/se2.h"
+#include "pipeline/calibration/rig.h"
+#include "pipeline/map/map_index.h"
+#include "pipeline/map/rasterizer.h"
+#include "pipeline/network/network.h"
+#include "pipeline/preprocessing/image_remap.h"
+#include "pipeline/solver/solver_factory.h"
+
+namespace bevloc {
+
+struct LocalizerOptions {
+  SolverKind solver = SolverKind::kDecoupled;
+  /// Hypotheses while tracking: the prior is good.
+  HypothesisGrid tracking;
+  /// Hypotheses while acquiring: the prior is GNSS alone.
+  HypothesisGrid acquiring{{6.0, 0.2}, {4.0, 0.2}, {radians(4.0), radians(0.2)}};
+  NetworkOptions network;
+};
+
+enum class SearchRange : uint8_t { kTracking, kAcquiring };
+
+/// The paper's whole network with its solver (Fig. 2), for one rig and one map. Owns all buffers:
+/// localize() allocates nothing once warm, except when the set of cameras changes. Not thread safe.
+/// The map index must outlive it.
+class Localizer {
+ public:
+  static Result<std::unique_ptr<Localizer>> create(const Rig& rig, const MapIndex& map,
+                                                   const std::string& model_path,
+                                                   const LocalizerOptions& options);
+
+  /// `images[i]` is read where `present[i]`. `prior` is T0, the predicted map_from_vehicle at the
+  /// time of exposure. Fails for an image whose size is not the calibration's.
+  Status localize(const std::array<RgbView, kCameraCount>& images, CameraMask present,
+                  const Se2& prior, SearchRange range, SolverResult& result);
+
+  /// The map as drawn in the latest localize(), kRasterSize bytes.
+  std::span<const uint8_t> map_raster() const { return network_->raster_input(); }
+
+  /// Whether it shows anything to match.
+  bool map_nearby() const;
+
+  /// The perceived mask of the latest localize(), [3, 400, 200] logits. Runs the head, which
+  /// localize() does not.
+  std::span<const float> perceived_mask();
+
+  const HypothesisGrid& hypotheses(SearchRange range) const;
+  const std::string& model_name() const { return network_->name(); }
+
+ private:
+  Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Network> network,
+            const LocalizerOptions& options);
+  void use_cameras(CameraMask present);
+
+  Rig network_rig_;
+  LocalizerOptions options_;
+  std::unique_ptr<Network> network_;
+  std::vector<ImagePreprocessor> preprocessors_;
+  MapRasterizer rasterizer_;
+  std::array<std::unique_ptr<Solver>, 2> solvers_;  ///< by SearchRange
+  std::optional<CameraMask> table_cameras_;
+};
+
+}  // namespace bevloc

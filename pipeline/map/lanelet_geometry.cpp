@@ -1,0 +1,152 @@
+#include "pipeline/map/lanelet_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace bevloc {
+namespace {
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+double distance_to_segment(const Eigen::Vector2d& point, const Eigen::Vector2d& from,
+                           const Eigen::Vector2d& to) {
+  const Eigen::Vector2d direction = to - from;
+  const double length_squared = direction.squaredNorm();
+  if (length_squared == 0.0) return (point - from).norm();
+  const double along = std::clamp((point - from).dot(direction) / length_squared, 0.0, 1.0);
+  return (point - from - along * direction).norm();
+}
+
+std::vector<double> arc_lengths(const Polyline& line) {
+  std::vector<double> lengths(line.size(), 0.0);
+  for (size_t i = 1; i < line.size(); ++i) {
+    lengths[i] = lengths[i - 1] + (line[i] - line[i - 1]).norm();
+  }
+  return lengths;
+}
+
+/// The point at a fraction (0 to 1) of a polyline's length.
+Eigen::Vector2d point_at(const Polyline& line, const std::vector<double>& lengths,
+                         double fraction) {
+  const double length = fraction * lengths.back();
+  const auto next = std::lower_bound(lengths.begin() + 1, lengths.end() - 1, length);
+  const auto i = static_cast<size_t>(next - lengths.begin());
+  const double step = lengths[i] - lengths[i - 1];
+  const double along = step > 0.0 ? std::clamp((length - lengths[i - 1]) / step, 0.0, 1.0) : 0.0;
+  return line[i - 1] + along * (line[i] - line[i - 1]);
+}
+
+/// Whether a point lies on the left of a polyline, judged by the segment next to it.
+bool is_left_of(const Eigen::Vector2d& point, const Polyline& line) {
+  double nearest = std::numeric_limits<double>::infinity();
+  double side = 0.0;
+  for (size_t i = 0; i + 1 < line.size(); ++i) {
+    const double distance = distance_to_segment(point, line[i], line[i + 1]);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    side = cross(line[i + 1] - line[i], point - line[i]);
+  }
+  return side > 0.0;
+}
+
+Eigen::Vector2d middle_of(const Polyline& line) {
+  return point_at(line, arc_lengths(line), 0.5);
+}
+
+/// Douglas and Peucker: appends the points of line[first, last) that are needed.
+void append_simplified(const Polyline& line, size_t first, size_t last, double tolerance_m,
+                       Polyline& simplified) {
+  double worst = 0.0;
+  size_t split = first;
+  for (size_t i = first + 1; i < last; ++i) {
+    const double distance = distance_to_segment(line[i], line[first], line[last]);
+    if (distance > worst) {
+      worst = distance;
+      split = i;
+    }
+  }
+  if (worst <= tolerance_m) {
+    simplified.push_back(line[first]);
+    return;
+  }
+  append_simplified(line, first, split, tolerance_m, simplified);
+  append_simplified(line, split, last, tolerance_m, simplified);
+}
+
+Polyline simplify(const Polyline& line, double tolerance_m) {
+  Polyline simplified;
+  append_simplified(line, 0, line.size() - 1, tolerance_m, simplified);
+  simplified.push_back(line.back());
+  return simplified;
+}
+
+}  // namespace
+
+void align_bounds(Polyline& left, Polyline& right) {
+  const bool left_runs_backwards = is_left_of(middle_of(right), left);
+  const bool right_runs_backwards = !is_left_of(middle_of(left), right);
+  if (left_runs_backwards) std::reverse(left.begin(), left.end());
+  if (right_runs_backwards) std::reverse(right.begin(), right.end());
+}
+
+Polyline centerline_between(const Polyline& left, const Polyline& right) {
+  constexpr double kMaxStepM = 2.0;
+  const std::vector<double> left_lengths = arc_lengths(left);
+  const std::vector<double> right_lengths = arc_lengths(right);
+  const double length = std::max(left_lengths.back(), right_lengths.back());
+  const auto steps = static_cast<size_t>(std::max(1.0, std::ceil(length / kMaxStepM)));
+  Polyline centerline;
+  for (size_t i = 0; i <= steps; ++i) {
+    const double fraction = static_cast<double>(i) / static_cast<double>(steps);
+    centerline.emplace_back(
+        0.5 * (point_at(left, left_lengths, fraction) + point_at(right, right_lengths, fraction)));
+  }
+  return centerline;
+}
+
+Polyline ring_between(const Polyline& left, const Polyline& right) {
+  constexpr double kToleranceM = 0.3;
+  Polyline ring = simplify(left, kToleranceM);
+  Polyline back = simplify(right, kToleranceM);
+  const double same_way =
+      (left.front() - right.front()).norm() + (left.back() - right.back()).norm();
+  const double opposite_way =
+      (left.front() - right.back()).norm() + (left.back() - right.front()).norm();
+  if (same_way < opposite_way) std::reverse(back.begin(), back.end());
+  for (const Eigen::Vector2d& point : back) {
+    if (point != ring.back() && point != ring.front()) ring.push_back(point);
+  }
+  return ring;
+}
+
+void link_successors(std::vector<Lane>& lanes) {
+  constexpr double kSamePlaceM = 0.1;
+  std::vector<uint32_t> by_start(lanes.size());
+  std::iota(by_start.begin(), by_start.end(), 0U);
+  const auto start_x = [&lanes](uint32_t lane) { return lanes[lane].left.front().x(); };
+  std::sort(by_start.begin(), by_start.end(), [&start_x](uint32_t a, uint32_t b) {
+    return std::pair(start_x(a), a) < std::pair(start_x(b), b);
+  });
+  for (Lane& lane : lanes) {
+    const Eigen::Vector2d& left_end = lane.left.back();
+    const Eigen::Vector2d& right_end = lane.right.back();
+    auto candidate =
+        std::lower_bound(by_start.begin(), by_start.end(), left_end.x() - kSamePlaceM,
+                         [&start_x](uint32_t other, double x) { return start_x(other) < x; });
+    for (; candidate != by_start.end() && start_x(*candidate) <= left_end.x() + kSamePlaceM;
+         ++candidate) {
+      const Lane& next = lanes[*candidate];
+      if ((next.left.front() - left_end).norm() <= kSamePlaceM &&
+          (next.right.front() - right_end).norm() <= kSamePlaceM) {
+        lane.successors.push_back(*candidate);
+      }
+    }
+    std::sort(lane.successors.begin(), lane.successors.end());
+  }
+}
+
+}  // namespace bevloc

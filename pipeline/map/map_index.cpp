@@ -1,0 +1,69 @@
+#include "pipeline/map/map_index.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <boost/iterator/function_output_iterator.hpp>
+
+namespace bevloc {
+namespace {
+
+namespace bgi = boost::geometry::index;
+using Point = boost::geometry::model::point<double, 2, boost::geometry::cs::cartesian>;
+using Box = boost::geometry::model::box<Point>;
+using Entry = std::pair<Box, MapIndex::Segment>;
+
+Box box_around(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  const Eigen::Vector2d low = a.cwiseMin(b);
+  const Eigen::Vector2d high = a.cwiseMax(b);
+  return {{low.x(), low.y()}, {high.x(), high.y()}};
+}
+
+std::vector<Entry> segments_of(const HdMap& map) {
+  std::vector<Entry> entries;
+  for (uint32_t e = 0; e < map.elements.size(); ++e) {
+    const MapElement& element = map.elements[e];
+    const auto count = static_cast<uint32_t>(element.points.size());
+    const bool is_ring = element.element_class == ElementClass::kPedestrianCrossing && count > 2;
+    for (uint32_t i = 0; i + 1 < count; ++i) {
+      entries.emplace_back(box_around(element.points[i], element.points[i + 1]),
+                           MapIndex::Segment{e, i});
+    }
+    if (is_ring) {
+      entries.emplace_back(box_around(element.points.back(), element.points.front()),
+                           MapIndex::Segment{e, count - 1});
+    }
+  }
+  return entries;
+}
+
+}  // namespace
+
+struct MapIndex::Tree {
+  bgi::rtree<Entry, bgi::rstar<16>> segments;
+};
+
+MapIndex::MapIndex(const HdMap& map)
+    : map_(map),
+      tree_(
+          std::make_unique<const Tree>(Tree{bgi::rtree<Entry, bgi::rstar<16>>(segments_of(map))})) {
+}
+
+MapIndex::~MapIndex() = default;
+
+void MapIndex::query(const Eigen::Vector2d& min_corner, const Eigen::Vector2d& max_corner,
+                     std::vector<Segment>& found) const {
+  found.clear();
+  tree_->segments.query(bgi::intersects(box_around(min_corner, max_corner)),
+                        boost::make_function_output_iterator(
+                            [&found](const Entry& entry) { found.push_back(entry.second); }));
+  std::sort(found.begin(), found.end(), [](const Segment& a, const Segment& b) {
+    return std::tie(a.element, a.first) < std::tie(b.element, b.first);
+  });
+}
+
+}  // namespace bevloc

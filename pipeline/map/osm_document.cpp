@@ -1,0 +1,189 @@
+#include "pipeline/map/osm_document.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <unordered_set>
+
+#include <pugixml.hpp>
+
+namespace bevloc {
+namespace {
+
+/// Finds the line of a byte of the text.
+class LineFinder {
+ public:
+  explicit LineFinder(std::string_view text) {
+    for (size_t i = 0; i < text.size(); ++i) {
+      if (text[i] == '\n') line_ends_.push_back(static_cast<std::ptrdiff_t>(i));
+    }
+  }
+  int line_at(std::ptrdiff_t offset) const {
+    return static_cast<int>(std::lower_bound(line_ends_.begin(), line_ends_.end(), offset) -
+                            line_ends_.begin()) +
+           1;
+  }
+
+ private:
+  std::vector<std::ptrdiff_t> line_ends_;
+};
+
+template <typename T>
+std::optional<T> number_from(std::string_view text) {
+  T value{};
+  const char* end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, value);
+  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  return value;
+}
+
+/// Reads the elements of one file; stops at the first error.
+class OsmReader {
+ public:
+  OsmReader(std::string_view text, std::string file) : lines_(text) {
+    document_.file = std::move(file);
+  }
+
+  Result<OsmDocument> read(const pugi::xml_node& osm) {
+    for (const pugi::xml_node& element : osm.children()) {
+      if (std::strcmp(element.attribute("action").value(), "delete") == 0) continue;
+      const std::string_view kind = element.name();
+      Status status;
+      if (kind == "node") status = read_node(element);
+      if (kind == "way") status = read_way(element);
+      if (kind == "relation") status = read_relation(element);
+      if (!status) return tl::unexpected(status.error());
+    }
+    return std::move(document_);
+  }
+
+  int line_of(const pugi::xml_node& node) const { return lines_.line_at(node.offset_debug()); }
+
+ private:
+  /// An attribute that must be an id.
+  Result<int64_t> id_in(const pugi::xml_node& element, const char* attribute) const {
+    const std::string_view text = element.attribute(attribute).value();
+    if (const auto id = number_from<int64_t>(text)) return *id;
+    return fail("{}:{}: {}: found {}=\"{}\", wanted a whole number", document_.file,
+                line_of(element), element.name(), attribute, text);
+  }
+
+  /// The element's own id, which must be new among those of its kind.
+  Result<int64_t> new_id(const pugi::xml_node& element, std::unordered_set<int64_t>& seen) const {
+    Result<int64_t> id = id_in(element, "id");
+    if (id && !seen.insert(*id).second) {
+      return fail("{}:{}: {} {}: found this id a second time, wanted each id once", document_.file,
+                  line_of(element), element.name(), *id);
+    }
+    return id;
+  }
+
+  /// A coordinate within +-limit, or nothing for "".
+  Result<std::optional<double>> coordinate(const pugi::xml_node& place, int64_t node_id,
+                                           std::string_view name, std::string_view text,
+                                           double limit) const {
+    if (text.empty()) return std::nullopt;
+    const auto value = number_from<double>(text);
+    if (value && std::abs(*value) <= limit) return value;
+    return fail("{}:{}: node {}: found {} \"{}\", wanted a number from {} to {}", document_.file,
+                line_of(place), node_id, name, text, -limit, limit);
+  }
+
+  Status read_node(const pugi::xml_node& element) {
+    constexpr double kMaxLocalM = 1e8;
+    const Result<int64_t> id = new_id(element, node_ids_);
+    if (!id) return tl::unexpected(id.error());
+    OsmNode& node = document_.nodes[*id];
+    node.line = line_of(element);
+    const auto store = [&](const pugi::xml_node& place, const char* name, const char* text,
+                           double limit, std::optional<double>& target) -> Status {
+      auto value = coordinate(place, *id, name, text, limit);
+      if (!value) return tl::unexpected(value.error());
+      target = *value;
+      return {};
+    };
+    Status status =
+        store(element, "lat", element.attribute("lat").value(), 90.0, node.latitude_deg);
+    if (status) {
+      status = store(element, "lon", element.attribute("lon").value(), 180.0, node.longitude_deg);
+    }
+    for (const pugi::xml_node& tag : element.children("tag")) {
+      const std::string_view key = tag.attribute("k").value();
+      const char* value = tag.attribute("v").value();
+      if (status && key == "local_x") {
+        status = store(tag, "local_x", value, kMaxLocalM, node.local_x_m);
+      } else if (status && key == "local_y") {
+        status = store(tag, "local_y", value, kMaxLocalM, node.local_y_m);
+      }
+    }
+    return status;
+  }
+
+  Status read_way(const pugi::xml_node& element) {
+    const Result<int64_t> id = new_id(element, way_ids_);
+    if (!id) return tl::unexpected(id.error());
+    OsmWay way{*id, line_of(element), {}, tags_of(element)};
+    for (const pugi::xml_node& reference : element.children("nd")) {
+      const Result<int64_t> node = id_in(reference, "ref");
+      if (!node) return tl::unexpected(node.error());
+      way.nodes.push_back(*node);
+    }
+    document_.ways.push_back(std::move(way));
+    return {};
+  }
+
+  Status read_relation(const pugi::xml_node& element) {
+    const Result<int64_t> id = new_id(element, relation_ids_);
+    if (!id) return tl::unexpected(id.error());
+    OsmRelation relation{*id, line_of(element), {}, tags_of(element)};
+    for (const pugi::xml_node& member : element.children("member")) {
+      const Result<int64_t> ref = id_in(member, "ref");
+      if (!ref) return tl::unexpected(ref.error());
+      relation.members.push_back(
+          {member.attribute("type").value(), member.attribute("role").value(), *ref});
+    }
+    document_.relations.push_back(std::move(relation));
+    return {};
+  }
+
+  static OsmTags tags_of(const pugi::xml_node& element) {
+    OsmTags tags;
+    for (const pugi::xml_node& tag : element.children("tag")) {
+      tags[tag.attribute("k").value()] = tag.attribute("v").value();
+    }
+    return tags;
+  }
+
+  OsmDocument document_;
+  LineFinder lines_;
+  std::unordered_set<int64_t> node_ids_;
+  std::unordered_set<int64_t> way_ids_;
+  std::unordered_set<int64_t> relation_ids_;
+};
+
+}  // namespace
+
+std::string_view tag_value(const OsmTags& tags, std::string_view key) {
+  const auto tag = tags.find(key);
+  return tag == tags.end() ? std::string_view() : tag->second;
+}
+
+Result<OsmDocument> parse_osm(std::string_view text, std::string file) {
+  pugi::xml_document xml;
+  const pugi::xml_parse_result parsed =
+      xml.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+  if (!parsed) {
+    return fail("{}:{}: found text that is not XML ({}), wanted OSM XML", file,
+                LineFinder(text).line_at(parsed.offset), parsed.description());
+  }
+  OsmReader reader(text, file);
+  const pugi::xml_node root = xml.document_element();
+  if (std::strcmp(root.name(), "osm") != 0) {
+    return fail("{}:{}: found <{}> as the outermost element, wanted <osm>", file,
+                reader.line_of(root), root.name());
+  }
+  return reader.read(root);
+}
+
+}  // namespace bevloc

@@ -1,0 +1,205 @@
+#include "pipeline/network/network.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <dnnl.hpp>
+
+#include "pipeline/network/executor.h"
+#include "pipeline/network/load_error.h"
+#include "pipeline/network/lowering.h"
+#include "pipeline/network/onnx_reader.h"
+#include "pipeline/preprocessing/network_camera.h"
+
+namespace bevloc {
+namespace {
+
+using nn::ElementType;
+using nn::Shape;
+
+constexpr const char* kImages = "images";
+constexpr const char* kRaster = "raster";
+constexpr const char* kBevFeatures = "bev_features";
+constexpr const char* kMapFeatures = "map_features";
+constexpr const char* kBevMask = "bev_mask";
+
+enum Part : size_t { kImagePart, kMapPart, kMaskPart };
+
+/// What a port may look like.
+struct Contract {
+  std::string name;
+  std::vector<ElementType> types;
+  std::vector<Shape> shapes;
+};
+
+std::vector<Contract> input_contracts() {
+  const Shape table{kViewSlots, kFeatureGrid.cells()};
+  const Shape raster{kRasterChannels, kRasterGrid.rows, kRasterGrid.cols};
+  return {{kImages, {ElementType::kInt8}, {{kCameraCount, 3, kNetworkHeightPx, kNetworkWidthPx}}},
+          {nn::kViewIndexPort, {ElementType::kInt32, ElementType::kInt64}, {table}},
+          {nn::kViewWeightPort, {ElementType::kFloat32}, {table}},
+          {kRaster, {ElementType::kUint8}, {raster, {1, raster[0], raster[1], raster[2]}}}};
+}
+
+std::vector<Contract> output_contracts() {
+  const Shape features{1, kFeatureChannels, kFeatureGrid.rows, kFeatureGrid.cols};
+  const Shape mask{1, kRasterChannels, kRasterGrid.rows, kRasterGrid.cols};
+  return {{kBevFeatures, {ElementType::kFloat32}, {features}},
+          {kMapFeatures, {ElementType::kFloat32}, {features}},
+          {kBevMask, {ElementType::kFloat32}, {mask}}};
+}
+
+std::string names_of(const std::vector<nn::Port>& ports) {
+  std::string names;
+  for (const nn::Port& port : ports) names += (names.empty() ? "" : ", ") + port.name;
+  return names.empty() ? "none" : names;
+}
+
+void check_ports(const std::vector<nn::Port>& ports, const std::vector<Contract>& contracts,
+                 const char* kind) {
+  for (const Contract& contract : contracts) {
+    const auto port = std::ranges::find(ports, contract.name, &nn::Port::name);
+    if (port == ports.end()) {
+      nn::refuse("there is no {} '{}' (found: {})", kind, contract.name, names_of(ports));
+    }
+    const bool fits = std::ranges::count(contract.types, port->type) > 0 &&
+                      std::ranges::count(contract.shapes, port->shape) > 0;
+    if (!fits) {
+      nn::refuse("{} '{}' is {} {}, wanted {} {}", kind, port->name, nn::name_of(port->type),
+                 nn::to_string(port->shape), nn::name_of(contract.types[0]),
+                 nn::to_string(contract.shapes[0]));
+    }
+  }
+  if (ports.size() != contracts.size()) {
+    nn::refuse("there are {} {}s ({}), wanted {}", ports.size(), kind, names_of(ports),
+               contracts.size());
+  }
+}
+
+float positive_number(const nn::Graph& graph, const std::string& key) {
+  const auto entry = graph.metadata.find(key);
+  if (entry == graph.metadata.end()) nn::refuse("metadata '{}' is missing", key);
+  const std::string& text = entry->second;
+  float number = 0.0F;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  if (!whole || !std::isfinite(number) || number <= 0.0F) {
+    nn::refuse("metadata '{}' is '{}', wanted a number above 0", key, text);
+  }
+  return number;
+}
+
+SolverParameters read_solver_parameters(const nn::Graph& graph) {
+  SolverParameters parameters;
+  parameters.joint_scale = positive_number(graph, "bevloc.solver.joint_scale");
+  parameters.x_scale = positive_number(graph, "bevloc.solver.x_scale");
+  parameters.y_scale = positive_number(graph, "bevloc.solver.y_scale");
+  parameters.yaw_scale = positive_number(graph, "bevloc.solver.yaw_scale");
+  parameters.gem_omega = positive_number(graph, "bevloc.solver.gem_omega");
+  return parameters;
+}
+
+/// The image branch must not wait for the map, nor the map for the images.
+void check_independence(const nn::Program& program, const char* output, const char* input) {
+  const auto value_of = [](const std::vector<nn::ProgramPort>& ports, const char* name) {
+    return std::ranges::find(ports, name, &nn::ProgramPort::name)->value;
+  };
+  std::vector<bool> needed(program.values.size(), false);
+  needed[static_cast<size_t>(value_of(program.outputs, output))] = true;
+  for (auto step = program.steps.rbegin(); step != program.steps.rend(); ++step) {
+    if (!needed[static_cast<size_t>(nn::output_of(*step))]) continue;
+    for (const int id : nn::inputs_of(*step)) needed[static_cast<size_t>(id)] = true;
+  }
+  if (needed[static_cast<size_t>(value_of(program.inputs, input))]) {
+    nn::refuse("output '{}' depends on input '{}', wanted separate branches", output, input);
+  }
+}
+
+}  // namespace
+
+struct Network::State {
+  State(const nn::Graph& graph, const nn::Program& program, int threads)
+      : name(graph.name),
+        solver_parameters(read_solver_parameters(graph)),
+        executor(program, std::vector<nn::Branch>{{kBevFeatures}, {kMapFeatures}, {kBevMask}},
+                 kFeatureGrid.cells(), threads) {}
+
+  FeatureView features(const char* output) const {
+    return {executor.output(output), kFeatureChannels, kFeatureGrid};
+  }
+
+  std::string name;
+  SolverParameters solver_parameters;
+  nn::Executor executor;
+};
+
+Network::Network(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Network::~Network() = default;
+
+Result<std::unique_ptr<Network>> Network::load(const std::string& path,
+                                               const NetworkOptions& options) {
+  if (options.threads < 1) return fail("network: {} threads, wanted at least 1", options.threads);
+  if (const Status capped = cap_cpu_isa(options.isa); !capped) {
+    return tl::unexpected(capped.error());
+  }
+  try {
+    const nn::Graph graph = nn::read_onnx(path);
+    check_ports(graph.inputs, input_contracts(), "input");
+    check_ports(graph.outputs, output_contracts(), "output");
+    const nn::Program program = nn::lower(graph);
+    check_independence(program, kBevFeatures, kRaster);
+    check_independence(program, kMapFeatures, kImages);
+    auto state = std::make_unique<State>(graph, program, options.threads);
+    return std::unique_ptr<Network>(new Network(std::move(state)));
+  } catch (const nn::LoadError& error) {
+    return fail("{}: {}", path, error.what());
+  } catch (const dnnl::error& error) {
+    return fail("{}: oneDNN cannot run it: {}", path, error.what());
+  } catch (const std::exception& error) {
+    return fail("{}: cannot be loaded: {}", path, error.what());
+  }
+}
+
+void Network::set_view_table(const ViewTable& table) {
+  state_->executor.set_view_table(table);
+}
+
+std::span<int8_t> Network::image_input() {
+  const std::span<std::byte> bytes = state_->executor.input(kImages);
+  return {reinterpret_cast<int8_t*>(bytes.data()), bytes.size()};
+}
+
+std::span<uint8_t> Network::raster_input() {
+  const std::span<std::byte> bytes = state_->executor.input(kRaster);
+  return {reinterpret_cast<uint8_t*>(bytes.data()), bytes.size()};
+}
+
+void Network::run_image_branch() {
+  state_->executor.run(kImagePart);
+}
+void Network::run_map_branch() {
+  state_->executor.run(kMapPart);
+}
+void Network::run_mask_head() {
+  state_->executor.run(kMaskPart);
+}
+
+FeatureView Network::bev_features() const {
+  return state_->features(kBevFeatures);
+}
+FeatureView Network::map_features() const {
+  return state_->features(kMapFeatures);
+}
+std::span<const float> Network::mask_logits() const {
+  return state_->executor.output(kBevMask);
+}
+
+const SolverParameters& Network::solver_parameters() const {
+  return state_->solver_parameters;
+}
+const std::string& Network::name() const {
+  return state_->name;
+}
+
+}  // namespace bevloc

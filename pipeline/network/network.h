@@ -1,0 +1,76 @@
+// The localization network (paper, III-B and III-C): cameras and map raster in, matchable features
+// out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "common/result.h"
+#include "pipeline/network/cpu_isa.h"
+#include "pipeline/network/view_table.h"
+#include "pipeline/solver/solver.h"
+
+namespace bevloc {
+
+/// Channels of the features that the solver matches.
+inline constexpr int kFeatureChannels = 16;
+
+struct NetworkOptions {
+  int threads = 1;
+  IsaCap isa = IsaCap::kBest;
+};
+
+/// A model file is standard ONNX with these ports:
+///   images        int8 [6, 3, 96, 320]: RGB planes minus 128, ordered as kCameraNames
+///   view_index    int32 or int64 [8, 5000], of a ViewTable
+///   view_weight   float [8, 5000]
+///   raster        uint8 [3, 400, 200] or [1, 3, 400, 200], as MapRasterizer draws it
+///   bev_features  float [1, 16, 100, 50]
+///   map_features  float [1, 16, 100, 50]
+///   bev_mask      float [1, 3, 400, 200]
+///
+/// int8 where it holds QuantizeLinear and DequantizeLinear (zero points 0, weights per channel),
+/// float elsewhere. Its metadata hold bevloc.solver.{joint_scale, x_scale, y_scale, yaw_scale,
+/// gem_omega}.
+///
+/// All buffers are made at load; nothing allocates, throws or locks afterwards (oneDNN itself makes
+/// a small argument table for each primitive). Not thread safe.
+class Network {
+ public:
+  /// Errors: the file is missing, damaged, not the network described above, or uses an operator
+  /// that the executor does not know (it is named).
+  static Result<std::unique_ptr<Network>> load(const std::string& path,
+                                               const NetworkOptions& options);
+  ~Network();
+
+  /// Until the first call no camera sees anything. Copies the table.
+  void set_view_table(const ViewTable& table);
+
+  /// Inputs, to be written before a run; they keep their content.
+  std::span<int8_t> image_input();
+  std::span<uint8_t> raster_input();
+
+  /// The three parts: the images' features, the map's, and, after the images', the mask perceived.
+  void run_image_branch();
+  void run_map_branch();
+  void run_mask_head();
+
+  /// [16, 100, 50] on kFeatureGrid; valid until the branch runs again.
+  FeatureView bev_features() const;
+  FeatureView map_features() const;
+  /// [3, 400, 200] on kRasterGrid, logits.
+  std::span<const float> mask_logits() const;
+
+  const SolverParameters& solver_parameters() const;
+  const std::string& name() const;
+
+ private:
+  struct State;
+  explicit Network(std::unique_ptr<State> state);
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace bevloc

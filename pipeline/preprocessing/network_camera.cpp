@@ -1,0 +1,40 @@
+#include "pipeline/preprocessing/network_camera.h"
+
+#include <cassert>
+
+namespace bevloc {
+namespace {
+
+/// y / z of the ray that is level with the ground, in the camera's middle plane x = 0.
+double horizon_slope(const Se3& vehicle_from_camera) {
+  const Eigen::Matrix3d& rotation = vehicle_from_camera.rotation;
+  assert(rotation(2, 1) != 0.0 && "a camera that looks along the vertical has no horizon");
+  return -rotation(2, 2) / rotation(2, 1);
+}
+
+}  // namespace
+
+CameraModel network_camera(const CameraModel& camera) {
+  const Intrinsics& real = camera.intrinsics;
+  const double scale = static_cast<double>(kNetworkWidthPx) / real.width_px;
+
+  CameraModel network;
+  network.vehicle_from_camera = camera.vehicle_from_camera;
+  network.intrinsics.width_px = kNetworkWidthPx;
+  network.intrinsics.height_px = kNetworkHeightPx;
+  network.intrinsics.fx_px = real.fx_px * scale;
+  network.intrinsics.fy_px = network.intrinsics.fx_px;
+  // Pixel centres lie at whole numbers, so it is u + 0.5 that scales.
+  network.intrinsics.cx_px = (real.cx_px + 0.5) * scale - 0.5;
+  network.intrinsics.cy_px =
+      kNetworkHorizonRow - network.intrinsics.fy_px * horizon_slope(camera.vehicle_from_camera);
+  return network;
+}
+
+Rig network_rig(const Rig& rig) {
+  Rig network;
+  for (int i = 0; i < kCameraCount; ++i) network.cameras[i] = network_camera(rig.cameras[i]);
+  return network;
+}
+
+}  // namespace bevloc

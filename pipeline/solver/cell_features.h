@@ -1,0 +1,60 @@
+// Standardised features with the channels of a cell side by side, in a frame of zeros.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pipeline/bev_grid.h"
+#include "pipeline/solver/lanes.h"
+#include "pipeline/solver/solver.h"
+
+namespace bevloc {
+
+/// [margin + rows + margin, margin + cols + margin, lanes]: the channels, rounded up to whole
+/// vectors with zeros. The margin is as wide as any hypothesis reaches, so that a warp never has to
+/// ask whether it is still inside.
+class CellFeatures {
+ public:
+  CellFeatures(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses);
+
+  /// Takes standardised features [channels, rows, cols].
+  void assign(std::span<const float> standardised);
+
+  /// The `lanes()` values of a cell; in the margin they are zero.
+  const float* cell(int row, int col) const {
+    return data_.data() +
+           (static_cast<std::ptrdiff_t>(row + margin_) * padded_cols_ + col + margin_) * lanes_;
+  }
+  std::ptrdiff_t row_stride() const { return static_cast<std::ptrdiff_t>(padded_cols_) * lanes_; }
+
+  const BevGrid& grid() const { return grid_; }
+  int channels() const { return channels_; }
+  int lanes() const { return lanes_; }
+
+ private:
+  BevGrid grid_;
+  int channels_;
+  int lanes_;
+  int margin_;
+  int padded_cols_;
+  std::vector<float> data_;
+};
+
+/// Neighbouring cells of one row of features that a correction (`yaw_rad`, then `row_shift` and
+/// `col_shift` in cells, x / cell_m and y / cell_m) has moved:
+///
+///   moved(p) = features(R(-yaw) (p - t)), bilinear, zero outside,
+///
+/// for columns `col_begin` ... `col_begin + cells - 1` of `row`, which may lie outside the grid.
+/// Writes cells * lanes values.
+struct WarpedRow {
+  double yaw_rad = 0.0;
+  double row_shift = 0.0;
+  double col_shift = 0.0;
+  int row = 0;
+  int col_begin = 0;
+  int cells = 0;
+};
+void warp(const CellFeatures& features, const WarpedRow& target, float* out);
+
+}  // namespace bevloc

@@ -1,0 +1,67 @@
+#include "pipeline/solver/posterior.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bevloc {
+namespace {
+
+double uniform_variance(const HypothesisAxis& axis) {
+  const double count = axis.count();
+  return axis.step * axis.step * (count * count - 1.0) / 12.0;
+}
+
+}  // namespace
+
+void softmax(std::span<const double> scores, double scale, std::span<float> probability) {
+  const double best = *std::ranges::max_element(scores);
+  double sum = 0.0;
+  for (double score : scores) sum += std::exp(scale * (score - best));
+  for (size_t i = 0; i < scores.size(); ++i) {
+    probability[i] = static_cast<float>(std::exp(scale * (scores[i] - best)) / sum);
+  }
+}
+
+double posterior_mean(std::span<const float> probability, const HypothesisAxis& axis) {
+  double mean = 0.0;
+  for (int i = 0; i < axis.count(); ++i) mean += probability[i] * axis.value(i);
+  return mean;
+}
+
+double posterior_variance(std::span<const float> probability, const HypothesisAxis& axis) {
+  const double mean = posterior_mean(probability, axis);
+  double variance = 0.0;
+  for (int i = 0; i < axis.count(); ++i) {
+    variance += probability[i] * (axis.value(i) - mean) * (axis.value(i) - mean);
+  }
+  return variance;
+}
+
+Eigen::Vector3d uniform_variance(const HypothesisGrid& hypotheses) {
+  return {uniform_variance(hypotheses.x_m), uniform_variance(hypotheses.y_m),
+          uniform_variance(hypotheses.yaw_rad)};
+}
+
+Eigen::Vector3d least_variance(const HypothesisGrid& hypotheses) {
+  const Eigen::Vector3d step(hypotheses.x_m.step, hypotheses.y_m.step, hypotheses.yaw_rad.step);
+  return step.cwiseAbs2() / (12.0 * 4.0);
+}
+
+void resize_distributions(const HypothesisGrid& hypotheses, SolverResult& result) {
+  result.x_probability.resize(hypotheses.x_m.count());
+  result.y_probability.resize(hypotheses.y_m.count());
+  result.yaw_probability.resize(hypotheses.yaw_rad.count());
+}
+
+void set_no_evidence(const HypothesisGrid& hypotheses, SolverResult& result) {
+  resize_distributions(hypotheses, result);
+  result.evidence = Evidence::kNone;
+  result.correction = Se2{};
+  result.covariance = uniform_variance(hypotheses).asDiagonal();
+  for (auto* distribution :
+       {&result.x_probability, &result.y_probability, &result.yaw_probability}) {
+    std::ranges::fill(*distribution, 1.0F / static_cast<float>(distribution->size()));
+  }
+}
+
+}  // namespace bevloc

@@ -1,0 +1,30 @@
+// Distributions over the hypotheses of an axis.
+#pragma once
+
+#include <span>
+
+#include <Eigen/Core>
+
+#include "pipeline/solver/solver.h"
+
+namespace bevloc {
+
+/// probability = softmax(scale * scores).
+void softmax(std::span<const double> scores, double scale, std::span<float> probability);
+
+double posterior_mean(std::span<const float> probability, const HypothesisAxis& axis);
+double posterior_variance(std::span<const float> probability, const HypothesisAxis& axis);
+
+/// Variances of x, y and yaw when every hypothesis is as likely as any other.
+Eigen::Vector3d uniform_variance(const HypothesisGrid& hypotheses);
+
+/// The smallest variances that a grid of these steps may claim: (step / sqrt(12))^2 / 4.
+Eigen::Vector3d least_variance(const HypothesisGrid& hypotheses);
+
+/// Makes the distributions as long as the axes have hypotheses.
+void resize_distributions(const HypothesisGrid& hypotheses, SolverResult& result);
+
+/// Zero correction, uniform distributions and their covariance.
+void set_no_evidence(const HypothesisGrid& hypotheses, SolverResult& result);
+
+}  // namespace bevloc

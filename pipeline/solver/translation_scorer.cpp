@@ -1,0 +1,141 @@
+#include "pipeline/solver/translation_scorer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace bevloc {
+namespace {
+
+/// Fractions of a cell that differ by less are one phase.
+constexpr double kPhaseTolerance = 1e-9;
+
+struct RowSums {
+  float product;
+  float value;
+  float square;
+};
+
+BEVLOC_VECTOR_CLONES RowSums match_row(const float* map, const float* moved, int count) {
+  // Two of each, to hide the latency of the additions.
+  Lanes product[2] = {};
+  Lanes value[2] = {};
+  Lanes square[2] = {};
+  int i = 0;
+  for (; i + 2 * kLanes <= count; i += 2 * kLanes) {
+    for (int k = 0; k < 2; ++k) {
+      const Lanes& b = lanes(moved + i + k * kLanes);
+      product[k] += lanes(map + i + k * kLanes) * b;
+      value[k] += b;
+      square[k] += b * b;
+    }
+  }
+  if (i < count) {
+    const Lanes& b = lanes(moved + i);
+    product[0] += lanes(map + i) * b;
+    value[0] += b;
+    square[0] += b * b;
+  }
+  return {sum_of(product[0] + product[1]), sum_of(value[0] + value[1]),
+          sum_of(square[0] + square[1])};
+}
+
+}  // namespace
+
+ShiftPlan::ShiftPlan(const HypothesisAxis& axis, double cell_m) : hypotheses_(axis.count()) {
+  for (int i = 0; i < axis.count(); ++i) {
+    const double shift = axis.value(i) / cell_m;
+    const int cells = static_cast<int>(std::floor(shift + kPhaseTolerance));
+    const double fraction = std::max(shift - cells, 0.0);
+    const auto phase = std::ranges::find_if(phases_, [&](const Phase& candidate) {
+      return std::abs(candidate.fraction - fraction) < kPhaseTolerance;
+    });
+    if (phase != phases_.end()) {
+      phase->shifts.push_back({cells, i});
+    } else {
+      phases_.push_back({fraction, {{cells, i}}});
+    }
+  }
+}
+
+ShiftPlan::ShiftPlan() : phases_{{0.0, {{0, 0}}}}, hypotheses_(1) {}
+
+void ShiftPlan::set_shift(double cells) {
+  assert(hypotheses_ == 1);
+  phases_[0].fraction = cells;
+}
+
+TranslationScorer::TranslationScorer(const BevGrid& grid, int channels,
+                                     const HypothesisGrid& hypotheses)
+    : sums_(static_cast<size_t>(hypotheses.x_m.count()) * hypotheses.y_m.count()) {
+  const int widest = grid.cols + static_cast<int>(2.0 * hypotheses.y_m.range / grid.cell_m) + 2;
+  warped_row_.resize(static_cast<size_t>(widest) * round_up_to_lanes(channels));
+}
+
+void TranslationScorer::set_features(const CellFeatures& bev, const CellFeatures& map) {
+  bev_ = &bev;
+  map_ = &map;
+  Sums sums;
+  for (int row = 0; row < map.grid().rows; ++row) {
+    const float* cells = map.cell(row, 0);
+    const RowSums part = match_row(cells, cells, map.grid().cols * map.lanes());
+    sums.value += part.value;
+    sums.square += part.square;
+  }
+  const double count = static_cast<double>(map.grid().cells()) * map.channels();
+  map_mean_ = sums.value / count;
+  map_deviation_ = std::sqrt(std::max(sums.square / count - map_mean_ * map_mean_, 0.0));
+}
+
+void TranslationScorer::score(double yaw_rad, const ShiftPlan& x, const ShiftPlan& y,
+                              std::span<double> scores) {
+  assert(scores.size() == static_cast<size_t>(x.hypotheses()) * y.hypotheses());
+  for (const auto& x_phase : x.phases()) {
+    for (const auto& y_phase : y.phases()) {
+      match_phase(yaw_rad, x_phase, y_phase);
+      const Sums* sums = sums_.data();
+      for (const auto& x_shift : x_phase.shifts) {
+        for (const auto& y_shift : y_phase.shifts) {
+          scores[x_shift.hypothesis * y.hypotheses() + y_shift.hypothesis] = zncc(*sums++);
+        }
+      }
+    }
+  }
+}
+
+void TranslationScorer::match_phase(double yaw_rad, const ShiftPlan::Phase& x,
+                                    const ShiftPlan::Phase& y) {
+  const BevGrid& grid = map_->grid();
+  const int lanes = map_->lanes();
+  std::fill_n(sums_.begin(), x.shifts.size() * y.shifts.size(), Sums{});
+  WarpedRow target{.yaw_rad = yaw_rad, .row_shift = x.fraction, .col_shift = y.fraction};
+  target.col_begin = y.shifts.front().cells;
+  target.cells = grid.cols + y.shifts.back().cells - target.col_begin;
+  const int row_end = grid.rows + x.shifts.back().cells;
+  for (target.row = x.shifts.front().cells; target.row < row_end; ++target.row) {
+    warp(*bev_, target, warped_row_.data());
+    Sums* sums = sums_.data();
+    for (const auto& x_shift : x.shifts) {
+      const int map_row = target.row - x_shift.cells;
+      const bool inside = map_row >= 0 && map_row < grid.rows;
+      for (size_t j = 0; inside && j < y.shifts.size(); ++j) {
+        const float* moved = warped_row_.data() + (y.shifts[j].cells - target.col_begin) * lanes;
+        const RowSums part = match_row(map_->cell(map_row, 0), moved, grid.cols * lanes);
+        sums[j].product += part.product;
+        sums[j].value += part.value;
+        sums[j].square += part.square;
+      }
+      sums += y.shifts.size();
+    }
+  }
+}
+
+double TranslationScorer::zncc(const Sums& sums) const {
+  const double count = static_cast<double>(map_->grid().cells()) * map_->channels();
+  const double mean = sums.value / count;
+  const double deviation = std::sqrt(std::max(sums.square / count - mean * mean, 0.0));
+  const double product = map_deviation_ * deviation;
+  return product > 0.0 ? (sums.product / count - mean * map_mean_) / product : 0.0;
+}
+
+}  // namespace bevloc

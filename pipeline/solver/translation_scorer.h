@@ -1,0 +1,69 @@
+// Zero-padded ZNCC of the moved vehicle features with the map features.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pipeline/solver/cell_features.h"
+#include "pipeline/solver/solver.h"
+
+namespace bevloc {
+
+/// The hypotheses of one axis, sorted by their fraction of a cell: those of equal fraction (a
+/// phase) differ by whole cells, so one warp serves them all, exactly.
+class ShiftPlan {
+ public:
+  struct Shift {
+    int cells = 0;       ///< whole cells beyond the phase's fraction
+    int hypothesis = 0;  ///< index on the axis
+  };
+  struct Phase {
+    double fraction = 0.0;
+    std::vector<Shift> shifts;  ///< increasing
+  };
+
+  ShiftPlan(const HypothesisAxis& axis, double cell_m);
+  /// One shift only: `set_shift` says which.
+  ShiftPlan();
+  void set_shift(double cells);
+
+  const std::vector<Phase>& phases() const { return phases_; }
+  int hypotheses() const { return hypotheses_; }
+
+ private:
+  std::vector<Phase> phases_;
+  int hypotheses_ = 0;
+};
+
+/// Scores corrections by ZNCC over all cells and channels (paper, eq. 5), with zeros where the
+/// moved vehicle features do not reach. A warped row is matched while it is in the cache and never
+/// kept.
+class TranslationScorer {
+ public:
+  TranslationScorer(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses);
+
+  /// Features of the scores to come; they must outlive them.
+  void set_features(const CellFeatures& bev, const CellFeatures& map);
+
+  /// scores[i * y.hypotheses() + j] of shift i along x and j along y, all with this yaw.
+  void score(double yaw_rad, const ShiftPlan& x, const ShiftPlan& y, std::span<double> scores);
+
+ private:
+  struct Sums {
+    double product = 0.0;  ///< of map and moved feature
+    double value = 0.0;    ///< of moved features
+    double square = 0.0;
+  };
+
+  void match_phase(double yaw_rad, const ShiftPlan::Phase& x, const ShiftPlan::Phase& y);
+  double zncc(const Sums& sums) const;
+
+  const CellFeatures* bev_ = nullptr;
+  const CellFeatures* map_ = nullptr;
+  double map_mean_ = 0.0;
+  double map_deviation_ = 0.0;
+  std::vector<Sums> sums_;  ///< [shifts of the x phase, shifts of the y phase]
+  std::vector<float> warped_row_;
+};
+
+}  // namespace bevloc

@@ -1,0 +1,69 @@
+#include "pipeline/tracker/motion_model.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace bevloc {
+namespace {
+
+double squared(double value) {
+  return value * value;
+}
+
+/// Transition of the error: it is carried in the moving frame of the vehicle.
+FilterState::Covariance transition(const MeasuredMotion& motion, double speed_mps,
+                                   double duration_s, const Se2& step) {
+  using S = FilterState;
+  const double c = std::cos(step.yaw_rad);
+  const double s = std::sin(step.yaw_rad);
+  const double measured_m = motion.speed_mps * duration_s;
+  FilterState::Covariance f = FilterState::Covariance::Identity();
+  f.block<2, 2>(S::kX, S::kX) << c, s, -s, c;
+  // A yaw error swings the step sideways.
+  f(S::kX, S::kYaw) = -c * step.y_m + s * step.x_m;
+  f(S::kY, S::kYaw) = s * step.y_m + c * step.x_m;
+  f(S::kX, S::kSpeedScale) = measured_m;
+  f(S::kYaw, S::kYawRateBias) = -duration_s;
+  f(S::kY, S::kYawRateBias) = -0.5 * speed_mps * duration_s * duration_s;
+  return f;
+}
+
+FilterState::Vector process_variance(double distance_m, double duration_s,
+                                     const MotionNoise& noise) {
+  const double half_square_s2 = 0.5 * duration_s * duration_s;
+  FilterState::Vector variance;
+  variance << squared(noise.longitudinal_m_per_sqrt_m) * distance_m +
+                  squared(noise.acceleration_mps2 * half_square_s2),
+      squared(noise.lateral_m_per_sqrt_m) * distance_m,
+      squared(noise.yaw_rad_per_sqrt_s) * duration_s +
+          squared(noise.yaw_acceleration_radps2 * half_square_s2),
+      squared(noise.speed_scale_per_sqrt_s) * duration_s,
+      squared(noise.yaw_rate_bias_radps_per_sqrt_s) * duration_s;
+  return variance;
+}
+
+}  // namespace
+
+void FilterState::apply(const Vector& error) {
+  map_from_vehicle = map_from_vehicle * Se2{error(kX), error(kY), error(kYaw)};
+  speed_scale_error += error(kSpeedScale);
+  yaw_rate_bias_radps += error(kYawRateBias);
+}
+
+void predict(const MeasuredMotion& motion, double duration_s, const MotionNoise& noise,
+             FilterState& state) {
+  assert(duration_s >= 0.0);
+  const double speed_mps = state.speed_mps(motion);
+  const double distance_m = speed_mps * duration_s;
+  const double turn_rad = state.yaw_rate_radps(motion) * duration_s;
+  // The chord of the arc, to second order in the turn.
+  const Se2 step{distance_m * std::cos(0.5 * turn_rad), distance_m * std::sin(0.5 * turn_rad),
+                 turn_rad};
+  const FilterState::Covariance f = transition(motion, speed_mps, duration_s, step);
+  const FilterState::Covariance moved = f * state.covariance * f.transpose();
+  state.covariance = 0.5 * (moved + moved.transpose());
+  state.covariance.diagonal() += process_variance(std::abs(distance_m), duration_s, noise);
+  state.map_from_vehicle = state.map_from_vehicle * step;
+}
+
+}  // namespace bevloc

@@ -1,0 +1,256 @@
+#include "pipeline/tracker/tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+namespace bevloc {
+namespace {
+
+double squared(double value) {
+  return value * value;
+}
+
+MeasuredMotion between(const MeasuredMotion& a, const MeasuredMotion& b, double weight_of_b) {
+  return {std::lerp(a.speed_mps, b.speed_mps, weight_of_b),
+          std::lerp(a.yaw_rate_radps, b.yaw_rate_radps, weight_of_b)};
+}
+
+bool is_covariance(const Eigen::Matrix3d& matrix) {
+  return matrix.allFinite() && matrix.isApprox(matrix.transpose(), 1e-6) &&
+         matrix.llt().info() == Eigen::Success;
+}
+
+PoseMeasurement measurement_from(const GnssSample& sample) {
+  const double position_variance = squared(sample.position_sigma_m);
+  const Eigen::Vector3d variance(position_variance, position_variance,
+                                 squared(sample.heading_sigma_rad));
+  return {.map_from_vehicle = {sample.position_m.x(), sample.position_m.y(),
+                               wrap_angle(sample.heading_rad)},
+          .covariance = variance.asDiagonal()};
+}
+
+/// The solver's covariance is in the prior's frame; the correction turns away from it.
+PoseMeasurement measurement_from(const Se2& prior, const Correction& result) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-result.correction.yaw_rad).toRotationMatrix();
+  return {.map_from_vehicle = prior * result.correction,
+          .covariance = turn * result.covariance * turn.transpose()};
+}
+
+}  // namespace
+
+std::string_view name_of(TrackerUpdate update) {
+  switch (update) {
+    case TrackerUpdate::kAccepted:
+      return "accepted";
+    case TrackerUpdate::kGated:
+      return "gated";
+    case TrackerUpdate::kNoEvidence:
+      return "no evidence";
+    case TrackerUpdate::kTooOld:
+      return "too old";
+    case TrackerUpdate::kOutOfOrder:
+      return "out of order";
+    case TrackerUpdate::kNoOdometry:
+      return "no odometry";
+    case TrackerUpdate::kNotInitialised:
+      return "not initialised";
+    case TrackerUpdate::kNotFinite:
+      return "not finite";
+    case TrackerUpdate::kImplausible:
+      return "implausible";
+  }
+  return "unknown";
+}
+
+Tracker::Tracker(const TrackerParameters& parameters)
+    : parameters_(parameters), history_(parameters.history_capacity) {}
+
+TrackerUpdate Tracker::add_odometry(const OdometrySample& sample) {
+  if (!std::isfinite(sample.speed_mps) || !std::isfinite(sample.yaw_rate_radps)) {
+    return TrackerUpdate::kNotFinite;
+  }
+  if (std::abs(sample.speed_mps) > parameters_.max_speed_mps ||
+      std::abs(sample.yaw_rate_radps) > parameters_.max_yaw_rate_radps) {
+    return TrackerUpdate::kImplausible;
+  }
+  if (last_odometry_ && sample.time <= last_odometry_->time) return TrackerUpdate::kOutOfOrder;
+  last_odometry_ = sample;
+  if (!is_initialised() || sample.time < history_.front().time) return TrackerUpdate::kAccepted;
+  insert(history_.count_until(sample.time), {.time = sample.time,
+                                             .kind = TrackerEvent::Kind::kOdometry,
+                                             .motion = {sample.speed_mps, sample.yaw_rate_radps}});
+  return TrackerUpdate::kAccepted;
+}
+
+TrackerUpdate Tracker::add_gnss(const GnssSample& sample) {
+  if (!sample.position_m.allFinite() || !std::isfinite(sample.heading_rad) ||
+      !std::isfinite(sample.position_sigma_m) || !std::isfinite(sample.heading_sigma_rad)) {
+    return TrackerUpdate::kNotFinite;
+  }
+  if (sample.position_sigma_m <= 0.0 || sample.heading_sigma_rad <= 0.0 ||
+      sample.position_m.cwiseAbs().maxCoeff() > parameters_.max_position_m) {
+    return TrackerUpdate::kImplausible;
+  }
+  if (!has_odometry_for(sample.time)) return TrackerUpdate::kNoOdometry;
+  if (is_initialised()) {
+    return add_pose(sample.time, measurement_from(sample), parameters_.gnss_correlation_s,
+                    last_gnss_);
+  }
+  initialise(sample);
+  return TrackerUpdate::kAccepted;
+}
+
+TrackerUpdate Tracker::add_correction(Time frame_time, const Se2& prior, const Correction& result) {
+  if (result.evidence != Evidence::kGood) return TrackerUpdate::kNoEvidence;
+  if (!prior.is_finite() || !result.correction.is_finite() || !result.covariance.allFinite()) {
+    return TrackerUpdate::kNotFinite;
+  }
+  if (!is_covariance(result.covariance)) return TrackerUpdate::kImplausible;
+  if (!is_initialised()) return TrackerUpdate::kNotInitialised;
+  if (!has_odometry_for(frame_time)) return TrackerUpdate::kNoOdometry;
+  return add_pose(frame_time, measurement_from(prior, result), parameters_.correction_correlation_s,
+                  last_correction_);
+}
+
+std::optional<TrackedPose> Tracker::pose_at(Time time) const {
+  const size_t events_until = history_.count_until(time);
+  if (events_until == 0 || !has_odometry_for(time)) return std::nullopt;
+  const FilterState state = state_at(time, events_until);
+  const MeasuredMotion motion = motion_at(time, events_until);
+  return TrackedPose{.time = time,
+                     .map_from_vehicle = state.map_from_vehicle,
+                     .covariance = state.covariance.topLeftCorner<3, 3>(),
+                     .speed_mps = state.speed_mps(motion),
+                     .yaw_rate_radps = state.yaw_rate_radps(motion)};
+}
+
+double Tracker::speed_scale_error() const {
+  return is_initialised() ? history_.back().state.speed_scale_error : 0.0;
+}
+
+double Tracker::yaw_rate_bias_radps() const {
+  return is_initialised() ? history_.back().state.yaw_rate_bias_radps : 0.0;
+}
+
+void Tracker::widen() {
+  if (!is_initialised()) return;
+  const TrackerEvent& latest = history_.back();
+  insert(history_.size(),
+         {.time = latest.time, .kind = TrackerEvent::Kind::kWiden, .motion = latest.motion});
+  last_gnss_.reset();
+  last_correction_.reset();
+}
+
+void Tracker::reset() {
+  history_.clear();
+  last_odometry_.reset();
+  last_gnss_.reset();
+  last_correction_.reset();
+}
+
+void Tracker::initialise(const GnssSample& sample) {
+  const PoseMeasurement measurement = measurement_from(sample);
+  TrackerEvent event{.time = sample.time,
+                     .kind = TrackerEvent::Kind::kPose,
+                     .motion = {last_odometry_->speed_mps, last_odometry_->yaw_rate_radps},
+                     .measurement = measurement};
+  event.state.map_from_vehicle = measurement.map_from_vehicle;
+  event.state.covariance.setZero();
+  event.state.covariance.topLeftCorner<3, 3>() = measurement.covariance;
+  event.state.covariance(FilterState::kSpeedScale, FilterState::kSpeedScale) =
+      squared(parameters_.initial_speed_scale_sigma);
+  event.state.covariance(FilterState::kYawRateBias, FilterState::kYawRateBias) =
+      squared(parameters_.initial_yaw_rate_bias_sigma_radps);
+  history_.insert(0, event);
+  last_gnss_ = sample.time;
+  if (last_odometry_->time > sample.time) {
+    insert(1, {.time = last_odometry_->time,
+               .kind = TrackerEvent::Kind::kOdometry,
+               .motion = event.motion});
+  }
+}
+
+TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, double correlation_s,
+                                std::optional<Time>& last_time) {
+  if (history_.full()) history_.pop_front();
+  const size_t events_until = history_.count_until(time);
+  if (events_until == 0) return TrackerUpdate::kTooOld;
+  if (squared_distance(state_at(time, events_until), measurement) >
+      parameters_.gate_squared_distance) {
+    return TrackerUpdate::kGated;
+  }
+  if (last_time) {
+    constexpr double kLeastInterval_s = 1e-3;
+    const double interval_s = std::abs(to_seconds(time - *last_time));
+    measurement.inflation = std::max(1.0, correlation_s / std::max(interval_s, kLeastInterval_s));
+  }
+  last_time = last_time ? std::max(*last_time, time) : time;
+  insert(events_until, {.time = time,
+                        .kind = TrackerEvent::Kind::kPose,
+                        .motion = motion_at(time, events_until),
+                        .measurement = measurement});
+  return TrackerUpdate::kAccepted;
+}
+
+bool Tracker::has_odometry_for(Time time) const {
+  return last_odometry_ && to_seconds(time - last_odometry_->time) <= parameters_.max_prediction_s;
+}
+
+MeasuredMotion Tracker::motion_at(Time time, size_t events_until) const {
+  const TrackerEvent& before = history_[events_until - 1];
+  if (events_until == history_.size()) return before.motion;
+  const TrackerEvent& after = history_[events_until];
+  return between(before.motion, after.motion,
+                 to_seconds(time - before.time) / to_seconds(after.time - before.time));
+}
+
+FilterState Tracker::state_at(Time time, size_t events_until) const {
+  const TrackerEvent& before = history_[events_until - 1];
+  FilterState state = before.state;
+  predict(between(before.motion, motion_at(time, events_until), 0.5),
+          to_seconds(time - before.time), parameters_.motion, state);
+  return state;
+}
+
+void Tracker::insert(size_t position, const TrackerEvent& event) {
+  if (history_.full()) {
+    history_.pop_front();
+    --position;
+  }
+  history_.insert(position, event);
+  replay_from(position);
+  drop_old_events();
+}
+
+/// Computes the states from `position` on again; whether a measurement is believed was decided when
+/// it came.
+void Tracker::replay_from(size_t position) {
+  for (size_t i = position; i < history_.size(); ++i) {
+    const TrackerEvent& before = history_[i - 1];
+    TrackerEvent& event = history_[i];
+    event.state = before.state;
+    predict(between(before.motion, event.motion, 0.5), to_seconds(event.time - before.time),
+            parameters_.motion, event.state);
+    if (event.kind == TrackerEvent::Kind::kPose) update(event.measurement, event.state);
+    if (event.kind == TrackerEvent::Kind::kWiden) {
+      event.state.covariance(FilterState::kX, FilterState::kX) +=
+          squared(parameters_.widened_position_sigma_m);
+      event.state.covariance(FilterState::kY, FilterState::kY) +=
+          squared(parameters_.widened_position_sigma_m);
+      event.state.covariance(FilterState::kYaw, FilterState::kYaw) +=
+          squared(parameters_.widened_yaw_sigma_rad);
+    }
+  }
+}
+
+void Tracker::drop_old_events() {
+  const Time oldest = history_.back().time - from_seconds(parameters_.history_s);
+  // The last event before the horizon stays: what lies after it starts there.
+  while (history_.size() > 2 && history_[1].time <= oldest) history_.pop_front();
+}
+
+}  // namespace bevloc

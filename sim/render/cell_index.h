@@ -1,0 +1,33 @@
+// Which items of a world lie near a place.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+namespace bevloc::sim {
+
+using Box = Eigen::AlignedBox2d;
+
+/// Items, known by their number and bounding box, in a grid of square cells.
+class CellIndex {
+ public:
+  CellIndex() = default;
+  explicit CellIndex(const std::vector<Box>& boxes);
+
+  /// Appends the numbers of all items whose box meets `area`, ascending and each once.
+  void query(const Box& area, std::vector<int>& items) const;
+
+ private:
+  Eigen::Vector2i cell_of(const Eigen::Vector2d& point) const;
+
+  Box bounds_;
+  double cell_size_m_ = 1.0;
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<std::vector<int>> cells_;
+  std::vector<Box> boxes_;
+};
+
+}  // namespace bevloc::sim

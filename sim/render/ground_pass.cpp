@@ -1,0 +1,262 @@
+#include "sim/render/ground_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/render/bilinear.h"
+#include "sim/render/dispatch.h"
+#include "sim/render/headlight.h"
+
+namespace bevloc::sim {
+namespace {
+
+constexpr int kMostTaps = 12;
+constexpr float kFarthestM = 900.0F;
+/// A level is fine enough to reach this far through the tile directory.
+constexpr float kReachOfFinestM =
+    static_cast<float>((GroundTiles::kReachTiles - 0.5) * tile_size_m(0));
+
+/// What stays the same over a frame, positions counted from GroundTiles::local_origin().
+struct Frame {
+  float rotation[9];  ///< map_from_camera, row by row
+  float camera_x, camera_y, height;
+  float pixel_angle;  ///< 1 / focal length
+  float vehicle_x, vehicle_y, forward_x, forward_y;
+  float light_x, light_y;  ///< origin of the GroundLight
+  const uint32_t* light_cells;
+  Lighting lighting;
+};
+
+/// Up to kRun pixels of one row on their way through the loops.
+struct Run {
+  alignas(64) float dx[kRun], dy[kRun], dz[kRun];  ///< rays in map axes
+  alignas(64) float x[kRun], y[kRun], range[kRun], steepness[kRun];
+  alignas(64) float step_x[kRun], step_y[kRun];  ///< between the taps
+  alignas(64) float texels_per_m[kRun];
+  alignas(64) float blend_x[kRun], blend_y[kRun];
+  alignas(64) int32_t level[kRun], tile_x[kRun], tile_y[kRun], inside[kRun], texel[kRun];
+  alignas(64) float red[kRun], green[kRun], blue[kRun], gloss[kRun];
+  alignas(64) float sky_red[kRun], sky_green[kRun], sky_blue[kRun];
+};
+
+/// Turns the rays into the map; returns the number of taps the run needs, 0 if it is all sky.
+BEVLOC_PIXEL_LOOP
+int aim(const Frame& frame, const float* rx, const float* ry, int count, Run& run) {
+  const Frame& f = frame;
+  const float* m = f.rotation;
+  float most_ratio = 0.0F;
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    run.dx[i] = m[0] * rx[i] + m[1] * ry[i] + m[2];
+    run.dy[i] = m[3] * rx[i] + m[4] * ry[i] + m[5];
+    run.dz[i] = m[6] * rx[i] + m[7] * ry[i] + m[8];
+    const float horizontal2 = run.dx[i] * run.dx[i] + run.dy[i] * run.dy[i] + 1e-12F;
+    const float horizontal = std::sqrt(horizontal2);
+    const float down = std::max(-run.dz[i], 1e-6F);
+    const float t = std::min(f.height / down, kFarthestM / horizontal);
+    const float range = t * horizontal;
+    run.x[i] = f.camera_x + t * run.dx[i];
+    run.y[i] = f.camera_y + t * run.dy[i];
+    run.range[i] = range;
+    run.steepness[i] = down / std::sqrt(horizontal2 + down * down);
+    // The footprint: its width across the line of sight, and its length along it.
+    const float width = t * f.pixel_angle;
+    const float length = std::min(width * std::max(1.0F, range / f.height), 0.6F * range);
+    const float ratio = length / std::max(width, static_cast<float>(kFinestTexelM));
+    most_ratio = std::max(most_ratio, run.dz[i] < -1e-5F ? ratio : 0.0F);
+    run.step_x[i] = length * run.dx[i] / horizontal;
+    run.step_y[i] = length * run.dy[i] / horizontal;
+    run.texels_per_m[i] = width;  // until choose_levels()
+  }
+  if (most_ratio == 0.0F) return 0;
+  return std::clamp(static_cast<int>(0.75F * most_ratio + 0.999F), 1, kMostTaps);
+}
+
+/// Picks each pixel's tile level so that the taps together cover its footprint.
+BEVLOC_PIXEL_LOOP
+void choose_levels(int taps, int count, Run& run) {
+  const float share = 1.0F / static_cast<float>(taps);
+  for (int i = 0; i < count; ++i) {
+    const float width = run.texels_per_m[i];
+    run.step_x[i] *= share;
+    run.step_y[i] *= share;
+    const float spacing = std::sqrt(run.step_x[i] * run.step_x[i] + run.step_y[i] * run.step_y[i]);
+    const float reach = 1.35F * run.range[i] * static_cast<float>(kFinestTexelM) / kReachOfFinestM;
+    const float texel_m = std::max(std::max(0.8F * width, 0.6F * spacing), reach);
+    const float scale = texel_m * static_cast<float>(1.0 / kFinestTexelM);
+    run.level[i] = (scale > 1.0F) + (scale > 2.0F) + (scale > 4.0F) + (scale > 8.0F) + (scale > 16.0F);
+    run.texels_per_m[i] = static_cast<float>(1.0 / kFinestTexelM) / static_cast<float>(1 << run.level[i]);
+    run.red[i] = run.green[i] = run.blue[i] = run.gloss[i] = 0.0F;
+  }
+}
+
+/// Finds tile and place within it of every pixel's tap, `offset` steps from its middle.
+BEVLOC_PIXEL_LOOP
+void place_taps(float offset, int count, Run& run) {
+  for (int i = 0; i < count; ++i) {
+    const float x = (run.x[i] + offset * run.step_x[i]) * run.texels_per_m[i];
+    const float y = (run.y[i] + offset * run.step_y[i]) * run.texels_per_m[i];
+    const float whole_x = std::floor(x);
+    const float whole_y = std::floor(y);
+    run.blend_x[i] = x - whole_x;
+    run.blend_y[i] = y - whole_y;
+    const auto ix = static_cast<int32_t>(whole_x);
+    const auto iy = static_cast<int32_t>(whole_y);
+    run.tile_x[i] = ix >> kTileShift;
+    run.tile_y[i] = iy >> kTileShift;
+    run.inside[i] = (iy & (kTileTexels - 1)) * kTileNodes + (ix & (kTileTexels - 1));
+  }
+}
+
+/// Looks the tiles up; returns whether all were there.
+BEVLOC_PIXEL_LOOP
+bool look_up(const int32_t* directory, int count, Run& run) {
+  int32_t lowest = 0;
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const int32_t tile =
+        directory[GroundTiles::directory_index(run.level[i], run.tile_x[i], run.tile_y[i])];
+    lowest = std::min(lowest, tile);
+    run.texel[i] = tile + run.inside[i];
+  }
+  return lowest >= 0;
+}
+
+void make_missing(GroundTiles& tiles, int count, const Run& run) {
+  for (int i = 0; i < count; ++i) {
+    const int32_t at = GroundTiles::directory_index(run.level[i], run.tile_x[i], run.tile_y[i]);
+    if (tiles.directory()[at] == GroundTiles::kMissing) {
+      tiles.make(run.level[i], run.tile_x[i], run.tile_y[i]);
+    }
+  }
+}
+
+/// Adds one bilinear tap of every pixel.
+BEVLOC_PIXEL_LOOP
+void add_taps(const GroundTexel* texels, float weight, int count, Run& run) {
+  const NeighbourGrid grid(texels, kTileNodes);
+  const float scale = weight / (255.0F * 255.0F);
+  const float gloss_scale = weight / 255.0F;
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const Neighbours near = grid.at(run.texel[i], run.blend_x[i], run.blend_y[i]);
+    const float red = near.channel(0);
+    const float green = near.channel(8);
+    const float blue = near.channel(16);
+    run.red[i] += scale * red * red;
+    run.green[i] += scale * green * green;
+    run.blue[i] += scale * blue * blue;
+    run.gloss[i] += gloss_scale * near.channel(24);
+  }
+}
+
+/// Turns albedo into light: sun, sky, lamps, wetness, haze.
+BEVLOC_PIXEL_LOOP
+void light_ground(const Frame& frame, int count, Run& run) {
+  const Lighting l = frame.lighting;
+  const float sun_share = std::max(0.0F, l.to_sun.z());
+  const auto per_cell = static_cast<float>(1.0 / GroundLight::kCellM);
+  const float last_cell = GroundLight::kSide - 1.001F;
+  const NeighbourGrid grid(frame.light_cells, GroundLight::kSide);
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const float cell_x = std::clamp((run.x[i] - frame.light_x) * per_cell, 0.0F, last_cell);
+    const float cell_y = std::clamp((run.y[i] - frame.light_y) * per_cell, 0.0F, last_cell);
+    const auto ix = static_cast<int32_t>(cell_x);
+    const auto iy = static_cast<int32_t>(cell_y);
+    const Neighbours near =
+        grid.at(iy * GroundLight::kSide + ix, cell_x - static_cast<float>(ix),
+                cell_y - static_cast<float>(iy));
+    const float sun = near.channel(0) * (1.0F / 255.0F) * sun_share;
+    const float sky = near.channel(8) * (1.0F / 255.0F);
+    const float off_x = run.x[i] - frame.vehicle_x;
+    const float off_y = run.y[i] - frame.vehicle_y;
+    const float ahead = off_x * frame.forward_x + off_y * frame.forward_y;
+    const float aside = off_y * frame.forward_x - off_x * frame.forward_y;
+    const float head = l.headlights * headlight_share(ahead, aside);
+    const float lamp = l.lamps * (1.0F / 255.0F) * near.channel(16);
+
+    const float film = l.wet * run.gloss[i];
+    const float dark = 1.0F - 0.5F * film;
+    const float grazing = 1.0F - run.steepness[i];
+    const float grazing2 = grazing * grazing;
+    const float mirror = film * sky * (0.02F + 0.5F * grazing2 * grazing2 * grazing2 * grazing2);
+    const float through = 1.0F / (1.0F + run.range[i] * l.haze_per_m);
+    const auto shade = [&](float albedo, float sun_c, float ambient_c, float lamp_c, float head_c,
+                           float sky_c, float haze_c) {
+      const float light = sun * sun_c + sky * ambient_c + lamp * lamp_c + head * head_c;
+      const float lit = albedo * dark * (1.0F - mirror) * light + mirror * sky_c;
+      return haze_c + through * (lit - haze_c);
+    };
+    run.red[i] = shade(run.red[i], l.sun.r, l.ambient.r, kLampColour.r, kHeadlightColour.r,
+                       l.sky_horizon.r, l.haze.r);
+    run.green[i] = shade(run.green[i], l.sun.g, l.ambient.g, kLampColour.g, kHeadlightColour.g,
+                         l.sky_horizon.g, l.haze.g);
+    run.blue[i] = shade(run.blue[i], l.sun.b, l.ambient.b, kLampColour.b, kHeadlightColour.b,
+                        l.sky_horizon.b, l.haze.b);
+  }
+}
+
+Frame make_frame(const View& view, const Lighting& lighting, const GroundLight& light,
+                 const Eigen::Vector2d& local_origin) {
+  Frame frame{};
+  Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(frame.rotation) = view.map_from_camera;
+  const Eigen::Vector2f camera = (view.position.head<2>() - local_origin).cast<float>();
+  const Eigen::Vector2f vehicle = (view.vehicle - local_origin).cast<float>();
+  const Eigen::Vector2f light_origin = (light.origin() - local_origin).cast<float>();
+  frame.camera_x = camera.x();
+  frame.camera_y = camera.y();
+  frame.height = std::max(0.05F, static_cast<float>(view.position.z()));
+  frame.pixel_angle = static_cast<float>(1.0 / view.rays->intrinsics.fx_px);
+  frame.vehicle_x = vehicle.x();
+  frame.vehicle_y = vehicle.y();
+  frame.forward_x = view.vehicle_forward.x();
+  frame.forward_y = view.vehicle_forward.y();
+  frame.light_x = light_origin.x();
+  frame.light_y = light_origin.y();
+  frame.light_cells = light.cells();
+  frame.lighting = lighting;
+  return frame;
+}
+
+void draw_ground_run(const Frame& frame, int taps, int count, GroundTiles& tiles, Run& run) {
+  choose_levels(taps, count, run);
+  for (int tap = 0; tap < taps; ++tap) {
+    place_taps(static_cast<float>(tap) - 0.5F * static_cast<float>(taps - 1), count, run);
+    // A tile made late may push out an older one of this run: look again until all are there.
+    while (!look_up(tiles.directory(), count, run)) make_missing(tiles, count, run);
+    add_taps(tiles.texels(), 1.0F / static_cast<float>(taps), count, run);
+  }
+  light_ground(frame, count, run);
+}
+
+}  // namespace
+
+void draw_ground_and_sky(const View& view, const Lighting& lighting, const GroundLight& light,
+                         const Sky& sky, GroundTiles& tiles, Picture& picture) {
+  const Frame frame = make_frame(view, lighting, light, tiles.local_origin());
+  Run run;
+  const int pixels = view.width() * view.height();
+  for (int start = 0; start < pixels; start += kRun) {
+    const int count = std::min(kRun, pixels - start);
+    const int taps = aim(frame, &view.rays->x[static_cast<size_t>(start)],
+                         &view.rays->y[static_cast<size_t>(start)], count, run);
+    const float highest = *std::max_element(run.dz, run.dz + count);
+    if (taps > 0) draw_ground_run(frame, taps, count, tiles, run);
+    if (highest > -1e-5F) {
+      shade_sky(sky, lighting,
+                {run.dx, run.dy, run.dz, 1.0F / frame.pixel_angle, run.sky_red, run.sky_green,
+                 run.sky_blue},
+                count);
+    }
+    for (int i = 0; i < count; ++i) {
+      const bool ground = run.dz[i] < -1e-5F;
+      const auto at = static_cast<size_t>(start + i);
+      picture.red[at] = ground ? run.red[i] : run.sky_red[i];
+      picture.green[at] = ground ? run.green[i] : run.sky_green[i];
+      picture.blue[at] = ground ? run.blue[i] : run.sky_blue[i];
+    }
+  }
+}
+
+}  // namespace bevloc::sim

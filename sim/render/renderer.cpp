@@ -1,0 +1,81 @@
+#include "sim/render/renderer.h"
+
+#include <tuple>
+
+#include "sim/render/ground_light.h"
+#include "sim/render/ground_pass.h"
+#include "sim/render/ground_tiles.h"
+#include "sim/render/lighting.h"
+#include "sim/render/sensor_pass.h"
+#include "sim/render/sheet.h"
+#include "sim/render/sheet_pass.h"
+#include "sim/render/sky.h"
+#include "sim/render/surroundings.h"
+#include "sim/render/view.h"
+
+namespace bevloc::sim {
+namespace {
+
+constexpr double kSightM = 160.0;
+
+/// What the surroundings and the light on the ground were made for: cameras of one moment share
+/// them.
+struct Moment {
+  Se2 map_from_vehicle;
+  double time_s = 0.0;
+  Conditions conditions;
+
+  auto key() const {
+    return std::tie(map_from_vehicle.x_m, map_from_vehicle.y_m, map_from_vehicle.yaw_rad, time_s,
+                    conditions.sun_azimuth_rad, conditions.sun_elevation_rad, conditions.overcast,
+                    conditions.rain, conditions.exposure);
+  }
+};
+
+}  // namespace
+
+struct Renderer::Impl {
+  explicit Impl(const World& shown)
+      : world(shown), scene(shown), tiles(shown), sky(shown.seed) {}
+
+  void enter(const Moment& next, const Lighting& lighting) {
+    if (moment_known && moment.key() == next.key()) return;
+    moment = next;
+    moment_known = true;
+    scene.gather(moment.map_from_vehicle, moment.time_s, kSightM, surroundings);
+    light.build(moment.map_from_vehicle.translation(), surroundings, lighting);
+  }
+
+  const World& world;
+  SceneIndex scene;
+  GroundTiles tiles;
+  Sky sky;
+  RayCache rays;
+  Moment moment;
+  bool moment_known = false;
+  Surroundings surroundings;
+  GroundLight light;
+  SheetBuilder sheets;
+  Picture picture;
+};
+
+Renderer::Renderer(const World& world) : impl_(std::make_unique<Impl>(world)) {}
+
+Renderer::~Renderer() = default;
+
+void Renderer::render(const CameraModel& camera, const Se2& map_from_vehicle,
+                      const BodyMotion& body, double time_s, const Conditions& conditions,
+                      uint64_t noise_seed, RgbImage& image) {
+  Impl& impl = *impl_;
+  const Lighting lighting = lighting_of(conditions);
+  impl.enter({map_from_vehicle, time_s, conditions}, lighting);
+  const View view = make_view(impl.rays.rays_of(camera.intrinsics), camera.vehicle_from_camera,
+                              map_from_vehicle, body);
+  impl.picture.resize(view.width(), view.height());
+  impl.tiles.look_at(view.position.head<2>());
+  draw_ground_and_sky(view, lighting, impl.light, impl.sky, impl.tiles, impl.picture);
+  draw_sheets(view, lighting, impl.sheets.build(view.position, impl.surroundings), impl.picture);
+  develop(view, lighting, sensor_of(impl.world.seed, camera), noise_seed, impl.picture, image);
+}
+
+}  // namespace bevloc::sim

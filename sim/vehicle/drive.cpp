@@ -1,0 +1,246 @@
+#include "sim/vehicle/drive.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "sim/vehicle/route.h"
+#include "sim/world/path.h"
+
+namespace bevloc::sim {
+namespace {
+
+constexpr double kStep_m = 0.5;
+// The plan keeps inside the limits of the interface.
+constexpr double kLateralLimit_mps2 = 2.2;
+constexpr double kAcceleration_mps2 = 1.6;
+constexpr double kBraking_mps2 = 2.3;
+constexpr double kTopSpeed_mps = 25.0;
+constexpr double kStopBeforeLaneEnd_m = 7.0;
+constexpr double kWander_m = 0.15;
+
+/// Points every kStep_m.
+Polyline resampled(const Polyline& line) {
+  const Path path(line);
+  const auto pieces =
+      std::max<size_t>(4, static_cast<size_t>(std::lround(path.length_m() / kStep_m)));
+  Polyline samples(pieces + 1);
+  for (size_t i = 0; i <= pieces; ++i) {
+    samples[i] =
+        path.position(path.length_m() * static_cast<double>(i) / static_cast<double>(pieces));
+  }
+  return samples;
+}
+
+/// Takes the kinks out of a line of lanes: a Gaussian of 1.5 m.
+Polyline smoothed(const Polyline& line) {
+  constexpr int kReach = 9;
+  constexpr double kSigma_m = 1.5;
+  const int last = static_cast<int>(line.size()) - 1;
+  Polyline result(line.size());
+  for (int i = 0; i <= last; ++i) {
+    // A window that is symmetric up to the ends leaves the ends where they are.
+    const int reach = std::min({kReach, i, last - i});
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    double weights = 0.0;
+    for (int k = -reach; k <= reach; ++k) {
+      const double weight = std::exp(-0.5 * std::pow(k * kStep_m / kSigma_m, 2));
+      sum += weight * line[static_cast<size_t>(i + k)];
+      weights += weight;
+    }
+    result[static_cast<size_t>(i)] = sum / weights;
+  }
+  return result;
+}
+
+/// Cubic Hermite between two points with unit tangents, `length` apart.
+Eigen::Vector2d hermite(const Eigen::Vector2d& a, const Eigen::Vector2d& tangent_a,
+                        const Eigen::Vector2d& b, const Eigen::Vector2d& tangent_b, double length,
+                        double t) {
+  const double t2 = t * t;
+  const double t3 = t2 * t;
+  return (2.0 * t3 - 3.0 * t2 + 1.0) * a + (t3 - 2.0 * t2 + t) * length * tangent_a +
+         (3.0 * t2 - 2.0 * t3) * b + (t3 - t2) * length * tangent_b;
+}
+
+}  // namespace
+
+Drive::Drive(const World& world, uint64_t seed, double duration_s)
+    : seed_(seed),
+      duration_s_(duration_s),
+      pitch_noise_(seed_for(seed, "pitch"), radians(0.27), 4.0, 40.0),
+      roll_noise_(seed_for(seed, "roll"), radians(0.2), 4.0, 40.0),
+      lift_noise_(seed_for(seed, "lift"), 0.012, 4.0, 40.0) {
+  assert(!world.map.lanes.empty());
+  Random random(seed_for(seed, "route"));
+  const std::vector<uint32_t> route =
+      random_lane_route(world.map, duration_s * kTopSpeed_mps * 0.8 + 50.0, random);
+  lay_path(world.map, route);
+  measure_path();
+  const std::vector<Stop> stops = choose_stops(world.map, route);
+  plan_speed(world.map, route, stops);
+  plan_time(stops);
+}
+
+void Drive::lay_path(const HdMap& map, const std::vector<uint32_t>& route) {
+  Polyline line;
+  for (const uint32_t lane : route) append(line, map.lanes[lane].centerline);
+  const SmoothNoise wander(seed_for(seed_, "wander"), kWander_m, 50.0, 250.0);
+  const Polyline samples = smoothed(resampled(line));
+  lane_step_m_ = length_m(line) / static_cast<double>(samples.size() - 1);
+  const Path centre(samples);
+  Polyline wandering(samples.size());
+  double station_m = 0.0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (i > 0) station_m += (samples[i] - samples[i - 1]).norm();
+    wandering[i] = centre.beside(station_m, wander.at(station_m));
+  }
+  points_ = smoothed(wandering);
+}
+
+void Drive::measure_path() {
+  const size_t count = points_.size();
+  station_m_.assign(count, 0.0);
+  heading_rad_.assign(count, 0.0);
+  curvature_radpm_.assign(count, 0.0);
+  for (size_t i = 1; i < count; ++i) {
+    station_m_[i] = station_m_[i - 1] + (points_[i] - points_[i - 1]).norm();
+  }
+  for (size_t i = 0; i < count; ++i) {
+    const size_t before = i > 0 ? i - 1 : 0;
+    const Eigen::Vector2d chord = points_[std::min(i + 1, count - 1)] - points_[before];
+    const double heading = std::atan2(chord.y(), chord.x());
+    heading_rad_[i] =
+        i > 0 ? heading_rad_[i - 1] + wrap_angle(heading - heading_rad_[i - 1]) : heading;
+  }
+  for (size_t i = 1; i + 1 < count; ++i) {
+    curvature_radpm_[i] =
+        (heading_rad_[i + 1] - heading_rad_[i - 1]) / (station_m_[i + 1] - station_m_[i - 1]);
+  }
+  // A chord to one side alone is the heading half a step away: the ends continue their neighbours.
+  const size_t last = count - 1;
+  curvature_radpm_[0] = curvature_radpm_[1] = curvature_radpm_[2];
+  curvature_radpm_[last] = curvature_radpm_[last - 1] = curvature_radpm_[last - 2];
+  heading_rad_[0] = heading_rad_[1] - curvature_radpm_[1] * station_m_[1];
+  heading_rad_[last] =
+      heading_rad_[last - 1] + curvature_radpm_[last] * (station_m_[last] - station_m_[last - 1]);
+}
+
+std::vector<Drive::Stop> Drive::choose_stops(const HdMap& map,
+                                             const std::vector<uint32_t>& route) const {
+  Random random(seed_for(seed_, "stops"));
+  std::vector<Stop> stops;
+  double end_m = 0.0;
+  for (const uint32_t lane : route) {
+    const double lane_m = length_m(map.lanes[lane].centerline);
+    end_m += lane_m;
+    const bool stops_here = random.chance(0.25);
+    const double wait_s = random.uniform(2.0, 7.0);
+    if (!stops_here || lane_m < 25.0 || map.lanes[lane].successors.size() < 2) continue;
+    const auto sample = static_cast<size_t>((end_m - kStopBeforeLaneEnd_m) / lane_step_m_);
+    if (sample + 1 < points_.size()) stops.push_back({sample, wait_s});
+  }
+  return stops;
+}
+
+void Drive::plan_speed(const HdMap& map, const std::vector<uint32_t>& route,
+                       const std::vector<Stop>& stops) {
+  const size_t count = points_.size();
+  const double haste = Random(seed_for(seed_, "haste")).uniform(0.7, 1.0);
+  speed_mps_.assign(count, 0.0);
+  size_t on_route = 0;
+  double lane_end_m = length_m(map.lanes[route[0]].centerline);
+  for (size_t i = 0; i < count; ++i) {
+    while (static_cast<double>(i) * lane_step_m_ > lane_end_m && on_route + 1 < route.size()) {
+      lane_end_m += length_m(map.lanes[route[++on_route]].centerline);
+    }
+    const double limit = std::min(kTopSpeed_mps, map.lanes[route[on_route]].speed_limit_mps);
+    const double bend = std::max(1e-4, std::abs(curvature_radpm_[i]));
+    speed_mps_[i] = haste * std::min(limit, std::sqrt(kLateralLimit_mps2 / bend));
+  }
+  speed_mps_.back() = 0.0;
+  for (const Stop& stop : stops) speed_mps_[stop.sample] = 0.0;
+  const auto limit_step = [&](size_t from, size_t to, double rate_mps2) {
+    const double step_m = std::abs(station_m_[to] - station_m_[from]);
+    const double reachable = std::sqrt(std::pow(speed_mps_[from], 2) + 2.0 * rate_mps2 * step_m);
+    speed_mps_[to] = std::min(speed_mps_[to], reachable);
+  };
+  for (size_t k = count - 1; k > 0; --k) limit_step(k, k - 1, kBraking_mps2);
+  for (size_t k = 0; k + 1 < count; ++k) limit_step(k, k + 1, kAcceleration_mps2);
+}
+
+void Drive::plan_time(const std::vector<Stop>& stops) {
+  const size_t count = points_.size();
+  arrival_s_.assign(count, 0.0);
+  departure_s_.assign(count, 0.0);
+  for (size_t i = 0; i < count; ++i) {
+    if (i > 0) {
+      const double mean_speed = 0.5 * (speed_mps_[i] + speed_mps_[i - 1]);
+      arrival_s_[i] = departure_s_[i - 1] + (station_m_[i] - station_m_[i - 1]) / mean_speed;
+    }
+    departure_s_[i] = arrival_s_[i];
+    for (const Stop& stop : stops) {
+      if (stop.sample == i) departure_s_[i] += stop.wait_s;
+    }
+  }
+}
+
+Drive::Progress Drive::progress_at(double time_s) const {
+  const double time = std::clamp(time_s, 0.0, duration_s_);
+  // The last sample that the vehicle has reached.
+  const auto after = std::upper_bound(arrival_s_.begin(), arrival_s_.end(), time);
+  const size_t i = static_cast<size_t>(after - arrival_s_.begin()) - 1;
+  Progress progress{.sample = i};
+  if (time < departure_s_[i]) return progress;  // it waits
+  if (i + 1 == points_.size()) {                // the end of the route
+    progress.sample = i - 1;
+    progress.fraction = 1.0;
+    return progress;
+  }
+  const double step_m = station_m_[i + 1] - station_m_[i];
+  const double elapsed = time - departure_s_[i];
+  progress.acceleration_mps2 =
+      (speed_mps_[i + 1] - speed_mps_[i]) / (arrival_s_[i + 1] - departure_s_[i]);
+  progress.speed_mps = speed_mps_[i] + progress.acceleration_mps2 * elapsed;
+  progress.fraction =
+      (speed_mps_[i] * elapsed + 0.5 * progress.acceleration_mps2 * elapsed * elapsed) / step_m;
+  return progress;
+}
+
+Drive::State Drive::at(double time_s) const {
+  const Progress now = progress_at(time_s);
+  const size_t i = now.sample;
+  const double step_m = station_m_[i + 1] - station_m_[i];
+  const auto between = [&](const std::vector<double>& values) {
+    return values[i] + now.fraction * (values[i + 1] - values[i]);
+  };
+  const Eigen::Vector2d position = hermite(points_[i], unit_vector(heading_rad_[i]), points_[i + 1],
+                                           unit_vector(heading_rad_[i + 1]), step_m, now.fraction);
+  State state;
+  state.map_from_vehicle = {position.x(), position.y(), wrap_angle(between(heading_rad_))};
+  state.speed_mps = now.speed_mps;
+  state.yaw_rate_radps = now.speed_mps * between(curvature_radpm_);
+  state.acceleration_mps2 = now.acceleration_mps2;
+  return state;
+}
+
+BodyMotion Drive::body_at(double time_s) const {
+  constexpr double kPitchPerAcceleration = 0.004;  // rad per m/s^2, as are passenger cars
+  constexpr double kRollPerAcceleration = 0.007;
+  constexpr int kTaps = 5;  // springs smooth the acceleration over most of a second
+  double longitudinal = 0.0;
+  double lateral = 0.0;
+  for (int k = 0; k < kTaps; ++k) {
+    const State state = at(time_s + 0.15 * (k - kTaps / 2));
+    longitudinal += state.acceleration_mps2 / kTaps;
+    lateral += state.speed_mps * state.yaw_rate_radps / kTaps;
+  }
+  const Progress now = progress_at(time_s);
+  const double way_m =
+      station_m_[now.sample] + now.fraction * (station_m_[now.sample + 1] - station_m_[now.sample]);
+  return {.pitch_rad = pitch_noise_.at(way_m) - kPitchPerAcceleration * longitudinal,
+          .roll_rad = roll_noise_.at(way_m) + kRollPerAcceleration * lateral,
+          .lift_m = lift_noise_.at(way_m)};
+}
+
+}  // namespace bevloc::sim

@@ -1,0 +1,79 @@
+#include "sim/vehicle/placement.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "sim/world/path.h"
+
+namespace bevloc::sim {
+namespace {
+
+constexpr double kSurroundings_m = 30.0;
+constexpr int kWantedElements = 2;
+constexpr int kAttempts = 30;
+
+double distance_to_segment(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
+                           const Eigen::Vector2d& b) {
+  const Eigen::Vector2d edge = b - a;
+  const double length2 = edge.squaredNorm();
+  const double t = length2 > 0.0 ? std::clamp((point - a).dot(edge) / length2, 0.0, 1.0) : 0.0;
+  return (point - a - t * edge).norm();
+}
+
+bool is_near(const MapElement& element, const Eigen::Vector2d& point) {
+  for (size_t i = 1; i < element.points.size(); ++i) {
+    if (distance_to_segment(point, element.points[i - 1], element.points[i]) < kSurroundings_m) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool has_surroundings(const HdMap& map, const Eigen::Vector2d& point) {
+  int found = 0;
+  for (const MapElement& element : map.elements) {
+    if (is_near(element, point) && ++found == kWantedElements) return true;
+  }
+  return false;
+}
+
+/// Short lanes (those across junctions) are drawn more often than their length asks for.
+const Lane& random_lane(const HdMap& map, Random& random) {
+  double total = 0.0;
+  for (const Lane& lane : map.lanes) total += std::sqrt(length_m(lane.centerline));
+  double draw = random.uniform(0.0, total);
+  for (const Lane& lane : map.lanes) {
+    draw -= std::sqrt(length_m(lane.centerline));
+    if (draw <= 0.0) return lane;
+  }
+  return map.lanes.back();
+}
+
+Se2 random_pose_on_lane(const Lane& lane, Random& random) {
+  const Path path(lane.centerline);
+  const double station_m = random.uniform(0.0, path.length_m());
+  const double lane_width_m = (lane.left.front() - lane.right.front()).norm();
+  double right_m = random.normal(0.0, 0.4);
+  double askew_rad = radians(random.normal(0.0, 2.5));
+  if (random.chance(0.15)) {  // in the middle of a lane change
+    right_m = random.uniform(-0.5, 0.5) * lane_width_m;
+    askew_rad = radians(random.normal(0.0, 5.0));
+  }
+  const Eigen::Vector2d position = path.beside(station_m, right_m);
+  return {position.x(), position.y(), wrap_angle(path.heading_rad(station_m) + askew_rad)};
+}
+
+}  // namespace
+
+Se2 random_pose_on_road(const World& world, Random& random) {
+  assert(!world.map.lanes.empty());
+  Se2 pose;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    pose = random_pose_on_lane(random_lane(world.map, random), random);
+    if (has_surroundings(world.map, pose.translation())) break;
+  }
+  return pose;
+}
+
+}  // namespace bevloc::sim

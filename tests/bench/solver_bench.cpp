@@ -1,0 +1,30 @@
+// Time of each pose solver on the product's grid: 100 x 50 cells, 16 channels.
+#include <benchmark/benchmark.h>
+
+#include "pipeline/solver/solver_factory.h"
+#include "tests/pipeline/solver/synthetic_scene.h"
+
+namespace bevloc {
+namespace {
+
+void solve(benchmark::State& state, SolverKind kind) {
+  constexpr int kChannels = 16;
+  auto solver = make_solver(kind, kFeatureGrid, kChannels, {}, {}).value();
+  const SyntheticScene scene = SyntheticScene::structured(kChannels, 1);
+  const auto bev = scene.seen_from({0.7, -0.3, radians(0.6)}, kFeatureGrid);
+  const auto map = scene.seen_from({}, kFeatureGrid);
+  SolverResult result;
+  for (auto _ : state) {
+    solver->solve(view(bev, kChannels, kFeatureGrid), view(map, kChannels, kFeatureGrid), result);
+    benchmark::DoNotOptimize(result.correction);
+  }
+}
+
+BENCHMARK_CAPTURE(solve, full, SolverKind::kFull)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(solve, block, SolverKind::kBlock)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(solve, decoupled, SolverKind::kDecoupled)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(solve, decoupled_plain, SolverKind::kDecoupledPlain)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace bevloc

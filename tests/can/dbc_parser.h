@@ -1,0 +1,52 @@
+// Reads a DBC file on its own: nothing here comes from can/, so that it can check what can/ says.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace bevloc::test {
+
+struct DbcSignal {
+  std::string name;
+  int start_bit = 0;
+  int length_bits = 0;
+  bool is_signed = false;
+  double scale = 1.0;
+  double offset = 0.0;
+  double min = 0.0;
+  double max = 0.0;
+  std::string unit;
+  std::map<int64_t, std::string> value_names;
+  std::string comment;
+
+  /// Bit by bit, in Intel order.
+  int64_t raw_from(std::span<const uint8_t> bytes) const;
+  double physical_from(std::span<const uint8_t> bytes) const;
+  bool is_sna(std::span<const uint8_t> bytes) const;
+};
+
+struct DbcMessage {
+  uint32_t id = 0;
+  std::string name;
+  int length = 0;
+  std::vector<DbcSignal> signals;
+  std::map<std::string, int> attributes;
+
+  /// Throws std::out_of_range for a name that is not there.
+  const DbcSignal& signal(const std::string& signal_name) const;
+};
+
+struct Dbc {
+  std::map<uint32_t, DbcMessage> messages;
+
+  const DbcMessage& message(const std::string& name) const;
+};
+
+/// Throws std::runtime_error with the line that is not understood.
+Dbc parse_dbc(const std::string& text);
+Dbc load_dbc(const std::string& path);
+
+}  // namespace bevloc::test

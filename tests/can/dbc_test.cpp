@@ -1,0 +1,160 @@
+#include <bit>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "can/candump.h"
+#include "can/dbc_writer.h"
+#include "can/e2e_p02.h"
+#include "can/markdown_writer.h"
+#include "can/message_table.h"
+#include "can/pose_report.h"
+#include "tests/can/dbc_parser.h"
+
+namespace bevloc::can {
+namespace {
+
+const std::string kSource = BEVLOC_SOURCE_DIR;
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<const Signal*> all_signals(const Message& message) {
+  std::vector<const Signal*> signals(std::begin(kE2eHeader), std::end(kE2eHeader));
+  signals.insert(signals.end(), message.signals.begin(), message.signals.end());
+  return signals;
+}
+
+TEST(Dbc, CommittedFileIsWhatTheTableGives) {
+  EXPECT_EQ(content_of(kSource + "/can/bevloc.dbc"), dbc_text())
+      << "renew it with: bevloc_dbc > can/bevloc.dbc";
+}
+
+TEST(Dbc, DocumentedTablesAreWhatTheTableGives) {
+  EXPECT_NE(content_of(kSource + "/docs/can.md").find(markdown_tables()), std::string::npos)
+      << "renew them with: bevloc_dbc --markdown";
+}
+
+TEST(Dbc, DocumentedExampleIsAFrameWeWouldSend) {
+  Frame frame = blank_frame(loc_pos_local::kMessage, BaseIds{});
+  protect_p02(frame, loc_pos_local::kMessage.data_id, 0);
+  EXPECT_NE(content_of(kSource + "/docs/can.md").find("`504#D700000080000080`"), std::string::npos);
+  EXPECT_TRUE(candump_line({}, "can0", frame).ends_with(" 504#D700000080000080"));
+}
+
+TEST(Dbc, NamesEveryMessageAndSignal) {
+  const test::Dbc dbc = test::load_dbc(kSource + "/can/bevloc.dbc");
+  EXPECT_EQ(dbc.messages.size(), std::size(kMessages));
+  for (const Message* message : kMessages) {
+    const test::DbcMessage& written = dbc.message(std::string(message->name));
+    EXPECT_EQ(written.id, message->id(BaseIds{}));
+    EXPECT_EQ(written.length, message->length);
+    EXPECT_EQ(written.attributes.at("E2EDataId"), message->data_id);
+    EXPECT_EQ(written.attributes.at("GenMsgCycleTime"), message->cycle_ms);
+    EXPECT_EQ(written.signals.size(), all_signals(*message).size());
+    for (const Signal* signal : all_signals(*message)) {
+      const test::DbcSignal& read = written.signal(std::string(signal->name));
+      EXPECT_EQ(read.comment, signal->comment);
+      EXPECT_EQ(read.unit, signal->unit);
+      for (const ValueName& value : signal->value_names) {
+        EXPECT_EQ(read.value_names.at(value.raw), value.name);
+      }
+    }
+  }
+}
+
+TEST(Dbc, BaseIdsMoveTheMessages) {
+  const test::Dbc dbc = test::parse_dbc(dbc_text({.localizer = 0x620, .vehicle = 0x100}));
+  EXPECT_EQ(dbc.message("LOC_Latitude").id, 0x622u);
+  EXPECT_EQ(dbc.message("VEH_YawRate").id, 0x101u);
+}
+
+/// What the table encodes is what a reader with the DBC file's numbers decodes.
+TEST(Dbc, DecodesWhatTheTableEncodes) {
+  const test::Dbc dbc = test::load_dbc(kSource + "/can/bevloc.dbc");
+  for (const Message* message : kMessages) {
+    for (const Signal* signal : all_signals(*message)) {
+      SCOPED_TRACE(std::string(message->name) + "." + std::string(signal->name));
+      const test::DbcSignal& read =
+          dbc.message(std::string(message->name)).signal(std::string(signal->name));
+      EXPECT_EQ(read.min, signal->min);
+      EXPECT_EQ(read.max, signal->max);
+      const int64_t middle = (signal->min_raw() + signal->max_raw()) / 2;
+      for (const double physical : {signal->min, signal->physical(middle), signal->max}) {
+        for (const uint8_t fill : {uint8_t{0x00}, uint8_t{0xFF}}) {
+          Frame frame{.id = 0, .length = message->length};
+          frame.data.fill(fill);
+          insert_raw(frame, *signal, signal->nearest_raw(physical));
+          EXPECT_NEAR(read.physical_from(frame.payload()), physical, 1e-3 * signal->scale);
+          EXPECT_FALSE(read.is_sna(frame.payload()));
+          EXPECT_EQ(extract_raw(frame, *signal), read.raw_from(frame.payload()));
+        }
+      }
+      if (!signal->has_sna) continue;
+      Frame frame{.id = 0, .length = message->length};
+      encode(frame, *signal, PoseReport::kUnknown);
+      EXPECT_TRUE(read.is_sna(frame.payload()));
+      EXPECT_FALSE(decode(frame, *signal));
+      encode(frame, *signal, 1e12);
+      EXPECT_NEAR(read.physical_from(frame.payload()), signal->max, 1e-3 * signal->scale);
+      encode(frame, *signal, -1e12);
+      EXPECT_NEAR(read.physical_from(frame.payload()), signal->min, 1e-3 * signal->scale);
+    }
+  }
+}
+
+TEST(MessageTable, EnumerationsCarryTheNamesOfTheTable) {
+  const auto name_of = [](const Signal& signal, auto value) {
+    return signal.value_names[static_cast<size_t>(value)].name;
+  };
+  EXPECT_EQ(name_of(loc_status::kState, LocalizerState::kInit), "INIT");
+  EXPECT_EQ(name_of(loc_status::kState, LocalizerState::kAcquiring), "ACQUIRING");
+  EXPECT_EQ(name_of(loc_status::kState, LocalizerState::kTracking), "TRACKING");
+  EXPECT_EQ(name_of(loc_status::kState, LocalizerState::kDegraded), "DEGRADED");
+  EXPECT_EQ(name_of(loc_status::kState, LocalizerState::kLost), "LOST");
+  EXPECT_EQ(name_of(loc_status::kState, LocalizerState::kFault), "FAULT");
+  EXPECT_EQ(name_of(loc_status::kTimeSource, TimeSource::kFreeRunning), "FREE_RUNNING");
+  EXPECT_EQ(name_of(loc_status::kTimeSource, TimeSource::kPtp), "PTP");
+  EXPECT_EQ(name_of(loc_status::kTimeSource, TimeSource::kGnss), "GNSS");
+
+  const auto why_name = [](Why why) {
+    return loc_status::kWhy[static_cast<size_t>(std::countr_zero(WhyMask(why).bits()))].name;
+  };
+  EXPECT_EQ(why_name(Why::kCameraMissing), "Why_CameraMissing");
+  EXPECT_EQ(why_name(Why::kCamerasUnsynchronized), "Why_CamerasUnsynchronized");
+  EXPECT_EQ(why_name(Why::kOdometryMissing), "Why_OdometryMissing");
+  EXPECT_EQ(why_name(Why::kGnssMissing), "Why_GnssMissing");
+  EXPECT_EQ(why_name(Why::kNoInitialPose), "Why_NoInitialPose");
+  EXPECT_EQ(why_name(Why::kOutsideMap), "Why_OutsideMap");
+  EXPECT_EQ(why_name(Why::kMatchUncertain), "Why_MatchUncertain");
+  EXPECT_EQ(why_name(Why::kMatchRejected), "Why_MatchRejected");
+  EXPECT_EQ(why_name(Why::kPoseUncertain), "Why_PoseUncertain");
+  EXPECT_EQ(why_name(Why::kPoseStale), "Why_PoseStale");
+  EXPECT_EQ(why_name(Why::kPoseInvalid), "Why_PoseInvalid");
+  EXPECT_EQ(why_name(Why::kOverload), "Why_Overload");
+  EXPECT_EQ(why_name(Why::kMapFault), "Why_MapFault");
+  EXPECT_EQ(why_name(Why::kCalibrationFault), "Why_CalibrationFault");
+  EXPECT_EQ(why_name(Why::kNetworkFault), "Why_NetworkFault");
+  EXPECT_EQ(why_name(Why::kInternalFault), "Why_InternalFault");
+}
+
+TEST(MessageTable, BlankFramesSayNothing) {
+  for (const Message* message : kMessages) {
+    const Frame frame = blank_frame(*message, BaseIds{});
+    for (const Signal* signal : message->signals) {
+      if (signal->has_sna) {
+        EXPECT_FALSE(decode(frame, *signal)) << signal->name;
+      } else {
+        EXPECT_EQ(extract_raw(frame, *signal), 0) << signal->name;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bevloc::can

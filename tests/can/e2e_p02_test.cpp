@@ -1,0 +1,152 @@
+#include "can/e2e_p02.h"
+
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "can/message_table.h"
+
+namespace bevloc::can {
+namespace {
+
+Frame frame_of(std::vector<uint8_t> bytes) {
+  Frame frame{.id = 0x123, .length = static_cast<uint8_t>(bytes.size())};
+  std::copy(bytes.begin(), bytes.end(), frame.data.begin());
+  return frame;
+}
+
+Frame protected_frame(const can::Message& message, uint8_t counter) {
+  Frame frame = blank_frame(message, BaseIds{});
+  for (size_t i = 1; i < frame.length; ++i) frame.data[i] ^= static_cast<uint8_t>(37 * i);
+  protect_p02(frame, message.data_id, counter);
+  return frame;
+}
+
+bool is_rejected(const Frame& frame, const can::Message& message) {
+  return !is_usable(E2eChecker(message.data_id, message.length).check(frame));
+}
+
+void flip(Frame& frame, int bit) {
+  frame.data[bit / 8] ^= static_cast<uint8_t>(1u << (bit % 8));
+}
+
+TEST(Crc8H2f, HasThePublishedCheckValue) {
+  constexpr std::string_view kText = "123456789";
+  EXPECT_EQ(crc8_h2f({reinterpret_cast<const uint8_t*>(kText.data()), kText.size()}), 0xDF);
+}
+
+TEST(E2eP02, ReproducesPublishedVectors) {
+  // The vectors of github.com/zariiii9003/autosar-e2e, test/test_p02.py.
+  Frame zeros = frame_of({0, 0, 0, 0, 0, 0, 0, 0});
+  protect_p02(zeros, 0, 1);
+  EXPECT_EQ(zeros, frame_of({0x45, 0x01, 0, 0, 0, 0, 0, 0}));
+
+  Frame rising = frame_of({0, 1, 2, 3, 4, 5, 6, 7});
+  protect_p02(rising, 2, 2);
+  EXPECT_EQ(rising, frame_of({0xBC, 0x02, 2, 3, 4, 5, 6, 7}));
+
+  rising = frame_of({0, 1, 2, 3, 4, 5, 6, 7});
+  protect_p02(rising, 1, 1);
+  EXPECT_EQ(rising, frame_of({0x61, 0x01, 2, 3, 4, 5, 6, 7}));
+}
+
+TEST(E2eP02, ProtectKeepsTheHighNibbleOfByte1) {
+  Frame frame = frame_of({0, 0xA5, 1, 2});
+  protect_p02(frame, 7, 0x0C);
+  EXPECT_EQ(frame.data[1], 0xAC);
+}
+
+TEST(E2eP02, EverySmallErrorInEveryMessageIsRejected) {
+  for (const can::Message* message : kMessages) {
+    SCOPED_TRACE(message->name);
+    const Frame sound = protected_frame(*message, 5);
+    ASSERT_FALSE(is_rejected(sound, *message));
+    const int bits = 8 * sound.length;
+    int undetected = 0;
+    for (int a = 0; a < bits; ++a) {
+      Frame one = sound;
+      flip(one, a);
+      undetected += !is_rejected(one, *message);
+      for (int b = a + 1; b < bits; ++b) {
+        Frame two = one;
+        flip(two, b);
+        undetected += !is_rejected(two, *message);
+        for (int c = b + 1; c < bits; ++c) {
+          Frame three = two;
+          flip(three, c);
+          undetected += !is_rejected(three, *message);
+        }
+      }
+    }
+    EXPECT_EQ(undetected, 0);
+  }
+}
+
+TEST(E2eP02, NoMessagePassesForAnother) {
+  for (const can::Message* sent : kMessages) {
+    for (const can::Message* expected : kMessages) {
+      if (sent == expected) continue;
+      const Frame frame = protected_frame(*sent, 3);
+      E2eChecker checker(expected->data_id, frame.length);
+      EXPECT_EQ(checker.check(frame), E2eResult::kWrongCrc) << sent->name << expected->name;
+    }
+  }
+}
+
+TEST(E2eSender, CountsModulo16AndTheCheckerFollows) {
+  E2eSender sender(0x42);
+  E2eChecker checker(0x42, 4);
+  for (int i = 0; i < 40; ++i) {
+    Frame frame = frame_of({0, 0, 1, 2});
+    sender.protect(frame);
+    EXPECT_EQ(frame.data[1], i % 16);
+    EXPECT_EQ(checker.check(frame), E2eResult::kOk);
+  }
+  EXPECT_EQ(checker.counters().ok, 40u);
+  EXPECT_EQ(checker.counters().lost, 0u);
+}
+
+TEST(E2eChecker, FindsRepetition) {
+  E2eChecker checker(0x42, 4);
+  Frame frame = frame_of({0, 0, 1, 2});
+  protect_p02(frame, 0x42, 9);
+  EXPECT_EQ(checker.check(frame), E2eResult::kOk);
+  EXPECT_EQ(checker.check(frame), E2eResult::kRepeated);
+  EXPECT_EQ(checker.counters().repeated, 1u);
+}
+
+TEST(E2eChecker, CountsLossAcrossTheWrapOfTheCounter) {
+  E2eChecker checker(0x42, 4);
+  Frame frame = frame_of({0, 0, 1, 2});
+  protect_p02(frame, 0x42, 14);
+  EXPECT_EQ(checker.check(frame), E2eResult::kOk);
+  protect_p02(frame, 0x42, 1);
+  EXPECT_EQ(checker.check(frame), E2eResult::kSomeLost);
+  EXPECT_EQ(checker.counters().lost, 2u);
+  EXPECT_EQ(checker.counters().ok, 2u);
+}
+
+TEST(E2eChecker, WrongFramesDoNotMoveTheCounter) {
+  E2eChecker checker(0x42, 4);
+  Frame frame = frame_of({0, 0, 1, 2});
+  protect_p02(frame, 0x42, 3);
+  EXPECT_EQ(checker.check(frame), E2eResult::kOk);
+
+  Frame damaged = frame;
+  protect_p02(damaged, 0x42, 9);
+  damaged.data[3] ^= 0x10;
+  EXPECT_EQ(checker.check(damaged), E2eResult::kWrongCrc);
+  Frame shorter = frame_of({0, 0, 1});
+  protect_p02(shorter, 0x42, 4);
+  EXPECT_EQ(checker.check(shorter), E2eResult::kWrongLength);
+  EXPECT_EQ(checker.check(Frame{}), E2eResult::kWrongLength);
+
+  protect_p02(frame, 0x42, 4);
+  EXPECT_EQ(checker.check(frame), E2eResult::kOk);
+  EXPECT_EQ(checker.counters().wrong_crc, 1u);
+  EXPECT_EQ(checker.counters().wrong_length, 2u);
+}
+
+}  // namespace
+}  // namespace bevloc::can

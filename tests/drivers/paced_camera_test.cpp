@@ -1,0 +1,206 @@
+#include "drivers/camera/paced_camera.h"
+
+#include <algorithm>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace bevloc::drivers {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Duration kPeriod = milliseconds(100);
+constexpr Duration kReadout = milliseconds(20);
+
+/// Ten pictures a second from time 0 on, `last` of them; each has its number as first byte.
+class CountingCamera final : public PacedCamera {
+ public:
+  CountingCamera(int buffers, uint64_t last, VirtualClock& clock)
+      : PacedCamera({2, 4, 3, buffers, TimestampOrigin::kSimulated}, milliseconds(8), clock),
+        clock_(clock),
+        last_(last) {
+    set_shelf_life(kPeriod);
+  }
+
+  void break_picture(uint64_t number) { broken_ = number; }
+  /// Making a picture takes this long from now on.
+  void set_drawing_time(Duration drawing_time) { drawing_time_ = drawing_time; }
+  int drawn() const { return drawn_; }
+
+ private:
+  Status open(Time now) override {
+    next_ = first_ =
+        static_cast<uint64_t>((now.time_since_epoch() + kPeriod - Duration(1)) / kPeriod);
+    return {};
+  }
+  std::optional<Delivery> next_delivery() override {
+    if (next_ == last_) return std::nullopt;
+    const Time start(static_cast<int64_t>(next_) * kPeriod);
+    return Delivery{next_++ - first_, start, start, start + kReadout};
+  }
+  Status draw(const Delivery& delivery, RgbImage& image) override {
+    ++drawn_;
+    clock_.advance(drawing_time_);
+    const uint64_t number = delivery.sequence + first_;
+    if (number == broken_) return fail("picture {} is broken", number);
+    image.pixels[0] = static_cast<uint8_t>(number);
+    return {};
+  }
+
+  VirtualClock& clock_;
+  Duration drawing_time_{0};
+  uint64_t last_;
+  uint64_t broken_ = ~uint64_t{0};
+  uint64_t first_ = 0;
+  uint64_t next_ = 0;
+  int drawn_ = 0;
+};
+
+TEST(PacedCamera, DeliversWhenThePictureIsReadOut) {
+  VirtualClock clock;
+  CountingCamera camera(2, 100, clock);
+  ASSERT_TRUE(camera.start());
+  Frame frame;
+  for (int k = 0; k < 5; ++k) {
+    ASSERT_EQ(camera.next_frame(milliseconds(500), frame), FrameEvent::kFrame);
+    EXPECT_EQ(clock.now(), Time(k * kPeriod + kReadout));
+    EXPECT_EQ(frame.time, Time(k * kPeriod));
+    EXPECT_EQ(frame.sequence, static_cast<uint64_t>(k));
+    EXPECT_EQ(frame.camera, 2);
+    EXPECT_EQ(frame.exposure, milliseconds(8));
+    EXPECT_EQ(frame.pixels().data[0], k);
+  }
+}
+
+TEST(PacedCamera, ZeroTimeoutOnlyLooks) {
+  VirtualClock clock;
+  CountingCamera camera(2, 100, clock);
+  ASSERT_TRUE(camera.start());
+  Frame frame;
+  EXPECT_EQ(camera.next_frame(Duration::zero(), frame), FrameEvent::kTimeout);
+  clock.advance(kReadout - Duration(1));
+  EXPECT_EQ(camera.next_frame(Duration::zero(), frame), FrameEvent::kTimeout);
+  clock.advance(Duration(1));
+  EXPECT_EQ(camera.next_frame(Duration::zero(), frame), FrameEvent::kFrame);
+  EXPECT_EQ(camera.next_frame(Duration::zero(), frame), FrameEvent::kTimeout);
+  EXPECT_EQ(clock.now(), Time(kReadout));
+}
+
+TEST(PacedCamera, TimeoutEndsTheWait) {
+  VirtualClock clock(Time(milliseconds(21)));
+  CountingCamera camera(2, 100, clock);
+  ASSERT_TRUE(camera.start());
+  Frame frame;
+  EXPECT_EQ(camera.next_frame(milliseconds(30), frame), FrameEvent::kTimeout);
+  EXPECT_EQ(clock.now(), Time(milliseconds(51)));
+}
+
+TEST(PacedCamera, DrawsEachPictureOnceAndAhead) {
+  VirtualClock clock(Time(milliseconds(1)));
+  CountingCamera camera(2, 100, clock);
+  ASSERT_TRUE(camera.start());
+  Frame frame;
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(camera.next_frame(milliseconds(1), frame), FrameEvent::kTimeout);
+    EXPECT_EQ(camera.drawn(), 1);
+  }
+}
+
+TEST(PacedCamera, FramesNobodyFetchedAreLostAndCounted) {
+  VirtualClock clock;
+  CountingCamera camera(2, 100, clock);
+  ASSERT_TRUE(camera.start());
+  clock.advance(kReadout + 10 * kPeriod);
+  Frame frame;
+  ASSERT_EQ(camera.next_frame(Duration::zero(), frame), FrameEvent::kFrame);
+  EXPECT_EQ(frame.sequence, 10U);
+  EXPECT_EQ(camera.counters().overrun, 10U);
+  EXPECT_EQ(camera.counters().delivered, 1U);
+}
+
+TEST(PacedCamera, DrawingAheadCostsNoLatency) {
+  VirtualClock clock;
+  CountingCamera camera(2, 100, clock);
+  camera.set_drawing_time(milliseconds(90));
+  ASSERT_TRUE(camera.start());
+  Frame frame;
+  for (int k = 0; k < 20; ++k) {
+    ASSERT_EQ(camera.next_frame(2 * kPeriod, frame), FrameEvent::kFrame);
+    // The first picture could not be made ahead; 10 ms of its delay are made up with each one.
+    const Duration delay = milliseconds(std::max(0, 70 - 10 * k));
+    EXPECT_EQ(clock.now() - frame.time, kReadout + delay) << k;
+  }
+  EXPECT_EQ(camera.counters().overrun, 0U);
+}
+
+TEST(PacedCamera, PictureThatTookTooLongToMakeIsLost) {
+  VirtualClock clock;
+  CountingCamera camera(2, 100, clock);
+  ASSERT_TRUE(camera.start());
+  Frame frame;
+  ASSERT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
+  camera.set_drawing_time(milliseconds(500));
+  EXPECT_EQ(camera.next_frame(3 * kPeriod, frame), FrameEvent::kTimeout);
+  camera.set_drawing_time(Duration::zero());
+  ASSERT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
+  EXPECT_LE(clock.now() - frame.time, kPeriod + kReadout);
+  EXPECT_GT(camera.counters().overrun, 0U);
+  EXPECT_EQ(frame.sequence, camera.counters().overrun + 1);
+}
+
+TEST(PacedCamera, FrameWithoutBufferIsLostAndCounted) {
+  VirtualClock clock;
+  CountingCamera camera(3, 100, clock);
+  ASSERT_TRUE(camera.start());
+  std::vector<Frame> held(3);
+  for (Frame& frame : held) {
+    ASSERT_EQ(camera.next_frame(kPeriod + kReadout, frame), FrameEvent::kFrame);
+  }
+  Frame frame;
+  EXPECT_EQ(camera.next_frame(4 * kPeriod, frame), FrameEvent::kTimeout);
+  EXPECT_EQ(camera.counters().no_buffer, 4U);
+  held.clear();
+  EXPECT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
+  EXPECT_EQ(frame.sequence, 7U);
+}
+
+TEST(PacedCamera, SaysWhenItIsOver) {
+  VirtualClock clock;
+  CountingCamera camera(2, 2, clock);
+  ASSERT_TRUE(camera.start());
+  Frame frame;
+  EXPECT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
+  EXPECT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
+  EXPECT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kEnded);
+}
+
+TEST(PacedCamera, BrokenPictureIsAnErrorAndTheNextOneIsNot) {
+  VirtualClock clock;
+  CountingCamera camera(2, 10, clock);
+  camera.break_picture(1);
+  ASSERT_TRUE(camera.start());
+  Frame frame;
+  ASSERT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
+  const auto broken = camera.next_frame(kPeriod, frame);
+  ASSERT_FALSE(broken);
+  EXPECT_EQ(broken.error().message, "picture 1 is broken");
+  ASSERT_EQ(camera.next_frame(3 * kPeriod, frame), FrameEvent::kFrame);
+  EXPECT_EQ(frame.sequence, 2U);
+}
+
+TEST(PacedCamera, FramesMayBeDroppedByAnotherThread) {
+  VirtualClock clock;
+  CountingCamera camera(4, 1000, clock);
+  ASSERT_TRUE(camera.start());
+  for (int i = 0; i < 50; ++i) {
+    Frame frame;
+    ASSERT_EQ(camera.next_frame(2 * kPeriod, frame), FrameEvent::kFrame);
+    std::thread([i, held = std::move(frame)] { EXPECT_EQ(held.pixels().data[0], i); }).join();
+  }
+  EXPECT_EQ(camera.counters().no_buffer, 0U);
+}
+
+}  // namespace
+}  // namespace bevloc::drivers

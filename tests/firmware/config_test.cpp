@@ -1,0 +1,383 @@
+#include "firmware/config.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/calibration/rig_yaml.h"
+#include "sim/sim_rig.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::filesystem::path kSource = BEVLOC_SOURCE_DIR;
+
+std::string read_text(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  EXPECT_TRUE(file) << path;
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// A folder for one test, with files that a configuration may name.
+class ConfigTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = std::filesystem::path(testing::TempDir()) / ("bevloc-config-" + name);
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+
+  Result<Config> load(const std::string& yaml) const {
+    write("test.yaml", yaml);
+    return load_config(folder_ / "test.yaml");
+  }
+
+  /// What loading says; empty when nothing is wrong.
+  std::string complaint(const std::string& yaml) const {
+    const auto config = load(yaml);
+    return config ? "" : config.error().message;
+  }
+
+  std::string place(int line) const {
+    return (folder_ / "test.yaml").string() + ":" + std::to_string(line) + ": ";
+  }
+
+  std::filesystem::path folder_;
+};
+
+// Line 1 is `cameras:`.
+const std::string kSmallest =
+    "cameras:\n"
+    "  driver: mock\n"
+    "  rate_hz: 10\n"
+    "calibration: {rig: rig.yaml}\n"
+    "map: {procedural_seed: 7}\n"
+    "model: {file: sub/model.onnx}\n"
+    "can: {driver: mock}\n"
+    "simulation: {seed: 1, duration_s: 5}\n";
+
+/// kSmallest with its only `from` replaced.
+std::string with(const std::string& from, const std::string& to) {
+  std::string text = kSmallest;
+  const size_t position = text.find(from);
+  EXPECT_NE(position, std::string::npos) << from;
+  return text.replace(position, from.size(), to);
+}
+
+TEST_F(ConfigTest, SmallestFileHasTheDefaults) {
+  const auto config = load(kSmallest);
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_EQ(config->cameras.driver, CameraDriver::kMock);
+  EXPECT_EQ(config->cameras.synchronizer.tolerance, drivers::SynchronizerConfig{}.tolerance);
+  EXPECT_EQ(config->cameras.synchronizer.wait, drivers::SynchronizerConfig{}.wait);
+  EXPECT_EQ(config->rig_file, folder_ / "rig.yaml");
+  EXPECT_EQ(config->model_file, folder_ / "sub/model.onnx");
+  EXPECT_EQ(config->map.procedural_seed, 7U);
+  EXPECT_EQ(config->health.lost_timeout, HealthLimits{}.lost_timeout);
+  EXPECT_DOUBLE_EQ(config->health.yaw_sigma_rad, HealthLimits{}.yaw_sigma_rad);
+  EXPECT_EQ(config->solver.tracking.x_m.count(), HypothesisGrid{}.x_m.count());
+  EXPECT_EQ(config->solver.tracking.yaw_rad.count(), HypothesisGrid{}.yaw_rad.count());
+  ASSERT_TRUE(config->simulation);
+  EXPECT_TRUE(config->simulation->camera_faults[0].empty());
+}
+
+TEST_F(ConfigTest, EverySectionIsRead) {
+  const auto config = load(
+      "cameras: {driver: mock, rate_hz: 20, buffers: 8, tolerance_ms: 1.5, wait_ms: 40, "
+      "min_cameras: 4}\n"
+      "calibration: {rig: /etc/rig.yaml}\n"
+      "map: {file: town.osm}\n"
+      "model: {file: ../m.onnx}\n"
+      "solver:\n"
+      "  kind: full\n"
+      "  tracking: {x_range_m: 3, x_step_m: 0.5, y_range_m: 2, y_step_m: 0.25,\n"
+      "             yaw_range_deg: 4, yaw_step_deg: 1}\n"
+      "can: {driver: socketcan, interface: can0, localizer_base_id: 0x600, vehicle_base_id: "
+      "0x300}\n"
+      "tracker: {longitudinal_noise_m_per_sqrt_m: 0.03, lateral_noise_m_per_sqrt_m: 0.04, "
+      "yaw_noise_deg_per_sqrt_s: 0.2, speed_scale_sigma: 0.05, yaw_rate_bias_sigma_degps: 0.5, "
+      "gnss_correlation_s: 20, correction_correlation_s: 0, gate_squared_distance: 12}\n"
+      "health: {odometry_timeout_ms: 100, gnss_timeout_ms: 2000, degraded_after_ms: 300, "
+      "lost_after_ms: 4000, corrections_to_track: 3, refusals_to_lose: 9, "
+      "max_longitudinal_sigma_m: 0.5, max_lateral_sigma_m: 0.25, max_yaw_sigma_deg: 1}\n"
+      "log: {level: warning}\n"
+      "simulation: {seed: 1, duration_s: 5}\n");
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_DOUBLE_EQ(config->cameras.rate_hz, 20.0);
+  EXPECT_EQ(config->cameras.buffers, 8);
+  EXPECT_EQ(config->cameras.synchronizer.tolerance, std::chrono::microseconds(1500));
+  EXPECT_EQ(config->cameras.synchronizer.wait, std::chrono::milliseconds(40));
+  EXPECT_EQ(config->cameras.synchronizer.min_cameras, 4);
+  EXPECT_EQ(config->rig_file, "/etc/rig.yaml");
+  EXPECT_EQ(config->map.file, folder_ / "town.osm");
+  EXPECT_FALSE(config->map.procedural_seed);
+  EXPECT_EQ(config->solver.tracking.x_m.count(), 13);
+  EXPECT_EQ(config->solver.tracking.y_m.count(), 17);
+  EXPECT_DOUBLE_EQ(config->solver.tracking.yaw_rad.range, radians(4.0));
+  EXPECT_DOUBLE_EQ(config->solver.acquiring.x_m.range, 6.0);
+  EXPECT_EQ(config->can.driver, CanDriver::kSocketCan);
+  EXPECT_EQ(config->can.interface, "can0");
+  EXPECT_EQ(config->can.base_ids.localizer, 0x600U);
+  EXPECT_EQ(config->can.base_ids.vehicle, 0x300U);
+  EXPECT_DOUBLE_EQ(config->tracker.motion.longitudinal_m_per_sqrt_m, 0.03);
+  EXPECT_DOUBLE_EQ(config->tracker.motion.lateral_m_per_sqrt_m, 0.04);
+  EXPECT_DOUBLE_EQ(config->tracker.motion.yaw_rad_per_sqrt_s, radians(0.2));
+  EXPECT_DOUBLE_EQ(config->tracker.initial_speed_scale_sigma, 0.05);
+  EXPECT_DOUBLE_EQ(config->tracker.initial_yaw_rate_bias_sigma_radps, radians(0.5));
+  EXPECT_DOUBLE_EQ(config->tracker.gnss_correlation_s, 20.0);
+  EXPECT_DOUBLE_EQ(config->tracker.correction_correlation_s, 0.0);
+  EXPECT_DOUBLE_EQ(config->tracker.gate_squared_distance, 12.0);
+  EXPECT_EQ(config->health.odometry_timeout, std::chrono::milliseconds(100));
+  EXPECT_EQ(config->health.gnss_timeout, std::chrono::milliseconds(2000));
+  EXPECT_EQ(config->health.correction_timeout, std::chrono::milliseconds(300));
+  EXPECT_EQ(config->health.lost_timeout, std::chrono::milliseconds(4000));
+  EXPECT_EQ(config->health.corrections_to_track, 3);
+  EXPECT_EQ(config->health.refusals_to_lose, 9);
+  EXPECT_DOUBLE_EQ(config->health.longitudinal_sigma_m, 0.5);
+  EXPECT_DOUBLE_EQ(config->health.lateral_sigma_m, 0.25);
+  EXPECT_DOUBLE_EQ(config->health.yaw_sigma_rad, radians(1.0));
+  EXPECT_EQ(config->log_level, LogLevel::kWarning);
+}
+
+TEST_F(ConfigTest, SimulationIsRead) {
+  const auto config = load(
+      with("simulation: {seed: 1, duration_s: 5}\n",
+           "simulation:\n"
+           "  seed: 9\n"
+           "  duration_s: 12.5\n"
+           "  conditions: {sun_azimuth_deg: 90, sun_elevation_deg: -10, rain: 0.5}\n"
+           "  calibration_error: {rotation_deg: 1, translation_m: 0.02, relative_focal: 0.01}\n"
+           "  camera_faults:\n"
+           "    - {camera: back, kind: late, from_s: 1, until_s: 2, delay_ms: 40}\n"
+           "    - {camera: front, kind: drop, every: 7}\n"
+           "    - {camera: back, kind: dead, from_s: 3}\n"));
+  ASSERT_TRUE(config) << config.error().message;
+  ASSERT_TRUE(config->simulation);
+  const SimulationConfig& simulation = *config->simulation;
+  EXPECT_EQ(simulation.seed, 9U);
+  EXPECT_DOUBLE_EQ(simulation.duration_s, 12.5);
+  EXPECT_DOUBLE_EQ(simulation.conditions.sun_azimuth_rad, radians(90.0));
+  EXPECT_DOUBLE_EQ(simulation.conditions.sun_elevation_rad, radians(-10.0));
+  EXPECT_DOUBLE_EQ(simulation.conditions.rain, 0.5);
+  EXPECT_DOUBLE_EQ(simulation.conditions.overcast, sim::Conditions{}.overcast);
+  EXPECT_DOUBLE_EQ(simulation.calibration_error.rotation_rad, radians(1.0));
+  EXPECT_DOUBLE_EQ(simulation.calibration_error.translation_m, 0.02);
+  EXPECT_DOUBLE_EQ(simulation.calibration_error.relative_focal, 0.01);
+  const auto& back = simulation.camera_faults[4];
+  ASSERT_EQ(back.size(), 2U);
+  EXPECT_EQ(back[0].kind, drivers::CameraFaultKind::kLate);
+  EXPECT_EQ(back[0].delay, std::chrono::milliseconds(40));
+  EXPECT_DOUBLE_EQ(back[0].until_s, 2.0);
+  EXPECT_EQ(back[1].kind, drivers::CameraFaultKind::kDead);
+  EXPECT_TRUE(std::isinf(back[1].until_s));
+  ASSERT_EQ(simulation.camera_faults[1].size(), 1U);
+  EXPECT_EQ(simulation.camera_faults[1][0].every, 7);
+}
+
+TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
+  struct Mistake {
+    std::string yaml;
+    int line;
+    std::string wanted;
+  };
+  const std::string rate = "  rate_hz: 10\n";
+  const std::string simulation = "simulation: {seed: 1, duration_s: 5}";
+  const std::vector<Mistake> mistakes = {
+      // unknown, double and misspelt keys
+      {with(rate, rate + "  colour: red\n"), 4, "cameras.colour"},
+      {kSmallest + "extra: 1\n", 9, "extra"},
+      {with(rate, rate + "  rate_hz: 10\n"), 4, "cameras.rate_hz"},
+      {with(rate, "  rate_ms: 100\n"), 1, "cameras.rate_hz"},
+      {with(rate, rate + "  wait_s: 1\n"), 4, "cameras.wait_s"},
+      // wrong types
+      {with(rate, "  rate_hz: fast\n"), 3, "cameras.rate_hz: found fast"},
+      {with(rate, "  rate_hz: \"10\"\n"), 3, "cameras.rate_hz"},
+      {with(rate, rate + "  min_cameras: 2.5\n"), 4, "cameras.min_cameras"},
+      {with("{driver: mock}", "mock"), 7, "can: found mock, wanted a mapping"},
+      {with("mock\n", "libcamera\n"), 2, "cameras.driver: found libcamera, wanted"},
+      // out of range, or against each other
+      {with(rate, "  rate_hz: 0\n"), 3, "cameras.rate_hz: found 0"},
+      {with(rate, "  rate_hz: .nan\n"), 3, "cameras.rate_hz"},
+      {with(rate, rate + "  min_cameras: 7\n"), 4, "cameras.min_cameras: found 7"},
+      {with(rate, rate + "  tolerance_ms: 20\n  wait_ms: 10\n"), 5, "cameras.wait_ms"},
+      {with("procedural_seed: 7", "procedural_seed: 4294967296"), 5, "map.procedural_seed"},
+      {with("procedural_seed: 7", "procedural_seed: 7, file: a.osm"), 5, "map.file"},
+      {with("{driver: mock}", "{driver: mock, localizer_base_id: 0x7F0}"), 7,
+       "can.localizer_base_id"},
+      {with("{driver: mock}", "{driver: mock, localizer_base_id: 0x410}"), 7,
+       "can.localizer_base_id"},
+      {with("{driver: mock}", "{driver: mock, interface: can0}"), 7, "can.interface"},
+      {with("{driver: mock}", "{driver: socketcan}"), 7, "can.interface"},
+      {kSmallest + "solver: {kind: quick}\n", 9, "solver.kind"},
+      {kSmallest + "solver: {tracking: {x_range_m: 1, x_step_m: 2}}\n", 9,
+       "solver.tracking.x_step_m"},
+      {kSmallest + "health: {degraded_after_ms: 500, lost_after_ms: 400}\n", 9,
+       "health.lost_after_ms"},
+      {kSmallest + "log: {level: loud}\n", 9, "log.level: found loud"},
+      // what only some drivers have
+      {with("driver: mock\n" + rate, "driver: replay\n  recording: r\n"), 5, "map.procedural_seed"},
+      {with(simulation + "\n", ""), 1, "simulation"},
+      {with(simulation,
+            "simulation: {seed: 1, duration_s: 5, camera_faults: [{camera: left, kind: "
+            "dead}]}"),
+       8, "simulation.camera_faults[0].camera: found left"},
+      {with(simulation,
+            "simulation: {seed: 1, duration_s: 5, camera_faults: [{camera: back, kind: "
+            "dead, every: 3}]}"),
+       8, "simulation.camera_faults[0].every"},
+      {with(simulation,
+            "simulation: {seed: 1, duration_s: 5, camera_faults: [{camera: back, kind: "
+            "dead, from_s: 3, until_s: 2}]}"),
+       8, "simulation.camera_faults[0].until_s"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    EXPECT_THAT(complaint(mistake.yaml),
+                AllOf(StartsWith(place(mistake.line)), HasSubstr(mistake.wanted)))
+        << mistake.yaml;
+  }
+}
+
+TEST_F(ConfigTest, MissingOrBrokenFileIsNamed) {
+  const auto missing = load_config(folder_ / "gone.yaml");
+  ASSERT_FALSE(missing);
+  EXPECT_THAT(missing.error().message, HasSubstr("gone.yaml"));
+  EXPECT_THAT(complaint("cameras: [\n"), HasSubstr("test.yaml:"));
+  EXPECT_THAT(complaint(""), HasSubstr("test.yaml"));
+}
+
+TEST_F(ConfigTest, CheckNamesTheFirstThingThatIsNotThere) {
+  const auto config = load(with("{procedural_seed: 7}", "{file: town.osm}"));
+  ASSERT_TRUE(config) << config.error().message;
+  const auto complains_of = [&](const std::string& name) {
+    const Status checked = check_config(*config);
+    return !checked && checked.error().message.find((folder_ / name).string()) == 0;
+  };
+  EXPECT_TRUE(complains_of("rig.yaml"));
+  std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
+  EXPECT_TRUE(complains_of("sub/model.onnx"));
+  std::filesystem::create_directory(folder_ / "sub");
+  write("sub/model.onnx", "a model");
+  EXPECT_TRUE(complains_of("town.osm"));
+  write("town.osm", "a map");
+  EXPECT_TRUE(check_config(*config));
+}
+
+TEST_F(ConfigTest, CheckReportsABadRotationWithItsLine) {
+  const auto config = load(kSmallest);
+  ASSERT_TRUE(config) << config.error().message;
+  std::string rig = read_text(kSource / "config/rig_demo.yaml");
+  const std::regex rotation(R"(rotation_wxyz: *\[[^\]]*\])");
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(rig, match, rotation));
+  const auto line = 1 + std::count(rig.begin(), rig.begin() + match.position(), '\n');
+  rig.replace(match.position(), match.length(), "rotation_wxyz: [1, 1, 0, 0]");
+  write("rig.yaml", rig);
+  const Status checked = check_config(*config);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message,
+              StartsWith((folder_ / "rig.yaml").string() + ":" + std::to_string(line) + ": "));
+  EXPECT_THAT(checked.error().message, HasSubstr("rotation_wxyz"));
+}
+
+TEST_F(ConfigTest, CheckReadsTheRecordings) {
+  const auto config = load(
+      "cameras: {driver: replay, recording: drive}\n"
+      "calibration: {rig: rig.yaml}\n"
+      "map: {file: town.osm}\n"
+      "model: {file: model.onnx}\n"
+      "can: {driver: mock}\n");
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_FALSE(config->simulation);
+  std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
+  write("model.onnx", "a model");
+  write("town.osm", "a map");
+  const Status checked = check_config(*config);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message,
+              StartsWith((folder_ / "drive/front_left/frames.txt").string()));
+  for (const std::string_view camera : kCameraNames) {
+    const std::filesystem::path recording = folder_ / "drive" / camera;
+    std::filesystem::create_directories(recording);
+    std::ofstream(recording / "frames.txt") << "0 1000 0.png\n";
+    std::ofstream(recording / "0.png") << "a picture";
+  }
+  EXPECT_TRUE(check_config(*config));
+}
+
+TEST(ShippedConfig, DemoLoads) {
+  const auto config = load_config(kSource / "config/demo.yaml");
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_EQ(config->rig_file, kSource / "config/rig_demo.yaml");
+  EXPECT_EQ(config->can.driver, CanDriver::kMock);
+  ASSERT_TRUE(config->simulation);
+}
+
+TEST(ShippedConfig, DemoRigIsTheSimulatedOne) {
+  const auto rig = read_rig(kSource / "config/rig_demo.yaml");
+  ASSERT_TRUE(rig) << rig.error().message;
+  const Rig nominal = sim::nominal_rig();
+  for (int i = 0; i < kCameraCount; ++i) {
+    const CameraModel& shipped = rig->cameras[i];
+    const CameraModel& simulated = nominal.cameras[i];
+    EXPECT_TRUE(shipped.vehicle_from_camera.rotation.isApprox(
+        simulated.vehicle_from_camera.rotation, 1e-7));
+    EXPECT_TRUE(shipped.vehicle_from_camera.translation_m.isApprox(
+        simulated.vehicle_from_camera.translation_m, 1e-7));
+    EXPECT_EQ(shipped.intrinsics.width_px, simulated.intrinsics.width_px);
+    EXPECT_EQ(shipped.intrinsics.height_px, simulated.intrinsics.height_px);
+    EXPECT_NEAR(shipped.intrinsics.fx_px, simulated.intrinsics.fx_px, 1e-6);
+    EXPECT_NEAR(shipped.intrinsics.cx_px, simulated.intrinsics.cx_px, 1e-6);
+    EXPECT_NEAR(shipped.intrinsics.cy_px, simulated.intrinsics.cy_px, 1e-6);
+    EXPECT_NEAR(shipped.intrinsics.k1, simulated.intrinsics.k1, 1e-9);
+  }
+}
+
+/// All words that `pattern` captures in a text.
+std::set<std::string> captured(const std::string& text, const std::string& pattern) {
+  const std::regex regex(pattern);
+  std::set<std::string> words;
+  for (std::sregex_iterator match(text.begin(), text.end(), regex), end; match != end; ++match) {
+    words.insert((*match)[1].str());
+  }
+  return words;
+}
+
+/// The keys that the sources of the configuration ask for: the words among a call's arguments.
+std::set<std::string> schema_keys() {
+  const std::string source = read_text(kSource / "firmware/config.cpp") +
+                             read_text(kSource / "firmware/simulation_config.cpp");
+  return captured(source, R"re([(,]\s*"([a-z][a-z0-9_]*)")re");
+}
+
+TEST(ConfigurationPage, DescribesEveryKeyAndNoOther) {
+  const std::string page = read_text(kSource / "docs/configuration.md");
+  std::set<std::string> described = captured(page, R"(\n\| `(\w+)` \|)");
+  described.merge(captured(page, R"(\n## `(\w+)`)"));
+  const std::set<std::string> keys = schema_keys();
+  EXPECT_GT(keys.size(), 50U);
+  EXPECT_EQ(described, keys);
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

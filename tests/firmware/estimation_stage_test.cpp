@@ -1,0 +1,139 @@
+#include "firmware/estimation_stage.h"
+
+#include <gtest/gtest.h>
+
+#include "can/mock_bus.h"
+#include "firmware/simulation/pose_reader.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr can::GeodeticPosition kOrigin{49.0, 8.4};
+constexpr double kSpeed_mps = 10.0;
+
+/// A vehicle that drives east at constant speed, its GNSS one metre off to the north, and a vision
+/// stage that sees the truth or, on demand, nonsense.
+class EstimationStageTest : public testing::Test {
+ protected:
+  Se2 truth_at(Time time) const { return {kSpeed_mps * to_seconds(time.time_since_epoch()), 0, 0}; }
+
+  void run(Duration duration) {
+    for (const Time end = now_ + duration; now_ < end; now_ += milliseconds(10)) {
+      if (now_.time_since_epoch() % milliseconds(20) == Duration::zero() && odometry_) {
+        samples_.push(OdometrySample{now_, kSpeed_mps, 0.0});
+      }
+      if (now_.time_since_epoch() % milliseconds(100) == Duration::zero()) {
+        const Se2 truth = truth_at(now_);
+        samples_.push(GnssSample{now_, {truth.x_m, truth.y_m + 1.0}, 0.0, 1.0, 0.02});
+        if (vision_) push_report(now_ - milliseconds(40));
+      }
+      stage_.tick(now_);
+      while (const auto received = listener_->receive()) {
+        if (const auto pose = reader_.accept(*received)) latest_ = pose;
+      }
+    }
+  }
+
+  void push_report(Time frame_time) {
+    VisionReport report;
+    report.frame_time = frame_time;
+    report.present.set();
+    report.had_prior = true;
+    report.map_nearby = true;
+    report.prior = truth_at(frame_time) * Se2{0.5, 0.4, 0.01};
+    report.correction.evidence = Evidence::kGood;
+    report.correction.correction =
+        correction_between(report.prior, truth_at(frame_time)) * vision_error_;
+    report.correction.covariance =
+        Eigen::Vector3d(0.01, 0.0025, 1e-5).asDiagonal().toDenseMatrix();
+    reports_.push(report);
+  }
+
+  can::MockWire wire_;
+  std::unique_ptr<can::Bus> bus_ = wire_.connect();
+  std::unique_ptr<can::Bus> listener_ = wire_.connect();
+  can::PosePublisher publisher_{*bus_, {{}, kOrigin, {}}};
+  VehicleQueue samples_{256};
+  VisionQueue reports_{16};
+  PredictionQueue predictions_{128};
+  EstimationStage stage_{TrackerParameters(), HealthLimits(), 7, publisher_,
+                         samples_,            reports_,       predictions_};
+  PoseReader reader_{{}, kOrigin};
+  Time now_{milliseconds(1000)};
+  Se2 vision_error_;
+  bool odometry_ = true;
+  bool vision_ = true;
+  std::optional<BusPose> latest_;
+};
+
+TEST_F(EstimationStageTest, CorrectsTheGnssOffsetAndSendsTheTruth) {
+  run(milliseconds(5000));
+  EXPECT_EQ(stage_.counters().state, State::kTracking);
+  ASSERT_TRUE(latest_);
+  const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
+  EXPECT_NEAR(error.x_m, 0.0, 0.05);
+  EXPECT_NEAR(error.y_m, 0.0, 0.05);
+}
+
+TEST_F(EstimationStageTest, SendsNoPoseBeforeVisionHasAgreed) {
+  vision_ = false;
+  run(milliseconds(5000));
+  EXPECT_EQ(stage_.counters().state, State::kAcquiring);
+  EXPECT_FALSE(latest_);
+}
+
+TEST_F(EstimationStageTest, PredictsForVisionAndAsksForAWideSearchUntilItTracks) {
+  vision_ = false;
+  run(milliseconds(1000));
+  std::optional<Prediction> prediction;
+  while (auto next = predictions_.pop(Duration::zero())) prediction = next;
+  ASSERT_TRUE(prediction);
+  EXPECT_TRUE(prediction->acquiring);
+  vision_ = true;
+  run(milliseconds(5000));
+  while (auto next = predictions_.pop(Duration::zero())) prediction = next;
+  EXPECT_FALSE(prediction->acquiring);
+}
+
+TEST_F(EstimationStageTest, RefusesAMatchThatContradictsOdometry) {
+  run(milliseconds(5000));
+  vision_error_ = {3.0, 2.0, 0.1};
+  run(milliseconds(500));
+  EXPECT_GT(stage_.counters().refused, 0U);
+  EXPECT_EQ(stage_.counters().state, State::kDegraded);
+  const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
+  EXPECT_NEAR(error.x_m, 0.0, 0.1);
+  EXPECT_NEAR(error.y_m, 0.0, 0.1);
+}
+
+TEST_F(EstimationStageTest, StopsSendingPosesWithoutOdometry) {
+  run(milliseconds(5000));
+  odometry_ = false;
+  run(milliseconds(1000));
+  EXPECT_NE(stage_.counters().state, State::kTracking);
+  latest_.reset();
+  run(milliseconds(500));
+  EXPECT_FALSE(latest_);
+}
+
+TEST_F(EstimationStageTest, NanFromVisionChangesNothing) {
+  run(milliseconds(5000));
+  vision_error_ = {std::nan(""), 0.0, 0.0};
+  run(milliseconds(1000));
+  const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
+  EXPECT_NEAR(error.x_m, 0.0, 0.2);
+  EXPECT_TRUE(latest_->map_from_vehicle.is_finite());
+}
+
+TEST_F(EstimationStageTest, TellsWhenACorrectedPoseWasSent) {
+  std::vector<Time> sent;
+  stage_.observe_corrections([&sent](Time frame_time) { sent.push_back(frame_time); });
+  run(milliseconds(5000));
+  ASSERT_FALSE(sent.empty());
+  for (size_t i = 1; i < sent.size(); ++i) EXPECT_GT(sent[i], sent[i - 1]);
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

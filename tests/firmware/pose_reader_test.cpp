@@ -1,0 +1,74 @@
+#include "firmware/simulation/pose_reader.h"
+
+#include <gtest/gtest.h>
+
+#include "can/mock_bus.h"
+#include "can/pose_publisher.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr can::GeodeticPosition kOrigin{49.0, 8.4};
+
+can::PoseReport valid_report(Time now) {
+  can::PoseReport report;
+  report.status.state = can::LocalizerState::kTracking;
+  report.capture_time = now - milliseconds(60);
+  report.pose_time = now;
+  report.map_from_vehicle = {123.4, -56.7, 2.5};
+  report.covariance = Eigen::Matrix3d::Identity() * 0.01;
+  report.forward_speed_mps = 10.0;
+  report.yaw_rate_radps = 0.1;
+  return report;
+}
+
+class PoseReaderTest : public testing::Test {
+ protected:
+  std::optional<BusPose> send_and_read(const can::PoseReport& report, Time now) {
+    publisher_.publish(report, now);
+    std::optional<BusPose> pose;
+    while (auto received = receiver_->receive()) {
+      if (spoil_) received->frame.data[3] ^= 1;
+      if (const auto read = reader_.accept(*received)) pose = read;
+    }
+    return pose;
+  }
+
+  can::MockWire wire_;
+  std::unique_ptr<can::Bus> sender_ = wire_.connect();
+  std::unique_ptr<can::Bus> receiver_ = wire_.connect();
+  can::PosePublisher publisher_{*sender_, {{}, kOrigin, {}}};
+  PoseReader reader_{{}, kOrigin};
+  bool spoil_ = false;
+};
+
+TEST_F(PoseReaderTest, ReadsThePoseThatWasPublished) {
+  const Time now(milliseconds(1000));
+  const auto pose = send_and_read(valid_report(now), now);
+  ASSERT_TRUE(pose);
+  EXPECT_EQ(pose->received, now);
+  EXPECT_NEAR(pose->map_from_vehicle.x_m, 123.4, 0.006);
+  EXPECT_NEAR(pose->map_from_vehicle.y_m, -56.7, 0.006);
+  EXPECT_NEAR(pose->map_from_vehicle.yaw_rad, 2.5, radians(0.01));
+  EXPECT_EQ(reader_.state(), can::LocalizerState::kTracking);
+}
+
+TEST_F(PoseReaderTest, AnInvalidPoseIsNone) {
+  const Time now(milliseconds(1000));
+  can::PoseReport report = valid_report(now);
+  report.status.state = can::LocalizerState::kLost;
+  EXPECT_FALSE(send_and_read(report, now));
+  EXPECT_EQ(reader_.state(), can::LocalizerState::kLost);
+}
+
+TEST_F(PoseReaderTest, SpoiledFramesAreNotRead) {
+  const Time now(milliseconds(1000));
+  spoil_ = true;
+  EXPECT_FALSE(send_and_read(valid_report(now), now));
+  EXPECT_EQ(reader_.state(), can::LocalizerState::kInit);
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

@@ -1,0 +1,66 @@
+#include "firmware/pose_trail.h"
+
+#include <gtest/gtest.h>
+
+namespace bevloc::firmware {
+namespace {
+
+using std::chrono::milliseconds;
+
+TrackedPose pose_at(int ms, double x_m, double yaw_rad = 0.0) {
+  TrackedPose pose;
+  pose.time = Time(milliseconds(ms));
+  pose.map_from_vehicle = {x_m, 0.0, yaw_rad};
+  pose.speed_mps = 10.0;
+  return pose;
+}
+
+TEST(PoseTrailTest, KnowsNothingAtFirst) {
+  const PoseTrail trail;
+  EXPECT_FALSE(trail.at(Time(milliseconds(0))));
+}
+
+TEST(PoseTrailTest, InterpolatesAcrossTheTurnOfTheCircle) {
+  PoseTrail trail;
+  trail.add(pose_at(0, 0.0, radians(179.0)));
+  trail.add(pose_at(10, 0.0, radians(-179.0)));
+  const auto pose = trail.at(Time(milliseconds(5)));
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(std::abs(wrap_angle(pose->yaw_rad)), radians(180.0), 1e-9);
+}
+
+TEST(PoseTrailTest, DrivesOnPastTheNewestForALittleWhile) {
+  PoseTrail trail;
+  TrackedPose pose = pose_at(0, 5.0);
+  pose.yaw_rate_radps = 0.5;
+  trail.add(pose);
+  const auto later = trail.at(Time(milliseconds(100)));
+  ASSERT_TRUE(later);
+  EXPECT_NEAR(later->x_m, 6.0, 1e-3);
+  EXPECT_NEAR(later->yaw_rad, 0.05, 1e-12);
+  EXPECT_GT(later->y_m, 0.0);
+  EXPECT_FALSE(trail.at(Time(PoseTrail::kReach + milliseconds(1))));
+}
+
+TEST(PoseTrailTest, HasNothingOlderThanItsOldest) {
+  PoseTrail trail;
+  for (int i = 0; i < 1000; ++i) trail.add(pose_at(10 * i, 0.1 * i));
+  EXPECT_FALSE(trail.at(Time(milliseconds(10))));
+  const auto recent = trail.at(Time(milliseconds(9905)));
+  ASSERT_TRUE(recent);
+  EXPECT_NEAR(recent->x_m, 99.05, 1e-9);
+}
+
+TEST(PoseTrailTest, ARevisedPoseReplacesWhatCameAfterIt) {
+  PoseTrail trail;
+  trail.add(pose_at(0, 0.0));
+  trail.add(pose_at(10, 0.1));
+  trail.add(pose_at(20, 0.2));
+  trail.add(pose_at(10, 1.1));
+  const auto pose = trail.at(Time(milliseconds(15)));
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->x_m, 1.15, 1e-9);
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

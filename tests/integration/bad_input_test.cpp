@@ -1,0 +1,86 @@
+// What bevlocd says when something outside is wrong: exit code 2 and one clear line.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tests/integration/bevlocd_process.h"
+
+namespace bevloc::test {
+namespace {
+
+void expect_refused(const std::string& arguments, const std::vector<std::string>& wanted_words) {
+  const ProcessResult result = run_bevlocd(arguments);
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  for (const std::string& word : wanted_words) {
+    EXPECT_NE(result.err.find(word), std::string::npos) << word << " in: " << result.err;
+  }
+}
+
+class BadInputTest : public testing::Test {
+ protected:
+  void expect_config_refused(const std::string& piece, const std::string& replacement,
+                             const std::vector<std::string>& wanted_words) {
+    write_file(scratch_ / "config.yaml", demo_config_with(piece, replacement));
+    for (const char* mode : {" --check-config", " --fast --duration 1"}) {
+      expect_refused("--config " + (scratch_ / "config.yaml").string() + mode + " --out " +
+                         (scratch_ / "out").string(),
+                     wanted_words);
+    }
+  }
+
+  std::string config_with_model(const std::string& model) {
+    std::string text = demo_config_with("level: info", "level: info");
+    const size_t at = text.find("file: ") + 6;
+    text.replace(at, text.find('\n', at) - at, model);
+    write_file(scratch_ / "config.yaml", text);
+    return (scratch_ / "config.yaml").string();
+  }
+
+  ScratchFolder scratch_;
+};
+
+TEST_F(BadInputTest, TheShippedConfigurationIsGood) {
+  const ProcessResult result =
+      run_bevlocd("--check-config --config " + std::string(BEVLOC_SOURCE_DIR) + "/config/demo.yaml");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+TEST_F(BadInputTest, NoSuchConfiguration) {
+  expect_refused("--config /nowhere/config.yaml", {"/nowhere/config.yaml"});
+}
+
+TEST_F(BadInputTest, UnknownKey) {
+  expect_config_refused("rate_hz: 10", "rate_hz: 10\n  colour: red", {"config.yaml:8", "colour"});
+}
+
+TEST_F(BadInputTest, BrokenModel) {
+  write_file(scratch_ / "broken.onnx", "this is no model");
+  expect_refused("--config " + config_with_model((scratch_ / "broken.onnx").string()) +
+                     " --fast --duration 1 --out " + (scratch_ / "out").string(),
+                 {"broken.onnx"});
+}
+
+TEST_F(BadInputTest, BrokenMap) {
+  write_file(scratch_ / "broken.osm", "<osm><node id='1' lat='49' ");
+  expect_refused("--config " + std::string(BEVLOC_SOURCE_DIR) + "/config/demo.yaml --fast --map " +
+                     (scratch_ / "broken.osm").string() + " --out " + (scratch_ / "out").string(),
+                 {"broken.osm"});
+}
+
+TEST_F(BadInputTest, OutputFolderThatCannotBeMade) {
+  write_file(scratch_ / "file", "");
+  expect_refused("--config " + std::string(BEVLOC_SOURCE_DIR) +
+                     "/config/demo.yaml --fast --duration 1 --out " + (scratch_ / "file/out").string(),
+                 {"file/out"});
+}
+
+TEST_F(BadInputTest, UnknownOption) {
+  const ProcessResult result = run_bevlocd("--config x --colour red");
+  EXPECT_EQ(result.exit_code, 2);
+}
+
+}  // namespace
+}  // namespace bevloc::test

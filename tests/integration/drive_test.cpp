@@ -1,0 +1,140 @@
+// Whole drives: six mock cameras in, checked CAN frames out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/can/independent_e2e.h"
+#include "tests/integration/bevlocd_process.h"
+
+namespace bevloc::test {
+namespace {
+
+const std::string kDemo = std::string(BEVLOC_SOURCE_DIR) + "/config/demo.yaml";
+
+nlohmann::json drive(const ScratchFolder& scratch, const std::string& config,
+                     const std::string& options) {
+  const ProcessResult result =
+      run_bevlocd("--config " + config + " --fast --out " + scratch.path().string() + " --json " +
+                  (scratch / "result.json").string() + " " + options);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return nlohmann::json::parse(read_text(scratch / "result.json"));
+}
+
+E2eLogReport check_log(const std::filesystem::path& log) {
+  std::ifstream log_file(log);
+  return check_candump_log(log_file, load_dbc(std::string(BEVLOC_SOURCE_DIR) + "/can/bevloc.dbc"));
+}
+
+/// One drive, looked at from several sides.
+class DriveTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scratch_ = new ScratchFolder();
+    result_ = new nlohmann::json(drive(*scratch_, kDemo, "--seed 901 --duration 10"));
+  }
+  static void TearDownTestSuite() {
+    delete result_;
+    delete scratch_;
+  }
+
+  static ScratchFolder* scratch_;
+  static nlohmann::json* result_;
+};
+
+ScratchFolder* DriveTest::scratch_ = nullptr;
+nlohmann::json* DriveTest::result_ = nullptr;
+
+TEST_F(DriveTest, FindsThePoseAndBeatsThePrior) {
+  const nlohmann::json& estimate = (*result_)["estimate"];
+  const nlohmann::json& prior = (*result_)["prior"];
+  EXPECT_LT((*result_)["first_fix_s"], 5.0);
+  EXPECT_GT((*result_)["valid_share"], 0.9);
+  EXPECT_LT(estimate["longitudinal_m"]["mae"], 0.5);
+  EXPECT_LT(estimate["lateral_m"]["mae"], 0.25);
+  EXPECT_LT(estimate["yaw_deg"]["mae"], 0.6);
+  const auto position_error = [](const nlohmann::json& error) {
+    return double(error["longitudinal_m"]["mae"]) + double(error["lateral_m"]["mae"]);
+  };
+  EXPECT_LT(position_error(estimate), 0.6 * position_error(prior));
+}
+
+TEST_F(DriveTest, AccountsForEveryFrame) {
+  const nlohmann::json& frames = (*result_)["frames"];
+  EXPECT_EQ(uint64_t(frames["captured"]), uint64_t(frames["used"]) + uint64_t(frames["dropped"]));
+  // Ten a second from six cameras for ten seconds; the last set may still be on its way.
+  EXPECT_NEAR(double(frames["captured"]), 600.0, 12.0);
+  EXPECT_LE(uint64_t(frames["dropped"]), 6U);
+}
+
+TEST_F(DriveTest, ReportsWhatItRan) {
+  EXPECT_EQ((*result_)["seed"], 901);
+  EXPECT_EQ((*result_)["duration_s"], 10.0);
+  EXPECT_FALSE(std::string((*result_)["map"]).empty());
+  EXPECT_FALSE(std::string((*result_)["model"]).empty());
+  for (const char* side : {"prior", "estimate"}) {
+    for (const char* axis : {"longitudinal_m", "lateral_m", "yaw_deg"}) {
+      for (const char* measure : {"mae", "rmse", "p95"}) {
+        EXPECT_GE(double((*result_)[side][axis][measure]), 0.0) << side << axis << measure;
+      }
+    }
+  }
+  EXPECT_GT(double((*result_)["latency_ms"]["p50"]), 0.0);
+  EXPECT_LE(double((*result_)["latency_ms"]["p50"]), double((*result_)["latency_ms"]["p99"]));
+}
+
+TEST_F(DriveTest, EveryFrameOnTheBusPassesAnIndependentCheck) {
+  const E2eLogReport report = check_log(*scratch_ / "can.log");
+  EXPECT_EQ(report.unknown_frames, 0);
+  EXPECT_EQ(report.unreadable_lines, 0);
+  EXPECT_EQ(report.by_message.size(), 14U) << "every message of the DBC occurs";
+  int localizer_frames = 0;
+  for (const auto& [name, tally] : report.by_message) {
+    EXPECT_TRUE(tally.is_clean()) << name;
+    EXPECT_GT(tally.good, 0) << name;
+    if (name.rfind("LOC_", 0) == 0) localizer_frames += tally.good;
+  }
+  EXPECT_EQ(localizer_frames, int((*result_)["can"]["sent"]));
+}
+
+TEST_F(DriveTest, LeavesACsvAndASheet) {
+  const std::string csv = read_text(*scratch_ / "poses.csv");
+  EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 50);
+  const cv::Mat sheet = cv::imread((*scratch_ / "sheet.png").string());
+  ASSERT_FALSE(sheet.empty());
+  EXPECT_GT(sheet.cols, 1000);
+}
+
+TEST_F(DriveTest, TheSameSeedGivesTheSameLogByteForByte) {
+  const ScratchFolder again;
+  drive(again, kDemo, "--seed 901 --duration 10");
+  EXPECT_EQ(read_text(*scratch_ / "can.log"), read_text(again / "can.log"));
+}
+
+TEST(DriveVariantTest, AnotherSeedGivesAnotherLog) {
+  const ScratchFolder one;
+  const ScratchFolder other;
+  drive(one, kDemo, "--seed 902 --duration 1");
+  drive(other, kDemo, "--seed 903 --duration 1");
+  EXPECT_NE(read_text(one / "can.log"), read_text(other / "can.log"));
+}
+
+TEST(DriveVariantTest, ADeadCameraDegradesAndTheRestGoesOn) {
+  const ScratchFolder scratch;
+  write_file(scratch / "config.yaml",
+             demo_config_with("  duration_s: 60\n",
+                              "  duration_s: 60\n  camera_faults:\n"
+                              "    - {camera: back_left, kind: dead, from_s: 5.0}\n"));
+  const nlohmann::json result =
+      drive(scratch, (scratch / "config.yaml").string(), "--seed 901 --duration 8");
+  EXPECT_LT(double(result["frames"]["captured"]), 470.0);
+  const std::string csv = read_text(scratch / "poses.csv");
+  const size_t last_line = csv.rfind('\n', csv.size() - 2);
+  EXPECT_NE(csv.find("DEGRADED", last_line), std::string::npos) << csv.substr(last_line);
+  EXPECT_LT(double(result["estimate"]["lateral_m"]["mae"]), 0.4);
+}
+
+}  // namespace
+}  // namespace bevloc::test

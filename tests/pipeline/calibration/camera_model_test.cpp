@@ -1,0 +1,108 @@
+#include "pipeline/calibration/camera_model.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace bevloc {
+namespace {
+
+Intrinsics wide_camera() {
+  Intrinsics camera;
+  camera.width_px = 640;
+  camera.height_px = 360;
+  camera.fx_px = 500.0;
+  camera.fy_px = 505.0;
+  camera.cx_px = 322.3;
+  camera.cy_px = 177.1;
+  camera.k1 = -0.28;
+  camera.k2 = 0.06;
+  camera.p1 = 0.0007;
+  camera.p2 = -0.0004;
+  return camera;
+}
+
+void expect_ray_inverts_project(const Intrinsics& camera) {
+  for (int v = -10; v <= camera.height_px + 10; v += 19) {
+    for (int u = -10; u <= camera.width_px + 10; u += 19) {
+      const Eigen::Vector2d pixel(u, v);
+      const Eigen::Vector3d ray = camera.ray(pixel);
+      EXPECT_EQ(ray.z(), 1.0);
+      const auto again = camera.project(7.0 * ray);
+      ASSERT_TRUE(again.has_value()) << u << " " << v;
+      EXPECT_LT((*again - pixel).norm(), 1e-9 * camera.fx_px) << u << " " << v;
+    }
+  }
+}
+
+TEST(CameraModel, RayIsTheInverseOfProject) {
+  expect_ray_inverts_project(wide_camera());
+}
+
+TEST(CameraModel, RayIsTheInverseOfProjectWithPincushionDistortion) {
+  Intrinsics camera = wide_camera();
+  camera.k1 = 0.35;
+  camera.k2 = 0.1;
+  expect_ray_inverts_project(camera);
+}
+
+TEST(CameraModel, RayIsTheInverseOfProjectWithoutDistortion) {
+  Intrinsics camera = wide_camera();
+  camera.k1 = camera.k2 = camera.p1 = camera.p2 = 0.0;
+  expect_ray_inverts_project(camera);
+  const Eigen::Vector3d ray = camera.ray({camera.cx_px + camera.fx_px, camera.cy_px});
+  EXPECT_LT((ray - Eigen::Vector3d(1, 0, 1)).norm(), 1e-12);
+}
+
+TEST(CameraModel, ProjectsByTheFormulaOfOpenCv) {
+  const Intrinsics camera = wide_camera();
+  // Numbers from the documented formula, worked by hand for x = 0.4, y = -0.2: r^2 = 0.2.
+  const double radial = 1.0 - 0.28 * 0.2 + 0.06 * 0.04;
+  const double x = 0.4 * radial + 2 * 0.0007 * 0.4 * -0.2 + -0.0004 * (0.2 + 2 * 0.16);
+  const double y = -0.2 * radial + 0.0007 * (0.2 + 2 * 0.04) + 2 * -0.0004 * 0.4 * -0.2;
+  const auto pixel = camera.project({2.0, -1.0, 5.0});
+  ASSERT_TRUE(pixel.has_value());
+  EXPECT_NEAR(pixel->x(), 500.0 * x + 322.3, 1e-9);
+  EXPECT_NEAR(pixel->y(), 505.0 * y + 177.1, 1e-9);
+}
+
+TEST(CameraModel, PointsAtOrBehindTheCameraHaveNoPixel) {
+  const Intrinsics camera = wide_camera();
+  EXPECT_FALSE(camera.project({0.0, 0.0, 0.0}).has_value());
+  EXPECT_FALSE(camera.project({1.0, 1.0, -3.0}).has_value());
+  EXPECT_FALSE(camera.project({0.0, 0.0, std::nan("")}).has_value());
+}
+
+TEST(CameraModel, NoPixelWhereTheDistortionFoldsBack) {
+  Intrinsics camera = wide_camera();
+  camera.k1 = -0.3;
+  camera.k2 = camera.p1 = camera.p2 = 0.0;
+  const double fold = std::sqrt(1.0 / 0.9);
+  EXPECT_TRUE(camera.project({0.99 * fold, 0.0, 1.0}).has_value());
+  EXPECT_FALSE(camera.project({1.01 * fold, 0.0, 1.0}).has_value());
+  // Far outside the fold the polynomial with k2 > 0 grows again; those points stay without pixel.
+  camera.k2 = 0.01;
+  EXPECT_FALSE(camera.project({30.0, 0.0, 1.0}).has_value());
+}
+
+TEST(CameraModel, PixelBeyondTheFoldGetsAFiniteRayInItsDirection) {
+  Intrinsics camera = wide_camera();
+  camera.k1 = -0.3;
+  camera.k2 = camera.p1 = camera.p2 = 0.0;
+  const Eigen::Vector3d ray = camera.ray({5000.0, camera.cy_px});
+  EXPECT_TRUE(ray.allFinite());
+  EXPECT_GT(ray.x(), 0.5);
+  EXPECT_NEAR(ray.y(), 0.0, 1e-12);
+}
+
+TEST(Se3, InverseUndoesTheTransform) {
+  Se3 transform;
+  transform.rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  transform.translation_m = {1.5, -0.3, 1.4};
+  const Eigen::Vector3d point(0.3, -2.0, 8.0);
+  EXPECT_LT((transform.inverse() * (transform * point) - point).norm(), 1e-12);
+  EXPECT_LT(((transform.inverse() * transform) * point - point).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace bevloc

@@ -1,0 +1,231 @@
+#include "pipeline/map/lanelet2_reader.h"
+
+#include <GeographicLib/UTMUPS.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace bevloc {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+const std::filesystem::path kFixtures =
+    std::filesystem::path(BEVLOC_SOURCE_DIR) / "tests/pipeline/map/fixtures";
+
+HdMap read_fixture(const char* name) {
+  auto map = read_lanelet2(kFixtures / name);
+  EXPECT_TRUE(map.has_value()) << map.error().message;
+  return map.value_or(HdMap{});
+}
+
+std::string error_of(const std::string& text) {
+  const auto map = parse_lanelet2(text, "town.osm");
+  EXPECT_FALSE(map.has_value());
+  return map ? "" : map.error().message;
+}
+
+std::vector<const MapElement*> of_class(const HdMap& map, ElementClass element_class) {
+  std::vector<const MapElement*> found;
+  for (const MapElement& element : map.elements) {
+    if (element.element_class == element_class) found.push_back(&element);
+  }
+  return found;
+}
+
+TEST(Lanelet2Reader, SortsLinesIntoClassesByTagAndRole) {
+  const HdMap map = read_fixture("street.osm");
+  EXPECT_EQ(map.name, "street");
+  const auto dividers = of_class(map, ElementClass::kLaneDivider);
+  ASSERT_EQ(dividers.size(), 1U);
+  EXPECT_EQ(dividers[0]->appearance, Appearance::kDashed);
+  const auto boundaries = of_class(map, ElementClass::kRoadBoundary);
+  ASSERT_EQ(boundaries.size(), 2U);
+  EXPECT_EQ(boundaries[0]->appearance, Appearance::kKerb);
+  EXPECT_EQ(boundaries[1]->appearance, Appearance::kUnknown);
+}
+
+TEST(Lanelet2Reader, TheMapFrameIsTheTangentPlaneAtTheMiddle) {
+  const HdMap map = read_fixture("street.osm");
+  EXPECT_NEAR(map.origin.latitude_deg, 48.99995, 1e-12);
+  EXPECT_NEAR(map.origin.longitude_deg, 8.001, 1e-12);
+  const auto& divider = of_class(map, ElementClass::kLaneDivider)[0]->points;
+  // One thousandth of a degree at 49 degrees north is 73.1 m east; half of 1e-4 is 5.56 m north.
+  ASSERT_EQ(divider.size(), 2U);
+  EXPECT_NEAR(divider[0].x(), -73.17, 0.02);
+  EXPECT_NEAR(divider[0].y(), 5.56, 0.01);
+  EXPECT_NEAR(divider[1].x(), 0.0, 1e-9);
+}
+
+TEST(Lanelet2Reader, ACrossingIsTheAreaBetweenItsBoundsWhicheverWayTheyRun) {
+  const HdMap map = read_fixture("street.osm");
+  const auto crossings = of_class(map, ElementClass::kPedestrianCrossing);
+  ASSERT_EQ(crossings.size(), 1U);
+  EXPECT_EQ(crossings[0]->appearance, Appearance::kZebra);
+  const auto& ring = crossings[0]->points;
+  ASSERT_EQ(ring.size(), 4U);
+  double area = 0.0;
+  for (size_t i = 0; i < 4; ++i) {
+    const auto& a = ring[i];
+    const auto& b = ring[(i + 1) % 4];
+    area += 0.5 * (a.x() * b.y() - a.y() * b.x());
+  }
+  // 3.66 m by 22.24 m; a ring that crosses itself would have none.
+  EXPECT_NEAR(std::abs(area), 81.4, 0.5);
+}
+
+TEST(Lanelet2Reader, LanesHaveTheirBoundsInDrivingDirection) {
+  const HdMap map = read_fixture("street.osm");
+  ASSERT_EQ(map.lanes.size(), 4U);
+  const Lane& eastbound = map.lanes[0];
+  EXPECT_GT(eastbound.centerline.back().x(), eastbound.centerline.front().x());
+  EXPECT_GT(eastbound.left.front().y(), eastbound.right.front().y());
+  EXPECT_NEAR(eastbound.speed_limit_mps, 30.0 / 3.6, 1e-9);
+  const Lane& westbound = map.lanes[1];
+  EXPECT_LT(westbound.centerline.back().x(), westbound.centerline.front().x());
+  EXPECT_LT(westbound.left.back().x(), westbound.left.front().x());
+  EXPECT_LT(westbound.left.front().y(), westbound.right.front().y());
+  for (const Lane& lane : map.lanes) {
+    for (size_t i = 0; i + 1 < lane.centerline.size(); ++i) {
+      EXPECT_LE((lane.centerline[i + 1] - lane.centerline[i]).norm(), 2.001);
+    }
+  }
+}
+
+TEST(Lanelet2Reader, LanesFollowEachOtherWhereBothBoundsMeet) {
+  const HdMap map = read_fixture("street.osm");
+  // 0 eastbound, 1 westbound, 2 and 3 the continuation in the east, both ways.
+  EXPECT_THAT(map.lanes[0].successors, ElementsAre(2U));
+  EXPECT_THAT(map.lanes[1].successors, IsEmpty());
+  EXPECT_THAT(map.lanes[2].successors, IsEmpty());
+  EXPECT_THAT(map.lanes[3].successors, IsEmpty());
+}
+
+TEST(Lanelet2Reader, AutowaresLocalCoordinatesReplaceMissingAngles) {
+  const HdMap map = read_fixture("autoware.osm");
+  ASSERT_EQ(map.lanes.size(), 1U);
+  EXPECT_EQ(map.lanes[0].right.front(), Eigen::Vector2d(81500.0, 50100.0));
+  EXPECT_NEAR(map.lanes[0].speed_limit_mps, 50.0 / 3.6, 1e-9);
+  EXPECT_EQ(of_class(map, ElementClass::kLaneDivider).size(), 2U);
+  EXPECT_EQ(map.origin.latitude_deg, 0.0);
+}
+
+/// A lanelet of two straight bounds through four nodes, whose attributes and tags are given.
+std::string lanelet_of(const std::vector<std::string>& nodes) {
+  std::string text = "<osm>\n";
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    text += fmt::format("<node id='{}' {}</node>\n", i + 1, nodes[i]);
+  }
+  return text +
+         "<way id='10'><nd ref='1'/><nd ref='2'/><tag k='type' v='road_border'/></way>\n"
+         "<way id='11'><nd ref='3'/><nd ref='4'/><tag k='type' v='line_thick'/></way>\n"
+         "<relation id='20'><member type='way' role='left' ref='11'/>"
+         "<member type='way' role='right' ref='10'/><tag k='type' v='lanelet'/></relation>\n"
+         "</osm>\n";
+}
+
+TEST(Lanelet2Reader, LocalCoordinatesOfAnotherGridAreTurnedIntoTheTangentPlane) {
+  // UTM grid coordinates three degrees from the central meridian: the grid is turned by 2.3
+  // degrees.
+  std::vector<std::string> nodes;
+  const std::vector<std::pair<double, double>> places = {
+      {49.0, 11.99}, {49.0, 11.992}, {49.001, 11.99}, {49.001, 11.992}};
+  for (const auto& [latitude, longitude] : places) {
+    int zone = 0;
+    bool north = true;
+    double x = 0.0, y = 0.0;
+    GeographicLib::UTMUPS::Forward(latitude, longitude, zone, north, x, y);
+    nodes.push_back(
+        fmt::format("lat='{}' lon='{}'><tag k='local_x' v='{}'/><tag k='local_y' v='{}'/>",
+                    latitude, longitude, std::fmod(x, 1e5), std::fmod(y, 1e5)));
+  }
+  const auto map = parse_lanelet2(lanelet_of(nodes), "grid.osm");
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  EXPECT_NEAR(map->origin.latitude_deg, 49.0005, 1e-9);
+  const auto& south = map->lanes[0].right;
+  EXPECT_NEAR(south.front().y(), south.back().y(), 0.02);
+  EXPECT_NEAR(std::abs(south.front().x() - south.back().x()), 146.3, 0.1);
+}
+
+TEST(Lanelet2Reader, LocalCoordinatesThatContradictTheAnglesStandAlone) {
+  std::vector<std::string> nodes;
+  for (const auto& [x, y] : std::vector<std::pair<int, int>>{{0, 0}, {20, 0}, {0, 4}, {20, 4}}) {
+    nodes.push_back(fmt::format(
+        "lat='35.{}' lon='139.{}'><tag k='local_x' v='{}'/><tag k='local_y' v='{}'/>", y, x, x, y));
+  }
+  const auto map = parse_lanelet2(lanelet_of(nodes), "odd.osm");
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  EXPECT_EQ(map->lanes[0].right.back(), Eigen::Vector2d(20.0, 0.0));
+  EXPECT_EQ(map->origin.longitude_deg, 0.0);
+}
+
+TEST(Lanelet2Reader, LaneletsForOthersAreNoLanes) {
+  const std::vector<std::string> nodes = {"lat='49' lon='8'>", "lat='49' lon='8.001'>",
+                                          "lat='49.0001' lon='8'>", "lat='49.0001' lon='8.001'>"};
+  for (const char* tag : {"<tag k='subtype' v='bicycle_lane'/>", "<tag k='subtype' v='walkway'/>",
+                          "<tag k='subtype' v='road'/><tag k='participant:bicycle' v='yes'/>"}) {
+    std::string text = lanelet_of(nodes);
+    text.insert(text.find("</relation>"), tag);
+    const auto map = parse_lanelet2(text, "town.osm");
+    ASSERT_TRUE(map.has_value()) << map.error().message;
+    EXPECT_THAT(map->lanes, IsEmpty()) << tag;
+    EXPECT_EQ(map->elements.size(), 1U) << tag;
+  }
+}
+
+TEST(Lanelet2Reader, NamesWhatIsWrongAndWhere) {
+  EXPECT_THAT(error_of("<osm>\n<node id='1'\n"),
+              StartsWith("town.osm:2: found text that is not XML"));
+  EXPECT_THAT(error_of(""), HasSubstr("not XML"));
+  EXPECT_THAT(error_of("<kml>\n</kml>"), HasSubstr("town.osm:1: found <kml>"));
+  EXPECT_THAT(error_of("<osm>\n\n<node id='x1' lat='1' lon='1'/></osm>"),
+              StartsWith("town.osm:3: node: found id=\"x1\", wanted a whole number"));
+  EXPECT_THAT(
+      error_of("<osm>\n<node id='1' lat='1' lon='1'/>\n<node id='1' lat='2' lon='2'/></osm>"),
+      StartsWith("town.osm:3: node 1: found this id a second time"));
+  EXPECT_THAT(error_of("<osm></osm>"), HasSubstr("found no lanelet"));
+}
+
+TEST(Lanelet2Reader, RefusesCoordinatesThatAreNone) {
+  const auto error_with = [](const std::string& node) {
+    return error_of("<osm>\n<node id='-7' " + node + "</node></osm>");
+  };
+  EXPECT_EQ(error_with("lat='90.5' lon='8'>"),
+            "town.osm:2: node -7: found lat \"90.5\", wanted a number from -90 to 90");
+  EXPECT_THAT(error_with("lat='9' lon='-181'>"), HasSubstr("found lon \"-181\""));
+  EXPECT_THAT(error_with("lat='nan' lon='8'>"), HasSubstr("found lat \"nan\""));
+  EXPECT_THAT(error_with("lat='inf' lon='8'>"), HasSubstr("found lat \"inf\""));
+  EXPECT_THAT(error_with("lat='49,5' lon='8'>"), HasSubstr("found lat \"49,5\""));
+  EXPECT_THAT(error_with("lat='1' lon='8'>\n<tag k='local_x' v='far'/>"),
+              StartsWith("town.osm:3: node -7: found local_x \"far\""));
+}
+
+TEST(Lanelet2Reader, RefusesBrokenReferences) {
+  const std::vector<std::string> nodes = {"lat='49' lon='8'>", "lat='49' lon='8.001'>",
+                                          "lat='49.0001' lon='8'>", "lat='49.0001' lon='8.001'>"};
+  const auto error_with = [&nodes](const std::string& from, const std::string& to) {
+    std::string text = lanelet_of(nodes);
+    text.replace(text.find(from), from.size(), to);
+    return error_of(text);
+  };
+  EXPECT_THAT(error_with("<nd ref='2'/>", "<nd ref='99'/>"),
+              StartsWith("town.osm:6: way 10: found a reference to node 99, which is missing"));
+  EXPECT_THAT(error_with("role='left' ref='11'", "role='left' ref='98'"),
+              StartsWith("town.osm:8: lanelet 20: found a reference to way 98, which is missing"));
+  EXPECT_THAT(error_with("role='left'", "role='right'"), HasSubstr("found 0 ways of role left"));
+  EXPECT_THAT(error_with("role='right'", "role='left'"), HasSubstr("found 2 ways of role left"));
+  EXPECT_THAT(error_with("<nd ref='3'/>", ""), HasSubstr("found 1 points in this bound"));
+  EXPECT_THAT(error_with("lat='49.0001' lon='8'", "lat='' lon='8'"),
+              StartsWith("town.osm:4: node 3: found no coordinates"));
+}
+
+TEST(Lanelet2Reader, NamesAFileThatIsNotThere) {
+  const auto map = read_lanelet2("/nonexistent/town.osm");
+  ASSERT_FALSE(map.has_value());
+  EXPECT_THAT(map.error().message, StartsWith("/nonexistent/town.osm: found no readable file"));
+}
+
+}  // namespace
+}  // namespace bevloc

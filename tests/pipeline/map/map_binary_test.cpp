@@ -1,0 +1,219 @@
+#include "pipeline/map/map_binary.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/crc32.h"
+#include "pipeline/map/map_loader.h"
+#include "sim/random.h"
+
+namespace bevloc {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// A street of two lanes with a crossing, a kilometre long, points every 2 m.
+HdMap kilometre() {
+  HdMap map;
+  map.name = "kilometre";
+  map.origin = {49.0123456789, 8.4};
+  const auto line = [](double y, double step) {
+    std::vector<Eigen::Vector2d> points;
+    for (double x = 0.0; x <= 1000.0; x += step) points.emplace_back(x, y + std::sin(0.01 * x));
+    return points;
+  };
+  map.elements = {
+      {ElementClass::kRoadBoundary, Appearance::kKerb, line(-4.0, 2.0)},
+      {ElementClass::kLaneDivider, Appearance::kDashed, line(0.0, 2.0)},
+      {ElementClass::kRoadBoundary, Appearance::kHedge, line(4.0, 2.0)},
+      {ElementClass::kPedestrianCrossing, Appearance::kZebra, {{9, -4}, {12, -4}, {12, 4}, {9, 4}}},
+      {ElementClass::kLaneDivider, Appearance::kUnknown, {}},
+  };
+  map.lanes = {{line(0.0, 2.0), line(-4.0, 2.0), line(-2.0, 2.0), {1, 0}, 13.9},
+               {line(0.0, 2.0), line(4.0, 2.0), line(2.0, 2.0), {}, 8.333333}};
+  return map;
+}
+
+void expect_near(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    EXPECT_LE((a[i] - b[i]).cwiseAbs().maxCoeff(), 0.5 * kMapQuantumM + 1e-9);
+  }
+}
+
+std::string error_of(std::string_view bytes) {
+  const auto map = decode_map(bytes, "town.bvm");
+  EXPECT_FALSE(map.has_value());
+  return map ? "" : map.error().message;
+}
+
+/// A file whose frame is right, around any body.
+std::string framed(const std::string& body) {
+  std::string bytes = "BVMP";
+  const auto append = [&bytes](uint32_t value, int count) {
+    for (int i = 0; i < count; ++i) bytes.push_back(static_cast<char>(value >> (8 * i)));
+  };
+  append(1, 2);
+  append(static_cast<uint32_t>(body.size()), 4);
+  bytes += body;
+  append(crc32(bytes), 4);
+  return bytes;
+}
+
+TEST(Crc32, HasTheCheckValueOfTheStandard) {
+  EXPECT_EQ(crc32("123456789"), 0xCBF43926U);
+}
+
+TEST(MapBinary, ComesBackAsItWasToTheQuantum) {
+  const HdMap map = kilometre();
+  const auto again = decode_map(encode_map(map), "town.bvm");
+  ASSERT_TRUE(again.has_value()) << again.error().message;
+  EXPECT_EQ(again->name, map.name);
+  EXPECT_EQ(again->origin.latitude_deg, map.origin.latitude_deg);
+  EXPECT_EQ(again->origin.longitude_deg, map.origin.longitude_deg);
+  ASSERT_EQ(again->elements.size(), map.elements.size());
+  for (size_t i = 0; i < map.elements.size(); ++i) {
+    EXPECT_EQ(again->elements[i].element_class, map.elements[i].element_class);
+    EXPECT_EQ(again->elements[i].appearance, map.elements[i].appearance);
+    expect_near(again->elements[i].points, map.elements[i].points);
+  }
+  ASSERT_EQ(again->lanes.size(), map.lanes.size());
+  for (size_t i = 0; i < map.lanes.size(); ++i) {
+    expect_near(again->lanes[i].left, map.lanes[i].left);
+    expect_near(again->lanes[i].right, map.lanes[i].right);
+    expect_near(again->lanes[i].centerline, map.lanes[i].centerline);
+    EXPECT_EQ(again->lanes[i].successors, map.lanes[i].successors);
+    EXPECT_EQ(again->lanes[i].speed_limit_mps, map.lanes[i].speed_limit_mps);
+  }
+  // What was quantised once stays as it is.
+  EXPECT_EQ(encode_map(*again), encode_map(map));
+}
+
+TEST(MapBinary, AKilometreOfStreetTakesLittle) {
+  EXPECT_LT(encode_map(kilometre()).size(), 25'000U);
+}
+
+TEST(MapBinary, AnEmptyMapIsAMap) {
+  const auto map = decode_map(encode_map(HdMap{}), "town.bvm");
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  EXPECT_TRUE(map->elements.empty());
+}
+
+TEST(MapBinary, KeepsFarPlacesOnBothSides) {
+  HdMap map;
+  map.elements = {{ElementClass::kLaneDivider,
+                   Appearance::kSolid,
+                   {{99'999'999.0, -99'999'999.0}, {-99'999'999.0, 99'999'999.0}, {0.001, 0.0}}}};
+  const auto again = decode_map(encode_map(map), "town.bvm");
+  ASSERT_TRUE(again.has_value()) << again.error().message;
+  expect_near(again->elements[0].points, map.elements[0].points);
+}
+
+TEST(MapBinary, RefusesEveryTruncation) {
+  HdMap map = kilometre();
+  map.elements[0].points.resize(20);
+  map.elements.erase(map.elements.begin() + 1, map.elements.begin() + 3);
+  map.lanes.clear();
+  const std::string bytes = encode_map(map);
+  for (size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_FALSE(decode_map(bytes.substr(0, size), "town.bvm").has_value()) << size;
+  }
+  EXPECT_THAT(error_of(bytes + "x"), HasSubstr("bytes, wanted the"));
+}
+
+TEST(MapBinary, RefusesEveryFlippedByte) {
+  HdMap map = kilometre();
+  map.elements.resize(1);
+  map.elements[0].points.resize(20);
+  map.lanes.resize(1);
+  map.lanes[0].successors = {0};
+  for (auto* line : {&map.lanes[0].left, &map.lanes[0].right, &map.lanes[0].centerline}) {
+    line->resize(10);
+  }
+  std::string bytes = encode_map(map);
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    for (const char flip : {'\x01', '\x80', '\xFF'}) {
+      bytes[i] ^= flip;
+      EXPECT_FALSE(decode_map(bytes, "town.bvm").has_value()) << i;
+      bytes[i] ^= flip;
+    }
+  }
+}
+
+TEST(MapBinary, SaysWhatIsWrong) {
+  const std::string bytes = encode_map(kilometre());
+  EXPECT_EQ(error_of("BVMP"), "town.bvm: found 4 bytes, wanted a map file of at least 14");
+  EXPECT_THAT(error_of("PK" + bytes), HasSubstr("wanted \"BVMP\""));
+  std::string newer = bytes;
+  newer[4] = 9;
+  EXPECT_EQ(error_of(newer), "town.bvm: found version 9 of the format, wanted 1");
+  std::string damaged = bytes;
+  damaged[60] ^= 1;
+  EXPECT_THAT(error_of(damaged), StartsWith("town.bvm: found CRC-32 "));
+}
+
+TEST(MapBinary, RefusesNonsenseBehindAValidChecksum) {
+  const std::string head = std::string(1, '\0') + std::string(16, '\0');  // no name, origin (0, 0)
+  EXPECT_TRUE(decode_map(framed(head + std::string(2, '\0')), "t").has_value());
+  EXPECT_THAT(error_of(framed("")), HasSubstr("the end of the body"));
+  EXPECT_THAT(error_of(framed("\x05"
+                              "ab")),
+              HasSubstr("a count that the body cannot hold"));
+  EXPECT_THAT(error_of(framed(head + std::string(3, '\0'))), HasSubstr("more bytes after"));
+  EXPECT_THAT(error_of(framed(head + std::string("\xFF\xFF\xFF\xFF\x7F", 5))),
+              HasSubstr("a count that the body cannot hold"));
+  EXPECT_THAT(error_of(framed(std::string(11, '\xFF'))), HasSubstr("more than 64 bits"));
+  EXPECT_THAT(error_of(framed(head + std::string("\x01\x03\x00\x00\x00", 5))),
+              HasSubstr("an unknown class"));
+  EXPECT_THAT(error_of(framed(head + std::string("\x01\x00\x63\x00\x00", 5))),
+              HasSubstr("an unknown appearance"));
+  const std::string far = std::string(9, '\xFF') + '\x01';
+  EXPECT_THAT(error_of(framed(head + std::string("\x01\x00\x00\x01", 4) + far + far + '\0')),
+              HasSubstr("a point beyond"));
+  const std::string lane = std::string("\x00\x01\x00\x00\x00", 5) + std::string(8, '\0');
+  EXPECT_THAT(error_of(framed(head + lane + "\x01\x07")), HasSubstr("a successor"));
+  const std::string nan_latitude = '\0' + std::string(8, '\xFF') + std::string(10, '\0');
+  EXPECT_THAT(error_of(framed(nan_latitude)), HasSubstr("a latitude"));
+}
+
+TEST(MapBinary, SurvivesRandomBodies) {
+  sim::Random random(11);
+  for (int i = 0; i < 20'000; ++i) {
+    std::string body(static_cast<size_t>(random.integer(0, 60)), '\0');
+    for (char& byte : body) byte = static_cast<char>(random.integer(0, 3) * random.integer(0, 85));
+    const auto map = decode_map(framed(body), "town.bvm");
+    if (!map) {
+      EXPECT_THAT(map.error().message, StartsWith("town.bvm: byte "));
+    }
+  }
+}
+
+class MapFiles : public testing::Test {
+ protected:
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "bevloc_map_files";
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+};
+
+TEST_F(MapFiles, LoadMapTellsTheFormats) {
+  const auto binary = folder_ / "town.map";
+  ASSERT_TRUE(write_map_binary(kilometre(), binary).has_value());
+  EXPECT_EQ(load_map(binary).value().name, "kilometre");
+  EXPECT_EQ(read_map_binary(binary).value().lanes.size(), 2U);
+  const auto osm =
+      std::filesystem::path(BEVLOC_SOURCE_DIR) / "tests/pipeline/map/fixtures/street.osm";
+  EXPECT_EQ(load_map(osm).value().lanes.size(), 4U);
+}
+
+TEST_F(MapFiles, LoadMapRefusesOtherFiles) {
+  const auto missing = load_map(folder_ / "none.bvm");
+  ASSERT_FALSE(missing.has_value());
+  EXPECT_THAT(missing.error().message, HasSubstr("none.bvm: found no readable file"));
+  const auto other = load_map(std::filesystem::path(BEVLOC_SOURCE_DIR) / "CMakeLists.txt");
+  ASSERT_FALSE(other.has_value());
+  EXPECT_THAT(other.error().message, HasSubstr("wanted a compact map or a Lanelet2 map"));
+}
+
+}  // namespace
+}  // namespace bevloc

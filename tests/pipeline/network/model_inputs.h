@@ -1,0 +1,63 @@
+// The pseudo-random inputs and the files of the test models (make_fixtures.py makes the same).
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/network/view_table.h"
+
+namespace bevloc::test {
+
+inline uint32_t hashed(uint32_t i, uint32_t seed) {
+  uint32_t x = i * 2654435761U + seed * 40503U;
+  x ^= x >> 15;
+  x *= 2246822519U;
+  return x ^ (x >> 13);
+}
+
+/// Bytes 0 to 255; of an int8 input: the value plus 128.
+inline void fill_input(std::span<uint8_t> input, uint32_t seed) {
+  for (size_t i = 0; i < input.size(); ++i) {
+    input[i] = static_cast<uint8_t>(hashed(static_cast<uint32_t>(i), seed) >> 24);
+  }
+}
+
+inline void fill_input(std::span<int8_t> input, uint32_t seed) {
+  for (size_t i = 0; i < input.size(); ++i) {
+    input[i] = static_cast<int8_t>((hashed(static_cast<uint32_t>(i), seed) >> 24) - 128);
+  }
+}
+
+inline ViewTable view_table(int cells, int keys) {
+  ViewTable table;
+  for (int i = 0; i < kViewSlots * cells; ++i) {
+    const uint32_t h = hashed(static_cast<uint32_t>(i), 77);
+    const bool unused = h % 5 == 0 || i % cells == cells - 1;
+    table.index.push_back(static_cast<int32_t>(h % static_cast<uint32_t>(keys)));
+    table.weight.push_back(unused ? 0.0F : static_cast<float>((h >> 8) & 127) / 1024.0F);
+  }
+  return table;
+}
+
+inline std::string fixture(const std::string& file) {
+  return std::string(BEVLOC_SOURCE_DIR "/tests/pipeline/network/fixtures/") + file;
+}
+
+inline std::string read_bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline std::vector<float> expected_values(const std::string& model) {
+  const std::string bytes = read_bytes(fixture(model + ".expected"));
+  std::vector<float> values(bytes.size() / sizeof(float));
+  std::memcpy(values.data(), bytes.data(), bytes.size());
+  return values;
+}
+
+}  // namespace bevloc::test

@@ -1,0 +1,290 @@
+// The whole network on a tiny model, against numpy, and every way in which a file can be refused.
+// Built twice: with the best instructions of this CPU, and capped to AVX2 without VNNI.
+#include "pipeline/network/network.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <ranges>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/pipeline/network/allocation_counter.h"
+#include "tests/pipeline/network/model_inputs.h"
+
+namespace bevloc {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr int kStride = 61;  // of the values in tiny_network_*.expected
+constexpr NetworkOptions kOptions{.threads = 1, .isa = BEVLOC_TEST_ISA};
+
+std::unique_ptr<Network> load(const std::string& model, const NetworkOptions& options = kOptions) {
+  auto network = Network::load(test::fixture(model + ".onnx"), options);
+  if (!network) {
+    ADD_FAILURE() << network.error().message;
+    std::abort();
+  }
+  (*network)->set_view_table(
+      test::view_table(kFeatureGrid.cells(), kCameraCount * kImageFeatureCells));
+  test::fill_input((*network)->image_input(), 1);
+  test::fill_input((*network)->raster_input(), 2);
+  return std::move(*network);
+}
+
+void run_all(Network& network) {
+  network.run_image_branch();
+  network.run_map_branch();
+  network.run_mask_head();
+}
+
+std::vector<float> all_outputs(const Network& network, size_t stride = 1) {
+  std::vector<float> values;
+  for (const auto& output :
+       {network.bev_features().data, network.map_features().data, network.mask_logits()}) {
+    for (size_t i = 0; i < output.size(); i += stride) values.push_back(output[i]);
+  }
+  return values;
+}
+
+double root_mean_square(const std::vector<float>& values) {
+  double sum = 0.0;
+  for (const float value : values) sum += static_cast<double>(value) * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+double rms_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  std::vector<float> difference(a);
+  for (size_t i = 0; i < b.size(); ++i) difference[i] -= b[i];
+  return root_mean_square(difference);
+}
+
+TEST(Network, Int8AgreesWithNumpy) {
+  const auto network = load("tiny_network_int8");
+  run_all(*network);
+  const std::vector<float> found = all_outputs(*network, kStride);
+  const std::vector<float> expected = test::expected_values("tiny_network_int8");
+  ASSERT_EQ(found.size(), expected.size());
+  EXPECT_GT(root_mean_square(expected), 0.1);
+  // The scales are odd: a sum that float32 puts on the other side of a rounding edge than float64
+  // does (one in 100,000) shifts a value by a step, and through the gather many outputs a little.
+  const auto same = std::ranges::count_if(std::views::iota(size_t{0}, found.size()), [&](size_t i) {
+    return std::abs(found[i] - expected[i]) < 1e-5F;
+  });
+  EXPECT_GT(same, 0.8 * static_cast<double>(found.size()));
+  EXPECT_LT(rms_difference(found, expected), 3e-3 * root_mean_square(expected));
+}
+
+TEST(Network, FloatAgreesWithNumpy) {
+  const auto network = load("tiny_network_float");
+  run_all(*network);
+  EXPECT_THAT(all_outputs(*network, kStride),
+              ::testing::Pointwise(::testing::FloatNear(1e-4F),
+                                   test::expected_values("tiny_network_float")));
+}
+
+TEST(Network, ThreadsDoNotChangeTheResult) {
+  const auto one = load("tiny_network_int8");
+  const auto two = load("tiny_network_int8", {.threads = 2, .isa = BEVLOC_TEST_ISA});
+  run_all(*one);
+  run_all(*two);
+  EXPECT_EQ(all_outputs(*one), all_outputs(*two));
+}
+
+TEST(Network, PartsRunInAnyOrderAndAgain) {
+  const auto network = load("tiny_network_int8");
+  run_all(*network);
+  const std::vector<float> expected = all_outputs(*network);
+  network->run_map_branch();
+  network->run_mask_head();
+  network->run_image_branch();
+  network->run_map_branch();
+  network->run_mask_head();
+  network->run_mask_head();
+  EXPECT_EQ(all_outputs(*network), expected);
+}
+
+TEST(Network, ReadsTheInputsOfThisRun) {
+  const auto network = load("tiny_network_int8");
+  run_all(*network);
+  const std::vector<float> before = all_outputs(*network);
+  test::fill_input(network->image_input(), 3);
+  run_all(*network);
+  const std::vector<float> after = all_outputs(*network);
+  const size_t features = network->bev_features().data.size();
+  EXPECT_FALSE(std::equal(before.begin(), before.begin() + features, after.begin()));
+  EXPECT_TRUE(std::equal(before.begin() + features, before.begin() + 2 * features,
+                         after.begin() + features))
+      << "the map's features changed with the images";
+}
+
+TEST(Network, WithoutCamerasTheImagesDoNotMatter) {
+  const auto network = load("tiny_network_int8");
+  const size_t entries = static_cast<size_t>(kViewSlots) * kFeatureGrid.cells();
+  network->set_view_table({std::vector<int32_t>(entries, 0), std::vector<float>(entries, 0.0F)});
+  network->run_image_branch();
+  const FeatureView view = network->bev_features();
+  const std::vector<float> before(view.data.begin(), view.data.end());
+  test::fill_input(network->image_input(), 3);
+  network->run_image_branch();
+  EXPECT_TRUE(std::ranges::equal(network->bev_features().data, before));
+}
+
+TEST(Network, DescribesItsFeaturesAndParameters) {
+  const auto network = load("tiny_network_int8");
+  EXPECT_EQ(network->name(), "tiny_network_int8");
+  EXPECT_EQ(network->image_input().size(), 6U * 3 * 96 * 320);
+  EXPECT_EQ(network->raster_input().size(), 3U * 400 * 200);
+  EXPECT_EQ(network->mask_logits().size(), 3U * 400 * 200);
+  for (const FeatureView& view : {network->bev_features(), network->map_features()}) {
+    EXPECT_EQ(view.channels, 16);
+    EXPECT_EQ(view.grid, kFeatureGrid);
+    EXPECT_EQ(view.data.size(), 16U * 100 * 50);
+  }
+  const SolverParameters& parameters = network->solver_parameters();
+  EXPECT_FLOAT_EQ(parameters.joint_scale, 150.5F);
+  EXPECT_FLOAT_EQ(parameters.x_scale, 90.0F);
+  EXPECT_FLOAT_EQ(parameters.y_scale, 120.0F);
+  EXPECT_FLOAT_EQ(parameters.yaw_scale, 2000.0F);
+  EXPECT_FLOAT_EQ(parameters.gem_omega, 1.25F);
+}
+
+TEST(Network, AllocatesNothingInARun) {
+  const auto network = load("tiny_network_int8");
+  const ViewTable table = test::view_table(kFeatureGrid.cells(), kCameraCount * kImageFeatureCells);
+  run_all(*network);
+  test::AllocationCounter counter;
+  network->set_view_table(table);
+  run_all(*network);
+  EXPECT_EQ(counter.outside_of("libdnnl"), 0);
+}
+
+TEST(Network, AllocationCounterCounts) {
+  test::AllocationCounter counter;
+  const std::vector<int> numbers(1000);
+  EXPECT_EQ(numbers.size(), 1000U);
+  EXPECT_GE(counter.outside_of("libdnnl"), 1);
+}
+
+class RefusedModel : public ::testing::Test {
+ protected:
+  std::string message_for(const std::string& path) {
+    const auto network = Network::load(path, kOptions);
+    return network ? "loaded" : network.error().message;
+  }
+
+  std::string message_for_bytes(const std::string& bytes) {
+    const std::string path = ::testing::TempDir() + "/" +
+                             ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
+                             std::to_string(static_cast<int>(BEVLOC_TEST_ISA)) + ".onnx";
+    std::ofstream(path, std::ios::binary) << bytes;
+    const std::string message = message_for(path);
+    std::filesystem::remove(path);
+    EXPECT_THAT(message, ::testing::StartsWith(path + ": "));
+    return message;
+  }
+
+  /// The tiny network with all occurrences of a text replaced by one of the same length.
+  std::string message_after_replacing(const std::string& from, const std::string& to) {
+    std::string bytes = test::read_bytes(test::fixture("tiny_network_int8.onnx"));
+    size_t count = 0;
+    for (size_t i = bytes.find(from); i != std::string::npos; i = bytes.find(from, i + 1)) {
+      bytes.replace(i, from.size(), to);
+      ++count;
+    }
+    EXPECT_EQ(from.size(), to.size());
+    EXPECT_GT(count, 0U);
+    return message_for_bytes(bytes);
+  }
+};
+
+TEST_F(RefusedModel, MissingFile) {
+  EXPECT_EQ(message_for("/no/such/model.onnx"),
+            "/no/such/model.onnx: cannot be opened: No such file or directory");
+}
+
+TEST_F(RefusedModel, CutOffAtAnyPlace) {
+  const std::string whole = test::read_bytes(test::fixture("tiny_network_int8.onnx"));
+  for (const size_t length : {whole.size() / 2, whole.size() / 7, size_t{100}}) {
+    EXPECT_THAT(message_for_bytes(whole.substr(0, length)),
+                HasSubstr("is not a complete ONNX file"));
+  }
+  EXPECT_THAT(message_for_bytes(""), HasSubstr("there is no graph in it"));
+}
+
+TEST_F(RefusedModel, SomethingElse) {
+  EXPECT_THAT(message_for_bytes("GIF89a, certainly not a network"),
+              HasSubstr("is not a complete ONNX file"));
+}
+
+TEST_F(RefusedModel, UnknownOperatorByName) {
+  EXPECT_THAT(message_after_replacing("Relu", "Tanh"),
+              HasSubstr("(Tanh): operator 'Tanh' is not supported"));
+}
+
+TEST_F(RefusedModel, UnknownAttributeByName) {
+  EXPECT_THAT(message_after_replacing("strides", "stridez"),
+              HasSubstr("attribute 'stridez' is not supported"));
+}
+
+TEST_F(RefusedModel, MissingInput) {
+  EXPECT_THAT(message_after_replacing("images", "pixels"),
+              HasSubstr("there is no input 'images' (found: pixels, view_index, view_weight, "
+                        "raster)"));
+}
+
+TEST_F(RefusedModel, MissingOutput) {
+  EXPECT_THAT(message_after_replacing("bev_mask", "bev_task"),
+              HasSubstr("there is no output 'bev_mask'"));
+}
+
+TEST_F(RefusedModel, WrongShape) {
+  EXPECT_THAT(message_for(test::fixture("wrong_shape.onnx")),
+              HasSubstr("input 'images' is int8 [6, 3, 4, 4], wanted int8 [6, 3, 96, 320]"));
+}
+
+TEST_F(RefusedModel, MissingMetadata) {
+  EXPECT_THAT(message_after_replacing("bevloc.solver.x_scale", "bevloc.solver.q_scale"),
+              HasSubstr("metadata 'bevloc.solver.x_scale' is missing"));
+}
+
+TEST_F(RefusedModel, MetadataThatIsNoPositiveNumber) {
+  for (const char* const text : {"-50.5", "150.x", "    5", "nan  "}) {
+    EXPECT_THAT(message_after_replacing("150.5", text),
+                HasSubstr(fmt::format("metadata 'bevloc.solver.joint_scale' is '{}', wanted a "
+                                      "number above 0",
+                                      text)));
+  }
+}
+
+TEST_F(RefusedModel, NoThreads) {
+  const auto network = Network::load(test::fixture("tiny_network_int8.onnx"),
+                                     {.threads = 0, .isa = BEVLOC_TEST_ISA});
+  ASSERT_FALSE(network);
+  EXPECT_EQ(network.error().message, "network: 0 threads, wanted at least 1");
+}
+
+TEST_F(RefusedModel, AnotherInstructionSetThanThisProcessUses) {
+  ASSERT_NE(load("tiny_network_int8"), nullptr);
+  const auto network = Network::load(test::fixture("tiny_network_int8.onnx"),
+                                     {.threads = 1, .isa = IsaCap::kAvx512});
+  ASSERT_FALSE(network);
+  EXPECT_THAT(network.error().message, HasSubstr("instruction set is settled"));
+}
+
+/// Any single damaged byte must give a network or an error, never a crash.
+TEST_F(RefusedModel, SurvivesDamagedBytes) {
+  const std::string whole = test::read_bytes(test::fixture("wrong_shape.onnx"));
+  for (size_t i = 0; i < whole.size(); ++i) {
+    for (const int flip : {0x01, 0x80, 0xFF}) {
+      std::string damaged = whole;
+      damaged[i] = static_cast<char>(damaged[i] ^ flip);
+      EXPECT_NE(message_for_bytes(damaged), "loaded");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bevloc

@@ -1,0 +1,103 @@
+#include "pipeline/network/view_transform.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/pipeline/network/model_inputs.h"
+
+namespace bevloc::nn {
+namespace {
+
+constexpr int kCells = 53;
+constexpr int kKeys = 40;
+
+template <typename Element>
+std::vector<Element> features(int channels) {
+  std::vector<Element> values;
+  for (int i = 0; i < kKeys * channels; ++i) {
+    values.push_back(static_cast<Element>(test::hashed(static_cast<uint32_t>(i), 5) >> 24));
+  }
+  return values;
+}
+
+/// The definition, one value after the other.
+template <typename Input, typename Output>
+std::vector<Output> scalar_twin(const ViewTable& table, const std::vector<Input>& input,
+                                int channels, float scale) {
+  std::vector<Output> bev;
+  for (int cell = 0; cell < kCells; ++cell) {
+    for (int channel = 0; channel < channels; ++channel) {
+      float sum = 0.0F;
+      for (int slot = 0; slot < kViewSlots; ++slot) {
+        const size_t entry = static_cast<size_t>(slot * kCells + cell);
+        const size_t key = static_cast<size_t>(table.index[entry]);
+        // volatile keeps the compiler from fusing the product into the sum.
+        volatile float product =
+            table.weight[entry] * static_cast<float>(input[key * channels + channel]);
+        sum = sum + product;
+      }
+      sum *= scale;
+      if constexpr (!std::is_same_v<Output, float>) {
+        sum = std::nearbyint(std::clamp<float>(sum, std::numeric_limits<Output>::min(),
+                                               std::numeric_limits<Output>::max()));
+      }
+      bev.push_back(static_cast<Output>(sum));
+    }
+  }
+  return bev;
+}
+
+template <typename Types>
+class ViewTransform : public ::testing::Test {};
+
+template <typename I, typename O>
+struct Pair {
+  using Input = I;
+  using Output = O;
+};
+using AllTypes =
+    ::testing::Types<Pair<uint8_t, uint8_t>, Pair<uint8_t, int8_t>, Pair<uint8_t, float>,
+                     Pair<int8_t, uint8_t>, Pair<int8_t, int8_t>, Pair<int8_t, float>,
+                     Pair<float, uint8_t>, Pair<float, int8_t>, Pair<float, float>>;
+TYPED_TEST_SUITE(ViewTransform, AllTypes);
+
+TYPED_TEST(ViewTransform, EqualsItsScalarTwin) {
+  using Input = typename TypeParam::Input;
+  using Output = typename TypeParam::Output;
+  const ViewTable table = test::view_table(kCells, kKeys);
+  ViewEntries entries(kCells);
+  entries.set(table);
+  for (const int channels : {1, 15, 16, 17, 48, 70}) {
+    for (const float scale : {0.31F, 1.0F, 40.0F}) {
+      const std::vector<Input> input = features<Input>(channels);
+      std::vector<Output> bev(static_cast<size_t>(kCells * channels), Output{1});
+      gather_view(entries, input.data(), channels, scale, 0, 20, bev.data());
+      gather_view(entries, input.data(), channels, scale, 20, kCells, bev.data());
+      EXPECT_EQ(bev, (scalar_twin<Input, Output>(table, input, channels, scale)))
+          << channels << " channels, scale " << scale;
+    }
+  }
+}
+
+TEST(ViewTransformCells, WithoutEntriesAreZero) {
+  const ViewEntries nothing(kCells);
+  const std::vector<uint8_t> input = features<uint8_t>(20);
+  std::vector<uint8_t> bev(kCells * 20, 7);
+  gather_view(nothing, input.data(), 20, 1.0F, 0, kCells, bev.data());
+  EXPECT_EQ(bev, std::vector<uint8_t>(kCells * 20, 0));
+}
+
+TEST(ViewTransformCells, OutsideTheRangeAreLeftAlone) {
+  ViewEntries entries(kCells);
+  entries.set(test::view_table(kCells, kKeys));
+  const std::vector<uint8_t> input = features<uint8_t>(16);
+  std::vector<uint8_t> bev(kCells * 16, 7);
+  gather_view(entries, input.data(), 16, 0.0F, 10, 11, bev.data());
+  for (int i = 0; i < kCells * 16; ++i) EXPECT_EQ(bev[i], i / 16 == 10 ? 0 : 7);
+}
+
+}  // namespace
+}  // namespace bevloc::nn

@@ -1,0 +1,92 @@
+// The covariance must grow where a scene cannot tell.
+#include <gtest/gtest.h>
+
+#include "pipeline/solver/posterior.h"
+#include "pipeline/solver/solver_factory.h"
+#include "tests/pipeline/solver/synthetic_scene.h"
+
+namespace bevloc {
+namespace {
+
+constexpr int kChannels = 16;
+constexpr BevGrid kGrid = kFeatureGrid;
+
+/// `clutter` is the strength of what the vehicle sees and the map does not know.
+SolverResult solve(const SyntheticScene& scene, const Se2& truth, float clutter, unsigned seed) {
+  const SolverParameters sharp{.joint_scale = 300.0F};
+  auto solver =
+      make_solver(SolverKind::kDecoupled, kGrid, kChannels, HypothesisGrid{}, sharp).value();
+  auto bev = scene.seen_from(truth, kGrid);
+  const auto map = scene.seen_from({}, kGrid);
+  const auto unknown = SyntheticScene::structured(kChannels, seed + 1000).seen_from({}, kGrid);
+  for (size_t i = 0; i < bev.size(); ++i) bev[i] += clutter * unknown[i];
+  SolverResult result;
+  solver->solve(view(bev, kChannels, kGrid), view(map, kChannels, kGrid), result);
+  return result;
+}
+
+TEST(MatchCovarianceTest, BecomesUniformAlongAStraightRoad) {
+  const Eigen::Vector3d uniform = uniform_variance(HypothesisGrid{});
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const SyntheticScene road = SyntheticScene::straight_road(kChannels, seed);
+    for (const float noise : {0.0F, 0.3F}) {
+      const SolverResult result = solve(road, {1.5, 0.3, 0.0}, noise, seed);
+      EXPECT_GT(result.covariance(0, 0), 0.9 * uniform(0)) << "seed " << seed;
+      EXPECT_LT(result.covariance(1, 1), 0.1 * uniform(1)) << "seed " << seed;
+      EXPECT_LT(result.covariance(2, 2), 0.15 * uniform(2)) << "seed " << seed;
+    }
+  }
+}
+
+TEST(MatchCovarianceTest, PointsAlongARoadThatIsTurned) {
+  // Seen at an angle, what is unknown is the way along the road: x and y go together.
+  SyntheticScene road(kChannels);
+  for (int channel = 0; channel < kChannels; ++channel) {
+    for (int i = -40; i <= 40; ++i) {  // a solid line from right behind to left ahead
+      road.add({channel, 1.0 * i, 0.3 * i + channel - 8.0, 1.0, 1.0, 1.0});
+    }
+  }
+  const Eigen::Matrix3d covariance = solve(road, {}, 0.1F, 1).covariance;
+  EXPECT_GT(covariance(0, 1) / std::sqrt(covariance(0, 0) * covariance(1, 1)), 0.5);
+}
+
+TEST(MatchCovarianceTest, ShrinksWithStructure) {
+  const Eigen::Vector3d uniform = uniform_variance(HypothesisGrid{});
+  const SyntheticScene scene = SyntheticScene::structured(kChannels, 5);
+  const SolverResult result = solve(scene, {0.7, -0.3, radians(0.5)}, 0.1F, 5);
+  EXPECT_LT(result.covariance(0, 0), 0.05 * uniform(0));
+  EXPECT_LT(result.covariance(1, 1), 0.15 * uniform(1));
+  EXPECT_LT(result.covariance(2, 2), 0.15 * uniform(2));
+}
+
+TEST(MatchCovarianceTest, GrowsWithClutter) {
+  const SyntheticScene scene = SyntheticScene::structured(kChannels, 6);
+  const Eigen::Vector3d quiet = solve(scene, {}, 0.1F, 6).covariance.diagonal();
+  const Eigen::Vector3d loud = solve(scene, {}, 1.5F, 6).covariance.diagonal();
+  for (int i = 0; i < 3; ++i) EXPECT_GT(loud(i), quiet(i));
+}
+
+TEST(MatchCovarianceTest, CoversTheErrors) {
+  // Errors in units of the claimed deviation, on scenes of every kind.
+  constexpr int kScenes = 24;
+  Eigen::Array3d squares = Eigen::Array3d::Zero();
+  int beyond_3_sigma = 0;
+  for (unsigned seed = 0; seed < kScenes; ++seed) {
+    const bool straight = seed % 3 == 0;
+    const SyntheticScene scene = straight ? SyntheticScene::straight_road(kChannels, seed)
+                                          : SyntheticScene::structured(kChannels, seed);
+    const Se2 truth{1.8 * std::sin(2.0 * seed + 1.0), 0.8 * std::sin(3.0 * seed + 2.0),
+                    radians(1.5 * std::sin(5.0 * seed + 3.0))};
+    const SolverResult result = solve(scene, truth, 1.0F, seed);
+    const Eigen::Array3d error(result.correction.x_m - truth.x_m, result.correction.y_m - truth.y_m,
+                               result.correction.yaw_rad - truth.yaw_rad);
+    const Eigen::Array3d normalised = error / result.covariance.diagonal().array().sqrt();
+    squares += normalised.square();
+    beyond_3_sigma += static_cast<int>((normalised.abs() > 3.0).count());
+  }
+  for (int i = 0; i < 3; ++i) EXPECT_LT(squares(i) / kScenes, 2.0) << "axis " << i;
+  EXPECT_LE(beyond_3_sigma, 1);
+}
+
+}  // namespace
+}  // namespace bevloc

@@ -1,0 +1,60 @@
+#include "pipeline/solver/solver_factory.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace bevloc {
+namespace {
+
+using testing::HasSubstr;
+
+std::string error_of(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses,
+                     const SolverParameters& parameters) {
+  const auto solver = make_solver(SolverKind::kDecoupled, grid, channels, hypotheses, parameters);
+  return solver ? "" : solver.error().message;
+}
+
+TEST(SolverFactoryTest, KnowsEveryKindByName) {
+  for (const char* name : {"full", "decoupled", "decoupled-plain", "block"}) {
+    const auto kind = solver_kind_from(name);
+    ASSERT_TRUE(kind) << name;
+    EXPECT_EQ(name_of(*kind), name);
+    EXPECT_TRUE(make_solver(*kind, kFeatureGrid, 4, {}, {}));
+  }
+}
+
+TEST(SolverFactoryTest, ListsTheKnownNames) {
+  const auto kind = solver_kind_from("fast");
+  ASSERT_FALSE(kind);
+  EXPECT_THAT(kind.error().message, HasSubstr("\"fast\""));
+  EXPECT_THAT(kind.error().message, HasSubstr("full, decoupled, decoupled-plain, block"));
+}
+
+TEST(SolverFactoryTest, RefusesWhatItCannotSolve) {
+  EXPECT_EQ(error_of(kFeatureGrid, 16, {}, {}), "");
+  EXPECT_THAT(error_of(kFeatureGrid, 0, {}, {}), HasSubstr("0 channels"));
+  EXPECT_THAT(error_of(kRasterGrid, 16, {}, {}), HasSubstr("400 x 200"));
+  EXPECT_THAT(error_of({100, 50, 1.2}, 16, {}, {}), HasSubstr("1.2 m"));
+  EXPECT_THAT(error_of({0, 50, 0.6}, 16, {}, {}), HasSubstr("0 x 50"));
+}
+
+TEST(SolverFactoryTest, RefusesHypothesesThatMakeNoGrid) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {2.0, 0.0}}, {}), HasSubstr("x: range 2"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {.y_m = {nan, 0.2}}, {}), HasSubstr("y: range nan"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {50.0, 0.2}}, {}), HasSubstr("x: range 50"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {.yaw_rad = {1.0, 0.1}}, {}), HasSubstr("yaw: range 1"));
+}
+
+TEST(SolverFactoryTest, RefusesParametersThatNoTrainingGives) {
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {}, {.joint_scale = -1.0F}), HasSubstr("joint_scale"));
+  EXPECT_THAT(
+      error_of(kFeatureGrid, 16, {}, {.yaw_scale = std::numeric_limits<float>::quiet_NaN()}),
+      HasSubstr("yaw_scale"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {}, {.gem_omega = 3.0F}), HasSubstr("gem_omega is 3"));
+}
+
+}  // namespace
+}  // namespace bevloc

@@ -1,0 +1,175 @@
+// What every solver must do, whichever way it does it.
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include <Eigen/Cholesky>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/solver/posterior.h"
+#include "pipeline/solver/solver_factory.h"
+#include "tests/pipeline/solver/synthetic_scene.h"
+
+namespace bevloc {
+namespace {
+
+constexpr int kChannels = 16;
+constexpr BevGrid kGrid = kFeatureGrid;
+
+/// Sharper than training makes them, for features that are cleaner than perception makes them.
+std::unique_ptr<Solver> make(SolverKind kind, float scale = 300.0F) {
+  SolverParameters parameters;
+  parameters.joint_scale = scale;
+  parameters.x_scale = scale;
+  parameters.y_scale = scale;
+  parameters.yaw_scale = scale;
+  return make_solver(kind, kGrid, kChannels, HypothesisGrid{}, parameters).value();
+}
+
+SolverResult solve(Solver& solver, const std::vector<float>& bev, const std::vector<float>& map) {
+  SolverResult result;
+  solver.solve(view(bev, kChannels, kGrid), view(map, kChannels, kGrid), result);
+  return result;
+}
+
+void expect_usable(const SolverResult& result) {
+  for (const auto* distribution :
+       {&result.x_probability, &result.y_probability, &result.yaw_probability}) {
+    EXPECT_NEAR(std::accumulate(distribution->begin(), distribution->end(), 0.0), 1.0, 1e-5);
+    EXPECT_GE(std::ranges::min(*distribution), 0.0F);
+  }
+  EXPECT_EQ(result.x_probability.size(), 21U);
+  EXPECT_EQ(result.y_probability.size(), 11U);
+  EXPECT_EQ(result.yaw_probability.size(), 21U);
+  EXPECT_TRUE(result.correction.is_finite());
+  EXPECT_TRUE(result.covariance.allFinite());
+  const Eigen::Vector3d least = least_variance(HypothesisGrid{});
+  for (int i = 0; i < 3; ++i) EXPECT_GE(result.covariance(i, i), least(i) * (1.0 - 1e-9));
+  EXPECT_TRUE(result.covariance.isApprox(result.covariance.transpose(), 1e-12));
+  EXPECT_EQ(result.covariance.llt().info(), Eigen::Success);
+}
+
+struct Accuracy {
+  SolverKind kind;
+  double position_m;
+  double yaw_rad;
+};
+
+class EverySolver : public testing::TestWithParam<Accuracy> {};
+
+TEST_P(EverySolver, RecoversKnownCorrections) {
+  const auto solver = make(GetParam().kind);
+  const Se2 truths[] = {{0.0, 0.0, 0.0},
+                        {1.37, -0.52, radians(0.73)},
+                        {-1.61, 0.66, radians(-1.21)},
+                        {0.31, 0.77, radians(1.55)},
+                        {-0.2, -0.4, radians(-0.6)}};
+  unsigned seed = 1;
+  for (const Se2& truth : truths) {
+    const SyntheticScene scene = SyntheticScene::structured(kChannels, seed++);
+    const SolverResult result =
+        solve(*solver, scene.seen_from(truth, kGrid), scene.seen_from({}, kGrid));
+    EXPECT_EQ(result.evidence, Evidence::kGood);
+    EXPECT_NEAR(result.correction.x_m, truth.x_m, GetParam().position_m) << "seed " << seed;
+    EXPECT_NEAR(result.correction.y_m, truth.y_m, GetParam().position_m) << "seed " << seed;
+    EXPECT_NEAR(degrees(result.correction.yaw_rad), degrees(truth.yaw_rad),
+                degrees(GetParam().yaw_rad))
+        << "seed " << seed;
+    expect_usable(result);
+  }
+}
+
+TEST_P(EverySolver, PointsForwardAndLeft) {
+  // The map has a post 1 m further ahead and 0.6 m further left than the vehicle sees it: so the
+  // vehicle stands 1 m further ahead and 0.6 m further left than it was thought to.
+  const auto solver = make(GetParam().kind);
+  SyntheticScene map_scene(kChannels);
+  SyntheticScene bev_scene(kChannels);
+  for (int channel = 0; channel < kChannels; ++channel) {
+    map_scene.add({channel, 5.0, 2.0, 1.5, 1.5, 1.0});
+    bev_scene.add({channel, 4.0, 1.4, 1.5, 1.5, 1.0});
+  }
+  const SolverResult result =
+      solve(*solver, bev_scene.seen_from({}, kGrid), map_scene.seen_from({}, kGrid));
+  // One round post has no orientation: yaw is free, and takes some of y with it.
+  EXPECT_NEAR(result.correction.x_m, 1.0, 0.15);
+  EXPECT_GT(result.correction.y_m, 0.3);
+}
+
+TEST_P(EverySolver, TurnsCounterClockwise) {
+  const auto solver = make(GetParam().kind);
+  const SyntheticScene scene = SyntheticScene::straight_road(kChannels, 3);
+  const SolverResult result =
+      solve(*solver, scene.seen_from({0.0, 0.0, radians(1.0)}, kGrid), scene.seen_from({}, kGrid));
+  EXPECT_NEAR(degrees(result.correction.yaw_rad), 1.0, 0.2);
+}
+
+TEST_P(EverySolver, GivesTheSameAnswerTwice) {
+  const SyntheticScene scene = SyntheticScene::structured(kChannels, 9);
+  const auto bev = scene.seen_from({0.5, 0.2, radians(0.3)}, kGrid);
+  const auto map = scene.seen_from({}, kGrid);
+  const auto first_solver = make(GetParam().kind);
+  const auto second_solver = make(GetParam().kind);
+  const SolverResult first = solve(*first_solver, bev, map);
+  solve(*second_solver, map, bev);
+  const SolverResult second = solve(*second_solver, bev, map);
+  EXPECT_EQ(first.x_probability, second.x_probability);
+  EXPECT_EQ(first.y_probability, second.y_probability);
+  EXPECT_EQ(first.yaw_probability, second.yaw_probability);
+  EXPECT_EQ(first.covariance, second.covariance);
+}
+
+TEST_P(EverySolver, SaysWhenThereIsNothingToMatch) {
+  const auto solver = make(GetParam().kind);
+  const SyntheticScene scene = SyntheticScene::structured(kChannels, 2);
+  auto good = scene.seen_from({}, kGrid);
+  std::vector<float> zeros(good.size(), 0.0F);
+  std::vector<float> constant(good.size(), 0.1F);
+  auto with_nan = good;
+  with_nan[4321] = std::numeric_limits<float>::quiet_NaN();
+  auto with_infinity = good;
+  with_infinity[17] = -std::numeric_limits<float>::infinity();
+  std::vector<float> empty;
+  for (const std::vector<float>* bad : {&zeros, &constant, &with_nan, &with_infinity, &empty}) {
+    for (const bool bad_map : {false, true}) {
+      const SolverResult result = bad_map ? solve(*solver, good, *bad) : solve(*solver, *bad, good);
+      EXPECT_EQ(result.evidence, Evidence::kNone);
+      EXPECT_EQ(result.correction.x_m, 0.0);
+      EXPECT_EQ(result.correction.y_m, 0.0);
+      EXPECT_EQ(result.correction.yaw_rad, 0.0);
+      EXPECT_THAT(result.y_probability, testing::Each(testing::FloatEq(1.0F / 11.0F)));
+      EXPECT_EQ(result.covariance,
+                Eigen::Matrix3d(uniform_variance(HypothesisGrid{}).asDiagonal()));
+      expect_usable(result);
+    }
+  }
+  EXPECT_EQ(solve(*solver, good, good).evidence, Evidence::kGood)
+      << "bad input must leave no trace";
+}
+
+TEST_P(EverySolver, SurvivesHugeAndUselessFeatures) {
+  const auto solver = make(GetParam().kind);
+  std::vector<float> huge(static_cast<size_t>(kChannels) * kGrid.cells());
+  for (size_t i = 0; i < huge.size(); ++i) {
+    huge[i] = (i * 2654435761U >> 7) % 2 == 0 ? 3e38F : -3e38F;
+  }
+  std::vector<float> one_cell(huge.size(), 0.0F);
+  one_cell[0] = 1.0F;
+  expect_usable(solve(*solver, huge, one_cell));
+  expect_usable(solve(*solver, one_cell, one_cell));
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver,
+                         testing::Values(Accuracy{SolverKind::kFull, 0.05, radians(0.1)},
+                                         Accuracy{SolverKind::kDecoupled, 0.05, radians(0.1)},
+                                         Accuracy{SolverKind::kDecoupledPlain, 0.15, radians(0.3)},
+                                         Accuracy{SolverKind::kBlock, 0.08, radians(0.15)}),
+                         [](const auto& test) {
+                           std::string name(name_of(test.param.kind));
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace bevloc

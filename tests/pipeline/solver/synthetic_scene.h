@@ -1,0 +1,89 @@
+// Band-limited scenes that can be seen from any pose without resampling.
+#pragma once
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "common/se2.h"
+#include "pipeline/bev_grid.h"
+#include "pipeline/solver/solver.h"
+
+namespace bevloc {
+
+/// A sum of smooth bumps per channel, on a map around the origin.
+class SyntheticScene {
+ public:
+  struct Bump {
+    int channel;
+    double x_m, y_m;
+    double x_sigma_m, y_sigma_m;
+    double height;
+  };
+
+  explicit SyntheticScene(int channels) : channels_(channels) {}
+
+  void add(const Bump& bump) { bumps_.push_back(bump); }
+
+  /// Features on `grid` of a vehicle at `map_from_vehicle`.
+  std::vector<float> seen_from(const Se2& map_from_vehicle, const BevGrid& grid) const {
+    std::vector<float> features(static_cast<size_t>(channels_) * grid.cells());
+    for (const Bump& bump : bumps_) {
+      float* channel = features.data() + static_cast<size_t>(bump.channel) * grid.cells();
+      for (int row = 0; row < grid.rows; ++row) {
+        for (int col = 0; col < grid.cols; ++col) {
+          const Eigen::Vector2d point =
+              map_from_vehicle * Eigen::Vector2d(grid.x_of_row(row), grid.y_of_col(col));
+          const double dx = (point.x() - bump.x_m) / bump.x_sigma_m;
+          const double dy = (point.y() - bump.y_m) / bump.y_sigma_m;
+          channel[row * grid.cols + col] +=
+              static_cast<float>(bump.height * std::exp(-0.5 * (dx * dx + dy * dy)));
+        }
+      }
+    }
+    return features;
+  }
+
+  /// Every direction can be seen, and no hypothesis moves anything over the grid's border.
+  static SyntheticScene structured(int channels, unsigned seed) {
+    SyntheticScene scene(channels);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> x(-26.0, 26.0);
+    std::uniform_real_distribution<double> y(-11.0, 11.0);
+    std::uniform_real_distribution<double> sigma(0.7, 1.4);
+    std::uniform_real_distribution<double> height(0.5, 1.5);
+    for (int channel = 0; channel < channels; ++channel) {
+      for (int i = 0; i < 40; ++i) {
+        scene.add({channel, x(random), y(random), sigma(random), sigma(random), height(random)});
+      }
+    }
+    return scene;
+  }
+
+  /// Solid lines along x that never end: nothing tells where along the road one is.
+  static SyntheticScene straight_road(int channels, unsigned seed) {
+    SyntheticScene scene(channels);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> y(-14.0, 14.0);
+    for (int channel = 0; channel < channels; ++channel) {
+      for (int i = 0; i < 3; ++i) scene.add({channel, 0.0, y(random), 1e6, 0.8, 1.0});
+    }
+    return scene;
+  }
+
+ private:
+  int channels_;
+  std::vector<Bump> bumps_;
+};
+
+inline void add_noise(std::vector<float>& features, float sigma, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> noise(0.0F, sigma);
+  for (float& feature : features) feature += noise(random);
+}
+
+inline FeatureView view(const std::vector<float>& features, int channels, const BevGrid& grid) {
+  return {features, channels, grid};
+}
+
+}  // namespace bevloc

@@ -1,0 +1,41 @@
+"""Made-up samples for the tests of training."""
+
+from __future__ import annotations
+
+import math
+
+import torch
+from torch import Tensor
+
+from training.data import Batch
+
+
+class SyntheticStream:
+    """Random samples; sample i depends on i alone, as the simulator's do."""
+
+    def __init__(self, first_sample: int) -> None:
+        self._next = first_sample
+
+    def next(self, count: int) -> Batch:
+        samples = [self._sample(self._next + i) for i in range(count)]
+        self._next += count
+        return Batch(**{name: torch.stack([s[name] for s in samples]) for name in samples[0]})
+
+    @staticmethod
+    def _sample(i: int) -> dict[str, Tensor]:
+        g = torch.Generator().manual_seed(i)
+        raster = (torch.rand(3, 400, 200, generator=g) < 0.03).to(torch.uint8) * 255
+        weight = torch.rand(8, 5000, generator=g)
+        limits = torch.tensor([2.0, 1.0, math.radians(2.0)])
+        return {
+            "images": torch.randint(0, 256, (6, 3, 96, 320), generator=g, dtype=torch.uint8),
+            "camera_mask": torch.tensor(63, dtype=torch.uint8),
+            "raster_prior": raster,
+            "raster_truth": raster.roll(2, 1),
+            "correction": (2 * torch.rand(3, generator=g) - 1) * limits,
+            "index": torch.randint(0, 2880, (8, 5000), generator=g),
+            "weight": weight / weight.sum(0),
+        }
+
+    def close(self) -> None:
+        pass

@@ -1,0 +1,155 @@
+"""Quantization and the ONNX file, on an untrained network."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import onnx
+import torch
+from onnx import numpy_helper
+
+from tests.training.synthetic import SyntheticStream
+from training.evaluate import float_inference
+from training.export_onnx import build_model
+from training.graph import folded_convolutions
+from training.model import Nano
+from training.onnx_graph import FloatOnnxBackend, Int8OnnxBackend
+from training.quantize import (
+    MAX_WEIGHT,
+    FloatBackend,
+    Quantization,
+    Scale,
+    best_scale,
+    int8_inference,
+    quantize,
+    quantize_weights,
+    run,
+)
+
+
+def network() -> Nano:
+    """Untrained, but with statistics in its normalisation that folding has to carry over."""
+    torch.manual_seed(1)
+    net = Nano()
+    for module in net.modules():
+        if isinstance(module, torch.nn.BatchNorm2d):
+            module.running_mean.normal_(0, 0.1)
+            module.running_var.uniform_(0.5, 1.5)
+            torch.nn.init.uniform_(module.weight, 0.5, 1.0)
+            torch.nn.init.normal_(module.bias, 0, 0.1)
+    return net.eval()
+
+
+def constants_of(model: onnx.ModelProto) -> dict[str, np.ndarray]:
+    return {tensor.name: numpy_helper.to_array(tensor) for tensor in model.graph.initializer}
+
+
+class Scales(unittest.TestCase):
+    def test_an_outlier_is_clipped_rather_than_all_else_rounded_away(self):
+        torch.manual_seed(0)
+        values = torch.cat((torch.rand(20_000), torch.tensor([100.0])))
+        scale = best_scale(values, unsigned=True)
+        error = (scale.quantize(values[:-1]) - values[:-1]).square().mean().sqrt().item()
+        self.assertLess(error, (scale.quantize(values[-1]) - values[-1]).abs().item())
+
+    def test_elements_stay_in_their_range(self):
+        values = torch.tensor([-1e9, -1.0, 0.0, 1.0, 1e9])
+        self.assertEqual(Scale(0.5, True).quantize(values).tolist(), [0, 0, 0, 1.0, 127.5])
+        self.assertEqual(Scale(0.5, False).quantize(values).tolist(), [-64, -1.0, 0, 1.0, 63.5])
+
+    def test_weights_have_seven_bits(self):
+        for conv in folded_convolutions(network()).values():
+            quantized = quantize_weights(conv)
+            self.assertLessEqual(int(quantized.weight.abs().max()), MAX_WEIGHT)
+            error = (quantized.real_weight() - conv.weight).abs().flatten(1).amax(1)
+            self.assertLess((error / conv.weight.abs().flatten(1).amax(1)).max().item(), 0.45)
+
+
+class Export(unittest.TestCase):
+    @classmethod
+    @torch.no_grad()
+    def setUpClass(cls):
+        torch.set_num_threads(1)
+        cls.net, cls.batch = network(), SyntheticStream(3).next(2)
+        cls.quantization = quantize(cls.net, [cls.batch])
+        convolutions = cls.quantization.convolutions
+        cls.model = build_model(cls.net, convolutions, Int8OnnxBackend(cls.quantization))
+        cls.float_model = build_model(cls.net, convolutions, FloatOnnxBackend())
+        cls.constants = constants_of(cls.model)
+
+    def test_the_walk_computes_what_the_network_computes(self):
+        with torch.no_grad():
+            expected = float_inference(self.net)(self.batch)
+            walked = run(
+                self.net, self.quantization.convolutions, FloatBackend(self.batch), self.batch
+            )
+        for a, b in zip(expected, walked):
+            torch.testing.assert_close(a, b, rtol=1e-3, atol=1e-4)
+
+    def test_rounding_changes_the_features_little(self):
+        expected = run(
+            self.net, self.quantization.convolutions, FloatBackend(self.batch), self.batch
+        )
+        rounded = int8_inference(self.net, self.quantization)(self.batch)
+        for a, b in zip(expected, rounded):
+            self.assertLess((a - b).std().item(), 0.5 * a.std().item())
+
+    def test_the_file_holds_8_bit_weights_and_zero_zero_points(self):
+        for name, values in self.constants.items():
+            if name.endswith(".zero"):
+                self.assertFalse(values.any(), name)
+            if name.endswith(".weight"):
+                self.assertEqual(values.dtype, np.int8, name)
+            if name.endswith(".bias"):
+                self.assertEqual(values.dtype, np.int32, name)
+            if name.endswith(".scale"):
+                self.assertTrue((values > 0).all(), name)
+        convolutions = [node for node in self.model.graph.node if node.op_type == "Conv"]
+        self.assertEqual(len(convolutions), len(self.quantization.convolutions))
+
+    def test_the_float_file_holds_the_same_network_unrounded(self):
+        operators = {node.op_type for node in self.float_model.graph.node}
+        self.assertNotIn("QuantizeLinear", operators)
+        constants = constants_of(self.float_model)
+        for name, conv in self.quantization.convolutions.items():
+            np.testing.assert_array_equal(constants[f"{name}.bias"], conv.bias.numpy())
+        self.assertEqual(
+            [port.name for port in self.float_model.graph.output],
+            ["bev_features", "map_features", "bev_mask"],
+        )
+
+    def test_a_saved_quantization_computes_the_same(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "quantization.pt"
+            self.quantization.save(path)
+            loaded = Quantization.load(self.net, path)
+        expected = int8_inference(self.net, self.quantization)(self.batch)
+        for a, b in zip(expected, int8_inference(self.net, loaded)(self.batch)):
+            self.assertTrue(torch.equal(a, b))
+
+    def test_space_to_depth_meets_its_weights_in_its_own_order(self):
+        name = "map_encoder.layers.0"
+        weight = self.quantization.quantized[name].weight.numpy()
+        exported = self.constants[f"{name}.weight"]
+        for channel in range(3):
+            for row in range(2):
+                for col in range(2):
+                    np.testing.assert_array_equal(
+                        exported[:, (row * 2 + col) * 3 + channel],
+                        weight[:, channel * 4 + row * 2 + col],
+                    )
+
+    def test_solver_parameters_travel_with_the_model(self):
+        properties = {entry.key: entry.value for entry in self.model.metadata_props}
+        self.assertEqual(properties["bevloc.model"], "nano")
+        for name in ("joint", "x", "y", "yaw"):
+            expected = self.net.solvers.scale(name).item()
+            self.assertAlmostEqual(
+                float(properties[f"bevloc.solver.{name}_scale"]), expected, delta=1e-4 * expected
+            )
+        onnx.checker.check_model(self.model, full_check=True)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,143 @@
+"""Both solvers against scenes whose correction is known."""
+
+import math
+import unittest
+
+import torch
+
+from training.joint_volume import joint_volume
+from training.solver import (
+    DEFINITION,
+    PoseSolvers,
+    YawSignature,
+    estimate,
+    hypotheses,
+    posterior_mean,
+    rotate,
+    standardise,
+    yaw_scores,
+)
+from training.synthetic_scene import features_under
+
+DEGREE = math.radians(1.0)
+CORRECTIONS = [
+    (0.0, 0.0, 0.0),
+    (1.3, 0.0, 0.0),
+    (0.0, -0.7, 0.0),
+    (0.0, 0.0, 1.1 * DEGREE),
+    (-1.1, 0.5, -1.5 * DEGREE),
+]
+
+
+def sharp_solvers() -> PoseSolvers:
+    solvers = PoseSolvers()
+    for scale in solvers.log_scale.values():
+        scale.data.fill_(math.log(150.0))
+    return solvers
+
+
+class KnownCorrections(unittest.TestCase):
+    def posteriors(self, correction, seed, max_frequency):
+        features = features_under(torch.tensor(correction), seed, max_frequency)
+        bev, features_map = map(standardise, features)
+        return sharp_solvers(), bev, features_map
+
+    @torch.no_grad()
+    def test_joint_volume_finds_every_axis_with_its_sign(self):
+        for seed, correction in enumerate(CORRECTIONS):
+            with self.subTest(correction=correction):
+                solvers, bev, features_map = self.posteriors(correction, seed, 0.2)
+                x, y, yaw = estimate(solvers.joint(bev, features_map))[0].tolist()
+                self.assertAlmostEqual(x, correction[0], delta=0.1)
+                self.assertAlmostEqual(y, correction[1], delta=0.1)
+                self.assertAlmostEqual(yaw, correction[2], delta=0.3 * DEGREE)
+
+    @torch.no_grad()
+    def test_decoupled_solver_finds_every_axis_with_its_sign(self):
+        for seed, correction in enumerate(CORRECTIONS):
+            with self.subTest(correction=correction):
+                solvers, bev, features_map = self.posteriors(correction, seed, 0.7)
+                x, y, yaw = estimate(solvers.decoupled(bev, features_map, None))[0].tolist()
+                self.assertAlmostEqual(x, correction[0], delta=0.25)
+                self.assertAlmostEqual(y, correction[1], delta=0.25)
+                self.assertAlmostEqual(yaw, correction[2], delta=0.4 * DEGREE)
+
+    @torch.no_grad()
+    def test_rotation_undoes_a_yaw(self):
+        yaw = 1.6 * DEGREE
+        bev, features_map = features_under(torch.tensor([0.0, 0.0, yaw]), 3)
+        turned = rotate(bev, torch.tensor([yaw]))
+        inner = (..., slice(6, -6), slice(6, -6))
+        error = (turned[inner] - features_map[inner]).abs().mean()
+        before = (bev[inner] - features_map[inner]).abs().mean()
+        self.assertLess(error, 0.15 * before)
+
+
+class YawScores(unittest.TestCase):
+    @torch.no_grad()
+    def test_expansion_equals_rolling_each_hypothesis(self):
+        bev, features_map = map(standardise, features_under(torch.tensor([0.4, 0.2, 0.01]), 1))
+        signature = YawSignature()
+        bev, features_map = signature(bev), signature(features_map)
+        scores = yaw_scores(bev, features_map)[0]
+        values = hypotheses(DEFINITION.yaw_range_rad, DEFINITION.yaw_step_rad)
+        for k, yaw in enumerate(values.double().tolist()):
+            samples = yaw / (math.pi / DEFINITION.angles)
+            low = math.floor(samples + 1e-9)
+            fraction = samples - low
+            rolled = (1 - fraction) * bev.roll(low, 3) + fraction * bev.roll(low + 1, 3)
+            expected = -(features_map - rolled).square().mean()
+            self.assertAlmostEqual(scores[k].item(), expected.item(), delta=1e-4)
+
+    @torch.no_grad()
+    def test_signature_ignores_translation_of_a_windowed_pattern(self):
+        blob = torch.zeros(1, 1, 100, 50)
+        blob[..., 45:50, 20:24] = 1.0
+        signature = YawSignature()
+        signature.window.fill_(1.0)
+        difference = signature(blob) - signature(blob.roll((7, 5), (2, 3)))
+        self.assertLess(difference.abs().max().item(), 1e-3)
+
+
+class JointVolumeGradients(unittest.TestCase):
+    def test_gradients_match_finite_differences(self):
+        generator = torch.Generator().manual_seed(0)
+        bev = torch.randn(1, 2, 100, 50, generator=generator)
+        features_map = torch.randn(1, 2, 100, 50, generator=generator)
+        direction = torch.randn(1, 21, 21, 11, generator=generator).double()
+        for which in (0, 1):
+            inputs = [bev.clone().requires_grad_(), features_map.clone().requires_grad_()]
+            (joint_volume(*inputs).double() * direction).sum().backward()
+            step = torch.randn(bev.shape, generator=generator)
+            # The volume is linear in either side alone, so a large step is exact.
+            moved = [bev, features_map]
+            moved[which] = moved[which] + step
+            change = (joint_volume(*moved).double() - joint_volume(bev, features_map)) * direction
+            expected = change.sum().item()
+            found = (inputs[which].grad.double() * step).sum().item()
+            self.assertAlmostEqual(found, expected, delta=1e-4 * max(1.0, abs(expected)))
+
+    @torch.no_grad()
+    def test_every_batch_element_is_scored_by_itself(self):
+        bev, features_map = torch.randn(3, 4, 100, 50), torch.randn(3, 4, 100, 50)
+        together = joint_volume(bev, features_map)
+        self.assertEqual(tuple(together.shape), (3, 21, 21, 11))
+        for i in range(3):
+            alone = joint_volume(bev[i : i + 1], features_map[i : i + 1])
+            self.assertTrue(torch.equal(together[i : i + 1], alone))
+
+
+class Degenerate(unittest.TestCase):
+    @torch.no_grad()
+    def test_constant_features_give_flat_finite_posteriors(self):
+        flat = standardise(torch.full((1, 4, 100, 50), 3.0))
+        for posterior in (sharp_solvers().joint(flat, flat), sharp_solvers().decoupled(flat, flat, None)):
+            for probability in posterior.axes():
+                self.assertTrue(torch.isfinite(probability).all())
+                self.assertAlmostEqual(probability.sum().item(), 1.0, places=4)
+        mean = posterior_mean(torch.full((1, 21), 1 / 21), 2.0, 0.2)
+        self.assertAlmostEqual(mean.item(), 0.0, places=5)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,83 @@
+"""Draws how a run went: its losses, and its errors on the evaluation scenes.
+
+    /usr/bin/python3 -m training.curves training/runs/nano models/nano_curves.png
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
+
+Table = dict[str, np.ndarray]
+_LOSS_PANELS = (
+    ("Semantic losses", ("perceived", "reconstructed")),
+    ("Joint solver: -log P(truth)", ("joint_x", "joint_y", "joint_yaw")),
+    ("Decoupled solver: -log P(truth)", ("dec_x", "dec_y", "dec_yaw")),
+)
+_VALIDATION = ("joint_x_mae", "joint_y_mae", "joint_yaw_mae")
+_SMOOTHED_ROWS = 9
+
+
+def read_table(path: Path) -> Table:
+    """The columns of a CSV file that a run appended to."""
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+def _smoothed(values: np.ndarray) -> np.ndarray:
+    """Moving median."""
+    half = _SMOOTHED_ROWS // 2
+    padded = np.pad(values, half, mode="edge")
+    return np.median(np.lib.stride_tricks.sliding_window_view(padded, _SMOOTHED_ROWS), axis=1)
+
+
+def _draw_losses(axes: plt.Axes, title: str, curves: Table, names: tuple[str, ...]) -> None:
+    seen = np.any([curves[name] > 0 for name in names], axis=0)  # pose losses: stage 2 alone
+    samples = curves["samples"][seen] / 1000
+    for name in names:
+        values = curves[name][seen]
+        (line,) = axes.plot(samples, values, linewidth=0.5, alpha=0.35)
+        axes.plot(samples, _smoothed(values), color=line.get_color(), label=name)
+    axes.set_title(title)
+
+
+def draw(run: Path, out: Path) -> None:
+    """Four panels from curves.csv and validation.csv of a run."""
+    curves = read_table(run / "curves.csv")
+    figure, panels = plt.subplots(2, 2, figsize=(10, 6.5), constrained_layout=True)
+    for axes, (title, names) in zip(panels.flat, _LOSS_PANELS):
+        _draw_losses(axes, title, curves, names)
+    last = panels.flat[3]
+    if (run / "validation.csv").exists():
+        validation = read_table(run / "validation.csv")
+        for name in _VALIDATION:
+            last.plot(validation["samples"] / 1000, validation[name], marker=".", label=name)
+    last.set_title("Evaluation scenes: mean absolute error (m, m, degrees)")
+    for axes in panels.flat:
+        axes.set_xlabel("training samples (thousands)")
+        axes.grid(alpha=0.3)
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(fontsize="small")
+    figure.savefig(out, dpi=100)
+    plt.close(figure)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("run", type=Path, help="folder of the run")
+    parser.add_argument("image", type=Path)
+    arguments = parser.parse_args()
+    draw(arguments.run, arguments.image)
+    print(arguments.image)
+
+
+if __name__ == "__main__":
+    main()

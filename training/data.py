@@ -1,0 +1,121 @@
+"""Batches from the simulator (training/native/sampler.h)."""
+
+from __future__ import annotations
+
+import atexit
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Protocol
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from training.model import (
+    BEV_COLS,
+    BEV_ROWS,
+    CAMERAS,
+    IMAGE_COLS,
+    IMAGE_ROWS,
+    RASTER_CHANNELS,
+    VIEW_SLOTS,
+)
+from training.native import address, library
+
+RASTER_ROWS, RASTER_COLS = 400, 200
+
+
+@dataclass
+class Batch:
+    """Samples as sampler.h describes them, with the view table of each."""
+
+    images: Tensor  # uint8 [n, 6, 3, 96, 320]
+    camera_mask: Tensor  # uint8 [n]
+    raster_prior: Tensor  # uint8 [n, 3, 400, 200]
+    raster_truth: Tensor  # uint8 [n, 3, 400, 200]
+    correction: Tensor  # float [n, 3]
+    index: Tensor  # int64 [n, 8, 5000]
+    weight: Tensor  # float [n, 8, 5000]
+
+    def to(self, device: torch.device) -> Batch:
+        return Batch(**{name: tensor.to(device) for name, tensor in vars(self).items()})
+
+    def __len__(self) -> int:
+        return self.images.shape[0]
+
+
+class Stream(Protocol):
+    """Where batches come from, in an order that the stream's start alone decides."""
+
+    def next(self, count: int) -> Batch: ...
+
+    def close(self) -> None: ...
+
+
+@lru_cache(maxsize=64)
+def view_table(camera_mask: int) -> tuple[Tensor, Tensor]:
+    """index int64 [8, 5000] and weight float [8, 5000] for the cameras that are there."""
+    index = np.empty((VIEW_SLOTS, BEV_ROWS * BEV_COLS), np.int32)
+    weight = np.empty((VIEW_SLOTS, BEV_ROWS * BEV_COLS), np.float32)
+    library().bevloc_view_table(camera_mask, address(index), address(weight))
+    return torch.from_numpy(index.astype(np.int64)), torch.from_numpy(weight)
+
+
+class SamplerStream:
+    """The simulator's endless samples; workers render ahead while the network trains.
+
+    Consecutive samples of one sampler share a world, so several samplers with seeds far apart take
+    turns: sample i comes from sampler i % STREAMS."""
+
+    STREAMS = 4
+    SEED_STRIDE = 2**28
+
+    def __init__(
+        self, first_seed: int, first_sample: int, threads: int, drop_camera_probability: float
+    ) -> None:
+        self._position = first_sample
+        self._samplers = [
+            library().bevloc_sampler_create(
+                first_seed + k * self.SEED_STRIDE,
+                (first_sample + self.STREAMS - 1 - k) // self.STREAMS,
+                threads,
+                drop_camera_probability,
+            )
+            for k in range(self.STREAMS)
+        ]
+        atexit.register(self.close)  # workers must not outlive the interpreter
+
+    def next(self, count: int) -> Batch:
+        """The next samples, those of one sampler side by side."""
+        images = np.empty((count, CAMERAS, 3, IMAGE_ROWS, IMAGE_COLS), np.uint8)
+        camera_mask = np.empty(count, np.uint8)
+        raster_prior = np.empty((count, RASTER_CHANNELS, RASTER_ROWS, RASTER_COLS), np.uint8)
+        raster_truth = np.empty_like(raster_prior)
+        correction = np.empty((count, 3), np.float32)
+        arrays = (images, camera_mask, raster_prior, raster_truth, correction)
+        filled = 0
+        for k, sampler in enumerate(self._samplers):
+            share = len(range((k - self._position) % self.STREAMS, count, self.STREAMS))
+            part = [array[filled : filled + share] for array in arrays]
+            library().bevloc_sampler_next(sampler, share, *map(address, part))
+            filled += share
+        self._position += count
+        tables = [view_table(int(mask)) for mask in camera_mask]
+        return Batch(
+            *map(torch.from_numpy, arrays),
+            index=torch.stack([index for index, _ in tables]),
+            weight=torch.stack([weight for _, weight in tables]),
+        )
+
+    def close(self) -> None:
+        for sampler in self._samplers:
+            library().bevloc_sampler_destroy(sampler)
+        self._samplers = []
+
+
+def augment(images: Tensor, generator: torch.Generator) -> Tensor:
+    """Random gain and offset per camera on real-valued images (the renderer varies the rest)."""
+    shape = (images.shape[0], CAMERAS, 1, 1, 1)
+    gain = torch.empty(shape).uniform_(0.85, 1.15, generator=generator)
+    offset = torch.empty(shape).uniform_(-0.12, 0.12, generator=generator)
+    return images * gain.to(images) + offset.to(images)

@@ -1,0 +1,186 @@
+"""Accuracy on scenes that training never sees.
+
+    /usr/bin/python3 -m training.evaluate training/runs/nano/checkpoint.pt --samples 512
+    /usr/bin/python3 -m training.evaluate training/runs/nano/checkpoint.pt --samples 512 --write models
+
+The first measures the float network with PyTorch. The second also measures the model file in the
+folder on the daemon's own network and solvers, and writes the results there: nano_results.json, and
+the tables of README.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import torch
+from torch import Tensor
+
+from training.config import FIRST_VALIDATION_SEED
+from training.data import Batch, SamplerStream
+from training.losses import intersection_over_union, pose_losses
+from training.model import Nano, real_images, real_raster
+from training.report import Results, write_results
+from training.runtime import NativeNetwork, NativeSolver
+from training.solver import PoseSolvers, Solution, standardise
+
+# A batch -> F_B, F_M and the logits of the perceived mask.
+Inference = Callable[[Batch], tuple[Tensor, Tensor, Tensor]]
+# F_B, F_M -> the correction.
+Solver = Callable[[Tensor, Tensor], Solution]
+AXES = ("x", "y", "yaw")
+CLASSES = ("divider", "crossing", "boundary")
+NATIVE_SOLVERS = ("block", "decoupled", "decoupled-plain")
+_TO_REPORTED = torch.tensor([1.0, 1.0, 180.0 / math.pi])  # m, m, degrees
+
+
+def _error_metrics(name: str, error: Tensor) -> dict[str, float]:
+    metrics: dict[str, float] = {}
+    for i, axis in enumerate(AXES):
+        e = error[:, i].abs()
+        metrics |= {
+            f"{name}_{axis}_mae": e.mean().item(),
+            f"{name}_{axis}_median": e.median().item(),
+            f"{name}_{axis}_rmse": e.square().mean().sqrt().item(),
+            f"{name}_{axis}_p90": e.quantile(0.9).item(),
+            f"{name}_{axis}_bias": error[:, i].mean().item(),
+        }
+    return metrics
+
+
+def _honesty_metrics(
+    name: str, error: Tensor, sigma: Tensor, nll: Tensor
+) -> dict[str, float]:
+    metrics: dict[str, float] = {}
+    for i, axis in enumerate(AXES):
+        e, s = error[:, i].abs(), sigma[:, i]
+        metrics |= {
+            f"{name}_{axis}_within_1_sigma": (e <= s).float().mean().item(),
+            f"{name}_{axis}_within_3_sigma": (e <= 3 * s).float().mean().item(),
+            f"{name}_{axis}_nll": nll[:, i].mean().item(),
+        }
+    return metrics
+
+
+def float_inference(net: Nano) -> Inference:
+    """The trained network as it is."""
+    net.eval()
+
+    def infer(batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
+        images, raster = real_images(batch.images), real_raster(batch.raster_prior)
+        return net(images, batch.index, batch.weight, raster)[:3]
+
+    return infer
+
+
+def torch_solvers(solvers: PoseSolvers) -> dict[str, Solver]:
+    """The solvers that training differentiates."""
+
+    def joint(bev: Tensor, features_map: Tensor) -> Solution:
+        return Solution.of(solvers.joint(standardise(bev), standardise(features_map)))
+
+    def decoupled(bev: Tensor, features_map: Tensor) -> Solution:
+        return Solution.of(solvers.decoupled(standardise(bev), standardise(features_map), None))
+
+    return {"joint": joint, "decoupled": decoupled}
+
+
+@torch.no_grad()
+def evaluate(
+    infer: Inference, solvers: dict[str, Solver], batches: list[Batch], device: torch.device
+) -> dict[str, float]:
+    """MAE, median, RMSE, 90th percentile and mean signed error (m, m, degrees), coverage and NLL
+    per axis and solver, the prior's errors, and the IoU of each class."""
+    errors: dict[str, list[Tensor]] = {name: [] for name in solvers}
+    sigmas: dict[str, list[Tensor]] = {name: [] for name in solvers}
+    nlls: dict[str, list[Tensor]] = {name: [] for name in solvers}
+    overlap, union = torch.zeros(3), torch.zeros(3)
+    for host_batch in batches:
+        batch = host_batch.to(device)
+        bev, features_map, perceived = infer(batch)
+        for name, solve in solvers.items():
+            solution = solve(bev, features_map)
+            errors[name].append((solution.estimate - batch.correction).cpu() * _TO_REPORTED)
+            sigmas[name].append(solution.deviation.cpu() * _TO_REPORTED)
+            nlls[name].append(pose_losses(solution.posterior, batch.correction).cpu())
+        found = intersection_over_union(perceived, real_raster(batch.raster_truth))
+        overlap += found[0].cpu()
+        union += found[1].cpu()
+    prior = torch.cat([-batch.correction.cpu() * _TO_REPORTED for batch in batches])
+    metrics = _error_metrics("prior", prior)
+    for name in solvers:
+        error = torch.cat(errors[name])
+        metrics |= _error_metrics(name, error)
+        metrics |= _honesty_metrics(name, error, torch.cat(sigmas[name]), torch.cat(nlls[name]))
+    for i, name in enumerate(CLASSES):
+        metrics[f"iou_{name}"] = (overlap[i] / union[i].clamp(min=1)).item()
+    return metrics
+
+
+def validation_batches(samples: int, batch: int = 8, threads: int = 1) -> list[Batch]:
+    """A fixed set of evaluation scenes, all cameras there."""
+    stream = SamplerStream(FIRST_VALIDATION_SEED, 0, threads, 0.0)
+    batches = [stream.next(min(batch, samples - i)) for i in range(0, samples, batch)]
+    stream.close()
+    return batches
+
+
+def summary(metrics: dict[str, float]) -> str:
+    """Each solver's figures and the IoU, a line each."""
+
+    def triple(solver: str, kind: str) -> str:
+        return "/".join(f"{metrics[f'{solver}_{axis}_{kind}']:.3f}" for axis in AXES)
+
+    solvers = [key.removesuffix("_x_nll") for key in metrics if key.endswith("_x_nll")]
+    lines = [f"{'prior':15} MAE {triple('prior', 'mae')}"]
+    lines += [
+        f"{solver:15} MAE {triple(solver, 'mae')} median {triple(solver, 'median')} "
+        f"RMSE {triple(solver, 'rmse')} p90 {triple(solver, 'p90')} bias {triple(solver, 'bias')} "
+        f"1 sigma {triple(solver, 'within_1_sigma')} 3 sigma {triple(solver, 'within_3_sigma')} "
+        f"NLL {triple(solver, 'nll')}"
+        for solver in solvers
+    ]
+    iou = "/".join(f"{metrics[f'iou_{name}']:.3f}" for name in CLASSES)
+    return "\n".join([*lines, f"{'IoU':15} {iou}"])
+
+
+def load_network(checkpoint: Path, averaged: bool = True) -> Nano:
+    """The network of a checkpoint; `averaged`: the EMA weights."""
+    net = Nano()
+    state = torch.load(checkpoint, map_location="cpu")
+    net.load_state_dict(state["ema" if averaged else "model"])
+    return net.eval()
+
+
+def evaluate_model_file(model: Path, batches: list[Batch], threads: int) -> dict[str, float]:
+    """A model file as the daemon runs it."""
+    network = NativeNetwork(model, threads)
+    solvers = {kind: NativeSolver(network, kind) for kind in NATIVE_SOLVERS}
+    return evaluate(network, solvers, batches, torch.device("cpu"))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("checkpoint", type=Path)
+    parser.add_argument("--samples", type=int, default=512)
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--raw", action="store_true", help="the last weights, not their average")
+    parser.add_argument("--write", type=Path, help="folder of the model file and its card")
+    arguments = parser.parse_args()
+    torch.set_num_threads(arguments.threads)
+    net = load_network(arguments.checkpoint, averaged=not arguments.raw)
+    batches = validation_batches(arguments.samples, threads=arguments.threads)
+    solvers = torch_solvers(net.solvers)
+    metrics = evaluate(float_inference(net), solvers, batches, torch.device("cpu"))
+    print(f"float\n{summary(metrics)}", flush=True)
+    if arguments.write:
+        model = arguments.write / "nano.onnx"
+        int8_metrics = evaluate_model_file(model, batches, arguments.threads)
+        print(f"int8\n{summary(int8_metrics)}", flush=True)
+        write_results(arguments.write, Results(arguments.samples, metrics, int8_metrics))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,131 @@
+"""Quantizes a trained network and writes it as standard ONNX, which any runtime can read.
+
+    /usr/bin/python3 -m training.export_onnx training/runs/nano/checkpoint.pt models
+
+Writes nano.onnx (int8, QDQ) and nano_float.onnx into the folder, and quantization.pt beside the
+checkpoint. Inputs: images int8 [6, 3, 96, 320] (RGB - 128), raster uint8 [1, 3, 400, 200],
+view_index int32 [8, 5000] and view_weight float [8, 5000] (pipeline/network/view_table.h). Outputs,
+real values: bev_features and map_features [1, 16, 100, 50], bev_mask (logits) [1, 3, 400, 200].
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import onnx
+import torch
+from onnx import TensorProto, helper
+
+from training.config import FIRST_TRAINING_SEED
+from training.data import Batch, SamplerStream
+from training.evaluate import load_network
+from training.graph import FoldedConv, Walk, folded_convolutions
+from training.model import (
+    BEV_COLS,
+    BEV_ROWS,
+    CAMERAS,
+    IMAGE_COLS,
+    IMAGE_ROWS,
+    RASTER_CHANNELS,
+    VIEW_SLOTS,
+    Nano,
+)
+from training.onnx_graph import MASK_OUTPUT, FloatOnnxBackend, Int8OnnxBackend
+from training.quantize import input_scales, quantize
+
+OPSET, IR_VERSION = 13, 8
+MODEL_NAME = "nano"
+QUANTIZATION_FILE = "quantization.pt"
+# Calibration looks at training scenes that no run reaches.
+CALIBRATION_SEED = FIRST_TRAINING_SEED + 2**27
+
+
+def _info(name: str, kind: int, shape: list[int]) -> onnx.ValueInfoProto:
+    return helper.make_tensor_value_info(name, kind, shape)
+
+
+def _inputs() -> list[onnx.ValueInfoProto]:
+    table_shape = [VIEW_SLOTS, BEV_ROWS * BEV_COLS]
+    raster_shape = [1, RASTER_CHANNELS, 4 * BEV_ROWS, 4 * BEV_COLS]
+    return [
+        _info("images", TensorProto.INT8, [CAMERAS, 3, IMAGE_ROWS, IMAGE_COLS]),
+        _info("raster", TensorProto.UINT8, raster_shape),
+        _info("view_index", TensorProto.INT32, table_shape),
+        _info("view_weight", TensorProto.FLOAT, table_shape),
+    ]
+
+
+def _outputs(net: Nano) -> list[onnx.ValueInfoProto]:
+    feature_shape = [1, net.bev_compress[-1].second.conv.out_channels, BEV_ROWS, BEV_COLS]
+    mask_shape = [1, RASTER_CHANNELS, 4 * BEV_ROWS, 4 * BEV_COLS]
+    return [
+        _info("bev_features", TensorProto.FLOAT, feature_shape),
+        _info("map_features", TensorProto.FLOAT, feature_shape),
+        _info(MASK_OUTPUT, TensorProto.FLOAT, mask_shape),
+    ]
+
+
+def metadata(net: Nano) -> dict[str, str]:
+    """What the run time has to know beside the graph."""
+    scales = {
+        f"bevloc.solver.{name}_scale": f"{net.solvers.scale(name).item():.6g}"
+        for name in net.solvers.log_scale
+    }
+    return {"bevloc.model": MODEL_NAME, **scales, "bevloc.solver.gem_omega": "1"}
+
+
+def build_model(
+    net: Nano, convolutions: dict[str, FoldedConv], backend: FloatOnnxBackend
+) -> onnx.ModelProto:
+    """The whole network as one ONNX model, as `backend` writes it."""
+    inputs = input_scales()
+    walk = Walk(net, convolutions, backend)
+    bev, _ = walk.run_images(backend.dequantize("images", inputs["images"]))
+    features_map = walk.run_map(backend.dequantize("raster", inputs["raster"]))
+    backend.node("Identity", [bev], "bev_features")
+    backend.node("Identity", [features_map], "map_features")
+    graph = helper.make_graph(
+        backend.nodes, MODEL_NAME, _inputs(), _outputs(net), backend.initializers
+    )
+    model = helper.make_model(
+        graph,
+        producer_name="bevloc",
+        opset_imports=[helper.make_opsetid("", OPSET)],
+        ir_version=IR_VERSION,
+    )
+    helper.set_model_props(model, metadata(net))
+    onnx.checker.check_model(model, full_check=True)
+    return model
+
+
+def calibration_batches(samples: int, threads: int = 1) -> list[Batch]:
+    stream = SamplerStream(CALIBRATION_SEED, 0, threads, 0.1)
+    batches = [stream.next(8) for _ in range(0, samples, 8)]
+    stream.close()
+    return batches
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("checkpoint", type=Path)
+    parser.add_argument("models", type=Path, help="folder")
+    parser.add_argument("--calibration", type=int, default=128, help="samples")
+    parser.add_argument("--threads", type=int, default=1)
+    arguments = parser.parse_args()
+    torch.set_num_threads(arguments.threads)
+    net = load_network(arguments.checkpoint)
+    quantization = quantize(net, calibration_batches(arguments.calibration, arguments.threads))
+    quantization.save(arguments.checkpoint.with_name(QUANTIZATION_FILE))
+    arguments.models.mkdir(parents=True, exist_ok=True)
+    for name, convolutions, backend in (
+        (MODEL_NAME, quantization.convolutions, Int8OnnxBackend(quantization)),
+        (f"{MODEL_NAME}_float", folded_convolutions(net), FloatOnnxBackend()),
+    ):
+        path = arguments.models / f"{name}.onnx"
+        onnx.save(build_model(net, convolutions, backend), str(path))
+        print(f"{path}: {path.stat().st_size / 1e6:.2f} MB", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,65 @@
+"""The native library that training shares with the daemon: samples, joint volume, run time."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+ENVIRONMENT = "BEVLOC_TRAINING_LIBRARY"
+_REPOSITORY = Path(__file__).resolve().parent.parent
+_LIBRARY = Path("training/native/libbevloc_training.so")
+
+
+def library_path() -> Path:
+    """Where the library is: $BEVLOC_TRAINING_LIBRARY, or in build/ or a preset's build/<preset>/."""
+    if chosen := os.environ.get(ENVIRONMENT):
+        return Path(chosen)
+    build = _REPOSITORY / "build"
+    candidates = [build / _LIBRARY, *sorted(build.glob(f"*/{_LIBRARY}"))]
+    for candidate in candidates:
+        if candidate.exists():
+            return candidate
+    raise FileNotFoundError(
+        f"{build}: no {_LIBRARY.name}; build the target bevloc_training or set {ENVIRONMENT}"
+    )
+
+
+@lru_cache(maxsize=1)
+def library() -> ctypes.CDLL:
+    lib = ctypes.CDLL(str(library_path()))
+    pointer, integer = ctypes.c_void_p, ctypes.c_int
+    lib.bevloc_joint_volume.argtypes = [integer] * 3 + [pointer] * 3
+    lib.bevloc_joint_volume.restype = None
+    lib.bevloc_joint_volume_gradients.argtypes = [integer] * 3 + [pointer] * 5
+    lib.bevloc_joint_volume_gradients.restype = None
+    lib.bevloc_sampler_create.argtypes = [ctypes.c_uint64] * 2 + [integer, ctypes.c_double]
+    lib.bevloc_sampler_create.restype = pointer
+    lib.bevloc_sampler_destroy.argtypes = [pointer]
+    lib.bevloc_sampler_destroy.restype = None
+    lib.bevloc_sampler_next.argtypes = [pointer, integer] + [pointer] * 5
+    lib.bevloc_sampler_next.restype = None
+    lib.bevloc_view_table.argtypes = [ctypes.c_uint8, pointer, pointer]
+    lib.bevloc_view_table.restype = None
+    lib.bevloc_network_create.argtypes = [ctypes.c_char_p, integer, pointer, integer]
+    lib.bevloc_network_create.restype = pointer
+    lib.bevloc_network_destroy.argtypes = [pointer]
+    lib.bevloc_network_destroy.restype = None
+    lib.bevloc_network_run.argtypes = [pointer, pointer, ctypes.c_uint8] + [pointer] * 4
+    lib.bevloc_network_run.restype = None
+    lib.bevloc_solver_create.argtypes = [pointer, ctypes.c_char_p, pointer, integer]
+    lib.bevloc_solver_create.restype = pointer
+    lib.bevloc_solver_destroy.argtypes = [pointer]
+    lib.bevloc_solver_destroy.restype = None
+    lib.bevloc_solver_solve.argtypes = [pointer] * 6
+    lib.bevloc_solver_solve.restype = None
+    return lib
+
+
+def address(array: np.ndarray) -> ctypes.c_void_p:
+    """Where a contiguous array lies. The caller keeps the array alive."""
+    assert array.flags.c_contiguous
+    return array.ctypes.data_as(ctypes.c_void_p)

@@ -1,0 +1,130 @@
+// The C interface, and the workers that make samples ahead of their use.
+#include "training/native/sampler.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "pipeline/network/view_table.h"
+#include "training/native/sample_maker.h"
+
+using bevloc::training::kSamplesPerWorld;
+using bevloc::training::Sample;
+using bevloc::training::Stream;
+
+/// Each worker makes whole worlds; samples leave in order, world by world. A worker waits before it
+/// starts a world too far ahead of the one that is being read, which bounds the memory.
+struct bevloc_sampler {
+ public:
+  bevloc_sampler(const Stream& stream, uint64_t first_sample, int threads)
+      : stream_(stream),
+        worlds_ahead_(2 * static_cast<uint64_t>(threads)),
+        first_world_(first_sample / kSamplesPerWorld),
+        first_in_first_world_(first_sample % kSamplesPerWorld),
+        next_world_to_make_(first_world_),
+        world_being_read_(first_world_),
+        left_in_world_(kSamplesPerWorld - first_in_first_world_) {
+    for (int i = 0; i < threads; ++i) workers_.emplace_back([this] { make_worlds(); });
+  }
+
+  ~bevloc_sampler() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    room_.notify_all();
+    for (std::thread& worker : workers_) worker.join();
+  }
+
+  bevloc_sampler(const bevloc_sampler&) = delete;
+  bevloc_sampler& operator=(const bevloc_sampler&) = delete;
+
+  /// The next sample in order; waits until it is made.
+  Sample next() {
+    std::unique_lock lock(mutex_);
+    std::deque<Sample>& samples = made_[world_being_read_];
+    arrived_.wait(lock, [&samples] { return !samples.empty(); });
+    Sample sample = std::move(samples.front());
+    samples.pop_front();
+    if (--left_in_world_ == 0) {
+      made_.erase(world_being_read_++);
+      left_in_world_ = kSamplesPerWorld;
+      room_.notify_all();
+    }
+    return sample;
+  }
+
+ private:
+  void make_worlds() {
+    while (true) {
+      uint64_t world = 0;
+      {
+        std::unique_lock lock(mutex_);
+        room_.wait(lock, [this] {
+          return stopping_ || next_world_to_make_ < world_being_read_ + worlds_ahead_;
+        });
+        if (stopping_) return;
+        world = next_world_to_make_++;
+      }
+      const uint64_t first = world == first_world_ ? first_in_first_world_ : 0;
+      bevloc::training::make_samples_of_world(stream_, world, first,
+                                              [this, world](Sample&& sample) {
+                                                const std::lock_guard lock(mutex_);
+                                                made_[world].push_back(std::move(sample));
+                                                if (world == world_being_read_)
+                                                  arrived_.notify_one();
+                                                return !stopping_;
+                                              });
+    }
+  }
+
+  const Stream stream_;
+  const uint64_t worlds_ahead_;
+  const uint64_t first_world_;
+  const uint64_t first_in_first_world_;
+
+  std::mutex mutex_;  ///< guards all below
+  std::condition_variable room_;
+  std::condition_variable arrived_;
+  bool stopping_ = false;
+  uint64_t next_world_to_make_;
+  uint64_t world_being_read_;
+  uint64_t left_in_world_;
+  std::map<uint64_t, std::deque<Sample>> made_;
+
+  std::vector<std::thread> workers_;
+};
+
+bevloc_sampler* bevloc_sampler_create(uint64_t first_seed, uint64_t first_sample, int threads,
+                                      double drop_camera_probability) {
+  return new bevloc_sampler({first_seed, drop_camera_probability}, first_sample,
+                            std::max(threads, 1));
+}
+
+void bevloc_sampler_destroy(bevloc_sampler* sampler) {
+  delete sampler;
+}
+
+void bevloc_sampler_next(bevloc_sampler* sampler, int count, uint8_t* images, uint8_t* camera_mask,
+                         uint8_t* raster_prior, uint8_t* raster_truth, float* correction) {
+  for (int i = 0; i < count; ++i) {
+    const Sample sample = sampler->next();
+    images = std::copy(sample.images.begin(), sample.images.end(), images);
+    raster_prior = std::copy(sample.raster_prior.begin(), sample.raster_prior.end(), raster_prior);
+    raster_truth = std::copy(sample.raster_truth.begin(), sample.raster_truth.end(), raster_truth);
+    *camera_mask++ = static_cast<uint8_t>(sample.cameras.to_ulong());
+    *correction++ = static_cast<float>(sample.correction.x_m);
+    *correction++ = static_cast<float>(sample.correction.y_m);
+    *correction++ = static_cast<float>(sample.correction.yaw_rad);
+  }
+}
+
+void bevloc_view_table(uint8_t camera_mask, int32_t* index, float* weight) {
+  const bevloc::ViewTable table = bevloc::make_view_table(
+      bevloc::training::told_network_rig(), bevloc::CameraMask(camera_mask), bevloc::kFeatureGrid);
+  std::copy(table.index.begin(), table.index.end(), index);
+  std::copy(table.weight.begin(), table.weight.end(), weight);
+}

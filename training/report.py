@@ -1,0 +1,81 @@
+"""The results that training.evaluate writes beside a model: JSON, and the tables of its card."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+BEGIN, END = "<!-- results: written by training.evaluate -->", "<!-- end of results -->"
+RESULTS_FILE, CARD_FILE = "nano_results.json", "README.md"
+_AXES = (("x", "Longitudinal (m)"), ("y", "Lateral (m)"), ("yaw", "Yaw (degrees)"))
+_ERRORS = (("mae", "MAE"), ("rmse", "RMSE"), ("median", "median"), ("p90", "90 %"), ("bias", "mean"))
+_SHARES = (("within_1_sigma", "within 1 sigma"), ("within_3_sigma", "within 3 sigma"))
+# (network, its metrics' field, solver, title)
+_ROWS = (
+    ("float", "joint", "float, block"),
+    ("float", "decoupled", "float, decoupled-plain"),
+    ("int8", "block", "int8, block"),
+    ("int8", "decoupled-plain", "int8, decoupled-plain"),
+    ("int8", "decoupled", "int8, decoupled (refined; the default)"),
+)
+
+
+@dataclass
+class Results:
+    """Metrics as training.evaluate names them."""
+
+    samples: int
+    float: dict[str, float]
+    int8: dict[str, float]
+
+
+def _table(header: list[str], rows: list[list[str]]) -> list[str]:
+    rule = ["---"] + ["---:"] * (len(header) - 1)
+    return ["| " + " | ".join(cells) + " |" for cells in (header, rule, *rows)]
+
+
+def _axis_table(results: Results, axis: str, title: str) -> list[str]:
+    def errors(metrics: dict[str, float], solver: str) -> list[str]:
+        return [f"{metrics[f'{solver}_{axis}_{key}']:.3f}" for key, _ in _ERRORS]
+
+    def shares(metrics: dict[str, float], solver: str) -> list[str]:
+        return [f"{100 * metrics[f'{solver}_{axis}_{key}']:.1f} %" for key, _ in _SHARES]
+
+    rows = [["prior, uncorrected", *errors(results.float, "prior"), "", ""]]
+    for network, solver, row_title in _ROWS:
+        metrics = getattr(results, network)
+        rows.append([row_title, *errors(metrics, solver), *shares(metrics, solver)])
+    header = [title, *(name for _, name in _ERRORS), *(name for _, name in _SHARES)]
+    return _table(header, rows)
+
+
+def _iou_table(results: Results) -> list[str]:
+    classes = [key for key in results.float if key.startswith("iou_")]
+    rows = [
+        [network, *(f"{getattr(results, network)[key]:.3f}" for key in classes)]
+        for network in ("float", "int8")
+    ]
+    return _table(["Perceived mask, IoU", *(key.removeprefix("iou_") for key in classes)], rows)
+
+
+def markdown(results: Results) -> str:
+    """A table per axis and one of the masks."""
+    lines = [f"{results.samples} evaluation scenes.", ""]
+    for axis, title in _AXES:
+        lines += [*_axis_table(results, axis, title), ""]
+    return "\n".join([*lines, *_iou_table(results)])
+
+
+def write_results(models: Path, results: Results) -> None:
+    """The JSON file, and the card's part between its two marks."""
+    text = json.dumps(dataclasses.asdict(results), indent=1)
+    (models / RESULTS_FILE).write_text(text + "\n")
+    card = models / CARD_FILE
+    content = card.read_text()
+    before, _, rest = content.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not end:
+        raise ValueError(f"{card}: wanted the marks '{BEGIN}' and '{END}'")
+    card.write_text(f"{before}{BEGIN}\n\n{markdown(results)}\n\n{END}{after}")

@@ -1,0 +1,75 @@
+"""The daemon's own network and solvers (training/native/runtime.h), to measure what is shipped."""
+
+from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from training.data import Batch
+from training.model import BEV_COLS, BEV_ROWS
+from training.native import address, library
+from training.solver import DEFINITION, Posterior, Solution, hypotheses
+
+CHANNELS = 16
+_ERROR_SIZE = 1000
+
+
+class NativeNetwork:
+    """A model file on the daemon's executor."""
+
+    def __init__(self, model: Path, threads: int = 1) -> None:
+        error = ctypes.create_string_buffer(_ERROR_SIZE)
+        path = str(model).encode()
+        self.handle = library().bevloc_network_create(path, threads, error, _ERROR_SIZE)
+        if not self.handle:
+            raise ValueError(error.value.decode())
+
+    def __del__(self) -> None:
+        library().bevloc_network_destroy(self.handle)
+
+    def __call__(self, batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
+        """F_B, F_M and the logits of the perceived mask."""
+        count = len(batch)
+        bev = np.empty((count, CHANNELS, BEV_ROWS, BEV_COLS), np.float32)
+        features_map = np.empty_like(bev)
+        mask = np.empty(batch.raster_prior.shape, np.float32)
+        images, raster = batch.images.numpy(), batch.raster_prior.numpy()
+        for i in range(count):
+            arrays = (raster[i], bev[i], features_map[i], mask[i])
+            library().bevloc_network_run(
+                self.handle, address(images[i]), int(batch.camera_mask[i]), *map(address, arrays)
+            )
+        return torch.from_numpy(bev), torch.from_numpy(features_map), torch.from_numpy(mask)
+
+
+class NativeSolver:
+    """A solver by its name, with the parameters of a model file."""
+
+    def __init__(self, network: NativeNetwork, kind: str) -> None:
+        error = ctypes.create_string_buffer(_ERROR_SIZE)
+        self.handle = library().bevloc_solver_create(
+            network.handle, kind.encode(), error, _ERROR_SIZE
+        )
+        if not self.handle:
+            raise ValueError(error.value.decode())
+
+    def __del__(self) -> None:
+        library().bevloc_solver_destroy(self.handle)
+
+    def __call__(self, bev: Tensor, features_map: Tensor) -> Solution:
+        counts = [len(hypotheses(*axis)) for axis in DEFINITION.axes()]
+        correction = np.empty((len(bev), 3), np.float32)
+        deviation = np.empty_like(correction)
+        probabilities = np.empty((len(bev), sum(counts)), np.float32)
+        sides = bev.contiguous().numpy(), features_map.contiguous().numpy()
+        for arrays in zip(*sides, correction, deviation, probabilities):
+            library().bevloc_solver_solve(self.handle, *map(address, arrays))
+        return Solution(
+            torch.from_numpy(correction),
+            torch.from_numpy(deviation),
+            Posterior(*torch.from_numpy(probabilities).split(counts, dim=1)),
+        )
