@@ -43,6 +43,7 @@ bool set_option(int descriptor, int level, int name, const T& value) {
 bool set_filter(int descriptor, const std::vector<uint32_t>& ids) {
   if (ids.empty()) return true;
   std::vector<can_filter> filters;
+  filters.reserve(ids.size());
   for (const uint32_t id : ids) {
     filters.push_back({.can_id = id, .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
   }

@@ -107,8 +107,9 @@ VehicleInputCounters VehicleInput::counters() const {
 }
 
 std::vector<uint32_t> VehicleInput::accepted_ids(const BaseIds& base) {
-  std::vector<uint32_t> ids;
-  for (const Message* message : kInputs) ids.push_back(message->id(base));
+  std::vector<uint32_t> ids(kInputs.size());
+  std::ranges::transform(kInputs, ids.begin(),
+                         [&](const Message* message) { return message->id(base); });
   return ids;
 }
 

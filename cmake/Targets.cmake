@@ -19,12 +19,18 @@ function(bevloc_library name)
   target_link_libraries(${name} PUBLIC bevloc_options ${ARG_LINK})
 endfunction()
 
-# bevloc_test(NAME SOURCES... [LINK libs...]): a GoogleTest program; each of its cases is a CTest test.
+# bevloc_test(NAME SOURCES... [WHOLE] [LINK libs...]): a GoogleTest program; each of its cases is a
+# CTest test, or, with WHOLE, the program is one (its cases share an expensive set-up).
 include(GoogleTest)
 function(bevloc_test name)
-  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(ARG "WHOLE" "" "LINK" ${ARGN})
   add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PRIVATE bevloc_options ${ARG_LINK} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE BEVLOC_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+  if(ARG_WHOLE)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 900)
+  else()
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES PROPERTIES TIMEOUT 600)
+  endif()
 endfunction()

@@ -53,7 +53,7 @@ Appliance::Appliance(const Config& config, const HdMap& map, Hardware hardware,
       vehicle_input_(*hardware_.bus, config.can.base_ids,
                      {map.origin.latitude_deg, map.origin.longitude_deg}, samples_),
       vision_(*localizer_, config.cameras.synchronizer, frames_, predictions_, reports_),
-      estimation_(TrackerParameters(), config.health, map_id_of(map), publisher_, samples_, reports_,
+      estimation_(config.tracker, config.health, map_id_of(map), publisher_, samples_, reports_,
                   predictions_) {
   for (const auto& camera : hardware_.cameras) {
     capture_.emplace_back(*camera, *hardware_.clock, frames_);

@@ -30,7 +30,7 @@ struct FrameCounts {
   uint64_t dropped() const { return captured - used; }
 };
 
-/// Everything that runs, ready to be driven by threads (ThreadedRunner) or in lockstep. Stages talk
+/// Everything that runs, ready to be driven by threads or in lockstep (runner.h). Stages talk
 /// through bounded queues alone.
 class Appliance {
  public:

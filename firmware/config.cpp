@@ -59,24 +59,25 @@ MapConfig read_map(YamlMap yaml, CameraDriver camera_driver, const std::filesyst
   return map;
 }
 
-/// Range and step of one axis, `key_range` and `key_step` in YAML's unit.
+/// Range and step of one axis, all in YAML's unit.
 HypothesisAxis read_axis(YamlMap& yaml, std::string_view range_key, std::string_view step_key,
-                         const HypothesisAxis& fallback, double unit) {
+                         const HypothesisAxis& fallback, double max_range) {
   HypothesisAxis axis;
-  axis.range = unit * yaml.optional<double>(range_key, fallback.range / unit, between(0.1, 20.0));
-  axis.step = unit * yaml.optional<double>(step_key, fallback.step / unit, between(0.01, 5.0));
+  axis.range = yaml.optional<double>(range_key, fallback.range, between(0.1, max_range));
+  axis.step = yaml.optional<double>(step_key, fallback.step, between(0.01, 5.0));
   if (axis.step > axis.range) yaml.reject(step_key, "more than the range", "at most the range");
   return axis;
 }
 
 HypothesisGrid read_hypotheses(std::optional<YamlMap> yaml, const HypothesisGrid& fallback) {
   if (!yaml) return fallback;
-  const double degree_rad = radians(1.0);
-  HypothesisGrid grid;
-  grid.x_m = read_axis(*yaml, "x_range_m", "x_step_m", fallback.x_m, 1.0);
-  grid.y_m = read_axis(*yaml, "y_range_m", "y_step_m", fallback.y_m, 1.0);
-  grid.yaw_rad = read_axis(*yaml, "yaw_range_deg", "yaw_step_deg", fallback.yaw_rad, degree_rad);
-  return grid;
+  const double max_range_m = max_shift_m(kFeatureGrid);
+  const HypothesisAxis yaw_deg =
+      read_axis(*yaml, "yaw_range_deg", "yaw_step_deg",
+                {degrees(fallback.yaw_rad.range), degrees(fallback.yaw_rad.step)}, kMaxYawRange_deg);
+  return {read_axis(*yaml, "x_range_m", "x_step_m", fallback.x_m, max_range_m),
+          read_axis(*yaml, "y_range_m", "y_step_m", fallback.y_m, max_range_m),
+          {radians(yaw_deg.range), radians(yaw_deg.step)}};
 }
 
 SolverConfig read_solver(std::optional<YamlMap> yaml) {

@@ -7,8 +7,8 @@
 
 namespace bevloc::firmware {
 
-/// Runs until `stop` says so. Fails where the map, the model or the bus cannot be opened; a camera
-/// that cannot be opened is tried again for ever instead.
+/// Runs until `stop` says so. Fails where the map, the model, the bus or a recording cannot be
+/// opened; a camera that fails later is started again for ever (CaptureStage).
 Status run_daemon(const Config& config, const Rig& rig, const std::function<bool()>& stop);
 
 void set_log_level(LogLevel level);

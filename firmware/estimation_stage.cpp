@@ -49,10 +49,15 @@ void EstimationStage::tick(Time now) {
 void EstimationStage::take_samples() {
   while (const auto sample = samples_.pop(Duration::zero())) {
     if (!feed(tracker_, *sample)) continue;
+    if (const auto* gnss = std::get_if<GnssSample>(&*sample)) watch_gnss(*gnss);
     std::optional<Time>& latest =
         std::holds_alternative<OdometrySample>(*sample) ? odometry_time_ : gnss_time_;
     latest = std::visit([](const auto& taken) { return taken.time; }, *sample);
   }
+}
+
+void EstimationStage::watch_gnss(const GnssSample& sample) {
+  if (const auto pose = tracker_.pose_at(sample.time)) gnss_monitor_.add(sample, *pose);
 }
 
 void EstimationStage::take_reports() {
@@ -88,10 +93,12 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
   if (latest_report_) {
     inputs.cameras_present = latest_report_->present;
     inputs.map_nearby = latest_report_->map_nearby || !latest_report_->had_prior;
+    inputs.overloaded = latest_report_->skipped;
   }
   inputs.latest_correction_refused = refused_in_a_row_ > 0;
   inputs.accepted_in_a_row = accepted_in_a_row_;
   inputs.refused_in_a_row = refused_in_a_row_;
+  inputs.contradicts_gnss = gnss_monitor_.contradicts();
   if (pose) {
     inputs.longitudinal_sigma_m = std::sqrt(pose->covariance(0, 0));
     inputs.lateral_sigma_m = std::sqrt(pose->covariance(1, 1));
@@ -102,6 +109,7 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
     tracker_.widen();
     accepted_in_a_row_ = 0;
     refused_in_a_row_ = 0;
+    gnss_monitor_.reset();
   }
   counters_.state = health_.state();
   counters_.why = health_.why().bits();

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "can/pose_publisher.h"
+#include "firmware/gnss_monitor.h"
 #include "firmware/health.h"
 #include "firmware/messages.h"
 #include "pipeline/tracker/tracker.h"
@@ -42,6 +43,7 @@ class EstimationStage {
 
  private:
   void take_samples();
+  void watch_gnss(const GnssSample& sample);
   void take_reports();
   void weigh(const VisionReport& report);
   void update_health(const std::optional<TrackedPose>& pose, Time now);
@@ -50,6 +52,7 @@ class EstimationStage {
 
   Tracker tracker_;
   Health health_;
+  GnssMonitor gnss_monitor_;
   can::PosePublisher& publisher_;
   VehicleQueue& samples_;
   VisionQueue& reports_;

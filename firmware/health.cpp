@@ -67,17 +67,20 @@ can::WhyMask Health::find_reasons(const HealthInputs& inputs) const {
   set_if(Why::kGnssMissing, inputs.gnss_age > limits_.gnss_timeout);
   set_if(Why::kNoInitialPose, !inputs.initialized);
   set_if(Why::kOutsideMap, !inputs.map_nearby);
+  set_if(Why::kMatchUncertain, inputs.contradicts_gnss);
   set_if(Why::kMatchRejected, inputs.latest_correction_refused);
   set_if(Why::kPoseUncertain, inputs.longitudinal_sigma_m > limits_.longitudinal_sigma_m ||
                                   inputs.lateral_sigma_m > limits_.lateral_sigma_m ||
                                   inputs.yaw_sigma_rad > limits_.yaw_sigma_rad);
   set_if(Why::kPoseStale, inputs.correction_age > limits_.correction_timeout);
+  set_if(Why::kOverload, inputs.overloaded);
   set_if(Why::kInternalFault, inputs.internal_error);
   return why;
 }
 
 bool Health::is_lost(const HealthInputs& inputs) const {
-  return why_.has(Why::kPoseUncertain) || why_.has(Why::kOdometryMissing) ||
+  return why_.has(Why::kPoseUncertain) || why_.has(Why::kMatchUncertain) ||
+         why_.has(Why::kOdometryMissing) ||
          inputs.correction_age > limits_.lost_timeout ||
          inputs.refused_in_a_row >= limits_.refusals_to_lose;
 }

@@ -1,4 +1,4 @@
-// The appliance's state, and why it is in it (DESIGN, section 6).
+// The appliance's state, and why it is in it.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct HealthLimits {
   /// Without one for this long: LOST.
   Duration lost_timeout = std::chrono::seconds(6);
   /// Corrections in a row that must be accepted before ACQUIRING becomes TRACKING.
-  int corrections_to_track = 5;
+  int corrections_to_track = 10;
   /// Corrections in a row that are refused before the pose counts as LOST.
   int refusals_to_lose = 15;
   /// 1-sigma limits of a pose that may be sent as valid.
@@ -44,14 +44,16 @@ struct HealthInputs {
   bool latest_correction_refused = false;
   int accepted_in_a_row = 0;
   int refused_in_a_row = 0;
+  bool contradicts_gnss = false;  ///< for longer than GNSS noise explains
+  bool overloaded = false;        ///< framesets before the latest one were skipped
   double longitudinal_sigma_m = 0.0;
   double lateral_sigma_m = 0.0;
   double yaw_sigma_rad = 0.0;
   bool internal_error = false;
 };
 
-/// INIT -> ACQUIRING -> TRACKING <-> DEGRADED -> LOST -> ACQUIRING; FAULT needs a person. Pure
-/// logic: the caller gives the facts, time included.
+/// INIT -> ACQUIRING -> TRACKING <-> DEGRADED; TRACKING or DEGRADED -> LOST -> ACQUIRING; any ->
+/// FAULT, which needs a person. Pure logic: the caller gives the facts, time included.
 class Health {
  public:
   explicit Health(const HealthLimits& limits) : limits_(limits) {}

@@ -15,6 +15,7 @@ namespace bevloc::firmware {
 struct VisionReport {
   Time frame_time;
   CameraMask present;
+  bool skipped = false;    ///< framesets before this one, because this one was already there
   bool had_prior = false;  ///< without one nothing could be matched
   bool map_nearby = false;
   Se2 prior;  ///< T0, map_from_vehicle at frame_time

@@ -19,9 +19,10 @@ void VisionStage::observe(std::function<void(const VisionSnapshot&)> observer) {
 bool VisionStage::step(const drivers::Clock& clock, Duration timeout) {
   ++counters_.steps;
   take_in(clock, timeout);
+  const uint64_t skipped_before = counters_.framesets_skipped;
   const auto frameset = newest_frameset(clock.now());
   if (!frameset) return false;
-  localize(*frameset);
+  localize(*frameset, counters_.framesets_skipped > skipped_before);
   return true;
 }
 
@@ -50,10 +51,11 @@ std::optional<drivers::Frameset> VisionStage::newest_frameset(Time now) {
   return newest;
 }
 
-void VisionStage::localize(const drivers::Frameset& frameset) {
+void VisionStage::localize(const drivers::Frameset& frameset, bool skipped) {
   VisionReport report;
   report.frame_time = frameset.time;
   report.present = frameset.present;
+  report.skipped = skipped;
   ++counters_.framesets;
   counters_.frames_used += frameset.present.count();
 

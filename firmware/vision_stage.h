@@ -51,7 +51,7 @@ class VisionStage {
  private:
   void take_in(const drivers::Clock& clock, Duration timeout);
   std::optional<drivers::Frameset> newest_frameset(Time now);
-  void localize(const drivers::Frameset& frameset);
+  void localize(const drivers::Frameset& frameset, bool skipped);
 
   Localizer& localizer_;
   drivers::FramesetSynchronizer synchronizer_;

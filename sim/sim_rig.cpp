@@ -1,7 +1,8 @@
 #include "sim/sim_rig.h"
 
-#include <Eigen/Geometry>
 #include <cmath>
+
+#include <Eigen/Geometry>
 
 #include "common/se2.h"
 
@@ -21,12 +22,12 @@ struct Mounting {
 };
 
 constexpr std::array<Mounting, kCameraCount> kMountings = {{
-    {1272.6, 826.6, 479.8, 1.524, 0.495, 1.509, 55.2, 0.6},    // front_left
-    {1266.4, 816.3, 491.5, 1.701, 0.016, 1.511, 0.3, 0.4},     // front
-    {1260.8, 808.0, 495.3, 1.551, -0.493, 1.496, -56.4, 0.5},  // front_right
-    {1256.7, 792.1, 492.8, 1.036, 0.485, 1.591, 108.6, 0.6},   // back_left
-    {809.2, 829.2, 481.8, 0.028, 0.003, 1.579, 179.9, 0.9},    // back
-    {1259.5, 807.3, 501.2, 1.015, -0.481, 1.562, -110.8, 0.5}, // back_right
+    {1272.6, 826.6, 479.8, 1.524, 0.495, 1.509, 55.2, 0.6},     // front_left
+    {1266.4, 816.3, 491.5, 1.701, 0.016, 1.511, 0.3, 0.4},      // front
+    {1260.8, 808.0, 495.3, 1.551, -0.493, 1.496, -56.4, 0.5},   // front_right
+    {1256.7, 792.1, 492.8, 1.036, 0.485, 1.591, 108.6, 0.6},    // back_left
+    {809.2, 829.2, 481.8, 0.028, 0.003, 1.579, 179.9, 0.9},     // back
+    {1259.5, 807.3, 501.2, 1.015, -0.481, 1.562, -110.8, 0.5},  // back_right
 }};
 
 constexpr int kWidthPx = 640;
@@ -58,8 +59,8 @@ CameraModel camera_at(const Mounting& mounting, bool wide) {
   k.cy_px = (mounting.cy_px + 0.5) * kScale - 0.5;
   k.k1 = wide ? -0.10 : -0.06;
   k.k2 = 0.01;
-  camera.vehicle_from_camera.rotation = vehicle_from_camera_rotation(
-      radians(mounting.azimuth_deg), radians(mounting.pitch_down_deg));
+  camera.vehicle_from_camera.rotation =
+      vehicle_from_camera_rotation(radians(mounting.azimuth_deg), radians(mounting.pitch_down_deg));
   camera.vehicle_from_camera.translation_m = {mounting.x_m, mounting.y_m, mounting.z_m};
   return camera;
 }

@@ -40,7 +40,8 @@ def _smoothed(values: np.ndarray) -> np.ndarray:
 
 
 def _draw_losses(axes: plt.Axes, title: str, curves: Table, names: tuple[str, ...]) -> None:
-    seen = np.any([curves[name] > 0 for name in names], axis=0)  # pose losses: stage 2 alone
+    seen = np.any([curves[name] > 0 for name in names], axis=0)
+    seen[1:] &= seen[:-1]  # the first row of stage 2 averages zeros of stage 1
     samples = curves["samples"][seen] / 1000
     for name in names:
         values = curves[name][seen]
@@ -60,7 +61,7 @@ def draw(run: Path, out: Path) -> None:
         validation = read_table(run / "validation.csv")
         for name in _VALIDATION:
             last.plot(validation["samples"] / 1000, validation[name], marker=".", label=name)
-    last.set_title("Evaluation scenes: mean absolute error (m, m, degrees)")
+    last.set_title("Evaluation scenes: MAE (m, m, degrees)")
     for axes in panels.flat:
         axes.set_xlabel("training samples (thousands)")
         axes.grid(alpha=0.3)

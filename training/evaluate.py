@@ -1,7 +1,7 @@
 """Accuracy on scenes that training never sees.
 
-    /usr/bin/python3 -m training.evaluate training/runs/nano/checkpoint.pt --samples 512
-    /usr/bin/python3 -m training.evaluate training/runs/nano/checkpoint.pt --samples 512 --write models
+    /usr/bin/python3 -m training.evaluate training/runs/nano/checkpoint.pt
+    /usr/bin/python3 -m training.evaluate training/runs/nano/checkpoint.pt --write models
 
 The first measures the float network with PyTorch. The second also measures the model file in the
 folder on the daemon's own network and solvers, and writes the results there: nano_results.json, and
@@ -50,9 +50,7 @@ def _error_metrics(name: str, error: Tensor) -> dict[str, float]:
     return metrics
 
 
-def _honesty_metrics(
-    name: str, error: Tensor, sigma: Tensor, nll: Tensor
-) -> dict[str, float]:
+def _honesty_metrics(name: str, error: Tensor, sigma: Tensor, nll: Tensor) -> dict[str, float]:
     metrics: dict[str, float] = {}
     for i, axis in enumerate(AXES):
         e, s = error[:, i].abs(), sigma[:, i]
@@ -179,7 +177,9 @@ def main() -> None:
         model = arguments.write / "nano.onnx"
         int8_metrics = evaluate_model_file(model, batches, arguments.threads)
         print(f"int8\n{summary(int8_metrics)}", flush=True)
-        write_results(arguments.write, Results(arguments.samples, metrics, int8_metrics))
+        trained = torch.load(arguments.checkpoint, map_location="cpu")["samples"]
+        results = Results(trained, arguments.samples, metrics, int8_metrics)
+        write_results(arguments.write, results)
 
 
 if __name__ == "__main__":

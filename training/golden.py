@@ -79,7 +79,9 @@ def golden_batch() -> Batch:
     return Batch(**{name: torch.cat([vars(p)[name] for p in parts]) for name in vars(parts[0])})
 
 
-def _write_outputs(out: Path, name: str, infer: Inference, solvers: PoseSolvers, batch: Batch) -> None:
+def _write_outputs(
+    out: Path, name: str, infer: Inference, solvers: PoseSolvers, batch: Batch
+) -> None:
     bev, features_map, mask = infer(batch)
     np.save(out / f"{name}_bev.npy", bev.flatten(1)[:, ::FEATURE_STRIDE].numpy())
     np.save(out / f"{name}_map.npy", features_map.flatten(1)[:, ::FEATURE_STRIDE].numpy())

@@ -1,7 +1,7 @@
 """The network's data flow, written once for everything that runs or writes it after training.
 
-`run_images` and `run_map` walk through a trained network and hand each step to a backend: float with
-recorded ranges (calibration), simulated int8 (evaluation), or ONNX nodes (export).
+`run_images` and `run_map` walk through a trained network and hand each step to a backend: float
+with recorded ranges (calibration), simulated int8 (golden vectors), or ONNX nodes (export).
 """
 
 from __future__ import annotations

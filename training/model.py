@@ -26,7 +26,9 @@ RASTER_SCALE = 1.0 / 255.0
 class ConvBn(nn.Module):
     """Convolution, batch normalisation and, unless `relu` is False, ReLU."""
 
-    def __init__(self, inputs: int, outputs: int, size: int = 3, stride: int = 1, relu: bool = True):
+    def __init__(
+        self, inputs: int, outputs: int, size: int = 3, stride: int = 1, relu: bool = True
+    ):
         super().__init__()
         self.conv = nn.Conv2d(inputs, outputs, size, stride, size // 2, bias=False)
         self.bn = nn.BatchNorm2d(outputs)
@@ -85,9 +87,13 @@ def gather_views(features: Tensor, index: Tensor, weight: Tensor) -> Tensor:
 
 
 def compress(inputs: int, outputs: int) -> nn.Sequential:
-    """The paper's three residual blocks before the solver; the last is linear, features are signed."""
+    """The paper's three residual blocks before the solver. The last is linear: features are
+    signed."""
     return nn.Sequential(
-        ConvBn(inputs, outputs), Residual(outputs), Residual(outputs), Residual(outputs, linear=True)
+        ConvBn(inputs, outputs),
+        Residual(outputs),
+        Residual(outputs),
+        Residual(outputs, linear=True),
     )
 
 

@@ -15,7 +15,7 @@ _LIBRARY = Path("training/native/libbevloc_training.so")
 
 
 def library_path() -> Path:
-    """Where the library is: $BEVLOC_TRAINING_LIBRARY, or in build/ or a preset's build/<preset>/."""
+    """$BEVLOC_TRAINING_LIBRARY, or else what lies in build/ or a preset's build/<preset>/."""
     if chosen := os.environ.get(ENVIRONMENT):
         return Path(chosen)
     build = _REPOSITORY / "build"

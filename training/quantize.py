@@ -1,7 +1,8 @@
 """Post-training quantization: int8 weights per channel, 8-bit activations per tensor.
 
-Weights are limited to 7 bits (|q| <= 63), because on processors without VNNI the sum of two products
-of uint8 and int8 saturates. Activations are uint8 after ReLU and int8 elsewhere, zero point 0.
+Weights are limited to 7 bits (|q| <= 63), because on processors without VNNI the sum of two
+products of uint8 and int8 saturates. Activations are uint8 after ReLU and int8 elsewhere, zero
+point 0.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from training.model import (
 
 MAX_WEIGHT = 63
 MAX_UNSIGNED, MAX_SIGNED = 255, 127
-_SAMPLED_VALUES = 20_000
+_SAMPLED_VALUES = 5_000  # of an activation and batch
 
 
 @dataclass
@@ -45,7 +46,7 @@ class Scale:
 
 @dataclass
 class QuantizedConv:
-    """int8 weights [out, in, rows, cols] with a scale per output channel; the bias stays real."""
+    """int8 weights [out, in, rows, cols] with a scale per output channel, and the real bias."""
 
     weight: Tensor
     scale: Tensor
@@ -112,7 +113,8 @@ class FloatBackend:
         return F.interpolate(x, scale_factor=2, mode="nearest")
 
     def gather(self, x: Tensor, channels: int) -> Tensor:
-        return self._activation("view", gather_views(x, self._batch.index, self._batch.weight), True)
+        bev = gather_views(x, self._batch.index, self._batch.weight)
+        return self._activation("view", bev, unsigned=True)
 
     def space_to_depth(self, x: Tensor) -> Tensor:
         return F.pixel_unshuffle(x, 2)
@@ -132,7 +134,8 @@ class _Recorder(FloatBackend):
         flat = x.flatten()
         self._unsigned[name] = unsigned
         picked = torch.randint(len(flat), (_SAMPLED_VALUES,))
-        self._seen.setdefault(name, []).append(torch.cat((flat[picked], torch.stack(flat.aminmax()))))
+        extremes = torch.stack(flat.aminmax())
+        self._seen.setdefault(name, []).append(torch.cat((flat[picked], extremes)))
         return x
 
 
@@ -151,19 +154,54 @@ class Int8Backend(FloatBackend):
         return self._quantization.activations[name].quantize(x)
 
 
+class _BiasRounder:
+    """Rounds each bias to whole steps of input times weight, as int32 holds it. Its tensors are the
+    scales of their elements; None: real values."""
+
+    def __init__(self, quantization: Quantization) -> None:
+        self._quantization = quantization
+
+    def conv(
+        self, x: Scale, conv: FoldedConv, relu: bool, residual: Scale | None = None
+    ) -> Scale:
+        self.output(x, conv)
+        return self._quantization.activations[conv.name]
+
+    def output(self, x: Scale, conv: FoldedConv, residual: Scale | None = None) -> None:
+        quantized = self._quantization.quantized[conv.name]
+        step = quantized.scale * x.scale
+        quantized.bias = torch.round(quantized.bias / step) * step
+
+    def upsample(self, x: Scale) -> Scale:
+        return x
+
+    def gather(self, x: Scale, channels: int) -> Scale:
+        return self._quantization.activations["view"]
+
+    def space_to_depth(self, x: Scale) -> Scale:
+        return x
+
+    def depth_to_space(self, x: None) -> None:
+        return x
+
+
 def best_scale(values: Tensor, unsigned: bool) -> Scale:
     """The scale with the least squared error of rounding and clipping."""
     levels = MAX_UNSIGNED if unsigned else MAX_SIGNED
     largest = float(values.abs().max().clamp(min=1e-6))
     candidates = [Scale(largest * i / 80 / levels, unsigned) for i in range(8, 81)]
-    errors = [float((candidate.quantize(values) - values).square().mean()) for candidate in candidates]
-    return candidates[errors.index(min(errors))]
+
+    def error(scale: Scale) -> float:
+        return float((scale.quantize(values) - values).square().mean())
+
+    return min(candidates, key=error)
 
 
 def quantize_weights(conv: FoldedConv) -> QuantizedConv:
     """The scale of each output channel has the least squared error among clipped ones."""
     rows = conv.weight.flatten(1)
-    largest = rows.abs().amax(1).clamp(min=1e-8)
+    # Where next to nothing is added to the bias, the bias must still fit into int32 steps.
+    largest = torch.maximum(rows.abs().amax(1), 1e-4 * conv.bias.abs()).clamp(min=1e-8)
     best_error, best = torch.full_like(largest, float("inf")), largest / MAX_WEIGHT
     for ratio in torch.linspace(0.6, 1.0, 41).tolist():
         scale = largest * ratio / MAX_WEIGHT
@@ -189,6 +227,9 @@ def quantize(net: Nano, calibration: list[Batch]) -> Quantization:
         result.activations[name] = best_scale(torch.cat(values), unsigned[name])
     for name, conv in result.convolutions.items():
         result.quantized[name] = quantize_weights(conv)
+    rounder, inputs = Walk(net, result.convolutions, _BiasRounder(result)), input_scales()
+    rounder.run_images(inputs["images"])
+    rounder.run_map(inputs["raster"])
     return result
 
 

@@ -10,7 +10,13 @@ from pathlib import Path
 BEGIN, END = "<!-- results: written by training.evaluate -->", "<!-- end of results -->"
 RESULTS_FILE, CARD_FILE = "nano_results.json", "README.md"
 _AXES = (("x", "Longitudinal (m)"), ("y", "Lateral (m)"), ("yaw", "Yaw (degrees)"))
-_ERRORS = (("mae", "MAE"), ("rmse", "RMSE"), ("median", "median"), ("p90", "90 %"), ("bias", "mean"))
+_ERRORS = (
+    ("mae", "MAE"),
+    ("rmse", "RMSE"),
+    ("median", "median"),
+    ("p90", "90 %"),
+    ("bias", "mean"),
+)
 _SHARES = (("within_1_sigma", "within 1 sigma"), ("within_3_sigma", "within 3 sigma"))
 # (network, its metrics' field, solver, title)
 _ROWS = (
@@ -18,7 +24,7 @@ _ROWS = (
     ("float", "decoupled", "float, decoupled-plain"),
     ("int8", "block", "int8, block"),
     ("int8", "decoupled-plain", "int8, decoupled-plain"),
-    ("int8", "decoupled", "int8, decoupled (refined; the default)"),
+    ("int8", "decoupled", "int8, decoupled, refined"),
 )
 
 
@@ -26,6 +32,7 @@ _ROWS = (
 class Results:
     """Metrics as training.evaluate names them."""
 
+    trained_samples: int
     samples: int
     float: dict[str, float]
     int8: dict[str, float]
@@ -62,7 +69,11 @@ def _iou_table(results: Results) -> list[str]:
 
 def markdown(results: Results) -> str:
     """A table per axis and one of the masks."""
-    lines = [f"{results.samples} evaluation scenes.", ""]
+    lines = [
+        f"Trained on {results.trained_samples:,} samples, measured on {results.samples} evaluation "
+        "scenes.",
+        "",
+    ]
     for axis, title in _AXES:
         lines += [*_axis_table(results, axis, title), ""]
     return "\n".join([*lines, *_iou_table(results)])

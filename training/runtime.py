@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -27,9 +28,7 @@ class NativeNetwork:
         self.handle = library().bevloc_network_create(path, threads, error, _ERROR_SIZE)
         if not self.handle:
             raise ValueError(error.value.decode())
-
-    def __del__(self) -> None:
-        library().bevloc_network_destroy(self.handle)
+        weakref.finalize(self, library().bevloc_network_destroy, self.handle)
 
     def __call__(self, batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
         """F_B, F_M and the logits of the perceived mask."""
@@ -51,14 +50,11 @@ class NativeSolver:
 
     def __init__(self, network: NativeNetwork, kind: str) -> None:
         error = ctypes.create_string_buffer(_ERROR_SIZE)
-        self.handle = library().bevloc_solver_create(
-            network.handle, kind.encode(), error, _ERROR_SIZE
-        )
+        create = library().bevloc_solver_create
+        self.handle = create(network.handle, kind.encode(), error, _ERROR_SIZE)
         if not self.handle:
             raise ValueError(error.value.decode())
-
-    def __del__(self) -> None:
-        library().bevloc_solver_destroy(self.handle)
+        weakref.finalize(self, library().bevloc_solver_destroy, self.handle)
 
     def __call__(self, bev: Tensor, features_map: Tensor) -> Solution:
         counts = [len(hypotheses(*axis)) for axis in DEFINITION.axes()]

@@ -42,9 +42,10 @@ Hypotheses: x = -2 ... +2 m by 0.2 (21), y = -1 ... +1 m by 0.2 (11), a = -2 ...
      (var(A_M) + 1e-3)), population moments of these very positions; score = mean over c of z_c;
      P = softmax(scale * score) with x_scale or y_scale; the estimate is the posterior mean.
 
-6. The joint volume (pipeline/solver/joint_volume.h, blocks of 5 x 5 cells, cubic look-up) scores all 21 x 21 x 11
-   hypotheses: ZNCC(a, x, y) in the standardise-once form. P = softmax(joint_scale * ZNCC) over all
-   of them; the marginals of P are the distributions of x, y and yaw; the estimates are their means.
+6. The joint volume (pipeline/solver/joint_volume.h, blocks of 5 x 5 cells, cubic look-up) scores
+   all 21 x 21 x 11 hypotheses: ZNCC(a, x, y) in the standardise-once form. P = softmax(joint_scale
+   * ZNCC) over all of them; the marginals of P are the distributions of x, y and yaw; the estimates
+   are their means.
 """
 
 from __future__ import annotations
@@ -122,7 +123,7 @@ def standardise(features: Tensor) -> Tensor:
 
 
 class YawSignature(nn.Module):
-    """Step 2: standardised features [batch, C, rows, cols] -> signatures [batch, C, bands, angles]."""
+    """Step 2: standardised features [batch, C, rows, cols] -> [batch, C, bands, angles]."""
 
     def __init__(self, definition: SolverDefinition = DEFINITION) -> None:
         super().__init__()
@@ -179,9 +180,9 @@ def yaw_scores(signature_bev: Tensor, signature_map: Tensor) -> Tensor:
     whole = torch.round(shift * 1e6).div(1e6).floor().long()  # 2.0 stays 2 whatever its last bit
     fraction = (shift - whole).to(signature_bev)
     first, last = int(whole.min()), int(whole.max()) + 1
-    # |Y_M - Y_B^a|^2 expands into correlations at integer shifts, so nothing is rolled per hypothesis.
+    # |Y_M - Y_B^a|^2 expands into correlations at integer shifts: nothing is rolled per hypothesis.
     wrapped = torch.cat([signature_bev[..., -last:], signature_bev, signature_bev[..., :-first]], 3)
-    rolled = wrapped.unfold(3, d.angles, 1)  # [..., last - first + 1 (shift last ... first), angles]
+    rolled = wrapped.unfold(3, d.angles, 1)  # [..., shift (last ... first), angles]
     cross = torch.einsum("bcrsi,bcri->bs", rolled, signature_map).flip(1)
     own = (signature_bev * signature_bev).sum(dim=(1, 2, 3))
     neighbour = (signature_bev * torch.roll(signature_bev, 1, 3)).sum(dim=(1, 2, 3))
@@ -217,7 +218,8 @@ def _axis_scores(axis_bev: Tensor, axis_map: Tensor, shifts: Tensor) -> Tensor:
     windows = axis_bev.unfold(2, inner, 1)  # [batch, C, start, inner]
     last = windows.shape[2] - 1
     # A whole shift needs no right neighbour; at the last window there is none.
-    shifted = (1 - fraction) * windows[:, :, start] + fraction * windows[:, :, (start + 1).clamp(max=last)]
+    right = windows[:, :, (start + 1).clamp(max=last)]
+    shifted = (1 - fraction) * windows[:, :, start] + fraction * right
     shifted = shifted - shifted.mean(dim=3, keepdim=True)
     fixed = axis_map[:, :, crop : crop + inner]
     fixed = (fixed - fixed.mean(dim=2, keepdim=True))[:, :, None]
@@ -245,7 +247,7 @@ def lateral_scores(turned_bev: Tensor, features_map: Tensor) -> Tensor:
 
 
 class PoseSolvers(nn.Module):
-    """Both solvers with their learned softmax scales (pipeline/solver/solver.h, SolverParameters)."""
+    """Both solvers with their learned softmax scales (SolverParameters of pipeline/solver)."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -40,7 +40,11 @@ MALLOC_ENVIRONMENT = {
     "MALLOC_TOP_PAD_": str(2**28),
 }
 EXIT_STOPPED = 75  # sysexits.h, EX_TEMPFAIL: the budget is not spent yet
-LOSSES = ("perceived", "reconstructed", "joint_x", "joint_y", "joint_yaw", "dec_x", "dec_y", "dec_yaw")
+LOSSES = (
+    *("perceived", "reconstructed"),
+    *("joint_x", "joint_y", "joint_yaw"),
+    *("dec_x", "dec_y", "dec_yaw"),
+)
 
 
 class Trainer:
@@ -187,9 +191,8 @@ class Trainer:
         lr = self.optimiser.param_groups[0]["lr"]
         self._append("curves.csv", {"step": self.step, "samples": self.samples, "lr": lr, **row})
         left_min = self.elapsed_s * (1 / max(spent, 1e-6) - 1) / 60
-        scales = " ".join(
-            f"{name} {self.net.solvers.scale(name).item():.0f}" for name in self.net.solvers.log_scale
-        )
+        solvers = self.net.solvers
+        scales = " ".join(f"{name} {solvers.scale(name).item():.0f}" for name in solvers.log_scale)
         print(
             f"step {self.step} samples {self.samples} {rate:.1f}/s left {left_min:.1f} min "
             f"lr {lr:.2e} norm {norm:.1f} | "
@@ -245,7 +248,8 @@ def main() -> None:
     config = parse_config(sys.argv[1:])
     if any(os.environ.get(key) != value for key, value in MALLOC_ENVIRONMENT.items()):
         environment = os.environ | MALLOC_ENVIRONMENT | {"OMP_NUM_THREADS": str(config.threads)}
-        os.execve(sys.executable, [sys.executable, "-m", "training.train", *sys.argv[1:]], environment)
+        command = [sys.executable, "-m", "training.train", *sys.argv[1:]]
+        os.execve(sys.executable, command, environment)
     torch.set_num_threads(config.threads)
     trainer = Trainer(
         config,

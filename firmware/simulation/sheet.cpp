@@ -7,6 +7,7 @@
 
 #include "firmware/simulation/error_statistics.h"
 #include "firmware/simulation/map_overlay.h"
+#include "pipeline/map/rasterizer.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -57,14 +58,16 @@ void draw_images(cv::Mat& sheet, cv::Point corner, const SheetContent& content, 
 }
 
 /// The perceived mask in colour over the map in grey, the vehicle driving to the right.
-void draw_bev(cv::Mat& sheet, cv::Point corner, const SheetContent& content) {
+void draw_bev(cv::Mat& sheet, cv::Point corner, const SheetContent& content, const MapIndex& map) {
+  std::vector<uint8_t> raster(kRasterSize);
+  MapRasterizer(map).draw(content.corrected, raster);
   cv::Mat bev(kRasterGrid.rows, kRasterGrid.cols, CV_8UC3, kBackground);
   const size_t plane = static_cast<size_t>(kRasterGrid.cells());
   for (int channel = 0; channel < kRasterChannels; ++channel) {
     const cv::Scalar color = class_color(static_cast<ElementClass>(channel));
     for (size_t cell = 0; cell < plane; ++cell) {
       auto& pixel = bev.at<cv::Vec3b>(static_cast<int>(cell));
-      const double drawn = content.map_raster[channel * plane + cell] / 255.0;
+      const double drawn = raster[channel * plane + cell] / 255.0;
       const double perceived = 1.0 / (1.0 + std::exp(-content.mask_logits[channel * plane + cell]));
       for (int c = 0; c < 3; ++c) {
         const double with_map = pixel[c] * (1.0 - 0.25 * drawn);
@@ -132,9 +135,9 @@ Status write_sheet(const SheetContent& content, const Rig& rig, const MapIndex& 
   draw_images(sheet, right, content, rig, map, content.corrected);
 
   const int lower = left.y + kBlockHeightPx + kMarginPx + kCaptionPx;
-  write_text(sheet, "(a) perceived BEV, driving to the right (the map in grey)",
+  write_text(sheet, "(a) perceived BEV, driving to the right (in grey the map at bevloc's pose)",
              {kMarginPx, lower - 10});
-  draw_bev(sheet, {kMarginPx, lower}, content);
+  draw_bev(sheet, {kMarginPx, lower}, content, map);
   const cv::Rect distributions(2 * kMarginPx + kBevWidthPx, lower,
                                kSheetWidthPx - kBevWidthPx - 3 * kMarginPx, kBevHeightPx);
   write_text(sheet, "(d) distributions of the correction (red: truth)",

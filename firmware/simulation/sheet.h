@@ -21,15 +21,14 @@ struct SheetContent {
   Se2 prior;      ///< GNSS and odometry alone
   Se2 corrected;  ///< bevloc's pose at the same moment
   Se2 truth;
-  std::vector<float> mask_logits;     ///< perceived mask [3, 400, 200]
-  std::vector<uint8_t> map_raster;    ///< the map drawn at the corrected pose, kRasterSize
-  Se2 matched_at;             ///< T0: the pose the map was drawn at for the network
+  std::vector<float> mask_logits;  ///< perceived mask [3, 400, 200]
+  Se2 matched_at;                  ///< T0: the pose the map was drawn at for the network
   SolverResult solution;      ///< of dT from there
   HypothesisGrid hypotheses;  ///< the axes of the solution's distributions
 };
 
-/// Draws (a) the perceived BEV over the map, (b) the map at the prior and (c) at the corrected pose
-/// over the six images, (d) the three distributions; writes a PNG.
+/// Draws (a) the perceived BEV over the map at the corrected pose, (b) the map at the prior and (c)
+/// at the corrected pose over the six images, (d) the three distributions; writes a PNG.
 Status write_sheet(const SheetContent& content, const Rig& rig, const MapIndex& map,
                    const std::string& path);
 

@@ -28,9 +28,10 @@ RgbImage copy_of(const RgbView& view) {
 
 void SnapshotKeeper::observe(const VisionSnapshot& snapshot) {
   if (snapshot.range != SearchRange::kTracking) return;
+  if (!first_tracked_) first_tracked_ = snapshot.frameset.time;
+  if (snapshot.frameset.time - *first_tracked_ < kSettling) return;
   if (snapshot.report.correction.evidence != Evidence::kGood) return;
-  const std::span<const uint8_t> raster = snapshot.localizer.map_raster();
-  const double content = map_content(raster);
+  const double content = map_content(snapshot.localizer.map_raster());
   if (content < kImprovement * best_content_) return;
   best_content_ = content;
 
@@ -45,7 +46,6 @@ void SnapshotKeeper::observe(const VisionSnapshot& snapshot) {
   }
   const std::span<const float> mask = snapshot.localizer.perceived_mask();
   sheet.mask_logits.assign(mask.begin(), mask.end());
-  sheet.map_raster.assign(raster.begin(), raster.end());
   sheet.matched_at = snapshot.report.prior;
   sheet.solution = snapshot.solution;
   sheet.hypotheses = snapshot.localizer.hypotheses(snapshot.range);

@@ -9,8 +9,8 @@
 
 namespace bevloc::firmware {
 
-/// Observes the vision stage; of the framesets localized while tracking it keeps the one around
-/// which the map shows most. Threads: observe() in the vision thread, the rest after the run.
+/// Observes the vision stage; of the framesets localized once tracking has settled it keeps the one
+/// around which the map shows most. Threads: observe() in the vision thread, the rest after the run.
 class SnapshotKeeper {
  public:
   struct Kept {
@@ -23,9 +23,12 @@ class SnapshotKeeper {
   const std::optional<Kept>& kept() const { return kept_; }
 
  private:
+  /// From the first frameset that was localized while tracking.
+  static constexpr Duration kSettling = std::chrono::seconds(5);
   /// A better one must show this much more: copying six images costs time in the vision thread.
   static constexpr double kImprovement = 1.15;
 
+  std::optional<Time> first_tracked_;
   std::optional<Kept> kept_;
   double best_content_ = 0.0;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "pipeline/network/view_table.h"
 #include "pipeline/preprocessing/network_camera.h"
 
 namespace bevloc {
@@ -55,7 +54,8 @@ Status Localizer::localize(const std::array<RgbView, kCameraCount>& images, Came
 
 void Localizer::use_cameras(CameraMask present) {
   if (table_cameras_ == present) return;
-  network_->set_view_table(make_view_table(network_rig_, present, kFeatureGrid));
+  update_view_table(network_rig_, present, kFeatureGrid, view_table_);
+  network_->set_view_table(view_table_);
   table_cameras_ = present;
 }
 

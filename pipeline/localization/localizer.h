@@ -15,6 +15,7 @@
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/rasterizer.h"
 #include "pipeline/network/network.h"
+#include "pipeline/network/view_table.h"
 #include "pipeline/preprocessing/image_remap.h"
 #include "pipeline/solver/solver_factory.h"
 
@@ -32,8 +33,8 @@ struct LocalizerOptions {
 enum class SearchRange : uint8_t { kTracking, kAcquiring };
 
 /// The paper's whole network with its solver (Fig. 2), for one rig and one map. Owns all buffers:
-/// localize() allocates nothing once warm, except when the set of cameras changes. Not thread safe.
-/// The map index must outlive it.
+/// localize() allocates nothing once warm, whichever cameras there are. Not thread safe. The map
+/// index must outlive it.
 class Localizer {
  public:
   static Result<std::unique_ptr<Localizer>> create(const Rig& rig, const MapIndex& map,
@@ -69,6 +70,7 @@ class Localizer {
   std::vector<ImagePreprocessor> preprocessors_;
   MapRasterizer rasterizer_;
   std::array<std::unique_ptr<Solver>, 2> solvers_;  ///< by SearchRange
+  ViewTable view_table_;  ///< for table_cameras_
   std::optional<CameraMask> table_cameras_;
 };
 

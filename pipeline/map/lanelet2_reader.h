@@ -12,13 +12,15 @@ namespace bevloc {
 
 /// What becomes of a Lanelet2 map (tags as documented in Lanelet2's LinestringTagging.md and
 /// LaneletAndAreaTagging.md):
-///   lane divider   ways line_thin and line_thick that bound a lanelet for vehicles and no
-///   crosswalk crossing       lanelets of subtype crosswalk: the area between their bounds road
-///   boundary  ways curbstone, road_border, guard_rail, jersey_barrier, wall, fence and hedge lane
-///   lanelets for vehicles, in both directions where one_way=no
-/// A way without a type that bounds one lanelet for vehicles is a road boundary; one that bounds
-/// two is a lane divider. All else (virtual lines, stop lines, signs) is left out. The map frame is
-/// that of locate_nodes() (map_frame.h).
+/// - Lane dividers: ways line_thin and line_thick that bound a lanelet for vehicles and no
+///   crosswalk; ways without a type that bound two or more lanelets for vehicles.
+/// - Crossings: lanelets of subtype crosswalk, the area between their bounds.
+/// - Road boundaries: ways curbstone, road_border, guard_rail, jersey_barrier, wall, fence and
+///   hedge; ways without a type that bound a single lanelet for vehicles.
+/// - Lanes: lanelets for vehicles, in both directions where one_way=no.
+///
+/// All else (virtual lines, stop lines, signs) is left out. The map frame is that of locate_nodes()
+/// (map_frame.h).
 ///
 /// Fails with file, line and element on text that is not OSM XML, on bad coordinates, on references
 /// to elements that are not there, and if nothing in the file is of use.

@@ -57,7 +57,11 @@ Status cap_cpu_isa(IsaCap cap) {
   static std::optional<IsaCap> current;
   const std::lock_guard lock(mutex);
   if (current == cap) return {};
-  if (current || dnnl::set_max_cpu_isa(onednn_isa(cap)) != dnnl::status::success) {
+  const dnnl::cpu_isa isa = onednn_isa(cap);
+  // Without a cap the CPU decides, even where another library of this process used oneDNN first.
+  const bool holds = !current && (isa == dnnl::cpu_isa::all ||
+                                  dnnl::set_max_cpu_isa(isa) == dnnl::status::success);
+  if (!holds) {
     return fail("the network's instruction set is settled in this process already, wanted another");
   }
   current = cap;

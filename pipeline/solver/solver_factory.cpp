@@ -21,9 +21,6 @@ constexpr std::array<std::pair<std::string_view, SolverKind>, 4> kNames{{
     {"block", SolverKind::kBlock},
 }};
 
-/// A correction may reach at most this far; the solvers linearise and pad for small ones.
-constexpr double kMaxYawRange_rad = radians(20.0);
-
 bool is_positive(double value) {
   return std::isfinite(value) && value > 0.0;
 }
@@ -61,11 +58,10 @@ Status check(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses
         grid.rows, grid.cols, grid.cell_m, kFftSize,
         (AmplitudeSpectrum::kCols - 1) / (YawSpectrum::kMaxFrequency * kFftSize));
   }
-  // Something must be left inside the border that the largest shift can move out of sight.
-  const double max_shift_m = 0.25 * std::min(grid.rows, grid.cols) * grid.cell_m;
-  if (auto status = check_axis("x", hypotheses.x_m, max_shift_m); !status) return status;
-  if (auto status = check_axis("y", hypotheses.y_m, max_shift_m); !status) return status;
-  return check_axis("yaw", hypotheses.yaw_rad, kMaxYawRange_rad);
+  const double max_range_m = max_shift_m(grid);
+  if (auto status = check_axis("x", hypotheses.x_m, max_range_m); !status) return status;
+  if (auto status = check_axis("y", hypotheses.y_m, max_range_m); !status) return status;
+  return check_axis("yaw", hypotheses.yaw_rad, radians(kMaxYawRange_deg));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Which pose solvers there are, by name.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string_view>
 
@@ -20,8 +21,15 @@ enum class SolverKind {
 Result<SolverKind> solver_kind_from(std::string_view name);
 std::string_view name_of(SolverKind kind);
 
+/// Largest ranges of the hypotheses: the solvers linearise and pad for small corrections, and
+/// something must be left inside the border that the largest shift can move out of sight.
+inline constexpr double kMaxYawRange_deg = 20.0;
+constexpr double max_shift_m(const BevGrid& grid) {
+  return 0.25 * std::min(grid.rows, grid.cols) * grid.cell_m;
+}
+
 /// Fails where the solver cannot work: a grid it cannot transform, hypotheses or parameters that
-/// are not finite and positive, a GeM exponent other than 1.
+/// are not finite and positive, hypotheses beyond the largest ranges, a GeM exponent other than 1.
 Result<std::unique_ptr<Solver>> make_solver(SolverKind kind, const BevGrid& grid, int channels,
                                             const HypothesisGrid& hypotheses,
                                             const SolverParameters& parameters);

@@ -32,8 +32,8 @@ class NeighbourGrid {
         high_right_(texels + pitch + 1) {}
 
   Neighbours at(int32_t index, float blend_x, float blend_y) const {
-    return {low_left_[index], low_right_[index], high_left_[index], high_right_[index],
-            blend_x,          blend_y};
+    return {low_left_[index],   low_right_[index], high_left_[index],
+            high_right_[index], blend_x,           blend_y};
   }
 
  private:

@@ -1,10 +1,11 @@
 // Which items of a world lie near a place.
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace bevloc::sim {
 

@@ -1,9 +1,10 @@
 // Exact area coverage of polygons on a pixel grid.
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace bevloc::sim {
 
@@ -25,7 +26,7 @@ class CoverageMask {
  private:
   struct RowState {
     float offset = 0.0F;  ///< coverage that comes from the left of the grid
-    int first = 0;  ///< cells that edges run through, and the one after: [first, last]
+    int first = 0;        ///< cells that edges run through, and the one after: [first, last]
     int last = -1;
     bool has_edges() const { return first <= last; }
   };

@@ -36,7 +36,11 @@ void soften(std::vector<float>& plane, std::vector<float>& scratch, size_t step)
 }  // namespace
 
 GroundLight::GroundLight()
-    : sun_(kCells, 1.0F), sky_(kCells, 1.0F), lamps_(kCells, 0.0F), scratch_(kCells), cells_(kCells) {}
+    : sun_(kCells, 1.0F),
+      sky_(kCells, 1.0F),
+      lamps_(kCells, 0.0F),
+      scratch_(kCells),
+      cells_(kCells) {}
 
 void GroundLight::build(const Eigen::Vector2d& centre, const Surroundings& surroundings,
                         const Lighting& lighting) {
@@ -112,9 +116,14 @@ void GroundLight::take_mask(float strength, std::vector<float>& plane) {
   for (int j = 0; j < kSide; ++j) {
     float* row = &plane[static_cast<size_t>(j) * kSide];
     switch (mask_.row(j, row)) {
-      case CoverageMask::RowKind::kEmpty: std::fill_n(row, kSide, 0.0F); break;
-      case CoverageMask::RowKind::kFull: std::fill_n(row, kSide, 1.0F); break;
-      case CoverageMask::RowKind::kMixed: break;
+      case CoverageMask::RowKind::kEmpty:
+        std::fill_n(row, kSide, 0.0F);
+        break;
+      case CoverageMask::RowKind::kFull:
+        std::fill_n(row, kSide, 1.0F);
+        break;
+      case CoverageMask::RowKind::kMixed:
+        break;
     }
     for (int i = 0; i < kSide; ++i) row[i] = 1.0F - strength * row[i];
   }

@@ -1,9 +1,10 @@
 // Shadows and pools of lamplight on the ground around the vehicle.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "sim/render/coverage_mask.h"
 #include "sim/render/lighting.h"

@@ -49,10 +49,9 @@ void store_texels(const float* red, const float* green, const float* blue, const
     return static_cast<uint32_t>(std::min(value * 255.0F + 0.5F, 255.0F));
   };
   for (int i = 0; i < kTileArea; ++i) {
-    texels[i] = byte(std::sqrt(std::max(red[i], 0.0F))) |
-                byte(std::sqrt(std::max(green[i], 0.0F))) << 8U |
-                byte(std::sqrt(std::max(blue[i], 0.0F))) << 16U |
-                byte(std::max(gloss[i], 0.0F)) << 24U;
+    texels[i] =
+        byte(std::sqrt(std::max(red[i], 0.0F))) | byte(std::sqrt(std::max(green[i], 0.0F))) << 8U |
+        byte(std::sqrt(std::max(blue[i], 0.0F))) << 16U | byte(std::max(gloss[i], 0.0F)) << 24U;
   }
 }
 
@@ -76,8 +75,7 @@ void GroundPainter::index_paint() {
     append_segments(world_.paint_lines[line].points, static_cast<int>(line), paint_segments_);
   }
   for (const StrokeSegment& segment : paint_segments_) {
-    boxes.push_back(
-        box_of(segment, world_.paint_lines[static_cast<size_t>(segment.line)].width_m));
+    boxes.push_back(box_of(segment, world_.paint_lines[static_cast<size_t>(segment.line)].width_m));
   }
   paint_index_ = CellIndex(boxes);
   boxes.clear();
@@ -182,16 +180,21 @@ void GroundPainter::for_each_covered_row(const Ring& ring, Row row) {
   std::array<float, kTileNodes> coverage;
   for (int j = 0; j < kTileNodes; ++j) {
     switch (mask_.row(j, coverage.data())) {
-      case CoverageMask::RowKind::kEmpty: break;
-      case CoverageMask::RowKind::kFull: row(j, nullptr); break;
-      case CoverageMask::RowKind::kMixed: row(j, coverage.data()); break;
+      case CoverageMask::RowKind::kEmpty:
+        break;
+      case CoverageMask::RowKind::kFull:
+        row(j, nullptr);
+        break;
+      case CoverageMask::RowKind::kMixed:
+        row(j, coverage.data());
+        break;
     }
   }
 }
 
 void GroundPainter::store(GroundTexel* texels) const {
-  store_texels(canvas_.red.data(), canvas_.green.data(), canvas_.blue.data(),
-               canvas_.gloss.data(), texels);
+  store_texels(canvas_.red.data(), canvas_.green.data(), canvas_.blue.data(), canvas_.gloss.data(),
+               texels);
 }
 
 }  // namespace bevloc::sim

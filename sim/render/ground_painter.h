@@ -1,8 +1,9 @@
 // Paints the ground's texture tiles from a world's geometry.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "sim/render/cell_index.h"
 #include "sim/render/coverage_mask.h"

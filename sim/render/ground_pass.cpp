@@ -84,8 +84,10 @@ void choose_levels(int taps, int count, Run& run) {
     const float reach = 1.35F * run.range[i] * static_cast<float>(kFinestTexelM) / kReachOfFinestM;
     const float texel_m = std::max(std::max(0.8F * width, 0.6F * spacing), reach);
     const float scale = texel_m * static_cast<float>(1.0 / kFinestTexelM);
-    run.level[i] = (scale > 1.0F) + (scale > 2.0F) + (scale > 4.0F) + (scale > 8.0F) + (scale > 16.0F);
-    run.texels_per_m[i] = static_cast<float>(1.0 / kFinestTexelM) / static_cast<float>(1 << run.level[i]);
+    run.level[i] =
+        (scale > 1.0F) + (scale > 2.0F) + (scale > 4.0F) + (scale > 8.0F) + (scale > 16.0F);
+    run.texels_per_m[i] =
+        static_cast<float>(1.0 / kFinestTexelM) / static_cast<float>(1 << run.level[i]);
     run.red[i] = run.green[i] = run.blue[i] = run.gloss[i] = 0.0F;
   }
 }
@@ -164,9 +166,8 @@ void light_ground(const Frame& frame, int count, Run& run) {
     const float cell_y = std::clamp((run.y[i] - frame.light_y) * per_cell, 0.0F, last_cell);
     const auto ix = static_cast<int32_t>(cell_x);
     const auto iy = static_cast<int32_t>(cell_y);
-    const Neighbours near =
-        grid.at(iy * GroundLight::kSide + ix, cell_x - static_cast<float>(ix),
-                cell_y - static_cast<float>(iy));
+    const Neighbours near = grid.at(iy * GroundLight::kSide + ix, cell_x - static_cast<float>(ix),
+                                    cell_y - static_cast<float>(iy));
     const float sun = near.channel(0) * (1.0F / 255.0F) * sun_share;
     const float sky = near.channel(8) * (1.0F / 255.0F);
     const float off_x = run.x[i] - frame.vehicle_x;

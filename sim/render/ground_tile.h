@@ -14,8 +14,12 @@ inline constexpr int kTileArea = kTileNodes * kTileNodes;
 inline constexpr int kGroundLevels = 6;
 inline constexpr double kFinestTexelM = 0.05;
 
-constexpr double texel_size_m(int level) { return kFinestTexelM * (1 << level); }
-constexpr double tile_size_m(int level) { return kTileTexels * texel_size_m(level); }
+constexpr double texel_size_m(int level) {
+  return kFinestTexelM * (1 << level);
+}
+constexpr double tile_size_m(int level) {
+  return kTileTexels * texel_size_m(level);
+}
 
 /// Node (i, j) of the tile lies at ((128 ix + i), (128 iy + j)) * texel_size_m(level) in the map.
 struct TileKey {

@@ -1,10 +1,11 @@
 // The painted ground around a camera, made as it comes into view.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <memory>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "sim/render/ground_painter.h"
 #include "sim/render/ground_tile.h"

@@ -14,7 +14,9 @@ float smooth_step(double from, double to, double value) {
   return static_cast<float>(t * t * (3.0 - 2.0 * t));
 }
 
-float luma(const Rgb& c) { return 0.25F * c.r + 0.6F * c.g + 0.15F * c.b; }
+float luma(const Rgb& c) {
+  return 0.25F * c.r + 0.6F * c.g + 0.15F * c.b;
+}
 
 constexpr Rgb kLowSun{1.0F, 0.62F, 0.34F};
 constexpr Rgb kHighSun{1.0F, 0.96F, 0.88F};
@@ -62,23 +64,25 @@ Lighting lighting_of(const Conditions& conditions) {
   light.overcast = overcast;
   light.wet = rain;
   const float warmth = smooth_step(radians(2.0), radians(30.0), elevation);
-  const float direct = 1.25F * smooth_step(0.0, radians(22.0), elevation) *
-                       std::pow(1.0F - overcast, 1.3F);
+  const float direct =
+      1.25F * smooth_step(0.0, radians(22.0), elevation) * std::pow(1.0F - overcast, 1.3F);
   light.sun = direct * mix(kLowSun, kHighSun, warmth);
   const Rgb dome = mix(kClearSky, kCloud, 0.2F + 0.8F * overcast);
   // Rain clouds swallow light.
   light.ambient = (0.62F * daylight * (1.0F - 0.45F * rain)) * dome + kNightSky;
 
   // The camera's automatic exposure makes up for most of the light that is missing, not for all.
-  const float incident =
-      luma(light.ambient) + luma(light.sun) * std::max(0.0F, light.to_sun.z());
+  const float incident = luma(light.ambient) + luma(light.sun) * std::max(0.0F, light.to_sun.z());
   const float gain = static_cast<float>(conditions.exposure) * 1.55F /
                      std::pow(incident + 0.012F, 0.82F) * (1.0F - 0.6F * night);
-  const Rgb horizon = mix(mix({0.75F, 0.80F, 0.88F}, {0.95F, 0.66F, 0.45F},
-                              (1.0F - overcast) * (1.0F - warmth)),
-                          {0.74F, 0.75F, 0.77F}, overcast);
-  light.sky_horizon = (0.72F * gain * daylight * (1.0F - 0.5F * rain)) * horizon + (gain * 0.5F) * kNightSky;
-  light.sky_zenith = (0.62F * gain * daylight * (1.0F - 0.45F * rain)) * dome + (gain * 0.2F) * kNightSky;
+  const Rgb horizon =
+      mix(mix({0.75F, 0.80F, 0.88F}, {0.95F, 0.66F, 0.45F}, (1.0F - overcast) * (1.0F - warmth)),
+          {0.74F, 0.75F, 0.77F}, overcast);
+  light.sky_horizon =
+      ((0.98F - 0.26F * overcast) * gain * daylight * (1.0F - 0.5F * rain)) * horizon +
+      (gain * 0.5F) * kNightSky;
+  light.sky_zenith = ((0.80F - 0.18F * overcast) * gain * daylight * (1.0F - 0.45F * rain)) * dome +
+                     (gain * 0.2F) * kNightSky;
   light.haze = 0.85F * mix(light.sky_horizon, light.ambient, 0.5F);
   light.haze_per_m = 1.0F / std::lerp(900.0F, 180.0F, rain) + 0.0008F * overcast;
   light.sun = gain * light.sun;

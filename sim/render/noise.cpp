@@ -96,19 +96,15 @@ const float* NoiseField::row(int64_t ix, int64_t iy) const {
 }
 
 GroundNoise::GroundNoise()
-    : patches_(kPeriod, make_field(std::array<Octave, 5>{{{8, 0.6F},
-                                                          {16, 0.7F},
-                                                          {32, 0.8F},
-                                                          {64, 0.8F},
-                                                          {128, 0.7F}}},
-                                   0x9A7C)) {
-  std::vector<float> field = make_field(std::array<Octave, 6>{{{16, 0.35F},
-                                                               {32, 0.4F},
-                                                               {64, 0.6F},
-                                                               {128, 0.8F},
-                                                               {256, 1.0F},
-                                                               {512, 0.9F}}},
-                                        0x6EA1);
+    : patches_(
+          kPeriod,
+          make_field(
+              std::array<Octave, 5>{{{8, 0.6F}, {16, 0.7F}, {32, 0.8F}, {64, 0.8F}, {128, 0.7F}}},
+              0x9A7C)) {
+  std::vector<float> field = make_field(
+      std::array<Octave, 6>{
+          {{16, 0.35F}, {32, 0.4F}, {64, 0.6F}, {128, 0.8F}, {256, 1.0F}, {512, 0.9F}}},
+      0x6EA1);
   int period = kPeriod;
   for (int level = 0; level < kGroundLevels; ++level) {
     grain_.emplace_back(period, field);
@@ -124,7 +120,8 @@ const GroundNoise& GroundNoise::shared() {
 
 GaussianTable::GaussianTable() : values_(kSize + 4096) {
   Random random(0x5EED);
-  for (int i = 0; i < kSize; ++i) values_[static_cast<size_t>(i)] = static_cast<float>(random.normal());
+  for (int i = 0; i < kSize; ++i)
+    values_[static_cast<size_t>(i)] = static_cast<float>(random.normal());
   for (size_t i = 0; i < 4096; ++i) values_[kSize + i] = values_[i];
 }
 

@@ -25,6 +25,8 @@ class PaintWear {
 };
 
 /// 1 on asphalt, 0 on all else; from the canvas's gloss.
-inline float sealed_road(float gloss) { return std::clamp(5.0F * gloss - 4.0F, 0.0F, 1.0F); }
+inline float sealed_road(float gloss) {
+  return std::clamp(5.0F * gloss - 4.0F, 0.0F, 1.0F);
+}
 
 }  // namespace bevloc::sim

@@ -35,8 +35,7 @@ struct Moment {
 }  // namespace
 
 struct Renderer::Impl {
-  explicit Impl(const World& shown)
-      : world(shown), scene(shown), tiles(shown), sky(shown.seed) {}
+  explicit Impl(const World& shown) : world(shown), scene(shown), tiles(shown), sky(shown.seed) {}
 
   void enter(const Moment& next, const Lighting& lighting) {
     if (moment_known && moment.key() == next.key()) return;

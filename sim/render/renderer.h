@@ -31,7 +31,6 @@ struct BodyMotion {
   double lift_m = 0.0;
 };
 
-
 /// Not thread safe; several renderers may share one world. Ground is drawn from texture tiles that
 /// are made once and kept (bounded in memory).
 class Renderer {

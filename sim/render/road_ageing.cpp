@@ -56,8 +56,8 @@ void add_patch(const Polyline& centerline, double at_m, uint64_t seed, RoadAgein
   const Eigen::Vector2d half_width =
       random.uniform(0.25, 0.9) * Eigen::Vector2d(-along.y(), along.x());
   ageing.patches.push_back({{centre - half_length - half_width, centre + half_length - half_width,
-                       centre + half_length + half_width, centre - half_length + half_width},
-                      static_cast<float>(random.uniform(0.6, 1.15))});
+                             centre + half_length + half_width, centre - half_length + half_width},
+                            static_cast<float>(random.uniform(0.6, 1.15))});
 }
 
 void add_crack(const Polyline& centerline, double at_m, uint64_t seed, RoadAgeing& ageing) {
@@ -70,14 +70,15 @@ void add_crack(const Polyline& centerline, double at_m, uint64_t seed, RoadAgein
   const int steps = random.integer(4, 12);
   for (int step = 0; step < steps; ++step) {
     const double bearing_rad = base_rad + heading_rad + random.normal(0.0, 0.35);
-    position += random.uniform(0.2, 0.6) * Eigen::Vector2d(std::cos(bearing_rad), std::sin(bearing_rad));
+    position +=
+        random.uniform(0.2, 0.6) * Eigen::Vector2d(std::cos(bearing_rad), std::sin(bearing_rad));
     heading_rad += random.normal(0.0, 0.1);
     points.push_back(position);
   }
   // Some cracks are open, some are sealed with a band of tar.
   const bool sealed = random.chance(0.4);
   ageing.soilings.push_back({sealed ? random.uniform(0.06, 0.1) : random.uniform(0.02, 0.04),
-                       static_cast<float>(random.uniform(0.35, 0.6))});
+                             static_cast<float>(random.uniform(0.35, 0.6))});
   append_segments(points, static_cast<int>(ageing.soilings.size()) - 1, ageing.cracks);
 }
 

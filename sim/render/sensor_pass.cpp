@@ -58,7 +58,9 @@ void store_row(const float* red, const float* green, const float* blue, int widt
   }
 }
 
-uint64_t hash_of(double value) { return std::bit_cast<uint64_t>(value); }
+uint64_t hash_of(double value) {
+  return std::bit_cast<uint64_t>(value);
+}
 
 }  // namespace
 

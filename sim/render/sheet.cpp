@@ -22,16 +22,19 @@ void fit_picture(Sheet& sheet, double start_m) {
     const float storeys = std::max(1.0F, std::round(sheet.height_m / kStoreyM));
     sheet.v_per_m = storeys / (static_cast<float>(kFacadeStoreys) * sheet.height_m);
   }
-  sheet.u_start = repeats_u ? static_cast<float>(std::fmod(start_m, texture.period_u_m)) * sheet.u_per_m
-                            : 0.0F;
+  sheet.u_start =
+      repeats_u ? static_cast<float>(std::fmod(start_m, texture.period_u_m)) * sheet.u_per_m : 0.0F;
 }
 
 Pattern pattern_of(PostKind kind) {
   switch (kind) {
-    case PostKind::kSign: return Pattern::kSign;
-    case PostKind::kTreeCrown: return Pattern::kCrown;
+    case PostKind::kSign:
+      return Pattern::kSign;
+    case PostKind::kTreeCrown:
+      return Pattern::kCrown;
     case PostKind::kPole:
-    case PostKind::kTreeTrunk: break;
+    case PostKind::kTreeTrunk:
+      break;
   }
   return Pattern::kCylinder;
 }
@@ -49,8 +52,7 @@ const std::vector<Sheet>& SheetBuilder::build(const Eigen::Vector3d& camera,
   order_.clear();
   for (size_t i = 0; i < unsorted_.size(); ++i) {
     const Sheet& s = unsorted_[i];
-    const Eigen::Vector3f middle =
-        s.corner + 0.5F * (s.length_m * s.along + s.height_m * s.up);
+    const Eigen::Vector3f middle = s.corner + 0.5F * (s.length_m * s.along + s.height_m * s.up);
     order_.emplace_back(-middle.squaredNorm(), static_cast<int>(i));
   }
   std::sort(order_.begin(), order_.end());

@@ -1,8 +1,9 @@
 // Flat rectangles in space: all that stands on the ground is drawn with them.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "sim/render/surroundings.h"
 #include "sim/render/texture.h"

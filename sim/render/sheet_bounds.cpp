@@ -46,7 +46,8 @@ bool cut_to_view(Polygon& polygon, const CameraRays& rays) {
 
 /// Distortion bends straight edges: this many pieces per edge follow the bend to a pixel.
 int pieces_per_edge(const Intrinsics& camera) {
-  const bool straight = camera.k1 == 0.0 && camera.k2 == 0.0 && camera.p1 == 0.0 && camera.p2 == 0.0;
+  const bool straight =
+      camera.k1 == 0.0 && camera.k2 == 0.0 && camera.p1 == 0.0 && camera.p2 == 0.0;
   return straight ? 1 : 4;
 }
 

@@ -1,8 +1,9 @@
 #include "sim/render/sheet_pass.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/Geometry>
 
 #include "sim/render/bilinear.h"
 #include "sim/render/dispatch.h"
@@ -43,7 +44,9 @@ struct Run {
   alignas(64) float red[kRun], green[kRun], blue[kRun];
 };
 
-inline float dot(const float* a, float x, float y) { return a[0] * x + a[1] * y + a[2]; }
+inline float dot(const float* a, float x, float y) {
+  return a[0] * x + a[1] * y + a[2];
+}
 
 /// Box-filtered share of a pixel of `size` that lies within [0, length].
 inline float overlap(float at, float length, float size) {
@@ -107,7 +110,8 @@ void clothe(const SheetInView& sheet, int count, Run& run) {
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const float size_in_texels = run.footprint[i] * kTextureSide;
-    const int32_t mip = (size_in_texels > 1.4F) + (size_in_texels > 2.8F) + (size_in_texels > 5.6F) + (size_in_texels > 11.3F) +
+    const int32_t mip = (size_in_texels > 1.4F) + (size_in_texels > 2.8F) +
+                        (size_in_texels > 5.6F) + (size_in_texels > 11.3F) +
                         (size_in_texels > 22.6F) + (size_in_texels > 45.0F);
     const int32_t side = mip_sides[mip];
     const int32_t start = mip_offsets[mip];
@@ -236,8 +240,8 @@ void draw_sheets(const View& view, const Lighting& lighting, std::span<const She
     const Eigen::Vector3f corner = camera_from_map * sheet.corner;
     const Eigen::Vector3f along = camera_from_map * (sheet.length_m * sheet.along);
     const Eigen::Vector3f up = camera_from_map * (sheet.height_m * sheet.up);
-    const auto box = pixels_of({corner, corner + along, corner + along + up, corner + up},
-                               *view.rays);
+    const auto box =
+        pixels_of({corner, corner + along, corner + along + up, corner + up}, *view.rays);
     if (box && look_at(sheet, view, lighting, seen)) draw_sheet(view, seen, *box, picture);
   }
 }

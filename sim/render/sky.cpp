@@ -52,14 +52,16 @@ void shade_run(const Sky& sky, const Lighting& lighting, const SkyRun& run, int 
     const float cloud_low = clouds[below] + blend_x * (clouds_right[below] - clouds[below]);
     const float cloud_high = clouds[above] + blend_x * (clouds_right[above] - clouds[above]);
     const float cloud = cloud_low + blend_y * (cloud_high - cloud_low);
-    const float to_sun = std::max(0.0F, (run.dx[i] * l.to_sun.x() + run.dy[i] * l.to_sun.y() +
-                                         run.dz[i] * l.to_sun.z()) / length);
+    const float to_sun = std::max(
+        0.0F,
+        (run.dx[i] * l.to_sun.x() + run.dy[i] * l.to_sun.y() + run.dz[i] * l.to_sun.z()) / length);
     const float sun4 = to_sun * to_sun * to_sun * to_sun;
     const float sun16 = sun4 * sun4 * sun4 * sun4;
     const float light = 1.0F + cloud_contrast * cloud * std::min(1.0F, 4.0F * up);
     const float halo = glare * (0.12F * sun4 + 0.9F * sun16 * sun16);
     const int32_t place = skyline_place(run.dx[i], run.dy[i]);
-    const float cover = std::clamp((skyline[place] - tangent) * run.sharpness_px + 0.5F, 0.0F, 1.0F);
+    const float cover =
+        std::clamp((skyline[place] - tangent) * run.sharpness_px + 0.5F, 0.0F, 1.0F);
     const float shade = shades[place];
     const auto channel = [&](float zenith, float horizon, float sun, float ambient, float haze,
                              float hue) {

@@ -73,7 +73,7 @@ struct Dashes {
   float half_dash;
   float period;
   float to_centre;  ///< from the piece's start back to the centre of a dash
-  float solid;  ///< 1 for a line without gaps
+  float solid;      ///< 1 for a line without gaps
 
   float coverage(float along) const {
     const float turns = (along + to_centre) / period;

@@ -75,7 +75,8 @@ void SceneIndex::gather(const Se2& map_from_vehicle, double time_s, double radiu
   }
   found_.clear();
   post_index_.query(wide, found_);
-  for (const int item : found_) surroundings.posts.push_back(&world_.posts[static_cast<size_t>(item)]);
+  for (const int item : found_)
+    surroundings.posts.push_back(&world_.posts[static_cast<size_t>(item)]);
   found_.clear();
   parked_index_.query(wide, found_);
   for (const int item : found_) {

@@ -20,8 +20,12 @@ struct Paint {
   float code;
 };
 
-Paint tinted(float shade) { return {shade, shade, shade, kTinted}; }
-Paint own(float r, float g, float b) { return {r, g, b, kOwnColour}; }
+Paint tinted(float shade) {
+  return {shade, shade, shade, kTinted};
+}
+Paint own(float r, float g, float b) {
+  return {r, g, b, kOwnColour};
+}
 constexpr Paint kNothing{0.0F, 0.0F, 0.0F, kHole};
 
 /// Where a texel lies in its picture (0 to 1 each way, from the lower left) and its noise.
@@ -39,7 +43,8 @@ struct Spot {
 };
 
 float cell_random(int x, int y, uint64_t salt) {
-  const uint64_t hash = mix_seed(mix_seed(salt + static_cast<uint64_t>(x)) + static_cast<uint64_t>(y));
+  const uint64_t hash =
+      mix_seed(mix_seed(salt + static_cast<uint64_t>(x)) + static_cast<uint64_t>(y));
   return static_cast<float>(hash >> 40U) * 0x1.0p-24F;
 }
 
@@ -112,7 +117,8 @@ Paint facade(const Spot& s) {
   const float wall = 0.95F + 0.05F * s.grain() + 0.05F * s.blotch();
   if (y < 0.035F) return tinted(0.7F * wall);
   const bool frame = std::abs(x - 0.5F) < 0.25F && y > 0.27F && y < 0.80F;
-  const bool pane = std::abs(x - 0.5F) < 0.215F && y > 0.31F && y < 0.77F && std::abs(x - 0.5F) > 0.012F;
+  const bool pane =
+      std::abs(x - 0.5F) < 0.215F && y > 0.31F && y < 0.77F && std::abs(x - 0.5F) > 0.012F;
   if (!frame) return tinted(wall);
   if (!pane) return own(0.45F, 0.44F, 0.42F);
   const float pick = cell_random(bay_index, storey_index, 21);
@@ -123,7 +129,8 @@ Paint facade(const Spot& s) {
 
 Paint cylinder(const Spot& s) {
   const float across = 2.0F * s.u - 1.0F;
-  return tinted(0.55F + 0.5F * std::sqrt(std::max(0.0F, 1.0F - across * across)) + 0.06F * s.grain());
+  return tinted(0.55F + 0.5F * std::sqrt(std::max(0.0F, 1.0F - across * across)) +
+                0.06F * s.grain());
 }
 
 Paint sign(const Spot& s) {
@@ -156,7 +163,8 @@ struct Windows {
 
 Paint vehicle_side(const Spot& s, VehicleKind kind, const Wheels& wheels, const Windows& windows) {
   for (const float x : {wheels.rear_x, wheels.front_x}) {
-    const float distance = std::hypot((s.u - x) / wheels.radius_x, (s.v - wheels.radius_z) / wheels.radius_z);
+    const float distance =
+        std::hypot((s.u - x) / wheels.radius_x, (s.v - wheels.radius_z) / wheels.radius_z);
     if (distance < 0.55F) return own(0.25F, 0.25F, 0.26F);
     if (distance < 1.0F) return own(0.018F, 0.018F, 0.018F);
     if (distance < 1.12F && s.v < 0.6F) return own(0.03F, 0.03F, 0.03F);
@@ -164,10 +172,11 @@ Paint vehicle_side(const Spot& s, VehicleKind kind, const Wheels& wheels, const 
   const VehicleProfile& profile = profile_of(kind);
   if (!inside_profile(profile.corners, s.u, s.v)) return kNothing;
   const bool in_band = s.u > windows.x_from && s.u < windows.x_to && s.v > windows.z_from &&
-                       s.v < windows.z_to && inside_profile(profile.corners, s.u - 0.025F, s.v + 0.05F) &&
+                       s.v < windows.z_to &&
+                       inside_profile(profile.corners, s.u - 0.025F, s.v + 0.05F) &&
                        inside_profile(profile.corners, s.u + 0.025F, s.v + 0.05F);
-  const float pane = (s.u - windows.x_from) / (windows.x_to - windows.x_from) *
-                     static_cast<float>(windows.panes);
+  const float pane =
+      (s.u - windows.x_from) / (windows.x_to - windows.x_from) * static_cast<float>(windows.panes);
   if (in_band && pane - std::floor(pane) > 0.06F) {
     return own(0.035F + 0.03F * s.v, 0.04F + 0.035F * s.v, 0.05F + 0.04F * s.v);
   }
@@ -176,21 +185,26 @@ Paint vehicle_side(const Spot& s, VehicleKind kind, const Wheels& wheels, const 
 }
 
 Paint car_side(const Spot& s) {
-  return vehicle_side(s, VehicleKind::kCar, {0.19F, 0.81F, 0.073F, 0.215F}, {0.14F, 0.74F, 0.65F, 0.93F, 2});
+  return vehicle_side(s, VehicleKind::kCar, {0.19F, 0.81F, 0.073F, 0.215F},
+                      {0.14F, 0.74F, 0.65F, 0.93F, 2});
 }
 Paint van_side(const Spot& s) {
-  return vehicle_side(s, VehicleKind::kVan, {0.2F, 0.82F, 0.068F, 0.165F}, {0.6F, 0.85F, 0.58F, 0.88F, 1});
+  return vehicle_side(s, VehicleKind::kVan, {0.2F, 0.82F, 0.068F, 0.165F},
+                      {0.6F, 0.85F, 0.58F, 0.88F, 1});
 }
 Paint truck_side(const Spot& s) {
-  return vehicle_side(s, VehicleKind::kTruck, {0.16F, 0.86F, 0.06F, 0.145F}, {0.82F, 0.97F, 0.52F, 0.74F, 1});
+  return vehicle_side(s, VehicleKind::kTruck, {0.16F, 0.86F, 0.06F, 0.145F},
+                      {0.82F, 0.97F, 0.52F, 0.74F, 1});
 }
 Paint bus_side(const Spot& s) {
-  return vehicle_side(s, VehicleKind::kBus, {0.24F, 0.80F, 0.042F, 0.15F}, {0.02F, 0.98F, 0.42F, 0.86F, 7});
+  return vehicle_side(s, VehicleKind::kBus, {0.24F, 0.80F, 0.042F, 0.15F},
+                      {0.02F, 0.98F, 0.42F, 0.86F, 7});
 }
 
 Paint vehicle_front(const Spot& s) {
   const float from_middle = std::abs(s.u - 0.5F);
-  if (from_middle > 0.29F && from_middle < 0.46F && s.v > 0.52F && s.v < 0.86F) return own(0.9F, 0.87F, 0.8F);
+  if (from_middle > 0.29F && from_middle < 0.46F && s.v > 0.52F && s.v < 0.86F)
+    return own(0.9F, 0.87F, 0.8F);
   if (from_middle < 0.13F && s.v > 0.12F && s.v < 0.34F) return own(0.3F, 0.3F, 0.28F);
   if (from_middle < 0.3F && s.v > 0.4F && s.v < 0.8F) return own(0.03F, 0.03F, 0.03F);
   return tinted(s.v < 0.3F ? 0.5F : 0.9F);
@@ -198,7 +212,8 @@ Paint vehicle_front(const Spot& s) {
 
 Paint vehicle_rear(const Spot& s) {
   const float from_middle = std::abs(s.u - 0.5F);
-  if (from_middle > 0.36F && from_middle < 0.48F && s.v > 0.45F && s.v < 0.82F) return own(0.55F, 0.025F, 0.02F);
+  if (from_middle > 0.36F && from_middle < 0.48F && s.v > 0.45F && s.v < 0.82F)
+    return own(0.55F, 0.025F, 0.02F);
   if (from_middle < 0.14F && s.v > 0.3F && s.v < 0.5F) return own(0.3F, 0.3F, 0.28F);
   return tinted(s.v < 0.2F ? 0.45F : 0.9F);
 }
@@ -208,7 +223,9 @@ Paint glass(const Spot& s) {
   return frame ? tinted(0.8F) : own(0.06F + 0.05F * s.v, 0.07F + 0.055F * s.v, 0.08F + 0.06F * s.v);
 }
 
-Paint plain(const Spot& s) { return tinted(1.0F + 0.01F * s.grain()); }
+Paint plain(const Spot& s) {
+  return tinted(1.0F + 0.01F * s.grain());
+}
 
 struct Recipe {
   Paint (*paint)(const Spot&);
@@ -218,13 +235,16 @@ struct Recipe {
 
 /// In the order of Pattern.
 constexpr std::array<Recipe, kPatternCount> kRecipes = {{
-    {kerb_plain, 4.0F, 0.0F},       {kerb_striped, 2.0F, 0.0F}, {kerb_painted, 6.0F, 0.0F},
-    {concrete_barrier, 6.0F, 0.0F}, {guard_rail, 4.0F, 0.0F},   {hedge, 5.0F, 0.0F},
-    {stone_wall, 2.5F, 2.0F},       {fence, 2.0F, 0.0F},        {facade, 12.8F, 12.8F},
-    {cylinder, 0.0F, 0.0F},         {sign, 0.0F, 0.0F},         {crown, 0.0F, 0.0F},
-    {car_side, 0.0F, 0.0F},         {van_side, 0.0F, 0.0F},     {truck_side, 0.0F, 0.0F},
-    {bus_side, 0.0F, 0.0F},         {vehicle_front, 0.0F, 0.0F}, {vehicle_rear, 0.0F, 0.0F},
-    {glass, 0.0F, 0.0F},            {plain, 0.0F, 0.0F},
+    {kerb_plain, 4.0F, 0.0F},    {kerb_striped, 2.0F, 0.0F},
+    {kerb_painted, 6.0F, 0.0F},  {concrete_barrier, 6.0F, 0.0F},
+    {guard_rail, 4.0F, 0.0F},    {hedge, 5.0F, 0.0F},
+    {stone_wall, 2.5F, 2.0F},    {fence, 2.0F, 0.0F},
+    {facade, 12.8F, 12.8F},      {cylinder, 0.0F, 0.0F},
+    {sign, 0.0F, 0.0F},          {crown, 0.0F, 0.0F},
+    {car_side, 0.0F, 0.0F},      {van_side, 0.0F, 0.0F},
+    {truck_side, 0.0F, 0.0F},    {bus_side, 0.0F, 0.0F},
+    {vehicle_front, 0.0F, 0.0F}, {vehicle_rear, 0.0F, 0.0F},
+    {glass, 0.0F, 0.0F},         {plain, 0.0F, 0.0F},
 }};
 
 uint32_t pack(const Paint& paint) {
@@ -234,8 +254,7 @@ uint32_t pack(const Paint& paint) {
   const auto colour = [byte](float value) {
     return byte(std::sqrt(std::max(0.0F, value) / kTextureRange));
   };
-  return colour(paint.r) | colour(paint.g) << 8U | colour(paint.b) << 16U |
-         byte(paint.code) << 24U;
+  return colour(paint.r) | colour(paint.g) << 8U | colour(paint.b) << 16U | byte(paint.code) << 24U;
 }
 
 /// Means of 2x2 texels; holes lend no colour.

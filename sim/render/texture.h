@@ -34,7 +34,9 @@ enum class Pattern : uint8_t {
 };
 inline constexpr int kPatternCount = static_cast<int>(Pattern::kPlain) + 1;
 
-constexpr Pattern pattern_of(WallTexture texture) { return static_cast<Pattern>(texture); }
+constexpr Pattern pattern_of(WallTexture texture) {
+  return static_cast<Pattern>(texture);
+}
 static_assert(pattern_of(WallTexture::kFacade) == Pattern::kFacade);
 
 /// Storeys and bays in one repetition of Pattern::kFacade.
@@ -44,7 +46,8 @@ inline constexpr int kTextureSide = 256;
 inline constexpr int kTextureMips = 7;
 inline constexpr std::array<int32_t, kTextureMips> kMipSides = [] {
   std::array<int32_t, kTextureMips> sides{};
-  for (int mip = 0; mip < kTextureMips; ++mip) sides[static_cast<size_t>(mip)] = kTextureSide >> mip;
+  for (int mip = 0; mip < kTextureMips; ++mip)
+    sides[static_cast<size_t>(mip)] = kTextureSide >> mip;
   return sides;
 }();
 /// First texel of each mip level, the finest first.

@@ -135,8 +135,9 @@ void TileCanvas::look_up_patches(int j) {
   const auto iy = static_cast<int64_t>(std::floor(y));
   const auto blend_y = static_cast<float>(y - static_cast<double>(iy));
   // Nodes of the coarse field along this row, one beyond each end.
-  std::array<float, 2 * kTileNodes> nodes;
+  std::array<float, NoiseField::kRowLength> nodes;
   const int count = static_cast<int>(kTileTexels * scale) + 3;
+  static_assert(2 * kTileTexels + 3 <= NoiseField::kRowLength, "room for the coarsest level");
   const float* low = field.row(ix, iy);
   const float* high = field.row(ix, iy + 1);
   for (int k = 0; k < count; ++k) {
@@ -153,7 +154,7 @@ const float* TileCanvas::grain_row(int j) const {
 
 CanvasRow canvas_row(TileCanvas& canvas, int j, int i) {
   const size_t at = static_cast<size_t>(j) * kTileNodes + static_cast<size_t>(i);
-  return {&canvas.red[at],   &canvas.green[at],           &canvas.blue[at],
+  return {&canvas.red[at],   &canvas.green[at],       &canvas.blue[at],
           &canvas.gloss[at], canvas.grain_row(j) + i, &canvas.patches[at]};
 }
 

@@ -43,7 +43,9 @@ constexpr std::array<VehicleProfile, 4> kProfiles = {{{kCar, Pattern::kCarSide},
 
 }  // namespace
 
-const VehicleProfile& profile_of(VehicleKind kind) { return kProfiles[static_cast<size_t>(kind)]; }
+const VehicleProfile& profile_of(VehicleKind kind) {
+  return kProfiles[static_cast<size_t>(kind)];
+}
 
 bool inside_profile(std::span<const ProfileCorner> corners, float x, float z) {
   bool inside = false;

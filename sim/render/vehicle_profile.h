@@ -1,8 +1,9 @@
 // The outline of a vehicle seen from its side: bodies are this outline, drawn out sideways.
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
+
+#include <Eigen/Core>
 
 #include "sim/render/texture.h"
 

@@ -1,7 +1,8 @@
 #include "sim/render/view.h"
 
-#include <Eigen/Geometry>
 #include <tuple>
+
+#include <Eigen/Geometry>
 
 namespace bevloc::sim {
 namespace {
@@ -21,21 +22,21 @@ bool is_distorted(const Intrinsics& k) {
 }  // namespace
 
 CameraRays::CameraRays(const Intrinsics& camera)
-    : intrinsics(camera),
-      x(static_cast<size_t>(camera.width_px) * camera.height_px),
-      y(x.size()) {
+    : intrinsics(camera), x(static_cast<size_t>(camera.width_px) * camera.height_px), y(x.size()) {
   const bool distorted = is_distorted(camera);
   size_t at = 0;
   for (int v = 0; v < camera.height_px; ++v) {
     for (int u = 0; u < camera.width_px; ++u, ++at) {
-      Eigen::Vector3d ray((u - camera.cx_px) / camera.fx_px, (v - camera.cy_px) / camera.fy_px, 1.0);
+      Eigen::Vector3d ray((u - camera.cx_px) / camera.fx_px, (v - camera.cy_px) / camera.fy_px,
+                          1.0);
       if (distorted) ray = camera.ray({u, v});
       x[at] = static_cast<float>(ray.x());
       y[at] = static_cast<float>(ray.y());
     }
   }
   const auto as_row = [](const std::vector<float>& values) {
-    return Eigen::Map<const Eigen::ArrayXf>(values.data(), static_cast<Eigen::Index>(values.size()));
+    return Eigen::Map<const Eigen::ArrayXf>(values.data(),
+                                            static_cast<Eigen::Index>(values.size()));
   };
   low = {as_row(x).minCoeff(), as_row(y).minCoeff()};
   high = {as_row(x).maxCoeff(), as_row(y).maxCoeff()};
@@ -61,10 +62,9 @@ View make_view(const CameraRays& rays, const Se3& vehicle_from_camera, const Se2
   const Eigen::Matrix3d heading =
       Eigen::AngleAxisd(map_from_vehicle.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   // About the vehicle's y axis a positive turn lowers the nose, about x it lowers the right side.
-  const Eigen::Matrix3d tilt =
-      (Eigen::AngleAxisd(body.pitch_rad, Eigen::Vector3d::UnitY()) *
-       Eigen::AngleAxisd(body.roll_rad, Eigen::Vector3d::UnitX()))
-          .toRotationMatrix();
+  const Eigen::Matrix3d tilt = (Eigen::AngleAxisd(body.pitch_rad, Eigen::Vector3d::UnitY()) *
+                                Eigen::AngleAxisd(body.roll_rad, Eigen::Vector3d::UnitX()))
+                                   .toRotationMatrix();
   const Se3 map_from_body{heading * tilt,
                           {map_from_vehicle.x_m, map_from_vehicle.y_m, body.lift_m}};
   const Se3 map_from_camera = map_from_body * vehicle_from_camera;

@@ -1,9 +1,10 @@
 // One camera at one moment, as the pixel loops need it.
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "pipeline/calibration/camera_model.h"
 #include "sim/render/renderer.h"

@@ -1,12 +1,12 @@
 // bevloc_render_world: draws what the six cameras see somewhere in a world, as one picture.
-#include <fmt/core.h>
-
-#include <CLI/CLI.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "pipeline/preprocessing/network_camera.h"
 #include "sim/random.h"
@@ -37,14 +37,16 @@ Options read_options(int argc, char** argv) {
   CLI::App app("Draws the six cameras of the simulated rig as one picture");
   app.add_option("--seed", options.seed, "Which world");
   app.add_option("--out", options.out, "PNG file to write");
-  app.add_option("--pose", options.pose, "x y yaw: metres, degrees; else a place on a road")->expected(3);
+  app.add_option("--pose", options.pose, "x y yaw: metres, degrees; else a place on a road")
+      ->expected(3);
   app.add_option("--pose-seed", options.pose_seed, "Which place on a road");
   app.add_option("--time", options.time_s, "Seconds of simulated traffic");
   app.add_option("--sun-elevation", sun_elevation_deg, "Degrees");
   app.add_option("--overcast", options.conditions.overcast, "0 to 1");
   app.add_option("--rain", options.conditions.rain, "0 to 1");
   app.add_flag("--night", options.night, "The sun is down");
-  app.add_flag("--random-conditions", options.random_conditions, "Light and weather from the pose seed");
+  app.add_flag("--random-conditions", options.random_conditions,
+               "Light and weather from the pose seed");
   app.add_flag("--network-size", options.network_size, "Look through the network's cameras");
   try {
     app.parse(argc, argv);

@@ -163,7 +163,7 @@ void LaneLayer::add_junction(const Junction& junction) {
 
 /// The ring is cut where each arm's traffic leaves it and joins it again.
 void LaneLayer::add_roundabout(const Junction& junction) {
-  const double radius = driving_radius(junction);
+  const double radius = 0.5 * (junction.island_radius_m + junction.outer_radius_m);
   const double width = 0.8 * (junction.outer_radius_m - junction.island_radius_m);
   const size_t arms = junction.arms.size();
   const auto add_arc = [&](double from_rad, double to_rad) {
@@ -199,10 +199,6 @@ void LaneLayer::add_roundabout(const Junction& junction) {
 }
 
 }  // namespace
-
-double driving_radius(const Junction& roundabout) {
-  return 0.5 * (roundabout.island_radius_m + roundabout.outer_radius_m);
-}
 
 void add_lanes(const RoadNetwork& network, HdMap& map) {
   LaneLayer layer(network, map);

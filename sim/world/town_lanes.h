@@ -8,7 +8,4 @@ namespace bevloc::sim {
 /// Appends the network's lanes to the map. Each has a successor that begins where it ends.
 void add_lanes(const RoadNetwork& network, HdMap& map);
 
-/// The radius at which vehicles drive around a roundabout.
-double driving_radius(const Junction& roundabout);
-
 }  // namespace bevloc::sim

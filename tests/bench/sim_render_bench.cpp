@@ -1,7 +1,7 @@
 // How fast the simulator draws.
-#include <benchmark/benchmark.h>
-
 #include <vector>
+
+#include <benchmark/benchmark.h>
 
 #include "pipeline/preprocessing/network_camera.h"
 #include "sim/random.h"
@@ -102,7 +102,10 @@ void BM_GroundTile(benchmark::State& state) {
                   texels.data());
   }
 }
-BENCHMARK(BM_GroundTile)->DenseRange(0, kGroundLevels - 1)->Iterations(50)->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_GroundTile)
+    ->DenseRange(0, kGroundLevels - 1)
+    ->Iterations(50)
+    ->Unit(benchmark::kMicrosecond);
 
 /// A renderer's own start: indexing the world.
 void BM_MakeRenderer(benchmark::State& state) {

@@ -232,6 +232,8 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
       {kSmallest + "solver: {kind: quick}\n", 9, "solver.kind"},
       {kSmallest + "solver: {tracking: {x_range_m: 1, x_step_m: 2}}\n", 9,
        "solver.tracking.x_step_m"},
+      {kSmallest + "solver: {acquiring: {y_range_m: 7.6}}\n", 9,
+       "solver.acquiring.y_range_m: found 7.6, wanted a number, 0.1 to 7.5"},
       {kSmallest + "health: {degraded_after_ms: 500, lost_after_ms: 400}\n", 9,
        "health.lost_after_ms"},
       {kSmallest + "log: {level: loud}\n", 9, "log.level: found loud"},
@@ -256,6 +258,16 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
                 AllOf(StartsWith(place(mistake.line)), HasSubstr(mistake.wanted)))
         << mistake.yaml;
   }
+}
+
+TEST_F(ConfigTest, TheSolverTakesTheLargestRangesThatMayBeConfigured) {
+  const auto config = load(kSmallest +
+                           "solver: {tracking: {x_range_m: 7.5, x_step_m: 2.5, y_range_m: 7.5, "
+                           "y_step_m: 2.5, yaw_range_deg: 20, yaw_step_deg: 5}}\n");
+  ASSERT_TRUE(config) << config.error().message;
+  const auto solver = make_solver(config->solver.kind, kFeatureGrid, 1, config->solver.tracking,
+                                  SolverParameters());
+  EXPECT_TRUE(solver) << solver.error().message;
 }
 
 TEST_F(ConfigTest, MissingOrBrokenFileIsNamed) {

@@ -40,6 +40,7 @@ class EstimationStageTest : public testing::Test {
     VisionReport report;
     report.frame_time = frame_time;
     report.present.set();
+    report.skipped = skipped_;
     report.had_prior = true;
     report.map_nearby = true;
     report.prior = truth_at(frame_time) * Se2{0.5, 0.4, 0.01};
@@ -65,6 +66,7 @@ class EstimationStageTest : public testing::Test {
   Se2 vision_error_;
   bool odometry_ = true;
   bool vision_ = true;
+  bool skipped_ = false;
   std::optional<BusPose> latest_;
 };
 
@@ -106,6 +108,17 @@ TEST_F(EstimationStageTest, RefusesAMatchThatContradictsOdometry) {
   const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
   EXPECT_NEAR(error.x_m, 0.0, 0.1);
   EXPECT_NEAR(error.y_m, 0.0, 0.1);
+}
+
+TEST_F(EstimationStageTest, SaysWhenVisionSkipsFramesets) {
+  run(milliseconds(5000));
+  EXPECT_EQ(stage_.counters().why, 0);
+  skipped_ = true;
+  run(milliseconds(200));
+  EXPECT_EQ(stage_.counters().why, can::WhyMask(can::Why::kOverload).bits());
+  skipped_ = false;
+  run(milliseconds(200));
+  EXPECT_EQ(stage_.counters().why, 0);
 }
 
 TEST_F(EstimationStageTest, StopsSendingPosesWithoutOdometry) {

@@ -104,6 +104,15 @@ TEST(HealthTest, RefusedCorrectionsInARowLose) {
   EXPECT_EQ(health.state(), State::kLost);
 }
 
+TEST(HealthTest, APoseThatContradictsGnssIsLost) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.contradicts_gnss = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), State::kLost);
+  EXPECT_TRUE(health.why().has(Why::kMatchUncertain));
+}
+
 TEST(HealthTest, WithoutOdometryThePoseIsLost) {
   Health health = tracking();
   HealthInputs inputs = healthy();
@@ -120,6 +129,17 @@ TEST(HealthTest, MissingGnssOnlyDegrades) {
   for (int i = 0; i < 10; ++i) health.update(inputs);
   EXPECT_EQ(health.state(), State::kDegraded);
   EXPECT_TRUE(health.why().has(Why::kGnssMissing));
+}
+
+TEST(HealthTest, OverloadDegradesWhileItLasts) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.overloaded = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), State::kDegraded);
+  EXPECT_EQ(health.why(), can::WhyMask(Why::kOverload));
+  health.update(healthy());
+  EXPECT_EQ(health.state(), State::kTracking);
 }
 
 TEST(HealthTest, AnInternalErrorIsAFaultForEver) {

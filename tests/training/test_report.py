@@ -66,7 +66,7 @@ class Written(unittest.TestCase):
         solver = fixed_solver([0.0, 0.0, 0.0], 1.0)
         names = ("joint", "decoupled", "block", "decoupled-plain")
         metrics = metrics_of({name: solver for name in names}, [batch])
-        self.results = Results(2, metrics, metrics)
+        self.results = Results(12_000, 2, metrics, metrics)
 
     def tearDown(self):
         self.folder.cleanup()
@@ -79,6 +79,7 @@ class Written(unittest.TestCase):
         self.assertTrue(first.startswith("before\n") and first.endswith(f"{END}\nafter\n"))
         self.assertNotIn("old", first)
         self.assertIn("| Lateral (m) |", first)
+        self.assertIn("12,000 samples", first)
         write_results(self.models, self.results)
         self.assertEqual(card.read_text(), first)
         saved = json.loads((self.models / "nano_results.json").read_text())

@@ -2,18 +2,23 @@
 
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
+import onnx
 import torch
 
 from tests.training.synthetic import SyntheticStream
+from training.data import view_table
+from training.evaluate import float_inference
+from training.export_onnx import build_model
+from training.graph import folded_convolutions
 from training.model import Nano
+from training.onnx_graph import FloatOnnxBackend
 from training.runtime import NativeNetwork, NativeSolver
 from training.solver import Solution, standardise
 from training.synthetic_scene import features_under
-
-FIXTURES = Path(__file__).resolve().parent.parent / "pipeline/network/fixtures"
 
 LEAVES_A_SAMPLER_OPEN = """
 from training.data import SamplerStream
@@ -30,7 +35,14 @@ class Sampler(unittest.TestCase):
 class RunTime(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.network = NativeNetwork(FIXTURES / "tiny_network_int8.onnx")
+        torch.set_num_threads(1)
+        torch.manual_seed(1)
+        cls.net = Nano().eval()
+        model = build_model(cls.net, folded_convolutions(cls.net), FloatOnnxBackend())
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "untrained.onnx"
+            onnx.save(model, str(path))
+            cls.network = NativeNetwork(path)
 
     def test_a_missing_model_is_refused_with_its_name(self):
         with self.assertRaisesRegex(ValueError, "absent.onnx"):
@@ -40,20 +52,22 @@ class RunTime(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "magic"):
             NativeSolver(self.network, "magic")
 
-    def test_every_sample_has_its_own_outputs(self):
+    @torch.no_grad()
+    def test_the_network_computes_what_pytorch_computes(self):
         batch = SyntheticStream(0).next(2)
-        bev, features_map, mask = self.network(batch)
-        self.assertEqual(tuple(bev.shape), (2, 16, 100, 50))
-        self.assertEqual(tuple(mask.shape), (2, 3, 400, 200))
-        self.assertFalse(torch.equal(bev[0], bev[1]))
-        self.assertFalse(torch.equal(features_map[0], features_map[1]))
+        batch.camera_mask[1] = 0b101101
+        tables = [view_table(int(mask)) for mask in batch.camera_mask]
+        batch.index = torch.stack([index for index, _ in tables])
+        batch.weight = torch.stack([weight for _, weight in tables])
+        for found, expected in zip(self.network(batch), float_inference(self.net)(batch)):
+            error = (found - expected).abs().amax() / expected.abs().amax()
+            self.assertLess(error.item(), 1e-4)
 
     @torch.no_grad()
     def test_the_block_solver_agrees_with_the_joint_volume(self):
         bev, features_map = features_under(torch.tensor([0.5, -0.3, 0.01]), 1, channels=16)
-        solvers = Nano().solvers
-        solvers.log_scale["joint"].data.fill_(torch.tensor(150.5).log())  # of the fixture
-        expected = Solution.of(solvers.joint(standardise(bev), standardise(features_map)))
+        sides = standardise(bev), standardise(features_map)
+        expected = Solution.of(self.net.solvers.joint(*sides))
         found = NativeSolver(self.network, "block")(bev, features_map)
         torch.testing.assert_close(found.estimate, expected.estimate, rtol=0, atol=1e-4)
         for a, b in zip(found.posterior.axes(), expected.posterior.axes()):

@@ -131,7 +131,8 @@ class Degenerate(unittest.TestCase):
     @torch.no_grad()
     def test_constant_features_give_flat_finite_posteriors(self):
         flat = standardise(torch.full((1, 4, 100, 50), 3.0))
-        for posterior in (sharp_solvers().joint(flat, flat), sharp_solvers().decoupled(flat, flat, None)):
+        solvers = sharp_solvers()
+        for posterior in (solvers.joint(flat, flat), solvers.decoupled(flat, flat, None)):
             for probability in posterior.axes():
                 self.assertTrue(torch.isfinite(probability).all())
                 self.assertAlmostEqual(probability.sum().item(), 1.0, places=4)

@@ -43,9 +43,8 @@ void bevloc_network_destroy(bevloc_network* network) {
 void bevloc_network_run(bevloc_network* network, const uint8_t* images, uint8_t camera_mask,
                         const uint8_t* raster, float* bev, float* map, float* mask) {
   bevloc::Network& net = *network->network;
-  net.set_view_table(bevloc::make_view_table(bevloc::training::told_network_rig(),
-                                             bevloc::CameraMask(camera_mask),
-                                             bevloc::kFeatureGrid));
+  net.set_view_table(bevloc::make_view_table(
+      bevloc::training::told_network_rig(), bevloc::CameraMask(camera_mask), bevloc::kFeatureGrid));
   const std::span<int8_t> image_input = net.image_input();
   std::transform(images, images + image_input.size(), image_input.begin(),
                  [](uint8_t value) { return static_cast<int8_t>(value - kImageOffset); });
@@ -77,7 +76,8 @@ void bevloc_solver_destroy(bevloc_solver* solver) {
 void bevloc_solver_solve(bevloc_solver* solver, const float* bev, const float* map,
                          float* correction, float* deviation, float* probabilities) {
   const auto view = [](const float* data) {
-    const size_t size = static_cast<size_t>(bevloc::kFeatureChannels) * bevloc::kFeatureGrid.cells();
+    const size_t size =
+        static_cast<size_t>(bevloc::kFeatureChannels) * bevloc::kFeatureGrid.cells();
     return bevloc::FeatureView{{data, size}, bevloc::kFeatureChannels, bevloc::kFeatureGrid};
   };
   bevloc::SolverResult& result = solver->result;
