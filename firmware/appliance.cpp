@@ -36,8 +36,8 @@ Result<std::unique_ptr<Appliance>> Appliance::create(const Config& config, const
   auto localizer =
       Localizer::create(rig, *map_index, config.model_file.string(), localizer_options(config));
   if (!localizer) return tl::unexpected(localizer.error());
-  return std::unique_ptr<Appliance>(new Appliance(config, map, std::move(hardware),
-                                                  std::move(map_index), std::move(*localizer)));
+  return std::unique_ptr<Appliance>(
+      new Appliance(config, map, std::move(hardware), std::move(map_index), std::move(*localizer)));
 }
 
 Appliance::Appliance(const Config& config, const HdMap& map, Hardware hardware,

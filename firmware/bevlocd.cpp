@@ -1,9 +1,9 @@
 // bevlocd: tells a vehicle where it stands in its HD map.
-#include <spdlog/spdlog.h>
-
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
 
 #include "firmware/daemon.h"
 #include "firmware/simulation/simulated_run.h"
@@ -19,7 +19,9 @@ constexpr int kBadInput = 2;
 
 std::atomic<bool> g_stop_requested{false};
 
-void request_stop(int) { g_stop_requested = true; }
+void request_stop(int) {
+  g_stop_requested = true;
+}
 
 struct CommandLine {
   std::string config_file;
@@ -49,13 +51,14 @@ void declare(CLI::App& app, CommandLine& line) {
 }
 
 Status apply(const CommandLine& line, Config& config) {
-  const bool asks_for_simulation =
-      line.seed || line.duration_s || !line.map_file.empty() || !line.json_file.empty() || line.fast;
+  const bool asks_for_simulation = line.seed || line.duration_s || !line.map_file.empty() ||
+                                   !line.json_file.empty() || line.fast;
   if (!config.simulation) {
     if (!asks_for_simulation) return {};
-    return fail("{}: found cameras that are not mock, wanted mock ones for --seed, --duration, "
-                "--map, --json and --fast",
-                line.config_file);
+    return fail(
+        "{}: found cameras that are not mock, wanted mock ones for --seed, --duration, "
+        "--map, --json and --fast",
+        line.config_file);
   }
   if (line.seed) {
     config.simulation->seed = *line.seed;

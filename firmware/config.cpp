@@ -72,9 +72,9 @@ HypothesisAxis read_axis(YamlMap& yaml, std::string_view range_key, std::string_
 HypothesisGrid read_hypotheses(std::optional<YamlMap> yaml, const HypothesisGrid& fallback) {
   if (!yaml) return fallback;
   const double max_range_m = max_shift_m(kFeatureGrid);
-  const HypothesisAxis yaw_deg =
-      read_axis(*yaml, "yaw_range_deg", "yaw_step_deg",
-                {degrees(fallback.yaw_rad.range), degrees(fallback.yaw_rad.step)}, kMaxYawRange_deg);
+  const HypothesisAxis yaw_deg = read_axis(
+      *yaml, "yaw_range_deg", "yaw_step_deg",
+      {degrees(fallback.yaw_rad.range), degrees(fallback.yaw_rad.step)}, kMaxYawRange_deg);
   return {read_axis(*yaml, "x_range_m", "x_step_m", fallback.x_m, max_range_m),
           read_axis(*yaml, "y_range_m", "y_step_m", fallback.y_m, max_range_m),
           {radians(yaw_deg.range), radians(yaw_deg.step)}};

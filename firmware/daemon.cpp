@@ -78,10 +78,14 @@ Status run_daemon(const Config& config, const Rig& rig, const std::function<bool
 
 void set_log_level(LogLevel level) {
   switch (level) {
-    case LogLevel::kDebug: return spdlog::set_level(spdlog::level::debug);
-    case LogLevel::kInfo: return spdlog::set_level(spdlog::level::info);
-    case LogLevel::kWarning: return spdlog::set_level(spdlog::level::warn);
-    case LogLevel::kError: return spdlog::set_level(spdlog::level::err);
+    case LogLevel::kDebug:
+      return spdlog::set_level(spdlog::level::debug);
+    case LogLevel::kInfo:
+      return spdlog::set_level(spdlog::level::info);
+    case LogLevel::kWarning:
+      return spdlog::set_level(spdlog::level::warn);
+    case LogLevel::kError:
+      return spdlog::set_level(spdlog::level::err);
   }
 }
 

@@ -31,12 +31,18 @@ constexpr std::array<std::pair<Why, const char*>, 16> kReasonTexts = {{
 
 const char* to_string(State state) {
   switch (state) {
-    case State::kInit: return "INIT";
-    case State::kAcquiring: return "ACQUIRING";
-    case State::kTracking: return "TRACKING";
-    case State::kDegraded: return "DEGRADED";
-    case State::kLost: return "LOST";
-    case State::kFault: return "FAULT";
+    case State::kInit:
+      return "INIT";
+    case State::kAcquiring:
+      return "ACQUIRING";
+    case State::kTracking:
+      return "TRACKING";
+    case State::kDegraded:
+      return "DEGRADED";
+    case State::kLost:
+      return "LOST";
+    case State::kFault:
+      return "FAULT";
   }
   return "?";
 }
@@ -80,15 +86,15 @@ can::WhyMask Health::find_reasons(const HealthInputs& inputs) const {
 
 bool Health::is_lost(const HealthInputs& inputs) const {
   return why_.has(Why::kPoseUncertain) || why_.has(Why::kMatchUncertain) ||
-         why_.has(Why::kOdometryMissing) ||
-         inputs.correction_age > limits_.lost_timeout ||
+         why_.has(Why::kOdometryMissing) || inputs.correction_age > limits_.lost_timeout ||
          inputs.refused_in_a_row >= limits_.refusals_to_lose;
 }
 
 State Health::next_state(const HealthInputs& inputs) const {
   if (inputs.internal_error) return State::kFault;
   switch (state_) {
-    case State::kInit: return inputs.initialized ? State::kAcquiring : State::kInit;
+    case State::kInit:
+      return inputs.initialized ? State::kAcquiring : State::kInit;
     case State::kAcquiring:
       return !is_lost(inputs) && inputs.accepted_in_a_row >= limits_.corrections_to_track
                  ? State::kTracking
@@ -97,8 +103,10 @@ State Health::next_state(const HealthInputs& inputs) const {
     case State::kDegraded:
       if (is_lost(inputs)) return State::kLost;
       return why_ == can::WhyMask() ? State::kTracking : State::kDegraded;
-    case State::kLost: return State::kAcquiring;
-    case State::kFault: return State::kFault;
+    case State::kLost:
+      return State::kAcquiring;
+    case State::kFault:
+      return State::kFault;
   }
   return State::kFault;
 }

@@ -13,8 +13,7 @@ Se2 drive_on(const TrackedPose& from, Duration duration) {
 }
 
 Se2 interpolate(const TrackedPose& before, const TrackedPose& after, Time time) {
-  const double share =
-      to_seconds(time - before.time) / to_seconds(after.time - before.time);
+  const double share = to_seconds(time - before.time) / to_seconds(after.time - before.time);
   const Se2 step = correction_between(before.map_from_vehicle, after.map_from_vehicle);
   return before.map_from_vehicle * Se2{share * step.x_m, share * step.y_m, share * step.yaw_rad};
 }

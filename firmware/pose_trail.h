@@ -18,7 +18,8 @@ class PoseTrail {
   /// A pose that is not newer than the latest one replaces it and all that came after it.
   void add(const TrackedPose& pose);
 
-  /// Between two poses by interpolation, past the newest by its speed and yaw rate; nothing outside.
+  /// Between two poses by interpolation, past the newest by its speed and yaw rate; nothing
+  /// outside.
   std::optional<Se2> at(Time time) const;
 
  private:

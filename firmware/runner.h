@@ -11,9 +11,9 @@ namespace bevloc::firmware {
 /// What else takes part while the appliance runs: the simulated vehicle and its judge in a demo,
 /// nothing on a vehicle.
 struct Companion {
-  std::function<Time()> next_due;       ///< when act() has something to do next
-  std::function<void(Time now)> act;    ///< the rest of the vehicle
-  std::function<void(Duration)> listen; ///< the judge; waits for frames at most this long
+  std::function<Time()> next_due;        ///< when act() has something to do next
+  std::function<void(Time now)> act;     ///< the rest of the vehicle
+  std::function<void(Duration)> listen;  ///< the judge; waits for frames at most this long
 };
 
 /// Called about ten times a second, in the calling thread; false ends the run.

@@ -31,10 +31,9 @@ std::optional<VehicleSample> tracker_sample(const can::VehicleSample& sample) {
 }
 
 bool feed(Tracker& tracker, const VehicleSample& sample) {
-  const TrackerUpdate update =
-      std::holds_alternative<OdometrySample>(sample)
-          ? tracker.add_odometry(std::get<OdometrySample>(sample))
-          : tracker.add_gnss(std::get<GnssSample>(sample));
+  const TrackerUpdate update = std::holds_alternative<OdometrySample>(sample)
+                                   ? tracker.add_odometry(std::get<OdometrySample>(sample))
+                                   : tracker.add_gnss(std::get<GnssSample>(sample));
   return update == TrackerUpdate::kAccepted;
 }
 

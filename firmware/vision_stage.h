@@ -28,8 +28,8 @@ struct VisionCounters {
   std::atomic<uint64_t> frames_used{0};
   std::atomic<uint64_t> framesets_skipped{0};  ///< a newer one was already there
   std::atomic<uint64_t> frames_skipped{0};     ///< of those
-  std::atomic<uint64_t> no_prior{0};  ///< framesets at whose time no prediction was known
-  std::atomic<uint64_t> refused{0};   ///< framesets with an image of the wrong size
+  std::atomic<uint64_t> no_prior{0};           ///< framesets at whose time no prediction was known
+  std::atomic<uint64_t> refused{0};            ///< framesets with an image of the wrong size
 };
 
 /// Thread: one, the vision thread; counters() from any.

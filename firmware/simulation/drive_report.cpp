@@ -1,6 +1,7 @@
 #include "firmware/simulation/drive_report.h"
 
 #include <fstream>
+
 #include <nlohmann/json.hpp>
 
 namespace bevloc::firmware {
@@ -24,7 +25,8 @@ std::string axis_row(const char* name, const AxisError& prior, const AxisError& 
 }  // namespace
 
 std::string to_table(const DriveReport& report) {
-  std::string table = fmt::format("{:<18} {:^23}   {:^23}\n", "", "prior (GNSS+odometry)", "bevloc");
+  std::string table =
+      fmt::format("{:<18} {:^23}   {:^23}\n", "", "prior (GNSS+odometry)", "bevloc");
   table += fmt::format("{:<18} {:>7} {:>7} {:>7}   {:>7} {:>7} {:>7}\n", "error", "MAE", "RMSE",
                        "p95", "MAE", "RMSE", "p95");
   table += axis_row("longitudinal  m", report.prior.longitudinal_m, report.estimate.longitudinal_m);
@@ -67,9 +69,9 @@ Status write_csv(const DriveReport& report, const std::string& path) {
     return fmt::format(",{:.4f},{:.4f},{:.6f}", pose.x_m, pose.y_m, pose.yaw_rad);
   };
   for (const JudgedPose& judged : report.poses) {
-    text += fmt::format("{:.3f},{}{}{}{}\n", judged.time_s, to_string(judged.state),
-                        pose_text(judged.truth), pose_text(judged.prior),
-                        pose_text(judged.estimate));
+    text +=
+        fmt::format("{:.3f},{}{}{}{}\n", judged.time_s, to_string(judged.state),
+                    pose_text(judged.truth), pose_text(judged.prior), pose_text(judged.estimate));
   }
   return write_text(text, path);
 }

@@ -24,8 +24,8 @@ struct DriveReport {
   /// computing takes no time, so there it is what sensor and bus cycle alone take.
   LatencyReport latency;
   uint64_t can_sent = 0;
-  double first_fix_s = 0.0;        ///< from the start of the drive; negative if never
-  double valid_share = 0.0;        ///< of the drive after the first fix
+  double first_fix_s = 0.0;  ///< from the start of the drive; negative if never
+  double valid_share = 0.0;  ///< of the drive after the first fix
   uint64_t seed = 0;
   double duration_s = 0.0;
   std::string map;

@@ -38,8 +38,8 @@ struct JudgeView {
 };
 
 /// A passive node: it reads frames like any consumer, keeps the prior by a tracker of its own that
-/// hears the same odometry and GNSS but no corrections, writes the bus to a candump log, and compares
-/// ten times a second. One thread, but view() may be called from any.
+/// hears the same odometry and GNSS but no corrections, writes the bus to a candump log, and
+/// compares ten times a second. One thread, but view() may be called from any.
 class Judge {
  public:
   using TruthAt = std::function<Se2(double time_s)>;

@@ -1,8 +1,9 @@
 #include "firmware/simulation/map_overlay.h"
 
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <optional>
+
+#include <opencv2/imgproc.hpp>
 
 namespace bevloc::firmware {
 namespace {
@@ -43,9 +44,12 @@ void draw_segment(const CameraModel& camera, const Se3& camera_from_vehicle,
 
 cv::Scalar class_color(ElementClass element_class) {
   switch (element_class) {
-    case ElementClass::kLaneDivider: return {255, 80, 0};
-    case ElementClass::kPedestrianCrossing: return {0, 200, 0};
-    case ElementClass::kRoadBoundary: return {0, 0, 255};
+    case ElementClass::kLaneDivider:
+      return {255, 80, 0};
+    case ElementClass::kPedestrianCrossing:
+      return {0, 200, 0};
+    case ElementClass::kRoadBoundary:
+      return {0, 0, 255};
   }
   return {0, 0, 0};
 }
@@ -61,7 +65,8 @@ void draw_map_over_image(const MapIndex& map, const Se2& map_from_vehicle,
     const MapElement& element = map.map().elements[segment.element];
     const size_t next = (segment.first + 1) % element.points.size();
     draw_segment(camera, camera_from_vehicle, vehicle_from_map * element.points[segment.first],
-                 vehicle_from_map * element.points[next], class_color(element.element_class), image);
+                 vehicle_from_map * element.points[next], class_color(element.element_class),
+                 image);
   }
 }
 

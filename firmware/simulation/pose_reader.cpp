@@ -9,7 +9,9 @@ can::E2eChecker checker_of(const can::Message& message) {
   return {message.data_id, message.length};
 }
 
-int64_t epoch_of(const can::Frame& frame) { return can::extract_raw(frame, can::kEpoch); }
+int64_t epoch_of(const can::Frame& frame) {
+  return can::extract_raw(frame, can::kEpoch);
+}
 
 }  // namespace
 

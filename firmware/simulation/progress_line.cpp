@@ -1,10 +1,10 @@
 #include "firmware/simulation/progress_line.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdio>
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 namespace bevloc::firmware {
 

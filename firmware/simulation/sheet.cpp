@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -127,7 +128,8 @@ Status write_sheet(const SheetContent& content, const Rig& rig, const MapIndex& 
   cv::Mat sheet(kSheetHeightPx, kSheetWidthPx, CV_8UC3, kBackground);
   const cv::Point left(kMarginPx, kMarginPx + kCaptionPx);
   const cv::Point right(2 * kMarginPx + kBlockWidthPx, left.y);
-  write_text(sheet, describe("(b) map at the prior (GNSS + odometry)", content.truth, content.prior),
+  write_text(sheet,
+             describe("(b) map at the prior (GNSS + odometry)", content.truth, content.prior),
              left - cv::Point(0, 10));
   write_text(sheet, describe("(c) map at bevloc's pose", content.truth, content.corrected),
              right - cv::Point(0, 10));

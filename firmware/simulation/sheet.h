@@ -23,8 +23,8 @@ struct SheetContent {
   Se2 truth;
   std::vector<float> mask_logits;  ///< perceived mask [3, 400, 200]
   Se2 matched_at;                  ///< T0: the pose the map was drawn at for the network
-  SolverResult solution;      ///< of dT from there
-  HypothesisGrid hypotheses;  ///< the axes of the solution's distributions
+  SolverResult solution;           ///< of dT from there
+  HypothesisGrid hypotheses;       ///< the axes of the solution's distributions
 };
 
 /// Draws (a) the perceived BEV over the map at the corrected pose, (b) the map at the prior and (c)

@@ -14,7 +14,9 @@ constexpr Duration kReadout = std::chrono::milliseconds(20);
 /// The drive goes on beyond what is judged, so that nothing ends while the daemon still runs.
 constexpr double kSpareDuration_s = 10.0;
 
-Time at(Time drive_start, double time_s) { return drive_start + from_seconds(time_s); }
+Time at(Time drive_start, double time_s) {
+  return drive_start + from_seconds(time_s);
+}
 
 }  // namespace
 
@@ -44,8 +46,8 @@ void SimulatedVehicle::send_odometry(Time now) {
     }
   }
   ++odometry_count_;
-  next_odometry_ = at(drive_start_, static_cast<double>(odometry_count_) *
-                                        sim::OdometrySimulator::kPeriod_s);
+  next_odometry_ =
+      at(drive_start_, static_cast<double>(odometry_count_) * sim::OdometrySimulator::kPeriod_s);
 }
 
 void SimulatedVehicle::send_gnss(Time now) {
@@ -61,8 +63,7 @@ void SimulatedVehicle::send_gnss(Time now) {
     for (const can::Frame& frame : encoder_.gnss(sample)) bus_->send(frame, now);
   }
   ++gnss_count_;
-  next_gnss_ =
-      at(drive_start_, static_cast<double>(gnss_count_) * sim::GnssSimulator::kPeriod_s);
+  next_gnss_ = at(drive_start_, static_cast<double>(gnss_count_) * sim::GnssSimulator::kPeriod_s);
 }
 
 Result<SimulatedDrive> SimulatedDrive::create(const Config& config) {
@@ -86,8 +87,10 @@ SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,
       drive_(std::make_shared<sim::Drive>(*world_, sim::seed_for(simulation.seed, "drive"),
                                           simulation.duration_s + kSpareDuration_s)) {}
 
-std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(
-    const Config& config, const Rig& rig, drivers::Clock& clock, Time drive_start) const {
+std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(const Config& config,
+                                                                           const Rig& rig,
+                                                                           drivers::Clock& clock,
+                                                                           Time drive_start) const {
   const SimulationConfig& simulation = *config.simulation;
   auto scene = std::make_shared<drivers::MockScene>();
   scene->world = world_;

@@ -68,14 +68,14 @@ Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const Config& config,
                                                            const SimulatedRunOptions& options) {
   auto drive = SimulatedDrive::create(config);
   if (!drive) return tl::unexpected(drive.error());
-  auto run = std::unique_ptr<SimulatedRun>(
-      new SimulatedRun(config, rig, options, std::move(*drive)));
+  auto run =
+      std::unique_ptr<SimulatedRun>(new SimulatedRun(config, rig, options, std::move(*drive)));
   if (Status status = run->connect(); !status) return tl::unexpected(status.error());
   return run;
 }
 
-SimulatedRun::SimulatedRun(const Config& config, const Rig& rig,
-                           const SimulatedRunOptions& options, SimulatedDrive drive)
+SimulatedRun::SimulatedRun(const Config& config, const Rig& rig, const SimulatedRunOptions& options,
+                           SimulatedDrive drive)
     : config_(config),
       rig_(rig),
       options_(options),
@@ -107,9 +107,8 @@ Status SimulatedRun::connect() {
   vehicle_ = std::make_unique<SimulatedVehicle>(drive_.drive(), config_.simulation->seed, origin,
                                                 ids, std::move(*vehicle_bus), drive_start_);
   auto judge = Judge::create(
-      std::move(*judge_bus), ids, origin,
-      [this](double time_s) { return drive_.truth_at(time_s); }, drive_start_,
-      (options_.out / "can.log").string());
+      std::move(*judge_bus), ids, origin, [this](double time_s) { return drive_.truth_at(time_s); },
+      drive_start_, (options_.out / "can.log").string());
   if (!judge) return tl::unexpected(judge.error());
   judge_ = std::move(*judge);
   return {};

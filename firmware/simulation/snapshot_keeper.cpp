@@ -12,8 +12,9 @@ double map_content(std::span<const uint8_t> raster) {
   double content = 0.0;
   for (size_t channel = 0; channel < kWeights.size(); ++channel) {
     const auto cells = raster.subspan(channel * plane, plane);
-    content += kWeights[channel] * static_cast<double>(std::count_if(
-                                       cells.begin(), cells.end(), [](uint8_t v) { return v > 0; }));
+    content +=
+        kWeights[channel] * static_cast<double>(std::count_if(cells.begin(), cells.end(),
+                                                              [](uint8_t v) { return v > 0; }));
   }
   return content;
 }

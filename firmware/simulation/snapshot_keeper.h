@@ -10,7 +10,8 @@
 namespace bevloc::firmware {
 
 /// Observes the vision stage; of the framesets localized once tracking has settled it keeps the one
-/// around which the map shows most. Threads: observe() in the vision thread, the rest after the run.
+/// around which the map shows most. Threads: observe() in the vision thread, the rest after the
+/// run.
 class SnapshotKeeper {
  public:
   struct Kept {

@@ -12,7 +12,8 @@ Result<std::unique_ptr<Localizer>> Localizer::create(const Rig& rig, const MapIn
                                                      const LocalizerOptions& options) {
   auto network = Network::load(model_path, options.network);
   if (!network) return tl::unexpected(network.error());
-  auto localizer = std::unique_ptr<Localizer>(new Localizer(rig, map, std::move(*network), options));
+  auto localizer =
+      std::unique_ptr<Localizer>(new Localizer(rig, map, std::move(*network), options));
   const Network& loaded = *localizer->network_;
   for (const SearchRange range : {SearchRange::kTracking, SearchRange::kAcquiring}) {
     auto solver = make_solver(options.solver, kFeatureGrid, loaded.bev_features().channels,

@@ -70,7 +70,7 @@ class Localizer {
   std::vector<ImagePreprocessor> preprocessors_;
   MapRasterizer rasterizer_;
   std::array<std::unique_ptr<Solver>, 2> solvers_;  ///< by SearchRange
-  ViewTable view_table_;  ///< for table_cameras_
+  ViewTable view_table_;                            ///< for table_cameras_
   std::optional<CameraMask> table_cameras_;
 };
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/target_clones.h"
+
 namespace bevloc {
 namespace {
 
@@ -21,7 +23,7 @@ std::vector<float> hann_window(int size) {
 
 /// Amplitudes of two real signals a and b from the transform of a + ib at frequencies k (`own`) and
 /// -k (`mirror`): 2 A = Z(k) + conj Z(-k), 2 i B = Z(k) - conj Z(-k).
-BEVLOC_VECTOR_CLONES void separate(const float* own_re, const float* own_im, const float* mirror_re,
+BEVLOC_TARGET_CLONES void separate(const float* own_re, const float* own_im, const float* mirror_re,
                                    const float* mirror_im, float* out) {
   for (int k = 0; k < kPairs; ++k) {
     const float a_re = own_re[k] + mirror_re[k];

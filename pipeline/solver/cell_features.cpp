@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "common/target_clones.h"
+
 namespace bevloc {
 namespace {
 
@@ -26,7 +28,7 @@ struct WarpLine {
   int cells;
 };
 
-BEVLOC_VECTOR_CLONES void warp_line(const WarpLine& line, float* out) {
+BEVLOC_TARGET_CLONES void warp_line(const WarpLine& line, float* out) {
   for (int i = 0; i < line.cells; ++i) {
     const double u = line.u0 + i * line.du;
     const double v = line.v0 + i * line.dv;

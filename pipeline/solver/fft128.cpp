@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/target_clones.h"
+
 namespace bevloc {
 namespace {
 
@@ -22,7 +24,7 @@ const auto kTwiddles = [] {
 }();
 
 /// Cooley and Tukey's radix-2 butterflies; the lanes do the same work on sixteen signals.
-BEVLOC_VECTOR_CLONES void butterflies(float* re, float* im, const Twiddle* twiddles) {
+BEVLOC_TARGET_CLONES void butterflies(float* re, float* im, const Twiddle* twiddles) {
   for (int half = 1; half < kFftSize; half *= 2) {
     const int twiddle_step = kFftSize / (2 * half);
     for (int begin = 0; begin < kFftSize; begin += 2 * half) {

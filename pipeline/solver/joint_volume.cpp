@@ -5,32 +5,16 @@
 #include <cassert>
 #include <cmath>
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define BEVLOC_HOT_LOOP \
-  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define BEVLOC_HOT_LOOP
-#endif
+#include "common/target_clones.h"
+#include "pipeline/solver/lanes.h"
 
 namespace bevloc {
 namespace {
 
-constexpr int kLanes = 16;
 /// Row shifts that are summed side by side, to hide the latency of the additions.
 constexpr int kGroup = 7;
 /// Of the interpolation between whole shifts.
 constexpr int kTaps = 4;
-
-/// Sixteen neighbouring floats at any address.
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(4), may_alias));
-
-const Lanes& lanes(const float* data) {
-  return *reinterpret_cast<const Lanes*>(data);
-}
-Lanes& lanes(float* data) {
-  return *reinterpret_cast<Lanes*>(data);
-}
 
 /// Where a position between whole shifts reads, and with which weights.
 struct CubicTaps {
@@ -50,13 +34,9 @@ CubicTaps cubic_taps(double position) {
        static_cast<float>(0.5 * (t + 4.0 * t2 - 3.0 * t3)), static_cast<float>(0.5 * (t3 - t2))}};
 }
 
-constexpr int round_up(int count, int unit) {
-  return (count + unit - 1) / unit * unit;
-}
-
 /// correlation[m, n] = sum of bev[c, u, v] * map[c, u + m, v + n].
-BEVLOC_HOT_LOOP void correlate_block(const joint_volume::BlockShape& s, const float* bev,
-                                     const float* map, float* correlation) {
+BEVLOC_TARGET_CLONES void correlate_block(const joint_volume::BlockShape& s, const float* bev,
+                                          const float* map, float* correlation) {
   for (int m = 0; m < s.row_shifts; m += kGroup) {
     for (int n = 0; n < s.col_shifts; n += kLanes) {
       Lanes sum[kGroup] = {};
@@ -77,8 +57,9 @@ BEVLOC_HOT_LOOP void correlate_block(const joint_volume::BlockShape& s, const fl
 }
 
 /// The gradient of correlate_block with respect to its block of B.
-BEVLOC_HOT_LOOP void correlate_block_grad_bev(const joint_volume::BlockShape& s, const float* grad,
-                                              const float* map, float* grad_bev) {
+BEVLOC_TARGET_CLONES void correlate_block_grad_bev(const joint_volume::BlockShape& s,
+                                                   const float* grad, const float* map,
+                                                   float* grad_bev) {
   for (int c = 0; c < s.channels; ++c) {
     for (int u = 0; u < s.rows; ++u) {
       for (int v = 0; v < s.cols; ++v) {
@@ -89,17 +70,16 @@ BEVLOC_HOT_LOOP void correlate_block_grad_bev(const joint_volume::BlockShape& s,
             sum += lanes(grad + m * s.col_shifts + n) * lanes(corner + m * s.map_row_stride + n);
           }
         }
-        float total = 0.0F;
-        for (int i = 0; i < kLanes; ++i) total += sum[i];
-        grad_bev[c * s.bev_channel_stride + u * s.bev_row_stride + v] = total;
+        grad_bev[c * s.bev_channel_stride + u * s.bev_row_stride + v] = sum_of(sum);
       }
     }
   }
 }
 
 /// Adds the gradient of correlate_block with respect to the padded map.
-BEVLOC_HOT_LOOP void correlate_block_grad_map(const joint_volume::BlockShape& s, const float* grad,
-                                              const float* bev, float* grad_map) {
+BEVLOC_TARGET_CLONES void correlate_block_grad_map(const joint_volume::BlockShape& s,
+                                                   const float* grad, const float* bev,
+                                                   float* grad_map) {
   for (int c = 0; c < s.channels; ++c) {
     const float* bev_block = bev + c * s.bev_channel_stride;
     for (int row = 0; row < s.rows + s.row_shifts - 1; ++row) {
@@ -120,8 +100,8 @@ BEVLOC_HOT_LOOP void correlate_block_grad_map(const joint_volume::BlockShape& s,
 }
 
 /// Adds one block's correlations to the scores [x, padded y] of one yaw.
-BEVLOC_HOT_LOOP void add_scores(const joint_volume::Lookup& l, const float* correlation,
-                                float* line, float* scores) {
+BEVLOC_TARGET_CLONES void add_scores(const joint_volume::Lookup& l, const float* correlation,
+                                     float* line, float* scores) {
   for (int i = 0; i < l.x_count; ++i) {
     const float* first = correlation + l.row[i] * l.col_shifts;
     const float* weight = l.row_weight + i * kTaps;
@@ -141,8 +121,8 @@ BEVLOC_HOT_LOOP void add_scores(const joint_volume::Lookup& l, const float* corr
 }
 
 /// The gradient of add_scores: adds to the gradient of the block's correlations.
-BEVLOC_HOT_LOOP void add_scores_grad(const joint_volume::Lookup& l, const float* grad_scores,
-                                     float* grad_correlation) {
+BEVLOC_TARGET_CLONES void add_scores_grad(const joint_volume::Lookup& l, const float* grad_scores,
+                                          float* grad_correlation) {
   for (int i = 0; i < l.x_count; ++i) {
     float* first = grad_correlation + l.row[i] * l.col_shifts;
     const float* weight = l.row_weight + i * kTaps;
@@ -211,9 +191,9 @@ void JointVolume::make_shift_ranges() {
 }
 
 void JointVolume::make_scratch() {
-  row_shifts_ = round_up(2 * row_shift_ + 1, kGroup);
-  col_shifts_ = round_up(2 * col_shift_ + 1, kLanes);
-  padded_y_ = round_up(y_count_, kLanes);
+  row_shifts_ = ((2 * row_shift_ + 1) + kGroup - 1) / kGroup * kGroup;
+  col_shifts_ = round_up_to_lanes(2 * col_shift_ + 1);
+  padded_y_ = round_up_to_lanes(y_count_);
   padded_rows_ = grid_.rows + row_shifts_;
   padded_cols_ = grid_.cols + col_shifts_;
   correlation_size_ = static_cast<size_t>(row_shifts_) * col_shifts_;

@@ -1,16 +1,6 @@
 // The vectors that the solver's inner loops work in: sixteen channels side by side.
 #pragma once
 
-/// Compiles a function for several generations of x86-64; the loader picks the best one. Not with
-/// sanitizers: the loader picks before they are set up.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define BEVLOC_VECTOR_CLONES \
-  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define BEVLOC_VECTOR_CLONES
-#endif
-
 namespace bevloc {
 
 inline constexpr int kLanes = 16;

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "pipeline/solver/lanes.h"
+#include "common/target_clones.h"
 
 namespace bevloc {
 namespace {
@@ -19,7 +19,7 @@ struct Moments {
 };
 
 /// Two passes in double, so that a constant channel comes out as exactly that.
-BEVLOC_VECTOR_CLONES Moments moments_of(const float* data, int count) {
+BEVLOC_TARGET_CLONES Moments moments_of(const float* data, int count) {
   constexpr int kSums = 8;
   double sums[kSums] = {};
   const int whole = count / kSums * kSums;

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "common/target_clones.h"
+
 namespace bevloc {
 namespace {
 
@@ -16,7 +18,7 @@ struct RowSums {
   float square;
 };
 
-BEVLOC_VECTOR_CLONES RowSums match_row(const float* map, const float* moved, int count) {
+BEVLOC_TARGET_CLONES RowSums match_row(const float* map, const float* moved, int count) {
   // Two of each, to hide the latency of the additions.
   Lanes product[2] = {};
   Lanes value[2] = {};

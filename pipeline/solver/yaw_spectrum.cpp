@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/target_clones.h"
+
 namespace bevloc {
 namespace {
 
@@ -14,7 +16,7 @@ constexpr double kRadiusStep = (YawSpectrum::kMaxFrequency - YawSpectrum::kMinFr
 constexpr float kStdEpsilon = 1e-6F;
 
 /// Sum of (map - bev between its own and its previous angle)^2.
-BEVLOC_VECTOR_CLONES float squared_difference(const float* map, const float* bev, int lane_count,
+BEVLOC_TARGET_CLONES float squared_difference(const float* map, const float* bev, int lane_count,
                                               float previous_weight, int count) {
   Lanes sums[2] = {};
   const float own_weight = 1.0F - previous_weight;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim/render/dispatch.h"
+#include "common/target_clones.h"
 
 namespace bevloc::sim {
 namespace {
@@ -42,7 +42,7 @@ bool covers(const Ring& ring, const Box& area) {
   return inside;
 }
 
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void store_texels(const float* red, const float* green, const float* blue, const float* gloss,
                   GroundTexel* texels) {
   const auto byte = [](float value) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/target_clones.h"
 #include "sim/render/bilinear.h"
-#include "sim/render/dispatch.h"
 #include "sim/render/headlight.h"
 
 namespace bevloc::sim {
@@ -40,7 +40,7 @@ struct Run {
 };
 
 /// Turns the rays into the map; returns the number of taps the run needs, 0 if it is all sky.
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 int aim(const Frame& frame, const float* rx, const float* ry, int count, Run& run) {
   const Frame& f = frame;
   const float* m = f.rotation;
@@ -73,7 +73,7 @@ int aim(const Frame& frame, const float* rx, const float* ry, int count, Run& ru
 }
 
 /// Picks each pixel's tile level so that the taps together cover its footprint.
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void choose_levels(int taps, int count, Run& run) {
   const float share = 1.0F / static_cast<float>(taps);
   for (int i = 0; i < count; ++i) {
@@ -93,7 +93,7 @@ void choose_levels(int taps, int count, Run& run) {
 }
 
 /// Finds tile and place within it of every pixel's tap, `offset` steps from its middle.
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void place_taps(float offset, int count, Run& run) {
   for (int i = 0; i < count; ++i) {
     const float x = (run.x[i] + offset * run.step_x[i]) * run.texels_per_m[i];
@@ -111,7 +111,7 @@ void place_taps(float offset, int count, Run& run) {
 }
 
 /// Looks the tiles up; returns whether all were there.
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 bool look_up(const int32_t* directory, int count, Run& run) {
   int32_t lowest = 0;
 #pragma GCC ivdep
@@ -134,7 +134,7 @@ void make_missing(GroundTiles& tiles, int count, const Run& run) {
 }
 
 /// Adds one bilinear tap of every pixel.
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void add_taps(const GroundTexel* texels, float weight, int count, Run& run) {
   const NeighbourGrid grid(texels, kTileNodes);
   const float scale = weight / (255.0F * 255.0F);
@@ -153,7 +153,7 @@ void add_taps(const GroundTexel* texels, float weight, int count, Run& run) {
 }
 
 /// Turns albedo into light: sun, sky, lamps, wetness, haze.
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void light_ground(const Frame& frame, int count, Run& run) {
   const Lighting l = frame.lighting;
   const float sun_share = std::max(0.0F, l.to_sun.z());

@@ -5,8 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "common/target_clones.h"
 #include "sim/random.h"
-#include "sim/render/dispatch.h"
 #include "sim/render/noise.h"
 
 namespace bevloc::sim {
@@ -26,7 +26,7 @@ struct RowJob {
 };
 
 /// Blur, vignette, gamma (the sRGB curve's usual approximation by square roots), noise.
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void develop_row(const RowJob& job, float* __restrict out) {
   const RowJob j = job;
   for (int i = 0; i < j.width; ++i) {

@@ -5,8 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "common/target_clones.h"
 #include "sim/render/bilinear.h"
-#include "sim/render/dispatch.h"
 #include "sim/render/headlight.h"
 #include "sim/render/sheet_bounds.h"
 
@@ -55,7 +55,7 @@ inline float overlap(float at, float length, float size) {
 }
 
 /// Intersects the rays with the sheet; returns whether any pixel is covered and not hidden.
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 bool hit(const SheetInView& sheet, const float* rx, const float* ry, const float* hidden_by,
          int count, Run& run) {
   const SheetInView s = sheet;
@@ -88,7 +88,7 @@ bool hit(const SheetInView& sheet, const float* rx, const float* ry, const float
 }
 
 /// The ego vehicle's headlights at the points hit.
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void light_up(const SheetInView& sheet, const float* rx, const float* ry, int count, Run& run) {
   const SheetInView s = sheet;
   for (int i = 0; i < count; ++i) {
@@ -100,7 +100,7 @@ void light_up(const SheetInView& sheet, const float* rx, const float* ry, int co
 }
 
 /// Looks the sheet's picture up and lights it; holes take their share off the cover.
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void clothe(const SheetInView& sheet, int count, Run& run) {
   const SheetInView s = sheet;
   const float scale = kTextureRange / (255.0F * 255.0F);
@@ -147,7 +147,7 @@ void clothe(const SheetInView& sheet, int count, Run& run) {
   }
 }
 
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void lay_over(const Run& run, int count, float* __restrict red, float* __restrict green,
               float* __restrict blue, float* __restrict nearness) {
   for (int i = 0; i < count; ++i) {

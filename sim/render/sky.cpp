@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/target_clones.h"
 #include "sim/random.h"
-#include "sim/render/dispatch.h"
 #include "sim/render/noise.h"
 
 namespace bevloc::sim {
@@ -19,7 +19,7 @@ inline int32_t skyline_place(float dx, float dy) {
   return std::min(std::max(place, 0), Sky::kSkylineSize - 1);
 }
 
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void shade_run(const Sky& sky, const Lighting& lighting, const SkyRun& run, int count) {
   const NoiseField& field = GroundNoise::shared().patches();
   const float* clouds = field.row(0, 0);

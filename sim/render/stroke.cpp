@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/render/dispatch.h"
+#include "common/target_clones.h"
 #include "sim/render/paint_wear.h"
 
 namespace bevloc::sim {
@@ -96,7 +96,7 @@ struct PaintSpan {
   Rgb albedo;
 };
 
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void paint_span(const CanvasRow& row, const PaintSpan& span, int count) {
   const PaintWear worn(span.wear);
   const PaintSpan s = span;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/target_clones.h"
 #include "sim/random.h"
-#include "sim/render/dispatch.h"
 #include "sim/render/paint_wear.h"
 
 namespace bevloc::sim {
@@ -31,7 +31,7 @@ const Material& material_of(GroundMaterial material) {
   return kMaterials[static_cast<size_t>(material)];
 }
 
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void fill_row(const CanvasRow& row, const Material& material, float brightness,
               const float* coverage) {
   float* __restrict red = row.red;
@@ -52,7 +52,7 @@ void fill_row(const CanvasRow& row, const Material& material, float brightness,
   }
 }
 
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void paint_row(const CanvasRow& row, const Rgb& albedo, float wear, const float* coverage) {
   float* __restrict red = row.red;
   float* __restrict green = row.green;
@@ -69,7 +69,7 @@ void paint_row(const CanvasRow& row, const Rgb& albedo, float wear, const float*
 }
 
 /// Interpolates nodes at `start`, `start + step`, ...
-BEVLOC_PIXEL_LOOP
+BEVLOC_TARGET_CLONES
 void stretch_row(const float* nodes, float start, float step, float* __restrict out) {
 #pragma GCC ivdep
   for (int i = 0; i < kTileNodes; ++i) {

@@ -1,6 +1,4 @@
 // The steady state of the bus allocates nothing.
-#include <cstdlib>
-#include <new>
 #include <variant>
 
 #include <gtest/gtest.h>
@@ -9,24 +7,7 @@
 #include "can/pose_publisher.h"
 #include "can/vehicle_encoder.h"
 #include "can/vehicle_input.h"
-
-namespace {
-thread_local int allocations = 0;
-}
-
-/// Not inlined: else the compiler sees malloc() and free() in the tests and takes them for
-/// mismatches.
-[[gnu::noinline]] void* operator new(size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/support/allocation_counter.h"
 
 namespace bevloc::can {
 namespace {
@@ -45,7 +26,7 @@ TEST(Allocation, NoneInOneSecondOfTheBus) {
   report.covariance.setIdentity();
 
   int samples = 0;
-  const int before = allocations;
+  const int before = test::allocation_count();
   for (int cycle = 0; cycle < 100; ++cycle) {
     const Time now(std::chrono::milliseconds(10 * cycle + 1000));
     report.capture_time = report.pose_time = now;
@@ -59,7 +40,7 @@ TEST(Allocation, NoneInOneSecondOfTheBus) {
     while (vehicle->receive()) {
     }
   }
-  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(test::allocation_count() - before, 0);
   EXPECT_EQ(samples, 200);
 }
 

@@ -1,31 +1,10 @@
 // In the steady state frames travel from a pool to a set and back without touching the heap.
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include <gtest/gtest.h>
 
 #include "drivers/camera/frame_pool.h"
 #include "drivers/frameset/bounded_queue.h"
 #include "drivers/frameset/synchronizer.h"
-
-namespace {
-
-std::atomic<long> allocations{0};
-
-}  // namespace
-
-void* operator new(size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, size_t /*size*/) noexcept {
-  std::free(memory);
-}
+#include "tests/support/allocation_counter.h"
 
 namespace bevloc::drivers {
 namespace {
@@ -39,7 +18,7 @@ TEST(SteadyState, AllocatesNothing) {
   BoundedQueue<Frameset> sets(1);
   FramesetSynchronizer synchronizer({.tolerance = milliseconds(2), .wait = milliseconds(60)});
 
-  const long before = allocations;
+  const int before = test::allocation_count();
   int complete = 0;
   for (int k = 1; k <= 100; ++k) {
     const Time time(milliseconds(100) * k);
@@ -57,7 +36,7 @@ TEST(SteadyState, AllocatesNothing) {
     ASSERT_TRUE(newest);
     complete += newest->present.all() ? 1 : 0;
   }
-  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(test::allocation_count() - before, 0);
   EXPECT_EQ(complete, 40);
   for (const auto& pool : pools) EXPECT_EQ(pool->lent(), 0);
 }

@@ -47,8 +47,7 @@ class EstimationStageTest : public testing::Test {
     report.correction.evidence = Evidence::kGood;
     report.correction.correction =
         correction_between(report.prior, truth_at(frame_time)) * vision_error_;
-    report.correction.covariance =
-        Eigen::Vector3d(0.01, 0.0025, 1e-5).asDiagonal().toDenseMatrix();
+    report.correction.covariance = Eigen::Vector3d(0.01, 0.0025, 1e-5).asDiagonal().toDenseMatrix();
     reports_.push(report);
   }
 
@@ -59,8 +58,8 @@ class EstimationStageTest : public testing::Test {
   VehicleQueue samples_{256};
   VisionQueue reports_{16};
   PredictionQueue predictions_{128};
-  EstimationStage stage_{TrackerParameters(), HealthLimits(), 7, publisher_,
-                         samples_,            reports_,       predictions_};
+  EstimationStage stage_{TrackerParameters(), HealthLimits(), 7, publisher_, samples_, reports_,
+                         predictions_};
   PoseReader reader_{{}, kOrigin};
   Time now_{milliseconds(1000)};
   Se2 vision_error_;

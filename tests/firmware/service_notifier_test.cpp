@@ -1,13 +1,13 @@
 #include "firmware/service_notifier.h"
 
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
-
-#include <cstdlib>
-#include <cstring>
-#include <string>
 
 namespace bevloc::firmware {
 namespace {

@@ -1,9 +1,9 @@
 // What bevlocd says when something outside is wrong: exit code 2 and one clear line.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "tests/integration/bevlocd_process.h"
 
@@ -43,8 +43,8 @@ class BadInputTest : public testing::Test {
 };
 
 TEST_F(BadInputTest, TheShippedConfigurationIsGood) {
-  const ProcessResult result =
-      run_bevlocd("--check-config --config " + std::string(BEVLOC_SOURCE_DIR) + "/config/demo.yaml");
+  const ProcessResult result = run_bevlocd("--check-config --config " +
+                                           std::string(BEVLOC_SOURCE_DIR) + "/config/demo.yaml");
   EXPECT_EQ(result.exit_code, 0) << result.err;
 }
 
@@ -73,7 +73,8 @@ TEST_F(BadInputTest, BrokenMap) {
 TEST_F(BadInputTest, OutputFolderThatCannotBeMade) {
   write_file(scratch_ / "file", "");
   expect_refused("--config " + std::string(BEVLOC_SOURCE_DIR) +
-                     "/config/demo.yaml --fast --duration 1 --out " + (scratch_ / "file/out").string(),
+                     "/config/demo.yaml --fast --duration 1 --out " +
+                     (scratch_ / "file/out").string(),
                  {"file/out"});
 }
 

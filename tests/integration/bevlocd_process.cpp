@@ -1,11 +1,11 @@
 #include "tests/integration/bevlocd_process.h"
 
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
 
 namespace bevloc::test {
 namespace {
@@ -24,7 +24,9 @@ ScratchFolder::ScratchFolder() {
   path_ = mkdtemp(pattern.data());
 }
 
-ScratchFolder::~ScratchFolder() { std::filesystem::remove_all(path_); }
+ScratchFolder::~ScratchFolder() {
+  std::filesystem::remove_all(path_);
+}
 
 ProcessResult run_bevlocd(const std::string& arguments) {
   const ScratchFolder scratch;

@@ -1,8 +1,8 @@
 // Whole drives: six mock cameras in, checked CAN frames out.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <fstream>
+
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 

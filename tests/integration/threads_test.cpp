@@ -1,7 +1,7 @@
 // The daemon with all its threads, on the machine's own clock.
-#include <gtest/gtest.h>
-
 #include <filesystem>
+
+#include <gtest/gtest.h>
 
 #include "firmware/simulation/simulated_run.h"
 #include "pipeline/calibration/rig_yaml.h"

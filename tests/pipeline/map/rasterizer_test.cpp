@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/random.h"
-#include "tests/pipeline/map/allocation_counter.h"
+#include "tests/support/allocation_counter.h"
 
 namespace bevloc {
 namespace {
@@ -177,9 +177,9 @@ TEST(Rasterizer, AllocatesNothingOnceWarm) {
   MapRasterizer rasterizer(index);
   Raster raster;
   rasterizer.draw({}, raster.cells);
-  const int before = allocation_count();
+  const int before = test::allocation_count();
   rasterizer.draw({}, raster.cells);
-  EXPECT_EQ(allocation_count(), before);
+  EXPECT_EQ(test::allocation_count(), before);
 }
 
 }  // namespace

@@ -1,42 +1,9 @@
 // No solver may allocate once it has solved: this program counts every allocation.
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include <gtest/gtest.h>
 
 #include "pipeline/solver/solver_factory.h"
 #include "tests/pipeline/solver/synthetic_scene.h"
-
-namespace {
-std::atomic<int> allocations = 0;
-}  // namespace
-
-void* operator new(size_t size) {
-  ++allocations;
-  void* memory = std::malloc(size);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-void* operator new(size_t size, std::align_val_t alignment) {
-  ++allocations;
-  const auto unit = static_cast<size_t>(alignment);
-  void* memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, size_t) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
+#include "tests/support/allocation_counter.h"
 
 namespace bevloc {
 namespace {
@@ -52,12 +19,12 @@ TEST(AllocationTest, NoneAfterTheFirstSolution) {
         make_solver(*solver_kind_from(name), kFeatureGrid, kChannels, HypothesisGrid{}, {}).value();
     SolverResult result;
     solver->solve(view(bev, kChannels, kFeatureGrid), view(map, kChannels, kFeatureGrid), result);
-    const int before = allocations;
+    const int before = test::allocation_count();
     EXPECT_GT(before, 0);
     solver->solve(view(map, kChannels, kFeatureGrid), view(bev, kChannels, kFeatureGrid), result);
     solver->solve(view(nothing, kChannels, kFeatureGrid), view(bev, kChannels, kFeatureGrid),
                   result);
-    EXPECT_EQ(allocations, before) << name;
+    EXPECT_EQ(test::allocation_count(), before) << name;
   }
 }
 

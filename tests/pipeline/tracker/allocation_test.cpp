@@ -1,29 +1,9 @@
 // The tracker may not allocate once it is made: this program counts every allocation.
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include <gtest/gtest.h>
 
 #include "pipeline/tracker/tracker.h"
 #include "tests/pipeline/tracker/simulated_vehicle.h"
-
-namespace {
-std::atomic<int> allocations = 0;
-}  // namespace
-
-void* operator new(size_t size) {
-  ++allocations;
-  void* memory = std::malloc(size);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/support/allocation_counter.h"
 
 namespace bevloc {
 namespace {
@@ -31,8 +11,8 @@ namespace {
 TEST(AllocationTest, NoneWhileDriving) {
   Tracker tracker;
   SimulatedVehicle vehicle({}, 1);
-  EXPECT_GT(allocations, 0);
-  const int before = allocations;
+  EXPECT_GT(test::allocation_count(), 0);
+  const int before = test::allocation_count();
   for (int i = 0; i < 400; ++i) {
     const double time_s = 0.02 * i;
     vehicle.drive_to(time_s);
@@ -44,7 +24,7 @@ TEST(AllocationTest, NoneWhileDriving) {
   }
   tracker.widen();
   tracker.reset();
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(test::allocation_count(), before);
 }
 
 }  // namespace

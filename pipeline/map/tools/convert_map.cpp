@@ -1,0 +1,42 @@
+// Makes a compact map of any map that bevloc reads: bevloc_convert_map town.osm town.bvm
+#include <filesystem>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "pipeline/map/map_binary.h"
+#include "pipeline/map/map_loader.h"
+
+namespace {
+
+constexpr int kBadInput = 2;
+
+bevloc::Status convert(const std::filesystem::path& in, const std::filesystem::path& out) {
+  const auto map = bevloc::load_map(in);
+  if (!map) return tl::unexpected(map.error());
+  if (auto status = bevloc::write_map_binary(*map, out); !status) return status;
+  fmt::print("{}: {} elements, {} lanes, {} bytes\n", out.string(), map->elements.size(),
+             map->lanes.size(), std::filesystem::file_size(out));
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Writes a map, Lanelet2 (.osm) or compact, as a compact map (.bvm)");
+  std::string in;
+  std::string out;
+  app.add_option("in", in, "Map to read")->required();
+  app.add_option("out", out, "Compact map to write")->required();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
+  if (const auto status = convert(in, out); !status) {
+    fmt::print(stderr, "bevloc_convert_map: {}\n", status.error().message);
+    return kBadInput;
+  }
+  return 0;
+}

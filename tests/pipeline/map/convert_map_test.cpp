@@ -1,0 +1,63 @@
+// The program bevloc_convert_map, as a user runs it.
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include "pipeline/map/map_binary.h"
+#include "pipeline/map/map_loader.h"
+
+namespace bevloc {
+namespace {
+
+const std::filesystem::path kStreet =
+    std::filesystem::path(BEVLOC_SOURCE_DIR) / "tests/pipeline/map/fixtures/street.osm";
+
+class ConvertMapTest : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// Its exit code.
+  static int convert(const std::filesystem::path& in, const std::filesystem::path& out) {
+    const std::string command =
+        std::string(BEVLOC_CONVERT_MAP_PROGRAM) + " " + in.string() + " " + out.string();
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
+                                  (std::string("bevloc_convert_map_") +
+                                   testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST_F(ConvertMapTest, ALanelet2MapComesBackAsItWasToTheQuantum) {
+  ASSERT_EQ(convert(kStreet, folder_ / "street.bvm"), 0);
+  const HdMap map = load_map(kStreet).value();
+  const HdMap again = load_map(folder_ / "street.bvm").value();
+  EXPECT_EQ(again.name, map.name);
+  EXPECT_EQ(again.lanes.size(), map.lanes.size());
+  ASSERT_EQ(again.elements.size(), map.elements.size());
+  for (size_t i = 0; i < map.elements.size(); ++i) {
+    EXPECT_EQ(again.elements[i].element_class, map.elements[i].element_class);
+    EXPECT_EQ(again.elements[i].appearance, map.elements[i].appearance);
+    ASSERT_EQ(again.elements[i].points.size(), map.elements[i].points.size());
+    for (size_t k = 0; k < map.elements[i].points.size(); ++k) {
+      EXPECT_LE((again.elements[i].points[k] - map.elements[i].points[k]).norm(), kMapQuantumM);
+    }
+  }
+}
+
+TEST_F(ConvertMapTest, BadInputEndsItWithTwoAndWritesNothing) {
+  EXPECT_EQ(convert(folder_ / "none.osm", folder_ / "out.bvm"), 2);
+  EXPECT_EQ(
+      convert(std::filesystem::path(BEVLOC_SOURCE_DIR) / "CMakeLists.txt", folder_ / "out.bvm"), 2);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.bvm"));
+  EXPECT_EQ(convert(kStreet, folder_ / "no_folder/out.bvm"), 2);
+  EXPECT_EQ(convert(kStreet, ""), 2);
+}
+
+}  // namespace
+}  // namespace bevloc
