@@ -28,9 +28,9 @@ ScratchFolder::~ScratchFolder() {
   std::filesystem::remove_all(path_);
 }
 
-ProcessResult run_bevlocd(const std::string& arguments) {
+ProcessResult run_bevlocd(const std::string& arguments, const std::string& launcher) {
   const ScratchFolder scratch;
-  const std::string command = std::string(BEVLOCD_PROGRAM) + " " + arguments + " >" +
+  const std::string command = launcher + " " + BEVLOCD_PROGRAM + " " + arguments + " >" +
                               (scratch / "out").string() + " 2>" + (scratch / "err").string();
   const int status = std::system(command.c_str());
   ProcessResult result;

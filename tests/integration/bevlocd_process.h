@@ -27,8 +27,8 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// Waits for its end.
-ProcessResult run_bevlocd(const std::string& arguments);
+/// Waits for its end. `launcher` is put before the program, such as timeout(1) with its options.
+ProcessResult run_bevlocd(const std::string& arguments, const std::string& launcher = "");
 
 std::string read_text(const std::filesystem::path& file);
 void write_file(const std::filesystem::path& file, const std::string& text);

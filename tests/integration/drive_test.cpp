@@ -121,6 +121,15 @@ TEST(DriveVariantTest, AnotherSeedGivesAnotherLog) {
   EXPECT_NE(read_text(one / "can.log"), read_text(other / "can.log"));
 }
 
+TEST(DriveVariantTest, SigtermEndsADriveCleanly) {
+  const ScratchFolder scratch;
+  const ProcessResult result =
+      run_bevlocd("--config " + kDemo + " --duration 3600 --out " + scratch.path().string(),
+                  "timeout --preserve-status --signal=TERM 3");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("CAN frames sent"), std::string::npos) << result.out;
+}
+
 TEST(DriveVariantTest, ADeadCameraDegradesAndTheRestGoesOn) {
   const ScratchFolder scratch;
   write_file(scratch / "config.yaml",
