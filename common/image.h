@@ -33,7 +33,9 @@ struct RgbImage {
 
   uint8_t* row(int v) { return pixels.data() + 3 * static_cast<size_t>(width) * v; }
   const uint8_t* row(int v) const { return pixels.data() + 3 * static_cast<size_t>(width) * v; }
-  RgbView view() const { return {pixels.data(), width, height, 3 * static_cast<std::ptrdiff_t>(width)}; }
+  RgbView view() const {
+    return {pixels.data(), width, height, 3 * static_cast<std::ptrdiff_t>(width)};
+  }
 };
 
 }  // namespace bevloc

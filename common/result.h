@@ -1,11 +1,11 @@
 // How a function says that something outside the program is wrong.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <string>
-#include <tl/expected.hpp>
 #include <utility>
+
+#include <fmt/format.h>
+#include <tl/expected.hpp>
 
 namespace bevloc {
 

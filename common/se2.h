@@ -1,17 +1,24 @@
 // Poses and rigid motions in the plane.
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Core>
+
 namespace bevloc {
 
-constexpr double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
-constexpr double degrees(double radians) { return radians * (180.0 / std::numbers::pi); }
+constexpr double radians(double degrees) {
+  return degrees * (std::numbers::pi / 180.0);
+}
+constexpr double degrees(double radians) {
+  return radians * (180.0 / std::numbers::pi);
+}
 
 /// The same angle in [-pi, pi].
-inline double wrap_angle(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
+inline double wrap_angle(double angle_rad) {
+  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
+}
 
 /// A rigid motion `target_from_source` of the plane: p_target = R(yaw) p_source + (x, y).
 /// As a pose it is map_from_vehicle: metres east and north, yaw counter-clockwise from east.
@@ -47,6 +54,8 @@ struct Se2 {
 
 /// The correction that takes `from` to `to` (paper, eq. 1): dT = from^-1 * to, so to = from * dT.
 /// x is longitudinal and y lateral in the frame of `from`.
-inline Se2 correction_between(const Se2& from, const Se2& to) { return from.inverse() * to; }
+inline Se2 correction_between(const Se2& from, const Se2& to) {
+  return from.inverse() * to;
+}
 
 }  // namespace bevloc
