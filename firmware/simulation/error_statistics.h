@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <vector>
 
 #include "common/se2.h"
@@ -31,7 +30,6 @@ class ErrorStatistics {
  public:
   void add(const Se2& error);
   PoseError summary() const;
-  size_t count() const { return longitudinal_m_.size(); }
 
  private:
   std::vector<double> longitudinal_m_;
