@@ -12,11 +12,16 @@ class BusFactory {
  public:
   explicit BusFactory(const CanConfig& config) : config_(config) {}
 
-  /// One more node on the bus: on the mock wire, or a socket on the interface. Fails where the
-  /// interface cannot be opened.
+  /// One more node on the bus, which hears all of it: on the mock wire, or a socket on the
+  /// interface. Fails where the interface cannot be opened.
   Result<std::unique_ptr<can::Bus>> connect();
 
+  /// The appliance's own: the kernel wakes it only for the vehicle's messages.
+  Result<std::unique_ptr<can::Bus>> connect_appliance();
+
  private:
+  Result<std::unique_ptr<can::Bus>> connect(const std::vector<uint32_t>& accepted_ids);
+
   CanConfig config_;
   can::MockWire wire_{4096};
 };

@@ -78,8 +78,8 @@ struct Config {
 /// the file are relative to its folder; those in the result are ready to open.
 Result<Config> load_config(const std::filesystem::path& file);
 
-/// Looks whether what the configuration names is there: rig and recording can be read, map and
-/// model exist. What bevlocd --check-config does.
+/// Reads all that the configuration names: rig, map, model and recordings. What bevlocd
+/// --check-config does.
 Status check_config(const Config& config);
 
 }  // namespace bevloc::firmware

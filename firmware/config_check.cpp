@@ -4,15 +4,11 @@
 #include "drivers/camera/replay_camera.h"
 #include "firmware/config.h"
 #include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/map/map_loader.h"
+#include "pipeline/network/network.h"
 
 namespace bevloc::firmware {
 namespace {
-
-Status require_file(const std::filesystem::path& file, std::string_view what) {
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(file, ignored)) return {};
-  return fail("{}: found no such file, wanted the {}", file.string(), what);
-}
 
 Status check_recordings(const std::filesystem::path& folder) {
   for (const std::string_view camera : kCameraNames) {
@@ -26,9 +22,11 @@ Status check_recordings(const std::filesystem::path& folder) {
 
 Status check_config(const Config& config) {
   if (const auto rig = read_rig(config.rig_file); !rig) return tl::unexpected(rig.error());
-  if (Status model = require_file(config.model_file, "network's model"); !model) return model;
+  if (const auto model = Network::load(config.model_file, {}); !model) {
+    return tl::unexpected(model.error());
+  }
   if (!config.map.procedural_seed) {
-    if (Status map = require_file(config.map.file, "HD map"); !map) return map;
+    if (const auto map = load_map(config.map.file); !map) return tl::unexpected(map.error());
   }
   if (config.cameras.driver == CameraDriver::kReplay) {
     return check_recordings(config.cameras.recording);

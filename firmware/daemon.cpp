@@ -47,7 +47,7 @@ Status run_daemon(const Config& config, const Rig& rig, const std::function<bool
   const auto map = load_map(config.map.file);
   if (!map) return tl::unexpected(map.error());
   BusFactory buses(config.can);
-  auto bus = buses.connect();
+  auto bus = buses.connect_appliance();
   if (!bus) return tl::unexpected(bus.error());
   auto cameras = open_recording(config, rig, clock);
   if (!cameras) return tl::unexpected(cameras.error());

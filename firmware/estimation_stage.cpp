@@ -30,6 +30,7 @@ EstimationStage::EstimationStage(const TrackerParameters& tracker, const HealthL
       samples_(samples),
       reports_(reports),
       predictions_(predictions),
+      report_lifetime_(limits.correction_timeout),
       map_id_(map_id) {}
 
 void EstimationStage::observe_corrections(CorrectionObserver observer) {
@@ -39,6 +40,7 @@ void EstimationStage::observe_corrections(CorrectionObserver observer) {
 void EstimationStage::tick(Time now) {
   take_samples();
   take_reports();
+  forget_old_report(now);
   const auto pose = tracker_.pose_at(now);
   update_health(pose, now);
   if (pose) predictions_.push({*pose, !health_.pose_valid()});
@@ -62,6 +64,10 @@ void EstimationStage::watch_gnss(const GnssSample& sample) {
 
 void EstimationStage::take_reports() {
   while (const auto report = reports_.pop(Duration::zero())) weigh(*report);
+}
+
+void EstimationStage::forget_old_report(Time now) {
+  if (latest_report_ && now - latest_report_->frame_time > report_lifetime_) latest_report_.reset();
 }
 
 void EstimationStage::weigh(const VisionReport& report) {

@@ -45,6 +45,8 @@ class EstimationStage {
   void take_samples();
   void watch_gnss(const GnssSample& sample);
   void take_reports();
+  /// When every camera falls silent no report comes to say so.
+  void forget_old_report(Time now);
   void weigh(const VisionReport& report);
   void update_health(const std::optional<TrackedPose>& pose, Time now);
   void publish(const std::optional<TrackedPose>& pose, Time now);
@@ -59,6 +61,7 @@ class EstimationStage {
   PredictionQueue& predictions_;
   CorrectionObserver correction_observer_;
 
+  Duration report_lifetime_;
   uint16_t map_id_;
   std::optional<Time> odometry_time_;
   std::optional<Time> gnss_time_;

@@ -86,7 +86,7 @@ SimulatedRun::SimulatedRun(const Config& config, const Rig& rig, const Simulated
       latencies_(config.simulation->duration_s) {}
 
 Status SimulatedRun::connect() {
-  auto own_bus = buses_.connect();
+  auto own_bus = buses_.connect_appliance();
   auto vehicle_bus = buses_.connect();
   auto judge_bus = buses_.connect();
   for (const auto* bus : {&own_bus, &vehicle_bus, &judge_bus}) {
@@ -162,7 +162,12 @@ const JudgedPose& SimulatedRun::judged_nearest(double time_s) const {
 }
 
 Status SimulatedRun::write_sheet_if_any() const {
-  if (!keeper_.kept() || judge_->poses().empty()) return {};
+  const std::filesystem::path file = options_.out / "sheet.png";
+  if (!keeper_.kept() || judge_->poses().empty()) {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);  // an earlier drive's would be taken for this one's
+    return {};
+  }
   SheetContent content = keeper_.kept()->content;
   const double time_s = to_seconds(keeper_.kept()->frame_time - drive_start_);
   const JudgedPose& nearest = judged_nearest(time_s);
@@ -170,7 +175,7 @@ Status SimulatedRun::write_sheet_if_any() const {
   content.truth = drive_.truth_at(time_s);
   content.prior = content.truth * pose_error(nearest.truth, nearest.prior);
   content.corrected = content.truth * pose_error(nearest.truth, nearest.estimate);
-  return write_sheet(content, rig_, appliance_->map_index(), (options_.out / "sheet.png").string());
+  return write_sheet(content, rig_, appliance_->map_index(), file.string());
 }
 
 }  // namespace

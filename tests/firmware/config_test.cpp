@@ -48,6 +48,15 @@ class ConfigTest : public testing::Test {
     std::ofstream(folder_ / name) << text;
   }
 
+  void put_model(const std::string& name) const {
+    std::filesystem::copy_file(kSource / "models/nano.onnx", folder_ / name,
+                               std::filesystem::copy_options::overwrite_existing);
+  }
+  void put_map(const std::string& name) const {
+    std::filesystem::copy_file(kSource / "tests/pipeline/map/fixtures/street.osm", folder_ / name,
+                               std::filesystem::copy_options::overwrite_existing);
+  }
+
   Result<Config> load(const std::string& yaml) const {
     write("test.yaml", yaml);
     return load_config(folder_ / "test.yaml");
@@ -289,9 +298,13 @@ TEST_F(ConfigTest, CheckNamesTheFirstThingThatIsNotThere) {
   std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
   EXPECT_TRUE(complains_of("sub/model.onnx"));
   std::filesystem::create_directory(folder_ / "sub");
-  write("sub/model.onnx", "a model");
+  write("sub/model.onnx", "no model");
+  EXPECT_TRUE(complains_of("sub/model.onnx"));
+  put_model("sub/model.onnx");
   EXPECT_TRUE(complains_of("town.osm"));
-  write("town.osm", "a map");
+  write("town.osm", "no map");
+  EXPECT_TRUE(complains_of("town.osm"));
+  put_map("town.osm");
   EXPECT_TRUE(check_config(*config));
 }
 
@@ -322,8 +335,8 @@ TEST_F(ConfigTest, CheckReadsTheRecordings) {
   ASSERT_TRUE(config) << config.error().message;
   EXPECT_FALSE(config->simulation);
   std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
-  write("model.onnx", "a model");
-  write("town.osm", "a map");
+  put_model("model.onnx");
+  put_map("town.osm");
   const Status checked = check_config(*config);
   ASSERT_FALSE(checked);
   EXPECT_THAT(checked.error().message,

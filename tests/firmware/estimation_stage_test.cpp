@@ -120,6 +120,20 @@ TEST_F(EstimationStageTest, SaysWhenVisionSkipsFramesets) {
   EXPECT_EQ(stage_.counters().why, 0);
 }
 
+TEST_F(EstimationStageTest, CallsAllCamerasMissingWhenNoFramesetComesAnyMore) {
+  run(milliseconds(5000));
+  EXPECT_EQ(stage_.counters().cameras, 0b111111U);
+  vision_ = false;
+  run(milliseconds(500));
+  EXPECT_EQ(stage_.counters().cameras, 0U);
+  EXPECT_EQ(stage_.counters().state, State::kDegraded);
+  EXPECT_EQ(stage_.counters().why, (can::Why::kCameraMissing | can::Why::kPoseStale).bits());
+  vision_ = true;
+  run(milliseconds(500));
+  EXPECT_EQ(stage_.counters().cameras, 0b111111U);
+  EXPECT_EQ(stage_.counters().state, State::kTracking);
+}
+
 TEST_F(EstimationStageTest, StopsSendingPosesWithoutOdometry) {
   run(milliseconds(5000));
   odometry_ = false;
