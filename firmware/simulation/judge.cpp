@@ -15,25 +15,25 @@ constexpr const char* kInterfaceInLog = "can0";
 
 Result<std::unique_ptr<Judge>> Judge::create(std::unique_ptr<can::Bus> bus,
                                              const can::BaseIds& base, const GeoOrigin& origin,
-                                             TruthAt truth, Time drive_start,
+                                             TruthAt truth, JudgeTimes times,
                                              const std::string& log_path) {
-  auto judge = std::unique_ptr<Judge>(
-      new Judge(std::move(bus), base, origin, std::move(truth), drive_start));
+  auto judge =
+      std::unique_ptr<Judge>(new Judge(std::move(bus), base, origin, std::move(truth), times));
   judge->log_.open(log_path);
   if (!judge->log_) return fail("{}: the bus log cannot be written there", log_path);
   return judge;
 }
 
 Judge::Judge(std::unique_ptr<can::Bus> bus, const can::BaseIds& base, const GeoOrigin& origin,
-             TruthAt truth, Time drive_start)
+             TruthAt truth, JudgeTimes times)
     : bus_(std::move(bus)),
       base_(base),
       truth_(std::move(truth)),
-      drive_start_(drive_start),
+      times_(times),
       reader_(base, {origin.latitude_deg, origin.longitude_deg}),
       prior_input_(base, {origin.latitude_deg, origin.longitude_deg}),
       prior_tracker_(TrackerParameters()),
-      next_comparison_(drive_start) {}
+      next_comparison_(times.drive_start) {}
 
 void Judge::step(Duration timeout) {
   if (!bus_->wait(timeout)) return;
@@ -41,7 +41,7 @@ void Judge::step(Duration timeout) {
 }
 
 void Judge::take(const can::ReceivedFrame& received) {
-  log_ << can::candump_line(received.received - drive_start_, kInterfaceInLog, received.frame)
+  log_ << can::candump_line(received.received - times_.log_start, kInterfaceInLog, received.frame)
        << '\n';
   if (auto sample = tracker_sample(prior_input_.accept(received))) {
     feed(prior_tracker_, *sample);
@@ -64,7 +64,8 @@ void Judge::note_solution(const can::ReceivedFrame& received, bool valid) {
   };
   if (std::none_of(std::begin(can::kMessages), std::end(can::kMessages), sent_by_localizer)) return;
   ++localizer_frames_;
-  if (valid && first_fix_s_ < 0.0) first_fix_s_ = to_seconds(received.received - drive_start_);
+  if (valid && first_fix_s_ < 0.0)
+    first_fix_s_ = to_seconds(received.received - times_.drive_start);
   const bool completes_solution = received.frame.id == can::loc_attitude::kMessage.id(base_);
   if (first_fix_s_ >= 0.0 && completes_solution) ++solutions_since_fix_;
 }
@@ -78,7 +79,7 @@ void Judge::compare(const BusPose& pose) {
   const auto prior = prior_tracker_.pose_at(pose.received);
   if (!prior) return;
   JudgedPose judged;
-  judged.time_s = to_seconds(pose.received - drive_start_);
+  judged.time_s = to_seconds(pose.received - times_.drive_start);
   judged.state = reader_.state();
   judged.truth = truth_(judged.time_s);
   judged.prior = prior->map_from_vehicle;

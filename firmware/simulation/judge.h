@@ -30,6 +30,12 @@ struct JudgedPose {
   Se2 estimate;  ///< what bevloc sent
 };
 
+/// The log's times count from log_start, before the first frame; poses' from drive_start.
+struct JudgeTimes {
+  Time log_start;
+  Time drive_start;
+};
+
 /// What a display may show of the drive so far.
 struct JudgeView {
   State state = State::kInit;
@@ -47,7 +53,7 @@ class Judge {
   /// Fails when the log cannot be written.
   static Result<std::unique_ptr<Judge>> create(std::unique_ptr<can::Bus> bus,
                                                const can::BaseIds& base, const GeoOrigin& origin,
-                                               TruthAt truth, Time drive_start,
+                                               TruthAt truth, JudgeTimes times,
                                                const std::string& log_path);
 
   /// Takes in what was sent, waiting `timeout` at most for something.
@@ -67,7 +73,7 @@ class Judge {
 
  private:
   Judge(std::unique_ptr<can::Bus> bus, const can::BaseIds& base, const GeoOrigin& origin,
-        TruthAt truth, Time drive_start);
+        TruthAt truth, JudgeTimes times);
 
   void take(const can::ReceivedFrame& received);
   void note_solution(const can::ReceivedFrame& received, bool valid);
@@ -76,7 +82,7 @@ class Judge {
   std::unique_ptr<can::Bus> bus_;
   can::BaseIds base_;
   TruthAt truth_;
-  Time drive_start_;
+  JudgeTimes times_;
   std::ofstream log_;
   PoseReader reader_;
   can::VehicleInput prior_input_;

@@ -55,6 +55,7 @@ class SimulatedRun {
   drivers::MonotonicClock machine_clock_;
   drivers::VirtualClock virtual_clock_;
   drivers::Clock& clock_;
+  Time log_start_;
   Time drive_start_;
   BusFactory buses_;
   SnapshotKeeper keeper_;
@@ -81,7 +82,8 @@ SimulatedRun::SimulatedRun(const Config& config, const Rig& rig, const Simulated
       options_(options),
       drive_(std::move(drive)),
       clock_(options.fast ? static_cast<drivers::Clock&>(virtual_clock_) : machine_clock_),
-      drive_start_(clock_.now() + kLead),
+      log_start_(clock_.now()),
+      drive_start_(log_start_ + kLead),
       buses_(config.can),
       latencies_(config.simulation->duration_s) {}
 
@@ -108,7 +110,7 @@ Status SimulatedRun::connect() {
                                                 ids, std::move(*vehicle_bus), drive_start_);
   auto judge = Judge::create(
       std::move(*judge_bus), ids, origin, [this](double time_s) { return drive_.truth_at(time_s); },
-      drive_start_, (options_.out / "can.log").string());
+      {log_start_, drive_start_}, (options_.out / "can.log").string());
   if (!judge) return tl::unexpected(judge.error());
   judge_ = std::move(*judge);
   return {};

@@ -10,8 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/pipeline/network/allocation_counter.h"
 #include "tests/pipeline/network/model_inputs.h"
+#include "tests/support/allocation_counter.h"
 
 namespace bevloc {
 namespace {
