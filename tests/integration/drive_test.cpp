@@ -89,6 +89,7 @@ TEST_F(DriveTest, EveryFrameOnTheBusPassesAnIndependentCheck) {
   const E2eLogReport report = check_log(*scratch_ / "can.log");
   EXPECT_EQ(report.unknown_frames, 0);
   EXPECT_EQ(report.unreadable_lines, 0);
+  EXPECT_EQ(read_text(*scratch_ / "can.log").find("(-"), std::string::npos) << "times from 0 on";
   EXPECT_EQ(report.by_message.size(), 14U) << "every message of the DBC occurs";
   int localizer_frames = 0;
   for (const auto& [name, tally] : report.by_message) {
