@@ -1,9 +1,9 @@
 #include "pipeline/network/onnx_reader.h"
 
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 #include <set>
+#include <span>
 
 #include <onnx/onnx_pb.h>
 
@@ -71,9 +71,8 @@ ElementType element_type(int32_t type, const std::string& what) {
 template <typename Element, typename Field>
 std::vector<std::byte> packed(const Field& values) {
   std::vector<Element> elements(values.begin(), values.end());
-  std::vector<std::byte> bytes(elements.size() * sizeof(Element));
-  std::memcpy(bytes.data(), elements.data(), bytes.size());
-  return bytes;
+  const auto bytes = std::as_bytes(std::span(elements));
+  return {bytes.begin(), bytes.end()};
 }
 
 std::vector<std::byte> content(const onnx::TensorProto& proto, ElementType type) {
