@@ -76,7 +76,8 @@ Status simulate(const CommandLine& line, const Config& config, const Rig& rig) {
   SimulatedRunOptions options;
   options.fast = line.fast;
   options.out = line.out;
-  const auto report = run_simulation(config, rig, options, [] { return g_stop_requested.load(); });
+  const auto report = run_simulation(config, rig, options,
+                                     [](const ApplianceView&) { return g_stop_requested.load(); });
   if (!report) return tl::unexpected(report.error());
   fmt::print("{}", to_table(*report));
   if (line.json_file.empty()) return {};

@@ -38,7 +38,7 @@ class SimulatedRun {
   static Result<std::unique_ptr<SimulatedRun>> create(const Config& config, const Rig& rig,
                                                       const SimulatedRunOptions& options);
 
-  void run(const std::function<bool()>& stop);
+  void run(const StopWhen& stop);
   DriveReport report() const;
   Status write_sheet_if_any() const;
 
@@ -116,7 +116,7 @@ Status SimulatedRun::connect() {
   return {};
 }
 
-void SimulatedRun::run(const std::function<bool()>& stop) {
+void SimulatedRun::run(const StopWhen& stop) {
   const double duration_s = config_.simulation->duration_s;
   const Companion companion{[this] { return vehicle_->next_due(); },
                             [this](Time now) { vehicle_->send_due(now); },
@@ -125,7 +125,7 @@ void SimulatedRun::run(const std::function<bool()>& stop) {
   const auto supervise = [&](Time now) {
     supervisor.step(now);
     const double time_s = to_seconds(now - drive_start_);
-    const bool last = time_s >= duration_s || stop();
+    const bool last = time_s >= duration_s || stop(supervisor.view());
     if (options_.show_progress) {
       show_progress_line(supervisor.view(), judge_->view(), time_s, duration_s, last);
     }
@@ -183,8 +183,7 @@ Status SimulatedRun::write_sheet_if_any() const {
 }  // namespace
 
 Result<DriveReport> run_simulation(const Config& config, const Rig& rig,
-                                   const SimulatedRunOptions& options,
-                                   const std::function<bool()>& stop) {
+                                   const SimulatedRunOptions& options, const StopWhen& stop) {
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
   if (error) {

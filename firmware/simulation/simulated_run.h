@@ -6,6 +6,7 @@
 
 #include "firmware/config.h"
 #include "firmware/simulation/drive_report.h"
+#include "firmware/supervisor.h"
 
 namespace bevloc::firmware {
 
@@ -15,9 +16,11 @@ struct SimulatedRunOptions {
   std::filesystem::path out;  ///< folder for can.log, poses.csv and sheet.png
 };
 
+/// Asked about ten times a second whether to end.
+using StopWhen = std::function<bool(const ApplianceView& view)>;
+
 /// Ends after the configured duration, or when `stop` says so. The configuration has a simulation.
 Result<DriveReport> run_simulation(const Config& config, const Rig& rig,
-                                   const SimulatedRunOptions& options,
-                                   const std::function<bool()>& stop);
+                                   const SimulatedRunOptions& options, const StopWhen& stop);
 
 }  // namespace bevloc::firmware

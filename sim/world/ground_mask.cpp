@@ -28,8 +28,8 @@ GroundMask::GroundMask(const std::vector<const Ring*>& paved) {
   if (low.x() > high.x()) low = high = Eigen::Vector2d::Zero();
   min_corner_ = low - Eigen::Vector2d::Constant(kMargin_m);
   const Eigen::Vector2d size = (high - low) / kCell_m + Eigen::Vector2d::Constant(2.0 * kMargin_m);
-  occupied_ = cv::Mat::zeros(static_cast<int>(std::ceil(size.y())),
-                             static_cast<int>(std::ceil(size.x())), CV_8U);
+  occupied_ = cv::Mat(static_cast<int>(std::ceil(size.y())), static_cast<int>(std::ceil(size.x())),
+                      CV_8U, cv::Scalar(0));
   for (const Ring* ring : paved) occupy(*ring);
   cv::Mat unpaved;
   cv::resize(occupied_, unpaved, {}, 1.0 / kCoarsening, 1.0 / kCoarsening, cv::INTER_AREA);
