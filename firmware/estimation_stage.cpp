@@ -39,8 +39,7 @@ void EstimationStage::observe_corrections(CorrectionObserver observer) {
 
 void EstimationStage::tick(Time now) {
   take_samples();
-  take_reports();
-  forget_old_report(now);
+  take_reports(now);
   const auto pose = tracker_.pose_at(now);
   update_health(pose, now);
   if (pose) predictions_.push({*pose, !health_.pose_valid()});
@@ -62,12 +61,13 @@ void EstimationStage::watch_gnss(const GnssSample& sample) {
   if (const auto pose = tracker_.pose_at(sample.time)) gnss_monitor_.add(sample, *pose);
 }
 
-void EstimationStage::take_reports() {
-  while (const auto report = reports_.pop(Duration::zero())) weigh(*report);
-}
-
-void EstimationStage::forget_old_report(Time now) {
-  if (latest_report_ && now - latest_report_->frame_time > report_lifetime_) latest_report_.reset();
+void EstimationStage::take_reports(Time now) {
+  while (const auto report = reports_.pop(Duration::zero())) {
+    weigh(*report);
+    report_came_ = now;
+  }
+  // When every camera falls silent no report comes to say so.
+  if (now - report_came_ > report_lifetime_) latest_report_.reset();
 }
 
 void EstimationStage::weigh(const VisionReport& report) {

@@ -44,9 +44,7 @@ class EstimationStage {
  private:
   void take_samples();
   void watch_gnss(const GnssSample& sample);
-  void take_reports();
-  /// When every camera falls silent no report comes to say so.
-  void forget_old_report(Time now);
+  void take_reports(Time now);
   void weigh(const VisionReport& report);
   void update_health(const std::optional<TrackedPose>& pose, Time now);
   void publish(const std::optional<TrackedPose>& pose, Time now);
@@ -68,6 +66,7 @@ class EstimationStage {
   std::optional<Time> accepted_frame_time_;
   std::optional<Time> unsent_correction_;
   std::optional<VisionReport> latest_report_;
+  Time report_came_;
   int accepted_in_a_row_ = 0;
   int refused_in_a_row_ = 0;
   EstimationCounters counters_;
