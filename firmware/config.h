@@ -40,7 +40,7 @@ struct MapConfig {
 };
 
 struct SolverConfig {
-  SolverKind kind = SolverKind::kDecoupled;
+  SolverKind kind = SolverKind::kDecoupledRefined;
   HypothesisGrid tracking;
   HypothesisGrid acquiring{{6.0, 0.2}, {4.0, 0.2}, {radians(4.0), radians(0.2)}};
 };

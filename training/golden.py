@@ -3,7 +3,8 @@
     /usr/bin/python3 -m training.golden --checkpoint training/runs/nano/checkpoint.pt \\
         --out tests/golden
 
-solver/   made-up features, and what both solvers make of them (tests/pipeline/solver)
+solver/   made-up features, and what every solver makes of them (tests/pipeline/solver); written
+          by training/golden_solver.py, needs no checkpoint
 network/  samples of the simulator, and what the float and the quantized network make of them
           (tests/pipeline/network); quantization.pt lies beside the checkpoint
 """
@@ -11,62 +12,26 @@ network/  samples of the simulator, and what the float and the quantized network
 from __future__ import annotations
 
 import argparse
-import math
 from pathlib import Path
 
 import numpy as np
 import torch
-from torch import Tensor
 
 from training.config import FIRST_GOLDEN_SEED
 from training.data import Batch, SamplerStream
 from training.evaluate import Inference, float_inference, load_network
 from training.export_onnx import QUANTIZATION_FILE
+from training.golden_solver import write_solver_vectors
 from training.quantize import Quantization, int8_inference
-from training.solver import PoseSolvers, Posterior, estimate, standardise
-from training.synthetic_scene import features_under
+from training.solver import PoseSolvers, Posterior, standardise
 
-CHANNELS = 16
 # Of the features, every so many are written. Prime to rows and columns, so that it visits them all.
 FEATURE_STRIDE = 7
-SOLVER_SCALES = {"joint": 60.0, "x": 80.0, "y": 40.0, "yaw": 120.0}
-# Correction (m, m, degrees) and the strength of the noise on F_B.
-SOLVER_CASES = (((0.0, 0.0, 0.0), 0.2), ((1.3, -0.7, 1.1), 1.0), ((-1.9, 0.9, -1.9), 3.0))
-
-
-def _solver_case(number: int) -> tuple[Tensor, Tensor]:
-    """F_B and F_M [1, C, 100, 50] that float16 holds exactly."""
-    (x, y, yaw_degrees), noise = SOLVER_CASES[number]
-    correction = torch.tensor([x, y, math.radians(yaw_degrees)])
-    bev, features_map = features_under(correction, number, max_frequency=0.5, channels=CHANNELS)
-    generator = torch.Generator().manual_seed(number)
-    bev = bev + noise * torch.randn(bev.shape, generator=generator)
-    return bev.half().float(), features_map.half().float()
 
 
 def _distributions(posterior: Posterior) -> np.ndarray:
     """P(x), P(y), P(yaw) side by side, [batch, 21 + 11 + 21]."""
     return torch.cat(posterior.axes(), dim=1).numpy()
-
-
-@torch.no_grad()
-def write_solver_vectors(out: Path) -> None:
-    out.mkdir(parents=True, exist_ok=True)
-    solvers = PoseSolvers()
-    for name, value in SOLVER_SCALES.items():
-        solvers.log_scale[name].data.fill_(math.log(value))
-    cases = [_solver_case(i) for i in range(len(SOLVER_CASES))]
-    bev, features_map = (torch.cat(side) for side in zip(*cases))
-    np.save(out / "bev.npy", bev.numpy().astype(np.float16))
-    np.save(out / "map.npy", features_map.numpy().astype(np.float16))
-    np.save(out / "scales.npy", np.array(list(SOLVER_SCALES.values()), np.float32))
-    bev, features_map = standardise(bev), standardise(features_map)
-    for name, posterior in (
-        ("decoupled", solvers.decoupled(bev, features_map, None)),
-        ("joint", solvers.joint(bev, features_map)),
-    ):
-        np.save(out / f"{name}.npy", _distributions(posterior))
-        np.save(out / f"{name}_estimate.npy", estimate(posterior).numpy())
 
 
 def golden_batch() -> Batch:

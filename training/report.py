@@ -21,10 +21,10 @@ _SHARES = (("within_1_sigma", "within 1 sigma"), ("within_3_sigma", "within 3 si
 # (network, its metrics' field, solver, title)
 _ROWS = (
     ("float", "joint", "float, block"),
-    ("float", "decoupled", "float, decoupled-plain"),
+    ("float", "decoupled", "float, decoupled"),
     ("int8", "block", "int8, block"),
-    ("int8", "decoupled-plain", "int8, decoupled-plain"),
-    ("int8", "decoupled", "int8, decoupled, refined"),
+    ("int8", "decoupled", "int8, decoupled"),
+    ("int8", "decoupled+refine", "int8, decoupled+refine"),
 )
 
 

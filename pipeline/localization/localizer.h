@@ -22,7 +22,7 @@
 namespace bevloc {
 
 struct LocalizerOptions {
-  SolverKind solver = SolverKind::kDecoupled;
+  SolverKind solver = SolverKind::kDecoupledRefined;
   /// Hypotheses while tracking: the prior is good.
   HypothesisGrid tracking;
   /// Hypotheses while acquiring: the prior is GNSS alone.

@@ -10,104 +10,122 @@
 namespace bevloc {
 namespace {
 
-/// A vector of sixteen real channels is eight complex signals: channel k and channel k + 8.
-constexpr int kPairs = kLanes / 2;
-
-std::vector<float> hann_window(int size) {
-  std::vector<float> window(size);
-  for (int n = 0; n < size; ++n) {
-    window[n] = static_cast<float>(0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * n / (size - 1)));
+std::vector<float> samples_of(Window window, int size) {
+  std::vector<float> samples(size, 1.0F);
+  for (int n = 0; window == Window::kHann && n < size; ++n) {
+    samples[n] = static_cast<float>(0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * n / (size - 1)));
   }
-  return window;
+  return samples;
+}
+
+/// A column of cells, weighted, and zeros after it.
+BEVLOC_TARGET_CLONES void load_column(const float* cells, std::ptrdiff_t row_stride,
+                                      const float* window, float weight, int rows, int length,
+                                      float* out) {
+  for (int row = 0; row < rows; ++row) {
+    lanes(out + row * kLanes) = weight * window[row] * lanes(cells + row * row_stride);
+  }
+  for (int row = rows; row < length; ++row) lanes(out + row * kLanes) = Lanes{};
+}
+
+BEVLOC_TARGET_CLONES void load_row(const float* row, int cols, int length, FftTile& tile) {
+  for (int col = 0; col < cols; ++col) {
+    lanes(tile.re.data() + col * kLanes) = lanes(row + 2 * col * kLanes);
+    lanes(tile.im.data() + col * kLanes) = lanes(row + (2 * col + 1) * kLanes);
+  }
+  for (int col = cols; col < length; ++col) {
+    lanes(tile.re.data() + col * kLanes) = Lanes{};
+    lanes(tile.im.data() + col * kLanes) = Lanes{};
+  }
 }
 
 /// Amplitudes of two real signals a and b from the transform of a + ib at frequencies k (`own`) and
-/// -k (`mirror`): 2 A = Z(k) + conj Z(-k), 2 i B = Z(k) - conj Z(-k).
-BEVLOC_TARGET_CLONES void separate(const float* own_re, const float* own_im, const float* mirror_re,
-                                   const float* mirror_im, float* out) {
-  for (int k = 0; k < kPairs; ++k) {
-    const float a_re = own_re[k] + mirror_re[k];
-    const float a_im = own_im[k] - mirror_im[k];
-    const float b_re = own_im[k] + mirror_im[k];
-    const float b_im = mirror_re[k] - own_re[k];
-    out[k] = 0.5F * std::sqrt(a_re * a_re + a_im * a_im);
-    out[kPairs + k] = 0.5F * std::sqrt(b_re * b_re + b_im * b_im);
+/// -k (`mirror`, which runs backwards): 2 A = Z(k) + conj Z(-k), 2 i B = Z(k) - conj Z(-k).
+BEVLOC_TARGET_CLONES void separate(const FftTile& own, const FftTile& mirror, int cols, int count,
+                                   std::ptrdiff_t step, float* a, float* b) {
+  for (int col = 0; col < count; ++col) {
+    const int reflected = (col == 0 ? 0 : cols - col) * kLanes;
+    const Lanes& own_re = lanes(own.re.data() + col * kLanes);
+    const Lanes& own_im = lanes(own.im.data() + col * kLanes);
+    const Lanes& mirror_re = lanes(mirror.re.data() + reflected);
+    const Lanes& mirror_im = lanes(mirror.im.data() + reflected);
+    const Lanes a_re = own_re + mirror_re;
+    const Lanes a_im = own_im - mirror_im;
+    const Lanes b_re = own_im + mirror_im;
+    const Lanes b_im = mirror_re - own_re;
+    const Lanes a_square = a_re * a_re + a_im * a_im;
+    const Lanes b_square = b_re * b_re + b_im * b_im;
+    float* a_out = a + col * step;
+    float* b_out = b + col * step;
+    for (int k = 0; k < kLanes; ++k) a_out[k] = 0.5F * std::sqrt(a_square[k]);
+    for (int k = 0; k < kLanes; ++k) b_out[k] = 0.5F * std::sqrt(b_square[k]);
   }
 }
 
 }  // namespace
 
-AmplitudeSpectrum::AmplitudeSpectrum(const BevGrid& grid, int channels)
+AmplitudeSpectrum::AmplitudeSpectrum(const BevGrid& grid, int channels, int rows, int cols,
+                                     Window window, double farthest)
     : grid_(grid),
       lanes_(round_up_to_lanes(channels)),
-      row_window_(hann_window(grid.rows)),
-      col_window_(hann_window(grid.cols)),
-      half_done_(static_cast<size_t>(kFftSize) * grid.cols * kLanes),
-      amplitude_(static_cast<size_t>(kRows) * kCols * lanes_) {
-  assert(grid.rows <= kFftSize && grid.cols <= kFftSize);
+      stored_cols_(cols / 2 + 1),
+      row_window_(samples_of(window, grid.rows)),
+      col_window_(samples_of(window, grid.cols)),
+      column_fft_(rows),
+      row_fft_(cols),
+      column_tile_(rows),
+      own_row_(cols),
+      mirror_row_(cols),
+      half_done_(static_cast<size_t>(rows) * grid.cols * 2 * kLanes) {
+  assert(grid.rows <= rows && grid.cols <= cols);
+  for (int row = 0; row < rows; ++row) {
+    const double frequency = std::min(row, rows - row);
+    const double within = std::sqrt(std::max(farthest * farthest - frequency * frequency, 0.0));
+    const bool none = frequency > farthest;
+    cols_to_store_.push_back(none ? 0 : std::min(stored_cols_, static_cast<int>(within) + 1));
+  }
+  for (LaneBuffer& amplitude : amplitude_) {
+    amplitude.resize(static_cast<size_t>(rows) * stored_cols_ * lanes_);
+  }
 }
 
-void AmplitudeSpectrum::compute(const CellFeatures& features) {
+void AmplitudeSpectrum::compute(const CellFeatures& first, const CellFeatures& second) {
   for (int first_lane = 0; first_lane < lanes_; first_lane += kLanes) {
-    transform_columns(features, first_lane);
-    for (int row = 0; row <= kFftSize / 2; ++row) transform_rows(row, first_lane);
-  }
-}
-
-/// Two columns fill a tile.
-void AmplitudeSpectrum::transform_columns(const CellFeatures& features, int first_lane) {
-  for (int col = 0; col < grid_.cols; col += 2) {
-    tile_.re.fill(0.0F);
-    tile_.im.fill(0.0F);
-    const int cols = std::min(2, grid_.cols - col);
-    for (int row = 0; row < grid_.rows; ++row) {
-      for (int c = 0; c < cols; ++c) {
-        const float* cell = features.cell(row, col + c) + first_lane;
-        const float window = row_window_[row] * col_window_[col + c];
-        const int slot = fft_slot(row) * kLanes + c * kPairs;
-        for (int k = 0; k < kPairs; ++k) tile_.re[slot + k] = window * cell[k];
-        for (int k = 0; k < kPairs; ++k) tile_.im[slot + k] = window * cell[kPairs + k];
-      }
-    }
-    fft128(tile_);
-    for (int row = 0; row < kFftSize; ++row) {
-      for (int c = 0; c < cols; ++c) {
-        float* target = half_done_.data() + (row * grid_.cols + col + c) * kLanes;
-        std::copy_n(tile_.re.data() + row * kLanes + c * kPairs, kPairs, target);
-        std::copy_n(tile_.im.data() + row * kLanes + c * kPairs, kPairs, target + kPairs);
-      }
+    for (int col = 0; col < grid_.cols; ++col) transform_column(first, second, col, first_lane);
+    // A row frequency and its mirror image: what separates the two sides is there.
+    for (int row = 0; row <= rows() / 2 && cols_to_store_[row] > 0; ++row) {
+      const int mirror = (rows() - row) % rows();
+      transform_row(row, own_row_);
+      transform_row(mirror, mirror_row_);
+      store_amplitudes(row, own_row_, mirror_row_, first_lane);
+      store_amplitudes(mirror, mirror_row_, own_row_, first_lane);
     }
   }
 }
 
-/// A row frequency and its mirror image fill a tile: what separates the pairs of channels is there.
-void AmplitudeSpectrum::transform_rows(int row_frequency, int first_lane) {
-  const int mirror = (kFftSize - row_frequency) % kFftSize;
-  tile_.re.fill(0.0F);
-  tile_.im.fill(0.0F);
-  for (int col = 0; col < grid_.cols; ++col) {
-    const int slot = fft_slot(col) * kLanes;
-    const float* own = half_done_.data() + (row_frequency * grid_.cols + col) * kLanes;
-    const float* other = half_done_.data() + (mirror * grid_.cols + col) * kLanes;
-    std::copy_n(own, kPairs, tile_.re.data() + slot);
-    std::copy_n(own + kPairs, kPairs, tile_.im.data() + slot);
-    std::copy_n(other, kPairs, tile_.re.data() + slot + kPairs);
-    std::copy_n(other + kPairs, kPairs, tile_.im.data() + slot + kPairs);
-  }
-  fft128(tile_);
-  store_amplitude(row_frequency, 0, kPairs, first_lane);
-  store_amplitude(mirror, kPairs, 0, first_lane);
+void AmplitudeSpectrum::transform_column(const CellFeatures& first, const CellFeatures& second,
+                                         int col, int first_lane) {
+  load_column(first.cell(0, col) + first_lane, first.row_stride(), row_window_.data(),
+              col_window_[col], grid_.rows, rows(), column_tile_.re.data());
+  load_column(second.cell(0, col) + first_lane, second.row_stride(), row_window_.data(),
+              col_window_[col], grid_.rows, rows(), column_tile_.im.data());
+  float* target = half_done_.data() + static_cast<std::ptrdiff_t>(2) * col * kLanes;
+  column_fft_.transform_to(column_tile_, target, target + kLanes,
+                           static_cast<std::ptrdiff_t>(2) * grid_.cols * kLanes);
 }
 
-void AmplitudeSpectrum::store_amplitude(int row_frequency, int own_lanes, int mirror_lanes,
-                                        int first_lane) {
-  for (int col = 0; col < kCols; ++col) {
-    const int own = col * kLanes + own_lanes;
-    const int mirror = (kFftSize - col) % kFftSize * kLanes + mirror_lanes;
-    separate(tile_.re.data() + own, tile_.im.data() + own, tile_.re.data() + mirror,
-             tile_.im.data() + mirror,
-             amplitude_.data() + (row_frequency * kCols + col) * lanes_ + first_lane);
-  }
+void AmplitudeSpectrum::transform_row(int row_frequency, FftTile& tile) {
+  const float* row =
+      half_done_.data() + static_cast<std::ptrdiff_t>(row_frequency) * 2 * grid_.cols * kLanes;
+  load_row(row, grid_.cols, cols(), tile);
+  row_fft_.transform(tile);
+}
+
+void AmplitudeSpectrum::store_amplitudes(int row_frequency, const FftTile& own,
+                                         const FftTile& mirror, int first_lane) {
+  const int begin = offset(row_frequency, 0) + first_lane;
+  separate(own, mirror, cols(), cols_to_store_[row_frequency], lanes_, amplitude_[0].data() + begin,
+           amplitude_[1].data() + begin);
 }
 
 }  // namespace bevloc

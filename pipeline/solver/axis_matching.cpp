@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "common/target_clones.h"
+
 namespace bevloc {
 namespace {
 
@@ -12,34 +14,61 @@ constexpr float kVarianceEpsilon = 1e-3F;
 constexpr double kWholeTolerance = 1e-9;
 
 int crop_of(const BevGrid& grid, const HypothesisGrid& hypotheses) {
-  const double shift = std::max(hypotheses.x_m.range, hypotheses.y_m.range) / grid.cell_m;
+  const double shift = std::max(hypotheses.x_m.farthest(), hypotheses.y_m.farthest()) / grid.cell_m;
   return static_cast<int>(std::ceil(shift - kWholeTolerance));
 }
 
-/// Subtracts from sixteen channels their mean over the cells.
-void center(float* values, int cells, int stride) {
-  Lanes mean = {};
-  for (int i = 0; i < cells; ++i) mean += lanes(values + i * stride);
-  mean /= static_cast<float>(cells);
-  for (int i = 0; i < cells; ++i) lanes(values + i * stride) -= mean;
+/// The mean of a row of cells, for each lane.
+BEVLOC_TARGET_CLONES void mean_of_row(const float* row, int cells, int lane_count, float* out) {
+  const float share = 1.0F / static_cast<float>(cells);
+  for (int k = 0; k < lane_count; k += kLanes) {
+    // Several of them, to hide the latency of the additions.
+    Lanes sums[4] = {};
+    int i = 0;
+    for (; i + 4 <= cells; i += 4) {
+      for (int j = 0; j < 4; ++j) sums[j] += lanes(row + (i + j) * lane_count + k);
+    }
+    for (; i < cells; ++i) sums[0] += lanes(row + i * lane_count + k);
+    lanes(out + k) = ((sums[0] + sums[1]) + (sums[2] + sums[3])) * share;
+  }
 }
 
-/// Sum over sixteen channels of the correlation of two sides that have mean zero.
-double correlation(const float* bev, const float* map, int cells, int stride) {
+BEVLOC_TARGET_CLONES void add_row(const float* row, float weight, int count, float* out) {
+  for (int i = 0; i < count; i += kLanes) lanes(out + i) += weight * lanes(row + i);
+}
+
+/// Subtracts from each of sixteen channels its mean over the cells.
+BEVLOC_TARGET_CLONES void center(float* values, int cells, int lane_count) {
+  Lanes mean = {};
+  for (int i = 0; i < cells; ++i) mean += lanes(values + i * lane_count);
+  mean /= static_cast<float>(cells);
+  for (int i = 0; i < cells; ++i) lanes(values + i * lane_count) -= mean;
+}
+
+/// Sum over sixteen channels of the correlation of the map's axis features, which have mean zero,
+/// with the vehicle's, read `fraction` of a cell further on.
+BEVLOC_TARGET_CLONES float correlate(const float* bev, float fraction, const float* map, int cells,
+                                     int lane_count) {
   Lanes product = {};
+  Lanes bev_sum = {};
   Lanes bev_square = {};
   Lanes map_square = {};
-  for (int i = 0; i < cells * stride; i += stride) {
-    product += lanes(bev + i) * lanes(map + i);
-    bev_square += lanes(bev + i) * lanes(bev + i);
+  for (int i = 0; i < cells * lane_count; i += lane_count) {
+    const Lanes shifted =
+        (1.0F - fraction) * lanes(bev + i) + fraction * lanes(bev + lane_count + i);
+    product += shifted * lanes(map + i);
+    bev_sum += shifted;
+    bev_square += shifted * shifted;
     map_square += lanes(map + i) * lanes(map + i);
   }
-  const auto count = static_cast<float>(cells);
-  double sum = 0.0;
+  const float share = 1.0F / static_cast<float>(cells);
+  float sum = 0.0F;
   for (int c = 0; c < kLanes; ++c) {
-    sum += product[c] / count /
-           std::sqrt((bev_square[c] / count + kVarianceEpsilon) *
-                     (map_square[c] / count + kVarianceEpsilon));
+    const float mean = share * bev_sum[c];
+    const float bev_variance = std::max(share * bev_square[c] - mean * mean, 0.0F);
+    sum +=
+        share * product[c] /
+        std::sqrt((bev_variance + kVarianceEpsilon) * (share * map_square[c] + kVarianceEpsilon));
   }
   return sum;
 }
@@ -59,12 +88,16 @@ AxisMatching::AxisMatching(const BevGrid& grid, int channels, const HypothesisGr
     features->y.resize(static_cast<size_t>(grid.cols + 1) * lanes_);
   }
   warped_row_.resize(static_cast<size_t>(grid.cols) * lanes_);
-  shifted_.resize(static_cast<size_t>(std::max(grid.rows, grid.cols)) * lanes_);
 }
 
 void AxisMatching::set_features(const CellFeatures& bev, double yaw_rad, const CellFeatures& map) {
-  average(bev, yaw_rad, bev_);
-  average(map, 0.0, map_);
+  std::ranges::fill(bev_.y, 0.0F);
+  std::ranges::fill(map_.y, 0.0F);
+  for (int row = 0; row < grid_.rows; ++row) {
+    warp(bev, {.yaw_rad = yaw_rad, .row = row, .cells = grid_.cols}, warped_row_.data());
+    average_row(warped_row_.data(), row, bev_);
+    average_row(map.cell(row, 0), row, map_);
+  }
   // The map's side is the same for every hypothesis: centred once, over the cells that are matched.
   for (int k = 0; k < lanes_; k += kLanes) {
     center(map_.x.data() + crop_ * lanes_ + k, grid_.rows - 2 * crop_, lanes_);
@@ -72,50 +105,31 @@ void AxisMatching::set_features(const CellFeatures& bev, double yaw_rad, const C
   }
 }
 
-void AxisMatching::average(const CellFeatures& features, double yaw_rad, AxisFeatures& out) {
-  std::ranges::fill(out.x, 0.0F);
-  std::ranges::fill(out.y, 0.0F);
-  const float x_weight = 1.0F / static_cast<float>(grid_.cols - 2 * crop_);
-  const float y_weight = 1.0F / static_cast<float>(grid_.rows - 2 * crop_);
-  for (int row = 0; row < grid_.rows; ++row) {
-    warp(features, {.yaw_rad = yaw_rad, .row = row, .cells = grid_.cols}, warped_row_.data());
-    float* x = out.x.data() + row * lanes_;
-    const bool row_counts = row >= crop_ && row < grid_.rows - crop_;
-    for (int col = 0; col < grid_.cols; ++col) {
-      const float* cell = warped_row_.data() + col * lanes_;
-      const bool col_counts = col >= crop_ && col < grid_.cols - crop_;
-      for (int k = 0; k < lanes_; k += kLanes) {
-        if (col_counts) lanes(x + k) += x_weight * lanes(cell + k);
-        if (row_counts) lanes(out.y.data() + col * lanes_ + k) += y_weight * lanes(cell + k);
-      }
-    }
-  }
+void AxisMatching::average_row(const float* cells, int row, AxisFeatures& out) const {
+  mean_of_row(cells + crop_ * lanes_, grid_.cols - 2 * crop_, lanes_, out.x.data() + row * lanes_);
+  if (row < crop_ || row >= grid_.rows - crop_) return;
+  const float weight = 1.0F / static_cast<float>(grid_.rows - 2 * crop_);
+  add_row(cells, weight, grid_.cols * lanes_, out.y.data());
 }
 
-void AxisMatching::score_x(std::span<double> scores) {
+void AxisMatching::score_x(std::span<double> scores) const {
   score(bev_.x, map_.x, grid_.rows, hypotheses_.x_m, scores);
 }
 
-void AxisMatching::score_y(std::span<double> scores) {
+void AxisMatching::score_y(std::span<double> scores) const {
   score(bev_.y, map_.y, grid_.cols, hypotheses_.y_m, scores);
 }
 
-void AxisMatching::score(const std::vector<float>& bev, const std::vector<float>& map, int cells,
-                         const HypothesisAxis& axis, std::span<double> scores) {
-  const int matched = cells - 2 * crop_;
+void AxisMatching::score(const LaneBuffer& bev, const LaneBuffer& map, int cells,
+                         const HypothesisAxis& axis, std::span<double> scores) const {
   for (int i = 0; i < axis.count(); ++i) {
     const double shift = axis.value(i) / grid_.cell_m;
     const int whole = static_cast<int>(std::floor(shift + kWholeTolerance));
     const auto fraction = static_cast<float>(std::max(shift - whole, 0.0));
-    const float* source = bev.data() + (crop_ + whole) * lanes_;
-    for (int k = 0; k < matched * lanes_; k += kLanes) {
-      lanes(shifted_.data() + k) =
-          (1.0F - fraction) * lanes(source + k) + fraction * lanes(source + lanes_ + k);
-    }
     double sum = 0.0;
     for (int k = 0; k < lanes_; k += kLanes) {
-      center(shifted_.data() + k, matched, lanes_);
-      sum += correlation(shifted_.data() + k, map.data() + crop_ * lanes_ + k, matched, lanes_);
+      sum += correlate(bev.data() + (crop_ + whole) * lanes_ + k, fraction,
+                       map.data() + crop_ * lanes_ + k, cells - 2 * crop_, lanes_);
     }
     scores[i] = sum / channels_;
   }

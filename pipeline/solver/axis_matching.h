@@ -20,19 +20,19 @@ class AxisMatching {
   void set_features(const CellFeatures& bev, double yaw_rad, const CellFeatures& map);
 
   /// Mean over the channels of cov / sqrt((var + 1e-3)(var + 1e-3)) for every hypothesis.
-  void score_x(std::span<double> scores);
-  void score_y(std::span<double> scores);
+  void score_x(std::span<double> scores) const;
+  void score_y(std::span<double> scores) const;
 
  private:
   /// Means along both axes, [row, lanes] and [col, lanes].
   struct AxisFeatures {
-    std::vector<float> x;
-    std::vector<float> y;
+    LaneBuffer x;
+    LaneBuffer y;
   };
 
-  void average(const CellFeatures& features, double yaw_rad, AxisFeatures& out);
-  void score(const std::vector<float>& bev, const std::vector<float>& map, int cells,
-             const HypothesisAxis& axis, std::span<double> scores);
+  void average_row(const float* cells, int row, AxisFeatures& out) const;
+  void score(const LaneBuffer& bev, const LaneBuffer& map, int cells, const HypothesisAxis& axis,
+             std::span<double> scores) const;
 
   BevGrid grid_;
   int channels_;
@@ -41,8 +41,7 @@ class AxisMatching {
   HypothesisGrid hypotheses_;
   AxisFeatures bev_;
   AxisFeatures map_;
-  std::vector<float> warped_row_;
-  std::vector<float> shifted_;
+  LaneBuffer warped_row_;
 };
 
 }  // namespace bevloc

@@ -16,12 +16,21 @@ namespace bevloc {
 class CellFeatures {
  public:
   CellFeatures(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses);
+  /// Without a margin, for features that are never moved.
+  CellFeatures(const BevGrid& grid, int channels);
 
   /// Takes standardised features [channels, rows, cols].
   void assign(std::span<const float> standardised);
 
+  /// Takes the means of whole blocks of finer cells, as many as go into one of these.
+  void assign_average_of(const CellFeatures& fine);
+
   /// The `lanes()` values of a cell; in the margin they are zero.
   const float* cell(int row, int col) const {
+    return data_.data() +
+           (static_cast<std::ptrdiff_t>(row + margin_) * padded_cols_ + col + margin_) * lanes_;
+  }
+  float* mutable_cell(int row, int col) {
     return data_.data() +
            (static_cast<std::ptrdiff_t>(row + margin_) * padded_cols_ + col + margin_) * lanes_;
   }
@@ -32,12 +41,14 @@ class CellFeatures {
   int lanes() const { return lanes_; }
 
  private:
+  CellFeatures(const BevGrid& grid, int channels, int margin);
+
   BevGrid grid_;
   int channels_;
   int lanes_;
   int margin_;
   int padded_cols_;
-  std::vector<float> data_;
+  LaneBuffer data_;
 };
 
 /// Neighbouring cells of one row of features that a correction (`yaw_rad`, then `row_shift` and

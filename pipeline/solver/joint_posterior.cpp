@@ -33,16 +33,7 @@ void summarise_joint(std::span<const float> probability, const HypothesisGrid& h
   const Eigen::Vector3d mean(posterior_mean(result.x_probability, hypotheses.x_m),
                              posterior_mean(result.y_probability, hypotheses.y_m),
                              posterior_mean(result.yaw_probability, hypotheses.yaw_rad));
-  Eigen::Matrix3d covariance = least_variance(hypotheses).asDiagonal();
-  for_each(probability, hypotheses, [&](int i, int j, int k, float p) {
-    const Eigen::Vector3d offset = Eigen::Vector3d(hypotheses.x_m.value(i), hypotheses.y_m.value(j),
-                                                   hypotheses.yaw_rad.value(k)) -
-                                   mean;
-    covariance += p * offset * offset.transpose();
-  });
-  result.evidence = Evidence::kGood;
   result.correction = {mean.x(), mean.y(), mean.z()};
-  result.covariance = covariance;
 }
 
 }  // namespace bevloc

@@ -7,8 +7,8 @@
 
 namespace bevloc {
 
-/// Fills `result` from joint probabilities [yaw, x, y]: marginals, mean, and covariance with what
-/// the steps of the grid cannot resolve. `result` must have its distributions' lengths.
+/// Fills `result` from joint probabilities [yaw, x, y]: the marginals and their means. `result`
+/// must have its distributions' lengths.
 void summarise_joint(std::span<const float> probability, const HypothesisGrid& hypotheses,
                      SolverResult& result);
 

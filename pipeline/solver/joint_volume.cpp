@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/target_clones.h"
+#include "pipeline/solver/cubic.h"
 #include "pipeline/solver/lanes.h"
 
 namespace bevloc {
@@ -13,26 +14,6 @@ namespace {
 
 /// Row shifts that are summed side by side, to hide the latency of the additions.
 constexpr int kGroup = 7;
-/// Of the interpolation between whole shifts.
-constexpr int kTaps = 4;
-
-/// Where a position between whole shifts reads, and with which weights.
-struct CubicTaps {
-  int first;
-  std::array<float, kTaps> weight;
-};
-
-CubicTaps cubic_taps(double position) {
-  const double whole = std::floor(position);
-  const double t = position - whole;
-  const double t2 = t * t;
-  const double t3 = t2 * t;
-  return {
-      static_cast<int>(whole) - 1,
-      {static_cast<float>(0.5 * (-t + 2.0 * t2 - t3)),
-       static_cast<float>(0.5 * (2.0 - 5.0 * t2 + 3.0 * t3)),
-       static_cast<float>(0.5 * (t + 4.0 * t2 - 3.0 * t3)), static_cast<float>(0.5 * (t3 - t2))}};
-}
 
 /// correlation[m, n] = sum of bev[c, u, v] * map[c, u + m, v + n].
 BEVLOC_TARGET_CLONES void correlate_block(const joint_volume::BlockShape& s, const float* bev,
@@ -104,10 +85,10 @@ BEVLOC_TARGET_CLONES void add_scores(const joint_volume::Lookup& l, const float*
                                      float* line, float* scores) {
   for (int i = 0; i < l.x_count; ++i) {
     const float* first = correlation + l.row[i] * l.col_shifts;
-    const float* weight = l.row_weight + i * kTaps;
+    const float* weight = l.row_weight + i * kCubicTaps;
     for (int n = 0; n < l.col_shifts; n += kLanes) {
       Lanes sum = {};
-      for (int k = 0; k < kTaps; ++k) sum += weight[k] * lanes(first + k * l.col_shifts + n);
+      for (int k = 0; k < kCubicTaps; ++k) sum += weight[k] * lanes(first + k * l.col_shifts + n);
       lanes(line + n) = sum;
     }
     for (int j = 0; j < l.padded_y; j += kLanes) {
@@ -125,13 +106,13 @@ BEVLOC_TARGET_CLONES void add_scores_grad(const joint_volume::Lookup& l, const f
                                           float* grad_correlation) {
   for (int i = 0; i < l.x_count; ++i) {
     float* first = grad_correlation + l.row[i] * l.col_shifts;
-    const float* weight = l.row_weight + i * kTaps;
+    const float* weight = l.row_weight + i * kCubicTaps;
     for (int n = 0; n < l.col_shifts; n += kLanes) {
       Lanes sum = {};
       for (int j = 0; j < l.y_count; ++j) {
         sum += grad_scores[i * l.padded_y + j] * lanes(l.col_of_y + j * l.col_shifts + n);
       }
-      for (int k = 0; k < kTaps; ++k) lanes(first + k * l.col_shifts + n) += weight[k] * sum;
+      for (int k = 0; k < kCubicTaps; ++k) lanes(first + k * l.col_shifts + n) += weight[k] * sum;
     }
   }
 }
@@ -202,7 +183,7 @@ void JointVolume::make_scratch() {
   volume_.resize(static_cast<size_t>(yaw_count_) * x_count_ * padded_y_);
   line_.resize(col_shifts_);
   row_.resize(x_count_);
-  row_weight_.resize(static_cast<size_t>(x_count_) * kTaps);
+  row_weight_.resize(static_cast<size_t>(x_count_) * kCubicTaps);
   y_of_col_.resize(static_cast<size_t>(col_shifts_) * padded_y_);
   col_of_y_.resize(static_cast<size_t>(y_count_) * col_shifts_);
 }
@@ -234,7 +215,7 @@ joint_volume::Lookup JointVolume::look_up(const Block& block, double yaw_rad) {
   for (int i = 0; i < x_count_; ++i) {
     const CubicTaps taps = cubic_taps(row0 - hypotheses_.x_m.value(i) / grid_.cell_m);
     row_[i] = taps.first;
-    std::ranges::copy(taps.weight, row_weight_.begin() + i * kTaps);
+    std::ranges::copy(taps.weight, row_weight_.begin() + i * kCubicTaps);
   }
   std::ranges::fill(y_of_col_, 0.0F);
   std::ranges::fill(col_of_y_, 0.0F);
@@ -243,13 +224,13 @@ joint_volume::Lookup JointVolume::look_up(const Block& block, double yaw_rad) {
   const double col0 = col_displacement(block, yaw_rad) + col_shift_;
   for (int j = 0; j < y_count_; ++j) {
     const CubicTaps taps = cubic_taps(col0 - hypotheses_.y_m.value(j) / grid_.cell_m);
-    for (int k = 0; k < kTaps; ++k) {
+    for (int k = 0; k < kCubicTaps; ++k) {
       const int col = taps.first + k;
       y_of_col_[col * padded_y_ + j] = taps.weight[k];
       col_of_y_[j * col_shifts_ + col] = taps.weight[k];
     }
     col_begin = std::min(col_begin, taps.first);
-    col_end = std::max(col_end, taps.first + kTaps);
+    col_end = std::max(col_end, taps.first + kCubicTaps);
   }
   return {row_.data(), row_weight_.data(), y_of_col_.data(), col_of_y_.data(), x_count_,
           y_count_,    padded_y_,          col_begin,        col_end,          col_shifts_};

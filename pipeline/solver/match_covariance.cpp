@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "common/target_clones.h"
 #include "pipeline/solver/posterior.h"
 
 namespace bevloc {
@@ -15,13 +16,71 @@ constexpr double kBlock_m = 6.0;
 /// gradient that could be evidence.
 constexpr double kSlopeFloor = 1e-6;
 
+/// Neighbouring cells of a row of both sides.
+struct RowSegment {
+  const float* map;
+  const float* moved;
+  std::ptrdiff_t map_row_stride;
+  std::ptrdiff_t moved_row_stride;
+  int lanes;
+  int cells;
+  float first_lever;  ///< the first cell's -y: what a turn moves it along x, per radian
+  float lever_step;
+};
+
+/// Sums over a segment's cells and channels: products of the gradients of map and vehicle (map's
+/// first), and of the map's gradients with the residual; then the same weighted by the lever.
+struct SegmentSums {
+  float xx, xy, yx, yy, x_residual, y_residual;
+  float lever_xx, lever_xy, lever_yx, lever_x_residual;
+  float lever2_xx;
+};
+
+/// Gradients are differences over two cells; rows and columns run against x and y.
+BEVLOC_TARGET_CLONES SegmentSums sum_segment(const RowSegment& s) {
+  Lanes xx = {}, xy = {}, yx = {}, yy = {}, x_residual = {}, y_residual = {};
+  Lanes lever_xx = {}, lever_xy = {}, lever_yx = {}, lever_x_residual = {}, lever2_xx = {};
+  for (int i = 0; i < s.cells; ++i) {
+    const float lever = s.first_lever + static_cast<float>(i) * s.lever_step;
+    for (int k = 0; k < s.lanes; k += kLanes) {
+      const float* m = s.map + i * s.lanes + k;
+      const float* b = s.moved + i * s.lanes + k;
+      const Lanes map_x = lanes(m - s.map_row_stride) - lanes(m + s.map_row_stride);
+      const Lanes map_y = lanes(m - s.lanes) - lanes(m + s.lanes);
+      const Lanes bev_x = lanes(b - s.moved_row_stride) - lanes(b + s.moved_row_stride);
+      const Lanes bev_y = lanes(b - s.lanes) - lanes(b + s.lanes);
+      const Lanes residual = lanes(m) - lanes(b);
+      const Lanes product_xx = map_x * bev_x;
+      const Lanes lever_map_x = lever * map_x;
+      xx += product_xx;
+      xy += map_x * bev_y;
+      yx += map_y * bev_x;
+      yy += map_y * bev_y;
+      x_residual += map_x * residual;
+      y_residual += map_y * residual;
+      lever_xx += lever * product_xx;
+      lever_xy += lever_map_x * bev_y;
+      lever_yx += lever * (map_y * bev_x);
+      lever_x_residual += lever_map_x * residual;
+      lever2_xx += lever * (lever * product_xx);
+    }
+  }
+  return {sum_of(xx),         sum_of(xy),
+          sum_of(yx),         sum_of(yy),
+          sum_of(x_residual), sum_of(y_residual),
+          sum_of(lever_xx),   sum_of(lever_xy),
+          sum_of(lever_yx),   sum_of(lever_x_residual),
+          sum_of(lever2_xx)};
+}
+
 }  // namespace
 
 MatchCovariance::MatchCovariance(const BevGrid& grid, int channels,
                                  const HypothesisGrid& hypotheses)
     : grid_(grid),
       lanes_(round_up_to_lanes(channels)),
-      border_(static_cast<int>(std::max(hypotheses.x_m.range, hypotheses.y_m.range) / grid.cell_m) +
+      border_(static_cast<int>(std::max(hypotheses.x_m.farthest(), hypotheses.y_m.farthest()) /
+                               grid.cell_m) +
               2),
       uniform_variance_(uniform_variance(hypotheses)),
       moved_(static_cast<size_t>(grid.cells()) * lanes_) {}
@@ -60,48 +119,32 @@ void MatchCovariance::add_block(const CellFeatures& map, const Se2& correction, 
   const int block = std::max(1, static_cast<int>(kBlock_m / grid_.cell_m));
   const int row_end = std::min(first_row + block, grid_.rows - border_);
   const int col_end = std::min(first_col + block, grid_.cols - border_);
+  // Of differences over two cells.
+  const double per_m = 1.0 / (2.0 * grid_.cell_m);
   Eigen::Vector3d slope = Eigen::Vector3d::Zero();
   for (int row = first_row; row < row_end; ++row) {
-    for (int col = first_col; col < col_end; ++col) {
-      const CellSums sums = cell_sums(map, row, col);
-      // The turn is about the vehicle's corrected position: it moves p along (-y, x).
-      Eigen::Matrix<double, 2, 3> point_by_pose;
-      point_by_pose << 1.0, 0.0, -(grid_.y_of_col(col) - correction.y_m),  //
-          0.0, 1.0, grid_.x_of_row(row) - correction.x_m;
-      Eigen::Matrix2d products;
-      products << sums.xx, sums.xy, sums.yx, sums.yy;
-      information.curvature += point_by_pose.transpose() * products * point_by_pose;
-      slope += point_by_pose.transpose() * Eigen::Vector2d(sums.x_residual, sums.y_residual);
-    }
+    // The turn is about the vehicle's corrected position: it moves p along (-y, x).
+    const std::ptrdiff_t moved_row = static_cast<std::ptrdiff_t>(grid_.cols) * lanes_;
+    const SegmentSums s =
+        sum_segment({.map = map.cell(row, first_col),
+                     .moved = moved_.data() + row * moved_row + first_col * lanes_,
+                     .map_row_stride = map.row_stride(),
+                     .moved_row_stride = moved_row,
+                     .lanes = lanes_,
+                     .cells = col_end - first_col,
+                     .first_lever = static_cast<float>(correction.y_m - grid_.y_of_col(first_col)),
+                     .lever_step = static_cast<float>(grid_.cell_m)});
+    const double along = grid_.x_of_row(row) - correction.x_m;
+    Eigen::Matrix3d curvature;
+    curvature << s.xx, s.xy, s.lever_xx + along * s.xy,  //
+        s.yx, s.yy, s.lever_yx + along * s.yy,           //
+        s.lever_xx + along * s.yx, s.lever_xy + along * s.yy,
+        s.lever2_xx + along * (s.lever_xy + s.lever_yx) + along * along * s.yy;
+    information.curvature += per_m * per_m * curvature;
+    slope += per_m *
+             Eigen::Vector3d(s.x_residual, s.y_residual, s.lever_x_residual + along * s.y_residual);
   }
   information.slope += slope * slope.transpose();
-}
-
-/// Gradients are central differences; rows and columns run against x and y.
-MatchCovariance::CellSums MatchCovariance::cell_sums(const CellFeatures& map, int row,
-                                                     int col) const {
-  const std::ptrdiff_t map_row = map.row_stride();
-  const std::ptrdiff_t moved_row = static_cast<std::ptrdiff_t>(grid_.cols) * lanes_;
-  const float* m = map.cell(row, col);
-  const float* b = moved_.data() + row * moved_row + col * lanes_;
-  Lanes sums[6] = {};
-  for (int k = 0; k < lanes_; k += kLanes) {
-    const Lanes map_x = lanes(m + k - map_row) - lanes(m + k + map_row);
-    const Lanes map_y = lanes(m + k - lanes_) - lanes(m + k + lanes_);
-    const Lanes bev_x = lanes(b + k - moved_row) - lanes(b + k + moved_row);
-    const Lanes bev_y = lanes(b + k - lanes_) - lanes(b + k + lanes_);
-    const Lanes residual = lanes(m + k) - lanes(b + k);
-    sums[0] += map_x * bev_x;
-    sums[1] += map_x * bev_y;
-    sums[2] += map_y * bev_x;
-    sums[3] += map_y * bev_y;
-    sums[4] += map_x * residual;
-    sums[5] += map_y * residual;
-  }
-  const double per_m = 1.0 / (2.0 * grid_.cell_m);
-  return {per_m * per_m * sum_of(sums[0]), per_m * per_m * sum_of(sums[1]),
-          per_m * per_m * sum_of(sums[2]), per_m * per_m * sum_of(sums[3]),
-          per_m * sum_of(sums[4]),         per_m * sum_of(sums[5])};
 }
 
 }  // namespace bevloc

@@ -30,13 +30,6 @@ class MatchCovariance {
   Eigen::Matrix3d estimate(const CellFeatures& bev, const CellFeatures& map, const Se2& correction);
 
  private:
-  /// Sums over a cell's channels: products of gradients of map and vehicle, and of the map's
-  /// gradients with the residual.
-  struct CellSums {
-    double xx, xy, yx, yy;
-    double x_residual, y_residual;
-  };
-
   struct Information {
     Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();
@@ -44,13 +37,12 @@ class MatchCovariance {
 
   void add_block(const CellFeatures& map, const Se2& correction, int first_row, int first_col,
                  Information& information) const;
-  CellSums cell_sums(const CellFeatures& map, int row, int col) const;
 
   BevGrid grid_;
   int lanes_;
   int border_;  ///< cells that a hypothesis can move out of sight
   Eigen::Vector3d uniform_variance_;
-  std::vector<float> moved_;  ///< the vehicle's features, moved: [row, col, lanes]
+  LaneBuffer moved_;  ///< the vehicle's features, moved: [row, col, lanes]
 };
 
 }  // namespace bevloc

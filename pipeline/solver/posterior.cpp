@@ -37,6 +37,36 @@ double posterior_variance(std::span<const float> probability, const HypothesisAx
   return variance;
 }
 
+double parabola_top(std::span<const float> probability, const HypothesisAxis& axis) {
+  const auto best = std::ranges::max_element(probability);
+  const int i = static_cast<int>(best - probability.begin());
+  if (i == 0 || i + 1 == axis.count()) return axis.value(i);
+  // Kept off zero: a logarithm must stay finite.
+  constexpr double kLeast = 1e-30;
+  const double before = std::log(std::max<double>(*(best - 1), kLeast));
+  const double top = std::log(std::max<double>(*best, kLeast));
+  const double after = std::log(std::max<double>(*(best + 1), kLeast));
+  const double curvature = before - 2.0 * top + after;
+  if (curvature >= 0.0) return axis.value(i);  // flat: all three are as likely
+  return axis.value(i) + 0.5 * (before - after) / curvature * axis.step;
+}
+
+double rival_peak(std::span<const float> probability) {
+  float highest = 0.0F;
+  float second = 0.0F;
+  for (size_t i = 0; i < probability.size(); ++i) {
+    // Of a plateau the first counts.
+    const bool above_previous = i == 0 || probability[i] > probability[i - 1];
+    size_t next = i + 1;
+    while (next < probability.size() && probability[next] == probability[i]) ++next;
+    const bool above_next = next == probability.size() || probability[i] > probability[next];
+    if (!above_previous || !above_next) continue;
+    second = std::max(second, std::min(highest, probability[i]));
+    highest = std::max(highest, probability[i]);
+  }
+  return highest > 0.0F ? second / highest : 0.0;
+}
+
 Eigen::Vector3d uniform_variance(const HypothesisGrid& hypotheses) {
   return {uniform_variance(hypotheses.x_m), uniform_variance(hypotheses.y_m),
           uniform_variance(hypotheses.yaw_rad)};
@@ -57,6 +87,9 @@ void set_no_evidence(const HypothesisGrid& hypotheses, SolverResult& result) {
   resize_distributions(hypotheses, result);
   result.evidence = Evidence::kNone;
   result.correction = Se2{};
+  result.parabola = Se2{};
+  result.rival_peak.setZero();
+  result.evidence_share.setZero();
   result.covariance = uniform_variance(hypotheses).asDiagonal();
   for (auto* distribution :
        {&result.x_probability, &result.y_probability, &result.yaw_probability}) {

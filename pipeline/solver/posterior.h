@@ -15,6 +15,13 @@ void softmax(std::span<const double> scores, double scale, std::span<float> prob
 double posterior_mean(std::span<const float> probability, const HypothesisAxis& axis);
 double posterior_variance(std::span<const float> probability, const HypothesisAxis& axis);
 
+/// The top of the parabola through the logarithms of the greatest probability and its neighbours;
+/// the hypothesis itself where it is the first or the last.
+double parabola_top(std::span<const float> probability, const HypothesisAxis& axis);
+
+/// The second highest local maximum against the highest; 0 where there is one only.
+double rival_peak(std::span<const float> probability);
+
 /// Variances of x, y and yaw when every hypothesis is as likely as any other.
 Eigen::Vector3d uniform_variance(const HypothesisGrid& hypotheses);
 

@@ -7,18 +7,28 @@
 #include <string>
 #include <utility>
 
-#include "pipeline/solver/block_solver.h"
-#include "pipeline/solver/decoupled_solver.h"
-#include "pipeline/solver/full_solver.h"
+#include "pipeline/solver/banded_matcher.h"
+#include "pipeline/solver/block_matcher.h"
+#include "pipeline/solver/decoupled_matcher.h"
+#include "pipeline/solver/full_fft_matcher.h"
+#include "pipeline/solver/full_matcher.h"
+#include "pipeline/solver/literal_matcher.h"
+#include "pipeline/solver/matching_solver.h"
 
 namespace bevloc {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, SolverKind>, 4> kNames{{
+constexpr std::array<std::pair<std::string_view, SolverKind>, kSolverKinds> kNames{{
     {"full", SolverKind::kFull},
+    {"full-fft", SolverKind::kFullFft},
+    {"decoupled-literal", SolverKind::kDecoupledLiteral},
+    {"decoupled-literal+refine", SolverKind::kDecoupledLiteralRefined},
     {"decoupled", SolverKind::kDecoupled},
-    {"decoupled-plain", SolverKind::kDecoupledPlain},
+    {"decoupled+refine", SolverKind::kDecoupledRefined},
+    {"banded", SolverKind::kBanded},
+    {"banded+refine", SolverKind::kBandedRefined},
     {"block", SolverKind::kBlock},
+    {"block+refine", SolverKind::kBlockRefined},
 }};
 
 bool is_positive(double value) {
@@ -27,41 +37,82 @@ bool is_positive(double value) {
 
 Status check_axis(std::string_view name, const HypothesisAxis& axis, double max_range) {
   if (!is_positive(axis.step) || !is_positive(axis.range) || axis.step > axis.range ||
-      axis.range > max_range) {
+      axis.farthest() > max_range) {
     return fail("hypotheses of {}: range {} and step {}, wanted 0 < step <= range <= {}", name,
                 axis.range, axis.step, max_range);
   }
   return {};
 }
 
-Status check_parameters(const SolverParameters& parameters) {
-  for (const auto& [name, scale] :
+bool is_literal(SolverKind kind) {
+  return kind == SolverKind::kDecoupledLiteral || kind == SolverKind::kDecoupledLiteralRefined;
+}
+
+Status check_parameters(SolverKind kind, const SolverParameters& parameters) {
+  for (const auto& [name, value] :
        {std::pair("joint_scale", parameters.joint_scale), std::pair("x_scale", parameters.x_scale),
-        std::pair("y_scale", parameters.y_scale), std::pair("yaw_scale", parameters.yaw_scale)}) {
-    if (!is_positive(scale)) {
-      return fail("solver parameter {} is {}, wanted a finite number above 0", name, scale);
+        std::pair("y_scale", parameters.y_scale), std::pair("yaw_scale", parameters.yaw_scale),
+        std::pair("banded_x_scale", parameters.banded_x_scale),
+        std::pair("banded_y_scale", parameters.banded_y_scale),
+        std::pair("gem_omega", parameters.gem_omega)}) {
+    if (!is_positive(value)) {
+      return fail("solver parameter {} is {}, wanted a finite number above 0", name, value);
     }
   }
-  if (parameters.gem_omega != 1.0F) {
+  if (parameters.gem_omega != 1.0F && !is_literal(kind)) {
     return fail("solver parameter gem_omega is {}, wanted 1 (the plain mean)",
                 parameters.gem_omega);
   }
   return {};
 }
 
-Status check(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses) {
-  if (channels <= 0) return fail("solver: {} channels, wanted at least 1", channels);
-  if (grid.cells() <= 0 || !is_positive(grid.cell_m) || !YawSpectrum::covers(grid)) {
+Status check_grid(SolverKind kind, const BevGrid& grid) {
+  const bool sound = grid.cells() > 0 && is_positive(grid.cell_m);
+  if (is_literal(kind)) {
+    if (sound && LiteralMatcher::supports(grid)) return {};
     return fail(
-        "solver: grid of {} x {} cells of {} m, wanted 1 to {} rows and columns of cells up to "
-        "{:.2f} m",
-        grid.rows, grid.cols, grid.cell_m, kFftSize,
-        (AmplitudeSpectrum::kCols - 1) / (YawSpectrum::kMaxFrequency * kFftSize));
+        "solver: grid of {} x {} cells of {} m, wanted rows and columns of the form 2^a 5^b, 4 at "
+        "least",
+        grid.rows, grid.cols, grid.cell_m);
   }
+  if (sound && YawSpectrum::covers(grid)) return {};
+  return fail(
+      "solver: grid of {} x {} cells of {} m, wanted 1 to 128 rows and columns of cells of {} to "
+      "{:.2f} m, or finer cells that make as many",
+      grid.rows, grid.cols, grid.cell_m, YawSpectrum::kCell_m, 0.5 / YawSpectrum::kMaxFrequency);
+}
+
+Status check(SolverKind kind, const BevGrid& grid, int channels, const HypothesisGrid& hypotheses) {
+  if (channels <= 0) return fail("solver: {} channels, wanted at least 1", channels);
+  if (auto status = check_grid(kind, grid); !status) return status;
   const double max_range_m = max_shift_m(grid);
   if (auto status = check_axis("x", hypotheses.x_m, max_range_m); !status) return status;
   if (auto status = check_axis("y", hypotheses.y_m, max_range_m); !status) return status;
   return check_axis("yaw", hypotheses.yaw_rad, radians(kMaxYawRange_deg));
+}
+
+std::unique_ptr<Matcher> make_matcher(SolverKind kind, const BevGrid& grid, int channels,
+                                      const HypothesisGrid& hypotheses,
+                                      const SolverParameters& parameters) {
+  switch (kind) {
+    case SolverKind::kFull:
+      return std::make_unique<FullMatcher>(grid, channels, hypotheses, parameters);
+    case SolverKind::kFullFft:
+      return std::make_unique<FullFftMatcher>(grid, channels, hypotheses, parameters);
+    case SolverKind::kDecoupledLiteral:
+    case SolverKind::kDecoupledLiteralRefined:
+      return std::make_unique<LiteralMatcher>(grid, channels, hypotheses, parameters);
+    case SolverKind::kDecoupled:
+    case SolverKind::kDecoupledRefined:
+      return std::make_unique<DecoupledMatcher>(grid, channels, hypotheses, parameters);
+    case SolverKind::kBanded:
+    case SolverKind::kBandedRefined:
+      return std::make_unique<BandedMatcher>(grid, channels, hypotheses, parameters);
+    case SolverKind::kBlock:
+    case SolverKind::kBlockRefined:
+      return std::make_unique<BlockMatcher>(grid, channels, hypotheses, parameters);
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -83,26 +134,30 @@ std::string_view name_of(SolverKind kind) {
   return found->first;
 }
 
+std::array<SolverKind, kSolverKinds> all_solver_kinds() {
+  std::array<SolverKind, kSolverKinds> kinds{};
+  std::ranges::transform(kNames, kinds.begin(), &std::pair<std::string_view, SolverKind>::second);
+  return kinds;
+}
+
+bool is_refined(SolverKind kind) {
+  return kind == SolverKind::kDecoupledLiteralRefined || kind == SolverKind::kDecoupledRefined ||
+         kind == SolverKind::kBandedRefined || kind == SolverKind::kBlockRefined;
+}
+
 Result<std::unique_ptr<Solver>> make_solver(SolverKind kind, const BevGrid& grid, int channels,
                                             const HypothesisGrid& hypotheses,
                                             const SolverParameters& parameters) {
-  if (auto status = check(grid, channels, hypotheses); !status) {
+  if (auto status = check(kind, grid, channels, hypotheses); !status) {
     return tl::unexpected(status.error());
   }
-  if (auto status = check_parameters(parameters); !status) return tl::unexpected(status.error());
-  switch (kind) {
-    case SolverKind::kFull:
-      return std::make_unique<FullSolver>(grid, channels, hypotheses, parameters);
-    case SolverKind::kDecoupled:
-      return std::make_unique<DecoupledSolver>(grid, channels, hypotheses, parameters,
-                                               Refinement::kOn);
-    case SolverKind::kDecoupledPlain:
-      return std::make_unique<DecoupledSolver>(grid, channels, hypotheses, parameters,
-                                               Refinement::kOff);
-    case SolverKind::kBlock:
-      return std::make_unique<BlockSolver>(grid, channels, hypotheses, parameters);
+  if (auto status = check_parameters(kind, parameters); !status) {
+    return tl::unexpected(status.error());
   }
-  return fail("solver: kind {} is not known", static_cast<int>(kind));
+  return std::make_unique<MatchingSolver>(
+      grid, channels, hypotheses, parameters,
+      make_matcher(kind, grid, channels, hypotheses, parameters),
+      is_refined(kind) ? Refine::kYes : Refine::kNo);
 }
 
 }  // namespace bevloc

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string_view>
 
@@ -11,15 +12,29 @@
 namespace bevloc {
 
 enum class SolverKind {
-  kFull,            ///< "full": every hypothesis, the reference
-  kDecoupled,       ///< "decoupled": the paper's, with the refinement pass; the default
-  kDecoupledPlain,  ///< "decoupled-plain": the paper's alone
-  kBlock,           ///< "block": every hypothesis, by block correlation
+  kFull,              ///< "full": every hypothesis by warping, the reference
+  kFullFft,           ///< "full-fft": every hypothesis by cross-correlation
+  kDecoupledLiteral,  ///< "decoupled-literal": the paper's, word for word
+  kDecoupledLiteralRefined,
+  kDecoupled,         ///< "decoupled": the paper's, as measurement mended it
+  kDecoupledRefined,  ///< "decoupled+refine": followed by one pass of the full score; the default
+  kBanded,            ///< "banded": axis matching band by band
+  kBandedRefined,
+  kBlock,  ///< "block": every hypothesis, by block correlation
+  kBlockRefined,
 };
+
+inline constexpr int kSolverKinds = 10;
 
 /// Fails with the names that are known.
 Result<SolverKind> solver_kind_from(std::string_view name);
 std::string_view name_of(SolverKind kind);
+
+/// All of them, the references first.
+std::array<SolverKind, kSolverKinds> all_solver_kinds();
+
+/// Whether one pass of the full score follows (refinement.h).
+bool is_refined(SolverKind kind);
 
 /// Largest ranges of the hypotheses: the solvers linearise and pad for small corrections, and
 /// something must be left inside the border that the largest shift can move out of sight.
@@ -29,7 +44,8 @@ constexpr double max_shift_m(const BevGrid& grid) {
 }
 
 /// Fails where the solver cannot work: a grid it cannot transform, hypotheses or parameters that
-/// are not finite and positive, hypotheses beyond the largest ranges, a GeM exponent other than 1.
+/// are not finite and positive, hypotheses beyond the largest ranges, a GeM exponent other than 1
+/// for any but the literal solvers.
 Result<std::unique_ptr<Solver>> make_solver(SolverKind kind, const BevGrid& grid, int channels,
                                             const HypothesisGrid& hypotheses,
                                             const SolverParameters& parameters);

@@ -18,27 +18,39 @@ struct Moments {
   double std = 0.0;
 };
 
-/// Two passes in double, so that a constant channel comes out as exactly that.
+/// One pass in double over the distances from the first value, so that a constant channel comes out
+/// as exactly that.
 BEVLOC_TARGET_CLONES Moments moments_of(const float* data, int count) {
-  constexpr int kSums = 8;
+  constexpr int kSums = 16;
   double sums[kSums] = {};
+  double squares[kSums] = {};
+  const float origin = data[0];
   const int whole = count / kSums * kSums;
   for (int i = 0; i < whole; i += kSums) {
-    for (int k = 0; k < kSums; ++k) sums[k] += data[i + k];
+    for (int k = 0; k < kSums; ++k) {
+      const double distance = static_cast<double>(data[i + k]) - origin;
+      sums[k] += distance;
+      squares[k] += distance * distance;
+    }
   }
   double sum = 0.0;
-  for (int i = whole; i < count; ++i) sum += data[i];
-  for (double part : sums) sum += part;
-  const double mean = sum / count;
-
-  double squares[kSums] = {};
-  for (int i = 0; i < whole; i += kSums) {
-    for (int k = 0; k < kSums; ++k) squares[k] += (data[i + k] - mean) * (data[i + k] - mean);
-  }
   double square = 0.0;
-  for (int i = whole; i < count; ++i) square += (data[i] - mean) * (data[i] - mean);
-  for (double part : squares) square += part;
-  return {mean, std::sqrt(square / count)};
+  for (int i = whole; i < count; ++i) {
+    const double distance = static_cast<double>(data[i]) - origin;
+    sum += distance;
+    square += distance * distance;
+  }
+  for (int k = 0; k < kSums; ++k) {
+    sum += sums[k];
+    square += squares[k];
+  }
+  const double mean = sum / count;
+  return {origin + mean, std::sqrt(std::max(square / count - mean * mean, 0.0))};
+}
+
+BEVLOC_TARGET_CLONES void shift_and_scale(const float* source, float mean, float scale, int count,
+                                          float* target) {
+  for (int i = 0; i < count; ++i) target[i] = (source[i] - mean) * scale;
 }
 
 }  // namespace
@@ -56,10 +68,8 @@ bool standardise(const FeatureView& features, std::span<float> standardised) {
     const Moments moments = moments_of(source, cells);
     if (!std::isfinite(moments.std)) return false;  // a value that is not finite spoils the sums
     greatest_std = std::max(greatest_std, moments.std);
-    const double scale = 1.0 / (moments.std + kStdEpsilon);
-    for (int i = 0; i < cells; ++i) {
-      target[i] = static_cast<float>((source[i] - moments.mean) * scale);
-    }
+    shift_and_scale(source, static_cast<float>(moments.mean),
+                    static_cast<float>(1.0 / (moments.std + kStdEpsilon)), cells, target);
   }
   return greatest_std > kLeastStd;
 }

@@ -70,23 +70,15 @@ void ShiftPlan::set_shift(double cells) {
 TranslationScorer::TranslationScorer(const BevGrid& grid, int channels,
                                      const HypothesisGrid& hypotheses)
     : sums_(static_cast<size_t>(hypotheses.x_m.count()) * hypotheses.y_m.count()) {
-  const int widest = grid.cols + static_cast<int>(2.0 * hypotheses.y_m.range / grid.cell_m) + 2;
+  const int widest =
+      grid.cols + static_cast<int>(2.0 * hypotheses.y_m.farthest() / grid.cell_m) + 2;
   warped_row_.resize(static_cast<size_t>(widest) * round_up_to_lanes(channels));
 }
 
 void TranslationScorer::set_features(const CellFeatures& bev, const CellFeatures& map) {
   bev_ = &bev;
   map_ = &map;
-  Sums sums;
-  for (int row = 0; row < map.grid().rows; ++row) {
-    const float* cells = map.cell(row, 0);
-    const RowSums part = match_row(cells, cells, map.grid().cols * map.lanes());
-    sums.value += part.value;
-    sums.square += part.square;
-  }
-  const double count = static_cast<double>(map.grid().cells()) * map.channels();
-  map_mean_ = sums.value / count;
-  map_deviation_ = std::sqrt(std::max(sums.square / count - map_mean_ * map_mean_, 0.0));
+  map_moments_ = moments_of(map);
 }
 
 void TranslationScorer::score(double yaw_rad, const ShiftPlan& x, const ShiftPlan& y,
@@ -98,7 +90,7 @@ void TranslationScorer::score(double yaw_rad, const ShiftPlan& x, const ShiftPla
       const Sums* sums = sums_.data();
       for (const auto& x_shift : x_phase.shifts) {
         for (const auto& y_shift : y_phase.shifts) {
-          scores[x_shift.hypothesis * y.hypotheses() + y_shift.hypothesis] = zncc(*sums++);
+          scores[x_shift.hypothesis * y.hypotheses() + y_shift.hypothesis] = score_of(*sums++);
         }
       }
     }
@@ -132,12 +124,9 @@ void TranslationScorer::match_phase(double yaw_rad, const ShiftPlan::Phase& x,
   }
 }
 
-double TranslationScorer::zncc(const Sums& sums) const {
+double TranslationScorer::score_of(const Sums& sums) const {
   const double count = static_cast<double>(map_->grid().cells()) * map_->channels();
-  const double mean = sums.value / count;
-  const double deviation = std::sqrt(std::max(sums.square / count - mean * mean, 0.0));
-  const double product = map_deviation_ * deviation;
-  return product > 0.0 ? (sums.product / count - mean * map_mean_) / product : 0.0;
+  return zncc(sums.product, map_moments_, moments(sums.value, sums.square, count), count);
 }
 
 }  // namespace bevloc

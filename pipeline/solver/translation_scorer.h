@@ -6,6 +6,7 @@
 
 #include "pipeline/solver/cell_features.h"
 #include "pipeline/solver/solver.h"
+#include "pipeline/solver/zncc.h"
 
 namespace bevloc {
 
@@ -56,14 +57,13 @@ class TranslationScorer {
   };
 
   void match_phase(double yaw_rad, const ShiftPlan::Phase& x, const ShiftPlan::Phase& y);
-  double zncc(const Sums& sums) const;
+  double score_of(const Sums& sums) const;
 
   const CellFeatures* bev_ = nullptr;
   const CellFeatures* map_ = nullptr;
-  double map_mean_ = 0.0;
-  double map_deviation_ = 0.0;
+  FeatureMoments map_moments_;
   std::vector<Sums> sums_;  ///< [shifts of the x phase, shifts of the y phase]
-  std::vector<float> warped_row_;
+  LaneBuffer warped_row_;
 };
 
 }  // namespace bevloc

@@ -10,48 +10,105 @@
 namespace bevloc {
 namespace {
 
+/// The spectrum is square, whatever the grid.
+constexpr int kSpectrumSize = 128;
 constexpr double kAngleStep_rad = std::numbers::pi / YawSpectrum::kAngles;
 constexpr double kRadiusStep = (YawSpectrum::kMaxFrequency - YawSpectrum::kMinFrequency) /
                                (YawSpectrum::kBands * YawSpectrum::kRadiiPerBand);
-constexpr float kStdEpsilon = 1e-6F;
+constexpr int kTapsPerAngle = 4 * YawSpectrum::kRadiiPerBand;
+/// Far below the spectrum of any channel that holds something, and far above the rounding of one
+/// that holds nothing: what it shares a complex transform with leaves traces there.
+constexpr float kStdEpsilon = 1e-3F;
+/// Shifts that differ from whole angles by less are whole.
+constexpr double kWholeTolerance = 1e-9;
 
-/// Sum of (map - bev between its own and its previous angle)^2.
-BEVLOC_TARGET_CLONES float squared_difference(const float* map, const float* bev, int lane_count,
-                                              float previous_weight, int count) {
-  Lanes sums[2] = {};
-  const float own_weight = 1.0F - previous_weight;
-  for (int i = 0; i < count; i += kLanes) {
-    const Lanes difference = lanes(map + i) - own_weight * lanes(bev + i) -
-                             previous_weight * lanes(bev + i - lane_count);
-    sums[i / kLanes % 2] += difference * difference;
+BevGrid grid_of(const BevGrid& grid) {
+  const int factor =
+      std::max(1, static_cast<int>(YawSpectrum::kCell_m / grid.cell_m + kWholeTolerance));
+  return {grid.rows / factor, grid.cols / factor, grid.cell_m * factor};
+}
+
+/// The farthest that is read, with its neighbours.
+double farthest_bin(const BevGrid& grid) {
+  return YawSpectrum::kMaxFrequency * grid.cell_m * kSpectrumSize + 2.0;
+}
+
+/// Sum of a * b.
+BEVLOC_TARGET_CLONES float dot(const float* a, const float* b, int count) {
+  constexpr int kSums = 4;
+  Lanes sums[kSums] = {};
+  int i = 0;
+  for (; i + kSums * kLanes <= count; i += kSums * kLanes) {
+    for (int k = 0; k < kSums; ++k) {
+      sums[k] += lanes(a + i + k * kLanes) * lanes(b + i + k * kLanes);
+    }
   }
-  return sum_of(sums[0] + sums[1]);
+  for (; i < count; i += kLanes) sums[0] += lanes(a + i) * lanes(b + i);
+  return sum_of((sums[0] + sums[1]) + (sums[2] + sums[3]));
+}
+
+/// Sum of the amplitudes that `count` taps read, for all lanes of each of `outputs` outputs.
+BEVLOC_TARGET_CLONES void gather(const float* amplitude, const YawTap* tap, int taps, int outputs,
+                                 int lane_count, float* out) {
+  for (int i = 0; i < outputs; ++i, tap += taps, out += lane_count) {
+    for (int k = 0; k < lane_count; k += kLanes) {
+      Lanes sums[2] = {};
+      for (int j = 0; j < taps; j += 2) {
+        sums[0] += tap[j].weight * lanes(amplitude + tap[j].offset + k);
+        sums[1] += tap[j + 1].weight * lanes(amplitude + tap[j + 1].offset + k);
+      }
+      lanes(out + k) = sums[0] + sums[1];
+    }
+  }
+}
+
+/// Mean 0 and deviation 1 over the angles, for each lane.
+BEVLOC_TARGET_CLONES void standardise_angles(float* band, int angles, int lane_count) {
+  const int size = angles * lane_count;
+  for (int k = 0; k < lane_count; k += kLanes) {
+    Lanes mean = {};
+    for (int i = k; i < size; i += lane_count) mean += lanes(band + i);
+    mean /= static_cast<float>(angles);
+    Lanes variance = {};
+    for (int i = k; i < size; i += lane_count) {
+      lanes(band + i) -= mean;
+      variance += lanes(band + i) * lanes(band + i);
+    }
+    Lanes scale = {};
+    for (int c = 0; c < kLanes; ++c) {
+      scale[c] = 1.0F / (std::sqrt(variance[c] / static_cast<float>(angles)) + kStdEpsilon);
+    }
+    for (int i = k; i < size; i += lane_count) lanes(band + i) *= scale;
+  }
 }
 
 }  // namespace
 
 bool YawSpectrum::covers(const BevGrid& grid) {
-  return std::max(grid.rows, grid.cols) <= kFftSize &&
-         kMaxFrequency * grid.cell_m * kFftSize < AmplitudeSpectrum::kCols - 1;
+  const BevGrid read = grid_of(grid);
+  return std::min(read.rows, read.cols) > 0 && std::max(read.rows, read.cols) <= kSpectrumSize &&
+         kMaxFrequency * read.cell_m * kSpectrumSize < 0.5 * kSpectrumSize;
 }
 
 YawSpectrum::YawSpectrum(const BevGrid& grid, int channels, const HypothesisAxis& yaw_rad)
     : yaw_rad_(yaw_rad),
       channels_(channels),
-      margin_(static_cast<int>(std::ceil(yaw_rad.range / kAngleStep_rad)) + 2),
-      spectrum_(grid, channels) {
+      margin_(static_cast<int>(std::ceil(yaw_rad.farthest() / kAngleStep_rad)) + 2),
+      spectrum_(grid_of(grid), channels, kSpectrumSize, kSpectrumSize, Window::kHann,
+                farthest_bin(grid_of(grid))),
+      correlations_(2 * margin_ + 1) {
   assert(covers(grid) && margin_ < kAngles);
-  make_samples(grid);
+  if (grid_of(grid).rows != grid.rows) {
+    pooled_.emplace(Pooled{{grid_of(grid), channels}, {grid_of(grid), channels}});
+  }
+  make_taps(grid_of(grid));
   const size_t size = static_cast<size_t>(kBands) * (kAngles + 2 * margin_) * spectrum_.lanes();
   bev_signature_.resize(size);
   map_signature_.resize(size);
 }
 
-void YawSpectrum::make_samples(const BevGrid& grid) {
-  const double bins_per_frequency = grid.cell_m * kFftSize;
-  const auto offset = [&](int row, int col) {
-    return ((row + kFftSize) % kFftSize * AmplitudeSpectrum::kCols + col) * spectrum_.lanes();
-  };
+void YawSpectrum::make_taps(const BevGrid& grid) {
+  const double bins_per_frequency = grid.cell_m * kSpectrumSize;
   for (int band = 0; band < kBands; ++band) {
     for (int i = 0; i < kAngles; ++i) {
       for (int j = 0; j < kRadiiPerBand; ++j) {
@@ -62,81 +119,87 @@ void YawSpectrum::make_samples(const BevGrid& grid) {
         const int col = static_cast<int>(std::floor(v));
         const auto fu = static_cast<float>(u - row);
         const auto fv = static_cast<float>(v - col);
-        samples_.push_back(
-            {{offset(row, col), offset(row, col + 1), offset(row + 1, col),
-              offset(row + 1, col + 1)},
-             {(1.0F - fu) * (1.0F - fv), (1.0F - fu) * fv, fu * (1.0F - fv), fu * fv}});
+        constexpr float kShare = 1.0F / kRadiiPerBand;
+        taps_.push_back({spectrum_.offset(row, col), kShare * (1.0F - fu) * (1.0F - fv)});
+        taps_.push_back({spectrum_.offset(row, col + 1), kShare * (1.0F - fu) * fv});
+        taps_.push_back({spectrum_.offset(row + 1, col), kShare * fu * (1.0F - fv)});
+        taps_.push_back({spectrum_.offset(row + 1, col + 1), kShare * fu * fv});
       }
     }
   }
 }
 
-float* YawSpectrum::band(std::vector<float>& signature, int index) const {
+float* YawSpectrum::band(LaneBuffer& signature, int index) const {
   const int lanes = spectrum_.lanes();
   return signature.data() + (index * (kAngles + 2 * margin_) + margin_) * lanes;
 }
 
-void YawSpectrum::compute_signature(const CellFeatures& features, std::vector<float>& signature) {
-  spectrum_.compute(features);
-  const float* amplitude = spectrum_.amplitude().data();
-  const int lane_count = spectrum_.lanes();
-  const Sample* sample = samples_.data();
-  for (int b = 0; b < kBands; ++b) {
-    float* out = band(signature, b);
-    for (int i = 0; i < kAngles; ++i, out += lane_count) {
-      std::fill_n(out, lane_count, 0.0F);
-      for (int j = 0; j < kRadiiPerBand; ++j, ++sample) {
-        for (int tap = 0; tap < 4; ++tap) {
-          const float weight = sample->weights[tap] / kRadiiPerBand;
-          const float* in = amplitude + sample->offsets[tap];
-          for (int k = 0; k < lane_count; k += kLanes) lanes(out + k) += weight * lanes(in + k);
-        }
-      }
-    }
-    standardise_band(band(signature, b));
+void YawSpectrum::compute_signatures(const CellFeatures& bev, const CellFeatures& map) {
+  if (pooled_) {
+    pooled_->bev.assign_average_of(bev);
+    pooled_->map.assign_average_of(map);
+    spectrum_.compute(pooled_->bev, pooled_->map);
+  } else {
+    spectrum_.compute(bev, map);
   }
+  read_signature(spectrum_.amplitude(0), bev_signature_);
+  read_signature(spectrum_.amplitude(1), map_signature_);
 }
 
-void YawSpectrum::standardise_band(float* band) const {
+void YawSpectrum::read_signature(std::span<const float> amplitude, LaneBuffer& signature) const {
   const int lane_count = spectrum_.lanes();
   const int size = kAngles * lane_count;
-  for (int k = 0; k < lane_count; k += kLanes) {
-    Lanes mean = {};
-    for (int i = k; i < size; i += lane_count) mean += lanes(band + i);
-    mean /= static_cast<float>(kAngles);
-    Lanes variance = {};
-    for (int i = k; i < size; i += lane_count) {
-      lanes(band + i) -= mean;
-      variance += lanes(band + i) * lanes(band + i);
-    }
-    Lanes scale = {};
-    for (int c = 0; c < kLanes; ++c) {
-      scale[c] = 1.0F / (std::sqrt(variance[c] / kAngles) + kStdEpsilon);
-    }
-    for (int i = k; i < size; i += lane_count) lanes(band + i) *= scale;
-  }
   const int margin = margin_ * lane_count;
-  std::copy_n(band + size - margin, margin, band - margin);
-  std::copy_n(band, margin, band + size);
+  for (int b = 0; b < kBands; ++b) {
+    float* begin = band(signature, b);
+    gather(amplitude.data(), taps_.data() + b * kAngles * kTapsPerAngle, kTapsPerAngle, kAngles,
+           lane_count, begin);
+    standardise_angles(begin, kAngles, lane_count);
+    std::copy_n(begin + size - margin, margin, begin - margin);
+    std::copy_n(begin, margin, begin + size);
+  }
 }
 
+/// Sum of Y_map[i] Y_bev[i - shift].
+double YawSpectrum::correlate(int shift) {
+  const int lane_count = spectrum_.lanes();
+  double sum = 0.0;
+  for (int b = 0; b < kBands; ++b) {
+    sum += dot(band(map_signature_, b), band(bev_signature_, b) - shift * lane_count,
+               kAngles * lane_count);
+  }
+  return sum;
+}
+
+/// |M - (1 - w) B_n - w B_(n + 1)|^2, expanded: a few correlations at whole shifts serve all
+/// hypotheses.
 void YawSpectrum::score(const CellFeatures& bev, const CellFeatures& map,
                         std::span<double> scores) {
-  compute_signature(bev, bev_signature_);
-  compute_signature(map, map_signature_);
-  const int lane_count = spectrum_.lanes();
+  compute_signatures(bev, map);
+  const int farthest = static_cast<int>(std::ceil(yaw_rad_.farthest() / kAngleStep_rad)) + 1;
+  for (int shift = -farthest; shift <= farthest; ++shift) {
+    correlations_[shift + margin_] = correlate(shift);
+  }
+  double map_square = 0.0;
+  double bev_square = 0.0;
+  double bev_neighbours = 0.0;
+  const int size = kAngles * spectrum_.lanes();
+  for (int b = 0; b < kBands; ++b) {
+    const float* bev_band = band(bev_signature_, b);
+    map_square += dot(band(map_signature_, b), band(map_signature_, b), size);
+    bev_square += dot(bev_band, bev_band, size);
+    bev_neighbours += dot(bev_band, bev_band - spectrum_.lanes(), size);
+  }
   const double count = static_cast<double>(kBands) * kAngles * channels_;
   for (int k = 0; k < yaw_rad_.count(); ++k) {
     const double shift = yaw_rad_.value(k) / kAngleStep_rad;
-    const int whole = static_cast<int>(std::floor(shift));
-    const auto fraction = static_cast<float>(shift - whole);
-    double sum = 0.0;
-    for (int b = 0; b < kBands; ++b) {
-      sum +=
-          squared_difference(band(map_signature_, b), band(bev_signature_, b) - whole * lane_count,
-                             lane_count, fraction, kAngles * lane_count);
-    }
-    scores[k] = -sum / count;
+    const int whole = static_cast<int>(std::floor(shift + kWholeTolerance));
+    const double w = std::max(shift - whole, 0.0);
+    const double product =
+        (1.0 - w) * correlations_[whole + margin_] + w * correlations_[whole + 1 + margin_];
+    const double square =
+        ((1.0 - w) * (1.0 - w) + w * w) * bev_square + 2.0 * w * (1.0 - w) * bev_neighbours;
+    scores[k] = (2.0 * product - map_square - square) / count;
   }
 }
 

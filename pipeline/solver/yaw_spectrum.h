@@ -1,6 +1,7 @@
 // Yaw from amplitude spectra (paper, III-D, eq. 7 to 10), turned in frequency space.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,10 +11,19 @@
 
 namespace bevloc {
 
+/// Where the spectrum is read, and how much that counts.
+struct YawTap {
+  int offset = 0;
+  float weight = 0.0F;
+};
+
 /// Yaw features: the amplitude spectrum in polar coordinates of PHYSICAL frequency (the grid is not
 /// square), averaged over the radii of each of eight bands and standardised over the angle. One
 /// spectrum per side: a yaw hypothesis shifts the signature of the vehicle's features along its
 /// angle, because turning the features themselves would blur every hypothesis but zero.
+///
+/// The bands end below what cells of 0.6 m can hold, so finer features are averaged to such cells
+/// first. A frequency beyond what coarser cells can hold is read as what it aliases to.
 class YawSpectrum {
  public:
   static constexpr int kBands = 8;
@@ -21,8 +31,9 @@ class YawSpectrum {
   static constexpr int kAngles = 360;            ///< over half a turn: the spectrum is even
   static constexpr double kMinFrequency = 0.05;  ///< cycles per metre
   static constexpr double kMaxFrequency = 0.8;
+  static constexpr double kCell_m = 0.6;
 
-  /// Whether every frequency that is read lies on the spectrum of such a grid.
+  /// Whether the spectrum of such a grid holds every frequency that is read.
   static bool covers(const BevGrid& grid);
 
   YawSpectrum(const BevGrid& grid, int channels, const HypothesisAxis& yaw_rad);
@@ -31,25 +42,27 @@ class YawSpectrum {
   void score(const CellFeatures& bev, const CellFeatures& map, std::span<double> scores);
 
  private:
-  /// Bilinear interpolation on the spectrum.
-  struct Sample {
-    int offsets[4];
-    float weights[4];
+  struct Pooled {
+    CellFeatures bev;
+    CellFeatures map;
   };
 
-  void make_samples(const BevGrid& grid);
-  void compute_signature(const CellFeatures& features, std::vector<float>& signature);
-  void standardise_band(float* band) const;
-  float* band(std::vector<float>& signature, int index) const;
+  void make_taps(const BevGrid& grid);
+  void compute_signatures(const CellFeatures& bev, const CellFeatures& map);
+  void read_signature(std::span<const float> amplitude, LaneBuffer& signature) const;
+  float* band(LaneBuffer& signature, int index) const;
+  double correlate(int shift);
 
   HypothesisAxis yaw_rad_;
   int channels_;
-  int margin_;  ///< angles by which a hypothesis can shift a signature
+  int margin_;                    ///< angles by which a hypothesis can shift a signature
+  std::optional<Pooled> pooled_;  ///< for cells finer than kCell_m
   AmplitudeSpectrum spectrum_;
-  std::vector<Sample> samples_;  ///< [band, angle, radius]
+  std::vector<YawTap> taps_;  ///< [band, angle, radius, 4]: bilinear interpolation
   /// [band, margin + angle + margin, lanes]; the margins repeat the other end.
-  std::vector<float> bev_signature_;
-  std::vector<float> map_signature_;
+  LaneBuffer bev_signature_;
+  LaneBuffer map_signature_;
+  std::vector<double> correlations_;  ///< by shift, -margin_ ... margin_
 };
 
 }  // namespace bevloc

@@ -20,11 +20,13 @@ void solve(benchmark::State& state, SolverKind kind) {
   }
 }
 
-BENCHMARK_CAPTURE(solve, full, SolverKind::kFull)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(solve, block, SolverKind::kBlock)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(solve, decoupled, SolverKind::kDecoupled)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(solve, decoupled_plain, SolverKind::kDecoupledPlain)
-    ->Unit(benchmark::kMillisecond);
+const bool kRegistered = [] {
+  for (const SolverKind kind : all_solver_kinds()) {
+    benchmark::RegisterBenchmark(std::string(name_of(kind)).c_str(), solve, kind)
+        ->Unit(benchmark::kMillisecond);
+  }
+  return true;
+}();
 
 }  // namespace
 }  // namespace bevloc

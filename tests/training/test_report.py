@@ -64,7 +64,7 @@ class Written(unittest.TestCase):
         self.models = Path(self.folder.name)
         batch = SyntheticStream(0).next(2)
         solver = fixed_solver([0.0, 0.0, 0.0], 1.0)
-        names = ("joint", "decoupled", "block", "decoupled-plain")
+        names = ("joint", "block", "decoupled", "decoupled+refine")
         metrics = metrics_of({name: solver for name in names}, [batch])
         self.results = Results(12_000, 2, metrics, metrics)
 

@@ -1,5 +1,6 @@
-"""Both solvers against scenes whose correction is known."""
+"""Every solver against scenes whose correction is known."""
 
+import dataclasses
 import math
 import unittest
 
@@ -8,9 +9,10 @@ import torch
 from training.joint_volume import joint_volume
 from training.solver import (
     DEFINITION,
+    KINDS,
     PoseSolvers,
+    SolverDefinition,
     YawSignature,
-    estimate,
     hypotheses,
     posterior_mean,
     rotate,
@@ -29,38 +31,48 @@ CORRECTIONS = [
 ]
 
 
-def sharp_solvers() -> PoseSolvers:
-    solvers = PoseSolvers()
+def sharp_solvers(definition: SolverDefinition = DEFINITION) -> PoseSolvers:
+    solvers = PoseSolvers(definition)
     for scale in solvers.log_scale.values():
         scale.data.fill_(math.log(150.0))
     return solvers
 
 
 class KnownCorrections(unittest.TestCase):
-    def posteriors(self, correction, seed, max_frequency):
-        features = features_under(torch.tensor(correction), seed, max_frequency)
-        bev, features_map = map(standardise, features)
-        return sharp_solvers(), bev, features_map
-
     @torch.no_grad()
-    def test_joint_volume_finds_every_axis_with_its_sign(self):
-        for seed, correction in enumerate(CORRECTIONS):
-            with self.subTest(correction=correction):
-                solvers, bev, features_map = self.posteriors(correction, seed, 0.2)
-                x, y, yaw = estimate(solvers.joint(bev, features_map))[0].tolist()
-                self.assertAlmostEqual(x, correction[0], delta=0.1)
-                self.assertAlmostEqual(y, correction[1], delta=0.1)
-                self.assertAlmostEqual(yaw, correction[2], delta=0.3 * DEGREE)
+    def check(self, kind, corrections, max_frequency, tolerance_m, tolerance_rad, solvers=None):
+        """Every axis, with its sign."""
+        solvers = solvers or sharp_solvers()
+        for seed, correction in enumerate(corrections):
+            with self.subTest(kind=kind, correction=correction):
+                features = features_under(torch.tensor(correction), seed, max_frequency)
+                x, y, yaw = solvers.solve(kind, *features).estimate[0].tolist()
+                self.assertAlmostEqual(x, correction[0], delta=tolerance_m)
+                self.assertAlmostEqual(y, correction[1], delta=tolerance_m)
+                self.assertAlmostEqual(yaw, correction[2], delta=tolerance_rad)
 
-    @torch.no_grad()
-    def test_decoupled_solver_finds_every_axis_with_its_sign(self):
-        for seed, correction in enumerate(CORRECTIONS):
-            with self.subTest(correction=correction):
-                solvers, bev, features_map = self.posteriors(correction, seed, 0.7)
-                x, y, yaw = estimate(solvers.decoupled(bev, features_map, None))[0].tolist()
-                self.assertAlmostEqual(x, correction[0], delta=0.25)
-                self.assertAlmostEqual(y, correction[1], delta=0.25)
-                self.assertAlmostEqual(yaw, correction[2], delta=0.4 * DEGREE)
+    def test_block_solver(self):
+        self.check("block", CORRECTIONS, 0.2, 0.1, 0.3 * DEGREE)
+
+    def test_full_solvers(self):
+        solvers = sharp_solvers(dataclasses.replace(DEFINITION, x_step_m=0.5, y_step_m=0.25))
+        for kind in ("full", "full-fft"):
+            self.check(kind, CORRECTIONS[-2:], 0.2, 0.1, 0.3 * DEGREE, solvers)
+
+    def test_decoupled_solver(self):
+        self.check("decoupled", CORRECTIONS, 0.7, 0.25, 0.4 * DEGREE)
+
+    def test_banded_solver(self):
+        self.check("banded", CORRECTIONS, 0.2, 0.25, 0.4 * DEGREE)
+
+    def test_literal_solver(self):
+        # Its yaw is drawn to zero, as turning blurs every other hypothesis.
+        self.check("decoupled-literal", CORRECTIONS, 0.3, 0.41, 1.0 * DEGREE)
+
+    def test_refinement_of_every_first_solution(self):
+        for kind in KINDS:
+            if kind.endswith("+refine"):
+                self.check(kind, CORRECTIONS[-2:], 0.2, 0.1, 0.25 * DEGREE)
 
     @torch.no_grad()
     def test_rotation_undoes_a_yaw(self):
@@ -129,15 +141,40 @@ class JointVolumeGradients(unittest.TestCase):
 
 class Degenerate(unittest.TestCase):
     @torch.no_grad()
-    def test_constant_features_give_flat_finite_posteriors(self):
-        flat = standardise(torch.full((1, 4, 100, 50), 3.0))
-        solvers = sharp_solvers()
-        for posterior in (solvers.joint(flat, flat), solvers.decoupled(flat, flat, None)):
-            for probability in posterior.axes():
-                self.assertTrue(torch.isfinite(probability).all())
-                self.assertAlmostEqual(probability.sum().item(), 1.0, places=4)
+    def test_constant_features_give_finite_posteriors(self):
+        solvers = sharp_solvers(dataclasses.replace(DEFINITION, x_step_m=1.0, y_step_m=0.5))
+        for value in (0.0, 3.0):
+            flat = torch.full((1, 4, 100, 50), value)
+            for kind in KINDS:
+                solution = solvers.solve(kind, flat, flat)
+                self.assertTrue(torch.isfinite(solution.estimate).all(), kind)
+                for probability in solution.posterior.axes():
+                    self.assertTrue(torch.isfinite(probability).all(), kind)
+                    self.assertAlmostEqual(probability.sum().item(), 1.0, places=4)
+
+    @torch.no_grad()
+    def test_without_evidence_the_mean_is_zero(self):
         mean = posterior_mean(torch.full((1, 21), 1 / 21), 2.0, 0.2)
         self.assertAlmostEqual(mean.item(), 0.0, places=5)
+
+
+class Parameters(unittest.TestCase):
+    def test_a_checkpoint_older_than_a_solver_leaves_its_parameters(self):
+        solvers = sharp_solvers()
+        old = {f"log_scale.{name}": torch.tensor(1.5) for name in ("joint", "x", "y", "yaw")}
+        solvers.load_state_dict(old)
+        self.assertAlmostEqual(solvers.log_scale["yaw"].item(), 1.5)
+        self.assertAlmostEqual(solvers.log_scale["banded_x"].item(), math.log(150.0), places=5)
+        self.assertAlmostEqual(solvers.gem_omega.item(), 1.0)
+
+    def test_unknown_parameters_are_refused(self):
+        with self.assertRaises(RuntimeError):
+            sharp_solvers().load_state_dict({"log_scale.sideways": torch.tensor(1.0)})
+
+    def test_unknown_solvers_are_refused(self):
+        flat = torch.zeros(1, 1, 100, 50)
+        with self.assertRaises(KeyError):
+            sharp_solvers().solve("sideways", flat, flat)
 
 
 if __name__ == "__main__":

@@ -137,7 +137,7 @@ TEST_P(GoldenNetwork, DistributionsAgreeWithTraining) {
   for (size_t i = 0; i < decoupled.shape.at(0); ++i) {
     SCOPED_TRACE("sample " + std::to_string(i));
     run(i);
-    EXPECT_THAT(distributions(SolverKind::kDecoupledPlain),
+    EXPECT_THAT(distributions(SolverKind::kDecoupled),
                 ::testing::Pointwise(near, decoupled.entry(i)));
     EXPECT_THAT(distributions(SolverKind::kBlock), ::testing::Pointwise(near, joint.entry(i)));
   }

@@ -14,9 +14,8 @@ TEST(AllocationTest, NoneAfterTheFirstSolution) {
   const auto bev = scene.seen_from({0.4, 0.2, 0.01}, kFeatureGrid);
   const auto map = scene.seen_from({}, kFeatureGrid);
   const std::vector<float> nothing(bev.size(), 0.0F);
-  for (const char* name : {"full", "decoupled", "decoupled-plain", "block"}) {
-    auto solver =
-        make_solver(*solver_kind_from(name), kFeatureGrid, kChannels, HypothesisGrid{}, {}).value();
+  for (const SolverKind kind : all_solver_kinds()) {
+    auto solver = make_solver(kind, kFeatureGrid, kChannels, HypothesisGrid{}, {}).value();
     SolverResult result;
     solver->solve(view(bev, kChannels, kFeatureGrid), view(map, kChannels, kFeatureGrid), result);
     const int before = test::allocation_count();
@@ -24,7 +23,7 @@ TEST(AllocationTest, NoneAfterTheFirstSolution) {
     solver->solve(view(map, kChannels, kFeatureGrid), view(bev, kChannels, kFeatureGrid), result);
     solver->solve(view(nothing, kChannels, kFeatureGrid), view(bev, kChannels, kFeatureGrid),
                   result);
-    EXPECT_EQ(test::allocation_count(), before) << name;
+    EXPECT_EQ(test::allocation_count(), before) << name_of(kind);
   }
 }
 

@@ -90,7 +90,7 @@ Plane signature(const Plane& plane) {
     double variance = 0.0;
     for (double value : result[band]) mean += value / 360.0;
     for (double value : result[band]) variance += (value - mean) * (value - mean) / 360.0;
-    for (double& value : result[band]) value = (value - mean) / (std::sqrt(variance) + 1e-6);
+    for (double& value : result[band]) value = (value - mean) / (std::sqrt(variance) + 1e-3);
   }
   return result;
 }
@@ -210,7 +210,7 @@ TEST(DecoupledReferenceTest, AgreesWithItsDefinition) {
   add_noise(bev, 0.2F, 11);
 
   auto solver =
-      make_solver(SolverKind::kDecoupledPlain, kGrid, kChannels, hypotheses, parameters).value();
+      make_solver(SolverKind::kDecoupled, kGrid, kChannels, hypotheses, parameters).value();
   SolverResult result;
   solver->solve(view(bev, kChannels, kGrid), view(map, kChannels, kGrid), result);
 

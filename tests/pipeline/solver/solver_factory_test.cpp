@@ -17,11 +17,9 @@ std::string error_of(const BevGrid& grid, int channels, const HypothesisGrid& hy
 }
 
 TEST(SolverFactoryTest, KnowsEveryKindByName) {
-  for (const char* name : {"full", "decoupled", "decoupled-plain", "block"}) {
-    const auto kind = solver_kind_from(name);
-    ASSERT_TRUE(kind) << name;
-    EXPECT_EQ(name_of(*kind), name);
-    EXPECT_TRUE(make_solver(*kind, kFeatureGrid, 4, {}, {}));
+  for (const SolverKind kind : all_solver_kinds()) {
+    EXPECT_EQ(solver_kind_from(name_of(kind)), kind) << name_of(kind);
+    EXPECT_TRUE(make_solver(kind, kFeatureGrid, 4, {}, {})) << name_of(kind);
   }
 }
 
@@ -29,15 +27,26 @@ TEST(SolverFactoryTest, ListsTheKnownNames) {
   const auto kind = solver_kind_from("fast");
   ASSERT_FALSE(kind);
   EXPECT_THAT(kind.error().message, HasSubstr("\"fast\""));
-  EXPECT_THAT(kind.error().message, HasSubstr("full, decoupled, decoupled-plain, block"));
+  EXPECT_THAT(kind.error().message, HasSubstr("full, full-fft, decoupled-literal, "));
 }
 
 TEST(SolverFactoryTest, RefusesWhatItCannotSolve) {
   EXPECT_EQ(error_of(kFeatureGrid, 16, {}, {}), "");
   EXPECT_THAT(error_of(kFeatureGrid, 0, {}, {}), HasSubstr("0 channels"));
-  EXPECT_THAT(error_of(kRasterGrid, 16, {}, {}), HasSubstr("400 x 200"));
+  EXPECT_EQ(error_of(kRasterGrid, 16, {}, {}), "");
+  EXPECT_THAT(error_of({200, 50, 0.6}, 16, {}, {}), HasSubstr("200 x 50"));
   EXPECT_THAT(error_of({100, 50, 1.2}, 16, {}, {}), HasSubstr("1.2 m"));
   EXPECT_THAT(error_of({0, 50, 0.6}, 16, {}, {}), HasSubstr("0 x 50"));
+}
+
+TEST(SolverFactoryTest, TheLiteralSolverTransformsTheGridAsItIs) {
+  const auto make = [](const BevGrid& grid) {
+    return make_solver(SolverKind::kDecoupledLiteral, grid, 4, {}, {});
+  };
+  EXPECT_TRUE(make(kRasterGrid));
+  const auto refused = make({90, 50, 0.6});
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("90 x 50"));
 }
 
 TEST(SolverFactoryTest, RefusesHypothesesThatMakeNoGrid) {

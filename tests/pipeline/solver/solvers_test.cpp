@@ -24,6 +24,8 @@ std::unique_ptr<Solver> make(SolverKind kind, float scale = 300.0F) {
   parameters.x_scale = scale;
   parameters.y_scale = scale;
   parameters.yaw_scale = scale;
+  parameters.banded_x_scale = scale;
+  parameters.banded_y_scale = scale;
   return make_solver(kind, kGrid, kChannels, HypothesisGrid{}, parameters).value();
 }
 
@@ -160,16 +162,23 @@ TEST_P(EverySolver, SurvivesHugeAndUselessFeatures) {
   expect_usable(solve(*solver, one_cell, one_cell));
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver,
-                         testing::Values(Accuracy{SolverKind::kFull, 0.05, radians(0.1)},
-                                         Accuracy{SolverKind::kDecoupled, 0.05, radians(0.1)},
-                                         Accuracy{SolverKind::kDecoupledPlain, 0.15, radians(0.3)},
-                                         Accuracy{SolverKind::kBlock, 0.08, radians(0.15)}),
-                         [](const auto& test) {
-                           std::string name(name_of(test.param.kind));
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Solvers, EverySolver,
+    testing::Values(Accuracy{SolverKind::kFull, 0.05, radians(0.1)},
+                    Accuracy{SolverKind::kFullFft, 0.05, radians(0.1)},
+                    Accuracy{SolverKind::kDecoupledLiteralRefined, 0.08, radians(0.15)},
+                    Accuracy{SolverKind::kDecoupled, 0.15, radians(0.3)},
+                    Accuracy{SolverKind::kDecoupledRefined, 0.05, radians(0.1)},
+                    Accuracy{SolverKind::kBanded, 0.15, radians(0.3)},
+                    Accuracy{SolverKind::kBandedRefined, 0.05, radians(0.1)},
+                    Accuracy{SolverKind::kBlock, 0.08, radians(0.15)},
+                    Accuracy{SolverKind::kBlockRefined, 0.05, radians(0.1)}),
+    [](const auto& test) {
+      std::string name(name_of(test.param.kind));
+      std::ranges::replace_if(
+          name, [](char c) { return c == '-' || c == '+'; }, '_');
+      return name;
+    });
 
 }  // namespace
 }  // namespace bevloc

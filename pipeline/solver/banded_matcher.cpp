@@ -1,0 +1,219 @@
+#include "pipeline/solver/banded_matcher.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/target_clones.h"
+#include "pipeline/solver/cubic.h"
+#include "pipeline/solver/posterior.h"
+
+namespace bevloc {
+namespace {
+
+constexpr int kLateralBands = 10;
+constexpr int kLongitudinalBands = 5;
+constexpr float kStdEpsilon = 0.01F;
+
+BEVLOC_TARGET_CLONES void add(const float* cells, float weight, int count, float* out) {
+  for (int i = 0; i < count; i += kLanes) lanes(out + i) += weight * lanes(cells + i);
+}
+
+/// The sum of a row of cells, into `out`.
+BEVLOC_TARGET_CLONES void add_sum(const float* cells, int count, float weight, int lane_count,
+                                  float* out) {
+  for (int k = 0; k < lane_count; k += kLanes) {
+    Lanes sum = {};
+    for (int i = 0; i < count; ++i) sum += lanes(cells + i * lane_count + k);
+    lanes(out + k) += weight * sum;
+  }
+}
+
+BEVLOC_TARGET_CLONES float dot(const float* a, const float* b, int count) {
+  Lanes sums[2] = {};
+  int i = 0;
+  for (; i + 2 * kLanes <= count; i += 2 * kLanes) {
+    sums[0] += lanes(a + i) * lanes(b + i);
+    sums[1] += lanes(a + i + kLanes) * lanes(b + i + kLanes);
+  }
+  if (i < count) sums[0] += lanes(a + i) * lanes(b + i);
+  return sum_of(sums[0] + sums[1]);
+}
+
+/// Each lane of `bands` runs of `length` cells, `stride` floats apart: mean 0, deviation nearly 1.
+BEVLOC_TARGET_CLONES void standardise(float* first, int bands, std::ptrdiff_t stride, int length,
+                                      int lane_count) {
+  const float share = 1.0F / static_cast<float>(bands * length);
+  for (int k = 0; k < lane_count; k += kLanes) {
+    Lanes mean = {};
+    for (int b = 0; b < bands; ++b) {
+      for (int i = 0; i < length; ++i) mean += lanes(first + b * stride + i * lane_count + k);
+    }
+    mean *= share;
+    Lanes variance = {};
+    for (int b = 0; b < bands; ++b) {
+      for (int i = 0; i < length; ++i) {
+        Lanes& value = lanes(first + b * stride + i * lane_count + k);
+        value -= mean;
+        variance += value * value;
+      }
+    }
+    Lanes scale = {};
+    for (int c = 0; c < kLanes; ++c) {
+      scale[c] = 1.0F / (std::sqrt(share * variance[c]) + kStdEpsilon);
+    }
+    for (int b = 0; b < bands; ++b) {
+      for (int i = 0; i < length; ++i) lanes(first + b * stride + i * lane_count + k) *= scale;
+    }
+  }
+}
+
+/// log of the sum of exp(scale * score).
+double log_sum(const double* scores, int count, double scale) {
+  const double best = *std::max_element(scores, scores + count);
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) sum += std::exp(scale * (scores[i] - best));
+  return scale * best + std::log(sum);
+}
+
+}  // namespace
+
+BandedMatcher::BandedMatcher(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses,
+                             const SolverParameters& parameters)
+    : grid_(grid),
+      channels_(channels),
+      lanes_(round_up_to_lanes(channels)),
+      hypotheses_(hypotheses),
+      parameters_(parameters),
+      yaw_scores_(hypotheses.yaw_rad.count()) {
+  const int row_bands = std::min(kLateralBands, grid.rows);
+  const int col_bands = std::min(kLongitudinalBands, grid.cols);
+  for (int b = 0; b < row_bands; ++b) {
+    const double middle = 0.5 * (b * grid.rows / row_bands + (b + 1) * grid.rows / row_bands - 1);
+    lateral_.lever_m.push_back(0.5 * (grid.rows - 1) * grid.cell_m - middle * grid.cell_m);
+  }
+  for (int b = 0; b < col_bands; ++b) {
+    const double middle = 0.5 * (b * grid.cols / col_bands + (b + 1) * grid.cols / col_bands - 1);
+    longitudinal_.lever_m.push_back(middle * grid.cell_m - 0.5 * (grid.cols - 1) * grid.cell_m);
+  }
+  make_profiles(grid.cols, hypotheses.y_m, lateral_);
+  make_profiles(grid.rows, hypotheses.x_m, longitudinal_);
+}
+
+void BandedMatcher::make_profiles(int length, const HypothesisAxis& axis, Bands& bands) const {
+  bands.length = length;
+  double lever_m = 0.0;
+  for (double lever : bands.lever_m) lever_m = std::max(lever_m, std::abs(lever));
+  const double farthest_m = axis.farthest() + lever_m * hypotheses_.yaw_rad.farthest();
+  bands.reach = whole_cells(farthest_m, grid_.cell_m) + kCubicTaps / 2;
+  const size_t count = bands.lever_m.size();
+  bands.bev.resize(count * (length + 2 * bands.reach) * lanes_);
+  bands.map.resize(count * length * lanes_);
+  bands.correlation.resize(count * (2 * bands.reach + 1));
+  bands.scores.resize(static_cast<size_t>(hypotheses_.yaw_rad.count()) * axis.count());
+}
+
+void BandedMatcher::match(const MatchSide& bev, const MatchSide& map, SolverResult& result) {
+  average(bev.cells, lateral_.reach, longitudinal_.reach, lateral_.bev, longitudinal_.bev);
+  average(map.cells, 0, 0, lateral_.map, longitudinal_.map);
+  for (auto [bands, axis] :
+       {std::pair(&lateral_, &hypotheses_.y_m), std::pair(&longitudinal_, &hypotheses_.x_m)}) {
+    correlate(*bands);
+    score(*axis, *bands);
+  }
+  // P(a) is the product of what both axes leave when they are summed out.
+  const int y_count = hypotheses_.y_m.count();
+  const int x_count = hypotheses_.x_m.count();
+  for (int k = 0; k < hypotheses_.yaw_rad.count(); ++k) {
+    yaw_scores_[k] =
+        log_sum(lateral_.scores.data() + k * y_count, y_count, parameters_.banded_y_scale) +
+        log_sum(longitudinal_.scores.data() + k * x_count, x_count, parameters_.banded_x_scale);
+  }
+  softmax(yaw_scores_, 1.0, result.yaw_probability);
+  marginalise(lateral_, parameters_.banded_y_scale, result.yaw_probability, result.y_probability);
+  marginalise(longitudinal_, parameters_.banded_x_scale, result.yaw_probability,
+              result.x_probability);
+  result.correction = {posterior_mean(result.x_probability, hypotheses_.x_m),
+                       posterior_mean(result.y_probability, hypotheses_.y_m),
+                       posterior_mean(result.yaw_probability, hypotheses_.yaw_rad)};
+}
+
+/// Profiles of all bands, each in a frame of `lateral_reach` and `longitudinal_reach` cells.
+void BandedMatcher::average(const CellFeatures& features, int lateral_reach, int longitudinal_reach,
+                            LaneBuffer& lateral, LaneBuffer& longitudinal) const {
+  const int row_bands = static_cast<int>(lateral_.lever_m.size());
+  const int col_bands = static_cast<int>(longitudinal_.lever_m.size());
+  const std::ptrdiff_t lateral_stride =
+      static_cast<std::ptrdiff_t>(grid_.cols + 2 * lateral_reach) * lanes_;
+  const std::ptrdiff_t longitudinal_stride =
+      static_cast<std::ptrdiff_t>(grid_.rows + 2 * longitudinal_reach) * lanes_;
+  std::ranges::fill(lateral, 0.0F);
+  std::ranges::fill(longitudinal, 0.0F);
+  float* lateral_first = lateral.data() + lateral_reach * lanes_;
+  float* longitudinal_first = longitudinal.data() + longitudinal_reach * lanes_;
+  for (int b = 0; b < row_bands; ++b) {
+    const int begin = b * grid_.rows / row_bands;
+    const int end = (b + 1) * grid_.rows / row_bands;
+    for (int row = begin; row < end; ++row) {
+      add(features.cell(row, 0), 1.0F / static_cast<float>(end - begin), grid_.cols * lanes_,
+          lateral_first + b * lateral_stride);
+    }
+  }
+  for (int row = 0; row < grid_.rows; ++row) {
+    for (int b = 0; b < col_bands; ++b) {
+      const int begin = b * grid_.cols / col_bands;
+      const int end = (b + 1) * grid_.cols / col_bands;
+      add_sum(features.cell(row, begin), end - begin, 1.0F / static_cast<float>(end - begin),
+              lanes_, longitudinal_first + b * longitudinal_stride + row * lanes_);
+    }
+  }
+  standardise(lateral_first, row_bands, lateral_stride, grid_.cols, lanes_);
+  standardise(longitudinal_first, col_bands, longitudinal_stride, grid_.rows, lanes_);
+}
+
+void BandedMatcher::correlate(Bands& bands) const {
+  const int shifts = 2 * bands.reach + 1;
+  const auto count = static_cast<double>(bands.lever_m.size()) * bands.length * channels_;
+  const std::ptrdiff_t bev_stride =
+      static_cast<std::ptrdiff_t>(bands.length + 2 * bands.reach) * lanes_;
+  for (size_t b = 0; b < bands.lever_m.size(); ++b) {
+    const float* map = bands.map.data() + b * bands.length * lanes_;
+    for (int shift = 0; shift < shifts; ++shift) {
+      const float* bev = bands.bev.data() + b * bev_stride + shift * lanes_;
+      bands.correlation[b * shifts + shift] = dot(map, bev, bands.length * lanes_) / count;
+    }
+  }
+}
+
+void BandedMatcher::score(const HypothesisAxis& axis, Bands& bands) const {
+  const int shifts = 2 * bands.reach + 1;
+  double* score = bands.scores.data();
+  for (int k = 0; k < hypotheses_.yaw_rad.count(); ++k) {
+    for (int i = 0; i < axis.count(); ++i, ++score) {
+      *score = 0.0;
+      for (size_t b = 0; b < bands.lever_m.size(); ++b) {
+        const double shift_m = axis.value(i) + hypotheses_.yaw_rad.value(k) * bands.lever_m[b];
+        const CubicTaps taps = cubic_taps(shift_m / grid_.cell_m + bands.reach);
+        const double* correlation = bands.correlation.data() + b * shifts + taps.first;
+        for (int tap = 0; tap < kCubicTaps; ++tap) *score += taps.weight[tap] * correlation[tap];
+      }
+    }
+  }
+}
+
+/// P(i) = sum over yaw of P(yaw) P(i | yaw).
+void BandedMatcher::marginalise(const Bands& bands, double scale,
+                                std::span<const float> yaw_probability,
+                                std::span<float> probability) {
+  const int count = static_cast<int>(probability.size());
+  std::ranges::fill(probability, 0.0F);
+  for (size_t k = 0; k < yaw_probability.size(); ++k) {
+    const double* scores = bands.scores.data() + k * count;
+    const double total = log_sum(scores, count, scale);
+    for (int i = 0; i < count; ++i) {
+      probability[i] +=
+          yaw_probability[k] * static_cast<float>(std::exp(scale * scores[i] - total));
+    }
+  }
+}
+
+}  // namespace bevloc

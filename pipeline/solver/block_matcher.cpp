@@ -1,0 +1,27 @@
+#include "pipeline/solver/block_matcher.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/solver/joint_posterior.h"
+#include "pipeline/solver/posterior.h"
+
+namespace bevloc {
+
+BlockMatcher::BlockMatcher(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses,
+                           const SolverParameters& parameters)
+    : hypotheses_(hypotheses),
+      parameters_(parameters),
+      joint_volume_(hypotheses, grid, channels,
+                    std::max(1, static_cast<int>(std::lround(kBlock_m / grid.cell_m)))),
+      volume_(hypotheses.count()),
+      scores_(hypotheses.count()) {}
+
+void BlockMatcher::match(const MatchSide& bev, const MatchSide& map, SolverResult& result) {
+  joint_volume_.scores(bev.standardised, map.standardised, volume_);
+  std::ranges::copy(volume_, scores_.begin());
+  softmax(scores_, parameters_.joint_scale, volume_);
+  summarise_joint(volume_, hypotheses_, result);
+}
+
+}  // namespace bevloc

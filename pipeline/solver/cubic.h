@@ -1,0 +1,29 @@
+// Reading between samples by cubic convolution (Keys 1981, a = -1/2).
+#pragma once
+
+#include <array>
+#include <cmath>
+
+namespace bevloc {
+
+inline constexpr int kCubicTaps = 4;
+
+/// Where a position between whole ones reads, and with which weights. Reproduces parabolas.
+struct CubicTaps {
+  int first;
+  std::array<float, kCubicTaps> weight;
+};
+
+inline CubicTaps cubic_taps(double position) {
+  const double whole = std::floor(position);
+  const double t = position - whole;
+  const double t2 = t * t;
+  const double t3 = t2 * t;
+  return {
+      static_cast<int>(whole) - 1,
+      {static_cast<float>(0.5 * (-t + 2.0 * t2 - t3)),
+       static_cast<float>(0.5 * (2.0 - 5.0 * t2 + 3.0 * t3)),
+       static_cast<float>(0.5 * (t + 4.0 * t2 - 3.0 * t3)), static_cast<float>(0.5 * (t3 - t2))}};
+}
+
+}  // namespace bevloc

@@ -1,0 +1,38 @@
+// The solver that all kinds share: standardise, match, refine, and say how far to trust it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "pipeline/solver/match_covariance.h"
+#include "pipeline/solver/matcher.h"
+#include "pipeline/solver/refinement.h"
+#include "pipeline/solver/solver.h"
+
+namespace bevloc {
+
+enum class Refine { kNo, kYes };
+
+class MatchingSolver final : public Solver {
+ public:
+  MatchingSolver(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses,
+                 const SolverParameters& parameters, std::unique_ptr<Matcher> matcher,
+                 Refine refine);
+
+  void solve(const FeatureView& bev, const FeatureView& map, SolverResult& result) override;
+
+ private:
+  Eigen::Matrix3d covariance(const SolverResult& result);
+
+  HypothesisGrid hypotheses_;
+  std::vector<float> bev_standardised_;
+  std::vector<float> map_standardised_;
+  CellFeatures bev_cells_;
+  CellFeatures map_cells_;
+  std::unique_ptr<Matcher> matcher_;
+  std::optional<Refinement> refinement_;
+  MatchCovariance match_covariance_;
+};
+
+}  // namespace bevloc

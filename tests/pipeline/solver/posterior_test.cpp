@@ -1,0 +1,46 @@
+#include "pipeline/solver/posterior.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace bevloc {
+namespace {
+
+constexpr HypothesisAxis kAxis{1.0, 0.25};
+
+std::vector<float> normal(double mean, double sigma) {
+  std::vector<double> scores;
+  for (int i = 0; i < kAxis.count(); ++i) {
+    scores.push_back(-0.5 * std::pow((kAxis.value(i) - mean) / sigma, 2));
+  }
+  std::vector<float> probability(scores.size());
+  softmax(scores, 1.0, probability);
+  return probability;
+}
+
+TEST(PosteriorTest, TheParabolaFindsTheTopOfANormalDistribution) {
+  for (const double mean : {-0.61, 0.0, 0.13, 0.7}) {
+    EXPECT_NEAR(parabola_top(normal(mean, 0.3), kAxis), mean, 1e-4);
+  }
+}
+
+TEST(PosteriorTest, TheParabolaStaysAtTheEndAndOnAPlateau) {
+  EXPECT_EQ(parabola_top(normal(3.0, 0.3), kAxis), 1.0);
+  const std::vector<float> flat(kAxis.count(), 1.0F / 9.0F);
+  EXPECT_TRUE(std::isfinite(parabola_top(flat, kAxis)));
+  std::vector<float> certain(kAxis.count(), 0.0F);
+  certain[3] = 1.0F;
+  EXPECT_NEAR(parabola_top(certain, kAxis), kAxis.value(3), 1e-9);
+}
+
+TEST(PosteriorTest, ARivalIsTheNextPeakNotTheNextHypothesis) {
+  EXPECT_EQ(rival_peak(normal(0.1, 0.3)), 0.0);
+  EXPECT_NEAR(rival_peak(std::vector<float>{0.1F, 0.4F, 0.1F, 0.1F, 0.3F}), 0.75, 1e-6);
+  EXPECT_NEAR(rival_peak(std::vector<float>{0.3F, 0.1F, 0.1F, 0.1F, 0.4F}), 0.75, 1e-6);
+  EXPECT_EQ(rival_peak(std::vector<float>{0.2F, 0.2F, 0.2F, 0.2F, 0.2F}), 0.0);
+  EXPECT_NEAR(rival_peak(std::vector<float>{0.4F, 0.1F, 0.4F, 0.1F}), 1.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace bevloc

@@ -1,0 +1,162 @@
+"""Parts of the solvers against plainer ways to the same numbers."""
+
+import dataclasses
+import unittest
+
+import torch
+import torch.nn.functional as F
+
+from tests.training.small_solver import SMALL, random_features, small_solvers
+from training.joint_volume import joint_volume
+from training.solver import DEFINITION, hypotheses, standardise
+from training.solvers.banded import banded_posterior, banded_scores
+from training.solvers.block import block_scores
+from training.solvers.cubic import cubic_weights
+from training.solvers.features import move
+from training.solvers.full import full_scores
+from training.solvers.full_fft import full_fft_scores
+from training.solvers.literal import gem
+from training.solvers.zncc import moved_zncc
+
+
+def standardised(seed, definition=SMALL):
+    generator = torch.Generator().manual_seed(seed)
+    shape = (2, 3, definition.rows, definition.cols)
+    sides = (torch.randn(shape, generator=generator, dtype=torch.float64) for _ in range(2))
+    return tuple(standardise(side, definition) for side in sides)
+
+
+class Hypotheses(unittest.TestCase):
+    def test_the_paper_has_21_by_11_by_21(self):
+        self.assertEqual([len(h) for h in DEFINITION.hypotheses()], [21, 11, 21])
+        torch.testing.assert_close(hypotheses(2.0, 0.4)[[0, 5, 10]].tolist(), [-2.0, 0.0, 2.0])
+
+    def test_sizes_follow_from_cells_and_ranges(self):
+        self.assertEqual((DEFINITION.crop_cells, DEFINITION.block_cells), (4, 5))
+        finer = dataclasses.replace(DEFINITION, rows=200, cols=100, cell_m=0.3)
+        self.assertEqual((finer.crop_cells, finer.block_cells), (7, 10))
+        self.assertEqual(finer.spectrum_pooling, 2)
+
+    def test_a_step_that_does_not_divide_its_range_may_lead_beyond_it(self):
+        uneven = dataclasses.replace(DEFINITION, x_range_m=1.5, x_step_m=1.0)
+        self.assertEqual(uneven.hypotheses()[0].tolist(), [-2.0, -1.0, 0.0, 1.0, 2.0])
+        self.assertEqual(uneven.shift_range, (4, 2))
+
+
+class Move(unittest.TestCase):
+    def test_whole_cells_shift_exactly_and_zeros_follow(self):
+        bev, _ = standardised(0)
+        correction = torch.tensor([[[0.6, -1.2, 0.0]]]).expand(2, 1, 3)
+        moved = move(bev, correction, 0.6)[:, :, 0]
+        expected = F.pad(bev, (2, 0, 0, 1))[:, :, 1:, :-2]
+        torch.testing.assert_close(moved, expected, atol=1e-6, rtol=0)
+
+    def test_margin_holds_what_left_the_grid(self):
+        bev, _ = standardised(1)
+        framed = move(bev, torch.zeros(2, 1, 3), 0.6, (3, 2))[:, :, 0]
+        torch.testing.assert_close(framed, F.pad(bev, (2, 2, 3, 3)), atol=1e-9, rtol=0)
+
+
+class Zncc(unittest.TestCase):
+    def test_equals_the_correlation_coefficient(self):
+        sides = random_features(3)
+        unmoved = torch.zeros(1, 1, 3)
+        found = moved_zncc(*sides, unmoved, 0.6)[:, 0]
+        for i, pair in enumerate(zip(*sides)):
+            expected = torch.corrcoef(torch.stack([side.flatten() for side in pair]))[0, 1]
+            self.assertAlmostEqual(found[i].item(), expected.item(), places=9)
+
+    def test_of_a_constant_side_is_zero(self):
+        _, features_map = random_features(3)
+        scores = moved_zncc(torch.zeros_like(features_map), features_map, torch.zeros(1, 1, 3), 0.6)
+        self.assertEqual(scores.abs().max().item(), 0.0)
+
+
+class FullFft(unittest.TestCase):
+    def test_equals_warping_where_nothing_turns(self):
+        for x_step_m, y_step_m in ((0.3, 0.4), (0.25, 0.1), (0.6, 0.2)):
+            definition = dataclasses.replace(
+                SMALL, x_step_m=x_step_m, y_step_m=y_step_m, yaw_range_rad=1e-9, yaw_step_rad=1e-9
+            )
+            sides = standardised(5)
+            torch.testing.assert_close(
+                full_fft_scores(*sides, definition),
+                full_scores(*sides, definition),
+                atol=1e-6,
+                rtol=0,
+            )
+
+
+class Block(unittest.TestCase):
+    def test_equals_the_run_time(self):
+        sides = standardised(6, DEFINITION)
+        found = block_scores(*sides)
+        expected = joint_volume(*(side.float() for side in sides))
+        torch.testing.assert_close(found.float(), expected, atol=2e-6, rtol=0)
+
+    def test_blocks_of_any_grid_correlate_every_cell_once(self):
+        uneven = dataclasses.replace(SMALL, rows=18, cols=11, x_range_m=0.6, x_step_m=0.6)
+        sides = standardised(7, uneven)
+        scores = block_scores(*sides, uneven)[:, 2, :, 1]  # no turn, no shift along y
+        for i, shift in enumerate((-1, 0, 1)):
+            moved = F.pad(sides[0], (0, 0, 1, 1))[:, :, 1 + shift : 19 + shift]
+            expected = (moved * sides[1]).mean((1, 2, 3))
+            torch.testing.assert_close(scores[:, i], expected, atol=1e-9, rtol=0)
+
+
+class Cubic(unittest.TestCase):
+    def test_reproduces_parabolas(self):
+        position = torch.tensor([2.0, 3.25, 5.5]).double()
+        samples = torch.arange(9).double()
+        for values, expected in ((samples**2, position**2), (samples, position)):
+            torch.testing.assert_close(cubic_weights(position, 9) @ values, expected)
+
+
+class Banded(unittest.TestCase):
+    def test_marginals_are_those_of_the_joint_distribution(self):
+        longitudinal, lateral = banded_scores(*standardised(8), SMALL)
+        solvers = small_solvers(scale=15.0)
+        found = banded_posterior(
+            longitudinal, lateral, solvers.scale("banded_x"), solvers.scale("banded_y")
+        )
+        logits = 15.0 * (longitudinal[:, :, :, None] + lateral[:, :, None, :])
+        joint = torch.softmax(logits.flatten(1), dim=1).reshape(logits.shape)
+        torch.testing.assert_close(found.x, joint.sum((1, 3)))
+        torch.testing.assert_close(found.y, joint.sum((1, 2)))
+        torch.testing.assert_close(found.yaw, joint.sum((2, 3)))
+
+
+class Gem(unittest.TestCase):
+    def test_exponents_reach_from_the_mean_towards_the_greatest(self):
+        values = torch.rand(4, 30, generator=torch.Generator().manual_seed(2)).double() + 0.01
+        for omega in (1.0, 3.0, 40.0):
+            found = gem(values, torch.tensor(omega).double(), 1, 1e-6)
+            torch.testing.assert_close(found, values.pow(omega).mean(1).pow(1 / omega))
+
+    def test_negative_values_count_as_the_least(self):
+        found = gem(torch.full((1, 5), -2.0), torch.tensor(12.0), 1, 1e-6)
+        self.assertAlmostEqual(found.item(), 1e-6, delta=1e-9)
+
+
+class Refinement(unittest.TestCase):
+    @torch.no_grad()
+    def test_axes_follow_each_other_in_the_order_y_yaw_x(self):
+        sides = standardised(9)
+        solvers = small_solvers()
+        start = torch.tensor([[0.1, 0.2, 0.01], [-0.2, 0.1, 0.0]]).double()
+        found = solvers.refine(*sides, start)
+        held = start.clone()
+        for axis in (1, 2, 0):
+            values = SMALL.hypotheses()[axis]
+            scores = []
+            for value in values:
+                held_at = held.clone()
+                held_at[:, axis] = value
+                scores.append(moved_zncc(*sides, held_at[:, None], SMALL.cell_m)[:, 0])
+            probability = torch.softmax(20.0 * torch.stack(scores, dim=1), dim=1)
+            torch.testing.assert_close(found.axes()[axis], probability)
+            held[:, axis] = probability @ values
+
+
+if __name__ == "__main__":
+    unittest.main()

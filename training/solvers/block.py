@@ -1,0 +1,94 @@
+"""Every hypothesis from correlations of blocks (the joint volume), of standardised features.
+
+B and M are F_B and F_M, zero outside. B is cut into blocks of 3 m (5 x 5 cells); blocks at the end
+of a grid that does not divide are smaller. For block b and whole shifts (m, n) in cells
+
+    K_b[m, n] = sum over channels c and cells (u, v) of b of B[c, u, v] M[c, u + m, v + n].
+
+Hypothesis (x, y, a) moves the block with centre p_b by d = R(a) p_b + t - p_b as a whole, that is
+by m = -d.x / 0.6 rows and n = -d.y / 0.6 columns, and
+
+    ZNCC(a, x, y) = sum over b of K_b(m, n) / (C * rows * cols),
+
+in the standardise-once form, with K_b read between whole shifts by cubic convolution along each
+axis (cubic.py). P = softmax(joint_scale * ZNCC) over all hypotheses; the marginals of P are the
+distributions of x, y and yaw; the estimates are their means.
+
+The paper's hypotheses in float32 are scored by the run time's own code
+(training/joint_volume.py, pipeline/solver/joint_volume.h), which is faster; all others here.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor
+
+from training.joint_volume import joint_volume
+from training.solvers.cubic import cubic_weights
+from training.solvers.definition import DEFINITION, SolverDefinition
+
+
+def block_scores(
+    bev: Tensor, features_map: Tensor, definition: SolverDefinition = DEFINITION
+) -> Tensor:
+    """ZNCC of every hypothesis, [batch, yaw, x, y]."""
+    if definition == DEFINITION and bev.dtype == torch.float32:
+        return joint_volume(bev, features_map, definition.block_cells)
+    row_weights, col_weights = _look_up(definition)
+    shifts = row_weights.shape[3], col_weights.shape[3]
+    correlation = _correlations(bev, features_map, definition.block_cells, shifts)
+    scores = [
+        torch.einsum("bkmn,kxm,kyn->bxy", correlation, rows.to(bev), cols.to(bev))
+        for rows, cols in zip(row_weights, col_weights)
+    ]
+    return torch.stack(scores, dim=1) / bev[0].numel()
+
+
+def _correlations(bev: Tensor, features_map: Tensor, size: int, shifts: tuple[int, int]) -> Tensor:
+    """K of every block at every whole shift, [batch, block, row shift, column shift]."""
+    batch, channels, rows, cols = bev.shape
+    # Cells that fill up the last blocks are zero, and add nothing.
+    fill = -rows % size, -cols % size
+    blocks = F.pad(bev, (0, fill[1], 0, fill[0])).unfold(2, size, size).unfold(3, size, size)
+    reach = shifts[0] // 2, shifts[1] // 2
+    padded = F.pad(features_map, (reach[1], reach[1] + fill[1], reach[0], reach[0] + fill[0]))
+    windows = padded.unfold(2, size + shifts[0] - 1, size).unfold(3, size + shifts[1] - 1, size)
+    blocks = blocks.permute(0, 2, 3, 1, 4, 5).flatten(0, 2)  # [batch * block, C, size, size]
+    windows = windows.permute(0, 2, 3, 1, 4, 5).flatten(0, 2)
+    correlation = F.conv2d(windows.flatten(0, 1)[None], blocks, groups=len(blocks))
+    return correlation.reshape(batch, -1, *shifts)
+
+
+@lru_cache(maxsize=4)
+def _look_up(definition: SolverDefinition) -> tuple[Tensor, Tensor]:
+    """How the hypotheses read K along its rows and its columns: [yaw, block, x, row shift] and
+    [yaw, block, y, column shift]."""
+    d = definition
+    x_m, y_m = torch.meshgrid(
+        _block_centres(d.rows, d.block_cells, d.cell_m),
+        _block_centres(d.cols, d.block_cells, d.cell_m),
+        indexing="ij",
+    )
+    x_m, y_m = x_m.flatten()[None], y_m.flatten()[None]
+    x, y, yaw = d.hypotheses()
+    cos, sin = torch.cos(yaw)[:, None], torch.sin(yaw)[:, None]
+    row = -(cos * x_m - sin * y_m - x_m)[..., None] / d.cell_m - x / d.cell_m
+    col = -(sin * x_m + cos * y_m - y_m)[..., None] / d.cell_m - y / d.cell_m
+    return _weights(row), _weights(col)
+
+
+def _block_centres(cells: int, size: int, cell_m: float) -> Tensor:
+    """From the vehicle, forwards or to the left."""
+    first = torch.arange(0, cells, size, dtype=torch.float64)
+    last = (first + size - 1).clamp(max=cells - 1)
+    return (0.5 * (cells - 1) - 0.5 * (first + last)) * cell_m
+
+
+def _weights(shift: Tensor) -> Tensor:
+    # Cubic convolution reads one whole shift before and two beyond.
+    reach = math.floor(shift.abs().max().item()) + 2
+    return cubic_weights(shift + reach, 2 * reach + 1)
