@@ -1,0 +1,136 @@
+#include "firmware/evaluation/solver_command.h"
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "firmware/evaluation/scale_tuning.h"
+#include "firmware/evaluation/solver_report.h"
+#include "sim/perception/matching_scene.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+/// Towns of one seed: as many as 200,000 scenes need.
+constexpr uint64_t kTownsPerSeed = 1ULL << 20U;
+constexpr uint64_t kSeeds = sim::kSceneSeedCount / kTownsPerSeed;
+
+/// A live line where somebody watches.
+void show_progress(int done, int all) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  constexpr int kWidth = 40;
+  fmt::print(stderr, "\r[{:<{}}] {}/{} scenes{}", std::string(kWidth * done / all, '='), kWidth,
+             done, all, done == all ? "\n" : "");
+}
+
+Status write_text(const std::string& text, const std::string& path) {
+  if (path.empty()) return {};
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  if (!file) return fail("{}: cannot be written", path);
+  return {};
+}
+
+}  // namespace
+
+void SolverCommand::declare_eval(CLI::App& eval) {
+  auto* solver = eval.add_subcommand("solver", "Every solver on made-up scenes, side by side");
+  const std::map<std::string, sim::CorruptionLevel> levels{{"clean", sim::CorruptionLevel::kClean},
+                                                           {"mild", sim::CorruptionLevel::kMild},
+                                                           {"paper", sim::CorruptionLevel::kPaper},
+                                                           {"hard", sim::CorruptionLevel::kHard}};
+  const std::map<std::string, Rows> rows{{"variants", Rows::kVariants},
+                                         {"table3", Rows::kTableThree},
+                                         {"table4", Rows::kTableFour},
+                                         {"all", Rows::kAll}};
+  solver->add_option("--scenes", scenes_, "How many scenes")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  solver->add_option("--seed", seed_, "Which scenes")
+      ->check(CLI::Range(uint64_t{0}, kSeeds - 1))
+      ->capture_default_str();
+  solver
+      ->add_option("--corruption", corruption_,
+                   "How badly the road is seen: clean, mild, paper or hard; \"paper\" has the IoU "
+                   "of the paper's Table II")
+      ->transform(CLI::CheckedTransformer(levels))
+      ->default_str("paper");
+  solver
+      ->add_option("--rows", rows_,
+                   "variants (every solver at 100x50x16), table3, table4 (the paper's) or all")
+      ->transform(CLI::CheckedTransformer(rows))
+      ->default_str("all");
+  solver->add_option("--json", json_file_, "Write the rows as JSON to this file");
+  solver->add_option("--csv", csv_file_, "Write the rows as CSV to this file");
+}
+
+void SolverCommand::declare_tune(CLI::App& tune) {
+  auto* solver = tune.add_subcommand(
+      "solver", "The softmax scales for hand-made features that `bevloc eval solver` uses");
+  solver->add_option("--scenes", scenes_, "How many tuning scenes")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  solver->callback([this] { tunes_ = true; });
+}
+
+Status SolverCommand::run() const {
+  return tunes_ ? tune() : evaluate();
+}
+
+std::vector<SolverCase> SolverCommand::cases() const {
+  std::vector<SolverCase> all;
+  const auto add = [&all](const std::vector<SolverCase>& more) {
+    for (const SolverCase& candidate : more) {
+      if (std::ranges::find(all, candidate) == all.end()) all.push_back(candidate);
+    }
+  };
+  if (rows_ == Rows::kVariants || rows_ == Rows::kAll) add(variant_cases());
+  if (rows_ == Rows::kTableThree || rows_ == Rows::kAll) add(table_three_cases());
+  if (rows_ == Rows::kTableFour || rows_ == Rows::kAll) add(table_four_cases());
+  return all;
+}
+
+Status SolverCommand::evaluate() const {
+  EvaluationOptions options;
+  options.seed_base = sim::kEvaluationSeedBase + seed_ * kTownsPerSeed;
+  options.scenes = scenes_;
+  options.corruption = corruption_;
+  const std::vector<SolverCase> all = cases();
+  std::vector<SolverParameters> parameters;
+  std::ranges::transform(all, std::back_inserter(parameters), hand_made_parameters);
+  const auto results = evaluate_solvers(all, parameters, options,
+                                        [this](int done) { show_progress(done, scenes_); });
+  if (!results) return tl::unexpected(results.error());
+  fmt::print("{} scenes, corruption {}, seed {}\n\n{}\n{}\n", scenes_, sim::name(corruption_),
+             seed_, accuracy_table(*results), cost_table(*results));
+  for (const CaseResult& result : *results) {
+    if (result.solver_case == SolverCase{}) {
+      fmt::print("{} by road\n{}\n", name_of(result.solver_case.solver), road_table(result));
+    }
+  }
+  fmt::print("{}", paper_comparison(*results));
+  if (Status status = write_text(to_json(*results, options, seed_), json_file_); !status) {
+    return status;
+  }
+  return write_text(to_csv(*results), csv_file_);
+}
+
+Status SolverCommand::tune() const {
+  EvaluationOptions options;
+  options.seed_base = sim::kTuningSeedBase;
+  options.scenes = scenes_;
+  for (const SolverCase& solver_case : cases()) {
+    const auto tuned = tune_scales(solver_case, options);
+    if (!tuned) return tl::unexpected(tuned.error());
+    fmt::print("{:24} {:>7} {:>2} {:.1f}: {}\n", name_of(solver_case.solver),
+               size_name(solver_case.grid), solver_case.channels, solver_case.step_m,
+               describe(*tuned));
+  }
+  return {};
+}
+
+}  // namespace bevloc::evaluation
