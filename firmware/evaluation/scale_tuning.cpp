@@ -9,9 +9,9 @@
 namespace bevloc::evaluation {
 namespace {
 
-constexpr float kFirstScale = 6.0F;
-constexpr float kScaleRatio = 1.35F;
-constexpr size_t kScales = 14;
+constexpr float kFirstScale = 12.0F;
+constexpr float kScaleRatio = 1.4F;
+constexpr size_t kScales = 13;
 
 std::vector<float> candidate_scales() {
   std::vector<float> scales;
@@ -23,8 +23,13 @@ std::vector<float> candidate_scales() {
 
 SolverParameters with_all_scales(const SolverCase& solver_case, float scale) {
   SolverParameters parameters = hand_made_parameters(solver_case);
+  if (is_refined(solver_case.solver)) {
+    parameters.refine_x_scale = scale;
+    parameters.refine_y_scale = scale;
+    parameters.refine_yaw_scale = scale;
+    return parameters;
+  }
   parameters.joint_scale = scale;
-  if (is_refined(solver_case.solver)) return parameters;
   parameters.x_scale = scale;
   parameters.y_scale = scale;
   parameters.yaw_scale = scale;
@@ -49,18 +54,28 @@ Result<SolverParameters> tune_scales(const SolverCase& solver_case,
     return scales[std::ranges::min_element(nll, {}, cost) - nll.begin()];
   };
   SolverParameters tuned = hand_made_parameters(solver_case);
-  tuned.joint_scale = best([](const PerAxis& n) { return n[0] + n[1] + n[2]; });
-  if (is_refined(solver_case.solver)) return tuned;
-  tuned.x_scale = tuned.banded_x_scale = best([](const PerAxis& n) { return n[0]; });
-  tuned.y_scale = tuned.banded_y_scale = best([](const PerAxis& n) { return n[1]; });
-  tuned.yaw_scale = best([](const PerAxis& n) { return n[2]; });
+  const float joint = best([](const PerAxis& n) { return n[0] + n[1] + n[2]; });
+  const float x = best([](const PerAxis& n) { return n[0]; });
+  const float y = best([](const PerAxis& n) { return n[1]; });
+  const float yaw = best([](const PerAxis& n) { return n[2]; });
+  if (is_refined(solver_case.solver)) {
+    tuned.refine_x_scale = x;
+    tuned.refine_y_scale = y;
+    tuned.refine_yaw_scale = yaw;
+    return tuned;
+  }
+  tuned.joint_scale = joint;
+  tuned.x_scale = tuned.banded_x_scale = x;
+  tuned.y_scale = tuned.banded_y_scale = y;
+  tuned.yaw_scale = yaw;
   return tuned;
 }
 
 std::string describe(const SolverParameters& parameters) {
-  return fmt::format("joint {:.0f}, x {:.0f}, y {:.0f}, yaw {:.1f}, banded {:.0f} {:.0f}",
-                     parameters.joint_scale, parameters.x_scale, parameters.y_scale,
-                     parameters.yaw_scale, parameters.banded_x_scale, parameters.banded_y_scale);
+  const SolverParameters& p = parameters;
+  return fmt::format("joint {:.0f}, axes {:.0f} {:.0f} {:.0f}, refine {:.0f} {:.0f} {:.0f}",
+                     p.joint_scale, p.x_scale, p.y_scale, p.yaw_scale, p.refine_x_scale,
+                     p.refine_y_scale, p.refine_yaw_scale);
 }
 
 }  // namespace bevloc::evaluation

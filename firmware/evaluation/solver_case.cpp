@@ -7,6 +7,34 @@
 #include <fmt/format.h>
 
 namespace bevloc::evaluation {
+namespace {
+
+struct AxisScales {
+  float x = 0.0F;
+  float y = 0.0F;
+  float yaw = 0.0F;
+};
+
+struct HandMadeScales {
+  int channels;
+  int rows;
+  float full;
+  float block;
+  AxisScales refine;
+  AxisScales decoupled;
+  AxisScales literal;
+  AxisScales banded;  ///< has no scale of yaw
+};
+
+constexpr std::array<HandMadeScales, 5> kHandMadeScales{{
+    {16, 100, 170, 200, {110, 300, 250}, {55, 120, 110}, {55, 60, 70}, {130, 200}},
+    {3, 100, 170, 200, {110, 300, 250}, {55, 120, 110}, {55, 60, 70}, {130, 200}},
+    {4, 100, 170, 200, {110, 300, 250}, {55, 120, 110}, {55, 60, 70}, {130, 200}},
+    {64, 100, 170, 200, {110, 300, 250}, {55, 120, 110}, {55, 60, 70}, {130, 200}},
+    {16, 400, 170, 200, {110, 300, 250}, {55, 120, 110}, {55, 60, 70}, {130, 200}},
+}};
+
+}  // namespace
 
 HypothesisGrid SolverCase::hypotheses() const {
   HypothesisGrid hypotheses;
@@ -57,9 +85,25 @@ std::vector<SolverCase> table_four_cases() {
   return cases;
 }
 
-SolverParameters hand_made_parameters(const SolverCase&) {
-  SolverParameters parameters;
-  return parameters;
+SolverParameters hand_made_parameters(const SolverCase& solver_case) {
+  const auto found = std::ranges::find_if(kHandMadeScales, [&](const HandMadeScales& scales) {
+    return scales.channels == solver_case.channels && scales.rows == solver_case.grid.rows;
+  });
+  const HandMadeScales& scales = found != kHandMadeScales.end() ? *found : kHandMadeScales.front();
+  const bool literal = solver_case.solver == SolverKind::kDecoupledLiteral ||
+                       solver_case.solver == SolverKind::kDecoupledLiteralRefined;
+  const AxisScales& axes = literal ? scales.literal : scales.decoupled;
+  const bool block =
+      solver_case.solver == SolverKind::kBlock || solver_case.solver == SolverKind::kBlockRefined;
+  return {.joint_scale = block ? scales.block : scales.full,
+          .x_scale = axes.x,
+          .y_scale = axes.y,
+          .yaw_scale = axes.yaw,
+          .refine_x_scale = scales.refine.x,
+          .refine_y_scale = scales.refine.y,
+          .refine_yaw_scale = scales.refine.yaw,
+          .banded_x_scale = scales.banded.x,
+          .banded_y_scale = scales.banded.y};
 }
 
 }  // namespace bevloc::evaluation

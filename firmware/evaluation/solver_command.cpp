@@ -129,6 +129,7 @@ Status SolverCommand::tune() const {
     fmt::print("{:24} {:>7} {:>2} {:.1f}: {}\n", name_of(solver_case.solver),
                size_name(solver_case.grid), solver_case.channels, solver_case.step_m,
                describe(*tuned));
+    std::fflush(stdout);
   }
   return {};
 }

@@ -19,7 +19,7 @@ struct Outcome {
   PerAxis parabola_error{};  ///< of the parabola's estimate
   PerAxis sigma{};           ///< that the solver claimed
   PerAxis nll{};             ///< -log of the probability at the truth, read between hypotheses
-  double time_ms = 0.0;      ///< of the processor
+  double time_ms = 0.0;      ///< of one thread of the processor, caches warm
 };
 
 Outcome judge(const SolverResult& result, const HypothesisGrid& hypotheses, const Se2& truth);

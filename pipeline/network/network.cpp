@@ -90,6 +90,10 @@ float positive_number(const nn::Graph& graph, const std::string& key) {
   return number;
 }
 
+float positive_number_or(const nn::Graph& graph, const std::string& key, float otherwise) {
+  return graph.metadata.contains(key) ? positive_number(graph, key) : otherwise;
+}
+
 SolverParameters read_solver_parameters(const nn::Graph& graph) {
   SolverParameters parameters;
   parameters.joint_scale = positive_number(graph, "bevloc.solver.joint_scale");
@@ -97,6 +101,15 @@ SolverParameters read_solver_parameters(const nn::Graph& graph) {
   parameters.y_scale = positive_number(graph, "bevloc.solver.y_scale");
   parameters.yaw_scale = positive_number(graph, "bevloc.solver.yaw_scale");
   parameters.gem_omega = positive_number(graph, "bevloc.solver.gem_omega");
+  const float joint = parameters.joint_scale;
+  for (const auto& [name, value] : {std::pair("refine_x_scale", &parameters.refine_x_scale),
+                                    std::pair("refine_y_scale", &parameters.refine_y_scale),
+                                    std::pair("refine_yaw_scale", &parameters.refine_yaw_scale),
+                                    std::pair("banded_x_scale", &parameters.banded_x_scale),
+                                    std::pair("banded_y_scale", &parameters.banded_y_scale)}) {
+    *value = positive_number_or(graph, std::string("bevloc.solver.") + name, joint);
+  }
+  parameters.sigma_scale = positive_number_or(graph, "bevloc.solver.sigma_scale", 1.0F);
   return parameters;
 }
 

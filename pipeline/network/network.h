@@ -33,7 +33,7 @@ struct NetworkOptions {
 ///
 /// int8 where it holds QuantizeLinear and DequantizeLinear (zero points 0, weights per channel),
 /// float elsewhere. Its metadata hold bevloc.solver.{joint_scale, x_scale, y_scale, yaw_scale,
-/// gem_omega}.
+/// gem_omega}, and may hold {refine,banded}_..._scale (else joint_scale) and sigma_scale (else 1).
 ///
 /// All buffers are made at load; nothing allocates, throws or locks afterwards (oneDNN itself makes
 /// a small argument table for each primitive). Not thread safe.

@@ -115,10 +115,15 @@ void AmplitudeSpectrum::transform_column(const CellFeatures& first, const CellFe
 }
 
 void AmplitudeSpectrum::transform_row(int row_frequency, FftTile& tile) {
+  const bool half = row_fft_.can_halve() && 2 * grid_.cols <= cols();
   const float* row =
       half_done_.data() + static_cast<std::ptrdiff_t>(row_frequency) * 2 * grid_.cols * kLanes;
-  load_row(row, grid_.cols, cols(), tile);
-  row_fft_.transform(tile);
+  load_row(row, grid_.cols, half ? cols() / 2 : cols(), tile);
+  if (half) {
+    row_fft_.transform_half(tile);
+  } else {
+    row_fft_.transform(tile);
+  }
 }
 
 void AmplitudeSpectrum::store_amplitudes(int row_frequency, const FftTile& own,

@@ -82,6 +82,26 @@ BEVLOC_TARGET_CLONES void radix4(const Pass& pass) {
   }
 }
 
+/// The first pass over samples of which the second half is zero and never read.
+BEVLOC_TARGET_CLONES void radix4_of_half(const Pass& pass) {
+  const std::ptrdiff_t in_step = static_cast<std::ptrdiff_t>(pass.groups) * kLanes;
+  for (int p = 0; p < pass.groups; ++p) {
+    const float* w = pass.twiddles + 6 * p;
+    const float* re = pass.in_re + static_cast<std::ptrdiff_t>(p) * kLanes;
+    const float* im = pass.in_im + static_cast<std::ptrdiff_t>(p) * kLanes;
+    const std::ptrdiff_t out = 4 * p * pass.out_sample;
+    const Lanes& a_re = lanes(re);
+    const Lanes& a_im = lanes(im);
+    const Lanes& b_re = lanes(re + in_step);
+    const Lanes& b_im = lanes(im + in_step);
+    lanes(pass.out_re + out) = a_re + b_re;
+    lanes(pass.out_im + out) = a_im + b_im;
+    store_turned(pass, out + pass.out_sample, {a_re + b_im, a_im - b_re}, w[0], w[1]);
+    store_turned(pass, out + 2 * pass.out_sample, {a_re - b_re, a_im - b_im}, w[2], w[3]);
+    store_turned(pass, out + 3 * pass.out_sample, {a_re - b_im, a_im + b_re}, w[4], w[5]);
+  }
+}
+
 /// cos and sin of a fifth and two fifths of a turn.
 constexpr float kCos1 = 0.309016994374947424F;
 constexpr float kCos2 = -0.809016994374947424F;
@@ -123,6 +143,23 @@ BEVLOC_TARGET_CLONES void radix5(const Pass& pass) {
   }
 }
 
+template <typename Stage>
+Pass pass_of(const Stage& stage, const FftTile& in, float* re, float* im,
+             std::ptrdiff_t sample_stride) {
+  return {in.re.data(),          in.im.data(), re,           im,
+          stage.twiddles.data(), stage.groups, stage.stride, sample_stride};
+}
+
+void run(const Pass& pass, int radix) {
+  if (radix == 4) {
+    radix4(pass);
+  } else if (radix == 2) {
+    radix2(pass);
+  } else {
+    radix5(pass);
+  }
+}
+
 }  // namespace
 
 bool LanesFft::supports(int length) {
@@ -161,7 +198,18 @@ LanesFft::LanesFft(int length) : length_(length), scratch_(length) {
 void LanesFft::transform(FftTile& tile) {
   assert(tile.re.size() == scratch_.re.size());
   for (const Stage& stage : stages_) {
-    run(stage, tile, scratch_.re.data(), scratch_.im.data(), kLanes);
+    run(pass_of(stage, tile, scratch_.re.data(), scratch_.im.data(), kLanes), stage.radix);
+    std::swap(tile, scratch_);
+  }
+}
+
+void LanesFft::transform_half(FftTile& tile) {
+  assert(can_halve() && tile.re.size() == scratch_.re.size());
+  radix4_of_half(pass_of(stages_[0], tile, scratch_.re.data(), scratch_.im.data(), kLanes));
+  std::swap(tile, scratch_);
+  for (size_t i = 1; i < stages_.size(); ++i) {
+    run(pass_of(stages_[i], tile, scratch_.re.data(), scratch_.im.data(), kLanes),
+        stages_[i].radix);
     std::swap(tile, scratch_);
   }
 }
@@ -169,23 +217,11 @@ void LanesFft::transform(FftTile& tile) {
 void LanesFft::transform_to(FftTile& tile, float* re, float* im, std::ptrdiff_t sample_stride) {
   assert(tile.re.size() == scratch_.re.size() && !stages_.empty());
   for (size_t i = 0; i + 1 < stages_.size(); ++i) {
-    run(stages_[i], tile, scratch_.re.data(), scratch_.im.data(), kLanes);
+    run(pass_of(stages_[i], tile, scratch_.re.data(), scratch_.im.data(), kLanes),
+        stages_[i].radix);
     std::swap(tile, scratch_);
   }
-  run(stages_.back(), tile, re, im, sample_stride);
-}
-
-void LanesFft::run(const Stage& stage, const FftTile& in, float* re, float* im,
-                   std::ptrdiff_t sample_stride) {
-  const Pass pass{in.re.data(),          in.im.data(), re,           im,
-                  stage.twiddles.data(), stage.groups, stage.stride, sample_stride};
-  if (stage.radix == 4) {
-    radix4(pass);
-  } else if (stage.radix == 2) {
-    radix2(pass);
-  } else {
-    radix5(pass);
-  }
+  run(pass_of(stages_.back(), tile, re, im, sample_stride), stages_.back().radix);
 }
 
 }  // namespace bevloc

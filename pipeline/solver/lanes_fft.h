@@ -34,6 +34,11 @@ class LanesFft {
   /// In place. The tile must have this length.
   void transform(FftTile& tile);
 
+  /// The same where the second half of the samples is zero: it is not read. For lengths that
+  /// can_halve().
+  void transform_half(FftTile& tile);
+  bool can_halve() const { return length_ % 4 == 0; }
+
   /// The same into other memory, sample k of all lanes at k * sample_stride; `tile` is used up. For
   /// lengths above 1.
   void transform_to(FftTile& tile, float* re, float* im, std::ptrdiff_t sample_stride);
@@ -47,9 +52,6 @@ class LanesFft {
     /// For each group the factors of outputs 1 ... radix - 1, real and imaginary.
     std::vector<float> twiddles;
   };
-
-  static void run(const Stage& stage, const FftTile& in, float* re, float* im,
-                  std::ptrdiff_t sample_stride);
 
   int length_;
   std::vector<Stage> stages_;

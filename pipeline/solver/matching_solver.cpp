@@ -1,16 +1,30 @@
 #include "pipeline/solver/matching_solver.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include <Eigen/LU>
 
 #include "pipeline/solver/posterior.h"
 #include "pipeline/solver/standardise.h"
 
 namespace bevloc {
+namespace {
+
+// How the two deviations are joined. Found on tuning scenes (docs/solver.md).
+constexpr double kClaimedWeight = 0.4;
+/// What is hardly seen is as likely anywhere: 1 sigma that covers two thirds of that is more than
+/// its deviation.
+constexpr double kUnseenGrowth = 0.5;
+
+}  // namespace
 
 MatchingSolver::MatchingSolver(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses,
                                const SolverParameters& parameters, std::unique_ptr<Matcher> matcher,
                                Refine refine)
     : hypotheses_(hypotheses),
+      sigma_scale_(parameters.sigma_scale),
       bev_standardised_(static_cast<size_t>(channels) * grid.cells()),
       map_standardised_(bev_standardised_.size()),
       bev_cells_(grid, channels, hypotheses),
@@ -42,19 +56,38 @@ void MatchingSolver::solve(const FeatureView& bev, const FeatureView& map, Solve
   result.evidence = Evidence::kGood;
 }
 
-/// The larger, per axis, of the distribution's variance and of what MatchCovariance can vouch for,
-/// with the latter's correlations.
 Eigen::Matrix3d MatchingSolver::covariance(const SolverResult& result) {
   const Eigen::Matrix3d vouched =
       match_covariance_.estimate(bev_cells_, map_cells_, result.correction);
-  const Eigen::Vector3d claimed(posterior_variance(result.x_probability, hypotheses_.x_m),
-                                posterior_variance(result.y_probability, hypotheses_.y_m),
-                                posterior_variance(result.yaw_probability, hypotheses_.yaw_rad));
-  const Eigen::Vector3d growth =
-      (claimed.cwiseMax(vouched.diagonal()).cwiseQuotient(vouched.diagonal())).cwiseSqrt();
+  const Eigen::Vector3d uniform = uniform_variance(hypotheses_).cwiseSqrt();
+  const Eigen::Vector3d vouched_sigma = vouched.diagonal().cwiseSqrt();
+  const Eigen::Vector3d claimed_sigma = claimed_deviations(result, vouched).cwiseMin(uniform);
+  Eigen::Vector3d sigma;
+  for (int i = 0; i < 3; ++i) {
+    const double unseen = std::min(1.0, std::max(claimed_sigma(i), vouched_sigma(i)) / uniform(i));
+    sigma(i) = sigma_scale_ * std::pow(claimed_sigma(i), kClaimedWeight) *
+               std::pow(vouched_sigma(i), 1.0 - kClaimedWeight) *
+               (1.0 + kUnseenGrowth * unseen * unseen);
+  }
+  const Eigen::Vector3d growth = sigma.cwiseQuotient(vouched_sigma);
   Eigen::Matrix3d covariance = growth.asDiagonal() * vouched * growth.asDiagonal();
   covariance.diagonal() += least_variance(hypotheses_);
   return covariance;
+}
+
+/// Deviations of the distributions. The refinement's are each along one axis with the others held
+/// fixed: the coupling of the axes, as MatchCovariance has it, widens them to what they would be
+/// with the others free.
+Eigen::Vector3d MatchingSolver::claimed_deviations(const SolverResult& result,
+                                                   const Eigen::Matrix3d& vouched) const {
+  Eigen::Vector3d variance(posterior_variance(result.x_probability, hypotheses_.x_m),
+                           posterior_variance(result.y_probability, hypotheses_.y_m),
+                           posterior_variance(result.yaw_probability, hypotheses_.yaw_rad));
+  variance = variance.cwiseMax(0.0) + least_variance(hypotheses_);
+  if (refinement_) {
+    variance = variance.cwiseProduct(vouched.diagonal().cwiseProduct(vouched.inverse().diagonal()));
+  }
+  return variance.cwiseSqrt();
 }
 
 }  // namespace bevloc

@@ -14,6 +14,9 @@ namespace bevloc {
 
 enum class Refine { kNo, kYes };
 
+/// The covariance joins two deviations per axis, that of the distribution (which knows of rivals
+/// and of the score's shape) and that of MatchCovariance (which knows how much there is to see), as
+/// a weighted geometric mean, with MatchCovariance's correlations.
 class MatchingSolver final : public Solver {
  public:
   MatchingSolver(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses,
@@ -24,8 +27,11 @@ class MatchingSolver final : public Solver {
 
  private:
   Eigen::Matrix3d covariance(const SolverResult& result);
+  Eigen::Vector3d claimed_deviations(const SolverResult& result,
+                                     const Eigen::Matrix3d& vouched) const;
 
   HypothesisGrid hypotheses_;
+  double sigma_scale_;
   std::vector<float> bev_standardised_;
   std::vector<float> map_standardised_;
   CellFeatures bev_cells_;

@@ -9,7 +9,7 @@ namespace bevloc {
 Refinement::Refinement(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses,
                        const SolverParameters& parameters)
     : hypotheses_(hypotheses),
-      scale_(parameters.joint_scale),
+      parameters_(parameters),
       cell_m_(grid.cell_m),
       x_plan_(hypotheses.x_m, grid.cell_m),
       y_plan_(hypotheses.y_m, grid.cell_m),
@@ -23,7 +23,7 @@ void Refinement::refine(const MatchSide& bev, const MatchSide& map, SolverResult
   scorer_.set_features(bev.cells, map.cells);
   x_fixed_.set_shift(correction.x_m / cell_m_);
   scorer_.score(correction.yaw_rad, x_fixed_, y_plan_, y_scores_);
-  softmax(y_scores_, scale_, result.y_probability);
+  softmax(y_scores_, parameters_.refine_y_scale, result.y_probability);
   correction.y_m = posterior_mean(result.y_probability, hypotheses_.y_m);
 
   y_fixed_.set_shift(correction.y_m / cell_m_);
@@ -31,11 +31,11 @@ void Refinement::refine(const MatchSide& bev, const MatchSide& map, SolverResult
     scorer_.score(hypotheses_.yaw_rad.value(k), x_fixed_, y_fixed_,
                   std::span(yaw_scores_).subspan(k, 1));
   }
-  softmax(yaw_scores_, scale_, result.yaw_probability);
+  softmax(yaw_scores_, parameters_.refine_yaw_scale, result.yaw_probability);
   correction.yaw_rad = posterior_mean(result.yaw_probability, hypotheses_.yaw_rad);
 
   scorer_.score(correction.yaw_rad, x_plan_, y_fixed_, x_scores_);
-  softmax(x_scores_, scale_, result.x_probability);
+  softmax(x_scores_, parameters_.refine_x_scale, result.x_probability);
   correction.x_m = posterior_mean(result.x_probability, hypotheses_.x_m);
 }
 

@@ -20,7 +20,7 @@ class Refinement {
 
  private:
   HypothesisGrid hypotheses_;
-  double scale_;
+  SolverParameters parameters_;
   double cell_m_;
   ShiftPlan x_plan_;
   ShiftPlan y_plan_;

@@ -76,8 +76,12 @@ struct SolverParameters {
   float x_scale = 100.0F;         ///< of the longitudinal axis ZNCC
   float y_scale = 100.0F;         ///< of the lateral axis ZNCC
   float yaw_scale = 100.0F;       ///< of the yaw features' -MSE
+  float refine_x_scale = 100.0F;  ///< of the refinement's ZNCC along each axis
+  float refine_y_scale = 100.0F;
+  float refine_yaw_scale = 100.0F;
   float banded_x_scale = 100.0F;  ///< of the longitudinal bands' correlation
   float banded_y_scale = 100.0F;  ///< of the lateral bands' correlation
+  float sigma_scale = 1.0F;       ///< of the claimed deviations: features err in ways of their own
   float gem_omega = 1.0F;         ///< GeM exponent of the axis features (eq. 12)
 };
 

@@ -52,6 +52,10 @@ Status check_parameters(SolverKind kind, const SolverParameters& parameters) {
   for (const auto& [name, value] :
        {std::pair("joint_scale", parameters.joint_scale), std::pair("x_scale", parameters.x_scale),
         std::pair("y_scale", parameters.y_scale), std::pair("yaw_scale", parameters.yaw_scale),
+        std::pair("refine_x_scale", parameters.refine_x_scale),
+        std::pair("refine_y_scale", parameters.refine_y_scale),
+        std::pair("refine_yaw_scale", parameters.refine_yaw_scale),
+        std::pair("sigma_scale", parameters.sigma_scale),
         std::pair("banded_x_scale", parameters.banded_x_scale),
         std::pair("banded_y_scale", parameters.banded_y_scale),
         std::pair("gem_omega", parameters.gem_omega)}) {

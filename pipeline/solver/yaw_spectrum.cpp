@@ -47,6 +47,20 @@ BEVLOC_TARGET_CLONES float dot(const float* a, const float* b, int count) {
   return sum_of((sums[0] + sums[1]) + (sums[2] + sums[3]));
 }
 
+/// Shifts whose correlations are summed side by side.
+constexpr int kGroup = 4;
+
+/// out[k] += sum of a[i] * b[i - k * step], for a group of shifts.
+BEVLOC_TARGET_CLONES void dot_group(const float* a, const float* b, std::ptrdiff_t step, int count,
+                                    double* out) {
+  Lanes sums[kGroup] = {};
+  for (int i = 0; i < count; i += kLanes) {
+    const Lanes& value = lanes(a + i);
+    for (int k = 0; k < kGroup; ++k) sums[k] += value * lanes(b + i - k * step);
+  }
+  for (int k = 0; k < kGroup; ++k) out[k] += sum_of(sums[k]);
+}
+
 /// Sum of the amplitudes that `count` taps read, for all lanes of each of `outputs` outputs.
 BEVLOC_TARGET_CLONES void gather(const float* amplitude, const YawTap* tap, int taps, int outputs,
                                  int lane_count, float* out) {
@@ -93,10 +107,12 @@ bool YawSpectrum::covers(const BevGrid& grid) {
 YawSpectrum::YawSpectrum(const BevGrid& grid, int channels, const HypothesisAxis& yaw_rad)
     : yaw_rad_(yaw_rad),
       channels_(channels),
-      margin_(static_cast<int>(std::ceil(yaw_rad.farthest() / kAngleStep_rad)) + 2),
+      reach_(static_cast<int>(std::ceil(yaw_rad.farthest() / kAngleStep_rad - kWholeTolerance)) +
+             1),
+      margin_(reach_ + kGroup),
       spectrum_(grid_of(grid), channels, kSpectrumSize, kSpectrumSize, Window::kHann,
                 farthest_bin(grid_of(grid))),
-      correlations_(2 * margin_ + 1) {
+      correlations_(2 * reach_ + 1 + kGroup) {
   assert(covers(grid) && margin_ < kAngles);
   if (grid_of(grid).rows != grid.rows) {
     pooled_.emplace(Pooled{{grid_of(grid), channels}, {grid_of(grid), channels}});
@@ -160,15 +176,16 @@ void YawSpectrum::read_signature(std::span<const float> amplitude, LaneBuffer& s
   }
 }
 
-/// Sum of Y_map[i] Y_bev[i - shift].
-double YawSpectrum::correlate(int shift) {
+/// Sums of Y_map[i] Y_bev[i - shift] for all shifts that hypotheses read, a group at a time.
+void YawSpectrum::correlate() {
   const int lane_count = spectrum_.lanes();
-  double sum = 0.0;
-  for (int b = 0; b < kBands; ++b) {
-    sum += dot(band(map_signature_, b), band(bev_signature_, b) - shift * lane_count,
-               kAngles * lane_count);
+  std::ranges::fill(correlations_, 0.0);
+  for (int first = 0; first < 2 * reach_ + 1; first += kGroup) {
+    for (int b = 0; b < kBands; ++b) {
+      dot_group(band(map_signature_, b), band(bev_signature_, b) - (first - reach_) * lane_count,
+                lane_count, kAngles * lane_count, correlations_.data() + first);
+    }
   }
-  return sum;
 }
 
 /// |M - (1 - w) B_n - w B_(n + 1)|^2, expanded: a few correlations at whole shifts serve all
@@ -176,10 +193,7 @@ double YawSpectrum::correlate(int shift) {
 void YawSpectrum::score(const CellFeatures& bev, const CellFeatures& map,
                         std::span<double> scores) {
   compute_signatures(bev, map);
-  const int farthest = static_cast<int>(std::ceil(yaw_rad_.farthest() / kAngleStep_rad)) + 1;
-  for (int shift = -farthest; shift <= farthest; ++shift) {
-    correlations_[shift + margin_] = correlate(shift);
-  }
+  correlate();
   double map_square = 0.0;
   double bev_square = 0.0;
   double bev_neighbours = 0.0;
@@ -196,7 +210,7 @@ void YawSpectrum::score(const CellFeatures& bev, const CellFeatures& map,
     const int whole = static_cast<int>(std::floor(shift + kWholeTolerance));
     const double w = std::max(shift - whole, 0.0);
     const double product =
-        (1.0 - w) * correlations_[whole + margin_] + w * correlations_[whole + 1 + margin_];
+        (1.0 - w) * correlations_[whole + reach_] + w * correlations_[whole + 1 + reach_];
     const double square =
         ((1.0 - w) * (1.0 - w) + w * w) * bev_square + 2.0 * w * (1.0 - w) * bev_neighbours;
     scores[k] = (2.0 * product - map_square - square) / count;

@@ -51,18 +51,19 @@ class YawSpectrum {
   void compute_signatures(const CellFeatures& bev, const CellFeatures& map);
   void read_signature(std::span<const float> amplitude, LaneBuffer& signature) const;
   float* band(LaneBuffer& signature, int index) const;
-  double correlate(int shift);
+  void correlate();
 
   HypothesisAxis yaw_rad_;
   int channels_;
-  int margin_;                    ///< angles by which a hypothesis can shift a signature
+  int reach_;                     ///< angles by which a hypothesis can shift a signature
+  int margin_;                    ///< and what is read beside it
   std::optional<Pooled> pooled_;  ///< for cells finer than kCell_m
   AmplitudeSpectrum spectrum_;
   std::vector<YawTap> taps_;  ///< [band, angle, radius, 4]: bilinear interpolation
   /// [band, margin + angle + margin, lanes]; the margins repeat the other end.
   LaneBuffer bev_signature_;
   LaneBuffer map_signature_;
-  std::vector<double> correlations_;  ///< by shift, -margin_ ... margin_
+  std::vector<double> correlations_;  ///< by shift, from -reach_
 };
 
 }  // namespace bevloc

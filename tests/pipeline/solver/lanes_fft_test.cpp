@@ -43,6 +43,27 @@ TEST_P(LanesFftTest, AgreesWithTheSumThatDefinesIt) {
   }
 }
 
+TEST(LanesFft, NeedsNotReadASecondHalfOfZeros) {
+  for (const int length : {8, 20, 64, 128}) {
+    std::mt19937 random(3);
+    std::normal_distribution<float> normal;
+    FftTile tile(length);
+    for (int i = 0; i < length / 2 * kLanes; ++i) {
+      tile.re[i] = normal(random);
+      tile.im[i] = normal(random);
+    }
+    FftTile with_garbage = tile;
+    for (int i = length / 2 * kLanes; i < length * kLanes; ++i) with_garbage.re[i] = 1e9F;
+    LanesFft fft(length);
+    fft.transform(tile);
+    fft.transform_half(with_garbage);
+    for (int i = 0; i < length * kLanes; ++i) {
+      EXPECT_NEAR(with_garbage.re[i], tile.re[i], 1e-5F);
+      EXPECT_NEAR(with_garbage.im[i], tile.im[i], 1e-5F);
+    }
+  }
+}
+
 TEST(LanesFft, WritesItsResultWhereItIsWanted) {
   constexpr int kLength = 40;
   constexpr int kStride = 3 * kLanes;

@@ -24,6 +24,9 @@ std::unique_ptr<Solver> make(SolverKind kind, float scale = 300.0F) {
   parameters.x_scale = scale;
   parameters.y_scale = scale;
   parameters.yaw_scale = scale;
+  parameters.refine_x_scale = scale;
+  parameters.refine_y_scale = scale;
+  parameters.refine_yaw_scale = scale;
   parameters.banded_x_scale = scale;
   parameters.banded_y_scale = scale;
   return make_solver(kind, kGrid, kChannels, HypothesisGrid{}, parameters).value();
