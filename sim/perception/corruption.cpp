@@ -57,7 +57,7 @@ constexpr Perception kMild{.confidence = {3.52, 3.74, 3.64},
                            .softness = {0.10, 0.25},
                            .false_per_line = 0.15,
                            .noise = 0.02};
-constexpr Perception kPaper{.confidence = {4.04, 4.24, 4.33},
+constexpr Perception kPaper{.confidence = {4.10, 4.24, 4.33},
                             .confidence_loss = 2.5,
                             .confidence_sigma = 1.5,
                             .occlusion_loss = 3.0,
@@ -135,7 +135,16 @@ std::vector<StrokePoint> sharp_stroke(const VisibleLine& line) {
   return stroke;
 }
 
-/// Sees one line after another, each with errors of its own.
+/// Draws a line where it is painted.
+void draw_painted(const std::vector<StrokePoint>& stroke, const std::vector<bool>& painted,
+                  std::span<float> cells) {
+  for (const PointRange& stretch : painted_stretches(painted)) {
+    draw_stroke(std::span(stroke).subspan(stretch.first, stretch.last - stretch.first + 1), cells);
+  }
+}
+
+/// Sees one line after another, each with errors of its own. A line's dashes share its errors, so
+/// that neighbouring ones err alike.
 class LineObserver {
  public:
   LineObserver(const Perception& perception, std::vector<Obstacle> obstacles)
@@ -177,20 +186,27 @@ class LineObserver {
 struct FalseLine {
   ElementClass element_class;
   std::vector<Eigen::Vector2d> points;
+  std::vector<bool> painted;  ///< as a VisibleLine's
 };
 
-/// A stretch of a line, moved sideways: a tar joint, a shadow, the other edge of a sidewalk.
+/// A stretch of a line, moved sideways: a tar joint, a shadow, the other edge of a sidewalk. Beside
+/// dashes it may be dashed as they are, but elsewhere along the line, as old paint is.
 FalseLine beside(const VisibleLine& line, Random& random) {
   const Path path(line.points);
   const double length_m = std::min(random.uniform(5.0, 20.0), path.length_m());
   const double from_m = random.uniform(0.0, path.length_m() - length_m);
+  const double model_m = random.uniform(0.0, path.length_m() - length_m);
   const double right_m = random.uniform(0.9, 3.0) * (random.chance(0.5) ? 1.0 : -1.0);
-  FalseLine copy{line.element_class, {}};
-  const int pieces = static_cast<int>(length_m) + 1;
-  for (int k = 0; k <= pieces; ++k) {
-    copy.points.push_back(path.beside(from_m + length_m * k / pieces, right_m));
-  }
+  FalseLine copy{line.element_class, {}, {}};
   if (random.chance(0.3)) copy.element_class = static_cast<ElementClass>(random.integer(0, 2));
+  const bool dashed = random.chance(0.5) && copy.element_class == ElementClass::kLaneDivider;
+  double station_m = 0.0;
+  for (size_t i = 0; i < line.points.size(); ++i) {
+    if (i > 0) station_m += (line.points[i] - line.points[i - 1]).norm();
+    if (station_m < model_m || station_m > model_m + length_m) continue;
+    if (!copy.points.empty()) copy.painted.push_back(!dashed || line.painted[i - 1]);
+    copy.points.push_back(path.beside(from_m + station_m - model_m, right_m));
+  }
   return copy;
 }
 
@@ -199,11 +215,12 @@ FalseLine anywhere(Random& random) {
   const Eigen::Vector2d along = unit_vector(random.uniform(0.0, 2.0 * std::numbers::pi));
   const Eigen::Vector2d middle(random.uniform(-1.0, 1.0) * kRasterGrid.x_range_m(),
                                random.uniform(-1.0, 1.0) * kRasterGrid.y_range_m());
-  FalseLine line{static_cast<ElementClass>(random.integer(0, 2)), {}};
+  FalseLine line{static_cast<ElementClass>(random.integer(0, 2)), {}, {}};
   const int pieces = static_cast<int>(length_m) + 1;
   for (int k = 0; k <= pieces; ++k) {
     line.points.emplace_back(middle + (static_cast<double>(k) / pieces - 0.5) * length_m * along);
   }
+  line.painted.assign(static_cast<size_t>(pieces), true);
   return line;
 }
 
@@ -223,7 +240,8 @@ std::span<float> cells_of(ElementClass element_class, std::span<float> mask) {
   return mask.subspan(static_cast<size_t>(element_class) * plane, plane);
 }
 
-/// Draws what is there: `seeds` are drawn per element, so that a crossing is overlooked whole.
+/// Draws what is there. What is overlooked is drawn per element: a crossing with both its edges, a
+/// dashed line with all its dashes.
 void draw_true_lines(const std::vector<VisibleLine>& lines, const Perception& perception,
                      const LineObserver& observer, uint64_t seed, std::span<float> mask) {
   for (size_t i = 0; i < lines.size(); ++i) {
@@ -231,8 +249,8 @@ void draw_true_lines(const std::vector<VisibleLine>& lines, const Perception& pe
     Random of_element(seed_for(seed, "element") + line.element);
     if (of_element.chance(perception.overlooked)) continue;
     const double confidence = perception.confidence[static_cast<size_t>(line.element_class)];
-    draw_stroke(observer.observe(line.points, confidence, mix_seed(seed_for(seed, "line") + i)),
-                cells_of(line.element_class, mask));
+    draw_painted(observer.observe(line.points, confidence, mix_seed(seed_for(seed, "line") + i)),
+                 line.painted, cells_of(line.element_class, mask));
   }
 }
 
@@ -244,8 +262,8 @@ void draw_false_lines(const std::vector<VisibleLine>& lines, const Perception& p
     const bool parallel = random.chance(0.7) && length_m(lines[i].points) > 3.0;
     const FalseLine line = parallel ? beside(lines[i], random) : anywhere(random);
     const double confidence = random.uniform(0.5, 3.0);
-    draw_stroke(observer.observe(line.points, confidence, random.bits()),
-                cells_of(line.element_class, mask));
+    draw_painted(observer.observe(line.points, confidence, random.bits()), line.painted,
+                 cells_of(line.element_class, mask));
   }
 }
 
@@ -262,7 +280,7 @@ void draw_perceived(const std::vector<VisibleLine>& lines, CorruptionLevel level
   std::fill(mask.begin(), mask.end(), 0.0F);
   if (level == CorruptionLevel::kClean) {
     for (const VisibleLine& line : lines) {
-      draw_stroke(sharp_stroke(line), cells_of(line.element_class, mask));
+      draw_painted(sharp_stroke(line), line.painted, cells_of(line.element_class, mask));
     }
     return;
   }

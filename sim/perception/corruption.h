@@ -21,10 +21,11 @@ inline constexpr double kPerceptionMargin_m = 3.0;
 
 /// Draws the lines (visible_lines with kPerceptionMargin_m) as a network would perceive them, as
 /// probabilities: stretches missed (more with range, and behind obstacles), each line displaced
-/// smoothly and by itself (mostly along the viewing ray), width, confidence and blur that vary,
-/// lines that are not there. No error is shared by the whole scene, so the pose is not biased. At
-/// `kClean` the mask is the map's raster. The same seed gives the same obstacles, false lines and
-/// shapes of error at every level.
+/// smoothly and by itself (mostly along the viewing ray; the dashes of one line together), width,
+/// confidence and blur that vary, lines that are not there. No error is shared by the whole scene,
+/// so the pose is not biased. At `kClean` the mask is the map's raster. The same seed gives the
+/// same obstacles, false lines and shapes of error at every level.
+///
 /// mask: [ElementClass][row][column] of kRasterGrid, kRasterSize values, overwritten whole.
 void draw_perceived(const std::vector<VisibleLine>& lines, CorruptionLevel level, uint64_t seed,
                     std::span<float> mask);

@@ -3,19 +3,20 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 #include "pipeline/map/rasterizer.h"
+#include "sim/perception/surveyed_map.h"
 #include "sim/random.h"
 #include "sim/vehicle/placement.h"
 
 namespace bevloc::sim {
 namespace {
 
-// Scenes that share towns, and how many of one kind a town gives at most.
-constexpr uint64_t kPlacesPerKind = 8;
-constexpr uint64_t kScenesPerGroup = kPlacesPerKind * kRoadKinds;
-constexpr size_t kPlacesPerTown = 4;
+// Scenes that share towns: of each kind on each sort of map, and how many of them a town gives at
+// most.
+constexpr uint64_t kPlacesPerKind = 4;
+constexpr uint64_t kScenesPerGroup = 2 * kPlacesPerKind * kRoadKinds;
+constexpr size_t kPlacesPerTown = 2;
 constexpr uint64_t kMostTownsPerGroup = 1024;
 constexpr int kCandidatesPerTown = 200;
 
@@ -28,13 +29,28 @@ bool is_apart(const Se2& a, const Se2& b) {
          std::abs(wrap_angle(a.yaw_rad - b.yaw_rad)) > kApart_rad;
 }
 
+/// Every other town's map is surveyed dash by dash.
+bool is_surveyed(uint64_t seed) {
+  return seed % 2 == 1;
+}
+
 }  // namespace
 
 /// A town without its scenery.
 struct SceneSampler::Town {
-  explicit Town(World&& generated) : world(std::move(generated)), index(world.map) {}
+  explicit Town(uint64_t seed)
+      : surveyed(is_surveyed(seed)),
+        world(generate_world(seed)),
+        dashes(surveyed ? painted_dashes(world) : MapDashes{}),
+        map(surveyed_map(world.map, dashes)),
+        continuous_index(world.map),
+        index(map) {}
 
+  bool surveyed;
   World world;
+  MapDashes dashes;
+  HdMap map;
+  MapIndex continuous_index;  ///< of the map with dashed dividers as continuous lines
   MapIndex index;
 };
 
@@ -43,53 +59,62 @@ SceneSampler::SceneSampler(uint64_t seed_base, const HypothesisGrid& deviations)
 
 SceneSampler::~SceneSampler() = default;
 
-/// Goes on to further towns until every kind of road has its places.
+/// Goes on to further towns until every kind of road has its places on both sorts of maps.
 void SceneSampler::load_group(uint64_t group) {
   assert((group + 1) * kMostTownsPerGroup <= kSceneSeedCount);
   group_ = group;
   towns_.clear();
-  for (std::vector<Place>& places : places_) places.clear();
-  const auto is_full = [](const std::vector<Place>& places) {
-    return places.size() >= kPlacesPerKind;
-  };
-  while (!std::all_of(places_.begin(), places_.end(), is_full)) {
-    assert(towns_.size() < kMostTownsPerGroup);
-    const uint64_t seed = seed_base_ + group * kMostTownsPerGroup + towns_.size();
-    towns_.push_back(std::make_unique<const Town>(generate_world(seed)));
-    collect_places(*towns_.back());
+  places_ = {};
+  const uint64_t first_seed = seed_base_ + group * kMostTownsPerGroup;
+  for (uint64_t town = 0; !is_full(places_[0]) || !is_full(places_[1]); ++town) {
+    assert(town < kMostTownsPerGroup);
+    const uint64_t seed = first_seed + town;
+    PlacesByKind& places = places_[is_surveyed(seed) ? 1 : 0];
+    if (is_full(places)) continue;
+    towns_.push_back(std::make_unique<const Town>(seed));
+    collect_places(*towns_.back(), places);
   }
 }
 
-void SceneSampler::collect_places(const Town& town) {
+bool SceneSampler::is_full(const PlacesByKind& places) {
+  return std::all_of(places.begin(), places.end(), [](const std::vector<Place>& of_kind) {
+    return of_kind.size() >= kPlacesPerKind;
+  });
+}
+
+void SceneSampler::collect_places(const Town& town, PlacesByKind& places) {
   Random random(seed_for(town.world.seed, "scenes"));
   std::array<size_t, kRoadKinds> taken{};
   std::vector<Se2> poses;
   for (int candidate = 0; candidate < kCandidatesPerTown; ++candidate) {
     const Se2 pose = random_pose_on_road(town.world, random);
-    const auto kind = road_kind(town.index, pose);
+    const auto kind = road_kind(town.continuous_index, pose, town.dashes);
     if (!kind) continue;
     const auto k = static_cast<size_t>(*kind);
-    const bool wanted = taken[k] < kPlacesPerTown && places_[k].size() < kPlacesPerKind;
+    const bool wanted = taken[k] < kPlacesPerTown && places[k].size() < kPlacesPerKind;
     if (!wanted || !std::all_of(poses.begin(), poses.end(),
                                 [&pose](const Se2& other) { return is_apart(pose, other); })) {
       continue;
     }
     ++taken[k];
     poses.push_back(pose);
-    places_[k].push_back({&town, pose});
+    places[k].push_back({&town, pose});
   }
 }
 
 void SceneSampler::make(uint64_t number, CorruptionLevel level, MatchingScene& scene) {
   if (number / kScenesPerGroup != group_) load_group(number / kScenesPerGroup);
   const uint64_t in_group = number % kScenesPerGroup;
-  const Place& place = places_[in_group % kRoadKinds][in_group / kRoadKinds];
+  const uint64_t kind = in_group % kRoadKinds;
+  const uint64_t turn = in_group / kRoadKinds;
+  const Place& place = places_[turn % 2][kind][turn / 2];
   const uint64_t seed = mix_seed(seed_for(seed_base_, "scene") + number);
   Random random(seed_for(seed, "prior"));
   const auto within = [&random](const HypothesisAxis& axis) {
     return random.uniform(-axis.range, axis.range);
   };
-  scene.kind = static_cast<RoadKind>(in_group % kRoadKinds);
+  scene.kind = static_cast<RoadKind>(kind);
+  scene.surveyed = place.town->surveyed;
   scene.map_from_vehicle = place.map_from_vehicle;
   scene.correction.x_m = within(deviations_.x_m);
   scene.correction.y_m = within(deviations_.y_m);
@@ -101,8 +126,10 @@ void SceneSampler::make(uint64_t number, CorruptionLevel level, MatchingScene& s
   scene.raster_prior.resize(kRasterSize);
   rasterizer.draw(place.map_from_vehicle * scene.correction.inverse(), scene.raster_prior);
   scene.perceived.resize(kRasterSize);
-  draw_perceived(visible_lines(place.town->index, place.map_from_vehicle, kPerceptionMargin_m),
-                 level, seed_for(seed, "perception"), scene.perceived);
+  const std::vector<VisibleLine> lines =
+      visible_lines(place.town->continuous_index, place.map_from_vehicle, kPerceptionMargin_m,
+                    place.town->dashes);
+  draw_perceived(lines, level, seed_for(seed, "perception"), scene.perceived);
 }
 
 }  // namespace bevloc::sim

@@ -26,6 +26,7 @@ static_assert(kEvaluationSeedBase + kSceneSeedCount <= kFirstTrainingSeed);
 
 struct MatchingScene {
   RoadKind kind = RoadKind::kStraightSolid;
+  bool surveyed = false;              ///< the map holds every dash (surveyed_map.h)
   Se2 map_from_vehicle;               ///< the true pose T
   Se2 correction;                     ///< dT = T0^-1 T, what a solver should find
   std::vector<uint8_t> raster_prior;  ///< the map at T0, kRasterSize bytes
@@ -34,8 +35,9 @@ struct MatchingScene {
 };
 
 /// An endless stream of scenes; everything about scene i follows from the seed base, the range and
-/// i. Scene i shows a road of kind i % kRoadKinds. Fastest when asked for scenes in order: forty in
-/// a row share their towns. Not thread safe.
+/// i. Scene i shows a road of kind i % kRoadKinds; the maps draw dashed dividers as continuous
+/// lines and dash by dash in turn, kRoadKinds scenes each. Fastest when asked for scenes in order:
+/// forty in a row share their towns. Not thread safe.
 class SceneSampler {
  public:
   /// `seed_base` is kEvaluationSeedBase or kTuningSeedBase. Corrections are uniform within the
@@ -52,15 +54,17 @@ class SceneSampler {
     const Town* town;
     Se2 map_from_vehicle;
   };
+  using PlacesByKind = std::array<std::vector<Place>, kRoadKinds>;
 
   void load_group(uint64_t group);
-  void collect_places(const Town& town);
+  static bool is_full(const PlacesByKind& places);
+  static void collect_places(const Town& town, PlacesByKind& places);
 
   uint64_t seed_base_;
   HypothesisGrid deviations_;
   uint64_t group_ = ~0ULL;
   std::vector<std::unique_ptr<const Town>> towns_;
-  std::array<std::vector<Place>, kRoadKinds> places_;
+  std::array<PlacesByKind, 2> places_;  ///< in towns with a plain map, with a surveyed one
 };
 
 }  // namespace bevloc::sim

@@ -183,6 +183,19 @@ bool has_structure(const std::vector<VisibleLine>& lines) {
   });
 }
 
+/// The kind of a road that is uniform but for its lines' dashes.
+std::optional<RoadKind> kind_by_dashes(const std::vector<VisibleLine>& lines) {
+  bool has_dashes = false;
+  for (const VisibleLine& line : lines) {
+    for (size_t i = 1; i < line.painted.size(); ++i) {
+      if (line.painted[i] == line.painted[i - 1]) continue;
+      has_dashes = true;
+      if (tells_place(line.points[i])) return RoadKind::kStraightStructured;
+    }
+  }
+  return has_dashes ? std::nullopt : std::optional(RoadKind::kStraightSolid);
+}
+
 /// How the lines that are long enough to show it bend.
 struct Bends {
   int lines = 0;
@@ -242,7 +255,8 @@ const char* name(RoadKind kind) {
   return "";
 }
 
-std::optional<RoadKind> road_kind(const MapIndex& index, const Se2& map_from_vehicle) {
+std::optional<RoadKind> road_kind(const MapIndex& index, const Se2& map_from_vehicle,
+                                  const MapDashes& dashes) {
   const std::vector<VisibleLine> lines = visible_lines(index, map_from_vehicle, 0.0);
   std::vector<Course> courses;
   double length_m = 0.0;
@@ -253,7 +267,9 @@ std::optional<RoadKind> road_kind(const MapIndex& index, const Se2& map_from_veh
     courses.push_back(std::move(course));
   }
   if (length_m < kLeastLine_m) return std::nullopt;
-  if (is_uniform(visible_lines(index, map_from_vehicle, kRim_m))) return RoadKind::kStraightSolid;
+  if (is_uniform(visible_lines(index, map_from_vehicle, kRim_m))) {
+    return kind_by_dashes(visible_lines(index, map_from_vehicle, kRim_m, dashes));
+  }
   if (std::any_of(courses.begin(), courses.end(), is_island)) return RoadKind::kMergeOrRoundabout;
   if (has_corner(courses)) return RoadKind::kJunction;
   return kind_between_junctions(lines, courses);

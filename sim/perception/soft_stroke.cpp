@@ -66,7 +66,7 @@ void draw_piece(const CellPoint& from, const CellPoint& to, std::span<float> cel
 
 }  // namespace
 
-void draw_stroke(const std::vector<StrokePoint>& stroke, std::span<float> cells) {
+void draw_stroke(std::span<const StrokePoint> stroke, std::span<float> cells) {
   assert(cells.size() == static_cast<size_t>(kRasterGrid.cells()));
   for (size_t i = 1; i < stroke.size(); ++i) {
     draw_piece(in_cells(stroke[i - 1]), in_cells(stroke[i]), cells);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include <Eigen/Core>
 
@@ -19,6 +18,6 @@ struct StrokePoint {
 /// Raises the cells of one class (kRasterGrid, row by row) to the stroke's value, which falls
 /// linearly from `strength` to 0 over 2 * `softness_m` around the distance `half_width_m`. Ends and
 /// joints are round. With a softness of half a cell it is what MapRasterizer draws.
-void draw_stroke(const std::vector<StrokePoint>& stroke, std::span<float> cells);
+void draw_stroke(std::span<const StrokePoint> stroke, std::span<float> cells);
 
 }  // namespace bevloc::sim

@@ -1,6 +1,7 @@
 #include "sim/perception/visible_lines.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -27,30 +28,41 @@ class BoxCutter {
   BoxCutter(const Eigen::Vector2d& half_box, std::vector<VisibleLine>& lines)
       : half_box_(half_box), lines_(lines) {}
 
-  void cut(const VisibleLine& prototype, const Points& polyline) {
+  void cut(const VisibleLine& prototype, const DashedLine& line) {
     prototype_ = prototype;
-    add(polyline.front(), true);
-    for (size_t i = 1; i < polyline.size(); ++i) add_segment(polyline[i - 1], polyline[i]);
+    begin(line.points.front(), true);
+    for (size_t i = 1; i < line.points.size(); ++i) {
+      add_segment(line.points[i - 1], line.points[i], line.painted[i - 1]);
+    }
     if (current_) current_->ends = true;
     finish();
   }
 
  private:
-  void add_segment(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  void add_segment(const Eigen::Vector2d& from, const Eigen::Vector2d& to, bool painted) {
     const bool misses = (from.cwiseMin(to).array() > half_box_.array()).any() ||
                         (from.cwiseMax(to).array() < -half_box_.array()).any();
     if (misses) return finish();
     const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).norm() / kSpacing_m)));
-    for (int k = 1; k <= pieces; ++k) add(from + (to - from) * k / pieces, false);
+    for (int k = 1; k <= pieces; ++k) add(from + (to - from) * k / pieces, painted);
   }
 
-  void add(const Eigen::Vector2d& point, bool is_line_end) {
-    if ((point.array().abs() > half_box_.array()).any()) return finish();
-    if (!current_) {
-      current_ = prototype_;
-      current_->begins = is_line_end;
-    }
+  bool is_outside(const Eigen::Vector2d& point) const {
+    return (point.array().abs() > half_box_.array()).any();
+  }
+
+  void begin(const Eigen::Vector2d& point, bool is_line_end) {
+    if (is_outside(point)) return;
+    current_ = prototype_;
+    current_->begins = is_line_end;
     current_->points.push_back(point);
+  }
+
+  void add(const Eigen::Vector2d& point, bool painted) {
+    if (!current_) return begin(point, false);
+    if (is_outside(point)) return finish();
+    current_->points.push_back(point);
+    current_->painted.push_back(painted);
   }
 
   void finish() {
@@ -77,6 +89,7 @@ std::vector<Points> long_edges(const Points& ring) {
 
 void reverse(VisibleLine& line) {
   std::reverse(line.points.begin(), line.points.end());
+  std::reverse(line.painted.begin(), line.painted.end());
   std::swap(line.begins, line.ends);
 }
 
@@ -96,6 +109,7 @@ bool join(VisibleLine& line, VisibleLine& other) {
       // The joint is one point: two, a few centimetres apart, would make a spurious bend.
       line.points.back() = 0.5 * (line.points.back() + other.points.front());
       line.points.insert(line.points.end(), std::next(other.points.begin()), other.points.end());
+      line.painted.insert(line.painted.end(), other.painted.begin(), other.painted.end());
       line.ends = other.ends;
       line.of_ring = line.of_ring || other.of_ring;
       return true;
@@ -125,7 +139,8 @@ std::vector<VisibleLine> joined(std::vector<VisibleLine> lines) {
 }  // namespace
 
 std::vector<VisibleLine> visible_lines(const MapIndex& index, const Se2& map_from_vehicle,
-                                       double margin_m) {
+                                       double margin_m, const MapDashes& dashes) {
+  assert(dashes.empty() || dashes.size() == index.map().elements.size());
   const Eigen::Vector2d half = half_box(margin_m);
   std::vector<MapIndex::Segment> found;
   const Eigen::Vector2d reach = Eigen::Vector2d::Constant(half.norm());
@@ -144,10 +159,14 @@ std::vector<VisibleLine> visible_lines(const MapIndex& index, const Se2& map_fro
     prototype.element_class = element.element_class;
     prototype.element = found[i].element;
     if (element.element_class == ElementClass::kPedestrianCrossing) {
-      for (const Points& edge : long_edges(points)) cutter.cut(prototype, edge);
+      for (const Points& edge : long_edges(points)) {
+        cutter.cut(prototype, dashed_line(edge, {&kWholeLine, 1}));
+      }
     } else {
       prototype.of_ring = (points.front() - points.back()).norm() < 1e-6;
-      cutter.cut(prototype, points);
+      const std::span<const Dash> whole{&kWholeLine, 1};
+      cutter.cut(prototype,
+                 dashed_line(points, dashes.empty() ? whole : dashes[prototype.element]));
     }
   }
   return joined(std::move(lines));

@@ -8,6 +8,7 @@
 
 #include "common/se2.h"
 #include "pipeline/map/map_index.h"
+#include "sim/perception/dashed_line.h"
 
 namespace bevloc::sim {
 
@@ -21,10 +22,12 @@ struct VisibleLine {
   bool begins = false;   ///< its first point is a line end, not a cut at the box
   bool ends = false;     ///< and so is its last one
   std::vector<Eigen::Vector2d> points;
+  std::vector<bool> painted;  ///< of each piece between two points; false in the gaps of dashes
 };
 
-/// The lines within the raster's box grown by a margin, in the map's order.
+/// The lines within the raster's box grown by a margin, in the map's order. `dashes` are those of
+/// the index's map: a dashed line is one line, painted here and there.
 std::vector<VisibleLine> visible_lines(const MapIndex& index, const Se2& map_from_vehicle,
-                                       double margin_m);
+                                       double margin_m, const MapDashes& dashes = {});
 
 }  // namespace bevloc::sim

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/map/rasterizer.h"
+#include "sim/perception/surveyed_map.h"
 #include "tests/sim/perception/small_maps.h"
 
 namespace bevloc::sim {
@@ -125,6 +126,98 @@ TEST(Corruption, DisplacesALineSmoothlyAndWithoutBias) {
   EXPECT_LT(sigma_m, 0.25);
   EXPECT_LT(std::abs(sum_m / count), 4.0 * sigma_m / std::sqrt(count));
   EXPECT_LT(std::sqrt(step_squares / count), 0.4 * sigma_m);  // over 0.6 m
+}
+
+/// A dashed divider 5 m to the left, with dashes from -32 m, -24 m, ... on.
+std::vector<float> perceived_dashes(CorruptionLevel level, uint64_t seed) {
+  HdMap map;
+  add_divider(map, along_x(-80.0, 80.0, 5.0));
+  const MapIndex index(map);
+  std::vector<float> mask(kRasterSize, -1.0F);
+  draw_perceived(visible_lines(index, {}, kPerceptionMargin_m, {regular_dashes()}), level, seed,
+                 mask);
+  return mask;
+}
+
+int row_of(double x_m) {
+  return static_cast<int>(std::lround(kRasterGrid.row_of_x(x_m)));
+}
+
+TEST(Corruption, ACleanMaskOfDashesIsTheSurveyedMapsRaster) {
+  HdMap map;
+  add_divider(map, along_x(-80.0, 80.0, 5.0));
+  const HdMap surveyed = surveyed_map(map, {regular_dashes()});
+  const MapIndex index(surveyed);
+  std::vector<uint8_t> raster(kRasterSize);
+  MapRasterizer(index).draw({}, raster);
+  const std::vector<float> mask = perceived_dashes(CorruptionLevel::kClean, 1);
+  for (size_t i = 0; i < kRasterSize; ++i) ASSERT_NEAR(mask[i], raster[i] / 255.0, 0.01) << i;
+}
+
+// Neighbouring dashes move alike, distant ones each by itself.
+TEST(Corruption, DisplacesTheDashesOfALineTogether) {
+  double near_product = 0.0;
+  double far_product = 0.0;
+  double squares = 0.0;
+  for (uint64_t seed = 0; seed < 600; ++seed) {
+    const auto mask = perceived_dashes(CorruptionLevel::kPaper, seed);
+    const auto cells = plane(mask, ElementClass::kLaneDivider);
+    const auto off_m = [&](double x_m) { return centre_y_m(cells, row_of(x_m)) - 5.0; };
+    const double one = off_m(1.5);
+    const double next = off_m(9.5);
+    const double far = off_m(25.5);
+    if (!(std::abs(one) < 0.6 && std::abs(next) < 0.6 && std::abs(far) < 0.6)) continue;
+    near_product += one * next;
+    far_product += one * far;
+    squares += std::sqrt(one * one * next * next);
+  }
+  ASSERT_GT(squares, 0.0);
+  EXPECT_GT(near_product, 0.15 * squares);
+  EXPECT_LT(std::abs(far_product), near_product);
+}
+
+// A line is overlooked with all its dashes, or with none.
+TEST(Corruption, OverlooksADashedLineAsAWhole) {
+  int lines_without_a_dash = 0;
+  constexpr int kSeeds = 300;
+  for (uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const auto mask = perceived_dashes(CorruptionLevel::kMild, seed);
+    const auto cells = plane(mask, ElementClass::kLaneDivider);
+    int seen = 0;
+    for (const double x_m : {-14.5, -6.5, 1.5, 9.5}) {
+      seen += std::isnan(centre_y_m(cells, row_of(x_m))) ? 0 : 1;
+    }
+    lines_without_a_dash += seen == 0 ? 1 : 0;
+  }
+  // At the chance of one element; were each dash overlooked by itself, there would be none.
+  EXPECT_GE(lines_without_a_dash, 1);
+  EXPECT_LE(lines_without_a_dash, kSeeds / 12);
+}
+
+// With the same seed the false line beside a continuous line is the same but for its gaps.
+TEST(Corruption, AFalseLineBesideDashesIsDashedOrSolid) {
+  HdMap map;
+  add_divider(map, along_x(-80.0, 80.0, 5.0));
+  const auto false_cells = [](const std::vector<float>& mask) {
+    int count = 0;
+    const auto cells = plane(mask, ElementClass::kLaneDivider);
+    for (size_t i = 0; i < cells.size(); ++i) {
+      const double y_m = kRasterGrid.y_of_col(static_cast<double>(i % kRasterGrid.cols));
+      count += std::abs(y_m - 5.0) > 1.5 && cells[i] > 0.5F ? 1 : 0;
+    }
+    return count;
+  };
+  int dashed = 0;
+  int solid = 0;
+  for (uint64_t seed = 0; seed < 300; ++seed) {
+    const int whole = false_cells(perceived(map, CorruptionLevel::kHard, seed));
+    if (whole < 60) continue;
+    const int with_gaps = false_cells(perceived_dashes(CorruptionLevel::kHard, seed));
+    (with_gaps < 0.75 * whole ? dashed : solid) += 1;
+  }
+  ASSERT_GT(dashed + solid, 40);
+  EXPECT_GT(dashed, solid / 4);
+  EXPECT_GT(solid, dashed / 2);
 }
 
 // Two lines side by side do not move together: nothing shifts the whole scene.

@@ -81,6 +81,44 @@ TEST(SceneSampler, EveryKindOfRoadIsEquallyFrequent) {
   for (const int count : counts) EXPECT_EQ(count, 8);
 }
 
+TEST(SceneSampler, EveryKindOfRoadComesFromBothSortsOfMapsAlike) {
+  SceneSampler sampler(kTuningSeedBase);
+  MatchingScene scene;
+  std::array<int, kRoadKinds> surveyed{};
+  for (uint64_t i = 0; i < 40; ++i) {
+    sampler.make(i, CorruptionLevel::kClean, scene);
+    surveyed[static_cast<size_t>(scene.kind)] += scene.surveyed ? 1 : 0;
+  }
+  for (const int count : surveyed) EXPECT_EQ(count, 4);
+}
+
+/// The stretches of covered cells along the columns of a raster's dividers.
+int divider_stretches(const std::vector<uint8_t>& raster) {
+  int stretches = 0;
+  for (int col = 0; col < kRasterGrid.cols; ++col) {
+    bool covered = false;
+    for (int row = 0; row < kRasterGrid.rows; ++row) {
+      const bool now = raster[static_cast<size_t>(row) * kRasterGrid.cols + col] > 127;
+      stretches += now && !covered ? 1 : 0;
+      covered = now;
+    }
+  }
+  return stretches;
+}
+
+// Both the map and what is seen are dashed: on straight roads, where dashes follow the columns.
+TEST(SceneSampler, SurveyedMapsShowDashes) {
+  SceneSampler sampler(kTuningSeedBase);
+  MatchingScene scene;
+  std::array<int, 2> stretches{};
+  for (uint64_t i = 1; i < 200; i += kRoadKinds) {
+    sampler.make(i, CorruptionLevel::kClean, scene);
+    ASSERT_EQ(scene.kind, RoadKind::kStraightStructured);
+    stretches[scene.surveyed ? 1 : 0] += divider_stretches(scene.raster_prior);
+  }
+  EXPECT_GT(stretches[1], 2 * stretches[0]);
+}
+
 TEST(SceneSampler, ScenesOfATownAreNotRepeated) {
   SceneSampler sampler(kTuningSeedBase);
   MatchingScene scene;

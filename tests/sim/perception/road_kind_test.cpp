@@ -11,9 +11,10 @@ namespace {
 using ::testing::Eq;
 using ::testing::Optional;
 
-std::optional<RoadKind> kind_of(const HdMap& map, const Se2& pose = {}) {
+std::optional<RoadKind> kind_of(const HdMap& map, const Se2& pose = {},
+                                const MapDashes& dashes = {}) {
   const MapIndex index(map);
-  return road_kind(index, pose);
+  return road_kind(index, pose, dashes);
 }
 
 TEST(RoadKind, LinesRightThroughTheBoxAreStraightSolid) {
@@ -39,6 +40,29 @@ TEST(RoadKind, ALineEndMakesAStraightRoadStructured) {
   HdMap map = straight_road();
   add_divider(map, along_x(-80.0, 10.0, 3.0));
   EXPECT_THAT(kind_of(map), Optional(RoadKind::kStraightStructured));
+}
+
+TEST(RoadKind, DashesMakeAStraightRoadStructured) {
+  const MapDashes dashes{{kWholeLine}, regular_dashes(), {kWholeLine}};
+  EXPECT_THAT(kind_of(straight_road(), {}, dashes), Optional(RoadKind::kStraightStructured));
+}
+
+TEST(RoadKind, WholeLinesAreStraightSolidInASurveyedMapToo) {
+  const MapDashes dashes(3, {kWholeLine});
+  EXPECT_THAT(kind_of(straight_road(), {}, dashes), Optional(RoadKind::kStraightSolid));
+}
+
+TEST(RoadKind, DashesAtTheRimAreNeitherSolidNorStructured) {
+  const MapDashes dashes{{kWholeLine}, {{0.0, 111.0}, {114.0, 160.0}}, {kWholeLine}};
+  EXPECT_THAT(kind_of(straight_road(), {}, dashes), Eq(std::nullopt));  // a gap 31 m ahead
+}
+
+TEST(RoadKind, DashesChangeNothingWhereTheRoadIsNotStraight) {
+  HdMap map;
+  const Eigen::Vector2d centre(0.0, 50.0);
+  for (const double radius_m : {44.0, 50.0, 56.0}) add_kerb(map, arc(centre, radius_m, -2.7, -0.4));
+  const MapDashes dashes{{kWholeLine}, regular_dashes(), {kWholeLine}};
+  EXPECT_THAT(kind_of(map, {}, dashes), Optional(RoadKind::kCurve));
 }
 
 TEST(RoadKind, StructureAtTheRimIsNeitherSolidNorStructured) {

@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "common/se2.h"
 #include "pipeline/map/hd_map.h"
+#include "sim/perception/dashed_line.h"
 #include "sim/world/path.h"
 
 namespace bevloc::sim {
@@ -42,6 +44,13 @@ inline HdMap straight_road() {
   add_divider(map, along_x(-80.0, 80.0, 0.0));
   add_kerb(map, along_x(-80.0, 80.0, -6.0));
   return map;
+}
+
+/// A line from x = -80 m to 80 m with 3 m dashes, the first one from -80 m on, and 5 m gaps.
+inline std::vector<Dash> regular_dashes() {
+  std::vector<Dash> dashes;
+  for (double from_m = 0.0; from_m < 160.0; from_m += 8.0) dashes.push_back({from_m, from_m + 3.0});
+  return dashes;
 }
 
 /// Part of a circle around a point, counter-clockwise.

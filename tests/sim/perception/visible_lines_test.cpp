@@ -1,5 +1,7 @@
 #include "sim/perception/visible_lines.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -85,6 +87,43 @@ TEST(VisibleLines, JoinARingAtItsSeam) {
   EXPECT_TRUE(part[0].of_ring);
   EXPECT_FALSE(part[0].begins);
   EXPECT_FALSE(part[0].ends);
+}
+
+TEST(VisibleLines, OfDashesAreOneLineWithGaps) {
+  HdMap map;
+  add_divider(map, along_x(-80.0, 80.0, 1.0));
+  const MapIndex index(map);
+  const auto lines = visible_lines(index, {0.0, 0.0, radians(180.0)}, 0.0, {regular_dashes()});
+  ASSERT_EQ(lines.size(), 1U);
+  ASSERT_EQ(lines[0].painted.size() + 1, lines[0].points.size());
+  const auto stretches = painted_stretches(lines[0].painted);
+  ASSERT_EQ(stretches.size(), 8U);  // -32 to 27 m, every 8 m; the first begins behind the box
+  for (size_t k = 1; k + 1 < stretches.size(); ++k) {
+    const double from_m = -32.0 + 8.0 * static_cast<double>(k);
+    EXPECT_NEAR(lines[0].points[stretches[k].first].x(), -from_m, 1e-9);
+    EXPECT_NEAR(lines[0].points[stretches[k].last].x(), -from_m - 3.0, 1e-9);
+  }
+}
+
+// The two elements run towards each other: one of them must be turned, and its dashes with it.
+TEST(VisibleLines, KeepTheirDashesWhenTheyAreJoined) {
+  HdMap map;
+  add_divider(map, along_x(-80.0, 0.0, 1.0));
+  add_divider(map, along_x(80.0, 0.0, 1.0));
+  const MapIndex index(map);
+  const MapDashes dashes{{{60.0, 70.0}}, {{55.0, 75.0}}};
+  const auto lines = visible_lines(index, {}, 0.0, dashes);
+  ASSERT_EQ(lines.size(), 1U);
+  double painted_before_m = 0.0;
+  double painted_beyond_m = 0.0;
+  for (const PointRange& stretch : painted_stretches(lines[0].painted)) {
+    const Eigen::Vector2d& first = lines[0].points[stretch.first];
+    const Eigen::Vector2d& last = lines[0].points[stretch.last];
+    (first.x() < 0.0 ? painted_before_m : painted_beyond_m) += (last - first).norm();
+    EXPECT_GT(std::abs(first.x()), 4.9);
+  }
+  EXPECT_NEAR(painted_before_m, 10.0, 1e-9);
+  EXPECT_NEAR(painted_beyond_m, 20.0, 1e-9);
 }
 
 TEST(VisibleLines, AreNoneWhereThereIsNoMap) {
