@@ -43,10 +43,6 @@ void SolverCommand::declare_eval(CLI::App& eval) {
                                                            {"mild", sim::CorruptionLevel::kMild},
                                                            {"paper", sim::CorruptionLevel::kPaper},
                                                            {"hard", sim::CorruptionLevel::kHard}};
-  const std::map<std::string, Rows> rows{{"variants", Rows::kVariants},
-                                         {"table3", Rows::kTableThree},
-                                         {"table4", Rows::kTableFour},
-                                         {"all", Rows::kAll}};
   solver->add_option("--scenes", scenes_, "How many scenes")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
@@ -59,13 +55,21 @@ void SolverCommand::declare_eval(CLI::App& eval) {
                    "of the paper's Table II")
       ->transform(CLI::CheckedTransformer(levels))
       ->default_str("paper");
-  solver
-      ->add_option("--rows", rows_,
-                   "variants (every solver at 100x50x16), table3, table4 (the paper's) or all")
-      ->transform(CLI::CheckedTransformer(rows))
-      ->default_str("all");
+  declare_rows(*solver);
   solver->add_option("--json", json_file_, "Write the rows as JSON to this file");
   solver->add_option("--csv", csv_file_, "Write the rows as CSV to this file");
+}
+
+void SolverCommand::declare_rows(CLI::App& command) {
+  const std::map<std::string, Rows> rows{{"variants", Rows::kVariants},
+                                         {"table3", Rows::kTableThree},
+                                         {"table4", Rows::kTableFour},
+                                         {"all", Rows::kAll}};
+  command
+      .add_option("--rows", rows_,
+                  "variants (every solver at 100x50x16), table3, table4 (the paper's) or all")
+      ->transform(CLI::CheckedTransformer(rows))
+      ->default_str("all");
 }
 
 void SolverCommand::declare_tune(CLI::App& tune) {
@@ -74,6 +78,7 @@ void SolverCommand::declare_tune(CLI::App& tune) {
   solver->add_option("--scenes", scenes_, "How many tuning scenes")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
+  declare_rows(*solver);
   solver->callback([this] { tunes_ = true; });
 }
 
@@ -119,11 +124,23 @@ Status SolverCommand::evaluate() const {
   return write_text(to_csv(*results), csv_file_);
 }
 
+/// One of those that share their scales.
+std::vector<SolverCase> SolverCommand::cases_to_tune() const {
+  std::vector<SolverCase> chosen = cases();
+  std::erase_if(chosen, [](const SolverCase& c) {
+    const bool shares_full_fft = c.solver == SolverKind::kFull;
+    const bool shares_refinement =
+        is_refined(c.solver) && c.solver != SolverKind::kDecoupledRefined;
+    return c.step_m != SolverCase{}.step_m || shares_full_fft || shares_refinement;
+  });
+  return chosen;
+}
+
 Status SolverCommand::tune() const {
   EvaluationOptions options;
   options.seed_base = sim::kTuningSeedBase;
   options.scenes = scenes_;
-  for (const SolverCase& solver_case : cases()) {
+  for (const SolverCase& solver_case : cases_to_tune()) {
     const auto tuned = tune_scales(solver_case, options);
     if (!tuned) return tl::unexpected(tuned.error());
     fmt::print("{:24} {:>7} {:>2} {:.1f}: {}\n", name_of(solver_case.solver),

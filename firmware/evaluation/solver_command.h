@@ -26,7 +26,8 @@ class SolverCommand {
   Status evaluate() const;
   Status tune() const;
   std::vector<SolverCase> cases() const;
-  EvaluationOptions evaluation_options(uint64_t seed_base) const;
+  std::vector<SolverCase> cases_to_tune() const;
+  void declare_rows(CLI::App& command);
 
   bool tunes_ = false;
   int scenes_ = 200;
