@@ -1,9 +1,10 @@
-// bevloc: measures what the appliance is made of.
+// bevloc: measures and draws what the appliance is made of.
 #include <map>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "firmware/evaluation/draw_command.h"
 #include "firmware/evaluation/solver_command.h"
 
 namespace {
@@ -14,7 +15,7 @@ constexpr int kBadInput = 2;
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures what the appliance is made of");
+  CLI::App app("Measures and draws what the appliance is made of");
   app.set_version_flag("--version", BEVLOC_VERSION);
   app.require_subcommand(1);
   auto* eval = app.add_subcommand("eval", "Evaluate a part on scenes that nothing was tuned on");
@@ -24,12 +25,16 @@ int main(int argc, char** argv) {
   bevloc::evaluation::SolverCommand solver_command;
   solver_command.declare_eval(*eval);
   solver_command.declare_tune(*tune);
+  auto* draw = app.add_subcommand("draw", "Draw what a part reads and answers");
+  draw->require_subcommand(1);
+  bevloc::evaluation::DrawCommand draw_command;
+  draw_command.declare(*draw);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
-  const bevloc::Status status = solver_command.run();
+  const bevloc::Status status = draw->parsed() ? draw_command.run() : solver_command.run();
   if (status) return 0;
   fmt::print(stderr, "bevloc: {}\n", status.error().message);
   return kBadInput;

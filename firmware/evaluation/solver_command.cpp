@@ -113,8 +113,11 @@ Status SolverCommand::evaluate() const {
   fmt::print("{} scenes, corruption {}, seed {}\n\n{}\n{}\n", scenes_, sim::name(corruption_),
              seed_, accuracy_table(*results), cost_table(*results));
   for (const CaseResult& result : *results) {
-    if (result.solver_case == SolverCase{}) {
-      fmt::print("{} by road\n{}\n", name_of(result.solver_case.solver), road_table(result));
+    const SolverKind kind = result.solver_case.solver;
+    const bool wanted = kind == SolverKind::kFullFft || kind == SolverKind::kDecoupledRefined ||
+                        kind == SolverKind::kBandedRefined;
+    if (wanted && result.solver_case == SolverCase{.solver = kind}) {
+      fmt::print("{} by road\n{}\n", name_of(kind), road_table(result));
     }
   }
   fmt::print("{}", paper_comparison(*results));

@@ -14,6 +14,12 @@ namespace bevloc {
 /// cannot take. It commutes with the shift, so each side is averaged once for all hypotheses.
 class AxisMatching {
  public:
+  /// Means along both axes, [row, lanes] and [col, lanes], and one cell of padding.
+  struct AxisFeatures {
+    LaneBuffer x;
+    LaneBuffer y;
+  };
+
   AxisMatching(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses);
 
   /// Axis features of the map, and of the vehicle's features turned by `yaw_rad`.
@@ -23,13 +29,14 @@ class AxisMatching {
   void score_x(std::span<double> scores) const;
   void score_y(std::span<double> scores) const;
 
- private:
-  /// Means along both axes, [row, lanes] and [col, lanes].
-  struct AxisFeatures {
-    LaneBuffer x;
-    LaneBuffer y;
-  };
+  /// What set_features() made; the map's have mean 0 inside the border.
+  const AxisFeatures& bev() const { return bev_; }
+  const AxisFeatures& map() const { return map_; }
+  /// The border, in cells.
+  int crop() const { return crop_; }
+  int lanes() const { return lanes_; }
 
+ private:
   void average_row(const float* cells, int row, AxisFeatures& out) const;
   void score(const LaneBuffer& bev, const LaneBuffer& map, int cells, const HypothesisAxis& axis,
              std::span<double> scores) const;

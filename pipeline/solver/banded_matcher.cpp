@@ -67,12 +67,17 @@ BEVLOC_TARGET_CLONES void standardise(float* first, int bands, std::ptrdiff_t st
   }
 }
 
+/// Sum of exp(scale * (score - best)).
+double sum_of_exp(const double* scores, int count, double scale, double best) {
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) sum += std::exp(scale * (scores[i] - best));
+  return sum;
+}
+
 /// log of the sum of exp(scale * score).
 double log_sum(const double* scores, int count, double scale) {
   const double best = *std::max_element(scores, scores + count);
-  double sum = 0.0;
-  for (int i = 0; i < count; ++i) sum += std::exp(scale * (scores[i] - best));
-  return scale * best + std::log(sum);
+  return scale * best + std::log(sum_of_exp(scores, count, scale, best));
 }
 
 }  // namespace
@@ -208,10 +213,11 @@ void BandedMatcher::marginalise(const Bands& bands, double scale,
   std::ranges::fill(probability, 0.0F);
   for (size_t k = 0; k < yaw_probability.size(); ++k) {
     const double* scores = bands.scores.data() + k * count;
-    const double total = log_sum(scores, count, scale);
+    const double best = *std::max_element(scores, scores + count);
+    const double sum = sum_of_exp(scores, count, scale, best);
     for (int i = 0; i < count; ++i) {
       probability[i] +=
-          yaw_probability[k] * static_cast<float>(std::exp(scale * scores[i] - total));
+          yaw_probability[k] * static_cast<float>(std::exp(scale * (scores[i] - best)) / sum);
     }
   }
 }

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "common/target_clones.h"
 #include "pipeline/solver/posterior.h"
@@ -15,6 +16,9 @@ constexpr double kBlock_m = 6.0;
 /// Keeps S regular. Per cell, in squared gradients of standardised features (1/m^2): far below any
 /// gradient that could be evidence.
 constexpr double kSlopeFloor = 1e-6;
+/// Against the prior's, in any direction: deviations of 0.001 of the prior's, far below a step.
+/// More of it in one direction would drown what is known of the others in rounding.
+constexpr double kMostEvidence = 1e6;
 
 /// Neighbouring cells of a row of both sides.
 struct RowSegment {
@@ -105,12 +109,16 @@ Eigen::Matrix3d MatchCovariance::estimate(const CellFeatures& bev, const CellFea
       0.5 * (information.curvature + information.curvature.transpose());
   const Eigen::Matrix3d slope =
       information.slope + kSlopeFloor * grid_.cells() * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d evidence = curvature * slope.inverse() * curvature;
+  const Eigen::Matrix3d evidence = curvature * slope.ldlt().solve(curvature);
   // In units of the prior's deviations the sum is well conditioned.
   const Eigen::Vector3d unit = uniform_variance_.cwiseSqrt();
   const Eigen::Matrix3d scaled = unit.asDiagonal() * evidence * unit.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(0.5 *
+                                                                  (scaled + scaled.transpose()));
+  const Eigen::Vector3d variance =
+      (directions.eigenvalues().cwiseMax(0.0).cwiseMin(kMostEvidence).array() + 1.0).inverse();
   const Eigen::Matrix3d posterior =
-      (0.5 * (scaled + scaled.transpose()) + Eigen::Matrix3d::Identity()).inverse();
+      directions.eigenvectors() * variance.asDiagonal() * directions.eigenvectors().transpose();
   return unit.asDiagonal() * posterior * unit.asDiagonal();
 }
 

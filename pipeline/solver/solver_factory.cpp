@@ -31,15 +31,23 @@ constexpr std::array<std::pair<std::string_view, SolverKind>, kSolverKinds> kNam
     {"block+refine", SolverKind::kBlockRefined},
 }};
 
+/// What nobody needs and no memory holds, so that a typing error is refused and not tried.
+constexpr int kMaxSide = 1024;
+constexpr int kMaxFeatures = 1 << 24;     ///< channels x rows x columns
+constexpr double kMaxHalfCount = 1000.0;  ///< steps from zero to an axis's end
+constexpr double kMaxHypotheses = 1e6;
+
 bool is_positive(double value) {
   return std::isfinite(value) && value > 0.0;
 }
 
 Status check_axis(std::string_view name, const HypothesisAxis& axis, double max_range) {
-  if (!is_positive(axis.step) || !is_positive(axis.range) || axis.step > axis.range ||
-      axis.farthest() > max_range) {
-    return fail("hypotheses of {}: range {} and step {}, wanted 0 < step <= range <= {}", name,
-                axis.range, axis.step, max_range);
+  const bool sound = is_positive(axis.step) && is_positive(axis.range) && axis.step <= axis.range;
+  if (!sound || axis.range / axis.step > kMaxHalfCount || axis.farthest() > max_range) {
+    return fail(
+        "hypotheses of {}: range {} and step {}, wanted 0 < step <= range <= {} and at most {} "
+        "steps",
+        name, axis.range, axis.step, max_range, kMaxHalfCount);
   }
   return {};
 }
@@ -71,28 +79,41 @@ Status check_parameters(SolverKind kind, const SolverParameters& parameters) {
 }
 
 Status check_grid(SolverKind kind, const BevGrid& grid) {
-  const bool sound = grid.cells() > 0 && is_positive(grid.cell_m);
+  const bool sound = grid.rows > 0 && grid.rows <= kMaxSide && grid.cols > 0 &&
+                     grid.cols <= kMaxSide && is_positive(grid.cell_m);
   if (is_literal(kind)) {
     if (sound && LiteralMatcher::supports(grid)) return {};
     return fail(
-        "solver: grid of {} x {} cells of {} m, wanted rows and columns of the form 2^a 5^b, 4 at "
-        "least",
-        grid.rows, grid.cols, grid.cell_m);
+        "solver: grid of {} x {} cells of {} m, wanted rows and columns of the form 2^a 5^b, 4 "
+        "to {}",
+        grid.rows, grid.cols, grid.cell_m, kMaxSide);
   }
   if (sound && YawSpectrum::covers(grid)) return {};
   return fail(
-      "solver: grid of {} x {} cells of {} m, wanted 1 to 128 rows and columns of cells of {} to "
-      "{:.2f} m, or finer cells that make as many",
-      grid.rows, grid.cols, grid.cell_m, YawSpectrum::kCell_m, 0.5 / YawSpectrum::kMaxFrequency);
+      "solver: grid of {} x {} cells of {} m, wanted {} to 128 rows and columns of cells of {} to "
+      "{:.2f} m, or at most {} of finer cells that make as many",
+      grid.rows, grid.cols, grid.cell_m, YawSpectrum::kLeastSide, YawSpectrum::kCell_m,
+      0.5 / YawSpectrum::kMaxFrequency, kMaxSide);
 }
 
 Status check(SolverKind kind, const BevGrid& grid, int channels, const HypothesisGrid& hypotheses) {
-  if (channels <= 0) return fail("solver: {} channels, wanted at least 1", channels);
   if (auto status = check_grid(kind, grid); !status) return status;
+  const int max_channels = kMaxFeatures / grid.cells();
+  if (channels <= 0 || channels > max_channels) {
+    return fail("solver: {} channels, wanted 1 to {}", channels, max_channels);
+  }
   const double max_range_m = max_shift_m(grid);
   if (auto status = check_axis("x", hypotheses.x_m, max_range_m); !status) return status;
   if (auto status = check_axis("y", hypotheses.y_m, max_range_m); !status) return status;
-  return check_axis("yaw", hypotheses.yaw_rad, radians(kMaxYawRange_deg));
+  if (auto status = check_axis("yaw", hypotheses.yaw_rad, radians(kMaxYawRange_deg)); !status) {
+    return status;
+  }
+  const double count = static_cast<double>(hypotheses.x_m.count()) * hypotheses.y_m.count() *
+                       hypotheses.yaw_rad.count();
+  if (count > kMaxHypotheses) {
+    return fail("hypotheses: {} in all, wanted at most {}", count, kMaxHypotheses);
+  }
+  return {};
 }
 
 std::unique_ptr<Matcher> make_matcher(SolverKind kind, const BevGrid& grid, int channels,

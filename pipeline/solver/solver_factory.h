@@ -44,8 +44,8 @@ constexpr double max_shift_m(const BevGrid& grid) {
 }
 
 /// Fails where the solver cannot work: a grid it cannot transform, hypotheses or parameters that
-/// are not finite and positive, hypotheses beyond the largest ranges, a GeM exponent other than 1
-/// for any but the literal solvers.
+/// are not finite and positive, hypotheses beyond the largest ranges, more features or hypotheses
+/// than anyone needs, a GeM exponent other than 1 for any but the literal solvers.
 Result<std::unique_ptr<Solver>> make_solver(SolverKind kind, const BevGrid& grid, int channels,
                                             const HypothesisGrid& hypotheses,
                                             const SolverParameters& parameters);

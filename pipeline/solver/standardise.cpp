@@ -48,9 +48,10 @@ BEVLOC_TARGET_CLONES Moments moments_of(const float* data, int count) {
   return {origin + mean, std::sqrt(std::max(square / count - mean * mean, 0.0))};
 }
 
-BEVLOC_TARGET_CLONES void shift_and_scale(const float* source, float mean, float scale, int count,
+/// In double: a float that is as large as they get would lie beyond them from the mean.
+BEVLOC_TARGET_CLONES void shift_and_scale(const float* source, double mean, double scale, int count,
                                           float* target) {
-  for (int i = 0; i < count; ++i) target[i] = (source[i] - mean) * scale;
+  for (int i = 0; i < count; ++i) target[i] = static_cast<float>((source[i] - mean) * scale);
 }
 
 }  // namespace
@@ -68,8 +69,7 @@ bool standardise(const FeatureView& features, std::span<float> standardised) {
     const Moments moments = moments_of(source, cells);
     if (!std::isfinite(moments.std)) return false;  // a value that is not finite spoils the sums
     greatest_std = std::max(greatest_std, moments.std);
-    shift_and_scale(source, static_cast<float>(moments.mean),
-                    static_cast<float>(1.0 / (moments.std + kStdEpsilon)), cells, target);
+    shift_and_scale(source, moments.mean, 1.0 / (moments.std + kStdEpsilon), cells, target);
   }
   return greatest_std > kLeastStd;
 }

@@ -100,7 +100,8 @@ BEVLOC_TARGET_CLONES void standardise_angles(float* band, int angles, int lane_c
 
 bool YawSpectrum::covers(const BevGrid& grid) {
   const BevGrid read = grid_of(grid);
-  return std::min(read.rows, read.cols) > 0 && std::max(read.rows, read.cols) <= kSpectrumSize &&
+  return std::min(read.rows, read.cols) >= kLeastSide &&
+         std::max(read.rows, read.cols) <= kSpectrumSize &&
          kMaxFrequency * read.cell_m * kSpectrumSize < 0.5 * kSpectrumSize;
 }
 
@@ -145,9 +146,16 @@ void YawSpectrum::make_taps(const BevGrid& grid) {
   }
 }
 
+size_t YawSpectrum::band_begin(int index) const {
+  return static_cast<size_t>(index * (kAngles + 2 * margin_) + margin_) * lanes();
+}
+
 float* YawSpectrum::band(LaneBuffer& signature, int index) const {
-  const int lanes = spectrum_.lanes();
-  return signature.data() + (index * (kAngles + 2 * margin_) + margin_) * lanes;
+  return signature.data() + band_begin(index);
+}
+
+std::span<const float> YawSpectrum::angles(const LaneBuffer& signature, int band) const {
+  return std::span(signature).subspan(band_begin(band), static_cast<size_t>(kAngles) * lanes());
 }
 
 void YawSpectrum::compute_signatures(const CellFeatures& bev, const CellFeatures& map) {

@@ -32,6 +32,7 @@ class YawSpectrum {
   static constexpr double kMinFrequency = 0.05;  ///< cycles per metre
   static constexpr double kMaxFrequency = 0.8;
   static constexpr double kCell_m = 0.6;
+  static constexpr int kLeastSide = 3;  ///< of which a Hann window, zero at its ends, leaves one
 
   /// Whether the spectrum of such a grid holds every frequency that is read.
   static bool covers(const BevGrid& grid);
@@ -40,6 +41,11 @@ class YawSpectrum {
 
   /// scores[k] = -mean((Y_map - Y_bev turned by hypothesis k)^2).
   void score(const CellFeatures& bev, const CellFeatures& map, std::span<double> scores);
+
+  /// The signature of one band of the map that score() read last, [kAngles, lanes()]. Angles are
+  /// counter-clockwise from x.
+  std::span<const float> map_signature(int band) const { return angles(map_signature_, band); }
+  int lanes() const { return spectrum_.lanes(); }
 
  private:
   struct Pooled {
@@ -50,7 +56,9 @@ class YawSpectrum {
   void make_taps(const BevGrid& grid);
   void compute_signatures(const CellFeatures& bev, const CellFeatures& map);
   void read_signature(std::span<const float> amplitude, LaneBuffer& signature) const;
+  size_t band_begin(int index) const;
   float* band(LaneBuffer& signature, int index) const;
+  std::span<const float> angles(const LaneBuffer& signature, int band) const;
   void correlate();
 
   HypothesisAxis yaw_rad_;

@@ -3,7 +3,8 @@
 One coordinate pass of ZNCC (zncc.py) through the estimate so far, in the order y, yaw, x, over the
 hypotheses of each axis: 11 + 21 + 21. P = softmax(joint_scale * ZNCC) of each axis replaces the
 first distribution, and its mean the estimate, before the next axis is scored. What is held fixed
-gets no gradient.
+gets no gradient. (The run time can give each axis a scale of its own; a model file that names none
+means joint_scale for all three.)
 """
 
 from __future__ import annotations

@@ -37,6 +37,9 @@ TEST(SolverFactoryTest, RefusesWhatItCannotSolve) {
   EXPECT_THAT(error_of({200, 50, 0.6}, 16, {}, {}), HasSubstr("200 x 50"));
   EXPECT_THAT(error_of({100, 50, 1.2}, 16, {}, {}), HasSubstr("1.2 m"));
   EXPECT_THAT(error_of({0, 50, 0.6}, 16, {}, {}), HasSubstr("0 x 50"));
+  EXPECT_THAT(error_of({2, 50, 0.6}, 16, {}, {}), HasSubstr("2 x 50"));
+  EXPECT_THAT(error_of({1 << 20, 1 << 20, 1e-6}, 16, {}, {}), HasSubstr("1048576 x 1048576"));
+  EXPECT_THAT(error_of(kFeatureGrid, 1 << 30, {}, {}), HasSubstr("1073741824 channels"));
 }
 
 TEST(SolverFactoryTest, TheLiteralSolverTransformsTheGridAsItIs) {
@@ -55,6 +58,9 @@ TEST(SolverFactoryTest, RefusesHypothesesThatMakeNoGrid) {
   EXPECT_THAT(error_of(kFeatureGrid, 16, {.y_m = {nan, 0.2}}, {}), HasSubstr("y: range nan"));
   EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {50.0, 0.2}}, {}), HasSubstr("x: range 50"));
   EXPECT_THAT(error_of(kFeatureGrid, 16, {.yaw_rad = {1.0, 0.1}}, {}), HasSubstr("yaw: range 1"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {2.0, 1e-300}}, {}), HasSubstr("x: range 2"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {2.0, 0.002}, .y_m = {1.0, 0.002}}, {}),
+              HasSubstr("in all"));
 }
 
 TEST(SolverFactoryTest, RefusesParametersThatNoTrainingGives) {

@@ -161,7 +161,10 @@ TEST_P(EverySolver, SurvivesHugeAndUselessFeatures) {
   }
   std::vector<float> one_cell(huge.size(), 0.0F);
   one_cell[0] = 1.0F;
+  std::vector<float> huge_cell(huge.size(), -3e38F);  // farther from the mean than floats reach
+  huge_cell[0] = 3e38F;
   expect_usable(solve(*solver, huge, one_cell));
+  expect_usable(solve(*solver, huge_cell, huge));
   expect_usable(solve(*solver, one_cell, one_cell));
 }
 

@@ -1,0 +1,104 @@
+#include "tests/fuzz/solver_invariants.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+
+#include <Eigen/Cholesky>
+
+#include "pipeline/solver/posterior.h"
+
+namespace bevloc::fuzz {
+namespace {
+
+/// Of sums of probabilities in float.
+constexpr double kSumTolerance = 1e-4;
+
+struct AxisResult {
+  std::string_view name;
+  const HypothesisAxis& axis;
+  const std::vector<float>& probability;
+  double correction;
+  double parabola;
+};
+
+std::array<AxisResult, 3> axes_of(const SolverResult& r, const HypothesisGrid& h) {
+  return {{{"x", h.x_m, r.x_probability, r.correction.x_m, r.parabola.x_m},
+           {"y", h.y_m, r.y_probability, r.correction.y_m, r.parabola.y_m},
+           {"yaw", h.yaw_rad, r.yaw_probability, r.correction.yaw_rad, r.parabola.yaw_rad}}};
+}
+
+Status check_axis(const AxisResult& a) {
+  if (static_cast<int>(a.probability.size()) != a.axis.count()) {
+    return fail("{}: {} probabilities of {} hypotheses", a.name, a.probability.size(),
+                a.axis.count());
+  }
+  for (float p : a.probability) {
+    if (!(p >= 0.0F && p <= 1.0F + kSumTolerance)) return fail("{}: probability {}", a.name, p);
+  }
+  const double sum = std::accumulate(a.probability.begin(), a.probability.end(), 0.0);
+  if (!(std::abs(sum - 1.0) <= kSumTolerance))
+    return fail("{}: probabilities sum to {}", a.name, sum);
+  const double reach = a.axis.farthest() * (1.0 + kSumTolerance);
+  for (double value : {a.correction, a.parabola}) {
+    if (!(std::abs(value) <= reach)) {
+      return fail("{}: {} is beyond the farthest hypothesis, {}", a.name, value, a.axis.farthest());
+    }
+  }
+  return {};
+}
+
+Status check_covariance(const Eigen::Matrix3d& covariance, const HypothesisGrid& hypotheses) {
+  if (!covariance.allFinite()) return fail("covariance is not finite");
+  if (!covariance.isApprox(covariance.transpose(), 1e-12))
+    return fail("covariance is not symmetric");
+  const Eigen::Vector3d least = least_variance(hypotheses);
+  for (int i = 0; i < 3; ++i) {
+    if (!(covariance(i, i) >= least(i) * (1.0 - 1e-9))) {
+      return fail("variance {} is {}, below the least, {}", i, covariance(i, i), least(i));
+    }
+  }
+  // Of the correlations: the axes have units of their own.
+  const Eigen::Vector3d unit = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::Matrix3d correlation = unit.asDiagonal() * covariance * unit.asDiagonal();
+  if (correlation.llt().info() != Eigen::Success)
+    return fail("covariance is not positive definite");
+  return {};
+}
+
+Status check_no_evidence(const SolverResult& result, const HypothesisGrid& hypotheses) {
+  for (const AxisResult& a : axes_of(result, hypotheses)) {
+    if (a.correction != 0.0 || a.parabola != 0.0) return fail("{}: moved without evidence", a.name);
+    if (std::ranges::min(a.probability) != std::ranges::max(a.probability)) {
+      return fail("{}: not uniform without evidence", a.name);
+    }
+  }
+  if (!result.rival_peak.isZero(0.0) || !result.evidence_share.isZero(0.0)) {
+    return fail("peaks or shares without evidence");
+  }
+  const Eigen::Matrix3d uniform = uniform_variance(hypotheses).asDiagonal();
+  if (result.covariance != uniform) return fail("not the uniform covariance without evidence");
+  return {};
+}
+
+}  // namespace
+
+Status check_result(const SolverResult& result, const HypothesisGrid& hypotheses) {
+  for (const AxisResult& axis : axes_of(result, hypotheses)) {
+    if (auto status = check_axis(axis); !status) return status;
+  }
+  if (auto status = check_covariance(result.covariance, hypotheses); !status) return status;
+  for (int i = 0; i < 3; ++i) {
+    if (!(result.rival_peak(i) >= 0.0 && result.rival_peak(i) <= 1.0)) {
+      return fail("rival peak {} is {}", i, result.rival_peak(i));
+    }
+    if (!(std::isfinite(result.evidence_share(i)) && result.evidence_share(i) <= 1.0)) {
+      return fail("evidence share {} is {}", i, result.evidence_share(i));
+    }
+  }
+  return result.evidence == Evidence::kNone ? check_no_evidence(result, hypotheses) : Status{};
+}
+
+}  // namespace bevloc::fuzz
