@@ -90,9 +90,7 @@ SolverParameters hand_made_parameters(const SolverCase& solver_case) {
     return scales.channels == solver_case.channels && scales.rows == solver_case.grid.rows;
   });
   const HandMadeScales& scales = found != kHandMadeScales.end() ? *found : kHandMadeScales.front();
-  const bool literal = solver_case.solver == SolverKind::kDecoupledLiteral ||
-                       solver_case.solver == SolverKind::kDecoupledLiteralRefined;
-  const AxisScales& axes = literal ? scales.literal : scales.decoupled;
+  const AxisScales& axes = is_literal(solver_case.solver) ? scales.literal : scales.decoupled;
   const bool block =
       solver_case.solver == SolverKind::kBlock || solver_case.solver == SolverKind::kBlockRefined;
   return {.joint_scale = block ? scales.block : scales.full,

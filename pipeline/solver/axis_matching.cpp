@@ -5,17 +5,15 @@
 #include <cmath>
 
 #include "common/target_clones.h"
+#include "pipeline/solver/shift_range.h"
 
 namespace bevloc {
 namespace {
 
 constexpr float kVarianceEpsilon = 1e-3F;
-/// Shifts that differ from whole cells by less are whole.
-constexpr double kWholeTolerance = 1e-9;
 
 int crop_of(const BevGrid& grid, const HypothesisGrid& hypotheses) {
-  const double shift = std::max(hypotheses.x_m.farthest(), hypotheses.y_m.farthest()) / grid.cell_m;
-  return static_cast<int>(std::ceil(shift - kWholeTolerance));
+  return whole_cells(std::max(hypotheses.x_m.farthest(), hypotheses.y_m.farthest()), grid.cell_m);
 }
 
 /// The mean of a row of cells, for each lane.
@@ -123,13 +121,12 @@ void AxisMatching::score_y(std::span<double> scores) const {
 void AxisMatching::score(const LaneBuffer& bev, const LaneBuffer& map, int cells,
                          const HypothesisAxis& axis, std::span<double> scores) const {
   for (int i = 0; i < axis.count(); ++i) {
-    const double shift = axis.value(i) / grid_.cell_m;
-    const int whole = static_cast<int>(std::floor(shift + kWholeTolerance));
-    const auto fraction = static_cast<float>(std::max(shift - whole, 0.0));
+    const SplitShift shift = split_shift(axis.value(i) / grid_.cell_m);
     double sum = 0.0;
     for (int k = 0; k < lanes_; k += kLanes) {
-      sum += correlate(bev.data() + (crop_ + whole) * lanes_ + k, fraction,
-                       map.data() + crop_ * lanes_ + k, cells - 2 * crop_, lanes_);
+      sum += correlate(bev.data() + (crop_ + shift.whole) * lanes_ + k,
+                       static_cast<float>(shift.fraction), map.data() + crop_ * lanes_ + k,
+                       cells - 2 * crop_, lanes_);
     }
     scores[i] = sum / channels_;
   }

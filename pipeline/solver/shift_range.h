@@ -1,6 +1,7 @@
 // Whole-cell shifts that the hypotheses of a grid can read.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/solver/solver.h"

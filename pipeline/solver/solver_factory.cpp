@@ -52,10 +52,6 @@ Status check_axis(std::string_view name, const HypothesisAxis& axis, double max_
   return {};
 }
 
-bool is_literal(SolverKind kind) {
-  return kind == SolverKind::kDecoupledLiteral || kind == SolverKind::kDecoupledLiteralRefined;
-}
-
 Status check_parameters(SolverKind kind, const SolverParameters& parameters) {
   for (const auto& [name, value] :
        {std::pair("joint_scale", parameters.joint_scale), std::pair("x_scale", parameters.x_scale),
@@ -163,6 +159,10 @@ std::array<SolverKind, kSolverKinds> all_solver_kinds() {
   std::array<SolverKind, kSolverKinds> kinds{};
   std::ranges::transform(kNames, kinds.begin(), &std::pair<std::string_view, SolverKind>::second);
   return kinds;
+}
+
+bool is_literal(SolverKind kind) {
+  return kind == SolverKind::kDecoupledLiteral || kind == SolverKind::kDecoupledLiteralRefined;
 }
 
 bool is_refined(SolverKind kind) {

@@ -33,6 +33,9 @@ std::string_view name_of(SolverKind kind);
 /// All of them, the references first.
 std::array<SolverKind, kSolverKinds> all_solver_kinds();
 
+/// Whether it reads the features as they come, and GeM with any exponent (literal_matcher.h).
+bool is_literal(SolverKind kind);
+
 /// Whether one pass of the full score follows (refinement.h).
 bool is_refined(SolverKind kind);
 

@@ -5,12 +5,10 @@
 #include <cmath>
 
 #include "common/target_clones.h"
+#include "pipeline/solver/shift_range.h"
 
 namespace bevloc {
 namespace {
-
-/// Fractions of a cell that differ by less are one phase.
-constexpr double kPhaseTolerance = 1e-9;
 
 struct RowSums {
   float product;
@@ -46,12 +44,11 @@ BEVLOC_TARGET_CLONES RowSums match_row(const float* map, const float* moved, int
 
 ShiftPlan::ShiftPlan(const HypothesisAxis& axis, double cell_m) : hypotheses_(axis.count()) {
   for (int i = 0; i < axis.count(); ++i) {
-    const double shift = axis.value(i) / cell_m;
-    const int cells = static_cast<int>(std::floor(shift + kPhaseTolerance));
-    const double fraction = std::max(shift - cells, 0.0);
-    const auto phase = std::ranges::find_if(phases_, [&](const Phase& candidate) {
-      return std::abs(candidate.fraction - fraction) < kPhaseTolerance;
-    });
+    const auto [cells, fraction] = split_shift(axis.value(i) / cell_m);
+    const auto phase =
+        std::ranges::find_if(phases_, [&, fraction = fraction](const Phase& candidate) {
+          return std::abs(candidate.fraction - fraction) < kWholeShiftTolerance;
+        });
     if (phase != phases_.end()) {
       phase->shifts.push_back({cells, i});
     } else {

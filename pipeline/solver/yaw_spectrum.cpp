@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "common/target_clones.h"
+#include "pipeline/solver/shift_range.h"
 
 namespace bevloc {
 namespace {
@@ -19,12 +20,10 @@ constexpr int kTapsPerAngle = 4 * YawSpectrum::kRadiiPerBand;
 /// Far below the spectrum of any channel that holds something, and far above the rounding of one
 /// that holds nothing: what it shares a complex transform with leaves traces there.
 constexpr float kStdEpsilon = 1e-3F;
-/// Shifts that differ from whole angles by less are whole.
-constexpr double kWholeTolerance = 1e-9;
 
 BevGrid grid_of(const BevGrid& grid) {
   const int factor =
-      std::max(1, static_cast<int>(YawSpectrum::kCell_m / grid.cell_m + kWholeTolerance));
+      std::max(1, static_cast<int>(YawSpectrum::kCell_m / grid.cell_m + kWholeShiftTolerance));
   return {grid.rows / factor, grid.cols / factor, grid.cell_m * factor};
 }
 
@@ -108,8 +107,9 @@ bool YawSpectrum::covers(const BevGrid& grid) {
 YawSpectrum::YawSpectrum(const BevGrid& grid, int channels, const HypothesisAxis& yaw_rad)
     : yaw_rad_(yaw_rad),
       channels_(channels),
-      reach_(static_cast<int>(std::ceil(yaw_rad.farthest() / kAngleStep_rad - kWholeTolerance)) +
-             1),
+      reach_(
+          static_cast<int>(std::ceil(yaw_rad.farthest() / kAngleStep_rad - kWholeShiftTolerance)) +
+          1),
       margin_(reach_ + kGroup),
       spectrum_(grid_of(grid), channels, kSpectrumSize, kSpectrumSize, Window::kHann,
                 farthest_bin(grid_of(grid))),
@@ -214,9 +214,9 @@ void YawSpectrum::score(const CellFeatures& bev, const CellFeatures& map,
   }
   const double count = static_cast<double>(kBands) * kAngles * channels_;
   for (int k = 0; k < yaw_rad_.count(); ++k) {
-    const double shift = yaw_rad_.value(k) / kAngleStep_rad;
-    const int whole = static_cast<int>(std::floor(shift + kWholeTolerance));
-    const double w = std::max(shift - whole, 0.0);
+    const SplitShift shift = split_shift(yaw_rad_.value(k) / kAngleStep_rad);
+    const int whole = shift.whole;
+    const double w = shift.fraction;
     const double product =
         (1.0 - w) * correlations_[whole + reach_] + w * correlations_[whole + 1 + reach_];
     const double square =

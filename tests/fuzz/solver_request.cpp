@@ -21,10 +21,6 @@ auto pick(Random& random, const T& choices) {
   return choices[integer(random, 0, static_cast<int>(std::size(choices)) - 1)];
 }
 
-bool is_literal(SolverKind kind) {
-  return kind == SolverKind::kDecoupledLiteral || kind == SolverKind::kDecoupledLiteralRefined;
-}
-
 bool reads_spectrum(SolverKind kind) {
   return is_literal(kind) || kind == SolverKind::kDecoupled ||
          kind == SolverKind::kDecoupledRefined;

@@ -47,10 +47,6 @@ const std::vector<Group>& groups() {
   return all;
 }
 
-bool is_literal(SolverKind kind) {
-  return kind == SolverKind::kDecoupledLiteral || kind == SolverKind::kDecoupledLiteralRefined;
-}
-
 SolverParameters parameters_for(SolverKind kind) {
   const auto values = test::read_npy_floats(test::golden("solver/parameters.npy")).values;
   return {.joint_scale = values.at(0),
