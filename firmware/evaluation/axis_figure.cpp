@@ -11,6 +11,7 @@
 #include "firmware/evaluation/bev_picture.h"
 #include "firmware/evaluation/plot.h"
 #include "pipeline/solver/axis_matching.h"
+#include "pipeline/solver/feature_warp.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -56,11 +57,9 @@ Side side_of(const std::vector<float>& features) {
 
 CellFeatures moved(const CellFeatures& features, double x_m, double y_m) {
   CellFeatures result(kFeatureGrid, kChannels, kHypotheses);
-  WarpedRow target{.row_shift = x_m / kFeatureGrid.cell_m,
-                   .col_shift = y_m / kFeatureGrid.cell_m,
-                   .cells = kFeatureGrid.cols};
-  for (; target.row < kFeatureGrid.rows; ++target.row) {
-    warp(features, target, result.mutable_cell(target.row, 0));
+  const FeatureWarp warped(features, Se2{x_m, y_m, 0.0});
+  for (int row = 0; row < kFeatureGrid.rows; ++row) {
+    warp(warped.line(row, 0, kFeatureGrid.cols), result.mutable_cell(row, 0));
   }
   return result;
 }

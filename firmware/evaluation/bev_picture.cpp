@@ -70,12 +70,10 @@ std::vector<float> features_of(std::span<const uint8_t> raster, int channels) {
 
 CellFeatures standardised_cells(std::span<const float> features, int channels,
                                 const HypothesisGrid& hypotheses) {
-  std::vector<float> standardised(features.size());
-  [[maybe_unused]] const bool matchable =
-      standardise({features, channels, kFeatureGrid}, standardised);
-  assert(matchable);
   CellFeatures cells(kFeatureGrid, channels, hypotheses);
-  cells.assign(standardised);
+  cells.assign(features);
+  [[maybe_unused]] const bool matchable = standardise(cells);
+  assert(matchable);
   return cells;
 }
 

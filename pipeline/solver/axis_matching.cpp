@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/target_clones.h"
+#include "pipeline/solver/feature_warp.h"
 #include "pipeline/solver/shift_range.h"
 
 namespace bevloc {
@@ -91,8 +92,9 @@ AxisMatching::AxisMatching(const BevGrid& grid, int channels, const HypothesisGr
 void AxisMatching::set_features(const CellFeatures& bev, double yaw_rad, const CellFeatures& map) {
   std::ranges::fill(bev_.y, 0.0F);
   std::ranges::fill(map_.y, 0.0F);
+  const FeatureWarp turned(bev, yaw_rad);
   for (int row = 0; row < grid_.rows; ++row) {
-    warp(bev, {.yaw_rad = yaw_rad, .row = row, .cells = grid_.cols}, warped_row_.data());
+    warp(turned.line(row, 0, grid_.cols), warped_row_.data());
     average_row(warped_row_.data(), row, bev_);
     average_row(map.cell(row, 0), row, map_);
   }

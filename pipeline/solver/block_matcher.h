@@ -23,6 +23,8 @@ class BlockMatcher final : public Matcher {
   HypothesisGrid hypotheses_;
   SolverParameters parameters_;
   JointVolume joint_volume_;
+  std::vector<float> bev_planes_;
+  std::vector<float> map_planes_;
   std::vector<float> volume_;  ///< [yaw, x, y]
   std::vector<double> scores_;
 };

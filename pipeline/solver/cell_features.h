@@ -1,4 +1,4 @@
-// Standardised features with the channels of a cell side by side, in a frame of zeros.
+// Features with the channels of a cell side by side, in a frame of zeros.
 #pragma once
 
 #include <span>
@@ -19,8 +19,11 @@ class CellFeatures {
   /// Without a margin, for features that are never moved.
   CellFeatures(const BevGrid& grid, int channels);
 
-  /// Takes standardised features [channels, rows, cols].
-  void assign(std::span<const float> standardised);
+  /// Takes features [channels, rows, cols].
+  void assign(std::span<const float> planes);
+
+  /// The reverse: writes features [channels, rows, cols].
+  void copy_to(std::span<float> planes) const;
 
   /// Takes the means of whole blocks of finer cells, as many as go into one of these.
   void assign_average_of(const CellFeatures& fine);
@@ -50,22 +53,5 @@ class CellFeatures {
   int padded_cols_;
   LaneBuffer data_;
 };
-
-/// Neighbouring cells of one row of features that a correction (`yaw_rad`, then `row_shift` and
-/// `col_shift` in cells, x / cell_m and y / cell_m) has moved:
-///
-///   moved(p) = features(R(-yaw) (p - t)), bilinear, zero outside,
-///
-/// for columns `col_begin` ... `col_begin + cells - 1` of `row`, which may lie outside the grid.
-/// Writes cells * lanes values.
-struct WarpedRow {
-  double yaw_rad = 0.0;
-  double row_shift = 0.0;
-  double col_shift = 0.0;
-  int row = 0;
-  int col_begin = 0;
-  int cells = 0;
-};
-void warp(const CellFeatures& features, const WarpedRow& target, float* out);
 
 }  // namespace bevloc

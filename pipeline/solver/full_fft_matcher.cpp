@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pipeline/solver/feature_warp.h"
 #include "pipeline/solver/joint_posterior.h"
 #include "pipeline/solver/posterior.h"
 
@@ -52,9 +53,9 @@ void FullFftMatcher::match(const MatchSide& bev, const MatchSide& map, SolverRes
 void FullFftMatcher::turn(const CellFeatures& bev, double yaw_rad) {
   const int rows = grid_.rows + 2 * shifts_.rows;
   const int cols = grid_.cols + 2 * shifts_.cols;
+  const FeatureWarp turned(bev, yaw_rad);
   for (int row = 0; row < rows; ++row) {
-    warp(bev,
-         {.yaw_rad = yaw_rad, .row = row - shifts_.rows, .col_begin = -shifts_.cols, .cells = cols},
+    warp(turned.line(row - shifts_.rows, -shifts_.cols, cols),
          frame_.data() + static_cast<size_t>(row) * cols * bev.lanes());
   }
 }

@@ -32,6 +32,9 @@ using LaneBuffer = std::vector<float, CacheLineAllocator<float>>;
 /// Sixteen neighbouring floats at any address.
 using Lanes = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(4), may_alias));
 
+using LaneDoubles = double __attribute__((vector_size(kLanes * sizeof(double))));
+using LaneIntegers = int __attribute__((vector_size(kLanes * sizeof(int)), aligned(4), may_alias));
+
 inline const Lanes& lanes(const float* data) {
   return *reinterpret_cast<const Lanes*>(data);
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <span>
 
+#include "pipeline/solver/feature_warp.h"
 #include "pipeline/solver/posterior.h"
 #include "pipeline/solver/zncc.h"
 
@@ -137,12 +138,9 @@ void LiteralMatcher::solve_axis(const HypothesisAxis& axis, double yaw_rad, bool
 }
 
 void LiteralMatcher::move(const Se2& correction, CellFeatures& moved) const {
-  WarpedRow target{.yaw_rad = correction.yaw_rad,
-                   .row_shift = correction.x_m / grid_.cell_m,
-                   .col_shift = correction.y_m / grid_.cell_m,
-                   .cells = grid_.cols};
-  for (target.row = 0; target.row < grid_.rows; ++target.row) {
-    warp(bev_, target, moved.mutable_cell(target.row, 0));
+  const FeatureWarp warped(bev_, correction);
+  for (int row = 0; row < grid_.rows; ++row) {
+    warp(warped.line(row, 0, grid_.cols), moved.mutable_cell(row, 0));
   }
 }
 

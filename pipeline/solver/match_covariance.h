@@ -14,7 +14,7 @@ namespace bevloc {
 /// Covariance of a match as of a least-squares fit of the moved vehicle features B to the map
 /// features M, with the hypothesis grid as prior:
 ///
-///   covariance = (H S^-1 H + U^-1)^-1.
+///   covariance = (H S^-1 H (1 - 4 / blocks) + U^-1)^-1.
 ///
 /// H = J_M^T J_B, symmetrised, is the curvature of the UN-normalised covariance score: J holds each
 /// side's gradient by (x, y, yaw), and noise on one side alone cancels. S is the covariance of the

@@ -8,11 +8,10 @@
 
 namespace bevloc {
 
-/// The features of one side, in every form that a matcher may want.
+/// The features of one side.
 struct MatchSide {
-  std::span<const float> raw;           ///< as the network gives them, [channels, rows, cols]
-  std::span<const float> standardised;  ///< the same layout (standardise.h)
-  const CellFeatures& cells;            ///< standardised, the channels of a cell side by side
+  std::span<const float> raw;  ///< as the network gives them, [channels, rows, cols]
+  const CellFeatures& cells;   ///< standardised (standardise.h)
 };
 
 /// Scratch memory is made in the constructor; match() allocates nothing. Not thread safe.

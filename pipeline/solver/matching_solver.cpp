@@ -16,7 +16,18 @@ namespace {
 constexpr double kClaimedWeight = 0.4;
 /// What is hardly seen is as likely anywhere: 1 sigma that covers two thirds of that is more than
 /// its deviation.
-constexpr double kUnseenGrowth = 0.5;
+constexpr double kUnseenGrowth = 0.7;
+constexpr double kRefinedFactor = 0.95;
+constexpr double kUnrefinedFactor = 1.1;
+
+/// False where there is nothing to match.
+bool take(const FeatureView& features, CellFeatures& cells) {
+  if (features.data.size() != static_cast<size_t>(cells.channels()) * cells.grid().cells()) {
+    return false;
+  }
+  cells.assign(features.data);
+  return standardise(cells);
+}
 
 }  // namespace
 
@@ -24,24 +35,21 @@ MatchingSolver::MatchingSolver(const BevGrid& grid, int channels, const Hypothes
                                const SolverParameters& parameters, std::unique_ptr<Matcher> matcher,
                                Refine refine)
     : hypotheses_(hypotheses),
-      sigma_scale_(parameters.sigma_scale),
-      bev_standardised_(static_cast<size_t>(channels) * grid.cells()),
-      map_standardised_(bev_standardised_.size()),
+      sigma_scale_(parameters.sigma_scale *
+                   (refine == Refine::kYes ? kRefinedFactor : kUnrefinedFactor)),
       bev_cells_(grid, channels, hypotheses),
       map_cells_(grid, channels, hypotheses),
       matcher_(std::move(matcher)),
       match_covariance_(grid, channels, hypotheses) {
-  if (refine == Refine::kYes) refinement_.emplace(grid, channels, hypotheses, parameters);
+  if (refine == Refine::kYes) refinement_.emplace(hypotheses, parameters);
 }
 
 void MatchingSolver::solve(const FeatureView& bev, const FeatureView& map, SolverResult& result) {
-  if (!standardise(bev, bev_standardised_) || !standardise(map, map_standardised_)) {
+  if (!take(bev, bev_cells_) || !take(map, map_cells_)) {
     return set_no_evidence(hypotheses_, result);
   }
-  bev_cells_.assign(bev_standardised_);
-  map_cells_.assign(map_standardised_);
-  const MatchSide bev_side{bev.data, bev_standardised_, bev_cells_};
-  const MatchSide map_side{map.data, map_standardised_, map_cells_};
+  const MatchSide bev_side{bev.data, bev_cells_};
+  const MatchSide map_side{map.data, map_cells_};
   resize_distributions(hypotheses_, result);
   matcher_->match(bev_side, map_side, result);
   if (refinement_) refinement_->refine(bev_side, map_side, result);
@@ -61,7 +69,7 @@ Eigen::Matrix3d MatchingSolver::covariance(const SolverResult& result) {
       match_covariance_.estimate(bev_cells_, map_cells_, result.correction);
   const Eigen::Vector3d uniform = uniform_variance(hypotheses_).cwiseSqrt();
   const Eigen::Vector3d vouched_sigma = vouched.diagonal().cwiseSqrt();
-  const Eigen::Vector3d claimed_sigma = claimed_deviations(result, vouched).cwiseMin(uniform);
+  const Eigen::Vector3d claimed_sigma = claimed_deviations(result).cwiseMin(uniform);
   Eigen::Vector3d sigma;
   for (int i = 0; i < 3; ++i) {
     const double unseen = std::min(1.0, std::max(claimed_sigma(i), vouched_sigma(i)) / uniform(i));
@@ -75,19 +83,11 @@ Eigen::Matrix3d MatchingSolver::covariance(const SolverResult& result) {
   return covariance;
 }
 
-/// Deviations of the distributions. The refinement's are each along one axis with the others held
-/// fixed: the coupling of the axes, as MatchCovariance has it, widens them to what they would be
-/// with the others free.
-Eigen::Vector3d MatchingSolver::claimed_deviations(const SolverResult& result,
-                                                   const Eigen::Matrix3d& vouched) const {
+Eigen::Vector3d MatchingSolver::claimed_deviations(const SolverResult& result) const {
   Eigen::Vector3d variance(posterior_variance(result.x_probability, hypotheses_.x_m),
                            posterior_variance(result.y_probability, hypotheses_.y_m),
                            posterior_variance(result.yaw_probability, hypotheses_.yaw_rad));
-  variance = variance.cwiseMax(0.0) + least_variance(hypotheses_);
-  if (refinement_) {
-    variance = variance.cwiseProduct(vouched.diagonal().cwiseProduct(vouched.inverse().diagonal()));
-  }
-  return variance.cwiseSqrt();
+  return (variance.cwiseMax(0.0) + least_variance(hypotheses_)).cwiseSqrt();
 }
 
 }  // namespace bevloc

@@ -27,13 +27,10 @@ class MatchingSolver final : public Solver {
 
  private:
   Eigen::Matrix3d covariance(const SolverResult& result);
-  Eigen::Vector3d claimed_deviations(const SolverResult& result,
-                                     const Eigen::Matrix3d& vouched) const;
+  Eigen::Vector3d claimed_deviations(const SolverResult& result) const;
 
   HypothesisGrid hypotheses_;
   double sigma_scale_;
-  std::vector<float> bev_standardised_;
-  std::vector<float> map_standardised_;
   CellFeatures bev_cells_;
   CellFeatures map_cells_;
   std::unique_ptr<Matcher> matcher_;

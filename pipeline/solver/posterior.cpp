@@ -67,6 +67,24 @@ double rival_peak(std::span<const float> probability) {
   return highest > 0.0F ? second / highest : 0.0;
 }
 
+void spread(const FollowedAxis& followed, const HypothesisAxis& axis, std::vector<float>& scratch,
+            std::vector<float>& probability) {
+  scratch.assign(probability.size(), 0.0F);
+  const int last = axis.count() - 1;
+  for (int i = 0; i < followed.axis.count(); ++i) {
+    const double shift = followed.slope * (followed.axis.value(i) - followed.from) / axis.step;
+    for (int k = 0; k <= last; ++k) {
+      const double position = std::clamp(k + shift, 0.0, static_cast<double>(last));
+      const int low = std::min(static_cast<int>(position), last - 1);
+      const auto above = static_cast<float>(position - low);
+      const float share = followed.probability[i] * probability[k];
+      scratch[low] += (1.0F - above) * share;
+      scratch[low + 1] += above * share;
+    }
+  }
+  std::ranges::copy(scratch, probability.begin());
+}
+
 Eigen::Vector3d uniform_variance(const HypothesisGrid& hypotheses) {
   return {uniform_variance(hypotheses.x_m), uniform_variance(hypotheses.y_m),
           uniform_variance(hypotheses.yaw_rad)};

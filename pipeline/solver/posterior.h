@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -21,6 +22,21 @@ double parabola_top(std::span<const float> probability, const HypothesisAxis& ax
 
 /// The second highest local maximum against the highest; 0 where there is one only.
 double rival_peak(std::span<const float> probability);
+
+/// An axis whose search another one followed: its distribution, where the search began, and how far
+/// the other went for each unit.
+struct FollowedAxis {
+  std::span<const float> probability;
+  const HypothesisAxis& axis;
+  double from;
+  double slope;
+};
+
+/// The distribution of what followed, from what it is with the followed axis held:
+/// P(v) = sum over i of followed.probability[i] * probability(v - slope * (value(i) - from)),
+/// linear between hypotheses; what leaves the axis stays at its end. `scratch` is overwritten.
+void spread(const FollowedAxis& followed, const HypothesisAxis& axis, std::vector<float>& scratch,
+            std::vector<float>& probability);
 
 /// Variances of x, y and yaw when every hypothesis is as likely as any other.
 Eigen::Vector3d uniform_variance(const HypothesisGrid& hypotheses);

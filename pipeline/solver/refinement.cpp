@@ -1,42 +1,63 @@
 #include "pipeline/solver/refinement.h"
 
+#include <algorithm>
 #include <span>
 
 #include "pipeline/solver/posterior.h"
+#include "pipeline/solver/score_valley.h"
 
 namespace bevloc {
+namespace {
 
-Refinement::Refinement(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses,
-                       const SolverParameters& parameters)
-    : hypotheses_(hypotheses),
-      parameters_(parameters),
-      cell_m_(grid.cell_m),
-      x_plan_(hypotheses.x_m, grid.cell_m),
-      y_plan_(hypotheses.y_m, grid.cell_m),
-      scorer_(grid, channels, hypotheses),
-      x_scores_(hypotheses.x_m.count()),
-      y_scores_(hypotheses.y_m.count()),
-      yaw_scores_(hypotheses.yaw_rad.count()) {}
+Se2 correction_of(const Eigen::Vector3d& pose) {
+  return {pose.x(), pose.y(), pose.z()};
+}
+
+}  // namespace
+
+Refinement::Refinement(const HypothesisGrid& hypotheses, const SolverParameters& parameters)
+    : hypotheses_(hypotheses), parameters_(parameters) {
+  const int longest =
+      std::max({hypotheses.x_m.count(), hypotheses.y_m.count(), hypotheses.yaw_rad.count()});
+  scores_.reserve(longest);
+  spread_.reserve(longest);
+}
 
 void Refinement::refine(const MatchSide& bev, const MatchSide& map, SolverResult& result) {
-  Se2& correction = result.correction;
-  scorer_.set_features(bev.cells, map.cells);
-  x_fixed_.set_shift(correction.x_m / cell_m_);
-  scorer_.score(correction.yaw_rad, x_fixed_, y_plan_, y_scores_);
-  softmax(y_scores_, parameters_.refine_y_scale, result.y_probability);
-  correction.y_m = posterior_mean(result.y_probability, hypotheses_.y_m);
+  const PoseScorer scorer(bev.cells, map.cells);
+  const ScoreValley valley(map.cells, hypotheses_);
+  Eigen::Vector3d pose(result.correction.x_m, result.correction.y_m, result.correction.yaw_rad);
+  search(scorer, 1, Eigen::Vector3d::UnitY(), parameters_.refine_y_scale, pose,
+         result.y_probability);
+  const double first_yaw = pose.z();
+  const Eigen::Vector3d along_yaw = valley.along_yaw(correction_of(pose));
+  search(scorer, 2, along_yaw, parameters_.refine_yaw_scale, pose, result.yaw_probability);
+  const double first_x = pose.x();
+  const Eigen::Vector3d along_x = valley.along_x(correction_of(pose));
+  search(scorer, 0, along_x, parameters_.refine_x_scale, pose, result.x_probability);
 
-  y_fixed_.set_shift(correction.y_m / cell_m_);
-  for (int k = 0; k < hypotheses_.yaw_rad.count(); ++k) {
-    scorer_.score(hypotheses_.yaw_rad.value(k), x_fixed_, y_fixed_,
-                  std::span(yaw_scores_).subspan(k, 1));
+  const auto& [x_m, y_m, yaw_rad] = hypotheses_;
+  const FollowedAxis yaw{result.yaw_probability, yaw_rad, first_yaw, along_yaw.y()};
+  spread(yaw, y_m, spread_, result.y_probability);
+  spread({result.x_probability, x_m, first_x, along_x.y()}, y_m, spread_, result.y_probability);
+  spread({result.x_probability, x_m, first_x, along_x.z()}, yaw_rad, spread_,
+         result.yaw_probability);
+  result.correction = {posterior_mean(result.x_probability, x_m),
+                       posterior_mean(result.y_probability, y_m),
+                       posterior_mean(result.yaw_probability, yaw_rad)};
+}
+
+void Refinement::search(const PoseScorer& scorer, int axis, const Eigen::Vector3d& direction,
+                        double scale, Eigen::Vector3d& pose, std::vector<float>& probability) {
+  const HypothesisAxis* axes[] = {&hypotheses_.x_m, &hypotheses_.y_m, &hypotheses_.yaw_rad};
+  const Eigen::Vector3d farthest(axes[0]->farthest(), axes[1]->farthest(), axes[2]->farthest());
+  scores_.resize(axes[axis]->count());
+  for (int i = 0; i < axes[axis]->count(); ++i) {
+    const Eigen::Vector3d on_line = pose + (axes[axis]->value(i) - pose(axis)) * direction;
+    scores_[i] = scorer.score(correction_of(on_line.cwiseMax(-farthest).cwiseMin(farthest)));
   }
-  softmax(yaw_scores_, parameters_.refine_yaw_scale, result.yaw_probability);
-  correction.yaw_rad = posterior_mean(result.yaw_probability, hypotheses_.yaw_rad);
-
-  scorer_.score(correction.yaw_rad, x_plan_, y_fixed_, x_scores_);
-  softmax(x_scores_, parameters_.refine_x_scale, result.x_probability);
-  correction.x_m = posterior_mean(result.x_probability, hypotheses_.x_m);
+  softmax(scores_, scale, probability);
+  pose += (posterior_mean(probability, *axes[axis]) - pose(axis)) * direction;
 }
 
 }  // namespace bevloc

@@ -1,7 +1,6 @@
 #include "pipeline/solver/standardise.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "common/target_clones.h"
@@ -13,63 +12,64 @@ constexpr double kStdEpsilon = 0.01;
 /// A channel that varies less than this is constant up to rounding and carries nothing.
 constexpr double kLeastStd = 1e-4;
 
+/// Sixteen neighbouring channels.
 struct Moments {
-  double mean = 0.0;
-  double std = 0.0;
+  LaneDoubles mean;
+  LaneDoubles std;
 };
 
-/// One pass in double over the distances from the first value, so that a constant channel comes out
-/// as exactly that.
-BEVLOC_TARGET_CLONES Moments moments_of(const float* data, int count) {
-  constexpr int kSums = 16;
-  double sums[kSums] = {};
-  double squares[kSums] = {};
-  const float origin = data[0];
-  const int whole = count / kSums * kSums;
-  for (int i = 0; i < whole; i += kSums) {
-    for (int k = 0; k < kSums; ++k) {
-      const double distance = static_cast<double>(data[i + k]) - origin;
-      sums[k] += distance;
-      squares[k] += distance * distance;
+/// One pass over the distances from the first cell, so that a constant channel comes out as exactly
+/// that. Their quarters: twice the largest float would be beyond floats.
+BEVLOC_TARGET_CLONES void find_moments(const CellFeatures& features, int first_lane,
+                                       Moments& moments) {
+  constexpr float kPart = 0.25F;
+  const BevGrid& grid = features.grid();
+  const Lanes origin = kPart * lanes(features.cell(0, 0) + first_lane);
+  LaneDoubles sum = {};
+  LaneDoubles square = {};
+  for (int row = 0; row < grid.rows; ++row) {
+    const float* cell = features.cell(row, 0) + first_lane;
+    for (int col = 0; col < grid.cols; ++col, cell += features.lanes()) {
+      const Lanes distance = kPart * lanes(cell) - origin;
+      const auto exact = __builtin_convertvector(distance, LaneDoubles);
+      sum += exact;
+      square += exact * exact;
     }
   }
-  double sum = 0.0;
-  double square = 0.0;
-  for (int i = whole; i < count; ++i) {
-    const double distance = static_cast<double>(data[i]) - origin;
-    sum += distance;
-    square += distance * distance;
+  const LaneDoubles mean = sum / grid.cells();
+  const LaneDoubles variance = square / grid.cells() - mean * mean;
+  moments.mean = (__builtin_convertvector(origin, LaneDoubles) + mean) / kPart;
+  for (int k = 0; k < kLanes; ++k) {
+    moments.std[k] = std::sqrt(std::max(variance[k], 0.0)) / kPart;
   }
-  for (int k = 0; k < kSums; ++k) {
-    sum += sums[k];
-    square += squares[k];
-  }
-  const double mean = sum / count;
-  return {origin + mean, std::sqrt(std::max(square / count - mean * mean, 0.0))};
 }
 
 /// In double: a float that is as large as they get would lie beyond them from the mean.
-BEVLOC_TARGET_CLONES void shift_and_scale(const float* source, double mean, double scale, int count,
-                                          float* target) {
-  for (int i = 0; i < count; ++i) target[i] = static_cast<float>((source[i] - mean) * scale);
+BEVLOC_TARGET_CLONES void shift_and_scale(const Moments& moments, int first_lane,
+                                          CellFeatures& features) {
+  const LaneDoubles scale = 1.0 / (moments.std + kStdEpsilon);
+  const BevGrid& grid = features.grid();
+  for (int row = 0; row < grid.rows; ++row) {
+    float* cell = features.mutable_cell(row, 0) + first_lane;
+    for (int col = 0; col < grid.cols; ++col, cell += features.lanes()) {
+      const auto value = __builtin_convertvector(lanes(cell), LaneDoubles);
+      lanes(cell) = __builtin_convertvector((value - moments.mean) * scale, Lanes);
+    }
+  }
 }
 
 }  // namespace
 
-bool standardise(const FeatureView& features, std::span<float> standardised) {
-  const int cells = features.grid.cells();
-  const size_t count = static_cast<size_t>(features.channels) * cells;
-  assert(standardised.size() == count);
-  if (count == 0 || features.data.size() != count) return false;
-
+bool standardise(CellFeatures& features) {
   double greatest_std = 0.0;
-  for (int c = 0; c < features.channels; ++c) {
-    const float* source = features.data.data() + static_cast<size_t>(c) * cells;
-    float* target = standardised.data() + static_cast<size_t>(c) * cells;
-    const Moments moments = moments_of(source, cells);
-    if (!std::isfinite(moments.std)) return false;  // a value that is not finite spoils the sums
-    greatest_std = std::max(greatest_std, moments.std);
-    shift_and_scale(source, moments.mean, 1.0 / (moments.std + kStdEpsilon), cells, target);
+  Moments moments;
+  for (int first_lane = 0; first_lane < features.lanes(); first_lane += kLanes) {
+    find_moments(features, first_lane, moments);
+    for (int k = 0; k < kLanes; ++k) {
+      if (!std::isfinite(moments.std[k])) return false;  // a value that is not spoils the sums
+      greatest_std = std::max(greatest_std, moments.std[k]);
+    }
+    shift_and_scale(moments, first_lane, features);
   }
   return greatest_std > kLeastStd;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/target_clones.h"
+#include "pipeline/solver/feature_warp.h"
 #include "pipeline/solver/shift_range.h"
 
 namespace bevloc {
@@ -57,13 +58,6 @@ ShiftPlan::ShiftPlan(const HypothesisAxis& axis, double cell_m) : hypotheses_(ax
   }
 }
 
-ShiftPlan::ShiftPlan() : phases_{{0.0, {{0, 0}}}}, hypotheses_(1) {}
-
-void ShiftPlan::set_shift(double cells) {
-  assert(hypotheses_ == 1);
-  phases_[0].fraction = cells;
-}
-
 TranslationScorer::TranslationScorer(const BevGrid& grid, int channels,
                                      const HypothesisGrid& hypotheses)
     : sums_(static_cast<size_t>(hypotheses.x_m.count()) * hypotheses.y_m.count()) {
@@ -99,19 +93,19 @@ void TranslationScorer::match_phase(double yaw_rad, const ShiftPlan::Phase& x,
   const BevGrid& grid = map_->grid();
   const int lanes = map_->lanes();
   std::fill_n(sums_.begin(), x.shifts.size() * y.shifts.size(), Sums{});
-  WarpedRow target{.yaw_rad = yaw_rad, .row_shift = x.fraction, .col_shift = y.fraction};
-  target.col_begin = y.shifts.front().cells;
-  target.cells = grid.cols + y.shifts.back().cells - target.col_begin;
+  const FeatureWarp moved(*bev_, yaw_rad, x.fraction, y.fraction);
+  const int col_begin = y.shifts.front().cells;
+  const int cells = grid.cols + y.shifts.back().cells - col_begin;
   const int row_end = grid.rows + x.shifts.back().cells;
-  for (target.row = x.shifts.front().cells; target.row < row_end; ++target.row) {
-    warp(*bev_, target, warped_row_.data());
+  for (int row = x.shifts.front().cells; row < row_end; ++row) {
+    warp(moved.line(row, col_begin, cells), warped_row_.data());
     Sums* sums = sums_.data();
     for (const auto& x_shift : x.shifts) {
-      const int map_row = target.row - x_shift.cells;
+      const int map_row = row - x_shift.cells;
       const bool inside = map_row >= 0 && map_row < grid.rows;
       for (size_t j = 0; inside && j < y.shifts.size(); ++j) {
-        const float* moved = warped_row_.data() + (y.shifts[j].cells - target.col_begin) * lanes;
-        const RowSums part = match_row(map_->cell(map_row, 0), moved, grid.cols * lanes);
+        const float* shifted = warped_row_.data() + (y.shifts[j].cells - col_begin) * lanes;
+        const RowSums part = match_row(map_->cell(map_row, 0), shifted, grid.cols * lanes);
         sums[j].product += part.product;
         sums[j].value += part.value;
         sums[j].square += part.square;

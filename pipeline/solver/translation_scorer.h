@@ -24,16 +24,13 @@ class ShiftPlan {
   };
 
   ShiftPlan(const HypothesisAxis& axis, double cell_m);
-  /// One shift only: `set_shift` says which.
-  ShiftPlan();
-  void set_shift(double cells);
 
   const std::vector<Phase>& phases() const { return phases_; }
   int hypotheses() const { return hypotheses_; }
 
  private:
   std::vector<Phase> phases_;
-  int hypotheses_ = 0;
+  int hypotheses_;
 };
 
 /// Scores corrections by ZNCC over all cells and channels (paper, eq. 5), with zeros where the

@@ -10,10 +10,12 @@ from torch import Tensor
 
 from tests.training.small_solver import DEGREE, SMALL, random_features, small_solvers
 from training.solver import KINDS, Posterior, PoseSolvers, standardise
-from training.solvers.refine import axis_zncc
+from training.solvers.refine import line_zncc
 
 # What is held fixed has no gradient, and must not move with the features: x m, y m, yaw rad.
 HELD = torch.tensor([[0.17, -0.11, 0.7 * DEGREE], [-0.35, 0.2, -1.2 * DEGREE]]).double()
+# Some lines through it, one for each axis.
+LINES = torch.tensor([[1.0, 0.1, 0.02], [0.0, 1.0, 0.0], [0.0, 3.0, 1.0]]).double()
 STEP = 1e-6
 
 
@@ -22,14 +24,14 @@ def _standardised(bev: Tensor, features_map: Tensor) -> tuple[Tensor, Tensor]:
 
 
 def _coordinate_pass(solvers: PoseSolvers, bev: Tensor, features_map: Tensor) -> Posterior:
-    """Every axis of a refinement, each with the same estimates held fixed."""
-    x, y, yaw = (
-        torch.softmax(
-            axis_zncc(bev, features_map, HELD, axis, SMALL) * solvers.scale("joint"), dim=1
-        )
-        for axis in range(3)
-    )
-    return Posterior(x, y, yaw)
+    """Every search of a refinement, each through the same pose."""
+
+    def search(axis: int) -> Tensor:
+        direction = LINES[axis].expand_as(HELD)
+        scores = line_zncc((bev, features_map), HELD, axis, direction, SMALL)
+        return torch.softmax(scores * solvers.scale("joint"), dim=1)
+
+    return Posterior(search(0), search(1), search(2))
 
 
 # Distributions of raw features; the yaw of the axis steps as a teacher would give it.

@@ -5,6 +5,7 @@ import unittest
 
 import torch
 import torch.nn.functional as F
+from torch import Tensor
 
 from tests.training.small_solver import SMALL, random_features, small_solvers
 from training.joint_volume import joint_volume
@@ -16,6 +17,8 @@ from training.solvers.features import move
 from training.solvers.full import full_scores
 from training.solvers.full_fft import full_fft_scores
 from training.solvers.literal import gem
+from training.solvers.refine import spread
+from training.solvers.valley import ScoreValley
 from training.solvers.zncc import moved_zncc
 
 
@@ -138,24 +141,89 @@ class Gem(unittest.TestCase):
         self.assertAlmostEqual(found.item(), 1e-6, delta=1e-9)
 
 
+class Valley(unittest.TestCase):
+    """Against the features' own change when they are really moved."""
+
+    # Whole cells: nothing is blurred.
+    POSE = torch.tensor([[1.2, -0.6, 0.0]]).double()
+
+    def setUp(self):
+        road = torch.arange(20.0).double()[:, None], torch.arange(10.0).double()[None]
+        bend = torch.exp(-((road[1] - 4.5 - 0.03 * (road[0] - 9.5) ** 2) ** 2) / 4)
+        end = torch.exp(-((road[0] - 4.0) ** 2 + (road[1] - 3.0) ** 2) / 9)
+        inside = torch.exp(-(((road[0] - 9.5) / 7) ** 4) - ((road[1] - 4.5) / 3) ** 4)
+        self.features = torch.stack((bend, 0.3 * end))[None] * inside
+        self.map = self.moved(torch.zeros(3))
+
+    def moved(self, displacement: Tensor) -> Tensor:
+        """The vehicle's features under POSE and a displacement."""
+        return move(self.features, (self.POSE + displacement)[None], SMALL.cell_m)[:, :, 0]
+
+    def loss(self, displacement: Tensor) -> float:
+        return (self.moved(displacement) - self.map).square().sum().item()
+
+    def check(self, direction: Tensor, others: tuple[int, ...]):
+        size = 0.05
+        along = self.loss(size * direction)
+        for other in others:
+            for sign in (1, -1):
+                aside = direction.clone()
+                aside[other] += sign * (0.06 if other == 2 else 0.3)
+                self.assertLess(along, self.loss(size * aside))
+
+    def test_no_neighbouring_line_changes_the_features_less(self):
+        valley = ScoreValley(self.map, SMALL)
+        self.check(valley.along_x(self.POSE)[0], (1, 2))
+        self.check(0.1 * valley.along_yaw(self.POSE)[0], (1,))
+
+    def test_a_road_that_bends_asks_for_a_turn(self):
+        direction = ScoreValley(self.features[:, :1], SMALL).along_x(torch.zeros(1, 3))[0]
+        # The curve's radius: 1 / (2 * 0.03 per cell).
+        self.assertAlmostEqual(direction[2].abs().item(), 0.06 / SMALL.cell_m, delta=0.03)
+
+    def test_what_shows_nothing_stays(self):
+        nothing = ScoreValley(torch.ones_like(self.features), SMALL)
+        self.assertEqual(nothing.along_x(self.POSE).tolist(), [[1.0, 0.0, 0.0]])
+        self.assertEqual(nothing.along_yaw(self.POSE).tolist(), [[0.0, 0.0, 1.0]])
+
+
 class Refinement(unittest.TestCase):
     @torch.no_grad()
-    def test_axes_follow_each_other_in_the_order_y_yaw_x(self):
+    def test_searches_follow_each_other_in_the_order_y_yaw_x(self):
         sides = standardised(9)
         solvers = small_solvers()
         start = torch.tensor([[0.1, 0.2, 0.01], [-0.2, 0.1, 0.0]]).double()
-        found = solvers.refine(*sides, start)
-        held = start.clone()
-        for axis in (1, 2, 0):
-            values = SMALL.hypotheses()[axis]
-            scores = []
-            for value in values:
-                held_at = held.clone()
-                held_at[:, axis] = value
-                scores.append(moved_zncc(*sides, held_at[:, None], SMALL.cell_m)[:, 0])
-            probability = torch.softmax(20.0 * torch.stack(scores, dim=1), dim=1)
-            torch.testing.assert_close(found.axes()[axis], probability)
-            held[:, axis] = probability @ values
+        valley = ScoreValley(sides[1], SMALL)
+        pose, found = start.clone(), {}
+        lines = {
+            1: lambda pose: torch.tensor([[0.0, 1.0, 0.0]] * 2).double(),
+            2: valley.along_yaw,
+            0: valley.along_x,
+        }
+        for axis, line in lines.items():
+            direction, scores = line(pose), []
+            for value in SMALL.hypotheses()[axis]:
+                at = pose + (value - pose[:, axis, None]) * direction
+                at = torch.stack([a.clamp(-f, f) for a, f in zip(at.T, SMALL.farthest())], dim=1)
+                scores.append(moved_zncc(*sides, at[:, None], SMALL.cell_m)[:, 0])
+            found[axis] = torch.softmax(20.0 * torch.stack(scores, dim=1), dim=1)
+            mean = found[axis] @ SMALL.hypotheses()[axis]
+            pose = pose + (mean - pose[:, axis])[:, None] * direction
+        refined = solvers.refine(*sides, start)
+        torch.testing.assert_close(refined.x, found[0])
+        for axis in (1, 2):  # spread, but about the pose that was found
+            self.assertGreater((refined.axes()[axis] - found[axis]).abs().max().item(), 1e-4)
+            means = refined.axes()[axis] @ SMALL.hypotheses()[axis]
+            torch.testing.assert_close(means, pose[:, axis], atol=0.03, rtol=0)
+
+    def test_what_follows_an_axis_is_spread_by_it(self):
+        values = torch.arange(-3, 4).double() * 0.5
+        peak = torch.tensor([[0.0, 0, 0, 1, 0, 0, 0]]).double()
+        followed = torch.tensor([[0.25, 0.5, 0.25]]).double()
+        offset = torch.tensor([[-0.75, 0.0, 4.0]]).double()  # between two; none; off the end
+        found = spread(peak, values, followed, offset)
+        expected = torch.tensor([[0.0, 0.125, 0.125, 0.5, 0, 0, 0.25]]).double()
+        torch.testing.assert_close(found, expected)
 
 
 if __name__ == "__main__":

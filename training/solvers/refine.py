@@ -1,10 +1,16 @@
 """One more look at a solution, with the full score, of standardised features.
 
 One coordinate pass of ZNCC (zncc.py) through the estimate so far, in the order y, yaw, x, over the
-hypotheses of each axis: 11 + 21 + 21. P = softmax(joint_scale * ZNCC) of each axis replaces the
-first distribution, and its mean the estimate, before the next axis is scored. What is held fixed
-gets no gradient. (The run time can give each axis a scale of its own; a model file that names none
-means joint_scale for all three.)
+hypotheses of each axis: 11 + 21 + 21. What has been searched follows along the score's valley
+(valley.py, at the estimate so far): y while yaw is searched, y and yaw while x is. No pose that is
+scored lies beyond the farthest hypotheses. Each search gives P = softmax(joint_scale * ZNCC), and
+goes on from its mean. (The run time can give each axis a scale of its own; a model file that names
+none means joint_scale for all three.)
+
+The distributions are marginals: P_x is the last search's. What followed an axis is spread by it,
+P(v) = sum over i of P_followed(i) P_search(v - slope (value_i - where the search began)), linear
+between hypotheses, and what leaves an axis stays at its end: P_y by yaw and then by x, P_yaw by x.
+Their means are the estimate. Where a search goes along gets no gradient.
 """
 
 from __future__ import annotations
@@ -14,31 +20,69 @@ from torch import Tensor
 
 from training.solvers.definition import SolverDefinition
 from training.solvers.posterior import Posterior
+from training.solvers.valley import ScoreValley
 from training.solvers.zncc import moved_zncc
 
 _X, _Y, _YAW = 0, 1, 2
 
 
-def axis_zncc(
-    bev: Tensor, features_map: Tensor, held: Tensor, axis: int, definition: SolverDefinition
+def line_zncc(
+    sides: tuple[Tensor, Tensor],
+    pose: Tensor,
+    axis: int,
+    direction: Tensor,
+    definition: SolverDefinition,
 ) -> Tensor:
-    """ZNCC over the hypotheses of one axis, [batch, count]; the others as in `held` (x m, y m, yaw
-    rad), [batch, 3]."""
-    values = definition.hypotheses()[axis].to(bev.device)
-    corrections = held.detach().double()[:, None].repeat(1, len(values), 1)
-    corrections[:, :, axis] = values
-    return moved_zncc(bev, features_map, corrections, definition.cell_m)
+    """ZNCC of F_B and F_M over the hypotheses of one axis, [batch, count], along `direction`
+    through `pose`, both [batch, 3]."""
+    offset = definition.hypotheses()[axis].to(pose) - pose[:, axis, None]
+    corrections = pose[:, None] + offset[..., None] * direction[:, None]
+    farthest = torch.tensor(definition.farthest()).to(corrections)
+    corrections = torch.maximum(torch.minimum(corrections, farthest), -farthest)
+    return moved_zncc(*sides, corrections, definition.cell_m)
+
+
+def spread(
+    probability: Tensor, values: Tensor, followed: Tensor, offset: Tensor
+) -> Tensor:
+    """The distribution [batch, count] of what followed another axis: by `offset` [batch, n] at each
+    of that axis's `n` hypotheses."""
+    last = len(values) - 1
+    step = values[1] - values[0]
+    position = torch.arange(last + 1).to(offset) + offset[..., None] / step  # [batch, n, count]
+    position = position.clamp(0, last)
+    low = position.floor().clamp(max=last - 1)
+    above = (position - low).to(probability)
+    share = followed[..., None] * probability[:, None]
+    result = torch.zeros_like(probability)
+    result = result.scatter_add(1, low.long().flatten(1), ((1 - above) * share).flatten(1))
+    return result.scatter_add(1, low.long().flatten(1) + 1, (above * share).flatten(1))
 
 
 def refine(
     bev: Tensor, features_map: Tensor, start: Tensor, scale: Tensor, definition: SolverDefinition
 ) -> Posterior:
     """`start`: the estimate so far, [batch, 3]."""
-    held = start.detach().clone()
-    found: dict[int, Tensor] = {}
-    for axis in (_Y, _YAW, _X):
-        scores = axis_zncc(bev, features_map, held, axis, definition)
-        found[axis] = torch.softmax(scores * scale, dim=1)
-        values = definition.hypotheses()[axis].to(bev)
-        held[:, axis] = found[axis].detach() @ values
-    return Posterior(found[_X], found[_Y], found[_YAW])
+    values = [h.to(start) for h in definition.hypotheses()]
+    valley = ScoreValley(features_map, definition)
+    pose = start.detach()
+
+    def search(axis: int, direction: Tensor) -> Tensor:
+        nonlocal pose
+        scores = line_zncc((bev, features_map), pose, axis, direction, definition)
+        probability = torch.softmax(scores * scale, dim=1)
+        step = probability.detach() @ values[axis] - pose[:, axis]
+        pose = pose + step[:, None] * direction
+        return probability
+
+    y = search(_Y, torch.eye(3).to(pose)[None, _Y].expand_as(pose))
+    first_yaw, along_yaw = pose[:, _YAW, None], valley.along_yaw(pose)
+    yaw = search(_YAW, along_yaw)
+    first_x, along_x = pose[:, _X, None], valley.along_x(pose)
+    x = search(_X, along_x)
+
+    turned, moved = values[_YAW] - first_yaw, values[_X] - first_x
+    y = spread(y, values[_Y], yaw, along_yaw[:, _Y, None] * turned)
+    y = spread(y, values[_Y], x, along_x[:, _Y, None] * moved)
+    yaw = spread(yaw, values[_YAW], x, along_x[:, _YAW, None] * moved)
+    return Posterior(x, y, yaw)

@@ -34,6 +34,22 @@ TEST(PosteriorTest, TheParabolaStaysAtTheEndAndOnAPlateau) {
   EXPECT_NEAR(parabola_top(certain, kAxis), kAxis.value(3), 1e-9);
 }
 
+TEST(PosteriorTest, WhatFollowsAnAxisIsSpreadByIt) {
+  constexpr HypothesisAxis kFollowed{0.5, 0.5};
+  const std::vector<float> followed{0.25F, 0.5F, 0.25F};
+  std::vector<float> probability(kAxis.count(), 0.0F);
+  probability[4] = 1.0F;
+  std::vector<float> scratch;
+  // Half a step to the left of the peak, on it, and half a step to the right.
+  spread({followed, kFollowed, 0.0, 0.25}, kAxis, scratch, probability);
+  EXPECT_EQ(probability,
+            (std::vector<float>{0.0F, 0.0F, 0.0F, 0.125F, 0.75F, 0.125F, 0.0F, 0.0F, 0.0F}));
+  // From one end on, and far beyond the other.
+  spread({followed, kFollowed, -0.5, 8.0}, kAxis, scratch, probability);
+  EXPECT_FLOAT_EQ(probability[4], 0.25F * 0.75F);
+  EXPECT_FLOAT_EQ(probability.back(), 0.75F);
+}
+
 TEST(PosteriorTest, ARivalIsTheNextPeakNotTheNextHypothesis) {
   EXPECT_EQ(rival_peak(normal(0.1, 0.3)), 0.0);
   EXPECT_NEAR(rival_peak(std::vector<float>{0.1F, 0.4F, 0.1F, 0.1F, 0.3F}), 0.75, 1e-6);

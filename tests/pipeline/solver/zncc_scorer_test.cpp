@@ -1,17 +1,16 @@
-// The streamed ZNCC against ZNCC written out.
-#include "pipeline/solver/translation_scorer.h"
-
+// Both scorers of ZNCC against ZNCC written out.
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "pipeline/solver/pose_scorer.h"
 #include "pipeline/solver/standardise.h"
+#include "pipeline/solver/translation_scorer.h"
 #include "tests/pipeline/solver/synthetic_scene.h"
 
 namespace bevloc {
 namespace {
 
-constexpr int kChannels = 19;  // a whole vector and a bit
 constexpr BevGrid kGrid{24, 13, 0.5};
 /// Steps that divide a cell in no small number of phases, and yaw wide enough to leave the grid.
 constexpr HypothesisGrid kHypotheses{{1.5, 0.3}, {0.8, 0.4}, {0.4, 0.1}};
@@ -34,14 +33,15 @@ double moved(const float* plane, int row, int col, const Se2& correction) {
 
 double literal_zncc(const std::vector<float>& bev, const std::vector<float>& map,
                     const Se2& correction) {
+  const int channels = static_cast<int>(bev.size()) / kGrid.cells();
   double sums[5] = {};
-  for (int c = 0; c < kChannels; ++c) {
+  for (int c = 0; c < channels; ++c) {
     for (int row = 0; row < kGrid.rows; ++row) {
       for (int col = 0; col < kGrid.cols; ++col) {
         const double m = map[(c * kGrid.rows + row) * kGrid.cols + col];
         const double b = moved(bev.data() + c * kGrid.cells(), row, col, correction);
         const double terms[5] = {m, b, m * m, b * b, m * b};
-        for (int i = 0; i < 5; ++i) sums[i] += terms[i] / (kChannels * kGrid.cells());
+        for (int i = 0; i < 5; ++i) sums[i] += terms[i] / (channels * kGrid.cells());
       }
     }
   }
@@ -49,32 +49,32 @@ double literal_zncc(const std::vector<float>& bev, const std::vector<float>& map
          std::sqrt((sums[2] - sums[0] * sums[0]) * (sums[3] - sums[1] * sums[1]));
 }
 
-class TranslationScorerTest : public testing::Test {
+class ZnccScorerTest : public testing::TestWithParam<int> {
  protected:
-  TranslationScorerTest() {
-    std::vector<float> features(bev_.size());
-    for (std::vector<float>* side : {&bev_, &map_}) {
-      add_noise(features, 1.0F, side == &bev_ ? 1 : 2);
-      EXPECT_TRUE(standardise(view(features, kChannels, kGrid), *side));
-    }
+  ZnccScorerTest() {
+    add_noise(bev_, 1.0F, 1);
+    add_noise(map_, 1.0F, 2);
     bev_cells_.assign(bev_);
     map_cells_.assign(map_);
-    scorer_.set_features(bev_cells_, map_cells_);
+    EXPECT_TRUE(standardise(bev_cells_) && standardise(map_cells_));
+    bev_cells_.copy_to(bev_);
+    map_cells_.copy_to(map_);
   }
 
-  std::vector<float> bev_ = std::vector<float>(static_cast<size_t>(kChannels) * kGrid.cells());
+  std::vector<float> bev_ = std::vector<float>(static_cast<size_t>(GetParam()) * kGrid.cells());
   std::vector<float> map_ = bev_;
-  CellFeatures bev_cells_{kGrid, kChannels, kHypotheses};
-  CellFeatures map_cells_{kGrid, kChannels, kHypotheses};
-  TranslationScorer scorer_{kGrid, kChannels, kHypotheses};
+  CellFeatures bev_cells_{kGrid, GetParam(), kHypotheses};
+  CellFeatures map_cells_{kGrid, GetParam(), kHypotheses};
 };
 
-TEST_F(TranslationScorerTest, ScoresEveryHypothesisAsItIsDefined) {
+TEST_P(ZnccScorerTest, TranslationScorerScoresEveryHypothesisAsItIsDefined) {
+  TranslationScorer scorer(kGrid, GetParam(), kHypotheses);
+  scorer.set_features(bev_cells_, map_cells_);
   const ShiftPlan x(kHypotheses.x_m, kGrid.cell_m);
   const ShiftPlan y(kHypotheses.y_m, kGrid.cell_m);
   std::vector<double> scores(static_cast<size_t>(x.hypotheses()) * y.hypotheses());
   for (const double yaw_rad : {-0.4, 0.0, 0.17}) {
-    scorer_.score(yaw_rad, x, y, scores);
+    scorer.score(yaw_rad, x, y, scores);
     for (int i = 0; i < x.hypotheses(); ++i) {
       for (int j = 0; j < y.hypotheses(); ++j) {
         const Se2 correction{kHypotheses.x_m.value(i), kHypotheses.y_m.value(j), yaw_rad};
@@ -85,15 +85,16 @@ TEST_F(TranslationScorerTest, ScoresEveryHypothesisAsItIsDefined) {
   }
 }
 
-TEST_F(TranslationScorerTest, ScoresOneShiftOfAnyFraction) {
-  ShiftPlan x;
-  ShiftPlan y;
-  x.set_shift(-1.23 / kGrid.cell_m);
-  y.set_shift(0.71 / kGrid.cell_m);
-  double score = 0.0;
-  scorer_.score(0.31, x, y, {&score, 1});
-  EXPECT_NEAR(score, literal_zncc(bev_, map_, {-1.23, 0.71, 0.31}), 1e-5);
+TEST_P(ZnccScorerTest, PoseScorerScoresAnyCorrectionAsItIsDefined) {
+  const PoseScorer scorer(bev_cells_, map_cells_);
+  for (const Se2& correction : {Se2{-1.23, 0.71, 0.31}, Se2{}, Se2{1.5, -0.8, -0.4},
+                                Se2{0.5, 0.0, 0.0}, Se2{0.02, -0.33, 0.004}}) {
+    EXPECT_NEAR(scorer.score(correction), literal_zncc(bev_, map_, correction), 1e-5);
+  }
 }
+
+// A part of a vector, one, and one and a bit.
+INSTANTIATE_TEST_SUITE_P(Channels, ZnccScorerTest, testing::Values(3, 16, 19));
 
 TEST(ShiftPlanTest, SharesAPhaseAmongWholeCells) {
   const ShiftPlan plan({2.0, 0.2}, 0.6);

@@ -1,0 +1,74 @@
+#include "pipeline/solver/gradient_sums.h"
+
+#include "common/target_clones.h"
+#include "pipeline/solver/lanes.h"
+
+namespace bevloc {
+namespace {
+
+/// Products of the gradients of map and vehicle (map's first), and of the map's gradients with the
+/// residual; then the same weighted by the lever: what a turn moves a cell along x, per radian.
+struct Products {
+  float xx, xy, yx, yy, x_residual, y_residual;
+  float lever_xx, lever_xy, lever_yx, lever_x_residual;
+  float lever2_xx;
+};
+
+BEVLOC_TARGET_CLONES Products sum_products(const GradientRow& row) {
+  Lanes xx = {}, xy = {}, yx = {}, yy = {}, x_residual = {}, y_residual = {};
+  Lanes lever_xx = {}, lever_xy = {}, lever_yx = {}, lever_x_residual = {}, lever2_xx = {};
+  const auto first_lever = static_cast<float>(-row.first_y_m);
+  const auto lever_step = static_cast<float>(row.cell_m);
+  for (int i = 0; i < row.cells; ++i) {
+    const float lever = first_lever + static_cast<float>(i) * lever_step;
+    for (int k = 0; k < row.lanes; k += kLanes) {
+      const float* m = row.map + i * row.lanes + k;
+      const float* b = row.moved + i * row.lanes + k;
+      // Rows and columns run against x and y.
+      const Lanes map_x = lanes(m - row.map_row_stride) - lanes(m + row.map_row_stride);
+      const Lanes map_y = lanes(m - row.lanes) - lanes(m + row.lanes);
+      const Lanes bev_x = lanes(b - row.moved_row_stride) - lanes(b + row.moved_row_stride);
+      const Lanes bev_y = lanes(b - row.lanes) - lanes(b + row.lanes);
+      const Lanes residual = lanes(m) - lanes(b);
+      const Lanes product_xx = map_x * bev_x;
+      const Lanes lever_map_x = lever * map_x;
+      xx += product_xx;
+      xy += map_x * bev_y;
+      yx += map_y * bev_x;
+      yy += map_y * bev_y;
+      x_residual += map_x * residual;
+      y_residual += map_y * residual;
+      lever_xx += lever * product_xx;
+      lever_xy += lever_map_x * bev_y;
+      lever_yx += lever * (map_y * bev_x);
+      lever_x_residual += lever_map_x * residual;
+      lever2_xx += lever * (lever * product_xx);
+    }
+  }
+  return {sum_of(xx),         sum_of(xy),
+          sum_of(yx),         sum_of(yy),
+          sum_of(x_residual), sum_of(y_residual),
+          sum_of(lever_xx),   sum_of(lever_xy),
+          sum_of(lever_yx),   sum_of(lever_x_residual),
+          sum_of(lever2_xx)};
+}
+
+}  // namespace
+
+GradientSums sum_gradients(const GradientRow& row) {
+  const Products s = sum_products(row);
+  // A turn moves the point (x, y) along (-y, x): by the lever along x, and by `along` along y.
+  const double along = row.x_m;
+  GradientSums sums;
+  sums.curvature << s.xx, s.xy, s.lever_xx + along * s.xy,  //
+      s.yx, s.yy, s.lever_yx + along * s.yy,                //
+      s.lever_xx + along * s.yx, s.lever_xy + along * s.yy,
+      s.lever2_xx + along * (s.lever_xy + s.lever_yx) + along * along * s.yy;
+  sums.slope << s.x_residual, s.y_residual, s.lever_x_residual + along * s.y_residual;
+  const double per_m = 1.0 / (2.0 * row.cell_m);  // differences over two cells
+  sums.curvature *= per_m * per_m;
+  sums.slope *= per_m;
+  return sums;
+}
+
+}  // namespace bevloc

@@ -1,0 +1,26 @@
+// Zero-padded ZNCC of one correction at a time.
+#pragma once
+
+#include "common/se2.h"
+#include "pipeline/solver/cell_features.h"
+#include "pipeline/solver/zncc.h"
+
+namespace bevloc {
+
+/// Scores corrections by ZNCC over all cells and channels (paper, eq. 5), with zeros where the
+/// moved vehicle features do not reach, like TranslationScorer: this one serves corrections that
+/// share nothing. Features are moved and matched in one go, and nothing is written.
+class PoseScorer {
+ public:
+  /// Both must outlive the scorer.
+  PoseScorer(const CellFeatures& bev, const CellFeatures& map);
+
+  double score(const Se2& correction) const;
+
+ private:
+  const CellFeatures& bev_;
+  const CellFeatures& map_;
+  FeatureMoments map_moments_;
+};
+
+}  // namespace bevloc
