@@ -20,6 +20,12 @@ constexpr double kUnseenGrowth = 0.7;
 constexpr double kRefinedFactor = 0.95;
 constexpr double kUnrefinedFactor = 1.1;
 
+/// Of two places that are as likely the distribution alone knows.
+double claimed_weight(bool claims_more, double rival_peak) {
+  return claims_more ? std::lerp(kClaimedWeight, 1.0, std::min(1.0, 2.0 * rival_peak))
+                     : kClaimedWeight;
+}
+
 /// False where there is nothing to match.
 bool take(const FeatureView& features, CellFeatures& cells) {
   if (features.data.size() != static_cast<size_t>(cells.channels()) * cells.grid().cells()) {
@@ -72,10 +78,10 @@ Eigen::Matrix3d MatchingSolver::covariance(const SolverResult& result) {
   const Eigen::Vector3d claimed_sigma = claimed_deviations(result).cwiseMin(uniform);
   Eigen::Vector3d sigma;
   for (int i = 0; i < 3; ++i) {
+    const double weight = claimed_weight(claimed_sigma(i) > vouched_sigma(i), result.rival_peak(i));
     const double unseen = std::min(1.0, std::max(claimed_sigma(i), vouched_sigma(i)) / uniform(i));
-    sigma(i) = sigma_scale_ * std::pow(claimed_sigma(i), kClaimedWeight) *
-               std::pow(vouched_sigma(i), 1.0 - kClaimedWeight) *
-               (1.0 + kUnseenGrowth * unseen * unseen);
+    sigma(i) = sigma_scale_ * std::pow(claimed_sigma(i), weight) *
+               std::pow(vouched_sigma(i), 1.0 - weight) * (1.0 + kUnseenGrowth * unseen * unseen);
   }
   const Eigen::Vector3d growth = sigma.cwiseQuotient(vouched_sigma);
   Eigen::Matrix3d covariance = growth.asDiagonal() * vouched * growth.asDiagonal();
