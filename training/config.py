@@ -19,6 +19,7 @@ class TrainingConfig:
     samples: int = 0
     stop_after_minutes: float = 0.0  # of this process; the run goes on with `resume`
     resume: bool = False
+    init: str = ""  # checkpoint whose averaged weights a new run begins with
 
     seed: int = FIRST_TRAINING_SEED
     batch: int = 8

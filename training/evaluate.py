@@ -32,7 +32,7 @@ Inference = Callable[[Batch], tuple[Tensor, Tensor, Tensor]]
 Solver = Callable[[Tensor, Tensor], Solution]
 AXES = ("x", "y", "yaw")
 CLASSES = ("divider", "crossing", "boundary")
-NATIVE_SOLVERS = ("block", "decoupled", "decoupled+refine")
+NATIVE_SOLVERS = ("full-fft", "block", "decoupled", "decoupled+refine", "banded+refine")
 _TO_REPORTED = torch.tensor([1.0, 1.0, 180.0 / math.pi])  # m, m, degrees
 
 

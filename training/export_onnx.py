@@ -20,6 +20,7 @@ from onnx import TensorProto, helper
 from training.config import FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream
 from training.evaluate import load_network
+from training.fit_scales import fit_scales, fit_sigma_scale
 from training.graph import FoldedConv, Walk, folded_convolutions
 from training.model import (
     BEV_COLS,
@@ -32,11 +33,13 @@ from training.model import (
     Nano,
 )
 from training.onnx_graph import MASK_OUTPUT, FloatOnnxBackend, Int8OnnxBackend
-from training.quantize import input_scales, quantize
+from training.quantize import Quantization, input_scales, int8_inference, quantize
+from training.runtime import NativeNetwork, NativeSolver
 
 OPSET, IR_VERSION = 13, 8
 MODEL_NAME = "nano"
 QUANTIZATION_FILE = "quantization.pt"
+SHIPPED_SOLVER = "decoupled+refine"  # config/demo.yaml
 # Calibration looks at training scenes that no run reaches.
 CALIBRATION_SEED = FIRST_TRAINING_SEED + 2**27
 
@@ -66,17 +69,25 @@ def _outputs(net: Nano) -> list[onnx.ValueInfoProto]:
     ]
 
 
-def metadata(net: Nano) -> dict[str, str]:
+def metadata(net: Nano, sigma_scale: float) -> dict[str, str]:
     """What the run time has to know beside the graph."""
     scales = {
         f"bevloc.solver.{name}_scale": f"{net.solvers.scale(name).item():.6g}"
         for name in net.solvers.log_scale
     }
-    return {"bevloc.model": MODEL_NAME, **scales, "bevloc.solver.gem_omega": "1"}
+    return {
+        "bevloc.model": MODEL_NAME,
+        **scales,
+        "bevloc.solver.sigma_scale": f"{sigma_scale:.6g}",
+        "bevloc.solver.gem_omega": "1",
+    }
 
 
 def build_model(
-    net: Nano, convolutions: dict[str, FoldedConv], backend: FloatOnnxBackend
+    net: Nano,
+    convolutions: dict[str, FoldedConv],
+    backend: FloatOnnxBackend,
+    sigma_scale: float = 1.0,
 ) -> onnx.ModelProto:
     """The whole network as one ONNX model, as `backend` writes it."""
     inputs = input_scales()
@@ -94,7 +105,7 @@ def build_model(
         opset_imports=[helper.make_opsetid("", OPSET)],
         ir_version=IR_VERSION,
     )
-    helper.set_model_props(model, metadata(net))
+    helper.set_model_props(model, metadata(net, sigma_scale))
     onnx.checker.check_model(model, full_check=True)
     return model
 
@@ -106,6 +117,18 @@ def calibration_batches(samples: int, threads: int = 1) -> list[Batch]:
     return batches
 
 
+def write_model(
+    net: Nano, quantization: Quantization, sigma_scale: float, folder: Path
+) -> None:
+    """Both model files."""
+    for name, convolutions, backend in (
+        (MODEL_NAME, quantization.convolutions, Int8OnnxBackend(quantization)),
+        (f"{MODEL_NAME}_float", folded_convolutions(net), FloatOnnxBackend()),
+    ):
+        model = build_model(net, convolutions, backend, sigma_scale)
+        onnx.save(model, str(folder / f"{name}.onnx"))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("checkpoint", type=Path)
@@ -115,15 +138,17 @@ def main() -> None:
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint)
-    quantization = quantize(net, calibration_batches(arguments.calibration, arguments.threads))
+    batches = calibration_batches(arguments.calibration, arguments.threads)
+    quantization = quantize(net, batches)
     quantization.save(arguments.checkpoint.with_name(QUANTIZATION_FILE))
+    fit_scales(net.solvers, int8_inference(net, quantization), batches)
     arguments.models.mkdir(parents=True, exist_ok=True)
-    for name, convolutions, backend in (
-        (MODEL_NAME, quantization.convolutions, Int8OnnxBackend(quantization)),
-        (f"{MODEL_NAME}_float", folded_convolutions(net), FloatOnnxBackend()),
-    ):
-        path = arguments.models / f"{name}.onnx"
-        onnx.save(build_model(net, convolutions, backend), str(path))
+    shipped = arguments.models / f"{MODEL_NAME}.onnx"
+    write_model(net, quantization, 1.0, arguments.models)
+    network = NativeNetwork(shipped, arguments.threads)
+    sigma_scale = fit_sigma_scale(network, NativeSolver(network, SHIPPED_SOLVER), batches)
+    write_model(net, quantization, sigma_scale, arguments.models)
+    for path in sorted(arguments.models.glob(f"{MODEL_NAME}*.onnx")):
         print(f"{path}: {path.stat().st_size / 1e6:.2f} MB", flush=True)
 
 

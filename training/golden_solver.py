@@ -3,7 +3,7 @@
     <features>_bev.npy, <features>_map.npy   [sample, C, 100, 50], float16
     <group>_distributions.npy   [kind, sample, x + y + yaw hypotheses], kinds as solver.KINDS
     <group>_estimates.npy       [kind, sample, (x m, y m, yaw rad)]
-    parameters.npy              joint, x, y, yaw, banded x and banded y scale, GeM exponent
+    parameters.npy              scales as SCALES names them, GeM exponent
 
 computed in float64.
 """
@@ -29,6 +29,9 @@ SCALES = {
     "yaw": 120.0,
     "banded_x": 40.0,
     "banded_y": 20.0,
+    "refine_x": 35.0,
+    "refine_y": 50.0,
+    "refine_yaw": 65.0,
 }
 # Of the literal solver; the run time refuses others than 1 for the rest.
 GEM_OMEGA = 1.75

@@ -22,9 +22,11 @@ _SHARES = (("within_1_sigma", "within 1 sigma"), ("within_3_sigma", "within 3 si
 _ROWS = (
     ("float", "joint", "float, block"),
     ("float", "decoupled", "float, decoupled"),
+    ("int8", "full-fft", "int8, full-fft"),
     ("int8", "block", "int8, block"),
     ("int8", "decoupled", "int8, decoupled"),
     ("int8", "decoupled+refine", "int8, decoupled+refine"),
+    ("int8", "banded+refine", "int8, banded+refine"),
 )
 
 

@@ -66,6 +66,9 @@ _INITIAL_SCALES = {
     "yaw": 20.0,
     "banded_x": 20.0,
     "banded_y": 20.0,
+    "refine_x": 80.0,
+    "refine_y": 80.0,
+    "refine_yaw": 80.0,
 }
 
 
@@ -144,7 +147,8 @@ class PoseSolvers(nn.Module):
 
     def refine(self, bev: Tensor, features_map: Tensor, start: Tensor) -> Posterior:
         """One more pass from the estimate `start` (x m, y m, yaw rad), [batch, 3]."""
-        return refine(bev, features_map, start, self.scale("joint"), self.definition)
+        scales = tuple(self.scale(f"refine_{axis}") for axis in ("x", "y", "yaw"))
+        return refine(bev, features_map, start, scales, self.definition)
 
     def solve(self, kind: str, bev: Tensor, features_map: Tensor) -> Solution:
         """What the run time's solver of this name gives for raw features."""

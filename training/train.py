@@ -60,6 +60,8 @@ class Trainer:
         self.device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
         torch.manual_seed(config.seed)
         self.net = Nano().to(self.device, memory_format=torch.channels_last)
+        if config.init:
+            self.net.load_state_dict(torch.load(config.init, map_location=self.device)["ema"])
         self.average = Nano().to(self.device, memory_format=torch.channels_last)
         self.average.load_state_dict(self.net.state_dict())
         self.optimiser = torch.optim.AdamW(

@@ -9,7 +9,7 @@ import torch
 
 from tests.training.synthetic import SyntheticStream
 from training.curves import draw
-from training.evaluate import evaluate
+from training.evaluate import NATIVE_SOLVERS, evaluate
 from training.losses import sample_1d
 from training.report import BEGIN, END, Results, write_results
 from training.solver import Posterior, Solution
@@ -64,7 +64,7 @@ class Written(unittest.TestCase):
         self.models = Path(self.folder.name)
         batch = SyntheticStream(0).next(2)
         solver = fixed_solver([0.0, 0.0, 0.0], 1.0)
-        names = ("joint", "block", "decoupled", "decoupled+refine")
+        names = ("joint", *NATIVE_SOLVERS)
         metrics = metrics_of({name: solver for name in names}, [batch])
         self.results = Results(12_000, 2, metrics, metrics)
 

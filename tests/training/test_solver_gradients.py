@@ -16,6 +16,7 @@ from training.solvers.refine import line_zncc
 HELD = torch.tensor([[0.17, -0.11, 0.7 * DEGREE], [-0.35, 0.2, -1.2 * DEGREE]]).double()
 # Some lines through it, one for each axis.
 LINES = torch.tensor([[1.0, 0.1, 0.02], [0.0, 1.0, 0.0], [0.0, 3.0, 1.0]]).double()
+REFINE_SCALES = ("refine_x", "refine_y", "refine_yaw")
 STEP = 1e-6
 
 
@@ -29,7 +30,7 @@ def _coordinate_pass(solvers: PoseSolvers, bev: Tensor, features_map: Tensor) ->
     def search(axis: int) -> Tensor:
         direction = LINES[axis].expand_as(HELD)
         scores = line_zncc((bev, features_map), HELD, axis, direction, SMALL)
-        return torch.softmax(scores * solvers.scale("joint"), dim=1)
+        return torch.softmax(scores * solvers.scale(REFINE_SCALES[axis]), dim=1)
 
     return Posterior(search(0), search(1), search(2))
 
@@ -51,7 +52,7 @@ LEARNED = {
     "decoupled": {"log_scale.x", "log_scale.y", "log_scale.yaw"},
     "banded": {"log_scale.banded_x", "log_scale.banded_y"},
     "block": {"log_scale.joint"},
-    "refine": {"log_scale.joint"},
+    "refine": {f"log_scale.{name}" for name in REFINE_SCALES},
 }
 
 

@@ -61,6 +61,16 @@ class Resuming(unittest.TestCase):
             self.assertTrue(torch.equal(weights(resumed.net), weights(uninterrupted.net)))
             self.assertTrue(torch.equal(weights(resumed.average), weights(uninterrupted.average)))
 
+    def test_a_new_run_begins_with_the_averaged_weights_of_another(self):
+        torch.set_num_threads(1)
+        with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
+            finished = trainer(first)
+            finished.run()
+            begun = trainer(second, init=str(finished.checkpoint_path))
+            self.assertTrue(torch.equal(weights(begun.net), weights(finished.average)))
+            self.assertTrue(torch.equal(weights(begun.average), weights(finished.average)))
+            self.assertEqual(begun.samples, 0)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -3,9 +3,8 @@
 One coordinate pass of ZNCC (zncc.py) through the estimate so far, in the order y, yaw, x, over the
 hypotheses of each axis: 11 + 21 + 21. What has been searched follows along the score's valley
 (valley.py, at the estimate so far): y while yaw is searched, y and yaw while x is. No pose that is
-scored lies beyond the farthest hypotheses. Each search gives P = softmax(joint_scale * ZNCC), and
-goes on from its mean. (The run time can give each axis a scale of its own; a model file that names
-none means joint_scale for all three.)
+scored lies beyond the farthest hypotheses. Each search gives P = softmax(scale * ZNCC), with
+refine_x_scale, refine_y_scale or refine_yaw_scale, and goes on from its mean.
 
 The distributions are marginals: P_x is the last search's. What followed an axis is spread by it,
 P(v) = sum over i of P_followed(i) P_search(v - slope (value_i - where the search began)), linear
@@ -60,9 +59,13 @@ def spread(
 
 
 def refine(
-    bev: Tensor, features_map: Tensor, start: Tensor, scale: Tensor, definition: SolverDefinition
+    bev: Tensor,
+    features_map: Tensor,
+    start: Tensor,
+    scales: tuple[Tensor, ...],
+    definition: SolverDefinition,
 ) -> Posterior:
-    """`start`: the estimate so far, [batch, 3]."""
+    """`start`: the estimate so far, [batch, 3]; `scales`: of x, y and yaw."""
     values = [h.to(start) for h in definition.hypotheses()]
     valley = ScoreValley(features_map, definition)
     pose = start.detach()
@@ -70,7 +73,7 @@ def refine(
     def search(axis: int, direction: Tensor) -> Tensor:
         nonlocal pose
         scores = line_zncc((bev, features_map), pose, axis, direction, definition)
-        probability = torch.softmax(scores * scale, dim=1)
+        probability = torch.softmax(scores * scales[axis], dim=1)
         step = probability.detach() @ values[axis] - pose[:, axis]
         pose = pose + step[:, None] * direction
         return probability

@@ -53,12 +53,12 @@ SolverParameters parameters_for(SolverKind kind) {
           .x_scale = values.at(1),
           .y_scale = values.at(2),
           .yaw_scale = values.at(3),
-          .refine_x_scale = values.at(0),
-          .refine_y_scale = values.at(0),
-          .refine_yaw_scale = values.at(0),
+          .refine_x_scale = values.at(6),
+          .refine_y_scale = values.at(7),
+          .refine_yaw_scale = values.at(8),
           .banded_x_scale = values.at(4),
           .banded_y_scale = values.at(5),
-          .gem_omega = is_literal(kind) ? values.at(6) : 1.0F};
+          .gem_omega = is_literal(kind) ? values.at(9) : 1.0F};
 }
 
 std::vector<float> distributions(const SolverResult& result) {
