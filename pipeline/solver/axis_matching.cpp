@@ -6,6 +6,7 @@
 
 #include "common/target_clones.h"
 #include "pipeline/solver/feature_warp.h"
+#include "pipeline/solver/lane_sums.h"
 #include "pipeline/solver/shift_range.h"
 
 namespace bevloc {
@@ -15,25 +16,6 @@ constexpr float kVarianceEpsilon = 1e-3F;
 
 int crop_of(const BevGrid& grid, const HypothesisGrid& hypotheses) {
   return whole_cells(std::max(hypotheses.x_m.farthest(), hypotheses.y_m.farthest()), grid.cell_m);
-}
-
-/// The mean of a row of cells, for each lane.
-BEVLOC_TARGET_CLONES void mean_of_row(const float* row, int cells, int lane_count, float* out) {
-  const float share = 1.0F / static_cast<float>(cells);
-  for (int k = 0; k < lane_count; k += kLanes) {
-    // Several of them, to hide the latency of the additions.
-    Lanes sums[4] = {};
-    int i = 0;
-    for (; i + 4 <= cells; i += 4) {
-      for (int j = 0; j < 4; ++j) sums[j] += lanes(row + (i + j) * lane_count + k);
-    }
-    for (; i < cells; ++i) sums[0] += lanes(row + i * lane_count + k);
-    lanes(out + k) = ((sums[0] + sums[1]) + (sums[2] + sums[3])) * share;
-  }
-}
-
-BEVLOC_TARGET_CLONES void add_row(const float* row, float weight, int count, float* out) {
-  for (int i = 0; i < count; i += kLanes) lanes(out + i) += weight * lanes(row + i);
 }
 
 /// Subtracts from each of sixteen channels its mean over the cells.
@@ -106,10 +88,13 @@ void AxisMatching::set_features(const CellFeatures& bev, double yaw_rad, const C
 }
 
 void AxisMatching::average_row(const float* cells, int row, AxisFeatures& out) const {
-  mean_of_row(cells + crop_ * lanes_, grid_.cols - 2 * crop_, lanes_, out.x.data() + row * lanes_);
+  const int inner = grid_.cols - 2 * crop_;
+  float* x = out.x.data() + row * lanes_;
+  std::fill_n(x, lanes_, 0.0F);
+  add_weighted_sum(cells + crop_ * lanes_, inner, 1.0F / static_cast<float>(inner), lanes_, x);
   if (row < crop_ || row >= grid_.rows - crop_) return;
   const float weight = 1.0F / static_cast<float>(grid_.rows - 2 * crop_);
-  add_row(cells, weight, grid_.cols * lanes_, out.y.data());
+  add_weighted(cells, weight, grid_.cols * lanes_, out.y.data());
 }
 
 void AxisMatching::score_x(std::span<double> scores) const {

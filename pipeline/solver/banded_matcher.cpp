@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/target_clones.h"
 #include "pipeline/solver/cubic.h"
+#include "pipeline/solver/lane_sums.h"
 #include "pipeline/solver/posterior.h"
 
 namespace bevloc {
@@ -13,59 +13,6 @@ namespace {
 constexpr int kLateralBands = 10;
 constexpr int kLongitudinalBands = 5;
 constexpr float kStdEpsilon = 0.01F;
-
-BEVLOC_TARGET_CLONES void add(const float* cells, float weight, int count, float* out) {
-  for (int i = 0; i < count; i += kLanes) lanes(out + i) += weight * lanes(cells + i);
-}
-
-/// The sum of a row of cells, into `out`.
-BEVLOC_TARGET_CLONES void add_sum(const float* cells, int count, float weight, int lane_count,
-                                  float* out) {
-  for (int k = 0; k < lane_count; k += kLanes) {
-    Lanes sum = {};
-    for (int i = 0; i < count; ++i) sum += lanes(cells + i * lane_count + k);
-    lanes(out + k) += weight * sum;
-  }
-}
-
-BEVLOC_TARGET_CLONES float dot(const float* a, const float* b, int count) {
-  Lanes sums[2] = {};
-  int i = 0;
-  for (; i + 2 * kLanes <= count; i += 2 * kLanes) {
-    sums[0] += lanes(a + i) * lanes(b + i);
-    sums[1] += lanes(a + i + kLanes) * lanes(b + i + kLanes);
-  }
-  if (i < count) sums[0] += lanes(a + i) * lanes(b + i);
-  return sum_of(sums[0] + sums[1]);
-}
-
-/// Each lane of `bands` runs of `length` cells, `stride` floats apart: mean 0, deviation nearly 1.
-BEVLOC_TARGET_CLONES void standardise(float* first, int bands, std::ptrdiff_t stride, int length,
-                                      int lane_count) {
-  const float share = 1.0F / static_cast<float>(bands * length);
-  for (int k = 0; k < lane_count; k += kLanes) {
-    Lanes mean = {};
-    for (int b = 0; b < bands; ++b) {
-      for (int i = 0; i < length; ++i) mean += lanes(first + b * stride + i * lane_count + k);
-    }
-    mean *= share;
-    Lanes variance = {};
-    for (int b = 0; b < bands; ++b) {
-      for (int i = 0; i < length; ++i) {
-        Lanes& value = lanes(first + b * stride + i * lane_count + k);
-        value -= mean;
-        variance += value * value;
-      }
-    }
-    Lanes scale = {};
-    for (int c = 0; c < kLanes; ++c) {
-      scale[c] = 1.0F / (std::sqrt(share * variance[c]) + kStdEpsilon);
-    }
-    for (int b = 0; b < bands; ++b) {
-      for (int i = 0; i < length; ++i) lanes(first + b * stride + i * lane_count + k) *= scale;
-    }
-  }
-}
 
 /// Sum of exp(scale * (score - best)).
 double sum_of_exp(const double* scores, int count, double scale, double best) {
@@ -159,20 +106,22 @@ void BandedMatcher::average(const CellFeatures& features, int lateral_reach, int
     const int begin = b * grid_.rows / row_bands;
     const int end = (b + 1) * grid_.rows / row_bands;
     for (int row = begin; row < end; ++row) {
-      add(features.cell(row, 0), 1.0F / static_cast<float>(end - begin), grid_.cols * lanes_,
-          lateral_first + b * lateral_stride);
+      add_weighted(features.cell(row, 0), 1.0F / static_cast<float>(end - begin),
+                   grid_.cols * lanes_, lateral_first + b * lateral_stride);
     }
   }
   for (int row = 0; row < grid_.rows; ++row) {
     for (int b = 0; b < col_bands; ++b) {
       const int begin = b * grid_.cols / col_bands;
       const int end = (b + 1) * grid_.cols / col_bands;
-      add_sum(features.cell(row, begin), end - begin, 1.0F / static_cast<float>(end - begin),
-              lanes_, longitudinal_first + b * longitudinal_stride + row * lanes_);
+      add_weighted_sum(features.cell(row, begin), end - begin,
+                       1.0F / static_cast<float>(end - begin), lanes_,
+                       longitudinal_first + b * longitudinal_stride + row * lanes_);
     }
   }
-  standardise(lateral_first, row_bands, lateral_stride, grid_.cols, lanes_);
-  standardise(longitudinal_first, col_bands, longitudinal_stride, grid_.rows, lanes_);
+  standardise_runs(lateral_first, row_bands, lateral_stride, grid_.cols, lanes_, kStdEpsilon);
+  standardise_runs(longitudinal_first, col_bands, longitudinal_stride, grid_.rows, lanes_,
+                   kStdEpsilon);
 }
 
 void BandedMatcher::correlate(Bands& bands) const {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "common/target_clones.h"
+#include "pipeline/solver/lane_sums.h"
 #include "pipeline/solver/shift_range.h"
 
 namespace bevloc {
@@ -33,19 +34,6 @@ double farthest_bin(const BevGrid& grid) {
 }
 
 /// Sum of a * b.
-BEVLOC_TARGET_CLONES float dot(const float* a, const float* b, int count) {
-  constexpr int kSums = 4;
-  Lanes sums[kSums] = {};
-  int i = 0;
-  for (; i + kSums * kLanes <= count; i += kSums * kLanes) {
-    for (int k = 0; k < kSums; ++k) {
-      sums[k] += lanes(a + i + k * kLanes) * lanes(b + i + k * kLanes);
-    }
-  }
-  for (; i < count; i += kLanes) sums[0] += lanes(a + i) * lanes(b + i);
-  return sum_of((sums[0] + sums[1]) + (sums[2] + sums[3]));
-}
-
 /// Shifts whose correlations are summed side by side.
 constexpr int kGroup = 4;
 
@@ -72,26 +60,6 @@ BEVLOC_TARGET_CLONES void gather(const float* amplitude, const YawTap* tap, int 
       }
       lanes(out + k) = sums[0] + sums[1];
     }
-  }
-}
-
-/// Mean 0 and deviation 1 over the angles, for each lane.
-BEVLOC_TARGET_CLONES void standardise_angles(float* band, int angles, int lane_count) {
-  const int size = angles * lane_count;
-  for (int k = 0; k < lane_count; k += kLanes) {
-    Lanes mean = {};
-    for (int i = k; i < size; i += lane_count) mean += lanes(band + i);
-    mean /= static_cast<float>(angles);
-    Lanes variance = {};
-    for (int i = k; i < size; i += lane_count) {
-      lanes(band + i) -= mean;
-      variance += lanes(band + i) * lanes(band + i);
-    }
-    Lanes scale = {};
-    for (int c = 0; c < kLanes; ++c) {
-      scale[c] = 1.0F / (std::sqrt(variance[c] / static_cast<float>(angles)) + kStdEpsilon);
-    }
-    for (int i = k; i < size; i += lane_count) lanes(band + i) *= scale;
   }
 }
 
@@ -178,7 +146,7 @@ void YawSpectrum::read_signature(std::span<const float> amplitude, LaneBuffer& s
     float* begin = band(signature, b);
     gather(amplitude.data(), taps_.data() + b * kAngles * kTapsPerAngle, kTapsPerAngle, kAngles,
            lane_count, begin);
-    standardise_angles(begin, kAngles, lane_count);
+    standardise_runs(begin, 1, 0, kAngles, lane_count, kStdEpsilon);
     std::copy_n(begin + size - margin, margin, begin - margin);
     std::copy_n(begin, margin, begin + size);
   }
