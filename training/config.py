@@ -21,6 +21,13 @@ class TrainingConfig:
     resume: bool = False
     init: str = ""  # checkpoint whose averaged weights a new run begins with
 
+    nuscenes: str = ""  # folder of the data set; none: the simulator
+    nuscenes_version: str = ""  # v1.0-*, where there are several
+    scenes: str = ""  # file of scene names; none: all
+    validation_scenes: str = ""
+    line_width_cells: float = 5.0
+    on_error: str = "refuse"  # or "skip": of samples that cannot be used
+
     seed: int = FIRST_TRAINING_SEED
     batch: int = 8
     threads: int = 1

@@ -3,7 +3,8 @@
     /usr/bin/python3 -m training.evaluate training/runs/nano/checkpoint.pt
     /usr/bin/python3 -m training.evaluate training/runs/nano/checkpoint.pt --write models
 
-The first measures the float network with PyTorch. The second also measures the model file in the
+The first measures the float network with PyTorch, with `--nuscenes DIR --scenes FILE` on every
+sample of these scenes (the paper's Table I) in place of the simulator's. The second also measures the model file in the
 folder on the daemon's own network and solvers, and writes the results there: nano_results.json, and
 the tables of README.md.
 """
@@ -12,19 +13,19 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import torch
 from torch import Tensor
 
-from training.config import FIRST_VALIDATION_SEED
-from training.data import Batch, SamplerStream
+from training.data import Batch
 from training.losses import intersection_over_union, pose_losses
 from training.model import Nano, real_images, real_raster
 from training.report import Results, write_results
 from training.runtime import NativeNetwork, NativeSolver
 from training.solver import PoseSolvers, Solution, standardise
+from training.sources import nuscenes_batches, simulator_batches
 
 # A batch -> F_B, F_M and the logits of the perceived mask.
 Inference = Callable[[Batch], tuple[Tensor, Tensor, Tensor]]
@@ -87,15 +88,17 @@ def torch_solvers(solvers: PoseSolvers) -> dict[str, Solver]:
 
 @torch.no_grad()
 def evaluate(
-    infer: Inference, solvers: dict[str, Solver], batches: list[Batch], device: torch.device
+    infer: Inference, solvers: dict[str, Solver], batches: Iterable[Batch], device: torch.device
 ) -> dict[str, float]:
     """MAE, median, RMSE, 90th percentile and mean signed error (m, m, degrees), coverage and NLL
     per axis and solver, the prior's errors, and the IoU of each class."""
     errors: dict[str, list[Tensor]] = {name: [] for name in solvers}
     sigmas: dict[str, list[Tensor]] = {name: [] for name in solvers}
     nlls: dict[str, list[Tensor]] = {name: [] for name in solvers}
+    prior: list[Tensor] = []
     overlap, union = torch.zeros(3), torch.zeros(3)
     for host_batch in batches:
+        prior.append(-host_batch.correction * _TO_REPORTED)
         batch = host_batch.to(device)
         bev, features_map, perceived = infer(batch)
         for name, solve in solvers.items():
@@ -106,8 +109,7 @@ def evaluate(
         found = intersection_over_union(perceived, real_raster(batch.raster_truth))
         overlap += found[0].cpu()
         union += found[1].cpu()
-    prior = torch.cat([-batch.correction.cpu() * _TO_REPORTED for batch in batches])
-    metrics = _error_metrics("prior", prior)
+    metrics = _error_metrics("prior", torch.cat(prior))
     for name in solvers:
         error = torch.cat(errors[name])
         metrics |= _error_metrics(name, error)
@@ -115,14 +117,6 @@ def evaluate(
     for i, name in enumerate(CLASSES):
         metrics[f"iou_{name}"] = (overlap[i] / union[i].clamp(min=1)).item()
     return metrics
-
-
-def validation_batches(samples: int, batch: int = 8, threads: int = 1) -> list[Batch]:
-    """A fixed set of evaluation scenes, all cameras there."""
-    stream = SamplerStream(FIRST_VALIDATION_SEED, 0, threads, 0.0)
-    batches = [stream.next(min(batch, samples - i)) for i in range(0, samples, batch)]
-    stream.close()
-    return batches
 
 
 def summary(metrics: dict[str, float]) -> str:
@@ -166,12 +160,21 @@ def main() -> None:
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--raw", action="store_true", help="the last weights, not their average")
     parser.add_argument("--write", type=Path, help="folder of the model file and its card")
+    parser.add_argument("--nuscenes", help="folder of the data set, in place of the simulator")
+    parser.add_argument("--scenes", default="", help="file of scene names; none: all")
+    parser.add_argument("--line-width-cells", type=float, default=5.0)
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint, averaged=not arguments.raw)
-    batches = validation_batches(arguments.samples, threads=arguments.threads)
     solvers = torch_solvers(net.solvers)
-    metrics = evaluate(float_inference(net), solvers, batches, torch.device("cpu"))
+    device = torch.device("cpu")
+    if arguments.nuscenes:
+        folder, scenes = arguments.nuscenes, arguments.scenes
+        all_of_it = nuscenes_batches(folder, scenes, arguments.line_width_cells, arguments.threads)
+        print(summary(evaluate(float_inference(net), solvers, all_of_it, device)))
+        return
+    batches = simulator_batches(arguments.samples, arguments.threads)
+    metrics = evaluate(float_inference(net), solvers, batches, device)
     print(f"float\n{summary(metrics)}", flush=True)
     if arguments.write:
         model = arguments.write / "nano.onnx"

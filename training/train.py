@@ -20,17 +20,18 @@ import torch
 from torch import Tensor, nn
 
 from training.config import TrainingConfig
-from training.data import Batch, SamplerStream, Stream, augment
+from training.data import Batch, Stream, augment
 from training.evaluate import (
     evaluate,
     float_inference,
     summary,
     torch_solvers,
-    validation_batches,
 )
 from training.losses import pose_losses, semantic_loss
 from training.model import Nano, real_images, real_raster
+from training.nuscenes.errors import NuscenesError
 from training.solver import DEFINITION, standardise
+from training.sources import training_stream, validation_set
 
 # glibc gives large blocks back to the kernel at once, and faulting them in again costs a fifth of a
 # step. It reads these at start only.
@@ -253,12 +254,11 @@ def main() -> None:
         command = [sys.executable, "-m", "training.train", *sys.argv[1:]]
         os.execve(sys.executable, command, environment)
     torch.set_num_threads(config.threads)
-    trainer = Trainer(
-        config,
-        lambda c, first: SamplerStream(c.seed, first, c.sampler_threads, c.drop_camera_probability),
-        validation_batches(config.validation_samples, threads=config.sampler_threads),
-    )
-    finished = trainer.run()
+    try:
+        trainer = Trainer(config, training_stream, validation_set(config))
+        finished = trainer.run()
+    except NuscenesError as error:
+        sys.exit(f"nuScenes: {error}")
     trainer.validate()
     print("finished" if finished else "stopped; go on with --resume", flush=True)
     sys.exit(0 if finished else EXIT_STOPPED)

@@ -1,0 +1,66 @@
+"""Which samples a run reads."""
+
+from __future__ import annotations
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import torch
+
+from tests.training.nuscenes_tree import SAMPLES_PER_SCENE, write_tree
+from training.config import TrainingConfig
+from training.nuscenes.errors import NuscenesError
+from training.sources import (
+    nuscenes_batches,
+    simulator_batches,
+    training_stream,
+    validation_set,
+)
+
+SCENES = 2
+
+
+class Sources(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.root = Path(cls.folder.name)
+        write_tree(cls.root)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_nuscenes_takes_the_place_of_the_simulator(self):
+        config = TrainingConfig(nuscenes=str(self.root), drop_camera_probability=0.0)
+        stream = training_stream(config, 0)
+        first, second = stream.next(2), stream.next(2)
+        stream.close()
+        resumed = training_stream(config, 2)
+        self.assertTrue(torch.equal(resumed.next(2).raster_prior, second.raster_prior))
+        resumed.close()
+        simulated = training_stream(TrainingConfig(), 0)
+        for name, tensor in vars(simulated.next(2)).items():
+            found = getattr(first, name)
+            self.assertEqual((found.shape, found.dtype), (tensor.shape, tensor.dtype), name)
+        simulated.close()
+
+    def test_evaluation_reads_every_sample_once(self):
+        batches = list(nuscenes_batches(str(self.root), "", 5.0, 1))
+        self.assertEqual(sum(map(len, batches)), SCENES * SAMPLES_PER_SCENE)
+        rasters = torch.cat([batch.raster_truth for batch in batches]).flatten(1)
+        self.assertEqual(len(rasters.unique(dim=0)), SCENES * SAMPLES_PER_SCENE)
+
+    def test_validation_never_reads_training_scenes_unasked(self):
+        self.assertEqual(validation_set(TrainingConfig(nuscenes=str(self.root))), [])
+        simulated = validation_set(TrainingConfig(validation_samples=3))
+        self.assertTrue(torch.equal(simulated[0].images, simulator_batches(3, 1)[0].images))
+
+    def test_a_folder_that_is_none_is_named(self):
+        with self.assertRaisesRegex(NuscenesError, "nowhere"):
+            training_stream(TrainingConfig(nuscenes=str(self.root / "nowhere")), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

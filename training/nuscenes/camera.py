@@ -1,0 +1,91 @@
+"""The cropped camera that the network looks through (pipeline/preprocessing/network_camera.h)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from training.nuscenes.errors import (
+    CalibrationError,
+    MissingFileError,
+    UnreadableImageError,
+    WrongSizeError,
+)
+
+WIDTH_PX, HEIGHT_PX = 320, 96
+HORIZON_ROW = 14.0
+# JPEG files are decoded at half their size or less where this many columns are left.
+_DECODED_COLUMNS = 2 * WIDTH_PX
+_MIN_UPRIGHT = 0.1  # sine of how far a camera must stay from looking along the vertical or lying
+
+
+@dataclass(frozen=True, slots=True)
+class Pinhole:
+    """Pixel (0, 0) is the centre of the top left pixel."""
+
+    width_px: int
+    height_px: int
+    fx_px: float
+    fy_px: float
+    cx_px: float
+    cy_px: float
+
+
+def network_camera(real: Pinhole, vehicle_from_camera: np.ndarray) -> Pinhole:
+    """The full width scaled to 320 columns, and the 96 rows that have the horizon of a level
+    vehicle, at the principal column, in row 14. vehicle_from_camera: [4, 4] of the calibration."""
+    camera_down, camera_forward = vehicle_from_camera[2, 1], vehicle_from_camera[2, 2]
+    if real.fx_px <= 0 or real.fy_px <= 0:
+        raise CalibrationError(f"focal lengths {real.fx_px}, {real.fy_px}, wanted positive ones")
+    if abs(camera_down) < _MIN_UPRIGHT:
+        raise CalibrationError("a camera on its side or facing the ground, wanted an upright one")
+    scale = WIDTH_PX / real.width_px
+    f_px = real.fx_px * scale
+    return Pinhole(
+        width_px=WIDTH_PX,
+        height_px=HEIGHT_PX,
+        fx_px=f_px,
+        fy_px=f_px,
+        cx_px=(real.cx_px + 0.5) * scale - 0.5,
+        cy_px=HORIZON_ROW + f_px * camera_forward / camera_down,
+    )
+
+
+def look_through(path: Path, real: Pinhole, network: Pinhole) -> np.ndarray:
+    """The image file as the network camera sees it, RGB planes uint8 [3, 96, 320]; black where
+    the real camera has no rows."""
+    try:
+        with Image.open(path) as image:
+            if image.size != (real.width_px, real.height_px):
+                found = "x".join(map(str, image.size))
+                wanted = f"{real.width_px}x{real.height_px}"
+                raise WrongSizeError(f"{path}: found {found} pixels, wanted {wanted}")
+            image.draft("RGB", (_DECODED_COLUMNS, 1))
+            pixels = _resample(image.convert("RGB"), real, network)
+    except FileNotFoundError:
+        raise MissingFileError(f"{path}: found no such file, wanted an image") from None
+    except (OSError, SyntaxError) as error:
+        raise UnreadableImageError(f"{path}: no image ({error})") from None
+    return np.ascontiguousarray(np.asarray(pixels).transpose(2, 0, 1))
+
+
+def _resample(image: Image.Image, real: Pinhole, network: Pinhole) -> Image.Image:
+    """Crops and scales in one pass. Pillow's bilinear filter, a triangle as wide as the scale asks
+    for, keeps a line in its place to a hundredth of a pixel; a box of whole pixels moves it by a
+    tenth, which is a quarter of a metre 30 m away."""
+    reduced = image.width / real.width_px
+    per_row = real.fy_px / network.fy_px
+    top = reduced * (real.cy_px + 0.5 - (network.cy_px + 0.5) * per_row)
+    bottom = top + reduced * network.height_px * per_row
+    # What the filter reaches beyond the crop; rows outside the image come as black.
+    reach = int(np.ceil(reduced * per_row)) + 1
+    first, last = int(np.floor(top)) - reach, int(np.ceil(bottom)) + reach
+    rows = image.crop((0, first, image.width, last))
+    return rows.resize(
+        (network.width_px, network.height_px),
+        Image.Resampling.BILINEAR,
+        box=(0, top - first, image.width, bottom - first),
+    )

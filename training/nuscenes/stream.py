@@ -1,0 +1,94 @@
+"""An endless stream of batches from nuScenes, in the place of the simulator's."""
+
+from __future__ import annotations
+
+import sys
+from collections import deque
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import fields
+from functools import lru_cache
+
+import numpy as np
+import torch
+
+from training.data import Batch
+from training.nuscenes.dataset import ALL_CAMERAS, MAX_DEVIATION, NuscenesDataset, NuscenesSample
+from training.nuscenes.errors import NuscenesError
+from training.nuscenes.problems import Problems
+from training.nuscenes.tables import CAMERA_CHANNELS
+
+ON_ERROR = ("skip", "refuse")
+
+
+class NuscenesStream:
+    """Every epoch has every sample once, in an order of its own; threads read ahead.
+
+    What stands at a position of the stream follows from the seed and the position alone. The place
+    of a sample that cannot be used is taken by the next one that can."""
+
+    def __init__(
+        self,
+        dataset: NuscenesDataset,
+        seed: int,
+        first_sample: int,
+        threads: int,
+        drop_camera_probability: float,
+        on_error: str = "refuse",
+    ) -> None:
+        if on_error not in ON_ERROR:
+            raise ValueError(f"on_error: found '{on_error}', wanted one of {', '.join(ON_ERROR)}")
+        if len(dataset) == 0:
+            raise ValueError("found no sample in the scenes, wanted at least one")
+        self._dataset = dataset
+        self._seed = seed
+        self._drop_camera_probability = drop_camera_probability
+        self._skips = on_error == "skip"
+        self._order = lru_cache(maxsize=4)(self._make_order)
+        self._next = first_sample
+        self._workers = ThreadPoolExecutor(max(threads, 1))
+        self._ahead: deque[Future[NuscenesSample]] = deque()
+        self.problems = Problems()
+
+    def next(self, count: int) -> Batch:
+        """The next samples. Raises NuscenesError when one is refused, or all are bad."""
+        while len(self._ahead) < 2 * count:  # this batch, and one while the network trains
+            self._ahead.append(self._workers.submit(self._at, self._next))
+            self._next += 1
+        samples = [self._ahead.popleft().result() for _ in range(count)]
+        columns = {
+            field.name: np.stack([getattr(sample, field.name) for sample in samples])
+            for field in fields(NuscenesSample)
+        }
+        return Batch(**{name: torch.from_numpy(column) for name, column in columns.items()})
+
+    def close(self) -> None:
+        self._workers.shutdown(cancel_futures=True)
+        self._ahead.clear()
+        if self.problems.messages:
+            print(f"skipped samples: {self.problems.summary()}", file=sys.stderr, flush=True)
+
+    def _make_order(self, epoch: int) -> np.ndarray:
+        return np.random.default_rng([self._seed, 0, epoch]).permutation(len(self._dataset))
+
+    def _at(self, position: int) -> NuscenesSample:
+        random = np.random.default_rng([self._seed, 1, position])
+        deviation = random.uniform(-MAX_DEVIATION, MAX_DEVIATION)
+        camera_mask = self._cameras(random)
+        for candidate in range(position, position + 2 * len(self._dataset)):  # a whole epoch
+            epoch, place = divmod(candidate, len(self._dataset))
+            chosen = int(self._order(epoch)[place])
+            token = self._dataset.sample_tokens[chosen]
+            try:
+                return self._dataset.sample(chosen, deviation, camera_mask)
+            except NuscenesError as error:
+                if not self._skips:
+                    raise type(error)(f"sample {token}: {error}") from None
+                self.problems.add(token, error)
+        raise NuscenesError(f"found no good sample: {self.problems.summary()}")
+
+    def _cameras(self, random: np.random.Generator) -> int:
+        """All cameras, or all but one or two, as the simulator drops them."""
+        if random.random() >= self._drop_camera_probability:
+            return ALL_CAMERAS
+        missing = random.integers(len(CAMERA_CHANNELS), size=random.integers(1, 3))
+        return ALL_CAMERAS & ~sum(1 << int(camera) for camera in set(missing))

@@ -1,0 +1,223 @@
+"""The tables of a nuScenes tree (v1.0-*/*.json; schema_nuscenes.md of the nuScenes devkit).
+
+Only key frames of the wanted scenes, the six cameras and LIDAR_TOP are kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from training.nuscenes.errors import (
+    MissingFileError,
+    MissingFrameError,
+    MissingSceneError,
+    MissingTokenError,
+    NuscenesError,
+)
+from training.nuscenes.json_records import Record, open_text, read_array
+
+# In the order of kCameraNames (pipeline/calibration/rig.h).
+CAMERA_CHANNELS = (
+    *("CAM_FRONT_LEFT", "CAM_FRONT", "CAM_FRONT_RIGHT"),
+    *("CAM_BACK_LEFT", "CAM_BACK", "CAM_BACK_RIGHT"),
+)
+REFERENCE_CHANNEL = "LIDAR_TOP"  # a sample's pose and time are its own
+_KEPT_CHANNELS = frozenset((*CAMERA_CHANNELS, REFERENCE_CHANNEL))
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    name: str
+    log_token: str
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    scene_token: str
+    timestamp_us: int
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """target_from_source of an ego_pose (map from vehicle) or of a sensor (vehicle from sensor)."""
+
+    translation_m: tuple[float, ...]
+    rotation_wxyz: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CalibratedSensor:
+    sensor_token: str
+    vehicle_from_sensor: Pose
+    camera_intrinsic: tuple[tuple[float, ...], ...] | None  # None: no camera
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """What one sensor recorded for one sample (a key frame of sample_data)."""
+
+    token: str
+    filename: str
+    width_px: int  # 0 for what is no image
+    height_px: int
+    ego_pose_token: str
+    calibrated_sensor_token: str
+
+
+@dataclass
+class Tables:
+    """Each table by token. What is wrong with the records of a sample is in `defects`."""
+
+    folder: Path
+    scene: dict[str, Scene] = field(default_factory=dict)
+    log: dict[str, str] = field(default_factory=dict)  # location
+    sample: dict[str, Sample] = field(default_factory=dict)
+    sensor: dict[str, str] = field(default_factory=dict)  # channel
+    calibrated_sensor: dict[str, CalibratedSensor] = field(default_factory=dict)
+    ego_pose: dict[str, Pose] = field(default_factory=dict)
+    frames: dict[str, dict[str, Frame]] = field(default_factory=dict)  # by sample and channel
+    defects: dict[str, NuscenesError] = field(default_factory=dict)  # by sample
+
+    def find(self, table: str, token: str, named_by: str):
+        """A record; MissingTokenError if there is none."""
+        records = getattr(self, table)
+        if token not in records:
+            raise MissingTokenError(
+                f"{self.folder / table}.json: no token '{token}', which {named_by} names"
+            )
+        return records[token]
+
+    def frame(self, sample_token: str, channel: str) -> Frame:
+        if error := self.defects.get(sample_token):
+            raise error
+        frames = self.frames.get(sample_token, {})
+        if channel not in frames:
+            raise MissingFrameError(
+                f"{self.folder / 'sample_data'}.json: no key frame of {channel} "
+                f"for sample '{sample_token}'"
+            )
+        return frames[channel]
+
+    def location(self, sample_token: str) -> str:
+        """The map on which a sample was taken."""
+        scene_token = self.sample[sample_token].scene_token
+        scene = self.find("scene", scene_token, f"sample '{sample_token}'")
+        return self.find("log", scene.log_token, f"scene '{scene.name}'")
+
+
+def find_version(root: Path, version: str = "") -> Path:
+    """The folder of the tables: v1.0-* by name, or the only one that is there."""
+    found = sorted(path for path in root.glob("v1.0-*") if path.is_dir())
+    wanted = [path for path in found if not version or path.name == version]
+    if len(wanted) == 1:
+        return wanted[0]
+    names = ", ".join(path.name for path in found) or "nothing"
+    raise MissingFileError(f"{root}: found {names}, wanted {version or 'one folder v1.0-*'}")
+
+
+def read_scene_names(path: Path) -> list[str]:
+    """A split: one scene name a line; empty lines and what follows a # do not count."""
+    with open_text(path) as file:
+        names = [line.partition("#")[0].strip() for line in file]
+    names = [name for name in names if name]
+    if not names:
+        raise MissingSceneError(f"{path}: found no scene name, wanted one a line")
+    return names
+
+
+def load_tables(folder: Path, scene_names: list[str] | None = None) -> Tables:
+    """Reads the tables of the named scenes, or of all."""
+    tables = Tables(folder)
+    known = _load_scenes(tables, scene_names)
+    _load_samples(tables, known, keep_strays=scene_names is None)
+    for row in read_array(folder / "log.json"):
+        tables.log[row.text("token")] = row.text("location")
+    for row in read_array(folder / "sensor.json"):
+        tables.sensor[row.text("token")] = row.text("channel")
+    for row in read_array(folder / "calibrated_sensor.json"):
+        tables.calibrated_sensor[row.text("token")] = _calibrated_sensor(row)
+    _load_frames(tables)
+    _load_ego_poses(tables)
+    return tables
+
+
+def _load_scenes(tables: Tables, names: list[str] | None) -> set[str]:
+    """Keeps the wanted scenes; the tokens of all."""
+    path = tables.folder / "scene.json"
+    every = {
+        row.text("token"): Scene(row.text("name"), row.text("log_token"))
+        for row in read_array(path)
+    }
+    wanted = {scene.name for scene in every.values()} if names is None else set(names)
+    tables.scene = {token: scene for token, scene in every.items() if scene.name in wanted}
+    missing = sorted(wanted - {scene.name for scene in tables.scene.values()})
+    if missing:
+        more = f" and {len(missing) - 3} more" if len(missing) > 3 else ""
+        raise MissingSceneError(f"{path}: no scene named {', '.join(missing[:3])}{more}")
+    return set(every)
+
+
+def _load_samples(tables: Tables, known_scenes: set[str], keep_strays: bool) -> None:
+    """A stray belongs to no scene: it stays in the list, so that it is named when it is used."""
+    samples = []
+    for row in read_array(tables.folder / "sample.json"):
+        scene_token = row.text("scene_token")
+        is_stray = keep_strays and scene_token not in known_scenes
+        if scene_token in tables.scene or is_stray:
+            samples.append((scene_token, row.whole("timestamp"), row.text("token")))
+    scene_rank = {token: rank for rank, token in enumerate(tables.scene)}
+    samples.sort(key=lambda sample: (scene_rank.get(sample[0], len(scene_rank)), sample[1]))
+    tables.sample = {token: Sample(scene, time_us) for scene, time_us, token in samples}
+
+
+def _pose(row: Record) -> Pose:
+    return Pose(row.numbers("translation", 3), row.unit_quaternion("rotation"))
+
+
+def _calibrated_sensor(row: Record) -> CalibratedSensor:
+    is_camera = row.values.get("camera_intrinsic") != []
+    intrinsic = row.matrix3("camera_intrinsic") if is_camera else None
+    return CalibratedSensor(row.text("sensor_token"), _pose(row), intrinsic)
+
+
+def _load_frames(tables: Tables) -> None:
+    for row in read_array(tables.folder / "sample_data.json"):
+        sample_token = row.text("sample_token")
+        if not row.flag("is_key_frame") or sample_token not in tables.sample:
+            continue
+        try:
+            channel = _channel(tables, row)
+        except MissingTokenError as error:
+            tables.defects[sample_token] = error
+            continue
+        if channel in _KEPT_CHANNELS:
+            tables.frames.setdefault(sample_token, {})[channel] = _frame(row, channel)
+
+
+def _channel(tables: Tables, row: Record) -> str:
+    token, named_by = row.text("calibrated_sensor_token"), f"sample_data '{row.text('token')}'"
+    calibrated = tables.find("calibrated_sensor", token, named_by)
+    return tables.find("sensor", calibrated.sensor_token, f"calibrated_sensor '{token}'")
+
+
+def _frame(row: Record, channel: str) -> Frame:
+    is_image = channel != REFERENCE_CHANNEL
+    return Frame(
+        token=row.text("token"),
+        filename=row.text("filename"),
+        width_px=row.whole("width") if is_image else 0,
+        height_px=row.whole("height") if is_image else 0,
+        ego_pose_token=row.text("ego_pose_token"),
+        calibrated_sensor_token=row.text("calibrated_sensor_token"),
+    )
+
+
+def _load_ego_poses(tables: Tables) -> None:
+    wanted = {
+        frame.ego_pose_token for frames in tables.frames.values() for frame in frames.values()
+    }
+    for row in read_array(tables.folder / "ego_pose.json"):
+        token = row.text("token")
+        if token in wanted:
+            tables.ego_pose[token] = _pose(row)

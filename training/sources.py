@@ -1,0 +1,68 @@
+"""Where samples come from: the simulator, or nuScenes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+
+from training.config import FIRST_VALIDATION_SEED, TrainingConfig
+from training.data import Batch, SamplerStream, Stream
+from training.nuscenes.dataset import NuscenesDataset
+from training.nuscenes.stream import NuscenesStream
+
+BATCH = 8
+
+
+@lru_cache(maxsize=2)
+def _dataset(root: str, scenes: str, version: str, line_width_cells: float) -> NuscenesDataset:
+    return NuscenesDataset(Path(root), Path(scenes) if scenes else None, version, line_width_cells)
+
+
+def _nuscenes(
+    config: TrainingConfig, scenes: str, seed: int, first: int, drop_probability: float
+) -> NuscenesStream:
+    dataset = _dataset(config.nuscenes, scenes, config.nuscenes_version, config.line_width_cells)
+    threads = config.sampler_threads
+    return NuscenesStream(dataset, seed, first, threads, drop_probability, config.on_error)
+
+
+def training_stream(config: TrainingConfig, first: int) -> Stream:
+    """The run's samples from the one numbered `first` on."""
+    drop_probability = config.drop_camera_probability
+    if config.nuscenes:
+        return _nuscenes(config, config.scenes, config.seed, first, drop_probability)
+    return SamplerStream(config.seed, first, config.sampler_threads, drop_probability)
+
+
+def _batches(stream: Stream, samples: int) -> Iterator[Batch]:
+    for first in range(0, samples, BATCH):
+        yield stream.next(min(BATCH, samples - first))
+    stream.close()
+
+
+def simulator_batches(samples: int, threads: int) -> list[Batch]:
+    """A fixed set of evaluation scenes, all cameras there."""
+    return list(_batches(SamplerStream(FIRST_VALIDATION_SEED, 0, threads, 0.0), samples))
+
+
+def nuscenes_batches(
+    root: str, scenes: str, line_width_cells: float, threads: int
+) -> Iterator[Batch]:
+    """Every sample of the scenes once, all cameras there."""
+    config = TrainingConfig(
+        nuscenes=root, line_width_cells=line_width_cells, sampler_threads=threads
+    )
+    stream = _nuscenes(config, scenes, FIRST_VALIDATION_SEED, 0, 0.0)
+    return _batches(stream, len(_dataset(root, scenes, "", line_width_cells)))
+
+
+def validation_set(config: TrainingConfig) -> list[Batch]:
+    """A fixed set that training does not see, all cameras there. Of nuScenes there is one where
+    `validation_scenes` names it."""
+    if not config.nuscenes:
+        return simulator_batches(config.validation_samples, config.sampler_threads)
+    if not config.validation_scenes:
+        return []
+    stream = _nuscenes(config, config.validation_scenes, FIRST_VALIDATION_SEED, 0, 0.0)
+    return list(_batches(stream, config.validation_samples))
