@@ -1,10 +1,9 @@
 // bevloc: measures and draws what the appliance is made of.
-#include <map>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "firmware/evaluation/draw_command.h"
+#include "firmware/evaluation/network_command.h"
 #include "firmware/evaluation/solver_command.h"
 
 namespace {
@@ -24,6 +23,8 @@ int main(int argc, char** argv) {
   tune->require_subcommand(1);
   bevloc::evaluation::SolverCommand solver_command;
   solver_command.declare_eval(*eval);
+  bevloc::evaluation::NetworkCommand network_command;
+  network_command.declare(*eval);
   solver_command.declare_tune(*tune);
   auto* draw = app.add_subcommand("draw", "Draw what a part reads and answers");
   draw->require_subcommand(1);
@@ -34,7 +35,9 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
-  const bevloc::Status status = draw->parsed() ? draw_command.run() : solver_command.run();
+  const bevloc::Status status = draw->parsed()             ? draw_command.run()
+                                : network_command.chosen() ? network_command.run()
+                                                           : solver_command.run();
   if (status) return 0;
   fmt::print(stderr, "bevloc: {}\n", status.error().message);
   return kBadInput;

@@ -1,12 +1,11 @@
 #include "firmware/evaluation/solver_command.h"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include "firmware/evaluation/command_output.h"
 #include "firmware/evaluation/scale_tuning.h"
 #include "firmware/evaluation/solver_report.h"
 #include "sim/perception/matching_scene.h"
@@ -17,23 +16,6 @@ namespace {
 /// Towns of one seed: as many as 200,000 scenes need.
 constexpr uint64_t kTownsPerSeed = 1ULL << 20U;
 constexpr uint64_t kSeeds = sim::kSceneSeedCount / kTownsPerSeed;
-
-/// A live line where somebody watches.
-void show_progress(int done, int all) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  constexpr int kWidth = 40;
-  fmt::print(stderr, "\r[{:<{}}] {}/{} scenes{}", std::string(kWidth * done / all, '='), kWidth,
-             done, all, done == all ? "\n" : "");
-}
-
-Status write_text(const std::string& text, const std::string& path) {
-  if (path.empty()) return {};
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) return fail("{}: cannot be written", path);
-  return {};
-}
 
 }  // namespace
 
@@ -121,10 +103,10 @@ Status SolverCommand::evaluate() const {
     }
   }
   fmt::print("{}", paper_comparison(*results));
-  if (Status status = write_text(to_json(*results, options, seed_), json_file_); !status) {
+  if (Status status = write_file(to_json(*results, options, seed_), json_file_); !status) {
     return status;
   }
-  return write_text(to_csv(*results), csv_file_);
+  return write_file(to_csv(*results), csv_file_);
 }
 
 /// One of those that share their scales.

@@ -8,22 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/evaluation/paper_figures.h"
+#include "firmware/evaluation/summary_format.h"
 
 namespace bevloc::evaluation {
 namespace {
 
 constexpr double kMiB = 1024.0 * 1024.0;
-
-/// "0.115 0.042 0.148".
-std::string three(const PerAxis& values, int digits = 3) {
-  return fmt::format("{:.{}f} {:.{}f} {:.{}f}", values[0], digits, values[1], digits, values[2],
-                     digits);
-}
-
-std::string percent(const PerAxis& shares) {
-  return fmt::format("{:3.0f} {:3.0f} {:3.0f}", 100.0 * shares[0], 100.0 * shares[1],
-                     100.0 * shares[2]);
-}
 
 std::string label(const SolverCase& solver_case) {
   return fmt::format("{:24} {:>7} {:>3} {:4.1f}", name_of(solver_case.solver),
@@ -67,28 +57,11 @@ std::string road_row(std::string_view road, const Summary& s) {
                      percent(s.coverage_3s));
 }
 
-nlohmann::json json_of(const Summary& summary) {
-  return {{"mae", summary.mae},
-          {"rmse", summary.rmse},
-          {"median", summary.median},
-          {"p95", summary.p95},
-          {"parabola_mae", summary.parabola_mae},
-          {"nll", summary.nll},
-          {"coverage_1s", summary.coverage_1s},
-          {"coverage_3s", summary.coverage_3s},
-          {"scenes", summary.scenes}};
-}
-
 std::string csv_line(const CaseResult& result, std::string_view road, const Summary& summary) {
-  std::string line = fmt::format("{},{},{},{},{},{}", name_of(result.solver_case.solver),
-                                 size_name(result.solver_case.grid), result.solver_case.channels,
-                                 result.solver_case.step_m, road, summary.scenes);
-  for (const PerAxis* values :
-       {&summary.mae, &summary.rmse, &summary.median, &summary.p95, &summary.parabola_mae,
-        &summary.nll, &summary.coverage_1s, &summary.coverage_3s}) {
-    for (double value : *values) fmt::format_to(std::back_inserter(line), ",{:.6g}", value);
-  }
-  return fmt::format("{},{:.6g},{}\n", line, summary.time_ms, result.buffer_bytes);
+  return fmt::format("{},{},{},{},{},{}{},{:.6g},{}\n", name_of(result.solver_case.solver),
+                     size_name(result.solver_case.grid), result.solver_case.channels,
+                     result.solver_case.step_m, road, summary.scenes, csv_values(summary),
+                     summary.time_ms, result.buffer_bytes);
 }
 
 std::string paper_row(const PaperRow& row, const std::vector<CaseResult>& results) {
@@ -192,13 +165,7 @@ std::string to_json(const std::vector<CaseResult>& results, const EvaluationOpti
 }
 
 std::string to_csv(const std::vector<CaseResult>& results) {
-  std::string text = "solver,size,channels,step_m,road,scenes";
-  for (const char* measure :
-       {"mae", "rmse", "median", "p95", "parabola_mae", "nll", "coverage_1s", "coverage_3s"}) {
-    for (const char* axis : {"x_m", "y_m", "yaw_deg"}) {
-      fmt::format_to(std::back_inserter(text), ",{}_{}", measure, axis);
-    }
-  }
+  std::string text = "solver,size,channels,step_m,road,scenes" + csv_columns();
   text += ",time_ms,buffer_bytes\n";
   for (const CaseResult& result : results) {
     text += csv_line(result, "all", summarise(result.outcomes));

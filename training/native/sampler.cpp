@@ -9,17 +9,17 @@
 #include <thread>
 
 #include "pipeline/network/view_table.h"
-#include "training/native/sample_maker.h"
+#include "sim/samples/sample_maker.h"
 
-using bevloc::training::kSamplesPerWorld;
-using bevloc::training::Sample;
-using bevloc::training::Stream;
+using bevloc::sim::kSamplesPerWorld;
+using bevloc::sim::Sample;
+using bevloc::sim::SampleStream;
 
 /// Each worker makes whole worlds; samples leave in order, world by world. A worker waits before it
 /// starts a world too far ahead of the one that is being read, which bounds the memory.
 struct bevloc_sampler {
  public:
-  bevloc_sampler(const Stream& stream, uint64_t first_sample, int threads)
+  bevloc_sampler(const SampleStream& stream, uint64_t first_sample, int threads)
       : stream_(stream),
         worlds_ahead_(2 * static_cast<uint64_t>(threads)),
         first_world_(first_sample / kSamplesPerWorld),
@@ -70,18 +70,16 @@ struct bevloc_sampler {
         world = next_world_to_make_++;
       }
       const uint64_t first = world == first_world_ ? first_in_first_world_ : 0;
-      bevloc::training::make_samples_of_world(stream_, world, first,
-                                              [this, world](Sample&& sample) {
-                                                const std::lock_guard lock(mutex_);
-                                                made_[world].push_back(std::move(sample));
-                                                if (world == world_being_read_)
-                                                  arrived_.notify_one();
-                                                return !stopping_;
-                                              });
+      bevloc::sim::make_samples_of_world(stream_, world, first, [this, world](Sample&& sample) {
+        const std::lock_guard lock(mutex_);
+        made_[world].push_back(std::move(sample));
+        if (world == world_being_read_) arrived_.notify_one();
+        return !stopping_;
+      });
     }
   }
 
-  const Stream stream_;
+  const SampleStream stream_;
   const uint64_t worlds_ahead_;
   const uint64_t first_world_;
   const uint64_t first_in_first_world_;
@@ -100,8 +98,10 @@ struct bevloc_sampler {
 
 bevloc_sampler* bevloc_sampler_create(uint64_t first_seed, uint64_t first_sample, int threads,
                                       double drop_camera_probability) {
-  return new bevloc_sampler({first_seed, drop_camera_probability}, first_sample,
-                            std::max(threads, 1));
+  SampleStream stream;
+  stream.first_seed = first_seed;
+  stream.nuisances.missing_cameras.probability = drop_camera_probability;
+  return new bevloc_sampler(stream, first_sample, std::max(threads, 1));
 }
 
 void bevloc_sampler_destroy(bevloc_sampler* sampler) {
@@ -124,7 +124,7 @@ void bevloc_sampler_next(bevloc_sampler* sampler, int count, uint8_t* images, ui
 
 void bevloc_view_table(uint8_t camera_mask, int32_t* index, float* weight) {
   const bevloc::ViewTable table = bevloc::make_view_table(
-      bevloc::training::told_network_rig(), bevloc::CameraMask(camera_mask), bevloc::kFeatureGrid);
+      bevloc::sim::told_network_rig(), bevloc::CameraMask(camera_mask), bevloc::kFeatureGrid);
   std::copy(table.index.begin(), table.index.end(), index);
   std::copy(table.weight.begin(), table.weight.end(), weight);
 }

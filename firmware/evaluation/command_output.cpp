@@ -1,0 +1,26 @@
+#include "firmware/evaluation/command_output.h"
+
+#include <fstream>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace bevloc::evaluation {
+
+void show_progress(int done, int all) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  constexpr int kWidth = 40;
+  fmt::print(stderr, "\r[{:<{}}] {}/{} scenes{}", std::string(kWidth * done / all, '='), kWidth,
+             done, all, done == all ? "\n" : "");
+}
+
+Status write_file(const std::string& text, const std::string& path) {
+  if (path.empty()) return {};
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  if (!file) return fail("{}: cannot be written", path);
+  return {};
+}
+
+}  // namespace bevloc::evaluation

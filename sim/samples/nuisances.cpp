@@ -1,0 +1,110 @@
+#include "sim/samples/nuisances.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/ranges.h>
+
+namespace bevloc::sim {
+namespace {
+
+struct Entry {
+  NuisanceSet set;
+  std::string_view name;
+  std::string_view description;
+};
+
+constexpr std::array<Entry, kNuisanceSets> kEntries{{
+    {NuisanceSet::kStandard, "standard", "as in training, one or two cameras missing in one of 7"},
+    {NuisanceSet::kSixCameras, "six_cameras", "standard with all six cameras there"},
+    {NuisanceSet::kClean, "clean", "exact calibration, still body, clear noon"},
+    {NuisanceSet::kNight, "night", "always night"},
+    {NuisanceSet::kRain, "rain", "always rain"},
+    {NuisanceSet::kOcclusion, "occlusion", "ten more vehicles stand around"},
+    {NuisanceSet::kWornPaint, "worn_paint", "paint twice as worn"},
+    {NuisanceSet::kMapErrors, "map_errors", "a tenth missing, a tenth doubled, shifted by 0.15 m"},
+    {NuisanceSet::kCalibration, "calibration", "cameras off by 0.2 degrees and 2 cm"},
+    {NuisanceSet::kPitch, "pitch", "body pitches and rolls by 1 degree"},
+    {NuisanceSet::kMissingCamera, "missing_camera", "exactly one camera missing"},
+    {NuisanceSet::kUnsynchronised, "unsynchronised", "each camera within 50 ms of the pose's time"},
+}};
+
+const Entry& entry_of(NuisanceSet set) {
+  return kEntries[static_cast<size_t>(set)];
+}
+
+Nuisances clean() {
+  Nuisances nuisances;
+  nuisances.calibration = {0.0, 0.0, 0.0};
+  nuisances.body = {0.0, 0.0};
+  nuisances.weather = Weather::kClearNoon;
+  return nuisances;
+}
+
+}  // namespace
+
+std::array<NuisanceSet, kNuisanceSets> all_nuisance_sets() {
+  std::array<NuisanceSet, kNuisanceSets> sets{};
+  std::ranges::transform(kEntries, sets.begin(), &Entry::set);
+  return sets;
+}
+
+Nuisances nuisances_of(NuisanceSet set) {
+  Nuisances nuisances;
+  switch (set) {
+    case NuisanceSet::kStandard:
+      nuisances.missing_cameras.probability = 0.15;
+      break;
+    case NuisanceSet::kSixCameras:
+      break;
+    case NuisanceSet::kClean:
+      return clean();
+    case NuisanceSet::kNight:
+      nuisances.weather = Weather::kNight;
+      break;
+    case NuisanceSet::kRain:
+      nuisances.weather = Weather::kRain;
+      break;
+    case NuisanceSet::kOcclusion:
+      nuisances.extra_vehicles = 10;
+      break;
+    case NuisanceSet::kWornPaint:
+      nuisances.paint_wear_factor = 2.0;
+      break;
+    case NuisanceSet::kMapErrors:
+      nuisances.map_errors = {.omission = 0.1, .ghost = 0.1, .shift_sigma_m = 0.15};
+      break;
+    case NuisanceSet::kCalibration:
+      nuisances.calibration.rotation_rad = radians(0.2);
+      nuisances.calibration.position_m = 0.02;
+      break;
+    case NuisanceSet::kPitch:
+      nuisances.body.tilt_rad = radians(1.0);
+      break;
+    case NuisanceSet::kMissingCamera:
+      nuisances.missing_cameras = {.probability = 1.0, .most = 1};
+      break;
+    case NuisanceSet::kUnsynchronised:
+      nuisances.desynchronisation.spread_s = 0.05;
+      break;
+  }
+  return nuisances;
+}
+
+std::string_view name_of(NuisanceSet set) {
+  return entry_of(set).name;
+}
+
+std::string_view describe(NuisanceSet set) {
+  return entry_of(set).description;
+}
+
+Result<NuisanceSet> nuisance_set_from(std::string_view name) {
+  const auto found = std::ranges::find(kEntries, name, &Entry::name);
+  if (found != kEntries.end()) return found->set;
+  std::vector<std::string_view> names;
+  std::ranges::transform(kEntries, std::back_inserter(names), &Entry::name);
+  return fail("set: found \"{}\", wanted one of {}", name, fmt::join(names, ", "));
+}
+
+}  // namespace bevloc::sim

@@ -1,0 +1,231 @@
+#include "sim/samples/sample_maker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "pipeline/map/map_index.h"
+#include "pipeline/map/rasterizer.h"
+#include "sim/random.h"
+#include "sim/render/renderer.h"
+#include "sim/samples/world_changes.h"
+#include "sim/sim_rig.h"
+#include "sim/vehicle/placement.h"
+
+namespace bevloc::sim {
+namespace {
+
+// How far the prior pose may be off, each way.
+constexpr double kMaxLongitudinalM = 2.0;
+constexpr double kMaxLateralM = 1.0;
+constexpr double kMaxYawRad = radians(2.0);
+
+// How a vehicle drives whose cameras are not in step.
+constexpr double kSlowestMps = 5.0;
+constexpr double kFastestMps = 20.0;
+constexpr double kLateralAccelerationSigmaMps2 = 1.0;
+
+// Traffic repeats nowhere near this soon.
+constexpr double kTrafficTimeS = 600.0;
+
+// Two samples of a world are at least this far apart, or turned this much, if the world has room.
+constexpr double kApartM = 15.0;
+constexpr double kApartRad = radians(60.0);
+constexpr int kPoseTries = 20;
+
+uint64_t sample_seed(const SampleStream& stream, uint64_t sample) {
+  return mix_seed(seed_for(stream.first_seed, "sample") + sample);
+}
+
+bool is_apart(const Se2& a, const Se2& b) {
+  return (a.translation() - b.translation()).norm() > kApartM ||
+         std::abs(wrap_angle(a.yaw_rad - b.yaw_rad)) > kApartRad;
+}
+
+/// The poses of all samples of a world. All are drawn even when a stream resumes in the middle,
+/// because each must keep away from those before it.
+std::vector<Se2> poses_in(const World& world, uint64_t world_seed) {
+  std::vector<Se2> poses;
+  Random random(seed_for(world_seed, "poses"));
+  while (poses.size() < kSamplesPerWorld) {
+    Se2 pose;
+    for (int attempt = 0; attempt < kPoseTries; ++attempt) {
+      pose = random_pose_on_road(world, random);
+      if (std::all_of(poses.begin(), poses.end(),
+                      [&pose](const Se2& other) { return is_apart(pose, other); })) {
+        break;
+      }
+    }
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+Eigen::Vector3d random_vector(double sigma, Random& random) {
+  Eigen::Vector3d vector;
+  for (double& component : vector) component = random.normal(0.0, sigma);
+  return vector;
+}
+
+/// The camera that really takes the pictures behind the network camera that calibration promises.
+/// The crop stays where calibration puts it: an error of pitch moves the horizon.
+CameraModel true_camera(const CameraModel& told, const CalibrationSigma& sigma, Random& random) {
+  CameraModel camera = told;
+  const Eigen::Vector3d rotation = random_vector(sigma.rotation_rad, random);
+  const double angle = rotation.norm();
+  camera.vehicle_from_camera.rotation *=
+      Eigen::AngleAxisd(angle, rotation / std::max(angle, 1e-12)).toRotationMatrix();
+  camera.vehicle_from_camera.translation_m += random_vector(sigma.position_m, random);
+  const double focal_factor = random.normal(1.0, sigma.relative_focal);
+  camera.intrinsics.fx_px *= focal_factor;
+  camera.intrinsics.fy_px *= focal_factor;
+  return camera;
+}
+
+/// All cameras, or all but a few.
+CameraMask random_cameras(const MissingCameras& missing, Random& random) {
+  CameraMask cameras;
+  cameras.set();
+  if (!random.chance(missing.probability)) return cameras;
+  const int count = random.integer(1, missing.most);
+  for (int i = 0; i < count; ++i) cameras.reset(random.integer(0, kCameraCount - 1));
+  return cameras;
+}
+
+/// The sun's height and the rain's strength are drawn as random_conditions() does.
+Conditions conditions_for(Weather weather, uint64_t seed) {
+  Conditions conditions = random_conditions(seed_for(seed, "conditions"));
+  Random random(seed_for(seed, "weather"));
+  switch (weather) {
+    case Weather::kUsual:
+      break;
+    case Weather::kClearNoon:
+      return {.sun_azimuth_rad = conditions.sun_azimuth_rad,
+              .sun_elevation_rad = radians(60.0),
+              .overcast = 0.0,
+              .rain = 0.0,
+              .exposure = 1.0,
+              .noise_sigma = 1.0};
+    case Weather::kNight:
+      conditions.sun_elevation_rad = radians(random.uniform(-40.0, -12.0));
+      break;
+    case Weather::kRain:
+      conditions.rain = random.uniform(0.2, 1.0);
+      conditions.overcast = std::max(conditions.overcast, random.uniform(0.75, 1.0));
+      break;
+  }
+  return conditions;
+}
+
+/// A vehicle on its way, and when its cameras expose.
+class Passage {
+ public:
+  Passage(const Se2& map_from_vehicle, const Desynchronisation& desynchronisation, uint64_t seed)
+      : map_from_vehicle_(map_from_vehicle), spread_s_(desynchronisation.spread_s), random_(seed) {}
+
+  /// When the next camera exposes, counted from the time of the pose.
+  double next_offset_s() { return random_.uniform(-spread_s_, spread_s_); }
+
+  /// Where the vehicle is then: an arc, driven along its chord.
+  Se2 pose_after(double offset_s) const {
+    const double way_m = speed_mps_ * offset_s;
+    const double turn_rad = yaw_rate_radps_ * offset_s;
+    return map_from_vehicle_ *
+           Se2{way_m * std::cos(0.5 * turn_rad), way_m * std::sin(0.5 * turn_rad), turn_rad};
+  }
+
+ private:
+  Se2 map_from_vehicle_;
+  double spread_s_;
+  Random random_;
+  double speed_mps_ = random_.uniform(kSlowestMps, kFastestMps);
+  double yaw_rate_radps_ = random_.normal(0.0, kLateralAccelerationSigmaMps2) / speed_mps_;
+};
+
+void copy_as_planes(const RgbImage& image, uint8_t* planes) {
+  const size_t count = static_cast<size_t>(image.width) * image.height;
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t colour = 0; colour < 3; ++colour) {
+      planes[colour * count + i] = image.pixels[3 * i + colour];
+    }
+  }
+}
+
+/// Images of the cameras of `cameras`; black for the others.
+std::vector<uint8_t> make_images(Renderer& renderer, const Se2& map_from_vehicle,
+                                 CameraMask cameras, const Nuisances& nuisances, uint64_t seed) {
+  Random random(seed_for(seed, "body and cameras"));
+  const BodyMotion body{.pitch_rad = random.normal(0.0, nuisances.body.tilt_rad),
+                        .roll_rad = random.normal(0.0, nuisances.body.tilt_rad),
+                        .lift_m = random.normal(0.0, nuisances.body.lift_m)};
+  const double time_s = random.uniform(0.0, kTrafficTimeS);
+  const Conditions conditions = conditions_for(nuisances.weather, seed);
+  Passage passage(map_from_vehicle, nuisances.desynchronisation, seed_for(seed, "passage"));
+  std::vector<uint8_t> images(kImagesSize);
+  RgbImage image(kNetworkWidthPx, kNetworkHeightPx);
+  for (size_t i = 0; i < kCameraCount; ++i) {
+    const CameraModel camera =
+        true_camera(told_network_rig().cameras[i], nuisances.calibration, random);
+    const double offset_s = passage.next_offset_s();
+    if (!cameras[i]) continue;
+    renderer.render(camera, passage.pose_after(offset_s), body, time_s + offset_s, conditions,
+                    mix_seed(seed_for(seed, "noise") + i), image);
+    copy_as_planes(image, images.data() + i * (kImagesSize / kCameraCount));
+  }
+  return images;
+}
+
+/// What draws the samples of one world.
+struct Studio {
+  Renderer renderer;
+  MapRasterizer world_map;
+  MapRasterizer told_map;
+};
+
+Sample make_sample(const Nuisances& nuisances, uint64_t seed, const Se2& map_from_vehicle,
+                   Studio& studio) {
+  Random random(seed_for(seed, "prior"));
+  Sample sample;
+  sample.correction = {random.uniform(-kMaxLongitudinalM, kMaxLongitudinalM),
+                       random.uniform(-kMaxLateralM, kMaxLateralM),
+                       random.uniform(-kMaxYawRad, kMaxYawRad)};
+  sample.cameras = random_cameras(nuisances.missing_cameras, random);
+  sample.images = make_images(studio.renderer, map_from_vehicle, sample.cameras, nuisances, seed);
+  sample.raster_truth.resize(kRasterSize);
+  studio.world_map.draw(map_from_vehicle, sample.raster_truth);
+  sample.raster_prior.resize(kRasterSize);
+  studio.told_map.draw(map_from_vehicle * sample.correction.inverse(), sample.raster_prior);
+  return sample;
+}
+
+/// The world and the places in it: the nuisances change neither the streets nor the places.
+World world_of(const SampleStream& stream, uint64_t seed) {
+  return stream.map != nullptr ? world_from_map(*stream.map, seed) : generate_world(seed);
+}
+
+}  // namespace
+
+const Rig& told_network_rig() {
+  static const Rig rig = network_rig(nominal_rig());
+  return rig;
+}
+
+void make_samples_of_world(const SampleStream& stream, uint64_t world_number, uint64_t first,
+                           const std::function<bool(Sample&&)>& deliver) {
+  const uint64_t world_seed = stream.first_seed + world_number;
+  World world = world_of(stream, world_seed);
+  const std::vector<Se2> poses = poses_in(world, world_seed);
+  wear_paint(stream.nuisances.paint_wear_factor, world);
+  add_standing_vehicles(poses, stream.nuisances.extra_vehicles, world_seed, world);
+  const HdMap told_map = with_errors(world.map, stream.nuisances.map_errors, world_seed);
+  const MapIndex world_index(world.map);
+  const MapIndex told_index(told_map);
+  Studio studio{Renderer(world), MapRasterizer(world_index), MapRasterizer(told_index)};
+  for (uint64_t i = first; i < kSamplesPerWorld; ++i) {
+    const uint64_t seed = sample_seed(stream, world_number * kSamplesPerWorld + i);
+    if (!deliver(make_sample(stream.nuisances, seed, poses[i], studio))) return;
+  }
+}
+
+}  // namespace bevloc::sim

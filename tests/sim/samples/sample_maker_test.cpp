@@ -1,0 +1,160 @@
+#include "sim/samples/sample_maker.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <span>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/map/map_loader.h"
+
+namespace bevloc::sim {
+namespace {
+
+constexpr uint64_t kSeed = 17;
+constexpr size_t kCount = 3;
+constexpr size_t kImageSize = kImagesSize / kCameraCount;
+
+std::vector<Sample> make(const SampleStream& stream) {
+  std::vector<Sample> samples;
+  make_samples_of_world(stream, 0, 0, [&samples](Sample&& sample) {
+    samples.push_back(std::move(sample));
+    return samples.size() < kCount;
+  });
+  return samples;
+}
+
+SampleStream stream_of(NuisanceSet set, uint64_t seed = kSeed) {
+  return {seed, nuisances_of(set), nullptr};
+}
+
+/// Made once for all tests.
+const std::vector<Sample>& samples_of(NuisanceSet set) {
+  static std::map<NuisanceSet, std::vector<Sample>> made;
+  std::vector<Sample>& samples = made[set];
+  if (samples.empty()) samples = make(stream_of(set));
+  return samples;
+}
+
+std::span<const uint8_t> picture(const Sample& sample, size_t camera) {
+  return std::span(sample.images).subspan(camera * kImageSize, kImageSize);
+}
+
+bool same_picture(const Sample& a, const Sample& b, size_t camera) {
+  return std::ranges::equal(picture(a, camera), picture(b, camera));
+}
+
+double brightness(const std::vector<Sample>& samples) {
+  double sum = 0.0;
+  for (const Sample& sample : samples) {
+    sum = std::accumulate(sample.images.begin(), sample.images.end(), sum);
+  }
+  return sum;
+}
+
+class NuisanceSetTest : public testing::TestWithParam<NuisanceSet> {};
+
+TEST_P(NuisanceSetTest, ShowsTheSamePlacesFromTheSamePriors) {
+  for (size_t i = 0; i < kCount; ++i) {
+    const Sample& sample = samples_of(GetParam())[i];
+    const Sample& usual = samples_of(NuisanceSet::kSixCameras)[i];
+    EXPECT_EQ(sample.correction.x_m, usual.correction.x_m);
+    EXPECT_EQ(sample.correction.y_m, usual.correction.y_m);
+    EXPECT_EQ(sample.correction.yaw_rad, usual.correction.yaw_rad);
+    EXPECT_TRUE(sample.raster_truth == usual.raster_truth);
+    EXPECT_EQ(sample.raster_prior == usual.raster_prior, GetParam() != NuisanceSet::kMapErrors);
+  }
+}
+
+TEST_P(NuisanceSetTest, ChangesThePicturesUnlessAllItDoesIsElsewhere) {
+  const bool same_pictures =
+      GetParam() == NuisanceSet::kStandard || GetParam() == NuisanceSet::kSixCameras ||
+      GetParam() == NuisanceSet::kMapErrors || GetParam() == NuisanceSet::kMissingCamera;
+  size_t changed = 0;
+  for (size_t i = 0; i < kCount; ++i) {
+    const Sample& sample = samples_of(GetParam())[i];
+    const Sample& usual = samples_of(NuisanceSet::kSixCameras)[i];
+    for (size_t camera = 0; camera < kCameraCount; ++camera) {
+      if (!sample.cameras[camera]) continue;
+      changed += same_picture(sample, usual, camera) ? 0 : 1;
+    }
+  }
+  if (same_pictures) {
+    EXPECT_EQ(changed, 0U);
+  } else {
+    EXPECT_GT(changed, kCameraCount) << "those of one sample may have been so already";
+  }
+}
+
+TEST_P(NuisanceSetTest, LeavesOutCamerasOnlyWhereItSaysSo) {
+  for (const Sample& sample : samples_of(GetParam())) {
+    if (GetParam() == NuisanceSet::kMissingCamera) {
+      EXPECT_EQ(sample.cameras.count(), kCameraCount - 1U);
+    } else if (GetParam() != NuisanceSet::kStandard) {
+      EXPECT_TRUE(sample.cameras.all());
+    }
+    for (size_t camera = 0; camera < kCameraCount; ++camera) {
+      const auto shown = picture(sample, camera);
+      const bool black = std::ranges::all_of(shown, [](uint8_t value) { return value == 0; });
+      EXPECT_EQ(black, !sample.cameras[camera]);
+    }
+  }
+}
+
+TEST_P(NuisanceSetTest, SamplesFollowFromTheSeed) {
+  const std::vector<Sample> again = make(stream_of(GetParam()));
+  for (size_t i = 0; i < kCount; ++i) {
+    const Sample& sample = samples_of(GetParam())[i];
+    EXPECT_TRUE(again[i].images == sample.images);
+    EXPECT_EQ(again[i].cameras, sample.cameras);
+    EXPECT_TRUE(again[i].raster_prior == sample.raster_prior);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllSets, NuisanceSetTest, testing::ValuesIn(all_nuisance_sets()),
+                         [](const auto& parameter) {
+                           return std::string(name_of(parameter.param));
+                         });
+
+TEST(SampleMaker, StandardLeavesOutCamerasNowAndThen) {
+  SampleStream stream = stream_of(NuisanceSet::kStandard);
+  size_t incomplete = 0;
+  make_samples_of_world(stream, 0, 0, [&incomplete](const Sample& sample) {
+    incomplete += sample.cameras.all() ? 0 : 1;
+    EXPECT_GE(sample.cameras.count(), kCameraCount - 2U);
+    return true;
+  });
+  EXPECT_GT(incomplete, 0U);
+  EXPECT_LT(incomplete, kSamplesPerWorld / 2);
+}
+
+TEST(SampleMaker, SeedsAreApart) {
+  const std::vector<Sample> other = make(stream_of(NuisanceSet::kSixCameras, kSeed + 1));
+  for (size_t i = 0; i < kCount; ++i) {
+    const Sample& sample = samples_of(NuisanceSet::kSixCameras)[i];
+    EXPECT_NE(sample.correction.x_m, other[i].correction.x_m);
+    EXPECT_TRUE(sample.raster_truth != other[i].raster_truth);
+  }
+}
+
+TEST(SampleMaker, NightIsDark) {
+  EXPECT_LT(1.5 * brightness(samples_of(NuisanceSet::kNight)),
+            brightness(samples_of(NuisanceSet::kClean)));
+}
+
+TEST(SampleMaker, DressesAMapAnewForEachWorld) {
+  const auto map = load_map(BEVLOC_SOURCE_DIR "/tests/pipeline/map/fixtures/street.osm");
+  ASSERT_TRUE(map) << map.error().message;
+  SampleStream stream = stream_of(NuisanceSet::kClean);
+  stream.map = &*map;
+  const std::vector<Sample> samples = make(stream);
+  for (const Sample& sample : samples) {
+    EXPECT_GT(*std::ranges::max_element(sample.raster_truth), 0) << "the map is drawn";
+  }
+  ++stream.first_seed;
+  EXPECT_TRUE(make(stream).front().images != samples.front().images);
+}
+
+}  // namespace
+}  // namespace bevloc::sim
