@@ -133,7 +133,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("checkpoint", type=Path)
     parser.add_argument("models", type=Path, help="folder")
-    parser.add_argument("--calibration", type=int, default=128, help="samples")
+    parser.add_argument("--calibration", type=int, default=384, help="samples")
     parser.add_argument("--threads", type=int, default=1)
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
