@@ -2,10 +2,11 @@
 
     /usr/bin/python3 -m training.export_onnx training/runs/nano/checkpoint.pt models
 
-Writes nano.onnx (int8, QDQ) and nano_float.onnx into the folder, and quantization.pt beside the
-checkpoint. Inputs: images int8 [6, 3, 96, 320] (RGB - 128), raster uint8 [1, 3, 400, 200],
-view_index int32 [8, 5000] and view_weight float [8, 5000] (pipeline/network/view_table.h). Outputs,
-real values: bev_features and map_features [1, 16, 100, 50], bev_mask (logits) [1, 3, 400, 200].
+Writes nano.onnx (int8, QDQ) and nano_float.onnx into the folder, and beside the checkpoint
+quantization.pt and solvers.pt: the solvers with the scales that the model files carry. Inputs:
+images int8 [6, 3, 96, 320] (RGB - 128), raster uint8 [1, 3, 400, 200], view_index int32 [8, 5000]
+and view_weight float [8, 5000] (pipeline/network/view_table.h). Outputs, real values: bev_features
+and map_features [1, 16, 100, 50], bev_mask (logits) [1, 3, 400, 200].
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ from training.runtime import NativeNetwork, NativeSolver
 OPSET, IR_VERSION = 13, 8
 MODEL_NAME = "nano"
 QUANTIZATION_FILE = "quantization.pt"
+SOLVERS_FILE = "solvers.pt"
 SHIPPED_SOLVER = "decoupled+refine"  # config/demo.yaml
 # Calibration looks at training scenes that no run reaches.
 CALIBRATION_SEED = FIRST_TRAINING_SEED + 2**27
@@ -142,6 +144,7 @@ def main() -> None:
     quantization = quantize(net, batches)
     quantization.save(arguments.checkpoint.with_name(QUANTIZATION_FILE))
     fit_scales(net.solvers, int8_inference(net, quantization), batches)
+    torch.save(net.solvers.state_dict(), arguments.checkpoint.with_name(SOLVERS_FILE))
     arguments.models.mkdir(parents=True, exist_ok=True)
     shipped = arguments.models / f"{MODEL_NAME}.onnx"
     write_model(net, quantization, 1.0, arguments.models)

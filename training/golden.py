@@ -20,7 +20,7 @@ import torch
 from training.config import FIRST_GOLDEN_SEED
 from training.data import Batch, SamplerStream
 from training.evaluate import Inference, float_inference, load_network
-from training.export_onnx import QUANTIZATION_FILE
+from training.export_onnx import QUANTIZATION_FILE, SOLVERS_FILE
 from training.golden_solver import write_solver_vectors
 from training.quantize import Quantization, int8_inference
 from training.solver import PoseSolvers, Posterior, standardise
@@ -62,6 +62,7 @@ def write_network_vectors(checkpoint: Path, out: Path) -> None:
     out.mkdir(parents=True, exist_ok=True)
     net = load_network(checkpoint)
     quantization = Quantization.load(net, checkpoint.with_name(QUANTIZATION_FILE))
+    net.solvers.load_state_dict(torch.load(checkpoint.with_name(SOLVERS_FILE)))
     batch = golden_batch()
     np.save(out / "images.npy", batch.images.numpy())
     np.save(out / "raster.npy", batch.raster_prior.numpy())
