@@ -1,0 +1,131 @@
+"""Prints what each preset of training/models costs; --write puts the table into docs/networks.md.
+
+    OMP_NUM_THREADS=1 /usr/bin/python3 -m training.model_table [--write]
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import statistics
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import torch
+
+from training.models.config import PRESETS, VIEWS, ModelConfig
+from training.models.cost import Cost, cost_of, deployed_outputs, sample_inputs
+from training.models.network import BevNetwork
+
+DOCUMENT = Path(__file__).resolve().parent.parent / "docs" / "networks.md"
+BEGIN, END = "<!-- model_table: begin -->\n", "<!-- model_table: end -->\n"
+_RUNS = 3
+_LONGEST_REPEATED_S = 10.0
+_LONGEST_S = 60.0
+_MOST_BYTES = 8 * 2**30
+_FLOAT_BYTES = 4
+# Columns of the table, and the parts that each sums.
+_COLUMNS = {
+    "trunk": ("trunk",),
+    "view": ("view",),
+    "BEV encoder": ("bev_encoder",),
+    "map encoder": ("map_encoder",),
+    "to F_B, F_M": ("bev_compress", "map_compress"),
+    "head": ("head",),
+}
+_HEADINGS = (
+    *("network", "images", "view", "parameters, M"),
+    *(f"{column}, GMAC" for column in _COLUMNS),
+    *("all, GMAC", "activations, MiB", "latency, ms"),
+)
+
+
+def configurations() -> list[ModelConfig]:
+    """The presets, and the smallest one with each other view transform."""
+    nano = PRESETS["nano"]
+    others = [replace(nano, name=f"nano, {view}", view=view) for view in VIEWS if view != nano.view]
+    return [nano, *others, *(config for config in PRESETS.values() if config is not nano)]
+
+
+def counted_cells(config: ModelConfig, cost: Cost) -> list[str]:
+    """All but the latency."""
+    parts = [sum(cost.macs.get(part, 0) for part in parts) for parts in _COLUMNS.values()]
+    rows, cols = config.image_size
+    return [
+        config.name,
+        f"{cols} x {rows}",
+        config.view,
+        f"{cost.parameters / 1e6:.2f}",
+        *(f"{macs / 1e9:.3f}" for macs in parts),
+        f"{sum(parts) / 1e9:.2f}",
+        f"{cost.peak_bytes / 2**20:.0f}",
+    ]
+
+
+@torch.no_grad()
+def latency_s(config: ModelConfig) -> float:
+    """Processor time of one thread, which other processes on the machine disturb least: the median
+    of some runs after a first one, or a slow network's first."""
+    network = BevNetwork(config).eval().to(memory_format=torch.channels_last)
+    inputs = sample_inputs(config, "cpu")
+    seconds = _seconds(network, inputs)
+    if seconds > _LONGEST_REPEATED_S:
+        return seconds
+    return statistics.median(_seconds(network, inputs) for _ in range(_RUNS))
+
+
+def _seconds(network: BevNetwork, inputs: tuple) -> float:
+    start = time.process_time()
+    deployed_outputs(network, *inputs)
+    return time.process_time() - start
+
+
+def table() -> str:
+    """Measures, and prints each row as soon as it is known. What would take too long at the least
+    speed so far, or too much memory, is not run."""
+    rules = ["---"] * 3 + ["---:"] * (len(_HEADINGS) - 3)
+    lines = [_row(list(_HEADINGS)), _row(rules)]
+    print(*lines, sep="", end="", flush=True)
+    least_speed = math.inf  # multiply-accumulates a second
+    for config in configurations():
+        cost = cost_of(config)
+        macs = sum(cost.macs.values())
+        if cost.peak_bytes + _FLOAT_BYTES * cost.parameters > _MOST_BYTES:
+            latency = f"not run: over {_MOST_BYTES / 2**30:.0f} GiB"
+        elif macs / least_speed > _LONGEST_S:
+            latency = f"not run: over {_LONGEST_S:.0f} s expected"
+        else:
+            seconds = latency_s(config)
+            least_speed = min(least_speed, macs / seconds)
+            latency = f"{1e3 * seconds:.0f}"
+        lines.append(_row([*counted_cells(config, cost), latency]))
+        print(lines[-1], end="", flush=True)
+    return "".join(lines)
+
+
+def _row(cells: list[str]) -> str:
+    return f"| {' | '.join(cells)} |\n"
+
+
+def with_table(document: str, new_table: str) -> str:
+    """The document with what stands between the markers replaced. ValueError without markers."""
+    head, begin, rest = document.partition(BEGIN)
+    _, end, tail = rest.partition(END)
+    if not (begin and end):
+        raise ValueError(f"{DOCUMENT}: found no '{BEGIN.strip()}' ... '{END.strip()}'")
+    return head + begin + new_table + end + tail
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--write", action="store_true", help="update docs/networks.md")
+    write = parser.parse_args().write
+    torch.set_num_threads(1)
+    new_table = table()
+    if write:
+        DOCUMENT.write_text(with_table(DOCUMENT.read_text(), new_table))
+
+
+if __name__ == "__main__":
+    main()

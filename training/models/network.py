@@ -1,0 +1,69 @@
+"""A whole network.
+
+images [batch, 6, 3, *image_size] -> trunk -> view transform -> BEV encoder -> compression -> F_B
+raster [batch, 3, 400, 200] -> map encoder -> compression -> F_M
+head H on either -> masks [batch, 3, 400, 200]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import torch
+from torch import Tensor, nn
+
+from training.models.bev_encoder import make_bev_encoder
+from training.models.compression import make_compression
+from training.models.config import ModelConfig
+from training.models.head import Head
+from training.models.map_encoder import MapEncoder
+from training.models.rig import Camera, nominal_cameras
+from training.models.trunks import make_trunk
+from training.models.view_dense import DenseView
+from training.models.view_kernel import KernelView
+from training.models.view_lut import LutView
+from training.solver import PoseSolvers
+
+
+class BevNetwork(nn.Module):
+    """Everything that is learned, the solvers' scales included. `cameras`: the six of which a dense
+    view is told; without them it is the nuScenes rig. Other views read the view table alone."""
+
+    def __init__(self, config: ModelConfig, cameras: Sequence[Camera] | None = None) -> None:
+        super().__init__()
+        self.config = config
+        self.trunk = make_trunk(config)
+        self.view = _make_view(config, cameras)
+        self.bev_encoder = make_bev_encoder(config)
+        self.bev_compress = make_compression(config)
+        self.map_encoder = MapEncoder(config)
+        self.map_compress = make_compression(config)
+        self.head = Head(config)
+        self.solvers = PoseSolvers(config.solver_definition())
+        for module in self.modules():
+            if isinstance(module, nn.Conv2d):
+                nn.init.kaiming_normal_(module.weight, mode="fan_out", nonlinearity="relu")
+
+    def perceive(self, images: Tensor, index: Tensor, weight: Tensor) -> Tensor:
+        """images: real values; index and weight [batch, 8, 5000]: the view table, whose indices
+        count camera * cells + row * columns + column of the configuration's feature_grid -> BEV
+        features [batch, width, *bev_size]."""
+        features = self.trunk(images.flatten(0, 1))
+        return self.bev_encoder(self.view(features, index, weight))
+
+    def forward(
+        self, images: Tensor, index: Tensor, weight: Tensor, raster: Tensor
+    ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        """-> F_B, F_M, logits of the perceived and of the reconstructed mask."""
+        bev = self.perceive(images, index, weight)
+        encoded = self.map_encoder(raster)
+        perceived, reconstructed = self.head(torch.cat((bev, encoded))).chunk(2)
+        return self.bev_compress(bev), self.map_compress(encoded), perceived, reconstructed
+
+
+def _make_view(config: ModelConfig, cameras: Sequence[Camera] | None) -> nn.Module:
+    if config.view == "lut":
+        return LutView(config)
+    if config.view == "kernel":
+        return KernelView(config)
+    return DenseView(config, nominal_cameras(config.image_size) if cameras is None else cameras)
