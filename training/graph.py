@@ -12,7 +12,8 @@ from typing import Protocol, TypeVar
 import torch
 from torch import Tensor, nn
 
-from training.model import ConvBn, Nano, Residual
+from training.model import Nano
+from training.models.layers import ConvBn, Residual
 
 T = TypeVar("T")
 

@@ -12,6 +12,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from training.models.layers import ConvBn, Residual
 from training.solver import PoseSolvers
 
 CAMERAS, IMAGE_ROWS, IMAGE_COLS = 6, 96, 320
@@ -21,36 +22,6 @@ VIEW_SLOTS = 8
 RASTER_CHANNELS = 3
 IMAGE_OFFSET, IMAGE_SCALE = 128, 1.0 / 64.0
 RASTER_SCALE = 1.0 / 255.0
-
-
-class ConvBn(nn.Module):
-    """Convolution, batch normalisation and, unless `relu` is False, ReLU."""
-
-    def __init__(
-        self, inputs: int, outputs: int, size: int = 3, stride: int = 1, relu: bool = True
-    ):
-        super().__init__()
-        self.conv = nn.Conv2d(inputs, outputs, size, stride, size // 2, bias=False)
-        self.bn = nn.BatchNorm2d(outputs)
-        self.relu = relu
-
-    def forward(self, x: Tensor) -> Tensor:
-        x = self.bn(self.conv(x))
-        return F.relu(x, inplace=True) if self.relu else x
-
-
-class Residual(nn.Module):
-    """Two 3x3 convolutions beside a skip; ReLU after the sum unless the block is `linear`."""
-
-    def __init__(self, channels: int, linear: bool = False):
-        super().__init__()
-        self.first = ConvBn(channels, channels)
-        self.second = ConvBn(channels, channels, relu=False)
-        self.linear = linear
-
-    def forward(self, x: Tensor) -> Tensor:
-        y = self.second(self.first(x)) + x
-        return y if self.linear else F.relu(y, inplace=True)
 
 
 class Trunk(nn.Module):

@@ -5,9 +5,8 @@
 #include "common/target_clones.h"
 
 namespace bevloc {
-namespace {
 
-BEVLOC_TARGET_CLONES void warp_line(const WarpLine& line, float* out) {
+BEVLOC_TARGET_CLONES void warp(const WarpLine& line, float* out) {
   TapGroups groups(line);
   for (int first = 0; first < line.cells; first += kLanes) {
     const Taps& taps = groups.next();
@@ -18,8 +17,6 @@ BEVLOC_TARGET_CLONES void warp_line(const WarpLine& line, float* out) {
     }
   }
 }
-
-}  // namespace
 
 FeatureWarp::FeatureWarp(const CellFeatures& features, double yaw_rad, double row_shift,
                          double col_shift)
@@ -48,10 +45,6 @@ WarpLine FeatureWarp::line(int row, int col_begin, int cells) const {
           .du = sin_yaw_,
           .dv = cos_yaw_,
           .cells = cells};
-}
-
-void warp(const WarpLine& line, float* out) {
-  warp_line(line, out);
 }
 
 }  // namespace bevloc

@@ -11,7 +11,9 @@ namespace {
 /// Sums that are kept side by side, to hide the latency of the additions.
 constexpr int kSums = 4;
 
-BEVLOC_TARGET_CLONES float dot_lanes(const float* a, const float* b, int count) {
+}  // namespace
+
+BEVLOC_TARGET_CLONES float dot(const float* a, const float* b, int count) {
   Lanes sums[kSums] = {};
   int i = 0;
   for (; i + kSums * kLanes <= count; i += kSums * kLanes) {
@@ -23,11 +25,11 @@ BEVLOC_TARGET_CLONES float dot_lanes(const float* a, const float* b, int count) 
   return sum_of((sums[0] + sums[1]) + (sums[2] + sums[3]));
 }
 
-BEVLOC_TARGET_CLONES void add_lanes(const float* a, float weight, int count, float* out) {
+BEVLOC_TARGET_CLONES void add_weighted(const float* a, float weight, int count, float* out) {
   for (int i = 0; i < count; i += kLanes) lanes(out + i) += weight * lanes(a + i);
 }
 
-BEVLOC_TARGET_CLONES void add_sum_of_lanes(const float* first, int cells, float weight,
+BEVLOC_TARGET_CLONES void add_weighted_sum(const float* first, int cells, float weight,
                                            int lane_count, float* out) {
   for (int k = 0; k < lane_count; k += kLanes) {
     Lanes sums[kSums] = {};
@@ -40,8 +42,8 @@ BEVLOC_TARGET_CLONES void add_sum_of_lanes(const float* first, int cells, float 
   }
 }
 
-BEVLOC_TARGET_CLONES void standardise_lanes(float* first, int runs, std::ptrdiff_t stride,
-                                            int cells, int lane_count, float epsilon) {
+BEVLOC_TARGET_CLONES void standardise_runs(float* first, int runs, std::ptrdiff_t stride, int cells,
+                                           int lane_count, float epsilon) {
   const float share = 1.0F / static_cast<float>(runs * cells);
   for (int k = 0; k < lane_count; k += kLanes) {
     Lanes mean = {};
@@ -63,25 +65,6 @@ BEVLOC_TARGET_CLONES void standardise_lanes(float* first, int runs, std::ptrdiff
       for (int i = 0; i < cells; ++i) lanes(first + run * stride + i * lane_count + k) *= scale;
     }
   }
-}
-
-}  // namespace
-
-float dot(const float* a, const float* b, int count) {
-  return dot_lanes(a, b, count);
-}
-
-void add_weighted(const float* a, float weight, int count, float* out) {
-  add_lanes(a, weight, count, out);
-}
-
-void add_weighted_sum(const float* first, int cells, float weight, int lane_count, float* out) {
-  add_sum_of_lanes(first, cells, weight, lane_count, out);
-}
-
-void standardise_runs(float* first, int runs, std::ptrdiff_t stride, int cells, int lane_count,
-                      float epsilon) {
-  standardise_lanes(first, runs, stride, cells, lane_count, epsilon);
 }
 
 }  // namespace bevloc

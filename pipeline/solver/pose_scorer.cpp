@@ -4,32 +4,15 @@
 
 #include "common/target_clones.h"
 #include "pipeline/solver/feature_warp.h"
+#include "pipeline/solver/match_sums.h"
 
 namespace bevloc {
 namespace {
 
-struct RowSums {
-  float product;
-  float value;
-  float square;
-};
-
-struct LaneSums {
-  Lanes product = {};
-  Lanes value = {};
-  Lanes square = {};
-
-  void add(const Lanes& map, const Lanes& moved) {
-    product += map * moved;
-    value += moved;
-    square += moved * moved;
-  }
-};
-
 /// `lanes_per_cell` is line.lanes, known to the compiler where it can be. Two cells at a time, to
 /// hide the latency of the additions.
-[[gnu::always_inline]] inline RowSums match_cells(WarpLine line, int lanes_per_cell,
-                                                  const float* map) {
+[[gnu::always_inline]] inline MatchSums match_cells(WarpLine line, int lanes_per_cell,
+                                                    const float* map) {
   line.lanes = lanes_per_cell;
   LaneSums even;
   LaneSums odd;
@@ -54,11 +37,10 @@ struct LaneSums {
       }
     }
   }
-  return {sum_of(even.product + odd.product), sum_of(even.value + odd.value),
-          sum_of(even.square + odd.square)};
+  return sum_of(even, odd);
 }
 
-BEVLOC_TARGET_CLONES RowSums match_line(const WarpLine& line, const float* map) {
+BEVLOC_TARGET_CLONES MatchSums match_line(const WarpLine& line, const float* map) {
   return line.lanes == kLanes ? match_cells(line, kLanes, map) : match_cells(line, line.lanes, map);
 }
 
@@ -70,17 +52,12 @@ PoseScorer::PoseScorer(const CellFeatures& bev, const CellFeatures& map)
 double PoseScorer::score(const Se2& correction) const {
   const BevGrid& grid = map_.grid();
   const FeatureWarp moved(bev_, correction);
-  double product = 0.0;
-  double value = 0.0;
-  double square = 0.0;
+  MatchSums sums;
   for (int row = 0; row < grid.rows; ++row) {
-    const RowSums sums = match_line(moved.line(row, 0, grid.cols), map_.cell(row, 0));
-    product += sums.product;
-    value += sums.value;
-    square += sums.square;
+    sums += match_line(moved.line(row, 0, grid.cols), map_.cell(row, 0));
   }
   const double count = static_cast<double>(grid.cells()) * map_.channels();
-  return zncc(product, map_moments_, moments(value, square, count), count);
+  return zncc(sums, map_moments_, count);
 }
 
 }  // namespace bevloc

@@ -11,34 +11,16 @@
 namespace bevloc {
 namespace {
 
-struct RowSums {
-  float product;
-  float value;
-  float square;
-};
-
-BEVLOC_TARGET_CLONES RowSums match_row(const float* map, const float* moved, int count) {
-  // Two of each, to hide the latency of the additions.
-  Lanes product[2] = {};
-  Lanes value[2] = {};
-  Lanes square[2] = {};
+BEVLOC_TARGET_CLONES MatchSums match_row(const float* map, const float* moved, int count) {
+  LaneSums sums[2];
   int i = 0;
   for (; i + 2 * kLanes <= count; i += 2 * kLanes) {
     for (int k = 0; k < 2; ++k) {
-      const Lanes& b = lanes(moved + i + k * kLanes);
-      product[k] += lanes(map + i + k * kLanes) * b;
-      value[k] += b;
-      square[k] += b * b;
+      sums[k].add(lanes(map + i + k * kLanes), lanes(moved + i + k * kLanes));
     }
   }
-  if (i < count) {
-    const Lanes& b = lanes(moved + i);
-    product[0] += lanes(map + i) * b;
-    value[0] += b;
-    square[0] += b * b;
-  }
-  return {sum_of(product[0] + product[1]), sum_of(value[0] + value[1]),
-          sum_of(square[0] + square[1])};
+  if (i < count) sums[0].add(lanes(map + i), lanes(moved + i));
+  return sum_of(sums[0], sums[1]);
 }
 
 }  // namespace
@@ -78,7 +60,7 @@ void TranslationScorer::score(double yaw_rad, const ShiftPlan& x, const ShiftPla
   for (const auto& x_phase : x.phases()) {
     for (const auto& y_phase : y.phases()) {
       match_phase(yaw_rad, x_phase, y_phase);
-      const Sums* sums = sums_.data();
+      const MatchSums* sums = sums_.data();
       for (const auto& x_shift : x_phase.shifts) {
         for (const auto& y_shift : y_phase.shifts) {
           scores[x_shift.hypothesis * y.hypotheses() + y_shift.hypothesis] = score_of(*sums++);
@@ -92,32 +74,29 @@ void TranslationScorer::match_phase(double yaw_rad, const ShiftPlan::Phase& x,
                                     const ShiftPlan::Phase& y) {
   const BevGrid& grid = map_->grid();
   const int lanes = map_->lanes();
-  std::fill_n(sums_.begin(), x.shifts.size() * y.shifts.size(), Sums{});
+  std::fill_n(sums_.begin(), x.shifts.size() * y.shifts.size(), MatchSums{});
   const FeatureWarp moved(*bev_, yaw_rad, x.fraction, y.fraction);
   const int col_begin = y.shifts.front().cells;
   const int cells = grid.cols + y.shifts.back().cells - col_begin;
   const int row_end = grid.rows + x.shifts.back().cells;
   for (int row = x.shifts.front().cells; row < row_end; ++row) {
     warp(moved.line(row, col_begin, cells), warped_row_.data());
-    Sums* sums = sums_.data();
+    MatchSums* sums = sums_.data();
     for (const auto& x_shift : x.shifts) {
       const int map_row = row - x_shift.cells;
       const bool inside = map_row >= 0 && map_row < grid.rows;
       for (size_t j = 0; inside && j < y.shifts.size(); ++j) {
         const float* shifted = warped_row_.data() + (y.shifts[j].cells - col_begin) * lanes;
-        const RowSums part = match_row(map_->cell(map_row, 0), shifted, grid.cols * lanes);
-        sums[j].product += part.product;
-        sums[j].value += part.value;
-        sums[j].square += part.square;
+        sums[j] += match_row(map_->cell(map_row, 0), shifted, grid.cols * lanes);
       }
       sums += y.shifts.size();
     }
   }
 }
 
-double TranslationScorer::score_of(const Sums& sums) const {
+double TranslationScorer::score_of(const MatchSums& sums) const {
   const double count = static_cast<double>(map_->grid().cells()) * map_->channels();
-  return zncc(sums.product, map_moments_, moments(sums.value, sums.square, count), count);
+  return zncc(sums, map_moments_, count);
 }
 
 }  // namespace bevloc

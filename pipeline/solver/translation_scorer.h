@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/solver/cell_features.h"
+#include "pipeline/solver/match_sums.h"
 #include "pipeline/solver/solver.h"
 #include "pipeline/solver/zncc.h"
 
@@ -47,19 +48,13 @@ class TranslationScorer {
   void score(double yaw_rad, const ShiftPlan& x, const ShiftPlan& y, std::span<double> scores);
 
  private:
-  struct Sums {
-    double product = 0.0;  ///< of map and moved feature
-    double value = 0.0;    ///< of moved features
-    double square = 0.0;
-  };
-
   void match_phase(double yaw_rad, const ShiftPlan::Phase& x, const ShiftPlan::Phase& y);
-  double score_of(const Sums& sums) const;
+  double score_of(const MatchSums& sums) const;
 
   const CellFeatures* bev_ = nullptr;
   const CellFeatures* map_ = nullptr;
   FeatureMoments map_moments_;
-  std::vector<Sums> sums_;  ///< [shifts of the x phase, shifts of the y phase]
+  std::vector<MatchSums> sums_;  ///< [shifts of the x phase, shifts of the y phase]
   LaneBuffer warped_row_;
 };
 

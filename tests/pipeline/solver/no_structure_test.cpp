@@ -1,5 +1,4 @@
 // A side that holds nothing but noise may not make a confident pose.
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -8,6 +7,7 @@
 
 #include "pipeline/solver/posterior.h"
 #include "pipeline/solver/solver_factory.h"
+#include "tests/pipeline/solver/solver_name.h"
 #include "tests/pipeline/solver/synthetic_scene.h"
 
 namespace bevloc {
@@ -68,12 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
                     LeastDeviation{SolverKind::kDecoupledRefined},
                     LeastDeviation{SolverKind::kBanded}, LeastDeviation{SolverKind::kBandedRefined},
                     LeastDeviation{SolverKind::kBlock}, LeastDeviation{SolverKind::kBlockRefined}),
-    [](const auto& test) {
-      std::string name(name_of(test.param.kind));
-      std::ranges::replace_if(
-          name, [](char c) { return c == '-' || c == '+'; }, '_');
-      return name;
-    });
+    kSolverName);
 
 }  // namespace
 }  // namespace bevloc

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/solver/solver_factory.h"
+#include "tests/pipeline/solver/solver_name.h"
 #include "tests/pipeline/solver/synthetic_scene.h"
 
 namespace bevloc {
@@ -70,13 +71,6 @@ struct Bound {
   double yaw_deg = kYaw_deg;
 };
 
-std::string test_name(const testing::TestParamInfo<Bound>& test) {
-  std::string name(name_of(test.param.kind));
-  std::ranges::replace_if(
-      name, [](char c) { return c == '-' || c == '+'; }, '_');
-  return name;
-}
-
 class Recovery : public testing::TestWithParam<Bound> {};
 
 TEST_P(Recovery, OnTheFeatureGrid) {
@@ -100,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Bound{SolverKind::kBandedRefined}, Bound{SolverKind::kBlockRefined},
                     Bound{SolverKind::kDecoupledLiteralRefined, 0.04, kYaw_deg},
                     Bound{SolverKind::kBlock, 0.04, 0.1}, Bound{SolverKind::kBanded, 0.12, 0.25}),
-    test_name);
+    kSolverName);
 
 class FineRecovery : public testing::TestWithParam<Bound> {};
 
@@ -112,7 +106,7 @@ TEST_P(FineRecovery, OnTheRasterGrid) {
 INSTANTIATE_TEST_SUITE_P(Solvers, FineRecovery,
                          testing::Values(Bound{SolverKind::kDecoupledRefined},
                                          Bound{SolverKind::kBandedRefined}),
-                         test_name);
+                         kSolverName);
 
 }  // namespace
 }  // namespace bevloc

@@ -9,6 +9,7 @@
 
 #include "pipeline/solver/posterior.h"
 #include "pipeline/solver/solver_factory.h"
+#include "tests/pipeline/solver/solver_name.h"
 #include "tests/pipeline/solver/synthetic_scene.h"
 
 namespace bevloc {
@@ -179,12 +180,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Accuracy{SolverKind::kBandedRefined, 0.05, radians(0.1)},
                     Accuracy{SolverKind::kBlock, 0.08, radians(0.15)},
                     Accuracy{SolverKind::kBlockRefined, 0.05, radians(0.1)}),
-    [](const auto& test) {
-      std::string name(name_of(test.param.kind));
-      std::ranges::replace_if(
-          name, [](char c) { return c == '-' || c == '+'; }, '_');
-      return name;
-    });
+    kSolverName);
 
 }  // namespace
 }  // namespace bevloc
