@@ -39,6 +39,7 @@ CameraConfig read_cameras(YamlMap yaml, const std::filesystem::path& folder) {
   synchronizer.wait = milliseconds_of(yaml, "wait_ms", synchronizer.wait, between(1.0, 1000.0));
   synchronizer.min_cameras =
       yaml.optional<int>("min_cameras", synchronizer.min_cameras, between(1, kCameraCount));
+  cameras.compensate_motion = yaml.optional<bool>("compensate_motion", cameras.compensate_motion);
   if (synchronizer.wait < synchronizer.tolerance) {
     yaml.reject("wait_ms", "less than tolerance_ms", "at least tolerance_ms");
   }

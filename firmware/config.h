@@ -29,6 +29,7 @@ struct CameraConfig {
   CameraDriver driver = CameraDriver::kMock;
   int buffers = 6;  ///< per camera
   drivers::SynchronizerConfig synchronizer;
+  bool compensate_motion = true;    ///< between the exposures of one set
   double rate_hz = 10.0;            ///< of mock cameras
   std::filesystem::path recording;  ///< of replay cameras: holds a folder for each of kCameraNames
 };
@@ -58,6 +59,8 @@ struct SimulationConfig {
   sim::Conditions conditions;
   drivers::CalibrationError calibration_error;  ///< 1 sigma
   std::array<std::vector<drivers::CameraFault>, kCameraCount> camera_faults;
+  /// How much later than the beat of `rate_hz` each camera exposes, always.
+  std::array<Duration, kCameraCount> exposure_offsets{};
 };
 
 struct Config {

@@ -98,6 +98,7 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
   inputs.correction_age = age(accepted_frame_time_, now);
   if (latest_report_) {
     inputs.cameras_present = latest_report_->present;
+    inputs.cameras_unsynchronized = latest_report_->unsynchronized;
     inputs.map_nearby = latest_report_->map_nearby || !latest_report_->had_prior;
     inputs.overloaded = latest_report_->skipped;
   }

@@ -69,6 +69,7 @@ can::WhyMask Health::find_reasons(const HealthInputs& inputs) const {
     if (present) why |= reason;
   };
   set_if(Why::kCameraMissing, !inputs.cameras_present.all());
+  set_if(Why::kCamerasUnsynchronized, inputs.cameras_unsynchronized);
   set_if(Why::kOdometryMissing, inputs.odometry_age > limits_.odometry_timeout);
   set_if(Why::kGnssMissing, inputs.gnss_age > limits_.gnss_timeout);
   set_if(Why::kNoInitialPose, !inputs.initialized);

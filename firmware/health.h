@@ -40,6 +40,7 @@ struct HealthInputs {
   Duration gnss_age = Duration::max();
   Duration correction_age = Duration::max();  ///< since the latest accepted one
   CameraMask cameras_present;                 ///< of the latest frameset
+  bool cameras_unsynchronized = false;        ///< and the motion between them not made up for
   bool map_nearby = true;
   bool latest_correction_refused = false;
   int accepted_in_a_row = 0;

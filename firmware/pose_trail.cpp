@@ -3,17 +3,19 @@
 namespace bevloc::firmware {
 namespace {
 
-/// Drives on for a while at constant speed and yaw rate; exact enough over a tenth of a second.
-Se2 drive_on(const TrackedPose& from, Duration duration) {
-  const double dt_s = to_seconds(duration);
-  const double turn_rad = from.yaw_rate_radps * dt_s;
-  const double way_m = from.speed_mps * dt_s;
-  const Se2 step{way_m * std::cos(0.5 * turn_rad), way_m * std::sin(0.5 * turn_rad), turn_rad};
-  return from.map_from_vehicle * step;
+/// A while at constant speed and yaw rate; exact enough over a tenth of a second.
+Se2 arc(double speed_mps, double yaw_rate_radps, Duration duration) {
+  const double turn_rad = yaw_rate_radps * to_seconds(duration);
+  const double way_m = speed_mps * to_seconds(duration);
+  return {way_m * std::cos(0.5 * turn_rad), way_m * std::sin(0.5 * turn_rad), turn_rad};
+}
+
+double share_of(Time time, const TrackedPose& before, const TrackedPose& after) {
+  return to_seconds(time - before.time) / to_seconds(after.time - before.time);
 }
 
 Se2 interpolate(const TrackedPose& before, const TrackedPose& after, Time time) {
-  const double share = to_seconds(time - before.time) / to_seconds(after.time - before.time);
+  const double share = share_of(time, before, after);
   const Se2 step = correction_between(before.map_from_vehicle, after.map_from_vehicle);
   return before.map_from_vehicle * Se2{share * step.x_m, share * step.y_m, share * step.yaw_rad};
 }
@@ -35,10 +37,35 @@ std::optional<Se2> PoseTrail::at(Time time) const {
   const TrackedPose& newest = nth_newest(0);
   if (time >= newest.time) {
     if (time - newest.time > kReach) return std::nullopt;
-    return drive_on(newest, time - newest.time);
+    return newest.map_from_vehicle *
+           arc(newest.speed_mps, newest.yaw_rate_radps, time - newest.time);
   }
   for (int n = 1; n < size_; ++n) {
     if (nth_newest(n).time <= time) return interpolate(nth_newest(n), nth_newest(n - 1), time);
+  }
+  return std::nullopt;
+}
+
+std::optional<Se2> PoseTrail::motion(Time from, Time to) const {
+  const auto rates = rates_at(from + (to - from) / 2);
+  if (!rates) return std::nullopt;
+  return arc(rates->speed_mps, rates->yaw_rate_radps, to - from);
+}
+
+std::optional<PoseTrail::Rates> PoseTrail::rates_at(Time time) const {
+  if (size_ == 0) return std::nullopt;
+  const TrackedPose& newest = nth_newest(0);
+  if (time >= newest.time) {
+    if (time - newest.time > kReach) return std::nullopt;
+    return Rates{newest.speed_mps, newest.yaw_rate_radps};
+  }
+  for (int n = 1; n < size_; ++n) {
+    const TrackedPose& before = nth_newest(n);
+    const TrackedPose& after = nth_newest(n - 1);
+    if (before.time > time) continue;
+    const double share = share_of(time, before, after);
+    return Rates{std::lerp(before.speed_mps, after.speed_mps, share),
+                 std::lerp(before.yaw_rate_radps, after.yaw_rate_radps, share)};
   }
   return std::nullopt;
 }

@@ -12,7 +12,7 @@ namespace bevloc::firmware {
 /// exposure without asking the estimator's thread. Not thread safe; never allocates.
 class PoseTrail {
  public:
-  /// At most this far beyond the newest pose one is still given.
+  /// At most this far beyond the newest pose is anything still known.
   static constexpr Duration kReach = std::chrono::milliseconds(150);
 
   /// A pose that is not newer than the latest one replaces it and all that came after it.
@@ -22,8 +22,19 @@ class PoseTrail {
   /// outside.
   std::optional<Se2> at(Time time) const;
 
+  /// How the vehicle moved: its pose at `to`, seen from that at `from`. From speed and yaw rate at
+  /// the middle of the two times, which are meant to lie a tenth of a second apart at most. The
+  /// poses themselves do not count: a correction makes them jump, the vehicle does not.
+  std::optional<Se2> motion(Time from, Time to) const;
+
  private:
   static constexpr int kCapacity = 128;
+
+  struct Rates {
+    double speed_mps = 0.0;
+    double yaw_rate_radps = 0.0;
+  };
+  std::optional<Rates> rates_at(Time time) const;
 
   const TrackedPose& nth_newest(int n) const {
     return poses_[(next_ + kCapacity - 1 - n) % kCapacity];

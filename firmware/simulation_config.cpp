@@ -65,6 +65,16 @@ CameraFault read_fault(YamlMap& yaml) {
   return fault;
 }
 
+std::array<Duration, kCameraCount> read_offsets(YamlMap& yaml) {
+  std::array<Duration, kCameraCount> offsets{};
+  if (!yaml.has("exposure_offsets_ms")) return offsets;
+  const auto offsets_ms =
+      yaml.require_list<double>("exposure_offsets_ms", kCameraCount, between(0.0, 50.0));
+  std::ranges::transform(offsets_ms, offsets.begin(),
+                         [](double offset_ms) { return from_seconds(1e-3 * offset_ms); });
+  return offsets;
+}
+
 }  // namespace
 
 SimulationConfig read_simulation(YamlMap yaml) {
@@ -73,6 +83,7 @@ SimulationConfig read_simulation(YamlMap yaml) {
   simulation.duration_s = yaml.require<double>("duration_s", between(0.1, 1e6));
   simulation.conditions = read_conditions(yaml.optional_map("conditions"));
   simulation.calibration_error = read_calibration_error(yaml.optional_map("calibration_error"));
+  simulation.exposure_offsets = read_offsets(yaml);
   if (yaml.has("camera_faults")) {
     for (YamlMap& fault : yaml.require_map_list("camera_faults")) {
       const int camera = read_camera(fault);

@@ -3,11 +3,18 @@
 #include <algorithm>
 
 namespace bevloc::firmware {
+namespace {
 
-VisionStage::VisionStage(Localizer& localizer, const drivers::SynchronizerConfig& synchronizer,
-                         FrameQueue& frames, PredictionQueue& predictions, VisionQueue& reports)
+/// Frames of one set that are further apart show different places: 10 cm at 20 m/s.
+constexpr Duration kSynchronous = std::chrono::milliseconds(5);
+
+}  // namespace
+
+VisionStage::VisionStage(Localizer& localizer, const VisionConfig& config, FrameQueue& frames,
+                         PredictionQueue& predictions, VisionQueue& reports)
     : localizer_(localizer),
-      synchronizer_(synchronizer),
+      compensate_motion_(config.compensate_motion),
+      synchronizer_(config.synchronizer),
       frames_(frames),
       predictions_(predictions),
       reports_(reports) {}
@@ -56,23 +63,25 @@ void VisionStage::localize(const drivers::Frameset& frameset, bool skipped) {
   report.frame_time = frameset.time;
   report.present = frameset.present;
   report.skipped = skipped;
+  report.unsynchronized = !compensate_motion_ && frameset.spread > kSynchronous;
   ++counters_.framesets;
   counters_.frames_used += frameset.present.count();
 
   const auto prior = trail_.at(frameset.time);
-  report.had_prior = prior.has_value();
-  if (!prior) {
+  const auto motions = motions_in(frameset);
+  report.had_prior = prior && motions;
+  if (!report.had_prior) {
     ++counters_.no_prior;
     reports_.push(report);
     return;
   }
   report.prior = *prior;
-  std::array<RgbView, kCameraCount> images;
+  CameraImages seen{{}, frameset.present, *motions};
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    if (frameset.present[camera]) images[camera] = frameset.frames[camera].pixels();
+    if (frameset.present[camera]) seen.images[camera] = frameset.frames[camera].image();
   }
   const SearchRange range = acquiring_ ? SearchRange::kAcquiring : SearchRange::kTracking;
-  if (localizer_.localize(images, frameset.present, *prior, range, solution_)) {
+  if (localizer_.localize(seen, *prior, range, solution_)) {
     report.map_nearby = localizer_.map_nearby();
     report.correction = solution_;
     if (observer_) observer_({frameset, report, solution_, range, localizer_});
@@ -80,6 +89,18 @@ void VisionStage::localize(const drivers::Frameset& frameset, bool skipped) {
     ++counters_.refused;
   }
   reports_.push(report);
+}
+
+std::optional<CameraMotions> VisionStage::motions_in(const drivers::Frameset& frameset) const {
+  CameraMotions reference_from_exposure{};
+  if (!compensate_motion_) return reference_from_exposure;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (!frameset.present[camera]) continue;
+    const auto motion = trail_.motion(frameset.time, frameset.frames[camera].time);
+    if (!motion) return std::nullopt;
+    reference_from_exposure[camera] = *motion;
+  }
+  return reference_from_exposure;
 }
 
 }  // namespace bevloc::firmware

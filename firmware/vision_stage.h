@@ -21,6 +21,12 @@ struct VisionSnapshot {
   Localizer& localizer;
 };
 
+struct VisionConfig {
+  drivers::SynchronizerConfig synchronizer;
+  /// Whether each camera is taken from where the vehicle was when it exposed.
+  bool compensate_motion = true;
+};
+
 /// Totals since start; readable from any thread.
 struct VisionCounters {
   std::atomic<uint64_t> steps{0};      ///< the thread's own heartbeat
@@ -28,15 +34,15 @@ struct VisionCounters {
   std::atomic<uint64_t> frames_used{0};
   std::atomic<uint64_t> framesets_skipped{0};  ///< a newer one was already there
   std::atomic<uint64_t> frames_skipped{0};     ///< of those
-  std::atomic<uint64_t> no_prior{0};           ///< framesets at whose time no prediction was known
+  std::atomic<uint64_t> no_prior{0};           ///< framesets at whose times no prediction was known
   std::atomic<uint64_t> refused{0};            ///< framesets with an image of the wrong size
 };
 
 /// Thread: one, the vision thread; counters() from any.
 class VisionStage {
  public:
-  VisionStage(Localizer& localizer, const drivers::SynchronizerConfig& synchronizer,
-              FrameQueue& frames, PredictionQueue& predictions, VisionQueue& reports);
+  VisionStage(Localizer& localizer, const VisionConfig& config, FrameQueue& frames,
+              PredictionQueue& predictions, VisionQueue& reports);
 
   /// Called with every localization, in the vision thread, before its report is handed on.
   void observe(std::function<void(const VisionSnapshot&)> observer);
@@ -52,8 +58,11 @@ class VisionStage {
   void take_in(const drivers::Clock& clock, Duration timeout);
   std::optional<drivers::Frameset> newest_frameset(Time now);
   void localize(const drivers::Frameset& frameset, bool skipped);
+  /// Nothing when the motion to one of its frames is not known.
+  std::optional<CameraMotions> motions_in(const drivers::Frameset& frameset) const;
 
   Localizer& localizer_;
+  const bool compensate_motion_;
   drivers::FramesetSynchronizer synchronizer_;
   FrameQueue& frames_;
   PredictionQueue& predictions_;

@@ -1,6 +1,7 @@
 #include "firmware/evaluation/network_command.h"
 
 #include <cstdio>
+#include <map>
 #include <optional>
 
 #include <fmt/format.h>
@@ -37,6 +38,16 @@ void NetworkCommand::declare(CLI::App& eval) {
       ->add_option("--set", set_,
                    "What may be wrong in a sample: a set's name (docs/evaluation.md), or all")
       ->capture_default_str();
+  const std::map<std::string, ReadOutRows> rows{{"solvers", ReadOutRows::kSolvers},
+                                                {"variants", ReadOutRows::kVariants},
+                                                {"baselines", ReadOutRows::kBaselines},
+                                                {"all", ReadOutRows::kAll}};
+  network
+      ->add_option("--rows", rows_,
+                   "solvers (on the model's features), variants (masks, sizes and steps of the "
+                   "paper's Tables III and IV too), baselines (without learned matching) or all")
+      ->transform(CLI::CheckedTransformer(rows))
+      ->default_str("solvers");
   network->add_option("--frames", frames_, "How many frames of each set")
       ->check(CLI::Range(1, kMostFrames))
       ->capture_default_str();
@@ -66,7 +77,7 @@ Status NetworkCommand::run() const {
     if (!loaded) return tl::unexpected(loaded.error());
     map = std::move(*loaded);
   }
-  auto evaluation = NetworkEvaluation::create(model_);
+  auto evaluation = NetworkEvaluation::create(model_, rows_);
   if (!evaluation) return tl::unexpected(evaluation.error());
 
   const NetworkEvaluationSubject subject{evaluation->model_name(), map_file_, frames_, seed_};

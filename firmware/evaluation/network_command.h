@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/result.h"
+#include "firmware/evaluation/read_out_case.h"
 #include "sim/samples/nuisances.h"
 
 namespace bevloc::evaluation {
@@ -28,6 +29,7 @@ class NetworkCommand {
   bool chosen_ = false;
   std::string model_ = "models/nano.onnx";
   std::string set_ = "standard";
+  ReadOutRows rows_ = ReadOutRows::kSolvers;
   std::string map_file_;
   int frames_ = 200;
   uint64_t seed_ = 1;

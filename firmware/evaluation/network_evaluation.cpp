@@ -1,7 +1,11 @@
 #include "firmware/evaluation/network_evaluation.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "firmware/evaluation/baselines/distance_transform.h"
+#include "firmware/evaluation/baselines/icp.h"
+#include "firmware/evaluation/baselines/ipm.h"
 #include "pipeline/map/rasterizer.h"
 #include "pipeline/preprocessing/image_remap.h"
 #include "pipeline/solver/posterior.h"
@@ -13,33 +17,86 @@ namespace {
 static_assert(sim::kEvaluationSampleSeedBase + sim::kSampleSeedCount <= sim::kTuningSeedBase);
 static_assert(kFramesPerWorld <= sim::kSamplesPerWorld);
 
-constexpr std::array<SolverKind, 5> kSolvers{SolverKind::kFullFft, SolverKind::kBlock,
-                                             SolverKind::kDecoupled, SolverKind::kDecoupledRefined,
-                                             SolverKind::kBandedRefined};
 const HypothesisGrid kHypotheses;
 
 /// A cell of a raster belongs to a line that covers more than half of it.
 constexpr uint8_t kHalfCovered = 127;
 
-std::vector<ReadOut> empty_read_outs() {
-  std::vector<ReadOut> read_outs{{"prior", {}}};
-  for (const SolverKind kind : kSolvers) read_outs.push_back({std::string(name_of(kind)), {}});
-  return read_outs;
+/// Hands over the first frames of a stream, kFramesPerWorld of each world.
+void for_each_sample(const sim::SampleStream& stream, int frames,
+                     const std::function<void(const sim::Sample&)>& look) {
+  const auto wanted = static_cast<uint64_t>(frames);
+  uint64_t done = 0;
+  for (uint64_t world = 0; done < wanted; ++world) {
+    const uint64_t until = std::min(done + kFramesPerWorld, wanted);
+    sim::make_samples_of_world(stream, world, 0, [&](const sim::Sample& sample) {
+      look(sample);
+      return ++done < until;
+    });
+  }
 }
 
 }  // namespace
 
-Result<NetworkEvaluation> NetworkEvaluation::create(const std::string& model) {
+Result<NetworkEvaluation> NetworkEvaluation::create(const std::string& model, ReadOutRows rows,
+                                                    int tuning_frames) {
   auto network = Network::load(model, {});
   if (!network) return tl::unexpected(network.error());
   NetworkEvaluation evaluation(std::move(*network));
-  for (const SolverKind kind : kSolvers) {
-    auto solver = make_solver(kind, kFeatureGrid, kFeatureChannels, kHypotheses,
-                              evaluation.network_->solver_parameters());
-    if (!solver) return fail("{}: {}", model, solver.error().message);
-    evaluation.solvers_.push_back(std::move(*solver));
+  if (Status status = evaluation.add_solvers(read_out_cases(rows), tuning_frames); !status) {
+    return fail("{}: {}", model, status.error().message);
   }
+  if (rows == ReadOutRows::kBaselines || rows == ReadOutRows::kAll) evaluation.add_baselines();
   return evaluation;
+}
+
+Status NetworkEvaluation::add_solvers(const std::vector<ReadOutCase>& cases, int tuning_frames) {
+  const bool any_masks =
+      std::ranges::find(cases, SolverInput::kMasks, &ReadOutCase::input) != cases.end();
+  MaskScales mask_scales(any_masks ? look_at_tuning_frames(tuning_frames)
+                                   : std::vector<TuningFrame>());
+  for (const ReadOutCase& read_out : cases) {
+    const SolverCase& c = read_out.solver_case;
+    const bool masks = read_out.input == SolverInput::kMasks;
+    Result<SolverParameters> parameters = network_->solver_parameters();
+    if (masks) parameters = mask_scales.parameters_for(c);
+    if (!parameters) return tl::unexpected(parameters.error());
+    auto solver = make_solver(c.solver, c.grid, c.channels, c.hypotheses(), *parameters);
+    if (!solver) return tl::unexpected(solver.error());
+    readers_.push_back({read_out, std::move(*solver), masks ? mask_inputs_.of(c) : nullptr});
+  }
+  return {};
+}
+
+void NetworkEvaluation::add_baselines() {
+  baselines_.push_back({"icp", std::make_unique<IterativeClosestPoints>(kHypotheses)});
+  baselines_.push_back(
+      {"distance-transform", std::make_unique<DistanceTransformAlignment>(kHypotheses)});
+  baselines_.push_back(
+      {"ipm", std::make_unique<InversePerspectiveMapping>(sim::told_network_rig(), kHypotheses)});
+}
+
+std::vector<TuningFrame> NetworkEvaluation::look_at_tuning_frames(int frames) {
+  sim::SampleStream stream;
+  stream.first_seed = sim::kTuningSeedBase;
+  stream.nuisances = sim::nuisances_of(sim::NuisanceSet::kStandard);
+  std::vector<TuningFrame> seen;
+  for_each_sample(stream, frames, [&](const sim::Sample& sample) {
+    perceive(sample);
+    take_probabilities();
+    seen.push_back({perceived_, sample.raster_prior, sample.correction});
+  });
+  return seen;
+}
+
+std::vector<ReadOut> NetworkEvaluation::empty_read_outs() const {
+  std::vector<ReadOut> read_outs{{"prior", {}, {}}};
+  for (const Reader& reader : readers_) {
+    read_outs.push_back(
+        {std::string(name_of(reader.read_out.solver_case.solver)), reader.read_out, {}});
+  }
+  for (const NamedBaseline& named : baselines_) read_outs.push_back({named.name, {}, {}});
+  return read_outs;
 }
 
 SetResult NetworkEvaluation::run(const sim::SampleStream& stream, int frames,
@@ -47,18 +104,12 @@ SetResult NetworkEvaluation::run(const sim::SampleStream& stream, int frames,
   SetResult result;
   result.read_outs = empty_read_outs();
   Overlap overlap;
-  const auto wanted = static_cast<uint64_t>(frames);
-  uint64_t done = 0;
-  for (uint64_t world = 0; done < wanted; ++world) {
-    const uint64_t until = std::min(done + kFramesPerWorld, wanted);
-    sim::make_samples_of_world(stream, world, 0, [&](const sim::Sample& sample) {
-      perceive(sample);
-      judge_all(sample.correction, result.read_outs);
-      add_overlap(sample, overlap);
-      progress();
-      return ++done < until;
-    });
-  }
+  for_each_sample(stream, frames, [&](const sim::Sample& sample) {
+    perceive(sample);
+    judge_all(sample, result.read_outs);
+    add_overlap(sample, overlap);
+    progress();
+  });
   for (size_t k = 0; k < kRasterChannels; ++k) {
     const auto either = static_cast<double>(std::max<uint64_t>(overlap.either[k], 1));
     result.iou[k] = static_cast<double>(overlap.both[k]) / either;
@@ -67,7 +118,8 @@ SetResult NetworkEvaluation::run(const sim::SampleStream& stream, int frames,
 }
 
 void NetworkEvaluation::perceive(const sim::Sample& sample) {
-  update_view_table(sim::told_network_rig(), sample.cameras, kFeatureGrid, view_table_);
+  update_view_table(sim::told_network_rig(), sample.cameras, kFeatureGrid,
+                    sample.reference_from_exposure, view_table_);
   network_->set_view_table(view_table_);
   std::ranges::transform(sample.images, network_->image_input().begin(),
                          [](uint8_t value) { return static_cast<int8_t>(value + kNetworkBlack); });
@@ -77,12 +129,44 @@ void NetworkEvaluation::perceive(const sim::Sample& sample) {
   network_->run_mask_head();
 }
 
-void NetworkEvaluation::judge_all(const Se2& correction, std::vector<ReadOut>& read_outs) {
+void NetworkEvaluation::take_probabilities() {
+  const std::span<const float> logits = network_->mask_logits();
+  perceived_.resize(logits.size());
+  std::ranges::transform(logits, perceived_.begin(),
+                         [](float logit) { return 1.0F / (1.0F + std::exp(-logit)); });
+}
+
+void NetworkEvaluation::judge_all(const sim::Sample& sample, std::vector<ReadOut>& read_outs) {
   set_no_evidence(kHypotheses, solution_);
-  read_outs[0].outcomes.push_back(judge(solution_, kHypotheses, correction));
-  for (size_t i = 0; i < solvers_.size(); ++i) {
-    solvers_[i]->solve(network_->bev_features(), network_->map_features(), solution_);
-    read_outs[i + 1].outcomes.push_back(judge(solution_, kHypotheses, correction));
+  read_outs[0].outcomes.push_back(judge(solution_, kHypotheses, sample.correction));
+  if (!mask_inputs_.empty() || !baselines_.empty()) {
+    take_probabilities();
+    mask_inputs_.take(perceived_, sample.raster_prior);
+  }
+  const std::span<ReadOut> others = std::span(read_outs).subspan(1);
+  judge_solvers(sample.correction, others.first(readers_.size()));
+  judge_baselines(sample, others.subspan(readers_.size()));
+}
+
+void NetworkEvaluation::judge_solvers(const Se2& correction, std::span<ReadOut> read_outs) {
+  for (size_t i = 0; i < readers_.size(); ++i) {
+    const Reader& reader = readers_[i];
+    const bool masks = reader.masks != nullptr;
+    reader.solver->solve(masks ? reader.masks->bev() : network_->bev_features(),
+                         masks ? reader.masks->map() : network_->map_features(), solution_);
+    read_outs[i].outcomes.push_back(
+        judge(solution_, reader.read_out.solver_case.hypotheses(), correction));
+  }
+}
+
+void NetworkEvaluation::judge_baselines(const sim::Sample& sample, std::span<ReadOut> read_outs) {
+  const BaselineInput input{.images = sample.images,
+                            .cameras = sample.cameras,
+                            .perceived = perceived_,
+                            .raster = sample.raster_prior};
+  for (size_t i = 0; i < baselines_.size(); ++i) {
+    const Se2 found = baselines_[i].baseline->correct(input);
+    read_outs[i].outcomes.push_back(judge(found, sample.correction));
   }
 }
 

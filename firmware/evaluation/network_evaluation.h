@@ -5,10 +5,16 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "common/result.h"
+#include "firmware/evaluation/baselines/baseline.h"
+#include "firmware/evaluation/mask_input.h"
+#include "firmware/evaluation/mask_scales.h"
+#include "firmware/evaluation/read_out_case.h"
 #include "firmware/evaluation/solver_score.h"
 #include "pipeline/bev_grid.h"
 #include "pipeline/network/network.h"
@@ -21,10 +27,11 @@ namespace bevloc::evaluation {
 /// Samples of one world that are looked at: few, so that many worlds are.
 inline constexpr uint64_t kFramesPerWorld = 4;
 
-/// The corrections of one way to read the features; the prior's are all zero.
+/// The corrections of one way to get a pose; the prior's are all zero.
 struct ReadOut {
-  std::string name;
-  std::vector<Outcome> outcomes;  ///< one for each frame
+  std::string name;                        ///< "prior", the solver's or the baseline's
+  std::optional<ReadOutCase> solver_case;  ///< if it is a solver
+  std::vector<Outcome> outcomes;           ///< one for each frame
 };
 
 struct SetResult {
@@ -35,11 +42,14 @@ struct SetResult {
   std::array<double, kRasterChannels> iou{};
 };
 
-/// A model with its solvers. Not thread safe.
+/// A model with its solvers, and the baselines beside it. Not thread safe.
 class NetworkEvaluation {
  public:
-  /// Fails as Network::load() does.
-  static Result<NetworkEvaluation> create(const std::string& model);
+  /// Fails as Network::load() does. Where `rows` has solvers on masks, their scales are found
+  /// first, on so many frames of the standard set with seeds that no evaluation has.
+  static Result<NetworkEvaluation> create(const std::string& model,
+                                          ReadOutRows rows = ReadOutRows::kSolvers,
+                                          int tuning_frames = 40);
 
   /// Looks at `frames` samples of the stream. `progress` is called after each one.
   SetResult run(const sim::SampleStream& stream, int frames, const std::function<void()>& progress);
@@ -53,13 +63,34 @@ class NetworkEvaluation {
     std::array<uint64_t, kRasterChannels> either{};
   };
 
+  /// A solver, and what it reads.
+  struct Reader {
+    ReadOutCase read_out;
+    std::unique_ptr<Solver> solver;
+    const MaskInput* masks = nullptr;  ///< null: the network's features
+  };
+  struct NamedBaseline {
+    std::string name;
+    std::unique_ptr<Baseline> baseline;
+  };
+
   explicit NetworkEvaluation(std::unique_ptr<Network> network) : network_(std::move(network)) {}
+  Status add_solvers(const std::vector<ReadOutCase>& cases, int tuning_frames);
+  void add_baselines();
+  std::vector<TuningFrame> look_at_tuning_frames(int frames);
+  std::vector<ReadOut> empty_read_outs() const;
   void perceive(const sim::Sample& sample);
-  void judge_all(const Se2& correction, std::vector<ReadOut>& read_outs);
+  void take_probabilities();
+  void judge_all(const sim::Sample& sample, std::vector<ReadOut>& read_outs);
+  void judge_solvers(const Se2& correction, std::span<ReadOut> read_outs);
+  void judge_baselines(const sim::Sample& sample, std::span<ReadOut> read_outs);
   void add_overlap(const sim::Sample& sample, Overlap& overlap) const;
 
   std::unique_ptr<Network> network_;
-  std::vector<std::unique_ptr<Solver>> solvers_;
+  std::vector<Reader> readers_;
+  std::vector<NamedBaseline> baselines_;
+  MaskInputs mask_inputs_;
+  std::vector<float> perceived_;  ///< the mask's probabilities
   ViewTable view_table_;
   SolverResult solution_;
 };

@@ -20,8 +20,9 @@ struct NetworkEvaluationSubject {
 /// A set's name, what it changes, its IoU, and a line for each read-out.
 std::string table_of(const SetResult& result);
 
-/// {"model", "map", "scenes", "seed", "rows": [{set, solver, iou, mae, rmse, ...}]}: a row for each
-/// set and read-out, its measures named as in `bevloc eval solver` (summary_format.h).
+/// {"model", "map", "scenes", "seed", "rows": [{set, solver, iou, input, size, channels, step_m,
+/// mae, rmse, ...}]}: a row for each set and read-out, its measures named as in `bevloc eval
+/// solver` (summary_format.h). "solver" is also where a baseline's name stands.
 std::string to_json(const std::vector<SetResult>& results, const NetworkEvaluationSubject& subject);
 /// The same rows, a line each.
 std::string to_csv(const std::vector<SetResult>& results);

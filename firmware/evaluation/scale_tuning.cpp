@@ -21,9 +21,11 @@ std::vector<float> candidate_scales() {
   return scales;
 }
 
-SolverParameters with_all_scales(const SolverCase& solver_case, float scale) {
-  SolverParameters parameters = hand_made_parameters(solver_case);
-  if (is_refined(solver_case.solver)) {
+/// `start` with every scale that a solver of this kind reads replaced; a refined one keeps those of
+/// the solution that it refines.
+SolverParameters with_all_scales(SolverKind kind, const SolverParameters& start, float scale) {
+  SolverParameters parameters = start;
+  if (is_refined(kind)) {
     parameters.refine_x_scale = scale;
     parameters.refine_y_scale = scale;
     parameters.refine_yaw_scale = scale;
@@ -40,25 +42,22 @@ SolverParameters with_all_scales(const SolverCase& solver_case, float scale) {
 
 }  // namespace
 
-Result<SolverParameters> tune_scales(const SolverCase& solver_case,
-                                     const EvaluationOptions& options) {
+Result<SolverParameters> best_scales(SolverKind kind, const SolverParameters& start,
+                                     const ScaleTrial& trial) {
   const std::vector<float> scales = candidate_scales();
-  std::vector<SolverParameters> parameters;
-  for (float scale : scales) parameters.push_back(with_all_scales(solver_case, scale));
-  const auto results =
-      evaluate_solvers(std::vector(scales.size(), solver_case), parameters, options, [](int) {});
-  if (!results) return tl::unexpected(results.error());
-  std::vector<PerAxis> nll;
-  for (const CaseResult& result : *results) nll.push_back(summarise(result.outcomes).nll);
+  std::vector<SolverParameters> candidates;
+  for (float scale : scales) candidates.push_back(with_all_scales(kind, start, scale));
+  const auto nll = trial(candidates);
+  if (!nll) return tl::unexpected(nll.error());
   const auto best = [&](const std::function<double(const PerAxis&)>& cost) {
-    return scales[std::ranges::min_element(nll, {}, cost) - nll.begin()];
+    return scales[std::ranges::min_element(*nll, {}, cost) - nll->begin()];
   };
-  SolverParameters tuned = hand_made_parameters(solver_case);
+  SolverParameters tuned = start;
   const float joint = best([](const PerAxis& n) { return n[0] + n[1] + n[2]; });
   const float x = best([](const PerAxis& n) { return n[0]; });
   const float y = best([](const PerAxis& n) { return n[1]; });
   const float yaw = best([](const PerAxis& n) { return n[2]; });
-  if (is_refined(solver_case.solver)) {
+  if (is_refined(kind)) {
     tuned.refine_x_scale = x;
     tuned.refine_y_scale = y;
     tuned.refine_yaw_scale = yaw;
@@ -69,6 +68,20 @@ Result<SolverParameters> tune_scales(const SolverCase& solver_case,
   tuned.y_scale = tuned.banded_y_scale = y;
   tuned.yaw_scale = yaw;
   return tuned;
+}
+
+Result<SolverParameters> tune_scales(const SolverCase& solver_case,
+                                     const EvaluationOptions& options) {
+  const auto trial =
+      [&](const std::vector<SolverParameters>& candidates) -> Result<std::vector<PerAxis>> {
+    const auto results = evaluate_solvers(std::vector(candidates.size(), solver_case), candidates,
+                                          options, [](int) {});
+    if (!results) return tl::unexpected(results.error());
+    std::vector<PerAxis> nll;
+    for (const CaseResult& result : *results) nll.push_back(summarise(result.outcomes).nll);
+    return nll;
+  };
+  return best_scales(solver_case.solver, hand_made_parameters(solver_case), trial);
 }
 
 std::string describe(const SolverParameters& parameters) {

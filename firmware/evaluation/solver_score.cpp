@@ -25,6 +25,12 @@ PerAxis error_of(const Se2& estimate, const Se2& truth) {
           degrees(estimate.yaw_rad - truth.yaw_rad)};
 }
 
+/// Whether an error lies within what was claimed, as a number.
+double is_within(double error, double claimed) {
+  if (std::isnan(claimed)) return kNotGiven;
+  return error <= claimed ? 1.0 : 0.0;
+}
+
 /// The value below which `share` of the values lie.
 double quantile(std::vector<double>& values, double share) {
   const auto nth =
@@ -48,6 +54,14 @@ Outcome judge(const SolverResult& result, const HypothesisGrid& hypotheses, cons
   return outcome;
 }
 
+Outcome judge(const Se2& correction, const Se2& truth) {
+  constexpr PerAxis kNone{kNotGiven, kNotGiven, kNotGiven};
+  Outcome outcome;
+  outcome.error = error_of(correction, truth);
+  outcome.parabola_error = outcome.sigma = outcome.nll = kNone;
+  return outcome;
+}
+
 Summary summarise(const std::vector<Outcome>& outcomes) {
   Summary summary;
   summary.scenes = outcomes.size();
@@ -64,8 +78,8 @@ Summary summarise(const std::vector<Outcome>& outcomes) {
       summary.mae[axis] += share * error;
       summary.parabola_mae[axis] += share * std::abs(outcome.parabola_error[axis]);
       summary.nll[axis] += share * outcome.nll[axis];
-      summary.coverage_1s[axis] += error <= outcome.sigma[axis] ? share : 0.0;
-      summary.coverage_3s[axis] += error <= 3.0 * outcome.sigma[axis] ? share : 0.0;
+      summary.coverage_1s[axis] += share * is_within(error, outcome.sigma[axis]);
+      summary.coverage_3s[axis] += share * is_within(error, 3.0 * outcome.sigma[axis]);
     }
     summary.rmse[axis] = std::sqrt(square);
     summary.median[axis] = quantile(values, 0.5);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "pipeline/solver/solver.h"
@@ -12,7 +13,10 @@ namespace bevloc::evaluation {
 /// x and y in metres, yaw in degrees.
 using PerAxis = std::array<double, 3>;
 
-/// One solution, judged.
+/// What a method says nothing about.
+inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+
+/// One solution, judged. kNotGiven where the method has no distribution.
 struct Outcome {
   sim::RoadKind road = sim::RoadKind::kStraightSolid;
   PerAxis error{};           ///< of the correction
@@ -23,7 +27,10 @@ struct Outcome {
 };
 
 Outcome judge(const SolverResult& result, const HypothesisGrid& hypotheses, const Se2& truth);
+/// A correction without a distribution.
+Outcome judge(const Se2& correction, const Se2& truth);
 
+/// kNotGiven where an outcome is.
 struct Summary {
   size_t scenes = 0;
   PerAxis mae{};

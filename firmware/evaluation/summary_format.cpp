@@ -1,6 +1,7 @@
 #include "firmware/evaluation/summary_format.h"
 
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -24,13 +25,17 @@ constexpr std::array<std::pair<const char*, PerAxis Summary::*>, 8> kMeasures{{
 }  // namespace
 
 std::string three(const PerAxis& values, int digits) {
-  return fmt::format("{:.{}f} {:.{}f} {:.{}f}", values[0], digits, values[1], digits, values[2],
-                     digits);
+  const auto text = [digits](double value) {
+    return std::isnan(value) ? std::string("-") : fmt::format("{:.{}f}", value, digits);
+  };
+  return fmt::format("{} {} {}", text(values[0]), text(values[1]), text(values[2]));
 }
 
 std::string percent(const PerAxis& shares) {
-  return fmt::format("{:3.0f} {:3.0f} {:3.0f}", 100.0 * shares[0], 100.0 * shares[1],
-                     100.0 * shares[2]);
+  const auto text = [](double share) {
+    return std::isnan(share) ? std::string("-") : fmt::format("{:.0f}", 100.0 * share);
+  };
+  return fmt::format("{:>3} {:>3} {:>3}", text(shares[0]), text(shares[1]), text(shares[2]));
 }
 
 nlohmann::json json_of(const Summary& summary) {
@@ -52,7 +57,9 @@ std::string csv_columns() {
 std::string csv_values(const Summary& summary) {
   std::string text;
   for (const auto& [name, values] : kMeasures) {
-    for (double value : summary.*values) fmt::format_to(std::back_inserter(text), ",{:.6g}", value);
+    for (double value : summary.*values) {
+      text += std::isnan(value) ? "," : fmt::format(",{:.6g}", value);
+    }
   }
   return text;
 }

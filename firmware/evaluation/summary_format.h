@@ -1,4 +1,5 @@
-// A summary as all tables write it.
+// A summary as all tables write it. What is not given is "-" in a table, null in JSON and empty in
+// CSV.
 #pragma once
 
 #include <string>

@@ -106,6 +106,7 @@ std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(const
     mock.true_camera = true_rig.cameras[camera];
     mock.timing.drive_start = drive_start;
     mock.timing.period = from_seconds(1.0 / config.cameras.rate_hz);
+    mock.timing.phase = simulation.exposure_offsets[camera];
     mock.timing.exposure = kExposure;
     mock.timing.readout = kReadout;
     mock.buffers = config.cameras.buffers;

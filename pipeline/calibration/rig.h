@@ -5,6 +5,7 @@
 #include <bitset>
 #include <string_view>
 
+#include "common/se2.h"
 #include "pipeline/calibration/camera_model.h"
 
 namespace bevloc {
@@ -21,5 +22,9 @@ using CameraMask = std::bitset<kCameraCount>;
 struct Rig {
   std::array<CameraModel, kCameraCount> cameras;
 };
+
+/// Cameras need not expose at once. For each, reference_from_exposure: the vehicle at that camera's
+/// exposure, seen from the vehicle at the time that counts for all. All zero when they do.
+using CameraMotions = std::array<Se2, kCameraCount>;
 
 }  // namespace bevloc

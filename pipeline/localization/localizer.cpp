@@ -2,10 +2,23 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "pipeline/preprocessing/network_camera.h"
 
 namespace bevloc {
+namespace {
+
+// A view table serves motions that are no further than this from those it was made for.
+constexpr double kSameMotion_m = 0.01;
+constexpr double kSameMotion_rad = radians(0.02);
+
+bool is_same(const Se2& a, const Se2& b) {
+  return (a.translation() - b.translation()).norm() <= kSameMotion_m &&
+         std::abs(wrap_angle(a.yaw_rad - b.yaw_rad)) <= kSameMotion_rad;
+}
+
+}  // namespace
 
 Result<std::unique_ptr<Localizer>> Localizer::create(const Rig& rig, const MapIndex& map,
                                                      const std::string& model_path,
@@ -33,15 +46,15 @@ Localizer::Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Networ
   for (const CameraModel& camera : rig.cameras) preprocessors_.emplace_back(camera);
 }
 
-Status Localizer::localize(const std::array<RgbView, kCameraCount>& images, CameraMask present,
-                           const Se2& prior, SearchRange range, SolverResult& result) {
-  use_cameras(present);
+Status Localizer::localize(const CameraImages& seen, const Se2& prior, SearchRange range,
+                           SolverResult& result) {
+  look_from(seen.present, seen.reference_from_exposure);
   const std::span<int8_t> input = network_->image_input();
   for (int camera = 0; camera < kCameraCount; ++camera) {
     const auto planes = input.subspan(camera * kNetworkImageSize, kNetworkImageSize);
-    if (!present[camera]) {
+    if (!seen.present[camera]) {
       std::fill(planes.begin(), planes.end(), kNetworkBlack);
-    } else if (Status status = preprocessors_[camera].run(images[camera], planes); !status) {
+    } else if (Status status = preprocessors_[camera].run(seen.images[camera], planes); !status) {
       return status;
     }
   }
@@ -53,11 +66,15 @@ Status Localizer::localize(const std::array<RgbView, kCameraCount>& images, Came
   return {};
 }
 
-void Localizer::use_cameras(CameraMask present) {
-  if (table_cameras_ == present) return;
-  update_view_table(network_rig_, present, kFeatureGrid, view_table_);
+void Localizer::look_from(CameraMask present, const CameraMotions& reference_from_exposure) {
+  if (table_cameras_ == present &&
+      std::ranges::equal(table_motions_, reference_from_exposure, is_same)) {
+    return;
+  }
+  update_view_table(network_rig_, present, kFeatureGrid, reference_from_exposure, view_table_);
   network_->set_view_table(view_table_);
   table_cameras_ = present;
+  table_motions_ = reference_from_exposure;
 }
 
 bool Localizer::map_nearby() const {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/image.h"
+#include "common/image_view.h"
 #include "common/result.h"
 #include "common/se2.h"
 #include "pipeline/calibration/rig.h"
@@ -30,21 +30,31 @@ struct LocalizerOptions {
   NetworkOptions network;
 };
 
+/// What the cameras saw.
+struct CameraImages {
+  std::array<ImageView, kCameraCount> images;  ///< read where `present`
+  CameraMask present;
+  CameraMotions reference_from_exposure{};  ///< against the time of the prior
+};
+
 enum class SearchRange : uint8_t { kTracking, kAcquiring };
 
 /// The paper's whole network with its solver (Fig. 2), for one rig and one map. Owns all buffers:
-/// localize() allocates nothing once warm, whichever cameras there are. Not thread safe. The map
-/// index must outlive it.
+/// localize() allocates nothing once warm, whichever cameras there are and whenever they exposed.
+/// Not thread safe. The map index must outlive it.
 class Localizer {
  public:
   static Result<std::unique_ptr<Localizer>> create(const Rig& rig, const MapIndex& map,
                                                    const std::string& model_path,
                                                    const LocalizerOptions& options);
 
-  /// `images[i]` is read where `present[i]`. `prior` is T0, the predicted map_from_vehicle at the
-  /// time of exposure. Fails for an image whose size is not the calibration's.
-  Status localize(const std::array<RgbView, kCameraCount>& images, CameraMask present,
-                  const Se2& prior, SearchRange range, SolverResult& result);
+  /// `prior` is T0, the predicted map_from_vehicle at the reference time, for which the correction
+  /// holds. Fails for an image whose size is not the calibration's.
+  ///
+  /// The view table is made anew when the set of cameras changes, or when a camera's motion differs
+  /// by more than 1 cm or 0.02 degrees (1 cm at 30 m) from the one that the table was made for.
+  Status localize(const CameraImages& seen, const Se2& prior, SearchRange range,
+                  SolverResult& result);
 
   /// The map as drawn in the latest localize(), kRasterSize bytes.
   std::span<const uint8_t> map_raster() const { return network_->raster_input(); }
@@ -62,7 +72,7 @@ class Localizer {
  private:
   Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Network> network,
             const LocalizerOptions& options);
-  void use_cameras(CameraMask present);
+  void look_from(CameraMask present, const CameraMotions& reference_from_exposure);
 
   Rig network_rig_;
   LocalizerOptions options_;
@@ -70,8 +80,9 @@ class Localizer {
   std::vector<ImagePreprocessor> preprocessors_;
   MapRasterizer rasterizer_;
   std::array<std::unique_ptr<Solver>, 2> solvers_;  ///< by SearchRange
-  ViewTable view_table_;                            ///< for table_cameras_
+  ViewTable view_table_;                            ///< for the two below
   std::optional<CameraMask> table_cameras_;
+  CameraMotions table_motions_{};
 };
 
 }  // namespace bevloc

@@ -24,15 +24,83 @@ struct Sighting {
       0.0;  ///< from the nearest image border; 0 if it does not see the cell
 };
 
-Sighting sight(const CameraModel& camera, const Se3& camera_from_vehicle, int camera_index,
-               const Eigen::Vector3d& point_vehicle) {
-  const auto pixel = camera.intrinsics.project(camera_from_vehicle * point_vehicle);
-  if (!pixel) return {};
-  const double u = pixel->x() + 0.5;
-  const double v = pixel->y() + 0.5;
-  const double distance = std::min({u, kNetworkWidthPx - u, v, kNetworkHeightPx - v});
-  return {camera_index, *pixel, std::max(0.0, distance)};
-}
+/// Projects the ground plane of the reference frame into one camera. What does not change from cell
+/// to cell is worked out before.
+class GroundView {
+ public:
+  GroundView() = default;
+  GroundView(const CameraModel& camera, int camera_index, const Se2& reference_from_exposure)
+      : intrinsics_(camera.intrinsics), camera_(camera_index) {
+    assert(intrinsics_.width_px == kNetworkWidthPx && intrinsics_.height_px == kNetworkHeightPx);
+    assert(intrinsics_.k1 == 0.0 && intrinsics_.k2 == 0.0 && intrinsics_.p1 == 0.0 &&
+           intrinsics_.p2 == 0.0);
+    const Se3 camera_from_reference =
+        camera.vehicle_from_camera.inverse() * motion_in_space(reference_from_exposure.inverse());
+    along_x_ = camera_from_reference.rotation.col(0);
+    along_y_ = camera_from_reference.rotation.col(1);
+    origin_m_ = camera_from_reference.translation_m;
+  }
+
+  Sighting sight(double x_m, double y_m) const {
+    const double depth_m = along_x_.z() * x_m + along_y_.z() * y_m + origin_m_.z();
+    if (!(depth_m > 0.0)) return {};
+    const Eigen::Vector3d point_m = along_x_ * x_m + along_y_ * y_m + origin_m_;
+    const Eigen::Vector2d pixel(intrinsics_.fx_px * (point_m.x() / depth_m) + intrinsics_.cx_px,
+                                intrinsics_.fy_px * (point_m.y() / depth_m) + intrinsics_.cy_px);
+    const double u = pixel.x() + 0.5;
+    const double v = pixel.y() + 0.5;
+    const double distance = std::min({u, kNetworkWidthPx - u, v, kNetworkHeightPx - v});
+    return {camera_, pixel, std::max(0.0, distance)};
+  }
+
+ private:
+  static Se3 motion_in_space(const Se2& motion) {
+    Se3 result;
+    const double c = std::cos(motion.yaw_rad);
+    const double s = std::sin(motion.yaw_rad);
+    result.rotation.topLeftCorner<2, 2>() << c, -s, s, c;
+    result.translation_m = {motion.x_m, motion.y_m, 0.0};
+    return result;
+  }
+
+  Intrinsics intrinsics_;
+  int camera_ = 0;
+  Eigen::Vector3d along_x_ = Eigen::Vector3d::Zero();  ///< one metre along x, in camera axes
+  Eigen::Vector3d along_y_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< of the reference frame
+};
+
+/// The sightings with the largest border distances, best first.
+class BestSightings {
+ public:
+  static constexpr int kKept = kCamerasPerCell + 1;
+
+  void add(const Sighting& sighting) {
+    if (sighting.border_distance_px <= best_first_.back().border_distance_px) return;
+    int place = kKept - 1;
+    for (; place > 0; --place) {
+      if (best_first_[place - 1].border_distance_px >= sighting.border_distance_px) break;
+      best_first_[place] = best_first_[place - 1];
+    }
+    best_first_[place] = sighting;
+  }
+
+  const Sighting& operator[](int place) const { return best_first_[place]; }
+
+  /// Shares of the two best cameras. A third camera's distance is taken off both, so that the
+  /// second place changes hands at a share of zero.
+  std::array<double, kCamerasPerCell> shares() const {
+    const double best = best_first_[0].border_distance_px;
+    const double third = best_first_[2].border_distance_px;
+    const double first = best - third;
+    const double second = best_first_[1].border_distance_px - third;
+    if (first <= 0.0) return {best > 0.0 ? 1.0 : 0.0, 0.0};
+    return {first / (first + second), second / (first + second)};
+  }
+
+ private:
+  std::array<Sighting, kKept> best_first_;
+};
 
 /// Writes the bilinear neighbours of a pixel into the table's next four slots of one cell.
 void write_neighbours(const Sighting& sighting, double share, size_t slot_stride, int32_t* index,
@@ -53,49 +121,34 @@ void write_neighbours(const Sighting& sighting, double share, size_t slot_stride
   }
 }
 
-/// Shares of the two best cameras. A third camera's distance is taken off both, so that the second
-/// place changes hands at a share of zero.
-std::array<double, kCamerasPerCell> shares(const std::array<Sighting, kCameraCount>& best_first) {
-  const double first = best_first[0].border_distance_px - best_first[2].border_distance_px;
-  const double second = best_first[1].border_distance_px - best_first[2].border_distance_px;
-  if (first <= 0.0) return {best_first[0].border_distance_px > 0.0 ? 1.0 : 0.0, 0.0};
-  return {first / (first + second), second / (first + second)};
-}
-
 }  // namespace
 
-ViewTable make_view_table(const Rig& rig, CameraMask available, const BevGrid& grid) {
+ViewTable make_view_table(const Rig& rig, CameraMask available, const BevGrid& grid,
+                          const CameraMotions& reference_from_exposure) {
   ViewTable table;
-  update_view_table(rig, available, grid, table);
+  update_view_table(rig, available, grid, reference_from_exposure, table);
   return table;
 }
 
 void update_view_table(const Rig& rig, CameraMask available, const BevGrid& grid,
-                       ViewTable& table) {
+                       const CameraMotions& reference_from_exposure, ViewTable& table) {
   const size_t cells = static_cast<size_t>(grid.cells());
   table.index.assign(kViewSlots * cells, 0);
   table.weight.assign(kViewSlots * cells, 0.0F);
 
-  std::array<Se3, kCameraCount> camera_from_vehicle;
+  std::array<GroundView, kCameraCount> views;
+  int view_count = 0;
   for (int i = 0; i < kCameraCount; ++i) {
-    assert(rig.cameras[i].intrinsics.width_px == kNetworkWidthPx &&
-           rig.cameras[i].intrinsics.height_px == kNetworkHeightPx);
-    camera_from_vehicle[i] = rig.cameras[i].vehicle_from_camera.inverse();
+    if (!available[i]) continue;
+    views[view_count++] = GroundView(rig.cameras[i], i, reference_from_exposure[i]);
   }
 
   for (size_t cell = 0; cell < cells; ++cell) {
-    const int row = static_cast<int>(cell) / grid.cols;
-    const int col = static_cast<int>(cell) % grid.cols;
-    const Eigen::Vector3d centre(grid.x_of_row(row), grid.y_of_col(col), 0.0);
-    std::array<Sighting, kCameraCount> sightings;
-    for (int i = 0; i < kCameraCount; ++i) {
-      if (available[i]) sightings[i] = sight(rig.cameras[i], camera_from_vehicle[i], i, centre);
-    }
-    std::partial_sort(sightings.begin(), sightings.begin() + 3, sightings.end(),
-                      [](const Sighting& a, const Sighting& b) {
-                        return a.border_distance_px > b.border_distance_px;
-                      });
-    const auto share = shares(sightings);
+    const double x_m = grid.x_of_row(static_cast<int>(cell) / grid.cols);
+    const double y_m = grid.y_of_col(static_cast<int>(cell) % grid.cols);
+    BestSightings sightings;
+    for (int view = 0; view < view_count; ++view) sightings.add(views[view].sight(x_m, y_m));
+    const auto share = sightings.shares();
     for (int k = 0; k < kCamerasPerCell; ++k) {
       if (share[k] <= 0.0) continue;
       const size_t first_slot = k * kNeighbours * cells + cell;

@@ -30,10 +30,14 @@ struct ViewTable {
 
 /// Projects each BEV cell's centre on the ground (z = 0) into the network cameras that `available`
 /// names, and keeps the two that see it best: a camera's share falls to zero towards its image
-/// border, so that nothing jumps where cameras overlap. `rig` is the network rig (network_rig()).
-ViewTable make_view_table(const Rig& rig, CameraMask available, const BevGrid& grid);
+/// border, so that nothing jumps where cameras overlap. `rig` is the network rig (network_rig()),
+/// whose cameras have no distortion. The cells lie around the vehicle at the reference time; each
+/// camera looks at them from where its exposure was (`reference_from_exposure`).
+ViewTable make_view_table(const Rig& rig, CameraMask available, const BevGrid& grid,
+                          const CameraMotions& reference_from_exposure = {});
 
 /// The same into a table that is there already: no allocation once it has been filled before.
-void update_view_table(const Rig& rig, CameraMask available, const BevGrid& grid, ViewTable& table);
+void update_view_table(const Rig& rig, CameraMask available, const BevGrid& grid,
+                       const CameraMotions& reference_from_exposure, ViewTable& table);
 
 }  // namespace bevloc

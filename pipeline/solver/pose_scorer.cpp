@@ -4,7 +4,6 @@
 
 #include "common/target_clones.h"
 #include "pipeline/solver/feature_warp.h"
-#include "pipeline/solver/match_sums.h"
 
 namespace bevloc {
 namespace {
@@ -46,18 +45,22 @@ BEVLOC_TARGET_CLONES MatchSums match_line(const WarpLine& line, const float* map
 
 }  // namespace
 
+MatchSums match_moved(const CellFeatures& bev, const CellFeatures& map, const Se2& correction) {
+  const BevGrid& grid = map.grid();
+  const FeatureWarp moved(bev, correction);
+  MatchSums sums;
+  for (int row = 0; row < grid.rows; ++row) {
+    sums += match_line(moved.line(row, 0, grid.cols), map.cell(row, 0));
+  }
+  return sums;
+}
+
 PoseScorer::PoseScorer(const CellFeatures& bev, const CellFeatures& map)
     : bev_(bev), map_(map), map_moments_(moments_of(map)) {}
 
 double PoseScorer::score(const Se2& correction) const {
-  const BevGrid& grid = map_.grid();
-  const FeatureWarp moved(bev_, correction);
-  MatchSums sums;
-  for (int row = 0; row < grid.rows; ++row) {
-    sums += match_line(moved.line(row, 0, grid.cols), map_.cell(row, 0));
-  }
-  const double count = static_cast<double>(grid.cells()) * map_.channels();
-  return zncc(sums, map_moments_, count);
+  const double count = static_cast<double>(map_.grid().cells()) * map_.channels();
+  return zncc(match_moved(bev_, map_, correction), map_moments_, count);
 }
 
 }  // namespace bevloc

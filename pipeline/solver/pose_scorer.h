@@ -3,13 +3,18 @@
 
 #include "common/se2.h"
 #include "pipeline/solver/cell_features.h"
+#include "pipeline/solver/match_sums.h"
 #include "pipeline/solver/zncc.h"
 
 namespace bevloc {
 
+/// Sums over all cells of the map and of the features that a correction has moved. They are moved
+/// and matched in one go, and nothing is written.
+MatchSums match_moved(const CellFeatures& bev, const CellFeatures& map, const Se2& correction);
+
 /// Scores corrections by ZNCC over all cells and channels (paper, eq. 5), with zeros where the
 /// moved vehicle features do not reach, like TranslationScorer: this one serves corrections that
-/// share nothing. Features are moved and matched in one go, and nothing is written.
+/// share nothing.
 class PoseScorer {
  public:
   /// Both must outlive the scorer.

@@ -15,8 +15,9 @@ struct Entry {
 };
 
 constexpr std::array<Entry, kNuisanceSets> kEntries{{
-    {NuisanceSet::kStandard, "standard", "as in training, one or two cameras missing in one of 7"},
-    {NuisanceSet::kSixCameras, "six_cameras", "standard with all six cameras there"},
+    {NuisanceSet::kStandard, "standard",
+     "the usual, with a camera or two missing in one of 7, and 10 ms"},
+    {NuisanceSet::kSixCameras, "six_cameras", "the usual with all six cameras, all at once"},
     {NuisanceSet::kClean, "clean", "exact calibration, still body, clear noon"},
     {NuisanceSet::kNight, "night", "always night"},
     {NuisanceSet::kRain, "rain", "always rain"},
@@ -27,6 +28,8 @@ constexpr std::array<Entry, kNuisanceSets> kEntries{{
     {NuisanceSet::kPitch, "pitch", "body pitches and rolls by 1 degree"},
     {NuisanceSet::kMissingCamera, "missing_camera", "exactly one camera missing"},
     {NuisanceSet::kUnsynchronised, "unsynchronised", "each camera within 50 ms of the pose's time"},
+    {NuisanceSet::kUnsynchronisedUncompensated, "unsynchronised_uncompensated",
+     "the same, taken as if all at once"},
 }};
 
 const Entry& entry_of(NuisanceSet set) {
@@ -54,6 +57,7 @@ Nuisances nuisances_of(NuisanceSet set) {
   switch (set) {
     case NuisanceSet::kStandard:
       nuisances.missing_cameras.probability = 0.15;
+      nuisances.desynchronisation.spread_s = 0.01;
       break;
     case NuisanceSet::kSixCameras:
       break;
@@ -86,6 +90,9 @@ Nuisances nuisances_of(NuisanceSet set) {
       break;
     case NuisanceSet::kUnsynchronised:
       nuisances.desynchronisation.spread_s = 0.05;
+      break;
+    case NuisanceSet::kUnsynchronisedUncompensated:
+      nuisances.desynchronisation = {.spread_s = 0.05, .compensated = false};
       break;
   }
   return nuisances;

@@ -47,6 +47,7 @@ struct MissingCameras {
 /// drives at 5 to 20 m/s and turns a little. Zero: all at once.
 struct Desynchronisation {
   double spread_s = 0.0;
+  bool compensated = true;  ///< whether the sample says how the vehicle moved, as odometry has it
 };
 
 /// The defaults are what a sample usually has.
@@ -61,8 +62,9 @@ struct Nuisances {
   Desynchronisation desynchronisation;
 };
 
-/// What a table has a row for. All but kStandard (as training has it: now and then one or two
-/// cameras are missing) and kClean (nothing is wrong) change one thing of kSixCameras.
+/// What a table has a row for. All but kStandard (all at its usual strength: now and then one or
+/// two cameras are missing, and they expose within 10 ms) and kClean (nothing is wrong) change one
+/// thing of kSixCameras.
 enum class NuisanceSet : uint8_t {
   kStandard,
   kSixCameras,
@@ -76,9 +78,10 @@ enum class NuisanceSet : uint8_t {
   kPitch,
   kMissingCamera,
   kUnsynchronised,
+  kUnsynchronisedUncompensated,
 };
 
-inline constexpr size_t kNuisanceSets = 12;
+inline constexpr size_t kNuisanceSets = 13;
 
 std::array<NuisanceSet, kNuisanceSets> all_nuisance_sets();
 Nuisances nuisances_of(NuisanceSet set);

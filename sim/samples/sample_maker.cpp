@@ -9,6 +9,7 @@
 #include "pipeline/map/rasterizer.h"
 #include "sim/random.h"
 #include "sim/render/renderer.h"
+#include "sim/samples/passage.h"
 #include "sim/samples/world_changes.h"
 #include "sim/sim_rig.h"
 #include "sim/vehicle/placement.h"
@@ -20,11 +21,6 @@ namespace {
 constexpr double kMaxLongitudinalM = 2.0;
 constexpr double kMaxLateralM = 1.0;
 constexpr double kMaxYawRad = radians(2.0);
-
-// How a vehicle drives whose cameras are not in step.
-constexpr double kSlowestMps = 5.0;
-constexpr double kFastestMps = 20.0;
-constexpr double kLateralAccelerationSigmaMps2 = 1.0;
 
 // Traffic repeats nowhere near this soon.
 constexpr double kTrafficTimeS = 600.0;
@@ -118,31 +114,6 @@ Conditions conditions_for(Weather weather, uint64_t seed) {
   return conditions;
 }
 
-/// A vehicle on its way, and when its cameras expose.
-class Passage {
- public:
-  Passage(const Se2& map_from_vehicle, const Desynchronisation& desynchronisation, uint64_t seed)
-      : map_from_vehicle_(map_from_vehicle), spread_s_(desynchronisation.spread_s), random_(seed) {}
-
-  /// When the next camera exposes, counted from the time of the pose.
-  double next_offset_s() { return random_.uniform(-spread_s_, spread_s_); }
-
-  /// Where the vehicle is then: an arc, driven along its chord.
-  Se2 pose_after(double offset_s) const {
-    const double way_m = speed_mps_ * offset_s;
-    const double turn_rad = yaw_rate_radps_ * offset_s;
-    return map_from_vehicle_ *
-           Se2{way_m * std::cos(0.5 * turn_rad), way_m * std::sin(0.5 * turn_rad), turn_rad};
-  }
-
- private:
-  Se2 map_from_vehicle_;
-  double spread_s_;
-  Random random_;
-  double speed_mps_ = random_.uniform(kSlowestMps, kFastestMps);
-  double yaw_rate_radps_ = random_.normal(0.0, kLateralAccelerationSigmaMps2) / speed_mps_;
-};
-
 void copy_as_planes(const RgbImage& image, uint8_t* planes) {
   const size_t count = static_cast<size_t>(image.width) * image.height;
   for (size_t i = 0; i < count; ++i) {
@@ -152,28 +123,28 @@ void copy_as_planes(const RgbImage& image, uint8_t* planes) {
   }
 }
 
-/// Images of the cameras of `cameras`; black for the others.
-std::vector<uint8_t> make_images(Renderer& renderer, const Se2& map_from_vehicle,
-                                 CameraMask cameras, const Nuisances& nuisances, uint64_t seed) {
+/// Images of the cameras that the sample has, black for the others, and where they were taken.
+void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisances& nuisances,
+                 uint64_t seed, Sample& sample) {
   Random random(seed_for(seed, "body and cameras"));
   const BodyMotion body{.pitch_rad = random.normal(0.0, nuisances.body.tilt_rad),
                         .roll_rad = random.normal(0.0, nuisances.body.tilt_rad),
                         .lift_m = random.normal(0.0, nuisances.body.lift_m)};
   const double time_s = random.uniform(0.0, kTrafficTimeS);
   const Conditions conditions = conditions_for(nuisances.weather, seed);
-  Passage passage(map_from_vehicle, nuisances.desynchronisation, seed_for(seed, "passage"));
-  std::vector<uint8_t> images(kImagesSize);
+  Passage passage(nuisances.desynchronisation, seed_for(seed, "passage"));
+  sample.images.resize(kImagesSize);
   RgbImage image(kNetworkWidthPx, kNetworkHeightPx);
   for (size_t i = 0; i < kCameraCount; ++i) {
     const CameraModel camera =
         true_camera(told_network_rig().cameras[i], nuisances.calibration, random);
     const double offset_s = passage.next_offset_s();
-    if (!cameras[i]) continue;
-    renderer.render(camera, passage.pose_after(offset_s), body, time_s + offset_s, conditions,
-                    mix_seed(seed_for(seed, "noise") + i), image);
-    copy_as_planes(image, images.data() + i * (kImagesSize / kCameraCount));
+    if (!sample.cameras[i]) continue;
+    sample.reference_from_exposure[i] = passage.known_motion(offset_s);
+    renderer.render(camera, map_from_vehicle * passage.true_motion(offset_s), body,
+                    time_s + offset_s, conditions, mix_seed(seed_for(seed, "noise") + i), image);
+    copy_as_planes(image, sample.images.data() + i * (kImagesSize / kCameraCount));
   }
-  return images;
 }
 
 /// What draws the samples of one world.
@@ -191,7 +162,7 @@ Sample make_sample(const Nuisances& nuisances, uint64_t seed, const Se2& map_fro
                        random.uniform(-kMaxLateralM, kMaxLateralM),
                        random.uniform(-kMaxYawRad, kMaxYawRad)};
   sample.cameras = random_cameras(nuisances.missing_cameras, random);
-  sample.images = make_images(studio.renderer, map_from_vehicle, sample.cameras, nuisances, seed);
+  take_images(studio.renderer, map_from_vehicle, nuisances, seed, sample);
   sample.raster_truth.resize(kRasterSize);
   studio.world_map.draw(map_from_vehicle, sample.raster_truth);
   sample.raster_prior.resize(kRasterSize);
@@ -216,15 +187,17 @@ void make_samples_of_world(const SampleStream& stream, uint64_t world_number, ui
   const uint64_t world_seed = stream.first_seed + world_number;
   World world = world_of(stream, world_seed);
   const std::vector<Se2> poses = poses_in(world, world_seed);
-  wear_paint(stream.nuisances.paint_wear_factor, world);
-  add_standing_vehicles(poses, stream.nuisances.extra_vehicles, world_seed, world);
-  const HdMap told_map = with_errors(world.map, stream.nuisances.map_errors, world_seed);
+  const Nuisances of_world = drawn_for_world(stream.nuisances, stream.training, world_seed);
+  wear_paint(of_world.paint_wear_factor, world);
+  add_standing_vehicles(poses, of_world.extra_vehicles, world_seed, world);
+  const HdMap told_map = with_errors(world.map, of_world.map_errors, world_seed);
   const MapIndex world_index(world.map);
   const MapIndex told_index(told_map);
   Studio studio{Renderer(world), MapRasterizer(world_index), MapRasterizer(told_index)};
   for (uint64_t i = first; i < kSamplesPerWorld; ++i) {
     const uint64_t seed = sample_seed(stream, world_number * kSamplesPerWorld + i);
-    if (!deliver(make_sample(stream.nuisances, seed, poses[i], studio))) return;
+    const Nuisances nuisances = drawn_for_sample(of_world, stream.training, seed);
+    if (!deliver(make_sample(nuisances, seed, poses[i], studio))) return;
   }
 }
 

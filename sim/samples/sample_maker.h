@@ -11,6 +11,7 @@
 #include "pipeline/calibration/rig.h"
 #include "pipeline/preprocessing/network_camera.h"
 #include "sim/samples/nuisances.h"
+#include "sim/samples/training_nuisances.h"
 #include "sim/world/world_generator.h"
 
 namespace bevloc::sim {
@@ -31,9 +32,10 @@ inline constexpr size_t kImagesSize =
 struct Sample {
   std::vector<uint8_t> images;
   CameraMask cameras;
-  std::vector<uint8_t> raster_prior;  ///< the localizer's map at T0
-  std::vector<uint8_t> raster_truth;  ///< the world's own map at T
-  Se2 correction;                     ///< dT = T0^-1 T
+  CameraMotions reference_from_exposure{};  ///< against the time of T, as the vehicle knows them
+  std::vector<uint8_t> raster_prior;        ///< the localizer's map at T0
+  std::vector<uint8_t> raster_truth;        ///< the world's own map at T
+  Se2 correction;                           ///< dT = T0^-1 T
 };
 
 /// An endless stream of samples; everything about sample i follows from the stream and i. Streams
@@ -43,6 +45,8 @@ struct SampleStream {
   Nuisances nuisances;
   /// Every world is this map, which must have lanes, dressed anew; null: worlds are made-up towns.
   const HdMap* map = nullptr;
+  /// On top of `nuisances`.
+  TrainingNuisances training{};
 };
 
 /// The rig that the network is told: sample images are taken by cameras close to these.

@@ -100,6 +100,7 @@ TEST_F(ConfigTest, SmallestFileHasTheDefaults) {
   EXPECT_EQ(config->cameras.driver, CameraDriver::kMock);
   EXPECT_EQ(config->cameras.synchronizer.tolerance, drivers::SynchronizerConfig{}.tolerance);
   EXPECT_EQ(config->cameras.synchronizer.wait, drivers::SynchronizerConfig{}.wait);
+  EXPECT_TRUE(config->cameras.compensate_motion);
   EXPECT_EQ(config->rig_file, folder_ / "rig.yaml");
   EXPECT_EQ(config->model_file, folder_ / "sub/model.onnx");
   EXPECT_EQ(config->map.procedural_seed, 7U);
@@ -109,12 +110,13 @@ TEST_F(ConfigTest, SmallestFileHasTheDefaults) {
   EXPECT_EQ(config->solver.tracking.yaw_rad.count(), HypothesisGrid{}.yaw_rad.count());
   ASSERT_TRUE(config->simulation);
   EXPECT_TRUE(config->simulation->camera_faults[0].empty());
+  EXPECT_EQ(config->simulation->exposure_offsets[0], Duration::zero());
 }
 
 TEST_F(ConfigTest, EverySectionIsRead) {
   const auto config = load(
       "cameras: {driver: mock, rate_hz: 20, buffers: 8, tolerance_ms: 1.5, wait_ms: 40, "
-      "min_cameras: 4}\n"
+      "min_cameras: 4, compensate_motion: false}\n"
       "calibration: {rig: /etc/rig.yaml}\n"
       "map: {file: town.osm}\n"
       "model: {file: ../m.onnx}\n"
@@ -138,6 +140,7 @@ TEST_F(ConfigTest, EverySectionIsRead) {
   EXPECT_EQ(config->cameras.synchronizer.tolerance, std::chrono::microseconds(1500));
   EXPECT_EQ(config->cameras.synchronizer.wait, std::chrono::milliseconds(40));
   EXPECT_EQ(config->cameras.synchronizer.min_cameras, 4);
+  EXPECT_FALSE(config->cameras.compensate_motion);
   EXPECT_EQ(config->rig_file, "/etc/rig.yaml");
   EXPECT_EQ(config->map.file, folder_ / "town.osm");
   EXPECT_FALSE(config->map.procedural_seed);
@@ -177,6 +180,7 @@ TEST_F(ConfigTest, SimulationIsRead) {
            "  duration_s: 12.5\n"
            "  conditions: {sun_azimuth_deg: 90, sun_elevation_deg: -10, rain: 0.5}\n"
            "  calibration_error: {rotation_deg: 1, translation_m: 0.02, relative_focal: 0.01}\n"
+           "  exposure_offsets_ms: [0, 12.5, 25, 30, 40, 50]\n"
            "  camera_faults:\n"
            "    - {camera: back, kind: late, from_s: 1, until_s: 2, delay_ms: 40}\n"
            "    - {camera: front, kind: drop, every: 7}\n"
@@ -193,6 +197,8 @@ TEST_F(ConfigTest, SimulationIsRead) {
   EXPECT_DOUBLE_EQ(simulation.calibration_error.rotation_rad, radians(1.0));
   EXPECT_DOUBLE_EQ(simulation.calibration_error.translation_m, 0.02);
   EXPECT_DOUBLE_EQ(simulation.calibration_error.relative_focal, 0.01);
+  EXPECT_EQ(simulation.exposure_offsets[1], std::chrono::microseconds(12'500));
+  EXPECT_EQ(simulation.exposure_offsets[5], std::chrono::milliseconds(50));
   const auto& back = simulation.camera_faults[4];
   ASSERT_EQ(back.size(), 2U);
   EXPECT_EQ(back[0].kind, drivers::CameraFaultKind::kLate);
@@ -223,6 +229,7 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
       {with(rate, "  rate_hz: fast\n"), 3, "cameras.rate_hz: found fast"},
       {with(rate, "  rate_hz: \"10\"\n"), 3, "cameras.rate_hz"},
       {with(rate, rate + "  min_cameras: 2.5\n"), 4, "cameras.min_cameras"},
+      {with(rate, rate + "  compensate_motion: 1\n"), 4, "cameras.compensate_motion"},
       {with("{driver: mock}", "mock"), 7, "can: found mock, wanted a mapping"},
       {with("mock\n", "libcamera\n"), 2, "cameras.driver: found libcamera, wanted"},
       // out of range, or against each other
@@ -249,6 +256,11 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
       // what only some drivers have
       {with("driver: mock\n" + rate, "driver: replay\n  recording: r\n"), 5, "map.procedural_seed"},
       {with(simulation + "\n", ""), 1, "simulation"},
+      {with(simulation, "simulation: {seed: 1, duration_s: 5, exposure_offsets_ms: [1, 2, 3]}"), 8,
+       "simulation.exposure_offsets_ms: found a list of 3, wanted a list of 6"},
+      {with(simulation,
+            "simulation: {seed: 1, duration_s: 5, exposure_offsets_ms: [0, 0, 51, 0, 0, 0]}"),
+       8, "simulation.exposure_offsets_ms[2]: found 51"},
       {with(simulation,
             "simulation: {seed: 1, duration_s: 5, camera_faults: [{camera: left, kind: "
             "dead}]}"),

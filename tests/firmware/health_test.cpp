@@ -32,6 +32,15 @@ Health tracking() {
   return health;
 }
 
+TEST(HealthTest, CamerasOutOfStepDegrade) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.cameras_unsynchronized = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), State::kDegraded);
+  EXPECT_EQ(health.why(), can::WhyMask(Why::kCamerasUnsynchronized));
+}
+
 TEST(HealthTest, StaysInInitWithoutAFirstPose) {
   Health health{HealthLimits()};
   EXPECT_FALSE(health.update(HealthInputs()));

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "firmware/evaluation/network_evaluation.h"
+#include "firmware/evaluation/read_out_case.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -90,11 +91,35 @@ TEST_F(NetworkCommandTest, WritesARowForEachReadOut) {
   }
 }
 
+TEST_F(NetworkCommandTest, BaselinesHaveErrorsButNoDistribution) {
+  ASSERT_TRUE(run(
+      {"--frames", "2", "--rows", "baselines", "--json", file("a.json"), "--csv", file("a.csv")}));
+  const auto rows = nlohmann::json::parse(text_of(file("a.json")))["rows"];
+  std::vector<std::string> names;
+  for (const auto& row : rows) {
+    names.push_back(row["solver"]);
+    EXPECT_THAT(row["mae"].get<std::vector<double>>(), Each(Ge(0.0)));
+    EXPECT_TRUE(row["input"].is_null());
+    for (const char* key : {"nll", "coverage_1s", "coverage_3s", "parabola_mae"}) {
+      ASSERT_EQ(row[key].size(), 3U) << key;
+      EXPECT_EQ(row[key][0].is_null(), row["solver"] != "prior") << key;
+    }
+  }
+  EXPECT_THAT(names, ElementsAre("prior", "icp", "distance-transform", "ipm"));
+  std::istringstream csv(text_of(file("a.csv")));
+  std::string header;
+  std::getline(csv, header);
+  for (std::string line; std::getline(csv, line);) {
+    EXPECT_EQ(std::ranges::count(line, ','), std::ranges::count(header, ','));
+    EXPECT_THAT(line, testing::Not(HasSubstr("nan")));
+  }
+}
+
 TEST_F(NetworkCommandTest, EverySetHasItsRows) {
   ASSERT_TRUE(run({"--frames", "1", "--set", "all", "--json", file("a.json")}));
   const auto json = nlohmann::json::parse(text_of(file("a.json")));
   EXPECT_EQ(json["rows"].size(), 6 * sim::kNuisanceSets);
-  EXPECT_EQ(json["rows"].back()["set"], "unsynchronised");
+  EXPECT_EQ(json["rows"].back()["set"], "unsynchronised_uncompensated");
 }
 
 TEST_F(NetworkCommandTest, TheSameSeedGivesTheSameRows) {
@@ -128,6 +153,7 @@ TEST_F(NetworkCommandTest, RefusesWhatItCannotUse) {
   EXPECT_THAT(refusal({"--map", file("kerb.osm")}), HasSubstr("found no lanes"));
   EXPECT_THAT(refusal({"--frames", "1", "--json", file("none/a.json")}), HasSubstr("none/a.json"));
   EXPECT_THROW(run({"--frames", "0"}), CLI::ValidationError);
+  EXPECT_THROW(run({"--rows", "table5"}), CLI::ValidationError);
 }
 
 TEST_F(NetworkCommandTest, TheProgramExitsWithTwoAndOneSentence) {
@@ -184,6 +210,21 @@ TEST_F(NetworkEvaluationTest, TheShippedModelFindsTheWayBackAcrossTheRoad) {
     EXPECT_LT(found.nll[1], prior.nll[1]) << result.read_outs[k].name;
   }
   EXPECT_GT(result.iou[2], 0.2);
+}
+
+TEST_F(NetworkEvaluationTest, VariantsReadMasksToo) {
+  auto evaluation = NetworkEvaluation::create(kModel, ReadOutRows::kVariants, 1);
+  ASSERT_TRUE(evaluation) << evaluation.error().message;
+  const SetResult result = evaluation->run(stream_of(sim::NuisanceSet::kClean), 2, [] {});
+  const auto cases = read_out_cases(ReadOutRows::kVariants);
+  ASSERT_EQ(result.read_outs.size(), 1 + cases.size());
+  const Summary prior = summarise(result.read_outs.front().outcomes);
+  for (size_t k = 0; k < cases.size(); ++k) {
+    const ReadOut& read_out = result.read_outs[k + 1];
+    ASSERT_TRUE(read_out.solver_case);
+    EXPECT_EQ(*read_out.solver_case, cases[k]);
+    EXPECT_LT(summarise(read_out.outcomes).mae[1], prior.mae[1]) << label_of(cases[k]);
+  }
 }
 
 TEST_F(NetworkEvaluationTest, WhatCannotBeSeenCannotBeMatched) {

@@ -62,5 +62,53 @@ TEST(PoseTrailTest, ARevisedPoseReplacesWhatCameAfterIt) {
   EXPECT_NEAR(pose->x_m, 1.15, 1e-9);
 }
 
+TEST(PoseTrailTest, MotionIsAnArcThatLeadsBackAsItLedForth) {
+  PoseTrail trail;
+  TrackedPose pose = pose_at(0, 5.0, radians(30.0));
+  pose.yaw_rate_radps = 0.5;
+  trail.add(pose);
+  const auto forth = trail.motion(Time(milliseconds(10)), Time(milliseconds(60)));
+  ASSERT_TRUE(forth);
+  EXPECT_NEAR(forth->x_m, 0.5, 1e-3) << "along the vehicle, whatever its heading in the map";
+  EXPECT_NEAR(forth->yaw_rad, 0.025, 1e-12);
+  EXPECT_NEAR(forth->y_m, 0.5 * std::sin(0.0125), 1e-12);
+  const auto back = trail.motion(Time(milliseconds(60)), Time(milliseconds(10)));
+  ASSERT_TRUE(back);
+  const Se2 still = *forth * *back;
+  EXPECT_NEAR(still.x_m, 0.0, 1e-9);
+  EXPECT_NEAR(still.y_m, 0.0, 1e-9);
+  EXPECT_NEAR(still.yaw_rad, 0.0, 1e-12);
+}
+
+TEST(PoseTrailTest, ACorrectionBetweenTwoTimesIsNoMotion) {
+  PoseTrail trail;
+  trail.add(pose_at(0, 0.0));
+  trail.add(pose_at(50, 1.5));  // 0.5 m driven, corrected by 1 m
+  const auto motion = trail.motion(Time(milliseconds(0)), Time(milliseconds(50)));
+  ASSERT_TRUE(motion);
+  EXPECT_NEAR(motion->x_m, 0.5, 1e-9);
+}
+
+TEST(PoseTrailTest, MotionUnderSteadyBrakingHasTheMeanSpeed) {
+  PoseTrail trail;
+  for (int i = 0; i <= 10; ++i) {
+    TrackedPose pose = pose_at(10 * i, 0.0);
+    pose.speed_mps = 10.0 - 0.05 * i;
+    trail.add(pose);
+  }
+  const auto motion = trail.motion(Time(milliseconds(20)), Time(milliseconds(70)));
+  ASSERT_TRUE(motion);
+  EXPECT_NEAR(motion->x_m, 0.05 * (10.0 - 0.05 * 4.5), 1e-9);
+}
+
+TEST(PoseTrailTest, KnowsNoMotionBeyondItsReach) {
+  PoseTrail trail;
+  EXPECT_FALSE(trail.motion(Time(milliseconds(0)), Time(milliseconds(0))));
+  trail.add(pose_at(100, 0.0));
+  EXPECT_FALSE(trail.motion(Time(milliseconds(0)), Time(milliseconds(50))));
+  const Time late = Time(milliseconds(101)) + PoseTrail::kReach;
+  EXPECT_FALSE(trail.motion(late, late));
+}
+
 }  // namespace
 }  // namespace bevloc::firmware

@@ -8,9 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "common/heap_use.h"
+#include "firmware/evaluation/mask_scales.h"
 #include "firmware/evaluation/paper_figures.h"
+#include "firmware/evaluation/read_out_case.h"
 #include "firmware/evaluation/scale_tuning.h"
 #include "firmware/evaluation/solver_report.h"
+#include "firmware/evaluation/summary_format.h"
 #include "pipeline/solver/posterior.h"
 #include "sim/perception/matching_scene.h"
 
@@ -85,6 +88,19 @@ TEST(SolverScore, Summarises) {
   EXPECT_EQ(summarise({}).scenes, 0U);
 }
 
+TEST(SolverScore, GivesNothingForWhatAMethodDoesNotSay) {
+  Summary summary = summarise({judge(Se2{1.0, 0.0, 0.0}, Se2{}), judge(Se2{0.0, 0.5, 0.0}, Se2{})});
+  EXPECT_THAT(summary.mae, ElementsAre(0.5, 0.25, 0.0));
+  for (const PerAxis& values :
+       {summary.nll, summary.coverage_1s, summary.coverage_3s, summary.parabola_mae}) {
+    EXPECT_THAT(values, Each(testing::IsNan()));
+  }
+  EXPECT_EQ(three(summary.nll), "- - -");
+  EXPECT_EQ(percent(summary.coverage_1s), "  -   -   -");
+  EXPECT_THAT(csv_values(summary), testing::EndsWith(",,,,,,,,,"));
+  EXPECT_TRUE(nlohmann::json::parse(json_of(summary).dump())["nll"][2].is_null());
+}
+
 TEST(SolverScore, KnowsWhatKnowingNothingCosts) {
   EXPECT_THAT(uniform_nll({}),
               ElementsAre(DoubleNear(std::log(21.0), 1e-12), DoubleNear(std::log(11.0), 1e-12),
@@ -116,6 +132,43 @@ TEST(SolverCases, EveryCaseCanBeSolved) {
           << name_of(c.solver) << " " << size_name(c.grid) << " " << c.channels;
     }
   }
+}
+
+TEST(ReadOutCases, HoldBothInputsSizesAndSteps) {
+  EXPECT_EQ(read_out_cases(ReadOutRows::kSolvers).size(), 5U);
+  EXPECT_TRUE(read_out_cases(ReadOutRows::kBaselines).empty());
+  const auto cases = read_out_cases(ReadOutRows::kAll);
+  EXPECT_EQ(cases, read_out_cases(ReadOutRows::kVariants));
+  std::vector<std::string> labels;
+  std::ranges::transform(cases, std::back_inserter(labels), label_of);
+  for (const char* wanted : {"full-fft", "block S", "decoupled 0.1", "decoupled S 0.4",
+                             "decoupled+refine S 400x200", "decoupled S 400x200 0.1"}) {
+    EXPECT_THAT(labels, testing::Contains(wanted).Times(1));
+  }
+  for (const ReadOutCase& read_out : cases) {
+    const bool masks = read_out.input == SolverInput::kMasks;
+    EXPECT_TRUE(masks || read_out.solver_case.grid == kFeatureGrid);
+    EXPECT_EQ(read_out.solver_case.channels, masks ? 4 : 16);
+  }
+}
+
+TEST(MaskScalesTest, AreFoundOnceAndSuitTheFrames) {
+  sim::SceneSampler sampler(sim::kTuningSeedBase);
+  sim::MatchingScene scene;
+  std::vector<TuningFrame> frames;
+  for (uint64_t i = 0; i < 6; ++i) {
+    sampler.make(i, sim::CorruptionLevel::kMild, scene);
+    frames.push_back({scene.perceived, scene.raster_prior, scene.correction});
+  }
+  MaskScales scales(std::move(frames));
+  SolverCase banded{.solver = SolverKind::kBandedRefined, .channels = 4};
+  const auto found = scales.parameters_for(banded);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_GT(found->banded_y_scale, 12.0F);
+  EXPECT_GT(found->refine_y_scale, 12.0F);
+  banded.step_m = 0.4;
+  EXPECT_EQ(scales.parameters_for(banded)->refine_y_scale, found->refine_y_scale);
+  EXPECT_FALSE(scales.parameters_for({.solver = SolverKind::kBanded, .grid = {7, 3, 0.15}}));
 }
 
 /// Not under a sanitizer.

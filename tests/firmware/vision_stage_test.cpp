@@ -17,14 +17,23 @@ class VisionStageTest : public testing::Test {
                                        std::string(BEVLOC_SOURCE_DIR) + "/models/nano.onnx", {});
     ASSERT_TRUE(localizer) << localizer.error().message;
     localizer_ = std::move(*localizer);
-    stage_.emplace(*localizer_, drivers::SynchronizerConfig{}, frames_, predictions_, reports_);
+    stage_.emplace(*localizer_, VisionConfig{}, frames_, predictions_, reports_);
   }
 
-  void push_frameset(Time time) {
+  /// A stage that takes frames up to 50 ms apart into one set.
+  void allow_spread(bool compensate_motion) {
+    VisionConfig config;
+    config.synchronizer.tolerance = milliseconds(50);
+    config.compensate_motion = compensate_motion;
+    stage_.emplace(*localizer_, config, frames_, predictions_, reports_);
+  }
+
+  /// The cameras one after the other, `spread` from the first to the last.
+  void push_frameset(Time time, Duration spread = Duration::zero()) {
     for (int camera = 0; camera < kCameraCount; ++camera) {
       drivers::Frame frame;
       frame.camera = camera;
-      frame.time = time;
+      frame.time = time + camera * spread / (kCameraCount - 1);
       frames_.push(std::move(frame));
     }
   }
@@ -68,6 +77,33 @@ TEST_F(VisionStageTest, MatchesNothingWithoutAPrediction) {
   EXPECT_FALSE(report->had_prior);
   EXPECT_EQ(report->correction.evidence, Evidence::kNone);
   EXPECT_EQ(stage_->counters().no_prior, 1U);
+}
+
+TEST_F(VisionStageTest, SaysThatCamerasAreUnsynchronizedOnlyWhereNothingMakesUpForIt) {
+  for (const bool compensate_motion : {false, true}) {
+    allow_spread(compensate_motion);
+    push_frameset(Time(milliseconds(800)), milliseconds(4));
+    auto report = step();
+    ASSERT_TRUE(report);
+    EXPECT_FALSE(report->unsynchronized);
+    push_frameset(Time(milliseconds(900)), milliseconds(40));
+    report = step();
+    ASSERT_TRUE(report);
+    EXPECT_TRUE(report->present.all());
+    EXPECT_EQ(report->frame_time, Time(milliseconds(900)));
+    EXPECT_EQ(report->unsynchronized, !compensate_motion);
+  }
+}
+
+TEST_F(VisionStageTest, MatchesNothingWhenTheMotionToALaterFrameIsNotKnown) {
+  allow_spread(true);
+  Prediction prediction;
+  prediction.pose.time = Time(milliseconds(760));
+  predictions_.push(prediction);
+  push_frameset(prediction.pose.time + PoseTrail::kReach, milliseconds(40));
+  const auto report = step();
+  ASSERT_TRUE(report);
+  EXPECT_FALSE(report->had_prior);
 }
 
 }  // namespace

@@ -174,11 +174,61 @@ TEST_F(ViewTableTest, UpdatingInPlaceEqualsMaking) {
   const int32_t* const index = table.index.data();
   CameraMask available = kAllCameras;
   available.reset(4);
-  update_view_table(rig_, available, kFeatureGrid, table);
-  const ViewTable made = make_view_table(rig_, available, kFeatureGrid);
+  CameraMotions motions{};
+  motions[1] = {1.5, 0.1, 0.02};
+  update_view_table(rig_, available, kFeatureGrid, motions, table);
+  const ViewTable made = make_view_table(rig_, available, kFeatureGrid, motions);
   EXPECT_EQ(table.index.data(), index);
   EXPECT_EQ(table.index, made.index);
   EXPECT_EQ(table.weight, made.weight);
+}
+
+TEST_F(ViewTableTest, AVehicleThatDroveOnByACellSeesEachCellAsTheOneBefore) {
+  CameraMotions motions;
+  motions.fill({kFeatureGrid.cell_m, 0.0, 0.0});
+  const ViewTable moved = make_view_table(rig_, kAllCameras, kFeatureGrid, motions);
+  for (int slot = 0; slot < kViewSlots; ++slot) {
+    for (int cell = 0; cell < kCells - kFeatureGrid.cols; ++cell) {
+      const size_t here = slot * kCells + cell;
+      const size_t nearer = here + kFeatureGrid.cols;
+      ASSERT_NEAR(moved.weight[here], table_.weight[nearer], 1e-4F) << "cell " << cell;
+      if (moved.weight[here] > 1e-4F) {
+        ASSERT_EQ(moved.index[here], table_.index[nearer]);
+      }
+    }
+  }
+}
+
+TEST_F(ViewTableTest, AMovedCameraSeesAsOneThatIsMountedThere) {
+  const Se2 motion{1.2, -0.1, 0.03};
+  CameraMotions motions{};
+  motions[2] = motion;
+  Rig rig = rig_;
+  Se3 reference_from_exposure;
+  reference_from_exposure.rotation.topLeftCorner<2, 2>() << std::cos(motion.yaw_rad),
+      -std::sin(motion.yaw_rad), std::sin(motion.yaw_rad), std::cos(motion.yaw_rad);
+  reference_from_exposure.translation_m = {motion.x_m, motion.y_m, 0.0};
+  Se3& mounting = rig.cameras[2].vehicle_from_camera;
+  mounting = reference_from_exposure * mounting;
+
+  const ViewTable moved = make_view_table(rig_, kAllCameras, kFeatureGrid, motions);
+  const ViewTable mounted = make_view_table(rig, kAllCameras, kFeatureGrid);
+  EXPECT_NE(moved.weight, table_.weight);
+  for (size_t entry = 0; entry < moved.weight.size(); ++entry) {
+    ASSERT_NEAR(moved.weight[entry], mounted.weight[entry], 1e-4F);
+    if (moved.weight[entry] > 1e-4F) {
+      ASSERT_EQ(moved.index[entry], mounted.index[entry]);
+    }
+  }
+}
+
+TEST_F(ViewTableTest, TheMotionOfACameraThatIsNotThereDoesNotCount) {
+  CameraMask available = kAllCameras;
+  available.reset(3);
+  CameraMotions motions{};
+  motions[3] = {1.0, 0.0, 0.0};
+  const ViewTable moved = make_view_table(rig_, available, kFeatureGrid, motions);
+  EXPECT_EQ(moved.weight, make_view_table(rig_, available, kFeatureGrid).weight);
 }
 
 }  // namespace

@@ -68,9 +68,9 @@ TEST_P(NuisanceSetTest, ShowsTheSamePlacesFromTheSamePriors) {
 }
 
 TEST_P(NuisanceSetTest, ChangesThePicturesUnlessAllItDoesIsElsewhere) {
-  const bool same_pictures =
-      GetParam() == NuisanceSet::kStandard || GetParam() == NuisanceSet::kSixCameras ||
-      GetParam() == NuisanceSet::kMapErrors || GetParam() == NuisanceSet::kMissingCamera;
+  const bool same_pictures = GetParam() == NuisanceSet::kSixCameras ||
+                             GetParam() == NuisanceSet::kMapErrors ||
+                             GetParam() == NuisanceSet::kMissingCamera;
   size_t changed = 0;
   for (size_t i = 0; i < kCount; ++i) {
     const Sample& sample = samples_of(GetParam())[i];
@@ -154,6 +154,58 @@ TEST(SampleMaker, DressesAMapAnewForEachWorld) {
   }
   ++stream.first_seed;
   EXPECT_TRUE(make(stream).front().images != samples.front().images);
+}
+
+bool is_still(const Sample& sample) {
+  return std::ranges::all_of(sample.reference_from_exposure, [](const Se2& motion) {
+    return motion.x_m == 0.0 && motion.y_m == 0.0 && motion.yaw_rad == 0.0;
+  });
+}
+
+TEST(SampleMaker, SaysHowFarTheVehicleDroveWhereCamerasAreNotInStep) {
+  double farthest_m = 0.0;
+  for (size_t i = 0; i < kCount; ++i) {
+    EXPECT_TRUE(is_still(samples_of(NuisanceSet::kSixCameras)[i]));
+    const Sample& known = samples_of(NuisanceSet::kUnsynchronised)[i];
+    const Sample& unknown = samples_of(NuisanceSet::kUnsynchronisedUncompensated)[i];
+    EXPECT_FALSE(is_still(known));
+    EXPECT_TRUE(is_still(unknown));
+    EXPECT_TRUE(known.images == unknown.images);
+    for (const Se2& motion : known.reference_from_exposure) {
+      farthest_m = std::max(farthest_m, std::abs(motion.x_m));
+      EXPECT_LT(std::abs(motion.y_m), 0.05);
+    }
+  }
+  EXPECT_GT(farthest_m, 0.2);
+  EXPECT_LT(farthest_m, 1.05) << "50 ms at 20 m/s, and a little error";
+}
+
+TEST(SampleMaker, SharesOfZeroLeaveEveryBitAsItIs) {
+  SampleStream stream = stream_of(NuisanceSet::kSixCameras);
+  stream.training = strong_nuisances();
+  for (Strengthening* strengthening :
+       {&stream.training.camera_spread_s, &stream.training.calibration_factor,
+        &stream.training.body_tilt_rad, &stream.training.extra_vehicles,
+        &stream.training.paint_wear_factor, &stream.training.map_errors}) {
+    strengthening->share = 0.0;
+  }
+  const std::vector<Sample> samples = make(stream);
+  for (size_t i = 0; i < kCount; ++i) {
+    EXPECT_TRUE(samples[i].images == samples_of(NuisanceSet::kSixCameras)[i].images);
+    EXPECT_TRUE(samples[i].raster_prior == samples_of(NuisanceSet::kSixCameras)[i].raster_prior);
+  }
+}
+
+TEST(SampleMaker, AStrongerSampleDependsOnItsNumberAlone) {
+  SampleStream stream = stream_of(NuisanceSet::kSixCameras);
+  stream.training = strong_nuisances();
+  const std::vector<Sample> samples = make(stream);
+  EXPECT_TRUE(samples[0].images != samples_of(NuisanceSet::kSixCameras)[0].images);
+  make_samples_of_world(stream, 0, kCount - 1, [&samples](const Sample& last) {
+    EXPECT_TRUE(last.images == samples.back().images);
+    EXPECT_TRUE(last.raster_prior == samples.back().raster_prior);
+    return false;
+  });
 }
 
 }  // namespace

@@ -1,0 +1,65 @@
+#include "sim/samples/training_nuisances.h"
+
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "sim/random.h"
+
+namespace bevloc::sim {
+namespace {
+
+std::optional<double> drawn(const Strengthening& strengthening, uint64_t seed,
+                            std::string_view purpose) {
+  Random random(seed_for(seed_for(seed, "stronger"), purpose));
+  if (!random.chance(strengthening.share)) return std::nullopt;
+  return random.uniform(strengthening.weakest, strengthening.strongest);
+}
+
+}  // namespace
+
+TrainingNuisances strong_nuisances() {
+  return {.camera_spread_s = {.share = 0.25, .weakest = 0.05, .strongest = 0.05},
+          .calibration_factor = {.share = 1.0, .weakest = 1.0, .strongest = 1.7},
+          .body_tilt_rad = {.share = 1.0, .weakest = radians(0.2), .strongest = radians(1.0)},
+          .extra_vehicles = {.share = 0.2, .weakest = 1.0, .strongest = 8.0},
+          .paint_wear_factor = {.share = 0.2, .weakest = 1.0, .strongest = 2.0},
+          .map_errors = {.share = 0.15, .weakest = 1.0, .strongest = 1.0}};
+}
+
+Nuisances drawn_for_world(const Nuisances& usual, const TrainingNuisances& training,
+                          uint64_t seed) {
+  Nuisances nuisances = usual;
+  if (const auto count = drawn(training.extra_vehicles, seed, "vehicles")) {
+    nuisances.extra_vehicles = static_cast<int>(std::lround(*count));
+  }
+  if (const auto factor = drawn(training.paint_wear_factor, seed, "wear")) {
+    nuisances.paint_wear_factor = *factor;
+  }
+  if (const auto factor = drawn(training.map_errors, seed, "map")) {
+    const MapErrors errors = nuisances_of(NuisanceSet::kMapErrors).map_errors;
+    nuisances.map_errors = {.omission = *factor * errors.omission,
+                            .ghost = *factor * errors.ghost,
+                            .shift_sigma_m = *factor * errors.shift_sigma_m};
+  }
+  return nuisances;
+}
+
+Nuisances drawn_for_sample(const Nuisances& of_world, const TrainingNuisances& training,
+                           uint64_t seed) {
+  Nuisances nuisances = of_world;
+  if (const auto spread_s = drawn(training.camera_spread_s, seed, "spread")) {
+    nuisances.desynchronisation.spread_s = *spread_s;
+  }
+  if (const auto factor = drawn(training.calibration_factor, seed, "calibration")) {
+    nuisances.calibration.rotation_rad *= *factor;
+    nuisances.calibration.position_m *= *factor;
+    nuisances.calibration.relative_focal *= *factor;
+  }
+  if (const auto tilt_rad = drawn(training.body_tilt_rad, seed, "tilt")) {
+    nuisances.body.tilt_rad = *tilt_rad;
+  }
+  return nuisances;
+}
+
+}  // namespace bevloc::sim
