@@ -78,7 +78,7 @@ void VisionStage::localize(const drivers::Frameset& frameset, bool skipped) {
   report.prior = *prior;
   CameraImages seen{{}, frameset.present, *motions};
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    if (frameset.present[camera]) seen.images[camera] = frameset.frames[camera].image();
+    if (frameset.present[camera]) seen.images[camera] = frameset.frames[camera].pixels();
   }
   const SearchRange range = acquiring_ ? SearchRange::kAcquiring : SearchRange::kTracking;
   if (localizer_.localize(seen, *prior, range, solution_)) {

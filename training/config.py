@@ -21,6 +21,9 @@ class TrainingConfig:
     resume: bool = False
     init: str = ""  # checkpoint whose averaged weights a new run begins with
 
+    network: str = "nano"  # of training/models/config.py
+    view: str = ""  # transform; none: the network's own
+
     nuscenes: str = ""  # folder of the data set; none: the simulator
     nuscenes_version: str = ""  # v1.0-*, where there are several
     scenes: str = ""  # file of scene names; none: all
@@ -29,11 +32,12 @@ class TrainingConfig:
     on_error: str = "refuse"  # or "skip": of samples that cannot be used
 
     seed: int = FIRST_TRAINING_SEED
-    batch: int = 8
+    batch: int = 8  # of all processes together
     threads: int = 1
     sampler_threads: int = 1
-    bf16: bool = False
+    precision: str = "auto"  # or float32, bfloat16
     drop_camera_probability: float = 0.15
+    nuisances: str = "strong"  # or "usual": of the simulator's samples
 
     learning_rate: float = 2e-3
     scale_rate_factor: float = 5.0  # the softmax scales have far to go
@@ -47,10 +51,13 @@ class TrainingConfig:
     semantic_stage: float = 0.03  # of the budget: stage 1, semantic loss alone
     joint_weight: float = 0.1
     decoupled_weight: float = 0.1
+    refined_weight: float = 0.1
 
     checkpoint_minutes: float = 2.0
     validation_minutes: float = 6.0
     validation_samples: int = 96
+    patience: int = 0  # validations without a better figure until the run stops; 0: it does not
+    patience_figure: str = "joint_x_mae"  # a column of validation.csv
     log_steps: int = 25
 
     def budget_spent(self, elapsed_s: float, samples: int) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Protocol
@@ -11,6 +12,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from training.distributed import WHOLE, Share
 from training.model import (
     BEV_COLS,
     BEV_ROWS,
@@ -23,6 +25,7 @@ from training.model import (
 from training.native import address, library
 
 RASTER_ROWS, RASTER_COLS = 400, 200
+NUISANCES = ("usual", "strong")  # how wrong samples are: sim/samples/training_nuisances.h
 
 
 @dataclass
@@ -40,6 +43,11 @@ class Batch:
     def to(self, device: torch.device) -> Batch:
         return Batch(**{name: tensor.to(device) for name, tensor in vars(self).items()})
 
+    @staticmethod
+    def joined(batches: list[Batch]) -> Batch:
+        names = vars(batches[0])
+        return Batch(**{name: torch.cat([vars(b)[name] for b in batches]) for name in names})
+
     def __len__(self) -> int:
         return self.images.shape[0]
 
@@ -52,36 +60,65 @@ class Stream(Protocol):
     def close(self) -> None: ...
 
 
-@lru_cache(maxsize=64)
-def view_table(camera_mask: int) -> tuple[Tensor, Tensor]:
-    """index int64 [8, 5000] and weight float [8, 5000] for the cameras that are there."""
+def _view_table(camera_mask: int, motions: np.ndarray | None) -> tuple[Tensor, Tensor]:
     index = np.empty((VIEW_SLOTS, BEV_ROWS * BEV_COLS), np.int32)
     weight = np.empty((VIEW_SLOTS, BEV_ROWS * BEV_COLS), np.float32)
-    library().bevloc_view_table(camera_mask, address(index), address(weight))
+    where = None if motions is None else address(motions)
+    library().bevloc_view_table(camera_mask, address(index), address(weight), where)
     return torch.from_numpy(index.astype(np.int64)), torch.from_numpy(weight)
+
+
+@lru_cache(maxsize=64)
+def view_table(camera_mask: int) -> tuple[Tensor, Tensor]:
+    """index int64 [8, 5000] and weight float [8, 5000] for the cameras that are there, which all
+    expose at once."""
+    return _view_table(camera_mask, None)
+
+
+def sample_view_table(camera_mask: int, motions: np.ndarray) -> tuple[Tensor, Tensor]:
+    """The same for cameras that moved between their exposures: motions float32 [6, 3]
+    (sampler.h)."""
+    return _view_table(camera_mask, motions) if motions.any() else view_table(camera_mask)
 
 
 class SamplerStream:
     """The simulator's endless samples; workers render ahead while the network trains.
 
     Consecutive samples of one sampler share a world, so several samplers with seeds far apart take
-    turns: sample i comes from sampler i % STREAMS."""
+    turns: sample i comes from sampler i % STREAMS. With several processes there are as many as make
+    an equal number for each, and each process renders its own alone."""
 
     STREAMS = 4
     SEED_STRIDE = 2**28
 
     def __init__(
-        self, first_seed: int, first_sample: int, threads: int, drop_camera_probability: float
+        self,
+        first_seed: int,
+        first_sample: int,
+        threads: int,
+        drop_camera_probability: float,
+        share: Share = WHOLE,
+        nuisances: str = "usual",
     ) -> None:
+        """`first_sample` counts the samples of all processes: a multiple of their number.
+        `nuisances`: one of NUISANCES."""
+        if nuisances not in NUISANCES:
+            raise ValueError(
+                f"nuisances: found '{nuisances}', wanted one of {', '.join(NUISANCES)}"
+            )
+        assert first_sample % share.count == 0
+        first_sample //= share.count
+        own = range(share.index, math.lcm(self.STREAMS, share.count), share.count)
         self._position = first_sample
         self._samplers = [
             library().bevloc_sampler_create(
-                first_seed + k * self.SEED_STRIDE,
-                (first_sample + self.STREAMS - 1 - k) // self.STREAMS,
+                first_seed + sampler * self.SEED_STRIDE,
+                (first_sample + len(own) - 1 - k) // len(own),
                 threads,
                 drop_camera_probability,
+                nuisances == "strong",
             )
-            for k in range(self.STREAMS)
+            for k, sampler in enumerate(own)
         ]
         atexit.register(self.close)  # workers must not outlive the interpreter
 
@@ -92,15 +129,17 @@ class SamplerStream:
         raster_prior = np.empty((count, RASTER_CHANNELS, RASTER_ROWS, RASTER_COLS), np.uint8)
         raster_truth = np.empty_like(raster_prior)
         correction = np.empty((count, 3), np.float32)
+        motions = np.empty((count, CAMERAS, 3), np.float32)
         arrays = (images, camera_mask, raster_prior, raster_truth, correction)
         filled = 0
         for k, sampler in enumerate(self._samplers):
-            share = len(range((k - self._position) % self.STREAMS, count, self.STREAMS))
-            part = [array[filled : filled + share] for array in arrays]
-            library().bevloc_sampler_next(sampler, share, *map(address, part))
-            filled += share
+            turns = len(self._samplers)
+            own = len(range((k - self._position) % turns, count, turns))
+            part = [array[filled : filled + own] for array in (*arrays, motions)]
+            library().bevloc_sampler_next(sampler, own, *map(address, part))
+            filled += own
         self._position += count
-        tables = [view_table(int(mask)) for mask in camera_mask]
+        tables = list(map(sample_view_table, camera_mask.tolist(), motions))
         return Batch(
             *map(torch.from_numpy, arrays),
             index=torch.stack([index for index, _ in tables]),

@@ -4,9 +4,10 @@
     /usr/bin/python3 -m training.evaluate training/runs/nano/checkpoint.pt --write models
 
 The first measures the float network with PyTorch, with `--nuscenes DIR --scenes FILE` on every
-sample of these scenes (the paper's Table I) in place of the simulator's. The second also measures the model file in the
-folder on the daemon's own network and solvers, and writes the results there: nano_results.json, and
-the tables of README.md.
+sample of these scenes (the paper's Table I) in place of the simulator's. The second also measures
+the model file in the folder on the daemon's own network and solvers, and writes the results there:
+NETWORK_results.json, and the tables of the model card, README.md for nano and NETWORK.md for
+others.
 """
 
 from __future__ import annotations
@@ -19,9 +20,12 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
+from training.checkpoint import load_network, read_checkpoint
 from training.data import Batch
+from training.errors import run_program
 from training.losses import intersection_over_union, pose_losses
-from training.model import Nano, real_images, real_raster
+from training.model import real_images, real_raster
+from training.models.network import BevNetwork
 from training.report import Results, write_results
 from training.runtime import NativeNetwork, NativeSolver
 from training.solver import PoseSolvers, Solution, standardise
@@ -63,7 +67,7 @@ def _honesty_metrics(name: str, error: Tensor, sigma: Tensor, nll: Tensor) -> di
     return metrics
 
 
-def float_inference(net: Nano) -> Inference:
+def float_inference(net: BevNetwork) -> Inference:
     """The trained network as it is."""
     net.eval()
 
@@ -138,14 +142,6 @@ def summary(metrics: dict[str, float]) -> str:
     return "\n".join([*lines, f"{'IoU':15} {iou}"])
 
 
-def load_network(checkpoint: Path, averaged: bool = True) -> Nano:
-    """The network of a checkpoint; `averaged`: the EMA weights."""
-    net = Nano()
-    state = torch.load(checkpoint, map_location="cpu")
-    net.load_state_dict(state["ema" if averaged else "model"])
-    return net.eval()
-
-
 def evaluate_model_file(model: Path, batches: list[Batch], threads: int) -> dict[str, float]:
     """A model file as the daemon runs it."""
     network = NativeNetwork(model, threads)
@@ -177,13 +173,13 @@ def main() -> None:
     metrics = evaluate(float_inference(net), solvers, batches, device)
     print(f"float\n{summary(metrics)}", flush=True)
     if arguments.write:
-        model = arguments.write / "nano.onnx"
+        model = arguments.write / f"{net.config.name}.onnx"
         int8_metrics = evaluate_model_file(model, batches, arguments.threads)
         print(f"int8\n{summary(int8_metrics)}", flush=True)
-        trained = torch.load(arguments.checkpoint, map_location="cpu")["samples"]
+        trained = read_checkpoint(arguments.checkpoint)["samples"]
         results = Results(trained, arguments.samples, metrics, int8_metrics)
-        write_results(arguments.write, results)
+        write_results(arguments.write, net.config.name, results)
 
 
 if __name__ == "__main__":
-    main()
+    run_program(main)

@@ -2,7 +2,7 @@
 
     /usr/bin/python3 -m training.export_onnx training/runs/nano/checkpoint.pt models
 
-Writes nano.onnx (int8, QDQ) and nano_float.onnx into the folder, and beside the checkpoint
+Writes NETWORK.onnx (int8, QDQ) and NETWORK_float.onnx into the folder, and beside the checkpoint
 quantization.pt and solvers.pt: the solvers with the scales that the model files carry. Inputs:
 images int8 [6, 3, 96, 320] (RGB - 128), raster uint8 [1, 3, 400, 200], view_index int32 [8, 5000]
 and view_weight float [8, 5000] (pipeline/network/view_table.h). Outputs, real values: bev_features
@@ -18,11 +18,12 @@ import onnx
 import torch
 from onnx import TensorProto, helper
 
+from training.checkpoint import load_network, read_checkpoint
 from training.config import FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream
-from training.evaluate import load_network
+from training.errors import run_program
 from training.fit_scales import fit_scales, fit_sigma_scale
-from training.graph import FoldedConv, Walk, folded_convolutions
+from training.graph import FoldedConv, Walk, check_walkable, folded_convolutions
 from training.model import (
     BEV_COLS,
     BEV_ROWS,
@@ -31,14 +32,13 @@ from training.model import (
     IMAGE_ROWS,
     RASTER_CHANNELS,
     VIEW_SLOTS,
-    Nano,
 )
+from training.models.network import BevNetwork
 from training.onnx_graph import MASK_OUTPUT, FloatOnnxBackend, Int8OnnxBackend
 from training.quantize import Quantization, input_scales, int8_inference, quantize
 from training.runtime import NativeNetwork, NativeSolver
 
 OPSET, IR_VERSION = 13, 8
-MODEL_NAME = "nano"
 QUANTIZATION_FILE = "quantization.pt"
 SOLVERS_FILE = "solvers.pt"
 SHIPPED_SOLVER = "decoupled+refine"  # config/demo.yaml
@@ -61,7 +61,7 @@ def _inputs() -> list[onnx.ValueInfoProto]:
     ]
 
 
-def _outputs(net: Nano) -> list[onnx.ValueInfoProto]:
+def _outputs(net: BevNetwork) -> list[onnx.ValueInfoProto]:
     feature_shape = [1, net.bev_compress[-1].second.conv.out_channels, BEV_ROWS, BEV_COLS]
     mask_shape = [1, RASTER_CHANNELS, 4 * BEV_ROWS, 4 * BEV_COLS]
     return [
@@ -71,14 +71,14 @@ def _outputs(net: Nano) -> list[onnx.ValueInfoProto]:
     ]
 
 
-def metadata(net: Nano, sigma_scale: float) -> dict[str, str]:
+def metadata(net: BevNetwork, sigma_scale: float) -> dict[str, str]:
     """What the run time has to know beside the graph."""
     scales = {
         f"bevloc.solver.{name}_scale": f"{net.solvers.scale(name).item():.6g}"
         for name in net.solvers.log_scale
     }
     return {
-        "bevloc.model": MODEL_NAME,
+        "bevloc.model": net.config.name,
         **scales,
         "bevloc.solver.sigma_scale": f"{sigma_scale:.6g}",
         "bevloc.solver.gem_omega": "1",
@@ -86,7 +86,7 @@ def metadata(net: Nano, sigma_scale: float) -> dict[str, str]:
 
 
 def build_model(
-    net: Nano,
+    net: BevNetwork,
     convolutions: dict[str, FoldedConv],
     backend: FloatOnnxBackend,
     sigma_scale: float = 1.0,
@@ -99,7 +99,7 @@ def build_model(
     backend.node("Identity", [bev], "bev_features")
     backend.node("Identity", [features_map], "map_features")
     graph = helper.make_graph(
-        backend.nodes, MODEL_NAME, _inputs(), _outputs(net), backend.initializers
+        backend.nodes, net.config.name, _inputs(), _outputs(net), backend.initializers
     )
     model = helper.make_model(
         graph,
@@ -119,13 +119,19 @@ def calibration_batches(samples: int, threads: int = 1) -> list[Batch]:
     return batches
 
 
+def quantization_of(net: BevNetwork, checkpoint: Path, calibration: list[Batch]) -> Quantization:
+    """What the checkpoint's weights were trained with (training.qat), or else from calibration."""
+    trained = read_checkpoint(checkpoint).get("quantization")
+    return Quantization.of_state(net, trained) if trained else quantize(net, calibration)
+
+
 def write_model(
-    net: Nano, quantization: Quantization, sigma_scale: float, folder: Path
+    net: BevNetwork, quantization: Quantization, sigma_scale: float, folder: Path
 ) -> None:
     """Both model files."""
     for name, convolutions, backend in (
-        (MODEL_NAME, quantization.convolutions, Int8OnnxBackend(quantization)),
-        (f"{MODEL_NAME}_float", folded_convolutions(net), FloatOnnxBackend()),
+        (net.config.name, quantization.convolutions, Int8OnnxBackend(quantization)),
+        (f"{net.config.name}_float", folded_convolutions(net), FloatOnnxBackend()),
     ):
         model = build_model(net, convolutions, backend, sigma_scale)
         onnx.save(model, str(folder / f"{name}.onnx"))
@@ -140,20 +146,21 @@ def main() -> None:
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint)
+    check_walkable(net.config)
     batches = calibration_batches(arguments.calibration, arguments.threads)
-    quantization = quantize(net, batches)
+    quantization = quantization_of(net, arguments.checkpoint, batches)
     quantization.save(arguments.checkpoint.with_name(QUANTIZATION_FILE))
     fit_scales(net.solvers, int8_inference(net, quantization), batches)
     torch.save(net.solvers.state_dict(), arguments.checkpoint.with_name(SOLVERS_FILE))
     arguments.models.mkdir(parents=True, exist_ok=True)
-    shipped = arguments.models / f"{MODEL_NAME}.onnx"
+    shipped = arguments.models / f"{net.config.name}.onnx"
     write_model(net, quantization, 1.0, arguments.models)
     network = NativeNetwork(shipped, arguments.threads)
     sigma_scale = fit_sigma_scale(network, NativeSolver(network, SHIPPED_SOLVER), batches)
     write_model(net, quantization, sigma_scale, arguments.models)
-    for path in sorted(arguments.models.glob(f"{MODEL_NAME}*.onnx")):
+    for path in (shipped, shipped.with_name(f"{net.config.name}_float.onnx")):
         print(f"{path}: {path.stat().st_size / 1e6:.2f} MB", flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    run_program(main)

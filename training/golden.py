@@ -17,9 +17,11 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from training.checkpoint import load_network
 from training.config import FIRST_GOLDEN_SEED
 from training.data import Batch, SamplerStream
-from training.evaluate import Inference, float_inference, load_network
+from training.errors import run_program
+from training.evaluate import Inference, float_inference
 from training.export_onnx import QUANTIZATION_FILE, SOLVERS_FILE
 from training.golden_solver import write_solver_vectors
 from training.quantize import Quantization, int8_inference
@@ -41,7 +43,7 @@ def golden_batch() -> Batch:
         stream = SamplerStream(FIRST_GOLDEN_SEED, 0, 1, drop_camera_probability)
         parts.append(stream.next(1))
         stream.close()
-    return Batch(**{name: torch.cat([vars(p)[name] for p in parts]) for name in vars(parts[0])})
+    return Batch.joined(parts)
 
 
 def _write_outputs(
@@ -85,4 +87,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run_program(main)

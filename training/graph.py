@@ -12,10 +12,19 @@ from typing import Protocol, TypeVar
 import torch
 from torch import Tensor, nn
 
-from training.model import Nano
+from training.errors import TrainingError
+from training.model import RASTER_SCALE
+from training.models.config import RESIDUAL_TRUNKS, VIEW_COLS, VIEW_ROWS, ModelConfig
 from training.models.layers import ConvBn, Residual
+from training.models.network import BevNetwork
 
 T = TypeVar("T")
+
+# Of the graph's raster, a power of two like the steps of all activations (training/quantize.py).
+# The weights of the first convolution on it make up for training's 1 / 255.
+RASTER_STEP = 1.0 / 256.0
+RASTER_GAIN = RASTER_SCALE / RASTER_STEP
+RASTER_LAYER = "map_encoder.layers.0"
 
 
 @dataclass
@@ -50,6 +59,21 @@ class Backend(Protocol[T]):
     def depth_to_space(self, x: T) -> T: ...
 
 
+def check_walkable(config: ModelConfig) -> None:
+    """Refuses a network with a part that no backend, and so no executor, can express."""
+    parts = (
+        ("trunk", config.trunk, RESIDUAL_TRUNKS),
+        ("view transform", config.view, ("lut",)),
+        ("BEV size", config.bev_size, ((VIEW_ROWS, VIEW_COLS),)),
+    )
+    for part, found, wanted in parts:
+        if found not in wanted:
+            raise TrainingError(
+                f"network '{config.name}' cannot be exported: its {part} is {found}, and the "
+                f"executor's graph has {', '.join(map(str, wanted))} only"
+            )
+
+
 def fold(name: str, module: ConvBn | nn.Conv2d) -> FoldedConv:
     if isinstance(module, nn.Conv2d):
         return FoldedConv(name, module.weight.detach().clone(), module.bias.detach().clone())
@@ -60,20 +84,24 @@ def fold(name: str, module: ConvBn | nn.Conv2d) -> FoldedConv:
     return FoldedConv(name, weight, bias, module.conv.stride[0])
 
 
-def folded_convolutions(net: Nano) -> dict[str, FoldedConv]:
-    """Every convolution of the network by its module's name."""
+def folded_convolutions(net: BevNetwork) -> dict[str, FoldedConv]:
+    """Every convolution of the network by its module's name; the raster counts in RASTER_STEP."""
     folded = {}
     for name, module in net.named_modules():
         if isinstance(module, ConvBn):
             folded[name] = fold(name, module)
     folded["head.second"] = fold("head.second", net.head.second)
+    folded[RASTER_LAYER].weight *= RASTER_GAIN
     return folded
 
 
 class Walk:
     """One pass through the network on one backend."""
 
-    def __init__(self, net: Nano, convolutions: dict[str, FoldedConv], backend: Backend[T]) -> None:
+    def __init__(
+        self, net: BevNetwork, convolutions: dict[str, FoldedConv], backend: Backend[T]
+    ) -> None:
+        check_walkable(net.config)
         self._convolutions = convolutions
         self._names = {id(module): name for name, module in net.named_modules()}
         self._net = net

@@ -6,13 +6,9 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from training.native import address, library
+from training.native import address, host_array, library
 
 YAW_COUNT, X_COUNT, Y_COUNT = 21, 21, 11
-
-
-def _host(tensor: Tensor) -> np.ndarray:
-    return tensor.detach().to("cpu", torch.float32).contiguous().numpy()
 
 
 class _JointVolume(torch.autograd.Function):
@@ -20,7 +16,7 @@ class _JointVolume(torch.autograd.Function):
     def forward(ctx, bev: Tensor, features_map: Tensor, block_cells: int) -> Tensor:
         ctx.save_for_backward(bev, features_map)
         ctx.block_cells = block_cells
-        host_bev, host_map = _host(bev), _host(features_map)
+        host_bev, host_map = host_array(bev), host_array(features_map)
         count, channels = host_bev.shape[:2]
         volume = np.empty((count, YAW_COUNT, X_COUNT, Y_COUNT), np.float32)
         library().bevloc_joint_volume(
@@ -31,7 +27,7 @@ class _JointVolume(torch.autograd.Function):
     @staticmethod
     def backward(ctx, grad_volume: Tensor) -> tuple[Tensor, Tensor, None]:
         bev, features_map = ctx.saved_tensors
-        host_bev, host_map, host_grad = _host(bev), _host(features_map), _host(grad_volume)
+        host_bev, host_map, host_grad = map(host_array, (bev, features_map, grad_volume))
         count, channels = host_bev.shape[:2]
         grad_bev, grad_map = np.empty_like(host_bev), np.empty_like(host_map)
         library().bevloc_joint_volume_gradients(

@@ -1,4 +1,4 @@
-"""The native library that training shares with the daemon: samples, joint volume, run time."""
+"""The native library that training shares with the daemon: samples, matching, run time."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+import torch
+from torch import Tensor
 
 ENVIRONMENT = "BEVLOC_TRAINING_LIBRARY"
 _REPOSITORY = Path(__file__).resolve().parent.parent
@@ -36,15 +38,22 @@ def library() -> ctypes.CDLL:
     lib.bevloc_joint_volume.restype = None
     lib.bevloc_joint_volume_gradients.argtypes = [integer] * 3 + [pointer] * 5
     lib.bevloc_joint_volume_gradients.restype = None
-    lib.bevloc_sampler_create.argtypes = [ctypes.c_uint64] * 2 + [integer, ctypes.c_double]
+    lib.bevloc_moved_sums.argtypes = [integer] * 3 + [pointer] * 4
+    lib.bevloc_moved_sums.restype = None
+    lib.bevloc_moved_sums_gradients.argtypes = [integer] * 3 + [pointer] * 6
+    lib.bevloc_moved_sums_gradients.restype = None
+    lib.bevloc_sampler_create.argtypes = [
+        *([ctypes.c_uint64] * 2),
+        *(integer, ctypes.c_double, integer),
+    ]
     lib.bevloc_sampler_create.restype = pointer
     lib.bevloc_sampler_destroy.argtypes = [pointer]
     lib.bevloc_sampler_destroy.restype = None
-    lib.bevloc_sampler_next.argtypes = [pointer, integer] + [pointer] * 5
+    lib.bevloc_sampler_next.argtypes = [pointer, integer] + [pointer] * 6
     lib.bevloc_sampler_next.restype = None
     lib.bevloc_scene_features.argtypes = [integer] + [pointer] * 3
     lib.bevloc_scene_features.restype = None
-    lib.bevloc_view_table.argtypes = [ctypes.c_uint8, pointer, pointer]
+    lib.bevloc_view_table.argtypes = [ctypes.c_uint8] + [pointer] * 3
     lib.bevloc_view_table.restype = None
     lib.bevloc_network_create.argtypes = [ctypes.c_char_p, integer, pointer, integer]
     lib.bevloc_network_create.restype = pointer
@@ -59,6 +68,11 @@ def library() -> ctypes.CDLL:
     lib.bevloc_solver_solve.argtypes = [pointer] * 6
     lib.bevloc_solver_solve.restype = None
     return lib
+
+
+def host_array(tensor: Tensor, dtype: torch.dtype = torch.float32) -> np.ndarray:
+    """What a tensor holds, contiguous in the CPU's memory; its own, where it lies so already."""
+    return tensor.detach().to("cpu", dtype).contiguous().numpy()
 
 
 def address(array: np.ndarray) -> ctypes.c_void_p:

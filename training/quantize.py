@@ -3,12 +3,18 @@
 Weights are limited to 7 bits (|q| <= 63), because on processors without VNNI the sum of two
 products of uint8 and int8 saturates. Activations are uint8 after ReLU and int8 elsewhere, zero
 point 0.
+
+Scales of activations are powers of two and those of weights have short mantissas, so that every
+product and nearly every sum is exact in float32 too: whoever reads the model file, in integers or
+in floats and in whatever order, rounds the same numbers (docs/quantization.md).
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import torch
 import torch.nn.functional as F
@@ -16,19 +22,17 @@ from torch import Tensor
 
 from training.data import Batch
 from training.evaluate import Inference
-from training.graph import FoldedConv, Walk, folded_convolutions
-from training.model import (
-    IMAGE_SCALE,
-    RASTER_SCALE,
-    Nano,
-    gather_views,
-    real_images,
-    real_raster,
-)
+from training.graph import RASTER_STEP, FoldedConv, Walk, folded_convolutions
+from training.model import IMAGE_SCALE, real_images
+from training.models.network import BevNetwork
+from training.models.view_lut import gather_views
 
 MAX_WEIGHT = 63
 MAX_UNSIGNED, MAX_SIGNED = 255, 127
-_SAMPLED_VALUES = 5_000  # of an activation and batch
+SCALE_BITS = 6  # of the mantissa of a weight's scale
+_CANDIDATES = 5  # scales tried for an activation: each halves the largest value that is kept
+_BIAS_BATCHES = 8  # at most: biases are corrected on all of them at once
+_SAMPLED_VALUES = 20_000  # of an activation and batch
 
 
 @dataclass
@@ -38,10 +42,18 @@ class Scale:
     scale: float
     unsigned: bool
 
+    def limits(self) -> tuple[int, int]:
+        """The smallest and the largest element."""
+        return (0, MAX_UNSIGNED) if self.unsigned else (-MAX_SIGNED - 1, MAX_SIGNED)
+
     def quantize(self, x: Tensor) -> Tensor:
         """The real values that x becomes."""
-        low, high = (0, MAX_UNSIGNED) if self.unsigned else (-MAX_SIGNED - 1, MAX_SIGNED)
-        return torch.clamp(torch.round(x / self.scale), low, high) * self.scale
+        return torch.clamp(torch.round(x / self.scale), *self.limits()) * self.scale
+
+    def clips(self, x: Tensor) -> Tensor:
+        """bool: where x lies outside of what the elements can hold."""
+        low, high = self.limits()
+        return (x < low * self.scale) | (x > high * self.scale)
 
 
 @dataclass
@@ -64,18 +76,23 @@ class Quantization:
     quantized: dict[str, QuantizedConv] = field(default_factory=dict)
     activations: dict[str, Scale] = field(default_factory=dict)
 
-    def save(self, path: Path) -> None:
-        """What cannot be had from the network's checkpoint."""
-        state = {
+    def state(self) -> dict[str, Any]:
+        """What cannot be had from the network's weights."""
+        return {
             "quantized": {name: vars(conv) for name, conv in self.quantized.items()},
             "activations": {name: vars(scale) for name, scale in self.activations.items()},
         }
-        torch.save(state, path)
+
+    def save(self, path: Path) -> None:
+        torch.save(self.state(), path)
 
     @staticmethod
-    def load(net: Nano, path: Path) -> Quantization:
-        """Of the network that it was saved for."""
-        state = torch.load(path, map_location="cpu")
+    def load(net: BevNetwork, path: Path) -> Quantization:
+        return Quantization.of_state(net, torch.load(path, map_location="cpu"))
+
+    @staticmethod
+    def of_state(net: BevNetwork, state: dict[str, Any]) -> Quantization:
+        """Of the network whose state it was."""
         return Quantization(
             folded_convolutions(net),
             {name: QuantizedConv(**conv) for name, conv in state["quantized"].items()},
@@ -134,8 +151,7 @@ class _Recorder(FloatBackend):
         flat = x.flatten()
         self._unsigned[name] = unsigned
         picked = torch.randint(len(flat), (_SAMPLED_VALUES,))
-        extremes = torch.stack(flat.aminmax())
-        self._seen.setdefault(name, []).append(torch.cat((flat[picked], extremes)))
+        self._seen.setdefault(name, []).append(flat[picked])
         return x
 
 
@@ -154,12 +170,44 @@ class Int8Backend(FloatBackend):
         return self._quantization.activations[name].quantize(x)
 
 
-class _BiasRounder:
-    """Rounds each bias to whole steps of input times weight, as int32 holds it. Its tensors are the
+class _MeanRecorder(FloatBackend):
+    """Keeps the mean of each channel of every convolution's sum."""
+
+    def __init__(self, batch: Batch) -> None:
+        super().__init__(batch)
+        self.means: dict[str, Tensor] = {}
+
+    def _compute(self, x: Tensor, conv: FoldedConv, residual: Tensor | None) -> Tensor:
+        y = super()._compute(x, conv, residual)
+        self.means[conv.name] = y.mean((0, 2, 3))
+        return y
+
+
+class _BiasCorrector(Int8Backend):
+    """Moves each bias so that its channel's mean is the float network's; the layers that follow
+    see what it has corrected."""
+
+    def __init__(
+        self, batch: Batch, quantization: Quantization, means: dict[str, Tensor]
+    ) -> None:
+        super().__init__(batch, quantization)
+        self._means = means
+
+    def _compute(self, x: Tensor, conv: FoldedConv, residual: Tensor | None) -> Tensor:
+        y = super()._compute(x, conv, residual)
+        missing = self._means[conv.name] - y.mean((0, 2, 3))
+        quantized = self._quantization.quantized[conv.name]
+        quantized.bias = quantized.bias + missing
+        return y + missing[:, None, None]
+
+
+class _BiasSteps:
+    """Collects the steps in which biases are counted: of input times weight. Its tensors are the
     scales of their elements; None: real values."""
 
     def __init__(self, quantization: Quantization) -> None:
         self._quantization = quantization
+        self.steps: dict[str, Tensor] = {}
 
     def conv(
         self, x: Scale, conv: FoldedConv, relu: bool, residual: Scale | None = None
@@ -168,9 +216,7 @@ class _BiasRounder:
         return self._quantization.activations[conv.name]
 
     def output(self, x: Scale, conv: FoldedConv, residual: Scale | None = None) -> None:
-        quantized = self._quantization.quantized[conv.name]
-        step = quantized.scale * x.scale
-        quantized.bias = torch.round(quantized.bias / step) * step
+        self.steps[conv.name] = self._quantization.quantized[conv.name].scale * x.scale
 
     def upsample(self, x: Scale) -> Scale:
         return x
@@ -185,11 +231,25 @@ class _BiasRounder:
         return x
 
 
+def bias_steps(net: BevNetwork, quantization: Quantization) -> dict[str, Tensor]:
+    """Of each convolution, [out]: int32 holds its bias in whole ones of them."""
+    backend, inputs = _BiasSteps(quantization), input_scales()
+    walk = Walk(net, quantization.convolutions, backend)
+    walk.run_images(inputs["images"])
+    walk.run_map(inputs["raster"])
+    return backend.steps
+
+
+def round_bias(bias: Tensor, step: Tensor) -> Tensor:
+    return torch.round(bias / step) * step
+
+
 def best_scale(values: Tensor, unsigned: bool) -> Scale:
-    """The scale with the least squared error of rounding and clipping."""
+    """The power of two with the least squared error of rounding and clipping."""
     levels = MAX_UNSIGNED if unsigned else MAX_SIGNED
     largest = float(values.abs().max().clamp(min=1e-6))
-    candidates = [Scale(largest * i / 80 / levels, unsigned) for i in range(8, 81)]
+    unclipped = math.ceil(math.log2(largest / levels))
+    candidates = [Scale(2.0 ** (unclipped - i), unsigned) for i in range(_CANDIDATES)]
 
     def error(scale: Scale) -> float:
         return float((scale.quantize(values) - values).square().mean())
@@ -197,25 +257,45 @@ def best_scale(values: Tensor, unsigned: bool) -> Scale:
     return min(candidates, key=error)
 
 
+def round_weights(weight: Tensor, scale: Tensor) -> Tensor:
+    """Elements of 7 bits for [out, ...] and a scale per output channel."""
+    per_channel = scale.reshape(-1, *[1] * (weight.ndim - 1))
+    return torch.clamp(torch.round(weight / per_channel), -MAX_WEIGHT, MAX_WEIGHT)
+
+
+def _shortened(scale: Tensor) -> Tensor:
+    """The next larger number whose mantissa has SCALE_BITS."""
+    mantissa, exponent = torch.frexp(scale)
+    return torch.ldexp(torch.ceil(mantissa * 2**SCALE_BITS) / 2**SCALE_BITS, exponent)
+
+
 def quantize_weights(conv: FoldedConv) -> QuantizedConv:
-    """The scale of each output channel has the least squared error among clipped ones."""
+    """The scale of each output channel has the least squared error among short ones, clipping or
+    not."""
     rows = conv.weight.flatten(1)
     # Where next to nothing is added to the bias, the bias must still fit into int32 steps.
     largest = torch.maximum(rows.abs().amax(1), 1e-4 * conv.bias.abs()).clamp(min=1e-8)
-    best_error, best = torch.full_like(largest, float("inf")), largest / MAX_WEIGHT
+    best_error, best = torch.full_like(largest, float("inf")), torch.empty_like(largest)
     for ratio in torch.linspace(0.6, 1.0, 41).tolist():
-        scale = largest * ratio / MAX_WEIGHT
-        rounded = torch.clamp(torch.round(rows / scale[:, None]), -MAX_WEIGHT, MAX_WEIGHT)
-        error = (rounded * scale[:, None] - rows).square().sum(1)
+        scale = _shortened(largest * ratio / MAX_WEIGHT)
+        error = (round_weights(rows, scale) * scale[:, None] - rows).square().sum(1)
         better = error < best_error
         best_error, best = torch.where(better, error, best_error), torch.where(better, scale, best)
-    elements = torch.clamp(torch.round(rows / best[:, None]), -MAX_WEIGHT, MAX_WEIGHT)
-    return QuantizedConv(elements.reshape(conv.weight.shape).to(torch.int8), best, conv.bias)
+    return QuantizedConv(round_weights(conv.weight, best).to(torch.int8), best, conv.bias)
+
+
+def correct_biases(net: BevNetwork, quantization: Quantization, batch: Batch) -> None:
+    """Takes out the mean of the rounding error, channel by channel (Nagel et al. 2019, "Data-free
+    quantization through weight equalization and bias correction", section 4.2, measured)."""
+    recorder = _MeanRecorder(batch)
+    run(net, quantization.convolutions, recorder, batch)
+    corrector = _BiasCorrector(batch, quantization, recorder.means)
+    run(net, quantization.convolutions, corrector, batch)
 
 
 @torch.no_grad()
-def quantize(net: Nano, calibration: list[Batch]) -> Quantization:
-    """Scales from calibration batches of the training range."""
+def quantize(net: BevNetwork, calibration: list[Batch]) -> Quantization:
+    """Scales and biases from calibration batches of the training range."""
     net.eval()
     torch.manual_seed(0)  # of the values that the recorder picks
     result = Quantization(folded_convolutions(net))
@@ -227,24 +307,29 @@ def quantize(net: Nano, calibration: list[Batch]) -> Quantization:
         result.activations[name] = best_scale(torch.cat(values), unsigned[name])
     for name, conv in result.convolutions.items():
         result.quantized[name] = quantize_weights(conv)
-    rounder, inputs = Walk(net, result.convolutions, _BiasRounder(result)), input_scales()
-    rounder.run_images(inputs["images"])
-    rounder.run_map(inputs["raster"])
+    stride = math.ceil(len(calibration) / _BIAS_BATCHES)
+    correct_biases(net, result, Batch.joined(calibration[::stride]))
+    for name, step in bias_steps(net, result).items():
+        result.quantized[name].bias = round_bias(result.quantized[name].bias, step)
     return result
 
 
-@torch.no_grad()
+def graph_inputs(batch: Batch) -> tuple[Tensor, Tensor]:
+    """The real values of images [n * 6, 3, 96, 320] and raster [n, 3, 400, 200] for the walk."""
+    return real_images(batch.images).flatten(0, 1), batch.raster_prior.float() * RASTER_STEP
+
+
 def run(
-    net: Nano, convolutions: dict[str, FoldedConv], backend: FloatBackend, batch: Batch
+    net: BevNetwork, convolutions: dict[str, FoldedConv], backend: FloatBackend, batch: Batch
 ) -> tuple[Tensor, Tensor, Tensor]:
     """F_B, F_M and the logits of the perceived mask on a backend."""
     walk = Walk(net, convolutions, backend)
-    images = real_images(batch.images).flatten(0, 1)
+    images, raster = graph_inputs(batch)
     bev, mask = walk.run_images(images)
-    return bev, walk.run_map(real_raster(batch.raster_prior)), mask
+    return bev, walk.run_map(raster), mask
 
 
-def int8_inference(net: Nano, quantization: Quantization) -> Inference:
+def int8_inference(net: BevNetwork, quantization: Quantization) -> Inference:
     """The quantized network for training.evaluate."""
 
     def infer(batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
@@ -256,4 +341,4 @@ def int8_inference(net: Nano, quantization: Quantization) -> Inference:
 
 def input_scales() -> dict[str, Scale]:
     """images int8 and raster uint8: how the graph's inputs become real."""
-    return {"images": Scale(IMAGE_SCALE, False), "raster": Scale(RASTER_SCALE, True)}
+    return {"images": Scale(IMAGE_SCALE, False), "raster": Scale(RASTER_STEP, True)}

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 BEGIN, END = "<!-- results: written by training.evaluate -->", "<!-- end of results -->"
-RESULTS_FILE, CARD_FILE = "nano_results.json", "README.md"
+_SHIPPED = "nano"  # has its card in the folder's README.md
 _AXES = (("x", "Longitudinal (m)"), ("y", "Lateral (m)"), ("yaw", "Yaw (degrees)"))
 _ERRORS = (
     ("mae", "MAE"),
@@ -81,11 +81,14 @@ def markdown(results: Results) -> str:
     return "\n".join([*lines, *_iou_table(results)])
 
 
-def write_results(models: Path, results: Results) -> None:
-    """The JSON file, and the card's part between its two marks."""
+def write_results(models: Path, network: str, results: Results) -> None:
+    """The JSON file, and the card's part between its two marks. A network without a card gets one
+    that has this part alone."""
     text = json.dumps(dataclasses.asdict(results), indent=1)
-    (models / RESULTS_FILE).write_text(text + "\n")
-    card = models / CARD_FILE
+    (models / f"{network}_results.json").write_text(text + "\n")
+    card = models / ("README.md" if network == _SHIPPED else f"{network}.md")
+    if not card.exists():
+        card.write_text(f"# Model card: {network}\n\n{BEGIN}\n{END}\n")
     content = card.read_text()
     before, _, rest = content.partition(BEGIN)
     _, end, after = rest.partition(END)

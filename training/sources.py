@@ -8,6 +8,7 @@ from pathlib import Path
 
 from training.config import FIRST_VALIDATION_SEED, TrainingConfig
 from training.data import Batch, SamplerStream, Stream
+from training.distributed import WHOLE, Share
 from training.nuscenes.dataset import NuscenesDataset
 from training.nuscenes.stream import NuscenesStream
 
@@ -20,19 +21,25 @@ def _dataset(root: str, scenes: str, version: str, line_width_cells: float) -> N
 
 
 def _nuscenes(
-    config: TrainingConfig, scenes: str, seed: int, first: int, drop_probability: float
+    config: TrainingConfig,
+    scenes: str,
+    seed: int,
+    first: int,
+    drop_probability: float,
+    share: Share = WHOLE,
 ) -> NuscenesStream:
     dataset = _dataset(config.nuscenes, scenes, config.nuscenes_version, config.line_width_cells)
     threads = config.sampler_threads
-    return NuscenesStream(dataset, seed, first, threads, drop_probability, config.on_error)
+    return NuscenesStream(dataset, seed, first, threads, drop_probability, config.on_error, share)
 
 
-def training_stream(config: TrainingConfig, first: int) -> Stream:
-    """The run's samples from the one numbered `first` on."""
+def training_stream(config: TrainingConfig, first: int, share: Share = WHOLE) -> Stream:
+    """A process's share of the run's samples, from the one numbered `first` on."""
     drop_probability = config.drop_camera_probability
     if config.nuscenes:
-        return _nuscenes(config, config.scenes, config.seed, first, drop_probability)
-    return SamplerStream(config.seed, first, config.sampler_threads, drop_probability)
+        return _nuscenes(config, config.scenes, config.seed, first, drop_probability, share)
+    threads = config.sampler_threads
+    return SamplerStream(config.seed, first, threads, drop_probability, share, config.nuisances)
 
 
 def _batches(stream: Stream, samples: int) -> Iterator[Batch]:

@@ -1,14 +1,16 @@
 """Trains the network on the simulator's endless stream; no sample is ever seen twice.
 
-    /usr/bin/python3 -m training.train --run training/runs/nano --minutes 60 --bf16
-    /usr/bin/python3 -m training.train --run training/runs/nano --minutes 60 --bf16 --resume
+    /usr/bin/python3 -m training.train --run training/runs/nano --minutes 60
+    /usr/bin/python3 -m training.train --run training/runs/nano --minutes 60 --resume
+    torchrun --nproc_per_node 2 -m training.train --run training/runs/nano --minutes 60
+
+The exit status is 0 when the budget is spent or the run stopped early, 75 when --resume can go on,
+70 when a loss, gradient or weight was not finite, 1 for anything else. torchrun turns all but 0
+into 1.
 """
 
 from __future__ import annotations
 
-import argparse
-import csv
-import dataclasses
 import math
 import os
 import sys
@@ -19,18 +21,30 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
+from training.checkpoint import load_weights, read_checkpoint
 from training.config import TrainingConfig
 from training.data import Batch, Stream, augment
+from training.distributed import Processes, Share
+from training.early_stop import Patience
+from training.errors import CheckpointError, NotFiniteError, TrainingError
 from training.evaluate import (
+    AXES,
+    CLASSES,
     evaluate,
     float_inference,
     summary,
     torch_solvers,
 )
 from training.losses import pose_losses, semantic_loss
-from training.model import Nano, real_images, real_raster
+from training.model import real_images, real_raster
+from training.models.config import network_config
+from training.models.network import BevNetwork
 from training.nuscenes.errors import NuscenesError
-from training.solver import DEFINITION, standardise
+from training.options import parse_config
+from training.precision import choose_precision, cpu_flags
+from training.progress import Progress
+from training.run_table import append_row
+from training.solver import DEFINITION, estimate, standardise
 from training.sources import training_stream, validation_set
 
 # glibc gives large blocks back to the kernel at once, and faulting them in again costs a fifth of a
@@ -41,29 +55,38 @@ MALLOC_ENVIRONMENT = {
     "MALLOC_TOP_PAD_": str(2**28),
 }
 EXIT_STOPPED = 75  # sysexits.h, EX_TEMPFAIL: the budget is not spent yet
+EXIT_NOT_FINITE = 70  # sysexits.h, EX_SOFTWARE
 LOSSES = (
     *("perceived", "reconstructed"),
     *("joint_x", "joint_y", "joint_yaw"),
     *("dec_x", "dec_y", "dec_yaw"),
+    *("ref_x", "ref_y", "ref_yaw"),
 )
 
 
 class Trainer:
-    """One run: network, optimiser, averaged weights and how far it has come."""
+    """One run: network, optimiser, averaged weights and how far it has come. With several processes
+    each has one of these, and all have the same weights after every step."""
 
     def __init__(
         self,
         config: TrainingConfig,
-        make_stream: Callable[[TrainingConfig, int], Stream],
+        make_stream: Callable[[TrainingConfig, int, Share], Stream],
         validation: list[Batch],
+        processes: Processes = Processes(),
     ) -> None:
         self.config = config
-        self.device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+        self.processes = processes
+        self.device = processes.device
+        self.precision = choose_precision(config.precision, self.device, cpu_flags())
+        self.patience = Patience(config.patience_figure, config.patience)
         torch.manual_seed(config.seed)
-        self.net = Nano().to(self.device, memory_format=torch.channels_last)
+        network = network_config(config.network, config.view)
+        self.net = BevNetwork(network).to(self.device, memory_format=torch.channels_last)
         if config.init:
-            self.net.load_state_dict(torch.load(config.init, map_location=self.device)["ema"])
-        self.average = Nano().to(self.device, memory_format=torch.channels_last)
+            init = Path(config.init)
+            load_weights(self.net, read_checkpoint(init, self.device), "ema", init)
+        self.average = BevNetwork(network).to(self.device, memory_format=torch.channels_last)
         self.average.load_state_dict(self.net.state_dict())
         self.optimiser = torch.optim.AdamW(
             self._parameter_groups(), lr=config.learning_rate, betas=(0.9, 0.98)
@@ -71,11 +94,19 @@ class Trainer:
         self.step = 0
         self.samples = 0
         self.elapsed_s = 0.0
+        self.waited_s = 0.0  # for the last step's samples
+        self._statistics = [
+            statistic
+            for module in self.net.modules()
+            if isinstance(module, nn.BatchNorm2d)
+            for statistic in (module.running_mean, module.running_var)
+        ]
         config.run.mkdir(parents=True, exist_ok=True)
         if config.resume and self.checkpoint_path.exists():
             self._load()
-        self.stream = make_stream(config, self.samples)
         self.validation = validation
+        self._check_patience()
+        self.stream = make_stream(config, self.samples, processes.share)
 
     @property
     def checkpoint_path(self) -> Path:
@@ -91,7 +122,20 @@ class Trainer:
             {"params": scales, "weight_decay": 0.0, "factor": self.config.scale_rate_factor},
         ]
 
+    def _check_patience(self) -> None:
+        if self.config.patience == 0 or not self.processes.first:
+            return
+        if not self.validation:
+            raise TrainingError("--patience wants a validation set: name --validation-scenes")
+        self.patience.check(torch_solvers(self.net.solvers), AXES, CLASSES)
+
     def save(self) -> None:
+        """Replaces the checkpoint, unless there is a weight in the network that is not finite."""
+        if not self.processes.first:
+            return
+        for name, value in self.net.state_dict().items():
+            if not torch.isfinite(value).all():
+                raise NotFiniteError(f"step {self.step}: {name} is not finite; {self._last_good()}")
         partial = self.checkpoint_path.with_suffix(".partial")
         torch.save(
             {
@@ -101,6 +145,8 @@ class Trainer:
                 "step": self.step,
                 "samples": self.samples,
                 "elapsed_s": self.elapsed_s,
+                "patience": self.patience.state(),
+                "processes": self.processes.count,
                 "config": self.config.as_dict(),
             },
             partial,
@@ -108,12 +154,28 @@ class Trainer:
         partial.replace(self.checkpoint_path)
 
     def _load(self) -> None:
-        state = torch.load(self.checkpoint_path, map_location=self.device)
-        self.net.load_state_dict(state["model"])
-        self.average.load_state_dict(state["ema"])
-        self.optimiser.load_state_dict(state["optimiser"])
-        self.step, self.samples = state["step"], state["samples"]
-        self.elapsed_s = state["elapsed_s"]
+        path, count = self.checkpoint_path, self.processes.count
+        state = read_checkpoint(path, self.device)
+        if (found := state.get("processes", 1)) != count:
+            raise CheckpointError(
+                f"{path}: is of a run with {found} processes, found {count}; --init can begin a new"
+                " run from it"
+            )
+        load_weights(self.net, state, "model", path)
+        load_weights(self.average, state, "ema", path)
+        try:
+            self.optimiser.load_state_dict(state["optimiser"])
+            self.step, self.samples = state["step"], state["samples"]
+            self.elapsed_s = state["elapsed_s"]
+        except (KeyError, ValueError) as error:
+            raise CheckpointError(f"{path}: no run can go on from it ({error})") from error
+        if "patience" in state:
+            self.patience.resume(state["patience"])
+
+    def _last_good(self) -> str:
+        if self.checkpoint_path.exists():
+            return f"{self.checkpoint_path} holds the last good state"
+        return "there was no checkpoint yet"
 
     def _learning_rate(self, spent: float) -> float:
         c = self.config
@@ -123,45 +185,77 @@ class Trainer:
         return c.learning_rate * warm * cosine
 
     def losses(self, batch: Batch, generator: torch.Generator, with_pose: bool) -> Tensor:
-        """The eight losses in the order of LOSSES; the pose losses are zero in stage 1."""
+        """The losses in the order of LOSSES; the pose losses are zero in stage 1."""
         images = augment(real_images(batch.images), generator)
-        with torch.autocast(self.device.type, torch.bfloat16, enabled=self.config.bf16):
+        with torch.autocast(self.device.type, torch.bfloat16, enabled=self.precision.bfloat16):
             outputs = self.net(images, batch.index, batch.weight, real_raster(batch.raster_prior))
         bev, features_map, perceived, reconstructed = (output.float() for output in outputs)
         semantic = [
             semantic_loss(perceived, real_raster(batch.raster_truth)),
             semantic_loss(reconstructed, real_raster(batch.raster_prior)),
         ]
-        if not with_pose:
-            return torch.cat((torch.stack(semantic), torch.zeros(6, device=self.device)))
+        finite = bool(torch.isfinite(bev).all() and torch.isfinite(features_map).all())
+        if not (with_pose and finite):  # no solver can look up cells where there is no number
+            pose_loss = torch.full((9,), 0.0 if finite else math.nan, device=self.device)
+            return torch.cat((torch.stack(semantic), pose_loss))
         bev, features_map = standardise(bev), standardise(features_map)
         noise = torch.randn(len(batch), generator=generator).to(self.device)
         yaw = batch.correction[:, 2] + DEFINITION.teacher_yaw_noise_rad * noise
-        joint = pose_losses(self.net.solvers.joint(bev, features_map), batch.correction)
-        decoupled = pose_losses(
-            self.net.solvers.decoupled(bev, features_map, yaw), batch.correction
-        )
-        return torch.cat((torch.stack(semantic), joint.mean(0), decoupled.mean(0)))
+        solvers = self.net.solvers
+        joint = solvers.joint(bev, features_map)
+        decoupled = solvers.decoupled(bev, features_map, yaw)
+        refined = solvers.refine(bev, features_map, estimate(decoupled))
+        pose = [pose_losses(p, batch.correction).mean(0) for p in (joint, decoupled, refined)]
+        return torch.cat((torch.stack(semantic), *pose))
 
     def train_step(self, spent: float) -> tuple[Tensor, float]:
         """One batch; its losses and the norm of its gradient."""
         c = self.config
-        generator = torch.Generator().manual_seed((c.seed ^ (self.step * 0x9E3779B9)) & (2**63 - 1))
-        batch = self.stream.next(c.batch).to(self.device)
+        noise_seed = c.seed ^ (self.step * 0x9E3779B9) ^ (self.processes.rank << 40)
+        generator = torch.Generator().manual_seed(noise_seed & (2**63 - 1))
+        batch = self._next_batch()
         self.net.train()
         losses = self.losses(batch, generator, with_pose=spent >= c.semantic_stage)
-        pose = c.joint_weight * losses[2:5].sum() + c.decoupled_weight * losses[5:8].sum()
+        joint, decoupled, refined = losses[2:].split(3)
+        pose = c.joint_weight * joint.sum() + c.decoupled_weight * decoupled.sum()
+        pose = pose + c.refined_weight * refined.sum()
         self.optimiser.zero_grad(set_to_none=True)
         (losses[:2].sum() + pose).backward()
+        losses = losses.detach().clone()
+        self.processes.average_([*self._gradients(), *self._statistics, losses])
         norm = nn.utils.clip_grad_norm_(self.net.parameters(), c.clip_norm)
+        self._refuse_not_finite(losses, norm)
         for group in self.optimiser.param_groups:
             group["lr"] = group["factor"] * self._learning_rate(spent)
-        if torch.isfinite(norm):
-            self.optimiser.step()
+        self.optimiser.step()
         self._update_average()
         self.step += 1
         self.samples += c.batch
-        return losses.detach().cpu(), float(norm)
+        return losses.cpu(), float(norm)
+
+    def _gradients(self) -> list[Tensor]:
+        """Zeros where there is none, so that all processes exchange as much."""
+        parameters = self.net.parameters()
+        return [torch.zeros_like(p) if p.grad is None else p.grad for p in parameters]
+
+    def _next_batch(self) -> Batch:
+        """This process's share of the step's samples."""
+        began = time.monotonic()
+        batch = self.stream.next(self.config.batch // self.processes.count)
+        self.waited_s = time.monotonic() - began
+        return batch.to(self.device)
+
+    def _refuse_not_finite(self, losses: Tensor, norm: Tensor) -> None:
+        """All processes stop here alike, because they have averaged what is looked at."""
+        bad = [name for name, loss in zip(LOSSES, losses.tolist()) if not math.isfinite(loss)]
+        if not bad and torch.isfinite(norm):
+            return
+        what = f"the loss {', '.join(bad)}" if bad else "the gradient, though no loss,"
+        last = self.samples + self.config.batch - 1
+        raise NotFiniteError(
+            f"step {self.step}: {what} is not finite on samples {self.samples} to {last} of the "
+            f"stream of seed {self.config.seed}; {self._last_good()}"
+        )
 
     @torch.no_grad()
     def _update_average(self) -> None:
@@ -173,94 +267,109 @@ class Trainer:
                 mean.copy_(value)
 
     def validate(self) -> None:
+        """The first process measures the averaged weights."""
         if not self.validation:
             return
         solvers = torch_solvers(self.average.solvers)
         metrics = evaluate(float_inference(self.average), solvers, self.validation, self.device)
         self._append("validation.csv", {"samples": self.samples, **metrics})
         print(summary(metrics), flush=True)
+        if self.patience.limit > 0:
+            self.patience.watch(metrics, self.samples)
 
     def _append(self, name: str, row: dict[str, float]) -> None:
-        path = self.config.run / name
-        new = not path.exists()
-        with path.open("a", newline="") as file:
-            writer = csv.DictWriter(file, list(row))
-            if new:
-                writer.writeheader()
-            writer.writerow(row)
+        append_row(self.config.run / name, row)
 
-    def _log(self, losses: Tensor, norm: float, spent: float, rate: float) -> None:
-        row = dict(zip(LOSSES, (round(v, 5) for v in losses.tolist())))
+    def _log(self, progress: Progress, norm: float, spent: float) -> None:
+        row = dict(zip(LOSSES, (round(v, 5) for v in progress.mean_losses().tolist())))
         lr = self.optimiser.param_groups[0]["lr"]
         self._append("curves.csv", {"step": self.step, "samples": self.samples, "lr": lr, **row})
         left_min = self.elapsed_s * (1 / max(spent, 1e-6) - 1) / 60
         solvers = self.net.solvers
         scales = " ".join(f"{name} {solvers.scale(name).item():.0f}" for name in solvers.log_scale)
         print(
-            f"step {self.step} samples {self.samples} {rate:.1f}/s left {left_min:.1f} min "
+            f"step {self.step} samples {self.samples} {progress.rate:.1f}/s "
+            f"({progress.bottleneck}) left {left_min:.1f} min "
             f"lr {lr:.2e} norm {norm:.1f} | "
             + " ".join(f"{name} {value:.3f}" for name, value in row.items())
             + f" | scales {scales}",
             flush=True,
         )
 
+    def _passed(self, minutes: float, before_s: float) -> bool:
+        """Whether the run's clock has passed a multiple of `minutes` since before_s."""
+        return self.elapsed_s // (60 * minutes) > before_s // (60 * minutes)
+
     def run(self) -> bool:
-        """Trains until the budget is spent (True) or this process has to stop (False)."""
+        """Trains until the budget is spent or patience is (True), or this process has to stop
+        (False). The first process's clock decides for all."""
         c = self.config
-        began = time.monotonic()
-        before_s, last_save = self.elapsed_s, began
-        last_validation, last_log = began, began
-        total, count, norm = torch.zeros(len(LOSSES)), 0, 0.0
-        while (spent := c.budget_spent(self.elapsed_s, self.samples)) < 1.0:
+        started_s, offset_s = self.elapsed_s, self.elapsed_s - time.monotonic()
+        progress = Progress()
+        while not self.finished:
+            spent = c.budget_spent(self.elapsed_s, self.samples)
+            began, before_s = time.monotonic(), self.elapsed_s
             losses, norm = self.train_step(spent)
-            total, count = total + losses, count + 1
             now = time.monotonic()
-            self.elapsed_s = before_s + now - began
+            progress.add(losses, c.batch, now - began, self.waited_s)
+            self.elapsed_s = self.processes.from_first(now + offset_s)
             if self.step % c.log_steps == 0:
-                self._log(total / count, norm, spent, count * c.batch / (now - last_log))
-                total, count, last_log = torch.zeros(len(LOSSES)), 0, now
-            if now - last_save > 60 * c.checkpoint_minutes:
+                if self.processes.first:
+                    self._log(progress, norm, spent)
+                progress = Progress()
+            if self._passed(c.checkpoint_minutes, before_s):
                 self.save()
-                last_save = now
-            if now - last_validation > 60 * c.validation_minutes:
+            if self._passed(c.validation_minutes, before_s):
                 self.validate()
-                last_validation = last_log = time.monotonic()
-            if c.stop_after_minutes > 0 and now - began > 60 * c.stop_after_minutes:
+                self.patience.waited = int(self.processes.from_first(self.patience.waited))
+            if 0 < 60 * c.stop_after_minutes < self.elapsed_s - started_s:
                 break
         self.save()
         self.stream.close()
-        return c.budget_spent(self.elapsed_s, self.samples) >= 1.0
+        return self.finished
+
+    @property
+    def finished(self) -> bool:
+        spent = self.config.budget_spent(self.elapsed_s, self.samples)
+        return spent >= 1.0 or self.patience.exhausted
 
 
-def parse_config(arguments: list[str]) -> TrainingConfig:
-    """Every field of TrainingConfig is an option."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    for field in dataclasses.fields(TrainingConfig):
-        option = "--" + field.name.replace("_", "-")
-        if isinstance(field.default, bool):
-            parser.add_argument(option, action="store_true")
-        else:
-            parser.add_argument(option, type=type(field.default), default=field.default)
-    config = TrainingConfig(**vars(parser.parse_args(arguments)))
-    if (config.minutes > 0) == (config.samples > 0):
-        parser.error("give the budget: either --minutes or --samples")
-    return config
+def train(config: TrainingConfig, processes: Processes) -> bool:
+    """The whole run; whether it is finished."""
+    validation = validation_set(config) if processes.first else []
+    trainer = Trainer(config, training_stream, validation, processes)
+    if processes.first:
+        print(f"precision: {trainer.precision}", flush=True)
+    finished = trainer.run()
+    if trainer.patience.exhausted:
+        ending = f"stopped early: {trainer.patience}"
+    else:
+        ending = "finished" if finished else "stopped; go on with --resume"
+        trainer.validate()
+    if processes.first:
+        print(ending, flush=True)
+    return finished
 
 
 def main() -> None:
-    config = parse_config(sys.argv[1:])
+    processes = int(os.environ.get("WORLD_SIZE", 1))  # torchrun's
+    config = parse_config(sys.argv[1:], __doc__.splitlines()[0], processes)
     if any(os.environ.get(key) != value for key, value in MALLOC_ENVIRONMENT.items()):
         environment = os.environ | MALLOC_ENVIRONMENT | {"OMP_NUM_THREADS": str(config.threads)}
         command = [sys.executable, "-m", "training.train", *sys.argv[1:]]
         os.execve(sys.executable, command, environment)
     torch.set_num_threads(config.threads)
+    joined = Processes.join()
     try:
-        trainer = Trainer(config, training_stream, validation_set(config))
-        finished = trainer.run()
+        finished = train(config, joined)
+    except NotFiniteError as error:
+        print(error, file=sys.stderr, flush=True)
+        sys.exit(EXIT_NOT_FINITE)
+    except TrainingError as error:
+        sys.exit(str(error))
     except NuscenesError as error:
         sys.exit(f"nuScenes: {error}")
-    trainer.validate()
-    print("finished" if finished else "stopped; go on with --resume", flush=True)
+    joined.leave()
     sys.exit(0 if finished else EXIT_STOPPED)
 
 

@@ -20,6 +20,9 @@ constexpr size_t kPixels = 96 * 320;
 constexpr size_t kImages = kCameras * 3 * kPixels;
 constexpr size_t kRaster = 3 * 400 * 200;
 constexpr size_t kViewTable = 8 * 5000;
+constexpr size_t kMotions = kCameras * 3;
+constexpr int kUsual = 0;
+constexpr int kStrong = 1;
 constexpr uint64_t kSamplesPerWorld = 16;
 
 // Tests keep to seeds that training never sees.
@@ -31,25 +34,29 @@ struct Batch {
         cameras(count),
         prior(count * kRaster),
         truth(count * kRaster),
-        correction(count * 3) {}
+        correction(count * 3),
+        motions(count * kMotions) {}
 
   std::vector<uint8_t> images;
   std::vector<uint8_t> cameras;
   std::vector<uint8_t> prior;
   std::vector<uint8_t> truth;
   std::vector<float> correction;
+  std::vector<float> motions;
 
   size_t size() const { return cameras.size(); }
   bool operator==(const Batch&) const = default;
 };
 
-Batch sample(uint64_t first_sample, int count, int threads, double drop_probability) {
+Batch sample(uint64_t first_sample, int count, int threads, double drop_probability,
+             int nuisances = kUsual) {
   const std::unique_ptr<bevloc_sampler, decltype(&bevloc_sampler_destroy)> sampler(
-      bevloc_sampler_create(kSeed, first_sample, threads, drop_probability),
+      bevloc_sampler_create(kSeed, first_sample, threads, drop_probability, nuisances),
       &bevloc_sampler_destroy);
   Batch batch(static_cast<size_t>(count));
   bevloc_sampler_next(sampler.get(), count, batch.images.data(), batch.cameras.data(),
-                      batch.prior.data(), batch.truth.data(), batch.correction.data());
+                      batch.prior.data(), batch.truth.data(), batch.correction.data(),
+                      batch.motions.data());
   return batch;
 }
 
@@ -75,12 +82,12 @@ TEST(Sampler, ResumesInTheMiddleOfAStream) {
 }
 
 TEST(Sampler, BatchesJoinWithoutAGap) {
-  bevloc_sampler* sampler = bevloc_sampler_create(kSeed, kSamplesPerWorld - 3, 2, 1.0);
+  bevloc_sampler* sampler = bevloc_sampler_create(kSeed, kSamplesPerWorld - 3, 2, 1.0, kUsual);
   const Batch& whole = two_worlds();
   for (size_t i = 0; i < whole.size(); ++i) {
     Batch one(1);
     bevloc_sampler_next(sampler, 1, one.images.data(), one.cameras.data(), one.prior.data(),
-                        one.truth.data(), one.correction.data());
+                        one.truth.data(), one.correction.data(), one.motions.data());
     EXPECT_EQ(one.cameras[0], whole.cameras[i]);
     EXPECT_TRUE(std::equal(one.images.begin(), one.images.end(),
                            whole.images.begin() + static_cast<std::ptrdiff_t>(i * kImages)));
@@ -89,7 +96,8 @@ TEST(Sampler, BatchesJoinWithoutAGap) {
 }
 
 TEST(Sampler, CanBeDestroyedWhileWorkersAreBusy) {
-  for (int i = 0; i < 3; ++i) bevloc_sampler_destroy(bevloc_sampler_create(kSeed, 0, 2, 0.0));
+  for (int i = 0; i < 3; ++i)
+    bevloc_sampler_destroy(bevloc_sampler_create(kSeed, 0, 2, 0.0, kUsual));
 }
 
 TEST(Sampler, CorrectionsLieInTheirRangeAndDiffer) {
@@ -180,7 +188,7 @@ TEST(Sampler, TheCorrectionTakesThePriorRasterToTheTrueOne) {
 TEST(Sampler, TheViewTableIsThatOfTheRigWithItsCameras) {
   std::vector<int32_t> index(kViewTable);
   std::vector<float> weight(kViewTable);
-  bevloc_view_table(0b111111, index.data(), weight.data());
+  bevloc_view_table(0b111111, index.data(), weight.data(), nullptr);
   size_t seen = 0;
   for (size_t cell = 0; cell < 5000; ++cell) {
     float sum = 0.0F;
@@ -191,13 +199,43 @@ TEST(Sampler, TheViewTableIsThatOfTheRigWithItsCameras) {
   EXPECT_GT(seen, 4000U);
 
   std::vector<float> front_only(kViewTable);
-  bevloc_view_table(0b000010, index.data(), front_only.data());
+  bevloc_view_table(0b000010, index.data(), front_only.data(), nullptr);
   EXPECT_NE(front_only, weight);
   for (size_t i = 0; i < kViewTable; ++i) {
     if (front_only[i] > 0.0F) {
       EXPECT_EQ(index[i] / 480, 1);
     }
   }
+}
+
+TEST(Sampler, StrongNuisancesMoveCamerasNowAndThenAndUsualOnesNever) {
+  const Batch usual = sample(0, kSamplesPerWorld, 1, 0.0);
+  EXPECT_EQ(usual.motions, std::vector<float>(usual.motions.size()));
+  const Batch strong = sample(0, kSamplesPerWorld, 1, 0.0, kStrong);
+  EXPECT_TRUE(strong == sample(0, kSamplesPerWorld, 2, 0.0, kStrong));
+  EXPECT_EQ(strong.correction, usual.correction);
+  EXPECT_NE(strong.images, usual.images);
+  size_t moved = 0;
+  for (size_t i = 0; i < strong.size(); ++i) {
+    const auto motions = strong.motions.begin() + static_cast<std::ptrdiff_t>(i * kMotions);
+    moved += std::any_of(motions, motions + kMotions, [](float v) { return v != 0.0F; }) ? 1 : 0;
+  }
+  EXPECT_GT(moved, 0U);
+  EXPECT_LT(moved, kSamplesPerWorld / 2);
+}
+
+TEST(Sampler, TheViewTableFollowsTheMotions) {
+  std::vector<int32_t> index(kViewTable);
+  std::vector<float> still(kViewTable);
+  std::vector<float> at_once(kViewTable);
+  std::vector<float> moved(kViewTable);
+  std::vector<float> motions(kMotions);
+  bevloc_view_table(0b111111, index.data(), still.data(), nullptr);
+  bevloc_view_table(0b111111, index.data(), at_once.data(), motions.data());
+  EXPECT_EQ(at_once, still);
+  motions[0] = 0.6F;
+  bevloc_view_table(0b111111, index.data(), moved.data(), motions.data());
+  EXPECT_NE(moved, still);
 }
 
 }  // namespace

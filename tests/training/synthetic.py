@@ -8,17 +8,21 @@ import torch
 from torch import Tensor
 
 from training.data import Batch
+from training.distributed import WHOLE, Share
 
 
 class SyntheticStream:
     """Random samples; sample i depends on i alone, as the simulator's do."""
 
-    def __init__(self, first_sample: int) -> None:
-        self._next = first_sample
+    def __init__(self, first_sample: int, share: Share = WHOLE) -> None:
+        self._next, self._stride = first_sample + share.index, share.count
+        self.positions: list[int] = []
 
     def next(self, count: int) -> Batch:
-        samples = [self._sample(self._next + i) for i in range(count)]
-        self._next += count
+        positions = [self._next + i * self._stride for i in range(count)]
+        samples = [self._sample(position) for position in positions]
+        self._next += count * self._stride
+        self.positions += positions
         return Batch(**{name: torch.stack([s[name] for s in samples]) for name in samples[0]})
 
     @staticmethod

@@ -1,5 +1,7 @@
 """Quantization and the ONNX file, on an untrained network."""
 
+import copy
+import math
 import tempfile
 import unittest
 from pathlib import Path
@@ -10,35 +12,30 @@ import torch
 from onnx import numpy_helper
 
 from tests.training.synthetic import SyntheticStream
+from tests.training.untrained import untrained_network
+from training.errors import TrainingError
+from training.data import view_table
 from training.evaluate import float_inference
 from training.export_onnx import build_model
-from training.graph import folded_convolutions
-from training.model import Nano
+from training.graph import Walk, check_walkable, folded_convolutions
+from training.models import PRESETS, BevNetwork
+from training.models.config import network_config
 from training.onnx_graph import FloatOnnxBackend, Int8OnnxBackend
 from training.quantize import (
     MAX_WEIGHT,
+    SCALE_BITS,
     FloatBackend,
     Quantization,
     Scale,
     best_scale,
+    bias_steps,
     int8_inference,
     quantize,
     quantize_weights,
+    round_bias,
     run,
 )
-
-
-def network() -> Nano:
-    """Untrained, but with statistics in its normalisation that folding has to carry over."""
-    torch.manual_seed(1)
-    net = Nano()
-    for module in net.modules():
-        if isinstance(module, torch.nn.BatchNorm2d):
-            module.running_mean.normal_(0, 0.1)
-            module.running_var.uniform_(0.5, 1.5)
-            torch.nn.init.uniform_(module.weight, 0.5, 1.0)
-            torch.nn.init.normal_(module.bias, 0, 0.1)
-    return net.eval()
+from training.runtime import NativeNetwork
 
 
 def constants_of(model: onnx.ModelProto) -> dict[str, np.ndarray]:
@@ -48,7 +45,7 @@ def constants_of(model: onnx.ModelProto) -> dict[str, np.ndarray]:
 class Scales(unittest.TestCase):
     def test_an_outlier_is_clipped_rather_than_all_else_rounded_away(self):
         torch.manual_seed(0)
-        values = torch.cat((torch.rand(20_000), torch.tensor([100.0])))
+        values = torch.cat((torch.rand(200_000), torch.tensor([100.0])))
         scale = best_scale(values, unsigned=True)
         error = (scale.quantize(values[:-1]) - values[:-1]).square().mean().sqrt().item()
         self.assertLess(error, (scale.quantize(values[-1]) - values[-1]).abs().item())
@@ -58,8 +55,20 @@ class Scales(unittest.TestCase):
         self.assertEqual(Scale(0.5, True).quantize(values).tolist(), [0, 0, 0, 1.0, 127.5])
         self.assertEqual(Scale(0.5, False).quantize(values).tolist(), [-64, -1.0, 0, 1.0, 63.5])
 
+    def test_activations_count_in_powers_of_two(self):
+        for largest in (1e-3, 0.7, 3.0, 1000.0):
+            for unsigned in (True, False):
+                scale = best_scale(torch.linspace(0, largest, 1000), unsigned)
+                self.assertEqual(math.frexp(scale.scale)[0], 0.5)
+                self.assertLess(scale.clips(torch.linspace(0, largest, 1000)).float().mean(), 0.2)
+
+    def test_scales_of_weights_have_short_mantissas(self):
+        for conv in folded_convolutions(untrained_network()).values():
+            mantissa = torch.frexp(quantize_weights(conv).scale).mantissa * 2**SCALE_BITS
+            self.assertTrue(torch.equal(mantissa, mantissa.round()), conv.name)
+
     def test_weights_have_seven_bits(self):
-        for conv in folded_convolutions(network()).values():
+        for conv in folded_convolutions(untrained_network()).values():
             quantized = quantize_weights(conv)
             self.assertLessEqual(int(quantized.weight.abs().max()), MAX_WEIGHT)
             error = (quantized.real_weight() - conv.weight).abs().flatten(1).amax(1)
@@ -71,7 +80,7 @@ class Export(unittest.TestCase):
     @torch.no_grad()
     def setUpClass(cls):
         torch.set_num_threads(1)
-        cls.net, cls.batch = network(), SyntheticStream(3).next(2)
+        cls.net, cls.batch = untrained_network(), SyntheticStream(3).next(2)
         cls.quantization = quantize(cls.net, [cls.batch])
         convolutions = cls.quantization.convolutions
         cls.model = build_model(cls.net, convolutions, Int8OnnxBackend(cls.quantization))
@@ -94,6 +103,20 @@ class Export(unittest.TestCase):
         rounded = int8_inference(self.net, self.quantization)(self.batch)
         for a, b in zip(expected, rounded):
             self.assertLess((a - b).std().item(), 0.5 * a.std().item())
+
+    def test_biases_take_out_the_mean_of_the_rounding_error(self):
+        """Of the last layers, in which the errors of all others come together."""
+        convolutions, uncorrected = self.quantization.convolutions, copy.deepcopy(self.quantization)
+        for name, step in bias_steps(self.net, uncorrected).items():
+            uncorrected.quantized[name].bias = round_bias(convolutions[name].bias, step)
+        exact = run(self.net, convolutions, FloatBackend(self.batch), self.batch)
+        for side in range(3):
+            errors = [
+                (int8_inference(self.net, quantization)(self.batch)[side] - exact[side])
+                for quantization in (uncorrected, self.quantization)
+            ]
+            before, after = (error.mean((0, 2, 3)).abs().max().item() for error in errors)
+            self.assertLess(after, 0.1 * before)
 
     def test_the_file_holds_8_bit_weights_and_zero_zero_points(self):
         for name, values in self.constants.items():
@@ -128,6 +151,18 @@ class Export(unittest.TestCase):
         for a, b in zip(expected, int8_inference(self.net, loaded)(self.batch)):
             self.assertTrue(torch.equal(a, b))
 
+    @torch.no_grad()
+    def test_the_executor_computes_the_simulated_values_to_the_bit(self):
+        batch = SyntheticStream(4).next(1)
+        index, weight = view_table(int(batch.camera_mask[0]))
+        batch.index, batch.weight = index[None], weight[None]
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "untrained.onnx"
+            onnx.save(self.model, str(path))
+            found = NativeNetwork(path)(batch)
+        for a, b in zip(found, int8_inference(self.net, self.quantization)(batch)):
+            self.assertTrue(torch.equal(a, b))
+
     def test_space_to_depth_meets_its_weights_in_its_own_order(self):
         name = "map_encoder.layers.0"
         weight = self.quantization.quantized[name].weight.numpy()
@@ -139,6 +174,13 @@ class Export(unittest.TestCase):
                         exported[:, (row * 2 + col) * 3 + channel],
                         weight[:, channel * 4 + row * 2 + col],
                     )
+
+    def test_what_the_executor_cannot_express_is_refused(self):
+        for name, part in (("small", "view transform is kernel"), ("paper-resnet50", "resnet50")):
+            with self.assertRaisesRegex(TrainingError, f"'{name}' cannot be exported.*{part}"):
+                check_walkable(PRESETS[name])
+        with self.assertRaisesRegex(TrainingError, "kernel"):
+            Walk(BevNetwork(network_config("nano", "kernel")), {}, FloatOnnxBackend())
 
     def test_solver_parameters_travel_with_the_model(self):
         properties = {entry.key: entry.value for entry in self.model.metadata_props}

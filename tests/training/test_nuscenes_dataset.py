@@ -27,7 +27,7 @@ from tests.training.nuscenes_tree import (
 )
 from training.data import Batch
 from training.data import view_table as native_view_table
-from training.model import gather_views
+from training.models.view_lut import gather_views
 from training.nuscenes.camera import Pinhole, look_through, network_camera
 from training.nuscenes.dataset import ALL_CAMERAS, MAX_DEVIATION, NuscenesDataset
 from training.nuscenes.errors import (

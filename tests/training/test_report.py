@@ -74,13 +74,13 @@ class Written(unittest.TestCase):
     def test_the_tables_replace_what_stood_between_the_marks(self):
         card = self.models / "README.md"
         card.write_text(f"before\n{BEGIN}\nold\n{END}\nafter\n")
-        write_results(self.models, self.results)
+        write_results(self.models, "nano", self.results)
         first = card.read_text()
         self.assertTrue(first.startswith("before\n") and first.endswith(f"{END}\nafter\n"))
         self.assertNotIn("old", first)
         self.assertIn("| Lateral (m) |", first)
         self.assertIn("12,000 samples", first)
-        write_results(self.models, self.results)
+        write_results(self.models, "nano", self.results)
         self.assertEqual(card.read_text(), first)
         saved = json.loads((self.models / "nano_results.json").read_text())
         self.assertEqual(saved["int8"]["block_x_mae"], self.results.int8["block_x_mae"])
@@ -88,7 +88,17 @@ class Written(unittest.TestCase):
     def test_a_card_without_marks_is_refused(self):
         (self.models / "README.md").write_text("no marks\n")
         with self.assertRaisesRegex(ValueError, "wanted the marks"):
-            write_results(self.models, self.results)
+            write_results(self.models, "nano", self.results)
+
+    def test_another_network_gets_a_card_of_its_own(self):
+        write_results(self.models, "small-lut", self.results)
+        card = (self.models / "small-lut.md").read_text()
+        self.assertTrue(card.startswith("# Model card: small-lut\n"))
+        self.assertIn("| Lateral (m) |", card)
+        self.assertEqual(
+            {path.name for path in self.models.iterdir()},
+            {"small-lut.md", "small-lut_results.json"},
+        )
 
     def test_curves_become_an_image(self):
         names = "perceived,reconstructed,joint_x,joint_y,joint_yaw,dec_x,dec_y,dec_yaw"

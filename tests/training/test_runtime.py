@@ -10,11 +10,12 @@ import onnx
 import torch
 
 from tests.training.synthetic import SyntheticStream
-from training.data import view_table
+from training.data import Batch, view_table
 from training.evaluate import float_inference
 from training.export_onnx import build_model
 from training.graph import folded_convolutions
-from training.model import Nano
+from training.models import PRESETS, BevNetwork
+from training.models.config import network_config
 from training.onnx_graph import FloatOnnxBackend
 from training.runtime import NativeNetwork, NativeSolver
 from training.solver import Solution, standardise
@@ -24,6 +25,15 @@ LEAVES_A_SAMPLER_OPEN = """
 from training.data import SamplerStream
 SamplerStream(1_000_000, 0, 2, 0.0)
 """
+
+
+def native(net: BevNetwork) -> NativeNetwork:
+    """The float network on the daemon's executor."""
+    model = build_model(net, folded_convolutions(net), FloatOnnxBackend())
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "untrained.onnx"
+        onnx.save(model, str(path))
+        return NativeNetwork(path)
 
 
 class Sampler(unittest.TestCase):
@@ -37,12 +47,8 @@ class RunTime(unittest.TestCase):
     def setUpClass(cls):
         torch.set_num_threads(1)
         torch.manual_seed(1)
-        cls.net = Nano().eval()
-        model = build_model(cls.net, folded_convolutions(cls.net), FloatOnnxBackend())
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "untrained.onnx"
-            onnx.save(model, str(path))
-            cls.network = NativeNetwork(path)
+        cls.net = BevNetwork(PRESETS["nano"]).eval()
+        cls.network = native(cls.net)
 
     def test_a_missing_model_is_refused_with_its_name(self):
         with self.assertRaisesRegex(ValueError, "absent.onnx"):
@@ -59,7 +65,18 @@ class RunTime(unittest.TestCase):
         tables = [view_table(int(mask)) for mask in batch.camera_mask]
         batch.index = torch.stack([index for index, _ in tables])
         batch.weight = torch.stack([weight for _, weight in tables])
-        for found, expected in zip(self.network(batch), float_inference(self.net)(batch)):
+        self.check(self.network, self.net, batch)
+
+    @torch.no_grad()
+    def test_a_larger_network_runs_too(self):
+        net = BevNetwork(network_config("small", "lut")).eval()
+        batch = SyntheticStream(0).next(1)
+        index, weight = view_table(int(batch.camera_mask[0]))
+        batch.index, batch.weight = index[None], weight[None]
+        self.check(native(net), net, batch)
+
+    def check(self, network: NativeNetwork, net: BevNetwork, batch: Batch):
+        for found, expected in zip(network(batch), float_inference(net)(batch)):
             error = (found - expected).abs().amax() / expected.abs().amax()
             self.assertLess(error.item(), 1e-4)
 

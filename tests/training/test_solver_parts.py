@@ -225,6 +225,14 @@ class Refinement(unittest.TestCase):
         expected = torch.tensor([[0.0, 0.125, 0.125, 0.5, 0, 0, 0.25]]).double()
         torch.testing.assert_close(found, expected)
 
+    def test_what_is_not_a_number_remains_so(self):
+        values = torch.arange(3).double()
+        flat = torch.full((2, 3), 1 / 3).double()
+        offset = torch.tensor([[torch.nan] * 3, [0.0] * 3]).double()
+        found = spread(flat, values, flat, offset)
+        self.assertTrue(found[0].isnan().any())
+        torch.testing.assert_close(found[1], flat[1])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -10,6 +10,7 @@ import torch
 
 from tests.training.nuscenes_tree import SAMPLES_PER_SCENE, write_tree
 from training.config import TrainingConfig
+from training.distributed import WHOLE, Share
 from training.nuscenes.errors import NuscenesError
 from training.sources import (
     nuscenes_batches,
@@ -46,6 +47,18 @@ class Sources(unittest.TestCase):
             self.assertEqual((found.shape, found.dtype), (tensor.shape, tensor.dtype), name)
         simulated.close()
 
+    def test_processes_share_the_samples_of_nuscenes(self):
+        config = TrainingConfig(nuscenes=str(self.root), drop_camera_probability=0.0)
+
+        def corrections(share: Share, count: int) -> torch.Tensor:
+            stream = training_stream(config, 2, share)
+            found = stream.next(count).correction
+            stream.close()
+            return found
+
+        parts = [corrections(Share(rank, 2), 2) for rank in (0, 1)]
+        self.assertTrue(torch.equal(torch.stack(parts, 1).flatten(0, 1), corrections(WHOLE, 4)))
+
     def test_evaluation_reads_every_sample_once(self):
         batches = list(nuscenes_batches(str(self.root), "", 5.0, 1))
         self.assertEqual(sum(map(len, batches)), SCENES * SAMPLES_PER_SCENE)
@@ -56,6 +69,24 @@ class Sources(unittest.TestCase):
         self.assertEqual(validation_set(TrainingConfig(nuscenes=str(self.root))), [])
         simulated = validation_set(TrainingConfig(validation_samples=3))
         self.assertTrue(torch.equal(simulated[0].images, simulator_batches(3, 1)[0].images))
+
+    def test_training_shows_more_trouble_than_validation(self):
+        streams = {
+            name: training_stream(TrainingConfig(nuisances=name), 0) for name in ("usual", "strong")
+        }
+        usual, strong = (stream.next(16) for stream in streams.values())
+        for stream in streams.values():
+            stream.close()
+        self.assertEqual(TrainingConfig().nuisances, "strong")
+        self.assertTrue(torch.equal(usual.correction, strong.correction))
+        self.assertFalse(torch.equal(usual.images, strong.images))
+        whole = [i for i, mask in enumerate(usual.camera_mask.tolist()) if mask == 63]
+        self.assertEqual(len(usual.weight[whole].unique(dim=0)), 1)
+        self.assertGreater(len(strong.weight[whole].unique(dim=0)), 1)
+
+    def test_nuisances_that_nobody_knows_are_named(self):
+        with self.assertRaisesRegex(ValueError, "'mild', wanted one of usual, strong"):
+            training_stream(TrainingConfig(nuisances="mild"), 0)
 
     def test_a_folder_that_is_none_is_named(self):
         with self.assertRaisesRegex(NuscenesError, "nowhere"):

@@ -1,23 +1,37 @@
 """The training loop on a synthetic stream."""
 
+import io
+import math
 import tempfile
 import unittest
+from contextlib import redirect_stdout
 from pathlib import Path
+from unittest.mock import patch
 
 import torch
+from torch import nn
 
 from tests.training.synthetic import SyntheticStream
 from training.config import TrainingConfig
-from training.model import Nano, gather_views, real_images, real_raster
+from training.data import Batch
+from training.errors import CheckpointError, NotFiniteError, TrainingError
+from training.model import real_images, real_raster
+from training.models import PRESETS, BevNetwork
+from training.models.view_lut import gather_views
 from training.train import Trainer
 
 
-def trainer(run: str, **options) -> Trainer:
-    config = TrainingConfig(run=Path(run), batch=2, samples=8, warm_up_steps=2, **options)
-    return Trainer(config, lambda _, first: SyntheticStream(first), [])
+def setUpModule():
+    torch.set_num_threads(1)
 
 
-def weights(net: Nano) -> torch.Tensor:
+def trainer(run: str, validation: list[Batch] | None = None, **options) -> Trainer:
+    defaults = {"batch": 2, "samples": 8, "warm_up_steps": 2, "precision": "float32"}
+    config = TrainingConfig(run=Path(run), **(defaults | options))
+    return Trainer(config, lambda _, first, share: SyntheticStream(first, share), validation or [])
+
+
+def weights(net: BevNetwork) -> torch.Tensor:
     return torch.cat([value.flatten().double() for value in net.state_dict().values()])
 
 
@@ -25,7 +39,7 @@ class Shapes(unittest.TestCase):
     @torch.no_grad()
     def test_outputs(self):
         batch = SyntheticStream(0).next(2)
-        outputs = Nano().eval()(
+        outputs = BevNetwork(PRESETS["nano"]).eval()(
             real_images(batch.images), batch.index, batch.weight, real_raster(batch.raster_prior)
         )
         self.assertEqual(
@@ -46,30 +60,138 @@ class Shapes(unittest.TestCase):
             torch.testing.assert_close(found, expected, rtol=1e-4, atol=1e-2)
 
 
-class Resuming(unittest.TestCase):
+class TemporaryRuns(unittest.TestCase):
+    def folder(self) -> str:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        return folder.name
+
+
+class Resuming(TemporaryRuns):
     def test_a_stopped_run_ends_with_the_weights_of_an_uninterrupted_one(self):
-        torch.set_num_threads(1)
-        with tempfile.TemporaryDirectory() as whole, tempfile.TemporaryDirectory() as parts:
-            uninterrupted = trainer(whole)
-            self.assertTrue(uninterrupted.run())
-            stopped = trainer(parts, stop_after_minutes=1e-9)
-            self.assertFalse(stopped.run())
-            self.assertEqual(stopped.step, 1)
-            resumed = trainer(parts, resume=True)
-            self.assertEqual(resumed.samples, 2)
-            self.assertTrue(resumed.run())
-            self.assertTrue(torch.equal(weights(resumed.net), weights(uninterrupted.net)))
-            self.assertTrue(torch.equal(weights(resumed.average), weights(uninterrupted.average)))
+        parts = self.folder()
+        uninterrupted = trainer(self.folder())
+        self.assertTrue(uninterrupted.run())
+        stopped = trainer(parts, stop_after_minutes=1e-9)
+        self.assertFalse(stopped.run())
+        self.assertEqual(stopped.step, 1)
+        resumed = trainer(parts, resume=True)
+        self.assertEqual(resumed.samples, 2)
+        self.assertTrue(resumed.run())
+        self.assertTrue(torch.equal(weights(resumed.net), weights(uninterrupted.net)))
+        self.assertTrue(torch.equal(weights(resumed.average), weights(uninterrupted.average)))
 
     def test_a_new_run_begins_with_the_averaged_weights_of_another(self):
-        torch.set_num_threads(1)
-        with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
-            finished = trainer(first)
-            finished.run()
-            begun = trainer(second, init=str(finished.checkpoint_path))
-            self.assertTrue(torch.equal(weights(begun.net), weights(finished.average)))
-            self.assertTrue(torch.equal(weights(begun.average), weights(finished.average)))
-            self.assertEqual(begun.samples, 0)
+        finished = trainer(self.folder(), samples=4)
+        finished.run()
+        begun = trainer(self.folder(), init=str(finished.checkpoint_path))
+        self.assertTrue(torch.equal(weights(begun.net), weights(finished.average)))
+        self.assertTrue(torch.equal(weights(begun.average), weights(finished.average)))
+        self.assertEqual(begun.samples, 0)
+
+    def test_no_run_goes_on_from_what_does_not_fit_it(self):
+        run = self.folder()
+        trainer(run).save()
+        checkpoint = Path(run) / "checkpoint.pt"
+        with self.assertRaisesRegex(CheckpointError, "holds the network 'nano', wanted 'small'"):
+            trainer(run, resume=True, network="small")
+        state = torch.load(checkpoint)
+        torch.save({**state, "optimiser": {}}, checkpoint)
+        with self.assertRaisesRegex(CheckpointError, "no run can go on from it"):
+            trainer(run, resume=True)
+        checkpoint.write_text("not a checkpoint")
+        with self.assertRaisesRegex(CheckpointError, f"^{checkpoint}: unreadable"):
+            trainer(self.folder(), init=str(checkpoint))
+
+
+class Networks(TemporaryRuns):
+    def test_another_network_trains_and_its_checkpoint_remembers_it(self):
+        run = self.folder()
+        small = trainer(run, network="small", samples=2, semantic_stage=0.0, precision="bfloat16")
+        before = weights(small.net)
+        self.assertTrue(small.run())
+        self.assertFalse(torch.equal(weights(small.net), before))
+        self.assertTrue(weights(small.net).isfinite().all())
+        self.assertEqual(trainer(run, network="small", resume=True).step, 1)
+
+
+class NotFinite(TemporaryRuns):
+    def test_a_loss_that_is_no_number_ends_the_run_and_keeps_the_checkpoint(self):
+        run = trainer(self.folder(), semantic_stage=0.0)
+        run.train_step(0.5)
+        run.save()
+        kept = run.checkpoint_path.read_bytes()
+
+        def poisoned(count: int) -> Batch:
+            batch = SyntheticStream(2).next(count)
+            batch.weight[0] = math.nan
+            return batch
+
+        run.stream.next = poisoned
+        with self.assertRaisesRegex(
+            NotFiniteError,
+            r"step 1: the loss perceived.* is not finite on samples 2 to 3 .* holds the last good",
+        ):
+            run.run()
+        self.assertEqual(run.checkpoint_path.read_bytes(), kept)
+
+    def test_a_gradient_that_is_infinite_ends_the_run_before_a_weight_changes(self):
+        run = trainer(self.folder())
+        before = [p.detach().clone() for p in run.net.parameters()]
+        bias = run.net.head.second.bias
+        bias.register_hook(lambda gradient: gradient * math.inf)
+        with self.assertRaisesRegex(NotFiniteError, "the gradient, .* there was no checkpoint yet"):
+            run.run()
+        for old, new in zip(before, run.net.parameters()):
+            self.assertTrue(torch.equal(old, new))
+
+    def test_a_weight_that_is_no_number_is_not_saved(self):
+        run = trainer(self.folder())
+        nn.init.constant_(run.net.head.second.bias, math.nan)
+        with self.assertRaisesRegex(NotFiniteError, "head.second.bias is not finite"):
+            run.save()
+        self.assertFalse(run.checkpoint_path.exists())
+
+
+class EarlyStop(TemporaryRuns):
+    def run_with(self, folder: str, figures: list[float], **options) -> Trainer:
+        """A run that validates after every step and finds these figures."""
+        options = {"patience": 2, "samples": 20, "validation_minutes": 1e-9} | options
+        run = trainer(folder, [SyntheticStream(0).next(1)], **options)
+        metrics = [{"joint_x_mae": figure} for figure in figures]
+        with patch("training.train.evaluate", side_effect=metrics), patch(
+            "training.train.summary", return_value=""
+        ), redirect_stdout(io.StringIO()):
+            self.assertTrue(run.run())
+        return run
+
+    def test_a_run_stops_when_it_gets_no_better(self):
+        folder = self.folder()
+        run = self.run_with(folder, [0.5, 0.4, 0.45, 0.4])
+        self.assertEqual(run.step, 4)
+        self.assertRegex(str(run.patience), r"mae was best \(0.4000\) after 4 samples, 2 val")
+        resumed = self.run_with(folder, [], resume=True)
+        self.assertEqual(resumed.step, 4)
+        patient = self.run_with(folder, [0.5], resume=True, patience=3)
+        self.assertEqual(patient.step, 5)
+
+    def test_a_figure_that_is_not_measured_is_refused(self):
+        validation = [SyntheticStream(0).next(1)]
+        with self.assertRaisesRegex(TrainingError, "'joint_x', wanted one of .*iou_crossing"):
+            trainer(self.folder(), validation, patience=1, patience_figure="joint_x")
+        with self.assertRaisesRegex(TrainingError, "validation set"):
+            trainer(self.folder(), patience=1)
+
+
+class Log(TemporaryRuns):
+    def test_a_line_tells_rate_rest_and_what_the_time_went_to(self):
+        run = trainer(self.folder(), samples=2, log_steps=1)
+        lines = io.StringIO()
+        with redirect_stdout(lines):
+            run.run()
+        self.assertRegex(
+            lines.getvalue(), r"^step 1 samples 2 [\d.]+/s \(\d+ % waiting for samples\) left"
+        )
 
 
 if __name__ == "__main__":

@@ -135,3 +135,15 @@ PRESETS = {
         replace(_PAPER, name="paper-efficientnet", trunk="efficientnet_b0"),
     )
 }
+
+
+def network_config(name: str, view: str = "") -> ModelConfig:
+    """A preset, with another view transform if one is named. ValueError where there is none."""
+    if name not in PRESETS:
+        raise ValueError(f"there is no network '{name}'; there are {', '.join(PRESETS)}")
+    preset = PRESETS[name]
+    if view in ("", preset.view):
+        return preset
+    if view not in VIEWS:
+        raise ValueError(f"there is no view transform '{view}'; there are {', '.join(VIEWS)}")
+    return replace(preset, name=f"{name}-{view}", view=view)

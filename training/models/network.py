@@ -33,7 +33,7 @@ class BevNetwork(nn.Module):
         super().__init__()
         self.config = config
         self.trunk = make_trunk(config)
-        self.view = _make_view(config, cameras)
+        self.view = make_view(config, cameras)
         self.bev_encoder = make_bev_encoder(config)
         self.bev_compress = make_compression(config)
         self.map_encoder = MapEncoder(config)
@@ -61,9 +61,9 @@ class BevNetwork(nn.Module):
         return self.bev_compress(bev), self.map_compress(encoded), perceived, reconstructed
 
 
-def _make_view(config: ModelConfig, cameras: Sequence[Camera] | None) -> nn.Module:
+def make_view(config: ModelConfig, cameras: Sequence[Camera] | None) -> nn.Module:
     if config.view == "lut":
-        return LutView(config)
+        return LutView()
     if config.view == "kernel":
         return KernelView(config)
     return DenseView(config, nominal_cameras(config.image_size) if cameras is None else cameras)

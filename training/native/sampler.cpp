@@ -11,9 +11,27 @@
 #include "pipeline/network/view_table.h"
 #include "sim/samples/sample_maker.h"
 
+using bevloc::Se2;
 using bevloc::sim::kSamplesPerWorld;
 using bevloc::sim::Sample;
 using bevloc::sim::SampleStream;
+
+namespace {
+
+/// Both return where the next motion goes or stands.
+float* write_motion(const Se2& motion, float* out) {
+  *out++ = static_cast<float>(motion.x_m);
+  *out++ = static_cast<float>(motion.y_m);
+  *out++ = static_cast<float>(motion.yaw_rad);
+  return out;
+}
+
+const float* read_motion(const float* in, Se2& motion) {
+  motion = {in[0], in[1], in[2]};
+  return in + 3;
+}
+
+}  // namespace
 
 /// Each worker makes whole worlds; samples leave in order, world by world. A worker waits before it
 /// starts a world too far ahead of the one that is being read, which bounds the memory.
@@ -97,10 +115,11 @@ struct bevloc_sampler {
 };
 
 bevloc_sampler* bevloc_sampler_create(uint64_t first_seed, uint64_t first_sample, int threads,
-                                      double drop_camera_probability) {
+                                      double drop_camera_probability, int strong_nuisances) {
   SampleStream stream;
   stream.first_seed = first_seed;
   stream.nuisances.missing_cameras.probability = drop_camera_probability;
+  if (strong_nuisances != 0) stream.training = bevloc::sim::strong_nuisances();
   return new bevloc_sampler(stream, first_sample, std::max(threads, 1));
 }
 
@@ -109,22 +128,28 @@ void bevloc_sampler_destroy(bevloc_sampler* sampler) {
 }
 
 void bevloc_sampler_next(bevloc_sampler* sampler, int count, uint8_t* images, uint8_t* camera_mask,
-                         uint8_t* raster_prior, uint8_t* raster_truth, float* correction) {
+                         uint8_t* raster_prior, uint8_t* raster_truth, float* correction,
+                         float* motions) {
   for (int i = 0; i < count; ++i) {
     const Sample sample = sampler->next();
     images = std::copy(sample.images.begin(), sample.images.end(), images);
     raster_prior = std::copy(sample.raster_prior.begin(), sample.raster_prior.end(), raster_prior);
     raster_truth = std::copy(sample.raster_truth.begin(), sample.raster_truth.end(), raster_truth);
     *camera_mask++ = static_cast<uint8_t>(sample.cameras.to_ulong());
-    *correction++ = static_cast<float>(sample.correction.x_m);
-    *correction++ = static_cast<float>(sample.correction.y_m);
-    *correction++ = static_cast<float>(sample.correction.yaw_rad);
+    correction = write_motion(sample.correction, correction);
+    for (const Se2& motion : sample.reference_from_exposure)
+      motions = write_motion(motion, motions);
   }
 }
 
-void bevloc_view_table(uint8_t camera_mask, int32_t* index, float* weight) {
-  const bevloc::ViewTable table = bevloc::make_view_table(
-      bevloc::sim::told_network_rig(), bevloc::CameraMask(camera_mask), bevloc::kFeatureGrid);
+void bevloc_view_table(uint8_t camera_mask, int32_t* index, float* weight, const float* motions) {
+  bevloc::CameraMotions reference_from_exposure{};
+  if (motions != nullptr) {
+    for (Se2& motion : reference_from_exposure) motions = read_motion(motions, motion);
+  }
+  const bevloc::ViewTable table =
+      bevloc::make_view_table(bevloc::sim::told_network_rig(), bevloc::CameraMask(camera_mask),
+                              bevloc::kFeatureGrid, reference_from_exposure);
   std::copy(table.index.begin(), table.index.end(), index);
   std::copy(table.weight.begin(), table.weight.end(), weight);
 }

@@ -12,6 +12,7 @@ import numpy as np
 import torch
 
 from training.data import Batch
+from training.distributed import WHOLE, Share
 from training.nuscenes.dataset import ALL_CAMERAS, MAX_DEVIATION, NuscenesDataset, NuscenesSample
 from training.nuscenes.errors import NuscenesError
 from training.nuscenes.problems import Problems
@@ -34,6 +35,7 @@ class NuscenesStream:
         threads: int,
         drop_camera_probability: float,
         on_error: str = "refuse",
+        share: Share = WHOLE,
     ) -> None:
         if on_error not in ON_ERROR:
             raise ValueError(f"on_error: found '{on_error}', wanted one of {', '.join(ON_ERROR)}")
@@ -44,7 +46,7 @@ class NuscenesStream:
         self._drop_camera_probability = drop_camera_probability
         self._skips = on_error == "skip"
         self._order = lru_cache(maxsize=4)(self._make_order)
-        self._next = first_sample
+        self._next, self._stride = first_sample + share.index, share.count
         self._workers = ThreadPoolExecutor(max(threads, 1))
         self._ahead: deque[Future[NuscenesSample]] = deque()
         self.problems = Problems()
@@ -53,7 +55,7 @@ class NuscenesStream:
         """The next samples. Raises NuscenesError when one is refused, or all are bad."""
         while len(self._ahead) < 2 * count:  # this batch, and one while the network trains
             self._ahead.append(self._workers.submit(self._at, self._next))
-            self._next += 1
+            self._next += self._stride
         samples = [self._ahead.popleft().result() for _ in range(count)]
         columns = {
             field.name: np.stack([getattr(sample, field.name) for sample in samples])

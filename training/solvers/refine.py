@@ -50,7 +50,8 @@ def spread(
     step = values[1] - values[0]
     position = torch.arange(last + 1).to(offset) + offset[..., None] / step  # [batch, n, count]
     position = position.clamp(0, last)
-    low = position.floor().clamp(max=last - 1)
+    # What is not a number has to lie somewhere; `above` keeps it.
+    low = position.nan_to_num().floor().clamp(max=last - 1)
     above = (position - low).to(probability)
     share = followed[..., None] * probability[:, None]
     result = torch.zeros_like(probability)

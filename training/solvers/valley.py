@@ -27,15 +27,21 @@ class ScoreValley:
     def __init__(self, features_map: Tensor, definition: SolverDefinition) -> None:
         self._uniform = uniform_variance(definition)
         rows, cols = features_map.shape[2:]
-        f = features_map.detach().double().cpu()
+        f = features_map.detach()
         cell_m = definition.cell_m
         # Rows and columns run against x and y.
         f_x = (f[:, :, :-2, 1:-1] - f[:, :, 2:, 1:-1]) / (2 * cell_m)
         f_y = (f[:, :, 1:-1, :-2] - f[:, :, 1:-1, 2:]) / (2 * cell_m)
+        # All channels of a cell turn alike: their products are summed before the cells'.
+        products = ((f_x * f_x).sum(1), (f_x * f_y).sum(1), (f_y * f_y).sum(1))
+        xx, xy, yy = (product.double().cpu() for product in products)  # [batch, row, col]
         x = (0.5 * rows - 0.5 - torch.arange(1, rows - 1, dtype=torch.float64))[:, None] * cell_m
         y = (0.5 * cols - 0.5 - torch.arange(1, cols - 1, dtype=torch.float64)) * cell_m
-        gradients = torch.stack((f_x, f_y, x * f_y - y * f_x), dim=1).flatten(2)
-        self._curvature = gradients @ gradients.transpose(1, 2)
+        x_turn, y_turn = x * xy - y * xx, x * yy - y * xy
+        turn_turn = x * y_turn - y * x_turn
+        rows_of_h = ((xx, xy, x_turn), (xy, yy, y_turn), (x_turn, y_turn, turn_turn))
+        entries = [torch.stack([h.sum((1, 2)) for h in row], dim=1) for row in rows_of_h]
+        self._curvature = torch.stack(entries, dim=1)
 
     def _curvature_at(self, pose: Tensor) -> Tensor:
         """`pose`: (x m, y m, yaw rad), [batch, 3]. A turn about it is one about the middle, and a

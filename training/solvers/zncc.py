@@ -2,6 +2,9 @@
 
 ZNCC = (mean(a b) - mean(a) mean(b)) / sqrt(var(a) var(b)), population moments; 0 where a side is
 constant. Features moved under a hypothesis count as zero where they do not reach.
+
+The sums of features in float32 that corrections move within the paper's hypotheses are the run
+time's own (training/moved_sums.py), which is faster; all others are made here.
 """
 
 from __future__ import annotations
@@ -9,7 +12,11 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
+from training.moved_sums import moved_sums
+from training.solvers.definition import DEFINITION
 from training.solvers.features import move
+
+_ROUNDING = 1e-6
 
 
 def zncc(product: Tensor, a: tuple[Tensor, Tensor], b: tuple[Tensor, Tensor], count: int) -> Tensor:
@@ -35,7 +42,20 @@ def sums_of(features: Tensor, dim: tuple[int, ...]) -> tuple[Tensor, Tensor]:
 def moved_zncc(bev: Tensor, features_map: Tensor, corrections: Tensor, cell_m: float) -> Tensor:
     """ZNCC of F_M with F_B moved under each of the corrections [batch, count, 3]: [batch, count].
     `corrections` may also be [1, count, 3], the same for all."""
-    moved = move(bev, corrections.expand(len(bev), -1, -1), cell_m)
-    product = torch.einsum("bcnuv,bcuv->bn", moved, features_map)
-    map_sums = sums_of(features_map[:, :, None], (1, 3, 4))
-    return zncc(product, sums_of(moved, (1, 3, 4)), map_sums, features_map[0].numel())
+    corrections = corrections.expand(len(bev), -1, -1)
+    if _is_native(bev, corrections, cell_m):
+        product, *moved_side = moved_sums(bev, features_map, corrections).unbind(2)
+    else:
+        moved = move(bev, corrections, cell_m)
+        product = torch.einsum("bcnuv,bcuv->bn", moved, features_map)
+        moved_side = sums_of(moved, (1, 3, 4))
+    map_side = sums_of(features_map[:, :, None], (1, 3, 4))
+    return zncc(product, tuple(moved_side), map_side, features_map[0].numel()).to(bev)
+
+
+def _is_native(bev: Tensor, corrections: Tensor, cell_m: float) -> bool:
+    grid = (*bev.shape[2:], cell_m)
+    if grid != (DEFINITION.rows, DEFINITION.cols, DEFINITION.cell_m) or bev.dtype != torch.float32:
+        return False
+    farthest = torch.tensor(DEFINITION.farthest()).to(corrections)
+    return bool((corrections.abs() <= farthest + _ROUNDING).all())

@@ -1,0 +1,114 @@
+"""Several processes train as one."""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import torch
+
+from tests.training.process_of_two import BATCH, SAMPLES, regression
+from tests.training.synthetic import SyntheticStream
+from training.config import TrainingConfig
+from training.data import SamplerStream
+from training.distributed import Processes, Share
+from training.errors import CheckpointError
+from training.train import Trainer
+
+LAUNCHER = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc_per_node", "2"]
+# Without these torch 1.13 does not start on Python 3.11: it finds no "nothing" among the streams
+# that can be redirected. They name a process that there is not.
+LAUNCHER += ["--redirects", "9:1", "--tee", "9:1"]
+
+
+def run_two(*arguments: str) -> None:
+    command = [*LAUNCHER, "-m", "tests.training.process_of_two", *arguments]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=240)
+    if ended.returncode != 0:
+        raise AssertionError(ended.stderr)
+
+
+class TwoProcesses(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.run_folder = Path(folder.name)
+        run_two(folder.name)
+        cls.ranks = [torch.load(cls.run_folder / f"rank{rank}.pt") for rank in (0, 1)]
+
+    def test_both_have_the_same_weights_and_statistics(self):
+        first, second = self.ranks
+        for kind in ("net", "average"):
+            for name, value in first[kind].items():
+                self.assertTrue(torch.equal(value, second[kind][name]), f"{kind}: {name}")
+
+    def test_together_they_read_every_sample_once(self):
+        first, second = (state["positions"] for state in self.ranks)
+        self.assertEqual(len(first), len(second))
+        self.assertEqual(sorted(first + second), list(range(SAMPLES)))
+        self.assertEqual(sorted(first[:2] + second[:2]), list(range(BATCH)))
+
+    def test_the_gradient_is_that_of_one_process_with_the_whole_batch(self):
+        model, inputs, targets = regression()
+        torch.nn.functional.mse_loss(model(inputs), targets).backward()
+        for state in self.ranks:
+            for parameter, found in zip(model.parameters(), state["gradients"]):
+                torch.testing.assert_close(found, parameter.grad)
+
+    def test_the_first_decides(self):
+        self.assertEqual([state["first_says"] for state in self.ranks], [10.0, 10.0])
+
+    def test_the_first_alone_writes_what_another_number_of_processes_cannot_go_on_with(self):
+        names = {path.name for path in self.run_folder.iterdir()}
+        self.assertEqual(names, {"checkpoint.pt", "rank0.pt", "rank1.pt"})
+        config = TrainingConfig(run=self.run_folder, samples=SAMPLES, resume=True)
+        with self.assertRaisesRegex(CheckpointError, "2 processes, found 1"):
+            Trainer(config, lambda _, first, share: SyntheticStream(first, share), [])
+
+
+class Poison(unittest.TestCase):
+    def test_a_loss_that_is_no_number_in_one_stops_both(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run_two(folder, "5")
+            errors = [(Path(folder) / f"error{rank}").read_text() for rank in (0, 1)]
+            self.assertFalse((Path(folder) / "checkpoint.pt").exists())
+        self.assertEqual(errors[0], errors[1])
+        self.assertIn("step 1: the loss perceived", errors[0])
+        self.assertIn("samples 4 to 7", errors[0])
+
+
+class Shares(unittest.TestCase):
+    def images(self, first: int, share: Share, count: int) -> list[torch.Tensor]:
+        """Of the simulator's samples, a row each."""
+        stream = SamplerStream(1_000_000, first, 1, 0.0, share)
+        rows = list(stream.next(count).images.flatten(1))
+        stream.close()
+        return rows
+
+    def count_of(self, sample: torch.Tensor, samples: list[torch.Tensor]) -> int:
+        return sum(torch.equal(sample, other) for other in samples)
+
+    def test_shares_of_a_batch_make_up_the_whole_batch_of_the_simulator(self):
+        whole = self.images(4, Share(), 4)
+        parts = [sample for rank in (0, 1) for sample in self.images(4, Share(rank, 2), 2)]
+        self.assertEqual([self.count_of(sample, parts) for sample in whole], [1] * 4)
+
+    def test_three_processes_share_no_sample(self):
+        parts = [sample for rank in (0, 1, 2) for sample in self.images(0, Share(rank, 3), 2)]
+        self.assertEqual([self.count_of(sample, parts) for sample in parts], [1] * 6)
+
+
+class Alone(unittest.TestCase):
+    def test_nothing_is_exchanged(self):
+        values = torch.tensor([1.0, 2.0])
+        alone = Processes()
+        alone.average_([values])
+        self.assertEqual(values.tolist(), [1.0, 2.0])
+        self.assertEqual(alone.from_first(3.5), 3.5)
+        self.assertTrue(alone.first)
+
+
+if __name__ == "__main__":
+    unittest.main()

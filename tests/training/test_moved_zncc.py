@@ -1,0 +1,99 @@
+"""The native ZNCC of moved features against its twin in PyTorch, in double."""
+
+from __future__ import annotations
+
+import math
+import unittest
+from unittest import mock
+
+import torch
+from torch import Tensor
+
+from training.solvers import zncc
+from training.solvers.definition import DEFINITION
+from training.solvers.zncc import moved_zncc
+
+FARTHEST = torch.tensor(DEFINITION.farthest()).double()
+# At the corners of what is searched, at whole cells, and where many cells read beyond the border.
+ODD = torch.stack(
+    [FARTHEST, -FARTHEST, FARTHEST * torch.tensor([1, -1, 1]), torch.zeros(3).double()]
+    + [torch.tensor([0.6, -0.6, 0.0]).double(), torch.tensor([1.8, 0.0, -math.radians(2)]).double()]
+)
+
+
+def features(channels: int, batch: int = 2) -> tuple[Tensor, Tensor]:
+    generator = torch.Generator().manual_seed(channels)
+    shape = (batch, channels, DEFINITION.rows, DEFINITION.cols)
+    features_map = torch.randn(shape, generator=generator) + 0.3
+    bev = features_map + torch.randn(shape, generator=generator) - 0.1
+    return bev, features_map
+
+
+def corrections(batch: int = 2) -> Tensor:
+    generator = torch.Generator().manual_seed(5)
+    anywhere = (2 * torch.rand(batch, 7, 3, generator=generator).double() - 1) * FARTHEST
+    return torch.cat((ODD.expand(batch, -1, -1), anywhere), dim=1)
+
+
+def zncc_and_gradients(sides: tuple[Tensor, Tensor], poses: Tensor) -> tuple[Tensor, list[Tensor]]:
+    """And the gradients of some function of all scores."""
+    sides = tuple(side.clone().requires_grad_() for side in sides)
+    scores = moved_zncc(*sides, poses, DEFINITION.cell_m)
+    weights = torch.linspace(-1.0, 2.0, scores.numel()).to(scores).reshape(scores.shape)
+    return scores.detach(), list(torch.autograd.grad((weights * scores).sum(), sides))
+
+
+class NativeZncc(unittest.TestCase):
+    def check(self, sides: tuple[Tensor, Tensor], poses: Tensor):
+        found, gradients = zncc_and_gradients(sides, poses)
+        expected = zncc_and_gradients(tuple(side.double() for side in sides), poses.double())
+        self.assertEqual(found.dtype, torch.float32)
+        torch.testing.assert_close(found.double(), expected[0], atol=1e-5, rtol=0)
+        for gradient, wanted in zip(gradients, expected[1]):
+            self.assertEqual(gradient.dtype, torch.float32)
+            scale = wanted.abs().max().item()
+            self.assertGreater(scale, 0)
+            torch.testing.assert_close(gradient.double(), wanted, atol=1e-5 * scale, rtol=0)
+
+    def test_equals_its_twin(self):
+        # A part of a vector, one, and one and a bit.
+        for channels in (3, 16, 19):
+            with self.subTest(channels=channels):
+                self.check(features(channels), corrections())
+
+    def test_corrections_may_be_the_same_for_all(self):
+        self.check(features(16, batch=3), ODD[None])
+
+    def test_features_need_not_be_contiguous(self):
+        sides = tuple(side.to(memory_format=torch.channels_last) for side in features(16))
+        self.check(sides, corrections())
+
+    def test_of_a_constant_side_is_zero_and_so_is_its_gradient(self):
+        bev, features_map = features(4)
+        for sides in ((torch.zeros_like(bev), features_map), (bev, torch.ones_like(bev))):
+            scores, gradients = zncc_and_gradients(sides, torch.zeros(2, 1, 3))
+            self.assertEqual(scores.abs().max().item(), 0.0)
+            for gradient in gradients:
+                self.assertEqual(gradient.abs().max().item(), 0.0)
+
+    def test_serves_float32_on_the_papers_grid_and_hypotheses_alone(self):
+        bev, features_map = features(2)
+        near, far = torch.zeros(2, 1, 3), torch.tensor([[[2.3, 0.0, 0.0]]])
+        uses = {
+            True: [(bev, features_map, near, 0.6)],
+            False: [
+                (bev.double(), features_map.double(), near, 0.6),
+                (bev[:, :, 1:], features_map[:, :, 1:], near, 0.6),
+                (bev, features_map, near, 0.3),
+                (bev, features_map, far, 0.6),
+            ],
+        }
+        for native, calls in uses.items():
+            for call in calls:
+                with mock.patch.object(zncc, "moved_sums", wraps=zncc.moved_sums) as sums:
+                    moved_zncc(*call)
+                self.assertEqual(sums.called, native)
+
+
+if __name__ == "__main__":
+    unittest.main()

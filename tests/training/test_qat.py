@@ -1,0 +1,104 @@
+"""Quantization-aware training, on an untrained network and made-up samples."""
+
+from __future__ import annotations
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import torch
+
+from tests.training.synthetic import SyntheticStream
+from tests.training.untrained import untrained_network
+from training.checkpoint import load_network
+from training.errors import NotFiniteError
+from training.export_onnx import quantization_of
+from training.fake_quantization import FakeQuantized
+from training.graph import folded_convolutions
+from training.qat import fine_tune, fine_tuning_loss, save
+from training.quantize import int8_inference, quantize
+
+
+class SameBatch:
+    """One batch for ever."""
+
+    def __init__(self, batch):
+        self.batch = batch
+
+    def next(self, count):
+        return self.batch
+
+    def close(self):
+        pass
+
+
+class QuantizationAwareTraining(unittest.TestCase):
+    def setUp(self):
+        torch.set_num_threads(1)
+        self.net, self.batch = untrained_network(), SyntheticStream(3).next(1)
+        self.quantization = quantize(self.net, [self.batch])
+
+    def coarse(self) -> FakeQuantized:
+        """With some four bits left of its weights."""
+        for conv in self.quantization.quantized.values():
+            conv.scale = 8 * conv.scale
+        return FakeQuantized(self.net, self.quantization)
+
+    @torch.no_grad()
+    def loss(self, network: FakeQuantized) -> float:
+        return fine_tuning_loss(network(self.batch), self.net.solvers, self.batch).item()
+
+    def test_it_computes_what_the_int8_network_computes(self):
+        expected = int8_inference(self.net, self.quantization)(self.batch)
+        found = FakeQuantized(self.net, self.quantization)(self.batch)
+        for a, b in zip(found, expected):
+            self.assertTrue(torch.equal(a.detach(), b))
+
+    def test_every_weight_has_a_gradient_but_the_clipped_ones(self):
+        for conv in self.quantization.quantized.values():
+            conv.scale = 0.5 * conv.scale
+        network = FakeQuantized(self.net, self.quantization)
+        sum(output.square().mean() for output in network(self.batch)).backward()
+        for name, conv in network.convolutions.items():
+            limit = 63 * self.quantization.quantized[name].scale[:, None, None, None]
+            clipped = conv.weight.abs() > limit
+            self.assertTrue(clipped.any(), name)
+            self.assertFalse(conv.weight.grad[clipped].any(), name)
+            self.assertTrue(conv.weight.grad.any(), name)
+            self.assertTrue(conv.bias.grad.any(), name)
+
+    def test_a_few_steps_lower_the_loss_of_a_coarse_quantization(self):
+        network = self.coarse()
+        before = self.loss(network)
+        fine_tune(network, SameBatch(self.batch), steps=6, batch_size=1, rate=1e-3)
+        self.assertLess(self.loss(network), before - 0.1)
+
+    def test_what_was_trained_is_what_is_exported(self):
+        network = self.coarse()
+        fine_tune(network, SameBatch(self.batch), steps=1, batch_size=1, rate=1e-3)
+        trained = [output.detach() for output in network(self.batch)]
+        with tempfile.TemporaryDirectory() as folder:
+            first, path = Path(folder) / "first.pt", Path(folder) / "run/checkpoint.pt"
+            weights = self.net.state_dict()
+            state = {"model": weights, "ema": weights, "samples": 100, "config": {}}
+            torch.save(state, first)
+            save(network, first, 8, path)
+            net = load_network(path)
+            self.assertEqual(torch.load(path)["samples"], 108)
+            quantization = quantization_of(net, path, [])
+        for name, conv in folded_convolutions(net).items():
+            learned = network.convolutions[name]
+            torch.testing.assert_close(conv.weight, learned.weight.detach(), rtol=1e-6, atol=0)
+            torch.testing.assert_close(conv.bias, learned.bias.detach(), rtol=1e-6, atol=0)
+        for a, b in zip(int8_inference(net, quantization)(self.batch), trained):
+            self.assertTrue(torch.equal(a, b))
+
+    def test_it_ends_where_a_loss_is_no_number(self):
+        network = FakeQuantized(self.net, self.quantization)
+        network.convolutions["bev_compress.3.second"].bias.data[0] = float("nan")
+        with self.assertRaisesRegex(NotFiniteError, "step 0"):
+            fine_tune(network, SameBatch(self.batch), steps=2, batch_size=1, rate=1e-3)
+
+
+if __name__ == "__main__":
+    unittest.main()

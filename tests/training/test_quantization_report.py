@@ -1,0 +1,97 @@
+"""The report of what quantization costs, on an untrained network."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+import unittest
+from pathlib import Path
+
+import torch
+
+from tests.training.synthetic import SyntheticStream
+from tests.training.untrained import untrained_network
+from training.layer_errors import LayerError, layer_errors
+from training.quantization_report import (
+    BEGIN,
+    END,
+    SOLVERS,
+    layer_table,
+    pose_table,
+    write_between_marks,
+)
+from training.quantize import quantize
+
+SPOILT, OF_THE_MAP = "trunk.stage8.1.first", "map_encoder.layers.1"
+
+
+class LayerErrors(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        torch.set_num_threads(1)
+        net, batches = untrained_network(), [SyntheticStream(3).next(1)]
+        quantization = quantize(net, batches)
+        cls.before = {e.name: e for e in layer_errors(net, quantization, batches)}
+        quantization.activations[SPOILT].scale /= 16
+        cls.after = {e.name: e for e in layer_errors(net, quantization, batches)}
+        cls.quantization = quantization
+
+    def test_every_layer_is_there(self):
+        self.assertEqual(set(self.before), {"view", *self.quantization.convolutions})
+
+    def test_a_layer_has_no_effect_on_the_other_branch(self):
+        self.assertTrue(math.isinf(self.before[SPOILT].map_db))
+        self.assertFalse(math.isinf(self.before[SPOILT].bev_db))
+        self.assertTrue(math.isinf(self.before[OF_THE_MAP].bev_db))
+        self.assertFalse(math.isinf(self.before[OF_THE_MAP].map_db))
+
+    def test_a_last_layer_alone_is_its_own_effect_on_the_features(self):
+        bev, of_map = (self.before[f"{side}_compress.3.second"] for side in ("bev", "map"))
+        self.assertAlmostEqual(bev.alone_db, bev.bev_db, places=3)
+        self.assertAlmostEqual(of_map.alone_db, of_map.map_db, places=3)
+        self.assertIsNone(bev.step)
+        self.assertIsNone(of_map.step)
+
+    def test_noise_adds_up(self):
+        last = self.before["bev_compress.3.second"]
+        self.assertLess(last.together_db, last.alone_db)
+
+    def test_a_scale_that_is_too_small_shows_as_saturation_and_noise(self):
+        before, after = self.before[SPOILT], self.after[SPOILT]
+        self.assertLess(before.saturated, 0.01)
+        self.assertGreater(after.saturated, before.saturated + 0.1)
+        for kind in ("alone_db", "together_db", "bev_db"):
+            self.assertLess(getattr(after, kind), getattr(before, kind) - 5, kind)
+        self.assertEqual(after.largest_output, before.largest_output)
+        untouched = self.after["trunk.stem"]
+        self.assertEqual(untouched, self.before["trunk.stem"])
+
+
+class Document(unittest.TestCase):
+    def test_a_layer_is_a_row(self):
+        layer = LayerError("view", None, 1.5, 0.01, 0.0005, 40.04, 20.0, 30.0, math.inf)
+        self.assertEqual(
+            layer_table([layer]).splitlines()[-1],
+            "| `view` |  | 1.50 | 0.0100 | 0.050 | 40.0 | 20.0 | 30.0 | exact |",
+        )
+
+    def test_the_pose_table_pairs_the_samples(self):
+        exact = {kind: torch.tensor([[1.0, 2.0, 3.0]] * 2) for kind in SOLVERS}
+        rounded = {kind: error + torch.tensor([0.5, 0.0, -1.0]) for kind, error in exact.items()}
+        rows = pose_table(exact, rounded).splitlines()
+        self.assertEqual(rows[2], "| block, x (m) | 1.0000 | 1.5000 | +0.5000 ± 0.0000 |")
+        self.assertEqual(len(rows), 8)
+
+    def test_only_what_lies_between_the_marks_changes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            document = Path(folder) / "page.md"
+            document.write_text(f"before\n{BEGIN}old\n{END}after\n")
+            write_between_marks(document, "new\n")
+            self.assertEqual(document.read_text(), f"before\n{BEGIN}new\n{END}after\n")
+            document.write_text("no marks\n")
+            with self.assertRaisesRegex(ValueError, "page.md"):
+                write_between_marks(document, "new\n")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,168 @@
+"""The parts of a run: its options, precision, patience, checkpoints and progress."""
+
+import contextlib
+import io
+import tempfile
+import unittest
+import unittest.mock
+from pathlib import Path
+
+import torch
+
+from training.checkpoint import load_network, network_of, read_checkpoint
+from training.early_stop import Patience
+from training.errors import CheckpointError, TrainingError
+from training.models import PRESETS, BevNetwork
+from training.options import parse_config
+from training.precision import choose_precision, cpu_flags
+from training.progress import Progress
+
+CPU, CUDA = torch.device("cpu"), torch.device("cuda")
+
+
+class Options(unittest.TestCase):
+    def refusal(self, *arguments: str, processes: int = 1) -> str:
+        said = io.StringIO()
+        with self.assertRaises(SystemExit), contextlib.redirect_stderr(said):
+            parse_config(list(arguments), "", processes)
+        return said.getvalue()
+
+    def test_every_field_is_an_option(self):
+        arguments = ["--samples", "8", "--run", "x", "--network", "small", "--clip-norm", "2"]
+        config = parse_config([*arguments, "--resume"], "")
+        self.assertEqual((config.run, config.samples, config.resume), (Path("x"), 8, True))
+        self.assertEqual((config.network, config.clip_norm, config.minutes), ("small", 2.0, 0.0))
+
+    def test_what_makes_no_sense_is_refused(self):
+        budget = ("--samples", "8")
+        self.assertIn("--minutes or --samples", self.refusal())
+        self.assertIn("--minutes or --samples", self.refusal(*budget, "--minutes", "1"))
+        self.assertIn("'float16'", self.refusal(*budget, "--precision", "float16"))
+        self.assertIn("'wild'", self.refusal(*budget, "--nuisances", "wild"))
+        self.assertIn("'hope'", self.refusal(*budget, "--on-error", "hope"))
+        self.assertIn("multiple of 3 processes", self.refusal(*budget, processes=3))
+        self.assertIn("'tiny'", self.refusal(*budget, "--network", "tiny"))
+        self.assertIn("'magic'", self.refusal(*budget, "--view", "magic"))
+        self.assertIn("384 x 896", self.refusal(*budget, "--network", "paper-resnet50"))
+        self.assertIn("0 minutes", self.refusal(*budget, "--validation-minutes", "0"))
+
+
+class Precisions(unittest.TestCase):
+    def test_auto_follows_the_processor(self):
+        self.assertTrue(choose_precision("auto", CPU, {"avx2", "avx512_bf16"}).bfloat16)
+        self.assertTrue(choose_precision("auto", CPU, {"amx_bf16"}).bfloat16)
+        chosen = choose_precision("auto", CPU, {"avx2"})
+        self.assertEqual(str(chosen), "float32 (the CPU has neither amx_bf16 nor avx512_bf16)")
+
+    def test_auto_follows_the_gpu(self):
+        for able in (True, False):
+            with unittest.mock.patch("torch.cuda.is_bf16_supported", return_value=able):
+                self.assertEqual(choose_precision("auto", CUDA, set()).bfloat16, able)
+
+    def test_a_wish_is_obeyed(self):
+        self.assertTrue(choose_precision("bfloat16", CPU, set()).bfloat16)
+        self.assertFalse(choose_precision("float32", CPU, {"amx_bf16"}).bfloat16)
+
+    def test_flags_are_read_as_linux_writes_them(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "cpuinfo"
+            self.assertEqual(cpu_flags(file), set())
+            file.write_text("processor\t: 0\nmodel name\t: made up\nflags\t\t: fpu avx512_bf16\n")
+            self.assertEqual(cpu_flags(file), {"fpu", "avx512_bf16"})
+
+
+class Patiences(unittest.TestCase):
+    def watched(self, figure: str, values: list[float], limit: int = 2) -> Patience:
+        patience = Patience(figure, limit)
+        for i, value in enumerate(values):
+            patience.watch({figure: value}, 100 * i)
+        return patience
+
+    def test_errors_should_fall_and_overlap_should_rise(self):
+        rising = [0.1, 0.2, 0.3]
+        self.assertTrue(self.watched("joint_x_mae", rising).exhausted)
+        self.assertFalse(self.watched("iou_divider", rising).exhausted)
+        self.assertFalse(self.watched("joint_x_mae", [0.5, 0.6, 0.4, 0.5]).exhausted)
+
+    def test_no_limit_never_ends(self):
+        self.assertFalse(self.watched("joint_x_mae", [0.1] * 9, limit=0).exhausted)
+
+    def test_a_resumed_run_goes_on_counting(self):
+        patience = Patience("joint_x_mae", 2)
+        patience.resume(self.watched("joint_x_mae", [0.1, 0.2]).state())
+        self.assertEqual((patience.best, patience.waited), (0.1, 1))
+        patience.watch({"joint_x_mae": 0.1}, 300)
+        self.assertTrue(patience.exhausted)
+
+    def test_another_figure_is_counted_anew(self):
+        patience = Patience("iou_divider", 2)
+        patience.resume(self.watched("joint_x_mae", [0.1, 0.2]).state())
+        self.assertEqual((patience.best, patience.waited), (None, 0))
+
+    def test_a_bias_has_no_better_and_worse(self):
+        with self.assertRaisesRegex(TrainingError, "'joint_x_bias', wanted one of"):
+            Patience("joint_x_bias", 1).check(["joint"], ["x"], ["divider"])
+        Patience("joint_x_mae", 1).check(["joint"], ["x"], ["divider"])
+
+
+class Checkpoints(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name) / "checkpoint.pt"
+
+    def write(self, network: BevNetwork, config: dict) -> None:
+        weights = network.state_dict()
+        state = {"model": weights, "ema": weights, "samples": 0, "config": config}
+        torch.save(state, self.path)
+
+    def test_a_network_comes_back_as_it_was_chosen(self):
+        config = {"network": "small", "view": "lut"}
+        network = BevNetwork(network_of({"config": config}, self.path))
+        self.write(network, config)
+        loaded = load_network(self.path)
+        self.assertEqual((loaded.config.name, loaded.config.view), ("small-lut", "lut"))
+        bias = torch.equal(loaded.head.second.weight, network.head.second.weight)
+        self.assertTrue(bias)
+        self.assertFalse(loaded.training)
+
+    def test_a_checkpoint_from_before_there_was_a_choice_is_nanos(self):
+        self.write(BevNetwork(PRESETS["nano"]), {"bf16": True})
+        self.assertEqual(load_network(self.path).config, PRESETS["nano"])
+
+    def test_what_is_no_checkpoint_is_named_with_the_reason(self):
+        with self.assertRaisesRegex(CheckpointError, f"^{self.path}: no such file"):
+            read_checkpoint(self.path)
+        for content in (b"", b"PK\x03\x04 cut short", b"\x80\x02."):
+            self.path.write_bytes(content)
+            with self.assertRaisesRegex(CheckpointError, f"^{self.path}: unreadable.*\\)$"):
+                read_checkpoint(self.path)
+        torch.save({"model": {}}, self.path)
+        with self.assertRaisesRegex(CheckpointError, "'ema' is missing"):
+            read_checkpoint(self.path)
+        torch.save([1, 2], self.path)
+        with self.assertRaisesRegex(CheckpointError, "no checkpoint of training.train"):
+            read_checkpoint(self.path)
+
+    def test_weights_that_do_not_fit_are_refused_in_one_line(self):
+        self.write(BevNetwork(PRESETS["nano"]), {"network": "small"})
+        with self.assertRaisesRegex(CheckpointError, "today's network 'small'") as caught:
+            load_network(self.path)
+        self.assertNotIn("\n", str(caught.exception))
+        self.write(BevNetwork(PRESETS["nano"]), {"network": "gone"})
+        with self.assertRaisesRegex(CheckpointError, "there is no network 'gone'"):
+            load_network(self.path)
+
+
+class Lines(unittest.TestCase):
+    def test_rate_and_waiting_are_of_the_busy_time(self):
+        progress = Progress()
+        progress.add(torch.tensor([1.0, 2.0]), samples=8, busy_s=1.5, waited_s=0.0)
+        progress.add(torch.tensor([3.0, 4.0]), samples=8, busy_s=0.5, waited_s=0.5)
+        self.assertEqual(progress.mean_losses().tolist(), [2.0, 3.0])
+        self.assertEqual(progress.rate, 8.0)
+        self.assertEqual(progress.bottleneck, "25 % waiting for samples")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,40 @@
+"""The tables that a run appends to."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+from training.run_table import append_row
+
+
+class AppendRow(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name) / "curves.csv"
+
+    def append(self, *rows: dict[str, float]) -> list[str]:
+        for row in rows:
+            append_row(self.path, row)
+        return self.path.read_text().splitlines()
+
+    def test_the_first_row_names_the_columns(self):
+        lines = self.append({"step": 1, "loss": 0.5}, {"step": 2, "loss": 0.25})
+        self.assertEqual(lines, ["step,loss", "1,0.5", "2,0.25"])
+
+    def test_a_table_of_before_gets_the_columns_that_it_lacks(self):
+        self.path.write_text("step,loss\r\n1,0.5\r\n")
+        lines = self.append({"step": 2, "new": 3.0, "loss": 0.25}, {"step": 3, "new": 4, "loss": 0})
+        self.assertEqual(lines, ["step,loss,new", "1,0.5,nan", "2,0.25,3.0", "3,0,4"])
+
+    def test_a_column_that_is_no_longer_known_is_nan(self):
+        self.path.write_text("step,old\r\n1,7\r\n")
+        self.assertEqual(self.append({"step": 2}), ["step,old", "1,7", "2,nan"])
+
+    def test_an_empty_file_is_begun_anew(self):
+        self.path.write_text("")
+        self.assertEqual(self.append({"step": 1}), ["step", "1"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,81 @@
+"""Reads checkpoints, and refuses in one sentence those that are none or do not fit.
+
+    /usr/bin/python3 -m training.checkpoint training/runs/nano/checkpoint.pt
+
+prints the name of the network that is in it.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from training.errors import CheckpointError, run_program
+from training.models.config import ModelConfig, network_config
+from training.models.network import BevNetwork
+
+# Of checkpoints from before there was a choice.
+_FIRST_NETWORK = {"network": "nano", "view": ""}
+
+
+def read_checkpoint(path: Path, device: str | torch.device = "cpu") -> dict[str, Any]:
+    """What Trainer.save wrote."""
+    if not path.is_file():
+        raise CheckpointError(f"{path}: no such file, wanted a checkpoint")
+    try:
+        state = torch.load(path, map_location=device)
+    except Exception as error:  # whatever pickle and the archive reader make of strange bytes
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise CheckpointError(f"{path}: unreadable as a checkpoint ({reason})") from error
+    for key in ("model", "ema", "samples", "config"):
+        if not isinstance(state, dict) or key not in state:
+            raise CheckpointError(f"{path}: no checkpoint of training.train, '{key}' is missing")
+    return state
+
+
+def network_of(state: dict[str, Any], path: Path) -> ModelConfig:
+    """The configuration of a checkpoint's network."""
+    chosen = {key: state["config"].get(key, first) for key, first in _FIRST_NETWORK.items()}
+    try:
+        return network_config(chosen["network"], chosen["view"])
+    except ValueError as error:
+        raise CheckpointError(f"{path}: {error}") from error
+
+
+def load_weights(net: BevNetwork, state: dict[str, Any], weights: str, path: Path) -> None:
+    """`weights`: "model", or "ema" for their running average."""
+    found = network_of(state, path)
+    if found != net.config:
+        raise CheckpointError(
+            f"{path}: holds the network '{found.name}', wanted '{net.config.name}'"
+        )
+    try:
+        net.load_state_dict(state[weights])
+    except (AttributeError, RuntimeError, TypeError) as error:
+        first, *details = (line.strip() for line in str(error).splitlines())
+        reason = details[0] if details else first
+        raise CheckpointError(
+            f"{path}: its weights are not those of today's network '{found.name}' ({reason})"
+        ) from error
+
+
+def load_network(path: Path, averaged: bool = True) -> BevNetwork:
+    """The network of a checkpoint, ready to run; `averaged`: with the running average."""
+    state = read_checkpoint(path)
+    net = BevNetwork(network_of(state, path))
+    load_weights(net, state, "ema" if averaged else "model", path)
+    return net.eval()
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("checkpoint", type=Path)
+    path = parser.parse_args().checkpoint
+    print(network_of(read_checkpoint(path), path).name)
+
+
+if __name__ == "__main__":
+    run_program(main)

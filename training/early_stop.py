@@ -1,0 +1,62 @@
+"""Stops a run that no longer gets better."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from training.errors import TrainingError
+
+_LESS_IS_BETTER = ("_mae", "_median", "_rmse", "_p90", "_nll")
+_MORE_IS_BETTER = ("iou_",)
+
+
+class Patience:
+    """Counts validations since the named figure was best. `limit` 0: never stops."""
+
+    def __init__(self, figure: str, limit: int) -> None:
+        self.figure = figure
+        self.limit = limit
+        self.best: float | None = None
+        self.best_samples = 0
+        self.waited = 0
+
+    def check(self, solvers: Iterable[str], axes: Iterable[str], classes: Iterable[str]) -> None:
+        """Refuses a figure that no validation measures or that has no better and worse."""
+        figures = {f"{s}_{a}{kind}" for s in solvers for a in axes for kind in _LESS_IS_BETTER}
+        figures |= {f"iou_{name}" for name in classes}
+        if self.figure not in figures:
+            raise TrainingError(
+                f"--patience-figure: found '{self.figure}', wanted one of "
+                f"{', '.join(sorted(figures))}"
+            )
+
+    def watch(self, metrics: dict[str, float], samples: int) -> None:
+        """Takes the metrics of a validation after so many training samples."""
+        value = metrics[self.figure]
+        if self.best is None or self._better(value, self.best):
+            self.best, self.best_samples, self.waited = value, samples, 0
+        else:
+            self.waited += 1
+
+    def _better(self, value: float, best: float) -> bool:
+        return value > best if self.figure.startswith(_MORE_IS_BETTER) else value < best
+
+    @property
+    def exhausted(self) -> bool:
+        return 0 < self.limit <= self.waited
+
+    def __str__(self) -> str:
+        if self.best is None:
+            return f"{self.figure} was never measured"
+        return (
+            f"{self.figure} was best ({self.best:.4f}) after {self.best_samples} samples, "
+            f"{self.waited} validations ago"
+        )
+
+    def state(self) -> dict[str, float | int | str | None]:
+        return {key: value for key, value in vars(self).items() if key != "limit"}
+
+    def resume(self, state: dict[str, float | int | str | None]) -> None:
+        """Goes on counting, if it is the same figure."""
+        if state["figure"] == self.figure:
+            vars(self).update(state)

@@ -1,0 +1,121 @@
+"""Quantization-aware training: a short fine-tuning of a trained network as its int8 model computes
+it.
+
+    /usr/bin/python3 -m training.qat training/runs/nano/checkpoint.pt --run training/runs/qat \\
+        --samples 2000
+
+Writes checkpoint.pt into the run's folder, with the quantization in it, so that
+training.export_onnx exports exactly what was trained. Whether it pays: docs/quantization.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+import torch
+from torch import Tensor, nn
+
+from training.checkpoint import load_network, read_checkpoint
+from training.config import FIRST_TRAINING_SEED
+from training.data import Batch, SamplerStream, Stream
+from training.errors import NotFiniteError, TrainingError
+from training.export_onnx import calibration_batches
+from training.fake_quantization import FakeQuantized
+from training.losses import pose_losses, semantic_loss
+from training.model import real_raster
+from training.quantize import quantize
+from training.solver import PoseSolvers, standardise
+
+SEED = FIRST_TRAINING_SEED + 2**26  # scenes that neither a usual run nor the calibration reaches
+POSE_WEIGHT = 0.1  # as in training.train
+DROP_CAMERA_PROBABILITY = 0.15
+CLIP_NORM = 5.0
+LOG_STEPS = 10
+
+
+def fine_tuning_loss(
+    outputs: tuple[Tensor, Tensor, Tensor], solvers: PoseSolvers, batch: Batch
+) -> Tensor:
+    """The losses of training's second stage on what the int8 model puts out: it has no
+    reconstructed mask."""
+    bev, features_map, perceived = outputs
+    sides = standardise(bev), standardise(features_map)
+    posteriors = solvers.joint(*sides), solvers.decoupled(*sides, None)
+    pose = torch.stack([pose_losses(p, batch.correction).mean(0).sum() for p in posteriors]).sum()
+    return semantic_loss(perceived, real_raster(batch.raster_truth)) + POSE_WEIGHT * pose
+
+
+def fine_tune(
+    network: FakeQuantized, stream: Stream, steps: int, batch_size: int, rate: float
+) -> list[float]:
+    """The loss of every step. The rate falls to zero on half a cosine; the solvers' scales stay."""
+    optimiser = torch.optim.Adam(network.parameters(), lr=rate)
+    schedule = torch.optim.lr_scheduler.LambdaLR(
+        optimiser, lambda step: 0.5 * (1 + math.cos(math.pi * step / steps))
+    )
+    losses: list[float] = []
+    for step in range(steps):
+        batch = stream.next(batch_size)
+        loss = fine_tuning_loss(network(batch), network.net.solvers, batch)
+        optimiser.zero_grad(set_to_none=True)
+        loss.backward()
+        norm = nn.utils.clip_grad_norm_(network.parameters(), CLIP_NORM)
+        if not (torch.isfinite(loss) and torch.isfinite(norm)):
+            raise NotFiniteError(f"step {step}: loss {loss.item()}, norm of its gradient {norm}")
+        optimiser.step()
+        schedule.step()
+        losses.append(loss.item())
+        if len(losses) % LOG_STEPS == 0:
+            mean = sum(losses[-LOG_STEPS:]) / LOG_STEPS
+            print(f"step {step + 1} of {steps}: loss {mean:.4f}", flush=True)
+    return losses
+
+
+def save(network: FakeQuantized, first: Path, samples: int, path: Path) -> None:
+    """A checkpoint like that of training.train, from the one that it began with."""
+    quantization, state = network.finish(), read_checkpoint(first)
+    weights = network.net.state_dict()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    torch.save(
+        {
+            "model": weights,
+            "ema": weights,
+            "samples": state["samples"] + samples,
+            "config": state["config"],
+            "quantization": quantization.state(),
+        },
+        path,
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("checkpoint", type=Path)
+    parser.add_argument("--run", type=Path, required=True, help="folder for checkpoint.pt")
+    parser.add_argument("--samples", type=int, default=2000, help="budget")
+    parser.add_argument("--batch", type=int, default=8)
+    parser.add_argument("--learning-rate", type=float, default=3e-5)
+    parser.add_argument("--calibration", type=int, default=384, help="samples")
+    parser.add_argument("--threads", type=int, default=1)
+    arguments = parser.parse_args()
+    torch.set_num_threads(arguments.threads)
+    try:
+        net = load_network(arguments.checkpoint)
+        batches = calibration_batches(arguments.calibration, arguments.threads)
+        network = FakeQuantized(net, quantize(net, batches))
+        stream = SamplerStream(SEED, 0, arguments.threads, DROP_CAMERA_PROBABILITY)
+        steps = arguments.samples // arguments.batch
+        fine_tune(network, stream, steps, arguments.batch, arguments.learning_rate)
+        stream.close()
+        out = arguments.run / "checkpoint.pt"
+        save(network, arguments.checkpoint, steps * arguments.batch, out)
+    except TrainingError as error:
+        sys.exit(str(error))
+    print(out)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,146 @@
+"""What quantization costs: the error of every layer, and of the pose.
+
+    /usr/bin/python3 -m training.quantization_report CHECKPOINT [--write docs/quantization.md]
+
+The quantization is the checkpoint's own (training.qat) or a new one, as training.export_onnx makes
+it. Every layer's error is looked at on evaluation scenes; the pose error on --samples of them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+
+import torch
+from torch import Tensor
+
+from training.checkpoint import load_network
+from training.data import Batch
+from training.evaluate import AXES, Inference
+from training.export_onnx import calibration_batches, quantization_of
+from training.layer_errors import LayerError, layer_errors
+from training.models.network import BevNetwork
+from training.quantize import FloatBackend, Quantization, int8_inference, run
+from training.solver import PoseSolvers
+from training.sources import BATCH, simulator_batches
+
+BEGIN, END = "<!-- quantization_report: begin -->\n", "<!-- quantization_report: end -->\n"
+SOLVERS = ("block", "decoupled+refine")
+_UNITS = ("m", "m", "degrees")
+
+
+def _decibels(ratio: float) -> str:
+    return "exact" if math.isinf(ratio) else f"{ratio:.1f}"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.3f}"
+
+
+def _markdown(header: list[str], rows: list[list[str]]) -> str:
+    rule = ["---"] + ["---:"] * (len(header) - 1)
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in (header, rule, *rows)) + "\n"
+
+
+def layer_table(errors: list[LayerError]) -> str:
+    header = [
+        *("layer", "largest weight", "largest output", "step", "saturated, %"),
+        *("alone, dB", "all int8, dB", "F_B of it alone, dB", "F_M of it alone, dB"),
+    ]
+    rows = [
+        [
+            f"`{e.name}`",
+            "" if e.largest_weight is None else f"{e.largest_weight:.2f}",
+            f"{e.largest_output:.2f}",
+            "real" if e.step is None else f"{e.step:.4f}",
+            "" if e.saturated is None else _percent(e.saturated),
+            *map(_decibels, (e.alone_db, e.together_db, e.bev_db, e.map_db)),
+        ]
+        for e in errors
+    ]
+    return _markdown(header, rows)
+
+
+def float_inference_of(net: BevNetwork, quantization: Quantization) -> Inference:
+    """The folded network before rounding."""
+    return lambda batch: run(net, quantization.convolutions, FloatBackend(batch), batch)
+
+
+@torch.no_grad()
+def pose_errors(
+    infer: Inference, solvers: PoseSolvers, batches: list[Batch]
+) -> dict[str, Tensor]:
+    """Absolute errors [samples, 3] of each solver: m, m, degrees."""
+    errors: dict[str, list[Tensor]] = {kind: [] for kind in SOLVERS}
+    for batch in batches:
+        bev, features_map, _ = infer(batch)
+        for kind in SOLVERS:
+            error = solvers.solve(kind, bev, features_map).estimate - batch.correction
+            errors[kind].append(error.abs())
+    in_degrees = torch.tensor([1.0, 1.0, 180.0 / math.pi])
+    return {kind: torch.cat(parts) * in_degrees for kind, parts in errors.items()}
+
+
+def pose_table(exact: dict[str, Tensor], rounded: dict[str, Tensor]) -> str:
+    """MAE of both, and the mean of their difference with its standard error."""
+    rows = []
+    for kind in SOLVERS:
+        difference = rounded[kind] - exact[kind]
+        spread = difference.std(0) / math.sqrt(len(difference))
+        for i, axis in enumerate(AXES):
+            rows.append(
+                [
+                    f"{kind}, {axis} ({_UNITS[i]})",
+                    f"{exact[kind][:, i].mean():.4f}",
+                    f"{rounded[kind][:, i].mean():.4f}",
+                    f"{difference[:, i].mean():+.4f} ± {spread[i]:.4f}",
+                ]
+            )
+    return _markdown(["MAE", "float", "int8", "int8 - float"], rows)
+
+
+def report(
+    net: BevNetwork, quantization: Quantization, layer_batches: list[Batch], batches: list[Batch]
+) -> str:
+    layers = layer_table(layer_errors(net, quantization, layer_batches))
+    infer = float_inference_of(net, quantization), int8_inference(net, quantization)
+    exact, rounded = (pose_errors(side, net.solvers, batches) for side in infer)
+    looked_at, measured = (sum(map(len, part)) for part in (layer_batches, batches))
+    return (
+        f"Pose, {measured} evaluation scenes:\n\n{pose_table(exact, rounded)}\n"
+        f"Layers, {looked_at} evaluation scenes:\n\n{layers}"
+    )
+
+
+def write_between_marks(document: Path, text: str) -> None:
+    head, begin, rest = document.read_text().partition(BEGIN)
+    _, end, tail = rest.partition(END)
+    if not (begin and end):
+        raise ValueError(f"{document}: found no '{BEGIN.strip()}' ... '{END.strip()}'")
+    document.write_text(head + begin + text + end + tail)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("checkpoint", type=Path)
+    parser.add_argument("--samples", type=int, default=256, help="for the pose")
+    parser.add_argument("--layer-samples", type=int, default=16, help="for the layers")
+    parser.add_argument("--calibration", type=int, default=384, help="samples")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--write", type=Path, help="document with marks for the tables")
+    arguments = parser.parse_args()
+    torch.set_num_threads(arguments.threads)
+    net = load_network(arguments.checkpoint)
+    calibration = calibration_batches(arguments.calibration, arguments.threads)
+    quantization = quantization_of(net, arguments.checkpoint, calibration)
+    batches = simulator_batches(arguments.samples, arguments.threads)
+    layer_batches = batches[: math.ceil(arguments.layer_samples / BATCH)]
+    text = report(net, quantization, layer_batches, batches)
+    print(text, end="")
+    if arguments.write:
+        write_between_marks(arguments.write, text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,36 @@
+"""The CSV files in which a run keeps its losses and errors."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+_UNKNOWN = "nan"
+
+
+def append_row(path: Path, row: dict[str, float]) -> None:
+    """Begins the table where there is none. A column that it lacks, because an older version of the
+    program began it, is added, with "nan" in the rows before."""
+    columns, rows = _read(path)
+    if missing := [name for name in row if name not in columns]:
+        columns = [*columns, *missing]
+        _write(path, columns, rows)
+    with path.open("a", newline="") as file:
+        csv.DictWriter(file, columns, restval=_UNKNOWN).writerow(row)
+
+
+def _read(path: Path) -> tuple[list[str], list[dict[str, str]]]:
+    if not path.exists():
+        return [], []
+    with path.open(newline="") as file:
+        reader = csv.DictReader(file)
+        return list(reader.fieldnames or []), list(reader)
+
+
+def _write(path: Path, columns: list[str], rows: list[dict[str, str]]) -> None:
+    partial = path.with_suffix(".partial")
+    with partial.open("w", newline="") as file:
+        writer = csv.DictWriter(file, columns, restval=_UNKNOWN)
+        writer.writeheader()
+        writer.writerows(rows)
+    partial.replace(path)
