@@ -51,19 +51,28 @@ Result<NetworkEvaluation> NetworkEvaluation::create(const std::string& model, Re
 }
 
 Status NetworkEvaluation::add_solvers(const std::vector<ReadOutCase>& cases, int tuning_frames) {
-  const bool any_masks =
-      std::ranges::find(cases, SolverInput::kMasks, &ReadOutCase::input) != cases.end();
-  MaskScales mask_scales(any_masks ? look_at_tuning_frames(tuning_frames)
-                                   : std::vector<TuningFrame>());
+  const auto scales_for = [&](SolverInput input) {
+    const bool needed = std::ranges::find(cases, input, &ReadOutCase::input) != cases.end();
+    return MaskScales(needed ? look_at_tuning_frames(tuning_frames, input)
+                             : std::vector<TuningFrame>());
+  };
+  MaskScales mask_scales = scales_for(SolverInput::kMasks);
+  MaskScales true_mask_scales = scales_for(SolverInput::kTrueMasks);
   for (const ReadOutCase& read_out : cases) {
     const SolverCase& c = read_out.solver_case;
-    const bool masks = read_out.input == SolverInput::kMasks;
     Result<SolverParameters> parameters = network_->solver_parameters();
-    if (masks) parameters = mask_scales.parameters_for(c);
+    const MaskInput* masks = nullptr;
+    if (read_out.input == SolverInput::kMasks) {
+      parameters = mask_scales.parameters_for(c);
+      masks = mask_inputs_.of(c);
+    } else if (read_out.input == SolverInput::kTrueMasks) {
+      parameters = true_mask_scales.parameters_for(c);
+      masks = true_mask_inputs_.of(c);
+    }
     if (!parameters) return tl::unexpected(parameters.error());
     auto solver = make_solver(c.solver, c.grid, c.channels, c.hypotheses(), *parameters);
     if (!solver) return tl::unexpected(solver.error());
-    readers_.push_back({read_out, std::move(*solver), masks ? mask_inputs_.of(c) : nullptr});
+    readers_.push_back({read_out, std::move(*solver), masks});
   }
   return {};
 }
@@ -76,15 +85,20 @@ void NetworkEvaluation::add_baselines() {
       {"ipm", std::make_unique<InversePerspectiveMapping>(sim::told_network_rig(), kHypotheses)});
 }
 
-std::vector<TuningFrame> NetworkEvaluation::look_at_tuning_frames(int frames) {
+std::vector<TuningFrame> NetworkEvaluation::look_at_tuning_frames(int frames, SolverInput input) {
   sim::SampleStream stream;
   stream.first_seed = sim::kTuningSeedBase;
   stream.nuisances = sim::nuisances_of(sim::NuisanceSet::kStandard);
   std::vector<TuningFrame> seen;
   for_each_sample(stream, frames, [&](const sim::Sample& sample) {
-    perceive(sample);
-    take_probabilities();
-    seen.push_back({perceived_, sample.raster_prior, sample.correction});
+    if (input == SolverInput::kTrueMasks) {
+      take_truth(sample);
+      seen.push_back({truth_, sample.raster_prior, sample.correction});
+    } else {
+      perceive(sample);
+      take_probabilities();
+      seen.push_back({perceived_, sample.raster_prior, sample.correction});
+    }
   });
   return seen;
 }
@@ -136,12 +150,22 @@ void NetworkEvaluation::take_probabilities() {
                          [](float logit) { return 1.0F / (1.0F + std::exp(-logit)); });
 }
 
+void NetworkEvaluation::take_truth(const sim::Sample& sample) {
+  truth_.resize(sample.raster_truth.size());
+  std::ranges::transform(sample.raster_truth, truth_.begin(),
+                         [](uint8_t value) { return static_cast<float>(value) / 255.0F; });
+}
+
 void NetworkEvaluation::judge_all(const sim::Sample& sample, std::vector<ReadOut>& read_outs) {
   set_no_evidence(kHypotheses, solution_);
   read_outs[0].outcomes.push_back(judge(solution_, kHypotheses, sample.correction));
   if (!mask_inputs_.empty() || !baselines_.empty()) {
     take_probabilities();
     mask_inputs_.take(perceived_, sample.raster_prior);
+  }
+  if (!true_mask_inputs_.empty()) {
+    take_truth(sample);
+    true_mask_inputs_.take(truth_, sample.raster_prior);
   }
   const std::span<ReadOut> others = std::span(read_outs).subspan(1);
   judge_solvers(sample.correction, others.first(readers_.size()));

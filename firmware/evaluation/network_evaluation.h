@@ -77,10 +77,11 @@ class NetworkEvaluation {
   explicit NetworkEvaluation(std::unique_ptr<Network> network) : network_(std::move(network)) {}
   Status add_solvers(const std::vector<ReadOutCase>& cases, int tuning_frames);
   void add_baselines();
-  std::vector<TuningFrame> look_at_tuning_frames(int frames);
+  std::vector<TuningFrame> look_at_tuning_frames(int frames, SolverInput input);
   std::vector<ReadOut> empty_read_outs() const;
   void perceive(const sim::Sample& sample);
   void take_probabilities();
+  void take_truth(const sim::Sample& sample);
   void judge_all(const sim::Sample& sample, std::vector<ReadOut>& read_outs);
   void judge_solvers(const Se2& correction, std::span<ReadOut> read_outs);
   void judge_baselines(const sim::Sample& sample, std::span<ReadOut> read_outs);
@@ -90,7 +91,9 @@ class NetworkEvaluation {
   std::vector<Reader> readers_;
   std::vector<NamedBaseline> baselines_;
   MaskInputs mask_inputs_;
+  MaskInputs true_mask_inputs_;
   std::vector<float> perceived_;  ///< the mask's probabilities
+  std::vector<float> truth_;      ///< what a network without errors would perceive
   ViewTable view_table_;
   SolverResult solution_;
 };

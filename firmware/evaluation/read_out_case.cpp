@@ -14,7 +14,7 @@ constexpr std::array<SolverKind, 5> kSolvers{SolverKind::kFullFft, SolverKind::k
                                              SolverKind::kBandedRefined};
 
 int channels_of(SolverInput input) {
-  return input == SolverInput::kMasks ? 4 : SolverCase{}.channels;
+  return input == SolverInput::kFeatures ? SolverCase{}.channels : 4;
 }
 
 void add(const ReadOutCase& read_out, std::vector<ReadOutCase>& cases) {
@@ -43,15 +43,22 @@ void add_sizes_and_steps(SolverInput input, std::vector<ReadOutCase>& cases) {
 }  // namespace
 
 const char* name_of(SolverInput input) {
-  return input == SolverInput::kMasks ? "S" : "F";
+  switch (input) {
+    case SolverInput::kFeatures:
+      return "F";
+    case SolverInput::kMasks:
+      return "S";
+    case SolverInput::kTrueMasks:
+      return "T";
+  }
+  return "unknown";
 }
 
 std::string label_of(const ReadOutCase& read_out) {
   const SolverCase& solver_case = read_out.solver_case;
-  const bool masks = read_out.input == SolverInput::kMasks;
   const bool resized = !(solver_case.grid == kFeatureGrid);
   std::string label(name_of(solver_case.solver));
-  if (masks) label.append(" ").append(name_of(read_out.input));
+  if (read_out.input != SolverInput::kFeatures) label.append(" ").append(name_of(read_out.input));
   if (resized) label.append(" ").append(size_name(solver_case.grid));
   if (solver_case.step_m != SolverCase{}.step_m) {
     fmt::format_to(std::back_inserter(label), " {}", solver_case.step_m);
@@ -68,6 +75,7 @@ std::vector<ReadOutCase> read_out_cases(ReadOutRows rows) {
   for (const SolverInput input : {SolverInput::kFeatures, SolverInput::kMasks}) {
     add_sizes_and_steps(input, cases);
   }
+  add_solvers(SolverInput::kTrueMasks, cases);
   return cases;
 }
 

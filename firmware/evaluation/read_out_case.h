@@ -7,13 +7,14 @@
 
 namespace bevloc::evaluation {
 
-/// What a solver matches (the paper's Table III).
+/// What a solver matches (the first two: the paper's Table III).
 enum class SolverInput {
-  kFeatures,  ///< F: the network's, of images and of the map
-  kMasks,     ///< S: the mask perceived and the map's raster, with their union (C = 4)
+  kFeatures,   ///< F: the network's, of images and of the map
+  kMasks,      ///< S: the mask perceived and the map's raster, with their union (C = 4)
+  kTrueMasks,  ///< T: S with the world's own map at the true pose in place of what is perceived
 };
 
-/// "F" or "S".
+/// "F", "S" or "T".
 const char* name_of(SolverInput input);
 
 /// A solver with what it reads.
@@ -29,7 +30,7 @@ std::string label_of(const ReadOutCase& read_out);
 
 enum class ReadOutRows {
   kSolvers,    ///< the solvers on the network's features
-  kVariants,   ///< both inputs, the sizes and the steps of the paper's Tables III and IV
+  kVariants,   ///< all inputs, the sizes and the steps of the paper's Tables III and IV
   kBaselines,  ///< methods without learned matching, no solvers
   kAll,
 };

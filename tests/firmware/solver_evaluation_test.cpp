@@ -134,19 +134,20 @@ TEST(SolverCases, EveryCaseCanBeSolved) {
   }
 }
 
-TEST(ReadOutCases, HoldBothInputsSizesAndSteps) {
+TEST(ReadOutCases, HoldAllInputsSizesAndSteps) {
   EXPECT_EQ(read_out_cases(ReadOutRows::kSolvers).size(), 5U);
   EXPECT_TRUE(read_out_cases(ReadOutRows::kBaselines).empty());
   const auto cases = read_out_cases(ReadOutRows::kAll);
   EXPECT_EQ(cases, read_out_cases(ReadOutRows::kVariants));
   std::vector<std::string> labels;
   std::ranges::transform(cases, std::back_inserter(labels), label_of);
-  for (const char* wanted : {"full-fft", "block S", "decoupled 0.1", "decoupled S 0.4",
-                             "decoupled+refine S 400x200", "decoupled S 400x200 0.1"}) {
+  for (const char* wanted :
+       {"full-fft", "block S", "decoupled 0.1", "decoupled S 0.4", "decoupled+refine S 400x200",
+        "decoupled S 400x200 0.1", "full-fft T"}) {
     EXPECT_THAT(labels, testing::Contains(wanted).Times(1));
   }
   for (const ReadOutCase& read_out : cases) {
-    const bool masks = read_out.input == SolverInput::kMasks;
+    const bool masks = read_out.input != SolverInput::kFeatures;
     EXPECT_TRUE(masks || read_out.solver_case.grid == kFeatureGrid);
     EXPECT_EQ(read_out.solver_case.channels, masks ? 4 : 16);
   }
