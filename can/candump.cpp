@@ -7,6 +7,7 @@
 #include <istream>
 #include <iterator>
 #include <optional>
+#include <span>
 
 namespace bevloc::can {
 namespace {
@@ -15,7 +16,6 @@ using std::chrono::nanoseconds;
 
 constexpr uint32_t kErrorFlag = 0x20000000;
 constexpr uint32_t kMaxExtendedId = 0x1FFFFFFF;
-constexpr size_t kMaxFdDigits = 128;
 
 /// Takes the whole text as a number without sign, or nothing.
 template <typename T>
@@ -51,25 +51,50 @@ std::optional<nanoseconds> parse_time(std::string_view text) {
 struct ParsedFrame {
   CandumpKind kind = CandumpKind::kData;
   Frame frame;
+  ErrorFrame error;
 };
 
-std::optional<ParsedFrame> parse_fd(uint32_t id, std::string_view flags_and_data) {
-  if (id > kMaxExtendedId || flags_and_data.empty() || !is_hex(flags_and_data)) return std::nullopt;
-  const size_t digits = flags_and_data.size() - 1;
-  if (digits % 2 != 0 || digits > kMaxFdDigits) return std::nullopt;
-  return ParsedFrame{CandumpKind::kFd, {}};
+/// Fills `data` with the bytes of the text, which fit.
+void parse_bytes(std::string_view digits, std::span<uint8_t> data) {
+  for (size_t i = 0; i < digits.size() / 2; ++i) {
+    data[i] = *number<uint8_t>(digits.substr(2 * i, 2), 16);
+  }
+}
+
+/// A data frame of this format with so many bytes of data, written as hexadecimal digits.
+std::optional<ParsedFrame> parse_data(FrameFormat format, uint32_t id, bool extended,
+                                      std::string_view digits) {
+  if (id > kMaxExtendedId || !is_hex(digits) || digits.size() % 2 != 0 ||
+      !is_valid_length(format, digits.size() / 2)) {
+    return std::nullopt;
+  }
+  if (extended) return ParsedFrame{CandumpKind::kExtended, {}, {}};
+  ParsedFrame parsed;
+  parsed.frame = {
+      .id = id, .length = static_cast<uint8_t>(digits.size() / 2), .data = {}, .format = format};
+  parse_bytes(digits, parsed.frame.data);
+  return parsed;
+}
+
+std::optional<ParsedFrame> parse_error(uint32_t id, std::string_view digits) {
+  const bool sound = is_hex(digits) && digits.size() == 2 * kMaxClassicLength &&
+                     (id & ~(kErrorFlag | kMaxExtendedId)) == 0;
+  if (!sound) return std::nullopt;
+  ParsedFrame parsed{CandumpKind::kError, {}, {.classes = id & kMaxExtendedId, .data = {}}};
+  parse_bytes(digits, parsed.error.data);
+  return parsed;
 }
 
 /// candump writes R, R and a length digit, or these and "_" and the raw length code.
 std::optional<ParsedFrame> parse_remote(uint32_t id, std::string_view length) {
   const bool sound = length.empty() || (length.size() == 1 && length[0] >= '0' && length[0] <= '8');
   if (!sound || id > kMaxExtendedId) return std::nullopt;
-  return ParsedFrame{CandumpKind::kRemote, {}};
+  return ParsedFrame{CandumpKind::kRemote, {}, {}};
 }
 
 /// A length code beyond 8 bytes is written as "_" and a digit from 9 to F behind eight bytes.
 std::string_view without_length_code(std::string_view data) {
-  constexpr size_t kFullDigits = 2 * kMaxFrameLength;
+  constexpr size_t kFullDigits = 2 * kMaxClassicLength;
   const bool has_code = data.size() == kFullDigits + 2 && data[kFullDigits] == '_' &&
                         is_hex(data.substr(kFullDigits + 1)) && data[kFullDigits + 1] >= '9';
   return has_code ? data.substr(0, kFullDigits) : data;
@@ -79,42 +104,51 @@ std::string_view without_length_code(std::string_view data) {
 std::optional<ParsedFrame> parse_frame(std::string_view text) {
   const size_t hash = text.find('#');
   if (hash != 3 && hash != 8) return std::nullopt;
+  const bool extended = hash == 8;
   const auto id = number<uint32_t>(text.substr(0, hash), 16);
-  if (!id || (hash == 3 && *id > kMaxStandardId)) return std::nullopt;
+  if (!id || (!extended && *id > kMaxStandardId)) return std::nullopt;
 
-  std::string_view data = text.substr(hash + 1);
-  if (data.starts_with('#')) return parse_fd(*id, data.substr(1));
+  const std::string_view data = text.substr(hash + 1);
+  if (data.starts_with('#')) {
+    const std::string_view flags = data.substr(1, 1);
+    if (flags.empty() || !is_hex(flags)) return std::nullopt;
+    return parse_data(FrameFormat::kFd, *id, extended, data.substr(2));
+  }
   if (data.starts_with('R')) return parse_remote(*id, data.substr(1));
-  data = without_length_code(data);
-  if (!is_hex(data) || data.size() % 2 != 0 || data.size() > 2 * kMaxFrameLength) {
-    return std::nullopt;
-  }
-  if (hash == 8 && (*id & kErrorFlag) != 0 && (*id & ~(kErrorFlag | kMaxExtendedId)) == 0) {
-    return ParsedFrame{CandumpKind::kError, {}};
-  }
-  if (*id > kMaxExtendedId) return std::nullopt;
-  if (hash == 8) return ParsedFrame{CandumpKind::kExtended, {}};
+  if (extended && (*id & kErrorFlag) != 0) return parse_error(*id, without_length_code(data));
+  return parse_data(FrameFormat::kClassic, *id, extended, without_length_code(data));
+}
 
-  Frame frame{.id = *id, .length = static_cast<uint8_t>(data.size() / 2)};
-  for (size_t i = 0; i < frame.length; ++i) {
-    frame.data[i] = *number<uint8_t>(data.substr(2 * i, 2), 16);
-  }
-  return ParsedFrame{CandumpKind::kData, frame};
+/// "(1436509052.249713) can0 "
+std::string line_beginning(nanoseconds time, std::string_view interface, CandumpDigits digits) {
+  assert(time >= nanoseconds::zero());
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
+  const int64_t fraction = (time - seconds).count();
+  const bool micro = digits == CandumpDigits::kMicroseconds;
+  return fmt::format("({:010}.{:0{}}) {} ", seconds.count(), micro ? fraction / 1000 : fraction,
+                     static_cast<int>(digits), interface);
+}
+
+void append_bytes(std::string& line, std::span<const uint8_t> bytes) {
+  for (const uint8_t byte : bytes) fmt::format_to(std::back_inserter(line), "{:02X}", byte);
 }
 
 }  // namespace
 
 std::string candump_line(nanoseconds time, std::string_view interface, const Frame& frame,
                          CandumpDigits digits) {
-  assert(time >= nanoseconds::zero());
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
-  const int64_t fraction = (time - seconds).count();
-  const bool micro = digits == CandumpDigits::kMicroseconds;
-  std::string line =
-      fmt::format("({:010}.{:0{}}) {} {:03X}#", seconds.count(), micro ? fraction / 1000 : fraction,
-                  static_cast<int>(digits), interface, frame.id);
-  for (const uint8_t byte : frame.payload())
-    fmt::format_to(std::back_inserter(line), "{:02X}", byte);
+  std::string line = line_beginning(time, interface, digits);
+  const bool fd = frame.format == FrameFormat::kFd;
+  fmt::format_to(std::back_inserter(line), "{:03X}{}", frame.id, fd ? "##1" : "#");
+  append_bytes(line, frame.payload());
+  return line;
+}
+
+std::string candump_line(nanoseconds time, std::string_view interface, const ErrorFrame& error,
+                         CandumpDigits digits) {
+  std::string line = line_beginning(time, interface, digits);
+  fmt::format_to(std::back_inserter(line), "{:08X}#", kErrorFlag | error.classes);
+  append_bytes(line, error.data);
   return line;
 }
 
@@ -137,7 +171,7 @@ Result<CandumpEntry> parse_candump_line(std::string_view line, std::string_view 
   const auto parsed = parse_frame(frame_text);
   if (!time || !parsed) return refuse();
   return CandumpEntry{*time, std::string(rest.substr(0, interface_end)), parsed->kind,
-                      parsed->frame};
+                      parsed->frame, parsed->error};
 }
 
 Result<std::vector<CandumpEntry>> read_candump(std::istream& log, std::string_view name) {

@@ -28,25 +28,29 @@ BU_: LOCALIZER VEHICLE
 constexpr std::string_view kAttributes =
     R"(BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
 BA_DEF_ BO_ "E2EProfile" STRING;
-BA_DEF_ BO_ "E2EDataId" INT 0 255;
+BA_DEF_ BO_ "E2EDataId" INT 0 65535;
+BA_DEF_ BO_ "VFrameFormat" ENUM "StandardCAN","ExtendedCAN","reserved","J1939PG","reserved","reserved","reserved","reserved","reserved","reserved","reserved","reserved","reserved","reserved","StandardCAN_FD","ExtendedCAN_FD";
+BA_DEF_ BO_ "CANFD_BRS" ENUM "0","1";
+BA_DEF_ "BusType" STRING;
 BA_DEF_ SG_ "GenSigStartValue" FLOAT -2147483648 4294967295;
 BA_DEF_DEF_ "GenMsgCycleTime" 0;
 BA_DEF_DEF_ "E2EProfile" "P02";
 BA_DEF_DEF_ "E2EDataId" 0;
+BA_DEF_DEF_ "VFrameFormat" "StandardCAN";
+BA_DEF_DEF_ "CANFD_BRS" "0";
+BA_DEF_DEF_ "BusType" "";
 BA_DEF_DEF_ "GenSigStartValue" 0;
+BA_ "BusType" "CAN FD";
 )";
 
 constexpr std::string_view kFileComment =
     "The pose of the vehicle in its HD map (LOC_) and the sensors that the localizer needs from "
-    "the "
-    "vehicle (VEH_). Intel byte order. Every frame carries AUTOSAR E2E profile P02 with one "
-    "constant "
-    "data id per message (attribute E2EDataId) for all 16 counters: ignore a frame whose CHECKSUM "
-    "is "
-    "wrong or whose COUNTER did not change, and treat a signal as not available after 3 cycles "
-    "without a good frame. A signal whose value is SNA is not available. Generated from the "
-    "message "
-    "table of bevloc.";
+    "the vehicle (VEH_). Intel byte order. Every classic frame carries AUTOSAR E2E profile P02 "
+    "with one constant data id per message (attribute E2EDataId) for all 16 counters, every FD "
+    "frame profile P05: ignore a frame whose CHECKSUM is wrong or whose COUNTER did not change, "
+    "and treat a signal as not available after 3 cycles without a good frame. A signal whose value "
+    "is SNA is not available. The localizer sends LOC_Solution or the other LOC_ messages, never "
+    "both. Generated from the message table of bevloc.";
 
 using Out = std::back_insert_iterator<std::string>;
 
@@ -58,7 +62,7 @@ std::string_view receiver_name(Sender sender) {
 }
 
 void for_each_signal(const Message& message, const std::function<void(const Signal&)>& visit) {
-  for (const Signal* signal : kE2eHeader) visit(*signal);
+  for (const Signal* signal : e2e_header(message.format)) visit(*signal);
   for (const Signal* signal : message.signals) visit(*signal);
 }
 
@@ -85,6 +89,11 @@ void write_comments(Out out, const Message& message, uint32_t id) {
 void write_attributes(Out out, const Message& message, uint32_t id) {
   fmt::format_to(out, "BA_ \"GenMsgCycleTime\" BO_ {} {};\n", id, message.cycle_ms);
   fmt::format_to(out, "BA_ \"E2EDataId\" BO_ {} {};\n", id, message.data_id);
+  if (message.format == FrameFormat::kFd) {
+    fmt::format_to(out, "BA_ \"E2EProfile\" BO_ {} \"P05\";\n", id);
+    fmt::format_to(out, "BA_ \"VFrameFormat\" BO_ {} 14;\n", id);
+    fmt::format_to(out, "BA_ \"CANFD_BRS\" BO_ {} 1;\n", id);
+  }
   for_each_signal(message, [&](const Signal& signal) {
     if (!signal.has_sna) return;
     fmt::format_to(out, "BA_ \"GenSigStartValue\" SG_ {} {} {};\n", id, signal.name,

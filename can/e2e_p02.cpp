@@ -32,10 +32,6 @@ uint8_t crc_of(const Frame& frame, uint8_t data_id) {
   return crc8_h2f(frame.payload().subspan(1), data_id);
 }
 
-uint8_t counter_of(const Frame& frame) {
-  return frame.data[1] & 0x0F;
-}
-
 }  // namespace
 
 uint8_t crc8_h2f(std::span<const uint8_t> bytes) {
@@ -47,30 +43,14 @@ uint8_t crc8_h2f(std::span<const uint8_t> bytes, uint8_t data_id) {
 }
 
 void protect_p02(Frame& frame, uint8_t data_id, uint8_t counter) {
-  assert(frame.length >= 2 && frame.length <= kMaxFrameLength && counter <= 0x0F);
+  assert(frame.length >= 2 && frame.length <= kMaxClassicLength && counter <= 0x0F);
   frame.data[1] = static_cast<uint8_t>((frame.data[1] & 0xF0) | counter);
   frame.data[0] = crc_of(frame, data_id);
 }
 
-E2eResult E2eChecker::check(const Frame& frame) {
-  if (frame.length != length_) {
-    ++counters_.wrong_length;
-    return E2eResult::kWrongLength;
-  }
-  if (frame.data[0] != crc_of(frame, data_id_)) {
-    ++counters_.wrong_crc;
-    return E2eResult::kWrongCrc;
-  }
-  const uint8_t counter = counter_of(frame);
-  if (last_counter_ == counter) {
-    ++counters_.repeated;
-    return E2eResult::kRepeated;
-  }
-  const int lost = last_counter_ ? (counter - *last_counter_ - 1) & 0x0F : 0;
-  last_counter_ = counter;
-  ++counters_.ok;
-  counters_.lost += static_cast<uint64_t>(lost);
-  return lost == 0 ? E2eResult::kOk : E2eResult::kSomeLost;
+bool has_sound_crc_p02(const Frame& frame, uint8_t data_id) {
+  assert(frame.length >= 2);
+  return frame.data[0] == crc_of(frame, data_id);
 }
 
 }  // namespace bevloc::can

@@ -1,8 +1,7 @@
-// End-to-end protection of frames: AUTOSAR E2E profile P02 (AUTOSAR_PRS_E2EProtocol, 6.4).
+// The protection of classic frames: AUTOSAR E2E profile P02 (AUTOSAR_PRS_E2EProtocol, 6.4).
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "can/frame.h"
@@ -19,54 +18,7 @@ uint8_t crc8_h2f(std::span<const uint8_t> bytes, uint8_t data_id);
 /// 3-bit errors that touch the counter. The frame has at least 2 bytes.
 void protect_p02(Frame& frame, uint8_t data_id, uint8_t counter);
 
-/// Protects the frames of one message, one after the other.
-class E2eSender {
- public:
-  explicit E2eSender(uint8_t data_id) : data_id_(data_id) {}
-
-  void protect(Frame& frame) {
-    protect_p02(frame, data_id_, counter_);
-    counter_ = (counter_ + 1) & 0x0F;
-  }
-
- private:
-  uint8_t data_id_;
-  uint8_t counter_ = 0;
-};
-
-enum class E2eResult : uint8_t {
-  kOk,
-  kSomeLost,     ///< sound, but frames before it are missing
-  kRepeated,     ///< sound, but its counter is that of the last one: not to be used
-  kWrongCrc,     ///< damaged, or a frame of another message: not to be used
-  kWrongLength,  ///< not to be used
-};
-
-constexpr bool is_usable(E2eResult result) {
-  return result == E2eResult::kOk || result == E2eResult::kSomeLost;
-}
-
-struct E2eCounters {
-  uint64_t ok = 0;  ///< usable frames, including those after a loss
-  uint64_t repeated = 0;
-  uint64_t wrong_crc = 0;
-  uint64_t wrong_length = 0;
-  uint64_t lost = 0;  ///< frames missing between usable ones, modulo 16 each time
-};
-
-/// Checks the frames of one message, one after the other. A time-out is the caller's to notice.
-class E2eChecker {
- public:
-  E2eChecker(uint8_t data_id, uint8_t length) : data_id_(data_id), length_(length) {}
-
-  E2eResult check(const Frame& frame);
-  const E2eCounters& counters() const { return counters_; }
-
- private:
-  uint8_t data_id_;
-  uint8_t length_;
-  std::optional<uint8_t> last_counter_;
-  E2eCounters counters_;
-};
+/// Whether byte 0 is what protect_p02() would write. The frame has at least 2 bytes.
+bool has_sound_crc_p02(const Frame& frame, uint8_t data_id);
 
 }  // namespace bevloc::can

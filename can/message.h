@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "can/e2e.h"
 #include "can/frame.h"
 #include "can/signal.h"
 
@@ -22,19 +23,23 @@ struct Message {
   std::string_view name;
   Sender sender = Sender::kLocalizer;
   uint32_t id_offset = 0;
-  uint8_t length = kMaxFrameLength;
+  uint8_t length = kMaxClassicLength;
+  FrameFormat format = FrameFormat::kClassic;
   int cycle_ms = 0;
-  uint8_t data_id = 0;  ///< of the E2E protection; the same for all counter values
+  uint16_t data_id = 0;  ///< of the E2E protection; the same for all counter values
   std::span<const Signal* const> signals{};  ///< after the E2E header
   std::string_view comment{};
 
   constexpr uint32_t id(const BaseIds& base) const {
     return (sender == Sender::kLocalizer ? base.localizer : base.vehicle) + id_offset;
   }
+  constexpr E2eProtection protection() const {
+    return {data_id, format == FrameFormat::kFd ? E2eProfile::kP05 : E2eProfile::kP02};
+  }
 };
 
-/// The header of every message: E2E profile P02, with the epoch in the nibble that the profile
-/// leaves free.
+/// The header of every classic message: E2E profile P02, with the epoch in the nibble that the
+/// profile leaves free.
 inline constexpr Signal kChecksum{
     .name = "CHECKSUM",
     .start_bit = 0,
@@ -55,6 +60,36 @@ inline constexpr Signal kEpoch{
     .max = 15,
     .comment = "The same in all frames of one solution (one measurement): combine no others."};
 inline constexpr const Signal* kE2eHeader[] = {&kChecksum, &kCounter, &kEpoch};
+
+/// The header of every FD message: E2E profile P05. One frame is a whole solution, so that it needs
+/// no epoch.
+inline constexpr Signal kFdChecksum{
+    .name = "CHECKSUM",
+    .start_bit = 0,
+    .length_bits = 16,
+    .max = 65535,
+    .comment =
+        "AUTOSAR E2E profile P05: CRC-16/CCITT-FALSE over bytes 2 to the last, then the message's "
+        "E2EDataId, low byte first."};
+inline constexpr Signal kFdCounter{.name = "COUNTER",
+                                   .start_bit = 16,
+                                   .length_bits = 8,
+                                   .max = 255,
+                                   .comment = "Counts the frames of this message, 0 to 255."};
+inline constexpr const Signal* kFdE2eHeader[] = {&kFdChecksum, &kFdCounter};
+
+constexpr std::span<const Signal* const> e2e_header(FrameFormat format) {
+  if (format == FrameFormat::kFd) return kFdE2eHeader;
+  return kE2eHeader;
+}
+
+/// Bytes of the E2E header, and of what follows it.
+constexpr size_t header_length(FrameFormat format) {
+  return format == FrameFormat::kFd ? 3 : 2;
+}
+constexpr size_t content_length(const Message& message) {
+  return message.length - header_length(message.format);
+}
 
 /// A frame of this message with every signal not available, or 0 where a signal has no such value.
 Frame blank_frame(const Message& message, const BaseIds& base);

@@ -1,14 +1,28 @@
 #include "can/message_table.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 namespace bevloc::can {
 namespace {
 
-constexpr uint64_t bits_of(const Signal& signal) {
-  return ((uint64_t{1} << signal.length_bits) - 1) << signal.start_bit;
-}
+/// Which bits of a frame have a signal.
+class BitMap {
+ public:
+  /// False when one of them is taken already or beyond `length` bytes.
+  constexpr bool take(const Signal& signal, size_t length) {
+    for (int i = 0; i < signal.length_bits; ++i) {
+      const auto bit = static_cast<size_t>(signal.start_bit + i);
+      if (bit >= 8 * length || taken_[bit]) return false;
+      taken_[bit] = true;
+    }
+    return true;
+  }
+
+ private:
+  std::array<bool, 8 * kMaxFdLength> taken_{};
+};
 
 /// The valid range is a whole number of steps, fits into the bits and leaves SNA out.
 constexpr bool has_sound_range(const Signal& signal) {
@@ -24,16 +38,14 @@ constexpr bool has_sound_range(const Signal& signal) {
 }
 
 constexpr bool is_sound(const Message& message) {
-  uint64_t taken = 0;
-  const auto add = [&](const Signal& signal) {
-    const bool free = (taken & bits_of(signal)) == 0;
-    taken |= bits_of(signal);
-    return free && signal.start_bit + signal.length_bits <= 8 * message.length &&
-           has_sound_range(signal);
+  BitMap bits;
+  const auto add = [&](const Signal* signal) {
+    return bits.take(*signal, message.length) && has_sound_range(*signal);
   };
-  return message.length <= kMaxFrameLength && message.cycle_ms > 0 &&
-         std::ranges::all_of(kE2eHeader, [&](const Signal* signal) { return add(*signal); }) &&
-         std::ranges::all_of(message.signals, [&](const Signal* signal) { return add(*signal); });
+  return is_valid_length(message.format, message.length) && message.cycle_ms > 0 &&
+         (message.format == FrameFormat::kFd || message.data_id <= UINT8_MAX) &&
+         std::ranges::all_of(e2e_header(message.format), add) &&
+         std::ranges::all_of(message.signals, add);
 }
 
 /// A message must not pass for another one, whatever base ids are configured.

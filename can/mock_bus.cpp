@@ -39,13 +39,17 @@ class MockEndpoint final : public Bus {
   MockEndpoint& operator=(const MockEndpoint&) = delete;
 
   SendResult send(const Frame& frame, Time now) override {
-    assert(frame.id <= kMaxStandardId && frame.length <= kMaxFrameLength);
+    assert(frame.id <= kMaxStandardId && is_valid_length(frame.format, frame.length));
     const std::lock_guard lock(wire_->mutex);
-    if (wire_->down) return counters_.count(SendResult::kBusDown);
+    if (wire_->down) {
+      ++counters_.send_bus_down;
+      return SendResult::kBusDown;
+    }
     for (MockEndpoint* endpoint : wire_->endpoints) {
       if (endpoint != this) endpoint->deliver({frame, now});
     }
-    return counters_.count(SendResult::kSent);
+    ++counters_.sent;
+    return SendResult::kSent;
   }
 
   std::optional<ReceivedFrame> receive() override {
@@ -61,6 +65,11 @@ class MockEndpoint final : public Bus {
   }
 
   BusCounters counters() const override { return counters_.snapshot(); }
+
+  BusCondition condition() const override {
+    const std::lock_guard lock(wire_->mutex);
+    return {.state = wire_->down ? BusState::kDown : BusState::kActive};
+  }
 
  private:
   void deliver(const ReceivedFrame& frame) {

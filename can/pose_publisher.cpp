@@ -3,13 +3,14 @@
 #include <utility>
 
 #include "can/message_table.h"
+#include "can/solution_fd.h"
 
 namespace bevloc::can {
 namespace {
 
 template <size_t... I>
 std::array<E2eSender, sizeof...(I)> solution_senders(std::index_sequence<I...>) {
-  return {E2eSender(kSolutionMessages[I]->data_id)...};
+  return {E2eSender(kSolutionMessages[I]->protection())...};
 }
 
 }  // namespace
@@ -18,16 +19,42 @@ PosePublisher::PosePublisher(Bus& bus, const PosePublisherConfig& config)
     : bus_(bus),
       config_(config),
       geo_(config.map_origin),
-      status_sender_(loc_status::kMessage.data_id),
-      senders_(solution_senders(std::make_index_sequence<kSolutionMessages.size()>())) {}
+      status_sender_(loc_status::kMessage.protection()),
+      senders_(solution_senders(std::make_index_sequence<kSolutionMessages.size()>())),
+      fd_sender_(loc_solution::kMessage.protection()) {}
 
 void PosePublisher::publish(const PoseReport& report, Time now) {
   const LocalizerStatus told = told_status(report, config_.limits, now);
-  send_status_if_due(told, now);
   const SolutionFrames frames =
       solution_frames(report, told, config_.limits, geo_, config_.base_ids, now);
+  if (config_.format == FrameFormat::kFd) {
+    publish_fd(frames, told, now);
+  } else {
+    publish_classic(frames, told, now);
+  }
+}
+
+void PosePublisher::publish_classic(const SolutionFrames& frames, const LocalizerStatus& told,
+                                    Time now) {
+  send_status_if_due(told, now);
   for (size_t i = 0; i < frames.size(); ++i) send(frames[i], senders_[i], now);
   epoch_ = (epoch_ + 1) & 0x0F;
+}
+
+void PosePublisher::publish_fd(const SolutionFrames& frames, const LocalizerStatus& told,
+                               Time now) {
+  Frame solution = joined_solution(status_frame(told, config_.base_ids), frames, config_.base_ids);
+  fd_sender_.protect(solution);
+  bus_.send(solution, now);
+}
+
+std::vector<uint32_t> PosePublisher::sent_ids(const BaseIds& base, FrameFormat format) {
+  std::vector<uint32_t> ids;
+  for (const Message* message : kMessages) {
+    const bool is_sent = message->sender == Sender::kLocalizer && message->format == format;
+    if (is_sent) ids.push_back(message->id(base));
+  }
+  return ids;
 }
 
 SendResult PosePublisher::send(Frame frame, E2eSender& sender, Time now) {

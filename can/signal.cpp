@@ -12,15 +12,32 @@ uint64_t mask_of(const Signal& signal) {
   return (uint64_t{1} << signal.length_bits) - 1;
 }
 
-uint64_t load(const Frame& frame) {
+/// The bytes that hold a signal, of which the first `shift` bits are not its own.
+struct Place {
+  size_t first_byte;
+  size_t end_byte;
+  int shift;
+};
+
+Place place_of([[maybe_unused]] const Frame& frame, const Signal& signal) {
+  const int end_bit = signal.start_bit + signal.length_bits;
+  const Place place{static_cast<size_t>(signal.start_bit / 8),
+                    static_cast<size_t>((end_bit + 7) / 8), signal.start_bit % 8};
+  assert(place.end_byte <= frame.length && place.shift + signal.length_bits <= 64);
+  return place;
+}
+
+uint64_t load(const Frame& frame, const Place& place) {
   uint64_t word = 0;
-  for (size_t i = 0; i < frame.data.size(); ++i) word |= uint64_t{frame.data[i]} << (8 * i);
+  for (size_t i = place.first_byte; i < place.end_byte; ++i) {
+    word |= uint64_t{frame.data[i]} << (8 * (i - place.first_byte));
+  }
   return word;
 }
 
-void store(Frame& frame, uint64_t word) {
-  for (size_t i = 0; i < frame.data.size(); ++i) {
-    frame.data[i] = static_cast<uint8_t>(word >> (8 * i));
+void store(Frame& frame, const Place& place, uint64_t word) {
+  for (size_t i = place.first_byte; i < place.end_byte; ++i) {
+    frame.data[i] = static_cast<uint8_t>(word >> (8 * (i - place.first_byte)));
   }
 }
 
@@ -40,15 +57,15 @@ std::optional<double> physical_from_raw(const Signal& signal, int64_t raw) {
 
 void insert_raw(Frame& frame, const Signal& signal, int64_t raw) {
   assert(raw >= signal.lowest_raw() && raw <= signal.highest_raw());
-  assert(signal.start_bit + signal.length_bits <= 8 * frame.length);
-  const uint64_t mask = mask_of(signal) << signal.start_bit;
-  const uint64_t bits = (static_cast<uint64_t>(raw) << signal.start_bit) & mask;
-  store(frame, (load(frame) & ~mask) | bits);
+  const Place place = place_of(frame, signal);
+  const uint64_t mask = mask_of(signal) << place.shift;
+  const uint64_t bits = (static_cast<uint64_t>(raw) << place.shift) & mask;
+  store(frame, place, (load(frame, place) & ~mask) | bits);
 }
 
 int64_t extract_raw(const Frame& frame, const Signal& signal) {
-  assert(signal.start_bit + signal.length_bits <= 8 * frame.length);
-  const uint64_t bits = (load(frame) >> signal.start_bit) & mask_of(signal);
+  const Place place = place_of(frame, signal);
+  const uint64_t bits = (load(frame, place) >> place.shift) & mask_of(signal);
   const uint64_t sign_bit = uint64_t{1} << (signal.length_bits - 1);
   if (!signal.is_signed || (bits & sign_bit) == 0) return static_cast<int64_t>(bits);
   return static_cast<int64_t>(bits | ~mask_of(signal));

@@ -56,7 +56,7 @@ int64_t raw_from_physical(const Signal& signal, double physical);
 /// None for SNA and for every other value outside [min, max].
 std::optional<double> physical_from_raw(const Signal& signal, int64_t raw);
 
-/// `raw` must fit into the signal's bits, and these into the frame's length.
+/// `raw` must fit into the signal's bits, and these into the frame's length and into 8 bytes.
 void insert_raw(Frame& frame, const Signal& signal, int64_t raw);
 int64_t extract_raw(const Frame& frame, const Signal& signal);
 

@@ -23,11 +23,11 @@ VehicleEncoder::VehicleEncoder(const BaseIds& base, GeodeticPosition map_origin,
     : base_(base),
       geo_(map_origin),
       rear_track_m_(rear_track_m),
-      odometry_senders_{E2eSender(veh_wheel_speed::kMessage.data_id),
-                        E2eSender(veh_yaw_rate::kMessage.data_id)},
-      gnss_senders_{E2eSender(veh_gnss_latitude::kMessage.data_id),
-                    E2eSender(veh_gnss_longitude::kMessage.data_id),
-                    E2eSender(veh_gnss_heading::kMessage.data_id)} {}
+      odometry_senders_{E2eSender(veh_wheel_speed::kMessage.protection()),
+                        E2eSender(veh_yaw_rate::kMessage.protection())},
+      gnss_senders_{E2eSender(veh_gnss_latitude::kMessage.protection()),
+                    E2eSender(veh_gnss_longitude::kMessage.protection()),
+                    E2eSender(veh_gnss_heading::kMessage.protection())} {}
 
 std::array<Frame, 2> VehicleEncoder::odometry(const OdometrySample& sample) {
   std::array<Frame, 2> frames = {blank_frame(veh_wheel_speed::kMessage, base_),

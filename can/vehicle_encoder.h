@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "can/e2e_p02.h"
+#include "can/e2e.h"
 #include "can/geo_reference.h"
 #include "can/message_table.h"
 #include "can/vehicle_samples.h"

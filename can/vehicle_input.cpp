@@ -13,7 +13,7 @@ constexpr Duration window_of(int cycle_ms) {
 
 template <size_t... I>
 std::array<E2eChecker, sizeof...(I)> checkers_of(const auto& messages, std::index_sequence<I...>) {
-  return {E2eChecker(messages[I]->data_id, messages[I]->length)...};
+  return {E2eChecker(messages[I]->protection(), messages[I]->length)...};
 }
 
 /// A sigma of 0 on the bus means less than one step; nobody knows a position exactly.

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "can/e2e_p02.h"
+#include "can/e2e.h"
 #include "can/epoch_group.h"
 #include "can/geo_reference.h"
 #include "can/message_table.h"

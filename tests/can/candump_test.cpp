@@ -49,7 +49,7 @@ TEST(Candump, NoLocaleChangesALine) {
 }
 
 TEST(Candump, ReadsBackWhatItWrites) {
-  for (uint8_t length = 0; length <= kMaxFrameLength; ++length) {
+  for (uint8_t length = 0; length <= kMaxClassicLength; ++length) {
     Frame frame{.id = 0x100u + length, .length = length};
     for (uint8_t i = 0; i < length; ++i) frame.data[i] = static_cast<uint8_t>(251 * i + 17);
     const auto line = candump_line(kTime, "can1", frame, CandumpDigits::kNanoseconds);
@@ -61,12 +61,39 @@ TEST(Candump, ReadsBackWhatItWrites) {
   }
 }
 
+TEST(Candump, ReadsBackTheFdFramesThatItWrites) {
+  for (size_t length = 0; length <= kMaxFdLength; ++length) {
+    if (!is_valid_length(FrameFormat::kFd, length)) continue;
+    Frame frame{.id = 0x509,
+                .length = static_cast<uint8_t>(length),
+                .data = {},
+                .format = FrameFormat::kFd};
+    for (size_t i = 0; i < length; ++i) frame.data[i] = static_cast<uint8_t>(251 * i + 17);
+    const CandumpEntry entry = parsed(candump_line(kTime, "can1", frame));
+    EXPECT_EQ(entry.kind, CandumpKind::kData);
+    EXPECT_EQ(entry.frame, frame);
+  }
+}
+
+TEST(Candump, WritesFdAndErrorFramesAsCandumpDoes) {
+  Frame frame = sample_frame();
+  frame.format = FrameFormat::kFd;
+  EXPECT_EQ(candump_line(kTime, "can0", frame), "(1436509052.249713) can0 044##12A366C2BBA");
+  const ErrorFrame error{.classes = 0x44, .data = {0, 0x30, 0, 0, 0, 0, 0x80, 0x7F}};
+  const std::string line = candump_line(kTime, "can0", error);
+  EXPECT_EQ(line, "(1436509052.249713) can0 20000044#003000000000807F");
+  EXPECT_EQ(parsed(line).kind, CandumpKind::kError);
+  EXPECT_EQ(parsed(line).error, error);
+}
+
 TEST(Candump, TellsTheKindsApart) {
   EXPECT_EQ(parsed("(1.000000) can0 123#").kind, CandumpKind::kData);
   EXPECT_EQ(parsed("(1.000000) can0 00000123#01").kind, CandumpKind::kExtended);
   EXPECT_EQ(parsed("(1.000000) can0 123#R").kind, CandumpKind::kRemote);
   EXPECT_EQ(parsed("(1.000000) can0 123#R8").kind, CandumpKind::kRemote);
-  EXPECT_EQ(parsed("(1.000000) can0 123##1AABBCC").kind, CandumpKind::kFd);
+  EXPECT_EQ(parsed("(1.000000) can0 123##1AABBCC").frame.format, FrameFormat::kFd);
+  EXPECT_EQ(parsed("(1.000000) can0 123##5AABBCC").frame.length, 3);
+  EXPECT_EQ(parsed("(1.000000) can0 00000123##1AA").kind, CandumpKind::kExtended);
   EXPECT_EQ(parsed("(1.000000) can0 20000040#0000000000000000").kind, CandumpKind::kError);
   EXPECT_EQ(parsed("(1.000000) can0 123#1122334455667788_B").frame.length, 8);
   EXPECT_EQ(parsed("(1.000000) can0 123#01 R").frame.length, 1);
@@ -92,6 +119,9 @@ TEST(Candump, RefusesBadLines) {
            "(1.000000) can0 123#R9",
            "(1.000000) can0 123##",
            "(1.000000) can0 123##1A",
+           "(1.000000) can0 123##GAA",
+           "(1.000000) can0 123##1001122334455667788",
+           "(1.000000) can0 20000004#00",
            "(1.000000) can0 FFFFFFFF#00",
            "(1.000000) can0 123#00 X",
        }) {

@@ -101,6 +101,10 @@ void parse_attribute(Dbc& dbc, const std::string& line) {
   const std::string name = scanner.until("\" ");
   if (!scanner.take("BO_ ")) return;
   const uint32_t id = scanner.id_until(" ");
+  if (scanner.take("\"")) {
+    dbc.messages.at(id).texts[name] = scanner.until("\";");
+    return;
+  }
   dbc.messages.at(id).attributes[name] = scanner.integer_until(";");
 }
 

@@ -34,6 +34,7 @@ struct DbcMessage {
   int length = 0;
   std::vector<DbcSignal> signals;
   std::map<std::string, int> attributes;
+  std::map<std::string, std::string> texts;  ///< attributes that are no numbers
 
   /// Throws std::out_of_range for a name that is not there.
   const DbcSignal& signal(const std::string& signal_name) const;

@@ -8,7 +8,7 @@
 
 #include "can/candump.h"
 #include "can/dbc_writer.h"
-#include "can/e2e_p02.h"
+#include "can/e2e.h"
 #include "can/markdown_writer.h"
 #include "can/message_table.h"
 #include "can/pose_report.h"
@@ -25,7 +25,8 @@ std::string content_of(const std::string& path) {
 }
 
 std::vector<const Signal*> all_signals(const Message& message) {
-  std::vector<const Signal*> signals(std::begin(kE2eHeader), std::end(kE2eHeader));
+  const auto header = e2e_header(message.format);
+  std::vector<const Signal*> signals(header.begin(), header.end());
   signals.insert(signals.end(), message.signals.begin(), message.signals.end());
   return signals;
 }
@@ -42,7 +43,7 @@ TEST(Dbc, DocumentedTablesAreWhatTheTableGives) {
 
 TEST(Dbc, DocumentedExampleIsAFrameWeWouldSend) {
   Frame frame = blank_frame(loc_pos_local::kMessage, BaseIds{});
-  protect_p02(frame, loc_pos_local::kMessage.data_id, 0);
+  E2eSender(loc_pos_local::kMessage.protection()).protect(frame);
   EXPECT_NE(content_of(kSource + "/docs/can.md").find("`504#D700000080000080`"), std::string::npos);
   EXPECT_TRUE(candump_line({}, "can0", frame).ends_with(" 504#D700000080000080"));
 }
@@ -56,6 +57,9 @@ TEST(Dbc, NamesEveryMessageAndSignal) {
     EXPECT_EQ(written.length, message->length);
     EXPECT_EQ(written.attributes.at("E2EDataId"), message->data_id);
     EXPECT_EQ(written.attributes.at("GenMsgCycleTime"), message->cycle_ms);
+    const bool fd = message->format == FrameFormat::kFd;
+    EXPECT_EQ(written.texts.contains("E2EProfile"), fd);
+    EXPECT_EQ(written.attributes.contains("VFrameFormat"), fd);
     EXPECT_EQ(written.signals.size(), all_signals(*message).size());
     for (const Signal* signal : all_signals(*message)) {
       const test::DbcSignal& read = written.signal(std::string(signal->name));

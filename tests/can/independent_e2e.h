@@ -38,6 +38,9 @@ struct E2eLogReport {
 /// CRC-8H2F bit by bit over bytes 1 to the last and the data id.
 uint8_t expected_p02_crc(const std::vector<uint8_t>& bytes, uint8_t data_id);
 
+/// CRC-16/CCITT-FALSE bit by bit over bytes 2 to the last and the data id, low byte first.
+uint16_t expected_p05_crc(const std::vector<uint8_t>& bytes, uint16_t data_id);
+
 /// `on_good` is called with each frame that a consumer may use.
 E2eLogReport check_candump_log(
     std::istream& log, const Dbc& dbc,

@@ -20,12 +20,12 @@ using std::chrono::milliseconds;
 constexpr can::GeodeticPosition kOrigin{49.0069, 8.4037};
 
 /// One second of a localizer that tracks and a vehicle that drives, line by line.
-std::vector<std::string> one_second_of_bus() {
+std::vector<std::string> one_second_of_bus(can::FrameFormat format = can::FrameFormat::kClassic) {
   can::MockWire wire;
   const auto localizer = wire.connect();
   const auto vehicle = wire.connect();
   const auto logger = wire.connect();
-  can::PosePublisher publisher(*localizer, {.map_origin = kOrigin});
+  can::PosePublisher publisher(*localizer, {.map_origin = kOrigin, .format = format});
   can::VehicleEncoder encoder(can::BaseIds{}, kOrigin, 1.6);
 
   std::vector<std::string> lines;
@@ -70,6 +70,23 @@ TEST(IndependentE2e, FindsNothingWrongWithOurBus) {
   EXPECT_EQ(report.by_message.at("VEH_GnssHeading").good, 10);
 }
 
+TEST(IndependentE2e, FindsNothingWrongWithOurFdBus) {
+  const auto report = check(one_second_of_bus(can::FrameFormat::kFd));
+  EXPECT_EQ(report.unreadable_lines, 0);
+  EXPECT_EQ(report.unknown_frames, 0);
+  EXPECT_EQ(report.by_message.size(), 6u) << "one of ours and five of the vehicle";
+  for (const auto& [name, tally] : report.by_message) EXPECT_TRUE(tally.is_clean()) << name;
+  EXPECT_EQ(report.by_message.at("LOC_Solution").good, 100);
+}
+
+TEST(IndependentE2e, FindsADamagedFdFrame) {
+  auto lines = one_second_of_bus(can::FrameFormat::kFd);
+  for (std::string& line : lines) {
+    if (line.find(" 509##1") != std::string::npos) line.back() = line.back() == '0' ? '1' : '0';
+  }
+  EXPECT_EQ(check(lines).by_message.at("LOC_Solution").wrong_crc, 100);
+}
+
 TEST(IndependentE2e, ReadsThePoseByTheDbcAlone) {
   std::stringstream log;
   for (const std::string& line : one_second_of_bus()) log << line << '\n';
@@ -110,6 +127,7 @@ TEST(IndependentE2e, FindsDamageLossAndRepetition) {
 
 TEST(IndependentE2e, KnowsThePublishedVector) {
   EXPECT_EQ(test::expected_p02_crc({0, 1, 0, 0, 0, 0, 0, 0}, 0), 0x45);
+  EXPECT_EQ(test::expected_p05_crc({0, 0, 1, 0, 0, 0, 0, 0}, 0x1234), 0x8DCF);
 }
 
 }  // namespace

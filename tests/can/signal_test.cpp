@@ -67,7 +67,19 @@ TEST(Signal, TouchesItsOwnBitsOnly) {
 TEST(Signal, HasIntelByteOrder) {
   Frame frame = full_frame(0);
   insert_raw(frame, {.start_bit = 16, .length_bits = 24, .is_signed = true}, -2);
-  EXPECT_EQ(frame.data, (std::array<uint8_t, 8>{0, 0, 0xFE, 0xFF, 0xFF, 0, 0, 0}));
+  EXPECT_EQ(frame.data, (std::array<uint8_t, kMaxFdLength>{0, 0, 0xFE, 0xFF, 0xFF, 0, 0, 0}));
+}
+
+TEST(Signal, MayLieAnywhereInAnFdFrame) {
+  for (const int start_bit : {61, 301, 489}) {
+    Frame frame{.id = 1, .length = 64, .data = {}, .format = FrameFormat::kFd};
+    frame.data.fill(0xFF);
+    const Signal signal{.start_bit = start_bit, .length_bits = 23, .is_signed = true};
+    insert_raw(frame, signal, -0x123456);
+    EXPECT_EQ(extract_raw(frame, signal), -0x123456);
+    insert_raw(frame, signal, -1);
+    for (const uint8_t byte : frame.data) EXPECT_EQ(byte, 0xFF);
+  }
 }
 
 TEST(EncodeHeading, AFullTurnIsZero) {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "can/e2e_p02.h"
 #include "can/vehicle_encoder.h"
 
 namespace bevloc::can {
@@ -197,7 +198,7 @@ TEST_F(VehicleInputTest, RandomFramesNeverGiveASampleThatIsNotFinite) {
       frame.id = message.id(BaseIds{});
       frame.length = message.length;
       frame.data[1] &= 0x1F;  // two epochs, so that they often match
-      protect_p02(frame, message.data_id, ++counter & 0x0F);
+      protect_p02(frame, static_cast<uint8_t>(message.data_id), ++counter & 0x0F);
     }
     expect_finite(input_.accept({frame, kNow + milliseconds(i)}));
     if (HasFatalFailure()) return;

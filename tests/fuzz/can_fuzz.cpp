@@ -1,0 +1,153 @@
+// can_fuzz --cases N --seed S: N random frames and log lines, damaged in random places.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "can/candump.h"
+#include "can/controller_monitor.h"
+#include "can/e2e.h"
+#include "can/message_table.h"
+#include "can/socketcan_codec.h"
+#include "can/solution_fd.h"
+#include "can/vehicle_input.h"
+#include "common/result.h"
+
+namespace bevloc::fuzz {
+namespace {
+
+class Random {
+ public:
+  explicit Random(uint64_t seed) : engine_(seed) {}
+  size_t below(size_t end) { return std::uniform_int_distribution<size_t>(0, end - 1)(engine_); }
+  uint8_t byte() { return static_cast<uint8_t>(below(256)); }
+  bool one_in(size_t n) { return below(n) == 0; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Draws frames of our messages, protected or not.
+class FrameSource {
+ public:
+  FrameSource() {
+    for (const can::Message* message : can::kMessages) senders_.emplace_back(message->protection());
+  }
+
+  can::Frame draw(Random& random) {
+    const size_t index = random.below(senders_.size());
+    const can::Message& message = *can::kMessages[index];
+    can::Frame frame = can::blank_frame(message, {});
+    for (size_t i = can::header_length(message.format); i < frame.length; ++i) {
+      if (!random.one_in(4)) frame.data[i] = random.byte();
+    }
+    if (random.one_in(8)) frame.data[1] = random.byte();
+    if (!random.one_in(8)) senders_[index].protect(frame);
+    return frame;
+  }
+
+ private:
+  std::vector<can::E2eSender> senders_;
+};
+
+/// What the kernel would never give, a little of it at a time.
+canfd_frame draw_raw(Random& random, const can::Frame& frame) {
+  canfd_frame raw = can::raw_from(frame).content;
+  if (random.one_in(16)) raw.len = random.byte();
+  if (random.one_in(16)) raw.can_id ^= 1u << random.below(32);
+  return raw;
+}
+
+bool is_finite(const can::VehicleSample& sample) {
+  if (const auto* odometry = std::get_if<can::OdometrySample>(&sample)) {
+    return std::isfinite(odometry->speed_mps) && std::isfinite(odometry->yaw_rate_radps);
+  }
+  if (const auto* gnss = std::get_if<can::GnssSample>(&sample)) {
+    return std::isfinite(gnss->east_m) && std::isfinite(gnss->north_m) &&
+           gnss->sigma_east_m > 0.0 && gnss->sigma_north_m > 0.0;
+  }
+  return true;
+}
+
+Status check_read(Random& random, FrameSource& source, can::VehicleInput& input,
+                  can::ControllerMonitor& monitor, Time now) {
+  constexpr std::array<size_t, 4> kWrongSizes = {CAN_MTU, CANFD_MTU, 3, 0};
+  const can::Frame drawn = source.draw(random);
+  const size_t size =
+      random.one_in(16) ? kWrongSizes[random.below(kWrongSizes.size())] : can::raw_from(drawn).size;
+  const can::ReadFrame read = can::frame_from(draw_raw(random, drawn), size);
+  if (const auto* error = std::get_if<can::ErrorFrame>(&read)) monitor.take(*error);
+  const auto* frame = std::get_if<can::Frame>(&read);
+  if (frame == nullptr) return {};
+  if (!can::is_valid_length(frame->format, frame->length)) return fail("an impossible length");
+  if (!is_finite(input.accept({*frame, now}))) return fail("a sample that is not finite");
+  if (frame->length == can::loc_solution::kMessage.length) {
+    for (size_t part = 0; part < can::loc_solution::kParts.size(); ++part) {
+      can::part_of_solution(*frame, part, {});
+    }
+  }
+  const std::string line = can::candump_line(now.time_since_epoch(), "can0", *frame);
+  const auto entry = can::parse_candump_line(line, "written");
+  if (!entry || entry->frame != *frame) return fail("'{}' is not read back", line);
+  return {};
+}
+
+/// A damaged line is refused or is another frame; either way it can be written again.
+Status check_damaged_line(Random& random, FrameSource& source) {
+  std::string line = can::candump_line(std::chrono::seconds(1), "can0", source.draw(random));
+  for (size_t damage = 1 + random.below(3); damage > 0; --damage) {
+    const size_t place = random.below(line.size());
+    if (random.one_in(3)) {
+      line.erase(place, 1 + random.below(4));
+    } else {
+      line[place] = "0123456789ABCDEFabcdef#R_() .\xFF"[random.below(30)];
+    }
+    if (line.empty()) return {};
+  }
+  const auto entry = can::parse_candump_line(line, "damaged");
+  if (!entry || entry->kind != can::CandumpKind::kData) return {};
+  const auto again =
+      can::parse_candump_line(can::candump_line(entry->time, entry->interface, entry->frame), "");
+  if (!again || again->frame != entry->frame) return fail("'{}' does not come back", line);
+  return {};
+}
+
+Status run(uint64_t seed, int64_t cases) {
+  Random random(seed);
+  FrameSource source;
+  can::VehicleInput input({}, {49.0, 8.4});
+  can::ControllerMonitor monitor;
+  for (int64_t i = 0; i < cases; ++i) {
+    const Time now{std::chrono::milliseconds(i)};
+    Status status = check_read(random, source, input, monitor, now);
+    if (status) status = check_damaged_line(random, source);
+    if (!status) return fail("seed {}, case {}: {}", seed, i, status.error().message);
+  }
+  const can::VehicleInputCounters counters = input.counters();
+  fmt::print("{} cases: {} samples, {} wrong CRCs, {} wrong lengths\n", cases,
+             counters.odometry_samples + counters.gnss_samples, counters.wrong_crc,
+             counters.wrong_length);
+  return {};
+}
+
+}  // namespace
+}  // namespace bevloc::fuzz
+
+int main(int argc, char** argv) {
+  CLI::App app("Feeds the CAN code what no bus should carry.");
+  int64_t cases = 100'000;
+  uint64_t seed = 1;
+  app.add_option("--cases", cases)->capture_default_str();
+  app.add_option("--seed", seed)->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  const bevloc::Status status = bevloc::fuzz::run(seed, cases);
+  if (!status) fmt::print(stderr, "{}\n", status.error().message);
+  return status ? 0 : 1;
+}
