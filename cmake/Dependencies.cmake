@@ -15,7 +15,12 @@ find_package(benchmark REQUIRED)
 
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)
+# Version 1 or 2: drivers/gpio knows both.
+pkg_check_modules(GPIOD REQUIRED IMPORTED_TARGET libgpiod)
 pkg_check_modules(GEOGRAPHICLIB REQUIRED IMPORTED_TARGET geographiclib)
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+# Cameras behind libcamera are left out where it is missing.
+pkg_check_modules(LIBCAMERA IMPORTED_TARGET libcamera)
 
 # Debian's libonnx-dev ships the protobuf messages of the ONNX format as a library of their own.
 find_path(ONNX_INCLUDE_DIR onnx/onnx_pb.h REQUIRED)

@@ -16,6 +16,7 @@ constexpr size_t kFrameCapacity = 2 * kCameraCount;
 can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map) {
   can::PosePublisherConfig publisher;
   publisher.base_ids = config.can.base_ids;
+  publisher.format = config.can.variant;
   publisher.map_origin = {map.origin.latitude_deg, map.origin.longitude_deg};
   return publisher;
 }
@@ -52,8 +53,9 @@ Appliance::Appliance(const Config& config, const HdMap& map, Hardware hardware,
       publisher_(*hardware_.bus, publisher_config(config, map)),
       vehicle_input_(*hardware_.bus, config.can.base_ids,
                      {map.origin.latitude_deg, map.origin.longitude_deg}, samples_),
-      vision_(*localizer_, {config.cameras.synchronizer, config.cameras.compensate_motion}, frames_,
-              predictions_, reports_),
+      vision_(*localizer_,
+              {config.cameras.synchronizer, config.cameras.compensate_motion, hardware_.pulses},
+              frames_, predictions_, reports_),
       estimation_(config.tracker, config.health, map_id_of(map), publisher_, samples_, reports_,
                   predictions_) {
   for (const auto& camera : hardware_.cameras) {

@@ -21,6 +21,7 @@ struct Hardware {
   std::vector<std::unique_ptr<drivers::Camera>> cameras;  ///< in the order of kCameraNames
   std::unique_ptr<can::Bus> bus;
   drivers::Clock* clock = nullptr;
+  const drivers::PulseLog* pulses = nullptr;  ///< of the trigger, where there is one
 };
 
 /// How many frames went which way, summed over the cameras.
@@ -47,6 +48,7 @@ class Appliance {
   const EstimationStage& estimation() const { return estimation_; }
   const Localizer& localizer() const { return *localizer_; }
   const MapIndex& map_index() const { return *map_index_; }
+  const can::Bus& bus() const { return *hardware_.bus; }
 
   FrameCounts frame_counts() const;
 

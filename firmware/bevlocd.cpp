@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
+#include "drivers/gpio/libgpiod_gpio.h"
 #include "firmware/daemon.h"
 #include "firmware/simulation/simulated_run.h"
 #include "pipeline/calibration/rig_yaml.h"
@@ -97,7 +98,8 @@ Status run(const CommandLine& line) {
   const auto rig = read_rig(config->rig_file);
   if (!rig) return tl::unexpected(rig.error());
   if (config->simulation) return simulate(line, *config, *rig);
-  return run_daemon(*config, *rig, [] { return g_stop_requested.load(); });
+  drivers::LibgpiodGpio gpio;
+  return run_daemon(*config, *rig, gpio, [] { return g_stop_requested.load(); });
 }
 
 }  // namespace

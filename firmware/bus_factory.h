@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "can/mock_bus.h"
+#include "can/socketcan_link.h"
 #include "firmware/config.h"
 
 namespace bevloc::firmware {
@@ -16,11 +17,12 @@ class BusFactory {
   /// interface. Fails where the interface cannot be opened.
   Result<std::unique_ptr<can::Bus>> connect();
 
-  /// The appliance's own: the kernel wakes it only for the vehicle's messages.
+  /// The appliance's own: the kernel wakes it only for the vehicle's messages, and to confirm what
+  /// it sent.
   Result<std::unique_ptr<can::Bus>> connect_appliance();
 
  private:
-  Result<std::unique_ptr<can::Bus>> connect(const std::vector<uint32_t>& accepted_ids);
+  Result<std::unique_ptr<can::Bus>> connect(const can::SocketCanOptions& options);
 
   CanConfig config_;
   can::MockWire wire_{4096};

@@ -25,12 +25,22 @@ std::filesystem::path path_of(YamlMap& yaml, std::string_view key,
 
 CameraConfig read_cameras(YamlMap yaml, const std::filesystem::path& folder) {
   CameraConfig cameras;
-  cameras.driver = yaml.require_choice<CameraDriver>(
-      "driver", {{"mock", CameraDriver::kMock}, {"replay", CameraDriver::kReplay}});
-  if (cameras.driver == CameraDriver::kMock) {
-    cameras.rate_hz = yaml.require<double>("rate_hz", between(1.0, 60.0));
-  } else {
-    cameras.recording = path_of(yaml, "recording", folder);
+  cameras.driver =
+      yaml.require_choice<CameraDriver>("driver", {{"mock", CameraDriver::kMock},
+                                                   {"replay", CameraDriver::kReplay},
+                                                   {"v4l2", CameraDriver::kV4l2},
+                                                   {"libcamera", CameraDriver::kLibcamera}});
+  switch (cameras.driver) {
+    case CameraDriver::kMock:
+      cameras.rate_hz = yaml.require<double>("rate_hz", between(1.0, 60.0));
+      break;
+    case CameraDriver::kReplay:
+      cameras.recording = path_of(yaml, "recording", folder);
+      break;
+    case CameraDriver::kV4l2:
+    case CameraDriver::kLibcamera:
+      cameras.devices = read_camera_devices(yaml);
+      break;
   }
   cameras.buffers = yaml.optional<int>("buffers", cameras.buffers, between(2, 64));
   drivers::SynchronizerConfig& synchronizer = cameras.synchronizer;
@@ -106,6 +116,10 @@ CanConfig read_can(YamlMap yaml) {
         "the name of a network interface, 1 to 15 characters",
         [](const std::string& name) { return !name.empty() && name.size() <= 15; }};
     config.interface = yaml.require<std::string>("interface", interface_name);
+  }
+  if (yaml.has("variant")) {
+    config.variant = yaml.require_choice<can::FrameFormat>(
+        "variant", {{"classic", can::FrameFormat::kClassic}, {"fd", can::FrameFormat::kFd}});
   }
   // Each family of messages takes less than 0x40 of the 11-bit identifiers.
   constexpr uint32_t kFamily = 0x40;
@@ -198,6 +212,12 @@ Result<Config> load_config(const std::filesystem::path& file) {
   config.can = read_can(yaml->require_map("can"));
   config.tracker = read_tracker(yaml->optional_map("tracker"));
   config.health = read_health(yaml->optional_map("health"));
+  if (auto gpio = yaml->optional_map("gpio")) {
+    config.gpio = read_gpio(*gpio);
+    if (config.cameras.driver == CameraDriver::kMock) {
+      yaml->reject("gpio", "lines beside mock cameras", "none: a simulated drive has no wires");
+    }
+  }
   config.log_level = read_log_level(yaml->optional_map("log"));
   if (config.cameras.driver == CameraDriver::kMock) {
     config.simulation = read_simulation(yaml->require_map("simulation"));

@@ -13,6 +13,8 @@
 #include "drivers/camera/mock_schedule.h"
 #include "drivers/camera/true_rig.h"
 #include "drivers/frameset/synchronizer.h"
+#include "firmware/camera_devices_config.h"
+#include "firmware/gpio_config.h"
 #include "firmware/health.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/solver/solver_factory.h"
@@ -21,7 +23,7 @@
 
 namespace bevloc::firmware {
 
-enum class CameraDriver : uint8_t { kMock, kReplay };
+enum class CameraDriver : uint8_t { kMock, kReplay, kV4l2, kLibcamera };
 enum class CanDriver : uint8_t { kMock, kSocketCan };
 enum class LogLevel : uint8_t { kDebug, kInfo, kWarning, kError };
 
@@ -32,6 +34,7 @@ struct CameraConfig {
   bool compensate_motion = true;    ///< between the exposures of one set
   double rate_hz = 10.0;            ///< of mock cameras
   std::filesystem::path recording;  ///< of replay cameras: holds a folder for each of kCameraNames
+  CameraDevicesConfig devices;      ///< of V4L2 and libcamera cameras
 };
 
 /// The map comes from a file or, for mock cameras, from the seed of a made-up town.
@@ -48,7 +51,8 @@ struct SolverConfig {
 
 struct CanConfig {
   CanDriver driver = CanDriver::kMock;
-  std::string interface;  ///< of SocketCAN
+  std::string interface;                                  ///< of SocketCAN
+  can::FrameFormat variant = can::FrameFormat::kClassic;  ///< of the messages that bevloc sends
   can::BaseIds base_ids;
 };
 
@@ -72,6 +76,7 @@ struct Config {
   CanConfig can;
   TrackerParameters tracker;
   HealthLimits health;
+  GpioConfig gpio;
   LogLevel log_level = LogLevel::kInfo;
   std::optional<SimulationConfig> simulation;  ///< there with mock cameras, and only then
 };
@@ -81,7 +86,8 @@ struct Config {
 /// the file are relative to its folder; those in the result are ready to open.
 Result<Config> load_config(const std::filesystem::path& file);
 
-/// Reads all that the configuration names: rig, map, model and recordings. What bevlocd
+/// Reads all that the configuration names: rig, map, model, recordings and camera devices. What
+/// bevlocd
 /// --check-config does.
 Status check_config(const Config& config);
 

@@ -1,7 +1,6 @@
-// What a configuration names, looked up on the disk.
-#include <string_view>
-
-#include "drivers/camera/replay_camera.h"
+// What a configuration names, looked up on this machine.
+#include "drivers/gpio/libgpiod_gpio.h"
+#include "firmware/camera_factory.h"
 #include "firmware/config.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_loader.h"
@@ -10,10 +9,11 @@
 namespace bevloc::firmware {
 namespace {
 
-Status check_recordings(const std::filesystem::path& folder) {
-  for (const std::string_view camera : kCameraNames) {
-    const auto recording = drivers::load_recording(folder / camera);
-    if (!recording) return tl::unexpected(recording.error());
+Status check_lines(const GpioConfig& gpio) {
+  for (const drivers::LineAddress& address : lines_of(gpio)) {
+    if (Status status = drivers::LibgpiodGpio().look_for(address); !status) {
+      return fail("gpio: {}", status.error().message);
+    }
   }
   return {};
 }
@@ -28,10 +28,8 @@ Status check_config(const Config& config) {
   if (!config.map.procedural_seed) {
     if (const auto map = load_map(config.map.file); !map) return tl::unexpected(map.error());
   }
-  if (config.cameras.driver == CameraDriver::kReplay) {
-    return check_recordings(config.cameras.recording);
-  }
-  return {};
+  if (Status status = check_lines(config.gpio); !status) return status;
+  return check_cameras(config.cameras);
 }
 
 }  // namespace bevloc::firmware

@@ -2,77 +2,72 @@
 
 #include <spdlog/spdlog.h>
 
-#include "drivers/camera/replay_camera.h"
 #include "firmware/bus_factory.h"
+#include "firmware/camera_factory.h"
+#include "firmware/gpio_lines.h"
 #include "firmware/runner.h"
 #include "firmware/supervisor.h"
+#include "firmware/view_log.h"
 #include "pipeline/map/map_loader.h"
 
 namespace bevloc::firmware {
 namespace {
 
-/// Recordings begin a little after now, so that every camera is ready for its first picture.
-constexpr Duration kReplayLead = std::chrono::seconds(1);
-
-/// Replays of one recording, all shifted by the same time so that it begins now.
-Result<std::vector<std::unique_ptr<drivers::Camera>>> open_recording(const Config& config,
-                                                                     const Rig& rig,
-                                                                     drivers::Clock& clock) {
-  std::vector<drivers::ReplayCameraConfig> replays;
-  Time first = Time::max();
-  for (int camera = 0; camera < kCameraCount; ++camera) {
-    drivers::ReplayCameraConfig replay;
-    replay.camera = camera;
-    replay.directory = config.cameras.recording / kCameraNames[camera];
-    replay.width_px = rig.cameras[camera].intrinsics.width_px;
-    replay.height_px = rig.cameras[camera].intrinsics.height_px;
-    replay.buffers = config.cameras.buffers;
-    const auto frames = drivers::load_recording(replay.directory);
-    if (!frames) return tl::unexpected(frames.error());
-    if (!frames->empty()) first = std::min(first, frames->front().time);
-    replays.push_back(replay);
-  }
-  std::vector<std::unique_ptr<drivers::Camera>> cameras;
-  for (drivers::ReplayCameraConfig& replay : replays) {
-    replay.shift = clock.now() + kReplayLead - first;
-    cameras.push_back(std::make_unique<drivers::ReplayCamera>(replay, clock));
-  }
-  return cameras;
+void log_bus(const can::BusCounters& bus) {
+  const double mean_ms = bus.confirmed == 0 ? 0.0
+                                            : 1e3 * to_seconds(bus.confirmation_total) /
+                                                  static_cast<double>(bus.confirmed);
+  spdlog::info(
+      "CAN: {} sent, {} confirmed after {:.2f} ms on average and {:.2f} ms at most, {} replaced by "
+      "newer ones, {} too old, {} while down",
+      bus.sent, bus.confirmed, mean_ms, 1e3 * to_seconds(bus.confirmation_max), bus.send_replaced,
+      bus.send_expired, bus.send_bus_down);
+  spdlog::info(
+      "CAN: {} received ({} stamped by hardware, {} by the kernel), {} lost, {} ignored, {} error "
+      "reports, {} times bus-off, {} times found again",
+      bus.received, bus.hardware_stamped, bus.software_stamped, bus.receive_dropped,
+      bus.receive_ignored, bus.error_frames, bus.bus_off, bus.reopened);
 }
 
 }  // namespace
 
-Status run_daemon(const Config& config, const Rig& rig, const std::function<bool()>& stop) {
+Status run_daemon(const Config& config, const Rig& rig, drivers::Gpio& gpio,
+                  const std::function<bool()>& stop) {
   drivers::MonotonicClock clock;
+  // First of all, so that the fault line is active while the rest starts.
+  auto lines = GpioLines::open(config.gpio, gpio, clock);
+  if (!lines) return tl::unexpected(lines.error());
+  const drivers::Trigger* const trigger = (*lines)->trigger();
   const auto map = load_map(config.map.file);
   if (!map) return tl::unexpected(map.error());
   BusFactory buses(config.can);
   auto bus = buses.connect_appliance();
   if (!bus) return tl::unexpected(bus.error());
-  auto cameras = open_recording(config, rig, clock);
+  auto cameras = make_cameras(config.cameras, rig, clock);
   if (!cameras) return tl::unexpected(cameras.error());
 
-  auto appliance =
-      Appliance::create(config, rig, *map, {std::move(*cameras), std::move(*bus), &clock});
+  auto appliance = Appliance::create(
+      config, rig, *map,
+      {std::move(*cameras), std::move(*bus), &clock, trigger ? &trigger->pulses() : nullptr});
   if (!appliance) return tl::unexpected(appliance.error());
   spdlog::info("map {} with {} elements, model {}", map->name, map->elements.size(),
                (*appliance)->localizer().model_name());
 
   Supervisor supervisor(**appliance);
-  State state = State::kInit;
+  ViewLog log;
   run_threads(**appliance, nullptr, [&](Time now) {
     supervisor.step(now);
-    const ApplianceView& view = supervisor.view();
-    if (view.state != state) {
-      spdlog::info("{} -> {} ({})", to_string(state), to_string(view.state), to_string(view.why));
-      state = view.state;
-    }
-    return !stop();
+    log.note(supervisor.view());
+    const bool ignition = (*lines)->step(supervisor.view(), now);
+    if (!ignition) spdlog::info("ignition is off");
+    return ignition && !stop();
   });
   supervisor.finish();
   const FrameCounts frames = (*appliance)->frame_counts();
   spdlog::info("stopped: {} frames captured, {} used, {} dropped", frames.captured, frames.used,
                frames.dropped());
+  log_synchrony((*appliance)->vision().synchrony(), trigger);
+  log_bus((*appliance)->bus().counters());
   return {};
 }
 

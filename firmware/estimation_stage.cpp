@@ -47,6 +47,15 @@ void EstimationStage::tick(Time now) {
   ++counters_.ticks;
 }
 
+void EstimationStage::sign_off(Time now) {
+  can::PoseReport report;
+  report.status = make_status();
+  report.status.state = State::kLost;
+  report.status.why |= can::Why::kPoseStale;
+  report.pose_time = now;
+  publisher_.publish(report, now);
+}
+
 void EstimationStage::take_samples() {
   while (const auto sample = samples_.pop(Duration::zero())) {
     if (!feed(tracker_, *sample)) continue;

@@ -39,6 +39,10 @@ class EstimationStage {
   /// Takes in everything that has arrived, then publishes the pose predicted to `now`.
   void tick(Time now);
 
+  /// The last message: there is no pose any more, so that no consumer has to wait for a time-out.
+  /// After the last tick().
+  void sign_off(Time now);
+
   const EstimationCounters& counters() const { return counters_; }
 
  private:

@@ -18,7 +18,7 @@ struct VisionReport {
   bool skipped = false;    ///< framesets before this one, because this one was already there
   bool had_prior = false;  ///< without one nothing could be matched
   bool map_nearby = false;
-  bool unsynchronized = false;  ///< cameras too far apart in time, and nothing makes up for it
+  bool unsynchronized = false;  ///< the cameras do not expose together (Synchrony)
   Se2 prior;                    ///< T0, map_from_vehicle at frame_time
   Correction correction;
 };

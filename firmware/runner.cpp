@@ -67,6 +67,11 @@ void run_threads(Appliance& appliance, const Companion* companion, const Supervi
   } while (supervise(clock.now()));
   running = false;
   appliance.close();
+  threads.clear();
+  // Takes in the confirmations of the last cycle, for which the bus would hold the next frames
+  // back.
+  appliance.vehicle_input().step(Duration::zero());
+  appliance.estimation().sign_off(clock.now());
 }
 
 void run_lockstep(Appliance& appliance, drivers::VirtualClock& clock, const Companion* companion,
@@ -86,6 +91,7 @@ void run_lockstep(Appliance& appliance, drivers::VirtualClock& clock, const Comp
     }
   }
   for (CaptureStage& stage : appliance.capture()) stage.stop();
+  appliance.estimation().sign_off(clock.now());
 }
 
 }  // namespace bevloc::firmware

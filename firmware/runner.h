@@ -21,7 +21,7 @@ using Supervise = std::function<bool(Time now)>;
 
 /// One thread per camera, one for vision, one for CAN in, one for CAN out (and two for the
 /// companion, if there is one); the calling thread supervises. Returns when `supervise` says so,
-/// with every thread joined.
+/// with every thread joined and the end told on the bus.
 void run_threads(Appliance& appliance, const Companion* companion, const Supervise& supervise);
 
 /// One thread does everything in the order of time, a bus cycle at a time; computing takes no time.

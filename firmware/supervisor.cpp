@@ -1,20 +1,25 @@
 #include "firmware/supervisor.h"
 
+#include <algorithm>
 #include <bitset>
 
 namespace bevloc::firmware {
 namespace {
 
 constexpr Duration kRatePeriod = std::chrono::seconds(1);
+/// A stage that has not moved for so long hangs.
+constexpr Duration kStall = std::chrono::seconds(1);
 
 }  // namespace
 
 void Supervisor::step(Time now) {
   const EstimationCounters& estimation = appliance_.estimation().counters();
-  const VisionCounters& vision = appliance_.vision().counters();
   view_.state = estimation.state;
   view_.why = can::WhyMask::from_bits(estimation.why);
   view_.cameras = static_cast<int>(std::bitset<kCameraCount>(estimation.cameras).count());
+  view_.bus = appliance_.bus().condition();
+  const auto& drifts = appliance_.vision().synchrony().drift_ppm;
+  std::ranges::copy(drifts, view_.drift_ppm.begin());
   update_rate(now);
 
   if (!ready_) {
@@ -22,13 +27,23 @@ void Supervisor::step(Time now) {
     ready_ = true;
   }
   const std::string why = to_string(view_.why);
-  notifier_.status(fmt::format("{}{}{}, cameras {}/{}", to_string(view_.state),
-                               why.empty() ? "" : ": ", why, view_.cameras, kCameraCount));
-  if (estimation.ticks != last_ticks_ && vision.steps != last_steps_) {
+  notifier_.status(fmt::format("{}{}{}, cameras {}/{}, CAN {}", to_string(view_.state),
+                               why.empty() ? "" : ": ", why, view_.cameras, kCameraCount,
+                               can::to_string(view_.bus)));
+  watch_stages(now);
+}
+
+void Supervisor::watch_stages(Time now) {
+  const uint64_t ticks = appliance_.estimation().counters().ticks;
+  const uint64_t steps = appliance_.vision().counters().steps;
+  if (!moved_) moved_ = now;
+  if (ticks != last_ticks_ && steps != last_steps_) {
     notifier_.feed_watchdog();
-    last_ticks_ = estimation.ticks;
-    last_steps_ = vision.steps;
+    last_ticks_ = ticks;
+    last_steps_ = steps;
+    moved_ = now;
   }
+  view_.stalled = now - *moved_ > kStall;
 }
 
 void Supervisor::update_rate(Time now) {

@@ -1,6 +1,9 @@
 // Watches that every stage moves, and tells the service manager.
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include "firmware/appliance.h"
 #include "firmware/service_notifier.h"
 
@@ -10,8 +13,12 @@ namespace bevloc::firmware {
 struct ApplianceView {
   State state = State::kInit;
   can::WhyMask why;
-  int cameras = 0;       ///< in the latest frameset
+  int cameras = 0;  ///< in the latest frameset
+  can::BusCondition bus;
   double rate_hz = 0.0;  ///< framesets localized per second, over the last second or so
+  bool stalled = false;  ///< a stage has not moved for a second
+  /// By how much each camera is faster than the median camera; 0 unless that is certain.
+  std::array<double, kCameraCount> drift_ppm{};
 };
 
 /// Thread: the supervising one, about ten times a second.
@@ -28,6 +35,7 @@ class Supervisor {
 
  private:
   void update_rate(Time now);
+  void watch_stages(Time now);
 
   const Appliance& appliance_;
   ServiceNotifier notifier_;
@@ -35,6 +43,7 @@ class Supervisor {
   bool ready_ = false;
   uint64_t last_ticks_ = 0;
   uint64_t last_steps_ = 0;
+  std::optional<Time> moved_;  ///< when all stages were last seen moving
   Time rate_since_ = Time::min();
   uint64_t framesets_then_ = 0;
 };

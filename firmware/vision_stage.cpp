@@ -3,18 +3,13 @@
 #include <algorithm>
 
 namespace bevloc::firmware {
-namespace {
-
-/// Frames of one set that are further apart show different places: 10 cm at 20 m/s.
-constexpr Duration kSynchronous = std::chrono::milliseconds(5);
-
-}  // namespace
 
 VisionStage::VisionStage(Localizer& localizer, const VisionConfig& config, FrameQueue& frames,
                          PredictionQueue& predictions, VisionQueue& reports)
     : localizer_(localizer),
       compensate_motion_(config.compensate_motion),
       synchronizer_(config.synchronizer),
+      synchrony_(synchronizer_, config.compensate_motion, config.pulses),
       frames_(frames),
       predictions_(predictions),
       reports_(reports) {}
@@ -27,10 +22,17 @@ bool VisionStage::step(const drivers::Clock& clock, Duration timeout) {
   ++counters_.steps;
   take_in(clock, timeout);
   const uint64_t skipped_before = counters_.framesets_skipped;
-  const auto frameset = newest_frameset(clock.now());
-  if (!frameset) return false;
-  localize(*frameset, counters_.framesets_skipped > skipped_before);
-  return true;
+  const Time now = clock.now();
+  const auto frameset = newest_frameset(now);
+  if (frameset) {
+    localize(*frameset, report_on(*frameset, now, counters_.framesets_skipped > skipped_before));
+  } else if (synchrony_.split_without_sets(now)) {
+    VisionReport report;
+    report.frame_time = now;
+    report.unsynchronized = true;
+    reports_.push(report);
+  }
+  return frameset.has_value();
 }
 
 void VisionStage::take_in(const drivers::Clock& clock, Duration timeout) {
@@ -58,12 +60,16 @@ std::optional<drivers::Frameset> VisionStage::newest_frameset(Time now) {
   return newest;
 }
 
-void VisionStage::localize(const drivers::Frameset& frameset, bool skipped) {
+VisionReport VisionStage::report_on(const drivers::Frameset& frameset, Time now, bool skipped) {
   VisionReport report;
   report.frame_time = frameset.time;
   report.present = frameset.present;
   report.skipped = skipped;
-  report.unsynchronized = !compensate_motion_ && frameset.spread > kSynchronous;
+  report.unsynchronized = synchrony_.unsynchronized(frameset, now);
+  return report;
+}
+
+void VisionStage::localize(const drivers::Frameset& frameset, VisionReport report) {
   ++counters_.framesets;
   counters_.frames_used += frameset.present.count();
 
@@ -78,7 +84,7 @@ void VisionStage::localize(const drivers::Frameset& frameset, bool skipped) {
   report.prior = *prior;
   CameraImages seen{{}, frameset.present, *motions};
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    if (frameset.present[camera]) seen.images[camera] = frameset.frames[camera].pixels();
+    if (frameset.present[camera]) seen.images[camera] = frameset.frames[camera].image();
   }
   const SearchRange range = acquiring_ ? SearchRange::kAcquiring : SearchRange::kTracking;
   if (localizer_.localize(seen, *prior, range, solution_)) {

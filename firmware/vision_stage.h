@@ -8,6 +8,7 @@
 #include "drivers/frameset/synchronizer.h"
 #include "firmware/messages.h"
 #include "firmware/pose_trail.h"
+#include "firmware/synchrony.h"
 #include "pipeline/localization/localizer.h"
 
 namespace bevloc::firmware {
@@ -25,6 +26,8 @@ struct VisionConfig {
   drivers::SynchronizerConfig synchronizer;
   /// Whether each camera is taken from where the vehicle was when it exposed.
   bool compensate_motion = true;
+  /// Of the trigger; null without one. Must outlive the stage.
+  const drivers::PulseLog* pulses = nullptr;
 };
 
 /// Totals since start; readable from any thread.
@@ -53,17 +56,20 @@ class VisionStage {
 
   const VisionCounters& counters() const { return counters_; }
   const drivers::FramesetSynchronizer& synchronizer() const { return synchronizer_; }
+  const SynchronyCounters& synchrony() const { return synchrony_.counters(); }
 
  private:
   void take_in(const drivers::Clock& clock, Duration timeout);
   std::optional<drivers::Frameset> newest_frameset(Time now);
-  void localize(const drivers::Frameset& frameset, bool skipped);
+  VisionReport report_on(const drivers::Frameset& frameset, Time now, bool skipped);
+  void localize(const drivers::Frameset& frameset, VisionReport report);
   /// Nothing when the motion to one of its frames is not known.
   std::optional<CameraMotions> motions_in(const drivers::Frameset& frameset) const;
 
   Localizer& localizer_;
   const bool compensate_motion_;
   drivers::FramesetSynchronizer synchronizer_;
+  Synchrony synchrony_;
   FrameQueue& frames_;
   PredictionQueue& predictions_;
   VisionQueue& reports_;

@@ -41,6 +41,10 @@ struct CameraCounters {
   uint64_t no_buffer = 0;
   /// Lost because nobody fetched them before the next one was due.
   uint64_t overrun = 0;
+  /// Lost before the driver: gaps in the device's own count that no missing buffer explains.
+  uint64_t lost = 0;
+  /// Arrived, but marked as bad by the device or not whole; dropped.
+  uint64_t damaged = 0;
 };
 
 /// One camera. Every implementation passes tests/drivers/camera_conformance_test.cpp.

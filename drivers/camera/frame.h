@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "common/time.h"
-#include "drivers/camera/frame_pool.h"
+#include "drivers/camera/frame_buffer.h"
 
 namespace bevloc::drivers {
 
@@ -17,7 +17,10 @@ struct Frame {
   Duration exposure{0};
   FrameBuffer buffer;
 
-  RgbView pixels() const { return buffer.view(); }
+  /// As the camera delivered it.
+  const ImageView& image() const { return buffer.view(); }
+  /// Of an RGB frame: mock and replay cameras make no others.
+  RgbView pixels() const { return image().rgb(); }
 };
 
 }  // namespace bevloc::drivers

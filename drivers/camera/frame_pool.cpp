@@ -2,38 +2,8 @@
 
 #include <bit>
 #include <cassert>
-#include <utility>
 
 namespace bevloc::drivers {
-
-FrameBuffer::FrameBuffer(FrameBuffer&& other) noexcept
-    : pool_(std::move(other.pool_)), slot_(other.slot_) {}
-
-FrameBuffer& FrameBuffer::operator=(FrameBuffer&& other) noexcept {
-  if (this != &other) {
-    give_back();
-    pool_ = std::move(other.pool_);
-    slot_ = other.slot_;
-  }
-  return *this;
-}
-
-RgbImage& FrameBuffer::image() {
-  assert(pool_);
-  return pool_->images_[slot_];
-}
-
-RgbView FrameBuffer::view() const {
-  assert(pool_);
-  return pool_->images_[slot_].view();
-}
-
-void FrameBuffer::give_back() {
-  if (!pool_) return;
-  // Release: whoever borrows the picture next sees that its last reader is done with it.
-  pool_->free_.fetch_or(uint64_t{1} << slot_, std::memory_order_release);
-  pool_.reset();
-}
 
 std::shared_ptr<FramePool> FramePool::create(int buffers, int width_px, int height_px) {
   return std::shared_ptr<FramePool>(new FramePool(buffers, width_px, height_px));
@@ -51,10 +21,16 @@ FrameBuffer FramePool::borrow() {
     const uint64_t without_lowest = free & (free - 1);
     if (free_.compare_exchange_weak(free, without_lowest, std::memory_order_acquire,
                                     std::memory_order_relaxed)) {
-      return {shared_from_this(), std::countr_zero(free)};
+      const int slot = std::countr_zero(free);
+      return {shared_from_this(), slot, images_[slot].view()};
     }
   }
   return {};
+}
+
+void FramePool::give_back(int slot) noexcept {
+  // Release: whoever borrows the picture next sees that its last reader is done with it.
+  free_.fetch_or(uint64_t{1} << slot, std::memory_order_release);
 }
 
 int FramePool::lent() const {

@@ -72,7 +72,7 @@ bool PacedCamera::hand_over(Frame& frame) {
 CameraCounters PacedCamera::counters() const {
   return {counters_.delivered.load(std::memory_order_relaxed),
           counters_.no_buffer.load(std::memory_order_relaxed),
-          counters_.overrun.load(std::memory_order_relaxed)};
+          counters_.overrun.load(std::memory_order_relaxed), 0, 0};
 }
 
 bool PacedCamera::is_overdue() const {
@@ -91,7 +91,7 @@ Status PacedCamera::draw_next() {
   if (drawn_) return {};
   drawn_ = pool_->borrow();
   if (!drawn_) return {};
-  return draw(*next_, drawn_.image());
+  return draw(*next_, pool_->image(drawn_));
 }
 
 void PacedCamera::advance() {

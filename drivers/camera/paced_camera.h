@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "drivers/camera/camera.h"
+#include "drivers/camera/frame_pool.h"
 #include "drivers/clock/clock.h"
 
 namespace bevloc::drivers {

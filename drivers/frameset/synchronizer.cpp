@@ -37,6 +37,7 @@ FrameFate FramesetSynchronizer::add(Frame frame, Time now) {
   if (fate == FrameFate::kAccepted || fate == FrameFate::kLate) camera.newest = frame.time;
   switch (fate) {
     case FrameFate::kAccepted:
+      rates_.add(frame.camera, frame.time);
       camera.push(std::move(frame));
       break;
     case FrameFate::kDuplicate:
@@ -71,6 +72,7 @@ std::optional<Frameset> FramesetSynchronizer::poll(Time now) {
     if (waited_for.any() && now < *opening + config_.wait) return std::nullopt;
     const CameraMask found = members(*opening);
     closed_until_ = *opening + config_.tolerance;
+    splits_.add(found);
     if (static_cast<int>(found.count()) >= config_.min_cameras) {
       return emit(*opening, found, waited_for);
     }

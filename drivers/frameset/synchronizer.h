@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "drivers/frameset/frameset.h"
+#include "drivers/frameset/rate_monitor.h"
+#include "drivers/frameset/split_monitor.h"
 
 namespace bevloc::drivers {
 
@@ -74,6 +76,10 @@ class FramesetSynchronizer {
   CameraMask blockers() const;
 
   const SynchronizerCounters& counters(int camera) const { return cameras_[camera].counters; }
+  /// Over all sets, also those that were not given out.
+  const SplitMonitor& splits() const { return splits_; }
+  /// Over all frames that were accepted.
+  const RateMonitor& rates() const { return rates_; }
 
  private:
   struct CameraQueue {
@@ -98,6 +104,8 @@ class FramesetSynchronizer {
   const SynchronizerConfig config_;
   std::array<CameraQueue, kCameraCount> cameras_;
   Time closed_until_ = Time::min();  ///< frames up to here belong to a set that is over
+  SplitMonitor splits_;
+  RateMonitor rates_;
 };
 
 }  // namespace bevloc::drivers

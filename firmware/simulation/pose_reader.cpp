@@ -1,12 +1,14 @@
 #include "firmware/simulation/pose_reader.h"
 
+#include <algorithm>
+
+#include "can/solution_fd.h"
+
 namespace bevloc::firmware {
 namespace {
 
-enum Input : size_t { kStatus, kLatitude, kLongitude, kPosLocal, kAttitude };
-
 can::E2eChecker checker_of(const can::Message& message) {
-  return {message.data_id, message.length};
+  return {message.protection(), message.length};
 }
 
 int64_t epoch_of(const can::Frame& frame) {
@@ -20,24 +22,40 @@ PoseReader::PoseReader(const can::BaseIds& base, can::GeodeticPosition map_origi
       geo_(map_origin),
       checkers_{checker_of(*kInputs[kStatus]), checker_of(*kInputs[kLatitude]),
                 checker_of(*kInputs[kLongitude]), checker_of(*kInputs[kPosLocal]),
-                checker_of(*kInputs[kAttitude])} {}
+                checker_of(*kInputs[kAttitude])},
+      joined_checker_(checker_of(can::loc_solution::kMessage)) {}
 
 std::optional<BusPose> PoseReader::accept(const can::ReceivedFrame& received) {
+  if (received.frame.id == can::loc_solution::kMessage.id(base_)) return accept_joined(received);
   for (size_t input = 0; input < kInputs.size(); ++input) {
     if (received.frame.id != kInputs[input]->id(base_)) continue;
     if (!can::is_usable(checkers_[input].check(received.frame))) return std::nullopt;
-    latest_[input] = received.frame;
-    if (input == kStatus) {
-      state_ = static_cast<can::LocalizerState>(
-          can::extract_raw(received.frame, can::loc_status::kState));
-    }
-    return input == kAttitude ? assemble(received) : std::nullopt;
+    take(static_cast<Input>(input), received.frame);
+    return input == kAttitude ? assemble(received.received) : std::nullopt;
   }
   return std::nullopt;
 }
 
-std::optional<BusPose> PoseReader::assemble(const can::ReceivedFrame& attitude) {
-  const int64_t epoch = epoch_of(attitude.frame);
+std::optional<BusPose> PoseReader::accept_joined(const can::ReceivedFrame& received) {
+  if (!can::is_usable(joined_checker_.check(received.frame))) return std::nullopt;
+  for (size_t part = 0; part < can::loc_solution::kParts.size(); ++part) {
+    const auto input = std::ranges::find(kInputs, can::loc_solution::kParts[part]);
+    if (input == kInputs.end()) continue;
+    take(static_cast<Input>(input - kInputs.begin()),
+         can::part_of_solution(received.frame, part, base_));
+  }
+  return assemble(received.received);
+}
+
+void PoseReader::take(Input input, const can::Frame& frame) {
+  latest_[input] = frame;
+  if (input != kStatus) return;
+  state_ = static_cast<can::LocalizerState>(can::extract_raw(frame, can::loc_status::kState));
+}
+
+std::optional<BusPose> PoseReader::assemble(Time received) {
+  const can::Frame& attitude = latest_[kAttitude];
+  const int64_t epoch = epoch_of(attitude);
   for (const Input input : {kLatitude, kLongitude, kPosLocal}) {
     if (latest_[input].length == 0 || epoch_of(latest_[input]) != epoch) return std::nullopt;
   }
@@ -45,10 +63,10 @@ std::optional<BusPose> PoseReader::assemble(const can::ReceivedFrame& attitude) 
   const auto longitude = can::decode(latest_[kLongitude], can::loc_longitude::kLongitude);
   const auto east = can::decode(latest_[kPosLocal], can::loc_pos_local::kEast);
   const auto north = can::decode(latest_[kPosLocal], can::loc_pos_local::kNorth);
-  const auto heading = can::decode(attitude.frame, can::loc_attitude::kHeading);
+  const auto heading = can::decode(attitude, can::loc_attitude::kHeading);
   if (!latitude || !longitude || !east || !north || !heading) return std::nullopt;
   const Se2 geodetic = geo_.map_from_geodetic({{*latitude, *longitude}, *heading});
-  return BusPose{attitude.received, {*east, *north, geodetic.yaw_rad}};
+  return BusPose{received, {*east, *north, geodetic.yaw_rad}};
 }
 
 }  // namespace bevloc::firmware

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/image.h"
+#include "common/image_view.h"
 #include "common/result.h"
 #include "common/se2.h"
 #include "pipeline/calibration/rig.h"
@@ -32,7 +32,7 @@ struct LocalizerOptions {
 
 /// What the cameras saw.
 struct CameraImages {
-  std::array<RgbView, kCameraCount> images;  ///< read where `present`
+  std::array<ImageView, kCameraCount> images;  ///< read where `present`
   CameraMask present;
   CameraMotions reference_from_exposure{};  ///< against the time of the prior
 };

@@ -185,5 +185,65 @@ TEST_F(Synchronizer, AllCamerasBackAfterLongSilence) {
   EXPECT_TRUE(set->present.all());
 }
 
+/// Sets of the cameras in `first` at t and of the others 40 ms later, `periods` times.
+class SplitCameras : public Synchronizer {
+ protected:
+  void run(CameraMask first, int periods) {
+    for (int k = 0; k < periods; ++k, time_ms_ += 100) {
+      add_all_but(~first, time_ms_);
+      poll(time_ms_ + 20);
+      add_all_but(first, time_ms_ + 40);
+      while (poll(time_ms_ + 60)) {
+      }
+    }
+  }
+  bool split() const { return synchronizer_.splits().split(); }
+
+  int64_t time_ms_ = 1000;
+};
+
+TEST_F(SplitCameras, CamerasInStepAreNoSplit) {
+  run(CameraMask().set(), 50);
+  EXPECT_FALSE(split());
+}
+
+TEST_F(SplitCameras, CamerasOutOfStepAreNoticedAndForgiven) {
+  run(CameraMask(0b000111), 3);
+  EXPECT_TRUE(split());
+  run(CameraMask().set(), SplitMonitor::kMemory);
+  EXPECT_FALSE(split());
+}
+
+TEST_F(SplitCameras, OneCameraOutOfStepIsNoticedAlthoughItMakesNoSetOfItsOwn) {
+  run(~only(kBack), 4);
+  EXPECT_TRUE(split());
+  EXPECT_GT(synchronizer_.counters(kBack).unmatched, 0U);
+}
+
+TEST_F(SplitCameras, LostFramesAreNoSplit) {
+  for (int k = 0; k < 60; ++k, time_ms_ += 100) {
+    add_all_but(CameraMask(k % 2 == 0 ? 0b000011 : 0b001100), time_ms_);
+    while (poll(time_ms_ + 60)) {
+    }
+  }
+  EXPECT_FALSE(split());
+}
+
+TEST_F(SplitCameras, NamesTheDriftingCamera) {
+  for (int k = 0; k < 200; ++k) {
+    const Duration drift = std::chrono::microseconds(20 * k);  // 200 ppm
+    for (int camera = 0; camera < kCameraCount; ++camera) {
+      const Time time = at_ms(1000 + 100 * k) + (camera == kBack ? drift : Duration::zero());
+      synchronizer_.add(frame_of(camera, time), time + milliseconds(20));
+    }
+    while (poll(1000 + 100 * k + 90)) {
+    }
+  }
+  ASSERT_TRUE(synchronizer_.rates().drift(kBack));
+  EXPECT_TRUE(synchronizer_.rates().drift(kBack)->certain());
+  EXPECT_NEAR(synchronizer_.rates().drift(kBack)->ppm, -200.0, 1.0);
+  EXPECT_FALSE(synchronizer_.rates().drift(kFront)->certain());
+}
+
 }  // namespace
 }  // namespace bevloc::drivers

@@ -113,6 +113,52 @@ TEST_F(ConfigTest, SmallestFileHasTheDefaults) {
   EXPECT_EQ(config->simulation->exposure_offsets[0], Duration::zero());
 }
 
+/// A replay with `gpio` as its last line, the sixth.
+std::string replay_with_gpio(const std::string& gpio) {
+  return "cameras: {driver: replay, recording: drive}\n"
+         "calibration: {rig: rig.yaml}\n"
+         "map: {file: town.osm}\n"
+         "model: {file: m.onnx}\n"
+         "can: {driver: mock}\n"
+         "gpio: {" +
+         gpio + "}\n";
+}
+
+TEST_F(ConfigTest, EveryGpioLineIsReadAndMayBeLeftOut) {
+  auto config = load(replay_with_gpio(
+      "trigger: {chip: soc, line: 17, rate_hz: 20, pulse_ms: 0.5}, "
+      "status_led: {chip: soc, line: LED}, fault: {chip: soc, line: FAULT, active: low}, "
+      "ignition: {chip: soc, line: KL15, debounce_ms: 300}"));
+  ASSERT_TRUE(config) << config.error().message;
+  const GpioConfig& gpio = config->gpio;
+  EXPECT_EQ(lines_of(gpio).size(), 4U);
+  EXPECT_EQ(to_string(gpio.trigger->address), "soc 17");
+  EXPECT_EQ(gpio.trigger->timing.period, std::chrono::milliseconds(50));
+  EXPECT_EQ(gpio.trigger->timing.pulse_width, std::chrono::microseconds(500));
+  EXPECT_FALSE(gpio.status_led->active_low);
+  EXPECT_TRUE(gpio.fault->active_low);
+  EXPECT_EQ(gpio.ignition->debounce, std::chrono::milliseconds(300));
+  config = load(replay_with_gpio(""));
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_TRUE(lines_of(config->gpio).empty());
+}
+
+TEST_F(ConfigTest, GpioMistakesAreNamed) {
+  EXPECT_THAT(complaint(replay_with_gpio("fault: {chip: soc}")), HasSubstr("gpio.fault.line"));
+  EXPECT_THAT(complaint(replay_with_gpio("fault: {chip: soc, line: A, active: down}")),
+              HasSubstr("gpio.fault.active"));
+  EXPECT_THAT(complaint(replay_with_gpio("trigger: {chip: soc, line: A}")),
+              HasSubstr("gpio.trigger.rate_hz"));
+  EXPECT_THAT(
+      complaint(replay_with_gpio("trigger: {chip: soc, line: A, rate_hz: 50, pulse_ms: 10}")),
+      HasSubstr("gpio.trigger.pulse_ms"));
+  EXPECT_THAT(
+      complaint(replay_with_gpio("fault: {chip: soc, line: A}, ignition: {chip: soc, line: A}")),
+      HasSubstr("gpio.ignition.line"));
+  EXPECT_THAT(complaint(replay_with_gpio("horn: {chip: soc, line: A}")), HasSubstr("gpio.horn"));
+  EXPECT_THAT(complaint(kSmallest + "gpio: {}\n"), HasSubstr("gpio"));
+}
+
 TEST_F(ConfigTest, EverySectionIsRead) {
   const auto config = load(
       "cameras: {driver: mock, rate_hz: 20, buffers: 8, tolerance_ms: 1.5, wait_ms: 40, "
@@ -124,7 +170,8 @@ TEST_F(ConfigTest, EverySectionIsRead) {
       "  kind: full\n"
       "  tracking: {x_range_m: 3, x_step_m: 0.5, y_range_m: 2, y_step_m: 0.25,\n"
       "             yaw_range_deg: 4, yaw_step_deg: 1}\n"
-      "can: {driver: socketcan, interface: can0, localizer_base_id: 0x600, vehicle_base_id: "
+      "can: {driver: socketcan, interface: can0, variant: fd, localizer_base_id: 0x600, "
+      "vehicle_base_id: "
       "0x300}\n"
       "tracker: {longitudinal_noise_m_per_sqrt_m: 0.03, lateral_noise_m_per_sqrt_m: 0.04, "
       "yaw_noise_deg_per_sqrt_s: 0.2, speed_scale_sigma: 0.05, yaw_rate_bias_sigma_degps: 0.5, "
@@ -150,6 +197,7 @@ TEST_F(ConfigTest, EverySectionIsRead) {
   EXPECT_DOUBLE_EQ(config->solver.acquiring.x_m.range, 6.0);
   EXPECT_EQ(config->can.driver, CanDriver::kSocketCan);
   EXPECT_EQ(config->can.interface, "can0");
+  EXPECT_EQ(config->can.variant, can::FrameFormat::kFd);
   EXPECT_EQ(config->can.base_ids.localizer, 0x600U);
   EXPECT_EQ(config->can.base_ids.vehicle, 0x300U);
   EXPECT_DOUBLE_EQ(config->tracker.motion.longitudinal_m_per_sqrt_m, 0.03);
@@ -231,7 +279,7 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
       {with(rate, rate + "  min_cameras: 2.5\n"), 4, "cameras.min_cameras"},
       {with(rate, rate + "  compensate_motion: 1\n"), 4, "cameras.compensate_motion"},
       {with("{driver: mock}", "mock"), 7, "can: found mock, wanted a mapping"},
-      {with("mock\n", "libcamera\n"), 2, "cameras.driver: found libcamera, wanted"},
+      {with("mock\n", "webcam\n"), 2, "cameras.driver: found webcam, wanted"},
       // out of range, or against each other
       {with(rate, "  rate_hz: 0\n"), 3, "cameras.rate_hz: found 0"},
       {with(rate, "  rate_hz: .nan\n"), 3, "cameras.rate_hz"},
@@ -245,6 +293,7 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
        "can.localizer_base_id"},
       {with("{driver: mock}", "{driver: mock, interface: can0}"), 7, "can.interface"},
       {with("{driver: mock}", "{driver: socketcan}"), 7, "can.interface"},
+      {with("{driver: mock}", "{driver: mock, variant: xl}"), 7, "can.variant"},
       {kSmallest + "solver: {kind: quick}\n", 9, "solver.kind"},
       {kSmallest + "solver: {tracking: {x_range_m: 1, x_step_m: 2}}\n", 9,
        "solver.tracking.x_step_m"},
@@ -403,7 +452,9 @@ std::set<std::string> captured(const std::string& text, const std::string& patte
 /// The keys that the sources of the configuration ask for: the words among a call's arguments.
 std::set<std::string> schema_keys() {
   const std::string source = read_text(kSource / "firmware/config.cpp") +
-                             read_text(kSource / "firmware/simulation_config.cpp");
+                             read_text(kSource / "firmware/camera_devices_config.cpp") +
+                             read_text(kSource / "firmware/simulation_config.cpp") +
+                             read_text(kSource / "firmware/gpio_config.cpp");
   return captured(source, R"re([(,]\s*"([a-z][a-z0-9_]*)")re");
 }
 

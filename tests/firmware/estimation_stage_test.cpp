@@ -153,6 +153,22 @@ TEST_F(EstimationStageTest, NanFromVisionChangesNothing) {
   EXPECT_TRUE(latest_->map_from_vehicle.is_finite());
 }
 
+TEST_F(EstimationStageTest, SignsOffWithoutAPose) {
+  run(milliseconds(5000));
+  ASSERT_EQ(stage_.counters().state, State::kTracking);
+  stage_.sign_off(now_);
+  std::optional<can::ReceivedFrame> status;
+  std::optional<BusPose> pose;
+  while (const auto received = listener_->receive()) {
+    if (received->frame.id == can::BaseIds().localizer) status = received;
+    if (const auto accepted = reader_.accept(*received)) pose = accepted;
+  }
+  EXPECT_FALSE(pose) << "nothing of the last epoch may be taken for a pose";
+  ASSERT_TRUE(status);
+  // LOC_Status.State is the low nibble of byte 2.
+  EXPECT_EQ(status->frame.data[2] & 0x0FU, static_cast<unsigned>(State::kLost));
+}
+
 TEST_F(EstimationStageTest, TellsWhenACorrectedPoseWasSent) {
   std::vector<Time> sent;
   stage_.observe_corrections([&sent](Time frame_time) { sent.push_back(frame_time); });

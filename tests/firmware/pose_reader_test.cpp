@@ -39,7 +39,7 @@ class PoseReaderTest : public testing::Test {
   can::MockWire wire_;
   std::unique_ptr<can::Bus> sender_ = wire_.connect();
   std::unique_ptr<can::Bus> receiver_ = wire_.connect();
-  can::PosePublisher publisher_{*sender_, {{}, kOrigin, {}}};
+  can::PosePublisher publisher_{*sender_, {.map_origin = kOrigin}};
   PoseReader reader_{{}, kOrigin};
   bool spoil_ = false;
 };
@@ -53,6 +53,20 @@ TEST_F(PoseReaderTest, ReadsThePoseThatWasPublished) {
   EXPECT_NEAR(pose->map_from_vehicle.y_m, -56.7, 0.006);
   EXPECT_NEAR(pose->map_from_vehicle.yaw_rad, 2.5, radians(0.01));
   EXPECT_EQ(reader_.state(), can::LocalizerState::kTracking);
+}
+
+TEST_F(PoseReaderTest, ReadsTheFdVariantToo) {
+  const Time now(milliseconds(1000));
+  can::PosePublisher fd(*sender_, {.map_origin = kOrigin, .format = can::FrameFormat::kFd});
+  fd.publish(valid_report(now), now);
+  const auto received = receiver_->receive();
+  ASSERT_TRUE(received);
+  const auto pose = reader_.accept(*received);
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->map_from_vehicle.x_m, 123.4, 0.006);
+  EXPECT_NEAR(pose->map_from_vehicle.yaw_rad, 2.5, radians(0.01));
+  EXPECT_EQ(reader_.state(), can::LocalizerState::kTracking);
+  EXPECT_FALSE(reader_.accept(*received)) << "the same frame again";
 }
 
 TEST_F(PoseReaderTest, AnInvalidPoseIsNone) {

@@ -95,6 +95,68 @@ TEST_F(VisionStageTest, SaysThatCamerasAreUnsynchronizedOnlyWhereNothingMakesUpF
   }
 }
 
+/// Half of the cameras at `time`, the other half 40 ms later.
+TEST_F(VisionStageTest, SaysThatCamerasAreOutOfStep) {
+  bool unsynchronized = false;
+  for (int k = 0; k < 6; ++k) {
+    const Time time = clock_.now();
+    for (const int first : {0, 3}) {
+      for (int camera = first; camera < first + 3; ++camera) {
+        drivers::Frame frame;
+        frame.camera = camera;
+        frame.time = time + milliseconds(first == 0 ? 0 : 40);
+        clock_.sleep_until(frame.time);
+        frames_.push(std::move(frame));
+      }
+    }
+    clock_.advance(milliseconds(60));
+    while (const auto report = step()) unsynchronized = report->unsynchronized;
+  }
+  EXPECT_TRUE(unsynchronized);
+}
+
+TEST_F(VisionStageTest, SaysSoWhereNoSetHasEnoughCameras) {
+  VisionConfig config;
+  config.synchronizer.min_cameras = 4;
+  stage_.emplace(*localizer_, config, frames_, predictions_, reports_);
+  int told = 0;
+  for (int k = 0; k < 20; ++k) {
+    for (int camera = 0; camera < kCameraCount; ++camera) {
+      drivers::Frame frame;
+      frame.camera = camera;
+      frame.time = clock_.now() + milliseconds(camera < 3 ? 0 : 40);
+      frames_.push(std::move(frame));
+    }
+    clock_.advance(milliseconds(100));
+    while (const auto report = step()) {
+      EXPECT_TRUE(report->unsynchronized);
+      EXPECT_TRUE(report->present.none());
+      ++told;
+    }
+  }
+  EXPECT_GE(told, 5);
+  EXPECT_LE(told, 10);
+  // Silent cameras are not out of step.
+  clock_.advance(milliseconds(1000));
+  EXPECT_FALSE(step());
+}
+
+TEST_F(VisionStageTest, MeasuresTheSpreadAndCountsSetsWithoutAPulse) {
+  drivers::PulseLog pulses;
+  VisionConfig config;
+  config.pulses = &pulses;
+  stage_.emplace(*localizer_, config, frames_, predictions_, reports_);
+  pulses.add(Time(milliseconds(699)));
+  push_frameset(Time(milliseconds(700)), milliseconds(2));
+  ASSERT_TRUE(step());
+  EXPECT_EQ(stage_->synchrony().off_pulse, 0U);
+  push_frameset(Time(milliseconds(800)), milliseconds(1));
+  ASSERT_TRUE(step());
+  EXPECT_EQ(stage_->synchrony().off_pulse, 1U);
+  EXPECT_EQ(stage_->synchrony().spread.load(), milliseconds(1));
+  EXPECT_EQ(stage_->synchrony().spread_max.load(), milliseconds(2));
+}
+
 TEST_F(VisionStageTest, MatchesNothingWhenTheMotionToALaterFrameIsNotKnown) {
   allow_spread(true);
   Prediction prediction;

@@ -137,14 +137,14 @@ TEST(ImageRemap, HonoursTheStride) {
   for (int v = 0; v < 360; ++v) std::copy_n(image.row(v), 3 * 640, &padded[v * kStride]);
   Planes expected(kNetworkImageSize);
   Planes planes(kNetworkImageSize);
-  const ImagePreprocessor preprocessor(camera);
+  ImagePreprocessor preprocessor(camera);
   ASSERT_TRUE(preprocessor.run(image.view(), expected));
-  ASSERT_TRUE(preprocessor.run({padded.data(), 640, 360, kStride}, planes));
+  ASSERT_TRUE(preprocessor.run(RgbView{padded.data(), 640, 360, kStride}, planes));
   EXPECT_EQ(planes, expected);
 }
 
 TEST(ImageRemap, RefusesAFrameOfAnotherSize) {
-  const ImagePreprocessor preprocessor(front_camera());
+  ImagePreprocessor preprocessor(front_camera());
   const RgbImage image(1280, 720);
   Planes planes(kNetworkImageSize);
   const Status status = preprocessor.run(image.view(), planes);

@@ -1,0 +1,118 @@
+#include "drivers/camera/libcamera/libcamera_camera.h"
+
+#include <cstring>
+#include <ctime>
+#include <mutex>
+#include <utility>
+
+#include "drivers/camera/jpeg_file.h"
+#include "drivers/camera/libcamera/capture_session.h"
+#include "drivers/camera/libcamera/sensor_time.h"
+#include "pipeline/calibration/rig.h"
+
+namespace bevloc::drivers {
+namespace {
+
+/// libcamera allows one manager in a program: all cameras share it, and the last one ends it.
+Result<std::shared_ptr<libcamera::CameraManager>> shared_manager() {
+  static std::mutex mutex;
+  static std::weak_ptr<libcamera::CameraManager> shared;
+  const std::lock_guard lock(mutex);
+  if (auto manager = shared.lock()) return manager;
+  auto manager = std::make_shared<libcamera::CameraManager>();
+  if (const int error = manager->start()) {
+    return fail("libcamera does not start: {}", std::strerror(-error));
+  }
+  shared = manager;
+  return manager;
+}
+
+Duration clock_time(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+/// How long this machine has been suspended.
+Duration time_slept() {
+  return clock_time(CLOCK_BOOTTIME) - clock_time(CLOCK_MONOTONIC);
+}
+
+}  // namespace
+
+std::vector<std::string> libcamera_ids() {
+  std::vector<std::string> ids;
+  if (const auto manager = shared_manager()) {
+    for (const auto& camera : (*manager)->cameras()) ids.push_back(camera->id());
+  }
+  return ids;
+}
+
+LibcameraCamera::LibcameraCamera(DeviceCameraConfig config, Clock& clock)
+    : config_(std::move(config)), clock_(clock), buffers_(config_.buffers) {}
+
+LibcameraCamera::~LibcameraCamera() {
+  stop();
+}
+
+Status LibcameraCamera::start() {
+  const std::string_view name = kCameraNames[config_.camera];
+  if (session_) return fail("camera {}: already started", name);
+  auto manager = shared_manager();
+  if (!manager) return fail("camera {}: {}", name, manager.error().message);
+  auto session = libcam::CaptureSession::open(std::move(*manager), config_);
+  if (!session) return fail("camera {}: {}", name, session.error().message);
+  session_ = std::move(*session);
+  buffers_ = session_->buffers();
+  counter_.restart();
+  return {};
+}
+
+void LibcameraCamera::stop() {
+  if (session_) session_->stop();
+  session_.reset();
+}
+
+Result<FrameEvent> LibcameraCamera::next_frame(Duration timeout, Frame& frame) {
+  if (!session_) return fail("camera {}: not started", kCameraNames[config_.camera]);
+  const Time give_up = clock_.now() + timeout;
+  do {
+    int slot = 0;
+    switch (session_->wait(std::max(give_up - clock_.now(), Duration::zero()), slot)) {
+      case libcam::CaptureSession::Event::kDisconnected:
+        return fail("camera {}: {}: is unplugged", kCameraNames[config_.camera], config_.id);
+      case libcam::CaptureSession::Event::kTimeout:
+        return FrameEvent::kTimeout;
+      case libcam::CaptureSession::Event::kCompleted:
+        if (take(slot, frame)) return FrameEvent::kFrame;
+    }
+  } while (clock_.now() < give_up);
+  return FrameEvent::kTimeout;
+}
+
+bool LibcameraCamera::take(int slot, Frame& frame) {
+  const libcamera::FrameMetadata& metadata = session_->frame_metadata(slot);
+  const uint64_t sequence = counter_.arrived(metadata.sequence);
+  const auto timestamp_ns = session_->sensor_timestamp_ns(slot);
+  const ImageView view = session_->view(slot);
+  const bool is_whole = view.format == PixelFormat::kMjpeg
+                            ? is_whole_jpeg({view.planes[0].data, view.bytes_used})
+                            : view.bytes_used >= static_cast<size_t>(view.planes[0].stride_bytes) *
+                                                     static_cast<size_t>(view.height);
+  if (metadata.status != libcamera::FrameMetadata::FrameSuccess || !timestamp_ns || !is_whole) {
+    counter_.damaged();
+    session_->requeue(slot);
+    return false;
+  }
+  const Time time = libcam::steady_time(*timestamp_ns, clock_.now(), time_slept());
+  frame = Frame{config_.camera, time, sequence, config_.exposure, session_->lend(slot)};
+  counter_.delivered(session_->lent() == session_->buffers());
+  return true;
+}
+
+CameraDescription LibcameraCamera::description() const {
+  return {config_.camera, config_.width_px, config_.height_px, buffers_,
+          TimestampOrigin::kExposureStart};
+}
+
+}  // namespace bevloc::drivers

@@ -1,0 +1,43 @@
+#include "drivers/camera/v4l2/device.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <linux/videodev2.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace bevloc::drivers::v4l2 {
+
+Result<std::shared_ptr<Device>> Device::open(const std::filesystem::path& node) {
+  // Not blocking: next_frame() waits in poll(), with a limit.
+  const int fd = ::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0) return fail("{}: cannot be opened: {}", node.string(), std::strerror(errno));
+  std::shared_ptr<Device> device(new Device(fd));
+  v4l2_capability capability{};
+  if (const int error = device->call(VIDIOC_QUERYCAP, &capability)) {
+    return fail("{}: is no V4L2 device: {}", node.string(), std::strerror(error));
+  }
+  device->name_ =
+      fmt::format("{} ({})", reinterpret_cast<const char*>(capability.card), node.string());
+  constexpr uint32_t kWanted = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING;
+  if ((capability.device_caps & kWanted) != kWanted) {
+    return fail("{}: has V4L2 capabilities {:#x}, wanted single-plane video capture by streaming",
+                device->name_, capability.device_caps);
+  }
+  return device;
+}
+
+Device::~Device() {
+  close(fd_);
+}
+
+int Device::call(unsigned long request, void* argument) const {
+  while (ioctl(fd_, request, argument) != 0) {
+    if (errno != EINTR) return errno;
+  }
+  return 0;
+}
+
+}  // namespace bevloc::drivers::v4l2

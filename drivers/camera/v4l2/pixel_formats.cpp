@@ -1,0 +1,76 @@
+#include "drivers/camera/v4l2/pixel_formats.h"
+
+#include <cassert>
+
+namespace bevloc::drivers::v4l2 {
+
+std::string fourcc_name(uint32_t fourcc) {
+  std::string name;
+  for (int shift = 0; shift < 32; shift += 8) {
+    name.push_back(static_cast<char>((fourcc >> shift) & 0x7FU));
+  }
+  while (name.ends_with(' ')) name.pop_back();
+  return name;
+}
+
+uint32_t fourcc_of(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kRgb24:
+      return V4L2_PIX_FMT_RGB24;
+    case PixelFormat::kYuyv:
+      return V4L2_PIX_FMT_YUYV;
+    case PixelFormat::kUyvy:
+      return V4L2_PIX_FMT_UYVY;
+    case PixelFormat::kNv12:
+      return V4L2_PIX_FMT_NV12;
+    case PixelFormat::kBayerRggb:
+      return V4L2_PIX_FMT_SRGGB8;
+    case PixelFormat::kBayerGrbg:
+      return V4L2_PIX_FMT_SGRBG8;
+    case PixelFormat::kBayerGbrg:
+      return V4L2_PIX_FMT_SGBRG8;
+    case PixelFormat::kBayerBggr:
+      return V4L2_PIX_FMT_SBGGR8;
+    case PixelFormat::kMjpeg:
+      return V4L2_PIX_FMT_MJPEG;
+  }
+  assert(false);
+  return 0;
+}
+
+YuvEncoding yuv_encoding(const v4l2_pix_format& pixels) {
+  uint32_t encoding = pixels.ycbcr_enc;
+  if (encoding == V4L2_YCBCR_ENC_DEFAULT) {
+    encoding = V4L2_MAP_YCBCR_ENC_DEFAULT(pixels.colorspace);
+  }
+  uint32_t range = pixels.quantization;
+  if (range == V4L2_QUANTIZATION_DEFAULT) {
+    constexpr bool kIsRgb = false;
+    range = V4L2_MAP_QUANTIZATION_DEFAULT(kIsRgb, pixels.colorspace, encoding);
+  }
+  const bool is_709 = encoding == V4L2_YCBCR_ENC_709 || encoding == V4L2_YCBCR_ENC_XV709;
+  return {is_709 ? YuvMatrix::kBt709 : YuvMatrix::kBt601, range == V4L2_QUANTIZATION_FULL_RANGE};
+}
+
+ImageView view_of(PixelFormat format, const v4l2_pix_format& pixels, const uint8_t* data) {
+  ImageView view;
+  view.format = format;
+  view.width = static_cast<int>(pixels.width);
+  view.height = static_cast<int>(pixels.height);
+  view.planes[0] = {data, pixels.bytesperline};
+  if (format == PixelFormat::kNv12) {
+    // Single-plane: chroma follows luma at once, and its rows are as long.
+    const size_t luma = static_cast<size_t>(pixels.bytesperline) * pixels.height;
+    view.planes[1] = {data + luma, pixels.bytesperline};
+  }
+  view.yuv = yuv_encoding(pixels);
+  return view;
+}
+
+size_t picture_bytes(PixelFormat format, const v4l2_pix_format& pixels) {
+  const size_t plane = static_cast<size_t>(pixels.bytesperline) * pixels.height;
+  if (format == PixelFormat::kMjpeg) return 0;
+  return format == PixelFormat::kNv12 ? plane + plane / 2 : plane;
+}
+
+}  // namespace bevloc::drivers::v4l2

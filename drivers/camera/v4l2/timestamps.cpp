@@ -1,0 +1,29 @@
+#include "drivers/camera/v4l2/timestamps.h"
+
+#include <linux/videodev2.h>
+
+namespace bevloc::drivers::v4l2 {
+
+Result<StampRule> stamp_rule(uint32_t buffer_flags, Duration exposure,
+                             std::optional<Duration> readout) {
+  if ((buffer_flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) != V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC) {
+    return fail("frames have buffer flags {:#x}, wanted time stamps of the monotonic clock",
+                buffer_flags);
+  }
+  if ((buffer_flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE) {
+    return StampRule{};
+  }
+  if (!readout) {
+    return fail(
+        "frames are stamped at their end; wanted readout_ms, the time from the first row's "
+        "end of exposure to the last row's");
+  }
+  return StampRule{TimestampOrigin::kFrameEnd, exposure + *readout};
+}
+
+Time exposure_start(const timeval& stamp, const StampRule& rule) {
+  return Time(std::chrono::seconds(stamp.tv_sec) + std::chrono::microseconds(stamp.tv_usec)) -
+         rule.exposure_to_stamp;
+}
+
+}  // namespace bevloc::drivers::v4l2

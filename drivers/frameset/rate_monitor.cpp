@@ -1,0 +1,92 @@
+#include "drivers/frameset/rate_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace bevloc::drivers {
+namespace {
+
+constexpr int kFramesBetweenFits = 32;
+/// After a pause this long, in periods, nobody can say how many frames were missed.
+constexpr int kLongestPause = 10;
+constexpr double kSigmas = 3.0;
+/// No time stamp is better than this.
+constexpr double kLeastJitter_s = 1e-6;
+
+}  // namespace
+
+bool CameraDrift::certain() const {
+  return std::abs(ppm) - kSigmas * sigma_ppm > RateMonitor::kLimit_ppm;
+}
+
+void RateMonitor::add(int camera, Time time) {
+  Track& track = tracks_[camera];
+  if (track.period &&
+      to_seconds(track.newest_interval(time)) > kLongestPause * track.period->seconds) {
+    track.size = 0;
+    track.period.reset();
+  }
+  track.times[track.next] = time;
+  track.next = (track.next + 1) % kWindow;
+  track.size = std::min(track.size + 1, kWindow);
+  if (++track.since_fit < kFramesBetweenFits) return;
+  track.since_fit = 0;
+  track.period = fit(track);
+  compare();
+}
+
+/// Least squares of time over frame number.
+std::optional<RateMonitor::Period> RateMonitor::fit(const Track& track) {
+  if (track.size < kFewest) return std::nullopt;
+  const auto intervals = std::span(intervals_).first(track.size - 1);
+  for (int i = 1; i < track.size; ++i) intervals[i - 1] = track.at(i) - track.at(i - 1);
+  const auto middle = intervals.begin() + track.size / 2;
+  std::ranges::nth_element(intervals, middle);
+  const double typical_s = to_seconds(*middle);
+
+  const double n = track.size;
+  double number = 0.0;
+  double sum_k = 0.0, sum_t = 0.0, sum_kk = 0.0, sum_kt = 0.0, sum_tt = 0.0;
+  for (int i = 0; i < track.size; ++i) {
+    if (i > 0) {
+      const double interval_s = to_seconds(track.at(i) - track.at(i - 1));
+      number += std::max(1.0, std::round(interval_s / typical_s));
+    }
+    const double t = to_seconds(track.at(i) - track.at(0));
+    sum_k += number;
+    sum_t += t;
+    sum_kk += number * number;
+    sum_kt += number * t;
+    sum_tt += t * t;
+  }
+  const double k_spread = sum_kk - sum_k * sum_k / n;
+  const double k_with_t = sum_kt - sum_k * sum_t / n;
+  const double t_spread = sum_tt - sum_t * sum_t / n;
+  const double slope = k_with_t / k_spread;
+  const double jitter_s = std::sqrt(std::max(0.0, (t_spread - slope * k_with_t) / (n - 2.0)));
+  // Half a period off the line: the frames have no steady rate, or were counted wrongly.
+  if (!(slope > 0.0) || 4.0 * jitter_s > slope) return std::nullopt;
+  return Period{slope, std::max(jitter_s, kLeastJitter_s) / std::sqrt(k_spread)};
+}
+
+void RateMonitor::compare() {
+  std::array<Period, kCameraCount> known{};
+  int count = 0;
+  for (const Track& track : tracks_) {
+    if (track.period) known[count++] = *track.period;
+  }
+  drifts_ = {};
+  if (count < kFewestCameras) return;
+  const auto median = known.begin() + count / 2;
+  std::nth_element(known.begin(), median, known.begin() + count,
+                   [](const Period& a, const Period& b) { return a.seconds < b.seconds; });
+  for (int i = 0; i < kCameraCount; ++i) {
+    const std::optional<Period>& own = tracks_[i].period;
+    if (!own) continue;
+    const double sigma = std::hypot(own->sigma / own->seconds, median->sigma / median->seconds);
+    drifts_[i] = CameraDrift{1e6 * (median->seconds / own->seconds - 1.0), 1e6 * sigma};
+  }
+}
+
+}  // namespace bevloc::drivers

@@ -1,0 +1,81 @@
+#include "drivers/gpio/libgpiod_gpio.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "drivers/gpio/libgpiod_calls.h"
+
+namespace bevloc::drivers {
+namespace {
+
+/// Every chip that can be opened, and what is wrong with the others.
+struct Chips {
+  std::vector<GpioChipHandle> handles;
+  std::vector<GpioChipInfo> infos;
+  std::string closed;
+};
+
+struct FoundLine {
+  GpioChipHandle chip;
+  unsigned line = 0;
+};
+
+/// /dev/gpiochip0, /dev/gpiochip1 and so on, in a settled order.
+std::vector<std::string> chip_devices() {
+  std::vector<std::string> devices;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev", ignored)) {
+    if (entry.path().filename().string().starts_with("gpiochip")) {
+      devices.push_back(entry.path().string());
+    }
+  }
+  std::ranges::sort(devices);
+  return devices;
+}
+
+Chips open_chips() {
+  Chips chips;
+  for (const std::string& device : chip_devices()) {
+    GpioChipHandle chip = open_gpio_chip(device);
+    if (!chip) {
+      chips.closed += fmt::format("; {} cannot be opened: {}", device, std::strerror(errno));
+      continue;
+    }
+    chips.infos.push_back(info_of(*chip));
+    chips.handles.push_back(std::move(chip));
+  }
+  return chips;
+}
+
+Result<FoundLine> find(const LineAddress& address) {
+  Chips chips = open_chips();
+  const auto place = find_free_line(chips.infos, address);
+  if (!place) return fail("{}{}", place.error().message, chips.closed);
+  return FoundLine{std::move(chips.handles[place->chip]), place->line};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<OutputLine>> LibgpiodGpio::open_output(const LineAddress& address,
+                                                              bool active) {
+  auto found = find(address);
+  if (!found) return tl::unexpected(found.error());
+  return request_output(std::move(found->chip), found->line, address, active);
+}
+
+Result<std::unique_ptr<InputLine>> LibgpiodGpio::open_input(const LineAddress& address) {
+  auto found = find(address);
+  if (!found) return tl::unexpected(found.error());
+  return request_input(std::move(found->chip), found->line, address);
+}
+
+Status LibgpiodGpio::look_for(const LineAddress& address) const {
+  const Chips chips = open_chips();
+  const auto place = find_line(chips.infos, address);
+  if (!place) return fail("{}{}", place.error().message, chips.closed);
+  return {};
+}
+
+}  // namespace bevloc::drivers

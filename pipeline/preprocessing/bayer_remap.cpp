@@ -1,0 +1,91 @@
+#include <algorithm>
+
+#include "common/target_clones.h"
+#include "pipeline/preprocessing/format_remap.h"
+
+namespace bevloc {
+namespace {
+
+/// Interpolating between samples two apart widens a box by one pixel on either side.
+constexpr int kMaxSamples = RemapTable::kMaxTaps + 2;
+/// Of the weights of one lattice along one axis: twice RemapTable::kWeightSum.
+constexpr int kLatticeBits = RemapTable::kWeightBits + 1;
+
+/// Weights along one axis of the samples that a box's pixels are interpolated from: a pixel on a
+/// lattice takes its sample, one between takes half of each neighbour. Summed over the samples of
+/// either parity they make 2 * kWeightSum.
+struct LatticeWeights {
+  int first;
+  uint16_t weights[kMaxSamples];
+
+  [[gnu::always_inline]] LatticeWeights(int first_pixel, const uint16_t* box, int taps, int length)
+      : first(std::clamp(first_pixel - 1, 0, length - taps - 2)) {
+    for (int i = 0; i < taps + 2; ++i) weights[i] = 0;
+    const auto add = [this](int pixel, int weight) __attribute__((always_inline)) {
+      weights[pixel - first] = static_cast<uint16_t>(weights[pixel - first] + weight);
+    };
+    for (int i = 0; i < taps; ++i) {
+      const int pixel = first_pixel + i;
+      add(pixel, 2 * box[i]);
+      add(pixel == 0 ? 1 : pixel - 1, box[i]);
+      add(pixel == length - 1 ? length - 2 : pixel + 1, box[i]);
+    }
+  }
+};
+
+[[gnu::always_inline]] inline void remap_pixels(const ImageView& image, const RemapTable& table,
+                                                int red_row, int red_col, int taps,
+                                                int8_t* planes) {
+  const ImagePlane& plane = image.planes[0];
+  const uint16_t* weights = table.weights.data();
+  const int samples = taps + 2;
+  for (int i = 0; i < kNetworkPixels; ++i, weights += 2 * taps) {
+    const LatticeWeights cols(table.first_col[i], weights, taps, image.width);
+    const LatticeWeights rows(table.first_row[i], weights + taps, taps, image.height);
+    const uint8_t* box = plane.data + rows.first * plane.stride_bytes + cols.first;
+    // By parity of the row: columns of the rows that have red, and of those that have blue.
+    uint32_t columns[2][kMaxSamples] = {};
+    for (int row = 0; row < samples; ++row, box += plane.stride_bytes) {
+      uint32_t* sums = columns[(rows.first + row + red_row) & 1];
+      for (int col = 0; col < samples; ++col) sums[col] += rows.weights[row] * box[col];
+    }
+    uint32_t mean[2][2] = {};
+    for (int col = 0; col < samples; ++col) {
+      const int lattice = (cols.first + col + red_col) & 1;
+      mean[0][lattice] += cols.weights[col] * columns[0][col];
+      mean[1][lattice] += cols.weights[col] * columns[1][col];
+    }
+    const auto to_network = [](uint32_t sum, int bits) __attribute__((always_inline)) {
+      return static_cast<int8_t>(((sum + (1U << (bits - 1))) >> bits) - 128);
+    };
+    planes[i] = to_network(mean[0][0], 2 * kLatticeBits);
+    planes[kNetworkPixels + i] = to_network(mean[0][1] + mean[1][0], 2 * kLatticeBits + 1);
+    planes[2 * kNetworkPixels + i] = to_network(mean[1][1], 2 * kLatticeBits);
+  }
+}
+
+/// The tap counts of usual frames are compiled as constants, as in rgb_remap.cpp.
+BEVLOC_TARGET_CLONES
+void remap_taps(const ImageView& image, const RemapTable& table, int red_row, int red_col,
+                int8_t* planes) {
+  switch (table.taps) {
+    case 3:
+      return remap_pixels(image, table, red_row, red_col, 3, planes);
+    case 5:
+      return remap_pixels(image, table, red_row, red_col, 5, planes);
+    default:
+      return remap_pixels(image, table, red_row, red_col, table.taps, planes);
+  }
+}
+
+}  // namespace
+
+void remap_bayer(const ImageView& image, const RemapTable& table, int8_t* planes) {
+  const bool has_red_below =
+      image.format == PixelFormat::kBayerGbrg || image.format == PixelFormat::kBayerBggr;
+  const bool has_red_right =
+      image.format == PixelFormat::kBayerGrbg || image.format == PixelFormat::kBayerBggr;
+  remap_taps(image, table, has_red_below ? 1 : 0, has_red_right ? 1 : 0, planes);
+}
+
+}  // namespace bevloc

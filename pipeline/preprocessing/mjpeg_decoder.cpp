@@ -1,0 +1,74 @@
+#include "pipeline/preprocessing/mjpeg_decoder.h"
+
+#include <array>
+
+#include <turbojpeg.h>
+
+namespace bevloc {
+namespace {
+
+/// Rows and columns of a plane are rounded up to whole chroma samples.
+size_t plane_size(int width_px, int height_px) {
+  return static_cast<size_t>(width_px + 1) * static_cast<size_t>(height_px + 1);
+}
+
+}  // namespace
+
+struct MjpegDecoder::Handle {
+  tjhandle decompressor = tjInitDecompress();
+  ~Handle() { tjDestroy(decompressor); }
+};
+
+MjpegDecoder::MjpegDecoder(int width_px, int height_px)
+    : width_px_(width_px),
+      height_px_(height_px),
+      handle_(std::make_unique<Handle>()),
+      planes_(std::make_unique_for_overwrite<uint8_t[]>(3 * plane_size(width_px, height_px))) {}
+
+MjpegDecoder::~MjpegDecoder() = default;
+MjpegDecoder::MjpegDecoder(MjpegDecoder&&) noexcept = default;
+
+Result<YuvLayout> MjpegDecoder::decode(const ImageView& jpeg) {
+  const tjhandle decompressor = handle_->decompressor;
+  const uint8_t* data = jpeg.planes[0].data;
+  const unsigned long size = jpeg.bytes_used;
+  int width = 0;
+  int height = 0;
+  int subsampling = 0;
+  int colours = 0;
+  if (tjDecompressHeader3(decompressor, data, size, &width, &height, &subsampling, &colours) != 0) {
+    return fail("JPEG frame cannot be read: {}", tjGetErrorStr2(decompressor));
+  }
+  if (width != width_px_ || height != height_px_) {
+    return fail("JPEG frame is {}x{} pixels, the calibration wants {}x{}", width, height, width_px_,
+                height_px_);
+  }
+  YuvLayout layout;
+  layout.encoding.full_range = true;  // JFIF
+  layout.chroma_shift_x = subsampling == TJSAMP_422 || subsampling == TJSAMP_420 ? 1 : 0;
+  layout.chroma_shift_y = subsampling == TJSAMP_420 || subsampling == TJSAMP_440 ? 1 : 0;
+  const bool is_known =
+      layout.chroma_shift_x + layout.chroma_shift_y > 0 || subsampling == TJSAMP_444;
+  if (colours != TJCS_YCbCr || !is_known) {
+    return fail("JPEG frame has {}, wanted YCbCr 4:4:4, 4:2:2, 4:2:0 or 4:4:0",
+                colours == TJCS_GRAY ? "no colour" : "an unknown colour layout");
+  }
+
+  std::array<uint8_t*, 3> planes{};
+  std::array<int, 3> strides{};
+  for (int i = 0; i < 3; ++i) {
+    planes[i] = planes_.get() + i * plane_size(width_px_, height_px_);
+    strides[i] = tjPlaneWidth(i, width, subsampling);
+  }
+  // A warning (corrupt or cut off data, the rest of the picture grey) counts as an error.
+  if (tjDecompressToYUVPlanes(decompressor, data, size, planes.data(), 0, strides.data(), 0, 0) !=
+      0) {
+    return fail("JPEG frame is damaged: {}", tjGetErrorStr2(decompressor));
+  }
+  layout.y = {planes[0], strides[0]};
+  layout.u = {planes[1], strides[1]};
+  layout.v = {planes[2], strides[2]};
+  return layout;
+}
+
+}  // namespace bevloc

@@ -1,0 +1,31 @@
+// Which camera pixels each network pixel is made of.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/preprocessing/network_camera.h"
+
+namespace bevloc {
+
+inline constexpr int kNetworkPixels = kNetworkWidthPx * kNetworkHeightPx;
+
+/// For each network pixel the box of camera pixels whose mean it is.
+struct RemapTable {
+  static constexpr int kWeightBits = 8;
+  static constexpr int kWeightSum = 1 << kWeightBits;
+  static constexpr int kMaxTaps = 32;
+
+  int taps = 0;  ///< of the box filter, along each axis
+  std::vector<uint16_t> first_col;
+  std::vector<uint16_t> first_row;
+  /// For each network pixel the weights of its columns, then those of its rows. Each set sums to
+  /// kWeightSum, or to 0 outside the frame.
+  std::vector<uint16_t> weights;
+};
+
+/// Through network_camera(camera) into the frames of `camera`.
+RemapTable make_remap_table(const CameraModel& camera);
+
+}  // namespace bevloc

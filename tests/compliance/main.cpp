@@ -1,0 +1,35 @@
+// bevloc-compliance --can can0: what every driver must do, on the interfaces of this machine. Takes
+// GoogleTest's options too, such as --gtest_filter; what is not on this machine is skipped by name.
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <gtest/gtest.h>
+
+#include "tests/compliance/camera_options.h"
+
+int main(int argc, char** argv) {
+  CLI::App app("Runs bevloc's conformance suites on the interfaces of this machine.");
+  std::string can;
+  app.add_option("--can", can, "CAN interface that nothing else uses, such as vcan0");
+  std::string gpio;
+  app.add_option("--gpio", gpio,
+                 "Chip of the kernel's gpio-sim with the lab's lines, such as gpiochip0");
+  bevloc::drivers::CameraOptions cameras(app);
+  app.allow_extras();
+  CLI11_PARSE(app, argc, argv);
+  cameras.apply();
+  // The suites list their implementations while GoogleTest starts, so before that.
+  if (!can.empty()) setenv("BEVLOC_TEST_CAN", can.c_str(), 1);
+  if (!gpio.empty()) setenv("BEVLOC_TEST_GPIO", gpio.c_str(), 1);
+
+  std::vector<std::string> rest = {argv[0]};
+  for (const std::string& option : app.remaining()) rest.push_back(option);
+  std::vector<char*> arguments;
+  for (std::string& option : rest) arguments.push_back(option.data());
+  arguments.push_back(nullptr);
+  int count = static_cast<int>(rest.size());
+  testing::InitGoogleTest(&count, arguments.data());
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,104 @@
+// Cameras are found by names that last, in a made-up /sys and /dev.
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "drivers/camera/v4l2/device_finder.h"
+
+namespace bevloc::drivers::v4l2 {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DeviceFinder : public testing::Test {
+ protected:
+  DeviceFinder() {
+    std::string pattern = (fs::temp_directory_path() / "bevloc-devices-XXXXXX").string();
+    root_ = mkdtemp(pattern.data());
+    tree_ = {root_ / "sys", root_ / "dev"};
+    fs::create_directories(tree_.sysfs / "class/video4linux");
+    fs::create_directories(tree_.dev / "v4l/by-id");
+    fs::create_directories(tree_.dev / "v4l/by-path");
+  }
+  ~DeviceFinder() override { fs::remove_all(root_); }
+
+  static void write(const fs::path& file, const std::string& text) {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << text << "\n";
+  }
+
+  void add_node(int number, int index, const std::string& card, const fs::path& device) {
+    const fs::path entry = tree_.sysfs / "class/video4linux" / fmt::format("video{}", number);
+    write(entry / "index", std::to_string(index));
+    write(entry / "name", card);
+    fs::create_directories(device);
+    fs::create_directory_symlink(device, entry / "device");
+  }
+
+  /// A USB camera with a node for pictures and one for metadata, as uvcvideo makes them.
+  void add_usb_camera(int first_number, const std::string& port, const std::string& serial) {
+    const fs::path usb = tree_.sysfs / "devices/pci/usb1" / port;
+    write(usb / "idVendor", "1209");
+    write(usb / "serial", serial);
+    const fs::path interface = usb / (port + ":1.0");
+    add_node(first_number + 1, 1, "HD Camera", interface);
+    add_node(first_number, 0, "HD Camera", interface);
+    fs::create_symlink(fmt::format("../../video{}", first_number),
+                       tree_.dev / "v4l/by-id" / fmt::format("usb-HD_{}-video-index0", serial));
+  }
+
+  std::string found(std::string_view id) {
+    const auto node = find_video_node(id, tree_);
+    return node ? node->filename().string() : "error: " + node.error().message;
+  }
+
+  fs::path root_;
+  DeviceTree tree_;
+};
+
+TEST_F(DeviceFinder, FindsACameraByEachOfItsNames) {
+  add_usb_camera(0, "1-2", "SN7");
+  add_usb_camera(2, "1-4.1", "SN8");
+  EXPECT_EQ(found("SN8"), "video2");
+  EXPECT_EQ(found("1-4.1"), "video2");
+  EXPECT_EQ(found("usb-HD_SN8-video-index0"), "video2");
+  EXPECT_EQ(found("/dev/v4l/by-id/usb-HD_SN8-video-index0"), "video2");
+  EXPECT_EQ(found("SN7"), "video0");
+}
+
+TEST_F(DeviceFinder, FindsACameraThatIsNotOnUsb) {
+  add_node(5, 0, "csi-bridge", tree_.sysfs / "devices/platform/csi0");
+  fs::create_symlink("../../video5", tree_.dev / "v4l/by-path/platform-csi0-video-index0");
+  EXPECT_EQ(found("csi-bridge"), "video5");
+  EXPECT_EQ(found("platform-csi0-video-index0"), "video5");
+}
+
+TEST_F(DeviceFinder, TakesTheNodeWithThePictures) {
+  add_usb_camera(10, "1-2", "SN7");
+  EXPECT_EQ(found("SN7"), "video10");
+  EXPECT_EQ(list_video_nodes(tree_).size(), 2U);
+}
+
+TEST_F(DeviceFinder, RefusesANameThatTwoCamerasShare) {
+  add_usb_camera(0, "1-2", "SN7");
+  add_usb_camera(2, "1-4", "SN8");
+  EXPECT_NE(found("HD Camera").find("several cameras"), std::string::npos);
+}
+
+TEST_F(DeviceFinder, SaysWhatThereIsWhenItFindsNothing) {
+  EXPECT_NE(found("SN9").find("no video device at all"), std::string::npos);
+  add_usb_camera(0, "1-2", "SN7");
+  const std::string error = found("SN9");
+  for (const char* name : {"SN9", "SN7", "1-2", "HD Camera", "usb-HD_SN7-video-index0"}) {
+    EXPECT_NE(error.find(name), std::string::npos) << name << " in: " << error;
+  }
+}
+
+TEST_F(DeviceFinder, RefusesNumbers) {
+  add_usb_camera(0, "1-2", "SN7");
+  EXPECT_NE(found("/dev/video0").find("another camera after the next boot"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bevloc::drivers::v4l2

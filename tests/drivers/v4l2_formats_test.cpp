@@ -1,0 +1,63 @@
+// V4L2's names, colour encodings and picture layouts, and whether a JPEG is whole.
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "drivers/camera/jpeg_file.h"
+#include "drivers/camera/v4l2/controls.h"
+#include "drivers/camera/v4l2/pixel_formats.h"
+
+namespace bevloc::drivers::v4l2 {
+namespace {
+
+TEST(V4l2Formats, EveryFormatHasAFourccOfItsOwn) {
+  std::set<uint32_t> seen;
+  for (const NamedPixelFormat& format : kPixelFormats) seen.insert(fourcc_of(format.format));
+  EXPECT_EQ(seen.size(), kPixelFormats.size());
+  EXPECT_EQ(fourcc_name(fourcc_of(PixelFormat::kMjpeg)), "MJPG");
+  EXPECT_EQ(fourcc_name(fourcc_of(PixelFormat::kNv12)), "NV12");
+}
+
+TEST(V4l2Formats, ColourIsWhatTheDeviceSays) {
+  v4l2_pix_format pixels{};
+  pixels.pixelformat = V4L2_PIX_FMT_YUYV;
+  EXPECT_EQ(yuv_encoding(pixels), (YuvEncoding{YuvMatrix::kBt601, false})) << "the usual default";
+  pixels.quantization = V4L2_QUANTIZATION_FULL_RANGE;
+  EXPECT_EQ(yuv_encoding(pixels), (YuvEncoding{YuvMatrix::kBt601, true}));
+  pixels.colorspace = V4L2_COLORSPACE_REC709;
+  pixels.quantization = V4L2_QUANTIZATION_DEFAULT;
+  EXPECT_EQ(yuv_encoding(pixels), (YuvEncoding{YuvMatrix::kBt709, false}));
+  pixels.ycbcr_enc = V4L2_YCBCR_ENC_601;
+  EXPECT_EQ(yuv_encoding(pixels), (YuvEncoding{YuvMatrix::kBt601, false}));
+}
+
+TEST(V4l2Formats, TheChromaOfNv12FollowsItsPaddedLuma) {
+  v4l2_pix_format pixels{};
+  pixels.width = 60;
+  pixels.height = 40;
+  pixels.bytesperline = 64;
+  const std::vector<uint8_t> memory(64 * 60);
+  const ImageView view = view_of(PixelFormat::kNv12, pixels, memory.data());
+  EXPECT_EQ(view.planes[0].stride_bytes, 64);
+  EXPECT_EQ(view.planes[1].data - view.planes[0].data, 64 * 40);
+  EXPECT_EQ(view.planes[1].stride_bytes, 64);
+  EXPECT_EQ(picture_bytes(PixelFormat::kNv12, pixels), 64U * 60U);
+}
+
+TEST(V4l2Controls, AreNamedAsV4l2CtlDoes) {
+  EXPECT_EQ(control_word("Exposure Time, Absolute"), "exposure_time_absolute");
+  EXPECT_EQ(control_word("White Balance, Automatic "), "white_balance_automatic");
+  EXPECT_EQ(control_word("Gain"), "gain");
+}
+
+TEST(JpegFile, IsWholeFromMarkerToMarker) {
+  EXPECT_TRUE(is_whole_jpeg(std::vector<uint8_t>{0xFF, 0xD8, 1, 2, 0xFF, 0xD9}));
+  EXPECT_TRUE(is_whole_jpeg(std::vector<uint8_t>{0xFF, 0xD8, 1, 2, 0xFF, 0xD9, 0, 0})) << "padded";
+  EXPECT_FALSE(is_whole_jpeg(std::vector<uint8_t>{0xFF, 0xD8, 1, 2, 3, 4})) << "cut off";
+  EXPECT_FALSE(is_whole_jpeg(std::vector<uint8_t>{1, 2, 3, 4, 0xFF, 0xD9})) << "no beginning";
+  EXPECT_FALSE(is_whole_jpeg({}));
+}
+
+}  // namespace
+}  // namespace bevloc::drivers::v4l2

@@ -1,0 +1,142 @@
+#include "firmware/gpio_lines.h"
+
+#include <set>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "drivers/gpio/mock_gpio.h"
+#include "firmware/status_led.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using drivers::LineAddress;
+using drivers::MockGpio;
+using std::chrono::milliseconds;
+
+constexpr Duration kDebounce = milliseconds(150);
+
+/// Lines without a trigger, whose thread would use the virtual clock: trigger_test.cpp has that.
+class GpioLinesTest : public testing::Test {
+ protected:
+  GpioLinesTest() { gpio_.drive("ignition", true); }
+
+  static GpioConfig all_lines() {
+    GpioConfig config;
+    config.status_led = LineAddress{MockGpio::kChip, "led"};
+    config.fault = LineAddress{MockGpio::kChip, "fault", true};
+    config.ignition = IgnitionConfig{{MockGpio::kChip, "ignition"}, kDebounce};
+    return config;
+  }
+
+  void open(const GpioConfig& config = all_lines()) {
+    auto lines = GpioLines::open(config, gpio_, clock_);
+    ASSERT_TRUE(lines) << lines.error().message;
+    lines_ = std::move(*lines);
+  }
+
+  bool step(State state, Duration after = milliseconds(100)) {
+    clock_.advance(after);
+    ApplianceView view;
+    view.state = state;
+    return lines_->step(view, clock_.now());
+  }
+
+  bool fault() const { return !gpio_.high("fault"); }  // active low
+
+  drivers::VirtualClock clock_{Time(milliseconds(1000))};
+  MockGpio gpio_{{"led", "fault", "ignition"}, clock_};
+  std::unique_ptr<GpioLines> lines_;
+};
+
+TEST_F(GpioLinesTest, FaultIsActiveUntilTheStagesRunAndAfterTheEnd) {
+  open();
+  EXPECT_TRUE(fault());
+  step(State::kInit);
+  EXPECT_FALSE(fault());
+  step(State::kLost);
+  EXPECT_FALSE(fault());
+  step(State::kFault);
+  EXPECT_TRUE(fault());
+  step(State::kTracking);
+  EXPECT_FALSE(fault());
+  EXPECT_TRUE(gpio_.high("led"));
+  lines_.reset();
+  EXPECT_TRUE(fault());
+  EXPECT_FALSE(gpio_.high("led"));
+}
+
+TEST_F(GpioLinesTest, FaultIsActiveWhileAStageHangs) {
+  open();
+  ApplianceView view;
+  view.state = State::kTracking;
+  view.stalled = true;
+  lines_->step(view, clock_.now());
+  EXPECT_TRUE(fault());
+}
+
+TEST_F(GpioLinesTest, IgnitionOffCountsOnceItHolds) {
+  open();
+  EXPECT_TRUE(step(State::kTracking));
+  gpio_.drive("ignition", false);
+  EXPECT_TRUE(step(State::kTracking, milliseconds(149)));
+  EXPECT_FALSE(step(State::kTracking, milliseconds(1)));
+}
+
+TEST_F(GpioLinesTest, DipOfIgnitionBetweenTwoLooksIsForgiven) {
+  open();
+  for (int k = 0; k < 30; ++k) {
+    gpio_.drive("ignition", false);
+    clock_.advance(milliseconds(20));
+    gpio_.drive("ignition", true);
+    EXPECT_TRUE(step(State::kTracking));
+  }
+}
+
+TEST_F(GpioLinesTest, IgnitionThatIsOffAtTheStartEndsIt) {
+  gpio_.drive("ignition", false);
+  open();
+  EXPECT_TRUE(step(State::kInit));
+  EXPECT_FALSE(step(State::kInit));
+}
+
+TEST_F(GpioLinesTest, LostChipDoesNotEndLocalization) {
+  open();
+  gpio_.unplug();
+  EXPECT_TRUE(step(State::kTracking));
+  EXPECT_TRUE(step(State::kTracking));
+}
+
+TEST_F(GpioLinesTest, NoLinesAreNeeded) {
+  open({});
+  EXPECT_TRUE(step(State::kTracking));
+  EXPECT_EQ(lines_->trigger(), nullptr);
+  EXPECT_TRUE(gpio_.changes("led").empty());
+}
+
+TEST_F(GpioLinesTest, SaysWhichLineCannotBeHad) {
+  GpioConfig config = all_lines();
+  config.status_led->line = "lamp";
+  const auto lines = GpioLines::open(config, gpio_, clock_);
+  ASSERT_FALSE(lines);
+  EXPECT_THAT(lines.error().message, testing::StartsWith("gpio: mock lamp: "));
+  EXPECT_TRUE(fault()) << "no appliance: the line stays as it was left";
+}
+
+TEST(StatusLed, ShowsEachStateDifferently) {
+  std::set<std::string> seen;
+  for (const State state : {State::kInit, State::kAcquiring, State::kTracking, State::kDegraded,
+                            State::kLost, State::kFault}) {
+    std::string shown;
+    for (int slot = 0; slot < 20; ++slot) {
+      shown += is_lit(state, Time(milliseconds(100 * slot + 50))) ? '#' : '-';
+    }
+    EXPECT_TRUE(seen.insert(shown).second) << shown;
+  }
+  EXPECT_TRUE(seen.contains("####################"));
+}
+
+}  // namespace
+}  // namespace bevloc::firmware
