@@ -1,0 +1,84 @@
+"""script/hil: boots the lab once and plays scenarios in it, one after the other."""
+
+import argparse
+import pathlib
+import signal
+import sys
+
+from tests.hil.lab.agent import LabError
+from tests.hil.lab.bench import Bench, Folders, Run
+from tests.hil.lab.outcome import Outcome, table
+from tests.hil.lab.scenarios import SCENARIOS
+
+
+def main() -> int:
+    arguments = _arguments()
+    # So that an interrupted run ends its processes.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+    folders = Folders(*(getattr(arguments, f).resolve() for f in Folders.__dataclass_fields__))
+    folders.results.mkdir(parents=True, exist_ok=True)
+    usb = arguments.cameras == "usb"
+    outcomes: dict[str, Outcome] = {}
+    with Bench(folders, usb) as bench:
+        print("lab: the guest is up", flush=True)
+        for name in arguments.names:
+            outcomes[name] = _play(bench, name)
+            verdict = "passed" if outcomes[name].passed else "FAILED"
+            print(f"lab: {name} {verdict}: {outcomes[name].seen}", flush=True)
+        if arguments.keep:
+            _talk(bench)
+    text = table(outcomes)
+    (folders.results / "table.md").write_text(text + "\n", encoding="utf-8")
+    print(text)
+    return 0 if all(outcome.passed for outcome in outcomes.values()) else 1
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="script/hil", description=__doc__)
+    for folder in Folders.__dataclass_fields__:
+        parser.add_argument(f"--{folder}", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
+    parser.add_argument(
+        "--cameras",
+        choices=("usb", "none"),
+        default="usb",
+        help="what the daemon sees by: the emulated cameras, or nothing",
+    )
+    parser.add_argument(
+        "--keep", action="store_true", help="afterwards take commands (see docs/lab.md)"
+    )
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"{', '.join(SCENARIOS)}")
+    arguments = parser.parse_args()
+    for name in arguments.names:
+        if name not in SCENARIOS:
+            parser.error(f"no scenario '{name}', wanted one of {', '.join(SCENARIOS)}")
+        if SCENARIOS[name].needs_usb and arguments.cameras != "usb":
+            parser.error(f"'{name}' needs --cameras usb")
+    return arguments
+
+
+def _play(bench: Bench, name: str) -> Outcome:
+    try:
+        with Run(bench, name) as run:
+            return SCENARIOS[name].play(run)
+    except LabError as error:
+        return Outcome("-", str(error).strip().replace("\n", " / "), None, False)
+
+
+def _talk(bench: Bench) -> None:
+    """Lines from the terminal: shell for the guest, or `@` and a command for the cameras."""
+    for line in sys.stdin:
+        try:
+            if line.startswith("@"):
+                print(bench.cameras.command(line[1:].strip()), flush=True)
+            else:
+                print(bench.agent.run(line, timeout_s=600).output, end="", flush=True)
+        except LabError as error:
+            print(error, flush=True)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except LabError as error:
+        print(f"lab: {error}", file=sys.stderr)
+        sys.exit(1)

@@ -1,0 +1,84 @@
+"""The host's end of the guest's agent (tests/hil/guest/agent)."""
+
+import dataclasses
+import socket
+import time
+
+
+# Emulation on a busy machine: only a guest that hangs takes so long.
+TIMEOUT_S = 600.0
+
+
+class LabError(Exception):
+    """The lab itself failed: nothing is said about what was to be tested."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Reply:
+    status: int
+    output: str
+    uptime_s: float  # of the guest, when the script had ended
+
+
+class Agent:
+    """Runs shell scripts in the guest, one at a time."""
+
+    def __init__(self, socket_path: str, boot_timeout_s: float) -> None:
+        self._socket = connect_unix(socket_path)
+        self._received = b""
+        line = self._read_line(boot_timeout_s)
+        if line != "agent ready":
+            raise LabError(f"agent: found '{line}', wanted 'agent ready'")
+
+    def run(self, script: str, timeout_s: float = TIMEOUT_S) -> Reply:
+        data = script.encode()
+        self._socket.sendall(f"{len(data)}\n".encode() + data)
+        status, length, uptime_s = self._read_line(timeout_s).split()
+        output = self._read(int(length), timeout_s).decode(errors="replace")
+        return Reply(int(status), output, float(uptime_s))
+
+    def check(self, script: str, timeout_s: float = TIMEOUT_S) -> str:
+        """The output of a script that must succeed."""
+        reply = self.run(script, timeout_s)
+        if reply.status != 0:
+            raise LabError(f"in the guest: status {reply.status} of\n{script}\n{reply.output}")
+        return reply.output
+
+    def _read_line(self, timeout_s: float) -> str:
+        deadline = time.monotonic() + timeout_s
+        while b"\n" not in self._received:
+            self._receive(deadline)
+        line, self._received = self._received.split(b"\n", 1)
+        return line.decode()
+
+    def _read(self, count: int, timeout_s: float) -> bytes:
+        deadline = time.monotonic() + timeout_s
+        while len(self._received) < count:
+            self._receive(deadline)
+        data, self._received = self._received[:count], self._received[count:]
+        return data
+
+    def _receive(self, deadline: float) -> None:
+        self._socket.settimeout(max(0.001, deadline - time.monotonic()))
+        try:
+            chunk = self._socket.recv(65536)
+        except TimeoutError:
+            raise LabError("the guest did not answer in time") from None
+        if not chunk:
+            raise LabError("the guest is gone")
+        self._received += chunk
+
+
+def connect_unix(path: str, timeout_s: float = 20.0) -> socket.socket:
+    """Connects to a socket that its owner may not have made yet."""
+    deadline = time.monotonic() + timeout_s
+    while True:
+        connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        try:
+            connection.connect(path)
+            return connection
+        except OSError as error:
+            connection.close()
+            if time.monotonic() > deadline:
+                raise LabError(f"{path}: {error}") from None
+            time.sleep(0.1)

@@ -1,0 +1,196 @@
+"""One booted lab: its machine, its cameras, its folders, and the daemon under test."""
+
+import dataclasses
+import pathlib
+import re
+import shutil
+import tempfile
+import time
+
+from tests.hil.lab.agent import Agent, LabError
+from tests.hil.lab.cameras import Cameras
+from tests.hil.lab.judge import BusLog
+from tests.hil.lab.machine import Machine
+
+UNIT = "bevlocd.service"
+# Where the ignition line is driven from.
+IGNITION_PULL = "/sys/devices/platform/gpio-sim.0/gpiochip*/sim_gpio3/pull"
+DRIVE_CONFIG = "tests/hil/config/drive.yaml"
+CAMERA_PERIOD_S = 0.5  # of DRIVE_CONFIG
+USB_CONFIG = "tests/hil/config/usb.yaml"
+# Without cameras the daemon brings the rest of the vehicle itself, and reports to a folder.
+_NO_CAMERAS_DROP_IN = """[Service]
+ExecStart=
+ExecStart=/usr/bin/bevlocd --config /payload/tests/hil/config/no_cameras.yaml --out /run/bevloc/out
+"""
+
+
+@dataclasses.dataclass(frozen=True)
+class Folders:
+    source: pathlib.Path  # the project
+    build: pathlib.Path  # its programs
+    image: pathlib.Path  # what image/build made
+    pictures: pathlib.Path  # what drive_pictures made
+    results: pathlib.Path
+
+
+class Bench:
+    """Boots on entry, ends on exit. `usb`: the daemon sees by the USB cameras, else by none."""
+
+    def __init__(self, folders: Folders, usb: bool) -> None:
+        self.folders = folders
+        self.usb = usb
+
+    def __enter__(self) -> "Bench":
+        self._sockets = pathlib.Path(tempfile.mkdtemp(prefix="bevloc-lab-"))
+        try:
+            payload = self._stage_payload()
+            self.cameras = Cameras(
+                self.folders.build / "tests/hil/usb_cameras", self.folders.pictures, self._sockets
+            )
+            self.machine = Machine(
+                self.folders.image, self._sockets, payload, self.folders.results, self.cameras
+            )
+            self.agent: Agent = self.machine.agent
+            self._set_up_guest()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for part in ("machine", "cameras"):
+            if hasattr(self, part):
+                getattr(self, part).close()
+        shutil.rmtree(self._sockets)
+
+    def _stage_payload(self) -> pathlib.Path:
+        """The tree as far as the guest needs it: configurations find their files by place."""
+        payload = self.folders.results / "payload"
+        shutil.rmtree(payload, ignore_errors=True)
+        for folder in ("config", "models", "systemd", "tests/hil/config"):
+            shutil.copytree(self.folders.source / folder, payload / folder)
+        for program in ("firmware/bevlocd", "tests/hil/vehicle_can"):
+            shutil.copy2(self.folders.build / program, payload)
+        shutil.copy2(self.folders.pictures / "map.bvm", payload / "tests/hil/config")
+        return payload
+
+    def _set_up_guest(self) -> None:
+        self.agent.check("/lab/devices")
+        self.agent.check(
+            """
+            install -m 755 /payload/bevlocd /payload/vehicle_can /usr/bin/
+            install -m 644 /payload/systemd/sysusers.d/* /usr/lib/sysusers.d/
+            install -m 644 /payload/systemd/bevlocd.service /etc/systemd/system/
+            systemd-sysusers
+            """
+        )
+        if self.usb:
+            self.agent.check(
+                f"install -D -m 644 /payload/{USB_CONFIG} /etc/bevloc/bevlocd.yaml"
+            )
+        else:
+            folder = f"/etc/systemd/system/{UNIT}.d"
+            self.agent.check(
+                f"mkdir -p {folder}\ncat >{folder}/lab.conf <<'E'\n{_NO_CAMERAS_DROP_IN}E"
+            )
+        self.agent.check("systemctl daemon-reload")
+
+
+@dataclasses.dataclass(frozen=True)
+class DriveStart:
+    """When the drive began, on two of the guest's clocks."""
+
+    wall_s: float
+    monotonic_s: float
+
+
+class Run:
+    """One scenario on a bench: its log of the bus, its daemon, its vehicle, its results."""
+
+    def __init__(self, bench: Bench, name: str) -> None:
+        self.bench = bench
+        self.agent = bench.agent
+        self.cameras = bench.cameras
+        self.folder = bench.folders.results / name
+        self.guest = f"/results/{name}"
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder.mkdir(parents=True)
+
+    def __enter__(self) -> "Run":
+        self.agent.check("ip link set vcan0 up")
+        self._log_from_s = self.wall_s()
+        # -D: goes on when the interface goes down.
+        self.background("candump", "candump -D -L vcan0")
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.cameras.command("heal all")
+        self.cameras.command("plug all")
+        self.agent.run(f"systemctl stop {UNIT} vehicle candump; systemctl reset-failed")
+        self.agent.run(
+            f"journalctl -u {UNIT} -o short-unix --since @{int(self._log_from_s)} "
+            f">{self.guest}/journal.log"
+        )
+        (self.folder / "cameras.json").write_text(self.cameras.command("counts") + "\n")
+
+    def background(self, unit: str, command: str) -> None:
+        """Runs a command as a transient service; what it prints goes to UNIT.log."""
+        self.agent.check(
+            f"systemctl reset-failed {unit} 2>/dev/null; systemd-run --quiet --collect "
+            f"--unit={unit} -p StandardOutput=append:{self.guest}/{unit}.log "
+            f"-p StandardError=append:{self.guest}/{unit}.err {command}"
+        )
+
+    def wall_s(self) -> float:
+        """The guest's wall clock, which candump and the journal use."""
+        return float(self.agent.check("date +%s.%N"))
+
+    def start_daemon(self) -> float:
+        """Starts bevlocd by its unit; the seconds until it said READY."""
+        begin_s = self.wall_s()
+        self.agent.check(f"systemctl start {UNIT}")
+        return self.wall_s() - begin_s
+
+    def start_vehicle(self) -> None:
+        self.background(
+            "vehicle",
+            f"/usr/bin/vehicle_can --config /payload/{DRIVE_CONFIG} "
+            "--beat /dev/virtio-ports/bevloc.beat",
+        )
+
+    def drive_start(self) -> DriveStart:
+        text = (self.folder / "vehicle.log").read_text()
+        found = re.search(r"drive_start ([\d.]+) ([\d.]+)", text)
+        if not found:
+            raise LabError(f"vehicle.log: found '{text}', wanted drive_start")
+        return DriveStart(float(found[1]), float(found[2]))
+
+    def show(self, name: str) -> str:
+        """A property of the daemon's unit."""
+        return self.agent.check(f"systemctl show {UNIT} --value -p {name}").strip()
+
+    def wait_for(self, name: str, wanted: str, timeout_s: float) -> bool:
+        """Waits until a property of the daemon's unit begins with `wanted`."""
+        deadline = time.monotonic() + timeout_s
+        while not self.show(name).startswith(wanted):
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(0.2)
+        return True
+
+    def wait_restarted(self, restarts: int, timeout_s: float) -> float:
+        """The wall time at which the daemon was READY again after one more restart."""
+        deadline = time.monotonic() + timeout_s
+        while int(self.show("NRestarts")) <= restarts or self.show("ActiveState") != "active":
+            if time.monotonic() > deadline:
+                raise LabError(f"no restart within {timeout_s:.0f} s")
+            time.sleep(0.2)
+        monotonic_us = int(self.show("ActiveEnterTimestampMonotonic"))
+        uptime_s = float(self.agent.check("cut -d' ' -f1 /proc/uptime"))
+        return self.wall_s() - (uptime_s - 1e-6 * monotonic_us)
+
+    def finish_log(self) -> BusLog:
+        """The bus until now; nothing more is logged."""
+        self.agent.check("systemctl stop candump")
+        return BusLog(self.folder / "candump.log", self.bench.folders.source / "can/bevloc.dbc")

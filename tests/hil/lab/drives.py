@@ -1,0 +1,170 @@
+"""Scenarios with the emulated cameras: what they show is a drive, whose truth the judge knows."""
+
+import re
+
+from tests.hil.lab.agent import LabError
+from tests.hil.lab.bench import CAMERA_PERIOD_S, Run
+from tests.hil.lab.cameras import BROKEN_CAMERA, NAMES
+from tests.hil.lab.judge import BusLog, PoseError, Truth, quantile
+from tests.hil.lab.outcome import Outcome
+
+DRIVE_TIMEOUT_S = 900.0
+TRACKING_TIMEOUT_S = 300.0
+# Three missed sets and one cycle of LOC_Status.
+NOTICED_WITHIN_S = 3 * CAMERA_PERIOD_S + 0.1
+ALL_BACK_WITHIN_S = 2.0
+# Mean absolute errors that the mock drive is held to (tests/integration/drive_test.cpp).
+MAX_LONGITUDINAL_M, MAX_LATERAL_M, MAX_YAW_DEG = 0.5, 0.25, 0.6
+# What no valid pose may be off by: alert limits of a freeway (Reid et al. 2019).
+ALERT = PoseError(1.40, 0.57, 1.50)
+BROKEN_SIGNAL = "CameraOk_" + NAMES[BROKEN_CAMERA].title().replace("_", "")
+
+
+def drive(run: Run) -> Outcome:
+    run.start_daemon()
+    run.start_vehicle()
+    if not _vehicle_ended(run):
+        raise LabError("the drive did not end")
+    run.agent.check("systemctl stop bevlocd")
+    log = run.finish_log()
+    errors = _errors(run, log)
+    passed, judged = _judge(errors)
+    balanced, frames = _frames_balance(run)
+    return Outcome(
+        injected="nothing: a drive with six USB cameras",
+        seen=f"{' -> '.join(log.states())}; {judged}; {frames}",
+        recovery_s=None,
+        passed=passed and balanced,
+    )
+
+
+def freeze_camera(run: Run) -> Outcome:
+    return _poses_survive(run, "freeze")
+
+
+def camera_garbage(run: Run) -> Outcome:
+    return _poses_survive(run, "garbage")
+
+
+def no_cameras_at_start(run: Run) -> Outcome:
+    """Without cameras the daemon waits and says so; with them it works."""
+    run.cameras.command("unplug all")
+    run.agent.check("sleep 2")
+    run.start_daemon()
+    run.start_vehicle()
+    run.agent.check("sleep 5")
+    plugged_s = run.wall_s()
+    run.cameras.command("plug all")
+    tracking = run.wait_for("StatusText", "TRACKING", TRACKING_TIMEOUT_S)
+    log = run.finish_log()
+    missing_s = log.first_status(0.0, Why_CameraMissing="YES", State="INIT") or log.first_status(
+        0.0, Why_CameraMissing="YES", State="ACQUIRING"
+    )
+    all_ok = {name: "OK" for name in _camera_signals(log)}
+    back_s = log.first_status(plugged_s, **all_ok)
+    return Outcome(
+        injected="no camera at the start, all plugged in later",
+        seen=f"missing cameras {'named' if missing_s else 'NOT named'}, then "
+        f"{'TRACKING' if tracking else 'no tracking'}",
+        recovery_s=back_s - plugged_s if back_s else None,
+        passed=bool(missing_s and back_s and tracking),
+    )
+
+
+def unplug_camera(run: Run) -> Outcome:
+    _start_tracking(run)
+    broken_s = run.wall_s()
+    run.cameras.command(f"unplug {BROKEN_CAMERA}")
+    run.agent.check("sleep 5")
+    mended_s = run.wall_s()
+    run.cameras.command(f"plug {BROKEN_CAMERA}")
+    run.agent.check("sleep 8")
+    log = run.finish_log()
+    noticed_s = log.first_status(broken_s, **{BROKEN_SIGNAL: "MISSING"}, State="DEGRADED")
+    back_s = log.first_status(mended_s, **{BROKEN_SIGNAL: "OK"})
+    passed, judged = _judge(_errors(run, log))
+    noticed = f"DEGRADED after {noticed_s - broken_s:.2f} s" if noticed_s else "not noticed"
+    return Outcome(
+        injected=f"{NAMES[BROKEN_CAMERA]} unplugged, 5 s later plugged in again",
+        seen=f"{noticed}; {judged}",
+        recovery_s=back_s - mended_s if back_s else None,
+        passed=passed
+        and noticed_s is not None
+        and noticed_s - broken_s < NOTICED_WITHIN_S
+        and back_s is not None
+        and back_s - mended_s < ALL_BACK_WITHIN_S,
+    )
+
+
+def _poses_survive(run: Run, fault: str) -> Outcome:
+    """A picture that lies in one of six cameras must not become a wrong pose sent as valid."""
+    _start_tracking(run)
+    pid = run.show("MainPID")
+    run.cameras.command(f"{fault} {BROKEN_CAMERA}")
+    run.agent.check("sleep 8")
+    run.cameras.command(f"heal {BROKEN_CAMERA}")
+    run.agent.check("sleep 4")
+    same_daemon = run.show("MainPID") == pid
+    log = run.finish_log()
+    passed, judged = _judge(_errors(run, log))
+    return Outcome(
+        injected=f"{NAMES[BROKEN_CAMERA]}: {fault} for 8 s",
+        seen=f"{' -> '.join(log.states())}; {judged}; {'same' if same_daemon else 'new'} daemon",
+        recovery_s=None,
+        passed=passed and same_daemon,
+    )
+
+
+def _start_tracking(run: Run) -> None:
+    run.start_daemon()
+    run.start_vehicle()
+    if not run.wait_for("StatusText", "TRACKING", TRACKING_TIMEOUT_S):
+        raise LabError(f"no tracking, the daemon says '{run.show('StatusText')}'")
+
+
+def _vehicle_ended(run: Run) -> bool:
+    script = "systemctl is-active --quiet vehicle || exit 0; sleep 1"
+    ended = run.agent.run(f"for try in $(seq 900); do {script}; done; exit 1", DRIVE_TIMEOUT_S)
+    return ended.status == 0
+
+
+def _errors(run: Run, log: BusLog) -> list[PoseError]:
+    truth = Truth(run.bench.folders.pictures / "truth.csv")
+    start_s = run.drive_start().wall_s
+    errors = (truth.error_of(pose, start_s) for pose in log.valid_poses())
+    return [error for error in errors if error]
+
+
+def _judge(errors: list[PoseError]) -> tuple[bool, str]:
+    if not errors:
+        return False, "no valid pose"
+    longitudinal = [error.longitudinal_m for error in errors]
+    lateral = [error.lateral_m for error in errors]
+    yaw = [error.yaw_deg for error in errors]
+    means = [sum(map(abs, values)) / len(values) for values in (longitudinal, lateral, yaw)]
+    worst = [quantile(values, 1.0) for values in (longitudinal, lateral, yaw)]
+    limits = (ALERT.longitudinal_m, ALERT.lateral_m, ALERT.yaw_deg)
+    passed = all(m < b for m, b in zip(means, (MAX_LONGITUDINAL_M, MAX_LATERAL_M, MAX_YAW_DEG)))
+    safe = all(w < limit for w, limit in zip(worst, limits))
+    text = (
+        f"{len(errors)} valid poses, mean error {means[0]:.2f} m along, {means[1]:.2f} m across, "
+        f"{means[2]:.2f} deg, worst {worst[0]:.2f}, {worst[1]:.2f}, {worst[2]:.2f}"
+    )
+    return passed and safe, text
+
+
+def _frames_balance(run: Run) -> tuple[bool, str]:
+    """Every frame that the cameras sent was used or counted as dropped."""
+    sent = sum(camera["sent"] for camera in run.cameras.counts()["cameras"].values())
+    journal = run.agent.check("journalctl -u bevlocd -o cat")
+    found = re.search(r"(\d+) frames captured, (\d+) used, (\d+) dropped", journal)
+    if not found:
+        return False, "the daemon gave no account of its frames"
+    captured, used, dropped = map(int, found.groups())
+    text = f"{sent} frames sent, {captured} captured, {used} used, {dropped} dropped"
+    return sent == captured == used + dropped, text
+
+
+def _camera_signals(log: BusLog) -> list[str]:
+    statuses = log.named("LOC_Status")
+    return [name for name in statuses[0].values if name.startswith("CameraOk_")] if statuses else []

@@ -1,0 +1,135 @@
+"""Says from a log of the bus alone what the localizer did and how far off its poses were."""
+
+import bisect
+import csv
+import dataclasses
+import math
+import pathlib
+import re
+import statistics
+
+from tests.hil.lab import dbc
+
+VALID_STATES = ("TRACKING", "DEGRADED")
+_LINE = re.compile(r"\((\d+\.\d+)\) \S+ ([0-9A-F]{3})#([0-9A-F]*)$")
+
+
+@dataclasses.dataclass(frozen=True)
+class Frame:
+    time_s: float  # of the clock that candump used
+    name: str
+    values: dict[str, float | str | None]
+
+
+@dataclasses.dataclass(frozen=True)
+class Pose:
+    time_s: float
+    east_m: float
+    north_m: float
+    yaw_rad: float
+
+
+@dataclasses.dataclass(frozen=True)
+class PoseError:
+    longitudinal_m: float
+    lateral_m: float
+    yaw_deg: float
+
+
+class BusLog:
+    """The frames of a candump log (`candump -L`) that the DBC file knows and that are intact."""
+
+    def __init__(self, log: pathlib.Path, dbc_file: pathlib.Path) -> None:
+        messages = dbc.read(dbc_file)
+        self.frames: list[Frame] = []
+        self.damaged = 0
+        for line in log.read_text(encoding="ascii").splitlines():
+            found = _LINE.match(line)
+            message = messages.get(int(found[2], 16)) if found else None
+            if not found or not message:
+                continue
+            data = bytes.fromhex(found[3])
+            if message.is_intact(data):
+                self.frames.append(Frame(float(found[1]), message.name, message.decode(data)))
+            else:
+                self.damaged += 1
+
+    def named(self, name: str) -> list[Frame]:
+        return [frame for frame in self.frames if frame.name == name]
+
+    def localizer_after(self, time_s: float) -> float | None:
+        """When the localizer first sent anything after a moment."""
+        times = (f.time_s for f in self.frames if f.name.startswith("LOC_") and f.time_s > time_s)
+        return next(times, None)
+
+    def first_status(self, after_s: float, **wanted: str) -> float | None:
+        """When LOC_Status first said what is wanted."""
+        for frame in self.named("LOC_Status"):
+            if frame.time_s > after_s and wanted.items() <= frame.values.items():
+                return frame.time_s
+        return None
+
+    def states(self) -> list[str]:
+        """The states that were gone through, in order."""
+        states = [str(frame.values["State"]) for frame in self.named("LOC_Status")]
+        return [state for i, state in enumerate(states) if i == 0 or states[i - 1] != state]
+
+    def median_cycle_ms(self, name: str) -> float | None:
+        times = [frame.time_s for frame in self.named(name)]
+        if len(times) < 2:
+            return None
+        return 1e3 * statistics.median(b - a for a, b in zip(times, times[1:]))
+
+    def valid_poses(self) -> list[Pose]:
+        """Positions with the heading of the same epoch, while the state vouches for them."""
+        poses = []
+        state, position = None, None
+        for frame in self.frames:
+            if frame.name == "LOC_Status":
+                state = frame.values["State"]
+            elif frame.name == "LOC_PosLocal":
+                position = frame.values
+            elif frame.name == "LOC_Attitude" and position and state in VALID_STATES:
+                east, north = position["LocalEast"], position["LocalNorth"]
+                heading = frame.values["Heading"]
+                same = position["EPOCH"] == frame.values["EPOCH"]
+                if same and None not in (east, north, heading):
+                    yaw_rad = math.radians(90.0 - heading)
+                    poses.append(Pose(frame.time_s, east, north, yaw_rad))
+        return poses
+
+
+class Truth:
+    """Where the vehicle really was, by the drive's own time."""
+
+    def __init__(self, file: pathlib.Path) -> None:
+        with open(file, newline="", encoding="ascii") as rows:
+            self._rows = [tuple(map(float, row)) for row in list(csv.reader(rows))[1:]]
+        self._times = [row[0] for row in self._rows]
+
+    def error_of(self, pose: Pose, drive_start_s: float) -> PoseError | None:
+        """Nothing before the drive's start or after its end."""
+        time_s = pose.time_s - drive_start_s
+        after = bisect.bisect_right(self._times, time_s)
+        if after == 0 or after == len(self._times):
+            return None
+        before, next_row = self._rows[after - 1], self._rows[after]
+        share = (time_s - before[0]) / (next_row[0] - before[0])
+        east_m, north_m = (before[i] + share * (next_row[i] - before[i]) for i in (1, 2))
+        yaw_rad = before[3] + share * _wrapped(next_row[3] - before[3])
+        d_east, d_north = pose.east_m - east_m, pose.north_m - north_m
+        return PoseError(
+            math.cos(yaw_rad) * d_east + math.sin(yaw_rad) * d_north,
+            -math.sin(yaw_rad) * d_east + math.cos(yaw_rad) * d_north,
+            math.degrees(_wrapped(pose.yaw_rad - yaw_rad)),
+        )
+
+
+def quantile(values: list[float], share: float) -> float:
+    """Of absolute values."""
+    ordered = sorted(map(abs, values))
+    return ordered[min(len(ordered) - 1, int(share * len(ordered)))]
+
+
+def _wrapped(angle_rad: float) -> float:
+    return math.remainder(angle_rad, math.tau)

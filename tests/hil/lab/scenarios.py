@@ -1,0 +1,146 @@
+"""What the lab does to the daemon, and what it must see then."""
+
+import dataclasses
+from collections.abc import Callable
+
+from tests.hil.lab import devices, drives
+from tests.hil.lab.bench import IGNITION_PULL, Run
+from tests.hil.lab.outcome import Outcome
+
+# WatchdogSec and RestartSec of the unit.
+WATCHDOG_S = 2.0
+RESTART_S = 1.0
+# A daemon that is on its feet is back on the bus within this, by the project's requirements.
+BACK_ON_BUS_S = 1.0
+SETTLE_S = 4.0
+
+
+def sigstop(run: Run) -> Outcome:
+    return _restart(run, "SIGSTOP", WATCHDOG_S + RESTART_S)
+
+
+def kill(run: Run) -> Outcome:
+    return _restart(run, "SIGKILL", RESTART_S)
+
+
+def _restart(run: Run, signal: str, waits_s: float) -> Outcome:
+    """The service manager brings the daemon back: what it waits by design, and one start."""
+    start_s = run.start_daemon()
+    run.agent.check(f"sleep {SETTLE_S}")
+    restarts = int(run.show("NRestarts"))
+    injected_s = run.wall_s()
+    run.agent.check(f"kill -{signal[3:]} {run.show('MainPID')}")
+    ready_s = run.wait_restarted(restarts, timeout_s=600) - injected_s
+    run.agent.check(f"sleep {SETTLE_S}")
+    log = run.finish_log()
+    back_s = log.localizer_after(injected_s + ready_s)
+    limit_s = 2.0 * waits_s + 2.0 * start_s
+    return Outcome(
+        injected=f"{signal} to the daemon (a start takes {start_s:.1f} s here)",
+        seen=f"READY again, {'frames' if back_s else 'no frames'} on the bus",
+        recovery_s=ready_s,
+        passed=back_s is not None and ready_s < limit_s,
+    )
+
+
+def can_down(run: Run) -> Outcome:
+    run.start_daemon()
+    run.agent.check(f"sleep {SETTLE_S}")
+    pid = run.show("MainPID")
+    run.agent.check("ip link set vcan0 down; sleep 3")
+    up_s = run.wall_s()
+    run.agent.check(f"ip link set vcan0 up; sleep {SETTLE_S}")
+    same_daemon = run.show("MainPID") == pid
+    log = run.finish_log()
+    back_s = log.localizer_after(up_s)
+    recovery_s = back_s - up_s if back_s else None
+    return Outcome(
+        injected="vcan0 down for 3 s",
+        seen="the same daemon sends again" if same_daemon else "another daemon sends",
+        recovery_s=recovery_s,
+        passed=same_daemon and recovery_s is not None and recovery_s < BACK_ON_BUS_S,
+    )
+
+
+def can_flood(run: Run) -> Outcome:
+    """Random frames of a stranger and forged ones with the vehicle's identifiers."""
+    run.start_daemon()
+    run.agent.check(f"sleep {SETTLE_S}")
+    pid = run.show("MainPID")
+    begin_s = run.wall_s()
+    run.agent.run(
+        "timeout 5 cangen vcan0 -g 0.2 -I 7A0 -L 8 -D r -i & "
+        "timeout 5 cangen vcan0 -g 2 -I 400 -L 6 -D r -i & wait"
+    )
+    end_s = run.wall_s()
+    run.agent.check(f"sleep {SETTLE_S}")
+    same_daemon = run.show("MainPID") == pid
+    log = run.finish_log()
+    during = [f for f in log.named("LOC_Status") if begin_s < f.time_s < end_s]
+    after_s = log.localizer_after(end_s)
+    return Outcome(
+        injected=f"5 s of strange and forged frames ({log.damaged} forged ones seen)",
+        seen=f"{len(during)} status frames meanwhile, {'same' if same_daemon else 'new'} daemon",
+        recovery_s=after_s - end_s if after_s else None,
+        passed=bool(during) and same_daemon and after_s is not None and log.damaged > 0,
+    )
+
+
+def clock_step(run: Run) -> Outcome:
+    """Somebody sets the wall clock an hour on: the daemon keeps its own time."""
+    run.start_daemon()
+    run.agent.check(f"sleep {SETTLE_S}")
+    pid, step_s = run.show("MainPID"), 3600
+    before_s = run.wall_s()
+    run.agent.check(f"date -s '+{step_s} seconds'; sleep {SETTLE_S}; date -s '-{step_s} seconds'")
+    run.agent.check(f"sleep {SETTLE_S}")
+    same_daemon = run.show("MainPID") == pid
+    log = run.finish_log()
+    stepped = [f for f in log.named("LOC_Status") if f.time_s > before_s + step_s - 1.0]
+    return Outcome(
+        injected="wall clock one hour on, and back",
+        seen=f"{len(stepped)} status frames in that hour, "
+        f"{'same' if same_daemon else 'new'} daemon",
+        recovery_s=None,
+        passed=same_daemon and len(stepped) > 2,
+    )
+
+
+def ignition_off(run: Run) -> Outcome:
+    """The daemon ends cleanly, and nobody starts it again."""
+    run.start_daemon()
+    run.agent.check(f"sleep {SETTLE_S}")
+    off_s = run.wall_s()
+    run.agent.check(f"echo pull-down >{IGNITION_PULL}")
+    stopped = run.wait_for("ActiveState", "inactive", timeout_s=60)
+    stopped_s = run.wall_s() - off_s
+    run.agent.check(f"sleep {SETTLE_S}; echo pull-up >{IGNITION_PULL}")
+    result, state = run.show("Result"), run.show("ActiveState")
+    return Outcome(
+        injected="ignition line low",
+        seen=f"{'stopped' if stopped else 'NOT stopped'}, result {result}, then {state}",
+        recovery_s=stopped_s if stopped else None,
+        passed=stopped and result == "success" and state == "inactive",
+    )
+
+
+@dataclasses.dataclass(frozen=True)
+class Scenario:
+    play: Callable[[Run], Outcome]
+    needs_usb: bool  # the emulated cameras must be the daemon's
+
+
+SCENARIOS = {
+    "devices": Scenario(devices.devices, needs_usb=False),
+    "drive": Scenario(drives.drive, needs_usb=True),
+    "unplug-camera": Scenario(drives.unplug_camera, needs_usb=True),
+    "freeze-camera": Scenario(drives.freeze_camera, needs_usb=True),
+    "camera-garbage": Scenario(drives.camera_garbage, needs_usb=True),
+    "no-cameras-at-start": Scenario(drives.no_cameras_at_start, needs_usb=True),
+    "can-down": Scenario(can_down, needs_usb=False),
+    "can-flood": Scenario(can_flood, needs_usb=False),
+    "sigstop": Scenario(sigstop, needs_usb=False),
+    "kill": Scenario(kill, needs_usb=False),
+    "clock-step": Scenario(clock_step, needs_usb=False),
+    "ignition-off": Scenario(ignition_off, needs_usb=True),
+}
