@@ -20,8 +20,12 @@ _LOSS_PANELS = (
     ("Semantic losses", ("perceived", "reconstructed")),
     ("Joint solver: -log P(truth)", ("joint_x", "joint_y", "joint_yaw")),
     ("Decoupled solver: -log P(truth)", ("dec_x", "dec_y", "dec_yaw")),
+    ("Refined solver: -log P(truth)", ("ref_x", "ref_y", "ref_yaw")),
 )
-_VALIDATION = ("joint_x_mae", "joint_y_mae", "joint_yaw_mae")
+_VALIDATION_PANELS = (
+    ("Evaluation scenes: MAE (m, m, degrees)", ("joint_x_mae", "joint_y_mae", "joint_yaw_mae")),
+    ("Evaluation scenes: IoU", ("iou_divider", "iou_crossing", "iou_boundary")),
+)
 _SMOOTHED_ROWS = 9
 
 
@@ -40,6 +44,9 @@ def _smoothed(values: np.ndarray) -> np.ndarray:
 
 
 def _draw_losses(axes: plt.Axes, title: str, curves: Table, names: tuple[str, ...]) -> None:
+    axes.set_title(title)
+    if not all(name in curves for name in names):
+        return  # a run from before this loss
     seen = np.any([curves[name] > 0 for name in names], axis=0)
     seen[1:] &= seen[:-1]  # the first row of stage 2 averages zeros of stage 1
     samples = curves["samples"][seen] / 1000
@@ -47,21 +54,20 @@ def _draw_losses(axes: plt.Axes, title: str, curves: Table, names: tuple[str, ..
         values = curves[name][seen]
         (line,) = axes.plot(samples, values, linewidth=0.5, alpha=0.35)
         axes.plot(samples, _smoothed(values), color=line.get_color(), label=name)
-    axes.set_title(title)
 
 
 def draw(run: Path, out: Path) -> None:
-    """Four panels from curves.csv and validation.csv of a run."""
+    """Six panels from curves.csv and validation.csv of a run."""
     curves = read_table(run / "curves.csv")
-    figure, panels = plt.subplots(2, 2, figsize=(10, 6.5), constrained_layout=True)
+    figure, panels = plt.subplots(2, 3, figsize=(14, 6.5), constrained_layout=True)
     for axes, (title, names) in zip(panels.flat, _LOSS_PANELS):
         _draw_losses(axes, title, curves, names)
-    last = panels.flat[3]
-    if (run / "validation.csv").exists():
-        validation = read_table(run / "validation.csv")
-        for name in _VALIDATION:
-            last.plot(validation["samples"] / 1000, validation[name], marker=".", label=name)
-    last.set_title("Evaluation scenes: MAE (m, m, degrees)")
+    for axes, (title, names) in zip(panels.flat[len(_LOSS_PANELS) :], _VALIDATION_PANELS):
+        axes.set_title(title)
+        if (run / "validation.csv").exists():
+            validation = read_table(run / "validation.csv")
+            for name in names:
+                axes.plot(validation["samples"] / 1000, validation[name], marker=".", label=name)
     for axes in panels.flat:
         axes.set_xlabel("training samples (thousands)")
         axes.grid(alpha=0.3)
