@@ -67,6 +67,15 @@ FrameCounts Appliance::frame_counts() const {
   FrameCounts counts;
   for (const CaptureStage& stage : capture_) counts.captured += stage.captured();
   counts.used = vision_.counters().frames_used;
+  counts.displaced = frames_.dropped();
+  counts.skipped = vision_.counters().frames_skipped;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const drivers::SynchronizerCounters& refused = vision_.synchronizer().counters(camera);
+    counts.mismatched += refused.duplicate + refused.out_of_order + refused.late + refused.future +
+                         refused.overflow + refused.unmatched;
+    const drivers::CameraCounters missed = hardware_.cameras[camera]->counters();
+    counts.missed += missed.no_buffer + missed.overrun + missed.lost + missed.damaged;
+  }
   return counts;
 }
 

@@ -26,9 +26,15 @@ struct Hardware {
 
 /// How many frames went which way, summed over the cameras.
 struct FrameCounts {
-  uint64_t captured = 0;  ///< handed over by the cameras
-  uint64_t used = 0;      ///< in a frameset that was localized
+  uint64_t missed = 0;      ///< never captured, as the cameras' drivers counted
+  uint64_t captured = 0;    ///< handed over by the cameras
+  uint64_t used = 0;        ///< in a frameset that was localized
+  uint64_t displaced = 0;   ///< by newer ones, before vision looked at them
+  uint64_t mismatched = 0;  ///< refused by the synchronizer, or in a set of too few cameras
+  uint64_t skipped = 0;     ///< in a frameset that a newer one made useless
   uint64_t dropped() const { return captured - used; }
+  /// Waiting for their set; dropped only if that never comes.
+  uint64_t under_way() const { return dropped() - displaced - mismatched - skipped; }
 };
 
 /// Everything that runs, ready to be driven by threads or in lockstep (runner.h). Stages talk

@@ -64,8 +64,11 @@ Status run_daemon(const Config& config, const Rig& rig, drivers::Gpio& gpio,
   });
   supervisor.finish();
   const FrameCounts frames = (*appliance)->frame_counts();
-  spdlog::info("stopped: {} frames captured, {} used, {} dropped", frames.captured, frames.used,
-               frames.dropped());
+  spdlog::info(
+      "stopped: {} frames captured, {} used, {} dropped ({} for newer ones, {} without a set, "
+      "{} in skipped sets, {} under way); {} more missed",
+      frames.captured, frames.used, frames.dropped(), frames.displaced, frames.mismatched,
+      frames.skipped, frames.under_way(), frames.missed);
   log_synchrony((*appliance)->vision().synchrony(), trigger);
   log_bus((*appliance)->bus().counters());
   return {};

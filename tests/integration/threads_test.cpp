@@ -51,6 +51,7 @@ TEST(ThreadsTest, RunsUntilItHasLocalizedAndJoinsEveryThread) {
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_GT(report->frames.used, 0U);
   EXPECT_GE(report->frames.captured, report->frames.used);
+  EXPECT_LE(report->frames.under_way(), uint64_t{kCameraCount}) << "each drop has its reason";
   EXPECT_GT(report->can_sent, 0U);
 }
 

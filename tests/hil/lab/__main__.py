@@ -7,7 +7,7 @@ import sys
 
 from tests.hil.lab.agent import LabError
 from tests.hil.lab.bench import Bench, Folders, Run
-from tests.hil.lab.outcome import Outcome, table
+from tests.hil.lab.outcome import Outcome, row, table
 from tests.hil.lab.scenarios import SCENARIOS
 
 
@@ -17,14 +17,12 @@ def main() -> int:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     folders = Folders(*(getattr(arguments, f).resolve() for f in Folders.__dataclass_fields__))
     folders.results.mkdir(parents=True, exist_ok=True)
-    usb = arguments.cameras == "usb"
     outcomes: dict[str, Outcome] = {}
-    with Bench(folders, usb) as bench:
+    with Bench(folders, arguments.driver) as bench:
         print("lab: the guest is up", flush=True)
         for name in arguments.names:
             outcomes[name] = _play(bench, name)
-            verdict = "passed" if outcomes[name].passed else "FAILED"
-            print(f"lab: {name} {verdict}: {outcomes[name].seen}", flush=True)
+            print(f"lab: {row(name, outcomes[name])}", flush=True)
         if arguments.keep:
             _talk(bench)
     text = table(outcomes)
@@ -38,10 +36,10 @@ def _arguments() -> argparse.Namespace:
     for folder in Folders.__dataclass_fields__:
         parser.add_argument(f"--{folder}", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
     parser.add_argument(
-        "--cameras",
-        choices=("usb", "none"),
-        default="usb",
-        help="what the daemon sees by: the emulated cameras, or nothing",
+        "--driver",
+        choices=("v4l2", "libcamera", "none"),
+        default="v4l2",
+        help="by what the daemon reads the emulated cameras; none: it has no camera",
     )
     parser.add_argument(
         "--keep", action="store_true", help="afterwards take commands (see docs/lab.md)"
@@ -51,8 +49,8 @@ def _arguments() -> argparse.Namespace:
     for name in arguments.names:
         if name not in SCENARIOS:
             parser.error(f"no scenario '{name}', wanted one of {', '.join(SCENARIOS)}")
-        if SCENARIOS[name].needs_usb and arguments.cameras != "usb":
-            parser.error(f"'{name}' needs --cameras usb")
+        if SCENARIOS[name].needs_usb and arguments.driver == "none":
+            parser.error(f"'{name}' needs cameras")
     return arguments
 
 

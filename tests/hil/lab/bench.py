@@ -8,7 +8,7 @@ import tempfile
 import time
 
 from tests.hil.lab.agent import Agent, LabError
-from tests.hil.lab.cameras import Cameras
+from tests.hil.lab.cameras import NAMES, Cameras
 from tests.hil.lab.judge import BusLog
 from tests.hil.lab.machine import Machine
 
@@ -18,6 +18,11 @@ IGNITION_PULL = "/sys/devices/platform/gpio-sim.0/gpiochip*/sim_gpio3/pull"
 DRIVE_CONFIG = "tests/hil/config/drive.yaml"
 CAMERA_PERIOD_S = 0.5  # of DRIVE_CONFIG
 USB_CONFIG = "tests/hil/config/usb.yaml"
+# Where a USB port of the guest is, in libcamera's ids.
+_LIBCAMERA_ID = "\\_SB_.PCI0.S80_-{port}:1.0-1209:0001"
+_BUS_LOG = "/run/candump.log"
+# As docs/bring-up.md has it.
+_GPIO_RULE = 'SUBSYSTEM=="gpio", KERNEL=="gpiochip*", GROUP="bevloc", MODE="0660"'
 # Without cameras the daemon brings the rest of the vehicle itself, and reports to a folder.
 _NO_CAMERAS_DROP_IN = """[Service]
 ExecStart=
@@ -35,11 +40,11 @@ class Folders:
 
 
 class Bench:
-    """Boots on entry, ends on exit. `usb`: the daemon sees by the USB cameras, else by none."""
+    """Boots on entry, ends on exit. `driver`: what the daemon sees by; `none`: by no camera."""
 
-    def __init__(self, folders: Folders, usb: bool) -> None:
+    def __init__(self, folders: Folders, driver: str) -> None:
         self.folders = folders
-        self.usb = usb
+        self.driver = driver
 
     def __enter__(self) -> "Bench":
         self._sockets = pathlib.Path(tempfile.mkdtemp(prefix="bevloc-lab-"))
@@ -73,26 +78,41 @@ class Bench:
         for program in ("firmware/bevlocd", "tests/hil/vehicle_can"):
             shutil.copy2(self.folders.build / program, payload)
         shutil.copy2(self.folders.pictures / "map.bvm", payload / "tests/hil/config")
+        (payload / "bevlocd.yaml").write_text(self._daemon_config(), encoding="utf-8")
         return payload
+
+    def _daemon_config(self) -> str:
+        text = (self.folders.source / USB_CONFIG).read_text(encoding="utf-8")
+        if self.driver != "libcamera":
+            return text
+        text = text.replace("driver: v4l2\n", "driver: libcamera\n")
+        for port, name in enumerate(NAMES, start=1):
+            text = text.replace(
+                f"{name}: {name}\n", f"{name}: '{_LIBCAMERA_ID.format(port=port)}'\n"
+            )
+        return text
 
     def _set_up_guest(self) -> None:
         self.agent.check("/lab/devices")
         self.agent.check(
-            """
+            f"""
             install -m 755 /payload/bevlocd /payload/vehicle_can /usr/bin/
             install -m 644 /payload/systemd/sysusers.d/* /usr/lib/sysusers.d/
             install -m 644 /payload/systemd/bevlocd.service /etc/systemd/system/
             systemd-sysusers
+            echo '{_GPIO_RULE}' >/etc/udev/rules.d/60-bevloc.rules
+            udevadm control --reload
+            udevadm trigger --settle --subsystem-match=gpio
             """
         )
-        if self.usb:
-            self.agent.check(
-                f"install -D -m 644 /payload/{USB_CONFIG} /etc/bevloc/bevlocd.yaml"
-            )
-        else:
+        if self.driver == "none":
             folder = f"/etc/systemd/system/{UNIT}.d"
             self.agent.check(
                 f"mkdir -p {folder}\ncat >{folder}/lab.conf <<'E'\n{_NO_CAMERAS_DROP_IN}E"
+            )
+        else:
+            self.agent.check(
+                "install -D -m 644 /payload/bevlocd.yaml /etc/bevloc/bevlocd.yaml"
             )
         self.agent.check("systemctl daemon-reload")
 
@@ -120,25 +140,39 @@ class Run:
     def __enter__(self) -> "Run":
         self.agent.check("ip link set vcan0 up")
         self._log_from_s = self.wall_s()
-        # -D: goes on when the interface goes down.
-        self.background("candump", "candump -D -L vcan0")
+        self._sent_before = self._frames_sent_ever()
+        # -D: goes on when the interface goes down. In memory: a shared folder costs the guest time.
+        self.agent.check(f"rm -f {_BUS_LOG}")
+        self.background("candump", "candump -D -L vcan0", output=_BUS_LOG)
         return self
 
     def __exit__(self, *_: object) -> None:
         self.cameras.command("heal all")
         self.cameras.command("plug all")
-        self.agent.run(f"systemctl stop {UNIT} vehicle candump; systemctl reset-failed")
-        self.agent.run(
-            f"journalctl -u {UNIT} -o short-unix --since @{int(self._log_from_s)} "
-            f">{self.guest}/journal.log"
-        )
+        self.agent.run(f"systemctl stop {UNIT} vehicle; systemctl reset-failed")
+        self.stop_log()
+        self.agent.run(f"{self._journal('short-unix')} >{self.guest}/journal.log")
         (self.folder / "cameras.json").write_text(self.cameras.command("counts") + "\n")
 
-    def background(self, unit: str, command: str) -> None:
-        """Runs a command as a transient service; what it prints goes to UNIT.log."""
+    def frames_sent(self) -> int:
+        """By all cameras, since the scenario began."""
+        return self._frames_sent_ever() - self._sent_before
+
+    def _frames_sent_ever(self) -> int:
+        return sum(camera["sent"] for camera in self.cameras.counts()["cameras"].values())
+
+    def journal(self) -> str:
+        """What the daemon has said since the scenario began."""
+        return self.agent.check(self._journal("cat"))
+
+    def _journal(self, style: str) -> str:
+        return f"journalctl -u {UNIT} -o {style} --since @{int(self._log_from_s)}"
+
+    def background(self, unit: str, command: str, output: str | None = None) -> None:
+        """Runs a command as a transient service; what it prints goes to `output`, or UNIT.log."""
         self.agent.check(
             f"systemctl reset-failed {unit} 2>/dev/null; systemd-run --quiet --collect "
-            f"--unit={unit} -p StandardOutput=append:{self.guest}/{unit}.log "
+            f"--unit={unit} -p StandardOutput=append:{output or f'{self.guest}/{unit}.log'} "
             f"-p StandardError=append:{self.guest}/{unit}.err {command}"
         )
 
@@ -190,7 +224,11 @@ class Run:
         uptime_s = float(self.agent.check("cut -d' ' -f1 /proc/uptime"))
         return self.wall_s() - (uptime_s - 1e-6 * monotonic_us)
 
+    def stop_log(self) -> None:
+        """Nothing more of the bus is logged; candump.log holds it until now."""
+        self.agent.run(f"systemctl stop candump; cp {_BUS_LOG} {self.guest}/candump.log")
+
     def finish_log(self) -> BusLog:
-        """The bus until now; nothing more is logged."""
-        self.agent.check("systemctl stop candump")
+        """The bus until now."""
+        self.stop_log()
         return BusLog(self.folder / "candump.log", self.bench.folders.source / "can/bevloc.dbc")

@@ -97,7 +97,8 @@ def _pictures_shown(capture: pathlib.Path, pictures: pathlib.Path) -> list[int]:
 
 
 def _can(run: Run) -> list[str]:
-    run.agent.check("cansend vcan0 123#DEADBEEF; sleep 1; systemctl stop candump")
+    run.agent.check("cansend vcan0 123#DEADBEEF; sleep 1")
+    run.stop_log()
     text = (run.folder / "candump.log").read_text()
     return [] if "123#DEADBEEF" in text else ["CAN: the frame is not in the log"]
 

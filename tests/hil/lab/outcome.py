@@ -14,8 +14,11 @@ class Outcome:
 def table(outcomes: dict[str, Outcome]) -> str:
     """As Markdown."""
     rows = ["| scenario | injected | seen | recovery | |", "|---|---|---|---|---|"]
-    for name, outcome in outcomes.items():
-        recovery = "-" if outcome.recovery_s is None else f"{outcome.recovery_s:.2f} s"
-        verdict = "pass" if outcome.passed else "FAIL"
-        rows.append(f"| {name} | {outcome.injected} | {outcome.seen} | {recovery} | {verdict} |")
+    rows += [row(name, outcome) for name, outcome in outcomes.items()]
     return "\n".join(rows)
+
+
+def row(name: str, outcome: Outcome) -> str:
+    recovery = "-" if outcome.recovery_s is None else f"{outcome.recovery_s:.2f} s"
+    verdict = "pass" if outcome.passed else "FAIL"
+    return f"| {name} | {outcome.injected} | {outcome.seen} | {recovery} | {verdict} |"
