@@ -4,9 +4,6 @@
 #include <charconv>
 #include <cmath>
 
-#include <dnnl.hpp>
-
-#include "pipeline/network/executor.h"
 #include "pipeline/network/load_error.h"
 #include "pipeline/network/lowering.h"
 #include "pipeline/network/onnx_reader.h"
@@ -132,19 +129,20 @@ void check_independence(const nn::Program& program, const char* output, const ch
 }  // namespace
 
 struct Network::State {
-  State(const nn::Graph& graph, const nn::Program& program, int threads)
+  State(const nn::Graph& graph, const nn::Program& program, const NetworkOptions& options)
       : name(graph.name),
         solver_parameters(read_solver_parameters(graph)),
-        executor(program, std::vector<nn::Branch>{{kBevFeatures}, {kMapFeatures}, {kBevMask}},
-                 kFeatureGrid.cells(), threads) {}
+        engine(options.engine(program,
+                              std::vector<nn::Branch>{{kBevFeatures}, {kMapFeatures}, {kBevMask}},
+                              kFeatureGrid.cells(), {options.threads, options.isa})) {}
 
   FeatureView features(const char* output) const {
-    return {executor.output(output), kFeatureChannels, kFeatureGrid};
+    return {engine->output(output), kFeatureChannels, kFeatureGrid};
   }
 
   std::string name;
   SolverParameters solver_parameters;
-  nn::Executor executor;
+  std::unique_ptr<nn::Engine> engine;
 };
 
 Network::Network(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -153,9 +151,6 @@ Network::~Network() = default;
 Result<std::unique_ptr<Network>> Network::load(const std::string& path,
                                                const NetworkOptions& options) {
   if (options.threads < 1) return fail("network: {} threads, wanted at least 1", options.threads);
-  if (const Status capped = cap_cpu_isa(options.isa); !capped) {
-    return tl::unexpected(capped.error());
-  }
   try {
     const nn::Graph graph = nn::read_onnx(path);
     check_ports(graph.inputs, input_contracts(), "input");
@@ -163,39 +158,37 @@ Result<std::unique_ptr<Network>> Network::load(const std::string& path,
     const nn::Program program = nn::lower(graph);
     check_independence(program, kBevFeatures, kRaster);
     check_independence(program, kMapFeatures, kImages);
-    auto state = std::make_unique<State>(graph, program, options.threads);
+    auto state = std::make_unique<State>(graph, program, options);
     return std::unique_ptr<Network>(new Network(std::move(state)));
   } catch (const nn::LoadError& error) {
     return fail("{}: {}", path, error.what());
-  } catch (const dnnl::error& error) {
-    return fail("{}: oneDNN cannot run it: {}", path, error.what());
   } catch (const std::exception& error) {
     return fail("{}: cannot be loaded: {}", path, error.what());
   }
 }
 
 void Network::set_view_table(const ViewTable& table) {
-  state_->executor.set_view_table(table);
+  state_->engine->set_view_table(table);
 }
 
 std::span<int8_t> Network::image_input() {
-  const std::span<std::byte> bytes = state_->executor.input(kImages);
+  const std::span<std::byte> bytes = state_->engine->input(kImages);
   return {reinterpret_cast<int8_t*>(bytes.data()), bytes.size()};
 }
 
 std::span<uint8_t> Network::raster_input() {
-  const std::span<std::byte> bytes = state_->executor.input(kRaster);
+  const std::span<std::byte> bytes = state_->engine->input(kRaster);
   return {reinterpret_cast<uint8_t*>(bytes.data()), bytes.size()};
 }
 
 void Network::run_image_branch() {
-  state_->executor.run(kImagePart);
+  state_->engine->run(kImagePart);
 }
 void Network::run_map_branch() {
-  state_->executor.run(kMapPart);
+  state_->engine->run(kMapPart);
 }
 void Network::run_mask_head() {
-  state_->executor.run(kMaskPart);
+  state_->engine->run(kMaskPart);
 }
 
 FeatureView Network::bev_features() const {
@@ -205,7 +198,7 @@ FeatureView Network::map_features() const {
   return state_->features(kMapFeatures);
 }
 std::span<const float> Network::mask_logits() const {
-  return state_->executor.output(kBevMask);
+  return state_->engine->output(kBevMask);
 }
 
 const SolverParameters& Network::solver_parameters() const {

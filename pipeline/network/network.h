@@ -8,7 +8,7 @@
 #include <string>
 
 #include "common/result.h"
-#include "pipeline/network/cpu_isa.h"
+#include "pipeline/network/engine.h"
 #include "pipeline/network/view_table.h"
 #include "pipeline/solver/solver.h"
 
@@ -20,6 +20,8 @@ inline constexpr int kFeatureChannels = 16;
 struct NetworkOptions {
   int threads = 1;
   IsaCap isa = IsaCap::kBest;
+  /// What runs it; CMake's BEVLOC_ENGINE says which one that is by default.
+  nn::MakeEngine* engine = nn::make_default_engine;
 };
 
 /// A model file is standard ONNX with these ports:
@@ -35,8 +37,8 @@ struct NetworkOptions {
 /// float elsewhere. Its metadata hold bevloc.solver.{joint_scale, x_scale, y_scale, yaw_scale,
 /// gem_omega}, and may hold {refine,banded}_..._scale (else joint_scale) and sigma_scale (else 1).
 ///
-/// All buffers are made at load; nothing allocates, throws or locks afterwards (oneDNN itself makes
-/// a small argument table for each primitive). Not thread safe.
+/// All buffers are made at load; nothing allocates, throws or locks afterwards, but for what
+/// make_onednn_engine() and make_xnnpack_engine() say of their libraries. Not thread safe.
 class Network {
  public:
   /// Errors: the file is missing, damaged, not the network described above, or uses an operator

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pipeline/network/graph.h"
 #include "pipeline/network/view_table.h"
 
 namespace bevloc::nn {
@@ -32,11 +33,11 @@ class ViewEntries {
 
 /// For the cells from `begin` up to `end`:
 /// bev[cell][channel] = scale * sum over the cell's entries of weight * features[index][channel],
-/// rounded to nearest even and saturated where Output is 8 bits wide. Summed in the table's order
-/// and without fused multiply-add: every CPU gives the same result.
-/// Defined for Input and Output in {uint8_t, int8_t, float}.
-template <typename Input, typename Output>
-void gather_view(const ViewEntries& entries, const Input* features, int channels, float scale,
-                 int begin, int end, Output* bev);
+/// rounded to nearest even and saturated where the output is 8 bits wide. Summed in the table's
+/// order and without fused multiply-add: every CPU gives the same result. Elements are uint8, int8
+/// or float.
+void gather_view(const ViewEntries& entries, ElementType input_type, const std::byte* features,
+                 int channels, float scale, int begin, int end, ElementType output_type,
+                 std::byte* bev);
 
 }  // namespace bevloc::nn

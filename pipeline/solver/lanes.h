@@ -1,33 +1,14 @@
 // The vectors that the solver's inner loops work in: sixteen channels side by side.
 #pragma once
 
-#include <cstddef>
-#include <new>
-#include <vector>
+#include "common/cache_line_allocator.h"
 
 namespace bevloc {
 
 inline constexpr int kLanes = 16;
 
-/// Memory that begins on a cache line, so that no vector straddles two.
-template <typename T>
-struct CacheLineAllocator {
-  using value_type = T;
-  static constexpr std::align_val_t kAlignment{64};
-
-  CacheLineAllocator() = default;
-  template <typename U>
-  CacheLineAllocator(const CacheLineAllocator<U>&) {}
-
-  T* allocate(size_t count) {
-    return static_cast<T*>(::operator new(count * sizeof(T), kAlignment));
-  }
-  void deallocate(T* memory, size_t) { ::operator delete(memory, kAlignment); }
-  bool operator==(const CacheLineAllocator&) const = default;
-};
-
 /// Buffers of whole vectors.
-using LaneBuffer = std::vector<float, CacheLineAllocator<float>>;
+using LaneBuffer = CacheLineVector<float>;
 
 /// Sixteen neighbouring floats at any address.
 using Lanes = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(4), may_alias));

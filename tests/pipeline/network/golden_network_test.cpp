@@ -13,6 +13,7 @@
 #include "pipeline/preprocessing/network_camera.h"
 #include "pipeline/solver/solver_factory.h"
 #include "sim/sim_rig.h"
+#include "tests/pipeline/network/engines.h"
 #include "tests/support/npy.h"
 
 namespace bevloc {
@@ -33,16 +34,21 @@ struct GoldenModel {
   Tolerance tolerance;
 };
 
-class GoldenNetwork : public ::testing::TestWithParam<GoldenModel> {
+using ModelOnEngine = std::tuple<GoldenModel, test::NamedEngine>;
+
+class GoldenNetwork : public ::testing::TestWithParam<ModelOnEngine> {
  protected:
+  static const GoldenModel& model() { return std::get<GoldenModel>(GetParam()); }
+
   void SetUp() override {
-    auto loaded = Network::load(BEVLOC_SOURCE_DIR "/models/" + GetParam().file, {});
+    auto loaded = Network::load(BEVLOC_SOURCE_DIR "/models/" + model().file,
+                                {.engine = std::get<test::NamedEngine>(GetParam()).make});
     ASSERT_TRUE(loaded) << loaded.error().message;
     network_ = std::move(*loaded);
   }
 
   test::NpyArray<float> expected(const std::string& what) const {
-    return test::read_npy_floats(test::golden("network/" + GetParam().name + "_" + what + ".npy"));
+    return test::read_npy_floats(test::golden("network/" + model().name + "_" + what + ".npy"));
   }
 
   /// Runs all parts on sample i.
@@ -119,12 +125,12 @@ TEST_P(GoldenNetwork, FeaturesAndMaskAgreeWithTraining) {
     SCOPED_TRACE("sample " + std::to_string(i));
     run(i);
     EXPECT_LT(relative_difference(network_->bev_features().data, bev.entry(i)),
-              GetParam().tolerance.features);
+              model().tolerance.features);
     EXPECT_LT(relative_difference(network_->map_features().data, map.entry(i)),
-              GetParam().tolerance.features);
+              model().tolerance.features);
     EXPECT_THAT(
         mean_and_deviation(network_->mask_logits()),
-        ::testing::Pointwise(::testing::FloatNear(static_cast<float>(GetParam().tolerance.mask)),
+        ::testing::Pointwise(::testing::FloatNear(static_cast<float>(model().tolerance.mask)),
                              mask.entry(i)));
   }
 }
@@ -133,7 +139,7 @@ TEST_P(GoldenNetwork, DistributionsAgreeWithTraining) {
   const auto decoupled = expected("decoupled");
   const auto joint = expected("joint");
   const ::testing::Matcher<std::tuple<float, float>> near =
-      ::testing::FloatNear(static_cast<float>(GetParam().tolerance.probabilities));
+      ::testing::FloatNear(static_cast<float>(model().tolerance.probabilities));
   for (size_t i = 0; i < decoupled.shape.at(0); ++i) {
     SCOPED_TRACE("sample " + std::to_string(i));
     run(i);
@@ -147,9 +153,14 @@ TEST_P(GoldenNetwork, DistributionsAgreeWithTraining) {
 // and through the layers after it many elements a little. Rounding itself is 5 % of the features.
 INSTANTIATE_TEST_SUITE_P(
     Models, GoldenNetwork,
-    ::testing::Values(GoldenModel{"float", "nano_float.onnx", {1e-3, 1e-3, 1e-3}},
-                      GoldenModel{"int8", "nano.onnx", {0.03, 0.02, 0.02}}),
-    [](const auto& golden) { return golden.param.name; });
+    ::testing::Combine(
+        ::testing::Values(GoldenModel{"float", "nano_float.onnx", {1e-3, 1e-3, 1e-3}},
+                          GoldenModel{"int8", "nano.onnx", {0.03, 0.02, 0.02}}),
+        ::testing::ValuesIn(test::engines())),
+    [](const auto& golden) {
+      return std::get<GoldenModel>(golden.param).name + "_" +
+             std::get<test::NamedEngine>(golden.param).name;
+    });
 
 }  // namespace
 }  // namespace bevloc

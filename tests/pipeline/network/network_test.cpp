@@ -1,5 +1,6 @@
 // The whole network on a tiny model, against numpy, and every way in which a file can be refused.
-// Built twice: with the best instructions of this CPU, and capped to AVX2 without VNNI.
+// Built for each engine; for oneDNN with the best instructions of this CPU, and capped to AVX2
+// without VNNI.
 #include "pipeline/network/network.h"
 
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/pipeline/network/engines.h"
 #include "tests/pipeline/network/model_inputs.h"
 #include "tests/support/allocation_counter.h"
 
@@ -19,7 +21,14 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr int kStride = 61;  // of the values in tiny_network_*.expected
-constexpr NetworkOptions kOptions{.threads = 1, .isa = BEVLOC_TEST_ISA};
+constexpr NetworkOptions kOptions{
+    .threads = 1, .isa = BEVLOC_TEST_ISA, .engine = nn::BEVLOC_TEST_ENGINE};
+
+constexpr NetworkOptions with_threads(int threads) {
+  NetworkOptions options = kOptions;
+  options.threads = threads;
+  return options;
+}
 
 std::unique_ptr<Network> load(const std::string& model, const NetworkOptions& options = kOptions) {
   auto network = Network::load(test::fixture(model + ".onnx"), options);
@@ -87,7 +96,7 @@ TEST(Network, FloatAgreesWithNumpy) {
 
 TEST(Network, ThreadsDoNotChangeTheResult) {
   const auto one = load("tiny_network_int8");
-  const auto two = load("tiny_network_int8", {.threads = 2, .isa = BEVLOC_TEST_ISA});
+  const auto two = load("tiny_network_int8", with_threads(2));
   run_all(*one);
   run_all(*two);
   EXPECT_EQ(all_outputs(*one), all_outputs(*two));
@@ -103,6 +112,16 @@ TEST(Network, PartsRunInAnyOrderAndAgain) {
   network->run_map_branch();
   network->run_mask_head();
   network->run_mask_head();
+  EXPECT_EQ(all_outputs(*network), expected);
+}
+
+TEST(Network, OutputsStayUntilTheirOwnPartRunsAgain) {
+  const auto network = load("tiny_network_int8");
+  run_all(*network);
+  const std::vector<float> expected = all_outputs(*network);
+  network->run_mask_head();
+  network->run_map_branch();
+  network->run_image_branch();
   EXPECT_EQ(all_outputs(*network), expected);
 }
 
@@ -178,7 +197,7 @@ class RefusedModel : public ::testing::Test {
   std::string message_for_bytes(const std::string& bytes) {
     const std::string path = ::testing::TempDir() + "/" +
                              ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
-                             std::to_string(static_cast<int>(BEVLOC_TEST_ISA)) + ".onnx";
+                             BEVLOC_TEST_NAME + ".onnx";
     std::ofstream(path, std::ios::binary) << bytes;
     const std::string message = message_for(path);
     std::filesystem::remove(path);
@@ -260,18 +279,18 @@ TEST_F(RefusedModel, MetadataThatIsNoPositiveNumber) {
 }
 
 TEST_F(RefusedModel, NoThreads) {
-  const auto network = Network::load(test::fixture("tiny_network_int8.onnx"),
-                                     {.threads = 0, .isa = BEVLOC_TEST_ISA});
+  const auto network = Network::load(test::fixture("tiny_network_int8.onnx"), with_threads(0));
   ASSERT_FALSE(network);
   EXPECT_EQ(network.error().message, "network: 0 threads, wanted at least 1");
 }
 
 TEST_F(RefusedModel, AnotherInstructionSetThanThisProcessUses) {
   ASSERT_NE(load("tiny_network_int8"), nullptr);
-  const auto network = Network::load(test::fixture("tiny_network_int8.onnx"),
-                                     {.threads = 1, .isa = IsaCap::kAvx512});
+  NetworkOptions options = kOptions;
+  options.isa = IsaCap::kAvx512;
+  const auto network = Network::load(test::fixture("tiny_network_int8.onnx"), options);
   ASSERT_FALSE(network);
-  EXPECT_THAT(network.error().message, HasSubstr("instruction set is settled"));
+  EXPECT_THAT(network.error().message, HasSubstr(BEVLOC_TEST_CAP_REFUSAL));
 }
 
 /// Any single damaged byte must give a network or an error, never a crash.

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <type_traits>
 
 #include <gtest/gtest.h>
 
+#include "pipeline/network/kernels/view_gather.h"
 #include "tests/pipeline/network/model_inputs.h"
 
 namespace bevloc::nn {
@@ -50,6 +53,19 @@ std::vector<Output> scalar_twin(const ViewTable& table, const std::vector<Input>
   return bev;
 }
 
+template <typename Element>
+constexpr ElementType type_of() {
+  if (std::is_same_v<Element, uint8_t>) return ElementType::kUint8;
+  return std::is_same_v<Element, int8_t> ? ElementType::kInt8 : ElementType::kFloat32;
+}
+
+template <typename Input, typename Output>
+void gather(const ViewEntries& entries, const std::vector<Input>& features, int channels,
+            float scale, int begin, int end, std::vector<Output>& bev) {
+  gather_view(entries, type_of<Input>(), std::as_bytes(std::span(features)).data(), channels, scale,
+              begin, end, type_of<Output>(), std::as_writable_bytes(std::span(bev)).data());
+}
+
 template <typename Types>
 class ViewTransform : public ::testing::Test {};
 
@@ -74,11 +90,29 @@ TYPED_TEST(ViewTransform, EqualsItsScalarTwin) {
     for (const float scale : {0.31F, 1.0F, 40.0F}) {
       const std::vector<Input> input = features<Input>(channels);
       std::vector<Output> bev(static_cast<size_t>(kCells * channels), Output{1});
-      gather_view(entries, input.data(), channels, scale, 0, 20, bev.data());
-      gather_view(entries, input.data(), channels, scale, 20, kCells, bev.data());
+      gather(entries, input, channels, scale, 0, 20, bev);
+      gather(entries, input, channels, scale, 20, kCells, bev);
       EXPECT_EQ(bev, (scalar_twin<Input, Output>(table, input, channels, scale)))
           << channels << " channels, scale " << scale;
     }
+  }
+}
+
+TYPED_TEST(ViewTransform, IsTheSameOnEveryCpu) {
+  using Input = typename TypeParam::Input;
+  using Output = typename TypeParam::Output;
+  ViewEntries entries(kCells);
+  entries.set(test::view_table(kCells, kKeys));
+  for (const int channels : {1, 8, 17, 48, 100}) {
+    const std::vector<Input> input = features<Input>(channels);
+    const auto by = [&](Gather kernel) {
+      std::vector<Output> bev(static_cast<size_t>(kCells * channels));
+      kernel(entries, std::as_bytes(std::span(input)).data(), channels, 0.7F, 0, kCells,
+             std::as_writable_bytes(std::span(bev)).data());
+      return bev;
+    };
+    EXPECT_EQ(by(gather_for(type_of<Input>(), type_of<Output>())),
+              by(gather_plain(type_of<Input>(), type_of<Output>())));
   }
 }
 
@@ -86,7 +120,7 @@ TEST(ViewTransformCells, WithoutEntriesAreZero) {
   const ViewEntries nothing(kCells);
   const std::vector<uint8_t> input = features<uint8_t>(20);
   std::vector<uint8_t> bev(kCells * 20, 7);
-  gather_view(nothing, input.data(), 20, 1.0F, 0, kCells, bev.data());
+  gather(nothing, input, 20, 1.0F, 0, kCells, bev);
   EXPECT_EQ(bev, std::vector<uint8_t>(kCells * 20, 0));
 }
 
@@ -95,7 +129,7 @@ TEST(ViewTransformCells, OutsideTheRangeAreLeftAlone) {
   entries.set(test::view_table(kCells, kKeys));
   const std::vector<uint8_t> input = features<uint8_t>(16);
   std::vector<uint8_t> bev(kCells * 16, 7);
-  gather_view(entries, input.data(), 16, 0.0F, 10, 11, bev.data());
+  gather(entries, input, 16, 0.0F, 10, 11, bev);
   for (int i = 0; i < kCells * 16; ++i) EXPECT_EQ(bev[i], i / 16 == 10 ? 0 : 7);
 }
 

@@ -1,4 +1,4 @@
-#include "pipeline/network/cpu_isa.h"
+#include "pipeline/network/onednn/isa.h"
 
 #include <mutex>
 #include <optional>
@@ -9,7 +9,9 @@
 #include <cpuid.h>
 #endif
 
-namespace bevloc {
+#include "pipeline/network/load_error.h"
+
+namespace bevloc::nn::onednn {
 namespace {
 
 constexpr uint32_t kAmxBits = 1U << 22 | 1U << 24 | 1U << 25;  // bf16, tile, int8
@@ -52,20 +54,19 @@ bool amx_is_broken(const AmxCpuid& cpuid) {
   return advertised && (cpuid.highest_leaf < kTileLeaf || cpuid.palettes == 0);
 }
 
-Status cap_cpu_isa(IsaCap cap) {
+void cap_cpu_isa(IsaCap cap) {
   static std::mutex mutex;
   static std::optional<IsaCap> current;
   const std::lock_guard lock(mutex);
-  if (current == cap) return {};
+  if (current == cap) return;
   const dnnl::cpu_isa isa = onednn_isa(cap);
   // Without a cap the CPU decides, even where another library of this process used oneDNN first.
   const bool holds = !current && (isa == dnnl::cpu_isa::all ||
                                   dnnl::set_max_cpu_isa(isa) == dnnl::status::success);
   if (!holds) {
-    return fail("the network's instruction set is settled in this process already, wanted another");
+    refuse("the network's instruction set is settled in this process already, wanted another");
   }
   current = cap;
-  return {};
 }
 
 bool has_exact_int8_products() {
@@ -74,4 +75,4 @@ bool has_exact_int8_products() {
          isa != dnnl::cpu_isa::avx512_core;
 }
 
-}  // namespace bevloc
+}  // namespace bevloc::nn::onednn

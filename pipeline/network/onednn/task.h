@@ -1,4 +1,4 @@
-// One unit of work of the executor, on buffers whose places are fixed at load.
+// One unit of work of the oneDNN engine, on buffers whose places are fixed at load.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 #include "pipeline/network/program.h"
 #include "pipeline/network/view_transform.h"
 
-namespace bevloc::nn {
+namespace bevloc::nn::onednn {
 
 using MemoryDesc = dnnl::memory::desc;
 
@@ -91,4 +91,4 @@ class ViewTask : public Task {
   std::byte* to_ = nullptr;
 };
 
-}  // namespace bevloc::nn
+}  // namespace bevloc::nn::onednn

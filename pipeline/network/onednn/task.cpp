@@ -1,36 +1,11 @@
-#include "pipeline/network/task.h"
+#include "pipeline/network/onednn/task.h"
 
 #include <algorithm>
 #include <cassert>
-#include <cstring>
 
-namespace bevloc::nn {
-namespace {
+#include "pipeline/network/rearrange.h"
 
-template <typename Element>
-void rearrange(const std::vector<int32_t>& source, const std::byte* from, std::byte* to) {
-  const int count = static_cast<int>(source.size());
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < count; ++i) {
-    std::memcpy(to + i * sizeof(Element), from + source[i] * sizeof(Element), sizeof(Element));
-  }
-}
-
-/// Calls `function` with a null pointer to the C++ type of `type`.
-template <typename Function>
-void with_type(ElementType type, Function function) {
-  switch (type) {
-    case ElementType::kUint8:
-      return function(static_cast<const uint8_t*>(nullptr));
-    case ElementType::kInt8:
-      return function(static_cast<const int8_t*>(nullptr));
-    default:
-      return function(static_cast<const float*>(nullptr));
-  }
-}
-
-}  // namespace
-
+namespace bevloc::nn::onednn {
 PrimitiveTask::PrimitiveTask(dnnl::primitive primitive, std::vector<BufferArgument> buffers,
                              std::vector<std::pair<int, dnnl::memory>> constants)
     : primitive_(std::move(primitive)),
@@ -63,10 +38,11 @@ void RearrangeTask::bind(std::span<const PlacedBuffer> buffers, const dnnl::memo
 }
 
 void RearrangeTask::run(dnnl_stream_t) {
-  if (element_bytes_ == 1) {
-    rearrange<uint8_t>(source_, from_, to_);
-  } else {
-    rearrange<float>(source_, from_, to_);
+  constexpr size_t kBlock = 4096;
+#pragma omp parallel for schedule(static)
+  for (size_t begin = 0; begin < source_.size(); begin += kBlock) {
+    const size_t end = std::min(begin + kBlock, source_.size());
+    rearrange(source_, element_bytes_, from_, to_, begin, end);
   }
 }
 
@@ -91,15 +67,8 @@ void ViewTask::run(dnnl_stream_t) {
 #pragma omp parallel for schedule(static)
   for (int begin = 0; begin < cells; begin += kBlock) {
     const int end = std::min(begin + kBlock, cells);
-    with_type(input_type_, [&](const auto* input) {
-      with_type(output_type_, [&](const auto* output) {
-        using Input = std::remove_cvref_t<decltype(*input)>;
-        using Output = std::remove_cvref_t<decltype(*output)>;
-        gather_view(entries_, reinterpret_cast<const Input*>(from_), channels_, scale_, begin, end,
-                    reinterpret_cast<Output*>(to_));
-      });
-    });
+    gather_view(entries_, input_type_, from_, channels_, scale_, begin, end, output_type_, to_);
   }
 }
 
-}  // namespace bevloc::nn
+}  // namespace bevloc::nn::onednn

@@ -4,17 +4,15 @@
 
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "pipeline/network/engine.h"
+#include "pipeline/network/kernels/strip_kernels.h"
 #include "pipeline/network/memory_plan.h"
+#include "pipeline/network/onednn/task.h"
 #include "pipeline/network/program.h"
-#include "pipeline/network/task.h"
 
-namespace bevloc::nn {
-
-/// Output names that are computed together. A branch may read what earlier branches computed.
-using Branch = std::vector<std::string>;
+namespace bevloc::nn::onednn {
 
 struct ExecutionPlan {
   struct Buffer {
@@ -30,9 +28,11 @@ struct ExecutionPlan {
   size_t scratchpad_bytes = 0;
 };
 
-/// Every output must be in exactly one branch. `entries` must outlive the plan.
+/// Every output must be in exactly one branch. `entries` must outlive the plan. `kernels` are for
+/// the int8 convolutions that they can compute; with null oneDNN computes all.
 /// Throws LoadError or dnnl::error.
 ExecutionPlan build_plan(const Program& program, std::span<const Branch> branches,
-                         const dnnl::engine& engine, const ViewEntries& entries);
+                         const dnnl::engine& engine, const ViewEntries& entries,
+                         const KernelSet* kernels);
 
-}  // namespace bevloc::nn
+}  // namespace bevloc::nn::onednn

@@ -1,18 +1,16 @@
-#include "pipeline/network/plan_builder.h"
+#include "pipeline/network/onednn/plan_builder.h"
 
 #include <algorithm>
-#include <cassert>
-#include <limits>
 #include <map>
-#include <numeric>
 
-#include "pipeline/network/convolution.h"
-#include "pipeline/network/load_error.h"
+#include "pipeline/network/onednn/convolution.h"
+#include "pipeline/network/onednn/direct_task.h"
+#include "pipeline/network/schedule.h"
+#include "pipeline/network/storage_plan.h"
 
-namespace bevloc::nn {
+namespace bevloc::nn::onednn {
 namespace {
 
-constexpr int kForever = std::numeric_limits<int>::max();
 using Tag = dnnl::memory::format_tag;
 
 bool is_plain(const MemoryDesc& desc) {
@@ -52,12 +50,12 @@ std::vector<int32_t> places(const MemoryDesc& desc) {
 class PlanBuilder {
  public:
   PlanBuilder(const Program& program, std::span<const Branch> branches, const dnnl::engine& engine,
-              const ViewEntries& entries);
+              const ViewEntries& entries, const KernelSet* kernels);
   ExecutionPlan build();
 
  private:
-  void assign_branches(std::span<const Branch> branches);
   void add(const ConvStep& step);
+  void add_direct(const ConvStep& step);
   void add(const MaxPoolStep& step);
   void add(const UpsampleStep& step);
   void add(const AddStep& step);
@@ -97,110 +95,69 @@ class PlanBuilder {
   const Program& program_;
   const dnnl::engine& engine_;
   const ViewEntries& entries_;
+  const KernelSet* kernels_;  ///< of the convolutions that are not oneDNN's; null for none
 
-  std::vector<size_t> branch_of_step_;
-  std::vector<size_t> branch_of_output_;
-  std::vector<size_t> order_;        ///< steps as they run: branch by branch
-  std::vector<size_t> last_reader_;  ///< position in that order, by value
+  const Schedule schedule_;
   std::vector<int> buffer_of_value_;
-  std::vector<size_t> branch_of_storage_;
   std::map<std::pair<int, size_t>, std::vector<int>> copies_;  ///< by value and branch
 
   ExecutionPlan plan_;
-  size_t branch_ = 0;
+  StoragePlan storages_;
   size_t position_ = 0;
-  int now_ = 0;
 };
 
 PlanBuilder::PlanBuilder(const Program& program, std::span<const Branch> branches,
-                         const dnnl::engine& engine, const ViewEntries& entries)
+                         const dnnl::engine& engine, const ViewEntries& entries,
+                         const KernelSet* kernels)
     : program_(program),
       engine_(engine),
       entries_(entries),
-      last_reader_(program.values.size(), 0),
+      kernels_(kernels),
+      schedule_(make_schedule(program, branches)),
       buffer_of_value_(program.values.size(), -1) {
   plan_.branches.resize(branches.size());
-  assign_branches(branches);
-  order_.resize(program.steps.size());
-  std::iota(order_.begin(), order_.end(), size_t{0});
-  std::ranges::stable_sort(order_, {}, [this](size_t step) { return branch_of_step_[step]; });
-  for (size_t i = 0; i < order_.size(); ++i) {
-    for (const int id : inputs_of(program.steps[order_[i]])) {
-      last_reader_[static_cast<size_t>(id)] = i;
-    }
-  }
-  for (const ProgramPort& output : program.outputs) {
-    last_reader_[static_cast<size_t>(output.value)] = program.steps.size();
-  }
-}
-
-/// Each step belongs to the first branch that needs it; later branches find its result there.
-void PlanBuilder::assign_branches(std::span<const Branch> branches) {
-  const size_t none = branches.size();
-  std::vector<size_t> branch_of_value(program_.values.size(), none);
-  for (const ProgramPort& output : program_.outputs) {
-    const auto has_output = [&output](const Branch& branch) {
-      return std::ranges::find(branch, output.name) != branch.end();
-    };
-    const auto branch = std::ranges::find_if(branches, has_output);
-    assert(branch != branches.end());
-    branch_of_output_.push_back(static_cast<size_t>(branch - branches.begin()));
-    size_t& first = branch_of_value[static_cast<size_t>(output.value)];
-    first = std::min(first, branch_of_output_.back());
-  }
-  branch_of_step_.resize(program_.steps.size());
-  for (size_t i = program_.steps.size(); i-- > 0;) {
-    const Step& step = program_.steps[i];
-    branch_of_step_[i] = branch_of_value[static_cast<size_t>(output_of(step))];
-    for (const int id : inputs_of(step)) {
-      size_t& first = branch_of_value[static_cast<size_t>(id)];
-      first = std::min(first, branch_of_step_[i]);
-    }
-  }
 }
 
 ExecutionPlan PlanBuilder::build() {
   for (const ProgramPort& input : program_.inputs) {
     const int buffer = new_buffer(dense(input.value, Tag::abcd));
-    plan_.storages[plan_.buffers[buffer].storage] = {desc(buffer).get_size(), 0, kForever};
+    storages_.keep(plan_.buffers[buffer].storage);
     set_buffer_of(input.value, buffer);
     plan_.input_buffers.push_back(buffer);
   }
   plan_.output_buffers.resize(program_.outputs.size());
-  for (branch_ = 0; branch_ < plan_.branches.size(); ++branch_) {
-    for (; position_ < order_.size() && branch_of_step_[order_[position_]] == branch_;
+  const std::vector<size_t>& order = schedule_.order;
+  for (size_t branch = 0; branch < plan_.branches.size(); ++branch) {
+    storages_.begin_branch(branch);
+    for (; position_ < order.size() && schedule_.branch_of_step[order[position_]] == branch;
          ++position_) {
-      std::visit([this](const auto& step) { add(step); }, program_.steps[order_[position_]]);
+      std::visit([this](const auto& step) { add(step); }, program_.steps[order[position_]]);
     }
     for (size_t i = 0; i < program_.outputs.size(); ++i) {
-      if (branch_of_output_[i] == branch_) add_output(i);
+      if (schedule_.branch_of_output[i] == branch) add_output(i);
     }
   }
+  plan_.storages = storages_.lifetimes();
   return std::move(plan_);
 }
 
 int PlanBuilder::new_buffer(const MemoryDesc& buffer_desc) {
-  plan_.storages.push_back({0, now_, now_});
-  branch_of_storage_.push_back(branch_);
-  return new_buffer_in(plan_.storages.size() - 1, buffer_desc);
+  return new_buffer_in(storages_.add(buffer_desc.get_size()), buffer_desc);
 }
 
 int PlanBuilder::new_buffer_in(size_t storage, const MemoryDesc& buffer_desc) {
-  plan_.storages[storage].bytes = std::max(plan_.storages[storage].bytes, buffer_desc.get_size());
+  storages_.grow(storage, buffer_desc.get_size());
   plan_.buffers.push_back({buffer_desc, storage});
   return static_cast<int>(plan_.buffers.size()) - 1;
 }
 
-/// What another branch reads is kept: that branch may run later, or again.
 void PlanBuilder::needed_now(int buffer) {
-  const size_t storage = plan_.buffers[buffer].storage;
-  int& last = plan_.storages[storage].last;
-  last = branch_of_storage_[storage] == branch_ ? std::max(last, now_) : kForever;
+  storages_.use(plan_.buffers[buffer].storage);
 }
 
 void PlanBuilder::push(std::unique_ptr<Task> task) {
-  plan_.branches[branch_].push_back(std::move(task));
-  ++now_;
+  plan_.branches[storages_.branch()].push_back(std::move(task));
+  storages_.next_task();
 }
 
 template <typename PrimitiveDesc>
@@ -224,7 +181,7 @@ void PlanBuilder::add_reorder(int from, const MemoryDesc& from_desc, int to,
 int PlanBuilder::buffer_in(int id, const MemoryDesc& wanted) {
   const int original = buffer_of(id);
   if (desc(original) == wanted) return original;
-  std::vector<int>& copies = copies_[{id, branch_}];
+  std::vector<int>& copies = copies_[{id, storages_.branch()}];
   for (const int copy : copies) {
     if (desc(copy) == wanted) return copy;
   }
@@ -251,9 +208,8 @@ int PlanBuilder::offset_copy(int id, const MemoryDesc& wanted, int offset) {
 
 /// Whether the residual's memory may take the sum: nobody reads it later, or again.
 bool PlanBuilder::may_overwrite(int residual) const {
-  const size_t storage = plan_.buffers[buffer_of(residual)].storage;
-  return last_reader_[static_cast<size_t>(residual)] == position_ &&
-         branch_of_storage_[storage] == branch_ && plan_.storages[storage].last != kForever;
+  return schedule_.last_reader[static_cast<size_t>(residual)] == position_ &&
+         storages_.is_temporary(plan_.buffers[buffer_of(residual)].storage);
 }
 
 /// The sum is taken in place: the destination starts as the residual, or as a copy of it.
@@ -271,7 +227,38 @@ int PlanBuilder::destination_with_residual(const ConvStep& step, const MemoryDes
   return destination;
 }
 
+/// A convolution by our own kernels, on channel-last buffers.
+void PlanBuilder::add_direct(const ConvStep& step) {
+  const Value& input = value(step.input);
+  const Value& output = value(step.output);
+  const Value* residual = step.residual < 0 ? nullptr : &value(step.residual);
+  const bool planes = desc(buffer_of(step.input)) == dense(step.input, Tag::abcd) &&
+                      input.dims[1] <= DirectConvolution::kMostPlanes;
+  const int source =
+      planes ? buffer_of(step.input) : buffer_in(step.input, dense(step.input, Tag::acdb));
+  const MemoryDesc wanted = dense(step.output, Tag::acdb);
+  int added = -1;
+  int destination = -1;
+  if (residual != nullptr) {
+    added = buffer_in(step.residual, dense(step.residual, Tag::acdb));
+    const bool in_place = added == buffer_of(step.residual) && may_overwrite(step.residual) &&
+                          size_in_bytes(residual->type) == size_in_bytes(output.type);
+    if (in_place) destination = new_buffer_in(plan_.buffers[added].storage, wanted);
+    needed_now(added);
+  }
+  if (destination < 0) destination = new_buffer(wanted);
+  set_buffer_of(step.output, destination);
+  needed_now(source);
+  needed_now(destination);
+  DirectConvolution convolution(step, input, output, residual, *kernels_,
+                                planes ? ChannelOrder::kPlanes : ChannelOrder::kLast);
+  push(std::make_unique<DirectConvolutionTask>(std::move(convolution), source, added, destination));
+}
+
 void PlanBuilder::add(const ConvStep& step) {
+  if (kernels_ != nullptr && DirectConvolution::can_run(step, value(step.input), *kernels_)) {
+    return add_direct(step);
+  }
   const Value* residual = step.residual < 0 ? nullptr : &value(step.residual);
   const Convolution convolution =
       make_convolution(step, value(step.input), value(step.output), residual, engine_);
@@ -306,6 +293,13 @@ void PlanBuilder::add(const MaxPoolStep& step) {
 
 void PlanBuilder::add(const UpsampleStep& step) {
   const int source = buffer_of(step.input);
+  if (!step.linear && desc(source) == dense(step.input, Tag::acdb)) {
+    const int destination = new_buffer(dense(step.output, Tag::acdb));
+    set_buffer_of(step.output, destination);
+    needed_now(source);
+    needed_now(destination);
+    return push(std::make_unique<NearestUpsampleTask>(value(step.input), source, destination));
+  }
   const auto algorithm =
       step.linear ? dnnl::algorithm::resampling_linear : dnnl::algorithm::resampling_nearest;
   const dnnl::resampling_forward::primitive_desc pd(
@@ -406,16 +400,23 @@ void PlanBuilder::add_output(size_t output) {
   const int source = buffer_of(id);
   const MemoryDesc wanted = with_type(dense(id, Tag::abcd), ElementType::kFloat32);
   const int destination = new_buffer(wanted);
-  add_reorder(source, desc(source), destination, wanted, scaled(value(id).scale));
-  plan_.storages[plan_.buffers[destination].storage].last = kForever;
+  if (value(id).type == ElementType::kFloat32 && desc(source) == dense(id, Tag::acdb)) {
+    needed_now(source);
+    needed_now(destination);
+    push(std::make_unique<ExportTask>(value(id), source, destination));
+  } else {
+    add_reorder(source, desc(source), destination, wanted, scaled(value(id).scale));
+  }
+  storages_.keep(plan_.buffers[destination].storage);
   plan_.output_buffers[output] = destination;
 }
 
 }  // namespace
 
 ExecutionPlan build_plan(const Program& program, std::span<const Branch> branches,
-                         const dnnl::engine& engine, const ViewEntries& entries) {
-  return PlanBuilder(program, branches, engine, entries).build();
+                         const dnnl::engine& engine, const ViewEntries& entries,
+                         const KernelSet* kernels) {
+  return PlanBuilder(program, branches, engine, entries, kernels).build();
 }
 
-}  // namespace bevloc::nn
+}  // namespace bevloc::nn::onednn

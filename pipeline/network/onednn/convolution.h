@@ -9,7 +9,7 @@
 
 #include "pipeline/network/program.h"
 
-namespace bevloc::nn {
+namespace bevloc::nn::onednn {
 
 dnnl::memory::data_type onednn_type(ElementType type);
 
@@ -35,4 +35,4 @@ struct Convolution {
 Convolution make_convolution(const ConvStep& step, const Value& input, const Value& output,
                              const Value* residual, const dnnl::engine& engine);
 
-}  // namespace bevloc::nn
+}  // namespace bevloc::nn::onednn

@@ -1,11 +1,11 @@
-#include "pipeline/network/convolution.h"
+#include "pipeline/network/onednn/convolution.h"
 
 #include <algorithm>
 #include <cassert>
 
-#include "pipeline/network/cpu_isa.h"
+#include "pipeline/network/onednn/isa.h"
 
-namespace bevloc::nn {
+namespace bevloc::nn::onednn {
 namespace {
 
 using Tag = dnnl::memory::format_tag;
@@ -135,4 +135,4 @@ Convolution make_convolution(const ConvStep& step, const Value& input, const Val
   return convolution;
 }
 
-}  // namespace bevloc::nn
+}  // namespace bevloc::nn::onednn

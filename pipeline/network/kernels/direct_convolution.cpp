@@ -1,0 +1,300 @@
+#include "pipeline/network/kernels/direct_convolution.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+#include "common/target_clones.h"
+
+namespace bevloc::nn {
+namespace {
+
+constexpr int kWordBytes = 4;
+static_assert(DirectConvolution::kMostPlanes == kWordBytes);
+
+/// int8 inputs are moved up by this to be unsigned.
+constexpr int kSignOffset = 128;
+
+int round_up(int number, int unit) {
+  return (number + unit - 1) / unit * unit;
+}
+
+size_t aligned(size_t bytes) {
+  return (bytes + kCacheLineBytes - 1) / kCacheLineBytes * kCacheLineBytes;
+}
+
+int as_int(int64_t number) {
+  return static_cast<int>(number);
+}
+
+std::span<const int8_t> weights_of(const ConvStep& step) {
+  return {reinterpret_cast<const int8_t*>(step.weights.bytes.data()), step.weights.bytes.size()};
+}
+
+bool is_8_bit(ElementType type) {
+  return type == ElementType::kUint8 || type == ElementType::kInt8;
+}
+
+/// Real value of one unit of a channel's sum.
+float unit_of_sum(const ConvStep& step, const Value& input, int channel) {
+  return step.weight_scale[static_cast<size_t>(channel)] * input.scale;
+}
+
+/// A channel's bias in units of its sum, less what an input that was moved up adds to the sum.
+int32_t start_of(const ConvStep& step, const Value& input, int channel) {
+  int32_t start = 0;
+  if (!step.bias.empty()) {
+    const float bias = step.bias[static_cast<size_t>(channel)];
+    start = static_cast<int32_t>(std::lround(bias / unit_of_sum(step, input, channel)));
+  }
+  if (input.type != ElementType::kInt8) return start;
+  const std::span<const int8_t> weights = weights_of(step);
+  const auto each = weights.size() / static_cast<size_t>(step.weights.shape[0]);
+  for (const int8_t weight : weights.subspan(static_cast<size_t>(channel) * each, each)) {
+    start -= kSignOffset * weight;
+  }
+  return start;
+}
+
+Requantizer make_requantizer(const ConvStep& step, const Value& input, const Value& output,
+                             const Value* residual) {
+  Requantizer requantizer;
+  requantizer.channels = as_int(output.dims[1]);
+  for (int c = 0; c < requantizer.channels; ++c) {
+    requantizer.scale.push_back(unit_of_sum(step, input, c) / output.scale);
+  }
+  requantizer.output = output.type;
+  requantizer.relu = step.relu;
+  if (residual != nullptr) {
+    requantizer.residual = residual->type;
+    requantizer.residual_scale = residual->scale / output.scale;
+  }
+  return requantizer;
+}
+
+/// Four planes to words of four channels.
+BEVLOC_TARGET_CLONES void interleave(const uint8_t* const* planes, int cols, uint8_t flip,
+                                     uint8_t* line) {
+  const uint8_t* const a = planes[0];
+  const uint8_t* const b = planes[1];
+  const uint8_t* const c = planes[2];
+  const uint8_t* const d = planes[3];
+  for (int col = 0; col < cols; ++col) {
+    line[4 * col] = a[col] ^ flip;
+    line[4 * col + 1] = b[col] ^ flip;
+    line[4 * col + 2] = c[col] ^ flip;
+    line[4 * col + 3] = d[col] ^ flip;
+  }
+}
+
+}  // namespace
+
+/// The padded rows of the input that an output row needs, where each is written once and serves
+/// all output rows that look at it.
+class DirectConvolution::Lines {
+ public:
+  Lines(const DirectConvolution& conv, const std::byte* image, std::byte* scratch)
+      : conv_(conv),
+        image_(reinterpret_cast<const uint8_t*>(image)),
+        scratch_(reinterpret_cast<uint8_t*>(scratch)) {}
+
+  /// Those of one output row, top to bottom.
+  const uint8_t* const* of(int out_row) {
+    const int top = out_row * conv_.stride_rows_ - conv_.pad_top_;
+    for (int k = 0; k < conv_.kernel_rows_; ++k) lines_[k] = line(top + k);
+    return lines_;
+  }
+
+  static constexpr int kMostRows = 7;
+
+ private:
+  const uint8_t* line(int row) {
+    if (conv_.reads_in_place()) return pixels(row);
+    const int rows = conv_.kernel_rows_;
+    const int slot = ((row % rows) + rows) % rows;
+    uint8_t* const padded = scratch_ + static_cast<size_t>(slot) * conv_.line_bytes();
+    if (row >= written_until_) {
+      write(row, padded);
+      written_until_ = row + 1;
+    }
+    return padded;
+  }
+
+  const uint8_t* pixels(int row) const {
+    return image_ + static_cast<size_t>(row) * conv_.in_cols_ * conv_.in_channels_;
+  }
+
+  void write(int row, uint8_t* line) const {
+    const uint8_t zero = conv_.is_signed_ ? kSignOffset : 0;
+    std::memset(line, zero, conv_.line_bytes());
+    if (row < 0 || row >= conv_.in_rows_) return;
+    line += static_cast<std::ptrdiff_t>(conv_.pad_left_) * conv_.line_channels_;
+    if (conv_.order_ == ChannelOrder::kPlanes) return write_planes(row, zero, line);
+    const int channels = conv_.in_channels_;
+    const uint8_t* from = pixels(row);
+    if (!conv_.is_signed_ && channels == conv_.line_channels_) {
+      std::memcpy(line, from, static_cast<size_t>(conv_.in_cols_) * channels);
+      return;
+    }
+    for (int col = 0; col < conv_.in_cols_; ++col) {
+      for (int c = 0; c < channels; ++c) line[c] = static_cast<uint8_t>(from[c] ^ zero);
+      line += conv_.line_channels_;
+      from += channels;
+    }
+  }
+
+  /// The weights of channels that are not there are 0: what stands for them does not matter.
+  void write_planes(int row, uint8_t flip, uint8_t* line) const {
+    const uint8_t* planes[kWordBytes];
+    for (int c = 0; c < kWordBytes; ++c) {
+      const int plane = std::min(c, conv_.in_channels_ - 1);
+      planes[c] = image_ + (static_cast<size_t>(plane) * conv_.in_rows_ + row) * conv_.in_cols_;
+    }
+    interleave(planes, conv_.in_cols_, flip, line);
+  }
+
+  const DirectConvolution& conv_;
+  const uint8_t* image_;
+  uint8_t* scratch_;
+  const uint8_t* lines_[kMostRows] = {};
+  int written_until_ = std::numeric_limits<int>::min();
+};
+
+bool DirectConvolution::can_run(const ConvStep& step, const Value& input,
+                                const KernelSet& kernels) {
+  const bool is_plain = step.groups == 1 && step.dilations == std::array<int64_t, 2>{1, 1} &&
+                        step.weights.shape[2] <= Lines::kMostRows;
+  if (!is_plain || step.weights.type != ElementType::kInt8 || !is_8_bit(input.type)) return false;
+  return std::ranges::all_of(weights_of(step), [&kernels](int8_t weight) {
+    return std::abs(weight) <= kernels.largest_weight;
+  });
+}
+
+DirectConvolution::DirectConvolution(const ConvStep& step, const Value& input, const Value& output,
+                                     const Value* residual, const KernelSet& kernels,
+                                     ChannelOrder order)
+    : order_(order),
+      images_(as_int(input.dims[0])),
+      in_rows_(as_int(input.dims[2])),
+      in_cols_(as_int(input.dims[3])),
+      in_channels_(as_int(input.dims[1])),
+      line_channels_(round_up(in_channels_, kWordBytes)),
+      out_rows_(as_int(output.dims[2])),
+      out_cols_(as_int(output.dims[3])),
+      kernel_rows_(as_int(step.weights.shape[2])),
+      kernel_cols_(as_int(step.weights.shape[3])),
+      stride_rows_(as_int(step.strides[0])),
+      stride_cols_(as_int(step.strides[1])),
+      pad_top_(as_int(step.pads[0])),
+      pad_left_(as_int(step.pads[1])),
+      is_signed_(input.type == ElementType::kInt8),
+      requantizer_(make_requantizer(step, input, output, residual)),
+      requantize_(requantize_for(requantizer_, residual != nullptr)) {
+  assert(can_run(step, input, kernels));
+  assert(order == ChannelOrder::kLast || in_channels_ <= kMostPlanes);
+  make_groups(step, kernels);
+  starts_.resize(static_cast<size_t>(sums_per_pixel_));
+  for (int c = 0; c < requantizer_.channels; ++c) {
+    starts_[static_cast<size_t>(c)] = start_of(step, input, c);
+  }
+}
+
+/// As few groups as can be, all about as wide.
+void DirectConvolution::make_groups(const ConvStep& step, const KernelSet& kernels) {
+  const bool has_halves = kernels.kernels[1][1] != nullptr;
+  const int unit = has_halves ? kernels.lanes / 2 : kernels.lanes;
+  const int units = round_up(requantizer_.channels, unit) / unit;
+  const int units_per_vector = kernels.lanes / unit;
+  const int most = KernelSet::kMostVectors * units_per_vector;
+  const int groups = round_up(units, most) / most;
+  int first = 0;
+  for (int left = groups; left > 0; --left) {
+    // Whole vectors while there are groups to come; a half one stays for the last.
+    const int share = (units - first + left - 1) / left;
+    const int take = left == 1 ? share : std::min(round_up(share, units_per_vector), most);
+    const StripKernel kernel = kernels.kernels[take / units_per_vector][take % units_per_vector];
+    groups_.push_back(make_group(step, kernel, first * unit, take * unit));
+    first += take;
+  }
+  sums_per_pixel_ = units * unit;
+}
+
+/// [rows][words][lanes][4]; what is beyond the model's channels is 0.
+DirectConvolution::Group DirectConvolution::make_group(const ConvStep& step, StripKernel kernel,
+                                                       int first_channel, int lanes) const {
+  assert(kernel != nullptr);
+  const std::span<const int8_t> from = weights_of(step);
+  Group group{kernel, first_channel, lanes, {}};
+  const int line_bytes = kernel_cols_ * line_channels_;
+  group.weights.resize(static_cast<size_t>(kernel_rows_) * line_bytes * lanes);
+  const int last_channel = std::min(first_channel + lanes, requantizer_.channels);
+  for (int out = first_channel; out < last_channel; ++out) {
+    for (int in = 0; in < in_channels_; ++in) {
+      for (int row = 0; row < kernel_rows_; ++row) {
+        for (int col = 0; col < kernel_cols_; ++col) {
+          const int byte = col * line_channels_ + in;
+          const int word = row * (line_bytes / kWordBytes) + byte / kWordBytes;
+          const int to = (word * lanes + out - first_channel) * kWordBytes + byte % kWordBytes;
+          group.weights[static_cast<size_t>(to)] = from[static_cast<size_t>(
+              ((out * in_channels_ + in) * kernel_rows_ + row) * kernel_cols_ + col)];
+        }
+      }
+    }
+  }
+  return group;
+}
+
+/// Without padding, and with whole words of unsigned channels, lines are as the input has them.
+bool DirectConvolution::reads_in_place() const {
+  return kernel_rows_ == 1 && kernel_cols_ == 1 && pad_top_ == 0 && pad_left_ == 0 &&
+         order_ == ChannelOrder::kLast && !is_signed_ && line_channels_ == in_channels_;
+}
+
+size_t DirectConvolution::line_bytes() const {
+  const int seen = (out_cols_ - 1) * stride_cols_ + kernel_cols_;
+  return static_cast<size_t>(std::max(seen, pad_left_ + in_cols_)) * line_channels_;
+}
+
+size_t DirectConvolution::scratch_bytes() const {
+  return aligned(static_cast<size_t>(kernel_rows_) * line_bytes()) +
+         static_cast<size_t>(out_cols_) * sums_per_pixel_ * sizeof(int32_t);
+}
+
+void DirectConvolution::run(const std::byte* input, const std::byte* residual, std::byte* output,
+                            int begin, int end, std::byte* scratch) const {
+  const auto image_bytes = static_cast<size_t>(in_rows_) * in_cols_ * in_channels_;
+  const auto row_elements = static_cast<size_t>(out_cols_) * requantizer_.channels;
+  const size_t output_bytes = row_elements * size_in_bytes(requantizer_.output);
+  const size_t residual_bytes = row_elements * size_in_bytes(requantizer_.residual);
+  auto* const sums = reinterpret_cast<int32_t*>(
+      scratch + aligned(static_cast<size_t>(kernel_rows_) * line_bytes()));
+  for (int row = begin; row < end;) {
+    const int image = row / out_rows_;
+    Lines lines(*this, input + image * image_bytes, scratch);
+    for (const int last = std::min(end, (image + 1) * out_rows_); row < last; ++row) {
+      KernelStrip strip{.lines = lines.of(row - image * out_rows_),
+                        .rows = kernel_rows_,
+                        .words = kernel_cols_ * line_channels_ / kWordBytes,
+                        .pixel_step = stride_cols_ * line_channels_,
+                        .pixels = out_cols_,
+                        .sums_step = sums_per_pixel_};
+      for (const Group& group : groups_) {
+        strip.weights = group.weights.data();
+        strip.start = starts_.data() + group.first_channel;
+        strip.sums = sums + group.first_channel;
+        group.kernel(strip);
+      }
+      requantize_(requantizer_,
+                  {.sums = sums,
+                   .sums_step = sums_per_pixel_,
+                   .pixels = out_cols_,
+                   .residual = residual == nullptr ? nullptr : residual + row * residual_bytes,
+                   .output = output + row * output_bytes});
+    }
+  }
+}
+
+}  // namespace bevloc::nn

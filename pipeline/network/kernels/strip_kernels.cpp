@@ -1,0 +1,46 @@
+#include "pipeline/network/kernels/strip_kernels.h"
+
+#include <vector>
+
+#include "pipeline/network/kernels/strip_kernels_by_isa.h"
+
+namespace bevloc::nn {
+namespace {
+
+std::vector<const KernelSet*> runnable_sets() {
+  std::vector<const KernelSet*> sets;
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx512vnni") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512vl")) {
+    sets.push_back(&kAvx512VnniKernels);
+  }
+  if (__builtin_cpu_supports("avxvnni")) sets.push_back(&kAvxVnniKernels);
+  if (__builtin_cpu_supports("avx2")) sets.push_back(&kAvx2Kernels);
+#endif
+  sets.push_back(&kPlainKernels);
+  return sets;
+}
+
+bool is_under([[maybe_unused]] const KernelSet& set, [[maybe_unused]] IsaCap cap) {
+#ifdef __x86_64__
+  if (&set == &kAvx512VnniKernels) return cap == IsaCap::kBest || cap == IsaCap::kAvx512Vnni;
+  if (&set == &kAvxVnniKernels) return cap == IsaCap::kBest || cap == IsaCap::kAvx2Vnni;
+#endif
+  return true;
+}
+
+}  // namespace
+
+std::span<const KernelSet* const> kernel_sets() {
+  static const std::vector<const KernelSet*> sets = runnable_sets();
+  return sets;
+}
+
+const KernelSet& kernel_set(IsaCap cap) {
+  for (const KernelSet* set : kernel_sets()) {
+    if (is_under(*set, cap)) return *set;
+  }
+  return kPlainKernels;
+}
+
+}  // namespace bevloc::nn

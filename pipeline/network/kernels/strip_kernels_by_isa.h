@@ -1,0 +1,15 @@
+// The kernel sets, one for each file.
+#pragma once
+
+#include "pipeline/network/kernels/strip_kernels.h"
+
+namespace bevloc::nn {
+
+extern const KernelSet kPlainKernels;
+#ifdef __x86_64__
+extern const KernelSet kAvx2Kernels;
+extern const KernelSet kAvxVnniKernels;
+extern const KernelSet kAvx512VnniKernels;
+#endif
+
+}  // namespace bevloc::nn
