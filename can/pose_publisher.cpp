@@ -64,8 +64,10 @@ SendResult PosePublisher::send(Frame frame, E2eSender& sender, Time now) {
 }
 
 void PosePublisher::send_status_if_due(const LocalizerStatus& status, Time now) {
-  constexpr std::chrono::milliseconds kCycle(kStatusCycleMs);
-  if (sent_status_ == status && now - status_sent_at_ < kCycle) return;
+  // Calls come a little early or late: the one nearest to the cycle's end counts.
+  constexpr Duration kCycle = std::chrono::milliseconds(kStatusCycleMs);
+  constexpr Duration kSlack = std::chrono::milliseconds(kSolutionCycleMs) / 2;
+  if (sent_status_ == status && now - status_sent_at_ < kCycle - kSlack) return;
   const bool sent =
       send(status_frame(status, config_.base_ids), status_sender_, now) == SendResult::kSent;
   sent_status_ = sent ? std::optional(status) : std::nullopt;

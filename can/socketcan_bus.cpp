@@ -2,14 +2,13 @@
 
 #include <cassert>
 #include <cerrno>
-#include <ctime>
 #include <utility>
 
 #include <linux/can/error.h>
 #include <poll.h>
 #include <sys/socket.h>
 
-#include "can/steady_clock.h"
+#include "common/kernel_time.h"
 
 namespace bevloc::can {
 namespace {
@@ -130,8 +129,7 @@ void SocketCanBus::take_echo(const Frame& frame, Time echoed) {
 bool SocketCanBus::wait(Duration timeout) {
   repair();
   pollfd entry{.fd = link_->descriptor(), .events = POLLIN, .revents = 0};
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout);
-  const timespec limit{.tv_sec = seconds.count(), .tv_nsec = (timeout - seconds).count()};
+  const timespec limit = timespec_of(timeout);
   return ppoll(&entry, 1, &limit, nullptr) > 0;
 }
 

@@ -1,21 +1,20 @@
 #include "can/socketcan_codec.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
-#include <ctime>
 
 #include <linux/can/error.h>
+
+#include "common/kernel_time.h"
 
 namespace bevloc::can {
 namespace {
 
-using std::chrono::nanoseconds;
-
 /// A stamp that was not taken is all zeros.
-std::optional<nanoseconds> stamp_from(const timespec& time) {
-  if (time.tv_sec == 0 && time.tv_nsec == 0) return std::nullopt;
-  return std::chrono::seconds(time.tv_sec) + nanoseconds(time.tv_nsec);
+std::optional<Duration> stamp_from(const timespec& time) {
+  const Duration stamp = duration_of(time);
+  if (stamp == Duration::zero()) return std::nullopt;
+  return stamp;
 }
 
 template <typename T>

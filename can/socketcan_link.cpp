@@ -13,7 +13,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "can/steady_clock.h"
+#include "common/kernel_time.h"
 
 namespace bevloc::can {
 namespace {

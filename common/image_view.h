@@ -72,7 +72,7 @@ struct ImageView {
   int width = 0;
   int height = 0;
   std::array<ImagePlane, 2> planes;
-  size_t bytes_used = 0;  ///< of the file, of MJPEG only
+  size_t bytes_used = 0;  ///< that the device filled; of MJPEG the file's
   YuvEncoding yuv;        ///< of YUYV, UYVY and NV12 only
 
   ImageView() = default;

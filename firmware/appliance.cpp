@@ -13,22 +13,6 @@ constexpr size_t kPredictionCapacity = 128;
 // Two framesets: what is older is of no use to anybody.
 constexpr size_t kFrameCapacity = 2 * kCameraCount;
 
-can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map) {
-  can::PosePublisherConfig publisher;
-  publisher.base_ids = config.can.base_ids;
-  publisher.format = config.can.variant;
-  publisher.map_origin = {map.origin.latitude_deg, map.origin.longitude_deg};
-  return publisher;
-}
-
-LocalizerOptions localizer_options(const Config& config) {
-  LocalizerOptions options;
-  options.solver = config.solver.kind;
-  options.tracking = config.solver.tracking;
-  options.acquiring = config.solver.acquiring;
-  return options;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Appliance>> Appliance::create(const Config& config, const Rig& rig,
@@ -84,6 +68,22 @@ void Appliance::close() {
   samples_.close();
   predictions_.close();
   reports_.close();
+}
+
+can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map) {
+  can::PosePublisherConfig publisher;
+  publisher.base_ids = config.can.base_ids;
+  publisher.format = config.can.variant;
+  publisher.map_origin = {map.origin.latitude_deg, map.origin.longitude_deg};
+  return publisher;
+}
+
+LocalizerOptions localizer_options(const Config& config) {
+  LocalizerOptions options;
+  options.solver = config.solver.kind;
+  options.tracking = config.solver.tracking;
+  options.acquiring = config.solver.acquiring;
+  return options;
 }
 
 uint16_t map_id_of(const HdMap& map) {

@@ -81,6 +81,10 @@ class Appliance {
   EstimationStage estimation_;
 };
 
+/// What the configuration says of these parts.
+can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map);
+LocalizerOptions localizer_options(const Config& config);
+
 /// Of everything the map holds; consumers of LOC_Status know a map by it.
 uint16_t map_id_of(const HdMap& map);
 

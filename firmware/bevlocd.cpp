@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
+#include "common/files.h"
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "firmware/daemon.h"
 #include "firmware/simulation/simulated_run.h"
@@ -82,7 +83,7 @@ Status simulate(const CommandLine& line, const Config& config, const Rig& rig) {
   if (!report) return tl::unexpected(report.error());
   fmt::print("{}", to_table(*report));
   if (line.json_file.empty()) return {};
-  return write_text(to_json(*report), line.json_file);
+  return write_file(line.json_file, to_json(*report));
 }
 
 Status run(const CommandLine& line) {

@@ -4,6 +4,8 @@
 
 #include <fmt/ranges.h>
 
+#include "firmware/config_milliseconds.h"
+
 namespace bevloc::firmware {
 namespace {
 
@@ -56,9 +58,9 @@ CameraDevicesConfig read_camera_devices(YamlMap& cameras) {
     }
   }
   const auto duration_ms = between(0.0, 1000.0);
-  config.exposure = from_seconds(1e-3 * cameras.optional<double>("exposure_ms", 0.0, duration_ms));
+  config.exposure = optional_milliseconds(cameras, "exposure_ms", config.exposure, duration_ms);
   if (cameras.has("readout_ms")) {
-    config.readout = from_seconds(1e-3 * cameras.require<double>("readout_ms", duration_ms));
+    config.readout = require_milliseconds(cameras, "readout_ms", duration_ms);
   }
   return config;
 }

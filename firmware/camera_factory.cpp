@@ -5,6 +5,7 @@
 #include "drivers/camera/replay_camera.h"
 #include "drivers/camera/v4l2/v4l2_camera.h"
 #ifdef BEVLOC_HAS_LIBCAMERA
+#include "drivers/camera/libcamera/camera_ids.h"
 #include "drivers/camera/libcamera/libcamera_camera.h"
 #endif
 
@@ -79,8 +80,8 @@ Status check_libcamera(const CameraConfig& config) {
   for (int camera = 0; camera < kCameraCount; ++camera) {
     const std::string& id = config.devices.ids[camera];
     if (std::ranges::find(ids, id) == ids.end()) {
-      return fail("camera {}: libcamera has none called \"{}\"; it has {}", kCameraNames[camera],
-                  id, ids.empty() ? "none" : fmt::format("{}", fmt::join(ids, ", ")));
+      return fail("camera {}: {}", kCameraNames[camera],
+                  drivers::libcam::no_camera_called(id, ids));
     }
   }
   return {};

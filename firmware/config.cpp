@@ -5,16 +5,12 @@
 #include <utility>
 
 #include "common/strict_yaml.h"
+#include "firmware/config_milliseconds.h"
 #include "firmware/simulation_config.h"
 #include "sim/world/world_generator.h"
 
 namespace bevloc::firmware {
 namespace {
-
-Duration milliseconds_of(YamlMap& yaml, std::string_view key, Duration fallback,
-                         const Wanted<double>& wanted) {
-  return from_seconds(1e-3 * yaml.optional<double>(key, 1e3 * to_seconds(fallback), wanted));
-}
 
 std::filesystem::path path_of(YamlMap& yaml, std::string_view key,
                               const std::filesystem::path& folder) {
@@ -45,8 +41,9 @@ CameraConfig read_cameras(YamlMap yaml, const std::filesystem::path& folder) {
   cameras.buffers = yaml.optional<int>("buffers", cameras.buffers, between(2, 64));
   drivers::SynchronizerConfig& synchronizer = cameras.synchronizer;
   synchronizer.tolerance =
-      milliseconds_of(yaml, "tolerance_ms", synchronizer.tolerance, between(0.0, 50.0));
-  synchronizer.wait = milliseconds_of(yaml, "wait_ms", synchronizer.wait, between(1.0, 1000.0));
+      optional_milliseconds(yaml, "tolerance_ms", synchronizer.tolerance, between(0.0, 50.0));
+  synchronizer.wait =
+      optional_milliseconds(yaml, "wait_ms", synchronizer.wait, between(1.0, 1000.0));
   synchronizer.min_cameras =
       yaml.optional<int>("min_cameras", synchronizer.min_cameras, between(1, kCameraCount));
   cameras.compensate_motion = yaml.optional<bool>("compensate_motion", cameras.compensate_motion);
@@ -165,11 +162,12 @@ HealthLimits read_health(std::optional<YamlMap> yaml) {
   if (!yaml) return limits;
   const auto timeout = between(10.0, 60'000.0);
   limits.odometry_timeout =
-      milliseconds_of(*yaml, "odometry_timeout_ms", limits.odometry_timeout, timeout);
-  limits.gnss_timeout = milliseconds_of(*yaml, "gnss_timeout_ms", limits.gnss_timeout, timeout);
+      optional_milliseconds(*yaml, "odometry_timeout_ms", limits.odometry_timeout, timeout);
+  limits.gnss_timeout =
+      optional_milliseconds(*yaml, "gnss_timeout_ms", limits.gnss_timeout, timeout);
   limits.correction_timeout =
-      milliseconds_of(*yaml, "degraded_after_ms", limits.correction_timeout, timeout);
-  limits.lost_timeout = milliseconds_of(*yaml, "lost_after_ms", limits.lost_timeout, timeout);
+      optional_milliseconds(*yaml, "degraded_after_ms", limits.correction_timeout, timeout);
+  limits.lost_timeout = optional_milliseconds(*yaml, "lost_after_ms", limits.lost_timeout, timeout);
   const auto count = between(1, 1000);
   limits.corrections_to_track =
       yaml->optional<int>("corrections_to_track", limits.corrections_to_track, count);

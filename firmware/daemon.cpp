@@ -13,6 +13,14 @@
 namespace bevloc::firmware {
 namespace {
 
+void log_unreadable(const VisionCounters& vision) {
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (const uint64_t pictures = vision.unreadable[camera]; pictures > 0) {
+      spdlog::warn("camera {}: {} pictures could not be read", kCameraNames[camera], pictures);
+    }
+  }
+}
+
 void log_bus(const can::BusCounters& bus) {
   const double mean_ms = bus.confirmed == 0 ? 0.0
                                             : 1e3 * to_seconds(bus.confirmation_total) /
@@ -69,6 +77,7 @@ Status run_daemon(const Config& config, const Rig& rig, drivers::Gpio& gpio,
       "{} in skipped sets, {} under way); {} more missed",
       frames.captured, frames.used, frames.dropped(), frames.displaced, frames.mismatched,
       frames.skipped, frames.under_way(), frames.missed);
+  log_unreadable((*appliance)->vision().counters());
   log_synchrony((*appliance)->vision().synchrony(), trigger);
   log_bus((*appliance)->bus().counters());
   return {};

@@ -1,5 +1,7 @@
 #include "firmware/gpio_config.h"
 
+#include "firmware/config_milliseconds.h"
+
 namespace bevloc::firmware {
 namespace {
 
@@ -19,9 +21,8 @@ TriggerLineConfig read_trigger(YamlMap& yaml) {
   TriggerLineConfig trigger;
   trigger.address = read_address(yaml);
   trigger.timing.period = from_seconds(1.0 / yaml.require<double>("rate_hz", between(1.0, 60.0)));
-  trigger.timing.pulse_width = from_seconds(
-      1e-3 * yaml.optional<double>("pulse_ms", 1e3 * to_seconds(trigger.timing.pulse_width),
-                                   between(0.01, 100.0)));
+  trigger.timing.pulse_width =
+      optional_milliseconds(yaml, "pulse_ms", trigger.timing.pulse_width, between(0.01, 100.0));
   if (2 * trigger.timing.pulse_width >= trigger.timing.period) {
     yaml.reject("pulse_ms", "half a period of rate_hz or more", "less than half");
   }
@@ -32,8 +33,7 @@ IgnitionConfig read_ignition(YamlMap& yaml) {
   IgnitionConfig ignition;
   ignition.address = read_address(yaml);
   ignition.debounce =
-      from_seconds(1e-3 * yaml.optional<double>("debounce_ms", 1e3 * to_seconds(ignition.debounce),
-                                                between(0.0, 10'000.0)));
+      optional_milliseconds(yaml, "debounce_ms", ignition.debounce, between(0.0, 10'000.0));
   return ignition;
 }
 

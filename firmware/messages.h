@@ -14,7 +14,7 @@ namespace bevloc::firmware {
 /// What one frameset says about the pose.
 struct VisionReport {
   Time frame_time;
-  CameraMask present;
+  CameraMask present;      ///< with a picture that could be read, if it was looked at
   bool skipped = false;    ///< framesets before this one, because this one was already there
   bool had_prior = false;  ///< without one nothing could be matched
   bool map_nearby = false;

@@ -3,13 +3,6 @@
 namespace bevloc::firmware {
 namespace {
 
-/// A while at constant speed and yaw rate; exact enough over a tenth of a second.
-Se2 arc(double speed_mps, double yaw_rate_radps, Duration duration) {
-  const double turn_rad = yaw_rate_radps * to_seconds(duration);
-  const double way_m = speed_mps * to_seconds(duration);
-  return {way_m * std::cos(0.5 * turn_rad), way_m * std::sin(0.5 * turn_rad), turn_rad};
-}
-
 double share_of(Time time, const TrackedPose& before, const TrackedPose& after) {
   return to_seconds(time - before.time) / to_seconds(after.time - before.time);
 }
@@ -33,41 +26,39 @@ void PoseTrail::add(const TrackedPose& pose) {
 }
 
 std::optional<Se2> PoseTrail::at(Time time) const {
-  if (size_ == 0) return std::nullopt;
-  const TrackedPose& newest = nth_newest(0);
-  if (time >= newest.time) {
-    if (time - newest.time > kReach) return std::nullopt;
-    return newest.map_from_vehicle *
-           arc(newest.speed_mps, newest.yaw_rate_radps, time - newest.time);
-  }
-  for (int n = 1; n < size_; ++n) {
-    if (nth_newest(n).time <= time) return interpolate(nth_newest(n), nth_newest(n - 1), time);
-  }
-  return std::nullopt;
+  const auto [before, after] = neighbours(time);
+  if (!before) return std::nullopt;
+  if (after) return interpolate(*before, *after, time);
+  return before->map_from_vehicle *
+         arc_motion(before->speed_mps, before->yaw_rate_radps, to_seconds(time - before->time));
 }
 
 std::optional<Se2> PoseTrail::motion(Time from, Time to) const {
   const auto rates = rates_at(from + (to - from) / 2);
   if (!rates) return std::nullopt;
-  return arc(rates->speed_mps, rates->yaw_rate_radps, to - from);
+  return arc_motion(rates->speed_mps, rates->yaw_rate_radps, to_seconds(to - from));
 }
 
 std::optional<PoseTrail::Rates> PoseTrail::rates_at(Time time) const {
-  if (size_ == 0) return std::nullopt;
+  const auto [before, after] = neighbours(time);
+  if (!before) return std::nullopt;
+  if (!after) return Rates{before->speed_mps, before->yaw_rate_radps};
+  const double share = share_of(time, *before, *after);
+  return Rates{std::lerp(before->speed_mps, after->speed_mps, share),
+               std::lerp(before->yaw_rate_radps, after->yaw_rate_radps, share)};
+}
+
+PoseTrail::Neighbours PoseTrail::neighbours(Time time) const {
+  if (size_ == 0) return {};
   const TrackedPose& newest = nth_newest(0);
   if (time >= newest.time) {
-    if (time - newest.time > kReach) return std::nullopt;
-    return Rates{newest.speed_mps, newest.yaw_rate_radps};
+    if (time - newest.time > kReach) return {};
+    return {&newest, nullptr};
   }
   for (int n = 1; n < size_; ++n) {
-    const TrackedPose& before = nth_newest(n);
-    const TrackedPose& after = nth_newest(n - 1);
-    if (before.time > time) continue;
-    const double share = share_of(time, before, after);
-    return Rates{std::lerp(before.speed_mps, after.speed_mps, share),
-                 std::lerp(before.yaw_rate_radps, after.yaw_rate_radps, share)};
+    if (nth_newest(n).time <= time) return {&nth_newest(n), &nth_newest(n - 1)};
   }
-  return std::nullopt;
+  return {};
 }
 
 }  // namespace bevloc::firmware

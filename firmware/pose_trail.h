@@ -36,6 +36,13 @@ class PoseTrail {
   };
   std::optional<Rates> rates_at(Time time) const;
 
+  /// Both null where nothing is known; `after` null past the newest pose.
+  struct Neighbours {
+    const TrackedPose* before = nullptr;
+    const TrackedPose* after = nullptr;
+  };
+  Neighbours neighbours(Time time) const;
+
   const TrackedPose& nth_newest(int n) const {
     return poses_[(next_ + kCapacity - 1 - n) % kCapacity];
   }

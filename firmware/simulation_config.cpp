@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "firmware/config_milliseconds.h"
+
 namespace bevloc::firmware {
 namespace {
 
@@ -56,7 +58,7 @@ CameraFault read_fault(YamlMap& yaml) {
   fault.until_s = yaml.optional<double>("until_s", fault.until_s, at_least(0.0));
   if (fault.until_s < fault.from_s) yaml.reject("until_s", "less than from_s", "from_s or more");
   if (fault.kind == CameraFaultKind::kLate) {
-    fault.delay = from_seconds(1e-3 * yaml.require<double>("delay_ms", between(0.0, 60'000.0)));
+    fault.delay = require_milliseconds(yaml, "delay_ms", between(0.0, 60'000.0));
   }
   if (fault.kind == CameraFaultKind::kDrop || fault.kind == CameraFaultKind::kDuplicate ||
       fault.kind == CameraFaultKind::kSwap) {
@@ -70,8 +72,7 @@ std::array<Duration, kCameraCount> read_offsets(YamlMap& yaml) {
   if (!yaml.has("exposure_offsets_ms")) return offsets;
   const auto offsets_ms =
       yaml.require_list<double>("exposure_offsets_ms", kCameraCount, between(0.0, 50.0));
-  std::ranges::transform(offsets_ms, offsets.begin(),
-                         [](double offset_ms) { return from_seconds(1e-3 * offset_ms); });
+  std::ranges::transform(offsets_ms, offsets.begin(), from_milliseconds);
   return offsets;
 }
 

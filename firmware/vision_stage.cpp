@@ -7,6 +7,7 @@ namespace bevloc::firmware {
 VisionStage::VisionStage(Localizer& localizer, const VisionConfig& config, FrameQueue& frames,
                          PredictionQueue& predictions, VisionQueue& reports)
     : localizer_(localizer),
+      min_cameras_(config.synchronizer.min_cameras),
       compensate_motion_(config.compensate_motion),
       synchronizer_(config.synchronizer),
       synchrony_(synchronizer_, config.compensate_motion, config.pulses),
@@ -76,25 +77,33 @@ void VisionStage::localize(const drivers::Frameset& frameset, VisionReport repor
   const auto prior = trail_.at(frameset.time);
   const auto motions = motions_in(frameset);
   report.had_prior = prior && motions;
-  if (!report.had_prior) {
+  if (report.had_prior) {
+    report.prior = *prior;
+    match(frameset, *motions, report);
+  } else {
     ++counters_.no_prior;
-    reports_.push(report);
-    return;
   }
-  report.prior = *prior;
-  CameraImages seen{{}, frameset.present, *motions};
+  reports_.push(report);
+}
+
+void VisionStage::match(const drivers::Frameset& frameset, const CameraMotions& motions,
+                        VisionReport& report) {
+  CameraImages seen{{}, frameset.present, motions};
   for (int camera = 0; camera < kCameraCount; ++camera) {
     if (frameset.present[camera]) seen.images[camera] = frameset.frames[camera].image();
   }
   const SearchRange range = acquiring_ ? SearchRange::kAcquiring : SearchRange::kTracking;
-  if (localizer_.localize(seen, *prior, range, solution_)) {
-    report.map_nearby = localizer_.map_nearby();
-    report.correction = solution_;
-    if (observer_) observer_({frameset, report, solution_, range, localizer_});
-  } else {
-    ++counters_.refused;
+  report.present = localizer_.localize(seen, report.prior, range, solution_);
+  report.map_nearby = localizer_.map_nearby();
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (frameset.present[camera] && !report.present[camera]) ++counters_.unreadable[camera];
   }
-  reports_.push(report);
+  if (static_cast<int>(report.present.count()) < min_cameras_) {
+    ++counters_.refused;
+    return;
+  }
+  report.correction = solution_;
+  if (observer_) observer_({frameset, report, solution_, range, localizer_});
 }
 
 std::optional<CameraMotions> VisionStage::motions_in(const drivers::Frameset& frameset) const {

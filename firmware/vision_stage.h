@@ -1,6 +1,7 @@
 // Frames in, corrections of the pose out: the stage that sees.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 
@@ -38,7 +39,9 @@ struct VisionCounters {
   std::atomic<uint64_t> framesets_skipped{0};  ///< a newer one was already there
   std::atomic<uint64_t> frames_skipped{0};     ///< of those
   std::atomic<uint64_t> no_prior{0};           ///< framesets at whose times no prediction was known
-  std::atomic<uint64_t> refused{0};            ///< framesets with an image of the wrong size
+  std::atomic<uint64_t> refused{0};            ///< framesets with too few readable pictures
+  /// Of each camera, pictures of the wrong size and damaged JPEGs; the frames count as used.
+  std::array<std::atomic<uint64_t>, kCameraCount> unreadable{};
 };
 
 /// Thread: one, the vision thread; counters() from any.
@@ -63,10 +66,13 @@ class VisionStage {
   std::optional<drivers::Frameset> newest_frameset(Time now);
   VisionReport report_on(const drivers::Frameset& frameset, Time now, bool skipped);
   void localize(const drivers::Frameset& frameset, VisionReport report);
+  /// Fills in what only the pictures tell.
+  void match(const drivers::Frameset& frameset, const CameraMotions& motions, VisionReport& report);
   /// Nothing when the motion to one of its frames is not known.
   std::optional<CameraMotions> motions_in(const drivers::Frameset& frameset) const;
 
   Localizer& localizer_;
+  const int min_cameras_;
   const bool compensate_motion_;
   drivers::FramesetSynchronizer synchronizer_;
   Synchrony synchrony_;

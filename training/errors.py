@@ -18,6 +18,10 @@ class NotFiniteError(TrainingError):
     """A loss, a gradient or a weight that is infinite or no number."""
 
 
+class MarksError(TrainingError, ValueError):
+    """A document without the marks between which a program writes."""
+
+
 def run_program(main: Callable[[], None]) -> None:
     """Ends with the message alone where `main` raises a TrainingError."""
     try:

@@ -14,6 +14,8 @@ from pathlib import Path
 
 import torch
 
+from training.errors import run_program
+from training.marks import write_between_marks
 from training.models.config import PRESETS, VIEWS, ModelConfig
 from training.models.cost import Cost, cost_of, deployed_outputs, sample_inputs
 from training.models.network import BevNetwork
@@ -108,15 +110,6 @@ def _row(cells: list[str]) -> str:
     return f"| {' | '.join(cells)} |\n"
 
 
-def with_table(document: str, new_table: str) -> str:
-    """The document with what stands between the markers replaced. ValueError without markers."""
-    head, begin, rest = document.partition(BEGIN)
-    _, end, tail = rest.partition(END)
-    if not (begin and end):
-        raise ValueError(f"{DOCUMENT}: found no '{BEGIN.strip()}' ... '{END.strip()}'")
-    return head + begin + new_table + end + tail
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--write", action="store_true", help="update docs/networks.md")
@@ -124,8 +117,8 @@ def main() -> None:
     torch.set_num_threads(1)
     new_table = table()
     if write:
-        DOCUMENT.write_text(with_table(DOCUMENT.read_text(), new_table))
+        write_between_marks(DOCUMENT, BEGIN, END, new_table)
 
 
 if __name__ == "__main__":
-    main()
+    run_program(main)

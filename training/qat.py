@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from pathlib import Path
 
 import torch
@@ -21,7 +20,7 @@ from torch import Tensor, nn
 from training.checkpoint import load_network, read_checkpoint
 from training.config import FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream, Stream
-from training.errors import NotFiniteError, TrainingError
+from training.errors import NotFiniteError, run_program
 from training.export_onnx import calibration_batches
 from training.fake_quantization import FakeQuantized
 from training.losses import pose_losses, semantic_loss
@@ -39,8 +38,9 @@ LOG_STEPS = 10
 def fine_tuning_loss(
     outputs: tuple[Tensor, Tensor, Tensor], solvers: PoseSolvers, batch: Batch
 ) -> Tensor:
-    """The losses of training's second stage on what the int8 model puts out: it has no
-    reconstructed mask."""
+    """What training's second stage asks of the perceived mask and of the joint and the decoupled
+    solver's poses, on what the int8 model puts out. It has no reconstructed mask; the loss of the
+    refined poses is left out."""
     bev, features_map, perceived = outputs
     sides = standardise(bev), standardise(features_map)
     posteriors = solvers.joint(*sides), solvers.decoupled(*sides, None)
@@ -102,20 +102,17 @@ def main() -> None:
     parser.add_argument("--threads", type=int, default=1)
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
-    try:
-        net = load_network(arguments.checkpoint)
-        batches = calibration_batches(arguments.calibration, arguments.threads)
-        network = FakeQuantized(net, quantize(net, batches))
-        stream = SamplerStream(SEED, 0, arguments.threads, DROP_CAMERA_PROBABILITY)
-        steps = arguments.samples // arguments.batch
-        fine_tune(network, stream, steps, arguments.batch, arguments.learning_rate)
-        stream.close()
-        out = arguments.run / "checkpoint.pt"
-        save(network, arguments.checkpoint, steps * arguments.batch, out)
-    except TrainingError as error:
-        sys.exit(str(error))
+    net = load_network(arguments.checkpoint)
+    batches = calibration_batches(arguments.calibration, arguments.threads)
+    network = FakeQuantized(net, quantize(net, batches))
+    stream = SamplerStream(SEED, 0, arguments.threads, DROP_CAMERA_PROBABILITY)
+    steps = arguments.samples // arguments.batch
+    fine_tune(network, stream, steps, arguments.batch, arguments.learning_rate)
+    stream.close()
+    out = arguments.run / "checkpoint.pt"
+    save(network, arguments.checkpoint, steps * arguments.batch, out)
     print(out)
 
 
 if __name__ == "__main__":
-    main()
+    run_program(main)

@@ -17,9 +17,11 @@ from torch import Tensor
 
 from training.checkpoint import load_network
 from training.data import Batch
+from training.errors import run_program
 from training.evaluate import AXES, Inference
 from training.export_onnx import calibration_batches, quantization_of
 from training.layer_errors import LayerError, layer_errors
+from training.marks import write_between_marks
 from training.models.network import BevNetwork
 from training.quantize import FloatBackend, Quantization, int8_inference, run
 from training.solver import PoseSolvers
@@ -113,14 +115,6 @@ def report(
     )
 
 
-def write_between_marks(document: Path, text: str) -> None:
-    head, begin, rest = document.read_text().partition(BEGIN)
-    _, end, tail = rest.partition(END)
-    if not (begin and end):
-        raise ValueError(f"{document}: found no '{BEGIN.strip()}' ... '{END.strip()}'")
-    document.write_text(head + begin + text + end + tail)
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("checkpoint", type=Path)
@@ -139,8 +133,8 @@ def main() -> None:
     text = report(net, quantization, layer_batches, batches)
     print(text, end="")
     if arguments.write:
-        write_between_marks(arguments.write, text)
+        write_between_marks(arguments.write, BEGIN, END, text)
 
 
 if __name__ == "__main__":
-    main()
+    run_program(main)

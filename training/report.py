@@ -7,6 +7,8 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from training.marks import write_between_marks
+
 BEGIN, END = "<!-- results: written by training.evaluate -->", "<!-- end of results -->"
 _SHIPPED = "nano"  # has its card in the folder's README.md
 _AXES = (("x", "Longitudinal (m)"), ("y", "Lateral (m)"), ("yaw", "Yaw (degrees)"))
@@ -89,9 +91,4 @@ def write_results(models: Path, network: str, results: Results) -> None:
     card = models / ("README.md" if network == _SHIPPED else f"{network}.md")
     if not card.exists():
         card.write_text(f"# Model card: {network}\n\n{BEGIN}\n{END}\n")
-    content = card.read_text()
-    before, _, rest = content.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not end:
-        raise ValueError(f"{card}: wanted the marks '{BEGIN}' and '{END}'")
-    card.write_text(f"{before}{BEGIN}\n\n{markdown(results)}\n\n{END}{after}")
+    write_between_marks(card, BEGIN, END, f"\n\n{markdown(results)}\n\n")

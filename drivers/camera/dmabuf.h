@@ -9,14 +9,19 @@
 
 namespace bevloc::drivers {
 
-/// Before the first read of a new picture, and after the last. A no-op where caches are coherent.
-inline void begin_dmabuf_read(int dmabuf, uint64_t phase = DMA_BUF_SYNC_START) noexcept {
+/// `phase` is DMA_BUF_SYNC_START or DMA_BUF_SYNC_END. A no-op where caches are coherent.
+inline void sync_dmabuf_read(int dmabuf, uint64_t phase) noexcept {
   dma_buf_sync sync{phase | DMA_BUF_SYNC_READ};
   while (ioctl(dmabuf, DMA_BUF_IOCTL_SYNC, &sync) != 0 && (errno == EINTR || errno == EAGAIN)) {
   }
 }
+
+/// Before the first read of a new picture, and after the last.
+inline void begin_dmabuf_read(int dmabuf) noexcept {
+  sync_dmabuf_read(dmabuf, DMA_BUF_SYNC_START);
+}
 inline void end_dmabuf_read(int dmabuf) noexcept {
-  begin_dmabuf_read(dmabuf, DMA_BUF_SYNC_END);
+  sync_dmabuf_read(dmabuf, DMA_BUF_SYNC_END);
 }
 
 }  // namespace bevloc::drivers

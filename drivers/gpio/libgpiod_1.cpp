@@ -1,18 +1,14 @@
 // libgpiod 1 (Debian 12 has 1.6).
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 
 #include <gpiod.h>
 
+#include "common/kernel_time.h"
 #include "drivers/gpio/libgpiod_calls.h"
 
 namespace bevloc::drivers {
 namespace {
-
-std::string text_or_empty(const char* text) {
-  return text == nullptr ? "" : text;
-}
 
 class Output final : public OutputLine {
  public:
@@ -42,15 +38,12 @@ class Input final : public InputLine {
   }
 
   Result<std::optional<LineEdge>> next_edge(Duration timeout) override {
-    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout);
-    const timespec wait{seconds.count(), (timeout - seconds).count()};
+    const timespec wait = timespec_of(timeout);
     const int events = gpiod_line_event_wait(line_, &wait);
     if (events == 0 || (events < 0 && errno == EINTR)) return std::nullopt;
     gpiod_line_event event{};
     if (events < 0 || gpiod_line_event_read(line_, &event) != 0) return cannot_be_read();
-    const Duration time =
-        std::chrono::seconds(event.ts.tv_sec) + std::chrono::nanoseconds(event.ts.tv_nsec);
-    return LineEdge{Time(time), event.event_type == GPIOD_LINE_EVENT_RISING_EDGE};
+    return LineEdge{Time(duration_of(event.ts)), event.event_type == GPIOD_LINE_EVENT_RISING_EDGE};
   }
 
  private:
@@ -75,14 +68,6 @@ Result<gpiod_line*> request(gpiod_chip& chip, unsigned offset, const LineAddress
 }
 
 }  // namespace
-
-void GpioChipCloser::operator()(gpiod_chip* chip) const {
-  gpiod_chip_close(chip);
-}
-
-GpioChipHandle open_gpio_chip(const std::string& device) {
-  return GpioChipHandle(gpiod_chip_open(device.c_str()));
-}
 
 GpioChipInfo info_of(gpiod_chip& chip) {
   GpioChipInfo info{gpiod_chip_name(&chip), gpiod_chip_label(&chip), {}};

@@ -24,10 +24,6 @@ using RequestConfig = std::unique_ptr<gpiod_request_config, Freer<gpiod_request_
 using LineRequest = std::unique_ptr<gpiod_line_request, Freer<gpiod_line_request_release>>;
 using EventBuffer = std::unique_ptr<gpiod_edge_event_buffer, Freer<gpiod_edge_event_buffer_free>>;
 
-std::string text_or_empty(const char* text) {
-  return text == nullptr ? "" : text;
-}
-
 gpiod_line_value value_of(bool active) {
   return active ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
 }
@@ -105,14 +101,6 @@ Result<LineRequest> request(gpiod_chip& chip, unsigned offset, const LineAddress
 }
 
 }  // namespace
-
-void GpioChipCloser::operator()(gpiod_chip* chip) const {
-  gpiod_chip_close(chip);
-}
-
-GpioChipHandle open_gpio_chip(const std::string& device) {
-  return GpioChipHandle(gpiod_chip_open(device.c_str()));
-}
 
 GpioChipInfo info_of(gpiod_chip& chip) {
   const ChipInfo chip_info(gpiod_chip_get_info(&chip));

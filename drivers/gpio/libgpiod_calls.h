@@ -1,8 +1,9 @@
-// The part of libgpiod that differs between its versions: libgpiod_1.cpp or libgpiod_2.cpp is
-// built.
+// What is asked of libgpiod. Most of it differs between the versions: libgpiod_1.cpp or
+// libgpiod_2.cpp is built.
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "drivers/gpio/line_lookup.h"
 
@@ -18,8 +19,10 @@ struct GpioChipCloser {
 };
 using GpioChipHandle = std::unique_ptr<gpiod_chip, GpioChipCloser>;
 
-/// Null, with errno, where `device` cannot be opened.
-GpioChipHandle open_gpio_chip(const std::string& device);
+/// libgpiod's names are null where there is none.
+inline std::string text_or_empty(const char* text) {
+  return text == nullptr ? "" : text;
+}
 
 GpioChipInfo info_of(gpiod_chip& chip);
 

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include <gpiod.h>
+
 #include "drivers/gpio/libgpiod_calls.h"
 
 namespace bevloc::drivers {
@@ -22,6 +24,11 @@ struct FoundLine {
   unsigned line = 0;
 };
 
+/// Null, with errno, where `device` cannot be opened.
+GpioChipHandle open_chip(const std::string& device) {
+  return GpioChipHandle(gpiod_chip_open(device.c_str()));
+}
+
 /// /dev/gpiochip0, /dev/gpiochip1 and so on, in a settled order.
 std::vector<std::string> chip_devices() {
   std::vector<std::string> devices;
@@ -38,7 +45,7 @@ std::vector<std::string> chip_devices() {
 Chips open_chips() {
   Chips chips;
   for (const std::string& device : chip_devices()) {
-    GpioChipHandle chip = open_gpio_chip(device);
+    GpioChipHandle chip = open_chip(device);
     if (!chip) {
       chips.closed += fmt::format("; {} cannot be opened: {}", device, std::strerror(errno));
       continue;
@@ -57,6 +64,10 @@ Result<FoundLine> find(const LineAddress& address) {
 }
 
 }  // namespace
+
+void GpioChipCloser::operator()(gpiod_chip* chip) const {
+  gpiod_chip_close(chip);
+}
 
 Result<std::unique_ptr<OutputLine>> LibgpiodGpio::open_output(const LineAddress& address,
                                                               bool active) {

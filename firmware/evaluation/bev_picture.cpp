@@ -1,21 +1,19 @@
 #include "firmware/evaluation/bev_picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 
+#include "firmware/drawing.h"
 #include "pipeline/solver/standardise.h"
 #include "sim/perception/mask_features.h"
 
 namespace bevloc::evaluation {
 namespace {
 
-const std::array<cv::Vec3d, kRasterChannels> kClassColors{
-    cv::Vec3d(225, 90, 10), {40, 160, 30}, {40, 40, 220}};
-const cv::Vec3d kShade(200, 200, 200);
+const cv::Scalar kShade(200, 200, 200);
 
 /// Colours a pixel as far as `share` says.
-void tint(cv::Vec3b& pixel, const cv::Vec3d& color, double share) {
+void tint(cv::Vec3b& pixel, const cv::Scalar& color, double share) {
   for (int c = 0; c < 3; ++c) {
     pixel[c] = cv::saturate_cast<uint8_t>(pixel[c] + share * (color[c] - pixel[c]));
   }
@@ -33,9 +31,10 @@ std::vector<float> compute_features(std::span<const Value> mask, int channels) {
 cv::Mat3b bev_picture(std::span<const float> planes, const BevGrid& grid) {
   cv::Mat3b picture(grid.rows, grid.cols, cv::Vec3b(255, 255, 255));
   for (int k = 0; k < kRasterChannels; ++k) {
+    const cv::Scalar color = class_color(static_cast<ElementClass>(k));
     for (int cell = 0; cell < grid.cells(); ++cell) {
       const double value = planes[static_cast<size_t>(k) * grid.cells() + cell];
-      tint(picture(cell), kClassColors[k], std::clamp(value, 0.0, 1.0));
+      tint(picture(cell), color, std::clamp(value, 0.0, 1.0));
     }
   }
   return picture;

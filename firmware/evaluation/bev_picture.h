@@ -12,8 +12,8 @@
 
 namespace bevloc::evaluation {
 
-/// The paper's colours on white, the front at the top: dividers blue, crossings green, boundaries
-/// red. `planes`: [ElementClass][row][column] of a grid, from 0 (empty) to 1.
+/// The classes' colours on white, the front at the top. `planes`: [ElementClass][row][column] of a
+/// grid, from 0 (empty) to 1.
 cv::Mat3b bev_picture(std::span<const float> planes, const BevGrid& grid);
 cv::Mat3b bev_picture(std::span<const uint8_t> raster);
 

@@ -1,9 +1,9 @@
 #include "firmware/evaluation/command_output.h"
 
-#include <fstream>
-
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include "common/files.h"
 
 namespace bevloc::evaluation {
 
@@ -16,11 +16,7 @@ void show_progress(int done, int all) {
 
 Status write_file(const std::string& text, const std::string& path) {
   if (path.empty()) return {};
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) return fail("{}: cannot be written", path);
-  return {};
+  return bevloc::write_file(path, text);
 }
 
 }  // namespace bevloc::evaluation

@@ -15,8 +15,6 @@
 namespace bevloc::evaluation {
 namespace {
 
-const cv::Scalar kTruth(40, 40, 220);
-
 struct ShownSolver {
   SolverKind kind;
   cv::Scalar color;

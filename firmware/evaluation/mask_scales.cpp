@@ -52,7 +52,7 @@ Result<std::vector<PerAxis>> MaskScales::likelihoods(
   SolverResult solution;
   std::vector<std::vector<Outcome>> outcomes(solvers.size());
   for (const TuningFrame& frame : frames_) {
-    input.take(frame.perceived, frame.raster);
+    input.take(frame.*mask_, frame.raster);
     for (size_t i = 0; i < solvers.size(); ++i) {
       solvers[i]->solve(input.bev(), input.map(), solution);
       outcomes[i].push_back(judge(solution, hypotheses, frame.correction));

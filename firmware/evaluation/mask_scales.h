@@ -12,16 +12,20 @@
 
 namespace bevloc::evaluation {
 
-/// What a network perceived in a frame that no evaluation looks at.
+/// A frame that no evaluation looks at. A mask that no solver reads is empty.
 struct TuningFrame {
-  std::vector<float> perceived;  ///< kRasterSize probabilities
+  std::vector<float> perceived;  ///< by a network, kRasterSize probabilities
+  std::vector<float> truth;      ///< what a network without errors would perceive
   std::vector<uint8_t> raster;   ///< the map at the prior pose
   Se2 correction;                ///< dT = T0^-1 T
 };
 
 class MaskScales {
  public:
-  explicit MaskScales(std::vector<TuningFrame> frames) : frames_(std::move(frames)) {}
+  using Mask = std::vector<float> TuningFrame::*;
+
+  /// Of solvers that read this mask of the frames, which must outlive it.
+  MaskScales(const std::vector<TuningFrame>& frames, Mask mask) : frames_(frames), mask_(mask) {}
 
   /// The scales with the least negative log-likelihood on the frames, found with steps of 0.2 for
   /// all steps. Found once for each solver and size. Fails as make_solver() does.
@@ -32,7 +36,8 @@ class MaskScales {
   Result<std::vector<PerAxis>> likelihoods(const SolverCase& solver_case,
                                            const std::vector<SolverParameters>& candidates) const;
 
-  std::vector<TuningFrame> frames_;
+  const std::vector<TuningFrame>& frames_;
+  const Mask mask_;
   std::vector<std::pair<SolverCase, SolverParameters>> found_;
 };
 

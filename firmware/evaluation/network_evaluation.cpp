@@ -36,6 +36,10 @@ void for_each_sample(const sim::SampleStream& stream, int frames,
   }
 }
 
+bool reads(const std::vector<ReadOutCase>& cases, SolverInput input) {
+  return std::ranges::find(cases, input, &ReadOutCase::input) != cases.end();
+}
+
 }  // namespace
 
 Result<NetworkEvaluation> NetworkEvaluation::create(const std::string& model, ReadOutRows rows,
@@ -51,13 +55,9 @@ Result<NetworkEvaluation> NetworkEvaluation::create(const std::string& model, Re
 }
 
 Status NetworkEvaluation::add_solvers(const std::vector<ReadOutCase>& cases, int tuning_frames) {
-  const auto scales_for = [&](SolverInput input) {
-    const bool needed = std::ranges::find(cases, input, &ReadOutCase::input) != cases.end();
-    return MaskScales(needed ? look_at_tuning_frames(tuning_frames, input)
-                             : std::vector<TuningFrame>());
-  };
-  MaskScales mask_scales = scales_for(SolverInput::kMasks);
-  MaskScales true_mask_scales = scales_for(SolverInput::kTrueMasks);
+  const std::vector<TuningFrame> frames = look_at_tuning_frames(cases, tuning_frames);
+  MaskScales mask_scales(frames, &TuningFrame::perceived);
+  MaskScales true_mask_scales(frames, &TuningFrame::truth);
   for (const ReadOutCase& read_out : cases) {
     const SolverCase& c = read_out.solver_case;
     Result<SolverParameters> parameters = network_->solver_parameters();
@@ -85,20 +85,22 @@ void NetworkEvaluation::add_baselines() {
       {"ipm", std::make_unique<InversePerspectiveMapping>(sim::told_network_rig(), kHypotheses)});
 }
 
-std::vector<TuningFrame> NetworkEvaluation::look_at_tuning_frames(int frames, SolverInput input) {
+std::vector<TuningFrame> NetworkEvaluation::look_at_tuning_frames(
+    const std::vector<ReadOutCase>& cases, int frames) {
+  const bool needs_perceived = reads(cases, SolverInput::kMasks);
+  const bool needs_truth = reads(cases, SolverInput::kTrueMasks);
+  if (!needs_perceived && !needs_truth) return {};
   sim::SampleStream stream;
   stream.first_seed = sim::kTuningSeedBase;
   stream.nuisances = sim::nuisances_of(sim::NuisanceSet::kStandard);
   std::vector<TuningFrame> seen;
   for_each_sample(stream, frames, [&](const sim::Sample& sample) {
-    if (input == SolverInput::kTrueMasks) {
-      take_truth(sample);
-      seen.push_back({truth_, sample.raster_prior, sample.correction});
-    } else {
+    if (needs_perceived) {
       perceive(sample);
       take_probabilities();
-      seen.push_back({perceived_, sample.raster_prior, sample.correction});
     }
+    if (needs_truth) take_truth(sample);
+    seen.push_back({perceived_, truth_, sample.raster_prior, sample.correction});
   });
   return seen;
 }

@@ -77,7 +77,8 @@ class NetworkEvaluation {
   explicit NetworkEvaluation(std::unique_ptr<Network> network) : network_(std::move(network)) {}
   Status add_solvers(const std::vector<ReadOutCase>& cases, int tuning_frames);
   void add_baselines();
-  std::vector<TuningFrame> look_at_tuning_frames(int frames, SolverInput input);
+  /// With the masks that the cases read; none where they read no mask.
+  std::vector<TuningFrame> look_at_tuning_frames(const std::vector<ReadOutCase>& cases, int frames);
   std::vector<ReadOut> empty_read_outs() const;
   void perceive(const sim::Sample& sample);
   void take_probabilities();

@@ -9,7 +9,6 @@
 namespace bevloc::evaluation {
 namespace {
 
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kNumberScale = 0.5;
 /// Digits of a pixel's fraction, as OpenCV counts them.
 constexpr int kShift = 4;
@@ -37,15 +36,8 @@ std::vector<double> multiples(double step, const Interval& interval) {
 
 }  // namespace
 
-void write_text(cv::Mat& sheet, const std::string& text, cv::Point left, double scale,
-                const cv::Scalar& color) {
-  cv::putText(sheet, text, left, kFont, scale, color, 1, cv::LINE_AA);
-}
-
 void write_centered(cv::Mat& sheet, const std::string& text, cv::Point middle, double scale) {
-  int base_line = 0;
-  const cv::Size size = cv::getTextSize(text, kFont, scale, 1, &base_line);
-  write_text(sheet, text, middle - cv::Point(size.width / 2, 0), scale);
+  write_text(sheet, text, middle - cv::Point(text_width(text, scale) / 2, 0), scale);
 }
 
 cv::Point write_legend(cv::Mat& sheet, const std::string& text, cv::Point left,
@@ -56,9 +48,7 @@ cv::Point write_legend(cv::Mat& sheet, const std::string& text, cv::Point left,
   const cv::Point middle = left - cv::Point(0, 6);
   cv::line(sheet, middle, middle + cv::Point(kLinePx, 0), color, 3, cv::LINE_AA);
   write_text(sheet, text, left + cv::Point(kLinePx + kGapPx, 0), kScale);
-  int base_line = 0;
-  const int width = cv::getTextSize(text, kFont, kScale, 1, &base_line).width;
-  return left + cv::Point(kLinePx + width + 4 * kGapPx, 0);
+  return left + cv::Point(kLinePx + text_width(text, kScale) + 4 * kGapPx, 0);
 }
 
 void put_picture(cv::Mat& sheet, const cv::Mat& picture, const cv::Rect& place, int interpolation) {
@@ -124,8 +114,7 @@ void Plot::mark_y(double step, const Interval& range) {
     const cv::Point foot(place_.x, pixel({x_.from, y}).y);
     cv::line(sheet_, foot, foot - cv::Point(kTickPx, 0), kInk, 1);
     const std::string text = number(y, step);
-    int base_line = 0;
-    const int width = cv::getTextSize(text, kFont, kNumberScale, 1, &base_line).width;
+    const int width = text_width(text, kNumberScale);
     write_text(sheet_, text, foot + cv::Point(-kTickPx - 3 - width, 5), kNumberScale);
   }
 }

@@ -8,11 +8,10 @@
 #include <opencv2/core.hpp>
 
 #include "common/result.h"
+#include "firmware/drawing.h"
 
 namespace bevloc::evaluation {
 
-inline const cv::Scalar kPaper(255, 255, 255);
-inline const cv::Scalar kInk(40, 40, 40);
 inline const cv::Scalar kGrid(225, 225, 225);
 inline const cv::Scalar kGreen(60, 150, 50);
 inline const cv::Scalar kOrange(10, 125, 240);
@@ -24,10 +23,7 @@ struct Interval {
   double to = 1.0;
 };
 
-/// Text of one line; `left` is where it begins, on its base line.
-void write_text(cv::Mat& sheet, const std::string& text, cv::Point left, double scale = 0.6,
-                const cv::Scalar& color = kInk);
-/// The same, centred on a point of the base line.
+/// write_text(), centred on a point of the base line.
 void write_centered(cv::Mat& sheet, const std::string& text, cv::Point middle, double scale = 0.6);
 
 /// A line in a colour and what it means. Returns where the next one can begin.

@@ -1,10 +1,10 @@
 #include "firmware/evaluation/solver_evaluation.h"
 
 #include <cassert>
-#include <ctime>
 #include <memory>
 
 #include "common/heap_use.h"
+#include "common/kernel_time.h"
 #include "firmware/evaluation/mask_input.h"
 #include "sim/perception/matching_scene.h"
 
@@ -13,9 +13,7 @@ namespace {
 
 /// Time that this thread has had of a processor: another program beside it does not count.
 double processor_time_ms() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+  return 1e3 * to_seconds(read_clock(CLOCK_THREAD_CPUTIME_ID));
 }
 
 /// A solver with what it reads.

@@ -1,8 +1,8 @@
 #include "firmware/simulation/drive_report.h"
 
-#include <fstream>
-
 #include <nlohmann/json.hpp>
+
+#include "common/files.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -73,15 +73,7 @@ Status write_csv(const DriveReport& report, const std::string& path) {
         fmt::format("{:.3f},{}{}{}{}\n", judged.time_s, to_string(judged.state),
                     pose_text(judged.truth), pose_text(judged.prior), pose_text(judged.estimate));
   }
-  return write_text(text, path);
-}
-
-Status write_text(const std::string& text, const std::string& path) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) return fail("{}: cannot be written", path);
-  return {};
+  return write_file(path, text);
 }
 
 }  // namespace bevloc::firmware

@@ -39,7 +39,4 @@ std::string to_json(const DriveReport& report);
 /// One line per judged moment: time, state, truth, prior, estimate.
 Status write_csv(const DriveReport& report, const std::string& path);
 
-/// Writes text to a file, or says why it cannot.
-Status write_text(const std::string& text, const std::string& path);
-
 }  // namespace bevloc::firmware

@@ -5,6 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "firmware/drawing.h"
+
 namespace bevloc::firmware {
 namespace {
 
@@ -41,18 +43,6 @@ void draw_segment(const CameraModel& camera, const Se3& camera_from_vehicle,
 }
 
 }  // namespace
-
-cv::Scalar class_color(ElementClass element_class) {
-  switch (element_class) {
-    case ElementClass::kLaneDivider:
-      return {255, 80, 0};
-    case ElementClass::kPedestrianCrossing:
-      return {0, 200, 0};
-    case ElementClass::kRoadBoundary:
-      return {0, 0, 255};
-  }
-  return {0, 0, 0};
-}
 
 void draw_map_over_image(const MapIndex& map, const Se2& map_from_vehicle,
                          const CameraModel& camera, cv::Mat& image) {

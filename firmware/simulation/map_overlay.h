@@ -9,11 +9,8 @@
 
 namespace bevloc::firmware {
 
-/// The paper's colours, in OpenCV's BGR: dividers blue, crossings green, boundaries red.
-cv::Scalar class_color(ElementClass element_class);
-
-/// Projects the map's lines within 40 m through the camera (distortion included) into its own
-/// full-size BGR image, as they would appear from the given pose.
+/// Projects the map's lines within 40 m, in their classes' colours, through the camera (distortion
+/// included) into its own full-size BGR image, as they would appear from the given pose.
 void draw_map_over_image(const MapIndex& map, const Se2& map_from_vehicle,
                          const CameraModel& camera, cv::Mat& image);
 

@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "firmware/drawing.h"
 #include "firmware/simulation/error_statistics.h"
 #include "firmware/simulation/map_overlay.h"
 #include "pipeline/map/rasterizer.h"
@@ -24,14 +25,7 @@ constexpr int kBevHeightPx = 400;
 constexpr int kBevWidthPx = 800;
 constexpr int kSheetHeightPx = kBlockHeightPx + kBevHeightPx + 2 * kCaptionPx + 3 * kMarginPx;
 
-const cv::Scalar kBackground(255, 255, 255);
-const cv::Scalar kInk(40, 40, 40);
 const cv::Scalar kBar(190, 120, 40);
-const cv::Scalar kMark(40, 40, 220);
-
-void write_text(cv::Mat& sheet, const std::string& text, cv::Point position, double scale = 0.6) {
-  cv::putText(sheet, text, position, cv::FONT_HERSHEY_SIMPLEX, scale, kInk, 1, cv::LINE_AA);
-}
 
 std::string describe(const char* caption, const Se2& truth, const Se2& pose) {
   const Se2 error = pose_error(truth, pose);
@@ -62,7 +56,7 @@ void draw_images(cv::Mat& sheet, cv::Point corner, const SheetContent& content, 
 void draw_bev(cv::Mat& sheet, cv::Point corner, const SheetContent& content, const MapIndex& map) {
   std::vector<uint8_t> raster(kRasterSize);
   MapRasterizer(map).draw(content.corrected, raster);
-  cv::Mat bev(kRasterGrid.rows, kRasterGrid.cols, CV_8UC3, kBackground);
+  cv::Mat bev(kRasterGrid.rows, kRasterGrid.cols, CV_8UC3, kPaper);
   const size_t plane = static_cast<size_t>(kRasterGrid.cells());
   for (int channel = 0; channel < kRasterChannels; ++channel) {
     const cv::Scalar color = class_color(static_cast<ElementClass>(channel));
@@ -102,7 +96,7 @@ void draw_distribution(cv::Mat& sheet, cv::Rect place, const std::vector<float>&
   }
   const double step = 2.0 * range / (count - 1);
   const auto x = static_cast<int>(plot.x + ((truth + range) / step + 0.5) * bar_px);
-  if (x >= plot.x && x <= plot.br().x) cv::line(sheet, {x, plot.y}, {x, plot.br().y}, kMark, 2);
+  if (x >= plot.x && x <= plot.br().x) cv::line(sheet, {x, plot.y}, {x, plot.br().y}, kTruth, 2);
   cv::rectangle(sheet, plot, kInk, 1);
   write_text(sheet, fmt::format("{:.1f}", -range), {plot.x, place.br().y - 8}, 0.45);
   write_text(sheet, fmt::format("{:.1f}", range), {plot.br().x - 30, place.br().y - 8}, 0.45);
@@ -125,7 +119,7 @@ void draw_distributions(cv::Mat& sheet, cv::Rect place, const SheetContent& cont
 
 Status write_sheet(const SheetContent& content, const Rig& rig, const MapIndex& map,
                    const std::string& path) {
-  cv::Mat sheet(kSheetHeightPx, kSheetWidthPx, CV_8UC3, kBackground);
+  cv::Mat sheet(kSheetHeightPx, kSheetWidthPx, CV_8UC3, kPaper);
   const cv::Point left(kMarginPx, kMarginPx + kCaptionPx);
   const cv::Point right(2 * kMarginPx + kBlockWidthPx, left.y);
   write_text(sheet,

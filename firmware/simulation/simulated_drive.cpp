@@ -1,9 +1,8 @@
 #include "firmware/simulation/simulated_drive.h"
 
 #include "drivers/camera/true_rig.h"
-#include "pipeline/map/map_loader.h"
+#include "firmware/simulation/configured_world.h"
 #include "sim/random.h"
-#include "sim/world/world_generator.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -68,17 +67,9 @@ void SimulatedVehicle::send_gnss(Time now) {
 
 Result<SimulatedDrive> SimulatedDrive::create(const Config& config) {
   const SimulationConfig& simulation = *config.simulation;
-  if (config.map.procedural_seed) {
-    auto world = std::make_shared<sim::World>(sim::generate_world(*config.map.procedural_seed));
-    return SimulatedDrive(std::move(world), simulation);
-  }
-  auto map = load_map(config.map.file);
-  if (!map) return tl::unexpected(map.error());
-  if (map->lanes.empty()) {
-    return fail("{}: found no lanes, wanted some to drive on", config.map.file.string());
-  }
-  auto world = std::make_shared<sim::World>(sim::world_from_map(*map, simulation.seed));
-  return SimulatedDrive(std::move(world), simulation);
+  auto world = make_configured_world(config.map, simulation.seed);
+  if (!world) return tl::unexpected(world.error());
+  return SimulatedDrive(std::make_shared<const sim::World>(std::move(*world)), simulation);
 }
 
 SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,

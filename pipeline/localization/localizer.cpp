@@ -46,24 +46,28 @@ Localizer::Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Networ
   for (const CameraModel& camera : rig.cameras) preprocessors_.emplace_back(camera);
 }
 
-Status Localizer::localize(const CameraImages& seen, const Se2& prior, SearchRange range,
-                           SolverResult& result) {
-  look_from(seen.present, seen.reference_from_exposure);
-  const std::span<int8_t> input = network_->image_input();
-  for (int camera = 0; camera < kCameraCount; ++camera) {
-    const auto planes = input.subspan(camera * kNetworkImageSize, kNetworkImageSize);
-    if (!seen.present[camera]) {
-      std::fill(planes.begin(), planes.end(), kNetworkBlack);
-    } else if (Status status = preprocessors_[camera].run(seen.images[camera], planes); !status) {
-      return status;
-    }
-  }
+CameraMask Localizer::localize(const CameraImages& seen, const Se2& prior, SearchRange range,
+                               SolverResult& result) {
+  const CameraMask readable = take_in(seen);
+  look_from(readable, seen.reference_from_exposure);
   network_->run_image_branch();
   rasterizer_.draw(prior, network_->raster_input());
   network_->run_map_branch();
   solvers_[static_cast<size_t>(range)]->solve(network_->bev_features(), network_->map_features(),
                                               result);
-  return {};
+  return readable;
+}
+
+CameraMask Localizer::take_in(const CameraImages& seen) {
+  const std::span<int8_t> input = network_->image_input();
+  CameraMask readable;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const auto planes = input.subspan(camera * kNetworkImageSize, kNetworkImageSize);
+    readable[camera] =
+        seen.present[camera] && preprocessors_[camera].run(seen.images[camera], planes).has_value();
+    if (!readable[camera]) std::ranges::fill(planes, kNetworkBlack);
+  }
+  return readable;
 }
 
 void Localizer::look_from(CameraMask present, const CameraMotions& reference_from_exposure) {

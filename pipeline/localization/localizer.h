@@ -49,12 +49,13 @@ class Localizer {
                                                    const LocalizerOptions& options);
 
   /// `prior` is T0, the predicted map_from_vehicle at the reference time, for which the correction
-  /// holds. Fails for an image whose size is not the calibration's.
+  /// holds. Returns the cameras that were seen: one whose image is not of the calibration's size,
+  /// or is a damaged JPEG, counts as missing.
   ///
   /// The view table is made anew when the set of cameras changes, or when a camera's motion differs
   /// by more than 1 cm or 0.02 degrees (1 cm at 30 m) from the one that the table was made for.
-  Status localize(const CameraImages& seen, const Se2& prior, SearchRange range,
-                  SolverResult& result);
+  CameraMask localize(const CameraImages& seen, const Se2& prior, SearchRange range,
+                      SolverResult& result);
 
   /// The map as drawn in the latest localize(), kRasterSize bytes.
   std::span<const uint8_t> map_raster() const { return network_->raster_input(); }
@@ -72,6 +73,8 @@ class Localizer {
  private:
   Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Network> network,
             const LocalizerOptions& options);
+  /// Fills the network's image input; returns the cameras whose images could be read.
+  CameraMask take_in(const CameraImages& seen);
   void look_from(CameraMask present, const CameraMotions& reference_from_exposure);
 
   Rig network_rig_;

@@ -5,21 +5,10 @@
 #include <limits>
 #include <numeric>
 
+#include "common/plane.h"
+
 namespace bevloc {
 namespace {
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-double distance_to_segment(const Eigen::Vector2d& point, const Eigen::Vector2d& from,
-                           const Eigen::Vector2d& to) {
-  const Eigen::Vector2d direction = to - from;
-  const double length_squared = direction.squaredNorm();
-  if (length_squared == 0.0) return (point - from).norm();
-  const double along = std::clamp((point - from).dot(direction) / length_squared, 0.0, 1.0);
-  return (point - from - along * direction).norm();
-}
 
 std::vector<double> arc_lengths(const Polyline& line) {
   std::vector<double> lengths(line.size(), 0.0);

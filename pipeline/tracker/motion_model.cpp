@@ -54,15 +54,12 @@ void predict(const MeasuredMotion& motion, double duration_s, const MotionNoise&
              FilterState& state) {
   assert(duration_s >= 0.0);
   const double speed_mps = state.speed_mps(motion);
-  const double distance_m = speed_mps * duration_s;
-  const double turn_rad = state.yaw_rate_radps(motion) * duration_s;
-  // The chord of the arc, to second order in the turn.
-  const Se2 step{distance_m * std::cos(0.5 * turn_rad), distance_m * std::sin(0.5 * turn_rad),
-                 turn_rad};
+  const double distance_m = std::abs(speed_mps) * duration_s;
+  const Se2 step = arc_motion(speed_mps, state.yaw_rate_radps(motion), duration_s);
   const FilterState::Covariance f = transition(motion, speed_mps, duration_s, step);
   const FilterState::Covariance moved = f * state.covariance * f.transpose();
   state.covariance = 0.5 * (moved + moved.transpose());
-  state.covariance.diagonal() += process_variance(std::abs(distance_m), duration_s, noise);
+  state.covariance.diagonal() += process_variance(distance_m, duration_s, noise);
   state.map_from_vehicle = state.map_from_vehicle * step;
 }
 

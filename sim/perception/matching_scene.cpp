@@ -20,15 +20,6 @@ constexpr size_t kPlacesPerTown = 2;
 constexpr uint64_t kMostTownsPerGroup = 1024;
 constexpr int kCandidatesPerTown = 200;
 
-// Two scenes of a town are at least this far apart, or turned this much.
-constexpr double kApart_m = 15.0;
-constexpr double kApart_rad = radians(60.0);
-
-bool is_apart(const Se2& a, const Se2& b) {
-  return (a.translation() - b.translation()).norm() > kApart_m ||
-         std::abs(wrap_angle(a.yaw_rad - b.yaw_rad)) > kApart_rad;
-}
-
 /// Every other town's map is surveyed dash by dash.
 bool is_surveyed(uint64_t seed) {
   return seed % 2 == 1;
@@ -92,10 +83,7 @@ void SceneSampler::collect_places(const Town& town, PlacesByKind& places) {
     if (!kind) continue;
     const auto k = static_cast<size_t>(*kind);
     const bool wanted = taken[k] < kPlacesPerTown && places[k].size() < kPlacesPerKind;
-    if (!wanted || !std::all_of(poses.begin(), poses.end(),
-                                [&pose](const Se2& other) { return is_apart(pose, other); })) {
-      continue;
-    }
+    if (!wanted || !is_apart(pose, poses)) continue;
     ++taken[k];
     poses.push_back(pose);
     places[k].push_back({&town, pose});

@@ -1,7 +1,5 @@
 #include "sim/samples/passage.h"
 
-#include <cmath>
-
 namespace bevloc::sim {
 namespace {
 
@@ -31,17 +29,12 @@ double Passage::next_offset_s() {
 }
 
 Se2 Passage::true_motion(double offset_s) const {
-  return arc(true_rates_, offset_s);
+  return arc_motion(true_rates_.speed_mps, true_rates_.yaw_rate_radps, offset_s);
 }
 
 Se2 Passage::known_motion(double offset_s) const {
-  return desynchronisation_.compensated ? arc(known_rates_, offset_s) : Se2{};
-}
-
-Se2 Passage::arc(const Rates& rates, double duration_s) {
-  const double way_m = rates.speed_mps * duration_s;
-  const double turn_rad = rates.yaw_rate_radps * duration_s;
-  return {way_m * std::cos(0.5 * turn_rad), way_m * std::sin(0.5 * turn_rad), turn_rad};
+  if (!desynchronisation_.compensated) return {};
+  return arc_motion(known_rates_.speed_mps, known_rates_.yaw_rate_radps, offset_s);
 }
 
 }  // namespace bevloc::sim

@@ -28,7 +28,6 @@ class Passage {
     double speed_mps = 0.0;
     double yaw_rate_radps = 0.0;
   };
-  static Se2 arc(const Rates& rates, double duration_s);
 
   Desynchronisation desynchronisation_;
   Random random_;

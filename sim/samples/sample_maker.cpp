@@ -25,18 +25,11 @@ constexpr double kMaxYawRad = radians(2.0);
 // Traffic repeats nowhere near this soon.
 constexpr double kTrafficTimeS = 600.0;
 
-// Two samples of a world are at least this far apart, or turned this much, if the world has room.
-constexpr double kApartM = 15.0;
-constexpr double kApartRad = radians(60.0);
+// To find a pose apart from a world's other ones, if the world has room.
 constexpr int kPoseTries = 20;
 
 uint64_t sample_seed(const SampleStream& stream, uint64_t sample) {
   return mix_seed(seed_for(stream.first_seed, "sample") + sample);
-}
-
-bool is_apart(const Se2& a, const Se2& b) {
-  return (a.translation() - b.translation()).norm() > kApartM ||
-         std::abs(wrap_angle(a.yaw_rad - b.yaw_rad)) > kApartRad;
 }
 
 /// The poses of all samples of a world. All are drawn even when a stream resumes in the middle,
@@ -48,10 +41,7 @@ std::vector<Se2> poses_in(const World& world, uint64_t world_seed) {
     Se2 pose;
     for (int attempt = 0; attempt < kPoseTries; ++attempt) {
       pose = random_pose_on_road(world, random);
-      if (std::all_of(poses.begin(), poses.end(),
-                      [&pose](const Se2& other) { return is_apart(pose, other); })) {
-        break;
-      }
+      if (is_apart(pose, poses)) break;
     }
     poses.push_back(pose);
   }

@@ -13,13 +13,8 @@ constexpr double kSurroundings_m = 30.0;
 constexpr int kWantedElements = 2;
 constexpr int kAttempts = 30;
 
-double distance_to_segment(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
-                           const Eigen::Vector2d& b) {
-  const Eigen::Vector2d edge = b - a;
-  const double length2 = edge.squaredNorm();
-  const double t = length2 > 0.0 ? std::clamp((point - a).dot(edge) / length2, 0.0, 1.0) : 0.0;
-  return (point - a - t * edge).norm();
-}
+constexpr double kApart_m = 15.0;
+constexpr double kApart_rad = radians(60.0);
 
 bool is_near(const MapElement& element, const Eigen::Vector2d& point) {
   for (size_t i = 1; i < element.points.size(); ++i) {
@@ -74,6 +69,13 @@ Se2 random_pose_on_road(const World& world, Random& random) {
     if (has_surroundings(world.map, pose.translation())) break;
   }
   return pose;
+}
+
+bool is_apart(const Se2& pose, std::span<const Se2> others) {
+  return std::ranges::all_of(others, [&pose](const Se2& other) {
+    return (pose.translation() - other.translation()).norm() > kApart_m ||
+           std::abs(wrap_angle(pose.yaw_rad - other.yaw_rad)) > kApart_rad;
+  });
 }
 
 }  // namespace bevloc::sim

@@ -3,14 +3,10 @@
 
 #include <functional>
 
+#include "common/plane.h"
 #include "sim/world/world.h"
 
 namespace bevloc::sim {
-
-/// Cross product of two plane vectors: positive if b points left of a.
-inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 /// The vector turned a quarter turn to the left.
 inline Eigen::Vector2d left_of(const Eigen::Vector2d& v) {

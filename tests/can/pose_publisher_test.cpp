@@ -12,6 +12,7 @@
 
 #include "can/mock_bus.h"
 #include "tests/can/dbc_parser.h"
+#include "tests/can/tracking_report.h"
 
 namespace bevloc::can {
 namespace {
@@ -19,27 +20,11 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using test::tracking_report;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr GeodeticPosition kOrigin{49.0069, 8.4037};
 const Time kNow(seconds(5000));
-
-PoseReport tracking_report(Time now) {
-  PoseReport report;
-  report.status = {.state = LocalizerState::kTracking,
-                   .camera_ok_mask = 0b101101,
-                   .odometry_ok = true,
-                   .map_ok = true,
-                   .map_id = 0xBEEF};
-  report.capture_time = now - milliseconds(83);
-  report.pose_time = now;
-  report.map_from_vehicle = {123.456, -78.9, radians(30.0)};
-  report.covariance = Eigen::Vector3d(0.04, 0.01, 1e-4).asDiagonal();
-  report.forward_speed_mps = 13.37;
-  report.yaw_rate_radps = radians(-4.2);
-  report.correction = Se2{0.4321, -0.123, radians(0.57)};
-  return report;
-}
 
 /// Reads the bus as a consumer does, by the DBC file alone.
 class PosePublisherTest : public testing::Test {
@@ -173,6 +158,17 @@ TEST_F(PosePublisherTest, StatusGoesOutOnItsCycleAndOnChange) {
     EXPECT_EQ(frames_.size(), frames_.contains("LOC_Status") ? 9u : 8u);
   }
   EXPECT_EQ(cycles_with_status, (std::vector<int>{0, 10, 14, 24}));
+}
+
+TEST_F(PosePublisherTest, StatusKeepsItsCycleWhenCallsAreEarlyAndLate) {
+  std::vector<int> cycles_with_status;
+  for (int cycle = 0; cycle <= 40; ++cycle) {
+    const milliseconds late(cycle % 20 == 0 ? 2 : -2);
+    const Time now = kNow + milliseconds(10 * cycle) + late;
+    publish(tracking_report(now), now);
+    if (frames_.contains("LOC_Status")) cycles_with_status.push_back(cycle);
+  }
+  EXPECT_EQ(cycles_with_status, (std::vector<int>{0, 10, 20, 30, 40}));
 }
 
 TEST_F(PosePublisherTest, AStatusThatFoundNoRoomIsTriedAgain) {

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "can/socketcan_bus.h"
-#include "can/steady_clock.h"
+#include "common/kernel_time.h"
 #include "tests/can/bus_under_test.h"
 
 namespace bevloc::can {

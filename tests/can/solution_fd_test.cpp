@@ -8,6 +8,7 @@
 #include "can/mock_bus.h"
 #include "can/pose_publisher.h"
 #include "tests/can/dbc_parser.h"
+#include "tests/can/tracking_report.h"
 
 namespace bevloc::can {
 namespace {
@@ -16,21 +17,10 @@ using std::chrono::milliseconds;
 
 const Time kNow(milliseconds(5000));
 
+/// With a reason, which LOC_Status has to carry.
 PoseReport tracking_report() {
-  PoseReport report;
-  report.status = {.state = LocalizerState::kTracking,
-                   .why = Why::kGnssMissing,
-                   .camera_ok_mask = 0b101101,
-                   .odometry_ok = true,
-                   .map_ok = true,
-                   .map_id = 0xBEEF};
-  report.capture_time = kNow - milliseconds(83);
-  report.pose_time = kNow;
-  report.map_from_vehicle = {123.456, -78.9, radians(30.0)};
-  report.covariance = Eigen::Vector3d(0.04, 0.01, 1e-4).asDiagonal();
-  report.forward_speed_mps = 13.37;
-  report.yaw_rate_radps = radians(-4.2);
-  report.correction = Se2{0.4321, -0.123, radians(0.57)};
+  PoseReport report = test::tracking_report(kNow);
+  report.status.why = Why::kGnssMissing;
   return report;
 }
 

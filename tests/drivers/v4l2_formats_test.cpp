@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/camera/jpeg_file.h"
 #include "drivers/camera/v4l2/controls.h"
 #include "drivers/camera/v4l2/pixel_formats.h"
+#include "drivers/camera/whole_picture.h"
 
 namespace bevloc::drivers::v4l2 {
 namespace {
@@ -42,13 +42,29 @@ TEST(V4l2Formats, TheChromaOfNv12FollowsItsPaddedLuma) {
   EXPECT_EQ(view.planes[0].stride_bytes, 64);
   EXPECT_EQ(view.planes[1].data - view.planes[0].data, 64 * 40);
   EXPECT_EQ(view.planes[1].stride_bytes, 64);
-  EXPECT_EQ(picture_bytes(PixelFormat::kNv12, pixels), 64U * 60U);
+  EXPECT_EQ(picture_bytes(view), 64U * 60U);
 }
 
 TEST(V4l2Controls, AreNamedAsV4l2CtlDoes) {
   EXPECT_EQ(control_word("Exposure Time, Absolute"), "exposure_time_absolute");
   EXPECT_EQ(control_word("White Balance, Automatic "), "white_balance_automatic");
   EXPECT_EQ(control_word("Gain"), "gain");
+}
+
+TEST(WholePicture, HasTheChromaOfNv12Too) {
+  ImageView view;
+  view.format = PixelFormat::kNv12;
+  view.height = 40;
+  view.planes[0].stride_bytes = 64;
+  view.bytes_used = 64 * 40;
+  EXPECT_FALSE(is_whole(view)) << "luma alone";
+  view.bytes_used = 64 * 60;
+  EXPECT_TRUE(is_whole(view));
+  view.format = PixelFormat::kYuyv;
+  view.bytes_used = 64 * 40 - 1;
+  EXPECT_FALSE(is_whole(view));
+  view.bytes_used = 64 * 40;
+  EXPECT_TRUE(is_whole(view));
 }
 
 TEST(JpegFile, IsWholeFromMarkerToMarker) {

@@ -159,9 +159,9 @@ TEST(MaskScalesTest, AreFoundOnceAndSuitTheFrames) {
   std::vector<TuningFrame> frames;
   for (uint64_t i = 0; i < 6; ++i) {
     sampler.make(i, sim::CorruptionLevel::kMild, scene);
-    frames.push_back({scene.perceived, scene.raster_prior, scene.correction});
+    frames.push_back({scene.perceived, {}, scene.raster_prior, scene.correction});
   }
-  MaskScales scales(std::move(frames));
+  MaskScales scales(frames, &TuningFrame::perceived);
   SolverCase banded{.solver = SolverKind::kBandedRefined, .channels = 4};
   const auto found = scales.parameters_for(banded);
   ASSERT_TRUE(found) << found.error().message;

@@ -9,6 +9,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
+/// Lends pictures that stay where they are.
+class Lender final : public drivers::FrameLender {
+  void give_back(int) noexcept override {}
+};
+
 /// Frames without pictures: nothing says yet where the vehicle is, so none is looked at.
 class VisionStageTest : public testing::Test {
  protected:
@@ -166,6 +171,81 @@ TEST_F(VisionStageTest, MatchesNothingWhenTheMotionToALaterFrameIsNotKnown) {
   const auto report = step();
   ASSERT_TRUE(report);
   EXPECT_FALSE(report->had_prior);
+}
+
+/// Frames with a picture each, of which one may be what is no JPEG between its two markers.
+class VisionStagePictureTest : public VisionStageTest {
+ protected:
+  static constexpr int kDamagedCamera = 4;
+
+  void SetUp() override {
+    VisionStageTest::SetUp();
+    const Intrinsics lens = sim::nominal_rig().cameras[0].intrinsics;
+    rgb_.resize(3 * static_cast<size_t>(lens.width_px) * static_cast<size_t>(lens.height_px));
+    for (size_t i = 0; i < rgb_.size(); ++i) rgb_[i] = static_cast<uint8_t>(i / 1000);
+    picture_ = RgbView{rgb_.data(), lens.width_px, lens.height_px, 3 * lens.width_px};
+    damaged_ = picture_;
+    damaged_.format = PixelFormat::kMjpeg;
+    damaged_.planes[0] = {jpeg_.data(), 0};
+    damaged_.bytes_used = jpeg_.size();
+    Prediction prediction;
+    prediction.pose.time = Time(milliseconds(850));
+    predictions_.push(prediction);
+  }
+
+  void push_pictures(Time time, bool with_damaged) {
+    for (int camera = 0; camera < kCameraCount; ++camera) {
+      if (camera == kDamagedCamera && !with_damaged) continue;
+      drivers::Frame frame;
+      frame.camera = camera;
+      frame.time = time;
+      frame.buffer = {lender_, 0, camera == kDamagedCamera ? damaged_ : picture_};
+      frames_.push(std::move(frame));
+    }
+  }
+
+  const std::shared_ptr<Lender> lender_ = std::make_shared<Lender>();
+  std::vector<uint8_t> rgb_;
+  const std::vector<uint8_t> jpeg_{0xFF, 0xD8, 1, 2, 3, 4, 0xFF, 0xD9};
+  ImageView picture_;
+  ImageView damaged_;
+};
+
+TEST_F(VisionStagePictureTest, ACameraWithADamagedPictureIsMissingFromThatSetAlone) {
+  std::vector<std::vector<float>> masks;
+  stage_->observe([&](const VisionSnapshot& snapshot) {
+    const auto mask = snapshot.localizer.perceived_mask();
+    masks.emplace_back(mask.begin(), mask.end());
+  });
+  for (const bool with_damaged : {true, false}) {
+    push_pictures(Time(milliseconds(with_damaged ? 900 : 910)), with_damaged);
+    const auto report = step();
+    ASSERT_TRUE(report);
+    EXPECT_TRUE(report->had_prior);
+    EXPECT_EQ(report->present, CameraMask().set().reset(kDamagedCamera));
+  }
+  ASSERT_EQ(masks.size(), 2U);
+  EXPECT_EQ(masks[0], masks[1]);
+  EXPECT_EQ(stage_->counters().refused, 0U);
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    EXPECT_EQ(stage_->counters().unreadable[camera], camera == kDamagedCamera ? 1U : 0U);
+  }
+}
+
+TEST_F(VisionStagePictureTest, ASetWithTooFewReadablePicturesIsRefused) {
+  VisionConfig config;
+  config.synchronizer.min_cameras = kCameraCount;
+  stage_.emplace(*localizer_, config, frames_, predictions_, reports_);
+  bool observed = false;
+  stage_->observe([&](const VisionSnapshot&) { observed = true; });
+  push_pictures(Time(milliseconds(900)), true);
+  const auto report = step();
+  ASSERT_TRUE(report);
+  EXPECT_TRUE(report->had_prior);
+  EXPECT_EQ(report->correction.evidence, Evidence::kNone);
+  EXPECT_FALSE(observed);
+  EXPECT_EQ(stage_->counters().refused, 1U);
+  EXPECT_EQ(stage_->counters().unreadable[kDamagedCamera], 1U);
 }
 
 }  // namespace

@@ -352,14 +352,6 @@ class Costs(unittest.TestCase):
             cells = model_table.counted_cells(config, cost_of(config))
             self.assertIn(f"| {' | '.join(cells)} |", document)
 
-    def test_the_table_is_replaced_between_its_markers(self):
-        begin, end = model_table.BEGIN, model_table.END
-        self.assertEqual(
-            model_table.with_table(f"a\n{begin}old\n{end}z\n", "new\n"), f"a\n{begin}new\n{end}z\n"
-        )
-        with self.assertRaises(ValueError):
-            model_table.with_table(f"a\n{begin}old\n", "new\n")
-
 
 if __name__ == "__main__":
     unittest.main()

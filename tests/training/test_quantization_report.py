@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import tempfile
 import unittest
-from pathlib import Path
 
 import torch
 
@@ -13,12 +11,9 @@ from tests.training.synthetic import SyntheticStream
 from tests.training.untrained import untrained_network
 from training.layer_errors import LayerError, layer_errors
 from training.quantization_report import (
-    BEGIN,
-    END,
     SOLVERS,
     layer_table,
     pose_table,
-    write_between_marks,
 )
 from training.quantize import quantize
 
@@ -81,16 +76,6 @@ class Document(unittest.TestCase):
         rows = pose_table(exact, rounded).splitlines()
         self.assertEqual(rows[2], "| block, x (m) | 1.0000 | 1.5000 | +0.5000 ± 0.0000 |")
         self.assertEqual(len(rows), 8)
-
-    def test_only_what_lies_between_the_marks_changes(self):
-        with tempfile.TemporaryDirectory() as folder:
-            document = Path(folder) / "page.md"
-            document.write_text(f"before\n{BEGIN}old\n{END}after\n")
-            write_between_marks(document, "new\n")
-            self.assertEqual(document.read_text(), f"before\n{BEGIN}new\n{END}after\n")
-            document.write_text("no marks\n")
-            with self.assertRaisesRegex(ValueError, "page.md"):
-                write_between_marks(document, "new\n")
 
 
 if __name__ == "__main__":

@@ -4,25 +4,20 @@
 #include <cassert>
 #include <cerrno>
 #include <cstring>
-#include <string>
 #include <utility>
 
-#include <fmt/ranges.h>
 #include <sys/mman.h>
 
 #include "drivers/camera/dmabuf.h"
+#include "drivers/camera/libcamera/camera_ids.h"
 
 namespace bevloc::drivers::libcam {
 namespace {
 
-/// The camera's id, or what ids there are.
 Result<std::shared_ptr<libcamera::Camera>> find_camera(libcamera::CameraManager& manager,
                                                        const std::string& id) {
   if (auto camera = manager.get(id)) return camera;
-  std::vector<std::string> ids;
-  for (const auto& camera : manager.cameras()) ids.push_back(fmt::format("\"{}\"", camera->id()));
-  return fail("no camera is called \"{}\"; there is: {}", id,
-              ids.empty() ? "none" : fmt::format("{}", fmt::join(ids, ", ")));
+  return fail("{}", no_camera_called(id, ids_of(manager)));
 }
 
 }  // namespace

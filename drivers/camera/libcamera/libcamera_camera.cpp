@@ -1,13 +1,14 @@
 #include "drivers/camera/libcamera/libcamera_camera.h"
 
 #include <cstring>
-#include <ctime>
 #include <mutex>
 #include <utility>
 
-#include "drivers/camera/jpeg_file.h"
+#include "common/kernel_time.h"
+#include "drivers/camera/libcamera/camera_ids.h"
 #include "drivers/camera/libcamera/capture_session.h"
 #include "drivers/camera/libcamera/sensor_time.h"
+#include "drivers/camera/whole_picture.h"
 #include "pipeline/calibration/rig.h"
 
 namespace bevloc::drivers {
@@ -27,25 +28,16 @@ Result<std::shared_ptr<libcamera::CameraManager>> shared_manager() {
   return manager;
 }
 
-Duration clock_time(clockid_t clock) {
-  timespec time{};
-  clock_gettime(clock, &time);
-  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
-}
-
 /// How long this machine has been suspended.
 Duration time_slept() {
-  return clock_time(CLOCK_BOOTTIME) - clock_time(CLOCK_MONOTONIC);
+  return read_clock(CLOCK_BOOTTIME) - read_clock(CLOCK_MONOTONIC);
 }
 
 }  // namespace
 
 std::vector<std::string> libcamera_ids() {
-  std::vector<std::string> ids;
-  if (const auto manager = shared_manager()) {
-    for (const auto& camera : (*manager)->cameras()) ids.push_back(camera->id());
-  }
-  return ids;
+  const auto manager = shared_manager();
+  return manager ? libcam::ids_of(**manager) : std::vector<std::string>();
 }
 
 LibcameraCamera::LibcameraCamera(DeviceCameraConfig config, Clock& clock)
@@ -94,12 +86,8 @@ bool LibcameraCamera::take(int slot, Frame& frame) {
   const libcamera::FrameMetadata& metadata = session_->frame_metadata(slot);
   const uint64_t sequence = counter_.arrived(metadata.sequence);
   const auto timestamp_ns = session_->sensor_timestamp_ns(slot);
-  const ImageView view = session_->view(slot);
-  const bool is_whole = view.format == PixelFormat::kMjpeg
-                            ? is_whole_jpeg({view.planes[0].data, view.bytes_used})
-                            : view.bytes_used >= static_cast<size_t>(view.planes[0].stride_bytes) *
-                                                     static_cast<size_t>(view.height);
-  if (metadata.status != libcamera::FrameMetadata::FrameSuccess || !timestamp_ns || !is_whole) {
+  if (metadata.status != libcamera::FrameMetadata::FrameSuccess || !timestamp_ns ||
+      !is_whole(session_->view(slot))) {
     counter_.damaged();
     session_->requeue(slot);
     return false;

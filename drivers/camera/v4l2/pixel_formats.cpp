@@ -67,10 +67,4 @@ ImageView view_of(PixelFormat format, const v4l2_pix_format& pixels, const uint8
   return view;
 }
 
-size_t picture_bytes(PixelFormat format, const v4l2_pix_format& pixels) {
-  const size_t plane = static_cast<size_t>(pixels.bytesperline) * pixels.height;
-  if (format == PixelFormat::kMjpeg) return 0;
-  return format == PixelFormat::kNv12 ? plane + plane / 2 : plane;
-}
-
 }  // namespace bevloc::drivers::v4l2

@@ -21,7 +21,4 @@ YuvEncoding yuv_encoding(const v4l2_pix_format& pixels);
 /// A picture of this format whose bytes begin at `data`.
 ImageView view_of(PixelFormat format, const v4l2_pix_format& pixels, const uint8_t* data);
 
-/// The bytes that a whole picture has at least; 0 for MJPEG.
-size_t picture_bytes(PixelFormat format, const v4l2_pix_format& pixels);
-
 }  // namespace bevloc::drivers::v4l2

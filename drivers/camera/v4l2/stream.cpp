@@ -127,12 +127,16 @@ int Stream::dequeue(v4l2_buffer& buffer) const {
   return device_->call(VIDIOC_DQBUF, &buffer);
 }
 
+ImageView Stream::view(const v4l2_buffer& buffer) const {
+  ImageView view = view_of(format_.format, format_.pixels, mappings_[buffer.index].data);
+  view.bytes_used = buffer.bytesused;
+  return view;
+}
+
 FrameBuffer Stream::lend(const v4l2_buffer& buffer) {
   if (const int dmabuf = mappings_[buffer.index].dmabuf; dmabuf >= 0) begin_dmabuf_read(dmabuf);
   lent_.fetch_add(1, std::memory_order_relaxed);
-  ImageView view = view_of(format_.format, format_.pixels, data(buffer.index));
-  view.bytes_used = buffer.bytesused;
-  return {shared_from_this(), static_cast<int>(buffer.index), view};
+  return {shared_from_this(), static_cast<int>(buffer.index), view(buffer)};
 }
 
 void Stream::give_back(int slot) noexcept {

@@ -40,8 +40,8 @@ class Stream final : public FrameLender, public std::enable_shared_from_this<Str
   /// Back to the device without having been lent. From any thread.
   void requeue(uint32_t slot) const noexcept;
 
-  /// Its first bytes.
-  const uint8_t* data(uint32_t slot) const { return mappings_[slot].data; }
+  /// The picture in a buffer that was dequeued.
+  ImageView view(const v4l2_buffer& buffer) const;
   int buffers() const { return static_cast<int>(mappings_.size()); }
   int lent() const { return lent_.load(std::memory_order_relaxed); }
   const Device& device() const { return *device_; }

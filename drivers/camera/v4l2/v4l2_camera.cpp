@@ -7,8 +7,9 @@
 
 #include <poll.h>
 
-#include "drivers/camera/jpeg_file.h"
+#include "common/kernel_time.h"
 #include "drivers/camera/v4l2/controls.h"
+#include "drivers/camera/whole_picture.h"
 #include "pipeline/calibration/rig.h"
 
 namespace bevloc::drivers {
@@ -65,9 +66,7 @@ Result<FrameEvent> V4l2Camera::next_frame(Duration timeout, Frame& frame) {
 
 /// Errors show as readiness too; what they are, dequeueing tells.
 V4l2Camera::Wait V4l2Camera::wait_until(Time time) const {
-  const Duration left = std::max(time - clock_.now(), Duration::zero());
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
-  const timespec limit{seconds.count(), (left - seconds).count()};
+  const timespec limit = timespec_of(std::max(time - clock_.now(), Duration::zero()));
   pollfd entry{stream_->device().fd(), POLLIN, 0};
   return ppoll(&entry, 1, &limit, nullptr) > 0 ? Wait::kReady : Wait::kTimeout;
 }
@@ -80,7 +79,7 @@ Result<FrameEvent> V4l2Camera::take(Frame& frame) {
                 error == ENODEV ? "is unplugged" : std::strerror(error));
   }
   const uint64_t sequence = counter_.arrived(buffer.sequence);
-  if (!is_whole(buffer)) {
+  if ((buffer.flags & V4L2_BUF_FLAG_ERROR) != 0 || !is_whole(stream_->view(buffer))) {
     counter_.damaged();
     stream_->requeue(buffer.index);
     return FrameEvent::kTimeout;
@@ -89,15 +88,6 @@ Result<FrameEvent> V4l2Camera::take(Frame& frame) {
                 sequence, config_.device.exposure, stream_->lend(buffer)};
   counter_.delivered(stream_->lent() == stream_->buffers());
   return FrameEvent::kFrame;
-}
-
-bool V4l2Camera::is_whole(const v4l2_buffer& buffer) const {
-  if ((buffer.flags & V4L2_BUF_FLAG_ERROR) != 0) return false;
-  const v4l2::StreamFormat& format = stream_->format();
-  if (format.format == PixelFormat::kMjpeg) {
-    return is_whole_jpeg({stream_->data(buffer.index), buffer.bytesused});
-  }
-  return buffer.bytesused >= v4l2::picture_bytes(format.format, format.pixels);
 }
 
 CameraDescription V4l2Camera::description() const {

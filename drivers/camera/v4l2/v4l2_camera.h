@@ -43,7 +43,6 @@ class V4l2Camera final : public Camera {
   Wait wait_until(Time time) const;
   /// kTimeout when there was no picture, or one that is no good.
   Result<FrameEvent> take(Frame& frame);
-  bool is_whole(const v4l2_buffer& buffer) const;
 
   const V4l2CameraConfig config_;
   Clock& clock_;

@@ -1,0 +1,24 @@
+// How libcamera's cameras are called.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <fmt/ranges.h>
+#include <libcamera/libcamera.h>
+
+namespace bevloc::drivers::libcam {
+
+inline std::vector<std::string> ids_of(const libcamera::CameraManager& manager) {
+  std::vector<std::string> ids;
+  for (const auto& camera : manager.cameras()) ids.push_back(camera->id());
+  return ids;
+}
+
+/// The sentence for an id that is none of these.
+inline std::string no_camera_called(const std::string& id, const std::vector<std::string>& ids) {
+  return fmt::format("no camera is called \"{}\"; there is: {}", id,
+                     ids.empty() ? "none" : fmt::format("\"{}\"", fmt::join(ids, "\", \"")));
+}
+
+}  // namespace bevloc::drivers::libcam
