@@ -4,7 +4,6 @@
 #include <span>
 
 #include "pipeline/solver/posterior.h"
-#include "pipeline/solver/score_valley.h"
 
 namespace bevloc {
 namespace {
@@ -27,24 +26,34 @@ void Refinement::refine(const MatchSide& bev, const MatchSide& map, SolverResult
   const PoseScorer scorer(bev.cells, map.cells);
   const ScoreValley valley(map.cells, hypotheses_);
   Eigen::Vector3d pose(result.correction.x_m, result.correction.y_m, result.correction.yaw_rad);
-  search(scorer, 1, Eigen::Vector3d::UnitY(), parameters_.refine_y_scale, pose,
-         result.y_probability);
-  const double first_yaw = pose.z();
-  const Eigen::Vector3d along_yaw = valley.along_yaw(correction_of(pose));
-  search(scorer, 2, along_yaw, parameters_.refine_yaw_scale, pose, result.yaw_probability);
-  const double first_x = pose.x();
-  const Eigen::Vector3d along_x = valley.along_x(correction_of(pose));
-  search(scorer, 0, along_x, parameters_.refine_x_scale, pose, result.x_probability);
+  // y and yaw of the first round were searched at an x that it then found to be wrong.
+  pass_through(scorer, valley, pose, result);
+  const Passes last = pass_through(scorer, valley, pose, result);
 
   const auto& [x_m, y_m, yaw_rad] = hypotheses_;
-  const FollowedAxis yaw{result.yaw_probability, yaw_rad, first_yaw, along_yaw.y()};
+  const FollowedAxis yaw{result.yaw_probability, yaw_rad, last.yaw_at_rad, last.along_yaw.y()};
   spread(yaw, y_m, spread_, result.y_probability);
-  spread({result.x_probability, x_m, first_x, along_x.y()}, y_m, spread_, result.y_probability);
-  spread({result.x_probability, x_m, first_x, along_x.z()}, yaw_rad, spread_,
+  spread({result.x_probability, x_m, last.x_at_m, last.along_x.y()}, y_m, spread_,
+         result.y_probability);
+  spread({result.x_probability, x_m, last.x_at_m, last.along_x.z()}, yaw_rad, spread_,
          result.yaw_probability);
   result.correction = {posterior_mean(result.x_probability, x_m),
                        posterior_mean(result.y_probability, y_m),
                        posterior_mean(result.yaw_probability, yaw_rad)};
+}
+
+Refinement::Passes Refinement::pass_through(const PoseScorer& scorer, const ScoreValley& valley,
+                                            Eigen::Vector3d& pose, SolverResult& result) {
+  Passes passes;
+  search(scorer, 1, Eigen::Vector3d::UnitY(), parameters_.refine_y_scale, pose,
+         result.y_probability);
+  passes.yaw_at_rad = pose.z();
+  passes.along_yaw = valley.along_yaw(correction_of(pose));
+  search(scorer, 2, passes.along_yaw, parameters_.refine_yaw_scale, pose, result.yaw_probability);
+  passes.x_at_m = pose.x();
+  passes.along_x = valley.along_x(correction_of(pose));
+  search(scorer, 0, passes.along_x, parameters_.refine_x_scale, pose, result.x_probability);
+  return passes;
 }
 
 void Refinement::search(const PoseScorer& scorer, int axis, const Eigen::Vector3d& direction,

@@ -200,7 +200,7 @@ class Refinement(unittest.TestCase):
             2: valley.along_yaw,
             0: valley.along_x,
         }
-        for axis, line in lines.items():
+        for axis, line in [*lines.items(), *lines.items()]:  # two rounds
             direction, scores = line(pose), []
             for value in SMALL.hypotheses()[axis]:
                 at = pose + (value - pose[:, axis, None]) * direction

@@ -1,15 +1,17 @@
 """One more look at a solution, with the full score, of standardised features.
 
-One coordinate pass of ZNCC (zncc.py) through the estimate so far, in the order y, yaw, x, over the
-hypotheses of each axis: 11 + 21 + 21. What has been searched follows along the score's valley
-(valley.py, at the estimate so far): y while yaw is searched, y and yaw while x is. No pose that is
-scored lies beyond the farthest hypotheses. Each search gives P = softmax(scale * ZNCC), with
-refine_x_scale, refine_y_scale or refine_yaw_scale, and goes on from its mean.
+Two rounds of ZNCC (zncc.py) through the estimate so far, each one pass along y, yaw and x, in this
+order, over the hypotheses of each axis: 11 + 21 + 21. What has been searched follows along the
+score's valley (valley.py, at the estimate so far): y while yaw is searched, y and yaw while x is.
+No pose that is scored lies beyond the farthest hypotheses. Each search gives
+P = softmax(scale * ZNCC), with refine_x_scale, refine_y_scale or refine_yaw_scale, and goes on from
+its mean. The first round only finds where the second begins: y and yaw of the first are searched at
+an x that it then finds to be wrong.
 
-The distributions are marginals: P_x is the last search's. What followed an axis is spread by it,
+The distributions are marginals of the second round: P_x is the last search's. What followed an axis is spread by it,
 P(v) = sum over i of P_followed(i) P_search(v - slope (value_i - where the search began)), linear
 between hypotheses, and what leaves an axis stays at its end: P_y by yaw and then by x, P_yaw by x.
-Their means are the estimate. Where a search goes along gets no gradient.
+Their means are the estimate. Where a search begins and goes along gets no gradient.
 """
 
 from __future__ import annotations
@@ -79,7 +81,12 @@ def refine(
         pose = pose + step[:, None] * direction
         return probability
 
-    y = search(_Y, torch.eye(3).to(pose)[None, _Y].expand_as(pose))
+    along_y = torch.eye(3).to(pose)[None, _Y].expand_as(pose)
+    with torch.no_grad():
+        search(_Y, along_y)
+        search(_YAW, valley.along_yaw(pose))
+        search(_X, valley.along_x(pose))
+    y = search(_Y, along_y)
     first_yaw, along_yaw = pose[:, _YAW, None], valley.along_yaw(pose)
     yaw = search(_YAW, along_yaw)
     first_x, along_x = pose[:, _X, None], valley.along_x(pose)
