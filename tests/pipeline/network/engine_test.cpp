@@ -28,7 +28,8 @@ constexpr auto kF32 = ElementType::kFloat32;
 
 std::unique_ptr<Engine> make_engine(const Program& program, const std::vector<Branch>& branches,
                                     int threads = 1) {
-  return BEVLOC_TEST_ENGINE(program, branches, kViewCells, {threads, BEVLOC_TEST_ISA});
+  return BEVLOC_TEST_ENGINE(program, branches, kViewCells,
+                            {threads, BEVLOC_TEST_ISA, BEVLOC_TEST_OWN_KERNELS});
 }
 
 void fill_input(Engine& engine, ElementType type, const std::string& name = "x") {

@@ -180,6 +180,16 @@ TEST(Network, AllocatesNothingInARun) {
   EXPECT_EQ(counter.outside_of("libdnnl"), 0);
 }
 
+/// Our own kernels leave nothing of it to oneDNN, which allocates.
+TEST(Network, TheShippedModelAllocatesNothingAtAll) {
+  auto network = Network::load(BEVLOC_SOURCE_DIR "/models/nano.onnx", kOptions);
+  ASSERT_TRUE(network) << network.error().message;
+  run_all(**network);
+  const int before = test::allocation_count();
+  run_all(**network);
+  EXPECT_EQ(test::allocation_count(), before);
+}
+
 TEST(Network, AllocationCounterCounts) {
   test::AllocationCounter counter;
   const std::vector<int> numbers(1000);
