@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "firmware/bench/bench_command.h"
 #include "firmware/evaluation/draw_command.h"
 #include "firmware/evaluation/network_command.h"
 #include "firmware/evaluation/solver_command.h"
@@ -30,12 +31,15 @@ int main(int argc, char** argv) {
   draw->require_subcommand(1);
   bevloc::evaluation::DrawCommand draw_command;
   draw_command.declare(*draw);
+  bevloc::bench::BenchCommand bench_command;
+  bench_command.declare(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
   const bevloc::Status status = draw->parsed()             ? draw_command.run()
+                                : bench_command.chosen()   ? bench_command.run()
                                 : network_command.chosen() ? network_command.run()
                                                            : solver_command.run();
   if (status) return 0;

@@ -216,6 +216,7 @@ Result<Config> load_config(const std::filesystem::path& file) {
       yaml->reject("gpio", "lines beside mock cameras", "none: a simulated drive has no wires");
     }
   }
+  config.realtime = read_realtime(yaml->optional_map("realtime"));
   config.log_level = read_log_level(yaml->optional_map("log"));
   if (config.cameras.driver == CameraDriver::kMock) {
     config.simulation = read_simulation(yaml->require_map("simulation"));

@@ -16,6 +16,7 @@
 #include "firmware/camera_devices_config.h"
 #include "firmware/gpio_config.h"
 #include "firmware/health.h"
+#include "firmware/realtime_config.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/solver/solver_factory.h"
 #include "pipeline/tracker/tracker.h"
@@ -77,6 +78,7 @@ struct Config {
   TrackerParameters tracker;
   HealthLimits health;
   GpioConfig gpio;
+  RealtimeConfig realtime;
   LogLevel log_level = LogLevel::kInfo;
   std::optional<SimulationConfig> simulation;  ///< there with mock cameras, and only then
 };

@@ -5,6 +5,7 @@
 #include "firmware/bus_factory.h"
 #include "firmware/camera_factory.h"
 #include "firmware/gpio_lines.h"
+#include "firmware/realtime.h"
 #include "firmware/runner.h"
 #include "firmware/supervisor.h"
 #include "firmware/view_log.h"
@@ -42,8 +43,9 @@ void log_bus(const can::BusCounters& bus) {
 Status run_daemon(const Config& config, const Rig& rig, drivers::Gpio& gpio,
                   const std::function<bool()>& stop) {
   drivers::MonotonicClock clock;
+  Realtime realtime(config.realtime);
   // First of all, so that the fault line is active while the rest starts.
-  auto lines = GpioLines::open(config.gpio, gpio, clock);
+  auto lines = GpioLines::open(config.gpio, gpio, clock, realtime);
   if (!lines) return tl::unexpected(lines.error());
   const drivers::Trigger* const trigger = (*lines)->trigger();
   const auto map = load_map(config.map.file);
@@ -61,9 +63,9 @@ Status run_daemon(const Config& config, const Rig& rig, drivers::Gpio& gpio,
   spdlog::info("map {} with {} elements, model {}", map->name, map->elements.size(),
                (*appliance)->localizer().model_name());
 
-  Supervisor supervisor(**appliance);
+  Supervisor supervisor(**appliance, realtime);
   ViewLog log;
-  run_threads(**appliance, nullptr, [&](Time now) {
+  run_threads(**appliance, realtime, nullptr, [&](Time now) {
     supervisor.step(now);
     log.note(supervisor.view());
     const bool ignition = (*lines)->step(supervisor.view(), now);

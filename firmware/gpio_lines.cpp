@@ -20,15 +20,16 @@ Status take(Opened opened, std::unique_ptr<Line>& line) {
 }  // namespace
 
 Result<std::unique_ptr<GpioLines>> GpioLines::open(const GpioConfig& config, drivers::Gpio& gpio,
-                                                   drivers::Clock& clock) {
+                                                   drivers::Clock& clock, Realtime& realtime) {
   std::unique_ptr<GpioLines> lines(new GpioLines());
-  if (Status status = lines->open_all(config, gpio, clock); !status) {
+  if (Status status = lines->open_all(config, gpio, clock, realtime); !status) {
     return tl::unexpected(status.error());
   }
   return lines;
 }
 
-Status GpioLines::open_all(const GpioConfig& config, drivers::Gpio& gpio, drivers::Clock& clock) {
+Status GpioLines::open_all(const GpioConfig& config, drivers::Gpio& gpio, drivers::Clock& clock,
+                           Realtime& realtime) {
   if (config.fault) {
     if (Status s = take(gpio.open_output(*config.fault, true), fault_); !s) return s;
   }
@@ -42,7 +43,8 @@ Status GpioLines::open_all(const GpioConfig& config, drivers::Gpio& gpio, driver
   std::unique_ptr<drivers::OutputLine> line;
   if (Status s = take(gpio.open_output(config.trigger->address, false), line); !s) return s;
   trigger_ = std::make_unique<drivers::Trigger>(std::move(line), clock, config.trigger->timing);
-  trigger_thread_ = std::jthread([trigger = trigger_.get()](const std::stop_token& stop) {
+  trigger_thread_ = std::jthread([&realtime, trigger = trigger_.get()](std::stop_token stop) {
+    realtime.begin_thread(ThreadRole::kCapture, "trigger");
     while (!stop.stop_requested()) trigger->step(kPatience);
   });
   return {};

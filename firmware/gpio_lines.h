@@ -6,6 +6,7 @@
 
 #include "drivers/gpio/debouncer.h"
 #include "firmware/gpio_config.h"
+#include "firmware/realtime.h"
 #include "firmware/supervisor.h"
 
 namespace bevloc::firmware {
@@ -18,10 +19,10 @@ namespace bevloc::firmware {
 /// Threads: the trigger's own, made here; all else belongs to the supervising one.
 class GpioLines {
  public:
-  /// Fails where a configured line cannot be opened. `clock` must be thread safe, and it and `gpio`
-  /// must outlive this.
+  /// Fails where a configured line cannot be opened. `clock` must be thread safe; it, `gpio` and
+  /// `realtime`, which holds for the trigger's thread, must outlive this.
   static Result<std::unique_ptr<GpioLines>> open(const GpioConfig& config, drivers::Gpio& gpio,
-                                                 drivers::Clock& clock);
+                                                 drivers::Clock& clock, Realtime& realtime);
   ~GpioLines();
   GpioLines(const GpioLines&) = delete;
   GpioLines& operator=(const GpioLines&) = delete;
@@ -35,7 +36,8 @@ class GpioLines {
 
  private:
   GpioLines() = default;
-  Status open_all(const GpioConfig& config, drivers::Gpio& gpio, drivers::Clock& clock);
+  Status open_all(const GpioConfig& config, drivers::Gpio& gpio, drivers::Clock& clock,
+                  Realtime& realtime);
   Status open_ignition(const IgnitionConfig& config, drivers::Gpio& gpio, Time now);
   Status show(bool lit, bool fault);
   Result<bool> ignition_on(Time now);

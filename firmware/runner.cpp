@@ -34,32 +34,54 @@ void act_when_due(drivers::Clock& clock, const Companion& companion,
   }
 }
 
-}  // namespace
+using Threads = std::vector<std::jthread>;
 
-void run_threads(Appliance& appliance, const Companion* companion, const Supervise& supervise) {
-  std::atomic<bool> running{true};
-  drivers::Clock& clock = appliance.clock();
-  std::vector<std::jthread> threads;
-  for (CaptureStage& stage : appliance.capture()) {
-    threads.emplace_back([&stage, &running] {
+void start_stages(Appliance& appliance, Realtime& realtime, const std::atomic<bool>& running,
+                  Threads& threads) {
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    threads.emplace_back([&stage = appliance.capture()[camera], camera, &realtime, &running] {
+      realtime.begin_thread(ThreadRole::kCapture, fmt::format("cam-{}", kCameraNames[camera]));
       while (running && stage.step(kPatience)) {
       }
       stage.stop();
     });
   }
   threads.emplace_back([&] {
-    while (running) appliance.vision().step(clock, kPatience);
+    realtime.begin_thread(ThreadRole::kVision, "vision");
+    while (running) appliance.vision().step(appliance.clock(), kPatience);
   });
   threads.emplace_back([&] {
+    realtime.begin_thread(ThreadRole::kCan, "can-in");
     while (running) appliance.vehicle_input().step(kPatience);
   });
-  threads.emplace_back([&] { publish_on_cycle(appliance, running); });
-  if (companion != nullptr) {
-    threads.emplace_back([&] { act_when_due(clock, *companion, running); });
-    threads.emplace_back([&] {
-      while (running) companion->listen(kPatience);
-    });
-  }
+  threads.emplace_back([&] {
+    realtime.begin_thread(ThreadRole::kCan, "can-out");
+    publish_on_cycle(appliance, running);
+  });
+}
+
+void start_companion(drivers::Clock& clock, const Companion& companion,
+                     const std::atomic<bool>& running, Threads& threads) {
+  threads.emplace_back([&] {
+    name_this_thread("sim-vehicle");
+    act_when_due(clock, companion, running);
+  });
+  threads.emplace_back([&] {
+    name_this_thread("sim-judge");
+    while (running) companion.listen(kPatience);
+  });
+}
+
+}  // namespace
+
+void run_threads(Appliance& appliance, Realtime& realtime, const Companion* companion,
+                 const Supervise& supervise) {
+  std::atomic<bool> running{true};
+  drivers::Clock& clock = appliance.clock();
+  realtime.lock_memory();
+  Threads threads;
+  start_stages(appliance, realtime, running, threads);
+  if (companion != nullptr) start_companion(clock, *companion, running, threads);
   Time next = clock.now();
   do {
     next += kSupervisionPeriod;

@@ -5,6 +5,7 @@
 
 #include "drivers/clock/clock.h"
 #include "firmware/appliance.h"
+#include "firmware/realtime.h"
 
 namespace bevloc::firmware {
 
@@ -20,9 +21,11 @@ struct Companion {
 using Supervise = std::function<bool(Time now)>;
 
 /// One thread per camera, one for vision, one for CAN in, one for CAN out (and two for the
-/// companion, if there is one); the calling thread supervises. Returns when `supervise` says so,
-/// with every thread joined and the end told on the bus.
-void run_threads(Appliance& appliance, const Companion* companion, const Supervise& supervise);
+/// companion, if there is one); the calling thread supervises. `realtime` holds for the appliance's
+/// threads, not for supervision and the companion. Returns when `supervise` says so, with every
+/// thread joined and the end told on the bus.
+void run_threads(Appliance& appliance, Realtime& realtime, const Companion* companion,
+                 const Supervise& supervise);
 
 /// One thread does everything in the order of time, a bus cycle at a time; computing takes no time.
 /// The same inputs give the same frames on the bus, bit for bit.

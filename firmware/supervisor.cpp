@@ -20,17 +20,26 @@ void Supervisor::step(Time now) {
   view_.bus = appliance_.bus().condition();
   const auto& drifts = appliance_.vision().synchrony().drift_ppm;
   std::ranges::copy(drifts, view_.drift_ppm.begin());
+  view_.realtime_refusals = realtime_.refusals();
   update_rate(now);
 
   if (!ready_) {
     notifier_.ready();
     ready_ = true;
   }
-  const std::string why = to_string(view_.why);
-  notifier_.status(fmt::format("{}{}{}, cameras {}/{}, CAN {}", to_string(view_.state),
-                               why.empty() ? "" : ": ", why, view_.cameras, kCameraCount,
-                               can::to_string(view_.bus)));
+  notifier_.status(status_text());
   watch_stages(now);
+}
+
+std::string Supervisor::status_text() const {
+  const std::string why = to_string(view_.why);
+  std::string text =
+      fmt::format("{}{}{}, cameras {}/{}, CAN {}", to_string(view_.state), why.empty() ? "" : ": ",
+                  why, view_.cameras, kCameraCount, can::to_string(view_.bus));
+  if (view_.realtime_refusals > 0) {
+    text += fmt::format(", {} realtime settings refused", view_.realtime_refusals);
+  }
+  return text;
 }
 
 void Supervisor::watch_stages(Time now) {

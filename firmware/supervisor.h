@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "firmware/appliance.h"
+#include "firmware/realtime.h"
 #include "firmware/service_notifier.h"
 
 namespace bevloc::firmware {
@@ -15,8 +16,9 @@ struct ApplianceView {
   can::WhyMask why;
   int cameras = 0;  ///< in the latest frameset
   can::BusCondition bus;
-  double rate_hz = 0.0;  ///< framesets localized per second, over the last second or so
-  bool stalled = false;  ///< a stage has not moved for a second
+  double rate_hz = 0.0;       ///< framesets localized per second, over the last second or so
+  bool stalled = false;       ///< a stage has not moved for a second
+  int realtime_refusals = 0;  ///< settings of the section `realtime` that the kernel refused
   /// By how much each camera is faster than the median camera; 0 unless that is certain.
   std::array<double, kCameraCount> drift_ppm{};
 };
@@ -24,7 +26,8 @@ struct ApplianceView {
 /// Thread: the supervising one, about ten times a second.
 class Supervisor {
  public:
-  explicit Supervisor(const Appliance& appliance) : appliance_(appliance) {}
+  Supervisor(const Appliance& appliance, const Realtime& realtime)
+      : appliance_(appliance), realtime_(realtime) {}
 
   /// The watchdog is fed only if vision and estimation have both moved since the last time: a
   /// supervisor that is alive proves nothing about the stages.
@@ -36,8 +39,10 @@ class Supervisor {
  private:
   void update_rate(Time now);
   void watch_stages(Time now);
+  std::string status_text() const;
 
   const Appliance& appliance_;
+  const Realtime& realtime_;
   ServiceNotifier notifier_;
   ApplianceView view_;
   bool ready_ = false;

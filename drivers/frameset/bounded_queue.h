@@ -41,7 +41,9 @@ class BoundedQueue {
   /// closed and empty. A timeout of zero only looks.
   std::optional<T> pop(Duration timeout) {
     std::unique_lock lock(mutex_);
-    not_empty_.wait_for(lock, timeout, [this] { return size_ > 0 || closed_; });
+    const auto ready = [this] { return size_ > 0 || closed_; };
+    // An expired wait still gives the processor away.
+    if (timeout > Duration::zero()) not_empty_.wait_for(lock, timeout, ready);
     if (size_ == 0) return std::nullopt;
     return take_first();
   }

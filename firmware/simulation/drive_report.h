@@ -23,6 +23,7 @@ struct DriveReport {
   /// From start of exposure to the first CAN frame of a pose that rests on it. On a virtual clock
   /// computing takes no time, so there it is what sensor and bus cycle alone take.
   LatencyReport latency;
+  int realtime_refusals = 0;  ///< see Realtime
   uint64_t can_sent = 0;
   double first_fix_s = 0.0;  ///< from the start of the drive; negative if never
   double valid_share = 0.0;  ///< of the drive after the first fix

@@ -58,6 +58,7 @@ class SimulatedRun {
   Time log_start_;
   Time drive_start_;
   BusFactory buses_;
+  Realtime realtime_;
   SnapshotKeeper keeper_;
   LatencyRecorder latencies_;
   std::unique_ptr<Appliance> appliance_;
@@ -85,6 +86,7 @@ SimulatedRun::SimulatedRun(const Config& config, const Rig& rig, const Simulated
       log_start_(clock_.now()),
       drive_start_(log_start_ + kLead),
       buses_(config.can),
+      realtime_(config.realtime),
       latencies_(config.simulation->duration_s) {}
 
 Status SimulatedRun::connect() {
@@ -121,7 +123,7 @@ void SimulatedRun::run(const StopWhen& stop) {
   const Companion companion{[this] { return vehicle_->next_due(); },
                             [this](Time now) { vehicle_->send_due(now); },
                             [this](Duration timeout) { judge_->step(timeout); }};
-  Supervisor supervisor(*appliance_);
+  Supervisor supervisor(*appliance_, realtime_);
   const auto supervise = [&](Time now) {
     supervisor.step(now);
     const double time_s = to_seconds(now - drive_start_);
@@ -134,7 +136,7 @@ void SimulatedRun::run(const StopWhen& stop) {
   if (options_.fast) {
     run_lockstep(*appliance_, virtual_clock_, &companion, supervise);
   } else {
-    run_threads(*appliance_, &companion, supervise);
+    run_threads(*appliance_, realtime_, &companion, supervise);
   }
   supervisor.finish();
 }
@@ -145,6 +147,7 @@ DriveReport SimulatedRun::report() const {
   report.estimate = judge_->estimate_error();
   report.frames = appliance_->frame_counts();
   report.latency = latencies_.report();
+  report.realtime_refusals = realtime_.refusals();
   report.can_sent = judge_->localizer_frames();
   report.first_fix_s = judge_->first_fix_s();
   report.valid_share = judge_->valid_share();

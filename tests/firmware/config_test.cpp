@@ -179,6 +179,7 @@ TEST_F(ConfigTest, EverySectionIsRead) {
       "health: {odometry_timeout_ms: 100, gnss_timeout_ms: 2000, degraded_after_ms: 300, "
       "lost_after_ms: 4000, corrections_to_track: 3, refusals_to_lose: 9, "
       "max_longitudinal_sigma_m: 0.5, max_lateral_sigma_m: 0.25, max_yaw_sigma_deg: 1}\n"
+      "realtime: {lock_memory: true}\n"
       "log: {level: warning}\n"
       "simulation: {seed: 1, duration_s: 5}\n");
   ASSERT_TRUE(config) << config.error().message;
@@ -217,6 +218,7 @@ TEST_F(ConfigTest, EverySectionIsRead) {
   EXPECT_DOUBLE_EQ(config->health.longitudinal_sigma_m, 0.5);
   EXPECT_DOUBLE_EQ(config->health.lateral_sigma_m, 0.25);
   EXPECT_DOUBLE_EQ(config->health.yaw_sigma_rad, radians(1.0));
+  EXPECT_TRUE(config->realtime.lock_memory);
   EXPECT_EQ(config->log_level, LogLevel::kWarning);
 }
 
@@ -454,7 +456,8 @@ std::set<std::string> schema_keys() {
   const std::string source = read_text(kSource / "firmware/config.cpp") +
                              read_text(kSource / "firmware/camera_devices_config.cpp") +
                              read_text(kSource / "firmware/simulation_config.cpp") +
-                             read_text(kSource / "firmware/gpio_config.cpp");
+                             read_text(kSource / "firmware/gpio_config.cpp") +
+                             read_text(kSource / "firmware/realtime_config.cpp");
   return captured(source, R"re([(,]\s*"([a-z][a-z0-9_]*)")re");
 }
 

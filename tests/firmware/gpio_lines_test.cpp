@@ -32,7 +32,7 @@ class GpioLinesTest : public testing::Test {
   }
 
   void open(const GpioConfig& config = all_lines()) {
-    auto lines = GpioLines::open(config, gpio_, clock_);
+    auto lines = GpioLines::open(config, gpio_, clock_, realtime_);
     ASSERT_TRUE(lines) << lines.error().message;
     lines_ = std::move(*lines);
   }
@@ -48,6 +48,7 @@ class GpioLinesTest : public testing::Test {
 
   drivers::VirtualClock clock_{Time(milliseconds(1000))};
   MockGpio gpio_{{"led", "fault", "ignition"}, clock_};
+  Realtime realtime_{{}};
   std::unique_ptr<GpioLines> lines_;
 };
 
@@ -119,7 +120,7 @@ TEST_F(GpioLinesTest, NoLinesAreNeeded) {
 TEST_F(GpioLinesTest, SaysWhichLineCannotBeHad) {
   GpioConfig config = all_lines();
   config.status_led->line = "lamp";
-  const auto lines = GpioLines::open(config, gpio_, clock_);
+  const auto lines = GpioLines::open(config, gpio_, clock_, realtime_);
   ASSERT_FALSE(lines);
   EXPECT_THAT(lines.error().message, testing::StartsWith("gpio: mock lamp: "));
   EXPECT_TRUE(fault()) << "no appliance: the line stays as it was left";

@@ -5,6 +5,7 @@
 #include <omp.h>
 
 #include "pipeline/network/nearest_upsample.h"
+#include "pipeline/network/onednn/parallel.h"
 
 namespace bevloc::nn::onednn {
 namespace {
@@ -32,11 +33,10 @@ void DirectConvolutionTask::bind(std::span<const PlacedBuffer> buffers, const dn
 void DirectConvolutionTask::run(dnnl_stream_t) {
   const int rows = convolution_.rows();
   const int pieces = static_cast<int>(scratch_.size() / scratch_step_);
-#pragma omp parallel for schedule(static)
-  for (int piece = 0; piece < pieces; ++piece) {
+  for_each_turn(pieces, [this, rows, pieces](int piece) {
     convolution_.run(from_, added_, to_, rows * piece / pieces, rows * (piece + 1) / pieces,
                      scratch_.data() + static_cast<size_t>(piece) * scratch_step_);
-  }
+  });
 }
 
 NearestUpsampleTask::NearestUpsampleTask(const Value& input, int from, int to)
@@ -52,11 +52,10 @@ void NearestUpsampleTask::bind(std::span<const PlacedBuffer> buffers, const dnnl
 }
 
 void NearestUpsampleTask::run(dnnl_stream_t) {
-#pragma omp parallel for schedule(static)
-  for (int row = 0; row < rows_; ++row) {
+  for_each_turn(rows_, [this](int row) {
     const auto begin = static_cast<size_t>(row);
     upsample_nearest(from_, cols_, pixel_bytes_, begin, begin + 1, to_);
-  }
+  });
 }
 
 ExportTask::ExportTask(const Value& value, int from, int to)
@@ -76,13 +75,13 @@ void ExportTask::run(dnnl_stream_t) {
   for (int image = 0; image < images_; ++image) {
     const float* const from = from_ + static_cast<size_t>(image) * channels_ * cells_;
     float* const to = to_ + static_cast<size_t>(image) * channels_ * cells_;
-#pragma omp parallel for schedule(static)
-    for (int begin = 0; begin < cells_; begin += kBlock) {
+    for_each_turn((cells_ + kBlock - 1) / kBlock, [this, from, to](int block) {
+      const int begin = block * kBlock;
       const int end = std::min(begin + kBlock, cells_);
       for (int c = 0; c < channels_; ++c) {
         for (int i = begin; i < end; ++i) to[c * cells_ + i] = from[i * channels_ + c];
       }
-    }
+    });
   }
 }
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cassert>
 
+#include "pipeline/network/onednn/parallel.h"
 #include "pipeline/network/rearrange.h"
 
 namespace bevloc::nn::onednn {
+
 PrimitiveTask::PrimitiveTask(dnnl::primitive primitive, std::vector<BufferArgument> buffers,
                              std::vector<std::pair<int, dnnl::memory>> constants)
     : primitive_(std::move(primitive)),
@@ -39,11 +41,11 @@ void RearrangeTask::bind(std::span<const PlacedBuffer> buffers, const dnnl::memo
 
 void RearrangeTask::run(dnnl_stream_t) {
   constexpr size_t kBlock = 4096;
-#pragma omp parallel for schedule(static)
-  for (size_t begin = 0; begin < source_.size(); begin += kBlock) {
+  for_each_turn(static_cast<int>((source_.size() + kBlock - 1) / kBlock), [this](int block) {
+    const size_t begin = static_cast<size_t>(block) * kBlock;
     const size_t end = std::min(begin + kBlock, source_.size());
     rearrange(source_, element_bytes_, from_, to_, begin, end);
-  }
+  });
 }
 
 ViewTask::ViewTask(int input, ElementType input_type, int output, ElementType output_type,
@@ -64,11 +66,11 @@ void ViewTask::bind(std::span<const PlacedBuffer> buffers, const dnnl::memory&) 
 void ViewTask::run(dnnl_stream_t) {
   constexpr int kBlock = 250;
   const int cells = entries_.cells();
-#pragma omp parallel for schedule(static)
-  for (int begin = 0; begin < cells; begin += kBlock) {
+  for_each_turn((cells + kBlock - 1) / kBlock, [this, cells](int block) {
+    const int begin = block * kBlock;
     const int end = std::min(begin + kBlock, cells);
     gather_view(entries_, input_type_, from_, channels_, scale_, begin, end, output_type_, to_);
-  }
+  });
 }
 
 }  // namespace bevloc::nn::onednn

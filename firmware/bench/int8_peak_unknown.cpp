@@ -1,0 +1,14 @@
+// Without oneDNN there is nothing yet that shows what the machine can multiply.
+#include "firmware/bench/int8_peak.h"
+
+namespace bevloc::bench {
+
+Int8Peak measure_int8_peak(int /*threads*/, const FastestTime& /*fastest_s*/) {
+  return {};
+}
+
+std::string instruction_set() {
+  return "unknown";
+}
+
+}  // namespace bevloc::bench

@@ -1,0 +1,106 @@
+#include "firmware/bench/whole_frame.h"
+
+#include "firmware/appliance.h"
+#include "firmware/bench/allocation_count.h"
+
+namespace bevloc::bench {
+namespace {
+
+constexpr size_t kSamples = 256;
+constexpr size_t kPredictions = 128;
+constexpr size_t kReports = 16;
+
+/// The bench's pictures stay where they are.
+class PictureLender final : public drivers::FrameLender {
+ private:
+  void give_back(int /*slot*/) noexcept override {}
+};
+
+}  // namespace
+
+Result<std::unique_ptr<WholeFrame>> WholeFrame::create(const firmware::Config& config,
+                                                       const Rig& rig, const HdMap& map,
+                                                       const MapIndex& index, int threads) {
+  LocalizerOptions options = firmware::localizer_options(config);
+  options.network.threads = threads;
+  auto localizer = Localizer::create(rig, index, config.model_file.string(), options);
+  if (!localizer) return tl::unexpected(localizer.error());
+  return std::unique_ptr<WholeFrame>(new WholeFrame(config, map, std::move(*localizer)));
+}
+
+WholeFrame::WholeFrame(const firmware::Config& config, const HdMap& map,
+                       std::unique_ptr<Localizer> localizer)
+    : config_(config),
+      map_(map),
+      localizer_(std::move(localizer)),
+      bus_(wire_.connect()),
+      listener_(wire_.connect()),
+      frames_(2 * kCameraCount),
+      samples_(kSamples),
+      predictions_(kPredictions),
+      reports_(kReports),
+      lender_(std::make_shared<PictureLender>()) {}
+
+bool WholeFrame::settle(const Place& place) {
+  using firmware::State;
+  vehicle_.map_from_vehicle = place.map_from_vehicle;
+  while (predictions_.pop(Duration::zero())) {
+  }
+  publisher_.emplace(*bus_, firmware::publisher_config(config_, map_));
+  estimation_.emplace(config_.tracker, config_.health, firmware::map_id_of(map_), *publisher_,
+                      samples_, reports_, predictions_);
+  firmware::VisionConfig vision;
+  vision.synchronizer = config_.cameras.synchronizer;
+  vision.compensate_motion = config_.cameras.compensate_motion;
+  vision_.emplace(*localizer_, vision, frames_, predictions_, reports_);
+  for (int i = 0; i < kMostFrames; ++i) {
+    run(place.framesets[static_cast<size_t>(i) % place.framesets.size()]);
+    if (estimation_->counters().state == State::kTracking) return true;
+  }
+  return false;
+}
+
+FrameRun WholeFrame::run(const Pictures& pictures) {
+  exposure_ = clock_.now();
+  estimation_->tick(exposure_);
+  drive_until(exposure_ + kPicturesLater);
+  take_sent();
+  ++sequence_;
+  FrameRun done;
+  const uint64_t allocated_before = allocation_count();
+  const Time start = machine_clock_.now();
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    drivers::Frame frame;
+    frame.camera = camera;
+    frame.time = exposure_;
+    frame.sequence = sequence_;
+    frame.buffer = drivers::FrameBuffer(lender_, camera, ImageView(pictures[camera].view()));
+    frames_.push(std::move(frame));
+  }
+  vision_->step(clock_, Duration::zero());
+  estimation_->tick(clock_.now());
+  done.time = machine_clock_.now() - start;
+  done.allocations = allocation_count() - allocated_before;
+  done.can_frames = take_sent();
+  drive_until(exposure_ + kFramePeriod);
+  return done;
+}
+
+/// The bus cycles up to `time`, whose own samples are handed over but not yet taken in.
+void WholeFrame::drive_until(Time time) {
+  while (clock_.now() < time) {
+    clock_.advance(kBusCycle);
+    const Time now = clock_.now();
+    samples_.push(vehicle_.odometry(now));
+    if ((now - Time{}) % kFramePeriod == Duration::zero()) samples_.push(vehicle_.gnss(now));
+    if (now < time) estimation_->tick(now);
+  }
+}
+
+int WholeFrame::take_sent() {
+  int sent = 0;
+  while (listener_->receive()) ++sent;
+  return sent;
+}
+
+}  // namespace bevloc::bench

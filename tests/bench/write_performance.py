@@ -1,0 +1,56 @@
+"""Puts this machine's numbers into docs/performance.md and draws its picture; on an idle machine:
+
+    /usr/bin/python3 -m tests.bench.write_performance
+
+The peers' table has a command of its own, tests/bench/peers/run --write.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import tempfile
+from pathlib import Path
+
+from tests.bench.document import ROOT, bevloc_program, write_table
+from training.errors import run_program
+
+FIGURE = ROOT / "docs/images/frame_stages.png"
+SWEEPS = ("cameras", "image", "bev", "hypotheses", "map")
+_FRAMES = 400
+_SWEEP_FRAMES = 100
+
+
+def run_bench(*options: str | Path) -> str:
+    """What the bench prints; it runs where its paths are those of the documentation."""
+    command = [bevloc_program(), "bench", *options]
+    return subprocess.run(
+        command, check=True, cwd=ROOT, stdout=subprocess.PIPE, text=True
+    ).stdout
+
+
+def sweep_table(rows: list[dict[str, float]], columns: list[str]) -> str:
+    lines = [columns, ["---:"] * len(columns)]
+    lines += [[f"{row[column]:.4g}" for column in columns] for row in rows]
+    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
+
+
+def columns_of(rows: list[dict[str, float]]) -> list[str]:
+    """What was varied, before what was measured."""
+    measured = [column for column in rows[0] if column.endswith(("_ms", "_s", "_mib"))]
+    return [column for column in rows[0] if column not in measured] + measured
+
+
+def main() -> None:
+    printed = run_bench("--frames", str(_FRAMES), "--figure", FIGURE)
+    picture = f"![Where the time of a frame goes](images/{FIGURE.name})"
+    write_table("stages", f"```\n{printed}```\n\n{picture}\n")
+    with tempfile.TemporaryDirectory() as folder:
+        result = Path(folder) / "sweeps.json"
+        run_bench("--frames", str(_SWEEP_FRAMES), "--json", result, "--sweep", *SWEEPS)
+        for name, rows in json.loads(result.read_text())["sweeps"].items():
+            write_table(name, sweep_table(rows, columns_of(rows)))
+
+
+if __name__ == "__main__":
+    run_program(main)
