@@ -21,7 +21,8 @@ struct Requantizer {
   bool relu = false;
 };
 
-/// A row of pixels: `sums` has `sums_step` elements for each, all else is dense.
+/// A row of pixels: `sums` has `sums_step` elements for each, no fewer than the channels rounded up
+/// to eight; all else is dense.
 struct RequantizedRow {
   const int32_t* sums = nullptr;
   std::ptrdiff_t sums_step = 0;

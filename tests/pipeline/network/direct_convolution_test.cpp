@@ -362,13 +362,14 @@ TEST(Requantize, RoundsHalfToEvenAndCutsOff) {
   Requantizer requantizer;
   requantizer.channels = 11;
   requantizer.scale.assign(11, 0.5F);
-  const std::vector<int32_t> sums{1, 3, 5, -1, -3, 510, 511, 9000, -9000, 2'000'000'000, 4};
+  std::vector<int32_t> sums{1, 3, 5, -1, -3, 510, 511, 9000, -9000, 2'000'000'000, 4};
+  sums.resize(16);  // whole vectors are read
   const auto rounded = [&](ElementType type, Requantize requantize) {
     requantizer.output = type;
     std::vector<int> results;
     std::array<uint8_t, 11> output{};
     requantize(requantizer, {.sums = sums.data(),
-                             .sums_step = 11,
+                             .sums_step = 16,
                              .pixels = 1,
                              .output = std::as_writable_bytes(std::span(output)).data()});
     for (const uint8_t byte : output) {
