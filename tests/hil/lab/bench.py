@@ -19,8 +19,13 @@ DRIVE_CONFIG = "tests/hil/config/drive.yaml"
 CAMERA_PERIOD_S = 0.5  # of DRIVE_CONFIG
 USB_CONFIG = "tests/hil/config/usb.yaml"
 # Where a USB port of the guest is, in libcamera's ids.
-_LIBCAMERA_ID = "\\_SB_.PCI0.S80_-{port}:1.0-1209:0001"
+LIBCAMERA_ID = "\\_SB_.PCI0.S80_-{port}:1.0-1209:0001"
 _BUS_LOG = "/run/candump.log"
+_PROGRAMS = (
+    "firmware/bevlocd",
+    "tests/compliance/bevloc-compliance",
+    "tests/hil/vehicle_can",
+)
 # As docs/bring-up.md has it.
 _GPIO_RULE = 'SUBSYSTEM=="gpio", KERNEL=="gpiochip*", GROUP="bevloc", MODE="0660"'
 # Without cameras the daemon brings the rest of the vehicle itself, and reports to a folder.
@@ -75,7 +80,7 @@ class Bench:
         shutil.rmtree(payload, ignore_errors=True)
         for folder in ("config", "models", "systemd", "tests/hil/config"):
             shutil.copytree(self.folders.source / folder, payload / folder)
-        for program in ("firmware/bevlocd", "tests/hil/vehicle_can"):
+        for program in _PROGRAMS:
             shutil.copy2(self.folders.build / program, payload)
         shutil.copy2(self.folders.pictures / "map.bvm", payload / "tests/hil/config")
         (payload / "bevlocd.yaml").write_text(self._daemon_config(), encoding="utf-8")
@@ -88,7 +93,7 @@ class Bench:
         text = text.replace("driver: v4l2\n", "driver: libcamera\n")
         for port, name in enumerate(NAMES, start=1):
             text = text.replace(
-                f"{name}: {name}\n", f"{name}: '{_LIBCAMERA_ID.format(port=port)}'\n"
+                f"{name}: {name}\n", f"{name}: '{LIBCAMERA_ID.format(port=port)}'\n"
             )
         return text
 

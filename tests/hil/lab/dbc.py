@@ -9,6 +9,7 @@ _SIGNAL = re.compile(
     r" SG_ (\w+) : (\d+)\|(\d+)@1([+-]) \(([^,]+),([^)]+)\)"
 )  # Intel byte order alone
 _NAMES = re.compile(r"VAL_ (\d+) (\w+) (.*);")
+_CYCLE = re.compile(r'BA_ "GenMsgCycleTime" BO_ (\d+) (\d+);')
 _DATA_ID = re.compile(r'BA_ "E2EDataId" BO_ (\d+) (\d+);')
 
 
@@ -28,6 +29,7 @@ class Message:
     length: int
     signals: dict[str, Signal] = dataclasses.field(default_factory=dict)
     data_id: int = 0
+    cycle_ms: int = 0
 
     def is_intact(self, data: bytes) -> bool:
         """Length and checksum of AUTOSAR's E2E profile P02: CRC-8H2F."""
@@ -63,6 +65,8 @@ def read(path: pathlib.Path) -> dict[int, Message]:
         elif found := _NAMES.match(line):
             pairs = re.findall(r'(-?\d+) "([^"]*)"', found[3])
             messages[int(found[1])].signals[found[2]].names = {int(k): v for k, v in pairs}
+        elif found := _CYCLE.match(line):
+            messages[int(found[1])].cycle_ms = int(found[2])
         elif found := _DATA_ID.match(line):
             messages[int(found[1])].data_id = int(found[2])
     return messages

@@ -6,7 +6,6 @@ import dataclasses
 import math
 import pathlib
 import re
-import statistics
 
 from tests.hil.lab import dbc
 
@@ -62,6 +61,12 @@ class BusLog:
         times = (f.time_s for f in self.frames if f.name.startswith("LOC_") and f.time_s > time_s)
         return next(times, None)
 
+    def longest_silence_s(self, after_s: float) -> float:
+        """Between two frames of the localizer of which the later one came after a moment."""
+        times = [f.time_s for f in self.frames if f.name.startswith("LOC_")]
+        gaps = (b - a for a, b in zip(times, times[1:]) if b > after_s)
+        return max(gaps, default=math.inf)
+
     def first_status(self, after_s: float, **wanted: str) -> float | None:
         """When LOC_Status first said what is wanted."""
         for frame in self.named("LOC_Status"):
@@ -74,11 +79,10 @@ class BusLog:
         states = [str(frame.values["State"]) for frame in self.named("LOC_Status")]
         return [state for i, state in enumerate(states) if i == 0 or states[i - 1] != state]
 
-    def median_cycle_ms(self, name: str) -> float | None:
-        times = [frame.time_s for frame in self.named(name)]
-        if len(times) < 2:
-            return None
-        return 1e3 * statistics.median(b - a for a, b in zip(times, times[1:]))
+    def reasons(self, begin_s: float, end_s: float) -> list[str]:
+        """The signals `Why_` that were set at any time between two moments."""
+        statuses = (f.values for f in self.named("LOC_Status") if begin_s < f.time_s < end_s)
+        return sorted({name for s in statuses for name, v in s.items() if v == "YES"})
 
     def valid_poses(self) -> list[Pose]:
         """Positions with the heading of the same epoch, while the state vouches for them."""

@@ -1,47 +1,46 @@
 """What the lab does to the daemon, and what it must see then."""
 
 import dataclasses
+import math
 from collections.abc import Callable
 
-from tests.hil.lab import devices, drives
+from tests.hil.lab import conformance, devices, drives, tools
 from tests.hil.lab.bench import IGNITION_PULL, Run
 from tests.hil.lab.outcome import Outcome
 
-# WatchdogSec and RestartSec of the unit.
-WATCHDOG_S = 2.0
-RESTART_S = 1.0
-# For the service manager's own work between the two.
-RESTART_SLACK_S = 1.0
+# From a hang to the next READY, by the project's requirements; and without the unit's WatchdogSec.
+READY_AFTER_HANG_S = 5.0
+READY_AFTER_CRASH_S = 3.0
 # A daemon that is on its feet is back on the bus within this, by the project's requirements.
 BACK_ON_BUS_S = 1.0
 SETTLE_S = 4.0
 
 
 def sigstop(run: Run) -> Outcome:
-    return _restart(run, "SIGSTOP", WATCHDOG_S + RESTART_S)
+    return _restart(run, "SIGSTOP", READY_AFTER_HANG_S)
 
 
 def kill(run: Run) -> Outcome:
-    return _restart(run, "SIGKILL", RESTART_S)
+    return _restart(run, "SIGKILL", READY_AFTER_CRASH_S)
 
 
-def _restart(run: Run, signal: str, waits_s: float) -> Outcome:
-    """The service manager brings the daemon back: what it waits by design, and one start."""
+def _restart(run: Run, signal: str, limit_s: float) -> Outcome:
+    """The service manager brings the daemon back, and with it the messages on the bus."""
     start_s = run.start_daemon()
     run.agent.check(f"sleep {SETTLE_S}")
-    restarts = int(run.show("NRestarts"))
+    restarts, pid = int(run.show("NRestarts")), run.show("MainPID")
     injected_s = run.wall_s()
-    run.agent.check(f"kill -{signal[3:]} {run.show('MainPID')}")
+    run.agent.check(f"kill -{signal[3:]} {pid}")
     ready_s = run.wait_restarted(restarts, timeout_s=600) - injected_s
     run.agent.check(f"sleep {SETTLE_S}")
     log = run.finish_log()
-    back_s = log.localizer_after(injected_s + ready_s)
-    limit_s = waits_s + start_s + RESTART_SLACK_S
+    sends_again = log.localizer_after(injected_s + ready_s) is not None
+    silence_s = log.longest_silence_s(injected_s) if sends_again else math.inf
     return Outcome(
         injected=f"{signal} to the daemon (a start takes {start_s:.1f} s here)",
-        seen=f"READY again, {'frames' if back_s else 'no frames'} on the bus",
-        recovery_s=ready_s,
-        passed=back_s is not None and ready_s < limit_s,
+        seen=f"READY again after {ready_s:.2f} s, bus silent for {silence_s:.2f} s",
+        recovery_s=silence_s,
+        passed=max(ready_s, silence_s) < limit_s,
     )
 
 
@@ -134,6 +133,8 @@ class Scenario:
 
 SCENARIOS = {
     "devices": Scenario(devices.devices, needs_usb=False),
+    "conformance": Scenario(conformance.conformance, needs_usb=False),
+    "tools": Scenario(tools.tools, needs_usb=True),
     "drive": Scenario(drives.drive, needs_usb=True),
     "unplug-camera": Scenario(drives.unplug_camera, needs_usb=True),
     "freeze-camera": Scenario(drives.freeze_camera, needs_usb=True),

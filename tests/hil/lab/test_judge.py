@@ -33,6 +33,7 @@ class DbcTest(unittest.TestCase):
         self.assertEqual(len(self.messages), text.count("\nBO_ "))
         self.assertEqual(self.messages[0x504].name, "LOC_PosLocal")
         self.assertEqual(self.messages[0x400].name, "VEH_WheelSpeed")
+        self.assertEqual((self.messages[0x500].cycle_ms, self.messages[0x504].cycle_ms), (100, 10))
 
     def test_checks_the_published_frame(self) -> None:
         message, data = self.messages[0x504], bytes.fromhex(NOT_AVAILABLE)
@@ -81,6 +82,15 @@ class BusLogTest(unittest.TestCase):
         self.assertEqual(log.first_status(0.0, State="DEGRADED"), 3.5)
         self.assertEqual(log.localizer_after(3.5), 4.5)
         self.assertIsNone(log.first_status(3.6, State="DEGRADED"))
+
+    def test_measures_silence_and_lists_reasons(self) -> None:
+        times = [1.0, 1.5, 4.0, 4.25, 9.0]
+        whys: list[dict[str, int]] = [{}, {"Why_CameraMissing": 1}, {}, {"Why_PoseStale": 1}, {}]
+        log = self.read(*(f"({t}) vcan0 {self.status(2, **w)}" for t, w in zip(times, whys)))
+        self.assertEqual(log.longest_silence_s(1.2), 4.75)
+        self.assertEqual(self.read(f"(1.0) vcan0 {self.status(2)}").longest_silence_s(0), math.inf)
+        self.assertEqual(log.reasons(1.2, 4.5), ["Why_CameraMissing", "Why_PoseStale"])
+        self.assertEqual(log.reasons(4.5, 9.5), [])
 
     def test_takes_poses_of_one_epoch_in_a_valid_state_alone(self) -> None:
         pose = [f"(2.0) vcan0 {self.position(5, 1000)}", f"(2.0) vcan0 {self.heading(5, 9000)}"]
