@@ -45,7 +45,7 @@ class Bench {
       : config_(config), options_(options) {}
 
   Status prepare(MemoryResult& memory);
-  void run(const std::function<void(int, int)>& progress);
+  Status run(const std::function<void(int, int)>& progress);
   void write(BenchResult& result) const;
 
  private:
@@ -53,7 +53,7 @@ class Bench {
   bool is_short_of_places() const;
   bool is_chosen(const std::string& stage) const;
   void warm_up(const Place& place);
-  void time_whole_frames(const Place& place, int frames);
+  Status time_whole_frames(const Place& place, int frames);
   void time_stages(const Place& place, int frames);
   const Pictures& next_pictures(const Place& place);
 
@@ -123,12 +123,15 @@ void Bench::warm_up(const Place& place) {
   for (const Stage& stage : stages_->all()) stage.run();
 }
 
-void Bench::time_whole_frames(const Place& place, int frames) {
+Status Bench::time_whole_frames(const Place& place, int frames) {
   whole_->run(next_pictures(place));
   for (int i = 0; i < frames; ++i) {
     const FrameRun run = whole_->run(next_pictures(place));
+    // A search for a lost pose is wider, and would be timed in place of a frame's.
+    if (!run.tracked) return fail("{}: the pose was lost", config_.model_file.string());
     whole_record_.add(run.time, run.allocations);
   }
+  return {};
 }
 
 void Bench::time_stages(const Place& place, int frames) {
@@ -148,7 +151,7 @@ void Bench::time_stages(const Place& place, int frames) {
   }
 }
 
-void Bench::run(const std::function<void(int, int)>& progress) {
+Status Bench::run(const std::function<void(int, int)>& progress) {
   const int places = static_cast<int>(scene_.places.size());
   int done = 0;
   for (int p = 0; p < places; ++p) {
@@ -157,12 +160,15 @@ void Bench::run(const std::function<void(int, int)>& progress) {
     const int until = options_.frames * (p + 1) / places;
     while (done < until) {
       const int frames = std::min(kTurn, until - done);
-      if (options_.stages.empty()) time_whole_frames(place, frames);
+      if (options_.stages.empty()) {
+        if (Status status = time_whole_frames(place, frames); !status) return status;
+      }
       time_stages(place, frames);
       done += frames;
       progress(done, options_.frames);
     }
   }
+  return {};
 }
 
 void Bench::write(BenchResult& result) const {
@@ -207,7 +213,7 @@ Result<BenchResult> run_bench(const firmware::Config& config, const BenchOptions
   if (Status status = bench.prepare(result.memory); !status) {
     return tl::unexpected(status.error());
   }
-  bench.run(progress);
+  if (Status status = bench.run(progress); !status) return tl::unexpected(status.error());
   bench.write(result);
   result.memory.process = resident_memory();
   result.peak = measure_machine(options.threads);

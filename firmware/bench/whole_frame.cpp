@@ -16,6 +16,12 @@ class PictureLender final : public drivers::FrameLender {
   void give_back(int /*slot*/) noexcept override {}
 };
 
+template <typename Item>
+void clear(drivers::BoundedQueue<Item>& queue) {
+  while (queue.pop(Duration::zero())) {
+  }
+}
+
 }  // namespace
 
 Result<std::unique_ptr<WholeFrame>> WholeFrame::create(const firmware::Config& config,
@@ -42,10 +48,11 @@ WholeFrame::WholeFrame(const firmware::Config& config, const HdMap& map,
       lender_(std::make_shared<PictureLender>()) {}
 
 bool WholeFrame::settle(const Place& place) {
-  using firmware::State;
   vehicle_.map_from_vehicle = place.map_from_vehicle;
-  while (predictions_.pop(Duration::zero())) {
-  }
+  // What was measured at another place would mislead the tracker here.
+  clear(samples_);
+  clear(reports_);
+  clear(predictions_);
   publisher_.emplace(*bus_, firmware::publisher_config(config_, map_));
   estimation_.emplace(config_.tracker, config_.health, firmware::map_id_of(map_), *publisher_,
                       samples_, reports_, predictions_);
@@ -54,8 +61,7 @@ bool WholeFrame::settle(const Place& place) {
   vision.compensate_motion = config_.cameras.compensate_motion;
   vision_.emplace(*localizer_, vision, frames_, predictions_, reports_);
   for (int i = 0; i < kMostFrames; ++i) {
-    run(place.framesets[static_cast<size_t>(i) % place.framesets.size()]);
-    if (estimation_->counters().state == State::kTracking) return true;
+    if (run(place.framesets[static_cast<size_t>(i) % place.framesets.size()]).tracked) return true;
   }
   return false;
 }
@@ -82,6 +88,7 @@ FrameRun WholeFrame::run(const Pictures& pictures) {
   done.time = machine_clock_.now() - start;
   done.allocations = allocation_count() - allocated_before;
   done.can_frames = take_sent();
+  done.tracked = estimation_->counters().state == firmware::State::kTracking;
   drive_until(exposure_ + kFramePeriod);
   return done;
 }

@@ -17,7 +17,8 @@ namespace bevloc::bench {
 struct FrameRun {
   Duration time{0};
   uint64_t allocations = 0;
-  int can_frames = 0;  ///< sent
+  int can_frames = 0;    ///< sent
+  bool tracked = false;  ///< the state is TRACKING afterwards
 };
 
 /// The vision and the estimation stage with the queues between them, in lockstep on a virtual
