@@ -6,8 +6,7 @@
 #include <string>
 #include <utility>
 
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include "common/picture_file.h"
 
 namespace bevloc::drivers {
 namespace {
@@ -36,12 +35,6 @@ Result<RecordedFrame> parse_line(const std::string& line, const std::string& pla
     return fail("{}: there is no picture {}", place, frame.file.string());
   }
   return frame;
-}
-
-/// `bgr` as OpenCV decodes it, into an RGB image of the same size.
-void copy_rgb(const cv::Mat& bgr, RgbImage& image) {
-  cv::Mat rgb(image.height, image.width, CV_8UC3, image.pixels.data());
-  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
 }
 
 }  // namespace
@@ -94,19 +87,7 @@ std::optional<Delivery> ReplayCamera::next_delivery() {
 }
 
 Status ReplayCamera::draw(const Delivery& /*delivery*/, RgbImage& image) {
-  const std::string file = recording_[next_ - 1].file.string();
-  try {
-    const cv::Mat bgr = cv::imread(file, cv::IMREAD_COLOR);
-    if (bgr.empty()) return fail("{}: cannot be read as a picture", file);
-    if (bgr.cols != image.width || bgr.rows != image.height) {
-      return fail("{}: is {}x{} pixels, wanted {}x{}", file, bgr.cols, bgr.rows, image.width,
-                  image.height);
-    }
-    copy_rgb(bgr, image);
-  } catch (const cv::Exception& exception) {
-    return fail("{}: {}", file, exception.what());
-  }
-  return {};
+  return read_picture(recording_[next_ - 1].file.string(), image);
 }
 
 }  // namespace bevloc::drivers

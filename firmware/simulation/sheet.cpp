@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "common/picture_file.h"
 #include "firmware/drawing.h"
 #include "firmware/simulation/error_statistics.h"
 #include "firmware/simulation/map_overlay.h"
@@ -140,8 +140,9 @@ Status write_sheet(const SheetContent& content, const Rig& rig, const MapIndex& 
              {distributions.x, lower - 10});
   draw_distributions(sheet, distributions, content);
 
-  if (!cv::imwrite(path, sheet)) return fail("{}: the sheet cannot be written there", path);
-  return {};
+  cv::cvtColor(sheet, sheet, cv::COLOR_BGR2RGB);
+  return write_png({sheet.data, sheet.cols, sheet.rows, static_cast<std::ptrdiff_t>(sheet.step)},
+                   path);
 }
 
 }  // namespace bevloc::firmware

@@ -1,13 +1,16 @@
 // Makes small recordings for the tests, in a folder that goes away with the object.
 #pragma once
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
-#include <opencv2/imgcodecs.hpp>
+#include <gtest/gtest.h>
 #include <unistd.h>
+
+#include "common/picture_file.h"
 
 namespace bevloc::drivers {
 
@@ -28,9 +31,11 @@ class Recording {
   const std::filesystem::path& directory() const { return directory_; }
 
   /// A picture of one colour (red, green, blue).
-  void add_picture(const std::string& name, int width, int height, cv::Vec3b rgb) const {
-    const cv::Mat bgr(height, width, CV_8UC3, cv::Scalar(rgb[2], rgb[1], rgb[0]));
-    cv::imwrite((directory_ / name).string(), bgr);
+  void add_picture(const std::string& name, int width, int height,
+                   std::array<uint8_t, 3> rgb) const {
+    RgbImage image(width, height);
+    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = rgb[i % 3];
+    EXPECT_TRUE(write_png(image.view(), (directory_ / name).string()));
   }
 
   void write(const std::string& name, const std::string& text) const {

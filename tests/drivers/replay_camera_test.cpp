@@ -109,7 +109,7 @@ TEST(ReplayCamera, NamesThePictureItCannotShow) {
   Frame frame;
   const auto text = camera.next_frame(milliseconds(900), frame);
   ASSERT_FALSE(text);
-  EXPECT_THAT(text.error().message, EndsWith("text.png: cannot be read as a picture"));
+  EXPECT_THAT(text.error().message, EndsWith("text.png: is neither PNG nor JPEG, wanted a picture"));
   const auto wide = camera.next_frame(milliseconds(900), frame);
   ASSERT_FALSE(wide);
   EXPECT_THAT(wide.error().message, EndsWith("wide.png: is 5x2 pixels, wanted 4x2"));
