@@ -10,9 +10,14 @@
 namespace bevloc::bench {
 namespace {
 
+/// Blocks of pixels have entries of their own; the others have two positions and their weights.
 double table_bytes(const RemapTable& table) {
-  const size_t entries = table.first_col.size() + table.first_row.size() + table.weights.size();
-  return static_cast<double>(entries * sizeof(uint16_t));
+  const RemapBlocks& blocks = table.blocks;
+  size_t entries = blocks.index.size() + blocks.first_col.size() + blocks.first_row.size();
+  for (const auto [begin, end] : blocks.others) {
+    entries += static_cast<size_t>(end - begin) * (2 + 2 * static_cast<size_t>(table.taps));
+  }
+  return static_cast<double>(entries * sizeof(uint16_t) + blocks.weights.size());
 }
 
 double rows_read(const RemapTable& table, const CameraModel& camera) {

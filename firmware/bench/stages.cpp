@@ -86,13 +86,13 @@ void Stages::Parts::take_images(PixelFormat format) {
   const std::span<int8_t> input = network->image_input();
   const CameraPictures* const others =
       format == PixelFormat::kRgb24 ? nullptr : &converted.at(format);
-  for (size_t camera = 0; camera < kCameraCount; ++camera) {
+  network->for_each_turn(kCameraCount, [&](int camera) {
     const ImageView view =
         others != nullptr ? (*others)[camera].view : ImageView((*pictures)[camera].view());
     // The pictures are those of the rig: nothing is refused.
     (void)preprocessors[camera].run(view,
                                     input.subspan(camera * kNetworkImageSize, kNetworkImageSize));
-  }
+  });
 }
 
 void Stages::Parts::take_frameset() {

@@ -10,6 +10,7 @@
 #include "pipeline/network/cpu_isa.h"
 #include "pipeline/network/memory_plan.h"
 #include "pipeline/network/program.h"
+#include "pipeline/network/turn.h"
 #include "pipeline/network/view_table.h"
 #include "pipeline/network/view_transform.h"
 
@@ -42,6 +43,10 @@ class Engine {
 
   /// Runs one of the branches that the engine was made for, after those that it reads from.
   virtual void run(size_t branch) = 0;
+
+  /// Other work on the threads of run(): turn(i) for i from 0 up to `count`, in any order. It must
+  /// not throw.
+  virtual void for_each_turn(int count, Turn turn) = 0;
 
   /// Bytes of all activations together, and the same without reuse.
   size_t arena_bytes() const { return arena_bytes_; }

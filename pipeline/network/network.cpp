@@ -191,6 +191,10 @@ void Network::run_mask_head() {
   state_->engine->run(kMaskPart);
 }
 
+void Network::for_each_turn(int count, Turn turn) {
+  state_->engine->for_each_turn(count, turn);
+}
+
 FeatureView Network::bev_features() const {
   return state_->features(kBevFeatures);
 }

@@ -9,6 +9,7 @@
 
 #include "common/result.h"
 #include "pipeline/network/engine.h"
+#include "pipeline/network/turn.h"
 #include "pipeline/network/view_table.h"
 #include "pipeline/solver/solver.h"
 
@@ -58,6 +59,10 @@ class Network {
   void run_image_branch();
   void run_map_branch();
   void run_mask_head();
+
+  /// Other work on the network's threads: turn(i) for i from 0 up to `count`, in any order, in the
+  /// caller's where there is one. It must not throw.
+  void for_each_turn(int count, Turn turn);
 
   /// [16, 100, 50] on kFeatureGrid; valid until the branch runs again.
   FeatureView bev_features() const;

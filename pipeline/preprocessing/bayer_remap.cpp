@@ -34,12 +34,12 @@ struct LatticeWeights {
 };
 
 [[gnu::always_inline]] inline void remap_pixels(const ImageView& image, const RemapTable& table,
-                                                int red_row, int red_col, int taps,
-                                                int8_t* planes) {
+                                                PixelRange range, int red_row, int red_col,
+                                                int taps, int8_t* planes) {
   const ImagePlane& plane = image.planes[0];
-  const uint16_t* weights = table.weights.data();
+  const uint16_t* weights = table.weights.data() + 2 * taps * range.begin;
   const int samples = taps + 2;
-  for (int i = 0; i < kNetworkPixels; ++i, weights += 2 * taps) {
+  for (int i = range.begin; i < range.end; ++i, weights += 2 * taps) {
     const LatticeWeights cols(table.first_col[i], weights, taps, image.width);
     const LatticeWeights rows(table.first_row[i], weights + taps, taps, image.height);
     const uint8_t* box = plane.data + rows.first * plane.stride_bytes + cols.first;
@@ -66,26 +66,24 @@ struct LatticeWeights {
 
 /// The tap counts of usual frames are compiled as constants, as in rgb_remap.cpp.
 BEVLOC_TARGET_CLONES
-void remap_taps(const ImageView& image, const RemapTable& table, int red_row, int red_col,
-                int8_t* planes) {
+void remap_range(const ImageView& image, const RemapTable& table, PixelRange range, int red_row,
+                 int red_col, int8_t* planes) {
   switch (table.taps) {
     case 3:
-      return remap_pixels(image, table, red_row, red_col, 3, planes);
+      return remap_pixels(image, table, range, red_row, red_col, 3, planes);
     case 5:
-      return remap_pixels(image, table, red_row, red_col, 5, planes);
+      return remap_pixels(image, table, range, red_row, red_col, 5, planes);
     default:
-      return remap_pixels(image, table, red_row, red_col, table.taps, planes);
+      return remap_pixels(image, table, range, red_row, red_col, table.taps, planes);
   }
 }
 
 }  // namespace
 
-void remap_bayer(const ImageView& image, const RemapTable& table, int8_t* planes) {
-  const bool has_red_below =
-      image.format == PixelFormat::kBayerGbrg || image.format == PixelFormat::kBayerBggr;
-  const bool has_red_right =
-      image.format == PixelFormat::kBayerGrbg || image.format == PixelFormat::kBayerBggr;
-  remap_taps(image, table, has_red_below ? 1 : 0, has_red_right ? 1 : 0, planes);
+void remap_bayer_plain(const ImageView& image, const RemapTable& table, PixelRange range,
+                       int8_t* planes) {
+  const auto [row, col] = red_of(image.format);
+  remap_range(image, table, range, row, col, planes);
 }
 
 }  // namespace bevloc

@@ -58,6 +58,7 @@ RemapTable make_remap_table(const CameraModel& camera) {
     table.first_row[i] = static_cast<uint16_t>(
         box_weights(source->y(), box, real.height_px, weights.subspan(table.taps, table.taps)));
   }
+  table.blocks = make_remap_blocks(table, real.width_px, real.height_px);
   return table;
 }
 

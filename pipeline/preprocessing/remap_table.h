@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "pipeline/preprocessing/network_camera.h"
+#include "pipeline/preprocessing/remap_blocks.h"
 
 namespace bevloc {
 
 inline constexpr int kNetworkPixels = kNetworkWidthPx * kNetworkHeightPx;
+inline constexpr PixelRange kAllNetworkPixels{0, kNetworkPixels};
 
 /// For each network pixel the box of camera pixels whose mean it is.
 struct RemapTable {
@@ -23,6 +25,7 @@ struct RemapTable {
   /// For each network pixel the weights of its columns, then those of its rows. Each set sums to
   /// kWeightSum, or to 0 outside the frame.
   std::vector<uint16_t> weights;
+  RemapBlocks blocks;  ///< of the same boxes
 };
 
 /// Through network_camera(camera) into the frames of `camera`.

@@ -7,9 +7,9 @@ namespace {
 /// The rows of a box are summed first (contiguous bytes: this is what vectorises), then the
 /// columns.
 [[gnu::always_inline]] inline void remap_pixels(const RgbView& image, const RemapTable& table,
-                                                int taps, int8_t* planes) {
-  const uint16_t* weights = table.weights.data();
-  for (int i = 0; i < kNetworkPixels; ++i, weights += 2 * taps) {
+                                                PixelRange range, int taps, int8_t* planes) {
+  const uint16_t* weights = table.weights.data() + 2 * taps * range.begin;
+  for (int i = range.begin; i < range.end; ++i, weights += 2 * taps) {
     const uint8_t* box =
         image.data + table.first_row[i] * image.stride_bytes + 3 * table.first_col[i];
     uint16_t columns[3 * RemapTable::kMaxTaps] = {};
@@ -30,25 +30,26 @@ namespace {
 
 /// The tap counts of usual frames (640 to 1280 pixels wide) are compiled as constants.
 BEVLOC_TARGET_CLONES
-void remap(const RgbView& image, const RemapTable& table, int8_t* planes) {
+void remap_range(const RgbView& image, const RemapTable& table, PixelRange range, int8_t* planes) {
   switch (table.taps) {
     case 2:
-      return remap_pixels(image, table, 2, planes);
+      return remap_pixels(image, table, range, 2, planes);
     case 3:
-      return remap_pixels(image, table, 3, planes);
+      return remap_pixels(image, table, range, 3, planes);
     case 4:
-      return remap_pixels(image, table, 4, planes);
+      return remap_pixels(image, table, range, 4, planes);
     case 5:
-      return remap_pixels(image, table, 5, planes);
+      return remap_pixels(image, table, range, 5, planes);
     default:
-      return remap_pixels(image, table, table.taps, planes);
+      return remap_pixels(image, table, range, table.taps, planes);
   }
 }
 
 }  // namespace
 
-void remap_rgb(const RgbView& image, const RemapTable& table, int8_t* planes) {
-  remap(image, table, planes);
+void remap_rgb_plain(const RgbView& image, const RemapTable& table, PixelRange range,
+                     int8_t* planes) {
+  remap_range(image, table, range, planes);
 }
 
 }  // namespace bevloc

@@ -1,47 +1,17 @@
 #include <algorithm>
-#include <cmath>
 
 #include "common/target_clones.h"
 #include "pipeline/preprocessing/format_remap.h"
+#include "pipeline/preprocessing/yuv_colour.h"
 
 namespace bevloc {
 namespace {
 
 constexpr int kSumBits = 2 * RemapTable::kWeightBits;  // of a box's weights
-constexpr int kSampleBits = 8;                         // fraction of a mean sample
-constexpr int kCoefficientBits = 12;
-
-/// RGB = luma * (Y - black) + (red_v * V, -green_u * U - green_v * V, blue_u * U), fixed point.
-struct RgbFromYuv {
-  int32_t black;
-  int32_t luma;
-  int32_t red_v;
-  int32_t green_u;
-  int32_t green_v;
-  int32_t blue_u;
-};
-
-/// ITU-R BT.601-7 2.5 and BT.709-6 3, solved for RGB.
-RgbFromYuv rgb_from_yuv(const YuvEncoding& encoding) {
-  const bool is_601 = encoding.matrix == YuvMatrix::kBt601;
-  const double red = is_601 ? 0.299 : 0.2126;
-  const double blue = is_601 ? 0.114 : 0.0722;
-  const double green = 1.0 - red - blue;
-  const double luma = encoding.full_range ? 1.0 : 255.0 / 219.0;
-  const double chroma = 2.0 * (encoding.full_range ? 1.0 : 255.0 / 224.0);
-  const auto fixed = [](double value) {
-    return static_cast<int32_t>(std::lround(value * (1 << kCoefficientBits)));
-  };
-  return {(encoding.full_range ? 0 : 16) << kSampleBits,
-          fixed(luma),
-          fixed(chroma * (1.0 - red)),
-          fixed(chroma * (1.0 - blue) * blue / green),
-          fixed(chroma * (1.0 - red) * red / green),
-          fixed(chroma * (1.0 - blue))};
-}
+constexpr int kSampleBits = RgbFromYuv::kSampleBits;
 
 int8_t to_network(int32_t fixed) {
-  constexpr int kBits = kSampleBits + kCoefficientBits;
+  constexpr int kBits = kSampleBits + RgbFromYuv::kCoefficientBits;
   const int32_t value = (fixed + (1 << (kBits - 1))) >> kBits;
   return static_cast<int8_t>(std::clamp(value, 0, 255) - 128);
 }
@@ -84,11 +54,11 @@ template <int kStep>
 
 template <int kLumaStep, int kChromaStep, int kShiftX, int kShiftY>
 [[gnu::always_inline]] inline void remap_pixels(const YuvLayout& image, const RemapTable& table,
-                                                const RgbFromYuv& colour, int taps,
-                                                int8_t* planes) {
+                                                PixelRange range, const RgbFromYuv& colour,
+                                                int taps, int8_t* planes) {
   constexpr int32_t kNoColour = 128 << kSampleBits;
-  const uint16_t* weights = table.weights.data();
-  for (int i = 0; i < kNetworkPixels; ++i, weights += 2 * taps) {
+  const uint16_t* weights = table.weights.data() + 2 * taps * range.begin;
+  for (int i = range.begin; i < range.end; ++i, weights += 2 * taps) {
     int weight_sum = 0;
     for (int col = 0; col < taps; ++col) weight_sum += weights[col];
     if (weight_sum == 0) {
@@ -121,38 +91,41 @@ template <int kLumaStep, int kChromaStep, int kShiftX, int kShiftY>
 /// The tap counts of usual frames are compiled as constants, as in rgb_remap.cpp.
 template <int kLumaStep, int kChromaStep, int kShiftX, int kShiftY>
 [[gnu::always_inline]] inline void remap_taps(const YuvLayout& image, const RemapTable& table,
-                                              const RgbFromYuv& colour, int8_t* planes) {
+                                              PixelRange range, const RgbFromYuv& colour,
+                                              int8_t* planes) {
   switch (table.taps) {
     case 3:
-      return remap_pixels<kLumaStep, kChromaStep, kShiftX, kShiftY>(image, table, colour, 3,
+      return remap_pixels<kLumaStep, kChromaStep, kShiftX, kShiftY>(image, table, range, colour, 3,
                                                                     planes);
     case 5:
-      return remap_pixels<kLumaStep, kChromaStep, kShiftX, kShiftY>(image, table, colour, 5,
+      return remap_pixels<kLumaStep, kChromaStep, kShiftX, kShiftY>(image, table, range, colour, 5,
                                                                     planes);
     default:
-      return remap_pixels<kLumaStep, kChromaStep, kShiftX, kShiftY>(image, table, colour,
+      return remap_pixels<kLumaStep, kChromaStep, kShiftX, kShiftY>(image, table, range, colour,
                                                                     table.taps, planes);
   }
 }
 
 /// Packed 4:2:2, NV12, and what JPEG is made of: 4:2:0, 4:2:2, 4:4:0, 4:4:4.
 BEVLOC_TARGET_CLONES
-void remap_steps(const YuvLayout& image, const RemapTable& table, const RgbFromYuv& colour,
-                 int8_t* planes) {
+void remap_range(const YuvLayout& image, const RemapTable& table, PixelRange range,
+                 const RgbFromYuv& colour, int8_t* planes) {
   const bool is_halved_x = image.chroma_shift_x == 1;
   const bool is_halved_y = image.chroma_shift_y == 1;
-  if (image.y_step == 2) return remap_taps<2, 4, 1, 0>(image, table, colour, planes);
-  if (image.chroma_step == 2) return remap_taps<1, 2, 1, 1>(image, table, colour, planes);
-  if (is_halved_x && is_halved_y) return remap_taps<1, 1, 1, 1>(image, table, colour, planes);
-  if (is_halved_x) return remap_taps<1, 1, 1, 0>(image, table, colour, planes);
-  if (is_halved_y) return remap_taps<1, 1, 0, 1>(image, table, colour, planes);
-  remap_taps<1, 1, 0, 0>(image, table, colour, planes);
+  if (image.y_step == 2) return remap_taps<2, 4, 1, 0>(image, table, range, colour, planes);
+  if (image.chroma_step == 2) return remap_taps<1, 2, 1, 1>(image, table, range, colour, planes);
+  if (is_halved_x && is_halved_y)
+    return remap_taps<1, 1, 1, 1>(image, table, range, colour, planes);
+  if (is_halved_x) return remap_taps<1, 1, 1, 0>(image, table, range, colour, planes);
+  if (is_halved_y) return remap_taps<1, 1, 0, 1>(image, table, range, colour, planes);
+  remap_taps<1, 1, 0, 0>(image, table, range, colour, planes);
 }
 
 }  // namespace
 
-void remap_yuv(const YuvLayout& image, const RemapTable& table, int8_t* planes) {
-  remap_steps(image, table, rgb_from_yuv(image.encoding), planes);
+void remap_yuv_plain(const YuvLayout& image, const RemapTable& table, PixelRange range,
+                     int8_t* planes) {
+  remap_range(image, table, range, rgb_from_yuv(image.encoding), planes);
 }
 
 }  // namespace bevloc

@@ -7,6 +7,7 @@
 
 #include "pipeline/network/load_error.h"
 #include "pipeline/network/onednn/isa.h"
+#include "pipeline/network/onednn/parallel.h"
 #include "pipeline/network/onednn/plan_builder.h"
 
 namespace bevloc::nn {
@@ -25,6 +26,7 @@ class OneDnnEngine : public Engine {
                const EngineOptions& options);
 
   void run(size_t branch) override;
+  void for_each_turn(int count, Turn turn) override;
 
  private:
   void bind(const Program& program, ExecutionPlan& plan);
@@ -76,6 +78,11 @@ void OneDnnEngine::run(size_t branch) {
   // OpenMP keeps this number for each calling thread.
   omp_set_num_threads(threads_);
   for (const auto& task : branches_[branch]) task->run(stream_.get());
+}
+
+void OneDnnEngine::for_each_turn(int count, Turn turn) {
+  omp_set_num_threads(threads_);
+  onednn::for_each_turn(count, turn);
 }
 
 }  // namespace

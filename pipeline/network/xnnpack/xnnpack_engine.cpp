@@ -28,6 +28,7 @@ class XnnpackEngine : public Engine {
                 int threads);
 
   void run(size_t branch) override;
+  void for_each_turn(int count, Turn turn) override;
 
  private:
   Threads threads_;
@@ -56,6 +57,13 @@ XnnpackEngine::XnnpackEngine(const Program& program, std::span<const Branch> bra
 
 void XnnpackEngine::run(size_t branch) {
   for (const auto& task : branches_[branch]) task->run(threads_.get());
+}
+
+void XnnpackEngine::for_each_turn(int count, Turn turn) {
+  const auto call = [](void* borrowed, size_t index) {
+    (*static_cast<const Turn*>(borrowed))(static_cast<int>(index));
+  };
+  pthreadpool_parallelize_1d(threads_.get(), call, &turn, static_cast<size_t>(count), 0);
 }
 
 }  // namespace

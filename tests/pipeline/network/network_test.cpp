@@ -3,10 +3,12 @@
 // without VNNI.
 #include "pipeline/network/network.h"
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <ranges>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -188,6 +190,26 @@ TEST(Network, TheShippedModelAllocatesNothingAtAll) {
   const int before = test::allocation_count();
   run_all(**network);
   EXPECT_EQ(test::allocation_count(), before);
+}
+
+TEST(Network, DoesOtherWorkOnItsThreadsWithoutAllocating) {
+  for (const int threads : {1, 2, 3}) {
+    const auto network = load("tiny_network_int8", with_threads(threads));
+    std::array<int, 7> turns{};
+    std::array<std::thread::id, 7> workers;
+    const auto turn = [&turns, &workers](int index) {
+      ++turns[index];
+      workers[index] = std::this_thread::get_id();
+    };
+    network->for_each_turn(static_cast<int>(turns.size()), turn);
+    const int before = test::allocation_count();
+    network->for_each_turn(static_cast<int>(turns.size()), turn);
+    network->for_each_turn(0, turn);
+    EXPECT_EQ(test::allocation_count(), before);
+    EXPECT_THAT(turns, ::testing::Each(2));
+    if (threads > 1) continue;
+    EXPECT_THAT(workers, ::testing::Each(std::this_thread::get_id()));
+  }
 }
 
 TEST(Network, AllocationCounterCounts) {

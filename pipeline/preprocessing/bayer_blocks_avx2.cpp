@@ -1,0 +1,164 @@
+#include "pipeline/preprocessing/block_kernels.h"
+
+#ifdef __x86_64__
+#include <array>
+#include <type_traits>
+#include <utility>
+
+#include <immintrin.h>
+
+#pragma GCC target("avx2")
+
+namespace bevloc {
+namespace {
+
+#include "pipeline/preprocessing/blocks_avx2.h"
+
+/// Columns of one parity that a register has room for: where four are enough, it has them twice.
+template <int kTaps>
+constexpr int kColumns = kTaps <= 5 ? 4 : 8;
+template <int kTaps>
+constexpr int kSlots = kTaps <= 3 ? 4 : 8;
+
+/// What is loaded of a row begins one column to the left of a block's first column, which is even.
+/// A half has bytes of odd columns, then those of even ones.
+template <int kTaps>
+constexpr int column(int i) {
+  return 2 * (i % kColumns<kTaps>)+i / 8;
+}
+
+/// Weights of samples along one axis: twice the box weight of the same pixel, plus those of its
+/// neighbours. A half's byte or word i has what `slot_of` says; nothing where that is kNone.
+struct Lattice {
+  Shuffle before;
+  Shuffle own;
+  Shuffle after;
+
+  template <typename SlotOf>
+  explicit constexpr Lattice(const SlotOf& slot_of)
+      : before(moved(slot_of, -1)), own(moved(slot_of, 0)), after(moved(slot_of, 1)) {}
+
+ private:
+  template <typename SlotOf>
+  static constexpr Shuffle moved(const SlotOf& slot_of, int by) {
+    return Shuffle([&slot_of, by](int half, int i) { return slot_of(half, i, by); });
+  }
+};
+
+/// A column's weight can be above a byte. It is split into halves, of odd weights one rounded down:
+/// where `down` is -1, elsewhere up.
+template <int kTaps>
+__m256i lattice_cols(__m256i weights, __m256i down) {
+  static constexpr Lattice kCols([](int half, int i, int by) {
+    const int slot = column<kTaps>(i) - 1 + by;
+    return slot >= 0 && slot < kSlots<kTaps> ? col_weight<kSlots<kTaps>>(half, slot) : kNone;
+  });
+  // The instruction rounds up; so does ~x rounded up, which is x rounded down.
+  const __m256i mean = _mm256_avg_epu8(_mm256_xor_si256(kCols.before(weights), down),
+                                       _mm256_xor_si256(kCols.after(weights), down));
+  return _mm256_add_epi8(kCols.own(weights), _mm256_xor_si256(mean, down));
+}
+
+/// Of eight rows in words; row 0 is the one above the box.
+template <int kTaps, int kFirstRow>
+__m256i lattice_rows(__m256i weights) {
+  static constexpr Lattice kRows([](int half, int i, int by) {
+    const int slot = kFirstRow + i / 2 - 1 + by;
+    const bool is_one = i % 2 == 0 && slot >= 0 && slot < kSlots<kTaps>;
+    return is_one ? kSlots<kTaps> + col_weight<kSlots<kTaps>>(half, slot) : kNone;
+  });
+  const __m256i own = kRows.own(weights);
+  const __m256i neighbours = _mm256_add_epi16(kRows.before(weights), kRows.after(weights));
+  return _mm256_add_epi16(_mm256_add_epi16(own, own), neighbours);
+}
+
+constexpr Shuffle all_words(int word) {
+  return Shuffle([word](int, int i) { return 2 * word + i % 2; });
+}
+
+/// Of a pair's pixels the sums of odd and of even columns, of the rows 0, 2, ... and of the others:
+/// four for each pixel.
+template <int kTaps>
+[[gnu::always_inline]] inline __m256i lattice_sums(const ImagePlane& plane, const Distances& place,
+                                                   const RemapBlocks& blocks, size_t block,
+                                                   int pair) {
+  static constexpr Shuffle kByColumn([](int, int i) { return column<kTaps>(i); });
+  static constexpr auto kAllWords = shuffles<8>(all_words);
+  constexpr bool kIsTwice = kColumns<kTaps> == 4;
+  // Two products that are added have one weight rounded down and one up.
+  const __m256i down = kIsTwice ? _mm256_set1_epi64x(static_cast<int64_t>(0xFF00FF00'00FF00FF))
+                                : _mm256_set1_epi16(0x00FF);
+  const __m256i weights = load_weights<kSlots<kTaps>>(blocks, block, pair);
+  const __m256i cols = lattice_cols<kTaps>(weights, down);
+  const __m256i other_cols = lattice_cols<kTaps>(weights, _mm256_slli_epi16(down, 8));
+  const __m256i rows[2] = {lattice_rows<kTaps, 0>(weights), lattice_rows<kTaps, 8>(weights)};
+  __m256i halves[2] = {};
+#pragma GCC unroll 9
+  for (int row = 0; row < kTaps + 2; ++row) {
+    const uint8_t* const first = plane.data + (row - 1) * plane.stride_bytes - 1;
+    const auto load = kIsTwice ? load_8 : load_16;
+    const __m256i samples = centred(
+        kByColumn(_mm256_set_m128i(load(first + place[pair + kPairs]), load(first + place[pair]))));
+    const __m256i weight = kAllWords[row % 8](rows[row / 8]);
+    __m256i& sums = halves[row % 2];
+    sums = _mm256_add_epi32(sums, _mm256_madd_epi16(_mm256_maddubs_epi16(cols, samples), weight));
+    if constexpr (!kIsTwice) {
+      const __m256i other = _mm256_maddubs_epi16(other_cols, samples);
+      sums = _mm256_add_epi32(sums, _mm256_madd_epi16(other, weight));
+    }
+  }
+  return _mm256_hadd_epi32(halves[0], halves[1]);
+}
+
+/// Less 128, rounded. `bits`: the sum of its weights.
+inline __m256i mean_of(__m256i sums, int bits) {
+  return _mm256_srai_epi32(_mm256_add_epi32(sums, _mm256_set1_epi32(1 << (bits - 1))), bits);
+}
+
+/// Where the colours lie among the four sums of a pixel. The box's first row is even in the frame
+/// or odd; the columns are the frame's.
+__m256i colours_of(const SumsByKind& sums, __m256i first_rows, RedPixel red) {
+  constexpr int kRedBits = 2 * (RemapTable::kWeightBits + 1);
+  const int red_col = red.col == 0 ? 1 : 0;
+  // The first row summed is the one above the box.
+  const __m256i parity = _mm256_xor_si256(first_rows, _mm256_set1_epi32(1 + red.row));
+  const __m256i is_swapped = _mm256_slli_epi32(parity, 31);
+  const auto chosen = [&](int first, int swapped) __attribute__((always_inline)) {
+    return _mm256_castps_si256(_mm256_blendv_ps(_mm256_castsi256_ps(sums.kinds[first]),
+                                                _mm256_castsi256_ps(sums.kinds[swapped]),
+                                                _mm256_castsi256_ps(is_swapped)));
+  };
+  const int blue_col = 1 - red_col;
+  const __m256i green =
+      _mm256_add_epi32(chosen(blue_col, 2 + blue_col), chosen(2 + red_col, red_col));
+  return to_bytes(mean_of(chosen(red_col, 2 + red_col), kRedBits), mean_of(green, kRedBits + 1),
+                  mean_of(chosen(2 + blue_col, blue_col), kRedBits));
+}
+
+template <int kTaps>
+void remap_blocks(const ImageView& image, const RemapBlocks& blocks, int8_t* planes) {
+  const ImagePlane& plane = image.planes[0];
+  const RedPixel red = red_of(image.format);
+  for (size_t block = 0; block < blocks.index.size(); ++block) {
+    const __m256i first_rows = load_positions(blocks.first_row, block);
+    const Distances place(_mm256_add_epi32(times(first_rows, plane.stride_bytes),
+                                           load_positions(blocks.first_col, block)));
+    prefetch_below<kTaps, 1>(plane.data + plane.stride_bytes + place[0], plane.stride_bytes);
+    __m256i sums[kPairs];
+    for (int pair = 0; pair < kPairs; ++pair) {
+      sums[pair] = lattice_sums<kTaps>(plane, place, blocks, block, pair);
+    }
+    store_block(colours_of(SumsByKind(sums), first_rows, red),
+                planes + kPixels * blocks.index[block]);
+  }
+}
+
+}  // namespace
+
+BlockKernel<ImageView>* bayer_kernel_avx2(int taps) {
+  return kernel_of_taps(
+      taps, [](auto constant) -> BlockKernel<ImageView>* { return remap_blocks<constant.value>; });
+}
+
+}  // namespace bevloc
+#endif

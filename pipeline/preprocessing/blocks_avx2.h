@@ -1,0 +1,156 @@
+// Blocks of network pixels in AVX2 registers: included after that set has been chosen. A register
+// holds a pair of pixels that are four apart, one in each 128-bit half: of each four bytes, words
+// or one sum for each channel.
+
+constexpr int kPixels = RemapBlocks::kPixels;
+constexpr int kPairs = kPixels / 2;
+constexpr int kNone = -1;
+
+/// For _mm256_shuffle_epi8: byte i of half h is source(h, i) of that half, or 0 if that is kNone.
+struct Shuffle {
+  alignas(32) int8_t bytes[32];
+
+  template <typename Source>
+  explicit constexpr Shuffle(const Source& source) : bytes() {
+    for (int i = 0; i < 32; ++i) bytes[i] = static_cast<int8_t>(source(i / 16, i % 16));
+  }
+  __m256i load() const { return _mm256_load_si256(reinterpret_cast<const __m256i*>(bytes)); }
+  __m256i operator()(__m256i from) const { return _mm256_shuffle_epi8(from, load()); }
+};
+
+inline __m128i load_16(const uint8_t* from) {
+  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+}
+inline __m128i load_8(const uint8_t* from) {
+  return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(from));
+}
+inline __m128i load_4(const uint8_t* from) {
+  return _mm_loadu_si32(from);
+}
+
+/// As signed bytes around 0, the first factor of a product being the weights: the sums of two
+/// products of bytes then stay within 16 bits.
+inline __m256i centred(__m256i samples) {
+  return _mm256_xor_si256(samples, _mm256_set1_epi8(-128));
+}
+
+/// For each pixel of a block a distance in bytes.
+struct Distances {
+  alignas(32) int32_t bytes[kPixels];
+
+  explicit Distances(__m256i of_pixels) {
+    _mm256_store_si256(reinterpret_cast<__m256i*>(bytes), of_pixels);
+  }
+  std::ptrdiff_t operator[](int pixel) const { return bytes[pixel]; }
+};
+
+inline __m256i load_positions(const std::vector<uint16_t>& positions, size_t block) {
+  const uint16_t* const first = positions.data() + kPixels * block;
+  return _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(first)));
+}
+
+inline __m256i times(__m256i positions, std::ptrdiff_t factor) {
+  return _mm256_mullo_epi32(positions, _mm256_set1_epi32(static_cast<int32_t>(factor)));
+}
+
+/// Asks for what the network pixels below a block will read. Pictures come from other cores and
+/// devices; without this, those that are in no near cache take nearly twice as long. `first`: the
+/// block's first sample; each has `kSampleBytes`. A plane may have fewer rows and columns than the
+/// picture, by 2 to the power of a shift.
+template <int kTaps, int kSampleBytes, int kRowShift = 0, int kColShift = 0>
+[[gnu::always_inline]] inline void prefetch_below(const uint8_t* first,
+                                                  std::ptrdiff_t stride_bytes) {
+  constexpr int kCacheLine = 64;
+  constexpr int kScale = kTaps - 1;  // camera pixels to a network pixel, about
+  constexpr int kBytes = kPixels * kScale * kSampleBytes >> kColShift;
+  constexpr int kBegin = kTaps >> kRowShift;
+  constexpr int kEnd = (kTaps + kScale) >> kRowShift;
+  for (int row = kBegin; row < kEnd; ++row) {
+    for (int byte = 0; byte < kBytes; byte += kCacheLine) {
+      _mm_prefetch(reinterpret_cast<const char*>(first + row * stride_bytes + byte), _MM_HINT_T0);
+    }
+  }
+}
+
+/// Of both pixels of a pair, where the shuffles below look for them.
+template <int kSlots>
+__m256i load_weights(const RemapBlocks& blocks, size_t block, int pair) {
+  const uint8_t* const first = blocks.weights.data() + 4 * kSlots * (kPairs * block + pair);
+  if constexpr (kSlots == 4) return _mm256_broadcastsi128_si256(load_16(first));
+  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(first));
+}
+
+template <int kSlots>
+constexpr int col_weight(int half, int slot) {
+  return slot + (kSlots == 4 ? 8 * half : 0);
+}
+/// A row's weight as each word.
+template <int kSlots>
+constexpr Shuffle row_weight(int row) {
+  return Shuffle([row](int half, int i) {
+    return i % 2 == 0 ? kSlots + col_weight<kSlots>(half, row) : kNone;
+  });
+}
+
+/// {make(0), make(1), ...}
+template <int kCount, typename Make>
+constexpr auto shuffles(const Make& make) {
+  return [&make]<int... kIndex>(std::integer_sequence<int, kIndex...>) {
+    return std::array{make(kIndex)...};
+  }
+  (std::make_integer_sequence<int, kCount>());
+}
+
+/// The kernel for boxes so wide: `choose` is given std::integral_constants.
+template <typename Choose>
+auto kernel_of_taps(int taps, const Choose& choose)
+    -> decltype(choose(std::integral_constant<int, RemapBlocks::kMaxTaps>())) {
+  switch (taps) {
+    case 2:
+      return choose(std::integral_constant<int, 2>());
+    case 3:
+      return choose(std::integral_constant<int, 3>());
+    case 4:
+      return choose(std::integral_constant<int, 4>());
+    case 5:
+      return choose(std::integral_constant<int, 5>());
+    case 6:
+      return choose(std::integral_constant<int, 6>());
+    case 7:
+      return choose(std::integral_constant<int, 7>());
+    default:
+      return nullptr;
+  }
+}
+
+/// Writes three planes, given the bytes of red, green and blue, four pixels each, in either half.
+inline void store_block(__m256i bytes, int8_t* planes) {
+  const __m256i channels =
+      _mm256_permutevar8x32_epi32(bytes, _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7));
+  const __m128i red_green = _mm256_castsi256_si128(channels);
+  const __m128i blue = _mm256_extracti128_si256(channels, 1);
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(planes), red_green);
+  _mm_storeh_pd(reinterpret_cast<double*>(planes + kNetworkPixels), _mm_castsi128_pd(red_green));
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(planes + 2 * kNetworkPixels), blue);
+}
+
+/// From four sums for each of eight pixels to eight of each kind.
+struct SumsByKind {
+  __m256i kinds[4];
+
+  explicit SumsByKind(const __m256i (&pairs)[kPairs]) {
+    const __m256i low01 = _mm256_unpacklo_epi32(pairs[0], pairs[1]);
+    const __m256i low23 = _mm256_unpacklo_epi32(pairs[2], pairs[3]);
+    const __m256i high01 = _mm256_unpackhi_epi32(pairs[0], pairs[1]);
+    const __m256i high23 = _mm256_unpackhi_epi32(pairs[2], pairs[3]);
+    kinds[0] = _mm256_unpacklo_epi64(low01, low23);
+    kinds[1] = _mm256_unpackhi_epi64(low01, low23);
+    kinds[2] = _mm256_unpacklo_epi64(high01, high23);
+    kinds[3] = _mm256_unpackhi_epi64(high01, high23);
+  }
+};
+
+/// Cut off at the ends of 8 bits, signed.
+inline __m256i to_bytes(__m256i red, __m256i green, __m256i blue) {
+  return _mm256_packs_epi16(_mm256_packs_epi32(red, green), _mm256_packs_epi32(blue, blue));
+}

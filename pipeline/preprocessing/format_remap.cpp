@@ -1,0 +1,40 @@
+#include "pipeline/preprocessing/format_remap.h"
+
+#include "pipeline/preprocessing/block_kernels.h"
+
+namespace bevloc {
+namespace {
+
+template <typename Picture>
+using Plain = void(const Picture& image, const RemapTable& table, PixelRange range, int8_t* planes);
+
+/// By the kernel what it can, the rest by the plain code.
+template <typename Picture>
+void remap(BlockKernel<Picture>* kernel, Plain<Picture>& plain, const Picture& image,
+           const RemapTable& table, int8_t* planes) {
+  if (kernel == nullptr) return plain(image, table, kAllNetworkPixels, planes);
+  kernel(image, table.blocks, planes);
+  for (const PixelRange range : table.blocks.others) plain(image, table, range, planes);
+}
+
+}  // namespace
+
+RedPixel red_of(PixelFormat format) {
+  const bool is_below = format == PixelFormat::kBayerGbrg || format == PixelFormat::kBayerBggr;
+  const bool is_right = format == PixelFormat::kBayerGrbg || format == PixelFormat::kBayerBggr;
+  return {is_below ? 1 : 0, is_right ? 1 : 0};
+}
+
+void remap_rgb(const RgbView& image, const RemapTable& table, int8_t* planes) {
+  remap(rgb_kernel_for(table.taps), remap_rgb_plain, image, table, planes);
+}
+
+void remap_yuv(const YuvLayout& image, const RemapTable& table, int8_t* planes) {
+  remap(yuv_kernel_for(image, table.taps), remap_yuv_plain, image, table, planes);
+}
+
+void remap_bayer(const ImageView& image, const RemapTable& table, int8_t* planes) {
+  remap(bayer_kernel_for(table.taps), remap_bayer_plain, image, table, planes);
+}
+
+}  // namespace bevloc

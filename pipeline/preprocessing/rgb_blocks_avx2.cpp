@@ -1,0 +1,71 @@
+#include "pipeline/preprocessing/block_kernels.h"
+
+#ifdef __x86_64__
+#include <array>
+#include <type_traits>
+#include <utility>
+
+#include <immintrin.h>
+
+#pragma GCC target("avx2")
+
+namespace bevloc {
+namespace {
+
+#include "pipeline/preprocessing/blocks_avx2.h"
+#include "pipeline/preprocessing/boxes_avx2.h"
+
+struct RgbSource {
+  const uint8_t* data;
+  std::ptrdiff_t stride_bytes;
+
+  using Place = Distances;
+  Place place(const RemapBlocks& blocks, size_t block) const {
+    return Distances(_mm256_add_epi32(times(load_positions(blocks.first_row, block), stride_bytes),
+                                      times(load_positions(blocks.first_col, block), 3)));
+  }
+
+  template <int kTaps>
+  void prefetch(const Place& place) const {
+    prefetch_below<kTaps, 3>(data + place[0], stride_bytes);
+  }
+
+  template <int kGroup>
+  __m256i samples(const Place& place, int pair, int row) const {
+    static constexpr Shuffle kByChannel(
+        [](int, int i) { return i < 12 ? 3 * (i % 4) + i / 4 : kNone; });
+    const uint8_t* const first = data + row * stride_bytes + 12 * kGroup;
+    return kByChannel(
+        _mm256_set_m128i(load_16(first + place[pair + kPairs]), load_16(first + place[pair])));
+  }
+};
+
+template <int kTaps>
+void remap_blocks(const RgbView& image, const RemapBlocks& blocks, int8_t* planes) {
+  constexpr int kSumBits = 2 * RemapTable::kWeightBits;
+  static constexpr Shuffle kByChannel([](int, int i) { return 4 * (i % 4) + i / 4; });
+  const __m256i half = _mm256_set1_epi32(1 << (kSumBits - 1));
+  const RgbSource source{image.data, image.stride_bytes};
+  for (size_t block = 0; block < blocks.index.size(); ++block) {
+    const Distances place = source.place(blocks, block);
+    source.prefetch<kTaps>(place);
+    __m256i means[kPairs];
+    for (int pair = 0; pair < kPairs; ++pair) {
+      const __m256i sums = box_sums<kTaps>(source, place, blocks, block, pair, half);
+      means[pair] = _mm256_srai_epi32(sums, kSumBits);
+    }
+    const __m256i bytes = _mm256_packs_epi16(_mm256_packs_epi32(means[0], means[1]),
+                                             _mm256_packs_epi32(means[2], means[3]));
+    store_block(kByChannel(bytes), planes + kPixels * blocks.index[block]);
+  }
+}
+
+}  // namespace
+
+BlockKernel<RgbView>* rgb_kernel_avx2(int taps) {
+  return kernel_of_taps(
+      taps, [](auto constant) -> BlockKernel<RgbView>* { return remap_blocks<constant.value>; });
+}
+
+}  // namespace bevloc
+#endif
