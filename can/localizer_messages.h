@@ -55,19 +55,19 @@ inline constexpr Signal kTimeSource{.name = "TimeSource",
 inline constexpr Signal kMapOk =
     ok_flag("MapOk", 23, "A map is loaded and covers the place where the vehicle is.");
 inline constexpr std::array<Signal, 6> kCameraOk{{
-    ok_flag("CameraOk_FrontLeft", 24, "Camera front_left delivers frames in time."),
-    ok_flag("CameraOk_Front", 25, "Camera front delivers frames in time."),
-    ok_flag("CameraOk_FrontRight", 26, "Camera front_right delivers frames in time."),
-    ok_flag("CameraOk_BackLeft", 27, "Camera back_left delivers frames in time."),
-    ok_flag("CameraOk_Back", 28, "Camera back delivers frames in time."),
-    ok_flag("CameraOk_BackRight", 29, "Camera back_right delivers frames in time."),
+    ok_flag("CameraOk_FrontLeft", 24, "Camera front_left delivers usable frames in time."),
+    ok_flag("CameraOk_Front", 25, "Camera front delivers usable frames in time."),
+    ok_flag("CameraOk_FrontRight", 26, "Camera front_right delivers usable frames in time."),
+    ok_flag("CameraOk_BackLeft", 27, "Camera back_left delivers usable frames in time."),
+    ok_flag("CameraOk_Back", 28, "Camera back delivers usable frames in time."),
+    ok_flag("CameraOk_BackRight", 29, "Camera back_right delivers usable frames in time."),
 }};
 inline constexpr Signal kOdometryOk =
     ok_flag("OdometryOk", 30, "Valid wheel speed and yaw rate arrive in time.");
 inline constexpr Signal kGnssOk = ok_flag("GnssOk", 31, "Valid GNSS positions arrive in time.");
 /// In the order of the bits of can::Why.
 inline constexpr std::array<Signal, 16> kWhy{{
-    reason_flag("Why_CameraMissing", 0, "At least one camera delivers no frames in time."),
+    reason_flag("Why_CameraMissing", 0, "At least one camera delivers no usable frames in time."),
     reason_flag("Why_CamerasUnsynchronized", 1, "Frames of the cameras do not belong together."),
     reason_flag("Why_OdometryMissing", 2, "No valid wheel speed or yaw rate."),
     reason_flag("Why_GnssMissing", 3, "No valid GNSS position."),

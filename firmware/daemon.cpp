@@ -73,6 +73,7 @@ Status run_daemon(const Config& config, const Rig& rig, drivers::Gpio& gpio,
     return ignition && !stop();
   });
   supervisor.finish();
+  (*lines)->stop_trigger();
   const FrameCounts frames = (*appliance)->frame_counts();
   spdlog::info(
       "stopped: {} frames captured, {} used, {} dropped ({} for newer ones, {} without a set, "

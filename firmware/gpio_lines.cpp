@@ -64,6 +64,12 @@ GpioLines::~GpioLines() {
   if (Status status = show(false, true); !status) report_once(status.error());
 }
 
+void GpioLines::stop_trigger() {
+  if (!trigger_thread_.joinable()) return;
+  trigger_thread_.request_stop();
+  trigger_thread_.join();
+}
+
 bool GpioLines::step(const ApplianceView& view, Time now) {
   const bool fault = view.state == State::kFault || view.stalled;
   if (Status status = show(is_lit(view.state, now), fault); !status) report_once(status.error());

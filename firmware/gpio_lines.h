@@ -31,6 +31,9 @@ class GpioLines {
   /// second.
   bool step(const ApplianceView& view, Time now);
 
+  /// When nobody takes pictures any more: the counts of the trigger are final then.
+  void stop_trigger();
+
   /// Null without a trigger line.
   const drivers::Trigger* trigger() const { return trigger_.get(); }
 

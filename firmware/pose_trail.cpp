@@ -33,6 +33,11 @@ std::optional<Se2> PoseTrail::at(Time time) const {
          arc_motion(before->speed_mps, before->yaw_rate_radps, to_seconds(time - before->time));
 }
 
+std::optional<double> PoseTrail::speed_mps(Time time) const {
+  const auto rates = rates_at(time);
+  return rates ? std::optional(rates->speed_mps) : std::nullopt;
+}
+
 std::optional<Se2> PoseTrail::motion(Time from, Time to) const {
   const auto rates = rates_at(from + (to - from) / 2);
   if (!rates) return std::nullopt;

@@ -22,6 +22,9 @@ class PoseTrail {
   /// outside.
   std::optional<Se2> at(Time time) const;
 
+  /// Along the vehicle, likewise.
+  std::optional<double> speed_mps(Time time) const;
+
   /// How the vehicle moved: its pose at `to`, seen from that at `from`. From speed and yaw rate at
   /// the middle of the two times, which are meant to lie a tenth of a second apart at most. The
   /// poses themselves do not count: a correction makes them jump, the vehicle does not.

@@ -20,6 +20,7 @@ void Supervisor::step(Time now) {
   view_.bus = appliance_.bus().condition();
   const auto& drifts = appliance_.vision().synchrony().drift_ppm;
   std::ranges::copy(drifts, view_.drift_ppm.begin());
+  view_.frozen = CameraMask(appliance_.vision().counters().frozen);
   view_.realtime_refusals = realtime_.refusals();
   update_rate(now);
 

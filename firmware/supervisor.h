@@ -21,6 +21,7 @@ struct ApplianceView {
   int realtime_refusals = 0;  ///< settings of the section `realtime` that the kernel refused
   /// By how much each camera is faster than the median camera; 0 unless that is certain.
   std::array<double, kCameraCount> drift_ppm{};
+  CameraMask frozen;  ///< cameras whose picture stands still while the vehicle drives
 };
 
 /// Thread: the supervising one, about ten times a second.

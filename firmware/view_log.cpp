@@ -15,6 +15,7 @@ void ViewLog::note(const ApplianceView& view) {
     spdlog::warn("CAN {} -> {}", can::to_string(before_.bus), can::to_string(view.bus));
   }
   note_drifts(view);
+  note_frozen(view.frozen);
   before_ = view;
 }
 
@@ -27,6 +28,17 @@ void ViewLog::note_drifts(const ApplianceView& view) {
                    kCameraNames[camera], std::abs(ppm), ppm > 0.0 ? "fast" : "slow");
     } else if (ppm == 0.0 && before_ppm != 0.0) {
       spdlog::info("camera {}: drifts no more", kCameraNames[camera]);
+    }
+  }
+}
+
+void ViewLog::note_frozen(CameraMask frozen) {
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (frozen[camera] == before_.frozen[camera]) continue;
+    if (frozen[camera]) {
+      spdlog::warn("camera {}: its picture stands still", kCameraNames[camera]);
+    } else {
+      spdlog::info("camera {}: its picture changes again", kCameraNames[camera]);
     }
   }
 }

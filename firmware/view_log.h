@@ -13,6 +13,7 @@ class ViewLog {
 
  private:
   void note_drifts(const ApplianceView& view);
+  void note_frozen(CameraMask frozen);
 
   ApplianceView before_;
 };

@@ -1,8 +1,16 @@
 #include "firmware/vision_stage.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace bevloc::firmware {
+namespace {
+
+/// Faster than this, and no two pictures of a camera are the same. What odometry says of a vehicle
+/// that stands is far below.
+constexpr double kDriving_mps = 1.0;
+
+}  // namespace
 
 VisionStage::VisionStage(Localizer& localizer, const VisionConfig& config, FrameQueue& frames,
                          PredictionQueue& predictions, VisionQueue& reports)
@@ -88,22 +96,29 @@ void VisionStage::localize(const drivers::Frameset& frameset, VisionReport repor
 
 void VisionStage::match(const drivers::Frameset& frameset, const CameraMotions& motions,
                         VisionReport& report) {
-  CameraImages seen{{}, frameset.present, motions};
+  const double speed_mps = trail_.speed_mps(frameset.time).value_or(0.0);
+  CameraImages seen{{}, frameset.present, motions, std::abs(speed_mps) > kDriving_mps};
   for (int camera = 0; camera < kCameraCount; ++camera) {
     if (frameset.present[camera]) seen.images[camera] = frameset.frames[camera].image();
   }
   const SearchRange range = acquiring_ ? SearchRange::kAcquiring : SearchRange::kTracking;
   report.present = localizer_.localize(seen, report.prior, range, solution_);
   report.map_nearby = localizer_.map_nearby();
-  for (int camera = 0; camera < kCameraCount; ++camera) {
-    if (frameset.present[camera] && !report.present[camera]) ++counters_.unreadable[camera];
-  }
+  count_left_out(frameset.present, report.present);
   if (static_cast<int>(report.present.count()) < min_cameras_) {
     ++counters_.refused;
     return;
   }
   report.correction = solution_;
   if (observer_) observer_({frameset, report, solution_, range, localizer_});
+}
+
+void VisionStage::count_left_out(CameraMask given, CameraMask used) {
+  const CameraMask unreadable = given & ~used & ~localizer_.frozen();
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (unreadable[camera]) ++counters_.unreadable[camera];
+  }
+  counters_.frozen = static_cast<unsigned>(localizer_.frozen().to_ulong());
 }
 
 std::optional<CameraMotions> VisionStage::motions_in(const drivers::Frameset& frameset) const {

@@ -42,6 +42,7 @@ struct VisionCounters {
   std::atomic<uint64_t> refused{0};            ///< framesets with too few readable pictures
   /// Of each camera, pictures of the wrong size and damaged JPEGs; the frames count as used.
   std::array<std::atomic<uint64_t>, kCameraCount> unreadable{};
+  std::atomic<unsigned> frozen{0};  ///< bit mask: cameras that are left out, their picture stands
 };
 
 /// Thread: one, the vision thread; counters() from any.
@@ -68,6 +69,7 @@ class VisionStage {
   void localize(const drivers::Frameset& frameset, VisionReport report);
   /// Fills in what only the pictures tell.
   void match(const drivers::Frameset& frameset, const CameraMotions& motions, VisionReport& report);
+  void count_left_out(CameraMask given, CameraMask used);
   /// Nothing when the motion to one of its frames is not known.
   std::optional<CameraMotions> motions_in(const drivers::Frameset& frameset) const;
 

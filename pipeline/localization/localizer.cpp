@@ -48,26 +48,36 @@ Localizer::Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Networ
 
 CameraMask Localizer::localize(const CameraImages& seen, const Se2& prior, SearchRange range,
                                SolverResult& result) {
-  const CameraMask readable = take_in(seen);
-  look_from(readable, seen.reference_from_exposure);
+  const CameraMask usable = take_in(seen);
+  look_from(usable, seen.reference_from_exposure);
   network_->run_image_branch();
   rasterizer_.draw(prior, network_->raster_input());
   network_->run_map_branch();
   solvers_[static_cast<size_t>(range)]->solve(network_->bev_features(), network_->map_features(),
                                               result);
-  return readable;
+  return usable;
 }
 
 CameraMask Localizer::take_in(const CameraImages& seen) {
-  const std::span<int8_t> input = network_->image_input();
-  CameraMask readable;
-  for (int camera = 0; camera < kCameraCount; ++camera) {
-    const auto planes = input.subspan(camera * kNetworkImageSize, kNetworkImageSize);
+  const auto planes_of = [input = network_->image_input()](int camera) {
+    return input.subspan(camera * kNetworkImageSize, kNetworkImageSize);
+  };
+  std::array<bool, kCameraCount> readable{};
+  network_->for_each_turn(kCameraCount, [&](int camera) {
     readable[camera] =
-        seen.present[camera] && preprocessors_[camera].run(seen.images[camera], planes).has_value();
-    if (!readable[camera]) std::ranges::fill(planes, kNetworkBlack);
+        seen.present[camera] &&
+        preprocessors_[camera].run(seen.images[camera], planes_of(camera)).has_value();
+  });
+  CameraMask usable;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const std::span<int8_t> planes = planes_of(camera);
+    if (readable[camera]) {
+      frozen_[camera] = frozen_pictures_.is_frozen(camera, planes, seen.driving);
+    }
+    usable[camera] = readable[camera] && !frozen_[camera];
+    if (!usable[camera]) std::ranges::fill(planes, kNetworkBlack);
   }
-  return readable;
+  return usable;
 }
 
 void Localizer::look_from(CameraMask present, const CameraMotions& reference_from_exposure) {

@@ -12,6 +12,7 @@
 #include "common/result.h"
 #include "common/se2.h"
 #include "pipeline/calibration/rig.h"
+#include "pipeline/localization/frozen_pictures.h"
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/rasterizer.h"
 #include "pipeline/network/network.h"
@@ -35,6 +36,7 @@ struct CameraImages {
   std::array<ImageView, kCameraCount> images;  ///< read where `present`
   CameraMask present;
   CameraMotions reference_from_exposure{};  ///< against the time of the prior
+  bool driving = false;                     ///< then every picture is another one (FrozenPictures)
 };
 
 enum class SearchRange : uint8_t { kTracking, kAcquiring };
@@ -50,12 +52,15 @@ class Localizer {
 
   /// `prior` is T0, the predicted map_from_vehicle at the reference time, for which the correction
   /// holds. Returns the cameras that were seen: one whose image is not of the calibration's size,
-  /// or is a damaged JPEG, counts as missing.
+  /// or is a damaged JPEG, or is frozen, counts as missing.
   ///
   /// The view table is made anew when the set of cameras changes, or when a camera's motion differs
   /// by more than 1 cm or 0.02 degrees (1 cm at 30 m) from the one that the table was made for.
   CameraMask localize(const CameraImages& seen, const Se2& prior, SearchRange range,
                       SolverResult& result);
+
+  /// The cameras whose latest readable image was frozen.
+  CameraMask frozen() const { return frozen_; }
 
   /// The map as drawn in the latest localize(), kRasterSize bytes.
   std::span<const uint8_t> map_raster() const { return network_->raster_input(); }
@@ -73,7 +78,7 @@ class Localizer {
  private:
   Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Network> network,
             const LocalizerOptions& options);
-  /// Fills the network's image input; returns the cameras whose images could be read.
+  /// Fills the network's image input; returns the cameras whose images can be used.
   CameraMask take_in(const CameraImages& seen);
   void look_from(CameraMask present, const CameraMotions& reference_from_exposure);
 
@@ -81,6 +86,8 @@ class Localizer {
   LocalizerOptions options_;
   std::unique_ptr<Network> network_;
   std::vector<ImagePreprocessor> preprocessors_;
+  FrozenPictures frozen_pictures_;
+  CameraMask frozen_;
   MapRasterizer rasterizer_;
   std::array<std::unique_ptr<Solver>, 2> solvers_;  ///< by SearchRange
   ViewTable view_table_;                            ///< for the two below

@@ -2,6 +2,7 @@
 
 #include <set>
 #include <string>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -110,8 +111,26 @@ TEST_F(GpioLinesTest, LostChipDoesNotEndLocalization) {
   EXPECT_TRUE(step(State::kTracking));
 }
 
+TEST(GpioLinesTriggerTest, CountsOfAStoppedTriggerAreWhatTheWireSaw) {
+  drivers::MonotonicClock clock;
+  MockGpio gpio({"trigger"}, clock);
+  Realtime realtime{{}};
+  GpioConfig config;
+  // So rare that a busy machine is never so late that it leaves all of them out.
+  config.trigger = {{MockGpio::kChip, "trigger"}, {milliseconds(100), milliseconds(1)}};
+  auto lines = GpioLines::open(config, gpio, clock, realtime);
+  ASSERT_TRUE(lines) << lines.error().message;
+  const drivers::PulseLog& pulses = (*lines)->trigger()->pulses();
+  while (pulses.count() < 2) std::this_thread::yield();
+  (*lines)->stop_trigger();
+  EXPECT_EQ(gpio.changes("trigger").size(), 2 * pulses.count());
+  EXPECT_FALSE(gpio.high("trigger"));
+  (*lines)->stop_trigger();
+}
+
 TEST_F(GpioLinesTest, NoLinesAreNeeded) {
   open({});
+  lines_->stop_trigger();
   EXPECT_TRUE(step(State::kTracking));
   EXPECT_EQ(lines_->trigger(), nullptr);
   EXPECT_TRUE(gpio_.changes("led").empty());

@@ -96,6 +96,9 @@ TEST(PoseTrailTest, MotionUnderSteadyBrakingHasTheMeanSpeed) {
     pose.speed_mps = 10.0 - 0.05 * i;
     trail.add(pose);
   }
+  const auto speed_mps = trail.speed_mps(Time(milliseconds(45)));
+  ASSERT_TRUE(speed_mps);
+  EXPECT_NEAR(*speed_mps, 9.775, 1e-9);
   const auto motion = trail.motion(Time(milliseconds(20)), Time(milliseconds(70)));
   ASSERT_TRUE(motion);
   EXPECT_NEAR(motion->x_m, 0.05 * (10.0 - 0.05 * 4.5), 1e-9);

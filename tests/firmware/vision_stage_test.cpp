@@ -248,5 +248,92 @@ TEST_F(VisionStagePictureTest, ASetWithTooFewReadablePicturesIsRefused) {
   EXPECT_EQ(stage_->counters().unreadable[kDamagedCamera], 1U);
 }
 
+/// A drive at ten sets a second in which one camera may repeat its picture.
+class VisionStageFrozenTest : public VisionStagePictureTest {
+ protected:
+  static constexpr int kFrozenCamera = 2;
+  static constexpr int kBroken = FrozenPictures::kRepetitions;
+
+  void SetUp() override {
+    VisionStagePictureTest::SetUp();
+    stuck_rgb_ = rgb_;
+    stuck_ = picture_;
+    stuck_.planes[0].data = stuck_rgb_.data();
+  }
+
+  /// The cameras that the next set is made of.
+  CameraMask drive_on(double speed_mps, bool frozen) {
+    time_ += milliseconds(100);
+    Prediction prediction;
+    prediction.pose.time = time_;
+    prediction.pose.speed_mps = speed_mps;
+    predictions_.push(prediction);
+    for (uint8_t& sample : rgb_) ++sample;
+    for (int camera = 0; camera < kCameraCount; ++camera) {
+      drivers::Frame frame;
+      frame.camera = camera;
+      frame.time = time_;
+      frame.buffer = {lender_, 0, camera == kFrozenCamera && frozen ? stuck_ : picture_};
+      frames_.push(std::move(frame));
+    }
+    clock_.sleep_until(time_);
+    const auto report = step();
+    return report && report->had_prior ? report->present : CameraMask();
+  }
+
+  void expect_all_used(double speed_mps, bool frozen, int sets) {
+    for (int i = 0; i < sets; ++i) EXPECT_TRUE(drive_on(speed_mps, frozen).all()) << i;
+  }
+
+  Time time_{milliseconds(1000)};
+  std::vector<uint8_t> stuck_rgb_;
+  ImageView stuck_;
+  const CameraMask others_ = CameraMask().set().reset(kFrozenCamera);
+};
+
+TEST_F(VisionStageFrozenTest, LeavesACameraOutWhosePictureStandsWhileTheVehicleDrives) {
+  expect_all_used(-5.0, true, kBroken);
+  EXPECT_EQ(stage_->counters().frozen, 0U);
+  std::vector<std::vector<float>> masks;
+  stage_->observe([&](const VisionSnapshot& snapshot) {
+    const auto mask = snapshot.localizer.perceived_mask();
+    masks.emplace_back(mask.begin(), mask.end());
+  });
+  EXPECT_EQ(drive_on(-5.0, true), others_);
+  EXPECT_EQ(stage_->counters().frozen, 1U << kFrozenCamera);
+  EXPECT_EQ(stage_->counters().unreadable[kFrozenCamera], 0U);
+  // What it shows is of no influence any more.
+  CameraImages seen{{}, others_};
+  seen.images.fill(picture_);
+  SolverResult solution;
+  localizer_->localize(seen, Se2{}, SearchRange::kTracking, solution);
+  const auto without = localizer_->perceived_mask();
+  ASSERT_EQ(masks.size(), 1U);
+  EXPECT_TRUE(std::ranges::equal(masks[0], without));
+}
+
+TEST_F(VisionStageFrozenTest, UsesTheCameraAgainAsSoonAsItsPictureChanges) {
+  expect_all_used(5.0, true, kBroken);
+  EXPECT_EQ(drive_on(5.0, true), others_);
+  EXPECT_TRUE(drive_on(5.0, false).all());
+  EXPECT_EQ(stage_->counters().frozen, 0U);
+  expect_all_used(5.0, true, kBroken);
+  EXPECT_EQ(drive_on(5.0, true), others_);
+}
+
+TEST_F(VisionStageFrozenTest, ABrightPixelIsAChange) {
+  expect_all_used(5.0, true, kBroken);
+  const size_t middle = stuck_rgb_.size() / 2 + static_cast<size_t>(stuck_.width) * 3 / 2;
+  for (int i = 0; i < 3; ++i) {
+    stuck_rgb_[middle] = static_cast<uint8_t>(stuck_rgb_[middle] ^ 0x80);
+    EXPECT_TRUE(drive_on(5.0, true).all()) << i;
+  }
+}
+
+TEST_F(VisionStageFrozenTest, JudgesNoPictureWhileTheVehicleStands) {
+  expect_all_used(0.0, true, 4 * kBroken);
+  EXPECT_EQ(stage_->counters().frozen, 0U);
+}
+
 }  // namespace
 }  // namespace bevloc::firmware
