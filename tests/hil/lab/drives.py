@@ -1,5 +1,6 @@
 """Scenarios with the emulated cameras: what they show is a drive, whose truth the judge knows."""
 
+import dataclasses
 import math
 import re
 
@@ -13,6 +14,8 @@ DRIVE_TIMEOUT_S = 900.0
 TRACKING_TIMEOUT_S = 300.0
 SETTLED_AFTER_S = 10.0
 MAX_MISSED_SETS = 3
+# Three repetitions (FrozenPictures), and one set may be under way when the fault begins.
+MAX_FROZEN_SETS = 4
 ALL_BACK_WITHIN_S = 2.0
 # Mean absolute errors that the mock drive is held to (tests/integration/drive_test.cpp).
 MAX_LONGITUDINAL_M, MAX_LATERAL_M, MAX_YAW_DEG = 0.5, 0.25, 0.6
@@ -44,12 +47,28 @@ def drive(run: Run) -> Outcome:
     )
 
 
-def freeze_camera(run: Run) -> Outcome:
-    return _poses_survive(run, "freeze")
-
-
 def camera_garbage(run: Run) -> Outcome:
-    return _poses_survive(run, "garbage")
+    """Garbage in one of six cameras must not become a wrong pose sent as valid."""
+    _start_tracking(run)
+    pid = run.show("MainPID")
+    broken_s = run.wall_s()
+    run.cameras.command(f"garbage {BROKEN_CAMERA}")
+    run.agent.check("sleep 8")
+    healed_s = run.wall_s()
+    run.cameras.command(f"heal {BROKEN_CAMERA}")
+    run.agent.check("sleep 4")
+    same_daemon = run.show("MainPID") == pid
+    log = run.finish_log()
+    passed, judged = _judge(_errors(run, log))
+    why = log.reasons(broken_s, healed_s)
+    return Outcome(
+        injected=f"noise and half frames from {NAMES[BROKEN_CAMERA]} for 8 s",
+        seen=f"{', '.join(dict.fromkeys(log.states()))}; "
+        f"the daemon said {', '.join(why) or 'nothing'}; "
+        f"{judged}; {'same' if same_daemon else 'new'} daemon",
+        recovery_s=None,
+        passed=passed and same_daemon,
+    )
 
 
 def no_cameras_at_start(run: Run) -> Outcome:
@@ -78,64 +97,59 @@ def no_cameras_at_start(run: Run) -> Outcome:
 
 
 def unplug_camera(run: Run) -> Outcome:
+    return _lose_camera(run, "unplug", "plug", MAX_MISSED_SETS)
+
+
+def freeze_camera(run: Run) -> Outcome:
+    """A camera that repeats one picture while the vehicle drives is as good as none."""
+    outcome = _lose_camera(run, "freeze", "heal", MAX_FROZEN_SETS)
+    says = f"camera {NAMES[BROKEN_CAMERA]}: its picture "
+    journal = run.journal()
+    named = f"{says}stands still" in journal and f"{says}changes again" in journal
+    return dataclasses.replace(
+        outcome,
+        seen=f"{outcome.seen}; the log {'names' if named else 'does NOT name'} it",
+        passed=outcome.passed and named,
+    )
+
+
+def _lose_camera(run: Run, fault: str, cure: str, max_sets: int) -> Outcome:
+    """The daemon says which camera it has lost, goes on without it, and uses it again."""
     _start_tracking(run)
     broken_s = run.wall_s()
-    run.cameras.command(f"unplug {BROKEN_CAMERA}")
+    run.cameras.command(f"{fault} {BROKEN_CAMERA}")
     run.agent.check("sleep 5")
     mended_s = run.wall_s()
-    run.cameras.command(f"plug {BROKEN_CAMERA}")
+    run.cameras.command(f"{cure} {BROKEN_CAMERA}")
     run.agent.check("sleep 8")
     log = run.finish_log()
     noticed_s = log.first_status(broken_s, **{BROKEN_SIGNAL: "MISSING"}, State="DEGRADED")
-    back_s = log.first_status(mended_s, **{name: "OK" for name in _camera_signals(log)})
+    all_ok = {name: "OK" for name in _camera_signals(log)}
+    back_s = log.first_status(mended_s, **all_ok)
+    tracking = log.first_status(mended_s, **all_ok, State="TRACKING") is not None
     passed, judged = _judge(_errors(run, log))
-    missed = _sets_between(run, broken_s, noticed_s) if noticed_s else None
+    sets = _sets_between(run, broken_s, noticed_s) if noticed_s else None
     noticed = (
-        f"DEGRADED after {missed} missed sets, {noticed_s - broken_s:.2f} s"
-        if noticed_s
-        else "not noticed"
+        f"DEGRADED after {sets} sets, {noticed_s - broken_s:.2f} s" if noticed_s else "not noticed"
     )
     return Outcome(
-        injected=f"{NAMES[BROKEN_CAMERA]} unplugged, 5 s later plugged in again",
-        seen=f"{noticed}; {judged}",
+        injected=f"{NAMES[BROKEN_CAMERA]}: {fault}, 5 s later {cure}",
+        seen=f"{noticed}, then {'TRACKING' if tracking else 'no tracking'}; {judged}",
         recovery_s=back_s - mended_s if back_s else None,
         passed=passed
-        and missed is not None
-        and missed <= MAX_MISSED_SETS
+        and tracking
+        and sets is not None
+        and sets <= max_sets
         and back_s is not None
         and back_s - mended_s < ALL_BACK_WITHIN_S,
     )
 
 
 def _sets_between(run: Run, begin_s: float, end_s: float) -> int:
-    """How many sets were exposed in this time: what a camera that is gone has missed."""
+    """How many sets were exposed in this time."""
     start_s = run.drive_start().wall_s
     first, last = (math.floor((t - start_s) / CAMERA_PERIOD_S) for t in (begin_s, end_s))
     return last - first
-
-
-def _poses_survive(run: Run, fault: str) -> Outcome:
-    """A picture that lies in one of six cameras must not become a wrong pose sent as valid."""
-    _start_tracking(run)
-    pid = run.show("MainPID")
-    broken_s = run.wall_s()
-    run.cameras.command(f"{fault} {BROKEN_CAMERA}")
-    run.agent.check("sleep 8")
-    healed_s = run.wall_s()
-    run.cameras.command(f"heal {BROKEN_CAMERA}")
-    run.agent.check("sleep 4")
-    same_daemon = run.show("MainPID") == pid
-    log = run.finish_log()
-    passed, judged = _judge(_errors(run, log))
-    why = log.reasons(broken_s, healed_s)
-    return Outcome(
-        injected=f"{NAMES[BROKEN_CAMERA]}: {fault} for 8 s",
-        seen=f"{', '.join(dict.fromkeys(log.states()))}; "
-        f"the daemon said {', '.join(why) or 'nothing'}; "
-        f"{judged}; {'same' if same_daemon else 'new'} daemon",
-        recovery_s=None,
-        passed=passed and same_daemon,
-    )
 
 
 def _start_tracking(run: Run) -> None:
