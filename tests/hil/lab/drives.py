@@ -17,6 +17,7 @@ MAX_MISSED_SETS = 3
 # Three repetitions (FrozenPictures), and one set may be under way when the fault begins.
 MAX_FROZEN_SETS = 4
 ALL_BACK_WITHIN_S = 2.0
+MAX_RESIDENT_MIB = 120
 # Mean absolute errors that the mock drive is held to (tests/integration/drive_test.cpp).
 MAX_LONGITUDINAL_M, MAX_LATERAL_M, MAX_YAW_DEG = 0.5, 0.25, 0.6
 # What no valid pose may be off by: alert limits of a freeway (Reid et al. 2019).
@@ -34,6 +35,7 @@ def drive(run: Run) -> Outcome:
     run.start_vehicle()
     if not _vehicle_ended(run):
         raise LabError("the drive did not end")
+    resident_mib = _resident_mib(run)
     run.agent.check("systemctl stop bevlocd")
     log = run.finish_log()
     errors = _errors(run, log)
@@ -41,9 +43,9 @@ def drive(run: Run) -> Outcome:
     balanced, frames = _frames_balance(run)
     return Outcome(
         injected="nothing: a drive with six USB cameras",
-        seen=f"{' -> '.join(log.states())}; {judged}; {frames}",
+        seen=f"{' -> '.join(log.states())}; {judged}; {frames}; {resident_mib:.0f} MiB resident",
         recovery_s=None,
-        passed=passed and balanced,
+        passed=passed and balanced and resident_mib <= MAX_RESIDENT_MIB,
     )
 
 
@@ -165,6 +167,12 @@ def _vehicle_ended(run: Run) -> bool:
     script = "systemctl is-active --quiet vehicle || exit 0; sleep 1"
     ended = run.agent.run(f"for try in $(seq 900); do {script}; done; exit 1", DRIVE_TIMEOUT_S)
     return ended.status == 0
+
+
+def _resident_mib(run: Run) -> float:
+    """The most that the daemon has had in memory: its own, and what it has touched of libraries."""
+    status = run.agent.check(f"grep VmHWM /proc/{run.show('MainPID')}/status")
+    return int(re.search(r"(\d+) kB", status).group(1)) / 1024
 
 
 def _errors(run: Run, log: BusLog) -> list[PoseError]:
