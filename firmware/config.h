@@ -45,7 +45,7 @@ struct MapConfig {
 };
 
 struct SolverConfig {
-  SolverKind kind = SolverKind::kDecoupledRefined;
+  SolverKind kind = SolverKind::kBandedRefined;
   HypothesisGrid tracking;
   HypothesisGrid acquiring{{6.0, 0.2}, {4.0, 0.2}, {radians(4.0), radians(0.2)}};
 };

@@ -41,7 +41,7 @@ from training.runtime import NativeNetwork, NativeSolver
 OPSET, IR_VERSION = 13, 8
 QUANTIZATION_FILE = "quantization.pt"
 SOLVERS_FILE = "solvers.pt"
-SHIPPED_SOLVER = "decoupled+refine"  # config/demo.yaml
+SHIPPED_SOLVER = "banded+refine"  # config/demo.yaml
 # Calibration looks at training scenes that no run reaches.
 CALIBRATION_SEED = FIRST_TRAINING_SEED + 2**27
 

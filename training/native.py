@@ -38,9 +38,9 @@ def library() -> ctypes.CDLL:
     lib.bevloc_joint_volume.restype = None
     lib.bevloc_joint_volume_gradients.argtypes = [integer] * 3 + [pointer] * 5
     lib.bevloc_joint_volume_gradients.restype = None
-    lib.bevloc_moved_sums.argtypes = [integer] * 3 + [pointer] * 4
+    lib.bevloc_moved_sums.argtypes = [integer] * 5 + [pointer] * 4
     lib.bevloc_moved_sums.restype = None
-    lib.bevloc_moved_sums_gradients.argtypes = [integer] * 3 + [pointer] * 6
+    lib.bevloc_moved_sums_gradients.argtypes = [integer] * 5 + [pointer] * 6
     lib.bevloc_moved_sums_gradients.restype = None
     lib.bevloc_sampler_create.argtypes = [
         *([ctypes.c_uint64] * 2),

@@ -146,7 +146,7 @@ class PoseSolvers(nn.Module):
         return banded_posterior(*scores, self.scale("banded_x"), self.scale("banded_y"))
 
     def refine(self, bev: Tensor, features_map: Tensor, start: Tensor) -> Posterior:
-        """One more pass from the estimate `start` (x m, y m, yaw rad), [batch, 3]."""
+        """More rounds from the estimate `start` (x m, y m, yaw rad), [batch, 3]."""
         scales = tuple(self.scale(f"refine_{axis}") for axis in ("x", "y", "yaw"))
         return refine(bev, features_map, start, scales, self.definition)
 

@@ -23,7 +23,7 @@
 namespace bevloc {
 
 struct LocalizerOptions {
-  SolverKind solver = SolverKind::kDecoupledRefined;
+  SolverKind solver = SolverKind::kBandedRefined;
   /// Hypotheses while tracking: the prior is good.
   HypothesisGrid tracking;
   /// Hypotheses while acquiring: the prior is GNSS alone.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/solver/cubic.h"
 #include "pipeline/solver/lane_sums.h"
 #include "pipeline/solver/posterior.h"
 
@@ -14,17 +13,13 @@ constexpr int kLateralBands = 10;
 constexpr int kLongitudinalBands = 5;
 constexpr float kStdEpsilon = 0.01F;
 
-/// Sum of exp(scale * (score - best)).
-double sum_of_exp(const double* scores, int count, double scale, double best) {
+/// Replaces scores by softmax(scale * score), and gives log of the sum of exp(scale * score).
+double normalise(std::span<double> scores, double scale) {
+  const double best = *std::ranges::max_element(scores);
   double sum = 0.0;
-  for (int i = 0; i < count; ++i) sum += std::exp(scale * (scores[i] - best));
-  return sum;
-}
-
-/// log of the sum of exp(scale * score).
-double log_sum(const double* scores, int count, double scale) {
-  const double best = *std::max_element(scores, scores + count);
-  return scale * best + std::log(sum_of_exp(scores, count, scale, best));
+  for (double& score : scores) sum += score = std::exp(scale * (score - best));
+  for (double& score : scores) score /= sum;
+  return scale * best + std::log(sum);
 }
 
 }  // namespace
@@ -62,28 +57,35 @@ void BandedMatcher::make_profiles(int length, const HypothesisAxis& axis, Bands&
   bands.map.resize(count * length * lanes_);
   bands.correlation.resize(count * (2 * bands.reach + 1));
   bands.scores.resize(static_cast<size_t>(hypotheses_.yaw_rad.count()) * axis.count());
+  for (int k = 0; k < hypotheses_.yaw_rad.count(); ++k) {
+    for (int i = 0; i < axis.count(); ++i) {
+      for (double lever : bands.lever_m) {
+        const double shift_m = axis.value(i) + hypotheses_.yaw_rad.value(k) * lever;
+        bands.taps.push_back(cubic_taps(shift_m / grid_.cell_m + bands.reach));
+      }
+    }
+  }
 }
 
 void BandedMatcher::match(const MatchSide& bev, const MatchSide& map, SolverResult& result) {
   average(bev.cells, lateral_.reach, longitudinal_.reach, lateral_.bev, longitudinal_.bev);
   average(map.cells, 0, 0, lateral_.map, longitudinal_.map);
-  for (auto [bands, axis] :
-       {std::pair(&lateral_, &hypotheses_.y_m), std::pair(&longitudinal_, &hypotheses_.x_m)}) {
+  for (Bands* bands : {&lateral_, &longitudinal_}) {
     correlate(*bands);
-    score(*axis, *bands);
+    score(*bands);
   }
   // P(a) is the product of what both axes leave when they are summed out.
   const int y_count = hypotheses_.y_m.count();
   const int x_count = hypotheses_.x_m.count();
   for (int k = 0; k < hypotheses_.yaw_rad.count(); ++k) {
-    yaw_scores_[k] =
-        log_sum(lateral_.scores.data() + k * y_count, y_count, parameters_.banded_y_scale) +
-        log_sum(longitudinal_.scores.data() + k * x_count, x_count, parameters_.banded_x_scale);
+    yaw_scores_[k] = normalise(std::span(lateral_.scores).subspan(k * y_count, y_count),
+                               parameters_.banded_y_scale) +
+                     normalise(std::span(longitudinal_.scores).subspan(k * x_count, x_count),
+                               parameters_.banded_x_scale);
   }
   softmax(yaw_scores_, 1.0, result.yaw_probability);
-  marginalise(lateral_, parameters_.banded_y_scale, result.yaw_probability, result.y_probability);
-  marginalise(longitudinal_, parameters_.banded_x_scale, result.yaw_probability,
-              result.x_probability);
+  marginalise(lateral_, result.yaw_probability, result.y_probability);
+  marginalise(longitudinal_, result.yaw_probability, result.x_probability);
   result.correction = {posterior_mean(result.x_probability, hypotheses_.x_m),
                        posterior_mean(result.y_probability, hypotheses_.y_m),
                        posterior_mean(result.yaw_probability, hypotheses_.yaw_rad)};
@@ -138,36 +140,28 @@ void BandedMatcher::correlate(Bands& bands) const {
   }
 }
 
-void BandedMatcher::score(const HypothesisAxis& axis, Bands& bands) const {
-  const int shifts = 2 * bands.reach + 1;
-  double* score = bands.scores.data();
-  for (int k = 0; k < hypotheses_.yaw_rad.count(); ++k) {
-    for (int i = 0; i < axis.count(); ++i, ++score) {
-      *score = 0.0;
-      for (size_t b = 0; b < bands.lever_m.size(); ++b) {
-        const double shift_m = axis.value(i) + hypotheses_.yaw_rad.value(k) * bands.lever_m[b];
-        const CubicTaps taps = cubic_taps(shift_m / grid_.cell_m + bands.reach);
-        const double* correlation = bands.correlation.data() + b * shifts + taps.first;
-        for (int tap = 0; tap < kCubicTaps; ++tap) *score += taps.weight[tap] * correlation[tap];
+void BandedMatcher::score(Bands& bands) {
+  const CubicTaps* taps = bands.taps.data();
+  const size_t count = bands.lever_m.size();
+  const size_t shifts = bands.correlation.size() / count;
+  for (double& score : bands.scores) {
+    score = 0.0;
+    const double* correlation = bands.correlation.data();
+    for (size_t b = 0; b < count; ++b, ++taps, correlation += shifts) {
+      for (int tap = 0; tap < kCubicTaps; ++tap) {
+        score += taps->weight[tap] * correlation[taps->first + tap];
       }
     }
   }
 }
 
 /// P(i) = sum over yaw of P(yaw) P(i | yaw).
-void BandedMatcher::marginalise(const Bands& bands, double scale,
-                                std::span<const float> yaw_probability,
+void BandedMatcher::marginalise(const Bands& bands, std::span<const float> yaw_probability,
                                 std::span<float> probability) {
-  const int count = static_cast<int>(probability.size());
   std::ranges::fill(probability, 0.0F);
-  for (size_t k = 0; k < yaw_probability.size(); ++k) {
-    const double* scores = bands.scores.data() + k * count;
-    const double best = *std::max_element(scores, scores + count);
-    const double sum = sum_of_exp(scores, count, scale, best);
-    for (int i = 0; i < count; ++i) {
-      probability[i] +=
-          yaw_probability[k] * static_cast<float>(std::exp(scale * (scores[i] - best)) / sum);
-    }
+  const double* given_yaw = bands.scores.data();
+  for (const float yaw : yaw_probability) {
+    for (float& p : probability) p += yaw * static_cast<float>(*given_yaw++);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/solver/cubic.h"
 #include "pipeline/solver/matcher.h"
 #include "pipeline/solver/shift_range.h"
 
@@ -19,8 +20,7 @@ namespace bevloc {
 ///   P(a, x, y) ~ exp(banded_y_scale * lateral + banded_x_scale * longitudinal),
 ///
 /// whose marginals are exact at the cost of two small tables: linear in the number of hypotheses of
-/// each axis. The correction is their means. Not in
-/// the paper.
+/// each axis. The correction is their means. Not in the paper.
 class BandedMatcher final : public Matcher {
  public:
   BandedMatcher(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses,
@@ -36,16 +36,18 @@ class BandedMatcher final : public Matcher {
     int reach = 0;                ///< whole shifts -reach ... +reach are correlated
     LaneBuffer bev;               ///< [band, reach + length + reach, lanes], zeros outside
     LaneBuffer map;               ///< [band, length, lanes]
+    std::vector<CubicTaps> taps;  ///< where a hypothesis reads the correlation of each band: [yaw,
+                                  ///< hypothesis, band]
     std::vector<double> correlation;  ///< [band, shift]
-    std::vector<double> scores;       ///< [yaw, hypothesis]
+    std::vector<double> scores;       ///< [yaw, hypothesis], then probabilities given the yaw
   };
 
   void make_profiles(int length, const HypothesisAxis& axis, Bands& bands) const;
   void average(const CellFeatures& features, int lateral_reach, int longitudinal_reach,
                LaneBuffer& lateral, LaneBuffer& longitudinal) const;
   void correlate(Bands& bands) const;
-  void score(const HypothesisAxis& axis, Bands& bands) const;
-  static void marginalise(const Bands& bands, double scale, std::span<const float> yaw_probability,
+  static void score(Bands& bands);
+  static void marginalise(const Bands& bands, std::span<const float> yaw_probability,
                           std::span<float> probability);
 
   BevGrid grid_;

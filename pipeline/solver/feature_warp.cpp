@@ -30,21 +30,4 @@ FeatureWarp::FeatureWarp(const CellFeatures& features, const Se2& correction)
     : FeatureWarp(features, correction.yaw_rad, correction.x_m / features.grid().cell_m,
                   correction.y_m / features.grid().cell_m) {}
 
-WarpLine FeatureWarp::line(int row, int col_begin, int cells) const {
-  // Rows grow towards -x and columns towards -y, so a turn of (x, y) is the same turn of (u, v),
-  // and a shift by +x reads rows further on.
-  const double center_row = 0.5 * (features_.grid().rows - 1);
-  const double center_col = 0.5 * (features_.grid().cols - 1);
-  const double u = row - center_row + row_shift_;
-  const double v = col_begin - center_col + col_shift_;
-  return {.origin = features_.cell(0, 0),
-          .row_stride = static_cast<int>(features_.row_stride()),
-          .lanes = features_.lanes(),
-          .u0 = cos_yaw_ * u + sin_yaw_ * v + center_row,
-          .v0 = -sin_yaw_ * u + cos_yaw_ * v + center_col,
-          .du = sin_yaw_,
-          .dv = cos_yaw_,
-          .cells = cells};
-}
-
 }  // namespace bevloc

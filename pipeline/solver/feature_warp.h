@@ -62,7 +62,7 @@ struct WarpLine {
   }
 };
 
-/// The taps of a line, sixteen after sixteen. Each are found before the previous ones are used, so
+/// The taps of a line, sixteen after sixteen. The next ones are found before these are used, so
 /// that the one hides behind the other.
 class TapGroups {
  public:
@@ -71,7 +71,8 @@ class TapGroups {
   const Taps& next() {
     const Taps& current = taps_[group_ % 2];
     ++group_;
-    line_.find_taps(group_ * kLanes, taps_[group_ % 2]);
+    const int first = group_ * kLanes;
+    if (first < line_.cells) line_.find_taps(first, taps_[group_ % 2]);
     return current;
   }
 
@@ -92,9 +93,9 @@ class FeatureWarp {
               double col_shift = 0.0);
   FeatureWarp(const CellFeatures& features, const Se2& correction);
 
-  /// Where the cells `col_begin` ... `col_begin + cells - 1` of `row` come from. They may lie
-  /// outside the grid.
-  WarpLine line(int row, int col_begin, int cells) const;
+  /// Where `cells` cells of `row` come from: `col_begin`, and every `col_step`-th from there on.
+  /// They may lie outside the grid.
+  WarpLine line(int row, int col_begin, int cells, int col_step = 1) const;
 
  private:
   const CellFeatures& features_;
@@ -103,6 +104,23 @@ class FeatureWarp {
   double row_shift_;
   double col_shift_;
 };
+
+inline WarpLine FeatureWarp::line(int row, int col_begin, int cells, int col_step) const {
+  // Rows grow towards -x and columns towards -y, so a turn of (x, y) is the same turn of (u, v),
+  // and a shift by +x reads rows further on.
+  const double center_row = 0.5 * (features_.grid().rows - 1);
+  const double center_col = 0.5 * (features_.grid().cols - 1);
+  const double u = row - center_row + row_shift_;
+  const double v = col_begin - center_col + col_shift_;
+  return {.origin = features_.cell(0, 0),
+          .row_stride = static_cast<int>(features_.row_stride()),
+          .lanes = features_.lanes(),
+          .u0 = cos_yaw_ * u + sin_yaw_ * v + center_row,
+          .v0 = -sin_yaw_ * u + cos_yaw_ * v + center_col,
+          .du = col_step * sin_yaw_,
+          .dv = col_step * cos_yaw_,
+          .cells = cells};
+}
 
 /// Writes the cells * lanes values of a line.
 void warp(const WarpLine& line, float* out);

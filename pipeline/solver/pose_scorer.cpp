@@ -8,59 +8,134 @@
 namespace bevloc {
 namespace {
 
-/// `lanes_per_cell` is line.lanes, known to the compiler where it can be. Two cells at a time, to
-/// hide the latency of the additions.
-[[gnu::always_inline]] inline MatchSums match_cells(WarpLine line, int lanes_per_cell,
-                                                    const float* map) {
-  line.lanes = lanes_per_cell;
+/// About so many cells are summed in float; of more, rounding would show.
+constexpr int kCellsTogether = 500;
+
+/// Consecutive rows.
+struct RowRange {
+  int begin;
+  int end;
+};
+
+/// Up to sixteen cells of a row of both sides; their map features are `map_step` floats apart.
+struct CellGroup {
+  Taps taps;
+  const float* map;
+  int cells;
+};
+
+/// The groups of a lattice's cells, row by row.
+class CellGroups {
+ public:
+  CellGroups(const FeatureWarp& moved, const CellFeatures& map, const CellLattice& lattice,
+             const RowRange& rows)
+      : moved_(moved), map_(map), lattice_(lattice), row_(rows.begin), row_end_(rows.end) {
+    begin_row();
+  }
+
+  int map_step() const { return lattice_.step * map_.lanes(); }
+  const WarpLine& line() const { return line_; }
+
+  /// False after the last one.
+  bool take(CellGroup& group) {
+    if (first_ >= line_.cells) {
+      if (++row_ >= row_end_) return false;
+      begin_row();
+    }
+    line_.find_taps(first_, group.taps);
+    group.map = map_.cell(row_, lattice_.first_col(row_)) + first_ * map_step();
+    group.cells = std::min(kLanes, line_.cells - first_);
+    first_ += kLanes;
+    return true;
+  }
+
+ private:
+  void begin_row() {
+    line_ = moved_.line(row_, lattice_.first_col(row_), lattice_.cells(row_, map_.grid().cols),
+                        lattice_.step);
+    first_ = 0;
+  }
+
+  const FeatureWarp& moved_;
+  const CellFeatures& map_;
+  const CellLattice& lattice_;
+  int row_;
+  int row_end_;
+  WarpLine line_;
+  int first_;
+};
+
+/// Two cells at a time, to hide the latency of the additions.
+struct CellSums {
   LaneSums even;
   LaneSums odd;
+};
+
+/// `lanes_per_cell` is the map's, known to the compiler where it can be.
+[[gnu::always_inline]] inline void add_cells(const CellGroup& group, WarpLine line, int map_step,
+                                             int lanes_per_cell, CellSums& sums) {
+  line.lanes = lanes_per_cell;
+  const float* map = group.map;
   Lanes moved;
-  TapGroups groups(line);
-  for (int first = 0; first < line.cells; first += kLanes) {
-    const Taps& taps = groups.next();
-    const int count = std::min(kLanes, line.cells - first);
-    int i = 0;
-    for (; i + 1 < count; i += 2, map += 2 * lanes_per_cell) {
-      for (int k = 0; k < lanes_per_cell; k += kLanes) {
-        line.read(taps, i, k, moved);
-        even.add(lanes(map + k), moved);
-        line.read(taps, i + 1, k, moved);
-        odd.add(lanes(map + lanes_per_cell + k), moved);
-      }
-    }
-    for (; i < count; ++i, map += lanes_per_cell) {
-      for (int k = 0; k < lanes_per_cell; k += kLanes) {
-        line.read(taps, i, k, moved);
-        even.add(lanes(map + k), moved);
-      }
+  int i = 0;
+  for (; i + 1 < group.cells; i += 2, map += 2 * map_step) {
+    for (int k = 0; k < lanes_per_cell; k += kLanes) {
+      line.read(group.taps, i, k, moved);
+      sums.even.add(lanes(map + k), moved);
+      line.read(group.taps, i + 1, k, moved);
+      sums.odd.add(lanes(map + map_step + k), moved);
     }
   }
-  return sum_of(even, odd);
+  for (; i < group.cells; ++i, map += map_step) {
+    for (int k = 0; k < lanes_per_cell; k += kLanes) {
+      line.read(group.taps, i, k, moved);
+      sums.even.add(lanes(map + k), moved);
+    }
+  }
 }
 
-BEVLOC_TARGET_CLONES MatchSums match_line(const WarpLine& line, const float* map) {
-  return line.lanes == kLanes ? match_cells(line, kLanes, map) : match_cells(line, line.lanes, map);
+/// Each group's taps are found before the previous group is added, so that the one hides behind the
+/// other.
+[[gnu::always_inline]] inline MatchSums add_groups(CellGroups& groups, int lanes_per_cell) {
+  CellSums sums;
+  CellGroup two[2];
+  bool more = groups.take(two[0]);
+  for (int i = 0; more; i = 1 - i) {
+    more = groups.take(two[1 - i]);
+    add_cells(two[i], groups.line(), groups.map_step(), lanes_per_cell, sums);
+  }
+  return sum_of(sums.even, sums.odd);
+}
+
+BEVLOC_TARGET_CLONES MatchSums match_rows(const FeatureWarp& moved, const CellFeatures& map,
+                                          const CellLattice& lattice, const RowRange& rows) {
+  CellGroups groups(moved, map, lattice, rows);
+  return map.lanes() == kLanes ? add_groups(groups, kLanes) : add_groups(groups, map.lanes());
 }
 
 }  // namespace
 
-MatchSums match_moved(const CellFeatures& bev, const CellFeatures& map, const Se2& correction) {
+MatchSums match_moved(const CellFeatures& bev, const CellFeatures& map, const Se2& correction,
+                      const CellLattice& lattice) {
   const BevGrid& grid = map.grid();
   const FeatureWarp moved(bev, correction);
+  const int rows_together = std::max(1, kCellsTogether / lattice.cells(0, grid.cols));
   MatchSums sums;
-  for (int row = 0; row < grid.rows; ++row) {
-    sums += match_line(moved.line(row, 0, grid.cols), map.cell(row, 0));
+  for (int row = 0; row < grid.rows; row += rows_together) {
+    sums += match_rows(moved, map, lattice, {row, std::min(row + rows_together, grid.rows)});
   }
   return sums;
 }
 
-PoseScorer::PoseScorer(const CellFeatures& bev, const CellFeatures& map)
-    : bev_(bev), map_(map), map_moments_(moments_of(map)) {}
+PoseScorer::PoseScorer(const CellFeatures& bev, const CellFeatures& map, const CellLattice& lattice)
+    : bev_(bev),
+      map_(map),
+      lattice_(lattice),
+      count_(static_cast<double>(lattice.cells(map.grid())) * map.channels()),
+      map_moments_(moments_of(map, lattice)) {}
 
 double PoseScorer::score(const Se2& correction) const {
-  const double count = static_cast<double>(map_.grid().cells()) * map_.channels();
-  return zncc(match_moved(bev_, map_, correction), map_moments_, count);
+  return zncc(match_moved(bev_, map_, correction, lattice_), map_moments_, count_);
 }
 
 }  // namespace bevloc

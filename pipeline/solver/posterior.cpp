@@ -22,6 +22,21 @@ void softmax(std::span<const double> scores, double scale, std::span<float> prob
   }
 }
 
+void share_out(std::span<const int> chosen, std::span<const double> scores, double scale,
+               std::span<float> probability) {
+  const double best = *std::ranges::max_element(scores);
+  double together = 0.0;
+  double sum = 0.0;
+  for (size_t i = 0; i < chosen.size(); ++i) {
+    together += probability[chosen[i]];
+    sum += std::exp(scale * (scores[i] - best));
+  }
+  for (size_t i = 0; i < chosen.size(); ++i) {
+    probability[chosen[i]] =
+        static_cast<float>(together * std::exp(scale * (scores[i] - best)) / sum);
+  }
+}
+
 double posterior_mean(std::span<const float> probability, const HypothesisAxis& axis) {
   double mean = 0.0;
   for (int i = 0; i < axis.count(); ++i) mean += probability[i] * axis.value(i);

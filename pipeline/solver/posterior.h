@@ -13,6 +13,11 @@ namespace bevloc {
 /// probability = softmax(scale * scores).
 void softmax(std::span<const double> scores, double scale, std::span<float> probability);
 
+/// Shares what the `chosen` hypotheses have together out among them, in proportion to
+/// softmax(scale * scores); `scores` are theirs. The others keep what they have.
+void share_out(std::span<const int> chosen, std::span<const double> scores, double scale,
+               std::span<float> probability);
+
 double posterior_mean(std::span<const float> probability, const HypothesisAxis& axis);
 double posterior_variance(std::span<const float> probability, const HypothesisAxis& axis);
 

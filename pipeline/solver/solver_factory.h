@@ -17,10 +17,10 @@ enum class SolverKind {
   kDecoupledLiteral,  ///< "decoupled-literal": the paper's, word for word
   kDecoupledLiteralRefined,
   kDecoupled,         ///< "decoupled": the paper's, as measurement mended it
-  kDecoupledRefined,  ///< "decoupled+refine": followed by one pass of the full score; the default
+  kDecoupledRefined,  ///< "decoupled+refine": followed by a refinement
   kBanded,            ///< "banded": axis matching band by band
-  kBandedRefined,
-  kBlock,  ///< "block": every hypothesis, by block correlation
+  kBandedRefined,     ///< "banded+refine": the default
+  kBlock,             ///< "block": every hypothesis, by block correlation
   kBlockRefined,
 };
 
@@ -36,7 +36,7 @@ std::array<SolverKind, kSolverKinds> all_solver_kinds();
 /// Whether it reads the features as they come, and GeM with any exponent (literal_matcher.h).
 bool is_literal(SolverKind kind);
 
-/// Whether one pass of the full score follows (refinement.h).
+/// Whether a refinement follows (refinement.h).
 bool is_refined(SolverKind kind);
 
 /// Largest ranges of the hypotheses: the solvers linearise and pad for small corrections, and

@@ -25,17 +25,20 @@ BEVLOC_TARGET_CLONES void find_moments(const CellFeatures& features, int first_l
   constexpr float kPart = 0.25F;
   const BevGrid& grid = features.grid();
   const Lanes origin = kPart * lanes(features.cell(0, 0) + first_lane);
-  LaneDoubles sum = {};
-  LaneDoubles square = {};
+  // Two cells at a time, to hide the latency of the additions.
+  LaneDoubles sums[2] = {};
+  LaneDoubles squares[2] = {};
   for (int row = 0; row < grid.rows; ++row) {
     const float* cell = features.cell(row, 0) + first_lane;
     for (int col = 0; col < grid.cols; ++col, cell += features.lanes()) {
       const Lanes distance = kPart * lanes(cell) - origin;
       const auto exact = __builtin_convertvector(distance, LaneDoubles);
-      sum += exact;
-      square += exact * exact;
+      sums[col % 2] += exact;
+      squares[col % 2] += exact * exact;
     }
   }
+  const LaneDoubles sum = sums[0] + sums[1];
+  const LaneDoubles square = squares[0] + squares[1];
   const LaneDoubles mean = sum / grid.cells();
   const LaneDoubles variance = square / grid.cells() - mean * mean;
   moments.mean = (__builtin_convertvector(origin, LaneDoubles) + mean) / kPart;

@@ -13,12 +13,15 @@ struct RowSums {
   float square;
 };
 
-BEVLOC_TARGET_CLONES RowSums sum_row(const float* row, int count) {
+/// Of `cells` cells that are `step` floats apart.
+BEVLOC_TARGET_CLONES RowSums sum_row(const float* cell, int cells, int step, int lane_count) {
   Lanes value = {};
   Lanes square = {};
-  for (int i = 0; i < count; i += kLanes) {
-    value += lanes(row + i);
-    square += lanes(row + i) * lanes(row + i);
+  for (int i = 0; i < cells; ++i, cell += step) {
+    for (int k = 0; k < lane_count; k += kLanes) {
+      value += lanes(cell + k);
+      square += lanes(cell + k) * lanes(cell + k);
+    }
   }
   return {sum_of(value), sum_of(square)};
 }
@@ -30,15 +33,19 @@ FeatureMoments moments(double sum, double square_sum, double count) {
   return {mean, std::sqrt(std::max(square_sum / count - mean * mean, 0.0))};
 }
 
-FeatureMoments moments_of(const CellFeatures& features) {
+FeatureMoments moments_of(const CellFeatures& features, const CellLattice& lattice) {
+  const BevGrid& grid = features.grid();
+  const int lane_count = features.lanes();
   double value = 0.0;
   double square = 0.0;
-  for (int row = 0; row < features.grid().rows; ++row) {
-    const RowSums sums = sum_row(features.cell(row, 0), features.grid().cols * features.lanes());
+  for (int row = 0; row < grid.rows; ++row) {
+    const RowSums sums =
+        sum_row(features.cell(row, lattice.first_col(row)), lattice.cells(row, grid.cols),
+                lattice.step * lane_count, lane_count);
     value += sums.value;
     square += sums.square;
   }
-  return moments(value, square, static_cast<double>(features.grid().cells()) * features.channels());
+  return moments(value, square, static_cast<double>(lattice.cells(grid)) * features.channels());
 }
 
 double zncc(double product_sum, const FeatureMoments& a, const FeatureMoments& b, double count) {

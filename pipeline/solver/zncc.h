@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/solver/cell_features.h"
+#include "pipeline/solver/cell_lattice.h"
 
 namespace bevloc {
 
@@ -13,8 +14,8 @@ struct FeatureMoments {
 /// From sums over `count` values. The deviation is of the population.
 FeatureMoments moments(double sum, double square_sum, double count);
 
-/// Over the grid's cells and channels.
-FeatureMoments moments_of(const CellFeatures& features);
+/// Over the lattice's cells and all channels.
+FeatureMoments moments_of(const CellFeatures& features, const CellLattice& lattice = kEveryCell);
 
 /// Zero-mean normalised cross-correlation (paper, eq. 5) from the sum of products of two sides
 /// over `count` values; 0 where a side is constant.

@@ -215,7 +215,7 @@ TEST_F(NetworkEvaluationTest, TheShippedModelFindsTheWayBackAcrossTheRoad) {
 TEST_F(NetworkEvaluationTest, VariantsReadMasksToo) {
   auto evaluation = NetworkEvaluation::create(kModel, ReadOutRows::kVariants, 1);
   ASSERT_TRUE(evaluation) << evaluation.error().message;
-  const SetResult result = evaluation->run(stream_of(sim::NuisanceSet::kClean), 2, [] {});
+  const SetResult result = evaluation->run(stream_of(sim::NuisanceSet::kClean), 4, [] {});
   const auto cases = read_out_cases(ReadOutRows::kVariants);
   ASSERT_EQ(result.read_outs.size(), 1 + cases.size());
   const Summary prior = summarise(result.read_outs.front().outcomes);

@@ -11,6 +11,7 @@ from torch import Tensor
 
 from training.solvers import zncc
 from training.solvers.definition import DEFINITION
+from training.solvers.lattice import EVERY_CELL, EVERY_TENTH_CELL, CellLattice
 from training.solvers.zncc import moved_zncc
 
 FARTHEST = torch.tensor(DEFINITION.farthest()).double()
@@ -35,18 +36,23 @@ def corrections(batch: int = 2) -> Tensor:
     return torch.cat((ODD.expand(batch, -1, -1), anywhere), dim=1)
 
 
-def zncc_and_gradients(sides: tuple[Tensor, Tensor], poses: Tensor) -> tuple[Tensor, list[Tensor]]:
+def zncc_and_gradients(
+    sides: tuple[Tensor, Tensor], poses: Tensor, lattice: CellLattice
+) -> tuple[Tensor, list[Tensor]]:
     """And the gradients of some function of all scores."""
     sides = tuple(side.clone().requires_grad_() for side in sides)
-    scores = moved_zncc(*sides, poses, DEFINITION.cell_m)
+    scores = moved_zncc(*sides, poses, DEFINITION.cell_m, lattice)
     weights = torch.linspace(-1.0, 2.0, scores.numel()).to(scores).reshape(scores.shape)
     return scores.detach(), list(torch.autograd.grad((weights * scores).sum(), sides))
 
 
 class NativeZncc(unittest.TestCase):
-    def check(self, sides: tuple[Tensor, Tensor], poses: Tensor):
-        found, gradients = zncc_and_gradients(sides, poses)
-        expected = zncc_and_gradients(tuple(side.double() for side in sides), poses.double())
+    def check(
+        self, sides: tuple[Tensor, Tensor], poses: Tensor, lattice: CellLattice = EVERY_CELL
+    ):
+        found, gradients = zncc_and_gradients(sides, poses, lattice)
+        exact = tuple(side.double() for side in sides)
+        expected = zncc_and_gradients(exact, poses.double(), lattice)
         self.assertEqual(found.dtype, torch.float32)
         torch.testing.assert_close(found.double(), expected[0], atol=1e-5, rtol=0)
         for gradient, wanted in zip(gradients, expected[1]):
@@ -61,6 +67,10 @@ class NativeZncc(unittest.TestCase):
             with self.subTest(channels=channels):
                 self.check(features(channels), corrections())
 
+    def test_looks_at_the_cells_of_a_lattice(self):
+        self.check(features(16), corrections(), EVERY_TENTH_CELL)
+        self.check(features(19), corrections(), CellLattice(3, 1))
+
     def test_corrections_may_be_the_same_for_all(self):
         self.check(features(16, batch=3), ODD[None])
 
@@ -71,7 +81,7 @@ class NativeZncc(unittest.TestCase):
     def test_of_a_constant_side_is_zero_and_so_is_its_gradient(self):
         bev, features_map = features(4)
         for sides in ((torch.zeros_like(bev), features_map), (bev, torch.ones_like(bev))):
-            scores, gradients = zncc_and_gradients(sides, torch.zeros(2, 1, 3))
+            scores, gradients = zncc_and_gradients(sides, torch.zeros(2, 1, 3), EVERY_TENTH_CELL)
             self.assertEqual(scores.abs().max().item(), 0.0)
             for gradient in gradients:
                 self.assertEqual(gradient.abs().max().item(), 0.0)

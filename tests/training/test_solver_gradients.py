@@ -10,7 +10,8 @@ from torch import Tensor
 
 from tests.training.small_solver import DEGREE, SMALL, random_features, small_solvers
 from training.solver import KINDS, Posterior, PoseSolvers, standardise
-from training.solvers.refine import line_zncc
+from training.solvers.lattice import EVERY_SECOND_CELL
+from training.solvers.refine import line_zncc, share_out
 
 # What is held fixed has no gradient, and must not move with the features: x m, y m, yaw rad.
 HELD = torch.tensor([[0.17, -0.11, 0.7 * DEGREE], [-0.35, 0.2, -1.2 * DEGREE]]).double()
@@ -25,12 +26,15 @@ def _standardised(bev: Tensor, features_map: Tensor) -> tuple[Tensor, Tensor]:
 
 
 def _coordinate_pass(solvers: PoseSolvers, bev: Tensor, features_map: Tensor) -> Posterior:
-    """Every search of a refinement, each through the same pose."""
+    """Every search of a refinement's last round, each through the same pose, with one hypothesis
+    that the coarse rounds left unlikely."""
 
     def search(axis: int) -> Tensor:
         direction = LINES[axis].expand_as(HELD)
-        scores = line_zncc((bev, features_map), HELD, axis, direction, SMALL)
-        return torch.softmax(scores * solvers.scale(REFINE_SCALES[axis]), dim=1)
+        scores = line_zncc((bev, features_map), HELD, axis, direction, SMALL, EVERY_SECOND_CELL)
+        likely = torch.arange(scores.shape[1]) > 0
+        before = torch.linspace(0.1, 0.2, scores.shape[1]).to(scores).expand_as(scores)
+        return share_out(scores * solvers.scale(REFINE_SCALES[axis]), likely, before)
 
     return Posterior(search(0), search(1), search(2))
 

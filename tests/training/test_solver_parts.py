@@ -1,7 +1,9 @@
 """Parts of the solvers against plainer ways to the same numbers."""
 
 import dataclasses
+import math
 import unittest
+from unittest import mock
 
 import torch
 import torch.nn.functional as F
@@ -17,7 +19,8 @@ from training.solvers.features import move
 from training.solvers.full import full_scores
 from training.solvers.full_fft import full_fft_scores
 from training.solvers.literal import gem
-from training.solvers.refine import spread
+from training.solvers.lattice import EVERY_CELL, EVERY_SECOND_CELL, EVERY_TENTH_CELL
+from training.solvers.refine import share_out, spread
 from training.solvers.valley import ScoreValley
 from training.solvers.zncc import moved_zncc
 
@@ -58,6 +61,19 @@ class Move(unittest.TestCase):
         bev, _ = standardised(1)
         framed = move(bev, torch.zeros(2, 1, 3), 0.6, (3, 2))[:, :, 0]
         torch.testing.assert_close(framed, F.pad(bev, (2, 2, 3, 3)), atol=1e-9, rtol=0)
+
+
+class Lattice(unittest.TestCase):
+    def test_as_many_rows_as_the_step_hold_every_column_once(self):
+        for lattice in (EVERY_CELL, EVERY_SECOND_CELL, EVERY_TENTH_CELL):
+            mask = lattice.mask(3 * lattice.step, 50)
+            held = mask.unflatten(0, (3, -1)).sum(1)
+            self.assertEqual(held.unique().tolist(), [1])
+            self.assertTrue(mask[0, 0])
+
+    def test_rows_begin_further_on_by_the_skew(self):
+        mask = EVERY_TENTH_CELL.mask(5, 20)
+        self.assertEqual([row.nonzero()[0].item() for row in mask], [0, 3, 6, 9, 2])
 
 
 class Zncc(unittest.TestCase):
@@ -200,13 +216,15 @@ class Refinement(unittest.TestCase):
             2: valley.along_yaw,
             0: valley.along_x,
         }
-        for axis, line in [*lines.items(), *lines.items()]:  # two rounds
+        rounds = 2 * [(*line, 0.5, EVERY_TENTH_CELL) for line in lines.items()]
+        rounds += [(*line, 1.0, EVERY_SECOND_CELL) for line in lines.items()]
+        for axis, line, share, lattice in rounds:
             direction, scores = line(pose), []
             for value in SMALL.hypotheses()[axis]:
                 at = pose + (value - pose[:, axis, None]) * direction
                 at = torch.stack([a.clamp(-f, f) for a, f in zip(at.T, SMALL.farthest())], dim=1)
-                scores.append(moved_zncc(*sides, at[:, None], SMALL.cell_m)[:, 0])
-            found[axis] = torch.softmax(20.0 * torch.stack(scores, dim=1), dim=1)
+                scores.append(moved_zncc(*sides, at[:, None], SMALL.cell_m, lattice)[:, 0])
+            found[axis] = torch.softmax(share * 20.0 * torch.stack(scores, dim=1), dim=1)
             mean = found[axis] @ SMALL.hypotheses()[axis]
             pose = pose + (mean - pose[:, axis])[:, None] * direction
         refined = solvers.refine(*sides, start)
@@ -215,6 +233,27 @@ class Refinement(unittest.TestCase):
             self.assertGreater((refined.axes()[axis] - found[axis]).abs().max().item(), 1e-4)
             means = refined.axes()[axis] @ SMALL.hypotheses()[axis]
             torch.testing.assert_close(means, pose[:, axis], atol=0.03, rtol=0)
+
+    @torch.no_grad()
+    def test_what_the_coarse_rounds_leave_unlikely_keeps_what_it_has(self):
+        sides = standardised(9)
+        solvers = small_solvers(scale=500.0)
+        start = torch.tensor([[0.1, 0.2, 0.01], [-0.2, 0.1, 0.0]]).double()
+        # Nothing is as likely as that: all keep what they have.
+        with mock.patch("training.solvers.refine._LEAST_LIKELY", 2.0):
+            kept = solvers.refine(*sides, start)
+        refined = solvers.refine(*sides, start)
+        unlikely = kept.x < 1e-3 * kept.x.amax(1, keepdim=True)
+        self.assertGreater(unlikely.sum().item(), 0)
+        torch.testing.assert_close(refined.x[unlikely], kept.x[unlikely])
+        torch.testing.assert_close(refined.x.sum(1), torch.ones(2).double())
+
+    def test_the_likely_share_what_they_have_together(self):
+        probability = torch.tensor([[0.1, 0.4, 0.2, 0.3]]).double()
+        likely = torch.tensor([[False, True, False, True]])
+        scores = torch.tensor([[9.0, 2.0, -9.0, 2.0 + math.log(6.0)]]).double()
+        found = share_out(scores, likely, probability)
+        torch.testing.assert_close(found, torch.tensor([[0.1, 0.1, 0.2, 0.6]]).double())
 
     def test_what_follows_an_axis_is_spread_by_it(self):
         values = torch.arange(-3, 4).double() * 0.5

@@ -15,11 +15,13 @@ struct LineSlope {
   float twice_square;
 };
 
-/// A line of cells of both sides; `grad_bev` is to the gradient what line.origin is to features.
+/// A line of cells of both sides, the map's `map_step` floats apart; `grad_bev` is to the gradient
+/// what line.origin is to features.
 struct GradientLine {
   WarpLine line;
   LineSlope slope;
   const float* map;
+  int map_step;
   float* grad_bev;
   float* grad_map;
 };
@@ -56,8 +58,8 @@ struct GradientLine {
         const Lanes gradient = product * lanes(cells.map + k) + (value + twice_square * moved);
         scatter(line, taps, i, k, gradient, cells.grad_bev);
       }
-      cells.map += lanes_per_cell;
-      cells.grad_map += lanes_per_cell;
+      cells.map += cells.map_step;
+      cells.grad_map += cells.map_step;
     }
   }
 }
@@ -69,18 +71,21 @@ BEVLOC_TARGET_CLONES void add_line(const GradientLine& cells) {
 }  // namespace
 
 void add_moved_gradients(const CellFeatures& bev, const CellFeatures& map,
-                         std::span<const MovedSlope> slopes, CellFeatures& grad_bev,
-                         CellFeatures& grad_map) {
+                         std::span<const MovedSlope> slopes, const CellLattice& lattice,
+                         CellFeatures& grad_bev, CellFeatures& grad_map) {
   const BevGrid& grid = map.grid();
   // Row by row, so that what the corrections read and write stays in the cache.
   for (int row = 0; row < grid.rows; ++row) {
+    const int col = lattice.first_col(row);
+    const int cells = lattice.cells(row, grid.cols);
     for (const auto& [correction, slope] : slopes) {
-      add_line({.line = FeatureWarp(bev, correction).line(row, 0, grid.cols),
+      add_line({.line = FeatureWarp(bev, correction).line(row, col, cells, lattice.step),
                 .slope = {static_cast<float>(slope.product), static_cast<float>(slope.value),
                           static_cast<float>(2.0 * slope.square)},
-                .map = map.cell(row, 0),
+                .map = map.cell(row, col),
+                .map_step = lattice.step * map.lanes(),
                 .grad_bev = grad_bev.mutable_cell(0, 0),
-                .grad_map = grad_map.mutable_cell(row, 0)});
+                .grad_map = grad_map.mutable_cell(row, col)});
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include "common/se2.h"
 #include "pipeline/solver/cell_features.h"
+#include "pipeline/solver/cell_lattice.h"
 #include "pipeline/solver/match_sums.h"
 
 namespace bevloc {
@@ -18,7 +19,7 @@ struct MovedSlope {
 /// Adds the gradients of that value with respect to both sides. `grad_bev` has the margin of `bev`;
 /// its cells in the margin, and lanes beyond the channels, are filled with what nothing reads.
 void add_moved_gradients(const CellFeatures& bev, const CellFeatures& map,
-                         std::span<const MovedSlope> slopes, CellFeatures& grad_bev,
-                         CellFeatures& grad_map);
+                         std::span<const MovedSlope> slopes, const CellLattice& lattice,
+                         CellFeatures& grad_bev, CellFeatures& grad_map);
 
 }  // namespace bevloc

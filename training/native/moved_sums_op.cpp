@@ -34,15 +34,16 @@ Se2 correction_of(const double* numbers) {
 
 }  // namespace
 
-void bevloc_moved_sums(int count, int channels, int poses, const float* bev, const float* map,
-                       const double* corrections, double* sums) {
+void bevloc_moved_sums(int count, int channels, int poses, int step, int skew, const float* bev,
+                       const float* map, const double* corrections, double* sums) {
   const size_t features = feature_count(channels);
   Sides sides(channels);
   for (int i = 0; i < count; ++i) {
     sides.bev.assign({bev + i * features, features});
     sides.map.assign({map + i * features, features});
     for (int j = 0; j < poses; ++j, corrections += 3, sums += kSumCount) {
-      const MatchSums found = match_moved(sides.bev, sides.map, correction_of(corrections));
+      const MatchSums found =
+          match_moved(sides.bev, sides.map, correction_of(corrections), {step, skew});
       sums[0] = found.product;
       sums[1] = found.value;
       sums[2] = found.square;
@@ -50,8 +51,8 @@ void bevloc_moved_sums(int count, int channels, int poses, const float* bev, con
   }
 }
 
-void bevloc_moved_sums_gradients(int count, int channels, int poses, const float* bev,
-                                 const float* map, const double* corrections,
+void bevloc_moved_sums_gradients(int count, int channels, int poses, int step, int skew,
+                                 const float* bev, const float* map, const double* corrections,
                                  const double* grad_sums, float* grad_bev, float* grad_map) {
   const size_t features = feature_count(channels);
   Sides sides(channels);
@@ -66,7 +67,7 @@ void bevloc_moved_sums_gradients(int count, int channels, int poses, const float
       grad_sums += kSumCount;
     }
     Sides gradients(channels);  // zeros
-    add_moved_gradients(sides.bev, sides.map, slopes, gradients.bev, gradients.map);
+    add_moved_gradients(sides.bev, sides.map, slopes, {step, skew}, gradients.bev, gradients.map);
     gradients.bev.copy_to({grad_bev + i * features, features});
     gradients.map.copy_to({grad_map + i * features, features});
   }

@@ -16,7 +16,7 @@ Hypotheses: x = -2 ... +2 m by 0.2 (21), y = -1 ... +1 m by 0.2 (11), a = -2 ...
 | decoupled | yaw signatures, then x and y from axis features | yaw.py, axis.py |
 | banded | x, y and yaw from profiles of bands | banded.py |
 | block | every hypothesis from correlations of blocks | block.py |
-| ...+refine | one coordinate pass of ZNCC after any of the last four | refine.py |
+| ...+refine | three rounds of coordinate passes of ZNCC after any of the last four | refine.py |
 
 Scores s become P = softmax(scale * s). All but decoupled-literal read standardised features
 (features.py) and estimate by the means of their distributions (posterior.py).

@@ -1,4 +1,5 @@
-"""Zero-mean normalised cross-correlation (paper, eq. 5) over all cells and channels at once:
+"""Zero-mean normalised cross-correlation (paper, eq. 5) over a lattice's cells and all channels at
+once:
 
 ZNCC = (mean(a b) - mean(a) mean(b)) / sqrt(var(a) var(b)), population moments; 0 where a side is
 constant. Features moved under a hypothesis count as zero where they do not reach.
@@ -15,6 +16,7 @@ from torch import Tensor
 from training.moved_sums import moved_sums
 from training.solvers.definition import DEFINITION
 from training.solvers.features import move
+from training.solvers.lattice import EVERY_CELL, CellLattice
 
 _ROUNDING = 1e-6
 
@@ -39,18 +41,27 @@ def sums_of(features: Tensor, dim: tuple[int, ...]) -> tuple[Tensor, Tensor]:
     return features.sum(dim), features.square().sum(dim)
 
 
-def moved_zncc(bev: Tensor, features_map: Tensor, corrections: Tensor, cell_m: float) -> Tensor:
+def moved_zncc(
+    bev: Tensor,
+    features_map: Tensor,
+    corrections: Tensor,
+    cell_m: float,
+    lattice: CellLattice = EVERY_CELL,
+) -> Tensor:
     """ZNCC of F_M with F_B moved under each of the corrections [batch, count, 3]: [batch, count].
     `corrections` may also be [1, count, 3], the same for all."""
     corrections = corrections.expand(len(bev), -1, -1)
+    mask = lattice.mask(*bev.shape[2:]).to(bev)
+    features_map = features_map * mask
     if _is_native(bev, corrections, cell_m):
-        product, *moved_side = moved_sums(bev, features_map, corrections).unbind(2)
+        product, *moved_side = moved_sums(bev, features_map, corrections, lattice).unbind(2)
     else:
-        moved = move(bev, corrections, cell_m)
+        moved = move(bev, corrections, cell_m) * mask
         product = torch.einsum("bcnuv,bcuv->bn", moved, features_map)
         moved_side = sums_of(moved, (1, 3, 4))
     map_side = sums_of(features_map[:, :, None], (1, 3, 4))
-    return zncc(product, tuple(moved_side), map_side, features_map[0].numel()).to(bev)
+    count = features_map.shape[1] * int(mask.sum())
+    return zncc(product, tuple(moved_side), map_side, count).to(bev)
 
 
 def _is_native(bev: Tensor, corrections: Tensor, cell_m: float) -> bool:

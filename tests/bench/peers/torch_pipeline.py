@@ -28,7 +28,7 @@ from training.nuscenes import raster
 from training.solver import Solution
 
 PARTS = ("images", "raster", "network", "solver")
-SOLVER = "decoupled+refine"
+SOLVER = "banded+refine"
 _RIG = Path(__file__).resolve().parents[3] / "config/rig_demo.yaml"
 _HORIZON_ROW = 14.0  # kNetworkHorizonRow
 _ALL_CAMERAS = 0x3F

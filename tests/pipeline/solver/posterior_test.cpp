@@ -50,6 +50,22 @@ TEST(PosteriorTest, WhatFollowsAnAxisIsSpreadByIt) {
   EXPECT_FLOAT_EQ(probability.back(), 0.75F);
 }
 
+TEST(PosteriorTest, SharesOutWhatTheChosenHaveTogether) {
+  std::vector<float> probability{0.1F, 0.4F, 0.2F, 0.3F};
+  share_out(std::vector<int>{1, 3}, std::vector<double>{2.0, 2.0 + std::log(6.0)}, 1.0,
+            probability);
+  EXPECT_FLOAT_EQ(probability[0], 0.1F);
+  EXPECT_FLOAT_EQ(probability[1], 0.1F);
+  EXPECT_FLOAT_EQ(probability[2], 0.2F);
+  EXPECT_FLOAT_EQ(probability[3], 0.6F);
+  // The scale is that of the scores; one alone keeps its own.
+  share_out(std::vector<int>{0, 1}, std::vector<double>{0.0, std::log(3.0)}, 2.0, probability);
+  EXPECT_FLOAT_EQ(probability[0], 0.02F);
+  EXPECT_FLOAT_EQ(probability[1], 0.18F);
+  share_out(std::vector<int>{2}, std::vector<double>{-0.7}, 500.0, probability);
+  EXPECT_FLOAT_EQ(probability[2], 0.2F);
+}
+
 TEST(PosteriorTest, ARivalIsTheNextPeakNotTheNextHypothesis) {
   EXPECT_EQ(rival_peak(normal(0.1, 0.3)), 0.0);
   EXPECT_NEAR(rival_peak(std::vector<float>{0.1F, 0.4F, 0.1F, 0.1F, 0.3F}), 0.75, 1e-6);

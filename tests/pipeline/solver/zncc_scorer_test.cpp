@@ -31,20 +31,24 @@ double moved(const float* plane, int row, int col, const Se2& correction) {
   return sum;
 }
 
+/// Over the cells of columns skew * row mod step, and every step-th from there on.
 double literal_zncc(const std::vector<float>& bev, const std::vector<float>& map,
-                    const Se2& correction) {
+                    const Se2& correction, int step = 1, int skew = 0) {
   const int channels = static_cast<int>(bev.size()) / kGrid.cells();
   double sums[5] = {};
+  int count = 0;
   for (int c = 0; c < channels; ++c) {
     for (int row = 0; row < kGrid.rows; ++row) {
-      for (int col = 0; col < kGrid.cols; ++col) {
+      for (int col = skew * row % step; col < kGrid.cols; col += step) {
         const double m = map[(c * kGrid.rows + row) * kGrid.cols + col];
         const double b = moved(bev.data() + c * kGrid.cells(), row, col, correction);
         const double terms[5] = {m, b, m * m, b * b, m * b};
-        for (int i = 0; i < 5; ++i) sums[i] += terms[i] / (channels * kGrid.cells());
+        for (int i = 0; i < 5; ++i) sums[i] += terms[i];
+        ++count;
       }
     }
   }
+  for (double& sum : sums) sum /= count;
   return (sums[4] - sums[0] * sums[1]) /
          std::sqrt((sums[2] - sums[0] * sums[0]) * (sums[3] - sums[1] * sums[1]));
 }
@@ -90,6 +94,17 @@ TEST_P(ZnccScorerTest, PoseScorerScoresAnyCorrectionAsItIsDefined) {
   for (const Se2& correction : {Se2{-1.23, 0.71, 0.31}, Se2{}, Se2{1.5, -0.8, -0.4},
                                 Se2{0.5, 0.0, 0.0}, Se2{0.02, -0.33, 0.004}}) {
     EXPECT_NEAR(scorer.score(correction), literal_zncc(bev_, map_, correction), 1e-5);
+  }
+}
+
+TEST_P(ZnccScorerTest, PoseScorerLooksAtTheCellsOfItsLattice) {
+  for (const CellLattice& lattice : {kEverySecondCell, kEveryTenthCell}) {
+    const PoseScorer scorer(bev_cells_, map_cells_, lattice);
+    for (const Se2& correction : {Se2{-1.23, 0.71, 0.31}, Se2{}, Se2{0.02, -0.33, 0.004}}) {
+      EXPECT_NEAR(scorer.score(correction),
+                  literal_zncc(bev_, map_, correction, lattice.step, lattice.skew), 1e-5)
+          << "of " << lattice.step << " cells one";
+    }
   }
 }
 
