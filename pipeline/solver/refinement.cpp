@@ -7,8 +7,8 @@
 namespace bevloc {
 namespace {
 
-/// What the coarse rounds leave less likely than this, against the best, the last does not score.
-constexpr float kLeastLikely = 1e-3F;
+/// What a round leaves less likely than this, against the best, the next does not score.
+constexpr float kLeastLikely = 1e-2F;
 /// Of fewer cells the score is noisier, and worth less.
 constexpr double kCoarseScale = 0.5;
 
@@ -34,7 +34,7 @@ void Refinement::refine(const MatchSide& bev, const MatchSide& map, SolverResult
   const PoseScorer fine(bev.cells, map.cells, kEverySecondCell);
   // y and yaw of the first round are searched at an x that it then finds to be wrong.
   pass_through({coarse, kCoarseScale, 0.0F}, valley, pose, result);
-  pass_through({coarse, kCoarseScale, 0.0F}, valley, pose, result);
+  pass_through({coarse, kCoarseScale, kLeastLikely}, valley, pose, result);
   pass_through({fine, 1.0, kLeastLikely}, valley, pose, result);
   result.correction = {posterior_mean(result.x_probability, hypotheses_.x_m),
                        posterior_mean(result.y_probability, hypotheses_.y_m),

@@ -17,9 +17,9 @@ namespace bevloc {
 /// distributions are the marginals that follow from its three passes; the estimate are the means of
 /// the last one's.
 ///
-/// Two coarse rounds score all hypotheses, but on a tenth of the cells: they only say where the
-/// last one begins, and what it need not look at. That one scores, on every second cell, the
-/// hypotheses that they leave likely; the others keep their probability. Neighbouring cells see
+/// Two coarse rounds see a tenth of the cells: they only say where the last one begins, which sees
+/// every second cell, and what it need not look at. The first scores all hypotheses, the next those
+/// that the one before leaves likely; the others keep their probability. Neighbouring cells see
 /// much the same: on all of them, the estimates are no better (docs/solver.md).
 class Refinement {
  public:

@@ -6,11 +6,12 @@ this order, over hypotheses of each axis. What has been searched follows along t
 scored lies beyond the farthest hypotheses. Each search gives P = softmax(scale * ZNCC), with
 refine_x_scale, refine_y_scale or refine_yaw_scale, and goes on from its mean.
 
-Two coarse rounds score all hypotheses, on every tenth cell (lattice.py) with half of each scale,
-for of fewer cells the score is noisier. They only say where the last one begins and what it need
-not look at; there are two, as y and yaw of the first are searched at an x that it then finds to be
-wrong. The last round scores, on every second cell, the hypotheses to which they left at least 0.001
-of the greatest probability. These share what they were left together; the others keep theirs.
+Two coarse rounds score every tenth cell (lattice.py) with half of each scale, for of fewer cells the
+score is noisier. They only say where the last one begins and what it need not look at; there are
+two, as y and yaw of the first are searched at an x that it then finds to be wrong. The first scores
+all hypotheses, the second and the last, which sees every second cell, those to which the round
+before left at least 0.01 of the greatest probability. These share what they were left together; the
+others keep theirs.
 
 The distributions are marginals: P_x is that of a round's last search. What followed an axis is
 spread by it,
@@ -33,7 +34,7 @@ from training.solvers.zncc import moved_zncc
 
 _X, _Y, _YAW = 0, 1, 2
 _COARSE_SCALE = 0.5
-_LEAST_LIKELY = 1e-3
+_LEAST_LIKELY = 1e-2
 
 
 def line_zncc(
@@ -136,6 +137,6 @@ def refine(
     passes = _Passes((bev, features_map), start.detach(), definition)
     with torch.no_grad():
         coarse_scales = [_COARSE_SCALE * scale for scale in scales]
-        passes.go_through(coarse_scales, EVERY_TENTH_CELL, None)
         coarse = passes.go_through(coarse_scales, EVERY_TENTH_CELL, None)
+        coarse = passes.go_through(coarse_scales, EVERY_TENTH_CELL, coarse)
     return passes.go_through(list(scales), EVERY_SECOND_CELL, coarse)
