@@ -18,7 +18,7 @@ namespace {
 template <int kTaps>
 constexpr int kColumns = kTaps <= 5 ? 4 : 8;
 template <int kTaps>
-constexpr int kSlots = kTaps <= 3 ? 4 : 8;
+constexpr int kSlots = RemapBlocks::slots(kTaps);
 
 /// What is loaded of a row begins one column to the left of a block's first column, which is even.
 /// A half has bytes of odd columns, then those of even ones.
@@ -141,8 +141,7 @@ void remap_blocks(const ImageView& image, const RemapBlocks& blocks, int8_t* pla
   const RedPixel red = red_of(image.format);
   for (size_t block = 0; block < blocks.index.size(); ++block) {
     const __m256i first_rows = load_positions(blocks.first_row, block);
-    const Distances place(_mm256_add_epi32(times(first_rows, plane.stride_bytes),
-                                           load_positions(blocks.first_col, block)));
+    const Distances place(first_rows, plane.stride_bytes, load_positions(blocks.first_col, block));
     prefetch_below<kTaps, 1>(plane.data + plane.stride_bytes + place[0], plane.stride_bytes);
     __m256i sums[kPairs];
     for (int pair = 0; pair < kPairs; ++pair) {

@@ -34,16 +34,6 @@ inline __m256i centred(__m256i samples) {
   return _mm256_xor_si256(samples, _mm256_set1_epi8(-128));
 }
 
-/// For each pixel of a block a distance in bytes.
-struct Distances {
-  alignas(32) int32_t bytes[kPixels];
-
-  explicit Distances(__m256i of_pixels) {
-    _mm256_store_si256(reinterpret_cast<__m256i*>(bytes), of_pixels);
-  }
-  std::ptrdiff_t operator[](int pixel) const { return bytes[pixel]; }
-};
-
 inline __m256i load_positions(const std::vector<uint16_t>& positions, size_t block) {
   const uint16_t* const first = positions.data() + kPixels * block;
   return _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(first)));
@@ -51,6 +41,29 @@ inline __m256i load_positions(const std::vector<uint16_t>& positions, size_t blo
 
 inline __m256i times(__m256i positions, std::ptrdiff_t factor) {
   return _mm256_mullo_epi32(positions, _mm256_set1_epi32(static_cast<int32_t>(factor)));
+}
+
+/// For each pixel of a block the distance in bytes of its first sample from a plane's.
+struct Distances {
+  alignas(32) int32_t bytes[kPixels];
+
+  Distances(__m256i rows, std::ptrdiff_t stride_bytes, __m256i in_row_bytes) {
+    _mm256_store_si256(reinterpret_cast<__m256i*>(bytes),
+                       _mm256_add_epi32(times(rows, stride_bytes), in_row_bytes));
+  }
+  std::ptrdiff_t operator[](int pixel) const { return bytes[pixel]; }
+};
+
+/// Where all channels of a pixel lie side by side, in so many bytes.
+inline Distances packed_distances(const RemapBlocks& blocks, size_t block,
+                                  std::ptrdiff_t stride_bytes, int pixel_bytes) {
+  return {load_positions(blocks.first_row, block), stride_bytes,
+          times(load_positions(blocks.first_col, block), pixel_bytes)};
+}
+
+/// Sixteen bytes of both pixels of a pair.
+inline __m256i load_pair(const uint8_t* first, const Distances& place, int pair) {
+  return _mm256_set_m128i(load_16(first + place[pair + kPairs]), load_16(first + place[pair]));
 }
 
 /// Asks for what the network pixels below a block will read. Pictures come from other cores and

@@ -7,7 +7,7 @@ template <int kTaps, typename Source>
                                                const typename Source::Place& place,
                                                const RemapBlocks& blocks, size_t block, int pair,
                                                __m256i start) {
-  constexpr int kSlots = kTaps <= 3 ? 4 : 8;
+  constexpr int kSlots = RemapBlocks::slots(kTaps);
   static constexpr Shuffle kCols[2] = {
       Shuffle([](int half, int i) { return col_weight<kSlots>(half, i % 4); }),
       Shuffle([](int half, int i) { return col_weight<kSlots>(half, kSlots - 4 + i % 4); })};

@@ -15,9 +15,10 @@ constexpr uint16_t kMaxWeight = 254;
 class BlockMaker {
  public:
   BlockMaker(const RemapTable& table, int width_px, int height_px)
-      : table_(table), width_px_(width_px), height_px_(height_px) {
-    blocks_.slots = table.taps <= 3 ? 4 : 8;
-  }
+      : table_(table),
+        width_px_(width_px),
+        height_px_(height_px),
+        slots_(RemapBlocks::slots(table.taps)) {}
 
   RemapBlocks make() && {
     for (int first = 0; first < kNetworkPixels; first += kPixels) add_block(first);
@@ -68,8 +69,8 @@ class BlockMaker {
   void add_weights(int pixel, bool is_in) {
     std::vector<uint8_t>& bytes = blocks_.weights;
     const size_t cols = bytes.size() + table_.first_col[pixel] % 2;
-    const size_t rows = bytes.size() + blocks_.slots;
-    bytes.resize(rows + blocks_.slots);
+    const size_t rows = bytes.size() + slots_;
+    bytes.resize(rows + slots_);
     if (!is_in) return;
     const std::span<const uint16_t> weights = weights_of(pixel);
     for (int i = 0; i < table_.taps; ++i) {
@@ -87,6 +88,7 @@ class BlockMaker {
   const RemapTable& table_;
   int width_px_;
   int height_px_;
+  size_t slots_;
   RemapBlocks blocks_;
 };
 

@@ -29,8 +29,9 @@ struct RemapBlocks {
   static constexpr int kReach_px = 16;
   static constexpr int kRowsBelow = 2;
 
-  /// Weights of a pixel along each axis, the last ones 0: 4 for up to 3 taps, else 8.
-  int slots = 0;
+  /// Weights of a pixel along each axis, the last ones 0.
+  static constexpr int slots(int taps) { return taps <= 3 ? 4 : 8; }
+
   std::vector<uint16_t> index;      ///< of each block: kPixels * index is its first pixel
   std::vector<uint16_t> first_col;  ///< of each pixel in a block, rounded down to an even one
   std::vector<uint16_t> first_row;

@@ -21,8 +21,7 @@ struct RgbSource {
 
   using Place = Distances;
   Place place(const RemapBlocks& blocks, size_t block) const {
-    return Distances(_mm256_add_epi32(times(load_positions(blocks.first_row, block), stride_bytes),
-                                      times(load_positions(blocks.first_col, block), 3)));
+    return packed_distances(blocks, block, stride_bytes, 3);
   }
 
   template <int kTaps>
@@ -34,9 +33,7 @@ struct RgbSource {
   __m256i samples(const Place& place, int pair, int row) const {
     static constexpr Shuffle kByChannel(
         [](int, int i) { return i < 12 ? 3 * (i % 4) + i / 4 : kNone; });
-    const uint8_t* const first = data + row * stride_bytes + 12 * kGroup;
-    return kByChannel(
-        _mm256_set_m128i(load_16(first + place[pair + kPairs]), load_16(first + place[pair])));
+    return kByChannel(load_pair(data + row * stride_bytes + 12 * kGroup, place, pair));
   }
 };
 

@@ -26,8 +26,7 @@ class PackedSource {
 
   using Place = Distances;
   Place place(const RemapBlocks& blocks, size_t block) const {
-    return Distances(_mm256_add_epi32(times(load_positions(blocks.first_row, block), stride_bytes_),
-                                      times(load_positions(blocks.first_col, block), 2)));
+    return packed_distances(blocks, block, stride_bytes_, 2);
   }
 
   template <int kTaps>
@@ -42,9 +41,7 @@ class PackedSource {
       const int from[] = {2 * (i % 4) + kLuma, chroma, chroma + 2, kNone};
       return from[i / 4] == kNone ? kNone : 8 * kGroup + from[i / 4];
     });
-    const uint8_t* const first = data_ + row * stride_bytes_;
-    return kByChannel(
-        _mm256_set_m128i(load_16(first + place[pair + kPairs]), load_16(first + place[pair])));
+    return kByChannel(load_pair(data_ + row * stride_bytes_, place, pair));
   }
 
  private:
@@ -65,9 +62,9 @@ PlanarPlace planar_place(const YuvLayout& image, const RemapBlocks& blocks, size
   const auto chroma = [&](__m256i luma_rows) __attribute__((always_inline)) {
     const __m256i in_row = image.chroma_step == 2 ? cols : _mm256_srli_epi32(cols, 1);
     const __m256i chroma_rows = kHalvedRows ? _mm256_srli_epi32(luma_rows, 1) : luma_rows;
-    return Distances(_mm256_add_epi32(times(chroma_rows, image.u.stride_bytes), in_row));
+    return Distances(chroma_rows, image.u.stride_bytes, in_row);
   };
-  return {Distances(_mm256_add_epi32(times(rows, image.y.stride_bytes), cols)),
+  return {Distances(rows, image.y.stride_bytes, cols),
           {chroma(rows), chroma(_mm256_add_epi32(rows, _mm256_set1_epi32(kHalvedRows ? 1 : 0)))}};
 }
 
