@@ -4,6 +4,9 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <new>
+#include <utility>
 #include <vector>
 
 namespace bevloc {
@@ -21,20 +24,55 @@ struct RgbView {
   }
 };
 
+/// For a vector that leaves elements unwritten which it is given no value for.
+template <typename T>
+struct UnwrittenAllocator : std::allocator<T> {
+  template <typename U>
+  struct rebind {
+    using other = UnwrittenAllocator<U>;
+  };
+
+  template <typename U, typename... Values>
+  void construct(U* element, Values&&... values) {
+    if constexpr (sizeof...(Values) == 0) {
+      ::new (static_cast<void*>(element)) U;
+    } else {
+      ::new (static_cast<void*>(element)) U(std::forward<Values>(values)...);
+    }
+  }
+};
+
+using Pixels = std::vector<uint8_t, UnwrittenAllocator<uint8_t>>;
+
 /// An RGB image that owns its pixels, without padding between rows.
 struct RgbImage {
   int width = 0;
   int height = 0;
-  std::vector<uint8_t> pixels;
+  Pixels pixels;
 
   RgbImage() = default;
+  /// A black image.
   RgbImage(int width_px, int height_px)
-      : width(width_px), height(height_px), pixels(3 * static_cast<size_t>(width_px) * height_px) {}
+      : width(width_px), height(height_px), pixels(size_of(width_px, height_px), uint8_t{0}) {}
+
+  /// Any pixels: its memory is not touched, and so not resident, before somebody draws.
+  static RgbImage unwritten(int width_px, int height_px) {
+    RgbImage image;
+    image.width = width_px;
+    image.height = height_px;
+    image.pixels.resize(size_of(width_px, height_px));
+    return image;
+  }
 
   uint8_t* row(int v) { return pixels.data() + 3 * static_cast<size_t>(width) * v; }
   const uint8_t* row(int v) const { return pixels.data() + 3 * static_cast<size_t>(width) * v; }
   RgbView view() const {
     return {pixels.data(), width, height, 3 * static_cast<std::ptrdiff_t>(width)};
+  }
+
+ private:
+  static size_t size_of(int width_px, int height_px) {
+    return 3 * static_cast<size_t>(width_px) * static_cast<size_t>(height_px);
   }
 };
 

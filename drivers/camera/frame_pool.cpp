@@ -10,9 +10,10 @@ std::shared_ptr<FramePool> FramePool::create(int buffers, int width_px, int heig
 }
 
 FramePool::FramePool(int buffers, int width_px, int height_px)
-    : images_(buffers, RgbImage(width_px, height_px)),
-      free_(~uint64_t{0} >> (kMaxBuffers - buffers)) {
+    : free_(~uint64_t{0} >> (kMaxBuffers - buffers)) {
   assert(buffers >= 1 && buffers <= kMaxBuffers);
+  images_.reserve(static_cast<size_t>(buffers));
+  for (int i = 0; i < buffers; ++i) images_.push_back(RgbImage::unwritten(width_px, height_px));
 }
 
 FrameBuffer FramePool::borrow() {

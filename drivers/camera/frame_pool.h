@@ -11,8 +11,9 @@
 
 namespace bevloc::drivers {
 
-/// All memory is made by create(); borrowing and giving back neither allocate nor lock. Thread
-/// safe.
+/// All memory is made by create(); borrowing and giving back neither allocate nor lock. The lowest
+/// free picture is lent first: pictures that are never needed are never touched and not resident.
+/// Thread safe.
 class FramePool final : public FrameLender, public std::enable_shared_from_this<FramePool> {
  public:
   static constexpr int kMaxBuffers = 64;

@@ -2,9 +2,6 @@
 
 #include <utility>
 
-#include "pipeline/calibration/rig.h"
-#include "sim/random.h"
-
 namespace bevloc::drivers {
 namespace {
 
@@ -16,13 +13,12 @@ CameraDescription description_of(const MockCameraConfig& config) {
 
 }  // namespace
 
-MockCamera::MockCamera(std::shared_ptr<const MockScene> scene, const MockCameraConfig& config,
+MockCamera::MockCamera(std::shared_ptr<MockScene> scene, const MockCameraConfig& config,
                        Clock& clock)
     : PacedCamera(description_of(config), config.timing.exposure, clock),
       scene_(std::move(scene)),
       config_(config),
-      schedule_(config.timing, config.faults),
-      renderer_(*scene_->world) {
+      schedule_(config.timing, config.faults) {
   set_shelf_life(config.timing.period);
 }
 
@@ -32,13 +28,8 @@ Status MockCamera::open(Time now) {
 }
 
 Status MockCamera::draw(const Delivery& delivery, RgbImage& image) {
-  const Duration drive_time = delivery.scene_time - config_.timing.drive_start;
-  const double time_s = to_seconds(drive_time);
-  const uint64_t camera_seed = sim::seed_for(scene_->seed, kCameraNames[config_.camera]);
-  const uint64_t noise_seed =
-      sim::mix_seed(camera_seed ^ static_cast<uint64_t>(drive_time.count()));
-  renderer_.render(config_.true_camera, scene_->drive->at(time_s).map_from_vehicle,
-                   scene_->drive->body_at(time_s), time_s, scene_->conditions, noise_seed, image);
+  scene_->draw(config_.camera, config_.true_camera,
+               delivery.scene_time - config_.timing.drive_start, image);
   return {};
 }
 

@@ -83,11 +83,8 @@ std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(const
                                                                            drivers::Clock& clock,
                                                                            Time drive_start) const {
   const SimulationConfig& simulation = *config.simulation;
-  auto scene = std::make_shared<drivers::MockScene>();
-  scene->world = world_;
-  scene->drive = drive_;
-  scene->conditions = simulation.conditions;
-  scene->seed = sim::seed_for(simulation.seed, "pixel noise");
+  const auto scene = std::make_shared<drivers::MockScene>(
+      world_, drive_, simulation.conditions, sim::seed_for(simulation.seed, "pixel noise"));
   const Rig true_rig = drivers::true_rig(rig, simulation.calibration_error,
                                          sim::seed_for(simulation.seed, "calibration"));
   std::vector<std::unique_ptr<drivers::Camera>> cameras;

@@ -40,7 +40,8 @@ class SimulatedRun {
 
   void run(const StopWhen& stop);
   DriveReport report() const;
-  Status write_sheet_if_any() const;
+  /// Ends the run: nothing else may be asked of it.
+  Status write_sheet_if_any();
 
  private:
   SimulatedRun(const Config& config, const Rig& rig, const SimulatedRunOptions& options,
@@ -166,21 +167,23 @@ const JudgedPose& SimulatedRun::judged_nearest(double time_s) const {
                            });
 }
 
-Status SimulatedRun::write_sheet_if_any() const {
+Status SimulatedRun::write_sheet_if_any() {
   const std::filesystem::path file = options_.out / "sheet.png";
-  if (!keeper_.kept() || judge_->poses().empty()) {
+  std::optional<SnapshotKeeper::Kept> kept = keeper_.take();
+  if (!kept || judge_->poses().empty()) {
     std::error_code ignored;
     std::filesystem::remove(file, ignored);  // an earlier drive's would be taken for this one's
     return {};
   }
-  SheetContent content = keeper_.kept()->content;
-  const double time_s = to_seconds(keeper_.kept()->frame_time - drive_start_);
+  appliance_.reset();  // its memory is free for the sheet
+  SheetContent& content = kept->content;
+  const double time_s = to_seconds(kept->frame_time - drive_start_);
   const JudgedPose& nearest = judged_nearest(time_s);
   // The judge's poses are of another moment than the frameset: their errors are carried over.
   content.truth = drive_.truth_at(time_s);
   content.prior = content.truth * pose_error(nearest.truth, nearest.prior);
   content.corrected = content.truth * pose_error(nearest.truth, nearest.estimate);
-  return write_sheet(content, rig_, appliance_->map_index(), file.string());
+  return write_sheet(content, rig_, MapIndex(drive_.map()), file.string());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "firmware/simulation/sheet.h"
 #include "firmware/vision_stage.h"
@@ -21,7 +22,7 @@ class SnapshotKeeper {
 
   void observe(const VisionSnapshot& snapshot);
 
-  const std::optional<Kept>& kept() const { return kept_; }
+  std::optional<Kept> take() { return std::exchange(kept_, std::nullopt); }
 
  private:
   /// From the first frameset that was localized while tracking.

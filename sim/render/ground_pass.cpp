@@ -11,12 +11,13 @@ namespace bevloc::sim {
 namespace {
 
 constexpr int kMostTaps = 12;
+static_assert(kRun <= GroundTiles::kMostHeld, "a run finds all its tiles at one time");
 constexpr float kFarthestM = 900.0F;
 /// A level is fine enough to reach this far through the tile directory.
 constexpr float kReachOfFinestM =
-    static_cast<float>((GroundTiles::kReachTiles - 0.5) * tile_size_m(0));
+    static_cast<float>((GroundWindow::kReachTiles - 0.5) * tile_size_m(0));
 
-/// What stays the same over a frame, positions counted from GroundTiles::local_origin().
+/// What stays the same over a frame, positions counted from GroundWindow::local_origin().
 struct Frame {
   float rotation[9];  ///< map_from_camera, row by row
   float camera_x, camera_y, height;
@@ -29,7 +30,8 @@ struct Frame {
 
 /// Up to kRun pixels of one row on their way through the loops.
 struct Run {
-  alignas(64) float dx[kRun], dy[kRun], dz[kRun];  ///< rays in map axes
+  alignas(64) float rx[kRun], ry[kRun];            ///< rays in the camera frame
+  alignas(64) float dx[kRun], dy[kRun], dz[kRun];  ///< and in map axes
   alignas(64) float x[kRun], y[kRun], range[kRun], steepness[kRun];
   alignas(64) float step_x[kRun], step_y[kRun];  ///< between the taps
   alignas(64) float texels_per_m[kRun];
@@ -41,15 +43,15 @@ struct Run {
 
 /// Turns the rays into the map; returns the number of taps the run needs, 0 if it is all sky.
 BEVLOC_TARGET_CLONES
-int aim(const Frame& frame, const float* rx, const float* ry, int count, Run& run) {
+int aim(const Frame& frame, int count, Run& run) {
   const Frame& f = frame;
   const float* m = f.rotation;
   float most_ratio = 0.0F;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
-    run.dx[i] = m[0] * rx[i] + m[1] * ry[i] + m[2];
-    run.dy[i] = m[3] * rx[i] + m[4] * ry[i] + m[5];
-    run.dz[i] = m[6] * rx[i] + m[7] * ry[i] + m[8];
+    run.dx[i] = m[0] * run.rx[i] + m[1] * run.ry[i] + m[2];
+    run.dy[i] = m[3] * run.rx[i] + m[4] * run.ry[i] + m[5];
+    run.dz[i] = m[6] * run.rx[i] + m[7] * run.ry[i] + m[8];
     const float horizontal2 = run.dx[i] * run.dx[i] + run.dy[i] * run.dy[i] + 1e-12F;
     const float horizontal = std::sqrt(horizontal2);
     const float down = std::max(-run.dz[i], 1e-6F);
@@ -117,18 +119,18 @@ bool look_up(const int32_t* directory, int count, Run& run) {
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const int32_t tile =
-        directory[GroundTiles::directory_index(run.level[i], run.tile_x[i], run.tile_y[i])];
+        directory[GroundWindow::directory_index(run.level[i], run.tile_x[i], run.tile_y[i])];
     lowest = std::min(lowest, tile);
     run.texel[i] = tile + run.inside[i];
   }
   return lowest >= 0;
 }
 
-void make_missing(GroundTiles& tiles, int count, const Run& run) {
+void fetch_missing(GroundWindow& ground, int count, const Run& run) {
   for (int i = 0; i < count; ++i) {
-    const int32_t at = GroundTiles::directory_index(run.level[i], run.tile_x[i], run.tile_y[i]);
-    if (tiles.directory()[at] == GroundTiles::kMissing) {
-      tiles.make(run.level[i], run.tile_x[i], run.tile_y[i]);
+    const int32_t at = GroundWindow::directory_index(run.level[i], run.tile_x[i], run.tile_y[i]);
+    if (ground.directory()[at] == GroundWindow::kMissing) {
+      ground.fetch(run.level[i], run.tile_x[i], run.tile_y[i]);
     }
   }
 }
@@ -208,7 +210,7 @@ Frame make_frame(const View& view, const Lighting& lighting, const GroundLight& 
   frame.camera_x = camera.x();
   frame.camera_y = camera.y();
   frame.height = std::max(0.05F, static_cast<float>(view.position.z()));
-  frame.pixel_angle = static_cast<float>(1.0 / view.rays->intrinsics.fx_px);
+  frame.pixel_angle = static_cast<float>(1.0 / view.rays->intrinsics().fx_px);
   frame.vehicle_x = vehicle.x();
   frame.vehicle_y = vehicle.y();
   frame.forward_x = view.vehicle_forward.x();
@@ -220,13 +222,13 @@ Frame make_frame(const View& view, const Lighting& lighting, const GroundLight& 
   return frame;
 }
 
-void draw_ground_run(const Frame& frame, int taps, int count, GroundTiles& tiles, Run& run) {
+void draw_ground_run(const Frame& frame, int taps, int count, GroundWindow& ground, Run& run) {
   choose_levels(taps, count, run);
   for (int tap = 0; tap < taps; ++tap) {
     place_taps(static_cast<float>(tap) - 0.5F * static_cast<float>(taps - 1), count, run);
-    // A tile made late may push out an older one of this run: look again until all are there.
-    while (!look_up(tiles.directory(), count, run)) make_missing(tiles, count, run);
-    add_taps(tiles.texels(), 1.0F / static_cast<float>(taps), count, run);
+    // A tile fetched late may push out an older one of this run: look again until all are there.
+    while (!look_up(ground.directory(), count, run)) fetch_missing(ground, count, run);
+    add_taps(ground.texels(), 1.0F / static_cast<float>(taps), count, run);
   }
   light_ground(frame, count, run);
 }
@@ -234,16 +236,16 @@ void draw_ground_run(const Frame& frame, int taps, int count, GroundTiles& tiles
 }  // namespace
 
 void draw_ground_and_sky(const View& view, const Lighting& lighting, const GroundLight& light,
-                         const Sky& sky, GroundTiles& tiles, Picture& picture) {
-  const Frame frame = make_frame(view, lighting, light, tiles.local_origin());
+                         const Sky& sky, GroundWindow& ground, Picture& picture) {
+  const Frame frame = make_frame(view, lighting, light, ground.local_origin());
   Run run;
   const int pixels = view.width() * view.height();
   for (int start = 0; start < pixels; start += kRun) {
     const int count = std::min(kRun, pixels - start);
-    const int taps = aim(frame, &view.rays->x[static_cast<size_t>(start)],
-                         &view.rays->y[static_cast<size_t>(start)], count, run);
+    view.rays->get(static_cast<size_t>(start), count, run.rx, run.ry);
+    const int taps = aim(frame, count, run);
     const float highest = *std::max_element(run.dz, run.dz + count);
-    if (taps > 0) draw_ground_run(frame, taps, count, tiles, run);
+    if (taps > 0) draw_ground_run(frame, taps, count, ground, run);
     if (highest > -1e-5F) {
       shade_sky(sky, lighting,
                 {run.dx, run.dy, run.dz, 1.0F / frame.pixel_angle, run.sky_red, run.sky_green,
@@ -251,11 +253,11 @@ void draw_ground_and_sky(const View& view, const Lighting& lighting, const Groun
                 count);
     }
     for (int i = 0; i < count; ++i) {
-      const bool ground = run.dz[i] < -1e-5F;
+      const bool is_ground = run.dz[i] < -1e-5F;
       const auto at = static_cast<size_t>(start + i);
-      picture.red[at] = ground ? run.red[i] : run.sky_red[i];
-      picture.green[at] = ground ? run.green[i] : run.sky_green[i];
-      picture.blue[at] = ground ? run.blue[i] : run.sky_blue[i];
+      picture.red[at] = is_ground ? run.red[i] : run.sky_red[i];
+      picture.green[at] = is_ground ? run.green[i] : run.sky_green[i];
+      picture.blue[at] = is_ground ? run.blue[i] : run.sky_blue[i];
     }
   }
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/render/ground_light.h"
-#include "sim/render/ground_tiles.h"
+#include "sim/render/ground_window.h"
 #include "sim/render/lighting.h"
 #include "sim/render/picture.h"
 #include "sim/render/sky.h"
@@ -12,6 +12,6 @@ namespace bevloc::sim {
 
 /// Draws every pixel of the picture; tiles that come into view are painted on the way.
 void draw_ground_and_sky(const View& view, const Lighting& lighting, const GroundLight& light,
-                         const Sky& sky, GroundTiles& tiles, Picture& picture);
+                         const Sky& sky, GroundWindow& ground, Picture& picture);
 
 }  // namespace bevloc::sim

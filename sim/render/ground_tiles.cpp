@@ -1,65 +1,49 @@
 #include "sim/render/ground_tiles.h"
 
-#include <cmath>
+#include <algorithm>
+#include <cassert>
 
 namespace bevloc::sim {
-namespace {
-
-constexpr int kCoarsest = kGroundLevels - 1;
-
-int64_t tile_index(double position_m, int level) {
-  return static_cast<int64_t>(std::floor(position_m / tile_size_m(level)));
-}
-
-}  // namespace
 
 GroundTiles::GroundTiles(const World& world)
-    : painter_(world),
+    : world_(world),
+      painter_(world),
       texels_(std::make_unique_for_overwrite<GroundTexel[]>(static_cast<size_t>(kCapacity) *
                                                             kTileArea)) {
   slots_.reserve(kCapacity);
 }
 
-void GroundTiles::look_at(const Eigen::Vector2d& centre) {
-  centre_ = centre;
-  origin_ix_ = tile_index(centre.x(), kCoarsest);
-  origin_iy_ = tile_index(centre.y(), kCoarsest);
-  directory_.fill(kMissing);
-  for (size_t slot = 0; slot < slots_.size(); ++slot) {
-    if (in_reach(slots_[slot])) entry(slots_[slot]) = static_cast<int32_t>(slot) * kTileArea;
-  }
+int32_t GroundTiles::borrow(const TileKey& key) {
+  const std::lock_guard lock(mutex_);
+  Slot& slot = slot_of(key);
+  ++slot.borrowers;
+  slot.last_loan = ++loans_;
+  return static_cast<int32_t>(&slot - slots_.data()) * kTileArea;
 }
 
-Eigen::Vector2d GroundTiles::local_origin() const {
-  return {static_cast<double>(origin_ix_) * tile_size_m(kCoarsest),
-          static_cast<double>(origin_iy_) * tile_size_m(kCoarsest)};
+void GroundTiles::give_back(int32_t offset) {
+  const std::lock_guard lock(mutex_);
+  --slots_[static_cast<size_t>(offset / kTileArea)].borrowers;
 }
 
-bool GroundTiles::in_reach(const TileKey& key) const {
-  return std::abs(key.ix - tile_index(centre_.x(), key.level)) <= kReachTiles &&
-         std::abs(key.iy - tile_index(centre_.y(), key.level)) <= kReachTiles;
+GroundTiles::Slot& GroundTiles::slot_of(const TileKey& key) {
+  const auto kept =
+      std::find_if(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.key == key; });
+  return kept != slots_.end() ? *kept : paint(key);
 }
 
-int32_t& GroundTiles::entry(const TileKey& key) {
-  const int64_t scale = int64_t{1} << (kCoarsest - key.level);
-  return directory_[static_cast<size_t>(
-      directory_index(key.level, static_cast<int32_t>(key.ix - origin_ix_ * scale),
-                      static_cast<int32_t>(key.iy - origin_iy_ * scale)))];
-}
-
-void GroundTiles::make(int level, int32_t tile_x, int32_t tile_y) {
-  const int64_t scale = int64_t{1} << (kCoarsest - level);
-  const TileKey key{level, tile_x + origin_ix_ * scale, tile_y + origin_iy_ * scale};
-  if (slots_.size() < kCapacity) {
-    slots_.push_back(key);
-  } else {
-    if (in_reach(slots_[next_slot_])) entry(slots_[next_slot_]) = kMissing;
-    slots_[next_slot_] = key;
-  }
-  const auto offset = static_cast<int32_t>(next_slot_) * kTileArea;
-  next_slot_ = (next_slot_ + 1) % kCapacity;
-  painter_.paint(key, texels_.get() + offset);
-  entry(key) = offset;
+GroundTiles::Slot& GroundTiles::paint(const TileKey& key) {
+  if (slots_.size() < kCapacity) slots_.emplace_back();
+  const auto lent_and_time = [](const Slot& slot) {
+    return std::pair(slot.borrowers > 0, slot.last_loan);
+  };
+  Slot& slot = *std::min_element(slots_.begin(), slots_.end(), [&](const Slot& a, const Slot& b) {
+    return lent_and_time(a) < lent_and_time(b);
+  });
+  assert(slot.borrowers == 0 && "too many renderers share the tiles");
+  slot.key = key;
+  painter_.paint(key, texels_.get() + (&slot - slots_.data()) * kTileArea);
+  return slot;
 }
 
 }  // namespace bevloc::sim

@@ -1,60 +1,52 @@
-// The painted ground around a camera, made as it comes into view.
+// The painted ground of a world, made where it comes into view.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "sim/render/ground_painter.h"
 #include "sim/render/ground_tile.h"
 
 namespace bevloc::sim {
 
-/// Keeps the newest kCapacity tiles. The pixel loops find a tile through a small directory that
-/// wraps around: it holds every tile within kReachTiles of the centre, at every level.
+/// A fixed number of tiles that renderers of one world share: a tile that is lent stays as it is,
+/// of the others those lent last are kept. A tile's texels depend on the world and its key alone.
+/// Thread safe.
 class GroundTiles {
  public:
-  static constexpr int kCapacity = 768;
-  static constexpr int kDirectorySide = 32;
-  static constexpr int kReachTiles = kDirectorySide / 2 - 1;
-  static constexpr int kDirectorySize = kGroundLevels * kDirectorySide * kDirectorySide;
-  static constexpr int32_t kMissing = -1;
+  /// A rig of six cameras sees some 290 at one moment, one camera at most 100.
+  static constexpr int kCapacity = 352;
+  /// A renderer may hold that many at a time, and kCapacity / kMostHeld renderers may share them.
+  static constexpr int kMostHeld = 128;
 
+  /// The world must outlive it.
   explicit GroundTiles(const World& world);
 
-  /// Points the directory at the tiles around `centre` (map frame).
-  void look_at(const Eigen::Vector2d& centre);
-
-  /// The map position that local coordinates count from: a corner of the coarsest grid near the
-  /// centre, so that floats hold local coordinates to well under a millimetre.
-  Eigen::Vector2d local_origin() const;
-
-  /// Place in the directory of a tile given by its level and its local tile coordinates.
-  static constexpr int32_t directory_index(int32_t level, int32_t tile_x, int32_t tile_y) {
-    constexpr int32_t kMask = kDirectorySide - 1;
-    return (level * kDirectorySide + (tile_y & kMask)) * kDirectorySide + (tile_x & kMask);
-  }
-  /// Offset of each tile's first texel from texels(), or kMissing.
-  const int32_t* directory() const { return directory_.data(); }
+  const World& world() const { return world_; }
   const GroundTexel* texels() const { return texels_.get(); }
 
-  /// Paints a missing tile, given by its level and local tile coordinates.
-  void make(int level, int32_t tile_x, int32_t tile_y);
+  /// Lends a tile, painting it if it is not kept: the offset of its first texel from texels().
+  int32_t borrow(const TileKey& key);
+  void give_back(int32_t offset);
 
  private:
-  bool in_reach(const TileKey& key) const;
-  int32_t& entry(const TileKey& key);
+  struct Slot {
+    TileKey key;
+    uint64_t last_loan = 0;  ///< value of loans_ then
+    int borrowers = 0;
+  };
 
+  Slot& slot_of(const TileKey& key);
+  Slot& paint(const TileKey& key);
+
+  const World& world_;
+  std::mutex mutex_;  ///< guards all below but the texels of lent tiles
   GroundPainter painter_;
   std::unique_ptr<GroundTexel[]> texels_;
-  std::vector<TileKey> slots_;  ///< which tile each slot holds; the oldest is replaced first
-  size_t next_slot_ = 0;
-  std::array<int32_t, kDirectorySize> directory_{};
-  Eigen::Vector2d centre_ = Eigen::Vector2d::Zero();
-  int64_t origin_ix_ = 0;  ///< of local_origin(), in tiles of the coarsest level
-  int64_t origin_iy_ = 0;
+  std::vector<Slot> slots_;
+  uint64_t loans_ = 0;
 };
 
 }  // namespace bevloc::sim

@@ -1,10 +1,11 @@
 #include "sim/render/renderer.h"
 
 #include <tuple>
+#include <utility>
 
 #include "sim/render/ground_light.h"
 #include "sim/render/ground_pass.h"
-#include "sim/render/ground_tiles.h"
+#include "sim/render/ground_window.h"
 #include "sim/render/lighting.h"
 #include "sim/render/sensor_pass.h"
 #include "sim/render/sheet.h"
@@ -35,7 +36,8 @@ struct Moment {
 }  // namespace
 
 struct Renderer::Impl {
-  explicit Impl(const World& shown) : world(shown), scene(shown), tiles(shown), sky(shown.seed) {}
+  explicit Impl(std::shared_ptr<GroundTiles> tiles)
+      : ground(std::move(tiles)), scene(ground.world()), sky(ground.world().seed) {}
 
   void enter(const Moment& next, const Lighting& lighting) {
     if (moment_known && moment.key() == next.key()) return;
@@ -45,9 +47,8 @@ struct Renderer::Impl {
     light.build(moment.map_from_vehicle.translation(), surroundings, lighting);
   }
 
-  const World& world;
+  GroundWindow ground;
   SceneIndex scene;
-  GroundTiles tiles;
   Sky sky;
   RayCache rays;
   Moment moment;
@@ -58,7 +59,10 @@ struct Renderer::Impl {
   Picture picture;
 };
 
-Renderer::Renderer(const World& world) : impl_(std::make_unique<Impl>(world)) {}
+Renderer::Renderer(const World& world) : Renderer(std::make_shared<GroundTiles>(world)) {}
+
+Renderer::Renderer(std::shared_ptr<GroundTiles> ground)
+    : impl_(std::make_unique<Impl>(std::move(ground))) {}
 
 Renderer::~Renderer() = default;
 
@@ -71,10 +75,12 @@ void Renderer::render(const CameraModel& camera, const Se2& map_from_vehicle,
   const View view = make_view(impl.rays.rays_of(camera.intrinsics), camera.vehicle_from_camera,
                               map_from_vehicle, body);
   impl.picture.resize(view.width(), view.height());
-  impl.tiles.look_at(view.position.head<2>());
-  draw_ground_and_sky(view, lighting, impl.light, impl.sky, impl.tiles, impl.picture);
+  impl.ground.open(view.position.head<2>());
+  draw_ground_and_sky(view, lighting, impl.light, impl.sky, impl.ground, impl.picture);
+  impl.ground.close();
   draw_sheets(view, lighting, impl.sheets.build(view.position, impl.surroundings), impl.picture);
-  develop(view, lighting, sensor_of(impl.world.seed, camera), noise_seed, impl.picture, image);
+  develop(view, lighting, sensor_of(impl.ground.world().seed, camera), noise_seed, impl.picture,
+          image);
 }
 
 }  // namespace bevloc::sim

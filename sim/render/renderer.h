@@ -31,11 +31,14 @@ struct BodyMotion {
   double lift_m = 0.0;
 };
 
-/// Not thread safe; several renderers may share one world. Ground is drawn from texture tiles that
-/// are made once and kept (bounded in memory).
+class GroundTiles;
+
+/// Not thread safe; several renderers may share one world, and the painted tiles of its ground.
 class Renderer {
  public:
+  /// With tiles of its own. The world must outlive it.
   explicit Renderer(const World& world);
+  explicit Renderer(std::shared_ptr<GroundTiles> ground);
   ~Renderer();
 
   /// Draws one image. `camera` is the TRUE camera (which calibration error may set apart from the

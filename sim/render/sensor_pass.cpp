@@ -87,10 +87,12 @@ void develop(const View& view, const Lighting& lighting, const Sensor& sensor, u
   const int height = picture.height;
   if (image.width != width || image.height != height) image = RgbImage(width, height);
   std::vector<float>& scratch = picture.scratch;
-  scratch.resize(4 * static_cast<size_t>(width) + 2);
+  scratch.resize(6 * static_cast<size_t>(width) + 2);
   float* blended = scratch.data() + 1;
-  const std::array<float*, 3> rows = {scratch.data() + width + 2, scratch.data() + 2 * width + 2,
-                                      scratch.data() + 3 * width + 2};
+  const auto scratch_row = [&](int i) { return scratch.data() + i * width + 2; };
+  const std::array<float*, 3> rows = {scratch_row(1), scratch_row(2), scratch_row(3)};
+  float* rx = scratch_row(4);
+  float* ry = scratch_row(5);
   const std::array<const std::vector<float>*, 3> planes = {&picture.red, &picture.green,
                                                            &picture.blue};
   const std::array<float, 3> gains = {sensor.gain.r, sensor.gain.g, sensor.gain.b};
@@ -99,13 +101,14 @@ void develop(const View& view, const Lighting& lighting, const Sensor& sensor, u
     const size_t at = static_cast<size_t>(v) * static_cast<size_t>(width);
     const size_t above = v > 0 ? at - static_cast<size_t>(width) : at;
     const size_t below = v + 1 < height ? at + static_cast<size_t>(width) : at;
+    view.rays->get(at, width, rx, ry);
     for (size_t c = 0; c < 3; ++c) {
       hash = mix_seed(hash);
       const float* plane = planes[c]->data();
-      develop_row({plane + above, plane + at, plane + below, &view.rays->x[at], &view.rays->y[at],
-                   GaussianTable::shared().from(hash), gains[c], sensor.blur, sensor.vignette,
-                   lighting.noise_sigma, blended, width},
-                  rows[c]);
+      develop_row(
+          {plane + above, plane + at, plane + below, rx, ry, GaussianTable::shared().from(hash),
+           gains[c], sensor.blur, sensor.vignette, lighting.noise_sigma, blended, width},
+          rows[c]);
     }
     store_row(rows[0], rows[1], rows[2], width, image.row(v));
   }

@@ -33,9 +33,9 @@ bool cut(Polygon& polygon, Inside inside) {
 bool cut_to_view(Polygon& polygon, const CameraRays& rays) {
   constexpr float kNearestM = 0.05F;
   // A little wider than the view, so that what is cut off never shows.
-  const Eigen::Vector2f margin = 0.02F * (rays.high - rays.low);
-  const Eigen::Vector2f low = rays.low - margin;
-  const Eigen::Vector2f high = rays.high + margin;
+  const Eigen::Vector2f margin = 0.02F * (rays.high() - rays.low());
+  const Eigen::Vector2f low = rays.low() - margin;
+  const Eigen::Vector2f high = rays.high() + margin;
   using Point = Eigen::Vector3f;
   return cut(polygon, [](const Point& p) { return p.z() - kNearestM; }) &&
          cut(polygon, [&](const Point& p) { return p.x() - low.x() * p.z(); }) &&
@@ -60,7 +60,7 @@ std::optional<PixelBox> pixels_of(const std::array<Eigen::Vector3f, 4>& corners_
   polygon.size = 4;
   if (!cut_to_view(polygon, rays)) return std::nullopt;
 
-  const Intrinsics& camera = rays.intrinsics;
+  const Intrinsics& camera = rays.intrinsics();
   const int pieces = pieces_per_edge(camera);
   Eigen::Vector2d low(camera.width_px, camera.height_px);
   Eigen::Vector2d high(-1.0, -1.0);

@@ -40,6 +40,7 @@ struct SheetInView {
 constexpr float kNoLimit = 1e4F;
 
 struct Run {
+  alignas(64) float rx[kRun], ry[kRun];
   alignas(64) float nearness[kRun], u[kRun], v[kRun], cover[kRun], footprint[kRun], head[kRun];
   alignas(64) float red[kRun], green[kRun], blue[kRun];
 };
@@ -56,17 +57,16 @@ inline float overlap(float at, float length, float size) {
 
 /// Intersects the rays with the sheet; returns whether any pixel is covered and not hidden.
 BEVLOC_TARGET_CLONES
-bool hit(const SheetInView& sheet, const float* rx, const float* ry, const float* hidden_by,
-         int count, Run& run) {
+bool hit(const SheetInView& sheet, const float* hidden_by, int count, Run& run) {
   const SheetInView s = sheet;
   float most = 0.0F;
   for (int i = 0; i < count; ++i) {
-    const float nearness = dot(s.plane, rx[i], ry[i]);
+    const float nearness = dot(s.plane, run.rx[i], run.ry[i]);
     const float depth = 1.0F / std::max(nearness, 1e-4F);
-    const float along = dot(s.along, rx[i], ry[i]) * depth + s.along_0;
-    const float up = dot(s.up, rx[i], ry[i]) * depth + s.up_0;
+    const float along = dot(s.along, run.rx[i], run.ry[i]) * depth + s.along_0;
+    const float up = dot(s.up, run.rx[i], run.ry[i]) * depth + s.up_0;
     const float pixel = depth * s.pixel_angle;
-    const float length2 = rx[i] * rx[i] + ry[i] * ry[i] + 1.0F;
+    const float length2 = run.rx[i] * run.rx[i] + run.ry[i] * run.ry[i] + 1.0F;
     const float incidence = std::max(0.04F, nearness * s.facing / std::sqrt(length2));
     const float pixel_along = pixel * std::min(12.0F, s.lean > 0.5F ? 1.0F : 1.0F / incidence);
     const float pixel_up = pixel * std::min(12.0F, s.lean > 0.5F ? 1.0F / incidence : 1.0F);
@@ -89,12 +89,12 @@ bool hit(const SheetInView& sheet, const float* rx, const float* ry, const float
 
 /// The ego vehicle's headlights at the points hit.
 BEVLOC_TARGET_CLONES
-void light_up(const SheetInView& sheet, const float* rx, const float* ry, int count, Run& run) {
+void light_up(const SheetInView& sheet, int count, Run& run) {
   const SheetInView s = sheet;
   for (int i = 0; i < count; ++i) {
     const float depth = 1.0F / std::max(run.nearness[i], 1e-3F);
-    const float ahead = dot(s.ahead, rx[i], ry[i]) * depth + s.ahead_0;
-    const float aside = dot(s.aside, rx[i], ry[i]) * depth + s.aside_0;
+    const float ahead = dot(s.ahead, run.rx[i], run.ry[i]) * depth + s.ahead_0;
+    const float aside = dot(s.aside, run.rx[i], run.ry[i]) * depth + s.aside_0;
     run.head[i] = s.headlights * 2.0F * headlight_share(ahead, aside);
   }
 }
@@ -184,7 +184,7 @@ bool look_at(const Sheet& sheet, const View& view, const Lighting& lighting, She
   seen.up_0 = -sheet.up.dot(sheet.corner);
   seen.length_m = sheet.length_m;
   seen.height_m = sheet.height_m;
-  seen.pixel_angle = static_cast<float>(1.0 / view.rays->intrinsics.fx_px);
+  seen.pixel_angle = static_cast<float>(1.0 / view.rays->intrinsics().fx_px);
   seen.lean = std::abs(normal.z());
   seen.u_per_m = sheet.u_per_m;
   seen.v_per_m = sheet.v_per_m;
@@ -218,10 +218,9 @@ void draw_sheet(const View& view, const SheetInView& sheet, const PixelBox& box,
     for (int u = box.left; u <= box.right; u += kRun) {
       const int count = std::min(kRun, box.right - u + 1);
       const size_t at = static_cast<size_t>(v) * static_cast<size_t>(picture.width) + u;
-      const float* rx = &view.rays->x[at];
-      const float* ry = &view.rays->y[at];
-      if (!hit(sheet, rx, ry, &picture.nearness[at], count, run)) continue;
-      if (sheet.headlights > 0.0F) light_up(sheet, rx, ry, count, run);
+      view.rays->get(at, count, run.rx, run.ry);
+      if (!hit(sheet, &picture.nearness[at], count, run)) continue;
+      if (sheet.headlights > 0.0F) light_up(sheet, count, run);
       clothe(sheet, count, run);
       lay_over(run, count, &picture.red[at], &picture.green[at], &picture.blue[at],
                &picture.nearness[at]);

@@ -294,6 +294,7 @@ Texture make_texture(const Recipe& recipe) {
   Texture texture;
   texture.period_u_m = recipe.period_u_m;
   texture.period_v_m = recipe.period_v_m;
+  texture.texels.reserve(kMipOffsets.back() + kMipSides.back() * kMipSides.back());
   for (int mip = 0; mip < kTextureMips; ++mip) {
     if (mip > 0) picture = halved(picture, kTextureSide >> (mip - 1));
     for (const Paint& paint : picture) texture.texels.push_back(pack(paint));

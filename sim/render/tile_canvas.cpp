@@ -123,6 +123,7 @@ void TileCanvas::begin(const TileKey& tile, uint64_t world_seed) {
   noise_shift_x_ = shift(seed_for(world_seed, "noise x"));
   noise_shift_y_ = shift(seed_for(world_seed, "noise y"));
 
+  for (Plane* plane : {&red, &green, &blue, &gloss}) std::fill(plane->begin(), plane->end(), 0.0F);
   for (int j = 0; j < kTileNodes; ++j) look_up_patches(j);
 }
 

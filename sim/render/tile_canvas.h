@@ -14,7 +14,8 @@ struct TileCanvas {
   using Plane = std::vector<float>;
 
   TileCanvas();
-  /// Sets the place and looks up the noise; the albedo is left as it was.
+  /// Sets the place, looks up the noise and blackens the albedo: covering a black texel gives the
+  /// material's own value to the last bit, whatever the canvas showed before.
   void begin(const TileKey& key, uint64_t world_seed);
 
   double texel_m() const { return texel_size_m(key.level); }

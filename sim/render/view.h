@@ -1,6 +1,7 @@
 // One camera at one moment, as the pixel loops need it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -11,16 +12,28 @@
 
 namespace bevloc::sim {
 
-/// The rays of all pixels, (x, y, 1) in the camera frame, row by row.
-struct CameraRays {
-  Intrinsics intrinsics;
-  std::vector<float> x;
-  std::vector<float> y;
-  /// Smallest box around all of them.
-  Eigen::Vector2f low = Eigen::Vector2f::Zero();
-  Eigen::Vector2f high = Eigen::Vector2f::Zero();
-
+/// The rays of all pixels, (x, y, 1) in the camera frame, row by row. Kept in 16 bits for each
+/// coordinate, which is good to a hundredth of a pixel.
+class CameraRays {
+ public:
   explicit CameraRays(const Intrinsics& intrinsics);
+
+  const Intrinsics& intrinsics() const { return intrinsics_; }
+  /// The smallest box around all of them.
+  const Eigen::Vector2f& low() const { return low_; }
+  const Eigen::Vector2f& high() const { return high_; }
+
+  /// Writes the rays of `count` pixels from pixel number `start` on.
+  void get(size_t start, int count, float* x, float* y) const;
+
+ private:
+  Intrinsics intrinsics_;
+  Eigen::Vector2f low_ = Eigen::Vector2f::Zero();
+  Eigen::Vector2f high_ = Eigen::Vector2f::Zero();
+  Eigen::Vector2f step_ = Eigen::Vector2f::Zero();
+  /// Steps from low_.
+  std::vector<uint16_t> x_;
+  std::vector<uint16_t> y_;
 };
 
 /// The ray tables of the cameras seen last: a rig's cameras come back every frame.
@@ -42,8 +55,8 @@ struct View {
   Eigen::Vector2d vehicle = Eigen::Vector2d::Zero();
   Eigen::Vector2f vehicle_forward = Eigen::Vector2f::UnitX();
 
-  int width() const { return rays->intrinsics.width_px; }
-  int height() const { return rays->intrinsics.height_px; }
+  int width() const { return rays->intrinsics().width_px; }
+  int height() const { return rays->intrinsics().height_px; }
 };
 
 /// The camera's true pose: the pose on the ground, then the body's motion, then the mounting.

@@ -1,6 +1,8 @@
 #include "drivers/camera/mock_camera.h"
 
 #include <algorithm>
+#include <array>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,8 +13,6 @@ namespace bevloc::drivers {
 namespace {
 
 using std::chrono::milliseconds;
-
-using Pixels = std::vector<uint8_t>;
 
 /// The first `count` pictures of a camera.
 std::vector<Pixels> pictures(const MockCameraConfig& config, int count) {
@@ -67,6 +67,23 @@ TEST(MockCamera, FrozenPictureIsTheSameToThePixel) {
   EXPECT_NE(taken[1], taken[2]);
   EXPECT_EQ(taken[2], taken[3]);
   EXPECT_EQ(taken[3], taken[4]);
+}
+
+TEST(MockCamera, CamerasThatDrawAtOneTimeSeeWhatEachSeesAlone) {
+  std::array<MockCameraConfig, kCameraCount> configs;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    configs[static_cast<size_t>(camera)] = small_front_camera();
+    configs[static_cast<size_t>(camera)].camera = camera;
+  }
+  std::array<std::vector<Pixels>, kCameraCount> together;
+  std::vector<std::thread> threads;
+  for (size_t i = 0; i < configs.size(); ++i) {
+    threads.emplace_back([&, i] { together[i] = pictures(configs[i], 8); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (size_t i = 0; i < configs.size(); ++i) {
+    EXPECT_EQ(together[i], pictures(configs[i], 8)) << kCameraNames[i];
+  }
 }
 
 TEST(MockCamera, DeadCameraIsSilentAndComesBack) {

@@ -10,15 +10,12 @@
 namespace bevloc::drivers {
 
 /// One town and one drive, made once for the whole program.
-inline const std::shared_ptr<const MockScene>& test_scene() {
-  static const std::shared_ptr<const MockScene> scene = [] {
+inline const std::shared_ptr<MockScene>& test_scene() {
+  static const std::shared_ptr<MockScene> scene = [] {
     constexpr uint64_t kSeed = 5;
-    auto world = std::make_shared<const sim::World>(sim::generate_world(kSeed));
-    auto made = std::make_shared<MockScene>();
-    made->drive = std::make_shared<const sim::Drive>(*world, kSeed, 30.0);
-    made->world = std::move(world);
-    made->seed = kSeed;
-    return made;
+    const auto world = std::make_shared<const sim::World>(sim::generate_world(kSeed));
+    const auto drive = std::make_shared<const sim::Drive>(*world, kSeed, 30.0);
+    return std::make_shared<MockScene>(world, drive, sim::Conditions{}, kSeed);
   }();
   return scene;
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <sys/resource.h>
 
 #include "tests/can/independent_e2e.h"
 #include "tests/integration/bevlocd_process.h"
@@ -113,6 +114,14 @@ TEST_F(DriveTest, TheSameSeedGivesTheSameLogByteForByte) {
   drive(again, kDemo, "--seed 901 --duration 10");
   EXPECT_EQ(read_text(*scratch_ / "can.log"), read_text(again / "can.log"));
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they need several times it
+TEST_F(DriveTest, StaysWithin120MibWithItsWholeCity) {
+  rusage children{};
+  ASSERT_EQ(getrusage(RUSAGE_CHILDREN, &children), 0);
+  EXPECT_LE(children.ru_maxrss, 120 * 1024) << "KiB, of the largest drive";
+}
+#endif
 
 TEST(DriveVariantTest, AnotherSeedGivesAnotherLog) {
   const ScratchFolder one;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/world/world_generator.h"
 #include "tests/sim/render/small_world.h"
 
 namespace bevloc::sim {
@@ -74,6 +75,17 @@ TEST(GroundPainter, CoarseLevelsKeepTheAmountOfPaint) {
   EXPECT_NEAR(amount(0), 0.2 * 0.68, 0.02);
   for (int level = 1; level < kGroundLevels; ++level) {
     EXPECT_NEAR(amount(level), amount(0), 0.25 * amount(0)) << "level " << level;
+  }
+}
+
+TEST(GroundPainter, ATileDoesNotDependOnTheOnesBefore) {
+  const World world = generate_world(3);
+  GroundPainter painter(world);
+  std::vector<GroundTexel> tile(kTileArea);
+  for (int64_t i = 0; i < 24; ++i) {
+    const TileKey key{static_cast<int>(i % 3), (i * 7) % 11 - 5, (i * 5) % 13 - 6};
+    painter.paint(key, tile.data());
+    EXPECT_EQ(tile, tile_of(world, key)) << key.level << ": " << key.ix << ", " << key.iy;
   }
 }
 

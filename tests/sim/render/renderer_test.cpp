@@ -1,12 +1,15 @@
 #include "sim/render/renderer.h"
 
+#include <array>
 #include <cmath>
+#include <memory>
 #include <thread>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "pipeline/preprocessing/network_camera.h"
+#include "sim/render/ground_tiles.h"
 #include "sim/sim_rig.h"
 #include "tests/sim/render/small_world.h"
 
@@ -274,6 +277,38 @@ TEST(Renderer, DrawsAnEmptyWorldAndOddBodies) {
                                  BodyMotion{0.0, 0.0, -2.0}, BodyMotion{0.0, 1.5, 3.0}}) {
     renderer.render(front_camera(), {}, body, 0.0, {}, 3, image);
     EXPECT_GT(mean_of(image), 20.0);
+  }
+}
+
+TEST(Renderer, TwoShareTheGround) {
+  const World world = short_street();
+  const Rig rig = nominal_rig();
+  const auto ground = std::make_shared<GroundTiles>(world);
+  const auto draw_half = [&](Renderer& renderer, size_t first) {
+    std::vector<RgbImage> images(rig.cameras.size() / 2);
+    for (int i = 0; i < 12; ++i) {  // on the way much ground is painted, and some of it forgotten
+      const Se2 pose{-66.0 + 6.0 * i, 1.0, 0.1};
+      for (size_t c = 0; c < images.size(); ++c) {
+        renderer.render(rig.cameras[first + c], pose, {}, 0.1 * i, {}, c, images[c]);
+      }
+    }
+    return images;
+  };
+  std::array<std::vector<RgbImage>, 2> together;
+  std::vector<std::thread> threads;
+  for (size_t half = 0; half < together.size(); ++half) {
+    threads.emplace_back([&, half] {
+      Renderer renderer(ground);
+      together[half] = draw_half(renderer, 3 * half);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (size_t half = 0; half < together.size(); ++half) {
+    Renderer alone(world);
+    const std::vector<RgbImage> expected = draw_half(alone, 3 * half);
+    for (size_t c = 0; c < expected.size(); ++c) {
+      EXPECT_EQ(together[half][c].pixels, expected[c].pixels) << kCameraNames[3 * half + c];
+    }
   }
 }
 
