@@ -122,7 +122,8 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
     inputs.internal_error = !pose->map_from_vehicle.is_finite() || !pose->covariance.allFinite();
   }
   if (health_.update(inputs) && health_.state() == State::kLost) {
-    tracker_.widen();
+    // A pose that is uncertain by its own account needs no more doubt.
+    if (health_.pose_contradicted()) tracker_.widen();
     accepted_in_a_row_ = 0;
     refused_in_a_row_ = 0;
     gnss_monitor_.reset();

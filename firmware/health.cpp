@@ -59,6 +59,7 @@ std::string to_string(can::WhyMask why) {
 
 bool Health::update(const HealthInputs& inputs) {
   why_ = find_reasons(inputs);
+  contradicted_ = inputs.contradicts_gnss || inputs.refused_in_a_row >= limits_.refusals_to_lose;
   const State before = std::exchange(state_, next_state(inputs));
   return state_ != before;
 }
@@ -86,9 +87,8 @@ can::WhyMask Health::find_reasons(const HealthInputs& inputs) const {
 }
 
 bool Health::is_lost(const HealthInputs& inputs) const {
-  return why_.has(Why::kPoseUncertain) || why_.has(Why::kMatchUncertain) ||
-         why_.has(Why::kOdometryMissing) || inputs.correction_age > limits_.lost_timeout ||
-         inputs.refused_in_a_row >= limits_.refusals_to_lose;
+  return contradicted_ || why_.has(Why::kPoseUncertain) || why_.has(Why::kOdometryMissing) ||
+         inputs.correction_age > limits_.lost_timeout;
 }
 
 State Health::next_state(const HealthInputs& inputs) const {
@@ -97,6 +97,7 @@ State Health::next_state(const HealthInputs& inputs) const {
     case State::kInit:
       return inputs.initialized ? State::kAcquiring : State::kInit;
     case State::kAcquiring:
+      if (contradicted_) return State::kLost;  // what was believed first was wrong: begin again
       return !is_lost(inputs) && inputs.accepted_in_a_row >= limits_.corrections_to_track
                  ? State::kTracking
                  : State::kAcquiring;

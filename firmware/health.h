@@ -53,8 +53,9 @@ struct HealthInputs {
   bool internal_error = false;
 };
 
-/// INIT -> ACQUIRING -> TRACKING <-> DEGRADED; TRACKING or DEGRADED -> LOST -> ACQUIRING; any ->
-/// FAULT, which needs a person. Pure logic: the caller gives the facts, time included.
+/// INIT -> ACQUIRING -> TRACKING <-> DEGRADED; TRACKING, DEGRADED or ACQUIRING -> LOST ->
+/// ACQUIRING; any -> FAULT, which needs a person. Pure logic: the caller gives the facts, time
+/// included.
 class Health {
  public:
   explicit Health(const HealthLimits& limits) : limits_(limits) {}
@@ -64,6 +65,8 @@ class Health {
 
   State state() const { return state_; }
   can::WhyMask why() const { return why_; }
+  /// Whether corrections or GNSS say that the pose is wrong, by more than its own uncertainty.
+  bool pose_contradicted() const { return contradicted_; }
   /// Only then may a pose be sent as valid.
   bool pose_valid() const { return state_ == State::kTracking || state_ == State::kDegraded; }
 
@@ -75,6 +78,7 @@ class Health {
   HealthLimits limits_;
   State state_ = State::kInit;
   can::WhyMask why_ = can::Why::kNoInitialPose;
+  bool contradicted_ = false;
 };
 
 }  // namespace bevloc::firmware

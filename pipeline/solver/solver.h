@@ -49,8 +49,12 @@ enum class Evidence {
 struct Correction {
   Evidence evidence = Evidence::kNone;
   Se2 correction;  ///< dT = T0^-1 T, zero without evidence
-  /// Covariance of the correction, in T0's frame: (x m, y m, yaw rad).
+  /// Covariance of the correction, in T0's frame: (x m, y m, yaw rad). It holds the hypotheses'
+  /// even odds as a prior.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  /// Per axis: the share of the hypotheses' variance that the match removed. 0 or less: nothing was
+  /// seen along it; near 1: as well as the steps resolve.
+  Eigen::Vector3d evidence_share = Eigen::Vector3d::Ones();
 };
 
 /// `correction` is the mean of the distributions.
@@ -61,9 +65,6 @@ struct SolverResult : Correction {
   /// Per axis (x, y, yaw): the probability of the next highest peak against that of the highest.
   /// 0: a single peak; 1: two that are as likely.
   Eigen::Vector3d rival_peak = Eigen::Vector3d::Zero();
-  /// Per axis: the share of the hypotheses' variance that the match removed. 0: nothing was seen
-  /// along it; near 1: as well as the steps resolve.
-  Eigen::Vector3d evidence_share = Eigen::Vector3d::Zero();
   /// Probabilities over the hypotheses of each axis; each sums to 1.
   std::vector<float> x_probability;
   std::vector<float> y_probability;

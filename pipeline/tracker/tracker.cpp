@@ -9,6 +9,9 @@
 namespace bevloc {
 namespace {
 
+/// Keeps an axis along which nothing was seen finite: a hundred times as uncertain as the search.
+constexpr double kLeastEvidenceShare = 1e-4;
+
 double squared(double value) {
   return value * value;
 }
@@ -32,12 +35,22 @@ PoseMeasurement measurement_from(const GnssSample& sample) {
           .covariance = variance.asDiagonal()};
 }
 
+/// What the match alone says. The solver's covariance holds its prior, even odds over the search
+/// range, and the filter has a better one: without it, as if all were Gaussian, an axis's precision
+/// is 1 / variance - 1 / variance of the range = share / variance. (Taken as it is, a search that
+/// saw nothing along the road would confirm the pose it began at, again and again.)
+Eigen::Matrix3d covariance_of_match(const Correction& result) {
+  const Eigen::Vector3d growth =
+      result.evidence_share.cwiseMax(kLeastEvidenceShare).cwiseInverse().cwiseSqrt();
+  return growth.asDiagonal() * result.covariance * growth.asDiagonal();
+}
+
 /// The solver's covariance is in the prior's frame; the correction turns away from it.
 PoseMeasurement measurement_from(const Se2& prior, const Correction& result) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-result.correction.yaw_rad).toRotationMatrix();
   return {.map_from_vehicle = prior * result.correction,
-          .covariance = turn * result.covariance * turn.transpose()};
+          .covariance = turn * covariance_of_match(result) * turn.transpose()};
 }
 
 }  // namespace
@@ -106,7 +119,8 @@ TrackerUpdate Tracker::add_gnss(const GnssSample& sample) {
 
 TrackerUpdate Tracker::add_correction(Time frame_time, const Se2& prior, const Correction& result) {
   if (result.evidence != Evidence::kGood) return TrackerUpdate::kNoEvidence;
-  if (!prior.is_finite() || !result.correction.is_finite() || !result.covariance.allFinite()) {
+  if (!prior.is_finite() || !result.correction.is_finite() || !result.covariance.allFinite() ||
+      !result.evidence_share.allFinite()) {
     return TrackerUpdate::kNotFinite;
   }
   if (!is_covariance(result.covariance)) return TrackerUpdate::kImplausible;

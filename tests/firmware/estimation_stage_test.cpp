@@ -109,6 +109,19 @@ TEST_F(EstimationStageTest, RefusesAMatchThatContradictsOdometry) {
   EXPECT_NEAR(error.y_m, 0.0, 0.1);
 }
 
+TEST_F(EstimationStageTest, FindsBackFromAMatchThatWasWrongWhileAcquiring) {
+  vision_error_ = {1.5, 1.2, 0.03};
+  run(milliseconds(700));  // long enough to be believed, too short to be tracked
+  ASSERT_GT(stage_.counters().accepted, 0U);
+  ASSERT_EQ(stage_.counters().state, State::kAcquiring);
+  vision_error_ = {};
+  run(milliseconds(4000));
+  EXPECT_EQ(stage_.counters().state, State::kTracking);
+  const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
+  EXPECT_NEAR(error.x_m, 0.0, 0.1);
+  EXPECT_NEAR(error.y_m, 0.0, 0.1);
+}
+
 TEST_F(EstimationStageTest, SaysWhenVisionSkipsFramesets) {
   run(milliseconds(5000));
   EXPECT_EQ(stage_.counters().why, 0);

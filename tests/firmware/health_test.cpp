@@ -113,6 +113,35 @@ TEST(HealthTest, RefusedCorrectionsInARowLose) {
   EXPECT_EQ(health.state(), State::kLost);
 }
 
+TEST(HealthTest, AcquiringBeginsAgainWhenWhatItBelievedIsContradicted) {
+  for (const bool by_gnss : {false, true}) {
+    Health health{HealthLimits()};
+    HealthInputs inputs = healthy();
+    inputs.accepted_in_a_row = 0;
+    inputs.refused_in_a_row = HealthLimits().refusals_to_lose - 1;
+    health.update(inputs);
+    health.update(inputs);
+    EXPECT_EQ(health.state(), State::kAcquiring);
+    EXPECT_FALSE(health.pose_contradicted());
+    (by_gnss ? inputs.contradicts_gnss = true : ++inputs.refused_in_a_row);
+    EXPECT_TRUE(health.update(inputs));
+    EXPECT_EQ(health.state(), State::kLost);
+    EXPECT_TRUE(health.pose_contradicted());
+    health.update(healthy());
+    EXPECT_EQ(health.state(), State::kAcquiring);
+    EXPECT_FALSE(health.pose_contradicted());
+  }
+}
+
+TEST(HealthTest, AnUncertainPoseIsLostAndNotContradicted) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.longitudinal_sigma_m = HealthLimits().longitudinal_sigma_m + 0.01;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), State::kLost);
+  EXPECT_FALSE(health.pose_contradicted());
+}
+
 TEST(HealthTest, APoseThatContradictsGnssIsLost) {
   Health health = tracking();
   HealthInputs inputs = healthy();

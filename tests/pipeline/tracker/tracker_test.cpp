@@ -238,6 +238,57 @@ TEST(TrackerTest, BelievesWhatComesNextOnceItIsWidened) {
   EXPECT_LT(error.head<2>().norm(), 0.05);
 }
 
+/// What a solver says that saw nothing: the middle of its range, with the range's own variance.
+Correction nothing_seen() {
+  Correction result;
+  result.evidence = Evidence::kGood;
+  result.covariance = Eigen::Vector3d(1.4, 0.4, 4e-4).asDiagonal();
+  result.evidence_share.setZero();
+  return result;
+}
+
+TEST(TrackerTest, ASearchThatSawNothingConfirmsNothing) {
+  const SensorErrors errors = typical_errors();
+  Tracker with;
+  Tracker without;
+  SimulatedVehicle vehicle(errors, 7);
+  for (int i = 0; i <= 3000; ++i) {
+    const double time_s = i * kOdometryStep_s;
+    vehicle.drive_to(time_s);
+    const OdometrySample odometry = vehicle.odometry(time_s);
+    for (Tracker* tracker : {&with, &without}) tracker->add_odometry(odometry);
+    if (i % 10 != 0) continue;
+    const GnssSample gnss = vehicle.gnss();
+    for (Tracker* tracker : {&with, &without}) tracker->add_gnss(gnss);
+    if (i == 0) continue;
+    const Se2 prior = with.pose_at(at_s(time_s))->map_from_vehicle;
+    ASSERT_EQ(with.add_correction(at_s(time_s), prior, nothing_seen()), TrackerUpdate::kAccepted);
+  }
+  const TrackedPose pose = *with.pose_at(at_s(60.0));
+  const TrackedPose expected = *without.pose_at(at_s(60.0));
+  EXPECT_LT(error_of(pose, expected.map_from_vehicle).norm(), 0.02);
+  EXPECT_LT((pose.covariance - expected.covariance).norm(), 0.01 * expected.covariance.norm());
+}
+
+TEST(TrackerTest, AnAxisCountsByWhatWasSeenAlongIt) {
+  SensorErrors errors = typical_errors();
+  errors.gnss_correlation_s = 0.0;
+  const auto variance_after = [&](double share) {
+    Tracker tracker;
+    SimulatedVehicle vehicle(errors, 8);
+    Drive{}.run(tracker, vehicle, 5.0);
+    const TrackedPose before = *tracker.pose_at(at_s(5.0));
+    Correction result = nothing_seen();
+    result.evidence_share.x() = share;
+    EXPECT_EQ(tracker.add_correction(at_s(5.0), before.map_from_vehicle, result),
+              TrackerUpdate::kAccepted);
+    return tracker.pose_at(at_s(5.0))->covariance(0, 0) / before.covariance(0, 0);
+  };
+  EXPECT_NEAR(variance_after(-0.5), 1.0, 1e-3);
+  EXPECT_LT(variance_after(0.5), variance_after(0.1));
+  EXPECT_LT(variance_after(1.0), variance_after(0.5));
+}
+
 TEST(TrackerTest, KnowsNothingBeforeGnssAndOdometry) {
   Tracker tracker;
   SimulatedVehicle vehicle({}, 7);
