@@ -3,6 +3,7 @@
 #include <csignal>
 
 #include <CLI/CLI.hpp>
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include "common/files.h"
@@ -106,6 +107,9 @@ Status run(const CommandLine& line) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Threads allocate while they start and hardly ever again: an arena for each of them would only
+  // keep what their starts left over.
+  mallopt(M_ARENA_MAX, 1);
   std::signal(SIGTERM, request_stop);
   std::signal(SIGINT, request_stop);
 

@@ -17,7 +17,7 @@ namespace bevloc::sim {
 class GroundTiles {
  public:
   /// A rig of six cameras sees some 290 at one moment, one camera at most 100.
-  static constexpr int kCapacity = 352;
+  static constexpr int kCapacity = 320;
   /// A renderer may hold that many at a time, and kCapacity / kMostHeld renderers may share them.
   static constexpr int kMostHeld = 128;
 
