@@ -12,12 +12,12 @@ struct Int8Peak {
   double matmul_macs_per_s = 0.0;
 };
 
-/// Gives the time of the fastest of some runs.
-using FastestTime = std::function<double(const std::function<void()>& run)>;
+/// Runs it some times and gives the time of one.
+using TimeOfRun = std::function<double(const std::function<void()>& run)>;
 
 /// By oneDNN: a convolution of 256 to 256 channels, 3 x 3, on 6 x 32 x 56, and a product of two
 /// 1024 x 1024 matrices. In a process whose instruction set is not capped.
-Int8Peak measure_int8_peak(int threads, const FastestTime& fastest_s);
+Int8Peak measure_int8_peak(int threads, const TimeOfRun& time_s);
 
 /// The instructions that oneDNN uses in this process, as oneDNN names them.
 std::string instruction_set();

@@ -25,15 +25,15 @@ memory::desc any_layout(const memory::dims& dims, memory::data_type type) {
 
 double run_repeatedly(const dnnl::primitive& primitive,
                       const std::unordered_map<int, memory>& arguments, const dnnl::engine& engine,
-                      const FastestTime& fastest_s) {
+                      const TimeOfRun& time_s) {
   dnnl::stream stream(engine);
-  return fastest_s([&] {
+  return time_s([&] {
     primitive.execute(stream, arguments);
     stream.wait();
   });
 }
 
-double convolution_macs_per_s(const dnnl::engine& engine, const FastestTime& fastest_s) {
+double convolution_macs_per_s(const dnnl::engine& engine, const TimeOfRun& time_s) {
   constexpr memory::dim kImages = 6;
   constexpr memory::dim kChannels = 256;
   constexpr memory::dim kRows = 32;
@@ -55,12 +55,12 @@ double convolution_macs_per_s(const dnnl::engine& engine, const FastestTime& fas
                      {{DNNL_ARG_SRC, filled(description.src_desc(), engine)},
                       {DNNL_ARG_WEIGHTS, filled(description.weights_desc(), engine)},
                       {DNNL_ARG_DST, filled(description.dst_desc(), engine)}},
-                     engine, fastest_s);
+                     engine, time_s);
   return static_cast<double>(kImages * kRows * kCols * kChannels * kChannels * kSide * kSide) /
          seconds;
 }
 
-double matmul_macs_per_s(const dnnl::engine& engine, const FastestTime& fastest_s) {
+double matmul_macs_per_s(const dnnl::engine& engine, const TimeOfRun& time_s) {
   constexpr memory::dim kSize = 1024;
   const memory::dims square{kSize, kSize};
   const dnnl::matmul::primitive_desc description(
@@ -72,17 +72,17 @@ double matmul_macs_per_s(const dnnl::engine& engine, const FastestTime& fastest_
                      {{DNNL_ARG_SRC, filled(description.src_desc(), engine)},
                       {DNNL_ARG_WEIGHTS, filled(description.weights_desc(), engine)},
                       {DNNL_ARG_DST, filled(description.dst_desc(), engine)}},
-                     engine, fastest_s);
+                     engine, time_s);
   return static_cast<double>(kSize * kSize * kSize) / seconds;
 }
 
 }  // namespace
 
-Int8Peak measure_int8_peak(int threads, const FastestTime& fastest_s) {
+Int8Peak measure_int8_peak(int threads, const TimeOfRun& time_s) {
   nn::onednn::cap_cpu_isa(IsaCap::kBest);  // as the network does, whose engine may be another
   omp_set_num_threads(threads);            // oneDNN makes its kernels for as many
   const dnnl::engine engine(dnnl::engine::kind::cpu, 0);
-  return {convolution_macs_per_s(engine, fastest_s), matmul_macs_per_s(engine, fastest_s)};
+  return {convolution_macs_per_s(engine, time_s), matmul_macs_per_s(engine, time_s)};
 }
 
 std::string instruction_set() {

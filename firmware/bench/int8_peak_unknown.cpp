@@ -3,7 +3,7 @@
 
 namespace bevloc::bench {
 
-Int8Peak measure_int8_peak(int /*threads*/, const FastestTime& /*fastest_s*/) {
+Int8Peak measure_int8_peak(int /*threads*/, const TimeOfRun& /*time_s*/) {
   return {};
 }
 

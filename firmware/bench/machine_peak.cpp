@@ -1,11 +1,11 @@
 #include "firmware/bench/machine_peak.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -18,17 +18,18 @@ namespace {
 
 constexpr int kRepeats = 9;
 
-/// One untimed run, then the fastest of some: what else the machine does must not count.
-double fastest_s(const std::function<void()>& run) {
+/// One untimed run, then the median of some, as the stages' times are medians too.
+double median_s(const std::function<void()>& run) {
   const drivers::MonotonicClock clock;
-  double least_s = std::numeric_limits<double>::infinity();
+  std::array<double, kRepeats> times_s;
   run();
-  for (int i = 0; i < kRepeats; ++i) {
+  for (double& time_s : times_s) {
     const Time start = clock.now();
     run();
-    least_s = std::min(least_s, to_seconds(clock.now() - start));
+    time_s = to_seconds(clock.now() - start);
   }
-  return least_s;
+  std::nth_element(times_s.begin(), times_s.begin() + kRepeats / 2, times_s.end());
+  return times_s[kRepeats / 2];
 }
 
 /// Bytes read and bytes written.
@@ -37,7 +38,7 @@ double copy_bytes_per_s(int threads) {
   const auto from = std::make_unique<std::byte[]>(kBytes);
   const auto to = std::make_unique<std::byte[]>(kBytes);
   const size_t share = kBytes / static_cast<size_t>(threads);
-  const double seconds = fastest_s([&] {
+  const double seconds = median_s([&] {
     std::vector<std::jthread> others;
     const auto copy = [&](size_t part) {
       std::memcpy(to.get() + part * share, from.get() + part * share, share);
@@ -51,7 +52,7 @@ double copy_bytes_per_s(int threads) {
 }  // namespace
 
 MachinePeak measure_machine(int threads) {
-  const Int8Peak int8 = measure_int8_peak(threads, fastest_s);
+  const Int8Peak int8 = measure_int8_peak(threads, median_s);
   return {int8.convolution_macs_per_s, int8.matmul_macs_per_s, copy_bytes_per_s(threads)};
 }
 

@@ -7,7 +7,7 @@
 
 namespace bevloc::bench {
 
-/// The fastest of some repeats on `threads` threads: int8 products (int8_peak.h), and a copy of 64
+/// The median of some repeats on `threads` threads: int8 products (int8_peak.h), and a copy of 64
 /// MiB. Takes about half a second. To be called once the network's instruction set is settled.
 MachinePeak measure_machine(int threads);
 

@@ -38,6 +38,19 @@ StageResult result_of(const Stage& stage, const Record& record) {
           static_cast<double>(record.allocations) / runs};
 }
 
+/// Field by field; of an even number the upper one.
+MachinePeak median_of(const std::vector<MachinePeak>& rounds) {
+  const auto median = [&](double MachinePeak::*field) {
+    std::vector<double> values;
+    for (const MachinePeak& round : rounds) values.push_back(round.*field);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  return {median(&MachinePeak::convolution_macs_per_s), median(&MachinePeak::matmul_macs_per_s),
+          median(&MachinePeak::copy_bytes_per_s)};
+}
+
 /// One run of the bench: what is measured, and how far it is.
 class Bench {
  public:
@@ -54,6 +67,7 @@ class Bench {
   bool is_chosen(const std::string& stage) const;
   void warm_up(const Place& place);
   Status time_whole_frames(const Place& place, int frames);
+  void measure_yardsticks();
   void time_stages(const Place& place, int frames);
   const Pictures& next_pictures(const Place& place);
 
@@ -65,6 +79,8 @@ class Bench {
   std::unique_ptr<Stages> stages_;
   std::vector<Record> records_;
   Record whole_record_;
+  std::vector<MachinePeak> peaks_;  ///< a round after each place
+  ResidentMemory memory_;           ///< before the first of them
   uint64_t frameset_ = 0;
 };
 
@@ -167,8 +183,15 @@ Status Bench::run(const std::function<void(int, int)>& progress) {
       done += frames;
       progress(done, options_.frames);
     }
+    measure_yardsticks();
   }
   return {};
+}
+
+/// In turn with what is held against them: a host that slows down slows both.
+void Bench::measure_yardsticks() {
+  if (peaks_.empty()) memory_ = resident_memory();
+  peaks_.push_back(measure_machine(options_.threads));
 }
 
 void Bench::write(BenchResult& result) const {
@@ -177,6 +200,8 @@ void Bench::write(BenchResult& result) const {
   result.threads = options_.threads;
   result.places = static_cast<int>(scene_.places.size());
   result.allocations_counted = allocations_are_counted();
+  result.peak = median_of(peaks_);
+  result.memory.process = memory_;
   for (size_t s = 0; s < records_.size(); ++s) {
     const Stage& stage = stages_->all()[s];
     if (is_chosen(stage.name)) result.stages.push_back(result_of(stage, records_[s]));
@@ -215,8 +240,6 @@ Result<BenchResult> run_bench(const firmware::Config& config, const BenchOptions
   }
   if (Status status = bench.run(progress); !status) return tl::unexpected(status.error());
   bench.write(result);
-  result.memory.process = resident_memory();
-  result.peak = measure_machine(options.threads);
   result.processor = processor_name();
   result.instruction_set = instruction_set();
   return result;
