@@ -1,7 +1,5 @@
 #include "firmware/bench/machine_peak.h"
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -21,15 +19,14 @@ constexpr int kRepeats = 9;
 /// One untimed run, then the median of some, as the stages' times are medians too.
 double median_s(const std::function<void()>& run) {
   const drivers::MonotonicClock clock;
-  std::array<double, kRepeats> times_s;
+  std::vector<double> times_ms;
   run();
-  for (double& time_s : times_s) {
+  for (int i = 0; i < kRepeats; ++i) {
     const Time start = clock.now();
     run();
-    time_s = to_seconds(clock.now() - start);
+    times_ms.push_back(1e3 * to_seconds(clock.now() - start));
   }
-  std::nth_element(times_s.begin(), times_s.begin() + kRepeats / 2, times_s.end());
-  return times_s[kRepeats / 2];
+  return 1e-3 * summarize(times_ms).p50_ms;
 }
 
 /// Bytes read and bytes written.
