@@ -1,4 +1,4 @@
-// Memory that begins on a cache line, so that no vector straddles two.
+// An allocator whose memory begins on a cache line, so that no SIMD vector straddles two lines.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Whole files in and out.
+// Reads and writes whole files.
 #pragma once
 
 #include <cerrno>
@@ -13,12 +13,12 @@
 
 namespace bevloc {
 
-/// The bytes of a file.
+/// Returns the bytes of a file.
 inline Result<std::string> read_file(const std::filesystem::path& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;
-  // An empty file sets the output's failbit, a directory the input's badbit.
+  // Copying an empty file would set the output's failbit. Peeking into a directory sets badbit.
   if (file && file.peek() != std::ifstream::traits_type::eof()) bytes << file.rdbuf();
   if (!file.is_open() || file.bad()) {
     return fail("{}: found no readable file ({}), wanted one", path.string(), std::strerror(errno));
@@ -33,8 +33,8 @@ inline Status write_file(const std::filesystem::path& path, std::string_view byt
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
   if (!file) {
-    return fail("{}: found no way to write this file ({}), wanted to write {} bytes", path.string(),
-                std::strerror(errno), bytes.size());
+    return fail("{}: cannot write {} bytes to this file ({})", path.string(), bytes.size(),
+                std::strerror(errno));
   }
   return {};
 }

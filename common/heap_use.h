@@ -1,4 +1,4 @@
-// How much of the heap the process uses.
+// Measures how much heap memory the process uses.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,9 @@
 
 namespace bevloc {
 
-/// Bytes that are allocated now, by all threads (glibc's own count). The difference across the
-/// making of an object is what that holds. Always 0 under a sanitizer, which brings an allocator of
-/// its own.
+/// Bytes that all threads have allocated now, as glibc counts them. The difference before and after
+/// constructing an object is the memory of that object. Always 0 under a sanitizer, because a
+/// sanitizer replaces the allocator.
 inline size_t heap_in_use_bytes() {
   const struct mallinfo2 info = mallinfo2();
   return info.uordblks + info.hblkhd;

@@ -1,4 +1,4 @@
-// 8-bit RGB images, owned and borrowed.
+// 8-bit RGB images: RgbImage owns its pixels, RgbView borrows them.
 #pragma once
 
 #include <cassert>
@@ -11,7 +11,7 @@
 
 namespace bevloc {
 
-/// A borrowed RGB image, interleaved, row by row from the top left pixel.
+/// A borrowed RGB image: interleaved R, G, B, row by row from the top left pixel.
 struct RgbView {
   const uint8_t* data = nullptr;
   int width = 0;
@@ -24,12 +24,12 @@ struct RgbView {
   }
 };
 
-/// For a vector that leaves elements unwritten which it is given no value for.
+/// Allocator that skips zero-initialisation, so that resize() does not touch memory.
 template <typename T>
-struct UnwrittenAllocator : std::allocator<T> {
+struct UninitializedAllocator : std::allocator<T> {
   template <typename U>
   struct rebind {
-    using other = UnwrittenAllocator<U>;
+    using other = UninitializedAllocator<U>;
   };
 
   template <typename U, typename... Values>
@@ -42,7 +42,7 @@ struct UnwrittenAllocator : std::allocator<T> {
   }
 };
 
-using Pixels = std::vector<uint8_t, UnwrittenAllocator<uint8_t>>;
+using Pixels = std::vector<uint8_t, UninitializedAllocator<uint8_t>>;
 
 /// An RGB image that owns its pixels, without padding between rows.
 struct RgbImage {
@@ -51,12 +51,12 @@ struct RgbImage {
   Pixels pixels;
 
   RgbImage() = default;
-  /// A black image.
+  /// Creates a black image.
   RgbImage(int width_px, int height_px)
       : width(width_px), height(height_px), pixels(size_of(width_px, height_px), uint8_t{0}) {}
 
-  /// Any pixels: its memory is not touched, and so not resident, before somebody draws.
-  static RgbImage unwritten(int width_px, int height_px) {
+  /// Creates an image with undefined pixels. Its memory is not resident until something is drawn.
+  static RgbImage uninitialized(int width_px, int height_px) {
     RgbImage image;
     image.width = width_px;
     image.height = height_px;

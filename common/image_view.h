@@ -1,4 +1,4 @@
-// A borrowed picture in the format that a camera delivers.
+// A borrowed image in the pixel format that a camera delivers.
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 
 namespace bevloc {
 
-/// What the bytes of a picture mean. YUV formats share the chroma of neighbours: YUYV and UYVY that
-/// of two columns, NV12 that of two columns and two rows. Bayer formats are named by the top left
-/// two by two pixels, row by row, 8 bits each.
+/// The memory layout of an image. In YUYV and UYVY two neighbouring columns share their chroma, in
+/// NV12 two columns and two rows. Bayer formats have 8 bits per pixel and are named by the top left
+/// two by two pixels, row by row.
 enum class PixelFormat : uint8_t {
   kRgb24,
   kYuyv,
@@ -23,7 +23,7 @@ enum class PixelFormat : uint8_t {
   kBayerGrbg,
   kBayerGbrg,
   kBayerBggr,
-  kMjpeg,  ///< each frame one JPEG (JFIF) file
+  kMjpeg,  ///< each frame is one JPEG (JFIF) file
 };
 
 struct NamedPixelFormat {
@@ -31,7 +31,7 @@ struct NamedPixelFormat {
   PixelFormat format;
 };
 
-/// As configuration files and messages call them.
+/// The names of the formats in configuration files and messages.
 inline constexpr std::array<NamedPixelFormat, 9> kPixelFormats{{
     {"rgb24", PixelFormat::kRgb24},
     {"yuyv", PixelFormat::kYuyv},
@@ -51,7 +51,7 @@ constexpr std::string_view to_string(PixelFormat format) {
   return "unknown";
 }
 
-/// How YUV was made from RGB (ITU-R BT.601-7, BT.709-6). Limited range: black is 16, white 235.
+/// How YUV was computed from RGB (ITU-R BT.601-7, BT.709-6). Limited range: black is 16, white 235.
 enum class YuvMatrix : uint8_t { kBt601, kBt709 };
 struct YuvEncoding {
   YuvMatrix matrix = YuvMatrix::kBt601;
@@ -65,22 +65,22 @@ struct ImagePlane {
   std::ptrdiff_t stride_bytes = 0;
 };
 
-/// A picture in somebody else's memory. NV12 has two planes, every other format one; of MJPEG the
-/// plane is the file and has no stride.
+/// An image in memory that it does not own. NV12 has two planes, every other format has one. The
+/// plane of an MJPEG image is the JPEG file and has no stride.
 struct ImageView {
   PixelFormat format = PixelFormat::kRgb24;
   int width = 0;
   int height = 0;
   std::array<ImagePlane, 2> planes;
-  size_t bytes_used = 0;  ///< that the device filled; of MJPEG the file's
-  YuvEncoding yuv;        ///< of YUYV, UYVY and NV12 only
+  size_t bytes_used = 0;  ///< bytes that the device wrote; for MJPEG the size of the file
+  YuvEncoding yuv;        ///< only meaningful for YUYV, UYVY and NV12
 
   ImageView() = default;
-  /// Not explicit: an RGB image is one of the things that a camera's picture may be.
+  /// Implicit, so that an RGB image can be passed wherever a camera image is expected.
   ImageView(const RgbView& rgb)
       : width(rgb.width), height(rgb.height), planes{{{rgb.data, rgb.stride_bytes}, {}}} {}
 
-  /// Of an RGB picture.
+  /// Requires format kRgb24.
   RgbView rgb() const {
     assert(format == PixelFormat::kRgb24);
     return {planes[0].data, width, height, planes[0].stride_bytes};

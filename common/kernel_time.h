@@ -1,4 +1,4 @@
-// The kernel's clocks and its `timespec`.
+// Reads the kernel's clocks and converts `timespec`.
 #pragma once
 
 #include <cassert>
@@ -24,7 +24,8 @@ inline Duration read_clock(clockid_t clock) {
   return duration_of(time);
 }
 
-/// For what the kernel stamps or waits for; everybody else asks a drivers::Clock.
+/// The time of CLOCK_MONOTONIC. Only for code that compares with kernel time stamps or waits in the
+/// kernel. All other code takes the time from a drivers::Clock.
 inline Time steady_now() {
   return Time(read_clock(CLOCK_MONOTONIC));
 }

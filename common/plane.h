@@ -1,4 +1,4 @@
-// Vectors and segments in the plane.
+// Geometry of vectors and line segments in the plane.
 #pragma once
 
 #include <algorithm>
@@ -7,12 +7,12 @@
 
 namespace bevloc {
 
-/// Cross product of two plane vectors: positive if b points left of a.
+/// Cross product of two plane vectors. It is positive if b points to the left of a.
 inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// A segment may be a point.
+/// Distance from `point` to the segment `from`-`to`. The ends of the segment may coincide.
 inline double distance_to_segment(const Eigen::Vector2d& point, const Eigen::Vector2d& from,
                                   const Eigen::Vector2d& to) {
   const Eigen::Vector2d direction = to - from;

@@ -1,4 +1,4 @@
-// How a function says that something outside the program is wrong.
+// Result and Status: how a function reports that something outside the program is wrong.
 #pragma once
 
 #include <string>
@@ -9,20 +9,20 @@
 
 namespace bevloc {
 
-/// One clear sentence for the person who has to put it right. For a file: "place: what was found,
-/// what was wanted", where place is "file:line: key" as far as it is known.
+/// One sentence for the person who has to fix the problem: "place: found X, wanted Y". For a file,
+/// place is "file:line: key" as far as it is known.
 struct Error {
   std::string message;
 };
 
-/// A value, or the reason why there is none. Asserts, not results, are for our own bugs.
+/// A value, or the reason why there is none. Programming errors are asserted, not returned.
 template <typename T>
 using Result = tl::expected<T, Error>;
 
-/// A step that either worked or says why not.
+/// Success, or the reason for the failure.
 using Status = Result<void>;
 
-/// `return fail("{}:{}: focal length is {}, wanted more than 0", file, line, fx);`
+/// Makes an error: `return fail("{}:{}: found a focal length of {}, wanted more than 0", ...);`
 template <typename... Args>
 tl::unexpected<Error> fail(fmt::format_string<Args...> format, Args&&... args) {
   return tl::unexpected(Error{fmt::format(format, std::forward<Args>(args)...)});

@@ -15,7 +15,7 @@ constexpr double degrees(double radians) {
   return radians * (180.0 / std::numbers::pi);
 }
 
-/// The same angle in [-pi, pi].
+/// Returns the same angle in [-pi, pi].
 inline double wrap_angle(double angle_rad) {
   return std::remainder(angle_rad, 2.0 * std::numbers::pi);
 }
@@ -52,16 +52,16 @@ struct Se2 {
   }
 };
 
-/// Where a vehicle is after a while at constant speed and yaw rate, seen from where it was: the
-/// chord of the arc, to second order in the turn.
+/// Motion of a vehicle during `duration_s` at constant speed and yaw rate: start_from_end. Its
+/// translation is the chord of the arc, accurate to second order in the angle turned.
 inline Se2 arc_motion(double speed_mps, double yaw_rate_radps, double duration_s) {
-  const double way_m = speed_mps * duration_s;
+  const double distance_m = speed_mps * duration_s;
   const double turn_rad = yaw_rate_radps * duration_s;
-  return {way_m * std::cos(0.5 * turn_rad), way_m * std::sin(0.5 * turn_rad), turn_rad};
+  return {distance_m * std::cos(0.5 * turn_rad), distance_m * std::sin(0.5 * turn_rad), turn_rad};
 }
 
-/// The correction that takes `from` to `to` (paper, eq. 1): dT = from^-1 * to, so to = from * dT.
-/// x is longitudinal and y lateral in the frame of `from`.
+/// The correction dT between two poses (paper, eq. 1): dT = from^-1 * to, so to = from * dT.
+/// x is longitudinal and y is lateral in the frame of `from`.
 inline Se2 correction_between(const Se2& from, const Se2& to) {
   return from.inverse() * to;
 }

@@ -21,7 +21,7 @@ struct YamlMap::Entry {
 };
 
 struct YamlMap::Mapping {
-  std::string path;  ///< dotted keys that lead here, empty for the whole file
+  std::string path;  ///< dotted keys that lead to this mapping; empty for the root of the file
   int line = 0;
   std::vector<Entry> entries;
 
@@ -42,9 +42,9 @@ struct YamlMap::Mapping {
 
 struct YamlMap::Document {
   std::string name;
-  std::deque<Mapping> mappings;  ///< in the order they were opened; addresses stay
+  std::deque<Mapping> mappings;  ///< in the order of opening; their addresses do not change
   std::optional<std::string> mistake;
-  const Mapping* lacking = nullptr;  ///< where a key is missing, if that is the mistake
+  const Mapping* lacking = nullptr;  ///< the mapping that lacks a key, if that is the mistake
 
   void report(int line, std::string_view place, std::string_view found, std::string_view wanted) {
     if (mistake) return;
@@ -53,7 +53,7 @@ struct YamlMap::Document {
         fmt::format("{}:{}: {}{}found {}, wanted {}", name, line, place, separator, found, wanted);
   }
 
-  /// Opens a node as a mapping; reports and yields an empty one if it is none.
+  /// Opens a node as a mapping. If it is not a mapping, reports this and returns an empty one.
   Mapping* open(const YAML::Node& node, std::string path, int line);
 };
 
@@ -139,7 +139,7 @@ std::optional<T> accepted_scalar(const YAML::Node& node, const Wanted<T>& wanted
   return value && wanted.accepts && !wanted.accepts(*value) ? std::nullopt : value;
 }
 
-/// The text's only document.
+/// Parses a text that holds exactly one YAML document.
 Result<YAML::Node> parse_document(const std::string& text, const std::string& name) {
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
@@ -304,7 +304,7 @@ void YamlMap::reject(std::string_view key, std::string_view found, std::string_v
 
 Status YamlMap::finish() const {
   if (document_->mistake) {
-    // A misspelt key shows as one missing and one unknown: name both.
+    // A misspelt key shows up as one missing key and one unknown key, so the message names both.
     const Entry* unknown =
         document_->lacking != nullptr ? document_->lacking->first_unused() : nullptr;
     if (unknown == nullptr) return tl::unexpected(Error{*document_->mistake});

@@ -1,4 +1,4 @@
-// Reads YAML strictly: every key known, there once, of the right type and within its limits.
+// Reads YAML strictly: every key must be known, occur once, have the right type and be in range.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace bevloc {
 
-/// What a value must fulfil beyond its type, and how to say so: `{"more than 0", ...}`.
+/// A condition on a value beyond its type, and its description: `{"more than 0", ...}`.
 template <typename T>
 struct Wanted {
   std::string description;
@@ -34,14 +34,14 @@ Wanted<T> at_least(T limit) {
   return {fmt::format("at least {}", limit), [limit](const T& value) { return value >= limit; }};
 }
 
-/// Both limits are allowed values.
+/// The limits themselves are allowed.
 template <typename T>
 Wanted<T> between(T low, T high) {
   return {fmt::format("{} to {}", low, high),
           [low, high](const T& value) { return value >= low && value <= high; }};
 }
 
-/// One mapping of a YAML file. Reading goes straight through, without a check after every line:
+/// One mapping of a YAML file. Callers read all keys and check for errors once, at the end:
 ///
 ///     auto yaml = YamlMap::read_file(path);
 ///     if (!yaml) return tl::unexpected(yaml.error());
@@ -50,31 +50,31 @@ Wanted<T> between(T low, T high) {
 ///     config.period_s = can.optional<double>("period_s", 0.02, more_than(0.0));
 ///     if (Status status = yaml->finish(); !status) return tl::unexpected(status.error());
 ///
-/// What goes wrong yields a default value, and finish() reports the first mistake of the file as
-/// "file:line: key.of.maps: found X, wanted Y". Reading a key twice is a bug of the caller. Copies
-/// refer to the same mapping. Not thread safe. Scalars are YAML's core types; integers may be
-/// hexadecimal (0x1F); numbers must be finite; a quoted number is a string.
+/// A key that cannot be read yields a default value, and finish() reports the first mistake of the
+/// file as "file:line: key.of.maps: found X, wanted Y". Reading a key twice is a programming error.
+/// Copies refer to the same mapping. One thread. Scalars have the types of YAML's core schema:
+/// integers may be hexadecimal (0x1F), numbers must be finite, and a quoted number is a string.
 class YamlMap {
  public:
   /// Fails if the file cannot be read, is not YAML, or is not one mapping.
   static Result<YamlMap> read_file(const std::filesystem::path& path);
-  /// The same for text that is there already; `name` stands in the messages for the file.
+  /// The same for text in memory. Messages show `name` as the file.
   static Result<YamlMap> parse(const std::string& text, const std::string& name);
 
-  /// A value that must be there. T: bool, int, int64_t, uint32_t, uint64_t, double, std::string.
+  /// Reads a mandatory value. T: bool, int, int64_t, uint32_t, uint64_t, double, std::string.
   template <typename T>
   T require(std::string_view key, const Wanted<T>& wanted = {});
 
-  /// A value that may be left out.
+  /// Reads an optional value; `fallback` when the key is missing.
   template <typename T>
   T optional(std::string_view key, T fallback, const Wanted<T>& wanted = {});
 
-  /// A list of scalars; `count` other than 0 is the length that it must have.
+  /// Reads a list of scalars. A `count` other than 0 is the required length.
   template <typename T>
   std::vector<T> require_list(std::string_view key, size_t count = 0, const Wanted<T>& wanted = {});
 
-  /// A word that stands for a value: `require_choice<Yaw>("yaw", {{"literal", Yaw::kLiteral},
-  /// ...})`.
+  /// Reads a word and returns the value that it stands for:
+  /// `require_choice<Yaw>("yaw", {{"literal", Yaw::kLiteral}, ...})`.
   template <typename T>
   T require_choice(std::string_view key,
                    std::initializer_list<std::pair<std::string_view, T>> choices) {
@@ -94,12 +94,12 @@ class YamlMap {
 
   bool has(std::string_view key) const;
 
-  /// Reports a mistake that only the caller can see, at the line of `key` (which may be read
-  /// already): reject("rotation_wxyz", "a quaternion of norm 1.2", "norm 1").
+  /// Reports a mistake that only the caller can detect, at the line of `key` (which may have been
+  /// read before): reject("rotation_wxyz", "a quaternion of norm 1.2", "norm 1").
   void reject(std::string_view key, std::string_view found, std::string_view wanted);
 
-  /// The first mistake in the whole file, or the first key that nobody asked for; call it once,
-  /// after everything was read.
+  /// Returns the first mistake of the whole file, or the first key that was not read. Call it once,
+  /// after all keys were read.
   Status finish() const;
 
  private:

@@ -1,5 +1,6 @@
-// BEVLOC_TARGET_CLONES before a hot function: compiled for several instruction sets, chosen when
-// the program starts. Sanitizers run too late for that choice, so under them there is one version.
+// BEVLOC_TARGET_CLONES compiles a hot function for several instruction sets. The loader chooses one
+// when the program starts. Sanitizers are not initialised at that moment, so their builds have one
+// version only.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \

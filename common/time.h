@@ -1,12 +1,12 @@
-// The one clock type of the project.
+// The time and duration types of the project.
 #pragma once
 
 #include <chrono>
 
 namespace bevloc {
 
-/// Steady nanoseconds. It has no now(): whoever needs the time is given a drivers::Clock, so that
-/// a test or a `--fast` drive can hand it virtual time.
+/// Steady time in nanoseconds. It has no now(): code that needs the time is given a drivers::Clock,
+/// so that a test or a `--fast` drive can supply virtual time.
 struct SteadyTimescale {
   using duration = std::chrono::nanoseconds;
   using rep = duration::rep;

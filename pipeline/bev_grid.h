@@ -1,12 +1,12 @@
-// The bird's-eye-view grids that images, map and solver share.
+// The bird's-eye-view (BEV) grids that network, map and solver share.
 #pragma once
 
 #include <numbers>
 
 namespace bevloc {
 
-/// A grid on the ground around the vehicle. Row 0 is the far front, column 0 the far left; the
-/// vehicle's origin lies between the four centre cells.
+/// A grid of square cells on the ground around the vehicle. Row 0 is the front edge, column 0 the
+/// left edge. The vehicle's origin is the common corner of the four centre cells.
 struct BevGrid {
   int rows = 0;
   int cols = 0;
@@ -16,7 +16,7 @@ struct BevGrid {
   constexpr double x_range_m() const { return 0.5 * rows * cell_m; }
   constexpr double y_range_m() const { return 0.5 * cols * cell_m; }
 
-  /// Centre of a cell in the vehicle frame; fractional rows and columns are allowed.
+  /// Conversion between cell centres and vehicle coordinates. Rows and columns may be fractional.
   constexpr double x_of_row(double row) const { return x_range_m() - (row + 0.5) * cell_m; }
   constexpr double y_of_col(double col) const { return y_range_m() - (col + 0.5) * cell_m; }
   constexpr double row_of_x(double x_m) const { return (x_range_m() - x_m) / cell_m - 0.5; }
@@ -25,9 +25,9 @@ struct BevGrid {
   constexpr bool operator==(const BevGrid&) const = default;
 };
 
-/// Rasterised map and perceived mask: x in [-30, 30] m, y in [-15, 15] m at 0.15 m.
+/// Grid of the raster and of the mask: x in [-30, 30] m, y in [-15, 15] m, 0.15 m per cell.
 inline constexpr BevGrid kRasterGrid{400, 200, 0.15};
-/// Features that the solver matches: the same ground at 0.6 m.
+/// Grid of the features that the solver matches: the same area, 0.6 m per cell.
 inline constexpr BevGrid kFeatureGrid{100, 50, 0.6};
 
 /// Channels of a raster: lane divider, pedestrian crossing, road boundary.

@@ -1,14 +1,15 @@
-// Seeded randomness that gives the same numbers with every standard library.
+// Seeded random numbers that are the same with every standard library.
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <string_view>
 
 namespace bevloc::sim {
 
-/// SplitMix64: a good 64-bit mixer; also turns (seed, purpose) into independent seeds.
+/// SplitMix64: a 64-bit mixing function.
 constexpr uint64_t mix_seed(uint64_t value) {
   value += 0x9E3779B97F4A7C15ULL;
   value = (value ^ (value >> 30U)) * 0xBF58476D1CE4E5B9ULL;
@@ -16,12 +17,13 @@ constexpr uint64_t mix_seed(uint64_t value) {
   return value ^ (value >> 31U);
 }
 
-/// An independent seed for one purpose ("gnss", "traffic") of a seeded whole.
+/// Derives an independent seed for one purpose, such as "gnss" or "traffic".
 constexpr uint64_t seed_for(uint64_t seed, std::string_view purpose) {
   for (const char c : purpose) seed = mix_seed(seed ^ static_cast<uint64_t>(c));
   return seed;
 }
 
+/// A random number generator on SplitMix64. Not thread safe.
 class Random {
  public:
   explicit Random(uint64_t seed) : state_(mix_seed(seed)) {}
@@ -34,6 +36,11 @@ class Random {
   int integer(int low, int high) {
     return low + static_cast<int>(uniform() * (static_cast<double>(high) - low + 1));
   }
+  /// Uniform index into a container of `count` elements; count > 0.
+  size_t index(size_t count) {
+    return static_cast<size_t>(integer(0, static_cast<int>(count) - 1));
+  }
+  /// True with this probability.
   bool chance(double probability) { return uniform() < probability; }
   /// Standard normal, by Box-Muller.
   double normal() {

@@ -9,7 +9,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// One camera of nuScenes scene-0061 (1600x900, principal point in its pixel-corner convention).
+/// One camera of nuScenes scene-0061, with intrinsics for 1600 x 900 pixels.
 struct Mounting {
   double fx_px;
   double cx_px;
@@ -34,7 +34,7 @@ constexpr int kWidthPx = 640;
 constexpr int kHeightPx = 360;
 constexpr double kScale = 640.0 / 1600.0;
 
-/// Columns: the camera's right, down and forward axes in the vehicle frame.
+/// The columns are the camera's right, down and forward axes in the vehicle frame.
 Eigen::Matrix3d vehicle_from_camera_rotation(double azimuth_rad, double pitch_down_rad) {
   const double ca = std::cos(azimuth_rad);
   const double sa = std::sin(azimuth_rad);
@@ -54,7 +54,7 @@ CameraModel camera_at(const Mounting& mounting, bool wide) {
   k.height_px = kHeightPx;
   k.fx_px = kScale * mounting.fx_px;
   k.fy_px = kScale * mounting.fx_px;
-  // (0, 0) is the centre of a pixel at either size.
+  // At either size, (0, 0) is the centre of the first pixel.
   k.cx_px = (mounting.cx_px + 0.5) * kScale - 0.5;
   k.cy_px = (mounting.cy_px + 0.5) * kScale - 0.5;
   k.k1 = wide ? -0.10 : -0.06;

@@ -1,12 +1,12 @@
-// The rig of the simulated vehicle.
+// The camera rig of the simulated vehicle.
 #pragma once
 
 #include "pipeline/calibration/rig.h"
 
 namespace bevloc::sim {
 
-/// Six 640x360 cameras placed as on a nuScenes car (scene-0061): five of about 65 degrees, the back
-/// one of about 90, 1.5 m high, with mild lens distortion.
+/// Six cameras of 640 x 360 pixels, mounted as on the nuScenes vehicle (scene-0061): 1.5 m high,
+/// about 65 degrees wide (the back camera about 90), with mild lens distortion.
 Rig nominal_rig();
 
 }  // namespace bevloc::sim

@@ -1,14 +1,16 @@
-"""What each departure of the decoupled solver from the paper is worth.
+"""Measures what each deviation of the decoupled solver from the paper is worth.
 
     /usr/bin/python3 -m training.ablation --scenes 200
 
-Prints a Markdown table: mean absolute errors and -log P(truth) (eq. 14, the sum over the axes; 8.49
-where all hypotheses are alike) of the decoupled solver (training/solvers/yaw.py, axis.py) and of
-variants with one change each, on the first tuning scenes (training/native/scene_features.h).
+Prints a Markdown table for the decoupled solver (training/solvers/yaw.py, axis.py) and for variants
+that differ from it in one point each: mean absolute errors and -log P(truth), eq. 14 summed over
+the axes (8.49 if all hypotheses are equally likely). The scenes are the first tuning scenes
+(training/native/scene_features.h).
 
-The scales of the softmaxes are those that suit the baseline on these scenes. A change that alters
-the size of its scores gets the scale that it needs: the best of a grid of factors of two, by
--log P(truth) on the same scenes. No other scale moves. Where yaw changes, x and y use that yaw.
+The softmax scales are tuned for the baseline on these scenes. A variant whose scores have another
+magnitude gets its own scale for that axis: the baseline's scale times the power of two that gives
+the lowest -log P(truth) on the same scenes. All other scales stay. A variant that changes the yaw
+estimate also uses it for x and y.
 """
 
 from __future__ import annotations
@@ -41,8 +43,8 @@ _TO_REPORTED = torch.tensor([1.0, 1.0, 180.0 / math.pi], dtype=torch.float64)  #
 
 @dataclass(frozen=True)
 class Scenes:
-    """Raw features [count, C, rows, cols] of both sides, and what a solver should find: x m, y m,
-    yaw rad, [count, 3]."""
+    """Raw features F_B and F_M, [count, C, rows, cols] each, and the true corrections (x m, y m,
+    yaw rad), [count, 3]."""
 
     bev: Tensor
     features_map: Tensor
@@ -50,48 +52,49 @@ class Scenes:
 
 
 def first_scenes(count: int) -> Scenes:
-    """Of the tuning stream."""
+    """The first `count` tuning scenes."""
     bev = np.empty((count, CHANNELS, DEFINITION.rows, DEFINITION.cols), np.float32)
     features_map = np.empty_like(bev)
     correction = np.empty((count, 3), np.float64)
-    library().bevloc_scene_features(count, *map(address, (bev, features_map, correction)))
-    return Scenes(*map(torch.from_numpy, (bev, features_map, correction)))
+    arrays: tuple[np.ndarray, ...] = (bev, features_map, correction)
+    library().bevloc_scene_features(count, *map(address, arrays))
+    return Scenes(*map(torch.from_numpy, arrays))
 
 
 class Baseline:
-    """The decoupled solver as it is, in the steps that variants replace."""
+    """The decoupled solver, split into the steps that variants replace."""
 
     title = "baseline"
     scales = SCALES
-    retuned: tuple[int, ...] = ()  # the axes whose scale belongs to the change
+    retuned: tuple[int, ...] = ()  # axes whose softmax scale is tuned for the variant
 
     def __init__(self) -> None:
         self.spectrum = YawSignature()
 
     def signature(self, features: Tensor) -> Tensor:
-        """[batch, C, bands, angles]."""
+        """The yaw signature, [batch, C, bands, angles]."""
         return self.spectrum(features)
 
     def yaw_scores(self, bev: Tensor, features_map: Tensor) -> Tensor:
-        """Of standardised features, [batch, count]."""
+        """Scores of the yaw hypotheses from standardised features, [batch, count]."""
         return yaw_scores(self.signature(bev), self.signature(features_map))
 
     def axis_input(self, raw: Tensor) -> Tensor:
-        """What the axis step compares, before F_B is turned."""
+        """The features that the axis step compares, before F_B is rotated."""
         return standardise(raw)
 
     def axis_scores(self, axis: int, turned_bev: Tensor, features_map: Tensor) -> Tensor:
-        """Of x or y, [batch, count]."""
+        """Scores of the hypotheses of x or y, [batch, count]."""
         scores = longitudinal_scores if axis == _X else lateral_scores
         return scores(turned_bev, features_map)
 
     def choose(self, axis: int, probability: Tensor) -> Tensor:
-        """The estimate, [batch]."""
+        """The estimate along `axis`, [batch]."""
         return posterior_mean(probability, *DEFINITION.axes()[axis])
 
 
 class NoMinus(Baseline):
-    """Eq. 9 as printed: P = softmax(MSE), so that the yaw of the largest difference wins."""
+    """Eq. 9 as printed: P = softmax(MSE), which prefers the yaw with the largest difference."""
 
     title = "a. eq. 9 without the minus"
 
@@ -100,15 +103,15 @@ class NoMinus(Baseline):
 
 
 class UnitScales(Baseline):
-    """Eq. 6, 9 and 10 as printed: softmaxes of the bare scores."""
+    """Eq. 6, 9 and 10 as printed: softmax of the unscaled scores."""
 
     title = "b. all softmax scales 1"
     scales = (1.0, 1.0, 1.0)
 
 
 class TurnedCopies(Baseline):
-    """F_B is turned (bilinear) by every yaw hypothesis, and each copy is transformed, instead of
-    one spectrum that is shifted along the angle."""
+    """Rotates F_B (bilinear) by every yaw hypothesis and transforms each copy. The baseline shifts
+    one spectrum along the angle."""
 
     title = "c. turned copies of F_B"
     retuned = (_YAW,)
@@ -123,7 +126,7 @@ class TurnedCopies(Baseline):
 
 
 class OneBand(Baseline):
-    """The polar amplitude is averaged over all radii at once, instead of band by band."""
+    """Averages the polar amplitude over all radii at once instead of band by band."""
 
     title = "d. one radial band"
     retuned = (_YAW,)
@@ -134,8 +137,8 @@ class OneBand(Baseline):
 
 
 class IndexUnits(Baseline):
-    """Polar coordinates of the indices of the grid's own spectrum, which are an ellipse in physical
-    frequency: row bin r cos(theta) of 100, column bin r sin(theta) of 50, r = 1 ... 24."""
+    """Samples the spectrum of the unpadded grid at circles of indices, which are ellipses in
+    physical frequency: row bin r cos(theta) of 100, column bin r sin(theta) of 50, r = 1 ... 24."""
 
     title = "e. polar sampling in index units"
     retuned = (_YAW,)
@@ -145,7 +148,7 @@ class IndexUnits(Baseline):
         d = DEFINITION
         radius = torch.arange(1, min(d.rows, d.cols) // 2, dtype=torch.float64)[:, None]
         theta = torch.arange(d.angles, dtype=torch.float64) * (math.pi / d.angles)
-        # Zero is bin n / 2 of the shifted spectrum, whose bins are -1 ... +1 to grid_sample.
+        # Frequency zero is bin n / 2 of the shifted spectrum. grid_sample expects -1 ... 1.
         row = (d.rows // 2 + radius * torch.cos(theta)) * 2 / (d.rows - 1) - 1
         col = (d.cols // 2 + radius * torch.sin(theta)) * 2 / (d.cols - 1) - 1
         self.polar = torch.stack((col, row), dim=2)[None]
@@ -161,7 +164,7 @@ class IndexUnits(Baseline):
 
 
 class NoWindow(Baseline):
-    """Spectra of features that end abruptly at the grid's edges."""
+    """Transforms the features without a window, so they end abruptly at the grid's edges."""
 
     title = "f. no Hann window"
     retuned = (_YAW,)
@@ -172,7 +175,7 @@ class NoWindow(Baseline):
 
 
 class Argmax(Baseline):
-    """Eq. 6 and 10 as printed: argmax of each distribution. F_B is turned by the best yaw."""
+    """Eq. 6 and 10 as printed: argmax of each distribution. F_B is rotated by the best yaw."""
 
     title = "g. best hypotheses, not means"
 
@@ -181,7 +184,7 @@ class Argmax(Baseline):
 
 
 class NoCrop(Baseline):
-    """Axis features over the whole of the other axis, compared wherever both sides have cells."""
+    """Averages over the whole of the other axis and compares wherever both sides have cells."""
 
     title = "h. no border crop"
     retuned = (_X, _Y)
@@ -195,7 +198,7 @@ class NoCrop(Baseline):
 
 
 def _overlap_zncc(bev: Tensor, features_map: Tensor, whole: int, fraction: float) -> Tensor:
-    """ZNCC of axis features [batch, C, n] under a shift in cells where they overlap, [batch]."""
+    """ZNCC of axis features [batch, C, n] over their overlap under a shift in cells, [batch]."""
     n = bev.shape[2]
     right = int(fraction > 0)
     first, last = max(0, -whole), min(n, n - whole - right)
@@ -208,8 +211,8 @@ def _overlap_zncc(bev: Tensor, features_map: Tensor, whole: int, fraction: float
 
 
 class Gem(Baseline):
-    """Axis features by GeM (eq. 12) with omega = 3. It cannot take signs: what is negative counts
-    as 1e-6."""
+    """Axis features by GeM pooling (eq. 12) with omega = 3. GeM is undefined for negative values,
+    so they are clamped to 1e-6."""
 
     title = "i. GeM, omega = 3, of positive features"
     retuned = (_X, _Y)
@@ -219,7 +222,8 @@ class Gem(Baseline):
         return super().axis_scores(axis, *pooled)
 
     def _pool(self, features: Tensor, dim: int) -> Tensor:
-        """GeM within the border, in every cell, where the baseline's mean leaves it as it is."""
+        """GeM along `dim` inside the border, repeated to the input's size: the baseline's mean over
+        `dim` then leaves it unchanged."""
         crop = DEFINITION.crop_cells
         inner = features.narrow(dim, crop, features.shape[dim] - 2 * crop)
         pooled = gem(inner, torch.tensor(3.0), dim, DEFINITION.gem_least)
@@ -227,7 +231,7 @@ class Gem(Baseline):
 
 
 class RawAxes(Baseline):
-    """Axis features of F_B and F_M as they come, with no channel standardised."""
+    """Axis features of F_B and F_M without standardisation."""
 
     title = "j. raw features in the axis step"
     retuned = (_X, _Y)
@@ -242,17 +246,18 @@ VARIANTS: tuple[type[Baseline], ...] = (
 
 
 def _in_parts(scores: Callable[..., Tensor], *inputs: Tensor) -> Tensor:
-    """Bounds the memory."""
+    """`scores` of the inputs, computed in parts of _SCENES_AT_ONCE scenes to limit the memory."""
     return torch.cat([scores(*part) for part in zip(*(i.split(_SCENES_AT_ONCE) for i in inputs))])
 
 
 def _loss(axis: int, probability: Tensor, truth: Tensor) -> float:
-    """-log P(truth), the mean; bounded as in training."""
+    """Mean of -log P(truth); a small constant bounds it, as in training."""
     likelihood = sample_1d(probability, truth[:, axis], *DEFINITION.axes()[axis])
     return -torch.log(likelihood + 1e-8).mean().item()
 
 
 def _probability(variant: Baseline, axis: int, scores: Tensor, truth: Tensor) -> Tensor:
+    """softmax(scale * scores), with the best scale if the variant retunes this axis."""
     factors = _FACTORS if axis in variant.retuned else [1.0]
     scales = [variant.scales[axis] * factor for factor in factors]
     candidates = [torch.softmax(scores * scale, dim=1) for scale in scales]
@@ -263,14 +268,14 @@ def _probability(variant: Baseline, axis: int, scores: Tensor, truth: Tensor) ->
 def solve(variant: Baseline, scenes: Scenes) -> tuple[Tensor, Posterior]:
     """The estimates (x m, y m, yaw rad), [count, 3], and the distributions."""
     sides = standardise(scenes.bev), standardise(scenes.features_map)
-    of_yaw = _in_parts(variant.yaw_scores, *sides)
-    yaw = _probability(variant, _YAW, of_yaw, scenes.correction)
+    scores = _in_parts(variant.yaw_scores, *sides)
+    yaw = _probability(variant, _YAW, scores, scenes.correction)
     yaw_rad = variant.choose(_YAW, yaw)
 
     turned = rotate(variant.axis_input(scenes.bev), yaw_rad)
     sides = turned, variant.axis_input(scenes.features_map)
-    of_axes = [variant.axis_scores(axis, *sides) for axis in (_X, _Y)]
-    x, y = (_probability(variant, i, s, scenes.correction) for i, s in enumerate(of_axes))
+    axis_scores = [variant.axis_scores(axis, *sides) for axis in (_X, _Y)]
+    x, y = (_probability(variant, i, s, scenes.correction) for i, s in enumerate(axis_scores))
     found = torch.stack((variant.choose(_X, x), variant.choose(_Y, y), yaw_rad), dim=1)
     return found, Posterior(x, y, yaw)
 
@@ -288,10 +293,11 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=200)
     count = parser.parse_args().scenes
     if count < 1:
-        parser.error(f"--scenes {count}: at least one is needed")
+        parser.error(f"--scenes: found {count}, wanted at least 1")
     scenes = first_scenes(count)
     print("| variant | x m | y m | yaw deg | NLL |\n|---|---:|---:|---:|---:|")
-    for variant in (Baseline, *VARIANTS):
+    variants: tuple[type[Baseline], ...] = (Baseline, *VARIANTS)
+    for variant in variants:
         print(table_row(variant(), scenes), flush=True)
 
 

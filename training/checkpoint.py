@@ -1,8 +1,8 @@
-"""Reads checkpoints, and refuses in one sentence those that are none or do not fit.
+"""Reads checkpoints; refuses unreadable and unsuitable ones with a one-line error.
 
     /usr/bin/python3 -m training.checkpoint training/runs/nano/checkpoint.pt
 
-prints the name of the network that is in it.
+prints the name of the checkpoint's network.
 """
 
 from __future__ import annotations
@@ -17,27 +17,29 @@ from training.errors import CheckpointError, run_program
 from training.models.config import ModelConfig, network_config
 from training.models.network import BevNetwork
 
-# Of checkpoints from before there was a choice.
+# The network of old checkpoints, which do not name theirs.
 _FIRST_NETWORK = {"network": "nano", "view": ""}
 
 
 def read_checkpoint(path: Path, device: str | torch.device = "cpu") -> dict[str, Any]:
-    """What Trainer.save wrote."""
+    """The state that Trainer.save wrote. CheckpointError if it cannot be read."""
     if not path.is_file():
         raise CheckpointError(f"{path}: no such file, wanted a checkpoint")
     try:
         state = torch.load(path, map_location=device)
-    except Exception as error:  # whatever pickle and the archive reader make of strange bytes
+    except Exception as error:  # corrupt files make pickle and the archive reader raise anything
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise CheckpointError(f"{path}: unreadable as a checkpoint ({reason})") from error
     for key in ("model", "ema", "samples", "config"):
         if not isinstance(state, dict) or key not in state:
-            raise CheckpointError(f"{path}: no checkpoint of training.train, '{key}' is missing")
+            raise CheckpointError(
+                f"{path}: found no '{key}', wanted a checkpoint of training.train"
+            )
     return state
 
 
 def network_of(state: dict[str, Any], path: Path) -> ModelConfig:
-    """The configuration of a checkpoint's network."""
+    """The network configuration of a checkpoint. CheckpointError if it is unknown."""
     chosen = {key: state["config"].get(key, first) for key, first in _FIRST_NETWORK.items()}
     try:
         return network_config(chosen["network"], chosen["view"])
@@ -46,7 +48,8 @@ def network_of(state: dict[str, Any], path: Path) -> ModelConfig:
 
 
 def load_weights(net: BevNetwork, state: dict[str, Any], weights: str, path: Path) -> None:
-    """`weights`: "model", or "ema" for their running average."""
+    """Loads a checkpoint's weights into `net`. `weights`: "model" for the last ones, "ema" for
+    their moving average. CheckpointError if they do not fit."""
     found = network_of(state, path)
     if found != net.config:
         raise CheckpointError(
@@ -58,12 +61,12 @@ def load_weights(net: BevNetwork, state: dict[str, Any], weights: str, path: Pat
         first, *details = (line.strip() for line in str(error).splitlines())
         reason = details[0] if details else first
         raise CheckpointError(
-            f"{path}: its weights are not those of today's network '{found.name}' ({reason})"
+            f"{path}: the weights do not fit the current network '{found.name}' ({reason})"
         ) from error
 
 
 def load_network(path: Path, averaged: bool = True) -> BevNetwork:
-    """The network of a checkpoint, ready to run; `averaged`: with the running average."""
+    """The network of a checkpoint in evaluation mode, with the averaged or the last weights."""
     state = read_checkpoint(path)
     net = BevNetwork(network_of(state, path))
     load_weights(net, state, "ema" if averaged else "model", path)

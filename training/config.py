@@ -1,54 +1,55 @@
-"""What a training run can choose."""
+"""The options of a training run."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-FIRST_TRAINING_SEED = 2**32  # sim/world/world_generator.h: evaluation's seeds lie below it
+FIRST_TRAINING_SEED = 2**32  # evaluation seeds lie below it (sim/world/world_generator.h)
 FIRST_VALIDATION_SEED = 1_000_000
 FIRST_GOLDEN_SEED = 2_000_000
 
 
 @dataclass
 class TrainingConfig:
-    """One run. The budget is either wall-clock time or samples; the learning rate follows it."""
+    """The options of one run. Its budget is either `minutes` of wall-clock time or `samples`; the
+    learning rate is annealed over the budget."""
 
-    run: Path = Path("training/runs/nano")
+    run: Path = Path("training/runs/nano")  # folder
     minutes: float = 0.0
     samples: int = 0
-    stop_after_minutes: float = 0.0  # of this process; the run goes on with `resume`
+    stop_after_minutes: float = 0.0  # ends this process only; `resume` continues the run
     resume: bool = False
-    init: str = ""  # checkpoint whose averaged weights a new run begins with
+    init: str = ""  # checkpoint whose averaged weights start a new run
 
-    network: str = "nano"  # of training/models/config.py
-    view: str = ""  # transform; none: the network's own
+    network: str = "nano"  # a preset of training/models/config.py
+    view: str = ""  # view transform; empty: the preset's own
 
-    nuscenes: str = ""  # folder of the data set; none: the simulator
-    nuscenes_version: str = ""  # v1.0-*, where there are several
-    scenes: str = ""  # file of scene names; none: all
+    nuscenes: str = ""  # folder of the data set; empty: samples come from the simulator
+    nuscenes_version: str = ""  # v1.0-*; needed if the folder has several versions
+    scenes: str = ""  # file with scene names; empty: all scenes
     validation_scenes: str = ""
     line_width_cells: float = 5.0
-    on_error: str = "refuse"  # or "skip": of samples that cannot be used
+    on_error: str = "refuse"  # or "skip": what to do with unusable samples
 
     seed: int = FIRST_TRAINING_SEED
-    batch: int = 8  # of all processes together
+    batch: int = 8  # samples of all processes together
     threads: int = 1
     sampler_threads: int = 1
     precision: str = "auto"  # or float32, bfloat16
     drop_camera_probability: float = 0.15
-    nuisances: str = "strong"  # or "usual": of the simulator's samples
+    nuisances: str = "strong"  # or "usual"; simulator only
 
     learning_rate: float = 2e-3
-    scale_rate_factor: float = 5.0  # the softmax scales have far to go
-    final_rate: float = 0.01  # of learning_rate
+    scale_rate_factor: float = 5.0  # the softmax scales learn faster: they start far off
+    final_rate: float = 0.01  # share of learning_rate
     warm_up_steps: int = 100
-    anneal_from: float = 0.4  # of the budget
+    anneal_from: float = 0.4  # share of the budget
     weight_decay: float = 0.01
     clip_norm: float = 5.0
     ema_decay: float = 0.998
 
-    semantic_stage: float = 0.03  # of the budget: stage 1, semantic loss alone
+    semantic_stage: float = 0.03  # share of the budget for stage 1, which has no pose losses
     joint_weight: float = 0.1
     decoupled_weight: float = 0.1
     refined_weight: float = 0.1
@@ -56,12 +57,12 @@ class TrainingConfig:
     checkpoint_minutes: float = 2.0
     validation_minutes: float = 6.0
     validation_samples: int = 96
-    patience: int = 0  # validations without a better figure until the run stops; 0: it does not
-    patience_figure: str = "joint_x_mae"  # a column of validation.csv
+    patience: int = 0  # stop after so many validations without improvement; 0: never
+    patience_figure: str = "joint_x_mae"  # column of validation.csv that must improve
     log_steps: int = 25
 
     def budget_spent(self, elapsed_s: float, samples: int) -> float:
-        """The part of the budget that is spent, 0 ... 1."""
+        """The share of the budget that is spent, 0 ... 1."""
         if self.samples > 0:
             return min(1.0, samples / self.samples)
         return min(1.0, elapsed_s / (60.0 * self.minutes))

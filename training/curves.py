@@ -1,4 +1,4 @@
-"""Draws how a run went: its losses, and its errors on the evaluation scenes.
+"""Draws the losses of a run and its errors on the evaluation scenes.
 
     /usr/bin/python3 -m training.curves training/runs/nano models/nano_curves.png
 """
@@ -13,7 +13,7 @@ import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
+import matplotlib.pyplot as plt  # noqa: E402  (imported after the backend is chosen)
 
 Table = dict[str, np.ndarray]
 _LOSS_PANELS = (
@@ -30,7 +30,7 @@ _SMOOTHED_ROWS = 9
 
 
 def read_table(path: Path) -> Table:
-    """The columns of a CSV file that a run appended to."""
+    """The columns of a run's CSV file."""
     with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
     return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
@@ -46,9 +46,9 @@ def _smoothed(values: np.ndarray) -> np.ndarray:
 def _draw_losses(axes: plt.Axes, title: str, curves: Table, names: tuple[str, ...]) -> None:
     axes.set_title(title)
     if not all(name in curves for name in names):
-        return  # a run from before this loss
+        return  # the run is older than this loss
     seen = np.any([curves[name] > 0 for name in names], axis=0)
-    seen[1:] &= seen[:-1]  # the first row of stage 2 averages zeros of stage 1
+    seen[1:] &= seen[:-1]  # the first row of stage 2 still averages zeros of stage 1
     samples = curves["samples"][seen] / 1000
     for name in names:
         values = curves[name][seen]
@@ -57,7 +57,7 @@ def _draw_losses(axes: plt.Axes, title: str, curves: Table, names: tuple[str, ..
 
 
 def draw(run: Path, out: Path) -> None:
-    """Six panels from curves.csv and validation.csv of a run."""
+    """Writes a figure with six panels, made from curves.csv and validation.csv of a run."""
     curves = read_table(run / "curves.csv")
     figure, panels = plt.subplots(2, 3, figsize=(14, 6.5), constrained_layout=True)
     for axes, (title, names) in zip(panels.flat, _LOSS_PANELS):

@@ -25,12 +25,12 @@ from training.model import (
 from training.native import address, library
 
 RASTER_ROWS, RASTER_COLS = 400, 200
-NUISANCES = ("usual", "strong")  # how wrong samples are: sim/samples/training_nuisances.h
+NUISANCES = ("usual", "strong")  # sim/samples/training_nuisances.h
 
 
 @dataclass
 class Batch:
-    """Samples as sampler.h describes them, with the view table of each."""
+    """Samples as described in training/native/sampler.h, each with its view table."""
 
     images: Tensor  # uint8 [n, 6, 3, 96, 320]
     camera_mask: Tensor  # uint8 [n]
@@ -53,7 +53,7 @@ class Batch:
 
 
 class Stream(Protocol):
-    """Where batches come from, in an order that the stream's start alone decides."""
+    """A source of batches. The order of its samples depends only on how it was started."""
 
     def next(self, count: int) -> Batch: ...
 
@@ -70,23 +70,23 @@ def _view_table(camera_mask: int, motions: np.ndarray | None) -> tuple[Tensor, T
 
 @lru_cache(maxsize=64)
 def view_table(camera_mask: int) -> tuple[Tensor, Tensor]:
-    """index int64 [8, 5000] and weight float [8, 5000] for the cameras that are there, which all
-    expose at once."""
+    """The view table, index int64 [8, 5000] and weight float [8, 5000], of the cameras in the mask
+    when all expose at the same time."""
     return _view_table(camera_mask, None)
 
 
 def sample_view_table(camera_mask: int, motions: np.ndarray) -> tuple[Tensor, Tensor]:
-    """The same for cameras that moved between their exposures: motions float32 [6, 3]
-    (sampler.h)."""
+    """The same for cameras whose exposures differ: motions float32 [6, 3] (sampler.h)."""
     return _view_table(camera_mask, motions) if motions.any() else view_table(camera_mask)
 
 
 class SamplerStream:
-    """The simulator's endless samples; workers render ahead while the network trains.
+    """An endless stream of simulated samples. Workers render ahead while the network trains.
 
-    Consecutive samples of one sampler share a world, so several samplers with seeds far apart take
-    turns: sample i comes from sampler i % STREAMS. With several processes there are as many as make
-    an equal number for each, and each process renders its own alone."""
+    Consecutive samples of one native sampler share a world. To mix worlds within a batch, STREAMS
+    samplers with distant seeds take turns: sample i comes from sampler i % STREAMS. With several
+    processes the number of samplers is the least common multiple of STREAMS and the number of
+    processes, and each process runs an equal share of them."""
 
     STREAMS = 4
     SEED_STRIDE = 2**28
@@ -100,8 +100,8 @@ class SamplerStream:
         share: Share = WHOLE,
         nuisances: str = "usual",
     ) -> None:
-        """`first_sample` counts the samples of all processes: a multiple of their number.
-        `nuisances`: one of NUISANCES."""
+        """`first_sample` counts the samples of all processes and is a multiple of their number.
+        `nuisances`: one of NUISANCES, else ValueError."""
         if nuisances not in NUISANCES:
             raise ValueError(
                 f"nuisances: found '{nuisances}', wanted one of {', '.join(NUISANCES)}"
@@ -123,25 +123,30 @@ class SamplerStream:
         atexit.register(self.close)  # workers must not outlive the interpreter
 
     def next(self, count: int) -> Batch:
-        """The next samples, those of one sampler side by side."""
+        """The next `count` samples, grouped by sampler."""
         images = np.empty((count, CAMERAS, 3, IMAGE_ROWS, IMAGE_COLS), np.uint8)
         camera_mask = np.empty(count, np.uint8)
         raster_prior = np.empty((count, RASTER_CHANNELS, RASTER_ROWS, RASTER_COLS), np.uint8)
         raster_truth = np.empty_like(raster_prior)
         correction = np.empty((count, 3), np.float32)
         motions = np.empty((count, CAMERAS, 3), np.float32)
-        arrays = (images, camera_mask, raster_prior, raster_truth, correction)
+        arrays: list[np.ndarray]
+        arrays = [images, camera_mask, raster_prior, raster_truth, correction, motions]
         filled = 0
         for k, sampler in enumerate(self._samplers):
             turns = len(self._samplers)
             own = len(range((k - self._position) % turns, count, turns))
-            part = [array[filled : filled + own] for array in (*arrays, motions)]
+            part = [array[filled : filled + own] for array in arrays]
             library().bevloc_sampler_next(sampler, own, *map(address, part))
             filled += own
         self._position += count
         tables = list(map(sample_view_table, camera_mask.tolist(), motions))
         return Batch(
-            *map(torch.from_numpy, arrays),
+            images=torch.from_numpy(images),
+            camera_mask=torch.from_numpy(camera_mask),
+            raster_prior=torch.from_numpy(raster_prior),
+            raster_truth=torch.from_numpy(raster_truth),
+            correction=torch.from_numpy(correction),
             index=torch.stack([index for index, _ in tables]),
             weight=torch.stack([weight for _, weight in tables]),
         )
@@ -153,7 +158,8 @@ class SamplerStream:
 
 
 def augment(images: Tensor, generator: torch.Generator) -> Tensor:
-    """Random gain and offset per camera on real-valued images (the renderer varies the rest)."""
+    """Applies a random gain and offset per camera to real-valued images. Everything else is varied
+    by the renderer."""
     shape = (images.shape[0], CAMERAS, 1, 1, 1)
     gain = torch.empty(shape).uniform_(0.85, 1.15, generator=generator)
     offset = torch.empty(shape).uniform_(-0.12, 0.12, generator=generator)

@@ -1,9 +1,9 @@
-"""The processes of one run, as torchrun starts them: each trains on its share of every batch.
+"""Data-parallel training: torchrun starts several processes, each trains on a share of every batch.
 
-Gradients are averaged by hand rather than by DistributedDataParallel, because the running
-statistics of batch normalisation and the losses have to be averaged too, and one exchange a step
-carries them all. SyncBatchNorm would make each process normalise by the whole batch, but exists on
-CUDA alone and stops at every layer for it.
+Gradients are averaged here and not by DistributedDataParallel, because the running statistics of
+batch normalisation and the losses must be averaged too: one all-reduce per step carries all of
+them. SyncBatchNorm would normalise by the whole batch, but it needs CUDA and synchronises at every
+layer.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from torch import Tensor
 
 @dataclass(frozen=True)
 class Share:
-    """Every `count`-th sample of a stream, from number `index` on."""
+    """Every `count`-th sample of a stream, starting at sample `index`."""
 
     index: int = 0
     count: int = 1
@@ -30,7 +30,7 @@ WHOLE = Share()
 
 @dataclass(frozen=True)
 class Processes:
-    """This process and how many there are. With one alone nothing is exchanged."""
+    """This process (`rank`) of `count` processes. With one process, nothing is communicated."""
 
     rank: int = 0
     count: int = 1
@@ -38,16 +38,18 @@ class Processes:
 
     @staticmethod
     def join() -> Processes:
-        """Meets the others that torchrun has started, if any: NCCL with CUDA, else Gloo."""
+        """Joins the process group that torchrun has started, if any: NCCL with CUDA, else Gloo."""
         cuda = torch.cuda.is_available()
-        device = torch.device("cuda", int(os.environ.get("LOCAL_RANK", 0))) if cuda else "cpu"
+        device = torch.device("cpu")
+        if cuda:
+            device = torch.device("cuda", int(os.environ.get("LOCAL_RANK", 0)))
         count = int(os.environ.get("WORLD_SIZE", 1))
         if count == 1:
-            return Processes(device=torch.device(device))
+            return Processes(device=device)
         if cuda:
             torch.cuda.set_device(device)
         dist.init_process_group("nccl" if cuda else "gloo")
-        return Processes(dist.get_rank(), count, torch.device(device))
+        return Processes(dist.get_rank(), count, device)
 
     def leave(self) -> None:
         if self.count > 1:
@@ -55,7 +57,7 @@ class Processes:
 
     @property
     def first(self) -> bool:
-        """The one that writes and prints."""
+        """Whether this is the process that writes files and prints."""
         return self.rank == 0
 
     @property
@@ -63,7 +65,7 @@ class Processes:
         return Share(self.rank, self.count)
 
     def average_(self, tensors: Sequence[Tensor]) -> None:
-        """Each becomes its mean over the processes, the same to the last bit in all of them."""
+        """Replaces each tensor by its mean over the processes, bit-identical in all of them."""
         if self.count == 1:
             return
         flat = torch.cat([tensor.reshape(-1) for tensor in tensors])
@@ -73,9 +75,9 @@ class Processes:
             tensor.copy_(mean.view(tensor.shape))
 
     def from_first(self, value: float) -> float:
-        """What the first process says, for what all have to decide alike."""
+        """The first process's `value`, so that all processes take the same decision."""
         if self.count == 1:
             return value
-        said = torch.tensor(value, dtype=torch.float64, device=self.device)
-        dist.broadcast(said, src=0)
-        return said.item()
+        shared = torch.tensor(value, dtype=torch.float64, device=self.device)
+        dist.broadcast(shared, src=0)
+        return shared.item()

@@ -1,4 +1,4 @@
-"""Stops a run that no longer gets better."""
+"""Stops a run that no longer improves."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _MORE_IS_BETTER = ("iou_",)
 
 
 class Patience:
-    """Counts validations since the named figure was best. `limit` 0: never stops."""
+    """Counts the validations since a figure was best. `limit` 0: never stops the run."""
 
     def __init__(self, figure: str, limit: int) -> None:
         self.figure = figure
@@ -21,7 +21,8 @@ class Patience:
         self.waited = 0
 
     def check(self, solvers: Iterable[str], axes: Iterable[str], classes: Iterable[str]) -> None:
-        """Refuses a figure that no validation measures or that has no better and worse."""
+        """TrainingError if no validation measures the figure or it has no direction of improvement
+        (such as a bias)."""
         figures = {f"{s}_{a}{kind}" for s in solvers for a in axes for kind in _LESS_IS_BETTER}
         figures |= {f"iou_{name}" for name in classes}
         if self.figure not in figures:
@@ -31,7 +32,7 @@ class Patience:
             )
 
     def watch(self, metrics: dict[str, float], samples: int) -> None:
-        """Takes the metrics of a validation after so many training samples."""
+        """Records the metrics of a validation that followed `samples` training samples."""
         value = metrics[self.figure]
         if self.best is None or self._better(value, self.best):
             self.best, self.best_samples, self.waited = value, samples, 0
@@ -57,6 +58,6 @@ class Patience:
         return {key: value for key, value in vars(self).items() if key != "limit"}
 
     def resume(self, state: dict[str, float | int | str | None]) -> None:
-        """Goes on counting, if it is the same figure."""
+        """Continues a saved count if it was of the same figure."""
         if state["figure"] == self.figure:
             vars(self).update(state)

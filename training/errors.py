@@ -1,4 +1,4 @@
-"""What ends a program on purpose. The message is one sentence for whoever started it."""
+"""Errors that end a program with a one-line message to the user."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from collections.abc import Callable
 
 
 class TrainingError(Exception):
-    """Something from outside the program that it cannot go on with."""
+    """Wrong input: the program cannot continue."""
 
 
 class CheckpointError(TrainingError):
-    """A checkpoint that cannot be read, or is of another network or run."""
+    """A checkpoint is unreadable or belongs to another network or run."""
 
 
 class NotFiniteError(TrainingError):
-    """A loss, a gradient or a weight that is infinite or no number."""
+    """A loss, gradient or weight is infinite or NaN."""
 
 
 class MarksError(TrainingError, ValueError):
-    """A document without the marks between which a program writes."""
+    """A document lacks the marks between which a program writes."""
 
 
 def run_program(main: Callable[[], None]) -> None:
-    """Ends with the message alone where `main` raises a TrainingError."""
+    """Runs `main`; on a TrainingError, prints its message without a traceback and exits with 1."""
     try:
         main()
     except TrainingError as error:

@@ -1,20 +1,20 @@
-"""Accuracy on scenes that training never sees.
+"""Measures accuracy on scenes that training never sees.
 
     /usr/bin/python3 -m training.evaluate training/runs/nano/checkpoint.pt
     /usr/bin/python3 -m training.evaluate training/runs/nano/checkpoint.pt --write models
 
-The first measures the float network with PyTorch, with `--nuscenes DIR --scenes FILE` on every
-sample of these scenes (the paper's Table I) in place of the simulator's. The second also measures
-the model file in the folder on the daemon's own network and solvers, and writes the results there:
-NETWORK_results.json, and the tables of the model card, README.md for nano and NETWORK.md for
-others.
+The first form measures the float network with PyTorch on simulated scenes, or with `--nuscenes DIR
+--scenes FILE` on every sample of these nuScenes scenes (the paper's Table I). The second form also
+measures the model file in the folder on the daemon's own network and solvers. It writes the results
+into that folder: NETWORK_results.json and the tables of the model card (README.md for nano,
+NETWORK.md for other networks).
 """
 
 from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 import torch
@@ -31,9 +31,9 @@ from training.runtime import NativeNetwork, NativeSolver
 from training.solver import PoseSolvers, Solution, standardise
 from training.sources import nuscenes_batches, simulator_batches
 
-# A batch -> F_B, F_M and the logits of the perceived mask.
+# Runs a network: batch -> F_B, F_M and the logits of the perceived mask.
 Inference = Callable[[Batch], tuple[Tensor, Tensor, Tensor]]
-# F_B, F_M -> the correction.
+# Runs a solver: F_B, F_M -> the correction.
 Solver = Callable[[Tensor, Tensor], Solution]
 AXES = ("x", "y", "yaw")
 CLASSES = ("divider", "crossing", "boundary")
@@ -55,7 +55,7 @@ def _error_metrics(name: str, error: Tensor) -> dict[str, float]:
     return metrics
 
 
-def _honesty_metrics(name: str, error: Tensor, sigma: Tensor, nll: Tensor) -> dict[str, float]:
+def _coverage_metrics(name: str, error: Tensor, sigma: Tensor, nll: Tensor) -> dict[str, float]:
     metrics: dict[str, float] = {}
     for i, axis in enumerate(AXES):
         e, s = error[:, i].abs(), sigma[:, i]
@@ -68,7 +68,7 @@ def _honesty_metrics(name: str, error: Tensor, sigma: Tensor, nll: Tensor) -> di
 
 
 def float_inference(net: BevNetwork) -> Inference:
-    """The trained network as it is."""
+    """The trained network in PyTorch, not quantized."""
     net.eval()
 
     def infer(batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
@@ -79,7 +79,7 @@ def float_inference(net: BevNetwork) -> Inference:
 
 
 def torch_solvers(solvers: PoseSolvers) -> dict[str, Solver]:
-    """The solvers that training differentiates."""
+    """The solvers that training differentiates, without the refinement."""
 
     def joint(bev: Tensor, features_map: Tensor) -> Solution:
         return Solution.of(solvers.joint(standardise(bev), standardise(features_map)))
@@ -92,10 +92,10 @@ def torch_solvers(solvers: PoseSolvers) -> dict[str, Solver]:
 
 @torch.no_grad()
 def evaluate(
-    infer: Inference, solvers: dict[str, Solver], batches: Iterable[Batch], device: torch.device
+    infer: Inference, solvers: Mapping[str, Solver], batches: Iterable[Batch], device: torch.device
 ) -> dict[str, float]:
-    """MAE, median, RMSE, 90th percentile and mean signed error (m, m, degrees), coverage and NLL
-    per axis and solver, the prior's errors, and the IoU of each class."""
+    """Per axis and solver: MAE, median, RMSE, 90th percentile and mean signed error (m, m,
+    degrees), coverage and NLL. Also the errors of the prior and the IoU of each class."""
     errors: dict[str, list[Tensor]] = {name: [] for name in solvers}
     sigmas: dict[str, list[Tensor]] = {name: [] for name in solvers}
     nlls: dict[str, list[Tensor]] = {name: [] for name in solvers}
@@ -117,14 +117,14 @@ def evaluate(
     for name in solvers:
         error = torch.cat(errors[name])
         metrics |= _error_metrics(name, error)
-        metrics |= _honesty_metrics(name, error, torch.cat(sigmas[name]), torch.cat(nlls[name]))
+        metrics |= _coverage_metrics(name, error, torch.cat(sigmas[name]), torch.cat(nlls[name]))
     for i, name in enumerate(CLASSES):
         metrics[f"iou_{name}"] = (overlap[i] / union[i].clamp(min=1)).item()
     return metrics
 
 
 def summary(metrics: dict[str, float]) -> str:
-    """Each solver's figures and the IoU, a line each."""
+    """One line per solver and one for the IoU."""
 
     def triple(solver: str, kind: str) -> str:
         return "/".join(f"{metrics[f'{solver}_{axis}_{kind}']:.3f}" for axis in AXES)
@@ -143,7 +143,7 @@ def summary(metrics: dict[str, float]) -> str:
 
 
 def evaluate_model_file(model: Path, batches: list[Batch], threads: int) -> dict[str, float]:
-    """A model file as the daemon runs it."""
+    """The metrics of a model file on the daemon's own network and solvers."""
     network = NativeNetwork(model, threads)
     solvers = {kind: NativeSolver(network, kind) for kind in NATIVE_SOLVERS}
     return evaluate(network, solvers, batches, torch.device("cpu"))
@@ -154,10 +154,10 @@ def main() -> None:
     parser.add_argument("checkpoint", type=Path)
     parser.add_argument("--samples", type=int, default=512)
     parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--raw", action="store_true", help="the last weights, not their average")
+    parser.add_argument("--raw", action="store_true", help="use the last weights, not the average")
     parser.add_argument("--write", type=Path, help="folder of the model file and its card")
-    parser.add_argument("--nuscenes", help="folder of the data set, in place of the simulator")
-    parser.add_argument("--scenes", default="", help="file of scene names; none: all")
+    parser.add_argument("--nuscenes", help="folder of the data set that replaces the simulator")
+    parser.add_argument("--scenes", default="", help="file with scene names; default: all scenes")
     parser.add_argument("--line-width-cells", type=float, default=5.0)
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
@@ -166,8 +166,8 @@ def main() -> None:
     device = torch.device("cpu")
     if arguments.nuscenes:
         folder, scenes = arguments.nuscenes, arguments.scenes
-        all_of_it = nuscenes_batches(folder, scenes, arguments.line_width_cells, arguments.threads)
-        print(summary(evaluate(float_inference(net), solvers, all_of_it, device)))
+        every = nuscenes_batches(folder, scenes, arguments.line_width_cells, arguments.threads)
+        print(summary(evaluate(float_inference(net), solvers, every, device)))
         return
     batches = simulator_batches(arguments.samples, arguments.threads)
     metrics = evaluate(float_inference(net), solvers, batches, device)

@@ -1,12 +1,14 @@
-"""Quantizes a trained network and writes it as standard ONNX, which any runtime can read.
+"""Quantizes a trained network and writes it as standard ONNX.
 
     /usr/bin/python3 -m training.export_onnx training/runs/nano/checkpoint.pt models
 
-Writes NETWORK.onnx (int8, QDQ) and NETWORK_float.onnx into the folder, and beside the checkpoint
-quantization.pt and solvers.pt: the solvers with the scales that the model files carry. Inputs:
-images int8 [6, 3, 96, 320] (RGB - 128), raster uint8 [1, 3, 400, 200], view_index int32 [8, 5000]
-and view_weight float [8, 5000] (pipeline/network/view_table.h). Outputs, real values: bev_features
-and map_features [1, 16, 100, 50], bev_mask (logits) [1, 3, 400, 200].
+Writes NETWORK.onnx (int8, QDQ) and NETWORK_float.onnx into the folder. Writes quantization.pt and
+solvers.pt (the solvers with the scales of the model files) next to the checkpoint.
+
+Inputs of the model: images int8 [6, 3, 96, 320] (RGB - 128), raster uint8 [1, 3, 400, 200],
+view_index int32 [8, 5000] and view_weight float [8, 5000] (pipeline/network/view/view_table.h).
+Outputs, in float: bev_features and map_features [1, 16, 100, 50], bev_mask (logits)
+[1, 3, 400, 200].
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ from training.config import FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream
 from training.errors import run_program
 from training.fit_scales import fit_scales, fit_sigma_scale
-from training.graph import FoldedConv, Walk, check_walkable, folded_convolutions
+from training.graph import FoldedConv, Walk, check_exportable, folded_convolutions
 from training.model import (
     BEV_COLS,
     BEV_ROWS,
@@ -42,7 +44,7 @@ OPSET, IR_VERSION = 13, 8
 QUANTIZATION_FILE = "quantization.pt"
 SOLVERS_FILE = "solvers.pt"
 SHIPPED_SOLVER = "banded+refine"  # config/demo.yaml
-# Calibration looks at training scenes that no run reaches.
+# Seeds of training scenes that no run reaches.
 CALIBRATION_SEED = FIRST_TRAINING_SEED + 2**27
 
 
@@ -72,7 +74,7 @@ def _outputs(net: BevNetwork) -> list[onnx.ValueInfoProto]:
 
 
 def metadata(net: BevNetwork, sigma_scale: float) -> dict[str, str]:
-    """What the run time has to know beside the graph."""
+    """The model's metadata: the solver parameters that the C++ code reads."""
     scales = {
         f"bevloc.solver.{name}_scale": f"{net.solvers.scale(name).item():.6g}"
         for name in net.solvers.log_scale
@@ -91,7 +93,7 @@ def build_model(
     backend: FloatOnnxBackend,
     sigma_scale: float = 1.0,
 ) -> onnx.ModelProto:
-    """The whole network as one ONNX model, as `backend` writes it."""
+    """The whole network as one ONNX model, written by `backend`."""
     inputs = input_scales()
     walk = Walk(net, convolutions, backend)
     bev, _ = walk.run_images(backend.dequantize("images", inputs["images"]))
@@ -120,7 +122,8 @@ def calibration_batches(samples: int, threads: int = 1) -> list[Batch]:
 
 
 def quantization_of(net: BevNetwork, checkpoint: Path, calibration: list[Batch]) -> Quantization:
-    """What the checkpoint's weights were trained with (training.qat), or else from calibration."""
+    """The checkpoint's own quantization if it has one (training.qat), else a new one from
+    `calibration`."""
     trained = read_checkpoint(checkpoint).get("quantization")
     return Quantization.of_state(net, trained) if trained else quantize(net, calibration)
 
@@ -128,25 +131,25 @@ def quantization_of(net: BevNetwork, checkpoint: Path, calibration: list[Batch])
 def write_model(
     net: BevNetwork, quantization: Quantization, sigma_scale: float, folder: Path
 ) -> None:
-    """Both model files."""
-    for name, convolutions, backend in (
-        (net.config.name, quantization.convolutions, Int8OnnxBackend(quantization)),
-        (f"{net.config.name}_float", folded_convolutions(net), FloatOnnxBackend()),
-    ):
-        model = build_model(net, convolutions, backend, sigma_scale)
-        onnx.save(model, str(folder / f"{name}.onnx"))
+    """Writes both model files."""
+    name = net.config.name
+    int8_backend = Int8OnnxBackend(quantization)
+    int8_model = build_model(net, quantization.convolutions, int8_backend, sigma_scale)
+    onnx.save(int8_model, str(folder / f"{name}.onnx"))
+    float_model = build_model(net, folded_convolutions(net), FloatOnnxBackend(), sigma_scale)
+    onnx.save(float_model, str(folder / f"{name}_float.onnx"))
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("checkpoint", type=Path)
-    parser.add_argument("models", type=Path, help="folder")
-    parser.add_argument("--calibration", type=int, default=384, help="samples")
+    parser.add_argument("models", type=Path, help="folder for the model files")
+    parser.add_argument("--calibration", type=int, default=384, help="number of samples")
     parser.add_argument("--threads", type=int, default=1)
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint)
-    check_walkable(net.config)
+    check_exportable(net.config)
     batches = calibration_batches(arguments.calibration, arguments.threads)
     quantization = quantization_of(net, arguments.checkpoint, batches)
     quantization.save(arguments.checkpoint.with_name(QUANTIZATION_FILE))

@@ -1,14 +1,17 @@
-"""The quantized network with gradients: forward it is the int8 network, backward rounding is taken
-for the identity (straight through), and what was clipped gets no gradient."""
+"""The quantized network with gradients. The forward pass computes what the int8 network computes.
+The backward pass treats rounding as the identity (straight-through estimator); clipped values get
+no gradient."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import torch
 from torch import Tensor
 
 from training.data import Batch
-from training.graph import RASTER_GAIN, RASTER_LAYER, FoldedConv
-from training.models.layers import ConvBn
+from training.graph import RASTER_GAIN, RASTER_LAYER, FoldedConv, submodule_convolution
+from training.models.layers import ConvBn, bias_of, running_statistics
 from training.models.network import BevNetwork
 from training.quantize import (
     MAX_WEIGHT,
@@ -23,16 +26,20 @@ from training.quantize import (
 
 
 class _StraightThrough(torch.autograd.Function):
-    """`rounded` in place of x; the gradient goes to x, but for where x was clipped."""
+    """Returns `rounded` for x. The gradient passes to x except where x was clipped."""
 
     @staticmethod
-    def forward(context, x: Tensor, rounded: Tensor, clipped: Tensor) -> Tensor:
-        context.save_for_backward(clipped)
+    def forward(  # type: ignore[override]  # named arguments in place of *args
+        ctx: Any, x: Tensor, rounded: Tensor, clipped: Tensor
+    ) -> Tensor:
+        ctx.save_for_backward(clipped)
         return rounded.clone()
 
     @staticmethod
-    def backward(context, gradient: Tensor) -> tuple[Tensor, None, None]:
-        (clipped,) = context.saved_tensors
+    def backward(  # type: ignore[override]  # named argument in place of *args
+        ctx: Any, gradient: Tensor
+    ) -> tuple[Tensor, None, None]:
+        (clipped,) = ctx.saved_tensors
         return gradient.masked_fill(clipped, 0.0), None, None
 
 
@@ -55,8 +62,8 @@ class _Backend(FloatBackend):
 
 
 class FakeQuantized:
-    """A network as its int8 model computes it. Folded weights and biases are learned; the scales
-    stay those of the calibration, which are the best for the weights that training begins with."""
+    """A network that computes what its int8 model computes. It learns the folded weights and
+    biases. The scales stay as calibrated: they are optimal for the initial weights."""
 
     def __init__(self, net: BevNetwork, quantization: Quantization) -> None:
         self.net = net
@@ -65,7 +72,7 @@ class FakeQuantized:
         self._weight_scales = {n: conv.scale for n, conv in quantization.quantized.items()}
         self._bias_steps = bias_steps(net, quantization)
         for name, conv in self.convolutions.items():
-            conv.bias = quantization.quantized[name].bias.clone()  # the corrected one
+            conv.bias = quantization.quantized[name].bias.clone()  # the corrected bias
             conv.weight.requires_grad_()
             conv.bias.requires_grad_()
 
@@ -84,9 +91,9 @@ class FakeQuantized:
 
     @torch.no_grad()
     def finish(self) -> Quantization:
-        """What was learned, rounded. The network gets the same weights, unrounded."""
+        """The learned weights as a quantization. The network gets the same weights, unrounded."""
         for name, conv in self.convolutions.items():
-            unfold(self.net.get_submodule(name), conv)
+            unfold(submodule_convolution(self.net, name), conv)
         convolutions = {
             name: FoldedConv(name, conv.weight.detach(), conv.bias.detach(), conv.stride)
             for name, conv in self.convolutions.items()
@@ -96,13 +103,14 @@ class FakeQuantized:
 
 
 def unfold(module: ConvBn | torch.nn.Conv2d, conv: FoldedConv) -> None:
-    """Sets the module to compute what the folded convolution computes: the reverse of
-    training.graph.folded_convolutions."""
+    """Sets the module's weights so that it computes what the folded convolution computes: the
+    inverse of training.graph.folded_convolutions."""
     if isinstance(module, torch.nn.Conv2d):
         module.weight.copy_(conv.weight)
-        module.bias.copy_(conv.bias)
+        bias_of(module).copy_(conv.bias)
         return
     module.conv.weight.copy_(conv.weight / (RASTER_GAIN if conv.name == RASTER_LAYER else 1.0))
-    module.bn.running_mean.zero_()
+    mean, variance = running_statistics(module.bn)
+    mean.zero_()
     module.bn.bias.copy_(conv.bias)
-    module.bn.weight.copy_(torch.sqrt(module.bn.running_var + module.bn.eps))
+    module.bn.weight.copy_(torch.sqrt(variance + module.bn.eps))

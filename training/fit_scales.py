@@ -1,5 +1,5 @@
-"""The solvers' scales for finished features: what training learns for itself is learned with the
-float network, and the solvers that are no part of its loss are not learned there at all."""
+"""Fits the solvers' scales to the finished (quantized) features. Training learns some of the scales
+with the float network, and none for the solvers that are not part of its loss."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROUNDS = 3
 
 
 def _posteriors(solvers: PoseSolvers, bev: Tensor, features_map: Tensor) -> list[Posterior]:
-    """Of every solver that has scales of its own."""
+    """The distributions of every solver with its own scales, from standardised features."""
     joint = solvers.joint(bev, features_map)
     decoupled = solvers.decoupled(bev, features_map, None)
     refined = solvers.refine(bev, features_map, estimate(decoupled))
@@ -24,12 +24,11 @@ def _posteriors(solvers: PoseSolvers, bev: Tensor, features_map: Tensor) -> list
 
 
 def fit_scales(solvers: PoseSolvers, infer: Inference, batches: list[Batch]) -> None:
-    """Sets the inverse temperatures to those of the least -log P(truth)."""
+    """Sets the inverse temperatures to the values that minimise -log P(truth)."""
     optimiser = torch.optim.Adam(solvers.log_scale.values(), lr=RATE)
     steps = ROUNDS * len(batches)
     decay = torch.optim.lr_scheduler.ExponentialLR(optimiser, (FINAL_RATE / RATE) ** (1 / steps))
-    with torch.no_grad():
-        features = [tuple(map(standardise, infer(batch)[:2])) for batch in batches]
+    features = [_standardised_features(infer, batch) for batch in batches]
     for _ in range(ROUNDS):
         for batch, sides in zip(batches, features):
             losses = [pose_losses(p, batch.correction) for p in _posteriors(solvers, *sides)]
@@ -40,9 +39,15 @@ def fit_scales(solvers: PoseSolvers, infer: Inference, batches: list[Batch]) -> 
 
 
 @torch.no_grad()
+def _standardised_features(infer: Inference, batch: Batch) -> tuple[Tensor, Tensor]:
+    bev, features_map, _ = infer(batch)
+    return standardise(bev), standardise(features_map)
+
+
+@torch.no_grad()
 def fit_sigma_scale(infer: Inference, solver: Solver, batches: list[Batch]) -> float:
-    """The factor under which the deviations that `solver` claims cover what those of a Gaussian do:
-    68.3 % of the errors, axis by axis in the mean."""
+    """The factor by which to multiply the standard deviations of `solver` so that one sigma covers
+    68.3 % of the errors, as for a Gaussian (geometric mean over the axes)."""
     ratios = []
     for batch in batches:
         solution = solver(*infer(batch)[:2])

@@ -1,12 +1,12 @@
-"""Writes the golden vectors that hold the C++ run time and this Python together.
+"""Writes the golden vectors against which the C++ code is tested.
 
     /usr/bin/python3 -m training.golden --checkpoint training/runs/nano/checkpoint.pt \\
         --out tests/golden
 
-solver/   made-up features, and what every solver makes of them (tests/pipeline/solver); written
-          by training/golden_solver.py, needs no checkpoint
-network/  samples of the simulator, and what the float and the quantized network make of them
-          (tests/pipeline/network); quantization.pt lies beside the checkpoint
+solver/   synthetic features and the results of every solver (tests/pipeline/solver), written by
+          training/golden_solver.py; needs no checkpoint
+network/  simulated samples and the outputs of the float and the quantized network
+          (tests/pipeline/network); needs quantization.pt and solvers.pt next to the checkpoint
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ from training.golden_solver import write_solver_vectors
 from training.quantize import Quantization, int8_inference
 from training.solver import PoseSolvers, Posterior, standardise
 
-# Of the features, every so many are written. Prime to rows and columns, so that it visits them all.
+# Every FEATURE_STRIDE-th feature value is written. The stride is coprime to the numbers of rows and
+# columns, so all of them occur.
 FEATURE_STRIDE = 7
 
 
@@ -37,7 +38,7 @@ def _distributions(posterior: Posterior) -> np.ndarray:
 
 
 def golden_batch() -> Batch:
-    """Two samples: with all cameras, and with cameras missing."""
+    """Two samples: one with all cameras, one with missing cameras."""
     parts = []
     for drop_camera_probability in (0.0, 1.0):
         stream = SamplerStream(FIRST_GOLDEN_SEED, 0, 1, drop_camera_probability)
@@ -75,7 +76,7 @@ def write_network_vectors(checkpoint: Path, out: Path) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--checkpoint", type=Path, help="none: the solver's vectors alone")
+    parser.add_argument("--checkpoint", type=Path, help="without it, only solver/ is written")
     parser.add_argument("--out", type=Path, default=Path("tests/golden"))
     arguments = parser.parse_args()
     torch.set_num_threads(1)

@@ -1,11 +1,11 @@
-"""The solvers' golden vectors: made-up features, and what every solver makes of them.
+"""Writes the solvers' golden vectors: synthetic features and the results of every solver.
 
     <features>_bev.npy, <features>_map.npy   [sample, C, 100, 50], float16
-    <group>_distributions.npy   [kind, sample, x + y + yaw hypotheses], kinds as solver.KINDS
+    <group>_distributions.npy   [kind, sample, x + y + yaw hypotheses], kinds ordered as KINDS
     <group>_estimates.npy       [kind, sample, (x m, y m, yaw rad)]
-    parameters.npy              scales as SCALES names them, GeM exponent
+    parameters.npy              scales in the order of SCALES, then the GeM exponent
 
-computed in float64.
+The solvers compute in float64.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ SCALES = {
     "refine_y": 50.0,
     "refine_yaw": 65.0,
 }
-# Of the literal solver; the run time refuses others than 1 for the rest.
+# Exponent of the literal solver. For all other solvers the C++ code accepts only 1.
 GEM_OMEGA = 1.75
-# Correction (m, m, degrees) and the strength of the noise on F_B.
+# Correction (m, m, degrees) and the standard deviation of the noise on F_B.
 SCENE_CASES = (((0.0, 0.0, 0.0), 0.2), ((1.3, -0.7, 1.1), 1.0), ((-1.9, 0.9, -1.9), 3.0))
 MASKS_CORRECTION = (-0.5, 0.3, 0.7)
 MASKS_NOISE = 0.3
@@ -51,7 +51,7 @@ def _with_steps(metres: float, degrees: float, y_range_m: float) -> SolverDefini
     )
 
 
-# Name, features and hypotheses; tests/pipeline/solver/golden_solver_test.cpp has the same steps.
+# Name, features and hypotheses; keep the steps as in tests/pipeline/solver/golden_solver_test.cpp.
 GROUPS = (
     ("scenes", "scenes", DEFINITION),
     ("masks", "masks", DEFINITION),
@@ -65,7 +65,7 @@ def _correction(x_m: float, y_m: float, yaw_degrees: float) -> Tensor:
 
 
 def _scene(number: int) -> tuple[Tensor, Tensor]:
-    """F_B and F_M [1, C, 100, 50] of smooth, noisy features."""
+    """F_B and F_M [1, C, 100, 50]: smooth features, with noise on F_B."""
     correction, noise = SCENE_CASES[number]
     sides = features_under(_correction(*correction), number, max_frequency=0.5, channels=CHANNELS)
     generator = torch.Generator().manual_seed(number)
@@ -73,7 +73,7 @@ def _scene(number: int) -> tuple[Tensor, Tensor]:
 
 
 def _road(points: Tensor) -> Tensor:
-    """Masks [..., 3] of a road that bends gently: dashed dividers, no crossing, boundaries."""
+    """Masks [..., 3] of a slightly curved road: dashed dividers, no crossing, boundaries."""
     along, across = points.unbind(-1)
     across = across - 0.004 * along.square()
 
@@ -87,7 +87,7 @@ def _road(points: Tensor) -> Tensor:
 
 
 def _masks() -> tuple[Tensor, Tensor]:
-    """F_B and F_M [1, 3, 100, 50] like perceived and drawn masks; one class is not there."""
+    """F_B and F_M [1, 3, 100, 50] that look like masks; the crossing class is empty."""
     x, y, yaw = _correction(*MASKS_CORRECTION).tolist()
     points = cell_centres()
     rotation = torch.tensor([[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]])
@@ -100,7 +100,7 @@ def _masks() -> tuple[Tensor, Tensor]:
 
 
 def _features(name: str) -> tuple[Tensor, Tensor]:
-    """Both sides of all samples, as float16 holds them."""
+    """F_B and F_M of all samples, rounded to float16."""
     samples = [_scene(i) for i in range(len(SCENE_CASES))] if name == "scenes" else [_masks()]
     bev, features_map = (torch.cat(side) for side in zip(*samples))
     return bev.half(), features_map.half()

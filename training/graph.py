@@ -1,13 +1,14 @@
-"""The network's data flow, written once for everything that runs or writes it after training.
+"""The data flow of the exported network, written once for calibration, simulated int8 and export.
 
-`run_images` and `run_map` walk through a trained network and hand each step to a backend: float
-with recorded ranges (calibration), simulated int8 (golden vectors), or ONNX nodes (export).
+`Walk.run_images` and `Walk.run_map` go through a trained network and pass each step to a backend:
+float that records ranges (calibration), simulated int8 (golden vectors) or ONNX nodes (export).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from collections.abc import Iterable
+from typing import Generic, Protocol, TypeVar
 
 import torch
 from torch import Tensor, nn
@@ -15,13 +16,14 @@ from torch import Tensor, nn
 from training.errors import TrainingError
 from training.model import RASTER_SCALE
 from training.models.config import RESIDUAL_TRUNKS, VIEW_COLS, VIEW_ROWS, ModelConfig
-from training.models.layers import ConvBn, Residual
+from training.models.layers import ConvBn, Residual, bias_of, running_statistics
 from training.models.network import BevNetwork
+from training.models.trunks import ResidualTrunk
 
 T = TypeVar("T")
 
-# Of the graph's raster, a power of two like the steps of all activations (training/quantize.py).
-# The weights of the first convolution on it make up for training's 1 / 255.
+# Step of the raster in the graph: a power of two like the steps of all activations
+# (training/quantize.py). Training uses 1 / 255; the weights of RASTER_LAYER compensate for that.
 RASTER_STEP = 1.0 / 256.0
 RASTER_GAIN = RASTER_SCALE / RASTER_STEP
 RASTER_LAYER = "map_encoder.layers.0"
@@ -42,25 +44,27 @@ class FoldedConv:
 
 
 class Backend(Protocol[T]):
+    """Executes or records the steps of a walk; T is its tensor type."""
+
     def conv(self, x: T, conv: FoldedConv, relu: bool, residual: T | None = None) -> T:
-        """Convolution, sum with `residual`, ReLU; the result is quantized."""
+        """Convolution, sum with `residual`, ReLU. The result is quantized."""
 
     def output(self, x: T, conv: FoldedConv, residual: T | None = None) -> T:
-        """The same at the network's end: the result stays real."""
+        """Convolution and sum with `residual` at the network's end. The result stays real."""
 
     def upsample(self, x: T) -> T: ...
 
     def gather(self, x: T, channels: int) -> T:
-        """The view transform of `channels` feature channels; the result is quantized."""
+        """View transform of `channels` feature channels. The result is quantized."""
 
     def space_to_depth(self, x: T) -> T:
-        """Blocks of 2 x 2 into channels, in the order of torch.pixel_unshuffle."""
+        """Moves blocks of 2 x 2 into channels, in the order of torch.pixel_unshuffle."""
 
     def depth_to_space(self, x: T) -> T: ...
 
 
-def check_walkable(config: ModelConfig) -> None:
-    """Refuses a network with a part that no backend, and so no executor, can express."""
+def check_exportable(config: ModelConfig) -> None:
+    """TrainingError if the network has a part that the backends and the executor do not support."""
     parts = (
         ("trunk", config.trunk, RESIDUAL_TRUNKS),
         ("view transform", config.view, ("lut",)),
@@ -69,23 +73,25 @@ def check_walkable(config: ModelConfig) -> None:
     for part, found, wanted in parts:
         if found not in wanted:
             raise TrainingError(
-                f"network '{config.name}' cannot be exported: its {part} is {found}, and the "
-                f"executor's graph has {', '.join(map(str, wanted))} only"
+                f"network '{config.name}' cannot be exported: its {part} is {found}, but the "
+                f"executor supports only {', '.join(map(str, wanted))}"
             )
 
 
 def fold(name: str, module: ConvBn | nn.Conv2d) -> FoldedConv:
     if isinstance(module, nn.Conv2d):
-        return FoldedConv(name, module.weight.detach().clone(), module.bias.detach().clone())
+        return FoldedConv(name, module.weight.detach().clone(), bias_of(module).detach().clone())
     bn = module.bn
-    gain = (bn.weight / torch.sqrt(bn.running_var + bn.eps)).detach()
+    mean, variance = running_statistics(bn)
+    gain = (bn.weight / torch.sqrt(variance + bn.eps)).detach()
     weight = module.conv.weight.detach() * gain[:, None, None, None]
-    bias = (bn.bias - bn.running_mean * gain).detach()
+    bias = (bn.bias - mean * gain).detach()
     return FoldedConv(name, weight, bias, module.conv.stride[0])
 
 
 def folded_convolutions(net: BevNetwork) -> dict[str, FoldedConv]:
-    """Every convolution of the network by its module's name; the raster counts in RASTER_STEP."""
+    """Every convolution of the network by its module's name. RASTER_LAYER expects a raster in units
+    of RASTER_STEP."""
     folded = {}
     for name, module in net.named_modules():
         if isinstance(module, ConvBn):
@@ -95,16 +101,25 @@ def folded_convolutions(net: BevNetwork) -> dict[str, FoldedConv]:
     return folded
 
 
-class Walk:
-    """One pass through the network on one backend."""
+def submodule_convolution(net: BevNetwork, name: str) -> ConvBn | nn.Conv2d:
+    """The module that folded_convolutions() lists under `name`."""
+    module = net.get_submodule(name)
+    assert isinstance(module, (ConvBn, nn.Conv2d))
+    return module
+
+
+class Walk(Generic[T]):
+    """Passes the steps of a network to one backend."""
 
     def __init__(
         self, net: BevNetwork, convolutions: dict[str, FoldedConv], backend: Backend[T]
     ) -> None:
-        check_walkable(net.config)
+        check_exportable(net.config)
+        assert isinstance(net.trunk, ResidualTrunk)
         self._convolutions = convolutions
         self._names = {id(module): name for name, module in net.named_modules()}
         self._net = net
+        self._trunk = net.trunk
         self._backend = backend
 
     def _folded(self, module: nn.Module) -> FoldedConv:
@@ -119,13 +134,15 @@ class Walk:
             if module.linear:
                 return self._backend.output(inner, second, residual=x)
             return self._backend.conv(inner, second, relu=True, residual=x)
-        for child in module:
-            x = self._layer(child, x)
+        assert isinstance(module, nn.Sequential)
+        layers: Iterable[nn.Module] = module
+        for layer in layers:
+            x = self._layer(layer, x)
         return x
 
     def run_images(self, images: T) -> tuple[T, T]:
         """-> F_B and the logits of the perceived mask."""
-        trunk, backend = self._net.trunk, self._backend
+        trunk, backend = self._trunk, self._backend
         x8 = self._layer(trunk.stage8, self._layer(trunk.stage4, self._layer(trunk.stem, images)))
         up = backend.upsample(self._layer(trunk.lateral16, self._layer(trunk.stage16, x8)))
         merged = backend.conv(x8, self._folded(trunk.lateral8), relu=True, residual=up)

@@ -1,6 +1,8 @@
-"""The joint volume of pipeline/solver/joint_volume.h as a differentiable function."""
+"""The joint volume of pipeline/solver/reference/joint_volume.h as a differentiable function."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import torch
@@ -13,7 +15,9 @@ YAW_COUNT, X_COUNT, Y_COUNT = 21, 21, 11
 
 class _JointVolume(torch.autograd.Function):
     @staticmethod
-    def forward(ctx, bev: Tensor, features_map: Tensor, block_cells: int) -> Tensor:
+    def forward(  # type: ignore[override]  # named arguments in place of *args
+        ctx: Any, bev: Tensor, features_map: Tensor, block_cells: int
+    ) -> Tensor:
         ctx.save_for_backward(bev, features_map)
         ctx.block_cells = block_cells
         host_bev, host_map = host_array(bev), host_array(features_map)
@@ -25,7 +29,9 @@ class _JointVolume(torch.autograd.Function):
         return torch.from_numpy(volume).to(bev)
 
     @staticmethod
-    def backward(ctx, grad_volume: Tensor) -> tuple[Tensor, Tensor, None]:
+    def backward(  # type: ignore[override]  # named argument in place of *args
+        ctx: Any, grad_volume: Tensor
+    ) -> tuple[Tensor, Tensor, None]:
         bev, features_map = ctx.saved_tensors
         host_bev, host_map, host_grad = map(host_array, (bev, features_map, grad_volume))
         count, channels = host_bev.shape[:2]
@@ -41,5 +47,5 @@ class _JointVolume(torch.autograd.Function):
 
 def joint_volume(bev: Tensor, features_map: Tensor, block_cells: int = 5) -> Tensor:
     """Scores [batch, 21 yaw, 21 x, 11 y] of standardised features [batch, C, 100, 50]. The native
-    code runs on the CPU; features on another device are copied there and back."""
+    code runs on the CPU; features on another device are copied to it and the scores back."""
     return _JointVolume.apply(bev, features_map, block_cells)

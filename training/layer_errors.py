@@ -1,4 +1,4 @@
-"""The quantization error of every layer, by itself and with all others."""
+"""Measures the quantization error of every layer: when it alone is quantized, and when all are."""
 
 from __future__ import annotations
 
@@ -13,23 +13,24 @@ from training.graph import FoldedConv, Walk
 from training.models.network import BevNetwork
 from training.quantize import FloatBackend, Int8Backend, Quantization, graph_inputs, run
 
-Pair = tuple[Tensor, Tensor]
+Pair = tuple[Tensor, Tensor]  # exact and quantized values
+OptionalPair = tuple[Tensor, Tensor] | tuple[None, None]
 
 
 @dataclass
 class LayerError:
-    """Of one layer's output, or of what it does to F_B and F_M; dB: signal to quantization noise,
-    infinite where nothing is changed. None: has no weights, or a real output."""
+    """The error of one layer. dB: ratio of signal to quantization noise, infinite if the values do
+    not change."""
 
     name: str
-    largest_weight: float | None
+    largest_weight: float | None  # None: the layer has no weights
     largest_output: float
-    step: float | None
-    saturated: float | None  # share of the output's values that are clipped
-    alone_db: float  # exact input, this layer's weights and output rounded
-    together_db: float  # all rounded
-    bev_db: float  # F_B, this layer's weights and output rounded
-    map_db: float
+    step: float | None  # None: the output stays real
+    saturated: float | None  # share of output values that are clipped; None: the output stays real
+    alone_db: float  # of the output: exact input, only this layer quantized
+    together_db: float  # of the output: all layers quantized
+    bev_db: float  # of F_B: only this layer quantized
+    map_db: float  # of F_M: only this layer quantized
 
 
 @dataclass
@@ -49,7 +50,7 @@ class _Noise:
 
 @dataclass
 class _Seen:
-    """What has been seen of a layer's output."""
+    """Statistics of a layer's output."""
 
     alone: _Noise = field(default_factory=_Noise)
     together: _Noise = field(default_factory=_Noise)
@@ -59,7 +60,7 @@ class _Seen:
 
 
 class _Pairs:
-    """Walks with the exact and the rounded values side by side, and compares them."""
+    """Backend that carries the exact and the quantized values side by side and compares them."""
 
     def __init__(
         self, batch: Batch, quantization: Quantization, seen: dict[str, _Seen]
@@ -79,7 +80,7 @@ class _Pairs:
         return exact, together
 
     def conv(self, x: Pair, conv: FoldedConv, relu: bool, residual: Pair | None = None) -> Pair:
-        skip = (None, None) if residual is None else residual
+        skip: OptionalPair = (None, None) if residual is None else residual
         return self._compare(
             conv.name,
             self._exact.conv(x[0], conv, relu, skip[0]),
@@ -88,7 +89,7 @@ class _Pairs:
         )
 
     def output(self, x: Pair, conv: FoldedConv, residual: Pair | None = None) -> Pair:
-        skip = (None, None) if residual is None else residual
+        skip: OptionalPair = (None, None) if residual is None else residual
         return self._compare(
             conv.name,
             self._exact.output(x[0], conv, skip[0]),
@@ -115,7 +116,7 @@ class _Pairs:
 
 
 class _OneLayer(Int8Backend):
-    """Rounds one layer only."""
+    """Quantizes one layer only."""
 
     def __init__(self, batch: Batch, quantization: Quantization, name: str) -> None:
         super().__init__(batch, quantization)
@@ -147,7 +148,7 @@ def _effect(
     batches: list[Batch],
     exact: list[tuple[Tensor, Tensor]],
 ) -> tuple[float, float]:
-    """dB of F_B and F_M when the layer `name` alone is rounded."""
+    """Signal-to-noise ratio in dB of F_B and F_M when only the layer `name` is quantized."""
     noises = _Noise(), _Noise()
     for batch, sides in zip(batches, exact):
         backend = _OneLayer(batch, quantization, name)
@@ -161,7 +162,7 @@ def _effect(
 def layer_errors(
     net: BevNetwork, quantization: Quantization, batches: list[Batch]
 ) -> list[LayerError]:
-    """In the order in which the network computes them."""
+    """The errors of all layers, in the order in which the network computes them."""
     convolutions, activations = quantization.convolutions, quantization.activations
     exact = [run(net, convolutions, FloatBackend(batch), batch)[:2] for batch in batches]
     errors = []

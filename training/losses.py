@@ -24,7 +24,8 @@ def semantic_loss(logits: Tensor, target: Tensor) -> Tensor:
 
 
 def sample_1d(probability: Tensor, value: Tensor, value_range: float, step: float) -> Tensor:
-    """The linearly interpolated probability of `value` [batch] in a distribution [batch, count]."""
+    """The probability of `value` [batch] in a distribution [batch, count], interpolated linearly
+    between hypotheses; values outside the range count as the nearest hypothesis."""
     last = probability.shape[1] - 1
     position = ((value + value_range) / step).clamp(0, last)
     low = position.floor().clamp(max=last - 1).long()
@@ -43,6 +44,6 @@ def pose_losses(posterior: Posterior, correction: Tensor) -> Tensor:
 
 
 def intersection_over_union(logits: Tensor, target: Tensor) -> tuple[Tensor, Tensor]:
-    """Intersection and union per class, [3] each, to be summed over a set."""
+    """Cells in the intersection and in the union per class, [3] each; sum both over a data set."""
     found, wanted = logits > 0, target > 0.5
     return (found & wanted).sum((0, 2, 3)), (found | wanted).sum((0, 2, 3))

@@ -1,4 +1,4 @@
-"""Documents with a part that a program writes, between two marks."""
+"""Updates the generated part of a document, which lies between two marks."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from training.errors import MarksError
 
 
 def write_between_marks(document: Path, begin: str, end: str, text: str) -> None:
-    """Replaces what stands between the first `begin` and the `end` after it."""
+    """Replaces the text between the first `begin` and the next `end`. MarksError if one is
+    missing."""
     head, found_begin, rest = document.read_text().partition(begin)
     _, found_end, tail = rest.partition(end)
     if not (found_begin and found_end):

@@ -1,6 +1,7 @@
-"""What the appliance's network is given: the sizes of its inputs, and what their numbers mean.
+"""The inputs of the appliance's network: their sizes and their scaling.
 
-Every network that trains on the sampler's images and view table has these (`check_fits_sampler`).
+Every network that trains on the sampler's images and view table has these sizes
+(`check_fits_sampler`).
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ RASTER_SCALE = 1.0 / 255.0
 
 
 def real_images(images: Tensor) -> Tensor:
-    """RGB uint8 -> the network's real values: (RGB - 128) / 64."""
+    """RGB uint8 -> the network's input values, (RGB - 128) / 64."""
     return (images.float() - IMAGE_OFFSET) * IMAGE_SCALE
 
 
@@ -36,13 +37,13 @@ def real_raster(raster: Tensor) -> Tensor:
 
 
 def check_fits_sampler(config: ModelConfig) -> None:
-    """ValueError where a network wants other images or another view table than there are."""
+    """ValueError if a network needs images or a view table of other sizes than the samples'."""
     wanted = (IMAGE_ROWS, IMAGE_COLS), (FEATURE_ROWS, FEATURE_COLS), (BEV_ROWS, BEV_COLS)
     found = config.image_size, config.feature_grid, config.bev_size
     if found != wanted:
         sizes = ", ".join("{} x {}".format(*size) for size in found)
         fitting = ", ".join("{} x {}".format(*size) for size in wanted)
         raise ValueError(
-            f"network '{config.name}' has images, image features and BEV features of {sizes}; "
-            f"samples are made for {fitting}"
+            f"network '{config.name}': found images, image features and BEV features of {sizes}, "
+            f"wanted {fitting} as the samples have"
         )

@@ -1,4 +1,4 @@
-"""Prints what each preset of training/models costs; --write puts the table into docs/networks.md.
+"""Prints the cost of each preset of training/models; --write updates docs/network-variants.md.
 
     OMP_NUM_THREADS=1 /usr/bin/python3 -m training.model_table [--write]
 """
@@ -18,16 +18,17 @@ from training.errors import run_program
 from training.marks import write_between_marks
 from training.models.config import PRESETS, VIEWS, ModelConfig
 from training.models.cost import Cost, cost_of, deployed_outputs, sample_inputs
+from training.models.layers import channels_last
 from training.models.network import BevNetwork
 
-DOCUMENT = Path(__file__).resolve().parent.parent / "docs" / "networks.md"
+DOCUMENT = Path(__file__).resolve().parent.parent / "docs" / "network-variants.md"
 BEGIN, END = "<!-- model_table: begin -->\n", "<!-- model_table: end -->\n"
 _RUNS = 3
 _LONGEST_REPEATED_S = 10.0
 _LONGEST_S = 60.0
 _MOST_BYTES = 8 * 2**30
 _FLOAT_BYTES = 4
-# Columns of the table, and the parts that each sums.
+# Columns of the table and the network parts that each column adds up.
 _COLUMNS = {
     "trunk": ("trunk",),
     "view": ("view",),
@@ -44,14 +45,14 @@ _HEADINGS = (
 
 
 def configurations() -> list[ModelConfig]:
-    """The presets, and the smallest one with each other view transform."""
+    """The presets, and the smallest one with every other view transform."""
     nano = PRESETS["nano"]
     others = [replace(nano, name=f"nano, {view}", view=view) for view in VIEWS if view != nano.view]
     return [nano, *others, *(config for config in PRESETS.values() if config is not nano)]
 
 
 def counted_cells(config: ModelConfig, cost: Cost) -> list[str]:
-    """All but the latency."""
+    """All cells of a row except the latency."""
     parts = [sum(cost.macs.get(part, 0) for part in parts) for parts in _COLUMNS.values()]
     rows, cols = config.image_size
     return [
@@ -67,9 +68,9 @@ def counted_cells(config: ModelConfig, cost: Cost) -> list[str]:
 
 @torch.no_grad()
 def latency_s(config: ModelConfig) -> float:
-    """Processor time of one thread, which other processes on the machine disturb least: the median
-    of some runs after a first one, or a slow network's first."""
-    network = BevNetwork(config).eval().to(memory_format=torch.channels_last)
+    """Processor time of one thread, which depends little on other processes: the median of _RUNS
+    runs after a warm-up run, or of a slow network the first run."""
+    network = channels_last(BevNetwork(config).eval())
     inputs = sample_inputs(config, "cpu")
     seconds = _seconds(network, inputs)
     if seconds > _LONGEST_REPEATED_S:
@@ -84,8 +85,8 @@ def _seconds(network: BevNetwork, inputs: tuple) -> float:
 
 
 def table() -> str:
-    """Measures, and prints each row as soon as it is known. What would take too long at the least
-    speed so far, or too much memory, is not run."""
+    """Measures all networks and prints each row at once. Networks that need too much memory, or
+    would take too long at the lowest speed measured so far, are not run."""
     rules = ["---"] * 3 + ["---:"] * (len(_HEADINGS) - 3)
     lines = [_row(list(_HEADINGS)), _row(rules)]
     print(*lines, sep="", end="", flush=True)
@@ -112,7 +113,7 @@ def _row(cells: list[str]) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--write", action="store_true", help="update docs/networks.md")
+    parser.add_argument("--write", action="store_true", help="update docs/network-variants.md")
     write = parser.parse_args().write
     torch.set_num_threads(1)
     new_table = table()

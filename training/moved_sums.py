@@ -1,7 +1,9 @@
-"""What a ZNCC of moved features is made of, by the run time's code (match_moved() of
-pipeline/solver/pose_scorer.h), as a differentiable function."""
+"""The sums that make up the ZNCC of moved features, as a differentiable function. The native code
+is match_moved() of pipeline/solver/pose_scorer.h."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import torch
@@ -13,8 +15,8 @@ from training.solvers.lattice import EVERY_CELL, CellLattice
 
 class _MovedSums(torch.autograd.Function):
     @staticmethod
-    def forward(
-        ctx, bev: Tensor, features_map: Tensor, corrections: Tensor, lattice: CellLattice
+    def forward(  # type: ignore[override]  # named arguments in place of *args
+        ctx: Any, bev: Tensor, features_map: Tensor, corrections: Tensor, lattice: CellLattice
     ) -> Tensor:
         ctx.save_for_backward(bev, features_map, corrections)
         ctx.lattice = lattice
@@ -26,7 +28,9 @@ class _MovedSums(torch.autograd.Function):
         return torch.from_numpy(sums).to(bev.device)
 
     @staticmethod
-    def backward(ctx, grad_sums: Tensor) -> tuple[Tensor, Tensor, None, None]:
+    def backward(  # type: ignore[override]  # named argument in place of *args
+        ctx: Any, grad_sums: Tensor
+    ) -> tuple[Tensor, Tensor, None, None]:
         bev, features_map, corrections = ctx.saved_tensors
         sides = host_array(bev), host_array(features_map)
         poses = host_array(corrections, torch.float64)
@@ -43,8 +47,9 @@ class _MovedSums(torch.autograd.Function):
 def moved_sums(
     bev: Tensor, features_map: Tensor, corrections: Tensor, lattice: CellLattice = EVERY_CELL
 ) -> Tensor:
-    """Over the lattice's cells and all channels of features [batch, C, 100, 50], with F_B moved
-    under each of the corrections [batch, count, 3] within the paper's hypotheses: the sums of moved
-    features times F_M, of moved features, and of their squares, [batch, count, 3], in float64. The
-    corrections get no gradient. Like the joint volume it runs on the CPU."""
+    """Sums over the lattice's cells and all channels of features [batch, C, 100, 50], with F_B
+    moved by each of the corrections [batch, count, 3]: of moved features times F_M, of moved
+    features and of their squares, [batch, count, 3] in float64. The corrections must lie within the
+    range of the paper's hypotheses; they get no gradient. Runs on the CPU, like the joint
+    volume."""
     return _MovedSums.apply(bev, features_map, corrections, lattice)

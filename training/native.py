@@ -1,4 +1,4 @@
-"""The native library that training shares with the daemon: samples, matching, run time."""
+"""Loads the native library (training/native): the daemon's code and the simulator for Python."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LIBRARY = Path("training/native/libbevloc_training.so")
 
 
 def library_path() -> Path:
-    """$BEVLOC_TRAINING_LIBRARY, or else what lies in build/ or a preset's build/<preset>/."""
+    """$BEVLOC_TRAINING_LIBRARY, or else the first library found in build/ or build/<preset>/."""
     if chosen := os.environ.get(ENVIRONMENT):
         return Path(chosen)
     build = _REPOSITORY / "build"
@@ -26,12 +26,13 @@ def library_path() -> Path:
         if candidate.exists():
             return candidate
     raise FileNotFoundError(
-        f"{build}: no {_LIBRARY.name}; build the target bevloc_training or set {ENVIRONMENT}"
+        f"{build}: found no {_LIBRARY.name}; build the target bevloc_training or set {ENVIRONMENT}"
     )
 
 
 @lru_cache(maxsize=1)
 def library() -> ctypes.CDLL:
+    """The loaded library, with the signatures declared in training/native/*.h."""
     lib = ctypes.CDLL(str(library_path()))
     pointer, integer = ctypes.c_void_p, ctypes.c_int
     lib.bevloc_joint_volume.argtypes = [integer] * 3 + [pointer] * 3
@@ -71,11 +72,12 @@ def library() -> ctypes.CDLL:
 
 
 def host_array(tensor: Tensor, dtype: torch.dtype = torch.float32) -> np.ndarray:
-    """What a tensor holds, contiguous in the CPU's memory; its own, where it lies so already."""
+    """A tensor's values as a contiguous array in the CPU's memory. Shares the tensor's memory if
+    that is possible without conversion."""
     return tensor.detach().to("cpu", dtype).contiguous().numpy()
 
 
 def address(array: np.ndarray) -> ctypes.c_void_p:
-    """Where a contiguous array lies. The caller keeps the array alive."""
+    """The address of a contiguous array. The caller must keep the array alive."""
     assert array.flags.c_contiguous
     return array.ctypes.data_as(ctypes.c_void_p)

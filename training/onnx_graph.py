@@ -1,6 +1,8 @@
-"""Writes the network's walk (training/graph.py) as ONNX nodes: in float, or quantized (QDQ)."""
+"""Backends for training/graph.py that write ONNX nodes: in float or quantized (QDQ)."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import onnx
@@ -19,29 +21,29 @@ def _zero_point(scale: Scale) -> np.ndarray:
 
 
 class FloatOnnxBackend:
-    """Writes each step of the walk as float nodes; its tensors are names."""
+    """Writes each step as float nodes. Its tensors are names of ONNX values."""
 
     def __init__(self) -> None:
         self.nodes: list[onnx.NodeProto] = []
         self.initializers: list[onnx.TensorProto] = []
         self._shuffled_inputs: set[str] = set()
 
-    def constant(self, name: str, values: np.ndarray) -> str:
+    def constant(self, name: str, values: np.ndarray | np.float32) -> str:
         self.initializers.append(numpy_helper.from_array(np.ascontiguousarray(values), name))
         return name
 
-    def node(self, operator: str, inputs: list[str], output: str, **attributes) -> str:
+    def node(self, operator: str, inputs: list[str], output: str, **attributes: Any) -> str:
         self.nodes.append(helper.make_node(operator, inputs, [output], name=output, **attributes))
         return output
 
     def dequantize(self, name: str, scale: Scale) -> str:
-        """Real values of an 8-bit graph input."""
+        """The real values of an 8-bit graph input."""
         step = self.constant(f"{name}.scale", np.float32(scale.scale))
         zero = self.constant(f"{name}.zero", _zero_point(scale))
         return self.node("DequantizeLinear", [name, step, zero], f"{name}.real")
 
     def _parameters(self, x: str, conv: FoldedConv) -> tuple[str, str]:
-        """Names of the weights and the bias."""
+        """Writes the weights and the bias of a convolution of x; returns their names."""
         weight = self._in_input_order(x, conv.weight.numpy())
         return (
             self.constant(f"{conv.name}.weight", weight),
@@ -52,7 +54,8 @@ class FloatOnnxBackend:
         return x
 
     def _in_input_order(self, x: str, weight: np.ndarray) -> np.ndarray:
-        """SpaceToDepth counts (row, column, channel), pixel_unshuffle (channel, row, column)."""
+        """Reorders the weights of a convolution after SpaceToDepth, which orders its channels (row,
+        column, channel); torch.pixel_unshuffle orders them (channel, row, column)."""
         if x not in self._shuffled_inputs:
             return weight
         out, channels = weight.shape[:2]

@@ -16,29 +16,39 @@ _CHOICES = {"precision": PRECISIONS, "nuisances": NUISANCES, "on_error": ON_ERRO
 
 
 def parse_config(arguments: list[str], description: str, processes: int = 1) -> TrainingConfig:
-    """Every field of TrainingConfig is an option. Ends the program where they make no sense."""
+    """Parses the options, one per field of TrainingConfig. Invalid options end the program with a
+    message. `processes`: number of processes of the run."""
     parser = argparse.ArgumentParser(prog="training.train", description=description)
     for field in dataclasses.fields(TrainingConfig):
-        option = "--" + field.name.replace("_", "-")
+        option = _option_name(field.name)
         if isinstance(field.default, bool):
             parser.add_argument(option, action="store_true")
         else:
             parser.add_argument(option, type=type(field.default), default=field.default)
     config = TrainingConfig(**vars(parser.parse_args(arguments)))
-    if (config.minutes > 0) == (config.samples > 0):
-        parser.error("give the budget: either --minutes or --samples")
-    for option, choices in _CHOICES.items():
-        if (found := getattr(config, option)) not in choices:
-            name = option.replace("_", "-")
-            parser.error(f"--{name}: found '{found}', wanted one of {', '.join(choices)}")
-    if config.batch < 1 or config.batch % processes:
-        parser.error(f"--batch: found {config.batch}, wanted a multiple of {processes} processes")
-    for option in ("checkpoint_minutes", "validation_minutes"):
-        if getattr(config, option) <= 0:
-            minutes = getattr(config, option)
-            parser.error(f"--{option.replace('_', '-')}: found {minutes:g} minutes, wanted more")
     try:
-        check_fits_sampler(network_config(config.network, config.view))
+        _check(config, processes)
     except ValueError as error:
         parser.error(str(error))
     return config
+
+
+def _option_name(field: str) -> str:
+    return "--" + field.replace("_", "-")
+
+
+def _check(config: TrainingConfig, processes: int) -> None:
+    """ValueError if the options contradict each other or have invalid values."""
+    if (config.minutes > 0) == (config.samples > 0):
+        raise ValueError("found no budget or two, wanted either --minutes or --samples")
+    for field, choices in _CHOICES.items():
+        if (found := getattr(config, field)) not in choices:
+            wanted = f"wanted one of {', '.join(choices)}"
+            raise ValueError(f"{_option_name(field)}: found '{found}', {wanted}")
+    if config.batch < 1 or config.batch % processes:
+        wanted = f"wanted a positive multiple of {processes} processes"
+        raise ValueError(f"--batch: found {config.batch}, {wanted}")
+    for field in ("checkpoint_minutes", "validation_minutes"):
+        if (minutes := getattr(config, field)) <= 0:
+            raise ValueError(f"{_option_name(field)}: found {minutes:g} minutes, wanted more")
+    check_fits_sampler(network_config(config.network, config.view))

@@ -1,4 +1,4 @@
-"""Whether the network computes in bfloat16: where the hardware multiplies it faster."""
+"""Chooses the precision of the network: bfloat16 if the hardware has fast instructions for it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Precision:
 
 
 def cpu_flags(cpu_info: Path = _CPU_INFO) -> set[str]:
-    """What the first processor can do, as Linux on x86 lists it; elsewhere nothing."""
+    """The feature flags of the first processor as Linux on x86 lists them; empty elsewhere."""
     try:
         lines = cpu_info.read_text().splitlines()
     except OSError:
@@ -32,7 +32,7 @@ def cpu_flags(cpu_info: Path = _CPU_INFO) -> set[str]:
 
 
 def choose_precision(wanted: str, device: torch.device, flags: set[str]) -> Precision:
-    """`wanted`: one of PRECISIONS; `flags`: of the CPU."""
+    """`wanted`: one of PRECISIONS. `flags`: the CPU's feature flags."""
     if wanted != "auto":
         return Precision(wanted == "bfloat16", f"--precision {wanted}")
     if device.type == "cuda":

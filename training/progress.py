@@ -1,12 +1,14 @@
-"""What the lines of a run's log tell: mean losses, rate, and what the time went to."""
+"""The figures of a run's log lines: mean losses, rate and time spent waiting."""
 
 from __future__ import annotations
 
+import torch
 from torch import Tensor
 
 
 class Progress:
-    """Sums over the steps since the last line. Validation and checkpoints are left out."""
+    """Sums over the steps since the last log line, without the time of validations and
+    checkpoints."""
 
     def __init__(self) -> None:
         self._losses: Tensor | float = 0.0
@@ -14,7 +16,7 @@ class Progress:
         self._busy_s, self._waited_s = 0.0, 0.0
 
     def add(self, losses: Tensor, samples: int, busy_s: float, waited_s: float) -> None:
-        """A step of `samples` that took busy_s, waited_s of it for the samples."""
+        """Adds a step that took busy_s, of which it waited waited_s for its samples."""
         self._losses = self._losses + losses
         self._steps += 1
         self._samples += samples
@@ -22,7 +24,7 @@ class Progress:
         self._waited_s += waited_s
 
     def mean_losses(self) -> Tensor:
-        return self._losses / self._steps
+        return torch.as_tensor(self._losses / self._steps)
 
     @property
     def rate(self) -> float:
@@ -31,5 +33,5 @@ class Progress:
 
     @property
     def bottleneck(self) -> str:
-        """Where samples come at once, the network is what limits the rate."""
+        """The share of time spent waiting for samples. Near zero, the network limits the rate."""
         return f"{100 * self._waited_s / self._busy_s:.0f} % waiting for samples"

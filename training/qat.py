@@ -1,11 +1,10 @@
-"""Quantization-aware training: a short fine-tuning of a trained network as its int8 model computes
-it.
+"""Quantization-aware training: fine-tunes a trained network while simulating its int8 arithmetic.
 
     /usr/bin/python3 -m training.qat training/runs/nano/checkpoint.pt --run training/runs/qat \\
         --samples 2000
 
-Writes checkpoint.pt into the run's folder, with the quantization in it, so that
-training.export_onnx exports exactly what was trained. Whether it pays: docs/quantization.md.
+Writes checkpoint.pt into the run's folder. It contains the quantization, so training.export_onnx
+exports exactly the trained model. Results are in docs/quantization.md.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from training.model import real_raster
 from training.quantize import quantize
 from training.solver import PoseSolvers, standardise
 
-SEED = FIRST_TRAINING_SEED + 2**26  # scenes that neither a usual run nor the calibration reaches
+SEED = FIRST_TRAINING_SEED + 2**26  # scenes that neither a normal run nor the calibration reaches
 POSE_WEIGHT = 0.1  # as in training.train
 DROP_CAMERA_PROBABILITY = 0.15
 CLIP_NORM = 5.0
@@ -38,9 +37,10 @@ LOG_STEPS = 10
 def fine_tuning_loss(
     outputs: tuple[Tensor, Tensor, Tensor], solvers: PoseSolvers, batch: Batch
 ) -> Tensor:
-    """What training's second stage asks of the perceived mask and of the joint and the decoupled
-    solver's poses, on what the int8 model puts out. It has no reconstructed mask; the loss of the
-    refined poses is left out."""
+    """The losses of training's second stage on the outputs of the simulated int8 model: of the
+    perceived mask and of the poses of the joint and the decoupled solver. The losses of the
+    reconstructed mask, which the int8 model does not have, and of the refined poses are left
+    out."""
     bev, features_map, perceived = outputs
     sides = standardise(bev), standardise(features_map)
     posteriors = solvers.joint(*sides), solvers.decoupled(*sides, None)
@@ -51,7 +51,8 @@ def fine_tuning_loss(
 def fine_tune(
     network: FakeQuantized, stream: Stream, steps: int, batch_size: int, rate: float
 ) -> list[float]:
-    """The loss of every step. The rate falls to zero on half a cosine; the solvers' scales stay."""
+    """Trains and returns the loss of every step. The learning rate falls to zero along a half
+    cosine. The solvers' scales are not trained."""
     optimiser = torch.optim.Adam(network.parameters(), lr=rate)
     schedule = torch.optim.lr_scheduler.LambdaLR(
         optimiser, lambda step: 0.5 * (1 + math.cos(math.pi * step / steps))
@@ -64,7 +65,10 @@ def fine_tune(
         loss.backward()
         norm = nn.utils.clip_grad_norm_(network.parameters(), CLIP_NORM)
         if not (torch.isfinite(loss) and torch.isfinite(norm)):
-            raise NotFiniteError(f"step {step}: loss {loss.item()}, norm of its gradient {norm}")
+            raise NotFiniteError(
+                f"step {step}: found loss {loss.item()} and gradient norm {norm}, "
+                "wanted finite values; lower the learning rate"
+            )
         optimiser.step()
         schedule.step()
         losses.append(loss.item())
@@ -75,7 +79,7 @@ def fine_tune(
 
 
 def save(network: FakeQuantized, first: Path, samples: int, path: Path) -> None:
-    """A checkpoint like that of training.train, from the one that it began with."""
+    """Writes a checkpoint in the format of training.train; `first` is the initial checkpoint."""
     quantization, state = network.finish(), read_checkpoint(first)
     weights = network.net.state_dict()
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -95,10 +99,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("checkpoint", type=Path)
     parser.add_argument("--run", type=Path, required=True, help="folder for checkpoint.pt")
-    parser.add_argument("--samples", type=int, default=2000, help="budget")
+    parser.add_argument("--samples", type=int, default=2000, help="number of training samples")
     parser.add_argument("--batch", type=int, default=8)
     parser.add_argument("--learning-rate", type=float, default=3e-5)
-    parser.add_argument("--calibration", type=int, default=384, help="samples")
+    parser.add_argument(
+        "--calibration", type=int, default=384, help="number of calibration samples"
+    )
     parser.add_argument("--threads", type=int, default=1)
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)

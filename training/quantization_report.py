@@ -1,9 +1,10 @@
-"""What quantization costs: the error of every layer, and of the pose.
+"""Measures the cost of quantization: the error of every layer and of the pose.
 
     /usr/bin/python3 -m training.quantization_report CHECKPOINT [--write docs/quantization.md]
 
-The quantization is the checkpoint's own (training.qat) or a new one, as training.export_onnx makes
-it. Every layer's error is looked at on evaluation scenes; the pose error on --samples of them.
+It uses the checkpoint's own quantization (training.qat) or makes a new one like
+training.export_onnx. Errors are measured on evaluation scenes, --layer-samples for the layers and
+--samples for the pose.
 """
 
 from __future__ import annotations
@@ -48,14 +49,15 @@ def _markdown(header: list[str], rows: list[list[str]]) -> str:
 def layer_table(errors: list[LayerError]) -> str:
     header = [
         *("layer", "largest weight", "largest output", "step", "saturated, %"),
-        *("alone, dB", "all int8, dB", "F_B of it alone, dB", "F_M of it alone, dB"),
+        *("output, only this layer int8, dB", "output, all layers int8, dB"),
+        *("F_B, only this layer int8, dB", "F_M, only this layer int8, dB"),
     ]
     rows = [
         [
             f"`{e.name}`",
             "" if e.largest_weight is None else f"{e.largest_weight:.2f}",
             f"{e.largest_output:.2f}",
-            "real" if e.step is None else f"{e.step:.4f}",
+            "float" if e.step is None else f"{e.step:.4f}",
             "" if e.saturated is None else _percent(e.saturated),
             *map(_decibels, (e.alone_db, e.together_db, e.bev_db, e.map_db)),
         ]
@@ -65,7 +67,7 @@ def layer_table(errors: list[LayerError]) -> str:
 
 
 def float_inference_of(net: BevNetwork, quantization: Quantization) -> Inference:
-    """The folded network before rounding."""
+    """The network with folded batch normalisation, not quantized."""
     return lambda batch: run(net, quantization.convolutions, FloatBackend(batch), batch)
 
 
@@ -73,7 +75,7 @@ def float_inference_of(net: BevNetwork, quantization: Quantization) -> Inference
 def pose_errors(
     infer: Inference, solvers: PoseSolvers, batches: list[Batch]
 ) -> dict[str, Tensor]:
-    """Absolute errors [samples, 3] of each solver: m, m, degrees."""
+    """The absolute errors of each solver, [samples, 3]: m, m, degrees."""
     errors: dict[str, list[Tensor]] = {kind: [] for kind in SOLVERS}
     for batch in batches:
         bev, features_map, _ = infer(batch)
@@ -85,7 +87,7 @@ def pose_errors(
 
 
 def pose_table(exact: dict[str, Tensor], rounded: dict[str, Tensor]) -> str:
-    """MAE of both, and the mean of their difference with its standard error."""
+    """A table of both MAE and the mean of the paired differences with its standard error."""
     rows = []
     for kind in SOLVERS:
         difference = rounded[kind] - exact[kind]
@@ -105,24 +107,27 @@ def pose_table(exact: dict[str, Tensor], rounded: dict[str, Tensor]) -> str:
 def report(
     net: BevNetwork, quantization: Quantization, layer_batches: list[Batch], batches: list[Batch]
 ) -> str:
+    """Both tables as Markdown."""
     layers = layer_table(layer_errors(net, quantization, layer_batches))
     infer = float_inference_of(net, quantization), int8_inference(net, quantization)
     exact, rounded = (pose_errors(side, net.solvers, batches) for side in infer)
-    looked_at, measured = (sum(map(len, part)) for part in (layer_batches, batches))
+    layer_scenes, pose_scenes = (sum(map(len, part)) for part in (layer_batches, batches))
     return (
-        f"Pose, {measured} evaluation scenes:\n\n{pose_table(exact, rounded)}\n"
-        f"Layers, {looked_at} evaluation scenes:\n\n{layers}"
+        f"Pose, {pose_scenes} evaluation scenes:\n\n{pose_table(exact, rounded)}\n"
+        f"Layers, {layer_scenes} evaluation scenes:\n\n{layers}"
     )
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("checkpoint", type=Path)
-    parser.add_argument("--samples", type=int, default=256, help="for the pose")
-    parser.add_argument("--layer-samples", type=int, default=16, help="for the layers")
-    parser.add_argument("--calibration", type=int, default=384, help="samples")
+    parser.add_argument("--samples", type=int, default=256, help="scenes for the pose errors")
+    parser.add_argument("--layer-samples", type=int, default=16, help="scenes for the layer errors")
+    parser.add_argument(
+        "--calibration", type=int, default=384, help="number of calibration samples"
+    )
     parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--write", type=Path, help="document with marks for the tables")
+    parser.add_argument("--write", type=Path, help="document whose tables are updated")
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint)

@@ -1,12 +1,12 @@
 """Post-training quantization: int8 weights per channel, 8-bit activations per tensor.
 
-Weights are limited to 7 bits (|q| <= 63), because on processors without VNNI the sum of two
-products of uint8 and int8 saturates. Activations are uint8 after ReLU and int8 elsewhere, zero
+Weights are limited to 7 bits (|q| <= 63), because the sum of two products of uint8 and int8
+saturates on processors without VNNI. Activations are uint8 after ReLU and int8 elsewhere, with zero
 point 0.
 
-Scales of activations are powers of two and those of weights have short mantissas, so that every
-product and nearly every sum is exact in float32 too: whoever reads the model file, in integers or
-in floats and in whatever order, rounds the same numbers (docs/quantization.md).
+Scales of activations are powers of two and scales of weights have short mantissas. Then every
+product and nearly every sum is exact in float32 as well, so any runtime rounds the same numbers, no
+matter whether it computes in integers or floats and in which order (docs/quantization.md).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Optional
 
 import torch
 import torch.nn.functional as F
@@ -22,22 +22,22 @@ from torch import Tensor
 
 from training.data import Batch
 from training.evaluate import Inference
-from training.graph import RASTER_STEP, FoldedConv, Walk, folded_convolutions
+from training.graph import RASTER_STEP, Backend, FoldedConv, Walk, folded_convolutions
 from training.model import IMAGE_SCALE, real_images
 from training.models.network import BevNetwork
 from training.models.view_lut import gather_views
 
 MAX_WEIGHT = 63
 MAX_UNSIGNED, MAX_SIGNED = 255, 127
-SCALE_BITS = 6  # of the mantissa of a weight's scale
-_CANDIDATES = 5  # scales tried for an activation: each halves the largest value that is kept
-_BIAS_BATCHES = 8  # at most: biases are corrected on all of them at once
-_SAMPLED_VALUES = 20_000  # of an activation and batch
+SCALE_BITS = 6  # mantissa bits of a weight's scale
+_CANDIDATES = 5  # scales tried for an activation; each one halves the largest value it can hold
+_BIAS_BATCHES = 8  # upper limit, because bias correction processes them as one batch
+_SAMPLED_VALUES = 20_000  # values kept per activation and batch
 
 
 @dataclass
 class Scale:
-    """real = scale * element; uint8 elements if `unsigned`, else int8."""
+    """real = scale * element. Elements are uint8 if `unsigned`, else int8."""
 
     scale: float
     unsigned: bool
@@ -47,18 +47,18 @@ class Scale:
         return (0, MAX_UNSIGNED) if self.unsigned else (-MAX_SIGNED - 1, MAX_SIGNED)
 
     def quantize(self, x: Tensor) -> Tensor:
-        """The real values that x becomes."""
+        """x, rounded and clipped to the values that elements can hold."""
         return torch.clamp(torch.round(x / self.scale), *self.limits()) * self.scale
 
     def clips(self, x: Tensor) -> Tensor:
-        """bool: where x lies outside of what the elements can hold."""
+        """Where x lies outside the range of the elements, bool."""
         low, high = self.limits()
         return (x < low * self.scale) | (x > high * self.scale)
 
 
 @dataclass
 class QuantizedConv:
-    """int8 weights [out, in, rows, cols] with a scale per output channel, and the real bias."""
+    """int8 weights [out, in, rows, cols], a scale per output channel and the real-valued bias."""
 
     weight: Tensor
     scale: Tensor
@@ -70,14 +70,15 @@ class QuantizedConv:
 
 @dataclass
 class Quantization:
-    """Everything that turns the float network into the int8 one."""
+    """Everything that defines the int8 network: folded convolutions, their quantized weights, and
+    the scales of the activations, each by name."""
 
     convolutions: dict[str, FoldedConv]
     quantized: dict[str, QuantizedConv] = field(default_factory=dict)
     activations: dict[str, Scale] = field(default_factory=dict)
 
     def state(self) -> dict[str, Any]:
-        """What cannot be had from the network's weights."""
+        """What cannot be recomputed from the network's weights, for a checkpoint."""
         return {
             "quantized": {name: vars(conv) for name, conv in self.quantized.items()},
             "activations": {name: vars(scale) for name, scale in self.activations.items()},
@@ -92,7 +93,7 @@ class Quantization:
 
     @staticmethod
     def of_state(net: BevNetwork, state: dict[str, Any]) -> Quantization:
-        """Of the network whose state it was."""
+        """Restores a state() of the same network."""
         return Quantization(
             folded_convolutions(net),
             {name: QuantizedConv(**conv) for name, conv in state["quantized"].items()},
@@ -101,7 +102,7 @@ class Quantization:
 
 
 class FloatBackend:
-    """Runs in float; subclasses change the weights and look at the activations."""
+    """Runs the network in float. Subclasses replace the weights and process the activations."""
 
     def __init__(self, batch: Batch) -> None:
         self._batch = batch
@@ -141,7 +142,7 @@ class FloatBackend:
 
 
 class _Recorder(FloatBackend):
-    """Keeps a sample of every activation's values."""
+    """Records a random sample of every activation's values."""
 
     def __init__(self, batch: Batch, seen: dict[str, list[Tensor]], unsigned: dict[str, bool]):
         super().__init__(batch)
@@ -156,7 +157,7 @@ class _Recorder(FloatBackend):
 
 
 class Int8Backend(FloatBackend):
-    """Computes in float what the int8 network computes: rounded weights, rounded activations."""
+    """Simulates the int8 network in float: rounded weights and rounded activations."""
 
     def __init__(self, batch: Batch, quantization: Quantization) -> None:
         super().__init__(batch)
@@ -171,7 +172,7 @@ class Int8Backend(FloatBackend):
 
 
 class _MeanRecorder(FloatBackend):
-    """Keeps the mean of each channel of every convolution's sum."""
+    """Records the mean of every convolution's output per channel, before the activation."""
 
     def __init__(self, batch: Batch) -> None:
         super().__init__(batch)
@@ -184,8 +185,8 @@ class _MeanRecorder(FloatBackend):
 
 
 class _BiasCorrector(Int8Backend):
-    """Moves each bias so that its channel's mean is the float network's; the layers that follow
-    see what it has corrected."""
+    """Shifts each bias so that the mean of its channel equals that of the float network. Later
+    layers already see the corrected outputs of earlier ones."""
 
     def __init__(
         self, batch: Batch, quantization: Quantization, means: dict[str, Tensor]
@@ -201,38 +202,43 @@ class _BiasCorrector(Int8Backend):
         return y + missing[:, None, None]
 
 
-class _BiasSteps:
-    """Collects the steps in which biases are counted: of input times weight. Its tensors are the
-    scales of their elements; None: real values."""
+class _BiasSteps(Backend[Optional[Scale]]):
+    """Collects the step of every bias, which is the input's scale times the weights' scale. The
+    tensors of this backend are scales; None stands for real values."""
 
     def __init__(self, quantization: Quantization) -> None:
         self._quantization = quantization
         self.steps: dict[str, Tensor] = {}
 
     def conv(
-        self, x: Scale, conv: FoldedConv, relu: bool, residual: Scale | None = None
-    ) -> Scale:
+        self, x: Scale | None, conv: FoldedConv, relu: bool, residual: Scale | None = None
+    ) -> Scale | None:
         self.output(x, conv)
         return self._quantization.activations[conv.name]
 
-    def output(self, x: Scale, conv: FoldedConv, residual: Scale | None = None) -> None:
+    def output(
+        self, x: Scale | None, conv: FoldedConv, residual: Scale | None = None
+    ) -> Scale | None:
+        assert x is not None
         self.steps[conv.name] = self._quantization.quantized[conv.name].scale * x.scale
+        return None
 
-    def upsample(self, x: Scale) -> Scale:
+    def upsample(self, x: Scale | None) -> Scale | None:
         return x
 
-    def gather(self, x: Scale, channels: int) -> Scale:
+    def gather(self, x: Scale | None, channels: int) -> Scale | None:
         return self._quantization.activations["view"]
 
-    def space_to_depth(self, x: Scale) -> Scale:
+    def space_to_depth(self, x: Scale | None) -> Scale | None:
         return x
 
-    def depth_to_space(self, x: None) -> None:
+    def depth_to_space(self, x: Scale | None) -> Scale | None:
         return x
 
 
 def bias_steps(net: BevNetwork, quantization: Quantization) -> dict[str, Tensor]:
-    """Of each convolution, [out]: int32 holds its bias in whole ones of them."""
+    """The step of each convolution's bias, [out]. The model file stores biases as int32 multiples
+    of their step."""
     backend, inputs = _BiasSteps(quantization), input_scales()
     walk = Walk(net, quantization.convolutions, backend)
     walk.run_images(inputs["images"])
@@ -258,22 +264,22 @@ def best_scale(values: Tensor, unsigned: bool) -> Scale:
 
 
 def round_weights(weight: Tensor, scale: Tensor) -> Tensor:
-    """Elements of 7 bits for [out, ...] and a scale per output channel."""
+    """The 7-bit elements of weights [out, ...] for a scale per output channel [out]."""
     per_channel = scale.reshape(-1, *[1] * (weight.ndim - 1))
     return torch.clamp(torch.round(weight / per_channel), -MAX_WEIGHT, MAX_WEIGHT)
 
 
 def _shortened(scale: Tensor) -> Tensor:
-    """The next larger number whose mantissa has SCALE_BITS."""
+    """The scale, rounded up to a mantissa of SCALE_BITS."""
     mantissa, exponent = torch.frexp(scale)
     return torch.ldexp(torch.ceil(mantissa * 2**SCALE_BITS) / 2**SCALE_BITS, exponent)
 
 
 def quantize_weights(conv: FoldedConv) -> QuantizedConv:
-    """The scale of each output channel has the least squared error among short ones, clipping or
-    not."""
+    """Quantizes weights. For each output channel it takes the scale with the least squared error
+    among candidates with short mantissas; scales that clip are candidates too."""
     rows = conv.weight.flatten(1)
-    # Where next to nothing is added to the bias, the bias must still fit into int32 steps.
+    # A lower limit, so that the bias of a channel with tiny weights still fits into int32 steps.
     largest = torch.maximum(rows.abs().amax(1), 1e-4 * conv.bias.abs()).clamp(min=1e-8)
     best_error, best = torch.full_like(largest, float("inf")), torch.empty_like(largest)
     for ratio in torch.linspace(0.6, 1.0, 41).tolist():
@@ -285,8 +291,8 @@ def quantize_weights(conv: FoldedConv) -> QuantizedConv:
 
 
 def correct_biases(net: BevNetwork, quantization: Quantization, batch: Batch) -> None:
-    """Takes out the mean of the rounding error, channel by channel (Nagel et al. 2019, "Data-free
-    quantization through weight equalization and bias correction", section 4.2, measured)."""
+    """Removes the mean rounding error of each channel (Nagel et al. 2019, "Data-free quantization
+    through weight equalization and bias correction", section 4.2, with measured means)."""
     recorder = _MeanRecorder(batch)
     run(net, quantization.convolutions, recorder, batch)
     corrector = _BiasCorrector(batch, quantization, recorder.means)
@@ -295,9 +301,9 @@ def correct_biases(net: BevNetwork, quantization: Quantization, batch: Batch) ->
 
 @torch.no_grad()
 def quantize(net: BevNetwork, calibration: list[Batch]) -> Quantization:
-    """Scales and biases from calibration batches of the training range."""
+    """Quantizes a network; scales and biases come from the calibration batches."""
     net.eval()
-    torch.manual_seed(0)  # of the values that the recorder picks
+    torch.manual_seed(0)  # for the values that _Recorder samples
     result = Quantization(folded_convolutions(net))
     seen: dict[str, list[Tensor]] = {}
     unsigned: dict[str, bool] = {}
@@ -315,14 +321,14 @@ def quantize(net: BevNetwork, calibration: list[Batch]) -> Quantization:
 
 
 def graph_inputs(batch: Batch) -> tuple[Tensor, Tensor]:
-    """The real values of images [n * 6, 3, 96, 320] and raster [n, 3, 400, 200] for the walk."""
+    """The inputs of a walk as real values: images [n * 6, 3, 96, 320], raster [n, 3, 400, 200]."""
     return real_images(batch.images).flatten(0, 1), batch.raster_prior.float() * RASTER_STEP
 
 
 def run(
-    net: BevNetwork, convolutions: dict[str, FoldedConv], backend: FloatBackend, batch: Batch
+    net: BevNetwork, convolutions: dict[str, FoldedConv], backend: Backend[Tensor], batch: Batch
 ) -> tuple[Tensor, Tensor, Tensor]:
-    """F_B, F_M and the logits of the perceived mask on a backend."""
+    """F_B, F_M and the logits of the perceived mask, computed by a backend."""
     walk = Walk(net, convolutions, backend)
     images, raster = graph_inputs(batch)
     bev, mask = walk.run_images(images)
@@ -330,7 +336,7 @@ def run(
 
 
 def int8_inference(net: BevNetwork, quantization: Quantization) -> Inference:
-    """The quantized network for training.evaluate."""
+    """The simulated int8 network."""
 
     def infer(batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
         backend = Int8Backend(batch, quantization)
@@ -340,5 +346,5 @@ def int8_inference(net: BevNetwork, quantization: Quantization) -> Inference:
 
 
 def input_scales() -> dict[str, Scale]:
-    """images int8 and raster uint8: how the graph's inputs become real."""
+    """The scales of the graph's inputs, images int8 and raster uint8."""
     return {"images": Scale(IMAGE_SCALE, False), "raster": Scale(RASTER_STEP, True)}

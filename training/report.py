@@ -1,4 +1,4 @@
-"""The results that training.evaluate writes beside a model: JSON, and the tables of its card."""
+"""Writes the results of training.evaluate: a JSON file and the tables of the model card."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from pathlib import Path
 from training.marks import write_between_marks
 
 BEGIN, END = "<!-- results: written by training.evaluate -->", "<!-- end of results -->"
-_SHIPPED = "nano"  # has its card in the folder's README.md
+_SHIPPED = "nano"  # its card is the folder's README.md
+Metrics = dict[str, float]  # as named by training.evaluate
 _AXES = (("x", "Longitudinal (m)"), ("y", "Lateral (m)"), ("yaw", "Yaw (degrees)"))
 _ERRORS = (
     ("mae", "MAE"),
@@ -20,7 +21,7 @@ _ERRORS = (
     ("bias", "mean"),
 )
 _SHARES = (("within_1_sigma", "within 1 sigma"), ("within_3_sigma", "within 3 sigma"))
-# (network, its metrics' field, solver, title)
+# (field of Results, solver, title)
 _ROWS = (
     ("float", "joint", "float, block"),
     ("float", "decoupled", "float, decoupled"),
@@ -34,12 +35,12 @@ _ROWS = (
 
 @dataclass
 class Results:
-    """Metrics as training.evaluate names them."""
+    """The results of one model. The JSON file has the same fields."""
 
     trained_samples: int
-    samples: int
-    float: dict[str, float]
-    int8: dict[str, float]
+    samples: int  # evaluation scenes
+    float: Metrics
+    int8: Metrics
 
 
 def _table(header: list[str], rows: list[list[str]]) -> list[str]:
@@ -48,10 +49,10 @@ def _table(header: list[str], rows: list[list[str]]) -> list[str]:
 
 
 def _axis_table(results: Results, axis: str, title: str) -> list[str]:
-    def errors(metrics: dict[str, float], solver: str) -> list[str]:
+    def errors(metrics: Metrics, solver: str) -> list[str]:
         return [f"{metrics[f'{solver}_{axis}_{key}']:.3f}" for key, _ in _ERRORS]
 
-    def shares(metrics: dict[str, float], solver: str) -> list[str]:
+    def shares(metrics: Metrics, solver: str) -> list[str]:
         return [f"{100 * metrics[f'{solver}_{axis}_{key}']:.1f} %" for key, _ in _SHARES]
 
     rows = [["prior, uncorrected", *errors(results.float, "prior"), "", ""]]
@@ -72,7 +73,7 @@ def _iou_table(results: Results) -> list[str]:
 
 
 def markdown(results: Results) -> str:
-    """A table per axis and one of the masks."""
+    """One table per axis and one for the masks."""
     lines = [
         f"Trained on {results.trained_samples:,} samples, measured on {results.samples} evaluation "
         "scenes.",
@@ -84,8 +85,8 @@ def markdown(results: Results) -> str:
 
 
 def write_results(models: Path, network: str, results: Results) -> None:
-    """The JSON file, and the card's part between its two marks. A network without a card gets one
-    that has this part alone."""
+    """Writes the JSON file and updates the generated part of the model card. A network without a
+    card gets a new one with this part only."""
     text = json.dumps(dataclasses.asdict(results), indent=1)
     (models / f"{network}_results.json").write_text(text + "\n")
     card = models / ("README.md" if network == _SHIPPED else f"{network}.md")

@@ -1,4 +1,4 @@
-"""The CSV files in which a run keeps its losses and errors."""
+"""The CSV files to which a run appends its losses and errors."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ _UNKNOWN = "nan"
 
 
 def append_row(path: Path, row: dict[str, float]) -> None:
-    """Begins the table where there is none. A column that it lacks, because an older version of the
-    program began it, is added, with "nan" in the rows before."""
+    """Appends a row and creates the table if necessary. If the table lacks a column because an
+    older version of the program created it, the column is added with "nan" in the earlier rows."""
     columns, rows = _read(path)
     if missing := [name for name in row if name not in columns]:
         columns = [*columns, *missing]

@@ -1,4 +1,4 @@
-"""The daemon's own network and solvers (training/native/runtime.h), to measure what is shipped."""
+"""Runs the daemon's own network and solvers from Python (training/native/runtime.h)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ERROR_SIZE = 1000
 
 
 class NativeNetwork:
-    """A model file on the daemon's executor."""
+    """A model file on the daemon's executor. ValueError if the file cannot be loaded."""
 
     def __init__(self, model: Path, threads: int = 1) -> None:
         error = ctypes.create_string_buffer(_ERROR_SIZE)
@@ -46,7 +46,8 @@ class NativeNetwork:
 
 
 class NativeSolver:
-    """A solver by its name, with the parameters of a model file."""
+    """A solver of the given kind with the parameters of a model file. ValueError for an unknown
+    kind."""
 
     def __init__(self, network: NativeNetwork, kind: str) -> None:
         error = ctypes.create_string_buffer(_ERROR_SIZE)

@@ -1,9 +1,10 @@
-"""The differentiable pose solvers with what they learn. Their parts are in training/solvers/, whose
-docstrings are the definition that the C++ run time follows (pipeline/solver/)."""
+"""The differentiable pose solvers with their learned parameters. Their parts are in
+training/solvers/, whose docstrings define what the C++ code implements (pipeline/solver/)."""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import torch
 from torch import Tensor, nn
@@ -44,7 +45,7 @@ __all__ = [
     "yaw_scores",
 ]
 
-# As pipeline/solver/solver_factory.h names and orders them.
+# Names and order of pipeline/solver/solver_factory.h.
 KINDS = (
     "full",
     "full-fft",
@@ -73,9 +74,9 @@ _INITIAL_SCALES = {
 
 
 class PoseSolvers(nn.Module):
-    """All solvers with their learned parameters (SolverParameters of pipeline/solver/solver.h):
-    inverse temperatures of the softmaxes, and the literal solver's GeM exponent. All but `literal`
-    take standardised features."""
+    """All solvers with their learned parameters (pipeline/solver/solver_parameters.h): the inverse
+    temperatures of the softmaxes and the literal solver's GeM exponent. All solvers except
+    `literal` take standardised features."""
 
     def __init__(self, definition: SolverDefinition = DEFINITION) -> None:
         super().__init__()
@@ -89,8 +90,10 @@ class PoseSolvers(nn.Module):
         )
         self.log_gem_omega = nn.Parameter(torch.tensor(0.0))
 
-    def _load_from_state_dict(self, state_dict: dict, prefix: str, *arguments) -> None:
-        """A checkpoint that is older than a solver leaves that solver's parameters as they are."""
+    def _load_from_state_dict(
+        self, state_dict: dict[str, Tensor], prefix: str, *arguments: Any
+    ) -> None:
+        """Loads parameters. Those that the checkpoint is too old to contain keep their values."""
         for name, value in self.state_dict(prefix=prefix).items():
             state_dict.setdefault(name, value)
         super()._load_from_state_dict(state_dict, prefix, *arguments)
@@ -111,15 +114,16 @@ class PoseSolvers(nn.Module):
         return joint_posterior(scores, self.scale("joint"))
 
     def joint(self, bev: Tensor, features_map: Tensor) -> Posterior:
-        """The solver "block"."""
+        """The solver "block": distributions from the joint volume of all hypotheses."""
         scores = block_scores(bev, features_map, self.definition)
         return joint_posterior(scores, self.scale("joint"))
 
     def decoupled(self, bev: Tensor, features_map: Tensor, yaw_rad: Tensor | None) -> Posterior:
-        """`yaw_rad`: the yaw that the axis step uses (teacher forcing); None: the estimate."""
+        """`yaw_rad` [batch]: the yaw that the axis step uses (teacher forcing); None: the
+        estimate."""
         d = self.definition
-        signatures = self.signature(torch.cat((bev, features_map)))
-        scores = yaw_scores(*signatures.chunk(2), d)
+        signature_bev, signature_map = self.signature(torch.cat((bev, features_map))).chunk(2)
+        scores = yaw_scores(signature_bev, signature_map, d)
         yaw = torch.softmax(scores * self.scale("yaw"), dim=1)
         if yaw_rad is None:
             yaw_rad = posterior_mean(yaw, d.yaw_range_rad, d.yaw_step_rad)
@@ -129,7 +133,7 @@ class PoseSolvers(nn.Module):
         return Posterior(x, y, yaw)
 
     def literal(self, bev: Tensor, features_map: Tensor, yaw_rad: Tensor | None) -> Posterior:
-        """The solver "decoupled-literal", from raw features. `yaw_rad` as for `decoupled`."""
+        """The solver "decoupled-literal" on raw features. `yaw_rad` as in `decoupled`."""
         d = self.definition
         bev, features_map = scale_together(bev, features_map)
         scores = literal_yaw_scores(bev, features_map, d)
@@ -146,12 +150,12 @@ class PoseSolvers(nn.Module):
         return banded_posterior(*scores, self.scale("banded_x"), self.scale("banded_y"))
 
     def refine(self, bev: Tensor, features_map: Tensor, start: Tensor) -> Posterior:
-        """More rounds from the estimate `start` (x m, y m, yaw rad), [batch, 3]."""
+        """Refines the estimate `start` (x m, y m, yaw rad), [batch, 3]."""
         scales = tuple(self.scale(f"refine_{axis}") for axis in ("x", "y", "yaw"))
         return refine(bev, features_map, start, scales, self.definition)
 
     def solve(self, kind: str, bev: Tensor, features_map: Tensor) -> Solution:
-        """What the run time's solver of this name gives for raw features."""
+        """The result of the solver `kind` (one of KINDS, else KeyError) on raw features."""
         sides = standardise(bev, self.definition), standardise(features_map, self.definition)
         first = kind[: -len(_REFINED)] if kind.endswith(_REFINED) else kind
         if first == _LITERAL:

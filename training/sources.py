@@ -1,4 +1,4 @@
-"""Where samples come from: the simulator, or nuScenes."""
+"""Makes streams and sets of samples from the simulator or from nuScenes."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _nuscenes(
 
 
 def training_stream(config: TrainingConfig, first: int, share: Share = WHOLE) -> Stream:
-    """A process's share of the run's samples, from the one numbered `first` on."""
+    """A process's share of the run's samples, starting at sample `first`."""
     drop_probability = config.drop_camera_probability
     if config.nuscenes:
         return _nuscenes(config, config.scenes, config.seed, first, drop_probability, share)
@@ -49,14 +49,14 @@ def _batches(stream: Stream, samples: int) -> Iterator[Batch]:
 
 
 def simulator_batches(samples: int, threads: int) -> list[Batch]:
-    """A fixed set of evaluation scenes, all cameras there."""
+    """A fixed set of evaluation scenes with all cameras."""
     return list(_batches(SamplerStream(FIRST_VALIDATION_SEED, 0, threads, 0.0), samples))
 
 
 def nuscenes_batches(
     root: str, scenes: str, line_width_cells: float, threads: int
 ) -> Iterator[Batch]:
-    """Every sample of the scenes once, all cameras there."""
+    """Every sample of the scenes once, with all cameras."""
     config = TrainingConfig(
         nuscenes=root, line_width_cells=line_width_cells, sampler_threads=threads
     )
@@ -65,8 +65,8 @@ def nuscenes_batches(
 
 
 def validation_set(config: TrainingConfig) -> list[Batch]:
-    """A fixed set that training does not see, all cameras there. Of nuScenes there is one where
-    `validation_scenes` names it."""
+    """A fixed set that training does not see, with all cameras. For nuScenes the set is empty
+    unless `validation_scenes` is given."""
     if not config.nuscenes:
         return simulator_batches(config.validation_samples, config.sampler_threads)
     if not config.validation_scenes:

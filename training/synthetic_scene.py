@@ -1,16 +1,19 @@
-"""Features of a made-up scene under a known correction: the solvers' tests and golden vectors."""
+"""Features of a synthetic scene under a known correction, for tests and golden vectors."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import torch
 from torch import Tensor
 
 
-def smooth_scene(channels: int, seed: int, max_frequency: float, components: int = 60):
-    """A random function of the ground without detail finer than `max_frequency` cycles/m:
-    points [..., 2] in metres -> [..., channels]."""
+def smooth_scene(
+    channels: int, seed: int, max_frequency: float, components: int = 60
+) -> Callable[[Tensor], Tensor]:
+    """A random function of the ground, band-limited to `max_frequency` cycles/m: points [..., 2] in
+    metres -> values [..., channels]."""
     generator = torch.Generator().manual_seed(seed)
     angle = torch.rand(components, generator=generator) * math.pi
     frequency = 0.05 + (max_frequency - 0.05) * torch.rand(components, generator=generator)
@@ -34,8 +37,8 @@ def cell_centres(rows: int = 100, cols: int = 50, cell_m: float = 0.6) -> Tensor
 def features_under(
     correction: Tensor, seed: int, max_frequency: float = 0.2, channels: int = 8
 ) -> tuple[Tensor, Tensor]:
-    """F_B and F_M [1, C, 100, 50] of one scene: what lies at p_B for the vehicle lies at
-    R(a) p_B + t on the map, correction = (x, y, a)."""
+    """F_B and F_M [1, C, 100, 50] of one scene. A point p_B in the vehicle frame lies at
+    R(a) p_B + t on the map, with correction = (x, y, a) and t = (x, y)."""
     scene = smooth_scene(channels, seed, max_frequency)
     points = cell_centres()
     x, y, yaw = correction.tolist()

@@ -1,12 +1,12 @@
-"""Trains the network on the simulator's endless stream; no sample is ever seen twice.
+"""Trains the network on the simulator's endless stream, without repeating a sample.
 
     /usr/bin/python3 -m training.train --run training/runs/nano --minutes 60
     /usr/bin/python3 -m training.train --run training/runs/nano --minutes 60 --resume
     torchrun --nproc_per_node 2 -m training.train --run training/runs/nano --minutes 60
 
-The exit status is 0 when the budget is spent or the run stopped early, 75 when --resume can go on,
-70 when a loss, gradient or weight was not finite, 1 for anything else. torchrun turns all but 0
-into 1.
+Exit status: 0 if the budget is spent or the run stopped early, 75 if --resume can continue, 70 if a
+loss, gradient or weight was not finite, 1 for any other error. torchrun replaces every status but 0
+by 1.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ from training.evaluate import (
 from training.losses import pose_losses, semantic_loss
 from training.model import real_images, real_raster
 from training.models.config import network_config
+from training.models.layers import channels_last, running_statistics
 from training.models.network import BevNetwork
 from training.nuscenes.errors import NuscenesError
 from training.options import parse_config
@@ -47,8 +48,8 @@ from training.run_table import append_row
 from training.solver import DEFINITION, estimate, standardise
 from training.sources import training_stream, validation_set
 
-# glibc gives large blocks back to the kernel at once, and faulting them in again costs a fifth of a
-# step. It reads these at start only.
+# By default, glibc returns large blocks to the kernel at once; faulting them in again takes 20 % of
+# a step. glibc reads these variables only at process start.
 MALLOC_ENVIRONMENT = {
     "MALLOC_MMAP_MAX_": "0",
     "MALLOC_TRIM_THRESHOLD_": str(2**34),
@@ -65,8 +66,8 @@ LOSSES = (
 
 
 class Trainer:
-    """One run: network, optimiser, averaged weights and how far it has come. With several processes
-    each has one of these, and all have the same weights after every step."""
+    """One run: network, optimiser, averaged weights and progress. With several processes, each has
+    its own Trainer, and all have the same weights after every step."""
 
     def __init__(
         self,
@@ -82,11 +83,11 @@ class Trainer:
         self.patience = Patience(config.patience_figure, config.patience)
         torch.manual_seed(config.seed)
         network = network_config(config.network, config.view)
-        self.net = BevNetwork(network).to(self.device, memory_format=torch.channels_last)
+        self.net = channels_last(BevNetwork(network).to(self.device))
         if config.init:
             init = Path(config.init)
             load_weights(self.net, read_checkpoint(init, self.device), "ema", init)
-        self.average = BevNetwork(network).to(self.device, memory_format=torch.channels_last)
+        self.average = channels_last(BevNetwork(network).to(self.device))
         self.average.load_state_dict(self.net.state_dict())
         self.optimiser = torch.optim.AdamW(
             self._parameter_groups(), lr=config.learning_rate, betas=(0.9, 0.98)
@@ -94,12 +95,12 @@ class Trainer:
         self.step = 0
         self.samples = 0
         self.elapsed_s = 0.0
-        self.waited_s = 0.0  # for the last step's samples
+        self.waited_s = 0.0  # time that the last step waited for its samples
         self._statistics = [
             statistic
             for module in self.net.modules()
             if isinstance(module, nn.BatchNorm2d)
-            for statistic in (module.running_mean, module.running_var)
+            for statistic in running_statistics(module)
         ]
         config.run.mkdir(parents=True, exist_ok=True)
         if config.resume and self.checkpoint_path.exists():
@@ -126,11 +127,13 @@ class Trainer:
         if self.config.patience == 0 or not self.processes.first:
             return
         if not self.validation:
-            raise TrainingError("--patience wants a validation set: name --validation-scenes")
+            raise TrainingError(
+                "--patience: found no validation set, wanted one; name --validation-scenes"
+            )
         self.patience.check(torch_solvers(self.net.solvers), AXES, CLASSES)
 
     def save(self) -> None:
-        """Replaces the checkpoint, unless there is a weight in the network that is not finite."""
+        """Replaces the checkpoint. NotFiniteError, and no change, if a weight is not finite."""
         if not self.processes.first:
             return
         for name, value in self.net.state_dict().items():
@@ -158,8 +161,8 @@ class Trainer:
         state = read_checkpoint(path, self.device)
         if (found := state.get("processes", 1)) != count:
             raise CheckpointError(
-                f"{path}: is of a run with {found} processes, found {count}; --init can begin a new"
-                " run from it"
+                f"{path}: a run with {found} processes, found {count}; start a new run from it with"
+                " --init"
             )
         load_weights(self.net, state, "model", path)
         load_weights(self.average, state, "ema", path)
@@ -168,14 +171,14 @@ class Trainer:
             self.step, self.samples = state["step"], state["samples"]
             self.elapsed_s = state["elapsed_s"]
         except (KeyError, ValueError) as error:
-            raise CheckpointError(f"{path}: no run can go on from it ({error})") from error
+            raise CheckpointError(f"{path}: the run cannot be resumed ({error})") from error
         if "patience" in state:
             self.patience.resume(state["patience"])
 
     def _last_good(self) -> str:
         if self.checkpoint_path.exists():
             return f"{self.checkpoint_path} holds the last good state"
-        return "there was no checkpoint yet"
+        return "there is no checkpoint yet"
 
     def _learning_rate(self, spent: float) -> float:
         c = self.config
@@ -185,7 +188,8 @@ class Trainer:
         return c.learning_rate * warm * cosine
 
     def losses(self, batch: Batch, generator: torch.Generator, with_pose: bool) -> Tensor:
-        """The losses in the order of LOSSES; the pose losses are zero in stage 1."""
+        """The losses in the order of LOSSES. Without `with_pose` (stage 1) the pose losses are
+        zero."""
         images = augment(real_images(batch.images), generator)
         with torch.autocast(self.device.type, torch.bfloat16, enabled=self.precision.bfloat16):
             outputs = self.net(images, batch.index, batch.weight, real_raster(batch.raster_prior))
@@ -195,7 +199,7 @@ class Trainer:
             semantic_loss(reconstructed, real_raster(batch.raster_prior)),
         ]
         finite = bool(torch.isfinite(bev).all() and torch.isfinite(features_map).all())
-        if not (with_pose and finite):  # no solver can look up cells where there is no number
+        if not (with_pose and finite):  # the solvers cannot process NaN
             pose_loss = torch.full((9,), 0.0 if finite else math.nan, device=self.device)
             return torch.cat((torch.stack(semantic), pose_loss))
         bev, features_map = standardise(bev), standardise(features_map)
@@ -209,7 +213,7 @@ class Trainer:
         return torch.cat((torch.stack(semantic), *pose))
 
     def train_step(self, spent: float) -> tuple[Tensor, float]:
-        """One batch; its losses and the norm of its gradient."""
+        """Trains on one batch. Returns its losses and the norm of the gradient."""
         c = self.config
         noise_seed = c.seed ^ (self.step * 0x9E3779B9) ^ (self.processes.rank << 40)
         generator = torch.Generator().manual_seed(noise_seed & (2**63 - 1))
@@ -234,7 +238,7 @@ class Trainer:
         return losses.cpu(), float(norm)
 
     def _gradients(self) -> list[Tensor]:
-        """Zeros where there is none, so that all processes exchange as much."""
+        """All gradients, zeros for missing ones, so that every process exchanges the same sizes."""
         parameters = self.net.parameters()
         return [torch.zeros_like(p) if p.grad is None else p.grad for p in parameters]
 
@@ -246,11 +250,12 @@ class Trainer:
         return batch.to(self.device)
 
     def _refuse_not_finite(self, losses: Tensor, norm: Tensor) -> None:
-        """All processes stop here alike, because they have averaged what is looked at."""
+        """NotFiniteError if a loss or the gradient's norm is not finite. The arguments are
+        averages, so all processes stop at the same step."""
         bad = [name for name, loss in zip(LOSSES, losses.tolist()) if not math.isfinite(loss)]
         if not bad and torch.isfinite(norm):
             return
-        what = f"the loss {', '.join(bad)}" if bad else "the gradient, though no loss,"
+        what = f"the loss {', '.join(bad)}" if bad else "the gradient, but no loss,"
         last = self.samples + self.config.batch - 1
         raise NotFiniteError(
             f"step {self.step}: {what} is not finite on samples {self.samples} to {last} of the "
@@ -267,7 +272,7 @@ class Trainer:
                 mean.copy_(value)
 
     def validate(self) -> None:
-        """The first process measures the averaged weights."""
+        """Measures the averaged weights, in the first process only."""
         if not self.validation:
             return
         solvers = torch_solvers(self.average.solvers)
@@ -301,8 +306,8 @@ class Trainer:
         return self.elapsed_s // (60 * minutes) > before_s // (60 * minutes)
 
     def run(self) -> bool:
-        """Trains until the budget is spent or patience is (True), or this process has to stop
-        (False). The first process's clock decides for all."""
+        """Trains until the run is finished (True) or this process has to stop before (False). The
+        first process's clock decides for all."""
         c = self.config
         started_s, offset_s = self.elapsed_s, self.elapsed_s - time.monotonic()
         progress = Progress()
@@ -330,12 +335,13 @@ class Trainer:
 
     @property
     def finished(self) -> bool:
+        """Whether the budget is spent or the run has stopped improving."""
         spent = self.config.budget_spent(self.elapsed_s, self.samples)
         return spent >= 1.0 or self.patience.exhausted
 
 
 def train(config: TrainingConfig, processes: Processes) -> bool:
-    """The whole run; whether it is finished."""
+    """Executes the run; returns whether it is finished."""
     validation = validation_set(config) if processes.first else []
     trainer = Trainer(config, training_stream, validation, processes)
     if processes.first:
@@ -344,7 +350,7 @@ def train(config: TrainingConfig, processes: Processes) -> bool:
     if trainer.patience.exhausted:
         ending = f"stopped early: {trainer.patience}"
     else:
-        ending = "finished" if finished else "stopped; go on with --resume"
+        ending = "finished" if finished else "stopped; continue with --resume"
         trainer.validate()
     if processes.first:
         print(ending, flush=True)
@@ -352,7 +358,7 @@ def train(config: TrainingConfig, processes: Processes) -> bool:
 
 
 def main() -> None:
-    processes = int(os.environ.get("WORLD_SIZE", 1))  # torchrun's
+    processes = int(os.environ.get("WORLD_SIZE", 1))  # set by torchrun
     config = parse_config(sys.argv[1:], __doc__.splitlines()[0], processes)
     if any(os.environ.get(key) != value for key, value in MALLOC_ENVIRONMENT.items()):
         environment = os.environ | MALLOC_ENVIRONMENT | {"OMP_NUM_THREADS": str(config.threads)}

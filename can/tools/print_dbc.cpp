@@ -3,18 +3,18 @@
 
 #include <CLI/CLI.hpp>
 
-#include "can/dbc_writer.h"
-#include "can/markdown_writer.h"
+#include "can/messages/dbc_writer.h"
+#include "can/messages/markdown_writer.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Prints the DBC file of bevloc's CAN messages.");
   bevloc::can::BaseIds base;
   bool markdown = false;
   const CLI::Range base_range(0u, 0x7F0u);
-  app.add_option("--localizer-base", base.localizer, "first id of the LOC_ messages")
+  app.add_option("--localizer-base", base.localizer, "first identifier of the LOC_ messages")
       ->check(base_range)
       ->capture_default_str();
-  app.add_option("--vehicle-base", base.vehicle, "first id of the VEH_ messages")
+  app.add_option("--vehicle-base", base.vehicle, "first identifier of the VEH_ messages")
       ->check(base_range)
       ->capture_default_str();
   app.add_flag("--markdown", markdown, "print the tables of docs/can.md instead");

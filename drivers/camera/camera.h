@@ -1,4 +1,4 @@
-// The interface of one camera, whatever stands behind it.
+// The interface of a camera, mock or real.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,21 @@
 
 namespace bevloc::drivers {
 
-/// What next_frame() came back with, when nothing is wrong.
+/// Frame buffers per camera, unless they are configured.
+inline constexpr int kDefaultFrameBuffers = 4;
+
+/// The result of next_frame() when there is no error.
 enum class FrameEvent : uint8_t {
-  kFrame,    ///< the frame has been filled in
-  kTimeout,  ///< none came in time: the caller decides when a silent camera is a dead one
-  kEnded,    ///< none will ever come (a recording is over)
+  kFrame,    ///< the frame was filled in
+  kTimeout,  ///< no frame came in time; the caller decides when a silent camera counts as dead
+  kEnded,    ///< no frame will come any more: the recording is over
 };
 
-/// Where a driver's frame times come from. Whatever it is, the driver converts: Frame::time is
-/// always the start of exposure of the first row, on the steady clock.
+/// The source of a driver's timestamps. The driver converts them: Frame::time is always the start
+/// of exposure of the first row, on the steady clock.
 enum class TimestampOrigin : uint8_t {
-  kExposureStart,  ///< stamped at start of exposure
-  kFrameEnd,       ///< stamped at end of frame, less read-out and exposure
+  kExposureStart,  ///< the device stamps the start of exposure
+  kFrameEnd,       ///< the device stamps the end of the frame; read-out and exposure are subtracted
   kSimulated,
   kRecorded,
 };
@@ -30,53 +33,53 @@ struct CameraDescription {
   int camera = 0;  ///< index into kCameraNames
   int width_px = 0;
   int height_px = 0;
-  int buffers = 0;  ///< pictures that the user may hold at one time
+  int buffers = 0;  ///< number of frames that the user may hold at the same time
   TimestampOrigin timestamp_origin = TimestampOrigin::kExposureStart;
 };
 
-/// Since the camera was made.
+/// Numbers of frames since the camera object was constructed.
 struct CameraCounters {
   uint64_t delivered = 0;
-  /// Lost because the user held every buffer.
+  /// Lost because the user held all buffers.
   uint64_t no_buffer = 0;
-  /// Lost because nobody fetched them before the next one was due.
+  /// Lost because they were not fetched before the next frame was due.
   uint64_t overrun = 0;
-  /// Lost before the driver: gaps in the device's own count that no missing buffer explains.
+  /// Lost before they reached the driver: gaps in the device's sequence while a buffer was free.
   uint64_t lost = 0;
-  /// Arrived, but marked as bad by the device or not whole; dropped.
+  /// Dropped because the device marked them as bad, or because they were incomplete.
   uint64_t damaged = 0;
 };
 
 /// One camera. Every implementation passes tests/drivers/camera_conformance_test.cpp.
 ///
-/// Threads: start(), next_frame() and stop() belong to one thread, the camera's own; counters() and
-/// description() may be called from any. Frames may be dropped by any thread at any time, also
-/// after stop() and after the camera is gone.
+/// Threads: start(), next_frame() and stop() are called from the camera's own thread. counters()
+/// and description() are readable from any thread. Any thread may drop a frame at any time, also
+/// after stop() and after the camera is destroyed.
 ///
-/// Memory: every picture is made by start() or before; a delivered frame allocates nothing.
+/// Memory: buffers are allocated by start() or before. Delivering a frame does not allocate.
 ///
-/// Failure modes, and how each shows:
+/// Failure modes:
 ///   - device missing, busy, of wrong size:  start() fails; a later start() may succeed
-///   - silent (cable, sensor hung):          next_frame() gives kTimeout, again and again
+///   - silent (cable, sensor hangs):         next_frame() returns kTimeout every time
 ///   - unplugged, driver error, broken file: next_frame() fails; stop() and start() reconnect
 ///   - frame lost before the driver:         a gap in Frame::sequence
 ///   - user too slow:                        counted in no_buffer or overrun, and a gap in sequence
-///   - frame late, twice, out of order:      delivered as it came; the frame synchronizer judges it
-///   - picture frozen or dark:               not the driver's to see
+///   - frame late, twice or out of order:    delivered unchanged; FramesetSynchronizer refuses it
+///   - image frozen or dark:                 the driver does not detect it
 class Camera {
  public:
   virtual ~Camera() = default;
 
-  /// From now on frames arrive; sequence begins at 0. Fails when already started.
+  /// Starts the camera. The sequence begins at 0. Fails when the camera is already started.
   virtual Status start() = 0;
 
-  /// No more frames until the next start(). Frames that are held stay readable. Does nothing when
-  /// not started.
+  /// Stops the camera. Frames that are held stay readable. Does nothing when the camera is not
+  /// started.
   virtual void stop() = 0;
 
-  /// Waits for the next frame, `timeout` at most; zero only looks whether there is one. A mock
-  /// camera may take longer, by the time it needs to draw. On kFrame the old contents of `frame`
-  /// are dropped.
+  /// Waits up to `timeout` for the next frame; with a timeout of zero it does not wait. A mock
+  /// camera may take longer, by the time that it needs to draw the image. On kFrame, `frame` is
+  /// replaced.
   virtual Result<FrameEvent> next_frame(Duration timeout, Frame& frame) = 0;
 
   virtual CameraDescription description() const = 0;

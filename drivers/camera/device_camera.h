@@ -1,4 +1,4 @@
-// What is configured about a camera that is a device, whichever system it is reached through.
+// The configuration that V4L2 cameras and libcamera cameras share.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,11 @@
 
 #include "common/image_view.h"
 #include "common/time.h"
+#include "drivers/camera/camera.h"
 
 namespace bevloc::drivers {
 
-/// A control of the device, set at each start: exposure, gain, trigger mode and whatever it has.
+/// A control of the device that is set at each start: exposure, gain, trigger mode and so on.
 struct ControlSetting {
   std::string name;
   double value = 0.0;
@@ -19,16 +20,16 @@ struct ControlSetting {
 
 struct DeviceCameraConfig {
   int camera = 0;  ///< index into kCameraNames
-  std::string id;  ///< stable: never a number that depends on the order of detection
+  std::string id;  ///< a stable name, not a number that depends on the order of detection
   int width_px = 0;
   int height_px = 0;
-  std::vector<PixelFormat> formats;  ///< the first that the device has at this size is taken
-  double rate_hz = 0.0;              ///< 0 leaves it to the device, as with an external trigger
-  int buffers = 4;
+  std::vector<PixelFormat> formats;  ///< in order of preference; the device must have one of them
+  double rate_hz = 0.0;              ///< 0: do not set a rate, for example with an external trigger
+  int buffers = kDefaultFrameBuffers;
   std::vector<ControlSetting> controls;
   Duration exposure{0};
-  /// From the first row's end of exposure to the last row's. Devices that stamp the end of a frame
-  /// need it.
+  /// Time from the end of exposure of the first row to that of the last row. Required for a device
+  /// that stamps the end of the frame.
   std::optional<Duration> readout;
 };
 

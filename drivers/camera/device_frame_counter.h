@@ -1,4 +1,4 @@
-// Follows a device's own count of its frames.
+// Counts delivered and lost frames from the sequence numbers of a device.
 #pragma once
 
 #include <atomic>
@@ -9,19 +9,19 @@
 
 namespace bevloc::drivers {
 
-/// counters() from any thread, the rest from the camera's own.
+/// counters() is readable from any thread. The rest is called from the camera's own thread.
 class DeviceFrameCounter {
  public:
-  /// A new start(): the device counts anew.
+  /// To be called by start(), because the device restarts its sequence.
   void restart() {
     latest_.reset();
     sequence_ = 0;
     was_starved_ = false;
   }
 
-  /// The device's count of a frame that arrived, which may wrap. What is missing before it was lost
-  /// for want of a buffer if there was a moment without one, otherwise on the way here. Returns the
-  /// frame's sequence number since restart().
+  /// Takes the device's sequence number of a frame that arrived, which may wrap around. Frames
+  /// missing before it count as no_buffer if the user held all buffers since the last frame, and
+  /// else as lost. Returns the sequence number of the frame since restart().
   uint64_t arrived(uint32_t device_sequence) {
     const uint32_t step = latest_ ? device_sequence - *latest_ : 0;
     latest_ = device_sequence;
@@ -31,6 +31,7 @@ class DeviceFrameCounter {
     return sequence_;
   }
 
+  /// `is_last_buffer`: the user now holds all buffers.
   void delivered(bool is_last_buffer) {
     ++delivered_;
     was_starved_ = is_last_buffer;

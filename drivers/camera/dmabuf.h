@@ -1,4 +1,4 @@
-// Reading memory that devices share, by the kernel's rules for dmabuf.
+// Brackets for reading dmabuf memory, which the kernel demands for cache coherence.
 #pragma once
 
 #include <cerrno>
@@ -9,17 +9,18 @@
 
 namespace bevloc::drivers {
 
-/// `phase` is DMA_BUF_SYNC_START or DMA_BUF_SYNC_END. A no-op where caches are coherent.
+/// `phase` is DMA_BUF_SYNC_START or DMA_BUF_SYNC_END. Does nothing where caches are coherent.
 inline void sync_dmabuf_read(int dmabuf, uint64_t phase) noexcept {
   dma_buf_sync sync{phase | DMA_BUF_SYNC_READ};
   while (ioctl(dmabuf, DMA_BUF_IOCTL_SYNC, &sync) != 0 && (errno == EINTR || errno == EAGAIN)) {
   }
 }
 
-/// Before the first read of a new picture, and after the last.
+/// To be called before the first read of a new image.
 inline void begin_dmabuf_read(int dmabuf) noexcept {
   sync_dmabuf_read(dmabuf, DMA_BUF_SYNC_START);
 }
+/// To be called after the last read.
 inline void end_dmabuf_read(int dmabuf) noexcept {
   sync_dmabuf_read(dmabuf, DMA_BUF_SYNC_END);
 }

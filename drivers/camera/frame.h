@@ -1,4 +1,4 @@
-// One picture of one camera, and when it was taken.
+// A frame: one image from one camera, with its time, sequence number and buffer.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@ struct Frame {
   int camera = 0;  ///< index into kCameraNames
   /// Start of exposure of the first row.
   Time time;
-  /// The sensor's own count since start(); a gap says how many frames were lost on the way.
+  /// Counts the sensor's frames since start(). A gap shows how many frames were lost.
   uint64_t sequence = 0;
   Duration exposure{0};
   FrameBuffer buffer;
 
-  /// As the camera delivered it.
+  /// The image in the format that the camera delivered.
   const ImageView& image() const { return buffer.view(); }
-  /// Of an RGB frame: mock and replay cameras make no others.
+  /// Requires format kRgb24, which mock and replay cameras always deliver.
   RgbView pixels() const { return image().rgb(); }
 };
 

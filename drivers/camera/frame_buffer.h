@@ -1,4 +1,4 @@
-// A picture on loan from whoever owns its memory.
+// A frame buffer that is lent by the owner of its memory and returned when it is dropped.
 #pragma once
 
 #include <memory>
@@ -8,20 +8,20 @@
 
 namespace bevloc::drivers {
 
-/// Owns pictures and lends them out: a pool of its own, or a device's buffers.
+/// Owns frame buffers and lends them: a pool, or the buffers of a device.
 class FrameLender {
  public:
   virtual ~FrameLender() = default;
 
  private:
   friend class FrameBuffer;
-  /// From any thread, also after the camera is gone; neither blocks nor fails.
+  /// Takes a buffer back. Thread-safe, also after the camera is destroyed. Does not block or fail.
   virtual void give_back(int slot) noexcept = 0;
 };
 
-/// Dropping it gives the picture back to its lender, from any thread, also after the camera that
-/// filled it has stopped or is gone; until then the lender lives. Empty when default-constructed or
-/// moved from.
+/// A buffer on loan. Dropping it gives the memory back to the lender. Any thread may do that, also
+/// after the camera that filled the buffer was stopped or destroyed, because the buffer keeps its
+/// lender alive. Empty when default-constructed or moved from.
 class FrameBuffer {
  public:
   FrameBuffer() = default;
@@ -42,9 +42,9 @@ class FrameBuffer {
   ~FrameBuffer() { give_back(); }
 
   explicit operator bool() const { return lender_ != nullptr; }
-  /// Which of the lender's pictures it is.
+  /// The lender's number of this buffer.
   int slot() const { return slot_; }
-  /// The lender's memory itself: nothing is copied.
+  /// A view of the lender's memory, without a copy.
   const ImageView& view() const { return view_; }
 
  private:

@@ -13,7 +13,7 @@ FramePool::FramePool(int buffers, int width_px, int height_px)
     : free_(~uint64_t{0} >> (kMaxBuffers - buffers)) {
   assert(buffers >= 1 && buffers <= kMaxBuffers);
   images_.reserve(static_cast<size_t>(buffers));
-  for (int i = 0; i < buffers; ++i) images_.push_back(RgbImage::unwritten(width_px, height_px));
+  for (int i = 0; i < buffers; ++i) images_.push_back(RgbImage::uninitialized(width_px, height_px));
 }
 
 FrameBuffer FramePool::borrow() {
@@ -30,7 +30,7 @@ FrameBuffer FramePool::borrow() {
 }
 
 void FramePool::give_back(int slot) noexcept {
-  // Release: whoever borrows the picture next sees that its last reader is done with it.
+  // Release order: the next borrower writes only after the last reader has finished.
   free_.fetch_or(uint64_t{1} << slot, std::memory_order_release);
 }
 

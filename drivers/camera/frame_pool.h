@@ -1,4 +1,4 @@
-// A fixed number of RGB pictures that a camera without hardware lends out and gets back.
+// A pool of RGB frame buffers for cameras without hardware.
 #pragma once
 
 #include <atomic>
@@ -11,20 +11,20 @@
 
 namespace bevloc::drivers {
 
-/// All memory is made by create(); borrowing and giving back neither allocate nor lock. The lowest
-/// free picture is lent first: pictures that are never needed are never touched and not resident.
-/// Thread safe.
+/// create() allocates all memory. borrow() and the return of a buffer neither allocate nor lock.
+/// The free buffer with the lowest number is lent first, so the memory of buffers that are never
+/// needed never becomes resident. Thread-safe.
 class FramePool final : public FrameLender, public std::enable_shared_from_this<FramePool> {
  public:
   static constexpr int kMaxBuffers = 64;
 
-  /// 1 to kMaxBuffers pictures.
+  /// Makes a pool of 1 to kMaxBuffers buffers.
   static std::shared_ptr<FramePool> create(int buffers, int width_px, int height_px);
 
-  /// A picture with old pixels in it; empty when all are lent out.
+  /// Lends a buffer, whose pixels are undefined. Returns an empty buffer when all are lent.
   FrameBuffer borrow();
 
-  /// To draw into a picture that was borrowed here and not yet shown to anybody.
+  /// Write access to a borrowed buffer, as long as no other thread reads it.
   RgbImage& image(const FrameBuffer& buffer) { return images_[buffer.slot()]; }
 
   int buffers() const { return static_cast<int>(images_.size()); }
@@ -35,7 +35,7 @@ class FramePool final : public FrameLender, public std::enable_shared_from_this<
   void give_back(int slot) noexcept override;
 
   std::vector<RgbImage> images_;
-  std::atomic<uint64_t> free_;  ///< bit i: picture i is here
+  std::atomic<uint64_t> free_;  ///< bit i: buffer i is not lent
 };
 
 }  // namespace bevloc::drivers

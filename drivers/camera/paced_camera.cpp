@@ -2,13 +2,13 @@
 
 #include <utility>
 
-#include "pipeline/calibration/rig.h"
+#include "common/cameras.h"
 
 namespace bevloc::drivers {
 namespace {
 
-/// A picture is made when it is due within this time: what comes later than that, after a silence,
-/// can wait.
+/// A frame is drawn when it is due within this time after the end of the wait. Frames that are due
+/// later, such as after a fault of a mock camera, are drawn later.
 constexpr Duration kDrawAhead = std::chrono::seconds(1);
 
 }  // namespace
@@ -45,19 +45,20 @@ Result<FrameEvent> PacedCamera::next_frame(Duration timeout, Frame& frame) {
         return tl::unexpected(drawn.error());
       }
     }
-    if (is_overdue()) continue;  // making it took too long
+    if (is_overdue()) continue;  // drawing took too long
     if (next_->due > give_up) {
       clock_.sleep_until(give_up);
       return FrameEvent::kTimeout;
     }
     clock_.sleep_until(next_->due);
-    if (hand_over(frame)) return FrameEvent::kFrame;
+    if (deliver(frame)) return FrameEvent::kFrame;
   } while (clock_.now() <= give_up);
   return FrameEvent::kTimeout;
 }
 
-/// Gives out the picture of next_ and goes on to the one after; false when no buffer was free.
-bool PacedCamera::hand_over(Frame& frame) {
+/// Delivers the frame of next_ and advances to the following one. Returns false when no buffer was
+/// free.
+bool PacedCamera::deliver(Frame& frame) {
   const bool has_buffer = static_cast<bool>(drawn_);
   if (has_buffer) {
     frame = Frame{description_.camera, next_->exposure_start, next_->sequence, exposure_,
@@ -76,7 +77,7 @@ CameraCounters PacedCamera::counters() const {
 }
 
 bool PacedCamera::is_overdue() const {
-  return next_ && clock_.now() - next_->due >= shelf_life_;
+  return next_ && clock_.now() - next_->due >= max_lateness_;
 }
 
 void PacedCamera::drop_overdue() {
@@ -86,7 +87,7 @@ void PacedCamera::drop_overdue() {
   }
 }
 
-/// Makes the picture of next_ unless that is done or no buffer is free.
+/// Draws the image of next_, unless it is drawn already or no buffer is free.
 Status PacedCamera::draw_next() {
   if (drawn_) return {};
   drawn_ = pool_->borrow();

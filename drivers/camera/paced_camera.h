@@ -1,4 +1,4 @@
-// What cameras without hardware share: pictures that are made ahead and handed over on time.
+// Base class of cameras without hardware: draws each frame ahead and delivers it on time.
 #pragma once
 
 #include <atomic>
@@ -10,18 +10,19 @@
 
 namespace bevloc::drivers {
 
-/// One picture that will arrive.
+/// A frame that will be delivered.
 struct Delivery {
   uint64_t sequence = 0;
   Time exposure_start;
-  Time scene_time;  ///< of what the picture shows; behind exposure_start when it is frozen
-  Time due;         ///< when it arrives
+  Time scene_time;  ///< the moment that the image shows; before exposure_start when it is frozen
+  Time due;         ///< when the frame arrives
 };
 
-/// Makes each picture as soon as the one before has been fetched and hands it over when it is due,
-/// as a sensor would: the cost of making it is no latency. On a virtual clock the same code runs in
-/// lockstep. A picture that is `shelf_life` overdue when it is looked for, or when it is made at
-/// last, is lost (overrun): on a machine that is too slow frames are missing, never stale.
+/// Draws each frame as soon as the previous one was fetched, and delivers it when it is due, as a
+/// sensor would. So the drawing time adds no latency. With a virtual clock the same code runs in
+/// lockstep. A frame that is late by `max_lateness` or more when it is fetched, or when its drawing
+/// is finished, is lost and counted as overrun. So on a machine that is too slow frames are
+/// missing, but never stale.
 class PacedCamera : public Camera {
  public:
   Status start() final;
@@ -34,13 +35,13 @@ class PacedCamera : public Camera {
   /// The clock must outlive the camera.
   PacedCamera(const CameraDescription& description, Duration exposure, Clock& clock);
 
-  /// Gets ready to deliver what is due from `now` on.
+  /// Prepares the deliveries that are due from `now` on.
   virtual Status open(Time now) = 0;
-  /// In order of `due`; nothing when there will be no more. Called after open() alone.
+  /// Returns the deliveries in order of `due`, and nothing after the last one. Called after open().
   virtual std::optional<Delivery> next_delivery() = 0;
   virtual Status draw(const Delivery& delivery, RgbImage& image) = 0;
 
-  void set_shelf_life(Duration shelf_life) { shelf_life_ = shelf_life; }
+  void set_max_lateness(Duration max_lateness) { max_lateness_ = max_lateness; }
 
  private:
   struct AtomicCounters {
@@ -52,16 +53,16 @@ class PacedCamera : public Camera {
   bool is_overdue() const;
   void drop_overdue();
   Status draw_next();
-  bool hand_over(Frame& frame);
+  bool deliver(Frame& frame);
   void advance();
 
   const CameraDescription description_;
   const Duration exposure_;
   Clock& clock_;
-  Duration shelf_life_ = Duration::max();
+  Duration max_lateness_ = Duration::max();
   std::shared_ptr<FramePool> pool_;
   std::optional<Delivery> next_;
-  FrameBuffer drawn_;  ///< the picture of next_, once it is made
+  FrameBuffer drawn_;  ///< the image of next_, once it is drawn
   bool running_ = false;
   AtomicCounters counters_;
 };

@@ -1,4 +1,4 @@
-// Where the time comes from: the machine's steady clock, or a test's virtual one.
+// The source of time: the machine's steady clock, or a virtual clock.
 #pragma once
 
 #include "common/time.h"
@@ -11,20 +11,19 @@ class Clock {
 
   virtual Time now() const = 0;
 
-  /// Returns at `time` or later; at once if that has passed.
+  /// Returns at `time` or later, and immediately if `time` has passed.
   virtual void sleep_until(Time time) = 0;
 };
 
-/// CLOCK_MONOTONIC, the clock of V4L2's frame stamps and of CAN's hardware-independent receive
-/// times. Thread safe.
+/// CLOCK_MONOTONIC, the clock of V4L2's frame timestamps. Thread-safe.
 class MonotonicClock final : public Clock {
  public:
   Time now() const override;
   void sleep_until(Time time) override;
 };
 
-/// Time that stands still until somebody moves it; sleeping moves it. For lockstep drives and for
-/// tests, both of one thread: it is not thread safe.
+/// A clock that advances only by advance() and by sleep_until(). For lockstep drives and for tests.
+/// One thread.
 class VirtualClock final : public Clock {
  public:
   explicit VirtualClock(Time start = Time{}) : now_(start) {}

@@ -1,19 +1,19 @@
-// The frames of six cameras at one time: what the localizer works on.
+// A frameset: the frames of up to six cameras that belong to one moment.
 #pragma once
 
 #include <array>
 
+#include "common/cameras.h"
 #include "common/time.h"
 #include "drivers/camera/frame.h"
-#include "pipeline/calibration/rig.h"
 
 namespace bevloc::drivers {
 
 struct Frameset {
-  Time time;           ///< of its earliest frame
-  CameraMask present;  ///< only these of `frames` are filled in
-  std::array<Frame, kCameraCount> frames;
-  Duration spread{0};  ///< from its earliest to its latest frame
+  Time time;                               ///< time of its earliest frame
+  CameraMask present;                      ///< the cameras whose frames are in the set
+  std::array<Frame, kCameraCount> frames;  ///< by camera; empty if the camera is not in `present`
+  Duration spread{0};                      ///< time from its earliest to its latest frame
 };
 
 }  // namespace bevloc::drivers

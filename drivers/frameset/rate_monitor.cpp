@@ -8,10 +8,10 @@ namespace bevloc::drivers {
 namespace {
 
 constexpr int kFramesBetweenFits = 32;
-/// After a pause this long, in periods, nobody can say how many frames were missed.
+/// In periods. After a longer pause the number of missed frames is uncertain.
 constexpr int kLongestPause = 10;
 constexpr double kSigmas = 3.0;
-/// No time stamp is better than this.
+/// Lower bound of the jitter: no timestamp is more accurate.
 constexpr double kLeastJitter_s = 1e-6;
 
 }  // namespace
@@ -23,37 +23,37 @@ bool CameraDrift::certain() const {
 void RateMonitor::add(int camera, Time time) {
   Track& track = tracks_[camera];
   if (track.period &&
-      to_seconds(track.newest_interval(time)) > kLongestPause * track.period->seconds) {
-    track.size = 0;
+      to_seconds(time - track.times.back()) > kLongestPause * track.period->seconds) {
+    track.times.clear();
     track.period.reset();
   }
-  track.times[track.next] = time;
-  track.next = (track.next + 1) % kWindow;
-  track.size = std::min(track.size + 1, kWindow);
-  if (++track.since_fit < kFramesBetweenFits) return;
-  track.since_fit = 0;
+  track.times.push_back(time);
+  if (++track.frames_since_fit < kFramesBetweenFits) return;
+  track.frames_since_fit = 0;
   track.period = fit(track);
   compare();
 }
 
-/// Least squares of time over frame number.
+/// Fits frame time over frame number by least squares.
 std::optional<RateMonitor::Period> RateMonitor::fit(const Track& track) {
-  if (track.size < kFewest) return std::nullopt;
-  const auto intervals = std::span(intervals_).first(track.size - 1);
-  for (int i = 1; i < track.size; ++i) intervals[i - 1] = track.at(i) - track.at(i - 1);
-  const auto middle = intervals.begin() + track.size / 2;
+  const boost::circular_buffer<Time>& times = track.times;
+  const auto size = static_cast<int>(times.size());
+  if (size < kFewest) return std::nullopt;
+  const auto intervals = std::span(intervals_).first(size - 1);
+  for (int i = 1; i < size; ++i) intervals[i - 1] = times[i] - times[i - 1];
+  const auto middle = intervals.begin() + size / 2;
   std::ranges::nth_element(intervals, middle);
   const double typical_s = to_seconds(*middle);
 
-  const double n = track.size;
+  const double n = size;
   double number = 0.0;
   double sum_k = 0.0, sum_t = 0.0, sum_kk = 0.0, sum_kt = 0.0, sum_tt = 0.0;
-  for (int i = 0; i < track.size; ++i) {
+  for (int i = 0; i < size; ++i) {
     if (i > 0) {
-      const double interval_s = to_seconds(track.at(i) - track.at(i - 1));
+      const double interval_s = to_seconds(times[i] - times[i - 1]);
       number += std::max(1.0, std::round(interval_s / typical_s));
     }
-    const double t = to_seconds(track.at(i) - track.at(0));
+    const double t = to_seconds(times[i] - times[0]);
     sum_k += number;
     sum_t += t;
     sum_kk += number * number;
@@ -65,7 +65,7 @@ std::optional<RateMonitor::Period> RateMonitor::fit(const Track& track) {
   const double t_spread = sum_tt - sum_t * sum_t / n;
   const double slope = k_with_t / k_spread;
   const double jitter_s = std::sqrt(std::max(0.0, (t_spread - slope * k_with_t) / (n - 2.0)));
-  // Half a period off the line: the frames have no steady rate, or were counted wrongly.
+  // With more jitter the frames have no steady rate, or some intervals were counted wrongly.
   if (!(slope > 0.0) || 4.0 * jitter_s > slope) return std::nullopt;
   return Period{slope, std::max(jitter_s, kLeastJitter_s) / std::sqrt(k_spread)};
 }

@@ -1,36 +1,37 @@
-// Notices that the cameras no longer expose together.
+// Detects that the cameras no longer expose at the same time.
 #pragma once
 
 #include <bit>
 #include <cstdint>
 
-#include "pipeline/calibration/rig.h"
+#include "common/cameras.h"
 
 namespace bevloc::drivers {
 
-/// Cameras in step are in one set; cameras out of step are in sets of their own, one after the
-/// other within a period, which have no camera in common. A camera that only loses frames makes no
-/// such sets. Pure logic, told of each set in the order of time.
+/// Synchronized cameras are all in one frameset. Unsynchronized cameras give several framesets per
+/// period, and consecutive ones have no camera in common. Lost frames do not give such framesets.
+/// One thread.
 class SplitMonitor {
  public:
-  /// So many of the latest kMemory sets, each without a camera of the one before: a split.
+  /// The cameras count as split when at least kSplitSets of the latest kMemory framesets had no
+  /// camera in common with the frameset before them.
   static constexpr int kSplitSets = 3;
   static constexpr int kMemory = 16;
 
-  /// `found`: the cameras in the set, also when it is not given out because they are too few.
+  /// Adds the cameras of the next frameset, also when it is not emitted because it has too few.
   void add(CameraMask found) {
-    const bool parted = previous_.any() && (previous_ & found).none();
-    history_ = static_cast<uint16_t>((history_ << 1U) | (parted ? 1U : 0U));
+    const bool disjoint = previous_.any() && (previous_ & found).none();
+    history_ = static_cast<uint16_t>((history_ << 1U) | (disjoint ? 1U : 0U));
     previous_ = found;
     ++sets_;
   }
 
   bool split() const { return std::popcount(history_) >= kSplitSets; }
-  /// How many it was told of.
+  /// Number of framesets that were added.
   uint64_t sets() const { return sets_; }
 
  private:
-  uint16_t history_ = 0;  ///< kMemory bits, the latest set is the lowest
+  uint16_t history_ = 0;  ///< kMemory bits; the lowest bit is the latest frameset
   CameraMask previous_;
   uint64_t sets_ = 0;
 };

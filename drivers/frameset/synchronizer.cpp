@@ -7,19 +7,16 @@
 namespace bevloc::drivers {
 
 void FramesetSynchronizer::CameraQueue::push(Frame frame) {
-  if (size == kQueueCapacity) {
+  if (frames.full()) {
     pop();
     ++counters.overflow;
   }
-  frames[(first + size) % kQueueCapacity] = std::move(frame);
-  ++size;
+  frames.push_back(std::move(frame));
 }
 
 Frame FramesetSynchronizer::CameraQueue::pop() {
-  assert(size > 0);
-  Frame frame = std::move(frames[first]);
-  first = (first + 1) % kQueueCapacity;
-  --size;
+  Frame frame = std::move(frames.front());
+  frames.pop_front();
   return frame;
 }
 
@@ -53,7 +50,7 @@ FrameFate FramesetSynchronizer::add(Frame frame, Time now) {
       ++counters.future;
       break;
   }
-  // Whatever it brought, the camera is alive and worth waiting for.
+  // The camera is alive, also when its frame was refused, so the next frameset waits for it.
   camera.missed_in_a_row = 0;
   return fate;
 }
@@ -91,7 +88,7 @@ CameraMask FramesetSynchronizer::blockers() const {
   CameraMask mask;
   if (!opening_time()) return mask;
   for (int i = 0; i < kCameraCount; ++i) {
-    mask[i] = cameras_[i].size == 0 && cameras_[i].missed_in_a_row < kPatience;
+    mask[i] = cameras_[i].frames.empty() && cameras_[i].missed_in_a_row < kPatience;
   }
   return mask;
 }
@@ -99,7 +96,8 @@ CameraMask FramesetSynchronizer::blockers() const {
 std::optional<Time> FramesetSynchronizer::opening_time() const {
   std::optional<Time> earliest;
   for (const CameraQueue& camera : cameras_) {
-    if (camera.size > 0) earliest = std::min(earliest.value_or(Time::max()), camera.front().time);
+    if (camera.frames.empty()) continue;
+    earliest = std::min(earliest.value_or(Time::max()), camera.frames.front().time);
   }
   return earliest;
 }
@@ -107,7 +105,8 @@ std::optional<Time> FramesetSynchronizer::opening_time() const {
 CameraMask FramesetSynchronizer::members(Time opening) const {
   CameraMask mask;
   for (int i = 0; i < kCameraCount; ++i) {
-    mask[i] = cameras_[i].size > 0 && cameras_[i].front().time <= opening + config_.tolerance;
+    const boost::circular_buffer<Frame>& frames = cameras_[i].frames;
+    mask[i] = !frames.empty() && frames.front().time <= opening + config_.tolerance;
   }
   return mask;
 }

@@ -1,9 +1,11 @@
-// Puts the frames of six cameras together that were taken at one time.
+// Combines the frames of six cameras that belong to one moment into framesets.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
+
+#include <boost/circular_buffer.hpp>
 
 #include "drivers/frameset/frameset.h"
 #include "drivers/frameset/rate_monitor.h"
@@ -12,85 +14,84 @@
 namespace bevloc::drivers {
 
 struct SynchronizerConfig {
-  /// Frames further apart than this are not of one set.
+  /// Frames that are further apart do not belong to one frameset.
   Duration tolerance = std::chrono::milliseconds(2);
-  /// How long after the start of its earliest exposure a set waits for the cameras still missing.
+  /// How long a frameset waits for missing cameras, from the start of its earliest exposure.
   Duration wait = std::chrono::milliseconds(60);
-  /// A set with fewer cameras than this is not given out.
+  /// A frameset with fewer cameras is dropped.
   int min_cameras = 1;
 };
 
-/// What add() did with a frame.
+/// The result of add() for one frame. All but kAccepted are dropped.
 enum class FrameFate : uint8_t {
   kAccepted,
-  kDuplicate,   ///< same time as the camera's frame before
-  kOutOfOrder,  ///< older than the camera's frame before
-  kLate,        ///< its set has already been given out, or given up
-  kFuture,      ///< taken later than now: the camera's clock is wrong
+  kDuplicate,   ///< same time as the camera's previous frame
+  kOutOfOrder,  ///< older than the camera's previous frame
+  kLate,        ///< its frameset was already emitted or dropped
+  kFuture,      ///< its time is later than now: the camera's clock is wrong
 };
 
-/// Of one camera. Every frame that was added is in a set, still waiting, or counted in exactly one
-/// of duplicate, out_of_order, late, future, overflow and unmatched.
+/// The counters of one camera. Every added frame is either emitted, or still waiting, or counted in
+/// exactly one of duplicate, out_of_order, late, future, overflow and unmatched.
 struct SynchronizerCounters {
   uint64_t added = 0;
-  uint64_t emitted = 0;  ///< in a set
+  uint64_t emitted = 0;  ///< frames in an emitted frameset
   uint64_t duplicate = 0;
   uint64_t out_of_order = 0;
   uint64_t late = 0;
   uint64_t future = 0;
-  uint64_t overflow = 0;    ///< pushed out by newer ones because nobody polled
-  uint64_t unmatched = 0;   ///< in a set with too few cameras
-  uint64_t missing = 0;     ///< sets that were given out without this camera
-  uint64_t waited_for = 0;  ///< of those, sets that waited for it in vain
+  uint64_t overflow = 0;    ///< dropped because the queue was full: poll() was not called
+  uint64_t unmatched = 0;   ///< dropped with a frameset that had too few cameras
+  uint64_t missing = 0;     ///< framesets that were emitted without this camera
+  uint64_t waited_for = 0;  ///< missing framesets that waited for this camera until the end
 };
 
-/// A time-ordered merge, driven by add() and poll(); no clock, no threads, no allocation: the same
-/// calls give the same sets. Matching is by time, never by sequence number, so that a lost frame
-/// cannot shift a camera against the others.
+/// Merges frames by time, driven by add() and poll(). It has no clock and no threads, so the same
+/// calls give the same framesets. Frames are matched by time and not by sequence number, so a lost
+/// frame cannot shift a camera against the others.
 ///
-/// The earliest waiting frame opens a set, to which each camera's earliest frame within the
-/// tolerance belongs. The set is given out once every camera has either a frame in it or a later
-/// one (then it has none for this set), or when the wait is over. A camera that has been missing
-/// from kPatience sets in a row is not waited for until it sends again.
+/// The earliest waiting frame opens a frameset. The earliest frame of each camera belongs to it if
+/// it is within the tolerance. The frameset is emitted as soon as every camera has a frame in it or
+/// a later frame, or when the wait is over. A camera that was missing from kPatience framesets in a
+/// row is not waited for until it delivers a frame again.
 ///
-/// Sets come out in the order of time, no frame twice.
+/// Framesets are emitted in the order of time, and no frame is emitted twice. Allocates in its
+/// constructor only. One thread.
 class FramesetSynchronizer {
  public:
-  /// Waiting frames per camera.
+  /// Maximum number of waiting frames per camera.
   static constexpr int kQueueCapacity = 4;
   static constexpr int kPatience = 5;
 
   explicit FramesetSynchronizer(const SynchronizerConfig& config);
 
-  /// `now` is the time of this call: a frame from the future would block its camera and is refused.
+  /// `now` is the time of this call. A frame from the future is refused, because it would block its
+  /// camera.
   FrameFate add(Frame frame, Time now);
 
-  /// The next set that is complete or has waited long enough at `now`. To be called until there is
-  /// none, after each add() or after all frames that have arrived.
+  /// Returns the next frameset that is complete or has waited long enough at `now`. Call it until
+  /// it returns nothing, after each add() or after adding all frames that have arrived.
   std::optional<Frameset> poll(Time now);
 
-  /// When poll() will have something even if no frame arrives; nothing without a waiting frame.
+  /// The time at which the open frameset stops waiting. Nothing if no frame waits.
   std::optional<Time> deadline() const;
 
-  /// The cameras that the next set is waiting for (the blockers); none without a waiting frame.
+  /// The cameras for which the open frameset waits. None if no frame waits.
   CameraMask blockers() const;
 
   const SynchronizerCounters& counters(int camera) const { return cameras_[camera].counters; }
-  /// Over all sets, also those that were not given out.
+  /// Observes all framesets, also those that were dropped.
   const SplitMonitor& splits() const { return splits_; }
-  /// Over all frames that were accepted.
+  /// Observes all accepted frames.
   const RateMonitor& rates() const { return rates_; }
 
  private:
   struct CameraQueue {
-    std::array<Frame, kQueueCapacity> frames;  ///< a ring, in order of time
-    int first = 0;
-    int size = 0;
-    Time newest = Time::min();  ///< of all that were accepted or late
+    boost::circular_buffer<Frame> frames{kQueueCapacity};  ///< waiting frames in the order of time
+    Time newest = Time::min();  ///< time of the newest frame that was accepted or late
     int missed_in_a_row = 0;
     SynchronizerCounters counters;
 
-    const Frame& front() const { return frames[first]; }
     void push(Frame frame);
     Frame pop();
   };
@@ -103,7 +104,7 @@ class FramesetSynchronizer {
 
   const SynchronizerConfig config_;
   std::array<CameraQueue, kCameraCount> cameras_;
-  Time closed_until_ = Time::min();  ///< frames up to here belong to a set that is over
+  Time closed_until_ = Time::min();  ///< frames up to this time belong to a past frameset
   SplitMonitor splits_;
   RateMonitor rates_;
 };

@@ -1,16 +1,17 @@
-// Makes one change of a switch's many.
+// Debounces a switch input.
 #pragma once
 
 #include "common/time.h"
 
 namespace bevloc::drivers {
 
-/// A level counts once it has held for some time. Pure logic; levels come in the order of time.
+/// A new level counts after it has held for the hold time. Levels must come in the order of time.
+/// One thread.
 class Debouncer {
  public:
   Debouncer(bool level, Duration hold) : settled_(level), latest_(level), hold_(hold) {}
 
-  /// What the line became, or still is, at `time`.
+  /// Takes the level of the line at `time`, changed or not.
   void see(bool level, Time time) {
     if (level == latest_) return;
     settled_ = settled_at(time);

@@ -1,4 +1,4 @@
-// Single GPIO lines, whatever drives them.
+// The interfaces of GPIO lines, mock or real.
 #pragma once
 
 #include <memory>
@@ -10,55 +10,58 @@
 
 namespace bevloc::drivers {
 
-/// Which wire, and what its voltage means.
+/// A line of a chip, and its polarity.
 struct LineAddress {
-  std::string chip;         ///< the chip's label ("pinctrl-bcm2711") or its name ("gpiochip0")
-  std::string line;         ///< the line's name ("TRIGGER") or its number on the chip ("17")
+  std::string chip;         ///< label ("pinctrl-bcm2711") or name ("gpiochip0") of the chip
+  std::string line;         ///< name ("TRIGGER") of the line, or its number on the chip ("17")
   bool active_low = false;  ///< whether the line is active at low voltage
 };
 
-/// "gpiochip0 TRIGGER", for messages.
+/// The name that other programs see as the user of our lines (gpioinfo shows it).
+inline constexpr const char* kGpioConsumer = "bevloc";
+
+/// Returns "gpiochip0 TRIGGER", for messages.
 std::string to_string(const LineAddress& address);
 
-/// A line that we drive. When it is given up, by its destructor or because the process dies, the
-/// kernel takes it back: most chips keep the last level, some let the line float.
-/// One thread at a time.
+/// A line that bevloc drives. When the object is destroyed or the process ends, the kernel releases
+/// the line. Then most chips keep the last level, and some let the line float. One thread.
 class OutputLine {
  public:
   virtual ~OutputLine() = default;
 
-  /// Does not block and does not allocate. Fails when the chip is gone.
+  /// Does not block and does not allocate. Fails when the chip was removed.
   virtual Status set(bool active) = 0;
 };
 
 struct LineEdge {
-  Time time;            ///< when the chip's interrupt came, on the steady clock
-  bool active = false;  ///< what the line became
+  Time time;            ///< time of the chip's interrupt on the steady clock
+  bool active = false;  ///< the level after the edge
 };
 
-/// A line that others drive. One thread at a time.
+/// A line that another device drives. One thread.
 class InputLine {
  public:
   virtual ~InputLine() = default;
 
-  /// What the line is now. Fails when the chip is gone.
+  /// Returns the present level. Fails when the chip was removed.
   virtual Result<bool> active() = 0;
 
-  /// The oldest edge that was not fetched yet; waits for one, `timeout` at most. Zero only looks.
-  /// A user who fetches too seldom loses edges (the kernel keeps 16 at least), and edges that
-  /// follow faster than the interrupt is served become one: active() is the truth.
+  /// Returns the oldest edge that was not fetched yet and waits up to `timeout` for one. A timeout
+  /// of zero does not wait. Edges are lost when they are not fetched in time (the kernel keeps at
+  /// least 16), and edges that follow faster than the interrupt is served are merged. active()
+  /// always returns the true level.
   virtual Result<std::optional<LineEdge>> next_edge(Duration timeout) = 0;
 };
 
-/// Where lines come from. Every implementation passes tests/drivers/gpio_conformance_test.cpp.
-/// Opening fails, with a sentence that says so, when there is no such chip (it lists those that
-/// there are), when the chip has no such line, when two have it, and when somebody else uses the
-/// line (it says who). It must outlive its lines. Threads: any, one at a time.
+/// Opens lines. Every implementation passes tests/drivers/gpio_conformance_test.cpp. Opening fails
+/// when there is no such chip (the message lists the chips), when the chip has no such line or
+/// several of this name, and when the line is in use (the message names its user). The object must
+/// outlive its lines. One thread.
 class Gpio {
  public:
   virtual ~Gpio() = default;
 
-  /// The line is `active` from the moment on that it is ours, without a glitch.
+  /// The line has the level `active` from the beginning, without a glitch.
   virtual Result<std::unique_ptr<OutputLine>> open_output(const LineAddress& address,
                                                           bool active) = 0;
   virtual Result<std::unique_ptr<InputLine>> open_input(const LineAddress& address) = 0;

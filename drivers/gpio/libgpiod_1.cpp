@@ -1,4 +1,4 @@
-// libgpiod 1 (Debian 12 has 1.6).
+// The calls to libgpiod 1 (Debian 12 has 1.6).
 #include <cerrno>
 #include <cstring>
 
@@ -21,7 +21,7 @@ class Output final : public OutputLine {
   }
 
  private:
-  GpioChipHandle chip_;  // closing it gives the line up
+  GpioChipHandle chip_;  // closing the chip releases the line
   gpiod_line* line_;
   LineAddress address_;
 };

@@ -1,4 +1,4 @@
-// libgpiod 2 (Debian 13 has 2.2).
+// The calls to libgpiod 2 (Debian 13 has 2.2).
 #include <cerrno>
 #include <cstring>
 

@@ -12,11 +12,11 @@
 namespace bevloc::drivers {
 namespace {
 
-/// Every chip that can be opened, and what is wrong with the others.
+/// All chips that can be opened, and error messages for the others.
 struct Chips {
   std::vector<GpioChipHandle> handles;
   std::vector<GpioChipInfo> infos;
-  std::string closed;
+  std::string errors;
 };
 
 struct FoundLine {
@@ -24,12 +24,12 @@ struct FoundLine {
   unsigned line = 0;
 };
 
-/// Null, with errno, where `device` cannot be opened.
+/// Returns null and sets errno if `device` cannot be opened.
 GpioChipHandle open_chip(const std::string& device) {
   return GpioChipHandle(gpiod_chip_open(device.c_str()));
 }
 
-/// /dev/gpiochip0, /dev/gpiochip1 and so on, in a settled order.
+/// Returns /dev/gpiochip0, /dev/gpiochip1 and so on, sorted.
 std::vector<std::string> chip_devices() {
   std::vector<std::string> devices;
   std::error_code ignored;
@@ -47,7 +47,7 @@ Chips open_chips() {
   for (const std::string& device : chip_devices()) {
     GpioChipHandle chip = open_chip(device);
     if (!chip) {
-      chips.closed += fmt::format("; {} cannot be opened: {}", device, std::strerror(errno));
+      chips.errors += fmt::format("; {} cannot be opened: {}", device, std::strerror(errno));
       continue;
     }
     chips.infos.push_back(info_of(*chip));
@@ -59,7 +59,7 @@ Chips open_chips() {
 Result<FoundLine> find(const LineAddress& address) {
   Chips chips = open_chips();
   const auto place = find_free_line(chips.infos, address);
-  if (!place) return fail("{}{}", place.error().message, chips.closed);
+  if (!place) return fail("{}{}", place.error().message, chips.errors);
   return FoundLine{std::move(chips.handles[place->chip]), place->line};
 }
 
@@ -85,7 +85,7 @@ Result<std::unique_ptr<InputLine>> LibgpiodGpio::open_input(const LineAddress& a
 Status LibgpiodGpio::look_for(const LineAddress& address) const {
   const Chips chips = open_chips();
   const auto place = find_line(chips.infos, address);
-  if (!place) return fail("{}{}", place.error().message, chips.closed);
+  if (!place) return fail("{}{}", place.error().message, chips.errors);
   return {};
 }
 

@@ -1,19 +1,19 @@
-// The machine's GPIO lines, through libgpiod and the kernel's character devices.
+// The machine's GPIO lines, by libgpiod and the kernel's character devices.
 #pragma once
 
 #include "drivers/gpio/gpio.h"
 
 namespace bevloc::drivers {
 
-/// Works with libgpiod 1 and 2; the build takes the version that is installed. Chips are looked for
-/// at every open, so one that appears later is found. Needs read and write access to
+/// Works with libgpiod 1 and 2; the build uses the installed version. Each call of open searches
+/// the chips again, so it also finds a chip that appeared later. Needs read and write access to
 /// /dev/gpiochip*.
 class LibgpiodGpio final : public Gpio {
  public:
   Result<std::unique_ptr<OutputLine>> open_output(const LineAddress& address, bool active) override;
   Result<std::unique_ptr<InputLine>> open_input(const LineAddress& address) override;
 
-  /// Whether there is such a line; one in use will do.
+  /// Checks that there is such a line, in use or not.
   Status look_for(const LineAddress& address) const;
 };
 

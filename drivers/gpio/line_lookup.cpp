@@ -8,7 +8,7 @@ namespace bevloc::drivers {
 namespace {
 
 std::string list_of(const std::vector<GpioChipInfo>& chips) {
-  if (chips.empty()) return "none at all";
+  if (chips.empty()) return "none";
   std::string list;
   for (const GpioChipInfo& chip : chips) {
     list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", chip.name, chip.label);
@@ -22,11 +22,10 @@ Result<size_t> find_chip(const std::vector<GpioChipInfo>& chips, const LineAddre
   };
   const auto chip = std::ranges::find_if(chips, is_meant);
   if (chip == chips.end()) {
-    return fail("{}: found no such GPIO chip, wanted one of: {}", to_string(address),
-                list_of(chips));
+    return fail("{}: found no such GPIO chip; available: {}", to_string(address), list_of(chips));
   }
   if (std::ranges::count_if(chips, is_meant) > 1) {
-    return fail("{}: found more than one GPIO chip of that label, wanted a name: {}",
+    return fail("{}: found more than one GPIO chip with this label, wanted a chip's name: {}",
                 to_string(address), list_of(chips));
   }
   return static_cast<size_t>(chip - chips.begin());
@@ -44,7 +43,7 @@ Result<unsigned> find_line_on(const GpioChipInfo& chip, const LineAddress& addre
   const auto named = std::ranges::find(chip.lines, address.line, &GpioLineInfo::name);
   if (named != chip.lines.end()) {
     if (std::ranges::count(chip.lines, address.line, &GpioLineInfo::name) > 1) {
-      return fail("{}: found more than one line of that name, wanted its number",
+      return fail("{}: found more than one line with this name, wanted the line's number",
                   to_string(address));
     }
     return static_cast<unsigned>(named - chip.lines.begin());

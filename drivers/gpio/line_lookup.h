@@ -1,4 +1,4 @@
-// Finds a GPIO line by what a person calls it.
+// Finds a GPIO line by the label or name of its chip and by its name or number.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 namespace bevloc::drivers {
 
 struct GpioLineInfo {
-  std::string name;      ///< empty for a line without one
-  std::string consumer;  ///< who uses it; empty when it is free
+  std::string name;      ///< empty if the line has no name
+  std::string consumer;  ///< the user of the line; empty if it is free
 };
 
 struct GpioChipInfo {
   std::string name;   ///< "gpiochip0"
-  std::string label;  ///< of the driver or the board
+  std::string label;  ///< given by the driver or the board, such as "pinctrl-bcm2711"
   std::vector<GpioLineInfo> lines;
 };
 
@@ -24,10 +24,11 @@ struct GpioLinePlace {
   unsigned line = 0;
 };
 
-/// Names win over numbers. Fails, as Gpio says, where there is not exactly one such line.
+/// Finds a line, in use or not. A name takes precedence over a number. Fails unless exactly one
+/// line matches; the messages are described at Gpio.
 Result<GpioLinePlace> find_line(const std::vector<GpioChipInfo>& chips, const LineAddress& address);
 
-/// The same; fails for a line in use too.
+/// Finds a line that is free. Fails also for a line in use.
 Result<GpioLinePlace> find_free_line(const std::vector<GpioChipInfo>& chips,
                                      const LineAddress& address);
 

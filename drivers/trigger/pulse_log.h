@@ -1,4 +1,4 @@
-// When the latest trigger pulses were given.
+// The times of the latest trigger pulses.
 #pragma once
 
 #include <array>
@@ -10,26 +10,27 @@
 
 namespace bevloc::drivers {
 
-/// Written by one thread, read by any, without a lock. Holds the newest pulses.
+/// Keeps the newest kCapacity pulses. One thread writes, any thread reads, without a lock.
+/// Therefore it is an array of atomics, as boost::circular_buffer is not thread-safe.
 class PulseLog {
  public:
   static constexpr int kCapacity = 64;
 
-  /// `rise` is later than the one before.
+  /// Adds a pulse. `rise` must be later than that of the previous pulse.
   void add(Time rise) {
     const uint64_t count = count_.load(std::memory_order_relaxed);
     rises_[count % kCapacity].store(rise, std::memory_order_relaxed);
     count_.store(count + 1, std::memory_order_release);
   }
 
-  /// Since start.
+  /// Number of pulses since construction.
   uint64_t count() const { return count_.load(std::memory_order_acquire); }
 
-  /// The newest pulse at or before `time`: the one that a frame of that time answers. Nothing when
-  /// there was none, or more than kCapacity have followed.
+  /// Returns the newest pulse at or before `time`, which triggered a frame of that time. Returns
+  /// nothing when there was no such pulse, or when kCapacity - 1 or more pulses have followed.
   std::optional<Time> newest_until(Time time) const {
     const uint64_t count = this->count();
-    // The oldest may be overwritten meanwhile.
+    // The oldest entry may be overwritten at the same time, so it is not used.
     const uint64_t kept = count < kCapacity ? count : kCapacity - 1;
     for (uint64_t back = 1; back <= kept; ++back) {
       const Time rise = rises_[(count - back) % kCapacity].load(std::memory_order_relaxed);

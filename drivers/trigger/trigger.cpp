@@ -8,37 +8,37 @@ namespace bevloc::drivers {
 
 Trigger::Trigger(std::unique_ptr<OutputLine> line, Clock& clock, const TriggerConfig& config)
     : config_(config),
-      most_late_(config.period / 10),
+      lateness_limit_(config.period / 10),
       line_(std::move(line)),
       clock_(clock),
-      beat_(clock.now() + config.period) {
+      due_(clock.now() + config.period) {
   assert(config.pulse_width > Duration::zero() && 2 * config.pulse_width < config.period);
 }
 
-void Trigger::step(Duration patience) {
-  const Time wait_end = clock_.now() + patience;
-  clock_.sleep_until(std::min(beat_, wait_end));
-  skip_beats_before(clock_.now() - most_late_);
-  if (clock_.now() < beat_) return;
+void Trigger::step(Duration timeout) {
+  const Time wait_end = clock_.now() + timeout;
+  clock_.sleep_until(std::min(due_, wait_end));
+  skip_pulses_before(clock_.now() - lateness_limit_);
+  if (clock_.now() < due_) return;
   pulse();
-  beat_ += config_.period;
+  due_ += config_.period;
 }
 
-void Trigger::skip_beats_before(Time earliest) {
-  if (beat_ >= earliest) return;
-  const auto beats = (earliest - beat_ + config_.period - Duration(1)) / config_.period;
-  counters_.skipped += static_cast<uint64_t>(beats);
-  beat_ += beats * config_.period;
+void Trigger::skip_pulses_before(Time earliest) {
+  if (due_ >= earliest) return;
+  const auto pulses = (earliest - due_ + config_.period - Duration(1)) / config_.period;
+  counters_.skipped += static_cast<uint64_t>(pulses);
+  due_ += pulses * config_.period;
 }
 
 void Trigger::pulse() {
-  const bool given = line_->set(true).has_value();
+  const bool risen = line_->set(true).has_value();
   const Time rise = clock_.now();
   clock_.sleep_until(rise + config_.pulse_width);
-  const bool ended = line_->set(false).has_value();
-  if (!given || !ended) ++counters_.failed;
-  if (!given) return;
-  counters_.latest_by = std::max(counters_.latest_by.load(), rise - beat_);
+  const bool fallen = line_->set(false).has_value();
+  if (!risen || !fallen) ++counters_.failed;
+  if (!risen) return;
+  counters_.max_lateness = std::max(counters_.max_lateness.load(), rise - due_);
   pulses_.add(rise);
 }
 

@@ -1,4 +1,4 @@
-// Pulses that tell the cameras to expose (FSYNC).
+// Generates the pulses that trigger the exposure of the cameras (FSYNC).
 #pragma once
 
 #include <atomic>
@@ -17,39 +17,39 @@ struct TriggerConfig {
   Duration pulse_width = std::chrono::milliseconds(1);
 };
 
-/// Totals since start; readable from any thread.
+/// Totals since construction. Readable from any thread.
 struct TriggerCounters {
-  std::atomic<uint64_t> skipped{0};  ///< beats without a pulse, because it would have come too late
-  std::atomic<uint64_t> failed{0};   ///< pulses that the line refused
-  std::atomic<Duration> latest_by{};  ///< how late the latest given pulse of all was
+  std::atomic<uint64_t> skipped{0};      ///< pulses that were omitted because they were too late
+  std::atomic<uint64_t> failed{0};       ///< pulses that the line refused
+  std::atomic<Duration> max_lateness{};  ///< maximum lateness of a pulse
 };
 
-/// Gives a pulse on every beat of the clock: beat k is at start + k periods, so a late pulse does
-/// not move those after it. One that would come more than a tenth of a period late is left out, so
-/// that two are never closer than nine tenths: cameras that are still reading out would lose the
-/// second.
+/// Pulse k is due at start + k periods, so a late pulse does not delay those after it. A pulse that
+/// would be more than a tenth of a period late is omitted. So two pulses are never closer than nine
+/// tenths of a period: cameras that still read out the previous frame would miss the second pulse.
 ///
-/// Threads: step() belongs to one thread, best one of its own; the rest is for any.
+/// Threads: step() is called from one thread, preferably a dedicated one. The rest is readable from
+/// any thread.
 class Trigger {
  public:
-  /// The first beat is one period from now.
+  /// The first pulse is due one period from now. `clock` must outlive the trigger.
   Trigger(std::unique_ptr<OutputLine> line, Clock& clock, const TriggerConfig& config);
 
-  /// Waits for the next beat, `patience` at most, and gives its pulse.
-  void step(Duration patience);
+  /// Waits up to `timeout` for the next due time and gives the pulse.
+  void step(Duration timeout);
 
   const PulseLog& pulses() const { return pulses_; }
   const TriggerCounters& counters() const { return counters_; }
 
  private:
-  void skip_beats_before(Time earliest);
+  void skip_pulses_before(Time earliest);
   void pulse();
 
   const TriggerConfig config_;
-  const Duration most_late_;
+  const Duration lateness_limit_;
   std::unique_ptr<OutputLine> line_;
   Clock& clock_;
-  Time beat_;
+  Time due_;  ///< due time of the next pulse
   PulseLog pulses_;
   TriggerCounters counters_;
 };

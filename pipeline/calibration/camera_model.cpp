@@ -8,13 +8,13 @@
 namespace bevloc {
 namespace {
 
-/// Squared radius (of the normalised coordinate) up to which r (1 + k1 r^2 + k2 r^4) grows: the
-/// smallest positive root of its derivative 1 + 3 k1 s + 5 k2 s^2 in s = r^2.
-double growing_radius_squared(double k1, double k2) {
+/// Squared normalised radius up to which the distorted radius r (1 + k1 r^2 + k2 r^4) increases:
+/// the smallest positive root of its derivative 1 + 3 k1 s + 5 k2 s^2 in s = r^2.
+double monotonic_radius_squared(double k1, double k2) {
   constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   const double discriminant = 9.0 * k1 * k1 - 20.0 * k2;
   if (discriminant < 0.0 || (k1 >= 0.0 && k2 >= 0.0)) return kUnbounded;
-  // -2 / (b - sqrt(b^2 - 4ac)) is the stable form of the root and also holds for k2 = 0.
+  // This form of the root, -2 / (b - sqrt(b^2 - 4ac)), is numerically stable and holds for k2 = 0.
   const double root = -2.0 / (3.0 * k1 - std::sqrt(discriminant));
   return root > 0.0 ? root : kUnbounded;
 }
@@ -24,7 +24,7 @@ struct Distorted {
   Eigen::Matrix2d jacobian;
 };
 
-/// OpenCV's radial-tangential model with its derivative.
+/// OpenCV's radial-tangential distortion and its derivative.
 Distorted distort(const Intrinsics& camera, const Eigen::Vector2d& normalised) {
   const double x = normalised.x();
   const double y = normalised.y();
@@ -47,7 +47,7 @@ Distorted distort(const Intrinsics& camera, const Eigen::Vector2d& normalised) {
 std::optional<Eigen::Vector2d> Intrinsics::project(const Eigen::Vector3d& point_camera) const {
   if (!(point_camera.z() > 0.0)) return std::nullopt;
   const Eigen::Vector2d normalised = point_camera.head<2>() / point_camera.z();
-  if (!(normalised.squaredNorm() < growing_radius_squared(k1, k2))) return std::nullopt;
+  if (!(normalised.squaredNorm() < monotonic_radius_squared(k1, k2))) return std::nullopt;
   const Eigen::Vector2d distorted = distort(*this, normalised).point;
   return Eigen::Vector2d(fx_px * distorted.x() + cx_px, fy_px * distorted.y() + cy_px);
 }
@@ -56,8 +56,8 @@ Eigen::Vector3d Intrinsics::ray(const Eigen::Vector2d& pixel) const {
   constexpr int kMaxSteps = 30;
   constexpr double kConverged = 1e-13;
   const Eigen::Vector2d target((pixel.x() - cx_px) / fx_px, (pixel.y() - cy_px) / fy_px);
-  const double limit_squared = growing_radius_squared(k1, k2);
-  // Newton's method; a pixel that no ray reaches ends on the widest ray in its direction.
+  const double limit_squared = monotonic_radius_squared(k1, k2);
+  // Newton's method, limited to the radius where the distortion is monotonic.
   const auto within_limit = [limit_squared](const Eigen::Vector2d& point) -> Eigen::Vector2d {
     const double r2 = point.squaredNorm();
     return r2 < limit_squared ? point : 0.999 * std::sqrt(limit_squared / r2) * point;

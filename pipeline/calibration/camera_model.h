@@ -1,4 +1,4 @@
-// One camera: pinhole with radial-tangential distortion, mounted on the vehicle.
+// Camera model: intrinsics with radial-tangential distortion, and extrinsics.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace bevloc {
 
-/// Rigid motion in space, target_from_source: p_target = rotation * p_source + translation.
+/// Rigid transform target_from_source in space: p_target = rotation * p_source + translation_m.
 struct Se3 {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
@@ -21,8 +21,8 @@ struct Se3 {
   Se3 inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation_m)}; }
 };
 
-/// OpenCV's "plumb bob" model: u = fx * x_d + cx, with x_d the distorted normalised coordinate.
-/// Pixel (0, 0) is the CENTRE of the top left pixel.
+/// OpenCV's "plumb bob" model: u = fx * x_d + cx, where x_d is the distorted normalised coordinate.
+/// (0, 0) is the centre of the top left pixel.
 struct Intrinsics {
   int width_px = 0;
   int height_px = 0;
@@ -35,11 +35,12 @@ struct Intrinsics {
   double p1 = 0.0;
   double p2 = 0.0;
 
-  /// Pixel of a point in the camera frame (x right, y down, z forward); nothing for a point at or
-  /// behind the camera, or where the distortion polynomial no longer grows with the angle.
+  /// Pixel of a point in the camera frame (x right, y down, z forward). Nothing for a point with
+  /// z <= 0, or at an angle where the distorted radius no longer increases with the angle.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& point_camera) const;
 
-  /// Ray through a pixel, scaled to z = 1 in the camera frame; the exact inverse of project().
+  /// Ray through a pixel in the camera frame, scaled to z = 1: the inverse of project(). A pixel
+  /// that no ray reaches gets the widest ray in its direction.
   Eigen::Vector3d ray(const Eigen::Vector2d& pixel) const;
 };
 

@@ -1,30 +1,20 @@
-// The six surround cameras and their fixed order.
+// The rig: intrinsics and extrinsics of the six cameras.
 #pragma once
 
 #include <array>
-#include <bitset>
-#include <string_view>
 
+#include "common/cameras.h"
 #include "common/se2.h"
 #include "pipeline/calibration/camera_model.h"
 
 namespace bevloc {
 
-inline constexpr int kCameraCount = 6;
-
-/// The order of cameras everywhere: in framesets, in the network's input, in masks, in YAML.
-inline constexpr std::array<std::string_view, kCameraCount> kCameraNames = {
-    "front_left", "front", "front_right", "back_left", "back", "back_right"};
-
-/// Bit i is camera i.
-using CameraMask = std::bitset<kCameraCount>;
-
 struct Rig {
-  std::array<CameraModel, kCameraCount> cameras;
+  std::array<CameraModel, kCameraCount> cameras;  ///< in the order of kCameraNames
 };
 
-/// Cameras need not expose at once. For each, reference_from_exposure: the vehicle at that camera's
-/// exposure, seen from the vehicle at the time that counts for all. All zero when they do.
+/// reference_from_exposure of each camera: the vehicle's pose at the exposure, in the vehicle frame
+/// at the reference time of the frameset. All zero if the cameras expose at the same time.
 using CameraMotions = std::array<Se2, kCameraCount>;
 
 }  // namespace bevloc

@@ -14,7 +14,7 @@ constexpr int kMaxImageSizePx = 16384;
 constexpr double kMaxPixel = 2.0 * kMaxImageSizePx;
 constexpr double kMaxFromVehicleOriginM = 50.0;
 
-/// Whether every pixel has a ray of its own: looked at in the corners, where distortion is largest.
+/// Whether every pixel has its own ray. Tests the corners, where the distortion is largest.
 bool covers_its_image(const Intrinsics& camera) {
   constexpr double kTolerancePx = 0.01;
   for (const double u : {0.0, camera.width_px - 1.0}) {
@@ -42,8 +42,8 @@ Intrinsics read_intrinsics(YamlMap& yaml) {
   camera.p1 = distortion[2];
   camera.p2 = distortion[3];
   if (!covers_its_image(camera)) {
-    yaml.reject("distortion", "numbers that fold the image back before its corners",
-                "a distortion that grows up to the corners");
+    yaml.reject("distortion", "a distortion that is not monotonic within the image",
+                "one that increases up to the image corners");
   }
   return camera;
 }
@@ -65,7 +65,7 @@ Se3 read_vehicle_from_camera(YamlMap yaml) {
   return transform;
 }
 
-/// Nine decimals without trailing zeros and without "-0".
+/// At most nine decimals, without trailing zeros and without "-0".
 std::string format_number(double value) {
   constexpr double kUnit = 1e9;
   return fmt::format("{:.15g}", std::round(value * kUnit) / kUnit + 0.0);

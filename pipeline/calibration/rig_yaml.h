@@ -1,4 +1,4 @@
-// The calibration file of a vehicle.
+// Reads and writes rig files, the calibration of a vehicle.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace bevloc {
 
-/// A rig file has one entry for each of the six cameras (kCameraNames) and nothing else:
+/// Reads a rig file. It contains one entry for each of the six cameras (kCameraNames):
 ///
 ///     cameras:
 ///       front_left:
@@ -20,20 +20,23 @@ namespace bevloc {
 ///         cy_px: 191.62
 ///         distortion: [-0.06, 0.01, 0, 0]        # k1, k2, p1, p2 as OpenCV names them
 ///         vehicle_from_camera:
-///           translation_m: [1.524, 0.495, 1.509] # the camera's place on the vehicle
+///           translation_m: [1.524, 0.495, 1.509] # position of the camera
 ///           rotation_wxyz: [0.66, -0.66, 0.25, -0.26]
 ///       front: ...
 ///
-/// The rotation is a unit quaternion that turns camera axes (x right, y down, z forward) into
-/// vehicle axes (x forward, y left, z up); a norm within 0.001 of 1 is accepted and made 1. Pixel
-/// (0, 0) is the centre of the top left pixel. Fails with file, line and key on anything else, and
-/// on a distortion that folds back within the image.
+/// The rotation is a unit quaternion that rotates camera axes (x right, y down, z forward) into
+/// vehicle axes (x forward, y left, z up). A norm within 0.001 of 1 is accepted and normalised. The
+/// origin of the vehicle frame is on the ground below the middle of the rear axle. Pixel (0, 0) is
+/// the centre of the top left pixel.
+///
+/// Fails with file, line and key on a missing, unknown or repeated key, on a bad value, and on a
+/// distortion that is not monotonic within the image.
 Result<Rig> read_rig(const std::filesystem::path& path);
 
-/// The same for text that is there already; `name` stands in the messages for the file.
+/// The same for text in memory. Error messages show `name` as the file.
 Result<Rig> parse_rig(const std::string& text, const std::string& name);
 
-/// A rig file's text, numbers to nine decimals.
+/// The text of a rig file, with nine decimals per number.
 std::string format_rig(const Rig& rig);
 
 }  // namespace bevloc

@@ -9,7 +9,7 @@
 namespace bevloc {
 namespace {
 
-// A view table serves motions that are no further than this from those it was made for.
+// The view table is reused while each motion stays this close to the one that it was computed for.
 constexpr double kSameMotion_m = 0.01;
 constexpr double kSameMotion_rad = radians(0.02);
 
@@ -46,10 +46,10 @@ Localizer::Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Networ
   for (const CameraModel& camera : rig.cameras) preprocessors_.emplace_back(camera);
 }
 
-CameraMask Localizer::localize(const CameraImages& seen, const Se2& prior, SearchRange range,
+CameraMask Localizer::localize(const CameraImages& images, const Se2& prior, SearchRange range,
                                SolverResult& result) {
-  const CameraMask usable = take_in(seen);
-  look_from(usable, seen.reference_from_exposure);
+  const CameraMask usable = load_images(images);
+  update_view(usable, images.reference_from_exposure);
   network_->run_image_branch();
   rasterizer_.draw(prior, network_->raster_input());
   network_->run_map_branch();
@@ -58,21 +58,21 @@ CameraMask Localizer::localize(const CameraImages& seen, const Se2& prior, Searc
   return usable;
 }
 
-CameraMask Localizer::take_in(const CameraImages& seen) {
+CameraMask Localizer::load_images(const CameraImages& images) {
   const auto planes_of = [input = network_->image_input()](int camera) {
     return input.subspan(camera * kNetworkImageSize, kNetworkImageSize);
   };
   std::array<bool, kCameraCount> readable{};
-  network_->for_each_turn(kCameraCount, [&](int camera) {
+  network_->parallel_for(kCameraCount, [&](int camera) {
     readable[camera] =
-        seen.present[camera] &&
-        preprocessors_[camera].run(seen.images[camera], planes_of(camera)).has_value();
+        images.present[camera] &&
+        preprocessors_[camera].run(images.images[camera], planes_of(camera)).has_value();
   });
   CameraMask usable;
   for (int camera = 0; camera < kCameraCount; ++camera) {
     const std::span<int8_t> planes = planes_of(camera);
     if (readable[camera]) {
-      frozen_[camera] = frozen_pictures_.is_frozen(camera, planes, seen.driving);
+      frozen_[camera] = frozen_detector_.is_frozen(camera, planes, images.driving);
     }
     usable[camera] = readable[camera] && !frozen_[camera];
     if (!usable[camera]) std::ranges::fill(planes, kNetworkBlack);
@@ -80,7 +80,7 @@ CameraMask Localizer::take_in(const CameraImages& seen) {
   return usable;
 }
 
-void Localizer::look_from(CameraMask present, const CameraMotions& reference_from_exposure) {
+void Localizer::update_view(CameraMask present, const CameraMotions& reference_from_exposure) {
   if (table_cameras_ == present &&
       std::ranges::equal(table_motions_, reference_from_exposure, is_same)) {
     return;

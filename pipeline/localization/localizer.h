@@ -1,4 +1,5 @@
-// One localization: six images and a rough pose in, the correction of that pose out.
+// Localizer: computes the correction of a prior pose from the images of the six cameras and the
+// map.
 #pragma once
 
 #include <array>
@@ -12,11 +13,11 @@
 #include "common/result.h"
 #include "common/se2.h"
 #include "pipeline/calibration/rig.h"
-#include "pipeline/localization/frozen_pictures.h"
+#include "pipeline/localization/frozen_camera_detector.h"
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/rasterizer.h"
 #include "pipeline/network/network.h"
-#include "pipeline/network/view_table.h"
+#include "pipeline/network/view/view_table.h"
 #include "pipeline/preprocessing/image_remap.h"
 #include "pipeline/solver/solver_factory.h"
 
@@ -24,51 +25,53 @@ namespace bevloc {
 
 struct LocalizerOptions {
   SolverKind solver = SolverKind::kBandedRefined;
-  /// Hypotheses while tracking: the prior is good.
+  /// Hypotheses for SearchRange::kTracking, where the prior comes from the tracker.
   HypothesisGrid tracking;
-  /// Hypotheses while acquiring: the prior is GNSS alone.
+  /// Hypotheses for SearchRange::kAcquiring, where the prior comes from GNSS and odometry alone.
   HypothesisGrid acquiring{{6.0, 0.2}, {4.0, 0.2}, {radians(4.0), radians(0.2)}};
   NetworkOptions network;
 };
 
-/// What the cameras saw.
+/// The images of one frameset.
 struct CameraImages {
-  std::array<ImageView, kCameraCount> images;  ///< read where `present`
+  std::array<ImageView, kCameraCount> images;  ///< only those in `present` are read
   CameraMask present;
-  CameraMotions reference_from_exposure{};  ///< against the time of the prior
-  bool driving = false;                     ///< then every picture is another one (FrozenPictures)
+  CameraMotions reference_from_exposure{};  ///< reference time: that of the prior
+  bool driving = false;                     ///< a repeated image then counts as frozen
 };
 
 enum class SearchRange : uint8_t { kTracking, kAcquiring };
 
-/// The paper's whole network with its solver (Fig. 2), for one rig and one map. Owns all buffers:
-/// localize() allocates nothing once warm, whichever cameras there are and whenever they exposed.
-/// Not thread safe. The map index must outlive it.
+/// The paper's network and its solver (Fig. 2), for one rig and one map. Owns all buffers: after a
+/// warm-up localize() allocates nothing, for any set of cameras and exposure times. Not thread safe.
+/// The map index must outlive it.
 class Localizer {
  public:
+  /// Fails if the model cannot be loaded or the solver does not support the hypotheses.
   static Result<std::unique_ptr<Localizer>> create(const Rig& rig, const MapIndex& map,
                                                    const std::string& model_path,
                                                    const LocalizerOptions& options);
 
-  /// `prior` is T0, the predicted map_from_vehicle at the reference time, for which the correction
-  /// holds. Returns the cameras that were seen: one whose image is not of the calibration's size,
-  /// or is a damaged JPEG, or is frozen, counts as missing.
+  /// `prior` is T0, the predicted map_from_vehicle at the reference time; `result` corrects it.
+  /// Returns the cameras that were used. A camera counts as missing if the size of its image
+  /// differs from the calibration, if its JPEG is damaged or if it is frozen.
   ///
-  /// The view table is made anew when the set of cameras changes, or when a camera's motion differs
-  /// by more than 1 cm or 0.02 degrees (1 cm at 30 m) from the one that the table was made for.
-  CameraMask localize(const CameraImages& seen, const Se2& prior, SearchRange range,
+  /// Computes the view table again when the set of cameras changes, or when a camera's motion
+  /// differs by more than 1 cm or 0.02 degrees (1 cm at 30 m) from the one that the table was
+  /// computed for.
+  CameraMask localize(const CameraImages& images, const Se2& prior, SearchRange range,
                       SolverResult& result);
 
-  /// The cameras whose latest readable image was frozen.
+  /// The cameras that were frozen at their latest readable image.
   CameraMask frozen() const { return frozen_; }
 
-  /// The map as drawn in the latest localize(), kRasterSize bytes.
+  /// The raster of the latest localize(), kRasterSize bytes.
   std::span<const uint8_t> map_raster() const { return network_->raster_input(); }
 
-  /// Whether it shows anything to match.
+  /// Whether that raster contains any part of the map.
   bool map_nearby() const;
 
-  /// The perceived mask of the latest localize(), [3, 400, 200] logits. Runs the head, which
+  /// The mask of the latest localize() as logits, [3, 400, 200]. Runs the mask branch, which
   /// localize() does not.
   std::span<const float> perceived_mask();
 
@@ -78,19 +81,20 @@ class Localizer {
  private:
   Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Network> network,
             const LocalizerOptions& options);
-  /// Fills the network's image input; returns the cameras whose images can be used.
-  CameraMask take_in(const CameraImages& seen);
-  void look_from(CameraMask present, const CameraMotions& reference_from_exposure);
+  /// Fills the image input of the network, black for unusable cameras. Returns the usable cameras.
+  CameraMask load_images(const CameraImages& images);
+  /// Updates the view table for the cameras and motions.
+  void update_view(CameraMask present, const CameraMotions& reference_from_exposure);
 
   Rig network_rig_;
   LocalizerOptions options_;
   std::unique_ptr<Network> network_;
   std::vector<ImagePreprocessor> preprocessors_;
-  FrozenPictures frozen_pictures_;
+  FrozenCameraDetector frozen_detector_;
   CameraMask frozen_;
   MapRasterizer rasterizer_;
   std::array<std::unique_ptr<Solver>, 2> solvers_;  ///< by SearchRange
-  ViewTable view_table_;                            ///< for the two below
+  ViewTable view_table_;                            ///< computed for the next two members
   std::optional<CameraMask> table_cameras_;
   CameraMotions table_motions_{};
 };

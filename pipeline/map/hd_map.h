@@ -1,4 +1,4 @@
-// The vectorised HD map, independent of the file it came from.
+// The HD map in memory, independent of the file format.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace bevloc {
 
-/// The paper's classes, in the order of the raster's channels.
+/// The paper's classes, in the order of the raster channels.
 enum class ElementClass : uint8_t { kLaneDivider = 0, kPedestrianCrossing = 1, kRoadBoundary = 2 };
 
-/// What an element looks like. The localizer never reads it (a raster shows the class alone); the
-/// simulator paints and builds by it, and the tools print it.
+/// How an element looks. The localizer does not use it, because a raster shows only the class. The
+/// simulator paints and builds the element accordingly.
 enum class Appearance : uint8_t {
   kUnknown = 0,
   // lane dividers
@@ -33,15 +33,15 @@ enum class Appearance : uint8_t {
   kHedge,
 };
 
-/// One line or area on the ground, in the map frame (metres east and north of the origin).
+/// One line or polygon on the ground, in the map frame (metres east and north of the origin).
 struct MapElement {
   ElementClass element_class = ElementClass::kLaneDivider;
   Appearance appearance = Appearance::kUnknown;
-  /// A divider's or boundary's polyline, or a crossing's ring (not repeating its first corner).
+  /// Polyline of a divider or boundary; ring of a crossing, without a repeated first corner.
   std::vector<Eigen::Vector2d> points;
 };
 
-/// A lane that vehicles drive along; the localizer does not use it, routes do.
+/// A lane for vehicles. The simulator plans routes along lanes; the localizer does not use them.
 struct Lane {
   std::vector<Eigen::Vector2d> left;   ///< left bound in driving direction
   std::vector<Eigen::Vector2d> right;  ///< right bound in driving direction
@@ -50,7 +50,7 @@ struct Lane {
   double speed_limit_mps = 13.9;
 };
 
-/// WGS84 position of the map frame's origin; the frame is the local east-north tangent plane there.
+/// WGS84 position of the origin of the map frame, the east-north tangent plane at that position.
 struct GeoOrigin {
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;

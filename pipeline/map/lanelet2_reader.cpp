@@ -31,7 +31,7 @@ bool is_no(std::string_view value) {
   return value == "no" || value == "false" || value == "0";
 }
 
-/// Participants that are named override those that the subtype implies.
+/// Explicit participant tags override the participants that the subtype implies.
 LaneletKind kind_of(const OsmTags& tags) {
   constexpr std::array<std::string_view, 6> kVehicleSubtypes = {
       "", "road", "highway", "bus_lane", "play_street", "emergency_lane"};
@@ -72,7 +72,7 @@ Appearance divider_appearance(std::string_view subtype) {
   return is_double ? Appearance::kDoubleSolid : Appearance::kUnknown;
 }
 
-/// A speed tag in km/h (no unit), or with one of the units km/h, mph and m/s.
+/// Parses a speed tag with the unit km/h, mph or m/s; without a unit it is km/h.
 std::optional<double> speed_mps(std::string_view text) {
   double value = 0.0;
   const auto number = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -94,7 +94,7 @@ Lane reversed(const Lane& lane) {
   return other;
 }
 
-/// Turns one document into a map; stops at the first error.
+/// Converts one document to a map. Stops at the first error.
 class Lanelet2Reader {
  public:
   explicit Lanelet2Reader(const OsmDocument& document)
@@ -109,7 +109,7 @@ class Lanelet2Reader {
     }
     if (map_.elements.empty() && map_.lanes.empty()) {
       return fail(
-          "{}: found no lanelet for vehicles, lane marking, crossing or road border among {} ways "
+          "{}: found no lanelet for vehicles, lane divider, crossing or road boundary in {} ways "
           "and {} relations, wanted a Lanelet2 map",
           document_.file, document_.ways.size(), document_.relations.size());
     }
@@ -119,7 +119,7 @@ class Lanelet2Reader {
   }
 
  private:
-  /// How many lanelets of a kind a way bounds.
+  /// Number of lanelets that a way bounds.
   struct BoundUse {
     int vehicle_lanelets = 0;
     int crosswalks = 0;
@@ -190,7 +190,7 @@ class Lanelet2Reader {
     if (is_no(tag_value(tags, "one_way"))) map_.lanes.push_back(reversed(lane));
   }
 
-  /// What kind of line a way is, still without its points; nothing if it is none of ours.
+  /// Class and appearance of a way, without its points. Nothing if the map does not use the way.
   std::optional<MapElement> classify(const OsmWay& way) const {
     const std::string_view type = tag_value(way.tags, "type");
     if (const auto appearance = boundary_appearance(type)) {
@@ -210,7 +210,7 @@ class Lanelet2Reader {
         {}};
   }
 
-  /// The only way with a role in a lanelet.
+  /// The way with a role in a lanelet. Fails unless there is exactly one.
   Result<const OsmWay*> bound(const OsmRelation& relation, std::string_view role) const {
     const OsmMember* member = nullptr;
     int count = 0;
@@ -233,7 +233,7 @@ class Lanelet2Reader {
     return way->second;
   }
 
-  /// A way's points; neighbours in the same place count once.
+  /// Points of a way, without consecutive duplicates.
   Result<Polyline> points_of(const OsmWay& way) const {
     Polyline points;
     for (const int64_t id : way.nodes) {

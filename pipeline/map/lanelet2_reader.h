@@ -1,4 +1,4 @@
-// Reads HD maps in Lanelet2's OSM format, Autoware's dialect included.
+// Reads HD maps in the OSM format of Lanelet2, including Autoware's variant.
 #pragma once
 
 #include <filesystem>
@@ -10,23 +10,23 @@
 
 namespace bevloc {
 
-/// What becomes of a Lanelet2 map (tags as documented in Lanelet2's LinestringTagging.md and
-/// LaneletAndAreaTagging.md):
-/// - Lane dividers: ways line_thin and line_thick that bound a lanelet for vehicles and no
+/// Reads a Lanelet2 map. Uses these parts (tags as documented in Lanelet2's LinestringTagging.md
+/// and LaneletAndAreaTagging.md):
+/// - Lane dividers: ways of type line_thin and line_thick that bound a lanelet for vehicles but no
 ///   crosswalk; ways without a type that bound two or more lanelets for vehicles.
-/// - Crossings: lanelets of subtype crosswalk, the area between their bounds.
-/// - Road boundaries: ways curbstone, road_border, guard_rail, jersey_barrier, wall, fence and
-///   hedge; ways without a type that bound a single lanelet for vehicles.
-/// - Lanes: lanelets for vehicles, in both directions where one_way=no.
+/// - Pedestrian crossings: the area between the bounds of lanelets of subtype crosswalk.
+/// - Road boundaries: ways of type curbstone, road_border, guard_rail, jersey_barrier, wall, fence
+///   and hedge; ways without a type that bound one lanelet for vehicles.
+/// - Lanes: lanelets for vehicles, in both directions if one_way=no.
 ///
-/// All else (virtual lines, stop lines, signs) is left out. The map frame is that of locate_nodes()
-/// (map_frame.h).
+/// Ignores everything else, such as virtual lines, stop lines and signs. locate_nodes()
+/// (map_frame.h) defines the map frame.
 ///
 /// Fails with file, line and element on text that is not OSM XML, on bad coordinates, on references
-/// to elements that are not there, and if nothing in the file is of use.
+/// to missing elements, and on a file without any part listed above.
 Result<HdMap> read_lanelet2(const std::filesystem::path& path);
 
-/// The same for text that is there already; `file` stands in messages and names the map.
+/// The same for text in memory. Error messages show `file`; its stem becomes the name of the map.
 Result<HdMap> parse_lanelet2(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace bevloc

@@ -29,7 +29,7 @@ Eigen::Vector2d point_at(const Polyline& line, const std::vector<double>& length
   return line[i - 1] + along * (line[i] - line[i - 1]);
 }
 
-/// Whether a point lies on the left of a polyline, judged by the segment next to it.
+/// Whether a point lies to the left of the nearest segment of a polyline.
 bool is_left_of(const Eigen::Vector2d& point, const Polyline& line) {
   double nearest = std::numeric_limits<double>::infinity();
   double side = 0.0;
@@ -46,7 +46,7 @@ Eigen::Vector2d middle_of(const Polyline& line) {
   return point_at(line, arc_lengths(line), 0.5);
 }
 
-/// Douglas and Peucker: appends the points of line[first, last) that are needed.
+/// Douglas-Peucker algorithm. Appends the remaining points of line[first, last).
 void append_simplified(const Polyline& line, size_t first, size_t last, double tolerance_m,
                        Polyline& simplified) {
   double worst = 0.0;

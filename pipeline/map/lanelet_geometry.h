@@ -1,4 +1,4 @@
-// Geometry of lanelets: their bounds put in order, and what follows from them.
+// Geometry of lanelets: aligns their bounds; computes centerlines, crossings and successors.
 #pragma once
 
 #include <vector>
@@ -11,18 +11,19 @@ namespace bevloc {
 
 using Polyline = std::vector<Eigen::Vector2d>;
 
-/// Turns the bounds so that both run in driving direction: left of the lane lies `left`. The file
-/// may hold either bound in either direction; the sides decide, as in Lanelet2.
+/// Reverses bounds where needed, so that both run in driving direction with `left` on the left. As
+/// in Lanelet2, a file may store each bound in either direction.
 void align_bounds(Polyline& left, Polyline& right);
 
-/// Points half way between two aligned bounds, at most 2 m apart.
+/// The line midway between two aligned bounds, with points at most 2 m apart.
 Polyline centerline_between(const Polyline& left, const Polyline& right);
 
-/// The outline between two bounds, which may run either way. Points that a straight line misses by
-/// less than 0.3 m are left out, so that the long edges of a crossing are single edges.
+/// The ring around the area between two bounds, which may run in either direction. Removes points
+/// within 0.3 m of a straight line, so that each long side of a crossing is a single edge.
 Polyline ring_between(const Polyline& left, const Polyline& right);
 
-/// Fills the successors: lane b follows lane a where both bounds of b start where those of a end.
+/// Fills the successors. Lane b follows lane a if both bounds of b start where those of a end, to
+/// within 0.1 m.
 void link_successors(std::vector<Lane>& lanes);
 
 }  // namespace bevloc

@@ -73,7 +73,7 @@ class Encoder {
   int64_t last_[2] = {0, 0};
 };
 
-/// Reads a body; after the first mistake everything reads as zero or empty.
+/// Reads a body. After the first error every value reads as zero or empty.
 class Decoder {
  public:
   explicit Decoder(std::string_view bytes) : bytes_(bytes) {}
@@ -95,11 +95,11 @@ class Decoder {
     return value < limit ? value : reject(what);
   }
 
-  /// How many things follow that take at least `bytes_each`.
+  /// Number of the following items, each of which takes at least `bytes_each` bytes.
   size_t count(size_t bytes_each) {
     const uint64_t value = number();
     const bool fits = value <= (bytes_.size() - at_) / bytes_each;
-    return static_cast<size_t>(fits ? value : reject("a count that the body cannot hold"));
+    return static_cast<size_t>(fits ? value : reject("a count that exceeds the body"));
   }
 
   double real(double limit, std::string_view what) {
@@ -141,17 +141,17 @@ class Decoder {
 
   bool at_end() const { return at_ == bytes_.size(); }
   uint64_t reject(std::string_view found) {
-    if (!mistake_) mistake_ = fmt::format("byte {} of the body: found {}", at_, found);
+    if (!error_) error_ = fmt::format("byte {} of the body: found {}", at_, found);
     at_ = bytes_.size();
     return 0;
   }
-  const std::optional<std::string>& mistake() const { return mistake_; }
+  const std::optional<std::string>& error() const { return error_; }
 
  private:
   std::string_view bytes_;
   size_t at_ = 0;
   int64_t last_[2] = {0, 0};
-  std::optional<std::string> mistake_;
+  std::optional<std::string> error_;
 };
 
 MapElement decode_element(Decoder& decoder) {
@@ -175,8 +175,8 @@ Lane decode_lane(Decoder& decoder, size_t lane_count) {
   lane.speed_limit_mps = decoder.real(kMaxSpeedMps, "a speed limit beyond 1000 m/s");
   lane.successors.resize(decoder.count(1));
   for (uint32_t& successor : lane.successors) {
-    successor = static_cast<uint32_t>(
-        decoder.number_below(lane_count, "a successor that is not among the lanes"));
+    successor =
+        static_cast<uint32_t>(decoder.number_below(lane_count, "a successor beyond the last lane"));
   }
   return lane;
 }
@@ -196,27 +196,27 @@ HdMap decode_body(Decoder& decoder) {
   return map;
 }
 
-/// The body, if all around it is as it must be.
+/// Checks size, magic, version and CRC, then returns the body.
 Result<std::string_view> body_of(std::string_view bytes, const std::string& file) {
   if (bytes.size() < kHeaderSize + kCrcSize) {
     return fail("{}: found {} bytes, wanted a map file of at least {}", file, bytes.size(),
                 kHeaderSize + kCrcSize);
   }
   if (!bytes.starts_with(kMapMagic)) {
-    return fail("{}: found other first bytes, wanted \"{}\"", file, kMapMagic);
+    return fail("{}: found a different magic number, wanted \"{}\"", file, kMapMagic);
   }
   if (const auto version = fixed_at<uint16_t>(bytes, kVersionOffset); version != kVersion) {
     return fail("{}: found version {} of the format, wanted {}", file, version, kVersion);
   }
   const size_t size = fixed_at<uint32_t>(bytes, kSizeOffset);
   if (bytes.size() != kHeaderSize + size + kCrcSize) {
-    return fail("{}: found {} bytes, wanted the {} that its header tells", file, bytes.size(),
+    return fail("{}: found {} bytes, wanted {} as its header states", file, bytes.size(),
                 kHeaderSize + size + kCrcSize);
   }
   const std::string_view checked = bytes.substr(0, kHeaderSize + size);
   const uint32_t found = crc32(checked);
   if (const auto wanted = fixed_at<uint32_t>(bytes, checked.size()); found != wanted) {
-    return fail("{}: found CRC-32 {:08x}, wanted {:08x} as the file tells", file, found, wanted);
+    return fail("{}: found CRC-32 {:08x}, wanted {:08x} as the file states", file, found, wanted);
   }
   return checked.substr(kHeaderSize);
 }
@@ -256,8 +256,8 @@ Result<HdMap> decode_map(std::string_view bytes, const std::string& file) {
   if (!body) return tl::unexpected(body.error());
   Decoder decoder(*body);
   HdMap map = decode_body(decoder);
-  if (decoder.mistake()) {
-    return fail("{}: {}, wanted a map as this program writes it", file, *decoder.mistake());
+  if (decoder.error()) {
+    return fail("{}: {}, wanted a valid compact map", file, *decoder.error());
   }
   return map;
 }

@@ -1,4 +1,4 @@
-// The compact map file (.bvm) that an appliance carries: a few kilobytes per kilometre of road.
+// Reads and writes compact map files (.bvm), which take a few kilobytes per kilometre of road.
 #pragma once
 
 #include <filesystem>
@@ -10,31 +10,33 @@
 
 namespace bevloc {
 
-/// Points are kept to the millimetre.
+/// Resolution of the stored points.
 inline constexpr double kMapQuantumM = 0.001;
 
-/// First bytes of every such file.
+/// The first bytes of every compact map file.
 inline constexpr std::string_view kMapMagic = "BVMP";
 
-/// Layout, all numbers little endian:
+/// Encodes a map. File layout, all numbers little-endian:
 ///
-///     magic "BVMP" | version u16 | bytes of the body u32 | body | CRC-32 of all before u32
+///     magic "BVMP" | version u16 | size of the body in bytes u32 | body | CRC-32 u32
 ///
-/// The body is a stream of varints (7 bits a byte, low ones first, the top bit says that more
-/// follow), signed ones zigzag-coded, and of 64-bit IEEE numbers:
+/// The CRC-32 covers all bytes before it.
+///
+/// The body consists of varints (7 bits per byte, low bits first; the top bit is set if another
+/// byte follows; signed numbers are zigzag-coded) and of 64-bit IEEE numbers:
 ///
 ///     name: length, bytes
 ///     origin: latitude, longitude (f64, degrees)
 ///     elements: count, then each: class, appearance, polyline
 ///     lanes: count, then each: left, right, centerline (polylines), speed limit (f64, m/s),
 ///            successors: count, indices
-///     polyline: count, then each point: steps of x and y in millimetres (signed) from the point
-///            before it in the file; the first point's steps are from (0, 0)
+///     polyline: count, then for each point: x and y in millimetres (signed), as differences from
+///            the previous point in the file; for the first point, from (0, 0)
 ///
-/// Coordinates must be finite and less than 100,000 km.
+/// Coordinates must be finite and below 100,000 km.
 std::string encode_map(const HdMap& map);
 
-/// Fails, with `file` in the message, on anything that encode_map did not write.
+/// Decodes a map. Fails, with `file` in the message, unless encode_map() wrote the bytes.
 Result<HdMap> decode_map(std::string_view bytes, const std::string& file);
 
 Result<HdMap> read_map_binary(const std::filesystem::path& path);

@@ -16,14 +16,14 @@ bool has_local(const OsmNode& node) {
   return node.local_x_m && node.local_y_m;
 }
 
-/// Where local coordinates are given, "0" for both angles stands for nothing (as Autoware's tools
-/// write it).
+/// Whether a node has latitude and longitude. Autoware's tools write "0" for both if a node has
+/// local coordinates only.
 bool has_angles(const OsmNode& node) {
   if (!node.latitude_deg || !node.longitude_deg) return false;
   return !has_local(node) || *node.latitude_deg != 0.0 || *node.longitude_deg != 0.0;
 }
 
-/// The middle of all nodes that have angles.
+/// The middle of all nodes with latitude and longitude.
 std::optional<GeoOrigin> middle_of(const OsmDocument& document) {
   double south = 90.0, north = -90.0, west = 180.0, east = -180.0;
   for (const auto& [id, node] : document.nodes) {
@@ -37,7 +37,7 @@ std::optional<GeoOrigin> middle_of(const OsmDocument& document) {
   return GeoOrigin{0.5 * (south + north), 0.5 * (west + east)};
 }
 
-/// Turns, scales and moves the plane; points are complex numbers.
+/// Rotation, scale and shift of the plane. Points are complex numbers.
 struct Similarity {
   std::complex<double> factor;
   std::complex<double> shift;
@@ -47,8 +47,8 @@ struct Similarity {
   }
 };
 
-/// The least-squares similarity that takes local coordinates to the tangent plane; nothing if the
-/// nodes with both are too few or do not agree.
+/// The least-squares similarity from local coordinates to the tangent plane. Nothing if there are
+/// fewer than two points or the fit is poor.
 std::optional<Similarity> plane_from_local(const std::vector<std::complex<double>>& local,
                                            const std::vector<std::complex<double>>& plane) {
   constexpr double kMaxScaleError = 0.01;

@@ -1,4 +1,4 @@
-// Where the nodes of an OSM file lie in the map frame.
+// Computes the positions of OSM nodes in the map frame.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,16 @@ namespace bevloc {
 
 struct NodePositions {
   GeoOrigin origin;
-  /// Metres east and north of the origin; nodes without any coordinates are left out.
+  /// Metres east and north of the origin. Nodes without coordinates are missing.
   std::unordered_map<int64_t, Eigen::Vector2d> of_node;
 };
 
-/// The map frame is the east-north tangent plane at the middle of the file's nodes. Autoware's
-/// local coordinates, where a node has them, count more than its latitude and longitude: they are
-/// moved, turned and scaled as a whole into that plane, as the nodes that have both tell. If no
-/// node has both, or the two do not agree, local coordinates are the map frame as they are and the
-/// origin, which nothing tells, is (0, 0).
+/// The map frame is the east-north tangent plane at the middle of the file's nodes. Where a node
+/// has Autoware's local coordinates, they take precedence over its latitude and longitude: one
+/// similarity (shift, rotation, scale) maps all local coordinates into the tangent plane. It is
+/// fitted to the nodes that have both. If fewer than two nodes have both, or if they disagree by
+/// more than 1 m or 1 % of scale, the local coordinates are the map frame and the unknown origin is
+/// (0, 0).
 NodePositions locate_nodes(const OsmDocument& document);
 
 }  // namespace bevloc

@@ -1,4 +1,4 @@
-// Finds the map elements near a place.
+// Spatial index: finds the map elements in an area.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,12 @@
 
 namespace bevloc {
 
-/// Spatial index over a map's line segments. Keeps a reference to the map: the map must outlive it.
-/// Safe to query from several threads.
+/// Spatial index over the line segments of a map. The map must outlive it. Several threads may
+/// query it at the same time.
 class MapIndex {
  public:
-  /// A segment of an element: from its point `first` to the next (a ring's last closes it).
+  /// The segment of an element from point `first` to the next; the last segment of a ring closes
+  /// it.
   struct Segment {
     uint32_t element;
     uint32_t first;
@@ -29,9 +30,9 @@ class MapIndex {
 
   const HdMap& map() const { return map_; }
 
-  /// Replaces `found` with the segments whose bounding box meets the given one, in a fixed order
-  /// (by element, then by point). Time grows with the result, not with the map. No allocation
-  /// beyond the growth of `found`.
+  /// Replaces `found` with the segments whose bounding boxes intersect the given one, sorted by
+  /// element, then by point. The time depends on the number of results rather than on the size of
+  /// the map. Allocates only if `found` must grow.
   void query(const Eigen::Vector2d& min_corner, const Eigen::Vector2d& max_corner,
              std::vector<Segment>& found) const;
 

@@ -12,7 +12,7 @@ Result<HdMap> load_map(const std::filesystem::path& path) {
   if (bytes->starts_with(kMapMagic)) return decode_map(*bytes, path.string());
   if (path.extension() == ".osm") return parse_lanelet2(*bytes, path);
   return fail(
-      "{}: found neither the first bytes of a compact map (\"{}\") nor the ending .osm, "
+      "{}: found neither the magic number \"{}\" nor the extension .osm, "
       "wanted a compact map or a Lanelet2 map",
       path.string(), kMapMagic);
 }

@@ -1,4 +1,4 @@
-// Opens a map file of any format that this project reads.
+// Loads a map file of any supported format.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,8 @@
 
 namespace bevloc {
 
-/// Reads a compact map (told by its first bytes) or a Lanelet2 map (told by its ending, .osm).
+/// Loads a compact map, recognised by its magic number, or a Lanelet2 map, recognised by the
+/// extension .osm.
 Result<HdMap> load_map(const std::filesystem::path& path);
 
 }  // namespace bevloc

@@ -11,7 +11,7 @@
 namespace bevloc {
 namespace {
 
-/// Finds the line of a byte of the text.
+/// Finds the line number of a position in the text.
 class LineFinder {
  public:
   explicit LineFinder(std::string_view text) {
@@ -38,7 +38,7 @@ std::optional<T> number_from(std::string_view text) {
   return value;
 }
 
-/// Reads the elements of one file; stops at the first error.
+/// Reads the elements of one file. Stops at the first error.
 class OsmReader {
  public:
   OsmReader(std::string_view text, std::string file) : lines_(text) {
@@ -61,7 +61,7 @@ class OsmReader {
   int line_of(const pugi::xml_node& node) const { return lines_.line_at(node.offset_debug()); }
 
  private:
-  /// An attribute that must be an id.
+  /// An attribute that contains an id.
   Result<int64_t> id_in(const pugi::xml_node& element, const char* attribute) const {
     const std::string_view text = element.attribute(attribute).value();
     if (const auto id = number_from<int64_t>(text)) return *id;
@@ -69,7 +69,7 @@ class OsmReader {
                 line_of(element), element.name(), attribute, text);
   }
 
-  /// The element's own id, which must be new among those of its kind.
+  /// The id of the element, which must be unique among elements of its kind.
   Result<int64_t> new_id(const pugi::xml_node& element, std::unordered_set<int64_t>& seen) const {
     Result<int64_t> id = id_in(element, "id");
     if (id && !seen.insert(*id).second) {
@@ -79,7 +79,7 @@ class OsmReader {
     return id;
   }
 
-  /// A coordinate within +-limit, or nothing for "".
+  /// A coordinate from -limit to limit, or nothing for "".
   Result<std::optional<double>> coordinate(const pugi::xml_node& place, int64_t node_id,
                                            std::string_view name, std::string_view text,
                                            double limit) const {

@@ -1,4 +1,4 @@
-// The raw content of an OpenStreetMap XML file, with the line of every element.
+// Parses OpenStreetMap XML files. Keeps the line of every element for error messages.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace bevloc {
 
-/// Coordinates are there or not, but never out of range: "" counts as not there.
+/// Each coordinate is either absent (also if its text is "") or within its range.
 struct OsmNode {
   int line = 0;
   std::optional<double> latitude_deg;
@@ -24,7 +24,7 @@ struct OsmNode {
 
 using OsmTags = std::map<std::string, std::string, std::less<>>;
 
-/// A tag's value, or "" if there is no such tag.
+/// The value of a tag, or "" if the tag is missing.
 std::string_view tag_value(const OsmTags& tags, std::string_view key);
 
 struct OsmWay {
@@ -47,8 +47,8 @@ struct OsmRelation {
   OsmTags tags;
 };
 
-/// Elements in the file's order; elements that JOSM marks as deleted are left out. References may
-/// point to elements that are not there.
+/// Ways and relations in file order, without the elements that JOSM marks as deleted. References
+/// may point to missing elements.
 struct OsmDocument {
   std::string file;
   std::unordered_map<int64_t, OsmNode> nodes;
@@ -56,8 +56,8 @@ struct OsmDocument {
   std::vector<OsmRelation> relations;
 };
 
-/// Fails, with file and line, on text that is not OSM XML, on ids that are not whole numbers or are
-/// there twice, and on coordinates that are not numbers or out of range.
+/// Fails with file and line on text that is not OSM XML, on ids that are repeated or not whole
+/// numbers, and on coordinates that are out of range or not numbers.
 Result<OsmDocument> parse_osm(std::string_view text, std::string file);
 
 }  // namespace bevloc

@@ -8,18 +8,18 @@
 namespace bevloc {
 namespace {
 
-/// A cell's value falls from full to empty over one cell around the line's edge.
+/// The value falls from 255 to 0 over one cell, centred on the edge of the line.
 constexpr double kOuterRadiusCells = 0.5 * kRasterLineWidthCells + 0.5;
-/// Segments are cut this far outside the raster, where their cut ends no longer show.
+/// Segments are clipped this far outside the raster, so that the new ends are not visible.
 constexpr double kClipMarginCells = kOuterRadiusCells + 1.0;
 
-/// A segment in (fractional) cells: x() counts columns, y() rows; whole numbers are cell centres.
+/// A segment in cells: x() is the column, y() the row. Integers are cell centres.
 struct CellSegment {
   Eigen::Vector2d from;
   Eigen::Vector2d to;
 };
 
-/// The part of a segment inside the raster and its margin (Liang and Barsky's clipping).
+/// The part of a segment inside the raster and its margin (Liang-Barsky clipping).
 std::optional<CellSegment> clip_to_raster(const CellSegment& segment) {
   const Eigen::Vector2d low = Eigen::Vector2d::Constant(-kClipMarginCells);
   const Eigen::Vector2d high(kRasterGrid.cols - 1 + kClipMarginCells,
@@ -42,13 +42,13 @@ std::optional<CellSegment> clip_to_raster(const CellSegment& segment) {
   return CellSegment{segment.from + enter * direction, segment.from + leave * direction};
 }
 
-/// The columns of one row that a segment may touch, as [first, last]; empty if first > last.
+/// The columns of one row that a segment may cover, from `first` to `last`; empty if first > last.
 struct ColumnSpan {
   int first;
   int last;
 };
 
-ColumnSpan touched_columns(const CellSegment& segment, int row) {
+ColumnSpan covered_columns(const CellSegment& segment, int row) {
   const Eigen::Vector2d direction = segment.to - segment.from;
   double begin = 0.0;
   double end = 1.0;
@@ -66,7 +66,7 @@ ColumnSpan touched_columns(const CellSegment& segment, int row) {
           std::min(kRasterGrid.cols - 1, static_cast<int>(std::floor(high)))};
 }
 
-/// Raises each cell of a row to its cover by the segment, from its distance to the segment.
+/// Raises each cell of a row to its coverage by the segment, which depends on the distance.
 void draw_row(const CellSegment& segment, int row, const ColumnSpan& span, uint8_t* cells) {
   const auto from_col = static_cast<float>(segment.from.x());
   const auto from_row = static_cast<float>(segment.from.y());
@@ -89,19 +89,19 @@ void draw_row(const CellSegment& segment, int row, const ColumnSpan& span, uint8
   }
 }
 
-/// Draws one segment with round ends, so that the joints of a polyline close.
+/// Draws one segment with round ends, so that polylines have no gaps at their joints.
 void draw_segment(const CellSegment& segment, uint8_t* channel) {
   const double top = std::min(segment.from.y(), segment.to.y()) - kOuterRadiusCells;
   const double bottom = std::max(segment.from.y(), segment.to.y()) + kOuterRadiusCells;
   const int first_row = std::max(0, static_cast<int>(std::ceil(top)));
   const int last_row = std::min(kRasterGrid.rows - 1, static_cast<int>(std::floor(bottom)));
   for (int row = first_row; row <= last_row; ++row) {
-    draw_row(segment, row, touched_columns(segment, row),
+    draw_row(segment, row, covered_columns(segment, row),
              channel + static_cast<size_t>(row) * kRasterGrid.cols);
   }
 }
 
-/// Whether an edge of a crossing's ring is one of its two longest (the first of equals wins).
+/// Whether an edge is one of the two longest of its ring. Of equal edges, the first ones count.
 bool is_long_edge(const std::vector<Eigen::Vector2d>& ring, size_t edge) {
   const auto length_squared = [&ring](size_t i) {
     return (ring[(i + 1) % ring.size()] - ring[i]).squaredNorm();
@@ -115,7 +115,7 @@ bool is_long_edge(const std::vector<Eigen::Vector2d>& ring, size_t edge) {
   return longer < 2;
 }
 
-/// Half the extent, along the map's axes, of the crop with its margin.
+/// Half the size, along the axes of the map, of the box around the raster with its margin.
 Eigen::Vector2d half_extent_in_map(double yaw_rad) {
   const double margin_m = kClipMarginCells * kRasterGrid.cell_m;
   const double half_x = kRasterGrid.x_range_m() + margin_m;

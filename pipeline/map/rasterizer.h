@@ -1,4 +1,4 @@
-// Draws the map around a pose as the network's raster (paper, III-B: the semantic mask S).
+// Draws the raster, the map around a pose as input of the network (S in the paper, III-B).
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,21 @@
 
 namespace bevloc {
 
-/// Line width of a raster: 5 cells = 0.75 m, HDMapNet's choice.
+/// Line width in a raster: 5 cells = 0.75 m, as in HDMapNet.
 inline constexpr int kRasterLineWidthCells = 5;
 
-/// Number of bytes of one raster: channel by channel (ElementClass order), row by row.
+/// Size of a raster in bytes: [3, 400, 200], channels in the order of ElementClass.
 inline constexpr size_t kRasterSize =
     static_cast<size_t>(kRasterChannels) * kRasterGrid.rows * kRasterGrid.cols;
 
-/// Crops the map around a pose and draws it, anti-aliased, 0 (empty) to 255 (covered), with
-/// sub-cell accuracy: a line's centre of mass lies where the line is to within a tenth of a cell.
-/// A crossing is drawn as its two longest edges, as BeMapNet does.
-/// Not thread safe (it owns scratch buffers); no allocation once warm.
+/// Draws rasters with anti-aliasing: 0 is empty, 255 is covered. The centre of mass of a drawn line
+/// is accurate to a tenth of a cell. Of a crossing only the two longest edges are drawn, as in
+/// BeMapNet. Not thread safe. Allocates nothing after a warm-up. The index must outlive it.
 class MapRasterizer {
  public:
   explicit MapRasterizer(const MapIndex& index);
 
-  /// raster has kRasterSize bytes and is overwritten whole.
+  /// Overwrites `raster`, which must have kRasterSize bytes.
   void draw(const Se2& map_from_vehicle, std::span<uint8_t> raster);
 
  private:

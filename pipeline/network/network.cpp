@@ -4,9 +4,9 @@
 #include <charconv>
 #include <cmath>
 
-#include "pipeline/network/load_error.h"
-#include "pipeline/network/lowering.h"
-#include "pipeline/network/onnx_reader.h"
+#include "pipeline/network/model/load_error.h"
+#include "pipeline/network/model/lowering.h"
+#include "pipeline/network/model/onnx_reader.h"
 #include "pipeline/preprocessing/network_camera.h"
 
 namespace bevloc {
@@ -21,9 +21,10 @@ constexpr const char* kBevFeatures = "bev_features";
 constexpr const char* kMapFeatures = "map_features";
 constexpr const char* kBevMask = "bev_mask";
 
-enum Part : size_t { kImagePart, kMapPart, kMaskPart };
+/// Indices of the branches, in the order in which the engine is given them.
+enum BranchIndex : size_t { kImageBranch, kMapBranch, kMaskBranch };
 
-/// What a port may look like.
+/// The name of a port with the element types and shapes that it may have.
 struct Contract {
   std::string name;
   std::vector<ElementType> types;
@@ -69,7 +70,7 @@ void check_ports(const std::vector<nn::Port>& ports, const std::vector<Contract>
     }
   }
   if (ports.size() != contracts.size()) {
-    nn::refuse("there are {} {}s ({}), wanted {}", ports.size(), kind, names_of(ports),
+    nn::refuse("found {} {}s ({}), wanted {}", ports.size(), kind, names_of(ports),
                contracts.size());
   }
 }
@@ -87,8 +88,8 @@ float positive_number(const nn::Graph& graph, const std::string& key) {
   return number;
 }
 
-float positive_number_or(const nn::Graph& graph, const std::string& key, float otherwise) {
-  return graph.metadata.contains(key) ? positive_number(graph, key) : otherwise;
+float positive_number_or(const nn::Graph& graph, const std::string& key, float fallback) {
+  return graph.metadata.contains(key) ? positive_number(graph, key) : fallback;
 }
 
 SolverParameters read_solver_parameters(const nn::Graph& graph) {
@@ -110,18 +111,10 @@ SolverParameters read_solver_parameters(const nn::Graph& graph) {
   return parameters;
 }
 
-/// The image branch must not wait for the map, nor the map for the images.
+/// The image branch must not depend on the raster, nor the map branch on the images.
 void check_independence(const nn::Program& program, const char* output, const char* input) {
-  const auto value_of = [](const std::vector<nn::ProgramPort>& ports, const char* name) {
-    return std::ranges::find(ports, name, &nn::ProgramPort::name)->value;
-  };
-  std::vector<bool> needed(program.values.size(), false);
-  needed[static_cast<size_t>(value_of(program.outputs, output))] = true;
-  for (auto step = program.steps.rbegin(); step != program.steps.rend(); ++step) {
-    if (!needed[static_cast<size_t>(nn::output_of(*step))]) continue;
-    for (const int id : nn::inputs_of(*step)) needed[static_cast<size_t>(id)] = true;
-  }
-  if (needed[static_cast<size_t>(value_of(program.inputs, input))]) {
+  const auto port = std::ranges::find(program.inputs, input, &nn::ProgramPort::name);
+  if (nn::needed_values(program, output)[static_cast<size_t>(port->value)]) {
     nn::refuse("output '{}' depends on input '{}', wanted separate branches", output, input);
   }
 }
@@ -182,17 +175,17 @@ std::span<uint8_t> Network::raster_input() {
 }
 
 void Network::run_image_branch() {
-  state_->engine->run(kImagePart);
+  state_->engine->run(kImageBranch);
 }
 void Network::run_map_branch() {
-  state_->engine->run(kMapPart);
+  state_->engine->run(kMapBranch);
 }
 void Network::run_mask_head() {
-  state_->engine->run(kMaskPart);
+  state_->engine->run(kMaskBranch);
 }
 
-void Network::for_each_turn(int count, Turn turn) {
-  state_->engine->for_each_turn(count, turn);
+void Network::parallel_for(int count, LoopBody body) {
+  state_->engine->parallel_for(count, body);
 }
 
 FeatureView Network::bev_features() const {

@@ -14,21 +14,23 @@ namespace {
 
 #include "pipeline/preprocessing/blocks_avx2.h"
 
-/// Columns of one parity that a register has room for: where four are enough, it has them twice.
+/// Columns of one parity in 8 bytes. Where four are enough, the 8 bytes contain them twice.
 template <int kTaps>
 constexpr int kColumns = kTaps <= 5 ? 4 : 8;
 template <int kTaps>
 constexpr int kSlots = RemapBlocks::slots(kTaps);
 
-/// What is loaded of a row begins one column to the left of a block's first column, which is even.
-/// A half has bytes of odd columns, then those of even ones.
+/// Column of byte i of a half, counted from the first loaded column. Loading starts one column to
+/// the left of a block's first column, which is even, so that a half contains odd columns of the
+/// frame in its lower 8 bytes and even ones in its upper 8 bytes.
 template <int kTaps>
 constexpr int column(int i) {
   return 2 * (i % kColumns<kTaps>)+i / 8;
 }
 
-/// Weights of samples along one axis: twice the box weight of the same pixel, plus those of its
-/// neighbours. A half's byte or word i has what `slot_of` says; nothing where that is kNone.
+/// Shuffles that fetch, for each sample along one axis, the box weights of its pixel and of the two
+/// neighbours. The weight of the sample is twice its own box weight plus those of the neighbours.
+/// slot_of(half, i, offset) is the source byte for byte i of a half, or kNone for 0.
 struct Lattice {
   Shuffle before;
   Shuffle own;
@@ -45,21 +47,21 @@ struct Lattice {
   }
 };
 
-/// A column's weight can be above a byte. It is split into halves, of odd weights one rounded down:
-/// where `down` is -1, elsewhere up.
+/// Weights of the columns. They may exceed a byte, so this returns half of each: rounded down where
+/// the bytes of `down` are -1, rounded up elsewhere. Both results together sum to the weight.
 template <int kTaps>
 __m256i lattice_cols(__m256i weights, __m256i down) {
   static constexpr Lattice kCols([](int half, int i, int by) {
     const int slot = column<kTaps>(i) - 1 + by;
     return slot >= 0 && slot < kSlots<kTaps> ? col_weight<kSlots<kTaps>>(half, slot) : kNone;
   });
-  // The instruction rounds up; so does ~x rounded up, which is x rounded down.
+  // avg rounds up. Rounding up the complement of x rounds x down.
   const __m256i mean = _mm256_avg_epu8(_mm256_xor_si256(kCols.before(weights), down),
                                        _mm256_xor_si256(kCols.after(weights), down));
   return _mm256_add_epi8(kCols.own(weights), _mm256_xor_si256(mean, down));
 }
 
-/// Of eight rows in words; row 0 is the one above the box.
+/// Weights of eight rows, in words. Row 0 is the row above the box.
 template <int kTaps, int kFirstRow>
 __m256i lattice_rows(__m256i weights) {
   static constexpr Lattice kRows([](int half, int i, int by) {
@@ -72,12 +74,13 @@ __m256i lattice_rows(__m256i weights) {
   return _mm256_add_epi16(_mm256_add_epi16(own, own), neighbours);
 }
 
+/// Copies one word to all words of a half.
 constexpr Shuffle all_words(int word) {
   return Shuffle([word](int, int i) { return 2 * word + i % 2; });
 }
 
-/// Of a pair's pixels the sums of odd and of even columns, of the rows 0, 2, ... and of the others:
-/// four for each pixel.
+/// Four weighted sums for each pixel of a pair: over odd and even columns of rows 0, 2, ..., then
+/// over those of rows 1, 3, ...
 template <int kTaps>
 [[gnu::always_inline]] inline __m256i lattice_sums(const ImagePlane& plane, const Distances& place,
                                                    const RemapBlocks& blocks, size_t block,
@@ -85,7 +88,7 @@ template <int kTaps>
   static constexpr Shuffle kByColumn([](int, int i) { return column<kTaps>(i); });
   static constexpr auto kAllWords = shuffles<8>(all_words);
   constexpr bool kIsTwice = kColumns<kTaps> == 4;
-  // Two products that are added have one weight rounded down and one up.
+  // Each halved weight is used twice, once rounded down and once rounded up.
   const __m256i down = kIsTwice ? _mm256_set1_epi64x(static_cast<int64_t>(0xFF00FF00'00FF00FF))
                                 : _mm256_set1_epi16(0x00FF);
   const __m256i weights = load_weights<kSlots<kTaps>>(blocks, block, pair);
@@ -110,17 +113,18 @@ template <int kTaps>
   return _mm256_hadd_epi32(halves[0], halves[1]);
 }
 
-/// Less 128, rounded. `bits`: the sum of its weights.
+/// The rounded mean from sums of centred samples, whose weights sum to 2^bits.
 inline __m256i mean_of(__m256i sums, int bits) {
   return _mm256_srai_epi32(_mm256_add_epi32(sums, _mm256_set1_epi32(1 << (bits - 1))), bits);
 }
 
-/// Where the colours lie among the four sums of a pixel. The box's first row is even in the frame
-/// or odd; the columns are the frame's.
+/// Selects red, green and blue from the four sums of each pixel. The selection depends on whether
+/// the first row of the box is even or odd in the frame; the columns are always aligned to the
+/// frame.
 __m256i colours_of(const SumsByKind& sums, __m256i first_rows, RedPixel red) {
   constexpr int kRedBits = 2 * (RemapTable::kWeightBits + 1);
   const int red_col = red.col == 0 ? 1 : 0;
-  // The first row summed is the one above the box.
+  // The sums start in the row above the box.
   const __m256i parity = _mm256_xor_si256(first_rows, _mm256_set1_epi32(1 + red.row));
   const __m256i is_swapped = _mm256_slli_epi32(parity, 31);
   const auto chosen = [&](int first, int swapped) __attribute__((always_inline)) {

@@ -6,14 +6,15 @@
 namespace bevloc {
 namespace {
 
-/// Interpolating between samples two apart widens a box by one pixel on either side.
+/// Interpolation between samples of one colour, two pixels apart, widens a box by one pixel on each
+/// side.
 constexpr int kMaxSamples = RemapTable::kMaxTaps + 2;
-/// Of the weights of one lattice along one axis: twice RemapTable::kWeightSum.
+/// Weights of one lattice along one axis sum to 2^kLatticeBits = 2 * RemapTable::kWeightSum.
 constexpr int kLatticeBits = RemapTable::kWeightBits + 1;
 
-/// Weights along one axis of the samples that a box's pixels are interpolated from: a pixel on a
-/// lattice takes its sample, one between takes half of each neighbour. Summed over the samples of
-/// either parity they make 2 * kWeightSum.
+/// Weights along one axis of the samples from which the pixels of a box are interpolated. A lattice
+/// holds the samples of one parity. A pixel on the lattice takes its own sample, a pixel between
+/// takes half of each neighbour. The weights of each parity sum to 2 * kWeightSum.
 struct LatticeWeights {
   int first;
   uint16_t weights[kMaxSamples];
@@ -43,7 +44,7 @@ struct LatticeWeights {
     const LatticeWeights cols(table.first_col[i], weights, taps, image.width);
     const LatticeWeights rows(table.first_row[i], weights + taps, taps, image.height);
     const uint8_t* box = plane.data + rows.first * plane.stride_bytes + cols.first;
-    // By parity of the row: columns of the rows that have red, and of those that have blue.
+    // Column sums over the rows with red samples, and over the rows with blue samples.
     uint32_t columns[2][kMaxSamples] = {};
     for (int row = 0; row < samples; ++row, box += plane.stride_bytes) {
       uint32_t* sums = columns[(rows.first + row + red_row) & 1];
@@ -64,7 +65,7 @@ struct LatticeWeights {
   }
 }
 
-/// The tap counts of usual frames are compiled as constants, as in rgb_remap.cpp.
+/// Common tap counts are compile-time constants, as in rgb_remap.cpp.
 BEVLOC_TARGET_CLONES
 void remap_range(const ImageView& image, const RemapTable& table, PixelRange range, int red_row,
                  int red_col, int8_t* planes) {

@@ -1,12 +1,14 @@
-// Blocks of network pixels in AVX2 registers: included after that set has been chosen. A register
-// holds a pair of pixels that are four apart, one in each 128-bit half: of each four bytes, words
-// or one sum for each channel.
+// Parts of the AVX2 kernels. Include it inside a namespace, after "#pragma GCC target("avx2")".
+//
+// A register contains a pair of pixels, i and i + 4 of a block, one in each 128-bit half. Within a
+// half come the channels: four bytes, four words or one 32-bit sum for each.
 
 constexpr int kPixels = RemapBlocks::kPixels;
 constexpr int kPairs = kPixels / 2;
 constexpr int kNone = -1;
 
-/// For _mm256_shuffle_epi8: byte i of half h is source(h, i) of that half, or 0 if that is kNone.
+/// Control of _mm256_shuffle_epi8: byte i of half h becomes byte source(h, i) of the same half, or
+/// 0 for kNone.
 struct Shuffle {
   alignas(32) int8_t bytes[32];
 
@@ -28,8 +30,8 @@ inline __m128i load_4(const uint8_t* from) {
   return _mm_loadu_si32(from);
 }
 
-/// As signed bytes around 0, the first factor of a product being the weights: the sums of two
-/// products of bytes then stay within 16 bits.
+/// Samples minus 128 as signed bytes, so that the sum of two products weight * sample fits into 16
+/// bits.
 inline __m256i centred(__m256i samples) {
   return _mm256_xor_si256(samples, _mm256_set1_epi8(-128));
 }
@@ -43,7 +45,8 @@ inline __m256i times(__m256i positions, std::ptrdiff_t factor) {
   return _mm256_mullo_epi32(positions, _mm256_set1_epi32(static_cast<int32_t>(factor)));
 }
 
-/// For each pixel of a block the distance in bytes of its first sample from a plane's.
+/// For each pixel of a block: offset in bytes of its first sample from the first sample of the
+/// plane.
 struct Distances {
   alignas(32) int32_t bytes[kPixels];
 
@@ -54,27 +57,27 @@ struct Distances {
   std::ptrdiff_t operator[](int pixel) const { return bytes[pixel]; }
 };
 
-/// Where all channels of a pixel lie side by side, in so many bytes.
+/// The distances for a format with all channels of a pixel in `pixel_bytes` adjacent bytes.
 inline Distances packed_distances(const RemapBlocks& blocks, size_t block,
                                   std::ptrdiff_t stride_bytes, int pixel_bytes) {
   return {load_positions(blocks.first_row, block), stride_bytes,
           times(load_positions(blocks.first_col, block), pixel_bytes)};
 }
 
-/// Sixteen bytes of both pixels of a pair.
+/// Loads 16 bytes for each pixel of a pair.
 inline __m256i load_pair(const uint8_t* first, const Distances& place, int pair) {
   return _mm256_set_m128i(load_16(first + place[pair + kPairs]), load_16(first + place[pair]));
 }
 
-/// Asks for what the network pixels below a block will read. Pictures come from other cores and
-/// devices; without this, those that are in no near cache take nearly twice as long. `first`: the
-/// block's first sample; each has `kSampleBytes`. A plane may have fewer rows and columns than the
-/// picture, by 2 to the power of a shift.
+/// Prefetches the samples that the network pixels below a block will read. Camera frames come from
+/// other cores and devices; without prefetching, a frame outside the near caches takes nearly twice
+/// as long. `first` is the first sample of the block; a sample has `kSampleBytes`. The rows and
+/// columns of the plane are those of the image divided by 2^kRowShift and 2^kColShift.
 template <int kTaps, int kSampleBytes, int kRowShift = 0, int kColShift = 0>
 [[gnu::always_inline]] inline void prefetch_below(const uint8_t* first,
                                                   std::ptrdiff_t stride_bytes) {
   constexpr int kCacheLine = 64;
-  constexpr int kScale = kTaps - 1;  // camera pixels to a network pixel, about
+  constexpr int kScale = kTaps - 1;  // approximate number of camera pixels per network pixel
   constexpr int kBytes = kPixels * kScale * kSampleBytes >> kColShift;
   constexpr int kBegin = kTaps >> kRowShift;
   constexpr int kEnd = (kTaps + kScale) >> kRowShift;
@@ -85,7 +88,7 @@ template <int kTaps, int kSampleBytes, int kRowShift = 0, int kColShift = 0>
   }
 }
 
-/// Of both pixels of a pair, where the shuffles below look for them.
+/// Loads the weights of a pair. col_weight() and row_weight() select from them.
 template <int kSlots>
 __m256i load_weights(const RemapBlocks& blocks, size_t block, int pair) {
   const uint8_t* const first = blocks.weights.data() + 4 * kSlots * (kPairs * block + pair);
@@ -93,11 +96,12 @@ __m256i load_weights(const RemapBlocks& blocks, size_t block, int pair) {
   return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(first));
 }
 
+/// Position of a column weight within a half.
 template <int kSlots>
 constexpr int col_weight(int half, int slot) {
   return slot + (kSlots == 4 ? 8 * half : 0);
 }
-/// A row's weight as each word.
+/// Copies the weight of a row to all words of a half.
 template <int kSlots>
 constexpr Shuffle row_weight(int row) {
   return Shuffle([row](int half, int i) {
@@ -105,7 +109,7 @@ constexpr Shuffle row_weight(int row) {
   });
 }
 
-/// {make(0), make(1), ...}
+/// The array {make(0), make(1), ..., make(kCount - 1)}.
 template <int kCount, typename Make>
 constexpr auto shuffles(const Make& make) {
   return [&make]<int... kIndex>(std::integer_sequence<int, kIndex...>) {
@@ -114,7 +118,8 @@ constexpr auto shuffles(const Make& make) {
   (std::make_integer_sequence<int, kCount>());
 }
 
-/// The kernel for boxes so wide: `choose` is given std::integral_constants.
+/// The kernel for boxes of `taps` pixels: calls `choose` with an std::integral_constant. Null if
+/// there is no kernel for this width.
 template <typename Choose>
 auto kernel_of_taps(int taps, const Choose& choose)
     -> decltype(choose(std::integral_constant<int, RemapBlocks::kMaxTaps>())) {
@@ -136,7 +141,7 @@ auto kernel_of_taps(int taps, const Choose& choose)
   }
 }
 
-/// Writes three planes, given the bytes of red, green and blue, four pixels each, in either half.
+/// Writes a block to the three planes. Each half of `bytes` has red, green and blue of four pixels.
 inline void store_block(__m256i bytes, int8_t* planes) {
   const __m256i channels =
       _mm256_permutevar8x32_epi32(bytes, _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7));
@@ -147,7 +152,7 @@ inline void store_block(__m256i bytes, int8_t* planes) {
   _mm_storel_epi64(reinterpret_cast<__m128i*>(planes + 2 * kNetworkPixels), blue);
 }
 
-/// From four sums for each of eight pixels to eight of each kind.
+/// Transposes four sums for each of eight pixels to eight sums of each kind.
 struct SumsByKind {
   __m256i kinds[4];
 
@@ -163,7 +168,7 @@ struct SumsByKind {
   }
 };
 
-/// Cut off at the ends of 8 bits, signed.
+/// Converts to signed bytes with saturation.
 inline __m256i to_bytes(__m256i red, __m256i green, __m256i blue) {
   return _mm256_packs_epi16(_mm256_packs_epi32(red, green), _mm256_packs_epi32(blue, blue));
 }

@@ -1,7 +1,8 @@
-// Box means of three channels, for formats that show each pixel's: included after blocks_avx2.h.
+// Box sums for formats with three channels at each pixel. Include it after blocks_avx2.h.
 
-/// The sums of a pair's boxes, weights summing to 2^16, times samples less 128, plus `start`.
-/// source.samples<group>(place, pair, row) has four columns' samples of each channel, in bytes.
+/// Weighted sums over the boxes of a pair of centred samples, plus `start`. The weights sum to
+/// 2^16. source.samples<group>(place, pair, row) returns the samples of four columns for each
+/// channel.
 template <int kTaps, typename Source>
 [[gnu::always_inline]] inline __m256i box_sums(const Source& source,
                                                const typename Source::Place& place,

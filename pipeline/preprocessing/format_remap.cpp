@@ -5,12 +5,12 @@
 namespace bevloc {
 namespace {
 
-template <typename Picture>
-using Plain = void(const Picture& image, const RemapTable& table, PixelRange range, int8_t* planes);
+template <typename Image>
+using Plain = void(const Image& image, const RemapTable& table, PixelRange range, int8_t* planes);
 
-/// By the kernel what it can, the rest by the plain code.
-template <typename Picture>
-void remap(BlockKernel<Picture>* kernel, Plain<Picture>& plain, const Picture& image,
+/// Runs the kernel for the blocks and the plain code for the other pixels.
+template <typename Image>
+void remap(BlockKernel<Image>* kernel, Plain<Image>& plain, const Image& image,
            const RemapTable& table, int8_t* planes) {
   if (kernel == nullptr) return plain(image, table, kAllNetworkPixels, planes);
   kernel(image, table.blocks, planes);

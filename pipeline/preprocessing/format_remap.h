@@ -1,4 +1,4 @@
-// The box filter of a remap table over pictures of each kind of pixel.
+// The box filter of a remap table for each kind of pixel format.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace bevloc {
 
-/// Where the samples of a YUV picture lie. Sample (col, row) of luma is y.data[row * stride + col *
-/// y_step]; chroma is the same with both coordinates shifted right first.
+/// Memory layout of a YUV image. Luma sample (col, row) is y.data[row * stride_bytes + col *
+/// y_step]. For chroma, col and row are first shifted right by chroma_shift_x and chroma_shift_y.
 struct YuvLayout {
   ImagePlane y;
   ImagePlane u;
@@ -21,28 +21,29 @@ struct YuvLayout {
   YuvEncoding encoding;
 };
 
-/// The first red pixel of a Bayer picture: 0 or 1.
+/// Position of the first red pixel of a Bayer image: row and column are 0 or 1.
 struct RedPixel {
   int row;
   int col;
 };
 RedPixel red_of(PixelFormat format);
 
-// Each writes planes[c][v][u] = value - 128 of all kNetworkPixels; black outside the frame. The
-// mean is taken in the picture's own samples; colour is converted once for each network pixel.
-// The fastest kernels that this CPU has do it (block_kernels.h), with the same result on each.
+// Each function writes planes[c][v][u] = value - 128 for all kNetworkPixels, black outside the
+// frame. It averages the samples of the camera format and converts the colour once per network
+// pixel. It uses the fastest kernel for this CPU (block_kernels.h); the result is the same on every
+// CPU.
 
 void remap_rgb(const RgbView& image, const RemapTable& table, int8_t* planes);
 
-/// Neighbours that share a chroma sample have it each: the same as converting to RGB first, but for
-/// the clipping of colours that RGB does not have.
+/// Pixels that share a chroma sample each use it as it is. The result equals that of a conversion
+/// to RGB before the filter, except for colours outside the RGB range.
 void remap_yuv(const YuvLayout& image, const RemapTable& table, int8_t* planes);
 
-/// Red and blue are interpolated bilinearly between their samples, green likewise on each of its
-/// two lattices, whose mean is taken. The borders are mirrored.
+/// Interpolates red and blue bilinearly between their samples. Interpolates green bilinearly on
+/// each of its two lattices and takes the mean. Mirrors the image at its borders.
 void remap_bayer(const ImageView& image, const RemapTable& table, int8_t* planes);
 
-// The same by the plain code, for some of the pixels.
+// The plain code, without vector kernels, for a range of pixels.
 
 void remap_rgb_plain(const RgbView& image, const RemapTable& table, PixelRange range,
                      int8_t* planes);

@@ -7,7 +7,7 @@
 namespace bevloc {
 namespace {
 
-/// Two pixels in four bytes; `luma` is the byte of the first one's Y, `chroma` that of U.
+/// YUYV or UYVY: two pixels in four bytes. `luma` is the offset of the first Y, `chroma` that of U.
 YuvLayout packed_422(const ImageView& image, int luma, int chroma) {
   const auto [data, stride_bytes] = image.planes[0];
   return {.y = {data + luma, stride_bytes},
@@ -41,7 +41,7 @@ ImagePreprocessor::ImagePreprocessor(const CameraModel& camera)
 Status ImagePreprocessor::run(const ImageView& image, std::span<int8_t> planes) {
   assert(planes.size() == kNetworkImageSize);
   if (image.width != width_px_ || image.height != height_px_) {
-    return fail("camera frame is {}x{} pixels, the calibration wants {}x{}", image.width,
+    return fail("camera frame: found {}x{} pixels, wanted {}x{} as in the calibration", image.width,
                 image.height, width_px_, height_px_);
   }
   switch (image.format) {

@@ -1,4 +1,4 @@
-// From a camera's frame to the network's input: undistort, crop, resize and quantise in one pass.
+// Converts a camera image to network input: undistorts, crops, resizes and quantises in one pass.
 #pragma once
 
 #include <cstddef>
@@ -13,23 +13,23 @@
 
 namespace bevloc {
 
-/// Number of values of one network input image: planes [3, kNetworkHeightPx, kNetworkWidthPx].
+/// Number of values of one network input image, [3, kNetworkHeightPx, kNetworkWidthPx].
 inline constexpr size_t kNetworkImageSize = 3 * static_cast<size_t>(kNetworkPixels);
 
-/// Network input of a black pixel: a camera that is missing is black throughout.
+/// Network input of a black pixel. The whole image of a missing camera is black.
 inline constexpr int8_t kNetworkBlack = -128;
 
-/// Looks through network_camera(camera) into the frames of `camera`, of any format, as they lie in
-/// the driver's memory; MJPEG alone is decoded first. Each network pixel is the mean of the camera
-/// pixels in a box as wide as the scale asks for (one pixel when enlarging, which is bilinear
-/// interpolation). What lies outside the frame is black. Table and decoder are made once, in the
-/// constructor; run() allocates nothing but what libjpeg does. Not thread safe.
+/// Converts the images of `camera` to those of network_camera(camera). Reads any format directly
+/// from the driver's memory; only MJPEG is decoded first. Each network pixel is the mean of the
+/// camera pixels in a box whose width is the scale (one pixel if the image is enlarged, which is
+/// bilinear interpolation). Pixels outside the camera image are black. Allocates in the constructor
+/// only, except for the memory that libjpeg-turbo uses per image. Not thread safe.
 class ImagePreprocessor {
  public:
   explicit ImagePreprocessor(const CameraModel& camera);
 
-  /// planes[c][v][u] = value - 128, R, G and B. An error when the frame is not of the size that the
-  /// calibration is for, or a JPEG frame is damaged; `planes` must have kNetworkImageSize values.
+  /// Writes planes[c][v][u] = value - 128 for R, G and B. `planes` must have kNetworkImageSize
+  /// values. Fails if the size of the image differs from the calibration or if a JPEG is damaged.
   Status run(const ImageView& image, std::span<int8_t> planes);
 
  private:

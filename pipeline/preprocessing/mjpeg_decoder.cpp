@@ -7,7 +7,7 @@
 namespace bevloc {
 namespace {
 
-/// Rows and columns of a plane are rounded up to whole chroma samples.
+/// Size that fits any plane. Its rows and columns are rounded up to whole chroma samples.
 size_t plane_size(int width_px, int height_px) {
   return static_cast<size_t>(width_px + 1) * static_cast<size_t>(height_px + 1);
 }
@@ -37,11 +37,12 @@ Result<YuvLayout> MjpegDecoder::decode(const ImageView& jpeg) {
   int subsampling = 0;
   int colours = 0;
   if (tjDecompressHeader3(decompressor, data, size, &width, &height, &subsampling, &colours) != 0) {
-    return fail("JPEG frame cannot be read: {}", tjGetErrorStr2(decompressor));
+    return fail("JPEG frame: found an unreadable header ({}), wanted a JPEG image",
+                tjGetErrorStr2(decompressor));
   }
   if (width != width_px_ || height != height_px_) {
-    return fail("JPEG frame is {}x{} pixels, the calibration wants {}x{}", width, height, width_px_,
-                height_px_);
+    return fail("JPEG frame: found {}x{} pixels, wanted {}x{} as in the calibration", width, height,
+                width_px_, height_px_);
   }
   YuvLayout layout;
   layout.encoding.full_range = true;  // JFIF
@@ -50,7 +51,7 @@ Result<YuvLayout> MjpegDecoder::decode(const ImageView& jpeg) {
   const bool is_known =
       layout.chroma_shift_x + layout.chroma_shift_y > 0 || subsampling == TJSAMP_444;
   if (colours != TJCS_YCbCr || !is_known) {
-    return fail("JPEG frame has {}, wanted YCbCr 4:4:4, 4:2:2, 4:2:0 or 4:4:0",
+    return fail("JPEG frame: found {}, wanted YCbCr 4:4:4, 4:2:2, 4:2:0 or 4:4:0",
                 colours == TJCS_GRAY ? "no colour" : "an unknown colour layout");
   }
 
@@ -60,10 +61,12 @@ Result<YuvLayout> MjpegDecoder::decode(const ImageView& jpeg) {
     planes[i] = planes_.get() + i * plane_size(width_px_, height_px_);
     strides[i] = tjPlaneWidth(i, width, subsampling);
   }
-  // A warning (corrupt or cut off data, the rest of the picture grey) counts as an error.
+  // A warning counts as an error: it means damaged or truncated data, with the rest of the image
+  // grey.
   if (tjDecompressToYUVPlanes(decompressor, data, size, planes.data(), 0, strides.data(), 0, 0) !=
       0) {
-    return fail("JPEG frame is damaged: {}", tjGetErrorStr2(decompressor));
+    return fail("JPEG frame: found damaged data ({}), wanted a complete JPEG image",
+                tjGetErrorStr2(decompressor));
   }
   layout.y = {planes[0], strides[0]};
   layout.u = {planes[1], strides[1]};

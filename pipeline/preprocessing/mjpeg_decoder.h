@@ -1,4 +1,4 @@
-// JPEG files from a camera to the YUV that they are made of.
+// Decodes MJPEG frames to planar YUV.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace bevloc {
 
-/// Decodes into memory of its own, made by the constructor; untouched, it costs nothing. The colour
-/// conversion and the upsampling of chroma are left to remap_yuv(). libjpeg-turbo itself takes and
-/// gives back a little memory for each picture. Not thread safe.
+/// Decodes into its own buffer, which the constructor allocates; the buffer is not resident until
+/// the first frame. remap_yuv() converts the colours and upsamples the chroma. libjpeg-turbo
+/// allocates and frees a little memory for each image. Not thread safe.
 class MjpegDecoder {
  public:
   MjpegDecoder(int width_px, int height_px);
@@ -20,8 +20,8 @@ class MjpegDecoder {
   MjpegDecoder(MjpegDecoder&&) noexcept;
   MjpegDecoder& operator=(MjpegDecoder&&) = delete;
 
-  /// Valid until the next call. Fails for what is no whole JPEG picture of the right size in colour
-  /// (4:4:4, 4:2:2, 4:2:0 or 4:4:0).
+  /// The result is valid until the next call. Fails unless `jpeg` is a complete colour JPEG (4:4:4,
+  /// 4:2:2, 4:2:0 or 4:4:0) of the right size.
   Result<YuvLayout> decode(const ImageView& jpeg);
 
  private:

@@ -5,10 +5,10 @@
 namespace bevloc {
 namespace {
 
-/// y / z of the ray that is level with the ground, in the camera's middle plane x = 0.
+/// y / z of the ray parallel to the ground in the plane x = 0 of the camera.
 double horizon_slope(const Se3& vehicle_from_camera) {
   const Eigen::Matrix3d& rotation = vehicle_from_camera.rotation;
-  assert(rotation(2, 1) != 0.0 && "a camera that looks along the vertical has no horizon");
+  assert(rotation(2, 1) != 0.0 && "a camera that looks straight up or down has no horizon");
   return -rotation(2, 2) / rotation(2, 1);
 }
 
@@ -24,7 +24,7 @@ CameraModel network_camera(const CameraModel& camera) {
   network.intrinsics.height_px = kNetworkHeightPx;
   network.intrinsics.fx_px = real.fx_px * scale;
   network.intrinsics.fy_px = network.intrinsics.fx_px;
-  // Pixel centres lie at whole numbers, so it is u + 0.5 that scales.
+  // Pixel centres are integers, so u + 0.5 scales.
   network.intrinsics.cx_px = (real.cx_px + 0.5) * scale - 0.5;
   network.intrinsics.cy_px =
       kNetworkHorizonRow - network.intrinsics.fy_px * horizon_slope(camera.vehicle_from_camera);

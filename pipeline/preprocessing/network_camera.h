@@ -1,4 +1,4 @@
-// The undistorted, cropped camera that the network looks through.
+// The virtual camera of the network: undistorted, scaled and cropped.
 #pragma once
 
 #include "pipeline/calibration/rig.h"
@@ -8,12 +8,12 @@ namespace bevloc {
 /// Size of one network input image.
 inline constexpr int kNetworkWidthPx = 320;
 inline constexpr int kNetworkHeightPx = 96;
-/// Where the horizon is placed: nothing is spent on sky.
+/// Row of the horizon, close to the top, so that the image contains little sky.
 inline constexpr double kNetworkHorizonRow = 14.0;
 
-/// Same place and direction as the real camera, no distortion, the full image width scaled to
-/// kNetworkWidthPx (square pixels, principal column kept), rows shifted so that the horizon of a
-/// level vehicle, at the principal column, is at kNetworkHorizonRow.
+/// Has the position and direction of the real camera, without distortion. The full image width is
+/// scaled to kNetworkWidthPx with square pixels and the same principal column. The rows are shifted
+/// so that the horizon of a level vehicle is at kNetworkHorizonRow in the principal column.
 CameraModel network_camera(const CameraModel& camera);
 
 Rig network_rig(const Rig& rig);

@@ -1,4 +1,4 @@
-// A remap table laid out for kernels that take eight network pixels at once.
+// A remap table in the memory layout of the vectorised kernels.
 #pragma once
 
 #include <cstdint>
@@ -8,40 +8,40 @@ namespace bevloc {
 
 struct RemapTable;
 
-/// Network pixels in reading order.
+/// Network pixels from `begin` to before `end`, in reading order.
 struct PixelRange {
   int begin;
   int end;
 };
 
-/// Eight neighbours of a row make a block. A pixel is in one if its box, wherever a format has its
-/// samples, may be read in whole words: the margins below are about that. Weights of 255 and more
-/// do not fit. All other pixels, those that see nothing among them, are left to the plain code.
+/// A block is eight adjacent pixels of a row. A kernel computes a pixel if its box respects the
+/// margins below, so that samples of every format may be read in whole words, and if no weight
+/// exceeds 254. The plain code computes all other pixels, including those that see no camera pixel.
 struct RemapBlocks {
   static constexpr int kPixels = 8;
   static constexpr int kMaxTaps = 7;
 
-  /// Pixels at the frame's left edge, at the others, that no box may touch.
+  /// No box may touch this many pixels at the left edge of the image, or at the other edges.
   static constexpr int kLeftMargin_px = 2;
   static constexpr int kMargin_px = 1;
-  /// From its first column on, what is read of a row may be as long: beyond the row's end it needs
-  /// kRowsBelow more.
+  /// A kernel may read this many pixels of a row from the first column of a box. If that passes the
+  /// end of the row, kRowsBelow further rows must exist.
   static constexpr int kReach_px = 16;
   static constexpr int kRowsBelow = 2;
 
-  /// Weights of a pixel along each axis, the last ones 0.
+  /// Number of weights of a pixel along each axis, padded with zeros.
   static constexpr int slots(int taps) { return taps <= 3 ? 4 : 8; }
 
-  std::vector<uint16_t> index;      ///< of each block: kPixels * index is its first pixel
-  std::vector<uint16_t> first_col;  ///< of each pixel in a block, rounded down to an even one
+  std::vector<uint16_t> index;      ///< per block: its first pixel is kPixels * index
+  std::vector<uint16_t> first_col;  ///< per pixel of a block, rounded down to an even number
   std::vector<uint16_t> first_row;
-  /// Of pixel 0 of a block the columns' and the rows', of pixel 4 likewise; of 1 and 5, and so on.
-  /// Those of a pixel that is left to the plain code are 0.
+  /// Column weights, then row weights, per pixel. The pixels of a block come in the order 0, 4, 1,
+  /// 5, 2, 6, 3, 7. Weights of pixels for the plain code are 0.
   std::vector<uint8_t> weights;
-  std::vector<PixelRange> others;  ///< not in a block, or with weights of 0 there
+  std::vector<PixelRange> others;  ///< for the plain code
 };
 
-/// More than kMaxTaps: all are others.
+/// If the table has more than kMaxTaps taps, all pixels are in `others`.
 RemapBlocks make_remap_blocks(const RemapTable& table, int width_px, int height_px);
 
 }  // namespace bevloc

@@ -9,8 +9,8 @@
 namespace bevloc {
 namespace {
 
-/// Weights of the pixels under a box of width `box` around `centre`, in a line of `length` pixels.
-/// Pixels beyond the line's end are taken to be the last one. Returns the first pixel.
+/// Computes the weights of the pixels under a box of width `box` around `centre`, in a line of
+/// `length` pixels. The line continues with its end pixels. Returns the first pixel.
 int box_weights(double centre, double box, int length, std::span<uint16_t> weights) {
   const int taps = static_cast<int>(weights.size());
   const int begin = static_cast<int>(std::floor(centre - 0.5 * box + 0.5));
@@ -21,13 +21,13 @@ int box_weights(double centre, double box, int length, std::span<uint16_t> weigh
         std::min(pixel + 0.5, centre + 0.5 * box) - std::max(pixel - 0.5, centre - 0.5 * box);
     exact[std::clamp(pixel, 0, length - 1) - first] += std::max(0.0, overlap) / box;
   }
-  int left_over = RemapTable::kWeightSum;
+  int remainder = RemapTable::kWeightSum;
   for (int i = 0; i < taps; ++i) {
     weights[i] = static_cast<uint16_t>(std::lround(exact[i] * RemapTable::kWeightSum));
-    left_over -= weights[i];
+    remainder -= weights[i];
   }
   uint16_t& largest = *std::max_element(weights.begin(), weights.end());
-  largest = static_cast<uint16_t>(largest + left_over);
+  largest = static_cast<uint16_t>(largest + remainder);
   return first;
 }
 

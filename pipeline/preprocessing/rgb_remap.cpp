@@ -4,8 +4,7 @@
 namespace bevloc {
 namespace {
 
-/// The rows of a box are summed first (contiguous bytes: this is what vectorises), then the
-/// columns.
+/// Sums the rows of a box first, because contiguous bytes vectorise, then the columns.
 [[gnu::always_inline]] inline void remap_pixels(const RgbView& image, const RemapTable& table,
                                                 PixelRange range, int taps, int8_t* planes) {
   const uint16_t* weights = table.weights.data() + 2 * taps * range.begin;
@@ -28,7 +27,7 @@ namespace {
   }
 }
 
-/// The tap counts of usual frames (640 to 1280 pixels wide) are compiled as constants.
+/// Common tap counts (images 320 to 1280 pixels wide) are compile-time constants.
 BEVLOC_TARGET_CLONES
 void remap_range(const RgbView& image, const RemapTable& table, PixelRange range, int8_t* planes) {
   switch (table.taps) {

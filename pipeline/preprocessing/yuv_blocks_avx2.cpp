@@ -17,7 +17,7 @@ namespace {
 #include "pipeline/preprocessing/blocks_avx2.h"
 #include "pipeline/preprocessing/boxes_avx2.h"
 
-/// YUYV or UYVY: eight pixels in sixteen bytes.
+/// YUYV (kLuma = 0) or UYVY (kLuma = 1): eight pixels in sixteen bytes.
 template <int kLuma>
 class PackedSource {
  public:
@@ -49,10 +49,10 @@ class PackedSource {
   std::ptrdiff_t stride_bytes_;
 };
 
-/// Where the samples of a block lie that has its luma in a plane of its own.
+/// Positions of the samples of a block, for formats with luma in a separate plane.
 struct PlanarPlace {
   Distances luma;
-  Distances chroma[2];  ///< below the block's even and odd rows
+  Distances chroma[2];  ///< for rows 0, 2, ... and rows 1, 3, ... of the block
 };
 
 template <bool kHalvedRows>
@@ -73,7 +73,7 @@ std::ptrdiff_t chroma_row(int row) {
   return kHalvedRows ? row / 2 : row;
 }
 
-/// NV12: of eight columns the luma, then that of four pairs U and V in turn.
+/// NV12. load() returns luma of eight columns, then interleaved U and V of four column pairs.
 class SemiPlanarSource {
  public:
   explicit SemiPlanarSource(const YuvLayout& image) : image_(image) {}
@@ -110,7 +110,8 @@ class SemiPlanarSource {
   const YuvLayout& image_;
 };
 
-/// 4:2:0 or 4:2:2 in three planes: of eight columns the luma, then of four pairs U, then V.
+/// 4:2:0 or 4:2:2 in three planes. load() returns luma of eight columns, then U and then V of four
+/// column pairs.
 template <bool kHalvedRows>
 class PlanarSource {
  public:
@@ -153,7 +154,7 @@ class PlanarSource {
   const YuvLayout& image_;
 };
 
-/// From the means of eight pixels to RGB, as the plain code does it.
+/// Converts the means of eight pixels to RGB, with the same bits as the plain code.
 class ToRgb {
  public:
   explicit ToRgb(const RgbFromYuv& colour)
@@ -161,7 +162,8 @@ class ToRgb {
         start_(colour.luma * ((128 << RgbFromYuv::kSampleBits) - colour.black) +
                (1 << (kBits - 1))) {}
 
-  /// Means less 128, with RgbFromYuv::kSampleBits of fraction, in the low words.
+  /// The arguments are means minus 128 with RgbFromYuv::kSampleBits fractional bits, in the low
+  /// words.
   __m256i operator()(__m256i y, __m256i u, __m256i v) const {
     const __m256i luma = _mm256_add_epi32(product(y, colour_.luma), _mm256_set1_epi32(start_));
     const __m256i green =

@@ -1,4 +1,4 @@
-// The colour conversion of YUV pictures, in fixed point.
+// Fixed-point conversion from YUV to RGB.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace bevloc {
 
-/// RGB = luma * (Y - black) + (red_v * V, -green_u * U - green_v * V, blue_u * U). Coefficients
-/// have kCoefficientBits of fraction and fit into 16 bits; samples have kSampleBits, and U and V
-/// are 0 where there is no colour.
+/// RGB = luma * (Y - black) + (red_v * V, -green_u * U - green_v * V, blue_u * U), where U and V
+/// are 0 for grey. Coefficients have kCoefficientBits fractional bits and fit into 16 bits. Samples
+/// have kSampleBits fractional bits.
 struct RgbFromYuv {
   static constexpr int kSampleBits = 8;
   static constexpr int kCoefficientBits = 12;

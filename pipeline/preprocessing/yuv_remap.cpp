@@ -7,7 +7,7 @@
 namespace bevloc {
 namespace {
 
-constexpr int kSumBits = 2 * RemapTable::kWeightBits;  // of a box's weights
+constexpr int kSumBits = 2 * RemapTable::kWeightBits;  // the weights of a box sum to 2^kSumBits
 constexpr int kSampleBits = RgbFromYuv::kSampleBits;
 
 int8_t to_network(int32_t fixed) {
@@ -16,7 +16,7 @@ int8_t to_network(int32_t fixed) {
   return static_cast<int8_t>(std::clamp(value, 0, 255) - 128);
 }
 
-/// Weights of a box's chroma samples: neighbours that share one add up.
+/// Weights of the chroma samples of a box. The weights of pixels that share a sample are added.
 struct ChromaWeights {
   int first = 0;
   int count = 0;
@@ -31,7 +31,8 @@ struct ChromaWeights {
     }
   }
 
-  /// An odd number of pixels touches as many pairs wherever it begins: known when compiled.
+  /// Number of chroma samples. For an odd number of pixels it does not depend on the first pixel,
+  /// so it is a compile-time constant.
   [[gnu::always_inline]] static int samples(int first_sample, int shift, int taps) {
     if (shift == 0) return taps;
     if (taps % 2 == 1) return taps / 2 + 1;
@@ -88,7 +89,7 @@ template <int kLumaStep, int kChromaStep, int kShiftX, int kShiftY>
   }
 }
 
-/// The tap counts of usual frames are compiled as constants, as in rgb_remap.cpp.
+/// Common tap counts are compile-time constants, as in rgb_remap.cpp.
 template <int kLumaStep, int kChromaStep, int kShiftX, int kShiftY>
 [[gnu::always_inline]] inline void remap_taps(const YuvLayout& image, const RemapTable& table,
                                               PixelRange range, const RgbFromYuv& colour,
@@ -106,7 +107,7 @@ template <int kLumaStep, int kChromaStep, int kShiftX, int kShiftY>
   }
 }
 
-/// Packed 4:2:2, NV12, and what JPEG is made of: 4:2:0, 4:2:2, 4:4:0, 4:4:4.
+/// Selects the code for packed 4:2:2, NV12, or a planar JPEG layout: 4:2:0, 4:2:2, 4:4:0, 4:4:4.
 BEVLOC_TARGET_CLONES
 void remap_range(const YuvLayout& image, const RemapTable& table, PixelRange range,
                  const RgbFromYuv& colour, int8_t* planes) {

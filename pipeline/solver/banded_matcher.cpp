@@ -13,7 +13,7 @@ constexpr int kLateralBands = 10;
 constexpr int kLongitudinalBands = 5;
 constexpr float kStdEpsilon = 0.01F;
 
-/// Replaces scores by softmax(scale * score), and gives log of the sum of exp(scale * score).
+/// Replaces the scores by softmax(scale * score). Returns log(sum of exp(scale * score)).
 double normalise(std::span<double> scores, double scale) {
   const double best = *std::ranges::max_element(scores);
   double sum = 0.0;
@@ -35,12 +35,12 @@ BandedMatcher::BandedMatcher(const BevGrid& grid, int channels, const Hypothesis
   const int row_bands = std::min(kLateralBands, grid.rows);
   const int col_bands = std::min(kLongitudinalBands, grid.cols);
   for (int b = 0; b < row_bands; ++b) {
-    const double middle = 0.5 * (b * grid.rows / row_bands + (b + 1) * grid.rows / row_bands - 1);
-    lateral_.lever_m.push_back(0.5 * (grid.rows - 1) * grid.cell_m - middle * grid.cell_m);
+    const double center = 0.5 * (b * grid.rows / row_bands + (b + 1) * grid.rows / row_bands - 1);
+    lateral_.lever_m.push_back(0.5 * (grid.rows - 1) * grid.cell_m - center * grid.cell_m);
   }
   for (int b = 0; b < col_bands; ++b) {
-    const double middle = 0.5 * (b * grid.cols / col_bands + (b + 1) * grid.cols / col_bands - 1);
-    longitudinal_.lever_m.push_back(middle * grid.cell_m - 0.5 * (grid.cols - 1) * grid.cell_m);
+    const double center = 0.5 * (b * grid.cols / col_bands + (b + 1) * grid.cols / col_bands - 1);
+    longitudinal_.lever_m.push_back(center * grid.cell_m - 0.5 * (grid.cols - 1) * grid.cell_m);
   }
   make_profiles(grid.cols, hypotheses.y_m, lateral_);
   make_profiles(grid.rows, hypotheses.x_m, longitudinal_);
@@ -74,7 +74,7 @@ void BandedMatcher::match(const MatchSide& bev, const MatchSide& map, SolverResu
     correlate(*bands);
     score(*bands);
   }
-  // P(a) is the product of what both axes leave when they are summed out.
+  // P(yaw) is proportional to the product of the sums over x and over y.
   const int y_count = hypotheses_.y_m.count();
   const int x_count = hypotheses_.x_m.count();
   for (int k = 0; k < hypotheses_.yaw_rad.count(); ++k) {
@@ -91,7 +91,8 @@ void BandedMatcher::match(const MatchSide& bev, const MatchSide& map, SolverResu
                        posterior_mean(result.yaw_probability, hypotheses_.yaw_rad)};
 }
 
-/// Profiles of all bands, each in a frame of `lateral_reach` and `longitudinal_reach` cells.
+/// Writes the standardised profiles of all bands. Each profile has `lateral_reach` or
+/// `longitudinal_reach` cells of zeros at both ends.
 void BandedMatcher::average(const CellFeatures& features, int lateral_reach, int longitudinal_reach,
                             LaneBuffer& lateral, LaneBuffer& longitudinal) const {
   const int row_bands = static_cast<int>(lateral_.lever_m.size());

@@ -9,7 +9,7 @@
 namespace bevloc {
 namespace {
 
-/// Cells beyond the border that a hypothesis can read: its shift, its turn, and the next cell.
+/// Cells beyond the border that a hypothesis can read, by its shift, rotation and interpolation.
 int margin_of(const BevGrid& grid, const HypothesisGrid& hypotheses) {
   const double shift =
       std::max(hypotheses.x_m.farthest(), hypotheses.y_m.farthest()) / grid.cell_m + 1.0;
@@ -17,7 +17,8 @@ int margin_of(const BevGrid& grid, const HypothesisGrid& hypotheses) {
   return static_cast<int>(std::ceil(shift + reach * std::sin(hypotheses.yaw_rad.farthest()))) + 2;
 }
 
-/// Exchanges blocks of `step` values between two vectors that are `step` rows apart.
+/// One step of a matrix transpose: exchanges blocks of `step` values between two rows that are
+/// `step` rows apart.
 template <int step>
 inline void exchange(Lanes& upper, Lanes& lower) {
   LaneIntegers to_upper{};
@@ -38,7 +39,8 @@ inline void exchange_rows(Lanes* rows) {
   }
 }
 
-/// Sixteen channels of a row of cells, `channel_step` apart, side by side.
+/// Transposes kLanes channels of a row of cells to [cell, channel]. In the source, channels are
+/// `channel_step` floats apart.
 BEVLOC_TARGET_CLONES void interleave(const float* row, std::ptrdiff_t channel_step, int cells,
                                      int lane_count, float* out) {
   int i = 0;
@@ -56,9 +58,9 @@ BEVLOC_TARGET_CLONES void interleave(const float* row, std::ptrdiff_t channel_st
   }
 }
 
-/// The same for fewer channels.
-void interleave_some(const float* row, std::ptrdiff_t channel_step, int channels, int cells,
-                     int lane_count, float* out) {
+/// The same for fewer than kLanes channels.
+void interleave_few(const float* row, std::ptrdiff_t channel_step, int channels, int cells,
+                    int lane_count, float* out) {
   for (int i = 0; i < cells; ++i) {
     for (int c = 0; c < channels; ++c) out[i * lane_count + c] = row[c * channel_step + i];
   }
@@ -103,8 +105,8 @@ void CellFeatures::assign(std::span<const float> planes) {
       interleave(source + static_cast<std::ptrdiff_t>(c) * grid_.cells(), grid_.cells(), grid_.cols,
                  lanes_, target + c);
     }
-    interleave_some(source + static_cast<std::ptrdiff_t>(c) * grid_.cells(), grid_.cells(),
-                    channels_ - c, grid_.cols, lanes_, target + c);
+    interleave_few(source + static_cast<std::ptrdiff_t>(c) * grid_.cells(), grid_.cells(),
+                   channels_ - c, grid_.cols, lanes_, target + c);
   }
 }
 

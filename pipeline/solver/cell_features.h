@@ -1,34 +1,35 @@
-// Features with the channels of a cell side by side, in a frame of zeros.
+// Features stored with the channels of a cell side by side, inside a margin of zeros.
 #pragma once
 
+#include <cstddef>
 #include <span>
-#include <vector>
 
 #include "pipeline/bev_grid.h"
+#include "pipeline/solver/hypotheses.h"
 #include "pipeline/solver/lanes.h"
-#include "pipeline/solver/solver.h"
 
 namespace bevloc {
 
-/// [margin + rows + margin, margin + cols + margin, lanes]: the channels, rounded up to whole
-/// vectors with zeros. The margin is as wide as any hypothesis reaches, so that a warp never has to
-/// ask whether it is still inside.
+/// Layout [margin + rows + margin, margin + cols + margin, lanes]. `lanes` is the number of
+/// channels rounded up to whole vectors; the extra lanes are zero. The margin is as wide as the
+/// farthest hypothesis reads, so that a warp needs no bounds checks.
 class CellFeatures {
  public:
   CellFeatures(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses);
-  /// Without a margin, for features that are never moved.
+  /// Without a margin, for features that no hypothesis moves.
   CellFeatures(const BevGrid& grid, int channels);
 
-  /// Takes features [channels, rows, cols].
+  /// Copies features [channels, rows, cols] in.
   void assign(std::span<const float> planes);
 
-  /// The reverse: writes features [channels, rows, cols].
+  /// Copies features [channels, rows, cols] out.
   void copy_to(std::span<float> planes) const;
 
-  /// Takes the means of whole blocks of finer cells, as many as go into one of these.
+  /// Sets each cell to the mean of a square block of cells of `fine`. The block is as wide as
+  /// fine.grid().rows / grid().rows, rounded down; remaining cells of `fine` are ignored.
   void assign_average_of(const CellFeatures& fine);
 
-  /// The `lanes()` values of a cell; in the margin they are zero.
+  /// The lanes() values of a cell. Cells in the margin are allowed; their values are 0.
   const float* cell(int row, int col) const {
     return data_.data() +
            (static_cast<std::ptrdiff_t>(row + margin_) * padded_cols_ + col + margin_) * lanes_;

@@ -1,4 +1,4 @@
-// Reading between samples by cubic convolution (Keys 1981, a = -1/2).
+// Interpolation by cubic convolution (Keys 1981, a = -1/2).
 #pragma once
 
 #include <array>
@@ -8,12 +8,13 @@ namespace bevloc {
 
 inline constexpr int kCubicTaps = 4;
 
-/// Where a position between whole ones reads, and with which weights. Reproduces parabolas.
+/// The samples first ... first + 3 and their weights. The interpolation reproduces parabolas.
 struct CubicTaps {
   int first;
   std::array<float, kCubicTaps> weight;
 };
 
+/// Taps that read a sequence of samples at `position`, which may be fractional.
 inline CubicTaps cubic_taps(double position) {
   const double whole = std::floor(position);
   const double t = position - whole;

@@ -1,4 +1,4 @@
-// Features moved by a correction, read bilinearly, row by row.
+// Reads features as a correction moves them, by bilinear interpolation, row by row.
 #pragma once
 
 #include <cmath>
@@ -9,17 +9,17 @@
 
 namespace bevloc {
 
-/// Sixteen positions between cells: the offset of the cell before each along both axes, and how far
-/// beyond it they are along rows and columns.
+/// Bilinear taps of kLanes positions between cells.
 struct Taps {
-  LaneIntegers offset;
-  Lanes u;
-  Lanes v;
+  LaneIntegers offset;  ///< of the cell at the whole row and column at or before the position
+  Lanes u;              ///< fraction of a row beyond that cell
+  Lanes v;              ///< fraction of a column beyond that cell
 };
 
-/// A straight line of positions: number i is u0 + i du, v0 + i dv (rows and columns) from `origin`.
+/// Equally spaced positions on a straight line: position i lies at row u0 + i du and column
+/// v0 + i dv.
 struct WarpLine {
-  const float* origin;
+  const float* origin;  ///< the features of cell (0, 0)
   int row_stride;
   int lanes;
   double u0;
@@ -28,7 +28,8 @@ struct WarpLine {
   double dv;
   int cells;
 
-  /// Of the positions from `first` on; those beyond the last cell are not to be read.
+  /// Finds the taps of the kLanes positions from `first` on. Taps beyond position cells - 1 must
+  /// not be read.
   void find_taps(int first, Taps& taps) const {
     LaneIntegers row;
     LaneIntegers col;
@@ -37,7 +38,7 @@ struct WarpLine {
     taps.offset = row * row_stride + col * lanes;
   }
 
-  /// Sixteen channels of position i of `taps`, from channel `k` on.
+  /// Reads kLanes channels, from channel `k` on, at position i of `taps`.
   void read(const Taps& taps, int i, int k, Lanes& value) const {
     const float* first = origin + taps.offset[i] + k;
     const float* second = first + row_stride;
@@ -49,10 +50,10 @@ struct WarpLine {
   }
 
  private:
-  /// Of sixteen positions: the whole cells, and what is beyond them.
+  /// Splits the kLanes positions first, first + step, ... into whole cells and fractions.
   static void split(double first, double step, LaneIntegers& cells, Lanes& fraction) {
     constexpr Lanes kNumbers{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const double whole = std::floor(first);  // taken off, so that fractions keep their precision
+    const double whole = std::floor(first);  // subtracted, so that floats hold precise fractions
     const Lanes position = static_cast<float>(first - whole) + kNumbers * static_cast<float>(step);
     const LaneIntegers towards_zero = __builtin_convertvector(position, LaneIntegers);
     const LaneIntegers below =
@@ -62,8 +63,8 @@ struct WarpLine {
   }
 };
 
-/// The taps of a line, sixteen after sixteen. The next ones are found before these are used, so
-/// that the one hides behind the other.
+/// Iterates over the taps of a line, kLanes at a time. It finds the next taps before the current
+/// ones are used, so that the processor overlaps the two.
 class TapGroups {
  public:
   explicit TapGroups(const WarpLine& line) : line_(line) { line.find_taps(0, taps_[0]); }
@@ -82,19 +83,20 @@ class TapGroups {
   int group_ = 0;
 };
 
-/// Features that a correction has moved,
+/// Features moved by a rotation and a translation t:
 ///
-///   moved(p) = features(R(-yaw) (p - t)), bilinear, zero outside,
+///   moved(p) = features(R(-yaw) (p - t)), bilinear, zero outside the grid.
 ///
-/// with t = `row_shift`, `col_shift` in cells: x / cell_m and y / cell_m.
+/// `row_shift` = x / cell_m and `col_shift` = y / cell_m are t in cells. The features must outlive
+/// the warp and have a margin that covers the movement (CellFeatures).
 class FeatureWarp {
  public:
   FeatureWarp(const CellFeatures& features, double yaw_rad, double row_shift = 0.0,
               double col_shift = 0.0);
   FeatureWarp(const CellFeatures& features, const Se2& correction);
 
-  /// Where `cells` cells of `row` come from: `col_begin`, and every `col_step`-th from there on.
-  /// They may lie outside the grid.
+  /// Where the moved cells of `row` are read: `cells` cells, from column `col_begin` on in steps of
+  /// `col_step`. The cells may lie outside the grid.
   WarpLine line(int row, int col_begin, int cells, int col_step = 1) const;
 
  private:
@@ -106,8 +108,8 @@ class FeatureWarp {
 };
 
 inline WarpLine FeatureWarp::line(int row, int col_begin, int cells, int col_step) const {
-  // Rows grow towards -x and columns towards -y, so a turn of (x, y) is the same turn of (u, v),
-  // and a shift by +x reads rows further on.
+  // Rows grow towards -x and columns towards -y. A rotation of (x, y) is therefore the same
+  // rotation of (u, v), and a shift by +x reads higher rows.
   const double center_row = 0.5 * (features_.grid().rows - 1);
   const double center_col = 0.5 * (features_.grid().cols - 1);
   const double u = row - center_row + row_shift_;
@@ -122,7 +124,7 @@ inline WarpLine FeatureWarp::line(int row, int col_begin, int cells, int col_ste
           .cells = cells};
 }
 
-/// Writes the cells * lanes values of a line.
+/// Writes the line.cells * line.lanes values of a line.
 void warp(const WarpLine& line, float* out);
 
 }  // namespace bevloc

@@ -6,8 +6,9 @@
 namespace bevloc {
 namespace {
 
-/// Products of the gradients of map and vehicle (map's first), and of the map's gradients with the
-/// residual; then the same weighted by the lever: what a turn moves a cell along x, per radian.
+/// Sums of products of the map's gradient (first letter) with the moved features' gradient (second
+/// letter) or with the residual. The lever_ sums are weighted by the lever: the distance that a
+/// rotation moves the cell along x, in metres per radian.
 struct Products {
   float xx, xy, yx, yy, x_residual, y_residual;
   float lever_xx, lever_xy, lever_yx, lever_x_residual;
@@ -24,7 +25,7 @@ BEVLOC_TARGET_CLONES Products sum_products(const GradientRow& row) {
     for (int k = 0; k < row.lanes; k += kLanes) {
       const float* m = row.map + i * row.lanes + k;
       const float* b = row.moved + i * row.lanes + k;
-      // Rows and columns run against x and y.
+      // Rows grow towards -x and columns towards -y.
       const Lanes map_x = lanes(m - row.map_row_stride) - lanes(m + row.map_row_stride);
       const Lanes map_y = lanes(m - row.lanes) - lanes(m + row.lanes);
       const Lanes bev_x = lanes(b - row.moved_row_stride) - lanes(b + row.moved_row_stride);
@@ -57,15 +58,15 @@ BEVLOC_TARGET_CLONES Products sum_products(const GradientRow& row) {
 
 GradientSums sum_gradients(const GradientRow& row) {
   const Products s = sum_products(row);
-  // A turn moves the point (x, y) along (-y, x): by the lever along x, and by `along` along y.
-  const double along = row.x_m;
+  // A rotation moves the point (x, y) along (-y, x): by the lever along x, by x_m along y.
+  const double x_m = row.x_m;
   GradientSums sums;
-  sums.curvature << s.xx, s.xy, s.lever_xx + along * s.xy,  //
-      s.yx, s.yy, s.lever_yx + along * s.yy,                //
-      s.lever_xx + along * s.yx, s.lever_xy + along * s.yy,
-      s.lever2_xx + along * (s.lever_xy + s.lever_yx) + along * along * s.yy;
-  sums.slope << s.x_residual, s.y_residual, s.lever_x_residual + along * s.y_residual;
-  const double per_m = 1.0 / (2.0 * row.cell_m);  // differences over two cells
+  sums.curvature << s.xx, s.xy, s.lever_xx + x_m * s.xy,  //
+      s.yx, s.yy, s.lever_yx + x_m * s.yy,                //
+      s.lever_xx + x_m * s.yx, s.lever_xy + x_m * s.yy,
+      s.lever2_xx + x_m * (s.lever_xy + s.lever_yx) + x_m * x_m * s.yy;
+  sums.slope << s.x_residual, s.y_residual, s.lever_x_residual + x_m * s.y_residual;
+  const double per_m = 1.0 / (2.0 * row.cell_m);  // central differences span two cells
   sums.curvature *= per_m * per_m;
   sums.slope *= per_m;
   return sums;

@@ -1,4 +1,4 @@
-// How the features of both sides change with the pose, summed over cells.
+// Sums of the gradients of both sides' features by the pose.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace bevloc {
 
-/// Neighbouring cells of a row of both sides; both have neighbours all around.
+/// Neighbouring cells of one row of both sides. Every cell must have neighbours on all four sides.
 struct GradientRow {
   const float* map;
   const float* moved;
@@ -16,12 +16,12 @@ struct GradientRow {
   int lanes;
   int cells;
   double cell_m;
-  double x_m;        ///< of the row, from the point that a turn is about
+  double x_m;        ///< of the row, relative to the centre of rotation
   double first_y_m;  ///< of the first cell, likewise
 };
 
-/// Over a row's cells and channels, with J the gradients by (x m, y m, yaw rad) of the map's
-/// features (J_M) and of the moved ones (J_B), from differences over two cells.
+/// Sums over the cells of a row and all channels. J_M and J_B are the gradients of the map features
+/// and of the moved BEV features by (x m, y m, yaw rad), from central differences.
 struct GradientSums {
   Eigen::Matrix3d curvature;  ///< J_M^T J_B
   Eigen::Vector3d slope;      ///< J_M^T (map - moved)

@@ -8,7 +8,7 @@
 namespace bevloc {
 namespace {
 
-/// Sums that are kept side by side, to hide the latency of the additions.
+/// Independent partial sums, to hide the latency of the additions.
 constexpr int kSums = 4;
 
 }  // namespace
@@ -44,13 +44,13 @@ BEVLOC_TARGET_CLONES void add_weighted_sum(const float* first, int cells, float 
 
 BEVLOC_TARGET_CLONES void standardise_runs(float* first, int runs, std::ptrdiff_t stride, int cells,
                                            int lane_count, float epsilon) {
-  const float share = 1.0F / static_cast<float>(runs * cells);
+  const float per_cell = 1.0F / static_cast<float>(runs * cells);
   for (int k = 0; k < lane_count; k += kLanes) {
     Lanes mean = {};
     for (int run = 0; run < runs; ++run) {
       for (int i = 0; i < cells; ++i) mean += lanes(first + run * stride + i * lane_count + k);
     }
-    mean *= share;
+    mean *= per_cell;
     Lanes variance = {};
     for (int run = 0; run < runs; ++run) {
       for (int i = 0; i < cells; ++i) {
@@ -60,7 +60,8 @@ BEVLOC_TARGET_CLONES void standardise_runs(float* first, int runs, std::ptrdiff_
       }
     }
     Lanes scale = {};
-    for (int c = 0; c < kLanes; ++c) scale[c] = 1.0F / (std::sqrt(share * variance[c]) + epsilon);
+    for (int c = 0; c < kLanes; ++c)
+      scale[c] = 1.0F / (std::sqrt(per_cell * variance[c]) + epsilon);
     for (int run = 0; run < runs; ++run) {
       for (int i = 0; i < cells; ++i) lanes(first + run * stride + i * lane_count + k) *= scale;
     }

@@ -1,22 +1,22 @@
-// Sums and products over cells, for sixteen channels at a time. Counts and strides are in floats
-// unless they are called cells, and whole multiples of kLanes.
+// Sums and products over cells, for kLanes channels at a time. Counts and strides are in floats and
+// multiples of kLanes; `cells` counts cells.
 #pragma once
 
 #include <cstddef>
 
 namespace bevloc {
 
-/// Sum of a[i] b[i].
+/// Sum of a[i] * b[i] over `count` floats.
 float dot(const float* a, const float* b, int count);
 
-/// out[i] += weight a[i].
+/// out[i] += weight * a[i].
 void add_weighted(const float* a, float weight, int count, float* out);
 
-/// Per channel: out += weight * sum over `cells` neighbouring cells.
+/// Per lane: out += weight * sum over `cells` neighbouring cells, starting at `first`.
 void add_weighted_sum(const float* first, int cells, float weight, int lane_count, float* out);
 
-/// Per channel: mean 0 and deviation nearly 1 over `runs` runs of `cells` cells, `stride` apart:
-/// (f - mean) / (std + epsilon), population moments.
+/// Standardises each lane in place: f <- (f - mean) / (std + epsilon), with the moments of the
+/// population of `runs` runs of `cells` neighbouring cells. Runs start `stride` floats apart.
 void standardise_runs(float* first, int runs, std::ptrdiff_t stride, int cells, int lane_count,
                       float epsilon);
 

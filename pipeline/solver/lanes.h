@@ -1,4 +1,4 @@
-// The vectors that the solver's inner loops work in: sixteen channels side by side.
+// SIMD vectors for the solver's inner loops: kLanes channels side by side.
 #pragma once
 
 #include "common/cache_line_allocator.h"
@@ -7,15 +7,16 @@ namespace bevloc {
 
 inline constexpr int kLanes = 16;
 
-/// Buffers of whole vectors.
+/// A buffer of whole vectors, aligned to cache lines.
 using LaneBuffer = CacheLineVector<float>;
 
-/// Sixteen neighbouring floats at any address.
+/// kLanes neighbouring floats, at any address.
 using Lanes = float __attribute__((vector_size(kLanes * sizeof(float)), aligned(4), may_alias));
 
 using LaneDoubles = double __attribute__((vector_size(kLanes * sizeof(double))));
 using LaneIntegers = int __attribute__((vector_size(kLanes * sizeof(int)), aligned(4), may_alias));
 
+/// The kLanes floats at `data` as one vector.
 inline const Lanes& lanes(const float* data) {
   return *reinterpret_cast<const Lanes*>(data);
 }
@@ -23,7 +24,7 @@ inline Lanes& lanes(float* data) {
   return *reinterpret_cast<Lanes*>(data);
 }
 
-/// Pairwise, which is quicker and rounds less than one after the other.
+/// Adds all lanes pairwise, which is faster and rounds less than one after the other.
 inline float sum_of(const Lanes& values) {
   const auto eight = __builtin_shufflevector(values, values, 0, 1, 2, 3, 4, 5, 6, 7) +
                      __builtin_shufflevector(values, values, 8, 9, 10, 11, 12, 13, 14, 15);

@@ -14,12 +14,13 @@ namespace bevloc {
 namespace {
 
 constexpr double kBlock_m = 6.0;
-/// Keeps S regular. Per cell, in squared gradients of standardised features (1/m^2): far below any
-/// gradient that could be evidence.
+/// Keeps S regular. In squared gradients of standardised features per cell (1/m^2), far below the
+/// gradient of any structure.
 constexpr double kSlopeFloor = 1e-6;
-/// Against the prior's, in any direction: deviations of 0.001 of the prior's, far below a step.
-/// More of it in one direction would drown what is known of the others in rounding.
-constexpr double kMostEvidence = 1e6;
+/// Limit of the match's information relative to the prior's, along any direction. It corresponds to
+/// 0.001 of the prior's standard deviation, far below a step. More information along one direction
+/// would lose that of the others to rounding.
+constexpr double kMaxInformation = 1e6;
 
 }  // namespace
 
@@ -52,17 +53,17 @@ Eigen::Matrix3d MatchCovariance::estimate(const CellFeatures& bev, const CellFea
       0.5 * (information.curvature + information.curvature.transpose());
   const Eigen::Matrix3d slope =
       information.slope + kSlopeFloor * grid_.cells() * Eigen::Matrix3d::Identity();
-  // A slope known from few blocks is too small by chance in some direction (Hotelling): S^-1 of n
-  // blocks in three dimensions is n / (n - 4) times too large on average.
+  // S from few blocks is too small by chance along some direction (Hotelling): on average, S^-1 of
+  // n blocks in three dimensions is n / (n - 4) times too large.
   const double trust = std::max(0.0, 1.0 - 4.0 / std::max(blocks, 1));
-  const Eigen::Matrix3d evidence = trust * curvature * slope.ldlt().solve(curvature);
-  // In units of the prior's deviations the sum is well conditioned.
+  const Eigen::Matrix3d match = trust * curvature * slope.ldlt().solve(curvature);
+  // In units of the prior's standard deviations the sum is well conditioned.
   const Eigen::Vector3d unit = uniform_variance_.cwiseSqrt();
-  const Eigen::Matrix3d scaled = unit.asDiagonal() * evidence * unit.asDiagonal();
+  const Eigen::Matrix3d scaled = unit.asDiagonal() * match * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(0.5 *
                                                                   (scaled + scaled.transpose()));
   const Eigen::Vector3d variance =
-      (directions.eigenvalues().cwiseMax(0.0).cwiseMin(kMostEvidence).array() + 1.0).inverse();
+      (directions.eigenvalues().cwiseMax(0.0).cwiseMin(kMaxInformation).array() + 1.0).inverse();
   const Eigen::Matrix3d posterior =
       directions.eigenvectors() * variance.asDiagonal() * directions.eigenvectors().transpose();
   return unit.asDiagonal() * posterior * unit.asDiagonal();

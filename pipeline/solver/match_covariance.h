@@ -1,38 +1,40 @@
-// How far a match can be trusted: what the features themselves say about each direction.
+// Estimates the covariance of a match from the structure of the features.
 #pragma once
-
-#include <span>
-#include <vector>
 
 #include <Eigen/Core>
 
+#include "common/se2.h"
 #include "pipeline/solver/cell_features.h"
-#include "pipeline/solver/solver.h"
+#include "pipeline/solver/hypotheses.h"
 
 namespace bevloc {
 
-/// Covariance of a match as of a least-squares fit of the moved vehicle features B to the map
-/// features M, with the hypothesis grid as prior:
+/// Treats the match as a least-squares fit of the moved BEV features B to the map features M, with
+/// the hypothesis grid as prior:
 ///
 ///   covariance = (H S^-1 H (1 - 4 / blocks) + U^-1)^-1.
 ///
-/// H = J_M^T J_B, symmetrised, is the curvature of the UN-normalised covariance score: J holds each
-/// side's gradient by (x, y, yaw), and noise on one side alone cancels. S is the covariance of the
-/// score's slope, sum over blocks of g g^T with g = J_M^T (M - B) (the cluster-robust "sandwich"):
-/// errors may be correlated at will inside a block of 6 m, and between channels. U is the variance
-/// of uniform hypotheses: where the scene has no structure along a direction, H vanishes there and
-/// U is what remains. A normalised score cannot see that: it is confidently wrong there.
+/// - H = J_M^T J_B, symmetrised, is the curvature of the score before normalisation. J_M and J_B
+///   are the gradients of M and B by (x, y, yaw). Noise on one side alone cancels.
+/// - S is the covariance of the score's slope: the sum over blocks of g g^T, g = J_M^T (M - B) (the
+///   cluster-robust "sandwich" estimator). Errors may be correlated in any way inside a block of
+///   6 m and between channels.
+/// - U holds the variances of uniform hypotheses. Along a direction without structure, H vanishes
+///   and U remains. A normalised score cannot detect this; its peak there is sharp and wrong.
+///
+/// The constructor allocates all memory. Not thread safe.
 class MatchCovariance {
  public:
   MatchCovariance(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses);
 
-  /// Covariance (x m, y m, yaw rad) of `correction`, always positive definite.
+  /// Covariance (x m, y m, yaw rad) of `correction`. It is always positive definite. `bev` and
+  /// `map` are standardised features; `bev` has a margin for the hypotheses.
   Eigen::Matrix3d estimate(const CellFeatures& bev, const CellFeatures& map, const Se2& correction);
 
  private:
   struct Information {
-    Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
-    Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();  ///< H
+    Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();      ///< S
   };
 
   void add_block(const CellFeatures& map, const Se2& correction, int first_row, int first_col,
@@ -40,9 +42,9 @@ class MatchCovariance {
 
   BevGrid grid_;
   int lanes_;
-  int border_;  ///< cells that a hypothesis can move out of sight
+  int border_;  ///< cells at each edge that a hypothesis can move out of the grid
   Eigen::Vector3d uniform_variance_;
-  LaneBuffer moved_;  ///< the vehicle's features, moved: [row, col, lanes]
+  LaneBuffer moved_;  ///< the moved BEV features, [row, col, lanes]
 };
 
 }  // namespace bevloc

@@ -1,4 +1,4 @@
-// What a ZNCC of moved vehicle features with map features is made of.
+// The sums from which the ZNCC of moved BEV features with map features is computed.
 #pragma once
 
 #include "pipeline/solver/lanes.h"
@@ -6,11 +6,11 @@
 
 namespace bevloc {
 
-/// Sums over cells, for sixteen channels side by side.
+/// Sums over cells, separately for kLanes channels.
 struct LaneSums {
-  Lanes product = {};  ///< of map and moved feature
-  Lanes value = {};    ///< of moved features
-  Lanes square = {};
+  Lanes product = {};  ///< map feature times moved feature
+  Lanes value = {};    ///< moved feature
+  Lanes square = {};   ///< moved feature squared
 
   void add(const Lanes& map, const Lanes& moved) {
     product += map * moved;
@@ -19,7 +19,7 @@ struct LaneSums {
   }
 };
 
-/// The same over all channels.
+/// The same sums over all channels.
 struct MatchSums {
   double product = 0.0;
   double value = 0.0;
@@ -33,12 +33,12 @@ struct MatchSums {
   }
 };
 
-/// Of two that were kept side by side, to hide the latency of the additions.
+/// Adds two partial sums and all their lanes.
 inline MatchSums sum_of(const LaneSums& a, const LaneSums& b) {
   return {sum_of(a.product + b.product), sum_of(a.value + b.value), sum_of(a.square + b.square)};
 }
 
-/// From sums over `count` values.
+/// ZNCC from sums over `count` values and the moments of the map.
 inline double zncc(const MatchSums& sums, const FeatureMoments& map, double count) {
   return zncc(sums.product, map, moments(sums.value, sums.square, count), count);
 }

@@ -1,25 +1,27 @@
-// One way to find the correction under which two sides' features lie best on each other.
+// Interface of the methods that score hypotheses: one Matcher per method.
 #pragma once
 
 #include <span>
 
 #include "pipeline/solver/cell_features.h"
-#include "pipeline/solver/solver.h"
+#include "pipeline/solver/solver_result.h"
 
 namespace bevloc {
 
-/// The features of one side.
+/// The features of one side (BEV or map), in both forms. Owns nothing.
 struct MatchSide {
-  std::span<const float> raw;  ///< as the network gives them, [channels, rows, cols]
+  std::span<const float> raw;  ///< from the network, [channels, rows, cols]
   const CellFeatures& cells;   ///< standardised (standardise.h)
 };
 
-/// Scratch memory is made in the constructor; match() allocates nothing. Not thread safe.
+/// Scores hypotheses. A matcher allocates its scratch memory in the constructor; match() allocates
+/// nothing. Not thread safe.
 class Matcher {
  public:
   virtual ~Matcher() = default;
 
-  /// Fills the three distributions of `result`, which have their lengths, and its correction.
+  /// Writes `result.correction` and the three distributions of `result`. The distributions must
+  /// already have the lengths of the axes (resize_distributions()).
   virtual void match(const MatchSide& bev, const MatchSide& map, SolverResult& result) = 0;
 };
 

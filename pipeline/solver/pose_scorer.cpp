@@ -8,23 +8,23 @@
 namespace bevloc {
 namespace {
 
-/// About so many cells are summed in float; of more, rounding would show.
-constexpr int kCellsTogether = 500;
+/// Cells that are summed in float before the sums go to double, to limit rounding errors.
+constexpr int kCellsPerFloatSum = 500;
 
-/// Consecutive rows.
+/// Rows begin ... end - 1.
 struct RowRange {
   int begin;
   int end;
 };
 
-/// Up to sixteen cells of a row of both sides; their map features are `map_step` floats apart.
+/// Up to kLanes cells of one row: where the BEV features are read, and the first map cell.
 struct CellGroup {
   Taps taps;
   const float* map;
   int cells;
 };
 
-/// The groups of a lattice's cells, row by row.
+/// Iterates over the cells of a lattice in groups, row by row.
 class CellGroups {
  public:
   CellGroups(const FeatureWarp& moved, const CellFeatures& map, const CellLattice& lattice,
@@ -33,11 +33,12 @@ class CellGroups {
     begin_row();
   }
 
+  /// Floats between the map features of neighbouring cells of a group.
   int map_step() const { return lattice_.step * map_.lanes(); }
   const WarpLine& line() const { return line_; }
 
-  /// False after the last one.
-  bool take(CellGroup& group) {
+  /// Writes the next group. False after the last one.
+  bool next(CellGroup& group) {
     if (first_ >= line_.cells) {
       if (++row_ >= row_end_) return false;
       begin_row();
@@ -65,13 +66,13 @@ class CellGroups {
   int first_;
 };
 
-/// Two cells at a time, to hide the latency of the additions.
+/// Separate sums for even and odd cells, to hide the latency of the additions.
 struct CellSums {
   LaneSums even;
   LaneSums odd;
 };
 
-/// `lanes_per_cell` is the map's, known to the compiler where it can be.
+/// `lanes_per_cell` is map.lanes(). A constant lets the compiler unroll the inner loop.
 [[gnu::always_inline]] inline void add_cells(const CellGroup& group, WarpLine line, int map_step,
                                              int lanes_per_cell, CellSums& sums) {
   line.lanes = lanes_per_cell;
@@ -94,14 +95,13 @@ struct CellSums {
   }
 }
 
-/// Each group's taps are found before the previous group is added, so that the one hides behind the
-/// other.
+/// Finds the taps of the next group before it adds the current one, so that the two overlap.
 [[gnu::always_inline]] inline MatchSums add_groups(CellGroups& groups, int lanes_per_cell) {
   CellSums sums;
   CellGroup two[2];
-  bool more = groups.take(two[0]);
+  bool more = groups.next(two[0]);
   for (int i = 0; more; i = 1 - i) {
-    more = groups.take(two[1 - i]);
+    more = groups.next(two[1 - i]);
     add_cells(two[i], groups.line(), groups.map_step(), lanes_per_cell, sums);
   }
   return sum_of(sums.even, sums.odd);
@@ -119,10 +119,10 @@ MatchSums match_moved(const CellFeatures& bev, const CellFeatures& map, const Se
                       const CellLattice& lattice) {
   const BevGrid& grid = map.grid();
   const FeatureWarp moved(bev, correction);
-  const int rows_together = std::max(1, kCellsTogether / lattice.cells(0, grid.cols));
+  const int rows_per_sum = std::max(1, kCellsPerFloatSum / lattice.cells(0, grid.cols));
   MatchSums sums;
-  for (int row = 0; row < grid.rows; row += rows_together) {
-    sums += match_rows(moved, map, lattice, {row, std::min(row + rows_together, grid.rows)});
+  for (int row = 0; row < grid.rows; row += rows_per_sum) {
+    sums += match_rows(moved, map, lattice, {row, std::min(row + rows_per_sum, grid.rows)});
   }
   return sums;
 }

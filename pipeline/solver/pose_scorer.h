@@ -1,4 +1,4 @@
-// Zero-padded ZNCC of one correction at a time.
+// Scores single corrections by zero-padded ZNCC.
 #pragma once
 
 #include "common/se2.h"
@@ -9,17 +9,17 @@
 
 namespace bevloc {
 
-/// Sums over the lattice's cells of the map and of the features that a correction has moved. They
-/// are moved and matched in one go, and nothing is written.
+/// Moves the BEV features by `correction` and sums their products with the map features over the
+/// cells of the lattice. The moved features are used in registers and never stored.
 MatchSums match_moved(const CellFeatures& bev, const CellFeatures& map, const Se2& correction,
                       const CellLattice& lattice = kEveryCell);
 
-/// Scores corrections by ZNCC over the lattice's cells and all channels (paper, eq. 5), with zeros
-/// where the moved vehicle features do not reach, like TranslationScorer: this one serves
-/// corrections that share nothing.
+/// Scores corrections by ZNCC over the cells of a lattice and all channels (paper, eq. 5). The
+/// moved BEV features are zero outside their grid. reference/translation_scorer.h computes the same
+/// score faster for many corrections with the same yaw.
 class PoseScorer {
  public:
-  /// Both must outlive the scorer.
+  /// `bev` and `map` must outlive the scorer.
   PoseScorer(const CellFeatures& bev, const CellFeatures& map,
              const CellLattice& lattice = kEveryCell);
 
@@ -29,7 +29,7 @@ class PoseScorer {
   const CellFeatures& bev_;
   const CellFeatures& map_;
   CellLattice lattice_;
-  double count_;  ///< values that are compared
+  double count_;  ///< cells of the lattice times channels
   FeatureMoments map_moments_;
 };
 

@@ -22,18 +22,17 @@ void softmax(std::span<const double> scores, double scale, std::span<float> prob
   }
 }
 
-void share_out(std::span<const int> chosen, std::span<const double> scores, double scale,
-               std::span<float> probability) {
+void redistribute(std::span<const int> chosen, std::span<const double> scores, double scale,
+                  std::span<float> probability) {
   const double best = *std::ranges::max_element(scores);
-  double together = 0.0;
+  double total = 0.0;
   double sum = 0.0;
   for (size_t i = 0; i < chosen.size(); ++i) {
-    together += probability[chosen[i]];
+    total += probability[chosen[i]];
     sum += std::exp(scale * (scores[i] - best));
   }
   for (size_t i = 0; i < chosen.size(); ++i) {
-    probability[chosen[i]] =
-        static_cast<float>(together * std::exp(scale * (scores[i] - best)) / sum);
+    probability[chosen[i]] = static_cast<float>(total * std::exp(scale * (scores[i] - best)) / sum);
   }
 }
 
@@ -52,17 +51,16 @@ double posterior_variance(std::span<const float> probability, const HypothesisAx
   return variance;
 }
 
-double parabola_top(std::span<const float> probability, const HypothesisAxis& axis) {
+double parabola_vertex(std::span<const float> probability, const HypothesisAxis& axis) {
   const auto best = std::ranges::max_element(probability);
   const int i = static_cast<int>(best - probability.begin());
   if (i == 0 || i + 1 == axis.count()) return axis.value(i);
-  // Kept off zero: a logarithm must stay finite.
-  constexpr double kLeast = 1e-30;
+  constexpr double kLeast = 1e-30;  // keeps the logarithm of a zero probability finite
   const double before = std::log(std::max<double>(*(best - 1), kLeast));
   const double top = std::log(std::max<double>(*best, kLeast));
   const double after = std::log(std::max<double>(*(best + 1), kLeast));
   const double curvature = before - 2.0 * top + after;
-  if (curvature >= 0.0) return axis.value(i);  // flat: all three are as likely
+  if (curvature >= 0.0) return axis.value(i);  // flat: all three are equally likely
   return axis.value(i) + 0.5 * (before - after) / curvature * axis.step;
 }
 
@@ -70,7 +68,7 @@ double rival_peak(std::span<const float> probability) {
   float highest = 0.0F;
   float second = 0.0F;
   for (size_t i = 0; i < probability.size(); ++i) {
-    // Of a plateau the first counts.
+    // A plateau counts once, at its first element.
     const bool above_previous = i == 0 || probability[i] > probability[i - 1];
     size_t next = i + 1;
     while (next < probability.size() && probability[next] == probability[i]) ++next;
@@ -82,17 +80,17 @@ double rival_peak(std::span<const float> probability) {
   return highest > 0.0F ? second / highest : 0.0;
 }
 
-void spread(const FollowedAxis& followed, const HypothesisAxis& axis, std::vector<float>& scratch,
-            std::vector<float>& probability) {
+void convolve(const SearchedAxis& searched, const HypothesisAxis& axis, std::vector<float>& scratch,
+              std::vector<float>& probability) {
   scratch.assign(probability.size(), 0.0F);
   const int last = axis.count() - 1;
-  for (int i = 0; i < followed.axis.count(); ++i) {
-    const double shift = followed.slope * (followed.axis.value(i) - followed.from) / axis.step;
+  for (int i = 0; i < searched.axis.count(); ++i) {
+    const double shift = searched.slope * (searched.axis.value(i) - searched.start) / axis.step;
     for (int k = 0; k <= last; ++k) {
       const double position = std::clamp(k + shift, 0.0, static_cast<double>(last));
       const int low = std::min(static_cast<int>(position), last - 1);
       const auto above = static_cast<float>(position - low);
-      const float share = followed.probability[i] * probability[k];
+      const float share = searched.probability[i] * probability[k];
       scratch[low] += (1.0F - above) * share;
       scratch[low + 1] += above * share;
     }

@@ -1,4 +1,4 @@
-// Distributions over the hypotheses of an axis.
+// Functions on the distributions over the hypotheses of an axis.
 #pragma once
 
 #include <span>
@@ -6,53 +6,59 @@
 
 #include <Eigen/Core>
 
-#include "pipeline/solver/solver.h"
+#include "pipeline/solver/hypotheses.h"
+#include "pipeline/solver/solver_result.h"
 
 namespace bevloc {
 
 /// probability = softmax(scale * scores).
 void softmax(std::span<const double> scores, double scale, std::span<float> probability);
 
-/// Shares what the `chosen` hypotheses have together out among them, in proportion to
-/// softmax(scale * scores); `scores` are theirs. The others keep what they have.
-void share_out(std::span<const int> chosen, std::span<const double> scores, double scale,
-               std::span<float> probability);
+/// Redistributes the total probability of the hypotheses `chosen` among them, in proportion to
+/// softmax(scale * scores). scores[i] belongs to hypothesis chosen[i]. The probabilities of all
+/// other hypotheses stay the same.
+void redistribute(std::span<const int> chosen, std::span<const double> scores, double scale,
+                  std::span<float> probability);
 
 double posterior_mean(std::span<const float> probability, const HypothesisAxis& axis);
 double posterior_variance(std::span<const float> probability, const HypothesisAxis& axis);
 
-/// The top of the parabola through the logarithms of the greatest probability and its neighbours;
-/// the hypothesis itself where it is the first or the last.
-double parabola_top(std::span<const float> probability, const HypothesisAxis& axis);
+/// The vertex of the parabola through the logarithms of the highest probability and its two
+/// neighbours. If the highest is the first or the last hypothesis, the value of that hypothesis.
+double parabola_vertex(std::span<const float> probability, const HypothesisAxis& axis);
 
-/// The second highest local maximum against the highest; 0 where there is one only.
+/// The second highest local maximum divided by the highest; 0 if there is only one.
 double rival_peak(std::span<const float> probability);
 
-/// An axis whose search another one followed: its distribution, where the search began, and how far
-/// the other went for each unit.
-struct FollowedAxis {
+/// A searched axis on which another axis depends: while the searched axis moved from `start` by d,
+/// the dependent axis moved by slope * d.
+struct SearchedAxis {
   std::span<const float> probability;
   const HypothesisAxis& axis;
-  double from;
+  double start;
   double slope;
 };
 
-/// The distribution of what followed, from what it is with the followed axis held:
-/// P(v) = sum over i of followed.probability[i] * probability(v - slope * (value(i) - from)),
-/// linear between hypotheses; what leaves the axis stays at its end. `scratch` is overwritten.
-void spread(const FollowedAxis& followed, const HypothesisAxis& axis, std::vector<float>& scratch,
-            std::vector<float>& probability);
+/// Convolves the distribution of a dependent axis with that of the searched axis:
+///
+///   P(v) = sum over i of searched.probability[i] * probability(v - slope * (value(i) - start)).
+///
+/// `probability` on entry is the distribution with the searched axis fixed at `start`; on return it
+/// is the marginal. Shifts between hypotheses are interpolated linearly; probability that would
+/// leave the axis stays at its end. `scratch` is overwritten.
+void convolve(const SearchedAxis& searched, const HypothesisAxis& axis, std::vector<float>& scratch,
+              std::vector<float>& probability);
 
-/// Variances of x, y and yaw when every hypothesis is as likely as any other.
+/// The variances of x, y and yaw if all hypotheses are equally likely.
 Eigen::Vector3d uniform_variance(const HypothesisGrid& hypotheses);
 
-/// The smallest variances that a grid of these steps may claim: (step / sqrt(12))^2 / 4.
+/// The smallest variances that a result may claim with these steps: (step / sqrt(12))^2 / 4.
 Eigen::Vector3d least_variance(const HypothesisGrid& hypotheses);
 
-/// Makes the distributions as long as the axes have hypotheses.
+/// Gives each distribution of `result` one element per hypothesis of its axis.
 void resize_distributions(const HypothesisGrid& hypotheses, SolverResult& result);
 
-/// Zero correction, uniform distributions and their covariance.
+/// Sets Evidence::kNone, a zero correction, uniform distributions and their covariance.
 void set_no_evidence(const HypothesisGrid& hypotheses, SolverResult& result);
 
 }  // namespace bevloc

@@ -7,9 +7,9 @@
 namespace bevloc {
 namespace {
 
-/// What a round leaves less likely than this, against the best, the next does not score.
+/// A round skips hypotheses that are less likely than this share of the most likely one.
 constexpr float kLeastLikely = 1e-2F;
-/// Of fewer cells the score is noisier, and worth less.
+/// Factor on the scales of the coarse rounds: the score of fewer cells is noisier.
 constexpr double kCoarseScale = 0.5;
 
 Se2 correction_of(const Eigen::Vector3d& pose) {
@@ -24,7 +24,7 @@ Refinement::Refinement(const HypothesisGrid& hypotheses, const SolverParameters&
       std::max({hypotheses.x_m.count(), hypotheses.y_m.count(), hypotheses.yaw_rad.count()});
   scored_.reserve(longest);
   scores_.reserve(longest);
-  spread_.reserve(longest);
+  scratch_.reserve(longest);
 }
 
 void Refinement::refine(const MatchSide& bev, const MatchSide& map, SolverResult& result) {
@@ -32,32 +32,33 @@ void Refinement::refine(const MatchSide& bev, const MatchSide& map, SolverResult
   Eigen::Vector3d pose(result.correction.x_m, result.correction.y_m, result.correction.yaw_rad);
   const PoseScorer coarse(bev.cells, map.cells, kEveryTenthCell);
   const PoseScorer fine(bev.cells, map.cells, kEverySecondCell);
-  // y and yaw of the first round are searched at an x that it then finds to be wrong.
-  pass_through({coarse, kCoarseScale, 0.0F}, valley, pose, result);
-  pass_through({coarse, kCoarseScale, kLeastLikely}, valley, pose, result);
-  pass_through({fine, 1.0, kLeastLikely}, valley, pose, result);
+  // The first round searches y and yaw at an x that it then corrects, so a second one follows.
+  search_all_axes({coarse, kCoarseScale, 0.0F}, valley, pose, result);
+  search_all_axes({coarse, kCoarseScale, kLeastLikely}, valley, pose, result);
+  search_all_axes({fine, 1.0, kLeastLikely}, valley, pose, result);
   result.correction = {posterior_mean(result.x_probability, hypotheses_.x_m),
                        posterior_mean(result.y_probability, hypotheses_.y_m),
                        posterior_mean(result.yaw_probability, hypotheses_.yaw_rad)};
 }
 
-void Refinement::pass_through(const Round& round, const ScoreValley& valley, Eigen::Vector3d& pose,
-                              SolverResult& result) {
+void Refinement::search_all_axes(const Round& round, const ScoreValley& valley,
+                                 Eigen::Vector3d& pose, SolverResult& result) {
   const auto& [x_m, y_m, yaw_rad] = hypotheses_;
   std::vector<float>& x = result.x_probability;
   std::vector<float>& y = result.y_probability;
   std::vector<float>& yaw = result.yaw_probability;
   search(round, 1, Eigen::Vector3d::UnitY(), pose, y);
-  const double yaw_at_rad = pose.z();
+  const double yaw_before_rad = pose.z();
   const Eigen::Vector3d along_yaw = valley.along_yaw(correction_of(pose));
   search(round, 2, along_yaw, pose, yaw);
-  const double x_at_m = pose.x();
+  const double x_before_m = pose.x();
   const Eigen::Vector3d along_x = valley.along_x(correction_of(pose));
   search(round, 0, along_x, pose, x);
 
-  spread({yaw, yaw_rad, yaw_at_rad, along_yaw.y()}, y_m, spread_, y);
-  spread({x, x_m, x_at_m, along_x.y()}, y_m, spread_, y);
-  spread({x, x_m, x_at_m, along_x.z()}, yaw_rad, spread_, yaw);
+  // The searches of yaw and x moved y and yaw along: add the uncertainty of the searched axis.
+  convolve({yaw, yaw_rad, yaw_before_rad, along_yaw.y()}, y_m, scratch_, y);
+  convolve({x, x_m, x_before_m, along_x.y()}, y_m, scratch_, y);
+  convolve({x, x_m, x_before_m, along_x.z()}, yaw_rad, scratch_, yaw);
 }
 
 void Refinement::search(const Round& round, int axis, const Eigen::Vector3d& direction,
@@ -76,7 +77,7 @@ void Refinement::search(const Round& round, int axis, const Eigen::Vector3d& dir
     scored_.push_back(i);
     scores_.push_back(round.scorer.score(correction_of(inside)));
   }
-  share_out(scored_, scores_, round.scale * scales[axis], probability);
+  redistribute(scored_, scores_, round.scale * scales[axis], probability);
   pose += (posterior_mean(probability, *axes[axis]) - pose(axis)) * direction;
 }
 

@@ -10,10 +10,10 @@
 namespace bevloc {
 namespace {
 
-/// Added to the curvature, as a share of its trace in units of the hypotheses' deviations: where
-/// the map shows nothing along an axis, that axis stays.
+/// Share of H's trace that is added to its diagonal (both in units of the hypotheses' standard
+/// deviations), so that an axis without structure in the map does not move.
 constexpr double kRidge = 1e-3;
-/// No map shows so little; keeps H regular.
+/// Lower limit of the trace, below that of any real map; keeps H regular.
 constexpr double kLeastTrace = 1e-12;
 
 }  // namespace
@@ -21,7 +21,7 @@ constexpr double kLeastTrace = 1e-12;
 ScoreValley::ScoreValley(const CellFeatures& map, const HypothesisGrid& hypotheses)
     : unit_(uniform_variance(hypotheses).cwiseSqrt()), curvature_(Eigen::Matrix3d::Zero()) {
   const BevGrid& grid = map.grid();
-  // The outermost cells lack a neighbour.
+  // The outermost cells lack a neighbour, so they have no gradient.
   for (int row = 1; row + 1 < grid.rows; ++row) {
     const float* first = map.cell(row, 1);
     curvature_ += sum_gradients({.map = first,
@@ -38,11 +38,11 @@ ScoreValley::ScoreValley(const CellFeatures& map, const HypothesisGrid& hypothes
 }
 
 Eigen::Matrix3d ScoreValley::curvature_at(const Se2& correction) const {
-  // A turn about t is one about the middle, and a shift by (t_y, -t_x).
-  Eigen::Matrix3d middle_from_here = Eigen::Matrix3d::Identity();
-  middle_from_here(0, 2) = correction.y_m;
-  middle_from_here(1, 2) = -correction.x_m;
-  Eigen::Matrix3d curvature = middle_from_here.transpose() * curvature_ * middle_from_here;
+  // A rotation about t equals one about the centre plus a shift by (t_y, -t_x).
+  Eigen::Matrix3d center_from_here = Eigen::Matrix3d::Identity();
+  center_from_here(0, 2) = correction.y_m;
+  center_from_here(1, 2) = -correction.x_m;
+  Eigen::Matrix3d curvature = center_from_here.transpose() * curvature_ * center_from_here;
   const double trace = std::max(unit_.cwiseAbs2().dot(curvature.diagonal()), kLeastTrace);
   curvature.diagonal() += kRidge * trace * unit_.cwiseAbs2().cwiseInverse();
   return curvature;

@@ -1,33 +1,35 @@
-// Which way the score falls least when one axis is moved.
+// Finds how the other axes must follow when one axis moves, so that the score falls least.
 #pragma once
 
 #include <Eigen/Core>
 
+#include "common/se2.h"
 #include "pipeline/solver/cell_features.h"
-#include "pipeline/solver/solver.h"
+#include "pipeline/solver/hypotheses.h"
 
 namespace bevloc {
 
-/// Moving along one axis alone, the score may fall because the others no longer fit: on a curve, a
-/// step along the road asks for a turn. The score's valley is found from the map's own features:
-/// near the solution they fall like d^T H d for a displacement d = (x m, y m, yaw rad), with
-/// H = sum over cells and channels of J^T J, J their gradients by the pose.
+/// If one axis moves alone, the score may fall only because the other axes no longer fit: on a
+/// curve, a step along the road requires a rotation. The valley is computed from the map features.
+/// Near the solution the score falls like d^T H d for a displacement d = (x m, y m, yaw rad), with
+/// H = sum over cells and channels of J^T J and J the gradients of the map features by the pose.
 class ScoreValley {
  public:
+  /// `map` holds standardised features; it is not kept.
   ScoreValley(const CellFeatures& map, const HypothesisGrid& hypotheses);
 
-  /// The displacement that moves x by 1 m, with the y and the yaw that suit it best. The turn is
-  /// about the vehicle's corrected position.
+  /// The displacement that moves x by 1 m, with the best y and yaw for it. The rotation is about
+  /// the corrected position of the vehicle.
   Eigen::Vector3d along_x(const Se2& correction) const;
 
-  /// The displacement that turns by 1 rad, with the y that suits it best, and the same x.
+  /// The displacement that rotates by 1 rad, with the best y for it and an unchanged x.
   Eigen::Vector3d along_yaw(const Se2& correction) const;
 
  private:
   Eigen::Matrix3d curvature_at(const Se2& correction) const;
 
-  Eigen::Vector3d unit_;       ///< the hypotheses' deviations
-  Eigen::Matrix3d curvature_;  ///< H with turns about the map's middle
+  Eigen::Vector3d unit_;       ///< standard deviations of uniform hypotheses
+  Eigen::Matrix3d curvature_;  ///< H for rotations about the centre of the grid
 };
 
 }  // namespace bevloc

@@ -1,17 +1,17 @@
-// Whole-cell shifts that the hypotheses of a grid can read.
+// Shifts of the hypotheses, in whole cells and fractions.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/solver/solver.h"
+#include "pipeline/solver/hypotheses.h"
 
 namespace bevloc {
 
-/// Shifts that differ from whole cells by less are whole.
+/// A shift that differs from a whole number of cells by less than this counts as whole.
 inline constexpr double kWholeShiftTolerance = 1e-9;
 
-/// Shifts -rows ... +rows and -cols ... +cols: those of the hypotheses, rounded outwards.
+/// The whole shifts -rows ... +rows and -cols ... +cols that enclose all hypotheses.
 struct ShiftRange {
   int rows = 0;
   int cols = 0;
@@ -23,6 +23,7 @@ struct ShiftRange {
   }
 };
 
+/// Cells that cover `range_m`.
 inline int whole_cells(double range_m, double cell_m) {
   return static_cast<int>(std::ceil(range_m / cell_m - kWholeShiftTolerance));
 }
@@ -32,7 +33,7 @@ inline ShiftRange shift_range(const HypothesisGrid& hypotheses, double cell_m) {
           whole_cells(hypotheses.y_m.farthest(), cell_m)};
 }
 
-/// A shift between two whole ones.
+/// A shift in cells: whole + fraction, with 0 <= fraction < 1.
 struct SplitShift {
   int whole = 0;
   double fraction = 0.0;

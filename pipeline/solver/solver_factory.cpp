@@ -7,13 +7,15 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "pipeline/solver/banded_matcher.h"
-#include "pipeline/solver/block_matcher.h"
-#include "pipeline/solver/decoupled_matcher.h"
-#include "pipeline/solver/full_fft_matcher.h"
-#include "pipeline/solver/full_matcher.h"
-#include "pipeline/solver/literal_matcher.h"
-#include "pipeline/solver/matching_solver.h"
+#include "pipeline/solver/grid_limits.h"
+#include "pipeline/solver/reference/block_matcher.h"
+#include "pipeline/solver/reference/decoupled_matcher.h"
+#include "pipeline/solver/reference/full_fft_matcher.h"
+#include "pipeline/solver/reference/full_matcher.h"
+#include "pipeline/solver/reference/literal_matcher.h"
 
 namespace bevloc {
 namespace {
@@ -31,11 +33,16 @@ constexpr std::array<std::pair<std::string_view, SolverKind>, kSolverKinds> kNam
     {"block+refine", SolverKind::kBlockRefined},
 }};
 
-/// What nobody needs and no memory holds, so that a typing error is refused and not tried.
-constexpr int kMaxSide = 1024;
+// Limits far beyond any use, so that a typing error is reported instead of exhausting the memory.
 constexpr int kMaxFeatures = 1 << 24;     ///< channels x rows x columns
-constexpr double kMaxHalfCount = 1000.0;  ///< steps from zero to an axis's end
+constexpr double kMaxHalfCount = 1000.0;  ///< steps from zero to the end of an axis
 constexpr double kMaxHypotheses = 1e6;
+
+// Limits of the grids of matchers that set no limits of their own. The memory of block matching
+// grows with the area of the grid, and block sizes in cells must fit an int.
+constexpr int kLeastGridSide = 3;
+constexpr double kLeastCell_m = 0.001;
+constexpr double kMaxGridSide_m = 80.0;
 
 bool is_positive(double value) {
   return std::isfinite(value) && value > 0.0;
@@ -45,8 +52,8 @@ Status check_axis(std::string_view name, const HypothesisAxis& axis, double max_
   const bool sound = is_positive(axis.step) && is_positive(axis.range) && axis.step <= axis.range;
   if (!sound || axis.range / axis.step > kMaxHalfCount || axis.farthest() > max_range) {
     return fail(
-        "hypotheses of {}: range {} and step {}, wanted 0 < step <= range <= {} and at most {} "
-        "steps",
+        "hypotheses of {}: found range {} and step {}, wanted 0 < step <= range <= {} and at most "
+        "{} steps",
         name, axis.range, axis.step, max_range, kMaxHalfCount);
   }
   return {};
@@ -64,39 +71,50 @@ Status check_parameters(SolverKind kind, const SolverParameters& parameters) {
         std::pair("banded_y_scale", parameters.banded_y_scale),
         std::pair("gem_omega", parameters.gem_omega)}) {
     if (!is_positive(value)) {
-      return fail("solver parameter {} is {}, wanted a finite number above 0", name, value);
+      return fail("solver parameter {}: found {}, wanted a finite number above 0", name, value);
     }
   }
   if (parameters.gem_omega != 1.0F && !is_literal(kind)) {
-    return fail("solver parameter gem_omega is {}, wanted 1 (the plain mean)",
+    return fail("solver parameter gem_omega: found {}, wanted 1 (the arithmetic mean)",
                 parameters.gem_omega);
   }
   return {};
 }
 
-Status check_grid(SolverKind kind, const BevGrid& grid) {
-  const bool sound = grid.rows > 0 && grid.rows <= kMaxSide && grid.cols > 0 &&
-                     grid.cols <= kMaxSide && is_positive(grid.cell_m);
-  if (is_literal(kind)) {
-    if (sound && LiteralMatcher::supports(grid)) return {};
-    return fail(
-        "solver: grid of {} x {} cells of {} m, wanted rows and columns of the form 2^a 5^b, 4 "
-        "to {}",
-        grid.rows, grid.cols, grid.cell_m, kMaxSide);
+Status check_size(const BevGrid& grid) {
+  if (std::min(grid.rows, grid.cols) >= kLeastGridSide && grid.cell_m >= kLeastCell_m &&
+      std::max(grid.rows, grid.cols) * grid.cell_m <= kMaxGridSide_m) {
+    return {};
   }
-  if (sound && YawSpectrum::covers(grid)) return {};
-  return fail(
-      "solver: grid of {} x {} cells of {} m, wanted {} to 128 rows and columns of cells of {} to "
-      "{:.2f} m, or at most {} of finer cells that make as many",
-      grid.rows, grid.cols, grid.cell_m, YawSpectrum::kLeastSide, YawSpectrum::kCell_m,
-      0.5 / YawSpectrum::kMaxFrequency, kMaxSide);
+  return refuse_grid(
+      grid, fmt::format("at least {} rows and columns of cells of at least {} m, and sides of at "
+                        "most {} m",
+                        kLeastGridSide, kLeastCell_m, kMaxGridSide_m));
+}
+
+Status check_grid(SolverKind kind, const BevGrid& grid) {
+  if (grid.rows <= 0 || grid.rows > kMaxGridSide || grid.cols <= 0 || grid.cols > kMaxGridSide ||
+      !is_positive(grid.cell_m)) {
+    return refuse_grid(
+        grid, fmt::format("1 to {} rows and columns of cells larger than 0 m", kMaxGridSide));
+  }
+  switch (kind) {
+    case SolverKind::kDecoupledLiteral:
+    case SolverKind::kDecoupledLiteralRefined:
+      return LiteralMatcher::check_grid(grid);
+    case SolverKind::kDecoupled:
+    case SolverKind::kDecoupledRefined:
+      return DecoupledMatcher::check_grid(grid);
+    default:
+      return check_size(grid);
+  }
 }
 
 Status check(SolverKind kind, const BevGrid& grid, int channels, const HypothesisGrid& hypotheses) {
   if (auto status = check_grid(kind, grid); !status) return status;
   const int max_channels = kMaxFeatures / grid.cells();
   if (channels <= 0 || channels > max_channels) {
-    return fail("solver: {} channels, wanted 1 to {}", channels, max_channels);
+    return fail("solver: found {} channels, wanted 1 to {}", channels, max_channels);
   }
   const double max_range_m = max_shift_m(grid);
   if (auto status = check_axis("x", hypotheses.x_m, max_range_m); !status) return status;
@@ -107,7 +125,7 @@ Status check(SolverKind kind, const BevGrid& grid, int channels, const Hypothesi
   const double count = static_cast<double>(hypotheses.x_m.count()) * hypotheses.y_m.count() *
                        hypotheses.yaw_rad.count();
   if (count > kMaxHypotheses) {
-    return fail("hypotheses: {} in all, wanted at most {}", count, kMaxHypotheses);
+    return fail("hypotheses: found {} in all, wanted at most {}", count, kMaxHypotheses);
   }
   return {};
 }
@@ -179,10 +197,9 @@ Result<std::unique_ptr<Solver>> make_solver(SolverKind kind, const BevGrid& grid
   if (auto status = check_parameters(kind, parameters); !status) {
     return tl::unexpected(status.error());
   }
-  return std::make_unique<MatchingSolver>(
-      grid, channels, hypotheses, parameters,
-      make_matcher(kind, grid, channels, hypotheses, parameters),
-      is_refined(kind) ? Refine::kYes : Refine::kNo);
+  return std::make_unique<Solver>(grid, channels, hypotheses, parameters,
+                                  make_matcher(kind, grid, channels, hypotheses, parameters),
+                                  is_refined(kind) ? Refine::kYes : Refine::kNo);
 }
 
 }  // namespace bevloc

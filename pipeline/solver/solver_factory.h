@@ -1,4 +1,4 @@
-// Which pose solvers there are, by name.
+// Makes pose solvers by kind or name, and checks their arguments.
 #pragma once
 
 #include <algorithm>
@@ -12,43 +12,47 @@
 namespace bevloc {
 
 enum class SolverKind {
-  kFull,              ///< "full": every hypothesis by warping, the reference
-  kFullFft,           ///< "full-fft": every hypothesis by cross-correlation
-  kDecoupledLiteral,  ///< "decoupled-literal": the paper's, word for word
-  kDecoupledLiteralRefined,
-  kDecoupled,         ///< "decoupled": the paper's, as measurement mended it
-  kDecoupledRefined,  ///< "decoupled+refine": followed by a refinement
-  kBanded,            ///< "banded": axis matching band by band
-  kBandedRefined,     ///< "banded+refine": the default
-  kBlock,             ///< "block": every hypothesis, by block correlation
-  kBlockRefined,
+  kFull,                     ///< "full": scores every hypothesis by warping; the reference
+  kFullFft,                  ///< "full-fft": scores every hypothesis by cross-correlation
+  kDecoupledLiteral,         ///< "decoupled-literal": the paper's method, read literally
+  kDecoupledLiteralRefined,  ///< "decoupled-literal+refine"
+  kDecoupled,                ///< "decoupled": the paper's method with this project's changes
+  kDecoupledRefined,         ///< "decoupled+refine"
+  kBanded,                   ///< "banded": axis matching band by band
+  kBandedRefined,            ///< "banded+refine": the default
+  kBlock,                    ///< "block": scores every hypothesis by correlating blocks
+  kBlockRefined,             ///< "block+refine"
 };
 
 inline constexpr int kSolverKinds = 10;
 
-/// Fails with the names that are known.
+/// The kind with this name. Fails with the list of known names.
 Result<SolverKind> solver_kind_from(std::string_view name);
 std::string_view name_of(SolverKind kind);
 
-/// All of them, the references first.
+/// All kinds, in the order of the enumeration.
 std::array<SolverKind, kSolverKinds> all_solver_kinds();
 
-/// Whether it reads the features as they come, and GeM with any exponent (literal_matcher.h).
+/// Whether the matcher reads features that are not standardised, and accepts any GeM exponent
+/// (reference/literal_matcher.h).
 bool is_literal(SolverKind kind);
 
-/// Whether a refinement follows (refinement.h).
+/// Whether a refinement follows the matcher (refinement.h).
 bool is_refined(SolverKind kind);
 
-/// Largest ranges of the hypotheses: the solvers linearise and pad for small corrections, and
-/// something must be left inside the border that the largest shift can move out of sight.
+/// Largest hypotheses. The solvers linearise and pad for small corrections, and a part of the grid
+/// must stay in view under every hypothesis.
 inline constexpr double kMaxYawRange_deg = 20.0;
 constexpr double max_shift_m(const BevGrid& grid) {
   return 0.25 * std::min(grid.rows, grid.cols) * grid.cell_m;
 }
 
-/// Fails where the solver cannot work: a grid it cannot transform, hypotheses or parameters that
-/// are not finite and positive, hypotheses beyond the largest ranges, more features or hypotheses
-/// than anyone needs, a GeM exponent other than 1 for any but the literal solvers.
+/// Makes a solver. Fails if
+/// - the matcher cannot work on `grid`,
+/// - hypotheses or parameters are not finite and positive,
+/// - hypotheses exceed max_shift_m() or kMaxYawRange_deg,
+/// - there are more features or hypotheses than any use needs, or
+/// - gem_omega is not 1 and the solver is not literal.
 Result<std::unique_ptr<Solver>> make_solver(SolverKind kind, const BevGrid& grid, int channels,
                                             const HypothesisGrid& hypotheses,
                                             const SolverParameters& parameters);

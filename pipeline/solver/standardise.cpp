@@ -9,29 +9,29 @@ namespace bevloc {
 namespace {
 
 constexpr double kStdEpsilon = 0.01;
-/// A channel that varies less than this is constant up to rounding and carries nothing.
+/// A channel with a smaller standard deviation counts as constant: it varies by rounding alone.
 constexpr double kLeastStd = 1e-4;
 
-/// Sixteen neighbouring channels.
+/// Moments of kLanes neighbouring channels.
 struct Moments {
   LaneDoubles mean;
   LaneDoubles std;
 };
 
-/// One pass over the distances from the first cell, so that a constant channel comes out as exactly
-/// that. Their quarters: twice the largest float would be beyond floats.
+/// Sums the differences from the first cell in one pass, so that a constant channel gets a standard
+/// deviation of exactly 0. It sums quarters, because differences of large floats may overflow.
 BEVLOC_TARGET_CLONES void find_moments(const CellFeatures& features, int first_lane,
                                        Moments& moments) {
-  constexpr float kPart = 0.25F;
+  constexpr float kQuarter = 0.25F;
   const BevGrid& grid = features.grid();
-  const Lanes origin = kPart * lanes(features.cell(0, 0) + first_lane);
+  const Lanes origin = kQuarter * lanes(features.cell(0, 0) + first_lane);
   // Two cells at a time, to hide the latency of the additions.
   LaneDoubles sums[2] = {};
   LaneDoubles squares[2] = {};
   for (int row = 0; row < grid.rows; ++row) {
     const float* cell = features.cell(row, 0) + first_lane;
     for (int col = 0; col < grid.cols; ++col, cell += features.lanes()) {
-      const Lanes distance = kPart * lanes(cell) - origin;
+      const Lanes distance = kQuarter * lanes(cell) - origin;
       const auto exact = __builtin_convertvector(distance, LaneDoubles);
       sums[col % 2] += exact;
       squares[col % 2] += exact * exact;
@@ -41,13 +41,13 @@ BEVLOC_TARGET_CLONES void find_moments(const CellFeatures& features, int first_l
   const LaneDoubles square = squares[0] + squares[1];
   const LaneDoubles mean = sum / grid.cells();
   const LaneDoubles variance = square / grid.cells() - mean * mean;
-  moments.mean = (__builtin_convertvector(origin, LaneDoubles) + mean) / kPart;
+  moments.mean = (__builtin_convertvector(origin, LaneDoubles) + mean) / kQuarter;
   for (int k = 0; k < kLanes; ++k) {
-    moments.std[k] = std::sqrt(std::max(variance[k], 0.0)) / kPart;
+    moments.std[k] = std::sqrt(std::max(variance[k], 0.0)) / kQuarter;
   }
 }
 
-/// In double: a float that is as large as they get would lie beyond them from the mean.
+/// Computes in double, because the difference of a large float from the mean may overflow a float.
 BEVLOC_TARGET_CLONES void shift_and_scale(const Moments& moments, int first_lane,
                                           CellFeatures& features) {
   const LaneDoubles scale = 1.0 / (moments.std + kStdEpsilon);
@@ -69,7 +69,7 @@ bool standardise(CellFeatures& features) {
   for (int first_lane = 0; first_lane < features.lanes(); first_lane += kLanes) {
     find_moments(features, first_lane, moments);
     for (int k = 0; k < kLanes; ++k) {
-      if (!std::isfinite(moments.std[k])) return false;  // a value that is not spoils the sums
+      if (!std::isfinite(moments.std[k])) return false;  // NaN and infinity propagate to the sums
       greatest_std = std::max(greatest_std, moments.std[k]);
     }
     shift_and_scale(moments, first_lane, features);

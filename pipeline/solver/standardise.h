@@ -1,13 +1,13 @@
-// Features as every solver reads them: each channel with mean 0 and (nearly) unit deviation.
+// Standardises features: each channel gets mean 0 and nearly unit standard deviation.
 #pragma once
 
 #include "pipeline/solver/cell_features.h"
 
 namespace bevloc {
 
-/// Makes each channel (f - mean) / (std + 0.01), population moments over all cells. False, and the
-/// features are not to be used, where there is nothing to match: a value is not finite, or every
-/// channel is constant.
+/// Replaces each channel by (f - mean) / (std + 0.01), with the population moments over all cells.
+/// False if there is nothing to match, because a value is not finite or every channel is constant.
+/// The features must not be used then.
 bool standardise(CellFeatures& features);
 
 }  // namespace bevloc

@@ -13,7 +13,7 @@ struct RowSums {
   float square;
 };
 
-/// Of `cells` cells that are `step` floats apart.
+/// Sums over `cells` cells that are `step` floats apart, and over all lanes.
 BEVLOC_TARGET_CLONES RowSums sum_row(const float* cell, int cells, int step, int lane_count) {
   Lanes value = {};
   Lanes square = {};

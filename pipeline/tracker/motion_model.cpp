@@ -10,7 +10,7 @@ double squared(double value) {
   return value * value;
 }
 
-/// Transition of the error: it is carried in the moving frame of the vehicle.
+/// Transition matrix of the error state. The pose error is expressed in the moving vehicle frame.
 FilterState::Covariance transition(const MeasuredMotion& motion, double speed_mps,
                                    double duration_s, const Se2& step) {
   using S = FilterState;
@@ -19,7 +19,7 @@ FilterState::Covariance transition(const MeasuredMotion& motion, double speed_mp
   const double measured_m = motion.speed_mps * duration_s;
   FilterState::Covariance f = FilterState::Covariance::Identity();
   f.block<2, 2>(S::kX, S::kX) << c, s, -s, c;
-  // A yaw error swings the step sideways.
+  // A yaw error rotates the step.
   f(S::kX, S::kYaw) = -c * step.y_m + s * step.x_m;
   f(S::kY, S::kYaw) = s * step.y_m + c * step.x_m;
   f(S::kX, S::kSpeedScale) = measured_m;
@@ -28,6 +28,7 @@ FilterState::Covariance transition(const MeasuredMotion& motion, double speed_mp
   return f;
 }
 
+/// Diagonal of the process noise covariance.
 FilterState::Vector process_variance(double distance_m, double duration_s,
                                      const MotionNoise& noise) {
   const double half_square_s2 = 0.5 * duration_s * duration_s;

@@ -6,10 +6,10 @@
 namespace bevloc {
 namespace {
 
-/// The measurement's error seen in the estimate's frame.
+/// The measured pose minus the estimate, in the vehicle frame of the estimate.
 struct Innovation {
   Eigen::Vector3d error;
-  Eigen::Matrix3d covariance;  ///< of the measurement alone
+  Eigen::Matrix3d covariance;  ///< of the measurement, without that of the estimate
 };
 
 Innovation innovation_of(const FilterState& state, const PoseMeasurement& measurement) {

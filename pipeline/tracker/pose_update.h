@@ -1,4 +1,4 @@
-// A measured pose against the estimated one.
+// Compares a measured pose with the estimate and updates the estimate.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,17 +10,18 @@ namespace bevloc {
 
 struct PoseMeasurement {
   Se2 map_from_vehicle;
-  /// Of the measurement alone, in the measured vehicle's frame: (x m, y m, yaw rad).
+  /// In the vehicle frame of the measured pose: (x m, y m, yaw rad).
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  /// How many times the covariance counts in the filter, because consecutive errors are alike.
+  /// update() multiplies the covariance by this factor, because consecutive errors are correlated.
   double inflation = 1.0;
 };
 
-/// Squared Mahalanobis distance between measurement and estimate, both with their covariances: chi
-/// square with three degrees of freedom where both are honest.
+/// Squared Mahalanobis distance between measurement and estimate, by the sum of their covariances
+/// (without the inflation). Chi-square with three degrees of freedom if both covariances are
+/// correct.
 double squared_distance(const FilterState& state, const PoseMeasurement& measurement);
 
-/// Kalman update in Joseph's form: the covariance stays symmetric and positive definite.
+/// Kalman update in Joseph form, which keeps the covariance symmetric and positive definite.
 void update(const PoseMeasurement& measurement, FilterState& state);
 
 }  // namespace bevloc

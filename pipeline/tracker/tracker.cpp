@@ -1,16 +1,21 @@
 #include "pipeline/tracker/tracker.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstddef>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "pipeline/tracker/gnss_pose.h"
+
 namespace bevloc {
 namespace {
 
-/// Keeps an axis along which nothing was seen finite: a hundred times as uncertain as the search.
-constexpr double kLeastEvidenceShare = 1e-4;
+/// Lower bound of the evidence share. It keeps the covariance finite along an axis without
+/// evidence: sigma grows by a factor of 100 at most.
+constexpr double kMinEvidenceShare = 1e-4;
 
 double squared(double value) {
   return value * value;
@@ -26,27 +31,27 @@ bool is_covariance(const Eigen::Matrix3d& matrix) {
          matrix.llt().info() == Eigen::Success;
 }
 
-PoseMeasurement measurement_from(const GnssSample& sample) {
-  const double position_variance = squared(sample.position_sigma_m);
-  const Eigen::Vector3d variance(position_variance, position_variance,
-                                 squared(sample.heading_sigma_rad));
-  return {.map_from_vehicle = {sample.position_m.x(), sample.position_m.y(),
-                               wrap_angle(sample.heading_rad)},
+PoseMeasurement measurement_from(const GnssPose& gnss) {
+  const double position_variance = squared(gnss.position_sigma_m);
+  const Eigen::Vector3d variance(position_variance, position_variance, squared(gnss.yaw_sigma_rad));
+  const Se2& pose = gnss.map_from_vehicle;
+  return {.map_from_vehicle = {pose.x_m, pose.y_m, wrap_angle(pose.yaw_rad)},
           .covariance = variance.asDiagonal()};
 }
 
-/// What the match alone says. The solver's covariance holds its prior, even odds over the search
-/// range, and the filter has a better one: without it, as if all were Gaussian, an axis's precision
-/// is 1 / variance - 1 / variance of the range = share / variance. (Taken as it is, a search that
-/// saw nothing along the road would confirm the pose it began at, again and again.)
-Eigen::Matrix3d covariance_of_match(const Correction& result) {
+/// Covariance of the match alone. The solver's covariance includes its own prior, a uniform
+/// distribution over the search range, which the filter replaces by its estimate. If all were
+/// Gaussian, the precision along an axis without that prior would be
+/// 1 / variance - 1 / (variance of the range) = share / variance. With the prior left in, a search
+/// without evidence along the road would confirm its own starting pose again and again.
+Eigen::Matrix3d covariance_of_match(const MatchResult& result) {
   const Eigen::Vector3d growth =
-      result.evidence_share.cwiseMax(kLeastEvidenceShare).cwiseInverse().cwiseSqrt();
+      result.evidence_share.cwiseMax(kMinEvidenceShare).cwiseInverse().cwiseSqrt();
   return growth.asDiagonal() * result.covariance * growth.asDiagonal();
 }
 
-/// The solver's covariance is in the prior's frame; the correction turns away from it.
-PoseMeasurement measurement_from(const Se2& prior, const Correction& result) {
+/// Rotates the covariance from the frame of the prior into that of the corrected pose.
+PoseMeasurement measurement_from(const Se2& prior, const MatchResult& result) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-result.correction.yaw_rad).toRotationMatrix();
   return {.map_from_vehicle = prior * result.correction,
@@ -80,7 +85,14 @@ std::string_view name_of(TrackerUpdate update) {
 }
 
 Tracker::Tracker(const TrackerParameters& parameters)
-    : parameters_(parameters), history_(parameters.history_capacity) {}
+    : parameters_(parameters), history_(parameters.history_capacity) {
+  assert(parameters.history_capacity > 1);
+}
+
+TrackerUpdate Tracker::add(const VehicleSample& sample) {
+  if (const auto* odometry = std::get_if<OdometrySample>(&sample)) return add_odometry(*odometry);
+  return add_gnss(std::get<GnssSample>(sample));
+}
 
 TrackerUpdate Tracker::add_odometry(const OdometrySample& sample) {
   if (!std::isfinite(sample.speed_mps) || !std::isfinite(sample.yaw_rate_radps)) {
@@ -93,31 +105,32 @@ TrackerUpdate Tracker::add_odometry(const OdometrySample& sample) {
   if (last_odometry_ && sample.time <= last_odometry_->time) return TrackerUpdate::kOutOfOrder;
   last_odometry_ = sample;
   if (!is_initialised() || sample.time < history_.front().time) return TrackerUpdate::kAccepted;
-  insert(history_.count_until(sample.time), {.time = sample.time,
-                                             .kind = TrackerEvent::Kind::kOdometry,
-                                             .motion = {sample.speed_mps, sample.yaw_rate_radps}});
+  insert(count_until(history_, sample.time), {.time = sample.time,
+                                              .kind = TrackerEvent::Kind::kOdometry,
+                                              .motion = {sample.speed_mps, sample.yaw_rate_radps}});
   return TrackerUpdate::kAccepted;
 }
 
 TrackerUpdate Tracker::add_gnss(const GnssSample& sample) {
-  if (!sample.position_m.allFinite() || !std::isfinite(sample.heading_rad) ||
-      !std::isfinite(sample.position_sigma_m) || !std::isfinite(sample.heading_sigma_rad)) {
+  const GnssPose gnss = gnss_pose(sample);
+  if (!gnss.map_from_vehicle.is_finite() || !std::isfinite(sample.sigma_east_m) ||
+      !std::isfinite(sample.sigma_north_m) || !std::isfinite(gnss.yaw_sigma_rad)) {
     return TrackerUpdate::kNotFinite;
   }
-  if (sample.position_sigma_m <= 0.0 || sample.heading_sigma_rad <= 0.0 ||
-      sample.position_m.cwiseAbs().maxCoeff() > parameters_.max_position_m) {
+  if (gnss.position_sigma_m <= 0.0 || gnss.yaw_sigma_rad <= 0.0 ||
+      gnss.map_from_vehicle.translation().cwiseAbs().maxCoeff() > parameters_.max_position_m) {
     return TrackerUpdate::kImplausible;
   }
   if (!has_odometry_for(sample.time)) return TrackerUpdate::kNoOdometry;
+  const PoseMeasurement measurement = measurement_from(gnss);
   if (is_initialised()) {
-    return add_pose(sample.time, measurement_from(sample), parameters_.gnss_correlation_s,
-                    last_gnss_);
+    return add_pose(sample.time, measurement, parameters_.gnss_correlation_s, last_gnss_);
   }
-  initialise(sample);
+  initialise(sample.time, measurement);
   return TrackerUpdate::kAccepted;
 }
 
-TrackerUpdate Tracker::add_correction(Time frame_time, const Se2& prior, const Correction& result) {
+TrackerUpdate Tracker::add_correction(Time frame_time, const Se2& prior, const MatchResult& result) {
   if (result.evidence != Evidence::kGood) return TrackerUpdate::kNoEvidence;
   if (!prior.is_finite() || !result.correction.is_finite() || !result.covariance.allFinite() ||
       !result.evidence_share.allFinite()) {
@@ -131,7 +144,7 @@ TrackerUpdate Tracker::add_correction(Time frame_time, const Se2& prior, const C
 }
 
 std::optional<TrackedPose> Tracker::pose_at(Time time) const {
-  const size_t events_until = history_.count_until(time);
+  const size_t events_until = count_until(history_, time);
   if (events_until == 0 || !has_odometry_for(time)) return std::nullopt;
   const FilterState state = state_at(time, events_until);
   const MeasuredMotion motion = motion_at(time, events_until);
@@ -166,9 +179,8 @@ void Tracker::reset() {
   last_correction_.reset();
 }
 
-void Tracker::initialise(const GnssSample& sample) {
-  const PoseMeasurement measurement = measurement_from(sample);
-  TrackerEvent event{.time = sample.time,
+void Tracker::initialise(Time time, const PoseMeasurement& measurement) {
+  TrackerEvent event{.time = time,
                      .kind = TrackerEvent::Kind::kPose,
                      .motion = {last_odometry_->speed_mps, last_odometry_->yaw_rate_radps},
                      .measurement = measurement};
@@ -179,9 +191,9 @@ void Tracker::initialise(const GnssSample& sample) {
       squared(parameters_.initial_speed_scale_sigma);
   event.state.covariance(FilterState::kYawRateBias, FilterState::kYawRateBias) =
       squared(parameters_.initial_yaw_rate_bias_sigma_radps);
-  history_.insert(0, event);
-  last_gnss_ = sample.time;
-  if (last_odometry_->time > sample.time) {
+  history_.push_back(event);
+  last_gnss_ = time;
+  if (last_odometry_->time > time) {
     insert(1, {.time = last_odometry_->time,
                .kind = TrackerEvent::Kind::kOdometry,
                .motion = event.motion});
@@ -191,16 +203,16 @@ void Tracker::initialise(const GnssSample& sample) {
 TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, double correlation_s,
                                 std::optional<Time>& last_time) {
   if (history_.full()) history_.pop_front();
-  const size_t events_until = history_.count_until(time);
+  const size_t events_until = count_until(history_, time);
   if (events_until == 0) return TrackerUpdate::kTooOld;
   if (squared_distance(state_at(time, events_until), measurement) >
       parameters_.gate_squared_distance) {
     return TrackerUpdate::kGated;
   }
   if (last_time) {
-    constexpr double kLeastInterval_s = 1e-3;
+    constexpr double kMinInterval_s = 1e-3;
     const double interval_s = std::abs(to_seconds(time - *last_time));
-    measurement.inflation = std::max(1.0, correlation_s / std::max(interval_s, kLeastInterval_s));
+    measurement.inflation = std::max(1.0, correlation_s / std::max(interval_s, kMinInterval_s));
   }
   last_time = last_time ? std::max(*last_time, time) : time;
   insert(events_until, {.time = time,
@@ -235,13 +247,13 @@ void Tracker::insert(size_t position, const TrackerEvent& event) {
     history_.pop_front();
     --position;
   }
-  history_.insert(position, event);
+  history_.insert(history_.begin() + static_cast<std::ptrdiff_t>(position), event);
   replay_from(position);
   drop_old_events();
 }
 
-/// Computes the states from `position` on again; whether a measurement is believed was decided when
-/// it came.
+/// Computes the states from `position` on again. Does not apply the gate again: it decided when
+/// each measurement arrived.
 void Tracker::replay_from(size_t position) {
   for (size_t i = position; i < history_.size(); ++i) {
     const TrackerEvent& before = history_[i - 1];
@@ -263,7 +275,7 @@ void Tracker::replay_from(size_t position) {
 
 void Tracker::drop_old_events() {
   const Time oldest = history_.back().time - from_seconds(parameters_.history_s);
-  // The last event before the horizon stays: what lies after it starts there.
+  // Keeps one event at or before `oldest`, from which later states are predicted.
   while (history_.size() > 2 && history_[1].time <= oldest) history_.pop_front();
 }
 

@@ -1,4 +1,4 @@
-// The vehicle's pose from wheel odometry, GNSS and corrections from the map.
+// Estimates the vehicle's pose from odometry, GNSS and corrections.
 #pragma once
 
 #include <optional>
@@ -8,33 +8,20 @@
 
 #include "common/se2.h"
 #include "common/time.h"
-#include "pipeline/solver/solver.h"
+#include "common/vehicle_samples.h"
+#include "pipeline/solver/solver_result.h"
 #include "pipeline/tracker/event_history.h"
 #include "pipeline/tracker/motion_model.h"
 
 namespace bevloc {
 
-struct OdometrySample {
-  Time time;
-  double speed_mps = 0.0;       ///< along x, negative when reversing
-  double yaw_rate_radps = 0.0;  ///< counter-clockwise
-};
-
-struct GnssSample {
-  Time time;
-  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< of the rear axle, map frame
-  double heading_rad = 0.0;                              ///< counter-clockwise from east
-  double position_sigma_m = 0.0;                         ///< per axis
-  double heading_sigma_rad = 0.0;
-};
-
 struct TrackedPose {
   Time time;
   Se2 map_from_vehicle;
-  /// In the vehicle frame: longitudinal m, lateral m, yaw rad. Symmetric positive definite.
+  /// In the vehicle frame: (longitudinal m, lateral m, yaw rad). Symmetric positive definite.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  double speed_mps = 0.0;       ///< with the wheels' scale corrected
-  double yaw_rate_radps = 0.0;  ///< with the sensor's bias removed
+  double speed_mps = 0.0;       ///< corrected for the estimated scale error of the wheels
+  double yaw_rate_radps = 0.0;  ///< corrected for the estimated bias of the yaw rate sensor
 };
 
 struct TrackerParameters {
@@ -42,83 +29,91 @@ struct TrackerParameters {
   double initial_speed_scale_sigma = 0.02;
   double initial_yaw_rate_bias_sigma_radps = radians(0.3);
 
-  /// Squared Mahalanobis distance beyond which a measured pose is not believed: 99.9 % of honest
-  /// ones lie within it (chi square, three degrees of freedom).
+  /// Gate: a measured pose with a larger squared Mahalanobis distance is refused. This is the 99.9
+  /// % quantile of the chi-square distribution with three degrees of freedom.
   double gate_squared_distance = 16.27;
 
-  /// Times over which errors stay alike. A measurement that follows the last one after dt counts
-  /// with its covariance times max(1, correlation time / dt), so that all of them together say
-  /// no more than is in them. GNSS: multipath and atmosphere. Corrections: the same piece of map
-  /// and the same network, seen again.
+  /// Correlation times of the errors. Consecutive measurements are not independent, so the filter
+  /// multiplies the covariance of a measurement that comes dt after the previous one by
+  /// max(1, correlation time / dt). GNSS errors are correlated by multipath and the atmosphere,
+  /// errors of corrections because the same network sees the same part of the map again.
   double gnss_correlation_s = 15.0;
   double correction_correlation_s = 0.5;
 
-  double widened_position_sigma_m = 3.0;  ///< what widen() adds
+  double widened_position_sigma_m = 3.0;  ///< added by widen(), per axis
   double widened_yaw_sigma_rad = radians(5.0);
 
-  double history_s = 2.0;          ///< how late a measurement may come
-  size_t history_capacity = 1024;  ///< events: odometry, GNSS and corrections in `history_s`
-  double max_prediction_s = 0.5;   ///< how long the last odometry sample may stand for the next
-  double max_speed_mps = 80.0;     ///< beyond it an odometry sample is absurd
+  double history_s = 2.0;          ///< a measurement may arrive this late
+  size_t history_capacity = 1024;  ///< events in `history_s`: odometry, GNSS, corrections; > 1
+  double max_prediction_s = 0.5;   ///< prediction beyond the last odometry sample
+  double max_speed_mps = 80.0;     ///< a faster odometry sample is implausible
   double max_yaw_rate_radps = 3.0;
-  double max_position_m = 1e6;  ///< from the map's origin; beyond it a GNSS sample is absurd
+  double max_position_m = 1e6;  ///< per axis, from the map's origin; for GNSS samples
 };
 
-/// What became of a measurement.
+/// What the tracker did with a measurement.
 enum class TrackerUpdate {
   kAccepted,
-  kGated,           ///< too far from the estimate to be believed
-  kNoEvidence,      ///< the solver had nothing to match
-  kTooOld,          ///< before the history
-  kOutOfOrder,      ///< odometry not after its last sample
-  kNoOdometry,      ///< no odometry sample near enough
+  kGated,           ///< refused by the gate: too far from the estimate
+  kNoEvidence,      ///< the solver found nothing to match
+  kTooOld,          ///< older than the history
+  kOutOfOrder,      ///< odometry that is not newer than the last odometry sample
+  kNoOdometry,      ///< the last odometry sample is too old, or there is none
   kNotInitialised,  ///< no GNSS sample yet
-  kNotFinite,       ///< NaN or infinite values
-  kImplausible,     ///< values that cannot be
+  kNotFinite,       ///< a value is NaN or infinite
+  kImplausible,     ///< a value is beyond its physical limit
 };
+
+/// The name in words, for example "not finite".
 std::string_view name_of(TrackerUpdate update);
 
-/// Error-state extended Kalman filter on SE(2) with the wheels' speed scale error and the yaw rate
-/// sensor's bias. Every input counts at its own time: one that comes late is put where it belongs
-/// in the history and what follows is computed again. Whatever is refused leaves no trace.
+/// Error-state extended Kalman filter on SE(2). It also estimates the scale error of the wheel
+/// speed and the bias of the yaw rate sensor. Each measurement applies at its own time: a late one
+/// is inserted into the history, and the later states are computed again. A refused measurement
+/// changes nothing.
 ///
-/// Without corrections it is the prior that the map is drawn at. Memory is made in the constructor.
-/// Not thread safe.
+/// Allocates in the constructor only. Not thread safe.
 class Tracker {
  public:
   explicit Tracker(const TrackerParameters& parameters = {});
 
+  /// Calls add_odometry() or add_gnss().
+  TrackerUpdate add(const VehicleSample& sample);
+
   TrackerUpdate add_odometry(const OdometrySample& sample);
 
-  /// The first one, once there is odometry, sets the pose; later ones update it.
+  /// The first sample after odometry initialises the pose; later ones update it. Without a yaw the
+  /// heading counts as unknown, with a sigma of pi.
   TrackerUpdate add_gnss(const GnssSample& sample);
 
-  /// The vehicle stood at prior * result.correction when the frame was taken.
-  TrackerUpdate add_correction(Time frame_time, const Se2& prior, const Correction& result);
+  /// Adds a result of the solver: at `frame_time` the vehicle was at prior * result.correction.
+  TrackerUpdate add_correction(Time frame_time, const Se2& prior, const MatchResult& result);
 
-  /// Past poses within the history and near future ones by prediction; nothing before the first
-  /// GNSS sample, before the history, or too long after the last odometry.
+  /// The pose at any time within the history, or predicted up to `max_prediction_s` past the last
+  /// odometry sample. Nothing outside that range or before the first GNSS sample.
   std::optional<TrackedPose> pose_at(Time time) const;
 
   bool is_initialised() const { return !history_.empty(); }
 
-  /// The latest estimate of the wheels' scale error and the sensor's bias; zero before the first.
+  /// The latest estimates of the scale error and of the bias; zero before the first GNSS sample.
   double speed_scale_error() const;
   double yaw_rate_bias_radps() const;
 
-  /// Admits that the pose is lost: keeps the estimate, but believes what comes next over it.
+  /// Raises the covariance of a pose that turned out to be wrong. Keeps the estimate, but the next
+  /// measurements pass the gate and outweigh it.
   void widen();
 
-  /// Forgets everything.
+  /// Returns to the state after construction.
   void reset();
 
  private:
-  void initialise(const GnssSample& sample);
+  void initialise(Time time, const PoseMeasurement& measurement);
   TrackerUpdate add_pose(Time time, PoseMeasurement measurement, double correlation_s,
                          std::optional<Time>& last_time);
   bool has_odometry_for(Time time) const;
   MeasuredMotion motion_at(Time time, size_t events_until) const;
   FilterState state_at(Time time, size_t events_until) const;
+  /// Inserts `event` before the event at `position` and updates the states from there.
   void insert(size_t position, const TrackerEvent& event);
   void replay_from(size_t position);
   void drop_old_events();

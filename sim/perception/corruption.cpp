@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "pipeline/map/rasterizer.h"
-#include "sim/perception/smooth_noise.h"
+#include "sim/perception/correlated_noise.h"
 #include "sim/perception/soft_stroke.h"
 #include "sim/random.h"
 #include "sim/world/path.h"
@@ -14,16 +14,16 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr double kFar_m = 30.0;  ///< the range at which the "far" parameters hold
+constexpr double kFar_m = 30.0;  ///< the range of the "far" parameters
 constexpr double kLineHalfWidth_m = 0.5 * kRasterLineWidthCells * kRasterGrid.cell_m;
 constexpr double kSharp_m = 0.5 * kRasterGrid.cell_m;
 
-// How quickly the errors change along a line.
+// Correlation lengths of the errors along a line.
 constexpr double kConfidenceLength_m = 8.0;
 constexpr double kDisplacementLength_m = 10.0;
 constexpr double kWidthLength_m = 6.0;
 
-/// Standard deviation of a displacement, growing linearly with range.
+/// A length that grows linearly with range.
 struct Spread {
   double near_m;
   double far_m;
@@ -31,19 +31,19 @@ struct Spread {
   double at(double range_m) const { return near_m + (far_m - near_m) * range_m / kFar_m; }
 };
 
-/// How badly a network sees. Confidences are log-odds.
+/// The error model of one corruption level. Confidences are log-odds.
 struct Perception {
-  std::array<double, kRasterChannels> confidence;  ///< of each class, near by
-  double confidence_loss;                          ///< from the vehicle to the far end
-  double confidence_sigma;                         ///< smooth variation along a line
+  std::array<double, kRasterChannels> confidence;  ///< per class, at range 0
+  double confidence_loss;                          ///< from range 0 to kFar_m
+  double confidence_sigma;                         ///< of the variation along a line
   double occlusion_loss;                           ///< behind an obstacle
-  double overlooked;                               ///< chance that a whole element is not seen
-  Spread along_ray;                                ///< range is harder to see ...
-  Spread across_ray;                               ///< ... than direction
-  double width_sigma;                              ///< of the logarithm of a line's width
-  Spread softness;                                 ///< how blurred a line's edges are
-  double false_per_line;                           ///< lines that are not there, for each that is
-  double noise;  ///< standard deviation of a smooth field over everything
+  double overlooked;                               ///< chance that an element is missed completely
+  Spread along_ray;                                ///< sigma of the displacement in range
+  Spread across_ray;                               ///< sigma of the displacement across the ray
+  double width_sigma;                              ///< of the logarithm of the line width
+  Spread softness;                                 ///< blur of a line's edges
+  double false_per_line;                           ///< false lines per real line
+  double noise;                                    ///< sigma of a smooth field over the mask
 };
 
 constexpr Perception kMild{.confidence = {3.52, 3.74, 3.64},
@@ -85,7 +85,7 @@ const Perception& perception_at(CorruptionLevel level) {
   return level == CorruptionLevel::kPaper ? kPaper : kHard;
 }
 
-/// Something that stands on the ground and hides what lies behind it.
+/// An object on the ground that hides what is behind it.
 struct Obstacle {
   double direction_rad;
   double half_angle_rad;
@@ -103,7 +103,7 @@ std::vector<Obstacle> random_obstacles(uint64_t seed) {
   return obstacles;
 }
 
-/// 0 in plain view to 1 behind an obstacle.
+/// 0: in plain view, 1: behind an obstacle.
 double hidden(const std::vector<Obstacle>& obstacles, const Eigen::Vector2d& point) {
   constexpr double kEdge_rad = radians(2.0);
   constexpr double kDepth_m = 2.0;
@@ -135,7 +135,7 @@ std::vector<StrokePoint> sharp_stroke(const VisibleLine& line) {
   return stroke;
 }
 
-/// Draws a line where it is painted.
+/// Draws the painted stretches of a line.
 void draw_painted(const std::vector<StrokePoint>& stroke, const std::vector<bool>& painted,
                   std::span<float> cells) {
   for (const PointRange& stretch : painted_stretches(painted)) {
@@ -143,20 +143,20 @@ void draw_painted(const std::vector<StrokePoint>& stroke, const std::vector<bool
   }
 }
 
-/// Sees one line after another, each with errors of its own. A line's dashes share its errors, so
-/// that neighbouring ones err alike.
+/// Perceives lines, each with its own errors. The dashes of a line share its errors, so
+/// neighbouring dashes are displaced alike.
 class LineObserver {
  public:
   LineObserver(const Perception& perception, std::vector<Obstacle> obstacles)
       : perception_(perception), obstacles_(std::move(obstacles)) {}
 
-  /// `confidence`: log-odds that a point near by and in plain view is seen.
+  /// `confidence`: log-odds that a point at range 0 in plain view is seen.
   std::vector<StrokePoint> observe(const std::vector<Eigen::Vector2d>& line, double confidence,
                                    uint64_t seed) const {
-    const SmoothNoise confidence_noise(seed_for(seed, "confidence"), kConfidenceLength_m);
-    const SmoothNoise along_noise(seed_for(seed, "along ray"), kDisplacementLength_m);
-    const SmoothNoise across_noise(seed_for(seed, "across ray"), kDisplacementLength_m);
-    const SmoothNoise width_noise(seed_for(seed, "width"), kWidthLength_m);
+    const CorrelatedNoise confidence_noise(seed_for(seed, "confidence"), kConfidenceLength_m);
+    const CorrelatedNoise along_noise(seed_for(seed, "along ray"), kDisplacementLength_m);
+    const CorrelatedNoise across_noise(seed_for(seed, "across ray"), kDisplacementLength_m);
+    const CorrelatedNoise width_noise(seed_for(seed, "width"), kWidthLength_m);
     std::vector<StrokePoint> stroke;
     double station_m = 0.0;
     for (size_t i = 0; i < line.size(); ++i) {
@@ -182,15 +182,16 @@ class LineObserver {
   std::vector<Obstacle> obstacles_;
 };
 
-/// A line that is not there.
+/// A perceived line that does not exist.
 struct FalseLine {
   ElementClass element_class;
   std::vector<Eigen::Vector2d> points;
-  std::vector<bool> painted;  ///< as a VisibleLine's
+  std::vector<bool> painted;  ///< as in VisibleLine
 };
 
-/// A stretch of a line, moved sideways: a tar joint, a shadow, the other edge of a sidewalk. Beside
-/// dashes it may be dashed as they are, but elsewhere along the line, as old paint is.
+/// A copy of a stretch of a line, moved sideways, as a tar joint, shadow or sidewalk edge would
+/// appear. The copy of a dashed line may be dashed too, with dashes from another place of the line,
+/// like old paint.
 FalseLine beside(const VisibleLine& line, Random& random) {
   const Path path(line.points);
   const double length_m = std::min(random.uniform(5.0, 20.0), path.length_m());
@@ -210,6 +211,7 @@ FalseLine beside(const VisibleLine& line, Random& random) {
   return copy;
 }
 
+/// A straight line at a random place.
 FalseLine anywhere(Random& random) {
   const double length_m = random.uniform(3.0, 10.0);
   const Eigen::Vector2d along = unit_vector(random.uniform(0.0, 2.0 * std::numbers::pi));
@@ -240,8 +242,8 @@ std::span<float> cells_of(ElementClass element_class, std::span<float> mask) {
   return mask.subspan(static_cast<size_t>(element_class) * plane, plane);
 }
 
-/// Draws what is there. What is overlooked is drawn per element: a crossing with both its edges, a
-/// dashed line with all its dashes.
+/// Draws the real lines. Whole elements are overlooked: a crossing with both edges, a dashed line
+/// with all its dashes.
 void draw_true_lines(const std::vector<VisibleLine>& lines, const Perception& perception,
                      const LineObserver& observer, uint64_t seed, std::span<float> mask) {
   for (size_t i = 0; i < lines.size(); ++i) {

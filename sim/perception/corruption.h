@@ -1,4 +1,4 @@
-// What a camera network would make of the road's lines: a perceived mask with realistic errors.
+// Simulates the mask that a camera network would output: the visible lines with realistic errors.
 #pragma once
 
 #include <cstdint>
@@ -9,24 +9,27 @@
 
 namespace bevloc::sim {
 
-/// `kPaper` reaches the IoU of the paper's Table II (0.578 divider, 0.422 crossing, 0.578
-/// boundary), `kMild` about 0.70 / 0.60 / 0.70, `kHard` about 0.23 / 0.15 / 0.21.
+/// Strength of the errors. IoU per class (divider / crossing / boundary): kMild about 0.70 / 0.60 /
+/// 0.70, kPaper 0.578 / 0.422 / 0.578 as in the paper's Table II, kHard about 0.23 / 0.15 / 0.21.
 enum class CorruptionLevel : uint8_t { kClean = 0, kMild = 1, kPaper = 2, kHard = 3 };
 inline constexpr int kCorruptionLevels = 4;
 
 const char* name(CorruptionLevel level);
 
-/// Lines this far beyond the raster's box still leave a trace in it.
+/// Lines up to this far outside the raster can still affect it.
 inline constexpr double kPerceptionMargin_m = 3.0;
 
-/// Draws the lines (visible_lines with kPerceptionMargin_m) as a network would perceive them, as
-/// probabilities: stretches missed (more with range, and behind obstacles), each line displaced
-/// smoothly and by itself (mostly along the viewing ray; the dashes of one line together), width,
-/// confidence and blur that vary, lines that are not there. No error is shared by the whole scene,
-/// so the pose is not biased. At `kClean` the mask is the map's raster. The same seed gives the
-/// same obstacles, false lines and shapes of error at every level.
+/// Draws the lines as a network would perceive them, as probabilities.
 ///
-/// mask: [ElementClass][row][column] of kRasterGrid, kRasterSize values, overwritten whole.
+/// Errors: some stretches are missed, more often far away and behind obstacles. Each line is
+/// displaced smoothly and independently of the others, mostly along the viewing ray; the dashes of
+/// one line move together. Width, confidence and blur vary. Some lines are invented. No error is
+/// common to the whole scene, so the pose is not biased. At kClean there are no errors and the mask
+/// equals the map's raster. One seed gives the same obstacles, false lines and error shapes at
+/// every level.
+///
+/// lines: visible_lines() with a margin of kPerceptionMargin_m.
+/// mask: [ElementClass][row][column] of kRasterGrid, kRasterSize values; overwritten completely.
 void draw_perceived(const std::vector<VisibleLine>& lines, CorruptionLevel level, uint64_t seed,
                     std::span<float> mask);
 

@@ -1,4 +1,4 @@
-// Lines of which only some stretches are painted.
+// Lines with dashes: which stretches of a line are painted.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace bevloc::sim {
 
-/// A painted stretch of a line, from one station (metres along the line) to another.
+/// A painted stretch of a line, as stations (metres along the line).
 struct Dash {
   double from_m;
   double to_m;
@@ -19,25 +19,26 @@ struct Dash {
 /// A line painted from end to end.
 inline constexpr Dash kWholeLine{0.0, std::numeric_limits<double>::infinity()};
 
-/// For each element of a map its dashes, in order and apart (kWholeLine alone for an element that
-/// is one whole; none for one that is not painted anywhere). Empty: every element is one whole.
+/// The dashes of each element of a map, sorted and not overlapping. A continuous element has
+/// kWholeLine, an unpainted one has no dash. If the vector is empty, every element is continuous.
 using MapDashes = std::vector<std::vector<Dash>>;
 
+/// A polyline whose segments are painted or not.
 struct DashedLine {
   std::vector<Eigen::Vector2d> points;
-  std::vector<bool> painted;  ///< of each piece between two points: one less than points
+  std::vector<bool> painted;  ///< per segment: one element less than points
 };
 
-/// The polyline with points added where its dashes begin and end.
+/// Adds points to the polyline where dashes begin and end.
 DashedLine dashed_line(const std::vector<Eigen::Vector2d>& line, std::span<const Dash> dashes);
 
-/// Points of a line, the last one included.
+/// A range of points, including `last`.
 struct PointRange {
   size_t first;
   size_t last;
 };
 
-/// The stretches that are painted throughout, each as long as possible.
+/// The longest possible stretches that are painted without a gap.
 std::vector<PointRange> painted_stretches(const std::vector<bool>& painted);
 
 }  // namespace bevloc::sim

@@ -23,9 +23,9 @@ cv::Mat blurred(const cv::Mat& plane, double sigma_m) {
   return result;
 }
 
-enum class Axis { kX, kY };  ///< down the rows, along the columns
+enum class Axis { kX, kY };  ///< kX: across rows, kY: across columns
 
-/// Per metre; its sign does not matter.
+/// The derivative per metre. Callers do not use its sign.
 cv::Mat slope(const cv::Mat& plane, Axis axis) {
   constexpr auto kTap = static_cast<float>(0.5 / kCell_m);
   cv::Mat result;
@@ -39,7 +39,7 @@ cv::Mat slope(const cv::Mat& plane, Axis axis) {
   return result;
 }
 
-/// Metres to the nearest cell that is rather covered than not; far where there is none.
+/// Metres to the nearest cell above 0.5; a large value if there is none.
 cv::Mat distance_m(const cv::Mat& mask) {
   const cv::Mat away = mask <= 0.5;
   cv::Mat distance;
@@ -53,7 +53,7 @@ cv::Mat nearness(const cv::Mat& distance, double length_m) {
   return result;
 }
 
-/// Puts one computation's channels down, one after another.
+/// Writes channel after channel into the features.
 class ChannelWriter {
  public:
   ChannelWriter(const BevGrid& grid, std::span<float> features)
@@ -84,7 +84,7 @@ class ChannelWriter {
   }
 
  private:
-  /// Along x, y and the two diagonals.
+  /// Writes the slopes along x, y and the two diagonals.
   void put_slopes(const cv::Mat& plane) {
     const cv::Mat x = slope(plane, Axis::kX);
     const cv::Mat y = slope(plane, Axis::kY);
@@ -94,7 +94,7 @@ class ChannelWriter {
     put(cv::abs((x - y) * M_SQRT1_2));
   }
 
-  /// How far the plane bends down across a line of each direction.
+  /// Writes the negative curvature (ridges) in four directions.
   void put_ridges(const cv::Mat& plane) {
     const cv::Mat x = slope(plane, Axis::kX);
     const cv::Mat xx = slope(x, Axis::kX);
@@ -107,7 +107,7 @@ class ChannelWriter {
   }
 
   BevGrid grid_;
-  std::span<float> features_;  ///< what is left to fill
+  std::span<float> features_;  ///< the channels not yet written
 };
 
 }  // namespace

@@ -12,22 +12,21 @@
 namespace bevloc::sim {
 namespace {
 
-// Scenes that share towns: of each kind on each sort of map, and how many of them a town gives at
-// most.
-constexpr uint64_t kPlacesPerKind = 4;
+// A group of scenes shares its towns.
+constexpr uint64_t kPlacesPerKind = 4;  ///< per kind of road and kind of map
 constexpr uint64_t kScenesPerGroup = 2 * kPlacesPerKind * kRoadKinds;
-constexpr size_t kPlacesPerTown = 2;
+constexpr size_t kPlacesPerTown = 2;  ///< of one kind of road, at most
 constexpr uint64_t kMostTownsPerGroup = 1024;
 constexpr int kCandidatesPerTown = 200;
 
-/// Every other town's map is surveyed dash by dash.
+/// Every other town has a surveyed map.
 bool is_surveyed(uint64_t seed) {
   return seed % 2 == 1;
 }
 
 }  // namespace
 
-/// A town without its scenery.
+/// A town with its maps.
 struct SceneSampler::Town {
   explicit Town(uint64_t seed)
       : surveyed(is_surveyed(seed)),
@@ -40,9 +39,9 @@ struct SceneSampler::Town {
   bool surveyed;
   World world;
   MapDashes dashes;
-  HdMap map;
-  MapIndex continuous_index;  ///< of the map with dashed dividers as continuous lines
-  MapIndex index;
+  HdMap map;                  ///< with one element per dash if surveyed
+  MapIndex continuous_index;  ///< of the world's map, where dashed dividers are continuous
+  MapIndex index;             ///< of `map`
 };
 
 SceneSampler::SceneSampler(uint64_t seed_base, const HypothesisGrid& deviations)
@@ -50,7 +49,7 @@ SceneSampler::SceneSampler(uint64_t seed_base, const HypothesisGrid& deviations)
 
 SceneSampler::~SceneSampler() = default;
 
-/// Goes on to further towns until every kind of road has its places on both sorts of maps.
+/// Loads towns until there are enough places for every kind of road on both kinds of map.
 void SceneSampler::load_group(uint64_t group) {
   assert((group + 1) * kMostTownsPerGroup <= kSceneSeedCount);
   group_ = group;

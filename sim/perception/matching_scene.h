@@ -1,5 +1,5 @@
-// Scenes on which pose solvers are judged without a network: a perceived mask, and the map drawn
-// where the prior pose puts it.
+// Scenes to evaluate pose solvers without a network: a perceived mask and the map drawn at the
+// prior.
 #pragma once
 
 #include <array>
@@ -9,15 +9,15 @@
 
 #include "common/se2.h"
 #include "pipeline/map/map_index.h"
-#include "pipeline/solver/solver.h"
+#include "pipeline/solver/hypotheses.h"
 #include "sim/perception/corruption.h"
 #include "sim/perception/road_kind.h"
 #include "sim/world/world_generator.h"
 
 namespace bevloc::sim {
 
-/// Town seeds of the scenes: 2^30 for tuning, 2^30 for evaluation, below training's and above the
-/// small ones that demos and tests use.
+/// Town seeds of the scenes: 2^30 for tuning and 2^30 for evaluation. They lie above the small
+/// seeds of demos and tests and below those of training.
 inline constexpr uint64_t kSceneSeedCount = 1ULL << 30U;
 inline constexpr uint64_t kTuningSeedBase = 2 * kSceneSeedCount;
 inline constexpr uint64_t kEvaluationSeedBase = 3 * kSceneSeedCount;
@@ -26,26 +26,26 @@ static_assert(kEvaluationSeedBase + kSceneSeedCount <= kFirstTrainingSeed);
 
 struct MatchingScene {
   RoadKind kind = RoadKind::kStraightSolid;
-  bool surveyed = false;              ///< the map holds every dash (surveyed_map.h)
+  bool surveyed = false;              ///< the map has one element per dash (surveyed_map.h)
   Se2 map_from_vehicle;               ///< the true pose T
-  Se2 correction;                     ///< dT = T0^-1 T, what a solver should find
+  Se2 correction;                     ///< dT = T0^-1 T, which a solver should find
   std::vector<uint8_t> raster_prior;  ///< the map at T0, kRasterSize bytes
   std::vector<uint8_t> raster_truth;  ///< the map at T
-  std::vector<float> perceived;       ///< what is seen at T, kRasterSize probabilities
+  std::vector<float> perceived;       ///< the perceived mask at T, kRasterSize probabilities
 };
 
-/// An endless stream of scenes; everything about scene i follows from the seed base, the range and
-/// i. Scene i shows a road of kind i % kRoadKinds; the maps draw dashed dividers as continuous
-/// lines and dash by dash in turn, kRoadKinds scenes each. Fastest when asked for scenes in order:
-/// forty in a row share their towns. Not thread safe.
+/// An endless stream of scenes. Scene i depends on the seed base, the deviations and i alone. Scene
+/// i shows a road of kind i % kRoadKinds. In turn, kRoadKinds scenes have maps with continuous
+/// dashed dividers and kRoadKinds scenes have surveyed maps with one element per dash. Fastest if
+/// scenes are made in order, because 40 consecutive scenes share their towns. Not thread safe.
 class SceneSampler {
  public:
-  /// `seed_base` is kEvaluationSeedBase or kTuningSeedBase. Corrections are uniform within the
-  /// ranges of `deviations`; its steps are not used.
+  /// `seed_base`: kEvaluationSeedBase or kTuningSeedBase. Corrections are uniform within the ranges
+  /// of `deviations`; its steps are ignored.
   explicit SceneSampler(uint64_t seed_base, const HypothesisGrid& deviations = {});
   ~SceneSampler();
 
-  /// Overwrites `scene`. The level changes nothing but `perceived`.
+  /// Makes scene `number` in `scene`. The level affects `perceived` alone.
   void make(uint64_t number, CorruptionLevel level, MatchingScene& scene);
 
  private:
@@ -64,7 +64,7 @@ class SceneSampler {
   HypothesisGrid deviations_;
   uint64_t group_ = ~0ULL;
   std::vector<std::unique_ptr<const Town>> towns_;
-  std::array<PlacesByKind, 2> places_;  ///< in towns with a plain map, with a surveyed one
+  std::array<PlacesByKind, 2> places_;  ///< [0]: towns with a plain map, [1]: with a surveyed map
 };
 
 }  // namespace bevloc::sim

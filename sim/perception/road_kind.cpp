@@ -11,43 +11,44 @@
 namespace bevloc::sim {
 namespace {
 
-/// The map at the prior pose begins and ends this far away from the box, or less.
+/// The box at the prior exceeds the box at the true pose by at most this.
 constexpr double kRim_m = 3.0;
 
-// Less line than this, and there is nothing to match.
+// With less line than this there is nothing to match.
 constexpr double kLeastLine_m = 40.0;
 constexpr double kLongLine_m = 20.0;
 constexpr double kStraightRoad_m = 35.0;
-// Elements meet with jogs of a few centimetres: a shorter piece has no direction worth the name.
+// Elements meet with offsets of a few centimetres, so shorter pieces have no useful direction.
 constexpr double kPiece_m = 2.0;
 
 constexpr double kStraight_rad = radians(3.0);
 constexpr double kParallel_rad = radians(1.0);
-constexpr double kStraight_m = 0.15;  ///< from end to end, sideways
+constexpr double kStraight_m = 0.15;  ///< largest lateral deviation of a straight line
 constexpr double kCurve_rad = radians(10.0);
 constexpr double kBend_rad = radians(20.0);
 
-// A corner: a kerb that turns this much within a few metres. (Bays' ends turn by 40 degrees and
-// back, roads bend more gently; a median's nose is part of a ring.)
+// A corner is a kerb that turns by at least this angle within a few metres. The ends of parking
+// bays turn by 40 degrees and back, roads bend more gently, and the round end of a median belongs
+// to a ring.
 constexpr double kCorner_rad = radians(50.0);
 constexpr double kSharpCorner_m = 11.0;
 constexpr double kWideCorner_m = 25.0;
 constexpr double kStraightPart_m = 10.0;
 
-// A roundabout's island shows a good part of its circle.
+// The island of a roundabout shows a large part of its circle.
 constexpr double kIsland_rad = radians(120.0);
 constexpr double kSmallestIsland_m = 4.5;
 constexpr double kIslandWindow_m = 6.0;
 
-// The taper of a lane: an S, slight but by a good part of a lane's width.
+// The taper of a lane is a slight S that shifts by most of a lane's width.
 constexpr double kTaperLeast_rad = radians(2.5);
 constexpr double kTaperMost_rad = radians(18.0);
 constexpr double kTaperShift_m = 2.2;
 
-/// A line's direction along its length, without jumps of a full turn.
+/// The heading along a line, without jumps of 2 pi.
 struct Course {
   const VisibleLine* line;
-  std::vector<double> station_m;  ///< where each piece ends
+  std::vector<double> station_m;  ///< end of each piece
   std::vector<double> heading_rad;
   double length_m = 0.0;
 
@@ -77,7 +78,7 @@ Course course_of(const VisibleLine& line) {
   return course;
 }
 
-/// The largest turn between two places of a course that are at most `within_m` apart.
+/// The largest turn between two places of a course at most `within_m` apart.
 double sharpest_turn(const Course& course, double within_m) {
   double sharpest = 0.0;
   for (size_t i = 0; i < course.station_m.size(); ++i) {
@@ -89,7 +90,8 @@ double sharpest_turn(const Course& course, double within_m) {
   return sharpest;
 }
 
-/// A circle's arc: it turns everywhere alike, and not as tightly as the nose of a median.
+/// Whether the course is an arc of a circle: it turns evenly, and less tightly than the end of a
+/// median.
 bool is_island(const Course& course) {
   if (!course.line->of_ring) return false;
   const double turn = course.turn_rad();
@@ -106,7 +108,7 @@ bool is_crossing(const VisibleLine& line) {
   return line.element_class == ElementClass::kPedestrianCrossing;
 }
 
-/// A kerb that turns sharply, or less so where another line goes straight on.
+/// Whether a kerb turns sharply, or less sharply while another line goes straight on.
 bool has_corner(const std::vector<Course>& courses) {
   const bool goes_straight_on =
       std::any_of(courses.begin(), courses.end(), [](const Course& course) {
@@ -119,7 +121,7 @@ bool has_corner(const std::vector<Course>& courses) {
   });
 }
 
-/// Whether a kerb leaves its direction slightly and comes back to it, a lane further out or in.
+/// Whether a kerb turns slightly and back again, and so shifts outwards or inwards by a lane.
 bool is_taper(const Course& course) {
   if (!is_open_kerb(course)) return false;
   const double first = course.heading_rad.front();
@@ -137,7 +139,7 @@ Eigen::Vector2d chord(const VisibleLine& line) {
   return (line.points.back() - line.points.front()).normalized();
 }
 
-/// Whether no point lies far from the straight between the line's ends.
+/// Whether all points lie close to the straight between the line's ends.
 bool is_straight(const VisibleLine& line) {
   const Eigen::Vector2d along = chord(line);
   return std::all_of(line.points.begin(), line.points.end(), [&](const Eigen::Vector2d& point) {
@@ -149,7 +151,7 @@ bool are_parallel(const VisibleLine& a, const VisibleLine& b) {
   return std::abs(cross(chord(a), chord(b))) < std::sin(kParallel_rad);
 }
 
-/// Whether the scene would look the same from anywhere along the road.
+/// Whether the scene looks the same from everywhere along the road.
 bool is_uniform(const std::vector<VisibleLine>& lines) {
   return std::all_of(lines.begin(), lines.end(), [&](const VisibleLine& line) {
     return !is_crossing(line) && !line.begins && !line.ends && is_straight(line) &&
@@ -157,12 +159,13 @@ bool is_uniform(const std::vector<VisibleLine>& lines) {
   });
 }
 
-bool tells_place(const Eigen::Vector2d& point) {
+/// Whether the point is inside the box at every prior.
+bool is_well_inside(const Eigen::Vector2d& point) {
   return std::abs(point.x()) < kRasterGrid.x_range_m() - kRim_m &&
          std::abs(point.y()) < kRasterGrid.y_range_m() - kRim_m;
 }
 
-/// Whether the line bends at a point, as at the end of a bay or around a median's nose.
+/// Whether the line bends at a point, as at the end of a parking bay or of a median.
 bool bends_at(const VisibleLine& line, size_t point) {
   constexpr size_t kReach = 6;  // points, half a metre apart or less
   if (point < kReach || point + kReach >= line.points.size()) return false;
@@ -171,38 +174,38 @@ bool bends_at(const VisibleLine& line, size_t point) {
   return in.dot(out) < std::cos(kBend_rad) * in.norm() * out.norm();
 }
 
-/// Whether something well within the box tells where along the road it is.
+/// Whether something well within the box gives evidence along the road.
 bool has_structure(const std::vector<VisibleLine>& lines) {
   return std::any_of(lines.begin(), lines.end(), [](const VisibleLine& line) {
     for (size_t i = 0; i < line.points.size(); ++i) {
       const bool is_end = (line.begins && i == 0) || (line.ends && i + 1 == line.points.size());
       if (!is_crossing(line) && !is_end && !bends_at(line, i)) continue;
-      if (tells_place(line.points[i])) return true;
+      if (is_well_inside(line.points[i])) return true;
     }
     return false;
   });
 }
 
-/// The kind of a road that is uniform but for its lines' dashes.
+/// The kind of a road that is uniform except for dashes.
 std::optional<RoadKind> kind_by_dashes(const std::vector<VisibleLine>& lines) {
   bool has_dashes = false;
   for (const VisibleLine& line : lines) {
     for (size_t i = 1; i < line.painted.size(); ++i) {
       if (line.painted[i] == line.painted[i - 1]) continue;
       has_dashes = true;
-      if (tells_place(line.points[i])) return RoadKind::kStraightStructured;
+      if (is_well_inside(line.points[i])) return RoadKind::kStraightStructured;
     }
   }
   return has_dashes ? std::nullopt : std::optional(RoadKind::kStraightSolid);
 }
 
-/// How the lines that are long enough to show it bend.
+/// Statistics of the bends of all long lines.
 struct Bends {
   int lines = 0;
   double longest_straight_m = 0.0;
   double least_from_end_to_end_rad = std::numbers::pi;
   double most_from_end_to_end_rad = 0.0;
-  bool straight_through = false;  ///< a straight line crosses the whole box
+  bool straight_through = false;  ///< a straight line runs through the whole box
   bool taper = false;
 };
 
@@ -223,7 +226,7 @@ Bends bends_of(const std::vector<Course>& courses) {
   return bends;
 }
 
-/// The kind of a road on which no kerb turns a corner.
+/// The kind of a road without corners.
 std::optional<RoadKind> kind_between_junctions(const std::vector<VisibleLine>& lines,
                                                const std::vector<Course>& courses) {
   const Bends bends = bends_of(courses);

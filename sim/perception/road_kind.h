@@ -1,4 +1,4 @@
-// What kind of road lies around a vehicle, told from the map's lines alone.
+// Classifies the road around a vehicle from the lines of the map.
 #pragma once
 
 #include <cstdint>
@@ -10,27 +10,28 @@
 
 namespace bevloc::sim {
 
-/// What a match can be decided by.
+/// Kinds of road that differ in the evidence they give for matching.
 enum class RoadKind : uint8_t {
-  /// Parallel straight lines right through the box: nothing tells where along the road it is.
+  /// Only parallel straight lines through the whole box: no evidence along the road.
   kStraightSolid = 0,
-  /// A straight road with something across it, lines that begin, end or have a kink, or dashes.
+  /// A straight road with a crossing, dashes, or lines that begin, end or have a kink.
   kStraightStructured = 1,
-  /// Lines that bend by 10 degrees or more, and together.
+  /// All long lines bend by more than 10 degrees.
   kCurve = 2,
-  /// A kerb turns a corner.
+  /// A kerb turns around a corner.
   kJunction = 3,
-  /// A roundabout's island, or one edge of a road moves over by a lane while others go straight on.
+  /// The island of a roundabout, or one road edge shifts by a lane while other lines stay straight.
   kMergeOrRoundabout = 4,
 };
 inline constexpr int kRoadKinds = 5;
 
 const char* name(RoadKind kind);
 
-/// The kind of road around a pose, by the geometry of the map's elements in the raster's box there
-/// (for kStraightSolid, in all that a box at the prior pose may show); none if there is hardly any
-/// line, or if it lies between two kinds. `dashes`, those of the index's map, only tell straight
-/// roads apart: one that would be kStraightSolid without them is kStraightStructured.
+/// Classifies the road around a pose by the map elements within the raster's box. For
+/// kStraightSolid a larger box must qualify, because the box at the prior may show more. Returns
+/// nothing if there is too little line or the road lies between two kinds. `dashes` belong to the
+/// index's map. They only distinguish straight roads: a road that is kStraightSolid apart from its
+/// dashes is kStraightStructured.
 std::optional<RoadKind> road_kind(const MapIndex& index, const Se2& map_from_vehicle,
                                   const MapDashes& dashes = {});
 

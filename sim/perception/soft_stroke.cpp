@@ -9,7 +9,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// A stroke's point in (fractional) cells.
+/// A point of a stroke in fractional cells.
 struct CellPoint {
   float col;
   float row;
@@ -25,12 +25,13 @@ CellPoint in_cells(const StrokePoint& point) {
           static_cast<float>(point.strength), cells(point.softness_m)};
 }
 
-/// The cells of one axis that a piece may touch, as [first, last]; empty if first > last.
+/// The range [first, last] of cells along one axis that a piece may touch; empty if first > last.
 struct CellSpan {
   int first;
   int last;
 };
 
+/// The cells within `reach` of the range between a and b.
 CellSpan touched(float a, float b, float reach, int count) {
   return {std::max(0, static_cast<int>(std::ceil(std::min(a, b) - reach))),
           std::min(count - 1, static_cast<int>(std::floor(std::max(a, b) + reach)))};

@@ -9,12 +9,12 @@
 namespace bevloc::sim {
 namespace {
 
-/// A shorter rest of a dash, at a line's end, is not recorded.
+/// Shorter dashes, cut off at the end of a line, are dropped.
 constexpr double kShortestDash_m = 0.1;
-/// An element lies this far or less from its paint; other lines are further away.
+/// An element is at most this far from its paint; other lines are further away.
 constexpr double kMostMapShift_m = 0.3;
 
-/// Whether one line is the other, moved a little as a whole.
+/// Whether one line is the other one shifted by at most kMostMapShift_m.
 bool is_shifted(const Polyline& line, const Polyline& from) {
   if (line.size() != from.size()) return false;
   const Eigen::Vector2d shift = line.front() - from.front();

@@ -1,4 +1,4 @@
-// The map as a survey gives it that records every dash, as survey-grade maps do.
+// Builds a map with one element per dash, as survey-grade maps have.
 #pragma once
 
 #include "pipeline/map/hd_map.h"
@@ -7,14 +7,12 @@
 
 namespace bevloc::sim {
 
-/// The dashes of each element of the world's map, where the paint on the road has them. Stations
-/// are along the element. Elements that are not dashed, and dashed ones that are in the map but not
-/// on the road, are one whole.
+/// The dashes of each element of the world's map, from the paint on the road. Stations are along
+/// the element. Elements that are not dashed, or that are not painted on the road, are continuous.
 MapDashes painted_dashes(const World& world);
 
-/// The map with each element replaced by its dashes, one element per dash: element by element,
-/// each one's dashes in order. Elements that are one whole stay as they are; all does if `dashes`
-/// is empty.
+/// Replaces each element of the map by one element per dash, in order. Continuous elements stay as
+/// they are. If `dashes` is empty, the map is returned unchanged.
 HdMap surveyed_map(const HdMap& map, const MapDashes& dashes);
 
 }  // namespace bevloc::sim

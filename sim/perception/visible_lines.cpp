@@ -12,7 +12,7 @@ namespace bevloc::sim {
 namespace {
 
 constexpr double kSpacing_m = 0.5;
-/// A map's elements need not meet exactly: they were surveyed one by one.
+/// Elements of a map do not meet exactly, because each is surveyed on its own.
 constexpr double kJointGap_m = 0.4;
 constexpr double kJointBend_rad = radians(25.0);
 
@@ -22,7 +22,7 @@ Eigen::Vector2d half_box(double margin_m) {
   return {kRasterGrid.x_range_m() + margin_m, kRasterGrid.y_range_m() + margin_m};
 }
 
-/// Appends the stretches of a polyline that lie in the box, cut at its points.
+/// Appends the stretches of a polyline that lie in the box. Cuts fall on the resampled points.
 class BoxCutter {
  public:
   BoxCutter(const Eigen::Vector2d& half_box, std::vector<VisibleLine>& lines)
@@ -76,7 +76,7 @@ class BoxCutter {
   std::optional<VisibleLine> current_;
 };
 
-/// The edges of a crossing that the rasterizer draws: the first two of the longest.
+/// The two longest edges of a crossing, as in the rasterizer; the first ones if lengths are equal.
 std::vector<Points> long_edges(const Points& ring) {
   std::vector<Points> edges;
   for (size_t i = 0; i < ring.size(); ++i) edges.push_back({ring[i], ring[(i + 1) % ring.size()]});
@@ -93,7 +93,7 @@ void reverse(VisibleLine& line) {
   std::swap(line.begins, line.ends);
 }
 
-/// Whether `next` goes on where `line` ends.
+/// Whether `next` continues `line` at its end.
 bool continues(const VisibleLine& line, const VisibleLine& next) {
   if (!line.ends || !next.begins || line.element_class != next.element_class) return false;
   if ((next.points.front() - line.points.back()).norm() > kJointGap_m) return false;
@@ -102,11 +102,11 @@ bool continues(const VisibleLine& line, const VisibleLine& next) {
   return out.dot(in) > std::cos(kJointBend_rad) * out.norm() * in.norm();
 }
 
-/// Joins `other` to `line` if one continues the other, either way round.
+/// Joins `other` to `line` if one continues the other. Either may run in the opposite direction.
 bool join(VisibleLine& line, VisibleLine& other) {
   for (int turned = 0; turned < 4; ++turned) {
     if (continues(line, other)) {
-      // The joint is one point: two, a few centimetres apart, would make a spurious bend.
+      // Merge the two end points: a few centimetres apart, they would make a false bend.
       line.points.back() = 0.5 * (line.points.back() + other.points.front());
       line.points.insert(line.points.end(), std::next(other.points.begin()), other.points.end());
       line.painted.insert(line.painted.end(), other.painted.begin(), other.painted.end());
@@ -119,7 +119,7 @@ bool join(VisibleLine& line, VisibleLine& other) {
   return false;
 }
 
-/// Makes one line of those that continue one another.
+/// Joins all lines that continue each other.
 std::vector<VisibleLine> joined(std::vector<VisibleLine> lines) {
   for (size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].element_class == ElementClass::kPedestrianCrossing) continue;

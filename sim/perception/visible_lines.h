@@ -1,4 +1,4 @@
-// The map's lines around a vehicle, as its cameras could see them.
+// Finds the lines of the map around a vehicle that its cameras could see.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@
 
 namespace bevloc::sim {
 
-/// A stretch of line in the vehicle frame, with a point at least every half metre. Elements that
-/// continue one another are one line; a crossing gives its two longest edges, as the rasterizer
-/// draws it.
+/// A stretch of a line in the vehicle frame, with a point at least every 0.5 m. Elements that
+/// continue each other are joined to one line. A crossing gives its two longest edges, as in the
+/// rasterizer.
 struct VisibleLine {
   ElementClass element_class = ElementClass::kLaneDivider;
-  uint32_t element = 0;  ///< of the map: the two edges of a crossing share it
-  bool of_ring = false;  ///< part of a closed line: an island's or a median's outline
-  bool begins = false;   ///< its first point is a line end, not a cut at the box
-  bool ends = false;     ///< and so is its last one
+  uint32_t element = 0;  ///< index in the map; the same for both edges of a crossing
+  bool of_ring = false;  ///< part of a closed line, the outline of an island or a median
+  bool begins = false;   ///< the first point is the end of the line, not a cut at the box
+  bool ends = false;     ///< the last point is the end of the line, not a cut at the box
   std::vector<Eigen::Vector2d> points;
-  std::vector<bool> painted;  ///< of each piece between two points; false in the gaps of dashes
+  std::vector<bool> painted;  ///< per segment; false in the gaps between dashes
 };
 
-/// The lines within the raster's box grown by a margin, in the map's order. `dashes` are those of
-/// the index's map: a dashed line is one line, painted here and there.
+/// The lines within the raster's box, enlarged by a margin, in the order of the map. `dashes`
+/// belong to the index's map. A dashed line is one line with unpainted segments.
 std::vector<VisibleLine> visible_lines(const MapIndex& index, const Se2& map_from_vehicle,
                                        double margin_m, const MapDashes& dashes = {});
 

@@ -1,18 +1,18 @@
-// Interpolation between four packed texels, written so that the compiler turns it into gathers.
+// Bilinear interpolation between four packed texels, written so that the compiler vectorises it.
 #pragma once
 
 #include <cstdint>
 
 namespace bevloc::sim {
 
-/// Four neighbouring texels and the place between them.
+/// Four neighbouring texels and the interpolation point between them.
 struct Neighbours {
   uint32_t low_left, low_right, high_left, high_right;
   float blend_x, blend_y;
 
   /// Interpolates the byte that starts at bit `shift`; 0 to 255.
   float channel(uint32_t shift) const {
-    // Conversion from signed integers is the cheaper one.
+    // Converting signed integers is cheaper than unsigned ones.
     const auto byte = [shift](uint32_t texel) {
       return static_cast<float>(static_cast<int32_t>((texel >> shift) & 255U));
     };
@@ -22,7 +22,7 @@ struct Neighbours {
   }
 };
 
-/// The four texels of a grid, by the index of the lower left one.
+/// Loads the four texels around a point of a grid, by the index of the lower left one.
 class NeighbourGrid {
  public:
   NeighbourGrid(const uint32_t* texels, int pitch)

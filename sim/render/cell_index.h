@@ -1,4 +1,4 @@
-// Which items of a world lie near a place.
+// A spatial index that finds the items of a world near a place.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@ namespace bevloc::sim {
 
 using Box = Eigen::AlignedBox2d;
 
-/// Items, known by their number and bounding box, in a grid of square cells.
+/// Stores items by number and bounding box in a grid of square cells. Reads are thread safe.
 class CellIndex {
  public:
   CellIndex() = default;
   explicit CellIndex(const std::vector<Box>& boxes);
 
-  /// Appends the numbers of all items whose box meets `area`, ascending and each once.
+  /// Appends the numbers of all items whose box intersects `area`, sorted and without duplicates.
   void query(const Box& area, std::vector<int>& items) const;
 
  private:

@@ -57,7 +57,7 @@ void CoverageMask::add_edge(Eigen::Vector2f from, Eigen::Vector2f to, float sign
   }
 }
 
-/// Spreads `area` (the edge's height within row j) over the cells between the two abscissae.
+/// Distributes `area` (the height of the edge within row j) over the cells between x_from and x_to.
 void CoverageMask::deposit(int j, float x_from, float x_to, float area) {
   const float limit = static_cast<float>(width_);
   const float left = std::clamp(std::min(x_from, x_to), 0.0F, limit);
@@ -80,8 +80,8 @@ void CoverageMask::deposit(int j, float x_from, float x_to, float area) {
     return;
   }
   const float per_cell = area / (right - left);
-  float covered = 0.0F;  // what cells up to the current one have received
-  float carried = 0.0F;
+  float covered = 0.0F;  // sum of the shares up to the current cell
+  float carried = 0.0F;  // sum of the deltas written so far
   for (int i = first; i <= last; ++i) {
     const float begin = std::max(left, static_cast<float>(i));
     const float end = std::min(right, static_cast<float>(i + 1));

@@ -1,4 +1,4 @@
-// Exact area coverage of polygons on a pixel grid.
+// Computes the exact area coverage of polygons on a pixel grid.
 #pragma once
 
 #include <span>
@@ -8,26 +8,29 @@
 
 namespace bevloc::sim {
 
-/// Collects polygons and then gives, row by row, how much of each cell they cover: the sum of their
-/// areas, at most 1. Cell (i, j) is the unit square around the point (i, j). The accumulation
-/// buffer holds each cell's change against its left neighbour (as in font rasterizers).
+/// Collects polygons and then returns, row by row, the covered share of each cell: the sum of the
+/// covered areas, at most 1. Cell (i, j) is the unit square around the point (i, j). As in font
+/// rasterizers, the buffer stores the difference between each cell and its left neighbour. Not
+/// thread safe.
 class CoverageMask {
  public:
   CoverageMask(int width, int height);
 
+  /// Removes all polygons.
   void clear();
-  /// Vertices in cell coordinates; either orientation; not repeating the first one.
+  /// Adds a polygon. Vertices are in cell coordinates, in either orientation; the first one is not
+  /// repeated at the end.
   void add(std::span<const Eigen::Vector2f> ring);
 
   enum class RowKind { kEmpty, kFull, kMixed };
-  /// Writes `width` values only when the row is mixed.
+  /// Returns the kind of row j. Writes `width` values to `coverage` only if the row is mixed.
   RowKind row(int j, float* coverage) const;
 
  private:
   struct RowState {
-    float offset = 0.0F;  ///< coverage that comes from the left of the grid
-    int first = 0;        ///< cells that edges run through, and the one after: [first, last]
-    int last = -1;
+    float offset = 0.0F;  ///< coverage from edges left of the grid
+    int first = 0;        ///< first cell with an edge
+    int last = -1;        ///< one past the last cell with an edge; < first: no edges
     bool has_edges() const { return first <= last; }
   };
   void add_edge(Eigen::Vector2f from, Eigen::Vector2f to, float sign);

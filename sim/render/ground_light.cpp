@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 
+#include "sim/world/path.h"
+
 namespace bevloc::sim {
 namespace {
 
-constexpr double kLowestCasterM = 0.4;  ///< kerbs throw no shadow worth drawing
-constexpr double kLampHeightM = 5.0;    ///< poles from here up carry a lamp
+constexpr double kLowestCasterM = 0.4;  ///< lower walls (kerbs) cast no visible shadow
+constexpr double kLampHeightM = 5.0;    ///< poles at least this high carry a lamp
 constexpr size_t kCells = static_cast<size_t>(GroundLight::kSide) * GroundLight::kSide;
 
 struct Corners {
@@ -16,14 +18,14 @@ struct Corners {
 };
 
 Corners corners_of(const VehicleBody& body, double margin_m) {
-  const Se2 map_from_body{body.centre.x(), body.centre.y(), body.yaw_rad};
+  const Se2 map_from_body = body.map_from_body();
   const double x = 0.5 * body.length_m + margin_m;
   const double y = 0.5 * body.width_m + margin_m;
   return {{map_from_body * Eigen::Vector2d(-x, -y), map_from_body * Eigen::Vector2d(x, -y),
            map_from_body * Eigen::Vector2d(x, y), map_from_body * Eigen::Vector2d(-x, y)}};
 }
 
-/// One pass of a [1 2 1] / 4 filter along rows (step 1) or columns (step kSide).
+/// Applies a [1 2 1] / 4 filter along rows (step 1) or columns (step kSide).
 void soften(std::vector<float>& plane, std::vector<float>& scratch, size_t step) {
   for (size_t i = step; i + step < kCells; ++i) {
     scratch[i] = 0.25F * (plane[i - step] + 2.0F * plane[i] + plane[i + step]);
@@ -44,7 +46,7 @@ GroundLight::GroundLight()
 
 void GroundLight::build(const Eigen::Vector2d& centre, const Surroundings& surroundings,
                         const Lighting& lighting) {
-  // Whole cells, so that a moving vehicle does not make the shadows swim.
+  // Align to whole cells, so that shadows do not flicker while the vehicle moves.
   origin_ = ((centre / kCellM).array().round() - kSide / 2) * kCellM;
   if (lighting.casts_shadows()) {
     cast_shadows(surroundings, lighting);
@@ -72,8 +74,7 @@ void GroundLight::cast_shadows(const Surroundings& surroundings, const Lighting&
     add_quad(piece->from, piece->to, wall.bottom_m * shift_per_m, wall.top_m * shift_per_m);
   }
   for (const Post* post : surroundings.posts) {
-    const Eigen::Vector2d across =
-        post->radius_m * Eigen::Vector2d(-to_sun.y(), to_sun.x()).normalized();
+    const Eigen::Vector2d across = post->radius_m * left_of(to_sun.head<2>()).normalized();
     add_quad(post->position - across, post->position + across, post->bottom_m * shift_per_m,
              post->top_m * shift_per_m);
   }
@@ -107,8 +108,7 @@ void GroundLight::add_footprint(const VehicleBody& body, double margin_m) {
 
 void GroundLight::add_foot(const WallPiece& piece) {
   constexpr double kReachM = 0.3;
-  const Eigen::Vector2d way = (piece.to - piece.from).normalized();
-  const Eigen::Vector2d aside = kReachM * Eigen::Vector2d(-way.y(), way.x());
+  const Eigen::Vector2d aside = kReachM * left_of((piece.to - piece.from).normalized());
   add_quad(piece.from, piece.to, -aside, aside);
 }
 
@@ -162,7 +162,7 @@ void GroundLight::pack() {
   for (size_t i = 0; i < kCells; ++i) {
     cells_[i] = byte(sun_[i]) | byte(sky_[i]) << 8U | byte(lamps_[i]) << 16U;
   }
-  // Beyond the square nothing is shaded: its rim repeats outwards.
+  // Lookups beyond the square repeat its rim, so the rim is set to unshaded.
   constexpr uint32_t kOpen = 0x0000FFFF;
   for (size_t i = 0; i < kSide; ++i) {
     cells_[i] = cells_[kCells - 1 - i] = cells_[i * kSide] = cells_[i * kSide + kSide - 1] = kOpen;

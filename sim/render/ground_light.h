@@ -1,4 +1,4 @@
-// Shadows and pools of lamplight on the ground around the vehicle.
+// Computes shadows and lamp light on the ground around the vehicle.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace bevloc::sim {
 
-/// A square of cells around the vehicle. Each holds, from the low byte up: how much of the sun it
-/// sees, how much of the sky, and how much lamplight it gets.
+/// A square grid of cells around the vehicle. The bytes of a cell, from the lowest: visible share
+/// of the sun, visible share of the sky, lamp light. Not thread safe.
 class GroundLight {
  public:
   static constexpr int kSide = 256;
@@ -21,11 +21,13 @@ class GroundLight {
 
   GroundLight();
 
+  /// Computes all cells for a square around `centre` (map frame).
   void build(const Eigen::Vector2d& centre, const Surroundings& surroundings,
              const Lighting& lighting);
 
   const uint32_t* cells() const { return cells_.data(); }
-  /// Map position of the middle of cell (0, 0); cell (i, j) is i cells east and j north of it.
+  /// Map position of the centre of cell (0, 0). Cell (i, j) is i cells east and j cells north of
+  /// it.
   const Eigen::Vector2d& origin() const { return origin_; }
 
  private:
@@ -37,11 +39,12 @@ class GroundLight {
   void add_quad(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& from,
                 const Eigen::Vector2d& to);
   void add_footprint(const VehicleBody& body, double margin_m);
-  /// The dark strip where a wall meets the ground.
+  /// Adds the dark strip where a wall meets the ground.
   void add_foot(const WallPiece& piece);
   void light_lamps(const Surroundings& surroundings, const Lighting& lighting);
-  /// Reads the mask into a plane of 1 - strength * coverage and softens it.
+  /// Writes 1 - strength * coverage from the mask into a plane and blurs it.
   void take_mask(float strength, std::vector<float>& plane);
+  /// Packs the planes into cells_.
   void pack();
 
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();

@@ -9,7 +9,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// Texels beyond these sizes are too coarse to show a track or a crack.
+/// Larger texels are too coarse to show tracks or cracks.
 constexpr double kCoarsestForTracksM = 0.4;
 constexpr double kCoarsestForCracksM = 0.1;
 
@@ -26,7 +26,7 @@ Box box_of(const StrokeSegment& segment, double width_m) {
   return box;
 }
 
-/// Whether all of the area lies within the ring; may miss some rings that cover it.
+/// Whether the ring covers the whole area. May return false for some rings that do.
 bool covers(const Ring& ring, const Box& area) {
   const Eigen::Vector2d centre = area.center();
   bool inside = false;
@@ -42,6 +42,7 @@ bool covers(const Ring& ring, const Box& area) {
   return inside;
 }
 
+/// Packs the planes into texels.
 BEVLOC_TARGET_CLONES
 void store_texels(const float* red, const float* green, const float* blue, const float* gloss,
                   GroundTexel* texels) {
@@ -113,7 +114,7 @@ void GroundPainter::paint(const TileKey& key, GroundTexel* texels) {
 void GroundPainter::paint_surfaces(const Box& area) {
   found_.clear();
   surface_index_.query(area, found_);
-  // Nothing shows from under a surface that covers the whole tile.
+  // A surface that covers the whole tile hides everything below it.
   const auto top = std::find_if(found_.rbegin(), found_.rend(), [&](int item) {
     return covers(world_.surfaces[static_cast<size_t>(item)].ring, area);
   });

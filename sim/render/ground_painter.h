@@ -1,4 +1,4 @@
-// Paints the ground's texture tiles from a world's geometry.
+// Paints the texture tiles of the ground from the geometry of a world.
 #pragma once
 
 #include <vector>
@@ -14,12 +14,12 @@
 
 namespace bevloc::sim {
 
-/// The world must outlive it. Not thread safe (it owns its canvas).
+/// The world must outlive the painter. Not thread safe, because it owns its canvas.
 class GroundPainter {
  public:
   explicit GroundPainter(const World& world);
 
-  /// Writes the tile's kTileArea texels, row by row with growing y.
+  /// Writes the kTileArea texels of a tile, row by row with increasing y.
   void paint(const TileKey& key, GroundTexel* texels);
 
  private:
@@ -31,7 +31,8 @@ class GroundPainter {
   void paint_ageing(const Box& area);
   void soil(const CellIndex& index, const std::vector<StrokeSegment>& segments, const Box& area);
   void paint_markings(const Box& area);
-  /// Calls row(j, coverage or null) for each row of the tile that the ring covers.
+  /// Calls row(j, coverage) for each row of the tile that the ring touches. `coverage` is null for
+  /// a fully covered row.
   template <typename Row>
   void for_each_covered_row(const Ring& ring, Row row);
   void store(GroundTexel* texels) const;

@@ -11,29 +11,29 @@ namespace bevloc::sim {
 namespace {
 
 constexpr int kMostTaps = 12;
-static_assert(kRun <= GroundTiles::kMostHeld, "a run finds all its tiles at one time");
+static_assert(kRun <= GroundTiles::kMostHeld, "all tiles of a run fit into the window at once");
 constexpr float kFarthestM = 900.0F;
-/// A level is fine enough to reach this far through the tile directory.
+/// The tile directory reaches this far at the finest level.
 constexpr float kReachOfFinestM =
     static_cast<float>((GroundWindow::kReachTiles - 0.5) * tile_size_m(0));
 
-/// What stays the same over a frame, positions counted from GroundWindow::local_origin().
-struct Frame {
+/// The constants of one image. Positions are relative to GroundWindow::local_origin().
+struct ImageConstants {
   float rotation[9];  ///< map_from_camera, row by row
   float camera_x, camera_y, height;
   float pixel_angle;  ///< 1 / focal length
   float vehicle_x, vehicle_y, forward_x, forward_y;
-  float light_x, light_y;  ///< origin of the GroundLight
+  float light_x, light_y;  ///< GroundLight::origin()
   const uint32_t* light_cells;
   Lighting lighting;
 };
 
-/// Up to kRun pixels of one row on their way through the loops.
+/// The intermediate values of up to kRun consecutive pixels.
 struct Run {
   alignas(64) float rx[kRun], ry[kRun];            ///< rays in the camera frame
-  alignas(64) float dx[kRun], dy[kRun], dz[kRun];  ///< and in map axes
+  alignas(64) float dx[kRun], dy[kRun], dz[kRun];  ///< rays in map axes
   alignas(64) float x[kRun], y[kRun], range[kRun], steepness[kRun];
-  alignas(64) float step_x[kRun], step_y[kRun];  ///< between the taps
+  alignas(64) float step_x[kRun], step_y[kRun];  ///< from tap to tap
   alignas(64) float texels_per_m[kRun];
   alignas(64) float blend_x[kRun], blend_y[kRun];
   alignas(64) int32_t level[kRun], tile_x[kRun], tile_y[kRun], inside[kRun], texel[kRun];
@@ -41,10 +41,11 @@ struct Run {
   alignas(64) float sky_red[kRun], sky_green[kRun], sky_blue[kRun];
 };
 
-/// Turns the rays into the map; returns the number of taps the run needs, 0 if it is all sky.
+/// Rotates the rays into the map and intersects them with the ground. Returns the number of taps
+/// that the run needs; 0 if all pixels are sky.
 BEVLOC_TARGET_CLONES
-int aim(const Frame& frame, int count, Run& run) {
-  const Frame& f = frame;
+int trace_rays(const ImageConstants& constants, int count, Run& run) {
+  const ImageConstants& f = constants;
   const float* m = f.rotation;
   float most_ratio = 0.0F;
 #pragma GCC ivdep
@@ -61,20 +62,20 @@ int aim(const Frame& frame, int count, Run& run) {
     run.y[i] = f.camera_y + t * run.dy[i];
     run.range[i] = range;
     run.steepness[i] = down / std::sqrt(horizontal2 + down * down);
-    // The footprint: its width across the line of sight, and its length along it.
+    // The pixel's footprint on the ground: its width across and its length along the line of sight.
     const float width = t * f.pixel_angle;
     const float length = std::min(width * std::max(1.0F, range / f.height), 0.6F * range);
     const float ratio = length / std::max(width, static_cast<float>(kFinestTexelM));
     most_ratio = std::max(most_ratio, run.dz[i] < -1e-5F ? ratio : 0.0F);
     run.step_x[i] = length * run.dx[i] / horizontal;
     run.step_y[i] = length * run.dy[i] / horizontal;
-    run.texels_per_m[i] = width;  // until choose_levels()
+    run.texels_per_m[i] = width;  // choose_levels() replaces it
   }
   if (most_ratio == 0.0F) return 0;
   return std::clamp(static_cast<int>(0.75F * most_ratio + 0.999F), 1, kMostTaps);
 }
 
-/// Picks each pixel's tile level so that the taps together cover its footprint.
+/// Selects the tile level of each pixel so that its taps cover its footprint.
 BEVLOC_TARGET_CLONES
 void choose_levels(int taps, int count, Run& run) {
   const float share = 1.0F / static_cast<float>(taps);
@@ -94,7 +95,8 @@ void choose_levels(int taps, int count, Run& run) {
   }
 }
 
-/// Finds tile and place within it of every pixel's tap, `offset` steps from its middle.
+/// Computes the tile, and the place within it, of the tap `offset` steps from the footprint's
+/// centre.
 BEVLOC_TARGET_CLONES
 void place_taps(float offset, int count, Run& run) {
   for (int i = 0; i < count; ++i) {
@@ -112,7 +114,7 @@ void place_taps(float offset, int count, Run& run) {
   }
 }
 
-/// Looks the tiles up; returns whether all were there.
+/// Looks up the tiles of all pixels. Returns whether all of them are in the directory.
 BEVLOC_TARGET_CLONES
 bool look_up(const int32_t* directory, int count, Run& run) {
   int32_t lowest = 0;
@@ -126,6 +128,7 @@ bool look_up(const int32_t* directory, int count, Run& run) {
   return lowest >= 0;
 }
 
+/// Borrows the tiles that are missing in the directory.
 void fetch_missing(GroundWindow& ground, int count, const Run& run) {
   for (int i = 0; i < count; ++i) {
     const int32_t at = GroundWindow::directory_index(run.level[i], run.tile_x[i], run.tile_y[i]);
@@ -135,7 +138,7 @@ void fetch_missing(GroundWindow& ground, int count, const Run& run) {
   }
 }
 
-/// Adds one bilinear tap of every pixel.
+/// Adds one bilinear tap to every pixel.
 BEVLOC_TARGET_CLONES
 void add_taps(const GroundTexel* texels, float weight, int count, Run& run) {
   const NeighbourGrid grid(texels, kTileNodes);
@@ -154,28 +157,28 @@ void add_taps(const GroundTexel* texels, float weight, int count, Run& run) {
   }
 }
 
-/// Turns albedo into light: sun, sky, lamps, wetness, haze.
+/// Converts albedo to radiance: sun, sky, lamps, wetness, haze.
 BEVLOC_TARGET_CLONES
-void light_ground(const Frame& frame, int count, Run& run) {
-  const Lighting l = frame.lighting;
+void light_ground(const ImageConstants& constants, int count, Run& run) {
+  const Lighting l = constants.lighting;
   const float sun_share = std::max(0.0F, l.to_sun.z());
   const auto per_cell = static_cast<float>(1.0 / GroundLight::kCellM);
   const float last_cell = GroundLight::kSide - 1.001F;
-  const NeighbourGrid grid(frame.light_cells, GroundLight::kSide);
+  const NeighbourGrid grid(constants.light_cells, GroundLight::kSide);
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
-    const float cell_x = std::clamp((run.x[i] - frame.light_x) * per_cell, 0.0F, last_cell);
-    const float cell_y = std::clamp((run.y[i] - frame.light_y) * per_cell, 0.0F, last_cell);
+    const float cell_x = std::clamp((run.x[i] - constants.light_x) * per_cell, 0.0F, last_cell);
+    const float cell_y = std::clamp((run.y[i] - constants.light_y) * per_cell, 0.0F, last_cell);
     const auto ix = static_cast<int32_t>(cell_x);
     const auto iy = static_cast<int32_t>(cell_y);
     const Neighbours near = grid.at(iy * GroundLight::kSide + ix, cell_x - static_cast<float>(ix),
                                     cell_y - static_cast<float>(iy));
     const float sun = near.channel(0) * (1.0F / 255.0F) * sun_share;
     const float sky = near.channel(8) * (1.0F / 255.0F);
-    const float off_x = run.x[i] - frame.vehicle_x;
-    const float off_y = run.y[i] - frame.vehicle_y;
-    const float ahead = off_x * frame.forward_x + off_y * frame.forward_y;
-    const float aside = off_y * frame.forward_x - off_x * frame.forward_y;
+    const float off_x = run.x[i] - constants.vehicle_x;
+    const float off_y = run.y[i] - constants.vehicle_y;
+    const float ahead = off_x * constants.forward_x + off_y * constants.forward_y;
+    const float aside = off_y * constants.forward_x - off_x * constants.forward_y;
     const float head = l.headlights * headlight_share(ahead, aside);
     const float lamp = l.lamps * (1.0F / 255.0F) * near.channel(16);
 
@@ -200,64 +203,66 @@ void light_ground(const Frame& frame, int count, Run& run) {
   }
 }
 
-Frame make_frame(const View& view, const Lighting& lighting, const GroundLight& light,
-                 const Eigen::Vector2d& local_origin) {
-  Frame frame{};
-  Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(frame.rotation) = view.map_from_camera;
+ImageConstants make_constants(const View& view, const Lighting& lighting, const GroundLight& light,
+                              const Eigen::Vector2d& local_origin) {
+  ImageConstants constants{};
+  Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(constants.rotation) =
+      view.map_from_camera;
   const Eigen::Vector2f camera = (view.position.head<2>() - local_origin).cast<float>();
   const Eigen::Vector2f vehicle = (view.vehicle - local_origin).cast<float>();
   const Eigen::Vector2f light_origin = (light.origin() - local_origin).cast<float>();
-  frame.camera_x = camera.x();
-  frame.camera_y = camera.y();
-  frame.height = std::max(0.05F, static_cast<float>(view.position.z()));
-  frame.pixel_angle = static_cast<float>(1.0 / view.rays->intrinsics().fx_px);
-  frame.vehicle_x = vehicle.x();
-  frame.vehicle_y = vehicle.y();
-  frame.forward_x = view.vehicle_forward.x();
-  frame.forward_y = view.vehicle_forward.y();
-  frame.light_x = light_origin.x();
-  frame.light_y = light_origin.y();
-  frame.light_cells = light.cells();
-  frame.lighting = lighting;
-  return frame;
+  constants.camera_x = camera.x();
+  constants.camera_y = camera.y();
+  constants.height = std::max(0.05F, static_cast<float>(view.position.z()));
+  constants.pixel_angle = static_cast<float>(1.0 / view.rays->intrinsics().fx_px);
+  constants.vehicle_x = vehicle.x();
+  constants.vehicle_y = vehicle.y();
+  constants.forward_x = view.vehicle_forward.x();
+  constants.forward_y = view.vehicle_forward.y();
+  constants.light_x = light_origin.x();
+  constants.light_y = light_origin.y();
+  constants.light_cells = light.cells();
+  constants.lighting = lighting;
+  return constants;
 }
 
-void draw_ground_run(const Frame& frame, int taps, int count, GroundWindow& ground, Run& run) {
+void draw_ground_run(const ImageConstants& constants, int taps, int count, GroundWindow& ground,
+                     Run& run) {
   choose_levels(taps, count, run);
   for (int tap = 0; tap < taps; ++tap) {
     place_taps(static_cast<float>(tap) - 0.5F * static_cast<float>(taps - 1), count, run);
-    // A tile fetched late may push out an older one of this run: look again until all are there.
+    // Fetching a tile may replace an older one of this run, so repeat until all tiles are there.
     while (!look_up(ground.directory(), count, run)) fetch_missing(ground, count, run);
     add_taps(ground.texels(), 1.0F / static_cast<float>(taps), count, run);
   }
-  light_ground(frame, count, run);
+  light_ground(constants, count, run);
 }
 
 }  // namespace
 
 void draw_ground_and_sky(const View& view, const Lighting& lighting, const GroundLight& light,
-                         const Sky& sky, GroundWindow& ground, Picture& picture) {
-  const Frame frame = make_frame(view, lighting, light, ground.local_origin());
+                         const Sky& sky, GroundWindow& ground, LinearImage& image) {
+  const ImageConstants constants = make_constants(view, lighting, light, ground.local_origin());
   Run run;
   const int pixels = view.width() * view.height();
   for (int start = 0; start < pixels; start += kRun) {
     const int count = std::min(kRun, pixels - start);
     view.rays->get(static_cast<size_t>(start), count, run.rx, run.ry);
-    const int taps = aim(frame, count, run);
+    const int taps = trace_rays(constants, count, run);
     const float highest = *std::max_element(run.dz, run.dz + count);
-    if (taps > 0) draw_ground_run(frame, taps, count, ground, run);
+    if (taps > 0) draw_ground_run(constants, taps, count, ground, run);
     if (highest > -1e-5F) {
       shade_sky(sky, lighting,
-                {run.dx, run.dy, run.dz, 1.0F / frame.pixel_angle, run.sky_red, run.sky_green,
+                {run.dx, run.dy, run.dz, 1.0F / constants.pixel_angle, run.sky_red, run.sky_green,
                  run.sky_blue},
                 count);
     }
     for (int i = 0; i < count; ++i) {
       const bool is_ground = run.dz[i] < -1e-5F;
       const auto at = static_cast<size_t>(start + i);
-      picture.red[at] = is_ground ? run.red[i] : run.sky_red[i];
-      picture.green[at] = is_ground ? run.green[i] : run.sky_green[i];
-      picture.blue[at] = is_ground ? run.blue[i] : run.sky_blue[i];
+      image.red[at] = is_ground ? run.red[i] : run.sky_red[i];
+      image.green[at] = is_ground ? run.green[i] : run.sky_green[i];
+      image.blue[at] = is_ground ? run.blue[i] : run.sky_blue[i];
     }
   }
 }

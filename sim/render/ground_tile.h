@@ -1,14 +1,15 @@
-// The shape of the ground's texture tiles.
+// Sizes and format of the texture tiles of the ground.
 #pragma once
 
 #include <cstdint>
 
 namespace bevloc::sim {
 
-/// Tiles of a level are squares of 128 texels; texel size doubles from level to level.
+/// A tile is a square of 128 x 128 texels. The texel size doubles from level to level.
 inline constexpr int kTileShift = 7;
 inline constexpr int kTileTexels = 1 << kTileShift;
-/// A tile holds its right and upper neighbours' first nodes too: interpolation never leaves it.
+/// A tile also holds the first nodes of its right and upper neighbours, so that interpolation never
+/// leaves the tile.
 inline constexpr int kTileNodes = kTileTexels + 1;
 inline constexpr int kTileArea = kTileNodes * kTileNodes;
 inline constexpr int kGroundLevels = 6;
@@ -21,7 +22,8 @@ constexpr double tile_size_m(int level) {
   return kTileTexels * texel_size_m(level);
 }
 
-/// Node (i, j) of the tile lies at ((128 ix + i), (128 iy + j)) * texel_size_m(level) in the map.
+/// Identifies a tile. Its node (i, j) lies at (128 ix + i, 128 iy + j) * texel_size_m(level) in the
+/// map.
 struct TileKey {
   int level = 0;
   int64_t ix = 0;
@@ -29,8 +31,8 @@ struct TileKey {
   bool operator==(const TileKey&) const = default;
 };
 
-/// Square roots of the albedo's red, green and blue, then gloss (0 dull earth, 1 sealed road),
-/// from the low byte up.
+/// Four bytes, from the lowest: square roots of the red, green and blue albedo, then gloss (0:
+/// earth, 1: sealed road).
 using GroundTexel = uint32_t;
 
 }  // namespace bevloc::sim

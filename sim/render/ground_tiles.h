@@ -1,4 +1,4 @@
-// The painted ground of a world, made where it comes into view.
+// A cache of painted ground tiles that renderers of one world share.
 #pragma once
 
 #include <cstdint>
@@ -11,30 +11,31 @@
 
 namespace bevloc::sim {
 
-/// A fixed number of tiles that renderers of one world share: a tile that is lent stays as it is,
-/// of the others those lent last are kept. A tile's texels depend on the world and its key alone.
-/// Thread safe.
+/// A least-recently-used cache with a fixed number of tiles. Renderers borrow tiles; a borrowed
+/// tile does not change. The texels of a tile depend on the world and its key alone. Thread safe.
 class GroundTiles {
  public:
-  /// A rig of six cameras sees some 290 at one moment, one camera at most 100.
+  /// The six cameras together see about 290 tiles at one moment, one camera at most 100.
   static constexpr int kCapacity = 320;
-  /// A renderer may hold that many at a time, and kCapacity / kMostHeld renderers may share them.
+  /// One renderer may hold this many at a time; kCapacity / kMostHeld renderers may share the
+  /// cache.
   static constexpr int kMostHeld = 128;
 
-  /// The world must outlive it.
+  /// The world must outlive the tiles.
   explicit GroundTiles(const World& world);
 
   const World& world() const { return world_; }
   const GroundTexel* texels() const { return texels_.get(); }
 
-  /// Lends a tile, painting it if it is not kept: the offset of its first texel from texels().
+  /// Borrows a tile and paints it if it is not in the cache. Returns the offset of its first texel
+  /// from texels(). Each call needs a give_back() with that offset.
   int32_t borrow(const TileKey& key);
   void give_back(int32_t offset);
 
  private:
   struct Slot {
     TileKey key;
-    uint64_t last_loan = 0;  ///< value of loans_ then
+    uint64_t last_loan = 0;  ///< loans_ at the last borrow()
     int borrowers = 0;
   };
 
@@ -42,7 +43,7 @@ class GroundTiles {
   Slot& paint(const TileKey& key);
 
   const World& world_;
-  std::mutex mutex_;  ///< guards all below but the texels of lent tiles
+  std::mutex mutex_;  ///< guards all members below, except the texels of borrowed tiles
   GroundPainter painter_;
   std::unique_ptr<GroundTexel[]> texels_;
   std::vector<Slot> slots_;

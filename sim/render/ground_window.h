@@ -1,4 +1,4 @@
-// The part of the painted ground that one picture shows.
+// The ground tiles that one image shows.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@
 
 namespace bevloc::sim {
 
-/// Borrows tiles while a picture is drawn. The pixel loops find a tile through a small directory
-/// that wraps around: it has room for every tile within kReachTiles of the centre, at every level.
-/// Not thread safe; its GroundTiles are.
+/// Borrows tiles while an image is rendered. The pixel loops find tiles in a small directory with
+/// wrap-around, which has room for all tiles within kReachTiles of the centre at every level. Not
+/// thread safe, but several windows may share one GroundTiles.
 class GroundWindow {
  public:
   static constexpr int kDirectorySide = 32;
@@ -27,18 +27,18 @@ class GroundWindow {
   GroundWindow(const GroundWindow&) = delete;
   GroundWindow& operator=(const GroundWindow&) = delete;
 
-  /// Begins a picture around `centre` (map frame), with no tile borrowed.
+  /// Begins an image around `centre` (map frame). No tile is borrowed yet.
   void open(const Eigen::Vector2d& centre);
-  /// Gives all tiles back.
+  /// Gives back all tiles.
   void close();
 
   const World& world() const { return tiles_->world(); }
 
-  /// The map position that local coordinates count from: a corner of the coarsest grid near the
-  /// centre, so that floats hold local coordinates to well under a millimetre.
+  /// The map position of the local coordinates' origin: a corner of the coarsest tile grid near the
+  /// centre, so that local coordinates in float are accurate to well below 1 mm.
   Eigen::Vector2d local_origin() const;
 
-  /// Place in the directory of a tile given by its level and its local tile coordinates.
+  /// Index in the directory of a tile, given by its level and its local tile coordinates.
   static constexpr int32_t directory_index(int32_t level, int32_t tile_x, int32_t tile_y) {
     constexpr int32_t kMask = kDirectorySide - 1;
     return (level * kDirectorySide + (tile_y & kMask)) * kDirectorySide + (tile_x & kMask);
@@ -47,17 +47,17 @@ class GroundWindow {
   const int32_t* directory() const { return directory_.data(); }
   const GroundTexel* texels() const { return tiles_->texels(); }
 
-  /// Enters a missing tile into the directory. Only the GroundTiles::kMostHeld entered last are
-  /// sure to be there.
+  /// Borrows a missing tile and enters it into the directory. Only the last GroundTiles::kMostHeld
+  /// tiles are guaranteed to be there.
   void fetch(int level, int32_t tile_x, int32_t tile_y);
 
  private:
-  /// Ends the loan of the i-th of held_.
+  /// Gives back the tile of held_[i].
   void give_back(size_t i);
 
   const std::shared_ptr<GroundTiles> tiles_;
   std::array<int32_t, kDirectorySize> directory_{};
-  std::vector<int32_t> held_;  ///< places in the directory; beyond kMostHeld a ring
+  std::vector<int32_t> held_;  ///< directory indices; a ring buffer once kMostHeld is reached
   size_t oldest_ = 0;
   int64_t origin_ix_ = 0;  ///< of local_origin(), in tiles of the coarsest level
   int64_t origin_iy_ = 0;

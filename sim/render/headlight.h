@@ -1,4 +1,4 @@
-// The ego vehicle's dipped headlights.
+// The light of the ego vehicle's dipped headlights, and the colours of lamps.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,8 @@ namespace bevloc::sim {
 inline constexpr Rgb kHeadlightColour{1.0F, 0.96F, 0.88F};
 inline constexpr Rgb kLampColour{1.0F, 0.76F, 0.48F};
 
-/// Relative light on a place `ahead_m` of the vehicle's rear axle and `aside_m` of its middle.
+/// Relative light at a place `ahead_m` in front of the rear axle and `aside_m` beside the centre
+/// line.
 inline float headlight_share(float ahead_m, float aside_m) {
   const float from_lamp = ahead_m - 3.2F;
   const float reach = std::max(from_lamp, 0.0F);

@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "common/se2.h"
-#include "sim/random.h"
+#include "sim/world/path.h"
 
 namespace bevloc::sim {
 namespace {
 
-float smooth_step(double from, double to, double value) {
-  const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
-  return static_cast<float>(t * t * (3.0 - 2.0 * t));
+float ramp(double from, double to, double value) {
+  return static_cast<float>(smooth_step(from, to, value));
 }
 
 float luma(const Rgb& c) {
@@ -26,35 +25,12 @@ constexpr Rgb kNightSky{0.010F, 0.0105F, 0.013F};
 
 }  // namespace
 
-Conditions random_conditions(uint64_t seed) {
-  Random random(seed_for(seed, "conditions"));
-  Conditions conditions;
-  conditions.sun_azimuth_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
-  const double time_of_day = random.uniform();
-  if (time_of_day < 0.10) {
-    conditions.sun_elevation_rad = radians(random.uniform(-40.0, -12.0));
-  } else if (time_of_day < 0.22) {
-    conditions.sun_elevation_rad = radians(random.uniform(-5.0, 9.0));
-  } else {
-    conditions.sun_elevation_rad = radians(random.uniform(12.0, 68.0));
-  }
-  // Half the days have a clear or broken sky, the rest are grey.
-  conditions.overcast = random.chance(0.5) ? random.uniform(0.0, 0.4) : random.uniform(0.5, 1.0);
-  if (random.chance(0.15)) {
-    conditions.rain = random.uniform(0.2, 1.0);
-    conditions.overcast = std::max(conditions.overcast, random.uniform(0.75, 1.0));
-  }
-  conditions.exposure = std::exp(random.normal(0.0, 0.18));
-  conditions.noise_sigma = random.uniform(1.0, 3.5);
-  return conditions;
-}
-
 Lighting lighting_of(const Conditions& conditions) {
   const double elevation = conditions.sun_elevation_rad;
   const auto overcast = static_cast<float>(std::clamp(conditions.overcast, 0.0, 1.0));
   const auto rain = static_cast<float>(std::clamp(conditions.rain, 0.0, 1.0));
-  const float daylight = smooth_step(radians(-9.0), radians(14.0), elevation);
-  const float night = 1.0F - smooth_step(radians(-8.0), radians(1.0), elevation);
+  const float daylight = ramp(radians(-9.0), radians(14.0), elevation);
+  const float night = 1.0F - ramp(radians(-8.0), radians(1.0), elevation);
 
   Lighting light;
   light.to_sun = Eigen::Vector3d(std::cos(elevation) * std::cos(conditions.sun_azimuth_rad),
@@ -63,15 +39,15 @@ Lighting lighting_of(const Conditions& conditions) {
                      .cast<float>();
   light.overcast = overcast;
   light.wet = rain;
-  const float warmth = smooth_step(radians(2.0), radians(30.0), elevation);
+  const float warmth = ramp(radians(2.0), radians(30.0), elevation);
   const float direct =
-      1.25F * smooth_step(0.0, radians(22.0), elevation) * std::pow(1.0F - overcast, 1.3F);
+      1.25F * ramp(0.0, radians(22.0), elevation) * std::pow(1.0F - overcast, 1.3F);
   light.sun = direct * mix(kLowSun, kHighSun, warmth);
   const Rgb dome = mix(kClearSky, kCloud, 0.2F + 0.8F * overcast);
-  // Rain clouds swallow light.
+  // Rain clouds absorb light.
   light.ambient = (0.62F * daylight * (1.0F - 0.45F * rain)) * dome + kNightSky;
 
-  // The camera's automatic exposure makes up for most of the light that is missing, not for all.
+  // The automatic exposure compensates most of the missing light, not all of it.
   const float incident = luma(light.ambient) + luma(light.sun) * std::max(0.0F, light.to_sun.z());
   const float gain = static_cast<float>(conditions.exposure) * 1.55F /
                      std::pow(incident + 0.012F, 0.82F) * (1.0F - 0.6F * night);

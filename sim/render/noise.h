@@ -1,4 +1,4 @@
-// Tables of repeatable noise: material grain on the ground, and the sensor's pixel noise.
+// Tables of reproducible noise: grain of materials, and pixel noise of the sensor.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,16 @@
 
 namespace bevloc::sim {
 
-/// A square, seamlessly repeating field of zero mean and about unit standard deviation. Rows are
-/// stored longer than the period, so that a tile's row is always contiguous.
+/// A square field that repeats seamlessly, with zero mean and a standard deviation of about 1. Rows
+/// are stored beyond the period, so that a row of a tile is always contiguous. Immutable.
 class NoiseField {
  public:
   static constexpr int kRowLength = 2 * kTileNodes + 2;
 
+  /// values: period x period, row by row; `period` is a power of two.
   NoiseField(int period, std::vector<float> values);
 
-  /// kRowLength values starting at node (ix, iy), which may be any integers.
+  /// At least kRowLength contiguous values from node (ix, iy) on; any integers are allowed.
   const float* row(int64_t ix, int64_t iy) const;
   int period() const { return period_; }
   int pitch() const { return pitch_; }
@@ -29,15 +30,15 @@ class NoiseField {
   std::vector<float> values_;
 };
 
-/// Noise in the plane of the map. `grain` repeats every 25.6 m and is kept at every tile level;
-/// `patches` varies over metres and repeats every 409.6 m.
+/// Noise in the plane of the map. grain() repeats every 25.6 m and exists for every tile level.
+/// patches() varies over metres and repeats every 409.6 m.
 class GroundNoise {
  public:
-  /// Made once in the life of the process; safe from any thread.
+  /// Made at the first call. Thread safe.
   static const GroundNoise& shared();
 
   const NoiseField& grain(int level) const { return grain_[static_cast<size_t>(level)]; }
-  /// Spacing of the nodes of patches().
+  /// Distance between the nodes of patches().
   static constexpr double kPatchSpacingM = 0.8;
   const NoiseField& patches() const { return patches_; }
 
@@ -47,12 +48,12 @@ class GroundNoise {
   NoiseField patches_;
 };
 
-/// Standard normal numbers to be read from random offsets.
+/// A table of standard normal numbers, read from pseudo-random offsets. Immutable.
 class GaussianTable {
  public:
   static constexpr int kSize = 1 << 16;
   static const GaussianTable& shared();
-  /// At least `count` <= 4096 values.
+  /// At least 4096 contiguous values, starting at an offset given by `hash`.
   const float* from(uint64_t hash) const { return &values_[hash % kSize]; }
 
  private:

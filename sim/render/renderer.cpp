@@ -7,9 +7,9 @@
 #include "sim/render/ground_pass.h"
 #include "sim/render/ground_window.h"
 #include "sim/render/lighting.h"
+#include "sim/render/panel.h"
+#include "sim/render/panel_pass.h"
 #include "sim/render/sensor_pass.h"
-#include "sim/render/sheet.h"
-#include "sim/render/sheet_pass.h"
 #include "sim/render/sky.h"
 #include "sim/render/surroundings.h"
 #include "sim/render/view.h"
@@ -17,10 +17,10 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr double kSightM = 160.0;
+constexpr double kSightM = 160.0;  ///< farther objects are not drawn
 
-/// What the surroundings and the light on the ground were made for: cameras of one moment share
-/// them.
+/// The inputs of the surroundings and of the light on the ground. Cameras at the same moment share
+/// both.
 struct Moment {
   Se2 map_from_vehicle;
   double time_s = 0.0;
@@ -39,6 +39,7 @@ struct Renderer::Impl {
   explicit Impl(std::shared_ptr<GroundTiles> tiles)
       : ground(std::move(tiles)), scene(ground.world()), sky(ground.world().seed) {}
 
+  /// Recomputes surroundings and ground light if the moment changes.
   void enter(const Moment& next, const Lighting& lighting) {
     if (moment_known && moment.key() == next.key()) return;
     moment = next;
@@ -55,8 +56,8 @@ struct Renderer::Impl {
   bool moment_known = false;
   Surroundings surroundings;
   GroundLight light;
-  SheetBuilder sheets;
-  Picture picture;
+  PanelBuilder panels;
+  LinearImage linear;
 };
 
 Renderer::Renderer(const World& world) : Renderer(std::make_shared<GroundTiles>(world)) {}
@@ -74,12 +75,12 @@ void Renderer::render(const CameraModel& camera, const Se2& map_from_vehicle,
   impl.enter({map_from_vehicle, time_s, conditions}, lighting);
   const View view = make_view(impl.rays.rays_of(camera.intrinsics), camera.vehicle_from_camera,
                               map_from_vehicle, body);
-  impl.picture.resize(view.width(), view.height());
+  impl.linear.resize(view.width(), view.height());
   impl.ground.open(view.position.head<2>());
-  draw_ground_and_sky(view, lighting, impl.light, impl.sky, impl.ground, impl.picture);
+  draw_ground_and_sky(view, lighting, impl.light, impl.sky, impl.ground, impl.linear);
   impl.ground.close();
-  draw_sheets(view, lighting, impl.sheets.build(view.position, impl.surroundings), impl.picture);
-  develop(view, lighting, sensor_of(impl.ground.world().seed, camera), noise_seed, impl.picture,
+  draw_panels(view, lighting, impl.panels.build(view.position, impl.surroundings), impl.linear);
+  develop(view, lighting, sensor_of(impl.ground.world().seed, camera), noise_seed, impl.linear,
           image);
 }
 

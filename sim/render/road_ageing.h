@@ -1,4 +1,4 @@
-// What traffic and weather leave on a road: tracks, cracks, tar patches.
+// Generates traces of traffic and weather on roads: tracks, cracks, patches.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace bevloc::sim {
 
-/// A piece of road mended with another mix, lighter or darker by `shade`.
+/// A repaired piece of road, lighter or darker by the factor `shade`.
 struct RoadPatch {
   Ring ring;
   float shade = 1.0F;
@@ -16,13 +16,13 @@ struct RoadPatch {
 
 struct RoadAgeing {
   std::vector<RoadPatch> patches;
-  /// StrokeSegment::line of tracks and cracks counts here.
+  /// StrokeSegment::line of tracks and cracks is an index into this.
   std::vector<Soiling> soilings;
   std::vector<StrokeSegment> tracks;
   std::vector<StrokeSegment> cracks;
 };
 
-/// Ages every lane of the world's map, by the world's seed.
+/// Ages every lane of the world's map, with the world's seed.
 RoadAgeing age_roads(const World& world);
 
 }  // namespace bevloc::sim

@@ -12,7 +12,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// One row of a plane on its way to bytes.
+/// The inputs of develop_row().
 struct RowJob {
   const float* above;
   const float* row;
@@ -25,7 +25,7 @@ struct RowJob {
   int width;
 };
 
-/// Blur, vignette, gamma (the sRGB curve's usual approximation by square roots), noise.
+/// Applies blur, vignette, gamma (sRGB, approximated by square roots) and noise. Output: 0 to 255.
 BEVLOC_TARGET_CLONES
 void develop_row(const RowJob& job, float* __restrict out) {
   const RowJob j = job;
@@ -39,7 +39,7 @@ void develop_row(const RowJob& job, float* __restrict out) {
     const float light = at[0] + j.blur * (at[-1] + at[1] - 2.0F * at[0]);
     const float slope2 = j.rx[i] * j.rx[i] + j.ry[i] * j.ry[i];
     const float exposed = std::clamp(light * j.gain / (1.0F + j.vignette * slope2), 0.0F, 4.0F);
-    // Highlights roll off instead of clipping hard.
+    // Compresses highlights instead of clipping them.
     const float toned = exposed * (1.0F + 0.08F * exposed) / (1.0F + 0.35F * exposed);
     const float root2 = std::sqrt(toned);
     const float root4 = std::sqrt(root2);
@@ -82,19 +82,19 @@ Sensor sensor_of(uint64_t world_seed, const CameraModel& camera) {
 }
 
 void develop(const View& view, const Lighting& lighting, const Sensor& sensor, uint64_t noise_seed,
-             Picture& picture, RgbImage& image) {
-  const int width = picture.width;
-  const int height = picture.height;
+             LinearImage& linear, RgbImage& image) {
+  const int width = linear.width;
+  const int height = linear.height;
   if (image.width != width || image.height != height) image = RgbImage(width, height);
-  std::vector<float>& scratch = picture.scratch;
+  std::vector<float>& scratch = linear.scratch;
   scratch.resize(6 * static_cast<size_t>(width) + 2);
   float* blended = scratch.data() + 1;
   const auto scratch_row = [&](int i) { return scratch.data() + i * width + 2; };
   const std::array<float*, 3> rows = {scratch_row(1), scratch_row(2), scratch_row(3)};
   float* rx = scratch_row(4);
   float* ry = scratch_row(5);
-  const std::array<const std::vector<float>*, 3> planes = {&picture.red, &picture.green,
-                                                           &picture.blue};
+  const std::array<const std::vector<float>*, 3> planes = {&linear.red, &linear.green,
+                                                           &linear.blue};
   const std::array<float, 3> gains = {sensor.gain.r, sensor.gain.g, sensor.gain.b};
   uint64_t hash = mix_seed(noise_seed);
   for (int v = 0; v < height; ++v) {

@@ -10,7 +10,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// Where a direction falls on the skyline: a cheap stand-in for the angle, in [0, kSkylineSize).
+/// Index of a direction in the skyline, in [0, kSkylineSize): a cheap substitute for the azimuth.
 inline int32_t skyline_place(float dx, float dy) {
   const float sum = std::abs(dx) + std::abs(dy) + 1e-9F;
   const float quarter = dy / sum;
@@ -39,7 +39,7 @@ void shade_run(const Sky& sky, const Lighting& lighting, const SkyRun& run, int 
     const float up = std::max(0.0F, run.dz[i] / length);
     const float low_down = (1.0F - up) * (1.0F - up);
     const float high = 1.0F - low_down * low_down;
-    // The clouds hang on a plane overhead; seen flat towards the horizon they melt into one.
+    // The clouds lie on a plane overhead. Towards the horizon they blur into each other.
     const float plane = 34.0F / (up + 0.10F) / length;
     const float x = run.dx[i] * plane + 4096.0F;
     const float y = run.dy[i] * plane + 4096.0F;

@@ -1,4 +1,4 @@
-// What lies beyond the map: sky, clouds and a skyline.
+// Renders what lies beyond the map: sky, clouds and a skyline.
 #pragma once
 
 #include <array>
@@ -8,16 +8,16 @@
 
 namespace bevloc::sim {
 
+/// The skyline of one world. Immutable.
 class Sky {
  public:
   static constexpr int kSkylineSize = 2048;
 
   explicit Sky(uint64_t world_seed);
 
-  /// Heights of the far skyline over the horizon (tangent of elevation), around the compass by
-  /// skyline_place().
+  /// kSkylineSize heights of the skyline over the horizon (tangent of the elevation), all around.
   const float* skyline() const { return skyline_.data(); }
-  /// Grey of the skyline's houses and woods, 0 to 1.
+  /// kSkylineSize grey values of the skyline's houses and woods, 0 to 1.
   const float* skyline_shade() const { return shade_.data(); }
 
  private:
@@ -25,17 +25,17 @@ class Sky {
   std::array<float, kSkylineSize> shade_{};
 };
 
-/// Directions (map axes, z up, any length) and the sky's light from there. `sharpness_px` is the
-/// focal length, which sets how soft the skyline's edge is.
+/// The inputs and outputs of shade_sky().
 struct SkyRun {
-  const float* dx;
+  const float* dx;  ///< directions in map axes, z up, of any length
   const float* dy;
   const float* dz;
-  float sharpness_px;
-  float* red;
+  float sharpness_px;  ///< focal length, for the anti-aliasing of the skyline
+  float* red;          ///< radiance of the sky in these directions
   float* green;
   float* blue;
 };
+/// Computes the radiance of the sky for `count` directions.
 void shade_sky(const Sky& sky, const Lighting& lighting, const SkyRun& run, int count);
 
 }  // namespace bevloc::sim

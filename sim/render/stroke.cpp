@@ -9,7 +9,8 @@
 namespace bevloc::sim {
 namespace {
 
-/// A piece in texels: node (i, j) lies `across` from the axis and `along` from the start.
+/// A segment in texels. Node (i, j) lies `across` texels from the axis and `along` texels from its
+/// start.
 struct Axis {
   Eigen::Vector2f from;
   Eigen::Vector2f direction;
@@ -25,12 +26,12 @@ struct Axis {
 
 Axis axis_of(const TileCanvas& canvas, const StrokeSegment& segment) {
   const Eigen::Vector2f from = canvas.texel(segment.from);
-  const Eigen::Vector2f way = canvas.texel(segment.to) - from;
-  const float length = std::max(way.norm(), 1e-6F);
-  return {from, way / length, length};
+  const Eigen::Vector2f edge = canvas.texel(segment.to) - from;
+  const float length = std::max(edge.norm(), 1e-6F);
+  return {from, edge / length, length};
 }
 
-/// Narrows [low, high] to where value + slope * i lies within [from, to].
+/// Narrows [low, high] to the i for which value + slope * i lies within [from, to].
 void narrow(float value, float slope, float from, float to, float& low, float& high) {
   if (std::abs(slope) < 1e-6F) {
     if (value < from || value > to) high = low - 1.0F;
@@ -42,7 +43,7 @@ void narrow(float value, float slope, float from, float to, float& low, float& h
   high = std::min(high, std::max(a, b));
 }
 
-/// Calls span(j, first, last) for the nodes of each row within `reach` texels of the piece.
+/// Calls span(j, first, last) for the nodes of each row within `reach` texels of the segment.
 template <typename Span>
 void for_each_span(const Axis& axis, float reach, Span span) {
   const float end_y = axis.from.y() + axis.direction.y() * axis.length;
@@ -63,17 +64,18 @@ void for_each_span(const Axis& axis, float reach, Span span) {
   }
 }
 
-/// Box-filtered share of a texel within `half` texels of a line at `distance`.
+/// The share of a texel (a box at `distance` from a line) that lies within `half` texels of the
+/// line.
 inline float band_coverage(float distance, float half) {
   return std::clamp(half + 0.5F - std::abs(distance), 0.0F, std::min(1.0F, 2.0F * half));
 }
 
-/// Dashes in texels along a line; solid lines have no gaps.
+/// The dash pattern of a line, in texels.
 struct Dashes {
   float half_dash;
   float period;
-  float to_centre;  ///< from the piece's start back to the centre of a dash
-  float solid;      ///< 1 for a line without gaps
+  float to_centre;  ///< from the start of the segment back to the centre of a dash
+  float solid;      ///< 1: a line without gaps, 0: dashes
 
   float coverage(float along) const {
     const float turns = (along + to_centre) / period;
@@ -90,6 +92,7 @@ Dashes dashes_of(const PaintLine& line, double start_m, double texel_m) {
           static_cast<float>(offset_m / texel_m), 0.0F};
 }
 
+/// The inputs of paint_span().
 struct PaintSpan {
   float across, across_step, along, along_step, half_width, wear;
   Dashes dashes;
@@ -140,7 +143,7 @@ void draw_paint(TileCanvas& canvas, const StrokeSegment& segment, const PaintLin
 void draw_soiling(TileCanvas& canvas, const StrokeSegment& segment, const Soiling& soiling) {
   const Axis axis = axis_of(canvas, segment);
   const float half = static_cast<float>(0.5 * soiling.width_m / canvas.texel_m());
-  // A stripe thinner than a texel darkens that texel by its share of it.
+  // A stripe thinner than a texel darkens the texel in proportion to its width.
   const float strength = soiling.strength * std::min(1.0F, 2.0F * half);
   const float inverse_reach = 1.0F / std::max(half, 0.75F);
   for_each_span(axis, std::max(half, 0.75F), [&](int j, int first, int last) {

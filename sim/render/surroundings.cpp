@@ -6,18 +6,18 @@ namespace bevloc::sim {
 namespace {
 
 constexpr double kLongestPieceM = 10.0;
-constexpr double kLowWallM = 0.3;
+constexpr double kLowWallM = 0.3;  ///< lower walls (kerbs) are drawn at half of the distance only
 
 Box box_around(const Eigen::Vector2d& centre, double reach_m) {
   const Eigen::Vector2d reach = Eigen::Vector2d::Constant(reach_m);
   return {centre - reach, centre + reach};
 }
 
-/// Whether a body stands where the ego vehicle is (about 4.6 m x 1.9 m around its middle).
+/// Whether a body overlaps the ego vehicle (about 4.6 m x 1.9 m, its middle 1.4 m ahead of the rear
+/// axle).
 bool overlaps_vehicle(const VehicleBody& body, const Se2& map_from_vehicle) {
   const Eigen::Vector2d middle = map_from_vehicle * Eigen::Vector2d(1.4, 0.0);
-  const Eigen::Vector2d offset =
-      Se2{body.centre.x(), body.centre.y(), body.yaw_rad}.inverse() * middle;
+  const Eigen::Vector2d offset = body.map_from_body().inverse() * middle;
   return std::abs(offset.x()) < 0.5 * body.length_m + 2.8 &&
          std::abs(offset.y()) < 0.5 * body.width_m + 1.0;
 }
@@ -45,14 +45,14 @@ void SceneIndex::cut_walls() {
   for (const Wall& wall : world_.walls) {
     double start_m = 0.0;
     for (size_t i = 1; i < wall.base.size(); ++i) {
-      const Eigen::Vector2d way = wall.base[i] - wall.base[i - 1];
-      const double length_m = way.norm();
+      const Eigen::Vector2d edge = wall.base[i] - wall.base[i - 1];
+      const double length_m = edge.norm();
       if (length_m < 1e-3) continue;
       const int parts = static_cast<int>(std::ceil(length_m / kLongestPieceM));
       for (int part = 0; part < parts; ++part) {
         const double begin = static_cast<double>(part) / parts;
         const double end = static_cast<double>(part + 1) / parts;
-        pieces_.push_back({wall.base[i - 1] + begin * way, wall.base[i - 1] + end * way,
+        pieces_.push_back({wall.base[i - 1] + begin * edge, wall.base[i - 1] + end * edge,
                            start_m + begin * length_m, &wall});
       }
       start_m += length_m;

@@ -1,4 +1,4 @@
-// What stands around the vehicle at one moment.
+// Finds the walls, posts and vehicles around the ego vehicle at one moment.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace bevloc::sim {
 
-/// A straight piece of a wall, short enough to be sorted by distance.
+/// A straight piece of a wall, short enough to sort pieces by distance.
 struct WallPiece {
   Eigen::Vector2d from = Eigen::Vector2d::Zero();
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
@@ -17,6 +17,7 @@ struct WallPiece {
   const Wall* wall = nullptr;
 };
 
+/// The pointers refer to the SceneIndex and its world.
 struct Surroundings {
   std::vector<const WallPiece*> walls;
   std::vector<const Post*> posts;
@@ -24,13 +25,14 @@ struct Surroundings {
   std::vector<VehicleBody> traffic;
 };
 
-/// Finds a world's upright things by place. The world must outlive it.
+/// A spatial index of the walls, posts and vehicles of a world. The world must outlive the index.
+/// Not thread safe.
 class SceneIndex {
  public:
   explicit SceneIndex(const World& world);
 
-  /// All within `radius_m` of the vehicle (kerbs within half of it), without the bodies
-  /// that stand where the vehicle itself is.
+  /// Overwrites `surroundings` with everything within `radius_m` of the vehicle (kerbs: within half
+  /// of it). `time_s` places the traffic. Vehicles that overlap the ego vehicle are left out.
   void gather(const Se2& map_from_vehicle, double time_s, double radius_m,
               Surroundings& surroundings);
 

@@ -10,11 +10,12 @@
 namespace bevloc::sim {
 namespace {
 
-/// Codes of the top byte, see Texture.
+/// Codes of a texel, see Texture.
 constexpr float kHole = 0.0F;
 constexpr float kTinted = 0.5F;
 constexpr float kOwnColour = 1.0F;
 
+/// A texel before it is packed.
 struct Paint {
   float r, g, b;
   float code;
@@ -28,20 +29,22 @@ Paint own(float r, float g, float b) {
 }
 constexpr Paint kNothing{0.0F, 0.0F, 0.0F, kHole};
 
-/// Where a texel lies in its picture (0 to 1 each way, from the lower left) and its noise.
+/// The place of a texel in its texture, with its noise: u and v are 0 to 1 from the lower left, x
+/// and y are in texels.
 struct Spot {
   float u, v;
   int x, y;
 
-  /// Fine grain, about a texel wide.
+  /// Fine noise, about one texel wide.
   float grain() const { return GroundNoise::shared().grain(1).at(x, y); }
-  /// Broad blotches, some 20 texels wide; seamless too.
+  /// Broad noise, about 20 texels wide. Like grain(), it repeats without a seam.
   float blotch() const {
     const NoiseField& field = GroundNoise::shared().grain(0);
     return 0.5F * (field.at(2 * x, 2 * y) + field.at(2 * x + 256, 2 * y + 256));
   }
 };
 
+/// A uniform random number in [0, 1) for an integer cell.
 float cell_random(int x, int y, uint64_t salt) {
   const uint64_t hash =
       mix_seed(mix_seed(salt + static_cast<uint64_t>(x)) + static_cast<uint64_t>(y));
@@ -66,7 +69,7 @@ Paint kerb_painted(const Spot& s) {
 
 Paint concrete_barrier(const Spot& s) {
   const float joint = std::fmod(s.u * 2.0F, 1.0F) < 0.012F ? 0.5F : 1.0F;
-  const float slope = s.v < 0.35F ? 1.12F : 0.95F;  // the flared foot looks at the sky
+  const float slope = s.v < 0.35F ? 1.12F : 0.95F;  // the sloped foot faces the sky
   const float stain = std::min(1.0F, 0.72F + s.v) + 0.05F * s.blotch();
   return tinted(joint * slope * stain * (1.0F + 0.05F * s.grain()));
 }
@@ -106,7 +109,7 @@ Paint fence(const Spot& s) {
   return from_bar < 0.13F || post || rail ? tinted(0.9F + 0.1F * s.grain()) : kNothing;
 }
 
-/// As many bays as storeys of windows.
+/// kFacadeStoreys storeys with kFacadeStoreys windows each.
 Paint facade(const Spot& s) {
   const float bay = s.u * kFacadeStoreys;
   const float storey = s.v * kFacadeStoreys;
@@ -122,7 +125,7 @@ Paint facade(const Spot& s) {
   if (!frame) return tinted(wall);
   if (!pane) return own(0.45F, 0.44F, 0.42F);
   const float pick = cell_random(bay_index, storey_index, 21);
-  if (pick < 0.2F) return own(0.50F, 0.40F, 0.24F);  // curtains: lit at night
+  if (pick < 0.2F) return own(0.50F, 0.40F, 0.24F);  // curtains, lit at night
   const float sheen = 0.05F + 0.10F * pick * (0.5F + y);
   return own(0.8F * sheen, 0.95F * sheen, 1.15F * sheen);
 }
@@ -152,10 +155,10 @@ Paint crown(const Spot& s) {
 
 struct Wheels {
   float rear_x, front_x;
-  float radius_x, radius_z;  ///< in shares of length and height
+  float radius_x, radius_z;  ///< as shares of length and height
 };
 
-/// Side windows lie within [x_from, x_to] x [z_from, z_to] with `panes` pillars between them.
+/// Side windows within [x_from, x_to] x [z_from, z_to], divided into `panes` panes.
 struct Windows {
   float x_from, x_to, z_from, z_to;
   int panes;
@@ -227,6 +230,7 @@ Paint plain(const Spot& s) {
   return tinted(1.0F + 0.01F * s.grain());
 }
 
+/// How to make the texture of a pattern.
 struct Recipe {
   Paint (*paint)(const Spot&);
   float period_u_m;
@@ -257,7 +261,7 @@ uint32_t pack(const Paint& paint) {
   return colour(paint.r) | colour(paint.g) << 8U | colour(paint.b) << 16U | byte(paint.code) << 24U;
 }
 
-/// Means of 2x2 texels; holes lend no colour.
+/// Averages 2 x 2 texels. Holes do not contribute to the colour.
 std::vector<Paint> halved(const std::vector<Paint>& finer, int finer_side) {
   const int side = finer_side / 2;
   std::vector<Paint> result;
@@ -283,12 +287,12 @@ std::vector<Paint> halved(const std::vector<Paint>& finer, int finer_side) {
 }
 
 Texture make_texture(const Recipe& recipe) {
-  std::vector<Paint> picture;
-  picture.reserve(static_cast<size_t>(kTextureSide) * kTextureSide);
+  std::vector<Paint> texels;
+  texels.reserve(static_cast<size_t>(kTextureSide) * kTextureSide);
   for (int y = 0; y < kTextureSide; ++y) {
     for (int x = 0; x < kTextureSide; ++x) {
       const auto share = [](int i) { return (static_cast<float>(i) + 0.5F) / kTextureSide; };
-      picture.push_back(recipe.paint({share(x), share(y), x, y}));
+      texels.push_back(recipe.paint({share(x), share(y), x, y}));
     }
   }
   Texture texture;
@@ -296,8 +300,8 @@ Texture make_texture(const Recipe& recipe) {
   texture.period_v_m = recipe.period_v_m;
   texture.texels.reserve(kMipOffsets.back() + kMipSides.back() * kMipSides.back());
   for (int mip = 0; mip < kTextureMips; ++mip) {
-    if (mip > 0) picture = halved(picture, kTextureSide >> (mip - 1));
-    for (const Paint& paint : picture) texture.texels.push_back(pack(paint));
+    if (mip > 0) texels = halved(texels, kTextureSide >> (mip - 1));
+    for (const Paint& paint : texels) texture.texels.push_back(pack(paint));
   }
   return texture;
 }

@@ -1,4 +1,4 @@
-// Small procedural pictures that clothe upright sheets.
+// Procedural textures of panels.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace bevloc::sim {
 
-/// What is on the sheet; the first ones follow WallTexture.
+/// The textures. The first values are those of WallTexture.
 enum class Pattern : uint8_t {
   kKerbPlain,
   kKerbStriped,
@@ -39,7 +39,7 @@ constexpr Pattern pattern_of(WallTexture texture) {
 }
 static_assert(pattern_of(WallTexture::kFacade) == Pattern::kFacade);
 
-/// Storeys and bays in one repetition of Pattern::kFacade.
+/// Number of storeys, and of windows per storey, in one period of Pattern::kFacade.
 inline constexpr int kFacadeStoreys = 4;
 
 inline constexpr int kTextureSide = 256;
@@ -60,19 +60,20 @@ inline constexpr std::array<int32_t, kTextureMips> kMipOffsets = [] {
   return offsets;
 }();
 
-/// A texel's colours are (byte / 255)^2 * kTextureRange.
+/// A colour of a texel is (byte / 255)^2 * kTextureRange.
 inline constexpr float kTextureRange = 2.0F;
 
-/// Red, green, blue from the low byte up and, in the top byte, a code: 0 is a hole, 128 takes the
-/// sheet's tint, 255 keeps its own colour. Row 0 is the foot of the sheet.
+/// A square texture with mip levels. The bytes of a texel, from the lowest: red, green, blue, code.
+/// Codes: 0 is a hole, 128 multiplies the colour with the panel's tint, 255 keeps the colour. Row 0
+/// is the lower edge of the panel.
 struct Texture {
   std::vector<uint32_t> texels;
-  /// Width in metres of one repetition, or 0 to stretch over the sheet.
+  /// Size of one period in metres; 0: stretched over the panel.
   float period_u_m = 0.0F;
   float period_v_m = 0.0F;
 };
 
-/// Made once in the life of the process; safe from any thread.
+/// The textures are made at the first call. Thread safe.
 const Texture& texture_of(Pattern pattern);
 
 }  // namespace bevloc::sim

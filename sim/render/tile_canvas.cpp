@@ -16,7 +16,7 @@ struct Material {
   float grain;    ///< contrast of the fine noise
   float patches;  ///< contrast over metres
   Rgb patch_hue;  ///< added where the patch noise is 1
-  double slab_m;  ///< distance of joints, 0 for none
+  double slab_m;  ///< distance between joints; 0: none
 };
 
 const Material& material_of(GroundMaterial material) {
@@ -68,7 +68,7 @@ void paint_row(const CanvasRow& row, const Rgb& albedo, float wear, const float*
   }
 }
 
-/// Interpolates nodes at `start`, `start + step`, ...
+/// Interpolates the nodes at start, start + step, ...
 BEVLOC_TARGET_CLONES
 void stretch_row(const float* nodes, float start, float step, float* __restrict out) {
 #pragma GCC ivdep
@@ -80,7 +80,7 @@ void stretch_row(const float* nodes, float start, float step, float* __restrict 
   }
 }
 
-/// Dark joints between slabs, where texels are fine enough to show them.
+/// Draws dark joints between slabs if the texels are fine enough to show them.
 void draw_joints(TileCanvas& canvas, int j, double slab_m, const float* coverage) {
   constexpr float kJointShade = 0.22F;
   const auto period = static_cast<int64_t>(std::lround(slab_m / canvas.texel_m()));
@@ -116,7 +116,7 @@ TileCanvas::TileCanvas()
 
 void TileCanvas::begin(const TileKey& tile, uint64_t world_seed) {
   key = tile;
-  // Shifts by whole texels of the coarsest level keep the levels' noise in register.
+  // The shifts are multiples of the coarsest texel, so that the noise is aligned at all levels.
   const auto shift = [&](uint64_t hash) {
     return static_cast<int64_t>(hash % 256U) << (kGroundLevels - 1 - key.level);
   };

@@ -1,4 +1,4 @@
-// A ground tile while it is being painted.
+// The canvas on which a ground tile is painted.
 #pragma once
 
 #include <array>
@@ -9,24 +9,25 @@
 
 namespace bevloc::sim {
 
-/// Albedo planes of one tile, with the noise that belongs to its place in the map.
+/// Albedo planes of one tile, with the ground noise at its place in the map. Not thread safe.
 struct TileCanvas {
   using Plane = std::vector<float>;
 
   TileCanvas();
-  /// Sets the place, looks up the noise and blackens the albedo: covering a black texel gives the
-  /// material's own value to the last bit, whatever the canvas showed before.
+  /// Starts a tile: sets its place, looks up the noise and sets the albedo to 0. From 0, full
+  /// coverage gives exactly the value of the material, independent of earlier tiles.
   void begin(const TileKey& key, uint64_t world_seed);
 
   double texel_m() const { return texel_size_m(key.level); }
   double origin_x_m() const { return static_cast<double>(key.ix) * tile_size_m(key.level); }
   double origin_y_m() const { return static_cast<double>(key.iy) * tile_size_m(key.level); }
-  /// A map position in texels of this tile.
+  /// Converts a map position to texels of this tile.
   Eigen::Vector2f texel(const Eigen::Vector2d& map) const {
     const double scale = 1.0 / texel_m();
     return {static_cast<float>((map.x() - origin_x_m()) * scale),
             static_cast<float>((map.y() - origin_y_m()) * scale)};
   }
+  /// GroundNoise::grain() along row j.
   const float* grain_row(int j) const;
 
   TileKey key;
@@ -40,7 +41,7 @@ struct TileCanvas {
   int64_t noise_shift_y_ = 0;
 };
 
-/// One row of a canvas, from some column on.
+/// Pointers into one row of a canvas, starting at some column.
 struct CanvasRow {
   float* red;
   float* green;
@@ -49,17 +50,18 @@ struct CanvasRow {
   const float* grain;
   const float* patches;
 };
+/// Row j from column i on.
 CanvasRow canvas_row(TileCanvas& canvas, int j, int i);
 
-/// Covers row j with a material. `coverage` has kTileNodes values, or is null for a full row.
+/// Covers row j with a material. `coverage`: kTileNodes values, or null for full coverage.
 void cover_with_material(TileCanvas& canvas, int j, GroundMaterial material, float brightness,
                          const float* coverage);
 
-/// Covers row j with worn paint.
+/// Covers row j with worn paint; `coverage` as above.
 void cover_with_paint(TileCanvas& canvas, int j, const Rgb& albedo, float wear,
                       const float* coverage);
 
-/// Darkens sealed road in row j where covered (tar patches).
+/// Multiplies the albedo of asphalt in row j by `factor`; `coverage` as above.
 void darken_road(TileCanvas& canvas, int j, float factor, const float* coverage);
 
 }  // namespace bevloc::sim

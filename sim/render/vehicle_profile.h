@@ -1,4 +1,4 @@
-// The outline of a vehicle seen from its side: bodies are this outline, drawn out sideways.
+// Side outlines of vehicles. A vehicle body is its outline extruded sideways.
 #pragma once
 
 #include <span>
@@ -9,8 +9,9 @@
 
 namespace bevloc::sim {
 
-/// A corner of the outline, from the lower rear over the roof to the lower front, in shares of the
-/// length (from the rear) and of the height; and what covers the edge to the next corner.
+/// A corner of the outline and the texture of the edge to the next corner. Corners run from the
+/// lower rear over the roof to the lower front. `x` is a share of the length from the rear, `z` a
+/// share of the height.
 struct ProfileCorner {
   float x;
   float z;
@@ -19,12 +20,12 @@ struct ProfileCorner {
 
 struct VehicleProfile {
   std::span<const ProfileCorner> corners;
-  Pattern side;
+  Pattern side;  ///< texture of both sides
 };
 
 const VehicleProfile& profile_of(VehicleKind kind);
 
-/// Whether a point of the side view lies within the outline.
+/// Whether a point (in the same shares) lies inside the outline.
 bool inside_profile(std::span<const ProfileCorner> corners, float x, float z);
 
 }  // namespace bevloc::sim

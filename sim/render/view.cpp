@@ -45,7 +45,7 @@ void unpack(const uint16_t* steps, float low, float step, int count, float* valu
 }  // namespace
 
 CameraRays::CameraRays(const Intrinsics& camera) : intrinsics_(camera) {
-  // Twice the work instead of twice the memory.
+  // Computes all rays twice to avoid a float copy of them.
   Eigen::AlignedBox2f box;
   for_each_ray(camera, [&](const Eigen::Vector2f& ray) { box.extend(ray); });
   low_ = box.min();
@@ -85,7 +85,7 @@ View make_view(const CameraRays& rays, const Se3& vehicle_from_camera, const Se2
                const BodyMotion& body) {
   const Eigen::Matrix3d heading =
       Eigen::AngleAxisd(map_from_vehicle.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  // About the vehicle's y axis a positive turn lowers the nose, about x it lowers the right side.
+  // A positive rotation about the vehicle's y axis lowers the nose; about x, the right side.
   const Eigen::Matrix3d tilt = (Eigen::AngleAxisd(body.pitch_rad, Eigen::Vector3d::UnitY()) *
                                 Eigen::AngleAxisd(body.roll_rad, Eigen::Vector3d::UnitX()))
                                    .toRotationMatrix();

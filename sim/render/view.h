@@ -1,4 +1,4 @@
-// One camera at one moment, as the pixel loops need it.
+// The geometry of one camera at one moment, prepared for the pixel loops.
 #pragma once
 
 #include <cstdint>
@@ -7,23 +7,24 @@
 
 #include <Eigen/Core>
 
+#include "common/se2.h"
 #include "pipeline/calibration/camera_model.h"
-#include "sim/render/renderer.h"
+#include "sim/vehicle/body_motion.h"
 
 namespace bevloc::sim {
 
-/// The rays of all pixels, (x, y, 1) in the camera frame, row by row. Kept in 16 bits for each
-/// coordinate, which is good to a hundredth of a pixel.
+/// The rays of all pixels, (x, y, 1) in the camera frame, row by row. Stored with 16 bits per
+/// coordinate, which is accurate to 0.01 pixel. Immutable.
 class CameraRays {
  public:
   explicit CameraRays(const Intrinsics& intrinsics);
 
   const Intrinsics& intrinsics() const { return intrinsics_; }
-  /// The smallest box around all of them.
+  /// The bounding box of all rays.
   const Eigen::Vector2f& low() const { return low_; }
   const Eigen::Vector2f& high() const { return high_; }
 
-  /// Writes the rays of `count` pixels from pixel number `start` on.
+  /// Writes the rays of `count` pixels, starting at pixel number `start`.
   void get(size_t start, int count, float* x, float* y) const;
 
  private:
@@ -31,14 +32,16 @@ class CameraRays {
   Eigen::Vector2f low_ = Eigen::Vector2f::Zero();
   Eigen::Vector2f high_ = Eigen::Vector2f::Zero();
   Eigen::Vector2f step_ = Eigen::Vector2f::Zero();
-  /// Steps from low_.
+  /// In steps of step_ from low_.
   std::vector<uint16_t> x_;
   std::vector<uint16_t> y_;
 };
 
-/// The ray tables of the cameras seen last: a rig's cameras come back every frame.
+/// Caches the ray tables of recent cameras, because each camera of a rig recurs in every frameset.
+/// Not thread safe.
 class RayCache {
  public:
+  /// The result is valid until kCapacity other cameras have been requested.
   const CameraRays& rays_of(const Intrinsics& intrinsics);
 
  private:
@@ -47,11 +50,12 @@ class RayCache {
   size_t oldest_ = 0;
 };
 
+/// Where a camera looks from. `rays` must outlive the view.
 struct View {
   const CameraRays* rays = nullptr;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the camera in the map
   Eigen::Matrix3f map_from_camera = Eigen::Matrix3f::Identity();
-  /// The vehicle's place and heading on the ground (for its headlights).
+  /// Position and heading of the vehicle on the ground, for its headlights.
   Eigen::Vector2d vehicle = Eigen::Vector2d::Zero();
   Eigen::Vector2f vehicle_forward = Eigen::Vector2f::UnitX();
 
@@ -59,7 +63,7 @@ struct View {
   int height() const { return rays->intrinsics().height_px; }
 };
 
-/// The camera's true pose: the pose on the ground, then the body's motion, then the mounting.
+/// Computes the camera's true pose from the pose on the ground, the body's motion and the mounting.
 View make_view(const CameraRays& rays, const Se3& vehicle_from_camera, const Se2& map_from_vehicle,
                const BodyMotion& body);
 

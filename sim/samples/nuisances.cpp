@@ -16,20 +16,20 @@ struct Entry {
 
 constexpr std::array<Entry, kNuisanceSets> kEntries{{
     {NuisanceSet::kStandard, "standard",
-     "the usual, with a camera or two missing in one of 7, and 10 ms"},
-    {NuisanceSet::kSixCameras, "six_cameras", "the usual with all six cameras, all at once"},
-    {NuisanceSet::kClean, "clean", "exact calibration, still body, clear noon"},
+     "usual nuisances; 1 or 2 cameras missing in 15 %, exposures within 10 ms"},
+    {NuisanceSet::kSixCameras, "six_cameras", "usual nuisances, six cameras that expose at once"},
+    {NuisanceSet::kClean, "clean", "exact calibration, level body, clear noon"},
     {NuisanceSet::kNight, "night", "always night"},
     {NuisanceSet::kRain, "rain", "always rain"},
-    {NuisanceSet::kOcclusion, "occlusion", "ten more vehicles stand around"},
+    {NuisanceSet::kOcclusion, "occlusion", "ten more standing vehicles"},
     {NuisanceSet::kWornPaint, "worn_paint", "paint twice as worn"},
-    {NuisanceSet::kMapErrors, "map_errors", "a tenth missing, a tenth doubled, shifted by 0.15 m"},
+    {NuisanceSet::kMapErrors, "map_errors", "10 % missing, 10 % doubled, shifted by 0.15 m"},
     {NuisanceSet::kCalibration, "calibration", "cameras off by 0.2 degrees and 2 cm"},
     {NuisanceSet::kPitch, "pitch", "body pitches and rolls by 1 degree"},
     {NuisanceSet::kMissingCamera, "missing_camera", "exactly one camera missing"},
     {NuisanceSet::kUnsynchronised, "unsynchronised", "each camera within 50 ms of the pose's time"},
     {NuisanceSet::kUnsynchronisedUncompensated, "unsynchronised_uncompensated",
-     "the same, taken as if all at once"},
+     "the same without motion compensation"},
 }};
 
 const Entry& entry_of(NuisanceSet set) {

@@ -1,4 +1,4 @@
-// What may be wrong in a sample: each nuisance has a strength, and sets of them have names.
+// The nuisances of a sample (calibration error, weather, map errors, ...) and named sets of them.
 #pragma once
 
 #include <array>
@@ -11,60 +11,61 @@
 
 namespace bevloc::sim {
 
-/// What is left of a camera's calibration error on a vehicle, one sigma.
+/// The residual calibration error of a camera on a vehicle, one sigma.
 struct CalibrationSigma {
   double rotation_rad = radians(0.12);
   double position_m = 0.008;
   double relative_focal = 0.002;
 };
 
-/// How the body stands over its wheels, one sigma.
+/// Tilt and lift of the body over its wheels, one sigma.
 struct BodySigma {
-  double tilt_rad = radians(0.35);  ///< of pitch and of roll
+  double tilt_rad = radians(0.35);  ///< of pitch and roll each
   double lift_m = 0.025;
 };
 
-/// kUsual is random_conditions(); kNight and kRain are as dark and as wet as its nights and rains,
-/// and usual in all else.
+/// kUsual: random_conditions(). kNight and kRain: the same, but always at night or always with
+/// rain. kClearNoon: high sun, no clouds or rain, exact exposure, little noise.
 enum class Weather : uint8_t { kUsual, kClearNoon, kNight, kRain };
 
-/// How the map that the localizer is given differs from the world's own.
+/// Errors of the localizer's map against the world's own map.
 struct MapErrors {
-  double omission = 0.0;       ///< share of the elements that are missing
-  double ghost = 0.0;          ///< share that have a double beside them which nobody painted
-  double shift_sigma_m = 0.0;  ///< of east and of north, changing over tens of metres
+  double omission = 0.0;       ///< share of elements that are missing
+  double ghost = 0.0;          ///< share of elements with an unpainted copy beside them
+  double shift_sigma_m = 0.0;  ///< of the shift per axis, which changes over tens of metres
 
   bool operator==(const MapErrors&) const = default;
 };
 
-/// Cameras that are not there; their images are black and the camera mask says so.
+/// Missing cameras. Their images are black and their bits in the camera mask are clear.
 struct MissingCameras {
-  double probability = 0.0;
-  int most = 2;  ///< from one to this many, drawn with replacement
+  double probability = 0.0;  ///< that cameras are missing
+  int most = 2;              ///< draws 1 to this many cameras, with replacement
 };
 
-/// Cameras that expose within `spread_s` before or after the time of the pose, while the vehicle
-/// drives at 5 to 20 m/s and turns a little. Zero: all at once.
+/// Each camera exposes within `spread_s` before or after the time of the pose, while the vehicle
+/// drives at 5 to 20 m/s and may turn. With 0 all cameras expose at the time of the pose.
 struct Desynchronisation {
   double spread_s = 0.0;
-  bool compensated = true;  ///< whether the sample says how the vehicle moved, as odometry has it
+  bool compensated = true;  ///< whether the sample carries the vehicle's motion from odometry
 };
 
-/// The defaults are what a sample usually has.
+/// All nuisances of a sample. The defaults are the usual strengths.
 struct Nuisances {
   CalibrationSigma calibration;
   BodySigma body;
   Weather weather = Weather::kUsual;
-  double paint_wear_factor = 1.0;  ///< on the wear of all paint
-  int extra_vehicles = 0;          ///< that stand on the lanes around the vehicle
+  double paint_wear_factor = 1.0;  ///< multiplies the wear of all paint
+  int extra_vehicles = 0;          ///< standing on the lanes around the vehicle
   MapErrors map_errors;
   MissingCameras missing_cameras;
   Desynchronisation desynchronisation;
 };
 
-/// What a table has a row for. All but kStandard (all at its usual strength: now and then one or
-/// two cameras are missing, and they expose within 10 ms) and kClean (nothing is wrong) change one
-/// thing of kSixCameras.
+/// Named sets of nuisances; evaluation tables have one row per set. kStandard has every nuisance at
+/// its usual strength: sometimes one or two cameras are missing, and each camera exposes
+/// within 10 ms of the pose's time. kClean has none. Every other set changes one nuisance of
+/// kSixCameras.
 enum class NuisanceSet : uint8_t {
   kStandard,
   kSixCameras,
@@ -86,9 +87,9 @@ inline constexpr size_t kNuisanceSets = 13;
 std::array<NuisanceSet, kNuisanceSets> all_nuisance_sets();
 Nuisances nuisances_of(NuisanceSet set);
 std::string_view name_of(NuisanceSet set);
-/// What the set changes, in a few words.
+/// A short description of the set.
 std::string_view describe(NuisanceSet set);
-/// Fails with the names that are known.
+/// Fails for an unknown name; the error lists the known names.
 Result<NuisanceSet> nuisance_set_from(std::string_view name);
 
 }  // namespace bevloc::sim

@@ -7,7 +7,7 @@ constexpr double kSlowest_mps = 5.0;
 constexpr double kFastest_mps = 20.0;
 constexpr double kLateralAccelerationSigma_mps2 = 1.0;
 
-// What is left of the odometry's errors once the tracker has found its scale and its bias.
+// The odometry errors that remain after the tracker has estimated scale and bias.
 constexpr double kSpeedScaleSigma = 0.004;
 constexpr double kYawRateSigma_radps = radians(0.15);
 

@@ -1,4 +1,4 @@
-// A vehicle on its way past the place of a sample, and when its cameras expose.
+// Simulates the vehicle's motion between the exposures of a sample's cameras.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,19 @@
 
 namespace bevloc::sim {
 
-/// Steady speed and yaw rate, drawn from the seed. Not thread safe.
+/// The vehicle passes the pose of a sample with constant speed and yaw rate, drawn from the seed.
+/// Not thread safe.
 class Passage {
  public:
   Passage(const Desynchronisation& desynchronisation, uint64_t seed);
 
-  /// When the next camera exposes, counted from the time of the sample's pose.
+  /// Draws the exposure time of the next camera, relative to the time of the sample's pose.
   double next_offset_s();
 
-  /// Where the vehicle truly is then, seen from where it is at the time of the pose.
+  /// The vehicle's true pose at that time, in the vehicle frame of the sample's pose.
   Se2 true_motion(double offset_s) const;
 
-  /// The same as the vehicle knows it from its odometry, or zero where nothing compensates.
+  /// The same from the vehicle's odometry; the identity if the motion is not compensated.
   Se2 known_motion(double offset_s) const;
 
  private:

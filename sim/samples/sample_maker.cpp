@@ -8,6 +8,7 @@
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/rasterizer.h"
 #include "sim/random.h"
+#include "sim/render/conditions.h"
 #include "sim/render/renderer.h"
 #include "sim/samples/passage.h"
 #include "sim/samples/world_changes.h"
@@ -17,23 +18,23 @@
 namespace bevloc::sim {
 namespace {
 
-// How far the prior pose may be off, each way.
+// The correction of the prior is uniform within these limits.
 constexpr double kMaxLongitudinalM = 2.0;
 constexpr double kMaxLateralM = 1.0;
 constexpr double kMaxYawRad = radians(2.0);
 
-// Traffic repeats nowhere near this soon.
+// The time of the traffic is drawn from 0 to this.
 constexpr double kTrafficTimeS = 600.0;
 
-// To find a pose apart from a world's other ones, if the world has room.
+// Attempts to find a pose that differs from the world's other poses.
 constexpr int kPoseTries = 20;
 
 uint64_t sample_seed(const SampleStream& stream, uint64_t sample) {
   return mix_seed(seed_for(stream.first_seed, "sample") + sample);
 }
 
-/// The poses of all samples of a world. All are drawn even when a stream resumes in the middle,
-/// because each must keep away from those before it.
+/// Draws the poses of all samples of a world. All are drawn even if a stream resumes in the middle,
+/// because each pose depends on the ones before it.
 std::vector<Se2> poses_in(const World& world, uint64_t world_seed) {
   std::vector<Se2> poses;
   Random random(seed_for(world_seed, "poses"));
@@ -54,10 +55,11 @@ Eigen::Vector3d random_vector(double sigma, Random& random) {
   return vector;
 }
 
-/// The camera that really takes the pictures behind the network camera that calibration promises.
-/// The crop stays where calibration puts it: an error of pitch moves the horizon.
-CameraModel true_camera(const CameraModel& told, const CalibrationSigma& sigma, Random& random) {
-  CameraModel camera = told;
+/// The camera that really takes the images: the calibrated network camera with a random calibration
+/// error. The crop stays where the calibration puts it, so an error in pitch moves the horizon.
+CameraModel true_camera(const CameraModel& calibrated, const CalibrationSigma& sigma,
+                        Random& random) {
+  CameraModel camera = calibrated;
   const Eigen::Vector3d rotation = random_vector(sigma.rotation_rad, random);
   const double angle = rotation.norm();
   camera.vehicle_from_camera.rotation *=
@@ -69,7 +71,7 @@ CameraModel true_camera(const CameraModel& told, const CalibrationSigma& sigma, 
   return camera;
 }
 
-/// All cameras, or all but a few.
+/// Draws which cameras are present.
 CameraMask random_cameras(const MissingCameras& missing, Random& random) {
   CameraMask cameras;
   cameras.set();
@@ -79,7 +81,6 @@ CameraMask random_cameras(const MissingCameras& missing, Random& random) {
   return cameras;
 }
 
-/// The sun's height and the rain's strength are drawn as random_conditions() does.
 Conditions conditions_for(Weather weather, uint64_t seed) {
   Conditions conditions = random_conditions(seed_for(seed, "conditions"));
   Random random(seed_for(seed, "weather"));
@@ -94,16 +95,16 @@ Conditions conditions_for(Weather weather, uint64_t seed) {
               .exposure = 1.0,
               .noise_sigma = 1.0};
     case Weather::kNight:
-      conditions.sun_elevation_rad = radians(random.uniform(-40.0, -12.0));
+      conditions.sun_elevation_rad = random_night_elevation_rad(random);
       break;
     case Weather::kRain:
-      conditions.rain = random.uniform(0.2, 1.0);
-      conditions.overcast = std::max(conditions.overcast, random.uniform(0.75, 1.0));
+      add_rain(random, conditions);
       break;
   }
   return conditions;
 }
 
+/// Converts interleaved colours to planes.
 void copy_as_planes(const RgbImage& image, uint8_t* planes) {
   const size_t count = static_cast<size_t>(image.width) * image.height;
   for (size_t i = 0; i < count; ++i) {
@@ -113,7 +114,7 @@ void copy_as_planes(const RgbImage& image, uint8_t* planes) {
   }
 }
 
-/// Images of the cameras that the sample has, black for the others, and where they were taken.
+/// Renders the images of the sample's cameras (black for missing ones) and sets their motions.
 void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisances& nuisances,
                  uint64_t seed, Sample& sample) {
   Random random(seed_for(seed, "body and cameras"));
@@ -127,7 +128,7 @@ void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisance
   RgbImage image(kNetworkWidthPx, kNetworkHeightPx);
   for (size_t i = 0; i < kCameraCount; ++i) {
     const CameraModel camera =
-        true_camera(told_network_rig().cameras[i], nuisances.calibration, random);
+        true_camera(nominal_network_rig().cameras[i], nuisances.calibration, random);
     const double offset_s = passage.next_offset_s();
     if (!sample.cameras[i]) continue;
     sample.reference_from_exposure[i] = passage.known_motion(offset_s);
@@ -137,37 +138,37 @@ void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisance
   }
 }
 
-/// What draws the samples of one world.
-struct Studio {
+/// The renderer and the rasterizers of one world.
+struct WorldViews {
   Renderer renderer;
-  MapRasterizer world_map;
-  MapRasterizer told_map;
+  MapRasterizer true_map;
+  MapRasterizer localizer_map;  ///< with map errors
 };
 
 Sample make_sample(const Nuisances& nuisances, uint64_t seed, const Se2& map_from_vehicle,
-                   Studio& studio) {
+                   WorldViews& views) {
   Random random(seed_for(seed, "prior"));
   Sample sample;
   sample.correction = {random.uniform(-kMaxLongitudinalM, kMaxLongitudinalM),
                        random.uniform(-kMaxLateralM, kMaxLateralM),
                        random.uniform(-kMaxYawRad, kMaxYawRad)};
   sample.cameras = random_cameras(nuisances.missing_cameras, random);
-  take_images(studio.renderer, map_from_vehicle, nuisances, seed, sample);
+  take_images(views.renderer, map_from_vehicle, nuisances, seed, sample);
   sample.raster_truth.resize(kRasterSize);
-  studio.world_map.draw(map_from_vehicle, sample.raster_truth);
+  views.true_map.draw(map_from_vehicle, sample.raster_truth);
   sample.raster_prior.resize(kRasterSize);
-  studio.told_map.draw(map_from_vehicle * sample.correction.inverse(), sample.raster_prior);
+  views.localizer_map.draw(map_from_vehicle * sample.correction.inverse(), sample.raster_prior);
   return sample;
 }
 
-/// The world and the places in it: the nuisances change neither the streets nor the places.
+/// Makes a world. It does not depend on the nuisances, and so neither do the poses in it.
 World world_of(const SampleStream& stream, uint64_t seed) {
   return stream.map != nullptr ? world_from_map(*stream.map, seed) : generate_world(seed);
 }
 
 }  // namespace
 
-const Rig& told_network_rig() {
+const Rig& nominal_network_rig() {
   static const Rig rig = network_rig(nominal_rig());
   return rig;
 }
@@ -180,14 +181,14 @@ void make_samples_of_world(const SampleStream& stream, uint64_t world_number, ui
   const Nuisances of_world = drawn_for_world(stream.nuisances, stream.training, world_seed);
   wear_paint(of_world.paint_wear_factor, world);
   add_standing_vehicles(poses, of_world.extra_vehicles, world_seed, world);
-  const HdMap told_map = with_errors(world.map, of_world.map_errors, world_seed);
-  const MapIndex world_index(world.map);
-  const MapIndex told_index(told_map);
-  Studio studio{Renderer(world), MapRasterizer(world_index), MapRasterizer(told_index)};
+  const HdMap localizer_map = with_errors(world.map, of_world.map_errors, world_seed);
+  const MapIndex true_index(world.map);
+  const MapIndex localizer_index(localizer_map);
+  WorldViews views{Renderer(world), MapRasterizer(true_index), MapRasterizer(localizer_index)};
   for (uint64_t i = first; i < kSamplesPerWorld; ++i) {
     const uint64_t seed = sample_seed(stream, world_number * kSamplesPerWorld + i);
     const Nuisances nuisances = drawn_for_sample(of_world, stream.training, seed);
-    if (!deliver(make_sample(nuisances, seed, poses[i], studio))) return;
+    if (!deliver(make_sample(nuisances, seed, poses[i], views))) return;
   }
 }
 

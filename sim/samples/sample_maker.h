@@ -1,5 +1,5 @@
-// Makes samples from the simulator for training and evaluation: what the cameras see at a place,
-// the map drawn there, and the map drawn at a pose that is a little wrong.
+// Makes simulated samples for training and evaluation: camera images at a pose, the map raster at
+// that pose, and the map raster at a prior that is off by a known correction.
 #pragma once
 
 #include <cstddef>
@@ -16,45 +16,48 @@
 
 namespace bevloc::sim {
 
-/// Consecutive samples that share one world, so that the world's making pays.
+/// Number of consecutive samples that share one world, because making a world is expensive.
 inline constexpr uint64_t kSamplesPerWorld = 16;
 
-/// World seeds on which networks are judged: above the small ones of demos, tests and training's
-/// own validation, below those of the scenes for solvers (sim/perception/matching_scene.h).
+/// World seeds for the evaluation of networks. They lie above the small seeds of demos, tests and
+/// training's validation, and below those of matching scenes (sim/perception/matching_scene.h).
 inline constexpr uint64_t kSampleSeedCount = 1ULL << 30U;
 inline constexpr uint64_t kEvaluationSampleSeedBase = 1ULL << 30U;
 static_assert(kEvaluationSampleSeedBase + kSampleSeedCount <= kFirstTrainingSeed);
 
-/// Number of bytes of one sample's images: [camera, colour, row, column].
+/// Number of bytes of a sample's images: [camera, colour, row, column].
 inline constexpr size_t kImagesSize =
     static_cast<size_t>(kCameraCount) * 3 * kNetworkHeightPx * kNetworkWidthPx;
 
+/// T is the true pose, T0 the prior.
 struct Sample {
-  std::vector<uint8_t> images;
-  CameraMask cameras;
-  CameraMotions reference_from_exposure{};  ///< against the time of T, as the vehicle knows them
-  std::vector<uint8_t> raster_prior;        ///< the localizer's map at T0
-  std::vector<uint8_t> raster_truth;        ///< the world's own map at T
+  std::vector<uint8_t> images;              ///< kImagesSize bytes; black where a camera is missing
+  CameraMask cameras;                       ///< the cameras that are present
+  CameraMotions reference_from_exposure{};  ///< motion against the time of T, from odometry
+  std::vector<uint8_t> raster_prior;        ///< the localizer's map at T0, kRasterSize bytes
+  std::vector<uint8_t> raster_truth;        ///< the world's own map at T, kRasterSize bytes
   Se2 correction;                           ///< dT = T0^-1 T
 };
 
-/// An endless stream of samples; everything about sample i follows from the stream and i. Streams
-/// that differ in their nuisances alone show the same places from the same poses.
+/// An endless stream of samples. Sample i depends on the stream and i alone. Streams that differ
+/// only in their nuisances show the same places from the same poses.
 struct SampleStream {
   uint64_t first_seed = 0;
   Nuisances nuisances;
-  /// Every world is this map, which must have lanes, dressed anew; null: worlds are made-up towns.
+  /// If set, every world is this map, dressed anew; it must have lanes. If null, worlds are
+  /// generated towns.
   const HdMap* map = nullptr;
-  /// On top of `nuisances`.
+  /// Stronger nuisances in a share of the samples, on top of `nuisances`.
   TrainingNuisances training{};
 };
 
-/// The rig that the network is told: sample images are taken by cameras close to these.
-const Rig& told_network_rig();
+/// The network's rig as calibrated. The cameras that take a sample's images differ from it by the
+/// calibration error.
+const Rig& nominal_network_rig();
 
-/// Makes the samples of one world (world w holds samples w * kSamplesPerWorld and on), from the one
-/// numbered `first` within the world, and hands each to `deliver`; stops early when `deliver`
-/// returns false.
+/// Makes the samples of one world and passes each to `deliver`. World w holds the samples from
+/// w * kSamplesPerWorld on; `first` is the number of the first one within the world. Stops early if
+/// `deliver` returns false.
 void make_samples_of_world(const SampleStream& stream, uint64_t world_number, uint64_t first,
                            const std::function<bool(Sample&&)>& deliver);
 

@@ -1,4 +1,4 @@
-// Training shows more trouble than is usual: in a share of its samples a nuisance is stronger.
+// Stronger nuisances for training: in a share of the samples a nuisance exceeds its usual strength.
 #pragma once
 
 #include <cstdint>
@@ -7,31 +7,31 @@
 
 namespace bevloc::sim {
 
-/// In a share of the cases a strength, drawn evenly between two; in the others the usual one.
+/// In a share of the cases the strength is uniform between two values; otherwise it stays as usual.
 struct Strengthening {
   double share = 0.0;
   double weakest = 0.0;
   double strongest = 0.0;
 };
 
-/// All shares are zero: nothing is changed, not by a bit.
+/// By default all shares are zero, and then no bit of a sample changes.
 struct TrainingNuisances {
   // Drawn for each sample.
-  Strengthening camera_spread_s;     ///< cameras out of step by so much, compensated
-  Strengthening calibration_factor;  ///< on the deviations of CalibrationSigma
-  Strengthening body_tilt_rad;       ///< of BodySigma
+  Strengthening camera_spread_s;     ///< Desynchronisation::spread_s, with compensation
+  Strengthening calibration_factor;  ///< multiplies all of CalibrationSigma
+  Strengthening body_tilt_rad;       ///< BodySigma::tilt_rad
 
-  // Drawn for each world, because they change it.
-  Strengthening extra_vehicles;     ///< around each pose; rounded
-  Strengthening paint_wear_factor;  ///< of Nuisances
-  Strengthening map_errors;         ///< times those of the set `map_errors`
+  // Drawn for each world, because they change the world.
+  Strengthening extra_vehicles;     ///< Nuisances::extra_vehicles, rounded
+  Strengthening paint_wear_factor;  ///< Nuisances::paint_wear_factor
+  Strengthening map_errors;         ///< factor on the errors of NuisanceSet::kMapErrors
 };
 
-/// What training shows unless it is told otherwise.
+/// The default of training.
 TrainingNuisances strong_nuisances();
 
-/// `usual` with what is drawn for a world, and that with what is drawn for one of its samples. What
-/// is drawn for one nuisance follows from the seed and its own entry alone.
+/// Replaces the nuisances that are drawn for each world, or for each sample of a world. The value
+/// of one nuisance depends on the seed and its own entry alone.
 Nuisances drawn_for_world(const Nuisances& usual, const TrainingNuisances& training, uint64_t seed);
 Nuisances drawn_for_sample(const Nuisances& of_world, const TrainingNuisances& training,
                            uint64_t seed);

@@ -11,7 +11,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// The wear that the builder of towns stops at.
+/// The same limit as in WorldBuilder.
 constexpr double kMostWear = 0.95;
 
 // Standing vehicles.
@@ -28,6 +28,7 @@ constexpr double kLongestStep_m = 4.0;
 constexpr double kNearestGhost_m = 1.5;
 constexpr double kFarthestGhost_m = 4.0;
 
+/// The body of the ego vehicle.
 VehicleBody ego_at(const Se2& map_from_vehicle) {
   VehicleBody ego;
   ego.centre = map_from_vehicle * Eigen::Vector2d(kAxleToMiddle_m, 0.0);
@@ -35,7 +36,7 @@ VehicleBody ego_at(const Se2& map_from_vehicle) {
   return ego;
 }
 
-/// Whether two vehicles keep apart, both taken as parallel to the first.
+/// Whether two vehicles keep a distance. Approximates both as parallel to the first.
 bool are_clear(const VehicleBody& a, const VehicleBody& b) {
   const Eigen::Vector2d between = b.centre - a.centre;
   const Eigen::Vector2d forward = unit_vector(a.yaw_rad);
@@ -58,7 +59,7 @@ std::vector<Se2> spots_around(const Eigen::Vector2d& place, const HdMap& map) {
   return spots;
 }
 
-/// A smooth displacement of the plane.
+/// A smooth random displacement field over the map.
 class ShiftField {
  public:
   ShiftField(double sigma_m, uint64_t seed)
@@ -83,7 +84,7 @@ class ShiftField {
   SmoothNoise north_over_north_;
 };
 
-/// The same line with points close enough together to bend.
+/// Adds points so that the line can be bent smoothly.
 Polyline refined(const Polyline& line) {
   Polyline fine;
   for (size_t i = 0; i + 1 < line.size(); ++i) {
@@ -97,7 +98,8 @@ Polyline refined(const Polyline& line) {
   return fine;
 }
 
-/// A crossing keeps its corners: the rasterizer goes by its longest edges.
+/// Shifts an element. A crossing gets no extra points, because the rasterizer uses its longest
+/// edges.
 MapElement moved(const MapElement& element, const Eigen::Vector2d& aside, const ShiftField& field) {
   MapElement result = element;
   if (element.element_class != ElementClass::kPedestrianCrossing) {
@@ -107,7 +109,7 @@ MapElement moved(const MapElement& element, const Eigen::Vector2d& aside, const 
   return result;
 }
 
-/// To where an element's double lies: beside it.
+/// Draws the offset from an element to its copy beside it.
 Eigen::Vector2d beside(const MapElement& element, Random& random) {
   const double distance_m = random.uniform(kNearestGhost_m, kFarthestGhost_m);
   const double side = random.chance(0.5) ? 1.0 : -1.0;
@@ -131,11 +133,11 @@ void add_standing_vehicles(const std::vector<Se2>& poses, int count, uint64_t se
     std::vector<Se2> spots = spots_around(pose.translation(), world.map);
     const VehicleBody ego = ego_at(pose);
     for (int placed = 0; placed < count && !spots.empty();) {
-      const int drawn = random.integer(0, static_cast<int>(spots.size()) - 1);
+      const size_t drawn = random.index(spots.size());
       VehicleBody body = random_vehicle(random);
       body.centre = spots[drawn].translation();
       body.yaw_rad = spots[drawn].yaw_rad;
-      spots.erase(spots.begin() + drawn);
+      spots.erase(spots.begin() + static_cast<std::ptrdiff_t>(drawn));
       const auto is_clear = [&body](const VehicleBody& other) { return are_clear(other, body); };
       if (!is_clear(ego) || !std::ranges::all_of(world.parked, is_clear)) continue;
       world.parked.push_back(body);

@@ -1,4 +1,4 @@
-// Changes to a world and to its map that make the localizer's work harder.
+// Changes a world or its map so that localization gets harder.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace bevloc::sim {
 
-/// Multiplies the wear of all paint; some is left of every line.
+/// Multiplies the wear of all paint, up to a limit that leaves some of every line.
 void wear_paint(double factor, World& world);
 
-/// Puts `count` vehicles on the lanes around each of the poses, as far as there is room.
+/// Places up to `count` standing vehicles on the lanes around each pose, as far as there is room.
 void add_standing_vehicles(const std::vector<Se2>& poses, int count, uint64_t seed, World& world);
 
-/// What an older, hastier survey would have made of the map. Lanes stay as they are.
+/// Returns the map with errors as from an old or careless survey. Lanes do not change.
 HdMap with_errors(const HdMap& map, const MapErrors& errors, uint64_t seed);
 
 }  // namespace bevloc::sim

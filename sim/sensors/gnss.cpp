@@ -15,7 +15,7 @@ constexpr double kHeadingDrift_rad = radians(1.0);
 constexpr double kHeadingDriftTime_s = 20.0;
 constexpr double kHeadingWhite_rad = radians(0.3);
 
-/// First-order Gauss-Markov process, started in its stationary state.
+/// A first-order Gauss-Markov process that starts in its stationary state.
 class GaussMarkov {
  public:
   GaussMarkov(double sigma, double time_constant_s, double period_s, Random& random)
@@ -23,6 +23,7 @@ class GaussMarkov {
         drive_(sigma * std::sqrt(1.0 - keep_ * keep_)),
         value_(random.normal(0.0, sigma)) {}
 
+  /// Returns the current value and advances by one period.
   double step(Random& random) {
     const double value = value_;
     value_ = keep_ * value_ + random.normal(0.0, drive_);

@@ -1,4 +1,4 @@
-// A satellite receiver with two antennas, as its errors look from outside.
+// Simulates a GNSS receiver with two antennas: position and heading with realistic errors.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,21 @@ struct GnssReading {
   double time_s = 0.0;
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< of the vehicle's origin, map frame
   double heading_rad = 0.0;
-  double position_sigma_m = 0.0;  ///< per axis, as the receiver claims
+  double position_sigma_m = 0.0;  ///< per axis, as reported by the receiver
   double heading_sigma_rad = 0.0;
 };
 
-/// Readings at 10 Hz. Errors are first-order Gauss-Markov (1.0 m per axis with 40 s, 1.0 degree
-/// with 20 s) plus white noise (0.25 m, 0.3 degrees). Immutable after construction.
+/// Readings at 10 Hz. The errors are a first-order Gauss-Markov process (sigma 1.0 m per axis, time
+/// constant 40 s; sigma 1.0 degree, time constant 20 s) plus white noise (0.25 m, 0.3 degrees).
+/// Immutable.
 class GnssSimulator {
  public:
   static constexpr double kPeriod_s = 0.1;
 
-  /// Keeps a reference to the drive.
+  /// The drive must outlive the simulator.
   GnssSimulator(const Drive& drive, uint64_t seed);
 
-  /// Reading `index` is taken at index * kPeriod_s; index < count().
+  /// The reading at time index * kPeriod_s; index < count().
   GnssReading reading(size_t index) const;
   size_t count() const { return errors_.size(); }
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double kSpeedScaleSigma = 0.01;
 constexpr double kSpeedWhite_mps = 0.03;
 constexpr double kYawRateBias_radps = radians(0.1);
-constexpr double kYawRateBiasWalk = radians(0.003);  ///< rad/s per square root of a second
+constexpr double kYawRateBiasWalk = radians(0.003);  ///< random walk, rad/s per sqrt(s)
 constexpr double kYawRateWhite_radps = radians(0.1);
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Wheel speed and yaw rate, as a vehicle's bus reports them.
+// Simulates the vehicle's own odometry: speed and yaw rate as its bus reports them.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,21 @@ struct OdometryReading {
   double yaw_rate_radps = 0.0;
 };
 
-/// Readings at 50 Hz. Speed: scale error of 1 % per drive and white noise of 0.03 m/s. Yaw rate:
-/// bias of 0.1 degrees/s per drive that slowly walks, and white noise of 0.1 degrees/s. Immutable
-/// after construction.
+/// Readings at 50 Hz. Speed: a scale error per drive (sigma 1 %) and white noise (sigma 0.03 m/s).
+/// Yaw rate: a bias per drive (sigma 0.1 degrees/s) with a slow random walk, and white noise (sigma
+/// 0.1 degrees/s). Immutable.
 class OdometrySimulator {
  public:
   static constexpr double kPeriod_s = 0.02;
 
-  /// Keeps a reference to the drive.
+  /// The drive must outlive the simulator.
   OdometrySimulator(const Drive& drive, uint64_t seed);
 
-  /// Reading `index` is taken at index * kPeriod_s; index < count().
+  /// The reading at time index * kPeriod_s; index < count().
   OdometryReading reading(size_t index) const;
   size_t count() const { return errors_.size(); }
 
+  /// The factor between reported and true speed, for tests.
   double speed_scale() const { return speed_scale_; }
 
  private:

@@ -1,4 +1,4 @@
-// Draws a simulated world and its map from above, as a PNG.
+// bevloc_draw_world: draws a simulated world and its map from above, as a PNG.
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -161,7 +161,7 @@ struct Square {
   double size_m = 100.0;
 };
 
-/// The square that holds the whole map.
+/// The square that contains the whole map.
 Square square_around(const HdMap& map) {
   if (map.elements.empty()) return {};
   Eigen::Vector2d low = map.elements.front().points.front();
@@ -180,8 +180,8 @@ Square square_around(const HdMap& map) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Draws a simulated world from above: road, paint, walls, vehicles, and over them the "
-      "HD map (dividers orange, crossings blue, boundaries red, lanes teal).");
+      "Draws a simulated world from above (roads, paint, walls, vehicles) with its HD map on top: "
+      "dividers orange, crossings blue, boundaries red, lanes teal.");
   uint64_t seed = 1;
   std::string map_file;
   std::string output = "world.png";
@@ -193,13 +193,13 @@ int main(int argc, char** argv) {
   bool without_map = false;
   app.add_option("seed", seed, "Seed of the town")->capture_default_str();
   app.add_option("output", output, "PNG to write")->capture_default_str();
-  app.add_option("--map", map_file, "Draw a world dressed on this map instead of a made-up town");
-  app.add_option("--east", east_m, "Middle of the picture, metres east of the map's origin");
-  app.add_option("--north", north_m, "Middle of the picture, metres north of it");
-  app.add_option("--size", size_m, "Width of the picture in metres (default: the whole map)");
-  app.add_option("--pixels", image_size, "Width of the picture in pixels")->capture_default_str();
-  app.add_option("--time", seconds, "Simulated time of the traffic in seconds");
-  app.add_flag("--no-map", without_map, "Leave the map's lines out");
+  app.add_option("--map", map_file, "Draw a world dressed on this map instead of a generated town");
+  app.add_option("--east", east_m, "Centre of the image, metres east of the map's origin");
+  app.add_option("--north", north_m, "Centre of the image, metres north of the map's origin");
+  app.add_option("--size", size_m, "Width of the image in metres (default: the whole map)");
+  app.add_option("--pixels", image_size, "Width of the image in pixels")->capture_default_str();
+  app.add_option("--time", seconds, "Time of the simulated traffic in seconds");
+  app.add_flag("--no-map", without_map, "Do not draw the map");
   CLI11_PARSE(app, argc, argv);
 
   World world;
@@ -219,7 +219,8 @@ int main(int argc, char** argv) {
   Drawing drawing(centre, size_m.value_or(whole.size_m), image_size);
   drawing.draw(world, seconds, !without_map);
   if (!drawing.save(output)) {
-    std::fprintf(stderr, "%s: cannot write the picture\n", output.c_str());
+    std::fprintf(stderr, "%s: cannot write the image; check the folder and the file extension\n",
+                 output.c_str());
     return 1;
   }
   return 0;

@@ -1,4 +1,4 @@
-// bevloc_render_world: draws what the six cameras see somewhere in a world, as one picture.
+// bevloc_render_world: renders the images of the six cameras at a pose in a world, as one PNG.
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,7 +22,7 @@ using bevloc::sim::Conditions;
 struct Options {
   uint64_t seed = 1;
   std::string out = "world.png";
-  std::vector<double> pose;  ///< x, y (metres), yaw (degrees)
+  std::vector<double> pose;  ///< x, y (metres), yaw (degrees); empty: a random pose on a road
   uint64_t pose_seed = 1;
   double time_s = 0.0;
   bool network_size = false;
@@ -34,20 +34,23 @@ struct Options {
 Options read_options(int argc, char** argv) {
   Options options;
   double sun_elevation_deg = 40.0;
-  CLI::App app("Draws the six cameras of the simulated rig as one picture");
-  app.add_option("--seed", options.seed, "Which world");
-  app.add_option("--out", options.out, "PNG file to write");
-  app.add_option("--pose", options.pose, "x y yaw: metres, degrees; else a place on a road")
+  CLI::App app("Renders the six cameras of the simulated rig into one image");
+  app.add_option("--seed", options.seed, "Seed of the town");
+  app.add_option("--out", options.out, "PNG to write");
+  app.add_option(
+         "--pose", options.pose,
+         "Pose of the vehicle as x y yaw, in metres and degrees (default: a random pose on a road)")
       ->expected(3);
-  app.add_option("--pose-seed", options.pose_seed, "Which place on a road");
-  app.add_option("--time", options.time_s, "Seconds of simulated traffic");
-  app.add_option("--sun-elevation", sun_elevation_deg, "Degrees");
-  app.add_option("--overcast", options.conditions.overcast, "0 to 1");
-  app.add_option("--rain", options.conditions.rain, "0 to 1");
-  app.add_flag("--night", options.night, "The sun is down");
+  app.add_option("--pose-seed", options.pose_seed, "Seed of the random pose");
+  app.add_option("--time", options.time_s, "Time of the simulated traffic in seconds");
+  app.add_option("--sun-elevation", sun_elevation_deg, "Elevation of the sun in degrees");
+  app.add_option("--overcast", options.conditions.overcast, "Cloud cover, 0 to 1");
+  app.add_option("--rain", options.conditions.rain, "Strength of the rain, 0 to 1");
+  app.add_flag("--night", options.night, "Set the sun 30 degrees below the horizon");
   app.add_flag("--random-conditions", options.random_conditions,
-               "Light and weather from the pose seed");
-  app.add_flag("--network-size", options.network_size, "Look through the network's cameras");
+               "Draw light and weather from the pose seed");
+  app.add_flag("--network-size", options.network_size,
+               "Render the network's input images instead of the camera images");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -60,19 +63,19 @@ Options read_options(int argc, char** argv) {
   return options;
 }
 
-/// Two rows of three, in the order of kCameraNames.
-cv::Mat contact_sheet(const std::vector<bevloc::RgbImage>& images) {
+/// Arranges the images in two rows of three, in the order of kCameraNames.
+cv::Mat image_grid(const std::vector<bevloc::RgbImage>& images) {
   constexpr int kGapPx = 4;
   const cv::Size cell(images[0].width + kGapPx, images[0].height + kGapPx);
-  cv::Mat sheet(2 * cell.height - kGapPx, 3 * cell.width - kGapPx, CV_8UC3, cv::Scalar::all(255));
+  cv::Mat grid(2 * cell.height - kGapPx, 3 * cell.width - kGapPx, CV_8UC3, cv::Scalar::all(255));
   for (int i = 0; i < bevloc::kCameraCount; ++i) {
     const bevloc::RgbImage& image = images[static_cast<size_t>(i)];
     const cv::Rect place((i % 3) * cell.width, (i / 3) * cell.height, image.width, image.height);
-    // OpenCV's constructor wants a mutable pointer; the pixels are only read.
+    // OpenCV's constructor takes a mutable pointer, but the pixels are only read.
     const cv::Mat rgb(image.height, image.width, CV_8UC3, const_cast<uint8_t*>(image.row(0)));
-    cv::cvtColor(rgb, sheet(place), cv::COLOR_RGB2BGR);
+    cv::cvtColor(rgb, grid(place), cv::COLOR_RGB2BGR);
   }
-  return sheet;
+  return grid;
 }
 
 }  // namespace
@@ -93,8 +96,9 @@ int main(int argc, char** argv) {
   for (size_t i = 0; i < images.size(); ++i) {
     renderer.render(rig.cameras[i], pose, {}, options.time_s, options.conditions, i, images[i]);
   }
-  if (!cv::imwrite(options.out, contact_sheet(images))) {
-    fmt::print(stderr, "{}: could not be written\n", options.out);
+  if (!cv::imwrite(options.out, image_grid(images))) {
+    fmt::print(stderr, "{}: cannot write the image; check the folder and the file extension\n",
+               options.out);
     return 1;
   }
   fmt::print("{}: world {}, pose x {:.2f} m, y {:.2f} m, yaw {:.1f} deg\n", options.out,

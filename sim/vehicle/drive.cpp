@@ -11,7 +11,7 @@ namespace bevloc::sim {
 namespace {
 
 constexpr double kStep_m = 0.5;
-// The plan keeps inside the limits of the interface.
+// Below the limits promised in drive.h, to leave a margin.
 constexpr double kLateralLimit_mps2 = 2.2;
 constexpr double kAcceleration_mps2 = 1.6;
 constexpr double kBraking_mps2 = 2.3;
@@ -19,7 +19,7 @@ constexpr double kTopSpeed_mps = 25.0;
 constexpr double kStopBeforeLaneEnd_m = 7.0;
 constexpr double kWander_m = 0.15;
 
-/// Points every kStep_m.
+/// Resamples a line to points about kStep_m apart.
 Polyline resampled(const Polyline& line) {
   const Path path(line);
   const auto pieces =
@@ -32,14 +32,14 @@ Polyline resampled(const Polyline& line) {
   return samples;
 }
 
-/// Takes the kinks out of a line of lanes: a Gaussian of 1.5 m.
+/// Smooths the kinks between lanes with a Gaussian of 1.5 m.
 Polyline smoothed(const Polyline& line) {
   constexpr int kReach = 9;
   constexpr double kSigma_m = 1.5;
   const int last = static_cast<int>(line.size()) - 1;
   Polyline result(line.size());
   for (int i = 0; i <= last; ++i) {
-    // A window that is symmetric up to the ends leaves the ends where they are.
+    // The window stays symmetric and shrinks towards the ends, so the end points do not move.
     const int reach = std::min({kReach, i, last - i});
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     double weights = 0.0;
@@ -53,7 +53,7 @@ Polyline smoothed(const Polyline& line) {
   return result;
 }
 
-/// Cubic Hermite between two points with unit tangents, `length` apart.
+/// Cubic Hermite interpolation between two points `length` apart, with unit tangents.
 Eigen::Vector2d hermite(const Eigen::Vector2d& a, const Eigen::Vector2d& tangent_a,
                         const Eigen::Vector2d& b, const Eigen::Vector2d& tangent_b, double length,
                         double t) {
@@ -117,7 +117,8 @@ void Drive::measure_path() {
     curvature_radpm_[i] =
         (heading_rad_[i + 1] - heading_rad_[i - 1]) / (station_m_[i + 1] - station_m_[i - 1]);
   }
-  // A chord to one side alone is the heading half a step away: the ends continue their neighbours.
+  // At the ends the chord has only one side and would give the heading half a step away, so the
+  // ends are extrapolated from their neighbours.
   const size_t last = count - 1;
   curvature_radpm_[0] = curvature_radpm_[1] = curvature_radpm_[2];
   curvature_radpm_[last] = curvature_radpm_[last - 1] = curvature_radpm_[last - 2];
@@ -187,11 +188,11 @@ void Drive::plan_time(const std::vector<Stop>& stops) {
 
 Drive::Progress Drive::progress_at(double time_s) const {
   const double time = std::clamp(time_s, 0.0, duration_s_);
-  // The last sample that the vehicle has reached.
+  // Index i is the last sample that the vehicle has reached.
   const auto after = std::upper_bound(arrival_s_.begin(), arrival_s_.end(), time);
   const size_t i = static_cast<size_t>(after - arrival_s_.begin()) - 1;
   Progress progress{.sample = i};
-  if (time < departure_s_[i]) return progress;  // it waits
+  if (time < departure_s_[i]) return progress;  // the vehicle waits
   if (i + 1 == points_.size()) {                // the end of the route
     progress.sample = i - 1;
     progress.fraction = 1.0;
@@ -225,9 +226,9 @@ Drive::State Drive::at(double time_s) const {
 }
 
 BodyMotion Drive::body_at(double time_s) const {
-  constexpr double kPitchPerAcceleration = 0.004;  // rad per m/s^2, as are passenger cars
+  constexpr double kPitchPerAcceleration = 0.004;  // rad per m/s^2, typical of cars
   constexpr double kRollPerAcceleration = 0.007;
-  constexpr int kTaps = 5;  // springs smooth the acceleration over most of a second
+  constexpr int kTaps = 5;  // the springs smooth the acceleration over 0.75 s
   double longitudinal = 0.0;
   double lateral = 0.0;
   for (int k = 0; k < kTaps; ++k) {
@@ -236,11 +237,11 @@ BodyMotion Drive::body_at(double time_s) const {
     lateral += state.speed_mps * state.yaw_rate_radps / kTaps;
   }
   const Progress now = progress_at(time_s);
-  const double way_m =
+  const double distance_m =
       station_m_[now.sample] + now.fraction * (station_m_[now.sample + 1] - station_m_[now.sample]);
-  return {.pitch_rad = pitch_noise_.at(way_m) - kPitchPerAcceleration * longitudinal,
-          .roll_rad = roll_noise_.at(way_m) + kRollPerAcceleration * lateral,
-          .lift_m = lift_noise_.at(way_m)};
+  return {.pitch_rad = pitch_noise_.at(distance_m) - kPitchPerAcceleration * longitudinal,
+          .roll_rad = roll_noise_.at(distance_m) + kRollPerAcceleration * lateral,
+          .lift_m = lift_noise_.at(distance_m)};
 }
 
 }  // namespace bevloc::sim

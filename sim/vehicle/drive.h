@@ -1,44 +1,45 @@
-// A vehicle that drives through a world: its true pose, speed and body motion at any time.
+// Simulates a drive through a world: the true pose, speed and body motion at any time.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "common/se2.h"
-#include "sim/render/renderer.h"
+#include "sim/vehicle/body_motion.h"
 #include "sim/vehicle/smooth_noise.h"
 #include "sim/world/world.h"
 
 namespace bevloc::sim {
 
-/// Drives a random route along the lanes with the manners of a calm driver: lateral acceleration up
-/// to 2.5 m/s^2, longitudinal from -3 to 2 m/s^2, slower in bends, now and then a stop at a
-/// junction, a little wander within the lane. The whole drive follows from world, seed and
-/// duration. Immutable: safe to read from several threads.
+/// Drives a random route along the lanes like a calm driver: lateral acceleration up to 2.5 m/s^2,
+/// longitudinal acceleration from -3 to 2 m/s^2, slower in bends, occasional stops at junctions, a
+/// small lateral wander within the lane. World, seed and duration determine the whole drive.
+/// Immutable: safe to read from several threads.
 class Drive {
  public:
-  /// The world's map must have lanes. Where all routes end before the duration is over, the vehicle
-  /// stops at the end and stays.
+  /// The world's map must have lanes. If the route ends before the duration, the vehicle stops
+  /// there and stays. Keeps no reference to the world.
   Drive(const World& world, uint64_t seed, double duration_s);
 
   struct State {
-    Se2 map_from_vehicle;  ///< the rear axle's middle, on the ground
+    Se2 map_from_vehicle;  ///< of the middle of the rear axle, on the ground
     double speed_mps = 0.0;
     double yaw_rate_radps = 0.0;
     double acceleration_mps2 = 0.0;  ///< along the vehicle's x axis
   };
 
-  /// Times before the start or after the end are taken as the start or the end.
+  /// The time is clamped to [0, duration_s].
   State at(double time_s) const;
+  /// Pitch, roll and lift of the body from accelerations and road bumps; same times as at().
   BodyMotion body_at(double time_s) const;
 
   double duration_s() const { return duration_s_; }
-  /// The way of the rear axle, a point about every half metre.
+  /// The path of the rear axle, with a point about every 0.5 m.
   const Polyline& path() const { return points_; }
 
  private:
   struct Stop {
-    size_t sample;
+    size_t sample;  ///< of the path
     double wait_s;
   };
 
@@ -49,10 +50,10 @@ class Drive {
                   const std::vector<Stop>& stops);
   void plan_time(const std::vector<Stop>& stops);
 
-  /// Where the vehicle is between two samples of its path.
+  /// The vehicle's place between two samples of its path.
   struct Progress {
     size_t sample = 0;
-    double fraction = 0.0;
+    double fraction = 0.0;  ///< of the way from `sample` to the next one
     double speed_mps = 0.0;
     double acceleration_mps2 = 0.0;
   };
@@ -60,11 +61,11 @@ class Drive {
 
   uint64_t seed_;
   double duration_s_;
-  SmoothNoise pitch_noise_;  ///< over the way driven, as are roll and lift
+  SmoothNoise pitch_noise_;  ///< as a function of the distance driven, like roll and lift
   SmoothNoise roll_noise_;
   SmoothNoise lift_noise_;
 
-  double lane_step_m_ = 0.0;  ///< from sample to sample along the lanes' own centre lines
+  double lane_step_m_ = 0.0;  ///< between two samples, measured along the lanes' centre lines
   // Samples along the path.
   Polyline points_;
   std::vector<double> station_m_;
@@ -72,7 +73,7 @@ class Drive {
   std::vector<double> curvature_radpm_;
   std::vector<double> speed_mps_;
   std::vector<double> arrival_s_;
-  std::vector<double> departure_s_;  ///< later than the arrival at a stop
+  std::vector<double> departure_s_;  ///< equals the arrival except at stops
 };
 
 }  // namespace bevloc::sim

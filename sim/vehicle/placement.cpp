@@ -33,7 +33,8 @@ bool has_surroundings(const HdMap& map, const Eigen::Vector2d& point) {
   return false;
 }
 
-/// Short lanes (those across junctions) are drawn more often than their length asks for.
+/// Draws a lane with a weight of the square root of its length, which favours the short lanes
+/// across junctions.
 const Lane& random_lane(const HdMap& map, Random& random) {
   double total = 0.0;
   for (const Lane& lane : map.lanes) total += std::sqrt(length_m(lane.centerline));
@@ -51,7 +52,7 @@ Se2 random_pose_on_lane(const Lane& lane, Random& random) {
   const double lane_width_m = (lane.left.front() - lane.right.front()).norm();
   double right_m = random.normal(0.0, 0.4);
   double askew_rad = radians(random.normal(0.0, 2.5));
-  if (random.chance(0.15)) {  // in the middle of a lane change
+  if (random.chance(0.15)) {  // a lane change
     right_m = random.uniform(-0.5, 0.5) * lane_width_m;
     askew_rad = radians(random.normal(0.0, 5.0));
   }

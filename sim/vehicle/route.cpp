@@ -9,7 +9,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// How far one can drive from each lane's start, capped at `enough_m`.
+/// The distance that can be driven from the start of each lane, at most `enough_m`.
 std::vector<double> reach_of_lanes(const HdMap& map, const std::vector<double>& lane_m,
                                    double enough_m) {
   std::vector<double> reach = lane_m;
@@ -45,8 +45,7 @@ std::vector<uint32_t> random_lane_route(const HdMap& map, double length_m, Rando
   for (uint32_t i = 0; i < reach.size(); ++i) {
     if (reach[i] >= std::min(best, length_m)) starts.push_back(i);
   }
-  uint32_t lane =
-      starts[static_cast<size_t>(random.integer(0, static_cast<int>(starts.size()) - 1))];
+  uint32_t lane = starts[random.index(starts.size())];
 
   std::vector<int> visits(map.lanes.size(), 0);
   std::vector<uint32_t> route{lane};
@@ -56,7 +55,7 @@ std::vector<uint32_t> random_lane_route(const HdMap& map, double length_m, Rando
     double best_score = std::numeric_limits<double>::max();
     uint32_t best_next = map.lanes[lane].successors.front();
     for (const uint32_t next : map.lanes[lane].successors) {
-      // A dead end weighs more than any number of visits.
+      // Avoiding a dead end matters more than the number of visits.
       const double missing_m = std::max(0.0, left_m - reach[next]);
       const double score = 1e3 * missing_m + visits[next] + random.uniform();
       if (score < best_score) {

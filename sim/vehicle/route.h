@@ -1,4 +1,4 @@
-// A random route along a map's lanes.
+// Draws a random route along the lanes of a map.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,9 @@
 
 namespace bevloc::sim {
 
-/// Lanes, each a successor of the one before, at least `length_m` long together, or as long as the
-/// map's dead ends allow. Goes where it has been least. The map must have lanes.
+/// Returns indices of lanes, each a successor of the one before. Their total length is at least
+/// `length_m`, or as much as the dead ends of the map allow. The route prefers lanes that it has
+/// visited least. The map must have lanes.
 std::vector<uint32_t> random_lane_route(const HdMap& map, double length_m, Random& random);
 
 }  // namespace bevloc::sim

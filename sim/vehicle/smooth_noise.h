@@ -1,4 +1,4 @@
-// Correlated noise along a drive.
+// Smooth random functions, used for noise along a drive and over a map.
 #pragma once
 
 #include <array>
@@ -9,10 +9,11 @@
 
 namespace bevloc::sim {
 
-/// A smooth random function: a sum of sines of random phase. Zero mean, given standard deviation.
+/// A sum of sines with random wavelengths and phases: zero mean and a given standard deviation.
+/// Immutable.
 class SmoothNoise {
  public:
-  /// Its wavelengths lie between `shortest` and `longest`, in the unit of the argument.
+  /// The wavelengths lie between `shortest` and `longest`, in the unit of the argument of at().
   SmoothNoise(uint64_t seed, double sigma, double shortest, double longest) {
     Random random(seed);
     const double amplitude = sigma * std::sqrt(2.0 / static_cast<double>(kWaves));

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMargin_m = 40.0;
 constexpr double kCell_m = 1.0;
-constexpr int kCoarsening = 2;  ///< of the distances against the cells
+constexpr int kCoarsening = 2;  ///< cells of the raster per cell of the distances
 constexpr int kSubpixelBits = 4;
 
 }  // namespace
@@ -78,7 +78,7 @@ void GroundMask::occupy_line(const Polyline& line) {
                 cv::Scalar(255), 1, cv::LINE_8, kSubpixelBits);
 }
 
-/// Cells as OpenCV's drawing functions take them.
+/// Converts to the fixed-point cell coordinates of OpenCV's drawing functions.
 std::vector<cv::Point> GroundMask::fixed_point(const Polyline& line) const {
   std::vector<cv::Point> points;
   points.reserve(line.size());

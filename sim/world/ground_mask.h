@@ -1,4 +1,4 @@
-// Where in the town there is room for a house or a tree.
+// A raster of the occupied ground, to find room for houses and trees.
 #pragma once
 
 #include <vector>
@@ -9,16 +9,17 @@
 
 namespace bevloc::sim {
 
-/// A coarse raster (1 m) of what is paved or built on.
+/// A raster with cells of 1 m that marks paved and built-on ground.
 class GroundMask {
  public:
-  /// Covers the paved rings and a margin around them.
+  /// The raster covers the paved rings and a margin of 40 m around them.
   explicit GroundMask(const std::vector<const Ring*>& paved);
 
-  /// To the nearest pavement, to 2 m or so; 0 on it and outside the raster.
+  /// Distance to the nearest pavement, to about 2 m; 0 on pavement and outside the raster.
   double distance_to_paved_m(const Eigen::Vector2d& point) const;
-  /// Whether neither pavement nor a building lies on the line or ring (which is closed).
+  /// Whether the closed line touches neither pavement nor occupied ground and stays in the raster.
   bool is_free(const Ring& ring) const;
+  /// Marks an area as occupied.
   void occupy(const Ring& ring);
   void occupy_line(const Polyline& line);
 
@@ -30,8 +31,8 @@ class GroundMask {
   std::vector<cv::Point> fixed_point(const Polyline& line) const;
 
   Eigen::Vector2d min_corner_;
-  cv::Mat occupied_;  ///< uint8: 255 paved or built on
-  cv::Mat distance_;  ///< float, coarser: to pavement
+  cv::Mat occupied_;  ///< uint8; 255: paved or built on
+  cv::Mat distance_;  ///< float, in its own (coarser) cells: distance to pavement
 };
 
 }  // namespace bevloc::sim

@@ -7,7 +7,7 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr double kCrosswiseBelow_m = 3.0;  ///< bays shorter than this are entered crosswise
+constexpr double kCrosswiseBelow_m = 3.0;  ///< in shorter bays vehicles stand crosswise
 constexpr double kKerbsideSpacing_m = 5.8;
 
 void park(const Carriageway& side, double station_m, double right_m, WorldBuilder& builder) {

@@ -1,4 +1,4 @@
-// Parked vehicles along the town's roads.
+// Places parked vehicles along the roads of a town.
 #pragma once
 
 #include "sim/world/road_network.h"
@@ -6,7 +6,7 @@
 
 namespace bevloc::sim {
 
-/// In bays where the road has them, here and there half on the kerb where it has none.
+/// Parks vehicles in the bays of a road, or half on the kerb on some roads without bays.
 void add_parked_vehicles(const RoadNetwork& network, WorldBuilder& builder);
 
 }  // namespace bevloc::sim

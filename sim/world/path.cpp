@@ -37,8 +37,8 @@ Path::Path(const Polyline& points) {
   const size_t last = points_.size() - 1;
   directions_.resize(points_.size());
   for (size_t i = 0; i <= last; ++i) {
-    // The chord over both neighbours leans towards the longer one: a straight that leads into an
-    // arc keeps its direction.
+    // The chord between both neighbours follows the longer segment, so a straight that leads into
+    // an arc keeps its direction.
     const Eigen::Vector2d& before = points_[i > 0 ? i - 1 : 0];
     const Eigen::Vector2d& after = points_[std::min(i + 1, last)];
     directions_[i] = (after - before).normalized();
@@ -127,7 +127,7 @@ Polyline smooth_turn(const Eigen::Vector2d& p0, const Eigen::Vector2d& d0,
   const double sine = cross(d0, d1);
   const Eigen::Vector2d chord = p1 - p0;
   if (std::abs(sine) > 0.05) {
-    // The tangents meet `ahead` of p0 and `behind` p1.
+    // The tangents meet `ahead` metres after p0 and `behind` metres before p1.
     const double ahead = cross(chord, d1) / sine;
     const double behind = cross(d0, chord) / sine;
     if (ahead > 0.3 && behind > 0.3) {

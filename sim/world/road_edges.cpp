@@ -6,9 +6,7 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr Rgb kGreen{0.12F, 0.25F, 0.08F};
-
-/// The stretch between two parallel lines beside a carriageway.
+/// The area between two lines parallel to a carriageway.
 Ring band(const Carriageway& side, double from_m, double to_m,
           const std::function<double(double)>& near_m, const std::function<double(double)>& far_m) {
   Ring ring = side.path.parallel(from_m, to_m, near_m);
@@ -17,7 +15,7 @@ Ring band(const Carriageway& side, double from_m, double to_m,
 }
 
 void add_carriageway_surface(const Road& road, WorldBuilder& builder) {
-  constexpr double kOverlap_m = 0.3;  // into the junctions
+  constexpr double kOverlap_m = 0.3;  // with the surfaces of the junctions
   const Carriageway& forward = road.sides[0];
   const Carriageway& backward = road.sides[1];
   Ring ring = forward.path.parallel(forward.begin_m - kOverlap_m, forward.end_m + kOverlap_m,
@@ -77,7 +75,8 @@ void add_driveway_surfaces(const Carriageway& side, const std::vector<Interval>&
   }
 }
 
-/// The road's edge, interrupted by driveways (in the map too, unless its makers closed them).
+/// The road's edge, interrupted by driveways. The map has the same gaps unless the town's map
+/// closes driveways.
 void add_boundaries(const Carriageway& side, const EdgeStyle& edge,
                     const std::vector<Interval>& gaps, WorldBuilder& builder) {
   const auto line = [&](double from_m, double to_m) {
@@ -94,10 +93,10 @@ void add_boundaries(const Carriageway& side, const EdgeStyle& edge,
   builder.add_boundary(line(station_m, side.end_m), edge);
 }
 
-/// The closed outline of a median: two sides and round noses.
+/// The closed outline of a median: two straight sides and two round ends.
 Ring median_outline(const Carriageway& side, double from_m, double to_m, double half_width_m) {
   Ring ring = side.path.parallel(from_m + half_width_m, to_m - half_width_m, half_width_m);
-  const auto nose = [&](double station_m, double sign) {
+  const auto round_end = [&](double station_m, double sign) {
     const Eigen::Vector2d centre = side.path.position(station_m);
     const Eigen::Vector2d ahead = sign * side.path.direction(station_m);
     constexpr int kPieces = 8;
@@ -109,17 +108,17 @@ Ring median_outline(const Carriageway& side, double from_m, double to_m, double 
     }
     return arc;
   };
-  append(ring, nose(to_m - half_width_m, 1.0));
+  append(ring, round_end(to_m - half_width_m, 1.0));
   append(ring, side.path.parallel(to_m - half_width_m, from_m + half_width_m, -half_width_m));
-  append(ring, nose(from_m + half_width_m, -1.0));
-  ring.pop_back();  // the first point again
+  append(ring, round_end(from_m + half_width_m, -1.0));
+  ring.pop_back();  // it repeats the first point
   return ring;
 }
 
 void add_island_median(const Road& road, const Interval& stretch, WorldBuilder& builder) {
   Random& random = builder.random();
   const Carriageway& side = road.sides[0];
-  // The island stands a little clear of the lanes.
+  // The island keeps a small distance to the lanes.
   const double half_width_m = 0.5 * road.style.median_width_m - 0.15;
   const Ring outline = median_outline(side, stretch.begin_m, stretch.end_m, half_width_m);
   const bool green = half_width_m > 1.2 && random.chance(0.6);
@@ -132,7 +131,7 @@ void add_island_median(const Road& road, const Interval& stretch, WorldBuilder& 
   builder.add_boundary(closed, edge);
   if (half_width_m > 0.7 && random.chance(0.15)) {
     builder.add_wall(side.path.parallel(stretch.begin_m + 3.0, stretch.end_m - 3.0, 0.0),
-                     WallTexture::kHedge, 0.0, random.uniform(0.5, 1.2), kGreen);
+                     WallTexture::kHedge, 0.0, random.uniform(0.5, 1.2), kHedgeGreen);
   }
 }
 
@@ -153,7 +152,7 @@ void add_median(const Road& road, WorldBuilder& builder) {
   }
 }
 
-/// The kerb line from one arm's left edge to the next arm's right edge.
+/// The kerb line at a corner, from the left edge of one arm to the right edge of the next.
 Polyline corner_line(const RoadNetwork& network, const Arm& arm, const Arm& next) {
   const Carriageway& in = network.inward(arm);
   const Carriageway& out = network.outward(next);
@@ -162,7 +161,7 @@ Polyline corner_line(const RoadNetwork& network, const Arm& arm, const Arm& next
                      out.path.direction(out.begin_m));
 }
 
-/// The same around a roundabout: along its ring where the arms are far enough apart.
+/// The corner line at a roundabout. It follows the ring if the arms are far enough apart.
 Polyline ring_corner_line(const RoadNetwork& network, const Junction& junction, size_t arm) {
   const Arm& next = junction.arms[(arm + 1) % junction.arms.size()];
   const RingSector sector = ring_sector(network, junction, arm);
@@ -185,7 +184,7 @@ Polyline ring_corner_line(const RoadNetwork& network, const Junction& junction, 
   return line;
 }
 
-/// What the corner between two arms looks like: the plainer of their edges, never a tall one that
+/// The edge style of the corner between two arms: a kerb or a road edge, because anything taller
 /// would hide the junction.
 EdgeStyle corner_style(const RoadNetwork& network, const Arm& arm, const Arm& next) {
   EdgeStyle edge = network.roads[arm.road].style.edges[1 - arm.outward_side];

@@ -1,4 +1,4 @@
-// The ground and the edges of the town's roads and junctions: asphalt, kerbs, sidewalks, islands.
+// Builds the surfaces and edges of roads and junctions: asphalt, kerbs, sidewalks, islands.
 #pragma once
 
 #include "sim/world/road_network.h"
@@ -6,10 +6,10 @@
 
 namespace bevloc::sim {
 
-/// Surfaces, boundaries and medians of the roads between their junctions.
+/// Adds surfaces, boundaries and medians of the roads between the junctions.
 void add_road_edges(const RoadNetwork& network, WorldBuilder& builder);
 
-/// Surfaces and boundaries of the junctions.
+/// Adds surfaces and boundaries of the junctions.
 void add_junction_edges(const RoadNetwork& network, WorldBuilder& builder);
 
 }  // namespace bevloc::sim

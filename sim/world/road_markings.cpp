@@ -6,10 +6,10 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr Rgb kWhite{0.78F, 0.78F, 0.76F};
 constexpr Rgb kTar{0.035F, 0.035F, 0.035F};
 
-/// A shape in a lane's own frame (x forward, y left, origin at the station's lane centre).
+/// Moves a shape to a place on the road. The shape's frame: x along the road, y to the left, origin
+/// `right_m` to the right of the reference line at `station_m`.
 Ring placed(const Ring& shape, const Carriageway& side, double station_m, double right_m) {
   const Eigen::Vector2d origin = side.path.beside(station_m, right_m);
   const Eigen::Vector2d forward = side.path.direction(station_m);
@@ -55,10 +55,11 @@ class RoadPainter {
   }
 
  private:
-  /// A divider, interrupted by the road's crossing, solid on the approach to the junction.
+  /// Paints a divider, interrupted by the road's crossing. The last `solid_approach_m` before the
+  /// junction are solid.
   void divider(const Carriageway& side, double from_m, double to_m, double right_m,
                const DividerPaint& paint, double solid_approach_m);
-  /// An unbroken part of a divider, its last metres solid.
+  /// Paints one uninterrupted part of a divider; its last `solid_approach_m` are solid.
   void stretch(const Carriageway& side, const Interval& part, double right_m,
                const DividerPaint& paint, double solid_approach_m);
   void paint_centre();
@@ -158,10 +159,10 @@ void RoadPainter::paint_edge_lines(const Carriageway& side) {
   for (const Interval& part : side.clear_of_crossing(side.paint_begin_m, side.paint_end_m)) {
     line(side.path.parallel(part.begin_m, part.end_m,
                             [&](double s) { return side.lanes_edge(s) - inset_m; }),
-         kWhite);
+         kWhitePaint);
     if (!open_inside) continue;
     line(side.path.parallel(part.begin_m, part.end_m, side.inner_m + inset_m),
-         builder_.town().yellow_centre_lines ? style_.centre.albedo : kWhite);
+         builder_.town().yellow_centre_lines ? style_.centre.albedo : kWhitePaint);
   }
 }
 
@@ -176,11 +177,11 @@ void RoadPainter::paint_stop(const Carriageway& side, double station_m) {
         {side.path.beside(station_m, left_m), side.path.beside(station_m, right_m),
          side.path.beside(station_m + depth_m, right_m),
          side.path.beside(station_m + depth_m, left_m)},
-        kWhite, style_.wear);
+        kWhitePaint, style_.wear);
   } else if (draw < 0.8) {
     const Ring tooth{{0.0, 0.25}, {0.0, -0.25}, {0.6, 0.0}};
     for (double r = left_m + 0.3; r < right_m - 0.2; r += 0.7) {
-      builder_.add_paint_area(placed(tooth, side, station_m - 0.3, r), kWhite, style_.wear);
+      builder_.add_paint_area(placed(tooth, side, station_m - 0.3, r), kWhitePaint, style_.wear);
     }
   }
 }
@@ -199,12 +200,12 @@ void RoadPainter::paint_arrows(const Carriageway& side) {
       const double station_m = side.paint_end_m - back_m;
       if (station_m < std::max(side.taper_end_m, side.paint_begin_m)) break;
       const double centre_m = side.inner_m + (k + 0.5) * side.lane_width_m;
-      builder_.add_paint_area(placed(arrow, side, station_m, centre_m), kWhite, style_.wear);
+      builder_.add_paint_area(placed(arrow, side, station_m, centre_m), kWhitePaint, style_.wear);
     }
   }
 }
 
-/// Strokes as of the letters of BUS, SLOW or a speed limit.
+/// Strokes that look like painted letters (BUS, SLOW) or a speed limit.
 void RoadPainter::paint_word(const Carriageway& side) {
   const bool wanted = random_.chance(0.12);
   const double station_m = random_.uniform(side.paint_begin_m + 5.0, side.paint_end_m - 15.0);
@@ -216,7 +217,7 @@ void RoadPainter::paint_word(const Carriageway& side) {
         side.inner_m + 0.5 * side.lane_width_m + 0.6 * (i - 0.5 * (letters - 1));
     const auto stroke = [&](double x0, double x1, double y0, double y1) {
       const Ring ring{{x0, y0}, {x0, y1}, {x1, y1}, {x1, y0}};
-      builder_.add_paint_area(placed(ring, side, station_m, centre_m), kWhite, style_.wear);
+      builder_.add_paint_area(placed(ring, side, station_m, centre_m), kWhitePaint, style_.wear);
     };
     stroke(0.0, height_m, 0.1, 0.22);
     if (random_.chance(0.6)) stroke(0.0, height_m, -0.22, -0.1);
@@ -225,7 +226,7 @@ void RoadPainter::paint_word(const Carriageway& side) {
   }
 }
 
-/// Marks parking bays: a line along them, or a stroke between each two.
+/// Marks parking bays with a line along them or with a stroke between neighbouring bays.
 void RoadPainter::paint_bays(const Carriageway& side) {
   const double draw = random_.uniform();
   if (side.parking_m == 0.0 || draw < 0.35) return;
@@ -236,17 +237,17 @@ void RoadPainter::paint_bays(const Carriageway& side) {
          .width_m = 0.1,
          .dash_m = draw < 0.45 ? 1.0 : 0.0,
          .gap_m = 1.0,
-         .albedo = kWhite,
+         .albedo = kWhitePaint,
          .wear = style_.wear});
     return;
   }
   for (double s = from_m; s < to_m; s += side.bay_m) {
     const Ring stroke{{0.0, 0.0}, {0.0, -side.parking_m}, {0.1, -side.parking_m}, {0.1, 0.0}};
-    builder_.add_paint_area(placed(stroke, side, s, side.lanes_edge(s)), kWhite, style_.wear);
+    builder_.add_paint_area(placed(stroke, side, s, side.lanes_edge(s)), kWhitePaint, style_.wear);
   }
 }
 
-/// Tar in the joints, patches of newer asphalt, manhole covers: what a network may take for paint.
+/// Adds tar joints, asphalt patches and manhole covers, which a network may mistake for paint.
 void RoadPainter::lay_tar() {
   const Carriageway& side = road_.sides[0];
   const double length_m = side.end_m - side.begin_m;

@@ -1,4 +1,4 @@
-// Everything painted along the town's roads.
+// Paints the roads of a town.
 #pragma once
 
 #include "sim/world/road_network.h"
@@ -6,10 +6,11 @@
 
 namespace bevloc::sim {
 
-/// Lane dividers and edge lines (dividers are map elements), stop lines, arrows, bays, tar joints.
+/// Adds lane dividers and edge lines (as paint and map elements), stop lines, arrows, parking bays
+/// and tar joints.
 void add_road_markings(const RoadNetwork& network, WorldBuilder& builder);
 
-/// The crossings on the junctions' arms and between the junctions.
+/// Adds the pedestrian crossings on the arms of junctions and between junctions.
 void add_crossings(const RoadNetwork& network, WorldBuilder& builder);
 
 }  // namespace bevloc::sim

@@ -10,9 +10,9 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr double kShortestRoad_m = 22.0;  ///< between two throats
+constexpr double kShortestRoad_m = 22.0;  ///< from throat to throat
 
-/// A carriageway with its lanes at constant count.
+/// A carriageway with a constant number of lanes.
 Carriageway plain_carriageway(const Path& path, const RoadStyle& style, int lanes, double inner_m) {
   Carriageway side;
   side.path = path;
@@ -25,7 +25,7 @@ Carriageway plain_carriageway(const Path& path, const RoadStyle& style, int lane
   return side;
 }
 
-/// Sets the road's cross-section from its style, along the reference line it already has.
+/// Sets the road's cross-section from its style, along the given reference line.
 void set_cross_section(Road& road, const Path& reference) {
   const RoadStyle& style = road.style;
   double forward_inner = 0.5 * style.median_width_m;
@@ -39,7 +39,7 @@ void set_cross_section(Road& road, const Path& reference) {
       plain_carriageway(reference.reversed(), style, style.lanes_backward, backward_inner);
 }
 
-/// The first of the junction's arms from which no other road can be entered, or none.
+/// The first arm of the junction from which no other road can be entered; null if there is none.
 const Arm* trapped_arm(const RoadNetwork& network, const Junction& junction) {
   for (const Arm& arm : junction.arms) {
     if (!network.inward(arm).has_lanes()) continue;
@@ -51,7 +51,7 @@ const Arm* trapped_arm(const RoadNetwork& network, const Junction& junction) {
   return nullptr;
 }
 
-/// Opens one-way roads to both directions until a vehicle can leave every junction that it reaches.
+/// Makes one-way roads two-way until a vehicle can leave every junction that it can reach.
 void open_traps(RoadNetwork& network) {
   bool changed = true;
   while (changed) {
@@ -70,7 +70,7 @@ void open_traps(RoadNetwork& network) {
   }
 }
 
-/// Some carriageways gain a turning lane before their junction, some lose a lane after it.
+/// Some carriageways gain a turning lane before their junction, some lose a lane behind it.
 void vary_lane_count(Carriageway& side, Random& random) {
   const bool gains = random.chance(0.15);
   const bool loses = random.chance(0.12);
@@ -103,8 +103,9 @@ double left_half_width(const RoadNetwork& network, const Arm& arm) {
   return side.kerb(side.path.length_m());
 }
 
-/// How far from the junction's centre the kerbs of two neighbouring arms must bend apart: `near_m`
-/// is the half width of the arm that is asked for, `far_m` of the other, `gap_rad` between them.
+/// The distance from the junction's centre at which the kerb of an arm must begin to bend towards
+/// its neighbour. `near_m` is the half width of the arm, `far_m` that of the neighbour, `gap_rad`
+/// the angle between them.
 double corner_distance(double near_m, double far_m, double gap_rad, double radius_m) {
   constexpr double kAlmostStraight_rad = 2.4;
   if (gap_rad > kAlmostStraight_rad) return 2.0 + 1.5 * std::abs(near_m - far_m);
@@ -112,6 +113,7 @@ double corner_distance(double near_m, double far_m, double gap_rad, double radiu
   return meeting + std::min(radius_m / std::tan(0.5 * gap_rad), radius_m + 3.0);
 }
 
+/// The angle from an arm to the next one, counter-clockwise.
 double gap_after(const Junction& junction, size_t arm) {
   const size_t next = (arm + 1) % junction.arms.size();
   const double gap = junction.arms[next].heading_rad - junction.arms[arm].heading_rad;
@@ -134,7 +136,7 @@ void set_throats(const RoadNetwork& network, const TownStyle& town, Junction& ju
   }
 }
 
-/// A roundabout needs arms that are well apart and not too wide.
+/// Makes some junctions roundabouts, if their arms are far enough apart and not too wide.
 void maybe_make_roundabout(const RoadNetwork& network, const TownStyle& town, Random& random,
                            Junction& junction) {
   const bool wanted = random.chance(town.roundabout_chance);
@@ -153,7 +155,7 @@ void maybe_make_roundabout(const RoadNetwork& network, const TownStyle& town, Ra
   junction.outer_radius_m = junction.island_radius_m + ring;
 }
 
-/// Narrows roads until every one of them has some length between its junctions.
+/// Narrows roads, in up to six attempts, so that each keeps kShortestRoad_m between its junctions.
 void fit_throats(const TownStyle& town, RoadNetwork& network) {
   for (int attempt = 0; attempt < 6; ++attempt) {
     std::vector<double> taken_m(network.roads.size(), 0.0);
@@ -184,7 +186,7 @@ void set_mouths(const TownStyle& town, Random& random, RoadNetwork& network) {
       const double width = random.uniform(2.4, 5.0);
       const double set_back = random.uniform(0.6, 1.8);
       Road& road = network.roads[arm.road];
-      // A crossing is longer than it is wide, on narrow roads too.
+      // A crossing is longer than wide, even on narrow roads.
       const double road_m = left_half_width(network, arm) + right_half_width(network, arm);
       arm.crossing_m = crossing ? std::min(width, 0.7 * road_m) : 0.0;
       arm.mouth_m = arm.throat_m + (crossing ? 0.5 + arm.crossing_m + set_back : 0.3);
@@ -220,7 +222,7 @@ void set_parking(const TownStyle& town, Random& random, Carriageway& side) {
   side.parking_end_m = end_m;
 }
 
-/// Some roads have a crossing between their junctions, clear of bays and tapers.
+/// Gives some roads a crossing between their junctions, away from bays and tapers.
 void set_crossing(const TownStyle& town, Random& random, Road& road) {
   const bool wanted = random.chance(0.35 * town.crossing_chance);
   const double width_m = random.uniform(2.5, 4.5);

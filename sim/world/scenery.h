@@ -1,4 +1,4 @@
-// What stands beside the road: houses, fences, hedges, trees, lamps, signs.
+// Places houses, fences, hedges, trees, lamps and signs beside the roads.
 #pragma once
 
 #include <vector>
@@ -9,13 +9,14 @@
 
 namespace bevloc::sim {
 
-/// A line along a road's edge; the land on its right is free from `clear_m` on.
+/// A line along a road's edge. The land on its right is free from `clear_m` on.
 struct Roadside {
   Polyline edge;
   double clear_m = 2.0;  ///< width of verge and sidewalk
 };
 
-/// Keeps off everything that is paved, and off the given lines.
+/// Adds scenery along the roadsides and scattered trees. It keeps off paved ground and off the
+/// lines in `keep_off`.
 void add_scenery(const std::vector<Roadside>& roadsides, const std::vector<Polyline>& keep_off,
                  WorldBuilder& builder);
 

@@ -6,6 +6,7 @@
 namespace bevloc::sim {
 namespace {
 
+/// A graph of straight streets.
 struct Plan {
   std::vector<Eigen::Vector2d> nodes;
   std::vector<std::pair<size_t, size_t>> edges;
@@ -38,7 +39,7 @@ struct Plan {
   }
 };
 
-/// A turned, sheared and jittered grid.
+/// A rotated, sheared grid with jittered nodes.
 Plan jittered_grid(Random& random) {
   const int columns = random.integer(3, 5);
   const int rows = columns == 5 ? 3 : random.integer(3, 4);
@@ -64,7 +65,7 @@ Plan jittered_grid(Random& random) {
   return plan;
 }
 
-/// Takes streets away at random, but leaves no dead end and no part cut off.
+/// Removes random streets, but creates no dead end and keeps the plan connected.
 void thin_out(Plan& plan, Random& random) {
   const auto wanted =
       static_cast<int>(random.uniform(0.0, 0.25) * static_cast<double>(plan.edges.size()));
@@ -79,8 +80,8 @@ void thin_out(Plan& plan, Random& random) {
   }
 }
 
-/// Bends straight streets by waypoints beside them. Next to a corner of the grid they keep their
-/// length for the corner's own arc.
+/// Bends some straight streets by waypoints beside them. A street next to a corner of the grid is
+/// bent only if it is long, because the arc of the corner needs its length.
 Polyline bent(const Polyline& corners, Random& random) {
   Polyline waypoints{corners.front()};
   for (size_t i = 1; i < corners.size(); ++i) {
@@ -100,7 +101,7 @@ Polyline bent(const Polyline& corners, Random& random) {
   return waypoints;
 }
 
-/// Rounds the waypoints by arcs of random radius, where there is room.
+/// Rounds the waypoints with arcs of random radius, limited by the available length.
 Polyline street_line(const Polyline& corners, Random& random) {
   const Polyline waypoints = bent(corners, random);
   std::vector<double> tangent_m(waypoints.size(), 0.0);
@@ -115,7 +116,7 @@ Polyline street_line(const Polyline& corners, Random& random) {
   return rounded(waypoints, tangent_m);
 }
 
-/// Follows nodes where only two streets meet: they are bends, not junctions.
+/// Follows a street from a junction to the next one. Nodes where only two streets meet are bends.
 std::vector<size_t> chain_from(const Plan& plan, const std::vector<int>& degree, size_t edge,
                                size_t start, std::vector<bool>& used) {
   std::vector<size_t> chain{start};

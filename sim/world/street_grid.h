@@ -1,4 +1,4 @@
-// The town's plan: where junctions lie and which of them roads join.
+// The street plan of a town: junctions and the streets between them.
 #pragma once
 
 #include <vector>
@@ -10,16 +10,17 @@ namespace bevloc::sim {
 
 /// A road's reference line between two junctions.
 struct Street {
-  size_t from = 0;
+  size_t from = 0;  ///< index of a junction
   size_t to = 0;
   Polyline line;
 };
 
 struct StreetGrid {
-  std::vector<Eigen::Vector2d> junctions;  ///< three or more streets meet at each
+  std::vector<Eigen::Vector2d> junctions;  ///< places where three or more streets meet
   std::vector<Street> streets;
 };
 
+/// Draws a random plan: connected, without dead ends.
 StreetGrid make_street_grid(Random& random);
 
 }  // namespace bevloc::sim

@@ -11,7 +11,7 @@ namespace {
 
 using LaneIds = std::vector<uint32_t>;  ///< from the inner to the outer lane
 
-/// The lanes of a carriageway where it begins and where it ends.
+/// The lanes at the beginning and at the end of a carriageway.
 struct CarriagewayLanes {
   LaneIds first;
   LaneIds last;
@@ -19,6 +19,7 @@ struct CarriagewayLanes {
 
 constexpr double kTurnSpeed_mps = 7.0;
 
+/// Adds lanes to a map. All roads must be added before the first junction.
 class LaneLayer {
  public:
   LaneLayer(const RoadNetwork& network, HdMap& map) : network_(network), map_(map) {}
@@ -38,7 +39,7 @@ class LaneLayer {
   LaneIds add_parallel_lanes(const Carriageway& side, double from_m, double to_m, int lanes,
                              double speed_mps);
   CarriagewayLanes add_carriageway(const Carriageway& side, const RoadStyle& style);
-  /// A lane that leads from the end of one to the start of another.
+  /// Adds a lane from the end of one lane to the start of another.
   void connect(uint32_t from, uint32_t to, double width_m);
   void connect_arms(const Arm& from, const Arm& to, double turn_rad);
 
@@ -92,7 +93,7 @@ CarriagewayLanes LaneLayer::add_carriageway(const Carriageway& side, const RoadS
     map_.lanes[before[k]].successors.push_back(taper[k]);
     map_.lanes[taper[k]].successors.push_back(after[k]);
   }
-  // The outer lane merges into its neighbour, or branches off from it.
+  // The outer lane merges into its neighbour or branches off from it.
   const auto centre_m = [&](double lane) {
     return side.inner_m + (lane + 0.5) * side.lane_width_m;
   };
@@ -121,8 +122,8 @@ void LaneLayer::connect(uint32_t from, uint32_t to, double width_m) {
   map_.lanes[id].successors.push_back(to);
 }
 
-/// Links the lanes that a driver would use: a left turn stays on the inner lane, a right turn on
-/// the outer one, and who drives straight on keeps the lane.
+/// Connects the lanes that a driver would use: left turns lead from inner lane to inner lane, right
+/// turns from outer to outer, and straight on each lane to its counterpart.
 void LaneLayer::connect_arms(const Arm& from, const Arm& to, double turn_rad) {
   constexpr double kStraight_rad = 0.7;
   const LaneIds& in = arriving(from);
@@ -161,7 +162,7 @@ void LaneLayer::add_junction(const Junction& junction) {
   }
 }
 
-/// The ring is cut where each arm's traffic leaves it and joins it again.
+/// Cuts the ring into lanes where the traffic of each arm leaves and joins.
 void LaneLayer::add_roundabout(const Junction& junction) {
   const double radius = 0.5 * (junction.island_radius_m + junction.outer_radius_m);
   const double width = 0.8 * (junction.outer_radius_m - junction.island_radius_m);
@@ -175,8 +176,8 @@ void LaneLayer::add_roundabout(const Junction& junction) {
     }
     return add_lane(line, width, kTurnSpeed_mps);
   };
-  LaneIds between;  // from arm i to the next
-  LaneIds past;     // in front of the next arm
+  LaneIds between;  // from arm i to arm i + 1
+  LaneIds past;     // past arm i + 1
   for (size_t i = 0; i < arms; ++i) {
     const RingSector sector = ring_sector(network_, junction, i);
     const RingSector next = ring_sector(network_, junction, (i + 1) % arms);

@@ -13,7 +13,7 @@ struct DashPattern {
   double gap_m;
 };
 
-/// As painted in Europe, North America and Asia.
+/// Dash patterns of Europe, North America and Asia.
 constexpr std::array<DashPattern, 8> kDashPatterns{{{3.0, 9.0},
                                                     {3.0, 6.0},
                                                     {6.0, 12.0},
@@ -38,7 +38,7 @@ WallTexture random_kerb(Random& random) {
 Appearance random_hard_edge(Random& random) {
   constexpr std::array kKinds{Appearance::kBarrier, Appearance::kGuardRail, Appearance::kWall,
                               Appearance::kFence, Appearance::kHedge};
-  return kKinds[static_cast<size_t>(random.integer(0, static_cast<int>(kKinds.size()) - 1))];
+  return kKinds[random.index(kKinds.size())];
 }
 
 EdgeStyle random_edge(const TownStyle& town, Random& random) {
@@ -96,7 +96,7 @@ void draw_markings(const TownStyle& town, Random& random, RoadStyle& road) {
   road.divider.dash_m = town.dash_m;
   road.divider.gap_m = town.gap_m;
   if (random.chance(0.15)) {
-    const DashPattern pattern = kDashPatterns[static_cast<size_t>(random.integer(0, 7))];
+    const DashPattern pattern = kDashPatterns[random.index(kDashPatterns.size())];
     road.divider.dash_m = pattern.dash_m;
     road.divider.gap_m = pattern.gap_m;
   }
@@ -122,7 +122,7 @@ TownStyle random_town_style(Random& random) {
   town.yellow_centre_lines = random.chance(0.35);
   town.urbanity = random.uniform();
   town.lane_width_m = random.uniform(2.9, 3.6);
-  const DashPattern pattern = kDashPatterns[static_cast<size_t>(random.integer(0, 7))];
+  const DashPattern pattern = kDashPatterns[random.index(kDashPatterns.size())];
   town.dash_m = pattern.dash_m;
   town.gap_m = pattern.gap_m;
   town.wear = random.chance(0.25) ? random.uniform(0.35, 0.7) : random.uniform(0.0, 0.35);
@@ -167,7 +167,7 @@ RoadStyle random_road_style(const TownStyle& town, Random& random) {
   road.brightness = static_cast<float>(random.uniform(0.7, 1.35));
   road.wear = static_cast<float>(std::clamp(town.wear + random.normal(0.0, 0.12), 0.0, 0.85));
   constexpr std::array kLimits_mps{8.3, 13.9, 13.9, 16.7};
-  road.speed_limit_mps = kLimits_mps[static_cast<size_t>(random.integer(0, 3))];
+  road.speed_limit_mps = kLimits_mps[random.index(kLimits_mps.size())];
   for (EdgeStyle& edge : road.edges) edge = random_edge(town, random);
   if (random.chance(0.6)) road.edges[1] = road.edges[0];
   return road;

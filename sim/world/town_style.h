@@ -1,4 +1,4 @@
-// What makes one town, and one road in it, look unlike another.
+// The style of a town and of its roads: everything that differs between towns besides the plan.
 #pragma once
 
 #include "sim/random.h"
@@ -10,18 +10,18 @@ namespace bevloc::sim {
 struct DividerPaint {
   Appearance appearance = Appearance::kDashed;
   double width_m = 0.12;
-  double dash_m = 3.0;  ///< of a dashed line
+  double dash_m = 3.0;  ///< length of a dash, for dashed lines
   double gap_m = 6.0;
   Rgb albedo{0.8F, 0.8F, 0.8F};
 };
 
-/// What stands or lies along a road's edge.
+/// What lies along the edge of a road.
 struct EdgeStyle {
   Appearance boundary = Appearance::kKerb;  ///< kKerb, kRoadEdge, kBarrier, kGuardRail, ...
   WallTexture kerb = WallTexture::kKerbPlain;
   double kerb_height_m = 0.12;
-  double verge_m = 0.0;     ///< grass between kerb and sidewalk
-  double sidewalk_m = 2.0;  ///< 0: none
+  double verge_m = 0.0;     ///< width of the grass between kerb and sidewalk
+  double sidewalk_m = 2.0;  ///< width; 0: none
   double driveways_per_100m = 0.0;
 };
 
@@ -37,24 +37,24 @@ struct RoadStyle {
   DividerPaint divider;
   bool edge_lines = true;
   double edge_line_width_m = 0.12;
-  double gutter_m = 0.3;  ///< from the outer lane's edge to the road's edge
+  double gutter_m = 0.3;  ///< from the edge of the outer lane to the edge of the road
   GroundMaterial material = GroundMaterial::kAsphalt;
   float brightness = 1.0F;
   float wear = 0.2F;
   double speed_limit_mps = 13.9;
-  EdgeStyle edges[2];  ///< on the right of the forward and of the backward carriageway
+  EdgeStyle edges[2];  ///< right of the forward and right of the backward carriageway
 };
 
 struct TownStyle {
   bool left_hand_traffic = false;
   bool yellow_centre_lines = false;
-  double urbanity = 0.5;  ///< 0 open country to 1 inner city
+  double urbanity = 0.5;  ///< 0: open country, 1: inner city
   double lane_width_m = 3.2;
   double dash_m = 3.0;
   double gap_m = 6.0;
   double wear = 0.25;
   double corner_radius_m = 6.0;
-  double crossing_chance = 0.6;  ///< of an arm of a junction
+  double crossing_chance = 0.6;  ///< per arm of a junction
   Appearance crossing = Appearance::kZebra;
   double crossing_bar_m = 0.5;
   double roundabout_chance = 0.12;
@@ -66,12 +66,13 @@ struct TownStyle {
   GroundMaterial sidewalk = GroundMaterial::kPaving;
   GroundMaterial background = GroundMaterial::kGrass;
   double tree_density = 0.5;
-  // What the map's makers did.
-  bool map_closes_driveways = false;  ///< the boundary runs on where a driveway crosses it
-  bool map_lists_edge_lines = false;  ///< painted edge lines are dividers in the map
-  double map_omission = 0.015;        ///< chance that an element is not in the map
-  double map_ghost = 0.015;           ///< chance that an element in the map is not on the road
-  double map_shift_m = 0.02;          ///< standard deviation of an element's displacement
+
+  // Errors and conventions of the town's HD map.
+  bool map_closes_driveways = false;  ///< boundaries have no gaps at driveways
+  bool map_lists_edge_lines = false;  ///< the map has painted edge lines as dividers
+  double map_omission = 0.015;        ///< chance that an element is missing in the map
+  double map_ghost = 0.015;           ///< chance that an element of the map is not on the road
+  double map_shift_m = 0.02;          ///< sigma of an element's displacement, per axis
 };
 
 TownStyle random_town_style(Random& random);

@@ -22,20 +22,20 @@ Rgb vehicle_colour(Random& random) {
           static_cast<float>(random.uniform(0.02, 0.6))};
 }
 
-/// Lane centre lines joined along random successors, at most kRoute_m long.
+/// Joins lane centre lines along random successors until the route is kRoute_m long.
 Polyline random_route(const HdMap& map, uint32_t lane, Random& random) {
   Polyline route = map.lanes[lane].centerline;
   double travelled_m = length_m(route);
   while (travelled_m < kRoute_m && !map.lanes[lane].successors.empty()) {
     const std::vector<uint32_t>& next = map.lanes[lane].successors;
-    lane = next[static_cast<size_t>(random.integer(0, static_cast<int>(next.size()) - 1))];
+    lane = next[random.index(next.size())];
     travelled_m += length_m(map.lanes[lane].centerline);
     append(route, map.lanes[lane].centerline);
   }
   return route;
 }
 
-/// Walks along a polyline; stays at its last point.
+/// Finds positions along a polyline for increasing stations. Beyond the end: the last point.
 class Walker {
  public:
   explicit Walker(const Polyline& line) : line_(line) {}
@@ -111,8 +111,7 @@ std::vector<TrafficVehicle> random_traffic(const HdMap& map, double density, Ran
   for (const Lane& lane : map.lanes) lanes_m += length_m(lane.centerline);
   const int count = map.lanes.empty() ? 0 : static_cast<int>(0.01 * density * lanes_m);
   for (int i = 0; i < count; ++i) {
-    const auto lane =
-        static_cast<uint32_t>(random.integer(0, static_cast<int>(map.lanes.size()) - 1));
+    const auto lane = static_cast<uint32_t>(random.index(map.lanes.size()));
     TrafficVehicle vehicle;
     vehicle.body = random_vehicle(random);
     vehicle.path = random_route(map, lane, random);

@@ -1,4 +1,4 @@
-// Vehicles: parked ones and moving ones.
+// Random vehicles and random moving traffic.
 #pragma once
 
 #include "sim/random.h"
@@ -6,10 +6,10 @@
 
 namespace bevloc::sim {
 
-/// A vehicle of random kind, size and colour; its place is left at the origin.
+/// A vehicle of random kind, size and colour, placed at the origin.
 VehicleBody random_vehicle(Random& random);
 
-/// Vehicles on random routes along the lanes; `density` is in vehicles per 100 m of lane.
+/// Vehicles on random routes along the lanes of the map. `density`: vehicles per 100 m of lane.
 std::vector<TrafficVehicle> random_traffic(const HdMap& map, double density, Random& random);
 
 }  // namespace bevloc::sim

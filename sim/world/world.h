@@ -1,4 +1,4 @@
-// Everything the simulated cameras can see, as plain geometry in the map frame.
+// The simulated world: everything that the cameras can see, as geometry in the map frame (metres).
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "common/se2.h"
 #include "pipeline/map/hd_map.h"
 
 namespace bevloc::sim {
@@ -13,6 +14,7 @@ namespace bevloc::sim {
 using Polyline = std::vector<Eigen::Vector2d>;
 using Ring = std::vector<Eigen::Vector2d>;
 
+/// A colour: linear reflectance or radiance.
 struct Rgb {
   float r = 0.0F;
   float g = 0.0F;
@@ -21,25 +23,25 @@ struct Rgb {
 
 enum class GroundMaterial : uint8_t { kAsphalt, kConcrete, kPaving, kGrass, kDirt, kGravel };
 
-/// A patch of ground. Painter's order: a later surface covers an earlier one.
+/// A patch of ground. In World::surfaces a later surface covers an earlier one.
 struct Surface {
   GroundMaterial material = GroundMaterial::kAsphalt;
-  float brightness = 1.0F;  ///< of this patch against the material's usual albedo
+  float brightness = 1.0F;  ///< factor on the material's usual albedo
   Ring ring;
 };
 
-/// A painted line; dash_m = 0 means solid.
+/// A painted line. With dash_m = 0 it is solid.
 struct PaintLine {
   Polyline points;
   double width_m = 0.12;
   double dash_m = 0.0;
   double gap_m = 0.0;
-  double phase_m = 0.0;
+  double phase_m = 0.0;  ///< place in the dash pattern where the line begins
   Rgb albedo{0.8F, 0.8F, 0.8F};
-  float wear = 0.0F;  ///< 0 fresh to 1 gone
+  float wear = 0.0F;  ///< 0: fresh, 1: gone
 };
 
-/// A painted area: zebra bar, stop line, arrow, symbol.
+/// A painted area: a zebra bar, stop line, arrow or symbol.
 struct PaintArea {
   Ring ring;
   Rgb albedo{0.8F, 0.8F, 0.8F};
@@ -58,8 +60,8 @@ enum class WallTexture : uint8_t {
   kFacade,
 };
 
-/// A vertical sheet standing on a polyline, seen from both sides. A kerb's top is part of the
-/// ground texture; its face is a wall.
+/// A vertical surface on a polyline, visible from both sides. The face of a kerb is a wall; its top
+/// belongs to the ground.
 struct Wall {
   Polyline base;
   double bottom_m = 0.0;
@@ -71,7 +73,7 @@ struct Wall {
 
 enum class VehicleKind : uint8_t { kCar, kVan, kTruck, kBus };
 
-/// A parked or moving vehicle: it occludes and throws a soft shadow.
+/// A parked or moving vehicle. It hides what is behind it and casts a soft shadow.
 struct VehicleBody {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   double yaw_rad = 0.0;
@@ -80,11 +82,14 @@ struct VehicleBody {
   double height_m = 1.5;
   VehicleKind kind = VehicleKind::kCar;
   Rgb albedo{0.5F, 0.5F, 0.5F};
+
+  /// x forward, y left, origin at the centre.
+  Se2 map_from_body() const { return {centre.x(), centre.y(), yaw_rad}; }
 };
 
 enum class PostKind : uint8_t { kPole, kSign, kTreeTrunk, kTreeCrown };
 
-/// An upright body of revolution, drawn as a sheet that always faces the camera.
+/// An upright round body, drawn as a panel that always faces the camera.
 struct Post {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();
   double radius_m = 0.1;
@@ -95,21 +100,21 @@ struct Post {
   uint32_t seed = 0;
 };
 
-/// A moving vehicle: it drives along a lane path for ever, there and round again.
+/// A moving vehicle. It drives along its path; at the end it starts again at the beginning.
 struct TrafficVehicle {
-  VehicleBody body;  ///< centre and yaw are overwritten from the path
+  VehicleBody body;  ///< its centre and yaw are computed from the path
   Polyline path;
   double start_m = 0.0;
   double speed_mps = 10.0;
 };
 
-/// Where the traffic stands after `seconds` of simulated time.
+/// The moving vehicles at their places after `seconds` of simulated time.
 std::vector<VehicleBody> traffic_at(const std::vector<TrafficVehicle>& traffic, double seconds);
 
 struct World {
   uint64_t seed = 0;
-  /// The HD map that the localizer is given. It may miss some of the paint and carry some lines
-  /// that are not on the road.
+  /// The HD map for the localizer. Some painted lines may be missing in it, and some of its lines
+  /// may not exist on the road.
   HdMap map;
   GroundMaterial background = GroundMaterial::kGrass;
   std::vector<Surface> surfaces;

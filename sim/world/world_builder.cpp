@@ -8,14 +8,12 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr Rgb kWhite{0.78F, 0.78F, 0.76F};
-
 Rgb grey(double value) {
   const auto v = static_cast<float>(value);
   return {v, v, v};
 }
 
-/// The corners of a crossing, such that 0-1 and 3-2 are its long sides (the walking direction).
+/// The corners of a crossing. The sides 0-1 and 3-2 are the long ones (the walking direction).
 std::array<Eigen::Vector2d, 4> crossing_corners(const Ring& ring) {
   std::array<Eigen::Vector2d, 4> corner;
   if (ring.size() == 4) {
@@ -122,13 +120,14 @@ void WorldBuilder::paint_crossing(const Ring& ring, Appearance appearance, float
     for (int i = 0; i < bars; ++i) {
       const double u0 = (i + 0.25) / bars;
       const double u1 = u0 + 0.5 / bars;
-      add_paint_area({at(u0, 0.0), at(u1, 0.0), at(u1, 1.0), at(u0, 1.0)}, kWhite, wear);
+      add_paint_area({at(u0, 0.0), at(u1, 0.0), at(u1, 1.0), at(u0, 1.0)}, kWhitePaint, wear);
     }
   }
   if (appearance != Appearance::kZebra) {
     const double v = std::min(0.4, random_.uniform(0.15, 0.4) / width);
-    add_paint_area({at(0.0, 0.0), at(1.0, 0.0), at(1.0, v), at(0.0, v)}, kWhite, wear);
-    add_paint_area({at(0.0, 1.0 - v), at(1.0, 1.0 - v), at(1.0, 1.0), at(0.0, 1.0)}, kWhite, wear);
+    add_paint_area({at(0.0, 0.0), at(1.0, 0.0), at(1.0, v), at(0.0, v)}, kWhitePaint, wear);
+    add_paint_area({at(0.0, 1.0 - v), at(1.0, 1.0 - v), at(1.0, 1.0), at(0.0, 1.0)}, kWhitePaint,
+                   wear);
   }
 }
 
@@ -143,7 +142,6 @@ void WorldBuilder::add_map_boundary(const Polyline& line, Appearance appearance)
 }
 
 void WorldBuilder::build_boundary(const Polyline& line, const EdgeStyle& edge) {
-  const Rgb green{0.12F, 0.25F, 0.08F};
   switch (edge.boundary) {
     case Appearance::kKerb: {
       const Rgb paint = edge.kerb == WallTexture::kKerbPainted ? Rgb{0.7F, 0.55F, 0.1F}
@@ -167,10 +165,10 @@ void WorldBuilder::build_boundary(const Polyline& line, const EdgeStyle& edge) {
                grey(random_.uniform(0.15, 0.6)));
       break;
     case Appearance::kHedge:
-      add_wall(line, WallTexture::kHedge, 0.0, random_.uniform(0.6, 2.2), green);
+      add_wall(line, WallTexture::kHedge, 0.0, random_.uniform(0.6, 2.2), kHedgeGreen);
       break;
     default:
-      break;  // a road edge is a change of the ground alone
+      break;  // at a road edge only the ground changes
   }
 }
 

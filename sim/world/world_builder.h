@@ -1,4 +1,4 @@
-// Collects a world's parts, and decides what of them the map knows.
+// Collects the parts of a world and decides which of them the map contains.
 #pragma once
 
 #include <array>
@@ -10,13 +10,18 @@
 
 namespace bevloc::sim {
 
-/// Surfaces of a later layer cover those of an earlier one.
+/// Drawing order of surfaces: a later layer covers an earlier one.
 enum class Layer : uint8_t { kVerge, kSidewalk, kDriveway, kCarriageway, kPatch, kIsland };
 inline constexpr size_t kLayers = 6;
 
+inline constexpr Rgb kWhitePaint{0.78F, 0.78F, 0.76F};
+inline constexpr Rgb kHedgeGreen{0.12F, 0.25F, 0.08F};
+
+/// Builds a World. With the chances and errors of the TownStyle, a map element may be missing, lie
+/// beside its paint, or have no paint at all. Not thread safe.
 class WorldBuilder {
  public:
-  /// Keeps references to both.
+  /// `town` and `random` must outlive the builder.
   WorldBuilder(const TownStyle& town, Random& random) : town_(town), random_(random) {}
 
   const TownStyle& town() const { return town_; }
@@ -25,35 +30,37 @@ class WorldBuilder {
 
   void add_surface(Layer layer, Ring ring, GroundMaterial material, float brightness = 1.0F);
 
-  /// A lane divider: paint and map element.
+  /// Adds a lane divider: paint and map element.
   void add_divider(const Polyline& line, const DividerPaint& paint, float wear);
-  /// The outer line of a carriageway: paint, and in few towns a map element.
+  /// Adds the outer line of a carriageway: paint, and in a few towns also a map element.
   void add_edge_line(const Polyline& line, double width_m, const Rgb& albedo, float wear);
   void add_paint_area(Ring ring, const Rgb& albedo, float wear);
-  /// A crossing over a ring of four or more corners: paint and map element.
+  /// Adds a pedestrian crossing with four or more corners: paint and map element.
   void add_crossing(const Ring& ring, Appearance appearance, float wear);
-  /// A road boundary: what stands there and the map element.
+  /// Adds a road boundary: the wall that stands there and the map element.
   void add_boundary(const Polyline& line, const EdgeStyle& edge);
-  /// A boundary of the map with nothing to be seen but a change of the ground.
+  /// Adds a road boundary to the map alone, without a wall.
   void add_map_boundary(const Polyline& line, Appearance appearance);
-  // The visible halves of the above: for a map that is given.
+
+  // The visible parts alone, without map elements. They serve to dress an imported map.
   void paint_divider(const Polyline& line, const DividerPaint& paint, float wear);
   void paint_crossing(const Ring& ring, Appearance appearance, float wear);
   void build_boundary(const Polyline& line, const EdgeStyle& edge);
 
-  /// A wall of any kind that the map does not know.
+  /// Adds a wall that the map does not contain.
   void add_wall(const Polyline& base, WallTexture texture, double bottom_m, double top_m,
                 const Rgb& albedo);
 
-  /// What the scenery must keep off: roads, sidewalks, driveways. The pointers hold until a surface
-  /// is added.
+  /// The roads, sidewalks and driveways, where no scenery may stand. The pointers are valid until
+  /// the next surface is added.
   std::vector<const Ring*> paved_rings() const;
 
-  /// The world with its surfaces in painter's order. The builder is empty afterwards.
+  /// Returns the world with its surfaces in drawing order. The builder is empty afterwards.
   World finish();
 
  private:
   void add_element(ElementClass element_class, Appearance appearance, const Polyline& points);
+  /// The wear with a random variation.
   float varied(float wear);
 
   const TownStyle& town_;

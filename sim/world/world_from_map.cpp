@@ -9,10 +9,10 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr double kWidening_m = 0.4;  ///< of a lane's surface beyond its bounds
+constexpr double kWidening_m = 0.4;  ///< by which a lane's surface exceeds its bounds
 constexpr double kShortestLine_m = 0.3;
 
-/// The surface between two lines, a little wider than they are apart.
+/// The area between two lines, widened by kWidening_m on both sides.
 Ring widened(const Polyline& left, const Polyline& right) {
   const Path left_path(left);
   const Path right_path(right);
@@ -21,6 +21,7 @@ Ring widened(const Polyline& left, const Polyline& right) {
   return ring;
 }
 
+/// Builds the world around an imported map.
 class MapDresser {
  public:
   MapDresser(const HdMap& map, const TownStyle& town, Random& random)
@@ -49,7 +50,7 @@ class MapDresser {
   void show(const MapElement& element);
   void show_divider(const MapElement& element);
   void show_boundary(const MapElement& element);
-  /// Boundaries with open land on one side, turned so that it lies on the right.
+  /// Finds the boundaries with open land on one side and turns them so that it lies on the right.
   std::vector<Roadside> find_roadsides();
   void park_beside(const Path& edge);
 
@@ -70,7 +71,7 @@ void MapDresser::lay_asphalt() {
   }
   for (const MapElement& element : map_.elements) {
     if (element.element_class == ElementClass::kPedestrianCrossing) lay(element.points);
-    // A map without lanes still has a lane on either side of each divider.
+    // Without lanes in the map, each divider is taken to have a lane on either side.
     const bool only_hint =
         map_.lanes.empty() && element.element_class == ElementClass::kLaneDivider;
     if (!only_hint || length_m(element.points) < kShortestLine_m) continue;
@@ -143,7 +144,7 @@ std::vector<Roadside> MapDresser::find_roadsides() {
   return roadsides;
 }
 
-/// A few vehicles half on the kerb.
+/// Parks a few vehicles half on the kerb.
 void MapDresser::park_beside(const Path& edge) {
   for (double s = 5.0; s + 5.0 < edge.length_m(); s += 6.5) {
     VehicleBody body = random_vehicle(random_);

@@ -39,7 +39,7 @@ void mirror(VehicleBody& body) {
   body.yaw_rad = -body.yaw_rad;
 }
 
-/// Turns a town where one drives on the right into one where one drives on the left.
+/// Turns a town with right-hand traffic into one with left-hand traffic.
 void mirror(World& world) {
   for (MapElement& element : world.map.elements) mirror(element.points);
   for (Lane& lane : world.map.lanes) {

@@ -1,4 +1,4 @@
-// Makes a whole town from a seed.
+// Generates worlds: a town from a seed, or a world dressed on an imported map.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,16 @@
 
 namespace bevloc::sim {
 
-/// Seeds from here up are the only ones that training may use, those below the only ones that
-/// demos, tests and evaluations may use: the two sets are apart by construction.
+/// Training uses only seeds from here up; demos, tests and evaluations use only smaller seeds. So
+/// nothing is evaluated on a town that was trained on.
 inline constexpr uint64_t kFirstTrainingSeed = 1ULL << 32U;
 
-/// A town of a few hundred metres: straight and curved roads with one to three lanes a side,
-/// junctions with crossings, merges, a roundabout. Its map has lanes with successors, so that a
-/// vehicle can drive through it for ever.
+/// Generates a town of a few hundred metres: straight and curved roads with one to three lanes per
+/// direction, junctions with crossings, merges, roundabouts. Every lane of its map has a successor,
+/// so a vehicle can drive without end.
 World generate_world(uint64_t seed);
 
-/// Dresses an imported map (surfaces, paint by appearance, walls, traffic): a world to drive in.
+/// Dresses an imported map: adds surfaces, paint by appearance, walls, scenery and traffic.
 World world_from_map(const HdMap& map, uint64_t seed);
 
 }  // namespace bevloc::sim

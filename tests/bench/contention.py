@@ -1,11 +1,11 @@
-"""What another process that takes a core costs: one drive in real time twice, alone and beside it.
+"""Measures what a busy core costs: the same drive in real time, alone and beside a busy process.
 
     tests/bench/contention [--duration S] [--cpu N] [--config FILE]
 
-Prints latency, frames and memory of both, and ends with 1 where a frame is not accounted for or p99
-grew by more than --max-ratio. The busy process runs at the same priority as bevlocd. On an
-otherwise idle machine: mock cameras draw their pictures on the same cores, and pictures that were
-not drawn in time count as missed.
+Prints latency, frames and memory of both drives. Exit status 1: a frame is not accounted for, or
+p99 grew by more than --max-ratio. The busy process runs at the same priority as bevlocd. Use an
+otherwise idle machine: the mock cameras render on the same cores, and images that are not rendered
+in time count as missed.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ from pathlib import Path
 from tests.bench.document import ROOT
 
 _CAMERAS = 6
-# Cameras may start that much later than the drive, and be that far behind at its end.
+# Cameras may start this much later than the drive, and be this far behind at its end.
 _SLACK_S = 1.0
-# As many may wait in the queue and for the rest of their set.
+# Frames that may wait in the queue or for the rest of their frameset.
 _FRAMES_UNDER_WAY = 2 * _CAMERAS
 
 
 @dataclass(frozen=True)
 class Drive:
-    """What bevlocd said of one drive (its --json), and the most memory that it held."""
+    """Results of one drive (bevlocd --json) and the peak resident memory."""
 
     p50_ms: float
     p99_ms: float
@@ -53,31 +53,31 @@ class Drive:
         )
 
     def unaccounted(self, exposures: float) -> int:
-        """Frames that were neither captured nor counted as missed, of those that must have been
-        exposed, and frames that were captured and not heard of again."""
+        """The number of exposed frames that were neither captured nor counted as missed, plus
+        captured frames without a known outcome."""
         known = self.frames["captured"] + self.frames["missed"]
         lost = max(0, math.ceil(exposures) - known)
         return lost + max(0, self.frames["under_way"] - _FRAMES_UNDER_WAY)
 
 
 def daemon_program() -> Path:
-    """$BEVLOCD, or that of the release build."""
-    program = Path(os.environ.get("BEVLOCD", ROOT / "build/release/firmware/bevlocd"))
+    """$BEVLOCD, or the bevlocd of the release build."""
+    program = Path(os.environ.get("BEVLOCD", ROOT / "build/release/bin/bevlocd"))
     if not program.is_file():
         raise SystemExit(f"{program}: no such program; build it with script/build or set BEVLOCD")
     return program
 
 
 def exposures_of(config: str, duration_s: float) -> float:
-    """Of all mock cameras of a configuration in one drive, at least."""
+    """The least number of exposures of all mock cameras of a configuration in one drive."""
     rate = re.search(r"^\s+rate_hz:\s*([\d.]+)", config, re.MULTILINE)
     if rate is None:
-        raise SystemExit("the configuration has no rate_hz: this wants mock cameras")
+        raise SystemExit("the configuration has no rate_hz; use one with mock cameras")
     return _CAMERAS * float(rate[1]) * (duration_s - _SLACK_S)
 
 
 def p99_ratio(alone: Drive, busy: Drive) -> float:
-    """Infinite where nothing was localized at all."""
+    """Infinite if a drive localized nothing."""
     if busy.p99_ms == 0.0 or alone.p99_ms == 0.0:
         return float("inf")
     return busy.p99_ms / alone.p99_ms
@@ -91,11 +91,11 @@ def table_of(alone: Drive, busy: Drive) -> str:
         ("ratio of p99", "", f"{p99_ratio(alone, busy):.2f}"),
     ]
     names = {
-        "captured": "frames captured (six are a set)",
+        "captured": "frames captured (six are a frameset)",
         "used": "  used",
         "displaced": "  dropped for newer ones in the queue",
-        "mismatched": "  dropped without a set",
-        "skipped": "  in skipped sets",
+        "mismatched": "  dropped without a frameset",
+        "skipped": "  in skipped framesets",
         "under_way": "  under way at the end",
         "missed": "frames missed by the cameras",
     }
@@ -111,7 +111,7 @@ def table_of(alone: Drive, busy: Drive) -> str:
 
 @contextlib.contextmanager
 def busy_core(cpu: int) -> Iterator[None]:
-    """A process that does nothing, as much as it can, on that CPU."""
+    """Runs a busy loop on that CPU."""
     process = subprocess.Popen([sys.executable, "-c", "while True: pass"])
     try:
         os.sched_setaffinity(process.pid, {cpu})
@@ -124,7 +124,8 @@ def busy_core(cpu: int) -> Iterator[None]:
 def drive(daemon: Path, config: Path, duration_s: float) -> Drive:
     with tempfile.TemporaryDirectory() as folder:
         result = Path(folder) / "result.json"
-        command = [daemon, "--config", config, "--duration", str(duration_s), "--out", folder]
+        command: list[str | Path] = [daemon, "--config", config, "--out", folder]
+        command += ["--duration", str(duration_s)]
         process = subprocess.Popen([*command, "--json", result], stdout=subprocess.DEVNULL)
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)

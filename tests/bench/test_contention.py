@@ -1,4 +1,4 @@
-"""What a drive beside a busy core is compared by; nothing is driven or timed."""
+"""Tests the figures of tests/bench/contention; nothing is driven or timed."""
 
 import unittest
 
@@ -37,7 +37,7 @@ class ContentionTest(unittest.TestCase):
     def test_table_has_both_drives(self):
         table = table_of(drive(40.0, skipped=6), drive(60.0, skipped=18))
         self.assertRegex(table, r"ratio of p99 +1\.50\n")
-        self.assertRegex(table, r"in skipped sets +6 +18\n")
+        self.assertRegex(table, r"in skipped framesets +6 +18\n")
         self.assertRegex(table, r"simulator, MiB +2 +2$")
 
 

@@ -1,8 +1,8 @@
-"""Puts this machine's numbers into docs/performance.md and draws its picture; on an idle machine:
+"""Writes this machine's numbers into docs/performance.md and draws its figure. On an idle machine:
 
     /usr/bin/python3 -m tests.bench.write_performance
 
-The peers' table has a command of its own, tests/bench/peers/run --write.
+tests/bench/peers/run --write makes the table of other runtimes.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ _SWEEP_FRAMES = 100
 
 
 def run_bench(*options: str | Path) -> str:
-    """What the bench prints; it runs where its paths are those of the documentation."""
-    command = [bevloc_program(), "bench", *options]
+    """Returns what the bench prints. Runs in the repository root, so that paths match the page."""
+    command: list[str | Path] = [bevloc_program(), "bench", *options]
     return subprocess.run(
         command, check=True, cwd=ROOT, stdout=subprocess.PIPE, text=True
     ).stdout
@@ -36,7 +36,7 @@ def sweep_table(rows: list[dict[str, float]], columns: list[str]) -> str:
 
 
 def columns_of(rows: list[dict[str, float]]) -> list[str]:
-    """What was varied, before what was measured."""
+    """The columns of a sweep: the varied ones first, then the measured ones."""
     measured = [column for column in rows[0] if column.endswith(("_ms", "_s", "_mib"))]
     return [column for column in rows[0] if column not in measured] + measured
 

@@ -1,4 +1,4 @@
-// Which cameras of this machine the conformance suite is run on.
+// Command line options that select the cameras for the conformance suite.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ class CameraOptions {
  public:
   explicit CameraOptions(CLI::App& app);
 
-  /// Tells the suite, once the command line has been read.
+  /// Passes the cameras to the suite. To be called after the command line was parsed.
   void apply();
 
  private:

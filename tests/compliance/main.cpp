@@ -1,5 +1,6 @@
-// bevloc-compliance --can can0: what every driver must do, on the interfaces of this machine. Takes
-// GoogleTest's options too, such as --gtest_filter; what is not on this machine is skipped by name.
+// bevloc-compliance --can can0 runs the conformance suites on the interfaces of this machine. It
+// also accepts GoogleTest's options, such as --gtest_filter. It skips and names what is not
+// available.
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -12,15 +13,15 @@
 int main(int argc, char** argv) {
   CLI::App app("Runs bevloc's conformance suites on the interfaces of this machine.");
   std::string can;
-  app.add_option("--can", can, "CAN interface that nothing else uses, such as vcan0");
+  app.add_option("--can", can, "CAN interface that no other program uses, such as vcan0");
   std::string gpio;
   app.add_option("--gpio", gpio,
-                 "Chip of the kernel's gpio-sim with the lab's lines, such as gpiochip0");
+                 "Chip of the kernel's gpio-sim with the lines of the lab, such as gpiochip0");
   bevloc::drivers::CameraOptions cameras(app);
   app.allow_extras();
   CLI11_PARSE(app, argc, argv);
   cameras.apply();
-  // The suites list their implementations while GoogleTest starts, so before that.
+  // Set before GoogleTest starts, because then the suites list their implementations.
   if (!can.empty()) setenv("BEVLOC_TEST_CAN", can.c_str(), 1);
   if (!gpio.empty()) setenv("BEVLOC_TEST_GPIO", gpio.c_str(), 1);
 

@@ -1,6 +1,5 @@
-// What every camera must do, mock or real: one suite for all implementations.
+// The conformance suite of Camera: every implementation must pass it, mock or real.
 #include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <thread>
@@ -10,21 +9,16 @@
 #include <gtest/gtest.h>
 
 #include "tests/drivers/camera_under_test.h"
+#include "tests/support/open_descriptors.h"
 
 namespace bevloc::drivers {
 namespace {
 
+using test::open_descriptors;
+
 constexpr int kBuffers = 4;
 
-int open_descriptors() {
-  int count = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
-    ++count;
-  }
-  return count;
-}
-
-/// Everything that the picture's first plane holds, padding too.
+/// Copies the bytes of the image's first plane, with padding.
 std::vector<uint8_t> copy_bytes(const Frame& frame) {
   const ImageView& view = frame.image();
   const size_t size = view.format == PixelFormat::kMjpeg
@@ -41,9 +35,9 @@ class CameraConformance : public testing::TestWithParam<CameraUnderTest> {
   }
 
   /// Far longer than any camera needs for one frame.
-  Duration patience() const { return std::chrono::seconds(GetParam().is_device ? 20 : 2); }
+  Duration timeout() const { return std::chrono::seconds(GetParam().is_device ? 20 : 2); }
 
-  /// Longer than the time from one frame to the next, several times.
+  /// Longer than several frame periods.
   Duration several_frames() const {
     return std::chrono::milliseconds(GetParam().is_device ? 2500 : 500);
   }
@@ -61,17 +55,17 @@ class CameraConformance : public testing::TestWithParam<CameraUnderTest> {
     ASSERT_TRUE(started) << started.error().message;
   }
 
-  /// The next frame, which must come.
+  /// Returns the next frame, which must arrive in time.
   Frame capture() {
     Frame frame;
-    const auto event = camera_->next_frame(patience(), frame);
+    const auto event = camera_->next_frame(timeout(), frame);
     EXPECT_TRUE(event) << event.error().message;
     EXPECT_EQ(event, FrameEvent::kFrame);
     return frame;
   }
 
-  /// Captures `count` frames, one at a time, and checks what must hold for each. A device may lose
-  /// frames before they reach us; one without hardware may not.
+  /// Captures `count` frames one after the other and checks each. Only a device may lose frames
+  /// before the driver.
   void capture_in_order(int count) {
     const CameraDescription description = camera_->description();
     uint64_t expected = 0;
@@ -88,12 +82,13 @@ class CameraConformance : public testing::TestWithParam<CameraUnderTest> {
       expected = frame.sequence + 1;
       EXPECT_GT(frame.time, latest_time_);
       EXPECT_LE(frame.time, clock().now());
-      EXPECT_GE(frame.time, clock().now() - patience());
+      EXPECT_GE(frame.time, clock().now() - timeout());
       latest_time_ = frame.time;
     }
   }
 
-  /// Calls start() until it works: a device that was plugged in takes a while to be there.
+  /// Calls start() until it succeeds, because a device that was plugged in appears only after a
+  /// while.
   bool starts_within(Duration limit) {
     const Time give_up = clock().now() + limit;
     while (clock().now() < give_up) {
@@ -118,19 +113,19 @@ TEST_P(CameraConformance, DescribesItself) {
   EXPECT_GE(description.buffers, 2);
 }
 
-TEST_P(CameraConformance, GivesNothingUnlessStarted) {
+TEST_P(CameraConformance, DeliversNothingUnlessStarted) {
   Frame frame;
-  EXPECT_FALSE(camera_->next_frame(patience(), frame));
+  EXPECT_FALSE(camera_->next_frame(timeout(), frame));
   camera_->stop();
   start();
   EXPECT_FALSE(camera_->start()) << "a second start must be refused";
   capture_in_order(1);
   camera_->stop();
   camera_->stop();
-  EXPECT_FALSE(camera_->next_frame(patience(), frame));
+  EXPECT_FALSE(camera_->next_frame(timeout(), frame));
 }
 
-TEST_P(CameraConformance, GivesAsManyFramesAsAreAskedFor) {
+TEST_P(CameraConformance, DeliversAnyNumberOfFrames) {
   for (const int count : {1, 2, 3, 5, 8, 89}) {
     SCOPED_TRACE(count);
     if (!GetParam().is_device) virtual_clock_ = VirtualClock();
@@ -145,12 +140,12 @@ TEST_P(CameraConformance, GivesAsManyFramesAsAreAskedFor) {
   }
 }
 
-/// A device may have fewer buffers to give, or need more; then it must say how many it has, or why
-/// it does not start.
+/// A device may allocate another number of buffers. Then it must report that number, or refuse to
+/// start with a message.
 TEST_P(CameraConformance, WorksWithAnyNumberOfBuffers) {
   for (const int buffers : {1, 2, 3, 5, 8, 89}) {
     SCOPED_TRACE(buffers);
-    if (!GetParam().is_device && buffers > 64) continue;  // a pool's own limit
+    if (!GetParam().is_device && buffers > 64) continue;  // the limit of FramePool
     if (!GetParam().is_device) virtual_clock_ = VirtualClock();
     make(buffers);
     if (const Status started = camera_->start(); !started) {
@@ -159,9 +154,9 @@ TEST_P(CameraConformance, WorksWithAnyNumberOfBuffers) {
       std::printf("%d buffers: refused: %s\n", buffers, started.error().message.c_str());
       continue;
     }
-    const int given = camera_->description().buffers;
-    EXPECT_GE(given, 1);
-    if (given != buffers) std::printf("%d buffers: %d given\n", buffers, given);
+    const int allocated = camera_->description().buffers;
+    EXPECT_GE(allocated, 1);
+    if (allocated != buffers) std::printf("%d buffers: %d allocated\n", buffers, allocated);
     capture_in_order(4);
     camera_->stop();
   }
@@ -176,7 +171,7 @@ TEST_P(CameraConformance, StartsAgainAfterEachStop) {
   }
 }
 
-TEST_P(CameraConformance, StopsWithFramesNobodyFetched) {
+TEST_P(CameraConformance, StopsWithUnfetchedFrames) {
   for (int round = 0; round < 3; ++round) {
     start();
     capture_in_order(1);
@@ -185,7 +180,7 @@ TEST_P(CameraConformance, StopsWithFramesNobodyFetched) {
   }
 }
 
-TEST_P(CameraConformance, FramesHeldAcrossAStopStayAsTheyAre) {
+TEST_P(CameraConformance, FramesHeldAcrossAStopDoNotChange) {
   start();
   const Frame first = capture();
   const Frame second = capture();
@@ -201,7 +196,7 @@ TEST_P(CameraConformance, FramesHeldAcrossAStopStayAsTheyAre) {
   EXPECT_EQ(copy_bytes(second), second_bytes);
 }
 
-TEST_P(CameraConformance, AllBuffersCanBeHeldAndComeBack) {
+TEST_P(CameraConformance, AllBuffersCanBeHeldAndReturned) {
   start();
   for (int round = 0; round < 3; ++round) {
     const uint64_t lost_before = camera_->counters().no_buffer;
@@ -224,10 +219,10 @@ TEST_P(CameraConformance, AFrameCanBeDroppedByAnotherThread) {
   EXPECT_EQ(camera_->counters().no_buffer, 0U);
 }
 
-TEST_P(CameraConformance, ALookThatFindsNothingLeavesTheFrameAlone) {
+TEST_P(CameraConformance, ATimeoutDoesNotChangeTheFrame) {
   start();
   Frame frame = capture();
-  // A device on a slow machine may have a few frames waiting.
+  // On a slow machine, a few frames of a device may be waiting.
   auto event = camera_->next_frame(Duration::zero(), frame);
   for (int i = 0; i < kBuffers && event == FrameEvent::kFrame; ++i) {
     event = camera_->next_frame(Duration::zero(), frame);
@@ -252,20 +247,20 @@ TEST_P(CameraConformance, LeaksNoDescriptor) {
   EXPECT_EQ(open_descriptors(), before);
 }
 
-TEST_P(CameraConformance, ComesBackAfterItsCableWasPulled) {
+TEST_P(CameraConformance, ReconnectsAfterItWasUnplugged) {
   const CameraDevices& devices = camera_devices();
   if (!GetParam().is_device || devices.unplug_command.empty()) {
-    GTEST_SKIP() << "nobody here can pull its cable";
+    GTEST_SKIP() << "there is no command that unplugs this camera";
   }
   start();
   const Frame held = capture();
   const auto held_bytes = copy_bytes(held);
   ASSERT_EQ(std::system(devices.unplug_command.c_str()), 0);
-  const Time give_up = clock().now() + patience();
+  const Time give_up = clock().now() + timeout();
   Frame frame;
   auto event = camera_->next_frame(several_frames(), frame);
   while (event && clock().now() < give_up) event = camera_->next_frame(several_frames(), frame);
-  ASSERT_FALSE(event) << "an unplugged camera must say so";
+  ASSERT_FALSE(event) << "next_frame() must fail for an unplugged camera";
   std::printf("unplugged: %s\n", event.error().message.c_str());
   EXPECT_EQ(copy_bytes(held), held_bytes);
   camera_->stop();
@@ -273,7 +268,7 @@ TEST_P(CameraConformance, ComesBackAfterItsCableWasPulled) {
   ASSERT_FALSE(refused);
   std::printf("start: %s\n", refused.error().message.c_str());
   ASSERT_EQ(std::system(devices.replug_command.c_str()), 0);
-  ASSERT_TRUE(starts_within(patience()));
+  ASSERT_TRUE(starts_within(timeout()));
   latest_time_ = Time::min();
   capture_in_order(3);
   EXPECT_EQ(copy_bytes(held), held_bytes);

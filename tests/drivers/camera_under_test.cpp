@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/camera/replay_camera.h"
+#include "drivers/camera/replay/replay_camera.h"
 #include "drivers/camera/v4l2/v4l2_camera.h"
-#include "tests/drivers/mock_rig.h"
+#include "tests/drivers/mock/mock_rig.h"
 #include "tests/drivers/recording.h"
 #ifdef BEVLOC_HAS_LIBCAMERA
 #include "drivers/camera/libcamera/libcamera_camera.h"
@@ -25,7 +25,7 @@ std::unique_ptr<Camera> make_replay_camera(Clock& clock, int buffers) {
     std::string index;
     for (int k = 0; k < 120; ++k) {
       const std::string name = std::to_string(k) + ".png";
-      recording.add_picture(name, 8, 6, {static_cast<uint8_t>(k), 100, 200});
+      recording.add_image(name, 8, 6, {static_cast<uint8_t>(k), 100, 200});
       index += fmt::format("{} {} {}\n", k, 100'000'000LL * k, name);
     }
     recording.write("frames.txt", index);

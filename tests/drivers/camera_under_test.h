@@ -1,4 +1,4 @@
-// The cameras that the conformance suite is run on.
+// The cameras on which the conformance suite runs.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ namespace bevloc::drivers {
 
 struct CameraUnderTest {
   std::string name;
-  bool is_device = false;  ///< runs on the machine's clock, at its own pace
+  bool is_device = false;  ///< a real camera: it has its own rate and uses the machine's clock
   std::function<std::unique_ptr<Camera>(Clock&, int buffers)> make;
 };
 
@@ -23,19 +23,19 @@ inline void PrintTo(const CameraUnderTest& camera, std::ostream* stream) {
   *stream << camera.name;
 }
 
-/// Devices of this machine; bevloc-compliance fills it in before GoogleTest starts.
+/// The cameras of this machine. bevloc-compliance fills it in before GoogleTest starts.
 struct CameraDevices {
   std::vector<std::string> v4l2;
   std::vector<std::string> v4l2_dmabuf;
   std::vector<std::string> libcamera;
   DeviceCameraConfig common;
-  /// Shell commands that pull and plug the cable of the camera under test; empty when nobody can.
+  /// Shell commands that unplug and replug the camera under test. Empty if there are none.
   std::string unplug_command;
   std::string replug_command;
 };
 CameraDevices& camera_devices();
 
-/// Mock, replay, and the devices.
+/// Returns the mock camera, the replay camera and the devices.
 std::vector<CameraUnderTest> cameras_under_test();
 
 }  // namespace bevloc::drivers

@@ -7,7 +7,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(VirtualClock, StandsStillUntilItIsMoved) {
+TEST(VirtualClock, ChangesOnlyWhenItIsAdvanced) {
   VirtualClock clock(Time(milliseconds(100)));
   EXPECT_EQ(clock.now(), Time(milliseconds(100)));
   EXPECT_EQ(clock.now(), Time(milliseconds(100)));
@@ -15,7 +15,7 @@ TEST(VirtualClock, StandsStillUntilItIsMoved) {
   EXPECT_EQ(clock.now(), Time(milliseconds(105)));
 }
 
-TEST(VirtualClock, SleepingMovesItForwardAndNeverBack) {
+TEST(VirtualClock, SleepingAdvancesItAndNeverSetsItBack) {
   VirtualClock clock;
   clock.sleep_until(Time(milliseconds(20)));
   EXPECT_EQ(clock.now(), Time(milliseconds(20)));

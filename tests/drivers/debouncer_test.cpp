@@ -45,7 +45,7 @@ TEST(Debouncer, KeepsALevelThatHeldBeforeTheNextEdge) {
   EXPECT_TRUE(line.settled_at(at_ms(230)));
 }
 
-TEST(Debouncer, NeedsNoTimeWhereNoneIsAsked) {
+TEST(Debouncer, WithoutHoldTimeALevelCountsAtOnce) {
   Debouncer line(true, Duration::zero());
   line.see(false, at_ms(100));
   EXPECT_FALSE(line.settled_at(at_ms(100)));

@@ -5,7 +5,7 @@
 namespace bevloc::drivers {
 namespace {
 
-TEST(DeviceFrameCounter, BeginsAtZeroWhateverTheDeviceSays) {
+TEST(DeviceFrameCounter, BeginsAtZeroWhateverTheDeviceCounts) {
   DeviceFrameCounter counter;
   EXPECT_EQ(counter.arrived(17), 0U);
   EXPECT_EQ(counter.arrived(18), 1U);
@@ -14,7 +14,7 @@ TEST(DeviceFrameCounter, BeginsAtZeroWhateverTheDeviceSays) {
   EXPECT_EQ(counter.counters().lost, 0U);
 }
 
-TEST(DeviceFrameCounter, AGapIsLostOnTheWay) {
+TEST(DeviceFrameCounter, AGapCountsAsLost) {
   DeviceFrameCounter counter;
   counter.arrived(0);
   counter.delivered(false);
@@ -23,7 +23,7 @@ TEST(DeviceFrameCounter, AGapIsLostOnTheWay) {
   EXPECT_EQ(counter.counters().no_buffer, 0U);
 }
 
-TEST(DeviceFrameCounter, AGapAfterTheLastBufferWentOutIsForWantOfOne) {
+TEST(DeviceFrameCounter, AGapWhileAllBuffersAreHeldCountsAsNoBuffer) {
   DeviceFrameCounter counter;
   counter.arrived(0);
   counter.delivered(true);
@@ -34,14 +34,14 @@ TEST(DeviceFrameCounter, AGapAfterTheLastBufferWentOutIsForWantOfOne) {
   EXPECT_EQ(counter.counters().lost, 1U);
 }
 
-TEST(DeviceFrameCounter, SurvivesTheWrapOfTheDevicesCount) {
+TEST(DeviceFrameCounter, HandlesTheWrapAroundOfTheDevicesCount) {
   DeviceFrameCounter counter;
   counter.arrived(0xFFFFFFFE);
   EXPECT_EQ(counter.arrived(1), 3U);
   EXPECT_EQ(counter.counters().lost, 2U);
 }
 
-TEST(DeviceFrameCounter, CountsDamagedFramesApart) {
+TEST(DeviceFrameCounter, CountsDamagedFramesSeparately) {
   DeviceFrameCounter counter;
   counter.arrived(0);
   counter.damaged();

@@ -11,7 +11,7 @@
 namespace bevloc::drivers {
 namespace {
 
-TEST(FramePool, LendsEachPictureOnceAndThenNone) {
+TEST(FramePool, LendsEachBufferOnceAndThenNone) {
   for (const int buffers : {1, 3, FramePool::kMaxBuffers}) {
     const auto pool = FramePool::create(buffers, 4, 2);
     std::vector<FrameBuffer> held;
@@ -36,17 +36,17 @@ TEST(FramePool, MovingABufferNeitherLendsNorReturns) {
   const auto pool = FramePool::create(2, 1, 1);
   FrameBuffer a = pool->borrow();
   FrameBuffer b = std::move(a);
-  EXPECT_FALSE(a);  // NOLINT(bugprone-use-after-move): what is left behind is the point
+  EXPECT_FALSE(a);  // NOLINT(bugprone-use-after-move): the moved-from state is tested
   EXPECT_EQ(pool->lent(), 1);
   FrameBuffer c = pool->borrow();
   EXPECT_EQ(pool->lent(), 2);
-  c = std::move(b);  // drops what c held
+  c = std::move(b);  // returns the buffer that c held
   EXPECT_EQ(pool->lent(), 1);
   c = FrameBuffer{};
   EXPECT_EQ(pool->lent(), 0);
 }
 
-TEST(FramePool, PictureOutlivesThePool) {
+TEST(FramePool, ABufferOutlivesThePool) {
   auto pool = FramePool::create(1, 2, 2);
   FrameBuffer buffer = pool->borrow();
   pool->image(buffer).pixels.back() = 7;
@@ -54,7 +54,7 @@ TEST(FramePool, PictureOutlivesThePool) {
   EXPECT_EQ(buffer.view().rgb().row(1)[5], 7);
 }
 
-TEST(FramePool, NoPictureIsLentTwiceAmongThreads) {
+TEST(FramePool, NoBufferIsLentToTwoThreads) {
   constexpr int kThreads = 4;
   constexpr int kRounds = 2000;
   const auto pool = FramePool::create(3, 1, 1);
@@ -65,7 +65,7 @@ TEST(FramePool, NoPictureIsLentTwiceAmongThreads) {
       for (int i = 0; i < kRounds; ++i) {
         FrameBuffer buffer = pool->borrow();
         if (!buffer) continue;
-        // Unsynchronised on purpose: a picture in two hands shows as a data race or a clash.
+        // Unsynchronised on purpose: a buffer that is lent twice causes a data race or a clash.
         pool->image(buffer).pixels[0] = static_cast<uint8_t>(t);
         if (buffer.view().planes[0].data[0] != t) ++clashes;
       }

@@ -1,5 +1,4 @@
-// What every implementation of Gpio must do, mock and real alike.
-#include <filesystem>
+// The conformance suite of Gpio: every implementation must pass it, mock or real.
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -7,9 +6,12 @@
 
 #include "drivers/clock/clock.h"
 #include "tests/drivers/gpio_under_test.h"
+#include "tests/support/open_descriptors.h"
 
 namespace bevloc::drivers {
 namespace {
+
+using test::open_descriptors;
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -20,7 +22,7 @@ class GpioConformance : public testing::TestWithParam<GpioImplementation> {
  protected:
   void SetUp() override {
     bench_ = GetParam().make();
-    if (!bench_.gpio) GTEST_SKIP() << GetParam().name << ": not on this machine";
+    if (!bench_.gpio) GTEST_SKIP() << GetParam().name << ": not available on this machine";
   }
 
   LineAddress address(const std::string& line, bool active_low = false) const {
@@ -40,15 +42,7 @@ class GpioConformance : public testing::TestWithParam<GpioImplementation> {
   GpioBench bench_;
 };
 
-int open_descriptors() {
-  int count = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
-    ++count;
-  }
-  return count;
-}
-
-TEST_P(GpioConformance, OutputShowsOnTheWireFromTheStart) {
+TEST_P(GpioConformance, OutputDrivesTheWireFromTheStart) {
   for (const bool active_low : {false, true}) {
     for (const bool active : {false, true}) {
       const auto line = output(address("fault", active_low), active);
@@ -94,7 +88,7 @@ TEST_P(GpioConformance, EdgesComeInOrderWithTheirTimes) {
   }
 }
 
-TEST_P(GpioConformance, EdgeWaitsForItsUserAndComesOnce) {
+TEST_P(GpioConformance, AnEdgeIsKeptUntilItIsFetchedOnce) {
   bench_.drive("ignition", false);
   const auto line = input(address("ignition"));
   ASSERT_TRUE(line);
@@ -124,7 +118,7 @@ TEST_P(GpioConformance, LineIsFoundByNumberToo) {
   EXPECT_TRUE(bench_.high("fault"));
 }
 
-TEST_P(GpioConformance, LineInUseIsRefusedAndItsUserNamed) {
+TEST_P(GpioConformance, LineInUseIsRefusedWithTheNameOfItsUser) {
   {
     const auto line = output(address("trigger"), false);
     const auto second = bench_.gpio->open_output(address("trigger"), false);
@@ -146,7 +140,7 @@ TEST_P(GpioConformance, UnknownChipsAndLinesAreNamed) {
   }
 }
 
-TEST_P(GpioConformance, LinesOpenAgainAndLeakNoDescriptor) {
+TEST_P(GpioConformance, LinesOpenRepeatedlyAndLeakNoDescriptor) {
   const int before = open_descriptors();
   for (int round = 0; round < 3; ++round) {
     const auto out = output(address("trigger"), false);

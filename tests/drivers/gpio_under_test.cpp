@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "drivers/gpio/libgpiod_gpio.h"
-#include "drivers/gpio/mock_gpio.h"
+#include "drivers/mock/mock_gpio.h"
 
 namespace bevloc::drivers {
 namespace {
@@ -20,7 +20,8 @@ GpioBench mock_bench() {
           [mock](const std::string& line) { return mock->high(line); }};
 }
 
-/// Where gpio-sim shows the wires of its lines; empty when there is no such chip.
+/// Returns the folder in which gpio-sim shows the wires of its lines. Empty if there is no such
+/// chip.
 std::filesystem::path simulated_wires(const std::string& chip) {
   std::error_code none;
   for (const auto& device : std::filesystem::directory_iterator("/sys/devices/platform", none)) {

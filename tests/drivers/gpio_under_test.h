@@ -1,4 +1,4 @@
-// The GPIO lines that the conformance suite runs on.
+// The GPIO chips on which the conformance suite runs.
 #pragma once
 
 #include <functional>
@@ -10,25 +10,25 @@
 
 namespace bevloc::drivers {
 
-/// A chip with lines of these names (kGpioLines), and what stands at the other end of the wires.
+/// A chip with lines of the names kGpioLines, and access to the other end of the wires.
 struct GpioBench {
   std::unique_ptr<Gpio> gpio;
   std::string chip;
-  std::function<void(const std::string& line, bool high)> drive;
-  std::function<bool(const std::string& line)> high;
+  std::function<void(const std::string& line, bool high)> drive;  ///< sets the voltage of an input
+  std::function<bool(const std::string& line)> high;              ///< reads the voltage
 };
 
 inline const std::vector<std::string> kGpioLines{"trigger", "status", "fault", "ignition"};
 
 struct GpioImplementation {
   std::string name;
-  /// A bench, or an empty one where this machine cannot have it.
+  /// Makes a bench; an empty one if the chip is not available on this machine.
   std::function<GpioBench()> make;
 };
 
-/// The mock, and libgpiod on the chip of the kernel's gpio-sim whose name (gpiochip0) the
-/// environment gives as BEVLOC_TEST_GPIO. It has lines of the names above, as
-/// tests/hil/guest/devices makes them.
+/// Returns the mock, and libgpiod on a chip of the kernel's gpio-sim. The environment variable
+/// BEVLOC_TEST_GPIO gives the name of the chip (gpiochip0). Its lines must have the names
+/// kGpioLines, as tests/hil/guest/devices creates them.
 std::vector<GpioImplementation> gpios_under_test();
 
 }  // namespace bevloc::drivers

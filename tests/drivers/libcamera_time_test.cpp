@@ -9,23 +9,23 @@ using std::chrono::hours;
 using std::chrono::milliseconds;
 
 constexpr Time kNow{hours(5)};
-constexpr Duration kSlept = hours(2);
+constexpr Duration kSuspended = hours(2);
 
 int64_t nanoseconds_of(Time time) {
   return time.time_since_epoch().count();
 }
 
-TEST(SensorTime, BootTimeLosesTheTimeSlept) {
+TEST(SensorTime, BootTimeIsConvertedToSteadyTime) {
   const Time exposed = kNow - milliseconds(30);
-  EXPECT_EQ(steady_time(nanoseconds_of(exposed + kSlept), kNow, kSlept), exposed);
+  EXPECT_EQ(steady_time(nanoseconds_of(exposed + kSuspended), kNow, kSuspended), exposed);
 }
 
-TEST(SensorTime, SteadyTimeStaysAsItIs) {
+TEST(SensorTime, SteadyTimeIsNotChanged) {
   const Time exposed = kNow - milliseconds(30);
-  EXPECT_EQ(steady_time(nanoseconds_of(exposed), kNow, kSlept), exposed);
+  EXPECT_EQ(steady_time(nanoseconds_of(exposed), kNow, kSuspended), exposed);
 }
 
-TEST(SensorTime, TheTwoAreOneOnAMachineThatNeverSlept) {
+TEST(SensorTime, WithoutSuspensionBothClocksAgree) {
   const Time exposed = kNow - milliseconds(30);
   EXPECT_EQ(steady_time(nanoseconds_of(exposed), kNow, Duration::zero()), exposed);
 }

@@ -14,7 +14,7 @@ const std::vector<GpioChipInfo> kChips{
     {"gpiochip1", "expander", {{"LED", "leds-gpio"}}},
     {"gpiochip2", "expander", {{"LED", ""}}}};
 
-std::string complaint(const std::string& chip, const std::string& line) {
+std::string lookup_error(const std::string& chip, const std::string& line) {
   const auto place = find_line(kChips, {chip, line});
   return place ? "" : place.error().message;
 }
@@ -33,22 +33,22 @@ TEST(LineLookup, FindsChipsByLabelAndNameAndLinesByNameAndNumber) {
   EXPECT_EQ(find_line(kChips, {"pinctrl", "0"})->line, 0U);
 }
 
-TEST(LineLookup, ListsTheChipsThatThereAre) {
+TEST(LineLookup, ListsTheAvailableChips) {
   EXPECT_THAT(
-      complaint("nothing", "1"),
+      lookup_error("nothing", "1"),
       AllOf(HasSubstr("nothing 1: "), HasSubstr("gpiochip0 (pinctrl), gpiochip1 (expander)")));
-  EXPECT_THAT(find_line({}, {"nothing", "1"}).error().message, HasSubstr("none at all"));
+  EXPECT_THAT(find_line({}, {"nothing", "1"}).error().message, HasSubstr("available: none"));
 }
 
-TEST(LineLookup, RefusesWhatIsNotOneLine) {
-  EXPECT_THAT(complaint("expander", "LED"), HasSubstr("more than one GPIO chip"));
-  EXPECT_THAT(complaint("pinctrl", "DOUBLE"), HasSubstr("more than one line"));
+TEST(LineLookup, RefusesAmbiguousAndUnknownLines) {
+  EXPECT_THAT(lookup_error("expander", "LED"), HasSubstr("more than one GPIO chip"));
+  EXPECT_THAT(lookup_error("pinctrl", "DOUBLE"), HasSubstr("more than one line"));
   for (const char* line : {"5", "-1", "1x", "led", "99999999999999999999"}) {
-    EXPECT_THAT(complaint("pinctrl", line), HasSubstr("0 to 4")) << line;
+    EXPECT_THAT(lookup_error("pinctrl", line), HasSubstr("0 to 4")) << line;
   }
 }
 
-TEST(LineLookup, SaysWhoUsesALine) {
+TEST(LineLookup, NamesTheUserOfALine) {
   EXPECT_TRUE(find_line(kChips, {"gpiochip1", "LED"}));
   const auto used = find_free_line(kChips, {"gpiochip1", "LED"});
   ASSERT_FALSE(used);

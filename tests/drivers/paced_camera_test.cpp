@@ -14,18 +14,18 @@ using std::chrono::milliseconds;
 constexpr Duration kPeriod = milliseconds(100);
 constexpr Duration kReadout = milliseconds(20);
 
-/// Ten pictures a second from time 0 on, `last` of them; each has its number as first byte.
+/// Delivers `last` frames at 10 Hz from time 0 on. The first byte of each image is its number.
 class CountingCamera final : public PacedCamera {
  public:
   CountingCamera(int buffers, uint64_t last, VirtualClock& clock)
       : PacedCamera({2, 4, 3, buffers, TimestampOrigin::kSimulated}, milliseconds(8), clock),
         clock_(clock),
         last_(last) {
-    set_shelf_life(kPeriod);
+    set_max_lateness(kPeriod);
   }
 
-  void break_picture(uint64_t number) { broken_ = number; }
-  /// Making a picture takes this long from now on.
+  void break_frame(uint64_t number) { broken_ = number; }
+  /// From now on, drawing an image takes this long.
   void set_drawing_time(Duration drawing_time) { drawing_time_ = drawing_time; }
   int drawn() const { return drawn_; }
 
@@ -44,7 +44,7 @@ class CountingCamera final : public PacedCamera {
     ++drawn_;
     clock_.advance(drawing_time_);
     const uint64_t number = delivery.sequence + first_;
-    if (number == broken_) return fail("picture {} is broken", number);
+    if (number == broken_) return fail("frame {} is broken", number);
     image.pixels[0] = static_cast<uint8_t>(number);
     return {};
   }
@@ -58,7 +58,7 @@ class CountingCamera final : public PacedCamera {
   int drawn_ = 0;
 };
 
-TEST(PacedCamera, DeliversWhenThePictureIsReadOut) {
+TEST(PacedCamera, DeliversWhenTheFrameIsReadOut) {
   VirtualClock clock;
   CountingCamera camera(2, 100, clock);
   ASSERT_TRUE(camera.start());
@@ -74,7 +74,7 @@ TEST(PacedCamera, DeliversWhenThePictureIsReadOut) {
   }
 }
 
-TEST(PacedCamera, ZeroTimeoutOnlyLooks) {
+TEST(PacedCamera, AZeroTimeoutDoesNotWait) {
   VirtualClock clock;
   CountingCamera camera(2, 100, clock);
   ASSERT_TRUE(camera.start());
@@ -97,7 +97,7 @@ TEST(PacedCamera, TimeoutEndsTheWait) {
   EXPECT_EQ(clock.now(), Time(milliseconds(51)));
 }
 
-TEST(PacedCamera, DrawsEachPictureOnceAndAhead) {
+TEST(PacedCamera, DrawsEachImageOnceAndAhead) {
   VirtualClock clock(Time(milliseconds(1)));
   CountingCamera camera(2, 100, clock);
   ASSERT_TRUE(camera.start());
@@ -108,7 +108,7 @@ TEST(PacedCamera, DrawsEachPictureOnceAndAhead) {
   }
 }
 
-TEST(PacedCamera, FramesNobodyFetchedAreLostAndCounted) {
+TEST(PacedCamera, UnfetchedFramesAreLostAndCounted) {
   VirtualClock clock;
   CountingCamera camera(2, 100, clock);
   ASSERT_TRUE(camera.start());
@@ -120,7 +120,7 @@ TEST(PacedCamera, FramesNobodyFetchedAreLostAndCounted) {
   EXPECT_EQ(camera.counters().delivered, 1U);
 }
 
-TEST(PacedCamera, DrawingAheadCostsNoLatency) {
+TEST(PacedCamera, DrawingAheadAddsNoLatency) {
   VirtualClock clock;
   CountingCamera camera(2, 100, clock);
   camera.set_drawing_time(milliseconds(90));
@@ -128,14 +128,14 @@ TEST(PacedCamera, DrawingAheadCostsNoLatency) {
   Frame frame;
   for (int k = 0; k < 20; ++k) {
     ASSERT_EQ(camera.next_frame(2 * kPeriod, frame), FrameEvent::kFrame);
-    // The first picture could not be made ahead; 10 ms of its delay are made up with each one.
+    // The first image could not be drawn ahead. Each following frame recovers 10 ms of its delay.
     const Duration delay = milliseconds(std::max(0, 70 - 10 * k));
     EXPECT_EQ(clock.now() - frame.time, kReadout + delay) << k;
   }
   EXPECT_EQ(camera.counters().overrun, 0U);
 }
 
-TEST(PacedCamera, PictureThatTookTooLongToMakeIsLost) {
+TEST(PacedCamera, AFrameThatTookTooLongToDrawIsLost) {
   VirtualClock clock;
   CountingCamera camera(2, 100, clock);
   ASSERT_TRUE(camera.start());
@@ -166,7 +166,7 @@ TEST(PacedCamera, FrameWithoutBufferIsLostAndCounted) {
   EXPECT_EQ(frame.sequence, 7U);
 }
 
-TEST(PacedCamera, SaysWhenItIsOver) {
+TEST(PacedCamera, ReportsItsEnd) {
   VirtualClock clock;
   CountingCamera camera(2, 2, clock);
   ASSERT_TRUE(camera.start());
@@ -176,16 +176,16 @@ TEST(PacedCamera, SaysWhenItIsOver) {
   EXPECT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kEnded);
 }
 
-TEST(PacedCamera, BrokenPictureIsAnErrorAndTheNextOneIsNot) {
+TEST(PacedCamera, ABrokenFrameIsAnErrorAndTheNextOneIsDelivered) {
   VirtualClock clock;
   CountingCamera camera(2, 10, clock);
-  camera.break_picture(1);
+  camera.break_frame(1);
   ASSERT_TRUE(camera.start());
   Frame frame;
   ASSERT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
   const auto broken = camera.next_frame(kPeriod, frame);
   ASSERT_FALSE(broken);
-  EXPECT_EQ(broken.error().message, "picture 1 is broken");
+  EXPECT_EQ(broken.error().message, "frame 1 is broken");
   ASSERT_EQ(camera.next_frame(3 * kPeriod, frame), FrameEvent::kFrame);
   EXPECT_EQ(frame.sequence, 2U);
 }

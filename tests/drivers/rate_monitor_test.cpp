@@ -12,7 +12,7 @@ namespace {
 constexpr double kPeriod_s = 0.1;
 constexpr int kBack = 4;
 
-/// Six cameras with a phase, a rate and a jitter of their own; times as a driver would give them.
+/// Generates the frame times of six cameras, each with its own phase, rate and jitter.
 class Cameras {
  public:
   Cameras(uint64_t seed, double jitter_s) : random_(seed), jitter_s_(jitter_s) {}
@@ -20,7 +20,7 @@ class Cameras {
   void set_drift(int camera, double ppm) { period_s_[camera] = kPeriod_s / (1.0 + 1e-6 * ppm); }
   void lose_frames(double share) { lost_ = share; }
 
-  /// `begin` to `end`, in frames.
+  /// Adds the frames with the numbers `begin` to `end` - 1.
   void run(RateMonitor& monitor, int begin, int end) {
     for (int k = begin; k < end; ++k) {
       for (int camera = 0; camera < kCameraCount; ++camera) {
@@ -61,7 +61,7 @@ TEST_P(RateMonitorTest, FindsAndNamesTheCameraThatDriftsBy50Ppm) {
   }
 }
 
-TEST_P(RateMonitorTest, ReportsNoDriftWhereThereIsOnlyJitter) {
+TEST_P(RateMonitorTest, JitterIsNotReportedAsDrift) {
   for (const double jitter_s : {0.0, 1e-4, 1e-3, 1e-2}) {
     RateMonitor monitor;
     Cameras cameras(GetParam(), jitter_s);
@@ -72,7 +72,7 @@ TEST_P(RateMonitorTest, ReportsNoDriftWhereThereIsOnlyJitter) {
   }
 }
 
-TEST_P(RateMonitorTest, LostFramesDoNotLookLikeDrift) {
+TEST_P(RateMonitorTest, LostFramesAreNotReportedAsDrift) {
   RateMonitor monitor;
   Cameras cameras(GetParam(), 2e-4);
   cameras.lose_frames(0.3);
@@ -83,7 +83,7 @@ TEST_P(RateMonitorTest, LostFramesDoNotLookLikeDrift) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RateMonitorTest, testing::Range<uint64_t>(0, 20));
 
-TEST(RateMonitor, SaysNothingBeforeItKnows) {
+TEST(RateMonitor, NeedsSomeFramesForAnEstimate) {
   RateMonitor monitor;
   Cameras cameras(1, 1e-5);
   cameras.set_drift(kBack, 500.0);
@@ -93,7 +93,7 @@ TEST(RateMonitor, SaysNothingBeforeItKnows) {
   EXPECT_TRUE(monitor.drift(kBack));
 }
 
-TEST(RateMonitor, TwoCamerasCannotSayWhichIsWrong) {
+TEST(RateMonitor, NeedsThreeCameras) {
   RateMonitor monitor;
   for (int k = 0; k < RateMonitor::kWindow; ++k) {
     monitor.add(0, Time(from_seconds(k * kPeriod_s)));
@@ -103,7 +103,7 @@ TEST(RateMonitor, TwoCamerasCannotSayWhichIsWrong) {
   EXPECT_FALSE(monitor.drift(1));
 }
 
-TEST(RateMonitor, StartsAgainAfterAPauseAndForgetsAnOldDrift) {
+TEST(RateMonitor, ForgetsTheDriftAfterAPause) {
   RateMonitor monitor;
   Cameras cameras(3, 1e-5);
   cameras.set_drift(kBack, 100.0);

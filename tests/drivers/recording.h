@@ -1,4 +1,4 @@
-// Makes small recordings for the tests, in a folder that goes away with the object.
+// Writes small recordings for tests into a temporary folder.
 #pragma once
 
 #include <array>
@@ -10,10 +10,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "common/picture_file.h"
+#include "common/image_file.h"
 
 namespace bevloc::drivers {
 
+/// The destructor removes the folder.
 class Recording {
  public:
   Recording() {
@@ -30,9 +31,8 @@ class Recording {
 
   const std::filesystem::path& directory() const { return directory_; }
 
-  /// A picture of one colour (red, green, blue).
-  void add_picture(const std::string& name, int width, int height,
-                   std::array<uint8_t, 3> rgb) const {
+  /// Writes an image of one colour (red, green, blue).
+  void add_image(const std::string& name, int width, int height, std::array<uint8_t, 3> rgb) const {
     RgbImage image(width, height);
     for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = rgb[i % 3];
     EXPECT_TRUE(write_png(image.view(), (directory_ / name).string()));

@@ -1,4 +1,4 @@
-#include "drivers/camera/replay_camera.h"
+#include "drivers/camera/replay/replay_camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,8 +24,8 @@ ReplayCameraConfig config_for(const Recording& recording) {
 
 TEST(LoadRecording, ReadsTheIndex) {
   const Recording recording;
-  recording.add_picture("a.png", 4, 2, {1, 2, 3});
-  recording.add_picture("b.png", 4, 2, {1, 2, 3});
+  recording.add_image("a.png", 4, 2, {1, 2, 3});
+  recording.add_image("b.png", 4, 2, {1, 2, 3});
   recording.write("frames.txt", "# sequence time_ns file\n\n7 1000 a.png\n9 2000 b.png # a gap\n");
   const auto frames = load_recording(recording.directory());
   ASSERT_TRUE(frames) << frames.error().message;
@@ -35,24 +35,24 @@ TEST(LoadRecording, ReadsTheIndex) {
   EXPECT_EQ((*frames)[1].file, recording.directory() / "b.png");
 }
 
-TEST(LoadRecording, SaysWhereTheIndexIsWrong) {
+TEST(LoadRecording, NamesTheBadLineOfTheIndex) {
   struct Case {
     std::string index;
     std::string wanted;
   };
   const std::vector<Case> cases = {
-      {"", "frames.txt: holds no pictures"},
+      {"", "frames.txt: found no images"},
       {"0 1000 a.png\n1 soon a.png\n", "frames.txt:2: found \"1 soon a.png\""},
       {"0 1000\n", "frames.txt:1: found \"0 1000\""},
       {"-1 1000 a.png\n", "frames.txt:1: found"},
       {"0 1000 a.png b.png\n", "frames.txt:1: found"},
-      {"# comment\n0 1000 gone.png\n", "frames.txt:2: there is no picture"},
-      {"0 1000 a.png\n0 2000 a.png\n", "frames.txt:2: sequence or time does not grow"},
-      {"0 1000 a.png\n1 1000 a.png\n", "frames.txt:2: sequence or time does not grow"},
+      {"# comment\n0 1000 gone.png\n", "frames.txt:2: found no file"},
+      {"0 1000 a.png\n0 2000 a.png\n", "frames.txt:2: found a sequence number or time"},
+      {"0 1000 a.png\n1 1000 a.png\n", "frames.txt:2: found a sequence number or time"},
   };
   for (const Case& wrong : cases) {
     const Recording recording;
-    recording.add_picture("a.png", 4, 2, {1, 2, 3});
+    recording.add_image("a.png", 4, 2, {1, 2, 3});
     recording.write("frames.txt", wrong.index);
     const auto frames = load_recording(recording.directory());
     ASSERT_FALSE(frames) << wrong.index;
@@ -67,13 +67,13 @@ TEST(ReplayCamera, StartFailsWithoutARecording) {
   ReplayCamera camera(config_for(empty), clock);
   const Status started = camera.start();
   ASSERT_FALSE(started);
-  EXPECT_THAT(started.error().message, HasSubstr("frames.txt: cannot be opened"));
+  EXPECT_THAT(started.error().message, HasSubstr("frames.txt: found no readable file"));
 }
 
-TEST(ReplayCamera, PlaysColoursAtTheirShiftedTimes) {
+TEST(ReplayCamera, PlaysImagesAtTheirShiftedTimes) {
   const Recording recording;
-  recording.add_picture("a.png", 4, 2, {250, 10, 20});
-  recording.add_picture("b.png", 4, 2, {10, 20, 250});
+  recording.add_image("a.png", 4, 2, {250, 10, 20});
+  recording.add_image("b.png", 4, 2, {10, 20, 250});
   recording.write("frames.txt", "40 9000000000 a.png\n42 9100000000 b.png\n");
   VirtualClock clock;
   ReplayCameraConfig config = config_for(recording);
@@ -96,11 +96,11 @@ TEST(ReplayCamera, PlaysColoursAtTheirShiftedTimes) {
   EXPECT_EQ(camera.next_frame(milliseconds(500), frame), FrameEvent::kEnded);
 }
 
-TEST(ReplayCamera, NamesThePictureItCannotShow) {
+TEST(ReplayCamera, NamesTheFileThatItCannotRead) {
   const Recording recording;
-  recording.write("text.png", "no picture at all");
-  recording.add_picture("wide.png", 5, 2, {1, 2, 3});
-  recording.add_picture("good.png", 4, 2, {1, 2, 3});
+  recording.write("text.png", "not an image");
+  recording.add_image("wide.png", 5, 2, {1, 2, 3});
+  recording.add_image("good.png", 4, 2, {1, 2, 3});
   recording.write("frames.txt",
                   "0 100000000 text.png\n1 200000000 wide.png\n2 300000000 good.png\n");
   VirtualClock clock;
@@ -109,10 +109,11 @@ TEST(ReplayCamera, NamesThePictureItCannotShow) {
   Frame frame;
   const auto text = camera.next_frame(milliseconds(900), frame);
   ASSERT_FALSE(text);
-  EXPECT_THAT(text.error().message, EndsWith("text.png: is neither PNG nor JPEG, wanted a picture"));
+  EXPECT_THAT(text.error().message,
+              EndsWith("text.png: found a file that is neither PNG nor JPEG, wanted an image"));
   const auto wide = camera.next_frame(milliseconds(900), frame);
   ASSERT_FALSE(wide);
-  EXPECT_THAT(wide.error().message, EndsWith("wide.png: is 5x2 pixels, wanted 4x2"));
+  EXPECT_THAT(wide.error().message, EndsWith("wide.png: found an image of 5x2 pixels, wanted 4x2"));
   ASSERT_EQ(camera.next_frame(milliseconds(900), frame), FrameEvent::kFrame);
   EXPECT_EQ(frame.sequence, 2U);
 }

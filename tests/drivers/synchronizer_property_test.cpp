@@ -1,5 +1,5 @@
-// Random traffic through the synchronizer: what must hold whatever arrives, and faults that must be
-// counted one by one.
+// Property tests of the synchronizer with random frames: properties that always hold, and the
+// number of each injected fault.
 #include <algorithm>
 #include <array>
 #include <set>
@@ -34,7 +34,7 @@ Frame frame_of(const Arrival& arrival) {
   return frame;
 }
 
-/// Feeds arrivals in order, polling each millisecond in between, and keeps every set.
+/// Adds arrivals in order, polls every millisecond in between, and keeps the emitted framesets.
 class Feeder {
  public:
   explicit Feeder(const SynchronizerConfig& config) : synchronizer_(config) {}
@@ -66,7 +66,7 @@ class Feeder {
   Time now_{};
 };
 
-void expect_sound_sets(const std::vector<Frameset>& sets, const SynchronizerConfig& config) {
+void expect_valid_sets(const std::vector<Frameset>& sets, const SynchronizerConfig& config) {
   std::set<std::pair<int, Time>> seen;
   Time previous = Time::min();
   for (const Frameset& set : sets) {
@@ -80,7 +80,7 @@ void expect_sound_sets(const std::vector<Frameset>& sets, const SynchronizerConf
       if (!set.present[camera]) continue;
       const Frame& frame = set.frames[camera];
       EXPECT_EQ(frame.camera, camera);
-      EXPECT_TRUE(seen.emplace(camera, frame.time).second) << "one frame in two sets";
+      EXPECT_TRUE(seen.emplace(camera, frame.time).second) << "one frame in two framesets";
       earliest = std::min(earliest, frame.time);
       latest = std::max(latest, frame.time);
     }
@@ -99,7 +99,7 @@ void expect_all_accounted_for(const FramesetSynchronizer& synchronizer) {
 
 class SynchronizerProperty : public testing::TestWithParam<uint64_t> {};
 
-TEST_P(SynchronizerProperty, AnyTrafficGivesSoundSets) {
+TEST_P(SynchronizerProperty, AnyFramesGiveValidSets) {
   sim::Random random(GetParam());
   const SynchronizerConfig config{.tolerance = milliseconds(random.integer(0, 40)),
                                   .wait = milliseconds(random.integer(40, 120)),
@@ -112,7 +112,7 @@ TEST_P(SynchronizerProperty, AnyTrafficGivesSoundSets) {
   }
   Feeder feeder(config);
   feeder.feed(arrivals);
-  expect_sound_sets(feeder.sets(), config);
+  expect_valid_sets(feeder.sets(), config);
   expect_all_accounted_for(feeder.synchronizer());
 }
 
@@ -126,18 +126,20 @@ struct Expected {
   uint64_t future = 0;
 };
 
-/// The arrivals of one camera at 10 Hz with at most 2 ms jitter, some of them spoilt.
-std::vector<Arrival> spoil(sim::Random& random, int camera, int periods, Expected& expected) {
+/// Generates the arrivals of one camera at 10 Hz with at most 2 ms of jitter and with random
+/// faults.
+std::vector<Arrival> arrivals_with_faults(sim::Random& random, int camera, int periods,
+                                          Expected& expected) {
   std::vector<Arrival> arrivals;
   int missed_in_a_row = 0;
   Time newest{};
   for (int k = 1; k <= periods; ++k) {
-    const Time beat = Time(k * kPeriod);
-    const Time time = beat + microseconds(random.integer(0, 2000));
+    const Time trigger = Time(k * kPeriod);
+    const Time time = trigger + microseconds(random.integer(0, 2000));
     const Time usual = time + milliseconds(20) + microseconds(random.integer(0, 15000));
     Injected fault = Injected::kNone;
-    // Camera 0 stays sound, so that there is a set to be missing from; and no camera is missing so
-    // often that it is given up.
+    // Camera 0 has no faults, so that every frameset exists. No camera is missing so often in a row
+    // that the synchronizer stops waiting for it.
     if (camera > 0 && missed_in_a_row < FramesetSynchronizer::kPatience - 1 && random.chance(0.3)) {
       fault = static_cast<Injected>(random.integer(1, 5));
     }
@@ -151,7 +153,7 @@ std::vector<Arrival> spoil(sim::Random& random, int camera, int periods, Expecte
       case Injected::kDrop:
         break;
       case Injected::kLate:
-        arrivals.push_back({beat + milliseconds(random.integer(65, 95)), camera, time});
+        arrivals.push_back({trigger + milliseconds(random.integer(65, 95)), camera, time});
         ++expected.late;
         break;
       case Injected::kDuplicate:
@@ -160,7 +162,7 @@ std::vector<Arrival> spoil(sim::Random& random, int camera, int periods, Expecte
         ++expected.duplicate;
         break;
       case Injected::kOutOfOrder:
-        // A frame from before the camera's latest one turns up instead of this one.
+        // Instead of this frame, one arrives that is older than the camera's latest frame.
         if (newest == Time{}) break;
         arrivals.push_back({usual, camera, newest - microseconds(random.integer(1, 90'000))});
         ++expected.out_of_order;
@@ -183,13 +185,13 @@ TEST_P(SynchronizerProperty, EachFaultIsCountedOnce) {
   std::vector<Arrival> arrivals;
   std::array<Expected, kCameraCount> expected;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    const auto of_camera = spoil(random, camera, kPeriods, expected[camera]);
+    const auto of_camera = arrivals_with_faults(random, camera, kPeriods, expected[camera]);
     arrivals.insert(arrivals.end(), of_camera.begin(), of_camera.end());
   }
   Feeder feeder(kConfig);
   feeder.feed(arrivals);
   EXPECT_EQ(feeder.sets().size(), static_cast<size_t>(kPeriods));
-  expect_sound_sets(feeder.sets(), kConfig);
+  expect_valid_sets(feeder.sets(), kConfig);
   expect_all_accounted_for(feeder.synchronizer());
   for (int camera = 0; camera < kCameraCount; ++camera) {
     SCOPED_TRACE(kCameraNames[camera]);

@@ -34,7 +34,7 @@ class Synchronizer : public testing::Test {
     return synchronizer_.add(frame_of(camera, at_ms(time_ms)), at_ms(now_ms));
   }
 
-  /// All cameras but `absent` deliver a frame taken at `time_ms`, 20 ms later.
+  /// All cameras except `absent` deliver a frame of the time `time_ms` 20 ms later.
   void add_all_but(CameraMask absent, int64_t time_ms) {
     for (int camera = 0; camera < kCameraCount; ++camera) {
       if (!absent[camera]) add(camera, time_ms, time_ms + 20);
@@ -48,7 +48,7 @@ class Synchronizer : public testing::Test {
   FramesetSynchronizer synchronizer_{config()};
 };
 
-TEST_F(Synchronizer, CompleteSetComesOutAtOnce) {
+TEST_F(Synchronizer, ACompleteSetIsEmittedAtOnce) {
   for (int camera = 0; camera < kCameraCount; ++camera) {
     EXPECT_FALSE(poll(1020)) << "before camera " << camera;
     EXPECT_EQ(add(camera, 1000 + camera % 3, 1020), FrameFate::kAccepted);
@@ -93,7 +93,7 @@ TEST_F(Synchronizer, CameraWithALaterFrameIsNotWaitedFor) {
   EXPECT_EQ(synchronizer_.counters(kBack).waited_for, 0U);
 }
 
-TEST_F(Synchronizer, FrameOfASetThatIsOverIsLate) {
+TEST_F(Synchronizer, AFrameOfAnEmittedSetIsLate) {
   add_all_but(only(kBack), 1000);
   ASSERT_TRUE(poll(1060));
   EXPECT_EQ(add(kBack, 1002, 1070), FrameFate::kLate);
@@ -107,7 +107,7 @@ TEST_F(Synchronizer, FrameBeyondToleranceOpensItsOwnSet) {
   const auto set = poll(1023);
   ASSERT_TRUE(set);
   EXPECT_EQ(set->present, ~only(kBack));
-  // Alone it is too few cameras for a set.
+  // One camera is too few for a frameset.
   EXPECT_FALSE(poll(1063));
   EXPECT_EQ(synchronizer_.counters(kBack).unmatched, 1U);
   EXPECT_EQ(synchronizer_.counters(kBack).late, 0U);
@@ -118,7 +118,7 @@ TEST_F(Synchronizer, RefusesDuplicatesOldFramesAndTheFuture) {
   EXPECT_EQ(add(kFront, 1000, 1021), FrameFate::kDuplicate);
   EXPECT_EQ(add(kFront, 900, 1022), FrameFate::kOutOfOrder);
   EXPECT_EQ(add(kFront, 5000, 1023), FrameFate::kFuture);
-  // A wrong stamp must not shut the camera out.
+  // A wrong timestamp must not block the camera.
   EXPECT_EQ(add(kFront, 1100, 1120), FrameFate::kAccepted);
   const SynchronizerCounters& counters = synchronizer_.counters(kFront);
   EXPECT_EQ(counters.added, 5U);
@@ -132,7 +132,7 @@ TEST_F(Synchronizer, TooFewCamerasGiveNoSet) {
   EXPECT_FALSE(poll(1100));
   EXPECT_EQ(synchronizer_.counters(kFront).unmatched, 1U);
   EXPECT_EQ(synchronizer_.counters(kBack).missing, 0U);
-  // One more than too few is enough.
+  // Two cameras are enough.
   add(kFront, 1100, 1120);
   add(kBack, 1101, 1120);
   const auto set = poll(1160);
@@ -152,7 +152,7 @@ TEST_F(Synchronizer, UnpolledQueueKeepsTheNewest) {
   EXPECT_EQ(sets, FramesetSynchronizer::kQueueCapacity);
 }
 
-TEST_F(Synchronizer, DeadCameraStopsCostingTimeAndComesBack) {
+TEST_F(Synchronizer, ADeadCameraIsNotWaitedForUntilItRecovers) {
   int64_t time_ms = 1000;
   for (int k = 0; k < FramesetSynchronizer::kPatience; ++k, time_ms += 100) {
     add_all_but(only(kBack), time_ms);
@@ -162,7 +162,7 @@ TEST_F(Synchronizer, DeadCameraStopsCostingTimeAndComesBack) {
   add_all_but(only(kBack), time_ms);
   EXPECT_TRUE(synchronizer_.blockers().none());
   EXPECT_TRUE(poll(time_ms + 20));
-  // Its first frame finds its set gone; from then on it is waited for again.
+  // The frameset of its first frame was emitted already. From then on it is waited for again.
   EXPECT_EQ(add(kBack, time_ms, time_ms + 21), FrameFate::kLate);
   time_ms += 100;
   add_all_but(only(kBack), time_ms);
@@ -185,7 +185,7 @@ TEST_F(Synchronizer, AllCamerasBackAfterLongSilence) {
   EXPECT_TRUE(set->present.all());
 }
 
-/// Sets of the cameras in `first` at t and of the others 40 ms later, `periods` times.
+/// The cameras in `first` expose at t and the others 40 ms later, for `periods` periods.
 class SplitCameras : public Synchronizer {
  protected:
   void run(CameraMask first, int periods) {
@@ -202,25 +202,25 @@ class SplitCameras : public Synchronizer {
   int64_t time_ms_ = 1000;
 };
 
-TEST_F(SplitCameras, CamerasInStepAreNoSplit) {
+TEST_F(SplitCameras, SynchronizedCamerasAreNotSplit) {
   run(CameraMask().set(), 50);
   EXPECT_FALSE(split());
 }
 
-TEST_F(SplitCameras, CamerasOutOfStepAreNoticedAndForgiven) {
+TEST_F(SplitCameras, UnsynchronizedCamerasAreSplitUntilTheySynchronizeAgain) {
   run(CameraMask(0b000111), 3);
   EXPECT_TRUE(split());
   run(CameraMask().set(), SplitMonitor::kMemory);
   EXPECT_FALSE(split());
 }
 
-TEST_F(SplitCameras, OneCameraOutOfStepIsNoticedAlthoughItMakesNoSetOfItsOwn) {
+TEST_F(SplitCameras, OneUnsynchronizedCameraIsDetectedAlthoughItsSetsAreDropped) {
   run(~only(kBack), 4);
   EXPECT_TRUE(split());
   EXPECT_GT(synchronizer_.counters(kBack).unmatched, 0U);
 }
 
-TEST_F(SplitCameras, LostFramesAreNoSplit) {
+TEST_F(SplitCameras, LostFramesAreNotASplit) {
   for (int k = 0; k < 60; ++k, time_ms_ += 100) {
     add_all_but(CameraMask(k % 2 == 0 ? 0b000011 : 0b001100), time_ms_);
     while (poll(time_ms_ + 60)) {

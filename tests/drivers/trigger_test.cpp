@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/gpio/mock_gpio.h"
+#include "drivers/mock/mock_gpio.h"
 
 namespace bevloc::drivers {
 namespace {
@@ -13,12 +13,12 @@ using std::chrono::milliseconds;
 
 constexpr Duration kPeriod = milliseconds(100);
 constexpr Duration kWidth = milliseconds(2);
-constexpr Duration kPatience = milliseconds(50);
+constexpr Duration kTimeout = milliseconds(50);
 
 class TriggerTest : public testing::Test {
  protected:
   void run_until(Time end) {
-    while (clock_.now() < end) trigger_.step(kPatience);
+    while (clock_.now() < end) trigger_.step(kTimeout);
   }
 
   std::vector<Time> rises() const {
@@ -40,35 +40,35 @@ class TriggerTest : public testing::Test {
   Trigger trigger_{open(), clock_, {kPeriod, kWidth}};
 };
 
-TEST_F(TriggerTest, PulsesOnEveryBeatForItsWidth) {
+TEST_F(TriggerTest, GivesAPulsePerPeriod) {
   run_until(Time(milliseconds(1450)));
   const auto changes = gpio_.changes("trigger");
   ASSERT_EQ(changes.size(), 8U);
   for (size_t i = 0; i < changes.size(); ++i) {
-    const Time beat = Time(milliseconds(1100)) + static_cast<int>(i / 2) * kPeriod;
+    const Time due = Time(milliseconds(1100)) + static_cast<int>(i / 2) * kPeriod;
     EXPECT_EQ(changes[i].high, i % 2 == 0);
-    EXPECT_EQ(changes[i].time, i % 2 == 0 ? beat : beat + kWidth);
+    EXPECT_EQ(changes[i].time, i % 2 == 0 ? due : due + kWidth);
   }
   EXPECT_EQ(trigger_.counters().skipped, 0U);
 }
 
-TEST_F(TriggerTest, WaitsNoLongerThanAsked) {
+TEST_F(TriggerTest, WaitsNoLongerThanItsTimeout) {
   trigger_.step(milliseconds(30));
   EXPECT_EQ(clock_.now(), Time(milliseconds(1030)));
   EXPECT_TRUE(rises().empty());
 }
 
-TEST_F(TriggerTest, LatePulseDoesNotMoveTheNext) {
+TEST_F(TriggerTest, ALatePulseDoesNotDelayTheNext) {
   clock_.advance(milliseconds(108));
   run_until(Time(milliseconds(1250)));
   EXPECT_EQ(rises(), (std::vector{Time(milliseconds(1108)), Time(milliseconds(1200))}));
-  EXPECT_EQ(trigger_.counters().latest_by.load(), milliseconds(8));
+  EXPECT_EQ(trigger_.counters().max_lateness.load(), milliseconds(8));
   EXPECT_EQ(trigger_.counters().skipped, 0U);
 }
 
-TEST_F(TriggerTest, SkipsWhatItMissedInsteadOfBunching) {
+TEST_F(TriggerTest, SkipsMissedPulses) {
   run_until(Time(milliseconds(1110)));
-  // The machine stands still over three beats and most of the way to the next.
+  // The process does not run for almost four periods.
   clock_.sleep_until(Time(milliseconds(1495)));
   run_until(Time(milliseconds(1650)));
   EXPECT_EQ(rises(), (std::vector{Time(milliseconds(1100)), Time(milliseconds(1500)),
@@ -77,20 +77,20 @@ TEST_F(TriggerTest, SkipsWhatItMissedInsteadOfBunching) {
 }
 
 TEST_F(TriggerTest, DoesNotDriftOverAnHour) {
-  constexpr int kBeats = 36'000;
-  run_until(Time(milliseconds(1000)) + kBeats * kPeriod + kWidth);
-  EXPECT_EQ(trigger_.pulses().count(), static_cast<uint64_t>(kBeats));
-  EXPECT_EQ(rises().back(), Time(milliseconds(1000)) + kBeats * kPeriod);
+  constexpr int kPulses = 36'000;
+  run_until(Time(milliseconds(1000)) + kPulses * kPeriod + kWidth);
+  EXPECT_EQ(trigger_.pulses().count(), static_cast<uint64_t>(kPulses));
+  EXPECT_EQ(rises().back(), Time(milliseconds(1000)) + kPulses * kPeriod);
 }
 
-TEST_F(TriggerTest, CountsPulsesThatTheLineRefusesAndDoesNotPublishThem) {
+TEST_F(TriggerTest, CountsRefusedPulsesAndDoesNotLogThem) {
   gpio_.unplug();
   run_until(Time(milliseconds(1350)));
   EXPECT_EQ(trigger_.counters().failed, 3U);
   EXPECT_EQ(trigger_.pulses().count(), 0U);
 }
 
-TEST_F(TriggerTest, FrameFindsThePulseThatItAnswers) {
+TEST_F(TriggerTest, TheLogFindsThePulseOfAFrame) {
   run_until(Time(milliseconds(1350)));
   const PulseLog& pulses = trigger_.pulses();
   EXPECT_EQ(pulses.count(), 3U);
@@ -100,7 +100,7 @@ TEST_F(TriggerTest, FrameFindsThePulseThatItAnswers) {
   EXPECT_FALSE(pulses.newest_until(Time(milliseconds(1099))));
 }
 
-TEST(PulseLog, ForgetsTheOldest) {
+TEST(PulseLog, KeepsTheNewest) {
   PulseLog pulses;
   for (int k = 0; k < 3 * PulseLog::kCapacity; ++k) pulses.add(Time(milliseconds(k)));
   const int newest = 3 * PulseLog::kCapacity - 1;

@@ -1,4 +1,4 @@
-// Cameras are found by names that last, in a made-up /sys and /dev.
+// Tests that cameras are found by their stable names, in a simulated /sys and /dev.
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ class DeviceFinder : public testing::Test {
     fs::create_directory_symlink(device, entry / "device");
   }
 
-  /// A USB camera with a node for pictures and one for metadata, as uvcvideo makes them.
+  /// Adds a USB camera with a node for images and one for metadata, as uvcvideo creates them.
   void add_usb_camera(int first_number, const std::string& port, const std::string& serial) {
     const fs::path usb = tree_.sysfs / "devices/pci/usb1" / port;
     write(usb / "idVendor", "1209");
@@ -74,7 +74,7 @@ TEST_F(DeviceFinder, FindsACameraThatIsNotOnUsb) {
   EXPECT_EQ(found("platform-csi0-video-index0"), "video5");
 }
 
-TEST_F(DeviceFinder, TakesTheNodeWithThePictures) {
+TEST_F(DeviceFinder, ReturnsTheNodeThatDeliversImages) {
   add_usb_camera(10, "1-2", "SN7");
   EXPECT_EQ(found("SN7"), "video10");
   EXPECT_EQ(list_video_nodes(tree_).size(), 2U);
@@ -86,8 +86,8 @@ TEST_F(DeviceFinder, RefusesANameThatTwoCamerasShare) {
   EXPECT_NE(found("HD Camera").find("several cameras"), std::string::npos);
 }
 
-TEST_F(DeviceFinder, SaysWhatThereIsWhenItFindsNothing) {
-  EXPECT_NE(found("SN9").find("no video device at all"), std::string::npos);
+TEST_F(DeviceFinder, ListsTheDevicesWhenItFindsNone) {
+  EXPECT_NE(found("SN9").find("available: none"), std::string::npos);
   add_usb_camera(0, "1-2", "SN7");
   const std::string error = found("SN9");
   for (const char* name : {"SN9", "SN7", "1-2", "HD Camera", "usb-HD_SN7-video-index0"}) {

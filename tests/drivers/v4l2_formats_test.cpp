@@ -1,12 +1,12 @@
-// V4L2's names, colour encodings and picture layouts, and whether a JPEG is whole.
+// Tests V4L2's names, colour encodings and image layouts, and the check for complete images.
 #include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "drivers/camera/complete_image.h"
 #include "drivers/camera/v4l2/controls.h"
 #include "drivers/camera/v4l2/pixel_formats.h"
-#include "drivers/camera/whole_picture.h"
 
 namespace bevloc::drivers::v4l2 {
 namespace {
@@ -19,7 +19,7 @@ TEST(V4l2Formats, EveryFormatHasAFourccOfItsOwn) {
   EXPECT_EQ(fourcc_name(fourcc_of(PixelFormat::kNv12)), "NV12");
 }
 
-TEST(V4l2Formats, ColourIsWhatTheDeviceSays) {
+TEST(V4l2Formats, ReadsTheColourEncodingOfTheDevice) {
   v4l2_pix_format pixels{};
   pixels.pixelformat = V4L2_PIX_FMT_YUYV;
   EXPECT_EQ(yuv_encoding(pixels), (YuvEncoding{YuvMatrix::kBt601, false})) << "the usual default";
@@ -42,7 +42,7 @@ TEST(V4l2Formats, TheChromaOfNv12FollowsItsPaddedLuma) {
   EXPECT_EQ(view.planes[0].stride_bytes, 64);
   EXPECT_EQ(view.planes[1].data - view.planes[0].data, 64 * 40);
   EXPECT_EQ(view.planes[1].stride_bytes, 64);
-  EXPECT_EQ(picture_bytes(view), 64U * 60U);
+  EXPECT_EQ(min_image_bytes(view), 64U * 60U);
 }
 
 TEST(V4l2Controls, AreNamedAsV4l2CtlDoes) {
@@ -51,28 +51,29 @@ TEST(V4l2Controls, AreNamedAsV4l2CtlDoes) {
   EXPECT_EQ(control_word("Gain"), "gain");
 }
 
-TEST(WholePicture, HasTheChromaOfNv12Too) {
+TEST(CompleteImage, OfNv12HasItsChroma) {
   ImageView view;
   view.format = PixelFormat::kNv12;
   view.height = 40;
   view.planes[0].stride_bytes = 64;
   view.bytes_used = 64 * 40;
-  EXPECT_FALSE(is_whole(view)) << "luma alone";
+  EXPECT_FALSE(is_complete(view)) << "only luma";
   view.bytes_used = 64 * 60;
-  EXPECT_TRUE(is_whole(view));
+  EXPECT_TRUE(is_complete(view));
   view.format = PixelFormat::kYuyv;
   view.bytes_used = 64 * 40 - 1;
-  EXPECT_FALSE(is_whole(view));
+  EXPECT_FALSE(is_complete(view));
   view.bytes_used = 64 * 40;
-  EXPECT_TRUE(is_whole(view));
+  EXPECT_TRUE(is_complete(view));
 }
 
-TEST(JpegFile, IsWholeFromMarkerToMarker) {
-  EXPECT_TRUE(is_whole_jpeg(std::vector<uint8_t>{0xFF, 0xD8, 1, 2, 0xFF, 0xD9}));
-  EXPECT_TRUE(is_whole_jpeg(std::vector<uint8_t>{0xFF, 0xD8, 1, 2, 0xFF, 0xD9, 0, 0})) << "padded";
-  EXPECT_FALSE(is_whole_jpeg(std::vector<uint8_t>{0xFF, 0xD8, 1, 2, 3, 4})) << "cut off";
-  EXPECT_FALSE(is_whole_jpeg(std::vector<uint8_t>{1, 2, 3, 4, 0xFF, 0xD9})) << "no beginning";
-  EXPECT_FALSE(is_whole_jpeg({}));
+TEST(CompleteImage, OfMjpegHasBothMarkers) {
+  EXPECT_TRUE(is_complete_jpeg(std::vector<uint8_t>{0xFF, 0xD8, 1, 2, 0xFF, 0xD9}));
+  EXPECT_TRUE(is_complete_jpeg(std::vector<uint8_t>{0xFF, 0xD8, 1, 2, 0xFF, 0xD9, 0, 0}))
+      << "padded";
+  EXPECT_FALSE(is_complete_jpeg(std::vector<uint8_t>{0xFF, 0xD8, 1, 2, 3, 4})) << "cut off";
+  EXPECT_FALSE(is_complete_jpeg(std::vector<uint8_t>{1, 2, 3, 4, 0xFF, 0xD9})) << "no beginning";
+  EXPECT_FALSE(is_complete_jpeg({}));
 }
 
 }  // namespace

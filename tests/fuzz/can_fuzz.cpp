@@ -1,4 +1,5 @@
-// can_fuzz --cases N --seed S: N random frames and log lines, damaged in random places.
+// Feeds random and damaged CAN frames and log lines to the CAN code.
+// Usage: can_fuzz --cases N --seed S.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -11,13 +12,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "can/candump.h"
-#include "can/controller_monitor.h"
-#include "can/e2e.h"
-#include "can/message_table.h"
-#include "can/socketcan_codec.h"
-#include "can/solution_fd.h"
-#include "can/vehicle_input.h"
+#include "can/bus/candump.h"
+#include "can/bus/controller_monitor.h"
+#include "can/bus/socketcan_codec.h"
+#include "can/e2e/e2e.h"
+#include "can/messages/message_table.h"
+#include "can/messages/solution_fd.h"
+#include "can/messages/vehicle_input.h"
 #include "common/result.h"
 
 namespace bevloc::fuzz {
@@ -34,7 +35,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// Draws frames of our messages, protected or not.
+/// Draws frames of the project's messages, most of them with valid protection.
 class FrameSource {
  public:
   FrameSource() {
@@ -57,7 +58,7 @@ class FrameSource {
   std::vector<can::E2eSender> senders_;
 };
 
-/// What the kernel would never give, a little of it at a time.
+/// A raw frame that sometimes has a length or an identifier that no kernel delivers.
 canfd_frame draw_raw(Random& random, const can::Frame& frame) {
   canfd_frame raw = can::raw_from(frame).content;
   if (random.one_in(16)) raw.len = random.byte();
@@ -65,15 +66,13 @@ canfd_frame draw_raw(Random& random, const can::Frame& frame) {
   return raw;
 }
 
-bool is_finite(const can::VehicleSample& sample) {
-  if (const auto* odometry = std::get_if<can::OdometrySample>(&sample)) {
+bool is_finite(const VehicleSample& sample) {
+  if (const auto* odometry = std::get_if<OdometrySample>(&sample)) {
     return std::isfinite(odometry->speed_mps) && std::isfinite(odometry->yaw_rate_radps);
   }
-  if (const auto* gnss = std::get_if<can::GnssSample>(&sample)) {
-    return std::isfinite(gnss->east_m) && std::isfinite(gnss->north_m) &&
-           gnss->sigma_east_m > 0.0 && gnss->sigma_north_m > 0.0;
-  }
-  return true;
+  const auto& gnss = std::get<GnssSample>(sample);
+  return std::isfinite(gnss.east_m) && std::isfinite(gnss.north_m) && gnss.sigma_east_m > 0.0 &&
+         gnss.sigma_north_m > 0.0;
 }
 
 Status check_read(Random& random, FrameSource& source, can::VehicleInput& input,
@@ -86,8 +85,10 @@ Status check_read(Random& random, FrameSource& source, can::VehicleInput& input,
   if (const auto* error = std::get_if<can::ErrorFrame>(&read)) monitor.take(*error);
   const auto* frame = std::get_if<can::Frame>(&read);
   if (frame == nullptr) return {};
-  if (!can::is_valid_length(frame->format, frame->length)) return fail("an impossible length");
-  if (!is_finite(input.accept({*frame, now}))) return fail("a sample that is not finite");
+  if (!can::is_valid_length(frame->format, frame->length))
+    return fail("found a frame of invalid length");
+  const auto sample = input.accept({*frame, now});
+  if (sample && !is_finite(*sample)) return fail("found a sample that is not finite");
   if (frame->length == can::loc_solution::kMessage.length) {
     for (size_t part = 0; part < can::loc_solution::kParts.size(); ++part) {
       can::part_of_solution(*frame, part, {});
@@ -95,11 +96,12 @@ Status check_read(Random& random, FrameSource& source, can::VehicleInput& input,
   }
   const std::string line = can::candump_line(now.time_since_epoch(), "can0", *frame);
   const auto entry = can::parse_candump_line(line, "written");
-  if (!entry || entry->frame != *frame) return fail("'{}' is not read back", line);
+  if (!entry || entry->frame != *frame)
+    return fail("log line '{}': found another frame after reading it back", line);
   return {};
 }
 
-/// A damaged line is refused or is another frame; either way it can be written again.
+/// A damaged log line is refused, or it is read as a frame that survives a round trip.
 Status check_damaged_line(Random& random, FrameSource& source) {
   std::string line = can::candump_line(std::chrono::seconds(1), "can0", source.draw(random));
   for (size_t damage = 1 + random.below(3); damage > 0; --damage) {
@@ -115,7 +117,8 @@ Status check_damaged_line(Random& random, FrameSource& source) {
   if (!entry || entry->kind != can::CandumpKind::kData) return {};
   const auto again =
       can::parse_candump_line(can::candump_line(entry->time, entry->interface, entry->frame), "");
-  if (!again || again->frame != entry->frame) return fail("'{}' does not come back", line);
+  if (!again || again->frame != entry->frame)
+    return fail("damaged log line '{}': found another frame after a round trip", line);
   return {};
 }
 
@@ -141,7 +144,7 @@ Status run(uint64_t seed, int64_t cases) {
 }  // namespace bevloc::fuzz
 
 int main(int argc, char** argv) {
-  CLI::App app("Feeds the CAN code what no bus should carry.");
+  CLI::App app("Feeds random and damaged frames and log lines to the CAN code.");
   int64_t cases = 100'000;
   uint64_t seed = 1;
   app.add_option("--cases", cases)->capture_default_str();

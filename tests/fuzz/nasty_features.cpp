@@ -48,7 +48,7 @@ float& any_of(Random& random, std::vector<float>& features) {
   return features[integer(random, 0, static_cast<int>(features.size()) - 1)];
 }
 
-/// One value per channel.
+/// Fills each channel with one random value.
 void fill_channels(Random& random, double largest, int cells, std::vector<float>& features) {
   for (size_t i = 0; i < features.size(); i += cells) {
     const auto value = static_cast<float>(log_uniform(random, 1e-30, largest)) * sign(random);
@@ -56,7 +56,7 @@ void fill_channels(Random& random, double largest, int cells, std::vector<float>
   }
 }
 
-/// Calls value(row, col) for each cell of every channel.
+/// Sets each cell of every channel to value(row, col).
 template <typename Value>
 void fill_cells(const BevGrid& grid, std::vector<float>& features, Value value) {
   for (size_t i = 0; i < features.size(); ++i) {
@@ -71,7 +71,7 @@ void fill_mask(Random& random, const BevGrid& grid, std::vector<float>& features
   fill_cells(grid, features, [&](int r, int c) { return r < row && c < col ? 1.0F : 0.0F; });
 }
 
-/// Bumps of three cells across that depend on `seed` alone, seen from `map_from_vehicle`.
+/// Bumps with a sigma of 1.5 cells, seen from `map_from_vehicle`. They depend on `seed` alone.
 void fill_bumps(unsigned seed, const Se2& map_from_vehicle, const BevGrid& grid,
                 std::vector<float>& features) {
   Random random(seed);
@@ -92,7 +92,7 @@ void fill_bumps(unsigned seed, const Se2& map_from_vehicle, const BevGrid& grid,
   }
 }
 
-/// Features that are noise but for what makes them useless.
+/// Noise with one defect that makes it unusable. Only for sorts without structure.
 std::vector<float> draw_useless(Random& random, FeatureSort sort, const BevGrid& grid,
                                 std::vector<float> features) {
   constexpr float kLimit = std::numeric_limits<float>::infinity();
@@ -124,6 +124,7 @@ std::vector<float> draw_useless(Random& random, FeatureSort sort, const BevGrid&
   return features;
 }
 
+/// Valid but unusual features. `features` are zero on entry.
 std::vector<float> draw_odd(Random& random, FeatureSort sort, const BevGrid& grid,
                             std::vector<float> features) {
   switch (sort) {
@@ -166,13 +167,13 @@ std::vector<float> draw_odd(Random& random, FeatureSort sort, const BevGrid& gri
   return features;
 }
 
-/// The useless, which are all treated alike, less often than their share.
+/// Draws sorts without structure less often, because solvers treat all of them alike.
 FeatureSort draw_sort(Random& random) {
   const FeatureSort sort = kNames[integer(random, 0, static_cast<int>(kNames.size()) - 1)].second;
   return has_no_structure(sort) && integer(random, 0, 3) > 0 ? draw_sort(random) : sort;
 }
 
-/// Some pose within the hypotheses.
+/// A random pose within the hypotheses.
 Se2 draw_pose(Random& random, const HypothesisGrid& hypotheses) {
   const auto draw = [&](const HypothesisAxis& axis) {
     return uniform(random, -axis.farthest(), axis.farthest());
@@ -196,7 +197,7 @@ bool has_structure(FeatureSort sort) {
 
 FeaturePair draw_features(Random& random, const SolverRequest& request) {
   FeaturePair pair{draw_sort(random), draw_sort(random), {}, {}};
-  // Else next to nothing would be matched with its like.
+  // Otherwise both sides would rarely have the same sort.
   if (integer(random, 0, 3) == 0) pair.map_sort = pair.bev_sort;
   const auto seed = static_cast<unsigned>(random());
   const auto draw = [&](FeatureSort sort, const Se2& pose) {

@@ -1,4 +1,4 @@
-// Features of every sort that a broken camera, network or map could make.
+// Draws features of every sort that a broken camera, network or map could produce.
 #pragma once
 
 #include <string_view>
@@ -13,28 +13,29 @@ enum class FeatureSort {
   kTooShort,
   kTooLong,
   kZero,
-  kConstant,  ///< each channel one value, of any size
+  kConstant,  ///< one value per channel, of any magnitude
   kDenormal,
-  kNan,  ///< one among good ones
-  kInfinity,
-  kTinyNoise,  ///< on a constant
-  kHotCell,
-  kHuge,      ///< +-3e38 at random
-  kHugeCell,  ///< 3e38 in the midst of -3e38
-  kAlternating,
-  kDeadChannels,  ///< some are constant
-  kMask,          ///< saturated blocks of 0 and 1
+  kNan,           ///< one NaN in noise
+  kInfinity,      ///< one infinity in noise
+  kTinyNoise,     ///< on a constant
+  kHotCell,       ///< zero except for one cell
+  kHuge,          ///< random signs of 3e38
+  kHugeCell,      ///< one cell of 3e38, all others -3e38
+  kAlternating,   ///< a chessboard of 1 and -1
+  kDeadChannels,  ///< all channels constant except the first
+  kMask,          ///< a block of 1, the rest 0
   kStripes,       ///< along one axis
   kNoise,
   kBumps,
 };
 
 std::string_view name_of(FeatureSort sort);
-/// Nothing to match in them, or certainly something; else it depends.
+/// Whether such features never have structure that a solver could match.
 bool has_no_structure(FeatureSort sort);
+/// Whether such features always have structure. Some sorts have it only sometimes.
 bool has_structure(FeatureSort sort);
 
-/// Both sides of a match; kBumps on both sides show the same bumps, seen from two poses.
+/// The features of both sides. If both are kBumps, they show the same bumps from two poses.
 struct FeaturePair {
   FeatureSort bev_sort{};
   FeatureSort map_sort{};

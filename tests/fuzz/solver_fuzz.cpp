@@ -1,4 +1,5 @@
-// solver_fuzz --cases N --seed S: solves N random cases; 1 with the seed of the first that fails.
+// Solves random cases and checks the results. Usage: solver_fuzz --cases N --seed S. At the first
+// failure it prints the seed that reproduces it and exits with 1.
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -20,7 +21,8 @@
 namespace bevloc::fuzz {
 namespace {
 
-/// Cases that share a solver: making one costs more than a solve, and none may leave a trace.
+/// Cases per solver. Making a solver takes longer than a solve, and sharing one also tests that no
+/// case affects the next.
 constexpr std::int64_t kCasesPerSolver = 24;
 
 struct Statistics {
@@ -47,8 +49,10 @@ bool same(const SolverResult& a, const SolverResult& b) {
 Status check_evidence(const SolverResult& result, const FeaturePair& pair) {
   const bool none = has_no_structure(pair.bev_sort) || has_no_structure(pair.map_sort);
   const bool good = has_structure(pair.bev_sort) && has_structure(pair.map_sort);
-  if (none && result.evidence != Evidence::kNone) return fail("evidence where there is none");
-  if (good && result.evidence != Evidence::kGood) return fail("no evidence where there is some");
+  if (none && result.evidence != Evidence::kNone)
+    return fail("found Evidence::kGood for features without structure");
+  if (good && result.evidence != Evidence::kGood)
+    return fail("found Evidence::kNone for features with structure");
   return {};
 }
 
@@ -69,13 +73,13 @@ Status check_solves(Random& random, Solver& solver, const SolverRequest& request
     if (matched && !first) first.emplace(std::move(pair), std::move(result));
   }
   if (first && !same(solve(solver, request, first->first), first->second)) {
-    return fail("{} on {}: another answer after {} cases", name_of(first->first.bev_sort),
+    return fail("{} on {}: found another result after {} cases", name_of(first->first.bev_sort),
                 name_of(first->first.map_sort), cases);
   }
   return {};
 }
 
-/// One solver, or its refusal, and the cases it gets.
+/// Draws one solver and solves `cases` cases with it, or checks that it was refused.
 Status check_solver(std::uint64_t seed, std::int64_t cases, Statistics& statistics) {
   Random random(seed);
   const SolverRequest request = draw_request(random);
@@ -86,12 +90,13 @@ Status check_solver(std::uint64_t seed, std::int64_t cases, Statistics& statisti
   if (!solver) {
     ++statistics.refusals;
     const std::string& message = solver.error().message;
-    if (request.acceptance == Acceptance::kMust) status = fail("refused: {}", message);
+    if (request.acceptance == Acceptance::kMust)
+      status = fail("refused valid arguments: {}", message);
     if (message.find(request.culprit) == std::string::npos) {
-      status = fail("\"{}\" does not name \"{}\"", message, request.culprit);
+      status = fail("found error \"{}\", wanted one that names \"{}\"", message, request.culprit);
     }
   } else if (request.acceptance == Acceptance::kMustNot) {
-    status = fail("not refused for its {}", request.culprit);
+    status = fail("accepted invalid arguments: {}", request.culprit);
   } else {
     status = check_solves(random, **solver, request, cases, statistics);
   }
@@ -107,7 +112,7 @@ Status check_group(std::uint64_t seed, std::int64_t cases, Statistics& statistic
   }
 }
 
-/// A whole number above zero; 0 is none.
+/// The number in `text`; 0 if it is not a whole number.
 std::int64_t number_of(std::string_view text) {
   std::int64_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -124,11 +129,11 @@ int run(std::int64_t cases, std::uint64_t seed) {
                  status.error().message);
       return EXIT_FAILURE;
     }
-    // A refusal is a case too.
+    // A refusal counts as one case.
     statistics.cases +=
         std::max<std::int64_t>(1, statistics.matched + statistics.without_evidence - solved);
   }
-  fmt::print("{} cases: {} solvers asked for, {} refused; {} solves with evidence, {} without\n",
+  fmt::print("{} cases: {} solvers requested, {} refused; {} solves with evidence, {} without\n",
              statistics.cases, statistics.solvers, statistics.refusals, statistics.matched,
              statistics.without_evidence);
   return EXIT_SUCCESS;

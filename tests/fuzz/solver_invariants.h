@@ -1,4 +1,4 @@
-// What must hold of every result, whatever went in.
+// Checks the properties that every solver result must have, for any input.
 #pragma once
 
 #include "common/result.h"
@@ -6,7 +6,7 @@
 
 namespace bevloc::fuzz {
 
-/// Fails with the first that does not.
+/// Fails with the first property that does not hold.
 Status check_result(const SolverResult& result, const HypothesisGrid& hypotheses);
 
 }  // namespace bevloc::fuzz

@@ -29,7 +29,7 @@ bool reads_spectrum(SolverKind kind) {
 SolverKind draw_kind(Random& random) {
   const auto kinds = all_solver_kinds();
   const SolverKind kind = pick(random, kinds);
-  // Their spectra are of 128 x 128 whatever the grid: more than all the rest.
+  // Their Fourier transforms take longer than all other solvers together.
   return reads_spectrum(kind) && integer(random, 0, 7) > 0 ? pick(random, kinds) : kind;
 }
 
@@ -42,7 +42,7 @@ int draw_side(Random& random, SolverKind kind) {
 
 BevGrid draw_grid(Random& random, SolverKind kind) {
   BevGrid grid{draw_side(random, kind), draw_side(random, kind), 0.0};
-  // Of finer cells it takes more to make the least that the yaw spectrum can read.
+  // The yaw spectrum averages cells of 0.3 m or less, and needs at least 3 rows and columns then.
   grid.cell_m = uniform(random, std::min(grid.rows, grid.cols) < 12 ? 0.31 : 0.15, 0.62);
   return grid;
 }
@@ -109,7 +109,7 @@ void spoil_axis(Random& random, SolverRequest& request) {
     case 2:
       axis->step = axis->range * 1.01;
       break;
-    case 3:  // too many to be held
+    case 3:  // too many hypotheses
       axis->step = axis->range * log_uniform(random, 1e-300, 1e-7);
       break;
     default:
@@ -141,7 +141,7 @@ void spoil(Random& random, SolverRequest& request) {
   }
 }
 
-/// Where it is the solver's to say what it takes.
+/// Draws arguments near the limits, which the solver may accept or refuse.
 void draw_at_the_limits(Random& random, SolverRequest& request) {
   request.acceptance = Acceptance::kMay;
   request.grid = {integer(random, 1, 12), integer(random, 1, 12), uniform(random, 0.05, 0.7)};

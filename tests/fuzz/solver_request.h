@@ -1,4 +1,4 @@
-// What the fuzz program asks of make_solver(): anything that is allowed, and much that is not.
+// Draws random arguments for make_solver(), valid and invalid.
 #pragma once
 
 #include <random>
@@ -13,13 +13,14 @@ using Random = std::mt19937_64;
 inline double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution(low, high)(random);
 }
-/// `low` and `high` are included.
+/// Uniform in low ... high, both inclusive.
 inline int integer(Random& random, int low, int high) {
   return std::uniform_int_distribution(low, high)(random);
 }
 /// Uniform in the logarithm.
 double log_uniform(Random& random, double low, double high);
 
+/// Whether make_solver() must accept the arguments.
 enum class Acceptance { kMust, kMay, kMustNot };
 
 struct SolverRequest {
@@ -29,10 +30,11 @@ struct SolverRequest {
   HypothesisGrid hypotheses;
   SolverParameters parameters;
   Acceptance acceptance = Acceptance::kMust;
-  std::string culprit;  ///< what a refusal must name; empty where nothing is wrong
+  std::string culprit;  ///< text that the error message must contain; empty for valid arguments
 };
 
-/// Small, so that a million solves are cheap; the kinds that are slow even then are drawn rarely.
+/// Draws small grids, so that a million solves are cheap. Solver kinds that are slow even on small
+/// grids are drawn rarely.
 SolverRequest draw_request(Random& random);
 
 std::string describe(const SolverRequest& request);

@@ -1,4 +1,4 @@
-// What bevlocd says when something outside is wrong: exit code 2 and one clear line.
+// bevlocd ends with exit code 2 and one line on stderr when an input is wrong.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -57,7 +57,7 @@ TEST_F(BadInputTest, UnknownKey) {
 }
 
 TEST_F(BadInputTest, BrokenModel) {
-  write_file(scratch_ / "broken.onnx", "this is no model");
+  write_file(scratch_ / "broken.onnx", "not a model");
   expect_refused("--config " + config_with_model((scratch_ / "broken.onnx").string()) +
                      " --fast --duration 1 --out " + (scratch_ / "out").string(),
                  {"broken.onnx"});

@@ -1,4 +1,4 @@
-// Runs the bevlocd that was built, as a user or a service manager would.
+// Runs the built bevlocd as a process, and helpers for its files.
 #pragma once
 
 #include <filesystem>
@@ -7,12 +7,12 @@
 namespace bevloc::test {
 
 struct ProcessResult {
-  int exit_code = -1;  ///< 128 + signal number when a signal ended it
+  int exit_code = -1;  ///< 128 + signal number if a signal ended the process
   std::string out;
   std::string err;
 };
 
-/// A folder of its own for one test, empty at first and removed at the end.
+/// A new empty folder, which the destructor removes.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -27,13 +27,14 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// Waits for its end. `launcher` is put before the program, such as timeout(1) with its options.
+/// Runs bevlocd and waits for its end. `launcher` precedes the program on the command line, such as
+/// timeout(1) with its options.
 ProcessResult run_bevlocd(const std::string& arguments, const std::string& launcher = "");
 
 std::string read_text(const std::filesystem::path& file);
 void write_file(const std::filesystem::path& file, const std::string& text);
 
-/// The shipped demo configuration with its paths made absolute and one piece of text replaced.
+/// Returns the shipped demo configuration with absolute paths, and with `piece` replaced.
 std::string demo_config_with(const std::string& piece, const std::string& replacement);
 
 }  // namespace bevloc::test

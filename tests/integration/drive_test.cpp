@@ -1,4 +1,4 @@
-// Whole drives: six mock cameras in, checked CAN frames out.
+// Drives with six mock cameras, judged by their result, their files and their CAN log.
 #include <algorithm>
 #include <fstream>
 
@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sys/resource.h>
 
-#include "tests/can/independent_e2e.h"
+#include "tests/can/e2e/independent_e2e.h"
 #include "tests/integration/bevlocd_process.h"
 
 namespace bevloc::test {
@@ -29,7 +29,7 @@ E2eLogReport check_log(const std::filesystem::path& log) {
   return check_candump_log(log_file, load_dbc(std::string(BEVLOC_SOURCE_DIR) + "/can/bevloc.dbc"));
 }
 
-/// One drive, looked at from several sides.
+/// One drive, whose results several tests check.
 class DriveTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -65,7 +65,7 @@ TEST_F(DriveTest, FindsThePoseAndBeatsThePrior) {
 TEST_F(DriveTest, AccountsForEveryFrame) {
   const nlohmann::json& frames = (*result_)["frames"];
   EXPECT_EQ(uint64_t(frames["captured"]), uint64_t(frames["used"]) + uint64_t(frames["dropped"]));
-  // Ten a second from six cameras for ten seconds; the last set may still be on its way.
+  // Ten frames per second from six cameras for ten seconds; the last frameset may be under way.
   EXPECT_NEAR(double(frames["captured"]), 600.0, 12.0);
   EXPECT_LE(uint64_t(frames["dropped"]), 6U);
 }
@@ -90,8 +90,8 @@ TEST_F(DriveTest, EveryFrameOnTheBusPassesAnIndependentCheck) {
   const E2eLogReport report = check_log(*scratch_ / "can.log");
   EXPECT_EQ(report.unknown_frames, 0);
   EXPECT_EQ(report.unreadable_lines, 0);
-  EXPECT_EQ(read_text(*scratch_ / "can.log").find("(-"), std::string::npos) << "times from 0 on";
-  EXPECT_EQ(report.by_message.size(), 14U) << "every message of the DBC occurs";
+  EXPECT_EQ(read_text(*scratch_ / "can.log").find("(-"), std::string::npos) << "a time before 0";
+  EXPECT_EQ(report.by_message.size(), 14U) << "messages of the DBC file that occur";
   int localizer_frames = 0;
   for (const auto& [name, tally] : report.by_message) {
     EXPECT_TRUE(tally.is_clean()) << name;
@@ -115,11 +115,12 @@ TEST_F(DriveTest, TheSameSeedGivesTheSameLogByteForByte) {
   EXPECT_EQ(read_text(*scratch_ / "can.log"), read_text(again / "can.log"));
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they need several times it
+#if !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)  // they need several times as much
 TEST_F(DriveTest, StaysWithin120MibWithItsWholeCity) {
   rusage children{};
   ASSERT_EQ(getrusage(RUSAGE_CHILDREN, &children), 0);
-  EXPECT_LE(children.ru_maxrss, 120 * 1024) << "KiB, of the largest drive";
+  EXPECT_LE(children.ru_maxrss, 120 * 1024) << "largest resident memory of a drive, KiB";
 }
 #endif
 
@@ -140,7 +141,7 @@ TEST(DriveVariantTest, SigtermEndsADriveCleanly) {
   EXPECT_NE(result.out.find("CAN frames sent"), std::string::npos) << result.out;
 }
 
-TEST(DriveVariantTest, ADeadCameraDegradesAndTheRestGoesOn) {
+TEST(DriveVariantTest, ADeadCameraDegradesTheState) {
   const ScratchFolder scratch;
   write_file(scratch / "config.yaml",
              demo_config_with("  duration_s: 60\n",
@@ -155,8 +156,8 @@ TEST(DriveVariantTest, ADeadCameraDegradesAndTheRestGoesOn) {
   EXPECT_LT(double(result["estimate"]["lateral_m"]["mae"]), 0.4);
 }
 
-/// The demo with cameras that run free: none exposes when another does.
-nlohmann::json unsynchronised_drive(bool compensate_motion) {
+/// The demo with free-running cameras: no two cameras expose at the same time.
+nlohmann::json unsynchronized_drive(bool compensate_motion) {
   const ScratchFolder scratch;
   const std::string with_tolerance =
       demo_config_with("  tolerance_ms: 2\n  wait_ms: 60\n",
@@ -172,11 +173,11 @@ nlohmann::json unsynchronised_drive(bool compensate_motion) {
   return result;
 }
 
-TEST(DriveVariantTest, CompensationMakesUpForCamerasThatAreNotInStep) {
-  const nlohmann::json with = unsynchronised_drive(true);
-  const nlohmann::json without = unsynchronised_drive(false);
+TEST(DriveVariantTest, MotionCompensationCorrectsForUnsynchronizedCameras) {
+  const nlohmann::json with = unsynchronized_drive(true);
+  const nlohmann::json without = unsynchronized_drive(false);
   EXPECT_EQ(with["frames"]["captured"], without["frames"]["captured"]);
-  EXPECT_LE(uint64_t(with["frames"]["dropped"]), 6U) << "all frames find their set";
+  EXPECT_LE(uint64_t(with["frames"]["dropped"]), 6U) << "every frame is in a frameset";
   const auto mae = [](const nlohmann::json& result) {
     return double(result["estimate"]["longitudinal_m"]["mae"]) +
            double(result["estimate"]["lateral_m"]["mae"]);

@@ -1,9 +1,10 @@
-// Plane geometry for the simulator's tests.
+// Plane geometry for the tests of the simulator.
 #pragma once
 
 #include <algorithm>
 #include <limits>
 
+#include "common/plane.h"
 #include "sim/world/path.h"
 
 namespace bevloc::sim {
@@ -16,7 +17,7 @@ inline bool segments_cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
   return side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
 }
 
-/// Whether two polylines cross; where, if `place` is given.
+/// Whether two polylines cross. Sets `place`, if given, to a point near the crossing.
 inline bool lines_cross(const Polyline& a, const Polyline& b, Eigen::Vector2d* place = nullptr) {
   for (size_t i = 1; i < a.size(); ++i) {
     const Eigen::Vector2d low = a[i - 1].cwiseMin(a[i]);
@@ -35,9 +36,7 @@ inline bool lines_cross(const Polyline& a, const Polyline& b, Eigen::Vector2d* p
 inline double distance_to_line(const Eigen::Vector2d& point, const Polyline& line) {
   double nearest = std::numeric_limits<double>::max();
   for (size_t i = 1; i < line.size(); ++i) {
-    const Eigen::Vector2d edge = line[i] - line[i - 1];
-    const double t = std::clamp((point - line[i - 1]).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-    nearest = std::min(nearest, (point - line[i - 1] - t * edge).norm());
+    nearest = std::min(nearest, distance_to_segment(point, line[i - 1], line[i]));
   }
   return nearest;
 }

@@ -1,6 +1,6 @@
-"""Writes a tiny tree in nuScenes' layout: two scenes of three samples on two maps.
+"""Writes a small data set in nuScenes' layout: two scenes of three samples on two maps.
 
-All geometry here is worked out apart from what is tested, with quaternions alone.
+The geometry is computed independently of the tested code, with quaternions only.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -26,7 +27,7 @@ Vector = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Camera:
-    """As on nuScenes' cars (1600 x 900); time: when it fires, counted from the LIDAR_TOP."""
+    """A camera of nuScenes' cars (1600 x 900). time_us: exposure time relative to LIDAR_TOP."""
 
     focal_px: float
     cx_px: float
@@ -37,9 +38,9 @@ class Camera:
 
     @property
     def rotation_wxyz(self) -> Vector:
-        looks_ahead = (0.5, -0.5, 0.5, -0.5)  # camera z is the vehicle's x, camera x its -y
+        forward = (0.5, -0.5, 0.5, -0.5)  # camera z is the vehicle's x, camera x its -y
         turned = multiply(about("z", math.radians(self.azimuth_deg)), about("y", 0.008))
-        return multiply(turned, looks_ahead)
+        return multiply(turned, forward)
 
     @property
     def intrinsic(self) -> list[list[float]]:
@@ -59,7 +60,7 @@ CAMERAS = {
 
 
 def multiply(a: Vector, b: Vector) -> Vector:
-    """Hamilton product, w first."""
+    """The Hamilton product; quaternions are (w, x, y, z)."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (
@@ -71,6 +72,7 @@ def multiply(a: Vector, b: Vector) -> Vector:
 
 
 def about(axis: str, angle_rad: float) -> Vector:
+    """The quaternion of a rotation about an axis."""
     return (math.cos(angle_rad / 2), *(math.sin(angle_rad / 2) * (axis == a) for a in "xyz"))
 
 
@@ -79,11 +81,13 @@ def conjugate(q: Vector) -> Vector:
 
 
 def turn(q: Vector, point: Vector) -> Vector:
+    """The point rotated by a quaternion."""
     return multiply(multiply(q, (0.0, *point)), conjugate(q))[1:]
 
 
 def ego_pose(scene: int, sample: int, offset_us: int) -> tuple[Vector, Vector]:
-    """Translation and rotation: 10 m/s on a circle of 100 m, tilted a little, as real poses are."""
+    """Translation and rotation on a circle of 100 m radius at 10 m/s. The vehicle is slightly
+    tilted, like in real ego poses."""
     angle = 0.1 * (0.5 * sample + 1e-6 * offset_us)
     x, y = MAP_CENTRE
     place = (x - 20 + 100 * math.sin(angle), y + 100 * (1 - math.cos(angle)) + 2 * scene, 0.0)
@@ -92,7 +96,7 @@ def ego_pose(scene: int, sample: int, offset_us: int) -> tuple[Vector, Vector]:
 
 
 def pixel_of(camera: Camera, pose: tuple[Vector, Vector], point_map: Vector) -> Vector | None:
-    """(column, row) in the camera's own image, or None behind the camera."""
+    """(column, row) in the camera's image; None if the point is behind the camera."""
     for translation, rotation in (pose, (camera.translation_m, camera.rotation_wxyz)):
         offset = tuple(p - t for p, t in zip(point_map, translation))
         point_map = turn(conjugate(rotation), offset)
@@ -104,13 +108,13 @@ def pixel_of(camera: Camera, pose: tuple[Vector, Vector], point_map: Vector) -> 
 
 
 def ground_point(scene: int, sample: int, x_m: float, y_m: float) -> Vector:
-    """A point of the vehicle's ground at the reference time, in the map."""
+    """A ground point in the vehicle frame at the reference time, converted to the map frame."""
     place, rotation = ego_pose(scene, sample, 0)
     return tuple(p + t for p, t in zip(turn(rotation, (x_m, y_m, 0.0)), place))
 
 
-def picture(pixels: list[Vector], size_px: tuple[int, int] = IMAGE_SIZE_PX) -> Image.Image:
-    """Dark, with a soft white spot at each pixel."""
+def spot_image(pixels: list[Vector], size_px: tuple[int, int] = IMAGE_SIZE_PX) -> Image.Image:
+    """A dark image with a blurred white spot at each pixel."""
     cols, rows = np.meshgrid(np.arange(size_px[0]), np.arange(size_px[1]))
     spot_px = 1.5 * size_px[0] / 320
     value = np.full(cols.shape, float(BACKGROUND))
@@ -121,12 +125,13 @@ def picture(pixels: list[Vector], size_px: tuple[int, int] = IMAGE_SIZE_PX) -> I
 
 
 class _Nodes:
-    """Makes the geometric layers of a map."""
+    """Builds the geometric layers of a map: nodes, lines and polygons."""
 
     def __init__(self) -> None:
         self.layers: dict[str, list[dict]] = {"node": [], "line": [], "polygon": []}
 
     def _tokens(self, points: list[Vector]) -> list[str]:
+        """Adds a node per point; returns their tokens."""
         first = len(self.layers["node"])
         tokens = [f"node-{first + i}" for i in range(len(points))]
         x0, y0 = MAP_CENTRE
@@ -157,18 +162,33 @@ def box(x0: float, y0: float, x1: float, y1: float) -> list[Vector]:
 
 
 def arc(radius_m: float, last_rad: float) -> list[Vector]:
-    """From the origin eastwards, turning left."""
+    """An arc that starts at the origin towards the east and turns left."""
     angles = np.linspace(0, last_rad, 41)
     return [(radius_m * math.sin(a), radius_m * (1 - math.cos(a))) for a in angles]
 
 
 def map_expansion() -> dict:
-    """Around MAP_CENTRE: a road of 120 x 16 m (two segments that meet at x = 0, with an island) and
-    a lane that sticks out of it; a curved and a straight divider; a crossing."""
+    """A map around MAP_CENTRE: a road of 120 x 16 m (two segments that meet at x = 0, with an
+    island), a lane that extends beyond it, a curved and a straight divider, and a crossing."""
     nodes = _Nodes()
-    segment = {"is_intersection": False, "drivable_area_token": "area-0"}
+    layers = {**_areas(nodes), **_crossings(nodes), **_dividers(nodes)}
+    others = ("road_block", "walkway", "stop_line", "carpark_area", "traffic_light")
+    return {
+        "version": "1.3",
+        "canvas_edge": [1585.6, 2025.0],
+        **nodes.layers,
+        "drivable_area": [{"token": "area-0", "polygon_tokens": ["polygon-0", "polygon-1"]}],
+        **layers,
+        **{layer: [] for layer in (*others, "lane_connector")},
+        "arcline_path_3": {},
+        "connectivity": {},
+    }
+
+
+def _areas(nodes: _Nodes) -> dict[str, list[dict]]:
+    segment: dict[str, Any] = {"is_intersection": False, "drivable_area_token": "area-0"}
     island = box(-22, -6.5, -18, -5.5)
-    layers = {
+    return {
         "road_segment": [
             {
                 "token": "segment-0",
@@ -188,6 +208,11 @@ def map_expansion() -> dict:
                 "right_lane_divider_segments": [],
             }
         ],
+    }
+
+
+def _crossings(nodes: _Nodes) -> dict[str, list[dict]]:
+    return {
         "ped_crossing": [
             {
                 "token": "crossing-0",
@@ -195,6 +220,11 @@ def map_expansion() -> dict:
                 "road_segment_token": "segment-1",
             }
         ],
+    }
+
+
+def _dividers(nodes: _Nodes) -> dict[str, list[dict]]:
+    return {
         "road_divider": [
             {
                 "token": "divider-0",
@@ -207,22 +237,11 @@ def map_expansion() -> dict:
             for i, token in enumerate((nodes.line([(-60, -4), (60, -4)]), nodes.line([])))
         ],
     }
-    others = ("road_block", "walkway", "stop_line", "carpark_area", "traffic_light")
-    return {
-        "version": "1.3",
-        "canvas_edge": [1585.6, 2025.0],
-        **nodes.layers,
-        "drivable_area": [{"token": "area-0", "polygon_tokens": ["polygon-0", "polygon-1"]}],
-        **layers,
-        **{layer: [] for layer in (*others, "lane_connector")},
-        "arcline_path_3": {},
-        "connectivity": {},
-    }
 
 
 def write_tree(root: Path, marks: tuple[tuple[float, float], ...] = ()) -> None:
-    """marks: points on the ground (x, y) in each sample's vehicle frame, at its reference time,
-    that the cameras see as white spots from where they are when they fire."""
+    """Writes the data set. marks: ground points (x, y) in each sample's vehicle frame at its
+    reference time. The images show them as white spots, as seen at the camera's exposure time."""
     tables: dict[str, list[dict]] = {
         name: []
         for name in ("scene", "sample", "sample_data", "calibrated_sensor", "ego_pose", "sensor")
@@ -257,14 +276,14 @@ def write_tree(root: Path, marks: tuple[tuple[float, float], ...] = ()) -> None:
 
 
 def edit_json(path: Path, change: Callable) -> None:
-    """Lets `change` alter what a JSON file holds."""
+    """Applies `change` to the content of a JSON file."""
     content = json.loads(path.read_text())
     change(content)
     _write_json(path, content)
 
 
 def edit_table(root: Path, table: str, change: Callable[[dict], None], token: str) -> None:
-    """Lets `change` alter the row of a token."""
+    """Applies `change` to the row with the given token."""
 
     def change_row(rows: list[dict]) -> None:
         change(next(row for row in rows if row["token"] == token))
@@ -330,11 +349,11 @@ def _add_sample(tables: dict, root: Path, scene: int, sample: int, marks: tuple)
         pixels = [pixel for p in points if (pixel := pixel_of(camera, pose, p)) is not None]
         path = root / filename
         path.parent.mkdir(parents=True, exist_ok=True)
-        picture(pixels).save(path, quality=95)
+        spot_image(pixels).save(path, quality=95)
     for channel, extension in (("LIDAR_TOP", "pcd.bin"), ("RADAR_FRONT", "pcd")):
         filename = f"samples/{channel}/n015__{channel}__{name}.{extension}"
         _add_data(tables, name, channel, filename, time_us, 0, scene, sample)
-    # A sweep between key frames: part of the tables, not of any sample.
+    # A sweep between key frames is in the tables but belongs to no sample.
     sweep = f"sweeps/CAM_FRONT/n015__CAM_FRONT__{name}.jpg"
     _add_data(tables, name, "CAM_FRONT", sweep, time_us, -120_000, scene, sample, key_frame=False)
 

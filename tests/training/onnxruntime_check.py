@@ -1,7 +1,7 @@
 """Compares the daemon's executor with onnxruntime on a model file (script/check-onnxruntime).
 
-Prints, for each output, the share of values that differ by at most one quantization step. Outputs
-are real numbers; their step is the one they would have in 8 bits: the largest value / 127.
+Prints the share of values of each output that differ by at most one quantization step. Outputs are
+real numbers; as their step counts the one of an 8-bit representation, the largest value / 127.
 """
 
 from __future__ import annotations
@@ -33,30 +33,30 @@ _LEVELS_OF_8_BITS = 127
 
 @dataclass
 class Agreement:
-    """Of one output over all samples, in steps."""
+    """The agreement of one output over all samples."""
 
-    share_within_one: float
-    share_equal: float  # but for the rounding of floats: within a hundredth
-    worst: float
+    share_within_one: float  # share of values within one step
+    share_equal: float  # share of values within 0.01 steps, which allows for float rounding
+    worst: float  # largest difference in steps
 
 
 def modules_folder() -> Path:
-    """Where script/check-onnxruntime installs onnxruntime."""
+    """The folder into which script/check-onnxruntime installs onnxruntime."""
     cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     return Path(cache) / "bevloc/onnxruntime/node_modules"
 
 
 def what_is_missing() -> str:
-    """Why the check cannot run here; empty: it can."""
+    """The reason why the check cannot run on this machine; empty if it can."""
     if not shutil.which("node"):
-        return "no node"
+        return "node is not installed"
     if not (modules_folder() / "onnxruntime-node").is_dir():
-        return f"{modules_folder()}: no onnxruntime-node; run script/check-onnxruntime"
+        return f"{modules_folder()}: found no onnxruntime-node; run script/check-onnxruntime"
     return ""
 
 
 def golden_samples() -> Batch:
-    """The samples of the simulator in tests/golden: all cameras there, and some missing."""
+    """The simulated samples of tests/golden: one with all cameras, one with missing cameras."""
     images, raster, cameras = (
         torch.from_numpy(np.load(_GOLDEN / f"{name}.npy"))
         for name in ("images", "raster", "cameras")
@@ -86,7 +86,7 @@ def _write_inputs(folder: Path, batch: Batch, i: int) -> None:
 
 
 def run_onnxruntime(model: Path, batch: Batch, level: str) -> list[np.ndarray]:
-    """The outputs [samples, values], in the order of OUTPUTS."""
+    """The outputs in the order of OUTPUTS, [samples, values] each."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for i in range(len(batch)):
@@ -111,7 +111,7 @@ def compare(found: np.ndarray, expected: np.ndarray) -> Agreement:
 
 
 def agreements(model: Path, batches: list[Batch], level: str) -> dict[str, Agreement]:
-    """Of each output."""
+    """The agreement of each output."""
     network = NativeNetwork(model)
     ours = [[side.flatten(1).numpy() for side in network(batch)] for batch in batches]
     theirs = [run_onnxruntime(model, batch, level) for batch in batches]
@@ -124,7 +124,7 @@ def agreements(model: Path, batches: list[Batch], level: str) -> dict[str, Agree
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("model", type=Path)
-    parser.add_argument("--samples", type=int, default=16, help="of the evaluation scenes")
+    parser.add_argument("--samples", type=int, default=16, help="number of evaluation scenes")
     arguments = parser.parse_args()
     if missing := what_is_missing():
         sys.exit(missing)

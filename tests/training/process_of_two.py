@@ -1,4 +1,4 @@
-"""What test_distributed starts twice with torchrun: a short run on made-up samples.
+"""The program that test_distributed starts with torchrun: a short run on synthetic samples.
 
     torchrun --nproc_per_node 2 -m tests.training.process_of_two FOLDER [POISONED_POSITION]
 """
@@ -11,10 +11,10 @@ from pathlib import Path
 
 import torch
 
-from tests.training.synthetic import SyntheticStream
+from tests.training.synthetic import SyntheticStream, gradient_of
 from training.config import TrainingConfig
 from training.data import Batch
-from training.distributed import Processes
+from training.distributed import Processes, Share
 from training.errors import NotFiniteError
 from training.train import Trainer
 
@@ -23,7 +23,7 @@ SAMPLES, BATCH = 12, 4
 
 
 class PoisonedStream(SyntheticStream):
-    """One sample has no number where its view table has weights."""
+    """A stream in which the view weights of one sample are NaN."""
 
     poisoned = -1
 
@@ -36,18 +36,18 @@ class PoisonedStream(SyntheticStream):
 
 
 def regression() -> tuple[torch.nn.Module, torch.Tensor, torch.Tensor]:
-    """A model without batch normalisation, and its examples."""
+    """A model without batch normalisation, its inputs and its targets."""
     torch.manual_seed(3)
     model = torch.nn.Sequential(torch.nn.Linear(5, 4), torch.nn.Tanh(), torch.nn.Linear(4, 1))
     return model, torch.randn(EXAMPLES, 5), torch.randn(EXAMPLES, 1)
 
 
 def own_gradients(processes: Processes) -> list[torch.Tensor]:
-    """Of this process's examples, averaged over the processes."""
+    """The gradients of this process's examples, averaged over the processes."""
     model, inputs, targets = regression()
     own = slice(processes.rank, None, processes.count)
     torch.nn.functional.mse_loss(model(inputs[own]), targets[own]).backward()
-    gradients = [parameter.grad for parameter in model.parameters()]
+    gradients = [gradient_of(parameter) for parameter in model.parameters()]
     processes.average_(gradients)
     return gradients
 
@@ -60,7 +60,13 @@ def main() -> None:
     config = TrainingConfig(
         run=folder, batch=BATCH, samples=SAMPLES, warm_up_steps=1, precision="float32"
     )
-    trainer = Trainer(config, lambda _, first, s: PoisonedStream(first, s), [], processes)
+    streams: list[PoisonedStream] = []
+
+    def make_stream(_: TrainingConfig, first: int, share: Share) -> PoisonedStream:
+        streams.append(PoisonedStream(first, share))
+        return streams[-1]
+
+    trainer = Trainer(config, make_stream, [], processes)
     try:
         trainer.run()
     except NotFiniteError as error:
@@ -69,7 +75,7 @@ def main() -> None:
     state = {
         "net": trainer.net.state_dict(),
         "average": trainer.average.state_dict(),
-        "positions": trainer.stream.positions,
+        "positions": streams[-1].positions,
         "gradients": own_gradients(processes),
         "first_says": processes.from_first(10.0 + processes.rank),
     }

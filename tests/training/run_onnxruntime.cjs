@@ -1,7 +1,7 @@
 // Runs a model file on onnxruntime:
 //   NODE_PATH=... node run_onnxruntime.cjs MODEL FOLDER SAMPLES LEVEL
-// Reads FOLDER/<sample>/<input>.bin and writes FOLDER/<sample>/<output>.bin, raw elements of each
-// tensor. LEVEL: onnxruntime's graph optimisation, "disabled" or "all".
+// Reads FOLDER/<sample>/<input>.bin and writes FOLDER/<sample>/<output>.bin, which hold the raw
+// elements of each tensor. LEVEL: onnxruntime's graph optimisation, "disabled" or "all".
 'use strict';
 const fs = require('fs');
 const path = require('path');

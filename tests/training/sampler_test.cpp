@@ -14,7 +14,7 @@
 namespace bevloc {
 namespace {
 
-// What the C interface promises (sampler.h).
+// Sizes of the C interface (sampler.h).
 constexpr size_t kCameras = 6;
 constexpr size_t kPixels = 96 * 320;
 constexpr size_t kImages = kCameras * 3 * kPixels;
@@ -25,7 +25,7 @@ constexpr int kUsual = 0;
 constexpr int kStrong = 1;
 constexpr uint64_t kSamplesPerWorld = 16;
 
-// Tests keep to seeds that training never sees.
+// A seed that training never uses.
 constexpr uint64_t kSeed = 17;
 
 struct Batch {
@@ -60,7 +60,7 @@ Batch sample(uint64_t first_sample, int count, int threads, double drop_probabil
   return batch;
 }
 
-/// The last samples of one world and the first of the next, with cameras missing.
+/// The last three samples of one world and the first two of the next, with missing cameras.
 const Batch& two_worlds() {
   static const Batch batch = sample(kSamplesPerWorld - 3, 5, 1, 1.0);
   return batch;
@@ -124,7 +124,7 @@ TEST(Sampler, MissingCamerasAreBlackAndTheOthersAreNot) {
           batch.images.begin() + static_cast<std::ptrdiff_t>(i * kImages + camera * 3 * kPixels);
       const auto [darkest, brightest] = std::minmax_element(first, first + 3 * kPixels);
       if (cameras[camera]) {
-        EXPECT_GT(*brightest - *darkest, 10) << "a picture shows something";
+        EXPECT_GT(*brightest - *darkest, 10) << "an image of a present camera has no contrast";
       } else {
         EXPECT_EQ(*brightest, 0);
       }
@@ -134,6 +134,7 @@ TEST(Sampler, MissingCamerasAreBlackAndTheOthersAreNot) {
   for (const uint8_t cameras : complete.cameras) EXPECT_EQ(cameras, 0b111111);
 }
 
+/// The value of a raster channel, interpolated bilinearly; -1 outside.
 double value_at(const uint8_t* channel, double row, double col) {
   const auto r = static_cast<int>(std::floor(row));
   const auto c = static_cast<int>(std::floor(col));
@@ -147,8 +148,8 @@ double value_at(const uint8_t* channel, double row, double col) {
          v * ((1 - u) * at(r + 1, c) + u * at(r + 1, c + 1));
 }
 
-/// Mean difference between the truth raster and the prior raster seen through a correction:
-/// a point p of the true vehicle frame is dT * p in the prior's.
+/// Mean absolute difference between the truth raster and the prior raster moved by a correction: a
+/// point p in the true vehicle frame is dT * p in the prior's frame.
 double mismatch(const uint8_t* prior, const uint8_t* truth, const Se2& correction) {
   double sum = 0.0;
   double count = 0.0;
@@ -175,7 +176,7 @@ TEST(Sampler, TheCorrectionTakesThePriorRasterToTheTrueOne) {
   for (size_t i = 0; i < batch.size(); ++i) {
     const uint8_t* prior = batch.prior.data() + i * kRaster;
     const uint8_t* truth = batch.truth.data() + i * kRaster;
-    ASSERT_GT(*std::max_element(truth, truth + kRaster), 0) << "no map around the vehicle";
+    ASSERT_GT(*std::max_element(truth, truth + kRaster), 0) << "the raster is empty";
     const Se2 correction{batch.correction[3 * i], batch.correction[3 * i + 1],
                          batch.correction[3 * i + 2]};
     const double right = mismatch(prior, truth, correction);
@@ -208,7 +209,7 @@ TEST(Sampler, TheViewTableIsThatOfTheRigWithItsCameras) {
   }
 }
 
-TEST(Sampler, StrongNuisancesMoveCamerasNowAndThenAndUsualOnesNever) {
+TEST(Sampler, OnlyStrongNuisancesMoveCamerasInSomeSamples) {
   const Batch usual = sample(0, kSamplesPerWorld, 1, 0.0);
   EXPECT_EQ(usual.motions, std::vector<float>(usual.motions.size()));
   const Batch strong = sample(0, kSamplesPerWorld, 1, 0.0, kStrong);
@@ -227,12 +228,12 @@ TEST(Sampler, StrongNuisancesMoveCamerasNowAndThenAndUsualOnesNever) {
 TEST(Sampler, TheViewTableFollowsTheMotions) {
   std::vector<int32_t> index(kViewTable);
   std::vector<float> still(kViewTable);
-  std::vector<float> at_once(kViewTable);
+  std::vector<float> zero_motion(kViewTable);
   std::vector<float> moved(kViewTable);
   std::vector<float> motions(kMotions);
   bevloc_view_table(0b111111, index.data(), still.data(), nullptr);
-  bevloc_view_table(0b111111, index.data(), at_once.data(), motions.data());
-  EXPECT_EQ(at_once, still);
+  bevloc_view_table(0b111111, index.data(), zero_motion.data(), motions.data());
+  EXPECT_EQ(zero_motion, still);
   motions[0] = 0.6F;
   bevloc_view_table(0b111111, index.data(), moved.data(), motions.data());
   EXPECT_NE(moved, still);

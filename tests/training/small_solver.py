@@ -1,4 +1,4 @@
-"""A solver small enough for exact checks: 20 x 10 cells, 5 x 3 x 5 hypotheses, float64."""
+"""Solvers small enough for exact checks: 20 x 10 cells, 5 x 3 x 5 hypotheses, float64."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def small_solvers(scale: float = 20.0, omega: float = 1.6) -> PoseSolvers:
 
 
 def random_features(seed: int, batch: int = 2) -> tuple[Tensor, Tensor]:
-    """F_B and F_M that have something in common."""
+    """Random F_M, and F_B that equals F_M plus noise."""
     generator = torch.Generator().manual_seed(seed)
     shape = (batch, CHANNELS, SMALL.rows, SMALL.cols)
     features_map = torch.randn(shape, generator=generator, dtype=torch.float64)

@@ -1,4 +1,4 @@
-"""Made-up samples for the tests of training."""
+"""Synthetic samples for the tests of training."""
 
 from __future__ import annotations
 
@@ -11,8 +11,14 @@ from training.data import Batch
 from training.distributed import WHOLE, Share
 
 
+def gradient_of(parameter: Tensor) -> Tensor:
+    """The gradient of a parameter that has one."""
+    assert parameter.grad is not None
+    return parameter.grad
+
+
 class SyntheticStream:
-    """Random samples; sample i depends on i alone, as the simulator's do."""
+    """A stream of random samples. Sample i depends only on i, like the simulator's."""
 
     def __init__(self, first_sample: int, share: Share = WHOLE) -> None:
         self._next, self._stride = first_sample + share.index, share.count

@@ -1,4 +1,4 @@
-"""The command that measures variants of the decoupled solver."""
+"""Tests training.ablation, which measures variants of the decoupled solver."""
 
 from __future__ import annotations
 
@@ -7,11 +7,24 @@ import unittest
 
 import torch
 
-from training.ablation import SCALES, VARIANTS, Baseline, NoCrop, first_scenes, solve, table_row
-from training.solver import DEFINITION, PoseSolvers, estimate, standardise
+from training.ablation import (
+    SCALES,
+    VARIANTS,
+    Baseline,
+    NoCrop,
+    Scenes,
+    first_scenes,
+    solve,
+    table_row,
+)
+from training.solver import DEFINITION, PoseSolvers, Posterior, estimate, standardise
 
 
 class Ablation(unittest.TestCase):
+    scenes: Scenes
+    found: torch.Tensor
+    posterior: Posterior
+
     @classmethod
     def setUpClass(cls):
         torch.set_num_threads(1)
@@ -51,7 +64,7 @@ class Ablation(unittest.TestCase):
                     torch.testing.assert_close(p.sum(1), torch.ones(2))
                 self.assertGreater((found - self.found).abs().max().item(), 1e-4)
 
-    def test_a_change_of_the_axis_step_leaves_yaw_as_it_is(self):
+    def test_a_change_of_the_axis_step_does_not_change_yaw(self):
         found, _ = solve(NoCrop(), self.scenes)
         self.assertTrue(found[:, 2].equal(self.found[:, 2]))
 

@@ -1,4 +1,4 @@
-"""Several processes train as one."""
+"""Tests that several processes train like one."""
 
 import subprocess
 import sys
@@ -17,8 +17,8 @@ from training.errors import CheckpointError
 from training.train import Trainer
 
 LAUNCHER = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc_per_node", "2"]
-# Without these torch 1.13 does not start on Python 3.11: it finds no "nothing" among the streams
-# that can be redirected. They name a process that there is not.
+# PyTorch 1.13 does not start on Python 3.11 without redirections, because its empty default is not
+# a valid member of the enumeration of streams. These options name a process that does not exist.
 LAUNCHER += ["--redirects", "9:1", "--tee", "9:1"]
 
 
@@ -30,6 +30,9 @@ def run_two(*arguments: str) -> None:
 
 
 class TwoProcesses(unittest.TestCase):
+    run_folder: Path
+    ranks: list[dict]
+
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()
@@ -60,7 +63,7 @@ class TwoProcesses(unittest.TestCase):
     def test_the_first_decides(self):
         self.assertEqual([state["first_says"] for state in self.ranks], [10.0, 10.0])
 
-    def test_the_first_alone_writes_what_another_number_of_processes_cannot_go_on_with(self):
+    def test_only_the_first_writes_and_another_number_of_processes_cannot_resume(self):
         names = {path.name for path in self.run_folder.iterdir()}
         self.assertEqual(names, {"checkpoint.pt", "rank0.pt", "rank1.pt"})
         config = TrainingConfig(run=self.run_folder, samples=SAMPLES, resume=True)
@@ -69,7 +72,7 @@ class TwoProcesses(unittest.TestCase):
 
 
 class Poison(unittest.TestCase):
-    def test_a_loss_that_is_no_number_in_one_stops_both(self):
+    def test_a_nan_loss_in_one_process_stops_both(self):
         with tempfile.TemporaryDirectory() as folder:
             run_two(folder, "5")
             errors = [(Path(folder) / f"error{rank}").read_text() for rank in (0, 1)]
@@ -81,7 +84,7 @@ class Poison(unittest.TestCase):
 
 class Shares(unittest.TestCase):
     def images(self, first: int, share: Share, count: int) -> list[torch.Tensor]:
-        """Of the simulator's samples, a row each."""
+        """The images of simulated samples, one flat tensor per sample."""
         stream = SamplerStream(1_000_000, first, 1, 0.0, share)
         rows = list(stream.next(count).images.flatten(1))
         stream.close()

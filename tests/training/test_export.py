@@ -1,4 +1,4 @@
-"""Quantization and the ONNX file, on an untrained network."""
+"""Tests quantization and the ONNX files, on an untrained network."""
 
 import copy
 import math
@@ -13,11 +13,11 @@ from onnx import numpy_helper
 
 from tests.training.synthetic import SyntheticStream
 from tests.training.untrained import untrained_network
+from training.data import Batch, view_table
 from training.errors import TrainingError
-from training.data import view_table
 from training.evaluate import float_inference
 from training.export_onnx import build_model
-from training.graph import Walk, check_walkable, folded_convolutions
+from training.graph import Walk, check_exportable, folded_convolutions
 from training.models import PRESETS, BevNetwork
 from training.models.config import network_config
 from training.onnx_graph import FloatOnnxBackend, Int8OnnxBackend
@@ -43,7 +43,7 @@ def constants_of(model: onnx.ModelProto) -> dict[str, np.ndarray]:
 
 
 class Scales(unittest.TestCase):
-    def test_an_outlier_is_clipped_rather_than_all_else_rounded_away(self):
+    def test_an_outlier_is_clipped_to_keep_the_other_values_precise(self):
         torch.manual_seed(0)
         values = torch.cat((torch.rand(200_000), torch.tensor([100.0])))
         scale = best_scale(values, unsigned=True)
@@ -60,7 +60,8 @@ class Scales(unittest.TestCase):
             for unsigned in (True, False):
                 scale = best_scale(torch.linspace(0, largest, 1000), unsigned)
                 self.assertEqual(math.frexp(scale.scale)[0], 0.5)
-                self.assertLess(scale.clips(torch.linspace(0, largest, 1000)).float().mean(), 0.2)
+                clipped = scale.clips(torch.linspace(0, largest, 1000)).float().mean()
+                self.assertLess(clipped.item(), 0.2)
 
     def test_scales_of_weights_have_short_mantissas(self):
         for conv in folded_convolutions(untrained_network()).values():
@@ -76,6 +77,13 @@ class Scales(unittest.TestCase):
 
 
 class Export(unittest.TestCase):
+    net: BevNetwork
+    batch: Batch
+    quantization: Quantization
+    model: onnx.ModelProto
+    float_model: onnx.ModelProto
+    constants: dict[str, np.ndarray]
+
     @classmethod
     @torch.no_grad()
     def setUpClass(cls):
@@ -104,8 +112,8 @@ class Export(unittest.TestCase):
         for a, b in zip(expected, rounded):
             self.assertLess((a - b).std().item(), 0.5 * a.std().item())
 
-    def test_biases_take_out_the_mean_of_the_rounding_error(self):
-        """Of the last layers, in which the errors of all others come together."""
+    def test_bias_correction_removes_the_mean_rounding_error(self):
+        """Checked on the network's outputs, where the errors of all layers add up."""
         convolutions, uncorrected = self.quantization.convolutions, copy.deepcopy(self.quantization)
         for name, step in bias_steps(self.net, uncorrected).items():
             uncorrected.quantized[name].bias = round_bias(convolutions[name].bias, step)
@@ -163,7 +171,7 @@ class Export(unittest.TestCase):
         for a, b in zip(found, int8_inference(self.net, self.quantization)(batch)):
             self.assertTrue(torch.equal(a, b))
 
-    def test_space_to_depth_meets_its_weights_in_its_own_order(self):
+    def test_weights_after_space_to_depth_are_in_its_channel_order(self):
         name = "map_encoder.layers.0"
         weight = self.quantization.quantized[name].weight.numpy()
         exported = self.constants[f"{name}.weight"]
@@ -175,14 +183,14 @@ class Export(unittest.TestCase):
                         weight[:, channel * 4 + row * 2 + col],
                     )
 
-    def test_what_the_executor_cannot_express_is_refused(self):
+    def test_parts_that_the_executor_does_not_support_are_refused(self):
         for name, part in (("small", "view transform is kernel"), ("paper-resnet50", "resnet50")):
             with self.assertRaisesRegex(TrainingError, f"'{name}' cannot be exported.*{part}"):
-                check_walkable(PRESETS[name])
+                check_exportable(PRESETS[name])
         with self.assertRaisesRegex(TrainingError, "kernel"):
             Walk(BevNetwork(network_config("nano", "kernel")), {}, FloatOnnxBackend())
 
-    def test_solver_parameters_travel_with_the_model(self):
+    def test_the_model_file_contains_the_solver_parameters(self):
         properties = {entry.key: entry.value for entry in self.model.metadata_props}
         self.assertEqual(properties["bevloc.model"], "nano")
         for name in ("joint", "x", "y", "yaw"):

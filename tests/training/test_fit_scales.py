@@ -1,44 +1,50 @@
-"""Scales that are fitted to finished features."""
+"""Tests the scales that are fitted to finished features."""
 
 from __future__ import annotations
 
 import unittest
-from types import SimpleNamespace
 
 import torch
 from torch import Tensor
 
+from training.data import Batch
 from training.fit_scales import fit_scales, fit_sigma_scale
 from training.losses import pose_losses
-from training.solver import KINDS, PoseSolvers, Solution
+from training.solver import KINDS, Posterior, PoseSolvers, Solution
 from training.synthetic_scene import features_under
 
 CORRECTIONS = torch.tensor([[0.5, -0.3, 0.01], [-1.2, 0.4, -0.02], [1.6, 0.1, 0.005]])
+NOTHING = torch.empty(0)
 
 
-def batches(noise: float) -> list[SimpleNamespace]:
+def features_batch(bev: Tensor, features_map: Tensor, correction: Tensor) -> Batch:
+    """A batch that carries features in place of rasters."""
+    return Batch(NOTHING, NOTHING, bev, features_map, correction, NOTHING, NOTHING)
+
+
+def batches(noise: float) -> list[Batch]:
     """One noisy scene each."""
     result = []
     for seed, correction in enumerate(CORRECTIONS):
         bev, features_map = features_under(correction, seed, channels=4)
         generator = torch.Generator().manual_seed(seed)
         bev = bev + noise * torch.randn(bev.shape, generator=generator)
-        result.append(SimpleNamespace(sides=(bev, features_map), correction=correction[None]))
+        result.append(features_batch(bev, features_map, correction[None]))
     return result
 
 
-def infer(batch: SimpleNamespace) -> tuple[Tensor, Tensor, None]:
-    return *batch.sides, None
+def infer(batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
+    return batch.raster_prior, batch.raster_truth, NOTHING
 
 
 class FitScales(unittest.TestCase):
     @torch.no_grad()
-    def loss(self, solvers: PoseSolvers, kind: str, samples: list[SimpleNamespace]) -> float:
-        found = [solvers.solve(kind, *s.sides).posterior for s in samples]
+    def loss(self, solvers: PoseSolvers, kind: str, samples: list[Batch]) -> float:
+        found = [solvers.solve(kind, *infer(s)[:2]).posterior for s in samples]
         losses = [pose_losses(p, s.correction).sum() for p, s in zip(found, samples)]
         return torch.stack(losses).mean().item()
 
-    def test_every_solver_gains_from_poor_scales(self):
+    def test_fitting_improves_poor_scales_of_every_solver(self):
         samples = batches(0.5)
         kinds = [k for k in KINDS if k in ("decoupled", "banded", "block", "decoupled+refine")]
         solvers = PoseSolvers()
@@ -54,11 +60,12 @@ class FitScales(unittest.TestCase):
         samples = []
         for _ in range(50):
             correction = torch.randn(8, 3, generator=generator)
-            samples.append(SimpleNamespace(sides=(correction, correction), correction=correction))
+            samples.append(features_batch(correction, correction, correction))
 
         def solve(bev: Tensor, _: Tensor) -> Solution:
             error = torch.randn(bev.shape, generator=generator)
-            return Solution(bev + 2.0 * error, torch.ones_like(bev), None)
+            unused = Posterior(NOTHING, NOTHING, NOTHING)
+            return Solution(bev + 2.0 * error, torch.ones_like(bev), unused)
 
         self.assertAlmostEqual(fit_sigma_scale(infer, solve, samples), 2.0, delta=0.1)
 

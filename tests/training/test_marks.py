@@ -1,4 +1,4 @@
-"""What programs write into documents."""
+"""Tests the generated parts of documents."""
 
 from __future__ import annotations
 

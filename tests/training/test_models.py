@@ -1,13 +1,15 @@
-"""The networks by configuration."""
+"""Tests the configurable networks."""
 
 import math
 import unittest
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import torch
 from torch import nn
 
+from tests.training.synthetic import gradient_of
 from training import model_table
 from training.models import PRESETS, BevNetwork, ModelConfig
 from training.models.config import VIEWS
@@ -17,6 +19,7 @@ from training.models.layers import Attention, cell_centres, sine_encoding
 from training.models.network import make_view
 from training.models.resnet50 import ResNet50
 from training.models.rig import Camera, nominal_cameras
+from training.models.view_dense import DenseView
 from training.models.view_kernel import kernel_of_table
 from training.solvers.definition import DEFINITION
 
@@ -30,7 +33,7 @@ def setUpModule():
 
 
 def reduced(config: ModelConfig) -> ModelConfig:
-    """Small images and narrow attention where the preset's are big."""
+    """The configuration with smaller images and narrower attention if the preset's are large."""
     if config.token_grid is None:
         return config
     return replace(
@@ -55,8 +58,10 @@ def parameters(module: nn.Module) -> int:
     return sum(parameter.numel() for parameter in module.parameters())
 
 
-def table_of(projections: dict[int, tuple[int, float, float]], grid: tuple[int, int]):
-    """A view table in which each given BEV cell sees (camera, row, column) inside the image."""
+def table_of(
+    projections: dict[int, tuple[int, float, float]], grid: tuple[int, int]
+) -> tuple[torch.Tensor, torch.Tensor]:
+    """A view table in which each given BEV cell projects to (camera, row, column)."""
     rows, cols = grid
     index = torch.zeros(1, 8, CELLS, dtype=torch.long)
     weight = torch.zeros(1, 8, CELLS)
@@ -108,8 +113,9 @@ class Presets(unittest.TestCase):
             for name, parameter in network.named_parameters():
                 if not name.startswith("solvers."):
                     self.assertIsNotNone(parameter.grad, f"{config.name}: {name}")
-                    self.assertTrue(parameter.grad.isfinite().all(), f"{config.name}: {name}")
-                    self.assertTrue(parameter.grad.any(), f"{config.name}: {name}")
+                    gradient = gradient_of(parameter)
+                    self.assertTrue(gradient.isfinite().all(), f"{config.name}: {name}")
+                    self.assertTrue(gradient.any(), f"{config.name}: {name}")
 
     def test_training_in_bfloat16(self):
         for kind in VIEWS:
@@ -121,10 +127,10 @@ class Presets(unittest.TestCase):
                 bev = view(features.bfloat16(), *table).float()
             torch.testing.assert_close(bev, exact, rtol=0.1, atol=0.1)
             bev.square().mean().backward()
-            self.assertTrue(features.grad.isfinite().all())
+            self.assertTrue(gradient_of(features).isfinite().all())
 
-    def test_what_does_not_fit_is_refused(self):
-        wrong = (
+    def test_invalid_configurations_are_refused(self):
+        wrong: tuple[dict[str, Any], ...] = (
             {"trunk": "vgg"},
             {"view": "flat"},
             {"channels": 5},
@@ -169,10 +175,11 @@ class KnownNetworks(unittest.TestCase):
 
     def test_bemapnet(self):
         for name, neck_millions in (("paper-resnet50", 1.43), ("paper-efficientnet", 0.59)):
-            trunk = BevNetwork(PRESETS[name]).trunk
-            self.assert_close(parameters(trunk.neck), neck_millions)
+            trunk = BevNetwork(PRESETS[name]).get_submodule("trunk.neck")
+            self.assert_close(parameters(trunk), neck_millions)
         network = BevNetwork(PRESETS["paper-resnet50"])
-        self.assert_close(parameters(network.view) + parameters(network.trunk.mix), 20.28)
+        mix = network.get_submodule("trunk.mix")
+        self.assert_close(parameters(network.view) + parameters(mix), 20.28)
 
 
 class ViewTransforms(unittest.TestCase):
@@ -198,7 +205,7 @@ class ViewTransforms(unittest.TestCase):
                 torch.testing.assert_close(both[sample : sample + 1], alone, rtol=1e-4, atol=1e-5)
 
     @torch.no_grad()
-    def test_a_camera_that_is_missing_is_not_looked_at(self):
+    def test_missing_cameras_have_no_effect(self):
         for kind in VIEWS:
             config, view = small_view(kind)
             features = torch.randn(6, config.width, *config.feature_grid)
@@ -212,7 +219,7 @@ class ViewTransforms(unittest.TestCase):
 
 class KernelViews(unittest.TestCase):
     @torch.no_grad()
-    def test_an_image_cell_reaches_only_the_cells_whose_keys_cover_it(self):
+    def test_an_image_cell_affects_only_the_bev_cells_whose_keys_cover_it(self):
         config, view = small_view("kernel")
         rows, cols = config.feature_grid
         generator = torch.Generator().manual_seed(5)
@@ -241,7 +248,7 @@ class KernelViews(unittest.TestCase):
         index, weight = table_of({42: (2, 1.75, 0.0)}, (4, 8))
         kernel = kernel_of_table(index, weight, (4, 8), 3)
         valid = kernel.log_share[0, 42].isfinite()
-        # Column -1 is outside of the image, and the second camera is none.
+        # Column -1 is outside the image, and there is no second camera.
         self.assertEqual(int(valid.sum()), 6)
         first = 2 * 32
         expected = [first + row * 8 + col for row in (1, 2, 3) for col in (0, 1)]
@@ -266,8 +273,9 @@ class KernelViews(unittest.TestCase):
 
 class DenseViews(unittest.TestCase):
     @torch.no_grad()
-    def test_nobody_attends_above_the_horizon(self):
+    def test_image_cells_above_the_horizon_have_no_effect(self):
         config, view = small_view("dense")
+        assert isinstance(view, DenseView)
         above = view.above_horizon.unflatten(0, (6, *config.feature_grid))
         self.assertTrue(above.any() and not above.all())
         features = torch.randn(6, config.width, *config.feature_grid)
@@ -277,15 +285,16 @@ class DenseViews(unittest.TestCase):
         torch.testing.assert_close(view(features, *table), before)
 
     def test_where_image_cells_see_the_ground(self):
-        # Looks forward from 1.5 m, the horizon between rows 3 and 4 of 8.
+        # The camera looks forward from 1.5 m height; the horizon is between rows 3 and 4 of 8.
         pose = torch.tensor([[0.0, 0, 1, 2], [-1, 0, 0, 0.5], [0, -1, 0, 1.5], [0, 0, 0, 1]])
         camera = Camera(10.0, 10.0, 3.5, 3.5, pose)
         ground, sees = camera.ground_positions((8, 8), (8, 8))
         self.assertEqual(sees.any(1).tolist(), [False] * 4 + [True] * 4)
-        # Row 6 is 2.5 pixels down: 1.5 * 10 / 2.5 = 6 m ahead; column 0 is 3.5 pixels left.
+        # Row 6 is 2.5 pixels below the horizon: 1.5 * 10 / 2.5 = 6 m ahead. Column 0 is 3.5 pixels
+        # left of the centre.
         torch.testing.assert_close(ground[6, 0], torch.tensor([2 + 6.0, 0.5 + 6.0 * 3.5 / 10]))
         self.assertEqual(ground[0, 0].tolist(), [0.0, 0.0])
-        # Cells of 2 x 2 pixels have their centres between these.
+        # The centres of cells of 2 x 2 pixels lie between pixels.
         coarse, _ = camera.ground_positions((8, 8), (4, 4))
         torch.testing.assert_close(coarse[3, 0, 0], torch.tensor(2 + 1.5 * 10 / 3.0))
 
@@ -320,12 +329,12 @@ class Costs(unittest.TestCase):
         projections = (5 + 7 + 7 + 5) * 8 * 8
         self.assertEqual(sum(cost.macs.values()), projections + 2 * 5 * 7 * 8)
 
-    def test_memory_is_given_back(self):
+    def test_freed_memory_does_not_count(self):
         chain = nn.Sequential(*(nn.Conv2d(4, 4, 1) for _ in range(5))).to("meta")
         image = torch.empty(1, 4, 16, 16, device="meta")
         self.assertEqual(measure(chain, lambda: chain(image)).peak_bytes, 2 * 4 * 4 * 16 * 16)
 
-    def test_what_works_in_place_takes_no_memory(self):
+    def test_operations_in_place_take_no_memory(self):
         layer = nn.Sequential(nn.Conv2d(4, 4, 1), nn.ReLU(inplace=True)).to("meta")
         image = torch.empty(1, 4, 16, 16, device="meta")
         self.assertEqual(measure(layer, lambda: layer(image)).peak_bytes, 4 * 4 * 16 * 16)
@@ -346,7 +355,7 @@ class Costs(unittest.TestCase):
             },
         )
 
-    def test_the_document_tells_what_is_counted(self):
+    def test_the_document_has_the_counted_costs(self):
         document = model_table.DOCUMENT.read_text()
         for config in model_table.configurations():
             cells = model_table.counted_cells(config, cost_of(config))

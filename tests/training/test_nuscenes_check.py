@@ -1,4 +1,4 @@
-"""The command that looks over a nuScenes tree."""
+"""Tests training.nuscenes.check, which checks a nuScenes tree."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""nuScenes' key frames as samples: cameras, view table, motion between cameras, prior, skipping."""
+"""Tests samples from nuScenes' key frames: cameras, view table, motion, prior, bad samples."""
 
 import contextlib
 import io
@@ -21,8 +21,8 @@ from tests.training.nuscenes_tree import (
     edit_table,
     ego_pose,
     ground_point,
-    picture,
     pixel_of,
+    spot_image,
     write_tree,
 )
 from training.data import Batch
@@ -63,7 +63,7 @@ def nominal_cameras() -> tuple[list[Pinhole], list[np.ndarray]]:
 
 
 def centroid(plane: np.ndarray) -> np.ndarray:
-    """(column, row) of what is brighter than the background."""
+    """(column, row) of the centroid of the pixels brighter than the background."""
     light = np.clip(plane.astype(float) - BACKGROUND - 15, 0, None)
     rows, cols = np.indices(plane.shape)
     return np.array([(cols * light).sum(), (rows * light).sum()]) / light.sum()
@@ -94,7 +94,7 @@ class NetworkCamera(unittest.TestCase):
         f, cx, cy = (scale * v for v in (camera.focal_px, camera.cx_px, camera.cy_px))
         real = Pinhole(*size_px, f, f, cx, cy)
         network = network_camera(real, se3(camera.rotation_wxyz, camera.translation_m))
-        picture([(col, row)], size_px).save(self.path, quality=95)
+        spot_image([(col, row)], size_px).save(self.path, quality=95)
         planes = look_through(self.path, real, network)
         self.assertEqual((planes.dtype, planes.shape), (np.uint8, (3, 96, 320)))
         ray = np.array([col - cx, row - cy]) / f
@@ -112,15 +112,15 @@ class NetworkCamera(unittest.TestCase):
             real = Pinhole(320, 180, *(camera.focal_px / 5,) * 2, 160.0, 90.0)
             vehicle_from_camera = se3(camera.rotation_wxyz, camera.translation_m)
             network = network_camera(real, vehicle_from_camera)
-            # A level direction in the middle plane of the camera, in camera axes.
+            # A horizontal direction in the camera's vertical centre plane, in camera axes.
             right = vehicle_from_camera[:3, 0]
             level = np.cross(np.array([0, 0, 1.0]), right)
             _, y, z = vehicle_from_camera[:3, :3].T @ level
             self.assertAlmostEqual(network.fy_px * y / z + network.cy_px, 14.0, places=6)
 
-    def test_rows_that_the_camera_does_not_have_are_black(self):
+    def test_rows_outside_the_real_image_are_black(self):
         real = Pinhole(320, 100, 250.0, 250.0, 160.0, 50.0)
-        picture([], (320, 100)).save(self.path)
+        spot_image([], (320, 100)).save(self.path)
         looks_ahead = se3((0.5, -0.5, 0.5, -0.5), (0, 0, 1.5))
         planes = look_through(self.path, real, network_camera(real, looks_ahead))
         self.assertEqual(planes[:, 70:].max(), 0)
@@ -144,13 +144,13 @@ class Tree(unittest.TestCase):
     def dataset(self) -> NuscenesDataset:
         return NuscenesDataset(self.root)
 
-    def edit(self, table: str, token: str, key: str, value) -> None:
+    def edit(self, table: str, token: str, key: str, value: object) -> None:
         edit_table(self.root, table, lambda row: row.update({key: value}), token)
 
 
 class Motion(Tree):
-    """Each camera fires at a time of its own; a spot on the ground must still be found where the
-    table says that its BEV cell is."""
+    """The cameras expose at different times. A spot on the ground must still appear at the pixel
+    that the view table gives for its BEV cell."""
 
     CELLS = [
         int(np.argmin(np.hypot(*(cell_centres() - point).T)))
@@ -164,7 +164,7 @@ class Motion(Tree):
     MARKS = tuple(map(tuple, cell_centres()[CELLS]))
 
     def table_pixel(self, index: np.ndarray, weight: np.ndarray, cell: int) -> np.ndarray:
-        """Where one camera alone sees a cell: the mean of its bilinear neighbours."""
+        """The pixel at which a single camera sees a cell: the mean of its bilinear neighbours."""
         rows, cols = np.divmod(index[:, cell] % 480, 40)
         place = np.stack((cols, rows), axis=1) * 8 + 3.5
         self.assertAlmostEqual(float(weight[:, cell].sum()), 1.0, places=5)
@@ -179,11 +179,12 @@ class Motion(Tree):
                 found = centroid(sample.images[camera, 0])
                 np.testing.assert_allclose(found, expected, atol=0.15)
 
-    def test_without_motion_it_would_not_be(self):
+    def test_ignoring_the_motion_would_be_noticed(self):
         camera, scene, sample = CAMERAS["CAM_FRONT_LEFT"], 0, 1
         point = ground_point(scene, sample, *self.MARKS[0])
         then = pixel_of(camera, ego_pose(scene, sample, camera.time_us), point)
         now = pixel_of(camera, ego_pose(scene, sample, 0), point)
+        assert then is not None and now is not None
         self.assertGreater(math.dist(then, now), 5.0)
 
     def test_the_pose_is_that_of_the_lidar(self):
@@ -235,7 +236,7 @@ class BadSamples(Tree):
     IMAGE = "samples/CAM_BACK/n015__CAM_BACK__0-1.jpg"
 
     def refuse(self, error: type, message: str) -> None:
-        """Sample 1 is refused; the others are none the worse."""
+        """Checks that sample 1 is refused and another one is not."""
         dataset = self.dataset()
         with self.assertRaisesRegex(error, message):
             dataset.sample(1, NO_DEVIATION)
@@ -246,26 +247,26 @@ class BadSamples(Tree):
         self.refuse(MissingFileError, "CAM_BACK__0-1.jpg: found no such file")
 
     def test_an_image_of_another_size(self):
-        picture([], (160, 90)).save(self.root / self.IMAGE)
+        spot_image([], (160, 90)).save(self.root / self.IMAGE)
         self.refuse(WrongSizeError, "CAM_BACK__0-1.jpg: found 160x90 pixels, wanted 320x180")
 
     def test_an_image_that_is_cut_off(self):
         path = self.root / self.IMAGE
         path.write_bytes(path.read_bytes()[:600])
-        self.refuse(UnreadableImageError, "CAM_BACK__0-1.jpg: no image")
+        self.refuse(UnreadableImageError, "CAM_BACK__0-1.jpg: unreadable as an image")
         path.write_text("no image at all")
-        self.refuse(UnreadableImageError, "CAM_BACK__0-1.jpg: no image")
+        self.refuse(UnreadableImageError, "CAM_BACK__0-1.jpg: unreadable as an image")
 
     def test_a_pose_that_does_not_exist(self):
         self.edit("sample_data", "data-CAM_BACK-0-1", "ego_pose_token", "lost")
-        self.refuse(MissingTokenError, "ego_pose.json: no token 'lost', which sample_data 'data-C")
+        self.refuse(MissingTokenError, "ego_pose.json: found no token 'lost', wanted by sample_")
 
-    def test_a_map_that_is_missing_unreadable_or_names_what_is_not_there(self):
+    def test_a_map_that_is_missing_or_unreadable_or_has_a_wrong_token(self):
         path = self.root / "maps/expansion/singapore-onenorth.json"
         edit_json(path, lambda m: m["line"][2]["node_tokens"].append("lost"))
-        self.refuse(MissingTokenError, "onenorth.json: line 2: no node 'lost'")
+        self.refuse(MissingTokenError, "onenorth.json: line 2: found no node 'lost'")
         path.write_text("[")
-        self.refuse(NuscenesError, "onenorth.json: line 1, column 2: no JSON")
+        self.refuse(NuscenesError, "onenorth.json: line 1, column 2: invalid JSON")
         path.unlink()
         self.refuse(MissingFileError, "onenorth.json: cannot be opened")
 
@@ -286,9 +287,16 @@ class Stream(Tree):
         super().setUp()
         self.stderr = self.enterContext(contextlib.redirect_stderr(io.StringIO()))
 
-    def stream(self, first: int = 0, **options) -> NuscenesStream:
-        settings = {"threads": 2, "drop_camera_probability": 0.0, **options}
-        stream = NuscenesStream(self.dataset(), 7, first, **settings)
+    def stream(
+        self,
+        first: int = 0,
+        threads: int = 2,
+        drop_camera_probability: float = 0.0,
+        on_error: str = "refuse",
+    ) -> NuscenesStream:
+        stream = NuscenesStream(
+            self.dataset(), 7, first, threads, drop_camera_probability, on_error
+        )
         self.addCleanup(stream.close)
         return stream
 
@@ -297,7 +305,7 @@ class Stream(Tree):
             found, expected = getattr(a, field.name), getattr(b, field.name)
             self.assertTrue(torch.equal(found, expected), field.name)
 
-    def test_batches_are_those_that_training_takes(self):
+    def test_batches_have_the_types_and_shapes_that_training_expects(self):
         batch = self.stream(drop_camera_probability=0.5).next(3)
         shapes = {
             "images": (torch.uint8, (3, 6, 3, 96, 320)),
@@ -325,8 +333,8 @@ class Stream(Tree):
         self.assertTrue((correction.std(0) > 0.2 * MAX_DEVIATION).all())
 
     def test_a_stream_resumes_where_it_stopped(self):
-        options = {"drop_camera_probability": 0.5}
-        whole, resumed = self.stream(**options), self.stream(first=4, threads=1, **options)
+        whole = self.stream(drop_camera_probability=0.5)
+        resumed = self.stream(first=4, threads=1, drop_camera_probability=0.5)
         whole.next(3)
         whole.next(1)
         self.assert_same(whole.next(4), resumed.next(4))

@@ -1,9 +1,10 @@
-"""nuScenes' maps: what becomes of their layers, and where it is drawn."""
+"""Tests the conversion of nuScenes' maps and their rasters."""
 
 import json
 import math
 import tempfile
 import unittest
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -23,8 +24,11 @@ from training.nuscenes.road_contour import RoadContour, ring_edges
 DIVIDER, CROSSING, BOUNDARY = range(3)
 
 
-def outline(*polygons) -> np.ndarray:
-    """All of the outline of a union; a polygon is a list of rings."""
+Ring = Sequence[Sequence[float]] | np.ndarray
+
+
+def outline(*polygons: Sequence[Ring]) -> np.ndarray:
+    """The whole outline of a union of polygons. A polygon is a list of rings."""
     edges = [np.concatenate([ring_edges(np.array(ring, float)) for ring in p]) for p in polygons]
     return RoadContour(edges).segments(np.array([-1e3, -1e3]), np.array([1e3, 1e3]))
 
@@ -46,7 +50,7 @@ class Contour(unittest.TestCase):
         self.assertAlmostEqual(length(outline([box(0, 0, 4, 3)])), 14)
         self.assertAlmostEqual(length(outline([box(0, 0, 9, 9), box(2, 2, 4, 3)])), 36 + 6)
 
-    def test_what_lies_inside_another_goes(self):
+    def test_edges_inside_another_polygon_are_removed(self):
         found = outline([box(0, 0, 4, 4)], [box(2, 1, 6, 3)])
         self.assertAlmostEqual(length(found), 16 + 4)
         self.assertTrue(touches(found, 5, 3))
@@ -55,7 +59,7 @@ class Contour(unittest.TestCase):
         self.assertTrue(touches(found, 4, 3.5))
         self.assertAlmostEqual(length(outline([box(0, 0, 9, 9)], [box(2, 2, 4, 3)])), 36)
 
-    def test_an_edge_shared_in_part_goes_in_part(self):
+    def test_the_shared_part_of_an_edge_is_removed(self):
         found = outline([box(0, 0, 4, 4)], [box(4, 1, 6, 3)])
         self.assertAlmostEqual(length(found), 16 + 8 - 2 * 2)
         self.assertFalse(touches(found, 4, 2))
@@ -91,9 +95,13 @@ class Clipping(unittest.TestCase):
             [[-2, 0], [0, -2]],
         ]
         found = clip(np.array(segments, float), np.array([2.0, 1.0]))
-        expected = [[[-2, 0.5], [2, 0.5]], [[0, 0], [0, 0.2]], [[-2, 0], [-1, -1]]]
-        crossing = [[-2, 1], [-2, 1]]  # only its corner
-        np.testing.assert_allclose(found, [*expected[:2], crossing, expected[2]])
+        expected = [
+            [[-2, 0.5], [2, 0.5]],
+            [[0, 0], [0, 0.2]],
+            [[-2, 1], [-2, 1]],  # touches a corner of the box
+            [[-2, 0], [-1, -1]],
+        ]
+        np.testing.assert_allclose(found, np.array(expected, float))
 
 
 class Drawing(unittest.TestCase):
@@ -170,7 +178,7 @@ class Layers(Maps):
             self.assertEqual(self.at(self.drawn, BOUNDARY, x, y), 0, (x, y))
 
     def test_the_patch_border_is_no_boundary(self):
-        inner = self.drawn[BOUNDARY, :, 70:130]  # the road goes on ahead and behind
+        inner = self.drawn[BOUNDARY, :, 70:130]  # the road continues beyond the raster
         self.assertEqual(inner[:5].max(), 0)
         self.assertEqual(inner[-5:].max(), 0)
 
@@ -188,7 +196,7 @@ class Layers(Maps):
 
 
 class BadMaps(Maps):
-    def refuse(self, error, message, change) -> None:
+    def refuse(self, error: type[Exception], message: str, change: Callable) -> None:
         edit_json(self.path, change)
         with self.assertRaisesRegex(error, message):
             MapExpansion(self.path)
@@ -205,21 +213,21 @@ class BadMaps(Maps):
     def test_a_line_that_does_not_exist(self):
         self.refuse(
             MissingTokenError,
-            "seaport.json: lane_divider 1: no line 'lost', which line_token names",
+            "seaport.json: lane_divider 1: found no line 'lost' of line_token",
             lambda m: m["lane_divider"][1].update(line_token="lost"),
         )
 
     def test_a_polygon_that_does_not_exist(self):
         self.refuse(
             MissingTokenError,
-            "ped_crossing 0: no polygon 'lost'",
+            "ped_crossing 0: found no polygon 'lost'",
             lambda m: m["ped_crossing"][0].update(polygon_token="lost"),
         )
 
     def test_a_node_that_does_not_exist(self):
         self.refuse(
             MissingTokenError,
-            "line 2: no node 'lost', which node_tokens names",
+            "line 2: found no node 'lost' of node_tokens",
             lambda m: m["line"][2]["node_tokens"].append("lost"),
         )
 

@@ -1,4 +1,4 @@
-"""Reading nuScenes' tables, and what is said of bad ones."""
+"""Tests reading nuScenes' tables and the errors for invalid ones."""
 
 import tempfile
 import unittest
@@ -59,7 +59,7 @@ class Arrays(unittest.TestCase):
 
     def test_what_is_no_text_is_refused(self):
         self.path.write_bytes(b'[{"a": "\xff"}]')
-        with self.assertRaisesRegex(UnreadableJsonError, "table.json: no UTF-8"):
+        with self.assertRaisesRegex(UnreadableJsonError, "table.json: invalid UTF-8"):
             list(read_array(self.path))
 
     def test_what_is_no_object_is_refused(self):
@@ -101,7 +101,7 @@ class Tree(unittest.TestCase):
         write_tree(self.root)
         self.folder = self.root / VERSION
 
-    def edit(self, table: str, token: str, key: str, value) -> None:
+    def edit(self, table: str, token: str, key: str, value: object) -> None:
         edit_table(self.root, table, lambda row: row.update({key: value}), token)
 
 
@@ -127,7 +127,7 @@ class Tables(Tree):
         self.assertEqual(len(tables.ego_pose), 3 * 7)
 
     def test_a_split_that_names_nothing_known_is_refused(self):
-        with self.assertRaisesRegex(MissingSceneError, "scene.json: no scene named scene-9"):
+        with self.assertRaisesRegex(MissingSceneError, "scene.json: found no scene named scene-9"):
             load_tables(self.folder, ["scene-0001", "scene-9"])
         split = self.root / "split.txt"
         split.write_text("# nothing\n")
@@ -169,7 +169,8 @@ class MissingTokens(Tree):
         self.edit("sample_data", "data-CAM_BACK-0-1", "calibrated_sensor_token", "lost")
         tables = load_tables(self.folder)
         with self.assertRaisesRegex(
-            MissingTokenError, "calibrated_sensor.json: no token 'lost', which sample_data 'data-C"
+            MissingTokenError,
+            "calibrated_sensor.json: found no token 'lost', wanted by sample_data 'data-C",
         ):
             tables.frame("sample-0-1", "CAM_FRONT")
         self.assertEqual(list(tables.defects), ["sample-0-1"])
@@ -177,17 +178,17 @@ class MissingTokens(Tree):
     def test_a_sample_of_an_unknown_scene_is_named(self):
         self.edit("sample", "sample-0-1", "scene_token", "lost")
         tables = load_tables(self.folder)
-        with self.assertRaisesRegex(MissingTokenError, "scene.json: no token 'lost'"):
+        with self.assertRaisesRegex(MissingTokenError, "scene.json: found no token 'lost'"):
             tables.location("sample-0-1")
 
     def test_a_scene_of_an_unknown_log_is_named(self):
         self.edit("scene", "scene-token-0", "log_token", "lost")
-        with self.assertRaisesRegex(MissingTokenError, "log.json: no token 'lost'.*scene-0001"):
+        with self.assertRaisesRegex(MissingTokenError, "log.json: found no .*'lost'.*scene-0001"):
             load_tables(self.folder).location("sample-0-0")
 
     def test_a_sample_without_one_of_its_frames_is_named(self):
         self.edit("sample_data", "data-CAM_BACK-0-1", "is_key_frame", False)
-        with self.assertRaisesRegex(MissingFrameError, "no key frame of CAM_BACK .*sample-0-1"):
+        with self.assertRaisesRegex(MissingFrameError, "found no key frame of CAM_BACK .*ple-0-1"):
             load_tables(self.folder).frame("sample-0-1", "CAM_BACK")
 
 

@@ -1,5 +1,5 @@
-"""Another reader of ONNX computes what the daemon's executor computes. Skipped where onnxruntime is
-not installed (script/check-onnxruntime does that)."""
+"""Tests that onnxruntime computes what the daemon's executor computes. Skipped unless
+script/check-onnxruntime has installed onnxruntime."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Quantization-aware training, on an untrained network and made-up samples."""
+"""Tests quantization-aware training, on an untrained network and synthetic samples."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from pathlib import Path
 
 import torch
 
-from tests.training.synthetic import SyntheticStream
+from tests.training.synthetic import SyntheticStream, gradient_of
 from tests.training.untrained import untrained_network
 from training.checkpoint import load_network
+from training.data import Batch
 from training.errors import NotFiniteError
 from training.export_onnx import quantization_of
 from training.fake_quantization import FakeQuantized
@@ -20,15 +21,15 @@ from training.quantize import int8_inference, quantize
 
 
 class SameBatch:
-    """One batch for ever."""
+    """A stream that repeats one batch."""
 
-    def __init__(self, batch):
+    def __init__(self, batch: Batch) -> None:
         self.batch = batch
 
-    def next(self, count):
+    def next(self, count: int) -> Batch:
         return self.batch
 
-    def close(self):
+    def close(self) -> None:
         pass
 
 
@@ -39,7 +40,7 @@ class QuantizationAwareTraining(unittest.TestCase):
         self.quantization = quantize(self.net, [self.batch])
 
     def coarse(self) -> FakeQuantized:
-        """With some four bits left of its weights."""
+        """A network whose weights have only about four bits."""
         for conv in self.quantization.quantized.values():
             conv.scale = 8 * conv.scale
         return FakeQuantized(self.net, self.quantization)
@@ -55,17 +56,17 @@ class QuantizationAwareTraining(unittest.TestCase):
             self.assertTrue(torch.equal(a.detach(), b))
 
     def test_every_weight_has_a_gradient_but_the_clipped_ones(self):
-        for conv in self.quantization.quantized.values():
-            conv.scale = 0.5 * conv.scale
+        for quantized in self.quantization.quantized.values():
+            quantized.scale = 0.5 * quantized.scale
         network = FakeQuantized(self.net, self.quantization)
-        sum(output.square().mean() for output in network(self.batch)).backward()
+        torch.stack([output.square().mean() for output in network(self.batch)]).sum().backward()
         for name, conv in network.convolutions.items():
             limit = 63 * self.quantization.quantized[name].scale[:, None, None, None]
             clipped = conv.weight.abs() > limit
             self.assertTrue(clipped.any(), name)
-            self.assertFalse(conv.weight.grad[clipped].any(), name)
-            self.assertTrue(conv.weight.grad.any(), name)
-            self.assertTrue(conv.bias.grad.any(), name)
+            self.assertFalse(gradient_of(conv.weight)[clipped].any(), name)
+            self.assertTrue(gradient_of(conv.weight).any(), name)
+            self.assertTrue(gradient_of(conv.bias).any(), name)
 
     def test_a_few_steps_lower_the_loss_of_a_coarse_quantization(self):
         network = self.coarse()
@@ -93,7 +94,7 @@ class QuantizationAwareTraining(unittest.TestCase):
         for a, b in zip(int8_inference(net, quantization)(self.batch), trained):
             self.assertTrue(torch.equal(a, b))
 
-    def test_it_ends_where_a_loss_is_no_number(self):
+    def test_a_nan_loss_ends_the_run(self):
         network = FakeQuantized(self.net, self.quantization)
         network.convolutions["bev_compress.3.second"].bias.data[0] = float("nan")
         with self.assertRaisesRegex(NotFiniteError, "step 0"):

@@ -1,4 +1,4 @@
-"""The report of what quantization costs, on an untrained network."""
+"""Tests the report of the cost of quantization, on an untrained network."""
 
 from __future__ import annotations
 
@@ -15,12 +15,17 @@ from training.quantization_report import (
     layer_table,
     pose_table,
 )
-from training.quantize import quantize
+from training.quantize import Quantization, quantize
 
+# A layer of the image branch, whose scale the tests make too small, and one of the map branch.
 SPOILT, OF_THE_MAP = "trunk.stage8.1.first", "map_encoder.layers.1"
 
 
 class LayerErrors(unittest.TestCase):
+    before: dict[str, LayerError]
+    after: dict[str, LayerError]
+    quantization: Quantization
+
     @classmethod
     def setUpClass(cls):
         torch.set_num_threads(1)
@@ -53,6 +58,7 @@ class LayerErrors(unittest.TestCase):
 
     def test_a_scale_that_is_too_small_shows_as_saturation_and_noise(self):
         before, after = self.before[SPOILT], self.after[SPOILT]
+        assert before.saturated is not None and after.saturated is not None
         self.assertLess(before.saturated, 0.01)
         self.assertGreater(after.saturated, before.saturated + 0.1)
         for kind in ("alone_db", "together_db", "bev_db"):

@@ -1,4 +1,4 @@
-"""The parts of a run: its options, precision, patience, checkpoints and progress."""
+"""Tests the parts of a run: options, precision, patience, checkpoints and progress."""
 
 import contextlib
 import io
@@ -33,7 +33,7 @@ class Options(unittest.TestCase):
         self.assertEqual((config.run, config.samples, config.resume), (Path("x"), 8, True))
         self.assertEqual((config.network, config.clip_norm, config.minutes), ("small", 2.0, 0.0))
 
-    def test_what_makes_no_sense_is_refused(self):
+    def test_invalid_options_are_refused(self):
         budget = ("--samples", "8")
         self.assertIn("--minutes or --samples", self.refusal())
         self.assertIn("--minutes or --samples", self.refusal(*budget, "--minutes", "1"))
@@ -59,7 +59,7 @@ class Precisions(unittest.TestCase):
             with unittest.mock.patch("torch.cuda.is_bf16_supported", return_value=able):
                 self.assertEqual(choose_precision("auto", CUDA, set()).bfloat16, able)
 
-    def test_a_wish_is_obeyed(self):
+    def test_an_explicit_choice_is_kept(self):
         self.assertTrue(choose_precision("bfloat16", CPU, set()).bfloat16)
         self.assertFalse(choose_precision("float32", CPU, {"amx_bf16"}).bfloat16)
 
@@ -87,7 +87,7 @@ class Patiences(unittest.TestCase):
     def test_no_limit_never_ends(self):
         self.assertFalse(self.watched("joint_x_mae", [0.1] * 9, limit=0).exhausted)
 
-    def test_a_resumed_run_goes_on_counting(self):
+    def test_a_resumed_run_continues_counting(self):
         patience = Patience("joint_x_mae", 2)
         patience.resume(self.watched("joint_x_mae", [0.1, 0.2]).state())
         self.assertEqual((patience.best, patience.waited), (0.1, 1))
@@ -99,7 +99,7 @@ class Patiences(unittest.TestCase):
         patience.resume(self.watched("joint_x_mae", [0.1, 0.2]).state())
         self.assertEqual((patience.best, patience.waited), (None, 0))
 
-    def test_a_bias_has_no_better_and_worse(self):
+    def test_a_bias_is_refused_as_the_figure(self):
         with self.assertRaisesRegex(TrainingError, "'joint_x_bias', wanted one of"):
             Patience("joint_x_bias", 1).check(["joint"], ["x"], ["divider"])
         Patience("joint_x_mae", 1).check(["joint"], ["x"], ["divider"])
@@ -122,15 +122,14 @@ class Checkpoints(unittest.TestCase):
         self.write(network, config)
         loaded = load_network(self.path)
         self.assertEqual((loaded.config.name, loaded.config.view), ("small-lut", "lut"))
-        bias = torch.equal(loaded.head.second.weight, network.head.second.weight)
-        self.assertTrue(bias)
+        self.assertTrue(torch.equal(loaded.head.second.weight, network.head.second.weight))
         self.assertFalse(loaded.training)
 
-    def test_a_checkpoint_from_before_there_was_a_choice_is_nanos(self):
+    def test_an_old_checkpoint_without_a_network_name_is_nano(self):
         self.write(BevNetwork(PRESETS["nano"]), {"bf16": True})
         self.assertEqual(load_network(self.path).config, PRESETS["nano"])
 
-    def test_what_is_no_checkpoint_is_named_with_the_reason(self):
+    def test_files_that_are_no_checkpoints_are_refused_with_the_reason(self):
         with self.assertRaisesRegex(CheckpointError, f"^{self.path}: no such file"):
             read_checkpoint(self.path)
         for content in (b"", b"PK\x03\x04 cut short", b"\x80\x02."):
@@ -138,24 +137,24 @@ class Checkpoints(unittest.TestCase):
             with self.assertRaisesRegex(CheckpointError, f"^{self.path}: unreadable.*\\)$"):
                 read_checkpoint(self.path)
         torch.save({"model": {}}, self.path)
-        with self.assertRaisesRegex(CheckpointError, "'ema' is missing"):
+        with self.assertRaisesRegex(CheckpointError, "found no 'ema'"):
             read_checkpoint(self.path)
         torch.save([1, 2], self.path)
-        with self.assertRaisesRegex(CheckpointError, "no checkpoint of training.train"):
+        with self.assertRaisesRegex(CheckpointError, "wanted a checkpoint of training.train"):
             read_checkpoint(self.path)
 
     def test_weights_that_do_not_fit_are_refused_in_one_line(self):
         self.write(BevNetwork(PRESETS["nano"]), {"network": "small"})
-        with self.assertRaisesRegex(CheckpointError, "today's network 'small'") as caught:
+        with self.assertRaisesRegex(CheckpointError, "current network 'small'") as caught:
             load_network(self.path)
         self.assertNotIn("\n", str(caught.exception))
         self.write(BevNetwork(PRESETS["nano"]), {"network": "gone"})
-        with self.assertRaisesRegex(CheckpointError, "there is no network 'gone'"):
+        with self.assertRaisesRegex(CheckpointError, "network: found 'gone'"):
             load_network(self.path)
 
 
 class Lines(unittest.TestCase):
-    def test_rate_and_waiting_are_of_the_busy_time(self):
+    def test_rate_and_waiting_refer_to_the_busy_time(self):
         progress = Progress()
         progress.add(torch.tensor([1.0, 2.0]), samples=8, busy_s=1.5, waited_s=0.0)
         progress.add(torch.tensor([3.0, 4.0]), samples=8, busy_s=0.5, waited_s=0.5)

@@ -1,4 +1,4 @@
-"""The tables that a run appends to."""
+"""Tests the tables to which a run appends."""
 
 import tempfile
 import unittest
@@ -22,7 +22,7 @@ class AppendRow(unittest.TestCase):
         lines = self.append({"step": 1, "loss": 0.5}, {"step": 2, "loss": 0.25})
         self.assertEqual(lines, ["step,loss", "1,0.5", "2,0.25"])
 
-    def test_a_table_of_before_gets_the_columns_that_it_lacks(self):
+    def test_an_old_table_gets_missing_columns(self):
         self.path.write_text("step,loss\r\n1,0.5\r\n")
         lines = self.append({"step": 2, "new": 3.0, "loss": 0.25}, {"step": 3, "new": 4, "loss": 0})
         self.assertEqual(lines, ["step,loss,new", "1,0.5,nan", "2,0.25,3.0", "3,0,4"])
@@ -31,7 +31,7 @@ class AppendRow(unittest.TestCase):
         self.path.write_text("step,old\r\n1,7\r\n")
         self.assertEqual(self.append({"step": 2}), ["step,old", "1,7", "2,nan"])
 
-    def test_an_empty_file_is_begun_anew(self):
+    def test_an_empty_file_gets_a_header(self):
         self.path.write_text("")
         self.assertEqual(self.append({"step": 1}), ["step", "1"])
 

@@ -1,4 +1,4 @@
-"""What training asks of the native library besides the joint volume."""
+"""Tests the native library: sampler, network and solvers."""
 
 import subprocess
 import sys
@@ -43,6 +43,9 @@ class Sampler(unittest.TestCase):
 
 
 class RunTime(unittest.TestCase):
+    net: BevNetwork
+    network: NativeNetwork
+
     @classmethod
     def setUpClass(cls):
         torch.set_num_threads(1)
@@ -75,7 +78,7 @@ class RunTime(unittest.TestCase):
         batch.index, batch.weight = index[None], weight[None]
         self.check(native(net), net, batch)
 
-    def check(self, network: NativeNetwork, net: BevNetwork, batch: Batch):
+    def check(self, network: NativeNetwork, net: BevNetwork, batch: Batch) -> None:
         for found, expected in zip(network(batch), float_inference(net)(batch)):
             error = (found - expected).abs().amax() / expected.abs().amax()
             self.assertLess(error.item(), 1e-4)

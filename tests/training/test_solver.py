@@ -1,4 +1,4 @@
-"""Every solver against scenes whose correction is known."""
+"""Tests every solver on scenes with known corrections."""
 
 import dataclasses
 import math
@@ -6,6 +6,7 @@ import unittest
 
 import torch
 
+from tests.training.synthetic import gradient_of
 from training.joint_volume import joint_volume
 from training.solver import (
     DEFINITION,
@@ -40,8 +41,16 @@ def sharp_solvers(definition: SolverDefinition = DEFINITION) -> PoseSolvers:
 
 class KnownCorrections(unittest.TestCase):
     @torch.no_grad()
-    def check(self, kind, corrections, max_frequency, tolerance_m, tolerance_rad, solvers=None):
-        """Every axis, with its sign."""
+    def check(
+        self,
+        kind: str,
+        corrections: list[tuple[float, float, float]],
+        max_frequency: float,
+        tolerance_m: float,
+        tolerance_rad: float,
+        solvers: PoseSolvers | None = None,
+    ) -> None:
+        """Checks the estimate of every axis, including its sign."""
         solvers = solvers or sharp_solvers()
         for seed, correction in enumerate(corrections):
             with self.subTest(kind=kind, correction=correction):
@@ -66,7 +75,7 @@ class KnownCorrections(unittest.TestCase):
         self.check("banded", CORRECTIONS, 0.2, 0.25, 0.4 * DEGREE)
 
     def test_literal_solver(self):
-        # Its yaw is drawn to zero, as turning blurs every other hypothesis.
+        # Its yaw is biased towards zero, because rotation blurs all other hypotheses.
         self.check("decoupled-literal", CORRECTIONS, 0.3, 0.41, 1.0 * DEGREE)
 
     def test_refinement_of_every_first_solution(self):
@@ -82,7 +91,7 @@ class KnownCorrections(unittest.TestCase):
         inner = (..., slice(6, -6), slice(6, -6))
         error = (turned[inner] - features_map[inner]).abs().mean()
         before = (bev[inner] - features_map[inner]).abs().mean()
-        self.assertLess(error, 0.15 * before)
+        self.assertLess(error.item(), 0.15 * before.item())
 
 
 class YawScores(unittest.TestCase):
@@ -118,19 +127,18 @@ class JointVolumeGradients(unittest.TestCase):
         features_map = torch.randn(1, 2, 100, 50, generator=generator)
         direction = torch.randn(1, 21, 21, 11, generator=generator).double()
         for which in (0, 1):
-            inputs = [bev.clone().requires_grad_(), features_map.clone().requires_grad_()]
+            inputs = bev.clone().requires_grad_(), features_map.clone().requires_grad_()
             (joint_volume(*inputs).double() * direction).sum().backward()
             step = torch.randn(bev.shape, generator=generator)
-            # The volume is linear in either side alone, so a large step is exact.
-            moved = [bev, features_map]
-            moved[which] = moved[which] + step
+            # The volume is linear in each side, so a large step is exact.
+            moved = (bev + step, features_map) if which == 0 else (bev, features_map + step)
             change = (joint_volume(*moved).double() - joint_volume(bev, features_map)) * direction
             expected = change.sum().item()
-            found = (inputs[which].grad.double() * step).sum().item()
+            found = (gradient_of(inputs[which]).double() * step).sum().item()
             self.assertAlmostEqual(found, expected, delta=1e-4 * max(1.0, abs(expected)))
 
     @torch.no_grad()
-    def test_every_batch_element_is_scored_by_itself(self):
+    def test_batch_elements_are_scored_independently(self):
         bev, features_map = torch.randn(3, 4, 100, 50), torch.randn(3, 4, 100, 50)
         together = joint_volume(bev, features_map)
         self.assertEqual(tuple(together.shape), (3, 21, 21, 11))
@@ -159,7 +167,7 @@ class Degenerate(unittest.TestCase):
 
 
 class Parameters(unittest.TestCase):
-    def test_a_checkpoint_older_than_a_solver_leaves_its_parameters(self):
+    def test_an_old_checkpoint_does_not_change_parameters_of_newer_solvers(self):
         solvers = sharp_solvers()
         old = {f"log_scale.{name}": torch.tensor(1.5) for name in ("joint", "x", "y", "yaw")}
         solvers.load_state_dict(old)

@@ -1,9 +1,9 @@
-"""Autograd through every solver against finite differences."""
+"""Tests autograd through every solver against finite differences."""
 
 from __future__ import annotations
 
 import unittest
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import torch
 from torch import Tensor
@@ -11,11 +11,11 @@ from torch import Tensor
 from tests.training.small_solver import DEGREE, SMALL, random_features, small_solvers
 from training.solver import KINDS, Posterior, PoseSolvers, standardise
 from training.solvers.lattice import EVERY_SECOND_CELL
-from training.solvers.refine import line_zncc, share_out
+from training.solvers.refine import line_zncc, redistribute
 
-# What is held fixed has no gradient, and must not move with the features: x m, y m, yaw rad.
+# Fixed poses (x m, y m, yaw rad). Poses get no gradient, so they must not depend on the features.
 HELD = torch.tensor([[0.17, -0.11, 0.7 * DEGREE], [-0.35, 0.2, -1.2 * DEGREE]]).double()
-# Some lines through it, one for each axis.
+# Directions of lines through the poses, one for each axis.
 LINES = torch.tensor([[1.0, 0.1, 0.02], [0.0, 1.0, 0.0], [0.0, 3.0, 1.0]]).double()
 REFINE_SCALES = ("refine_x", "refine_y", "refine_yaw")
 STEP = 1e-6
@@ -26,20 +26,20 @@ def _standardised(bev: Tensor, features_map: Tensor) -> tuple[Tensor, Tensor]:
 
 
 def _coordinate_pass(solvers: PoseSolvers, bev: Tensor, features_map: Tensor) -> Posterior:
-    """Every search of a refinement's last round, each through the same pose, with one hypothesis
-    that the coarse rounds left unlikely."""
+    """The searches of a refinement's last round, all through the same pose. The coarse rounds have
+    excluded the first hypothesis."""
 
     def search(axis: int) -> Tensor:
         direction = LINES[axis].expand_as(HELD)
         scores = line_zncc((bev, features_map), HELD, axis, direction, SMALL, EVERY_SECOND_CELL)
         likely = torch.arange(scores.shape[1]) > 0
         before = torch.linspace(0.1, 0.2, scores.shape[1]).to(scores).expand_as(scores)
-        return share_out(scores * solvers.scale(REFINE_SCALES[axis]), likely, before)
+        return redistribute(scores * solvers.scale(REFINE_SCALES[axis]), likely, before)
 
     return Posterior(search(0), search(1), search(2))
 
 
-# Distributions of raw features; the yaw of the axis steps as a teacher would give it.
+# The distributions of each solver from raw features; axis steps use a fixed yaw (teacher forcing).
 DISTRIBUTIONS: dict[str, Callable[[PoseSolvers, Tensor, Tensor], Posterior]] = {
     "full": lambda s, b, m: s.full(*_standardised(b, m)),
     "full-fft": lambda s, b, m: s.full_fft(*_standardised(b, m)),
@@ -69,7 +69,7 @@ class FiniteDifferences(unittest.TestCase):
         self.generator = generator
 
     def value(self, kind: str) -> Tensor:
-        """Some function of all distributions."""
+        """A scalar that depends on all distributions."""
         posterior = DISTRIBUTIONS[kind](self.solvers, *self.sides)
         return (torch.cat(posterior.axes(), dim=1).log() * self.mix).sum()
 
@@ -82,7 +82,7 @@ class FiniteDifferences(unittest.TestCase):
             parameter -= sign * STEP * direction
         return (values[0] - values[1]) / (2 * STEP)
 
-    def check(self, kind: str, parameters: dict[str, Tensor]):
+    def check(self, kind: str, parameters: Mapping[str, Tensor]) -> None:
         gradients = torch.autograd.grad(self.value(kind), list(parameters.values()))
         for (name, parameter), gradient in zip(parameters.items(), gradients):
             with self.subTest(kind=kind, with_respect_to=name):
@@ -113,15 +113,15 @@ class FiniteDifferences(unittest.TestCase):
 
 class Finite(unittest.TestCase):
     def gradients(self, kind: str, sides: tuple[Tensor, Tensor]) -> list[Tensor]:
-        sides = tuple(side.clone().requires_grad_() for side in sides)
-        posterior = small_solvers().float().solve(kind, *sides).posterior
-        loss = -sum(probability[:, 0].log().sum() for probability in posterior.axes())
-        return list(torch.autograd.grad(loss, sides))
+        bev, features_map = (side.clone().requires_grad_() for side in sides)
+        posterior = small_solvers().float().solve(kind, bev, features_map).posterior
+        first = torch.stack([probability[:, 0] for probability in posterior.axes()])
+        return list(torch.autograd.grad(-first.log().sum(), (bev, features_map)))
 
     def test_every_solver_trains_both_sides_in_float32(self):
-        sides = tuple(side.float() for side in random_features(6))
+        bev, features_map = random_features(6)
         for kind in KINDS:
-            for gradient in self.gradients(kind, sides):
+            for gradient in self.gradients(kind, (bev.float(), features_map.float())):
                 self.assertTrue(torch.isfinite(gradient).all(), kind)
                 self.assertGreater(gradient.abs().max().item(), 1e-6, kind)
 

@@ -1,4 +1,4 @@
-"""Parts of the solvers against plainer ways to the same numbers."""
+"""Tests parts of the solvers against simpler implementations."""
 
 import dataclasses
 import math
@@ -11,25 +11,27 @@ from torch import Tensor
 
 from tests.training.small_solver import SMALL, random_features, small_solvers
 from training.joint_volume import joint_volume
-from training.solver import DEFINITION, hypotheses, standardise
+from training.solver import DEFINITION, SolverDefinition, hypotheses, standardise
 from training.solvers.banded import banded_posterior, banded_scores
 from training.solvers.block import block_scores
 from training.solvers.cubic import cubic_weights
 from training.solvers.features import move
 from training.solvers.full import full_scores
 from training.solvers.full_fft import full_fft_scores
-from training.solvers.literal import gem
 from training.solvers.lattice import EVERY_CELL, EVERY_SECOND_CELL, EVERY_TENTH_CELL
-from training.solvers.refine import share_out, spread
+from training.solvers.literal import gem
+from training.solvers.refine import convolve_along, redistribute
 from training.solvers.valley import ScoreValley
 from training.solvers.zncc import moved_zncc
 
 
-def standardised(seed, definition=SMALL):
+def standardised(seed: int, definition: SolverDefinition = SMALL) -> tuple[Tensor, Tensor]:
+    """Random standardised features of both sides."""
     generator = torch.Generator().manual_seed(seed)
     shape = (2, 3, definition.rows, definition.cols)
     sides = (torch.randn(shape, generator=generator, dtype=torch.float64) for _ in range(2))
-    return tuple(standardise(side, definition) for side in sides)
+    bev, features_map = (standardise(side, definition) for side in sides)
+    return bev, features_map
 
 
 class Hypotheses(unittest.TestCase):
@@ -57,7 +59,7 @@ class Move(unittest.TestCase):
         expected = F.pad(bev, (2, 0, 0, 1))[:, :, 1:, :-2]
         torch.testing.assert_close(moved, expected, atol=1e-6, rtol=0)
 
-    def test_margin_holds_what_left_the_grid(self):
+    def test_the_margin_is_zero_without_motion(self):
         bev, _ = standardised(1)
         framed = move(bev, torch.zeros(2, 1, 3), 0.6, (3, 2))[:, :, 0]
         torch.testing.assert_close(framed, F.pad(bev, (2, 2, 3, 3)), atol=1e-9, rtol=0)
@@ -110,13 +112,13 @@ class Block(unittest.TestCase):
     def test_equals_the_run_time(self):
         sides = standardised(6, DEFINITION)
         found = block_scores(*sides)
-        expected = joint_volume(*(side.float() for side in sides))
+        expected = joint_volume(sides[0].float(), sides[1].float())
         torch.testing.assert_close(found.float(), expected, atol=2e-6, rtol=0)
 
     def test_blocks_of_any_grid_correlate_every_cell_once(self):
         uneven = dataclasses.replace(SMALL, rows=18, cols=11, x_range_m=0.6, x_step_m=0.6)
         sides = standardised(7, uneven)
-        scores = block_scores(*sides, uneven)[:, 2, :, 1]  # no turn, no shift along y
+        scores = block_scores(*sides, uneven)[:, 2, :, 1]  # yaw 0, y 0
         for i, shift in enumerate((-1, 0, 1)):
             moved = F.pad(sides[0], (0, 0, 1, 1))[:, :, 1 + shift : 19 + shift]
             expected = (moved * sides[1]).mean((1, 2, 3))
@@ -158,9 +160,9 @@ class Gem(unittest.TestCase):
 
 
 class Valley(unittest.TestCase):
-    """Against the features' own change when they are really moved."""
+    """Compares the valley with the change of actually moved features."""
 
-    # Whole cells: nothing is blurred.
+    # A shift by whole cells, so that interpolation does not blur.
     POSE = torch.tensor([[1.2, -0.6, 0.0]]).double()
 
     def setUp(self):
@@ -178,7 +180,7 @@ class Valley(unittest.TestCase):
     def loss(self, displacement: Tensor) -> float:
         return (self.moved(displacement) - self.map).square().sum().item()
 
-    def check(self, direction: Tensor, others: tuple[int, ...]):
+    def check(self, direction: Tensor, others: tuple[int, ...]) -> None:
         size = 0.05
         along = self.loss(size * direction)
         for other in others:
@@ -192,12 +194,12 @@ class Valley(unittest.TestCase):
         self.check(valley.along_x(self.POSE)[0], (1, 2))
         self.check(0.1 * valley.along_yaw(self.POSE)[0], (1,))
 
-    def test_a_road_that_bends_asks_for_a_turn(self):
+    def test_on_a_curve_moving_along_the_road_turns_the_vehicle(self):
         direction = ScoreValley(self.features[:, :1], SMALL).along_x(torch.zeros(1, 3))[0]
-        # The curve's radius: 1 / (2 * 0.03 per cell).
+        # The curve's radius is 1 / (2 * 0.03) cells.
         self.assertAlmostEqual(direction[2].abs().item(), 0.06 / SMALL.cell_m, delta=0.03)
 
-    def test_what_shows_nothing_stays(self):
+    def test_unconstrained_axes_stay_fixed(self):
         nothing = ScoreValley(torch.ones_like(self.features), SMALL)
         self.assertEqual(nothing.along_x(self.POSE).tolist(), [[1.0, 0.0, 0.0]])
         self.assertEqual(nothing.along_yaw(self.POSE).tolist(), [[0.0, 0.0, 1.0]])
@@ -229,17 +231,17 @@ class Refinement(unittest.TestCase):
             pose = pose + (mean - pose[:, axis])[:, None] * direction
         refined = solvers.refine(*sides, start)
         torch.testing.assert_close(refined.x, found[0])
-        for axis in (1, 2):  # spread, but about the pose that was found
+        for axis in (1, 2):  # convolved, but with the mean at the found pose
             self.assertGreater((refined.axes()[axis] - found[axis]).abs().max().item(), 1e-4)
             means = refined.axes()[axis] @ SMALL.hypotheses()[axis]
             torch.testing.assert_close(means, pose[:, axis], atol=0.03, rtol=0)
 
     @torch.no_grad()
-    def test_what_the_coarse_rounds_leave_unlikely_keeps_what_it_has(self):
+    def test_hypotheses_excluded_by_the_coarse_rounds_keep_their_probability(self):
         sides = standardised(9)
         solvers = small_solvers(scale=500.0)
         start = torch.tensor([[0.1, 0.2, 0.01], [-0.2, 0.1, 0.0]]).double()
-        # Nothing is as likely as that: all keep what they have.
+        # No hypothesis reaches this threshold, so all keep their probability.
         with mock.patch("training.solvers.refine._LEAST_LIKELY", 2.0):
             kept = solvers.refine(*sides, start)
         refined = solvers.refine(*sides, start)
@@ -248,27 +250,28 @@ class Refinement(unittest.TestCase):
         torch.testing.assert_close(refined.x[unlikely], kept.x[unlikely])
         torch.testing.assert_close(refined.x.sum(1), torch.ones(2).double())
 
-    def test_the_likely_share_what_they_have_together(self):
+    def test_probability_is_redistributed_among_likely_hypotheses(self):
         probability = torch.tensor([[0.1, 0.4, 0.2, 0.3]]).double()
         likely = torch.tensor([[False, True, False, True]])
         scores = torch.tensor([[9.0, 2.0, -9.0, 2.0 + math.log(6.0)]]).double()
-        found = share_out(scores, likely, probability)
+        found = redistribute(scores, likely, probability)
         torch.testing.assert_close(found, torch.tensor([[0.1, 0.1, 0.2, 0.6]]).double())
 
-    def test_what_follows_an_axis_is_spread_by_it(self):
+    def test_a_following_axis_is_convolved_with_the_followed_one(self):
         values = torch.arange(-3, 4).double() * 0.5
         peak = torch.tensor([[0.0, 0, 0, 1, 0, 0, 0]]).double()
         followed = torch.tensor([[0.25, 0.5, 0.25]]).double()
-        offset = torch.tensor([[-0.75, 0.0, 4.0]]).double()  # between two; none; off the end
-        found = spread(peak, values, followed, offset)
+        # Between two hypotheses, no displacement, beyond the end.
+        offset = torch.tensor([[-0.75, 0.0, 4.0]]).double()
+        found = convolve_along(peak, values, followed, offset)
         expected = torch.tensor([[0.0, 0.125, 0.125, 0.5, 0, 0, 0.25]]).double()
         torch.testing.assert_close(found, expected)
 
-    def test_what_is_not_a_number_remains_so(self):
+    def test_nan_stays_nan(self):
         values = torch.arange(3).double()
         flat = torch.full((2, 3), 1 / 3).double()
         offset = torch.tensor([[torch.nan] * 3, [0.0] * 3]).double()
-        found = spread(flat, values, flat, offset)
+        found = convolve_along(flat, values, flat, offset)
         self.assertTrue(found[0].isnan().any())
         torch.testing.assert_close(found[1], flat[1])
 

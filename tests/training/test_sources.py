@@ -1,4 +1,4 @@
-"""Which samples a run reads."""
+"""Tests which samples a run reads."""
 
 from __future__ import annotations
 
@@ -23,15 +23,14 @@ SCENES = 2
 
 
 class Sources(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.root = Path(cls.folder.name)
-        write_tree(cls.root)
+    root: Path
 
     @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.root = Path(folder.name)
+        write_tree(cls.root)
 
     def test_nuscenes_takes_the_place_of_the_simulator(self):
         config = TrainingConfig(nuscenes=str(self.root), drop_camera_probability=0.0)
@@ -65,12 +64,12 @@ class Sources(unittest.TestCase):
         rasters = torch.cat([batch.raster_truth for batch in batches]).flatten(1)
         self.assertEqual(len(rasters.unique(dim=0)), SCENES * SAMPLES_PER_SCENE)
 
-    def test_validation_never_reads_training_scenes_unasked(self):
+    def test_validation_does_not_read_training_scenes_by_default(self):
         self.assertEqual(validation_set(TrainingConfig(nuscenes=str(self.root))), [])
         simulated = validation_set(TrainingConfig(validation_samples=3))
         self.assertTrue(torch.equal(simulated[0].images, simulator_batches(3, 1)[0].images))
 
-    def test_training_shows_more_trouble_than_validation(self):
+    def test_training_has_stronger_nuisances_than_validation(self):
         streams = {
             name: training_stream(TrainingConfig(nuisances=name), 0) for name in ("usual", "strong")
         }
@@ -84,11 +83,11 @@ class Sources(unittest.TestCase):
         self.assertEqual(len(usual.weight[whole].unique(dim=0)), 1)
         self.assertGreater(len(strong.weight[whole].unique(dim=0)), 1)
 
-    def test_nuisances_that_nobody_knows_are_named(self):
+    def test_unknown_nuisances_are_refused(self):
         with self.assertRaisesRegex(ValueError, "'mild', wanted one of usual, strong"):
             training_stream(TrainingConfig(nuisances="mild"), 0)
 
-    def test_a_folder_that_is_none_is_named(self):
+    def test_a_missing_folder_is_refused_by_name(self):
         with self.assertRaisesRegex(NuscenesError, "nowhere"):
             training_stream(TrainingConfig(nuscenes=str(self.root / "nowhere")), 0)
 

@@ -1,4 +1,4 @@
-"""The training loop on a synthetic stream."""
+"""Tests the training loop on a synthetic stream."""
 
 import io
 import math
@@ -6,6 +6,7 @@ import tempfile
 import unittest
 from contextlib import redirect_stdout
 from pathlib import Path
+from typing import Any
 from unittest.mock import patch
 
 import torch
@@ -17,6 +18,7 @@ from training.data import Batch
 from training.errors import CheckpointError, NotFiniteError, TrainingError
 from training.model import real_images, real_raster
 from training.models import PRESETS, BevNetwork
+from training.models.layers import bias_of
 from training.models.view_lut import gather_views
 from training.train import Trainer
 
@@ -25,8 +27,10 @@ def setUpModule():
     torch.set_num_threads(1)
 
 
-def trainer(run: str, validation: list[Batch] | None = None, **options) -> Trainer:
-    defaults = {"batch": 2, "samples": 8, "warm_up_steps": 2, "precision": "float32"}
+def trainer(run: str, validation: list[Batch] | None = None, **options: Any) -> Trainer:
+    """A short run; options override the defaults of the tests and of TrainingConfig."""
+    defaults: dict[str, Any] = {"batch": 2, "samples": 8, "warm_up_steps": 2}
+    defaults["precision"] = "float32"
     config = TrainingConfig(run=Path(run), **(defaults | options))
     return Trainer(config, lambda _, first, share: SyntheticStream(first, share), validation or [])
 
@@ -89,7 +93,7 @@ class Resuming(TemporaryRuns):
         self.assertTrue(torch.equal(weights(begun.average), weights(finished.average)))
         self.assertEqual(begun.samples, 0)
 
-    def test_no_run_goes_on_from_what_does_not_fit_it(self):
+    def test_unsuitable_checkpoints_are_refused(self):
         run = self.folder()
         trainer(run).save()
         checkpoint = Path(run) / "checkpoint.pt"
@@ -97,7 +101,7 @@ class Resuming(TemporaryRuns):
             trainer(run, resume=True, network="small")
         state = torch.load(checkpoint)
         torch.save({**state, "optimiser": {}}, checkpoint)
-        with self.assertRaisesRegex(CheckpointError, "no run can go on from it"):
+        with self.assertRaisesRegex(CheckpointError, "the run cannot be resumed"):
             trainer(run, resume=True)
         checkpoint.write_text("not a checkpoint")
         with self.assertRaisesRegex(CheckpointError, f"^{checkpoint}: unreadable"):
@@ -116,7 +120,7 @@ class Networks(TemporaryRuns):
 
 
 class NotFinite(TemporaryRuns):
-    def test_a_loss_that_is_no_number_ends_the_run_and_keeps_the_checkpoint(self):
+    def test_a_nan_loss_ends_the_run_and_keeps_the_checkpoint(self):
         run = trainer(self.folder(), semantic_stage=0.0)
         run.train_step(0.5)
         run.save()
@@ -127,35 +131,33 @@ class NotFinite(TemporaryRuns):
             batch.weight[0] = math.nan
             return batch
 
-        run.stream.next = poisoned
-        with self.assertRaisesRegex(
-            NotFiniteError,
-            r"step 1: the loss perceived.* is not finite on samples 2 to 3 .* holds the last good",
-        ):
-            run.run()
+        message = "step 1: the loss perceived.* is not finite on samples 2 to 3 .* holds the last"
+        with patch.object(run.stream, "next", poisoned):
+            with self.assertRaisesRegex(NotFiniteError, message):
+                run.run()
         self.assertEqual(run.checkpoint_path.read_bytes(), kept)
 
-    def test_a_gradient_that_is_infinite_ends_the_run_before_a_weight_changes(self):
+    def test_an_infinite_gradient_ends_the_run_before_a_weight_changes(self):
         run = trainer(self.folder())
         before = [p.detach().clone() for p in run.net.parameters()]
-        bias = run.net.head.second.bias
+        bias = bias_of(run.net.head.second)
         bias.register_hook(lambda gradient: gradient * math.inf)
-        with self.assertRaisesRegex(NotFiniteError, "the gradient, .* there was no checkpoint yet"):
+        with self.assertRaisesRegex(NotFiniteError, "the gradient, .* there is no checkpoint yet"):
             run.run()
         for old, new in zip(before, run.net.parameters()):
             self.assertTrue(torch.equal(old, new))
 
-    def test_a_weight_that_is_no_number_is_not_saved(self):
+    def test_a_nan_weight_is_not_saved(self):
         run = trainer(self.folder())
-        nn.init.constant_(run.net.head.second.bias, math.nan)
+        nn.init.constant_(bias_of(run.net.head.second), math.nan)
         with self.assertRaisesRegex(NotFiniteError, "head.second.bias is not finite"):
             run.save()
         self.assertFalse(run.checkpoint_path.exists())
 
 
 class EarlyStop(TemporaryRuns):
-    def run_with(self, folder: str, figures: list[float], **options) -> Trainer:
-        """A run that validates after every step and finds these figures."""
+    def run_with(self, folder: str, figures: list[float], **options: Any) -> Trainer:
+        """A run that validates after every step, with these figures as results."""
         options = {"patience": 2, "samples": 20, "validation_minutes": 1e-9} | options
         run = trainer(folder, [SyntheticStream(0).next(1)], **options)
         metrics = [{"joint_x_mae": figure} for figure in figures]
@@ -165,7 +167,7 @@ class EarlyStop(TemporaryRuns):
             self.assertTrue(run.run())
         return run
 
-    def test_a_run_stops_when_it_gets_no_better(self):
+    def test_a_run_stops_when_it_no_longer_improves(self):
         folder = self.folder()
         run = self.run_with(folder, [0.5, 0.4, 0.45, 0.4])
         self.assertEqual(run.step, 4)
@@ -184,7 +186,7 @@ class EarlyStop(TemporaryRuns):
 
 
 class Log(TemporaryRuns):
-    def test_a_line_tells_rate_rest_and_what_the_time_went_to(self):
+    def test_a_line_has_the_rate_and_the_time_spent_waiting(self):
         run = trainer(self.folder(), samples=2, log_steps=1)
         lines = io.StringIO()
         with redirect_stdout(lines):

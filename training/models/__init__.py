@@ -1,4 +1,4 @@
-"""The networks by configuration: `BevNetwork(PRESETS["nano"])`."""
+"""Configurable networks: `BevNetwork(PRESETS["nano"])`."""
 
 from training.models.config import PRESETS, ModelConfig
 from training.models.network import BevNetwork

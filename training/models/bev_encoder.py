@@ -1,4 +1,4 @@
-"""Residual blocks on the BEV features, and finer cells where the solver wants them."""
+"""The BEV encoder: residual blocks, and upsampling if the solver needs finer cells."""
 
 from __future__ import annotations
 
@@ -16,5 +16,5 @@ def make_bev_encoder(config: ModelConfig) -> nn.Module:
         layers.append(nn.Upsample(scale_factor=2, mode="bilinear", align_corners=False))
         layers.append(ConvBn(config.width, config.width))
         magnification //= 2
-    # A single block stands alone: nano's checkpoints name it so.
+    # A single block is not wrapped, because the parameter names of nano's checkpoints depend on it.
     return layers[0] if len(layers) == 1 else nn.Sequential(*layers)

@@ -1,4 +1,4 @@
-"""BiFPN (Tan, Pang and Le 2020) as BeMapNet uses it: five levels, strides 8 to 128."""
+"""BiFPN (Tan, Pang and Le 2020) as used by BeMapNet: five levels, strides 8 to 128."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def _halve(x: Tensor) -> Tensor:
 
 
 class Fusion(nn.Module):
-    """A weighted mean of maps with learned weights >= 0, then swish and a separable convolution."""
+    """A weighted mean of feature maps (learned weights >= 0), swish and a separable convolution."""
 
     def __init__(self, inputs: int, width: int) -> None:
         super().__init__()
@@ -37,8 +37,8 @@ class Fusion(nn.Module):
 
 
 class BiFpnCell(nn.Module):
-    """Once from coarse to fine and once back. `skips`: maps of the levels' own size beside the
-    inputs' on the way back (the first cell has laterals of its own for these)."""
+    """One top-down and one bottom-up pass over the levels. `skips`: feature maps that the bottom-up
+    pass adds at each level (only in the first cell do they differ from the inputs)."""
 
     def __init__(self, levels: int, width: int) -> None:
         super().__init__()
@@ -47,7 +47,7 @@ class BiFpnCell(nn.Module):
         self.top = Fusion(2, width)
 
     def forward(self, inputs: Sequence[Tensor], skips: Sequence[Tensor]) -> list[Tensor]:
-        """`inputs` and `skips`: finest first; skips[0] is not used."""
+        """`inputs` and `skips` are ordered from fine to coarse; skips[0] is not used."""
         middle = [inputs[-1]]
         for level, fuse in zip(reversed(inputs[:-1]), self.down):
             above = F.interpolate(middle[-1], level.shape[2:], mode="nearest")

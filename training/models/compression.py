@@ -1,4 +1,4 @@
-"""From the BEV features to the solver's."""
+"""Compresses BEV features to the channels that the solver compares."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from training.models.layers import ConvBn, Residual
 
 
 def make_compression(config: ModelConfig) -> nn.Sequential:
-    """The paper's three residual blocks before the solver. The last is linear: features are
-    signed."""
+    """The paper's three residual blocks before the solver. The last one is linear, because features
+    are signed."""
     channels = config.channels
     return nn.Sequential(
         ConvBn(config.width, channels),

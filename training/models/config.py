@@ -1,4 +1,4 @@
-"""What a network is made of, and the presets."""
+"""The configuration of a network, and the presets."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from training.solvers.definition import DEFINITION, SolverDefinition
 CAMERAS = 6
 RASTER_CHANNELS, RASTER_ROWS, RASTER_COLS = 3, 400, 200
 RASTER_CELL_M = 0.15
-# The view transform's cells, whatever the solver's are: those of the view table.
+# Cells of the view table and so of the view transform. The solver's cells may be finer.
 VIEW_ROWS, VIEW_COLS, VIEW_CELL_M = 100, 50, 0.6
-VIEW_SLOTS = 8  # of the view table: two cameras a cell, four bilinear neighbours each
+VIEW_SLOTS = 8  # of the view table: two cameras per cell, four bilinear neighbours each
 FEATURE_STRIDE = 8
 
 RESIDUAL_TRUNKS = ("nano", "small", "base")
@@ -25,23 +25,23 @@ _PYRAMID_STRIDE = 128  # of the coarsest level of the BiFPN
 
 @dataclass(frozen=True)
 class ModelConfig:
-    """One network. Sizes are (rows, columns); ValueError where parts do not fit together."""
+    """One network. Sizes are (rows, columns). ValueError if the parts do not fit together."""
 
     name: str
     trunk: str = "nano"
     view: str = "lut"
-    width: int = 48  # channels of the image and of the BEV features
-    channels: int = 16  # C: channels of the features that the solver gets
-    bev_size: tuple[int, int] = (100, 50)  # cells of these
+    width: int = 48  # channels of the image features and of the BEV features
+    channels: int = 16  # C: channels of the features that the solver compares
+    bev_size: tuple[int, int] = (100, 50)  # cells of the features that the solver compares
     image_size: tuple[int, int] = (96, 320)
-    token_grid: tuple[int, int] | None = None  # pyramid trunks: image cells, if not stride 8
+    token_grid: tuple[int, int] | None = None  # pyramid trunks: image cells; None: stride 8
     bev_blocks: int = 1  # residual blocks of the BEV encoder
     map_widths: tuple[int, ...] = (16, 32)
     head_width: int = 32
     pyramid_width: int = 128  # channels of the BiFPN
     pyramid_cells: int = 3
     heads: int = 4  # of attention
-    kernel_size: int = 3  # kernel view: keys are kernel_size x kernel_size image cells a camera
+    kernel_size: int = 3  # kernel view: kernel_size x kernel_size keys per camera
     query_grid: tuple[int, int] = (VIEW_ROWS, VIEW_COLS)  # dense view
     encoder_layers: int = 2  # dense view
     decoder_layers: int = 4  # dense view
@@ -79,7 +79,7 @@ class ModelConfig:
 
     @property
     def feature_grid(self) -> tuple[int, int]:
-        """Cells of one camera's features: those that the view table's indices count."""
+        """Cells of one camera's features, which the view table indexes."""
         rows, cols = (pixels // FEATURE_STRIDE for pixels in self.image_size)
         return self.token_grid or (rows, cols)
 
@@ -101,7 +101,8 @@ class ModelConfig:
 
 assert math.isclose(VIEW_ROWS * VIEW_CELL_M, RASTER_ROWS * RASTER_CELL_M)
 
-# BeMapNet's (er-muyue/BeMapNet, configs/bemapnet_nuscenes_*.py) where the paper says no more.
+# Where the paper leaves a size open, it is BeMapNet's (er-muyue/BeMapNet,
+# configs/bemapnet_nuscenes_*.py).
 _PAPER = ModelConfig(
     name="paper",
     trunk="resnet50",
@@ -138,12 +139,12 @@ PRESETS = {
 
 
 def network_config(name: str, view: str = "") -> ModelConfig:
-    """A preset, with another view transform if one is named. ValueError where there is none."""
+    """A preset, with another view transform if `view` names one. ValueError for unknown names."""
     if name not in PRESETS:
-        raise ValueError(f"there is no network '{name}'; there are {', '.join(PRESETS)}")
+        raise ValueError(f"network: found '{name}', wanted one of {', '.join(PRESETS)}")
     preset = PRESETS[name]
     if view in ("", preset.view):
         return preset
     if view not in VIEWS:
-        raise ValueError(f"there is no view transform '{view}'; there are {', '.join(VIEWS)}")
+        raise ValueError(f"view transform: found '{view}', wanted one of {', '.join(VIEWS)}")
     return replace(preset, name=f"{name}-{view}", view=view)

@@ -1,5 +1,5 @@
-"""What a network costs: multiply-accumulates of each part and memory of activations, counted on
-PyTorch's meta device, where nothing is computed and nothing is allocated."""
+"""Counts a network's multiply-accumulates per part and its activation memory. It runs the network
+on PyTorch's meta device, which computes and allocates nothing."""
 
 from __future__ import annotations
 
@@ -26,20 +26,22 @@ from training.models.config import (
 from training.models.network import BevNetwork
 
 _SEED = 1
+_BLOCK = "block"  # attribute of a tensor: the _Block that it occupies
 
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one sample with six cameras. Memory: float32, the most that is alive at one time between
-    PyTorch's operations, inputs and parameters left out, the scratch memory of operations too."""
+    """The cost of one sample with six cameras."""
 
     parameters: int
-    macs: dict[str, int]  # by part, as BevNetwork names them
+    macs: dict[str, int]  # multiply-accumulates by part (the children of BevNetwork)
+    # Peak of the float32 activations that are alive between PyTorch's operations, without inputs,
+    # parameters and the scratch memory inside an operation.
     peak_bytes: int
 
 
 def sample_inputs(config: ModelConfig, device: str) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """Images, a made-up view table in which two cameras see each cell, and raster."""
+    """Random images, a random view table (two cameras see each cell) and a random raster."""
     generator = torch.Generator().manual_seed(_SEED)
     cells = VIEW_ROWS * VIEW_COLS
     rows, cols = config.feature_grid
@@ -49,14 +51,14 @@ def sample_inputs(config: ModelConfig, device: str) -> tuple[Tensor, Tensor, Ten
     index = (camera * rows * cols + cell).flatten(1, 2)
     weight = torch.full(index.shape, 1.0 / VIEW_SLOTS)
     raster = torch.rand(1, RASTER_CHANNELS, RASTER_ROWS, RASTER_COLS, generator=generator)
-    return tuple(x.to(device) for x in (images, index, weight, raster))
+    return images.to(device), index.to(device), weight.to(device), raster.to(device)
 
 
 def deployed_outputs(
     network: BevNetwork, images: Tensor, index: Tensor, weight: Tensor, raster: Tensor
 ) -> tuple[Tensor, Tensor, Tensor]:
-    """F_B, F_M and the perceived mask: what an appliance computes, the reconstructed mask being
-    for training alone."""
+    """F_B, F_M and the perceived mask. This is what the appliance computes; the reconstructed mask
+    is needed only in training."""
     bev = network.perceive(images, index, weight)
     features_map = network.map_compress(network.map_encoder(raster))
     return network.bev_compress(bev), features_map, network.head(bev)
@@ -64,7 +66,7 @@ def deployed_outputs(
 
 @torch.no_grad()
 def measure(network: nn.Module, run: Callable[[], object]) -> Cost:
-    """Counts `run`, which calls `network`; parts are the network's children."""
+    """The cost of `run`, which calls `network`. The parts are the network's children."""
     meter = _Meter()
     hooks = [
         child.register_forward_pre_hook(meter.enter(name))
@@ -85,7 +87,8 @@ def cost_of(config: ModelConfig) -> Cost:
 
 
 class _Block:
-    """Memory that one or more tensors share; gives its bytes back when the last of them is gone."""
+    """Memory that one or more tensors share. The meter counts it as freed when the last of them is
+    gone."""
 
     def __init__(self, meter: _Meter, size_bytes: int) -> None:
         self.meter, self.size_bytes = meter, size_bytes
@@ -96,6 +99,8 @@ class _Block:
 
 
 class _Meter(TorchDispatchMode):
+    """Counts the operations that run inside it."""
+
     def __init__(self) -> None:
         super().__init__()
         self.macs: Counter[str] = Counter()
@@ -104,6 +109,8 @@ class _Meter(TorchDispatchMode):
         self._live_bytes = 0
 
     def enter(self, part: str) -> Callable[[nn.Module, object], None]:
+        """A forward hook after which operations count for `part`."""
+
         def hook(_module: nn.Module, _inputs: object) -> None:
             self.part = part
 
@@ -125,11 +132,13 @@ class _Meter(TorchDispatchMode):
         return outputs
 
     def _own(self, func: Any, position: int, output: Tensor, args: tuple) -> None:
+        """Attaches to an output the memory block that it occupies."""
         returns = func._schema.returns
         if returns[min(position, len(returns) - 1)].alias_info is None:
-            output.block = _Block(self, output.numel() * output.element_size())
-        elif hasattr(args[0], "block"):  # a view, or its input changed in place
-            output.block = args[0].block
+            block = _Block(self, output.numel() * output.element_size())
+            setattr(output, _BLOCK, block)
+        elif hasattr(args[0], _BLOCK):  # a view of its input, or the input changed in place
+            setattr(output, _BLOCK, getattr(args[0], _BLOCK))
 
 
 def _macs(func: Any, args: tuple, outputs: Any) -> int:

@@ -1,5 +1,5 @@
-"""EfficientNet-B0 (Tan and Le 2019). Parameters are named as torchvision names them, so that its
-weights load."""
+"""EfficientNet-B0 (Tan and Le 2019). Parameter names are torchvision's, so that its weights can be
+loaded."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-_SQUEEZE = 4  # of the block's input channels
+_SQUEEZE = 4  # input channels of a block per squeezed channel
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ def _conv(
     inputs: int, outputs: int, size: int = 1, stride: int = 1, groups: int = 1, swish: bool = True
 ) -> nn.Sequential:
     convolution = nn.Conv2d(inputs, outputs, size, stride, size // 2, groups=groups, bias=False)
-    layers = [convolution, nn.BatchNorm2d(outputs)]
+    layers: list[nn.Module] = [convolution, nn.BatchNorm2d(outputs)]
     return nn.Sequential(*layers, *([nn.SiLU(inplace=True)] if swish else []))
 
 
@@ -52,7 +52,7 @@ class SqueezeExcite(nn.Module):
 
 
 class MbConv(nn.Module):
-    """Expand, depthwise convolution, squeeze-excite, project; a skip where shapes allow one."""
+    """Expand, depthwise convolution, squeeze-excite, project; with a skip if the shapes match."""
 
     def __init__(self, inputs: int, stage: _Stage, stride: int) -> None:
         super().__init__()
@@ -70,10 +70,10 @@ class MbConv(nn.Module):
 
 
 class EfficientNetB0(nn.Module):
-    """Without the last 1x1 convolution and the classifier."""
+    """The backbone without the last 1x1 convolution and the classifier."""
 
     widths = (40, 112, 320)
-    _TAPS = (3, 5, 7)  # of `features`: strides 8, 16 and 32
+    _TAPS = (3, 5, 7)  # layers of `features` after which strides 8, 16 and 32 are taken
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,14 +1,34 @@
-"""What all parts are built of."""
+"""The layers that several parts of the networks use."""
 
 from __future__ import annotations
 
 import math
+from typing import TypeVar
 
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
 _TEMPERATURE = 1e4
+ModuleType = TypeVar("ModuleType", bound=nn.Module)
+
+
+def channels_last(module: ModuleType) -> ModuleType:
+    """Stores a module's weights with the channels last, which is faster on the CPU."""
+    # PyTorch 1.13 does not declare this overload.
+    return module.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+
+
+def bias_of(layer: nn.Conv2d) -> Tensor:
+    """The bias of a convolution that has one."""
+    assert layer.bias is not None
+    return layer.bias
+
+
+def running_statistics(bn: nn.BatchNorm2d) -> tuple[Tensor, Tensor]:
+    """The running mean and variance of a batch normalisation that tracks them."""
+    assert bn.running_mean is not None and bn.running_var is not None
+    return bn.running_mean, bn.running_var
 
 
 class ConvBn(nn.Module):
@@ -28,7 +48,7 @@ class ConvBn(nn.Module):
 
 
 class Residual(nn.Module):
-    """Two 3x3 convolutions beside a skip; ReLU after the sum unless the block is `linear`."""
+    """Two 3x3 convolutions with a skip; ReLU after the sum unless the block is `linear`."""
 
     def __init__(self, channels: int, linear: bool = False):
         super().__init__()
@@ -42,7 +62,7 @@ class Residual(nn.Module):
 
 
 class Attention(nn.Module):
-    """Multi-head attention, dense: every query to every key. Keys have no bias: softmax would
+    """Multi-head attention of every query to every key. Keys have no bias, because softmax would
     cancel it."""
 
     def __init__(self, width: int, heads: int, dropout: float) -> None:
@@ -60,7 +80,8 @@ class Attention(nn.Module):
         self, query: Tensor, key: Tensor, value: Tensor, hidden_keys: Tensor | None = None
     ) -> Tensor:
         """query [batch, n, width], key and value [batch, m, width], hidden_keys bool [batch, m]
-        (True: nobody attends to it) -> [batch, n, width]. Where all keys are hidden: the mean."""
+        (True: the key is ignored) -> [batch, n, width]. If all keys are hidden, the result is the
+        mean over all keys."""
         q, k, v = (
             self._split(layer(x))
             for layer, x in ((self.query, query), (self.key, key), (self.value, value))
@@ -78,8 +99,8 @@ class Attention(nn.Module):
 
 
 def sine_encoding(x_m: Tensor, y_m: Tensor, width: int) -> Tensor:
-    """Ground positions [...] -> [..., width]: sines and cosines of y, then of x, in metres and not
-    normalised (BeMapNet, utils/position_encoding.py)."""
+    """Ground positions [...] in metres -> [..., width]: sines and cosines of y, then of x. The
+    positions are not normalised (BeMapNet, utils/position_encoding.py)."""
     octaves = torch.arange(width // 4, dtype=torch.float32, device=x_m.device)
     frequency = _TEMPERATURE ** (-4.0 * octaves / width)
     angles = (axis[..., None] * frequency for axis in (y_m, x_m))
@@ -87,8 +108,8 @@ def sine_encoding(x_m: Tensor, y_m: Tensor, width: int) -> Tensor:
 
 
 def cell_centres(rows: int, cols: int, cell_m: tuple[float, float]) -> tuple[Tensor, Tensor]:
-    """x and y of BEV cells [rows, cols]; row 0 is the far front, column 0 the far left. `cell_m`:
-    along x and along y."""
+    """x and y of the centres of BEV cells, [rows, cols] each. Row 0 is the far front, column 0 the
+    far left. `cell_m`: cell size along x and along y."""
     x = (0.5 * rows - 0.5 - torch.arange(rows)) * cell_m[0]
     y = (0.5 * cols - 0.5 - torch.arange(cols)) * cell_m[1]
     return x[:, None].expand(rows, cols), y[None].expand(rows, cols)

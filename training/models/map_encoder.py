@@ -1,4 +1,4 @@
-"""The VGG-like network on the rasterised map."""
+"""The VGG-like encoder of the rasterised map."""
 
 from __future__ import annotations
 

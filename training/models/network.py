@@ -1,8 +1,8 @@
-"""A whole network.
+"""The complete network, built from a configuration.
 
 images [batch, 6, 3, *image_size] -> trunk -> view transform -> BEV encoder -> compression -> F_B
 raster [batch, 3, 400, 200] -> map encoder -> compression -> F_M
-head H on either -> masks [batch, 3, 400, 200]
+BEV encoder or map encoder -> head H -> mask [batch, 3, 400, 200]
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from training.solver import PoseSolvers
 
 
 class BevNetwork(nn.Module):
-    """Everything that is learned, the solvers' scales included. `cameras`: the six of which a dense
-    view is told; without them it is the nuScenes rig. Other views read the view table alone."""
+    """All learned parameters, including the solvers' scales. `cameras`: the six cameras of a dense
+    view, by default the nuScenes rig. The other view transforms use only the view table."""
 
     def __init__(self, config: ModelConfig, cameras: Sequence[Camera] | None = None) -> None:
         super().__init__()
@@ -45,16 +45,16 @@ class BevNetwork(nn.Module):
                 nn.init.kaiming_normal_(module.weight, mode="fan_out", nonlinearity="relu")
 
     def perceive(self, images: Tensor, index: Tensor, weight: Tensor) -> Tensor:
-        """images: real values; index and weight [batch, 8, 5000]: the view table, whose indices
-        count camera * cells + row * columns + column of the configuration's feature_grid -> BEV
-        features [batch, width, *bev_size]."""
+        """Images (see real_images) and view table -> BEV features [batch, width, *bev_size]. index
+        and weight are [batch, 8, 5000]; an index is camera * cells + row * columns + column of the
+        configuration's feature_grid."""
         features = self.trunk(images.flatten(0, 1))
         return self.bev_encoder(self.view(features, index, weight))
 
     def forward(
         self, images: Tensor, index: Tensor, weight: Tensor, raster: Tensor
     ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """-> F_B, F_M, logits of the perceived and of the reconstructed mask."""
+        """-> F_B, F_M, logits of the perceived mask, logits of the reconstructed mask."""
         bev = self.perceive(images, index, weight)
         encoded = self.map_encoder(raster)
         perceived, reconstructed = self.head(torch.cat((bev, encoded))).chunk(2)

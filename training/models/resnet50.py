@@ -1,5 +1,5 @@
-"""ResNet-50 (He et al. 2016), stride in the 3x3 convolution. Parameters are named as torchvision
-names them, so that its weights load."""
+"""ResNet-50 (He et al. 2016) with the stride in the 3x3 convolution. Parameter names are
+torchvision's, so that its weights can be loaded."""
 
 from __future__ import annotations
 
@@ -34,9 +34,13 @@ class Bottleneck(nn.Module):
 
 
 class ResNet50(nn.Module):
-    """Without the classifier."""
+    """The backbone without the classifier."""
 
     widths = (512, 1024, 2048)
+    layer1: nn.Sequential
+    layer2: nn.Sequential
+    layer3: nn.Sequential
+    layer4: nn.Sequential
 
     def __init__(self) -> None:
         super().__init__()

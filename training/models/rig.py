@@ -1,4 +1,4 @@
-"""The cameras of which a dense view transform is told where each image cell sees the ground."""
+"""The cameras of the dense view transform, which needs the ground position of each image cell."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from torch import Tensor
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole camera of the network's images. Pixel (0, 0) is the centre of the top left one."""
+    """A pinhole camera of the network's images. (0, 0) is the centre of the top left pixel."""
 
     fx_px: float
     fy_px: float
@@ -22,8 +22,8 @@ class Camera:
     def ground_positions(
         self, image_size: tuple[int, int], grid: tuple[int, int]
     ) -> tuple[Tensor, Tensor]:
-        """x and y (m, vehicle) where the centres of image cells see the ground z = 0 [*grid, 2],
-        zero where they look above the horizon, and whether they see it bool [*grid]."""
+        """Where the centres of image cells see the ground z = 0: x and y in the vehicle frame (m)
+        [*grid, 2], zero above the horizon, and whether they see the ground, bool [*grid]."""
         (rows, cols), (grid_rows, grid_cols) = image_size, grid
         v = (torch.arange(grid_rows, dtype=torch.float64) + 0.5) * (rows / grid_rows) - 0.5
         u = (torch.arange(grid_cols, dtype=torch.float64) + 0.5) * (cols / grid_cols) - 0.5
@@ -47,8 +47,8 @@ class _NuScenesCamera:
     azimuth_deg: float
 
 
-# The rig of nuScenes' scene-0061, level: order front_left, front, front_right, back_left, back,
-# back_right.
+# The rig of nuScenes' scene-0061, taken as level. Order: front_left, front, front_right, back_left,
+# back, back_right.
 _NUSCENES = (
     _NuScenesCamera(1272.6, 826.6, 479.8, (1.524, 0.495, 1.509), 55.2),
     _NuScenesCamera(1266.4, 816.3, 491.5, (1.701, 0.016, 1.511), 0.3),
@@ -58,11 +58,11 @@ _NUSCENES = (
     _NuScenesCamera(1259.5, 807.3, 501.2, (1.015, -0.481, 1.562), -110.8),
 )
 _NUSCENES_ROWS, _NUSCENES_COLS = 900, 1600
-_KEPT_ROWS = 0.75  # BeMapNet cuts the upper quarter off
+_KEPT_ROWS = 0.75  # BeMapNet crops the upper quarter
 
 
 def nominal_cameras(image_size: tuple[int, int]) -> list[Camera]:
-    """The nuScenes rig as BeMapNet shows it to the network: scaled, upper quarter cut off."""
+    """The nuScenes rig with BeMapNet's preprocessing: scaled, upper quarter cropped."""
     rows, cols = image_size
     scaled_rows = rows / _KEPT_ROWS
     return [_scaled(camera, scaled_rows, scaled_rows - rows, cols) for camera in _NUSCENES]
@@ -72,7 +72,7 @@ def _scaled(camera: _NuScenesCamera, scaled_rows: float, cut_rows: float, cols: 
     scale_x, scale_y = cols / _NUSCENES_COLS, scaled_rows / _NUSCENES_ROWS
     sin, cos = (f(math.radians(camera.azimuth_deg)) for f in (math.sin, math.cos))
     x, y, z = camera.translation_m
-    # Columns: the camera's right, down and forward in the vehicle.
+    # Columns: the camera's right, down and forward axes and its position, in the vehicle frame.
     pose = torch.tensor([[sin, 0, cos, x], [-cos, 0, sin, y], [0, -1, 0, z], [0, 0, 0, 1]])
     return Camera(
         fx_px=camera.focal_px * scale_x,

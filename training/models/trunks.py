@@ -1,5 +1,5 @@
-"""ResNet-like trunks of dense convolutions, which int8 hardware runs best, and the choice among
-all trunks."""
+"""The trunks: ResNet-like ones with dense convolutions, which int8 hardware runs best, and pyramid
+trunks on published backbones."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ _SIZES = {
     "small": TrunkSize(24, (48, 96, 192), (1, 3, 3)),
     "base": TrunkSize(32, (64, 128, 256), (2, 3, 3)),
 }
-_BACKBONES = {"resnet50": ResNet50, "efficientnet_b0": EfficientNetB0}
+_BACKBONES: dict[str, type[ResNet50] | type[EfficientNetB0]] = {
+    "resnet50": ResNet50,
+    "efficientnet_b0": EfficientNetB0,
+}
 
 
 def _stage(inputs: int, outputs: int, blocks: int) -> nn.Sequential:
@@ -38,7 +41,7 @@ def _stage(inputs: int, outputs: int, blocks: int) -> nn.Sequential:
 
 
 class ResidualTrunk(nn.Module):
-    """Image features at stride 8, with stride 16 added to them."""
+    """Image features at stride 8, to which those at stride 16 are added."""
 
     def __init__(self, size: TrunkSize, outputs: int) -> None:
         super().__init__()
@@ -60,7 +63,7 @@ class ResidualTrunk(nn.Module):
 
 
 class PyramidTrunk(nn.Module):
-    """A known backbone and a BiFPN, whose levels are brought to one grid and mixed."""
+    """A published backbone and a BiFPN, whose levels are resampled to one grid and mixed."""
 
     def __init__(self, config: ModelConfig) -> None:
         super().__init__()

@@ -1,11 +1,11 @@
 """BeMapNet's view transform (Qiao et al. 2023, bev_decoder/transformer.py): a DETR-like Transformer
-in which BEV queries attend to all cells of all cameras. Image cells are encoded by where they see
-the ground (IPM), BEV cells by where they are, both by one shared MLP.
+in which BEV queries attend to all cells of all cameras. Image cells are encoded by the ground
+position that they see (IPM), BEV cells by their own position, both with the same MLP.
 
-The geometry is that of the cameras given at construction, not the view table's. Of the table it
-takes which cameras are there (a camera that no BEV cell looks at is hidden) and which cells nobody
-sees. Two of BeMapNet's quirks are left out: its encoding is made for 512 image rows where there are
-384, and it samples rows and columns from border to border instead of at the cells' centres."""
+The geometry is that of the cameras given at construction, not of the view table. The table only
+tells which cameras are present (a camera that no BEV cell uses is hidden) and which BEV cells no
+camera sees. Two details of BeMapNet are not copied: its encoding assumes 512 image rows although
+there are 384, and it samples rows and columns from border to border instead of at cell centres."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class FeedForward(nn.Sequential):
 
 
 class AddNorm(nn.Module):
-    """Layer normalisation after the sum, as in the first Transformer; in float32 under autocast
-    too, because PyTorch does not mix types there on every device."""
+    """Layer normalisation after the sum, as in the original Transformer. It stays in float32 under
+    autocast, because PyTorch does not support mixed types there on every device."""
 
     def __init__(self, width: int, dropout: float) -> None:
         super().__init__()
@@ -81,10 +81,16 @@ class DecoderLayer(nn.Module):
 
 
 class DenseView(nn.Module):
+    """The view transform "dense"."""
+
+    bev_encoding: Tensor
+    image_encoding: Tensor
+    above_horizon: Tensor
+
     def __init__(self, config: ModelConfig, cameras: Sequence[Camera]) -> None:
         super().__init__()
         if len(cameras) != CAMERAS:
-            raise ValueError(f"dense view: {len(cameras)} cameras, wanted {CAMERAS}")
+            raise ValueError(f"dense view: found {len(cameras)} cameras, wanted {CAMERAS}")
         width = config.width
         self.query_grid = config.query_grid
         self.camera_cells = config.feature_grid[0] * config.feature_grid[1]
@@ -100,6 +106,7 @@ class DenseView(nn.Module):
         self._place(config, cameras)
 
     def _place(self, config: ModelConfig, cameras: Sequence[Camera]) -> None:
+        """Computes the position encodings of all BEV and image cells."""
         views = [c.ground_positions(config.image_size, config.feature_grid) for c in cameras]
         ground = torch.cat([ground.flatten(0, 1) for ground, _ in views])
         sees = torch.cat([sees.flatten() for _, sees in views])
@@ -113,7 +120,7 @@ class DenseView(nn.Module):
 
     def forward(self, features: Tensor, index: Tensor, weight: Tensor) -> Tensor:
         """features [batch * 6, width, *grid], index and weight [batch, 8, 5000] ->
-        [batch, width, 100, 50], zero where no camera sees the ground."""
+        [batch, width, 100, 50]; zero in cells that no camera sees."""
         batch = index.shape[0]
         tokens = features.flatten(2).transpose(1, 2)  # [batch * 6, cells, width]
         tokens = tokens.unflatten(0, (batch, CAMERAS)).flatten(1, 2)
@@ -131,7 +138,7 @@ class DenseView(nn.Module):
         return bev * seen
 
     def _hidden(self, index: Tensor, weight: Tensor) -> Tensor:
-        """Image cells above the horizon or of cameras that are missing, bool [batch, tokens]."""
+        """Image cells above the horizon or of missing cameras, bool [batch, tokens]."""
         camera = torch.div(index, self.camera_cells, rounding_mode="floor").flatten(1)
         looks = (weight > 0).flatten(1).float()
         missing = looks.new_zeros(len(index), CAMERAS).scatter_add(1, camera, looks) == 0

@@ -1,5 +1,5 @@
-"""Geometry-guided kernel attention (after GKT, Chen et al. 2022): each BEV cell attends to the few
-image cells around its projection in the at most two cameras that see it."""
+"""Geometry-guided kernel attention (after GKT, Chen et al. 2022): each BEV cell attends to the
+image cells around its projection, in at most two cameras."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ _OFFSET_TERMS = 5
 class Kernel:
     """The keys of each BEV cell, [batch, 5000, 2 cameras * size * size]."""
 
-    key: Tensor  # int64, into the features of all six cameras of one sample
-    offset: Tensor  # [..., 2]: rows and columns of the key beyond the projection
-    log_share: Tensor  # of the camera in the cell; -inf where the key is none
+    key: Tensor  # int64 index into the features of all six cameras of one sample
+    offset: Tensor  # [..., 2]: rows and columns from the projection to the key
+    log_share: Tensor  # logarithm of the camera's share of the cell; -inf: no key
 
 
 def kernel_of_table(index: Tensor, weight: Tensor, grid: tuple[int, int], size: int) -> Kernel:
-    """The projection is where the table's bilinear neighbours have their centre, and a camera's
-    share is the sum of their weights. index and weight: [batch, 8, 5000]."""
+    """The keys of a view table, index and weight [batch, 8, 5000]. The projection of a cell is the
+    weighted centre of its bilinear neighbours; a camera's share is the sum of their weights."""
     rows, cols = grid
     split = (_CAMERAS_PER_CELL, _NEIGHBOURS)
     index = index.unflatten(1, split).permute(0, 3, 1, 2)  # [batch, 5000, 2, 4]
@@ -60,11 +60,14 @@ def kernel_of_table(index: Tensor, weight: Tensor, grid: tuple[int, int], size: 
 
 
 class KernelView(nn.Module):
-    """softmax over keys of (query . (key + encoded offset) / sqrt(d) + log(share of the camera)).
+    """The view transform "kernel": softmax over the keys of
+    (query . (key + encoded offset) / sqrt(d) + log(share of the camera)).
 
-    The share makes a camera fade in and out where images end, as in the view table. The query comes
-    from the cell's position alone, so a runtime can keep it as a constant. The offset is encoded by
-    its first and second powers, of which a query can make any Gaussian window."""
+    The share fades a camera in and out near its image border, as in the view table. The query
+    depends only on the cell's position, so a runtime can store it as a constant. The offset is
+    encoded by its first and second powers, from which a query can form any Gaussian window."""
+
+    position: Tensor
 
     def __init__(self, config: ModelConfig) -> None:
         super().__init__()
@@ -83,7 +86,7 @@ class KernelView(nn.Module):
 
     def forward(self, features: Tensor, index: Tensor, weight: Tensor) -> Tensor:
         """features [batch * 6, width, *grid], index and weight [batch, 8, 5000] ->
-        [batch, width, 100, 50], zero where no camera sees the ground."""
+        [batch, width, 100, 50]; zero in cells that no camera sees."""
         kernel = kernel_of_table(index, weight, self.grid, self.size)
         tokens = features.flatten(2).transpose(1, 2)  # [batch * 6, cells, width]
         tokens = tokens.unflatten(0, (-1, CAMERAS)).flatten(1, 2)
@@ -93,7 +96,7 @@ class KernelView(nn.Module):
 
         logits = torch.einsum("chd,bckhd->bckh", query, key).float() / math.sqrt(query.shape[-1])
         seen = kernel.log_share.isfinite().any(2)  # [batch, 5000]
-        # Where no key is one, softmax gets zeros for logits instead of making NaN.
+        # In cells without any key, zeros keep softmax from returning NaN.
         log_share = torch.where(seen[..., None], kernel.log_share, 0.0)
         attention = torch.softmax(logits + log_share[..., None], dim=2).to(value.dtype)
         mixed = torch.einsum("bckh,bckhd->bchd", attention, value).flatten(2)

@@ -1,4 +1,4 @@
-"""The view transform of `nano`: a weighted gather by the view table, nothing learned."""
+"""The view transform of `nano`: a weighted gather by the view table, without learned weights."""
 
 from __future__ import annotations
 
@@ -23,5 +23,7 @@ def gather_views(features: Tensor, index: Tensor, weight: Tensor) -> Tensor:
 
 
 class LutView(nn.Module):
+    """The view transform "lut"."""
+
     def forward(self, features: Tensor, index: Tensor, weight: Tensor) -> Tensor:
         return gather_views(features, index, weight)

@@ -1,7 +1,6 @@
-// C interface of the joint volume for training (training/joint_volume.py).
 #include "training/native/joint_volume_op.h"
 
-#include "pipeline/solver/joint_volume.h"
+#include "pipeline/solver/reference/joint_volume.h"
 
 namespace {
 

@@ -8,15 +8,15 @@
 namespace bevloc {
 namespace {
 
-/// The slopes of a correction's sums.
+/// The derivatives of the loss by the sums of one correction (by the square: doubled).
 struct LineSlope {
   float product;
   float value;
   float twice_square;
 };
 
-/// A line of cells of both sides, the map's `map_step` floats apart; `grad_bev` is to the gradient
-/// what line.origin is to features.
+/// A line of cells of both sides. The map's cells are `map_step` floats apart. `grad_bev` is the
+/// counterpart of line.origin in the gradient.
 struct GradientLine {
   WarpLine line;
   LineSlope slope;
@@ -26,7 +26,7 @@ struct GradientLine {
   float* grad_map;
 };
 
-/// Adds `gradient` to the four cells that position `i` was read from, by their weights.
+/// Adds `gradient`, weighted, to the four cells from which position `i` was interpolated.
 [[gnu::always_inline]] inline void scatter(const WarpLine& line, const Taps& taps, int i, int k,
                                            const Lanes& gradient, float* origin) {
   float* first = origin + taps.offset[i] + k;
@@ -41,7 +41,8 @@ struct GradientLine {
   lanes(second + line.lanes) += far_lower;
 }
 
-/// `lanes_per_cell` is line.lanes, known to the compiler where it can be.
+/// Adds the gradients of one line. `lanes_per_cell` equals line.lanes; a constant argument lets the
+/// compiler specialise the loop.
 [[gnu::always_inline]] inline void add_cells(GradientLine cells, int lanes_per_cell) {
   WarpLine& line = cells.line;
   line.lanes = lanes_per_cell;
@@ -74,7 +75,7 @@ void add_moved_gradients(const CellFeatures& bev, const CellFeatures& map,
                          std::span<const MovedSlope> slopes, const CellLattice& lattice,
                          CellFeatures& grad_bev, CellFeatures& grad_map) {
   const BevGrid& grid = map.grid();
-  // Row by row, so that what the corrections read and write stays in the cache.
+  // Rows are the outer loop, so that the data of one row stays in the cache for all corrections.
   for (int row = 0; row < grid.rows; ++row) {
     const int col = lattice.first_col(row);
     const int cells = lattice.cells(row, grid.cols);

@@ -1,4 +1,5 @@
-// The gradient of what a ZNCC of moved features is made of.
+// The gradient of the sums that make up the ZNCC of moved features (match_moved() of
+// pipeline/solver/pose_scorer.h).
 #pragma once
 
 #include <span>
@@ -10,14 +11,15 @@
 
 namespace bevloc {
 
-/// A correction, and how much some value grows with each of its sums (match_moved()).
+/// A correction and the derivatives of a loss by its sums.
 struct MovedSlope {
   Se2 correction;
   MatchSums slope;
 };
 
-/// Adds the gradients of that value with respect to both sides. `grad_bev` has the margin of `bev`;
-/// its cells in the margin, and lanes beyond the channels, are filled with what nothing reads.
+/// Adds the gradients of the loss with respect to both sides to `grad_bev` and `grad_map`.
+/// `grad_bev` must have the margin of `bev`. Its margin cells and the lanes beyond the channels get
+/// unspecified values.
 void add_moved_gradients(const CellFeatures& bev, const CellFeatures& map,
                          std::span<const MovedSlope> slopes, const CellLattice& lattice,
                          CellFeatures& grad_bev, CellFeatures& grad_map);

@@ -1,4 +1,3 @@
-// C interface of moved features' sums for training (training/moved_sums.py).
 #include "training/native/moved_sums_op.h"
 
 #include <vector>
@@ -14,7 +13,7 @@ using bevloc::Se2;
 
 constexpr int kSumCount = 3;
 
-/// The features of both sides.
+/// The features of both sides. Those of the vehicle have a margin for the largest correction.
 struct Sides {
   explicit Sides(int channels)
       : bev(bevloc::kFeatureGrid, channels, bevloc::HypothesisGrid{}),

@@ -44,7 +44,7 @@ void bevloc_network_run(bevloc_network* network, const uint8_t* images, uint8_t 
                         const uint8_t* raster, float* bev, float* map, float* mask) {
   bevloc::Network& net = *network->network;
   net.set_view_table(bevloc::make_view_table(
-      bevloc::sim::told_network_rig(), bevloc::CameraMask(camera_mask), bevloc::kFeatureGrid));
+      bevloc::sim::nominal_network_rig(), bevloc::CameraMask(camera_mask), bevloc::kFeatureGrid));
   const std::span<int8_t> image_input = net.image_input();
   std::transform(images, images + image_input.size(), image_input.begin(),
                  [](uint8_t value) { return static_cast<int8_t>(value - kImageOffset); });

@@ -1,4 +1,3 @@
-// The C interface, and the workers that make samples ahead of their use.
 #include "training/native/sampler.h"
 
 #include <algorithm>
@@ -8,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "pipeline/network/view_table.h"
+#include "pipeline/network/view/view_table.h"
 #include "sim/samples/sample_maker.h"
 
 using bevloc::Se2;
@@ -18,7 +17,7 @@ using bevloc::sim::SampleStream;
 
 namespace {
 
-/// Both return where the next motion goes or stands.
+/// Both functions return the position after the motion.
 float* write_motion(const Se2& motion, float* out) {
   *out++ = static_cast<float>(motion.x_m);
   *out++ = static_cast<float>(motion.y_m);
@@ -33,8 +32,9 @@ const float* read_motion(const float* in, Se2& motion) {
 
 }  // namespace
 
-/// Each worker makes whole worlds; samples leave in order, world by world. A worker waits before it
-/// starts a world too far ahead of the one that is being read, which bounds the memory.
+/// Workers that make samples ahead of their use. Each worker makes whole worlds; samples are
+/// returned in order, world by world. To limit the memory, a worker waits before it starts a world
+/// that is too far ahead of the one being read.
 struct bevloc_sampler {
  public:
   bevloc_sampler(const SampleStream& stream, uint64_t first_sample, int threads)
@@ -60,7 +60,7 @@ struct bevloc_sampler {
   bevloc_sampler(const bevloc_sampler&) = delete;
   bevloc_sampler& operator=(const bevloc_sampler&) = delete;
 
-  /// The next sample in order; waits until it is made.
+  /// The next sample in order. Blocks until it is made.
   Sample next() {
     std::unique_lock lock(mutex_);
     std::deque<Sample>& samples = made_[world_being_read_];
@@ -102,7 +102,7 @@ struct bevloc_sampler {
   const uint64_t first_world_;
   const uint64_t first_in_first_world_;
 
-  std::mutex mutex_;  ///< guards all below
+  std::mutex mutex_;  ///< guards all members up to made_
   std::condition_variable room_;
   std::condition_variable arrived_;
   bool stopping_ = false;
@@ -148,7 +148,7 @@ void bevloc_view_table(uint8_t camera_mask, int32_t* index, float* weight, const
     for (Se2& motion : reference_from_exposure) motions = read_motion(motions, motion);
   }
   const bevloc::ViewTable table =
-      bevloc::make_view_table(bevloc::sim::told_network_rig(), bevloc::CameraMask(camera_mask),
+      bevloc::make_view_table(bevloc::sim::nominal_network_rig(), bevloc::CameraMask(camera_mask),
                               bevloc::kFeatureGrid, reference_from_exposure);
   std::copy(table.index.begin(), table.index.end(), index);
   std::copy(table.weight.begin(), table.weight.end(), weight);

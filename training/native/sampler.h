@@ -1,5 +1,5 @@
-// C interface through which training reads samples from the simulator, and the reference tables
-// that it must share with the daemon.
+// C interface to the simulator's samples and to the daemon's view table, for training. Used by
+// training/data.py.
 #pragma once
 
 #include <stdint.h>
@@ -10,32 +10,32 @@ extern "C" {
 
 typedef struct bevloc_sampler bevloc_sampler;
 
-/// Starts `threads` workers that render samples ahead. Sample i of a stream depends on (first_seed,
-/// i) alone, whatever the number of workers, and samples come out in order. `first_sample` resumes
-/// a stream in its middle. `drop_camera_probability`: chance that a sample lacks one or two cameras
-/// (their images are black). `strong_nuisances`: other than 0 for more trouble than is usual
-/// (sim/samples/training_nuisances.h).
+/// Starts `threads` workers that render samples ahead; bevloc_sampler_destroy() stops and frees
+/// them. Samples come in order, and sample i depends only on (first_seed, i), not on the number of
+/// workers. `first_sample` resumes a stream in its middle. `drop_camera_probability`: probability
+/// that a sample lacks one or two cameras (their images are black). `strong_nuisances`: non-zero
+/// for stronger disturbances than usual (sim/samples/training_nuisances.h).
 bevloc_sampler* bevloc_sampler_create(uint64_t first_seed, uint64_t first_sample, int threads,
                                       double drop_camera_probability, int strong_nuisances);
 void bevloc_sampler_destroy(bevloc_sampler* sampler);
 
-/// Fills `count` samples:
-///   images          uint8 [count, 6, 3, 96, 320]  RGB planes, through the network cameras
-///   camera_mask     uint8 [count]                 bit i: camera i is there
+/// Writes the next `count` samples and blocks until they are rendered. Only one thread may call it.
+///   images          uint8 [count, 6, 3, 96, 320]  RGB planes of the network cameras
+///   camera_mask     uint8 [count]                 bit i: camera i is present
 ///   raster_prior    uint8 [count, 3, 400, 200]    the map drawn at T0, the network's input
 ///   raster_truth    uint8 [count, 3, 400, 200]    the map drawn at T, the target of segmentation
 ///   correction      float [count, 3]              dT = T0^-1 T: x m, y m, yaw rad
 ///   motions         float [count, 6, 3]           reference_from_exposure of each camera
 ///                                                 (pipeline/calibration/rig.h): x m, y m, yaw rad
 /// dT is uniform in +-2 m, +-1 m, +-2 degrees. All motions of a sample are zero if its cameras
-/// expose at once.
+/// expose at the same time.
 void bevloc_sampler_next(bevloc_sampler* sampler, int count, uint8_t* images, uint8_t* camera_mask,
                          uint8_t* raster_prior, uint8_t* raster_truth, float* correction,
                          float* motions);
 
-/// The view table (pipeline/network/view_table.h) of the rig that samples are rendered for, with
-/// the cameras of `camera_mask`: index int32 [8, 5000], weight float [8, 5000]. `motions`: a
-/// sample's [6, 3], or null for cameras that expose at once.
+/// Writes the view table (pipeline/network/view/view_table.h) of the samples' rig for the cameras
+/// in `camera_mask`: index int32 [8, 5000], weight float [8, 5000]. `motions`: a sample's [6, 3],
+/// or null for cameras that expose at the same time.
 void bevloc_view_table(uint8_t camera_mask, int32_t* index, float* weight, const float* motions);
 
 #ifdef __cplusplus

@@ -1,17 +1,17 @@
-// C interface through which training reads the scenes on which pose solvers are judged without a
-// network (sim/perception/matching_scene.h).
+// C interface to the scenes on which solvers are evaluated without a network
+// (sim/perception/matching_scene.h). Used by training/ablation.py.
 #pragma once
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/// Fills the first `count` of the tuning scenes, perceived as well as the paper's network does
-/// (CorruptionLevel::kPaper):
+/// Writes the first `count` tuning scenes. Their masks are as good as those of the paper's network
+/// (CorruptionLevel::kPaper). The scenes are the same in every call.
 ///   bev         float [count, 16, 100, 50]  channels of the perceived mask (MaskFeatures)
-///   map         float [count, 16, 100, 50]  the same of the map drawn at T0
+///   map         float [count, 16, 100, 50]  channels of the map drawn at T0
 ///   correction  double [count, 3]           dT = T0^-1 T: x m, y m, yaw rad
-/// dT is uniform in +-2 m, +-1 m, +-2 degrees. Always the same scenes.
+/// dT is uniform in +-2 m, +-1 m, +-2 degrees.
 void bevloc_scene_features(int count, float* bev, float* map, double* correction);
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-"""The cropped camera that the network looks through (pipeline/preprocessing/network_camera.h)."""
+"""The network camera: a scaled crop of a real one (pipeline/preprocessing/network_camera.h)."""
 
 from __future__ import annotations
 
@@ -17,14 +17,16 @@ from training.nuscenes.errors import (
 
 WIDTH_PX, HEIGHT_PX = 320, 96
 HORIZON_ROW = 14.0
-# JPEG files are decoded at half their size or less where this many columns are left.
+# JPEG files may be decoded at half their size or less, as long as so many columns remain.
 _DECODED_COLUMNS = 2 * WIDTH_PX
-_MIN_UPRIGHT = 0.1  # sine of how far a camera must stay from looking along the vertical or lying
+# Least vertical component of the camera's down axis: refuses cameras that lie on their side or look
+# along the vertical.
+_MIN_UPRIGHT = 0.1
 
 
 @dataclass(frozen=True, slots=True)
 class Pinhole:
-    """Pixel (0, 0) is the centre of the top left pixel."""
+    """A pinhole camera. (0, 0) is the centre of the top left pixel."""
 
     width_px: int
     height_px: int
@@ -35,13 +37,18 @@ class Pinhole:
 
 
 def network_camera(real: Pinhole, vehicle_from_camera: np.ndarray) -> Pinhole:
-    """The full width scaled to 320 columns, and the 96 rows that have the horizon of a level
-    vehicle, at the principal column, in row 14. vehicle_from_camera: [4, 4] of the calibration."""
+    """The network camera of a real one: the full width is scaled to 320 columns, and the 96 rows
+    are chosen so that the horizon of a level vehicle lies in row 14 at the principal column.
+    vehicle_from_camera [4, 4] is the calibration. CalibrationError if it is impossible."""
     camera_down, camera_forward = vehicle_from_camera[2, 1], vehicle_from_camera[2, 2]
     if real.fx_px <= 0 or real.fy_px <= 0:
-        raise CalibrationError(f"focal lengths {real.fx_px}, {real.fy_px}, wanted positive ones")
+        raise CalibrationError(
+            f"found focal lengths {real.fx_px} and {real.fy_px}, wanted positive ones"
+        )
     if abs(camera_down) < _MIN_UPRIGHT:
-        raise CalibrationError("a camera on its side or facing the ground, wanted an upright one")
+        raise CalibrationError(
+            "found a camera on its side or facing the ground, wanted an upright one"
+        )
     scale = WIDTH_PX / real.width_px
     f_px = real.fx_px * scale
     return Pinhole(
@@ -55,8 +62,9 @@ def network_camera(real: Pinhole, vehicle_from_camera: np.ndarray) -> Pinhole:
 
 
 def look_through(path: Path, real: Pinhole, network: Pinhole) -> np.ndarray:
-    """The image file as the network camera sees it, RGB planes uint8 [3, 96, 320]; black where
-    the real camera has no rows."""
+    """Reads an image file and resamples it to the network camera: RGB planes uint8 [3, 96, 320],
+    black outside the real camera's image. NuscenesError if the file is missing, unreadable or of
+    another size."""
     try:
         with Image.open(path) as image:
             if image.size != (real.width_px, real.height_px):
@@ -68,19 +76,19 @@ def look_through(path: Path, real: Pinhole, network: Pinhole) -> np.ndarray:
     except FileNotFoundError:
         raise MissingFileError(f"{path}: found no such file, wanted an image") from None
     except (OSError, SyntaxError) as error:
-        raise UnreadableImageError(f"{path}: no image ({error})") from None
+        raise UnreadableImageError(f"{path}: unreadable as an image ({error})") from None
     return np.ascontiguousarray(np.asarray(pixels).transpose(2, 0, 1))
 
 
 def _resample(image: Image.Image, real: Pinhole, network: Pinhole) -> Image.Image:
-    """Crops and scales in one pass. Pillow's bilinear filter, a triangle as wide as the scale asks
-    for, keeps a line in its place to a hundredth of a pixel; a box of whole pixels moves it by a
-    tenth, which is a quarter of a metre 30 m away."""
+    """Crops and scales in one pass. Pillow's bilinear filter (a triangle whose width follows the
+    scale) preserves the position of a line to 0.01 pixels. A box filter over whole pixels would
+    shift it by 0.1 pixels, which is 0.25 m at a distance of 30 m."""
     reduced = image.width / real.width_px
     per_row = real.fy_px / network.fy_px
     top = reduced * (real.cy_px + 0.5 - (network.cy_px + 0.5) * per_row)
     bottom = top + reduced * network.height_px * per_row
-    # What the filter reaches beyond the crop; rows outside the image come as black.
+    # The filter reads beyond the crop. Pillow fills rows outside the image with black.
     reach = int(np.ceil(reduced * per_row)) + 1
     first, last = int(np.floor(top)) - reach, int(np.ceil(bottom)) + reach
     rows = image.crop((0, first, image.width, last))

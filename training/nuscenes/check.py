@@ -1,9 +1,9 @@
-"""Reads every sample of a nuScenes tree, names the bad ones, and draws some to look at.
+"""Reads every sample of a nuScenes tree, reports the bad ones and draws some for inspection.
 
     /usr/bin/python3 -m training.nuscenes.check DIR --scenes FILE --draw 20 --out sheets
 
-A sheet has the six network images with the map's lines drawn where calibration, ego poses and map
-say that they are, and the raster: the lines must lie on what the cameras show.
+A sheet shows the six network images with the map's lines projected into them, and the raster. If
+calibration, ego poses and map are right, the lines lie on the lines in the images.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ EXIT_BAD_SAMPLES = 1
 EXIT_BAD_TREE = 2
 COLOURS = ((255, 160, 0), (60, 120, 255), (255, 40, 40))  # dividers, crossings, boundaries
 _POINTS_PER_M = 20
-_NEAREST_M = 1.0  # in front of a camera
+_NEAREST_M = 1.0  # closer points are not projected
 
 
 def check(dataset: NuscenesDataset) -> Problems:
-    """Makes every sample once."""
+    """Makes every sample once and returns the problems found."""
     problems = Problems()
 
     def try_sample(position: int) -> None:
@@ -46,7 +46,7 @@ def check(dataset: NuscenesDataset) -> Problems:
 
 
 def sheet(dataset: NuscenesDataset, position: int) -> Image.Image:
-    """Six images, two rows of three, twice as large; the raster of the true pose beside them."""
+    """The six images in two rows, magnified twice, with the raster of the true pose beside them."""
     token = dataset.sample_tokens[position]
     segments = dataset.map_segments(token, dataset.map_from_vehicle(token))
     layers = [_points(layer) for layer in segments]
@@ -61,7 +61,7 @@ def sheet(dataset: NuscenesDataset, position: int) -> Image.Image:
 
 
 def _points(segments: np.ndarray) -> np.ndarray:
-    """Points [n, 3] along segments [n, 2, 2], on the ground."""
+    """Points [n, 3] on the ground along segments [n, 2, 2]."""
     length = np.hypot(*(segments[:, 1] - segments[:, 0]).T)
     count = np.ceil(length * _POINTS_PER_M).astype(int) + 1
     part = np.concatenate([np.empty(0), *(np.linspace(0, 1, n) for n in count)])[:, None]
@@ -70,7 +70,7 @@ def _points(segments: np.ndarray) -> np.ndarray:
 
 
 def _image(view: View, layers: list[np.ndarray]) -> np.ndarray:
-    """[96, 320, 3] with the lines drawn in."""
+    """The network image [96, 320, 3] with the map's lines drawn in."""
     image = look_through(view.path, view.real, view.network).transpose(1, 2, 0).copy()
     camera_from_vehicle = inverse_se3(view.vehicle_from_camera)
     for points, colour in zip(layers, COLOURS):
@@ -85,11 +85,15 @@ def _image(view: View, layers: list[np.ndarray]) -> np.ndarray:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("root", type=Path, help="the tree that has v1.0-*, samples and maps")
-    parser.add_argument("--scenes", type=Path, help="file of scene names, one a line; default all")
-    parser.add_argument("--version", default="", help="v1.0-*, where there are several")
-    parser.add_argument("--draw", type=int, default=0, help="how many sheets, over all samples")
-    parser.add_argument("--out", type=Path, default=Path("out"), help="folder of the sheets")
+    parser.add_argument("root", type=Path, help="folder with v1.0-*, samples and maps")
+    parser.add_argument(
+        "--scenes", type=Path, help="file with one scene name per line; default: all scenes"
+    )
+    parser.add_argument("--version", default="", help="v1.0-*, if there are several")
+    parser.add_argument(
+        "--draw", type=int, default=0, help="number of sheets, spread over all samples"
+    )
+    parser.add_argument("--out", type=Path, default=Path("out"), help="folder for the sheets")
     options = parser.parse_args()
     try:
         dataset = NuscenesDataset(options.root, options.scenes, options.version)

@@ -1,7 +1,7 @@
-"""nuScenes key frames as training samples (training/data.py, Batch), in NumPy.
+"""Turns nuScenes key frames into training samples (Batch of training/data.py), in NumPy.
 
 The vehicle frame of a sample is nuScenes' ego frame at the time of its LIDAR_TOP key frame. The
-cameras fire up to 45 ms before; each one's own ego pose says where it was then.
+cameras fire up to 45 ms earlier; each camera's own ego pose gives the vehicle's pose at that time.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ from training.nuscenes.tables import (
 from training.nuscenes.view_table import view_table
 
 ALL_CAMERAS = (1 << len(CAMERA_CHANNELS)) - 1
-# How far the prior pose may be off, each way (paper, IV-A).
+# Largest correction in either direction: x m, y m, yaw rad (paper, section IV-A).
 MAX_DEVIATION = np.array([2.0, 1.0, math.radians(2.0)])
 
 
 @dataclass(frozen=True)
 class NuscenesSample:
-    """One sample with the fields, shapes and units of a Batch."""
+    """One sample. Fields, shapes and units are those of Batch, without the batch dimension."""
 
     images: np.ndarray
     camera_mask: np.ndarray
@@ -50,16 +50,16 @@ class NuscenesSample:
 
 @dataclass(frozen=True)
 class View:
-    """One network camera of one sample, where it was when it took its picture."""
+    """One camera of one sample, at the pose where it was when it took its image."""
 
-    path: Path
+    path: Path  # image file
     real: Pinhole
     network: Pinhole
-    vehicle_from_camera: np.ndarray  # vehicle at the sample's reference time
+    vehicle_from_camera: np.ndarray  # [4, 4]; the vehicle frame at the sample's reference time
 
 
 class NuscenesDataset:
-    """The key frames of a nuScenes tree. May be read from several threads."""
+    """The key frames of a nuScenes tree. Several threads may read it at the same time."""
 
     def __init__(
         self,
@@ -68,10 +68,11 @@ class NuscenesDataset:
         version: str = "",
         line_width_cells: float = raster.DEFAULT_LINE_WIDTH_CELLS,
     ) -> None:
-        """scenes: file of scene names, or None for all; version: v1.0-*, where there are several.
-        Unreadable tables are refused here, whatever is wrong with a sample when it is read."""
+        """scenes: file with scene names, None: all. version: v1.0-*, needed if there are several.
+        Unreadable tables raise NuscenesError here; a defect of a sample raises it when that sample
+        is read. ValueError for an impossible line width."""
         if not 0 < line_width_cells <= raster.WIDEST_LINE_CELLS:
-            wanted = f"more than 0 and up to {raster.WIDEST_LINE_CELLS} cells"
+            wanted = f"more than 0 and at most {raster.WIDEST_LINE_CELLS} cells"
             raise ValueError(f"line width: found {line_width_cells}, wanted {wanted}")
         names = read_scene_names(scenes) if scenes else None
         self._root = root
@@ -87,8 +88,9 @@ class NuscenesDataset:
     def sample(
         self, position: int, deviation: np.ndarray, camera_mask: int = ALL_CAMERAS
     ) -> NuscenesSample:
-        """deviation: the correction dT (x m, y m, yaw rad) that leads from the prior to the truth.
-        Cameras that are not in the mask are black and see no cell. Raises NuscenesError."""
+        """One sample. deviation: the correction dT (x m, y m, yaw rad) from the prior to the truth.
+        Cameras outside the mask have black images and are not in the view table. NuscenesError if
+        the sample cannot be used."""
         token = self.sample_tokens[position]
         map_from_vehicle = self.map_from_vehicle(token)
         views = self.views(token)
@@ -117,22 +119,23 @@ class NuscenesDataset:
         )
 
     def map_from_vehicle(self, sample_token: str) -> Se2:
-        """The true pose: where the vehicle was at the reference time."""
+        """The true pose of the vehicle at the reference time."""
         return planar(self._map_from_vehicle(self._tables.frame(sample_token, REFERENCE_CHANNEL)))
 
     def map_segments(self, sample_token: str, map_from_vehicle: Se2) -> list[np.ndarray]:
-        """The sample's map around a pose, in its frame (MapExpansion.segments)."""
+        """The map's segments around a pose, in the frame of that pose (MapExpansion.segments)."""
         return self._map(self._tables.location(sample_token)).segments(map_from_vehicle)
 
     def views(self, sample_token: str) -> list[View]:
-        """The six cameras in the project's order."""
+        """The six cameras in the order of CAMERA_CHANNELS."""
         reference = self._tables.frame(sample_token, REFERENCE_CHANNEL)
         vehicle_from_map = inverse_se3(self._map_from_vehicle(reference))
         frames = [self._tables.frame(sample_token, channel) for channel in CAMERA_CHANNELS]
         return [self._view(frame, vehicle_from_map) for frame in frames]
 
     def _view(self, frame: Frame, vehicle_from_map: np.ndarray) -> View:
-        """The crop is that of the calibration, as on the appliance; motion moves the camera."""
+        """One camera. The network camera follows from the calibration alone, as on the appliance;
+        the pose includes the vehicle's motion since the exposure."""
         token = frame.calibrated_sensor_token
         sensor = self._tables.find("calibrated_sensor", token, f"sample_data '{frame.token}'")
         vehicle_from_sensor = _se3(sensor.vehicle_from_sensor)
@@ -149,7 +152,7 @@ class NuscenesDataset:
         return _se3(self._tables.find("ego_pose", frame.ego_pose_token, named_by))
 
     def _map(self, location: str) -> MapExpansion:
-        """Read when first wanted; one that cannot be read is not tried again."""
+        """The map of a location. It is read on first use; an unreadable map is not tried again."""
         with self._maps_mutex:
             if location not in self._maps:
                 try:
@@ -168,8 +171,9 @@ def _se3(pose: Pose) -> np.ndarray:
 
 def _pinhole(frame: Frame, sensor: CalibratedSensor) -> Pinhole:
     if sensor.camera_intrinsic is None:
-        raise CalibrationError("found no camera_intrinsic, wanted that of a camera")
+        raise CalibrationError("found no camera_intrinsic, wanted the intrinsics of a camera")
     if frame.width_px <= 0 or frame.height_px <= 0:
-        raise CalibrationError(f"image of {frame.width_px}x{frame.height_px}, wanted some pixels")
+        found = f"{frame.width_px}x{frame.height_px}"
+        raise CalibrationError(f"found an image of {found} pixels, wanted a positive size")
     (fx_px, _, cx_px), (_, fy_px, cy_px), _ = sensor.camera_intrinsic
     return Pinhole(frame.width_px, frame.height_px, fx_px, fy_px, cx_px, cy_px)

@@ -1,10 +1,10 @@
-"""What can be wrong with a nuScenes tree. `kind` is the name under which errors are counted."""
+"""Errors in a nuScenes tree. `kind` is the name under which errors are counted."""
 
 from __future__ import annotations
 
 
 class NuscenesError(ValueError):
-    """One clear sentence: the place, what was found, what was wanted."""
+    """The message is one sentence: the place, what was found, what was wanted."""
 
     kind = "error"
 

@@ -1,4 +1,4 @@
-"""Rigid motions, named target_from_source."""
+"""Rigid motions in the plane and in space, named target_from_source."""
 
 from __future__ import annotations
 
@@ -51,6 +51,6 @@ def inverse_se3(motion: np.ndarray) -> np.ndarray:
 
 
 def planar(motion: np.ndarray) -> Se2:
-    """Place and heading of a motion in space."""
+    """The position and heading of a motion in space."""
     yaw_rad = math.atan2(motion[1, 0], motion[0, 0])
     return Se2(float(motion[0, 3]), float(motion[1, 3]), yaw_rad)

@@ -1,7 +1,7 @@
-"""Records of JSON files, one at a time, with typed access that says what it found instead.
+"""Reads JSON files record by record, with type-checked access to their fields.
 
-The tables of all nuScenes drives are over 1 GB of text each, most of it not needed: a table is
-never held as a whole.
+The tables of all nuScenes drives are over 1 GB of text each, and most of it is not needed.
+Therefore a table is never held in memory as a whole.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ _SPACE = " \t\r\n"
 
 
 class Record:
-    """A JSON object and where it came from."""
+    """A JSON object and its place (file and record). Every accessor raises WrongTypeError if the
+    field is missing or of another type."""
 
     __slots__ = ("values", "place")
 
@@ -71,7 +72,7 @@ class Record:
         return tuple(map(float, value))
 
     def unit_quaternion(self, key: str) -> tuple[float, ...]:
-        """w, x, y, z; a norm within 0.001 of 1 is made 1."""
+        """w, x, y, z. A norm within 0.001 of 1 is accepted and normalised to 1."""
         values = self.numbers(key, 4)
         norm = math.hypot(*values)
         if abs(norm - 1.0) > 1e-3:
@@ -124,36 +125,36 @@ def open_text(path: Path) -> TextIO:
 
 
 def read_object(path: Path) -> Record:
-    """A file that is one JSON object."""
+    """Reads a file that holds one JSON object."""
     with open_text(path) as file:
         try:
             return Record(json.load(file), str(path))
         except json.JSONDecodeError as error:
             place = f"{path}: line {error.lineno}, column {error.colno}"
-            raise UnreadableJsonError(f"{place}: no JSON ({error.msg})") from None
+            raise UnreadableJsonError(f"{place}: invalid JSON ({error.msg})") from None
         except UnicodeDecodeError as error:
-            raise UnreadableJsonError(f"{path}: byte {error.start}: no UTF-8") from None
+            raise UnreadableJsonError(f"{path}: byte {error.start}: invalid UTF-8") from None
 
 
 def read_array(path: Path) -> Iterator[Record]:
-    """The objects of a file that is one JSON array."""
+    """Yields the objects of a file that holds one JSON array."""
     with open_text(path) as file:
         try:
             yield from _ArrayReader(path, file).records()
         except UnicodeDecodeError:
-            raise UnreadableJsonError(f"{path}: no UTF-8") from None
+            raise UnreadableJsonError(f"{path}: invalid UTF-8") from None
 
 
 class _ArrayReader:
-    """Takes a JSON array apart while it is read; holds one chunk of text."""
+    """Parses a JSON array while reading it; keeps about one chunk of text in memory."""
 
     def __init__(self, path: Path, file: TextIO) -> None:
         self._path = path
         self._file = file
         self._decoder = json.JSONDecoder()
         self._text = ""
-        self._next = 0  # in _text
-        self._lines_before = 0  # line ends in what was dropped
+        self._next = 0  # index into _text
+        self._lines_before = 0  # line ends before _text
         self._columns_before = 0  # characters between the last of them and _text
 
     def records(self) -> Iterator[Record]:
@@ -174,7 +175,7 @@ class _ArrayReader:
             raise self._error(self._next, "wanted the end of the file after ']'")
 
     def _peek(self) -> str:
-        """The next character that is no space, left in place; empty at the end of the file."""
+        """The next non-space character, without consuming it; empty at the end of the file."""
         while True:
             while self._next < len(self._text) and self._text[self._next] in _SPACE:
                 self._next += 1
@@ -189,14 +190,14 @@ class _ArrayReader:
                 value, self._next = self._decoder.raw_decode(self._text, self._next)
                 return value
             except json.JSONDecodeError as error:
-                # Either nonsense, or a record that the chunk's end cuts.
+                # The text is either invalid or ends in the middle of a record.
                 too_long = len(self._text) - self._next > _LONGEST_RECORD_CHARACTERS
                 before = self._next
                 if too_long or not self._read_on():
                     raise self._error(error.pos - before + self._next, error.msg) from None
 
     def _read_on(self) -> bool:
-        """Drops what is done and appends a chunk; False at the end of the file."""
+        """Drops the consumed text and appends a chunk; False at the end of the file."""
         done, self._text = self._text[: self._next], self._text[self._next :]
         self._next = 0
         self._lines_before += done.count("\n")
@@ -214,5 +215,5 @@ class _ArrayReader:
         last_end = before.rfind("\n")
         column = at - last_end if last_end >= 0 else self._columns_before + at + 1
         return UnreadableJsonError(
-            f"{self._path}: line {line}, column {column}: no JSON ({wanted})"
+            f"{self._path}: line {line}, column {column}: invalid JSON ({wanted})"
         )

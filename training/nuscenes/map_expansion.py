@@ -1,12 +1,13 @@
-"""A nuScenes map (maps/expansion/*.json, versions 1.1 to 1.3) as the three classes of bevloc.
+"""Converts a nuScenes map (maps/expansion/*.json, versions 1.1 to 1.3) to the classes of bevloc.
 
-The classes are those of HDMapNet and BeMapNet: dividers are road_divider and lane_divider, a
-crossing is the two longest edges of its polygon, the boundary is the outline of the union of all
+The conversion follows HDMapNet and BeMapNet. Dividers are road_divider and lane_divider. A crossing
+is the two longest edges of its polygon. The boundary is the outline of the union of all
 road_segment and lane polygons.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,8 @@ def map_path(root: Path, location: str) -> Path:
 
 
 class MapExpansion:
-    """The lines of one map in its own frame, which is that of the ego poses: metres, x east."""
+    """The lines of one map in the frame of the ego poses (metres, x east). NuscenesError if the map
+    is missing or invalid."""
 
     def __init__(self, path: Path) -> None:
         reader = _MapReader(read_object(path))
@@ -35,8 +37,8 @@ class MapExpansion:
         self._contour = RoadContour(reader.polygons(_ROAD_LAYERS))
 
     def segments(self, map_from_vehicle: Se2) -> list[np.ndarray]:
-        """Divider, crossing and boundary segments [n, 2 ends, 2] (x, y) in the vehicle frame, cut
-        off a margin outside x in [-30, 30] m, y in [-15, 15] m."""
+        """Divider, crossing and boundary segments [n, 2 ends, 2] (x, y) in the vehicle frame,
+        clipped to x in [-30, 30] m and y in [-15, 15] m plus a margin of MARGIN_M."""
         half = np.array([X_RANGE_M, Y_RANGE_M]) + MARGIN_M
         corners = map_from_vehicle.apply(half * [[1, 1], [1, -1], [-1, 1], [-1, -1]])
         low, high = corners.min(0), corners.max(0)
@@ -47,7 +49,7 @@ class MapExpansion:
 
 
 def clip(segments: np.ndarray, half: np.ndarray) -> np.ndarray:
-    """The parts of segments [n, 2, 2] within +-half (Liang and Barsky)."""
+    """The parts of segments [n, 2, 2] within the box +-half (Liang and Barsky)."""
     start, along = segments[:, 0], segments[:, 1] - segments[:, 0]
     flat = along == 0
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -60,23 +62,23 @@ def clip(segments: np.ndarray, half: np.ndarray) -> np.ndarray:
 
 
 def _meets(segments: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Which segments' boxes meet a box."""
+    """Which segments have a bounding box that overlaps a box."""
     return ((segments.min(1) <= high) & (segments.max(1) >= low)).all(1)
 
 
-def _joined(parts) -> np.ndarray:
+def _joined(parts: Iterable[np.ndarray]) -> np.ndarray:
     return np.concatenate([np.empty((0, 2, 2)), *parts])
 
 
 def _long_edges(edges: np.ndarray) -> np.ndarray:
-    """The two longest (the first of equals wins)."""
+    """The two longest edges; of equally long ones the first."""
     length_squared = ((edges[:, 1] - edges[:, 0]) ** 2).sum(1)
     return edges[np.argsort(-length_squared, kind="stable")[:2]]
 
 
 class _MapReader:
-    """Resolves tokens; one that does not exist condemns the map, since nobody knows where its
-    element would lie."""
+    """Resolves the tokens of a map. A token that does not exist raises MissingTokenError: without
+    the element's position the whole map is unusable."""
 
     def __init__(self, document: Record) -> None:
         self._document = document
@@ -88,7 +90,7 @@ class _MapReader:
         self._polygons = {row.text("token"): row for row in document.records("polygon")}
 
     def lines(self, layers: tuple[str, ...]) -> list[np.ndarray]:
-        """Segments of each record's line. Some lines of the real maps have no nodes."""
+        """The segments of each record's line. Some lines of real maps have no nodes."""
         lines = []
         for layer in layers:
             for row in self._document.records(layer):
@@ -98,7 +100,7 @@ class _MapReader:
         return lines
 
     def crossings(self) -> list[np.ndarray]:
-        """Edges of each crossing's exterior."""
+        """The edges of each crossing's exterior."""
         return [
             ring_edges(ring)
             for row in self._document.records("ped_crossing")
@@ -106,8 +108,8 @@ class _MapReader:
         ]
 
     def polygons(self, layers: tuple[str, ...]) -> list[np.ndarray]:
-        """Edges of each record's polygon, holes included. One of less than three corners has no
-        inside and is left out."""
+        """The edges of each record's polygon, including its holes. A polygon with fewer than three
+        corners has no area and is skipped."""
         polygons = []
         for layer in layers:
             for row in self._document.records(layer):
@@ -127,12 +129,12 @@ class _MapReader:
         try:
             points = [self._nodes[token] for token in row.texts(key)]
         except KeyError as error:
-            raise MissingTokenError(f"{row.place}: no node {error}, which {key} names") from None
+            raise MissingTokenError(f"{row.place}: found no node {error} of {key}") from None
         return np.array(points, float).reshape(-1, 2)
 
     @staticmethod
     def _find(records: dict[str, Record], layer: str, row: Record, key: str) -> Record:
         token = row.text(key)
         if token not in records:
-            raise MissingTokenError(f"{row.place}: no {layer} '{token}', which {key} names")
+            raise MissingTokenError(f"{row.place}: found no {layer} '{token}' of {key}")
         return records[token]

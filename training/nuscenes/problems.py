@@ -1,4 +1,4 @@
-"""Remembers which samples could not be used, and why."""
+"""Records which samples could not be used, and why."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from training.nuscenes.errors import NuscenesError
 
 
 class Problems:
-    """Bad samples, each told once on stderr. May be told from several threads."""
+    """The bad samples. Each is reported once on stderr. Several threads may call add()."""
 
-    NAMED_PER_KIND = 10  # on stderr; `messages` has all
+    NAMED_PER_KIND = 10  # samples reported on stderr for each kind; `messages` has all of them
 
     def __init__(self) -> None:
         self._mutex = threading.Lock()

@@ -1,5 +1,5 @@
-"""Draws line segments as the network's raster, as pipeline/map/rasterizer.h does: anti-aliased,
-0 (empty) to 255 (covered), round ends."""
+"""Draws line segments into the network's raster, like pipeline/map/rasterizer.h: anti-aliased with
+round ends, from 0 (empty) to 255 (covered)."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 
 ROWS, COLS, CELL_M = 400, 200, 0.15
 X_RANGE_M, Y_RANGE_M = 0.5 * ROWS * CELL_M, 0.5 * COLS * CELL_M
-DEFAULT_LINE_WIDTH_CELLS = 5  # kRasterLineWidthCells: what the appliance draws (HDMapNet)
+DEFAULT_LINE_WIDTH_CELLS = 5  # kRasterLineWidthCells, the appliance's line width (HDMapNet)
 WIDEST_LINE_CELLS = 16
-# Segments are cut this far outside the raster, where their cut ends no longer show.
+# Segments are clipped at this distance outside the raster, where their clipped ends are not drawn.
 MARGIN_M = (0.5 * WIDEST_LINE_CELLS + 1.5) * CELL_M
 _LONGEST_PIECE_CELLS = 8.0
 
@@ -26,7 +26,7 @@ def draw(layers: list[np.ndarray], line_width_cells: float) -> np.ndarray:
 def _draw_class(segments: np.ndarray, line_width_cells: float) -> np.ndarray:
     outer_radius = 0.5 * line_width_cells + 0.5
     pieces = _pieces(_cells_of(segments))
-    # Each piece raises the cells of a window that is as large for all.
+    # Each piece is drawn into a window of cells; all windows have the same size.
     size = math.ceil(_LONGEST_PIECE_CELLS + 2 * outer_radius) + 1
     corner = np.floor(pieces.min(1) - outer_radius).astype(np.int32)
     window = np.stack(np.meshgrid(np.arange(size), np.arange(size), indexing="ij"), axis=-1)
@@ -42,12 +42,12 @@ def _draw_class(segments: np.ndarray, line_width_cells: float) -> np.ndarray:
 
 
 def _cells_of(points: np.ndarray) -> np.ndarray:
-    """(x, y) in metres -> fractional (row, column); whole numbers are cell centres."""
+    """(x, y) in metres -> fractional (row, column). Integers are cell centres."""
     return (np.array([X_RANGE_M, Y_RANGE_M]) - points) / CELL_M - 0.5
 
 
 def _pieces(segments: np.ndarray) -> np.ndarray:
-    """The same lines in pieces that are not too long for a window."""
+    """The segments, divided into pieces of at most _LONGEST_PIECE_CELLS."""
     length = np.hypot(*(segments[:, 1] - segments[:, 0]).T)
     count = np.ceil(length / _LONGEST_PIECE_CELLS).clip(min=1).astype(int)
     first = np.repeat(np.cumsum(count) - count, count)
@@ -59,7 +59,7 @@ def _pieces(segments: np.ndarray) -> np.ndarray:
 
 
 def _distance(cells: np.ndarray, pieces: np.ndarray) -> np.ndarray:
-    """From each of cells [n, k, 2] to its piece [n, 2, 2]."""
+    """The distance of each of the cells [n, k, 2] to its piece [n, 2, 2]."""
     pieces = pieces.astype(np.float32)
     start, along = pieces[:, 0], pieces[:, 1] - pieces[:, 0]
     off_row, off_col = np.moveaxis(cells - start[:, None], -1, 0)

@@ -1,14 +1,15 @@
-"""The outline of a union of polygons, as loose segments.
+"""The outline of a union of polygons, as unconnected segments.
 
-A piece of a polygon's edge belongs to the outline when the union lies on one side of it alone.
-Pieces are cut where edges of other polygons cross or touch, so that each has one answer.
+A piece of a polygon's edge belongs to the outline if the union lies on exactly one side of it.
+Edges are cut where edges of other polygons cross or touch them, so that this holds or fails for a
+whole piece.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-# How far beside a piece the union is looked for: narrower gaps between polygons are closed.
+# Distance beside a piece at which the union is tested. Narrower gaps between polygons are closed.
 PROBE_M = 0.02
 _SHORTEST_PIECE_M = 1e-3
 
@@ -19,7 +20,8 @@ def ring_edges(ring: np.ndarray) -> np.ndarray:
 
 
 class RoadContour:
-    """Polygons given by their edges [n, 2, 2], exterior and holes alike (even-odd rule)."""
+    """The outline of polygons. A polygon is given by the edges [n, 2, 2] of its exterior and its
+    holes (even-odd rule). Outlines are computed on demand and cached."""
 
     def __init__(self, polygons: list[np.ndarray]) -> None:
         self._polygons = polygons
@@ -29,7 +31,7 @@ class RoadContour:
         self._outlines: dict[int, np.ndarray] = {}
 
     def segments(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """The outline [n, 2, 2] near a box: of all polygons whose own box meets it."""
+        """The outline [n, 2, 2] of all polygons whose bounding box overlaps the given box."""
         found = [np.empty((0, 2, 2))]
         for polygon in self._meeting(low, high):
             if polygon not in self._outlines:
@@ -38,11 +40,12 @@ class RoadContour:
         return np.concatenate(found)
 
     def _meeting(self, low: np.ndarray, high: np.ndarray) -> list[int]:
+        """The polygons whose bounding box overlaps the given box."""
         meets = (self._low <= high).all(1) & (self._high >= low).all(1)
         return np.flatnonzero(meets).tolist()
 
     def _outline(self, polygon: int) -> np.ndarray:
-        """The part of one polygon's edges that is on the outline of the union."""
+        """The part of one polygon's edges that lies on the outline of the union."""
         neighbours = [
             self._polygons[i] for i in self._meeting(self._low[polygon], self._high[polygon])
         ]
@@ -57,7 +60,7 @@ class RoadContour:
 
 
 def _cut(edges: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Edges [m, 2, 2] in pieces that no edge of `others` crosses and none of their ends touches."""
+    """Cuts edges [m, 2, 2] wherever an edge of `others` crosses or one of its ends touches them."""
     start, along = edges[:, None, 0], (edges[:, 1] - edges[:, 0])[:, None]  # [m, 1, 2]
     length_squared = (along**2).sum(-1)
     to_other, other_along = others[None, :, 0] - start, (others[:, 1] - others[:, 0])[None]
@@ -86,7 +89,7 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _inside_any(points: np.ndarray, polygons: list[np.ndarray]) -> np.ndarray:
-    """Whether each of points [n, 2] lies in one of the polygons."""
+    """Whether each of the points [n, 2] lies in at least one of the polygons."""
     inside = np.zeros(len(points), bool)
     x, y = points[:, :1], points[:, 1:]
     for edges in polygons:

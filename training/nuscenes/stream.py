@@ -1,4 +1,4 @@
-"""An endless stream of batches from nuScenes, in the place of the simulator's."""
+"""An endless stream of batches from nuScenes. It replaces the simulator's stream."""
 
 from __future__ import annotations
 
@@ -22,10 +22,11 @@ ON_ERROR = ("skip", "refuse")
 
 
 class NuscenesStream:
-    """Every epoch has every sample once, in an order of its own; threads read ahead.
+    """Every epoch contains every sample once, in a new random order. Threads read ahead.
 
-    What stands at a position of the stream follows from the seed and the position alone. The place
-    of a sample that cannot be used is taken by the next one that can."""
+    The sample at a position of the stream depends only on the seed and the position. With
+    `on_error` "skip", an unusable sample is replaced by the next usable one; with "refuse" it ends
+    the stream."""
 
     def __init__(
         self,
@@ -52,8 +53,8 @@ class NuscenesStream:
         self.problems = Problems()
 
     def next(self, count: int) -> Batch:
-        """The next samples. Raises NuscenesError when one is refused, or all are bad."""
-        while len(self._ahead) < 2 * count:  # this batch, and one while the network trains
+        """The next samples. NuscenesError if a bad sample is refused or all samples are bad."""
+        while len(self._ahead) < 2 * count:  # this batch and the next one
             self._ahead.append(self._workers.submit(self._at, self._next))
             self._next += self._stride
         samples = [self._ahead.popleft().result() for _ in range(count)]
@@ -76,7 +77,8 @@ class NuscenesStream:
         random = np.random.default_rng([self._seed, 1, position])
         deviation = random.uniform(-MAX_DEVIATION, MAX_DEVIATION)
         camera_mask = self._cameras(random)
-        for candidate in range(position, position + 2 * len(self._dataset)):  # a whole epoch
+        # Two lengths of the data set contain at least one complete epoch.
+        for candidate in range(position, position + 2 * len(self._dataset)):
             epoch, place = divmod(candidate, len(self._dataset))
             chosen = int(self._order(epoch)[place])
             token = self._dataset.sample_tokens[chosen]
@@ -89,7 +91,8 @@ class NuscenesStream:
         raise NuscenesError(f"found no good sample: {self.problems.summary()}")
 
     def _cameras(self, random: np.random.Generator) -> int:
-        """All cameras, or all but one or two, as the simulator drops them."""
+        """The mask of all cameras or, with the given probability, of all but one or two. This is
+        the simulator's rule."""
         if random.random() >= self._drop_camera_probability:
             return ALL_CAMERAS
         missing = random.integers(len(CAMERA_CHANNELS), size=random.integers(1, 3))

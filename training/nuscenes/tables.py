@@ -1,12 +1,13 @@
-"""The tables of a nuScenes tree (v1.0-*/*.json; schema_nuscenes.md of the nuScenes devkit).
+"""Reads the tables of a nuScenes tree (v1.0-*/*.json; schema_nuscenes.md of the nuScenes devkit).
 
-Only key frames of the wanted scenes, the six cameras and LIDAR_TOP are kept.
+It keeps only the key frames of the wanted scenes from the six cameras and LIDAR_TOP.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from training.nuscenes.errors import (
     MissingFileError,
@@ -17,12 +18,12 @@ from training.nuscenes.errors import (
 )
 from training.nuscenes.json_records import Record, open_text, read_array
 
-# In the order of kCameraNames (pipeline/calibration/rig.h).
+# In the order of kCameraNames (common/cameras.h).
 CAMERA_CHANNELS = (
     *("CAM_FRONT_LEFT", "CAM_FRONT", "CAM_FRONT_RIGHT"),
     *("CAM_BACK_LEFT", "CAM_BACK", "CAM_BACK_RIGHT"),
 )
-REFERENCE_CHANNEL = "LIDAR_TOP"  # a sample's pose and time are its own
+REFERENCE_CHANNEL = "LIDAR_TOP"  # defines a sample's pose and time
 _KEPT_CHANNELS = frozenset((*CAMERA_CHANNELS, REFERENCE_CHANNEL))
 
 
@@ -50,16 +51,16 @@ class Pose:
 class CalibratedSensor:
     sensor_token: str
     vehicle_from_sensor: Pose
-    camera_intrinsic: tuple[tuple[float, ...], ...] | None  # None: no camera
+    camera_intrinsic: tuple[tuple[float, ...], ...] | None  # None: the sensor is not a camera
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """What one sensor recorded for one sample (a key frame of sample_data)."""
+    """The record of one sensor for one sample (a key frame of sample_data)."""
 
     token: str
     filename: str
-    width_px: int  # 0 for what is no image
+    width_px: int  # 0: not an image
     height_px: int
     ego_pose_token: str
     calibrated_sensor_token: str
@@ -67,47 +68,50 @@ class Frame:
 
 @dataclass
 class Tables:
-    """Each table by token. What is wrong with the records of a sample is in `defects`."""
+    """The tables, each as a dictionary by token."""
 
     folder: Path
     scene: dict[str, Scene] = field(default_factory=dict)
-    log: dict[str, str] = field(default_factory=dict)  # location
+    log: dict[str, str] = field(default_factory=dict)  # token -> location
     sample: dict[str, Sample] = field(default_factory=dict)
-    sensor: dict[str, str] = field(default_factory=dict)  # channel
+    sensor: dict[str, str] = field(default_factory=dict)  # token -> channel
     calibrated_sensor: dict[str, CalibratedSensor] = field(default_factory=dict)
     ego_pose: dict[str, Pose] = field(default_factory=dict)
     frames: dict[str, dict[str, Frame]] = field(default_factory=dict)  # by sample and channel
-    defects: dict[str, NuscenesError] = field(default_factory=dict)  # by sample
+    defects: dict[str, NuscenesError] = field(default_factory=dict)  # errors by sample
 
-    def find(self, table: str, token: str, named_by: str):
-        """A record; MissingTokenError if there is none."""
+    def find(self, table: str, token: str, named_by: str) -> Any:
+        """The record of a table; MissingTokenError if there is none. `named_by`: the record that
+        refers to it."""
         records = getattr(self, table)
         if token not in records:
             raise MissingTokenError(
-                f"{self.folder / table}.json: no token '{token}', which {named_by} names"
+                f"{self.folder / table}.json: found no token '{token}', wanted by {named_by}"
             )
         return records[token]
 
     def frame(self, sample_token: str, channel: str) -> Frame:
+        """A frame of a sample; NuscenesError if it or a record of the sample is defective."""
         if error := self.defects.get(sample_token):
             raise error
         frames = self.frames.get(sample_token, {})
         if channel not in frames:
             raise MissingFrameError(
-                f"{self.folder / 'sample_data'}.json: no key frame of {channel} "
+                f"{self.folder / 'sample_data'}.json: found no key frame of {channel} "
                 f"for sample '{sample_token}'"
             )
         return frames[channel]
 
     def location(self, sample_token: str) -> str:
-        """The map on which a sample was taken."""
+        """The name of the map on which a sample was recorded."""
         scene_token = self.sample[sample_token].scene_token
         scene = self.find("scene", scene_token, f"sample '{sample_token}'")
         return self.find("log", scene.log_token, f"scene '{scene.name}'")
 
 
 def find_version(root: Path, version: str = "") -> Path:
-    """The folder of the tables: v1.0-* by name, or the only one that is there."""
+    """The folder of the tables: the named v1.0-*, or the only one. MissingFileError if there is
+    none or the choice is ambiguous."""
     found = sorted(path for path in root.glob("v1.0-*") if path.is_dir())
     wanted = [path for path in found if not version or path.name == version]
     if len(wanted) == 1:
@@ -117,17 +121,17 @@ def find_version(root: Path, version: str = "") -> Path:
 
 
 def read_scene_names(path: Path) -> list[str]:
-    """A split: one scene name a line; empty lines and what follows a # do not count."""
+    """Reads a split: one scene name per line; empty lines and comments after # are ignored."""
     with open_text(path) as file:
         names = [line.partition("#")[0].strip() for line in file]
     names = [name for name in names if name]
     if not names:
-        raise MissingSceneError(f"{path}: found no scene name, wanted one a line")
+        raise MissingSceneError(f"{path}: found no scene name, wanted one per line")
     return names
 
 
 def load_tables(folder: Path, scene_names: list[str] | None = None) -> Tables:
-    """Reads the tables of the named scenes, or of all."""
+    """Reads the tables of the named scenes, or of all scenes."""
     tables = Tables(folder)
     known = _load_scenes(tables, scene_names)
     _load_samples(tables, known, keep_strays=scene_names is None)
@@ -143,7 +147,7 @@ def load_tables(folder: Path, scene_names: list[str] | None = None) -> Tables:
 
 
 def _load_scenes(tables: Tables, names: list[str] | None) -> set[str]:
-    """Keeps the wanted scenes; the tokens of all."""
+    """Stores the wanted scenes and returns the tokens of all scenes."""
     path = tables.folder / "scene.json"
     every = {
         row.text("token"): Scene(row.text("name"), row.text("log_token"))
@@ -154,12 +158,13 @@ def _load_scenes(tables: Tables, names: list[str] | None) -> set[str]:
     missing = sorted(wanted - {scene.name for scene in tables.scene.values()})
     if missing:
         more = f" and {len(missing) - 3} more" if len(missing) > 3 else ""
-        raise MissingSceneError(f"{path}: no scene named {', '.join(missing[:3])}{more}")
+        raise MissingSceneError(f"{path}: found no scene named {', '.join(missing[:3])}{more}")
     return set(every)
 
 
 def _load_samples(tables: Tables, known_scenes: set[str], keep_strays: bool) -> None:
-    """A stray belongs to no scene: it stays in the list, so that it is named when it is used."""
+    """Stores the samples of the wanted scenes, ordered by scene and time. A stray refers to an
+    unknown scene; it may be kept, so that using it raises an error that names it."""
     samples = []
     for row in read_array(tables.folder / "sample.json"):
         scene_token = row.text("scene_token")

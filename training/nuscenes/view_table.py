@@ -1,7 +1,7 @@
-"""The view table of any six network cameras: pipeline/network/view_table.h in NumPy.
+"""The view table of any six network cameras: pipeline/network/view/view_table.h in NumPy.
 
-The native interface makes the table of the simulated rig alone; every nuScenes sample has its own
-calibration, moved by the vehicle's motion between the cameras' times.
+The native library computes the table only for the simulated rig. Every nuScenes sample has its own
+calibration, and the vehicle moves between the exposures of its cameras.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ def cell_centres() -> np.ndarray:
 def view_table(
     cameras: list[Pinhole], camera_from_vehicle: list[np.ndarray], camera_mask: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """index int64 [8, 5000] and weight float32 [8, 5000] for the cameras of the mask (bit i:
-    camera i is there)."""
+    """index int64 [8, 5000] and weight float32 [8, 5000] for the cameras in the mask (bit i:
+    camera i)."""
     sightings = [
         _sight(camera, motion, is_there=bool(camera_mask >> i & 1))
         for i, (camera, motion) in enumerate(zip(cameras, camera_from_vehicle))
@@ -48,8 +48,8 @@ def view_table(
 def _sight(
     camera: Pinhole, camera_from_vehicle: np.ndarray, is_there: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Where a camera sees each cell [5000, 2] (column, row), and how far from the image's border
-    [5000]: 0 if it does not see the cell."""
+    """The pixel at which a camera sees each cell [5000, 2] (column, row), and its distance from the
+    image border [5000]; 0 if the camera does not see the cell."""
     ground = cell_centres()
     rotation, translation = camera_from_vehicle[:3, :3], camera_from_vehicle[:3, 3]
     x, y, z = (ground @ rotation[:, :2].T + translation).T
@@ -63,8 +63,9 @@ def _sight(
 
 
 def _shares(distance: np.ndarray) -> np.ndarray:
-    """Border distances [3, n] of the three best -> shares of the two best [2, n]. The third's
-    distance is taken off both, so that the second place changes hands at a share of zero."""
+    """Border distances [3, n] of the three best cameras -> shares of the two best [2, n]. The third
+    distance is subtracted from both, so that a camera's share is zero where it becomes or ceases to
+    be the second best."""
     first, second = distance[0] - distance[2], distance[1] - distance[2]
     total = np.where(first > 0, first + second, 1.0)
     alone = (distance[0] > 0).astype(float)
@@ -74,7 +75,7 @@ def _shares(distance: np.ndarray) -> np.ndarray:
 def _neighbours(
     camera: np.ndarray, pixel: np.ndarray, share: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The four bilinear neighbours of a pixel of each cell: index and weight [4, n]."""
+    """The four bilinear neighbours of each cell's pixel: index and weight [4, n]."""
     col, row = (pixel.T + 0.5) / FEATURE_STRIDE - 0.5
     index, weight = [], []
     for n in range(_NEIGHBOURS):

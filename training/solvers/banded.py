@@ -1,20 +1,21 @@
-"""Axis matching band by band, of standardised features: linear in the hypotheses of each axis, with
-nothing turned and nothing transformed. Not in the paper.
+"""Axis matching band by band, on standardised features. The cost is linear in the number of
+hypotheses of each axis; nothing is rotated or Fourier-transformed. Not in the paper.
 
-* F_B and F_M are averaged over 10 bands across x (band b: rows b 100 / 10 ... (b + 1) 100 / 10 - 1,
-  rounded down), each of which leaves a lateral profile [C, 50], and over 5 bands across y, each of
-  which leaves a longitudinal profile [C, 100].
-* Each channel's profiles of one kind are standardised over all bands and positions:
-  (p - mean) / (std + 0.01).
-* c_b[s] = sum over channels and positions of M_b[i] B_b[i + s] / (bands * positions * C), zeros
-  outside, and the same of longitudinal profiles, d_b[s]; read between whole shifts s by cubic
-  convolution (cubic.py).
-* A turn by a moves the middle of band b, x_b, by a x_b along y, and one at y_b by -a y_b along x:
+* F_B and F_M are averaged over 10 bands of rows (band b: rows b 100 / 10 ... (b + 1) 100 / 10 - 1,
+  rounded down), which gives one lateral profile [C, 50] per band, and over 5 bands of columns,
+  which gives one longitudinal profile [C, 100] per band.
+* The lateral profiles of each channel are standardised over all bands and positions:
+  (p - mean) / (std + 0.01). So are the longitudinal ones.
+* c_b[s] = sum over channels and positions of M_b[i] B_b[i + s] / (bands * positions * C), zero
+  outside. d_b[s] is the same for longitudinal profiles. Both are interpolated between whole shifts
+  s by cubic convolution (cubic.py).
+* A rotation by a moves the centre of a row band at x_b by a x_b along y, and the centre of a column
+  band at y_b by -a y_b along x:
   lateral(a, y) = sum over b of c_b((y + a x_b) / 0.6),
   longitudinal(a, x) = sum over b of d_b((x - a y_b) / 0.6).
 * P(a, x, y) = softmax(banded_y_scale * lateral + banded_x_scale * longitudinal) over all
-  hypotheses. Given a, x and y are independent, so that its marginals follow from the two tables.
-  The estimates are their means.
+  hypotheses. Given a, x and y are independent, so the marginals follow from the two tables. The
+  estimates are the means of the marginals.
 """
 
 from __future__ import annotations
@@ -36,15 +37,18 @@ def banded_scores(
     """longitudinal [batch, yaw, x] and lateral [batch, yaw, y]."""
     d = definition
     longitudinal, lateral = _look_up(d)
-    # Longitudinal profiles are lateral ones of features whose axes have changed places.
-    x_sides = (_profiles(f.transpose(2, 3), d.longitudinal_bands, d) for f in (bev, features_map))
-    y_sides = (_profiles(f, d.lateral_bands, d) for f in (bev, features_map))
-    return _scores(*x_sides, longitudinal), _scores(*y_sides, lateral)
+    # Longitudinal profiles are the lateral profiles of the transposed features.
+    x_bev, x_map = (
+        _profiles(f.transpose(2, 3), d.longitudinal_bands, d) for f in (bev, features_map)
+    )
+    y_bev, y_map = (_profiles(f, d.lateral_bands, d) for f in (bev, features_map))
+    return _scores(x_bev, x_map, longitudinal), _scores(y_bev, y_map, lateral)
 
 
 def banded_posterior(
     longitudinal: Tensor, lateral: Tensor, x_scale: Tensor, y_scale: Tensor
 ) -> Posterior:
+    """The marginals of P, from the tables of banded_scores()."""
     x_logits, y_logits = longitudinal * x_scale, lateral * y_scale
     yaw = torch.softmax(x_logits.logsumexp(2) + y_logits.logsumexp(2), dim=1)
     x = (yaw[..., None] * torch.softmax(x_logits, dim=2)).sum(1)
@@ -53,12 +57,13 @@ def banded_posterior(
 
 
 def _bounds(cells: int, bands: int) -> list[tuple[int, int]]:
+    """The first cell of each band and the first one after it."""
     bands = min(bands, cells)
     return [(b * cells // bands, (b + 1) * cells // bands) for b in range(bands)]
 
 
 def _middles(cells: int, bands: int) -> Tensor:
-    """In cells from the vehicle, forwards or to the left."""
+    """The centre of each band in cells from the vehicle, positive to the front or left."""
     middles = [0.5 * (cells - i - j) for i, j in _bounds(cells, bands)]
     return torch.tensor(middles, dtype=torch.float64)
 
@@ -72,8 +77,8 @@ def _profiles(features: Tensor, bands: int, definition: SolverDefinition) -> Ten
 
 
 def _scores(profiles_bev: Tensor, profiles_map: Tensor, look_up: Tensor) -> Tensor:
-    """Of profiles and the weight of every whole shift, [band, yaw, hypothesis, shift]:
-    [batch, yaw, hypothesis]."""
+    """Scores [batch, yaw, hypothesis] from profiles and the weights of the whole shifts
+    [band, yaw, hypothesis, shift]."""
     reach = look_up.shape[3] // 2
     windows = F.pad(profiles_bev, (reach, reach)).unfold(3, profiles_bev.shape[3], 1)
     correlation = torch.einsum("bcksi,bcki->bks", windows, profiles_map) / profiles_map[0].numel()
@@ -82,7 +87,8 @@ def _scores(profiles_bev: Tensor, profiles_map: Tensor, look_up: Tensor) -> Tens
 
 @lru_cache(maxsize=4)
 def _look_up(definition: SolverDefinition) -> tuple[Tensor, Tensor]:
-    """How hypotheses read correlations, [band, yaw, hypothesis, shift], along x and along y."""
+    """The weights of the correlations in the scores, [band, yaw, hypothesis, shift], for x and for
+    y."""
     d = definition
     x, y, yaw = d.hypotheses()
     x_of_band = _middles(d.rows, d.lateral_bands) * d.cell_m
@@ -91,8 +97,8 @@ def _look_up(definition: SolverDefinition) -> tuple[Tensor, Tensor]:
 
 
 def _weights(values: Tensor, yaw: Tensor, lever_m: Tensor, definition: SolverDefinition) -> Tensor:
-    """`lever_m` [band]: metres by which a band moves along the axis per radian."""
+    """`lever_m` [band]: displacement of a band along the axis in metres per radian of yaw."""
     shift_m = values + (yaw * lever_m[:, None])[..., None]  # [band, yaw, hypothesis]
-    # Cubic convolution reads one whole shift before and two beyond.
+    # Cubic convolution reads from one shift below the integer part to two above it.
     reach = whole_cells(shift_m.abs().max().item(), definition.cell_m) + 2
     return cubic_weights(shift_m / definition.cell_m + reach, 2 * reach + 1)

@@ -1,21 +1,21 @@
-"""Every hypothesis from correlations of blocks (the joint volume), of standardised features.
+"""Scores every hypothesis from correlations of blocks (the joint volume), on standardised features.
 
-B and M are F_B and F_M, zero outside. B is cut into blocks of 3 m (5 x 5 cells); blocks at the end
-of a grid that does not divide are smaller. For block b and whole shifts (m, n) in cells
+B and M are F_B and F_M, zero outside. B is divided into blocks of 3 m (5 x 5 cells). If they do not
+divide the grid, the last blocks are smaller. For block b and whole shifts (m, n) in cells
 
     K_b[m, n] = sum over channels c and cells (u, v) of b of B[c, u, v] M[c, u + m, v + n].
 
-Hypothesis (x, y, a) moves the block with centre p_b by d = R(a) p_b + t - p_b as a whole, that is
-by m = -d.x / 0.6 rows and n = -d.y / 0.6 columns, and
+Hypothesis (x, y, a) shifts the whole block with centre p_b by d = R(a) p_b + t - p_b, that is by
+m = -d.x / 0.6 rows and n = -d.y / 0.6 columns, and
 
-    ZNCC(a, x, y) = sum over b of K_b(m, n) / (C * rows * cols),
+    ZNCC(a, x, y) = sum over b of K_b(m, n) / (C * rows * cols).
 
-in the standardise-once form, with K_b read between whole shifts by cubic convolution along each
-axis (cubic.py). P = softmax(joint_scale * ZNCC) over all hypotheses; the marginals of P are the
-distributions of x, y and yaw; the estimates are their means.
+The features are standardised once, not per hypothesis. K_b is interpolated between whole shifts by
+cubic convolution along each axis (cubic.py). P = softmax(joint_scale * ZNCC) over all hypotheses.
+The marginals of P are the distributions of x, y and yaw; the estimates are their means.
 
-The paper's hypotheses in float32 are scored by the run time's own code
-(training/joint_volume.py, pipeline/solver/joint_volume.h), which is faster; all others here.
+The paper's hypotheses in float32 are scored by the C++ code (training/joint_volume.py,
+pipeline/solver/reference/joint_volume.h), which is faster. All others are scored here.
 """
 
 from __future__ import annotations
@@ -49,9 +49,10 @@ def block_scores(
 
 
 def _correlations(bev: Tensor, features_map: Tensor, size: int, shifts: tuple[int, int]) -> Tensor:
-    """K of every block at every whole shift, [batch, block, row shift, column shift]."""
+    """K of every block at every whole shift, [batch, block, row shift, column shift]. `size`: cells
+    of a block's side; `shifts`: number of row and column shifts."""
     batch, channels, rows, cols = bev.shape
-    # Cells that fill up the last blocks are zero, and add nothing.
+    # The last blocks are padded with zeros, which add nothing.
     fill = -rows % size, -cols % size
     blocks = F.pad(bev, (0, fill[1], 0, fill[0])).unfold(2, size, size).unfold(3, size, size)
     reach = shifts[0] // 2, shifts[1] // 2
@@ -65,7 +66,7 @@ def _correlations(bev: Tensor, features_map: Tensor, size: int, shifts: tuple[in
 
 @lru_cache(maxsize=4)
 def _look_up(definition: SolverDefinition) -> tuple[Tensor, Tensor]:
-    """How the hypotheses read K along its rows and its columns: [yaw, block, x, row shift] and
+    """The interpolation weights of K for the hypotheses: [yaw, block, x, row shift] and
     [yaw, block, y, column shift]."""
     d = definition
     x_m, y_m = torch.meshgrid(
@@ -82,13 +83,15 @@ def _look_up(definition: SolverDefinition) -> tuple[Tensor, Tensor]:
 
 
 def _block_centres(cells: int, size: int, cell_m: float) -> Tensor:
-    """From the vehicle, forwards or to the left."""
+    """The centres of the blocks along one axis in metres from the vehicle, positive to the front or
+    left."""
     first = torch.arange(0, cells, size, dtype=torch.float64)
     last = (first + size - 1).clamp(max=cells - 1)
     return (0.5 * (cells - 1) - 0.5 * (first + last)) * cell_m
 
 
 def _weights(shift: Tensor) -> Tensor:
-    # Cubic convolution reads one whole shift before and two beyond.
+    """The weight of every whole shift in the value at `shift` [...]: [..., shift]."""
+    # Cubic convolution reads from one shift below the integer part to two above it.
     reach = math.floor(shift.abs().max().item()) + 2
     return cubic_weights(shift + reach, 2 * reach + 1)

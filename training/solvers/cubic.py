@@ -1,6 +1,6 @@
-"""Reading between samples by cubic convolution (Keys 1981, a = -1/2), which reproduces parabolas:
-four taps, weights at fraction t: (-t + 2 t^2 - t^3) / 2, (2 - 5 t^2 + 3 t^3) / 2,
-(t + 4 t^2 - 3 t^3) / 2, (-t^2 + t^3) / 2.
+"""Interpolation by cubic convolution (Keys 1981, a = -1/2), which is exact for parabolas. The four
+taps at fraction t have the weights (-t + 2 t^2 - t^3) / 2, (2 - 5 t^2 + 3 t^3) / 2,
+(t + 4 t^2 - 3 t^3) / 2 and (-t^2 + t^3) / 2.
 """
 
 from __future__ import annotations
@@ -9,7 +9,8 @@ from torch import Tensor
 
 
 def cubic_weights(position: Tensor, samples: int) -> Tensor:
-    """The weight of each of `samples` samples at positions [...] (float64): [..., samples]."""
+    """The weights of `samples` samples in the values at positions [...] (float64):
+    [..., samples]."""
     whole = position.floor()
     t = position - whole
     taps = (

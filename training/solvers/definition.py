@@ -1,4 +1,4 @@
-"""Every constant of the solvers' definition."""
+"""All constants of the solvers' definition."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-# Shifts that differ from whole cells by less are whole.
+# A shift (in cells) that differs from an integer by less counts as that integer.
 WHOLE_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
 class SolverDefinition:
-    """Grid of the features, hypotheses, and what else is fixed."""
+    """The grid of the features, the hypotheses and the constants of all solvers."""
 
     rows: int = 100
     cols: int = 50
@@ -51,19 +51,19 @@ class SolverDefinition:
         )
 
     def hypotheses(self) -> tuple[Tensor, Tensor, Tensor]:
-        """Of x, y and yaw, in float64."""
+        """The hypotheses of x, y and yaw, in float64."""
         x, y, yaw = (hypotheses(*axis) for axis in self.axes())
         return x, y, yaw
 
     def farthest(self) -> tuple[float, float, float]:
-        """The largest hypotheses of x, y and yaw: a step that does not divide its range may lead
-        beyond it."""
+        """The largest hypotheses of x, y and yaw. They may exceed the range if the step does not
+        divide it."""
         x, y, yaw = (half_count(*axis) * axis[1] for axis in self.axes())
         return x, y, yaw
 
     @property
     def crop_cells(self) -> int:
-        """A border as wide as the largest shift."""
+        """The width of the cropped border: the largest shift."""
         return max(self.shift_range)
 
     @property
@@ -72,13 +72,14 @@ class SolverDefinition:
 
     @property
     def shift_range(self) -> tuple[int, int]:
-        """Rows and columns by which hypotheses shift at most, rounded outwards."""
+        """The largest shifts of the hypotheses in rows and columns, rounded up."""
         x_m, y_m, _ = self.farthest()
         return whole_cells(x_m, self.cell_m), whole_cells(y_m, self.cell_m)
 
     @property
     def spectrum_pooling(self) -> int:
-        """Finer features are averaged over so many rows and columns before their transform."""
+        """The number of rows and columns over which finer features are averaged before the Fourier
+        transform."""
         return max(1, int(self.spectrum_cell_m / self.cell_m + WHOLE_TOLERANCE))
 
 
@@ -86,7 +87,7 @@ DEFINITION = SolverDefinition()
 
 
 def half_count(value_range: float, step: float) -> int:
-    """Hypotheses on either side of zero."""
+    """The number of hypotheses on either side of zero."""
     return int(value_range / step + 0.5)
 
 
@@ -97,11 +98,11 @@ def hypotheses(value_range: float, step: float) -> Tensor:
 
 
 def whole_cells(distance_m: float, cell_m: float) -> int:
-    """Cells that a distance reaches, rounded outwards."""
+    """A distance in cells, rounded up."""
     return math.ceil(distance_m / cell_m - WHOLE_TOLERANCE)
 
 
 def split_shift(cells: Tensor) -> tuple[Tensor, Tensor]:
-    """Shifts in cells (float64) as whole ones, and how far they lie beyond."""
+    """Splits shifts in cells (float64) into their integer part and a fraction in [0, 1)."""
     whole = torch.floor(cells + WHOLE_TOLERANCE)
     return whole.long(), (cells - whole).clamp(min=0.0)

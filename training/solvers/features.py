@@ -1,10 +1,10 @@
-"""What solvers do to features [batch, C, rows, cols] before they compare them.
+"""Operations on features [batch, C, rows, cols] before solvers compare them.
 
-Standardise each channel of F_B and of F_M once over all its cells: (f - mean) / (std + 0.01), std
-of the population (divided by 5000).
+Standardise: each channel of F_B and of F_M, once over all its cells: (f - mean) / (std + 0.01),
+with the population standard deviation (divided by 5000).
 
-Move features under a correction: moved(p) = features(R(-a) (p - t)), bilinear, each tap outside the
-grid counts as zero.
+Move under a correction: moved(p) = features(R(-a) (p - t)), bilinear; taps outside the grid count
+as zero.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ def standardise(features: Tensor, definition: SolverDefinition = DEFINITION) -> 
 def move(
     features: Tensor, corrections: Tensor, cell_m: float, margin: tuple[int, int] = (0, 0)
 ) -> Tensor:
-    """Features under each of `corrections` (x m, y m, yaw rad), [batch, count, 3], on the grid and
-    `margin` rows and columns around it: [batch, C, count, rows, cols]. The corrections get no
-    gradient."""
+    """Features moved by each of `corrections` (x m, y m, yaw rad), [batch, count, 3]:
+    [batch, C, count, rows, cols]. The result covers the grid and `margin` rows and columns around
+    it. The corrections get no gradient."""
     rows, cols = features.shape[2:]
     x_m, y_m, yaw = corrections.detach().double()[..., None, None].unbind(2)
     row = torch.arange(-margin[0], rows + margin[0], device=features.device, dtype=torch.float64)
     col = torch.arange(-margin[1], cols + margin[1], device=features.device, dtype=torch.float64)
-    # In cells, from the vehicle.
+    # Positions in cells, relative to the vehicle.
     x = (0.5 * rows - 0.5 - row)[:, None] - x_m / cell_m
     y = (0.5 * cols - 0.5 - col)[None, :] - y_m / cell_m
     source_x = torch.cos(yaw) * x + torch.sin(yaw) * y
     source_y = torch.cos(yaw) * y - torch.sin(yaw) * x
-    # grid_sample's unit: the grid's edges lie at -1 and +1; x to its rows, y to its columns.
+    # grid_sample expects (column, row) with the grid's edges at -1 and +1.
     grid = torch.stack((-source_y / (0.5 * cols), -source_x / (0.5 * rows)), dim=4)
     grid = grid.to(features).flatten(1, 2)
     moved = F.grid_sample(features, grid, padding_mode="zeros", align_corners=False)
@@ -44,6 +44,6 @@ def move(
 
 
 def rotate(features: Tensor, yaw_rad: Tensor) -> Tensor:
-    """Features turned about the vehicle by yaw [batch], F'(p) = F(R(-a) p)."""
+    """Features rotated about the vehicle by yaw [batch], F'(p) = F(R(-a) p)."""
     corrections = F.pad(yaw_rad[:, None], (2, 0))
     return move(features, corrections[:, None], 1.0)[:, :, 0]

@@ -1,8 +1,8 @@
-"""Full neural matching (paper, III-D, eq. 4 and 5): the reference for all others.
+"""Full neural matching (paper, section III-D, eq. 4 and 5): the reference for all other solvers.
 
-Every hypothesis (a, x, y) is scored by the ZNCC (zncc.py) of F_M with F_B moved under it
-(features.py), in one bilinear interpolation. P = softmax(joint_scale * ZNCC) over all of them; the
-marginals of P are the distributions of x, y and yaw; the estimates are their means.
+The score of a hypothesis (a, x, y) is the ZNCC (zncc.py) of F_M with F_B moved under it
+(features.py) in one bilinear interpolation. P = softmax(joint_scale * ZNCC) over all hypotheses.
+The marginals of P are the distributions of x, y and yaw; the estimates are their means.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from training.solvers.zncc import moved_zncc
 
 
 def full_scores(bev: Tensor, features_map: Tensor, definition: SolverDefinition) -> Tensor:
-    """ZNCC of every hypothesis, [batch, yaw, x, y]. For gradients the moved features of one yaw at
-    a time are made again: those of all would fill gigabytes."""
+    """ZNCC of every hypothesis, [batch, yaw, x, y]. The backward pass recomputes the moved features
+    of one yaw at a time, because storing those of all yaws would take gigabytes."""
     x, y, yaws = definition.hypotheses()
     positions = torch.cartesian_prod(x, y).to(bev.device)
 

@@ -1,13 +1,14 @@
-"""Full neural matching by cross-correlation: the scores of full.py from one warp and one FFT a yaw.
+"""Full neural matching by cross-correlation: the scores of full.py with one warp and one FFT per
+yaw.
 
-For each yaw F_B is turned onto the cells of F_M and a frame of cells around them, as wide as the
-largest shift: B. At whole shifts (m, n), K[m, n] = sum over channels and cells of
-M[u, v] B[u + m, v + n]. Between whole shifts B is read bilinearly: K, and the sum of B over the
-map's cells, are linear in B and so are read bilinearly themselves; the sum of B^2 follows from sums
-of products of neighbours. ZNCC of every hypothesis from these sums.
+For each yaw, B is F_B rotated onto the cells of F_M and a border around them that is as wide as the
+largest shift. At whole shifts (m, n), K[m, n] = sum over channels and cells of
+M[u, v] B[u + m, v + n]. Between whole shifts B is interpolated bilinearly. K and the sum of B over
+the map's cells are linear in B, so they can be interpolated instead; the sum of B^2 follows from
+sums of products of neighbouring cells. These sums give the ZNCC of every hypothesis.
 
-This differs from full.py where something turns: there the turn and the shift are one interpolation,
-here they are two. With yaw 0 both are the same.
+With a rotation the scores differ slightly from full.py, which rotates and shifts in one
+interpolation; here there are two. At yaw 0 both are equal.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from training.solvers.zncc import sums_of, zncc
 
 class _NeighbourSums:
     """Sums over channels and over the map's cells at each whole shift, [batch, row shift, column
-    shift]: of B, of B^2, and of the products of B with what lies further on."""
+    shift]: of B, of B^2 and of the products of neighbouring cells of B."""
 
     def __init__(self, frame: Tensor, rows: int, cols: int) -> None:
         def window(values: Tensor) -> Tensor:
@@ -41,14 +42,14 @@ class _NeighbourSums:
 
 
 class _Between:
-    """Reads tables [batch, row shift, column shift] at the hypotheses' shifts."""
+    """Interpolates tables [batch, row shift, column shift] at the shifts of the hypotheses."""
 
     def __init__(self, definition: SolverDefinition, like: Tensor) -> None:
         x, y, _ = definition.hypotheses()
         corners, fractions = [], []
         for shifts, reach in zip((x, y), definition.shift_range):
             whole, fraction = split_shift(shifts / definition.cell_m)
-            # Beyond the last shift nothing is read but with weight zero.
+            # Values beyond the last shift only occur with weight zero.
             corners.append((whole + reach, (whole + reach + 1).clamp(max=2 * reach)))
             fractions.append(fraction.to(like))
         row, col = fractions[0][:, None], fractions[1][None, :]
@@ -56,11 +57,12 @@ class _Between:
         self.corners = [(i[:, None], j[None, :]) for i in corners[0] for j in corners[1]]
 
     def read(self, table: Tensor) -> Tensor:
-        """[batch, x, y] of what is linear in B."""
+        """[batch, x, y] from a table that is linear in B."""
         return sum(w * self._at(table, at) for w, at in zip(self.weights, self.corners))
 
     def read_square(self, sums: _NeighbourSums) -> Tensor:
-        """[batch, x, y]: the sum of (w0 B + w1 right + w2 below + w3 both)^2."""
+        """[batch, x, y]: the sum of (w0 B + w1 right + w2 below + w3 both)^2, the squares of the
+        interpolated B."""
         w0, w1, w2, w3 = self.weights
         here, right, below, _ = self.corners
         crossed = (
@@ -85,7 +87,8 @@ def full_fft_scores(bev: Tensor, features_map: Tensor, definition: SolverDefinit
     margin = definition.shift_range
     size = (rows + 2 * margin[0], cols + 2 * margin[1])
     spectrum_map = torch.fft.rfft2(features_map, s=size).conj()
-    map_sums = [total[:, None, None] for total in sums_of(features_map, (1, 2, 3))]
+    value, square = sums_of(features_map, (1, 2, 3))
+    map_sums = value[:, None, None], square[:, None, None]
     between = _Between(definition, bev)
     scores = []
     for yaw in definition.hypotheses()[2].to(bev.device):

@@ -1,7 +1,7 @@
-"""Some of a grid's cells, evenly spread.
+"""Evenly distributed subsets of a grid's cells.
 
-Of row r the columns skew r mod step, and every step-th from there on. The lattices below are
-square, so that they miss as little along one axis as along the other.
+Row r contributes column (skew * r) mod step and every step-th column after it. The lattices below
+are square, so they sample both axes equally densely.
 """
 
 from __future__ import annotations
@@ -14,15 +14,17 @@ from torch import Tensor
 
 @dataclass(frozen=True)
 class CellLattice:
+    """Every `step`-th cell of each row, starting `skew` columns further in each following row."""
+
     step: int = 1
     skew: int = 0
 
     def mask(self, rows: int, cols: int) -> Tensor:
-        """Which cells of a grid belong to it, [rows, cols]."""
+        """The cells of a grid that belong to the lattice, bool [rows, cols]."""
         row, col = torch.arange(rows)[:, None], torch.arange(cols)
         return (col - self.skew * row) % self.step == 0
 
 
 EVERY_CELL = CellLattice(1, 0)
 EVERY_SECOND_CELL = CellLattice(2, 1)  # one colour of a chessboard
-EVERY_TENTH_CELL = CellLattice(10, 3)  # the nearest: a row and three columns away
+EVERY_TENTH_CELL = CellLattice(10, 3)  # nearest neighbours are one row and three columns apart

@@ -1,18 +1,18 @@
-"""Decoupled neural matching word for word (paper, III-D, eq. 7 to 13), of features as they come.
+"""Decoupled neural matching exactly as in the paper (section III-D, eq. 7 to 13), on raw features.
 
-* Both sides are divided by the greatest magnitude that occurs in either. No score feels it.
-* Yaw: F_B is turned by each hypothesis (features.py); A = |FFT2| at the grid's own size without a
-  window. A is read bilinearly in polar coordinates of its indices, row bin r cos(theta) (wrapping)
-  and column bin r sin(theta), at 180 angles theta_i = i degrees and the radii r = 1 ... 24 (half
-  the shorter side, less one), and averaged over the radii: Y[c, i].
+* Both sides are divided by the largest magnitude in either. This does not change any score.
+* Yaw: F_B is rotated by each hypothesis (features.py). A = |FFT2| at the size of the grid, without
+  a window. A is sampled bilinearly in polar coordinates of its indices, row bin r cos(theta)
+  (wrapping) and column bin r sin(theta), at 180 angles theta_i = i degrees and radii r = 1 ... 24
+  (half the shorter side minus one), and averaged over the radii: Y[c, i].
   P = softmax(-yaw_scale * sum((Y_M - Y_B^a)^2) / sum(Y_M^2)).
-* x and y: F_B moved by each hypothesis and the best yaw at once; A = GeM (eq. 12) over the whole of
-  the other axis, (mean(max(f, 1e-6)^omega))^(1 / omega); ZNCC over all positions and channels
-  together (zncc.py). P = softmax(scale * ZNCC) with x_scale or y_scale.
+* x and y: F_B is moved by each hypothesis and the best yaw in one step. A = GeM (eq. 12) over the
+  whole of the other axis, (mean(max(f, 1e-6)^omega))^(1 / omega). The score is the ZNCC over all
+  positions and channels together (zncc.py). P = softmax(scale * ZNCC) with x_scale or y_scale.
 * The estimates are the best hypotheses (eq. 6 and 10). They have no gradient; the distributions do.
 
-Two things are not the paper's words: the minus in eq. 9, without which the worst yaw wins, and the
-scales of the softmaxes, without which they are flat.
+Two points differ from the paper: the minus in eq. 9, without which the worst yaw wins, and the
+softmax scales, without which the distributions are nearly uniform.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from training.solvers.zncc import sums_of, zncc
 
 
 def scale_together(bev: Tensor, features_map: Tensor) -> tuple[Tensor, Tensor]:
-    """Each sample's two sides over their greatest magnitude."""
+    """Divides both sides of each sample by their largest magnitude."""
     greatest = torch.maximum(bev.abs().amax((1, 2, 3)), features_map.abs().amax((1, 2, 3)))
     greatest = greatest.detach().clamp(min=1e-30)[:, None, None, None]
     return bev / greatest, features_map / greatest
 
 
 def literal_yaw_scores(bev: Tensor, features_map: Tensor, definition: SolverDefinition) -> Tensor:
-    """Of every yaw, [batch, count]."""
+    """Scores of every yaw, [batch, count]."""
     yaw = definition.hypotheses()[2].to(bev.device)
     corrections = torch.stack((torch.zeros_like(yaw), torch.zeros_like(yaw), yaw), dim=1)
     moved = move(bev, corrections.expand(len(bev), -1, -1), definition.cell_m)
@@ -72,7 +72,8 @@ def _polar_means(definition: SolverDefinition) -> Tensor:
 
 
 def gem(features: Tensor, omega: Tensor, dim: int, least: float) -> Tensor:
-    """Generalised mean (eq. 12) of max(f, least). By logarithms: powers could underflow."""
+    """Generalised mean (eq. 12) of max(f, least) along `dim`. It is computed with logarithms,
+    because powers could underflow."""
     powers = omega * features.clamp(min=least).log()
     return ((torch.logsumexp(powers, dim) - math.log(features.shape[dim])) / omega).exp()
 
@@ -84,7 +85,8 @@ def literal_axis_scores(
     omega: Tensor,
     definition: SolverDefinition,
 ) -> tuple[Tensor, Tensor]:
-    """Of every x and of every y, [batch, count] each, with F_B turned by `yaw_rad` [batch]."""
+    """Scores of every x and of every y, [batch, count] each, with F_B rotated by `yaw_rad`
+    [batch]."""
     x, y, _ = definition.hypotheses()
     scores = []
     for axis, shifts in enumerate((x, y)):
@@ -94,7 +96,7 @@ def literal_axis_scores(
         corrections[:, :, axis] = shifts.to(bev.device)
         corrections[:, :, 2] = yaw_rad.detach()[:, None]
         moved = move(bev, corrections, definition.cell_m)  # [batch, C, count, rows, cols]
-        pooled = 4 - axis  # x averages over columns, y over rows
+        pooled = 4 - axis  # x pools over columns, y over rows
         axis_bev = gem(moved, omega, pooled, definition.gem_least)
         axis_map = gem(features_map[:, :, None], omega, pooled, definition.gem_least)
         product = (axis_bev * axis_map).sum((1, 3))

@@ -1,4 +1,4 @@
-"""Distributions over the hypotheses, and what is read from them."""
+"""Distributions over the hypotheses and the estimates derived from them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from training.solvers.definition import DEFINITION, SolverDefinition, hypotheses
 
 @dataclass(frozen=True)
 class Posterior:
-    """Distributions over the hypotheses, [batch, count] each."""
+    """The distributions over the hypotheses of x, y and yaw, [batch, count] each."""
 
     x: Tensor
     y: Tensor
@@ -23,8 +23,8 @@ class Posterior:
 
 
 def joint_posterior(scores: Tensor, scale: Tensor) -> Posterior:
-    """Scores of every hypothesis [batch, yaw, x, y]: P = softmax(scale * score) over all of them,
-    and its marginals."""
+    """The marginals of P = softmax(scale * score) over all hypotheses, from their scores
+    [batch, yaw, x, y]."""
     probability = torch.softmax((scores * scale).flatten(1), dim=1)
     volume = probability.reshape(scores.shape)
     return Posterior(volume.sum((1, 3)), volume.sum((1, 2)), volume.sum((2, 3)))
@@ -35,20 +35,21 @@ def posterior_mean(probability: Tensor, value_range: float, step: float) -> Tens
 
 
 def estimate(posterior: Posterior, definition: SolverDefinition = DEFINITION) -> Tensor:
-    """The posterior's means (x m, y m, yaw rad), [batch, 3]."""
+    """The means of the distributions (x m, y m, yaw rad), [batch, 3]."""
     means = [posterior_mean(p, *axis) for p, axis in zip(posterior.axes(), definition.axes())]
     return torch.stack(means, dim=1)
 
 
 def best_hypotheses(posterior: Posterior, definition: SolverDefinition = DEFINITION) -> Tensor:
-    """The likeliest (x m, y m, yaw rad), [batch, 3]. Has no gradient."""
+    """The most probable hypotheses (x m, y m, yaw rad), [batch, 3]. They have no gradient."""
     values = [h.to(p)[p.argmax(1)] for p, h in zip(posterior.axes(), definition.hypotheses())]
     return torch.stack(values, dim=1)
 
 
 @dataclass(frozen=True)
 class Solution:
-    """What a solver says of a batch: (x m, y m, yaw rad), [batch, 3], and the distributions."""
+    """A solver's result for a batch: estimate and standard deviation (x m, y m, yaw rad),
+    [batch, 3] each, and the distributions."""
 
     estimate: Tensor
     deviation: Tensor
@@ -56,7 +57,7 @@ class Solution:
 
     @staticmethod
     def of(posterior: Posterior, definition: SolverDefinition = DEFINITION) -> Solution:
-        """Means and standard deviations of the posterior."""
+        """The means and standard deviations of the distributions."""
         means, deviations = estimate(posterior, definition), []
         for i, (probability, axis) in enumerate(zip(posterior.axes(), definition.axes())):
             square = probability @ hypotheses(*axis).to(probability).square()

@@ -1,23 +1,25 @@
-"""Yaw from amplitude spectra: the first half of the decoupled solver, of standardised features.
+"""Yaw from amplitude spectra: the first half of the decoupled solver, on standardised features.
 
 Signature of each side.
-* Features finer than 0.6 m are first averaged over as many whole cells as go into 0.6 m.
+* Features with cells finer than 0.6 m are first averaged over as many whole cells as fit into
+  0.6 m.
 * Multiply by the separable Hann window 0.5 - 0.5 cos(2 pi n / (N - 1)), n = 0 ... N - 1 (the
-  symmetric form), N = 100 over rows and 50 over columns; place at the top left of 128 x 128 zeros;
-  amplitude A = |FFT2|, not normalised.
-* 32 radii rho_j = 0.05 + (j + 0.5) 0.75 / 32 cycles/m, j = 0 ... 31; band b holds the radii
+  symmetric form), with N = 100 over rows and 50 over columns. Zero-pad to 128 x 128, features at
+  the top left. Amplitude A = |FFT2|, not normalised.
+* 32 radii rho_j = 0.05 + (j + 0.5) 0.75 / 32 cycles/m, j = 0 ... 31; band b has the radii
   j = 4 b ... 4 b + 3 (8 bands). 360 angles theta_i = i * 0.5 degrees.
-* A is read bilinearly at row bin rho cos(theta) 0.6 * 128 and column bin rho sin(theta) 0.6 * 128,
-  indices wrapping modulo 128 (frequencies along rows go with x and along columns with y; both axes
-  point backwards, which A does not see). The four radii of a band are averaged: s[c, b, i].
-* Each (channel, band) is standardised over the 360 angles: Y = (s - mean) / (std + 1e-3),
-  population std.
+* A is sampled bilinearly at row bin rho cos(theta) 0.6 * 128 and column bin
+  rho sin(theta) 0.6 * 128; indices wrap modulo 128. (Frequencies along rows belong to x and along
+  columns to y. Both axes are reversed, to which A is invariant.) The mean over the four radii of a
+  band is s[c, b, i].
+* Each (channel, band) is standardised over the 360 angles: Y = (s - mean) / (std + 1e-3), with the
+  population standard deviation.
 
-Scores. Turning F_B by +a moves its amplitude to theta + a, so Y_B^a[i] = Y_B(i - a / 0.5 degrees),
-circular over 360 samples (the amplitude is even), linear between samples: with q = a / 0.5 degrees,
-n = floor(q), w = q - n, Y_B^a[i] = (1 - w) Y_B[i - n] + w Y_B[i - n - 1].
-score(a) = -mean over (c, b, i) of (Y_M - Y_B^a)^2; P_yaw = softmax(yaw_scale * score); the estimate
-is the posterior mean.
+Scores. Rotating F_B by +a moves its amplitude to theta + a, so Y_B^a[i] = Y_B(i - a / 0.5 degrees),
+circular over 360 samples (because A is even) and linear between samples: with q = a / 0.5 degrees,
+n = floor(q) and w = q - n, Y_B^a[i] = (1 - w) Y_B[i - n] + w Y_B[i - n - 1].
+score(a) = -mean over (c, b, i) of (Y_M - Y_B^a)^2. P_yaw = softmax(yaw_scale * score). The estimate
+is the mean of P_yaw.
 """
 
 from __future__ import annotations
@@ -32,7 +34,12 @@ from training.solvers.definition import DEFINITION, SolverDefinition, split_shif
 
 
 class YawSignature(nn.Module):
-    """Standardised features [batch, C, rows, cols] -> [batch, C, bands, angles]."""
+    """The signature of standardised features: [batch, C, rows, cols] -> [batch, C, bands,
+    angles]."""
+
+    window: Tensor
+    index: Tensor
+    weight: Tensor
 
     def __init__(self, definition: SolverDefinition = DEFINITION) -> None:
         super().__init__()
@@ -48,7 +55,7 @@ class YawSignature(nn.Module):
         self.register_buffer("weight", weight, persistent=False)
 
     def _polar_taps(self) -> tuple[Tensor, Tensor]:
-        """For every (band, angle): where to read the half spectrum, and with which weights."""
+        """For every (band, angle): the indices into the half spectrum and their weights."""
         d = self.definition
         count = d.bands * d.radii_per_band
         step = (d.max_frequency - d.min_frequency) / count
@@ -95,7 +102,7 @@ def yaw_scores(
     whole, fraction = split_shift(definition.hypotheses()[2] / (math.pi / angles))
     fraction = fraction.to(signature_bev)
     first, last = int(whole.min()), int(whole.max()) + 1
-    # |Y_M - Y_B^a|^2 expands into correlations at integer shifts: nothing is rolled per hypothesis.
+    # |Y_M - Y_B^a|^2 is expanded into correlations at integer shifts, which all hypotheses share.
     wrapped = torch.cat([signature_bev[..., -last:], signature_bev, signature_bev[..., :-first]], 3)
     rolled = wrapped.unfold(3, angles, 1)  # [..., shift (last ... first), angles]
     cross = torch.einsum("bcrsi,bcri->bs", rolled, signature_map).flip(1)

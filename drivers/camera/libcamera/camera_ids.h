@@ -1,4 +1,4 @@
-// How libcamera's cameras are called.
+// Lists the ids of libcamera's cameras.
 #pragma once
 
 #include <string>
@@ -15,9 +15,9 @@ inline std::vector<std::string> ids_of(const libcamera::CameraManager& manager) 
   return ids;
 }
 
-/// The sentence for an id that is none of these.
+/// The error message for an id that is not in `ids`.
 inline std::string no_camera_called(const std::string& id, const std::vector<std::string>& ids) {
-  return fmt::format("no camera is called \"{}\"; there is: {}", id,
+  return fmt::format("no camera is called \"{}\"; available: {}", id,
                      ids.empty() ? "none" : fmt::format("\"{}\"", fmt::join(ids, "\", \"")));
 }
 

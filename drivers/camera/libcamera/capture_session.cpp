@@ -10,6 +10,7 @@
 
 #include "drivers/camera/dmabuf.h"
 #include "drivers/camera/libcamera/camera_ids.h"
+#include "drivers/camera/libcamera/controls.h"
 
 namespace bevloc::drivers::libcam {
 namespace {
@@ -61,26 +62,27 @@ Status CaptureSession::configure(const DeviceCameraConfig& config) {
 
 Status CaptureSession::make_requests() {
   if (const int error = allocator_.allocate(stream_); error < 0) {
-    return fail("buffers cannot be had: {}", std::strerror(-error));
+    return fail("buffers cannot be allocated: {}", std::strerror(-error));
   }
   for (const auto& buffer : allocator_.buffers(stream_)) {
     if (Status mapped = map(*buffer); !mapped) return mapped;
     auto request = camera_->createRequest(requests_.size());
     if (!request || request->addBuffer(stream_, buffer.get()) != 0) {
-      return fail("a request cannot be made");
+      return fail("a request cannot be created");
     }
     requests_.push_back(std::move(request));
   }
-  completed_.reserve(requests_.size());
+  completed_.set_capacity(requests_.size());
   return {};
 }
 
-/// All planes of a picture lie in one dmabuf: that is what every format here is made of.
+/// Maps a buffer. All planes must be in one dmabuf, as they are for the formats that bevloc uses.
 Status CaptureSession::map(const libcamera::FrameBuffer& buffer) {
   Mapping mapping;
   mapping.dmabuf = buffer.planes().front().fd.get();
   for (const libcamera::FrameBuffer::Plane& plane : buffer.planes()) {
-    if (plane.fd.get() != mapping.dmabuf) return fail("planes lie in several dmabufs, wanted one");
+    if (plane.fd.get() != mapping.dmabuf)
+      return fail("found planes in several dmabufs, wanted one");
     mapping.length = std::max<size_t>(mapping.length, plane.offset + plane.length);
   }
   void* memory = mmap(nullptr, mapping.length, PROT_READ, MAP_SHARED, mapping.dmabuf, 0);
@@ -96,7 +98,7 @@ Status CaptureSession::begin(const DeviceCameraConfig& config) {
   camera_->requestCompleted.connect(this, &CaptureSession::on_completed);
   camera_->disconnected.connect(this, &CaptureSession::on_disconnected);
   if (const int error = camera_->start(&*controls)) {
-    return fail("does not start: {}", std::strerror(-error));
+    return fail("cannot be started: {}", std::strerror(-error));
   }
   running_ = true;
   for (const auto& request : requests_) {
@@ -111,7 +113,7 @@ void CaptureSession::stop() {
   if (!is_acquired_) return;
   is_acquired_ = false;
   running_ = false;
-  // Completes what is queued as cancelled, before it returns.
+  // Completes the queued requests as cancelled before it returns.
   camera_->stop();
   camera_->requestCompleted.disconnect(this);
   camera_->disconnected.disconnect(this);
@@ -141,7 +143,7 @@ CaptureSession::Event CaptureSession::wait(Duration timeout, int& slot) {
   if (is_disconnected_) return Event::kDisconnected;
   if (completed_.empty()) return Event::kTimeout;
   slot = completed_.front();
-  completed_.erase(completed_.begin());
+  completed_.pop_front();
   return Event::kCompleted;
 }
 
@@ -186,7 +188,8 @@ void CaptureSession::give_back(int slot) noexcept {
 }
 
 void CaptureSession::requeue(int slot) noexcept {
-  // After stop() there is nothing to queue into; if that happens in between, libcamera refuses.
+  // After stop() a request cannot be queued. If stop() comes after this check, libcamera refuses
+  // it.
   if (!running_) return;
   requests_[slot]->reuse(libcamera::Request::ReuseBuffers);
   camera_->queueRequest(requests_[slot].get());

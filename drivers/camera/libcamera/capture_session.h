@@ -1,4 +1,4 @@
-// A libcamera camera's requests and buffers while it runs, and after.
+// The requests and buffers of a libcamera camera, from one start() to its stop().
 #pragma once
 
 #include <atomic>
@@ -8,17 +8,18 @@
 #include <optional>
 #include <vector>
 
+#include <boost/circular_buffer.hpp>
 #include <libcamera/libcamera.h>
 
 #include "drivers/camera/device_camera.h"
 #include "drivers/camera/frame_buffer.h"
-#include "drivers/camera/libcamera/stream_layout.h"
+#include "drivers/camera/libcamera/stream_format.h"
 
 namespace bevloc::drivers::libcam {
 
-/// From one start() to its stop(). Whoever holds a picture keeps the session's memory; the camera
-/// itself is released by stop(). open(), wait(), lend() and stop() belong to one thread; libcamera
-/// completes requests on a thread of its own.
+/// A frame that is held keeps the memory of the session alive. stop() releases the camera itself.
+/// open(), wait(), lend() and stop() are called from the camera's own thread. libcamera completes
+/// requests on its own thread.
 class CaptureSession final : public FrameLender,
                              public std::enable_shared_from_this<CaptureSession> {
  public:
@@ -29,17 +30,17 @@ class CaptureSession final : public FrameLender,
   void stop();
 
   enum class Event : uint8_t { kCompleted, kTimeout, kDisconnected };
-  /// On kCompleted, `slot` is the request that completed first.
+  /// Waits for a completed request. On kCompleted, `slot` is the one that completed first.
   Event wait(Duration timeout, int& slot);
 
   const libcamera::FrameMetadata& frame_metadata(int slot) const;
-  /// Start of exposure of the first row, as libcamera gives it; nothing where it does not.
+  /// Start of exposure of the first row, if libcamera reports it.
   std::optional<int64_t> sensor_timestamp_ns(int slot) const;
-  /// The picture; bytes_used is filled in.
+  /// The image in a completed request, with bytes_used.
   ImageView view(int slot) const;
 
   FrameBuffer lend(int slot);
-  /// Back to the camera without having been lent. From any thread.
+  /// Queues a request again. Thread-safe.
   void requeue(int slot) noexcept;
 
   int buffers() const { return static_cast<int>(requests_.size()); }
@@ -63,7 +64,7 @@ class CaptureSession final : public FrameLender,
   void on_disconnected();
   void give_back(int slot) noexcept override;
 
-  // In this order: requests refer to buffers, and both to the camera.
+  // Order of destruction: requests refer to buffers, and both refer to the camera.
   const std::shared_ptr<libcamera::CameraManager> manager_;
   const std::shared_ptr<libcamera::Camera> camera_;
   bool is_acquired_ = false;
@@ -78,7 +79,7 @@ class CaptureSession final : public FrameLender,
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<int> completed_;  ///< slots, oldest first; never more than there are requests
+  boost::circular_buffer<int> completed_;  ///< slots in order of completion
   bool is_disconnected_ = false;
 };
 

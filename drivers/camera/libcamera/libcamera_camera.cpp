@@ -4,17 +4,17 @@
 #include <mutex>
 #include <utility>
 
+#include "common/cameras.h"
 #include "common/kernel_time.h"
+#include "drivers/camera/complete_image.h"
 #include "drivers/camera/libcamera/camera_ids.h"
 #include "drivers/camera/libcamera/capture_session.h"
 #include "drivers/camera/libcamera/sensor_time.h"
-#include "drivers/camera/whole_picture.h"
-#include "pipeline/calibration/rig.h"
 
 namespace bevloc::drivers {
 namespace {
 
-/// libcamera allows one manager in a program: all cameras share it, and the last one ends it.
+/// libcamera allows one manager per process, so all cameras share it. It ends with the last camera.
 Result<std::shared_ptr<libcamera::CameraManager>> shared_manager() {
   static std::mutex mutex;
   static std::weak_ptr<libcamera::CameraManager> shared;
@@ -22,14 +22,14 @@ Result<std::shared_ptr<libcamera::CameraManager>> shared_manager() {
   if (auto manager = shared.lock()) return manager;
   auto manager = std::make_shared<libcamera::CameraManager>();
   if (const int error = manager->start()) {
-    return fail("libcamera does not start: {}", std::strerror(-error));
+    return fail("libcamera cannot be started: {}", std::strerror(-error));
   }
   shared = manager;
   return manager;
 }
 
-/// How long this machine has been suspended.
-Duration time_slept() {
+/// How long this machine was suspended since it booted.
+Duration time_suspended() {
   return read_clock(CLOCK_BOOTTIME) - read_clock(CLOCK_MONOTONIC);
 }
 
@@ -72,7 +72,8 @@ Result<FrameEvent> LibcameraCamera::next_frame(Duration timeout, Frame& frame) {
     int slot = 0;
     switch (session_->wait(std::max(give_up - clock_.now(), Duration::zero()), slot)) {
       case libcam::CaptureSession::Event::kDisconnected:
-        return fail("camera {}: {}: is unplugged", kCameraNames[config_.camera], config_.id);
+        return fail("camera {}: {}: is unplugged; check the cable", kCameraNames[config_.camera],
+                    config_.id);
       case libcam::CaptureSession::Event::kTimeout:
         return FrameEvent::kTimeout;
       case libcam::CaptureSession::Event::kCompleted:
@@ -87,12 +88,12 @@ bool LibcameraCamera::take(int slot, Frame& frame) {
   const uint64_t sequence = counter_.arrived(metadata.sequence);
   const auto timestamp_ns = session_->sensor_timestamp_ns(slot);
   if (metadata.status != libcamera::FrameMetadata::FrameSuccess || !timestamp_ns ||
-      !is_whole(session_->view(slot))) {
+      !is_complete(session_->view(slot))) {
     counter_.damaged();
     session_->requeue(slot);
     return false;
   }
-  const Time time = libcam::steady_time(*timestamp_ns, clock_.now(), time_slept());
+  const Time time = libcam::steady_time(*timestamp_ns, clock_.now(), time_suspended());
   frame = Frame{config_.camera, time, sequence, config_.exposure, session_->lend(slot)};
   counter_.delivered(session_->lent() == session_->buffers());
   return true;

@@ -1,4 +1,4 @@
-// A camera behind libcamera.
+// A camera of libcamera.
 #pragma once
 
 #include <atomic>
@@ -16,28 +16,28 @@ namespace libcam {
 class CaptureSession;
 }
 
-/// Ids of libcamera's cameras, as `cam -l` shows them.
+/// Returns the ids of libcamera's cameras, as `cam -l` shows them.
 std::vector<std::string> libcamera_ids();
 
-/// Pictures are lent out as they lie in libcamera's dmabufs, mapped once; giving one back queues
-/// its request again. Each start() looks the camera up anew by `id`, as `cam -l` shows it. Controls
-/// have libcamera's names (AeEnable, ExposureTime in microseconds, AnalogueGain). The rate is set
-/// where the camera has FrameDurationLimits; USB cameras have not, and run as they do.
+/// Frames refer to libcamera's dmabufs, which are mapped once. Dropping a frame queues its request
+/// again. Each start() searches the camera by `id`, as `cam -l` shows it. Controls have libcamera's
+/// names (AeEnable, ExposureTime in microseconds, AnalogueGain). The rate is set if the camera has
+/// the control FrameDurationLimits. USB cameras do not have it and keep their own rate.
 class LibcameraCamera final : public Camera {
  public:
-  /// The clock must be the machine's: libcamera stamps by it.
+  /// `clock` must be a MonotonicClock, because libcamera's timestamps are compared with it.
   LibcameraCamera(DeviceCameraConfig config, Clock& clock);
   ~LibcameraCamera() override;
 
   Status start() override;
   void stop() override;
   Result<FrameEvent> next_frame(Duration timeout, Frame& frame) override;
-  /// `buffers` is what the camera gave, once it has been started.
+  /// After start(), `buffers` is the number that the camera allocated.
   CameraDescription description() const override;
   CameraCounters counters() const override { return counter_.counters(); }
 
  private:
-  /// Whether the request's picture is whole and timed; then it is in `frame`.
+  /// Fills `frame`. Returns false for an image that is incomplete or has no timestamp.
   bool take(int slot, Frame& frame);
 
   const DeviceCameraConfig config_;

@@ -1,4 +1,4 @@
-// From libcamera's SensorTimestamp to the steady clock.
+// Converts libcamera's SensorTimestamp to the steady clock.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 
 namespace bevloc::drivers::libcam {
 
-/// libcamera documents CLOCK_BOOTTIME, but pipelines that pass on what V4L2 stamped (USB cameras)
-/// deliver CLOCK_MONOTONIC. The two differ by the time that the machine has slept, and a frame is
-/// never younger than now: what would be is boot time.
-constexpr Time steady_time(int64_t sensor_timestamp_ns, Time now, Duration slept) {
+/// libcamera documents CLOCK_BOOTTIME, but pipelines that pass on V4L2's timestamps (USB cameras)
+/// deliver CLOCK_MONOTONIC. The clocks differ by the time that the machine was suspended. A frame
+/// cannot be newer than `now`, so a later timestamp must be of CLOCK_BOOTTIME.
+constexpr Time steady_time(int64_t sensor_timestamp_ns, Time now, Duration suspended) {
   const Time stamp{Duration(sensor_timestamp_ns)};
-  return stamp > now ? stamp - slept : stamp;
+  return stamp > now ? stamp - suspended : stamp;
 }
 
 }  // namespace bevloc::drivers::libcam

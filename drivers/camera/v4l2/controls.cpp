@@ -74,15 +74,15 @@ Status set(const Device& device, const v4l2_query_ext_ctrl& control, double want
 
 std::string control_word(std::string_view name) {
   std::string word;
-  bool is_apart = false;
+  bool after_separator = false;
   for (const char character : name) {
     const auto letter = static_cast<unsigned char>(character);
     if (std::isalnum(letter) == 0) {
-      is_apart = true;
+      after_separator = true;
       continue;
     }
-    if (is_apart && !word.empty()) word.push_back('_');
-    is_apart = false;
+    if (after_separator && !word.empty()) word.push_back('_');
+    after_separator = false;
     word.push_back(static_cast<char>(std::tolower(letter)));
   }
   return word;

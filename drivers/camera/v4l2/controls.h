@@ -10,12 +10,13 @@
 
 namespace bevloc::drivers::v4l2 {
 
-/// As v4l2-ctl writes them: "Exposure Time, Absolute" is exposure_time_absolute.
+/// Converts the name of a control to the form of v4l2-ctl: "Exposure Time, Absolute" becomes
+/// exposure_time_absolute.
 std::string control_word(std::string_view name);
 
-/// In the order given: automatic exposure must be off before an exposure time can be set. A control
-/// is named as v4l2-ctl does or by its id (0x009a0902). Fails, with the controls or the range that
-/// there are, for one that the device does not have or that refuses the value.
+/// Sets the controls in the given order, because for example automatic exposure must be off before
+/// an exposure time can be set. A control is given by its name as v4l2-ctl shows it, or by its id
+/// (0x009a0902). The error lists the controls or the range of values that the device has.
 Status set_controls(const Device& device, std::span<const ControlSetting> settings);
 
 }  // namespace bevloc::drivers::v4l2

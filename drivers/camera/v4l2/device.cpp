@@ -11,13 +11,13 @@
 namespace bevloc::drivers::v4l2 {
 
 Result<std::shared_ptr<Device>> Device::open(const std::filesystem::path& node) {
-  // Not blocking: next_frame() waits in poll(), with a limit.
+  // Non-blocking, because next_frame() waits in ppoll() with a timeout.
   const int fd = ::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) return fail("{}: cannot be opened: {}", node.string(), std::strerror(errno));
   std::shared_ptr<Device> device(new Device(fd));
   v4l2_capability capability{};
   if (const int error = device->call(VIDIOC_QUERYCAP, &capability)) {
-    return fail("{}: is no V4L2 device: {}", node.string(), std::strerror(error));
+    return fail("{}: is not a V4L2 device: {}", node.string(), std::strerror(error));
   }
   device->name_ =
       fmt::format("{} ({})", reinterpret_cast<const char*>(capability.card), node.string());

@@ -9,20 +9,20 @@
 
 namespace bevloc::drivers::v4l2 {
 
-/// Closed when the last owner lets go of it. Thread safe, as the kernel is.
+/// The destructor closes the device. Thread-safe, because the kernel's calls are.
 class Device {
  public:
-  /// Fails for what is no device that captures single-plane video by streaming.
+  /// Fails for a device that cannot capture single-plane video by streaming.
   static Result<std::shared_ptr<Device>> open(const std::filesystem::path& node);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
   int fd() const { return fd_; }
-  /// Card and node, for messages.
+  /// Card and node, such as "HD Camera (/dev/video0)", for messages.
   const std::string& name() const { return name_; }
 
-  /// 0 or errno; interrupted calls are made again.
+  /// Makes an ioctl() call and returns 0 or errno. Interrupted calls are repeated.
   int call(unsigned long request, void* argument) const;
 
  private:

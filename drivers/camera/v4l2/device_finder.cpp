@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kNodePrefix = "video";
 
-/// The first line of a sysfs file; empty when there is none.
+/// Returns the first line of a sysfs file, or nothing if there is no such file.
 std::string attribute(const fs::path& file) {
   std::ifstream stream(file);
   std::string line;
@@ -26,7 +26,8 @@ int number_in(std::string_view text) {
   return number;
 }
 
-/// The nearest ancestor of a node's device that is a USB device; empty when it is on another bus.
+/// Returns the nearest ancestor of a device that is a USB device. Empty for a device on another
+/// bus.
 fs::path usb_device_of(fs::path device, const fs::path& sysfs) {
   std::error_code ignored;
   while (device.has_relative_path() && device != sysfs && device != device.parent_path()) {
@@ -64,7 +65,7 @@ bool is_called(const VideoNode& node, std::string_view id) {
          std::ranges::find(node.links, id) != node.links.end();
 }
 
-/// Every name of every device, for the person who has to write one into the configuration.
+/// Lists all names of all devices, for the error message.
 std::string names_of(const std::vector<VideoNode>& nodes) {
   std::string text;
   for (const VideoNode& node : nodes) {
@@ -74,7 +75,7 @@ std::string names_of(const std::vector<VideoNode>& nodes) {
     if (!node.port.empty()) text += fmt::format(", USB port \"{}\"", node.port);
     for (const std::string& link : node.links) text += fmt::format(", \"{}\"", link);
   }
-  return text.empty() ? "no video device at all" : text;
+  return text.empty() ? "none" : text;
 }
 
 }  // namespace
@@ -96,8 +97,8 @@ std::vector<VideoNode> list_video_nodes(const DeviceTree& tree) {
 Result<fs::path> find_video_node(std::string_view id, const DeviceTree& tree) {
   if (id.starts_with("/dev/video")) {
     return fail(
-        "camera id is {}, which is another camera after the next boot; wanted a name from "
-        "/dev/v4l/by-id or by-path, a USB serial number or port, or a card name",
+        "found the camera id {}, which may be another camera after the next boot; wanted a name "
+        "from /dev/v4l/by-id or by-path, a USB serial number or port, or a card name",
         id);
   }
   for (const std::string_view folder : {"/dev/v4l/by-id/", "/dev/v4l/by-path/"}) {
@@ -108,12 +109,12 @@ Result<fs::path> find_video_node(std::string_view id, const DeviceTree& tree) {
   for (const VideoNode& node : nodes) {
     if (!is_called(node, id)) continue;
     if (found != nullptr && found->device != node.device) {
-      return fail("several cameras are called \"{}\"; there is: {}", id, names_of(nodes));
+      return fail("several cameras are called \"{}\"; available: {}", id, names_of(nodes));
     }
     if (found == nullptr || node.index < found->index) found = &node;
   }
   if (found == nullptr) {
-    return fail("no camera is called \"{}\"; there is: {}", id, names_of(nodes));
+    return fail("no camera is called \"{}\"; available: {}", id, names_of(nodes));
   }
   return found->node;
 }

@@ -1,4 +1,4 @@
-// Which video node belongs to a camera's stable id.
+// Finds the video node (/dev/video0) of a camera by its stable id.
 #pragma once
 
 #include <filesystem>
@@ -10,29 +10,30 @@
 
 namespace bevloc::drivers::v4l2 {
 
-/// Where the kernel and udev show devices; tests have their own.
+/// The folders in which the kernel and udev show devices. Tests use their own.
 struct DeviceTree {
   std::filesystem::path sysfs = "/sys";
   std::filesystem::path dev = "/dev";
 };
 
-/// One video node and the names by which it can be called.
+/// One video node and its names.
 struct VideoNode {
   std::filesystem::path node;
-  int index = 0;       ///< among the nodes of one device; a USB camera's pictures come from 0
-  std::string device;  ///< sysfs path of the device that the node is of
+  int index = 0;  ///< among the nodes of one device; node 0 of a USB camera delivers the images
+  std::string device;  ///< sysfs path of the node's device
   std::string card;    ///< such as "HD USB Camera"
-  std::string serial;  ///< of a USB device that has one
-  std::string port;    ///< of a USB device: "1-4.2" is bus 1, port 4 of the root, port 2 of a hub
+  std::string serial;  ///< serial number of a USB device; empty if it has none
+  std::string port;    ///< USB port: "1-4.2" is bus 1, port 4 of the root hub, port 2 of a hub
   std::vector<std::string> links;  ///< names in /dev/v4l/by-id and by-path
 };
 
-/// In the order of their numbers.
+/// Lists all video nodes in the order of their numbers.
 std::vector<VideoNode> list_video_nodes(const DeviceTree& tree = {});
 
-/// The node whose by-id or by-path name, USB serial number, USB port or card name is `id`; of
-/// several nodes of one device the first. Fails, listing what is there, when none has it, when
-/// devices share it, and for a /dev/video number, which changes from boot to boot.
+/// Returns the node whose by-id or by-path name, USB serial number, USB port or card name is `id`.
+/// If several nodes of one device match, returns the first one. Fails when no device or more than
+/// one matches, and lists the devices. Also fails for a /dev/video number, as it changes with each
+/// boot.
 Result<std::filesystem::path> find_video_node(std::string_view id, const DeviceTree& tree = {});
 
 }  // namespace bevloc::drivers::v4l2

@@ -7,7 +7,7 @@
 namespace bevloc::drivers::v4l2 {
 namespace {
 
-/// Rates are fractions of whole numbers: 30 Hz and 29.97 Hz are one.
+/// Relative. 30 Hz and 29.97 Hz count as the same rate.
 constexpr double kRateTolerance = 0.01;
 
 bool has_format(const Device& device, uint32_t fourcc) {
@@ -50,7 +50,7 @@ std::string sizes_of(const Device& device, uint32_t fourcc) {
   return text;
 }
 
-/// Whether the device now makes pictures at this rate; true where it knows no rates.
+/// Sets the frame rate. Returns whether the device accepted it, or true if it has no rates.
 bool set_rate(const Device& device, double rate_hz) {
   if (rate_hz <= 0.0) return true;
   v4l2_streamparm parameters{};
@@ -84,7 +84,7 @@ Result<StreamFormat> negotiate_format(const Device& device, const DeviceCameraCo
     pixels.field = V4L2_FIELD_NONE;
     if (const int error = device.call(VIDIOC_S_FMT, &request)) {
       if (error == EBUSY) return fail("{}: another program uses it", device.name());
-      return fail("{}: format cannot be set: {}", device.name(), std::strerror(error));
+      return fail("{}: the format cannot be set: {}", device.name(), std::strerror(error));
     }
     const bool is_agreed = pixels.pixelformat == fourcc &&
                            pixels.width == static_cast<uint32_t>(config.width_px) &&

@@ -1,4 +1,4 @@
-// Agrees with a device on pixel format, size and rate.
+// Negotiates pixel format, size and frame rate with a device.
 #pragma once
 
 #include "drivers/camera/device_camera.h"
@@ -12,12 +12,12 @@ struct StreamFormat {
   v4l2_pix_format pixels{};
 };
 
-/// Sets the first of config.formats that the device has at the size and rate wanted. A device that
-/// knows no rates (its sensor is triggered from outside) is left alone with them. Fails, listing
-/// what the device offers, when it has none.
+/// Sets the first of config.formats that the device supports at the configured size and rate. The
+/// rate is not set on a device without rates, such as one with an external trigger. The error lists
+/// what the device offers.
 Result<StreamFormat> negotiate_format(const Device& device, const DeviceCameraConfig& config);
 
-/// "YUYV 640x360 at 5, 10 Hz; MJPG 1280x720 at 30 Hz": everything that the device has.
+/// Lists all formats of the device: "YUYV 640x360 at 5, 10 Hz; MJPG 1280x720 at 30 Hz".
 std::string offered_formats(const Device& device);
 
 }  // namespace bevloc::drivers::v4l2

@@ -59,7 +59,7 @@ ImageView view_of(PixelFormat format, const v4l2_pix_format& pixels, const uint8
   view.height = static_cast<int>(pixels.height);
   view.planes[0] = {data, pixels.bytesperline};
   if (format == PixelFormat::kNv12) {
-    // Single-plane: chroma follows luma at once, and its rows are as long.
+    // In the single-plane format, the chroma rows directly follow the luma rows, with equal stride.
     const size_t luma = static_cast<size_t>(pixels.bytesperline) * pixels.height;
     view.planes[1] = {data + luma, pixels.bytesperline};
   }

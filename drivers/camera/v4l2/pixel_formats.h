@@ -1,4 +1,4 @@
-// V4L2's names for the pixel formats that bevloc reads.
+// Converts pixel formats and image layouts of V4L2.
 #pragma once
 
 #include <optional>
@@ -10,15 +10,15 @@
 
 namespace bevloc::drivers::v4l2 {
 
-/// Four characters; trailing spaces are kept out.
+/// Returns up to four characters, without trailing spaces.
 std::string fourcc_name(uint32_t fourcc);
 
 uint32_t fourcc_of(PixelFormat format);
 
-/// How a device encodes YUV, with the defaults of videodev2.h where it does not say.
+/// Returns how a device encodes YUV. Uses the defaults of videodev2.h for unspecified values.
 YuvEncoding yuv_encoding(const v4l2_pix_format& pixels);
 
-/// A picture of this format whose bytes begin at `data`.
+/// Returns a view of an image of this format whose bytes begin at `data`.
 ImageView view_of(PixelFormat format, const v4l2_pix_format& pixels, const uint8_t* data);
 
 }  // namespace bevloc::drivers::v4l2

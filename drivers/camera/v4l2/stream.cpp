@@ -50,7 +50,8 @@ Status Stream::make_buffers(int count, MemoryAccess access) {
   request.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
   request.memory = V4L2_MEMORY_MMAP;
   if (const int error = device_->call(VIDIOC_REQBUFS, &request)) {
-    return fail("{}: {} buffers cannot be had: {}", device_->name(), count, std::strerror(error));
+    return fail("{}: {} buffers cannot be allocated: {}", device_->name(), count,
+                std::strerror(error));
   }
   mappings_.resize(request.count);
   for (uint32_t slot = 0; slot < request.count; ++slot) {
@@ -62,7 +63,7 @@ Status Stream::make_buffers(int count, MemoryAccess access) {
 Status Stream::map_buffer(uint32_t slot, MemoryAccess access) {
   v4l2_buffer buffer = capture_buffer(slot);
   if (const int error = device_->call(VIDIOC_QUERYBUF, &buffer)) {
-    return fail("{}: buffer {} is not there: {}", device_->name(), slot, std::strerror(error));
+    return fail("{}: buffer {} cannot be queried: {}", device_->name(), slot, std::strerror(error));
   }
   buffer_flags_ = buffer.flags;
   Mapping& mapping = mappings_[slot];
@@ -75,7 +76,7 @@ Status Stream::map_buffer(uint32_t slot, MemoryAccess access) {
     request.index = slot;
     request.flags = O_RDWR | O_CLOEXEC;
     if (const int error = device_->call(VIDIOC_EXPBUF, &request)) {
-      return fail("{}: buffers cannot be exported as dmabuf ({}); wanted `memory: mmap`",
+      return fail("{}: buffers cannot be exported as dmabuf ({}); set `memory: mmap`",
                   device_->name(), std::strerror(error));
     }
     mapping.dmabuf = request.fd;
@@ -100,7 +101,7 @@ Status Stream::begin() {
   }
   int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
   if (const int error = device_->call(VIDIOC_STREAMON, &type)) {
-    return fail("{}: does not stream: {}", device_->name(), std::strerror(error));
+    return fail("{}: cannot start streaming: {}", device_->name(), std::strerror(error));
   }
   running_ = true;
   return {};
@@ -108,13 +109,13 @@ Status Stream::begin() {
 
 void Stream::stop() {
   if (!running_.exchange(false)) return;
-  // Neither can fail but by the device being gone.
+  // Both calls can fail only when the device was unplugged.
   int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
   device_->call(VIDIOC_STREAMOFF, &type);
   release_buffers();
 }
 
-/// The kernel lets go of its buffers, and of us as the one who streams; what is mapped stays.
+/// Makes the kernel release its buffers and the ownership of the stream. Mapped memory stays valid.
 void Stream::release_buffers() {
   v4l2_requestbuffers request{};
   request.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
@@ -147,7 +148,8 @@ void Stream::give_back(int slot) noexcept {
 }
 
 void Stream::requeue(uint32_t slot) const noexcept {
-  // After stop() there is nothing to queue into; if that happens in between, the kernel refuses.
+  // After stop() a buffer cannot be queued. If stop() comes after this check, the kernel refuses
+  // it.
   if (!running_) return;
   v4l2_buffer buffer = capture_buffer(slot);
   device_->call(VIDIOC_QBUF, &buffer);

@@ -1,4 +1,4 @@
-// A V4L2 device's buffers while it streams, and after.
+// The buffers of a V4L2 device, from one start() to its stop().
 #pragma once
 
 #include <atomic>
@@ -14,39 +14,39 @@
 
 namespace bevloc::drivers::v4l2 {
 
-/// How the pictures' memory is reached: mapped from the device, or exported as dmabuf (so that an
-/// accelerator could read them too) and mapped from there.
+/// How buffers are mapped: directly from the device, or exported as dmabuf and mapped from there.
+/// An accelerator could read a dmabuf too.
 enum class MemoryAccess : uint8_t { kMapped, kDmabuf };
 
-/// From one start() to its stop(). Whoever holds a picture keeps the stream's memory and its file
-/// descriptor; the device itself is given up by stop(), so that a new stream can begin. open(),
-/// dequeue(), lend() and stop() belong to one thread.
+/// A frame that is held keeps the memory and the file descriptor of the stream alive. stop()
+/// releases the device, so that a new stream can start. open(), dequeue(), lend() and stop() are
+/// called from the camera's own thread.
 class Stream final : public FrameLender, public std::enable_shared_from_this<Stream> {
  public:
-  /// Buffers are made, mapped and queued, and the device streams. The driver may give fewer or more
-  /// buffers than asked for.
+  /// Allocates, maps and queues the buffers and starts streaming. The driver may allocate fewer or
+  /// more buffers than `buffers`.
   static Result<std::shared_ptr<Stream>> open(std::shared_ptr<Device> device,
                                               const StreamFormat& format, int buffers,
                                               MemoryAccess access);
   ~Stream() override;
 
-  /// Frees the device for the next stream; pictures that are held stay readable.
+  /// Releases the device for the next stream. Frames that are held stay readable.
   void stop();
 
-  /// 0, EAGAIN when there is none, or what is wrong.
+  /// Fetches a filled buffer. Returns 0, EAGAIN if there is none, or another errno.
   int dequeue(v4l2_buffer& buffer) const;
-  /// A picture that was dequeued, to its user.
+  /// Lends a dequeued buffer to the user.
   FrameBuffer lend(const v4l2_buffer& buffer);
-  /// Back to the device without having been lent. From any thread.
+  /// Queues a dequeued buffer again. Thread-safe.
   void requeue(uint32_t slot) const noexcept;
 
-  /// The picture in a buffer that was dequeued.
+  /// The image in a dequeued buffer.
   ImageView view(const v4l2_buffer& buffer) const;
   int buffers() const { return static_cast<int>(mappings_.size()); }
   int lent() const { return lent_.load(std::memory_order_relaxed); }
   const Device& device() const { return *device_; }
   const StreamFormat& format() const { return format_; }
-  /// Tells how the device stamps its frames.
+  /// Flags (V4L2_BUF_FLAG_*) that say how the device stamps its frames.
   uint32_t buffer_flags() const { return buffer_flags_; }
 
  private:

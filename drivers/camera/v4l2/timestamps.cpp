@@ -7,7 +7,7 @@ namespace bevloc::drivers::v4l2 {
 Result<StampRule> stamp_rule(uint32_t buffer_flags, Duration exposure,
                              std::optional<Duration> readout) {
   if ((buffer_flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) != V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC) {
-    return fail("frames have buffer flags {:#x}, wanted time stamps of the monotonic clock",
+    return fail("found frames with buffer flags {:#x}, wanted timestamps of the monotonic clock",
                 buffer_flags);
   }
   if ((buffer_flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE) {
@@ -15,8 +15,8 @@ Result<StampRule> stamp_rule(uint32_t buffer_flags, Duration exposure,
   }
   if (!readout) {
     return fail(
-        "frames are stamped at their end; wanted readout_ms, the time from the first row's "
-        "end of exposure to the last row's");
+        "frames are stamped at their end; set readout_ms, the time from the end of exposure of the "
+        "first row to that of the last row");
   }
   return StampRule{TimestampOrigin::kFrameEnd, exposure + *readout};
 }

@@ -1,4 +1,4 @@
-// From a V4L2 buffer's time stamp to the start of exposure.
+// Converts the timestamp of a V4L2 buffer to the start of exposure.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,15 @@
 
 namespace bevloc::drivers::v4l2 {
 
-/// How a device stamps its buffers, and how to get from there to the start of exposure.
+/// When a device stamps its buffers, and the time from the start of exposure to that moment.
 struct StampRule {
   TimestampOrigin origin = TimestampOrigin::kExposureStart;
   Duration exposure_to_stamp{0};
 };
 
-/// From a buffer's flags. Fails for a device that does not stamp by CLOCK_MONOTONIC, which is the
-/// steady clock, and for one that stamps the end of frames when the read-out time is not known.
+/// Derives the rule from the flags of a buffer. Fails for a device that does not use
+/// CLOCK_MONOTONIC (the steady clock), and for a device that stamps the end of frames if `readout`
+/// is not given.
 Result<StampRule> stamp_rule(uint32_t buffer_flags, Duration exposure,
                              std::optional<Duration> readout);
 

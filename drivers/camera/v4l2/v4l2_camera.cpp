@@ -7,10 +7,10 @@
 
 #include <poll.h>
 
+#include "common/cameras.h"
 #include "common/kernel_time.h"
+#include "drivers/camera/complete_image.h"
 #include "drivers/camera/v4l2/controls.h"
-#include "drivers/camera/whole_picture.h"
-#include "pipeline/calibration/rig.h"
 
 namespace bevloc::drivers {
 
@@ -64,7 +64,7 @@ Result<FrameEvent> V4l2Camera::next_frame(Duration timeout, Frame& frame) {
   return FrameEvent::kTimeout;
 }
 
-/// Errors show as readiness too; what they are, dequeueing tells.
+/// poll() reports an error as readiness too. dequeue() then returns the error.
 V4l2Camera::Wait V4l2Camera::wait_until(Time time) const {
   const timespec limit = timespec_of(std::max(time - clock_.now(), Duration::zero()));
   pollfd entry{stream_->device().fd(), POLLIN, 0};
@@ -76,10 +76,10 @@ Result<FrameEvent> V4l2Camera::take(Frame& frame) {
   if (const int error = stream_->dequeue(buffer)) {
     if (error == EAGAIN) return FrameEvent::kTimeout;
     return fail("camera {}: {}: {}", kCameraNames[config_.device.camera], stream_->device().name(),
-                error == ENODEV ? "is unplugged" : std::strerror(error));
+                error == ENODEV ? "is unplugged; check the cable" : std::strerror(error));
   }
   const uint64_t sequence = counter_.arrived(buffer.sequence);
-  if ((buffer.flags & V4L2_BUF_FLAG_ERROR) != 0 || !is_whole(stream_->view(buffer))) {
+  if ((buffer.flags & V4L2_BUF_FLAG_ERROR) != 0 || !is_complete(stream_->view(buffer))) {
     counter_.damaged();
     stream_->requeue(buffer.index);
     return FrameEvent::kTimeout;

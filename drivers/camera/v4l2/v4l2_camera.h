@@ -1,4 +1,4 @@
-// A camera behind the kernel's Video4Linux2 interface.
+// A camera of the kernel's Video4Linux2 interface.
 #pragma once
 
 #include <atomic>
@@ -15,24 +15,23 @@
 namespace bevloc::drivers {
 
 struct V4l2CameraConfig {
-  DeviceCameraConfig device;  ///< id as find_video_node() takes it
+  DeviceCameraConfig device;  ///< `id` is a name for find_video_node()
   v4l2::MemoryAccess memory = v4l2::MemoryAccess::kMapped;
 };
 
-/// Pictures are lent out as they lie in the driver's memory; giving one back queues it again. Each
-/// start() looks the device up anew, so that a camera is found wherever it is plugged in next.
-/// Damaged pictures (marked by the driver, or short) are counted and dropped. `overrun` stays 0:
-/// the kernel keeps what is not fetched until it runs out of buffers, and then the sequence has a
-/// gap.
+/// Frames refer to the driver's memory, without a copy. Dropping a frame queues its buffer again.
+/// Each start() searches the device, so a camera is also found at another port. Damaged frames
+/// (marked by the driver, or incomplete) are counted and dropped. `overrun` stays 0: the kernel
+/// keeps frames that are not fetched until it has no free buffer, and then the sequence has a gap.
 class V4l2Camera final : public Camera {
  public:
-  /// The clock must be the machine's: the kernel stamps by it.
+  /// `clock` must be a MonotonicClock, because the kernel stamps frames with this clock.
   V4l2Camera(V4l2CameraConfig config, Clock& clock);
 
   Status start() override;
   void stop() override;
   Result<FrameEvent> next_frame(Duration timeout, Frame& frame) override;
-  /// `buffers` and `timestamp_origin` are what the device gave, once it has been started.
+  /// After start(), `buffers` and `timestamp_origin` are the values of the device.
   CameraDescription description() const override;
   CameraCounters counters() const override { return counter_.counters(); }
 
@@ -41,7 +40,7 @@ class V4l2Camera final : public Camera {
 
   Result<std::shared_ptr<v4l2::Stream>> open_stream() const;
   Wait wait_until(Time time) const;
-  /// kTimeout when there was no picture, or one that is no good.
+  /// Fetches a frame. Returns kTimeout when there was none or it was damaged.
   Result<FrameEvent> take(Frame& frame);
 
   const V4l2CameraConfig config_;

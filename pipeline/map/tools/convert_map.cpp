@@ -1,4 +1,4 @@
-// Makes a compact map of any map that bevloc reads: bevloc_convert_map town.osm town.bvm
+// Converts a map of any supported format to a compact map: bevloc_convert_map town.osm town.bvm
 #include <filesystem>
 #include <string>
 
@@ -24,7 +24,7 @@ bevloc::Status convert(const std::filesystem::path& in, const std::filesystem::p
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Writes a map, Lanelet2 (.osm) or compact, as a compact map (.bvm)");
+  CLI::App app("Converts a map, Lanelet2 (.osm) or compact, to a compact map (.bvm)");
   std::string in;
   std::string out;
   app.add_option("in", in, "Map to read")->required();

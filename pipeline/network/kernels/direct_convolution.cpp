@@ -12,10 +12,11 @@
 namespace bevloc::nn {
 namespace {
 
+/// A word is four input channels of one pixel, the unit that the strip kernels read.
 constexpr int kWordBytes = 4;
 static_assert(DirectConvolution::kMostPlanes == kWordBytes);
 
-/// int8 inputs are moved up by this to be unsigned.
+/// The kernels read unsigned inputs, so this is added to int8 inputs.
 constexpr int kSignOffset = 128;
 
 int round_up(int number, int unit) {
@@ -34,16 +35,12 @@ std::span<const int8_t> weights_of(const ConvStep& step) {
   return {reinterpret_cast<const int8_t*>(step.weights.bytes.data()), step.weights.bytes.size()};
 }
 
-bool is_8_bit(ElementType type) {
-  return type == ElementType::kUint8 || type == ElementType::kInt8;
-}
-
-/// Real value of one unit of a channel's sum.
+/// Real value of one unit of the channel's sum.
 float unit_of_sum(const ConvStep& step, const Value& input, int channel) {
   return step.weight_scale[static_cast<size_t>(channel)] * input.scale;
 }
 
-/// A channel's bias in units of its sum, less what an input that was moved up adds to the sum.
+/// The initial value of the channel's sum: its bias, minus what kSignOffset adds to the sum.
 int32_t start_of(const ConvStep& step, const Value& input, int channel) {
   int32_t start = 0;
   if (!step.bias.empty()) {
@@ -52,8 +49,8 @@ int32_t start_of(const ConvStep& step, const Value& input, int channel) {
   }
   if (input.type != ElementType::kInt8) return start;
   const std::span<const int8_t> weights = weights_of(step);
-  const auto each = weights.size() / static_cast<size_t>(step.weights.shape[0]);
-  for (const int8_t weight : weights.subspan(static_cast<size_t>(channel) * each, each)) {
+  const auto count = weights.size() / static_cast<size_t>(step.weights.shape[0]);
+  for (const int8_t weight : weights.subspan(static_cast<size_t>(channel) * count, count)) {
     start -= kSignOffset * weight;
   }
   return start;
@@ -75,7 +72,7 @@ Requantizer make_requantizer(const ConvStep& step, const Value& input, const Val
   return requantizer;
 }
 
-/// Four planes to words of four channels.
+/// Interleaves a row of four planes to words of four channels, and XORs each byte with `flip`.
 BEVLOC_TARGET_CLONES void interleave(const uint8_t* const* planes, int cols, uint8_t flip,
                                      uint8_t* line) {
   const uint8_t* const a = planes[0];
@@ -92,8 +89,8 @@ BEVLOC_TARGET_CLONES void interleave(const uint8_t* const* planes, int cols, uin
 
 }  // namespace
 
-/// The padded rows of the input that an output row needs, where each is written once and serves
-/// all output rows that look at it.
+/// The input rows that an output row needs, padded with zeros ("lines"). Each line is written once
+/// and serves all output rows that read it. `scratch` holds the last kernel_rows_ lines.
 class DirectConvolution::Lines {
  public:
   Lines(const DirectConvolution& conv, const std::byte* image, std::byte* scratch)
@@ -101,7 +98,7 @@ class DirectConvolution::Lines {
         image_(reinterpret_cast<const uint8_t*>(image)),
         scratch_(reinterpret_cast<uint8_t*>(scratch)) {}
 
-  /// Those of one output row, top to bottom.
+  /// The lines of one output row, from top to bottom. Call for ascending rows.
   const uint8_t* const* of(int out_row) {
     const int top = out_row * conv_.stride_rows_ - conv_.pad_top_;
     for (int k = 0; k < conv_.kernel_rows_; ++k) lines_[k] = line(top + k);
@@ -128,6 +125,7 @@ class DirectConvolution::Lines {
   }
 
   void write(int row, uint8_t* line) const {
+    // The byte that stands for 0. XOR with 128 adds 128 to an int8, as an unsigned byte.
     const uint8_t zero = conv_.is_signed_ ? kSignOffset : 0;
     std::memset(line, zero, conv_.line_bytes());
     if (row < 0 || row >= conv_.in_rows_) return;
@@ -146,7 +144,7 @@ class DirectConvolution::Lines {
     }
   }
 
-  /// The weights of channels that are not there are 0: what stands for them does not matter.
+  /// Repeats the last plane for missing channels, whose weights are 0.
   void write_planes(int row, uint8_t flip, uint8_t* line) const {
     const uint8_t* planes[kWordBytes];
     for (int c = 0; c < kWordBytes; ++c) {
@@ -160,7 +158,7 @@ class DirectConvolution::Lines {
   const uint8_t* image_;
   uint8_t* scratch_;
   const uint8_t* lines_[kMostRows] = {};
-  int written_until_ = std::numeric_limits<int>::min();
+  int written_until_ = std::numeric_limits<int>::min();  ///< earlier rows are in `scratch`
 };
 
 bool DirectConvolution::can_run(const ConvStep& step, const Value& input,
@@ -202,7 +200,7 @@ DirectConvolution::DirectConvolution(const ConvStep& step, const Value& input, c
   }
 }
 
-/// As few groups as can be, all about as wide.
+/// Divides the output channels into as few groups as possible, of about the same width.
 void DirectConvolution::make_groups(const ConvStep& step, const KernelSet& kernels) {
   const bool has_halves = kernels.kernels[1][1] != nullptr;
   const int unit = has_halves ? kernels.lanes / 2 : kernels.lanes;
@@ -212,7 +210,7 @@ void DirectConvolution::make_groups(const ConvStep& step, const KernelSet& kerne
   const int groups = round_up(units, most) / most;
   int first = 0;
   for (int left = groups; left > 0; --left) {
-    // Whole vectors while there are groups to come; a half one stays for the last.
+    // All groups but the last have whole vectors; only the last may have a half one.
     const int share = (units - first + left - 1) / left;
     const int take = left == 1 ? share : std::min(round_up(share, units_per_vector), most);
     const StripKernel kernel = kernels.kernels[take / units_per_vector][take % units_per_vector];
@@ -222,7 +220,7 @@ void DirectConvolution::make_groups(const ConvStep& step, const KernelSet& kerne
   sums_per_pixel_ = units * unit;
 }
 
-/// [rows][words][lanes][4]; what is beyond the model's channels is 0.
+/// Packs the weights as [rows][words][lanes][4]. Channels beyond those of the model get weight 0.
 DirectConvolution::Group DirectConvolution::make_group(const ConvStep& step, StripKernel kernel,
                                                        int first_channel, int lanes) const {
   assert(kernel != nullptr);
@@ -247,15 +245,16 @@ DirectConvolution::Group DirectConvolution::make_group(const ConvStep& step, Str
   return group;
 }
 
-/// Without padding, and with whole words of unsigned channels, lines are as the input has them.
+/// Whether the kernels can read the input itself: it needs no padding, and its channels are
+/// unsigned and fill whole words.
 bool DirectConvolution::reads_in_place() const {
   return kernel_rows_ == 1 && kernel_cols_ == 1 && pad_top_ == 0 && pad_left_ == 0 &&
          order_ == ChannelOrder::kLast && !is_signed_ && line_channels_ == in_channels_;
 }
 
 size_t DirectConvolution::line_bytes() const {
-  const int seen = (out_cols_ - 1) * stride_cols_ + kernel_cols_;
-  return static_cast<size_t>(std::max(seen, pad_left_ + in_cols_)) * line_channels_;
+  const int read_cols = (out_cols_ - 1) * stride_cols_ + kernel_cols_;
+  return static_cast<size_t>(std::max(read_cols, pad_left_ + in_cols_)) * line_channels_;
 }
 
 size_t DirectConvolution::scratch_bytes() const {

@@ -1,4 +1,4 @@
-// An int8 convolution of channel-last images, row by row, in exact integers.
+// An int8 convolution that sums exact integers, row by row, into a channel-last output.
 #pragma once
 
 #include <cstddef>
@@ -8,41 +8,43 @@
 #include "common/cache_line_allocator.h"
 #include "pipeline/network/kernels/requantize.h"
 #include "pipeline/network/kernels/strip_kernels.h"
-#include "pipeline/network/program.h"
+#include "pipeline/network/model/program.h"
 
 namespace bevloc::nn {
 
-/// How the input lies in memory: [n, h, w, c], or [n, c, h, w] with few channels.
+/// Memory layout of the input: [n, h, w, c], or [n, c, h, w] (with at most kMostPlanes channels).
 enum class ChannelOrder { kLast, kPlanes };
 
-/// Weights are packed when it is made; run() allocates nothing. Thread safe: threads that run at
-/// the same time do different rows, each with a scratchpad of its own.
+/// The constructor packs the weights; run() does not allocate. run() is thread safe if concurrent
+/// calls compute different rows and have separate scratchpads.
 ///
-/// Residual and output are dense [n, h, w, c]. The residual may be the output's own memory
-/// if their elements have one width.
+/// Residual and output are dense [n, h, w, c]. The residual may be the memory of the output if
+/// their elements have the same size.
 class DirectConvolution {
  public:
-  /// Of an input in planes.
+  /// The largest number of channels for ChannelOrder::kPlanes.
   static constexpr int kMostPlanes = 4;
 
-  /// Whether a step is one that this class computes with these kernels: int8 weights that cannot
-  /// saturate, 8-bit input, one group, no dilation.
+  /// Whether this class can compute the step with these kernels. It requires an 8-bit input, one
+  /// group, no dilation, and int8 weights small enough that no intermediate sum saturates.
   static bool can_run(const ConvStep& step, const Value& input, const KernelSet& kernels);
 
+  /// `residual` may be null.
   DirectConvolution(const ConvStep& step, const Value& input, const Value& output,
                     const Value* residual, const KernelSet& kernels,
                     ChannelOrder order = ChannelOrder::kLast);
 
-  /// Rows of all images together.
+  /// Output rows of all images together.
   int rows() const { return images_ * out_rows_; }
   size_t scratch_bytes() const;
 
-  /// Computes the rows [begin, end). The scratchpad is best begun on a cache line.
+  /// Computes the output rows [begin, end). `scratch` has scratch_bytes() bytes and should be
+  /// aligned to a cache line. `residual` may be null.
   void run(const std::byte* input, const std::byte* residual, std::byte* output, int begin, int end,
            std::byte* scratch) const;
 
  private:
-  /// Output channels that one kernel computes together.
+  /// Output channels that one call of a kernel computes.
   struct Group {
     StripKernel kernel = nullptr;
     int first_channel = 0;
@@ -61,7 +63,7 @@ class DirectConvolution {
   int in_rows_ = 0;
   int in_cols_ = 0;
   int in_channels_ = 0;
-  int line_channels_ = 0;  ///< in_channels_, rounded up to whole words
+  int line_channels_ = 0;  ///< in_channels_, rounded up to a multiple of 4
   int out_rows_ = 0;
   int out_cols_ = 0;
   int kernel_rows_ = 0;
@@ -72,7 +74,7 @@ class DirectConvolution {
   int pad_left_ = 0;
   bool is_signed_ = false;
   int sums_per_pixel_ = 0;
-  CacheLineVector<int32_t> starts_;  ///< of the sums, by lane
+  CacheLineVector<int32_t> starts_;  ///< initial values of the sums, by channel
   std::vector<Group> groups_;
   Requantizer requantizer_;
   Requantize requantize_ = nullptr;

@@ -1,5 +1,8 @@
-// The scalar twin of the lanes: eight floats or integers in arrays.
+// The same operations as lanes_avx2.h in plain C++: eight floats or integers in arrays. Include it
+// inside an anonymous namespace.
 
+/// Loads fill the lanes from `count` on with 0, and stores leave their memory unchanged. Stores to
+/// 8-bit elements round to nearest even and saturate.
 struct Lanes {
   static constexpr int kLanes = 8;
   template <typename Element>
@@ -48,7 +51,7 @@ struct Lanes {
   }
   template <typename Output>
   static void store(const Floats& lanes, Output* to, int count) {
-    // Adding and taking away 1.5 * 2^23 rounds a small float to the nearest even integer.
+    // Adding and subtracting 1.5 * 2^23 rounds a small float to the nearest even integer.
     constexpr float kRounder = 12582912.0F;
     constexpr float kLowest = std::numeric_limits<Output>::min();
     constexpr float kHighest = std::numeric_limits<Output>::max();

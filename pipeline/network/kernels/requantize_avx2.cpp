@@ -1,3 +1,4 @@
+// Requantization with AVX2.
 #include "pipeline/network/kernels/requantize.h"
 
 #ifdef __x86_64__

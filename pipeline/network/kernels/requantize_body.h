@@ -1,16 +1,17 @@
-// One row's requantization: included by each instruction set's file after it has chosen that set,
-// with a struct `Lanes` of eight floats or integers and operations on them.
+// Requantizes one row of pixels. The source file of each instruction set includes it inside an
+// anonymous namespace, after selecting that set and defining a struct `Lanes` with operations on
+// eight floats or integers.
 
-/// The type of a residual that is not there.
+/// Stands for the residual's element type where there is no residual.
 struct NoResidual {};
 
-/// The channels [channel, channel + kLanes) of all pixels, or as many as there are.
+/// Requantizes the channels [channel, channel + count) of all pixels. `count` is at most kLanes.
 template <typename Output, typename Residual>
 [[gnu::always_inline]] inline void requantize_lanes(const Requantizer& r, const RequantizedRow& row,
                                                     int channel, int count) {
   const auto scale = Lanes::load(r.scale.data() + channel, count);
   const auto residual_scale = Lanes::all(r.residual_scale);
-  // Cutting off at an unsigned type's range is a ReLU already.
+  // Saturating to the range of an unsigned type already removes negative values.
   const bool is_cut = r.relu && !std::is_unsigned_v<Output>;
   const auto* residual = reinterpret_cast<const Residual*>(row.residual) + channel;
   auto* output = reinterpret_cast<Output*>(row.output) + channel;

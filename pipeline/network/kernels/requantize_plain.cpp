@@ -1,4 +1,4 @@
-// The scalar twin, and the choice between the two.
+// Requantization in plain C++, and the choice between it and AVX2.
 #include <algorithm>
 #include <array>
 #include <limits>

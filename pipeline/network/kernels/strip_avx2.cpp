@@ -1,5 +1,5 @@
-// Kernels for AVX2. Its products of bytes are summed in pairs of 16 bits, which saturate unless the
-// weights are small.
+// Strip kernels for AVX2. AVX2 sums pairs of products in 16 bits, which saturate if the weights are
+// too large.
 #include "pipeline/network/kernels/strip_kernels_by_isa.h"
 
 #ifdef __x86_64__
@@ -12,26 +12,12 @@
 namespace bevloc::nn {
 namespace {
 
-struct Isa {
-  static constexpr int kLanes = 8;
-  using Vector = __m256i;
-  using HalfVector = __m128i;
+#include "pipeline/network/kernels/strip_vectors_256.h"
 
-  static Vector load(const int32_t* from) {
-    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
-  }
-  static Vector broadcast(const uint8_t* word) {
-    int32_t bytes = 0;
-    std::memcpy(&bytes, word, sizeof(bytes));
-    return _mm256_set1_epi32(bytes);
-  }
+struct Isa : Vectors256 {
   static Vector dot(Vector sum, Vector input, const int8_t* weights) {
-    const Vector pairs =
-        _mm256_maddubs_epi16(input, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(weights)));
+    const Vector pairs = _mm256_maddubs_epi16(input, load(weights));
     return _mm256_add_epi32(sum, _mm256_madd_epi16(pairs, _mm256_set1_epi16(1)));
-  }
-  static void store(int32_t* sums, Vector sum) {
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(sums), sum);
   }
 };
 

@@ -1,4 +1,4 @@
-// Kernels for AVX512-VNNI: exact products of four pairs of bytes in each lane.
+// Strip kernels for AVX512-VNNI, which sums four exact products of bytes per lane.
 #include "pipeline/network/kernels/strip_kernels_by_isa.h"
 
 #ifdef __x86_64__

@@ -1,10 +1,13 @@
-// A strip's sums in registers: included by each instruction set's file after it has chosen that
-// set, with a struct `Isa` of vectors and operations on them.
+// Computes the sums of a strip, tile by tile. The source file of each instruction set includes it
+// inside an anonymous namespace, after selecting that set and defining a struct `Isa` with vector
+// types and operations.
 //
-// A tile is a few pixels by a whole group of channels. Each word of the input is broadcast once and
-// meets the weights of all channels; each vector of weights is loaded once and meets all pixels.
+// A tile has a few pixels and all channels of a group; its sums stay in registers. Each word of the
+// input is broadcast once and used for all channels. Each vector of weights is loaded once and used
+// for all pixels.
 
-/// Half: whether a vector of half the lanes follows the whole ones.
+/// Computes the tile of kPixels pixels from pixel `first` on. kHalf: a vector of half the lanes
+/// follows the kVectors whole ones.
 template <typename Isa, int kVectors, bool kHalf, int kPixels>
 inline void sum_tile(const KernelStrip& strip, int first) {
   constexpr int kLanes = kVectors * Isa::kLanes + (kHalf ? Isa::kLanes / 2 : 0);
@@ -42,7 +45,7 @@ inline void sum_tile(const KernelStrip& strip, int first) {
   }
 }
 
-/// Tiles of kPixels, then of half as many, and so on.
+/// Computes the pixels from `first` on: in tiles of kPixels, then of half as many, and so on.
 template <typename Isa, int kVectors, bool kHalf, int kPixels>
 inline void sum_from(const KernelStrip& strip, int first) {
   for (; first + kPixels <= strip.pixels; first += kPixels) {

@@ -21,6 +21,7 @@ std::vector<const KernelSet*> runnable_sets() {
   return sets;
 }
 
+/// Whether the cap allows the set.
 bool is_under([[maybe_unused]] const KernelSet& set, [[maybe_unused]] IsaCap cap) {
 #ifdef __x86_64__
   if (&set == &kAvx512VnniKernels) return cap == IsaCap::kBest || cap == IsaCap::kAvx512Vnni;

@@ -1,49 +1,51 @@
-// The innermost loops of an int8 convolution, once for each instruction set.
+// The innermost loops of an int8 convolution, one set of kernels per instruction set.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-#include "pipeline/network/cpu_isa.h"
+#include "pipeline/network/engines/cpu_isa.h"
 
 namespace bevloc::nn {
 
-/// One row of one group of output channels: what a kernel reads and writes.
+/// Input and output of a kernel: one output row of one group of output channels. A kernel computes
 ///   sums[p][lane] = start[lane]
-///       + sum over rows r, bytes b of lines[r][p * pixel_step + b] * weights[r][b][lane]
-/// where weights lie as [rows][words][lanes][4]: four bytes of input (a word) meet four weights.
+///       + sum over rows r and bytes b of lines[r][p * pixel_step + b] * weights[r][b][lane].
+/// Weights are stored as [rows][words][lanes][4], because an instruction multiplies a word (four
+/// bytes of input) by four weights per lane.
 struct KernelStrip {
-  const uint8_t* const* lines = nullptr;  ///< `rows` rows of the input, channel last, padded
+  const uint8_t* const* lines = nullptr;  ///< `rows` padded input rows, channel last
   int rows = 0;
-  int words = 0;                  ///< a pixel's input in each line, in units of four bytes
-  std::ptrdiff_t pixel_step = 0;  ///< bytes from one pixel's input to the next one's
+  int words = 0;                  ///< words of each line that contribute to one pixel
+  std::ptrdiff_t pixel_step = 0;  ///< bytes in a line from one pixel's input to the next pixel's
   const int8_t* weights = nullptr;
-  const int32_t* start = nullptr;
+  const int32_t* start = nullptr;  ///< initial value of the sum, by lane
   int pixels = 0;
   int32_t* sums = nullptr;
-  std::ptrdiff_t sums_step = 0;  ///< elements from one pixel's sums to the next one's
+  std::ptrdiff_t sums_step = 0;  ///< elements in `sums` from one pixel to the next
 };
 
 using StripKernel = void (*)(const KernelStrip&);
 
-/// The kernels of one instruction set. A group of output channels is as wide as one to three
-/// vectors; `narrow` vectors are there for what is left over, and null where all are alike.
+/// The kernels of one instruction set. Each kernel computes a group of output channels of a certain
+/// width.
 struct KernelSet {
   static constexpr int kMostVectors = 3;
 
   const char* name = "";
-  int lanes = 0;  ///< of a vector
-  /// By number of vectors, from 1 on; [n][1] has one vector of half the lanes besides.
+  int lanes = 0;  ///< channels per vector
+  /// kernels[n][0] computes n whole vectors, kernels[n][1] also a vector of half the lanes. Null
+  /// where there is no such kernel.
   StripKernel kernels[kMostVectors + 1][2] = {};
-  /// The largest weight with which no intermediate sum saturates.
+  /// The largest absolute weight with which no intermediate sum saturates.
   int largest_weight = 127;
 };
 
-/// Every set that this CPU can run, the fastest first; the last one is plain C++.
+/// All sets that this CPU supports, the fastest first. The last one is plain C++.
 std::span<const KernelSet* const> kernel_sets();
 
-/// The fastest one under the cap.
+/// The fastest set that the cap allows.
 const KernelSet& kernel_set(IsaCap cap);
 
 }  // namespace bevloc::nn

@@ -1,4 +1,4 @@
-// The kernel sets, one for each file.
+// Declares the kernel sets. Each is defined in a file of its own.
 #pragma once
 
 #include "pipeline/network/kernels/strip_kernels.h"

@@ -1,4 +1,4 @@
-// The scalar twin of the kernels: what all the others must equal.
+// Strip kernels in plain C++: the reference that all other kernels must equal.
 #include <algorithm>
 
 #include "pipeline/network/kernels/strip_kernels_by_isa.h"

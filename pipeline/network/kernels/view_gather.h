@@ -1,22 +1,22 @@
-// The view transform's inner loops, once for each instruction set.
+// The inner loops of the view transform, one implementation per instruction set.
 #pragma once
 
 #include <cstddef>
 
-#include "pipeline/network/graph.h"
+#include "pipeline/network/model/graph.h"
 
 namespace bevloc::nn {
 
 class ViewEntries;
 
-/// See gather_view() in view_transform.h.
+/// Computes what gather_view() in view_transform.h describes.
 using Gather = void (*)(const ViewEntries& entries, const std::byte* features, int channels,
                         float scale, int begin, int end, std::byte* bev);
 
-/// The fastest that this CPU can run.
+/// The fastest function that this CPU supports.
 Gather gather_for(ElementType input, ElementType output);
 
-/// By instruction set; the AVX2 one is null elsewhere.
+/// The function of one instruction set. gather_avx2() returns null on other architectures.
 Gather gather_plain(ElementType input, ElementType output);
 Gather gather_avx2(ElementType input, ElementType output);
 

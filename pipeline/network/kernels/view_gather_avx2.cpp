@@ -1,5 +1,6 @@
+// The view transform with AVX2.
 #include "pipeline/network/kernels/view_gather.h"
-#include "pipeline/network/view_transform.h"
+#include "pipeline/network/view/view_transform.h"
 
 #ifdef __x86_64__
 #include <cstring>

@@ -1,7 +1,9 @@
-// The weighted sums of one BEV cell after the other: included by each instruction set's file after
-// it has chosen that set, with a struct `Lanes` of eight floats and operations on them.
+// Computes the weighted sums of one BEV cell after the other. The source file of each instruction
+// set includes it inside an anonymous namespace, after selecting that set and defining a struct
+// `Lanes` with operations on eight floats.
 
-/// The channels [first, first + kVectors * kLanes), or as many as `count`: in registers.
+/// Computes the channels from `first` on of one cell, with the sums in kVectors registers. Each
+/// register holds `count` channels.
 template <int kVectors, typename Input, typename Output>
 [[gnu::always_inline]] inline void gather_channels(const ViewEntries& entries,
                                                    const Input* features, int channels, int cell,
@@ -30,7 +32,7 @@ template <int kVectors, typename Input, typename Output>
 template <typename Input, typename Output>
 void gather(const ViewEntries& entries, const std::byte* features, int channels, float scale,
             int begin, int end, std::byte* bev) {
-  constexpr int kMany = 6;
+  constexpr int kMany = 6;  // vectors of sums that fit into registers
   const auto* from = reinterpret_cast<const Input*>(features);
   auto* to = reinterpret_cast<Output*>(bev);
   for (int cell = begin; cell < end; ++cell) {

@@ -1,10 +1,10 @@
-// The scalar twin, and the choice between the two.
+// The view transform in plain C++, and the choice between it and AVX2.
 #include <algorithm>
 #include <array>
 #include <limits>
 
 #include "pipeline/network/kernels/view_gather.h"
-#include "pipeline/network/view_transform.h"
+#include "pipeline/network/view/view_transform.h"
 
 namespace bevloc::nn {
 namespace {

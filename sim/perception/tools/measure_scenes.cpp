@@ -1,5 +1,5 @@
-// Measures the scenes that pose solvers are judged on: how much of the map the perceived masks
-// cover at each level, how long a scene takes, and, if wanted, pictures of the first ones.
+// bevloc_measure_scenes: measures the matching scenes. Prints the IoU of the perceived masks at
+// each corruption level and the time per scene; writes images of the first scenes on request.
 #include <array>
 #include <chrono>
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace {
 struct Options {
   bool tuning = false;
   int scenes = 200;
-  int pictures = 0;
+  int images = 0;
   std::string out = "scenes";
 };
 
@@ -83,42 +83,43 @@ void measure_time(const Options& options, uint64_t seed_base) {
               1e3 * making / options.scenes, 1e3 * computing / options.scenes);
 }
 
-/// Channels as blue, green and red, dark where there is nothing.
+/// Shows the three channels as blue, green and red on black.
 template <typename Value>
-cv::Mat3b picture_of(const std::vector<Value>& planes, double scale) {
+cv::Mat3b image_of(const std::vector<Value>& planes, double scale) {
   std::array<cv::Mat1b, kRasterChannels> channels;
   for (size_t k = 0; k < channels.size(); ++k) {
     const cv::Mat_<Value> plane(kRasterGrid.rows, kRasterGrid.cols,
                                 const_cast<Value*>(planes.data()) + k * kRasterGrid.cells());
     plane.convertTo(channels[k], CV_8U, scale);
   }
-  cv::Mat3b picture;
-  cv::merge(channels.data(), channels.size(), picture);
-  return picture;
+  cv::Mat3b image;
+  cv::merge(channels.data(), channels.size(), image);
+  return image;
 }
 
-/// One picture per scene: truth, the perceived masks from mild to hard, the map at the prior pose.
-void write_pictures(const Options& options, uint64_t seed_base) {
+/// Writes one image per scene: the map at the true pose, the perceived masks from mild to hard, and
+/// the map at the prior.
+void write_images(const Options& options, uint64_t seed_base) {
   std::filesystem::create_directories(options.out);
   SceneSampler sampler(seed_base);
   MatchingScene scene;
-  for (int i = 0; i < options.pictures; ++i) {
-    std::vector<cv::Mat> panels;
+  for (int i = 0; i < options.images; ++i) {
+    std::vector<cv::Mat> parts;
     for (const auto level :
          {CorruptionLevel::kMild, CorruptionLevel::kPaper, CorruptionLevel::kHard}) {
       sampler.make(static_cast<uint64_t>(i), level, scene);
-      if (panels.empty()) panels.push_back(picture_of(scene.raster_truth, 1.0));
-      panels.push_back(picture_of(scene.perceived, 255.0));
+      if (parts.empty()) parts.push_back(image_of(scene.raster_truth, 1.0));
+      parts.push_back(image_of(scene.perceived, 255.0));
     }
-    panels.push_back(picture_of(scene.raster_prior, 1.0));
-    for (cv::Mat& panel : panels) {
-      cv::copyMakeBorder(panel, panel, 2, 2, 2, 2, cv::BORDER_CONSTANT, cv::Scalar::all(128));
+    parts.push_back(image_of(scene.raster_prior, 1.0));
+    for (cv::Mat& part : parts) {
+      cv::copyMakeBorder(part, part, 2, 2, 2, 2, cv::BORDER_CONSTANT, cv::Scalar::all(128));
     }
-    cv::Mat sheet;
-    cv::hconcat(panels, sheet);
+    cv::Mat row;
+    cv::hconcat(parts, row);
     const std::string file =
         options.out + "/" + std::to_string(i) + "_" + name(scene.kind) + ".png";
-    cv::imwrite(file, sheet);
+    cv::imwrite(file, row);
   }
 }
 
@@ -127,11 +128,13 @@ void write_pictures(const Options& options, uint64_t seed_base) {
 
 int main(int argc, char** argv) {
   bevloc::sim::Options options;
-  CLI::App app("Measures the scenes that pose solvers are judged on");
-  app.add_flag("--tuning", options.tuning, "use the tuning seeds, not the evaluation seeds");
-  app.add_option("--scenes", options.scenes, "scenes to measure")->check(CLI::NonNegativeNumber);
-  app.add_option("--pictures", options.pictures, "scenes to draw")->check(CLI::NonNegativeNumber);
-  app.add_option("--out", options.out, "folder for the pictures");
+  CLI::App app("Measures the scenes on which pose solvers are evaluated");
+  app.add_flag("--tuning", options.tuning, "Use the tuning seeds instead of the evaluation seeds");
+  app.add_option("--scenes", options.scenes, "Number of scenes to measure")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--pictures", options.images, "Number of scenes to draw as images")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--out", options.out, "Folder for the images");
   CLI11_PARSE(app, argc, argv);
   const uint64_t seed_base =
       options.tuning ? bevloc::sim::kTuningSeedBase : bevloc::sim::kEvaluationSeedBase;
@@ -139,5 +142,5 @@ int main(int argc, char** argv) {
     bevloc::sim::measure_overlap(options, seed_base);
     bevloc::sim::measure_time(options, seed_base);
   }
-  bevloc::sim::write_pictures(options, seed_base);
+  bevloc::sim::write_images(options, seed_base);
 }

@@ -1,7 +1,7 @@
-"""Times bevloc and its peers by turns and prints one table of ratios (tests/bench/peers/run).
+"""Times bevloc and its peers alternately and prints one table of ratios (tests/bench/peers/run).
 
-Each round runs bevloc, onnxruntime and PyTorch once, each in a process of its own, for each number
-of threads. A cell is the median over the rounds of the medians within each.
+Each round runs bevloc, onnxruntime and PyTorch once per number of threads, each in its own process.
+A cell is the median over the rounds of the medians within each round.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _ALL_CAMERAS = 0x3F
 
 @dataclass
 class Comparison:
-    """Of one thing that both do, by number of threads: the medians of the rounds, ms."""
+    """The medians of the rounds in ms, by number of threads, for one piece of work."""
 
     title: str
     ours: dict[int, list[float]] = field(default_factory=dict)
@@ -46,7 +46,7 @@ class Comparison:
 
 
 def write_inputs(folder: Path) -> None:
-    """A frame of the simulator (tests/golden) for onnxruntime."""
+    """Writes a simulated frame (tests/golden) for onnxruntime."""
     index, weight = view_table(_ALL_CAMERAS)
     images = np.load(_GOLDEN / "images.npy")[0].astype(np.int16) - IMAGE_OFFSET
     inputs = {
@@ -60,24 +60,24 @@ def write_inputs(folder: Path) -> None:
 
 
 def run_bevloc(config: Path, folder: Path, threads: int, frames: int) -> dict:
-    """What `bevloc bench --json` writes."""
+    """Returns what `bevloc bench --json` writes."""
     result = folder / "bevloc.json"
-    command = [bevloc_program(), "bench", "--config", config, "--frames", str(frames)]
-    subprocess.run(
-        [*command, "--threads", str(threads), "--json", result], check=True, stdout=subprocess.PIPE
-    )
+    command: list[str | Path] = [bevloc_program(), "bench", "--config", config, "--json", result]
+    command += ["--frames", str(frames), "--threads", str(threads)]
+    subprocess.run(command, check=True, stdout=subprocess.PIPE)
     return json.loads(result.read_text())
 
 
 def run_onnxruntime(model: Path, folder: Path, threads: int, runs: int) -> float:
-    command = ["node", _HERE / "onnxruntime.cjs", model, folder, str(threads), str(runs)]
+    script = _HERE / "onnxruntime.cjs"
+    command: list[str | Path] = ["node", script, model, folder, str(threads), str(runs)]
     environment = os.environ | {"NODE_PATH": str(modules_folder())}
     done = subprocess.run(command, check=True, stdout=subprocess.PIPE, env=environment)
     return statistics.median(json.loads(done.stdout))
 
 
 def run_torch(threads: int, runs: int) -> dict[str, float]:
-    """The median of each part."""
+    """Returns the median time of each part."""
     command = [sys.executable, "-m", "tests.bench.peers.torch_pipeline"]
     done = subprocess.run(
         [*command, "--threads", str(threads), "--runs", str(runs)],
@@ -89,13 +89,13 @@ def run_torch(threads: int, runs: int) -> dict[str, float]:
 
 
 def network_ms(bench: dict) -> float:
-    """Both branches that the pose needs."""
+    """Median time of the image and the map branch together."""
     stages = {stage["name"]: stage["p50_ms"] for stage in bench["stages"]}
     return stages["network-images"] + stages["network-map"]
 
 
 def configuration_with(model: Path, folder: Path) -> Path:
-    """The demo's configuration with another model."""
+    """Writes the demo's configuration with another model."""
     demo = ROOT / "config/demo.yaml"
     text = demo.read_text().replace("rig_demo.yaml", str(demo.parent / "rig_demo.yaml"))
     config = folder / "bench.yaml"
@@ -104,10 +104,10 @@ def configuration_with(model: Path, folder: Path) -> Path:
 
 
 def compare(model: Path, rounds: int, frames: int, thread_counts: list[int]) -> list[Comparison]:
-    onnxruntime = Comparison("network, onnxruntime: the same int8 file")
-    torch_network = Comparison("network, PyTorch float32")
-    torch_frame = Comparison("six decoded pictures to pose, PyTorch float32")
-    torch_part = Comparison("the same, PyTorch without its raster (NumPy), bevloc with")
+    onnxruntime = Comparison("network: onnxruntime, same int8 file")
+    torch_network = Comparison("network: PyTorch, float32")
+    torch_frame = Comparison("decoded images to pose: PyTorch, float32")
+    torch_part = Comparison("the same, PyTorch without its NumPy raster, bevloc with raster")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_inputs(folder)
@@ -127,11 +127,11 @@ def compare(model: Path, rounds: int, frames: int, thread_counts: list[int]) -> 
 
 
 def table_of(comparisons: list[Comparison], thread_counts: list[int]) -> str:
-    """Markdown: how many times as long the peer takes."""
-    headings = ["what, and who else does it"]
+    """Markdown table; "peer / bevloc" is how many times as long the peer takes."""
+    headings = ["work: peer"]
     for threads in thread_counts:
         unit = "thread" if threads == 1 else "threads"
-        headings += [f"bevloc, ms, {threads} {unit}", "peer, ms", "peer : bevloc"]
+        headings += [f"bevloc, ms, {threads} {unit}", "peer, ms", "peer / bevloc"]
     lines = [headings, ["---", *["---:"] * (len(headings) - 1)]]
     for comparison in comparisons:
         cells = [comparison.title]

@@ -1,7 +1,8 @@
 // Times a model file on onnxruntime:
 //   NODE_PATH=... node onnxruntime.cjs MODEL FOLDER THREADS RUNS
-// Reads FOLDER/<input>.bin, the raw elements of each input, and prints the milliseconds of each run
-// of what the pose needs (both features, not the mask) as a JSON list. One untimed run comes first.
+// Reads FOLDER/<input>.bin, which hold the raw elements of each input. Computes both features but not
+// the mask, as the pose needs, and prints the milliseconds of each run as a JSON list. The first run
+// is not timed.
 'use strict';
 const fs = require('fs');
 const path = require('path');

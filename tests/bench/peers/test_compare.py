@@ -1,4 +1,4 @@
-"""How the peers' table is made of times, and where it is written."""
+"""Tests the table of the peers and the tables of docs/performance.md."""
 
 import tempfile
 import unittest
@@ -11,7 +11,7 @@ from training.errors import MarksError
 
 
 class ComparisonTest(unittest.TestCase):
-    def test_ratio_is_that_of_the_medians(self):
+    def test_the_ratio_is_the_ratio_of_the_medians(self):
         comparison = Comparison("network")
         for ours_ms, theirs_ms in ((2.0, 9.0), (3.0, 6.0), (100.0, 5.0)):
             comparison.add(1, ours_ms, theirs_ms)
@@ -41,7 +41,7 @@ class DocumentTest(unittest.TestCase):
                     page.read_text(),
                 )
 
-    def test_refuses_a_table_that_has_no_place(self):
+    def test_a_table_without_marks_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             page = Path(folder) / "performance.md"
             page.write_text("nothing")
@@ -51,7 +51,7 @@ class DocumentTest(unittest.TestCase):
 
 
 class SweepTest(unittest.TestCase):
-    def test_columns_put_what_was_varied_first(self):
+    def test_varied_columns_come_first(self):
         rows = [{"crop_ms": 0.01234567, "elements": 1200.0, "map_mib": 3.0, "road_km": 10.0}]
         columns = columns_of(rows)
         self.assertEqual(columns, ["elements", "road_km", "crop_ms", "map_mib"])

@@ -1,10 +1,11 @@
-"""Times the PyTorch float reference: six decoded pictures and a map to a pose.
+"""Times the PyTorch float reference, from six decoded images and a map to a pose.
 
     /usr/bin/python3 -m tests.bench.peers.torch_pipeline --threads 1 --runs 20
 
-prints the milliseconds of each run by part, as JSON. Network and solver are training's own
-(training/models, training/solver.py, whose sums of moved features are the run time's), so is the
-raster (training/nuscenes/raster.py). Weights do not matter to the time: they are random.
+prints the milliseconds of each part of each run as JSON. Network (training/models), raster
+(training/nuscenes/raster.py) and solver (training/solver.py) are those of training; the solver's
+sums of moved features are computed by the daemon's C++ code. The weights are random, because they
+do not affect the time.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from torch import Tensor
 from training.data import view_table
 from training.model import IMAGE_COLS, IMAGE_ROWS, real_images, real_raster
 from training.models.config import PRESETS
+from training.models.layers import channels_last
 from training.models.network import BevNetwork
 from training.nuscenes import raster
 from training.solver import Solution
@@ -33,12 +35,12 @@ _RIG = Path(__file__).resolve().parents[3] / "config/rig_demo.yaml"
 _HORIZON_ROW = 14.0  # kNetworkHorizonRow
 _ALL_CAMERAS = 0x3F
 _MS_PER_S = 1e3
-_SHRINK = 2  # camera pixels of one network pixel, along each axis
+_SHRINK = 2  # camera pixels per network pixel, along each axis
 
 
 def sampling_grid(camera: dict) -> Tensor:
-    """Where the network's pixels lie in a camera's picture, as grid_sample() takes it, [rows, cols,
-    2]; for a level camera (the times do not depend on where)."""
+    """The positions of the network's pixels in a camera's image for grid_sample(),
+    [rows, cols, 2]. It assumes a level camera; the times do not depend on this."""
     width, height = camera["image_size_px"]
     k1, k2 = camera["distortion"][:2]
     scale = IMAGE_COLS / width
@@ -53,8 +55,8 @@ def sampling_grid(camera: dict) -> Tensor:
 
 
 def street() -> list[np.ndarray]:
-    """Segments of each class as a street has them: three dividers, a crossing, four boundaries,
-    points every 4 m."""
+    """The segments of each class on a typical street: three dividers, a crossing and four
+    boundaries, with a point every 4 m."""
     stations = np.arange(-32.0, 32.0, 4.0)
 
     def line(y: float) -> np.ndarray:
@@ -68,26 +70,26 @@ def street() -> list[np.ndarray]:
 
 
 class Pipeline:
-    """One frame, part by part; each keeps its result for the next."""
+    """Processes one frameset, part by part. Each part stores its result for the next one."""
 
     def __init__(self) -> None:
         torch.manual_seed(1)
         cameras = yaml.safe_load(_RIG.read_text())["cameras"].values()
         self.grid = torch.stack([sampling_grid(camera) for camera in cameras])
         width, height = next(iter(cameras))["image_size_px"]
-        self.pictures = [
+        self.camera_images = [
             torch.randint(256, (height, width, 3), dtype=torch.uint8) for _ in range(len(cameras))
         ]
         index, weight = view_table(_ALL_CAMERAS)
         self.table = index[None], weight[None]
         self.segments = street()
-        self.net = BevNetwork(PRESETS["nano"]).eval().to(memory_format=torch.channels_last)
+        self.net = channels_last(BevNetwork(PRESETS["nano"]).eval())
 
     def images(self) -> None:
-        pictures = torch.stack(self.pictures).permute(0, 3, 1, 2).float()
-        shrunk = functional.avg_pool2d(pictures, _SHRINK)
-        looked = functional.grid_sample(shrunk, self.grid, align_corners=False)
-        self.image_input = real_images(looked)[None]
+        images = torch.stack(self.camera_images).permute(0, 3, 1, 2).float()
+        shrunk = functional.avg_pool2d(images, _SHRINK)
+        sampled = functional.grid_sample(shrunk, self.grid, align_corners=False)
+        self.image_input = real_images(sampled)[None]
 
     def raster(self) -> None:
         drawn = raster.draw(self.segments, raster.DEFAULT_LINE_WIDTH_CELLS)
@@ -104,7 +106,7 @@ class Pipeline:
 
 @torch.no_grad()
 def times_ms(runs: int) -> dict[str, list[float]]:
-    """Of each part, after one untimed frame."""
+    """The times of each part, after one untimed run."""
     pipeline = Pipeline()
     times: dict[str, list[float]] = {part: [] for part in PARTS}
     for run in range(runs + 1):

@@ -1,4 +1,4 @@
-// Draws what the lab's cameras will show of a drive, and writes down its truth.
+// drive_pictures: renders the images that the lab's cameras show of a drive, and writes its truth.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,14 +8,14 @@
 #include <fmt/format.h>
 
 #include "common/files.h"
-#include "firmware/simulation/simulated_drive.h"
+#include "evaluation/drive/simulated_drive.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_binary.h"
 
 namespace {
 
 using namespace bevloc;
-using namespace bevloc::firmware;
+using namespace bevloc::evaluation;
 
 constexpr double kTruthPeriod_s = 0.01;
 
@@ -27,7 +27,7 @@ struct Yuv {
   double y, u, v;
 };
 
-/// BT.601, limited range: what UVC cameras send as YUYV.
+/// BT.601, limited range, as UVC cameras send YUYV.
 Yuv yuv_of(const uint8_t* rgb) {
   const double r = rgb[0], g = rgb[1], b = rgb[2];
   return {16.0 + 0.256788 * r + 0.504129 * g + 0.097906 * b,
@@ -35,7 +35,7 @@ Yuv yuv_of(const uint8_t* rgb) {
           128.0 + 0.439216 * r - 0.367788 * g - 0.071427 * b};
 }
 
-/// Two pixels share one colour: Y0 U Y1 V. The width is even.
+/// Two pixels share one colour: Y0 U Y1 V. The width must be even.
 std::string yuyv_from_rgb(const RgbView& image) {
   std::string bytes;
   bytes.reserve(2 * static_cast<size_t>(image.width) * image.height);
@@ -64,9 +64,9 @@ std::string truth_csv(const sim::Drive& drive, double duration_s) {
   return csv;
 }
 
-/// The pictures of one camera over the whole drive, on a clock of its own.
-Status draw_camera(const Config& config, const Rig& rig, const SimulatedDrive& drive, int camera,
-                   const std::filesystem::path& folder) {
+/// Renders the images of one camera over the whole drive, on its own clock.
+Status draw_camera(const DriveConfig& config, const Rig& rig, const SimulatedDrive& drive,
+                   int camera, const std::filesystem::path& folder) {
   drivers::VirtualClock clock;
   auto cameras = drive.make_cameras(config, rig, clock, clock.now());
   drivers::Camera& drawn = *cameras[camera];
@@ -88,7 +88,7 @@ Status draw_camera(const Config& config, const Rig& rig, const SimulatedDrive& d
 }
 
 Status draw(const std::string& config_file, const std::filesystem::path& folder) {
-  const auto config = load_config(config_file);
+  const auto config = load_drive_config(config_file);
   if (!config) return tl::unexpected(config.error());
   if (!config->simulation) {
     return fail("{}: found no section simulation, wanted a drive", config_file);
@@ -112,12 +112,12 @@ Status draw(const std::string& config_file, const std::filesystem::path& folder)
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Draws what six cameras see of a drive: FOLDER/<camera>/<number>.yuyv, one for each "
-      "exposure, truth.csv (the pose every 10 ms) and map.bvm (the map that it drives on)");
+      "Renders what six cameras see of a drive: FOLDER/<camera>/<number>.yuyv, one per exposure, "
+      "truth.csv (the pose every 10 ms) and map.bvm (the map of the drive)");
   std::string config_file;
   std::string folder;
   app.add_option("config", config_file, "Configuration with a section `simulation`")->required();
-  app.add_option("folder", folder, "Where to write")->required();
+  app.add_option("folder", folder, "Output folder")->required();
   CLI11_PARSE(app, argc, argv);
   const Status status = draw(config_file, folder);
   if (status) return 0;

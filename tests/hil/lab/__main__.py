@@ -1,4 +1,4 @@
-"""script/hil: boots the lab once and plays scenarios in it, one after the other."""
+"""The program behind script/hil: boots the guest once and plays scenarios in it."""
 
 import argparse
 import pathlib
@@ -13,7 +13,7 @@ from tests.hil.lab.scenarios import SCENARIOS
 
 def main() -> int:
     arguments = _arguments()
-    # So that an interrupted run ends its processes.
+    # An interrupted run must stop its processes too.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     folders = Folders(*(getattr(arguments, f).resolve() for f in Folders.__dataclass_fields__))
     folders.results.mkdir(parents=True, exist_ok=True)
@@ -39,10 +39,10 @@ def _arguments() -> argparse.Namespace:
         "--driver",
         choices=("v4l2", "libcamera", "none"),
         default="v4l2",
-        help="by what the daemon reads the emulated cameras; none: it has no camera",
+        help="the daemon's driver for the emulated cameras; none: no cameras",
     )
     parser.add_argument(
-        "--keep", action="store_true", help="afterwards take commands (see docs/lab.md)"
+        "--keep", action="store_true", help="keep the guest and read commands (docs/lab.md)"
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"{', '.join(SCENARIOS)}")
     arguments = parser.parse_args()
@@ -50,7 +50,7 @@ def _arguments() -> argparse.Namespace:
         if name not in SCENARIOS:
             parser.error(f"no scenario '{name}', wanted one of {', '.join(SCENARIOS)}")
         if SCENARIOS[name].needs_usb and arguments.driver == "none":
-            parser.error(f"'{name}' needs cameras")
+            parser.error(f"'{name}' needs cameras, found --driver none")
     return arguments
 
 
@@ -63,7 +63,7 @@ def _play(bench: Bench, name: str) -> Outcome:
 
 
 def _talk(bench: Bench) -> None:
-    """Lines from the terminal: shell for the guest, or `@` and a command for the cameras."""
+    """Runs lines from the terminal: a script for the guest, or `@` and a camera command."""
     for line in sys.stdin:
         try:
             if line.startswith("@"):

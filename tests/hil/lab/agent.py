@@ -1,23 +1,23 @@
-"""The host's end of the guest's agent (tests/hil/guest/agent)."""
+"""The host's side of the agent that runs scripts in the guest (tests/hil/guest/agent)."""
 
 import dataclasses
 import socket
 import time
 
 
-# Emulation on a busy machine: only a guest that hangs takes so long.
+# Generous for emulation on a busy host: only a guest that hangs exceeds it.
 TIMEOUT_S = 600.0
 
 
 class LabError(Exception):
-    """The lab itself failed: nothing is said about what was to be tested."""
+    """The lab itself failed, so the test says nothing about the daemon."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Reply:
     status: int
     output: str
-    uptime_s: float  # of the guest, when the script had ended
+    uptime_s: float  # of the guest, at the end of the script
 
 
 class Agent:
@@ -38,10 +38,10 @@ class Agent:
         return Reply(int(status), output, float(uptime_s))
 
     def check(self, script: str, timeout_s: float = TIMEOUT_S) -> str:
-        """The output of a script that must succeed."""
+        """Runs a script that must succeed and returns its output."""
         reply = self.run(script, timeout_s)
         if reply.status != 0:
-            raise LabError(f"in the guest: status {reply.status} of\n{script}\n{reply.output}")
+            raise LabError(f"guest: status {reply.status}, wanted 0, of\n{script}\n{reply.output}")
         return reply.output
 
     def _read_line(self, timeout_s: float) -> str:
@@ -63,14 +63,14 @@ class Agent:
         try:
             chunk = self._socket.recv(65536)
         except TimeoutError:
-            raise LabError("the guest did not answer in time") from None
+            raise LabError("guest: no answer in time; see console.log") from None
         if not chunk:
-            raise LabError("the guest is gone")
+            raise LabError("guest: closed the connection; see console.log and qemu.log")
         self._received += chunk
 
 
 def connect_unix(path: str, timeout_s: float = 20.0) -> socket.socket:
-    """Connects to a socket that its owner may not have made yet."""
+    """Connects to a socket that may not exist yet."""
     deadline = time.monotonic() + timeout_s
     while True:
         connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)

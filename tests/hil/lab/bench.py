@@ -1,4 +1,4 @@
-"""One booted lab: its machine, its cameras, its folders, and the daemon under test."""
+"""One booted lab: its machine, cameras and folders, and the daemon under test."""
 
 import dataclasses
 import pathlib
@@ -13,22 +13,20 @@ from tests.hil.lab.judge import BusLog
 from tests.hil.lab.machine import Machine
 
 UNIT = "bevlocd.service"
-# Where the ignition line is driven from.
+# Writing pull-up or pull-down to this file drives the ignition line.
 IGNITION_PULL = "/sys/devices/platform/gpio-sim.0/gpiochip*/sim_gpio3/pull"
 DRIVE_CONFIG = "tests/hil/config/drive.yaml"
-CAMERA_PERIOD_S = 0.5  # of DRIVE_CONFIG
+CAMERA_PERIOD_S = 0.5  # as in DRIVE_CONFIG
 USB_CONFIG = "tests/hil/config/usb.yaml"
-# Where a USB port of the guest is, in libcamera's ids.
+# libcamera's id of the camera at a USB port of the guest.
 LIBCAMERA_ID = "\\_SB_.PCI0.S80_-{port}:1.0-1209:0001"
 _BUS_LOG = "/run/candump.log"
 _PROGRAMS = (
-    "firmware/bevlocd",
-    "tests/compliance/bevloc-compliance",
-    "tests/hil/vehicle_can",
+    "bin/bevlocd",
+    "bin/bevloc-compliance",
+    "bin/vehicle_can",
 )
-# As docs/bring-up.md has it.
-_GPIO_RULE = 'SUBSYSTEM=="gpio", KERNEL=="gpiochip*", GROUP="bevloc", MODE="0660"'
-# Without cameras the daemon brings the rest of the vehicle itself, and reports to a folder.
+# Without cameras the daemon simulates the vehicle itself and needs an output folder.
 _NO_CAMERAS_DROP_IN = """[Service]
 ExecStart=
 ExecStart=/usr/bin/bevlocd --config /payload/tests/hil/config/no_cameras.yaml --out /run/bevloc/out
@@ -37,15 +35,15 @@ ExecStart=/usr/bin/bevlocd --config /payload/tests/hil/config/no_cameras.yaml --
 
 @dataclasses.dataclass(frozen=True)
 class Folders:
-    source: pathlib.Path  # the project
-    build: pathlib.Path  # its programs
-    image: pathlib.Path  # what image/build made
-    pictures: pathlib.Path  # what drive_pictures made
+    source: pathlib.Path  # the repository
+    build: pathlib.Path  # the CMake build folder
+    image: pathlib.Path  # the guest system, made by image/build
+    pictures: pathlib.Path  # images, truth and map, made by drive_pictures
     results: pathlib.Path
 
 
 class Bench:
-    """Boots on entry, ends on exit. `driver`: what the daemon sees by; `none`: by no camera."""
+    """Boots the guest on entry and stops it on exit. `driver` is v4l2, libcamera or none."""
 
     def __init__(self, folders: Folders, driver: str) -> None:
         self.folders = folders
@@ -56,7 +54,7 @@ class Bench:
         try:
             payload = self._stage_payload()
             self.cameras = Cameras(
-                self.folders.build / "tests/hil/usb_cameras", self.folders.pictures, self._sockets
+                self.folders.build / "bin/usb_cameras", self.folders.pictures, self._sockets
             )
             self.machine = Machine(
                 self.folders.image, self._sockets, payload, self.folders.results, self.cameras
@@ -75,7 +73,7 @@ class Bench:
         shutil.rmtree(self._sockets)
 
     def _stage_payload(self) -> pathlib.Path:
-        """The tree as far as the guest needs it: configurations find their files by place."""
+        """Copies what the guest needs, in the tree's layout: configurations use relative paths."""
         payload = self.folders.results / "payload"
         shutil.rmtree(payload, ignore_errors=True)
         for folder in ("config", "models", "systemd", "tests/hil/config"):
@@ -100,12 +98,12 @@ class Bench:
     def _set_up_guest(self) -> None:
         self.agent.check("/lab/devices")
         self.agent.check(
-            f"""
+            """
             install -m 755 /payload/bevlocd /payload/vehicle_can /usr/bin/
             install -m 644 /payload/systemd/sysusers.d/* /usr/lib/sysusers.d/
             install -m 644 /payload/systemd/bevlocd.service /etc/systemd/system/
             systemd-sysusers
-            echo '{_GPIO_RULE}' >/etc/udev/rules.d/60-bevloc.rules
+            install -m 644 /payload/systemd/udev/60-bevloc.rules /etc/udev/rules.d/
             udevadm control --reload
             udevadm trigger --settle --subsystem-match=gpio
             """
@@ -124,14 +122,14 @@ class Bench:
 
 @dataclasses.dataclass(frozen=True)
 class DriveStart:
-    """When the drive began, on two of the guest's clocks."""
+    """The start of the drive on two clocks of the guest."""
 
     wall_s: float
     monotonic_s: float
 
 
 class Run:
-    """One scenario on a bench: its log of the bus, its daemon, its vehicle, its results."""
+    """One scenario: its bus log, daemon, vehicle and results."""
 
     def __init__(self, bench: Bench, name: str) -> None:
         self.bench = bench
@@ -146,7 +144,8 @@ class Run:
         self.agent.check("ip link set vcan0 up")
         self._log_from_s = self.wall_s()
         self._sent_before = self._frames_sent_ever()
-        # -D: goes on when the interface goes down. In memory: a shared folder costs the guest time.
+        # -D: survives an interface that goes down. The log is in memory, because a shared folder is
+        # slow for the guest.
         self.agent.check(f"rm -f {_BUS_LOG}")
         self.background("candump", "candump -D -L vcan0", output=_BUS_LOG)
         return self
@@ -160,21 +159,21 @@ class Run:
         (self.folder / "cameras.json").write_text(self.cameras.command("counts") + "\n")
 
     def frames_sent(self) -> int:
-        """By all cameras, since the scenario began."""
+        """Returns the number of frames that all cameras sent since the scenario began."""
         return self._frames_sent_ever() - self._sent_before
 
     def _frames_sent_ever(self) -> int:
         return sum(camera["sent"] for camera in self.cameras.counts()["cameras"].values())
 
     def journal(self) -> str:
-        """What the daemon has said since the scenario began."""
+        """Returns the daemon's journal since the scenario began."""
         return self.agent.check(self._journal("cat"))
 
     def _journal(self, style: str) -> str:
         return f"journalctl -u {UNIT} -o {style} --since @{int(self._log_from_s)}"
 
     def background(self, unit: str, command: str, output: str | None = None) -> None:
-        """Runs a command as a transient service; what it prints goes to `output`, or UNIT.log."""
+        """Runs a command as a transient service; its output goes to `output`, or to UNIT.log."""
         self.agent.check(
             f"systemctl reset-failed {unit} 2>/dev/null; systemd-run --quiet --collect "
             f"--unit={unit} -p StandardOutput=append:{output or f'{self.guest}/{unit}.log'} "
@@ -182,11 +181,11 @@ class Run:
         )
 
     def wall_s(self) -> float:
-        """The guest's wall clock, which candump and the journal use."""
+        """Returns the guest's wall clock time, which candump and the journal use."""
         return float(self.agent.check("date +%s.%N"))
 
     def start_daemon(self) -> float:
-        """Starts bevlocd by its unit; the seconds until it said READY."""
+        """Starts bevlocd by its unit and returns the seconds until READY."""
         begin_s = self.wall_s()
         self.agent.check(f"systemctl start {UNIT}")
         return self.wall_s() - begin_s
@@ -206,11 +205,11 @@ class Run:
         return DriveStart(float(found[1]), float(found[2]))
 
     def show(self, name: str) -> str:
-        """A property of the daemon's unit."""
+        """Returns a property of the daemon's unit."""
         return self.agent.check(f"systemctl show {UNIT} --value -p {name}").strip()
 
     def wait_for(self, name: str, wanted: str, timeout_s: float) -> bool:
-        """Waits until a property of the daemon's unit begins with `wanted`."""
+        """Waits until a property of the daemon's unit begins with `wanted`; False on timeout."""
         deadline = time.monotonic() + timeout_s
         while not self.show(name).startswith(wanted):
             if time.monotonic() > deadline:
@@ -219,7 +218,7 @@ class Run:
         return True
 
     def wait_restarted(self, restarts: int, timeout_s: float) -> float:
-        """The wall time at which the daemon was READY again after one more restart."""
+        """Waits for one more restart and returns the wall time of its READY."""
         deadline = time.monotonic() + timeout_s
         while int(self.show("NRestarts")) <= restarts or self.show("ActiveState") != "active":
             if time.monotonic() > deadline:
@@ -230,10 +229,10 @@ class Run:
         return self.wall_s() - (uptime_s - 1e-6 * monotonic_us)
 
     def stop_log(self) -> None:
-        """Nothing more of the bus is logged; candump.log holds it until now."""
+        """Stops logging the bus and copies the log to candump.log."""
         self.agent.run(f"systemctl stop candump; cp {_BUS_LOG} {self.guest}/candump.log")
 
     def finish_log(self) -> BusLog:
-        """The bus until now."""
+        """Stops logging and returns the bus log."""
         self.stop_log()
         return BusLog(self.folder / "candump.log", self.bench.folders.source / "can/bevloc.dbc")

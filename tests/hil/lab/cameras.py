@@ -1,4 +1,4 @@
-"""The emulated USB cameras (tests/hil/usb_cameras), their pictures and their faults."""
+"""Controls the emulated USB cameras (tests/hil/usb_cameras) and their faults."""
 
 import json
 import pathlib
@@ -7,26 +7,24 @@ import subprocess
 from tests.hil.lab.agent import LabError, connect_unix
 
 NAMES = ("front_left", "front", "front_right", "back_left", "back", "back_right")
-# The one that scenarios break.
+# The camera in which scenarios inject faults.
 BROKEN_CAMERA = 2
 
 
 class Cameras:
-    """Six cameras that wait for QEMU to listen at SOCKETS0 to SOCKETS5."""
+    """Six cameras. They connect to QEMU when it listens at the sockets `sockets`0 to `sockets`5."""
 
     def __init__(self, program: pathlib.Path, pictures: pathlib.Path, folder: pathlib.Path) -> None:
         self.control_path = str(folder / "control")
         self.sockets = str(folder / "usb")
-        self._process = subprocess.Popen(
-            [program, "--pictures", pictures, "--sockets", self.sockets]
-            + ["--control", self.control_path],
-            stdout=subprocess.DEVNULL,
-        )
+        command: list[str | pathlib.Path] = [program, "--pictures", pictures]
+        command += ["--sockets", self.sockets, "--control", self.control_path]
+        self._process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         self._socket = connect_unix(self.control_path)
         self._answers = self._socket.makefile("r")
 
     def command(self, line: str) -> str:
-        """Faults by camera number, as camera_bench.h lists them: `unplug 2`, `heal all`."""
+        """Sends a command of camera_bench.h, such as `unplug 2`, and returns the answer."""
         self._socket.sendall(f"{line}\n".encode())
         answer = self._answers.readline().strip()
         if answer.startswith("error"):

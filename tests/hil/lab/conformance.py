@@ -1,4 +1,4 @@
-"""Every driver's conformance suite on the guest's own interfaces, by bevloc-compliance."""
+"""Runs every driver's conformance suite on the guest's interfaces, with bevloc-compliance."""
 
 import dataclasses
 import re
@@ -8,10 +8,10 @@ from tests.hil.lab.cameras import NAMES
 from tests.hil.lab.outcome import Outcome
 
 CAMERA = NAMES.index("front")
-# As often as the cameras can: most of the time is spent waiting for frames.
+# The cameras' highest rate, because most of the time is spent waiting for frames.
 BEAT_S = 0.1
 TIMEOUT_S = 1800.0
-# What is written here goes to the cameras with the beat: one channel takes one writer.
+# The beat script forwards commands from this pipe, because the channel takes only one writer.
 _CABLE = "/run/cable"
 _BEAT = f"""#!/bin/bash
 exec 3<>{_CABLE} 4>/dev/virtio-ports/bevloc.beat
@@ -48,14 +48,14 @@ def _suites() -> list[Suite]:
 
 
 def conformance(run: Run) -> Outcome:
-    # The suite floods its interface: nobody logs that.
+    # The suite floods its interface, so the bus is not logged.
     run.stop_log()
     run.agent.check(f"mkfifo {_CABLE}; cat >/run/beat <<'E'\n{_BEAT}E\nchmod +x /run/beat")
     run.background("beat", "/run/beat")
     results = {suite.name: _play(run, suite) for suite in _suites()}
     run.agent.check("systemctl stop beat")
     return Outcome(
-        injected="a cable pulled, an interface down, frames and edges without end",
+        injected="a camera unplugged, an interface down, floods of frames and edges",
         seen="; ".join(f"{name} {text}" for name, (text, _) in results.items()),
         recovery_s=None,
         passed=all(passed for _, passed in results.values()),
@@ -63,7 +63,7 @@ def conformance(run: Run) -> Outcome:
 
 
 def _play(run: Run, suite: Suite) -> tuple[str, bool]:
-    """How many of the suite's cases passed. One that is skipped is one that was not run."""
+    """Runs a suite and counts its passed cases. A skipped case does not count as passed."""
     log = suite.name.replace(" ", "-") + ".log"
     reply = run.agent.run(
         f"/payload/bevloc-compliance {suite.options} --gtest_filter='{suite.filter}' "

@@ -1,4 +1,4 @@
-"""Reads a DBC file and decodes classic frames by it, sharing no code with what made them."""
+"""Reads a DBC file and decodes classic frames. Shares no code with the encoder."""
 
 import dataclasses
 import pathlib
@@ -7,7 +7,7 @@ import re
 _MESSAGE = re.compile(r"BO_ (\d+) (\w+): (\d+) ")
 _SIGNAL = re.compile(
     r" SG_ (\w+) : (\d+)\|(\d+)@1([+-]) \(([^,]+),([^)]+)\)"
-)  # Intel byte order alone
+)  # Intel byte order only
 _NAMES = re.compile(r"VAL_ (\d+) (\w+) (.*);")
 _CYCLE = re.compile(r'BA_ "GenMsgCycleTime" BO_ (\d+) (\d+);')
 _DATA_ID = re.compile(r'BA_ "E2EDataId" BO_ (\d+) (\d+);')
@@ -32,11 +32,11 @@ class Message:
     cycle_ms: int = 0
 
     def is_intact(self, data: bytes) -> bool:
-        """Length and checksum of AUTOSAR's E2E profile P02: CRC-8H2F."""
+        """Checks length and checksum by AUTOSAR E2E profile P02 (CRC-8H2F)."""
         return len(data) == self.length and data[0] == _crc8_h2f(data[1:] + bytes([self.data_id]))
 
     def decode(self, data: bytes) -> dict[str, float | str | None]:
-        """Physical values; names where the file has them; None where not available."""
+        """Returns physical values, or names where the file has them; None means not available."""
         word = int.from_bytes(data, "little")
         values: dict[str, float | str | None] = {}
         for name, signal in self.signals.items():
@@ -52,7 +52,7 @@ class Message:
 
 
 def read(path: pathlib.Path) -> dict[int, Message]:
-    """The messages of a DBC file by identifier."""
+    """Returns the messages of a DBC file by identifier."""
     messages: dict[int, Message] = {}
     message = None
     for line in path.read_text(encoding="utf-8").splitlines():

@@ -1,4 +1,4 @@
-"""The lab itself: cameras, CAN and GPIO as Debian's own tools see them, without the daemon."""
+"""Scenario that tests the lab: cameras, CAN and GPIO with Debian's tools, without the daemon."""
 
 import pathlib
 import re
@@ -13,17 +13,18 @@ FRAME_BYTES = 640 * 360 * 2
 
 def devices(run: Run) -> Outcome:
     latencies_ms: list[float] = []
-    replug_s, replug_problems = None, []
+    replug_s: float | None = None
+    replug_problems: list[str] = []
     problems = _formats(run) + _streams(run, latencies_ms)
     if not problems:
         replug_s, replug_problems = _replug(run)
     problems += replug_problems + _can(run) + _gpio(run)
     seen = "; ".join(problems) or (
-        "every byte in order, frames stamped "
+        "every byte in order, frames timestamped "
         f"{min(latencies_ms):.0f} to {max(latencies_ms):.0f} ms after their exposure"
     )
     return Outcome(
-        injected=f"{FRAMES} frames of six cameras, a cable pulled, a CAN frame, GPIO edges",
+        injected=f"{FRAMES} frames of six cameras, a camera unplugged, a CAN frame, GPIO edges",
         seen=seen,
         recovery_s=replug_s,
         passed=not problems,
@@ -31,7 +32,7 @@ def devices(run: Run) -> Outcome:
 
 
 def device_of(name: str) -> str:
-    """The stable path that udev makes from the camera's serial number."""
+    """Returns the persistent path that udev makes from the camera's serial number."""
     return f"/dev/v4l/by-id/usb-bevloc_lab_camera_{name}_{name}-video-index0"
 
 
@@ -48,8 +49,8 @@ def _formats(run: Run) -> list[str]:
 
 
 def _streams(run: Run, latencies_ms: list[float]) -> list[str]:
-    """Six streams at once, to the vehicle's beat: each frame must be one of the pictures, in their
-    order. Adds what lies between each exposure and its stamp."""
+    """Streams from six cameras at once, on the vehicle's beat. The frames must show the images in
+    order. Appends the delay from each exposure to its timestamp to `latencies_ms`."""
     captures = " ".join(
         f"timeout 120 v4l2-ctl -d {device_of(name)} --stream-mmap=4 --stream-count={FRAMES} "
         f"--stream-to=/tmp/{name}.yuyv --verbose >{run.guest}/{name}.txt 2>&1 &"
@@ -66,7 +67,7 @@ def _streams(run: Run, latencies_ms: list[float]) -> list[str]:
         indices = _pictures_shown(run.folder / f"{name}.yuyv", run.bench.folders.pictures / name)
         steps = {b - a for a, b in zip(indices, indices[1:])}
         if len(stamps) != FRAMES or len(indices) != FRAMES or steps != {1}:
-            problems.append(f"{name}: {len(stamps)} frames, pictures {indices}")
+            problems.append(f"{name}: {len(stamps)} frames, images {indices}")
         latencies_ms += [
             1e3 * (stamp - start_s - index * CAMERA_PERIOD_S)
             for stamp, index in zip(stamps, indices)
@@ -75,21 +76,21 @@ def _streams(run: Run, latencies_ms: list[float]) -> list[str]:
 
 
 def _replug(run: Run) -> tuple[float | None, list[str]]:
-    """A camera's cable pulled: its device goes, and comes back under the same name."""
+    """Unplugs a camera and plugs it in again: the device must disappear and return by its name."""
     path = device_of(NAMES[BROKEN_CAMERA])
     run.cameras.command(f"unplug {BROKEN_CAMERA}")
     waits = "for try in $(seq 200); do {} && exit 0; sleep 0.05; done; exit 1"
     if run.agent.run(waits.format(f"test ! -e {path}")).status != 0:
-        return None, ["unplugged, but the device is there"]
+        return None, ["replug: the device is still there after unplug"]
     begin_s = run.wall_s()
     run.cameras.command(f"plug {BROKEN_CAMERA}")
     if run.agent.run(waits.format(f"test -e {path}")).status != 0:
-        return None, ["plugged in again, but no device"]
+        return None, ["replug: no device after plug"]
     return run.wall_s() - begin_s, []
 
 
 def _pictures_shown(capture: pathlib.Path, pictures: pathlib.Path) -> list[int]:
-    """Which picture each captured frame is, byte for byte; -1 for none."""
+    """Returns the number of the image that each frame equals byte for byte; -1 for none."""
     known = {file.read_bytes(): int(file.stem) for file in pictures.glob("*.yuyv")}
     data = capture.read_bytes()
     starts = range(0, len(data), FRAME_BYTES)
@@ -100,11 +101,11 @@ def _can(run: Run) -> list[str]:
     run.agent.check("cansend vcan0 123#DEADBEEF; sleep 1")
     run.stop_log()
     text = (run.folder / "candump.log").read_text()
-    return [] if "123#DEADBEEF" in text else ["CAN: the frame is not in the log"]
+    return [] if "123#DEADBEEF" in text else ["CAN: found no frame 123#DEADBEEF in the log"]
 
 
 def _gpio(run: Run) -> list[str]:
-    """Four edges of the ignition line, as a switch would make them."""
+    """Makes four edges on the ignition line, as a switch would."""
     output = run.agent.check(
         "chip=$(gpiodetect | sed -n 's/ .*bevloc.*//p'); "
         f"pull=$(echo {IGNITION_PULL}); "

@@ -1,4 +1,4 @@
-"""Scenarios with the emulated cameras: what they show is a drive, whose truth the judge knows."""
+"""Scenarios with a drive, so that the judge can compare poses with the truth."""
 
 import dataclasses
 import math
@@ -13,19 +13,20 @@ from tests.hil.lab.outcome import Outcome
 DRIVE_TIMEOUT_S = 900.0
 TRACKING_TIMEOUT_S = 300.0
 SETTLED_AFTER_S = 10.0
-MAX_MISSED_SETS = 3
-# Three repetitions (FrozenPictures), and one set may be under way when the fault begins.
-MAX_FROZEN_SETS = 4
+MAX_MISSED_FRAMESETS = 3
+# Three repetitions until the camera counts as frozen; one frameset may be under way at the fault.
+MAX_FROZEN_FRAMESETS = 4
 ALL_BACK_WITHIN_S = 2.0
 MAX_RESIDENT_MIB = 120
-# Mean absolute errors that the mock drive is held to (tests/integration/drive_test.cpp).
+# Limits of the mean absolute errors, as in tests/integration/drive_test.cpp.
 MAX_LONGITUDINAL_M, MAX_LATERAL_M, MAX_YAW_DEG = 0.5, 0.25, 0.6
-# What no valid pose may be off by: alert limits of a freeway (Reid et al. 2019).
+# Alert limits of a freeway (Reid et al. 2019). No valid pose may exceed them.
 ALERT = PoseError(1.40, 0.57, 1.50)
-# The daemon's last words; frames under way count as nothing.
+# The daemon's frame counts at its end, without the frames under way.
 _ACCOUNT = re.compile(
-    r"(\d+) frames captured, (\d+) used, \d+ dropped \((\d+) for newer ones, "
-    r"(\d+) without a set, (\d+) in skipped sets, \d+ under way\); (\d+) more missed"
+    r"(\d+) frames captured, (\d+) used, \d+ dropped \((\d+) displaced by newer frames, "
+    r"(\d+) without a frameset, (\d+) in skipped framesets, \d+ under way\), "
+    r"(\d+) missed by the cameras"
 )
 BROKEN_SIGNAL = "CameraOk_" + NAMES[BROKEN_CAMERA].title().replace("_", "")
 
@@ -34,7 +35,7 @@ def drive(run: Run) -> Outcome:
     run.start_daemon()
     run.start_vehicle()
     if not _vehicle_ended(run):
-        raise LabError("the drive did not end")
+        raise LabError("vehicle_can: the drive did not end in time; see vehicle.log")
     resident_mib = _resident_mib(run)
     run.agent.check("systemctl stop bevlocd")
     log = run.finish_log()
@@ -50,15 +51,10 @@ def drive(run: Run) -> Outcome:
 
 
 def camera_garbage(run: Run) -> Outcome:
-    """Garbage in one of six cameras must not become a wrong pose sent as valid."""
+    """Garbage from one of six cameras must not lead to a wrong valid pose."""
     _start_tracking(run)
     pid = run.show("MainPID")
-    broken_s = run.wall_s()
-    run.cameras.command(f"garbage {BROKEN_CAMERA}")
-    run.agent.check("sleep 8")
-    healed_s = run.wall_s()
-    run.cameras.command(f"heal {BROKEN_CAMERA}")
-    run.agent.check("sleep 4")
+    broken_s, healed_s = _break_camera(run, "garbage", "heal", duration_s=8, settle_s=4)
     same_daemon = run.show("MainPID") == pid
     log = run.finish_log()
     passed, judged = _judge(_errors(run, log))
@@ -66,7 +62,7 @@ def camera_garbage(run: Run) -> Outcome:
     return Outcome(
         injected=f"noise and half frames from {NAMES[BROKEN_CAMERA]} for 8 s",
         seen=f"{', '.join(dict.fromkeys(log.states()))}; "
-        f"the daemon said {', '.join(why) or 'nothing'}; "
+        f"why bits {', '.join(why) or 'none'}; "
         f"{judged}; {'same' if same_daemon else 'new'} daemon",
         recovery_s=None,
         passed=passed and same_daemon,
@@ -74,7 +70,7 @@ def camera_garbage(run: Run) -> Outcome:
 
 
 def no_cameras_at_start(run: Run) -> Outcome:
-    """Without cameras the daemon waits and says so; with them it works."""
+    """The daemon starts without cameras, reports them, and tracks once they are plugged in."""
     run.cameras.command("unplug all")
     run.agent.check("sleep 2")
     run.start_daemon()
@@ -91,7 +87,7 @@ def no_cameras_at_start(run: Run) -> Outcome:
     back_s = log.first_status(plugged_s, **all_ok)
     return Outcome(
         injected="no camera at the start, all plugged in later",
-        seen=f"missing cameras {'named' if missing_s else 'NOT named'}, then "
+        seen=f"missing cameras {'reported' if missing_s else 'NOT reported'}, then "
         f"{'TRACKING' if tracking else 'no tracking'}",
         recovery_s=back_s - plugged_s if back_s else None,
         passed=bool(missing_s and back_s and tracking),
@@ -99,15 +95,15 @@ def no_cameras_at_start(run: Run) -> Outcome:
 
 
 def unplug_camera(run: Run) -> Outcome:
-    return _lose_camera(run, "unplug", "plug", MAX_MISSED_SETS)
+    return _lose_camera(run, "unplug", "plug", MAX_MISSED_FRAMESETS)
 
 
 def freeze_camera(run: Run) -> Outcome:
-    """A camera that repeats one picture while the vehicle drives is as good as none."""
-    outcome = _lose_camera(run, "freeze", "heal", MAX_FROZEN_SETS)
-    says = f"camera {NAMES[BROKEN_CAMERA]}: its picture "
+    """A camera that repeats one image while the vehicle drives counts as missing."""
+    outcome = _lose_camera(run, "freeze", "heal", MAX_FROZEN_FRAMESETS)
+    camera = f"camera {NAMES[BROKEN_CAMERA]}: "
     journal = run.journal()
-    named = f"{says}stands still" in journal and f"{says}changes again" in journal
+    named = f"{camera}frozen" in journal and f"{camera}no longer frozen" in journal
     return dataclasses.replace(
         outcome,
         seen=f"{outcome.seen}; the log {'names' if named else 'does NOT name'} it",
@@ -115,52 +111,62 @@ def freeze_camera(run: Run) -> Outcome:
     )
 
 
-def _lose_camera(run: Run, fault: str, cure: str, max_sets: int) -> Outcome:
-    """The daemon says which camera it has lost, goes on without it, and uses it again."""
-    _start_tracking(run)
+def _break_camera(
+    run: Run, fault: str, cure: str, duration_s: int, settle_s: int
+) -> tuple[float, float]:
+    """Injects a fault into one camera for a while. Returns the wall times of fault and cure."""
     broken_s = run.wall_s()
     run.cameras.command(f"{fault} {BROKEN_CAMERA}")
-    run.agent.check("sleep 5")
-    mended_s = run.wall_s()
+    run.agent.check(f"sleep {duration_s}")
+    healed_s = run.wall_s()
     run.cameras.command(f"{cure} {BROKEN_CAMERA}")
-    run.agent.check("sleep 8")
+    run.agent.check(f"sleep {settle_s}")
+    return broken_s, healed_s
+
+
+def _lose_camera(run: Run, fault: str, cure: str, max_framesets: int) -> Outcome:
+    """The daemon must report the missing camera, continue without it, and use it again."""
+    _start_tracking(run)
+    broken_s, healed_s = _break_camera(run, fault, cure, duration_s=5, settle_s=8)
     log = run.finish_log()
     noticed_s = log.first_status(broken_s, **{BROKEN_SIGNAL: "MISSING"}, State="DEGRADED")
     all_ok = {name: "OK" for name in _camera_signals(log)}
-    back_s = log.first_status(mended_s, **all_ok)
-    tracking = log.first_status(mended_s, **all_ok, State="TRACKING") is not None
+    back_s = log.first_status(healed_s, **all_ok)
+    tracking = log.first_status(healed_s, **all_ok, State="TRACKING") is not None
     passed, judged = _judge(_errors(run, log))
-    sets = _sets_between(run, broken_s, noticed_s) if noticed_s else None
+    framesets = _framesets_between(run, broken_s, noticed_s) if noticed_s else None
     noticed = (
-        f"DEGRADED after {sets} sets, {noticed_s - broken_s:.2f} s" if noticed_s else "not noticed"
+        f"DEGRADED after {framesets} framesets, {noticed_s - broken_s:.2f} s"
+        if noticed_s
+        else "not noticed"
     )
     return Outcome(
         injected=f"{NAMES[BROKEN_CAMERA]}: {fault}, 5 s later {cure}",
         seen=f"{noticed}, then {'TRACKING' if tracking else 'no tracking'}; {judged}",
-        recovery_s=back_s - mended_s if back_s else None,
+        recovery_s=back_s - healed_s if back_s else None,
         passed=passed
         and tracking
-        and sets is not None
-        and sets <= max_sets
+        and framesets is not None
+        and framesets <= max_framesets
         and back_s is not None
-        and back_s - mended_s < ALL_BACK_WITHIN_S,
+        and back_s - healed_s < ALL_BACK_WITHIN_S,
     )
 
 
-def _sets_between(run: Run, begin_s: float, end_s: float) -> int:
-    """How many sets were exposed in this time."""
+def _framesets_between(run: Run, begin_s: float, end_s: float) -> int:
+    """Returns the number of framesets that were exposed in this time."""
     start_s = run.drive_start().wall_s
     first, last = (math.floor((t - start_s) / CAMERA_PERIOD_S) for t in (begin_s, end_s))
     return last - first
 
 
 def _start_tracking(run: Run) -> None:
-    """Until the pose is settled: with two sets a second the first seconds go back and forth."""
+    """Starts daemon and vehicle, and waits for TRACKING after the unsettled first seconds."""
     run.start_daemon()
     run.start_vehicle()
     run.agent.check(f"sleep {SETTLED_AFTER_S}")
     if not run.wait_for("StatusText", "TRACKING", TRACKING_TIMEOUT_S):
-        raise LabError(f"no tracking, the daemon says '{run.show('StatusText')}'")
+        raise LabError(f"daemon: found status '{run.show('StatusText')}', wanted TRACKING")
 
 
 def _vehicle_ended(run: Run) -> bool:
@@ -170,9 +176,12 @@ def _vehicle_ended(run: Run) -> bool:
 
 
 def _resident_mib(run: Run) -> float:
-    """The most that the daemon has had in memory: its own, and what it has touched of libraries."""
+    """Returns the daemon's peak resident memory, including the used pages of libraries."""
     status = run.agent.check(f"grep VmHWM /proc/{run.show('MainPID')}/status")
-    return int(re.search(r"(\d+) kB", status).group(1)) / 1024
+    found = re.search(r"(\d+) kB", status)
+    if not found:
+        raise LabError(f"/proc/PID/status: found '{status}', wanted VmHWM in kB")
+    return int(found[1]) / 1024
 
 
 def _errors(run: Run, log: BusLog) -> list[PoseError]:
@@ -188,7 +197,10 @@ def _judge(errors: list[PoseError]) -> tuple[bool, str]:
     longitudinal = [error.longitudinal_m for error in errors]
     lateral = [error.lateral_m for error in errors]
     yaw = [error.yaw_deg for error in errors]
-    means = [sum(map(abs, values)) / len(values) for values in (longitudinal, lateral, yaw)]
+    means = [
+        sum(abs(value) for value in values) / len(values)
+        for values in (longitudinal, lateral, yaw)
+    ]
     worst = [quantile(values, 1.0) for values in (longitudinal, lateral, yaw)]
     limits = (ALERT.longitudinal_m, ALERT.lateral_m, ALERT.yaw_deg)
     passed = all(m < b for m, b in zip(means, (MAX_LONGITUDINAL_M, MAX_LATERAL_M, MAX_YAW_DEG)))
@@ -201,11 +213,11 @@ def _judge(errors: list[PoseError]) -> tuple[bool, str]:
 
 
 def _frames_balance(run: Run) -> tuple[bool, str]:
-    """Every frame that the cameras sent was used, or dropped and counted where that was done."""
+    """Checks that every frame that the cameras sent was used, or dropped and counted."""
     sent = run.frames_sent()
     found = _ACCOUNT.search(run.journal())
     if not found:
-        return False, "the daemon gave no account of its frames"
+        return False, "the daemon's log has no frame counts"
     captured, used, *dropped, missed = map(int, found.groups())
     text = f"{sent} frames sent, {used} used, {sum(dropped)} dropped, {missed} missed"
     return sent == captured + missed and captured == used + sum(dropped), text

@@ -1,4 +1,4 @@
-"""Says from a log of the bus alone what the localizer did and how far off its poses were."""
+"""Judges the localizer from the bus log alone: its states, and the errors of its poses."""
 
 import bisect
 import csv
@@ -15,7 +15,7 @@ _LINE = re.compile(r"\((\d+\.\d+)\) \S+ ([0-9A-F]{3})#([0-9A-F]*)$")
 
 @dataclasses.dataclass(frozen=True)
 class Frame:
-    time_s: float  # of the clock that candump used
+    time_s: float  # on candump's clock
     name: str
     values: dict[str, float | str | None]
 
@@ -36,7 +36,7 @@ class PoseError:
 
 
 class BusLog:
-    """The frames of a candump log (`candump -L`) that the DBC file knows and that are intact."""
+    """The intact frames of a candump log (`candump -L`) whose identifiers are in the DBC file."""
 
     def __init__(self, log: pathlib.Path, dbc_file: pathlib.Path) -> None:
         messages = dbc.read(dbc_file)
@@ -57,35 +57,35 @@ class BusLog:
         return [frame for frame in self.frames if frame.name == name]
 
     def localizer_after(self, time_s: float) -> float | None:
-        """When the localizer first sent anything after a moment."""
+        """Returns the time of the localizer's first frame after `time_s`."""
         times = (f.time_s for f in self.frames if f.name.startswith("LOC_") and f.time_s > time_s)
         return next(times, None)
 
     def longest_silence_s(self, after_s: float) -> float:
-        """Between two frames of the localizer of which the later one came after a moment."""
+        """Returns the longest gap between two frames of the localizer that ends after `after_s`."""
         times = [f.time_s for f in self.frames if f.name.startswith("LOC_")]
         gaps = (b - a for a, b in zip(times, times[1:]) if b > after_s)
         return max(gaps, default=math.inf)
 
     def first_status(self, after_s: float, **wanted: str) -> float | None:
-        """When LOC_Status first said what is wanted."""
+        """Returns the time of the first LOC_Status after `after_s` with these values."""
         for frame in self.named("LOC_Status"):
             if frame.time_s > after_s and wanted.items() <= frame.values.items():
                 return frame.time_s
         return None
 
     def states(self) -> list[str]:
-        """The states that were gone through, in order."""
+        """Returns the sequence of states, without repetitions."""
         states = [str(frame.values["State"]) for frame in self.named("LOC_Status")]
         return [state for i, state in enumerate(states) if i == 0 or states[i - 1] != state]
 
     def reasons(self, begin_s: float, end_s: float) -> list[str]:
-        """The signals `Why_` that were set at any time between two moments."""
+        """Returns the Why_ signals that were set at any time between two times."""
         statuses = (f.values for f in self.named("LOC_Status") if begin_s < f.time_s < end_s)
         return sorted({name for s in statuses for name, v in s.items() if v == "YES"})
 
     def valid_poses(self) -> list[Pose]:
-        """Positions with the heading of the same epoch, while the state vouches for them."""
+        """Returns the poses of valid states: position and heading of the same epoch."""
         poses = []
         state, position = None, None
         for frame in self.frames:
@@ -94,17 +94,18 @@ class BusLog:
             elif frame.name == "LOC_PosLocal":
                 position = frame.values
             elif frame.name == "LOC_Attitude" and position and state in VALID_STATES:
-                east, north = position["LocalEast"], position["LocalNorth"]
-                heading = frame.values["Heading"]
+                found = position["LocalEast"], position["LocalNorth"], frame.values["Heading"]
+                available = [value for value in found if isinstance(value, float)]
                 same = position["EPOCH"] == frame.values["EPOCH"]
-                if same and None not in (east, north, heading):
+                if same and len(available) == len(found):
+                    east, north, heading = available
                     yaw_rad = math.radians(90.0 - heading)
                     poses.append(Pose(frame.time_s, east, north, yaw_rad))
         return poses
 
 
 class Truth:
-    """Where the vehicle really was, by the drive's own time."""
+    """The true pose of the vehicle over the time of the drive."""
 
     def __init__(self, file: pathlib.Path) -> None:
         with open(file, newline="", encoding="ascii") as rows:
@@ -112,7 +113,7 @@ class Truth:
         self._times = [row[0] for row in self._rows]
 
     def error_of(self, pose: Pose, drive_start_s: float) -> PoseError | None:
-        """Nothing before the drive's start or after its end."""
+        """Returns the error of a pose; None before the drive's start and after its end."""
         time_s = pose.time_s - drive_start_s
         after = bisect.bisect_right(self._times, time_s)
         if after == 0 or after == len(self._times):
@@ -130,8 +131,8 @@ class Truth:
 
 
 def quantile(values: list[float], share: float) -> float:
-    """Of absolute values."""
-    ordered = sorted(map(abs, values))
+    """Quantile of the absolute values."""
+    ordered = sorted(abs(value) for value in values)
     return ordered[min(len(ordered) - 1, int(share * len(ordered)))]
 
 

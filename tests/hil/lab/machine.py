@@ -1,4 +1,4 @@
-"""The guest: QEMU, the daemon that shares its root file system, and what connects them."""
+"""The guest: QEMU, and virtiofsd, which shares the root file system with it."""
 
 import pathlib
 import subprocess
@@ -9,27 +9,27 @@ from tests.hil.lab.cameras import NAMES, Cameras
 
 VIRTIOFSD = "/usr/lib/qemu/virtiofsd"
 MEMORY_MB = 2048
-# Emulation is slow, and slower on a busy machine. So the guest's clock counts its instructions, one
-# for each nanosecond: for the guest it is a machine of steady speed, and its deadlines mean what
-# they mean on a vehicle. While it has nothing to do, its clock goes with ours.
+# Emulation is slow, and slower on a busy host. So the guest's clock counts its instructions, one
+# per nanosecond: the guest sees a machine of constant speed, and its deadlines keep their meaning.
+# While the guest is idle, its clock follows the host's.
 GUEST_CLOCK = "shift=0,sleep=on"
 KERNEL_OPTIONS = " ".join(
     (
         "console=ttyS0 quiet panic=-1 systemd.unit=lab.target",
-        # On a busy machine the kernel's own check of its timer panics for want of ticks.
+        # On a busy host the kernel's timer check panics because ticks are missing.
         "no_timer_check",
-        # Its local timer would be measured by a loop of pauses, each of them a way out of the
-        # emulation: seconds. The HPET needs no measuring.
+        # Calibrating the local APIC timer takes seconds, because each pause leaves the emulation.
+        # The HPET needs no calibration.
         "noapictimer",
         "cryptomgr.notests",
     )
 )
-# Minutes, not seconds.
+# Emulation on a busy host can take minutes to boot.
 BOOT_TIMEOUT_S = 480.0
 
 
 class Machine:
-    """A running guest. `payload` is shared read-only, `results` for writing."""
+    """A running guest. It reads the folder `payload` and writes to the folder `results`."""
 
     def __init__(
         self,
@@ -84,7 +84,7 @@ class Machine:
         command += ["-kernel", str(image / "vmlinux"), "-initrd", str(image / "initrd.gz")]
         command += ["-append", KERNEL_OPTIONS]
         command += ["-serial", f"file:{results / 'console.log'}"]
-        # virtiofsd reads and writes the guest's memory, which must be shared for that.
+        # The guest's memory must be shared, because virtiofsd accesses it.
         memory = f"memory-backend-memfd,id=memory,size={MEMORY_MB}M,share=on"
         command += ["-object", memory, "-numa", "node,memdev=memory"]
         command += ["-chardev", f"socket,id=root,path={self._sockets / 'root'}"]
@@ -97,7 +97,7 @@ class Machine:
         command += ["-chardev", agent, "-device", "virtserialport,chardev=agent,name=bevloc.agent"]
         command += ["-chardev", f"socket,id=beat,path={cameras.control_path}"]
         command += ["-device", "virtserialport,chardev=beat,name=bevloc.beat"]
-        # A fixed slot: libcamera's ids of USB cameras are made from it.
+        # A fixed slot, because it is part of libcamera's ids of USB cameras.
         command += ["-device", "qemu-xhci,id=usb,p2=8,p3=8,addr=0x10"]
         for camera in range(len(NAMES)):
             path = f"{cameras.sockets}{camera}"

@@ -1,4 +1,4 @@
-"""What came of a scenario."""
+"""The outcome of a scenario, as a row of a table."""
 
 import dataclasses
 
@@ -7,12 +7,12 @@ import dataclasses
 class Outcome:
     injected: str
     seen: str
-    recovery_s: float | None  # by the guest's clock; None without a recovery
+    recovery_s: float | None  # on the guest's clock; None if nothing had to recover
     passed: bool
 
 
 def table(outcomes: dict[str, Outcome]) -> str:
-    """As Markdown."""
+    """Returns the outcomes as a Markdown table."""
     rows = ["| scenario | injected | seen | recovery | |", "|---|---|---|---|---|"]
     rows += [row(name, outcome) for name, outcome in outcomes.items()]
     return "\n".join(rows)

@@ -1,4 +1,4 @@
-"""What the lab does to the daemon, and what it must see then."""
+"""The scenarios: what the lab does to the daemon, and what it must see."""
 
 import dataclasses
 import math
@@ -8,10 +8,10 @@ from tests.hil.lab import conformance, devices, drives, tools
 from tests.hil.lab.bench import IGNITION_PULL, Run
 from tests.hil.lab.outcome import Outcome
 
-# From a hang to the next READY, by the project's requirements; and without the unit's WatchdogSec.
+# Requirement: time from a hang to the next READY. A crash saves the unit's WatchdogSec.
 READY_AFTER_HANG_S = 5.0
 READY_AFTER_CRASH_S = 3.0
-# A daemon that is on its feet is back on the bus within this, by the project's requirements.
+# Requirement: time until a running daemon sends again after the bus has returned.
 BACK_ON_BUS_S = 1.0
 SETTLE_S = 4.0
 
@@ -25,7 +25,7 @@ def kill(run: Run) -> Outcome:
 
 
 def _restart(run: Run, signal: str, limit_s: float) -> Outcome:
-    """The service manager brings the daemon back, and with it the messages on the bus."""
+    """systemd must restart the daemon, which must send again."""
     start_s = run.start_daemon()
     run.agent.check(f"sleep {SETTLE_S}")
     restarts, pid = int(run.show("NRestarts")), run.show("MainPID")
@@ -44,10 +44,15 @@ def _restart(run: Run, signal: str, limit_s: float) -> Outcome:
     )
 
 
-def can_down(run: Run) -> Outcome:
+def _start_settled(run: Run) -> str:
+    """Starts the daemon, waits a little and returns its process id."""
     run.start_daemon()
     run.agent.check(f"sleep {SETTLE_S}")
-    pid = run.show("MainPID")
+    return run.show("MainPID")
+
+
+def can_down(run: Run) -> Outcome:
+    pid = _start_settled(run)
     run.agent.check("ip link set vcan0 down; sleep 3")
     up_s = run.wall_s()
     run.agent.check(f"ip link set vcan0 up; sleep {SETTLE_S}")
@@ -64,10 +69,8 @@ def can_down(run: Run) -> Outcome:
 
 
 def can_flood(run: Run) -> Outcome:
-    """Random frames of a stranger and forged ones with the vehicle's identifiers."""
-    run.start_daemon()
-    run.agent.check(f"sleep {SETTLE_S}")
-    pid = run.show("MainPID")
+    """Random frames with a foreign identifier, and forged ones with the vehicle's identifiers."""
+    pid = _start_settled(run)
     begin_s = run.wall_s()
     run.agent.run(
         "timeout 5 cangen vcan0 -g 0.2 -I 7A0 -L 8 -D r -i & "
@@ -80,7 +83,7 @@ def can_flood(run: Run) -> Outcome:
     during = [f for f in log.named("LOC_Status") if begin_s < f.time_s < end_s]
     after_s = log.localizer_after(end_s)
     return Outcome(
-        injected=f"5 s of strange and forged frames ({log.damaged} forged ones seen)",
+        injected=f"5 s of foreign and forged frames ({log.damaged} forged ones seen)",
         seen=f"{len(during)} status frames meanwhile, {'same' if same_daemon else 'new'} daemon",
         recovery_s=after_s - end_s if after_s else None,
         passed=bool(during) and same_daemon and after_s is not None and log.damaged > 0,
@@ -88,10 +91,8 @@ def can_flood(run: Run) -> Outcome:
 
 
 def clock_step(run: Run) -> Outcome:
-    """Somebody sets the wall clock an hour on: the daemon keeps its own time."""
-    run.start_daemon()
-    run.agent.check(f"sleep {SETTLE_S}")
-    pid, step_s = run.show("MainPID"), 3600
+    """The wall clock jumps one hour ahead. The daemon must not notice."""
+    pid, step_s = _start_settled(run), 3600
     before_s = run.wall_s()
     run.agent.check(f"date -s '+{step_s} seconds'; sleep {SETTLE_S}; date -s '-{step_s} seconds'")
     run.agent.check(f"sleep {SETTLE_S}")
@@ -99,7 +100,7 @@ def clock_step(run: Run) -> Outcome:
     log = run.finish_log()
     stepped = [f for f in log.named("LOC_Status") if f.time_s > before_s + step_s - 1.0]
     return Outcome(
-        injected="wall clock one hour on, and back",
+        injected="wall clock one hour ahead, and back",
         seen=f"{len(stepped)} status frames in that hour, "
         f"{'same' if same_daemon else 'new'} daemon",
         recovery_s=None,
@@ -108,9 +109,8 @@ def clock_step(run: Run) -> Outcome:
 
 
 def ignition_off(run: Run) -> Outcome:
-    """The daemon ends cleanly, and nobody starts it again."""
-    run.start_daemon()
-    run.agent.check(f"sleep {SETTLE_S}")
+    """The daemon must end in good order, and systemd must not restart it."""
+    _start_settled(run)
     off_s = run.wall_s()
     run.agent.check(f"echo pull-down >{IGNITION_PULL}")
     stopped = run.wait_for("ActiveState", "inactive", timeout_s=60)
@@ -128,7 +128,7 @@ def ignition_off(run: Run) -> Outcome:
 @dataclasses.dataclass(frozen=True)
 class Scenario:
     play: Callable[[Run], Outcome]
-    needs_usb: bool  # the emulated cameras must be the daemon's
+    needs_usb: bool  # the daemon must use the emulated cameras
 
 
 SCENARIOS = {

@@ -1,4 +1,4 @@
-"""The lab's judge, on frames that are written down here byte by byte."""
+"""Tests of the lab's judge, on frames given byte by byte."""
 
 import math
 import pathlib
@@ -10,7 +10,7 @@ from tests.hil.lab.judge import BusLog, Pose, Truth, quantile
 from tests.hil.lab.outcome import Outcome, table
 
 DBC = pathlib.Path(__file__).parents[3] / "can/bevloc.dbc"
-# The frame of docs/can.md: intact, and everything in it not available.
+# The example frame of docs/can.md: intact, all signals not available.
 NOT_AVAILABLE = "D700000080000080"
 
 
@@ -44,7 +44,7 @@ class DbcTest(unittest.TestCase):
             self.assertFalse(message.is_intact(bytes(damaged)), bit)
         self.assertFalse(message.is_intact(data[:-1]))
 
-    def test_says_what_is_not_available(self) -> None:
+    def test_decodes_not_available_as_none(self) -> None:
         values = self.messages[0x504].decode(bytes.fromhex(NOT_AVAILABLE))
         self.assertIsNone(values["LocalEast"])
         self.assertIsNone(values["LocalNorth"])
@@ -71,11 +71,11 @@ class BusLogTest(unittest.TestCase):
     def heading(self, epoch: int, raw: int) -> str:
         return "505#" + _protected(self.messages[0x505], EPOCH=epoch, Heading=raw)
 
-    def test_counts_damaged_frames_and_ignores_strangers(self) -> None:
+    def test_counts_damaged_frames_and_ignores_foreign_ones(self) -> None:
         log = self.read("(1.0) vcan0 504#D700000080000081", "(1.1) vcan0 7A0#00", "nonsense")
         self.assertEqual((log.damaged, log.frames), (1, []))
 
-    def test_tells_states_in_order(self) -> None:
+    def test_lists_states_in_order(self) -> None:
         lines = [f"({i}.5) vcan0 {self.status(state)}" for i, state in enumerate([0, 0, 2, 3, 2])]
         log = self.read(*lines)
         self.assertEqual(log.states(), ["INIT", "TRACKING", "DEGRADED", "TRACKING"])
@@ -92,7 +92,7 @@ class BusLogTest(unittest.TestCase):
         self.assertEqual(log.reasons(1.2, 4.5), ["Why_CameraMissing", "Why_PoseStale"])
         self.assertEqual(log.reasons(4.5, 9.5), [])
 
-    def test_takes_poses_of_one_epoch_in_a_valid_state_alone(self) -> None:
+    def test_uses_only_poses_of_one_epoch_in_a_valid_state(self) -> None:
         pose = [f"(2.0) vcan0 {self.position(5, 1000)}", f"(2.0) vcan0 {self.heading(5, 9000)}"]
         self.assertEqual(self.read(f"(1.0) vcan0 {self.status(4)}", *pose).valid_poses(), [])
         mixed = [pose[0], f"(2.0) vcan0 {self.heading(6, 9000)}"]
@@ -107,18 +107,19 @@ class TruthTest(unittest.TestCase):
     def setUp(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "truth.csv"
-            # North at 10 m/s, through the place where angles wrap.
+            # North at 10 m/s, with a yaw that wraps at pi.
             rows = ["time_s,east_m,north_m,yaw_rad,speed_mps", "0,0,0,3.1,10", "1,0,10,-3.1,10"]
             file.write_text("\n".join(rows) + "\n")
             self.truth = Truth(file)
 
     def test_interpolates_between_rows(self) -> None:
         error = self.truth.error_of(Pose(100.5, -0.5, 5.0, math.pi), 100.0)
+        assert error is not None
         self.assertAlmostEqual(error.longitudinal_m, 0.5)
         self.assertAlmostEqual(error.lateral_m, 0.0)
         self.assertAlmostEqual(error.yaw_deg, 0.0)
 
-    def test_says_nothing_outside_the_drive(self) -> None:
+    def test_gives_no_error_outside_the_drive(self) -> None:
         self.assertIsNone(self.truth.error_of(Pose(99.9, 0.0, 0.0, 0.0), 100.0))
         self.assertIsNone(self.truth.error_of(Pose(101.1, 0.0, 0.0, 0.0), 100.0))
 

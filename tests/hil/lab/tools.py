@@ -1,4 +1,4 @@
-"""What the daemon says it does, and what Debian's own tools in the guest see of it."""
+"""Scenario that compares the daemon's counts with what Debian's tools in the guest measure."""
 
 import re
 import statistics
@@ -12,9 +12,9 @@ from tests.hil.lab.devices import device_of
 from tests.hil.lab.outcome import Outcome
 
 RUN_S = 12
-# Between what was asked for and the median seen.
+# Relative difference between the configured value and the measured median.
 TOLERANCE = 0.02
-# What the wire turns on.
+# tests/hil/guest/wire enables this trace event.
 _TRACE = "/sys/kernel/tracing/events/gpio/gpio_value/enable"
 _FOURCC = {"yuyv": "YUYV"}
 _PULSES = re.compile(r"trigger: (\d+) pulses")
@@ -32,7 +32,7 @@ def tools(run: Run) -> Outcome:
     run.start_vehicle()
     run.agent.check(f"sleep {RUN_S}")
     formats, problems = _formats(run, config)
-    # The daemon hears the last of the vehicle before it ends.
+    # The daemon must receive the vehicle's last frames before it ends.
     run.agent.check("systemctl stop vehicle; sleep 0.2; systemctl stop bevlocd; sleep 1")
     run.agent.check("systemctl stop gpiomon wire")
     run.stop_log()
@@ -41,7 +41,7 @@ def tools(run: Run) -> Outcome:
     trigger, trigger_problems = _trigger(run, journal, config["gpio"]["trigger"]["rate_hz"])
     problems += bus_problems + trigger_problems
     return Outcome(
-        injected="nothing: v4l2-ctl, candump and gpiomon watch",
+        injected="nothing; v4l2-ctl, candump and gpiomon measure",
         seen="; ".join(problems or [formats, bus, trigger]),
         recovery_s=None,
         passed=not problems,
@@ -49,7 +49,7 @@ def tools(run: Run) -> Outcome:
 
 
 def _formats(run: Run, config: dict) -> tuple[str, list[str]]:
-    """Size, pixel format and rate of each camera while the daemon streams."""
+    """Checks size, pixel format and rate of each camera while the daemon streams."""
     cameras = config["cameras"]
     rig = run.bench.folders.results / config["calibration"]["rig"].lstrip("/")
     sizes = yaml.safe_load(rig.read_text(encoding="utf-8"))["cameras"]
@@ -61,26 +61,28 @@ def _formats(run: Run, config: dict) -> tuple[str, list[str]]:
         width, height = sizes[name]["image_size_px"]
         for wanted in (f"{width}/{height}", f"'{fourcc}'", f"{rate_hz:.3f} ("):
             if wanted not in output:
-                problems.append(f"v4l2-ctl: {name} is not {wanted}")
+                problems.append(f"v4l2-ctl: {name}: wanted {wanted}")
     return f"v4l2-ctl: six cameras {width}x{height} {fourcc} at {rate_hz} Hz", problems
 
 
 def _bus(run: Run, journal: str) -> tuple[str, list[str]]:
-    """Identifiers and cycles by the DBC file, counts by what the daemon says at its end."""
+    """Compares identifiers and cycles with the DBC file, counts with the daemon's log."""
     messages = dbc.read(run.bench.folders.source / "can/bevloc.dbc")
     times: dict[int, list[float]] = {}
     for line in (run.folder / "candump.log").read_text(encoding="ascii").splitlines():
         stamp, _, frame = line.split()
         times.setdefault(int(frame.split("#")[0], 16), []).append(float(stamp.strip("()")))
-    # One message is for CAN FD alone: the bus here is a classic one.
+    # The bus is classic, so the CAN FD message is left out.
     classic = {i for i, message in messages.items() if message.length <= 8}
-    problems = [f"candump: {i:X} is not in the DBC file" for i in times.keys() - classic]
+    problems = [f"candump: found {i:X}, not in the DBC file" for i in times.keys() - classic]
     problems += [f"candump: no {messages[i].name}" for i in classic - times.keys()]
     for i in classic & times.keys():
         message, stamps = messages[i], times[i]
         cycle_ms = 1e3 * statistics.median(b - a for a, b in zip(stamps, stamps[1:]))
         if abs(cycle_ms / message.cycle_ms - 1.0) > TOLERANCE:
-            problems.append(f"candump: {message.name} every {cycle_ms:.2f} ms")
+            problems.append(
+                f"candump: {message.name} every {cycle_ms:.2f} ms, wanted {message.cycle_ms} ms"
+            )
     sent, received = (
         sum(len(times[i]) for i in classic & times.keys() if messages[i].name.startswith(who))
         for who in ("LOC_", "VEH_")
@@ -88,22 +90,23 @@ def _bus(run: Run, journal: str) -> tuple[str, list[str]]:
     for who, pattern, seen in (("sent", _CAN_SENT, sent), ("received", _CAN_RECEIVED, received)):
         said = pattern.search(journal)
         if not said or int(said[1]) != seen:
-            problems.append(f"candump: {seen} frames {who}, the daemon says {said and said[1]}")
+            problems.append(f"candump: {seen} frames {who}, the daemon reports {said and said[1]}")
     counts = f"{sent} sent, {received} received"
     return f"candump: {len(classic)} identifiers on their cycles, {counts}", problems
 
 
 def _trigger(run: Run, journal: str, rate_hz: float) -> tuple[str, list[str]]:
-    """Edges of a line that is wired to the trigger (tests/hil/guest/wire)."""
+    """Compares the edges of the line `probe`, which follows the trigger, with the daemon's log."""
     edges = [line.split() for line in (run.folder / "gpiomon.log").read_text().splitlines()]
     rising = [int(s) + 1e-9 * int(ns) for kind, s, ns in edges if kind == "1"]
     said = _PULSES.search(journal)
     problems = []
-    # Exactly as many: the wire is up before the daemon, which stops the trigger before it counts.
+    # The counts must be equal: the wire runs before the daemon starts, and the daemon stops the
+    # trigger before it logs the count.
     if not said or int(said[1]) != len(rising) or len(edges) != 2 * len(rising):
         problems.append(
             f"gpiomon: {len(rising)} pulses in {len(edges)} edges, "
-            f"the daemon says {said and said[1]}"
+            f"the daemon reports {said and said[1]}"
         )
     if len(rising) < 2:
         return "", [*problems, "gpiomon: no pulses"]

@@ -78,13 +78,15 @@ std::string CameraBench::command(std::string_view line) {
     return {};
   }
   if (argument != "all" && (!value || *value >= cameras_.size())) {
-    return fmt::format("error: '{}': wanted a verb and a camera, 0 to {}", line,
+    return fmt::format("error: found '{}', wanted a verb and a camera, 0 to {}", line,
                        cameras_.size() - 1);
   }
   const size_t first = value.value_or(0);
   const size_t last = value.value_or(cameras_.size() - 1);
   for (size_t camera = first; camera <= last; ++camera) {
-    if (!apply(verb, camera)) return fmt::format("error: '{}': unknown", verb);
+    if (!apply(verb, camera)) {
+      return fmt::format("error: found '{}', wanted a verb of camera_bench.h", verb);
+    }
   }
   return "ok";
 }
@@ -125,12 +127,12 @@ void CameraBench::send(size_t camera, uint64_t index) {
     return;
   }
   const uint64_t shown = fault == Fault::kFrozen ? frozen_at_[camera] : index;
-  const auto picture = pictures_[camera].read(shown, cameras_[camera].format());
-  if (!picture) {
-    std::fprintf(stderr, "usb_cameras: %s\n", picture.error().message.c_str());
+  const auto image = pictures_[camera].read(shown, cameras_[camera].format());
+  if (!image) {
+    std::fprintf(stderr, "usb_cameras: %s\n", image.error().message.c_str());
     return;
   }
-  cameras_[camera].send(*picture);
+  cameras_[camera].send(*image);
 }
 
 Bytes CameraBench::noise(uint64_t index) {

@@ -1,4 +1,4 @@
-// The lab's cameras side by side, and what is wrong with each.
+// The lab's six cameras with their faults, controlled by text commands.
 #pragma once
 
 #include <filesystem>
@@ -14,29 +14,31 @@ namespace bevloc::hil {
 
 enum class Fault : uint8_t {
   kNone,
-  kFrozen,   ///< frames come on time and show the same picture for ever
-  kGarbage,  ///< noise: whole frames and half ones in turn
-  kSilent,   ///< plugged in and answering, but no frame comes
+  kFrozen,   ///< frames come on time but all show the same image
+  kGarbage,  ///< noise, alternately as whole and half frames
+  kSilent,   ///< plugged in and answering, but sending no frames
 };
 
-/// Cameras that expose together when they are told to. One thread.
+/// Cameras that expose together on command. One thread.
 class CameraBench {
  public:
-  /// Sockets are PREFIX0, PREFIX1, ...: QEMU's ends of the cables.
+  /// Reads the images of the drive from `pictures`. QEMU listens for the cameras at the sockets
+  /// PREFIX0, PREFIX1, and so on. Fails if a camera has no images.
   static Result<CameraBench> create(const std::filesystem::path& pictures,
                                     const std::string& socket_prefix);
 
-  /// One line of what the control channel may say:
+  /// Executes one command:
   ///
-  ///     expose K                     all cameras show picture K of the drive
-  ///     plug N | unplug N            the cable of camera N, 0 to 5; `all` for every camera
-  ///     freeze N | garbage N | silence N | heal N
+  ///     expose K                     all cameras show image K of the drive
+  ///     plug N | unplug N            connects or disconnects camera N (0 to 5, or `all`)
+  ///     freeze N | garbage N | silence N    starts a fault of camera N
+  ///     heal N                       ends the fault of camera N
   ///     counts                       answers with a line of JSON
   ///
-  /// The answer: "ok", JSON, or "error" and why; nothing to `expose`.
+  /// Returns "ok", JSON, or "error" with the reason; for `expose` an empty string.
   std::string command(std::string_view line);
 
-  /// Cameras that are plugged in and wait for their cable to QEMU.
+  /// Connects every camera that is plugged in but not yet connected to QEMU.
   void connect_plugged();
   std::vector<UvcCamera>& cameras() { return cameras_; }
   std::string counts_json() const;

@@ -1,4 +1,4 @@
-// Lines of text over a stream socket.
+// Exchanges lines of text over a stream socket.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,7 @@
 
 namespace bevloc::hil {
 
-/// One end of a connected socket, read without waiting. One thread.
+/// One end of a connected socket, which it owns and reads without blocking. One thread.
 class LineChannel {
  public:
   explicit LineChannel(int fd) : fd_(fd) {}
@@ -17,8 +17,8 @@ class LineChannel {
 
   int fd() const { return fd_; }
 
-  /// Hands over each whole line that has come, and sends the answer, if it is not empty. False when
-  /// the other end is gone.
+  /// Calls `answer` with each complete line received and sends its result unless it is empty.
+  /// Returns false when the other end has closed.
   bool serve(const std::function<std::string(std::string_view)>& answer);
 
  private:
@@ -26,8 +26,9 @@ class LineChannel {
   std::string received_;
 };
 
-/// A socket that waits for connections at `path`, or -1; a socket that is there is replaced.
+/// Returns a non-blocking socket that listens at `path`, or -1. Replaces an existing socket.
 int listen_unix(const std::string& path);
+/// Returns the next connection, non-blocking, or -1.
 int accept_connection(int listener);
 
 }  // namespace bevloc::hil

@@ -29,7 +29,7 @@ Result<Pictures> Pictures::open(const std::filesystem::path& folder, const std::
     ++pictures.count_;
   }
   if (pictures.count_ == 0) {
-    return fail("{}: found no picture 0.yuyv, wanted those that drive_pictures draws",
+    return fail("{}: found no image 0.yuyv, wanted the output of drive_pictures",
                 pictures.folder_.string());
   }
   return pictures;
@@ -40,7 +40,7 @@ Result<Bytes> Pictures::read(uint64_t index, PixelFormat format) const {
   std::ifstream stream(file, std::ios::binary);
   Bytes yuyv(kYuyvBytes);
   stream.read(reinterpret_cast<char*>(yuyv.data()), kYuyvBytes);
-  if (!stream) return fail("{}: found less than {} bytes", file.string(), kYuyvBytes);
+  if (!stream) return fail("{}: found a short file, wanted {} bytes", file.string(), kYuyvBytes);
   return format == PixelFormat::kMjpeg ? jpeg_from_yuyv(yuyv) : std::move(yuyv);
 }
 

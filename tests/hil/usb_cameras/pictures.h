@@ -1,4 +1,4 @@
-// The drive's pictures, drawn ahead of time by drive_pictures.
+// Reads the images of the drive, which drive_pictures rendered beforehand.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +9,14 @@
 
 namespace bevloc::hil {
 
-/// FOLDER/<camera>/<number>.yuyv, numbered from 0 without gaps. Stateless.
+/// The images of one camera: FOLDER/<camera>/<number>.yuyv, numbered from 0 without gaps.
+/// Immutable.
 class Pictures {
  public:
-  /// Fails when `camera` has none in the folder.
+  /// Fails if the folder has no image of `camera`.
   static Result<Pictures> open(const std::filesystem::path& folder, const std::string& camera);
 
-  /// Picture `index` as it goes over the cable; after the last, the last again.
+  /// Returns image `index`, encoded in `format`. Beyond the last image it returns the last one.
   Result<Bytes> read(uint64_t index, PixelFormat format) const;
 
  private:

@@ -1,4 +1,4 @@
-// Six emulated USB cameras for a guest of QEMU, showing a drive.
+// usb_cameras: six emulated USB cameras for a QEMU guest, which show the images of a drive.
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -19,7 +19,7 @@ constexpr int kReconnectPeriod_ms = 100;
 
 std::atomic<bool> g_stop_requested{false};
 
-/// Waits for cables and control channels and serves whichever has something.
+/// Polls the connections to QEMU and the control channels, and serves those that are ready.
 class Loop {
  public:
   Loop(CameraBench& bench, int listener) : bench_(bench), listener_(listener) {}
@@ -50,7 +50,7 @@ class Loop {
     for (UvcCamera& camera : bench_.cameras()) {
       UsbLink* link = camera.link();
       if (!link) continue;
-      // Reads and writes what goes without waiting; a cable without QEMU is a cable pulled.
+      // A connection that QEMU has closed counts as unplugged.
       const bool alive = !is_ready(link->fd()) || link->read();
       if (!alive || (link->has_data_to_write() && !link->write())) camera.unplug();
     }
@@ -65,7 +65,7 @@ class Loop {
       return is_ready(channel.fd()) &&
              !channel.serve([this](std::string_view line) { return bench_.command(line); });
     });
-    // What a command gave the cameras to send goes out before the next wait.
+    // Send what the commands have queued before the next wait.
     for (UvcCamera& camera : bench_.cameras()) {
       if (camera.link() && camera.link()->has_data_to_write() && !camera.link()->write()) {
         camera.unplug();
@@ -89,13 +89,14 @@ class Loop {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Six emulated USB cameras for a guest of QEMU, showing the pictures of a drive");
+  CLI::App app("Six emulated USB cameras for a QEMU guest, which show the images of a drive");
   std::string pictures;
   std::string sockets;
   std::string control;
   app.add_option("--pictures", pictures, "Folder made by drive_pictures")->required();
   app.add_option("--sockets", sockets, "Prefix of QEMU's sockets, followed by 0 to 5")->required();
-  app.add_option("--control", control, "Socket to make for commands (camera_bench.h)")->required();
+  app.add_option("--control", control, "Socket to create for commands (camera_bench.h)")
+      ->required();
   CLI11_PARSE(app, argc, argv);
   const auto stop = [](int) { g_stop_requested = true; };
   std::signal(SIGTERM, stop);
@@ -108,7 +109,8 @@ int main(int argc, char** argv) {
   }
   const int listener = listen_unix(control);
   if (listener < 0) {
-    std::fprintf(stderr, "usb_cameras: %s: cannot listen there\n", control.c_str());
+    std::fprintf(stderr, "usb_cameras: %s: cannot listen, wanted a writable folder\n",
+                 control.c_str());
     return 2;
   }
   Loop(*bench, listener).run();

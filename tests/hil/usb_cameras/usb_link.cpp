@@ -10,12 +10,12 @@
 namespace bevloc::hil {
 namespace {
 
-/// Index of an endpoint in usbredir's table: 0 to 15 out, 16 to 31 in.
+/// Index of an endpoint in usbredir's table: 0 to 15 for OUT, 16 to 31 for IN endpoints.
 constexpr int slot_of(uint8_t endpoint) {
   return ((endpoint & 0x80) >> 3) | (endpoint & 0x0F);
 }
 
-/// What a read or a write of a socket means to the parser: 0 not now, -1 gone.
+/// Converts the result of a socket call for the parser: 0 means try later, -1 means closed.
 int parser_result(ssize_t transferred) {
   if (transferred > 0) return static_cast<int>(transferred);
   return transferred < 0 && errno == EAGAIN ? 0 : -1;
@@ -56,7 +56,7 @@ void describe_device(usbredirparser* parser) {
 
 }  // namespace
 
-/// What the parser calls; `link` is its private pointer.
+/// The parser's callbacks; `link` is its private pointer.
 struct UsbLink::Callbacks {
   static UsbLink& self(void* link) { return *static_cast<UsbLink*>(link); }
 
@@ -167,7 +167,7 @@ void UsbLink::complete(uint64_t id, std::span<const uint8_t> data) {
   header.status = usb_redir_success;
   header.length = data.size() & 0xFFFF;
   header.length_high = static_cast<uint16_t>(data.size() >> 16);
-  // The parser's interface knows no const; it copies the data.
+  // The parser's interface lacks const, but it only copies the data.
   usbredirparser_send_bulk_packet(parser_, id, &header, const_cast<uint8_t*>(data.data()),
                                   static_cast<int>(data.size()));
 }

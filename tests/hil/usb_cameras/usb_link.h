@@ -1,4 +1,4 @@
-// One emulated USB device, plugged into QEMU by the usbredir protocol.
+// Connects an emulated USB device to QEMU over the usbredir protocol.
 #pragma once
 
 #include <cstdint>
@@ -21,23 +21,27 @@ struct ControlRequest {
   uint16_t length = 0;
 };
 
-/// What a device does; called by its UsbLink.
+/// The behaviour of a device. UsbLink calls it.
 class UsbFunction {
  public:
   virtual ~UsbFunction() = default;
-  /// The answer, empty for one without data; nothing means a stall: not understood.
+  /// Returns the answer, which may be empty; nullopt stalls the endpoint (request not supported).
   virtual std::optional<Bytes> control(const ControlRequest& request,
                                        std::span<const uint8_t> data) = 0;
-  /// The host wants up to `length` bytes from the stream endpoint.
+  /// The USB host requests up to `length` bytes from the stream endpoint. UsbLink::complete() with
+  /// the same `id` answers it.
   virtual void bulk_in(uint64_t id, size_t length) = 0;
+  /// The USB host cancels the request `id`.
   virtual void cancel(uint64_t id) = 0;
+  /// The USB host resets the device.
   virtual void reset() = 0;
 };
 
-/// The plug: as long as it lives, the device is plugged in. One thread.
+/// The connection of a device to QEMU. While the link exists, the device is plugged in.
+/// One thread.
 class UsbLink {
  public:
-  /// Takes `fd`, a connected stream socket. `function` must outlive the link.
+  /// Owns `fd`, a connected stream socket. `function` must outlive the link.
   UsbLink(int fd, UsbFunction& function);
   ~UsbLink();
   UsbLink(const UsbLink&) = delete;
@@ -46,10 +50,11 @@ class UsbLink {
   int fd() const { return fd_; }
   bool has_data_to_write() const;
 
-  /// Both false when QEMU has gone.
+  /// Transfer what is possible without blocking. Both return false when QEMU has closed.
   bool read();
   bool write();
 
+  /// Answers a bulk_in() request with data.
   void complete(uint64_t id, std::span<const uint8_t> data);
   void complete_cancelled(uint64_t id);
 

@@ -31,7 +31,7 @@ void UvcCamera::unplug() {
   drop_stream();
 }
 
-void UvcCamera::send(std::span<const uint8_t> picture) {
+void UvcCamera::send(std::span<const uint8_t> image) {
   if (!link_ || !is_streaming()) {
     ++counts_.not_streaming;
     return;
@@ -42,7 +42,7 @@ void UvcCamera::send(std::span<const uint8_t> picture) {
   }
   frame_id_ ^= 1;
   payload_ = {kHeaderBytes, static_cast<uint8_t>(kEndOfHeader | kEndOfFrame | frame_id_)};
-  payload_.insert(payload_.end(), picture.begin(), picture.end());
+  payload_.insert(payload_.end(), image.begin(), image.end());
   offset_ = 0;
   pump();
 }
@@ -58,7 +58,7 @@ std::optional<Bytes> UvcCamera::control(const ControlRequest& request,
   if ((request.type & kTypeMask) != 0) return std::nullopt;
   // The Linux driver stops a bulk stream by clearing its endpoint's halt.
   if (request.type == kSetEndpoint && request.request == kClearFeature) drop_frame();
-  // Status of device, interface or endpoint: nothing special.
+  // All other standard requests: status 0, or success without data.
   return (request.type & kDirectionIn) != 0 ? Bytes{0, 0} : Bytes{};
 }
 
@@ -104,7 +104,7 @@ std::optional<Bytes> UvcCamera::stream_control(const ControlRequest& request,
     case kGetLen:
       return Bytes{kStreamControlBytes, 0};
     case kGetInfo:
-      return Bytes{3};  // may be read and written
+      return Bytes{3};  // readable and writable
     default:
       return std::nullopt;
   }
@@ -151,7 +151,7 @@ void UvcCamera::pump() {
     const size_t count = std::min(request.length, payload_.size() - offset_);
     link_->complete(request.id, std::span(payload_).subspan(offset_, count));
     offset_ += count;
-    // A payload ends with a short transfer, an empty one if need be, or at the agreed size.
+    // A payload ends with a short transfer, possibly an empty one, or at the negotiated size.
     const bool last =
         offset_ == payload_.size() && (count < request.length || offset_ == kMaxPayloadBytes);
     if (last) {

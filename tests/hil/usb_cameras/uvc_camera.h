@@ -1,4 +1,4 @@
-// One camera: answers the video class's requests and sends frames through the stream endpoint.
+// One emulated camera: answers USB Video Class requests and sends frames.
 #pragma once
 
 #include <deque>
@@ -8,20 +8,21 @@
 
 namespace bevloc::hil {
 
-/// What became of the frames that were exposed.
+/// What happened to the exposed frames.
 struct FrameCounts {
-  uint64_t sent = 0;           ///< went out whole
-  uint64_t not_streaming = 0;  ///< nobody was listening
-  uint64_t skipped = 0;        ///< the frame before was still on its way
-  uint64_t cut_off = 0;        ///< the stream stopped in its middle
+  uint64_t sent = 0;           ///< sent completely
+  uint64_t not_streaming = 0;  ///< dropped because the host was not streaming
+  uint64_t skipped = 0;        ///< dropped because the previous frame was still being sent
+  uint64_t cut_off = 0;        ///< the stream stopped in the middle of the frame
 };
 
-/// Lives longer than its plug: unplugging drops the frame on its way and the stream's state, as a
-/// cable does, but counts go on.
+/// A camera outlives its connection: unplugging drops the frame being sent and the state of the
+/// stream, but keeps the counts. One thread.
 class UvcCamera final : public UsbFunction {
  public:
   explicit UvcCamera(std::string name) : name_(std::move(name)) {}
 
+  /// Connects the camera to QEMU; owns `fd`.
   void plug_in(int fd) { link_ = std::make_unique<UsbLink>(fd, *this); }
   void unplug();
   UsbLink* link() { return link_.get(); }
@@ -32,8 +33,8 @@ class UvcCamera final : public UsbFunction {
   bool is_streaming() const { return !wanted_.empty(); }
   const FrameCounts& counts() const { return counts_; }
 
-  /// Sends one picture as it is; too late or to nobody, it is counted and dropped.
-  void send(std::span<const uint8_t> picture);
+  /// Sends one encoded image. Counts and drops it if the camera is not streaming or still busy.
+  void send(std::span<const uint8_t> image);
 
   std::optional<Bytes> control(const ControlRequest& request,
                                std::span<const uint8_t> data) override;
@@ -59,9 +60,9 @@ class UvcCamera final : public UsbFunction {
   uint8_t format_ = static_cast<uint8_t>(PixelFormat::kYuyv);
   uint32_t interval_ = frame_interval(kFrameRates.back());
   std::deque<BulkRequest> wanted_;
-  Bytes payload_;         ///< of the frame on its way; empty when there is none
-  size_t offset_ = 0;     ///< of what has not been sent of it
-  uint8_t frame_id_ = 0;  ///< toggles from frame to frame
+  Bytes payload_;         ///< of the frame being sent; otherwise empty
+  size_t offset_ = 0;     ///< of its first byte not yet sent
+  uint8_t frame_id_ = 0;  ///< toggles with each frame
   FrameCounts counts_;
 };
 

@@ -1,4 +1,4 @@
-// The emulated camera, asked as Linux's uvcvideo asks.
+// Tests the emulated camera with the requests that Linux's uvcvideo sends.
 #include "tests/hil/usb_cameras/uvc_camera.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ TEST(UvcDescriptors, LengthsAddUp) {
   EXPECT_EQ(device_qualifier().size(), 10U);
 }
 
-TEST(UvcDescriptors, SerialNumbersTellCamerasApart) {
+TEST(UvcDescriptors, SerialNumbersDistinguishCameras) {
   EXPECT_NE(string_descriptor(3, "front"), string_descriptor(3, "back"));
   const Bytes text = string_descriptor(3, "front");
   EXPECT_EQ(text.size(), 2U + 2 * 5);
@@ -37,7 +37,7 @@ TEST(UvcDescriptors, SerialNumbersTellCamerasApart) {
 TEST(UvcCamera, AgreesOnAnOfferedFormatAndRate) {
   UvcCamera camera("front");
   Bytes probe{1, 0, static_cast<uint8_t>(PixelFormat::kMjpeg), 1};
-  append_u32(probe, frame_interval(4));  // not offered: the next slower one is 2
+  append_u32(probe, frame_interval(4));  // not offered; the next slower rate is 2
   probe.resize(26);
   ASSERT_TRUE(camera.control({kToDevice, kSetCur, kProbe, kStreamInterface, 26}, probe));
   EXPECT_EQ(camera.format(), PixelFormat::kMjpeg);
@@ -50,7 +50,7 @@ TEST(UvcCamera, AgreesOnAnOfferedFormatAndRate) {
   EXPECT_TRUE(std::equal(interval.begin(), interval.end(), agreed->begin() + 4));
 }
 
-TEST(UvcCamera, StallsOnWhatItDoesNotKnow) {
+TEST(UvcCamera, StallsOnUnknownRequests) {
   UvcCamera camera("front");
   EXPECT_FALSE(camera.control({kStandard, 6, 0x0900, 0, 64}, {}));  // no such descriptor
   EXPECT_FALSE(camera.control({kToHost, kGetCur, 0x0900, kStreamInterface, 26}, {}));
@@ -58,7 +58,7 @@ TEST(UvcCamera, StallsOnWhatItDoesNotKnow) {
   EXPECT_FALSE(camera.control({kToHost, kGetCur, kProbe, kControlInterface, 26}, {}));
 }
 
-TEST(UvcCamera, CountsFramesThatNobodyWants) {
+TEST(UvcCamera, CountsFramesWhileNotStreaming) {
   UvcCamera camera("front");
   camera.send(Bytes(10));
   EXPECT_EQ(camera.counts().not_streaming, 1U);

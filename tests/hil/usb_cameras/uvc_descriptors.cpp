@@ -15,7 +15,7 @@ constexpr uint8_t kVsInputHeader = 1, kFormatUncompressed = 4, kFrameUncompresse
 constexpr uint8_t kFormatMjpeg = 6, kFrameMjpeg = 7, kColorMatching = 13;
 constexpr uint8_t kCameraTerminalId = 1, kStreamTerminalId = 2;
 
-/// Writes the length, which is its first byte.
+/// Appends a descriptor, preceded by its length.
 void append(Bytes& bytes, Bytes descriptor) {
   descriptor.insert(descriptor.begin(), static_cast<uint8_t>(descriptor.size() + 1));
   bytes.insert(bytes.end(), descriptor.begin(), descriptor.end());
@@ -25,7 +25,7 @@ Bytes video_control() {
   Bytes header{kClassSpecific, kVcHeader};
   append_u16(header, 0x0100);  // UVC 1.0
   append_u16(header, 13 + 18 + 9);
-  append_u32(header, 48'000'000);  // clock of the time stamps, not used
+  append_u32(header, 48'000'000);  // timestamp clock in Hz, not used
   header.insert(header.end(), {1, kStreamInterface});
 
   Bytes camera{kClassSpecific, kInputTerminal, kCameraTerminalId};

@@ -1,5 +1,5 @@
-// The rest of the lab's vehicle: odometry and GNSS of a drive on a CAN interface, and the beat of
-// its cameras on a channel to the host, both on the clock of the machine that it runs on.
+// vehicle_can: sends the odometry and GNSS of a drive on a CAN interface, and the beat of the
+// cameras to the host. Both follow the clock of the machine that it runs on.
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -8,20 +8,20 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "firmware/bus_factory.h"
-#include "firmware/simulation/simulated_drive.h"
+#include "evaluation/drive/bus_factory.h"
+#include "evaluation/drive/simulated_drive.h"
 
 namespace {
 
 using namespace bevloc;
-using namespace bevloc::firmware;
+using namespace bevloc::evaluation;
 
 constexpr Duration kPatience = std::chrono::milliseconds(100);
 constexpr Duration kLead = std::chrono::seconds(1);
 
 std::atomic<bool> g_stop_requested{false};
 
-/// Tells the cameras on the host when to expose. Picture K of the drive is that of K periods.
+/// Commands the cameras on the host to expose. Image K is due K periods after the drive's start.
 class Beat {
  public:
   Beat(const std::string& channel, Time drive_start, double rate_hz)
@@ -44,8 +44,8 @@ class Beat {
   uint64_t index_ = 0;
 };
 
-/// The drive's start on the wall clock, which logs of the bus use, and on the monotonic one, which
-/// stamps frames: what a judge needs to put both on the drive's time.
+/// Prints the drive's start on the wall clock, which bus logs use, and on the monotonic clock,
+/// which timestamps frames. The judge needs both to convert to the drive's time.
 void announce(Time drive_start, Time now) {
   const auto wall = std::chrono::system_clock::now().time_since_epoch();
   const double wall_s = std::chrono::duration<double>(wall).count();
@@ -55,7 +55,7 @@ void announce(Time drive_start, Time now) {
 }
 
 Status drive(const std::string& config_file, const std::string& channel) {
-  const auto config = load_config(config_file);
+  const auto config = load_drive_config(config_file);
   if (!config) return tl::unexpected(config.error());
   if (!config->simulation) {
     return fail("{}: found no section simulation, wanted a drive", config_file);
@@ -85,11 +85,11 @@ Status drive(const std::string& config_file, const std::string& channel) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Sends a drive's odometry and GNSS on CAN, and the beat of its cameras");
+  CLI::App app("Sends a drive's odometry and GNSS on CAN, and its cameras' beat to a channel");
   std::string config_file;
   std::string channel = "/dev/null";
   app.add_option("--config", config_file, "Configuration with a section `simulation`")->required();
-  app.add_option("--beat", channel, "Where to write `expose K` when the cameras are to expose");
+  app.add_option("--beat", channel, "Channel for `expose K`, the commands to the cameras");
   CLI11_PARSE(app, argc, argv);
   const auto stop = [](int) { g_stop_requested = true; };
   std::signal(SIGTERM, stop);

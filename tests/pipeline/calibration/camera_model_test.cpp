@@ -2,7 +2,10 @@
 
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/support/pose_matchers.h"
 
 namespace bevloc {
 namespace {
@@ -54,9 +57,9 @@ TEST(CameraModel, RayIsTheInverseOfProjectWithoutDistortion) {
   EXPECT_LT((ray - Eigen::Vector3d(1, 0, 1)).norm(), 1e-12);
 }
 
-TEST(CameraModel, ProjectsByTheFormulaOfOpenCv) {
+TEST(CameraModel, ProjectsByTheOpenCvFormula) {
   const Intrinsics camera = wide_camera();
-  // Numbers from the documented formula, worked by hand for x = 0.4, y = -0.2: r^2 = 0.2.
+  // The documented formula with x = 0.4, y = -0.2, so r^2 = 0.2.
   const double radial = 1.0 - 0.28 * 0.2 + 0.06 * 0.04;
   const double x = 0.4 * radial + 2 * 0.0007 * 0.4 * -0.2 + -0.0004 * (0.2 + 2 * 0.16);
   const double y = -0.2 * radial + 0.0007 * (0.2 + 2 * 0.04) + 2 * -0.0004 * 0.4 * -0.2;
@@ -66,26 +69,26 @@ TEST(CameraModel, ProjectsByTheFormulaOfOpenCv) {
   EXPECT_NEAR(pixel->y(), 505.0 * y + 177.1, 1e-9);
 }
 
-TEST(CameraModel, PointsAtOrBehindTheCameraHaveNoPixel) {
+TEST(CameraModel, PointsThatAreNotInFrontHaveNoPixel) {
   const Intrinsics camera = wide_camera();
   EXPECT_FALSE(camera.project({0.0, 0.0, 0.0}).has_value());
   EXPECT_FALSE(camera.project({1.0, 1.0, -3.0}).has_value());
   EXPECT_FALSE(camera.project({0.0, 0.0, std::nan("")}).has_value());
 }
 
-TEST(CameraModel, NoPixelWhereTheDistortionFoldsBack) {
+TEST(CameraModel, NoPixelBeyondTheMonotonicRadius) {
   Intrinsics camera = wide_camera();
   camera.k1 = -0.3;
   camera.k2 = camera.p1 = camera.p2 = 0.0;
-  const double fold = std::sqrt(1.0 / 0.9);
-  EXPECT_TRUE(camera.project({0.99 * fold, 0.0, 1.0}).has_value());
-  EXPECT_FALSE(camera.project({1.01 * fold, 0.0, 1.0}).has_value());
-  // Far outside the fold the polynomial with k2 > 0 grows again; those points stay without pixel.
+  const double limit = std::sqrt(1.0 / 0.9);
+  EXPECT_TRUE(camera.project({0.99 * limit, 0.0, 1.0}).has_value());
+  EXPECT_FALSE(camera.project({1.01 * limit, 0.0, 1.0}).has_value());
+  // With k2 > 0 the polynomial increases again far outside. Points there still have no pixel.
   camera.k2 = 0.01;
   EXPECT_FALSE(camera.project({30.0, 0.0, 1.0}).has_value());
 }
 
-TEST(CameraModel, PixelBeyondTheFoldGetsAFiniteRayInItsDirection) {
+TEST(CameraModel, APixelThatNoRayReachesGetsAFiniteRayInItsDirection) {
   Intrinsics camera = wide_camera();
   camera.k1 = -0.3;
   camera.k2 = camera.p1 = camera.p2 = 0.0;
@@ -95,13 +98,13 @@ TEST(CameraModel, PixelBeyondTheFoldGetsAFiniteRayInItsDirection) {
   EXPECT_NEAR(ray.y(), 0.0, 1e-12);
 }
 
-TEST(Se3, InverseUndoesTheTransform) {
+TEST(Se3, InverseReversesTheTransform) {
   Se3 transform;
   transform.rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   transform.translation_m = {1.5, -0.3, 1.4};
   const Eigen::Vector3d point(0.3, -2.0, 8.0);
   EXPECT_LT((transform.inverse() * (transform * point) - point).norm(), 1e-12);
-  EXPECT_LT(((transform.inverse() * transform) * point - point).norm(), 1e-12);
+  EXPECT_THAT(transform.inverse() * transform, test::RigidTransformNear({}, 1e-13, 1e-13));
 }
 
 }  // namespace

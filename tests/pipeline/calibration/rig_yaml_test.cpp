@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/sim_rig.h"
+#include "tests/support/pose_matchers.h"
 
 namespace bevloc {
 namespace {
@@ -26,7 +27,7 @@ Rig any_rig() {
   return rig;
 }
 
-/// The error after one replacement in a good file.
+/// The error message after one replacement in a valid file.
 std::string error_after(const std::string& from, const std::string& to) {
   std::string text = format_rig(any_rig());
   const size_t at = text.find(from);
@@ -37,7 +38,7 @@ std::string error_after(const std::string& from, const std::string& to) {
   return rig ? "" : rig.error().message;
 }
 
-TEST(RigYaml, ComesBackAsItWasWritten) {
+TEST(RigYaml, RoundTrips) {
   const Rig rig = any_rig();
   const auto again = parse_rig(format_rig(rig), "rig.yaml");
   ASSERT_TRUE(again.has_value()) << again.error().message;
@@ -54,16 +55,14 @@ TEST(RigYaml, ComesBackAsItWasWritten) {
     EXPECT_NEAR(a.intrinsics.k2, b.intrinsics.k2, 1e-9);
     EXPECT_NEAR(a.intrinsics.p1, b.intrinsics.p1, 1e-9);
     EXPECT_NEAR(a.intrinsics.p2, b.intrinsics.p2, 1e-9);
-    EXPECT_TRUE(a.vehicle_from_camera.rotation.isApprox(b.vehicle_from_camera.rotation, 1e-8));
-    EXPECT_TRUE(
-        a.vehicle_from_camera.translation_m.isApprox(b.vehicle_from_camera.translation_m, 1e-9));
+    EXPECT_THAT(b.vehicle_from_camera, test::RigidTransformNear(a.vehicle_from_camera, 1e-9, 1e-8));
   }
   EXPECT_EQ(format_rig(*again), format_rig(rig));
 }
 
-TEST(RigYaml, TheQuaternionTurnsCameraAxesIntoVehicleAxes) {
+TEST(RigYaml, TheQuaternionRotatesCameraAxesIntoVehicleAxes) {
   Rig rig = any_rig();
-  // Looking forward: the camera's z is the vehicle's x, its x the vehicle's -y.
+  // Looks forward: z of the camera is x of the vehicle, x of the camera is -y of the vehicle.
   rig.cameras[1].vehicle_from_camera.rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   const std::string text = format_rig(rig);
   EXPECT_THAT(text, HasSubstr("rotation_wxyz: [0.5, -0.5, 0.5, -0.5]"));
@@ -91,7 +90,7 @@ TEST(RigYaml, RefusesBadNumbers) {
               HasSubstr("translation_m[0]: found 1500, wanted a number, -50 to 50"));
 }
 
-TEST(RigYaml, RefusesAQuaternionThatIsNoRotation) {
+TEST(RigYaml, RefusesAQuaternionThatIsNotNormalised) {
   const std::string text = format_rig(any_rig());
   const size_t begin = text.find("rotation_wxyz");
   const std::string line = text.substr(begin, text.find('\n', begin) - begin);
@@ -101,12 +100,12 @@ TEST(RigYaml, RefusesAQuaternionThatIsNoRotation) {
   EXPECT_THAT(error_after(line, "rotation_wxyz: [1, 0, 0]"), HasSubstr("wanted a list of 4"));
 }
 
-TEST(RigYaml, RefusesADistortionThatFoldsBackWithinTheImage) {
+TEST(RigYaml, RefusesADistortionThatIsNotMonotonicInTheImage) {
   EXPECT_THAT(error_after("[-0.1, 0.01,", "[-2.5, 0,"),
-              HasSubstr("front_left.distortion: found numbers that fold"));
+              HasSubstr("front_left.distortion: found a distortion that is not monotonic"));
 }
 
-TEST(RigYaml, RefusesKeysThatAreMissingUnknownOrThereTwice) {
+TEST(RigYaml, RefusesMissingUnknownAndRepeatedKeys) {
   EXPECT_THAT(error_after("fx_px: 500\n", "fx_mm: 500\n"),
               HasSubstr("cameras.front_left.fx_px: found no such key, wanted a number, more than 0 "
                         "(line 7 has an unknown key fx_mm)"));
@@ -117,13 +116,13 @@ TEST(RigYaml, RefusesKeysThatAreMissingUnknownOrThereTwice) {
   EXPECT_THAT(error_after("cameras:", "Cameras:"), HasSubstr("cameras: found no such key"));
 }
 
-TEST(RigYaml, TheShippedDemoRigIsTheSimulatedOne) {
+TEST(RigYaml, TheDemoRigIsTheSimulatedRig) {
   const auto rig = read_rig(std::filesystem::path(BEVLOC_SOURCE_DIR) / "config/rig_demo.yaml");
   ASSERT_TRUE(rig.has_value()) << rig.error().message;
   EXPECT_EQ(format_rig(*rig), format_rig(sim::nominal_rig()));
 }
 
-TEST(RigYaml, NamesAFileThatIsNotThere) {
+TEST(RigYaml, NamesAMissingFile) {
   const auto rig = read_rig("/nonexistent/rig.yaml");
   ASSERT_FALSE(rig.has_value());
   EXPECT_THAT(rig.error().message, StartsWith("/nonexistent/rig.yaml: "));

@@ -1,4 +1,4 @@
-// The program bevloc_convert_map, as a user runs it.
+// Runs the program bevloc_convert_map.
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -20,7 +20,7 @@ class ConvertMapTest : public testing::Test {
   void SetUp() override { std::filesystem::create_directories(folder_); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Its exit code.
+  /// Returns the exit code.
   static int convert(const std::filesystem::path& in, const std::filesystem::path& out) {
     const std::string command =
         std::string(BEVLOC_CONVERT_MAP_PROGRAM) + " " + in.string() + " " + out.string();
@@ -33,7 +33,7 @@ class ConvertMapTest : public testing::Test {
                                    testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
-TEST_F(ConvertMapTest, ALanelet2MapComesBackAsItWasToTheQuantum) {
+TEST_F(ConvertMapTest, ConvertsALanelet2MapWithMillimetreAccuracy) {
   ASSERT_EQ(convert(kStreet, folder_ / "street.bvm"), 0);
   const HdMap map = load_map(kStreet).value();
   const HdMap again = load_map(folder_ / "street.bvm").value();
@@ -50,7 +50,7 @@ TEST_F(ConvertMapTest, ALanelet2MapComesBackAsItWasToTheQuantum) {
   }
 }
 
-TEST_F(ConvertMapTest, BadInputEndsItWithTwoAndWritesNothing) {
+TEST_F(ConvertMapTest, ExitsWithTwoAndWritesNothingOnBadInput) {
   EXPECT_EQ(convert(folder_ / "none.osm", folder_ / "out.bvm"), 2);
   EXPECT_EQ(
       convert(std::filesystem::path(BEVLOC_SOURCE_DIR) / "CMakeLists.txt", folder_ / "out.bvm"), 2);

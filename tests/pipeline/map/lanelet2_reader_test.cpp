@@ -35,7 +35,7 @@ std::vector<const MapElement*> of_class(const HdMap& map, ElementClass element_c
   return found;
 }
 
-TEST(Lanelet2Reader, SortsLinesIntoClassesByTagAndRole) {
+TEST(Lanelet2Reader, ClassifiesLinesByTagAndRole) {
   const HdMap map = read_fixture("street.osm");
   EXPECT_EQ(map.name, "street");
   const auto dividers = of_class(map, ElementClass::kLaneDivider);
@@ -59,7 +59,7 @@ TEST(Lanelet2Reader, TheMapFrameIsTheTangentPlaneAtTheMiddle) {
   EXPECT_NEAR(divider[1].x(), 0.0, 1e-9);
 }
 
-TEST(Lanelet2Reader, ACrossingIsTheAreaBetweenItsBoundsWhicheverWayTheyRun) {
+TEST(Lanelet2Reader, ACrossingIsTheAreaBetweenItsBoundsInEitherDirection) {
   const HdMap map = read_fixture("street.osm");
   const auto crossings = of_class(map, ElementClass::kPedestrianCrossing);
   ASSERT_EQ(crossings.size(), 1U);
@@ -72,7 +72,7 @@ TEST(Lanelet2Reader, ACrossingIsTheAreaBetweenItsBoundsWhicheverWayTheyRun) {
     const auto& b = ring[(i + 1) % 4];
     area += 0.5 * (a.x() * b.y() - a.y() * b.x());
   }
-  // 3.66 m by 22.24 m; a ring that crosses itself would have none.
+  // 3.66 m by 22.24 m. A ring that crosses itself would have no area.
   EXPECT_NEAR(std::abs(area), 81.4, 0.5);
 }
 
@@ -96,14 +96,14 @@ TEST(Lanelet2Reader, LanesHaveTheirBoundsInDrivingDirection) {
 
 TEST(Lanelet2Reader, LanesFollowEachOtherWhereBothBoundsMeet) {
   const HdMap map = read_fixture("street.osm");
-  // 0 eastbound, 1 westbound, 2 and 3 the continuation in the east, both ways.
+  // Lane 0 is eastbound, 1 westbound; 2 and 3 continue in the east in both directions.
   EXPECT_THAT(map.lanes[0].successors, ElementsAre(2U));
   EXPECT_THAT(map.lanes[1].successors, IsEmpty());
   EXPECT_THAT(map.lanes[2].successors, IsEmpty());
   EXPECT_THAT(map.lanes[3].successors, IsEmpty());
 }
 
-TEST(Lanelet2Reader, AutowaresLocalCoordinatesReplaceMissingAngles) {
+TEST(Lanelet2Reader, AutowareLocalCoordinatesReplaceMissingAngles) {
   const HdMap map = read_fixture("autoware.osm");
   ASSERT_EQ(map.lanes.size(), 1U);
   EXPECT_EQ(map.lanes[0].right.front(), Eigen::Vector2d(81500.0, 50100.0));
@@ -112,7 +112,7 @@ TEST(Lanelet2Reader, AutowaresLocalCoordinatesReplaceMissingAngles) {
   EXPECT_EQ(map.origin.latitude_deg, 0.0);
 }
 
-/// A lanelet of two straight bounds through four nodes, whose attributes and tags are given.
+/// A lanelet with two straight bounds. `nodes` contains attributes and tags of its four nodes.
 std::string lanelet_of(const std::vector<std::string>& nodes) {
   std::string text = "<osm>\n";
   for (size_t i = 0; i < nodes.size(); ++i) {
@@ -126,8 +126,8 @@ std::string lanelet_of(const std::vector<std::string>& nodes) {
          "</osm>\n";
 }
 
-TEST(Lanelet2Reader, LocalCoordinatesOfAnotherGridAreTurnedIntoTheTangentPlane) {
-  // UTM grid coordinates three degrees from the central meridian: the grid is turned by 2.3
+TEST(Lanelet2Reader, LocalCoordinatesOfAnotherGridAreRotatedIntoTheTangentPlane) {
+  // UTM coordinates three degrees from the central meridian, where the grid is rotated by 2.3
   // degrees.
   std::vector<std::string> nodes;
   const std::vector<std::pair<double, double>> places = {
@@ -149,7 +149,7 @@ TEST(Lanelet2Reader, LocalCoordinatesOfAnotherGridAreTurnedIntoTheTangentPlane) 
   EXPECT_NEAR(std::abs(south.front().x() - south.back().x()), 146.3, 0.1);
 }
 
-TEST(Lanelet2Reader, LocalCoordinatesThatContradictTheAnglesStandAlone) {
+TEST(Lanelet2Reader, LocalCoordinatesThatContradictTheAnglesAreUsedAlone) {
   std::vector<std::string> nodes;
   for (const auto& [x, y] : std::vector<std::pair<int, int>>{{0, 0}, {20, 0}, {0, 4}, {20, 4}}) {
     nodes.push_back(fmt::format(
@@ -161,7 +161,7 @@ TEST(Lanelet2Reader, LocalCoordinatesThatContradictTheAnglesStandAlone) {
   EXPECT_EQ(map->origin.longitude_deg, 0.0);
 }
 
-TEST(Lanelet2Reader, LaneletsForOthersAreNoLanes) {
+TEST(Lanelet2Reader, LaneletsForOtherParticipantsAreNoLanes) {
   const std::vector<std::string> nodes = {"lat='49' lon='8'>", "lat='49' lon='8.001'>",
                                           "lat='49.0001' lon='8'>", "lat='49.0001' lon='8.001'>"};
   for (const char* tag : {"<tag k='subtype' v='bicycle_lane'/>", "<tag k='subtype' v='walkway'/>",
@@ -175,7 +175,7 @@ TEST(Lanelet2Reader, LaneletsForOthersAreNoLanes) {
   }
 }
 
-TEST(Lanelet2Reader, NamesWhatIsWrongAndWhere) {
+TEST(Lanelet2Reader, ErrorsNameLineAndElement) {
   EXPECT_THAT(error_of("<osm>\n<node id='1'\n"),
               StartsWith("town.osm:2: found text that is not XML"));
   EXPECT_THAT(error_of(""), HasSubstr("not XML"));
@@ -188,7 +188,7 @@ TEST(Lanelet2Reader, NamesWhatIsWrongAndWhere) {
   EXPECT_THAT(error_of("<osm></osm>"), HasSubstr("found no lanelet"));
 }
 
-TEST(Lanelet2Reader, RefusesCoordinatesThatAreNone) {
+TEST(Lanelet2Reader, RefusesBadCoordinates) {
   const auto error_with = [](const std::string& node) {
     return error_of("<osm>\n<node id='-7' " + node + "</node></osm>");
   };
@@ -221,7 +221,7 @@ TEST(Lanelet2Reader, RefusesBrokenReferences) {
               StartsWith("town.osm:4: node 3: found no coordinates"));
 }
 
-TEST(Lanelet2Reader, NamesAFileThatIsNotThere) {
+TEST(Lanelet2Reader, NamesAMissingFile) {
   const auto map = read_lanelet2("/nonexistent/town.osm");
   ASSERT_FALSE(map.has_value());
   EXPECT_THAT(map.error().message, StartsWith("/nonexistent/town.osm: found no readable file"));

@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// A street of two lanes with a crossing, a kilometre long, points every 2 m.
+/// A street of 1 km with two lanes and a crossing, with points every 2 m.
 HdMap kilometre() {
   HdMap map;
   map.name = "kilometre";
@@ -48,7 +48,7 @@ std::string error_of(std::string_view bytes) {
   return map ? "" : map.error().message;
 }
 
-/// A file whose frame is right, around any body.
+/// A file with the given body and a valid header and CRC.
 std::string framed(const std::string& body) {
   std::string bytes = "BVMP";
   const auto append = [&bytes](uint32_t value, int count) {
@@ -61,11 +61,11 @@ std::string framed(const std::string& body) {
   return bytes;
 }
 
-TEST(Crc32, HasTheCheckValueOfTheStandard) {
+TEST(Crc32, MatchesTheCheckValueOfTheStandard) {
   EXPECT_EQ(crc32("123456789"), 0xCBF43926U);
 }
 
-TEST(MapBinary, ComesBackAsItWasToTheQuantum) {
+TEST(MapBinary, RoundTripsWithMillimetreAccuracy) {
   const HdMap map = kilometre();
   const auto again = decode_map(encode_map(map), "town.bvm");
   ASSERT_TRUE(again.has_value()) << again.error().message;
@@ -86,21 +86,21 @@ TEST(MapBinary, ComesBackAsItWasToTheQuantum) {
     EXPECT_EQ(again->lanes[i].successors, map.lanes[i].successors);
     EXPECT_EQ(again->lanes[i].speed_limit_mps, map.lanes[i].speed_limit_mps);
   }
-  // What was quantised once stays as it is.
+  // Encoding again does not change the quantised points.
   EXPECT_EQ(encode_map(*again), encode_map(map));
 }
 
-TEST(MapBinary, AKilometreOfStreetTakesLittle) {
+TEST(MapBinary, AKilometreOfStreetIsSmall) {
   EXPECT_LT(encode_map(kilometre()).size(), 25'000U);
 }
 
-TEST(MapBinary, AnEmptyMapIsAMap) {
+TEST(MapBinary, RoundTripsAnEmptyMap) {
   const auto map = decode_map(encode_map(HdMap{}), "town.bvm");
   ASSERT_TRUE(map.has_value()) << map.error().message;
   EXPECT_TRUE(map->elements.empty());
 }
 
-TEST(MapBinary, KeepsFarPlacesOnBothSides) {
+TEST(MapBinary, KeepsDistantPoints) {
   HdMap map;
   map.elements = {{ElementClass::kLaneDivider,
                    Appearance::kSolid,
@@ -119,7 +119,7 @@ TEST(MapBinary, RefusesEveryTruncation) {
   for (size_t size = 0; size < bytes.size(); ++size) {
     EXPECT_FALSE(decode_map(bytes.substr(0, size), "town.bvm").has_value()) << size;
   }
-  EXPECT_THAT(error_of(bytes + "x"), HasSubstr("bytes, wanted the"));
+  EXPECT_THAT(error_of(bytes + "x"), HasSubstr("as its header states"));
 }
 
 TEST(MapBinary, RefusesEveryFlippedByte) {
@@ -141,7 +141,7 @@ TEST(MapBinary, RefusesEveryFlippedByte) {
   }
 }
 
-TEST(MapBinary, SaysWhatIsWrong) {
+TEST(MapBinary, ErrorsNameTheCause) {
   const std::string bytes = encode_map(kilometre());
   EXPECT_EQ(error_of("BVMP"), "town.bvm: found 4 bytes, wanted a map file of at least 14");
   EXPECT_THAT(error_of("PK" + bytes), HasSubstr("wanted \"BVMP\""));
@@ -153,16 +153,16 @@ TEST(MapBinary, SaysWhatIsWrong) {
   EXPECT_THAT(error_of(damaged), StartsWith("town.bvm: found CRC-32 "));
 }
 
-TEST(MapBinary, RefusesNonsenseBehindAValidChecksum) {
+TEST(MapBinary, RefusesAnInvalidBodyWithAValidChecksum) {
   const std::string head = std::string(1, '\0') + std::string(16, '\0');  // no name, origin (0, 0)
   EXPECT_TRUE(decode_map(framed(head + std::string(2, '\0')), "t").has_value());
   EXPECT_THAT(error_of(framed("")), HasSubstr("the end of the body"));
   EXPECT_THAT(error_of(framed("\x05"
                               "ab")),
-              HasSubstr("a count that the body cannot hold"));
+              HasSubstr("a count that exceeds the body"));
   EXPECT_THAT(error_of(framed(head + std::string(3, '\0'))), HasSubstr("more bytes after"));
   EXPECT_THAT(error_of(framed(head + std::string("\xFF\xFF\xFF\xFF\x7F", 5))),
-              HasSubstr("a count that the body cannot hold"));
+              HasSubstr("a count that exceeds the body"));
   EXPECT_THAT(error_of(framed(std::string(11, '\xFF'))), HasSubstr("more than 64 bits"));
   EXPECT_THAT(error_of(framed(head + std::string("\x01\x03\x00\x00\x00", 5))),
               HasSubstr("an unknown class"));
@@ -196,7 +196,7 @@ class MapFiles : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 };
 
-TEST_F(MapFiles, LoadMapTellsTheFormats) {
+TEST_F(MapFiles, LoadMapRecognisesTheFormats) {
   const auto binary = folder_ / "town.map";
   ASSERT_TRUE(write_map_binary(kilometre(), binary).has_value());
   EXPECT_EQ(load_map(binary).value().name, "kilometre");

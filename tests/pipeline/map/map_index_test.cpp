@@ -11,7 +11,7 @@ MapElement element(ElementClass element_class, std::vector<Eigen::Vector2d> poin
   return {element_class, Appearance::kUnknown, std::move(points)};
 }
 
-TEST(MapIndex, FindsTheSegmentsOfPolylinesAndTheClosingEdgeOfRings) {
+TEST(MapIndex, FindsSegmentsOfPolylinesAndClosingEdgesOfRings) {
   HdMap map;
   map.elements = {
       element(ElementClass::kLaneDivider, {{0, 0}, {10, 0}, {20, 0}}),
@@ -31,7 +31,7 @@ TEST(MapIndex, FindsTheSegmentsOfPolylinesAndTheClosingEdgeOfRings) {
   EXPECT_EQ(found[0].first, 3U);
 }
 
-TEST(MapIndex, AnEmptyMapAndDegenerateElementsHaveNothingToFind) {
+TEST(MapIndex, FindsNothingInDegenerateElements) {
   HdMap map;
   map.elements = {element(ElementClass::kRoadBoundary, {}),
                   element(ElementClass::kRoadBoundary, {{1, 1}}),
@@ -42,7 +42,7 @@ TEST(MapIndex, AnEmptyMapAndDegenerateElementsHaveNothingToFind) {
   EXPECT_TRUE(found.empty());
 }
 
-TEST(MapIndex, AgreesWithASearchThroughAllSegments) {
+TEST(MapIndex, AgreesWithAnExhaustiveSearch) {
   sim::Random random(7);
   HdMap map;
   for (int i = 0; i < 300; ++i) {

@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/random.h"
-#include "tests/support/allocation_counter.h"
-
 namespace bevloc {
 namespace {
 
@@ -36,32 +33,31 @@ Raster draw(const HdMap& map, const Se2& pose = {}) {
   return raster;
 }
 
-/// Column of the centre of mass of one row.
-double centre_col(const Raster& raster, ElementClass channel, int row) {
+/// Centre of mass of `count` cells, whose values `value_at` returns.
+template <typename ValueAt>
+double centre_of_mass(int count, const ValueAt& value_at) {
   double mass = 0.0;
   double moment = 0.0;
-  for (int col = 0; col < kRasterGrid.cols; ++col) {
-    mass += raster.at(channel, row, col);
-    moment += static_cast<double>(col) * raster.at(channel, row, col);
+  for (int i = 0; i < count; ++i) {
+    mass += value_at(i);
+    moment += static_cast<double>(i) * value_at(i);
   }
   return moment / mass;
 }
 
+double centre_col(const Raster& raster, ElementClass channel, int row) {
+  return centre_of_mass(kRasterGrid.cols, [&](int col) { return raster.at(channel, row, col); });
+}
+
 double centre_row(const Raster& raster, ElementClass channel, int col) {
-  double mass = 0.0;
-  double moment = 0.0;
-  for (int row = 0; row < kRasterGrid.rows; ++row) {
-    mass += raster.at(channel, row, col);
-    moment += static_cast<double>(row) * raster.at(channel, row, col);
-  }
-  return moment / mass;
+  return centre_of_mass(kRasterGrid.rows, [&](int row) { return raster.at(channel, row, col); });
 }
 
 constexpr auto kDivider = ElementClass::kLaneDivider;
 constexpr auto kCrossing = ElementClass::kPedestrianCrossing;
 constexpr auto kBoundary = ElementClass::kRoadBoundary;
 
-TEST(Rasterizer, RowZeroIsFarFrontAndColumnZeroFarLeft) {
+TEST(Rasterizer, RowZeroIsTheFrontAndColumnZeroTheLeftEdge) {
   const Raster raster = draw(map_of(kBoundary, {{25, 10}, {29, 14}}));
   const int row = static_cast<int>(std::lround(kRasterGrid.row_of_x(27)));
   const int col = static_cast<int>(std::lround(kRasterGrid.col_of_y(12)));
@@ -75,7 +71,7 @@ TEST(Rasterizer, RowZeroIsFarFrontAndColumnZeroFarLeft) {
 }
 
 TEST(Rasterizer, ALineIsFiveCellsWide) {
-  // On a cell's centre: two full cells either side and nothing beyond.
+  // The line is on a cell centre: two full cells on either side and nothing beyond.
   const double y = kRasterGrid.y_of_col(100);
   const Raster raster = draw(map_of(kDivider, {{-40, y}, {40, y}}));
   for (const int row : {0, 57, 200, 399}) {
@@ -85,7 +81,7 @@ TEST(Rasterizer, ALineIsFiveCellsWide) {
   }
 }
 
-TEST(Rasterizer, LongitudinalLinesLieWithinATenthOfACell) {
+TEST(Rasterizer, LongitudinalLinesAreAccurateToATenthOfACell) {
   for (int i = 0; i < 40; ++i) {
     const double y = -3.0 + 0.0171 * i;
     const double slope = 0.011 * i;
@@ -97,7 +93,7 @@ TEST(Rasterizer, LongitudinalLinesLieWithinATenthOfACell) {
   }
 }
 
-TEST(Rasterizer, LateralLinesLieWithinATenthOfACell) {
+TEST(Rasterizer, LateralLinesAreAccurateToATenthOfACell) {
   for (int i = 0; i < 40; ++i) {
     const double x = 7.0 + 0.0171 * i;
     const double slope = -0.013 * i;
@@ -110,7 +106,7 @@ TEST(Rasterizer, LateralLinesLieWithinATenthOfACell) {
 }
 
 TEST(Rasterizer, DrawsInTheFrameOfThePose) {
-  // The same line seen from two poses: once along the map's axes, once turned and far away.
+  // The same line relative to two poses: at the origin, and rotated far away.
   const Se2 pose{81234.5, -46001.25, 2.3};
   const std::vector<Eigen::Vector2d> line = {{-5, 3}, {4, -2}, {11, 6}};
   std::vector<Eigen::Vector2d> moved;
@@ -132,54 +128,36 @@ TEST(Rasterizer, ACrossingIsItsTwoLongestEdges) {
   EXPECT_EQ(value(8, 0), 255);
   EXPECT_EQ(value(6, 5), 0);
   EXPECT_EQ(value(6, -5), 0);
-  // The closing edge counts as an edge like the others.
+  // Starts the ring at another corner, so that a long edge closes it.
   const Raster turned = draw(map_of(kCrossing, {{4, 5}, {8, 5}, {8, -5}, {4, -5}}));
   EXPECT_EQ(turned.cells, raster.cells);
 }
 
-TEST(Rasterizer, JointsAreClosedAndCrossingsOfLinesDoNotSaturateTwice) {
+TEST(Rasterizer, PolylinesHaveNoGapsAtTheirJoints) {
   const Raster raster = draw(map_of(kDivider, {{0, -3}, {3, 0}, {0, 3}, {-3, 0}}));
   EXPECT_EQ(raster.at(kDivider, static_cast<int>(std::lround(kRasterGrid.row_of_x(3))),
                       static_cast<int>(std::lround(kRasterGrid.col_of_y(0)))),
             255);
 }
 
-TEST(Rasterizer, SegmentsOfManyKilometresAreCutToTheCrop) {
+TEST(Rasterizer, ClipsVeryLongSegments) {
   const Raster raster = draw(map_of(kBoundary, {{-1e6, 2.0}, {1e6, 2.0}}));
   EXPECT_NEAR(centre_col(raster, kBoundary, 13), kRasterGrid.col_of_y(2.0), 0.1);
   const Raster missed = draw(map_of(kBoundary, {{-1e6, 20.0}, {1e6, 20.0}}));
   EXPECT_EQ(missed.sum(kBoundary), 0);
 }
 
-TEST(Rasterizer, ALineJustOutsideStillShowsItsHalf) {
+TEST(Rasterizer, DrawsTheVisibleHalfOfALineOutside) {
   const double outside_m = kRasterGrid.y_range_m() + 0.15;
   const Raster raster = draw(map_of(kDivider, {{-5, outside_m}, {5, outside_m}}));
   EXPECT_EQ(raster.at(kDivider, 200, 0), 255);
   EXPECT_EQ(raster.at(kDivider, 200, 3), 0);
 }
 
-TEST(Rasterizer, RepeatedPointsAndNothingAtAllAreDrawn) {
+TEST(Rasterizer, HandlesRepeatedPointsAndEmptyMaps) {
   const Raster dot = draw(map_of(kDivider, {{0, 0}, {0, 0}}));
   EXPECT_GT(dot.sum(kDivider), 0);
   EXPECT_EQ(draw(HdMap{}).sum(kDivider), 0);
-}
-
-TEST(Rasterizer, AllocatesNothingOnceWarm) {
-  sim::Random random(3);
-  HdMap map;
-  for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector2d start(random.uniform(-100, 100), random.uniform(-100, 100));
-    map.elements.push_back({static_cast<ElementClass>(i % 3),
-                            Appearance::kUnknown,
-                            {start, start + Eigen::Vector2d(5, 1), start + Eigen::Vector2d(9, 4)}});
-  }
-  const MapIndex index(map);
-  MapRasterizer rasterizer(index);
-  Raster raster;
-  rasterizer.draw({}, raster.cells);
-  const int before = test::allocation_count();
-  rasterizer.draw({}, raster.cells);
-  EXPECT_EQ(test::allocation_count(), before);
 }
 
 }  // namespace

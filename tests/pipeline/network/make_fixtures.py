@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Writes the test models of this folder with the outputs that numpy computes for them.
+"""Writes the test models of this folder, and their outputs as numpy computes them.
 
     make_fixtures.py                 writes fixtures/*.onnx and fixtures/*.expected
     make_fixtures.py --nano FILE     writes a model of the shipped size with random weights
 
-Every model is computed while it is built, in float64 and apart from the C++ code. Scales are powers
-of two unless said otherwise, so that int8 results are exact on any machine. `x.expected` holds
-float32 values, all outputs one after the other, every STRIDE-th value for whole networks.
+Computes each model while building it, in float64 and independently of the C++ code. Scales are
+powers of two unless stated otherwise, so that int8 results are exact on every machine.
+`x.expected` holds the outputs as float32, one after the other. For whole networks it holds only
+every 61st value (NETWORK_STRIDE).
 """
 
 from __future__ import annotations
@@ -14,9 +15,10 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from onnx import TensorProto, helper, numpy_helper, save
+from onnx import NodeProto, TensorProto, ValueInfoProto, helper, numpy_helper, save
 
 FIXTURES = Path(__file__).parent / "fixtures"
 NETWORK_STRIDE = 61
@@ -25,7 +27,7 @@ Array = np.ndarray
 
 
 def hashed(count: int, seed: int) -> Array:
-    """The test inputs' pseudo-random numbers, as tests/pipeline/network/model_inputs.h makes them."""
+    """The pseudo-random numbers of the test inputs (tests/pipeline/network/model_inputs.h)."""
     mask = np.uint64(0xFFFFFFFF)
     x = (np.arange(count, dtype=np.uint64) * 2654435761 + np.uint64(seed * 40503)) & mask
     x ^= x >> np.uint64(15)
@@ -38,7 +40,7 @@ def input_bytes(count: int, seed: int) -> Array:
 
 
 def view_table(cells: int, keys: int) -> tuple[Array, Array]:
-    """Index and weight [SLOTS, cells]; a fifth of the weights, and the last cell's, are zero."""
+    """Index and weight [SLOTS, cells]. 1/5 of the weights, and those of the last cell, are zero."""
     h = hashed(SLOTS * cells, 77)
     weight = np.where(h % 5 == 0, 0, (h >> np.uint64(8)) & np.uint64(127)) / 1024.0
     weight = weight.reshape(SLOTS, cells)
@@ -48,21 +50,30 @@ def view_table(cells: int, keys: int) -> tuple[Array, Array]:
 
 @dataclass
 class Real:
-    """A real-valued tensor of the graph; `data` is None where nothing is computed."""
+    """A real-valued tensor of the graph. `data` is None if the model is not computed."""
 
     name: str
     shape: tuple[int, ...]
     scale: float
     data: Array | None
 
+    @property
+    def values(self) -> Array:
+        """The data of a computed tensor."""
+        assert self.data is not None
+        return self.data
+
 
 class Model:
-    """Builds an ONNX graph and computes it on the way."""
+    """Builds an ONNX graph and computes its outputs at the same time."""
 
     def __init__(self, name: str, quantized: bool, evaluate: bool = True, odd_scales: bool = False):
         self.name, self.quantized, self.evaluate, self.odd = name, quantized, evaluate, odd_scales
         self.rng = np.random.default_rng(sum(name.encode()))
-        self.nodes, self.constants, self.inputs, self.outputs = [], [], [], []
+        self.nodes: list[NodeProto] = []
+        self.constants: list[TensorProto] = []
+        self.inputs: list[ValueInfoProto] = []
+        self.outputs: list[ValueInfoProto] = []
         self.expected: list[Array] = []
         self.metadata: dict[str, str] = {}
         self.count = 0
@@ -71,12 +82,14 @@ class Model:
         self.count += 1
         return f"{stem}_{self.count}"
 
-    def constant(self, data: Array, stem: str = "c") -> str:
+    def constant(self, data: Array | np.float32, stem: str = "c") -> str:
         name = self.fresh(stem)
         self.constants.append(numpy_helper.from_array(data, name))
         return name
 
-    def node(self, op: str, inputs: list[str], output: str | None = None, **attributes) -> str:
+    def node(
+        self, op: str, inputs: list[str], output: str | None = None, **attributes: Any
+    ) -> str:
         output = output or self.fresh(op.lower())
         self.nodes.append(helper.make_node(op, inputs, [output], name=f"{output}", **attributes))
         return output
@@ -91,9 +104,13 @@ class Model:
 
     def input(self, name: str, kind: str, shape: tuple[int, ...], scale: float, seed: int,
               declared: tuple[int, ...] | None = None) -> Real:
-        """An 8-bit input and its DequantizeLinear; in float models of ops, a float input."""
+        """Adds an 8-bit input and its DequantizeLinear.
+
+        `declared` is the shape in the file, if it differs from `shape`.
+        """
         declared = declared or shape
-        values = input_bytes(int(np.prod(shape)), seed).reshape(shape) - (128 if kind == "int8" else 0)
+        values = input_bytes(int(np.prod(shape)), seed).reshape(shape)
+        values = values - (128 if kind == "int8" else 0)
         data = values * scale if self.evaluate else None
         types = {"int8": TensorProto.INT8, "uint8": TensorProto.UINT8}
         self.inputs.append(helper.make_tensor_value_info(name, types[kind], declared))
@@ -106,7 +123,7 @@ class Model:
         self.node("Identity", [x.name], name)
         self.outputs.append(helper.make_tensor_value_info(name, TensorProto.FLOAT, x.shape))
         if self.evaluate:
-            self.expected.append(x.data.reshape(-1)[::stride])
+            self.expected.append(x.values.reshape(-1)[::stride])
 
     # --- quantization ------------------------------------------------------------------------
 
@@ -123,7 +140,7 @@ class Model:
         if self.evaluate:
             limits = np.iinfo(kind)
             step = float(np.float32(scale))
-            data = np.clip(np.rint(x.data / step), limits.min, limits.max) * step
+            data = np.clip(np.rint(x.values / step), limits.min, limits.max) * step
         return self.real(self.dequantize(q, kind, scale), data, x.shape, scale)
 
     # --- operators ---------------------------------------------------------------------------
@@ -131,7 +148,7 @@ class Model:
     def conv(self, x: Real, channels: int, size: int = 3, stride: int = 1, groups: int = 1,
              pads: tuple[int, int, int, int] | None = None, with_bias: bool = True,
              gain: float = 1.0) -> Real:
-        """`gain`: rough ratio of output to input magnitude, through the weight scale."""
+        """Adds a convolution. `gain` scales the weights: it is about the ratio of output to input."""
         pads = pads or (size // 2,) * 4
         depth = x.shape[1] // groups
         q = self.rng.integers(-63, 64, (channels, depth, size, size))
@@ -143,7 +160,7 @@ class Model:
         bias_q = self.rng.integers(-2000, 2000, channels)
         bias = bias_q * bias_scale.astype(float)
         if self.quantized:
-            channel_axis = {"axis": 0}
+            channel_axis: dict[str, Any] = {"axis": 0}
             w = self.node("DequantizeLinear", [self.constant(q.astype(np.int8), "w"),
                                                self.constant(w_scale, "ws")], **channel_axis)
             b = self.node("DequantizeLinear", [self.constant(bias_q.astype(np.int32), "b"),
@@ -159,25 +176,24 @@ class Model:
                  (x.shape[3] + pads[1] + pads[3] - size) // stride + 1)
         data = None
         if self.evaluate:
-            data = convolve(x.data, weight, stride, pads, groups)
+            data = convolve(x.values, weight, stride, pads, groups)
             data = data + (bias[None, :, None, None] if with_bias else 0.0)
         return self.real(name, data, shape, 0.0)
 
     def relu(self, x: Real) -> Real:
-        data = np.maximum(x.data, 0.0) if self.evaluate else None
+        data = np.maximum(x.values, 0.0) if self.evaluate else None
         return self.real(self.node("Relu", [x.name]), data, x.shape, x.scale)
 
     def add(self, x: Real, y: Real) -> Real:
-        data = x.data + y.data if self.evaluate else None
+        data = x.values + y.values if self.evaluate else None
         return self.real(self.node("Add", [x.name, y.name]), data, x.shape, 0.0)
 
     def max_pool(self, x: Real, size: int, stride: int) -> Real:
         pad = size // 2
         name = self.node("MaxPool", [x.name], kernel_shape=[size, size], strides=[stride, stride],
                          pads=[pad] * 4)
-        padded = np.pad(x.data, ((0, 0), (0, 0), (pad, pad), (pad, pad)), constant_values=-np.inf)
-        windows = np.lib.stride_tricks.sliding_window_view(padded, (size, size), (2, 3))
-        data = windows[:, :, ::stride, ::stride].max((-1, -2))
+        padded = np.pad(x.values, ((0, 0), (0, 0), (pad, pad), (pad, pad)), constant_values=-np.inf)
+        data = windows_of(padded, size)[:, :, ::stride, ::stride].max((-1, -2))
         return self.real(name, data, data.shape, x.scale)
 
     def upsample(self, x: Real, mode: str = "nearest") -> Real:
@@ -188,22 +204,22 @@ class Model:
         n, c, h, w = x.shape
         data = None
         if self.evaluate and mode == "nearest":
-            data = x.data.repeat(2, 2).repeat(2, 3)
+            data = x.values.repeat(2, 2).repeat(2, 3)
         elif self.evaluate:
-            data = twice_linear(twice_linear(x.data, 2), 3)
+            data = twice_linear(twice_linear(x.values, 2), 3)
         return self.real(name, data, (n, c, 2 * h, 2 * w), x.scale)
 
     def depth_to_space(self, x: Real, block: int, mode: str = "DCR") -> Real:
         name = self.node("DepthToSpace", [x.name], blocksize=block, mode=mode)
         n, c, h, w = x.shape
         c //= block * block
+        shape = (n, c, h * block, w * block)
         data = None
         if self.evaluate and mode == "DCR":
-            data = x.data.reshape(n, block, block, c, h, w).transpose(0, 3, 4, 1, 5, 2)
+            data = x.values.reshape(n, block, block, c, h, w).transpose(0, 3, 4, 1, 5, 2)
         elif self.evaluate:
-            data = x.data.reshape(n, c, block, block, h, w).transpose(0, 1, 4, 2, 5, 3)
-        shape = (n, c, h * block, w * block)
-        return self.real(name, data.reshape(shape) if self.evaluate else None, shape, x.scale)
+            data = x.values.reshape(n, c, block, block, h, w).transpose(0, 1, 4, 2, 5, 3)
+        return self.real(name, None if data is None else data.reshape(shape), shape, x.scale)
 
     def space_to_depth(self, x: Real, block: int) -> Real:
         name = self.node("SpaceToDepth", [x.name], blocksize=block)
@@ -211,13 +227,13 @@ class Model:
         shape = (n, c * block * block, h // block, w // block)
         data = None
         if self.evaluate:
-            data = x.data.reshape(n, c, h // block, block, w // block, block)
+            data = x.values.reshape(n, c, h // block, block, w // block, block)
             data = data.transpose(0, 3, 5, 1, 2, 4).reshape(shape)
         return self.real(name, data, shape, x.scale)
 
     def concat(self, parts: list[Real]) -> Real:
         name = self.node("Concat", [p.name for p in parts], axis=1)
-        data = np.concatenate([p.data for p in parts], 1)
+        data = np.concatenate([p.values for p in parts], 1)
         return self.real(name, data, data.shape, parts[0].scale)
 
     def view_ports(self, cells: int) -> None:
@@ -226,7 +242,7 @@ class Model:
         self.inputs.append(helper.make_tensor_value_info("view_weight", TensorProto.FLOAT, shape))
 
     def view(self, x: Real, rows: int, cols: int, channels_first: bool = False) -> Real:
-        """Gather, Mul and ReduceSum, with the channels last or first."""
+        """The view transform: Gather, Mul and ReduceSum, with the channels last or first."""
         n, c, h, w = x.shape
         cells = rows * cols
 
@@ -250,14 +266,14 @@ class Model:
         data = None
         if self.evaluate:
             index, weight = view_table(cells, n * h * w)
-            features = x.data.transpose(0, 2, 3, 1).reshape(-1, c)
+            features = x.values.transpose(0, 2, 3, 1).reshape(-1, c)
             data = (features[index] * weight[:, :, None]).sum(0).T.reshape(1, c, rows, cols)
         return self.real(name, data, (1, c, rows, cols), 0.0)
 
     # --- blocks ------------------------------------------------------------------------------
 
-    def unit(self, x: Real, channels: int, scale: float, **options) -> Real:
-        """Convolution, ReLU, uint8."""
+    def unit(self, x: Real, channels: int, scale: float, **options: Any) -> Real:
+        """Convolution, ReLU and quantization to uint8."""
         return self.quantize(self.relu(self.conv(x, channels, **options)), "uint8", scale)
 
     def residual(self, x: Real, scale: float, linear: bool = False) -> Real:
@@ -278,11 +294,17 @@ class Model:
             values.tofile(FIXTURES / f"{self.name}.expected")
 
 
+def windows_of(x: Array, size: int) -> Array:
+    """All windows of size x size: [n, c, rows, cols] -> [n, c, row, col, size, size]."""
+    # NumPy 1.24 declares only a single axis.
+    return np.lib.stride_tricks.sliding_window_view(  # type: ignore[call-overload]
+        x, (size, size), (2, 3)
+    )
+
+
 def convolve(x: Array, weight: Array, stride: int, pads: tuple[int, ...], groups: int) -> Array:
     x = np.pad(x, ((0, 0), (0, 0), (pads[0], pads[2]), (pads[1], pads[3])))
-    size = weight.shape[2]
-    windows = np.lib.stride_tricks.sliding_window_view(x, (size, size), (2, 3))
-    windows = windows[:, :, ::stride, ::stride]
+    windows = windows_of(x, weight.shape[2])[:, :, ::stride, ::stride]
     n, c, h, w = windows.shape[:4]
     outputs = []
     for g in range(groups):
@@ -293,7 +315,7 @@ def convolve(x: Array, weight: Array, stride: int, pads: tuple[int, ...], groups
 
 
 def twice_linear(x: Array, axis: int) -> Array:
-    """Linear interpolation at half-pixel positions: quarters from the neighbours."""
+    """Interpolates at half-pixel positions: 3/4 of a cell plus 1/4 of its neighbour."""
     x = np.moveaxis(x, axis, -1)
     before = np.concatenate([x[..., :1], x[..., :-1]], -1)
     after = np.concatenate([x[..., 1:], x[..., -1:]], -1)
@@ -305,10 +327,12 @@ def twice_linear(x: Array, axis: int) -> Array:
 
 
 def operator_models(quantized: bool) -> list[Model]:
-    """Each of these is written quantized and in float."""
+    """Models of single operators or small blocks. Each exists quantized and in float."""
     models = []
 
-    def start(name: str, kind: str = "uint8", shape: tuple[int, ...] = (2, 6, 9, 11)):
+    def start(
+        name: str, kind: str = "uint8", shape: tuple[int, ...] = (2, 6, 9, 11)
+    ) -> tuple[Model, Real]:
         model = Model(f"{name}_{'int8' if quantized else 'float'}", quantized)
         models.append(model)
         return model, model.input("x", kind, shape, 2.0**-6, seed=1)
@@ -330,13 +354,13 @@ def operator_models(quantized: bool) -> list[Model]:
     y = model.residual(model.unit(x, 16, 2.0**-6), 2.0**-5)
     model.output(model.residual(y, 2.0**-5), "y")
 
-    # The skip's memory may not be overwritten: it is read again at the end.
+    # The residual is read again at the end, so its memory must not be overwritten.
     model, x = start("residual_kept")
     y = model.unit(x, 16, 2.0**-6)
     z = model.residual(y, 2.0**-5)
     model.output(model.quantize(model.add(model.conv(z, 16), y), "int8", 2.0**-4), "y")
 
-    # The skip is a projection, int8 beside uint8, as in a strided block.
+    # The residual comes from a convolution and is int8, as in a strided block.
     model, x = start("residual_projected")
     y = model.unit(x, 16, 2.0**-6)
     skip = model.quantize(model.conv(y, 24, size=1, stride=2), "int8", 2.0**-5)
@@ -347,7 +371,7 @@ def operator_models(quantized: bool) -> list[Model]:
     model, x = start("residual_unrounded")
     model.output(model.residual(model.unit(x, 16, 2.0**-6), 2.0**-5, linear=True), "y")
 
-    # Both sides of the sum are rounded before it: nothing can be folded.
+    # Both terms are rounded before the sum, so nothing can be folded.
     model, x = start("add")
     y = model.quantize(model.conv(x, 8), "int8", 2.0**-5)
     z = model.unit(x, 8, 2.0**-6)
@@ -356,7 +380,7 @@ def operator_models(quantized: bool) -> list[Model]:
     model, x = start("max_pool")
     model.output(model.max_pool(model.unit(x, 16, 2.0**-6), 3, 2), "y")
 
-    # A feature pyramid's step: the coarse level is added to the fine one.
+    # One step of a feature pyramid: adds the coarse level to the fine level.
     model, x = start("upsample_nearest", shape=(2, 6, 8, 12))
     fine = model.conv(model.unit(x, 16, 2.0**-6), 8, size=1)
     coarse = model.conv(model.unit(x, 16, 2.0**-6, stride=2), 8, size=1)
@@ -381,7 +405,7 @@ def operator_models(quantized: bool) -> list[Model]:
     parts = [model.unit(x, 8, 2.0**-6), model.unit(x, 5, 2.0**-6)]
     model.output(model.unit(model.concat(parts), 4, 2.0**-6), "y")
 
-    # Scales differ: the parts meet as real values.
+    # The scales differ, so the parts must be concatenated as real values.
     model, x = start("concat_rescaled")
     parts = [model.unit(x, 8, 2.0**-6), model.unit(x, 5, 2.0**-5)]
     y = model.quantize(model.concat(parts), "uint8", 2.0**-5)
@@ -407,7 +431,7 @@ def solver_metadata(model: Model) -> None:
 
 
 def tiny_network(quantized: bool) -> Model:
-    """All parts of the real network with few channels and scales that are no powers of two."""
+    """All parts of the shipped network, with few channels and scales other than powers of two."""
     model = Model(f"tiny_network_{'int8' if quantized else 'float'}", quantized, odd_scales=True)
     model.rng = np.random.default_rng(7)
     s = 1.0 / 50.0
@@ -436,7 +460,7 @@ def tiny_network(quantized: bool) -> Model:
 
 
 def nano_network() -> Model:
-    """The shipped network's size (training/model.py), with random weights; not computed here."""
+    """A network of the shipped size (training/model.py) with random weights. Not computed."""
     model = Model("nano-random", quantized=True, evaluate=False, odd_scales=True)
     s = 1.0 / 50.0
     images = model.input("images", "int8", (6, 3, 96, 320), 1.0 / 64.0, seed=1)
@@ -466,7 +490,7 @@ def nano_network() -> Model:
 
 
 def wrong_shape() -> Model:
-    """Images of another size than the network's."""
+    """A model whose images do not have the size that Network requires."""
     model = Model("wrong_shape", quantized=True)
     x = model.input("images", "int8", (6, 3, 4, 4), 1.0 / 64.0, seed=1)
     model.output(model.conv(x, 2), "bev_features")

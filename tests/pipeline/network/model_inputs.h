@@ -1,4 +1,5 @@
-// The pseudo-random inputs and the files of the test models (make_fixtures.py makes the same).
+// Pseudo-random inputs for the test models, equal to those of make_fixtures.py, and the files of
+// the models.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/network/view_table.h"
+#include "pipeline/network/view/view_table.h"
 
 namespace bevloc::test {
 
+/// A pseudo-random number that depends on `i` and `seed`.
 inline uint32_t hashed(uint32_t i, uint32_t seed) {
   uint32_t x = i * 2654435761U + seed * 40503U;
   x ^= x >> 15;
@@ -20,7 +22,8 @@ inline uint32_t hashed(uint32_t i, uint32_t seed) {
   return x ^ (x >> 13);
 }
 
-/// Bytes 0 to 255; of an int8 input: the value plus 128.
+/// Fills an input with pseudo-random elements. For the same seed, an int8 element is the uint8
+/// element minus 128.
 inline void fill_input(std::span<uint8_t> input, uint32_t seed) {
   for (size_t i = 0; i < input.size(); ++i) {
     input[i] = static_cast<uint8_t>(hashed(static_cast<uint32_t>(i), seed) >> 24);
@@ -33,6 +36,8 @@ inline void fill_input(std::span<int8_t> input, uint32_t seed) {
   }
 }
 
+/// A pseudo-random table for `cells` BEV cells whose entries point to `keys` features. About 1/5 of
+/// the weights, and all weights of the last cell, are 0.
 inline ViewTable view_table(int cells, int keys) {
   ViewTable table;
   for (int i = 0; i < kViewSlots * cells; ++i) {
@@ -44,6 +49,7 @@ inline ViewTable view_table(int cells, int keys) {
   return table;
 }
 
+/// The path of a file in fixtures/.
 inline std::string fixture(const std::string& file) {
   return std::string(BEVLOC_SOURCE_DIR "/tests/pipeline/network/fixtures/") + file;
 }
@@ -53,6 +59,7 @@ inline std::string read_bytes(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// The outputs that numpy computed for a model.
 inline std::vector<float> expected_values(const std::string& model) {
   const std::string bytes = read_bytes(fixture(model + ".expected"));
   std::vector<float> values(bytes.size() / sizeof(float));

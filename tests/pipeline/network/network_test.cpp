@@ -1,6 +1,5 @@
-// The whole network on a tiny model, against numpy, and every way in which a file can be refused.
-// Built for each engine; for oneDNN with the best instructions of this CPU, and capped to AVX2
-// without VNNI.
+// The whole network with a tiny model, compared with numpy, and each reason to refuse a model file.
+// engines/under_test/ lists the engines that these test cases run on.
 #include "pipeline/network/network.h"
 
 #include <array>
@@ -13,27 +12,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/pipeline/network/engines.h"
+#include "evaluation/bench/allocation_count.h"
+#include "tests/pipeline/network/engines/engine_under_test.h"
 #include "tests/pipeline/network/model_inputs.h"
-#include "tests/support/allocation_counter.h"
 
 namespace bevloc {
 namespace {
 
 using ::testing::HasSubstr;
 
-constexpr int kStride = 61;  // of the values in tiny_network_*.expected
-constexpr NetworkOptions kOptions{
-    .threads = 1, .isa = BEVLOC_TEST_ISA, .engine = nn::BEVLOC_TEST_ENGINE};
+constexpr int kStride = 61;  // tiny_network_*.expected has every 61st value
 
-constexpr NetworkOptions with_threads(int threads) {
-  NetworkOptions options = kOptions;
-  options.threads = threads;
-  return options;
+NetworkOptions options(int threads = 1) {
+  const test::EngineUnderTest& tested = test::engine_under_test();
+  return {.threads = threads, .isa = tested.isa, .engine = tested.make};
 }
 
-std::unique_ptr<Network> load(const std::string& model, const NetworkOptions& options = kOptions) {
-  auto network = Network::load(test::fixture(model + ".onnx"), options);
+std::unique_ptr<Network> load(const std::string& model, int threads = 1) {
+  auto network = Network::load(test::fixture(model + ".onnx"), options(threads));
   if (!network) {
     ADD_FAILURE() << network.error().message;
     std::abort();
@@ -79,8 +75,9 @@ TEST(Network, Int8AgreesWithNumpy) {
   const std::vector<float> expected = test::expected_values("tiny_network_int8");
   ASSERT_EQ(found.size(), expected.size());
   EXPECT_GT(root_mean_square(expected), 0.1);
-  // The scales are odd: a sum that float32 puts on the other side of a rounding edge than float64
-  // does (one in 100,000) shifts a value by a step, and through the gather many outputs a little.
+  // The scales are not powers of two. About one sum in 100,000 rounds differently in float32 than
+  // in float64. It changes its element by one step and, through the view transform, many outputs a
+  // little.
   const auto same = std::ranges::count_if(std::views::iota(size_t{0}, found.size()), [&](size_t i) {
     return std::abs(found[i] - expected[i]) < 1e-5F;
   });
@@ -98,7 +95,7 @@ TEST(Network, FloatAgreesWithNumpy) {
 
 TEST(Network, ThreadsDoNotChangeTheResult) {
   const auto one = load("tiny_network_int8");
-  const auto two = load("tiny_network_int8", with_threads(2));
+  const auto two = load("tiny_network_int8", 2);
   run_all(*one);
   run_all(*two);
   EXPECT_EQ(all_outputs(*one), all_outputs(*two));
@@ -138,7 +135,7 @@ TEST(Network, ReadsTheInputsOfThisRun) {
   EXPECT_FALSE(std::equal(before.begin(), before.begin() + features, after.begin()));
   EXPECT_TRUE(std::equal(before.begin() + features, before.begin() + 2 * features,
                          after.begin() + features))
-      << "the map's features changed with the images";
+      << "the map features changed with the images";
 }
 
 TEST(Network, WithoutCamerasTheImagesDoNotMatter) {
@@ -176,60 +173,60 @@ TEST(Network, AllocatesNothingInARun) {
   const auto network = load("tiny_network_int8");
   const ViewTable table = test::view_table(kFeatureGrid.cells(), kCameraCount * kImageFeatureCells);
   run_all(*network);
-  test::AllocationCounter counter;
+  bench::AllocationCallers callers;
   network->set_view_table(table);
   run_all(*network);
-  EXPECT_EQ(counter.outside_of("libdnnl"), 0);
+  EXPECT_EQ(callers.outside_of("libdnnl"), 0);
 }
 
-/// Our own kernels leave nothing of it to oneDNN, which allocates.
+/// With our own kernels, the shipped model uses no oneDNN primitives, which would allocate.
 TEST(Network, TheShippedModelAllocatesNothingAtAll) {
-  auto network = Network::load(BEVLOC_SOURCE_DIR "/models/nano.onnx", kOptions);
+  auto network = Network::load(BEVLOC_SOURCE_DIR "/models/nano.onnx", options());
   ASSERT_TRUE(network) << network.error().message;
   run_all(**network);
-  const int before = test::allocation_count();
+  const uint64_t before = bench::allocation_count();
   run_all(**network);
-  EXPECT_EQ(test::allocation_count(), before);
+  EXPECT_EQ(bench::allocation_count(), before);
 }
 
 TEST(Network, DoesOtherWorkOnItsThreadsWithoutAllocating) {
   for (const int threads : {1, 2, 3}) {
-    const auto network = load("tiny_network_int8", with_threads(threads));
-    std::array<int, 7> turns{};
+    const auto network = load("tiny_network_int8", threads);
+    std::array<int, 7> calls{};
     std::array<std::thread::id, 7> workers;
-    const auto turn = [&turns, &workers](int index) {
-      ++turns[index];
+    const auto body = [&calls, &workers](int index) {
+      ++calls[index];
       workers[index] = std::this_thread::get_id();
     };
-    network->for_each_turn(static_cast<int>(turns.size()), turn);
-    const int before = test::allocation_count();
-    network->for_each_turn(static_cast<int>(turns.size()), turn);
-    network->for_each_turn(0, turn);
-    EXPECT_EQ(test::allocation_count(), before);
-    EXPECT_THAT(turns, ::testing::Each(2));
+    network->parallel_for(static_cast<int>(calls.size()), body);
+    const uint64_t before = bench::allocation_count();
+    network->parallel_for(static_cast<int>(calls.size()), body);
+    network->parallel_for(0, body);
+    EXPECT_EQ(bench::allocation_count(), before);
+    EXPECT_THAT(calls, ::testing::Each(2));
     if (threads > 1) continue;
     EXPECT_THAT(workers, ::testing::Each(std::this_thread::get_id()));
   }
 }
 
 TEST(Network, AllocationCounterCounts) {
-  test::AllocationCounter counter;
+  bench::AllocationCallers callers;
   const std::vector<int> numbers(1000);
   EXPECT_EQ(numbers.size(), 1000U);
-  EXPECT_GE(counter.outside_of("libdnnl"), 1);
+  EXPECT_GE(callers.outside_of("libdnnl"), 1);
 }
 
 class RefusedModel : public ::testing::Test {
  protected:
   std::string message_for(const std::string& path) {
-    const auto network = Network::load(path, kOptions);
+    const auto network = Network::load(path, options());
     return network ? "loaded" : network.error().message;
   }
 
   std::string message_for_bytes(const std::string& bytes) {
     const std::string path = ::testing::TempDir() + "/" +
                              ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
-                             BEVLOC_TEST_NAME + ".onnx";
+                             test::engine_under_test().name + ".onnx";
     std::ofstream(path, std::ios::binary) << bytes;
     const std::string message = message_for(path);
     std::filesystem::remove(path);
@@ -237,7 +234,8 @@ class RefusedModel : public ::testing::Test {
     return message;
   }
 
-  /// The tiny network with all occurrences of a text replaced by one of the same length.
+  /// The message for the tiny network with all occurrences of a text replaced by another text of
+  /// the same length.
   std::string message_after_replacing(const std::string& from, const std::string& to) {
     std::string bytes = test::read_bytes(test::fixture("tiny_network_int8.onnx"));
     size_t count = 0;
@@ -262,7 +260,7 @@ TEST_F(RefusedModel, CutOffAtAnyPlace) {
     EXPECT_THAT(message_for_bytes(whole.substr(0, length)),
                 HasSubstr("is not a complete ONNX file"));
   }
-  EXPECT_THAT(message_for_bytes(""), HasSubstr("there is no graph in it"));
+  EXPECT_THAT(message_for_bytes(""), HasSubstr("contains no graph"));
 }
 
 TEST_F(RefusedModel, SomethingElse) {
@@ -311,21 +309,21 @@ TEST_F(RefusedModel, MetadataThatIsNoPositiveNumber) {
 }
 
 TEST_F(RefusedModel, NoThreads) {
-  const auto network = Network::load(test::fixture("tiny_network_int8.onnx"), with_threads(0));
+  const auto network = Network::load(test::fixture("tiny_network_int8.onnx"), options(0));
   ASSERT_FALSE(network);
   EXPECT_EQ(network.error().message, "network: 0 threads, wanted at least 1");
 }
 
 TEST_F(RefusedModel, AnotherInstructionSetThanThisProcessUses) {
   ASSERT_NE(load("tiny_network_int8"), nullptr);
-  NetworkOptions options = kOptions;
-  options.isa = IsaCap::kAvx512;
-  const auto network = Network::load(test::fixture("tiny_network_int8.onnx"), options);
+  NetworkOptions capped = options();
+  capped.isa = IsaCap::kAvx512;
+  const auto network = Network::load(test::fixture("tiny_network_int8.onnx"), capped);
   ASSERT_FALSE(network);
-  EXPECT_THAT(network.error().message, HasSubstr(BEVLOC_TEST_CAP_REFUSAL));
+  EXPECT_THAT(network.error().message, HasSubstr(test::engine_under_test().cap_refusal));
 }
 
-/// Any single damaged byte must give a network or an error, never a crash.
+/// With any single damaged byte, loading must report an error and never crash.
 TEST_F(RefusedModel, SurvivesDamagedBytes) {
   const std::string whole = test::read_bytes(test::fixture("wrong_shape.onnx"));
   for (size_t i = 0; i < whole.size(); ++i) {

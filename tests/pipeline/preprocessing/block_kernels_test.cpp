@@ -1,4 +1,4 @@
-// The kernels for blocks of pixels against the plain code.
+// Compares the block kernels with the plain code.
 #include "pipeline/preprocessing/block_kernels.h"
 
 #include <algorithm>
@@ -28,21 +28,23 @@ int below(Random& random, int end) {
   return static_cast<int>(random() % static_cast<unsigned>(end));
 }
 
-/// Some even, some with all on one or two pixels, as at a frame's edges.
+/// Fills in random weights. Sometimes one or two pixels have all the weight, as at image edges.
 void fill_weights(Random& random, std::span<uint16_t> weights) {
   std::ranges::fill(weights, uint16_t{0});
-  int left = RemapTable::kWeightSum;
+  int remainder = RemapTable::kWeightSum;
   const int kind = below(random, 10);
-  const int largest = kind == 0 ? left : kind == 1 ? 255 : 1 + left / (below(random, 4) + 1);
-  while (left > 0) {
-    const int weight = std::min(left, kind < 2 ? largest : below(random, largest) + 1);
+  const int largest = kind == 0   ? remainder
+                      : kind == 1 ? 255
+                                  : 1 + remainder / (below(random, 4) + 1);
+  while (remainder > 0) {
+    const int weight = std::min(remainder, kind < 2 ? largest : below(random, largest) + 1);
     const int tap = below(random, static_cast<int>(weights.size()));
     weights[tap] = static_cast<uint16_t>(weights[tap] + weight);
-    left -= weight;
+    remainder -= weight;
   }
 }
 
-/// Neighbours look anywhere; some see nothing.
+/// Each pixel has a box at a random position; some pixels have no weights.
 RemapTable random_table(Random& random, int taps, int width, int height) {
   RemapTable table;
   table.taps = taps;
@@ -61,7 +63,7 @@ RemapTable random_table(Random& random, int taps, int width, int height) {
   return table;
 }
 
-/// Bytes of any value, or only of the least and the greatest.
+/// Fills with random bytes, or only with 0 and 255 if `is_extreme`.
 void fill(Random& random, std::span<uint8_t> bytes, bool is_extreme) {
   for (uint8_t& byte : bytes) {
     byte = static_cast<uint8_t>(is_extreme ? (random() & 4) / 4 * 255 : random());
@@ -77,7 +79,7 @@ class BlockKernels : public testing::TestWithParam<std::tuple<int, bool, bool>> 
 
   static int taps() { return std::get<0>(GetParam()); }
 
-  /// Rows of so many bytes, with a few between them.
+  /// A plane with padding between its rows.
   ImagePlane plane(int row_bytes, int rows) {
     const std::ptrdiff_t stride = row_bytes + 6;
     const size_t size = static_cast<size_t>(stride) * (rows - 1) + row_bytes;
@@ -86,14 +88,14 @@ class BlockKernels : public testing::TestWithParam<std::tuple<int, bool, bool>> 
     return {memory_.back()->bytes().data(), stride};
   }
 
-  template <typename Remap, typename Plain, typename Picture>
-  void expect_same(Remap& remap, Plain& plain, const Picture& picture) {
+  template <typename Remap, typename Plain, typename Image>
+  void expect_same(Remap& remap, Plain& plain, const Image& image) {
     Planes wanted(kPlanesSize, 1);
     Planes planes(kPlanesSize, 2);
-    plain(picture, table_, kAllNetworkPixels, wanted.data());
-    remap(picture, table_, planes.data());
+    plain(image, table_, kAllNetworkPixels, wanted.data());
+    remap(image, table_, planes.data());
     const auto difference = std::ranges::mismatch(planes, wanted).in1;
-    EXPECT_EQ(difference - planes.begin(), kPlanesSize) << "this value is another one";
+    EXPECT_EQ(difference - planes.begin(), kPlanesSize) << "index of the first different value";
   }
 
   Random random_{4711};
@@ -101,12 +103,12 @@ class BlockKernels : public testing::TestWithParam<std::tuple<int, bool, bool>> 
   std::vector<std::unique_ptr<test::GuardedBytes>> memory_;
 };
 
-TEST_P(BlockKernels, OfRgbGiveWhatThePlainCodeGives) {
+TEST_P(BlockKernels, OfRgbEqualThePlainCode) {
   const auto [data, stride] = plane(3 * kWidth, kHeight);
   expect_same(remap_rgb, remap_rgb_plain, RgbView{data, kWidth, kHeight, stride});
 }
 
-TEST_P(BlockKernels, OfPackedYuvGiveWhatThePlainCodeGives) {
+TEST_P(BlockKernels, OfPackedYuvEqualThePlainCode) {
   for (const int luma : {0, 1}) {
     const auto [data, stride] = plane(2 * kWidth, kHeight);
     expect_same(remap_yuv, remap_yuv_plain,
@@ -120,7 +122,7 @@ TEST_P(BlockKernels, OfPackedYuvGiveWhatThePlainCodeGives) {
   }
 }
 
-TEST_P(BlockKernels, OfNv12GiveWhatThePlainCodeGives) {
+TEST_P(BlockKernels, OfNv12EqualThePlainCode) {
   for (const bool is_full : {false, true}) {
     const ImagePlane luma = plane(kWidth, kHeight);
     const auto [data, stride] = plane(kWidth, kHeight / 2);
@@ -135,7 +137,7 @@ TEST_P(BlockKernels, OfNv12GiveWhatThePlainCodeGives) {
   }
 }
 
-TEST_P(BlockKernels, OfPlanarYuvGiveWhatThePlainCodeGives) {
+TEST_P(BlockKernels, OfPlanarYuvEqualThePlainCode) {
   for (const int shift_x : {0, 1}) {
     for (const int shift_y : {0, 1}) {
       const int cols = kWidth >> shift_x;
@@ -151,38 +153,38 @@ TEST_P(BlockKernels, OfPlanarYuvGiveWhatThePlainCodeGives) {
   }
 }
 
-TEST_P(BlockKernels, OfBayerGiveWhatThePlainCodeGives) {
+TEST_P(BlockKernels, OfBayerEqualThePlainCode) {
   for (const PixelFormat format : kBayerFormats) {
     SCOPED_TRACE(to_string(format));
-    ImageView picture;
-    picture.format = format;
-    picture.width = kWidth;
-    picture.height = kHeight;
-    picture.planes[0] = plane(kWidth, kHeight);
-    expect_same(remap_bayer, remap_bayer_plain, picture);
+    ImageView image;
+    image.format = format;
+    image.width = kWidth;
+    image.height = kHeight;
+    image.planes[0] = plane(kWidth, kHeight);
+    expect_same(remap_bayer, remap_bayer_plain, image);
   }
 }
 
-TEST_P(BlockKernels, AreThereForUsualBoxesOnCpusWithVectors) {
+TEST_P(BlockKernels, ExistForCommonBoxesOnCpusWithAvx2) {
 #ifdef __x86_64__
-  const bool has_them = __builtin_cpu_supports("avx2") && taps() <= RemapBlocks::kMaxTaps;
+  const bool has_kernels = __builtin_cpu_supports("avx2") && taps() <= RemapBlocks::kMaxTaps;
 #else
-  const bool has_them = false;
+  const bool has_kernels = false;
 #endif
   YuvLayout halved;
   halved.chroma_shift_x = 1;
-  EXPECT_EQ(rgb_kernel_for(taps()) != nullptr, has_them);
-  EXPECT_EQ(yuv_kernel_for(halved, taps()) != nullptr, has_them);
-  EXPECT_EQ(bayer_kernel_for(taps()) != nullptr, has_them);
+  EXPECT_EQ(rgb_kernel_for(taps()) != nullptr, has_kernels);
+  EXPECT_EQ(yuv_kernel_for(halved, taps()) != nullptr, has_kernels);
+  EXPECT_EQ(bayer_kernel_for(taps()) != nullptr, has_kernels);
 }
 
-/// Each pixel in a block of its own place, or among the others; some of either.
-TEST_P(BlockKernels, LeaveNoPixelOut) {
+/// Each pixel is in one block or in a range for the plain code, or in both.
+TEST_P(BlockKernels, CoverEveryPixel) {
   const RemapBlocks& blocks = table_.blocks;
   std::vector<bool> is_written(kNetworkPixels, false);
   for (const uint16_t index : blocks.index) {
     const auto first = is_written.begin() + RemapBlocks::kPixels * index;
-    EXPECT_FALSE(*first) << "a block comes twice";
+    EXPECT_FALSE(*first) << "repeated block";
     std::fill_n(first, RemapBlocks::kPixels, true);
   }
   int end = 0;

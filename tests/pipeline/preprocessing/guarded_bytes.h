@@ -1,4 +1,4 @@
-// Memory whose neighbourhood must not be touched.
+// Memory between inaccessible pages, to detect reads out of bounds.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace bevloc::test {
 
-/// Reading the byte after the last one ends the program, or that before the first one if
-/// `at_front`.
+/// Accessing the byte after the last one ends the program; if `at_front`, accessing the byte before
+/// the first one does.
 class GuardedBytes {
  public:
   GuardedBytes(size_t size, bool at_front) : page_(static_cast<size_t>(sysconf(_SC_PAGESIZE))) {

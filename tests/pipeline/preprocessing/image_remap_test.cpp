@@ -25,7 +25,7 @@ CameraModel front_camera(int width_px = 640, int height_px = 360) {
   return camera;
 }
 
-/// A smooth scene fixed in space: brightness of a direction, by channel.
+/// Brightness of a smooth scene in a direction, per channel.
 double brightness(const Eigen::Vector3d& ray, int channel) {
   const Eigen::Vector3d d = ray / ray.z();
   return 127.5 + 90.0 * std::sin(20.0 * d.x() + channel) * std::cos(25.0 * d.y() - channel);
@@ -46,7 +46,7 @@ RgbImage photograph(const Intrinsics& intrinsics) {
 
 class ImageRemapSizes : public ::testing::TestWithParam<std::pair<int, int>> {};
 
-TEST_P(ImageRemapSizes, ShowsTheSceneThatTheNetworkCameraWouldSee) {
+TEST_P(ImageRemapSizes, ShowsTheSceneAsTheNetworkCameraSeesIt) {
   const auto [width, height] = GetParam();
   const CameraModel camera = front_camera(width, height);
   const RgbImage image = photograph(camera.intrinsics);
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Cameras, ImageRemapSizes,
                                            std::pair{640, 360}, std::pair{800, 450},
                                            std::pair{1280, 720}, std::pair{1920, 1080}));
 
-TEST(ImageRemap, AveragesAwayWhatTheNetworkCannotResolve) {
+TEST(ImageRemap, AveragesDetailsBelowTheNetworkResolution) {
   const CameraModel camera = front_camera();
   RgbImage checkerboard(640, 360);
   for (int v = 0; v < 360; ++v) {
@@ -102,7 +102,7 @@ TEST(ImageRemap, KeepsAConstantExactly) {
   }
 }
 
-TEST(ImageRemap, KeepsTheChannelsApart) {
+TEST(ImageRemap, DoesNotMixChannels) {
   const CameraModel camera = front_camera();
   RgbImage image(640, 360);
   for (size_t i = 0; i < image.pixels.size(); i += 3) {
@@ -119,8 +119,8 @@ TEST(ImageRemap, KeepsTheChannelsApart) {
   EXPECT_EQ(planes[2 * kPlane + kMiddle], 200 - 128);
 }
 
-TEST(ImageRemap, IsBlackOutsideTheFrame) {
-  // A camera that looks far down: the horizon and much below it lie above its frame.
+TEST(ImageRemap, IsBlackOutsideTheImage) {
+  // The camera looks far down, so the horizon is above its image.
   const CameraModel camera = test::camera_at(0.0, 0.0, 1.5, 0.0, radians(65.0), radians(40.0));
   RgbImage white(640, 360);
   std::fill(white.pixels.begin(), white.pixels.end(), uint8_t{255});
@@ -129,7 +129,7 @@ TEST(ImageRemap, IsBlackOutsideTheFrame) {
   EXPECT_EQ(planes[kNetworkWidthPx / 2], kNetworkBlack);
 }
 
-TEST(ImageRemap, HonoursTheStride) {
+TEST(ImageRemap, RespectsTheStride) {
   const CameraModel camera = front_camera();
   const RgbImage image = photograph(camera.intrinsics);
   constexpr std::ptrdiff_t kStride = 3 * 640 + 50;
@@ -143,14 +143,14 @@ TEST(ImageRemap, HonoursTheStride) {
   EXPECT_EQ(planes, expected);
 }
 
-TEST(ImageRemap, RefusesAFrameOfAnotherSize) {
+TEST(ImageRemap, RefusesAFrameOfTheWrongSize) {
   ImagePreprocessor preprocessor(front_camera());
   const RgbImage image(1280, 720);
   Planes planes(kNetworkImageSize);
   const Status status = preprocessor.run(image.view(), planes);
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().message,
-            "camera frame is 1280x720 pixels, the calibration wants 640x360");
+            "camera frame: found 1280x720 pixels, wanted 640x360 as in the calibration");
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ using test::camera_at;
 
 constexpr double kFieldOfViewRad = radians(65.0);
 
-TEST(NetworkCamera, IsAnUndistortedPinholeOfTheNetworksSize) {
+TEST(NetworkCamera, IsAnUndistortedPinholeOfTheNetworkSize) {
   const CameraModel network = network_camera(camera_at(1.5, 0.0, 1.5, 0.0, kFieldOfViewRad));
   EXPECT_EQ(network.intrinsics.width_px, kNetworkWidthPx);
   EXPECT_EQ(network.intrinsics.height_px, kNetworkHeightPx);
@@ -22,14 +22,14 @@ TEST(NetworkCamera, IsAnUndistortedPinholeOfTheNetworksSize) {
   EXPECT_EQ(network.intrinsics.p2, 0.0);
 }
 
-TEST(NetworkCamera, KeepsTheMounting) {
+TEST(NetworkCamera, KeepsTheExtrinsics) {
   const CameraModel real = camera_at(1.04, 0.48, 1.56, 1.9, kFieldOfViewRad, 0.1);
   const CameraModel network = network_camera(real);
   EXPECT_EQ(network.vehicle_from_camera.rotation, real.vehicle_from_camera.rotation);
   EXPECT_EQ(network.vehicle_from_camera.translation_m, real.vehicle_from_camera.translation_m);
 }
 
-TEST(NetworkCamera, ScalesTheFullWidthWithPixelEdgesOnPixelEdges) {
+TEST(NetworkCamera, ScalesTheFullWidthFromEdgeToEdge) {
   CameraModel real = camera_at(1.5, 0.0, 1.5, 0.0, kFieldOfViewRad);
   real.intrinsics.k1 = real.intrinsics.k2 = real.intrinsics.p1 = real.intrinsics.p2 = 0.0;
   const CameraModel network = network_camera(real);
@@ -39,7 +39,7 @@ TEST(NetworkCamera, ScalesTheFullWidthWithPixelEdgesOnPixelEdges) {
   EXPECT_NEAR(network.intrinsics.project(right_edge)->x(), kNetworkWidthPx - 0.5, 1e-9);
 }
 
-TEST(NetworkCamera, PutsTheHorizonWhereTheNetworkWantsItWhateverThePitch) {
+TEST(NetworkCamera, PutsTheHorizonAtTheSameRowForAnyPitch) {
   for (const double pitch_down_rad : {-0.1, 0.0, 0.2}) {
     for (const double azimuth_rad : {0.0, 1.0, 3.1}) {
       const CameraModel network =
@@ -62,7 +62,7 @@ TEST(NetworkCamera, PutsTheHorizonAtThePrincipalColumnOfARolledCamera) {
   EXPECT_NEAR((network.vehicle_from_camera.rotation * ray_camera).z(), 0.0, 1e-12);
 }
 
-TEST(NetworkCamera, RigIsMadeCameraByCamera) {
+TEST(NetworkCamera, NetworkRigConvertsEachCamera) {
   const Rig real = test::surround_rig();
   const Rig network = network_rig(real);
   for (int i = 0; i < kCameraCount; ++i) {

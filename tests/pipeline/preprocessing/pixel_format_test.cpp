@@ -1,4 +1,4 @@
-// The same picture in each format of a camera gives the same network input.
+// The same image in each camera format gives the same network input.
 #include <cmath>
 #include <functional>
 #include <string>
@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/preprocessing/image_remap.h"
-#include "tests/pipeline/preprocessing/camera_pictures.h"
+#include "tests/pipeline/preprocessing/camera_images.h"
 #include "tests/pipeline/preprocessing/surround_rig.h"
 
 namespace bevloc {
@@ -31,7 +31,7 @@ CameraModel camera_of_size(int width_px, int height_px) {
   return camera;
 }
 
-/// Waves of colour, ten network pixels long, none saturated.
+/// Colour waves of ten network pixels, without saturation.
 RgbImage colourful(int width_px, int height_px) {
   RgbImage image(width_px, height_px);
   const double wave = 2.0 * M_PI / (10.0 * width_px / kNetworkWidthPx);
@@ -48,22 +48,22 @@ RgbImage colourful(int width_px, int height_px) {
 
 struct FormatCase {
   std::string name;
-  std::function<test::CameraPicture(const RgbImage&)> convert;
-  int worst;    ///< of any value, in 1/255
-  double mean;  ///< of all
+  std::function<test::CameraImage(const RgbImage&)> convert;
+  int worst;    ///< largest allowed difference of a value
+  double mean;  ///< largest allowed mean difference
 };
 
 class EachFormat : public testing::TestWithParam<std::tuple<FormatCase, std::pair<int, int>>> {};
 
-TEST_P(EachFormat, GivesTheInputOfTheRgbPicture) {
+TEST_P(EachFormat, GivesTheInputOfTheRgbImage) {
   const auto& [format, size] = GetParam();
   const RgbImage image = colourful(size.first, size.second);
-  const test::CameraPicture picture = format.convert(image);
+  const test::CameraImage converted = format.convert(image);
   ImagePreprocessor preprocessor(camera_of_size(size.first, size.second));
   Planes wanted(kNetworkImageSize);
   Planes planes(kNetworkImageSize);
   ASSERT_TRUE(preprocessor.run(image.view(), wanted));
-  const Status status = preprocessor.run(picture.view, planes);
+  const Status status = preprocessor.run(converted.view, planes);
   ASSERT_TRUE(status) << status.error().message;
   int worst = 0;
   double sum = 0.0;
@@ -77,24 +77,22 @@ TEST_P(EachFormat, GivesTheInputOfTheRgbPicture) {
 }
 
 FormatCase packed(const std::string& name, PixelFormat format, YuvEncoding encoding) {
-  return {name,
-          [=](const RgbImage& image) { return test::packed_picture(image, format, encoding); }, 8,
-          1.2};
+  return {name, [=](const RgbImage& image) { return test::packed_image(image, format, encoding); },
+          8, 1.2};
 }
 
 FormatCase nv12(const std::string& name, YuvEncoding encoding) {
-  return {name, [=](const RgbImage& image) { return test::nv12_picture(image, encoding); }, 10,
-          1.5};
+  return {name, [=](const RgbImage& image) { return test::nv12_image(image, encoding); }, 10, 1.5};
 }
 
 FormatCase bayer(PixelFormat format, std::array<int, 4> channels) {
   return {std::string(to_string(format)),
-          [=](const RgbImage& image) { return test::bayer_picture(image, format, channels); }, 14,
+          [=](const RgbImage& image) { return test::bayer_image(image, format, channels); }, 14,
           5.0};
 }
 
 FormatCase jpeg(const std::string& name, int subsampling) {
-  return {name, [=](const RgbImage& image) { return test::jpeg_picture(image, subsampling); }, 12,
+  return {name, [=](const RgbImage& image) { return test::jpeg_image(image, subsampling); }, 12,
           1.5};
 }
 
@@ -115,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::get<0>(test.param).name + "_" + std::to_string(std::get<1>(test.param).first);
     });
 
-/// A constant picture of RGB (200, 90, 40) must come back within the rounding of its bytes.
+/// A constant image of RGB (200, 90, 40) must stay the same except for rounding.
 TEST(PixelFormats, KeepAColour) {
   RgbImage image(640, 360);
   for (size_t i = 0; i < image.pixels.size(); i += 3) {
@@ -125,23 +123,23 @@ TEST(PixelFormats, KeepAColour) {
   }
   ImagePreprocessor preprocessor(camera_of_size(640, 360));
   constexpr size_t kMiddle = kNetworkPixels / 2 + kNetworkWidthPx / 2;
-  for (const test::CameraPicture& picture :
-       {test::packed_picture(image, PixelFormat::kYuyv, k601Limited),
-        test::packed_picture(image, PixelFormat::kUyvy, k601Full),
-        test::nv12_picture(image, k709Limited),
-        test::bayer_picture(image, PixelFormat::kBayerBggr, {2, 1, 1, 0}),
-        test::jpeg_picture(image, TJSAMP_420)}) {
-    SCOPED_TRACE(to_string(picture.view.format));
+  for (const test::CameraImage& converted :
+       {test::packed_image(image, PixelFormat::kYuyv, k601Limited),
+        test::packed_image(image, PixelFormat::kUyvy, k601Full),
+        test::nv12_image(image, k709Limited),
+        test::bayer_image(image, PixelFormat::kBayerBggr, {2, 1, 1, 0}),
+        test::jpeg_image(image, TJSAMP_420)}) {
+    SCOPED_TRACE(to_string(converted.view.format));
     Planes planes(kNetworkImageSize);
-    ASSERT_TRUE(preprocessor.run(picture.view, planes));
+    ASSERT_TRUE(preprocessor.run(converted.view, planes));
     EXPECT_NEAR(planes[kMiddle] + 128, 200, 2);
     EXPECT_NEAR(planes[kNetworkPixels + kMiddle] + 128, 90, 2);
     EXPECT_NEAR(planes[2 * kNetworkPixels + kMiddle] + 128, 40, 2);
   }
 }
 
-TEST(PixelFormats, AreBlackOutsideTheFrame) {
-  // Looks far down: the horizon lies above its frame.
+TEST(PixelFormats, AreBlackOutsideTheImage) {
+  // The camera looks far down, so the horizon is above its image.
   const CameraModel camera = test::camera_at(0.0, 0.0, 1.5, 0.0, radians(65.0), radians(25.0));
   RgbImage white(640, 360);
   std::fill(white.pixels.begin(), white.pixels.end(), uint8_t{255});
@@ -150,14 +148,14 @@ TEST(PixelFormats, AreBlackOutsideTheFrame) {
   ASSERT_TRUE(preprocessor.run(white.view(), wanted));
   ASSERT_EQ(wanted[kNetworkWidthPx / 2], kNetworkBlack);
   ASSERT_EQ(*std::ranges::max_element(wanted), 127);
-  for (const test::CameraPicture& picture :
-       {test::packed_picture(white, PixelFormat::kYuyv, k601Limited),
-        test::nv12_picture(white, k601Limited),
-        test::bayer_picture(white, PixelFormat::kBayerRggb, {0, 1, 1, 2}),
-        test::jpeg_picture(white, TJSAMP_444)}) {
-    SCOPED_TRACE(to_string(picture.view.format));
+  for (const test::CameraImage& converted :
+       {test::packed_image(white, PixelFormat::kYuyv, k601Limited),
+        test::nv12_image(white, k601Limited),
+        test::bayer_image(white, PixelFormat::kBayerRggb, {0, 1, 1, 2}),
+        test::jpeg_image(white, TJSAMP_444)}) {
+    SCOPED_TRACE(to_string(converted.view.format));
     Planes planes(kNetworkImageSize);
-    ASSERT_TRUE(preprocessor.run(picture.view, planes));
+    ASSERT_TRUE(preprocessor.run(converted.view, planes));
     EXPECT_EQ(planes, wanted);
   }
 }
@@ -166,25 +164,26 @@ TEST(PixelFormats, RefuseADamagedJpeg) {
   const RgbImage image = colourful(640, 360);
   ImagePreprocessor preprocessor(camera_of_size(640, 360));
   Planes planes(kNetworkImageSize);
-  test::CameraPicture half = test::jpeg_picture(image, TJSAMP_420);
+  test::CameraImage half = test::jpeg_image(image, TJSAMP_420);
   half.view.bytes_used /= 2;
   EXPECT_FALSE(preprocessor.run(half.view, planes));
-  test::CameraPicture noise = test::jpeg_picture(image, TJSAMP_420);
+  test::CameraImage noise = test::jpeg_image(image, TJSAMP_420);
   std::fill(noise.bytes.begin(), noise.bytes.end(), uint8_t{0x5A});
   EXPECT_FALSE(preprocessor.run(noise.view, planes));
-  EXPECT_TRUE(preprocessor.run(test::jpeg_picture(image, TJSAMP_420).view, planes))
-      << "the next picture must be fine again";
+  EXPECT_TRUE(preprocessor.run(test::jpeg_image(image, TJSAMP_420).view, planes))
+      << "the next frame must work again";
 }
 
-TEST(PixelFormats, RefuseAJpegOfAnotherSize) {
+TEST(PixelFormats, RefuseAJpegOfTheWrongSize) {
   const RgbImage image = colourful(320, 180);
-  test::CameraPicture picture = test::jpeg_picture(image, TJSAMP_420);
-  picture.view.width = 640;
-  picture.view.height = 360;
+  test::CameraImage jpeg = test::jpeg_image(image, TJSAMP_420);
+  jpeg.view.width = 640;
+  jpeg.view.height = 360;
   Planes planes(kNetworkImageSize);
-  const Status status = ImagePreprocessor(camera_of_size(640, 360)).run(picture.view, planes);
+  const Status status = ImagePreprocessor(camera_of_size(640, 360)).run(jpeg.view, planes);
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().message, "JPEG frame is 320x180 pixels, the calibration wants 640x360");
+  EXPECT_EQ(status.error().message,
+            "JPEG frame: found 320x180 pixels, wanted 640x360 as in the calibration");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A six-camera rig for tests, placed as on a nuScenes car.
+// A rig for tests, with the camera positions of a nuScenes car.
 #pragma once
 
 #include <cmath>
@@ -10,8 +10,8 @@
 
 namespace bevloc::test {
 
-/// A 640x360 camera that looks level along `azimuth_rad` (counter-clockwise from forward), tilted
-/// down by `pitch_down_rad`.
+/// A 640x360 camera that looks in direction `azimuth_rad`, counter-clockwise from forward, and is
+/// tilted down by `pitch_down_rad`.
 inline CameraModel camera_at(double x_m, double y_m, double z_m, double azimuth_rad,
                              double field_of_view_rad, double pitch_down_rad = 0.0) {
   CameraModel camera;

@@ -9,7 +9,7 @@ namespace {
 
 class CellLatticeTest : public testing::TestWithParam<CellLattice> {};
 
-TEST_P(CellLatticeTest, AsManyRowsAsTheStepHoldEveryColumnOnce) {
+TEST_P(CellLatticeTest, ConsecutiveRowsCoverEveryColumnOnce) {
   constexpr int kCols = 50;
   const int step = GetParam().step;
   for (const int begin : {0, step, 7}) {
@@ -26,7 +26,7 @@ TEST_P(CellLatticeTest, AsManyRowsAsTheStepHoldEveryColumnOnce) {
 }
 
 TEST_P(CellLatticeTest, IsSquare) {
-  // Around one of its cells: the nearest are as far as in a square lattice of one cell in `step`.
+  // A square lattice with one of `step` cells has four nearest neighbours at distance sqrt(step).
   const int step = GetParam().step;
   constexpr int kRow = 20;
   const int col = GetParam().first_col(kRow) + 2 * step;
@@ -50,7 +50,7 @@ TEST(CellLatticeCountTest, CountsTheCellsOfAnyGrid) {
   const BevGrid grid{7, 5, 0.5};
   EXPECT_EQ(kEveryCell.cells(grid), 35);
   EXPECT_EQ(kEverySecondCell.cells(grid), 4 * 3 + 3 * 2);
-  // Rows begin at the columns 0, 3, 6, 9, 2, 5 and 8.
+  // The rows start at columns 0, 3, 6, 9, 2, 5 and 8; three of them are below 5.
   EXPECT_EQ(kEveryTenthCell.cells(grid), 3);
 }
 

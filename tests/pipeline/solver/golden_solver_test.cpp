@@ -1,4 +1,4 @@
-// Every solver against the definition that training uses (training/solvers, training/golden.py).
+// Compares every solver with the Python definition that training uses (training/solvers).
 #include <cctype>
 #include <ostream>
 #include <string>
@@ -10,6 +10,7 @@
 
 #include "pipeline/solver/solver_factory.h"
 #include "tests/support/npy.h"
+#include "tests/support/pose_matchers.h"
 
 namespace bevloc {
 namespace {
@@ -17,12 +18,12 @@ namespace {
 using ::testing::FloatNear;
 using ::testing::Pointwise;
 
-/// Python computes in double, the run time in float.
+// Python computes in double, C++ mostly in float.
 constexpr float kProbabilityTolerance = 1e-4F;
-constexpr double kPositionTolerance = 1e-4;
-constexpr double kYawTolerance = 1e-5;
+constexpr double kPositionTolerance_m = 1e-4;
+constexpr double kYawTolerance_rad = 1e-5;
 
-/// What training/golden_solver.py writes under one name.
+/// One group of golden vectors from training/golden_solver.py.
 struct Group {
   std::string name;
   std::string features;
@@ -103,9 +104,8 @@ TEST_P(GoldenSolver, AgreesWithTraining) {
     EXPECT_THAT(distributions(result),
                 Pointwise(FloatNear(kProbabilityTolerance), entry(expected, kind_index, i)));
     const std::vector<float> estimate = entry(estimates, kind_index, i);
-    EXPECT_NEAR(result.correction.x_m, estimate[0], kPositionTolerance);
-    EXPECT_NEAR(result.correction.y_m, estimate[1], kPositionTolerance);
-    EXPECT_NEAR(result.correction.yaw_rad, estimate[2], kYawTolerance);
+    EXPECT_THAT(result.correction, test::PoseNear({estimate[0], estimate[1], estimate[2]},
+                                                  kPositionTolerance_m, kYawTolerance_rad));
   }
 }
 

@@ -1,4 +1,4 @@
-// The covariance must grow where a scene cannot tell.
+// The covariance must be large along axes that a scene does not constrain.
 #include <gtest/gtest.h>
 
 #include "pipeline/solver/posterior.h"
@@ -11,7 +11,7 @@ namespace {
 constexpr int kChannels = 16;
 constexpr BevGrid kGrid = kFeatureGrid;
 
-/// `clutter` is the strength of what the vehicle sees and the map does not know.
+/// Adds structure of strength `clutter` to the BEV features that the map does not have.
 SolverResult solve(const SyntheticScene& scene, const Se2& truth, float clutter, unsigned seed) {
   const SolverParameters sharp{.joint_scale = 300.0F};
   auto solver =
@@ -38,11 +38,11 @@ TEST(MatchCovarianceTest, BecomesUniformAlongAStraightRoad) {
   }
 }
 
-TEST(MatchCovarianceTest, PointsAlongARoadThatIsTurned) {
-  // Seen at an angle, what is unknown is the way along the road: x and y go together.
+TEST(MatchCovarianceTest, CorrelatesXAndYOnADiagonalRoad) {
+  // The position along the road is not constrained, so the errors of x and y are correlated.
   SyntheticScene road(kChannels);
   for (int channel = 0; channel < kChannels; ++channel) {
-    for (int i = -40; i <= 40; ++i) {  // a solid line from right behind to left ahead
+    for (int i = -40; i <= 40; ++i) {  // a solid line from the right rear to the left front
       road.add({channel, 1.0 * i, 0.3 * i + channel - 8.0, 1.0, 1.0, 1.0});
     }
   }
@@ -67,7 +67,7 @@ TEST(MatchCovarianceTest, GrowsWithClutter) {
 }
 
 TEST(MatchCovarianceTest, CoversTheErrors) {
-  // Errors in units of the claimed deviation, on scenes of every kind.
+  // Errors divided by the claimed sigma, on straight roads and on structured scenes.
   constexpr int kScenes = 24;
   Eigen::Array3d squares = Eigen::Array3d::Zero();
   int beyond_3_sigma = 0;

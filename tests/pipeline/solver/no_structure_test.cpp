@@ -1,4 +1,4 @@
-// A side that holds nothing but noise may not make a confident pose.
+// If one side is pure noise, no solver may claim a small covariance.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -17,12 +17,12 @@ constexpr int kChannels = 4;
 
 struct LeastDeviation {
   SolverKind kind;
-  double of_uniform = 0.5;  ///< 1 sigma of x and y against that of uniform hypotheses
+  double share = 0.5;  ///< sigma divided by that of uniform hypotheses must not be smaller
 };
 
 class NoStructure : public testing::TestWithParam<LeastDeviation> {
  protected:
-  /// The least deviation that is claimed, as a share of that of uniform hypotheses.
+  /// The smallest claimed sigma of all axes, divided by that of uniform hypotheses.
   static double least_share(const BevGrid& grid, float amplitude, unsigned seed, bool noisy_map) {
     auto solver = make_solver(GetParam().kind, grid, kChannels, {}, {}).value();
     const auto scene = SyntheticScene::structured(kChannels, 1).seen_from({}, grid);
@@ -36,29 +36,29 @@ class NoStructure : public testing::TestWithParam<LeastDeviation> {
   }
 };
 
-TEST_P(NoStructure, MakesNoConfidentPose) {
+TEST_P(NoStructure, ClaimsALargeCovariance) {
   for (const float amplitude : {1.0F, 0.01F, 0.001F}) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
       for (const bool noisy_map : {false, true}) {
-        EXPECT_GE(least_share(kFeatureGrid, amplitude, seed, noisy_map), GetParam().of_uniform)
+        EXPECT_GE(least_share(kFeatureGrid, amplitude, seed, noisy_map), GetParam().share)
             << "noise of " << amplitude << ", seed " << seed << ", noisy map " << noisy_map;
       }
     }
   }
 }
 
-TEST_P(NoStructure, MakesNoneOnASmallGridEither) {
-  // Some noise does match by chance, and there are few blocks to tell.
+TEST_P(NoStructure, ClaimsALargeCovarianceOnASmallGrid) {
+  // Some noise matches by chance, and a small grid has few blocks to detect that.
   for (const BevGrid& grid : {BevGrid{40, 32, 0.6}, BevGrid{64, 40, 0.6}}) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
-      EXPECT_GE(least_share(grid, 1.0F, seed, false), 0.5 * GetParam().of_uniform)
+      EXPECT_GE(least_share(grid, 1.0F, seed, false), 0.5 * GetParam().share)
           << grid.rows << " rows, seed " << seed;
     }
   }
 }
 
-// Axis features, means over a whole row or column, of noise alone correlate by chance more than
-// whole grids do: the two that match nothing else claim more.
+// Axis features are means over a whole row or column. Those of pure noise correlate more by chance
+// than whole grids do, so the two solvers that match axis features alone claim smaller sigmas.
 INSTANTIATE_TEST_SUITE_P(
     Solvers, NoStructure,
     testing::Values(LeastDeviation{SolverKind::kFull}, LeastDeviation{SolverKind::kFullFft},

@@ -19,54 +19,54 @@ std::vector<float> normal(double mean, double sigma) {
   return probability;
 }
 
-TEST(PosteriorTest, TheParabolaFindsTheTopOfANormalDistribution) {
+TEST(PosteriorTest, TheParabolaFindsTheMeanOfANormalDistribution) {
   for (const double mean : {-0.61, 0.0, 0.13, 0.7}) {
-    EXPECT_NEAR(parabola_top(normal(mean, 0.3), kAxis), mean, 1e-4);
+    EXPECT_NEAR(parabola_vertex(normal(mean, 0.3), kAxis), mean, 1e-4);
   }
 }
 
 TEST(PosteriorTest, TheParabolaStaysAtTheEndAndOnAPlateau) {
-  EXPECT_EQ(parabola_top(normal(3.0, 0.3), kAxis), 1.0);
+  EXPECT_EQ(parabola_vertex(normal(3.0, 0.3), kAxis), 1.0);
   const std::vector<float> flat(kAxis.count(), 1.0F / 9.0F);
-  EXPECT_TRUE(std::isfinite(parabola_top(flat, kAxis)));
+  EXPECT_TRUE(std::isfinite(parabola_vertex(flat, kAxis)));
   std::vector<float> certain(kAxis.count(), 0.0F);
   certain[3] = 1.0F;
-  EXPECT_NEAR(parabola_top(certain, kAxis), kAxis.value(3), 1e-9);
+  EXPECT_NEAR(parabola_vertex(certain, kAxis), kAxis.value(3), 1e-9);
 }
 
-TEST(PosteriorTest, WhatFollowsAnAxisIsSpreadByIt) {
-  constexpr HypothesisAxis kFollowed{0.5, 0.5};
-  const std::vector<float> followed{0.25F, 0.5F, 0.25F};
+TEST(PosteriorTest, ADependentAxisIsConvolvedWithTheSearchedAxis) {
+  constexpr HypothesisAxis kSearched{0.5, 0.5};
+  const std::vector<float> searched{0.25F, 0.5F, 0.25F};
   std::vector<float> probability(kAxis.count(), 0.0F);
   probability[4] = 1.0F;
   std::vector<float> scratch;
-  // Half a step to the left of the peak, on it, and half a step to the right.
-  spread({followed, kFollowed, 0.0, 0.25}, kAxis, scratch, probability);
+  // The three searched hypotheses shift the peak by half a step to the left, by 0 and to the right.
+  convolve({searched, kSearched, 0.0, 0.25}, kAxis, scratch, probability);
   EXPECT_EQ(probability,
             (std::vector<float>{0.0F, 0.0F, 0.0F, 0.125F, 0.75F, 0.125F, 0.0F, 0.0F, 0.0F}));
-  // From one end on, and far beyond the other.
-  spread({followed, kFollowed, -0.5, 8.0}, kAxis, scratch, probability);
+  // Starts at one end and shifts far beyond the other end.
+  convolve({searched, kSearched, -0.5, 8.0}, kAxis, scratch, probability);
   EXPECT_FLOAT_EQ(probability[4], 0.25F * 0.75F);
   EXPECT_FLOAT_EQ(probability.back(), 0.75F);
 }
 
-TEST(PosteriorTest, SharesOutWhatTheChosenHaveTogether) {
+TEST(PosteriorTest, RedistributesTheProbabilityOfTheChosen) {
   std::vector<float> probability{0.1F, 0.4F, 0.2F, 0.3F};
-  share_out(std::vector<int>{1, 3}, std::vector<double>{2.0, 2.0 + std::log(6.0)}, 1.0,
-            probability);
+  redistribute(std::vector<int>{1, 3}, std::vector<double>{2.0, 2.0 + std::log(6.0)}, 1.0,
+               probability);
   EXPECT_FLOAT_EQ(probability[0], 0.1F);
   EXPECT_FLOAT_EQ(probability[1], 0.1F);
   EXPECT_FLOAT_EQ(probability[2], 0.2F);
   EXPECT_FLOAT_EQ(probability[3], 0.6F);
-  // The scale is that of the scores; one alone keeps its own.
-  share_out(std::vector<int>{0, 1}, std::vector<double>{0.0, std::log(3.0)}, 2.0, probability);
+  // The scale multiplies the scores. A single hypothesis keeps its probability.
+  redistribute(std::vector<int>{0, 1}, std::vector<double>{0.0, std::log(3.0)}, 2.0, probability);
   EXPECT_FLOAT_EQ(probability[0], 0.02F);
   EXPECT_FLOAT_EQ(probability[1], 0.18F);
-  share_out(std::vector<int>{2}, std::vector<double>{-0.7}, 500.0, probability);
+  redistribute(std::vector<int>{2}, std::vector<double>{-0.7}, 500.0, probability);
   EXPECT_FLOAT_EQ(probability[2], 0.2F);
 }
 
-TEST(PosteriorTest, ARivalIsTheNextPeakNotTheNextHypothesis) {
+TEST(PosteriorTest, ARivalIsAnotherPeakNotANeighbour) {
   EXPECT_EQ(rival_peak(normal(0.1, 0.3)), 0.0);
   EXPECT_NEAR(rival_peak(std::vector<float>{0.1F, 0.4F, 0.1F, 0.1F, 0.3F}), 0.75, 1e-6);
   EXPECT_NEAR(rival_peak(std::vector<float>{0.3F, 0.1F, 0.1F, 0.1F, 0.4F}), 0.75, 1e-6);

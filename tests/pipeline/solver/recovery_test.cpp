@@ -1,4 +1,4 @@
-// How exactly the solvers find known corrections that lie anywhere between the hypotheses.
+// Accuracy of the solvers for known corrections that lie anywhere between the hypotheses.
 #include <algorithm>
 #include <random>
 #include <string>
@@ -16,13 +16,13 @@ namespace {
 constexpr double kPosition_m = 0.02;
 constexpr double kYaw_deg = 0.05;
 
-/// One scene of smooth bumps (0.7 to 1.4 m wide), and what is seen of it from random corrections.
+/// Features of one scene of smooth bumps (sigma 0.7 to 1.4 m), seen from random corrections.
 struct Recordings {
   Recordings(const BevGrid& grid_in, int channels_in, int count)
       : grid(grid_in), channels(channels_in) {
     const SyntheticScene scene = SyntheticScene::structured(channels, 1);
     map = scene.seen_from({}, grid);
-    // Up to one step short of the ends: the top of a peak needs a hypothesis on either side.
+    // At least one step away from the ends: the parabola needs a hypothesis on both sides.
     std::mt19937 random(2026);
     std::uniform_real_distribution<double> x_m(-1.8, 1.8);
     std::uniform_real_distribution<double> y_m(-0.8, 0.8);
@@ -40,9 +40,8 @@ struct Recordings {
   std::vector<std::vector<float>> bevs;
 };
 
-/// The parabola is what is measured: the mean of a distribution that is as broad as the default
-/// scales make it is cut off at the ends of the range, and one that is sharp snaps to a hypothesis.
-/// The parabola depends on neither, so the default scales will do.
+/// Measures the error of the parabola, which does not depend on the scales. The mean does: a broad
+/// distribution is truncated at the ends of the range, and a sharp one snaps to a hypothesis.
 void expect_recovery(SolverKind kind, const Recordings& recordings, double position_m,
                      double yaw_deg) {
   auto solver = make_solver(kind, recordings.grid, recordings.channels, {}, {}).value();
@@ -78,12 +77,12 @@ TEST_P(Recovery, OnTheFeatureGrid) {
   expect_recovery(GetParam().kind, recordings, GetParam().position_m, GetParam().yaw_deg);
 }
 
-// Two cannot keep the bound:
-// - block: it does not normalise by what the moved features keep inside the grid, so the border
-//   pulls. Empty ground, standardised, lies below zero, and outside there are zeros: the plateau's
-//   edges fit best unmoved. (Of features with mean zero it finds the position to 0.01 m.)
-// - banded: a shift along one axis carries structure over the borders of the other axis's bands.
-// The literal solver alone gives no yaw to speak of.
+// Two solvers have a larger bound:
+// - block: it does not normalise by the moved features inside the grid, so the border biases it.
+//   Standardised empty ground lies below zero, and outside the grid the features are zero; these
+//   edges fit best without a shift. (For features with mean zero it is accurate to 0.01 m.)
+// - banded: a shift along one axis moves structure across the borders of the other axis's bands.
+// The literal solver without refinement is missing, because its yaw is not accurate.
 INSTANTIATE_TEST_SUITE_P(
     Solvers, Recovery,
     testing::Values(Bound{SolverKind::kFull}, Bound{SolverKind::kFullFft},

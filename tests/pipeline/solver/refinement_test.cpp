@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "pipeline/solver/posterior.h"
 #include "pipeline/solver/standardise.h"
 #include "tests/pipeline/solver/synthetic_scene.h"
+#include "tests/support/pose_matchers.h"
 
 namespace bevloc {
 namespace {
@@ -33,8 +35,8 @@ class RefinementTest : public testing::Test {
     return result;
   }
 
-  /// From the middle, with uniform distributions.
-  static SolverResult ignorant() {
+  /// A zero correction and uniform distributions.
+  static SolverResult uniform() {
     SolverResult result;
     set_no_evidence(kHypotheses, result);
     return result;
@@ -46,29 +48,24 @@ class RefinementTest : public testing::Test {
   CellFeatures map_{kFeatureGrid, kChannels, kHypotheses};
 };
 
-TEST_F(RefinementTest, FindsTheTruthFromTheMiddle) {
-  const SolverResult result = refined(ignorant());
-  EXPECT_NEAR(result.correction.x_m, kTruth.x_m, 0.1);
-  EXPECT_NEAR(result.correction.y_m, kTruth.y_m, 0.1);
-  EXPECT_NEAR(result.correction.yaw_rad, kTruth.yaw_rad, radians(0.1));
+TEST_F(RefinementTest, FindsTheTruthFromZero) {
+  const SolverResult result = refined(uniform());
+  EXPECT_THAT(result.correction, test::PoseNear(kTruth, 0.1, radians(0.1)));
 }
 
-TEST_F(RefinementTest, DoesNotTrustTheConfidenceItIsGiven) {
-  const SolverResult expected = refined(ignorant());
-  SolverResult sure_of_the_wrong = ignorant();
-  for (auto* distribution : {&sure_of_the_wrong.x_probability, &sure_of_the_wrong.y_probability,
-                             &sure_of_the_wrong.yaw_probability}) {
+TEST_F(RefinementTest, IgnoresTheDistributionsOfTheMatcher) {
+  const SolverResult expected = refined(uniform());
+  SolverResult wrong = uniform();
+  for (auto* distribution : {&wrong.x_probability, &wrong.y_probability, &wrong.yaw_probability}) {
     std::ranges::fill(*distribution, 0.0F);
     distribution->back() = 1.0F;
   }
-  const SolverResult result = refined(sure_of_the_wrong);
-  EXPECT_NEAR(result.correction.x_m, expected.correction.x_m, 1e-5);
-  EXPECT_NEAR(result.correction.y_m, expected.correction.y_m, 1e-5);
-  EXPECT_NEAR(result.correction.yaw_rad, expected.correction.yaw_rad, 1e-6);
+  const SolverResult result = refined(wrong);
+  EXPECT_THAT(result.correction, test::PoseNear(expected.correction, 1e-5, 1e-6));
 }
 
-TEST_F(RefinementTest, LeavesDistributions) {
-  const SolverResult result = refined(ignorant());
+TEST_F(RefinementTest, WritesDistributionsAndTheirMean) {
+  const SolverResult result = refined(uniform());
   for (const auto* distribution :
        {&result.x_probability, &result.y_probability, &result.yaw_probability}) {
     EXPECT_NEAR(std::accumulate(distribution->begin(), distribution->end(), 0.0), 1.0, 1e-5);

@@ -30,7 +30,7 @@ TEST(SolverFactoryTest, ListsTheKnownNames) {
   EXPECT_THAT(kind.error().message, HasSubstr("full, full-fft, decoupled-literal, "));
 }
 
-TEST(SolverFactoryTest, RefusesWhatItCannotSolve) {
+TEST(SolverFactoryTest, RefusesUnsupportedGridsAndChannels) {
   EXPECT_EQ(error_of(kFeatureGrid, 16, {}, {}), "");
   EXPECT_THAT(error_of(kFeatureGrid, 0, {}, {}), HasSubstr("0 channels"));
   EXPECT_EQ(error_of(kRasterGrid, 16, {}, {}), "");
@@ -42,7 +42,7 @@ TEST(SolverFactoryTest, RefusesWhatItCannotSolve) {
   EXPECT_THAT(error_of(kFeatureGrid, 1 << 30, {}, {}), HasSubstr("1073741824 channels"));
 }
 
-TEST(SolverFactoryTest, TheLiteralSolverTransformsTheGridAsItIs) {
+TEST(SolverFactoryTest, TheLiteralSolverNeedsAGridThatItsTransformSupports) {
   const auto make = [](const BevGrid& grid) {
     return make_solver(SolverKind::kDecoupledLiteral, grid, 4, {}, {});
   };
@@ -52,23 +52,46 @@ TEST(SolverFactoryTest, TheLiteralSolverTransformsTheGridAsItIs) {
   EXPECT_THAT(refused.error().message, HasSubstr("90 x 50"));
 }
 
-TEST(SolverFactoryTest, RefusesHypothesesThatMakeNoGrid) {
+TEST(SolverFactoryTest, OnlySolversWithAFixedTransformSizeLimitTheCells) {
+  for (const SolverKind kind : all_solver_kinds()) {
+    const bool decoupled = kind == SolverKind::kDecoupled || kind == SolverKind::kDecoupledRefined;
+    for (const BevGrid& grid : {BevGrid{200, 160, 0.35}, BevGrid{100, 50, 0.7}}) {
+      EXPECT_EQ(make_solver(kind, grid, 1, {}, {}).has_value(), !decoupled)
+          << name_of(kind) << " on cells of " << grid.cell_m << " m";
+    }
+  }
+}
+
+TEST(SolverFactoryTest, RefusesGridsThatWouldExhaustTheMemory) {
+  for (const SolverKind kind :
+       {SolverKind::kFull, SolverKind::kFullFft, SolverKind::kBandedRefined, SolverKind::kBlock}) {
+    for (const BevGrid& grid : {BevGrid{200, 100, 0.6}, BevGrid{2, 50, 0.6}, BevGrid{9, 9, 1e-6}}) {
+      const auto solver = make_solver(kind, grid, 4, {}, {});
+      ASSERT_FALSE(solver) << name_of(kind);
+      EXPECT_THAT(solver.error().message, HasSubstr("sides of at most 80 m")) << name_of(kind);
+    }
+  }
+}
+
+TEST(SolverFactoryTest, RefusesInvalidHypotheses) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {2.0, 0.0}}, {}), HasSubstr("x: range 2"));
-  EXPECT_THAT(error_of(kFeatureGrid, 16, {.y_m = {nan, 0.2}}, {}), HasSubstr("y: range nan"));
-  EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {50.0, 0.2}}, {}), HasSubstr("x: range 50"));
-  EXPECT_THAT(error_of(kFeatureGrid, 16, {.yaw_rad = {1.0, 0.1}}, {}), HasSubstr("yaw: range 1"));
-  EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {2.0, 1e-300}}, {}), HasSubstr("x: range 2"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {2.0, 0.0}}, {}), HasSubstr("x: found range 2"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {.y_m = {nan, 0.2}}, {}), HasSubstr("y: found range nan"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {50.0, 0.2}}, {}), HasSubstr("x: found range 50"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {.yaw_rad = {1.0, 0.1}}, {}),
+              HasSubstr("yaw: found range 1"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {2.0, 1e-300}}, {}),
+              HasSubstr("x: found range 2"));
   EXPECT_THAT(error_of(kFeatureGrid, 16, {.x_m = {2.0, 0.002}, .y_m = {1.0, 0.002}}, {}),
               HasSubstr("in all"));
 }
 
-TEST(SolverFactoryTest, RefusesParametersThatNoTrainingGives) {
+TEST(SolverFactoryTest, RefusesInvalidParameters) {
   EXPECT_THAT(error_of(kFeatureGrid, 16, {}, {.joint_scale = -1.0F}), HasSubstr("joint_scale"));
   EXPECT_THAT(
       error_of(kFeatureGrid, 16, {}, {.yaw_scale = std::numeric_limits<float>::quiet_NaN()}),
       HasSubstr("yaw_scale"));
-  EXPECT_THAT(error_of(kFeatureGrid, 16, {}, {.gem_omega = 3.0F}), HasSubstr("gem_omega is 3"));
+  EXPECT_THAT(error_of(kFeatureGrid, 16, {}, {.gem_omega = 3.0F}), HasSubstr("gem_omega: found 3"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A solver's name as GoogleTest takes it.
+// Names of solvers in the names of parameterised tests.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,8 @@
 
 namespace bevloc {
 
-/// Of a parameter that has a field `kind`.
+/// Name generator for INSTANTIATE_TEST_SUITE_P, for parameters with a member `kind`. GoogleTest
+/// allows only letters, digits and underscores.
 inline constexpr auto kSolverName = [](const auto& test) {
   std::string name(name_of(test.param.kind));
   std::ranges::replace_if(

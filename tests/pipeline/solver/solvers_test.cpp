@@ -1,4 +1,4 @@
-// What every solver must do, whichever way it does it.
+// Requirements that every solver meets.
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -11,6 +11,7 @@
 #include "pipeline/solver/solver_factory.h"
 #include "tests/pipeline/solver/solver_name.h"
 #include "tests/pipeline/solver/synthetic_scene.h"
+#include "tests/support/pose_matchers.h"
 
 namespace bevloc {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 constexpr int kChannels = 16;
 constexpr BevGrid kGrid = kFeatureGrid;
 
-/// Sharper than training makes them, for features that are cleaner than perception makes them.
+/// A solver with larger scales than training finds, because these features have less noise.
 std::unique_ptr<Solver> make(SolverKind kind, float scale = 300.0F) {
   SolverParameters parameters;
   parameters.joint_scale = scale;
@@ -77,18 +78,15 @@ TEST_P(EverySolver, RecoversKnownCorrections) {
     const SolverResult result =
         solve(*solver, scene.seen_from(truth, kGrid), scene.seen_from({}, kGrid));
     EXPECT_EQ(result.evidence, Evidence::kGood);
-    EXPECT_NEAR(result.correction.x_m, truth.x_m, GetParam().position_m) << "seed " << seed;
-    EXPECT_NEAR(result.correction.y_m, truth.y_m, GetParam().position_m) << "seed " << seed;
-    EXPECT_NEAR(degrees(result.correction.yaw_rad), degrees(truth.yaw_rad),
-                degrees(GetParam().yaw_rad))
+    EXPECT_THAT(result.correction, test::PoseNear(truth, GetParam().position_m, GetParam().yaw_rad))
         << "seed " << seed;
     expect_usable(result);
   }
 }
 
 TEST_P(EverySolver, PointsForwardAndLeft) {
-  // The map has a post 1 m further ahead and 0.6 m further left than the vehicle sees it: so the
-  // vehicle stands 1 m further ahead and 0.6 m further left than it was thought to.
+  // In the map, the post is 1 m further ahead and 0.6 m further left than in the BEV features. The
+  // vehicle is therefore 1 m further ahead and 0.6 m further left than the prior.
   const auto solver = make(GetParam().kind);
   SyntheticScene map_scene(kChannels);
   SyntheticScene bev_scene(kChannels);
@@ -98,12 +96,12 @@ TEST_P(EverySolver, PointsForwardAndLeft) {
   }
   const SolverResult result =
       solve(*solver, bev_scene.seen_from({}, kGrid), map_scene.seen_from({}, kGrid));
-  // One round post has no orientation: yaw is free, and takes some of y with it.
+  // A single round post does not constrain yaw, and an error in yaw changes y.
   EXPECT_NEAR(result.correction.x_m, 1.0, 0.15);
   EXPECT_GT(result.correction.y_m, 0.3);
 }
 
-TEST_P(EverySolver, TurnsCounterClockwise) {
+TEST_P(EverySolver, YawIsCounterClockwise) {
   const auto solver = make(GetParam().kind);
   const SyntheticScene scene = SyntheticScene::straight_road(kChannels, 3);
   const SolverResult result =
@@ -111,7 +109,7 @@ TEST_P(EverySolver, TurnsCounterClockwise) {
   EXPECT_NEAR(degrees(result.correction.yaw_rad), 1.0, 0.2);
 }
 
-TEST_P(EverySolver, GivesTheSameAnswerTwice) {
+TEST_P(EverySolver, RepeatsItsResult) {
   const SyntheticScene scene = SyntheticScene::structured(kChannels, 9);
   const auto bev = scene.seen_from({0.5, 0.2, radians(0.3)}, kGrid);
   const auto map = scene.seen_from({}, kGrid);
@@ -126,7 +124,7 @@ TEST_P(EverySolver, GivesTheSameAnswerTwice) {
   EXPECT_EQ(first.covariance, second.covariance);
 }
 
-TEST_P(EverySolver, SaysWhenThereIsNothingToMatch) {
+TEST_P(EverySolver, ReportsWhenThereIsNothingToMatch) {
   const auto solver = make(GetParam().kind);
   const SyntheticScene scene = SyntheticScene::structured(kChannels, 2);
   auto good = scene.seen_from({}, kGrid);
@@ -141,9 +139,7 @@ TEST_P(EverySolver, SaysWhenThereIsNothingToMatch) {
     for (const bool bad_map : {false, true}) {
       const SolverResult result = bad_map ? solve(*solver, good, *bad) : solve(*solver, *bad, good);
       EXPECT_EQ(result.evidence, Evidence::kNone);
-      EXPECT_EQ(result.correction.x_m, 0.0);
-      EXPECT_EQ(result.correction.y_m, 0.0);
-      EXPECT_EQ(result.correction.yaw_rad, 0.0);
+      EXPECT_THAT(result.correction, test::PoseNear({}, 0.0, 0.0));
       EXPECT_THAT(result.y_probability, testing::Each(testing::FloatEq(1.0F / 11.0F)));
       EXPECT_EQ(result.covariance,
                 Eigen::Matrix3d(uniform_variance(HypothesisGrid{}).asDiagonal()));
@@ -151,7 +147,7 @@ TEST_P(EverySolver, SaysWhenThereIsNothingToMatch) {
     }
   }
   EXPECT_EQ(solve(*solver, good, good).evidence, Evidence::kGood)
-      << "bad input must leave no trace";
+      << "bad input must not affect later calls";
 }
 
 TEST_P(EverySolver, SurvivesHugeAndUselessFeatures) {
@@ -162,7 +158,7 @@ TEST_P(EverySolver, SurvivesHugeAndUselessFeatures) {
   }
   std::vector<float> one_cell(huge.size(), 0.0F);
   one_cell[0] = 1.0F;
-  std::vector<float> huge_cell(huge.size(), -3e38F);  // farther from the mean than floats reach
+  std::vector<float> huge_cell(huge.size(), -3e38F);  // differences overflow a float
   huge_cell[0] = 3e38F;
   expect_usable(solve(*solver, huge, one_cell));
   expect_usable(solve(*solver, huge_cell, huge));

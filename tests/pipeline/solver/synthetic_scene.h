@@ -1,4 +1,4 @@
-// Band-limited scenes that can be seen from any pose without resampling.
+// Analytic scenes, which can be sampled from any pose without interpolation.
 #pragma once
 
 #include <cmath>
@@ -7,11 +7,11 @@
 
 #include "common/se2.h"
 #include "pipeline/bev_grid.h"
-#include "pipeline/solver/solver.h"
+#include "pipeline/solver/feature_view.h"
 
 namespace bevloc {
 
-/// A sum of smooth bumps per channel, on a map around the origin.
+/// Each channel is a sum of Gaussian bumps on a map around the origin.
 class SyntheticScene {
  public:
   struct Bump {
@@ -25,7 +25,7 @@ class SyntheticScene {
 
   void add(const Bump& bump) { bumps_.push_back(bump); }
 
-  /// Features on `grid` of a vehicle at `map_from_vehicle`.
+  /// Features on `grid` around a vehicle at `map_from_vehicle`, [channels, rows, cols].
   std::vector<float> seen_from(const Se2& map_from_vehicle, const BevGrid& grid) const {
     std::vector<float> features(static_cast<size_t>(channels_) * grid.cells());
     for (const Bump& bump : bumps_) {
@@ -44,7 +44,8 @@ class SyntheticScene {
     return features;
   }
 
-  /// Every direction can be seen, and no hypothesis moves anything over the grid's border.
+  /// Random bumps, which constrain every direction. No default hypothesis moves one across the
+  /// border of the grid.
   static SyntheticScene structured(int channels, unsigned seed) {
     SyntheticScene scene(channels);
     std::mt19937 random(seed);
@@ -60,7 +61,7 @@ class SyntheticScene {
     return scene;
   }
 
-  /// Solid lines along x that never end: nothing tells where along the road one is.
+  /// Endless solid lines along x, which do not constrain x.
   static SyntheticScene straight_road(int channels, unsigned seed) {
     SyntheticScene scene(channels);
     std::mt19937 random(seed);

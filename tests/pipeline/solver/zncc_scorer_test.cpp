@@ -1,20 +1,21 @@
-// Both scorers of ZNCC against ZNCC written out.
+// Compares both ZNCC scorers with a literal implementation of ZNCC.
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "pipeline/solver/pose_scorer.h"
+#include "pipeline/solver/reference/translation_scorer.h"
 #include "pipeline/solver/standardise.h"
-#include "pipeline/solver/translation_scorer.h"
 #include "tests/pipeline/solver/synthetic_scene.h"
 
 namespace bevloc {
 namespace {
 
 constexpr BevGrid kGrid{24, 13, 0.5};
-/// Steps that divide a cell in no small number of phases, and yaw wide enough to leave the grid.
+/// Several phases per cell, and a yaw that moves features out of the grid.
 constexpr HypothesisGrid kHypotheses{{1.5, 0.3}, {0.8, 0.4}, {0.4, 0.1}};
 
+/// The moved feature at a cell: bilinear, zero outside.
 double moved(const float* plane, int row, int col, const Se2& correction) {
   const Eigen::Vector2d source =
       correction.inverse() * Eigen::Vector2d(kGrid.x_of_row(row), kGrid.y_of_col(col));
@@ -31,7 +32,7 @@ double moved(const float* plane, int row, int col, const Se2& correction) {
   return sum;
 }
 
-/// Over the cells of columns skew * row mod step, and every step-th from there on.
+/// ZNCC over the cells of a lattice with this step and skew (CellLattice).
 double literal_zncc(const std::vector<float>& bev, const std::vector<float>& map,
                     const Se2& correction, int step = 1, int skew = 0) {
   const int channels = static_cast<int>(bev.size()) / kGrid.cells();
@@ -71,7 +72,7 @@ class ZnccScorerTest : public testing::TestWithParam<int> {
   CellFeatures map_cells_{kGrid, GetParam(), kHypotheses};
 };
 
-TEST_P(ZnccScorerTest, TranslationScorerScoresEveryHypothesisAsItIsDefined) {
+TEST_P(ZnccScorerTest, TranslationScorerFollowsTheDefinition) {
   TranslationScorer scorer(kGrid, GetParam(), kHypotheses);
   scorer.set_features(bev_cells_, map_cells_);
   const ShiftPlan x(kHypotheses.x_m, kGrid.cell_m);
@@ -89,7 +90,7 @@ TEST_P(ZnccScorerTest, TranslationScorerScoresEveryHypothesisAsItIsDefined) {
   }
 }
 
-TEST_P(ZnccScorerTest, PoseScorerScoresAnyCorrectionAsItIsDefined) {
+TEST_P(ZnccScorerTest, PoseScorerFollowsTheDefinition) {
   const PoseScorer scorer(bev_cells_, map_cells_);
   for (const Se2& correction : {Se2{-1.23, 0.71, 0.31}, Se2{}, Se2{1.5, -0.8, -0.4},
                                 Se2{0.5, 0.0, 0.0}, Se2{0.02, -0.33, 0.004}}) {
@@ -97,21 +98,21 @@ TEST_P(ZnccScorerTest, PoseScorerScoresAnyCorrectionAsItIsDefined) {
   }
 }
 
-TEST_P(ZnccScorerTest, PoseScorerLooksAtTheCellsOfItsLattice) {
+TEST_P(ZnccScorerTest, PoseScorerUsesTheCellsOfItsLattice) {
   for (const CellLattice& lattice : {kEverySecondCell, kEveryTenthCell}) {
     const PoseScorer scorer(bev_cells_, map_cells_, lattice);
     for (const Se2& correction : {Se2{-1.23, 0.71, 0.31}, Se2{}, Se2{0.02, -0.33, 0.004}}) {
       EXPECT_NEAR(scorer.score(correction),
                   literal_zncc(bev_, map_, correction, lattice.step, lattice.skew), 1e-5)
-          << "of " << lattice.step << " cells one";
+          << "one of " << lattice.step << " cells";
     }
   }
 }
 
-// A part of a vector, one, and one and a bit.
+// Less than one vector, one vector, and more than one.
 INSTANTIATE_TEST_SUITE_P(Channels, ZnccScorerTest, testing::Values(3, 16, 19));
 
-TEST(ShiftPlanTest, SharesAPhaseAmongWholeCells) {
+TEST(ShiftPlanTest, GroupsShiftsThatDifferByWholeCells) {
   const ShiftPlan plan({2.0, 0.2}, 0.6);
   ASSERT_EQ(plan.phases().size(), 3U);
   EXPECT_EQ(plan.hypotheses(), 21);

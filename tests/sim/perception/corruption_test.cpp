@@ -34,7 +34,7 @@ std::span<const float> plane(const std::vector<float>& mask, ElementClass elemen
   return std::span<const float>(mask).subspan(static_cast<size_t>(element_class) * cells, cells);
 }
 
-/// Where the mask's weight lies on average, over the columns of one row.
+/// Centroid of the mask values in one row.
 double centre_y_m(std::span<const float> cells, int row) {
   double weight = 0.0;
   double sum_m = 0.0;
@@ -57,7 +57,7 @@ TEST(Corruption, ACleanMaskIsTheRaster) {
   for (size_t i = 0; i < kRasterSize; ++i) ASSERT_NEAR(mask[i], raster[i] / 255.0, 0.01) << i;
 }
 
-TEST(Corruption, FollowsFromTheSeed) {
+TEST(Corruption, IsDeterminedByTheSeed) {
   const HdMap map = road_with_everything();
   const auto mask = perceived(map, CorruptionLevel::kPaper, 5);
   EXPECT_EQ(mask, perceived(map, CorruptionLevel::kPaper, 5));
@@ -99,7 +99,7 @@ TEST(Corruption, MissesMoreFarAway) {
   EXPECT_GT(far, 0.2 * near);
 }
 
-// One line moves smoothly, by decimetres, and on the average over seeds not at all.
+// A line is displaced smoothly by decimetres, with zero mean over many seeds.
 TEST(Corruption, DisplacesALineSmoothlyAndWithoutBias) {
   HdMap map;
   add_divider(map, along_x(-80.0, 80.0, 5.0));
@@ -113,7 +113,7 @@ TEST(Corruption, DisplacesALineSmoothlyAndWithoutBias) {
     const auto cells = plane(mask, ElementClass::kLaneDivider);
     const double off_m = centre_y_m(cells, kRow) - 5.0;
     const double next_off_m = centre_y_m(cells, kRow + 4) - 5.0;
-    // A false line nearby is not what is asked about.
+    // Skip seeds with a false line nearby.
     if (!(std::abs(off_m) < 0.6) || !(std::abs(next_off_m) < 0.6)) continue;
     sum_m += off_m;
     squares += off_m * off_m;
@@ -128,7 +128,7 @@ TEST(Corruption, DisplacesALineSmoothlyAndWithoutBias) {
   EXPECT_LT(std::sqrt(step_squares / count), 0.4 * sigma_m);  // over 0.6 m
 }
 
-/// A dashed divider 5 m to the left, with dashes from -32 m, -24 m, ... on.
+/// A dashed divider 5 m to the left; dashes begin at -32 m, -24 m, ...
 std::vector<float> perceived_dashes(CorruptionLevel level, uint64_t seed) {
   HdMap map;
   add_divider(map, along_x(-80.0, 80.0, 5.0));
@@ -154,7 +154,7 @@ TEST(Corruption, ACleanMaskOfDashesIsTheSurveyedMapsRaster) {
   for (size_t i = 0; i < kRasterSize; ++i) ASSERT_NEAR(mask[i], raster[i] / 255.0, 0.01) << i;
 }
 
-// Neighbouring dashes move alike, distant ones each by itself.
+// Neighbouring dashes are displaced alike, distant ones independently.
 TEST(Corruption, DisplacesTheDashesOfALineTogether) {
   double near_product = 0.0;
   double far_product = 0.0;
@@ -176,7 +176,7 @@ TEST(Corruption, DisplacesTheDashesOfALineTogether) {
   EXPECT_LT(std::abs(far_product), near_product);
 }
 
-// A line is overlooked with all its dashes, or with none.
+// All dashes of a line are overlooked together.
 TEST(Corruption, OverlooksADashedLineAsAWhole) {
   int lines_without_a_dash = 0;
   constexpr int kSeeds = 300;
@@ -189,12 +189,13 @@ TEST(Corruption, OverlooksADashedLineAsAWhole) {
     }
     lines_without_a_dash += seen == 0 ? 1 : 0;
   }
-  // At the chance of one element; were each dash overlooked by itself, there would be none.
+  // Expected with the chance of one element. If dashes were overlooked one by one,
+  // there would be none.
   EXPECT_GE(lines_without_a_dash, 1);
   EXPECT_LE(lines_without_a_dash, kSeeds / 12);
 }
 
-// With the same seed the false line beside a continuous line is the same but for its gaps.
+// With the same seed, the false lines beside a dashed and a continuous line differ only in gaps.
 TEST(Corruption, AFalseLineBesideDashesIsDashedOrSolid) {
   HdMap map;
   add_divider(map, along_x(-80.0, 80.0, 5.0));
@@ -220,7 +221,7 @@ TEST(Corruption, AFalseLineBesideDashesIsDashedOrSolid) {
   EXPECT_GT(solid, dashed / 2);
 }
 
-// Two lines side by side do not move together: nothing shifts the whole scene.
+// Two parallel lines are displaced independently, so nothing shifts the whole scene.
 TEST(Corruption, DisplacesEachLineByItself) {
   HdMap map;
   add_divider(map, along_x(-80.0, 80.0, 5.0));
@@ -240,7 +241,7 @@ TEST(Corruption, DisplacesEachLineByItself) {
   EXPECT_LT(std::abs(both / std::sqrt(divider * kerb)), 0.25);
 }
 
-TEST(Corruption, IsWorseFromLevelToLevel) {
+TEST(Corruption, IsWorseAtEachHigherLevel) {
   const HdMap map = road_with_everything();
   const std::vector<float> truth = perceived(map, CorruptionLevel::kClean, 0);
   double last = 0.0;

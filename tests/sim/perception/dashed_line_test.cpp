@@ -22,7 +22,7 @@ TEST(DashedLine, HasAPointAtEveryEndOfADash) {
   EXPECT_THAT(line.painted, ElementsAre(true, false, true, false));
 }
 
-TEST(DashedLine, ADashGoesRoundACorner) {
+TEST(DashedLine, ADashContinuesAroundACorner) {
   const std::array<Dash, 1> dashes{{{3.0, 6.0}}};
   const Polyline corner{{0.0, 0.0}, {4.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}};
   const DashedLine line = dashed_line(corner, dashes);
@@ -33,7 +33,7 @@ TEST(DashedLine, ADashGoesRoundACorner) {
   EXPECT_THAT(line.painted, ElementsAre(false, true, true, false));
 }
 
-TEST(DashedLine, AWholeLineStaysAsItIs) {
+TEST(DashedLine, AContinuousLineIsUnchanged) {
   const Polyline points = arc({0.0, 0.0}, 8.0, 0.0, 1.0);
   const DashedLine line = dashed_line(points, {&kWholeLine, 1});
   ASSERT_EQ(line.points.size(), points.size());

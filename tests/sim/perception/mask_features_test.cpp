@@ -12,7 +12,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// A raster in which a line of each class ends well inside.
+/// A raster with one line of each class that ends well inside.
 std::vector<uint8_t> raster_at(const Se2& pose) {
   HdMap map;
   add_divider(map, along_x(-10.0, 9.0, 1.0));
@@ -51,13 +51,13 @@ TEST_P(MaskFeaturesOf, AreFiniteNonNegativeAndNotConstant) {
   }
 }
 
-// Driving 2.4 m forward shifts every channel by 2.4 m towards the back.
+// Driving 2.4 m forward shifts every channel backwards by 2.4 m.
 TEST_P(MaskFeaturesOf, MoveWithTheMask) {
   const std::vector<float> before = features_of(raster_at({}));
   const std::vector<float> after = features_of(raster_at({2.4, 0.0, 0.0}));
   const auto [channels, grid] = GetParam();
   const int shift = static_cast<int>(std::lround(2.4 / grid.cell_m));
-  const int rim = static_cast<int>(std::lround(4.8 / grid.cell_m));  // of the widest blur
+  const int rim = static_cast<int>(std::lround(4.8 / grid.cell_m));  // reach of the widest blur
   for (int channel = 0; channel < channels; ++channel) {
     for (int row = rim; row < grid.rows - rim; ++row) {
       for (int col = rim; col < grid.cols - rim; ++col) {
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(AllSizes, MaskFeaturesOf,
                                            Case{3, kRasterGrid}, Case{4, kRasterGrid},
                                            Case{16, kRasterGrid}, Case{64, kRasterGrid}));
 
-TEST(MaskFeatures, AreTheSameOfARasterAndItsProbabilities) {
+TEST(MaskFeatures, AreTheSameForARasterAndItsProbabilities) {
   const std::vector<uint8_t> raster = raster_at({});
   std::vector<float> mask(kRasterSize);
   std::transform(raster.begin(), raster.end(), mask.begin(),

@@ -11,7 +11,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// Intersection over union of the perceived and the true cells of each class, over many scenes.
+/// Intersection over union of perceived and true cells per class, over many scenes.
 std::array<double, kRasterChannels> overlap(CorruptionLevel level, uint64_t scenes) {
   SceneSampler sampler(kTuningSeedBase);
   MatchingScene scene;
@@ -37,10 +37,10 @@ bool equal(const MatchingScene& a, const MatchingScene& b) {
          a.perceived == b.perceived;
 }
 
-TEST(SceneSampler, ASceneFollowsFromSeedBaseAndNumberAlone) {
+TEST(SceneSampler, ASceneDependsOnSeedBaseAndNumberAlone) {
   SceneSampler in_order(kTuningSeedBase);
   SceneSampler backwards(kTuningSeedBase);
-  std::array<MatchingScene, 44> scenes;  // more than share their towns
+  std::array<MatchingScene, 44> scenes;  // more than one group
   for (size_t i = 0; i < scenes.size(); ++i) {
     in_order.make(i, CorruptionLevel::kPaper, scenes[i]);
   }
@@ -59,7 +59,7 @@ TEST(SceneSampler, SeedBasesGiveDifferentScenes) {
   EXPECT_NE(tuning.raster_truth, evaluation.raster_truth);
 }
 
-TEST(SceneSampler, TheLevelChangesOnlyWhatIsPerceived) {
+TEST(SceneSampler, TheLevelAffectsOnlyThePerceivedMask) {
   SceneSampler sampler(kTuningSeedBase);
   MatchingScene clean;
   MatchingScene hard;
@@ -81,7 +81,7 @@ TEST(SceneSampler, EveryKindOfRoadIsEquallyFrequent) {
   for (const int count : counts) EXPECT_EQ(count, 8);
 }
 
-TEST(SceneSampler, EveryKindOfRoadComesFromBothSortsOfMapsAlike) {
+TEST(SceneSampler, EveryKindOfRoadComesEquallyFromBothKindsOfMap) {
   SceneSampler sampler(kTuningSeedBase);
   MatchingScene scene;
   std::array<int, kRoadKinds> surveyed{};
@@ -92,7 +92,7 @@ TEST(SceneSampler, EveryKindOfRoadComesFromBothSortsOfMapsAlike) {
   for (const int count : surveyed) EXPECT_EQ(count, 4);
 }
 
-/// The stretches of covered cells along the columns of a raster's dividers.
+/// The number of stretches of covered cells along the columns of the divider raster.
 int divider_stretches(const std::vector<uint8_t>& raster) {
   int stretches = 0;
   for (int col = 0; col < kRasterGrid.cols; ++col) {
@@ -106,7 +106,7 @@ int divider_stretches(const std::vector<uint8_t>& raster) {
   return stretches;
 }
 
-// Both the map and what is seen are dashed: on straight roads, where dashes follow the columns.
+// Tests straight roads, where dashes lie along the columns of the raster.
 TEST(SceneSampler, SurveyedMapsShowDashes) {
   SceneSampler sampler(kTuningSeedBase);
   MatchingScene scene;
@@ -149,8 +149,8 @@ TEST(SceneSampler, CorrectionsFillTheirRanges) {
   EXPECT_GT(most.yaw_rad, radians(3.4));
 }
 
-// Moving the map drawn at T0 by dT (turn, then shift) gives what is seen at T.
-TEST(SceneSampler, TheCorrectionTakesThePriorToTheTruth) {
+// Moving the map drawn at T0 by dT (rotation, then translation) gives the map at T.
+TEST(SceneSampler, TheCorrectionMovesThePriorToTheTruth) {
   SceneSampler sampler(kTuningSeedBase);
   MatchingScene scene;
   for (uint64_t i = 0; i < 10; ++i) {
@@ -182,8 +182,8 @@ TEST(SceneSampler, CleanScenesShowTheMap) {
   for (const double iou : overlap(CorruptionLevel::kClean, 10)) EXPECT_GT(iou, 0.995);
 }
 
-// The paper's Table II; a few dozen scenes scatter by some hundredths.
-TEST(SceneSampler, PaperScenesAreSeenAsWellAsThePaperSaw) {
+// Expects the values of the paper's Table II; a few dozen scenes vary by some hundredths.
+TEST(SceneSampler, PaperScenesReachTheIouOfThePaper) {
   const auto iou = overlap(CorruptionLevel::kPaper, 80);
   EXPECT_NEAR(iou[0], 0.578, 0.06);
   EXPECT_NEAR(iou[1], 0.422, 0.08);

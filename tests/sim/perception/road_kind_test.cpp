@@ -17,7 +17,7 @@ std::optional<RoadKind> kind_of(const HdMap& map, const Se2& pose = {},
   return road_kind(index, pose, dashes);
 }
 
-TEST(RoadKind, LinesRightThroughTheBoxAreStraightSolid) {
+TEST(RoadKind, LinesThroughTheWholeBoxAreStraightSolid) {
   EXPECT_THAT(kind_of(straight_road()), Optional(RoadKind::kStraightSolid));
   EXPECT_THAT(kind_of(straight_road(), {3.0, 1.0, radians(184.0)}),
               Optional(RoadKind::kStraightSolid));
@@ -47,7 +47,7 @@ TEST(RoadKind, DashesMakeAStraightRoadStructured) {
   EXPECT_THAT(kind_of(straight_road(), {}, dashes), Optional(RoadKind::kStraightStructured));
 }
 
-TEST(RoadKind, WholeLinesAreStraightSolidInASurveyedMapToo) {
+TEST(RoadKind, ContinuousLinesAreStraightSolidInASurveyedMapToo) {
   const MapDashes dashes(3, {kWholeLine});
   EXPECT_THAT(kind_of(straight_road(), {}, dashes), Optional(RoadKind::kStraightSolid));
 }
@@ -67,7 +67,7 @@ TEST(RoadKind, DashesChangeNothingWhereTheRoadIsNotStraight) {
 
 TEST(RoadKind, StructureAtTheRimIsNeitherSolidNorStructured) {
   HdMap map = straight_road();
-  add_crossing(map, 31.0);  // outside the box, but a box at the prior pose may show it
+  add_crossing(map, 31.0);  // outside the box, but a box at the prior may show it
   EXPECT_THAT(kind_of(map), Eq(std::nullopt));
 }
 
@@ -98,7 +98,7 @@ TEST(RoadKind, ACircularIslandIsARoundabout) {
   EXPECT_THAT(kind_of(map), Optional(RoadKind::kMergeOrRoundabout));
 }
 
-TEST(RoadKind, TheNoseOfAMedianIsNoRoundabout) {
+TEST(RoadKind, TheRoundEndOfAMedianIsNoRoundabout) {
   HdMap map = straight_road();
   Polyline median = arc({5.0, 0.0}, 1.0, -0.5 * std::numbers::pi, 0.5 * std::numbers::pi);
   append(median, {{-80.0, 1.0}, {-80.0, -1.0}, median.front()});
@@ -106,7 +106,7 @@ TEST(RoadKind, TheNoseOfAMedianIsNoRoundabout) {
   EXPECT_THAT(kind_of(map), Optional(RoadKind::kStraightStructured));
 }
 
-TEST(RoadKind, AKerbThatMovesOverByALaneIsAMerge) {
+TEST(RoadKind, AKerbThatShiftsByALaneIsAMerge) {
   HdMap map = straight_road();
   map.elements.pop_back();
   Polyline taper{{-80.0, -6.0}};
@@ -125,7 +125,7 @@ TEST(RoadKind, AParkingBayIsNoMerge) {
   EXPECT_THAT(kind_of(map), Optional(RoadKind::kStraightStructured));
 }
 
-TEST(RoadKind, HardlyAnyLineIsNoKind) {
+TEST(RoadKind, TooLittleLineHasNoKind) {
   HdMap map;
   add_kerb(map, along_x(0.0, 20.0, 6.0));
   EXPECT_THAT(kind_of(map), Eq(std::nullopt));

@@ -1,4 +1,4 @@
-// Hand-made maps: roads along the map's x axis, seen from its origin.
+// Small maps for tests: roads along the x axis of the map, seen from its origin.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ inline void add_divider(HdMap& map, Polyline points) {
   add_line(map, ElementClass::kLaneDivider, std::move(points));
 }
 
-/// Over the whole road, 3 m wide.
+/// A crossing over the whole road, 3 m wide.
 inline void add_crossing(HdMap& map, double x_m) {
   add_line(map, ElementClass::kPedestrianCrossing,
            {{x_m, -6.0}, {x_m + 3.0, -6.0}, {x_m + 3.0, 6.0}, {x_m, 6.0}});
@@ -46,7 +46,7 @@ inline HdMap straight_road() {
   return map;
 }
 
-/// A line from x = -80 m to 80 m with 3 m dashes, the first one from -80 m on, and 5 m gaps.
+/// The dashes of a line from x = -80 m to 80 m: 3 m long with gaps of 5 m, the first at -80 m.
 inline std::vector<Dash> regular_dashes() {
   std::vector<Dash> dashes;
   for (double from_m = 0.0; from_m < 160.0; from_m += 8.0) dashes.push_back({from_m, from_m + 3.0});

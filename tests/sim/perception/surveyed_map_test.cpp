@@ -15,7 +15,7 @@ namespace {
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-/// A road with a dashed divider, which the map has 5 cm too far left, between kerbs.
+/// A road with kerbs and a dashed divider, which the map has 5 cm too far left.
 World road_with_dashes(double phase_m) {
   World world;
   world.map = straight_road();
@@ -31,8 +31,9 @@ bool is_whole(const std::vector<Dash>& dashes) {
   return dashes.size() == 1 && dashes[0].from_m == 0.0 && std::isinf(dashes[0].to_m);
 }
 
-TEST(PaintedDashes, AreWhereThePaintIs) {
-  const MapDashes dashes = painted_dashes(road_with_dashes(9.0));  // 1 m of the first dash is over
+TEST(PaintedDashes, LieWhereThePaintIs) {
+  const MapDashes dashes =
+      painted_dashes(road_with_dashes(9.0));  // the line begins 1 m after the start of a dash
   ASSERT_THAT(dashes, SizeIs(3));
   EXPECT_TRUE(is_whole(dashes[0]));
   EXPECT_TRUE(is_whole(dashes[2]));
@@ -46,13 +47,13 @@ TEST(PaintedDashes, AreWhereThePaintIs) {
 }
 
 TEST(PaintedDashes, EndWithTheLine) {
-  const MapDashes dashes = painted_dashes(road_with_dashes(6.0));  // dashes from 2, 10 and 18 m on
+  const MapDashes dashes = painted_dashes(road_with_dashes(6.0));  // dashes begin at 2, 10 and 18 m
   ASSERT_THAT(dashes[1], SizeIs(3));
   EXPECT_NEAR(dashes[1][2].from_m, 18.0, 1e-9);
   EXPECT_NEAR(dashes[1][2].to_m, 20.0, 1e-9);
 }
 
-TEST(PaintedDashes, ADividerThatIsNotPaintedIsWhole) {
+TEST(PaintedDashes, AnUnpaintedDividerIsContinuous) {
   World world = road_with_dashes(0.0);
   world.paint_lines.pop_back();
   EXPECT_TRUE(is_whole(painted_dashes(world)[1]));
@@ -75,15 +76,15 @@ TEST(SurveyedMap, HasAnElementForEveryDash) {
   EXPECT_TRUE(dash.points[1].isApprox(Eigen::Vector2d(10.0, 0.05)));
 }
 
-TEST(SurveyedMap, WithoutDashesIsTheMap) {
+TEST(SurveyedMap, WithoutDashesEqualsTheMap) {
   const HdMap map = straight_road();
   EXPECT_THAT(surveyed_map(map, {}).elements, SizeIs(map.elements.size()));
   const MapDashes unpainted{{kWholeLine}, {}, {kWholeLine}};
   EXPECT_THAT(surveyed_map(map, unpainted).elements, SizeIs(2));
 }
 
-// Nearly all dashed dividers of a town are painted; their dashes cover the share that the paint's
-// pattern asks for.
+// Nearly all dashed dividers of a town are painted. Their dashes cover the share given by the dash
+// pattern.
 TEST(SurveyedMap, ShowsTheDashesOfATown) {
   const World world = generate_world(kTuningSeedBase + 1);
   const MapDashes dashes = painted_dashes(world);

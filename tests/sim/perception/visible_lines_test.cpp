@@ -41,10 +41,10 @@ TEST(VisibleLines, AreInTheVehicleFrame) {
   EXPECT_TRUE(lines[0].ends);
 }
 
-TEST(VisibleLines, JoinElementsThatContinueOneAnotherEitherWayRound) {
+TEST(VisibleLines, JoinElementsThatContinueEachOtherInEitherDirection) {
   HdMap map;
   add_divider(map, along_x(-80.0, -5.0, 1.0));
-  add_divider(map, along_x(20.0, -5.0, 1.05));  // the other way, a little off
+  add_divider(map, along_x(20.0, -5.0, 1.05));  // in the opposite direction, slightly off
   add_divider(map, along_x(20.0, 80.0, 1.0));
   const auto lines = lines_of(map);
   ASSERT_EQ(lines.size(), 1U);
@@ -81,7 +81,7 @@ TEST(VisibleLines, JoinARingAtItsSeam) {
   EXPECT_TRUE(whole[0].of_ring);
   EXPECT_FALSE(whole[0].begins);
   EXPECT_FALSE(whole[0].ends);
-  // The seam, 8 m east of the centre, in the middle of the part that is in the box.
+  // From here the seam, 8 m east of the ring's centre, lies in the middle of the visible part.
   const auto part = lines_of(map, {25.0, 0.0, 0.0});
   ASSERT_EQ(part.size(), 1U);
   EXPECT_TRUE(part[0].of_ring);
@@ -89,7 +89,7 @@ TEST(VisibleLines, JoinARingAtItsSeam) {
   EXPECT_FALSE(part[0].ends);
 }
 
-TEST(VisibleLines, OfDashesAreOneLineWithGaps) {
+TEST(VisibleLines, ADashedLineIsOneLineWithGaps) {
   HdMap map;
   add_divider(map, along_x(-80.0, 80.0, 1.0));
   const MapIndex index(map);
@@ -97,7 +97,7 @@ TEST(VisibleLines, OfDashesAreOneLineWithGaps) {
   ASSERT_EQ(lines.size(), 1U);
   ASSERT_EQ(lines[0].painted.size() + 1, lines[0].points.size());
   const auto stretches = painted_stretches(lines[0].painted);
-  ASSERT_EQ(stretches.size(), 8U);  // -32 to 27 m, every 8 m; the first begins behind the box
+  ASSERT_EQ(stretches.size(), 8U);  // every 8 m from -32 to 27 m; the first begins outside the box
   for (size_t k = 1; k + 1 < stretches.size(); ++k) {
     const double from_m = -32.0 + 8.0 * static_cast<double>(k);
     EXPECT_NEAR(lines[0].points[stretches[k].first].x(), -from_m, 1e-9);
@@ -105,8 +105,8 @@ TEST(VisibleLines, OfDashesAreOneLineWithGaps) {
   }
 }
 
-// The two elements run towards each other: one of them must be turned, and its dashes with it.
-TEST(VisibleLines, KeepTheirDashesWhenTheyAreJoined) {
+// The two elements run towards each other, so one of them and its dashes must be reversed.
+TEST(VisibleLines, KeepTheirDashesWhenJoined) {
   HdMap map;
   add_divider(map, along_x(-80.0, 0.0, 1.0));
   add_divider(map, along_x(80.0, 0.0, 1.0));
@@ -126,7 +126,7 @@ TEST(VisibleLines, KeepTheirDashesWhenTheyAreJoined) {
   EXPECT_NEAR(painted_beyond_m, 20.0, 1e-9);
 }
 
-TEST(VisibleLines, AreNoneWhereThereIsNoMap) {
+TEST(VisibleLines, AreEmptyOutsideTheMap) {
   EXPECT_TRUE(lines_of(straight_road(), {0.0, 500.0, 0.0}).empty());
 }
 

@@ -12,7 +12,7 @@ Box random_box(Random& random, double most_m) {
   return {low, low + Eigen::Vector2d(random.uniform(0.0, most_m), random.uniform(0.0, most_m))};
 }
 
-TEST(CellIndex, FindsWhatASearchThroughAllFinds) {
+TEST(CellIndex, FindsTheSameAsALinearSearch) {
   Random random(3);
   std::vector<Box> boxes;
   for (int i = 0; i < 400; ++i) boxes.push_back(random_box(random, i % 10 == 0 ? 200.0 : 8.0));
@@ -29,7 +29,7 @@ TEST(CellIndex, FindsWhatASearchThroughAllFinds) {
   }
 }
 
-TEST(CellIndex, FindsNothingWhereNothingIs) {
+TEST(CellIndex, FindsNothingOutsideTheItems) {
   std::vector<int> found;
   CellIndex().query({Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 1)}, found);
   CellIndex({Box(Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 1))})

@@ -10,12 +10,12 @@ namespace {
 
 constexpr int kWidth = 12;
 constexpr int kHeight = 9;
-using Picture = std::array<std::array<float, kWidth>, kHeight>;
+using Coverage = std::array<std::array<float, kWidth>, kHeight>;
 
-Picture picture_of(const CoverageMask& mask) {
-  Picture picture{};
+Coverage coverage_of(const CoverageMask& mask) {
+  Coverage coverage{};
   for (int j = 0; j < kHeight; ++j) {
-    auto& row = picture[static_cast<size_t>(j)];
+    auto& row = coverage[static_cast<size_t>(j)];
     switch (mask.row(j, row.data())) {
       case CoverageMask::RowKind::kEmpty:
         row.fill(0.0F);
@@ -27,12 +27,12 @@ Picture picture_of(const CoverageMask& mask) {
         break;
     }
   }
-  return picture;
+  return coverage;
 }
 
-float area_of(const Picture& picture) {
+float area_of(const Coverage& coverage) {
   float sum = 0.0F;
-  for (const auto& row : picture) {
+  for (const auto& row : coverage) {
     for (const float value : row) sum += value;
   }
   return sum;
@@ -47,23 +47,23 @@ TEST(CoverageMask, SumsToTheAreaOfATurnedSquare) {
       ring[i] = Eigen::Vector2f(5.3F + 3.0F * std::cos(angle), 4.1F + 3.0F * std::sin(angle));
     }
     mask.add(ring);
-    EXPECT_NEAR(area_of(picture_of(mask)), 18.0F, 1e-3F);
+    EXPECT_NEAR(area_of(coverage_of(mask)), 18.0F, 1e-3F);
   }
 }
 
-TEST(CoverageMask, SharesCellsOnTheEdge) {
+TEST(CoverageMask, CoversCellsOnTheEdgePartially) {
   CoverageMask mask(kWidth, kHeight);
-  // Cell (i, j) is the unit square around (i, j): this covers half of column 2 and of row 3.
+  // Cell (i, j) is the unit square around (i, j), so the ring covers half of column 2 and of row 3.
   const std::array<Eigen::Vector2f, 4> ring = {
       {{2.0F, 1.5F}, {5.5F, 1.5F}, {5.5F, 3.0F}, {2.0F, 3.0F}}};
   mask.add(ring);
-  const Picture picture = picture_of(mask);
-  EXPECT_FLOAT_EQ(picture[2][2], 0.5F);
-  EXPECT_FLOAT_EQ(picture[2][3], 1.0F);
-  EXPECT_FLOAT_EQ(picture[3][3], 0.5F);
-  EXPECT_FLOAT_EQ(picture[3][2], 0.25F);
-  EXPECT_FLOAT_EQ(picture[2][6], 0.0F);
-  EXPECT_FLOAT_EQ(picture[1][3], 0.0F);
+  const Coverage coverage = coverage_of(mask);
+  EXPECT_FLOAT_EQ(coverage[2][2], 0.5F);
+  EXPECT_FLOAT_EQ(coverage[2][3], 1.0F);
+  EXPECT_FLOAT_EQ(coverage[3][3], 0.5F);
+  EXPECT_FLOAT_EQ(coverage[3][2], 0.25F);
+  EXPECT_FLOAT_EQ(coverage[2][6], 0.0F);
+  EXPECT_FLOAT_EQ(coverage[1][3], 0.0F);
 }
 
 TEST(CoverageMask, ClipsAtTheBorders) {
@@ -71,18 +71,18 @@ TEST(CoverageMask, ClipsAtTheBorders) {
   const std::array<Eigen::Vector2f, 3> ring = {
       {{-100.0F, -50.0F}, {200.0F, 4.0F}, {-100.0F, 60.0F}}};
   mask.add(ring);
-  for (const auto& row : picture_of(mask)) {
+  for (const auto& row : coverage_of(mask)) {
     for (const float value : row) EXPECT_NEAR(value, 1.0F, 1e-3F);
   }
 }
 
-TEST(CoverageMask, EitherOrientationCounts) {
+TEST(CoverageMask, AcceptsBothOrientations) {
   CoverageMask mask(kWidth, kHeight);
   const std::array<Eigen::Vector2f, 3> left = {{{1.0F, 1.0F}, {4.0F, 1.0F}, {1.0F, 5.0F}}};
   const std::array<Eigen::Vector2f, 3> right = {{{6.0F, 1.0F}, {6.0F, 5.0F}, {9.0F, 1.0F}}};
   mask.add(left);
   mask.add(right);
-  EXPECT_NEAR(area_of(picture_of(mask)), 12.0F, 1e-3F);
+  EXPECT_NEAR(area_of(coverage_of(mask)), 12.0F, 1e-3F);
 }
 
 TEST(CoverageMask, OverlapsCountOnce) {
@@ -91,15 +91,15 @@ TEST(CoverageMask, OverlapsCountOnce) {
       {{1.5F, 1.5F}, {5.5F, 1.5F}, {5.5F, 4.5F}, {1.5F, 4.5F}}};
   mask.add(ring);
   mask.add(ring);
-  EXPECT_NEAR(area_of(picture_of(mask)), 12.0F, 1e-3F);
+  EXPECT_NEAR(area_of(coverage_of(mask)), 12.0F, 1e-3F);
 }
 
-TEST(CoverageMask, ForgetsWhenCleared) {
+TEST(CoverageMask, IsEmptyAfterClear) {
   CoverageMask mask(kWidth, kHeight);
   const std::array<Eigen::Vector2f, 3> ring = {{{1.0F, 1.0F}, {8.0F, 2.0F}, {3.0F, 7.0F}}};
   mask.add(ring);
   mask.clear();
-  EXPECT_EQ(area_of(picture_of(mask)), 0.0F);
+  EXPECT_EQ(area_of(coverage_of(mask)), 0.0F);
 }
 
 }  // namespace

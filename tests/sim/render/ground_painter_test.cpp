@@ -21,7 +21,8 @@ double albedo(GroundTexel texel) {
   return root * root;
 }
 
-/// Mean green albedo along row j from map abscissa `from_m` to `to_m`; the tile is (level, 0, 0).
+/// Mean green albedo along row j of tile (level, 0, 0), between the x coordinates `from_m` and
+/// `to_m`.
 double mean_albedo(const std::vector<GroundTexel>& tile, int level, int j, double from_m,
                    double to_m) {
   double sum = 0.0;
@@ -45,12 +46,12 @@ World plain_with(const PaintLine& line) {
 
 constexpr int kLineRow = 60;  // y = 3 m at level 0
 
-TEST(GroundPainter, PaintsDashesWhereTheirPhaseSays) {
-  // Dashes of 2 m and gaps of 1 m, shifted by 0.5 m: from x = -20 the first one ends at -18.5.
+TEST(GroundPainter, DashPhaseShiftsTheDashes) {
+  // Dashes of 2 m and gaps of 1 m, shifted by 0.5 m: the first dash runs from x = -20 to -18.5.
   const World world =
       plain_with({.points = kAlongX, .width_m = 0.3, .dash_m = 2.0, .gap_m = 1.0, .phase_m = 0.5});
   const auto tile = tile_of(world, {kLevel, 0, 0});
-  // Arc length 20 m is x = 0; 20.5 modulo 3 is 2.5, in a gap until x = 0.5.
+  // At x = 0 the arc length is 20 m; with the phase, 20.5 modulo 3 is 2.5. The gap ends at x = 0.5.
   EXPECT_LT(mean_albedo(tile, kLevel, kLineRow, 0.05, 0.4), 0.25);
   EXPECT_GT(mean_albedo(tile, kLevel, kLineRow, 0.6, 2.4), 0.6);
   EXPECT_LT(mean_albedo(tile, kLevel, kLineRow, 2.6, 3.4), 0.25);
@@ -78,7 +79,7 @@ TEST(GroundPainter, CoarseLevelsKeepTheAmountOfPaint) {
   }
 }
 
-TEST(GroundPainter, ATileDoesNotDependOnTheOnesBefore) {
+TEST(GroundPainter, ATileDoesNotDependOnEarlierTiles) {
   const World world = generate_world(3);
   GroundPainter painter(world);
   std::vector<GroundTexel> tile(kTileArea);

@@ -16,8 +16,8 @@ Tile texels_at(const GroundTiles& tiles, int32_t offset) {
   return {first, first + kTileArea};
 }
 
-/// Borrows that many other tiles, one after the other.
-void leaf_through(GroundTiles& tiles, int count) {
+/// Borrows and gives back `count` other tiles, one after the other.
+void borrow_others(GroundTiles& tiles, int count) {
   for (int i = 0; i < count; ++i) tiles.give_back(tiles.borrow({0, i, 1000}));
 }
 
@@ -35,40 +35,40 @@ TEST(GroundTiles, PaintsEachTileInAPlaceOfItsOwn) {
   }
 }
 
-TEST(GroundTiles, KeepsTheTilesLentLast) {
+TEST(GroundTiles, KeepsTheTilesBorrowedLast) {
   const World world = short_street();
   GroundTiles tiles(world);
   const TileKey key{0, 3, -1};
   const int32_t offset = tiles.borrow(key);
   tiles.give_back(offset);
-  leaf_through(tiles, GroundTiles::kCapacity - 1);
+  borrow_others(tiles, GroundTiles::kCapacity - 1);
   EXPECT_EQ(tiles.borrow(key), offset);
   tiles.give_back(offset);
-  leaf_through(tiles, GroundTiles::kCapacity - 1);
-  EXPECT_EQ(tiles.borrow(key), offset) << "the loan before made it a young one again";
+  borrow_others(tiles, GroundTiles::kCapacity - 1);
+  EXPECT_EQ(tiles.borrow(key), offset) << "the previous loan makes the tile recent again";
 }
 
-TEST(GroundTiles, ATileThatIsLentStays) {
+TEST(GroundTiles, ABorrowedTileStays) {
   const World world = short_street();
   GroundTiles tiles(world);
   const TileKey key{0, 3, -1};
   const int32_t offset = tiles.borrow(key);
-  tiles.give_back(tiles.borrow(key));  // there is another borrower still
-  const Tile lent = texels_at(tiles, offset);
-  leaf_through(tiles, 2 * GroundTiles::kCapacity);
-  EXPECT_EQ(texels_at(tiles, offset), lent);
+  tiles.give_back(tiles.borrow(key));  // one borrower remains
+  const Tile borrowed = texels_at(tiles, offset);
+  borrow_others(tiles, 2 * GroundTiles::kCapacity);
+  EXPECT_EQ(texels_at(tiles, offset), borrowed);
   EXPECT_EQ(tiles.borrow(key), offset);
 }
 
-TEST(GroundTiles, PaintsAForgottenTileTheSameAgain) {
+TEST(GroundTiles, PaintsADroppedTileTheSameAgain) {
   const World world = short_street();
   GroundTiles tiles(world);
   const TileKey key{0, 3, -1};
   const int32_t offset = tiles.borrow(key);
   const Tile first = texels_at(tiles, offset);
   tiles.give_back(offset);
-  leaf_through(tiles, GroundTiles::kCapacity);
-  EXPECT_NE(texels_at(tiles, offset), first) << "its place was taken";
+  borrow_others(tiles, GroundTiles::kCapacity);
+  EXPECT_NE(texels_at(tiles, offset), first) << "another tile is in its place";
   EXPECT_EQ(texels_at(tiles, tiles.borrow(key)), first);
 }
 

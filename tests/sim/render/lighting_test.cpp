@@ -30,7 +30,7 @@ TEST(RandomConditions, RepeatWithTheSeed) {
   EXPECT_NE(random_conditions(5).sun_azimuth_rad, random_conditions(6).sun_azimuth_rad);
 }
 
-TEST(Lighting, LampsBurnAtNightAlone) {
+TEST(Lighting, LampsAreOnOnlyAtNight) {
   Conditions conditions;
   EXPECT_EQ(lighting_of(conditions).headlights, 0.0F);
   EXPECT_TRUE(lighting_of(conditions).casts_shadows());
@@ -40,7 +40,7 @@ TEST(Lighting, LampsBurnAtNightAlone) {
   EXPECT_FALSE(lighting_of(conditions).casts_shadows());
 }
 
-TEST(Lighting, CloudsTakeTheSun) {
+TEST(Lighting, CloudsBlockTheSun) {
   Conditions clear;
   clear.overcast = 0.0;
   Conditions grey;

@@ -28,7 +28,7 @@ CameraModel front_camera() {
   return nominal_rig().cameras[1];
 }
 
-/// Mean of a small block of pixels around a place, per channel.
+/// Mean colour of 3 x 3 pixels around a place.
 Eigen::Vector3d colour_at(const RgbImage& image, const Eigen::Vector2d& pixel) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int dv = -1; dv <= 1; ++dv) {
@@ -41,7 +41,7 @@ Eigen::Vector3d colour_at(const RgbImage& image, const Eigen::Vector2d& pixel) {
   return sum / 9.0;
 }
 
-/// Pixel of a map point, by the pipeline's own camera model.
+/// Projects a map point with the camera model of the pipeline.
 Eigen::Vector2d pixel_of(const CameraModel& camera, const Se2& pose, const BodyMotion& body,
                          const Eigen::Vector3d& map_point) {
   const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(pose.yaw_rad, Eigen::Vector3d::UnitZ()) *
@@ -55,7 +55,7 @@ Eigen::Vector2d pixel_of(const CameraModel& camera, const Se2& pose, const BodyM
   return pixel.value_or(Eigen::Vector2d::Zero());
 }
 
-/// Centre of all that differs between two images.
+/// Centroid of the difference between two images.
 Eigen::Vector2d centre_of_change(const RgbImage& a, const RgbImage& b) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double weight = 0.0;
@@ -92,8 +92,8 @@ TEST_P(PaintedSpot, AppearsWhereTheCameraModelProjectsIt) {
   painted.paint_areas.push_back({square(spot.x(), spot.y(), 0.2), {0.8F, 0.8F, 0.8F}, 0.0F});
 
   const Eigen::Vector2d seen =
-      centre_of_change(draw(bare, camera, pose, still_air(), 0, view.body),
-                       draw(painted, camera, pose, still_air(), 0, view.body));
+      centre_of_change(draw(bare, camera, pose, even_light(), 0, view.body),
+                       draw(painted, camera, pose, even_light(), 0, view.body));
   const Eigen::Vector2d expected = pixel_of(camera, pose, view.body, {spot.x(), spot.y(), 0.0});
   EXPECT_NEAR(seen.x(), expected.x(), 0.5);
   EXPECT_NEAR(seen.y(), expected.y(), 0.5);
@@ -102,7 +102,7 @@ TEST_P(PaintedSpot, AppearsWhereTheCameraModelProjectsIt) {
 INSTANTIATE_TEST_SUITE_P(
     Cameras, PaintedSpot,
     testing::Values(PlacedView{1, {}, {9.0, 1.0}, false},
-                    PlacedView{1, {}, {8.0, -3.5}, false},  // far off the axis: distorted
+                    PlacedView{1, {}, {8.0, -3.5}, false},  // far off the axis, with distortion
                     PlacedView{1, {0.02, 0.01, 0.05}, {9.0, 1.0}, false},
                     PlacedView{0, {-0.015, 0.02, 0.0}, {6.0, 6.0}, false},
                     PlacedView{3, {}, {-2.0, 7.0}, false},
@@ -120,7 +120,7 @@ TEST(Renderer, PutsASignWhereTheCameraModelProjectsIt) {
                          .kind = PostKind::kSign});
   const CameraModel camera = front_camera();
   const Eigen::Vector2d seen =
-      centre_of_change(draw(bare, camera, {}, still_air()), draw(world, camera, {}, still_air()));
+      centre_of_change(draw(bare, camera, {}, even_light()), draw(world, camera, {}, even_light()));
   const Eigen::Vector2d expected = pixel_of(camera, {}, {}, {15.0, 4.0, 2.3});
   EXPECT_NEAR(seen.x(), expected.x(), 0.7);
   EXPECT_NEAR(seen.y(), expected.y(), 0.7);
@@ -141,7 +141,7 @@ TEST(Renderer, DoesNotDependOnWhatItDrewBefore) {
   const RgbImage fresh = draw(world, front_camera(), {}, conditions, 5);
   Renderer renderer(world);
   RgbImage image;
-  // Enough ground to push the first tiles out of the store.
+  // Enough ground to drop the first tiles from the cache.
   for (int i = 0; i < 60; ++i) {
     const Se2 pose{-250.0 + 9.0 * i, 100.0 * std::sin(i), 0.7 * i};
     renderer.render(front_camera(), pose, {}, i, {}, 1, image);
@@ -150,7 +150,7 @@ TEST(Renderer, DoesNotDependOnWhatItDrewBefore) {
   EXPECT_EQ(image.pixels, fresh.pixels);
 }
 
-TEST(Renderer, NoiseSeedChangesTheNoiseAlone) {
+TEST(Renderer, NoiseSeedAffectsOnlyTheNoise) {
   const World world = short_street();
   Conditions conditions;
   conditions.noise_sigma = 3.0;
@@ -165,7 +165,7 @@ TEST(Renderer, NoiseSeedChangesTheNoiseAlone) {
   }
   const auto count = static_cast<double>(a.pixels.size());
   EXPECT_NEAR(sum / count, 0.0, 0.1);
-  // Two independent noises; clipping at white takes a little away.
+  // The difference of two independent noises; clipping at white reduces it slightly.
   EXPECT_NEAR(std::sqrt(squares / count), 3.0 * std::sqrt(2.0), 0.5);
 
   conditions.noise_sigma = 0.0;
@@ -173,7 +173,7 @@ TEST(Renderer, NoiseSeedChangesTheNoiseAlone) {
             draw(world, front_camera(), {}, conditions, 2).pixels);
 }
 
-/// A low red or green wall across the road ahead.
+/// A wall across the road ahead.
 Wall wall_at(double x_m, const Rgb& albedo, double top_m) {
   return {.base = {{x_m, -10.0}, {x_m, 10.0}},
           .top_m = top_m,
@@ -181,7 +181,7 @@ Wall wall_at(double x_m, const Rgb& albedo, double top_m) {
           .albedo = albedo};
 }
 
-TEST(Renderer, NearThingsHideFarOnes) {
+TEST(Renderer, NearObjectsHideFarOnes) {
   const Rgb red{0.7F, 0.05F, 0.05F};
   const Rgb green{0.05F, 0.7F, 0.05F};
   const CameraModel camera = front_camera();
@@ -189,11 +189,11 @@ TEST(Renderer, NearThingsHideFarOnes) {
     World world = asphalt_plain();
     world.walls = {wall_at(12.0, red, 1.0), wall_at(20.0, green, 4.0)};
     if (!near_first) std::swap(world.walls[0], world.walls[1]);
-    const RgbImage image = draw(world, camera, {}, still_air());
+    const RgbImage image = draw(world, camera, {}, even_light());
     const Eigen::Vector3d low = colour_at(image, pixel_of(camera, {}, {}, {12.0, 0.5, 0.6}));
     EXPECT_GT(low.x(), 2.0 * low.y()) << "the near wall is red";
     const Eigen::Vector3d high = colour_at(image, pixel_of(camera, {}, {}, {20.0, 0.5, 3.0}));
-    EXPECT_GT(high.y(), 2.0 * high.x()) << "over it one sees the green one";
+    EXPECT_GT(high.y(), 2.0 * high.x()) << "the green wall is visible above it";
   }
 }
 
@@ -205,17 +205,17 @@ TEST(Renderer, AVehicleHidesThePaintBehindIt) {
       {.centre = {11.0, 0.0}, .yaw_rad = 1.5708, .albedo = {0.02F, 0.02F, 0.3F}});
   const CameraModel camera = front_camera();
   const Eigen::Vector2d spot = pixel_of(camera, {}, {}, {14.5, 0.0, 0.0});
-  const double open = colour_at(draw(painted, camera, {}, still_air()), spot).x();
-  const double covered = colour_at(draw(hidden, camera, {}, still_air()), spot).x();
+  const double open = colour_at(draw(painted, camera, {}, even_light()), spot).x();
+  const double covered = colour_at(draw(hidden, camera, {}, even_light()), spot).x();
   EXPECT_LT(covered, 0.6 * open);
 }
 
-TEST(Renderer, LeavesOutABodyThatStandsInTheEgoVehicle) {
+TEST(Renderer, OmitsABodyThatOverlapsTheEgoVehicle) {
   const World bare = asphalt_plain();
   World world = asphalt_plain();
   world.parked.push_back({.centre = {1.5, 0.2}});
-  EXPECT_EQ(draw(world, front_camera(), {}, still_air()).pixels,
-            draw(bare, front_camera(), {}, still_air()).pixels);
+  EXPECT_EQ(draw(world, front_camera(), {}, even_light()).pixels,
+            draw(bare, front_camera(), {}, even_light()).pixels);
 }
 
 TEST(Renderer, NightIsDarkerThanDay) {
@@ -242,10 +242,10 @@ TEST(Renderer, HeadlightsLightTheRoadAhead) {
   EXPECT_GT(road_ahead, 1.3 * road_behind);
 }
 
-TEST(Renderer, SunThrowsShadows) {
+TEST(Renderer, SunCastsShadows) {
   World world = asphalt_plain();
   world.walls.push_back({.base = {{5.0, 6.0}, {30.0, 6.0}}, .top_m = 4.0});
-  Conditions conditions = still_air();
+  Conditions conditions = even_light();
   conditions.overcast = 0.0;
   conditions.sun_elevation_rad = 0.8;
   conditions.sun_azimuth_rad = 1.57;  // behind the wall
@@ -280,13 +280,13 @@ TEST(Renderer, DrawsAnEmptyWorldAndOddBodies) {
   }
 }
 
-TEST(Renderer, TwoShareTheGround) {
+TEST(Renderer, TwoRenderersShareTheGround) {
   const World world = short_street();
   const Rig rig = nominal_rig();
   const auto ground = std::make_shared<GroundTiles>(world);
   const auto draw_half = [&](Renderer& renderer, size_t first) {
     std::vector<RgbImage> images(rig.cameras.size() / 2);
-    for (int i = 0; i < 12; ++i) {  // on the way much ground is painted, and some of it forgotten
+    for (int i = 0; i < 12; ++i) {  // paints many tiles and drops some
       const Se2 pose{-66.0 + 6.0 * i, 1.0, 0.1};
       for (size_t c = 0; c < images.size(); ++c) {
         renderer.render(rig.cameras[first + c], pose, {}, 0.1 * i, {}, c, images[c]);
@@ -312,7 +312,7 @@ TEST(Renderer, TwoShareTheGround) {
   }
 }
 
-TEST(Renderer, SeveralShareAWorld) {
+TEST(Renderer, SeveralRenderersShareAWorld) {
   const World world = short_street();
   const Rig rig = nominal_rig();
   const auto draw_camera = [&](size_t i) {

@@ -27,7 +27,7 @@ TEST(NominalRig, LooksAllAroundInTheFixedOrder) {
   }
 }
 
-TEST(NominalRig, SeesAsWideAsTheRealOne) {
+TEST(NominalRig, HasTheFieldsOfViewOfTheRealRig) {
   const Rig rig = nominal_rig();
   for (size_t i = 0; i < rig.cameras.size(); ++i) {
     const Intrinsics& camera = rig.cameras[i].intrinsics;

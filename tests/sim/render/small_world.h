@@ -1,4 +1,4 @@
-// A world of a few things at known places, for the renderer's tests.
+// A small world with objects at known places, for the tests of the renderer.
 #pragma once
 
 #include "sim/render/renderer.h"
@@ -13,7 +13,7 @@ inline Ring square(double x_m, double y_m, double half_m) {
           {x_m - half_m, y_m + half_m}};
 }
 
-/// A wide plain of asphalt, with nothing on it.
+/// A wide empty plain of asphalt.
 inline World asphalt_plain() {
   World world;
   world.seed = 7;
@@ -47,8 +47,8 @@ inline World short_street() {
   return world;
 }
 
-/// Even light and no noise: what differs between two images differs in the world.
-inline Conditions still_air() {
+/// Even light and no noise, so that two images differ only where their worlds differ.
+inline Conditions even_light() {
   Conditions conditions;
   conditions.overcast = 1.0;
   conditions.noise_sigma = 0.0;

@@ -7,8 +7,8 @@
 namespace bevloc::sim {
 namespace {
 
-TEST(CameraRays, AreThoseOfTheCameraModel) {
-  constexpr double kMostPixels = 0.01;
+TEST(CameraRays, MatchTheCameraModel) {
+  constexpr double kTolerance_px = 0.01;
   for (const CameraModel& camera : nominal_rig().cameras) {
     const Intrinsics& intrinsics = camera.intrinsics;
     const CameraRays rays(intrinsics);
@@ -19,8 +19,8 @@ TEST(CameraRays, AreThoseOfTheCameraModel) {
       for (int u = 0; u < intrinsics.width_px; ++u) {
         const auto i = static_cast<size_t>(u);
         const Eigen::Vector3d expected = intrinsics.ray({u, v});
-        EXPECT_NEAR(x[i], expected.x(), kMostPixels / intrinsics.fx_px);
-        EXPECT_NEAR(y[i], expected.y(), kMostPixels / intrinsics.fy_px);
+        EXPECT_NEAR(x[i], expected.x(), kTolerance_px / intrinsics.fx_px);
+        EXPECT_NEAR(y[i], expected.y(), kTolerance_px / intrinsics.fy_px);
         EXPECT_TRUE(x[i] >= rays.low().x() && x[i] <= rays.high().x()) << u << ", " << v;
         EXPECT_TRUE(y[i] >= rays.low().y() && y[i] <= rays.high().y()) << u << ", " << v;
       }

@@ -15,7 +15,7 @@ TEST(NuisanceSets, AreFoundByTheirNames) {
   }
 }
 
-TEST(NuisanceSets, AnUnknownNameIsRefusedWithThoseThatAreKnown) {
+TEST(NuisanceSets, AnUnknownNameFailsWithAListOfTheKnownNames) {
   const auto found = nuisance_set_from("snow");
   ASSERT_FALSE(found);
   EXPECT_THAT(found.error().message, testing::HasSubstr("snow"));

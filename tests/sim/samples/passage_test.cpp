@@ -7,7 +7,7 @@
 namespace bevloc::sim {
 namespace {
 
-TEST(Passage, TheVehicleKnowsItsMotionUpToASmallError) {
+TEST(Passage, TheMotionFromOdometryHasASmallError) {
   double squares = 0.0;
   constexpr int kPassages = 500;
   for (uint64_t seed = 0; seed < kPassages; ++seed) {
@@ -24,7 +24,7 @@ TEST(Passage, TheVehicleKnowsItsMotionUpToASmallError) {
   EXPECT_LT(std::sqrt(squares / kPassages), 0.005);
 }
 
-TEST(Passage, NothingIsKnownWhereNothingCompensates) {
+TEST(Passage, TheKnownMotionIsZeroWithoutCompensation) {
   const Passage passage({.spread_s = 0.05, .compensated = false}, 1);
   EXPECT_GT(passage.true_motion(0.05).x_m, 0.2);
   EXPECT_EQ(passage.known_motion(0.05).x_m, 0.0);

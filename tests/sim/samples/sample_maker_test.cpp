@@ -37,12 +37,12 @@ const std::vector<Sample>& samples_of(NuisanceSet set) {
   return samples;
 }
 
-std::span<const uint8_t> picture(const Sample& sample, size_t camera) {
+std::span<const uint8_t> image_of(const Sample& sample, size_t camera) {
   return std::span(sample.images).subspan(camera * kImageSize, kImageSize);
 }
 
-bool same_picture(const Sample& a, const Sample& b, size_t camera) {
-  return std::ranges::equal(picture(a, camera), picture(b, camera));
+bool same_image(const Sample& a, const Sample& b, size_t camera) {
+  return std::ranges::equal(image_of(a, camera), image_of(b, camera));
 }
 
 double brightness(const std::vector<Sample>& samples) {
@@ -67,27 +67,27 @@ TEST_P(NuisanceSetTest, ShowsTheSamePlacesFromTheSamePriors) {
   }
 }
 
-TEST_P(NuisanceSetTest, ChangesThePicturesUnlessAllItDoesIsElsewhere) {
-  const bool same_pictures = GetParam() == NuisanceSet::kSixCameras ||
-                             GetParam() == NuisanceSet::kMapErrors ||
-                             GetParam() == NuisanceSet::kMissingCamera;
+TEST_P(NuisanceSetTest, ChangesTheImagesUnlessItAffectsOtherParts) {
+  const bool same_images = GetParam() == NuisanceSet::kSixCameras ||
+                           GetParam() == NuisanceSet::kMapErrors ||
+                           GetParam() == NuisanceSet::kMissingCamera;
   size_t changed = 0;
   for (size_t i = 0; i < kCount; ++i) {
     const Sample& sample = samples_of(GetParam())[i];
     const Sample& usual = samples_of(NuisanceSet::kSixCameras)[i];
     for (size_t camera = 0; camera < kCameraCount; ++camera) {
       if (!sample.cameras[camera]) continue;
-      changed += same_picture(sample, usual, camera) ? 0 : 1;
+      changed += same_image(sample, usual, camera) ? 0 : 1;
     }
   }
-  if (same_pictures) {
+  if (same_images) {
     EXPECT_EQ(changed, 0U);
   } else {
-    EXPECT_GT(changed, kCameraCount) << "those of one sample may have been so already";
+    EXPECT_GT(changed, kCameraCount) << "the usual sample may already have such images";
   }
 }
 
-TEST_P(NuisanceSetTest, LeavesOutCamerasOnlyWhereItSaysSo) {
+TEST_P(NuisanceSetTest, LeavesOutCamerasOnlyInTheirSets) {
   for (const Sample& sample : samples_of(GetParam())) {
     if (GetParam() == NuisanceSet::kMissingCamera) {
       EXPECT_EQ(sample.cameras.count(), kCameraCount - 1U);
@@ -95,14 +95,14 @@ TEST_P(NuisanceSetTest, LeavesOutCamerasOnlyWhereItSaysSo) {
       EXPECT_TRUE(sample.cameras.all());
     }
     for (size_t camera = 0; camera < kCameraCount; ++camera) {
-      const auto shown = picture(sample, camera);
+      const auto shown = image_of(sample, camera);
       const bool black = std::ranges::all_of(shown, [](uint8_t value) { return value == 0; });
       EXPECT_EQ(black, !sample.cameras[camera]);
     }
   }
 }
 
-TEST_P(NuisanceSetTest, SamplesFollowFromTheSeed) {
+TEST_P(NuisanceSetTest, SamplesAreDeterminedByTheSeed) {
   const std::vector<Sample> again = make(stream_of(GetParam()));
   for (size_t i = 0; i < kCount; ++i) {
     const Sample& sample = samples_of(GetParam())[i];
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(AllSets, NuisanceSetTest, testing::ValuesIn(all_nuisanc
                            return std::string(name_of(parameter.param));
                          });
 
-TEST(SampleMaker, StandardLeavesOutCamerasNowAndThen) {
+TEST(SampleMaker, StandardSometimesLeavesOutCameras) {
   SampleStream stream = stream_of(NuisanceSet::kStandard);
   size_t incomplete = 0;
   make_samples_of_world(stream, 0, 0, [&incomplete](const Sample& sample) {
@@ -129,7 +129,7 @@ TEST(SampleMaker, StandardLeavesOutCamerasNowAndThen) {
   EXPECT_LT(incomplete, kSamplesPerWorld / 2);
 }
 
-TEST(SampleMaker, SeedsAreApart) {
+TEST(SampleMaker, SeedsGiveDifferentSamples) {
   const std::vector<Sample> other = make(stream_of(NuisanceSet::kSixCameras, kSeed + 1));
   for (size_t i = 0; i < kCount; ++i) {
     const Sample& sample = samples_of(NuisanceSet::kSixCameras)[i];
@@ -162,7 +162,7 @@ bool is_still(const Sample& sample) {
   });
 }
 
-TEST(SampleMaker, SaysHowFarTheVehicleDroveWhereCamerasAreNotInStep) {
+TEST(SampleMaker, ReportsTheMotionBetweenUnsynchronisedExposures) {
   double farthest_m = 0.0;
   for (size_t i = 0; i < kCount; ++i) {
     EXPECT_TRUE(is_still(samples_of(NuisanceSet::kSixCameras)[i]));
@@ -180,7 +180,7 @@ TEST(SampleMaker, SaysHowFarTheVehicleDroveWhereCamerasAreNotInStep) {
   EXPECT_LT(farthest_m, 1.05) << "50 ms at 20 m/s, and a little error";
 }
 
-TEST(SampleMaker, SharesOfZeroLeaveEveryBitAsItIs) {
+TEST(SampleMaker, SharesOfZeroChangeNothing) {
   SampleStream stream = stream_of(NuisanceSet::kSixCameras);
   stream.training = strong_nuisances();
   for (Strengthening* strengthening :

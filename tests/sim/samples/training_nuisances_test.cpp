@@ -44,7 +44,7 @@ TEST(TrainingNuisances, AreDrawnInTheirSharesAndWithinTheirStrengths) {
   EXPECT_LE(most_calibration, 1.7 + 1e-9);
 }
 
-TEST(TrainingNuisances, EachIsSwitchedWithoutTheOthers) {
+TEST(TrainingNuisances, EachCanBeEnabledOnItsOwn) {
   TrainingNuisances one;
   one.extra_vehicles = strong_nuisances().extra_vehicles;
   for (uint64_t seed = 0; seed < 100; ++seed) {

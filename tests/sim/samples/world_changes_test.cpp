@@ -31,7 +31,7 @@ TEST(WearPaint, MultipliesTheWearButLeavesSomePaint) {
   }
 }
 
-TEST(StandingVehicles, StandAroundThePoseAndNotInIt) {
+TEST(StandingVehicles, StandAroundThePoseButNotOnIt) {
   constexpr int kCount = 10;
   Random random(kSeed);
   const Se2 pose = random_pose_on_road(town(), random);
@@ -51,13 +51,13 @@ TEST(StandingVehicles, StandAroundThePoseAndNotInIt) {
   }
 }
 
-TEST(StandingVehicles, NoneAreAddedWhereNoneAreWanted) {
+TEST(StandingVehicles, NoneAreAddedForACountOfZero) {
   World world = town();
   add_standing_vehicles({Se2{}}, 0, kSeed, world);
   EXPECT_EQ(world.parked.size(), town().parked.size());
 }
 
-TEST(MapErrors, NoErrorsLeaveTheMapAsItIs) {
+TEST(MapErrors, WithoutErrorsTheMapIsUnchanged) {
   const HdMap same = with_errors(town().map, {}, kSeed);
   ASSERT_EQ(same.elements.size(), town().map.elements.size());
   for (size_t i = 0; i < same.elements.size(); ++i) {
@@ -96,7 +96,7 @@ TEST(MapErrors, ShiftsByDecimetresThatChangeFromPlaceToPlace) {
   EXPECT_LT(largest, 1.0);
 }
 
-TEST(MapErrors, FollowFromTheSeed) {
+TEST(MapErrors, AreDeterminedByTheSeed) {
   const MapErrors errors{.omission = 0.1, .ghost = 0.1, .shift_sigma_m = 0.15};
   const auto first_point = [&errors](uint64_t seed) {
     return with_errors(town().map, errors, seed).elements.front().points.front();

@@ -30,7 +30,7 @@ class Sensors : public testing::Test {
   const Drive drive_{world_, 2, kDuration_s};
 };
 
-TEST_F(Sensors, ReadingsFollowFromSeedAndIndex) {
+TEST_F(Sensors, ReadingsAreDeterminedBySeedAndIndex) {
   const GnssSimulator gnss(drive_, 5);
   const GnssSimulator again(drive_, 5);
   const GnssSimulator other(drive_, 6);
@@ -44,7 +44,7 @@ TEST_F(Sensors, ReadingsFollowFromSeedAndIndex) {
   EXPECT_GE(odometry.count(), 3000U);
 }
 
-TEST_F(Sensors, GnssErrorsHaveTheirSize) {
+TEST_F(Sensors, GnssErrorsHaveTheDocumentedSize) {
   std::vector<double> position;
   std::vector<double> heading;
   std::vector<double> white;
@@ -70,13 +70,13 @@ TEST_F(Sensors, GnssErrorsHaveTheirSize) {
   }
   EXPECT_NEAR(root_mean_square(position), std::hypot(1.0, 0.25), 0.1);
   EXPECT_NEAR(degrees(root_mean_square(heading)), std::hypot(1.0, 0.3), 0.1);
-  // Neighbours differ by the white noise and a little drift.
+  // Consecutive readings differ by the white noise and a small drift.
   EXPECT_NEAR(deviation(white), std::hypot(0.25 * std::sqrt(2.0), 0.07), 0.05);
   EXPECT_NEAR(claimed_position, std::hypot(1.0, 0.25), 1e-9);
   EXPECT_NEAR(degrees(claimed_heading), std::hypot(1.0, 0.3), 1e-9);
 }
 
-TEST_F(Sensors, OdometryErrorsHaveTheirSize) {
+TEST_F(Sensors, OdometryErrorsHaveTheDocumentedSize) {
   std::vector<double> scales;
   std::vector<double> biases;
   std::vector<double> speed_noise;

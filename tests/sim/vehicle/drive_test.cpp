@@ -40,7 +40,7 @@ TEST_P(DriveThroughTown, StaysInItsLanes) {
   }
 }
 
-TEST_P(DriveThroughTown, MovesWhereItsStateSays) {
+TEST_P(DriveThroughTown, PosesMatchSpeedAndYawRate) {
   constexpr double kStep_s = 0.02;
   for (double t = 0.0; t + kStep_s < kDuration_s; t += 0.11) {
     const Drive::State a = drive_.at(t);
@@ -54,7 +54,7 @@ TEST_P(DriveThroughTown, MovesWhereItsStateSays) {
   }
 }
 
-TEST_P(DriveThroughTown, GoesSomewhere) {
+TEST_P(DriveThroughTown, DrivesAtLeast300Metres) {
   double driven_m = 0.0;
   for (double t = 0.0; t < kDuration_s; t += 0.1) driven_m += 0.1 * drive_.at(t).speed_mps;
   EXPECT_GT(driven_m, 300.0);
@@ -74,7 +74,7 @@ TEST_P(DriveThroughTown, BodyMotionIsThatOfACar) {
   EXPECT_LT(std::sqrt(sum_squares / count), radians(0.8));
 }
 
-TEST(Drive, FollowsFromItsSeed) {
+TEST(Drive, IsDeterminedByItsSeed) {
   const World world = generate_world(4);
   const Drive a(world, 9, 30.0);
   const Drive b(world, 9, 30.0);
@@ -109,7 +109,7 @@ TEST(Drive, SometimesWaitsAtJunctions) {
   EXPECT_GT(waits, 10);
 }
 
-/// One lane of 200 m that leads nowhere.
+/// One lane of 200 m without a successor.
 World dead_end() {
   World world;
   Lane lane;
@@ -130,7 +130,7 @@ TEST(Drive, StopsWhereTheMapEnds) {
 }
 
 TEST(Route, AvoidsDeadEndsAndPrefersNewLanes) {
-  // 0 -> {1, 2}, 1 -> 0, 2 leads nowhere.
+  // 0 -> {1, 2}, 1 -> 0; lane 2 is a dead end.
   HdMap map;
   for (int i = 0; i < 3; ++i) {
     Lane lane;

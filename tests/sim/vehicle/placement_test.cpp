@@ -8,7 +8,7 @@
 namespace bevloc::sim {
 namespace {
 
-TEST(RandomPoseOnRoad, StandsOnLanesWithSomeSpread) {
+TEST(RandomPoseOnRoad, LiesOnLanesWithSomeSpread) {
   double sum_squares = 0.0;
   int count = 0;
   for (uint64_t seed = 0; seed < 10; ++seed) {
@@ -27,7 +27,7 @@ TEST(RandomPoseOnRoad, StandsOnLanesWithSomeSpread) {
   EXPECT_GT(std::sqrt(sum_squares / count), 0.15);
 }
 
-TEST(RandomPoseOnRoad, SeesSomethingOfTheMap) {
+TEST(RandomPoseOnRoad, HasMapElementsNearby) {
   const World world = generate_world(3);
   Random random(8);
   for (int i = 0; i < 100; ++i) {
@@ -39,7 +39,7 @@ TEST(RandomPoseOnRoad, SeesSomethingOfTheMap) {
   }
 }
 
-TEST(RandomPoseOnRoad, GivesUpWhereThereIsNothing) {
+TEST(RandomPoseOnRoad, ReturnsAPoseEvenWithoutMapElements) {
   World world;
   Lane lane;
   lane.centerline = {{0.0, 0.0}, {100.0, 0.0}};

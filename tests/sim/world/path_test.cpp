@@ -16,7 +16,7 @@ Polyline circle_arc(double radius, double from, double to, int pieces) {
   return line;
 }
 
-TEST(Path, FindsPositionsAndGoesOnStraightBeyondItsEnds) {
+TEST(Path, FindsPositionsAndContinuesStraightBeyondItsEnds) {
   const Path path({{0.0, 0.0}, {4.0, 0.0}, {4.0, 6.0}});
   EXPECT_DOUBLE_EQ(path.length_m(), 10.0);
   EXPECT_TRUE(path.position(2.0).isApprox(Eigen::Vector2d(2.0, 0.0)));
@@ -33,7 +33,7 @@ TEST(Path, DropsRepeatedPoints) {
 TEST(Path, ParallelOfAnArcIsAnArc) {
   const Path path(circle_arc(20.0, 0.0, 1.5, 40));
   for (const Eigen::Vector2d& point : path.parallel(0.0, path.length_m(), 4.0)) {
-    EXPECT_NEAR(point.norm(), 24.0, 0.01);  // counter-clockwise: the right is outside
+    EXPECT_NEAR(point.norm(), 24.0, 0.01);  // counter-clockwise, so the right side is outside
   }
 }
 

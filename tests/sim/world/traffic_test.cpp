@@ -8,7 +8,7 @@
 namespace bevloc::sim {
 namespace {
 
-TEST(Traffic, MovesAtItsSpeedAndLooksAhead) {
+TEST(Traffic, MovesAtItsSpeedInItsHeading) {
   TrafficVehicle vehicle;
   vehicle.path = {{0.0, 0.0}, {0.0, 200.0}};
   vehicle.start_m = 10.0;
@@ -20,7 +20,7 @@ TEST(Traffic, MovesAtItsSpeedAndLooksAhead) {
   EXPECT_NEAR(later.yaw_rad, std::numbers::pi / 2.0, 1e-9);
 }
 
-TEST(Traffic, StartsAgainAtTheEndOfItsPath) {
+TEST(Traffic, RestartsAtTheEndOfItsPath) {
   TrafficVehicle vehicle;
   vehicle.path = {{0.0, 0.0}, {50.0, 0.0}};
   vehicle.speed_mps = 10.0;

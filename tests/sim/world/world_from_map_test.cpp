@@ -32,7 +32,7 @@ HdMap small_map() {
   return map;
 }
 
-TEST(WorldFromMap, KeepsTheMapAsItIs) {
+TEST(WorldFromMap, DoesNotChangeTheMap) {
   const HdMap map = small_map();
   const World world = world_from_map(map, 3);
   ASSERT_EQ(world.map.elements.size(), map.elements.size());
@@ -41,7 +41,7 @@ TEST(WorldFromMap, KeepsTheMapAsItIs) {
   }
 }
 
-TEST(WorldFromMap, PaintsAndBuildsByAppearance) {
+TEST(WorldFromMap, PaintAndWallsFollowTheAppearance) {
   const World world = world_from_map(small_map(), 3);
   ASSERT_EQ(world.paint_lines.size(), 1U);
   EXPECT_GT(world.paint_lines.front().dash_m, 0.0);
@@ -64,12 +64,12 @@ TEST(WorldFromMap, ZebraBarsLieInTheirCrossing) {
       EXPECT_LE(p.x(), 24.0 + 1e-6);
       EXPECT_LE(std::abs(p.y()), 3.5 + 1e-6);
     }
-    // Bars run along the road: pedestrians walk across them.
+    // The bars run along the road; pedestrians walk across them.
     EXPECT_NEAR(std::abs(bar.ring[2].x() - bar.ring[1].x()), 4.0, 1e-6);
   }
 }
 
-TEST(WorldFromMap, ScenerySpillsOnNoLane) {
+TEST(WorldFromMap, NoSceneryStandsOnALane) {
   const World world = world_from_map(small_map(), 11);
   for (const Wall& wall : world.walls) {
     for (const Lane& lane : world.map.lanes) EXPECT_FALSE(lines_cross(wall.base, lane.centerline));
@@ -84,7 +84,7 @@ TEST(WorldFromMap, IsTheSameEveryTime) {
   for (size_t i = 0; i < a.walls.size(); ++i) EXPECT_EQ(a.walls[i].base, b.walls[i].base);
 }
 
-TEST(WorldFromMap, BearsMapsWithoutLanesAndDegenerateLines) {
+TEST(WorldFromMap, AcceptsMapsWithoutLanesAndDegenerateLines) {
   HdMap map = small_map();
   map.lanes.clear();
   map.elements.push_back({ElementClass::kLaneDivider, Appearance::kUnknown, {{5.0, 5.0}}});

@@ -9,7 +9,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// Every property must hold for each of these towns; training seeds among them.
+/// Every property must hold for each of these towns, including towns of training seeds.
 class Town : public testing::TestWithParam<uint64_t> {
  protected:
   const World world_ = generate_world(GetParam());
@@ -51,7 +51,7 @@ TEST_P(Town, IsFinite) {
   for (const Post& post : world_.posts) EXPECT_TRUE(post.position.allFinite());
 }
 
-TEST_P(Town, HasAllClassesAndSomeSize) {
+TEST_P(Town, HasAllClassesAndAReasonableSize) {
   std::set<ElementClass> classes;
   Eigen::Vector2d low = Eigen::Vector2d::Zero();
   Eigen::Vector2d high = Eigen::Vector2d::Zero();
@@ -67,7 +67,7 @@ TEST_P(Town, HasAllClassesAndSomeSize) {
   EXPECT_LT((high - low).maxCoeff(), 1000.0);
 }
 
-TEST_P(Town, LanesLeadOnForEver) {
+TEST_P(Town, EveryLaneHasASuccessorThatContinuesIt) {
   ASSERT_FALSE(world_.map.lanes.empty());
   for (const Lane& lane : world_.map.lanes) {
     ASSERT_FALSE(lane.successors.empty());
@@ -168,7 +168,7 @@ TEST(WorldGenerator, SeedsMakeDifferentTowns) {
   EXPECT_GT(sizes.size(), 18U);
 }
 
-TEST(WorldGenerator, TrainingSeedsAreApartFromAllOthers) {
+TEST(WorldGenerator, TrainingSeedsGiveOtherTowns) {
   const World demo = generate_world(7);
   const World training = generate_world(kFirstTrainingSeed + 7);
   EXPECT_NE(demo.map.elements.front().points, training.map.elements.front().points);

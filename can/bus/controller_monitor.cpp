@@ -1,0 +1,45 @@
+#include "can/bus/controller_monitor.h"
+
+#include <linux/can/error.h>
+
+namespace bevloc::can {
+namespace {
+
+void add(BusCondition& condition, BusFault fault) {
+  condition.faults = static_cast<uint8_t>(condition.faults | static_cast<uint8_t>(fault));
+}
+
+/// Returns the state in a report of class CAN_ERR_CRTL, or `before` if the report names no state.
+BusState state_from(uint8_t controller_status, BusState before) {
+  if ((controller_status & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE)) != 0) {
+    return BusState::kPassive;
+  }
+  if ((controller_status & (CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING)) != 0) {
+    return BusState::kWarning;
+  }
+  return (controller_status & CAN_ERR_CRTL_ACTIVE) != 0 ? BusState::kActive : before;
+}
+
+}  // namespace
+
+void ControllerMonitor::take(const ErrorFrame& error) {
+  BusCondition condition = condition_;
+  if ((error.classes & CAN_ERR_RESTARTED) != 0) condition = BusCondition{};
+  if ((error.classes & CAN_ERR_CRTL) != 0) {
+    condition.state = state_from(error.data[1], condition.state);
+  }
+  if ((error.classes & CAN_ERR_BUSOFF) != 0) condition.state = BusState::kOff;
+  if ((error.classes & CAN_ERR_ACK) != 0) add(condition, BusFault::kNoAcknowledge);
+  if ((error.classes & CAN_ERR_TX_TIMEOUT) != 0) add(condition, BusFault::kTransmitTimeout);
+  if ((error.classes & CAN_ERR_TRX) != 0) add(condition, BusFault::kTransceiver);
+  condition_ = condition;
+}
+
+void ControllerMonitor::note_traffic() {
+  BusCondition condition = condition_;
+  condition.faults = 0;
+  if (condition.state == BusState::kOff) condition.state = BusState::kActive;
+  condition_ = condition;
+}
+
+}  // namespace bevloc::can

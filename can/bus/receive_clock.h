@@ -1,0 +1,48 @@
+// Converts time stamps of the kernel and of the CAN controller to the steady clock.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "common/time.h"
+
+namespace bevloc::can {
+
+/// The time stamps of one frame, each as the time since the epoch of its own clock.
+struct KernelStamps {
+  /// CLOCK_REALTIME, read in the driver's interrupt.
+  std::optional<std::chrono::nanoseconds> software{};
+  /// The controller's own free-running clock.
+  std::optional<std::chrono::nanoseconds> hardware{};
+};
+
+enum class StampSource : uint8_t { kHardware, kSoftware, kArrival };
+
+/// One thread.
+class ReceiveClock {
+ public:
+  /// Both clocks, read at the same moment, after the frame was read.
+  struct Now {
+    Time steady{};
+    std::chrono::nanoseconds realtime{};
+  };
+  struct Stamped {
+    Time time{};
+    StampSource source = StampSource::kArrival;
+  };
+
+  /// Returns when the frame was received, from the hardware stamp if there is one, else from the
+  /// software stamp, else `now`. The result is never after `now` and never before the result of the
+  /// previous frame, even if somebody sets the other clocks.
+  Stamped to_steady(const KernelStamps& stamps, const Now& now);
+
+ private:
+  Time from_hardware(std::chrono::nanoseconds hardware, Time by_kernel);
+
+  std::optional<Duration> steady_minus_hardware_;
+  std::chrono::nanoseconds last_hardware_{};
+  Time last_ = Time::min();
+};
+
+}  // namespace bevloc::can

@@ -1,0 +1,67 @@
+// A raw CAN socket that finds its interface again after a loss.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <linux/can.h>
+
+#include "can/bus/back_off.h"
+#include "common/result.h"
+
+namespace bevloc::can {
+
+struct SocketCanOptions {
+  /// Standard identifiers that the kernel passes to this socket. Empty: all.
+  std::vector<uint32_t> accepted_ids{};
+  /// Identifiers whose frames this endpoint sends and confirms by their echo (SendGate). Empty: no
+  /// confirmation. Frames of other nodes with these identifiers also pass the filter.
+  std::vector<uint32_t> confirmed_ids{};
+  bool fd = false;  ///< also send and receive FD frames
+  /// A frame that waits longer for room is dropped. The default is two cycles of the solution.
+  Duration max_send_age = std::chrono::milliseconds(20);
+};
+
+/// An interface that was down is used again as soon as it is up. An interface that disappeared (an
+/// unplugged adapter) is searched by its name, and the same socket is bound to it again.
+/// Thread-safe after open().
+class SocketCanLink {
+ public:
+  /// Fails when the kernel has no CAN support or no interface of this name, or when CAN FD is
+  /// wanted and the interface is not set up for it.
+  static Result<std::unique_ptr<SocketCanLink>> open(const std::string& interface,
+                                                     const SocketCanOptions& options);
+
+  /// Takes ownership of a descriptor without an interface. repair() does nothing for it.
+  explicit SocketCanLink(int descriptor) : descriptor_(descriptor) {}
+
+  ~SocketCanLink();
+  SocketCanLink(const SocketCanLink&) = delete;
+  SocketCanLink& operator=(const SocketCanLink&) = delete;
+
+  int descriptor() const { return descriptor_; }
+
+  /// Records the result of a system call on the socket: 0 or an errno.
+  void note(int error);
+  bool is_down() const { return down_; }
+
+  /// Searches a lost interface if the next attempt is due (BackOff). Returns true when the
+  /// interface was found and bound.
+  bool repair();
+
+ private:
+  bool bind_by_name();
+
+  const int descriptor_;
+  std::string interface_;
+  std::vector<can_filter> filters_;
+  std::atomic<bool> down_{false};
+  std::atomic<bool> lost_{false};
+  std::atomic_flag repairing_;
+  BackOff back_off_{std::chrono::milliseconds(20), std::chrono::milliseconds(320)};
+};
+
+}  // namespace bevloc::can

@@ -1,0 +1,24 @@
+// Encodes headings and standard deviations, which are not rounded to the nearest step.
+#pragma once
+
+#include <cmath>
+
+#include "can/messages/signal.h"
+
+namespace bevloc::can {
+
+/// Encodes a heading in [0, 360) degrees. A value that rounds up to 360 is encoded as 0, and not as
+/// the largest value of the signal.
+inline void encode_heading(Frame& frame, const Signal& signal, double heading_deg) {
+  const bool full_turn = heading_deg >= 360.0 - 0.5 * signal.scale;
+  encode(frame, signal, full_turn ? 0.0 : heading_deg);
+}
+
+/// Encodes a standard deviation. It is rounded up to the next step, so that the sent value is never
+/// smaller than the real one.
+inline void encode_sigma(Frame& frame, const Signal& signal, double sigma) {
+  constexpr double kDivisionError = 1e-9;  // a whole number of steps must not become one step more
+  encode(frame, signal, std::ceil(sigma / signal.scale - kDivisionError) * signal.scale);
+}
+
+}  // namespace bevloc::can

@@ -1,0 +1,20 @@
+// The table of all messages on the bus, from which encoders, decoders, the DBC file and the
+// documentation are made.
+#pragma once
+
+#include "can/messages/localizer_messages.h"
+#include "can/messages/message.h"
+#include "can/messages/solution_fd_message.h"
+#include "can/messages/vehicle_messages.h"
+
+namespace bevloc::can {
+
+inline constexpr const Message* kMessages[] = {
+    &loc_status::kMessage,        &loc_time::kMessage,           &loc_latitude::kMessage,
+    &loc_longitude::kMessage,     &loc_pos_local::kMessage,      &loc_attitude::kMessage,
+    &loc_velocity::kMessage,      &loc_std_dev::kMessage,        &loc_correction::kMessage,
+    &loc_solution::kMessage,      &veh_wheel_speed::kMessage,    &veh_yaw_rate::kMessage,
+    &veh_gnss_latitude::kMessage, &veh_gnss_longitude::kMessage, &veh_gnss_heading::kMessage,
+};
+
+}  // namespace bevloc::can

@@ -1,0 +1,58 @@
+// Encodes the localizer's reports as protected CAN frames and sends them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "can/bus/bus.h"
+#include "can/e2e/e2e.h"
+#include "can/messages/geo_reference.h"
+#include "can/messages/message.h"
+#include "can/messages/pose_report.h"
+#include "can/messages/solution_frames.h"
+
+namespace bevloc::can {
+
+struct PosePublisherConfig {
+  BaseIds base_ids{};
+  GeodeticPosition map_origin{};
+  ReportLimits limits{};
+  FrameFormat format = FrameFormat::kClassic;
+};
+
+/// Sends each report as one epoch of protected frames, or on CAN FD as one frame. The caller calls
+/// publish() once per cycle (kSolutionCycleMs). LOC_Status is sent on every change and every
+/// kStatusCycleMs. A status frame that found no room on the bus is sent again in the next cycle. A
+/// pose that must not be used is sent as SNA, with the reason in the status (status_to_send()).
+///
+/// Does not allocate. One thread.
+class PosePublisher {
+ public:
+  /// `bus` must outlive the publisher.
+  PosePublisher(Bus& bus, const PosePublisherConfig& config);
+
+  void publish(const PoseReport& report, Time now);
+
+  /// Returns the identifiers that a publisher of this format sends.
+  static std::vector<uint32_t> sent_ids(const BaseIds& base, FrameFormat format);
+
+ private:
+  void publish_classic(const SolutionFrames& frames, const LocalizerStatus& status, Time now);
+  void publish_fd(const SolutionFrames& frames, const LocalizerStatus& status, Time now);
+  SendResult send(Frame frame, E2eSender& sender, Time now);
+  void send_status_if_due(const LocalizerStatus& status, Time now);
+
+  Bus& bus_;
+  PosePublisherConfig config_;
+  GeoReference geo_;
+  uint8_t epoch_ = 0;
+  E2eSender status_sender_;
+  std::array<E2eSender, kSolutionMessages.size()> senders_;
+  E2eSender fd_sender_;
+  std::optional<LocalizerStatus> sent_status_;
+  Time status_sent_at_{};
+};
+
+}  // namespace bevloc::can

@@ -1,0 +1,48 @@
+// The report that the localizer sends on the bus in each cycle.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "common/health_state.h"
+#include "common/se2.h"
+#include "common/time.h"
+
+namespace bevloc::can {
+
+/// Values of LOC_Status.TimeSource.
+enum class TimeSource : uint8_t { kFreeRunning = 0, kPtp = 1, kGnss = 2 };
+
+/// The content of LOC_Status.
+struct LocalizerStatus {
+  HealthState state = HealthState::kInit;
+  WhyMask why{};
+  TimeSource time_source = TimeSource::kFreeRunning;
+  uint8_t camera_ok_mask = 0;  ///< bit i is camera i in the order of kCameraNames
+  bool odometry_ok = false;
+  bool gnss_ok = false;
+  bool map_ok = false;
+  uint16_t map_id = 0;
+
+  bool operator==(const LocalizerStatus&) const = default;
+};
+
+/// One solution. Unknown values keep their default, which is sent as SNA.
+struct PoseReport {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+  LocalizerStatus status;
+  std::optional<Time> capture_time;  ///< time of the newest frames that contributed to the pose
+  Time pose_time{};                  ///< the moment to which pose and velocity are predicted
+  Se2 map_from_vehicle{kUnknown, kUnknown, kUnknown};
+  /// Covariance of (x, y, yaw) along the axes of the map: m^2, m rad, rad^2.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(kUnknown);
+  double forward_speed_mps = kUnknown;
+  double yaw_rate_radps = kUnknown;  ///< positive counter-clockwise
+  std::optional<Se2> correction;     ///< the solver's raw dT for these frames
+};
+
+}  // namespace bevloc::can

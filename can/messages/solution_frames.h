@@ -1,0 +1,44 @@
+// Encodes a report as the frames of one solution.
+#pragma once
+
+#include <array>
+
+#include "can/bus/frame.h"
+#include "can/messages/geo_reference.h"
+#include "can/messages/message_table.h"
+#include "can/messages/pose_report.h"
+
+namespace bevloc::can {
+
+/// The maximum age of a pose that is sent as valid.
+struct ReportLimits {
+  /// Maximum age of PoseReport::pose_time. An older report shows that its producer hangs.
+  Duration max_pose_age = std::chrono::milliseconds(50);
+  /// Maximum age of PoseReport::capture_time, whatever the state of the tracker.
+  Duration max_capture_age = std::chrono::seconds(5);
+};
+
+/// Whether the state means that the pose is valid: TRACKING and DEGRADED.
+bool claims_pose(HealthState state);
+
+/// Returns the status to send. It is the status of the report, unless that claims a pose which must
+/// not be sent: not finite, out of range or with an invalid covariance (kPoseInvalid), or too old
+/// (kPoseStale). Then the state is LOST, with these reasons.
+LocalizerStatus status_to_send(const PoseReport& report, const ReportLimits& limits, Time now);
+
+Frame status_frame(const LocalizerStatus& status, const BaseIds& base);
+
+/// The messages of a solution in the order of sending, without LOC_Status.
+inline constexpr std::array<const Message*, 8> kSolutionMessages = {
+    &loc_time::kMessage,      &loc_latitude::kMessage,  &loc_longitude::kMessage,
+    &loc_pos_local::kMessage, &loc_attitude::kMessage,  &loc_velocity::kMessage,
+    &loc_std_dev::kMessage,   &loc_correction::kMessage};
+using SolutionFrames = std::array<Frame, kSolutionMessages.size()>;
+
+/// Returns the frames of `report` for sending at `now`, without epoch and protection. `status`
+/// comes from status_to_send(). Values that are not valid under this status or not finite are SNA.
+SolutionFrames solution_frames(const PoseReport& report, const LocalizerStatus& status,
+                               const ReportLimits& limits, GeoReference& geo, const BaseIds& base,
+                               Time now);
+
+}  // namespace bevloc::can

@@ -1,0 +1,97 @@
+#include "common/image_file.h"
+
+#include <memory>
+
+#include <png.h>
+#include <turbojpeg.h>
+
+#include "common/files.h"
+
+namespace bevloc {
+namespace {
+
+constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
+constexpr std::string_view kJpegSignature = "\xff\xd8\xff";
+
+/// Owns the state that libpng keeps for one file.
+class PngImage {
+ public:
+  PngImage() { image_.version = PNG_IMAGE_VERSION; }
+  ~PngImage() { png_image_free(&image_); }
+  PngImage(const PngImage&) = delete;
+  PngImage& operator=(const PngImage&) = delete;
+
+  png_image* operator->() { return &image_; }
+  png_imagep get() { return &image_; }
+
+ private:
+  png_image image_{};
+};
+
+Status check_size(const std::string& path, int width, int height, const RgbImage& wanted) {
+  if (width == wanted.width && height == wanted.height) return {};
+  return fail("{}: found an image of {}x{} pixels, wanted {}x{}", path, width, height, wanted.width,
+              wanted.height);
+}
+
+Status read_png(const std::string& path, const std::string& bytes, RgbImage& image) {
+  PngImage png;
+  if (png_image_begin_read_from_memory(png.get(), bytes.data(), bytes.size()) == 0) {
+    return fail("{}: found a damaged PNG file ({}), wanted a complete one", path, png->message);
+  }
+  const Status size =
+      check_size(path, static_cast<int>(png->width), static_cast<int>(png->height), image);
+  if (!size) return size;
+  png->format = PNG_FORMAT_RGB;
+  constexpr png_color kBlack{0, 0, 0};
+  if (png_image_finish_read(png.get(), &kBlack, image.pixels.data(), 0, nullptr) == 0) {
+    return fail("{}: found a damaged PNG file ({}), wanted a complete one", path, png->message);
+  }
+  return {};
+}
+
+Status read_jpeg(const std::string& path, const std::string& bytes, RgbImage& image) {
+  const std::unique_ptr<void, int (*)(tjhandle)> decompressor(tjInitDecompress(), tjDestroy);
+  const auto* const data = reinterpret_cast<const uint8_t*>(bytes.data());
+  int width = 0;
+  int height = 0;
+  int subsampling = 0;
+  int colours = 0;
+  if (tjDecompressHeader3(decompressor.get(), data, bytes.size(), &width, &height, &subsampling,
+                          &colours) != 0) {
+    return fail("{}: found a damaged JPEG file ({}), wanted a complete one", path,
+                tjGetErrorStr2(decompressor.get()));
+  }
+  if (const Status size = check_size(path, width, height, image); !size) return size;
+  // A warning counts as an error: it means that data is corrupt or cut off and the rest is grey.
+  if (tjDecompress2(decompressor.get(), data, bytes.size(), image.pixels.data(), width, 0, height,
+                    TJPF_RGB, 0) != 0) {
+    return fail("{}: found a damaged JPEG file ({}), wanted a complete one", path,
+                tjGetErrorStr2(decompressor.get()));
+  }
+  return {};
+}
+
+}  // namespace
+
+Status read_image(const std::string& path, RgbImage& image) {
+  const Result<std::string> bytes = read_file(path);
+  if (!bytes) return tl::unexpected(bytes.error());
+  if (bytes->starts_with(kPngSignature)) return read_png(path, *bytes, image);
+  if (bytes->starts_with(kJpegSignature)) return read_jpeg(path, *bytes, image);
+  return fail("{}: found a file that is neither PNG nor JPEG, wanted an image", path);
+}
+
+Status write_png(const RgbView& image, const std::string& path) {
+  PngImage png;
+  png->width = static_cast<png_uint_32>(image.width);
+  png->height = static_cast<png_uint_32>(image.height);
+  png->format = PNG_FORMAT_RGB;
+  if (png_image_write_to_file(png.get(), path.c_str(), 0, image.data,
+                              static_cast<png_int_32>(image.stride_bytes), nullptr) == 0) {
+    return fail("{}: cannot write the image to this file ({})", path, png->message);
+  }
+  return {};
+}
+
+}  // namespace bevloc

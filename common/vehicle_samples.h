@@ -1,0 +1,35 @@
+// Odometry and GNSS samples from the vehicle's own sensors.
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "common/time.h"
+
+namespace bevloc {
+
+/// Motion of the centre of the rear axle.
+struct OdometrySample {
+  Time time{};                  ///< when the sample arrived
+  double speed_mps = 0.0;       ///< along x, negative when reversing
+  double yaw_rate_radps = 0.0;  ///< positive counter-clockwise
+};
+
+/// Position of the centre of the rear axle in the map frame. Each sigma is one standard deviation.
+struct GnssSample {
+  struct Yaw {
+    double yaw_rad = 0.0;  ///< counter-clockwise from the map's east
+    double sigma_rad = 0.0;
+  };
+
+  Time time{};  ///< when the sample arrived
+  double east_m = 0.0;
+  double north_m = 0.0;
+  double sigma_east_m = 0.0;
+  double sigma_north_m = 0.0;
+  std::optional<Yaw> yaw{};  ///< empty when the receiver has no heading
+};
+
+using VehicleSample = std::variant<OdometrySample, GnssSample>;
+
+}  // namespace bevloc

@@ -1,0 +1,52 @@
+// The simulated drive that all mock cameras of a rig show.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+#include "common/image.h"
+#include "common/time.h"
+#include "pipeline/calibration/camera_model.h"
+#include "sim/render/ground_tiles.h"
+#include "sim/render/renderer.h"
+#include "sim/vehicle/drive.h"
+#include "sim/world/world.h"
+
+namespace bevloc::drivers {
+
+/// Thread-safe. There are two renderers, and three cameras share each of them. So two images are
+/// drawn at the same time, and memory is needed for two. Ground that several cameras see is painted
+/// and kept once.
+class MockScene {
+ public:
+  MockScene(std::shared_ptr<const sim::World> world, std::shared_ptr<const sim::Drive> drive,
+            const sim::Conditions& conditions, uint64_t noise_seed);
+
+  /// Draws the view of camera `camera` (index into kCameraNames) at a time of the drive. The pixels
+  /// do not depend on earlier calls. `true_camera` is the true camera model, from which the
+  /// calibration file differs by the calibration error.
+  void draw(int camera, const CameraModel& true_camera, Duration drive_time, RgbImage& image);
+
+ private:
+  /// A renderer that several cameras share.
+  struct RendererSlot {
+    explicit RendererSlot(const std::shared_ptr<sim::GroundTiles>& ground) : renderer(ground) {}
+
+    std::mutex mutex;
+    sim::Renderer renderer;  ///< guarded by mutex
+  };
+
+  MockScene(std::shared_ptr<const sim::World> world, std::shared_ptr<const sim::Drive> drive,
+            const sim::Conditions& conditions, uint64_t noise_seed,
+            const std::shared_ptr<sim::GroundTiles>& ground);
+
+  const std::shared_ptr<const sim::World> world_;
+  const std::shared_ptr<const sim::Drive> drive_;
+  const sim::Conditions conditions_;
+  const uint64_t noise_seed_;
+  std::array<RendererSlot, 2> renderers_;
+};
+
+}  // namespace bevloc::drivers

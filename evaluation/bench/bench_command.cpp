@@ -1,0 +1,72 @@
+#include "evaluation/bench/bench_command.h"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "evaluation/bench/bench_report.h"
+#include "evaluation/bench/stages.h"
+#include "evaluation/bench/sweeps.h"
+#include "evaluation/command_output.h"
+
+namespace bevloc::bench {
+namespace {
+
+constexpr int kMostFrames = 100'000;
+constexpr int kMostThreads = 64;
+
+template <size_t kCount>
+std::vector<std::string> names(const std::array<std::string_view, kCount>& views) {
+  return {views.begin(), views.end()};
+}
+
+}  // namespace
+
+void BenchCommand::declare(CLI::App& app) {
+  auto* bench = app.add_subcommand(
+      "bench", "Measure the time of a frame, from six decoded images to CAN, and of each of its stages");
+  bench->add_option("--config", config_file_, "Configuration of bevlocd")->capture_default_str();
+  bench->add_option("--frames", options_.frames, "Number of frames; in a sweep, of each row")
+      ->check(CLI::Range(1, kMostFrames))
+      ->capture_default_str();
+  bench->add_option("--threads", options_.threads, "Number of threads of the network")
+      ->check(CLI::Range(1, kMostThreads))
+      ->capture_default_str();
+  auto* stages = bench->add_option("--stage", options_.stages, "Measure these stages only")
+                     ->check(CLI::IsMember(names(kStageNames)));
+  bench->add_option("--sweep", sweeps_, "Instead of a frame, measure how the time grows with this")
+      ->check(CLI::IsMember(names(kSweepNames)))
+      ->excludes(stages);
+  bench->add_option("--json", json_file_, "Write the results as JSON to this file");
+  bench->callback([this] { chosen_ = true; });
+}
+
+Status BenchCommand::run() const {
+  const auto config = evaluation::load_drive_config(config_file_);
+  if (!config) return tl::unexpected(config.error());
+  return sweeps_.empty() ? measure(*config) : sweep(*config);
+}
+
+Status BenchCommand::measure(const evaluation::DriveConfig& config) const {
+  const auto result = run_bench(config, options_, evaluation::show_progress);
+  if (!result) return tl::unexpected(result.error());
+  fmt::print("{}", table_of(*result));
+  return evaluation::write_file(to_json(*result), json_file_);
+}
+
+Status BenchCommand::sweep(const evaluation::DriveConfig& config) const {
+  SweepOptions options;
+  options.frames = options_.frames;
+  options.threads = options_.threads;
+  std::vector<SweepResult> results;
+  for (const std::string& name : sweeps_) {
+    const auto result = run_sweep(name, config, options);
+    if (!result) return tl::unexpected(result.error());
+    fmt::print("{}\n", table_of(*result));
+    std::fflush(stdout);
+    results.push_back(*result);
+  }
+  return evaluation::write_file(to_json(results), json_file_);
+}
+
+}  // namespace bevloc::bench

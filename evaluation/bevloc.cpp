@@ -1,0 +1,49 @@
+// The command bevloc: evaluates, tunes, benchmarks and draws parts of the appliance.
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "common/version.h"
+#include "evaluation/bench/bench_command.h"
+#include "evaluation/network/network_command.h"
+#include "evaluation/solver/draw_command.h"
+#include "evaluation/solver/solver_command.h"
+
+namespace {
+
+/// Exit codes: 0 success; 2 bad input or environment, with one line on stderr.
+constexpr int kBadInput = 2;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Evaluates, tunes, benchmarks and draws parts of the appliance");
+  app.set_version_flag("--version", std::string(bevloc::version()));
+  app.require_subcommand(1);
+  auto* eval = app.add_subcommand("eval", "Evaluate a part on scenes that no tuning has used");
+  eval->require_subcommand(1);
+  auto* tune = app.add_subcommand("tune", "Find the parameters of a part on tuning scenes");
+  tune->require_subcommand(1);
+  bevloc::evaluation::SolverCommand solver_command;
+  solver_command.declare_eval(*eval);
+  bevloc::evaluation::NetworkCommand network_command;
+  network_command.declare(*eval);
+  solver_command.declare_tune(*tune);
+  auto* draw = app.add_subcommand("draw", "Write the data of the figures that script/figures draws");
+  draw->require_subcommand(1);
+  bevloc::evaluation::DrawCommand draw_command;
+  draw_command.declare(*draw);
+  bevloc::bench::BenchCommand bench_command;
+  bench_command.declare(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
+  const bevloc::Status status = draw->parsed()             ? draw_command.run()
+                                : bench_command.chosen()   ? bench_command.run()
+                                : network_command.chosen() ? network_command.run()
+                                                           : solver_command.run();
+  if (status) return 0;
+  fmt::print(stderr, "bevloc: {}\n", status.error().message);
+  return kBadInput;
+}

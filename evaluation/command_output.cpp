@@ -1,0 +1,22 @@
+#include "evaluation/command_output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "common/files.h"
+
+namespace bevloc::evaluation {
+
+void show_progress(int done, int all) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  constexpr int kWidth = 40;
+  fmt::print(stderr, "\r[{:<{}}] {}/{} scenes{}", std::string(kWidth * done / all, '='), kWidth,
+             done, all, done == all ? "\n" : "");
+}
+
+Status write_file(const std::string& text, const std::string& path) {
+  if (path.empty()) return {};
+  return bevloc::write_file(path, text);
+}
+
+}  // namespace bevloc::evaluation

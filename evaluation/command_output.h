@@ -1,0 +1,16 @@
+// Progress display and output files of the commands of `bevloc`.
+#pragma once
+
+#include <string>
+
+#include "common/result.h"
+
+namespace bevloc::evaluation {
+
+/// Updates a progress bar on stderr. Does nothing if stderr is not a terminal.
+void show_progress(int done, int all);
+
+/// Does nothing if `path` is empty.
+Status write_file(const std::string& text, const std::string& path);
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,101 @@
+// bevlocd with the simulator. With mock cameras it drives through a simulated world and a judge
+// compares its poses with the truth; otherwise it runs like firmware/bevlocd.cpp.
+#include <spdlog/spdlog.h>
+
+#include "common/files.h"
+#include "drivers/gpio/libgpiod_gpio.h"
+#include "evaluation/drive/bus_factory.h"
+#include "evaluation/drive/simulated_run.h"
+#include "firmware/runtime/daemon.h"
+#include "firmware/runtime/program.h"
+#include "pipeline/calibration/rig_yaml.h"
+
+namespace {
+
+using namespace bevloc;
+using namespace bevloc::evaluation;
+
+/// Command line options of a simulated drive. Each one overrides the configuration.
+struct DriveOptions {
+  std::optional<uint64_t> seed;
+  std::optional<double> duration_s;
+  std::string map_file;
+  std::string out = "out";
+  std::string json_file;
+  bool fast = false;
+
+  bool any() const {
+    return seed || duration_s || !map_file.empty() || !json_file.empty() || fast;
+  }
+};
+
+void declare_options(CLI::App& app, DriveOptions& options) {
+  auto* drive = app.add_option_group("Simulated drive (mock cameras)");
+  drive->add_option("--seed", options.seed, "Seed of the town, the drive and all noise");
+  drive->add_option("--duration", options.duration_s, "Length of the drive, seconds")
+      ->check(CLI::PositiveNumber);
+  drive->add_option("--map", options.map_file, "Drive through this HD map (.osm or .bvm)");
+  drive->add_option("--out", options.out, "Folder for can.log, poses.csv and sheet.png");
+  drive->add_option("--json", options.json_file, "Write the result as JSON to this file");
+  drive->add_flag("--fast", options.fast,
+                  "Virtual clock: runs as fast as the machine can, with repeatable results");
+}
+
+Status apply(const DriveOptions& options, const std::string& config_file, DriveConfig& config) {
+  if (!config.simulation) {
+    if (!options.any()) return {};
+    return fail(
+        "{}: found cameras that are not mock, wanted mock ones for --seed, --duration, "
+        "--map, --json and --fast",
+        config_file);
+  }
+  if (options.seed) {
+    config.simulation->seed = *options.seed;
+    if (config.simulation->town_seed) config.simulation->town_seed = *options.seed;
+  }
+  if (options.duration_s) config.simulation->duration_s = *options.duration_s;
+  if (!options.map_file.empty()) {
+    config.simulation->town_seed.reset();
+    config.map_file = options.map_file;
+  }
+  return {};
+}
+
+Status simulate(const DriveOptions& options, const DriveConfig& config, const Rig& rig) {
+  SimulatedRunOptions run;
+  run.fast = options.fast;
+  run.out = options.out;
+  const auto report = run_simulation(config, rig, run, [](const firmware::ApplianceView&) {
+    return firmware::stop_requested();
+  });
+  if (!report) return tl::unexpected(report.error());
+  fmt::print("{}", to_table(*report));
+  if (options.json_file.empty()) return {};
+  return write_file(options.json_file, to_json(*report));
+}
+
+Status run(const firmware::ProgramOptions& program, const DriveOptions& drive) {
+  auto config = load_drive_config(program.config_file);
+  if (!config) return tl::unexpected(config.error());
+  if (Status status = apply(drive, program.config_file, *config); !status) return status;
+  if (program.check_config) return firmware::check_and_print(program, *config);
+  firmware::set_log_level(config->log_level);
+  const auto rig = read_rig(config->rig_file);
+  if (!rig) return tl::unexpected(rig.error());
+  if (config->simulation) return simulate(drive, *config, *rig);
+  BusFactory buses(config->can);
+  const auto open_bus = [&buses] { return buses.connect_appliance(); };
+  drivers::LibgpiodGpio gpio;
+  return firmware::run_daemon(*config, *rig, gpio, open_bus, firmware::stop_requested);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Localizes a vehicle in its HD map");
+  firmware::ProgramOptions program;
+  DriveOptions drive;
+  firmware::declare_options(app, program);
+  declare_options(app, drive);
+  return firmware::run_program(app, argc, argv, [&] { return run(program, drive); });
+}

@@ -1,0 +1,121 @@
+#include "evaluation/drive/drive_config.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "firmware/config/config_milliseconds.h"
+#include "sim/world/world_generator.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+using firmware::from_milliseconds;
+using firmware::require_milliseconds;
+
+using drivers::CameraFault;
+using drivers::CameraFaultKind;
+
+sim::Conditions read_conditions(std::optional<YamlMap> yaml) {
+  sim::Conditions conditions;
+  if (!yaml) return conditions;
+  conditions.sun_azimuth_rad = radians(yaml->optional<double>(
+      "sun_azimuth_deg", degrees(conditions.sun_azimuth_rad), between(-180.0, 360.0)));
+  conditions.sun_elevation_rad = radians(yaml->optional<double>(
+      "sun_elevation_deg", degrees(conditions.sun_elevation_rad), between(-90.0, 90.0)));
+  conditions.overcast = yaml->optional<double>("overcast", conditions.overcast, between(0.0, 1.0));
+  conditions.rain = yaml->optional<double>("rain", conditions.rain, between(0.0, 1.0));
+  conditions.exposure = yaml->optional<double>("exposure", conditions.exposure, between(0.1, 10.0));
+  conditions.noise_sigma =
+      yaml->optional<double>("noise_sigma", conditions.noise_sigma, between(0.0, 50.0));
+  return conditions;
+}
+
+drivers::CalibrationError read_calibration_error(std::optional<YamlMap> yaml) {
+  drivers::CalibrationError sigma;
+  if (!yaml) return sigma;
+  sigma.rotation_rad = radians(yaml->optional<double>("rotation_deg", 0.0, between(0.0, 5.0)));
+  sigma.translation_m = yaml->optional<double>("translation_m", 0.0, between(0.0, 0.5));
+  sigma.relative_focal = yaml->optional<double>("relative_focal", 0.0, between(0.0, 0.1));
+  return sigma;
+}
+
+int read_camera(YamlMap& yaml) {
+  const Wanted<std::string> known{
+      fmt::format("{}", fmt::join(kCameraNames, ", ")), [](const std::string& name) {
+        return std::find(kCameraNames.begin(), kCameraNames.end(), name) != kCameraNames.end();
+      }};
+  const std::string name = yaml.require<std::string>("camera", known);
+  const auto camera = std::find(kCameraNames.begin(), kCameraNames.end(), name);
+  return camera == kCameraNames.end() ? 0 : static_cast<int>(camera - kCameraNames.begin());
+}
+
+CameraFault read_fault(YamlMap& yaml) {
+  CameraFault fault;
+  fault.kind =
+      yaml.require_choice<CameraFaultKind>("kind", {{"dead", CameraFaultKind::kDead},
+                                                    {"frozen", CameraFaultKind::kFrozen},
+                                                    {"late", CameraFaultKind::kLate},
+                                                    {"drop", CameraFaultKind::kDrop},
+                                                    {"duplicate", CameraFaultKind::kDuplicate},
+                                                    {"swap", CameraFaultKind::kSwap}});
+  fault.from_s = yaml.optional<double>("from_s", fault.from_s, at_least(0.0));
+  fault.until_s = yaml.optional<double>("until_s", fault.until_s, at_least(0.0));
+  if (fault.until_s < fault.from_s) yaml.reject("until_s", "less than from_s", "from_s or more");
+  if (fault.kind == CameraFaultKind::kLate) {
+    fault.delay = require_milliseconds(yaml, "delay_ms", between(0.0, 60'000.0));
+  }
+  if (fault.kind == CameraFaultKind::kDrop || fault.kind == CameraFaultKind::kDuplicate ||
+      fault.kind == CameraFaultKind::kSwap) {
+    fault.every = std::max(1, yaml.require<int>("every", between(2, 1'000'000)));
+  }
+  return fault;
+}
+
+std::array<Duration, kCameraCount> read_offsets(YamlMap& yaml) {
+  std::array<Duration, kCameraCount> offsets{};
+  if (!yaml.has("exposure_offsets_ms")) return offsets;
+  const auto offsets_ms =
+      yaml.require_list<double>("exposure_offsets_ms", kCameraCount, between(0.0, 50.0));
+  std::ranges::transform(offsets_ms, offsets.begin(), from_milliseconds);
+  return offsets;
+}
+
+/// Returns false if the map is a file.
+bool read_procedural_map(YamlMap& map, SimulationConfig& simulation) {
+  if (!map.has("procedural_seed")) return false;
+  simulation.town_seed =
+      map.require<uint64_t>("procedural_seed", between(uint64_t{0}, sim::kFirstTrainingSeed - 1));
+  return true;
+}
+
+void read_simulation(YamlMap yaml, SimulationConfig& simulation) {
+  simulation.seed = yaml.require<uint64_t>("seed");
+  simulation.duration_s = yaml.require<double>("duration_s", between(0.1, 1e6));
+  simulation.conditions = read_conditions(yaml.optional_map("conditions"));
+  simulation.calibration_error = read_calibration_error(yaml.optional_map("calibration_error"));
+  simulation.exposure_offsets = read_offsets(yaml);
+  if (yaml.has("camera_faults")) {
+    for (YamlMap& fault : yaml.require_map_list("camera_faults")) {
+      const int camera = read_camera(fault);
+      simulation.camera_faults[camera].push_back(read_fault(fault));
+    }
+  }
+}
+
+}  // namespace
+
+Result<DriveConfig> load_drive_config(const std::filesystem::path& file) {
+  std::optional<SimulationConfig> simulation;
+  SimulationConfig read;
+  const firmware::SimulationReader reader{
+      [&read](YamlMap& map) { return read_procedural_map(map, read); },
+      [&](YamlMap yaml) {
+        read_simulation(std::move(yaml), read);
+        simulation = read;
+      }};
+  auto config = firmware::load_config(file, &reader);
+  if (!config) return tl::unexpected(config.error());
+  return DriveConfig{std::move(*config), std::move(simulation)};
+}
+
+}  // namespace bevloc::evaluation

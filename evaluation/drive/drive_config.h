@@ -1,0 +1,38 @@
+// Reads the configuration of a program with the simulator: the appliance's, and the drive's.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "common/cameras.h"
+#include "drivers/mock/mock_schedule.h"
+#include "drivers/mock/true_rig.h"
+#include "firmware/config/config.h"
+#include "sim/render/renderer.h"
+
+namespace bevloc::evaluation {
+
+/// The drive that the mock cameras see: the section `simulation` and the map's `procedural_seed`.
+struct SimulationConfig {
+  uint64_t seed = 1;
+  double duration_s = 60.0;
+  std::optional<uint64_t> town_seed;  ///< of a procedural town; empty if the map is a file
+  sim::Conditions conditions;
+  drivers::CalibrationError calibration_error;  ///< 1 sigma
+  std::array<std::vector<drivers::CameraFault>, kCameraCount> camera_faults;
+  /// Delay of each camera's exposure after the common tick.
+  std::array<Duration, kCameraCount> exposure_offsets{};
+};
+
+/// The appliance's configuration, and that of the drive if the cameras are mocks.
+struct DriveConfig : firmware::Config {
+  std::optional<SimulationConfig> simulation;
+};
+
+/// Like firmware::load_config(), but accepts mock cameras.
+Result<DriveConfig> load_drive_config(const std::filesystem::path& file);
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,46 @@
+// Statistics of the errors of a series of poses, per axis.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "common/se2.h"
+
+namespace bevloc::evaluation {
+
+/// Absolute errors of one axis, in metres or degrees. All zero for an empty series.
+struct AxisError {
+  double mae = 0.0;
+  double rmse = 0.0;
+  double p95 = 0.0;
+};
+
+/// The errors of a series of poses.
+struct PoseError {
+  AxisError longitudinal_m;
+  AxisError lateral_m;
+  AxisError yaw_deg;
+};
+
+/// The error of one pose in the frame of the true vehicle: x longitudinal, y lateral, yaw.
+inline Se2 pose_error(const Se2& truth, const Se2& estimate) {
+  return correction_between(truth, estimate);
+}
+
+/// Collects the errors of poses. Not thread safe.
+class ErrorStatistics {
+ public:
+  void add(const Se2& error);
+  PoseError summary() const;
+
+ private:
+  std::vector<double> longitudinal_m_;
+  std::vector<double> lateral_m_;
+  std::vector<double> yaw_deg_;
+};
+
+/// The smallest value that a share `quantile` of the values does not exceed (nearest rank). The median
+/// of an even number is the lower of the middle two. 0 if there are no values.
+double quantile_of(std::vector<double> values, double quantile);
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,100 @@
+#include "evaluation/drive/judge.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "can/bus/candump.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr Duration kComparisonPeriod = std::chrono::milliseconds(100);
+constexpr const char* kInterfaceInLog = "can0";
+
+}  // namespace
+
+Result<std::unique_ptr<Judge>> Judge::create(std::unique_ptr<can::Bus> bus,
+                                             const can::BaseIds& base, const GeoOrigin& origin,
+                                             TruthAt truth, JudgeTimes times,
+                                             const std::string& log_path) {
+  auto judge =
+      std::unique_ptr<Judge>(new Judge(std::move(bus), base, origin, std::move(truth), times));
+  judge->log_.open(log_path);
+  if (!judge->log_) return fail("{}: found no way to write the bus log, wanted to create it", log_path);
+  return judge;
+}
+
+Judge::Judge(std::unique_ptr<can::Bus> bus, const can::BaseIds& base, const GeoOrigin& origin,
+             TruthAt truth, JudgeTimes times)
+    : bus_(std::move(bus)),
+      base_(base),
+      truth_(std::move(truth)),
+      times_(times),
+      reader_(base, {origin.latitude_deg, origin.longitude_deg}),
+      prior_input_(base, {origin.latitude_deg, origin.longitude_deg}),
+      prior_tracker_(TrackerParameters()),
+      next_comparison_(times.drive_start) {}
+
+void Judge::step(Duration timeout) {
+  if (!bus_->wait(timeout)) return;
+  while (const auto received = bus_->receive()) take(*received);
+}
+
+void Judge::take(const can::ReceivedFrame& received) {
+  log_ << can::candump_line(received.received - times_.log_start, kInterfaceInLog, received.frame)
+       << '\n';
+  if (const auto sample = prior_input_.accept(received)) {
+    prior_tracker_.add(*sample);
+    return;
+  }
+  const auto pose = reader_.accept(received);
+  note_solution(received, pose.has_value());
+  if (pose && pose->received >= next_comparison_) {
+    next_comparison_ = pose->received + kComparisonPeriod;
+    compare(*pose);
+  }
+  const std::lock_guard lock(view_mutex_);
+  view_.state = reader_.state();
+  if (pose) ++view_.valid_poses;
+}
+
+void Judge::note_solution(const can::ReceivedFrame& received, bool valid) {
+  const auto sent_by_localizer = [&](const can::Message* message) {
+    return message->sender == can::Sender::kLocalizer && message->id(base_) == received.frame.id;
+  };
+  if (std::none_of(std::begin(can::kMessages), std::end(can::kMessages), sent_by_localizer)) return;
+  ++localizer_frames_;
+  if (valid && first_fix_s_ < 0.0)
+    first_fix_s_ = to_seconds(received.received - times_.drive_start);
+  const bool completes_solution = received.frame.id == can::loc_attitude::kMessage.id(base_) ||
+                                  received.frame.id == can::loc_solution::kMessage.id(base_);
+  if (first_fix_s_ >= 0.0 && completes_solution) ++solutions_since_fix_;
+}
+
+double Judge::valid_share() const {
+  if (solutions_since_fix_ == 0) return 0.0;
+  return static_cast<double>(view().valid_poses) / static_cast<double>(solutions_since_fix_);
+}
+
+void Judge::compare(const BusPose& pose) {
+  const auto prior = prior_tracker_.pose_at(pose.received);
+  if (!prior) return;
+  JudgedPose judged;
+  judged.time_s = to_seconds(pose.received - times_.drive_start);
+  judged.state = reader_.state();
+  judged.truth = truth_(judged.time_s);
+  judged.prior = prior->map_from_vehicle;
+  judged.estimate = pose.map_from_vehicle;
+  prior_error_.add(pose_error(judged.truth, judged.prior));
+  estimate_error_.add(pose_error(judged.truth, judged.estimate));
+  poses_.push_back(judged);
+  const std::lock_guard lock(view_mutex_);
+  view_.latest = judged;
+}
+
+JudgeView Judge::view() const {
+  const std::lock_guard lock(view_mutex_);
+  return view_;
+}
+
+}  // namespace bevloc::evaluation

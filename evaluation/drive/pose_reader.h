@@ -1,0 +1,50 @@
+// Decodes bevloc's poses from CAN frames, as a consumer does.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "can/e2e/e2e.h"
+#include "can/messages/geo_reference.h"
+#include "can/messages/message_table.h"
+#include "can/messages/pose_report.h"
+
+namespace bevloc::evaluation {
+
+/// A solution that was sent as valid.
+struct BusPose {
+  Time received;  ///< the pose is predicted to the time of sending
+  Se2 map_from_vehicle;
+};
+
+/// Decodes both variants: separate frames, and one CAN FD frame. Frames that fail the E2E check are
+/// ignored, and the frames of a pose must have the same epoch. One thread.
+class PoseReader {
+ public:
+  PoseReader(const can::BaseIds& base, can::GeodeticPosition map_origin);
+
+  /// Returns a pose if this frame completes one.
+  std::optional<BusPose> accept(const can::ReceivedFrame& received);
+
+  /// The state in the latest LOC_Status.
+  HealthState state() const { return state_; }
+
+ private:
+  enum Input : size_t { kStatus, kLatitude, kLongitude, kPosLocal, kAttitude };
+  static constexpr std::array<const can::Message*, 5> kInputs = {
+      &can::loc_status::kMessage, &can::loc_latitude::kMessage, &can::loc_longitude::kMessage,
+      &can::loc_pos_local::kMessage, &can::loc_attitude::kMessage};
+
+  std::optional<BusPose> accept_joined(const can::ReceivedFrame& received);
+  void take(Input input, const can::Frame& frame);
+  std::optional<BusPose> assemble(Time received);
+
+  can::BaseIds base_;
+  can::GeoReference geo_;
+  std::array<can::E2eChecker, kInputs.size()> checkers_;
+  can::E2eChecker joined_checker_;
+  std::array<can::Frame, kInputs.size()> latest_{};
+  HealthState state_ = HealthState::kInit;
+};
+
+}  // namespace bevloc::evaluation

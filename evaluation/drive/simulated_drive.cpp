@@ -1,0 +1,107 @@
+#include "evaluation/drive/simulated_drive.h"
+
+#include "drivers/mock/true_rig.h"
+#include "evaluation/drive/configured_world.h"
+#include "sim/random.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr double kRearTrack_m = 1.6;
+constexpr Duration kExposure = std::chrono::milliseconds(8);
+constexpr Duration kReadout = std::chrono::milliseconds(20);
+/// The drive continues beyond the configured duration, so that it does not end while the daemon runs.
+constexpr double kSpareDuration_s = 10.0;
+
+Time at(Time drive_start, double time_s) {
+  return drive_start + from_seconds(time_s);
+}
+
+}  // namespace
+
+SimulatedVehicle::SimulatedVehicle(std::shared_ptr<const sim::Drive> drive, uint64_t seed,
+                                   const GeoOrigin& origin, const can::BaseIds& base,
+                                   std::unique_ptr<can::Bus> bus, Time drive_start)
+    : drive_(std::move(drive)),
+      odometry_(*drive_, sim::seed_for(seed, "odometry")),
+      gnss_(*drive_, sim::seed_for(seed, "gnss")),
+      encoder_(base, {origin.latitude_deg, origin.longitude_deg}, kRearTrack_m),
+      bus_(std::move(bus)),
+      drive_start_(drive_start),
+      next_odometry_(drive_start),
+      next_gnss_(drive_start) {}
+
+void SimulatedVehicle::send_due(Time now) {
+  while (next_odometry_ <= now) send_odometry(now);
+  while (next_gnss_ <= now) send_gnss(now);
+}
+
+void SimulatedVehicle::send_odometry(Time now) {
+  if (odometry_count_ < odometry_.count()) {
+    const sim::OdometryReading reading = odometry_.reading(odometry_count_);
+    for (const can::Frame& frame :
+         encoder_.odometry({now, reading.speed_mps, reading.yaw_rate_radps})) {
+      bus_->send(frame, now);
+    }
+  }
+  ++odometry_count_;
+  next_odometry_ =
+      at(drive_start_, static_cast<double>(odometry_count_) * sim::OdometrySimulator::kPeriod_s);
+}
+
+void SimulatedVehicle::send_gnss(Time now) {
+  if (gnss_count_ < gnss_.count()) {
+    const sim::GnssReading reading = gnss_.reading(gnss_count_);
+    GnssSample sample;
+    sample.time = now;
+    sample.east_m = reading.position_m.x();
+    sample.north_m = reading.position_m.y();
+    sample.sigma_east_m = reading.position_sigma_m;
+    sample.sigma_north_m = reading.position_sigma_m;
+    sample.yaw = {reading.heading_rad, reading.heading_sigma_rad};
+    for (const can::Frame& frame : encoder_.gnss(sample)) bus_->send(frame, now);
+  }
+  ++gnss_count_;
+  next_gnss_ = at(drive_start_, static_cast<double>(gnss_count_) * sim::GnssSimulator::kPeriod_s);
+}
+
+Result<SimulatedDrive> SimulatedDrive::create(const DriveConfig& config) {
+  const SimulationConfig& simulation = *config.simulation;
+  auto world = make_configured_world(config);
+  if (!world) return tl::unexpected(world.error());
+  return SimulatedDrive(std::make_shared<const sim::World>(std::move(*world)), simulation);
+}
+
+SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,
+                               const SimulationConfig& simulation)
+    : world_(std::move(world)),
+      drive_(std::make_shared<sim::Drive>(*world_, sim::seed_for(simulation.seed, "drive"),
+                                          simulation.duration_s + kSpareDuration_s)) {}
+
+std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(const DriveConfig& config,
+                                                                           const Rig& rig,
+                                                                           drivers::Clock& clock,
+                                                                           Time drive_start) const {
+  const SimulationConfig& simulation = *config.simulation;
+  const auto scene = std::make_shared<drivers::MockScene>(
+      world_, drive_, simulation.conditions, sim::seed_for(simulation.seed, "pixel noise"));
+  const Rig true_rig = drivers::true_rig(rig, simulation.calibration_error,
+                                         sim::seed_for(simulation.seed, "calibration"));
+  std::vector<std::unique_ptr<drivers::Camera>> cameras;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    drivers::MockCameraConfig mock;
+    mock.camera = camera;
+    mock.true_camera = true_rig.cameras[camera];
+    mock.timing.drive_start = drive_start;
+    mock.timing.period = from_seconds(1.0 / config.cameras.rate_hz);
+    mock.timing.phase = simulation.exposure_offsets[camera];
+    mock.timing.exposure = kExposure;
+    mock.timing.readout = kReadout;
+    mock.buffers = config.cameras.buffers;
+    mock.faults = simulation.camera_faults[camera];
+    cameras.push_back(std::make_unique<drivers::MockCamera>(scene, mock, clock));
+  }
+  return cameras;
+}
+
+}  // namespace bevloc::evaluation

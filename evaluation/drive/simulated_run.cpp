@@ -1,0 +1,213 @@
+#include "evaluation/drive/simulated_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "evaluation/drive/bus_factory.h"
+#include "firmware/runtime/runner.h"
+#include "evaluation/drive/progress_line.h"
+#include "evaluation/drive/simulated_drive.h"
+#include "evaluation/drive/snapshot_keeper.h"
+#include "firmware/runtime/supervisor.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+/// Time for the cameras to render their first images before the drive begins.
+constexpr Duration kLead = std::chrono::milliseconds(500);
+
+/// The latencies of one drive. The CAN-out thread writes; report() is called after the run.
+class LatencyRecorder {
+ public:
+  explicit LatencyRecorder(double duration_s) {
+    constexpr double kMostCorrectionsPerSecond = 100.0;
+    latencies_ms_.reserve(static_cast<size_t>(duration_s * kMostCorrectionsPerSecond) + 1);
+  }
+  void add(Duration latency) { latencies_ms_.push_back(1e3 * to_seconds(latency)); }
+  LatencyReport report() const {
+    return {quantile_of(latencies_ms_, 0.5), quantile_of(latencies_ms_, 0.99)};
+  }
+
+ private:
+  std::vector<double> latencies_ms_;
+};
+
+/// All parts of one simulated drive.
+class SimulatedRun {
+ public:
+  static Result<std::unique_ptr<SimulatedRun>> create(const DriveConfig& config, const Rig& rig,
+                                                      const SimulatedRunOptions& options);
+
+  void run(const StopWhen& stop);
+  DriveReport report() const;
+  /// Frees the appliance first, so it must be the last call.
+  Status write_sheet_if_any();
+
+ private:
+  SimulatedRun(const DriveConfig& config, const Rig& rig, const SimulatedRunOptions& options,
+               SimulatedDrive drive);
+  Status connect();
+  const JudgedPose& judged_nearest(double time_s) const;
+
+  const DriveConfig& config_;
+  const Rig& rig_;
+  const SimulatedRunOptions& options_;
+  SimulatedDrive drive_;
+  drivers::MonotonicClock machine_clock_;
+  drivers::VirtualClock virtual_clock_;
+  drivers::Clock& clock_;
+  Time log_start_;
+  Time drive_start_;
+  BusFactory buses_;
+  firmware::Realtime realtime_;
+  SnapshotKeeper keeper_;
+  LatencyRecorder latencies_;
+  std::unique_ptr<firmware::Appliance> appliance_;
+  std::unique_ptr<SimulatedVehicle> vehicle_;
+  std::unique_ptr<Judge> judge_;
+};
+
+Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const DriveConfig& config, const Rig& rig,
+                                                           const SimulatedRunOptions& options) {
+  auto drive = SimulatedDrive::create(config);
+  if (!drive) return tl::unexpected(drive.error());
+  auto run =
+      std::unique_ptr<SimulatedRun>(new SimulatedRun(config, rig, options, std::move(*drive)));
+  if (Status status = run->connect(); !status) return tl::unexpected(status.error());
+  return run;
+}
+
+SimulatedRun::SimulatedRun(const DriveConfig& config, const Rig& rig, const SimulatedRunOptions& options,
+                           SimulatedDrive drive)
+    : config_(config),
+      rig_(rig),
+      options_(options),
+      drive_(std::move(drive)),
+      clock_(options.fast ? static_cast<drivers::Clock&>(virtual_clock_) : machine_clock_),
+      log_start_(clock_.now()),
+      drive_start_(log_start_ + kLead),
+      buses_(config.can),
+      realtime_(config.realtime),
+      latencies_(config.simulation->duration_s) {}
+
+Status SimulatedRun::connect() {
+  auto own_bus = buses_.connect_appliance();
+  auto vehicle_bus = buses_.connect();
+  auto judge_bus = buses_.connect();
+  for (const auto* bus : {&own_bus, &vehicle_bus, &judge_bus}) {
+    if (!*bus) return tl::unexpected(bus->error());
+  }
+  firmware::Hardware hardware{drive_.make_cameras(config_, rig_, clock_, drive_start_), std::move(*own_bus),
+                    &clock_};
+  auto appliance = firmware::Appliance::create(config_, rig_, drive_.map(), std::move(hardware));
+  if (!appliance) return tl::unexpected(appliance.error());
+  appliance_ = std::move(*appliance);
+  appliance_->vision().observe(
+      [this](const firmware::VisionSnapshot& snapshot) { keeper_.observe(snapshot); });
+  appliance_->estimation().observe_corrections(
+      [this](Time frame_time) { latencies_.add(clock_.now() - frame_time); });
+
+  const can::BaseIds& ids = config_.can.base_ids;
+  const GeoOrigin& origin = drive_.map().origin;
+  vehicle_ = std::make_unique<SimulatedVehicle>(drive_.drive(), config_.simulation->seed, origin,
+                                                ids, std::move(*vehicle_bus), drive_start_);
+  auto judge = Judge::create(
+      std::move(*judge_bus), ids, origin, [this](double time_s) { return drive_.truth_at(time_s); },
+      {log_start_, drive_start_}, (options_.out / "can.log").string());
+  if (!judge) return tl::unexpected(judge.error());
+  judge_ = std::move(*judge);
+  return {};
+}
+
+void SimulatedRun::run(const StopWhen& stop) {
+  const double duration_s = config_.simulation->duration_s;
+  const firmware::Companion companion{[this] { return vehicle_->next_due(); },
+                            [this](Time now) { vehicle_->send_due(now); },
+                            [this](Duration timeout) { judge_->step(timeout); }};
+  firmware::Supervisor supervisor(*appliance_, realtime_);
+  const auto supervise = [&](Time now) {
+    supervisor.step(now);
+    const double time_s = to_seconds(now - drive_start_);
+    const bool last = time_s >= duration_s || stop(supervisor.view());
+    if (options_.show_progress) {
+      show_progress_line(supervisor.view(), judge_->view(), time_s, duration_s, last);
+    }
+    return !last;
+  };
+  if (options_.fast) {
+    firmware::run_lockstep(*appliance_, virtual_clock_, &companion, supervise);
+  } else {
+    firmware::run_threads(*appliance_, realtime_, &companion, supervise);
+  }
+  supervisor.finish();
+}
+
+DriveReport SimulatedRun::report() const {
+  DriveReport report;
+  report.prior = judge_->prior_error();
+  report.estimate = judge_->estimate_error();
+  report.frames = appliance_->frame_counts();
+  report.latency = latencies_.report();
+  report.realtime_refusals = realtime_.refusals();
+  report.can_sent = judge_->localizer_frames();
+  report.first_fix_s = judge_->first_fix_s();
+  report.valid_share = judge_->valid_share();
+  report.seed = config_.simulation->seed;
+  report.duration_s = config_.simulation->duration_s;
+  report.map = drive_.map().name;
+  report.model = std::as_const(*appliance_).localizer().model_name();
+  report.poses = judge_->poses();
+  return report;
+}
+
+const JudgedPose& SimulatedRun::judged_nearest(double time_s) const {
+  return *std::min_element(judge_->poses().begin(), judge_->poses().end(),
+                           [time_s](const JudgedPose& a, const JudgedPose& b) {
+                             return std::abs(a.time_s - time_s) < std::abs(b.time_s - time_s);
+                           });
+}
+
+Status SimulatedRun::write_sheet_if_any() {
+  const std::filesystem::path file = options_.out / "sheet.png";
+  std::optional<SnapshotKeeper::Kept> kept = keeper_.take();
+  if (!kept || judge_->poses().empty()) {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);  // the sheet of an earlier drive
+    return {};
+  }
+  appliance_.reset();  // frees memory for the sheet
+  SheetContent& content = kept->content;
+  const double time_s = to_seconds(kept->frame_time - drive_start_);
+  const JudgedPose& nearest = judged_nearest(time_s);
+  // The judge compares at other times than the frameset's, so the errors of its nearest comparison are
+  // applied.
+  content.truth = drive_.truth_at(time_s);
+  content.prior = content.truth * pose_error(nearest.truth, nearest.prior);
+  content.corrected = content.truth * pose_error(nearest.truth, nearest.estimate);
+  return write_sheet(content, rig_, MapIndex(drive_.map()), file.string());
+}
+
+}  // namespace
+
+Result<DriveReport> run_simulation(const DriveConfig& config, const Rig& rig,
+                                   const SimulatedRunOptions& options, const StopWhen& stop) {
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error) {
+    return fail("{}: found no way to create this folder ({}), wanted one to write to",
+                options.out.string(), error.message());
+  }
+  auto run = SimulatedRun::create(config, rig, options);
+  if (!run) return tl::unexpected(run.error());
+  (*run)->run(stop);
+  DriveReport report = (*run)->report();
+  if (Status status = write_csv(report, (options.out / "poses.csv").string()); !status) {
+    return tl::unexpected(status.error());
+  }
+  if (Status status = (*run)->write_sheet_if_any(); !status) {
+    return tl::unexpected(status.error());
+  }
+  return report;
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,100 @@
+#include "evaluation/network/network_command.h"
+
+#include <cstdio>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "evaluation/choice_option.h"
+#include "evaluation/command_output.h"
+#include "evaluation/network/network_evaluation.h"
+#include "evaluation/network/network_report.h"
+#include "pipeline/map/map_loader.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr int kMostFrames = 100'000;
+/// World seeds reserved for each seed of the command line.
+constexpr uint64_t kWorldsPerSeed = 1ULL << 16U;
+static_assert(kMostFrames / kSamplesTakenPerWorld < kWorldsPerSeed);
+constexpr uint64_t kSeeds = sim::kSampleSeedCount / kWorldsPerSeed;
+
+constexpr const char* kAllSets = "all";
+
+Result<HdMap> load_drivable_map(const std::string& file) {
+  auto map = load_map(file);
+  if (map && map->lanes.empty()) return fail("{}: found no lanes, wanted some to drive on", file);
+  return map;
+}
+
+}  // namespace
+
+void NetworkCommand::declare(CLI::App& eval) {
+  auto* network = eval.add_subcommand(
+      "network", "Evaluate a model with several solvers on simulated samples");
+  network->add_option("--model", model_, "ONNX file")->capture_default_str();
+  network
+      ->add_option("--set", set_,
+                   "Nuisances of the samples: the name of a set (docs/evaluation.md), or all")
+      ->capture_default_str();
+  add_choice(*network, "--rows", rows_,
+             {{"solvers", ReadOutRows::kSolvers},
+              {"variants", ReadOutRows::kVariants},
+              {"baselines", ReadOutRows::kBaselines},
+              {"all", ReadOutRows::kAll}},
+             "solvers: on the model's features; variants: also masks, sizes and steps of the paper's "
+             "Tables III and IV; baselines: methods without learned matching");
+  network->add_option("--frames", frames_, "Number of samples of each set")
+      ->check(CLI::Range(1, kMostFrames))
+      ->capture_default_str();
+  network->add_option("--seed", seed_, "Seed of the samples")
+      ->check(CLI::Range(uint64_t{0}, kSeeds - 1))
+      ->capture_default_str();
+  network->add_option("--map", map_file_, "Take the samples on this map instead of in procedural towns");
+  network->add_option("--json", json_file_, "Write the rows as JSON to this file");
+  network->add_option("--csv", csv_file_, "Write the rows as CSV to this file");
+  network->callback([this] { chosen_ = true; });
+}
+
+Result<std::vector<sim::NuisanceSet>> NetworkCommand::sets() const {
+  if (set_ == kAllSets) {
+    const auto all = sim::all_nuisance_sets();
+    return std::vector(all.begin(), all.end());
+  }
+  return sim::nuisance_set_from(set_).map([](sim::NuisanceSet set) { return std::vector{set}; });
+}
+
+Status NetworkCommand::run() const {
+  const auto chosen_sets = sets();
+  if (!chosen_sets) return tl::unexpected(chosen_sets.error());
+  std::optional<HdMap> map;
+  if (!map_file_.empty()) {
+    auto loaded = load_drivable_map(map_file_);
+    if (!loaded) return tl::unexpected(loaded.error());
+    map = std::move(*loaded);
+  }
+  auto evaluation = NetworkEvaluation::create(model_, rows_);
+  if (!evaluation) return tl::unexpected(evaluation.error());
+
+  const NetworkEvaluationSubject subject{evaluation->model_name(), map_file_, frames_, seed_};
+  fmt::print("{}, {} samples per set, seed {}, {}\n", subject.model, frames_, seed_,
+             map ? map_file_ : "procedural towns");
+  sim::SampleStream stream;
+  stream.first_seed = sim::kEvaluationSampleSeedBase + seed_ * kWorldsPerSeed;
+  stream.map = map ? &*map : nullptr;
+  std::vector<SetResult> results;
+  int done = 0;
+  const int all = frames_ * static_cast<int>(chosen_sets->size());
+  for (const sim::NuisanceSet set : *chosen_sets) {
+    stream.nuisances = sim::nuisances_of(set);
+    results.push_back(evaluation->run(stream, frames_, [&] { show_progress(++done, all); }));
+    results.back().set = set;
+    fmt::print("\n{}", table_of(results.back()));
+    std::fflush(stdout);
+  }
+  if (Status status = write_file(to_json(results, subject), json_file_); !status) return status;
+  return write_file(to_csv(results), csv_file_);
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,98 @@
+#include "evaluation/solver/solver_score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace bevloc::evaluation {
+namespace {
+
+/// Keeps the mean finite if a probability was rounded to zero.
+constexpr double kLeastProbability = 1e-6;
+
+double negative_log_likelihood(std::span<const float> probability, const HypothesisAxis& axis,
+                               double truth) {
+  const double position =
+      std::clamp(truth / axis.step + axis.half_count(), 0.0, axis.count() - 1.0);
+  const int below = std::min(static_cast<int>(position), axis.count() - 2);
+  const double fraction = position - below;
+  const double read = (1.0 - fraction) * probability[below] + fraction * probability[below + 1];
+  return -std::log(std::max(read, kLeastProbability));
+}
+
+PerAxis error_of(const Se2& estimate, const Se2& truth) {
+  return {estimate.x_m - truth.x_m, estimate.y_m - truth.y_m,
+          degrees(estimate.yaw_rad - truth.yaw_rad)};
+}
+
+/// 1 if the error is at most `limit`, else 0; kNotGiven if `limit` is.
+double is_within(double error, double limit) {
+  if (std::isnan(limit)) return kNotGiven;
+  return error <= limit ? 1.0 : 0.0;
+}
+
+/// The value below which a share of the values lies. Reorders the values.
+double quantile(std::vector<double>& values, double share) {
+  const auto nth =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, nth);
+  return *nth;
+}
+
+}  // namespace
+
+Outcome judge(const SolverResult& result, const HypothesisGrid& hypotheses, const Se2& truth) {
+  Outcome outcome;
+  outcome.error = error_of(result.correction, truth);
+  outcome.parabola_error = error_of(result.parabola, truth);
+  outcome.sigma = {std::sqrt(result.covariance(0, 0)), std::sqrt(result.covariance(1, 1)),
+                   degrees(std::sqrt(result.covariance(2, 2)))};
+  outcome.nll = {
+      negative_log_likelihood(result.x_probability, hypotheses.x_m, truth.x_m),
+      negative_log_likelihood(result.y_probability, hypotheses.y_m, truth.y_m),
+      negative_log_likelihood(result.yaw_probability, hypotheses.yaw_rad, truth.yaw_rad)};
+  return outcome;
+}
+
+Outcome judge(const Se2& correction, const Se2& truth) {
+  constexpr PerAxis kNone{kNotGiven, kNotGiven, kNotGiven};
+  Outcome outcome;
+  outcome.error = error_of(correction, truth);
+  outcome.parabola_error = outcome.sigma = outcome.nll = kNone;
+  return outcome;
+}
+
+Summary summarise(const std::vector<Outcome>& outcomes) {
+  Summary summary;
+  summary.scenes = outcomes.size();
+  if (outcomes.empty()) return summary;
+  const double share = 1.0 / static_cast<double>(outcomes.size());
+  std::vector<double> values(outcomes.size());
+  for (size_t axis = 0; axis < 3; ++axis) {
+    double square = 0.0;
+    for (size_t i = 0; i < outcomes.size(); ++i) {
+      const Outcome& outcome = outcomes[i];
+      const double error = std::abs(outcome.error[axis]);
+      values[i] = error;
+      square += share * error * error;
+      summary.mae[axis] += share * error;
+      summary.parabola_mae[axis] += share * std::abs(outcome.parabola_error[axis]);
+      summary.nll[axis] += share * outcome.nll[axis];
+      summary.coverage_1s[axis] += share * is_within(error, outcome.sigma[axis]);
+      summary.coverage_3s[axis] += share * is_within(error, 3.0 * outcome.sigma[axis]);
+    }
+    summary.rmse[axis] = std::sqrt(square);
+    summary.median[axis] = quantile(values, 0.5);
+    summary.p95[axis] = quantile(values, 0.95);
+  }
+  std::ranges::transform(outcomes, values.begin(), &Outcome::time_ms);
+  summary.time_ms = quantile(values, 0.5);
+  return summary;
+}
+
+PerAxis uniform_nll(const HypothesisGrid& hypotheses) {
+  return {std::log(hypotheses.x_m.count()), std::log(hypotheses.y_m.count()),
+          std::log(hypotheses.yaw_rad.count())};
+}
+
+}  // namespace bevloc::evaluation

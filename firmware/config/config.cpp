@@ -1,0 +1,232 @@
+#include "firmware/config/config.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "firmware/config/config_milliseconds.h"
+
+namespace bevloc::firmware {
+namespace {
+
+std::filesystem::path path_of(YamlMap& yaml, std::string_view key,
+                              const std::filesystem::path& folder) {
+  const Wanted<std::string> named{"the name of a file",
+                                  [](const std::string& name) { return !name.empty(); }};
+  return folder / yaml.require<std::string>(key, named);
+}
+
+CameraConfig read_cameras(YamlMap yaml, const std::filesystem::path& folder) {
+  CameraConfig cameras;
+  cameras.driver =
+      yaml.require_choice<CameraDriver>("driver", {{"mock", CameraDriver::kMock},
+                                                   {"replay", CameraDriver::kReplay},
+                                                   {"v4l2", CameraDriver::kV4l2},
+                                                   {"libcamera", CameraDriver::kLibcamera}});
+  switch (cameras.driver) {
+    case CameraDriver::kMock:
+      cameras.rate_hz = yaml.require<double>("rate_hz", between(1.0, 60.0));
+      break;
+    case CameraDriver::kReplay:
+      cameras.recording = path_of(yaml, "recording", folder);
+      break;
+    case CameraDriver::kV4l2:
+    case CameraDriver::kLibcamera:
+      cameras.devices = read_camera_devices(yaml);
+      break;
+  }
+  cameras.buffers = yaml.optional<int>("buffers", cameras.buffers, between(2, 64));
+  drivers::SynchronizerConfig& synchronizer = cameras.synchronizer;
+  synchronizer.tolerance =
+      optional_milliseconds(yaml, "tolerance_ms", synchronizer.tolerance, between(0.0, 50.0));
+  synchronizer.wait =
+      optional_milliseconds(yaml, "wait_ms", synchronizer.wait, between(1.0, 1000.0));
+  synchronizer.min_cameras =
+      yaml.optional<int>("min_cameras", synchronizer.min_cameras, between(1, kCameraCount));
+  cameras.compensate_motion = yaml.optional<bool>("compensate_motion", cameras.compensate_motion);
+  if (synchronizer.wait < synchronizer.tolerance) {
+    yaml.reject("wait_ms", "less than tolerance_ms", "at least tolerance_ms");
+  }
+  return cameras;
+}
+
+/// Reads the path of the map file; empty for a procedural town.
+std::filesystem::path read_map(YamlMap yaml, CameraDriver camera_driver,
+                               const std::filesystem::path& folder,
+                               const SimulationReader* simulation) {
+  if (camera_driver != CameraDriver::kMock && yaml.has("procedural_seed")) {
+    yaml.require<uint64_t>("procedural_seed");
+    yaml.reject("procedural_seed", "a procedural map with cameras that are not mocks", "`file`");
+    return {};
+  }
+  const bool procedural = camera_driver == CameraDriver::kMock && simulation != nullptr &&
+                          simulation->read_procedural_map(yaml);
+  return procedural ? std::filesystem::path() : path_of(yaml, "file", folder);
+}
+
+/// Reads range and step of one axis, in the unit of the file.
+HypothesisAxis read_axis(YamlMap& yaml, std::string_view range_key, std::string_view step_key,
+                         const HypothesisAxis& fallback, double max_range) {
+  HypothesisAxis axis;
+  axis.range = yaml.optional<double>(range_key, fallback.range, between(0.1, max_range));
+  axis.step = yaml.optional<double>(step_key, fallback.step, between(0.01, 5.0));
+  if (axis.step > axis.range) yaml.reject(step_key, "more than the range", "at most the range");
+  return axis;
+}
+
+HypothesisGrid read_hypotheses(std::optional<YamlMap> yaml, const HypothesisGrid& fallback) {
+  if (!yaml) return fallback;
+  const double max_range_m = max_shift_m(kFeatureGrid);
+  const HypothesisAxis yaw_deg = read_axis(
+      *yaml, "yaw_range_deg", "yaw_step_deg",
+      {degrees(fallback.yaw_rad.range), degrees(fallback.yaw_rad.step)}, kMaxYawRange_deg);
+  return {read_axis(*yaml, "x_range_m", "x_step_m", fallback.x_m, max_range_m),
+          read_axis(*yaml, "y_range_m", "y_step_m", fallback.y_m, max_range_m),
+          {radians(yaw_deg.range), radians(yaw_deg.step)}};
+}
+
+SolverConfig read_solver(std::optional<YamlMap> yaml) {
+  SolverConfig solver;
+  if (!yaml) return solver;
+  const auto kind =
+      solver_kind_from(yaml->optional<std::string>("kind", std::string(name_of(solver.kind))));
+  if (kind) {
+    solver.kind = *kind;
+  } else {
+    yaml->reject("kind", "an unknown solver", kind.error().message);
+  }
+  solver.tracking = read_hypotheses(yaml->optional_map("tracking"), solver.tracking);
+  solver.acquiring = read_hypotheses(yaml->optional_map("acquiring"), solver.acquiring);
+  return solver;
+}
+
+CanConfig read_can(YamlMap yaml) {
+  CanConfig config;
+  config.driver = yaml.require_choice<CanDriver>(
+      "driver", {{"mock", CanDriver::kMock}, {"socketcan", CanDriver::kSocketCan}});
+  if (config.driver == CanDriver::kSocketCan) {
+    // IFNAMSIZ limits the length.
+    const Wanted<std::string> interface_name{
+        "the name of a network interface, 1 to 15 characters",
+        [](const std::string& name) { return !name.empty() && name.size() <= 15; }};
+    config.interface = yaml.require<std::string>("interface", interface_name);
+  }
+  if (yaml.has("variant")) {
+    config.variant = yaml.require_choice<can::FrameFormat>(
+        "variant", {{"classic", can::FrameFormat::kClassic}, {"fd", can::FrameFormat::kFd}});
+  }
+  // Each family of messages has fewer than 0x40 of the 11-bit identifiers.
+  constexpr uint32_t kFamily = 0x40;
+  const auto base_id = between(uint32_t{1}, 0x800 - kFamily);
+  can::BaseIds& base = config.base_ids;
+  base.localizer = yaml.optional<uint32_t>("localizer_base_id", base.localizer, base_id);
+  base.vehicle = yaml.optional<uint32_t>("vehicle_base_id", base.vehicle, base_id);
+  const auto [low, high] = std::minmax(base.localizer, base.vehicle);
+  if (high - low < kFamily) {
+    yaml.reject("localizer_base_id", "less than 0x40 apart from vehicle_base_id",
+                "at least 0x40, so that messages do not share identifiers");
+  }
+  return config;
+}
+
+TrackerParameters read_tracker(std::optional<YamlMap> yaml) {
+  TrackerParameters tracker;
+  if (!yaml) return tracker;
+  const auto noise = between(1e-5, 10.0);
+  MotionNoise& motion = tracker.motion;
+  motion.longitudinal_m_per_sqrt_m = yaml->optional<double>(
+      "longitudinal_noise_m_per_sqrt_m", motion.longitudinal_m_per_sqrt_m, noise);
+  motion.lateral_m_per_sqrt_m =
+      yaml->optional<double>("lateral_noise_m_per_sqrt_m", motion.lateral_m_per_sqrt_m, noise);
+  motion.yaw_rad_per_sqrt_s = radians(yaml->optional<double>(
+      "yaw_noise_deg_per_sqrt_s", degrees(motion.yaw_rad_per_sqrt_s), noise));
+  tracker.initial_speed_scale_sigma = yaml->optional<double>(
+      "speed_scale_sigma", tracker.initial_speed_scale_sigma, between(1e-4, 0.5));
+  tracker.initial_yaw_rate_bias_sigma_radps = radians(yaml->optional<double>(
+      "yaw_rate_bias_sigma_degps", degrees(tracker.initial_yaw_rate_bias_sigma_radps), noise));
+  const auto correlation_s = between(0.0, 600.0);
+  tracker.gnss_correlation_s =
+      yaml->optional<double>("gnss_correlation_s", tracker.gnss_correlation_s, correlation_s);
+  tracker.correction_correlation_s = yaml->optional<double>(
+      "correction_correlation_s", tracker.correction_correlation_s, correlation_s);
+  tracker.gate_squared_distance = yaml->optional<double>(
+      "gate_squared_distance", tracker.gate_squared_distance, between(1.0, 1000.0));
+  return tracker;
+}
+
+HealthLimits read_health(std::optional<YamlMap> yaml) {
+  HealthLimits limits;
+  if (!yaml) return limits;
+  const auto timeout = between(10.0, 60'000.0);
+  limits.odometry_timeout =
+      optional_milliseconds(*yaml, "odometry_timeout_ms", limits.odometry_timeout, timeout);
+  limits.gnss_timeout =
+      optional_milliseconds(*yaml, "gnss_timeout_ms", limits.gnss_timeout, timeout);
+  limits.correction_timeout =
+      optional_milliseconds(*yaml, "degraded_after_ms", limits.correction_timeout, timeout);
+  limits.lost_timeout = optional_milliseconds(*yaml, "lost_after_ms", limits.lost_timeout, timeout);
+  const auto count = between(1, 1000);
+  limits.corrections_to_track =
+      yaml->optional<int>("corrections_to_track", limits.corrections_to_track, count);
+  limits.refusals_to_lose = yaml->optional<int>("refusals_to_lose", limits.refusals_to_lose, count);
+  const auto sigma_m = between(0.01, 10.0);
+  limits.longitudinal_sigma_m =
+      yaml->optional<double>("max_longitudinal_sigma_m", limits.longitudinal_sigma_m, sigma_m);
+  limits.lateral_sigma_m =
+      yaml->optional<double>("max_lateral_sigma_m", limits.lateral_sigma_m, sigma_m);
+  limits.yaw_sigma_rad = radians(yaml->optional<double>(
+      "max_yaw_sigma_deg", degrees(limits.yaw_sigma_rad), between(0.01, 45.0)));
+  if (limits.lost_timeout <= limits.correction_timeout) {
+    yaml->reject("lost_after_ms", "not more than degraded_after_ms", "more than degraded_after_ms");
+  }
+  return limits;
+}
+
+LogLevel read_log_level(std::optional<YamlMap> yaml) {
+  if (!yaml) return LogLevel::kInfo;
+  return yaml->require_choice<LogLevel>("level", {{"debug", LogLevel::kDebug},
+                                                  {"info", LogLevel::kInfo},
+                                                  {"warning", LogLevel::kWarning},
+                                                  {"error", LogLevel::kError}});
+}
+
+}  // namespace
+
+Result<Config> load_config(const std::filesystem::path& file, const SimulationReader* simulation) {
+  Result<YamlMap> yaml = YamlMap::read_file(file);
+  if (!yaml) return tl::unexpected(yaml.error());
+  const std::filesystem::path folder = file.parent_path();
+  Config config;
+  YamlMap cameras = yaml->require_map("cameras");
+  config.cameras = read_cameras(cameras, folder);
+  if (config.cameras.driver == CameraDriver::kMock && simulation == nullptr) {
+    cameras.reject(
+        "driver", "mock",
+        "v4l2, libcamera or replay, because this bevlocd was built without the simulator");
+  }
+  YamlMap calibration = yaml->require_map("calibration");
+  config.rig_file = path_of(calibration, "rig", folder);
+  config.map_file = read_map(yaml->require_map("map"), config.cameras.driver, folder, simulation);
+  YamlMap model = yaml->require_map("model");
+  config.model_file = path_of(model, "file", folder);
+  config.solver = read_solver(yaml->optional_map("solver"));
+  config.can = read_can(yaml->require_map("can"));
+  config.tracker = read_tracker(yaml->optional_map("tracker"));
+  config.health = read_health(yaml->optional_map("health"));
+  if (auto gpio = yaml->optional_map("gpio")) {
+    config.gpio = read_gpio(*gpio);
+    if (config.cameras.driver == CameraDriver::kMock) {
+      yaml->reject("gpio", "GPIO lines with mock cameras",
+                   "no section gpio, because a simulated drive has no lines");
+    }
+  }
+  config.realtime = read_realtime(yaml->optional_map("realtime"));
+  config.log_level = read_log_level(yaml->optional_map("log"));
+  if (config.cameras.driver == CameraDriver::kMock && simulation != nullptr) {
+    simulation->read_simulation(yaml->require_map("simulation"));
+  }
+  if (Status finished = yaml->finish(); !finished) return tl::unexpected(finished.error());
+  return config;
+}
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,87 @@
+// Reads the configuration file of bevlocd.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "can/messages/message.h"
+#include "common/result.h"
+#include "common/strict_yaml.h"
+#include "drivers/frameset/synchronizer.h"
+#include "firmware/config/camera_devices_config.h"
+#include "firmware/config/gpio_config.h"
+#include "firmware/config/realtime_config.h"
+#include "firmware/health/health.h"
+#include "pipeline/calibration/rig.h"
+#include "pipeline/localization/localizer.h"
+#include "pipeline/solver/solver_factory.h"
+#include "pipeline/tracker/tracker.h"
+
+namespace bevloc::firmware {
+
+enum class CameraDriver : uint8_t { kMock, kReplay, kV4l2, kLibcamera };
+enum class CanDriver : uint8_t { kMock, kSocketCan };
+enum class LogLevel : uint8_t { kDebug, kInfo, kWarning, kError };
+
+struct CameraConfig {
+  CameraDriver driver = CameraDriver::kMock;
+  int buffers = 6;  ///< per camera
+  drivers::SynchronizerConfig synchronizer;
+  bool compensate_motion = true;    ///< between the exposures of one frameset
+  double rate_hz = 10.0;            ///< mock cameras only
+  std::filesystem::path recording;  ///< replay only: contains one folder for each of kCameraNames
+  CameraDevicesConfig devices;      ///< V4L2 and libcamera only
+};
+
+struct SolverConfig {
+  SolverKind kind = LocalizerOptions().solver;
+  HypothesisGrid tracking = LocalizerOptions().tracking;
+  HypothesisGrid acquiring = LocalizerOptions().acquiring;
+};
+
+struct CanConfig {
+  CanDriver driver = CanDriver::kMock;
+  std::string interface;                                  ///< SocketCAN only
+  can::FrameFormat variant = can::FrameFormat::kClassic;  ///< format of the messages that are sent
+  can::BaseIds base_ids;
+};
+
+/// Reads the parts of a configuration that only a program with the simulator supports. Used only
+/// with `cameras.driver: mock`.
+struct SimulationReader {
+  /// Reads `procedural_seed` from the section `map`. Returns false if the section has no such key;
+  /// load_config() then reads the map file.
+  std::function<bool(YamlMap& map)> read_procedural_map;
+  /// Reads the section `simulation`.
+  std::function<void(YamlMap simulation)> read_simulation;
+};
+
+struct Config {
+  CameraConfig cameras;
+  std::filesystem::path rig_file;
+  std::filesystem::path map_file;  ///< empty for a procedural town
+  std::filesystem::path model_file;
+  SolverConfig solver;
+  CanConfig can;
+  TrackerParameters tracker;
+  HealthLimits health;
+  GpioConfig gpio;
+  RealtimeConfig realtime;
+  LogLevel log_level = LogLevel::kInfo;
+};
+
+/// Reads a configuration file; docs/configuration.md describes each key. Every key must be known,
+/// present once, of the right type and in range; otherwise the error names file, line and key.
+/// Paths in the file are relative to its folder; paths in the result can be opened as they are.
+/// Refuses mock cameras if `simulation` is null.
+Result<Config> load_config(const std::filesystem::path& file,
+                           const SimulationReader* simulation = nullptr);
+
+/// Checks that everything that the configuration names can be read or found: rig, model, map, GPIO
+/// lines, camera devices and recordings (`bevlocd --check-config`). Returns the first error.
+Status check_config(const Config& config);
+
+}  // namespace bevloc::firmware

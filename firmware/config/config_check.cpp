@@ -1,0 +1,35 @@
+// Looks up on this machine what a configuration names.
+#include "drivers/gpio/libgpiod_gpio.h"
+#include "firmware/config/config.h"
+#include "firmware/runtime/camera_factory.h"
+#include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/map/map_loader.h"
+#include "pipeline/network/network.h"
+
+namespace bevloc::firmware {
+namespace {
+
+Status check_lines(const GpioConfig& gpio) {
+  for (const drivers::LineAddress& address : lines_of(gpio)) {
+    if (Status status = drivers::LibgpiodGpio().look_for(address); !status) {
+      return fail("gpio: {}", status.error().message);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Status check_config(const Config& config) {
+  if (const auto rig = read_rig(config.rig_file); !rig) return tl::unexpected(rig.error());
+  if (const auto model = Network::load(config.model_file, {}); !model) {
+    return tl::unexpected(model.error());
+  }
+  if (!config.map_file.empty()) {
+    if (const auto map = load_map(config.map_file); !map) return tl::unexpected(map.error());
+  }
+  if (Status status = check_lines(config.gpio); !status) return status;
+  return check_cameras(config.cameras);
+}
+
+}  // namespace bevloc::firmware

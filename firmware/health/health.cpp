@@ -1,0 +1,63 @@
+#include "firmware/health/health.h"
+
+#include <utility>
+
+namespace bevloc::firmware {
+
+bool Health::update(const HealthInputs& inputs) {
+  why_ = find_reasons(inputs);
+  contradicted_ = inputs.contradicts_gnss || inputs.refused_in_a_row >= limits_.refusals_to_lose;
+  const HealthState before = std::exchange(state_, next_state(inputs));
+  return state_ != before;
+}
+
+WhyMask Health::find_reasons(const HealthInputs& inputs) const {
+  WhyMask why;
+  const auto set_if = [&why](Why reason, bool present) {
+    if (present) why |= reason;
+  };
+  set_if(Why::kCameraMissing, !inputs.cameras_present.all());
+  set_if(Why::kCamerasUnsynchronized, inputs.cameras_unsynchronized);
+  set_if(Why::kOdometryMissing, inputs.odometry_age > limits_.odometry_timeout);
+  set_if(Why::kGnssMissing, inputs.gnss_age > limits_.gnss_timeout);
+  set_if(Why::kNoInitialPose, !inputs.initialized);
+  set_if(Why::kOutsideMap, !inputs.map_nearby);
+  set_if(Why::kMatchUncertain, inputs.contradicts_gnss);
+  set_if(Why::kMatchRejected, inputs.latest_correction_refused);
+  set_if(Why::kPoseUncertain, inputs.longitudinal_sigma_m > limits_.longitudinal_sigma_m ||
+                                  inputs.lateral_sigma_m > limits_.lateral_sigma_m ||
+                                  inputs.yaw_sigma_rad > limits_.yaw_sigma_rad);
+  set_if(Why::kPoseStale, inputs.correction_age > limits_.correction_timeout);
+  set_if(Why::kOverload, inputs.overloaded);
+  set_if(Why::kInternalFault, inputs.internal_error);
+  return why;
+}
+
+bool Health::is_lost(const HealthInputs& inputs) const {
+  return contradicted_ || why_.has(Why::kPoseUncertain) || why_.has(Why::kOdometryMissing) ||
+         inputs.correction_age > limits_.lost_timeout;
+}
+
+HealthState Health::next_state(const HealthInputs& inputs) const {
+  if (inputs.internal_error) return HealthState::kFault;
+  switch (state_) {
+    case HealthState::kInit:
+      return inputs.initialized ? HealthState::kAcquiring : HealthState::kInit;
+    case HealthState::kAcquiring:
+      if (contradicted_) return HealthState::kLost;  // acquired a wrong pose: start again
+      return !is_lost(inputs) && inputs.accepted_in_a_row >= limits_.corrections_to_track
+                 ? HealthState::kTracking
+                 : HealthState::kAcquiring;
+    case HealthState::kTracking:
+    case HealthState::kDegraded:
+      if (is_lost(inputs)) return HealthState::kLost;
+      return why_ == WhyMask() ? HealthState::kTracking : HealthState::kDegraded;
+    case HealthState::kLost:
+      return HealthState::kAcquiring;
+    case HealthState::kFault:
+      return HealthState::kFault;
+  }
+  return HealthState::kFault;
+}
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,78 @@
+// The state machine that decides whether the pose is valid, and why not.
+#pragma once
+
+#include "common/cameras.h"
+#include "common/health_state.h"
+#include "common/time.h"
+
+namespace bevloc::firmware {
+
+/// Limits of the section `health` of the configuration.
+struct HealthLimits {
+  Duration odometry_timeout = std::chrono::milliseconds(200);
+  Duration gnss_timeout = std::chrono::milliseconds(1500);
+  /// Time without an accepted correction until DEGRADED.
+  Duration correction_timeout = std::chrono::milliseconds(350);
+  /// Time without an accepted correction until LOST.
+  Duration lost_timeout = std::chrono::seconds(6);
+  /// Accepted corrections in a row that change ACQUIRING to TRACKING.
+  int corrections_to_track = 10;
+  /// Refused corrections in a row that lead to LOST.
+  int refusals_to_lose = 15;
+  /// Largest sigmas of a valid pose.
+  double longitudinal_sigma_m = 0.60;
+  double lateral_sigma_m = 0.30;
+  double yaw_sigma_rad = 0.0105;
+};
+
+/// Condition of the inputs and of the pose at one moment.
+struct HealthInputs {
+  bool initialized = false;  ///< the tracker has a pose from GNSS and odometry
+  Duration odometry_age = Duration::max();
+  Duration gnss_age = Duration::max();
+  Duration correction_age = Duration::max();  ///< of the latest accepted correction
+  CameraMask cameras_present;                 ///< used in the latest frameset
+  bool cameras_unsynchronized = false;        ///< in the latest frameset (Synchrony)
+  bool map_nearby = true;                     ///< the map has elements around the prior
+  bool latest_correction_refused = false;
+  int accepted_in_a_row = 0;
+  int refused_in_a_row = 0;
+  bool contradicts_gnss = false;  ///< the pose is too far from GNSS for its noise (GnssMonitor)
+  bool overloaded = false;        ///< framesets were skipped for the latest one
+  double longitudinal_sigma_m = 0.0;
+  double lateral_sigma_m = 0.0;
+  double yaw_sigma_rad = 0.0;
+  bool internal_error = false;  ///< the pose or its covariance is not finite
+};
+
+/// Transitions: INIT -> ACQUIRING -> TRACKING <-> DEGRADED; ACQUIRING, TRACKING or DEGRADED -> LOST
+/// -> ACQUIRING; any state -> FAULT, which only a restart ends. Pure logic without a clock: the
+/// inputs contain all ages. One thread.
+class Health {
+ public:
+  explicit Health(const HealthLimits& limits) : limits_(limits) {}
+
+  /// Makes at most one transition. Returns whether the state changed.
+  bool update(const HealthInputs& inputs);
+
+  HealthState state() const { return state_; }
+  WhyMask why() const { return why_; }
+  /// Whether GNSS or a row of refused corrections contradicts the pose.
+  bool pose_contradicted() const { return contradicted_; }
+  /// Whether consumers may use the pose.
+  bool pose_valid() const {
+    return state_ == HealthState::kTracking || state_ == HealthState::kDegraded;
+  }
+
+ private:
+  WhyMask find_reasons(const HealthInputs& inputs) const;
+  HealthState next_state(const HealthInputs& inputs) const;
+  bool is_lost(const HealthInputs& inputs) const;
+
+  HealthLimits limits_;
+  HealthState state_ = HealthState::kInit;
+  WhyMask why_ = Why::kNoInitialPose;
+  bool contradicted_ = false;
+};
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,24 @@
+// Makes the six cameras of the configuration.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "drivers/camera/camera.h"
+#include "drivers/clock/clock.h"
+#include "firmware/config/config.h"
+
+namespace bevloc::firmware {
+
+/// Makes the cameras in the order of kCameraNames. A missing device is not an error here: its
+/// capture stage retries without limit. All replays are shifted by the same time, so that the
+/// recording begins one second from now. Fails when the index of a recording cannot be read, when
+/// this build lacks the driver, and for mock cameras. `clock` must outlive the cameras.
+Result<std::vector<std::unique_ptr<drivers::Camera>>> make_cameras(const CameraConfig& config,
+                                                                   const Rig& rig,
+                                                                   drivers::Clock& clock);
+
+/// Looks up every camera. The error names the first missing one and lists the devices that exist.
+Status check_cameras(const CameraConfig& config);
+
+}  // namespace bevloc::firmware

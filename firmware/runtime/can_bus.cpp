@@ -1,0 +1,26 @@
+#include "firmware/runtime/can_bus.h"
+
+#include "can/bus/socketcan_bus.h"
+#include "can/messages/pose_publisher.h"
+#include "can/messages/vehicle_input.h"
+
+namespace bevloc::firmware {
+
+can::SocketCanOptions appliance_options(const CanConfig& config) {
+  can::SocketCanOptions options;
+  options.accepted_ids = can::VehicleInput::accepted_ids(config.base_ids);
+  options.confirmed_ids = can::PosePublisher::sent_ids(config.base_ids, config.variant);
+  options.fd = config.variant == can::FrameFormat::kFd;
+  return options;
+}
+
+Result<std::unique_ptr<can::Bus>> open_can_bus(const CanConfig& config) {
+  if (config.driver == CanDriver::kMock) {
+    return fail("can.driver: found mock, which this bevlocd was built without, wanted socketcan");
+  }
+  auto bus = can::SocketCanBus::open(config.interface, appliance_options(config));
+  if (!bus) return tl::unexpected(bus.error());
+  return std::move(*bus);
+}
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,20 @@
+// Opens the CAN interface of the configuration.
+#pragma once
+
+#include <memory>
+
+#include "can/bus/bus.h"
+#include "can/bus/socketcan_link.h"
+#include "firmware/config/config.h"
+
+namespace bevloc::firmware {
+
+/// The options of the appliance's socket. The kernel's filter passes only the vehicle's messages
+/// and the confirmations of sent frames, so nothing else wakes the CAN-in thread.
+can::SocketCanOptions appliance_options(const CanConfig& config);
+
+/// Opens the appliance's socket. Fails if the interface cannot be opened, and with `can.driver:
+/// mock`.
+Result<std::unique_ptr<can::Bus>> open_can_bus(const CanConfig& config);
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,33 @@
+// What every bevlocd program shares: command line, signals, memory settings and exit codes.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "firmware/config/config.h"
+
+namespace bevloc::firmware {
+
+/// Options of every bevlocd.
+struct ProgramOptions {
+  std::string config_file;
+  bool check_config = false;
+};
+
+/// Adds the options of every bevlocd to `app`; parsing fills `options`, which must outlive it.
+void declare_options(CLI::App& app, ProgramOptions& options);
+
+/// True after SIGTERM or SIGINT. Thread-safe.
+bool stop_requested();
+
+/// Checks the configuration and everything that it names, and prints "FILE: good" if nothing is
+/// wrong (--check-config).
+Status check_and_print(const ProgramOptions& options, const Config& config);
+
+/// Parses the command line and calls `run`. Returns the exit code: 0 on success; 2 with one line on
+/// stderr if the command line or an input is wrong.
+int run_program(CLI::App& app, int argc, char** argv, const std::function<Status()>& run);
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,44 @@
+// Applies the section `realtime` of the configuration: locked memory, priorities and CPUs.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <string>
+
+#include "common/result.h"
+#include "firmware/config/realtime_config.h"
+
+namespace bevloc::firmware {
+
+enum class ThreadRole : uint8_t { kCapture, kVision, kCan };
+
+/// The appliance also runs without a setting that the kernel refuses. Each refusal is logged once
+/// as a warning that names the missing permission, and counted. Thread-safe.
+class Realtime {
+ public:
+  explicit Realtime(RealtimeConfig config) : config_(std::move(config)) {}
+
+  /// Locks the memory of the whole process, if configured. A page is locked when it is first
+  /// touched (MCL_ONFAULT), so untouched parts of libraries and stacks (8 MiB each) cost no memory.
+  void lock_memory();
+
+  /// Names the calling thread and applies the settings of its role. Threads that it starts later
+  /// inherit them.
+  void begin_thread(ThreadRole role, const std::string& name);
+
+  /// Number of refused settings. A setting counts once per role, not per thread.
+  int refusals() const;
+
+ private:
+  void note(const Status& status);
+
+  const RealtimeConfig config_;
+  mutable std::mutex mutex_;
+  std::set<std::string> refusals_;  ///< messages
+};
+
+/// Sets the calling thread's name, which `top -H` shows: at most 15 characters.
+void name_this_thread(const std::string& name);
+
+}  // namespace bevloc::firmware

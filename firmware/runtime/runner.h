@@ -1,0 +1,34 @@
+// Runs the appliance: with threads on the machine's clock, or in lockstep on a virtual clock.
+#pragma once
+
+#include <functional>
+
+#include "drivers/clock/clock.h"
+#include "firmware/runtime/appliance.h"
+#include "firmware/runtime/realtime.h"
+
+namespace bevloc::firmware {
+
+/// What runs beside the appliance in a simulated drive: the vehicle and the judge.
+struct Companion {
+  std::function<Time()> next_due;                ///< the time of the next act()
+  std::function<void(Time now)> act;             ///< the vehicle: sends what is due
+  std::function<void(Duration timeout)> listen;  ///< the judge: waits for CAN frames
+};
+
+/// Called about ten times per second in the calling thread. Returning false ends the run.
+using Supervise = std::function<bool(Time now)>;
+
+/// Starts one thread per camera, one each for vision, CAN in and CAN out, and two for the
+/// companion; the calling thread supervises. `realtime` applies to the appliance's threads only.
+/// `companion`: null without one. Returns after `supervise` has returned false, all threads have
+/// ended and the sign-off is sent.
+void run_threads(Appliance& appliance, Realtime& realtime, const Companion* companion,
+                 const Supervise& supervise);
+
+/// Runs all stages in the calling thread, one bus cycle after the other. Computing takes no virtual
+/// time. The same inputs give the same CAN frames, bit for bit. `companion`: null without one.
+void run_lockstep(Appliance& appliance, drivers::VirtualClock& clock, const Companion* companion,
+                  const Supervise& supervise);
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,70 @@
+#include "firmware/runtime/supervisor.h"
+
+#include <algorithm>
+#include <bitset>
+
+namespace bevloc::firmware {
+namespace {
+
+/// The frameset rate is averaged over this time.
+constexpr Duration kRatePeriod = std::chrono::seconds(1);
+/// A stage without progress for this long counts as stalled.
+constexpr Duration kStall = std::chrono::seconds(1);
+
+}  // namespace
+
+void Supervisor::step(Time now) {
+  const EstimationCounters& estimation = appliance_.estimation().counters();
+  view_.state = estimation.state;
+  view_.why = WhyMask::from_bits(estimation.why);
+  view_.cameras = static_cast<int>(std::bitset<kCameraCount>(estimation.cameras).count());
+  view_.bus = appliance_.bus().condition();
+  const auto& drifts = appliance_.vision().framesets().synchrony().drift_ppm;
+  std::ranges::copy(drifts, view_.drift_ppm.begin());
+  view_.frozen = CameraMask(appliance_.vision().counters().frozen);
+  view_.realtime_refusals = realtime_.refusals();
+  update_rate(now);
+
+  if (!ready_) {
+    notifier_.ready();
+    ready_ = true;
+  }
+  notifier_.status(status_text());
+  watch_stages(now);
+}
+
+std::string Supervisor::status_text() const {
+  const std::string why = to_string(view_.why);
+  std::string text =
+      fmt::format("{}{}{}, cameras {}/{}, CAN {}", to_string(view_.state), why.empty() ? "" : ": ",
+                  why, view_.cameras, kCameraCount, can::to_string(view_.bus));
+  if (view_.realtime_refusals > 0) {
+    text += fmt::format(", {} realtime settings refused", view_.realtime_refusals);
+  }
+  return text;
+}
+
+void Supervisor::watch_stages(Time now) {
+  const uint64_t ticks = appliance_.estimation().counters().ticks;
+  const uint64_t steps = appliance_.vision().counters().steps;
+  if (!last_progress_) last_progress_ = now;
+  if (ticks != last_ticks_ && steps != last_steps_) {
+    notifier_.feed_watchdog();
+    last_ticks_ = ticks;
+    last_steps_ = steps;
+    last_progress_ = now;
+  }
+  view_.stalled = now - *last_progress_ > kStall;
+}
+
+void Supervisor::update_rate(Time now) {
+  const uint64_t framesets = appliance_.vision().counters().framesets;
+  if (rate_since_ == Time::min()) rate_since_ = now;
+  if (now - rate_since_ < kRatePeriod) return;
+  view_.rate_hz =
+      static_cast<double>(framesets - framesets_at_rate_start_) / to_seconds(now - rate_since_);
+  rate_since_ = now;
+  framesets_at_rate_start_ = framesets;
+}
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,170 @@
+#include "firmware/stages/estimation_stage.h"
+
+#include <cmath>
+
+namespace bevloc::firmware {
+namespace {
+
+/// Rotates the covariance of a pose from the vehicle frame into the axes of the map.
+Eigen::Matrix3d map_covariance(const TrackedPose& pose) {
+  const double c = std::cos(pose.map_from_vehicle.yaw_rad);
+  const double s = std::sin(pose.map_from_vehicle.yaw_rad);
+  Eigen::Matrix3d map_from_vehicle;
+  map_from_vehicle << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+  return map_from_vehicle * pose.covariance * map_from_vehicle.transpose();
+}
+
+Duration age(const std::optional<Time>& time, Time now) {
+  return time ? now - *time : Duration::max();
+}
+
+}  // namespace
+
+EstimationStage::EstimationStage(const TrackerParameters& tracker, const HealthLimits& limits,
+                                 uint16_t map_id, can::PosePublisher& publisher,
+                                 VehicleQueue& samples, VisionQueue& reports,
+                                 PredictionQueue& predictions)
+    : tracker_(tracker),
+      health_(limits),
+      publisher_(publisher),
+      samples_(samples),
+      reports_(reports),
+      predictions_(predictions),
+      report_lifetime_(limits.correction_timeout),
+      map_id_(map_id) {}
+
+void EstimationStage::observe_corrections(CorrectionObserver observer) {
+  correction_observer_ = std::move(observer);
+}
+
+void EstimationStage::tick(Time now) {
+  take_samples();
+  take_reports(now);
+  const auto pose = tracker_.pose_at(now);
+  update_health(pose, now);
+  if (pose) predictions_.push({*pose, !health_.pose_valid()});
+  publish(pose, now);
+  ++counters_.ticks;
+}
+
+void EstimationStage::sign_off(Time now) {
+  can::PoseReport report;
+  report.status = make_status();
+  report.status.state = HealthState::kLost;
+  report.status.why |= Why::kPoseStale;
+  report.pose_time = now;
+  publisher_.publish(report, now);
+}
+
+void EstimationStage::take_samples() {
+  while (const auto sample = samples_.pop(Duration::zero())) {
+    if (tracker_.add(*sample) != TrackerUpdate::kAccepted) continue;
+    if (const auto* gnss = std::get_if<GnssSample>(&*sample)) watch_gnss(*gnss);
+    std::optional<Time>& latest =
+        std::holds_alternative<OdometrySample>(*sample) ? odometry_time_ : gnss_time_;
+    latest = std::visit([](const auto& taken) { return taken.time; }, *sample);
+  }
+}
+
+void EstimationStage::watch_gnss(const GnssSample& sample) {
+  if (const auto pose = tracker_.pose_at(sample.time)) gnss_monitor_.add(sample, *pose);
+}
+
+void EstimationStage::take_reports(Time now) {
+  while (const auto report = reports_.pop(Duration::zero())) {
+    latest_report_ = *report;
+    latest_report_arrival_ = now;
+    if (report->had_prior) add_correction(*report);
+  }
+  // If all cameras stop, there are no more reports that say so.
+  if (now - latest_report_arrival_ > report_lifetime_) latest_report_.reset();
+}
+
+void EstimationStage::add_correction(const VisionReport& report) {
+  const TrackerUpdate outcome =
+      tracker_.add_correction(report.frame_time, report.prior, report.match);
+  if (outcome == TrackerUpdate::kAccepted) {
+    ++counters_.accepted;
+    ++accepted_in_a_row_;
+    refused_in_a_row_ = 0;
+    accepted_frame_time_ = report.frame_time;
+    unsent_correction_ = report.frame_time;
+  } else if (outcome == TrackerUpdate::kNoEvidence) {
+    ++counters_.without_evidence;
+  } else {
+    ++counters_.refused;
+    ++refused_in_a_row_;
+    accepted_in_a_row_ = 0;
+  }
+}
+
+void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time now) {
+  HealthInputs inputs;
+  inputs.initialized = pose.has_value();
+  inputs.odometry_age = age(odometry_time_, now);
+  inputs.gnss_age = age(gnss_time_, now);
+  inputs.correction_age = age(accepted_frame_time_, now);
+  if (latest_report_) {
+    inputs.cameras_present = latest_report_->present;
+    inputs.cameras_unsynchronized = latest_report_->unsynchronized;
+    inputs.map_nearby = latest_report_->map_nearby || !latest_report_->had_prior;
+    inputs.overloaded = latest_report_->skipped;
+  }
+  inputs.latest_correction_refused = refused_in_a_row_ > 0;
+  inputs.accepted_in_a_row = accepted_in_a_row_;
+  inputs.refused_in_a_row = refused_in_a_row_;
+  inputs.contradicts_gnss = gnss_monitor_.contradicts();
+  if (pose) {
+    inputs.longitudinal_sigma_m = std::sqrt(pose->covariance(0, 0));
+    inputs.lateral_sigma_m = std::sqrt(pose->covariance(1, 1));
+    inputs.yaw_sigma_rad = std::sqrt(pose->covariance(2, 2));
+    inputs.internal_error = !pose->map_from_vehicle.is_finite() || !pose->covariance.allFinite();
+  }
+  if (health_.update(inputs) && health_.state() == HealthState::kLost) {
+    // A pose that is lost because of its large covariance need not be widened.
+    if (health_.pose_contradicted()) tracker_.widen();
+    accepted_in_a_row_ = 0;
+    refused_in_a_row_ = 0;
+    gnss_monitor_.reset();
+  }
+  counters_.state = health_.state();
+  counters_.why = health_.why().bits();
+  counters_.cameras = static_cast<unsigned>(inputs.cameras_present.to_ulong());
+}
+
+void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) {
+  can::PoseReport report;
+  report.status = make_status();
+  report.capture_time = accepted_frame_time_;
+  report.pose_time = now;
+  if (pose) {
+    report.map_from_vehicle = pose->map_from_vehicle;
+    report.covariance = map_covariance(*pose);
+    report.forward_speed_mps = pose->speed_mps;
+    report.yaw_rate_radps = pose->yaw_rate_radps;
+  }
+  if (latest_report_ && latest_report_->match.evidence == Evidence::kGood) {
+    report.correction = latest_report_->match.correction;
+  }
+  publisher_.publish(report, now);
+  if (health_.pose_valid() && unsent_correction_ && correction_observer_) {
+    correction_observer_(*unsent_correction_);
+  }
+  unsent_correction_.reset();
+}
+
+can::LocalizerStatus EstimationStage::make_status() const {
+  can::LocalizerStatus status;
+  status.state = health_.state();
+  status.why = health_.why();
+  if (latest_report_) {
+    status.camera_ok_mask = static_cast<uint8_t>(latest_report_->present.to_ulong());
+  }
+  status.odometry_ok = !status.why.has(Why::kOdometryMissing);
+  status.gnss_ok = !status.why.has(Why::kGnssMissing);
+  status.map_ok = !status.why.has(Why::kOutsideMap);
+  status.map_id = map_id_;
+  return status;
+}
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,81 @@
+// The estimation stage: fuses odometry, GNSS and corrections into the pose that goes to the bus.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "can/messages/pose_publisher.h"
+#include "firmware/health/health.h"
+#include "firmware/stages/messages.h"
+#include "pipeline/tracker/gnss_monitor.h"
+#include "pipeline/tracker/tracker.h"
+
+namespace bevloc::firmware {
+
+/// Totals since start and the current state; readable from any thread.
+struct EstimationCounters {
+  std::atomic<uint64_t> ticks{0};             ///< calls of tick(); the supervisor watches it
+  std::atomic<uint64_t> accepted{0};          ///< corrections that the tracker accepted
+  std::atomic<uint64_t> refused{0};           ///< corrections that the tracker refused
+  std::atomic<uint64_t> without_evidence{0};  ///< framesets in which the solver found no evidence
+  std::atomic<HealthState> state{HealthState::kInit};
+  std::atomic<uint16_t> why{0};      ///< bits of a WhyMask
+  std::atomic<unsigned> cameras{0};  ///< cameras used in the latest frameset, a CameraMask
+};
+
+/// Called after a valid pose was sent that contains a new correction. `frame_time` is the time of
+/// the frameset that the correction came from.
+using CorrectionObserver = std::function<void(Time frame_time)>;
+
+/// Thread-bound: called from the CAN-out thread; counters() is readable from any thread.
+class EstimationStage {
+ public:
+  /// `publisher` and the queues must outlive the stage.
+  EstimationStage(const TrackerParameters& tracker, const HealthLimits& limits, uint16_t map_id,
+                  can::PosePublisher& publisher, VehicleQueue& samples, VisionQueue& reports,
+                  PredictionQueue& predictions);
+
+  void observe_corrections(CorrectionObserver observer);
+
+  /// Takes all queued samples and reports, then publishes the pose predicted to `now`. To be called
+  /// once per bus cycle.
+  void tick(Time now);
+
+  /// Publishes the state LOST without a pose, so that consumers need not wait for a timeout. To be
+  /// called after the last tick().
+  void sign_off(Time now);
+
+  const EstimationCounters& counters() const { return counters_; }
+
+ private:
+  void take_samples();
+  void watch_gnss(const GnssSample& sample);
+  void take_reports(Time now);
+  void add_correction(const VisionReport& report);
+  void update_health(const std::optional<TrackedPose>& pose, Time now);
+  void publish(const std::optional<TrackedPose>& pose, Time now);
+  can::LocalizerStatus make_status() const;
+
+  Tracker tracker_;
+  Health health_;
+  GnssMonitor gnss_monitor_;
+  can::PosePublisher& publisher_;
+  VehicleQueue& samples_;
+  VisionQueue& reports_;
+  PredictionQueue& predictions_;
+  CorrectionObserver correction_observer_;
+
+  Duration report_lifetime_;  ///< without a newer report, the latest one expires after this
+  uint16_t map_id_;
+  std::optional<Time> odometry_time_;
+  std::optional<Time> gnss_time_;
+  std::optional<Time> accepted_frame_time_;  ///< frameset of the latest accepted correction
+  std::optional<Time> unsent_correction_;    ///< the same, until a pose was published
+  std::optional<VisionReport> latest_report_;
+  Time latest_report_arrival_;
+  int accepted_in_a_row_ = 0;
+  int refused_in_a_row_ = 0;
+  EstimationCounters counters_;
+};
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,37 @@
+#include "firmware/stages/frameset_source.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace bevloc::firmware {
+
+FramesetSource::FramesetSource(const drivers::SynchronizerConfig& config, bool compensates,
+                               const drivers::PulseLog* pulses, FrameQueue& frames)
+    : synchronizer_(config), synchrony_(synchronizer_, compensates, pulses), frames_(frames) {}
+
+void FramesetSource::take_frames(const drivers::Clock& clock, Duration timeout) {
+  // A frameset that waits for a dead camera must be emitted on time although no frame arrives.
+  if (const auto deadline = synchronizer_.deadline()) {
+    timeout = std::clamp(*deadline - clock.now(), Duration::zero(), timeout);
+  }
+  for (auto frame = frames_.pop(timeout); frame; frame = frames_.pop(Duration::zero())) {
+    synchronizer_.add(std::move(*frame), clock.now());
+  }
+}
+
+std::optional<NewestFrameset> FramesetSource::newest(Time now) {
+  auto frameset = synchronizer_.poll(now);
+  if (!frameset) return std::nullopt;
+  NewestFrameset newest;
+  while (auto newer = synchronizer_.poll(now)) {
+    newest.skipped = true;
+    ++counters_.skipped;
+    counters_.frames_skipped += frameset->present.count();
+    frameset = std::move(newer);
+  }
+  newest.unsynchronized = synchrony_.unsynchronized(*frameset, now);
+  newest.frameset = std::move(*frameset);
+  return newest;
+}
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,62 @@
+// Forms framesets from the frames of the capture stages, and emits the newest.
+#pragma once
+
+#include <atomic>
+#include <optional>
+
+#include "drivers/clock/clock.h"
+#include "drivers/frameset/synchronizer.h"
+#include "firmware/stages/messages.h"
+#include "firmware/stages/synchrony.h"
+
+namespace bevloc::firmware {
+
+/// Totals since start; readable from any thread.
+struct FramesetCounters {
+  std::atomic<uint64_t> skipped{0};         ///< framesets dropped because a newer one was ready
+  std::atomic<uint64_t> frames_skipped{0};  ///< frames in those framesets
+};
+
+/// The newest frameset that was ready.
+struct NewestFrameset {
+  drivers::Frameset frameset;
+  bool skipped = false;         ///< older framesets were skipped for this one
+  bool unsynchronized = false;  ///< the cameras do not expose together (Synchrony)
+};
+
+/// Owns the synchronizer. Thread-bound: called from the vision thread; counters() and synchrony()
+/// are readable from any thread.
+class FramesetSource {
+ public:
+  /// `compensates`: whether the matching corrects for the motion between the frames of a frameset.
+  /// `pulses`: of the trigger; null without one. `frames` and `pulses` must outlive this.
+  FramesetSource(const drivers::SynchronizerConfig& config, bool compensates,
+                 const drivers::PulseLog* pulses, FrameQueue& frames);
+  FramesetSource(const FramesetSource&) = delete;
+  FramesetSource& operator=(const FramesetSource&) = delete;
+
+  /// Waits for a frame, at most `timeout`, then takes all queued frames. Returns earlier when a
+  /// frameset has waited long enough for its missing cameras.
+  void take_frames(const drivers::Clock& clock, Duration timeout);
+
+  /// The newest frameset that is ready at `now`; nothing without one. Skips and counts older ones.
+  std::optional<NewestFrameset> newest(Time now);
+
+  /// True, at most every 200 ms, while unsynchronized cameras keep any frameset from being emitted.
+  bool unsynchronized_without_framesets(Time now) {
+    return synchrony_.unsynchronized_without_framesets(now);
+  }
+
+  const FramesetCounters& counters() const { return counters_; }
+  const SynchronyCounters& synchrony() const { return synchrony_.counters(); }
+  /// Not to be read while the vision thread runs.
+  const drivers::FramesetSynchronizer& synchronizer() const { return synchronizer_; }
+
+ private:
+  drivers::FramesetSynchronizer synchronizer_;
+  Synchrony synchrony_;
+  FrameQueue& frames_;
+  FramesetCounters counters_;
+};
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,59 @@
+// Messages between the stages, and the queues that carry them.
+#pragma once
+
+#include "common/bounded_queue.h"
+#include "common/cameras.h"
+#include "common/se2.h"
+#include "common/time.h"
+#include "common/vehicle_samples.h"
+#include "drivers/camera/frame.h"
+#include "pipeline/solver/solver_result.h"
+#include "pipeline/tracker/tracker.h"
+
+namespace bevloc::firmware {
+
+/// Vision to estimation: the result of one frameset.
+struct VisionReport {
+  Time frame_time;          ///< time of the frameset
+  CameraMask present;       ///< cameras whose image was used; without a prior: all in the frameset
+  bool skipped = false;     ///< older framesets were skipped for this one
+  bool had_prior = false;   ///< false: no pose was known at frame_time, so nothing was matched
+  bool map_nearby = false;  ///< the map has elements around the prior
+  bool unsynchronized = false;  ///< the cameras do not expose together (Synchrony)
+  Se2 prior;                    ///< T0: map_from_vehicle at frame_time
+  MatchResult match;
+};
+
+/// Estimation to vision: the predicted pose, and how far to search around it.
+struct Prediction {
+  TrackedPose pose;
+  bool acquiring = true;  ///< search the wide range (SearchRange::kAcquiring)
+};
+
+using FrameQueue = BoundedQueue<drivers::Frame>;
+using VehicleQueue = BoundedQueue<VehicleSample>;
+using PredictionQueue = BoundedQueue<Prediction>;
+using VisionQueue = BoundedQueue<VisionReport>;
+
+/// All queues between the stages of one appliance. Thread-safe.
+struct StageQueues {
+  /// Two framesets: older frames would be skipped anyway.
+  static constexpr size_t kFrames = 2 * kCameraCount;
+
+  FrameQueue frames{kFrames};
+  /// Written every bus cycle, read at every frameset, which may be a second apart.
+  PredictionQueue predictions{128};
+  /// Samples and reports are read every bus cycle; these capacities last for many cycles.
+  VehicleQueue samples{256};
+  VisionQueue reports{16};
+
+  /// Wakes every stage that waits for an entry.
+  void close() {
+    frames.close();
+    predictions.close();
+    samples.close();
+    reports.close();
+  }
+};
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,93 @@
+#include "firmware/stages/vision_stage.h"
+
+#include <cmath>
+
+namespace bevloc::firmware {
+namespace {
+
+/// Above this speed no two images of a camera are the same. Odometry of a standing vehicle stays
+/// far below.
+constexpr double kDriving_mps = 1.0;
+
+VisionReport report_without_frameset(Time now) {
+  VisionReport report;
+  report.frame_time = now;
+  report.unsynchronized = true;
+  return report;
+}
+
+}  // namespace
+
+VisionStage::VisionStage(Localizer& localizer, const VisionConfig& config, FrameQueue& frames,
+                         PredictionQueue& predictions, VisionQueue& reports)
+    : localizer_(localizer),
+      min_cameras_(config.synchronizer.min_cameras),
+      framesets_(config.synchronizer, config.compensate_motion, config.pulses, frames),
+      priors_(config.compensate_motion, predictions),
+      reports_(reports),
+      perceived_mask_([&localizer] { return localizer.perceived_mask(); }) {}
+
+bool VisionStage::step(const drivers::Clock& clock, Duration timeout) {
+  ++counters_.steps;
+  framesets_.take_frames(clock, timeout);
+  priors_.take_predictions();
+  const Time now = clock.now();
+  const auto newest = framesets_.newest(now);
+  if (newest) {
+    reports_.push(report_on(*newest));
+  } else if (framesets_.unsynchronized_without_framesets(now)) {
+    reports_.push(report_without_frameset(now));
+  }
+  return newest.has_value();
+}
+
+VisionReport VisionStage::report_on(const NewestFrameset& newest) {
+  const drivers::Frameset& frameset = newest.frameset;
+  ++counters_.framesets;
+  counters_.frames_used += frameset.present.count();
+
+  VisionReport report;
+  report.frame_time = frameset.time;
+  report.present = frameset.present;
+  report.skipped = newest.skipped;
+  report.unsynchronized = newest.unsynchronized;
+  if (const auto prior = priors_.at(frameset)) {
+    report.had_prior = true;
+    report.prior = prior->map_from_vehicle;
+    match(frameset, *prior, report);
+  } else {
+    ++counters_.no_prior;
+  }
+  return report;
+}
+
+void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
+                        VisionReport& report) {
+  const bool driving = std::abs(prior.speed_mps) > kDriving_mps;
+  CameraImages images{{}, frameset.present, prior.reference_from_exposure, driving};
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (frameset.present[camera]) images.images[camera] = frameset.frames[camera].image();
+  }
+  report.present = localizer_.localize(images, prior.map_from_vehicle, prior.range, solution_);
+  report.map_nearby = localizer_.map_nearby();
+  count_unused_images(frameset.present, report.present);
+  if (static_cast<int>(report.present.count()) < min_cameras_) {
+    ++counters_.refused;
+    return;
+  }
+  report.match = solution_;
+  if (observer_) {
+    observer_({frameset, report, solution_, prior.range, localizer_.hypotheses(prior.range),
+               localizer_.map_raster(), perceived_mask_});
+  }
+}
+
+void VisionStage::count_unused_images(CameraMask given, CameraMask used) {
+  const CameraMask unreadable = given & ~used & ~localizer_.frozen();
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (unreadable[camera]) ++counters_.unreadable[camera];
+  }
+  counters_.frozen = static_cast<unsigned>(localizer_.frozen().to_ulong());
+}
+
+}  // namespace bevloc::firmware

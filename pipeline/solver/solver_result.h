@@ -1,0 +1,45 @@
+// What a solver returns: the correction, its covariance and the distributions of the hypotheses.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/se2.h"
+
+namespace bevloc {
+
+/// Whether a result may be used.
+enum class Evidence {
+  kGood,  ///< use it
+  kNone,  ///< nothing to match: one side is empty, constant or not finite
+};
+
+/// The correction of one match, with its uncertainty.
+struct MatchResult {
+  Evidence evidence = Evidence::kNone;
+  Se2 correction;  ///< dT = T0^-1 T; zero without evidence
+  /// Covariance of the correction in T0's frame: (x m, y m, yaw rad). It includes the prior that
+  /// all hypotheses are equally likely.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  /// Per axis (x, y, yaw): the share of the hypotheses' variance that the match removed. At 0 or
+  /// less the match says nothing about the axis; near 1 it is as exact as the steps allow.
+  Eigen::Vector3d evidence_share = Eigen::Vector3d::Ones();
+};
+
+/// A MatchResult with the distributions that it was computed from. `correction` is their means,
+/// except for the literal solvers without refinement (reference/literal_matcher.h).
+struct SolverResult : MatchResult {
+  /// An alternative estimate. Per axis: the vertex of the parabola through the logarithms of the
+  /// most likely hypothesis and its two neighbours. Zero without evidence.
+  Se2 parabola;
+  /// Per axis (x, y, yaw): the second highest peak of the distribution divided by the highest.
+  /// 0: a single peak; 1: two equally likely peaks.
+  Eigen::Vector3d rival_peak = Eigen::Vector3d::Zero();
+  /// Probability of each hypothesis of the axis; each distribution sums to 1.
+  std::vector<float> x_probability;
+  std::vector<float> y_probability;
+  std::vector<float> yaw_probability;
+};
+
+}  // namespace bevloc

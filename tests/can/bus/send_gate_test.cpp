@@ -1,0 +1,67 @@
+#include "can/bus/send_gate.h"
+
+#include <array>
+
+#include <gtest/gtest.h>
+
+namespace bevloc::can {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::array<uint32_t, 2> kIds = {0x500, 0x501};
+constexpr Time kStart(std::chrono::seconds(50));
+
+TEST(SendGate, LetsOneFrameOfAnIdThroughUntilItIsConfirmed) {
+  SendGate gate(kIds);
+  EXPECT_TRUE(gate.enter(0x500, kStart));
+  EXPECT_FALSE(gate.enter(0x500, kStart + milliseconds(10)));
+  EXPECT_TRUE(gate.enter(0x501, kStart + milliseconds(10))) << "ids do not wait for each other";
+  EXPECT_EQ(gate.confirm(0x500, kStart + milliseconds(12)), Duration(milliseconds(12)));
+  EXPECT_TRUE(gate.enter(0x500, kStart + milliseconds(20)));
+}
+
+TEST(SendGate, AFrameThatTheKernelRefusedDoesNotBlock) {
+  SendGate gate(kIds);
+  EXPECT_TRUE(gate.enter(0x500, kStart));
+  gate.leave(0x500);
+  EXPECT_TRUE(gate.enter(0x500, kStart));
+}
+
+TEST(SendGate, AnUnexpectedEchoIsNotAConfirmation) {
+  SendGate gate(kIds);
+  EXPECT_FALSE(gate.confirm(0x500, kStart));
+  EXPECT_FALSE(gate.confirm(0x123, kStart));
+  EXPECT_TRUE(gate.enter(0x500, kStart));
+  EXPECT_TRUE(gate.confirm(0x500, kStart));
+  EXPECT_FALSE(gate.confirm(0x500, kStart));
+}
+
+TEST(SendGate, ALatencyIsNeverNegative) {
+  SendGate gate(kIds);
+  EXPECT_TRUE(gate.enter(0x500, kStart));
+  EXPECT_EQ(gate.confirm(0x500, kStart - milliseconds(1)), Duration::zero());
+}
+
+TEST(SendGate, ALostFrameBlocksOnlyForALimitedTime) {
+  SendGate gate(kIds);
+  EXPECT_TRUE(gate.enter(0x500, kStart));
+  EXPECT_FALSE(gate.enter(0x500, kStart + SendGate::kGiveUp - Duration(1)));
+  EXPECT_TRUE(gate.enter(0x500, kStart + SendGate::kGiveUp));
+  EXPECT_FALSE(gate.enter(0x500, kStart + SendGate::kGiveUp)) << "still one frame at a time";
+}
+
+TEST(SendGate, AResetFreesAllPlaces) {
+  SendGate gate(kIds);
+  for (const uint32_t id : kIds) EXPECT_TRUE(gate.enter(id, kStart));
+  gate.reset();
+  for (const uint32_t id : kIds) EXPECT_TRUE(gate.enter(id, kStart));
+}
+
+TEST(SendGate, IdsWithoutConfirmationAlwaysPass) {
+  SendGate gate({});
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(gate.enter(0x500, kStart));
+}
+
+}  // namespace
+}  // namespace bevloc::can

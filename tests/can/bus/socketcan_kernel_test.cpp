@@ -1,0 +1,145 @@
+// Tests of SocketCanBus on a CAN interface of the kernel. They are skipped if there is none.
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <linux/can.h>
+#include <linux/can/error.h>
+#include <net/if.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "can/bus/socketcan_bus.h"
+#include "common/kernel_time.h"
+#include "tests/can/bus/bus_under_test.h"
+
+namespace bevloc::can {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+class SocketCanKernel : public testing::Test {
+ protected:
+  void SetUp() override {
+    other_ = open({});
+    if (!other_) GTEST_SKIP() << "SocketCan: not available on this machine";
+  }
+
+  static std::unique_ptr<SocketCanBus> open(const SocketCanOptions& options) {
+    auto bus = SocketCanBus::open(kernel_interface(), options);
+    return bus ? std::move(*bus) : nullptr;
+  }
+
+  std::unique_ptr<SocketCanBus> other_;
+};
+
+/// Sends an error report to the interface, as a driver does.
+void report_error(uint32_t classes, uint8_t controller_status) {
+  const int descriptor = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW);
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = static_cast<int>(if_nametoindex(kernel_interface().c_str()));
+  ASSERT_EQ(bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+  can_frame raw{};
+  raw.can_id = CAN_ERR_FLAG | classes;
+  raw.can_dlc = CAN_ERR_DLC;
+  raw.data[1] = controller_status;
+  ASSERT_EQ(write(descriptor, &raw, sizeof(raw)), static_cast<ssize_t>(sizeof(raw)));
+  close(descriptor);
+}
+
+TEST_F(SocketCanKernel, FiltersInTheKernel) {
+  const auto reader = open({.accepted_ids = {0x401, 0x403}});
+  ASSERT_TRUE(reader);
+  for (uint32_t id = 0x400; id < 0x405; ++id) other_->send({.id = id}, Time{});
+  for (const uint32_t id : {0x401u, 0x403u}) {
+    ASSERT_TRUE(reader->wait(seconds(10)));
+    EXPECT_EQ(reader->receive()->frame.id, id);
+  }
+  EXPECT_FALSE(reader->receive());
+}
+
+TEST_F(SocketCanKernel, ConfirmsItsOwnFramesThroughTheFilter) {
+  const auto sender = open({.accepted_ids = {0x401}, .confirmed_ids = {0x510, 0x511}});
+  ASSERT_TRUE(sender);
+  for (const uint32_t id : {0x510u, 0x511u, 0x512u}) {
+    ASSERT_EQ(sender->send({.id = id}, Time{}), SendResult::kSent);
+  }
+  EXPECT_TRUE(sender->wait(seconds(10)));
+  EXPECT_FALSE(sender->receive());
+  EXPECT_EQ(sender->counters().confirmed, 2u);
+  EXPECT_LT(sender->counters().confirmation_max, seconds(10));
+}
+
+TEST_F(SocketCanKernel, HoldsAFrameBackUntilThePreviousOneIsConfirmed) {
+  const auto sender = open({.confirmed_ids = {0x510}});
+  ASSERT_TRUE(sender);
+  EXPECT_EQ(sender->send({.id = 0x510}, Time{}), SendResult::kSent);
+  EXPECT_EQ(sender->send({.id = 0x510, .length = 1}, Time{}), SendResult::kWaiting);
+  EXPECT_TRUE(sender->wait(seconds(10)));
+  EXPECT_FALSE(sender->receive());
+  EXPECT_EQ(sender->send({.id = 0x510, .length = 2}, Time{}), SendResult::kSent);
+  EXPECT_EQ(sender->counters().send_replaced, 1u);
+}
+
+TEST_F(SocketCanKernel, StampsFramesByTheKernel) {
+  const auto reader = open({});
+  ASSERT_TRUE(reader);
+  const Time before = steady_now();
+  ASSERT_EQ(other_->send({.id = 1}, Time{}), SendResult::kSent);
+  const Time after = steady_now();
+  ASSERT_TRUE(reader->wait(seconds(10)));
+  const auto received = reader->receive();
+  ASSERT_TRUE(received);
+  constexpr Duration kConversionError = milliseconds(1);  // two clocks are read one after the other
+  EXPECT_GE(received->received, before - kConversionError);
+  EXPECT_LE(received->received, after + kConversionError);
+  const BusCounters counters = reader->counters();
+  EXPECT_EQ(counters.software_stamped + counters.hardware_stamped, 1u);
+}
+
+TEST(SocketCanInterface, IsFoundAgainByItsNameAfterALoss) {
+  const std::string add = "ip link add bevloc0 type vcan && ip link set bevloc0 up";
+  if (std::system((add + " 2> /dev/null").c_str()) != 0) {
+    GTEST_SKIP() << "SocketCan: needs ip, vcan and CAP_NET_ADMIN";
+  }
+  const auto sender = SocketCanBus::open("bevloc0", {.confirmed_ids = {0x510}});
+  const auto reader = SocketCanBus::open("bevloc0");
+  ASSERT_TRUE(sender && reader);
+  ASSERT_EQ((*sender)->send({.id = 0x510}, Time{}), SendResult::kSent);
+  ASSERT_EQ(std::system("ip link del bevloc0"), 0);
+  // The appliance's receiving thread does the same: it waits, and then reads all frames.
+  while ((*sender)->wait(milliseconds(0))) (*sender)->receive();
+  while ((*reader)->wait(milliseconds(0))) (*reader)->receive();
+  EXPECT_EQ((*sender)->send({.id = 0x510}, Time{}), SendResult::kBusDown);
+  EXPECT_EQ((*sender)->send({.id = 0x510}, Time{}), SendResult::kBusDown);
+  EXPECT_EQ((*sender)->condition().state, BusState::kDown);
+
+  ASSERT_EQ(std::system(add.c_str()), 0);
+  bool heard = false;
+  for (int attempt = 0; attempt < 100 && !heard; ++attempt) {
+    (*sender)->send({.id = 0x510}, Time{});
+    heard = (*reader)->wait(milliseconds(10)) && (*reader)->receive();
+    (*sender)->receive();
+  }
+  EXPECT_TRUE(heard);
+  EXPECT_EQ((*sender)->condition().state, BusState::kActive);
+  EXPECT_GE((*sender)->counters().reopened, 1u);
+  EXPECT_EQ(std::system("ip link del bevloc0"), 0);
+}
+
+TEST_F(SocketCanKernel, ReceivesErrorReports) {
+  report_error(CAN_ERR_CRTL | CAN_ERR_ACK, CAN_ERR_CRTL_TX_PASSIVE);
+  ASSERT_TRUE(other_->wait(seconds(10)));
+  EXPECT_FALSE(other_->receive());
+  EXPECT_EQ(to_string(other_->condition()), "error-passive (no acknowledgement)");
+  report_error(CAN_ERR_RESTARTED, 0);
+  ASSERT_TRUE(other_->wait(seconds(10)));
+  EXPECT_FALSE(other_->receive());
+  EXPECT_EQ(other_->condition(), BusCondition{});
+  EXPECT_EQ(other_->counters().error_frames, 2u);
+}
+
+}  // namespace
+}  // namespace bevloc::can

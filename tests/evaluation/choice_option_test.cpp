@@ -1,0 +1,51 @@
+#include "evaluation/choice_option.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace bevloc::evaluation {
+namespace {
+
+using testing::HasSubstr;
+
+enum class Rows { kSolvers, kAll };
+
+class ChoiceOption : public testing::Test {
+ protected:
+  ChoiceOption() {
+    add_choice(app_, "--rows", rows_, {{"solvers", Rows::kSolvers}, {"all", Rows::kAll}}, "Rows");
+  }
+
+  void parse(std::vector<std::string> arguments) {
+    std::ranges::reverse(arguments);  // as CLI11 expects
+    app_.parse(arguments);
+  }
+
+  CLI::App app_;
+  Rows rows_ = Rows::kAll;
+};
+
+TEST_F(ChoiceOption, SetsTheValueOfTheName) {
+  parse({});
+  EXPECT_EQ(rows_, Rows::kAll);
+  parse({"--rows", "solvers"});
+  EXPECT_EQ(rows_, Rows::kSolvers);
+}
+
+TEST_F(ChoiceOption, HelpListsTheNamesAndTheDefault) {
+  EXPECT_THAT(app_.help(), HasSubstr("{solvers,all}=all"));
+}
+
+TEST_F(ChoiceOption, ErrorListsTheNames) {
+  try {
+    parse({"--rows", "some"});
+    FAIL() << "no error";
+  } catch (const CLI::ValidationError& error) {
+    EXPECT_STREQ(error.what(), "--rows: some not in {solvers,all}");
+  }
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation

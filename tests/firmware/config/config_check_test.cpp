@@ -1,0 +1,80 @@
+// Tests check_config(), which looks up everything that a configuration names.
+#include <algorithm>
+#include <regex>
+
+#include <gmock/gmock.h>
+
+#include "tests/firmware/config/config_fixture.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+using ConfigCheckTest = ConfigTest;
+
+TEST_F(ConfigCheckTest, NamesTheFirstMissingFile) {
+  const auto config = load(with("{procedural_seed: 7}", "{file: town.osm}"));
+  ASSERT_TRUE(config) << config.error().message;
+  const auto names = [&](const std::string& name) {
+    const Status checked = check_config(*config);
+    return !checked && checked.error().message.find((folder_ / name).string()) == 0;
+  };
+  EXPECT_TRUE(names("rig.yaml"));
+  std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
+  EXPECT_TRUE(names("sub/model.onnx"));
+  std::filesystem::create_directory(folder_ / "sub");
+  write("sub/model.onnx", "no model");
+  EXPECT_TRUE(names("sub/model.onnx"));
+  put_model("sub/model.onnx");
+  EXPECT_TRUE(names("town.osm"));
+  write("town.osm", "no map");
+  EXPECT_TRUE(names("town.osm"));
+  put_map("town.osm");
+  EXPECT_TRUE(check_config(*config));
+}
+
+TEST_F(ConfigCheckTest, ReportsABadRotationWithItsLine) {
+  const auto config = load(kSmallest);
+  ASSERT_TRUE(config) << config.error().message;
+  std::string rig = read_text(kSource / "config/rig_demo.yaml");
+  const std::regex rotation(R"(rotation_wxyz: *\[[^\]]*\])");
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(rig, match, rotation));
+  const auto line = 1 + std::count(rig.begin(), rig.begin() + match.position(), '\n');
+  rig.replace(match.position(), match.length(), "rotation_wxyz: [1, 1, 0, 0]");
+  write("rig.yaml", rig);
+  const Status checked = check_config(*config);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message,
+              StartsWith((folder_ / "rig.yaml").string() + ":" + std::to_string(line) + ": "));
+  EXPECT_THAT(checked.error().message, HasSubstr("rotation_wxyz"));
+}
+
+TEST_F(ConfigCheckTest, ReadsTheRecordings) {
+  const auto config = load(
+      "cameras: {driver: replay, recording: drive}\n"
+      "calibration: {rig: rig.yaml}\n"
+      "map: {file: town.osm}\n"
+      "model: {file: model.onnx}\n"
+      "can: {driver: mock}\n");
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_FALSE(config->simulation);
+  std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
+  put_model("model.onnx");
+  put_map("town.osm");
+  const Status checked = check_config(*config);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message,
+              StartsWith((folder_ / "drive/front_left/frames.txt").string()));
+  for (const std::string_view camera : kCameraNames) {
+    const std::filesystem::path recording = folder_ / "drive" / camera;
+    std::filesystem::create_directories(recording);
+    std::ofstream(recording / "frames.txt") << "0 1000 0.png\n";
+    std::ofstream(recording / "0.png") << "an image";
+  }
+  EXPECT_TRUE(check_config(*config));
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

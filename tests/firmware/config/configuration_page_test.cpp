@@ -1,0 +1,72 @@
+// Tests the shipped configuration, and compares docs/configuration.md with the source code.
+#include <regex>
+#include <set>
+
+#include <gmock/gmock.h>
+
+#include "pipeline/calibration/rig_yaml.h"
+#include "sim/sim_rig.h"
+#include "tests/firmware/config/config_fixture.h"
+#include "tests/support/pose_matchers.h"
+
+namespace bevloc::firmware {
+namespace {
+
+TEST(ShippedConfig, DemoLoads) {
+  const auto config = evaluation::load_drive_config(kSource / "config/demo.yaml");
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_EQ(config->rig_file, kSource / "config/rig_demo.yaml");
+  EXPECT_EQ(config->can.driver, CanDriver::kMock);
+  ASSERT_TRUE(config->simulation);
+}
+
+TEST(ShippedConfig, DemoRigIsTheSimulatedOne) {
+  const auto rig = read_rig(kSource / "config/rig_demo.yaml");
+  ASSERT_TRUE(rig) << rig.error().message;
+  const Rig nominal = sim::nominal_rig();
+  for (int i = 0; i < kCameraCount; ++i) {
+    const CameraModel& shipped = rig->cameras[i];
+    const CameraModel& simulated = nominal.cameras[i];
+    EXPECT_THAT(shipped.vehicle_from_camera,
+                test::RigidTransformNear(simulated.vehicle_from_camera, 1e-7, 1e-7));
+    EXPECT_EQ(shipped.intrinsics.width_px, simulated.intrinsics.width_px);
+    EXPECT_EQ(shipped.intrinsics.height_px, simulated.intrinsics.height_px);
+    EXPECT_NEAR(shipped.intrinsics.fx_px, simulated.intrinsics.fx_px, 1e-6);
+    EXPECT_NEAR(shipped.intrinsics.cx_px, simulated.intrinsics.cx_px, 1e-6);
+    EXPECT_NEAR(shipped.intrinsics.cy_px, simulated.intrinsics.cy_px, 1e-6);
+    EXPECT_NEAR(shipped.intrinsics.k1, simulated.intrinsics.k1, 1e-9);
+  }
+}
+
+/// All words that the first group of `pattern` captures in a text.
+std::set<std::string> captured(const std::string& text, const std::string& pattern) {
+  const std::regex regex(pattern);
+  std::set<std::string> words;
+  for (std::sregex_iterator match(text.begin(), text.end(), regex), end; match != end; ++match) {
+    words.insert((*match)[1].str());
+  }
+  return words;
+}
+
+/// The keys that the source code reads. A key is an argument of a reading function, so a word after
+/// a parenthesis or a comma. The arguments of reject() after the key are words of a message.
+std::set<std::string> keys_in_source() {
+  std::string source = read_text(kSource / "evaluation/drive/drive_config.cpp");
+  for (const auto& file : std::filesystem::directory_iterator(kSource / "firmware/config")) {
+    if (file.path().extension() == ".cpp") source += read_text(file.path());
+  }
+  const std::regex rejection(R"re(\breject\([^;]*;)re");
+  return captured(std::regex_replace(source, rejection, ""), R"re([(,]\s*"([a-z][a-z0-9_]*)")re");
+}
+
+TEST(ConfigurationPage, DescribesEveryKeyAndNoOther) {
+  const std::string page = read_text(kSource / "docs/configuration.md");
+  std::set<std::string> described = captured(page, R"(\n\| `(\w+)` \|)");
+  described.merge(captured(page, R"(\n## `(\w+)`)"));
+  const std::set<std::string> keys = keys_in_source();
+  EXPECT_GT(keys.size(), 50U);
+  EXPECT_EQ(described, keys);
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

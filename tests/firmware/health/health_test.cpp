@@ -1,0 +1,199 @@
+#include "firmware/health/health.h"
+
+#include <gtest/gtest.h>
+
+namespace bevloc::firmware {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// All inputs are present and corrections are accepted.
+HealthInputs healthy() {
+  HealthInputs inputs;
+  inputs.initialized = true;
+  inputs.odometry_age = milliseconds(20);
+  inputs.gnss_age = milliseconds(100);
+  inputs.correction_age = milliseconds(100);
+  inputs.cameras_present.set();
+  inputs.accepted_in_a_row = 100;
+  inputs.longitudinal_sigma_m = 0.1;
+  inputs.lateral_sigma_m = 0.05;
+  inputs.yaw_sigma_rad = 0.002;
+  return inputs;
+}
+
+Health tracking() {
+  Health health{HealthLimits()};
+  health.update(healthy());
+  health.update(healthy());
+  EXPECT_EQ(health.state(), HealthState::kTracking);
+  return health;
+}
+
+TEST(HealthTest, CamerasOutOfStepDegrade) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.cameras_unsynchronized = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+  EXPECT_EQ(health.why(), WhyMask(Why::kCamerasUnsynchronized));
+}
+
+TEST(HealthTest, StaysInInitWithoutAFirstPose) {
+  Health health{HealthLimits()};
+  EXPECT_FALSE(health.update(HealthInputs()));
+  EXPECT_EQ(health.state(), HealthState::kInit);
+  EXPECT_TRUE(health.why().has(Why::kNoInitialPose));
+  EXPECT_FALSE(health.pose_valid());
+}
+
+TEST(HealthTest, AcquiresUntilEnoughCorrectionsWereAccepted) {
+  Health health{HealthLimits()};
+  HealthInputs inputs = healthy();
+  inputs.accepted_in_a_row = HealthLimits().corrections_to_track - 1;
+  health.update(inputs);
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kAcquiring);
+  EXPECT_FALSE(health.pose_valid());
+  ++inputs.accepted_in_a_row;
+  EXPECT_TRUE(health.update(inputs));
+  EXPECT_EQ(health.state(), HealthState::kTracking);
+  EXPECT_TRUE(health.pose_valid());
+}
+
+TEST(HealthTest, AnUncertainPoseIsNeverTracked) {
+  Health health{HealthLimits()};
+  HealthInputs inputs = healthy();
+  inputs.lateral_sigma_m = HealthLimits().lateral_sigma_m + 0.01;
+  for (int i = 0; i < 5; ++i) health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kAcquiring);
+  EXPECT_TRUE(health.why().has(Why::kPoseUncertain));
+}
+
+TEST(HealthTest, AMissingCameraDegradesUntilItReturns) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.cameras_present.reset(2);
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+  EXPECT_TRUE(health.pose_valid());
+  EXPECT_EQ(health.why(), WhyMask(Why::kCameraMissing));
+  health.update(healthy());
+  EXPECT_EQ(health.state(), HealthState::kTracking);
+}
+
+TEST(HealthTest, MissingCorrectionsDegradeAndThenLose) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.correction_age = HealthLimits().correction_timeout + milliseconds(1);
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+  EXPECT_TRUE(health.why().has(Why::kPoseStale));
+  inputs.correction_age = HealthLimits().lost_timeout + milliseconds(1);
+  EXPECT_TRUE(health.update(inputs));
+  EXPECT_EQ(health.state(), HealthState::kLost);
+  EXPECT_FALSE(health.pose_valid());
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kAcquiring);
+}
+
+TEST(HealthTest, RefusedCorrectionsInARowLose) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.latest_correction_refused = true;
+  inputs.accepted_in_a_row = 0;
+  inputs.refused_in_a_row = HealthLimits().refusals_to_lose - 1;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+  EXPECT_TRUE(health.why().has(Why::kMatchRejected));
+  ++inputs.refused_in_a_row;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kLost);
+}
+
+TEST(HealthTest, AcquiringStartsAgainWhenItsPoseIsContradicted) {
+  for (const bool by_gnss : {false, true}) {
+    Health health{HealthLimits()};
+    HealthInputs inputs = healthy();
+    inputs.accepted_in_a_row = 0;
+    inputs.refused_in_a_row = HealthLimits().refusals_to_lose - 1;
+    health.update(inputs);
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kAcquiring);
+    EXPECT_FALSE(health.pose_contradicted());
+    (by_gnss ? inputs.contradicts_gnss = true : ++inputs.refused_in_a_row);
+    EXPECT_TRUE(health.update(inputs));
+    EXPECT_EQ(health.state(), HealthState::kLost);
+    EXPECT_TRUE(health.pose_contradicted());
+    health.update(healthy());
+    EXPECT_EQ(health.state(), HealthState::kAcquiring);
+    EXPECT_FALSE(health.pose_contradicted());
+  }
+}
+
+TEST(HealthTest, AnUncertainPoseIsLostAndNotContradicted) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.longitudinal_sigma_m = HealthLimits().longitudinal_sigma_m + 0.01;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kLost);
+  EXPECT_FALSE(health.pose_contradicted());
+}
+
+TEST(HealthTest, APoseThatContradictsGnssIsLost) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.contradicts_gnss = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kLost);
+  EXPECT_TRUE(health.why().has(Why::kMatchUncertain));
+}
+
+TEST(HealthTest, WithoutOdometryThePoseIsLost) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.odometry_age = seconds(1);
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kLost);
+  EXPECT_TRUE(health.why().has(Why::kOdometryMissing));
+}
+
+TEST(HealthTest, MissingGnssOnlyDegrades) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.gnss_age = seconds(60);
+  for (int i = 0; i < 10; ++i) health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+  EXPECT_TRUE(health.why().has(Why::kGnssMissing));
+}
+
+TEST(HealthTest, OverloadDegrades) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.overloaded = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+  EXPECT_EQ(health.why(), WhyMask(Why::kOverload));
+  health.update(healthy());
+  EXPECT_EQ(health.state(), HealthState::kTracking);
+}
+
+TEST(HealthTest, AnInternalErrorIsAPermanentFault) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.internal_error = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kFault);
+  health.update(healthy());
+  EXPECT_EQ(health.state(), HealthState::kFault);
+  EXPECT_FALSE(health.pose_valid());
+}
+
+TEST(HealthTest, NamesTheReasonsInWords) {
+  EXPECT_EQ(to_string(Why::kCameraMissing | Why::kPoseStale), "camera missing, pose stale");
+  EXPECT_EQ(to_string(WhyMask()), "");
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

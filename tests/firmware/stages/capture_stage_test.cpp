@@ -1,0 +1,93 @@
+#include "firmware/stages/capture_stage.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/firmware/log_capture.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// A camera whose failures the test sets.
+class BrokenCamera final : public drivers::Camera {
+ public:
+  Status start() override {
+    ++starts;
+    if (!start_error.empty()) return fail("{}", start_error);
+    return {};
+  }
+  void stop() override {}
+  Result<drivers::FrameEvent> next_frame(Duration, drivers::Frame&) override {
+    if (is_unplugged) return fail("camera front: c1: is unplugged");
+    return drivers::FrameEvent::kFrame;
+  }
+  drivers::CameraDescription description() const override { return {.camera = 1}; }
+  drivers::CameraCounters counters() const override { return {}; }
+
+  std::string start_error;
+  bool is_unplugged = false;
+  int starts = 0;
+};
+
+class CaptureStageTest : public testing::Test {
+ protected:
+  /// Runs the stage every 100 ms.
+  void run(Duration duration) {
+    for (const Time end = clock_.now() + duration; clock_.now() < end;
+         clock_.advance(milliseconds(100))) {
+      EXPECT_TRUE(stage_.step(Duration::zero()));
+    }
+  }
+
+  LogCapture log_;
+  BrokenCamera camera_;
+  drivers::VirtualClock clock_{Time(milliseconds(1000))};
+  FrameQueue frames_{4};
+  CaptureStage stage_{camera_, clock_, frames_};
+};
+
+TEST_F(CaptureStageTest, LogsAFailedStartOnceAndTriesAgain) {
+  camera_.start_error = "camera front: c1: offers 1280x720 NV12; wanted nv12 640x360";
+  run(milliseconds(3000));
+  EXPECT_EQ(camera_.starts, 6);
+  EXPECT_EQ(stage_.failures(), 6U);
+  EXPECT_EQ(log_.text(),
+            "warning: camera front: cannot start: c1: offers 1280x720 NV12; wanted nv12 640x360; "
+            "trying again every 0.5 s\n");
+}
+
+TEST_F(CaptureStageTest, LogsAFailedStartAgainWhenTheReasonChanges) {
+  camera_.start_error = "no such device";
+  run(milliseconds(1000));
+  camera_.start_error = "camera front: c1: another program uses it";
+  run(milliseconds(1000));
+  EXPECT_EQ(log_.text(),
+            "warning: camera front: cannot start: no such device; trying again every 0.5 s\n"
+            "warning: camera front: cannot start: c1: another program uses it; trying again every "
+            "0.5 s\n");
+}
+
+TEST_F(CaptureStageTest, LogsTheSameReasonAgainAfterAFrame) {
+  camera_.start_error = "no such device";
+  run(milliseconds(1000));
+  const std::string once = log_.text();
+  camera_.start_error.clear();
+  run(milliseconds(1000));
+  EXPECT_GT(stage_.captured(), 0U);
+  EXPECT_EQ(log_.text(), once);
+  camera_.start_error = "no such device";
+  camera_.is_unplugged = true;
+  run(milliseconds(1000));
+  EXPECT_EQ(log_.text(), once + once);
+}
+
+TEST_F(CaptureStageTest, LogsNothingWhileTheCameraWorks) {
+  run(milliseconds(1000));
+  EXPECT_EQ(stage_.captured(), 10U);
+  EXPECT_EQ(stage_.failures(), 0U);
+  EXPECT_EQ(log_.text(), "");
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

@@ -1,0 +1,195 @@
+#include "firmware/stages/estimation_stage.h"
+
+#include <gtest/gtest.h>
+
+#include "can/bus/mock_bus.h"
+#include "evaluation/drive/pose_reader.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr can::GeodeticPosition kOrigin{49.0, 8.4};
+constexpr double kSpeed_mps = 10.0;
+
+/// A vehicle that drives east at constant speed. GNSS is one metre too far north. The vision
+/// reports contain the truth, or an error that the test sets.
+class EstimationStageTest : public testing::Test {
+ protected:
+  Se2 truth_at(Time time) const { return {kSpeed_mps * to_seconds(time.time_since_epoch()), 0, 0}; }
+
+  void run(Duration duration) {
+    for (const Time end = now_ + duration; now_ < end; now_ += milliseconds(10)) {
+      if (now_.time_since_epoch() % milliseconds(20) == Duration::zero() && odometry_) {
+        samples_.push(OdometrySample{now_, kSpeed_mps, 0.0});
+      }
+      if (now_.time_since_epoch() % milliseconds(100) == Duration::zero()) {
+        const Se2 truth = truth_at(now_);
+        samples_.push(
+            GnssSample{now_, truth.x_m, truth.y_m + 1.0, 1.0, 1.0, GnssSample::Yaw{0.0, 0.02}});
+        if (vision_) push_report(now_ - milliseconds(40));
+      }
+      stage_.tick(now_);
+      while (const auto received = listener_->receive()) {
+        if (const auto pose = reader_.accept(*received)) latest_ = pose;
+      }
+    }
+  }
+
+  void push_report(Time frame_time) {
+    VisionReport report;
+    report.frame_time = frame_time;
+    report.present.set();
+    report.skipped = skipped_;
+    report.had_prior = true;
+    report.map_nearby = true;
+    report.prior = truth_at(frame_time) * Se2{0.5, 0.4, 0.01};
+    report.match.evidence = Evidence::kGood;
+    report.match.correction =
+        correction_between(report.prior, truth_at(frame_time)) * vision_error_;
+    report.match.covariance = Eigen::Vector3d(0.01, 0.0025, 1e-5).asDiagonal().toDenseMatrix();
+    reports_.push(report);
+  }
+
+  can::MockWire wire_;
+  std::unique_ptr<can::Bus> bus_ = wire_.connect();
+  std::unique_ptr<can::Bus> listener_ = wire_.connect();
+  can::PosePublisher publisher_{*bus_, {{}, kOrigin, {}}};
+  VehicleQueue samples_{256};
+  VisionQueue reports_{16};
+  PredictionQueue predictions_{128};
+  EstimationStage stage_{TrackerParameters(), HealthLimits(), 7, publisher_, samples_, reports_,
+                         predictions_};
+  evaluation::PoseReader reader_{{}, kOrigin};
+  Time now_{milliseconds(1000)};
+  Se2 vision_error_;
+  bool odometry_ = true;
+  bool vision_ = true;
+  bool skipped_ = false;
+  std::optional<evaluation::BusPose> latest_;
+};
+
+TEST_F(EstimationStageTest, CorrectsTheGnssOffsetAndSendsTheTruth) {
+  run(milliseconds(5000));
+  EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
+  ASSERT_TRUE(latest_);
+  const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
+  EXPECT_NEAR(error.x_m, 0.0, 0.05);
+  EXPECT_NEAR(error.y_m, 0.0, 0.05);
+}
+
+TEST_F(EstimationStageTest, SendsNoPoseBeforeVisionConfirmsIt) {
+  vision_ = false;
+  run(milliseconds(5000));
+  EXPECT_EQ(stage_.counters().state, HealthState::kAcquiring);
+  EXPECT_FALSE(latest_);
+}
+
+TEST_F(EstimationStageTest, PredictsForVisionAndRequestsAWideSearchUntilTracking) {
+  vision_ = false;
+  run(milliseconds(1000));
+  std::optional<Prediction> prediction;
+  while (auto next = predictions_.pop(Duration::zero())) prediction = next;
+  ASSERT_TRUE(prediction);
+  EXPECT_TRUE(prediction->acquiring);
+  vision_ = true;
+  run(milliseconds(5000));
+  while (auto next = predictions_.pop(Duration::zero())) prediction = next;
+  EXPECT_FALSE(prediction->acquiring);
+}
+
+TEST_F(EstimationStageTest, RefusesAMatchThatContradictsOdometry) {
+  run(milliseconds(5000));
+  vision_error_ = {3.0, 2.0, 0.1};
+  run(milliseconds(500));
+  EXPECT_GT(stage_.counters().refused, 0U);
+  EXPECT_EQ(stage_.counters().state, HealthState::kDegraded);
+  const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
+  EXPECT_NEAR(error.x_m, 0.0, 0.1);
+  EXPECT_NEAR(error.y_m, 0.0, 0.1);
+}
+
+TEST_F(EstimationStageTest, RecoversFromAWrongMatchWhileAcquiring) {
+  vision_error_ = {1.5, 1.2, 0.03};
+  run(milliseconds(700));  // long enough to be accepted, too short for TRACKING
+  ASSERT_GT(stage_.counters().accepted, 0U);
+  ASSERT_EQ(stage_.counters().state, HealthState::kAcquiring);
+  vision_error_ = {};
+  run(milliseconds(4000));
+  EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
+  const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
+  EXPECT_NEAR(error.x_m, 0.0, 0.1);
+  EXPECT_NEAR(error.y_m, 0.0, 0.1);
+}
+
+TEST_F(EstimationStageTest, ReportsThatVisionSkipsFramesets) {
+  run(milliseconds(5000));
+  EXPECT_EQ(stage_.counters().why, 0);
+  skipped_ = true;
+  run(milliseconds(200));
+  EXPECT_EQ(stage_.counters().why, WhyMask(Why::kOverload).bits());
+  skipped_ = false;
+  run(milliseconds(200));
+  EXPECT_EQ(stage_.counters().why, 0);
+}
+
+TEST_F(EstimationStageTest, ReportsAllCamerasMissingWithoutFramesets) {
+  run(milliseconds(5000));
+  EXPECT_EQ(stage_.counters().cameras, 0b111111U);
+  vision_ = false;
+  run(milliseconds(500));
+  EXPECT_EQ(stage_.counters().cameras, 0U);
+  EXPECT_EQ(stage_.counters().state, HealthState::kDegraded);
+  EXPECT_EQ(stage_.counters().why, (Why::kCameraMissing | Why::kPoseStale).bits());
+  vision_ = true;
+  run(milliseconds(500));
+  EXPECT_EQ(stage_.counters().cameras, 0b111111U);
+  EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
+}
+
+TEST_F(EstimationStageTest, StopsSendingPosesWithoutOdometry) {
+  run(milliseconds(5000));
+  odometry_ = false;
+  run(milliseconds(1000));
+  EXPECT_NE(stage_.counters().state, HealthState::kTracking);
+  latest_.reset();
+  run(milliseconds(500));
+  EXPECT_FALSE(latest_);
+}
+
+TEST_F(EstimationStageTest, NanFromVisionChangesNothing) {
+  run(milliseconds(5000));
+  vision_error_ = {std::nan(""), 0.0, 0.0};
+  run(milliseconds(1000));
+  const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
+  EXPECT_NEAR(error.x_m, 0.0, 0.2);
+  EXPECT_TRUE(latest_->map_from_vehicle.is_finite());
+}
+
+TEST_F(EstimationStageTest, SignsOffWithoutAPose) {
+  run(milliseconds(5000));
+  ASSERT_EQ(stage_.counters().state, HealthState::kTracking);
+  stage_.sign_off(now_);
+  std::optional<can::ReceivedFrame> status;
+  std::optional<evaluation::BusPose> pose;
+  while (const auto received = listener_->receive()) {
+    if (received->frame.id == can::BaseIds().localizer) status = received;
+    if (const auto accepted = reader_.accept(*received)) pose = accepted;
+  }
+  EXPECT_FALSE(pose) << "the last epoch must not contain a pose";
+  ASSERT_TRUE(status);
+  // LOC_Status.State is the low nibble of byte 2.
+  EXPECT_EQ(status->frame.data[2] & 0x0FU, static_cast<unsigned>(HealthState::kLost));
+}
+
+TEST_F(EstimationStageTest, CallsTheObserverOncePerCorrectionThatWasSent) {
+  std::vector<Time> sent;
+  stage_.observe_corrections([&sent](Time frame_time) { sent.push_back(frame_time); });
+  run(milliseconds(5000));
+  ASSERT_FALSE(sent.empty());
+  for (size_t i = 1; i < sent.size(); ++i) EXPECT_GT(sent[i], sent[i - 1]);
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

@@ -1,0 +1,273 @@
+#include "firmware/stages/vision_stage.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/sim_rig.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Lends images of the test, which need not be given back.
+class Lender final : public drivers::FrameLender {
+  void give_back(int) noexcept override {}
+};
+
+/// Frames without images. Without a prior the stage does not read them.
+class VisionStageTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto localizer = Localizer::create(sim::nominal_rig(), map_index_,
+                                       std::string(BEVLOC_SOURCE_DIR) + "/models/nano.onnx", {});
+    ASSERT_TRUE(localizer) << localizer.error().message;
+    localizer_ = std::move(*localizer);
+    stage_.emplace(*localizer_, VisionConfig{}, frames_, predictions_, reports_);
+  }
+
+  /// One frame of each camera at equal intervals; `spread` is from the first to the last.
+  void push_frameset(Time time, Duration spread = Duration::zero()) {
+    for (int camera = 0; camera < kCameraCount; ++camera) {
+      drivers::Frame frame;
+      frame.camera = camera;
+      frame.time = time + camera * spread / (kCameraCount - 1);
+      frames_.push(std::move(frame));
+    }
+  }
+
+  std::optional<VisionReport> step() {
+    stage_->step(clock_, Duration::zero());
+    return reports_.pop(Duration::zero());
+  }
+
+  const HdMap map_;
+  MapIndex map_index_{map_};
+  std::unique_ptr<Localizer> localizer_;
+  FrameQueue frames_{StageQueues::kFrames};
+  PredictionQueue predictions_{16};
+  VisionQueue reports_{16};
+  drivers::VirtualClock clock_{Time(milliseconds(1000))};
+  std::optional<VisionStage> stage_;
+};
+
+TEST_F(VisionStageTest, ReportsTheNewestFramesetAndThatOneWasSkipped) {
+  push_frameset(Time(milliseconds(800)));
+  push_frameset(Time(milliseconds(900)));
+  const auto report = step();
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->frame_time, Time(milliseconds(900)));
+  EXPECT_TRUE(report->skipped);
+  EXPECT_EQ(stage_->counters().framesets, 1U);
+  EXPECT_EQ(stage_->counters().frames_used, uint64_t{kCameraCount});
+  EXPECT_FALSE(step());
+}
+
+TEST_F(VisionStageTest, ReportsUnsynchronizedCameras) {
+  VisionConfig config;
+  config.synchronizer.tolerance = milliseconds(50);
+  config.compensate_motion = false;
+  stage_.emplace(*localizer_, config, frames_, predictions_, reports_);
+  push_frameset(Time(milliseconds(900)), milliseconds(40));
+  const auto report = step();
+  ASSERT_TRUE(report);
+  EXPECT_TRUE(report->unsynchronized);
+}
+
+TEST_F(VisionStageTest, ReportsUnsynchronizedCamerasWithoutAnyFrameset) {
+  VisionConfig config;
+  config.synchronizer.min_cameras = 4;
+  stage_.emplace(*localizer_, config, frames_, predictions_, reports_);
+  int reports = 0;
+  for (int k = 0; k < 20; ++k) {
+    for (int camera = 0; camera < kCameraCount; ++camera) {
+      drivers::Frame frame;
+      frame.camera = camera;
+      frame.time = clock_.now() + milliseconds(camera < 3 ? 0 : 40);
+      frames_.push(std::move(frame));
+    }
+    clock_.advance(milliseconds(100));
+    while (const auto report = step()) {
+      EXPECT_TRUE(report->unsynchronized);
+      EXPECT_TRUE(report->present.none());
+      EXPECT_EQ(report->frame_time, clock_.now());
+      ++reports;
+    }
+  }
+  EXPECT_GE(reports, 5);
+  EXPECT_LE(reports, 10);
+}
+
+TEST_F(VisionStageTest, MatchesNothingWithoutAPrediction) {
+  push_frameset(Time(milliseconds(900)));
+  const auto report = step();
+  ASSERT_TRUE(report);
+  EXPECT_TRUE(report->present.all());
+  EXPECT_FALSE(report->had_prior);
+  EXPECT_EQ(report->match.evidence, Evidence::kNone);
+  EXPECT_EQ(stage_->counters().no_prior, 1U);
+}
+
+/// Frames with images. One image may be damaged: a JPEG with nothing valid between its two markers.
+class VisionStageImageTest : public VisionStageTest {
+ protected:
+  static constexpr int kDamagedCamera = 4;
+
+  void SetUp() override {
+    VisionStageTest::SetUp();
+    const Intrinsics lens = sim::nominal_rig().cameras[0].intrinsics;
+    rgb_.resize(3 * static_cast<size_t>(lens.width_px) * static_cast<size_t>(lens.height_px));
+    for (size_t i = 0; i < rgb_.size(); ++i) rgb_[i] = static_cast<uint8_t>(i / 1000);
+    image_ = RgbView{rgb_.data(), lens.width_px, lens.height_px, 3 * lens.width_px};
+    damaged_ = image_;
+    damaged_.format = PixelFormat::kMjpeg;
+    damaged_.planes[0] = {jpeg_.data(), 0};
+    damaged_.bytes_used = jpeg_.size();
+    Prediction prediction;
+    prediction.pose.time = Time(milliseconds(850));
+    predictions_.push(prediction);
+  }
+
+  void push_images(Time time, bool with_damaged) {
+    for (int camera = 0; camera < kCameraCount; ++camera) {
+      if (camera == kDamagedCamera && !with_damaged) continue;
+      drivers::Frame frame;
+      frame.camera = camera;
+      frame.time = time;
+      frame.buffer = {lender_, 0, camera == kDamagedCamera ? damaged_ : image_};
+      frames_.push(std::move(frame));
+    }
+  }
+
+  const std::shared_ptr<Lender> lender_ = std::make_shared<Lender>();
+  std::vector<uint8_t> rgb_;
+  const std::vector<uint8_t> jpeg_{0xFF, 0xD8, 1, 2, 3, 4, 0xFF, 0xD9};
+  ImageView image_;
+  ImageView damaged_;
+};
+
+TEST_F(VisionStageImageTest, ACameraWithADamagedImageIsMissingFromThatFramesetOnly) {
+  std::vector<std::vector<float>> masks;
+  stage_->observe([&](const VisionSnapshot& snapshot) {
+    const auto mask = snapshot.perceived_mask();
+    masks.emplace_back(mask.begin(), mask.end());
+  });
+  for (const bool with_damaged : {true, false}) {
+    push_images(Time(milliseconds(with_damaged ? 900 : 910)), with_damaged);
+    const auto report = step();
+    ASSERT_TRUE(report);
+    EXPECT_TRUE(report->had_prior);
+    EXPECT_EQ(report->present, CameraMask().set().reset(kDamagedCamera));
+  }
+  ASSERT_EQ(masks.size(), 2U);
+  EXPECT_EQ(masks[0], masks[1]);
+  EXPECT_EQ(stage_->counters().refused, 0U);
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    EXPECT_EQ(stage_->counters().unreadable[camera], camera == kDamagedCamera ? 1U : 0U);
+  }
+}
+
+TEST_F(VisionStageImageTest, AFramesetWithTooFewReadableImagesIsNotMatched) {
+  VisionConfig config;
+  config.synchronizer.min_cameras = kCameraCount;
+  stage_.emplace(*localizer_, config, frames_, predictions_, reports_);
+  bool observed = false;
+  stage_->observe([&](const VisionSnapshot&) { observed = true; });
+  push_images(Time(milliseconds(900)), true);
+  const auto report = step();
+  ASSERT_TRUE(report);
+  EXPECT_TRUE(report->had_prior);
+  EXPECT_EQ(report->match.evidence, Evidence::kNone);
+  EXPECT_FALSE(observed);
+  EXPECT_EQ(stage_->counters().refused, 1U);
+  EXPECT_EQ(stage_->counters().unreadable[kDamagedCamera], 1U);
+}
+
+/// A drive at ten framesets per second in which one camera may repeat its image.
+class VisionStageFrozenTest : public VisionStageImageTest {
+ protected:
+  static constexpr int kFrozenCamera = 2;
+  static constexpr int kBroken = FrozenCameraDetector::kRepetitions;
+
+  void SetUp() override {
+    VisionStageImageTest::SetUp();
+    stuck_rgb_ = rgb_;
+    stuck_ = image_;
+    stuck_.planes[0].data = stuck_rgb_.data();
+  }
+
+  /// Runs one frameset. Returns the cameras whose images were used.
+  CameraMask drive_on(double speed_mps, bool frozen) {
+    time_ += milliseconds(100);
+    Prediction prediction;
+    prediction.pose.time = time_;
+    prediction.pose.speed_mps = speed_mps;
+    predictions_.push(prediction);
+    for (uint8_t& sample : rgb_) ++sample;
+    for (int camera = 0; camera < kCameraCount; ++camera) {
+      drivers::Frame frame;
+      frame.camera = camera;
+      frame.time = time_;
+      frame.buffer = {lender_, 0, camera == kFrozenCamera && frozen ? stuck_ : image_};
+      frames_.push(std::move(frame));
+    }
+    clock_.sleep_until(time_);
+    const auto report = step();
+    return report && report->had_prior ? report->present : CameraMask();
+  }
+
+  void expect_all_used(double speed_mps, bool frozen, int framesets) {
+    for (int i = 0; i < framesets; ++i) EXPECT_TRUE(drive_on(speed_mps, frozen).all()) << i;
+  }
+
+  Time time_{milliseconds(1000)};
+  std::vector<uint8_t> stuck_rgb_;
+  ImageView stuck_;
+  const CameraMask others_ = CameraMask().set().reset(kFrozenCamera);
+};
+
+TEST_F(VisionStageFrozenTest, DoesNotUseACameraThatRepeatsItsImageWhileTheVehicleDrives) {
+  expect_all_used(-5.0, true, kBroken);
+  EXPECT_EQ(stage_->counters().frozen, 0U);
+  std::vector<std::vector<float>> masks;
+  stage_->observe([&](const VisionSnapshot& snapshot) {
+    const auto mask = snapshot.perceived_mask();
+    masks.emplace_back(mask.begin(), mask.end());
+  });
+  EXPECT_EQ(drive_on(-5.0, true), others_);
+  EXPECT_EQ(stage_->counters().frozen, 1U << kFrozenCamera);
+  EXPECT_EQ(stage_->counters().unreadable[kFrozenCamera], 0U);
+  // Its image must have no influence: matching without the camera gives the same mask.
+  CameraImages seen{{}, others_};
+  seen.images.fill(image_);
+  SolverResult solution;
+  localizer_->localize(seen, Se2{}, SearchRange::kTracking, solution);
+  const auto without = localizer_->perceived_mask();
+  ASSERT_EQ(masks.size(), 1U);
+  EXPECT_TRUE(std::ranges::equal(masks[0], without));
+}
+
+TEST_F(VisionStageFrozenTest, UsesTheCameraAgainAsSoonAsItsImageChanges) {
+  expect_all_used(5.0, true, kBroken);
+  EXPECT_EQ(drive_on(5.0, true), others_);
+  EXPECT_TRUE(drive_on(5.0, false).all());
+  EXPECT_EQ(stage_->counters().frozen, 0U);
+  expect_all_used(5.0, true, kBroken);
+  EXPECT_EQ(drive_on(5.0, true), others_);
+}
+
+TEST_F(VisionStageFrozenTest, OneChangedPixelIsAChange) {
+  expect_all_used(5.0, true, kBroken);
+  const size_t middle = stuck_rgb_.size() / 2 + static_cast<size_t>(stuck_.width) * 3 / 2;
+  for (int i = 0; i < 3; ++i) {
+    stuck_rgb_[middle] = static_cast<uint8_t>(stuck_rgb_[middle] ^ 0x80);
+    EXPECT_TRUE(drive_on(5.0, true).all()) << i;
+  }
+}
+
+TEST_F(VisionStageFrozenTest, JudgesNoImageWhileTheVehicleStands) {
+  expect_all_used(0.0, true, 4 * kBroken);
+  EXPECT_EQ(stage_->counters().frozen, 0U);
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

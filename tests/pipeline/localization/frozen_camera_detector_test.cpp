@@ -1,0 +1,85 @@
+#include "pipeline/localization/frozen_camera_detector.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/preprocessing/image_remap.h"
+
+namespace bevloc {
+namespace {
+
+constexpr int kCamera = 3;
+
+std::vector<int8_t> image() {
+  std::vector<int8_t> planes(kNetworkImageSize);
+  for (size_t i = 0; i < planes.size(); ++i) planes[i] = static_cast<int8_t>(i * i / 100);
+  return planes;
+}
+
+class FrozenCameraDetectorTest : public testing::Test {
+ protected:
+  /// Adds the image `times` times. The first time is no repetition.
+  bool show(const std::vector<int8_t>& planes, bool driving, int times) {
+    bool is_frozen = false;
+    for (int i = 0; i < times; ++i) is_frozen = detector_.is_frozen(kCamera, planes, driving);
+    return is_frozen;
+  }
+
+  FrozenCameraDetector detector_;
+  std::vector<int8_t> planes_ = image();
+};
+
+TEST_F(FrozenCameraDetectorTest, DetectsAFrozenCameraAfterRepetitionsWhileDriving) {
+  EXPECT_FALSE(show(planes_, true, FrozenCameraDetector::kRepetitions));
+  EXPECT_TRUE(show(planes_, true, 1));
+  EXPECT_TRUE(show(planes_, true, 5));
+}
+
+TEST_F(FrozenCameraDetectorTest, CountsNoRepetitionsWhileTheVehicleStands) {
+  EXPECT_FALSE(show(planes_, false, 100));
+  EXPECT_FALSE(show(planes_, true, FrozenCameraDetector::kRepetitions - 1));
+  EXPECT_FALSE(show(planes_, false, 100));
+  EXPECT_TRUE(show(planes_, true, 1));
+}
+
+TEST_F(FrozenCameraDetectorTest, ACameraStaysFrozenWhileTheVehicleStands) {
+  EXPECT_TRUE(show(planes_, true, 1 + FrozenCameraDetector::kRepetitions));
+  EXPECT_TRUE(show(planes_, false, 3));
+}
+
+TEST_F(FrozenCameraDetectorTest, AChangeOfAnyValueResetsTheCount) {
+  for (const size_t place : {size_t{0}, size_t{63}, size_t{4711}, kNetworkImageSize - 1}) {
+    EXPECT_TRUE(show(planes_, true, 1 + FrozenCameraDetector::kRepetitions));
+    ++planes_[place];
+    EXPECT_FALSE(show(planes_, true, FrozenCameraDetector::kRepetitions)) << place;
+    EXPECT_TRUE(show(planes_, true, 1)) << place;
+  }
+}
+
+TEST_F(FrozenCameraDetectorTest, TheChecksumDependsOnTheOrderOfTheValues) {
+  std::vector<int8_t> swapped = planes_;
+  std::swap_ranges(swapped.begin(), swapped.begin() + 64, swapped.begin() + 64);
+  ASSERT_NE(swapped, planes_);
+  EXPECT_NE(image_checksum(swapped), image_checksum(planes_));
+}
+
+TEST_F(FrozenCameraDetectorTest, EachCameraHasItsOwnHistory) {
+  for (int i = 0; i < 3 * FrozenCameraDetector::kRepetitions; ++i) {
+    for (int camera = 0; camera < kCameraCount; ++camera) {
+      ++planes_[0];
+      EXPECT_FALSE(detector_.is_frozen(camera, planes_, true));
+    }
+  }
+}
+
+/// Such as the image of a covered lens.
+TEST_F(FrozenCameraDetectorTest, AUniformImageCanFreezeToo) {
+  const std::vector<int8_t> black(kNetworkImageSize, kNetworkBlack);
+  EXPECT_FALSE(show(black, true, FrozenCameraDetector::kRepetitions));
+  EXPECT_TRUE(show(black, true, 1));
+}
+
+}  // namespace
+}  // namespace bevloc

@@ -1,0 +1,160 @@
+// How lowering folds the nodes of a graph, and which uses of operators it refuses.
+#include "pipeline/network/model/lowering.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/network/model/load_error.h"
+#include "pipeline/network/model/onnx_reader.h"
+#include "tests/pipeline/network/model_inputs.h"
+
+namespace bevloc::nn {
+namespace {
+
+using ::testing::HasSubstr;
+
+template <typename Kind>
+long count(const Program& program) {
+  return std::ranges::count_if(program.steps,
+                               [](const Step& step) { return std::holds_alternative<Kind>(step); });
+}
+
+Graph model(const std::string& name) {
+  return read_onnx(test::fixture(name + ".onnx"));
+}
+
+TEST(Lowering, ResidualBlocksAreConvolutionsAlone) {
+  const Program program = lower(model("residual_int8"));
+  EXPECT_EQ(count<ConvStep>(program), 5);
+  EXPECT_EQ(program.steps.size(), 5U);
+}
+
+TEST(Lowering, FeaturePyramidSumIsFoldedThoughTheConvolutionComesFirst) {
+  const Program program = lower(model("upsample_nearest_int8"));
+  EXPECT_EQ(count<AddStep>(program), 0);
+  EXPECT_EQ(count<ConvertStep>(program), 0);
+}
+
+TEST(Lowering, WholeNetworkHasNoSeparateArithmetic) {
+  const Program program = lower(model("tiny_network_int8"));
+  EXPECT_EQ(count<ViewStep>(program), 1);
+  EXPECT_EQ(count<RearrangeStep>(program), 2);  // space to depth, depth to space
+  EXPECT_EQ(count<AddStep>(program) + count<ReluStep>(program) + count<ConvertStep>(program), 0);
+}
+
+TEST(Lowering, FloatGraphStaysFloat) {
+  const Program program = lower(model("residual_float"));
+  for (const Step& step : program.steps) {
+    if (const auto* conv = std::get_if<ConvStep>(&step)) {
+      EXPECT_EQ(conv->weights.type, ElementType::kFloat32);
+    }
+  }
+}
+
+/// The graph of a fixture with one node changed.
+class RefusedGraph : public ::testing::Test {
+ protected:
+  static std::string message_for(const Graph& graph) {
+    try {
+      lower(graph);
+    } catch (const LoadError& error) {
+      return error.what();
+    }
+    return "lowered";
+  }
+
+  static Node& node(Graph& graph, Operator op) {
+    return *std::ranges::find(graph.nodes, op, &Node::op);
+  }
+};
+
+TEST_F(RefusedGraph, ZeroPointThatIsNotZero) {
+  Graph graph = model("conv_int8");
+  graph.constants.at(node(graph, Operator::kQuantizeLinear).inputs[2]).bytes[0] = std::byte{128};
+  EXPECT_THAT(message_for(graph), HasSubstr("zero point is 128, wanted 0"));
+}
+
+TEST_F(RefusedGraph, ScaleThatIsNotPositive) {
+  Graph graph = model("conv_int8");
+  auto& bytes = graph.constants.at(node(graph, Operator::kQuantizeLinear).inputs[1]).bytes;
+  std::ranges::fill(bytes, std::byte{0});
+  EXPECT_THAT(message_for(graph), HasSubstr("scale is 0, wanted more than 0"));
+}
+
+TEST_F(RefusedGraph, DequantizeThatDoesNotUndoQuantize) {
+  Graph graph = model("conv_int8");
+  for (Node& n : graph.nodes) {
+    if (n.op != Operator::kDequantizeLinear || n.output != graph.nodes.back().inputs[0]) continue;
+    Tensor scale = graph.constants.at(n.inputs[1]);
+    scale.bytes[2] ^= std::byte{0x40};
+    graph.constants["other_scale"] = scale;
+    n.inputs[1] = "other_scale";
+  }
+  EXPECT_THAT(message_for(graph), HasSubstr("but the activation was quantized with"));
+}
+
+TEST_F(RefusedGraph, WeightsThatDoNotFitTheInput) {
+  Graph graph = model("conv_int8");
+  node(graph, Operator::kConv).attributes["group"] = int64_t{2};
+  EXPECT_THAT(message_for(graph), HasSubstr("in 2 groups do not fit 6 input channels"));
+}
+
+TEST_F(RefusedGraph, PaddingByName) {
+  Graph graph = model("conv_int8");
+  node(graph, Operator::kConv).attributes["auto_pad"] = std::string("SAME_UPPER");
+  EXPECT_THAT(message_for(graph), HasSubstr("auto_pad is not supported"));
+}
+
+TEST_F(RefusedGraph, ResizeByAnotherFactorOrRule) {
+  Graph graph = model("upsample_nearest_int8");
+  Graph other_rule = graph;
+  node(other_rule, Operator::kResize).attributes["nearest_mode"] = std::string("ceil");
+  EXPECT_THAT(message_for(other_rule), HasSubstr("(Resize): mode 'nearest' with coordinates"));
+  Tensor& scales = graph.constants.at(node(graph, Operator::kResize).inputs[2]);
+  const float three = 3.0F;
+  std::memcpy(scales.bytes.data() + 3 * sizeof(float), &three, sizeof(three));
+  EXPECT_THAT(message_for(graph), HasSubstr("wanted twice the rows and columns"));
+}
+
+TEST_F(RefusedGraph, TransposeThatIsNoPermutation) {
+  Graph graph = model("view_channels_last_int8");
+  node(graph, Operator::kTranspose).attributes["perm"] = std::vector<int64_t>{0, 0, 1, 2};
+  EXPECT_THAT(message_for(graph), HasSubstr("is not a permutation of 4 axes"));
+}
+
+TEST_F(RefusedGraph, GatherFromFeaturesInAnotherOrder) {
+  Graph graph = model("view_channels_last_int8");
+  // Columns before rows, so the keys of the table would select wrong cells.
+  node(graph, Operator::kTranspose).attributes["perm"] = std::vector<int64_t>{0, 3, 2, 1};
+  EXPECT_THAT(message_for(graph), HasSubstr("are not in the order camera, row, column"));
+}
+
+TEST_F(RefusedGraph, SumOverAnythingButTheSlots) {
+  Graph graph = model("view_channels_last_int8");
+  Tensor& axes = graph.constants.at(node(graph, Operator::kReduceSum).inputs[1]);
+  axes.bytes[0] = std::byte{1};
+  EXPECT_THAT(message_for(graph), HasSubstr("wanted the 8 slots"));
+}
+
+TEST_F(RefusedGraph, ProductOutsideTheViewTransform) {
+  Graph graph = model("conv_int8");
+  Node& relu = node(graph, Operator::kRelu);
+  relu.op = Operator::kMul;
+  relu.inputs.push_back(relu.inputs[0]);
+  EXPECT_THAT(message_for(graph), HasSubstr("only gathered features times"));
+}
+
+TEST_F(RefusedGraph, OutputOfAnotherShapeThanDeclared) {
+  Graph graph = model("conv_int8");
+  graph.outputs[0].shape = {1, 2, 3, 4};
+  EXPECT_THAT(message_for(graph), HasSubstr("output 'y' is declared with shape [1, 2, 3, 4]"));
+}
+
+TEST_F(RefusedGraph, WindowLargerThanTheImage) {
+  Graph graph = model("max_pool_int8");
+  node(graph, Operator::kMaxPool).attributes["kernel_shape"] = std::vector<int64_t>{99, 3};
+  EXPECT_THAT(message_for(graph), HasSubstr("a window of 99 does not fit"));
+}
+
+}  // namespace
+}  // namespace bevloc::nn
