@@ -24,7 +24,7 @@ inline Duration read_clock(clockid_t clock) {
   return duration_of(time);
 }
 
-/// The time of CLOCK_MONOTONIC. Only for code that compares with kernel time stamps or waits in the
+/// The time of CLOCK_MONOTONIC. Only for code that compares with kernel timestamps or waits in the
 /// kernel. All other code takes the time from a drivers::Clock.
 inline Time steady_now() {
   return Time(read_clock(CLOCK_MONOTONIC));

@@ -8,14 +8,14 @@
 
 namespace bevloc {
 
-/// Motion of the centre of the rear axle.
+/// Motion of the middle of the rear axle.
 struct OdometrySample {
   Time time{};                  ///< when the sample arrived
   double speed_mps = 0.0;       ///< along x, negative when reversing
   double yaw_rate_radps = 0.0;  ///< positive counter-clockwise
 };
 
-/// Position of the centre of the rear axle in the map frame. Each sigma is one standard deviation.
+/// Position of the middle of the rear axle in the map frame. Each sigma is one standard deviation.
 struct GnssSample {
   struct Yaw {
     double yaw_rad = 0.0;  ///< counter-clockwise from the map's east

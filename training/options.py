@@ -40,7 +40,8 @@ def _option_name(field: str) -> str:
 def _check(config: TrainingConfig, processes: int) -> None:
     """ValueError if the options contradict each other or have invalid values."""
     if (config.minutes > 0) == (config.samples > 0):
-        raise ValueError("found no budget or two, wanted either --minutes or --samples")
+        found = "both" if config.minutes > 0 else "none"
+        raise ValueError(f"budget: found {found}, wanted either --minutes or --samples")
     for field, choices in _CHOICES.items():
         if (found := getattr(config, field)) not in choices:
             wanted = f"wanted one of {', '.join(choices)}"

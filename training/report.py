@@ -37,7 +37,7 @@ _ROWS = (
 class Results:
     """The results of one model. The JSON file has the same fields."""
 
-    trained_samples: int
+    trained_samples: int  # of the run that wrote the checkpoint
     samples: int  # evaluation scenes
     float: Metrics
     int8: Metrics
@@ -75,8 +75,8 @@ def _iou_table(results: Results) -> list[str]:
 def markdown(results: Results) -> str:
     """One table per axis and one for the masks."""
     lines = [
-        f"Trained on {results.trained_samples:,} samples, measured on {results.samples} evaluation "
-        "scenes.",
+        f"Training samples of the last run: {results.trained_samples:,}. "
+        f"Evaluation scenes: {results.samples}.",
         "",
     ]
     for axis, title in _AXES:

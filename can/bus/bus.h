@@ -12,7 +12,7 @@ namespace bevloc::can {
 
 enum class SendResult : uint8_t {
   kSent,     ///< handed to the controller's queue
-  kWaiting,  ///< no room yet: kept until it is sent, replaced by a newer frame of its id, or expired
+  kWaiting,  ///< no room yet: kept until it is sent, replaced by a newer frame, or expired
   kBusDown,  ///< the interface is down or gone; the frame is not kept
 };
 

@@ -10,17 +10,13 @@
 #include "can/bus/receive_queue.h"
 
 namespace bevloc::can {
-namespace {
 class MockEndpoint;
-}
 
 struct MockWire::State {
   std::mutex mutex;
   std::vector<MockEndpoint*> endpoints;
   bool down = false;
 };
-
-namespace {
 
 class MockEndpoint final : public Bus {
  public:
@@ -82,8 +78,6 @@ class MockEndpoint final : public Bus {
   std::condition_variable arrived_;
   AtomicBusCounters counters_;
 };
-
-}  // namespace
 
 MockWire::MockWire(size_t queue_capacity)
     : state_(std::make_shared<State>()), queue_capacity_(queue_capacity) {}

@@ -1,4 +1,4 @@
-// Converts time stamps of the kernel and of the CAN controller to the steady clock.
+// Converts timestamps of the kernel and of the CAN controller to the steady clock.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace bevloc::can {
 
-/// The time stamps of one frame, each as the time since the epoch of its own clock.
+/// The timestamps of one frame, each as the time since the epoch of its own clock.
 struct KernelStamps {
   /// CLOCK_REALTIME, read in the driver's interrupt.
   std::optional<std::chrono::nanoseconds> software{};

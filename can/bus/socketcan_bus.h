@@ -26,7 +26,7 @@ class SocketCanBus final : public Bus {
                                                     const SocketCanOptions& options = {});
 
   /// Takes ownership of an open datagram descriptor that carries frames in the kernel's format,
-  /// such as a socket pair on a kernel without CAN. It delivers no time stamps, so frames carry the
+  /// such as a socket pair on a kernel without CAN. It delivers no timestamps, so frames carry the
   /// time of receive().
   static std::unique_ptr<SocketCanBus> from_descriptor(int descriptor);
 

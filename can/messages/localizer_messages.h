@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "can/messages/message.h"
+#include "can/messages/shared_signals.h"
 
 namespace bevloc::can {
 
@@ -45,7 +46,7 @@ inline constexpr Signal kState{
     .value_names = kStateNames,
     .comment =
         "The pose is valid in TRACKING, valid with a grown standard deviation in DEGRADED, "
-        "and not available in every other state. FAULT needs a person."};
+        "and not available in every other state. FAULT requires service."};
 inline constexpr Signal kTimeSource{.name = "TimeSource",
                                     .start_bit = 20,
                                     .length_bits = 3,
@@ -53,7 +54,7 @@ inline constexpr Signal kTimeSource{.name = "TimeSource",
                                     .value_names = kTimeSourceNames,
                                     .comment = "What disciplines the clock behind CaptureTime."};
 inline constexpr Signal kMapOk =
-    ok_flag("MapOk", 23, "A map is loaded and covers the place where the vehicle is.");
+    ok_flag("MapOk", 23, "A map is loaded and covers the position of the vehicle.");
 inline constexpr std::array<Signal, 6> kCameraOk{{
     ok_flag("CameraOk_FrontLeft", 24, "Camera front_left delivers usable frames in time."),
     ok_flag("CameraOk_Front", 25, "Camera front delivers usable frames in time."),
@@ -68,11 +69,11 @@ inline constexpr Signal kGnssOk = ok_flag("GnssOk", 31, "Valid GNSS positions ar
 /// In the order of the bits of enum Why.
 inline constexpr std::array<Signal, 16> kWhy{{
     reason_flag("Why_CameraMissing", 0, "At least one camera delivers no usable frames in time."),
-    reason_flag("Why_CamerasUnsynchronized", 1, "Frames of the cameras do not belong together."),
+    reason_flag("Why_CamerasUnsynchronized", 1, "The cameras do not expose at the same time."),
     reason_flag("Why_OdometryMissing", 2, "No valid wheel speed or yaw rate."),
     reason_flag("Why_GnssMissing", 3, "No valid GNSS position."),
-    reason_flag("Why_NoInitialPose", 4, "Nothing says yet where in the map the vehicle is."),
-    reason_flag("Why_OutsideMap", 5, "The map shows nothing around the vehicle."),
+    reason_flag("Why_NoInitialPose", 4, "The position of the vehicle in the map is not known yet."),
+    reason_flag("Why_OutsideMap", 5, "The map has no elements around the vehicle."),
     reason_flag("Why_MatchUncertain", 6,
                 "The pose contradicts GNSS for longer than its noise explains."),
     reason_flag("Why_MatchRejected", 7, "The match contradicts odometry and was not used."),
@@ -150,24 +151,8 @@ inline constexpr Message kMessage{.name = "LOC_Time",
 
 namespace loc_latitude {
 
-inline constexpr Signal kLatitude{.name = "Latitude",
-                                  .start_bit = 16,
-                                  .length_bits = 32,
-                                  .is_signed = true,
-                                  .scale = 1e-7,
-                                  .unit = "deg",
-                                  .min = -90.0,
-                                  .max = 90.0,
-                                  .has_sna = true,
-                                  .comment = "WGS84, of the middle of the rear axle."};
-inline constexpr Signal kStdDev{.name = "StdDevNorth",
-                                .start_bit = 48,
-                                .length_bits = 16,
-                                .scale = 0.01,
-                                .unit = "m",
-                                .max = 655.34,
-                                .has_sna = true,
-                                .comment = "1 sigma, rounded up."};
+inline constexpr Signal kLatitude = geodetic_signal("Latitude", 90.0);
+inline constexpr Signal kStdDev = std_dev_signal("StdDevNorth", 48, "m", "1 sigma, rounded up.");
 inline constexpr const Signal* kSignals[] = {&kLatitude, &kStdDev};
 inline constexpr Message kMessage{.name = "LOC_Latitude",
                                   .id_offset = 2,
@@ -180,24 +165,8 @@ inline constexpr Message kMessage{.name = "LOC_Latitude",
 
 namespace loc_longitude {
 
-inline constexpr Signal kLongitude{.name = "Longitude",
-                                   .start_bit = 16,
-                                   .length_bits = 32,
-                                   .is_signed = true,
-                                   .scale = 1e-7,
-                                   .unit = "deg",
-                                   .min = -180.0,
-                                   .max = 180.0,
-                                   .has_sna = true,
-                                   .comment = "WGS84, of the middle of the rear axle."};
-inline constexpr Signal kStdDev{.name = "StdDevEast",
-                                .start_bit = 48,
-                                .length_bits = 16,
-                                .scale = 0.01,
-                                .unit = "m",
-                                .max = 655.34,
-                                .has_sna = true,
-                                .comment = "1 sigma, rounded up."};
+inline constexpr Signal kLongitude = geodetic_signal("Longitude", 180.0);
+inline constexpr Signal kStdDev = std_dev_signal("StdDevEast", 48, "m", "1 sigma, rounded up.");
 inline constexpr const Signal* kSignals[] = {&kLongitude, &kStdDev};
 inline constexpr Message kMessage{.name = "LOC_Longitude",
                                   .id_offset = 3,
@@ -247,16 +216,9 @@ inline constexpr Message kMessage{
 
 namespace loc_attitude {
 
-inline constexpr Signal kHeading{
-    .name = "Heading",
-    .start_bit = 16,
-    .length_bits = 16,
-    .scale = 0.01,
-    .unit = "deg",
-    .max = 359.99,
-    .has_sna = true,
-    .comment =
-        "Of the vehicle's x axis, clockwise from true north. (YawRate counts the other way.)"};
+inline constexpr Signal kHeading = heading_signal(
+    "Heading",
+    "Of the vehicle's x axis, clockwise from true north. (YawRate counts the other way.)");
 inline constexpr const Signal* kSignals[] = {&kHeading};
 inline constexpr Message kMessage{.name = "LOC_Attitude",
                                   .id_offset = 5,
@@ -304,37 +266,19 @@ inline constexpr Message kMessage{.name = "LOC_Velocity",
 
 namespace loc_std_dev {
 
-inline constexpr Signal kLongitudinal{.name = "StdDevLongitudinal",
-                                      .start_bit = 16,
-                                      .length_bits = 16,
-                                      .scale = 0.01,
-                                      .unit = "m",
-                                      .max = 655.34,
-                                      .has_sna = true,
-                                      .comment = "Along the vehicle, 1 sigma, rounded up."};
-inline constexpr Signal kLateral{.name = "StdDevLateral",
-                                 .start_bit = 32,
-                                 .length_bits = 16,
-                                 .scale = 0.01,
-                                 .unit = "m",
-                                 .max = 655.34,
-                                 .has_sna = true,
-                                 .comment = "Across the vehicle, 1 sigma, rounded up."};
-inline constexpr Signal kHeading{.name = "StdDevHeading",
-                                 .start_bit = 48,
-                                 .length_bits = 16,
-                                 .scale = 0.01,
-                                 .unit = "deg",
-                                 .max = 655.34,
-                                 .has_sna = true,
-                                 .comment = "1 sigma, rounded up."};
+inline constexpr Signal kLongitudinal =
+    std_dev_signal("StdDevLongitudinal", 16, "m", "Along the vehicle, 1 sigma, rounded up.");
+inline constexpr Signal kLateral =
+    std_dev_signal("StdDevLateral", 32, "m", "Across the vehicle, 1 sigma, rounded up.");
+inline constexpr Signal kHeading =
+    std_dev_signal("StdDevHeading", 48, "deg", "1 sigma, rounded up.");
 inline constexpr const Signal* kSignals[] = {&kLongitudinal, &kLateral, &kHeading};
 inline constexpr Message kMessage{.name = "LOC_StdDev",
                                   .id_offset = 7,
                                   .cycle_ms = kSolutionCycleMs,
                                   .data_id = 0x58,
                                   .signals = kSignals,
-                                  .comment = "How far the pose may be off, in the vehicle's axes."};
+                                  .comment = "Uncertainty of the pose along the vehicle's axes."};
 
 }  // namespace loc_std_dev
 

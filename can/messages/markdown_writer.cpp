@@ -11,7 +11,7 @@ namespace {
 
 using Out = std::back_insert_iterator<std::string>;
 
-void write_signal(Out out, const Signal& signal) {
+void write_signal_row(Out out, const Signal& signal) {
   fmt::format_to(out, "| {} | {} | {}{} | {} | {} | {} to {} |", signal.name, signal.start_bit,
                  signal.is_signed ? 'S' : 'U', signal.length_bits, signal.scale, signal.unit,
                  signal.min, signal.max);
@@ -25,13 +25,13 @@ void write_signal(Out out, const Signal& signal) {
   fmt::format_to(out, " |\n");
 }
 
-void write_message(Out out, const Message& message, const BaseIds& base) {
+void write_message_table(Out out, const Message& message, const BaseIds& base) {
   fmt::format_to(out, "\n### {} (0x{:03X})\n\n{}\n\n", message.name, message.id(base),
                  message.comment);
   fmt::format_to(out,
                  "| Signal | Start bit | Bits | Step | Unit | Range | SNA (raw) | Meaning |\n");
   fmt::format_to(out, "|---|---|---|---|---|---|---|---|\n");
-  for (const Signal* signal : message.signals) write_signal(out, *signal);
+  for (const Signal* signal : message.signals) write_signal_row(out, *signal);
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ std::string markdown_tables(const BaseIds& base) {
                    message->name, message->sender == Sender::kLocalizer ? "localizer" : "vehicle",
                    message->cycle_ms, message->length, message->data_id);
   }
-  for (const Message* message : kMessages) write_message(out, *message, base);
+  for (const Message* message : kMessages) write_message_table(out, *message, base);
   return text;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "can/messages/message.h"
+#include "can/messages/shared_signals.h"
 
 namespace bevloc::can {
 
@@ -69,24 +70,8 @@ inline constexpr Message kMessage{.name = "VEH_YawRate",
 
 namespace veh_gnss_latitude {
 
-inline constexpr Signal kLatitude{.name = "GnssLatitude",
-                                  .start_bit = 16,
-                                  .length_bits = 32,
-                                  .is_signed = true,
-                                  .scale = 1e-7,
-                                  .unit = "deg",
-                                  .min = -90.0,
-                                  .max = 90.0,
-                                  .has_sna = true,
-                                  .comment = "WGS84, of the middle of the rear axle."};
-inline constexpr Signal kStdDev{.name = "GnssStdDevNorth",
-                                .start_bit = 48,
-                                .length_bits = 16,
-                                .scale = 0.01,
-                                .unit = "m",
-                                .max = 655.34,
-                                .has_sna = true,
-                                .comment = "1 sigma."};
+inline constexpr Signal kLatitude = geodetic_signal("GnssLatitude", 90.0);
+inline constexpr Signal kStdDev = std_dev_signal("GnssStdDevNorth", 48, "m", "1 sigma.");
 inline constexpr const Signal* kSignals[] = {&kLatitude, &kStdDev};
 inline constexpr Message kMessage{
     .name = "VEH_GnssLatitude",
@@ -101,24 +86,8 @@ inline constexpr Message kMessage{
 
 namespace veh_gnss_longitude {
 
-inline constexpr Signal kLongitude{.name = "GnssLongitude",
-                                   .start_bit = 16,
-                                   .length_bits = 32,
-                                   .is_signed = true,
-                                   .scale = 1e-7,
-                                   .unit = "deg",
-                                   .min = -180.0,
-                                   .max = 180.0,
-                                   .has_sna = true,
-                                   .comment = "WGS84, of the middle of the rear axle."};
-inline constexpr Signal kStdDev{.name = "GnssStdDevEast",
-                                .start_bit = 48,
-                                .length_bits = 16,
-                                .scale = 0.01,
-                                .unit = "m",
-                                .max = 655.34,
-                                .has_sna = true,
-                                .comment = "1 sigma."};
+inline constexpr Signal kLongitude = geodetic_signal("GnssLongitude", 180.0);
+inline constexpr Signal kStdDev = std_dev_signal("GnssStdDevEast", 48, "m", "1 sigma.");
 inline constexpr const Signal* kSignals[] = {&kLongitude, &kStdDev};
 inline constexpr Message kMessage{
     .name = "VEH_GnssLongitude",
@@ -133,25 +102,11 @@ inline constexpr Message kMessage{
 
 namespace veh_gnss_heading {
 
-inline constexpr Signal kHeading{
-    .name = "GnssHeading",
-    .start_bit = 16,
-    .length_bits = 16,
-    .scale = 0.01,
-    .unit = "deg",
-    .max = 359.99,
-    .has_sna = true,
-    .comment =
-        "Of the vehicle's x axis, clockwise from true north. SNA when the receiver has no heading, "
-        "for example from course over ground at standstill."};
-inline constexpr Signal kStdDev{.name = "GnssStdDevHeading",
-                                .start_bit = 32,
-                                .length_bits = 16,
-                                .scale = 0.01,
-                                .unit = "deg",
-                                .max = 655.34,
-                                .has_sna = true,
-                                .comment = "1 sigma."};
+inline constexpr Signal kHeading = heading_signal(
+    "GnssHeading",
+    "Of the vehicle's x axis, clockwise from true north. SNA when the receiver has no heading, "
+    "for example from course over ground at standstill.");
+inline constexpr Signal kStdDev = std_dev_signal("GnssStdDevHeading", 32, "deg", "1 sigma.");
 inline constexpr const Signal* kSignals[] = {&kHeading, &kStdDev};
 inline constexpr Message kMessage{
     .name = "VEH_GnssHeading",

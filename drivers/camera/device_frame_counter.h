@@ -20,8 +20,8 @@ class DeviceFrameCounter {
   }
 
   /// Takes the device's sequence number of a frame that arrived, which may wrap around. Frames
-  /// missing before it count as no_buffer if the user held all buffers since the last frame, and
-  /// else as lost. Returns the sequence number of the frame since restart().
+  /// missing before it count as no_buffer if the user held all buffers at some time since the
+  /// previous frame, and else as lost. Returns the sequence number of the frame since restart().
   uint64_t arrived(uint32_t device_sequence) {
     const uint32_t step = latest_ ? device_sequence - *latest_ : 0;
     latest_ = device_sequence;

@@ -7,8 +7,8 @@
 namespace bevloc::drivers {
 namespace {
 
-/// A frame is drawn when it is due within this time after the end of the wait. Frames that are due
-/// later, such as after a fault of a mock camera, are drawn later.
+/// A frame is drawn only if it is due at most this long after the end of the wait. A frame that is
+/// due later, for example after a fault of a mock camera, is drawn later.
 constexpr Duration kDrawAhead = std::chrono::seconds(1);
 
 }  // namespace

@@ -19,7 +19,7 @@ constexpr size_t kStarts = 4;
 /// The coarse grid uses every kCoarseStride-th point.
 constexpr size_t kCoarseStride = 4;
 
-constexpr int kIterations = 20;
+constexpr int kAlignmentIterations = 20;
 constexpr double kFirstDamping = 1e-3;
 constexpr double kLargestDamping = 1e3;
 
@@ -89,7 +89,7 @@ Start descend(std::span<const PointsOnField> pairs, const HypothesisGrid& ranges
   Start best{start, cost_of(pairs, ranges, start, 1)};
   double damping = kFirstDamping;
   PoseLeastSquares problem = linearised(pairs, ranges, best.correction);
-  for (int i = 0; i < kIterations && damping < kLargestDamping; ++i) {
+  for (int i = 0; i < kAlignmentIterations && damping < kLargestDamping; ++i) {
     const Se2 candidate = problem.solve(ranges, damping);
     const double cost = cost_of(pairs, ranges, candidate, 1);
     if (cost < best.cost) {

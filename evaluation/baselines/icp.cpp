@@ -15,7 +15,7 @@ namespace {
 constexpr double kFirstRadius_m = 2.5;
 constexpr double kLastRadius_m = 0.6;
 constexpr double kRadiusRatio = 0.9;
-constexpr int kIterations = 25;
+constexpr int kIcpIterations = 25;
 static_assert(kFirstRadius_m > kLastRadius_m);
 
 /// The weight of a larger distance decreases (Huber).
@@ -32,7 +32,7 @@ Se2 IterativeClosestPoints::correct(const BaselineInput& input) {
   std::vector<NearestLine> nearest(map.begin(), map.end());
   Se2 correction;
   double radius_m = kFirstRadius_m;
-  for (int i = 0; i < kIterations; ++i) {
+  for (int i = 0; i < kIcpIterations; ++i) {
     PoseLeastSquares problem(correction);
     problem.add_prior(ranges_);
     const Se2 turn{0.0, 0.0, correction.yaw_rad};

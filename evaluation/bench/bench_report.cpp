@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kGiga = 1e9;
 constexpr double kMega = 1e6;
-constexpr double kMs_per_s = 1e3;
 constexpr double kMiB = 1 << 20;
 
 double macs_per_s(const StageResult& stage) {

@@ -6,6 +6,8 @@
 
 namespace bevloc::bench {
 
+inline constexpr double kMs_per_s = 1e3;
+
 /// The work of a stage for one frame.
 struct Work {
   double macs = 0.0;   ///< int8 multiply-accumulates

@@ -20,7 +20,6 @@ constexpr int kGroup = 10;
 constexpr int kPlaces = 4;
 constexpr int kMostCandidates = 16;  ///< places that are tried
 constexpr int kFramesets = 4;        ///< per place
-constexpr double kMs_per_s = 1e3;
 
 /// The measurements of one stage.
 struct Record {

@@ -20,7 +20,6 @@
 namespace bevloc::bench {
 namespace {
 
-constexpr double kMs_per_s = 1e3;
 const std::string kFixedSize =
     "The network's sizes are fixed at compile time; for other\nnetworks see "
     "docs/network-variants.md.";

@@ -18,7 +18,7 @@ constexpr int kMostFrames = 100'000;
 /// World seeds reserved for each seed of the command line.
 constexpr uint64_t kWorldsPerSeed = 1ULL << 16U;
 static_assert(kMostFrames / kSamplesTakenPerWorld < kWorldsPerSeed);
-constexpr uint64_t kSeeds = sim::kSampleSeedCount / kWorldsPerSeed;
+constexpr uint64_t kSampleSeeds = sim::kSampleSeedCount / kWorldsPerSeed;
 
 constexpr const char* kAllSets = "all";
 
@@ -49,7 +49,7 @@ void NetworkCommand::declare(CLI::App& eval) {
       ->check(CLI::Range(1, kMostFrames))
       ->capture_default_str();
   network->add_option("--seed", seed_, "Seed of the samples")
-      ->check(CLI::Range(uint64_t{0}, kSeeds - 1))
+      ->check(CLI::Range(uint64_t{0}, kSampleSeeds - 1))
       ->capture_default_str();
   network->add_option("--map", map_file_, "Take the samples on this map instead of in procedural towns");
   network->add_option("--json", json_file_, "Write the rows as JSON to this file");

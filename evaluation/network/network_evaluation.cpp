@@ -17,7 +17,7 @@ namespace {
 static_assert(sim::kEvaluationSampleSeedBase + sim::kSampleSeedCount <= sim::kTuningSeedBase);
 static_assert(kSamplesTakenPerWorld <= sim::kSamplesPerWorld);
 
-const HypothesisGrid kHypotheses;
+const HypothesisGrid kBaselineHypotheses;
 
 /// A cell belongs to a line that covers more than half of it.
 constexpr uint8_t kHalfCovered = 127;
@@ -78,11 +78,11 @@ Status NetworkEvaluation::add_solvers(const std::vector<ReadOutCase>& cases, int
 }
 
 void NetworkEvaluation::add_baselines() {
-  baselines_.push_back({"icp", std::make_unique<IterativeClosestPoints>(kHypotheses)});
+  baselines_.push_back({"icp", std::make_unique<IterativeClosestPoints>(kBaselineHypotheses)});
   baselines_.push_back(
-      {"distance-transform", std::make_unique<DistanceTransformAlignment>(kHypotheses)});
+      {"distance-transform", std::make_unique<DistanceTransformAlignment>(kBaselineHypotheses)});
   baselines_.push_back({"ipm", std::make_unique<InversePerspectiveMapping>(
-                                   sim::nominal_network_rig(), kHypotheses)});
+                                   sim::nominal_network_rig(), kBaselineHypotheses)});
 }
 
 std::vector<TuningSample> NetworkEvaluation::make_tuning_samples(
@@ -159,8 +159,8 @@ void NetworkEvaluation::take_truth(const sim::Sample& sample) {
 }
 
 void NetworkEvaluation::judge_all(const sim::Sample& sample, std::vector<ReadOut>& read_outs) {
-  set_no_evidence(kHypotheses, solution_);
-  read_outs[0].outcomes.push_back(judge(solution_, kHypotheses, sample.correction));
+  set_no_evidence(kBaselineHypotheses, solution_);
+  read_outs[0].outcomes.push_back(judge(solution_, kBaselineHypotheses, sample.correction));
   if (!mask_inputs_.empty() || !baselines_.empty()) {
     take_probabilities();
     mask_inputs_.take(perceived_, sample.raster_prior);

@@ -12,8 +12,8 @@
 namespace bevloc::evaluation {
 namespace {
 
-constexpr std::array kShown{SolverKind::kFullFft, SolverKind::kDecoupled,
-                            SolverKind::kDecoupledRefined};
+constexpr std::array kShownSolvers{SolverKind::kFullFft, SolverKind::kDecoupled,
+                                   SolverKind::kDecoupledRefined};
 
 /// One axis of a solution. `unit` converts it to the unit that is shown.
 struct Axis {
@@ -70,10 +70,10 @@ void add_solution(const SolverResult& result, nlohmann::json& axes) {
 
 Result<nlohmann::json> distribution_figure(std::span<const sim::MatchingScene> scenes) {
   nlohmann::json json;
-  for (const SolverKind kind : kShown) json["solvers"].push_back(name_of(kind));
+  for (const SolverKind kind : kShownSolvers) json["solvers"].push_back(name_of(kind));
   for (const sim::MatchingScene& scene : scenes) {
     nlohmann::json axes = empty_axes(scene.correction);
-    for (const SolverKind kind : kShown) {
+    for (const SolverKind kind : kShownSolvers) {
       const auto result = solve({.solver = kind}, scene);
       if (!result) return tl::unexpected(result.error());
       add_solution(*result, axes);

@@ -15,7 +15,7 @@ namespace {
 
 /// Town seeds reserved for each seed of the command line: as many as 200,000 scenes need.
 constexpr uint64_t kTownsPerSeed = 1ULL << 20U;
-constexpr uint64_t kSeeds = sim::kSceneSeedCount / kTownsPerSeed;
+constexpr uint64_t kSceneSeeds = sim::kSceneSeedCount / kTownsPerSeed;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void SolverCommand::declare_eval(CLI::App& eval) {
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   solver->add_option("--seed", seed_, "Seed of the scenes")
-      ->check(CLI::Range(uint64_t{0}, kSeeds - 1))
+      ->check(CLI::Range(uint64_t{0}, kSceneSeeds - 1))
       ->capture_default_str();
   add_choice(*solver, "--corruption", corruption_,
              {{"clean", sim::CorruptionLevel::kClean},

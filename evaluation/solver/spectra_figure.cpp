@@ -19,17 +19,17 @@ namespace bevloc::evaluation {
 namespace {
 
 constexpr double kTurn_deg = 10.0;
-constexpr double kShift_m = 5.0;
+constexpr double kSpectraShift_m = 5.0;
 constexpr std::array<Se2, 3> kCorrections{
-    {{}, {0.0, 0.0, radians(kTurn_deg)}, {kShift_m, kShift_m, radians(kTurn_deg)}}};
+    {{}, {0.0, 0.0, radians(kTurn_deg)}, {kSpectraShift_m, kSpectraShift_m, radians(kTurn_deg)}}};
 
 /// The masks and their union. The figure shows the union.
-constexpr int kChannels = 4;
+constexpr int kSpectraChannels = 4;
 constexpr int kUnion = 3;
 constexpr int kBand = 2;
 constexpr int kSpectrumSize = 128;
 /// The yaw range of the score's plot.
-const HypothesisGrid kHypotheses{.yaw_rad = {radians(15.0), radians(0.5)}};
+const HypothesisGrid kSpectraHypotheses{.yaw_rad = {radians(15.0), radians(0.5)}};
 
 /// The first junction among random poses.
 std::optional<Se2> find_junction(const sim::World& world, const MapIndex& index) {
@@ -44,8 +44,8 @@ std::optional<Se2> find_junction(const sim::World& world, const MapIndex& index)
 
 /// The union's log(1 + amplitude), frequency 0 in the middle.
 nlohmann::json log_amplitude(const CellFeatures& cells) {
-  AmplitudeSpectrum spectrum(kFeatureGrid, kChannels, kSpectrumSize, kSpectrumSize, Window::kHann,
-                             kSpectrumSize);
+  AmplitudeSpectrum spectrum(kFeatureGrid, kSpectraChannels, kSpectrumSize, kSpectrumSize,
+                             Window::kHann, kSpectrumSize);
   spectrum.compute(cells, cells);
   const auto amplitude = spectrum.amplitude(0);
   std::vector<float> values;
@@ -70,7 +70,7 @@ std::vector<double> signature_of_map(const YawSpectrum& spectrum) {
 
 nlohmann::json axes_json() {
   nlohmann::json json{{"turn_deg", kTurn_deg},
-                      {"shift_m", kShift_m},
+                      {"shift_m", kSpectraShift_m},
                       {"band", kBand},
                       {"frequency_limit_per_m", 0.5 / kFeatureGrid.cell_m}};
   constexpr double kBandWidth =
@@ -81,8 +81,8 @@ nlohmann::json axes_json() {
   for (int i = 0; i < YawSpectrum::kAngles; ++i) {
     json["angles_deg"].push_back(180.0 * i / YawSpectrum::kAngles);
   }
-  for (int i = 0; i < kHypotheses.yaw_rad.count(); ++i) {
-    json["hypotheses_deg"].push_back(degrees(kHypotheses.yaw_rad.value(i)));
+  for (int i = 0; i < kSpectraHypotheses.yaw_rad.count(); ++i) {
+    json["hypotheses_deg"].push_back(degrees(kSpectraHypotheses.yaw_rad.value(i)));
   }
   return json;
 }
@@ -97,14 +97,14 @@ Result<nlohmann::json> spectra_figure(uint64_t town) {
 
   nlohmann::json json = axes_json();
   MapRasterizer rasterizer(index);
-  YawSpectrum spectrum(kFeatureGrid, kChannels, kHypotheses.yaw_rad);
-  std::vector<double> score(static_cast<size_t>(kHypotheses.yaw_rad.count()));
+  YawSpectrum spectrum(kFeatureGrid, kSpectraChannels, kSpectraHypotheses.yaw_rad);
+  std::vector<double> score(static_cast<size_t>(kSpectraHypotheses.yaw_rad.count()));
   std::optional<CellFeatures> first;
   for (const Se2& correction : kCorrections) {
     std::vector<uint8_t> raster(kRasterSize);
     rasterizer.draw(*pose * correction.inverse(), raster);
-    const CellFeatures cells =
-        standardised_cells(features_of(raster, kChannels), kChannels, kHypotheses);
+    const CellFeatures cells = standardised_cells(features_of(raster, kSpectraChannels),
+                                                  kSpectraChannels, kSpectraHypotheses);
     if (!first) first = cells;
     spectrum.score(*first, cells, score);
     json["views"].push_back({{"raster", bytes_json(raster)},

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/ranges.h>
+
 #include "firmware/config/config_milliseconds.h"
 
 namespace bevloc::firmware {
@@ -88,13 +90,14 @@ HypothesisGrid read_hypotheses(std::optional<YamlMap> yaml, const HypothesisGrid
 SolverConfig read_solver(std::optional<YamlMap> yaml) {
   SolverConfig solver;
   if (!yaml) return solver;
-  const auto kind =
-      solver_kind_from(yaml->optional<std::string>("kind", std::string(name_of(solver.kind))));
-  if (kind) {
-    solver.kind = *kind;
-  } else {
-    yaml->reject("kind", "an unknown solver", kind.error().message);
-  }
+  std::vector<std::string_view> names;
+  for (const SolverKind kind : all_solver_kinds()) names.push_back(name_of(kind));
+  const Wanted<std::string> known{
+      fmt::format("one of {}", fmt::join(names, ", ")),
+      [](const std::string& name) { return solver_kind_from(name).has_value(); }};
+  const std::string default_name(name_of(solver.kind));
+  solver.kind = solver_kind_from(yaml->optional<std::string>("kind", default_name, known))
+                    .value_or(solver.kind);
   solver.tracking = read_hypotheses(yaml->optional_map("tracking"), solver.tracking);
   solver.acquiring = read_hypotheses(yaml->optional_map("acquiring"), solver.acquiring);
   return solver;

@@ -8,7 +8,7 @@ namespace bevloc::firmware {
 namespace {
 
 /// Longest wait of the trigger's thread before it checks whether to end.
-constexpr Duration kPatience = std::chrono::milliseconds(50);
+constexpr Duration kTriggerPatience = std::chrono::milliseconds(50);
 
 /// Stores an opened line in `line`, or returns why it could not be opened.
 template <typename Line, typename Opened>
@@ -46,7 +46,7 @@ Status GpioLines::open_all(const GpioConfig& config, drivers::Gpio& gpio, driver
   trigger_ = std::make_unique<drivers::Trigger>(std::move(line), clock, config.trigger->timing);
   trigger_thread_ = std::jthread([&realtime, trigger = trigger_.get()](std::stop_token stop) {
     realtime.begin_thread(ThreadRole::kCapture, "trigger");
-    while (!stop.stop_requested()) trigger->step(kPatience);
+    while (!stop.stop_requested()) trigger->step(kTriggerPatience);
   });
   return {};
 }

@@ -6,10 +6,6 @@
 namespace bevloc {
 namespace {
 
-double squared(double value) {
-  return value * value;
-}
-
 /// Transition matrix of the error state. The pose error is expressed in the moving vehicle frame.
 FilterState::Covariance transition(const MeasuredMotion& motion, double speed_mps,
                                    double duration_s, const Se2& step) {
@@ -33,13 +29,13 @@ FilterState::Vector process_variance(double distance_m, double duration_s,
                                      const MotionNoise& noise) {
   const double half_square_s2 = 0.5 * duration_s * duration_s;
   FilterState::Vector variance;
-  variance << squared(noise.longitudinal_m_per_sqrt_m) * distance_m +
-                  squared(noise.acceleration_mps2 * half_square_s2),
-      squared(noise.lateral_m_per_sqrt_m) * distance_m,
-      squared(noise.yaw_rad_per_sqrt_s) * duration_s +
-          squared(noise.yaw_acceleration_radps2 * half_square_s2),
-      squared(noise.speed_scale_per_sqrt_s) * duration_s,
-      squared(noise.yaw_rate_bias_radps_per_sqrt_s) * duration_s;
+  variance << square_of(noise.longitudinal_m_per_sqrt_m) * distance_m +
+                  square_of(noise.acceleration_mps2 * half_square_s2),
+      square_of(noise.lateral_m_per_sqrt_m) * distance_m,
+      square_of(noise.yaw_rad_per_sqrt_s) * duration_s +
+          square_of(noise.yaw_acceleration_radps2 * half_square_s2),
+      square_of(noise.speed_scale_per_sqrt_s) * duration_s,
+      square_of(noise.yaw_rate_bias_radps_per_sqrt_s) * duration_s;
   return variance;
 }
 

@@ -7,6 +7,10 @@
 
 namespace bevloc {
 
+inline double square_of(double value) {
+  return value * value;
+}
+
 /// Odometry as measured, without the estimated corrections.
 struct MeasuredMotion {
   double speed_mps = 0.0;

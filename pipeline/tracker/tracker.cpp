@@ -17,10 +17,6 @@ namespace {
 /// evidence: sigma grows by a factor of 100 at most.
 constexpr double kMinEvidenceShare = 1e-4;
 
-double squared(double value) {
-  return value * value;
-}
-
 MeasuredMotion between(const MeasuredMotion& a, const MeasuredMotion& b, double weight_of_b) {
   return {std::lerp(a.speed_mps, b.speed_mps, weight_of_b),
           std::lerp(a.yaw_rate_radps, b.yaw_rate_radps, weight_of_b)};
@@ -32,8 +28,8 @@ bool is_covariance(const Eigen::Matrix3d& matrix) {
 }
 
 PoseMeasurement measurement_from(const GnssPose& gnss) {
-  const double position_variance = squared(gnss.position_sigma_m);
-  const Eigen::Vector3d variance(position_variance, position_variance, squared(gnss.yaw_sigma_rad));
+  const double position_variance = square_of(gnss.position_sigma_m);
+  const Eigen::Vector3d variance(position_variance, position_variance, square_of(gnss.yaw_sigma_rad));
   const Se2& pose = gnss.map_from_vehicle;
   return {.map_from_vehicle = {pose.x_m, pose.y_m, wrap_angle(pose.yaw_rad)},
           .covariance = variance.asDiagonal()};
@@ -188,9 +184,9 @@ void Tracker::initialise(Time time, const PoseMeasurement& measurement) {
   event.state.covariance.setZero();
   event.state.covariance.topLeftCorner<3, 3>() = measurement.covariance;
   event.state.covariance(FilterState::kSpeedScale, FilterState::kSpeedScale) =
-      squared(parameters_.initial_speed_scale_sigma);
+      square_of(parameters_.initial_speed_scale_sigma);
   event.state.covariance(FilterState::kYawRateBias, FilterState::kYawRateBias) =
-      squared(parameters_.initial_yaw_rate_bias_sigma_radps);
+      square_of(parameters_.initial_yaw_rate_bias_sigma_radps);
   history_.push_back(event);
   last_gnss_ = time;
   if (last_odometry_->time > time) {
@@ -264,11 +260,11 @@ void Tracker::replay_from(size_t position) {
     if (event.kind == TrackerEvent::Kind::kPose) update(event.measurement, event.state);
     if (event.kind == TrackerEvent::Kind::kWiden) {
       event.state.covariance(FilterState::kX, FilterState::kX) +=
-          squared(parameters_.widened_position_sigma_m);
+          square_of(parameters_.widened_position_sigma_m);
       event.state.covariance(FilterState::kY, FilterState::kY) +=
-          squared(parameters_.widened_position_sigma_m);
+          square_of(parameters_.widened_position_sigma_m);
       event.state.covariance(FilterState::kYaw, FilterState::kYaw) +=
-          squared(parameters_.widened_yaw_sigma_rad);
+          square_of(parameters_.widened_yaw_sigma_rad);
     }
   }
 }

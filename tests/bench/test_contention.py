@@ -21,15 +21,15 @@ class ContentionTest(unittest.TestCase):
         self.assertEqual(drive(missed=60).unaccounted(660.0), 0)
         self.assertEqual(drive(missed=60).unaccounted(700.0), 40)
 
-    def test_frames_that_were_captured_do_not_vanish(self):
+    def test_captured_frames_without_outcome_are_counted(self):
         self.assertEqual(drive(under_way=12).unaccounted(600.0), 0)
         self.assertEqual(drive(under_way=18).unaccounted(600.0), 6)
 
-    def test_ratio_is_infinite_when_nothing_came_out(self):
+    def test_the_ratio_is_infinite_without_poses(self):
         self.assertEqual(p99_ratio(drive(40.0), drive(60.0)), 1.5)
         self.assertEqual(p99_ratio(drive(40.0), drive(0.0)), float("inf"))
 
-    def test_rate_is_the_configuration_s(self):
+    def test_the_rate_comes_from_the_configuration(self):
         self.assertEqual(exposures_of("cameras:\n  rate_hz: 12.5  # of each\n", 5.0), 300.0)
         with self.assertRaises(SystemExit):
             exposures_of("cameras:\n  driver: replay\n", 4.0)

@@ -12,10 +12,12 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from tests.bench.document import ROOT, bevloc_program, write_table
+from evaluation.figures import frame_stages
+from evaluation.figures.program import bevloc_program
+from tests.bench.document import ROOT, write_table
 from training.errors import run_program
 
-FIGURE = ROOT / "docs/images/frame_stages.png"
+FIGURE = ROOT / "docs/images" / frame_stages.FILE
 SWEEPS = ("cameras", "image", "bev", "hypotheses", "map")
 _FRAMES = 400
 _SWEEP_FRAMES = 100
@@ -42,11 +44,12 @@ def columns_of(rows: list[dict[str, float]]) -> list[str]:
 
 
 def main() -> None:
-    printed = run_bench("--frames", str(_FRAMES), "--figure", FIGURE)
-    picture = f"![Where the time of a frame goes](images/{FIGURE.name})"
-    write_table("stages", f"```\n{printed}```\n\n{picture}\n")
     with tempfile.TemporaryDirectory() as folder:
-        result = Path(folder) / "sweeps.json"
+        result = Path(folder) / "bench.json"
+        printed = run_bench("--frames", str(_FRAMES), "--json", result)
+        frame_stages.draw(json.loads(result.read_text()), FIGURE)
+        figure = f"![Where the time of a frame goes](images/{FIGURE.name})"
+        write_table("stages", f"```\n{printed}```\n\n{figure}\n")
         run_bench("--frames", str(_SWEEP_FRAMES), "--json", result, "--sweep", *SWEEPS)
         for name, rows in json.loads(result.read_text())["sweeps"].items():
             write_table(name, sweep_table(rows, columns_of(rows)))

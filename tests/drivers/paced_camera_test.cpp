@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Duration kPeriod = milliseconds(100);
+constexpr Duration kFramePeriod = milliseconds(100);
 constexpr Duration kReadout = milliseconds(20);
 
 /// Delivers `last` frames at 10 Hz from time 0 on. The first byte of each image is its number.
@@ -21,7 +21,7 @@ class CountingCamera final : public PacedCamera {
       : PacedCamera({2, 4, 3, buffers, TimestampOrigin::kSimulated}, milliseconds(8), clock),
         clock_(clock),
         last_(last) {
-    set_max_lateness(kPeriod);
+    set_max_lateness(kFramePeriod);
   }
 
   void break_frame(uint64_t number) { broken_ = number; }
@@ -32,12 +32,12 @@ class CountingCamera final : public PacedCamera {
  private:
   Status open(Time now) override {
     next_ = first_ =
-        static_cast<uint64_t>((now.time_since_epoch() + kPeriod - Duration(1)) / kPeriod);
+        static_cast<uint64_t>((now.time_since_epoch() + kFramePeriod - Duration(1)) / kFramePeriod);
     return {};
   }
   std::optional<Delivery> next_delivery() override {
     if (next_ == last_) return std::nullopt;
-    const Time start(static_cast<int64_t>(next_) * kPeriod);
+    const Time start(static_cast<int64_t>(next_) * kFramePeriod);
     return Delivery{next_++ - first_, start, start, start + kReadout};
   }
   Status draw(const Delivery& delivery, RgbImage& image) override {
@@ -65,8 +65,8 @@ TEST(PacedCamera, DeliversWhenTheFrameIsReadOut) {
   Frame frame;
   for (int k = 0; k < 5; ++k) {
     ASSERT_EQ(camera.next_frame(milliseconds(500), frame), FrameEvent::kFrame);
-    EXPECT_EQ(clock.now(), Time(k * kPeriod + kReadout));
-    EXPECT_EQ(frame.time, Time(k * kPeriod));
+    EXPECT_EQ(clock.now(), Time(k * kFramePeriod + kReadout));
+    EXPECT_EQ(frame.time, Time(k * kFramePeriod));
     EXPECT_EQ(frame.sequence, static_cast<uint64_t>(k));
     EXPECT_EQ(frame.camera, 2);
     EXPECT_EQ(frame.exposure, milliseconds(8));
@@ -112,7 +112,7 @@ TEST(PacedCamera, UnfetchedFramesAreLostAndCounted) {
   VirtualClock clock;
   CountingCamera camera(2, 100, clock);
   ASSERT_TRUE(camera.start());
-  clock.advance(kReadout + 10 * kPeriod);
+  clock.advance(kReadout + 10 * kFramePeriod);
   Frame frame;
   ASSERT_EQ(camera.next_frame(Duration::zero(), frame), FrameEvent::kFrame);
   EXPECT_EQ(frame.sequence, 10U);
@@ -127,7 +127,7 @@ TEST(PacedCamera, DrawingAheadAddsNoLatency) {
   ASSERT_TRUE(camera.start());
   Frame frame;
   for (int k = 0; k < 20; ++k) {
-    ASSERT_EQ(camera.next_frame(2 * kPeriod, frame), FrameEvent::kFrame);
+    ASSERT_EQ(camera.next_frame(2 * kFramePeriod, frame), FrameEvent::kFrame);
     // The first image could not be drawn ahead. Each following frame recovers 10 ms of its delay.
     const Duration delay = milliseconds(std::max(0, 70 - 10 * k));
     EXPECT_EQ(clock.now() - frame.time, kReadout + delay) << k;
@@ -140,12 +140,12 @@ TEST(PacedCamera, AFrameThatTookTooLongToDrawIsLost) {
   CountingCamera camera(2, 100, clock);
   ASSERT_TRUE(camera.start());
   Frame frame;
-  ASSERT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
+  ASSERT_EQ(camera.next_frame(kFramePeriod, frame), FrameEvent::kFrame);
   camera.set_drawing_time(milliseconds(500));
-  EXPECT_EQ(camera.next_frame(3 * kPeriod, frame), FrameEvent::kTimeout);
+  EXPECT_EQ(camera.next_frame(3 * kFramePeriod, frame), FrameEvent::kTimeout);
   camera.set_drawing_time(Duration::zero());
-  ASSERT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
-  EXPECT_LE(clock.now() - frame.time, kPeriod + kReadout);
+  ASSERT_EQ(camera.next_frame(kFramePeriod, frame), FrameEvent::kFrame);
+  EXPECT_LE(clock.now() - frame.time, kFramePeriod + kReadout);
   EXPECT_GT(camera.counters().overrun, 0U);
   EXPECT_EQ(frame.sequence, camera.counters().overrun + 1);
 }
@@ -156,13 +156,13 @@ TEST(PacedCamera, FrameWithoutBufferIsLostAndCounted) {
   ASSERT_TRUE(camera.start());
   std::vector<Frame> held(3);
   for (Frame& frame : held) {
-    ASSERT_EQ(camera.next_frame(kPeriod + kReadout, frame), FrameEvent::kFrame);
+    ASSERT_EQ(camera.next_frame(kFramePeriod + kReadout, frame), FrameEvent::kFrame);
   }
   Frame frame;
-  EXPECT_EQ(camera.next_frame(4 * kPeriod, frame), FrameEvent::kTimeout);
+  EXPECT_EQ(camera.next_frame(4 * kFramePeriod, frame), FrameEvent::kTimeout);
   EXPECT_EQ(camera.counters().no_buffer, 4U);
   held.clear();
-  EXPECT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
+  EXPECT_EQ(camera.next_frame(kFramePeriod, frame), FrameEvent::kFrame);
   EXPECT_EQ(frame.sequence, 7U);
 }
 
@@ -171,9 +171,9 @@ TEST(PacedCamera, ReportsItsEnd) {
   CountingCamera camera(2, 2, clock);
   ASSERT_TRUE(camera.start());
   Frame frame;
-  EXPECT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
-  EXPECT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
-  EXPECT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kEnded);
+  EXPECT_EQ(camera.next_frame(kFramePeriod, frame), FrameEvent::kFrame);
+  EXPECT_EQ(camera.next_frame(kFramePeriod, frame), FrameEvent::kFrame);
+  EXPECT_EQ(camera.next_frame(kFramePeriod, frame), FrameEvent::kEnded);
 }
 
 TEST(PacedCamera, ABrokenFrameIsAnErrorAndTheNextOneIsDelivered) {
@@ -182,11 +182,11 @@ TEST(PacedCamera, ABrokenFrameIsAnErrorAndTheNextOneIsDelivered) {
   camera.break_frame(1);
   ASSERT_TRUE(camera.start());
   Frame frame;
-  ASSERT_EQ(camera.next_frame(kPeriod, frame), FrameEvent::kFrame);
-  const auto broken = camera.next_frame(kPeriod, frame);
+  ASSERT_EQ(camera.next_frame(kFramePeriod, frame), FrameEvent::kFrame);
+  const auto broken = camera.next_frame(kFramePeriod, frame);
   ASSERT_FALSE(broken);
   EXPECT_EQ(broken.error().message, "frame 1 is broken");
-  ASSERT_EQ(camera.next_frame(3 * kPeriod, frame), FrameEvent::kFrame);
+  ASSERT_EQ(camera.next_frame(3 * kFramePeriod, frame), FrameEvent::kFrame);
   EXPECT_EQ(frame.sequence, 2U);
 }
 
@@ -196,7 +196,7 @@ TEST(PacedCamera, FramesMayBeDroppedByAnotherThread) {
   ASSERT_TRUE(camera.start());
   for (int i = 0; i < 50; ++i) {
     Frame frame;
-    ASSERT_EQ(camera.next_frame(2 * kPeriod, frame), FrameEvent::kFrame);
+    ASSERT_EQ(camera.next_frame(2 * kFramePeriod, frame), FrameEvent::kFrame);
     std::thread([i, held = std::move(frame)] { EXPECT_EQ(held.pixels().data[0], i); }).join();
   }
   EXPECT_EQ(camera.counters().no_buffer, 0U);

@@ -10,7 +10,7 @@ namespace bevloc::drivers {
 namespace {
 
 constexpr double kPeriod_s = 0.1;
-constexpr int kBack = 4;
+constexpr int kDrifting = 4;
 
 /// Generates the frame times of six cameras, each with its own phase, rate and jitter.
 class Cameras {
@@ -54,10 +54,10 @@ TEST_P(RateMonitorTest, FindsAndNamesTheCameraThatDriftsBy50Ppm) {
   for (const double ppm : {50.0, -50.0}) {
     RateMonitor monitor;
     Cameras cameras(GetParam(), 2e-4);
-    cameras.set_drift(kBack, ppm);
+    cameras.set_drift(kDrifting, ppm);
     cameras.run(monitor, 0, 160);
-    EXPECT_EQ(drifting(monitor), CameraMask(1U << kBack));
-    EXPECT_NEAR(monitor.drift(kBack)->ppm, ppm, 4.0 * monitor.drift(kBack)->sigma_ppm);
+    EXPECT_EQ(drifting(monitor), CameraMask(1U << kDrifting));
+    EXPECT_NEAR(monitor.drift(kDrifting)->ppm, ppm, 4.0 * monitor.drift(kDrifting)->sigma_ppm);
   }
 }
 
@@ -76,9 +76,9 @@ TEST_P(RateMonitorTest, LostFramesAreNotReportedAsDrift) {
   RateMonitor monitor;
   Cameras cameras(GetParam(), 2e-4);
   cameras.lose_frames(0.3);
-  cameras.set_drift(kBack, 80.0);
+  cameras.set_drift(kDrifting, 80.0);
   cameras.run(monitor, 0, 400);
-  EXPECT_EQ(drifting(monitor), CameraMask(1U << kBack));
+  EXPECT_EQ(drifting(monitor), CameraMask(1U << kDrifting));
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RateMonitorTest, testing::Range<uint64_t>(0, 20));
@@ -86,11 +86,11 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RateMonitorTest, testing::Range<uint64_t>(0, 20)
 TEST(RateMonitor, NeedsSomeFramesForAnEstimate) {
   RateMonitor monitor;
   Cameras cameras(1, 1e-5);
-  cameras.set_drift(kBack, 500.0);
+  cameras.set_drift(kDrifting, 500.0);
   cameras.run(monitor, 0, RateMonitor::kFewest - 1);
   for (int camera = 0; camera < kCameraCount; ++camera) EXPECT_FALSE(monitor.drift(camera));
   cameras.run(monitor, RateMonitor::kFewest - 1, 2 * RateMonitor::kFewest);
-  EXPECT_TRUE(monitor.drift(kBack));
+  EXPECT_TRUE(monitor.drift(kDrifting));
 }
 
 TEST(RateMonitor, NeedsThreeCameras) {
@@ -106,13 +106,13 @@ TEST(RateMonitor, NeedsThreeCameras) {
 TEST(RateMonitor, ForgetsTheDriftAfterAPause) {
   RateMonitor monitor;
   Cameras cameras(3, 1e-5);
-  cameras.set_drift(kBack, 100.0);
+  cameras.set_drift(kDrifting, 100.0);
   cameras.run(monitor, 0, RateMonitor::kWindow);
-  EXPECT_EQ(drifting(monitor), CameraMask(1U << kBack));
-  cameras.set_drift(kBack, 0.0);
+  EXPECT_EQ(drifting(monitor), CameraMask(1U << kDrifting));
+  cameras.set_drift(kDrifting, 0.0);
   constexpr int kAfterPause = RateMonitor::kWindow + 1000;
   cameras.run(monitor, kAfterPause, kAfterPause + 2 * RateMonitor::kFewest);
-  ASSERT_TRUE(monitor.drift(kBack));
+  ASSERT_TRUE(monitor.drift(kDrifting));
   EXPECT_TRUE(drifting(monitor).none());
 }
 
@@ -122,11 +122,11 @@ TEST(RateMonitor, FramesWithoutARateGiveNoEstimate) {
   std::array<double, kCameraCount> time_s{};
   for (int k = 0; k < RateMonitor::kWindow; ++k) {
     for (int camera = 0; camera < kCameraCount; ++camera) {
-      time_s[camera] += camera == kBack ? random.uniform(0.001, 0.5) : kPeriod_s;
+      time_s[camera] += camera == kDrifting ? random.uniform(0.001, 0.5) : kPeriod_s;
       monitor.add(camera, Time(from_seconds(time_s[camera])));
     }
   }
-  EXPECT_FALSE(monitor.drift(kBack));
+  EXPECT_FALSE(monitor.drift(kDrifting));
   EXPECT_TRUE(monitor.drift(0));
 }
 

@@ -17,7 +17,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-constexpr Duration kPeriod = milliseconds(100);
+constexpr Duration kExposurePeriod = milliseconds(100);
 constexpr SynchronizerConfig kConfig{
     .tolerance = milliseconds(2), .wait = milliseconds(60), .min_cameras = 1};
 
@@ -47,7 +47,7 @@ class Feeder {
       synchronizer_.add(frame_of(arrival), arrival.now);
       poll(arrival.now);
     }
-    poll_until(now_ + kPeriod);
+    poll_until(now_ + kExposurePeriod);
   }
 
   const std::vector<Frameset>& sets() const { return sets_; }
@@ -134,7 +134,7 @@ std::vector<Arrival> arrivals_with_faults(sim::Random& random, int camera, int p
   int missed_in_a_row = 0;
   Time newest{};
   for (int k = 1; k <= periods; ++k) {
-    const Time trigger = Time(k * kPeriod);
+    const Time trigger = Time(k * kExposurePeriod);
     const Time time = trigger + microseconds(random.integer(0, 2000));
     const Time usual = time + milliseconds(20) + microseconds(random.integer(0, 15000));
     Injected fault = Injected::kNone;

@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Duration kPeriod = milliseconds(100);
+constexpr Duration kPulsePeriod = milliseconds(100);
 constexpr Duration kWidth = milliseconds(2);
 constexpr Duration kTimeout = milliseconds(50);
 
@@ -37,7 +37,7 @@ class TriggerTest : public testing::Test {
 
   VirtualClock clock_{Time(milliseconds(1000))};
   MockGpio gpio_{{"trigger"}, clock_};
-  Trigger trigger_{open(), clock_, {kPeriod, kWidth}};
+  Trigger trigger_{open(), clock_, {kPulsePeriod, kWidth}};
 };
 
 TEST_F(TriggerTest, GivesAPulsePerPeriod) {
@@ -45,7 +45,7 @@ TEST_F(TriggerTest, GivesAPulsePerPeriod) {
   const auto changes = gpio_.changes("trigger");
   ASSERT_EQ(changes.size(), 8U);
   for (size_t i = 0; i < changes.size(); ++i) {
-    const Time due = Time(milliseconds(1100)) + static_cast<int>(i / 2) * kPeriod;
+    const Time due = Time(milliseconds(1100)) + static_cast<int>(i / 2) * kPulsePeriod;
     EXPECT_EQ(changes[i].high, i % 2 == 0);
     EXPECT_EQ(changes[i].time, i % 2 == 0 ? due : due + kWidth);
   }
@@ -78,9 +78,9 @@ TEST_F(TriggerTest, SkipsMissedPulses) {
 
 TEST_F(TriggerTest, DoesNotDriftOverAnHour) {
   constexpr int kPulses = 36'000;
-  run_until(Time(milliseconds(1000)) + kPulses * kPeriod + kWidth);
+  run_until(Time(milliseconds(1000)) + kPulses * kPulsePeriod + kWidth);
   EXPECT_EQ(trigger_.pulses().count(), static_cast<uint64_t>(kPulses));
-  EXPECT_EQ(rises().back(), Time(milliseconds(1000)) + kPulses * kPeriod);
+  EXPECT_EQ(rises().back(), Time(milliseconds(1000)) + kPulses * kPulsePeriod);
 }
 
 TEST_F(TriggerTest, CountsRefusedPulsesAndDoesNotLogThem) {

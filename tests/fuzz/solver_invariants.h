@@ -2,7 +2,8 @@
 #pragma once
 
 #include "common/result.h"
-#include "pipeline/solver/solver.h"
+#include "pipeline/solver/hypotheses.h"
+#include "pipeline/solver/solver_result.h"
 
 namespace bevloc::fuzz {
 

@@ -28,13 +28,17 @@ def room_of(path: str, rooms: set[str]) -> str | None:
     return max(fitting, key=len) if fitting else None
 
 
+def cxx_files() -> list[str]:
+    command = ["git", "ls-files", "*.h", "*.cpp"]
+    listed = subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True)
+    return listed.stdout.split()
+
+
 class IncludesTest(unittest.TestCase):
     def test_follow_the_table_of_the_architecture(self) -> None:
         allowed = rules()
         self.assertGreaterEqual(len(allowed), 9)
-        listed = subprocess.run(
-            ["git", "ls-files", "*.h", "*.cpp"], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True
-        ).stdout.split()
+        listed = cxx_files()
         wrong = []
         for name in listed:
             room = room_of(name, set(allowed))
@@ -46,9 +50,7 @@ class IncludesTest(unittest.TestCase):
         self.assertEqual(wrong, [], "docs/architecture.md allows none of these")
 
     def test_write_every_path_from_the_root(self) -> None:
-        listed = subprocess.run(
-            ["git", "ls-files", "*.h", "*.cpp"], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True
-        ).stdout.split()
+        listed = cxx_files()
         wrong = [
             f"{name}: {included}"
             for name in listed

@@ -115,8 +115,7 @@ TEST_F(DriveTest, TheSameSeedGivesTheSameLogByteForByte) {
   EXPECT_EQ(read_text(*scratch_ / "can.log"), read_text(again / "can.log"));
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)  // they need several times as much
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // larger there
 TEST_F(DriveTest, StaysWithin120MibWithItsWholeCity) {
   rusage children{};
   ASSERT_EQ(getrusage(RUSAGE_CHILDREN, &children), 0);

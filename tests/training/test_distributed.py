@@ -47,7 +47,7 @@ class TwoProcesses(unittest.TestCase):
             for name, value in first[kind].items():
                 self.assertTrue(torch.equal(value, second[kind][name]), f"{kind}: {name}")
 
-    def test_together_they_read_every_sample_once(self):
+    def test_every_sample_is_read_once(self):
         first, second = (state["positions"] for state in self.ranks)
         self.assertEqual(len(first), len(second))
         self.assertEqual(sorted(first + second), list(range(SAMPLES)))
@@ -60,7 +60,7 @@ class TwoProcesses(unittest.TestCase):
             for parameter, found in zip(model.parameters(), state["gradients"]):
                 torch.testing.assert_close(found, parameter.grad)
 
-    def test_the_first_decides(self):
+    def test_the_first_process_decides(self):
         self.assertEqual([state["first_says"] for state in self.ranks], [10.0, 10.0])
 
     def test_only_the_first_writes_and_another_number_of_processes_cannot_resume(self):
@@ -93,7 +93,7 @@ class Shares(unittest.TestCase):
     def count_of(self, sample: torch.Tensor, samples: list[torch.Tensor]) -> int:
         return sum(torch.equal(sample, other) for other in samples)
 
-    def test_shares_of_a_batch_make_up_the_whole_batch_of_the_simulator(self):
+    def test_the_shares_of_a_batch_make_up_the_simulators_batch(self):
         whole = self.images(4, Share(), 4)
         parts = [sample for rank in (0, 1) for sample in self.images(4, Share(rank, 2), 2)]
         self.assertEqual([self.count_of(sample, parts) for sample in whole], [1] * 4)
@@ -104,7 +104,7 @@ class Shares(unittest.TestCase):
 
 
 class Alone(unittest.TestCase):
-    def test_nothing_is_exchanged(self):
+    def test_one_process_does_not_communicate(self):
         values = torch.tensor([1.0, 2.0])
         alone = Processes()
         alone.average_([values])

@@ -95,7 +95,7 @@ class Export(unittest.TestCase):
         cls.float_model = build_model(cls.net, convolutions, FloatOnnxBackend())
         cls.constants = constants_of(cls.model)
 
-    def test_the_walk_computes_what_the_network_computes(self):
+    def test_the_walk_equals_the_network(self):
         with torch.no_grad():
             expected = float_inference(self.net)(self.batch)
             walked = run(

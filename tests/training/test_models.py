@@ -97,7 +97,7 @@ class Presets(unittest.TestCase):
             expected = [(1, config.channels, *config.bev_size)] * 2 + [(1, 3, 400, 200)] * 2
             self.assertEqual([tuple(output.shape) for output in outputs], expected, config.name)
 
-    def test_the_solvers_know_the_cells(self):
+    def test_the_solvers_use_the_networks_cell_size(self):
         definition = replace(PRESETS["nano"], bev_size=(400, 200)).solver_definition()
         self.assertEqual((definition.rows, definition.cols), (400, 200))
         self.assertAlmostEqual(definition.cell_m, 0.15)
@@ -284,7 +284,7 @@ class DenseViews(unittest.TestCase):
         features += 10.0 * above[:, None]
         torch.testing.assert_close(view(features, *table), before)
 
-    def test_where_image_cells_see_the_ground(self):
+    def test_ground_positions_of_image_cells(self):
         # The camera looks forward from 1.5 m height; the horizon is between rows 3 and 4 of 8.
         pose = torch.tensor([[0.0, 0, 1, 2], [-1, 0, 0, 0.5], [0, -1, 0, 1.5], [0, 0, 0, 1]])
         camera = Camera(10.0, 10.0, 3.5, 3.5, pose)

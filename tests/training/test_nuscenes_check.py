@@ -43,7 +43,7 @@ class Check(unittest.TestCase):
         self.assertIn("6 samples: 1 bad (1 missing file)", done.stdout)
         self.assertRegex(done.stderr, "bad sample sample-0-1: .*0-1.jpg: found no such file")
 
-    def test_a_bad_tree_is_refused_in_a_sentence(self):
+    def test_a_bad_tree_is_refused_with_one_line(self):
         (self.root / VERSION / "scene.json").unlink()
         done = self.check()
         self.assertEqual((done.returncode, done.stdout), (2, ""))

@@ -70,7 +70,7 @@ def centroid(plane: np.ndarray) -> np.ndarray:
 
 
 class ViewTable(unittest.TestCase):
-    def test_it_is_the_native_one_on_the_simulated_rig(self):
+    def test_equals_the_native_table_on_the_simulated_rig(self):
         features = torch.randn(6, 4, 12, 40, generator=torch.Generator().manual_seed(3))
         cameras, motions = nominal_cameras()
         for mask in (ALL_CAMERAS, 0b101101, 0b000010, 0):
@@ -187,7 +187,7 @@ class Motion(Tree):
         assert then is not None and now is not None
         self.assertGreater(math.dist(then, now), 5.0)
 
-    def test_the_pose_is_that_of_the_lidar(self):
+    def test_the_pose_is_the_one_at_the_lidars_time(self):
         pose = self.dataset().map_from_vehicle("sample-1-2")
         place, _ = ego_pose(1, 2, 0)
         np.testing.assert_allclose((pose.x_m, pose.y_m), place[:2])
@@ -205,15 +205,15 @@ class Prior(Tree):
         np.testing.assert_array_equal(prior, truth)
         self.assertEqual((truth > 0).any((1, 2)).tolist(), [True] * 3)
 
-    def test_from_a_prior_that_lags_the_map_is_further_ahead(self):
+    def test_a_prior_too_far_behind_sees_the_map_further_ahead(self):
         prior, truth = self.rasters(1.5, 0, 0)
         np.testing.assert_allclose(prior[:, :-10], truth[:, 10:], rtol=0, atol=1)
 
-    def test_from_a_prior_too_far_right_the_map_is_further_left(self):
+    def test_a_prior_too_far_right_sees_the_map_further_left(self):
         prior, truth = self.rasters(0, 0.75, 0)
         np.testing.assert_allclose(prior[:, :, :-5], truth[:, :, 5:], rtol=0, atol=1)
 
-    def test_a_prior_that_is_turned_obeys_the_papers_equation(self):
+    def test_a_rotated_prior_follows_the_papers_equation(self):
         deviation = (1.2, -0.6, math.radians(1.7))
         prior, truth = self.rasters(*deviation)
         rows, cols = np.nonzero(truth[0] == 255)
@@ -225,7 +225,7 @@ class Prior(Tree):
         self.assertGreater(inside.sum(), 1000)
         self.assertGreater((prior[0, row[inside], col[inside]] > 60).mean(), 0.99)
 
-    def test_a_camera_that_is_dropped_is_black_and_unused(self):
+    def test_a_dropped_camera_is_black_and_not_in_the_view_table(self):
         sample = self.dataset().sample(0, NO_DEVIATION, camera_mask=0b111101)
         self.assertEqual(sample.images[1].max(), 0)
         self.assertGreater(sample.images[0].max(), 0)
@@ -242,22 +242,22 @@ class BadSamples(Tree):
             dataset.sample(1, NO_DEVIATION)
         dataset.sample(3, NO_DEVIATION)
 
-    def test_a_missing_image(self):
+    def test_a_missing_image_is_refused(self):
         (self.root / self.IMAGE).unlink()
         self.refuse(MissingFileError, "CAM_BACK__0-1.jpg: found no such file")
 
-    def test_an_image_of_another_size(self):
+    def test_an_image_of_another_size_is_refused(self):
         spot_image([], (160, 90)).save(self.root / self.IMAGE)
         self.refuse(WrongSizeError, "CAM_BACK__0-1.jpg: found 160x90 pixels, wanted 320x180")
 
-    def test_an_image_that_is_cut_off(self):
+    def test_a_truncated_image_is_refused(self):
         path = self.root / self.IMAGE
         path.write_bytes(path.read_bytes()[:600])
         self.refuse(UnreadableImageError, "CAM_BACK__0-1.jpg: unreadable as an image")
         path.write_text("no image at all")
         self.refuse(UnreadableImageError, "CAM_BACK__0-1.jpg: unreadable as an image")
 
-    def test_a_pose_that_does_not_exist(self):
+    def test_an_unknown_pose_is_refused(self):
         self.edit("sample_data", "data-CAM_BACK-0-1", "ego_pose_token", "lost")
         self.refuse(MissingTokenError, "ego_pose.json: found no token 'lost', wanted by sample_")
 
@@ -270,12 +270,12 @@ class BadSamples(Tree):
         path.unlink()
         self.refuse(MissingFileError, "onenorth.json: cannot be opened")
 
-    def test_a_camera_without_intrinsics(self):
+    def test_a_camera_without_intrinsics_is_refused(self):
         self.edit("calibrated_sensor", "calibrated-CAM_BACK", "camera_intrinsic", [])
         with self.assertRaisesRegex(CalibrationError, "'calibrated-CAM_BACK': found no camera_int"):
             self.dataset().sample(1, NO_DEVIATION)
 
-    def test_a_line_width_that_is_no_width(self):
+    def test_an_invalid_line_width_is_refused(self):
         with self.assertRaisesRegex(ValueError, "line width: found 0"):
             NuscenesDataset(self.root, line_width_cells=0)
 
@@ -349,7 +349,7 @@ class Stream(Tree):
         with self.assertRaisesRegex(MissingFileError, "sample sample-0-1: .*CAM_BACK__0-1.jpg"):
             self.stream(on_error="refuse").next(self.SAMPLES)
 
-    def test_bad_samples_are_skipped_named_and_counted(self):
+    def test_bad_samples_are_skipped_reported_and_counted(self):
         (self.root / BadSamples.IMAGE).unlink()
         self.edit("sample_data", "data-CAM_FRONT-1-0", "ego_pose_token", "lost")
         stream = self.stream(on_error="skip")
@@ -364,7 +364,7 @@ class Stream(Tree):
         tail = {name: value[2 * self.SAMPLES :] for name, value in vars(whole).items()}
         self.assert_same(Batch(**tail), resumed)
 
-    def test_nothing_but_bad_samples_is_refused(self):
+    def test_a_data_set_without_good_samples_is_refused(self):
         for location in ("singapore-onenorth", "boston-seaport"):
             (self.root / f"maps/expansion/{location}.json").unlink()
         with self.assertRaisesRegex(NuscenesError, "no good sample: 6 bad .6 missing"):

@@ -86,7 +86,7 @@ class Contour(unittest.TestCase):
 
 
 class Clipping(unittest.TestCase):
-    def test_segments_end_at_the_box(self):
+    def test_segments_are_clipped_to_the_box(self):
         segments = [
             [[-5, 0.5], [5, 0.5]],
             [[0, 0], [0, 0.2]],
@@ -105,7 +105,7 @@ class Clipping(unittest.TestCase):
 
 
 class Drawing(unittest.TestCase):
-    def test_a_line_is_as_wide_as_asked_and_as_the_appliance_draws_it(self):
+    def test_line_width_and_profile_match_the_appliance(self):
         line = np.array([[[-20.0, 0.0], [20.0, 0.0]]])  # between columns 99 and 100
         for width, expected in ((5, [0, 128, 255, 255]), (8, [255, 255, 255, 255])):
             raster = draw([line], width)
@@ -131,7 +131,7 @@ class Drawing(unittest.TestCase):
         distance = np.hypot(x - (-29 + 58 * part), y - (-14 + 28 * part))
         self.assertLessEqual(distance.max(), 3 * 0.15)
 
-    def test_nothing_gives_an_empty_raster(self):
+    def test_no_segments_give_an_empty_raster(self):
         self.assertEqual(draw([np.empty((0, 2, 2))] * 3, 5).sum(), 0)
 
 
@@ -191,7 +191,7 @@ class Layers(Maps):
         expected = self.drawn[:, :-20, 10:].astype(int)
         np.testing.assert_allclose(moved[:, 20:, :-10], expected, rtol=0, atol=1)
 
-    def test_far_away_there_is_nothing(self):
+    def test_the_raster_is_empty_far_from_the_map(self):
         self.assertEqual(self.raster(Se2(0.0, 0.0, 0.0)).sum(), 0)
 
 
@@ -210,35 +210,35 @@ class BadMaps(Maps):
         with self.assertRaisesRegex(UnreadableJsonError, "seaport.json: line 2, column 1"):
             MapExpansion(self.path)
 
-    def test_a_line_that_does_not_exist(self):
+    def test_an_unknown_line_is_refused(self):
         self.refuse(
             MissingTokenError,
             "seaport.json: lane_divider 1: found no line 'lost' of line_token",
             lambda m: m["lane_divider"][1].update(line_token="lost"),
         )
 
-    def test_a_polygon_that_does_not_exist(self):
+    def test_an_unknown_polygon_is_refused(self):
         self.refuse(
             MissingTokenError,
             "ped_crossing 0: found no polygon 'lost'",
             lambda m: m["ped_crossing"][0].update(polygon_token="lost"),
         )
 
-    def test_a_node_that_does_not_exist(self):
+    def test_an_unknown_node_is_refused(self):
         self.refuse(
             MissingTokenError,
             "line 2: found no node 'lost' of node_tokens",
             lambda m: m["line"][2]["node_tokens"].append("lost"),
         )
 
-    def test_a_layer_that_is_not_there(self):
+    def test_a_missing_layer_is_refused(self):
         self.refuse(
             WrongTypeError,
             "found no 'road_divider', wanted a list of objects",
             lambda m: m.pop("road_divider"),
         )
 
-    def test_a_coordinate_that_is_no_number(self):
+    def test_an_invalid_coordinate_is_refused(self):
         self.refuse(
             WrongTypeError,
             "node 3: 'x' is null, wanted a number",

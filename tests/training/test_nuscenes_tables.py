@@ -34,7 +34,7 @@ class Arrays(unittest.TestCase):
         self.path.write_text(text)
         return [record.values for record in read_array(self.path)]
 
-    def test_any_cut_into_chunks_reads_the_same(self):
+    def test_the_chunk_size_does_not_matter(self):
         text = '[\n{"a": "x,]}"},\n {"a": [1, {"b": 2.5}]} ,{}\n]\n'
         expected = [{"a": "x,]}"}, {"a": [1, {"b": 2.5}]}, {}]
         for chunk in (1, 2, 3, 7, 2**20):
@@ -42,7 +42,7 @@ class Arrays(unittest.TestCase):
                 self.assertEqual(self.read(text), expected)
         self.assertEqual(self.read("[]"), [])
 
-    def test_nonsense_is_refused_with_its_place(self):
+    def test_invalid_json_is_refused_with_its_place(self):
         for text, place in (
             ("", "line 1, column 1:"),
             ('{"a": 1}', "line 1, column 1:"),
@@ -57,12 +57,12 @@ class Arrays(unittest.TestCase):
                     with self.assertRaisesRegex(UnreadableJsonError, f"table.json: {place}"):
                         self.read(text)
 
-    def test_what_is_no_text_is_refused(self):
+    def test_invalid_utf8_is_refused(self):
         self.path.write_bytes(b'[{"a": "\xff"}]')
         with self.assertRaisesRegex(UnreadableJsonError, "table.json: invalid UTF-8"):
             list(read_array(self.path))
 
-    def test_what_is_no_object_is_refused(self):
+    def test_a_record_that_is_not_an_object_is_refused(self):
         with self.assertRaisesRegex(WrongTypeError, "record 1: found 5, wanted an object"):
             self.read("[{}, 5]")
 
@@ -106,7 +106,7 @@ class Tree(unittest.TestCase):
 
 
 class Tables(Tree):
-    def test_key_frames_of_cameras_and_lidar_alone_are_kept(self):
+    def test_only_key_frames_of_cameras_and_lidar_are_kept(self):
         tables = load_tables(self.folder)
         self.assertEqual(
             list(tables.sample), [f"sample-{scene}-{i}" for scene in (0, 1) for i in (0, 1, 2)]
@@ -118,7 +118,7 @@ class Tables(Tree):
         self.assertEqual(len(tables.ego_pose), 6 * 7)
         self.assertEqual(tables.location("sample-1-2"), "boston-seaport")
 
-    def test_a_split_keeps_its_scenes_alone(self):
+    def test_a_split_selects_its_scenes(self):
         split = self.root / "split.txt"
         split.write_text("# validation\n\n  scene-0002  # boston\n")
         self.assertEqual(read_scene_names(split), ["scene-0002"])
@@ -126,7 +126,7 @@ class Tables(Tree):
         self.assertEqual(list(tables.sample), [f"sample-1-{i}" for i in range(3)])
         self.assertEqual(len(tables.ego_pose), 3 * 7)
 
-    def test_a_split_that_names_nothing_known_is_refused(self):
+    def test_a_split_with_unknown_scenes_is_refused(self):
         with self.assertRaisesRegex(MissingSceneError, "scene.json: found no scene named scene-9"):
             load_tables(self.folder, ["scene-0001", "scene-9"])
         split = self.root / "split.txt"
@@ -136,7 +136,7 @@ class Tables(Tree):
         with self.assertRaisesRegex(MissingFileError, "absent.txt"):
             read_scene_names(self.root / "absent.txt")
 
-    def test_the_folder_of_the_tables_is_found_or_asked_for(self):
+    def test_the_version_must_be_unambiguous(self):
         self.assertEqual(find_version(self.root), self.folder)
         (self.root / "v1.0-trainval").mkdir()
         with self.assertRaisesRegex(MissingFileError, "found v1.0-mini, v1.0-trainval, wanted one"):
@@ -165,7 +165,7 @@ class Tables(Tree):
 
 
 class MissingTokens(Tree):
-    def test_the_sample_of_an_unknown_calibration_is_a_defect(self):
+    def test_a_sample_with_an_unknown_calibration_is_defective(self):
         self.edit("sample_data", "data-CAM_BACK-0-1", "calibrated_sensor_token", "lost")
         tables = load_tables(self.folder)
         with self.assertRaisesRegex(

@@ -49,13 +49,13 @@ class QuantizationAwareTraining(unittest.TestCase):
     def loss(self, network: FakeQuantized) -> float:
         return fine_tuning_loss(network(self.batch), self.net.solvers, self.batch).item()
 
-    def test_it_computes_what_the_int8_network_computes(self):
+    def test_equals_the_int8_network(self):
         expected = int8_inference(self.net, self.quantization)(self.batch)
         found = FakeQuantized(self.net, self.quantization)(self.batch)
         for a, b in zip(found, expected):
             self.assertTrue(torch.equal(a.detach(), b))
 
-    def test_every_weight_has_a_gradient_but_the_clipped_ones(self):
+    def test_all_weights_except_clipped_ones_have_a_gradient(self):
         for quantized in self.quantization.quantized.values():
             quantized.scale = 0.5 * quantized.scale
         network = FakeQuantized(self.net, self.quantization)
@@ -74,7 +74,7 @@ class QuantizationAwareTraining(unittest.TestCase):
         fine_tune(network, SameBatch(self.batch), steps=6, batch_size=1, rate=1e-3)
         self.assertLess(self.loss(network), before - 0.1)
 
-    def test_what_was_trained_is_what_is_exported(self):
+    def test_the_export_equals_the_trained_network(self):
         network = self.coarse()
         fine_tune(network, SameBatch(self.batch), steps=1, batch_size=1, rate=1e-3)
         trained = [output.detach() for output in network(self.batch)]

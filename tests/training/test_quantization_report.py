@@ -36,7 +36,7 @@ class LayerErrors(unittest.TestCase):
         cls.after = {e.name: e for e in layer_errors(net, quantization, batches)}
         cls.quantization = quantization
 
-    def test_every_layer_is_there(self):
+    def test_every_layer_is_reported(self):
         self.assertEqual(set(self.before), {"view", *self.quantization.convolutions})
 
     def test_a_layer_has_no_effect_on_the_other_branch(self):
@@ -45,7 +45,7 @@ class LayerErrors(unittest.TestCase):
         self.assertTrue(math.isinf(self.before[OF_THE_MAP].bev_db))
         self.assertFalse(math.isinf(self.before[OF_THE_MAP].map_db))
 
-    def test_a_last_layer_alone_is_its_own_effect_on_the_features(self):
+    def test_the_error_of_a_last_layer_is_its_effect_on_the_features(self):
         bev, of_map = (self.before[f"{side}_compress.3.second"] for side in ("bev", "map"))
         self.assertAlmostEqual(bev.alone_db, bev.bev_db, places=3)
         self.assertAlmostEqual(of_map.alone_db, of_map.map_db, places=3)

@@ -81,7 +81,7 @@ class Written(unittest.TestCase):
         self.assertTrue(first.startswith("before\n") and first.endswith(f"{END}\nafter\n"))
         self.assertNotIn("old", first)
         self.assertIn("| Lateral (m) |", first)
-        self.assertIn("12,000 samples", first)
+        self.assertIn("last run: 12,000", first)
         write_results(self.models, "nano", self.results)
         self.assertEqual(card.read_text(), first)
         saved = json.loads((self.models / "nano_results.json").read_text())

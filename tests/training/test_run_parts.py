@@ -78,7 +78,7 @@ class Patiences(unittest.TestCase):
             patience.watch({figure: value}, 100 * i)
         return patience
 
-    def test_errors_should_fall_and_overlap_should_rise(self):
+    def test_lower_errors_and_higher_iou_are_improvements(self):
         rising = [0.1, 0.2, 0.3]
         self.assertTrue(self.watched("joint_x_mae", rising).exhausted)
         self.assertFalse(self.watched("iou_divider", rising).exhausted)
@@ -94,7 +94,7 @@ class Patiences(unittest.TestCase):
         patience.watch({"joint_x_mae": 0.1}, 300)
         self.assertTrue(patience.exhausted)
 
-    def test_another_figure_is_counted_anew(self):
+    def test_the_count_restarts_for_another_figure(self):
         patience = Patience("iou_divider", 2)
         patience.resume(self.watched("joint_x_mae", [0.1, 0.2]).state())
         self.assertEqual((patience.best, patience.waited), (None, 0))
@@ -116,7 +116,7 @@ class Checkpoints(unittest.TestCase):
         state = {"model": weights, "ema": weights, "samples": 0, "config": config}
         torch.save(state, self.path)
 
-    def test_a_network_comes_back_as_it_was_chosen(self):
+    def test_the_chosen_network_is_restored(self):
         config = {"network": "small", "view": "lut"}
         network = BevNetwork(network_of({"config": config}, self.path))
         self.write(network, config)

@@ -37,7 +37,7 @@ def native(net: BevNetwork) -> NativeNetwork:
 
 
 class Sampler(unittest.TestCase):
-    def test_an_open_sampler_does_not_break_the_exit(self):
+    def test_the_program_exits_cleanly_with_an_open_sampler(self):
         ended = subprocess.run([sys.executable, "-c", LEAVES_A_SAMPLER_OPEN], timeout=240)
         self.assertEqual(ended.returncode, 0)
 

@@ -111,7 +111,7 @@ class YawScores(unittest.TestCase):
             self.assertAlmostEqual(scores[k].item(), expected.item(), delta=1e-4)
 
     @torch.no_grad()
-    def test_signature_ignores_translation_of_a_windowed_pattern(self):
+    def test_the_signature_is_invariant_to_translation(self):
         blob = torch.zeros(1, 1, 100, 50)
         blob[..., 45:50, 20:24] = 1.0
         signature = YawSignature()

@@ -96,7 +96,7 @@ class FiniteDifferences(unittest.TestCase):
         for kind in DISTRIBUTIONS:
             self.check(kind, dict(zip(("bev", "map"), self.sides)))
 
-    def test_gradients_of_what_is_learned_equal_finite_differences(self):
+    def test_gradients_of_the_parameters_equal_finite_differences(self):
         learned = dict(self.solvers.named_parameters())
         for kind, names in LEARNED.items():
             self.check(kind, {name: learned[name] for name in names})

@@ -52,7 +52,7 @@ class Hypotheses(unittest.TestCase):
 
 
 class Move(unittest.TestCase):
-    def test_whole_cells_shift_exactly_and_zeros_follow(self):
+    def test_whole_cells_shift_exactly_and_are_filled_with_zeros(self):
         bev, _ = standardised(0)
         correction = torch.tensor([[[0.6, -1.2, 0.0]]]).expand(2, 1, 3)
         moved = move(bev, correction, 0.6)[:, :, 0]
@@ -66,14 +66,14 @@ class Move(unittest.TestCase):
 
 
 class Lattice(unittest.TestCase):
-    def test_as_many_rows_as_the_step_hold_every_column_once(self):
+    def test_every_column_occurs_once_in_step_many_rows(self):
         for lattice in (EVERY_CELL, EVERY_SECOND_CELL, EVERY_TENTH_CELL):
             mask = lattice.mask(3 * lattice.step, 50)
             held = mask.unflatten(0, (3, -1)).sum(1)
             self.assertEqual(held.unique().tolist(), [1])
             self.assertTrue(mask[0, 0])
 
-    def test_rows_begin_further_on_by_the_skew(self):
+    def test_each_row_starts_further_right_by_the_skew(self):
         mask = EVERY_TENTH_CELL.mask(5, 20)
         self.assertEqual([row.nonzero()[0].item() for row in mask], [0, 3, 6, 9, 2])
 
@@ -87,14 +87,14 @@ class Zncc(unittest.TestCase):
             expected = torch.corrcoef(torch.stack([side.flatten() for side in pair]))[0, 1]
             self.assertAlmostEqual(found[i].item(), expected.item(), places=9)
 
-    def test_of_a_constant_side_is_zero(self):
+    def test_a_constant_side_gives_zero(self):
         _, features_map = random_features(3)
         scores = moved_zncc(torch.zeros_like(features_map), features_map, torch.zeros(1, 1, 3), 0.6)
         self.assertEqual(scores.abs().max().item(), 0.0)
 
 
 class FullFft(unittest.TestCase):
-    def test_equals_warping_where_nothing_turns(self):
+    def test_equals_warping_without_rotation(self):
         for x_step_m, y_step_m in ((0.3, 0.4), (0.25, 0.1), (0.6, 0.2)):
             definition = dataclasses.replace(
                 SMALL, x_step_m=x_step_m, y_step_m=y_step_m, yaw_range_rad=1e-9, yaw_step_rad=1e-9
@@ -109,7 +109,7 @@ class FullFft(unittest.TestCase):
 
 
 class Block(unittest.TestCase):
-    def test_equals_the_run_time(self):
+    def test_equals_the_native_code(self):
         sides = standardised(6, DEFINITION)
         found = block_scores(*sides)
         expected = joint_volume(sides[0].float(), sides[1].float())
@@ -148,13 +148,13 @@ class Banded(unittest.TestCase):
 
 
 class Gem(unittest.TestCase):
-    def test_exponents_reach_from_the_mean_towards_the_greatest(self):
+    def test_exponents_lead_from_the_mean_to_the_maximum(self):
         values = torch.rand(4, 30, generator=torch.Generator().manual_seed(2)).double() + 0.01
         for omega in (1.0, 3.0, 40.0):
             found = gem(values, torch.tensor(omega).double(), 1, 1e-6)
             torch.testing.assert_close(found, values.pow(omega).mean(1).pow(1 / omega))
 
-    def test_negative_values_count_as_the_least(self):
+    def test_negative_values_are_clamped(self):
         found = gem(torch.full((1, 5), -2.0), torch.tensor(12.0), 1, 1e-6)
         self.assertAlmostEqual(found.item(), 1e-6, delta=1e-9)
 

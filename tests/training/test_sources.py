@@ -32,7 +32,7 @@ class Sources(unittest.TestCase):
         cls.root = Path(folder.name)
         write_tree(cls.root)
 
-    def test_nuscenes_takes_the_place_of_the_simulator(self):
+    def test_nuscenes_replaces_the_simulator(self):
         config = TrainingConfig(nuscenes=str(self.root), drop_camera_probability=0.0)
         stream = training_stream(config, 0)
         first, second = stream.next(2), stream.next(2)

@@ -61,8 +61,8 @@ class LoweringState {
   int define_value(const Node& node, const std::array<int64_t, 4>& dims,
                    ElementType type = ElementType::kFloat32, float scale = 1.0F);
 
-  /// Defines the node's output as another name for the elements of its input 0: whoever reads the
-  /// output reads the input.
+  /// Defines the node's output as another name for the elements of its input 0. A read of the
+  /// output counts as a read of the input.
   void define_alias(const Node& node, Symbol symbol);
 
   /// The symbol or the constant of a name; null if there is none.

@@ -31,8 +31,8 @@ Result<NetworkCost> network_cost(const std::string& path);
 
 namespace nn {
 
-/// Cost of the steps that compute `output`, without the steps that also compute the output `done`
-/// (if it is not empty).
+/// Cost of the steps that `output` needs, without the steps that the output `done` also needs. An
+/// empty `done` excludes nothing.
 BranchCost cost_of_branch(const Program& program, const std::string& output,
                           const std::string& done = {});
 

@@ -18,7 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.bench.document import ROOT, bevloc_program, write_table
+from evaluation.figures.program import bevloc_program
+from tests.bench.document import ROOT, write_table
 from tests.training.onnxruntime_check import modules_folder, what_is_missing
 from training.data import view_table
 from training.errors import run_program

@@ -1,21 +1,18 @@
 #include "can/e2e/e2e_p02.h"
 
 #include <string_view>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "can/e2e/e2e.h"
 #include "can/messages/message_table.h"
+#include "tests/can/e2e/test_frames.h"
 
 namespace bevloc::can {
 namespace {
 
-Frame frame_of(std::vector<uint8_t> bytes) {
-  Frame frame{.id = 0x123, .length = static_cast<uint8_t>(bytes.size())};
-  std::copy(bytes.begin(), bytes.end(), frame.data.begin());
-  return frame;
-}
+using test::flip;
+using test::frame_of;
 
 Frame protected_frame(const can::Message& message, uint8_t counter) {
   Frame frame = blank_frame(message, BaseIds{});
@@ -26,10 +23,6 @@ Frame protected_frame(const can::Message& message, uint8_t counter) {
 
 bool is_rejected(const Frame& frame, const can::Message& message) {
   return !is_usable(E2eChecker(message.protection(), message.length).check(frame));
-}
-
-void flip(Frame& frame, int bit) {
-  frame.data[bit / 8] ^= static_cast<uint8_t>(1u << (bit % 8));
 }
 
 TEST(Crc8H2f, HasThePublishedCheckValue) {

@@ -8,27 +8,21 @@
 
 #include "can/e2e/e2e.h"
 #include "can/messages/message_table.h"
+#include "tests/can/e2e/test_frames.h"
 
 namespace bevloc::can {
 namespace {
 
-const Message& kSolution = loc_solution::kMessage;
+using test::flip;
+using test::frame_of;
 
-Frame frame_of(const std::vector<uint8_t>& bytes) {
-  Frame frame{.id = 0x123, .length = static_cast<uint8_t>(bytes.size())};
-  std::ranges::copy(bytes, frame.data.begin());
-  return frame;
-}
+const Message& kSolution = loc_solution::kMessage;
 
 Frame protected_solution() {
   Frame frame = blank_frame(kSolution, BaseIds{});
   for (size_t i = 3; i < frame.length; ++i) frame.data[i] ^= static_cast<uint8_t>(37 * i);
   protect_p05(frame, kSolution.data_id, 5);
   return frame;
-}
-
-void flip(Frame& frame, int bit) {
-  frame.data[bit / 8] ^= static_cast<uint8_t>(1u << (bit % 8));
 }
 
 /// For each bit, the change of the code word's remainder when this bit is flipped. A change of 0

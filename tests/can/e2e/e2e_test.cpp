@@ -1,21 +1,15 @@
 #include "can/e2e/e2e.h"
 
-#include <algorithm>
-#include <vector>
-
 #include <gtest/gtest.h>
 
 #include "can/e2e/e2e_p02.h"
 #include "can/messages/message_table.h"
+#include "tests/can/e2e/test_frames.h"
 
 namespace bevloc::can {
 namespace {
 
-Frame frame_of(const std::vector<uint8_t>& bytes) {
-  Frame frame{.id = 0x123, .length = static_cast<uint8_t>(bytes.size())};
-  std::ranges::copy(bytes, frame.data.begin());
-  return frame;
-}
+using test::frame_of;
 
 TEST(E2e, NoMessageIsAcceptedAsAnother) {
   for (const Message* sent : kMessages) {

@@ -20,11 +20,10 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using test::kNan;
+using test::kNow;
+using test::kOrigin;
 using test::tracking_report;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr GeodeticPosition kOrigin{49.0069, 8.4037};
-const Time kNow(seconds(5000));
 
 /// Reads the bus as a consumer does, with only the DBC file.
 class PosePublisherTest : public testing::Test {

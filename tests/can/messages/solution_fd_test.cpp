@@ -14,11 +14,10 @@ namespace bevloc::can {
 namespace {
 
 using std::chrono::milliseconds;
-
-const Time kNow(milliseconds(5000));
+using test::kNow;
 
 /// A report with a Why bit.
-PoseReport tracking_report() {
+PoseReport report_with_reason() {
   PoseReport report = test::tracking_report(kNow);
   report.status.why = Why::kGnssMissing;
   return report;
@@ -28,7 +27,7 @@ std::map<uint32_t, Frame> published(FrameFormat format, const PoseReport& report
   MockWire wire;
   const auto sender = wire.connect();
   const auto reader = wire.connect();
-  PosePublisher(*sender, {.map_origin = {49.0069, 8.4037}, .format = format}).publish(report, kNow);
+  PosePublisher(*sender, {.map_origin = test::kOrigin, .format = format}).publish(report, kNow);
   std::map<uint32_t, Frame> frames;
   while (const auto received = reader->receive()) frames[received->frame.id] = received->frame;
   return frames;
@@ -58,19 +57,19 @@ void expect_same_content(const PoseReport& report) {
 }
 
 TEST(SolutionFd, HasTheContentOfTheClassicFrames) {
-  expect_same_content(tracking_report());
+  expect_same_content(report_with_reason());
 }
 
 TEST(SolutionFd, HasSnaWhereTheClassicFramesHaveSna) {
   expect_same_content(PoseReport{});
-  PoseReport stale = tracking_report();
+  PoseReport stale = report_with_reason();
   stale.pose_time = kNow - milliseconds(500);
   expect_same_content(stale);
 }
 
 TEST(SolutionFd, SplittingReturnsTheJoinedFrames) {
   const BaseIds base;
-  PoseReport report = tracking_report();
+  PoseReport report = report_with_reason();
   GeoReference geo({49.0, 8.4});
   const LocalizerStatus status = status_to_send(report, {}, kNow);
   const Frame first = status_frame(status, base);
@@ -85,7 +84,7 @@ TEST(SolutionFd, SplittingReturnsTheJoinedFrames) {
 TEST(SolutionFd, APublisherListsTheIdentifiersThatItSends) {
   for (const FrameFormat format : {FrameFormat::kClassic, FrameFormat::kFd}) {
     const auto ids = PosePublisher::sent_ids(BaseIds{}, format);
-    const auto frames = published(format, tracking_report());
+    const auto frames = published(format, report_with_reason());
     EXPECT_EQ(ids.size(), frames.size());
     for (const uint32_t id : ids) EXPECT_TRUE(frames.contains(id)) << id;
   }

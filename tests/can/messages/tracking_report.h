@@ -1,9 +1,16 @@
-// A report of an appliance in state TRACKING, for tests.
+// A time, a map origin and a report of an appliance in state TRACKING, for the tests of messages.
 #pragma once
 
+#include <limits>
+
+#include "can/messages/geo_reference.h"
 #include "can/messages/pose_report.h"
 
 namespace bevloc::test {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr can::GeodeticPosition kOrigin{49.0069, 8.4037};
+inline constexpr Time kNow(std::chrono::seconds(5000));
 
 inline can::PoseReport tracking_report(Time now) {
   can::PoseReport report;

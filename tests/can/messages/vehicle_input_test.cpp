@@ -1,7 +1,6 @@
 #include "can/messages/vehicle_input.h"
 
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 
@@ -9,17 +8,17 @@
 
 #include "can/e2e/e2e_p02.h"
 #include "can/messages/vehicle_encoder.h"
+#include "tests/can/messages/tracking_report.h"
 
 namespace bevloc::can {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
+using test::kNan;
+using test::kNow;
+using test::kOrigin;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr GeodeticPosition kOrigin{49.0069, 8.4037};
 constexpr double kTrack_m = 1.6;
-const Time kNow(seconds(100));
 
 template <typename Sample>
 bool holds(const std::optional<VehicleSample>& sample) {

@@ -1,4 +1,4 @@
-// Reads the keys of real cameras, and makes these cameras.
+// Tests the configuration of real cameras, and the factory that makes them.
 #include "firmware/config/camera_devices_config.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::string error_of(const std::string& text) {
   return finished ? "" : finished.error().message;
 }
 
-CameraDevicesConfig read(const std::string& text) {
+CameraDevicesConfig read_devices(const std::string& text) {
   auto yaml = YamlMap::parse(text, "test");
   EXPECT_TRUE(yaml);
   const CameraDevicesConfig config = read_camera_devices(*yaml);
@@ -30,7 +30,7 @@ CameraDevicesConfig read(const std::string& text) {
 }
 
 TEST(CameraDevicesConfig, NeedsOnlyTheIds) {
-  const CameraDevicesConfig config = read(kIds);
+  const CameraDevicesConfig config = read_devices(kIds);
   EXPECT_EQ(config.ids[0], "c0");
   EXPECT_EQ(config.ids[5], "c5");
   EXPECT_EQ(config.formats.front(), PixelFormat::kNv12);
@@ -40,11 +40,11 @@ TEST(CameraDevicesConfig, NeedsOnlyTheIds) {
 }
 
 TEST(CameraDevicesConfig, EveryKeyReachesTheDriver) {
-  const CameraDevicesConfig config =
-      read(kIds +
-           "formats: [mjpeg, bayer_grbg]\nrate_hz: 12.5\nmemory: dmabuf\nexposure_ms: 8\n"
-           "readout_ms: 20\ncontrols: [{name: auto_exposure, value: 1}, {name: AnalogueGain, "
-           "value: 2.5}]");
+  const CameraDevicesConfig config = read_devices(
+      kIds +
+      "formats: [mjpeg, bayer_grbg]\nrate_hz: 12.5\nmemory: dmabuf\nexposure_ms: 8\n"
+      "readout_ms: 20\ncontrols: [{name: auto_exposure, value: 1}, {name: AnalogueGain, "
+      "value: 2.5}]");
   EXPECT_EQ(config.memory, CameraMemory::kDmabuf);
   Rig rig;
   rig.cameras[4].intrinsics.width_px = 640;

@@ -219,7 +219,7 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
       {with("{driver: mock}", "{driver: mock, interface: can0}"), 7, "can.interface"},
       {with("{driver: mock}", "{driver: socketcan}"), 7, "can.interface"},
       {with("{driver: mock}", "{driver: mock, variant: xl}"), 7, "can.variant"},
-      {kSmallest + "solver: {kind: quick}\n", 9, "solver.kind"},
+      {kSmallest + "solver: {kind: quick}\n", 9, "solver.kind: found quick, wanted one of full, "},
       {kSmallest + "solver: {tracking: {x_range_m: 1, x_step_m: 2}}\n", 9,
        "solver.tracking.x_step_m"},
       {kSmallest + "solver: {acquiring: {y_range_m: 7.6}}\n", 9,

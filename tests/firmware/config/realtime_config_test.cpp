@@ -1,4 +1,4 @@
-// Reads the section `realtime`.
+// Tests the section `realtime` of the configuration.
 #include "firmware/config/realtime_config.h"
 
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 using testing::StartsWith;
 
 /// Returns the configuration and the error message, which is empty without an error.
-std::pair<RealtimeConfig, std::string> read(const std::string& section) {
+std::pair<RealtimeConfig, std::string> read_section(const std::string& section) {
   auto yaml = YamlMap::parse(section, "test");
   EXPECT_TRUE(yaml) << yaml.error().message;
   const RealtimeConfig config = read_realtime(*yaml);
@@ -24,7 +24,7 @@ std::pair<RealtimeConfig, std::string> read(const std::string& section) {
 }
 
 TEST(RealtimeConfig, RequestsNothingByDefault) {
-  for (const RealtimeConfig& config : {read_realtime(std::nullopt), read("{}").first}) {
+  for (const RealtimeConfig& config : {read_realtime(std::nullopt), read_section("{}").first}) {
     EXPECT_FALSE(config.lock_memory);
     for (const ThreadSettings& thread : {config.capture, config.vision, config.can}) {
       EXPECT_FALSE(thread.fifo_priority);
@@ -34,7 +34,7 @@ TEST(RealtimeConfig, RequestsNothingByDefault) {
 }
 
 TEST(RealtimeConfig, EveryKeyIsRead) {
-  const auto [config, error] = read(
+  const auto [config, error] = read_section(
       "{lock_memory: true, capture: {fifo_priority: 20}, vision: {cpus: [0]}, "
       "can: {fifo_priority: 49, cpus: [0]}}");
   EXPECT_EQ(error, "");
@@ -66,7 +66,7 @@ TEST(RealtimeConfig, NamesTheKeyOfEachMistake) {
       {"{capture: {cpus: [-1]}}", "capture.cpus[0]: found -1, wanted"},
   };
   for (const auto& [section, wanted] : mistakes) {
-    EXPECT_THAT(read(section).second, StartsWith("test:1: " + wanted)) << section;
+    EXPECT_THAT(read_section(section).second, StartsWith("test:1: " + wanted)) << section;
   }
 }
 

@@ -17,7 +17,7 @@ namespace {
 using drivers::MockGpio;
 using std::chrono::milliseconds;
 
-const std::filesystem::path kSource = BEVLOC_SOURCE_DIR;
+const std::filesystem::path kSourceFolder = BEVLOC_SOURCE_DIR;
 /// The daemon calls `stop` ten times per second. After this many calls the test fails.
 constexpr int kMaxCalls = 300;
 
@@ -33,8 +33,8 @@ class DaemonTest : public testing::Test {
     }
     config_.cameras.driver = CameraDriver::kReplay;
     config_.cameras.recording = folder_;
-    config_.map_file = kSource / "tests/pipeline/map/fixtures/street.osm";
-    config_.model_file = kSource / "models/nano.onnx";
+    config_.map_file = kSourceFolder / "tests/pipeline/map/fixtures/street.osm";
+    config_.model_file = kSourceFolder / "models/nano.onnx";
     config_.gpio.fault = drivers::LineAddress{MockGpio::kChip, "fault", true};
     config_.gpio.ignition = IgnitionConfig{{MockGpio::kChip, "ignition"}, milliseconds(50)};
     config_.gpio.trigger = TriggerLineConfig{{MockGpio::kChip, "trigger"}, {}};
@@ -43,7 +43,7 @@ class DaemonTest : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   Status run(const std::function<bool()>& stop) {
-    const auto rig = read_rig(kSource / "config/rig_demo.yaml");
+    const auto rig = read_rig(kSourceFolder / "config/rig_demo.yaml");
     EXPECT_TRUE(rig) << rig.error().message;
     return run_daemon(
         config_, *rig, gpio_, [this] { return wire_.connect(); }, stop);

@@ -8,15 +8,15 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Time kTime{milliseconds(1000)};
-constexpr double kSpeed_mps = 10.0;
+constexpr double kForwardSpeed_mps = 10.0;
 
 class PriorSourceTest : public testing::Test {
  protected:
   void predict(Time time, bool acquiring) {
     Prediction prediction;
     prediction.pose.time = time;
-    prediction.pose.map_from_vehicle.x_m = kSpeed_mps * to_seconds(time - kTime);
-    prediction.pose.speed_mps = kSpeed_mps;
+    prediction.pose.map_from_vehicle.x_m = kForwardSpeed_mps * to_seconds(time - kTime);
+    prediction.pose.speed_mps = kForwardSpeed_mps;
     prediction.acquiring = acquiring;
     predictions_.push(prediction);
   }
@@ -48,7 +48,7 @@ TEST_F(PriorSourceTest, GivesPoseSpeedAndMotionAtTheTimeOfTheFrameset) {
   const auto prior = priors.at(frameset_at(kTime + milliseconds(20), milliseconds(30)));
   ASSERT_TRUE(prior);
   EXPECT_NEAR(prior->map_from_vehicle.x_m, 0.2, 1e-9);
-  EXPECT_DOUBLE_EQ(prior->speed_mps, kSpeed_mps);
+  EXPECT_DOUBLE_EQ(prior->speed_mps, kForwardSpeed_mps);
   EXPECT_EQ(prior->range, SearchRange::kTracking) << "the latest prediction decides";
   EXPECT_EQ(prior->reference_from_exposure.front().x_m, 0.0);
   EXPECT_NEAR(prior->reference_from_exposure.back().x_m, 0.3, 1e-9);

@@ -3,7 +3,8 @@
 
 A vehicle drives 40 s along a winding road. Odometry comes at 20 Hz, GNSS at 5 Hz, corrections at
 5 Hz and 0.15 s late. Some measurements are wrong on purpose: GNSS jumps by 8 m for 2 s, corrections
-are off by a lane for 1 s, odometry is missing for 1 s, single values are NaN, absurd or out of order.
+are off by a lane for 1 s, odometry is missing for 1 s, single values are NaN, absurd or out of
+order.
 """
 
 from __future__ import annotations
@@ -16,7 +17,10 @@ from dataclasses import dataclass
 DURATION_S = 40.0
 STEP_S = 0.05
 LATE_S = 0.15
-HEAD = ["kind", "time_s", "speed_mps", "yaw_rate_radps", "x_m", "y_m", "yaw_rad", "sigma_m", "yaw_sigma_rad"]
+HEAD = [
+    *("kind", "time_s", "speed_mps", "yaw_rate_radps"),
+    *("x_m", "y_m", "yaw_rad", "sigma_m", "yaw_sigma_rad"),
+]
 
 
 @dataclass
@@ -55,7 +59,9 @@ def row(kind: str, time_s: float, *values: float) -> list[str]:
     return [kind, f"{time_s:.3f}", *motion, *pose]
 
 
-def measured(pose: Pose, noise: random.Random, sigma_m: float, yaw_sigma_rad: float, off_m: float) -> list[float]:
+def measured(
+    pose: Pose, noise: random.Random, sigma_m: float, yaw_sigma_rad: float, off_m: float
+) -> list[float]:
     """A noisy reading of the pose, moved to its left by `off_m`."""
     x_m = pose.x_m - math.sin(pose.yaw_rad) * off_m + noise.gauss(0.0, sigma_m)
     y_m = pose.y_m + math.cos(pose.yaw_rad) * off_m + noise.gauss(0.0, sigma_m)
@@ -84,7 +90,8 @@ def measurements() -> list[list[str]]:
             rows.append(row("odometry", time_s + 0.01, 300.0, 0.0))
             rows.append(row("odometry", time_s - 1.0, 10.0, 0.0))
             rows.append(row("gnss", time_s, math.nan, 0.0, 0.0, 1.0, 0.02))
-            rows.append(row("correction", time_s - 10.0, *measured(poses[400], noise, 0.1, 0.004, 0.0)))
+            old = measured(poses[400], noise, 0.1, 0.004, 0.0)
+            rows.append(row("correction", time_s - 10.0, *old))
     return rows
 
 

@@ -21,7 +21,7 @@ HdMap read_fixture(const char* name) {
   return map.value_or(HdMap{});
 }
 
-std::string error_of(const std::string& text) {
+std::string read_error(const std::string& text) {
   const auto map = parse_lanelet2(text, "town.osm");
   EXPECT_FALSE(map.has_value());
   return map ? "" : map.error().message;
@@ -176,21 +176,21 @@ TEST(Lanelet2Reader, LaneletsForOtherParticipantsAreNoLanes) {
 }
 
 TEST(Lanelet2Reader, ErrorsNameLineAndElement) {
-  EXPECT_THAT(error_of("<osm>\n<node id='1'\n"),
+  EXPECT_THAT(read_error("<osm>\n<node id='1'\n"),
               StartsWith("town.osm:2: found text that is not XML"));
-  EXPECT_THAT(error_of(""), HasSubstr("not XML"));
-  EXPECT_THAT(error_of("<kml>\n</kml>"), HasSubstr("town.osm:1: found <kml>"));
-  EXPECT_THAT(error_of("<osm>\n\n<node id='x1' lat='1' lon='1'/></osm>"),
+  EXPECT_THAT(read_error(""), HasSubstr("not XML"));
+  EXPECT_THAT(read_error("<kml>\n</kml>"), HasSubstr("town.osm:1: found <kml>"));
+  EXPECT_THAT(read_error("<osm>\n\n<node id='x1' lat='1' lon='1'/></osm>"),
               StartsWith("town.osm:3: node: found id=\"x1\", wanted a whole number"));
   EXPECT_THAT(
-      error_of("<osm>\n<node id='1' lat='1' lon='1'/>\n<node id='1' lat='2' lon='2'/></osm>"),
+      read_error("<osm>\n<node id='1' lat='1' lon='1'/>\n<node id='1' lat='2' lon='2'/></osm>"),
       StartsWith("town.osm:3: node 1: found this id a second time"));
-  EXPECT_THAT(error_of("<osm></osm>"), HasSubstr("found no lanelet"));
+  EXPECT_THAT(read_error("<osm></osm>"), HasSubstr("found no lanelet"));
 }
 
 TEST(Lanelet2Reader, RefusesBadCoordinates) {
   const auto error_with = [](const std::string& node) {
-    return error_of("<osm>\n<node id='-7' " + node + "</node></osm>");
+    return read_error("<osm>\n<node id='-7' " + node + "</node></osm>");
   };
   EXPECT_EQ(error_with("lat='90.5' lon='8'>"),
             "town.osm:2: node -7: found lat \"90.5\", wanted a number from -90 to 90");
@@ -208,7 +208,7 @@ TEST(Lanelet2Reader, RefusesBrokenReferences) {
   const auto error_with = [&nodes](const std::string& from, const std::string& to) {
     std::string text = lanelet_of(nodes);
     text.replace(text.find(from), from.size(), to);
-    return error_of(text);
+    return read_error(text);
   };
   EXPECT_THAT(error_with("<nd ref='2'/>", "<nd ref='99'/>"),
               StartsWith("town.osm:6: way 10: found a reference to node 99, which is missing"));

@@ -42,7 +42,7 @@ void expect_near(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen:
   }
 }
 
-std::string error_of(std::string_view bytes) {
+std::string decode_error(std::string_view bytes) {
   const auto map = decode_map(bytes, "town.bvm");
   EXPECT_FALSE(map.has_value());
   return map ? "" : map.error().message;
@@ -119,7 +119,7 @@ TEST(MapBinary, RefusesEveryTruncation) {
   for (size_t size = 0; size < bytes.size(); ++size) {
     EXPECT_FALSE(decode_map(bytes.substr(0, size), "town.bvm").has_value()) << size;
   }
-  EXPECT_THAT(error_of(bytes + "x"), HasSubstr("as its header states"));
+  EXPECT_THAT(decode_error(bytes + "x"), HasSubstr("as its header states"));
 }
 
 TEST(MapBinary, RefusesEveryFlippedByte) {
@@ -143,38 +143,38 @@ TEST(MapBinary, RefusesEveryFlippedByte) {
 
 TEST(MapBinary, ErrorsNameTheCause) {
   const std::string bytes = encode_map(kilometre());
-  EXPECT_EQ(error_of("BVMP"), "town.bvm: found 4 bytes, wanted a map file of at least 14");
-  EXPECT_THAT(error_of("PK" + bytes), HasSubstr("wanted \"BVMP\""));
+  EXPECT_EQ(decode_error("BVMP"), "town.bvm: found 4 bytes, wanted a map file of at least 14");
+  EXPECT_THAT(decode_error("PK" + bytes), HasSubstr("wanted \"BVMP\""));
   std::string newer = bytes;
   newer[4] = 9;
-  EXPECT_EQ(error_of(newer), "town.bvm: found version 9 of the format, wanted 1");
+  EXPECT_EQ(decode_error(newer), "town.bvm: found version 9 of the format, wanted 1");
   std::string damaged = bytes;
   damaged[60] ^= 1;
-  EXPECT_THAT(error_of(damaged), StartsWith("town.bvm: found CRC-32 "));
+  EXPECT_THAT(decode_error(damaged), StartsWith("town.bvm: found CRC-32 "));
 }
 
 TEST(MapBinary, RefusesAnInvalidBodyWithAValidChecksum) {
   const std::string head = std::string(1, '\0') + std::string(16, '\0');  // no name, origin (0, 0)
   EXPECT_TRUE(decode_map(framed(head + std::string(2, '\0')), "t").has_value());
-  EXPECT_THAT(error_of(framed("")), HasSubstr("the end of the body"));
-  EXPECT_THAT(error_of(framed("\x05"
+  EXPECT_THAT(decode_error(framed("")), HasSubstr("the end of the body"));
+  EXPECT_THAT(decode_error(framed("\x05"
                               "ab")),
               HasSubstr("a count that exceeds the body"));
-  EXPECT_THAT(error_of(framed(head + std::string(3, '\0'))), HasSubstr("more bytes after"));
-  EXPECT_THAT(error_of(framed(head + std::string("\xFF\xFF\xFF\xFF\x7F", 5))),
+  EXPECT_THAT(decode_error(framed(head + std::string(3, '\0'))), HasSubstr("more bytes after"));
+  EXPECT_THAT(decode_error(framed(head + std::string("\xFF\xFF\xFF\xFF\x7F", 5))),
               HasSubstr("a count that exceeds the body"));
-  EXPECT_THAT(error_of(framed(std::string(11, '\xFF'))), HasSubstr("more than 64 bits"));
-  EXPECT_THAT(error_of(framed(head + std::string("\x01\x03\x00\x00\x00", 5))),
+  EXPECT_THAT(decode_error(framed(std::string(11, '\xFF'))), HasSubstr("more than 64 bits"));
+  EXPECT_THAT(decode_error(framed(head + std::string("\x01\x03\x00\x00\x00", 5))),
               HasSubstr("an unknown class"));
-  EXPECT_THAT(error_of(framed(head + std::string("\x01\x00\x63\x00\x00", 5))),
+  EXPECT_THAT(decode_error(framed(head + std::string("\x01\x00\x63\x00\x00", 5))),
               HasSubstr("an unknown appearance"));
   const std::string far = std::string(9, '\xFF') + '\x01';
-  EXPECT_THAT(error_of(framed(head + std::string("\x01\x00\x00\x01", 4) + far + far + '\0')),
+  EXPECT_THAT(decode_error(framed(head + std::string("\x01\x00\x00\x01", 4) + far + far + '\0')),
               HasSubstr("a point beyond"));
   const std::string lane = std::string("\x00\x01\x00\x00\x00", 5) + std::string(8, '\0');
-  EXPECT_THAT(error_of(framed(head + lane + "\x01\x07")), HasSubstr("a successor"));
+  EXPECT_THAT(decode_error(framed(head + lane + "\x01\x07")), HasSubstr("a successor"));
   const std::string nan_latitude = '\0' + std::string(8, '\xFF') + std::string(10, '\0');
-  EXPECT_THAT(error_of(framed(nan_latitude)), HasSubstr("a latitude"));
+  EXPECT_THAT(decode_error(framed(nan_latitude)), HasSubstr("a latitude"));
 }
 
 TEST(MapBinary, SurvivesRandomBodies) {

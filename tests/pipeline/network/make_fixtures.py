@@ -148,7 +148,7 @@ class Model:
     def conv(self, x: Real, channels: int, size: int = 3, stride: int = 1, groups: int = 1,
              pads: tuple[int, int, int, int] | None = None, with_bias: bool = True,
              gain: float = 1.0) -> Real:
-        """Adds a convolution. `gain` scales the weights: it is about the ratio of output to input."""
+        """Adds a convolution. `gain`: about the ratio of output to input (weight scales)."""
         pads = pads or (size // 2,) * 4
         depth = x.shape[1] // groups
         q = self.rng.integers(-63, 64, (channels, depth, size, size))

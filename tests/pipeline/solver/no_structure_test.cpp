@@ -13,7 +13,7 @@
 namespace bevloc {
 namespace {
 
-constexpr int kChannels = 4;
+constexpr int kFewChannels = 4;
 
 struct LeastDeviation {
   SolverKind kind;
@@ -24,13 +24,13 @@ class NoStructure : public testing::TestWithParam<LeastDeviation> {
  protected:
   /// The smallest claimed sigma of all axes, divided by that of uniform hypotheses.
   static double least_share(const BevGrid& grid, float amplitude, unsigned seed, bool noisy_map) {
-    auto solver = make_solver(GetParam().kind, grid, kChannels, {}, {}).value();
-    const auto scene = SyntheticScene::structured(kChannels, 1).seen_from({}, grid);
+    auto solver = make_solver(GetParam().kind, grid, kFewChannels, {}, {}).value();
+    const auto scene = SyntheticScene::structured(kFewChannels, 1).seen_from({}, grid);
     std::vector<float> noise(scene.size(), 0.3F);
     add_noise(noise, amplitude, seed);
     SolverResult result;
-    solver->solve(view(noisy_map ? scene : noise, kChannels, grid),
-                  view(noisy_map ? noise : scene, kChannels, grid), result);
+    solver->solve(view(noisy_map ? scene : noise, kFewChannels, grid),
+                  view(noisy_map ? noise : scene, kFewChannels, grid), result);
     const Eigen::Vector3d uniform = uniform_variance(HypothesisGrid{}).cwiseSqrt();
     return result.covariance.diagonal().cwiseSqrt().cwiseQuotient(uniform).minCoeff();
   }

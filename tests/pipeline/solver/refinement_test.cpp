@@ -14,14 +14,14 @@
 namespace bevloc {
 namespace {
 
-constexpr int kChannels = 16;
-constexpr HypothesisGrid kHypotheses;
+constexpr int kRefinedChannels = 16;
+constexpr HypothesisGrid kDefaultHypotheses;
 const Se2 kTruth{0.83, -0.46, radians(0.7)};
 
 class RefinementTest : public testing::Test {
  protected:
   RefinementTest() {
-    const SyntheticScene scene = SyntheticScene::structured(kChannels, 3);
+    const SyntheticScene scene = SyntheticScene::structured(kRefinedChannels, 3);
     auto bev = scene.seen_from(kTruth, kFeatureGrid);
     add_noise(bev, 0.03F, 4);
     bev_.assign(bev);
@@ -30,7 +30,7 @@ class RefinementTest : public testing::Test {
   }
 
   SolverResult refined(SolverResult result) {
-    Refinement refinement(kHypotheses, parameters_);
+    Refinement refinement(kDefaultHypotheses, parameters_);
     refinement.refine({{}, bev_}, {{}, map_}, result);
     return result;
   }
@@ -38,14 +38,14 @@ class RefinementTest : public testing::Test {
   /// A zero correction and uniform distributions.
   static SolverResult uniform() {
     SolverResult result;
-    set_no_evidence(kHypotheses, result);
+    set_no_evidence(kDefaultHypotheses, result);
     return result;
   }
 
   SolverParameters parameters_{
       .refine_x_scale = 200.0F, .refine_y_scale = 200.0F, .refine_yaw_scale = 200.0F};
-  CellFeatures bev_{kFeatureGrid, kChannels, kHypotheses};
-  CellFeatures map_{kFeatureGrid, kChannels, kHypotheses};
+  CellFeatures bev_{kFeatureGrid, kRefinedChannels, kDefaultHypotheses};
+  CellFeatures map_{kFeatureGrid, kRefinedChannels, kDefaultHypotheses};
 };
 
 TEST_F(RefinementTest, FindsTheTruthFromZero) {
@@ -71,7 +71,7 @@ TEST_F(RefinementTest, WritesDistributionsAndTheirMean) {
     EXPECT_NEAR(std::accumulate(distribution->begin(), distribution->end(), 0.0), 1.0, 1e-5);
     EXPECT_GE(*std::ranges::min_element(*distribution), 0.0F);
   }
-  EXPECT_NEAR(result.correction.x_m, posterior_mean(result.x_probability, kHypotheses.x_m), 1e-6);
+  EXPECT_NEAR(result.correction.x_m, posterior_mean(result.x_probability, kDefaultHypotheses.x_m), 1e-6);
 }
 
 }  // namespace

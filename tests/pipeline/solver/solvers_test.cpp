@@ -16,8 +16,7 @@
 namespace bevloc {
 namespace {
 
-constexpr int kChannels = 16;
-constexpr BevGrid kGrid = kFeatureGrid;
+constexpr int kSolverChannels = 16;
 
 /// A solver with larger scales than training finds, because these features have less noise.
 std::unique_ptr<Solver> make(SolverKind kind, float scale = 300.0F) {
@@ -31,12 +30,12 @@ std::unique_ptr<Solver> make(SolverKind kind, float scale = 300.0F) {
   parameters.refine_yaw_scale = scale;
   parameters.banded_x_scale = scale;
   parameters.banded_y_scale = scale;
-  return make_solver(kind, kGrid, kChannels, HypothesisGrid{}, parameters).value();
+  return make_solver(kind, kFeatureGrid, kSolverChannels, HypothesisGrid{}, parameters).value();
 }
 
 SolverResult solve(Solver& solver, const std::vector<float>& bev, const std::vector<float>& map) {
   SolverResult result;
-  solver.solve(view(bev, kChannels, kGrid), view(map, kChannels, kGrid), result);
+  solver.solve(view(bev, kSolverChannels, kFeatureGrid), view(map, kSolverChannels, kFeatureGrid), result);
   return result;
 }
 
@@ -74,9 +73,9 @@ TEST_P(EverySolver, RecoversKnownCorrections) {
                         {-0.2, -0.4, radians(-0.6)}};
   unsigned seed = 1;
   for (const Se2& truth : truths) {
-    const SyntheticScene scene = SyntheticScene::structured(kChannels, seed++);
+    const SyntheticScene scene = SyntheticScene::structured(kSolverChannels, seed++);
     const SolverResult result =
-        solve(*solver, scene.seen_from(truth, kGrid), scene.seen_from({}, kGrid));
+        solve(*solver, scene.seen_from(truth, kFeatureGrid), scene.seen_from({}, kFeatureGrid));
     EXPECT_EQ(result.evidence, Evidence::kGood);
     EXPECT_THAT(result.correction, test::PoseNear(truth, GetParam().position_m, GetParam().yaw_rad))
         << "seed " << seed;
@@ -88,14 +87,14 @@ TEST_P(EverySolver, PointsForwardAndLeft) {
   // In the map, the post is 1 m further ahead and 0.6 m further left than in the BEV features. The
   // vehicle is therefore 1 m further ahead and 0.6 m further left than the prior.
   const auto solver = make(GetParam().kind);
-  SyntheticScene map_scene(kChannels);
-  SyntheticScene bev_scene(kChannels);
-  for (int channel = 0; channel < kChannels; ++channel) {
+  SyntheticScene map_scene(kSolverChannels);
+  SyntheticScene bev_scene(kSolverChannels);
+  for (int channel = 0; channel < kSolverChannels; ++channel) {
     map_scene.add({channel, 5.0, 2.0, 1.5, 1.5, 1.0});
     bev_scene.add({channel, 4.0, 1.4, 1.5, 1.5, 1.0});
   }
   const SolverResult result =
-      solve(*solver, bev_scene.seen_from({}, kGrid), map_scene.seen_from({}, kGrid));
+      solve(*solver, bev_scene.seen_from({}, kFeatureGrid), map_scene.seen_from({}, kFeatureGrid));
   // A single round post does not constrain yaw, and an error in yaw changes y.
   EXPECT_NEAR(result.correction.x_m, 1.0, 0.15);
   EXPECT_GT(result.correction.y_m, 0.3);
@@ -103,16 +102,16 @@ TEST_P(EverySolver, PointsForwardAndLeft) {
 
 TEST_P(EverySolver, YawIsCounterClockwise) {
   const auto solver = make(GetParam().kind);
-  const SyntheticScene scene = SyntheticScene::straight_road(kChannels, 3);
+  const SyntheticScene scene = SyntheticScene::straight_road(kSolverChannels, 3);
   const SolverResult result =
-      solve(*solver, scene.seen_from({0.0, 0.0, radians(1.0)}, kGrid), scene.seen_from({}, kGrid));
+      solve(*solver, scene.seen_from({0.0, 0.0, radians(1.0)}, kFeatureGrid), scene.seen_from({}, kFeatureGrid));
   EXPECT_NEAR(degrees(result.correction.yaw_rad), 1.0, 0.2);
 }
 
 TEST_P(EverySolver, RepeatsItsResult) {
-  const SyntheticScene scene = SyntheticScene::structured(kChannels, 9);
-  const auto bev = scene.seen_from({0.5, 0.2, radians(0.3)}, kGrid);
-  const auto map = scene.seen_from({}, kGrid);
+  const SyntheticScene scene = SyntheticScene::structured(kSolverChannels, 9);
+  const auto bev = scene.seen_from({0.5, 0.2, radians(0.3)}, kFeatureGrid);
+  const auto map = scene.seen_from({}, kFeatureGrid);
   const auto first_solver = make(GetParam().kind);
   const auto second_solver = make(GetParam().kind);
   const SolverResult first = solve(*first_solver, bev, map);
@@ -126,8 +125,8 @@ TEST_P(EverySolver, RepeatsItsResult) {
 
 TEST_P(EverySolver, ReportsWhenThereIsNothingToMatch) {
   const auto solver = make(GetParam().kind);
-  const SyntheticScene scene = SyntheticScene::structured(kChannels, 2);
-  auto good = scene.seen_from({}, kGrid);
+  const SyntheticScene scene = SyntheticScene::structured(kSolverChannels, 2);
+  auto good = scene.seen_from({}, kFeatureGrid);
   std::vector<float> zeros(good.size(), 0.0F);
   std::vector<float> constant(good.size(), 0.1F);
   auto with_nan = good;
@@ -152,7 +151,7 @@ TEST_P(EverySolver, ReportsWhenThereIsNothingToMatch) {
 
 TEST_P(EverySolver, SurvivesHugeAndUselessFeatures) {
   const auto solver = make(GetParam().kind);
-  std::vector<float> huge(static_cast<size_t>(kChannels) * kGrid.cells());
+  std::vector<float> huge(static_cast<size_t>(kSolverChannels) * kFeatureGrid.cells());
   for (size_t i = 0; i < huge.size(); ++i) {
     huge[i] = (i * 2654435761U >> 7) % 2 == 0 ? 3e38F : -3e38F;
   }

@@ -11,22 +11,22 @@
 namespace bevloc {
 namespace {
 
-constexpr BevGrid kGrid{24, 13, 0.5};
+constexpr BevGrid kCoarseGrid{24, 13, 0.5};
 /// Several phases per cell, and a yaw that moves features out of the grid.
-constexpr HypothesisGrid kHypotheses{{1.5, 0.3}, {0.8, 0.4}, {0.4, 0.1}};
+constexpr HypothesisGrid kCoarseHypotheses{{1.5, 0.3}, {0.8, 0.4}, {0.4, 0.1}};
 
 /// The moved feature at a cell: bilinear, zero outside.
 double moved(const float* plane, int row, int col, const Se2& correction) {
   const Eigen::Vector2d source =
-      correction.inverse() * Eigen::Vector2d(kGrid.x_of_row(row), kGrid.y_of_col(col));
-  const double u = kGrid.row_of_x(source.x());
-  const double v = kGrid.col_of_y(source.y());
+      correction.inverse() * Eigen::Vector2d(kCoarseGrid.x_of_row(row), kCoarseGrid.y_of_col(col));
+  const double u = kCoarseGrid.row_of_x(source.x());
+  const double v = kCoarseGrid.col_of_y(source.y());
   double sum = 0.0;
-  for (int i = 0; i < kGrid.rows; ++i) {
-    for (int j = 0; j < kGrid.cols; ++j) {
+  for (int i = 0; i < kCoarseGrid.rows; ++i) {
+    for (int j = 0; j < kCoarseGrid.cols; ++j) {
       const double weight =
           std::max(0.0, 1.0 - std::abs(u - i)) * std::max(0.0, 1.0 - std::abs(v - j));
-      sum += weight * plane[i * kGrid.cols + j];
+      sum += weight * plane[i * kCoarseGrid.cols + j];
     }
   }
   return sum;
@@ -35,14 +35,14 @@ double moved(const float* plane, int row, int col, const Se2& correction) {
 /// ZNCC over the cells of a lattice with this step and skew (CellLattice).
 double literal_zncc(const std::vector<float>& bev, const std::vector<float>& map,
                     const Se2& correction, int step = 1, int skew = 0) {
-  const int channels = static_cast<int>(bev.size()) / kGrid.cells();
+  const int channels = static_cast<int>(bev.size()) / kCoarseGrid.cells();
   double sums[5] = {};
   int count = 0;
   for (int c = 0; c < channels; ++c) {
-    for (int row = 0; row < kGrid.rows; ++row) {
-      for (int col = skew * row % step; col < kGrid.cols; col += step) {
-        const double m = map[(c * kGrid.rows + row) * kGrid.cols + col];
-        const double b = moved(bev.data() + c * kGrid.cells(), row, col, correction);
+    for (int row = 0; row < kCoarseGrid.rows; ++row) {
+      for (int col = skew * row % step; col < kCoarseGrid.cols; col += step) {
+        const double m = map[(c * kCoarseGrid.rows + row) * kCoarseGrid.cols + col];
+        const double b = moved(bev.data() + c * kCoarseGrid.cells(), row, col, correction);
         const double terms[5] = {m, b, m * m, b * b, m * b};
         for (int i = 0; i < 5; ++i) sums[i] += terms[i];
         ++count;
@@ -66,23 +66,23 @@ class ZnccScorerTest : public testing::TestWithParam<int> {
     map_cells_.copy_to(map_);
   }
 
-  std::vector<float> bev_ = std::vector<float>(static_cast<size_t>(GetParam()) * kGrid.cells());
+  std::vector<float> bev_ = std::vector<float>(static_cast<size_t>(GetParam()) * kCoarseGrid.cells());
   std::vector<float> map_ = bev_;
-  CellFeatures bev_cells_{kGrid, GetParam(), kHypotheses};
-  CellFeatures map_cells_{kGrid, GetParam(), kHypotheses};
+  CellFeatures bev_cells_{kCoarseGrid, GetParam(), kCoarseHypotheses};
+  CellFeatures map_cells_{kCoarseGrid, GetParam(), kCoarseHypotheses};
 };
 
 TEST_P(ZnccScorerTest, TranslationScorerFollowsTheDefinition) {
-  TranslationScorer scorer(kGrid, GetParam(), kHypotheses);
+  TranslationScorer scorer(kCoarseGrid, GetParam(), kCoarseHypotheses);
   scorer.set_features(bev_cells_, map_cells_);
-  const ShiftPlan x(kHypotheses.x_m, kGrid.cell_m);
-  const ShiftPlan y(kHypotheses.y_m, kGrid.cell_m);
+  const ShiftPlan x(kCoarseHypotheses.x_m, kCoarseGrid.cell_m);
+  const ShiftPlan y(kCoarseHypotheses.y_m, kCoarseGrid.cell_m);
   std::vector<double> scores(static_cast<size_t>(x.hypotheses()) * y.hypotheses());
   for (const double yaw_rad : {-0.4, 0.0, 0.17}) {
     scorer.score(yaw_rad, x, y, scores);
     for (int i = 0; i < x.hypotheses(); ++i) {
       for (int j = 0; j < y.hypotheses(); ++j) {
-        const Se2 correction{kHypotheses.x_m.value(i), kHypotheses.y_m.value(j), yaw_rad};
+        const Se2 correction{kCoarseHypotheses.x_m.value(i), kCoarseHypotheses.y_m.value(j), yaw_rad};
         EXPECT_NEAR(scores[i * y.hypotheses() + j], literal_zncc(bev_, map_, correction), 1e-5)
             << i << " " << j << " " << yaw_rad;
       }

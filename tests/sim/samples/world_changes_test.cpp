@@ -11,10 +11,10 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr uint64_t kSeed = 17;
+constexpr uint64_t kTownSeed = 17;
 
 const World& town() {
-  static const World world = generate_world(kSeed);
+  static const World world = generate_world(kTownSeed);
   return world;
 }
 
@@ -32,14 +32,14 @@ TEST(WearPaint, MultipliesTheWearButLeavesSomePaint) {
 }
 
 TEST(StandingVehicles, StandAroundThePoseButNotOnIt) {
-  constexpr int kCount = 10;
-  Random random(kSeed);
+  constexpr int kVehicles = 10;
+  Random random(kTownSeed);
   const Se2 pose = random_pose_on_road(town(), random);
   World world = town();
-  add_standing_vehicles({pose}, kCount, kSeed, world);
+  add_standing_vehicles({pose}, kVehicles, kTownSeed, world);
   const size_t before = town().parked.size();
   ASSERT_GT(world.parked.size(), before);
-  EXPECT_LE(world.parked.size(), before + kCount);
+  EXPECT_LE(world.parked.size(), before + kVehicles);
   for (size_t i = before; i < world.parked.size(); ++i) {
     const Eigen::Vector2d place = pose.inverse() * world.parked[i].centre;
     EXPECT_LE(place.norm(), 25.0);
@@ -53,12 +53,12 @@ TEST(StandingVehicles, StandAroundThePoseButNotOnIt) {
 
 TEST(StandingVehicles, NoneAreAddedForACountOfZero) {
   World world = town();
-  add_standing_vehicles({Se2{}}, 0, kSeed, world);
+  add_standing_vehicles({Se2{}}, 0, kTownSeed, world);
   EXPECT_EQ(world.parked.size(), town().parked.size());
 }
 
 TEST(MapErrors, WithoutErrorsTheMapIsUnchanged) {
-  const HdMap same = with_errors(town().map, {}, kSeed);
+  const HdMap same = with_errors(town().map, {}, kTownSeed);
   ASSERT_EQ(same.elements.size(), town().map.elements.size());
   for (size_t i = 0; i < same.elements.size(); ++i) {
     EXPECT_EQ(same.elements[i].points, town().map.elements[i].points);
@@ -68,17 +68,17 @@ TEST(MapErrors, WithoutErrorsTheMapIsUnchanged) {
 TEST(MapErrors, OmitsAndDoublesAShareOfTheElements) {
   const size_t all = town().map.elements.size();
   ASSERT_GT(all, 100U);
-  const size_t kept = with_errors(town().map, {.omission = 0.3}, kSeed).elements.size();
+  const size_t kept = with_errors(town().map, {.omission = 0.3}, kTownSeed).elements.size();
   EXPECT_LT(kept, all * 8 / 10);
   EXPECT_GT(kept, all * 6 / 10);
-  const size_t doubled = with_errors(town().map, {.ghost = 0.3}, kSeed).elements.size();
+  const size_t doubled = with_errors(town().map, {.ghost = 0.3}, kTownSeed).elements.size();
   EXPECT_GT(doubled, all * 12 / 10);
   EXPECT_LT(doubled, all * 14 / 10);
 }
 
 TEST(MapErrors, ShiftsByDecimetresThatChangeFromPlaceToPlace) {
   constexpr double kSigma_m = 0.15;
-  const HdMap shifted = with_errors(town().map, {.shift_sigma_m = kSigma_m}, kSeed);
+  const HdMap shifted = with_errors(town().map, {.shift_sigma_m = kSigma_m}, kTownSeed);
   ASSERT_EQ(shifted.elements.size(), town().map.elements.size());
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double squares = 0.0;

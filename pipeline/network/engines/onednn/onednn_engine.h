@@ -7,8 +7,7 @@ namespace bevloc::nn {
 
 /// Our code does not allocate in run(), but oneDNN 2.6 allocates a small table of arguments for
 /// each primitive that it executes. A branch uses `threads` OpenMP threads. The cap on the
-/// instruction set applies to the whole process. Making an engine with another cap throws
-/// LoadError.
+/// instruction set applies to the whole process; a request for another cap throws LoadError.
 MakeEngine make_onednn_engine;
 
 }  // namespace bevloc::nn

@@ -60,7 +60,7 @@ class PlanBuilder {
   bool may_overwrite(int residual);
 
   const ViewEntries& entries_;
-  const KernelSet* kernels_;  ///< of the convolutions that oneDNN does not compute; null: none
+  const KernelSet* kernels_;  ///< for convolutions that oneDNN need not compute; may be null
   const Schedule schedule_;
   PlanState state_;
   size_t position_ = 0;  ///< of the current step, in the order of the schedule

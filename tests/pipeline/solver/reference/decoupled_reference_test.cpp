@@ -15,22 +15,21 @@ namespace {
 using Plane = std::vector<std::vector<double>>;  ///< [row][col]
 
 constexpr double kPi = std::numbers::pi;
-constexpr BevGrid kGrid = kFeatureGrid;
 constexpr int kSize = 128;
 
 std::vector<Plane> standardised(const std::vector<float>& features, int channels) {
-  std::vector<Plane> planes(channels, Plane(kGrid.rows, std::vector<double>(kGrid.cols)));
+  std::vector<Plane> planes(channels, Plane(kFeatureGrid.rows, std::vector<double>(kFeatureGrid.cols)));
   for (int c = 0; c < channels; ++c) {
     double sum = 0.0;
     double square = 0.0;
-    for (int i = 0; i < kGrid.cells(); ++i) {
-      const double value = features[c * kGrid.cells() + i];
-      planes[c][i / kGrid.cols][i % kGrid.cols] = value;
+    for (int i = 0; i < kFeatureGrid.cells(); ++i) {
+      const double value = features[c * kFeatureGrid.cells() + i];
+      planes[c][i / kFeatureGrid.cols][i % kFeatureGrid.cols] = value;
       sum += value;
       square += value * value;
     }
-    const double mean = sum / kGrid.cells();
-    const double std = std::sqrt(square / kGrid.cells() - mean * mean);
+    const double mean = sum / kFeatureGrid.cells();
+    const double std = std::sqrt(square / kFeatureGrid.cells() - mean * mean);
     for (auto& row : planes[c]) {
       for (double& value : row) value = (value - mean) / (std + 0.01);
     }
@@ -41,13 +40,13 @@ std::vector<Plane> standardised(const std::vector<float>& features, int channels
 /// Amplitudes of the Fourier transform of the windowed plane: within each row, then across rows.
 Plane amplitude(const Plane& plane) {
   const auto root = [](int k) { return std::polar(1.0, -2.0 * kPi * (k % kSize) / kSize); };
-  std::vector<std::vector<std::complex<double>>> half(kGrid.rows,
+  std::vector<std::vector<std::complex<double>>> half(kFeatureGrid.rows,
                                                       std::vector<std::complex<double>>(kSize));
-  for (int r = 0; r < kGrid.rows; ++r) {
+  for (int r = 0; r < kFeatureGrid.rows; ++r) {
     for (int k = 0; k < kSize; ++k) {
-      for (int c = 0; c < kGrid.cols; ++c) {
-        const double window = (0.5 - 0.5 * std::cos(2.0 * kPi * r / (kGrid.rows - 1))) *
-                              (0.5 - 0.5 * std::cos(2.0 * kPi * c / (kGrid.cols - 1)));
+      for (int c = 0; c < kFeatureGrid.cols; ++c) {
+        const double window = (0.5 - 0.5 * std::cos(2.0 * kPi * r / (kFeatureGrid.rows - 1))) *
+                              (0.5 - 0.5 * std::cos(2.0 * kPi * c / (kFeatureGrid.cols - 1)));
         half[r][k] += window * plane[r][c] * root(k * c);
       }
     }
@@ -56,7 +55,7 @@ Plane amplitude(const Plane& plane) {
   for (int k = 0; k < kSize; ++k) {
     for (int j = 0; j < kSize; ++j) {
       std::complex<double> sum = 0.0;
-      for (int r = 0; r < kGrid.rows; ++r) sum += half[r][k] * root(j * r);
+      for (int r = 0; r < kFeatureGrid.rows; ++r) sum += half[r][k] * root(j * r);
       result[j][k] = std::abs(sum);
     }
   }
@@ -82,7 +81,7 @@ Plane signature(const Plane& plane) {
       for (int j = 0; j < 4; ++j) {
         const double frequency = 0.05 + (4 * band + j + 0.5) * (0.8 - 0.05) / 32.0;
         const double theta = radians(0.5 * i);
-        const double bin = frequency * kGrid.cell_m * kSize;
+        const double bin = frequency * kFeatureGrid.cell_m * kSize;
         result[band][i] +=
             0.25 * read_wrapped(spectrum, bin * std::cos(theta), bin * std::sin(theta));
       }
@@ -116,12 +115,12 @@ double yaw_score(const std::vector<Plane>& bev, const std::vector<Plane>& map, d
 /// features(R(-yaw) (p - t)) at p = (x_m, y_m), bilinear, zero outside.
 double moved(const Plane& plane, double x_m, double y_m, const Se2& motion) {
   const Eigen::Vector2d source = motion.inverse() * Eigen::Vector2d(x_m, y_m);
-  const double row = kGrid.row_of_x(source.x());
-  const double col = kGrid.col_of_y(source.y());
+  const double row = kFeatureGrid.row_of_x(source.x());
+  const double col = kFeatureGrid.col_of_y(source.y());
   double sum = 0.0;
   for (int i = static_cast<int>(std::floor(row)); i <= std::floor(row) + 1; ++i) {
     for (int j = static_cast<int>(std::floor(col)); j <= std::floor(col) + 1; ++j) {
-      if (i < 0 || j < 0 || i >= kGrid.rows || j >= kGrid.cols) continue;
+      if (i < 0 || j < 0 || i >= kFeatureGrid.rows || j >= kFeatureGrid.cols) continue;
       sum += (1 - std::abs(row - i)) * (1 - std::abs(col - j)) * plane[i][j];
     }
   }
@@ -130,13 +129,13 @@ double moved(const Plane& plane, double x_m, double y_m, const Se2& motion) {
 
 /// Axis features along x or y of one channel rotated by yaw.
 std::vector<double> axis_features(const Plane& plane, double yaw_rad, bool along_x) {
-  const int length = along_x ? kGrid.rows : kGrid.cols;
-  const int across = along_x ? kGrid.cols : kGrid.rows;
+  const int length = along_x ? kFeatureGrid.rows : kFeatureGrid.cols;
+  const int across = along_x ? kFeatureGrid.cols : kFeatureGrid.rows;
   std::vector<double> result(length);
   for (int i = 0; i < length; ++i) {
     for (int j = 4; j < across - 4; ++j) {
-      const double x = kGrid.x_of_row(along_x ? i : j);
-      const double y = kGrid.y_of_col(along_x ? j : i);
+      const double x = kFeatureGrid.x_of_row(along_x ? i : j);
+      const double y = kFeatureGrid.y_of_col(along_x ? j : i);
       result[i] += moved(plane, x, y, {0.0, 0.0, yaw_rad}) / (across - 8);
     }
   }
@@ -151,7 +150,7 @@ double axis_score(const std::vector<std::vector<double>>& bev,
     std::vector<double> a;
     std::vector<double> b;
     for (int i = 4; i < count + 4; ++i) {
-      const double position = i + shift_m / kGrid.cell_m;
+      const double position = i + shift_m / kFeatureGrid.cell_m;
       const int whole = static_cast<int>(std::floor(position));
       const double fraction = position - whole;
       a.push_back(map[c][i]);
@@ -206,14 +205,14 @@ TEST(DecoupledReferenceTest, AgreesWithItsDefinition) {
   const SolverParameters parameters{
       .joint_scale = 90.0F, .x_scale = 70.0F, .y_scale = 80.0F, .yaw_scale = 30.0F};
   const SyntheticScene scene = SyntheticScene::structured(kChannels, 11);
-  auto bev = scene.seen_from({0.9, -0.45, radians(1.1)}, kGrid);
-  const auto map = scene.seen_from({}, kGrid);
+  auto bev = scene.seen_from({0.9, -0.45, radians(1.1)}, kFeatureGrid);
+  const auto map = scene.seen_from({}, kFeatureGrid);
   add_noise(bev, 0.2F, 11);
 
   auto solver =
-      make_solver(SolverKind::kDecoupled, kGrid, kChannels, hypotheses, parameters).value();
+      make_solver(SolverKind::kDecoupled, kFeatureGrid, kChannels, hypotheses, parameters).value();
   SolverResult result;
-  solver->solve(view(bev, kChannels, kGrid), view(map, kChannels, kGrid), result);
+  solver->solve(view(bev, kChannels, kFeatureGrid), view(map, kChannels, kFeatureGrid), result);
 
   const auto bev_planes = standardised(bev, kChannels);
   const auto map_planes = standardised(map, kChannels);

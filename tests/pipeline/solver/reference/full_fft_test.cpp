@@ -8,7 +8,7 @@
 namespace bevloc {
 namespace {
 
-constexpr int kChannels = 19;  // one vector and a part of a second
+constexpr int kFftChannels = 19;  // one vector and a part of a second
 
 /// Hypotheses whose yaw is so small that both solvers interpolate at the same positions.
 HypothesisGrid without_yaw(double x_step_m, double y_step_m) {
@@ -31,13 +31,13 @@ class FullFftTest : public testing::Test {
  protected:
   SolverResult solve(SolverKind kind, const BevGrid& grid, const HypothesisGrid& hypotheses,
                      float noise = 0.3F) const {
-    const auto solver = make_solver(kind, grid, kChannels, hypotheses, {.joint_scale = 50.0F});
-    const SyntheticScene scene = SyntheticScene::structured(kChannels, 5);
+    const auto solver = make_solver(kind, grid, kFftChannels, hypotheses, {.joint_scale = 50.0F});
+    const SyntheticScene scene = SyntheticScene::structured(kFftChannels, 5);
     auto bev = scene.seen_from({0.53, -0.31, radians(0.5)}, grid);
     add_noise(bev, noise, 8);  // fine detail reveals differences in interpolation
     const auto map = scene.seen_from({}, grid);
     SolverResult result;
-    (*solver)->solve(view(bev, kChannels, grid), view(map, kChannels, grid), result);
+    (*solver)->solve(view(bev, kFftChannels, grid), view(map, kFftChannels, grid), result);
     return result;
   }
 };

@@ -9,13 +9,13 @@
 namespace bevloc {
 namespace {
 
-constexpr BevGrid kGrid{20, 12, 0.6};
-constexpr int kChannels = 3;
+constexpr BevGrid kVolumeGrid{20, 12, 0.6};
+constexpr int kVolumeChannels = 3;
 
-std::vector<float> random_features(unsigned seed, const BevGrid& grid = kGrid) {
+std::vector<float> random_features(unsigned seed, const BevGrid& grid = kVolumeGrid) {
   std::mt19937 engine(seed);
   std::normal_distribution<float> normal;
-  std::vector<float> features(static_cast<size_t>(kChannels) * grid.cells());
+  std::vector<float> features(static_cast<size_t>(kVolumeChannels) * grid.cells());
   std::ranges::generate(features, [&] { return normal(engine); });
   return features;
 }
@@ -48,14 +48,14 @@ double defined_score(const std::vector<float>& bev, const std::vector<float>& ma
       for (int m = -9; m <= 9; ++m) {
         for (int n = -9; n <= 9; ++n) {
           const double weight = keys(m - cells.x()) * keys(n - cells.y());
-          for (int c = 0; weight != 0.0 && c < kChannels; ++c) {
+          for (int c = 0; weight != 0.0 && c < kVolumeChannels; ++c) {
             total += weight * at(bev, c, row, col) * at(map, c, row + m, col + n);
           }
         }
       }
     }
   }
-  return total / (kChannels * grid.cells());
+  return total / (kVolumeChannels * grid.cells());
 }
 
 float score_at(const std::vector<float>& volume, const HypothesisGrid& h, int a, int i, int j) {
@@ -66,7 +66,7 @@ TEST(JointVolume, FollowsItsDefinition) {
   const auto bev = random_features(1);
   const auto map = random_features(2);
   const HypothesisGrid hypotheses;
-  JointVolume joint(hypotheses, kGrid, kChannels);
+  JointVolume joint(hypotheses, kVolumeGrid, kVolumeChannels);
   std::vector<float> volume(joint.hypothesis_count());
   joint.scores(bev, map, volume);
   for (const int a : {0, 7, 20}) {
@@ -75,7 +75,7 @@ TEST(JointVolume, FollowsItsDefinition) {
         const Se2 hypothesis{hypotheses.x_m.value(i), hypotheses.y_m.value(j),
                              hypotheses.yaw_rad.value(a)};
         EXPECT_NEAR(score_at(volume, hypotheses, a, i, j),
-                    defined_score(bev, map, kGrid, 5, hypothesis), 1e-5);
+                    defined_score(bev, map, kVolumeGrid, 5, hypothesis), 1e-5);
       }
     }
   }
@@ -89,7 +89,7 @@ TEST(JointVolume, FollowsItsDefinitionWithOtherSizes) {
   hypotheses.yaw_rad = {radians(10.0), radians(5.0)};
   const auto bev = random_features(3, grid);
   const auto map = random_features(4, grid);
-  JointVolume joint(hypotheses, grid, kChannels, 4);
+  JointVolume joint(hypotheses, grid, kVolumeChannels, 4);
   std::vector<float> volume(joint.hypothesis_count());
   joint.scores(bev, map, volume);
   for (const int a : {0, 2, 4}) {
@@ -105,7 +105,7 @@ TEST(JointVolume, FollowsItsDefinitionWithOtherSizes) {
 TEST(JointVolume, EqualFeaturesPeakAtNoCorrection) {
   const auto features = random_features(5);
   const HypothesisGrid hypotheses;
-  JointVolume joint(hypotheses, kGrid, kChannels);
+  JointVolume joint(hypotheses, kVolumeGrid, kVolumeChannels);
   std::vector<float> volume(joint.hypothesis_count());
   joint.scores(features, features, volume);
   const auto peak = std::ranges::max_element(volume) - volume.begin();
@@ -115,23 +115,23 @@ TEST(JointVolume, EqualFeaturesPeakAtNoCorrection) {
 TEST(JointVolume, SignsOfTranslation) {
   // In the map, the mark is two cells further ahead and one cell further left than in the BEV
   // features. The vehicle is therefore 1.2 m further ahead and 0.6 m further left than T0.
-  std::vector<float> bev(kChannels * kGrid.cells(), 0.0F);
+  std::vector<float> bev(kVolumeChannels * kVolumeGrid.cells(), 0.0F);
   std::vector<float> map = bev;
-  bev[10 * kGrid.cols + 6] = 1.0F;
-  map[8 * kGrid.cols + 5] = 1.0F;
+  bev[10 * kVolumeGrid.cols + 6] = 1.0F;
+  map[8 * kVolumeGrid.cols + 5] = 1.0F;
   const HypothesisGrid hypotheses;
-  JointVolume joint(hypotheses, kGrid, kChannels);
+  JointVolume joint(hypotheses, kVolumeGrid, kVolumeChannels);
   std::vector<float> volume(joint.hypothesis_count());
   joint.scores(bev, map, volume);
   const float straight = score_at(volume, hypotheses, 10, 16, 8);
-  EXPECT_NEAR(straight, 1.0 / (kChannels * kGrid.cells()), 1e-7);
+  EXPECT_NEAR(straight, 1.0 / (kVolumeChannels * kVolumeGrid.cells()), 1e-7);
   EXPECT_NEAR(*std::ranges::max_element(volume), straight, 1e-4F * straight);
 }
 
 TEST(JointVolume, GradientsMatchFiniteDifferences) {
   const auto bev = random_features(6);
   const auto map = random_features(7);
-  JointVolume joint(HypothesisGrid{}, kGrid, kChannels);
+  JointVolume joint(HypothesisGrid{}, kVolumeGrid, kVolumeChannels);
   std::vector<float> volume(joint.hypothesis_count());
   std::vector<float> direction(volume.size());
   std::mt19937 engine(8);
@@ -163,7 +163,7 @@ TEST(JointVolume, GradientsMatchFiniteDifferences) {
 TEST(JointVolume, RepeatsItsScores) {
   const auto bev = random_features(9);
   const auto map = random_features(10);
-  JointVolume joint(HypothesisGrid{}, kGrid, kChannels);
+  JointVolume joint(HypothesisGrid{}, kVolumeGrid, kVolumeChannels);
   std::vector<float> first(joint.hypothesis_count());
   std::vector<float> second(first.size());
   std::vector<float> gradient(bev.size());
