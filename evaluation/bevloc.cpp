@@ -28,7 +28,8 @@ int main(int argc, char** argv) {
   bevloc::evaluation::NetworkCommand network_command;
   network_command.declare(*eval);
   solver_command.declare_tune(*tune);
-  auto* draw = app.add_subcommand("draw", "Write the data of the figures that script/figures draws");
+  auto* draw =
+      app.add_subcommand("draw", "Write the data of the figures that script/figures draws");
   draw->require_subcommand(1);
   bevloc::evaluation::DrawCommand draw_command;
   draw_command.declare(*draw);

@@ -19,8 +19,8 @@ std::string percent(const PerAxis& shares);
 /// {mae, rmse, median, p95, parabola_mae, nll, coverage_1s, coverage_3s: [x, y, yaw], scenes}.
 nlohmann::json json_of(const Summary& summary);
 
-/// CSV columns for everything in json_of() but the number of scenes: the names, and the values. Each
-/// begins with a comma.
+/// CSV columns for everything in json_of() but the number of scenes: the names, and the values.
+/// Each begins with a comma.
 std::string csv_columns();
 std::string csv_values(const Summary& summary);
 

@@ -8,8 +8,8 @@ namespace bevloc::evaluation {
 
 /// Minimises a robust cost: the distances of perceived points to the map's lines of their class,
 /// read from distance transforms. It starts from several corrections within the ranges. The method
-/// follows L. Zhao et al., "Towards Robust Visual Localization Using Multi-View Images and HD Vector
-/// Map" (the paper's [27]); the code is our own.
+/// follows L. Zhao et al., "Towards Robust Visual Localization Using Multi-View Images and HD
+/// Vector Map" (the paper's [27]); the code is our own.
 class DistanceTransformAlignment : public Baseline {
  public:
   explicit DistanceTransformAlignment(const HypothesisGrid& ranges) : ranges_(ranges) {}

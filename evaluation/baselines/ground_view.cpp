@@ -55,7 +55,7 @@ GroundView::GroundView(const Rig& network_rig)
 GroundImage GroundView::project(std::span<const uint8_t> images, CameraMask cameras) const {
   assert(images.size() == kCameraCount * kNetworkImageSize);
   GroundImage ground{cv::Mat1f(kRasterGrid.rows, kRasterGrid.cols, 0.0F),
-                        cv::Mat1b(kRasterGrid.rows, kRasterGrid.cols, uchar{0})};
+                     cv::Mat1b(kRasterGrid.rows, kRasterGrid.cols, uchar{0})};
   for (size_t cell = 0; cell < projections_.size(); ++cell) {
     size_t best = kCameraCount;
     float best_border_px = 0.0F;

@@ -8,13 +8,13 @@
 
 namespace bevloc::evaluation {
 
-/// The centre lines of everything that is brighter than the ground beside it and no wider than paint.
-/// A top-hat filter finds them; its threshold follows the local brightness.
+/// The centre lines of everything that is brighter than the ground beside it and no wider than
+/// paint. A top-hat filter finds them; its threshold follows the local brightness.
 LinePoints paint_lines(const GroundImage& ground);
 
-/// Projects the images onto the ground (inverse perspective mapping), finds paint, and aligns it with
-/// the distance transform of the map's dividers and crossings. It does not use the network's mask,
-/// and it assumes that all cameras expose at the same time.
+/// Projects the images onto the ground (inverse perspective mapping), finds paint, and aligns it
+/// with the distance transform of the map's dividers and crossings. It does not use the network's
+/// mask, and it assumes that all cameras expose at the same time.
 class InversePerspectiveMapping : public Baseline {
  public:
   /// `network_rig`: the cameras of the network's input images.

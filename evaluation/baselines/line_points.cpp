@@ -16,11 +16,12 @@ namespace {
 constexpr double kMaskSigma_m = 2.0 * kRasterGrid.cell_m;
 constexpr double kMaskLeastBend = 0.02;
 
-/// Cells this close to the edge are ignored, because the course of a line beyond the edge is unknown.
+/// Cells this close to the edge are ignored, because the course of a line beyond the edge is
+/// unknown.
 constexpr int kEdgeCells = 2;
 
-/// The centre line lies in a cell if it is this close to the cell's centre along both axes. Slightly
-/// more than 0.5, so that rounding loses no point between two cells.
+/// The centre line lies in a cell if it is this close to the cell's centre along both axes.
+/// Slightly more than 0.5, so that rounding loses no point between two cells.
 constexpr double kInCell = 0.55;
 
 /// First and second derivatives of a blurred plane, per cell; u counts columns, v rows.

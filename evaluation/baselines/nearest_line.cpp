@@ -10,7 +10,8 @@ const cv::Rect kRaster(0, 0, kRasterGrid.cols, kRasterGrid.rows);
 }  // namespace
 
 cv::Point cell_of(const Eigen::Vector2d& position_m) {
-  return {cvRound(kRasterGrid.col_of_y(position_m.y())), cvRound(kRasterGrid.row_of_x(position_m.x()))};
+  return {cvRound(kRasterGrid.col_of_y(position_m.y())),
+          cvRound(kRasterGrid.row_of_x(position_m.x()))};
 }
 
 cv::Mat1b cells_without(const LinePoints& points) {

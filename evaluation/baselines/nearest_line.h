@@ -14,8 +14,8 @@ class NearestLine {
  public:
   explicit NearestLine(const LinePoints& points);
 
-  /// The nearest point to a position; distances are measured between cell centres. Null if there are
-  /// no points or the position is outside the raster.
+  /// The nearest point to a position; distances are measured between cell centres. Null if there
+  /// are no points or the position is outside the raster.
   const LinePoint* to(const Eigen::Vector2d& position_m) const;
 
  private:

@@ -26,7 +26,8 @@ double within(const HypothesisAxis& axis, double value) {
 void PoseLeastSquares::add(const Eigen::Vector2d& moved, double residual_m,
                            const Eigen::Vector2d& gradient, double weight) {
   const Eigen::Vector2d arm = moved - around_.translation();
-  const Eigen::Vector3d row(gradient.x(), gradient.y(), gradient.y() * arm.x() - gradient.x() * arm.y());
+  const Eigen::Vector3d row(gradient.x(), gradient.y(),
+                            gradient.y() * arm.x() - gradient.x() * arm.y());
   information_ += weight * kPointInformation * row * row.transpose();
   gradient_ += weight * kPointInformation * residual_m * row;
 }

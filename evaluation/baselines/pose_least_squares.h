@@ -8,8 +8,8 @@
 
 namespace bevloc::evaluation {
 
-/// Information of one point, 1/m^2: a perceived line has an error of about 0.3 m, which 20 neighbouring
-/// points (3 m of the line) share.
+/// Information of one point, 1/m^2: a perceived line has an error of about 0.3 m, which 20
+/// neighbouring points (3 m of the line) share.
 inline constexpr double kPointInformation = 1.0 / (0.3 * 0.3 * 20.0);
 
 /// The problem, linearised around a correction. Parameters: x, y and yaw.
@@ -18,7 +18,8 @@ class PoseLeastSquares {
   explicit PoseLeastSquares(const Se2& around) : around_(around) {}
 
   /// Adds the squared distance of a point from its line. `moved` is the point under the correction,
-  /// `residual_m` its distance, and `gradient` the derivative of the distance by the point's position.
+  /// `residual_m` its distance, and `gradient` the derivative of the distance by the point's
+  /// position.
   void add(const Eigen::Vector2d& moved, double residual_m, const Eigen::Vector2d& gradient,
            double weight);
 

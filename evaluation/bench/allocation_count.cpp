@@ -33,8 +33,8 @@ void count() {
 
 #if BEVLOC_COUNTS_MALLOC
 
-// The program's malloc takes precedence over that of glibc, which stays available under these names.
-// glibc's free() accepts the memory.
+// The program's malloc takes precedence over that of glibc, which stays available under these
+// names. glibc's free() accepts the memory.
 extern "C" {
 void* __libc_malloc(size_t size);
 void* __libc_calloc(size_t count, size_t size);

@@ -11,8 +11,8 @@ namespace bevloc::bench {
 /// operator new is counted there.
 bool malloc_is_counted();
 
-/// Number of calls of operator new, malloc, calloc, realloc, memalign and similar functions since the
-/// program started, in all threads and all libraries.
+/// Number of calls of operator new, malloc, calloc, realloc, memalign and similar functions since
+/// the program started, in all threads and all libraries.
 uint64_t allocation_count();
 
 /// Records the callers of operator new in all threads. At most one may exist at a time.
@@ -21,8 +21,8 @@ class AllocationCallers {
   AllocationCallers();
   ~AllocationCallers();
 
-  /// Stops recording. Returns the number of calls that do not come from the shared library whose file
-  /// name begins with `library`.
+  /// Stops recording. Returns the number of calls that do not come from the shared library whose
+  /// file name begins with `library`.
   int outside_of(std::string_view library);
 };
 

@@ -24,7 +24,8 @@ std::vector<std::string> names(const std::array<std::string_view, kCount>& views
 
 void BenchCommand::declare(CLI::App& app) {
   auto* bench = app.add_subcommand(
-      "bench", "Measure the time of a frame, from six decoded images to CAN, and of each of its stages");
+      "bench",
+      "Measure the time of a frame, from six decoded images to CAN, and of each of its stages");
   bench->add_option("--config", config_file_, "Configuration of bevlocd")->capture_default_str();
   bench->add_option("--frames", options_.frames, "Number of frames; in a sweep, of each row")
       ->check(CLI::Range(1, kMostFrames))

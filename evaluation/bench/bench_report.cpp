@@ -84,7 +84,7 @@ nlohmann::json json_of(const StageResult& stage, const MachinePeak& peak, bool c
 nlohmann::json json_of(const MemoryResult& memory) {
   return {{"program_mib", memory.program_mib},     {"map_mib", memory.map_mib},
           {"appliance_mib", memory.appliance_mib}, {"daemon_mib", memory.daemon_mib()},
-          {"pictures_mib", memory.images_mib},   {"resident_mib", memory.process.now_mib},
+          {"pictures_mib", memory.images_mib},     {"resident_mib", memory.process.now_mib},
           {"peak_mib", memory.process.peak_mib}};
 }
 

@@ -22,8 +22,8 @@ inline constexpr std::array kBenchFormats{PixelFormat::kYuyv, PixelFormat::kUyvy
                                           PixelFormat::kNv12, PixelFormat::kBayerRggb,
                                           PixelFormat::kMjpeg};
 
-/// Converts to one of kBenchFormats. YUV is BT.601 with limited range; JPEG is 4:2:2 with quality 90,
-/// as in webcams. Width and height must be even. Fails if libjpeg-turbo does.
+/// Converts to one of kBenchFormats. YUV is BT.601 with limited range; JPEG is 4:2:2 with quality
+/// 90, as in webcams. Width and height must be even. Fails if libjpeg-turbo does.
 Result<ConvertedImage> convert(const RgbImage& image, PixelFormat format);
 
 /// Converts six images. Fails if a width or height is odd, or if libjpeg-turbo fails.

@@ -24,8 +24,8 @@ struct MachinePeak {
   double macs_per_s() const;
 };
 
-/// The time at the peak: multiplying or copying, whichever takes longer. Multiplying is ignored if its
-/// peak is unknown.
+/// The time at the peak: multiplying or copying, whichever takes longer. Multiplying is ignored if
+/// its peak is unknown.
 double ideal_s(const Work& work, const MachinePeak& peak);
 
 /// Quantiles by nearest rank (quantile_of()). All zero if there are no times.

@@ -15,8 +15,8 @@ struct Int8Peak {
 /// Calls `run` several times and returns the time of one run, in seconds.
 using TimeOfRun = std::function<double(const std::function<void()>& run)>;
 
-/// Measures with oneDNN: a 3 x 3 convolution of 256 to 256 channels on 6 x 32 x 56, and a product of
-/// two 1024 x 1024 matrices. The process must not limit its instruction set.
+/// Measures with oneDNN: a 3 x 3 convolution of 256 to 256 channels on 6 x 32 x 56, and a product
+/// of two 1024 x 1024 matrices. The process must not limit its instruction set.
 Int8Peak measure_int8_peak(int threads, const TimeOfRun& time_s);
 
 /// The instruction set that oneDNN uses in this process, by oneDNN's name.

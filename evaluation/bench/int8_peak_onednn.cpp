@@ -23,9 +23,14 @@ memory::desc any_layout(const memory::dims& dims, memory::data_type type) {
   return {dims, type, memory::format_tag::any};
 }
 
-double run_repeatedly(const dnnl::primitive& primitive,
-                      const std::unordered_map<int, memory>& arguments, const dnnl::engine& engine,
-                      const TimeOfRun& time_s) {
+template <typename Primitive>
+double seconds_per_run(const typename Primitive::primitive_desc& description,
+                       const dnnl::engine& engine, const TimeOfRun& time_s) {
+  const Primitive primitive(description);
+  const std::unordered_map<int, memory> arguments{
+      {DNNL_ARG_SRC, filled(description.src_desc(), engine)},
+      {DNNL_ARG_WEIGHTS, filled(description.weights_desc(), engine)},
+      {DNNL_ARG_DST, filled(description.dst_desc(), engine)}};
   dnnl::stream stream(engine);
   return time_s([&] {
     primitive.execute(stream, arguments);
@@ -50,12 +55,7 @@ double convolution_macs_per_s(const dnnl::engine& engine, const TimeOfRun& time_
        {1, 1},
        {1, 1}},
       engine);
-  const double seconds =
-      run_repeatedly(dnnl::convolution_forward(description),
-                     {{DNNL_ARG_SRC, filled(description.src_desc(), engine)},
-                      {DNNL_ARG_WEIGHTS, filled(description.weights_desc(), engine)},
-                      {DNNL_ARG_DST, filled(description.dst_desc(), engine)}},
-                     engine, time_s);
+  const double seconds = seconds_per_run<dnnl::convolution_forward>(description, engine, time_s);
   return static_cast<double>(kImages * kRows * kCols * kChannels * kChannels * kSide * kSide) /
          seconds;
 }
@@ -67,12 +67,7 @@ double matmul_macs_per_s(const dnnl::engine& engine, const TimeOfRun& time_s) {
       {any_layout(square, memory::data_type::u8), any_layout(square, memory::data_type::s8),
        any_layout(square, memory::data_type::s32)},
       engine);
-  const double seconds =
-      run_repeatedly(dnnl::matmul(description),
-                     {{DNNL_ARG_SRC, filled(description.src_desc(), engine)},
-                      {DNNL_ARG_WEIGHTS, filled(description.weights_desc(), engine)},
-                      {DNNL_ARG_DST, filled(description.dst_desc(), engine)}},
-                     engine, time_s);
+  const double seconds = seconds_per_run<dnnl::matmul>(description, engine, time_s);
   return static_cast<double>(kSize * kSize * kSize) / seconds;
 }
 

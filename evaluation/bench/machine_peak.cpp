@@ -8,25 +8,17 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/clock/clock.h"
 #include "evaluation/bench/int8_peak.h"
+#include "evaluation/bench/timing.h"
 
 namespace bevloc::bench {
 namespace {
 
 constexpr int kRepeats = 9;
 
-/// One untimed run, then the median of kRepeats, because the stages' times are medians too.
+/// The stages' times are medians too.
 double median_s(const std::function<void()>& run) {
-  const drivers::MonotonicClock clock;
-  std::vector<double> times_ms;
-  run();
-  for (int i = 0; i < kRepeats; ++i) {
-    const Time start = clock.now();
-    run();
-    times_ms.push_back(1e3 * to_seconds(clock.now() - start));
-  }
-  return 1e-3 * summarize(times_ms).p50_ms;
+  return time_of(run, kRepeats).p50_ms / kMs_per_s;
 }
 
 /// Bytes read plus bytes written, per second.

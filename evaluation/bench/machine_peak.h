@@ -8,8 +8,8 @@
 namespace bevloc::bench {
 
 /// Medians of several runs on `threads` threads: int8 products (int8_peak.h), and a copy of 64 MiB.
-/// Takes about half a second. Call it after the network is loaded, because that fixes the instruction
-/// set.
+/// Takes about half a second. Call it after the network is loaded, because that fixes the
+/// instruction set.
 MachinePeak measure_machine(int threads);
 
 /// The name in /proc/cpuinfo, or "unknown".

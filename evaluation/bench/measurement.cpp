@@ -103,8 +103,9 @@ Status Bench::prepare(MemoryResult& memory) {
     keep_if_tracked(drawer->draw(i, kFramesets));
   }
   if (scene_.places.empty()) {
-    return fail("{}: found none of {} places where the pose is tracked within {} frames, wanted one",
-                config_.model_file.string(), kMostCandidates, WholeFrame::kMostFrames);
+    return fail(
+        "{}: found none of {} places where the pose is tracked within {} frames, wanted one",
+        config_.model_file.string(), kMostCandidates, WholeFrame::kMostFrames);
   }
   memory.images_mib = scene_.images_mib();
   auto stages = Stages::create(config_, scene_, *index_, options_.threads);

@@ -32,7 +32,7 @@ struct MemoryResult {
   double program_mib = 0.0;    ///< code and libraries, at the start
   double map_mib = 0.0;        ///< the map with its index
   double appliance_mib = 0.0;  ///< network, solvers, stages and queues, after some frames
-  double images_mib = 0.0;   ///< rendered images, in the bench only
+  double images_mib = 0.0;     ///< rendered images, in the bench only
   ResidentMemory process;
 
   /// The memory of a daemon.
@@ -60,8 +60,8 @@ struct BenchResult {
 };
 
 /// Times whole frames and stages alternately, in small groups, at several places. Calls `progress`
-/// after each group. Fails if configuration, model, map or rig cannot be used, or if the pose is tracked
-/// at no place.
+/// after each group. Fails if configuration, model, map or rig cannot be used, or if the pose is
+/// tracked at no place.
 Result<BenchResult> run_bench(const evaluation::DriveConfig& config, const BenchOptions& options,
                               const std::function<void(int done, int all)>& progress);
 

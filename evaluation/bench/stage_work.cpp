@@ -10,8 +10,8 @@
 namespace bevloc::bench {
 namespace {
 
-/// Blocks of pixels have their own entries. Each of the other pixels has two positions and two sets of
-/// weights.
+/// Blocks of pixels have their own entries. Each of the other pixels has two positions and two sets
+/// of weights.
 double table_bytes(const RemapTable& table) {
   const RemapBlocks& blocks = table.blocks;
   size_t entries = blocks.index.size() + blocks.first_col.size() + blocks.first_row.size();

@@ -30,12 +30,12 @@ struct Stage {
   std::function<void()> run;
 };
 
-/// The stages, built from the pipeline's classes with their own buffers. The stages of a frame, run in
-/// order, do the daemon's work for one frameset. Not thread safe.
+/// The stages, built from the pipeline's classes with their own buffers. The stages of a frame, run
+/// in order, do the daemon's work for one frameset. Not thread safe.
 class Stages {
  public:
-  /// `config`, `scene` and `index` must outlive the stages. Fails as Network::load() and make_solver()
-  /// do.
+  /// `config`, `scene` and `index` must outlive the stages. Fails as Network::load() and
+  /// make_solver() do.
   static Result<std::unique_ptr<Stages>> create(const firmware::Config& config, const Scene& scene,
                                                 const MapIndex& index, int threads);
   ~Stages();
@@ -46,8 +46,8 @@ class Stages {
   /// Moves the vehicle to a place and restarts tracker and synchronizer.
   void go_to(const Place& place);
 
-  /// Prepares the next frame: its images, and the vehicle's samples up to its exposure. Call it before
-  /// the stages run; it is not timed. `images` must live until the next call.
+  /// Prepares the next frame: its images, and the vehicle's samples up to its exposure. Call it
+  /// before the stages run; it is not timed. `images` must live until the next call.
   void begin_frame(const FramesetImages& images);
 
  private:

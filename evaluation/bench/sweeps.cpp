@@ -9,12 +9,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "drivers/clock/clock.h"
-#include "firmware/runtime/appliance.h"
 #include "evaluation/bench/cost_model.h"
 #include "evaluation/bench/resident_memory.h"
 #include "evaluation/bench/scene.h"
 #include "evaluation/bench/stage_work.h"
 #include "evaluation/bench/tiled_map.h"
+#include "evaluation/bench/timing.h"
+#include "firmware/runtime/appliance.h"
 #include "pipeline/map/rasterizer.h"
 
 namespace bevloc::bench {
@@ -24,20 +25,8 @@ const std::string kFixedSize =
     "The network's sizes are fixed at compile time; for other\nnetworks see "
     "docs/network-variants.md.";
 
-/// Times `repeats` runs, after one untimed run.
-TimeSummary time_of(const std::function<void()>& run, int repeats) {
-  const drivers::MonotonicClock clock;
-  std::vector<double> times_ms;
-  run();
-  for (int i = 0; i < repeats; ++i) {
-    const Time start = clock.now();
-    run();
-    times_ms.push_back(kMs_per_s * to_seconds(clock.now() - start));
-  }
-  return summarize(times_ms);
-}
-
-Result<SweepResult> sweep_cameras(const evaluation::DriveConfig& config, const SweepOptions& options) {
+Result<SweepResult> sweep_cameras(const evaluation::DriveConfig& config,
+                                  const SweepOptions& options) {
   const auto scene = make_scene(config);
   if (!scene) return tl::unexpected(scene.error());
   const MapIndex index(scene->map);
@@ -51,8 +40,7 @@ Result<SweepResult> sweep_cameras(const evaluation::DriveConfig& config, const S
     seen.images[camera] = scene->places[0].framesets[0][camera].view();
   }
   SweepResult sweep{"cameras",
-                    "One localization with missing cameras. The network computes their black images "
-                    "too.",
+                    "One localization with missing cameras. The network computes black images too.",
                     {"cameras", "p50_ms", "p99_ms"},
                     {}};
   for (int cameras = 1; cameras <= kCameraCount; ++cameras) {
@@ -92,7 +80,8 @@ RgbImage resized(const RgbImage& image, int width_px, int height_px) {
   return larger;
 }
 
-Result<SweepResult> sweep_image(const evaluation::DriveConfig& config, const SweepOptions& options) {
+Result<SweepResult> sweep_image(const evaluation::DriveConfig& config,
+                                const SweepOptions& options) {
   const auto scene = make_scene(config);
   if (!scene) return tl::unexpected(scene.error());
   SweepResult sweep{"image",
@@ -166,7 +155,8 @@ HypothesisAxis wider(HypothesisAxis axis, double factor) {
   return axis;
 }
 
-Result<SweepResult> sweep_hypotheses(const evaluation::DriveConfig& config, const SweepOptions& options) {
+Result<SweepResult> sweep_hypotheses(const evaluation::DriveConfig& config,
+                                     const SweepOptions& options) {
   const HypothesisGrid& usual = config.solver.tracking;
   SweepResult sweep{"hypotheses",
                     "The solver with other search ranges and the same steps.",
@@ -211,7 +201,8 @@ Result<SweepResult> sweep_map(const evaluation::DriveConfig& config, const Sweep
   SweepResult sweep{
       "map",
       "Crop, and crop with raster, around one place of maps of other lengths, made from parts and "
-      "copies\nof the configuration's map. road_km is the length of road; map_mib includes the index.",
+      "copies\nof the configuration's map. road_km is the length of road; map_mib includes the "
+      "index.",
       {"road_km", "elements", "crop_ms", "raster_ms", "raster_p99_ms", "index_s", "map_mib"},
       {}};
   for (double km = 1.0; km <= options.longest_map_km; km *= 10.0) {

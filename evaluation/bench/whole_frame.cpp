@@ -1,7 +1,7 @@
 #include "evaluation/bench/whole_frame.h"
 
-#include "firmware/runtime/appliance.h"
 #include "evaluation/bench/allocation_count.h"
+#include "firmware/runtime/appliance.h"
 
 namespace bevloc::bench {
 namespace {

@@ -21,8 +21,8 @@ struct FrameRun {
   bool tracked = false;  ///< the state afterwards is TRACKING
 };
 
-/// The vision and the estimation stage with the queues between them, in lockstep on a virtual clock.
-/// Timing starts when the images are in memory. Not thread safe.
+/// The vision and the estimation stage with the queues between them, in lockstep on a virtual
+/// clock. Timing starts when the images are in memory. Not thread safe.
 class WholeFrame {
  public:
   /// `map` and `index` must outlive this object. Fails as Localizer::create() does.

@@ -24,9 +24,7 @@ struct DriveOptions {
   std::string json_file;
   bool fast = false;
 
-  bool any() const {
-    return seed || duration_s || !map_file.empty() || !json_file.empty() || fast;
-  }
+  bool any() const { return seed || duration_s || !map_file.empty() || !json_file.empty() || fast; }
 };
 
 void declare_options(CLI::App& app, DriveOptions& options) {
@@ -65,9 +63,8 @@ Status simulate(const DriveOptions& options, const DriveConfig& config, const Ri
   SimulatedRunOptions run;
   run.fast = options.fast;
   run.out = options.out;
-  const auto report = run_simulation(config, rig, run, [](const firmware::ApplianceView&) {
-    return firmware::stop_requested();
-  });
+  const auto report = run_simulation(
+      config, rig, run, [](const firmware::ApplianceView&) { return firmware::stop_requested(); });
   if (!report) return tl::unexpected(report.error());
   fmt::print("{}", to_table(*report));
   if (options.json_file.empty()) return {};

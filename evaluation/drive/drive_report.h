@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/result.h"
-#include "firmware/runtime/appliance.h"
 #include "evaluation/drive/judge.h"
+#include "firmware/runtime/appliance.h"
 
 namespace bevloc::evaluation {
 
@@ -20,8 +20,8 @@ struct DriveReport {
   PoseError prior;
   PoseError estimate;
   firmware::FrameCounts frames;
-  /// From the start of exposure to the first CAN frame of a pose that uses the frameset. On a virtual
-  /// clock computing takes no time, so only sensor and bus cycle contribute.
+  /// From the start of exposure to the first CAN frame of a pose that uses the frameset. On a
+  /// virtual clock computing takes no time, so only sensor and bus cycle contribute.
   LatencyReport latency;
   int realtime_refusals = 0;  ///< firmware::Realtime::refusals()
   uint64_t can_sent = 0;
@@ -37,8 +37,8 @@ struct DriveReport {
 std::string to_table(const DriveReport& report);
 std::string to_json(const DriveReport& report);
 
-/// Writes one line per judged pose: time, state, truth, prior, estimate. Fails if the file cannot be
-/// written.
+/// Writes one line per judged pose: time, state, truth, prior, estimate. Fails if the file cannot
+/// be written.
 Status write_csv(const DriveReport& report, const std::string& path);
 
 }  // namespace bevloc::evaluation

@@ -39,8 +39,8 @@ class ErrorStatistics {
   std::vector<double> yaw_deg_;
 };
 
-/// The smallest value that a share `quantile` of the values does not exceed (nearest rank). The median
-/// of an even number is the lower of the middle two. 0 if there are no values.
+/// The smallest value that a share `quantile` of the values does not exceed (nearest rank). The
+/// median of an even number is the lower of the middle two. 0 if there are no values.
 double quantile_of(std::vector<double> values, double quantile);
 
 }  // namespace bevloc::evaluation

@@ -20,7 +20,8 @@ Result<std::unique_ptr<Judge>> Judge::create(std::unique_ptr<can::Bus> bus,
   auto judge =
       std::unique_ptr<Judge>(new Judge(std::move(bus), base, origin, std::move(truth), times));
   judge->log_.open(log_path);
-  if (!judge->log_) return fail("{}: found no way to write the bus log, wanted to create it", log_path);
+  if (!judge->log_)
+    return fail("{}: found no way to write the bus log, wanted to create it", log_path);
   return judge;
 }
 

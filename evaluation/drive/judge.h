@@ -12,9 +12,9 @@
 #include "can/bus/bus.h"
 #include "can/messages/vehicle_input.h"
 #include "common/result.h"
-#include "firmware/health/health.h"
 #include "evaluation/drive/error_statistics.h"
 #include "evaluation/drive/pose_reader.h"
+#include "firmware/health/health.h"
 #include "pipeline/map/hd_map.h"
 #include "pipeline/tracker/tracker.h"
 

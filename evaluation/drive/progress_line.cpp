@@ -8,8 +8,8 @@
 
 namespace bevloc::evaluation {
 
-void show_progress_line(const firmware::ApplianceView& appliance, const JudgeView& judge, double time_s,
-                        double duration_s, bool last) {
+void show_progress_line(const firmware::ApplianceView& appliance, const JudgeView& judge,
+                        double time_s, double duration_s, bool last) {
   const bool is_terminal = isatty(STDERR_FILENO) == 1;
   if (!is_terminal && !last) return;
   std::string line = fmt::format("{:>5.1f}/{:.0f} s  {:<9}  cameras {}/{}  {:>4.1f} Hz",

@@ -7,7 +7,7 @@
 namespace bevloc::evaluation {
 
 /// Overwrites the line on a terminal. Writes only the last line to a file or pipe.
-void show_progress_line(const firmware::ApplianceView& appliance, const JudgeView& judge, double time_s,
-                        double duration_s, bool last);
+void show_progress_line(const firmware::ApplianceView& appliance, const JudgeView& judge,
+                        double time_s, double duration_s, bool last);
 
 }  // namespace bevloc::evaluation

@@ -28,9 +28,9 @@ struct SheetContent {
   HypothesisGrid hypotheses;       ///< the axes of the distributions
 };
 
-/// Writes a PNG: (a) the perceived BEV over the map at the corrected pose, (b) the six images with the
-/// map at the prior and (c) at the corrected pose, (d) the three distributions. Fails if the file
-/// cannot be written.
+/// Writes a PNG: (a) the perceived BEV over the map at the corrected pose, (b) the six images with
+/// the map at the prior and (c) at the corrected pose, (d) the three distributions. Fails if the
+/// file cannot be written.
 Status write_sheet(const SheetContent& content, const Rig& rig, const MapIndex& map,
                    const std::string& path);
 

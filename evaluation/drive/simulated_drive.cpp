@@ -10,7 +10,8 @@ namespace {
 constexpr double kRearTrack_m = 1.6;
 constexpr Duration kExposure = std::chrono::milliseconds(8);
 constexpr Duration kReadout = std::chrono::milliseconds(20);
-/// The drive continues beyond the configured duration, so that it does not end while the daemon runs.
+/// The drive continues beyond the configured duration, so that it does not end while the daemon
+/// runs.
 constexpr double kSpareDuration_s = 10.0;
 
 Time at(Time drive_start, double time_s) {
@@ -78,10 +79,8 @@ SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,
       drive_(std::make_shared<sim::Drive>(*world_, sim::seed_for(simulation.seed, "drive"),
                                           simulation.duration_s + kSpareDuration_s)) {}
 
-std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(const DriveConfig& config,
-                                                                           const Rig& rig,
-                                                                           drivers::Clock& clock,
-                                                                           Time drive_start) const {
+std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(
+    const DriveConfig& config, const Rig& rig, drivers::Clock& clock, Time drive_start) const {
   const SimulationConfig& simulation = *config.simulation;
   const auto scene = std::make_shared<drivers::MockScene>(
       world_, drive_, simulation.conditions, sim::seed_for(simulation.seed, "pixel noise"));

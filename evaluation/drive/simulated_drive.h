@@ -14,7 +14,8 @@
 
 namespace bevloc::evaluation {
 
-/// Sends the vehicle's odometry and GNSS of a drive on the bus, each with its own period. One thread.
+/// Sends the vehicle's odometry and GNSS of a drive on the bus, each with its own period. One
+/// thread.
 class SimulatedVehicle {
  public:
   SimulatedVehicle(std::shared_ptr<const sim::Drive> drive, uint64_t seed, const GeoOrigin& origin,
@@ -54,8 +55,8 @@ class SimulatedDrive {
   std::shared_ptr<const sim::Drive> drive() const { return drive_; }
 
   /// Mock cameras that see the drive, which begins at `drive_start`. The clock must outlive them.
-  std::vector<std::unique_ptr<drivers::Camera>> make_cameras(const DriveConfig& config, const Rig& rig,
-                                                             drivers::Clock& clock,
+  std::vector<std::unique_ptr<drivers::Camera>> make_cameras(const DriveConfig& config,
+                                                             const Rig& rig, drivers::Clock& clock,
                                                              Time drive_start) const;
 
  private:

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "evaluation/drive/bus_factory.h"
-#include "firmware/runtime/runner.h"
 #include "evaluation/drive/progress_line.h"
 #include "evaluation/drive/simulated_drive.h"
 #include "evaluation/drive/snapshot_keeper.h"
+#include "firmware/runtime/runner.h"
 #include "firmware/runtime/supervisor.h"
 
 namespace bevloc::evaluation {
@@ -67,7 +67,8 @@ class SimulatedRun {
   std::unique_ptr<Judge> judge_;
 };
 
-Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const DriveConfig& config, const Rig& rig,
+Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const DriveConfig& config,
+                                                           const Rig& rig,
                                                            const SimulatedRunOptions& options) {
   auto drive = SimulatedDrive::create(config);
   if (!drive) return tl::unexpected(drive.error());
@@ -77,8 +78,8 @@ Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const DriveConfig& co
   return run;
 }
 
-SimulatedRun::SimulatedRun(const DriveConfig& config, const Rig& rig, const SimulatedRunOptions& options,
-                           SimulatedDrive drive)
+SimulatedRun::SimulatedRun(const DriveConfig& config, const Rig& rig,
+                           const SimulatedRunOptions& options, SimulatedDrive drive)
     : config_(config),
       rig_(rig),
       options_(options),
@@ -97,8 +98,8 @@ Status SimulatedRun::connect() {
   for (const auto* bus : {&own_bus, &vehicle_bus, &judge_bus}) {
     if (!*bus) return tl::unexpected(bus->error());
   }
-  firmware::Hardware hardware{drive_.make_cameras(config_, rig_, clock_, drive_start_), std::move(*own_bus),
-                    &clock_};
+  firmware::Hardware hardware{drive_.make_cameras(config_, rig_, clock_, drive_start_),
+                              std::move(*own_bus), &clock_};
   auto appliance = firmware::Appliance::create(config_, rig_, drive_.map(), std::move(hardware));
   if (!appliance) return tl::unexpected(appliance.error());
   appliance_ = std::move(*appliance);
@@ -122,8 +123,8 @@ Status SimulatedRun::connect() {
 void SimulatedRun::run(const StopWhen& stop) {
   const double duration_s = config_.simulation->duration_s;
   const firmware::Companion companion{[this] { return vehicle_->next_due(); },
-                            [this](Time now) { vehicle_->send_due(now); },
-                            [this](Duration timeout) { judge_->step(timeout); }};
+                                      [this](Time now) { vehicle_->send_due(now); },
+                                      [this](Duration timeout) { judge_->step(timeout); }};
   firmware::Supervisor supervisor(*appliance_, realtime_);
   const auto supervise = [&](Time now) {
     supervisor.step(now);
@@ -179,8 +180,8 @@ Status SimulatedRun::write_sheet_if_any() {
   SheetContent& content = kept->content;
   const double time_s = to_seconds(kept->frame_time - drive_start_);
   const JudgedPose& nearest = judged_nearest(time_s);
-  // The judge compares at other times than the frameset's, so the errors of its nearest comparison are
-  // applied.
+  // The judge compares at other times than the frameset's, so the errors of its nearest comparison
+  // are applied.
   content.truth = drive_.truth_at(time_s);
   content.prior = content.truth * pose_error(nearest.truth, nearest.prior);
   content.corrected = content.truth * pose_error(nearest.truth, nearest.estimate);

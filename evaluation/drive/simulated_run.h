@@ -20,8 +20,8 @@ struct SimulatedRunOptions {
 using StopWhen = std::function<bool(const firmware::ApplianceView& view)>;
 
 /// Runs the drive for the configured duration, or until `stop` returns true, and writes can.log,
-/// poses.csv and sheet.png. `config.simulation` must be set. Fails if a file cannot be read or written,
-/// or if the appliance cannot be created.
+/// poses.csv and sheet.png. `config.simulation` must be set. Fails if a file cannot be read or
+/// written, or if the appliance cannot be created.
 Result<DriveReport> run_simulation(const DriveConfig& config, const Rig& rig,
                                    const SimulatedRunOptions& options, const StopWhen& stop);
 

@@ -10,9 +10,9 @@
 
 namespace bevloc::evaluation {
 
-/// Observes the vision stage. Among the framesets localized after tracking has settled, it keeps the
-/// one whose raster shows the most lines. The vision thread calls observe(); take() is called after
-/// the run.
+/// Observes the vision stage. Among the framesets localized after tracking has settled, it keeps
+/// the one whose raster shows the most lines. The vision thread calls observe(); take() is called
+/// after the run.
 class SnapshotKeeper {
  public:
   struct Kept {

@@ -83,7 +83,8 @@ def _draw_view(figure: Figure, left: float, caption: str, view: View, data: Spec
                 color=BAND if shown else OTHER_BANDS, linewidth=1.8 if shown else 0.9,
             )
         )
-    axes.set_xlabel(f"-{limit:.2f} to {limit:.2f} cycles/m, forward up", color=style.INK)
+    label = f"\N{MINUS SIGN}{limit:.2f} to {limit:.2f} cycles/m, forward up"
+    axes.set_xlabel(label, color=style.INK)
 
 
 def _draw_signatures(figure: Figure, data: Spectra) -> None:

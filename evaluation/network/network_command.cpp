@@ -31,27 +31,29 @@ Result<HdMap> load_drivable_map(const std::string& file) {
 }  // namespace
 
 void NetworkCommand::declare(CLI::App& eval) {
-  auto* network = eval.add_subcommand(
-      "network", "Evaluate a model with several solvers on simulated samples");
+  auto* network =
+      eval.add_subcommand("network", "Evaluate a model with several solvers on simulated samples");
   network->add_option("--model", model_, "ONNX file")->capture_default_str();
   network
       ->add_option("--set", set_,
                    "Nuisances of the samples: the name of a set (docs/evaluation.md), or all")
       ->capture_default_str();
-  add_choice(*network, "--rows", rows_,
-             {{"solvers", ReadOutRows::kSolvers},
-              {"variants", ReadOutRows::kVariants},
-              {"baselines", ReadOutRows::kBaselines},
-              {"all", ReadOutRows::kAll}},
-             "solvers: on the model's features; variants: also masks, sizes and steps of the paper's "
-             "Tables III and IV; baselines: methods without learned matching");
+  add_choice(
+      *network, "--rows", rows_,
+      {{"solvers", ReadOutRows::kSolvers},
+       {"variants", ReadOutRows::kVariants},
+       {"baselines", ReadOutRows::kBaselines},
+       {"all", ReadOutRows::kAll}},
+      "solvers: on the model's features; variants: also masks, sizes and steps of the paper's "
+      "Tables III and IV; baselines: methods without learned matching");
   network->add_option("--frames", frames_, "Number of samples of each set")
       ->check(CLI::Range(1, kMostFrames))
       ->capture_default_str();
   network->add_option("--seed", seed_, "Seed of the samples")
       ->check(CLI::Range(uint64_t{0}, kSampleSeeds - 1))
       ->capture_default_str();
-  network->add_option("--map", map_file_, "Take the samples on this map instead of in procedural towns");
+  network->add_option("--map", map_file_,
+                      "Take the samples on this map instead of in procedural towns");
   network->add_option("--json", json_file_, "Write the rows as JSON to this file");
   network->add_option("--csv", csv_file_, "Write the rows as CSV to this file");
   network->callback([this] { chosen_ = true; });

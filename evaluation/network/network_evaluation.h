@@ -51,9 +51,10 @@ class NetworkEvaluation {
                                           ReadOutRows rows = ReadOutRows::kSolvers,
                                           int tuning_samples = 40);
 
-  /// Evaluates the first `samples` samples of the stream, kSamplesTakenPerWorld of each world. Calls
-  /// `progress` after each one.
-  SetResult run(const sim::SampleStream& stream, int samples, const std::function<void()>& progress);
+  /// Evaluates the first `samples` samples of the stream, kSamplesTakenPerWorld of each world.
+  /// Calls `progress` after each one.
+  SetResult run(const sim::SampleStream& stream, int samples,
+                const std::function<void()>& progress);
 
   const std::string& model_name() const { return network_->name(); }
 

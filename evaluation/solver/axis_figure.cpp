@@ -94,11 +94,11 @@ nlohmann::json perceived_json(const CellFeatures& raw, const AxisMatching& match
   return json;
 }
 
-/// `of` each index inside the border.
+/// The positions of the cells inside the border; `position_m` maps an index to its position.
 template <typename Position>
-std::vector<double> positions_m(int cells, int crop, Position of) {
+std::vector<double> positions_m(int cells, int crop, Position position_m) {
   std::vector<double> positions;
-  for (int i = crop; i < cells - crop; ++i) positions.push_back(of(i));
+  for (int i = crop; i < cells - crop; ++i) positions.push_back(position_m(i));
   return positions;
 }
 

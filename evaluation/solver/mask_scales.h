@@ -27,10 +27,11 @@ class MaskScales {
   using Mask = std::vector<float> TuningSample::*;
 
   /// For solvers that match `mask`. `samples` must outlive this object.
-  MaskScales(const std::vector<TuningSample>& samples, Mask mask) : samples_(samples), mask_(mask) {}
+  MaskScales(const std::vector<TuningSample>& samples, Mask mask)
+      : samples_(samples), mask_(mask) {}
 
-  /// The scales with the lowest negative log-likelihood on the samples. Hypotheses have steps of 0.2
-  /// whatever the case's step is, and each solver and size is tuned only once. Fails as
+  /// The scales with the lowest negative log-likelihood on the samples. Hypotheses have steps of
+  /// 0.2 whatever the case's step is, and each solver and size is tuned only once. Fails as
   /// make_solver() does.
   Result<SolverParameters> parameters_for(SolverCase solver_case);
 

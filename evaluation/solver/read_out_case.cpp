@@ -28,8 +28,8 @@ void add_solvers(SolverInput input, std::vector<ReadOutCase>& cases) {
   }
 }
 
-/// The paper's Table IV: the decoupled solvers, except the literal one, which has no learned scales.
-/// The network's features have one size; masks have two.
+/// The paper's Table IV: the decoupled solvers, except the literal one, which has no learned
+/// scales. The network's features have one size; masks have two.
 void add_sizes_and_steps(SolverInput input, std::vector<ReadOutCase>& cases) {
   for (SolverCase solver_case : table_four_cases()) {
     const SolverKind kind = solver_case.solver;

@@ -1,5 +1,5 @@
-// The data of the figures in docs/solver.md, computed by the solver's own code. script/figures draws
-// them.
+// The data of the figures in docs/solver.md, computed by the solver's own code. script/figures
+// draws them.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ inline constexpr uint64_t kMostFigureScenes = 100'000;
 ///     axis_features  axis_figure.h
 ///     distributions  distribution_figure.h
 ///
-/// `scene` selects among the evaluation's scenes of each kind of road: 0 is the first of each. Fails
-/// if the scene's town has no junction or the file cannot be written.
+/// `scene` selects among the evaluation's scenes of each kind of road: 0 is the first of each.
+/// Fails if the scene's town has no junction or the file cannot be written.
 Status write_solver_figures(uint64_t scene, const std::string& file);
 
 }  // namespace bevloc::evaluation

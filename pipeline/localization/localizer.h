@@ -43,8 +43,8 @@ struct CameraImages {
 enum class SearchRange : uint8_t { kTracking, kAcquiring };
 
 /// The paper's network and its solver (Fig. 2), for one rig and one map. Owns all buffers: after a
-/// warm-up localize() allocates nothing, for any set of cameras and exposure times. Not thread safe.
-/// The map index must outlive it.
+/// warm-up localize() allocates nothing, for any set of cameras and exposure times. Not thread
+/// safe. The map index must outlive it.
 class Localizer {
  public:
   /// Fails if the model cannot be loaded or the solver does not support the hypotheses.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kLateralBands = 10;
 constexpr int kLongitudinalBands = 5;
-constexpr float kStdEpsilon = 0.01F;
+constexpr float kBandStdEpsilon = 0.01F;
 
 /// Replaces the scores by softmax(scale * score). Returns log(sum of exp(scale * score)).
 double normalise(std::span<double> scores, double scale) {
@@ -122,9 +122,9 @@ void BandedMatcher::average(const CellFeatures& features, int lateral_reach, int
                        longitudinal_first + b * longitudinal_stride + row * lanes_);
     }
   }
-  standardise_runs(lateral_first, row_bands, lateral_stride, grid_.cols, lanes_, kStdEpsilon);
+  standardise_runs(lateral_first, row_bands, lateral_stride, grid_.cols, lanes_, kBandStdEpsilon);
   standardise_runs(longitudinal_first, col_bands, longitudinal_stride, grid_.rows, lanes_,
-                   kStdEpsilon);
+                   kBandStdEpsilon);
 }
 
 void BandedMatcher::correlate(Bands& bands) const {

@@ -8,7 +8,7 @@
 namespace bevloc {
 namespace {
 
-constexpr double kStdEpsilon = 0.01;
+constexpr double kCellStdEpsilon = 0.01;
 /// A channel with a smaller standard deviation counts as constant: it varies by rounding alone.
 constexpr double kLeastStd = 1e-4;
 
@@ -50,7 +50,7 @@ BEVLOC_TARGET_CLONES void find_moments(const CellFeatures& features, int first_l
 /// Computes in double, because the difference of a large float from the mean may overflow a float.
 BEVLOC_TARGET_CLONES void shift_and_scale(const Moments& moments, int first_lane,
                                           CellFeatures& features) {
-  const LaneDoubles scale = 1.0 / (moments.std + kStdEpsilon);
+  const LaneDoubles scale = 1.0 / (moments.std + kCellStdEpsilon);
   const BevGrid& grid = features.grid();
   for (int row = 0; row < grid.rows; ++row) {
     float* cell = features.mutable_cell(row, 0) + first_lane;

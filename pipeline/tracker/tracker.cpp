@@ -29,7 +29,8 @@ bool is_covariance(const Eigen::Matrix3d& matrix) {
 
 PoseMeasurement measurement_from(const GnssPose& gnss) {
   const double position_variance = square_of(gnss.position_sigma_m);
-  const Eigen::Vector3d variance(position_variance, position_variance, square_of(gnss.yaw_sigma_rad));
+  const Eigen::Vector3d variance(position_variance, position_variance,
+                                 square_of(gnss.yaw_sigma_rad));
   const Se2& pose = gnss.map_from_vehicle;
   return {.map_from_vehicle = {pose.x_m, pose.y_m, wrap_angle(pose.yaw_rad)},
           .covariance = variance.asDiagonal()};
@@ -126,7 +127,8 @@ TrackerUpdate Tracker::add_gnss(const GnssSample& sample) {
   return TrackerUpdate::kAccepted;
 }
 
-TrackerUpdate Tracker::add_correction(Time frame_time, const Se2& prior, const MatchResult& result) {
+TrackerUpdate Tracker::add_correction(Time frame_time, const Se2& prior,
+                                      const MatchResult& result) {
   if (result.evidence != Evidence::kGood) return TrackerUpdate::kNoEvidence;
   if (!prior.is_finite() || !result.correction.is_finite() || !result.covariance.allFinite() ||
       !result.evidence_share.allFinite()) {

@@ -29,7 +29,7 @@ struct ImageConstants {
 };
 
 /// The intermediate values of up to kRun consecutive pixels.
-struct Run {
+struct GroundRun {
   alignas(64) float rx[kRun], ry[kRun];            ///< rays in the camera frame
   alignas(64) float dx[kRun], dy[kRun], dz[kRun];  ///< rays in map axes
   alignas(64) float x[kRun], y[kRun], range[kRun], steepness[kRun];
@@ -44,7 +44,7 @@ struct Run {
 /// Rotates the rays into the map and intersects them with the ground. Returns the number of taps
 /// that the run needs; 0 if all pixels are sky.
 BEVLOC_TARGET_CLONES
-int trace_rays(const ImageConstants& constants, int count, Run& run) {
+int trace_rays(const ImageConstants& constants, int count, GroundRun& run) {
   const ImageConstants& f = constants;
   const float* m = f.rotation;
   float most_ratio = 0.0F;
@@ -77,7 +77,7 @@ int trace_rays(const ImageConstants& constants, int count, Run& run) {
 
 /// Selects the tile level of each pixel so that its taps cover its footprint.
 BEVLOC_TARGET_CLONES
-void choose_levels(int taps, int count, Run& run) {
+void choose_levels(int taps, int count, GroundRun& run) {
   const float share = 1.0F / static_cast<float>(taps);
   for (int i = 0; i < count; ++i) {
     const float width = run.texels_per_m[i];
@@ -98,7 +98,7 @@ void choose_levels(int taps, int count, Run& run) {
 /// Computes the tile, and the place within it, of the tap `offset` steps from the footprint's
 /// centre.
 BEVLOC_TARGET_CLONES
-void place_taps(float offset, int count, Run& run) {
+void place_taps(float offset, int count, GroundRun& run) {
   for (int i = 0; i < count; ++i) {
     const float x = (run.x[i] + offset * run.step_x[i]) * run.texels_per_m[i];
     const float y = (run.y[i] + offset * run.step_y[i]) * run.texels_per_m[i];
@@ -116,7 +116,7 @@ void place_taps(float offset, int count, Run& run) {
 
 /// Looks up the tiles of all pixels. Returns whether all of them are in the directory.
 BEVLOC_TARGET_CLONES
-bool look_up(const int32_t* directory, int count, Run& run) {
+bool look_up(const int32_t* directory, int count, GroundRun& run) {
   int32_t lowest = 0;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
@@ -129,7 +129,7 @@ bool look_up(const int32_t* directory, int count, Run& run) {
 }
 
 /// Borrows the tiles that are missing in the directory.
-void fetch_missing(GroundWindow& ground, int count, const Run& run) {
+void fetch_missing(GroundWindow& ground, int count, const GroundRun& run) {
   for (int i = 0; i < count; ++i) {
     const int32_t at = GroundWindow::directory_index(run.level[i], run.tile_x[i], run.tile_y[i]);
     if (ground.directory()[at] == GroundWindow::kMissing) {
@@ -140,7 +140,7 @@ void fetch_missing(GroundWindow& ground, int count, const Run& run) {
 
 /// Adds one bilinear tap to every pixel.
 BEVLOC_TARGET_CLONES
-void add_taps(const GroundTexel* texels, float weight, int count, Run& run) {
+void add_taps(const GroundTexel* texels, float weight, int count, GroundRun& run) {
   const NeighbourGrid grid(texels, kTileNodes);
   const float scale = weight / (255.0F * 255.0F);
   const float gloss_scale = weight / 255.0F;
@@ -159,7 +159,7 @@ void add_taps(const GroundTexel* texels, float weight, int count, Run& run) {
 
 /// Converts albedo to radiance: sun, sky, lamps, wetness, haze.
 BEVLOC_TARGET_CLONES
-void light_ground(const ImageConstants& constants, int count, Run& run) {
+void light_ground(const ImageConstants& constants, int count, GroundRun& run) {
   const Lighting l = constants.lighting;
   const float sun_share = std::max(0.0F, l.to_sun.z());
   const auto per_cell = static_cast<float>(1.0 / GroundLight::kCellM);
@@ -227,7 +227,7 @@ ImageConstants make_constants(const View& view, const Lighting& lighting, const 
 }
 
 void draw_ground_run(const ImageConstants& constants, int taps, int count, GroundWindow& ground,
-                     Run& run) {
+                     GroundRun& run) {
   choose_levels(taps, count, run);
   for (int tap = 0; tap < taps; ++tap) {
     place_taps(static_cast<float>(tap) - 0.5F * static_cast<float>(taps - 1), count, run);
@@ -243,7 +243,7 @@ void draw_ground_run(const ImageConstants& constants, int taps, int count, Groun
 void draw_ground_and_sky(const View& view, const Lighting& lighting, const GroundLight& light,
                          const Sky& sky, GroundWindow& ground, LinearImage& image) {
   const ImageConstants constants = make_constants(view, lighting, light, ground.local_origin());
-  Run run;
+  GroundRun run;
   const int pixels = view.width() * view.height();
   for (int start = 0; start < pixels; start += kRun) {
     const int count = std::min(kRun, pixels - start);

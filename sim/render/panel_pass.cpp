@@ -41,7 +41,7 @@ struct PanelInView {
 constexpr float kNoLimit = 1e4F;
 
 /// The intermediate values of up to kRun consecutive pixels of a row.
-struct Run {
+struct PanelRun {
   alignas(64) float rx[kRun], ry[kRun];
   alignas(64) float nearness[kRun], u[kRun], v[kRun], cover[kRun], footprint[kRun], head[kRun];
   alignas(64) float red[kRun], green[kRun], blue[kRun];
@@ -59,7 +59,7 @@ inline float overlap(float at, float length, float size) {
 
 /// Intersects the rays with the panel. Returns whether it covers any pixel and is not hidden there.
 BEVLOC_TARGET_CLONES
-bool intersect(const PanelInView& panel, const float* hidden_by, int count, Run& run) {
+bool intersect(const PanelInView& panel, const float* hidden_by, int count, PanelRun& run) {
   const PanelInView s = panel;
   float most = 0.0F;
   for (int i = 0; i < count; ++i) {
@@ -92,7 +92,7 @@ bool intersect(const PanelInView& panel, const float* hidden_by, int count, Run&
 
 /// Computes the light of the ego vehicle's headlights at the hit points.
 BEVLOC_TARGET_CLONES
-void add_headlights(const PanelInView& panel, int count, Run& run) {
+void add_headlights(const PanelInView& panel, int count, PanelRun& run) {
   const PanelInView s = panel;
   for (int i = 0; i < count; ++i) {
     const float depth = 1.0F / std::max(run.nearness[i], 1e-3F);
@@ -104,7 +104,7 @@ void add_headlights(const PanelInView& panel, int count, Run& run) {
 
 /// Samples and lights the panel's texture. Holes in the texture reduce the cover.
 BEVLOC_TARGET_CLONES
-void apply_texture(const PanelInView& panel, int count, Run& run) {
+void apply_texture(const PanelInView& panel, int count, PanelRun& run) {
   const PanelInView s = panel;
   const float scale = kTextureRange / (255.0F * 255.0F);
   const uint32_t* texels = s.texels;
@@ -152,7 +152,7 @@ void apply_texture(const PanelInView& panel, int count, Run& run) {
 
 /// Blends the run into the image.
 BEVLOC_TARGET_CLONES
-void blend(const Run& run, int count, float* __restrict red, float* __restrict green,
+void blend(const PanelRun& run, int count, float* __restrict red, float* __restrict green,
            float* __restrict blue, float* __restrict nearness) {
   for (int i = 0; i < count; ++i) {
     red[i] += run.cover[i] * (run.red[i] - red[i]);
@@ -217,7 +217,7 @@ bool view_panel(const Panel& panel, const View& view, const Lighting& lighting, 
 
 void draw_panel(const View& view, const PanelInView& panel, const PixelBox& box,
                 LinearImage& image) {
-  Run run;
+  PanelRun run;
   std::fill_n(run.head, kRun, 0.0F);
   for (int v = box.top; v <= box.bottom; ++v) {
     for (int u = box.left; u <= box.right; u += kRun) {

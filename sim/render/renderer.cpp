@@ -19,23 +19,23 @@ namespace {
 
 constexpr double kSightM = 160.0;  ///< farther objects are not drawn
 
-/// The inputs of the surroundings and of the light on the ground. Cameras at the same moment share
-/// both.
-struct Moment {
-  Se2 map_from_vehicle;
-  double time_s = 0.0;
-  Conditions conditions;
-
-  auto key() const {
-    return std::tie(map_from_vehicle.x_m, map_from_vehicle.y_m, map_from_vehicle.yaw_rad, time_s,
-                    conditions.sun_azimuth_rad, conditions.sun_elevation_rad, conditions.overcast,
-                    conditions.rain, conditions.exposure);
-  }
-};
-
 }  // namespace
 
 struct Renderer::Impl {
+  /// The inputs of the surroundings and of the light on the ground. Cameras at the same moment
+  /// share both.
+  struct Moment {
+    Se2 map_from_vehicle;
+    double time_s = 0.0;
+    Conditions conditions;
+
+    auto key() const {
+      return std::tie(map_from_vehicle.x_m, map_from_vehicle.y_m, map_from_vehicle.yaw_rad, time_s,
+                      conditions.sun_azimuth_rad, conditions.sun_elevation_rad, conditions.overcast,
+                      conditions.rain, conditions.exposure);
+    }
+  };
+
   explicit Impl(std::shared_ptr<GroundTiles> tiles)
       : ground(std::move(tiles)), scene(ground.world()), sky(ground.world().seed) {}
 

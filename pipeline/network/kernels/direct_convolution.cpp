@@ -23,7 +23,7 @@ int round_up(int number, int unit) {
   return (number + unit - 1) / unit * unit;
 }
 
-size_t aligned(size_t bytes) {
+size_t rounded_up_to_line(size_t bytes) {
   return (bytes + kCacheLineBytes - 1) / kCacheLineBytes * kCacheLineBytes;
 }
 
@@ -258,7 +258,7 @@ size_t DirectConvolution::line_bytes() const {
 }
 
 size_t DirectConvolution::scratch_bytes() const {
-  return aligned(static_cast<size_t>(kernel_rows_) * line_bytes()) +
+  return rounded_up_to_line(static_cast<size_t>(kernel_rows_) * line_bytes()) +
          static_cast<size_t>(out_cols_) * sums_per_pixel_ * sizeof(int32_t);
 }
 
@@ -269,7 +269,7 @@ void DirectConvolution::run(const std::byte* input, const std::byte* residual, s
   const size_t output_bytes = row_elements * size_in_bytes(requantizer_.output);
   const size_t residual_bytes = row_elements * size_in_bytes(requantizer_.residual);
   auto* const sums = reinterpret_cast<int32_t*>(
-      scratch + aligned(static_cast<size_t>(kernel_rows_) * line_bytes()));
+      scratch + rounded_up_to_line(static_cast<size_t>(kernel_rows_) * line_bytes()));
   for (int row = begin; row < end;) {
     const int image = row / out_rows_;
     Lines lines(*this, input + image * image_bytes, scratch);

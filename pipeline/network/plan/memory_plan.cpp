@@ -10,7 +10,7 @@ bool are_in_use_together(const Lifetime& a, const Lifetime& b) {
   return a.first <= b.last && b.first <= a.last;
 }
 
-size_t aligned(size_t bytes) {
+size_t rounded_up_to_alignment(size_t bytes) {
   return (bytes + kBufferAlignment - 1) / kBufferAlignment * kBufferAlignment;
 }
 
@@ -27,12 +27,13 @@ MemoryPlan plan_memory(std::span<const Lifetime> buffers) {
   plan.offsets.resize(buffers.size());
   std::vector<size_t> placed_by_offset;
   for (const size_t buffer : largest_first) {
-    const size_t bytes = aligned(buffers[buffer].bytes);
+    const size_t bytes = rounded_up_to_alignment(buffers[buffer].bytes);
     size_t offset = 0;
     for (const size_t other : placed_by_offset) {
       if (!are_in_use_together(buffers[buffer], buffers[other])) continue;
       if (offset + bytes <= plan.offsets[other]) break;
-      offset = std::max(offset, plan.offsets[other] + aligned(buffers[other].bytes));
+      offset =
+          std::max(offset, plan.offsets[other] + rounded_up_to_alignment(buffers[other].bytes));
     }
     plan.offsets[buffer] = offset;
     plan.total_bytes = std::max(plan.total_bytes, offset + bytes);

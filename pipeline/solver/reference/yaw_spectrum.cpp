@@ -23,7 +23,7 @@ constexpr double kRadiusStep = (YawSpectrum::kMaxFrequency - YawSpectrum::kMinFr
 constexpr int kTapsPerAngle = 4 * YawSpectrum::kRadiiPerBand;
 /// Far below the amplitudes of any channel with structure, and far above those of a constant
 /// channel. The latter are rounding errors of the channel with which it shares a complex transform.
-constexpr float kStdEpsilon = 1e-3F;
+constexpr float kSignatureStdEpsilon = 1e-3F;
 
 /// The grid whose spectrum is computed: `grid`, or cells of about kCell_m if `grid` is finer.
 BevGrid grid_of(const BevGrid& grid) {
@@ -155,7 +155,7 @@ void YawSpectrum::read_signature(std::span<const float> amplitude, LaneBuffer& s
     float* begin = band(signature, b);
     gather(amplitude.data(), taps_.data() + b * kAngles * kTapsPerAngle, kTapsPerAngle, kAngles,
            lane_count, begin);
-    standardise_runs(begin, 1, 0, kAngles, lane_count, kStdEpsilon);
+    standardise_runs(begin, 1, 0, kAngles, lane_count, kSignatureStdEpsilon);
     std::copy_n(begin + size - margin, margin, begin - margin);
     std::copy_n(begin, margin, begin + size);
   }

@@ -1,4 +1,4 @@
-// What each baseline must do where all is seen, and where nothing is.
+// The baselines with perfect input and with empty input.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -24,7 +24,8 @@ bool is_same(const Se2& a, const Se2& b) {
   return a.x_m == b.x_m && a.y_m == b.y_m && a.yaw_rad == b.yaw_rad;
 }
 
-/// Along the street by less than half a crossing: no edge of it is nearer to the other one.
+/// Shifts along the street are smaller than half a crossing, so that each of its edges is nearest
+/// to itself.
 const std::array<Se2, 3> kCorrections{
     {{0.0, 0.0, 0.0}, {0.9, -0.4, radians(1.2)}, {-1.2, 0.6, radians(-0.7)}}};
 const Se2 kLargeCorrection{1.8, 0.9, radians(1.8)};
@@ -44,14 +45,14 @@ TEST_P(BaselineOnMasks, RecoversAKnownOffset) {
   }
 }
 
-TEST_P(BaselineOnMasks, KeepsThePriorWhereNothingIsSeen) {
+TEST_P(BaselineOnMasks, KeepsThePriorIfTheMaskIsEmpty) {
   const auto baseline = GetParam().make();
   StreetScene scene(kCorrections[1]);
   std::ranges::fill(scene.perceived, 0.0F);
   EXPECT_THAT(baseline->correct(scene.input()), test::PoseNear({}, 1e-9, radians(1e-9)));
 }
 
-TEST_P(BaselineOnMasks, KeepsThePriorWhereTheMapIsEmpty) {
+TEST_P(BaselineOnMasks, KeepsThePriorIfTheMapIsEmpty) {
   const auto baseline = GetParam().make();
   StreetScene scene(kCorrections[1]);
   std::ranges::fill(scene.raster, uint8_t{0});
@@ -67,7 +68,7 @@ TEST_P(BaselineOnMasks, StaysWithinTheRanges) {
   EXPECT_LE(std::abs(found.yaw_rad), ranges.yaw_rad.range);
 }
 
-TEST_P(BaselineOnMasks, AnswersTheSameTwice) {
+TEST_P(BaselineOnMasks, IsRepeatable) {
   const auto baseline = GetParam().make();
   const StreetScene scene(kCorrections[2]);
   const Se2 first = baseline->correct(scene.input());
@@ -83,20 +84,20 @@ INSTANTIATE_TEST_SUITE_P(
                 [] { return std::make_unique<DistanceTransformAlignment>(HypothesisGrid{}); }}),
     [](const auto& instance) { return instance.param.name; });
 
-TEST(DistanceTransformAlignmentTest, StartsFromMoreThanThePrior) {
+TEST(DistanceTransformAlignmentTest, StartsFromSeveralCorrections) {
   const StreetScene scene(kLargeCorrection);
   EXPECT_THAT(DistanceTransformAlignment({}).correct(scene.input()),
               test::PoseNear(kLargeCorrection, 0.05, radians(0.1)));
 }
 
-TEST(IterativeClosestPointsTest, IsCaughtByTheWrongEdgeOfACrossing) {
+TEST(IterativeClosestPointsTest, ConvergesToTheWrongEdgeOfACrossing) {
   const StreetScene scene(kLargeCorrection);
   const Se2 found = IterativeClosestPoints({}).correct(scene.input());
   EXPECT_GT(std::abs(found.x_m - kLargeCorrection.x_m), 1.0);
 }
 
-/// Images of the street by exact cameras: asphalt, and paint 0.24 m wide where the map has dividers
-/// and the edges of the crossing.
+/// Images of the street from cameras without calibration error: asphalt, with paint 0.24 m wide on
+/// the dividers and on the edges of the crossing.
 std::vector<uint8_t> painted_images(const StreetScene& scene) {
   constexpr uint8_t kAsphalt = 70;
   constexpr uint8_t kPaint = 200;
@@ -149,7 +150,7 @@ TEST_F(InversePerspectiveMappingTest, RecoversAKnownOffset) {
   }
 }
 
-TEST_F(InversePerspectiveMappingTest, KeepsThePriorWhereNothingIsPainted) {
+TEST_F(InversePerspectiveMappingTest, KeepsThePriorIfThereIsNoPaint) {
   const StreetScene scene(kCorrections[1]);
   const std::vector<uint8_t> bare(kCameraCount * kNetworkImageSize, uint8_t{70});
   EXPECT_THAT(correct(scene, bare), test::PoseNear({}, 1e-9, radians(1e-9)));

@@ -1,4 +1,4 @@
-// Middles of lines: where they are, and where there are none.
+// Centre lines, and the distance to them.
 #include "evaluation/baselines/line_points.h"
 
 #include <cmath>
@@ -39,7 +39,7 @@ class StraightLine : public testing::Test {
   ClassLines lines_;
 };
 
-TEST_F(StraightLine, HasItsMiddleWithinATenthOfACell) {
+TEST_F(StraightLine, IsFoundToATenthOfACell) {
   ASSERT_GT(lines_[kDivider].size(), 300U);
   for (const LinePoint& point : lines_[kDivider]) {
     EXPECT_NEAR(distance_of(point.position_m), 0.0, 0.1 * kRasterGrid.cell_m);
@@ -47,13 +47,13 @@ TEST_F(StraightLine, HasItsMiddleWithinATenthOfACell) {
   }
 }
 
-TEST_F(StraightLine, IsOfItsClassAlone) {
+TEST_F(StraightLine, BelongsToOneClassOnly) {
   EXPECT_TRUE(lines_[kBoundary].empty());
   EXPECT_EQ(NearestLine(lines_[kBoundary]).to({0.0, 0.0}), nullptr);
   EXPECT_TRUE(DistanceField(lines_[kBoundary]).is_empty());
 }
 
-TEST_F(StraightLine, IsAsFarAsItIs) {
+TEST_F(StraightLine, HasTheRightDistanceAndGradient) {
   const DistanceField field(lines_[kDivider]);
   const NearestLine nearest(lines_[kDivider]);
   for (const double offset_m : {-3.0, -0.8, 1.1, 2.0}) {
@@ -67,7 +67,7 @@ TEST_F(StraightLine, IsAsFarAsItIs) {
   EXPECT_EQ(nearest.to({31.0, 0.0}), nullptr);
 }
 
-TEST_F(StraightLine, LeavesNoPointThatACorrectionMovesOut) {
+TEST_F(StraightLine, LosesPointsThatACorrectionMovesOutside) {
   const HypothesisGrid ranges;
   const LinePoints inside = inside_for_all(lines_[kDivider], ranges);
   EXPECT_GT(inside.size(), 250U);
@@ -80,7 +80,7 @@ TEST_F(StraightLine, LeavesNoPointThatACorrectionMovesOut) {
   }
 }
 
-TEST(LinePoints, AreNotInAnAreaOfOneValue) {
+TEST(LinePoints, AreNotFoundInAConstantMask) {
   for (const float value : {0.0F, 1.0F}) {
     const std::vector<float> mask(kRasterSize, value);
     for (const LinePoints& points : lines_of_mask(mask)) EXPECT_TRUE(points.empty());

@@ -1,4 +1,4 @@
-// A street seen without fault, for tests of the baselines.
+// A street and a mask without errors, for tests of the baselines.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace bevloc::evaluation {
 
-/// Two lane dividers and two kerbs that bend gently, and a crossing.
+/// Two lane dividers and two kerbs with a slight bend, and a crossing.
 inline HdMap street() {
   HdMap map;
   for (const double y_m : {-7.0, -2.0, 1.5, 6.5}) {
@@ -32,7 +32,7 @@ inline HdMap street() {
   return map;
 }
 
-/// The street as a perfect network would perceive it, and the map drawn at a prior pose.
+/// The mask of a network without errors, and the map at a prior pose.
 struct StreetScene {
   explicit StreetScene(const Se2& correction)
       : perceived(kRasterSize), raster(kRasterSize), truth(kRasterSize) {

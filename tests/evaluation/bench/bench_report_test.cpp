@@ -12,8 +12,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// 2 ms of convolutions at half of the peak, 1 ms of moving, 1 ms that is unattributed.
-BenchResult made_up_result() {
+/// 2 ms of convolutions at half the peak, 1 ms of copying, and 1 ms that is unattributed.
+BenchResult example() {
   BenchResult result;
   result.model = "nano";
   result.frames = 20;
@@ -32,16 +32,16 @@ BenchResult made_up_result() {
   return result;
 }
 
-TEST(BenchReport, SumsOnlyWhatIsInTheFrame) {
-  const BenchResult result = made_up_result();
+TEST(BenchReport, SumsOnlyTheStagesOfTheFrame) {
+  const BenchResult result = example();
   EXPECT_DOUBLE_EQ(result.sum_of_stages_ms(), 3.0);
   EXPECT_DOUBLE_EQ(result.outside_ms(), 1.0);
   EXPECT_DOUBLE_EQ(result.sum_of_ideals_ms(), 1.0 + 0.5);
   EXPECT_DOUBLE_EQ(result.memory.daemon_mib(), 63.0);
 }
 
-TEST(BenchReport, JsonHasWhatTheDocumentationPromises) {
-  const auto json = nlohmann::json::parse(to_json(made_up_result()));
+TEST(BenchReport, JsonHasTheDocumentedKeys) {
+  const auto json = nlohmann::json::parse(to_json(example()));
   for (const char* key : {"model", "frames", "threads", "places", "processor", "instruction_set",
                           "peak", "memory", "stages", "frame"}) {
     EXPECT_TRUE(json.contains(key)) << key;
@@ -61,8 +61,8 @@ TEST(BenchReport, JsonHasWhatTheDocumentationPromises) {
   EXPECT_DOUBLE_EQ(json["frame"]["times_ideal"], 4.0 / 1.5);
 }
 
-TEST(BenchReport, SaysWhereNothingIsKnown) {
-  BenchResult result = made_up_result();
+TEST(BenchReport, MarksUnknownValues) {
+  BenchResult result = example();
   result.allocations_counted = false;
   result.whole_frame.reset();
   result.peak.convolution_macs_per_s = result.peak.matmul_macs_per_s = 0.0;
@@ -80,14 +80,14 @@ void expect_narrow(const std::string& text) {
 }
 
 TEST(BenchReport, TableFitsATerminal) {
-  BenchResult result = made_up_result();
+  BenchResult result = example();
   result.stages[0].time = {1234.567, 1234.567, 1234.567, 1234.567};
   result.stages[0].work = {99'999e6, 999e6};
   expect_narrow(table_of(result));
 }
 
-TEST(BenchReport, TableHasTheSumsBetweenTheFrameAndTheRest) {
-  const std::string table = table_of(made_up_result());
+TEST(BenchReport, TableHasTheSumsAfterTheStagesOfTheFrame) {
+  const std::string table = table_of(example());
   EXPECT_THAT(table, HasSubstr("whole frame        4.000"));
   EXPECT_THAT(table, HasSubstr("2.67 times"));
   EXPECT_THAT(table, HasSubstr("outside the frame\nmjpeg-decode"));

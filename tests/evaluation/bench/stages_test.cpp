@@ -14,8 +14,8 @@ using testing::ElementsAreArray;
 class StagesTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    config_ =
-        new evaluation::DriveConfig(evaluation::load_drive_config(BEVLOC_SOURCE_DIR "/config/demo.yaml").value());
+    config_ = new evaluation::DriveConfig(
+        evaluation::load_drive_config(BEVLOC_SOURCE_DIR "/config/demo.yaml").value());
     scene_ = new Scene(make_scene(*config_, 2, 2).value());
     index_ = new MapIndex(scene_->map);
   }

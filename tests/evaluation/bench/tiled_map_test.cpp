@@ -11,7 +11,7 @@
 namespace bevloc::bench {
 namespace {
 
-/// A straight road of one kilometre with a divider, and another far away.
+/// Two straight roads of one kilometre, 5 km apart, each with a divider.
 HdMap two_roads() {
   const auto line = [](ElementClass kind, double y) {
     return MapElement{kind, Appearance::kUnknown, {{0.0, y}, {500.0, y}, {1000.0, y}}};
@@ -30,14 +30,14 @@ TEST(TiledMap, RoadIsHalfItsBoundaries) {
   EXPECT_DOUBLE_EQ(road_km(HdMap()), 0.0);
 }
 
-TEST(TiledMap, AShortMapIsWhatLiesNearest) {
+TEST(TiledMap, AShortMapHasTheNearestElements) {
   const HdMap map = tiled_map(two_roads(), {100.0, 5000.0}, 1.0);
   ASSERT_EQ(map.elements.size(), 3U);
   for (const MapElement& element : map.elements) EXPECT_GE(element.points[0].y(), 5000.0);
   EXPECT_DOUBLE_EQ(road_km(map), 1.0);
 }
 
-TEST(TiledMap, ALongMapIsCopiesWithTheFirstInItsPlace) {
+TEST(TiledMap, ALongMapHasCopiesAndKeepsTheFirstInPlace) {
   const HdMap town = two_roads();
   const HdMap map = tiled_map(town, {0.0, 0.0}, 14.0);
   EXPECT_DOUBLE_EQ(road_km(map), 14.0);
@@ -51,7 +51,7 @@ TEST(TiledMap, AnEmptyMapStaysEmpty) {
   EXPECT_TRUE(tiled_map(HdMap(), {0.0, 0.0}, 10.0).elements.empty());
 }
 
-/// What the sweep rests on: the same to draw in a map of any length.
+/// The sweep relies on this: maps of all lengths need the same drawing.
 TEST(TiledMap, LooksTheSameAroundThePlace) {
   const sim::World world = sim::generate_world(7);
   sim::Random random(1);

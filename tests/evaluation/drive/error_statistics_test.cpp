@@ -8,7 +8,7 @@
 namespace bevloc::evaluation {
 namespace {
 
-TEST(ErrorStatisticsTest, MeasuresEachAxisOnItsOwn) {
+TEST(ErrorStatisticsTest, MeasuresEachAxis) {
   ErrorStatistics statistics;
   statistics.add({1.0, -0.5, radians(2.0)});
   statistics.add({-3.0, 0.5, radians(-4.0)});
@@ -20,11 +20,11 @@ TEST(ErrorStatisticsTest, MeasuresEachAxisOnItsOwn) {
   EXPECT_NEAR(error.yaw_deg.mae, 3.0, 1e-12);
 }
 
-TEST(ErrorStatisticsTest, IsZeroForNothing) {
+TEST(ErrorStatisticsTest, IsZeroWithoutPoses) {
   EXPECT_EQ(ErrorStatistics().summary().lateral_m.p95, 0.0);
 }
 
-TEST(ErrorStatisticsTest, QuantilesAreValuesThatOccurred) {
+TEST(ErrorStatisticsTest, QuantilesUseNearestRank) {
   std::vector<double> values;
   for (int i = 100; i >= 1; --i) values.push_back(i);
   EXPECT_EQ(quantile_of(values, 0.95), 95.0);
@@ -33,7 +33,7 @@ TEST(ErrorStatisticsTest, QuantilesAreValuesThatOccurred) {
   EXPECT_EQ(quantile_of({7.0}, 0.99), 7.0);
 }
 
-TEST(ErrorStatisticsTest, ErrorIsSeenFromTheTrueVehicle) {
+TEST(ErrorStatisticsTest, ErrorIsInTheFrameOfTheTrueVehicle) {
   // Facing north, an estimate one metre further north is one metre too far ahead.
   const Se2 truth{10.0, 20.0, radians(90.0)};
   const Se2 error = pose_error(truth, {10.0, 21.0, radians(91.0)});

@@ -32,7 +32,7 @@ class PoseReaderTest : public testing::Test {
     publisher_.publish(report, now);
     std::optional<BusPose> pose;
     while (auto received = receiver_->receive()) {
-      if (spoil_) received->frame.data[3] ^= 1;
+      if (corrupt_) received->frame.data[3] ^= 1;
       if (const auto read = reader_.accept(*received)) pose = read;
     }
     return pose;
@@ -43,10 +43,10 @@ class PoseReaderTest : public testing::Test {
   std::unique_ptr<can::Bus> receiver_ = wire_.connect();
   can::PosePublisher publisher_{*sender_, {.map_origin = kOrigin}};
   PoseReader reader_{{}, kOrigin};
-  bool spoil_ = false;
+  bool corrupt_ = false;
 };
 
-TEST_F(PoseReaderTest, ReadsThePoseThatWasPublished) {
+TEST_F(PoseReaderTest, ReadsAPublishedPose) {
   const Time now(milliseconds(1000));
   const auto pose = send_and_read(valid_report(now), now);
   ASSERT_TRUE(pose);
@@ -55,7 +55,7 @@ TEST_F(PoseReaderTest, ReadsThePoseThatWasPublished) {
   EXPECT_EQ(reader_.state(), HealthState::kTracking);
 }
 
-TEST_F(PoseReaderTest, ReadsTheFdVariantToo) {
+TEST_F(PoseReaderTest, ReadsTheFdVariant) {
   const Time now(milliseconds(1000));
   can::PosePublisher fd(*sender_, {.map_origin = kOrigin, .format = can::FrameFormat::kFd});
   fd.publish(valid_report(now), now);
@@ -68,7 +68,7 @@ TEST_F(PoseReaderTest, ReadsTheFdVariantToo) {
   EXPECT_FALSE(reader_.accept(*received)) << "the same frame again";
 }
 
-TEST_F(PoseReaderTest, AnInvalidPoseIsNone) {
+TEST_F(PoseReaderTest, IgnoresAnInvalidPose) {
   const Time now(milliseconds(1000));
   can::PoseReport report = valid_report(now);
   report.status.state = HealthState::kLost;
@@ -76,9 +76,9 @@ TEST_F(PoseReaderTest, AnInvalidPoseIsNone) {
   EXPECT_EQ(reader_.state(), HealthState::kLost);
 }
 
-TEST_F(PoseReaderTest, SpoiledFramesAreNotRead) {
+TEST_F(PoseReaderTest, IgnoresCorruptFrames) {
   const Time now(milliseconds(1000));
-  spoil_ = true;
+  corrupt_ = true;
   EXPECT_FALSE(send_and_read(valid_report(now), now));
   EXPECT_EQ(reader_.state(), HealthState::kInit);
 }

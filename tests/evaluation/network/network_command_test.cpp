@@ -1,4 +1,4 @@
-// `bevloc eval network`: what it measures, what it writes, what it refuses.
+// `bevloc eval network`: its measures, its output and the arguments it refuses.
 #include "evaluation/network/network_command.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ Status run(std::vector<std::string> arguments, const std::string& model = kModel
   NetworkCommand command;
   command.declare(app);
   arguments.insert(arguments.begin(), {"network", "--model", model});
-  std::ranges::reverse(arguments);  // as CLI11 takes them
+  std::ranges::reverse(arguments);  // as CLI11 expects
   app.parse(arguments);
   EXPECT_TRUE(command.chosen());
   return command.run();
@@ -59,7 +59,7 @@ class NetworkCommandTest : public testing::Test {
       std::filesystem::temp_directory_path() / ("network_command_test." + std::to_string(getpid()));
 };
 
-TEST_F(NetworkCommandTest, WritesARowForEachReadOut) {
+TEST_F(NetworkCommandTest, WritesARowPerMethod) {
   const Status status = run({"--frames", "4", "--json", file("a.json"), "--csv", file("a.csv")});
   ASSERT_TRUE(status) << status.error().message;
   const auto json = nlohmann::json::parse(text_of(file("a.json")));
@@ -140,11 +140,11 @@ constexpr const char* kKerbAlone =
     "<osm version='0.6'><node id='1' lat='49.0' lon='8.0'/><node id='2' lat='49.001' lon='8.0'/>"
     "<way id='3'><nd ref='1'/><nd ref='2'/><tag k='type' v='curbstone'/></way></osm>";
 
-TEST_F(NetworkCommandTest, RefusesWhatItCannotUse) {
+TEST_F(NetworkCommandTest, RefusesBadArgumentsAndFiles) {
   const auto refusal = [](const std::vector<std::string>& arguments,
                           const std::string& model = kModel) {
     const Status status = run(arguments, model);
-    return status ? std::string("nothing is wrong") : status.error().message;
+    return status ? std::string("no error") : status.error().message;
   };
   EXPECT_THAT(refusal({"--set", "snow"}), HasSubstr("snow"));
   EXPECT_THAT(refusal({}, file("none.onnx")), HasSubstr("none.onnx"));
@@ -156,13 +156,13 @@ TEST_F(NetworkCommandTest, RefusesWhatItCannotUse) {
   EXPECT_THROW(run({"--rows", "table5"}), CLI::ValidationError);
 }
 
-TEST_F(NetworkCommandTest, TheProgramExitsWithTwoAndOneSentence) {
+TEST_F(NetworkCommandTest, TheProgramExitsWithTwoAndOneLine) {
   const std::string command =
       std::string(BEVLOC_PROGRAM) + " eval network --set snow 2> " + file("err");
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2);
-  const std::string said = text_of(file("err"));
-  EXPECT_THAT(said, StartsWith("bevloc: set: found \"snow\""));
-  EXPECT_EQ(std::ranges::count(said, '\n'), 1);
+  const std::string message = text_of(file("err"));
+  EXPECT_THAT(message, StartsWith("bevloc: set: found \"snow\""));
+  EXPECT_EQ(std::ranges::count(message, '\n'), 1);
 }
 
 class NetworkEvaluationTest : public testing::Test {
@@ -181,7 +181,7 @@ class NetworkEvaluationTest : public testing::Test {
   }
 };
 
-TEST_F(NetworkEvaluationTest, ThePriorIsWrongByTheCorrectionAndKnowsNothing) {
+TEST_F(NetworkEvaluationTest, ThePriorErrorIsTheCorrectionWithAUniformDistribution) {
   std::vector<PerAxis> errors;
   sim::make_samples_of_world(
       stream_of(sim::NuisanceSet::kClean), 0, 0, [&errors](const sim::Sample& sample) {
@@ -200,7 +200,7 @@ TEST_F(NetworkEvaluationTest, ThePriorIsWrongByTheCorrectionAndKnowsNothing) {
   }
 }
 
-TEST_F(NetworkEvaluationTest, TheShippedModelFindsTheWayBackAcrossTheRoad) {
+TEST_F(NetworkEvaluationTest, TheShippedModelReducesTheLateralError) {
   const SetResult result = evaluate(sim::NuisanceSet::kClean, 8);
   const Summary prior = summarise(result.read_outs.front().outcomes);
   for (size_t k = 1; k < result.read_outs.size(); ++k) {
@@ -212,7 +212,7 @@ TEST_F(NetworkEvaluationTest, TheShippedModelFindsTheWayBackAcrossTheRoad) {
   EXPECT_GT(result.iou[2], 0.2);
 }
 
-TEST_F(NetworkEvaluationTest, VariantsReadMasksToo) {
+TEST_F(NetworkEvaluationTest, VariantsIncludeSolversOnMasks) {
   auto evaluation = NetworkEvaluation::create(kModel, ReadOutRows::kVariants, 1);
   ASSERT_TRUE(evaluation) << evaluation.error().message;
   const SetResult result = evaluation->run(stream_of(sim::NuisanceSet::kClean), 4, [] {});
@@ -227,7 +227,7 @@ TEST_F(NetworkEvaluationTest, VariantsReadMasksToo) {
   }
 }
 
-TEST_F(NetworkEvaluationTest, WhatCannotBeSeenCannotBeMatched) {
+TEST_F(NetworkEvaluationTest, IsWorseWithoutCameras) {
   sim::SampleStream blind = stream_of(sim::NuisanceSet::kClean);
   blind.nuisances.missing_cameras = {.probability = 1.0, .most = 200};
   auto evaluation = NetworkEvaluation::create(kModel);

@@ -1,4 +1,4 @@
-// The evaluation of solvers: what it counts, and what it writes.
+// The evaluation of solvers: its measures and its output.
 #include "evaluation/solver/solver_evaluation.h"
 
 #include <cmath>
@@ -38,7 +38,7 @@ SolverResult certain_of(int x, int y, int yaw, const HypothesisGrid& hypotheses)
   return result;
 }
 
-TEST(SolverScore, ReadsTheProbabilityBetweenHypotheses) {
+TEST(SolverScore, InterpolatesTheProbability) {
   const HypothesisGrid hypotheses;
   const SolverResult result = certain_of(10, 5, 10, hypotheses);
   const Outcome on_it = judge(result, hypotheses, {0.0, 0.0, 0.0});
@@ -88,7 +88,7 @@ TEST(SolverScore, Summarises) {
   EXPECT_EQ(summarise({}).scenes, 0U);
 }
 
-TEST(SolverScore, GivesNothingForWhatAMethodDoesNotSay) {
+TEST(SolverScore, MarksMeasuresThatAMethodLacks) {
   Summary summary = summarise({judge(Se2{1.0, 0.0, 0.0}, Se2{}), judge(Se2{0.0, 0.5, 0.0}, Se2{})});
   EXPECT_THAT(summary.mae, ElementsAre(0.5, 0.25, 0.0));
   for (const PerAxis& values :
@@ -101,13 +101,13 @@ TEST(SolverScore, GivesNothingForWhatAMethodDoesNotSay) {
   EXPECT_TRUE(nlohmann::json::parse(json_of(summary).dump())["nll"][2].is_null());
 }
 
-TEST(SolverScore, KnowsWhatKnowingNothingCosts) {
+TEST(SolverScore, HasTheLikelihoodOfAUniformDistribution) {
   EXPECT_THAT(uniform_nll({}),
               ElementsAre(DoubleNear(std::log(21.0), 1e-12), DoubleNear(std::log(11.0), 1e-12),
                           DoubleNear(std::log(21.0), 1e-12)));
 }
 
-TEST(SolverCases, HoldThePapersRows) {
+TEST(SolverCases, ContainThePapersRows) {
   EXPECT_EQ(variant_cases().size(), static_cast<size_t>(kSolverKinds));
   std::vector<SolverCase> all = variant_cases();
   for (const auto& more : {table_three_cases(), table_four_cases()}) {
@@ -134,7 +134,7 @@ TEST(SolverCases, EveryCaseCanBeSolved) {
   }
 }
 
-TEST(ReadOutCases, HoldAllInputsSizesAndSteps) {
+TEST(ReadOutCases, ContainAllInputsSizesAndSteps) {
   EXPECT_EQ(read_out_cases(ReadOutRows::kSolvers).size(), 5U);
   EXPECT_TRUE(read_out_cases(ReadOutRows::kBaselines).empty());
   const auto cases = read_out_cases(ReadOutRows::kAll);
@@ -153,7 +153,7 @@ TEST(ReadOutCases, HoldAllInputsSizesAndSteps) {
   }
 }
 
-TEST(MaskScalesTest, AreFoundOnceAndSuitTheFrames) {
+TEST(MaskScalesTest, AreTunedOncePerSolverAndSize) {
   sim::SceneSampler sampler(sim::kTuningSeedBase);
   sim::MatchingScene scene;
   std::vector<TuningSample> samples;
@@ -172,7 +172,7 @@ TEST(MaskScalesTest, AreFoundOnceAndSuitTheFrames) {
   EXPECT_FALSE(scales.parameters_for({.solver = SolverKind::kBanded, .grid = {7, 3, 0.15}}));
 }
 
-/// Not under a sanitizer.
+/// False under a sanitizer.
 bool heap_is_counted() {
   return heap_in_use_bytes() > 0;
 }
@@ -201,7 +201,7 @@ class SolverEvaluationTest : public testing::Test {
   static constexpr EvaluationOptions kOptions{.seed_base = sim::kTuningSeedBase};
 };
 
-TEST_F(SolverEvaluationTest, JudgesTheSameScenesTheSameWay) {
+TEST_F(SolverEvaluationTest, IsRepeatable) {
   const auto first = evaluate(sim::CorruptionLevel::kPaper, 5);
   const auto second = evaluate(sim::CorruptionLevel::kPaper, 5);
   for (size_t k = 0; k < first.size(); ++k) {
@@ -214,7 +214,7 @@ TEST_F(SolverEvaluationTest, JudgesTheSameScenesTheSameWay) {
   }
 }
 
-TEST_F(SolverEvaluationTest, FindsThePoseWhereTheRoadIsSeenClearly) {
+TEST_F(SolverEvaluationTest, IsAccurateOnCleanMasks) {
   const auto results = evaluate(sim::CorruptionLevel::kClean, 20);
   for (const CaseResult& result : results) {
     const Summary summary = summarise(result.outcomes);
@@ -223,7 +223,7 @@ TEST_F(SolverEvaluationTest, FindsThePoseWhereTheRoadIsSeenClearly) {
   }
 }
 
-TEST_F(SolverEvaluationTest, WritesEveryRowForPeopleAndPrograms) {
+TEST_F(SolverEvaluationTest, WritesTablesJsonAndCsv) {
   const auto results = evaluate(sim::CorruptionLevel::kMild, 5);
   for (const std::string& table : {accuracy_table(results), cost_table(results)}) {
     for (const char* name : {"full-fft", "banded+refine", "decoupled"}) {
@@ -254,7 +254,7 @@ TEST_F(SolverEvaluationTest, WritesEveryRowForPeopleAndPrograms) {
   EXPECT_EQ(std::ranges::count(header, ','), std::ranges::count(line, ','));
 }
 
-TEST_F(SolverEvaluationTest, TuningBeatsAScaleOutOfPlace) {
+TEST_F(SolverEvaluationTest, TunedScalesBeatWrongScales) {
   EvaluationOptions options = kOptions;
   options.scenes = 10;
   const SolverCase banded{.solver = SolverKind::kBanded};

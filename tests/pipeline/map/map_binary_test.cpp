@@ -158,7 +158,7 @@ TEST(MapBinary, RefusesAnInvalidBodyWithAValidChecksum) {
   EXPECT_TRUE(decode_map(framed(head + std::string(2, '\0')), "t").has_value());
   EXPECT_THAT(decode_error(framed("")), HasSubstr("the end of the body"));
   EXPECT_THAT(decode_error(framed("\x05"
-                              "ab")),
+                                  "ab")),
               HasSubstr("a count that exceeds the body"));
   EXPECT_THAT(decode_error(framed(head + std::string(3, '\0'))), HasSubstr("more bytes after"));
   EXPECT_THAT(decode_error(framed(head + std::string("\xFF\xFF\xFF\xFF\x7F", 5))),

@@ -13,14 +13,17 @@ constexpr int kCovarianceChannels = 16;
 /// Adds structure of strength `clutter` to the BEV features that the map does not have.
 SolverResult solve(const SyntheticScene& scene, const Se2& truth, float clutter, unsigned seed) {
   const SolverParameters sharp{.joint_scale = 300.0F};
-  auto solver =
-      make_solver(SolverKind::kDecoupled, kFeatureGrid, kCovarianceChannels, HypothesisGrid{}, sharp).value();
+  auto solver = make_solver(SolverKind::kDecoupled, kFeatureGrid, kCovarianceChannels,
+                            HypothesisGrid{}, sharp)
+                    .value();
   auto bev = scene.seen_from(truth, kFeatureGrid);
   const auto map = scene.seen_from({}, kFeatureGrid);
-  const auto unknown = SyntheticScene::structured(kCovarianceChannels, seed + 1000).seen_from({}, kFeatureGrid);
+  const auto unknown =
+      SyntheticScene::structured(kCovarianceChannels, seed + 1000).seen_from({}, kFeatureGrid);
   for (size_t i = 0; i < bev.size(); ++i) bev[i] += clutter * unknown[i];
   SolverResult result;
-  solver->solve(view(bev, kCovarianceChannels, kFeatureGrid), view(map, kCovarianceChannels, kFeatureGrid), result);
+  solver->solve(view(bev, kCovarianceChannels, kFeatureGrid),
+                view(map, kCovarianceChannels, kFeatureGrid), result);
   return result;
 }
 

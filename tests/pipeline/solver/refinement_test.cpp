@@ -71,7 +71,8 @@ TEST_F(RefinementTest, WritesDistributionsAndTheirMean) {
     EXPECT_NEAR(std::accumulate(distribution->begin(), distribution->end(), 0.0), 1.0, 1e-5);
     EXPECT_GE(*std::ranges::min_element(*distribution), 0.0F);
   }
-  EXPECT_NEAR(result.correction.x_m, posterior_mean(result.x_probability, kDefaultHypotheses.x_m), 1e-6);
+  EXPECT_NEAR(result.correction.x_m, posterior_mean(result.x_probability, kDefaultHypotheses.x_m),
+              1e-6);
 }
 
 }  // namespace

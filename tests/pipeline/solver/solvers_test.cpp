@@ -35,7 +35,8 @@ std::unique_ptr<Solver> make(SolverKind kind, float scale = 300.0F) {
 
 SolverResult solve(Solver& solver, const std::vector<float>& bev, const std::vector<float>& map) {
   SolverResult result;
-  solver.solve(view(bev, kSolverChannels, kFeatureGrid), view(map, kSolverChannels, kFeatureGrid), result);
+  solver.solve(view(bev, kSolverChannels, kFeatureGrid), view(map, kSolverChannels, kFeatureGrid),
+               result);
   return result;
 }
 
@@ -104,7 +105,8 @@ TEST_P(EverySolver, YawIsCounterClockwise) {
   const auto solver = make(GetParam().kind);
   const SyntheticScene scene = SyntheticScene::straight_road(kSolverChannels, 3);
   const SolverResult result =
-      solve(*solver, scene.seen_from({0.0, 0.0, radians(1.0)}, kFeatureGrid), scene.seen_from({}, kFeatureGrid));
+      solve(*solver, scene.seen_from({0.0, 0.0, radians(1.0)}, kFeatureGrid),
+            scene.seen_from({}, kFeatureGrid));
   EXPECT_NEAR(degrees(result.correction.yaw_rad), 1.0, 0.2);
 }
 

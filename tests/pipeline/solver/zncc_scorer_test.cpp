@@ -66,7 +66,8 @@ class ZnccScorerTest : public testing::TestWithParam<int> {
     map_cells_.copy_to(map_);
   }
 
-  std::vector<float> bev_ = std::vector<float>(static_cast<size_t>(GetParam()) * kCoarseGrid.cells());
+  std::vector<float> bev_ =
+      std::vector<float>(static_cast<size_t>(GetParam()) * kCoarseGrid.cells());
   std::vector<float> map_ = bev_;
   CellFeatures bev_cells_{kCoarseGrid, GetParam(), kCoarseHypotheses};
   CellFeatures map_cells_{kCoarseGrid, GetParam(), kCoarseHypotheses};
@@ -82,7 +83,8 @@ TEST_P(ZnccScorerTest, TranslationScorerFollowsTheDefinition) {
     scorer.score(yaw_rad, x, y, scores);
     for (int i = 0; i < x.hypotheses(); ++i) {
       for (int j = 0; j < y.hypotheses(); ++j) {
-        const Se2 correction{kCoarseHypotheses.x_m.value(i), kCoarseHypotheses.y_m.value(j), yaw_rad};
+        const Se2 correction{kCoarseHypotheses.x_m.value(i), kCoarseHypotheses.y_m.value(j),
+                             yaw_rad};
         EXPECT_NEAR(scores[i * y.hypotheses() + j], literal_zncc(bev_, map_, correction), 1e-5)
             << i << " " << j << " " << yaw_rad;
       }

@@ -18,7 +18,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kSize = 128;
 
 std::vector<Plane> standardised(const std::vector<float>& features, int channels) {
-  std::vector<Plane> planes(channels, Plane(kFeatureGrid.rows, std::vector<double>(kFeatureGrid.cols)));
+  std::vector<Plane> planes(channels,
+                            Plane(kFeatureGrid.rows, std::vector<double>(kFeatureGrid.cols)));
   for (int c = 0; c < channels; ++c) {
     double sum = 0.0;
     double square = 0.0;

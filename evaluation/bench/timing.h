@@ -1,0 +1,13 @@
+// Times repeated runs of a function.
+#pragma once
+
+#include <functional>
+
+#include "evaluation/bench/cost_model.h"
+
+namespace bevloc::bench {
+
+/// Times `repeats` runs, after one run that is not timed.
+TimeSummary time_of(const std::function<void()>& run, int repeats);
+
+}  // namespace bevloc::bench
