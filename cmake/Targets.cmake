@@ -43,7 +43,8 @@ function(bevloc_library name)
 endfunction()
 
 # bevloc_test(NAME SOURCES... [WHOLE] [LINK libs...]): a GoogleTest program; each of its cases is a
-# CTest test, or, with WHOLE, the program is one (its cases share an expensive set-up).
+# CTest test, or, with WHOLE, the program is one (its cases share an expensive set-up). With sanitizers
+# every program is one, because each start of a program takes long.
 include(GoogleTest)
 function(bevloc_test name)
   cmake_parse_arguments(ARG "WHOLE" "" "LINK" ${ARGN})
@@ -51,7 +52,7 @@ function(bevloc_test name)
   target_link_libraries(${name} PRIVATE bevloc_options ${ARG_LINK} GTest::gmock GTest::gtest_main)
   bevloc_compile_together(${name})
   target_compile_definitions(${name} PRIVATE BEVLOC_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  if(ARG_WHOLE)
+  if(ARG_WHOLE OR BEVLOC_SANITIZE)
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES TIMEOUT 900)
   else()
