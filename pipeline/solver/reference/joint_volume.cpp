@@ -13,26 +13,26 @@ namespace bevloc {
 namespace {
 
 /// Row shifts that are summed together, to hide the latency of the additions.
-constexpr int kGroup = 7;
+constexpr int kMapGroup = 7;
 
 /// Writes correlation[m, n] = sum of bev[c, u, v] * map[c, u + m, v + n].
 BEVLOC_TARGET_CLONES void correlate_block(const joint_volume::BlockShape& s, const float* bev,
                                           const float* map, float* correlation) {
-  for (int m = 0; m < s.row_shifts; m += kGroup) {
+  for (int m = 0; m < s.row_shifts; m += kMapGroup) {
     for (int n = 0; n < s.col_shifts; n += kLanes) {
-      Lanes sum[kGroup] = {};
+      Lanes sum[kMapGroup] = {};
       for (int c = 0; c < s.channels; ++c) {
         for (int u = 0; u < s.rows; ++u) {
           const float* bev_row = bev + c * s.bev_channel_stride + u * s.bev_row_stride;
           const float* map_row = map + c * s.map_channel_stride + (u + m) * s.map_row_stride + n;
           for (int v = 0; v < s.cols; ++v) {
-            for (int g = 0; g < kGroup; ++g) {
+            for (int g = 0; g < kMapGroup; ++g) {
               sum[g] += bev_row[v] * lanes(map_row + g * s.map_row_stride + v);
             }
           }
         }
       }
-      for (int g = 0; g < kGroup; ++g) lanes(correlation + (m + g) * s.col_shifts + n) = sum[g];
+      for (int g = 0; g < kMapGroup; ++g) lanes(correlation + (m + g) * s.col_shifts + n) = sum[g];
     }
   }
 }
@@ -172,7 +172,7 @@ void JointVolume::make_shift_ranges() {
 }
 
 void JointVolume::make_scratch() {
-  row_shifts_ = ((2 * row_shift_ + 1) + kGroup - 1) / kGroup * kGroup;
+  row_shifts_ = ((2 * row_shift_ + 1) + kMapGroup - 1) / kMapGroup * kMapGroup;
   col_shifts_ = round_up_to_lanes(2 * col_shift_ + 1);
   padded_y_ = round_up_to_lanes(y_count_);
   padded_rows_ = grid_.rows + row_shifts_;

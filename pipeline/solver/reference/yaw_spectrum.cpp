@@ -38,17 +38,17 @@ double farthest_bin(const BevGrid& grid) {
 }
 
 /// Number of shifts that dot_group() computes at once.
-constexpr int kGroup = 4;
+constexpr int kAngleGroup = 4;
 
-/// out[k] += sum of a[i] * b[i - k * step], for k = 0 ... kGroup - 1.
+/// out[k] += sum of a[i] * b[i - k * step], for k = 0 ... kAngleGroup - 1.
 BEVLOC_TARGET_CLONES void dot_group(const float* a, const float* b, std::ptrdiff_t step, int count,
                                     double* out) {
-  Lanes sums[kGroup] = {};
+  Lanes sums[kAngleGroup] = {};
   for (int i = 0; i < count; i += kLanes) {
     const Lanes& value = lanes(a + i);
-    for (int k = 0; k < kGroup; ++k) sums[k] += value * lanes(b + i - k * step);
+    for (int k = 0; k < kAngleGroup; ++k) sums[k] += value * lanes(b + i - k * step);
   }
-  for (int k = 0; k < kGroup; ++k) out[k] += sum_of(sums[k]);
+  for (int k = 0; k < kAngleGroup; ++k) out[k] += sum_of(sums[k]);
 }
 
 /// Writes `outputs` weighted sums of `taps` amplitudes each, for all lanes.
@@ -87,10 +87,10 @@ YawSpectrum::YawSpectrum(const BevGrid& grid, int channels, const HypothesisAxis
       reach_(
           static_cast<int>(std::ceil(yaw_rad.farthest() / kAngleStep_rad - kWholeShiftTolerance)) +
           1),
-      margin_(reach_ + kGroup),
+      margin_(reach_ + kAngleGroup),
       spectrum_(grid_of(grid), channels, kSpectrumSize, kSpectrumSize, Window::kHann,
                 farthest_bin(grid_of(grid))),
-      correlations_(2 * reach_ + 1 + kGroup) {
+      correlations_(2 * reach_ + 1 + kAngleGroup) {
   assert(check_grid(grid) && margin_ < kAngles);
   if (grid_of(grid).rows != grid.rows) {
     pooled_.emplace(Pooled{{grid_of(grid), channels}, {grid_of(grid), channels}});
@@ -165,7 +165,7 @@ void YawSpectrum::read_signature(std::span<const float> amplitude, LaneBuffer& s
 void YawSpectrum::correlate() {
   const int lane_count = spectrum_.lanes();
   std::ranges::fill(correlations_, 0.0);
-  for (int first = 0; first < 2 * reach_ + 1; first += kGroup) {
+  for (int first = 0; first < 2 * reach_ + 1; first += kAngleGroup) {
     for (int b = 0; b < kBands; ++b) {
       dot_group(band(map_signature_, b), band(bev_signature_, b) - (first - reach_) * lane_count,
                 lane_count, kAngles * lane_count, correlations_.data() + first);

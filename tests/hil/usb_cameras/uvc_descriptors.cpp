@@ -80,9 +80,9 @@ Bytes formats() {
 
 Bytes video_streaming() {
   const Bytes described = formats();
-  constexpr uint8_t kHeaderBytes = 15;
+  constexpr uint8_t kDescriptorHeaderBytes = 15;
   Bytes header{kClassSpecific, kVsInputHeader, 2};
-  append_u16(header, kHeaderBytes + static_cast<uint32_t>(described.size()));
+  append_u16(header, kDescriptorHeaderBytes + static_cast<uint32_t>(described.size()));
   header.insert(header.end(), {kStreamEndpoint, 0, kStreamTerminalId, 0, 0, 0, 1, 0, 0});
 
   Bytes endpoint{kEndpoint, kStreamEndpoint, kBulk};
