@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-import subprocess
 import unittest
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests.house.test_documents import ROOT, tracked
+
 INCLUDE = re.compile(r'^\s*#include "([^"]+)"', re.MULTILINE)
 ROW = re.compile(r"^\| `([^`]+)` \| (.+) \|$", re.MULTILINE)
 
@@ -29,9 +28,7 @@ def room_of(path: str, rooms: set[str]) -> str | None:
 
 
 def cxx_files() -> list[str]:
-    command = ["git", "ls-files", "*.h", "*.cpp"]
-    listed = subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True)
-    return listed.stdout.split()
+    return [str(path.relative_to(ROOT)) for path in tracked("*.h", "*.cpp")]
 
 
 class IncludesTest(unittest.TestCase):
