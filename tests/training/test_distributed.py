@@ -1,5 +1,7 @@
 """Tests that several processes train like one."""
 
+import os
+import socket
 import subprocess
 import sys
 import tempfile
@@ -16,15 +18,24 @@ from training.distributed import Processes, Share
 from training.errors import CheckpointError
 from training.train import Trainer
 
-LAUNCHER = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc_per_node", "2"]
+LAUNCHER = [sys.executable, "-m", "torch.distributed.run", "--nproc_per_node", "2"]
 # PyTorch 1.13 does not start on Python 3.11 without redirections, because its empty default is not
 # a valid member of the enumeration of streams. These options name a process that does not exist.
 LAUNCHER += ["--redirects", "9:1", "--tee", "9:1"]
 
 
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
 def run_two(*arguments: str) -> None:
-    command = [*LAUNCHER, "-m", "tests.training.process_of_two", *arguments]
-    ended = subprocess.run(command, capture_output=True, text=True, timeout=240)
+    # Addresses and the loopback interface, because a minimal machine resolves no host name.
+    meeting = ["--master_addr", "127.0.0.1", "--master_port", str(free_port())]
+    command = [*LAUNCHER, *meeting, "-m", "tests.training.process_of_two", *arguments]
+    environment = {**os.environ, "GLOO_SOCKET_IFNAME": "lo"}
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=240, env=environment)
     if ended.returncode != 0:
         raise AssertionError(ended.stderr)
 
