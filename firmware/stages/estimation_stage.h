@@ -19,7 +19,7 @@ struct EstimationCounters {
   std::atomic<uint64_t> refused{0};           ///< corrections that the tracker refused
   std::atomic<uint64_t> without_evidence{0};  ///< framesets in which the solver found no evidence
   std::atomic<HealthState> state{HealthState::kInit};
-  std::atomic<uint16_t> why{0};      ///< bits of a WhyMask
+  std::atomic<uint32_t> why{0};      ///< bits of a WhyMask
   std::atomic<unsigned> cameras{0};  ///< cameras used in the latest frameset, a CameraMask
 };
 

@@ -16,10 +16,10 @@ namespace {
 using std::chrono::milliseconds;
 using test::kNow;
 
-/// A report with a Why bit.
+/// A report with a Why bit in LOC_Status and one in LOC_Integrity.
 PoseReport report_with_reason() {
   PoseReport report = test::tracking_report(kNow);
-  report.status.why = Why::kGnssMissing;
+  report.status.why = Why::kGnssMissing | Why::kClockGap;
   return report;
 }
 

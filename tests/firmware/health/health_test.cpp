@@ -193,6 +193,7 @@ TEST(HealthTest, AnInternalErrorIsAPermanentFault) {
 TEST(HealthTest, NamesTheReasonsInWords) {
   EXPECT_EQ(to_string(Why::kCameraMissing | Why::kPoseStale), "camera missing, pose stale");
   EXPECT_EQ(to_string(WhyMask()), "");
+  EXPECT_EQ(to_string(Why::kInternalFault | Why::kForeignSender), "internal fault, foreign sender");
 }
 
 }  // namespace
