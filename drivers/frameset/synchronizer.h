@@ -19,7 +19,9 @@ struct SynchronizerConfig {
   /// How long a frameset waits for missing cameras, from the start of its earliest exposure.
   Duration wait = std::chrono::milliseconds(60);
   /// A frameset with fewer cameras is dropped.
-  int min_cameras = 1;
+  int min_cameras = 3;
+
+  bool operator==(const SynchronizerConfig&) const = default;
 };
 
 /// The result of add() for one frame. All but kAccepted are dropped.

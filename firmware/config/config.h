@@ -40,6 +40,8 @@ struct SolverConfig {
   SolverKind kind = LocalizerOptions().solver;
   HypothesisGrid tracking = LocalizerOptions().tracking;
   HypothesisGrid acquiring = LocalizerOptions().acquiring;
+
+  bool operator==(const SolverConfig&) const = default;
 };
 
 struct CanConfig {

@@ -3,6 +3,7 @@
 
 #include "common/cameras.h"
 #include "common/health_state.h"
+#include "common/se2.h"
 #include "common/time.h"
 
 namespace bevloc::firmware {
@@ -22,7 +23,9 @@ struct HealthLimits {
   /// Largest sigmas of a valid pose.
   double longitudinal_sigma_m = 0.60;
   double lateral_sigma_m = 0.30;
-  double yaw_sigma_rad = 0.0105;
+  double yaw_sigma_rad = radians(0.6);
+
+  bool operator==(const HealthLimits&) const = default;
 };
 
 /// Condition of the inputs and of the pose at one moment.

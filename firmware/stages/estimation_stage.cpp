@@ -14,6 +14,10 @@ Eigen::Matrix3d map_covariance(const TrackedPose& pose) {
   return map_from_vehicle * pose.covariance * map_from_vehicle.transpose();
 }
 
+constexpr size_t index_of(TrackerUpdate outcome) {
+  return static_cast<size_t>(outcome);
+}
+
 Duration age(const std::optional<Time>& time, Time now) {
   return time ? now - *time : Duration::max();
 }
@@ -58,7 +62,10 @@ void EstimationStage::sign_off(Time now) {
 
 void EstimationStage::take_samples() {
   while (const auto sample = samples_.pop(Duration::zero())) {
-    if (tracker_.add(*sample) != TrackerUpdate::kAccepted) continue;
+    const TrackerUpdate outcome = tracker_.add(*sample);
+    ++(std::holds_alternative<OdometrySample>(*sample) ? counters_.odometry
+                                                       : counters_.gnss)[index_of(outcome)];
+    if (outcome != TrackerUpdate::kAccepted) continue;
     if (const auto* gnss = std::get_if<GnssSample>(&*sample)) watch_gnss(*gnss);
     std::optional<Time>& latest =
         std::holds_alternative<OdometrySample>(*sample) ? odometry_time_ : gnss_time_;
@@ -83,6 +90,7 @@ void EstimationStage::take_reports(Time now) {
 void EstimationStage::add_correction(const VisionReport& report) {
   const TrackerUpdate outcome =
       tracker_.add_correction(report.frame_time, report.prior, report.match);
+  ++counters_.corrections[index_of(outcome)];
   if (outcome == TrackerUpdate::kAccepted) {
     ++counters_.accepted;
     ++accepted_in_a_row_;

@@ -1,6 +1,7 @@
 // The estimation stage: fuses odometry, GNSS and corrections into the pose that goes to the bus.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 
@@ -12,12 +13,18 @@
 
 namespace bevloc::firmware {
 
+/// How often the tracker answered with each TrackerUpdate.
+using TrackerOutcomes = std::array<std::atomic<uint64_t>, kTrackerUpdates>;
+
 /// Totals since start and the current state; readable from any thread.
 struct EstimationCounters {
   std::atomic<uint64_t> ticks{0};             ///< calls of tick(); the supervisor watches it
   std::atomic<uint64_t> accepted{0};          ///< corrections that the tracker accepted
   std::atomic<uint64_t> refused{0};           ///< corrections that the tracker refused
   std::atomic<uint64_t> without_evidence{0};  ///< framesets in which the solver found no evidence
+  TrackerOutcomes odometry{};                 ///< by TrackerUpdate, as are the next two
+  TrackerOutcomes gnss{};
+  TrackerOutcomes corrections{};
   std::atomic<HealthState> state{HealthState::kInit};
   std::atomic<uint32_t> why{0};      ///< bits of a WhyMask
   std::atomic<unsigned> cameras{0};  ///< cameras used in the latest frameset, a CameraMask

@@ -28,7 +28,7 @@ struct LocalizerOptions {
   /// Hypotheses for SearchRange::kTracking, where the prior comes from the tracker.
   HypothesisGrid tracking;
   /// Hypotheses for SearchRange::kAcquiring, where the prior comes from GNSS and odometry alone.
-  HypothesisGrid acquiring{{6.0, 0.2}, {4.0, 0.2}, {radians(4.0), radians(0.2)}};
+  HypothesisGrid acquiring{{4.0, 0.2}, {3.0, 0.2}, {radians(4.0), radians(0.2)}};
   NetworkOptions network;
 };
 

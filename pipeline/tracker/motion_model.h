@@ -52,6 +52,8 @@ struct MotionNoise {
   /// Unmeasured accelerations between two samples; they matter only where samples are missing.
   double acceleration_mps2 = 3.0;
   double yaw_acceleration_radps2 = 0.5;
+
+  bool operator==(const MotionNoise&) const = default;
 };
 
 /// Predicts `state` forward by `duration_s` >= 0 with constant `motion`.

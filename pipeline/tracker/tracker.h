@@ -38,7 +38,8 @@ struct TrackerParameters {
   /// max(1, correlation time / dt). GNSS errors are correlated by multipath and the atmosphere,
   /// errors of corrections because the same network sees the same part of the map again.
   double gnss_correlation_s = 15.0;
-  double correction_correlation_s = 0.5;
+  /// At city speed the same road section stays in view for some seconds.
+  double correction_correlation_s = 2.0;
 
   double widened_position_sigma_m = 3.0;  ///< added by widen(), per axis
   double widened_yaw_sigma_rad = radians(5.0);
@@ -49,6 +50,8 @@ struct TrackerParameters {
   double max_speed_mps = 80.0;     ///< a faster odometry sample is implausible
   double max_yaw_rate_radps = 3.0;
   double max_position_m = 1e6;  ///< per axis, from the map's origin; for GNSS samples
+
+  bool operator==(const TrackerParameters&) const = default;
 };
 
 /// What the tracker did with a measurement.
@@ -63,6 +66,9 @@ enum class TrackerUpdate {
   kNotFinite,       ///< a value is NaN or infinite
   kImplausible,     ///< a value is beyond its physical limit
 };
+
+/// Number of values of TrackerUpdate.
+inline constexpr size_t kTrackerUpdates = 9;
 
 /// The name in words, for example "not finite".
 std::string_view name_of(TrackerUpdate update);

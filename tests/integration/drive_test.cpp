@@ -158,10 +158,10 @@ TEST(DriveVariantTest, ADeadCameraDegradesTheState) {
 /// The demo with free-running cameras: no two cameras expose at the same time.
 nlohmann::json unsynchronized_drive(bool compensate_motion) {
   const ScratchFolder scratch;
-  const std::string with_tolerance =
-      demo_config_with("  tolerance_ms: 2\n  wait_ms: 60\n",
-                       std::string("  tolerance_ms: 50\n  wait_ms: 100\n  compensate_motion: ") +
-                           (compensate_motion ? "true\n" : "false\n"));
+  const std::string with_tolerance = demo_config_with(
+      "  rate_hz: 10\n",
+      std::string("  rate_hz: 10\n  tolerance_ms: 50\n  wait_ms: 100\n  compensate_motion: ") +
+          (compensate_motion ? "true\n" : "false\n"));
   write_file(scratch / "config.yaml",
              with_tolerance + "  exposure_offsets_ms: [0, 50, 20, 35, 10, 45]\n");
   nlohmann::json result =

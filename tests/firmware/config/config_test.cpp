@@ -118,7 +118,7 @@ TEST_F(ConfigTest, EverySectionIsRead) {
   EXPECT_EQ(config->solver.tracking.x_m.count(), 13);
   EXPECT_EQ(config->solver.tracking.y_m.count(), 17);
   EXPECT_DOUBLE_EQ(config->solver.tracking.yaw_rad.range, radians(4.0));
-  EXPECT_DOUBLE_EQ(config->solver.acquiring.x_m.range, 6.0);
+  EXPECT_DOUBLE_EQ(config->solver.acquiring.x_m.range, 4.0);
   EXPECT_EQ(config->can.driver, CanDriver::kSocketCan);
   EXPECT_EQ(config->can.interface, "can0");
   EXPECT_EQ(config->can.variant, can::FrameFormat::kFd);

@@ -20,6 +20,32 @@ TEST(ShippedConfig, DemoLoads) {
   ASSERT_TRUE(config->simulation);
 }
 
+TEST(ShippedConfig, DemoUsesTheDefaults) {
+  const auto config = evaluation::load_drive_config(kSource / "config/demo.yaml");
+  ASSERT_TRUE(config) << config.error().message;
+  const Config defaults;
+  EXPECT_EQ(config->cameras.synchronizer, defaults.cameras.synchronizer);
+  EXPECT_EQ(config->cameras.compensate_motion, defaults.cameras.compensate_motion);
+  EXPECT_EQ(config->cameras.buffers, defaults.cameras.buffers);
+  EXPECT_EQ(config->cameras.rate_hz, defaults.cameras.rate_hz);
+  EXPECT_EQ(config->solver, defaults.solver);
+  EXPECT_EQ(config->tracker, defaults.tracker);
+  EXPECT_EQ(config->health, defaults.health);
+}
+
+/// The published figures were measured with these values. Who changes one must measure again.
+TEST(ShippedConfig, DefaultsAreThoseOfThePublishedFigures) {
+  const Config defaults;
+  EXPECT_EQ(defaults.solver.kind, SolverKind::kBandedRefined);
+  EXPECT_EQ(defaults.solver.tracking.x_m, (HypothesisAxis{2.0, 0.2}));
+  EXPECT_EQ(defaults.solver.tracking.y_m, (HypothesisAxis{1.0, 0.2}));
+  EXPECT_EQ(defaults.solver.acquiring.x_m, (HypothesisAxis{4.0, 0.2}));
+  EXPECT_EQ(defaults.solver.acquiring.y_m, (HypothesisAxis{3.0, 0.2}));
+  EXPECT_EQ(defaults.tracker.correction_correlation_s, 2.0);
+  EXPECT_EQ(defaults.cameras.synchronizer.min_cameras, 3);
+  EXPECT_EQ(defaults.health.yaw_sigma_rad, radians(0.6));
+}
+
 TEST(ShippedConfig, DemoRigIsTheSimulatedOne) {
   const auto rig = read_rig(kSource / "config/rig_demo.yaml");
   ASSERT_TRUE(rig) << rig.error().message;
