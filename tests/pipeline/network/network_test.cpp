@@ -294,16 +294,23 @@ TEST_F(RefusedModel, WrongShape) {
               HasSubstr("input 'images' is int8 [6, 3, 4, 4], wanted int8 [6, 3, 96, 320]"));
 }
 
+/// The view table's indices would point beyond such features.
+TEST_F(RefusedModel, ImageFeaturesOfAnotherSize) {
+  EXPECT_THAT(message_for(test::fixture("small_features.onnx")),
+              HasSubstr("the view transform reads features [6, 4, 6, 20], wanted [6, channels, 12, "
+                        "40]"));
+}
+
 TEST_F(RefusedModel, MissingMetadata) {
   EXPECT_THAT(message_after_replacing("bevloc.solver.x_scale", "bevloc.solver.q_scale"),
               HasSubstr("metadata 'bevloc.solver.x_scale' is missing"));
 }
 
-TEST_F(RefusedModel, MetadataThatIsNoPositiveNumber) {
-  for (const char* const text : {"-50.5", "150.x", "    5", "nan  "}) {
+TEST_F(RefusedModel, MetadataOutOfRange) {
+  for (const char* const text : {"-50.5", "150.x", "    5", "nan  ", "1.e37", "1e-37"}) {
     EXPECT_THAT(message_after_replacing("150.5", text),
                 HasSubstr(fmt::format("metadata 'bevloc.solver.joint_scale' is '{}', wanted a "
-                                      "number above 0",
+                                      "number of 0.01 to 1000000",
                                       text)));
   }
 }
