@@ -110,8 +110,8 @@ Status SimulatedRun::connect() {
 
   const can::BaseIds& ids = config_.can.base_ids;
   const GeoOrigin& origin = drive_.map().origin;
-  vehicle_ = std::make_unique<SimulatedVehicle>(drive_.drive(), config_.simulation->seed, origin,
-                                                ids, std::move(*vehicle_bus), drive_start_);
+  vehicle_ = std::make_unique<SimulatedVehicle>(drive_, config_.simulation->seed, ids,
+                                                std::move(*vehicle_bus), drive_start_);
   auto judge = Judge::create(
       std::move(*judge_bus), ids, origin, [this](double time_s) { return drive_.truth_at(time_s); },
       {log_start_, drive_start_}, (options_.out / "can.log").string());

@@ -144,8 +144,8 @@ TEST(DriveVariantTest, ADeadCameraDegradesTheState) {
   const ScratchFolder scratch;
   write_file(scratch / "config.yaml",
              demo_config_with("  duration_s: 60\n",
-                              "  duration_s: 60\n  camera_faults:\n"
-                              "    - {camera: back_left, kind: dead, from_s: 5.0}\n"));
+                              "  duration_s: 60\n  faults:\n"
+                              "    - {kind: camera_dead, camera: back_left, from_s: 5.0}\n"));
   const nlohmann::json result =
       drive(scratch, (scratch / "config.yaml").string(), "--seed 901 --duration 8");
   EXPECT_LT(double(result["frames"]["captured"]), 470.0);

@@ -1,10 +1,12 @@
 // Tests the shipped configuration, and compares docs/configuration.md with the source code.
+#include <map>
 #include <regex>
 #include <set>
 
 #include <gmock/gmock.h>
 
 #include "pipeline/calibration/rig_yaml.h"
+#include "sim/faults/fault_table.h"
 #include "sim/sim_rig.h"
 #include "tests/firmware/config/config_fixture.h"
 #include "tests/support/pose_matchers.h"
@@ -77,7 +79,8 @@ std::set<std::string> captured(const std::string& text, const std::string& patte
 /// The keys that the source code reads. A key is an argument of a reading function, so a word after
 /// a parenthesis or a comma. The arguments of reject() after the key are words of a message.
 std::set<std::string> keys_in_source() {
-  std::string source = read_text(kSource / "evaluation/drive/drive_config.cpp");
+  std::string source = read_text(kSource / "evaluation/drive/drive_config.cpp") +
+                       read_text(kSource / "evaluation/drive/fault_config.cpp");
   for (const auto& file : std::filesystem::directory_iterator(kSource / "firmware/config")) {
     if (file.path().extension() == ".cpp") source += read_text(file.path());
   }
@@ -92,6 +95,25 @@ TEST(ConfigurationPage, DescribesEveryKeyAndNoOther) {
   const std::set<std::string> keys = keys_in_source();
   EXPECT_GT(keys.size(), 50U);
   EXPECT_EQ(described, keys);
+}
+
+/// The first two cells of a row: a kind of fault and the keys of its amounts.
+std::map<std::string, std::set<std::string>> faults_of_page(const std::string& page) {
+  const std::regex row(R"re(\n\| `(\w+)` \|([^|]*)\|)re");
+  std::map<std::string, std::set<std::string>> faults;
+  for (std::sregex_iterator match(page.begin(), page.end(), row), end; match != end; ++match) {
+    faults[(*match)[1].str()] = captured((*match)[2].str(), "`([a-z_]+)`");
+  }
+  return faults;
+}
+
+TEST(SimulationPage, DescribesEveryKindOfFaultWithItsAmounts) {
+  std::map<std::string, std::set<std::string>> kinds;
+  for (const sim::FaultKindInfo& info : sim::fault_kinds()) {
+    std::set<std::string>& amounts = kinds[std::string(info.name)];
+    for (const sim::AmountInfo& amount : info.amounts) amounts.emplace(amount.key);
+  }
+  EXPECT_EQ(faults_of_page(read_text(kSource / "docs/simulation.md")), kinds);
 }
 
 }  // namespace
