@@ -206,6 +206,32 @@ TEST_F(MapFiles, LoadMapRecognisesTheFormats) {
   EXPECT_EQ(load_map(osm).value().lanes.size(), 4U);
 }
 
+TEST_F(MapFiles, LoadMapRefusesMapsWithoutLines) {
+  const auto binary = folder_ / "empty.bvm";
+  HdMap map;
+  ASSERT_TRUE(write_map_binary(map, binary).has_value());
+  EXPECT_THAT(load_map(binary).error().message,
+              HasSubstr("empty.bvm: found 0 lanes and no line of a divider, crossing or boundary"));
+  map = kilometre();
+  for (MapElement& element : map.elements) element.points.resize(1);
+  ASSERT_TRUE(write_map_binary(map, binary).has_value());
+  EXPECT_THAT(load_map(binary).error().message, HasSubstr("found 2 lanes and no line"));
+}
+
+TEST_F(MapFiles, LoadMapRefusesFarAndLongLines) {
+  const auto binary = folder_ / "far.bvm";
+  HdMap map = kilometre();
+  map.elements[1].points[7].x() = 1e7;
+  ASSERT_TRUE(write_map_binary(map, binary).has_value());
+  EXPECT_THAT(load_map(binary).error().message,
+              HasSubstr("far.bvm: element 1: found a point (1e+07"));
+  map = kilometre();
+  map.lanes[1].centerline = {{0, 0}, {30'000, 0}, {0, 0}};
+  ASSERT_TRUE(write_map_binary(map, binary).has_value());
+  EXPECT_THAT(load_map(binary).error().message,
+              HasSubstr("far.bvm: lane 1: found a line of 60000 m, wanted at most 50000 m"));
+}
+
 TEST_F(MapFiles, LoadMapRefusesOtherFiles) {
   const auto missing = load_map(folder_ / "none.bvm");
   ASSERT_FALSE(missing.has_value());
