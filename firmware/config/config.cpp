@@ -1,12 +1,14 @@
 #include "firmware/config/config.h"
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 
 #include <fmt/ranges.h>
 
 #include "firmware/config/config_milliseconds.h"
+#include "firmware/config/manifest.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -225,10 +227,15 @@ Result<Config> load_config(const std::filesystem::path& file, const SimulationRe
   }
   config.realtime = read_realtime(yaml->optional_map("realtime"));
   config.log_level = read_log_level(yaml->optional_map("log"));
+  const bool has_manifest = yaml->has("manifest");
+  const auto manifest = has_manifest ? path_of(*yaml, "manifest", folder) : folder;
   if (config.cameras.driver == CameraDriver::kMock && simulation != nullptr) {
     simulation->read_simulation(yaml->require_map("simulation"));
   }
   if (Status finished = yaml->finish(); !finished) return tl::unexpected(finished.error());
+  if (!has_manifest) return config;
+  const std::array used{file, config.rig_file, config.model_file, config.map_file};
+  if (Status same = check_manifest(manifest, used); !same) return tl::unexpected(same.error());
   return config;
 }
 

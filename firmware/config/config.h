@@ -78,7 +78,8 @@ struct Config {
 /// Reads a configuration file; docs/configuration.md describes each key. Every key must be known,
 /// present once, of the right type and in range; otherwise the error names file, line and key.
 /// Paths in the file are relative to its folder; paths in the result can be opened as they are.
-/// Refuses mock cameras if `simulation` is null.
+/// Refuses mock cameras if `simulation` is null. If the file names a manifest, checks it
+/// (manifest.h): the result names only files with the right checksums.
 Result<Config> load_config(const std::filesystem::path& file,
                            const SimulationReader* simulation = nullptr);
 

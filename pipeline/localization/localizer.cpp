@@ -25,6 +25,9 @@ Result<std::unique_ptr<Localizer>> Localizer::create(const Rig& rig, const MapIn
                                                      const LocalizerOptions& options) {
   auto network = Network::load(model_path, options.network);
   if (!network) return tl::unexpected(network.error());
+  if (const Status fits = check_rig_fits((*network)->rig(), rig); !fits) {
+    return fail("{}: {}", model_path, fits.error().message);
+  }
   auto localizer =
       std::unique_ptr<Localizer>(new Localizer(rig, map, std::move(*network), options));
   const Network& loaded = *localizer->network_;

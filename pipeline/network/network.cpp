@@ -144,6 +144,7 @@ struct Network::State {
   State(const nn::Graph& graph, const nn::Program& program, const NetworkOptions& options)
       : name(graph.name),
         solver_parameters(read_solver_parameters(graph)),
+        rig(read_model_rig(graph)),
         engine(options.engine(program,
                               std::vector<nn::Branch>{{kBevFeatures}, {kMapFeatures}, {kBevMask}},
                               kFeatureGrid.cells(), {options.threads, options.isa})) {}
@@ -154,6 +155,7 @@ struct Network::State {
 
   std::string name;
   SolverParameters solver_parameters;
+  ModelRig rig;
   std::unique_ptr<nn::Engine> engine;
 };
 
@@ -220,6 +222,9 @@ std::span<const float> Network::mask_logits() const {
 
 const SolverParameters& Network::solver_parameters() const {
   return state_->solver_parameters;
+}
+const ModelRig& Network::rig() const {
+  return state_->rig;
 }
 const std::string& Network::name() const {
   return state_->name;
