@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <ranges>
 #include <thread>
 
@@ -340,6 +341,35 @@ TEST_F(RefusedModel, SurvivesDamagedBytes) {
       EXPECT_NE(message_for_bytes(damaged), "loaded");
     }
   }
+}
+
+/// A damaged network is refused, or it runs within its memory.
+TEST_F(RefusedModel, RunsDamagedNetworksThatItAccepts) {
+  constexpr int kDamaged = 60;
+  const std::string whole = test::read_bytes(test::fixture("tiny_network_int8.onnx"));
+  const size_t nodes = whole.find("bev_features");  // the nodes come before the constants
+  ASSERT_NE(nodes, std::string::npos);
+  const std::string path =
+      ::testing::TempDir() + "/damaged_" + test::engine_under_test().name + ".onnx";
+  std::minstd_rand random(1);
+  int accepted = 0;
+  for (int i = 0; i < kDamaged; ++i) {
+    std::string damaged = whole;
+    // Small changes of bytes, because lengths are varints: larger ones break the file itself.
+    char& byte = damaged[random() % nodes];
+    byte = static_cast<char>(byte ^ (1 << random() % 3));
+    std::ofstream(path, std::ios::binary) << damaged;
+    auto network = Network::load(path, options());
+    if (!network) continue;
+    ++accepted;
+    (*network)->set_view_table(
+        test::view_table(kFeatureGrid.cells(), kCameraCount * kImageFeatureCells));
+    test::fill_input((*network)->image_input(), 1);
+    run_all(**network);
+  }
+  std::filesystem::remove(path);
+  EXPECT_GT(accepted, 0);
+  EXPECT_LT(accepted, kDamaged);
 }
 
 }  // namespace
