@@ -21,7 +21,11 @@ void Supervisor::step(Time now) {
   view_.bus = appliance_.bus().condition();
   const auto& drifts = appliance_.vision().framesets().synchrony().drift_ppm;
   std::ranges::copy(drifts, view_.drift_ppm.begin());
-  view_.frozen = CameraMask(appliance_.vision().counters().frozen);
+  const VisionCounters& vision = appliance_.vision().counters();
+  view_.frozen = CameraMask(vision.frozen);
+  view_.dark = CameraMask(vision.dark);
+  view_.blinded = CameraMask(vision.blinded);
+  view_.dirty = CameraMask(vision.dirty);
   view_.realtime_refusals = realtime_.refusals();
   update_rate(now);
 

@@ -21,7 +21,10 @@ struct ApplianceView {
   bool stalled = false;       ///< a stage has made no progress for one second
   int realtime_refusals = 0;  ///< settings of the section `realtime` that the kernel refused
   std::array<double, kCameraCount> drift_ppm{};  ///< as in SynchronyCounters
-  CameraMask frozen;                             ///< frozen cameras
+  CameraMask frozen;                             ///< as in VisionCounters, also the next three
+  CameraMask dark;
+  CameraMask blinded;
+  CameraMask dirty;
 };
 
 /// Thread-bound: called from the supervising thread.

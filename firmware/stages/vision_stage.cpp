@@ -70,7 +70,7 @@ void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
   }
   report.present = localizer_.localize(images, prior.map_from_vehicle, prior.range, solution_);
   report.map_nearby = localizer_.map_nearby();
-  count_unused_images(frameset.present, report.present);
+  note_unused_images(frameset.present, report.present);
   if (static_cast<int>(report.present.count()) < min_cameras_) {
     ++counters_.refused;
     return;
@@ -82,12 +82,20 @@ void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
   }
 }
 
-void VisionStage::count_unused_images(CameraMask given, CameraMask used) {
-  const CameraMask unreadable = given & ~used & ~localizer_.frozen();
+void VisionStage::note_unused_images(CameraMask given, CameraMask used) {
+  const CameraMask dark = localizer_.with(ViewFault::kDark);
+  const CameraMask blinded = localizer_.with(ViewFault::kBlinded);
+  const CameraMask dirty = localizer_.with(ViewFault::kDirty);
+  const CameraMask judged = localizer_.frozen() | dark | blinded | dirty;
+  const CameraMask unreadable = given & ~used & ~judged;
   for (int camera = 0; camera < kCameraCount; ++camera) {
     if (unreadable[camera]) ++counters_.unreadable[camera];
   }
-  counters_.frozen = static_cast<unsigned>(localizer_.frozen().to_ulong());
+  const auto bits = [](CameraMask mask) { return static_cast<unsigned>(mask.to_ulong()); };
+  counters_.frozen = bits(localizer_.frozen());
+  counters_.dark = bits(dark);
+  counters_.blinded = bits(blinded);
+  counters_.dirty = bits(dirty);
 }
 
 }  // namespace bevloc::firmware

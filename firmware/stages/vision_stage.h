@@ -46,7 +46,11 @@ struct VisionCounters {
   std::atomic<uint64_t> refused{0};      ///< framesets with fewer readable images than min_cameras
   /// Unreadable images per camera: wrong size or damaged JPEG. Their frames count as used.
   std::array<std::atomic<uint64_t>, kCameraCount> unreadable{};
-  std::atomic<unsigned> frozen{0};  ///< frozen cameras, a CameraMask; their images are not used
+  /// The cameras whose images are not used, each a CameraMask (FrozenCameraDetector, ViewMonitor).
+  std::atomic<unsigned> frozen{0};
+  std::atomic<unsigned> dark{0};
+  std::atomic<unsigned> blinded{0};
+  std::atomic<unsigned> dirty{0};
 };
 
 /// Thread-bound: called from the vision thread; counters() and framesets().counters() are readable
@@ -71,7 +75,7 @@ class VisionStage {
   VisionReport report_on(const NewestFrameset& newest);
   /// Fills in what only the images tell.
   void match(const drivers::Frameset& frameset, const Prior& prior, VisionReport& report);
-  void count_unused_images(CameraMask given, CameraMask used);
+  void note_unused_images(CameraMask given, CameraMask used);
 
   Localizer& localizer_;
   const int min_cameras_;

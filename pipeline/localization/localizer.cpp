@@ -71,14 +71,17 @@ CameraMask Localizer::load_images(const CameraImages& images) {
         images.present[camera] &&
         preprocessors_[camera].run(images.images[camera], planes_of(camera)).has_value();
   });
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (!readable[camera]) continue;
+    frozen_[camera] = frozen_detector_.is_frozen(camera, planes_of(camera), images.driving);
+    view_monitor_.add(camera, planes_of(camera), images.driving);
+  }
+  view_monitor_.judge();
   CameraMask usable;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    const std::span<int8_t> planes = planes_of(camera);
-    if (readable[camera]) {
-      frozen_[camera] = frozen_detector_.is_frozen(camera, planes, images.driving);
-    }
-    usable[camera] = readable[camera] && !frozen_[camera];
-    if (!usable[camera]) std::ranges::fill(planes, kNetworkBlack);
+    usable[camera] =
+        readable[camera] && !frozen_[camera] && view_monitor_.fault(camera) == ViewFault::kNone;
+    if (!usable[camera]) std::ranges::fill(planes_of(camera), kNetworkBlack);
   }
   return usable;
 }

@@ -14,6 +14,7 @@
 #include "common/se2.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/localization/frozen_camera_detector.h"
+#include "pipeline/localization/view_monitor.h"
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/rasterizer.h"
 #include "pipeline/network/network.h"
@@ -37,7 +38,7 @@ struct CameraImages {
   std::array<ImageView, kCameraCount> images;  ///< only those in `present` are read
   CameraMask present;
   CameraMotions reference_from_exposure{};  ///< reference time: that of the prior
-  bool driving = false;                     ///< a repeated image then counts as frozen
+  bool driving = false;  ///< a repeated image then counts as frozen, and a still one as dirty
 };
 
 enum class SearchRange : uint8_t { kTracking, kAcquiring };
@@ -54,7 +55,8 @@ class Localizer {
 
   /// `prior` is T0, the predicted map_from_vehicle at the reference time; `result` corrects it.
   /// Returns the cameras that were used. A camera counts as missing if the size of its image
-  /// differs from the calibration, if its JPEG is damaged or if it is frozen.
+  /// differs from the calibration, if its JPEG is damaged, if it is frozen, or if its view is dark,
+  /// blinded or dirty.
   ///
   /// Computes the view table again when the set of cameras changes, or when a camera's motion
   /// differs by more than 1 cm or 0.02 degrees (1 cm at 30 m) from the one that the table was
@@ -64,6 +66,9 @@ class Localizer {
 
   /// The cameras that were frozen at their latest readable image.
   CameraMask frozen() const { return frozen_; }
+
+  /// The cameras whose view has this fault at their latest readable image.
+  CameraMask with(ViewFault fault) const { return view_monitor_.with(fault); }
 
   /// The raster of the latest localize(), kRasterSize bytes.
   std::span<const uint8_t> map_raster() const { return network_->raster_input(); }
@@ -92,6 +97,7 @@ class Localizer {
   std::vector<ImagePreprocessor> preprocessors_;
   FrozenCameraDetector frozen_detector_;
   CameraMask frozen_;
+  ViewMonitor view_monitor_;
   MapRasterizer rasterizer_;
   std::array<std::unique_ptr<Solver>, 2> solvers_;  ///< by SearchRange
   ViewTable view_table_;                            ///< computed for the next two members

@@ -251,7 +251,7 @@ TEST_F(VisionStageFrozenTest, UsesTheCameraAgainAsSoonAsItsImageChanges) {
   EXPECT_EQ(drive_on(5.0, true), others_);
   EXPECT_TRUE(drive_on(5.0, false).all());
   EXPECT_EQ(stage_->counters().frozen, 0U);
-  expect_all_used(5.0, true, kBroken);
+  expect_all_used(5.0, true, kBroken - 1);  // the image is remembered
   EXPECT_EQ(drive_on(5.0, true), others_);
 }
 
@@ -261,6 +261,31 @@ TEST_F(VisionStageFrozenTest, OneChangedPixelIsAChange) {
   for (int i = 0; i < 3; ++i) {
     stuck_rgb_[middle] = static_cast<uint8_t>(stuck_rgb_[middle] ^ 0x80);
     EXPECT_TRUE(drive_on(5.0, true).all()) << i;
+  }
+}
+
+TEST_F(VisionStageFrozenTest, DoesNotUseADarkCamera) {
+  std::ranges::fill(stuck_rgb_, uint8_t{2});
+  EXPECT_EQ(drive_on(0.0, true), others_);
+  EXPECT_EQ(stage_->counters().dark, 1U << kFrozenCamera);
+  EXPECT_EQ(stage_->counters().unreadable[kFrozenCamera], 0U);
+  for (int i = 1; i < ViewMonitor::kRecovery; ++i) EXPECT_EQ(drive_on(0.0, false), others_) << i;
+  EXPECT_TRUE(drive_on(0.0, false).all());
+  EXPECT_EQ(stage_->counters().dark, 0U);
+}
+
+TEST_F(VisionStageFrozenTest, DoesNotUseABlindedCamera) {
+  std::ranges::fill(stuck_rgb_, uint8_t{250});
+  EXPECT_EQ(drive_on(0.0, true), others_);
+  EXPECT_EQ(stage_->counters().blinded, 1U << kFrozenCamera);
+}
+
+TEST_F(VisionStageFrozenTest, MatchesNothingWithSixDarkCameras) {
+  for (int i = 0; i < 3; ++i) {
+    std::ranges::fill(rgb_, static_cast<uint8_t>(i));  // drive_on() adds 1
+    EXPECT_TRUE(drive_on(5.0, false).none());
+    EXPECT_EQ(stage_->counters().dark, 0b111111U);
+    EXPECT_EQ(stage_->counters().refused, static_cast<uint64_t>(i) + 1);
   }
 }
 
