@@ -75,6 +75,9 @@ class FramesetSynchronizer {
   /// it returns nothing, after each add() or after adding all frames that have arrived.
   std::optional<Frameset> poll(Time now);
 
+  /// Drops all waiting frames up to `time`, counted as unmatched. Those that still arrive are late.
+  void forget_until(Time time);
+
   /// The time at which the open frameset stops waiting. Nothing if no frame waits.
   std::optional<Time> deadline() const;
 

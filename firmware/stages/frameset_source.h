@@ -15,6 +15,7 @@ namespace bevloc::firmware {
 struct FramesetCounters {
   std::atomic<uint64_t> skipped{0};         ///< framesets dropped because a newer one was ready
   std::atomic<uint64_t> frames_skipped{0};  ///< frames in those framesets
+  std::atomic<uint64_t> clock_gaps{0};      ///< see FramesetSource::kGap
 };
 
 /// The newest frameset that was ready.
@@ -28,6 +29,10 @@ struct NewestFrameset {
 /// are readable from any thread.
 class FramesetSource {
  public:
+  /// After a longer time between two looks at the clock (the machine was suspended, or the thread
+  /// hung), the frames from before are forgotten: the vehicle may be elsewhere.
+  static constexpr Duration kGap = std::chrono::seconds(1);
+
   /// `compensates`: whether the matching corrects for the motion between the frames of a frameset.
   /// `pulses`: of the trigger; null without one. `frames` and `pulses` must outlive this.
   FramesetSource(const drivers::SynchronizerConfig& config, bool compensates,
@@ -53,10 +58,13 @@ class FramesetSource {
   const drivers::FramesetSynchronizer& synchronizer() const { return synchronizer_; }
 
  private:
+  void look_at_clock(Time now);
+
   drivers::FramesetSynchronizer synchronizer_;
   Synchrony synchrony_;
   FrameQueue& frames_;
   FramesetCounters counters_;
+  std::optional<Time> latest_look_;
 };
 
 }  // namespace bevloc::firmware

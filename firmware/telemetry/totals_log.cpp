@@ -27,8 +27,10 @@ void log_unreadable_images(const VisionCounters& vision) {
   }
 }
 
-void log_synchrony(const SynchronyCounters& synchrony, const drivers::Trigger* trigger) {
-  spdlog::info("framesets: spread at most {:.3f} ms", milliseconds(synchrony.spread_max));
+void log_synchrony(const SynchronyCounters& synchrony, uint64_t clock_gaps,
+                   const drivers::Trigger* trigger) {
+  spdlog::info("framesets: spread at most {:.3f} ms, {} clock gaps",
+               milliseconds(synchrony.spread_max), clock_gaps);
   if (trigger == nullptr) return;
   const drivers::TriggerCounters& counters = trigger->counters();
   spdlog::info(
@@ -59,7 +61,8 @@ void log_bus(const can::BusCounters& bus) {
 void log_totals(const Appliance& appliance, const drivers::Trigger* trigger) {
   log_frames(appliance.frame_counts());
   log_unreadable_images(appliance.vision().counters());
-  log_synchrony(appliance.vision().framesets().synchrony(), trigger);
+  const FramesetSource& framesets = appliance.vision().framesets();
+  log_synchrony(framesets.synchrony(), framesets.counters().clock_gaps, trigger);
   log_bus(appliance.bus().counters());
 }
 
