@@ -4,6 +4,7 @@
 
 #include "common/version.h"
 #include "evaluation/bench/bench_command.h"
+#include "evaluation/network/answer_command.h"
 #include "evaluation/network/network_command.h"
 #include "evaluation/solver/draw_command.h"
 #include "evaluation/solver/solver_command.h"
@@ -35,6 +36,8 @@ int main(int argc, char** argv) {
   draw_command.declare(*draw);
   bevloc::bench::BenchCommand bench_command;
   bench_command.declare(app);
+  bevloc::evaluation::AnswerCommand answer_command;
+  answer_command.declare(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -42,6 +45,7 @@ int main(int argc, char** argv) {
   }
   const bevloc::Status status = draw->parsed()             ? draw_command.run()
                                 : bench_command.chosen()   ? bench_command.run()
+                                : answer_command.chosen()  ? answer_command.run()
                                 : network_command.chosen() ? network_command.run()
                                                            : solver_command.run();
   if (status) return 0;

@@ -29,6 +29,7 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
                                   inputs.yaw_sigma_rad > limits_.yaw_sigma_rad);
   set_if(Why::kPoseStale, inputs.correction_age > limits_.correction_timeout);
   set_if(Why::kOverload, inputs.overloaded);
+  set_if(Why::kNetworkFault, inputs.network_fault);
   set_if(Why::kInternalFault, inputs.internal_error);
   return why;
 }
@@ -39,7 +40,7 @@ bool Health::is_lost(const HealthInputs& inputs) const {
 }
 
 HealthState Health::next_state(const HealthInputs& inputs) const {
-  if (inputs.internal_error) return HealthState::kFault;
+  if (inputs.internal_error || inputs.network_fault) return HealthState::kFault;
   switch (state_) {
     case HealthState::kInit:
       return inputs.initialized ? HealthState::kAcquiring : HealthState::kInit;

@@ -45,6 +45,7 @@ struct HealthInputs {
   double longitudinal_sigma_m = 0.0;
   double lateral_sigma_m = 0.0;
   double yaw_sigma_rad = 0.0;
+  bool network_fault = false;   ///< the network failed its check (VisionStage)
   bool internal_error = false;  ///< the pose or its covariance is not finite
 };
 

@@ -26,6 +26,7 @@ void Supervisor::step(Time now) {
   view_.dark = CameraMask(vision.dark);
   view_.blinded = CameraMask(vision.blinded);
   view_.dirty = CameraMask(vision.dirty);
+  view_.network_fault = vision.network_fault;
   view_.realtime_refusals = realtime_.refusals();
   update_rate(now);
 

@@ -25,6 +25,7 @@ struct ApplianceView {
   CameraMask dark;
   CameraMask blinded;
   CameraMask dirty;
+  bool network_fault = false;
 };
 
 /// Thread-bound: called from the supervising thread.

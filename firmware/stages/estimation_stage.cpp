@@ -81,6 +81,7 @@ void EstimationStage::take_reports(Time now) {
   while (const auto report = reports_.pop(Duration::zero())) {
     latest_report_ = *report;
     latest_report_arrival_ = now;
+    network_fault_ = network_fault_ || report->network_fault;
     if (report->had_prior) add_correction(*report);
   }
   // If all cameras stop, there are no more reports that say so.
@@ -118,6 +119,7 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
     inputs.map_nearby = latest_report_->map_nearby || !latest_report_->had_prior;
     inputs.overloaded = latest_report_->skipped;
   }
+  inputs.network_fault = network_fault_;
   inputs.latest_correction_refused = refused_in_a_row_ > 0;
   inputs.accepted_in_a_row = accepted_in_a_row_;
   inputs.refused_in_a_row = refused_in_a_row_;

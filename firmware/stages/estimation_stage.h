@@ -80,6 +80,7 @@ class EstimationStage {
   std::optional<Time> unsent_correction_;    ///< the same, until a pose was published
   std::optional<VisionReport> latest_report_;
   Time latest_report_arrival_;
+  bool network_fault_ = false;
   int accepted_in_a_row_ = 0;
   int refused_in_a_row_ = 0;
   EstimationCounters counters_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "drivers/clock/clock.h"
@@ -51,13 +52,19 @@ struct VisionCounters {
   std::atomic<unsigned> dark{0};
   std::atomic<unsigned> blinded{0};
   std::atomic<unsigned> dirty{0};
+  std::atomic<uint64_t> checks{0};         ///< of network and solvers (Localizer::check())
+  std::atomic<bool> network_fault{false};  ///< one of them failed; stays until the restart
 };
 
+/// Checks network and solvers at construction, and again, at most once a minute, while the vehicle
+/// stands. After a failed check it matches nothing any more and every report says so.
+///
 /// Thread-bound: called from the vision thread; counters() and framesets().counters() are readable
 /// from any thread.
 class VisionStage {
  public:
-  /// `localizer` and the queues must outlive the stage.
+  /// Logs a failed check, and a model that cannot be checked. `localizer` and the queues must
+  /// outlive the stage.
   VisionStage(Localizer& localizer, const VisionConfig& config, FrameQueue& frames,
               PredictionQueue& predictions, VisionQueue& reports);
 
@@ -75,6 +82,8 @@ class VisionStage {
   VisionReport report_on(const NewestFrameset& newest);
   /// Fills in what only the images tell.
   void match(const drivers::Frameset& frameset, const Prior& prior, VisionReport& report);
+  Status check_network();
+  void check_network_again(const drivers::Frameset& frameset, const Prior& prior);
   void note_unused_images(CameraMask given, CameraMask used);
 
   Localizer& localizer_;
@@ -86,6 +95,8 @@ class VisionStage {
   VisionObserver observer_;
   const std::function<std::span<const float>()> perceived_mask_;
   VisionCounters counters_;
+  Time latest_check_ = Time::min();
+  std::optional<Time> standing_since_;
 };
 
 }  // namespace bevloc::firmware

@@ -22,6 +22,11 @@ void ViewLog::note(const ApplianceView& view) {
                "check its exposure if no bright light explains this");
   note_cameras(before_.dirty, view.dirty, "dirty, parts of its image do not move while driving",
                "clean the lens");
+  if (view.network_fault && !before_.network_fault) {
+    spdlog::critical(
+        "network: it computed another answer to the test frame than its model stores; replace the "
+        "model file, restart, and replace the computer if it happens again");
+  }
   before_ = view;
 }
 

@@ -18,6 +18,7 @@
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/rasterizer.h"
 #include "pipeline/network/network.h"
+#include "pipeline/network/test_frame.h"
 #include "pipeline/network/view/view_table.h"
 #include "pipeline/preprocessing/image_remap.h"
 #include "pipeline/solver/solver_factory.h"
@@ -48,7 +49,8 @@ enum class SearchRange : uint8_t { kTracking, kAcquiring };
 /// safe. The map index must outlive it.
 class Localizer {
  public:
-  /// Fails if the model cannot be loaded or the solver does not support the hypotheses.
+  /// Fails if the model cannot be loaded, its stored answer is damaged, or the solver does not
+  /// support the hypotheses.
   static Result<std::unique_ptr<Localizer>> create(const Rig& rig, const MapIndex& map,
                                                    const std::string& model_path,
                                                    const LocalizerOptions& options);
@@ -63,6 +65,16 @@ class Localizer {
   /// computed for.
   CameraMask localize(const CameraImages& images, const Se2& prior, SearchRange range,
                       SolverResult& result);
+
+  /// Checks that network and solvers still compute what they should: the network's answer to a test
+  /// frame is the one that its model stores, and the solvers find a known correction. Takes as long
+  /// as some matches. Fails with the reason. perceived_mask() is not valid until the next
+  /// localize().
+  Status check();
+
+  /// Whether the model stores an answer to the test frame. Without one, check() cannot judge the
+  /// network.
+  bool model_has_answer() const { return stored_answer_.has_value(); }
 
   /// The cameras that were frozen at their latest readable image.
   CameraMask frozen() const { return frozen_; }
@@ -88,12 +100,17 @@ class Localizer {
             const LocalizerOptions& options);
   /// Fills the image input of the network, black for unusable cameras. Returns the usable cameras.
   CameraMask load_images(const CameraImages& images);
+  /// Checks the solver of a range with the map features of the test frame.
+  Status check_solver(SearchRange range);
   /// Updates the view table for the cameras and motions.
   void update_view(CameraMask present, const CameraMotions& reference_from_exposure);
 
   Rig network_rig_;
   LocalizerOptions options_;
   std::unique_ptr<Network> network_;
+  std::optional<NetworkAnswer> stored_answer_;
+  std::vector<float> shifted_;  ///< map features of the test frame, moved by a known correction
+  SolverResult check_solution_;
   std::vector<ImagePreprocessor> preprocessors_;
   FrozenCameraDetector frozen_detector_;
   CameraMask frozen_;

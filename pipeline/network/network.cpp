@@ -6,6 +6,7 @@
 #include "pipeline/network/model/load_error.h"
 #include "pipeline/network/model/lowering.h"
 #include "pipeline/network/model/onnx_reader.h"
+#include "pipeline/network/test_frame.h"
 #include "pipeline/preprocessing/network_camera.h"
 
 namespace bevloc {
@@ -92,6 +93,11 @@ float parameter(const nn::Graph& graph, const std::string& key) {
   return number;
 }
 
+std::string metadata_or_empty(const nn::Graph& graph, const std::string& key) {
+  const auto entry = graph.metadata.find(key);
+  return entry == graph.metadata.end() ? std::string() : entry->second;
+}
+
 float parameter_or(const nn::Graph& graph, const std::string& key, float fallback) {
   return graph.metadata.contains(key) ? parameter(graph, key) : fallback;
 }
@@ -143,6 +149,7 @@ void check_view_features(const nn::Program& program) {
 struct Network::State {
   State(const nn::Graph& graph, const nn::Program& program, const NetworkOptions& options)
       : name(graph.name),
+        stored_answer(metadata_or_empty(graph, std::string(kAnswerKey))),
         solver_parameters(read_solver_parameters(graph)),
         rig(read_model_rig(graph)),
         engine(options.engine(program,
@@ -154,6 +161,7 @@ struct Network::State {
   }
 
   std::string name;
+  std::string stored_answer;
   SolverParameters solver_parameters;
   ModelRig rig;
   std::unique_ptr<nn::Engine> engine;
@@ -228,6 +236,9 @@ const ModelRig& Network::rig() const {
 }
 const std::string& Network::name() const {
   return state_->name;
+}
+const std::string& Network::stored_answer() const {
+  return state_->stored_answer;
 }
 
 }  // namespace bevloc

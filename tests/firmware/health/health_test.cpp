@@ -190,6 +190,19 @@ TEST(HealthTest, AnInternalErrorIsAPermanentFault) {
   EXPECT_FALSE(health.pose_valid());
 }
 
+TEST(HealthTest, AFaultOfTheNetworkIsPermanentAndNamed) {
+  for (Health health : {tracking(), Health(HealthLimits{})}) {
+    HealthInputs inputs = healthy();
+    inputs.network_fault = true;
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kFault);
+    EXPECT_TRUE(health.why().has(Why::kNetworkFault));
+    health.update(healthy());
+    EXPECT_EQ(health.state(), HealthState::kFault);
+    EXPECT_FALSE(health.pose_valid());
+  }
+}
+
 TEST(HealthTest, NamesTheReasonsInWords) {
   EXPECT_EQ(to_string(Why::kCameraMissing | Why::kPoseStale), "camera missing, pose stale");
   EXPECT_EQ(to_string(WhyMask()), "");

@@ -1,7 +1,10 @@
 #include "firmware/stages/vision_stage.h"
 
+#include <filesystem>
+
 #include <gtest/gtest.h>
 
+#include "common/files.h"
 #include "sim/sim_rig.h"
 
 namespace bevloc::firmware {
@@ -262,6 +265,40 @@ TEST_F(VisionStageFrozenTest, OneChangedPixelIsAChange) {
     stuck_rgb_[middle] = static_cast<uint8_t>(stuck_rgb_[middle] ^ 0x80);
     EXPECT_TRUE(drive_on(5.0, true).all()) << i;
   }
+}
+
+TEST_F(VisionStageFrozenTest, ChecksTheNetworkAtTheStartAndOnceAMinuteWhileStanding) {
+  EXPECT_EQ(stage_->counters().checks, 1U);
+  for (int i = 0; i < 12; ++i) drive_on(5.0, false);
+  EXPECT_EQ(stage_->counters().checks, 1U);
+  for (int i = 0; i < 12; ++i) drive_on(0.0, false);
+  EXPECT_EQ(stage_->counters().checks, 2U);
+  time_ += std::chrono::seconds(58);
+  drive_on(0.0, false);
+  EXPECT_EQ(stage_->counters().checks, 2U);
+  time_ += std::chrono::seconds(2);
+  drive_on(0.0, false);
+  EXPECT_EQ(stage_->counters().checks, 3U);
+  EXPECT_FALSE(stage_->counters().network_fault);
+}
+
+TEST_F(VisionStageFrozenTest, MatchesNothingWithADamagedNetwork) {
+  std::string bytes = read_file(std::string(BEVLOC_SOURCE_DIR) + "/models/nano.onnx").value();
+  for (size_t i = 0; i < 4096; ++i) {
+    char& byte = bytes[bytes.size() / 2 + i];
+    byte = static_cast<char>(byte ^ 0x20);
+  }
+  const auto path = std::filesystem::temp_directory_path() / "bevloc_vision_stage_test.onnx";
+  ASSERT_TRUE(write_file(path, bytes));
+  localizer_ = Localizer::create(sim::nominal_rig(), map_index_, path.string(), {}).value();
+  std::filesystem::remove(path);
+  stage_.emplace(*localizer_, VisionConfig{}, frames_, predictions_, reports_);
+  push_frameset(Time(milliseconds(900)));
+  const auto report = step();
+  ASSERT_TRUE(report);
+  EXPECT_TRUE(report->network_fault);
+  EXPECT_EQ(report->match.evidence, Evidence::kNone);
+  EXPECT_TRUE(stage_->counters().network_fault);
 }
 
 TEST_F(VisionStageFrozenTest, DoesNotUseADarkCamera) {
