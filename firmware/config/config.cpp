@@ -149,11 +149,14 @@ TrackerParameters read_tracker(std::optional<YamlMap> yaml) {
       "speed_scale_sigma", tracker.initial_speed_scale_sigma, between(1e-4, 0.5));
   tracker.initial_yaw_rate_bias_sigma_radps = radians(yaml->optional<double>(
       "yaw_rate_bias_sigma_degps", degrees(tracker.initial_yaw_rate_bias_sigma_radps), noise));
-  const auto correlation_s = between(0.0, 600.0);
-  tracker.gnss_correlation_s =
-      yaml->optional<double>("gnss_correlation_s", tracker.gnss_correlation_s, correlation_s);
-  tracker.correction_correlation_s = yaml->optional<double>(
-      "correction_correlation_s", tracker.correction_correlation_s, correlation_s);
+  ErrorCorrelation& correlation = tracker.correlation;
+  correlation.gnss_s =
+      yaml->optional<double>("gnss_correlation_s", correlation.gnss_s, between(0.0, 600.0));
+  if (yaml->has("correction_correlation_m")) {
+    const auto lengths_m =
+        yaml->require_list<double>("correction_correlation_m", 3, between(0.0, 1000.0));
+    correlation.match_m = Eigen::Map<const Eigen::Vector3d>(lengths_m.data());
+  }
   tracker.gate_squared_distance = yaml->optional<double>(
       "gate_squared_distance", tracker.gate_squared_distance, between(1.0, 1000.0));
   return tracker;

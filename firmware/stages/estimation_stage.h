@@ -8,8 +8,7 @@
 #include "can/messages/pose_publisher.h"
 #include "firmware/health/health.h"
 #include "firmware/stages/messages.h"
-#include "pipeline/tracker/gnss_monitor.h"
-#include "pipeline/tracker/tracker.h"
+#include "pipeline/tracker/pose_estimator.h"
 
 namespace bevloc::firmware {
 
@@ -56,32 +55,38 @@ class EstimationStage {
 
  private:
   void take_samples();
-  void watch_gnss(const GnssSample& sample);
   void take_reports(Time now);
   void add_correction(const VisionReport& report);
+  void watch_clock(Time now);
+  HealthInputs health_inputs(const std::optional<TrackedPose>& pose, Time now) const;
   void update_health(const std::optional<TrackedPose>& pose, Time now);
   void publish(const std::optional<TrackedPose>& pose, Time now);
   can::LocalizerStatus make_status() const;
 
-  Tracker tracker_;
+  PoseEstimator estimator_;
   Health health_;
-  GnssMonitor gnss_monitor_;
   can::PosePublisher& publisher_;
   VehicleQueue& samples_;
   VisionQueue& reports_;
   PredictionQueue& predictions_;
   CorrectionObserver correction_observer_;
 
+  ProtectionParameters protection_parameters_;
+  Eigen::Vector3d protection_ = Eigen::Vector3d::Zero();  ///< of the latest pose: (m, m, rad)
+  bool wide_search_ = false;  ///< the latest match may lie outside the tracking range
   Duration report_lifetime_;  ///< without a newer report, the latest one expires after this
   uint16_t map_id_;
   std::optional<Time> odometry_time_;
   std::optional<Time> gnss_time_;
   std::optional<Time> accepted_frame_time_;  ///< frameset of the latest accepted correction
+  std::optional<Time> confirmed_time_;       ///< the same, of those with evidence across
   std::optional<Time> unsent_correction_;    ///< the same, until a pose was published
   std::optional<VisionReport> latest_report_;
   Time latest_report_arrival_;
   bool network_fault_ = false;
-  int accepted_in_a_row_ = 0;
+  std::optional<Time> last_tick_;
+  std::optional<Time> clock_gap_time_;  ///< when the clock has jumped
+  int accepted_in_a_row_ = 0;           ///< that confirm a start
   int refused_in_a_row_ = 0;
   EstimationCounters counters_;
 };

@@ -99,7 +99,7 @@ TEST_F(ConfigTest, EverySectionIsRead) {
       "0x300}\n"
       "tracker: {longitudinal_noise_m_per_sqrt_m: 0.03, lateral_noise_m_per_sqrt_m: 0.04, "
       "yaw_noise_deg_per_sqrt_s: 0.2, speed_scale_sigma: 0.05, yaw_rate_bias_sigma_degps: 0.5, "
-      "gnss_correlation_s: 20, correction_correlation_s: 0, gate_squared_distance: 12}\n"
+      "gnss_correlation_s: 20, correction_correlation_m: [5, 6, 7], gate_squared_distance: 12}\n"
       "health: {odometry_timeout_ms: 100, gnss_timeout_ms: 2000, degraded_after_ms: 300, "
       "lost_after_ms: 4000, corrections_to_track: 3, refusals_to_lose: 9, "
       "max_longitudinal_sigma_m: 0.5, max_lateral_sigma_m: 0.25, max_yaw_sigma_deg: 1}\n"
@@ -129,8 +129,8 @@ TEST_F(ConfigTest, EverySectionIsRead) {
   EXPECT_DOUBLE_EQ(config->tracker.motion.yaw_rad_per_sqrt_s, radians(0.2));
   EXPECT_DOUBLE_EQ(config->tracker.initial_speed_scale_sigma, 0.05);
   EXPECT_DOUBLE_EQ(config->tracker.initial_yaw_rate_bias_sigma_radps, radians(0.5));
-  EXPECT_DOUBLE_EQ(config->tracker.gnss_correlation_s, 20.0);
-  EXPECT_DOUBLE_EQ(config->tracker.correction_correlation_s, 0.0);
+  EXPECT_DOUBLE_EQ(config->tracker.correlation.gnss_s, 20.0);
+  EXPECT_EQ(config->tracker.correlation.match_m, Eigen::Vector3d(5.0, 6.0, 7.0));
   EXPECT_DOUBLE_EQ(config->tracker.gate_squared_distance, 12.0);
   EXPECT_EQ(config->health.odometry_timeout, std::chrono::milliseconds(100));
   EXPECT_EQ(config->health.gnss_timeout, std::chrono::milliseconds(2000));
