@@ -21,7 +21,8 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
   set_if(Why::kGnssMissing, inputs.gnss_age > limits_.gnss_timeout);
   set_if(Why::kNoInitialPose, !inputs.initialized);
   set_if(Why::kOutsideMap, !inputs.map_nearby);
-  set_if(Why::kMatchUncertain, inputs.verdict.undecided || !inputs.gnss_confirms);
+  set_if(Why::kMatchUncertain,
+         inputs.verdict.undecided || (!pose_valid() && !inputs.gnss_confirms));
   set_if(Why::kGnssContradicts, inputs.verdict.gnss_contradicts);
   set_if(Why::kOdometryContradicts, inputs.verdict.odometry_contradicts);
   set_if(Why::kMatchContradicts, inputs.verdict.match_contradicts);
