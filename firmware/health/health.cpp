@@ -29,13 +29,14 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
                                   inputs.yaw_sigma_rad > limits_.yaw_sigma_rad);
   set_if(Why::kPoseStale, inputs.correction_age > limits_.correction_timeout);
   set_if(Why::kOverload, inputs.overloaded);
+  set_if(Why::kClockGap, inputs.clock_gap);
   set_if(Why::kInternalFault, inputs.internal_error);
   return why;
 }
 
 bool Health::is_lost(const HealthInputs& inputs) const {
   return contradicted_ || why_.has(Why::kPoseUncertain) || why_.has(Why::kOdometryMissing) ||
-         inputs.correction_age > limits_.lost_timeout;
+         inputs.clock_gap || inputs.correction_age > limits_.lost_timeout;
 }
 
 HealthState Health::next_state(const HealthInputs& inputs) const {

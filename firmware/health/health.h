@@ -41,6 +41,7 @@ struct HealthInputs {
   int accepted_in_a_row = 0;
   int refused_in_a_row = 0;
   bool contradicts_gnss = false;  ///< the pose is too far from GNSS for its noise (GnssMonitor)
+  bool clock_gap = false;         ///< the clock had a gap, and the pose was forgotten
   bool overloaded = false;        ///< framesets were skipped for the latest one
   double longitudinal_sigma_m = 0.0;
   double lateral_sigma_m = 0.0;

@@ -51,6 +51,24 @@ void EstimationStage::tick(Time now) {
   ++counters_.ticks;
 }
 
+void EstimationStage::note_clock_gap(Duration) {
+  ++counters_.clock_gaps;
+  clock_gap_ = true;
+  while (samples_.pop(Duration::zero())) {
+  }
+  while (reports_.pop(Duration::zero())) {
+  }
+  tracker_.reset();
+  gnss_monitor_.reset();
+  odometry_time_.reset();
+  gnss_time_.reset();
+  accepted_frame_time_.reset();
+  unsent_correction_.reset();
+  latest_report_.reset();
+  accepted_in_a_row_ = 0;
+  refused_in_a_row_ = 0;
+}
+
 void EstimationStage::sign_off(Time now) {
   can::PoseReport report;
   report.status = make_status();
@@ -121,6 +139,7 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
   inputs.latest_correction_refused = refused_in_a_row_ > 0;
   inputs.accepted_in_a_row = accepted_in_a_row_;
   inputs.refused_in_a_row = refused_in_a_row_;
+  inputs.clock_gap = clock_gap_;
   inputs.contradicts_gnss = gnss_monitor_.contradicts();
   if (pose) {
     inputs.longitudinal_sigma_m = std::sqrt(pose->covariance(0, 0));
@@ -128,6 +147,8 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
     inputs.yaw_sigma_rad = std::sqrt(pose->covariance(2, 2));
     inputs.internal_error = !pose->map_from_vehicle.is_finite() || !pose->covariance.allFinite();
   }
+  // The reason stays until the pose is found again, so that a reader of LOC_Status sees it.
+  if (pose && inputs.accepted_in_a_row > 0) clock_gap_ = false;
   if (health_.update(inputs) && health_.state() == HealthState::kLost) {
     // A pose that is lost because of its large covariance need not be widened.
     if (health_.pose_contradicted()) tracker_.widen();
