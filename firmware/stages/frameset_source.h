@@ -1,9 +1,11 @@
 // Forms framesets from the frames of the capture stages, and emits the newest.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <optional>
 
+#include "common/published.h"
 #include "drivers/clock/clock.h"
 #include "drivers/frameset/synchronizer.h"
 #include "firmware/stages/messages.h"
@@ -24,8 +26,8 @@ struct NewestFrameset {
   bool unsynchronized = false;  ///< the cameras do not expose together (Synchrony)
 };
 
-/// Owns the synchronizer. Thread-bound: called from the vision thread; counters() and synchrony()
-/// are readable from any thread.
+/// Owns the synchronizer. Thread-bound: called from the vision thread; counters(), synchrony() and
+/// frames_of() are readable from any thread.
 class FramesetSource {
  public:
   /// `compensates`: whether the matching corrects for the motion between the frames of a frameset.
@@ -49,14 +51,15 @@ class FramesetSource {
 
   const FramesetCounters& counters() const { return counters_; }
   const SynchronyCounters& synchrony() const { return synchrony_.counters(); }
-  /// Not to be read while the vision thread runs.
-  const drivers::FramesetSynchronizer& synchronizer() const { return synchronizer_; }
+  /// What became of the frames of one camera.
+  drivers::SynchronizerCounters frames_of(int camera) const { return frames_of_[camera].load(); }
 
  private:
   drivers::FramesetSynchronizer synchronizer_;
   Synchrony synchrony_;
   FrameQueue& frames_;
   FramesetCounters counters_;
+  std::array<Published<drivers::SynchronizerCounters>, kCameraCount> frames_of_;
 };
 
 }  // namespace bevloc::firmware
