@@ -25,8 +25,6 @@ Duration age(const std::optional<Time>& time, Time now) {
 /// Ticks come every 10 ms. After a longer pause (suspend to memory, for example) the vehicle may be
 /// anywhere.
 constexpr Duration kClockGap = std::chrono::milliseconds(300);
-/// How long the gap is reported.
-constexpr Duration kClockGapShown = std::chrono::seconds(1);
 
 void add_uncertainty(const TrackedPose& pose, HealthInputs& inputs) {
   inputs.longitudinal_sigma_m = std::sqrt(pose.covariance(0, 0));
@@ -68,6 +66,25 @@ void EstimationStage::tick(Time now) {
   ++counters_.ticks;
 }
 
+void EstimationStage::note_clock_gap(Duration) {
+  ++counters_.clock_gaps;
+  clock_gap_ = true;
+  while (samples_.pop(Duration::zero())) {
+  }
+  while (reports_.pop(Duration::zero())) {
+  }
+  estimator_.reset();
+  last_tick_.reset();
+  odometry_time_.reset();
+  gnss_time_.reset();
+  accepted_frame_time_.reset();
+  confirmed_time_.reset();
+  unsent_correction_.reset();
+  latest_report_.reset();
+  accepted_in_a_row_ = 0;
+  refused_in_a_row_ = 0;
+}
+
 void EstimationStage::sign_off(Time now) {
   can::PoseReport report;
   report.status = make_status();
@@ -92,10 +109,7 @@ void EstimationStage::take_samples() {
 }
 
 void EstimationStage::watch_clock(Time now) {
-  if (last_tick_ && now - *last_tick_ > kClockGap) {
-    estimator_.restart();
-    clock_gap_time_ = now;
-  }
+  if (last_tick_ && now - *last_tick_ > kClockGap) note_clock_gap(now - *last_tick_);
   last_tick_ = now;
 }
 
@@ -150,13 +164,15 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
   inputs.verdict = estimator_.verdict();
   inputs.odometry_implausible = estimator_.odometry_implausible();
   inputs.gnss_confirms = estimator_.gnss_confirms();
-  inputs.clock_gap = clock_gap_time_ && now - *clock_gap_time_ < kClockGapShown;
+  inputs.clock_gap = clock_gap_;
   if (pose) add_uncertainty(*pose, inputs);
   return inputs;
 }
 
 void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time now) {
   const HealthInputs inputs = health_inputs(pose, now);
+  // The reason stays until the pose is found again, so that a reader of LOC_Status sees it.
+  if (pose && inputs.accepted_in_a_row > 0) clock_gap_ = false;
   if (health_.update(inputs) && health_.state() == HealthState::kLost) {
     accepted_in_a_row_ = 0;
     refused_in_a_row_ = 0;

@@ -130,4 +130,10 @@ void PoseEstimator::restart() {
   gnss_passed_.reset();
 }
 
+void PoseEstimator::reset() {
+  restart();
+  tracker_.reset();
+  odometry_monitor_.reset();
+}
+
 }  // namespace bevloc

@@ -55,6 +55,9 @@ class PoseEstimator {
   /// Forgets the pose and all verdicts; the next GNSS sample sets the pose.
   void restart();
 
+  /// Returns to the state after construction.
+  void reset();
+
   const Tracker& tracker() const { return tracker_; }
 
  private:
