@@ -50,6 +50,7 @@ class Appliance {
   drivers::Clock& clock() { return *hardware_.clock; }
   std::deque<CaptureStage>& capture() { return capture_; }
   VehicleInputStage& vehicle_input() { return vehicle_input_; }
+  const VehicleInputStage& vehicle_input() const { return vehicle_input_; }
   VisionStage& vision() { return vision_; }
   EstimationStage& estimation() { return estimation_; }
   const VisionStage& vision() const { return vision_; }
@@ -67,6 +68,7 @@ class Appliance {
  private:
   Appliance(const Config& config, const HdMap& map, Hardware hardware,
             std::unique_ptr<MapIndex> map_index, std::unique_ptr<Localizer> localizer);
+  Status authenticate(const SecocConfig& config, const can::BaseIds& base);
 
   Hardware hardware_;
   std::unique_ptr<MapIndex> map_index_;
@@ -82,8 +84,5 @@ class Appliance {
 /// The configuration of the publisher and of the localizer.
 can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map);
 LocalizerOptions localizer_options(const Config& config);
-
-/// Identifies a map in LOC_Status: a 16-bit hash of its origin, classes and coordinates.
-uint16_t map_id_of(const HdMap& map);
 
 }  // namespace bevloc::firmware

@@ -56,6 +56,24 @@ void log_bus(const can::BusCounters& bus) {
       bus.receive_ignored, bus.error_frames, bus.bus_off, bus.reopened);
 }
 
+void log_vehicle_input(const can::VehicleInputCounters& input) {
+  spdlog::info(
+      "vehicle: {} odometry and {} GNSS samples; frames: {} lost, {} with a wrong CRC or length, "
+      "{} "
+      "repeated, {} out of sequence, {} while not valid, {} incomplete, {} not available, {} with "
+      "our identifiers; odometry refused: {} wheels against yaw rate, {} jumps, {} sharp turns",
+      input.odometry_samples, input.gnss_samples, input.lost, input.wrong_crc + input.wrong_length,
+      input.repeated, input.wrong_sequence, input.not_valid, input.incomplete, input.not_available,
+      input.own_ids, input.contradicting_wheels, input.odometry_jumps, input.sharp_turns);
+}
+
+void log_authentication(const can::SecocCounters& secoc) {
+  spdlog::info(
+      "vehicle: {} epochs authentic; refused: {} with a wrong code or replayed, {} incomplete, {} "
+      "before the first freshness value",
+      secoc.authentic, secoc.wrong_mac, secoc.incomplete, secoc.no_freshness);
+}
+
 }  // namespace
 
 void log_totals(const Appliance& appliance, const drivers::Trigger* trigger) {
@@ -64,6 +82,8 @@ void log_totals(const Appliance& appliance, const drivers::Trigger* trigger) {
   const FramesetSource& framesets = appliance.vision().framesets();
   log_synchrony(framesets.synchrony(), framesets.counters().clock_gaps, trigger);
   log_bus(appliance.bus().counters());
+  log_vehicle_input(appliance.vehicle_input().counters());
+  if (const auto* secoc = appliance.vehicle_input().secoc_counters()) log_authentication(*secoc);
 }
 
 }  // namespace bevloc::firmware
