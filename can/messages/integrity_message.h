@@ -67,7 +67,7 @@ inline constexpr std::array<Signal, 6> kWhy{{
                 "can, or come too seldom."),
     reason_flag("Why_ForeignSender", 21,
                 "Another node sends with the localizer's identifiers, or the vehicle's messages "
-                "come from two senders."),
+                "come from two senders or are not authentic."),
 }};
 static_assert(kFirstWhy + static_cast<int>(kWhy.size()) == kWhyCount);
 

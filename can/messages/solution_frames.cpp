@@ -141,6 +141,15 @@ Frame status_frame(const LocalizerStatus& status, const BaseIds& base) {
   return frame;
 }
 
+Frame identity_frame(const Identity& identity, int item, const BaseIds& base) {
+  const std::array<uint32_t, loc_identity::kItems> checksums = {
+      identity.program, identity.configuration, identity.model, identity.rig, identity.map};
+  Frame frame = blank_frame(loc_identity::kMessage, base);
+  insert_raw(frame, loc_identity::kItem, item);
+  insert_raw(frame, loc_identity::kChecksum, checksums[static_cast<size_t>(item)]);
+  return frame;
+}
+
 SolutionFrames solution_frames(const PoseReport& report, const LocalizerStatus& status,
                                const ReportLimits& limits, GeoReference& geo, const BaseIds& base,
                                Time now) {

@@ -105,7 +105,19 @@ SolverConfig read_solver(std::optional<YamlMap> yaml) {
   return solver;
 }
 
-CanConfig read_can(YamlMap yaml) {
+std::optional<SecocConfig> read_secoc(YamlMap& can, CanDriver driver,
+                                      const std::filesystem::path& folder) {
+  auto yaml = can.optional_map("secoc");
+  if (!yaml) return std::nullopt;
+  if (driver == CanDriver::kMock) {
+    can.reject("secoc", "authentication on a bus inside the process",
+               "no section secoc with can.driver: mock");
+  }
+  return SecocConfig{.key_file = path_of(*yaml, "key_file", folder),
+                     .starts_file = path_of(*yaml, "starts_file", folder)};
+}
+
+CanConfig read_can(YamlMap yaml, const std::filesystem::path& folder) {
   CanConfig config;
   config.driver = yaml.require_choice<CanDriver>(
       "driver", {{"mock", CanDriver::kMock}, {"socketcan", CanDriver::kSocketCan}});
@@ -131,6 +143,9 @@ CanConfig read_can(YamlMap yaml) {
     yaml.reject("localizer_base_id", "less than 0x40 apart from vehicle_base_id",
                 "at least 0x40, so that messages do not share identifiers");
   }
+  config.secoc = read_secoc(yaml, config.driver, folder);
+  config.odometry.rear_track_m =
+      yaml.optional<double>("rear_track_m", config.odometry.rear_track_m, between(0.8, 3.0));
   return config;
 }
 
@@ -205,6 +220,7 @@ Result<Config> load_config(const std::filesystem::path& file, const SimulationRe
   if (!yaml) return tl::unexpected(yaml.error());
   const std::filesystem::path folder = file.parent_path();
   Config config;
+  config.file = file;
   YamlMap cameras = yaml->require_map("cameras");
   config.cameras = read_cameras(cameras, folder);
   if (config.cameras.driver == CameraDriver::kMock && simulation == nullptr) {
@@ -218,7 +234,7 @@ Result<Config> load_config(const std::filesystem::path& file, const SimulationRe
   YamlMap model = yaml->require_map("model");
   config.model_file = path_of(model, "file", folder);
   config.solver = read_solver(yaml->optional_map("solver"));
-  config.can = read_can(yaml->require_map("can"));
+  config.can = read_can(yaml->require_map("can"), folder);
   config.tracker = read_tracker(yaml->optional_map("tracker"));
   config.health = read_health(yaml->optional_map("health"));
   if (auto gpio = yaml->optional_map("gpio")) {

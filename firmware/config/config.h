@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "can/messages/message.h"
+#include "can/messages/odometry_check.h"
 #include "common/result.h"
 #include "common/strict_yaml.h"
 #include "drivers/frameset/synchronizer.h"
@@ -44,11 +46,19 @@ struct SolverConfig {
   bool operator==(const SolverConfig&) const = default;
 };
 
+/// Authentication of the messages (SecOC).
+struct SecocConfig {
+  std::filesystem::path key_file;
+  std::filesystem::path starts_file;  ///< counts the starts, for the freshness value
+};
+
 struct CanConfig {
   CanDriver driver = CanDriver::kMock;
   std::string interface;                                  ///< SocketCAN only
   can::FrameFormat variant = can::FrameFormat::kClassic;  ///< format of the messages that are sent
   can::BaseIds base_ids;
+  can::OdometryLimits odometry;  ///< what the vehicle's odometry is checked with
+  std::optional<SecocConfig> secoc;
 };
 
 /// Reads the parts of a configuration that only a program with the simulator supports. Used only
@@ -62,6 +72,7 @@ struct SimulationReader {
 };
 
 struct Config {
+  std::filesystem::path file;  ///< this configuration
   CameraConfig cameras;
   std::filesystem::path rig_file;
   std::filesystem::path map_file;  ///< empty for a procedural town

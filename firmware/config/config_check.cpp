@@ -1,4 +1,5 @@
 // Looks up on this machine what a configuration names.
+#include "can/secoc/secoc_files.h"
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "firmware/config/config.h"
 #include "firmware/runtime/camera_factory.h"
@@ -30,6 +31,10 @@ Status check_config(const Config& config) {
   }
   if (!config.map_file.empty()) {
     if (const auto map = load_map(config.map_file); !map) return tl::unexpected(map.error());
+  }
+  if (config.can.secoc) {
+    const auto key = can::read_secoc_key(config.can.secoc->key_file);
+    if (!key) return tl::unexpected(key.error());
   }
   if (Status status = check_lines(config.gpio); !status) return status;
   return check_cameras(config.cameras);

@@ -79,6 +79,7 @@ class Appliance {
  private:
   Appliance(const Config& config, const HdMap& map, Hardware hardware,
             std::unique_ptr<MapIndex> map_index, std::unique_ptr<Localizer> localizer);
+  Status authenticate(const SecocConfig& config, const can::BaseIds& base);
 
   Hardware hardware_;
   std::unique_ptr<MapIndex> map_index_;
@@ -95,8 +96,5 @@ class Appliance {
 /// The configuration of the publisher and of the localizer.
 can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map);
 LocalizerOptions localizer_options(const Config& config);
-
-/// Identifies a map in LOC_Status: a 16-bit hash of its origin, classes and coordinates.
-uint16_t map_id_of(const HdMap& map);
 
 }  // namespace bevloc::firmware

@@ -58,6 +58,7 @@ struct Snapshot {
   FrameCounts frames;
   FramesetsSnapshot framesets;
   can::VehicleInputCounters vehicle_input;
+  std::optional<can::SecocCounters> authentication;  ///< empty without authentication
   EstimationSnapshot estimation;
   can::BusCounters bus;
   can::BusCondition bus_condition;

@@ -46,14 +46,6 @@ void log_framesets(const FramesetsSnapshot& framesets,
       framesets.off_pulse);
 }
 
-void log_vehicle_input(const can::VehicleInputCounters& input) {
-  spdlog::info(
-      "CAN in: {} odometry and {} GNSS samples; refused frames: {} wrong CRC, {} wrong length, {} "
-      "repeated; {} lost; epochs: {} incomplete, {} not available",
-      input.odometry_samples, input.gnss_samples, input.wrong_crc, input.wrong_length,
-      input.repeated, input.lost, input.incomplete, input.not_available);
-}
-
 void log_tracker(const char* input, const OutcomeCounts& outcomes) {
   std::string text;
   for (size_t i = 0; i < outcomes.size(); ++i) {
@@ -80,6 +72,24 @@ void log_bus(const can::BusCounters& bus) {
       bus.receive_ignored, bus.error_frames, bus.bus_off, bus.reopened);
 }
 
+void log_vehicle_input(const can::VehicleInputCounters& input) {
+  spdlog::info(
+      "vehicle: {} odometry and {} GNSS samples; frames: {} lost, {} with a wrong CRC or length, "
+      "{} "
+      "repeated, {} out of sequence, {} while not valid, {} incomplete, {} not available, {} with "
+      "our identifiers; odometry refused: {} wheels against yaw rate, {} jumps, {} sharp turns",
+      input.odometry_samples, input.gnss_samples, input.lost, input.wrong_crc + input.wrong_length,
+      input.repeated, input.wrong_sequence, input.not_valid, input.incomplete, input.not_available,
+      input.own_ids, input.contradicting_wheels, input.odometry_jumps, input.sharp_turns);
+}
+
+void log_authentication(const can::SecocCounters& secoc) {
+  spdlog::info(
+      "vehicle: {} epochs authentic; refused: {} with a wrong code or replayed, {} incomplete, {} "
+      "before the first freshness value",
+      secoc.authentic, secoc.wrong_mac, secoc.incomplete, secoc.no_freshness);
+}
+
 }  // namespace
 
 void log_totals(const Snapshot& snapshot) {
@@ -87,6 +97,7 @@ void log_totals(const Snapshot& snapshot) {
   log_cameras(snapshot.cameras);
   log_framesets(snapshot.framesets, snapshot.trigger);
   log_vehicle_input(snapshot.vehicle_input);
+  if (snapshot.authentication) log_authentication(*snapshot.authentication);
   log_tracker("odometry", snapshot.estimation.odometry);
   log_tracker("GNSS", snapshot.estimation.gnss);
   log_tracker("corrections", snapshot.estimation.corrections);

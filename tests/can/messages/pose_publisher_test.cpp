@@ -83,7 +83,7 @@ class PosePublisherTest : public testing::Test {
 
 TEST_F(PosePublisherTest, AConsumerWithTheDbcFileReadsTheReport) {
   publish(tracking_report(kNow), kNow);
-  EXPECT_EQ(frames_.size(), 10u);
+  EXPECT_EQ(frames_.size(), 11u);
   EXPECT_EQ(value("LOC_Status", "State"), 2.0);
   EXPECT_EQ(value("LOC_Status", "CameraOk_FrontLeft"), 1.0);
   EXPECT_EQ(value("LOC_Status", "CameraOk_Front"), 0.0);
@@ -182,7 +182,7 @@ TEST_F(PosePublisherTest, FramesOfOneSolutionShareAnEpochAndCountersRise) {
     publish(tracking_report(now), now);
     for (const auto& [message, frame] : frames_) {
       EXPECT_EQ(value(message, "EPOCH"), cycle % 16) << message;
-      if (message == "LOC_Status") continue;
+      if (message == "LOC_Status" || message == "LOC_Identity") continue;
       EXPECT_EQ(value(message, "COUNTER"), cycle % 16) << message;
     }
   }
@@ -196,7 +196,8 @@ TEST_F(PosePublisherTest, StatusIsSentOnItsCycleAndOnChange) {
     if (cycle >= 14) report.status.state = HealthState::kDegraded;
     publish(report, now);
     if (frames_.contains("LOC_Status")) cycles_with_status.push_back(cycle);
-    EXPECT_EQ(frames_.size(), frames_.contains("LOC_Status") ? 10u : 9u);
+    EXPECT_EQ(frames_.size(),
+              9u + frames_.contains("LOC_Status") + frames_.contains("LOC_Identity"));
   }
   EXPECT_EQ(cycles_with_status, (std::vector<int>{0, 10, 14, 24}));
 }
@@ -210,6 +211,30 @@ TEST_F(PosePublisherTest, StatusKeepsItsCycleWhenCallsAreEarlyAndLate) {
     if (frames_.contains("LOC_Status")) cycles_with_status.push_back(cycle);
   }
   EXPECT_EQ(cycles_with_status, (std::vector<int>{0, 10, 20, 30, 40}));
+}
+
+TEST_F(PosePublisherTest, TheIdentityIsKnownAfterOneSecond) {
+  const Identity identity{
+      .program = 1, .configuration = 2, .model = 0xFFFFFFFF, .rig = 0x80000000, .map = 0xDEADBEEF};
+  PosePublisher publisher(*sender_, {.map_origin = kOrigin, .identity = identity});
+  const test::DbcMessage& message = dbc_.message("LOC_Identity");
+  std::map<double, double> checksums;
+  std::vector<int> cycles;
+  for (int cycle = 0; cycle < 100; ++cycle) {
+    const Time now = kNow + milliseconds(10 * cycle);
+    publisher.publish(tracking_report(now), now);
+    while (const auto received = reader_->receive()) {
+      if (received->frame.id != message.id) continue;
+      const auto payload = received->frame.payload();
+      cycles.push_back(cycle);
+      checksums[message.signal("IdentityItem").physical_from(payload)] =
+          message.signal("IdentityChecksum").physical_from(payload);
+    }
+  }
+  EXPECT_EQ(cycles, (std::vector<int>{0, 20, 40, 60, 80}));
+  const std::map<double, double> wanted = {
+      {0, 1}, {1, 2}, {2, 0xFFFFFFFF}, {3, 0x80000000}, {4, 0xDEADBEEF}};
+  EXPECT_EQ(checksums, wanted);
 }
 
 TEST_F(PosePublisherTest, AStatusThatCouldNotBeSentIsSentAgain) {

@@ -96,7 +96,8 @@ TEST_F(ConfigTest, EverySectionIsRead) {
       "             yaw_range_deg: 4, yaw_step_deg: 1}\n"
       "can: {driver: socketcan, interface: can0, variant: fd, localizer_base_id: 0x600, "
       "vehicle_base_id: "
-      "0x300}\n"
+      "0x300, rear_track_m: 1.75,\n"
+      "  secoc: {key_file: secoc.key, starts_file: /var/lib/bevloc/starts}}\n"
       "tracker: {longitudinal_noise_m_per_sqrt_m: 0.03, lateral_noise_m_per_sqrt_m: 0.04, "
       "yaw_noise_deg_per_sqrt_s: 0.2, speed_scale_sigma: 0.05, yaw_rate_bias_sigma_degps: 0.5, "
       "gnss_correlation_s: 20, correction_correlation_m: [5, 6, 7], gate_squared_distance: 12}\n"
@@ -124,6 +125,10 @@ TEST_F(ConfigTest, EverySectionIsRead) {
   EXPECT_EQ(config->can.variant, can::FrameFormat::kFd);
   EXPECT_EQ(config->can.base_ids.localizer, 0x600U);
   EXPECT_EQ(config->can.base_ids.vehicle, 0x300U);
+  EXPECT_DOUBLE_EQ(config->can.odometry.rear_track_m, 1.75);
+  ASSERT_TRUE(config->can.secoc);
+  EXPECT_EQ(config->can.secoc->key_file.filename(), "secoc.key");
+  EXPECT_EQ(config->can.secoc->starts_file, "/var/lib/bevloc/starts");
   EXPECT_DOUBLE_EQ(config->tracker.motion.longitudinal_m_per_sqrt_m, 0.03);
   EXPECT_DOUBLE_EQ(config->tracker.motion.lateral_m_per_sqrt_m, 0.04);
   EXPECT_DOUBLE_EQ(config->tracker.motion.yaw_rad_per_sqrt_s, radians(0.2));
@@ -224,6 +229,9 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
        "can.localizer_base_id"},
       {with("{driver: mock}", "{driver: mock, localizer_base_id: 0x410}"), 7,
        "can.localizer_base_id"},
+      {with("{driver: mock}", "{driver: mock, rear_track_m: 0.1}"), 7, "can.rear_track_m"},
+      {with("{driver: mock}", "{driver: mock, secoc: {key_file: k, starts_file: s}}"), 7,
+       "can.secoc"},
       {with("{driver: mock}", "{driver: mock, interface: can0}"), 7, "can.interface"},
       {with("{driver: mock}", "{driver: socketcan}"), 7, "can.interface"},
       {with("{driver: mock}", "{driver: mock, variant: xl}"), 7, "can.variant"},

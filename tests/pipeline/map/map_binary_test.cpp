@@ -1,9 +1,12 @@
 #include "pipeline/map/map_binary.h"
 
+#include <utility>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/crc32.h"
+#include "pipeline/map/map_checksum.h"
 #include "pipeline/map/map_loader.h"
 #include "sim/random.h"
 
@@ -63,6 +66,27 @@ std::string framed(const std::string& body) {
 
 TEST(Crc32, MatchesTheCheckValueOfTheStandard) {
   EXPECT_EQ(crc32("123456789"), 0xCBF43926U);
+}
+
+TEST(MapChecksum, IsTheSameAfterARoundTripAndChangesWithTheContent) {
+  const HdMap map = kilometre();
+  const uint32_t checksum = map_checksum(map);
+  EXPECT_EQ(map_checksum(decode_map(encode_map(map), "town.bvm").value()), checksum);
+
+  HdMap other = map;
+  other.name = "another name";
+  EXPECT_EQ(map_checksum(other), checksum) << "the name is not content";
+  other.elements[1].points[7].x() += 2.0 * kMapQuantumM;
+  EXPECT_NE(map_checksum(other), checksum);
+  other = map;
+  other.elements[0].element_class = ElementClass::kLaneDivider;
+  EXPECT_NE(map_checksum(other), checksum);
+  other = map;
+  other.origin.longitude_deg += 1e-9;
+  EXPECT_NE(map_checksum(other), checksum);
+  other = map;
+  std::swap(other.elements[0], other.elements[2]);
+  EXPECT_NE(map_checksum(other), checksum);
 }
 
 TEST(MapBinary, RoundTripsWithMillimetreAccuracy) {
