@@ -27,6 +27,7 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
   set_if(Why::kOdometryContradicts, inputs.verdict.odometry_contradicts);
   set_if(Why::kMatchContradicts, inputs.verdict.match_contradicts);
   set_if(Why::kOdometryImplausible, inputs.odometry_implausible);
+  set_if(Why::kForeignSender, inputs.foreign_sender);
   set_if(Why::kClockGap, inputs.clock_gap);
   set_if(Why::kMatchRejected, inputs.latest_correction_refused);
   set_if(Why::kPoseUncertain, inputs.longitudinal_sigma_m > limits_.longitudinal_sigma_m ||

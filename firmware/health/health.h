@@ -47,6 +47,7 @@ struct HealthInputs {
   int refused_in_a_row = 0;
   Verdict verdict;                    ///< of the arbiter
   bool odometry_implausible = false;  ///< the latest odometry sample was refused (OdometryMonitor)
+  bool foreign_sender = false;        ///< somebody else sends our messages or the vehicle's
   bool gnss_confirms = true;          ///< GNSS is near enough to trust a new pose
   bool clock_gap = false;             ///< time has jumped
   bool overloaded = false;            ///< framesets were skipped for the latest one

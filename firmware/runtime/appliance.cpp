@@ -36,6 +36,7 @@ Appliance::Appliance(const Config& config, const HdMap& map, Hardware hardware,
               queues_.frames, queues_.predictions, queues_.reports),
       estimation_(config.tracker, config.health, map_id_of(map), publisher_, queues_.samples,
                   queues_.reports, queues_.predictions) {
+  estimation_.watch(vehicle_input_);
   for (const auto& camera : hardware_.cameras) {
     capture_.emplace_back(*camera, *hardware_.clock, queues_.frames);
   }

@@ -162,7 +162,10 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
   inputs.accepted_in_a_row = accepted_in_a_row_;
   inputs.refused_in_a_row = refused_in_a_row_;
   inputs.verdict = estimator_.verdict();
-  inputs.odometry_implausible = estimator_.odometry_implausible();
+  const WhyMask vehicle_input = vehicle_input_ != nullptr ? vehicle_input_->why() : WhyMask();
+  inputs.odometry_implausible =
+      estimator_.odometry_implausible() || vehicle_input.has(Why::kOdometryImplausible);
+  inputs.foreign_sender = vehicle_input.has(Why::kForeignSender);
   inputs.gnss_confirms = estimator_.gnss_confirms();
   inputs.clock_gap = clock_gap_;
   if (pose) add_uncertainty(*pose, inputs);

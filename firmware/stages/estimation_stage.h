@@ -8,6 +8,7 @@
 #include "can/messages/pose_publisher.h"
 #include "firmware/health/health.h"
 #include "firmware/stages/messages.h"
+#include "firmware/stages/vehicle_input_stage.h"
 #include "pipeline/tracker/pose_estimator.h"
 
 namespace bevloc::firmware {
@@ -44,6 +45,9 @@ class EstimationStage {
 
   void observe_corrections(CorrectionObserver observer);
 
+  /// Reports what is wrong with the vehicle's messages. `input` must outlive the stage.
+  void watch(const VehicleInputStage& input) { vehicle_input_ = &input; }
+
   /// Takes all queued samples and reports, then publishes the pose predicted to `now`. To be called
   /// once per bus cycle.
   void tick(Time now);
@@ -75,6 +79,7 @@ class EstimationStage {
   VisionQueue& reports_;
   PredictionQueue& predictions_;
   CorrectionObserver correction_observer_;
+  const VehicleInputStage* vehicle_input_ = nullptr;
 
   ProtectionParameters protection_parameters_;
   Eigen::Vector3d protection_ = Eigen::Vector3d::Zero();  ///< of the latest pose: (m, m, rad)
@@ -90,7 +95,7 @@ class EstimationStage {
   Time latest_report_arrival_;
   bool network_fault_ = false;
   std::optional<Time> last_tick_;
-  int accepted_in_a_row_ = 0;           ///< that confirm a start
+  int accepted_in_a_row_ = 0;  ///< that confirm a start
   int refused_in_a_row_ = 0;
   bool clock_gap_ = false;  ///< since the latest gap no correction was accepted
   EstimationCounters counters_;

@@ -22,10 +22,10 @@ struct CameraSnapshot {
 };
 
 struct FramesetsSnapshot {
-  uint64_t taken = 0;     ///< framesets that vision took, matched or not
-  uint64_t skipped = 0;   ///< for a newer one
-  uint64_t no_prior = 0;  ///< no prediction covered their time
-  uint64_t refused = 0;   ///< too few readable images
+  uint64_t taken = 0;       ///< framesets that vision took, matched or not
+  uint64_t skipped = 0;     ///< for a newer one
+  uint64_t no_prior = 0;    ///< no prediction covered their time
+  uint64_t refused = 0;     ///< too few readable images
   uint64_t clock_gaps = 0;  ///< FramesetSource::kGap
   uint64_t off_pulse = 0;
   Duration spread{};  ///< of the latest one

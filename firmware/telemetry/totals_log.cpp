@@ -32,7 +32,7 @@ void log_cameras(const std::array<CameraSnapshot, kCameraCount>& cameras) {
 }
 
 void log_framesets(const FramesetsSnapshot& framesets,
-                    const std::optional<TriggerSnapshot>& trigger) {
+                   const std::optional<TriggerSnapshot>& trigger) {
   spdlog::info(
       "framesets: spread at most {:.3f} ms; {} taken, {} without a prior, {} with too few readable "
       "images, {} clock gaps",

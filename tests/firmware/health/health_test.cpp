@@ -136,6 +136,15 @@ TEST(HealthTest, AnExcludedVoterDegradesAndIsNamed) {
   }
 }
 
+TEST(HealthTest, AForeignSenderDegrades) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.foreign_sender = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+  EXPECT_EQ(health.why(), WhyMask(Why::kForeignSender));
+}
+
 TEST(HealthTest, WrongOdometryAndClockGapsLose) {
   for (const auto& [change, why] :
        {std::pair{+[](HealthInputs& i) { i.verdict.odometry_contradicts = true; },
