@@ -8,6 +8,7 @@
 #include "evaluation/campaign/modelled_vision.h"
 #include "evaluation/drive/simulated_drive.h"
 #include "firmware/runtime/appliance.h"
+#include "firmware/runtime/identity.h"
 #include "sim/random.h"
 
 namespace bevloc::evaluation {
@@ -32,14 +33,16 @@ class StageRun {
             [&drive](double time_s) { return drive.truth_at(time_s); }, kDriveStart),
         publisher_(*own_bus_, firmware::publisher_config(config, drive.map())),
         input_(*own_bus_, config.can.base_ids,
-               {drive.map().origin.latitude_deg, drive.map().origin.longitude_deg},
-               queues_.samples),
+               {drive.map().origin.latitude_deg, drive.map().origin.longitude_deg}, queues_.samples,
+               config.can.odometry),
         vision_(MatchModel(table, config.solver.tracking, config.solver.acquiring,
                            sim::seed_for(config.simulation->seed, "matches")),
                 drive.drive(), kDriveStart, {fault_, mode.match_faults}, queues_.predictions,
                 queues_.reports),
         estimation_(config.tracker, config.health, firmware::map_id_of(drive.map()), publisher_,
-                    queues_.samples, queues_.reports, queues_.predictions) {}
+                    queues_.samples, queues_.reports, queues_.predictions) {
+    estimation_.watch(input_);
+  }
 
   void run(double duration_s, const CycleSink& sink) {
     const Time end = kDriveStart + from_seconds(duration_s);

@@ -27,7 +27,7 @@ FramesetsSnapshot framesets_of(const VisionStage& vision) {
           .skipped = vision.framesets().counters().skipped,
           .no_prior = counters.no_prior,
           .refused = counters.refused,
-          .clock_gaps = framesets.counters().clock_gaps,
+          .clock_gaps = vision.framesets().counters().clock_gaps,
           .off_pulse = synchrony.off_pulse,
           .spread = synchrony.spread,
           .spread_max = synchrony.spread_max};

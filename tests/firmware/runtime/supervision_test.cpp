@@ -24,7 +24,7 @@ using std::chrono::milliseconds;
 using testing::HasSubstr;
 using testing::Not;
 
-const std::filesystem::path kSourceFolder = BEVLOC_SOURCE_DIR;
+const std::filesystem::path kSources = BEVLOC_SOURCE_DIR;
 
 /// Holds the thread of one name.
 class Gate {
@@ -118,7 +118,7 @@ class GatedBus final : public can::Bus {
 class SupervisionTest : public testing::Test {
  protected:
   SupervisionTest() {
-    config_.model_file = kSourceFolder / "models/nano.onnx";
+    config_.model_file = kSources / "models/nano.onnx";
     Hardware hardware;
     for (int camera = 0; camera < kCameraCount; ++camera) {
       hardware.cameras.push_back(std::make_unique<SilentCamera>(camera, gate_));
@@ -140,8 +140,8 @@ class SupervisionTest : public testing::Test {
   }
 
   Config config_;
-  Rig rig_ = read_rig(kSourceFolder / "config/rig_demo.yaml").value();
-  HdMap map_ = load_map(kSourceFolder / "tests/pipeline/map/fixtures/street.osm").value();
+  Rig rig_ = read_rig(kSources / "config/rig_demo.yaml").value();
+  HdMap map_ = load_map(kSources / "tests/pipeline/map/fixtures/street.osm").value();
   Gate gate_;
   GatedClock clock_{gate_};
   can::MockWire wire_{4096};
