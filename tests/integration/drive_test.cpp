@@ -91,7 +91,7 @@ TEST_F(DriveTest, EveryFrameOnTheBusPassesAnIndependentCheck) {
   EXPECT_EQ(report.unknown_frames, 0);
   EXPECT_EQ(report.unreadable_lines, 0);
   EXPECT_EQ(read_text(*scratch_ / "can.log").find("(-"), std::string::npos) << "a time before 0";
-  EXPECT_EQ(report.by_message.size(), 14U) << "messages of the DBC file that occur";
+  EXPECT_EQ(report.by_message.size(), 16U) << "messages of the DBC file that occur";
   int localizer_frames = 0;
   for (const auto& [name, tally] : report.by_message) {
     EXPECT_TRUE(tally.is_clean()) << name;

@@ -188,7 +188,7 @@ TEST_F(SupervisionTest, EveryThreadThatStopsIsNamedAndStopsTheFeed) {
   EXPECT_THAT(step(""), HasSubstr("READY=1"));
   for (const auto& [name, heartbeat] : threads) {
     gate_.close(name);
-    step("");  // the thread may still turn once
+    step(name);  // the thread may still turn once
     for (int quarters = 1; quarters < 4; ++quarters) step(name);
     EXPECT_THAT(step(name), Not(HasSubstr("WATCHDOG=1"))) << name << ": one second later";
     EXPECT_EQ(watchdog_->hung(), name);
