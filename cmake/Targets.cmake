@@ -9,8 +9,11 @@ if(BEVLOC_SANITIZE)
   # Instrumented std::regex makes GCC 12 see uninitialized members (GCC bug 105562).
   target_compile_options(bevloc_options INTERFACE
     -fsanitize=${BEVLOC_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
-    -Wno-maybe-uninitialized)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(bevloc_options INTERFACE -fsanitize=${BEVLOC_SANITIZE})
+endif()
+if(BEVLOC_FUZZ)
+  target_compile_options(bevloc_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
@@ -39,6 +42,11 @@ function(bevloc_library name)
     list(FILTER ARG_UNPARSED_ARGUMENTS INCLUDE REGEX
       "_(avx2|avxvnni|avx512vnni|plain)\\.cpp$|^(cell_features|kernels/strip_kernels)\\.cpp$")
     set_source_files_properties(${ARG_UNPARSED_ARGUMENTS} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    if(BEVLOC_FUZZ)
+      # clang ignores the pragmas that select their instruction set.
+      set_source_files_properties(${ARG_UNPARSED_ARGUMENTS} PROPERTIES COMPILE_OPTIONS
+        "-mavx2;-mfma;-mavx512f;-mavx512bw;-mavx512vl;-mavx512vnni;-mavxvnni;-include;${PROJECT_SOURCE_DIR}/tests/fuzz/gcc_builtins.h")
+    endif()
   endif()
 endfunction()
 

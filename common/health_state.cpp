@@ -1,30 +1,58 @@
 #include "common/health_state.h"
 
-#include <array>
-#include <string_view>
-#include <utility>
-
 namespace bevloc {
 namespace {
 
-constexpr std::array<std::pair<Why, const char*>, 16> kReasonTexts = {{
-    {Why::kCameraMissing, "camera missing"},
-    {Why::kCamerasUnsynchronized, "cameras unsynchronized"},
-    {Why::kOdometryMissing, "odometry missing"},
-    {Why::kGnssMissing, "GNSS missing"},
-    {Why::kNoInitialPose, "no initial pose"},
-    {Why::kOutsideMap, "outside map"},
-    {Why::kMatchUncertain, "match uncertain"},
-    {Why::kMatchRejected, "match rejected"},
-    {Why::kPoseUncertain, "pose uncertain"},
-    {Why::kPoseStale, "pose stale"},
-    {Why::kPoseInvalid, "pose invalid"},
-    {Why::kOverload, "overload"},
-    {Why::kMapFault, "map fault"},
-    {Why::kCalibrationFault, "calibration fault"},
-    {Why::kNetworkFault, "network fault"},
-    {Why::kInternalFault, "internal fault"},
-}};
+/// No default: the compiler warns when a reason has no text.
+const char* text_of(Why why) {
+  switch (why) {
+    case Why::kCameraMissing:
+      return "camera missing";
+    case Why::kCamerasUnsynchronized:
+      return "cameras unsynchronized";
+    case Why::kOdometryMissing:
+      return "odometry missing";
+    case Why::kGnssMissing:
+      return "GNSS missing";
+    case Why::kNoInitialPose:
+      return "no initial pose";
+    case Why::kOutsideMap:
+      return "outside map";
+    case Why::kMatchUncertain:
+      return "match uncertain";
+    case Why::kMatchRejected:
+      return "match rejected";
+    case Why::kPoseUncertain:
+      return "pose uncertain";
+    case Why::kPoseStale:
+      return "pose stale";
+    case Why::kPoseInvalid:
+      return "pose invalid";
+    case Why::kOverload:
+      return "overload";
+    case Why::kMapFault:
+      return "map fault";
+    case Why::kCalibrationFault:
+      return "calibration fault";
+    case Why::kNetworkFault:
+      return "network fault";
+    case Why::kInternalFault:
+      return "internal fault";
+    case Why::kGnssContradicts:
+      return "GNSS contradicts";
+    case Why::kOdometryContradicts:
+      return "odometry contradicts";
+    case Why::kMatchContradicts:
+      return "match contradicts";
+    case Why::kClockGap:
+      return "clock gap";
+    case Why::kOdometryImplausible:
+      return "odometry implausible";
+    case Why::kForeignSender:
+      return "foreign sender";
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -48,10 +76,11 @@ const char* to_string(HealthState state) {
 
 std::string to_string(WhyMask why) {
   std::string text;
-  for (const auto& [reason, name] : kReasonTexts) {
+  for (int bit = 0; bit < kWhyCount; ++bit) {
+    const auto reason = static_cast<Why>(1u << bit);
     if (!why.has(reason)) continue;
     if (!text.empty()) text += ", ";
-    text += name;
+    text += text_of(reason);
   }
   return text;
 }

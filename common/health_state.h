@@ -1,6 +1,8 @@
-// The health states of the appliance and the reasons for them (Why), as LOC_Status carries them.
+// The health states of the appliance and the reasons for them (Why), as the CAN messages carry
+// them.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <string>
 
@@ -16,8 +18,9 @@ enum class HealthState : uint8_t {
   kFault = 5,
 };
 
-/// One reason why the state is not better. The bits are those of the signals LOC_Status.Why_*.
-enum class Why : uint16_t {
+/// One reason why the state is not better. Bits 0 to 15 are those of the signals LOC_Status.Why_*,
+/// the bits from 16 on those of LOC_Integrity.Why_*.
+enum class Why : uint32_t {
   kCameraMissing = 1u << 0,
   kCamerasUnsynchronized = 1u << 1,
   kOdometryMissing = 1u << 2,
@@ -34,29 +37,38 @@ enum class Why : uint16_t {
   kCalibrationFault = 1u << 13,
   kNetworkFault = 1u << 14,
   kInternalFault = 1u << 15,
+  kGnssContradicts = 1u << 16,
+  kOdometryContradicts = 1u << 17,
+  kMatchContradicts = 1u << 18,
+  kClockGap = 1u << 19,
+  kOdometryImplausible = 1u << 20,
+  kForeignSender = 1u << 21,
 };
+
+/// Number of reasons. Their bits are 0 to kWhyCount - 1.
+inline constexpr int kWhyCount = std::bit_width(static_cast<uint32_t>(Why::kForeignSender));
 
 /// A set of Why bits.
 class WhyMask {
  public:
   constexpr WhyMask() = default;
-  constexpr WhyMask(Why why) : bits_(static_cast<uint16_t>(why)) {}
-  static constexpr WhyMask from_bits(uint16_t bits) {
+  constexpr WhyMask(Why why) : bits_(static_cast<uint32_t>(why)) {}
+  static constexpr WhyMask from_bits(uint32_t bits) {
     WhyMask mask;
     mask.bits_ = bits;
     return mask;
   }
   constexpr WhyMask& operator|=(WhyMask other) {
-    bits_ = static_cast<uint16_t>(bits_ | other.bits_);
+    bits_ |= other.bits_;
     return *this;
   }
   friend constexpr WhyMask operator|(WhyMask a, WhyMask b) { return a |= b; }
-  constexpr bool has(Why why) const { return (bits_ & static_cast<uint16_t>(why)) != 0; }
-  constexpr uint16_t bits() const { return bits_; }
+  constexpr bool has(Why why) const { return (bits_ & static_cast<uint32_t>(why)) != 0; }
+  constexpr uint32_t bits() const { return bits_; }
   constexpr bool operator==(const WhyMask&) const = default;
 
  private:
-  uint16_t bits_ = 0;
+  uint32_t bits_ = 0;
 };
 constexpr WhyMask operator|(Why a, Why b) {
   return WhyMask(a) | WhyMask(b);

@@ -4,6 +4,10 @@
 
 #include "common/version.h"
 #include "evaluation/bench/bench_command.h"
+#include "evaluation/campaign/campaign_command.h"
+#include "evaluation/campaign/integrity_command.h"
+#include "evaluation/campaign/tune_matches_command.h"
+#include "evaluation/network/answer_command.h"
 #include "evaluation/network/network_command.h"
 #include "evaluation/solver/draw_command.h"
 #include "evaluation/solver/solver_command.h"
@@ -27,7 +31,11 @@ int main(int argc, char** argv) {
   solver_command.declare_eval(*eval);
   bevloc::evaluation::NetworkCommand network_command;
   network_command.declare(*eval);
+  bevloc::evaluation::IntegrityCommand integrity_command;
+  integrity_command.declare(*eval);
   solver_command.declare_tune(*tune);
+  bevloc::evaluation::TuneMatchesCommand tune_matches_command;
+  tune_matches_command.declare(*tune);
   auto* draw =
       app.add_subcommand("draw", "Write the data of the figures that script/figures draws");
   draw->require_subcommand(1);
@@ -35,15 +43,23 @@ int main(int argc, char** argv) {
   draw_command.declare(*draw);
   bevloc::bench::BenchCommand bench_command;
   bench_command.declare(app);
+  bevloc::evaluation::AnswerCommand answer_command;
+  answer_command.declare(app);
+  bevloc::evaluation::CampaignCommand campaign_command;
+  campaign_command.declare(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
-  const bevloc::Status status = draw->parsed()             ? draw_command.run()
-                                : bench_command.chosen()   ? bench_command.run()
-                                : network_command.chosen() ? network_command.run()
-                                                           : solver_command.run();
+  const bevloc::Status status = draw->parsed()                  ? draw_command.run()
+                                : campaign_command.chosen()     ? campaign_command.run()
+                                : integrity_command.chosen()    ? integrity_command.run()
+                                : tune_matches_command.chosen() ? tune_matches_command.run()
+                                : bench_command.chosen()        ? bench_command.run()
+                                : answer_command.chosen()       ? answer_command.run()
+                                : network_command.chosen()      ? network_command.run()
+                                                                : solver_command.run();
   if (status) return 0;
   fmt::print(stderr, "bevloc: {}\n", status.error().message);
   return kBadInput;

@@ -7,11 +7,11 @@
 
 namespace bevloc::evaluation {
 
-void show_progress(int done, int all) {
+void show_progress(int done, int all, std::string_view what) {
   if (isatty(STDERR_FILENO) == 0) return;
   constexpr int kWidth = 40;
-  fmt::print(stderr, "\r[{:<{}}] {}/{} scenes{}", std::string(kWidth * done / all, '='), kWidth,
-             done, all, done == all ? "\n" : "");
+  fmt::print(stderr, "\r[{:<{}}] {}/{} {}{}", std::string(kWidth * done / all, '='), kWidth, done,
+             all, what, done == all ? "\n" : "");
 }
 
 Status write_file(const std::string& text, const std::string& path) {

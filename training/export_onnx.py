@@ -18,6 +18,7 @@ from pathlib import Path
 
 import onnx
 import torch
+import yaml
 from onnx import TensorProto, helper
 
 from training.checkpoint import load_network, read_checkpoint
@@ -43,6 +44,8 @@ from training.runtime import NativeNetwork, NativeSolver
 OPSET, IR_VERSION = 13, 8
 QUANTIZATION_FILE = "quantization.pt"
 SOLVERS_FILE = "solvers.pt"
+# The simulator's cameras vary around this rig.
+TRAINED_RIG = Path(__file__).parent.parent / "config/rig_demo.yaml"
 SHIPPED_SOLVER = "banded+refine"  # config/demo.yaml
 # Seeds of training scenes that no run reaches.
 CALIBRATION_SEED = FIRST_TRAINING_SEED + 2**27
@@ -87,6 +90,20 @@ def metadata(net: BevNetwork, sigma_scale: float) -> dict[str, str]:
     }
 
 
+def rig_statements(rig_file: Path = TRAINED_RIG) -> dict[str, str]:
+    """What the model states about the cameras that it was trained with, so that bevlocd can refuse
+    a rig of very different ones (pipeline/network/model/model_rig.h)."""
+    cameras = yaml.safe_load(rig_file.read_text())["cameras"]
+    focal_px = [c["fx_px"] * IMAGE_COLS / c["image_size_px"][0] for c in cameras.values()]
+    height_m = [c["vehicle_from_camera"]["translation_m"][2] for c in cameras.values()]
+    return {
+        "bevloc.rig.cameras": " ".join(cameras),
+        "bevloc.rig.image_size_px": f"{IMAGE_COLS} {IMAGE_ROWS}",
+        "bevloc.rig.focal_px": " ".join(f"{value:.4g}" for value in focal_px),
+        "bevloc.rig.height_m": " ".join(f"{value:.4g}" for value in height_m),
+    }
+
+
 def build_model(
     net: BevNetwork,
     convolutions: dict[str, FoldedConv],
@@ -109,7 +126,7 @@ def build_model(
         opset_imports=[helper.make_opsetid("", OPSET)],
         ir_version=IR_VERSION,
     )
-    helper.set_model_props(model, metadata(net, sigma_scale))
+    helper.set_model_props(model, metadata(net, sigma_scale) | rig_statements())
     onnx.checker.check_model(model, full_check=True)
     return model
 

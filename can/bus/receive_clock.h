@@ -34,11 +34,19 @@ class ReceiveClock {
 
   /// Returns when the frame was received, from the hardware stamp if there is one, else from the
   /// software stamp, else `now`. The result is never after `now` and never before the result of the
-  /// previous frame, even if somebody sets the other clocks.
+  /// previous frame. A step of CLOCK_REALTIME is noticed, and does not change the result.
   Stamped to_steady(const KernelStamps& stamps, const Now& now);
 
  private:
+  /// Returns the age of a software stamp, if it is possible.
+  std::optional<Duration> age_of(std::chrono::nanoseconds software, const Now& now) const;
+  void watch_realtime(const Now& now);
   Time from_hardware(std::chrono::nanoseconds hardware, Time by_kernel);
+
+  std::optional<Duration> realtime_minus_steady_;  ///< at the previous frame
+  Time watched_{};                                 ///< when that was
+  Duration latest_step_{};                         ///< of CLOCK_REALTIME
+  std::optional<Time> stepped_;                    ///< when the step was noticed
 
   std::optional<Duration> steady_minus_hardware_;
   std::chrono::nanoseconds last_hardware_{};

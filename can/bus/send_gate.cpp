@@ -13,8 +13,11 @@ SendGate::SendGate(std::span<const uint32_t> ids) : count_(ids.size()) {
 bool SendGate::enter(uint32_t id, Time now) {
   Slot* slot = find(id);
   if (slot == nullptr) return true;
+  if (is_stalled(now)) return false;
   const int64_t handed_over_ns = slot->handed_over_ns;
-  if (handed_over_ns != kNone && now - Time(Duration(handed_over_ns)) < kGiveUp) return false;
+  const int64_t alive_ns = alive_ns_;
+  const bool lost = alive_ns != kNone && alive_ns - handed_over_ns >= kGiveUp.count();
+  if (handed_over_ns != kNone && !lost) return false;
   slot->handed_over_ns = now.time_since_epoch().count();
   return true;
 }
@@ -23,7 +26,23 @@ void SendGate::leave(uint32_t id) {
   if (Slot* slot = find(id)) slot->handed_over_ns = kNone;
 }
 
+void SendGate::note_alive(Time now) {
+  alive_ns_ = now.time_since_epoch().count();
+}
+
+bool SendGate::is_stalled(Time now) const {
+  const int64_t limit_ns = (now - kStall).time_since_epoch().count();
+  const int64_t alive_ns = alive_ns_;
+  if (alive_ns != kNone && alive_ns > limit_ns) return false;
+  return std::any_of(slots_.begin(), slots_.begin() + static_cast<std::ptrdiff_t>(count_),
+                     [&](const Slot& slot) {
+                       const int64_t handed_over_ns = slot.handed_over_ns;
+                       return handed_over_ns != kNone && handed_over_ns < limit_ns;
+                     });
+}
+
 std::optional<Duration> SendGate::confirm(uint32_t id, Time echoed) {
+  note_alive(echoed);
   Slot* slot = find(id);
   if (slot == nullptr) return std::nullopt;
   const int64_t handed_over_ns = slot->handed_over_ns.exchange(kNone);

@@ -97,7 +97,10 @@ std::optional<ReceivedFrame> SocketCanBus::receive() {
       take_error(*error);
     } else if (const auto* frame = std::get_if<Frame>(&read)) {
       monitor_.note_traffic();
-      if (!is_own_echo(message)) return stamped(*frame, ancillary);
+      if (!is_own_echo(message)) {
+        gate_.note_alive(steady_now());
+        return stamped(*frame, ancillary);
+      }
       take_echo(*frame, steady_now());
     } else {
       ++counters_.receive_ignored;

@@ -4,7 +4,6 @@
 #include "can/e2e/e2e_p05.h"
 
 namespace bevloc::can {
-namespace {
 
 uint8_t highest_counter(E2eProfile profile) {
   return profile == E2eProfile::kP02 ? 0x0F : 0xFF;
@@ -18,8 +17,6 @@ bool has_valid_crc(const Frame& frame, const E2eProtection& protection) {
   if (protection.profile == E2eProfile::kP05) return has_valid_crc_p05(frame, protection.data_id);
   return has_valid_crc_p02(frame, static_cast<uint8_t>(protection.data_id));
 }
-
-}  // namespace
 
 void E2eSender::protect(Frame& frame) {
   if (protection_.profile == E2eProfile::kP05) {

@@ -21,6 +21,12 @@ struct E2eProtection {
   bool operator==(const E2eProtection&) const = default;
 };
 
+/// The largest counter of a profile: 15 or 255.
+uint8_t highest_counter(E2eProfile profile);
+/// The frame must have at least 2 bytes (P02) or 3 (P05).
+uint8_t counter_of(const Frame& frame, E2eProfile profile);
+bool has_valid_crc(const Frame& frame, const E2eProtection& protection);
+
 /// Protects the frames of one message, in the order of sending. One thread.
 class E2eSender {
  public:
@@ -52,10 +58,12 @@ struct E2eCounters {
   uint64_t wrong_crc = 0;
   uint64_t wrong_length = 0;
   uint64_t lost = 0;  ///< frames missing between usable ones; each gap modulo the counter's range
+  uint64_t wrong_sequence = 0;  ///< E2eReceiver only: a counter that does not continue the sequence
+  uint64_t not_valid = 0;       ///< E2eReceiver only: good frames while the state was not VALID
 };
 
-/// Checks the frames of one message, in the order of arrival. The caller has to detect time-outs.
-/// One thread.
+/// Checks each frame of one message by itself, in the order of arrival. The caller has to detect
+/// time-outs. E2eReceiver adds what a receiver in a vehicle needs. One thread.
 class E2eChecker {
  public:
   E2eChecker(const E2eProtection& protection, uint8_t length)

@@ -1,4 +1,4 @@
-// Encodes headings and standard deviations, which are not rounded to the nearest step.
+// Encodes headings, standard deviations and bounds, which are not rounded to the nearest step.
 #pragma once
 
 #include <cmath>
@@ -19,6 +19,16 @@ inline void encode_heading(Frame& frame, const Signal& signal, double heading_de
 inline void encode_sigma(Frame& frame, const Signal& signal, double sigma) {
   constexpr double kDivisionError = 1e-9;  // a whole number of steps must not become one step more
   encode(frame, signal, std::ceil(sigma / signal.scale - kDivisionError) * signal.scale);
+}
+
+/// Encodes an upper bound of a magnitude. It is rounded up. A bound beyond the range of the signal
+/// becomes SNA and not the largest value, which would promise too much.
+inline void encode_bound(Frame& frame, const Signal& signal, double bound) {
+  const bool in_range = bound >= 0.0 && bound <= signal.max;
+  if (in_range)
+    encode_sigma(frame, signal, bound);
+  else
+    insert_raw(frame, signal, signal.sna_raw());
 }
 
 }  // namespace bevloc::can

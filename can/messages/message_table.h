@@ -2,19 +2,39 @@
 // documentation are made.
 #pragma once
 
+#include "can/messages/identity_message.h"
+#include "can/messages/integrity_message.h"
 #include "can/messages/localizer_messages.h"
 #include "can/messages/message.h"
+#include "can/messages/secoc_messages.h"
 #include "can/messages/solution_fd_message.h"
 #include "can/messages/vehicle_messages.h"
 
 namespace bevloc::can {
 
 inline constexpr const Message* kMessages[] = {
-    &loc_status::kMessage,        &loc_time::kMessage,           &loc_latitude::kMessage,
-    &loc_longitude::kMessage,     &loc_pos_local::kMessage,      &loc_attitude::kMessage,
-    &loc_velocity::kMessage,      &loc_std_dev::kMessage,        &loc_correction::kMessage,
-    &loc_solution::kMessage,      &veh_wheel_speed::kMessage,    &veh_yaw_rate::kMessage,
-    &veh_gnss_latitude::kMessage, &veh_gnss_longitude::kMessage, &veh_gnss_heading::kMessage,
+    &loc_status::kMessage,
+    &loc_time::kMessage,
+    &loc_latitude::kMessage,
+    &loc_longitude::kMessage,
+    &loc_pos_local::kMessage,
+    &loc_attitude::kMessage,
+    &loc_velocity::kMessage,
+    &loc_std_dev::kMessage,
+    &loc_correction::kMessage,
+    &loc_integrity::kMessage,
+    &loc_identity::kMessage,
+    &loc_solution::kMessage,
+    &loc_authentication::kMessage,
+    &loc_freshness::kMessage,
+    &veh_wheel_speed::kMessage,
+    &veh_yaw_rate::kMessage,
+    &veh_gnss_latitude::kMessage,
+    &veh_gnss_longitude::kMessage,
+    &veh_gnss_heading::kMessage,
+    &veh_odometry_authentication::kMessage,
+    &veh_gnss_authentication::kMessage,
+    &veh_freshness::kMessage,
 };
 
 }  // namespace bevloc::can

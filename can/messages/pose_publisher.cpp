@@ -1,5 +1,6 @@
 #include "can/messages/pose_publisher.h"
 
+#include <span>
 #include <utility>
 
 #include "can/messages/message_table.h"
@@ -13,6 +14,12 @@ std::array<E2eSender, sizeof...(I)> solution_senders(std::index_sequence<I...>) 
   return {E2eSender(kSolutionMessages[I]->protection())...};
 }
 
+/// Calls are a little early or late. The slack selects the call that is nearest to the cycle's end.
+bool is_due(Time sent, int cycle_ms, Time now) {
+  constexpr Duration kSlack = std::chrono::milliseconds(kSolutionCycleMs) / 2;
+  return now - sent >= std::chrono::milliseconds(cycle_ms) - kSlack;
+}
+
 }  // namespace
 
 PosePublisher::PosePublisher(Bus& bus, const PosePublisherConfig& config)
@@ -21,7 +28,10 @@ PosePublisher::PosePublisher(Bus& bus, const PosePublisherConfig& config)
       geo_(config.map_origin),
       status_sender_(loc_status::kMessage.protection()),
       senders_(solution_senders(std::make_index_sequence<kSolutionMessages.size()>())),
-      fd_sender_(loc_solution::kMessage.protection()) {}
+      fd_sender_(loc_solution::kMessage.protection()),
+      identity_sender_(loc_identity::kMessage.protection()),
+      authentication_sender_(loc_authentication::kMessage.protection()),
+      freshness_sender_(loc_freshness::kMessage.protection()) {}
 
 void PosePublisher::publish(const PoseReport& report, Time now) {
   const LocalizerStatus status = status_to_send(report, config_.limits, now);
@@ -32,28 +42,33 @@ void PosePublisher::publish(const PoseReport& report, Time now) {
   } else {
     publish_classic(frames, status, now);
   }
+  if (secoc_) send_authentication(now);
+  epoch_ = (epoch_ + 1) & 0x0F;
 }
 
 void PosePublisher::publish_classic(const SolutionFrames& frames, const LocalizerStatus& status,
                                     Time now) {
   send_status_if_due(status, now);
   for (size_t i = 0; i < frames.size(); ++i) send(frames[i], senders_[i], now);
-  epoch_ = (epoch_ + 1) & 0x0F;
+  send_identity_if_due(now);
 }
 
 void PosePublisher::publish_fd(const SolutionFrames& frames, const LocalizerStatus& status,
                                Time now) {
-  Frame solution =
-      joined_solution(status_frame(status, config_.base_ids), frames, config_.base_ids);
+  advance_identity(now);
+  Frame solution = joined_solution(
+      status_frame(status, config_.base_ids), frames,
+      identity_frame(config_.identity, identity_item_, config_.base_ids), config_.base_ids);
   fd_sender_.protect(solution);
+  if (secoc_) epoch_frames_[epoch_frame_count_++] = solution;
   bus_.send(solution, now);
 }
 
-std::vector<uint32_t> PosePublisher::sent_ids(const BaseIds& base, FrameFormat format) {
+std::vector<uint32_t> PosePublisher::sent_ids(const BaseIds& base, FrameFormat format, bool secoc) {
   std::vector<uint32_t> ids;
   for (const Message* message : kMessages) {
-    const bool is_sent = message->sender == Sender::kLocalizer && message->format == format;
-    if (is_sent) ids.push_back(message->id(base));
+    const bool is_sent = is_secoc_message(*message) ? secoc : message->format == format;
+    if (is_sent && message->sender == Sender::kLocalizer) ids.push_back(message->id(base));
   }
   return ids;
 }
@@ -61,19 +76,42 @@ std::vector<uint32_t> PosePublisher::sent_ids(const BaseIds& base, FrameFormat f
 SendResult PosePublisher::send(Frame frame, E2eSender& sender, Time now) {
   insert_raw(frame, kEpoch, epoch_);
   sender.protect(frame);
+  if (secoc_) epoch_frames_[epoch_frame_count_++] = frame;
   return bus_.send(frame, now);
 }
 
 void PosePublisher::send_status_if_due(const LocalizerStatus& status, Time now) {
-  // Calls are a little early or late. The slack selects the call that is nearest to the cycle's
-  // end.
-  constexpr Duration kCycle = std::chrono::milliseconds(kStatusCycleMs);
-  constexpr Duration kSlack = std::chrono::milliseconds(kSolutionCycleMs) / 2;
-  if (sent_status_ == status && now - status_sent_at_ < kCycle - kSlack) return;
+  if (sent_status_ == status && !is_due(status_sent_at_, kStatusCycleMs, now)) return;
   const bool sent =
       send(status_frame(status, config_.base_ids), status_sender_, now) == SendResult::kSent;
   sent_status_ = sent ? std::optional(status) : std::nullopt;
   status_sent_at_ = now;
+}
+
+void PosePublisher::send_identity_if_due(Time now) {
+  if (!advance_identity(now)) return;
+  send(identity_frame(config_.identity, identity_item_, config_.base_ids), identity_sender_, now);
+}
+
+void PosePublisher::send_authentication(Time now) {
+  const std::span<const Frame> frames(epoch_frames_.data(), epoch_frame_count_);
+  const Frame authentication =
+      secoc_->authenticate(loc_authentication::kMessage, frames, config_.base_ids);
+  if (!freshness_sent_at_ || is_due(*freshness_sent_at_, kFreshnessCycleMs, now)) {
+    freshness_sent_at_ = now;
+    send(secoc_->freshness(loc_freshness::kMessage, config_.base_ids), freshness_sender_, now);
+  }
+  send(authentication, authentication_sender_, now);
+  epoch_frame_count_ = 0;
+}
+
+bool PosePublisher::advance_identity(Time now) {
+  if (identity_changed_at_ && !is_due(*identity_changed_at_, loc_identity::kItemCycleMs, now)) {
+    return false;
+  }
+  if (identity_changed_at_) identity_item_ = (identity_item_ + 1) % loc_identity::kItems;
+  identity_changed_at_ = now;
+  return true;
 }
 
 }  // namespace bevloc::can

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "can/bus/bus.h"
@@ -12,6 +13,7 @@
 #include "can/messages/message.h"
 #include "can/messages/pose_report.h"
 #include "can/messages/solution_frames.h"
+#include "can/secoc/secoc_sender.h"
 
 namespace bevloc::can {
 
@@ -20,12 +22,14 @@ struct PosePublisherConfig {
   GeodeticPosition map_origin{};
   ReportLimits limits{};
   FrameFormat format = FrameFormat::kClassic;
+  Identity identity{};
 };
 
 /// Sends each report as one epoch of protected frames, or on CAN FD as one frame. The caller calls
 /// publish() once per cycle (kSolutionCycleMs). LOC_Status is sent on every change and every
-/// kStatusCycleMs. A status frame that found no room on the bus is sent again in the next cycle. A
-/// pose that must not be used is sent as SNA, with the reason in the status (status_to_send()).
+/// kStatusCycleMs, LOC_Identity every loc_identity::kItemCycleMs. A status frame that found no room
+/// on the bus is sent again in the next cycle. A pose that must not be used is sent as SNA, with
+/// the reason in the status (status_to_send()).
 ///
 /// Does not allocate. One thread.
 class PosePublisher {
@@ -33,16 +37,24 @@ class PosePublisher {
   /// `bus` must outlive the publisher.
   PosePublisher(Bus& bus, const PosePublisherConfig& config);
 
+  /// From now on, authenticates each epoch with LOC_Authentication, and sends LOC_Freshness.
+  void authenticate(SecocSender sender) { secoc_ = std::move(sender); }
+
   void publish(const PoseReport& report, Time now);
 
-  /// Returns the identifiers that a publisher of this format sends.
-  static std::vector<uint32_t> sent_ids(const BaseIds& base, FrameFormat format);
+  /// Returns the identifiers that a publisher of this format sends, with or without authentication.
+  static std::vector<uint32_t> sent_ids(const BaseIds& base, FrameFormat format,
+                                        bool secoc = false);
 
  private:
   void publish_classic(const SolutionFrames& frames, const LocalizerStatus& status, Time now);
   void publish_fd(const SolutionFrames& frames, const LocalizerStatus& status, Time now);
   SendResult send(Frame frame, E2eSender& sender, Time now);
   void send_status_if_due(const LocalizerStatus& status, Time now);
+  void send_identity_if_due(Time now);
+  void send_authentication(Time now);
+  /// Goes on to the next item of the identity when it is due. Returns whether it was.
+  bool advance_identity(Time now);
 
   Bus& bus_;
   PosePublisherConfig config_;
@@ -53,6 +65,16 @@ class PosePublisher {
   E2eSender fd_sender_;
   std::optional<LocalizerStatus> sent_status_;
   Time status_sent_at_{};
+  E2eSender identity_sender_;
+  int identity_item_ = 0;
+  std::optional<Time> identity_changed_at_;
+
+  std::optional<SecocSender> secoc_;
+  E2eSender authentication_sender_;
+  E2eSender freshness_sender_;
+  std::optional<Time> freshness_sent_at_;
+  std::array<Frame, Authenticator::kMaxFrames> epoch_frames_{};  ///< sent in this epoch
+  size_t epoch_frame_count_ = 0;
 };
 
 }  // namespace bevloc::can

@@ -30,6 +30,18 @@ struct LocalizerStatus {
   bool operator==(const LocalizerStatus&) const = default;
 };
 
+/// Bounds of the error of one pose along the axes of the vehicle, at a stated integrity risk. An
+/// unknown value is sent as SNA.
+struct ProtectionLevel {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+  double longitudinal_m = kUnknown;
+  double lateral_m = kUnknown;
+  double yaw_rad = kUnknown;
+  /// For each axis: the largest probability that the error of one pose is beyond its bound.
+  double integrity_risk = kUnknown;
+};
+
 /// One solution. Unknown values keep their default, which is sent as SNA.
 struct PoseReport {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -40,6 +52,7 @@ struct PoseReport {
   Se2 map_from_vehicle{kUnknown, kUnknown, kUnknown};
   /// Covariance of (x, y, yaw) along the axes of the map: m^2, m rad, rad^2.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(kUnknown);
+  ProtectionLevel protection_level;  ///< sent only with a valid pose
   double forward_speed_mps = kUnknown;
   double yaw_rate_radps = kUnknown;  ///< positive counter-clockwise
   std::optional<Se2> correction;     ///< the solver's raw dT for these frames

@@ -10,7 +10,8 @@
 namespace bevloc::can {
 
 /// Returns a LOC_Solution frame with the content of these frames. It is not protected yet.
-Frame joined_solution(const Frame& status, const SolutionFrames& frames, const BaseIds& base);
+Frame joined_solution(const Frame& status, const SolutionFrames& frames, const Frame& identity,
+                      const BaseIds& base);
 
 /// Returns the classic frame of loc_solution::kParts[part] with its content in `solution` and with
 /// an E2E header of zeros. `solution` must have the length of LOC_Solution.

@@ -1,19 +1,23 @@
-// The message table, part 2: LOC_Solution, which carries a whole solution in one CAN FD frame.
+// The message table, part 4: LOC_Solution, which carries a whole solution in one CAN FD frame.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
+#include "can/messages/identity_message.h"
+#include "can/messages/integrity_message.h"
 #include "can/messages/localizer_messages.h"
 
 namespace bevloc::can::loc_solution {
 
 /// The classic messages whose content LOC_Solution carries, in this order. Each part is the content
-/// of the classic frame without its E2E header, so both variants share one table of signals.
-inline constexpr std::array<const Message*, 9> kParts = {
+/// of the classic frame without its E2E header, so both variants share one table of signals. A new
+/// part goes to the end, because the signals must not move.
+inline constexpr std::array<const Message*, 11> kParts = {
     &loc_status::kMessage,    &loc_time::kMessage,      &loc_latitude::kMessage,
     &loc_longitude::kMessage, &loc_pos_local::kMessage, &loc_attitude::kMessage,
-    &loc_velocity::kMessage,  &loc_std_dev::kMessage,   &loc_correction::kMessage};
+    &loc_velocity::kMessage,  &loc_std_dev::kMessage,   &loc_correction::kMessage,
+    &loc_integrity::kMessage, &loc_identity::kMessage};
 
 /// The byte of the FD frame at which the content of a part begins.
 constexpr size_t first_byte_of(size_t part) {

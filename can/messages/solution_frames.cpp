@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "can/messages/encode_quantity.h"
 
@@ -85,6 +86,25 @@ void encode_correction(Frame& frame, const Se2& correction) {
   encode(frame, loc_correction::kYaw, degrees(correction.yaw_rad));
 }
 
+/// The exponent n of a risk of at most 10^-n.
+double risk_exponent(double risk) {
+  constexpr double kLogarithmError = 1e-9;  // a whole exponent must not become one less
+  return std::floor(-std::log10(risk) + kLogarithmError);
+}
+
+void encode_protection(Frame& frame, const ProtectionLevel& level) {
+  encode_bound(frame, loc_integrity::kLateral, level.lateral_m);
+  encode_bound(frame, loc_integrity::kLongitudinal, level.longitudinal_m);
+  encode_bound(frame, loc_integrity::kYaw, degrees(level.yaw_rad));
+  encode(frame, loc_integrity::kRiskExponent, risk_exponent(level.integrity_risk));
+}
+
+void insert_reasons(Frame& frame, std::span<const Signal> flags, WhyMask why, int first_bit) {
+  for (size_t i = 0; i < flags.size(); ++i) {
+    insert_raw(frame, flags[i], (why.bits() >> (static_cast<size_t>(first_bit) + i)) & 1);
+  }
+}
+
 }  // namespace
 
 bool claims_pose(HealthState state) {
@@ -116,10 +136,17 @@ Frame status_frame(const LocalizerStatus& status, const BaseIds& base) {
   }
   insert_raw(frame, loc_status::kOdometryOk, status.odometry_ok);
   insert_raw(frame, loc_status::kGnssOk, status.gnss_ok);
-  for (size_t i = 0; i < loc_status::kWhy.size(); ++i) {
-    insert_raw(frame, loc_status::kWhy[i], (status.why.bits() >> i) & 1);
-  }
+  insert_reasons(frame, loc_status::kWhy, status.why, 0);
   insert_raw(frame, loc_status::kMapId, status.map_id);
+  return frame;
+}
+
+Frame identity_frame(const Identity& identity, int item, const BaseIds& base) {
+  const std::array<uint32_t, loc_identity::kItems> checksums = {
+      identity.program, identity.configuration, identity.model, identity.rig, identity.map};
+  Frame frame = blank_frame(loc_identity::kMessage, base);
+  insert_raw(frame, loc_identity::kItem, item);
+  insert_raw(frame, loc_identity::kChecksum, checksums[static_cast<size_t>(item)]);
   return frame;
 }
 
@@ -129,13 +156,16 @@ SolutionFrames solution_frames(const PoseReport& report, const LocalizerStatus& 
   SolutionFrames frames;
   std::ranges::transform(kSolutionMessages, frames.begin(),
                          [&](const Message* message) { return blank_frame(*message, base); });
-  auto& [time, latitude, longitude, local, attitude, velocity, deviation, correction] = frames;
+  auto& [time, latitude, longitude, local, attitude, velocity, deviation, correction, integrity] =
+      frames;
   if (report.capture_time && *report.capture_time <= now) {
     encode_time(time, *report.capture_time, now);
   }
   if (claims_pose(status.state)) {
     encode_pose(latitude, longitude, local, attitude, deviation, report, geo);
+    encode_protection(integrity, report.protection_level);
   }
+  insert_reasons(integrity, loc_integrity::kWhy, status.why, loc_integrity::kFirstWhy);
   if (is_fresh(report, limits, now)) {
     encode_velocity(velocity, report);
     if (report.correction) encode_correction(correction, *report.correction);

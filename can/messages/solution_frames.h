@@ -28,11 +28,14 @@ LocalizerStatus status_to_send(const PoseReport& report, const ReportLimits& lim
 
 Frame status_frame(const LocalizerStatus& status, const BaseIds& base);
 
+/// `item` is a raw value of loc_identity::kItem.
+Frame identity_frame(const Identity& identity, int item, const BaseIds& base);
+
 /// The messages of a solution in the order of sending, without LOC_Status.
-inline constexpr std::array<const Message*, 8> kSolutionMessages = {
-    &loc_time::kMessage,      &loc_latitude::kMessage,  &loc_longitude::kMessage,
-    &loc_pos_local::kMessage, &loc_attitude::kMessage,  &loc_velocity::kMessage,
-    &loc_std_dev::kMessage,   &loc_correction::kMessage};
+inline constexpr std::array<const Message*, 9> kSolutionMessages = {
+    &loc_time::kMessage,      &loc_latitude::kMessage,   &loc_longitude::kMessage,
+    &loc_pos_local::kMessage, &loc_attitude::kMessage,   &loc_velocity::kMessage,
+    &loc_std_dev::kMessage,   &loc_correction::kMessage, &loc_integrity::kMessage};
 using SolutionFrames = std::array<Frame, kSolutionMessages.size()>;
 
 /// Returns the frames of `report` for sending at `now`, without epoch and protection. `status`

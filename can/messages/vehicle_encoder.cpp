@@ -30,13 +30,18 @@ VehicleEncoder::VehicleEncoder(const BaseIds& base, GeodeticPosition map_origin,
                     E2eSender(veh_gnss_heading::kMessage.protection())} {}
 
 std::array<Frame, 2> VehicleEncoder::odometry(const OdometrySample& sample) {
+  const double half_difference_mps = 0.5 * rear_track_m_ * sample.yaw_rate_radps;
+  return odometry(WheelOdometry{sample.speed_mps - half_difference_mps,
+                                sample.speed_mps + half_difference_mps, sample.yaw_rate_radps});
+}
+
+std::array<Frame, 2> VehicleEncoder::odometry(const WheelOdometry& measured) {
   std::array<Frame, 2> frames = {blank_frame(veh_wheel_speed::kMessage, base_),
                                  blank_frame(veh_yaw_rate::kMessage, base_)};
   auto& [wheels, motion] = frames;
-  const double half_difference_mps = 0.5 * rear_track_m_ * sample.yaw_rate_radps;
-  encode(wheels, veh_wheel_speed::kRearLeft, sample.speed_mps - half_difference_mps);
-  encode(wheels, veh_wheel_speed::kRearRight, sample.speed_mps + half_difference_mps);
-  encode(motion, veh_yaw_rate::kYawRate, degrees(sample.yaw_rate_radps));
+  encode(wheels, veh_wheel_speed::kRearLeft, measured.left_mps);
+  encode(wheels, veh_wheel_speed::kRearRight, measured.right_mps);
+  encode(motion, veh_yaw_rate::kYawRate, degrees(measured.yaw_rate_radps));
   seal(frames, odometry_senders_, odometry_epoch_);
   return frames;
 }

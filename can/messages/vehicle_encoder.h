@@ -11,6 +11,13 @@
 
 namespace bevloc::can {
 
+/// Odometry as the sensors measure it.
+struct WheelOdometry {
+  double left_mps = 0.0;  ///< rear wheels
+  double right_mps = 0.0;
+  double yaw_rate_radps = 0.0;
+};
+
 /// Makes the protected frames that VehicleInput reads, from the same message table. A value that is
 /// not finite is sent as SNA. One thread.
 class VehicleEncoder {
@@ -19,6 +26,7 @@ class VehicleEncoder {
   VehicleEncoder(const BaseIds& base, GeodeticPosition map_origin, double rear_track_m);
 
   std::array<Frame, 2> odometry(const OdometrySample& sample);
+  std::array<Frame, 2> odometry(const WheelOdometry& measured);
   std::array<Frame, 3> gnss(const GnssSample& sample);
 
  private:

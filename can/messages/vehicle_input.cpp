@@ -11,9 +11,29 @@ constexpr Duration window_of(int cycle_ms) {
   return std::chrono::milliseconds(4 * cycle_ms);
 }
 
+/// Odometry is tolerated down to one frame in 10 cycles (200 ms), which is the default of
+/// `health.odometry_timeout_ms`, and then has to be on time again: every second frame. GNSS has 20
+/// cycles (2 s), so that a receiver with 1 Hz can be used.
+E2eReceiverParameters parameters_of(const Message& message) {
+  E2eReceiverParameters parameters{.cycle = std::chrono::milliseconds(message.cycle_ms)};
+  if (message.cycle_ms > kOdometryCycleMs) {
+    parameters.state.window = 20;
+    parameters.state.min_ok_invalid = 2;
+  }
+  return parameters;
+}
+
 template <size_t... I>
-std::array<E2eChecker, sizeof...(I)> checkers_of(const auto& messages, std::index_sequence<I...>) {
-  return {E2eChecker(messages[I]->protection(), messages[I]->length)...};
+std::array<E2eReceiver, sizeof...(I)> receivers_of(const auto& messages,
+                                                   std::index_sequence<I...>) {
+  return {
+      E2eReceiver(messages[I]->protection(), messages[I]->length, parameters_of(*messages[I]))...};
+}
+
+bool is_sent_by_localizer(uint32_t id, const BaseIds& base) {
+  return std::ranges::any_of(kMessages, [&](const Message* message) {
+    return message->sender == Sender::kLocalizer && message->id(base) == id;
+  });
 }
 
 /// A sigma of 0 on the bus means less than one step, because no measurement is exact.
@@ -23,22 +43,31 @@ double at_least_one_step(double sigma, const Signal& signal) {
 
 }  // namespace
 
-VehicleInput::VehicleInput(const BaseIds& base, GeodeticPosition map_origin)
+VehicleInput::VehicleInput(const BaseIds& base, GeodeticPosition map_origin,
+                           const OdometryLimits& limits)
     : base_(base),
       geo_(map_origin),
-      checkers_(checkers_of(kInputs, std::make_index_sequence<kInputs.size()>())),
+      receivers_(receivers_of(kInputs, std::make_index_sequence<kInputs.size()>())),
       odometry_group_(window_of(kOdometryCycleMs)),
-      gnss_group_(window_of(kGnssCycleMs)) {}
+      gnss_group_(window_of(kGnssCycleMs)),
+      odometry_check_(limits) {}
 
 std::optional<VehicleSample> VehicleInput::accept(const ReceivedFrame& received) {
+  latest_ = received.received;
   const auto input = std::ranges::find_if(
       kInputs, [&](const Message* message) { return message->id(base_) == received.frame.id; });
   if (input == kInputs.end()) {
-    ++counters_.foreign;
+    const bool own_id = is_sent_by_localizer(received.frame.id, base_);
+    ++(own_id ? counters_.own_ids : counters_.foreign);
+    if (own_id) foreign_sender_ = latest_;
     return std::nullopt;
   }
   const auto index = static_cast<size_t>(input - kInputs.begin());
-  if (!is_usable(checkers_[index].check(received.frame))) return std::nullopt;
+  const bool accepted = receivers_[index].accept(received);
+  if (receivers_[index].has_second_sender()) foreign_sender_ = latest_;
+  const bool invalid = receivers_[index].state() == E2eState::kInvalid;
+  if (invalid && index < kFirstGnss) implausible_ = latest_;
+  if (!accepted) return std::nullopt;
 
   const auto epoch = static_cast<uint8_t>(extract_raw(received.frame, kEpoch));
   if (index < kFirstGnss) {
@@ -58,11 +87,18 @@ std::optional<VehicleSample> VehicleInput::odometry_from(const EpochGroup<2>::Se
     ++counters_.not_available;
     return std::nullopt;
   }
+  const OdometryCheck::Wheels sample{.time = set.received,
+                                     .left_mps = *left_mps,
+                                     .right_mps = *right_mps,
+                                     .yaw_rate_radps = radians(*yaw_rate_degps)};
+  const bool plausible = odometry_check_.judge(sample) == OdometryVerdict::kPlausible;
+  if (!plausible || odometry_check_.is_slow()) implausible_ = latest_;
+  if (!plausible) return std::nullopt;
   ++counters_.odometry_samples;
   last_odometry_ = set.received;
-  return OdometrySample{.time = set.received,
-                        .speed_mps = 0.5 * (*left_mps + *right_mps),
-                        .yaw_rate_radps = radians(*yaw_rate_degps)};
+  return OdometrySample{.time = sample.time,
+                        .speed_mps = sample.speed_mps(),
+                        .yaw_rate_radps = sample.yaw_rate_radps};
 }
 
 std::optional<VehicleSample> VehicleInput::gnss_from(const EpochGroup<3>::Set& set) {
@@ -96,20 +132,40 @@ std::optional<VehicleSample> VehicleInput::gnss_from(const EpochGroup<3>::Set& s
 
 VehicleInputCounters VehicleInput::counters() const {
   VehicleInputCounters total = counters_;
-  for (const E2eChecker& checker : checkers_) {
-    total.wrong_crc += checker.counters().wrong_crc;
-    total.wrong_length += checker.counters().wrong_length;
-    total.repeated += checker.counters().repeated;
-    total.lost += checker.counters().lost;
+  for (const E2eReceiver& receiver : receivers_) {
+    const E2eCounters& counters = receiver.counters();
+    total.wrong_crc += counters.wrong_crc;
+    total.wrong_length += counters.wrong_length;
+    total.repeated += counters.repeated;
+    total.wrong_sequence += counters.wrong_sequence;
+    total.not_valid += counters.not_valid;
+    total.lost += counters.lost;
   }
+  total.contradicting_wheels = odometry_check_.count(OdometryVerdict::kWheelsContradictYawRate);
+  total.odometry_jumps = odometry_check_.count(OdometryVerdict::kSpeedJump) +
+                         odometry_check_.count(OdometryVerdict::kYawRateJump);
+  total.sharp_turns = odometry_check_.count(OdometryVerdict::kTooSharp);
   total.incomplete = odometry_group_.incomplete() + gnss_group_.incomplete();
   return total;
 }
 
-std::vector<uint32_t> VehicleInput::accepted_ids(const BaseIds& base) {
-  std::vector<uint32_t> ids(kInputs.size());
-  std::ranges::transform(kInputs, ids.begin(),
-                         [&](const Message* message) { return message->id(base); });
+WhyMask VehicleInput::why() const {
+  const auto is_recent = [&](const std::optional<Time>& cause) {
+    return cause && latest_ - *cause <= kWhyHold;
+  };
+  WhyMask why;
+  if (is_recent(implausible_)) why |= Why::kOdometryImplausible;
+  if (is_recent(foreign_sender_)) why |= Why::kForeignSender;
+  return why;
+}
+
+std::vector<uint32_t> VehicleInput::accepted_ids(const BaseIds& base, bool secoc) {
+  std::vector<uint32_t> ids;
+  for (const Message* message : kMessages) {
+    const bool is_accepted =
+        message->sender == Sender::kVehicle && (secoc || !is_secoc_message(*message));
+    if (is_accepted) ids.push_back(message->id(base));
+  }
   return ids;
 }
 

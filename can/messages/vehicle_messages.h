@@ -1,4 +1,4 @@
-// The message table, part 3: the messages that the vehicle sends to the localizer.
+// The message table, part 5: the messages that the vehicle sends to the localizer.
 #pragma once
 
 #include "can/messages/message.h"

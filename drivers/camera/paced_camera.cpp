@@ -39,7 +39,7 @@ Result<FrameEvent> PacedCamera::next_frame(Duration timeout, Frame& frame) {
   do {
     drop_overdue();
     if (!next_) return FrameEvent::kEnded;
-    if (next_->due <= give_up + kDrawAhead) {
+    if (!next_->lost && next_->due <= give_up + kDrawAhead) {
       if (Status drawn = draw_next(); !drawn) {
         advance();
         return tl::unexpected(drawn.error());
@@ -51,6 +51,10 @@ Result<FrameEvent> PacedCamera::next_frame(Duration timeout, Frame& frame) {
       return FrameEvent::kTimeout;
     }
     clock_.sleep_until(next_->due);
+    if (next_->lost) {
+      advance();
+      continue;
+    }
     if (deliver(frame)) return FrameEvent::kFrame;
   } while (clock_.now() <= give_up);
   return FrameEvent::kTimeout;
@@ -82,7 +86,7 @@ bool PacedCamera::is_overdue() const {
 
 void PacedCamera::drop_overdue() {
   while (is_overdue()) {
-    counters_.overrun.fetch_add(1, std::memory_order_relaxed);
+    if (!next_->lost) counters_.overrun.fetch_add(1, std::memory_order_relaxed);
     advance();
   }
 }

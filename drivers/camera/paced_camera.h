@@ -14,8 +14,9 @@ namespace bevloc::drivers {
 struct Delivery {
   uint64_t sequence = 0;
   Time exposure_start;
-  Time scene_time;  ///< the moment that the image shows; before exposure_start when it is frozen
-  Time due;         ///< when the frame arrives
+  Time scene_time;    ///< the moment that the image shows; before exposure_start when it is frozen
+  Time due;           ///< when the frame arrives
+  bool lost = false;  ///< it does not arrive: its time passes in silence
 };
 
 /// Draws each frame as soon as the previous one was fetched, and delivers it when it is due, as a

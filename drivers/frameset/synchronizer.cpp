@@ -78,6 +78,16 @@ std::optional<Frameset> FramesetSynchronizer::poll(Time now) {
   return std::nullopt;
 }
 
+void FramesetSynchronizer::forget_until(Time time) {
+  for (CameraQueue& camera : cameras_) {
+    while (!camera.frames.empty() && camera.frames.front().time <= time) {
+      camera.pop();
+      ++camera.counters.unmatched;
+    }
+  }
+  closed_until_ = std::max(closed_until_, time);
+}
+
 std::optional<Time> FramesetSynchronizer::deadline() const {
   const std::optional<Time> opening = opening_time();
   if (!opening) return std::nullopt;

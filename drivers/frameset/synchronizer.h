@@ -19,7 +19,9 @@ struct SynchronizerConfig {
   /// How long a frameset waits for missing cameras, from the start of its earliest exposure.
   Duration wait = std::chrono::milliseconds(60);
   /// A frameset with fewer cameras is dropped.
-  int min_cameras = 1;
+  int min_cameras = 3;
+
+  bool operator==(const SynchronizerConfig&) const = default;
 };
 
 /// The result of add() for one frame. All but kAccepted are dropped.
@@ -72,6 +74,9 @@ class FramesetSynchronizer {
   /// Returns the next frameset that is complete or has waited long enough at `now`. Call it until
   /// it returns nothing, after each add() or after adding all frames that have arrived.
   std::optional<Frameset> poll(Time now);
+
+  /// Drops all waiting frames up to `time`, counted as unmatched. Those that still arrive are late.
+  void forget_until(Time time);
 
   /// The time at which the open frameset stops waiting. Nothing if no frame waits.
   std::optional<Time> deadline() const;

@@ -1,12 +1,16 @@
 #include "drivers/mock/mock_camera.h"
 
 #include <utility>
+#include <vector>
+
+#include "sim/faults/picture_faults.h"
+#include "sim/random.h"
 
 namespace bevloc::drivers {
 namespace {
 
 CameraDescription description_of(const MockCameraConfig& config) {
-  const Intrinsics& intrinsics = config.true_camera.intrinsics;
+  const Intrinsics& intrinsics = config.true_rig.cameras[config.camera].intrinsics;
   return {config.camera, intrinsics.width_px, intrinsics.height_px, config.buffers,
           TimestampOrigin::kSimulated};
 }
@@ -18,7 +22,7 @@ MockCamera::MockCamera(std::shared_ptr<MockScene> scene, const MockCameraConfig&
     : PacedCamera(description_of(config), config.timing.exposure, clock),
       scene_(std::move(scene)),
       config_(config),
-      schedule_(config.timing, config.faults) {
+      schedule_(config.timing, config.camera, config.faults) {
   set_max_lateness(config.timing.period);
 }
 
@@ -28,9 +32,39 @@ Status MockCamera::open(Time now) {
 }
 
 Status MockCamera::draw(const Delivery& delivery, RgbImage& image) {
-  scene_->draw(config_.camera, config_.true_camera,
-               delivery.scene_time - config_.timing.drive_start, image);
+  const Duration scene_time = delivery.scene_time - config_.timing.drive_start;
+  if (!config_.faults) {
+    scene_->draw(config_.camera, config_.true_rig.cameras[config_.camera], scene_time, image);
+    return {};
+  }
+  const Duration true_time = schedule_.true_exposure_start(delivery) - config_.timing.drive_start;
+  const double time_s = to_seconds(true_time);
+  // What happens to the optics belongs to the camera, wherever its cable is plugged in.
+  const int source =
+      sim::source_camera(config_.camera, config_.faults->active_on_camera(config_.camera, time_s));
+  const std::vector<sim::Fault> active = config_.faults->active_on_camera(source, time_s);
+  const CameraModel& camera = config_.true_rig.cameras[source];
+  if (camera.intrinsics.width_px != image.width || camera.intrinsics.height_px != image.height) {
+    return fail("camera {}: found a picture of {} x {} pixels from camera {}, wanted {} x {}",
+                kCameraNames[config_.camera], camera.intrinsics.width_px,
+                camera.intrinsics.height_px, kCameraNames[source], image.width, image.height);
+  }
+  scene_->draw(source, sim::disturbed(camera, active), scene_time, image);
+  for (const sim::Fault& fault : active) {
+    if (fault.kind == sim::FaultKind::kCameraDirty) cover_lens(source, fault.amounts.share, image);
+  }
+  const uint64_t camera_seed = sim::seed_for(0, kCameraNames[source]);
+  sim::disturb_light(image, active,
+                     sim::mix_seed(camera_seed ^ static_cast<uint64_t>(scene_time.count())));
   return {};
+}
+
+void MockCamera::cover_lens(int source, double share, RgbImage& image) {
+  if (!dirt_ || dirt_->share() != share || dirty_camera_ != source) {
+    dirty_camera_ = source;
+    dirt_.emplace(image.width, image.height, share, sim::seed_for(0, kCameraNames[source]));
+  }
+  dirt_->cover(image);
 }
 
 }  // namespace bevloc::drivers

@@ -2,22 +2,25 @@
 #pragma once
 
 #include <memory>
-#include <vector>
+#include <optional>
 
 #include "drivers/camera/paced_camera.h"
 #include "drivers/mock/mock_scene.h"
 #include "drivers/mock/mock_schedule.h"
-#include "pipeline/calibration/camera_model.h"
+#include "pipeline/calibration/rig.h"
+#include "sim/faults/fault_board.h"
+#include "sim/faults/lens_dirt.h"
 
 namespace bevloc::drivers {
 
 struct MockCameraConfig {
   int camera = 0;  ///< index into kCameraNames
-  /// The true camera model. The calibration file differs from it by the calibration error.
-  CameraModel true_camera;
+  /// The true cameras. The calibration file differs from them by the calibration error. All are
+  /// needed, because cables may be swapped.
+  Rig true_rig;
   CameraTiming timing;
   int buffers = kDefaultFrameBuffers;
-  std::vector<CameraFault> faults;
+  std::shared_ptr<const sim::FaultBoard> faults;  ///< null without any
 };
 
 /// With a real clock, images are drawn ahead of time in the thread that calls next_frame().
@@ -29,10 +32,13 @@ class MockCamera final : public PacedCamera {
   Status open(Time now) override;
   std::optional<Delivery> next_delivery() override { return schedule_.next(); }
   Status draw(const Delivery& delivery, RgbImage& image) override;
+  void cover_lens(int source, double share, RgbImage& image);
 
   const std::shared_ptr<MockScene> scene_;
   const MockCameraConfig config_;
   MockSchedule schedule_;
+  std::optional<sim::LensDirt> dirt_;
+  int dirty_camera_ = -1;  ///< whose pattern dirt_ is
 };
 
 }  // namespace bevloc::drivers

@@ -2,31 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
+#include <memory>
 #include <optional>
-#include <vector>
 
 #include "drivers/camera/paced_camera.h"
+#include "sim/faults/fault_board.h"
 
 namespace bevloc::drivers {
-
-enum class CameraFaultKind : uint8_t {
-  kDead,       ///< no frame arrives
-  kFrozen,     ///< frames arrive on time and all show the moment `from_s`
-  kLate,       ///< frames arrive `delay` too late
-  kDrop,       ///< every n-th frame is lost
-  kDuplicate,  ///< every n-th frame arrives twice
-  kSwap,       ///< every n-th frame arrives after the following one
-};
-
-/// A fault of a camera during [from_s, until_s) of the drive.
-struct CameraFault {
-  CameraFaultKind kind = CameraFaultKind::kDead;
-  double from_s = 0.0;
-  double until_s = std::numeric_limits<double>::infinity();
-  Duration delay{0};  ///< for kLate
-  int every = 1;      ///< n for kDrop, kDuplicate and kSwap, counted from the start of the drive
-};
 
 /// The timing of a camera: exposure k starts at drive_start + phase + k * period.
 struct CameraTiming {
@@ -37,27 +19,35 @@ struct CameraTiming {
   Duration readout{0};  ///< from start of exposure to arrival
 };
 
-/// Has no clock: the same calls give the same deliveries. One thread.
+/// Has no clock: the same calls and faults give the same deliveries. One thread.
 class MockSchedule {
  public:
-  MockSchedule(const CameraTiming& timing, std::vector<CameraFault> faults);
+  /// `faults`: null without any.
+  MockSchedule(const CameraTiming& timing, int camera,
+               std::shared_ptr<const sim::FaultBoard> faults);
 
   /// Starts with the first exposure at or after `now`, which gets sequence number 0.
   void restart(Time now);
 
-  /// Returns the next delivery in the order of arrival. It is due at Time::max() when the camera
-  /// stays dead.
+  /// Returns the next delivery in the order of arrival.
   Delivery next();
+
+  /// The true start of a delivery's exposure; its timestamp may be wrong.
+  Time true_exposure_start(const Delivery& delivery) const {
+    return exposure_start(delivery.sequence + first_index_);
+  }
 
  private:
   Delivery next_in_order();
   Delivery next_exposed();
-  const CameraFault* active(CameraFaultKind kind, uint64_t index) const;
+  std::optional<sim::Fault> active(sim::FaultKind kind, uint64_t index) const;
   Time exposure_start(uint64_t index) const;
+  Time scene_time(uint64_t index) const;
   Delivery delivery_of(uint64_t index) const;
 
   CameraTiming timing_;
-  std::vector<CameraFault> faults_;
+  int camera_;
+  std::shared_ptr<const sim::FaultBoard> faults_;
   uint64_t first_index_ = 0;
   uint64_t index_ = 0;
   Time latest_due_ = Time::min();

@@ -49,7 +49,8 @@ Status BenchCommand::run() const {
 }
 
 Status BenchCommand::measure(const evaluation::DriveConfig& config) const {
-  const auto result = run_bench(config, options_, evaluation::show_progress);
+  const auto result =
+      run_bench(config, options_, [](int done, int all) { evaluation::show_progress(done, all); });
   if (!result) return tl::unexpected(result.error());
   fmt::print("{}", table_of(*result));
   return evaluation::write_file(to_json(*result), json_file_);

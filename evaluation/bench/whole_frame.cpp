@@ -2,6 +2,7 @@
 
 #include "evaluation/bench/allocation_count.h"
 #include "firmware/runtime/appliance.h"
+#include "firmware/runtime/identity.h"
 
 namespace bevloc::bench {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "evaluation/drive/fault_config.h"
 #include "firmware/config/config_milliseconds.h"
 #include "sim/world/world_generator.h"
 
@@ -10,10 +11,6 @@ namespace bevloc::evaluation {
 namespace {
 
 using firmware::from_milliseconds;
-using firmware::require_milliseconds;
-
-using drivers::CameraFault;
-using drivers::CameraFaultKind;
 
 sim::Conditions read_conditions(std::optional<YamlMap> yaml) {
   sim::Conditions conditions;
@@ -39,38 +36,6 @@ drivers::CalibrationError read_calibration_error(std::optional<YamlMap> yaml) {
   return sigma;
 }
 
-int read_camera(YamlMap& yaml) {
-  const Wanted<std::string> known{
-      fmt::format("{}", fmt::join(kCameraNames, ", ")), [](const std::string& name) {
-        return std::find(kCameraNames.begin(), kCameraNames.end(), name) != kCameraNames.end();
-      }};
-  const std::string name = yaml.require<std::string>("camera", known);
-  const auto camera = std::find(kCameraNames.begin(), kCameraNames.end(), name);
-  return camera == kCameraNames.end() ? 0 : static_cast<int>(camera - kCameraNames.begin());
-}
-
-CameraFault read_fault(YamlMap& yaml) {
-  CameraFault fault;
-  fault.kind =
-      yaml.require_choice<CameraFaultKind>("kind", {{"dead", CameraFaultKind::kDead},
-                                                    {"frozen", CameraFaultKind::kFrozen},
-                                                    {"late", CameraFaultKind::kLate},
-                                                    {"drop", CameraFaultKind::kDrop},
-                                                    {"duplicate", CameraFaultKind::kDuplicate},
-                                                    {"swap", CameraFaultKind::kSwap}});
-  fault.from_s = yaml.optional<double>("from_s", fault.from_s, at_least(0.0));
-  fault.until_s = yaml.optional<double>("until_s", fault.until_s, at_least(0.0));
-  if (fault.until_s < fault.from_s) yaml.reject("until_s", "less than from_s", "from_s or more");
-  if (fault.kind == CameraFaultKind::kLate) {
-    fault.delay = require_milliseconds(yaml, "delay_ms", between(0.0, 60'000.0));
-  }
-  if (fault.kind == CameraFaultKind::kDrop || fault.kind == CameraFaultKind::kDuplicate ||
-      fault.kind == CameraFaultKind::kSwap) {
-    fault.every = std::max(1, yaml.require<int>("every", between(2, 1'000'000)));
-  }
-  return fault;
-}
-
 std::array<Duration, kCameraCount> read_offsets(YamlMap& yaml) {
   std::array<Duration, kCameraCount> offsets{};
   if (!yaml.has("exposure_offsets_ms")) return offsets;
@@ -94,10 +59,9 @@ void read_simulation(YamlMap yaml, SimulationConfig& simulation) {
   simulation.conditions = read_conditions(yaml.optional_map("conditions"));
   simulation.calibration_error = read_calibration_error(yaml.optional_map("calibration_error"));
   simulation.exposure_offsets = read_offsets(yaml);
-  if (yaml.has("camera_faults")) {
-    for (YamlMap& fault : yaml.require_map_list("camera_faults")) {
-      const int camera = read_camera(fault);
-      simulation.camera_faults[camera].push_back(read_fault(fault));
+  if (yaml.has("faults")) {
+    for (YamlMap& fault : yaml.require_map_list("faults")) {
+      simulation.faults.push_back(read_fault(fault));
     }
   }
 }

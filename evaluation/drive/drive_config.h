@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/cameras.h"
-#include "drivers/mock/mock_schedule.h"
 #include "drivers/mock/true_rig.h"
 #include "firmware/config/config.h"
+#include "sim/faults/fault.h"
 #include "sim/render/renderer.h"
 
 namespace bevloc::evaluation {
@@ -22,7 +22,7 @@ struct SimulationConfig {
   std::optional<uint64_t> town_seed;  ///< of a procedural town; empty if the map is a file
   sim::Conditions conditions;
   drivers::CalibrationError calibration_error;  ///< 1 sigma
-  std::array<std::vector<drivers::CameraFault>, kCameraCount> camera_faults;
+  std::vector<sim::Fault> faults;
   /// Delay of each camera's exposure after the common tick.
   std::array<Duration, kCameraCount> exposure_offsets{};
 };

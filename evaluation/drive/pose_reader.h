@@ -15,6 +15,7 @@ namespace bevloc::evaluation {
 struct BusPose {
   Time received;  ///< the pose is predicted to the time of sending
   Se2 map_from_vehicle;
+  can::ProtectionLevel protection_level;  ///< what was sent as SNA is unknown
 };
 
 /// Decodes both variants: separate frames, and one CAN FD frame. Frames that fail the E2E check are
@@ -29,21 +30,25 @@ class PoseReader {
   /// The state in the latest LOC_Status.
   HealthState state() const { return state_; }
 
+  /// The reasons in the latest LOC_Status and LOC_Integrity.
+  WhyMask why() const;
+
  private:
-  enum Input : size_t { kStatus, kLatitude, kLongitude, kPosLocal, kAttitude };
-  static constexpr std::array<const can::Message*, 5> kInputs = {
-      &can::loc_status::kMessage, &can::loc_latitude::kMessage, &can::loc_longitude::kMessage,
-      &can::loc_pos_local::kMessage, &can::loc_attitude::kMessage};
+  enum Input : size_t { kStatus, kLatitude, kLongitude, kPosLocal, kAttitude, kIntegrity };
+  static constexpr std::array<const can::Message*, 6> kInputs = {
+      &can::loc_status::kMessage,    &can::loc_latitude::kMessage, &can::loc_longitude::kMessage,
+      &can::loc_pos_local::kMessage, &can::loc_attitude::kMessage, &can::loc_integrity::kMessage};
 
   std::optional<BusPose> accept_joined(const can::ReceivedFrame& received);
-  void take(Input input, const can::Frame& frame);
-  std::optional<BusPose> assemble(Time received);
+  void take(Input input, const can::ReceivedFrame& received);
+  std::optional<BusPose> assemble();
+  can::ProtectionLevel protection_level() const;
 
   can::BaseIds base_;
   can::GeoReference geo_;
   std::array<can::E2eChecker, kInputs.size()> checkers_;
   can::E2eChecker joined_checker_;
-  std::array<can::Frame, kInputs.size()> latest_{};
+  std::array<can::ReceivedFrame, kInputs.size()> latest_{};
   HealthState state_ = HealthState::kInit;
 };
 

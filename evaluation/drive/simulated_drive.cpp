@@ -2,6 +2,8 @@
 
 #include "drivers/mock/true_rig.h"
 #include "evaluation/drive/configured_world.h"
+#include "sim/faults/gnss_faults.h"
+#include "sim/faults/odometry_faults.h"
 #include "sim/random.h"
 
 namespace bevloc::evaluation {
@@ -18,15 +20,28 @@ Time at(Time drive_start, double time_s) {
   return drive_start + from_seconds(time_s);
 }
 
+GnssSample sample_of(const sim::GnssReading& reading, Time now) {
+  GnssSample sample;
+  sample.time = now;
+  sample.east_m = reading.position_m.x();
+  sample.north_m = reading.position_m.y();
+  sample.sigma_east_m = reading.position_sigma_m;
+  sample.sigma_north_m = reading.position_sigma_m;
+  if (reading.has_heading) sample.yaw = {reading.heading_rad, reading.heading_sigma_rad};
+  return sample;
+}
+
 }  // namespace
 
-SimulatedVehicle::SimulatedVehicle(std::shared_ptr<const sim::Drive> drive, uint64_t seed,
-                                   const GeoOrigin& origin, const can::BaseIds& base,
-                                   std::unique_ptr<can::Bus> bus, Time drive_start)
-    : drive_(std::move(drive)),
+SimulatedVehicle::SimulatedVehicle(const SimulatedDrive& drive, uint64_t seed,
+                                   const can::BaseIds& base, std::unique_ptr<can::Bus> bus,
+                                   Time drive_start)
+    : drive_(drive.drive()),
+      faults_(drive.faults()),
       odometry_(*drive_, sim::seed_for(seed, "odometry")),
       gnss_(*drive_, sim::seed_for(seed, "gnss")),
-      encoder_(base, {origin.latitude_deg, origin.longitude_deg}, kRearTrack_m),
+      encoder_(base, {drive.map().origin.latitude_deg, drive.map().origin.longitude_deg},
+               kRearTrack_m),
       bus_(std::move(bus)),
       drive_start_(drive_start),
       next_odometry_(drive_start),
@@ -39,10 +54,14 @@ void SimulatedVehicle::send_due(Time now) {
 
 void SimulatedVehicle::send_odometry(Time now) {
   if (odometry_count_ < odometry_.count()) {
-    const sim::OdometryReading reading = odometry_.reading(odometry_count_);
-    for (const can::Frame& frame :
-         encoder_.odometry({now, reading.speed_mps, reading.yaw_rate_radps})) {
-      bus_->send(frame, now);
+    const double time_s = static_cast<double>(odometry_count_) * sim::OdometrySimulator::kPeriod_s;
+    const auto reading =
+        sim::reading_with_faults(odometry_, odometry_count_, kRearTrack_m,
+                                 faults_->active(sim::FaultInput::kOdometry, time_s));
+    if (reading) {
+      const can::WheelOdometry measured{reading->left_mps, reading->right_mps,
+                                        reading->yaw_rate_radps};
+      for (const can::Frame& frame : encoder_.odometry(measured)) bus_->send(frame, now);
     }
   }
   ++odometry_count_;
@@ -52,15 +71,14 @@ void SimulatedVehicle::send_odometry(Time now) {
 
 void SimulatedVehicle::send_gnss(Time now) {
   if (gnss_count_ < gnss_.count()) {
-    const sim::GnssReading reading = gnss_.reading(gnss_count_);
-    GnssSample sample;
-    sample.time = now;
-    sample.east_m = reading.position_m.x();
-    sample.north_m = reading.position_m.y();
-    sample.sigma_east_m = reading.position_sigma_m;
-    sample.sigma_north_m = reading.position_sigma_m;
-    sample.yaw = {reading.heading_rad, reading.heading_sigma_rad};
-    for (const can::Frame& frame : encoder_.gnss(sample)) bus_->send(frame, now);
+    const sim::GnssReading sensed = gnss_.reading(gnss_count_);
+    const auto reading =
+        sim::with_faults(sensed, faults_->active(sim::FaultInput::kGnss, sensed.time_s), *drive_);
+    if (reading) {
+      for (const can::Frame& frame : encoder_.gnss(sample_of(*reading, now))) {
+        bus_->send(frame, now);
+      }
+    }
   }
   ++gnss_count_;
   next_gnss_ = at(drive_start_, static_cast<double>(gnss_count_) * sim::GnssSimulator::kPeriod_s);
@@ -77,7 +95,8 @@ SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,
                                const SimulationConfig& simulation)
     : world_(std::move(world)),
       drive_(std::make_shared<sim::Drive>(*world_, sim::seed_for(simulation.seed, "drive"),
-                                          simulation.duration_s + kSpareDuration_s)) {}
+                                          simulation.duration_s + kSpareDuration_s)),
+      faults_(std::make_shared<sim::FaultBoard>(simulation.faults)) {}
 
 std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(
     const DriveConfig& config, const Rig& rig, drivers::Clock& clock, Time drive_start) const {
@@ -90,14 +109,14 @@ std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(
   for (int camera = 0; camera < kCameraCount; ++camera) {
     drivers::MockCameraConfig mock;
     mock.camera = camera;
-    mock.true_camera = true_rig.cameras[camera];
+    mock.true_rig = true_rig;
     mock.timing.drive_start = drive_start;
     mock.timing.period = from_seconds(1.0 / config.cameras.rate_hz);
     mock.timing.phase = simulation.exposure_offsets[camera];
     mock.timing.exposure = kExposure;
     mock.timing.readout = kReadout;
     mock.buffers = config.cameras.buffers;
-    mock.faults = simulation.camera_faults[camera];
+    mock.faults = faults_;
     cameras.push_back(std::make_unique<drivers::MockCamera>(scene, mock, clock));
   }
   return cameras;

@@ -9,17 +9,44 @@
 #include "can/messages/vehicle_encoder.h"
 #include "drivers/mock/mock_camera.h"
 #include "evaluation/drive/drive_config.h"
+#include "sim/faults/fault_board.h"
 #include "sim/sensors/gnss.h"
 #include "sim/sensors/odometry.h"
 
 namespace bevloc::evaluation {
 
-/// Sends the vehicle's odometry and GNSS of a drive on the bus, each with its own period. One
-/// thread.
+/// A world and a drive through it, made from the configuration's seeds. The localizer gets only the
+/// map, the camera images and the frames on the bus.
+class SimulatedDrive {
+ public:
+  /// Fails as make_configured_world() does.
+  static Result<SimulatedDrive> create(const DriveConfig& config);
+
+  const HdMap& map() const { return world_->map; }
+  Se2 truth_at(double time_s) const { return drive_->at(time_s).map_from_vehicle; }
+  std::shared_ptr<const sim::Drive> drive() const { return drive_; }
+  /// The faults of the configuration. More may be set while the drive runs.
+  std::shared_ptr<sim::FaultBoard> faults() const { return faults_; }
+
+  /// Mock cameras that see the drive, which begins at `drive_start`. The clock must outlive them.
+  std::vector<std::unique_ptr<drivers::Camera>> make_cameras(const DriveConfig& config,
+                                                             const Rig& rig, drivers::Clock& clock,
+                                                             Time drive_start) const;
+
+ private:
+  SimulatedDrive(std::shared_ptr<const sim::World> world, const SimulationConfig& simulation);
+
+  std::shared_ptr<const sim::World> world_;
+  std::shared_ptr<const sim::Drive> drive_;
+  std::shared_ptr<sim::FaultBoard> faults_;
+};
+
+/// Sends the vehicle's odometry and GNSS of a drive on the bus, each with its own period and with
+/// its faults. One thread.
 class SimulatedVehicle {
  public:
-  SimulatedVehicle(std::shared_ptr<const sim::Drive> drive, uint64_t seed, const GeoOrigin& origin,
-                   const can::BaseIds& base, std::unique_ptr<can::Bus> bus, Time drive_start);
+  SimulatedVehicle(const SimulatedDrive& drive, uint64_t seed, const can::BaseIds& base,
+                   std::unique_ptr<can::Bus> bus, Time drive_start);
 
   /// The time at which the next frames are due.
   Time next_due() const { return std::min(next_odometry_, next_gnss_); }
@@ -32,6 +59,7 @@ class SimulatedVehicle {
   void send_gnss(Time now);
 
   std::shared_ptr<const sim::Drive> drive_;
+  std::shared_ptr<const sim::FaultBoard> faults_;
   sim::OdometrySimulator odometry_;
   sim::GnssSimulator gnss_;
   can::VehicleEncoder encoder_;
@@ -41,29 +69,6 @@ class SimulatedVehicle {
   uint64_t gnss_count_ = 0;
   Time next_odometry_;
   Time next_gnss_;
-};
-
-/// A world and a drive through it, made from the configuration's seeds. The localizer gets only the
-/// map, the camera images and the frames on the bus.
-class SimulatedDrive {
- public:
-  /// Fails as make_configured_world() does.
-  static Result<SimulatedDrive> create(const DriveConfig& config);
-
-  const HdMap& map() const { return world_->map; }
-  Se2 truth_at(double time_s) const { return drive_->at(time_s).map_from_vehicle; }
-  std::shared_ptr<const sim::Drive> drive() const { return drive_; }
-
-  /// Mock cameras that see the drive, which begins at `drive_start`. The clock must outlive them.
-  std::vector<std::unique_ptr<drivers::Camera>> make_cameras(const DriveConfig& config,
-                                                             const Rig& rig, drivers::Clock& clock,
-                                                             Time drive_start) const;
-
- private:
-  SimulatedDrive(std::shared_ptr<const sim::World> world, const SimulationConfig& simulation);
-
-  std::shared_ptr<const sim::World> world_;
-  std::shared_ptr<const sim::Drive> drive_;
 };
 
 }  // namespace bevloc::evaluation

@@ -110,8 +110,8 @@ Status SimulatedRun::connect() {
 
   const can::BaseIds& ids = config_.can.base_ids;
   const GeoOrigin& origin = drive_.map().origin;
-  vehicle_ = std::make_unique<SimulatedVehicle>(drive_.drive(), config_.simulation->seed, origin,
-                                                ids, std::move(*vehicle_bus), drive_start_);
+  vehicle_ = std::make_unique<SimulatedVehicle>(drive_, config_.simulation->seed, ids,
+                                                std::move(*vehicle_bus), drive_start_);
   auto judge = Judge::create(
       std::move(*judge_bus), ids, origin, [this](double time_s) { return drive_.truth_at(time_s); },
       {log_start_, drive_start_}, (options_.out / "can.log").string());
@@ -125,8 +125,11 @@ void SimulatedRun::run(const StopWhen& stop) {
   const firmware::Companion companion{[this] { return vehicle_->next_due(); },
                                       [this](Time now) { vehicle_->send_due(now); },
                                       [this](Duration timeout) { judge_->step(timeout); }};
-  firmware::Supervisor supervisor(*appliance_, realtime_);
+  firmware::Watchdog watchdog(appliance_->estimation().counters().state);
+  watchdog.watch_stages(*appliance_);
+  firmware::Supervisor supervisor(*appliance_, realtime_, watchdog);
   const auto supervise = [&](Time now) {
+    watchdog.step(now);
     supervisor.step(now);
     const double time_s = to_seconds(now - drive_start_);
     const bool last = time_s >= duration_s || stop(supervisor.view());

@@ -1,12 +1,14 @@
 #include "firmware/config/config.h"
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 
 #include <fmt/ranges.h>
 
 #include "firmware/config/config_milliseconds.h"
+#include "firmware/config/manifest.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -103,7 +105,19 @@ SolverConfig read_solver(std::optional<YamlMap> yaml) {
   return solver;
 }
 
-CanConfig read_can(YamlMap yaml) {
+std::optional<SecocConfig> read_secoc(YamlMap& can, CanDriver driver,
+                                      const std::filesystem::path& folder) {
+  auto yaml = can.optional_map("secoc");
+  if (!yaml) return std::nullopt;
+  if (driver == CanDriver::kMock) {
+    can.reject("secoc", "authentication on a bus inside the process",
+               "no section secoc with can.driver: mock");
+  }
+  return SecocConfig{.key_file = path_of(*yaml, "key_file", folder),
+                     .starts_file = path_of(*yaml, "starts_file", folder)};
+}
+
+CanConfig read_can(YamlMap yaml, const std::filesystem::path& folder) {
   CanConfig config;
   config.driver = yaml.require_choice<CanDriver>(
       "driver", {{"mock", CanDriver::kMock}, {"socketcan", CanDriver::kSocketCan}});
@@ -129,6 +143,9 @@ CanConfig read_can(YamlMap yaml) {
     yaml.reject("localizer_base_id", "less than 0x40 apart from vehicle_base_id",
                 "at least 0x40, so that messages do not share identifiers");
   }
+  config.secoc = read_secoc(yaml, config.driver, folder);
+  config.odometry.rear_track_m =
+      yaml.optional<double>("rear_track_m", config.odometry.rear_track_m, between(0.8, 3.0));
   return config;
 }
 
@@ -147,11 +164,14 @@ TrackerParameters read_tracker(std::optional<YamlMap> yaml) {
       "speed_scale_sigma", tracker.initial_speed_scale_sigma, between(1e-4, 0.5));
   tracker.initial_yaw_rate_bias_sigma_radps = radians(yaml->optional<double>(
       "yaw_rate_bias_sigma_degps", degrees(tracker.initial_yaw_rate_bias_sigma_radps), noise));
-  const auto correlation_s = between(0.0, 600.0);
-  tracker.gnss_correlation_s =
-      yaml->optional<double>("gnss_correlation_s", tracker.gnss_correlation_s, correlation_s);
-  tracker.correction_correlation_s = yaml->optional<double>(
-      "correction_correlation_s", tracker.correction_correlation_s, correlation_s);
+  ErrorCorrelation& correlation = tracker.correlation;
+  correlation.gnss_s =
+      yaml->optional<double>("gnss_correlation_s", correlation.gnss_s, between(0.0, 600.0));
+  if (yaml->has("correction_correlation_m")) {
+    const auto lengths_m =
+        yaml->require_list<double>("correction_correlation_m", 3, between(0.0, 1000.0));
+    correlation.match_m = Eigen::Map<const Eigen::Vector3d>(lengths_m.data());
+  }
   tracker.gate_squared_distance = yaml->optional<double>(
       "gate_squared_distance", tracker.gate_squared_distance, between(1.0, 1000.0));
   return tracker;
@@ -200,6 +220,7 @@ Result<Config> load_config(const std::filesystem::path& file, const SimulationRe
   if (!yaml) return tl::unexpected(yaml.error());
   const std::filesystem::path folder = file.parent_path();
   Config config;
+  config.file = file;
   YamlMap cameras = yaml->require_map("cameras");
   config.cameras = read_cameras(cameras, folder);
   if (config.cameras.driver == CameraDriver::kMock && simulation == nullptr) {
@@ -213,7 +234,7 @@ Result<Config> load_config(const std::filesystem::path& file, const SimulationRe
   YamlMap model = yaml->require_map("model");
   config.model_file = path_of(model, "file", folder);
   config.solver = read_solver(yaml->optional_map("solver"));
-  config.can = read_can(yaml->require_map("can"));
+  config.can = read_can(yaml->require_map("can"), folder);
   config.tracker = read_tracker(yaml->optional_map("tracker"));
   config.health = read_health(yaml->optional_map("health"));
   if (auto gpio = yaml->optional_map("gpio")) {
@@ -225,10 +246,15 @@ Result<Config> load_config(const std::filesystem::path& file, const SimulationRe
   }
   config.realtime = read_realtime(yaml->optional_map("realtime"));
   config.log_level = read_log_level(yaml->optional_map("log"));
+  const bool has_manifest = yaml->has("manifest");
+  const auto manifest = has_manifest ? path_of(*yaml, "manifest", folder) : folder;
   if (config.cameras.driver == CameraDriver::kMock && simulation != nullptr) {
     simulation->read_simulation(yaml->require_map("simulation"));
   }
   if (Status finished = yaml->finish(); !finished) return tl::unexpected(finished.error());
+  if (!has_manifest) return config;
+  const std::array used{file, config.rig_file, config.model_file, config.map_file};
+  if (Status same = check_manifest(manifest, used); !same) return tl::unexpected(same.error());
   return config;
 }
 

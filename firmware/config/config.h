@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "can/messages/message.h"
+#include "can/messages/odometry_check.h"
 #include "common/result.h"
 #include "common/strict_yaml.h"
 #include "drivers/frameset/synchronizer.h"
@@ -40,6 +42,14 @@ struct SolverConfig {
   SolverKind kind = LocalizerOptions().solver;
   HypothesisGrid tracking = LocalizerOptions().tracking;
   HypothesisGrid acquiring = LocalizerOptions().acquiring;
+
+  bool operator==(const SolverConfig&) const = default;
+};
+
+/// Authentication of the messages (SecOC).
+struct SecocConfig {
+  std::filesystem::path key_file;
+  std::filesystem::path starts_file;  ///< counts the starts, for the freshness value
 };
 
 struct CanConfig {
@@ -47,6 +57,8 @@ struct CanConfig {
   std::string interface;                                  ///< SocketCAN only
   can::FrameFormat variant = can::FrameFormat::kClassic;  ///< format of the messages that are sent
   can::BaseIds base_ids;
+  can::OdometryLimits odometry;  ///< what the vehicle's odometry is checked with
+  std::optional<SecocConfig> secoc;
 };
 
 /// Reads the parts of a configuration that only a program with the simulator supports. Used only
@@ -60,6 +72,7 @@ struct SimulationReader {
 };
 
 struct Config {
+  std::filesystem::path file;  ///< this configuration
   CameraConfig cameras;
   std::filesystem::path rig_file;
   std::filesystem::path map_file;  ///< empty for a procedural town
@@ -76,7 +89,8 @@ struct Config {
 /// Reads a configuration file; docs/configuration.md describes each key. Every key must be known,
 /// present once, of the right type and in range; otherwise the error names file, line and key.
 /// Paths in the file are relative to its folder; paths in the result can be opened as they are.
-/// Refuses mock cameras if `simulation` is null.
+/// Refuses mock cameras if `simulation` is null. If the file names a manifest, checks it
+/// (manifest.h): the result names only files with the right checksums.
 Result<Config> load_config(const std::filesystem::path& file,
                            const SimulationReader* simulation = nullptr);
 

@@ -1,4 +1,5 @@
 // Looks up on this machine what a configuration names.
+#include "can/secoc/secoc_files.h"
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "firmware/config/config.h"
 #include "firmware/runtime/camera_factory.h"
@@ -21,12 +22,19 @@ Status check_lines(const GpioConfig& gpio) {
 }  // namespace
 
 Status check_config(const Config& config) {
-  if (const auto rig = read_rig(config.rig_file); !rig) return tl::unexpected(rig.error());
-  if (const auto model = Network::load(config.model_file, {}); !model) {
-    return tl::unexpected(model.error());
+  const auto rig = read_rig(config.rig_file);
+  if (!rig) return tl::unexpected(rig.error());
+  const auto model = Network::load(config.model_file, {});
+  if (!model) return tl::unexpected(model.error());
+  if (const Status fits = check_rig_fits((*model)->rig(), *rig); !fits) {
+    return fail("{}: {}", config.model_file.string(), fits.error().message);
   }
   if (!config.map_file.empty()) {
     if (const auto map = load_map(config.map_file); !map) return tl::unexpected(map.error());
+  }
+  if (config.can.secoc) {
+    const auto key = can::read_secoc_key(config.can.secoc->key_file);
+    if (!key) return tl::unexpected(key.error());
   }
   if (Status status = check_lines(config.gpio); !status) return status;
   return check_cameras(config.cameras);

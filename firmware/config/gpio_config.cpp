@@ -20,7 +20,9 @@ LineAddress read_address(YamlMap& yaml) {
 TriggerLineConfig read_trigger(YamlMap& yaml) {
   TriggerLineConfig trigger;
   trigger.address = read_address(yaml);
-  trigger.timing.period = from_seconds(1.0 / yaml.require<double>("rate_hz", between(1.0, 60.0)));
+  // 0 if the key is missing or wrong, which finish() reports.
+  const double rate_hz = yaml.require<double>("rate_hz", between(1.0, 60.0));
+  if (rate_hz > 0.0) trigger.timing.period = from_seconds(1.0 / rate_hz);
   trigger.timing.pulse_width =
       optional_milliseconds(yaml, "pulse_ms", trigger.timing.pulse_width, between(0.01, 100.0));
   if (2 * trigger.timing.pulse_width >= trigger.timing.period) {

@@ -6,7 +6,6 @@ namespace bevloc::firmware {
 
 bool Health::update(const HealthInputs& inputs) {
   why_ = find_reasons(inputs);
-  contradicted_ = inputs.contradicts_gnss || inputs.refused_in_a_row >= limits_.refusals_to_lose;
   const HealthState before = std::exchange(state_, next_state(inputs));
   return state_ != before;
 }
@@ -22,30 +21,42 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
   set_if(Why::kGnssMissing, inputs.gnss_age > limits_.gnss_timeout);
   set_if(Why::kNoInitialPose, !inputs.initialized);
   set_if(Why::kOutsideMap, !inputs.map_nearby);
-  set_if(Why::kMatchUncertain, inputs.contradicts_gnss);
+  set_if(Why::kMatchUncertain,
+         inputs.verdict.undecided || (!pose_valid() && !inputs.gnss_confirms));
+  set_if(Why::kGnssContradicts, inputs.verdict.gnss_contradicts);
+  set_if(Why::kOdometryContradicts, inputs.verdict.odometry_contradicts);
+  set_if(Why::kMatchContradicts, inputs.verdict.match_contradicts);
+  set_if(Why::kOdometryImplausible, inputs.odometry_implausible);
+  set_if(Why::kForeignSender, inputs.foreign_sender);
+  set_if(Why::kClockGap, inputs.clock_gap);
   set_if(Why::kMatchRejected, inputs.latest_correction_refused);
   set_if(Why::kPoseUncertain, inputs.longitudinal_sigma_m > limits_.longitudinal_sigma_m ||
                                   inputs.lateral_sigma_m > limits_.lateral_sigma_m ||
                                   inputs.yaw_sigma_rad > limits_.yaw_sigma_rad);
   set_if(Why::kPoseStale, inputs.correction_age > limits_.correction_timeout);
   set_if(Why::kOverload, inputs.overloaded);
+  set_if(Why::kNetworkFault, inputs.network_fault);
   set_if(Why::kInternalFault, inputs.internal_error);
   return why;
 }
 
 bool Health::is_lost(const HealthInputs& inputs) const {
-  return contradicted_ || why_.has(Why::kPoseUncertain) || why_.has(Why::kOdometryMissing) ||
+  const bool contradicted =
+      inputs.verdict.odometry_contradicts ||
+      (inputs.verdict.undecided && inputs.refused_in_a_row >= limits_.refusals_to_lose);
+  return contradicted || !inputs.initialized || inputs.odometry_implausible || inputs.clock_gap ||
+         why_.has(Why::kPoseUncertain) || why_.has(Why::kOdometryMissing) ||
          inputs.correction_age > limits_.lost_timeout;
 }
 
 HealthState Health::next_state(const HealthInputs& inputs) const {
-  if (inputs.internal_error) return HealthState::kFault;
+  if (inputs.internal_error || inputs.network_fault) return HealthState::kFault;
   switch (state_) {
     case HealthState::kInit:
       return inputs.initialized ? HealthState::kAcquiring : HealthState::kInit;
     case HealthState::kAcquiring:
-      if (contradicted_) return HealthState::kLost;  // acquired a wrong pose: start again
-      return !is_lost(inputs) && inputs.accepted_in_a_row >= limits_.corrections_to_track
+      return !is_lost(inputs) && inputs.gnss_confirms &&
+                     inputs.accepted_in_a_row >= limits_.corrections_to_track
                  ? HealthState::kTracking
                  : HealthState::kAcquiring;
     case HealthState::kTracking:

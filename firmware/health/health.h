@@ -3,7 +3,10 @@
 
 #include "common/cameras.h"
 #include "common/health_state.h"
+#include "common/se2.h"
 #include "common/time.h"
+#include "pipeline/tracker/arbiter.h"
+#include "pipeline/tracker/protection_level.h"
 
 namespace bevloc::firmware {
 
@@ -17,12 +20,16 @@ struct HealthLimits {
   Duration lost_timeout = std::chrono::seconds(6);
   /// Accepted corrections in a row that change ACQUIRING to TRACKING.
   int corrections_to_track = 10;
-  /// Refused corrections in a row that lead to LOST.
+  /// Refused corrections in a row that lead to LOST while nothing decides who is wrong.
   int refusals_to_lose = 15;
   /// Largest sigmas of a valid pose.
   double longitudinal_sigma_m = 0.60;
   double lateral_sigma_m = 0.30;
-  double yaw_sigma_rad = 0.0105;
+  double yaw_sigma_rad = radians(0.6);
+  /// For the protection levels that are sent with the pose.
+  ProtectionParameters protection;
+
+  bool operator==(const HealthLimits&) const = default;
 };
 
 /// Condition of the inputs and of the pose at one moment.
@@ -30,18 +37,24 @@ struct HealthInputs {
   bool initialized = false;  ///< the tracker has a pose from GNSS and odometry
   Duration odometry_age = Duration::max();
   Duration gnss_age = Duration::max();
-  Duration correction_age = Duration::max();  ///< of the latest accepted correction
-  CameraMask cameras_present;                 ///< used in the latest frameset
-  bool cameras_unsynchronized = false;        ///< in the latest frameset (Synchrony)
-  bool map_nearby = true;                     ///< the map has elements around the prior
+  /// Of the latest accepted correction that had evidence across the vehicle.
+  Duration correction_age = Duration::max();
+  CameraMask cameras_present;           ///< used in the latest frameset
+  bool cameras_unsynchronized = false;  ///< in the latest frameset (Synchrony)
+  bool map_nearby = true;               ///< the map has elements around the prior
   bool latest_correction_refused = false;
   int accepted_in_a_row = 0;
   int refused_in_a_row = 0;
-  bool contradicts_gnss = false;  ///< the pose is too far from GNSS for its noise (GnssMonitor)
-  bool overloaded = false;        ///< framesets were skipped for the latest one
+  Verdict verdict;                    ///< of the arbiter
+  bool odometry_implausible = false;  ///< the latest odometry sample was refused (OdometryMonitor)
+  bool foreign_sender = false;        ///< somebody else sends our messages or the vehicle's
+  bool gnss_confirms = true;          ///< GNSS is near enough to trust a new pose
+  bool clock_gap = false;             ///< time has jumped
+  bool overloaded = false;            ///< framesets were skipped for the latest one
   double longitudinal_sigma_m = 0.0;
   double lateral_sigma_m = 0.0;
   double yaw_sigma_rad = 0.0;
+  bool network_fault = false;   ///< the network failed its check (VisionStage)
   bool internal_error = false;  ///< the pose or its covariance is not finite
 };
 
@@ -57,8 +70,6 @@ class Health {
 
   HealthState state() const { return state_; }
   WhyMask why() const { return why_; }
-  /// Whether GNSS or a row of refused corrections contradicts the pose.
-  bool pose_contradicted() const { return contradicted_; }
   /// Whether consumers may use the pose.
   bool pose_valid() const {
     return state_ == HealthState::kTracking || state_ == HealthState::kDegraded;
@@ -72,7 +83,6 @@ class Health {
   HealthLimits limits_;
   HealthState state_ = HealthState::kInit;
   WhyMask why_ = Why::kNoInitialPose;
-  bool contradicted_ = false;
 };
 
 }  // namespace bevloc::firmware

@@ -1,25 +1,9 @@
 #include "firmware/runtime/appliance.h"
 
-#include <bit>
-
-#include <spdlog/spdlog.h>
-
-#include "common/crc32.h"
-#include "common/files.h"
-#include "common/version.h"
+#include "can/secoc/secoc_files.h"
+#include "firmware/runtime/identity.h"
 
 namespace bevloc::firmware {
-namespace {
-
-/// Logs what identifies a run: version, model and map.
-void log_identity(const Config& config, const HdMap& map, const Localizer& localizer) {
-  const auto model = read_file(config.model_file);
-  spdlog::info("bevloc {}: model {} (CRC-32 {:08x}), map {} (id {:#06x}, {} elements)", version(),
-               localizer.model_name(), model ? crc32(*model) : 0U, map.name, map_id_of(map),
-               map.elements.size());
-}
-
-}  // namespace
 
 Result<std::unique_ptr<Appliance>> Appliance::create(const Config& config, const Rig& rig,
                                                      const HdMap& map, Hardware hardware) {
@@ -27,9 +11,15 @@ Result<std::unique_ptr<Appliance>> Appliance::create(const Config& config, const
   auto localizer =
       Localizer::create(rig, *map_index, config.model_file.string(), localizer_options(config));
   if (!localizer) return tl::unexpected(localizer.error());
-  log_identity(config, map, **localizer);
-  return std::unique_ptr<Appliance>(
+  log_identity(identity_of(config, map), map, (*localizer)->model_name());
+  std::unique_ptr<Appliance> appliance(
       new Appliance(config, map, std::move(hardware), std::move(map_index), std::move(*localizer)));
+  if (config.can.secoc) {
+    if (Status status = appliance->authenticate(*config.can.secoc, config.can.base_ids); !status) {
+      return tl::unexpected(status.error());
+    }
+  }
+  return appliance;
 }
 
 Appliance::Appliance(const Config& config, const HdMap& map, Hardware hardware,
@@ -39,15 +29,30 @@ Appliance::Appliance(const Config& config, const HdMap& map, Hardware hardware,
       localizer_(std::move(localizer)),
       publisher_(*hardware_.bus, publisher_config(config, map)),
       vehicle_input_(*hardware_.bus, config.can.base_ids,
-                     {map.origin.latitude_deg, map.origin.longitude_deg}, queues_.samples),
+                     {map.origin.latitude_deg, map.origin.longitude_deg}, queues_.samples,
+                     config.can.odometry),
       vision_(*localizer_,
               {config.cameras.synchronizer, config.cameras.compensate_motion, hardware_.pulses},
               queues_.frames, queues_.predictions, queues_.reports),
       estimation_(config.tracker, config.health, map_id_of(map), publisher_, queues_.samples,
                   queues_.reports, queues_.predictions) {
+  estimation_.watch(vehicle_input_);
   for (const auto& camera : hardware_.cameras) {
     capture_.emplace_back(*camera, *hardware_.clock, queues_.frames);
   }
+}
+
+Status Appliance::authenticate(const SecocConfig& config, const can::BaseIds& base) {
+  const auto key = can::read_secoc_key(config.key_file);
+  if (!key) return tl::unexpected(key.error());
+  auto sending = can::Cmac::create(*key);
+  auto receiving = can::Cmac::create(*key);
+  if (!sending || !receiving) return tl::unexpected((sending ? receiving : sending).error());
+  const auto start = can::next_start_number(config.starts_file);
+  if (!start) return tl::unexpected(start.error());
+  publisher_.authenticate(can::SecocSender(std::move(*sending), *start));
+  vehicle_input_.authenticate(can::SecocReceiver(std::move(*receiving), base));
+  return {};
 }
 
 FrameCounts Appliance::frame_counts() const {
@@ -57,8 +62,7 @@ FrameCounts Appliance::frame_counts() const {
   counts.displaced = queues_.frames.dropped();
   counts.skipped = vision_.framesets().counters().frames_skipped;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    const drivers::SynchronizerCounters& refused =
-        vision_.framesets().synchronizer().counters(camera);
+    const drivers::SynchronizerCounters refused = vision_.framesets().frames_of(camera);
     counts.mismatched += refused.duplicate + refused.out_of_order + refused.late + refused.future +
                          refused.overflow + refused.unmatched;
     const drivers::CameraCounters missed = hardware_.cameras[camera]->counters();
@@ -71,6 +75,7 @@ can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map
   can::PosePublisherConfig publisher;
   publisher.base_ids = config.can.base_ids;
   publisher.format = config.can.variant;
+  publisher.identity = identity_of(config, map);
   publisher.map_origin = {map.origin.latitude_deg, map.origin.longitude_deg};
   return publisher;
 }
@@ -81,24 +86,6 @@ LocalizerOptions localizer_options(const Config& config) {
   options.tracking = config.solver.tracking;
   options.acquiring = config.solver.acquiring;
   return options;
-}
-
-uint16_t map_id_of(const HdMap& map) {
-  // FNV-1a over origin, classes and coordinates, folded to 16 bits.
-  uint64_t hash = 0xCBF29CE484222325ULL;
-  const auto mix = [&hash](double value) {
-    hash = (hash ^ std::bit_cast<uint64_t>(value)) * 0x100000001B3ULL;
-  };
-  mix(map.origin.latitude_deg);
-  mix(map.origin.longitude_deg);
-  for (const MapElement& element : map.elements) {
-    mix(static_cast<double>(element.element_class));
-    for (const Eigen::Vector2d& point : element.points) {
-      mix(point.x());
-      mix(point.y());
-    }
-  }
-  return static_cast<uint16_t>(hash ^ (hash >> 16U) ^ (hash >> 32U) ^ (hash >> 48U));
 }
 
 }  // namespace bevloc::firmware

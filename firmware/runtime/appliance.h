@@ -9,6 +9,7 @@
 #include "drivers/camera/camera.h"
 #include "drivers/clock/clock.h"
 #include "firmware/config/config.h"
+#include "firmware/runtime/heartbeat.h"
 #include "firmware/stages/capture_stage.h"
 #include "firmware/stages/estimation_stage.h"
 #include "firmware/stages/vehicle_input_stage.h"
@@ -22,6 +23,13 @@ struct Hardware {
   std::unique_ptr<can::Bus> bus;
   drivers::Clock* clock = nullptr;            ///< must outlive the appliance
   const drivers::PulseLog* pulses = nullptr;  ///< of the trigger; null without one
+};
+
+/// The signs of life of the threads that have one stage each; a capture stage has its own.
+struct StageHeartbeats {
+  Heartbeat vision;
+  Heartbeat can_in;
+  Heartbeat can_out;
 };
 
 /// Where the frames of all cameras went.
@@ -49,7 +57,11 @@ class Appliance {
 
   drivers::Clock& clock() { return *hardware_.clock; }
   std::deque<CaptureStage>& capture() { return capture_; }
+  const std::deque<CaptureStage>& capture() const { return capture_; }
+  StageHeartbeats& heartbeats() { return heartbeats_; }
+  const StageHeartbeats& heartbeats() const { return heartbeats_; }
   VehicleInputStage& vehicle_input() { return vehicle_input_; }
+  const VehicleInputStage& vehicle_input() const { return vehicle_input_; }
   VisionStage& vision() { return vision_; }
   EstimationStage& estimation() { return estimation_; }
   const VisionStage& vision() const { return vision_; }
@@ -58,7 +70,7 @@ class Appliance {
   const MapIndex& map_index() const { return *map_index_; }
   const can::Bus& bus() const { return *hardware_.bus; }
 
-  /// To be called after all threads have ended.
+  /// Exact after all threads have ended. Callable from any thread.
   FrameCounts frame_counts() const;
 
   /// Wakes every stage that waits for a queue, so that its thread can end.
@@ -67,6 +79,7 @@ class Appliance {
  private:
   Appliance(const Config& config, const HdMap& map, Hardware hardware,
             std::unique_ptr<MapIndex> map_index, std::unique_ptr<Localizer> localizer);
+  Status authenticate(const SecocConfig& config, const can::BaseIds& base);
 
   Hardware hardware_;
   std::unique_ptr<MapIndex> map_index_;
@@ -77,13 +90,11 @@ class Appliance {
   VehicleInputStage vehicle_input_;
   VisionStage vision_;
   EstimationStage estimation_;
+  StageHeartbeats heartbeats_;
 };
 
 /// The configuration of the publisher and of the localizer.
 can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map);
 LocalizerOptions localizer_options(const Config& config);
-
-/// Identifies a map in LOC_Status: a 16-bit hash of its origin, classes and coordinates.
-uint16_t map_id_of(const HdMap& map);
 
 }  // namespace bevloc::firmware

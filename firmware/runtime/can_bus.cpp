@@ -8,8 +8,9 @@ namespace bevloc::firmware {
 
 can::SocketCanOptions appliance_options(const CanConfig& config) {
   can::SocketCanOptions options;
-  options.accepted_ids = can::VehicleInput::accepted_ids(config.base_ids);
-  options.confirmed_ids = can::PosePublisher::sent_ids(config.base_ids, config.variant);
+  options.accepted_ids = can::VehicleInput::accepted_ids(config.base_ids, config.secoc.has_value());
+  options.confirmed_ids =
+      can::PosePublisher::sent_ids(config.base_ids, config.variant, config.secoc.has_value());
   options.fd = config.variant == can::FrameFormat::kFd;
   return options;
 }

@@ -14,8 +14,23 @@ Eigen::Matrix3d map_covariance(const TrackedPose& pose) {
   return map_from_vehicle * pose.covariance * map_from_vehicle.transpose();
 }
 
+constexpr size_t index_of(TrackerUpdate outcome) {
+  return static_cast<size_t>(outcome);
+}
+
 Duration age(const std::optional<Time>& time, Time now) {
   return time ? now - *time : Duration::max();
+}
+
+/// Ticks come every 10 ms. After a longer pause (suspend to memory, for example) the vehicle may be
+/// anywhere.
+constexpr Duration kClockGap = std::chrono::milliseconds(300);
+
+void add_uncertainty(const TrackedPose& pose, HealthInputs& inputs) {
+  inputs.longitudinal_sigma_m = std::sqrt(pose.covariance(0, 0));
+  inputs.lateral_sigma_m = std::sqrt(pose.covariance(1, 1));
+  inputs.yaw_sigma_rad = std::sqrt(pose.covariance(2, 2));
+  inputs.internal_error = !pose.map_from_vehicle.is_finite() || !pose.covariance.allFinite();
 }
 
 }  // namespace
@@ -24,12 +39,13 @@ EstimationStage::EstimationStage(const TrackerParameters& tracker, const HealthL
                                  uint16_t map_id, can::PosePublisher& publisher,
                                  VehicleQueue& samples, VisionQueue& reports,
                                  PredictionQueue& predictions)
-    : tracker_(tracker),
+    : estimator_(tracker),
       health_(limits),
       publisher_(publisher),
       samples_(samples),
       reports_(reports),
       predictions_(predictions),
+      protection_parameters_(limits.protection),
       report_lifetime_(limits.correction_timeout),
       map_id_(map_id) {}
 
@@ -38,13 +54,35 @@ void EstimationStage::observe_corrections(CorrectionObserver observer) {
 }
 
 void EstimationStage::tick(Time now) {
+  watch_clock(now);
   take_samples();
   take_reports(now);
-  const auto pose = tracker_.pose_at(now);
+  estimator_.judge(now, health_.pose_valid());
+  const auto pose = estimator_.pose_at(now);
+  if (pose) protection_ = estimator_.protection_of(*pose, protection_parameters_);
   update_health(pose, now);
-  if (pose) predictions_.push({*pose, !health_.pose_valid()});
+  if (pose) predictions_.push({*pose, !health_.pose_valid() || wide_search_});
   publish(pose, now);
   ++counters_.ticks;
+}
+
+void EstimationStage::note_clock_gap(Duration) {
+  ++counters_.clock_gaps;
+  clock_gap_ = true;
+  while (samples_.pop(Duration::zero())) {
+  }
+  while (reports_.pop(Duration::zero())) {
+  }
+  estimator_.reset();
+  last_tick_.reset();
+  odometry_time_.reset();
+  gnss_time_.reset();
+  accepted_frame_time_.reset();
+  confirmed_time_.reset();
+  unsent_correction_.reset();
+  latest_report_.reset();
+  accepted_in_a_row_ = 0;
+  refused_in_a_row_ = 0;
 }
 
 void EstimationStage::sign_off(Time now) {
@@ -58,22 +96,28 @@ void EstimationStage::sign_off(Time now) {
 
 void EstimationStage::take_samples() {
   while (const auto sample = samples_.pop(Duration::zero())) {
-    if (tracker_.add(*sample) != TrackerUpdate::kAccepted) continue;
-    if (const auto* gnss = std::get_if<GnssSample>(&*sample)) watch_gnss(*gnss);
-    std::optional<Time>& latest =
-        std::holds_alternative<OdometrySample>(*sample) ? odometry_time_ : gnss_time_;
+    const bool is_odometry = std::holds_alternative<OdometrySample>(*sample);
+    const TrackerUpdate outcome = estimator_.add(*sample);
+    ++(is_odometry ? counters_.odometry : counters_.gnss)[index_of(outcome)];
+    // A GNSS sample that the gate refuses is there, but contradicts.
+    const bool arrived =
+        outcome == TrackerUpdate::kAccepted || (!is_odometry && outcome == TrackerUpdate::kGated);
+    if (!arrived) continue;
+    std::optional<Time>& latest = is_odometry ? odometry_time_ : gnss_time_;
     latest = std::visit([](const auto& taken) { return taken.time; }, *sample);
   }
 }
 
-void EstimationStage::watch_gnss(const GnssSample& sample) {
-  if (const auto pose = tracker_.pose_at(sample.time)) gnss_monitor_.add(sample, *pose);
+void EstimationStage::watch_clock(Time now) {
+  if (last_tick_ && now - *last_tick_ > kClockGap) note_clock_gap(now - *last_tick_);
+  last_tick_ = now;
 }
 
 void EstimationStage::take_reports(Time now) {
   while (const auto report = reports_.pop(Duration::zero())) {
     latest_report_ = *report;
     latest_report_arrival_ = now;
+    network_fault_ = network_fault_ || report->network_fault;
     if (report->had_prior) add_correction(*report);
   }
   // If all cameras stop, there are no more reports that say so.
@@ -81,14 +125,16 @@ void EstimationStage::take_reports(Time now) {
 }
 
 void EstimationStage::add_correction(const VisionReport& report) {
-  const TrackerUpdate outcome =
-      tracker_.add_correction(report.frame_time, report.prior, report.match);
+  const auto [outcome, seen] = estimator_.add_match(report.frame_time, report.prior, report.match);
+  wide_search_ = seen.at_edge;
+  ++counters_.corrections[index_of(outcome)];
   if (outcome == TrackerUpdate::kAccepted) {
     ++counters_.accepted;
-    ++accepted_in_a_row_;
     refused_in_a_row_ = 0;
     accepted_frame_time_ = report.frame_time;
     unsent_correction_ = report.frame_time;
+    if (seen.confirms()) confirmed_time_ = report.frame_time;
+    accepted_in_a_row_ = seen.confirms_start() ? accepted_in_a_row_ + 1 : 0;
   } else if (outcome == TrackerUpdate::kNoEvidence) {
     ++counters_.without_evidence;
   } else {
@@ -98,34 +144,41 @@ void EstimationStage::add_correction(const VisionReport& report) {
   }
 }
 
-void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time now) {
+HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& pose,
+                                            Time now) const {
   HealthInputs inputs;
   inputs.initialized = pose.has_value();
   inputs.odometry_age = age(odometry_time_, now);
   inputs.gnss_age = age(gnss_time_, now);
-  inputs.correction_age = age(accepted_frame_time_, now);
+  inputs.correction_age = age(confirmed_time_, now);
   if (latest_report_) {
     inputs.cameras_present = latest_report_->present;
     inputs.cameras_unsynchronized = latest_report_->unsynchronized;
     inputs.map_nearby = latest_report_->map_nearby || !latest_report_->had_prior;
     inputs.overloaded = latest_report_->skipped;
   }
+  inputs.network_fault = network_fault_;
   inputs.latest_correction_refused = refused_in_a_row_ > 0;
   inputs.accepted_in_a_row = accepted_in_a_row_;
   inputs.refused_in_a_row = refused_in_a_row_;
-  inputs.contradicts_gnss = gnss_monitor_.contradicts();
-  if (pose) {
-    inputs.longitudinal_sigma_m = std::sqrt(pose->covariance(0, 0));
-    inputs.lateral_sigma_m = std::sqrt(pose->covariance(1, 1));
-    inputs.yaw_sigma_rad = std::sqrt(pose->covariance(2, 2));
-    inputs.internal_error = !pose->map_from_vehicle.is_finite() || !pose->covariance.allFinite();
-  }
+  inputs.verdict = estimator_.verdict();
+  const WhyMask vehicle_input = vehicle_input_ != nullptr ? vehicle_input_->why() : WhyMask();
+  inputs.odometry_implausible =
+      estimator_.odometry_implausible() || vehicle_input.has(Why::kOdometryImplausible);
+  inputs.foreign_sender = vehicle_input.has(Why::kForeignSender);
+  inputs.gnss_confirms = estimator_.gnss_confirms();
+  inputs.clock_gap = clock_gap_;
+  if (pose) add_uncertainty(*pose, inputs);
+  return inputs;
+}
+
+void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time now) {
+  const HealthInputs inputs = health_inputs(pose, now);
+  // The reason stays until the pose is found again, so that a reader of LOC_Status sees it.
+  if (pose && inputs.accepted_in_a_row > 0) clock_gap_ = false;
   if (health_.update(inputs) && health_.state() == HealthState::kLost) {
-    // A pose that is lost because of its large covariance need not be widened.
-    if (health_.pose_contradicted()) tracker_.widen();
     accepted_in_a_row_ = 0;
     refused_in_a_row_ = 0;
-    gnss_monitor_.reset();
   }
   counters_.state = health_.state();
   counters_.why = health_.why().bits();
@@ -140,6 +193,8 @@ void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) 
   if (pose) {
     report.map_from_vehicle = pose->map_from_vehicle;
     report.covariance = map_covariance(*pose);
+    report.protection_level = {protection_.x(), protection_.y(), protection_.z(),
+                               protection_parameters_.integrity_risk};
     report.forward_speed_mps = pose->speed_mps;
     report.yaw_rate_radps = pose->yaw_rate_radps;
   }

@@ -1,16 +1,20 @@
 // The estimation stage: fuses odometry, GNSS and corrections into the pose that goes to the bus.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 
 #include "can/messages/pose_publisher.h"
 #include "firmware/health/health.h"
 #include "firmware/stages/messages.h"
-#include "pipeline/tracker/gnss_monitor.h"
-#include "pipeline/tracker/tracker.h"
+#include "firmware/stages/vehicle_input_stage.h"
+#include "pipeline/tracker/pose_estimator.h"
 
 namespace bevloc::firmware {
+
+/// How often the tracker answered with each TrackerUpdate.
+using TrackerOutcomes = std::array<std::atomic<uint64_t>, kTrackerUpdates>;
 
 /// Totals since start and the current state; readable from any thread.
 struct EstimationCounters {
@@ -18,8 +22,12 @@ struct EstimationCounters {
   std::atomic<uint64_t> accepted{0};          ///< corrections that the tracker accepted
   std::atomic<uint64_t> refused{0};           ///< corrections that the tracker refused
   std::atomic<uint64_t> without_evidence{0};  ///< framesets in which the solver found no evidence
+  TrackerOutcomes odometry{};                 ///< by TrackerUpdate, as are the next two
+  TrackerOutcomes gnss{};
+  TrackerOutcomes corrections{};
+  std::atomic<uint64_t> clock_gaps{0};
   std::atomic<HealthState> state{HealthState::kInit};
-  std::atomic<uint16_t> why{0};      ///< bits of a WhyMask
+  std::atomic<uint32_t> why{0};      ///< bits of a WhyMask
   std::atomic<unsigned> cameras{0};  ///< cameras used in the latest frameset, a CameraMask
 };
 
@@ -37,9 +45,16 @@ class EstimationStage {
 
   void observe_corrections(CorrectionObserver observer);
 
+  /// Reports what is wrong with the vehicle's messages. `input` must outlive the stage.
+  void watch(const VehicleInputStage& input) { vehicle_input_ = &input; }
+
   /// Takes all queued samples and reports, then publishes the pose predicted to `now`. To be called
   /// once per bus cycle.
   void tick(Time now);
+
+  /// Forgets the pose and what is queued, because the vehicle may have been moved while the machine
+  /// was suspended. The next tick() reports LOST with Why::kClockGap.
+  void note_clock_gap(Duration gap);
 
   /// Publishes the state LOST without a pose, so that consumers need not wait for a timeout. To be
   /// called after the last tick().
@@ -49,32 +64,40 @@ class EstimationStage {
 
  private:
   void take_samples();
-  void watch_gnss(const GnssSample& sample);
   void take_reports(Time now);
   void add_correction(const VisionReport& report);
+  void watch_clock(Time now);
+  HealthInputs health_inputs(const std::optional<TrackedPose>& pose, Time now) const;
   void update_health(const std::optional<TrackedPose>& pose, Time now);
   void publish(const std::optional<TrackedPose>& pose, Time now);
   can::LocalizerStatus make_status() const;
 
-  Tracker tracker_;
+  PoseEstimator estimator_;
   Health health_;
-  GnssMonitor gnss_monitor_;
   can::PosePublisher& publisher_;
   VehicleQueue& samples_;
   VisionQueue& reports_;
   PredictionQueue& predictions_;
   CorrectionObserver correction_observer_;
+  const VehicleInputStage* vehicle_input_ = nullptr;
 
+  ProtectionParameters protection_parameters_;
+  Eigen::Vector3d protection_ = Eigen::Vector3d::Zero();  ///< of the latest pose: (m, m, rad)
+  bool wide_search_ = false;  ///< the latest match may lie outside the tracking range
   Duration report_lifetime_;  ///< without a newer report, the latest one expires after this
   uint16_t map_id_;
   std::optional<Time> odometry_time_;
   std::optional<Time> gnss_time_;
   std::optional<Time> accepted_frame_time_;  ///< frameset of the latest accepted correction
+  std::optional<Time> confirmed_time_;       ///< the same, of those with evidence across
   std::optional<Time> unsent_correction_;    ///< the same, until a pose was published
   std::optional<VisionReport> latest_report_;
   Time latest_report_arrival_;
-  int accepted_in_a_row_ = 0;
+  bool network_fault_ = false;
+  std::optional<Time> last_tick_;
+  int accepted_in_a_row_ = 0;  ///< that confirm a start
   int refused_in_a_row_ = 0;
+  bool clock_gap_ = false;  ///< since the latest gap no correction was accepted
   EstimationCounters counters_;
 };
 

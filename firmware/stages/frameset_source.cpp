@@ -10,17 +10,31 @@ FramesetSource::FramesetSource(const drivers::SynchronizerConfig& config, bool c
     : synchronizer_(config), synchrony_(synchronizer_, compensates, pulses), frames_(frames) {}
 
 void FramesetSource::take_frames(const drivers::Clock& clock, Duration timeout) {
+  look_at_clock(clock.now());
   // A frameset that waits for a dead camera must be emitted on time although no frame arrives.
   if (const auto deadline = synchronizer_.deadline()) {
     timeout = std::clamp(*deadline - clock.now(), Duration::zero(), timeout);
   }
   for (auto frame = frames_.pop(timeout); frame; frame = frames_.pop(Duration::zero())) {
-    synchronizer_.add(std::move(*frame), clock.now());
+    const Time now = clock.now();
+    look_at_clock(now);
+    synchronizer_.add(std::move(*frame), now);
   }
+}
+
+void FramesetSource::look_at_clock(Time now) {
+  if (latest_look_ && now - *latest_look_ > kGap) {
+    ++counters_.clock_gaps;
+    synchronizer_.forget_until(*latest_look_);
+  }
+  latest_look_ = now;
 }
 
 std::optional<NewestFrameset> FramesetSource::newest(Time now) {
   auto frameset = synchronizer_.poll(now);
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    frames_of_[camera].store(synchronizer_.counters(camera));
+  }
   if (!frameset) return std::nullopt;
   NewestFrameset newest;
   while (auto newer = synchronizer_.poll(now)) {

@@ -1,9 +1,11 @@
 // Forms framesets from the frames of the capture stages, and emits the newest.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <optional>
 
+#include "common/published.h"
 #include "drivers/clock/clock.h"
 #include "drivers/frameset/synchronizer.h"
 #include "firmware/stages/messages.h"
@@ -15,6 +17,7 @@ namespace bevloc::firmware {
 struct FramesetCounters {
   std::atomic<uint64_t> skipped{0};         ///< framesets dropped because a newer one was ready
   std::atomic<uint64_t> frames_skipped{0};  ///< frames in those framesets
+  std::atomic<uint64_t> clock_gaps{0};      ///< see FramesetSource::kGap
 };
 
 /// The newest frameset that was ready.
@@ -24,10 +27,14 @@ struct NewestFrameset {
   bool unsynchronized = false;  ///< the cameras do not expose together (Synchrony)
 };
 
-/// Owns the synchronizer. Thread-bound: called from the vision thread; counters() and synchrony()
-/// are readable from any thread.
+/// Owns the synchronizer. Thread-bound: called from the vision thread; counters(), synchrony() and
+/// frames_of() are readable from any thread.
 class FramesetSource {
  public:
+  /// After a longer time between two looks at the clock (the machine was suspended, or the thread
+  /// hung), the frames from before are forgotten: the vehicle may be elsewhere.
+  static constexpr Duration kGap = std::chrono::seconds(1);
+
   /// `compensates`: whether the matching corrects for the motion between the frames of a frameset.
   /// `pulses`: of the trigger; null without one. `frames` and `pulses` must outlive this.
   FramesetSource(const drivers::SynchronizerConfig& config, bool compensates,
@@ -49,14 +56,18 @@ class FramesetSource {
 
   const FramesetCounters& counters() const { return counters_; }
   const SynchronyCounters& synchrony() const { return synchrony_.counters(); }
-  /// Not to be read while the vision thread runs.
-  const drivers::FramesetSynchronizer& synchronizer() const { return synchronizer_; }
+  /// What became of the frames of one camera.
+  drivers::SynchronizerCounters frames_of(int camera) const { return frames_of_[camera].load(); }
 
  private:
+  void look_at_clock(Time now);
+
   drivers::FramesetSynchronizer synchronizer_;
   Synchrony synchrony_;
   FrameQueue& frames_;
   FramesetCounters counters_;
+  std::optional<Time> latest_look_;
+  std::array<Published<drivers::SynchronizerCounters>, kCameraCount> frames_of_;
 };
 
 }  // namespace bevloc::firmware

@@ -1,28 +1,55 @@
 // The CAN-in stage: takes odometry and GNSS from the vehicle's CAN messages.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
 #include "can/bus/bus.h"
 #include "can/messages/vehicle_input.h"
+#include "can/secoc/secoc_receiver.h"
+#include "common/published.h"
 #include "firmware/stages/messages.h"
 
 namespace bevloc::firmware {
 
-/// Thread-bound: called from the CAN-in thread.
+/// Thread-bound: called from the CAN-in thread; why(), counters() and secoc_counters() are readable
+/// from any thread.
 class VehicleInputStage {
  public:
   /// `bus` and `samples` must outlive the stage.
   VehicleInputStage(can::Bus& bus, const can::BaseIds& base, can::GeodeticPosition map_origin,
-                    VehicleQueue& samples);
+                    VehicleQueue& samples, const can::OdometryLimits& limits = {});
+
+  /// From now on, uses only frames that are authentic.
+  void authenticate(can::SecocReceiver receiver) { secoc_.emplace(std::move(receiver)); }
 
   /// Waits for CAN frames, at most `timeout`, and queues the samples that they complete.
   void step(Duration timeout);
 
-  can::VehicleInputCounters counters() const { return input_.counters(); }
+  /// What is wrong with the vehicle's messages now: a set of kOdometryImplausible and
+  /// kForeignSender (can::VehicleInput::why(), or frames that are not authentic).
+  WhyMask why() const { return WhyMask::from_bits(why_); }
+
+  can::VehicleInputCounters counters() const { return counters_.load(); }
+  /// Nothing without authentication.
+  std::optional<can::SecocCounters> secoc_counters() const {
+    return secoc_ ? std::optional(secoc_counters_.load()) : std::nullopt;
+  }
 
  private:
+  void take(const can::ReceivedFrame& received);
+  void take_authentic(const can::ReceivedFrame& received);
+
   can::Bus& bus_;
   can::VehicleInput input_;
   VehicleQueue& samples_;
+  Published<can::VehicleInputCounters> counters_;
+  Published<can::SecocCounters> secoc_counters_;
+  std::optional<can::SecocReceiver> secoc_;
+  std::optional<Time> forged_;  ///< the latest frame that was not authentic
+  std::atomic<uint32_t> why_{0};
 };
 
 }  // namespace bevloc::firmware

@@ -2,12 +2,19 @@
 
 #include <cmath>
 
+#include <spdlog/spdlog.h>
+
 namespace bevloc::firmware {
 namespace {
 
 /// Above this speed no two images of a camera are the same. Odometry of a standing vehicle stays
 /// far below.
 constexpr double kDriving_mps = 1.0;
+
+constexpr double kStanding_mps = 0.1;
+/// The network is checked while the vehicle stands: after this time, and not more often than this.
+constexpr Duration kSettledStanding = std::chrono::seconds(1);
+constexpr Duration kCheckPeriod = std::chrono::seconds(60);
 
 VisionReport report_without_frameset(Time now) {
   VisionReport report;
@@ -25,7 +32,17 @@ VisionStage::VisionStage(Localizer& localizer, const VisionConfig& config, Frame
       framesets_(config.synchronizer, config.compensate_motion, config.pulses, frames),
       priors_(config.compensate_motion, predictions),
       reports_(reports),
-      perceived_mask_([&localizer] { return localizer.perceived_mask(); }) {}
+      perceived_mask_([&localizer] { return localizer.perceived_mask(); }) {
+  if (!localizer_.model_has_answer()) {
+    spdlog::warn(
+        "model {}: it stores no answer to the test frame, so a wrong computation is not detected; "
+        "run bevloc store-answer on its file",
+        localizer_.model_name());
+  }
+  if (const Status status = check_network(); !status) {
+    spdlog::critical("{}", status.error().message);
+  }
+}
 
 bool VisionStage::step(const drivers::Clock& clock, Duration timeout) {
   ++counters_.steps;
@@ -51,10 +68,15 @@ VisionReport VisionStage::report_on(const NewestFrameset& newest) {
   report.present = frameset.present;
   report.skipped = newest.skipped;
   report.unsynchronized = newest.unsynchronized;
+  if (counters_.network_fault) {
+    report.network_fault = true;
+    return report;
+  }
   if (const auto prior = priors_.at(frameset)) {
     report.had_prior = true;
     report.prior = prior->map_from_vehicle;
     match(frameset, *prior, report);
+    check_network_again(frameset, *prior);
   } else {
     ++counters_.no_prior;
   }
@@ -70,7 +92,7 @@ void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
   }
   report.present = localizer_.localize(images, prior.map_from_vehicle, prior.range, solution_);
   report.map_nearby = localizer_.map_nearby();
-  count_unused_images(frameset.present, report.present);
+  note_unused_images(frameset.present, report.present);
   if (static_cast<int>(report.present.count()) < min_cameras_) {
     ++counters_.refused;
     return;
@@ -82,12 +104,40 @@ void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
   }
 }
 
-void VisionStage::count_unused_images(CameraMask given, CameraMask used) {
-  const CameraMask unreadable = given & ~used & ~localizer_.frozen();
+Status VisionStage::check_network() {
+  ++counters_.checks;
+  Status status = localizer_.check();
+  if (!status) counters_.network_fault = true;
+  return status;
+}
+
+void VisionStage::check_network_again(const drivers::Frameset& frameset, const Prior& prior) {
+  if (std::abs(prior.speed_mps) > kStanding_mps) {
+    standing_since_.reset();
+    return;
+  }
+  if (!standing_since_) standing_since_ = frameset.time;
+  const bool settled = frameset.time - *standing_since_ >= kSettledStanding;
+  if (!settled) return;
+  if (latest_check_ != Time::min() && frameset.time - latest_check_ < kCheckPeriod) return;
+  latest_check_ = frameset.time;
+  (void)check_network();  // the supervisor logs a fault
+}
+
+void VisionStage::note_unused_images(CameraMask given, CameraMask used) {
+  const CameraMask dark = localizer_.with(ViewFault::kDark);
+  const CameraMask blinded = localizer_.with(ViewFault::kBlinded);
+  const CameraMask dirty = localizer_.with(ViewFault::kDirty);
+  const CameraMask judged = localizer_.frozen() | dark | blinded | dirty;
+  const CameraMask unreadable = given & ~used & ~judged;
   for (int camera = 0; camera < kCameraCount; ++camera) {
     if (unreadable[camera]) ++counters_.unreadable[camera];
   }
-  counters_.frozen = static_cast<unsigned>(localizer_.frozen().to_ulong());
+  const auto bits = [](CameraMask mask) { return static_cast<unsigned>(mask.to_ulong()); };
+  counters_.frozen = bits(localizer_.frozen());
+  counters_.dark = bits(dark);
+  counters_.blinded = bits(blinded);
+  counters_.dirty = bits(dirty);
 }
 
 }  // namespace bevloc::firmware

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "drivers/clock/clock.h"
@@ -46,14 +47,24 @@ struct VisionCounters {
   std::atomic<uint64_t> refused{0};      ///< framesets with fewer readable images than min_cameras
   /// Unreadable images per camera: wrong size or damaged JPEG. Their frames count as used.
   std::array<std::atomic<uint64_t>, kCameraCount> unreadable{};
-  std::atomic<unsigned> frozen{0};  ///< frozen cameras, a CameraMask; their images are not used
+  /// The cameras whose images are not used, each a CameraMask (FrozenCameraDetector, ViewMonitor).
+  std::atomic<unsigned> frozen{0};
+  std::atomic<unsigned> dark{0};
+  std::atomic<unsigned> blinded{0};
+  std::atomic<unsigned> dirty{0};
+  std::atomic<uint64_t> checks{0};         ///< of network and solvers (Localizer::check())
+  std::atomic<bool> network_fault{false};  ///< one of them failed; stays until the restart
 };
 
+/// Checks network and solvers at construction, and again, at most once a minute, while the vehicle
+/// stands. After a failed check it matches nothing any more and every report says so.
+///
 /// Thread-bound: called from the vision thread; counters() and framesets().counters() are readable
 /// from any thread.
 class VisionStage {
  public:
-  /// `localizer` and the queues must outlive the stage.
+  /// Logs a failed check, and a model that cannot be checked. `localizer` and the queues must
+  /// outlive the stage.
   VisionStage(Localizer& localizer, const VisionConfig& config, FrameQueue& frames,
               PredictionQueue& predictions, VisionQueue& reports);
 
@@ -71,7 +82,9 @@ class VisionStage {
   VisionReport report_on(const NewestFrameset& newest);
   /// Fills in what only the images tell.
   void match(const drivers::Frameset& frameset, const Prior& prior, VisionReport& report);
-  void count_unused_images(CameraMask given, CameraMask used);
+  Status check_network();
+  void check_network_again(const drivers::Frameset& frameset, const Prior& prior);
+  void note_unused_images(CameraMask given, CameraMask used);
 
   Localizer& localizer_;
   const int min_cameras_;
@@ -82,6 +95,8 @@ class VisionStage {
   VisionObserver observer_;
   const std::function<std::span<const float>()> perceived_mask_;
   VisionCounters counters_;
+  Time latest_check_ = Time::min();
+  std::optional<Time> standing_since_;
 };
 
 }  // namespace bevloc::firmware

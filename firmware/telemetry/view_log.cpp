@@ -13,8 +13,27 @@ void ViewLog::note(const ApplianceView& view) {
   if (view.bus != before_.bus) {
     spdlog::warn("CAN {} -> {}", can::to_string(before_.bus), can::to_string(view.bus));
   }
+  if (view.hung != before_.hung) {
+    if (view.hung.empty()) {
+      spdlog::info("every thread makes progress again");
+    } else {
+      spdlog::error("no progress in thread {}; systemd restarts bevlocd if it lasts", view.hung);
+    }
+  }
   note_drifts(view);
-  note_frozen(view.frozen);
+  note_cameras(before_.frozen, view.frozen, "frozen, repeats images while the vehicle drives",
+               "power-cycle the camera and check its lens");
+  note_cameras(before_.dark, view.dark, "dark, its image is black and without contrast",
+               "check its lens, exposure and cable");
+  note_cameras(before_.blinded, view.blinded, "blinded, a large part of its image is white",
+               "check its exposure if no bright light explains this");
+  note_cameras(before_.dirty, view.dirty, "dirty, parts of its image do not move while driving",
+               "clean the lens");
+  if (view.network_fault && !before_.network_fault) {
+    spdlog::critical(
+        "network: it computed another answer to the test frame than its model stores; replace the "
+        "model file, restart, and replace the computer if it happens again");
+  }
   before_ = view;
 }
 
@@ -33,16 +52,14 @@ void ViewLog::note_drifts(const ApplianceView& view) {
   }
 }
 
-void ViewLog::note_frozen(CameraMask frozen) {
+void ViewLog::note_cameras(CameraMask before, CameraMask now, std::string_view what,
+                           std::string_view advice) {
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    if (frozen[camera] == before_.frozen[camera]) continue;
-    if (frozen[camera]) {
-      spdlog::warn(
-          "camera {}: frozen, repeats the same image while the vehicle drives; power-cycle the "
-          "camera and check its lens",
-          kCameraNames[camera]);
+    if (now[camera] == before[camera]) continue;
+    if (now[camera]) {
+      spdlog::warn("camera {}: {}; {}", kCameraNames[camera], what, advice);
     } else {
-      spdlog::info("camera {}: no longer frozen", kCameraNames[camera]);
+      spdlog::info("camera {}: no longer {}", kCameraNames[camera], what.substr(0, what.find(',')));
     }
   }
 }

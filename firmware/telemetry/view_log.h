@@ -1,6 +1,8 @@
 // Logs changes of the appliance state while it runs.
 #pragma once
 
+#include <string_view>
+
 #include "firmware/runtime/supervisor.h"
 
 namespace bevloc::firmware {
@@ -13,7 +15,8 @@ class ViewLog {
 
  private:
   void note_drifts(const ApplianceView& view);
-  void note_frozen(CameraMask frozen);
+  static void note_cameras(CameraMask before, CameraMask now, std::string_view what,
+                           std::string_view advice);
 
   ApplianceView before_;
 };

@@ -30,7 +30,7 @@ namespace bevloc {
 /// the centre of the top left pixel.
 ///
 /// Fails with file, line and key on a missing, unknown or repeated key, on a bad value, and on a
-/// distortion that is not monotonic within the image.
+/// rig that cannot be that of a vehicle (rig_check.h).
 Result<Rig> read_rig(const std::filesystem::path& path);
 
 /// The same for text in memory. Error messages show `name` as the file.

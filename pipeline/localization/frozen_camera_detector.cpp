@@ -18,6 +18,19 @@ inline void add(const int8_t* from, Words& sums) {
   sums = ((sums << 5) | (sums >> 27)) + words;
 }
 
+/// Steele, Lea and Flood: "Fast Splittable Pseudorandom Number Generators", the finaliser.
+uint64_t mix(uint64_t value) {
+  value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9U;
+  value = (value ^ (value >> 27)) * 0x94d049bb133111ebU;
+  return value ^ (value >> 31);
+}
+
+uint64_t digest_of(const ImageChecksum& checksum) {
+  uint64_t digest = 0;
+  for (const uint32_t word : checksum) digest = mix(digest + 0x9e3779b97f4a7c15U + word);
+  return digest;
+}
+
 }  // namespace
 
 ImageChecksum image_checksum(std::span<const int8_t> planes) {
@@ -33,14 +46,24 @@ ImageChecksum image_checksum(std::span<const int8_t> planes) {
 
 bool FrozenCameraDetector::is_frozen(int camera, std::span<const int8_t> planes, bool driving) {
   History& history = histories_[camera];
-  const ImageChecksum checksum = image_checksum(planes);
-  if (history.latest != checksum) {
-    history.latest = checksum;
+  if (!history.knows(digest_of(image_checksum(planes)))) {
     history.repetitions = 0;
   } else if (driving) {
     history.repetitions = std::min(history.repetitions + 1, kRepetitions);
   }
   return history.repetitions == kRepetitions;
+}
+
+bool FrozenCameraDetector::History::knows(Digest image) {
+  const auto end = images.begin() + count;
+  if (std::find(images.begin(), end, image) != end) return true;
+  if (count < kRemembered) {
+    images[count++] = image;
+  } else {
+    images[oldest] = image;
+    oldest = (oldest + 1) % kRemembered;
+  }
+  return false;
 }
 
 }  // namespace bevloc

@@ -1,9 +1,8 @@
-// Detects frozen cameras: those that repeat the same image while the vehicle drives.
+// Detects frozen cameras: those that repeat images while the vehicle drives.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "common/cameras.h"
@@ -18,16 +17,20 @@ using ImageChecksum = std::array<uint32_t, 16>;
 /// The size of `planes` must be a multiple of 64 values.
 ImageChecksum image_checksum(std::span<const int8_t> planes);
 
-/// A hanging sensor or a grabber that repeats its buffer sends new frames with an old image. A
-/// working sensor never repeats an image exactly, because of its noise and the vehicle's motion.
+/// A hanging sensor, a grabber that repeats its buffers, or a recording that is played in a loop
+/// sends new frames with old images. A working sensor never repeats an image exactly, because of
+/// its noise and the vehicle's motion.
 ///
 /// Compares the network input, which is the box-filtered and quantised camera image: it has the
 /// same layout for every camera format, and all its 92160 values repeat only if the image does. The
 /// checksums of six cameras take 13 us. Allocates nothing. Not thread safe.
 class FrozenCameraDetector {
  public:
-  /// A camera is frozen after this many consecutive repetitions while driving.
+  /// A camera is frozen after this many consecutive repetitions while driving. An image that equals
+  /// any of the camera's latest kRemembered different images is a repetition.
   static constexpr int kRepetitions = 3;
+  /// At 10 images per second, loops of up to 51 s.
+  static constexpr int kRemembered = 512;
 
   /// Adds the network input of a new frame of `camera` and returns whether the camera is frozen.
   /// Counts repetitions only while `driving`. A frozen camera stays frozen until its image changes,
@@ -35,8 +38,17 @@ class FrozenCameraDetector {
   bool is_frozen(int camera, std::span<const int8_t> planes, bool driving);
 
  private:
+  /// A checksum, mixed into one word: two different images have the same with a probability of
+  /// 2^-64.
+  using Digest = uint64_t;
+
   struct History {
-    std::optional<ImageChecksum> latest;
+    /// Returns whether the image was remembered; remembers it if not.
+    bool knows(Digest image);
+
+    std::array<Digest, kRemembered> images{};  ///< a ring; only the first `count` are in use
+    int count = 0;
+    int oldest = 0;  ///< once the ring is full
     int repetitions = 0;
   };
   std::array<History, kCameraCount> histories_;

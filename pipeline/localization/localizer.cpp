@@ -13,6 +13,10 @@ namespace {
 constexpr double kSameMotion_m = 0.01;
 constexpr double kSameMotion_rad = radians(0.02);
 
+/// Largest error of the solvers on the test frame.
+constexpr double kSolverTolerance_m = 0.2;
+constexpr double kSolverTolerance_rad = radians(0.5);
+
 bool is_same(const Se2& a, const Se2& b) {
   return (a.translation() - b.translation()).norm() <= kSameMotion_m &&
          std::abs(wrap_angle(a.yaw_rad - b.yaw_rad)) <= kSameMotion_rad;
@@ -25,9 +29,18 @@ Result<std::unique_ptr<Localizer>> Localizer::create(const Rig& rig, const MapIn
                                                      const LocalizerOptions& options) {
   auto network = Network::load(model_path, options.network);
   if (!network) return tl::unexpected(network.error());
+  if (const Status fits = check_rig_fits((*network)->rig(), rig); !fits) {
+    return fail("{}: {}", model_path, fits.error().message);
+  }
   auto localizer =
       std::unique_ptr<Localizer>(new Localizer(rig, map, std::move(*network), options));
   const Network& loaded = *localizer->network_;
+  if (!loaded.stored_answer().empty()) {
+    const auto answer = answer_from(loaded.stored_answer());
+    if (!answer) return fail("{}: {}", model_path, answer.error().message);
+    localizer->stored_answer_ = *answer;
+  }
+  localizer->shifted_.resize(loaded.map_features().data.size());
   for (const SearchRange range : {SearchRange::kTracking, SearchRange::kAcquiring}) {
     auto solver = make_solver(options.solver, kFeatureGrid, loaded.bev_features().channels,
                               localizer->hypotheses(range), loaded.solver_parameters());
@@ -68,16 +81,60 @@ CameraMask Localizer::load_images(const CameraImages& images) {
         images.present[camera] &&
         preprocessors_[camera].run(images.images[camera], planes_of(camera)).has_value();
   });
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (!readable[camera]) continue;
+    frozen_[camera] = frozen_detector_.is_frozen(camera, planes_of(camera), images.driving);
+    view_monitor_.add(camera, planes_of(camera), images.driving);
+  }
+  view_monitor_.judge();
   CameraMask usable;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    const std::span<int8_t> planes = planes_of(camera);
-    if (readable[camera]) {
-      frozen_[camera] = frozen_detector_.is_frozen(camera, planes, images.driving);
-    }
-    usable[camera] = readable[camera] && !frozen_[camera];
-    if (!usable[camera]) std::ranges::fill(planes, kNetworkBlack);
+    usable[camera] =
+        readable[camera] && !frozen_[camera] && view_monitor_.fault(camera) == ViewFault::kNone;
+    if (!usable[camera]) std::ranges::fill(planes_of(camera), kNetworkBlack);
   }
   return usable;
+}
+
+Status Localizer::check() {
+  const NetworkAnswer answer = answer_to_test_frame(*network_);
+  if (table_cameras_) network_->set_view_table(view_table_);  // the test frame has one of its own
+  if (stored_answer_) {
+    if (Status status = check_answer(answer, *stored_answer_); !status) return status;
+  }
+  if (Status status = check_solver(SearchRange::kTracking); !status) return status;
+  return check_solver(SearchRange::kAcquiring);
+}
+
+Status Localizer::check_solver(SearchRange range) {
+  const FeatureView map = network_->map_features();
+  const BevGrid& grid = map.grid;
+  // The map as seen from one cell further ahead and to the left, or less in a narrow range.
+  const HypothesisGrid& searched = hypotheses(range);
+  const int rows = searched.x_m.farthest() > 1.3 * grid.cell_m ? 1 : 0;
+  const int cols = searched.y_m.farthest() > 1.3 * grid.cell_m ? 1 : 0;
+  for (int channel = 0; channel < map.channels; ++channel) {
+    for (int row = 0; row < grid.rows; ++row) {
+      const int to = (channel * grid.rows + row) * grid.cols;
+      const int from = (channel * grid.rows + std::max(row - rows, 0)) * grid.cols;
+      for (int col = 0; col < grid.cols; ++col) {
+        shifted_[to + col] = map.data[from + std::max(col - cols, 0)];
+      }
+    }
+  }
+  solvers_[static_cast<size_t>(range)]->solve({shifted_, map.channels, grid}, map, check_solution_);
+  const Eigen::Vector2d wanted(rows * grid.cell_m, cols * grid.cell_m);
+  const Se2& found = check_solution_.correction;
+  if (check_solution_.evidence == Evidence::kGood &&
+      (found.translation() - wanted).norm() <= kSolverTolerance_m &&
+      std::abs(found.yaw_rad) <= kSolverTolerance_rad) {
+    return {};
+  }
+  return fail(
+      "solver: found a correction of {:.2f} m, {:.2f} m, {:.2f} degrees for the test frame, wanted "
+      "{:.2f} m, {:.2f} m, 0 degrees: memory, processor or model file is damaged; replace the "
+      "model file, and the computer if it happens again",
+      found.x_m, found.y_m, degrees(found.yaw_rad), wanted.x(), wanted.y());
 }
 
 void Localizer::update_view(CameraMask present, const CameraMotions& reference_from_exposure) {

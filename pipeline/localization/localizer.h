@@ -14,9 +14,11 @@
 #include "common/se2.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/localization/frozen_camera_detector.h"
+#include "pipeline/localization/view_monitor.h"
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/rasterizer.h"
 #include "pipeline/network/network.h"
+#include "pipeline/network/test_frame.h"
 #include "pipeline/network/view/view_table.h"
 #include "pipeline/preprocessing/image_remap.h"
 #include "pipeline/solver/solver_factory.h"
@@ -28,7 +30,7 @@ struct LocalizerOptions {
   /// Hypotheses for SearchRange::kTracking, where the prior comes from the tracker.
   HypothesisGrid tracking;
   /// Hypotheses for SearchRange::kAcquiring, where the prior comes from GNSS and odometry alone.
-  HypothesisGrid acquiring{{6.0, 0.2}, {4.0, 0.2}, {radians(4.0), radians(0.2)}};
+  HypothesisGrid acquiring{{4.0, 0.2}, {3.0, 0.2}, {radians(4.0), radians(0.2)}};
   NetworkOptions network;
 };
 
@@ -37,7 +39,7 @@ struct CameraImages {
   std::array<ImageView, kCameraCount> images;  ///< only those in `present` are read
   CameraMask present;
   CameraMotions reference_from_exposure{};  ///< reference time: that of the prior
-  bool driving = false;                     ///< a repeated image then counts as frozen
+  bool driving = false;  ///< a repeated image then counts as frozen, and a still one as dirty
 };
 
 enum class SearchRange : uint8_t { kTracking, kAcquiring };
@@ -47,14 +49,16 @@ enum class SearchRange : uint8_t { kTracking, kAcquiring };
 /// safe. The map index must outlive it.
 class Localizer {
  public:
-  /// Fails if the model cannot be loaded or the solver does not support the hypotheses.
+  /// Fails if the model cannot be loaded, its stored answer is damaged, or the solver does not
+  /// support the hypotheses.
   static Result<std::unique_ptr<Localizer>> create(const Rig& rig, const MapIndex& map,
                                                    const std::string& model_path,
                                                    const LocalizerOptions& options);
 
   /// `prior` is T0, the predicted map_from_vehicle at the reference time; `result` corrects it.
   /// Returns the cameras that were used. A camera counts as missing if the size of its image
-  /// differs from the calibration, if its JPEG is damaged or if it is frozen.
+  /// differs from the calibration, if its JPEG is damaged, if it is frozen, or if its view is dark,
+  /// blinded or dirty.
   ///
   /// Computes the view table again when the set of cameras changes, or when a camera's motion
   /// differs by more than 1 cm or 0.02 degrees (1 cm at 30 m) from the one that the table was
@@ -62,8 +66,21 @@ class Localizer {
   CameraMask localize(const CameraImages& images, const Se2& prior, SearchRange range,
                       SolverResult& result);
 
+  /// Checks that network and solvers still compute what they should: the network's answer to a test
+  /// frame is the one that its model stores, and the solvers find a known correction. Takes as long
+  /// as some matches. Fails with the reason. perceived_mask() is not valid until the next
+  /// localize().
+  Status check();
+
+  /// Whether the model stores an answer to the test frame. Without one, check() cannot judge the
+  /// network.
+  bool model_has_answer() const { return stored_answer_.has_value(); }
+
   /// The cameras that were frozen at their latest readable image.
   CameraMask frozen() const { return frozen_; }
+
+  /// The cameras whose view has this fault at their latest readable image.
+  CameraMask with(ViewFault fault) const { return view_monitor_.with(fault); }
 
   /// The raster of the latest localize(), kRasterSize bytes.
   std::span<const uint8_t> map_raster() const { return network_->raster_input(); }
@@ -83,15 +100,21 @@ class Localizer {
             const LocalizerOptions& options);
   /// Fills the image input of the network, black for unusable cameras. Returns the usable cameras.
   CameraMask load_images(const CameraImages& images);
+  /// Checks the solver of a range with the map features of the test frame.
+  Status check_solver(SearchRange range);
   /// Updates the view table for the cameras and motions.
   void update_view(CameraMask present, const CameraMotions& reference_from_exposure);
 
   Rig network_rig_;
   LocalizerOptions options_;
   std::unique_ptr<Network> network_;
+  std::optional<NetworkAnswer> stored_answer_;
+  std::vector<float> shifted_;  ///< map features of the test frame, moved by a known correction
+  SolverResult check_solution_;
   std::vector<ImagePreprocessor> preprocessors_;
   FrozenCameraDetector frozen_detector_;
   CameraMask frozen_;
+  ViewMonitor view_monitor_;
   MapRasterizer rasterizer_;
   std::array<std::unique_ptr<Solver>, 2> solvers_;  ///< by SearchRange
   ViewTable view_table_;                            ///< computed for the next two members

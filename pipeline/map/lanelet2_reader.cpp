@@ -9,6 +9,7 @@
 
 #include "common/files.h"
 #include "pipeline/map/lanelet_geometry.h"
+#include "pipeline/map/map_check.h"
 #include "pipeline/map/map_frame.h"
 #include "pipeline/map/osm_document.h"
 
@@ -85,6 +86,12 @@ std::optional<double> speed_mps(std::string_view text) {
   return std::nullopt;
 }
 
+double length_of(const Polyline& line) {
+  double length_m = 0.0;
+  for (size_t i = 1; i < line.size(); ++i) length_m += (line[i] - line[i - 1]).norm();
+  return length_m;
+}
+
 Lane reversed(const Lane& lane) {
   Lane other = lane;
   std::swap(other.left, other.right);
@@ -97,8 +104,8 @@ Lane reversed(const Lane& lane) {
 /// Converts one document to a map. Stops at the first error.
 class Lanelet2Reader {
  public:
-  explicit Lanelet2Reader(const OsmDocument& document)
-      : document_(document), nodes_(locate_nodes(document)) {
+  Lanelet2Reader(const OsmDocument& document, NodePositions nodes)
+      : document_(document), nodes_(std::move(nodes)) {
     for (const OsmWay& way : document_.ways) ways_[way.id] = &way;
   }
 
@@ -251,6 +258,13 @@ class Lanelet2Reader {
             "local_y",
             document_.file, node->second.line, id);
       }
+      if (!(position->second.cwiseAbs().maxCoeff() <= kFarthestFromOriginM)) {
+        return fail(
+            "{}:{}: node {}: found a place ({:g}, {:g}) m from the origin, wanted at most "
+            "{:g} m",
+            document_.file, node->second.line, id, position->second.x(), position->second.y(),
+            kFarthestFromOriginM);
+      }
       if (points.empty() || points.back() != position->second) points.push_back(position->second);
     }
     return points;
@@ -261,6 +275,12 @@ class Lanelet2Reader {
     if (points && points->size() < 2) {
       return fail("{}:{}: way {}: found {} points in this bound of lanelet {}, wanted at least 2",
                   document_.file, way.line, way.id, points->size(), lanelet.relation->id);
+    }
+    // Centerlines get a point every 2 m, so that a wrong coordinate would fill the memory.
+    if (points && length_of(*points) > kLongestPolylineM) {
+      return fail("{}:{}: way {}: found {:g} m in this bound of lanelet {}, wanted at most {:g} m",
+                  document_.file, way.line, way.id, length_of(*points), lanelet.relation->id,
+                  kLongestPolylineM);
     }
     return points;
   }
@@ -284,7 +304,9 @@ Result<HdMap> read_lanelet2(const std::filesystem::path& path) {
 Result<HdMap> parse_lanelet2(std::string_view text, const std::filesystem::path& file) {
   const Result<OsmDocument> document = parse_osm(text, file.string());
   if (!document) return tl::unexpected(document.error());
-  Result<HdMap> map = Lanelet2Reader(*document).read();
+  Result<NodePositions> nodes = locate_nodes(*document);
+  if (!nodes) return tl::unexpected(nodes.error());
+  Result<HdMap> map = Lanelet2Reader(*document, std::move(*nodes)).read();
   if (map) map->name = file.stem().string();
   return map;
 }

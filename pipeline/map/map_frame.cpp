@@ -47,13 +47,21 @@ struct Similarity {
   }
 };
 
-/// The least-squares similarity from local coordinates to the tangent plane. Nothing if there are
+tl::unexpected<Error> too_few(size_t places, const std::string& file) {
+  return fail(
+      "{}: found lat and lon at some nodes, local_x and local_y at others, and both at {} places, "
+      "wanted both at 2 places or more, or only one kind",
+      file, places);
+}
+
+/// The least-squares similarity from local coordinates to the tangent plane. Fails if there are
 /// fewer than two points or the fit is poor.
-std::optional<Similarity> plane_from_local(const std::vector<std::complex<double>>& local,
-                                           const std::vector<std::complex<double>>& plane) {
+Result<Similarity> plane_from_local(const std::vector<std::complex<double>>& local,
+                                    const std::vector<std::complex<double>>& plane,
+                                    const std::string& file) {
   constexpr double kMaxScaleError = 0.01;
   constexpr double kMaxDisagreementM = 1.0;
-  if (local.size() < 2) return std::nullopt;
+  if (local.size() < 2) return too_few(local.size(), file);
   const auto count = static_cast<double>(local.size());
   const auto local_mean = std::accumulate(local.begin(), local.end(), std::complex(0.0)) / count;
   const auto plane_mean = std::accumulate(plane.begin(), plane.end(), std::complex(0.0)) / count;
@@ -63,19 +71,26 @@ std::optional<Similarity> plane_from_local(const std::vector<std::complex<double
     covariance += std::conj(local[i] - local_mean) * (plane[i] - plane_mean);
     variance += std::norm(local[i] - local_mean);
   }
-  if (variance == 0.0) return std::nullopt;
+  if (variance == 0.0) return too_few(1, file);
   const std::complex<double> factor = covariance / variance;
   const Similarity transform{factor, plane_mean - factor * local_mean};
-  if (std::abs(std::abs(factor) - 1.0) > kMaxScaleError) return std::nullopt;
+  double worst_m = 0.0;
   for (size_t i = 0; i < local.size(); ++i) {
-    if (std::abs(transform * local[i] - plane[i]) > kMaxDisagreementM) return std::nullopt;
+    worst_m = std::max(worst_m, std::abs(transform * local[i] - plane[i]));
   }
-  return transform;
+  const bool agrees =
+      std::abs(std::abs(factor) - 1.0) <= kMaxScaleError && worst_m <= kMaxDisagreementM;
+  if (agrees) return transform;
+  return fail(
+      "{}: found local_x and local_y that differ from lat and lon by a scale of {:g} and up to "
+      "{:g} "
+      "m, wanted at most {:g} and {:g} m; remove the wrong ones",
+      file, std::abs(factor), worst_m, 1.0 + kMaxScaleError, kMaxDisagreementM);
 }
 
 }  // namespace
 
-NodePositions locate_nodes(const OsmDocument& document) {
+Result<NodePositions> locate_nodes(const OsmDocument& document) {
   NodePositions positions;
   std::vector<std::complex<double>> local;
   std::vector<std::complex<double>> plane;
@@ -96,8 +111,12 @@ NodePositions locate_nodes(const OsmDocument& document) {
                    [](const auto& entry) { return has_local(entry.second); })) {
     return positions;
   }
-  const auto transform = plane_from_local(local, plane);
-  if (!transform) positions = {};
+  std::optional<Similarity> transform;
+  if (!positions.of_node.empty()) {
+    Result<Similarity> fitted = plane_from_local(local, plane, document.file);
+    if (!fitted) return tl::unexpected(fitted.error());
+    transform = *fitted;
+  }
   for (const auto& [id, node] : document.nodes) {
     if (!has_local(node)) continue;
     const std::complex<double> own(*node.local_x_m, *node.local_y_m);

@@ -21,9 +21,11 @@ struct NodePositions {
 /// The map frame is the east-north tangent plane at the middle of the file's nodes. Where a node
 /// has Autoware's local coordinates, they take precedence over its latitude and longitude: one
 /// similarity (shift, rotation, scale) maps all local coordinates into the tangent plane. It is
-/// fitted to the nodes that have both. If fewer than two nodes have both, or if they disagree by
-/// more than 1 m or 1 % of scale, the local coordinates are the map frame and the unknown origin is
-/// (0, 0).
-NodePositions locate_nodes(const OsmDocument& document);
+/// fitted to the nodes that have both. If no node has latitude and longitude, the local coordinates
+/// are the map frame and the unknown origin is (0, 0).
+///
+/// Fails if some nodes have latitude and longitude, others local coordinates, and fewer than two at
+/// different places have both; and if the two kinds disagree by more than 1 m or 1 % of scale.
+Result<NodePositions> locate_nodes(const OsmDocument& document);
 
 }  // namespace bevloc

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include "pipeline/network/model/load_error.h"
 #include "pipeline/network/model/lowering.h"
 #include "pipeline/network/model/onnx_reader.h"
+#include "pipeline/network/test_frame.h"
 #include "pipeline/preprocessing/network_camera.h"
 
 namespace bevloc {
@@ -75,39 +75,49 @@ void check_ports(const std::vector<nn::Port>& ports, const std::vector<Contract>
   }
 }
 
-float positive_number(const nn::Graph& graph, const std::string& key) {
+/// Bounds of the solver's parameters; trained ones are far inside.
+constexpr float kSmallestParameter = 0.01F;
+constexpr float kLargestParameter = 1e6F;
+
+float parameter(const nn::Graph& graph, const std::string& key) {
   const auto entry = graph.metadata.find(key);
   if (entry == graph.metadata.end()) nn::refuse("metadata '{}' is missing", key);
   const std::string& text = entry->second;
   float number = 0.0F;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   const bool whole = error == std::errc() && end == text.data() + text.size();
-  if (!whole || !std::isfinite(number) || number <= 0.0F) {
-    nn::refuse("metadata '{}' is '{}', wanted a number above 0", key, text);
+  if (!whole || !(number >= kSmallestParameter && number <= kLargestParameter)) {
+    nn::refuse("metadata '{}' is '{}', wanted a number of {} to {}", key, text, kSmallestParameter,
+               kLargestParameter);
   }
   return number;
 }
 
-float positive_number_or(const nn::Graph& graph, const std::string& key, float fallback) {
-  return graph.metadata.contains(key) ? positive_number(graph, key) : fallback;
+std::string metadata_or_empty(const nn::Graph& graph, const std::string& key) {
+  const auto entry = graph.metadata.find(key);
+  return entry == graph.metadata.end() ? std::string() : entry->second;
+}
+
+float parameter_or(const nn::Graph& graph, const std::string& key, float fallback) {
+  return graph.metadata.contains(key) ? parameter(graph, key) : fallback;
 }
 
 SolverParameters read_solver_parameters(const nn::Graph& graph) {
   SolverParameters parameters;
-  parameters.joint_scale = positive_number(graph, "bevloc.solver.joint_scale");
-  parameters.x_scale = positive_number(graph, "bevloc.solver.x_scale");
-  parameters.y_scale = positive_number(graph, "bevloc.solver.y_scale");
-  parameters.yaw_scale = positive_number(graph, "bevloc.solver.yaw_scale");
-  parameters.gem_omega = positive_number(graph, "bevloc.solver.gem_omega");
+  parameters.joint_scale = parameter(graph, "bevloc.solver.joint_scale");
+  parameters.x_scale = parameter(graph, "bevloc.solver.x_scale");
+  parameters.y_scale = parameter(graph, "bevloc.solver.y_scale");
+  parameters.yaw_scale = parameter(graph, "bevloc.solver.yaw_scale");
+  parameters.gem_omega = parameter(graph, "bevloc.solver.gem_omega");
   const float joint = parameters.joint_scale;
   for (const auto& [name, value] : {std::pair("refine_x_scale", &parameters.refine_x_scale),
                                     std::pair("refine_y_scale", &parameters.refine_y_scale),
                                     std::pair("refine_yaw_scale", &parameters.refine_yaw_scale),
                                     std::pair("banded_x_scale", &parameters.banded_x_scale),
                                     std::pair("banded_y_scale", &parameters.banded_y_scale)}) {
-    *value = positive_number_or(graph, std::string("bevloc.solver.") + name, joint);
+    *value = parameter_or(graph, std::string("bevloc.solver.") + name, joint);
   }
-  parameters.sigma_scale = positive_number_or(graph, "bevloc.solver.sigma_scale", 1.0F);
+  parameters.sigma_scale = parameter_or(graph, "bevloc.solver.sigma_scale", 1.0F);
   return parameters;
 }
 
@@ -119,12 +129,29 @@ void check_independence(const nn::Program& program, const char* output, const ch
   }
 }
 
+/// The view table's indices count the features of all cameras, so the model must have exactly
+/// these.
+void check_view_features(const nn::Program& program) {
+  for (const nn::Step& step : program.steps) {
+    const auto* view = std::get_if<nn::ViewStep>(&step);
+    if (view == nullptr) continue;
+    const auto& dims = program.values[static_cast<size_t>(view->input)].dims;
+    if (dims[0] != kCameraCount || dims[2] != kImageFeatureRows || dims[3] != kImageFeatureCols) {
+      nn::refuse("the view transform reads features {}, wanted [{}, channels, {}, {}]",
+                 nn::to_string({dims.begin(), dims.end()}), kCameraCount, kImageFeatureRows,
+                 kImageFeatureCols);
+    }
+  }
+}
+
 }  // namespace
 
 struct Network::State {
   State(const nn::Graph& graph, const nn::Program& program, const NetworkOptions& options)
       : name(graph.name),
+        stored_answer(metadata_or_empty(graph, std::string(kAnswerKey))),
         solver_parameters(read_solver_parameters(graph)),
+        rig(read_model_rig(graph)),
         engine(options.engine(program,
                               std::vector<nn::Branch>{{kBevFeatures}, {kMapFeatures}, {kBevMask}},
                               kFeatureGrid.cells(), {options.threads, options.isa})) {}
@@ -134,7 +161,9 @@ struct Network::State {
   }
 
   std::string name;
+  std::string stored_answer;
   SolverParameters solver_parameters;
+  ModelRig rig;
   std::unique_ptr<nn::Engine> engine;
 };
 
@@ -151,6 +180,7 @@ Result<std::unique_ptr<Network>> Network::load(const std::string& path,
     const nn::Program program = nn::lower(graph);
     check_independence(program, kBevFeatures, kRaster);
     check_independence(program, kMapFeatures, kImages);
+    check_view_features(program);
     auto state = std::make_unique<State>(graph, program, options);
     return std::unique_ptr<Network>(new Network(std::move(state)));
   } catch (const nn::LoadError& error) {
@@ -201,8 +231,14 @@ std::span<const float> Network::mask_logits() const {
 const SolverParameters& Network::solver_parameters() const {
   return state_->solver_parameters;
 }
+const ModelRig& Network::rig() const {
+  return state_->rig;
+}
 const std::string& Network::name() const {
   return state_->name;
+}
+const std::string& Network::stored_answer() const {
+  return state_->stored_answer;
 }
 
 }  // namespace bevloc

@@ -10,6 +10,7 @@
 #include "common/result.h"
 #include "pipeline/network/engines/engine.h"
 #include "pipeline/network/engines/parallel_for.h"
+#include "pipeline/network/model/model_rig.h"
 #include "pipeline/network/view/view_table.h"
 #include "pipeline/solver/feature_view.h"
 #include "pipeline/solver/solver_parameters.h"
@@ -39,7 +40,7 @@ struct NetworkOptions {
 /// weight scales per channel), and in float elsewhere. The metadata must contain
 /// bevloc.solver.{joint_scale, x_scale, y_scale, yaw_scale, gem_omega}. Optional are
 /// bevloc.solver.{refine,banded}_..._scale (default: joint_scale) and bevloc.solver.sigma_scale
-/// (default: 1).
+/// (default: 1), bevloc.rig.* (model_rig.h) and bevloc.test_frame_answer (test_frame.h).
 ///
 /// load() allocates all buffers. The other functions do not allocate, throw or lock, except for
 /// what make_onednn_engine() and make_xnnpack_engine() document about their libraries.
@@ -75,7 +76,11 @@ class Network {
   std::span<const float> mask_logits() const;
 
   const SolverParameters& solver_parameters() const;
+  /// What the model states about its cameras; check_rig_fits() compares a rig with it.
+  const ModelRig& rig() const;
   const std::string& name() const;
+  /// The model's metadata of kAnswerKey (test_frame.h); empty if it has none.
+  const std::string& stored_answer() const;
 
  private:
   struct State;

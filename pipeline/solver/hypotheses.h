@@ -15,6 +15,8 @@ struct HypothesisAxis {
   int half_count() const { return static_cast<int>(range / step + 0.5); }
   double value(int i) const { return (i - half_count()) * step; }
   double farthest() const { return half_count() * step; }
+
+  bool operator==(const HypothesisAxis&) const = default;
 };
 
 /// Hypotheses for the correction dT = (x, y, yaw). The defaults are the paper's: 21 x 11 x 21.
@@ -24,6 +26,8 @@ struct HypothesisGrid {
   HypothesisAxis yaw_rad{radians(2.0), radians(0.2)};
 
   int count() const { return x_m.count() * y_m.count() * yaw_rad.count(); }
+
+  bool operator==(const HypothesisGrid&) const = default;
 };
 
 }  // namespace bevloc

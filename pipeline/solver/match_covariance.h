@@ -31,6 +31,11 @@ class MatchCovariance {
   /// `map` are standardised features; `bev` has a margin for the hypotheses.
   Eigen::Matrix3d estimate(const CellFeatures& bev, const CellFeatures& map, const Se2& correction);
 
+  /// The BEV features as the latest estimate() moved them, [row, col, lanes].
+  const LaneBuffer& moved() const { return moved_; }
+  /// Cells at each edge that a hypothesis can move out of the grid.
+  int border() const { return border_; }
+
  private:
   struct Information {
     Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();  ///< H
@@ -42,9 +47,9 @@ class MatchCovariance {
 
   BevGrid grid_;
   int lanes_;
-  int border_;  ///< cells at each edge that a hypothesis can move out of the grid
+  int border_;
   Eigen::Vector3d uniform_variance_;
-  LaneBuffer moved_;  ///< the moved BEV features, [row, col, lanes]
+  LaneBuffer moved_;
 };
 
 }  // namespace bevloc

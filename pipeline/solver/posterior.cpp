@@ -80,6 +80,15 @@ double rival_peak(std::span<const float> probability) {
   return highest > 0.0F ? second / highest : 0.0;
 }
 
+double edge_mass(std::span<const float> probability) {
+  constexpr size_t kPerBorder = 2;
+  double mass = 0.0;
+  for (size_t i = 0; i < probability.size(); ++i) {
+    if (i < kPerBorder || i + kPerBorder >= probability.size()) mass += probability[i];
+  }
+  return mass;
+}
+
 void convolve(const SearchedAxis& searched, const HypothesisAxis& axis, std::vector<float>& scratch,
               std::vector<float>& probability) {
   scratch.assign(probability.size(), 0.0F);
@@ -119,6 +128,9 @@ void set_no_evidence(const HypothesisGrid& hypotheses, SolverResult& result) {
   result.evidence = Evidence::kNone;
   result.correction = Se2{};
   result.parabola = Se2{};
+  result.score = 0.0;
+  result.axis_score.setZero();
+  result.edge_mass.setZero();
   result.rival_peak.setZero();
   result.evidence_share.setZero();
   result.covariance = uniform_variance(hypotheses).asDiagonal();

@@ -30,6 +30,9 @@ double parabola_vertex(std::span<const float> probability, const HypothesisAxis&
 /// The second highest local maximum divided by the highest; 0 if there is only one.
 double rival_peak(std::span<const float> probability);
 
+/// The probability of the hypotheses that are at the border of the axis or one step away from it.
+double edge_mass(std::span<const float> probability);
+
 /// A searched axis on which another axis depends: while the searched axis moved from `start` by d,
 /// the dependent axis moved by slope * d.
 struct SearchedAxis {

@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "pipeline/solver/match_score.h"
 #include "pipeline/solver/posterior.h"
 #include "pipeline/solver/standardise.h"
 
@@ -66,7 +67,13 @@ void Solver::solve(const FeatureView& bev, const FeatureView& map, SolverResult&
                      parabola_vertex(result.yaw_probability, hypotheses_.yaw_rad)};
   result.rival_peak = {rival_peak(result.x_probability), rival_peak(result.y_probability),
                        rival_peak(result.yaw_probability)};
+  result.edge_mass = {edge_mass(result.x_probability), edge_mass(result.y_probability),
+                      edge_mass(result.yaw_probability)};
   result.covariance = covariance(result);
+  const MatchScore score = score_match(map_cells_, match_covariance_.moved(), result.correction,
+                                       match_covariance_.border());
+  result.score = score.overlap;
+  result.axis_score = score.axis;
   result.evidence_share = Eigen::Vector3d::Ones() -
                           result.covariance.diagonal().cwiseQuotient(uniform_variance(hypotheses_));
   result.evidence = Evidence::kGood;

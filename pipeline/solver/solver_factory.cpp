@@ -94,9 +94,11 @@ Status check_size(const BevGrid& grid) {
 
 Status check_grid(SolverKind kind, const BevGrid& grid) {
   if (grid.rows <= 0 || grid.rows > kMaxGridSide || grid.cols <= 0 || grid.cols > kMaxGridSide ||
-      !is_positive(grid.cell_m)) {
-    return refuse_grid(
-        grid, fmt::format("1 to {} rows and columns of cells larger than 0 m", kMaxGridSide));
+      !(grid.cell_m >= kLeastCell_m) ||
+      !(std::max(grid.rows, grid.cols) * grid.cell_m <= kMaxGridSide_m)) {
+    return refuse_grid(grid, fmt::format("1 to {} rows and columns of cells of at least {} m, and "
+                                         "sides of at most {} m",
+                                         kMaxGridSide, kLeastCell_m, kMaxGridSide_m));
   }
   switch (kind) {
     case SolverKind::kDecoupledLiteral:

@@ -25,6 +25,18 @@ struct MatchResult {
   /// Per axis (x, y, yaw): the share of the hypotheses' variance that the match removed. At 0 or
   /// less the match says nothing about the axis; near 1 it is as exact as the steps allow.
   Eigen::Vector3d evidence_share = Eigen::Vector3d::Ones();
+  /// How well the perceived features lie on the mapped ones at the correction (match_score.h): 1 is
+  /// a perfect overlap, 0 none. Unlike the distributions it is absolute: it tells a match of the
+  /// right place from the best match of a wrong one.
+  double score = 0.0;
+  /// Per axis (x, y, yaw): the same for the structure that shows a movement along the axis.
+  Eigen::Vector3d axis_score = Eigen::Vector3d::Zero();
+  /// Per axis: the probability of the hypotheses at the border of the search range or one step away
+  /// from it. With much of it the true correction may lie outside the range.
+  Eigen::Vector3d edge_mass = Eigen::Vector3d::Zero();
+  /// Per axis: the second highest peak of the distribution divided by the highest. 0: a single
+  /// peak; 1: two equally likely peaks.
+  Eigen::Vector3d rival_peak = Eigen::Vector3d::Zero();
 };
 
 /// A MatchResult with the distributions that it was computed from. `correction` is their means,
@@ -33,9 +45,6 @@ struct SolverResult : MatchResult {
   /// An alternative estimate. Per axis: the vertex of the parabola through the logarithms of the
   /// most likely hypothesis and its two neighbours. Zero without evidence.
   Se2 parabola;
-  /// Per axis (x, y, yaw): the second highest peak of the distribution divided by the highest.
-  /// 0: a single peak; 1: two equally likely peaks.
-  Eigen::Vector3d rival_peak = Eigen::Vector3d::Zero();
   /// Probability of each hypothesis of the axis; each distribution sums to 1.
   std::vector<float> x_probability;
   std::vector<float> y_probability;

@@ -16,6 +16,7 @@ struct TrackerEvent {
     kOdometry,  ///< `motion` is a sample
     kPose,      ///< `measurement` was accepted
     kWiden,     ///< the covariance of the pose was increased
+    kLoosen,    ///< the covariance of the odometry errors was increased
   };
 
   Time time;

@@ -24,11 +24,17 @@ FilterState::Covariance transition(const MeasuredMotion& motion, double speed_mp
   return f;
 }
 
-/// Diagonal of the process noise covariance.
-FilterState::Vector process_variance(double distance_m, double duration_s,
-                                     const MotionNoise& noise) {
+/// Share of a correlated error that is left after `amount` of distance or time.
+double kept_share(double amount, double correlation) {
+  return correlation > 0.0 ? std::exp(-amount / correlation) : 0.0;
+}
+
+/// Diagonal of the process noise covariance of the pose and of the odometry errors.
+Eigen::Matrix<double, FilterState::kMatchError, 1> motion_variance(double distance_m,
+                                                                   double duration_s,
+                                                                   const MotionNoise& noise) {
   const double half_square_s2 = 0.5 * duration_s * duration_s;
-  FilterState::Vector variance;
+  Eigen::Matrix<double, FilterState::kMatchError, 1> variance;
   variance << square_of(noise.longitudinal_m_per_sqrt_m) * distance_m +
                   square_of(noise.acceleration_mps2 * half_square_s2),
       square_of(noise.lateral_m_per_sqrt_m) * distance_m,
@@ -45,18 +51,31 @@ void FilterState::apply(const Vector& error) {
   map_from_vehicle = map_from_vehicle * Se2{error(kX), error(kY), error(kYaw)};
   speed_scale_error += error(kSpeedScale);
   yaw_rate_bias_radps += error(kYawRateBias);
+  match_error += error.segment<3>(kMatchError);
+  gnss_error += error.segment<3>(kGnssError);
 }
 
 void predict(const MeasuredMotion& motion, double duration_s, const MotionNoise& noise,
-             FilterState& state) {
+             const ErrorCorrelation& correlation, FilterState& state) {
+  using S = FilterState;
   assert(duration_s >= 0.0);
   const double speed_mps = state.speed_mps(motion);
   const double distance_m = std::abs(speed_mps) * duration_s;
+  const Eigen::Vector3d match_share = correlation.match_m.unaryExpr(
+      [distance_m](double length_m) { return kept_share(distance_m, length_m); });
+  const double gnss_share = kept_share(duration_s, correlation.gnss_s);
   const Se2 step = arc_motion(speed_mps, state.yaw_rate_radps(motion), duration_s);
-  const FilterState::Covariance f = transition(motion, speed_mps, duration_s, step);
-  const FilterState::Covariance moved = f * state.covariance * f.transpose();
+  S::Covariance f = transition(motion, speed_mps, duration_s, step);
+  f.diagonal().segment<3>(S::kMatchError) = match_share;
+  f.diagonal().segment<3>(S::kGnssError).setConstant(gnss_share);
+  const S::Covariance moved = f * state.covariance * f.transpose();
   state.covariance = 0.5 * (moved + moved.transpose());
-  state.covariance.diagonal() += process_variance(distance_m, duration_s, noise);
+  auto variance = state.covariance.diagonal();
+  variance.head<S::kMatchError>() += motion_variance(distance_m, duration_s, noise);
+  variance.segment<3>(S::kMatchError) += Eigen::Vector3d::Ones() - match_share.cwiseAbs2();
+  variance.segment<3>(S::kGnssError).array() += 1.0 - square_of(gnss_share);
+  state.match_error = state.match_error.cwiseProduct(match_share);
+  state.gnss_error *= gnss_share;
   state.map_from_vehicle = state.map_from_vehicle * step;
 }
 

@@ -1,4 +1,4 @@
-// Motion model of the tracker: predicts pose and covariance between odometry samples.
+// The state of the tracker's filter, and its prediction between odometry samples.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,15 +18,31 @@ struct MeasuredMotion {
 };
 
 /// The state that the filter estimates, with its covariance.
+///
+/// Consecutive errors of matches are alike, because the same network sees the same part of the map
+/// again; those of GNSS, because multipath and atmosphere change slowly. The correlated part of
+/// each is therefore a state: otherwise the filter would average it out as if it were noise. Both
+/// are normalised: 1 is one standard deviation of the measurement's own correlated error.
 struct FilterState {
-  enum Index { kX, kY, kYaw, kSpeedScale, kYawRateBias, kSize };
+  enum Index {
+    kX,
+    kY,
+    kYaw,
+    kSpeedScale,
+    kYawRateBias,
+    kMatchError,                   ///< three: x, y, yaw in the vehicle frame
+    kGnssError = kMatchError + 3,  ///< three: east, north, yaw in the map frame
+    kSize = kGnssError + 3,
+  };
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   using Vector = Eigen::Matrix<double, kSize, 1>;
 
   Se2 map_from_vehicle;
   double speed_scale_error = 0.0;    ///< true speed = (1 + error) * measured speed
   double yaw_rate_bias_radps = 0.0;  ///< true yaw rate = measured yaw rate - bias
-  /// Of the error (x m, y m, yaw rad, scale, bias rad/s) in the order of Index. The pose error is
+  Eigen::Vector3d match_error = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gnss_error = Eigen::Vector3d::Zero();
+  /// Of the error in the order of Index (m, m, rad, 1, rad/s, then normalised). The pose error is
   /// in the vehicle frame: true pose = map_from_vehicle * error. Symmetric positive definite.
   Covariance covariance = Covariance::Identity();
 
@@ -52,10 +68,23 @@ struct MotionNoise {
   /// Unmeasured accelerations between two samples; they matter only where samples are missing.
   double acceleration_mps2 = 3.0;
   double yaw_acceleration_radps2 = 0.5;
+
+  bool operator==(const MotionNoise&) const = default;
 };
 
-/// Predicts `state` forward by `duration_s` >= 0 with constant `motion`.
+/// How long the correlated errors last: they decay by a factor of e over this distance or time. 0:
+/// the errors are independent. The distances were measured on simulated drives: across the vehicle
+/// errors of neighbouring frames have a correlation of 0.75, and of 0.5 after 40 m.
+struct ErrorCorrelation {
+  Eigen::Vector3d match_m{20.0, 80.0, 20.0};  ///< along, across, heading
+  double gnss_s = 40.0;
+
+  bool operator==(const ErrorCorrelation&) const = default;
+};
+
+/// Predicts `state` forward by `duration_s` >= 0 with constant `motion`. A standing vehicle keeps
+/// its match error, so standing still adds no knowledge.
 void predict(const MeasuredMotion& motion, double duration_s, const MotionNoise& noise,
-             FilterState& state);
+             const ErrorCorrelation& correlation, FilterState& state);
 
 }  // namespace bevloc

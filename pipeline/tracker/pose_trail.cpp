@@ -20,6 +20,7 @@ Se2 interpolate(const TrackedPose& before, const TrackedPose& after, Time time) 
 
 void PoseTrail::add(const TrackedPose& pose) {
   while (!poses_.empty() && poses_.back().time >= pose.time) poses_.pop_back();
+  if (!poses_.empty() && pose.time - poses_.back().time > kGap) poses_.clear();
   poses_.push_back(pose);
 }
 

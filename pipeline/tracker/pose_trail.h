@@ -17,7 +17,12 @@ class PoseTrail {
   /// How far past the newest pose the trail extrapolates.
   static constexpr Duration kReach = std::chrono::milliseconds(150);
 
-  /// Removes the poses at or after `pose.time`, then appends `pose`.
+  /// Poses further apart do not belong to one motion: the machine was suspended, or poses are
+  /// missing. Predictions come every 10 ms.
+  static constexpr Duration kGap = std::chrono::milliseconds(500);
+
+  /// Removes the poses at or after `pose.time`, and all poses if the newest is more than kGap older
+  /// than `pose`. Then appends `pose`.
   void add(const TrackedPose& pose);
 
   /// map_from_vehicle at `time`: interpolated between two poses; past the newest pose extrapolated

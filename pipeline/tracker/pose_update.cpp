@@ -1,45 +1,95 @@
 #include "pipeline/tracker/pose_update.h"
 
+#include <algorithm>
+#include <numbers>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 namespace bevloc {
 namespace {
 
-/// The measured pose minus the estimate, in the vehicle frame of the estimate.
-struct Innovation {
-  Eigen::Vector3d error;
-  Eigen::Matrix3d covariance;  ///< of the measurement, without that of the estimate
+using Jacobian = Eigen::Matrix<double, 3, FilterState::kSize>;
+
+Eigen::Matrix3d turn_by(double yaw_rad) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(yaw_rad).toRotationMatrix();
+  return turn;
+}
+
+/// A measurement, linearised around an estimate.
+struct Linearised {
+  Eigen::Vector3d error;  ///< measured pose minus expected pose, in the estimate's vehicle frame
+  Jacobian jacobian;
+  Eigen::Matrix3d noise;
 };
 
-Innovation innovation_of(const FilterState& state, const PoseMeasurement& measurement) {
-  const Se2 error = correction_between(state.map_from_vehicle, measurement.map_from_vehicle);
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(error.yaw_rad).toRotationMatrix();
-  return {{error.x_m, error.y_m, error.yaw_rad}, turn * measurement.covariance * turn.transpose()};
+Linearised linearise(const FilterState& state, const PoseMeasurement& measurement) {
+  const Se2 difference = correction_between(state.map_from_vehicle, measurement.map_from_vehicle);
+  const Eigen::Matrix3d turn = turn_by(difference.yaw_rad);
+  const bool is_match = measurement.source == PoseSource::kMatch;
+  const int correlated = is_match ? FilterState::kMatchError : FilterState::kGnssError;
+  const Eigen::Matrix3d axes = is_match ? turn : turn_by(-state.map_from_vehicle.yaw_rad);
+  const Eigen::Matrix3d scale = axes * measurement.correlated_sigma.asDiagonal();
+
+  Linearised result;
+  result.jacobian.setZero();
+  result.jacobian.leftCols<3>().setIdentity();
+  result.jacobian.middleCols<3>(correlated) = scale;
+  result.error = Eigen::Vector3d(difference.x_m, difference.y_m, difference.yaw_rad) -
+                 scale * (is_match ? state.match_error : state.gnss_error);
+  result.noise = turn * measurement.covariance * turn.transpose();
+  return result;
+}
+
+Eigen::Matrix3d expected_covariance(const FilterState& state, const Linearised& linearised) {
+  return linearised.jacobian * state.covariance * linearised.jacobian.transpose() +
+         linearised.noise;
 }
 
 }  // namespace
 
-double squared_distance(const FilterState& state, const PoseMeasurement& measurement) {
-  const Innovation innovation = innovation_of(state, measurement);
-  const Eigen::Matrix3d expected = state.covariance.topLeftCorner<3, 3>() + innovation.covariance;
-  return innovation.error.dot(expected.ldlt().solve(innovation.error));
+PoseInnovation innovation_of(const FilterState& state, const PoseMeasurement& measurement) {
+  const Linearised linearised = linearise(state, measurement);
+  PoseInnovation innovation;
+  innovation.error = linearised.error;
+  innovation.covariance = expected_covariance(state, linearised);
+  innovation.squared_distance =
+      innovation.error.dot(innovation.covariance.ldlt().solve(innovation.error));
+  return innovation;
+}
+
+FilterState state_from(const PoseMeasurement& measurement, double speed_scale_variance,
+                       double yaw_rate_bias_variance) {
+  using S = FilterState;
+  FilterState state;
+  state.map_from_vehicle = measurement.map_from_vehicle;
+  // The pose is wrong by what the measurement is wrong, noise and correlated part.
+  const Linearised linearised = linearise(state, measurement);
+  const bool is_match = measurement.source == PoseSource::kMatch;
+  const int correlated = is_match ? S::kMatchError : S::kGnssError;
+  const Eigen::Matrix3d scale = linearised.jacobian.middleCols<3>(correlated);
+  state.covariance.topLeftCorner<3, 3>() = linearised.noise + scale * scale.transpose();
+  state.covariance.block<3, 3>(0, correlated) = -scale;
+  state.covariance.block<3, 3>(correlated, 0) = -scale.transpose();
+  // An unknown yaw is at most half a turn off.
+  state.covariance(S::kYaw, S::kYaw) =
+      std::min(state.covariance(S::kYaw, S::kYaw), square_of(std::numbers::pi));
+  state.covariance(S::kSpeedScale, S::kSpeedScale) = speed_scale_variance;
+  state.covariance(S::kYawRateBias, S::kYawRateBias) = yaw_rate_bias_variance;
+  return state;
 }
 
 void update(const PoseMeasurement& measurement, FilterState& state) {
-  constexpr int kSize = FilterState::kSize;
-  const Innovation innovation = innovation_of(state, measurement);
-  const Eigen::Matrix3d noise = measurement.inflation * innovation.covariance;
-  const Eigen::Matrix3d expected = state.covariance.topLeftCorner<3, 3>() + noise;
-  const Eigen::Matrix<double, kSize, 3> gain =
-      expected.ldlt().solve(state.covariance.topRows<3>()).transpose();
-  FilterState::Covariance keep = FilterState::Covariance::Identity();
-  keep.leftCols<3>() -= gain;
+  const Linearised linearised = linearise(state, measurement);
+  const Jacobian& h = linearised.jacobian;
+  const Eigen::Matrix<double, FilterState::kSize, 3> gain =
+      expected_covariance(state, linearised).ldlt().solve(h * state.covariance).transpose();
+  const FilterState::Covariance keep = FilterState::Covariance::Identity() - gain * h;
   const FilterState::Covariance updated =
-      keep * state.covariance * keep.transpose() + gain * noise * gain.transpose();
+      keep * state.covariance * keep.transpose() + gain * linearised.noise * gain.transpose();
   state.covariance = 0.5 * (updated + updated.transpose());
-  state.apply(gain * innovation.error);
+  state.apply(gain * linearised.error);
 }
 
 }  // namespace bevloc

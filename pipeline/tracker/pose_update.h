@@ -8,18 +8,36 @@
 
 namespace bevloc {
 
+enum class PoseSource : uint8_t { kMatch, kGnss };
+
+/// A measured pose. Its error is independent noise plus a part that is correlated over time.
 struct PoseMeasurement {
+  PoseSource source = PoseSource::kMatch;
   Se2 map_from_vehicle;
-  /// In the vehicle frame of the measured pose: (x m, y m, yaw rad).
+  /// Of the independent noise, in the vehicle frame of the measured pose: (x m, y m, yaw rad).
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  /// update() multiplies the covariance by this factor, because consecutive errors are correlated.
-  double inflation = 1.0;
+  /// Standard deviations of the correlated part: for a match in the vehicle frame (x, y, yaw), for
+  /// GNSS in the map frame (east, north, yaw), the first two equal.
+  Eigen::Vector3d correlated_sigma = Eigen::Vector3d::Zero();
 };
 
-/// Squared Mahalanobis distance between measurement and estimate, by the sum of their covariances
-/// (without the inflation). Chi-square with three degrees of freedom if both covariances are
-/// correct.
-double squared_distance(const FilterState& state, const PoseMeasurement& measurement);
+/// The difference between a measured pose and the estimate, in the vehicle frame of the estimate:
+/// (x m, y m, yaw rad).
+struct PoseInnovation {
+  Eigen::Vector3d error = Eigen::Vector3d::Zero();
+  /// Expected covariance of `error`: of the estimate, the noise and the correlated part.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  /// Squared Mahalanobis distance. Chi-square with three degrees of freedom if the covariances are
+  /// correct.
+  double squared_distance = 0.0;
+};
+
+PoseInnovation innovation_of(const FilterState& state, const PoseMeasurement& measurement);
+
+/// Returns the state that knows nothing but `measurement`, with the given variances of the odometry
+/// errors.
+FilterState state_from(const PoseMeasurement& measurement, double speed_scale_variance,
+                       double yaw_rate_bias_variance);
 
 /// Kalman update in Joseph form, which keeps the covariance symmetric and positive definite.
 void update(const PoseMeasurement& measurement, FilterState& state);

@@ -8,14 +8,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
-#include "pipeline/tracker/gnss_pose.h"
-
 namespace bevloc {
 namespace {
-
-/// Lower bound of the evidence share. It keeps the covariance finite along an axis without
-/// evidence: sigma grows by a factor of 100 at most.
-constexpr double kMinEvidenceShare = 1e-4;
 
 MeasuredMotion between(const MeasuredMotion& a, const MeasuredMotion& b, double weight_of_b) {
   return {std::lerp(a.speed_mps, b.speed_mps, weight_of_b),
@@ -25,34 +19,6 @@ MeasuredMotion between(const MeasuredMotion& a, const MeasuredMotion& b, double 
 bool is_covariance(const Eigen::Matrix3d& matrix) {
   return matrix.allFinite() && matrix.isApprox(matrix.transpose(), 1e-6) &&
          matrix.llt().info() == Eigen::Success;
-}
-
-PoseMeasurement measurement_from(const GnssPose& gnss) {
-  const double position_variance = square_of(gnss.position_sigma_m);
-  const Eigen::Vector3d variance(position_variance, position_variance,
-                                 square_of(gnss.yaw_sigma_rad));
-  const Se2& pose = gnss.map_from_vehicle;
-  return {.map_from_vehicle = {pose.x_m, pose.y_m, wrap_angle(pose.yaw_rad)},
-          .covariance = variance.asDiagonal()};
-}
-
-/// Covariance of the match alone. The solver's covariance includes its own prior, a uniform
-/// distribution over the search range, which the filter replaces by its estimate. If all were
-/// Gaussian, the precision along an axis without that prior would be
-/// 1 / variance - 1 / (variance of the range) = share / variance. With the prior left in, a search
-/// without evidence along the road would confirm its own starting pose again and again.
-Eigen::Matrix3d covariance_of_match(const MatchResult& result) {
-  const Eigen::Vector3d growth =
-      result.evidence_share.cwiseMax(kMinEvidenceShare).cwiseInverse().cwiseSqrt();
-  return growth.asDiagonal() * result.covariance * growth.asDiagonal();
-}
-
-/// Rotates the covariance from the frame of the prior into that of the corrected pose.
-PoseMeasurement measurement_from(const Se2& prior, const MatchResult& result) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-result.correction.yaw_rad).toRotationMatrix();
-  return {.map_from_vehicle = prior * result.correction,
-          .covariance = turn * covariance_of_match(result) * turn.transpose()};
 }
 
 }  // namespace
@@ -108,7 +74,7 @@ TrackerUpdate Tracker::add_odometry(const OdometrySample& sample) {
   return TrackerUpdate::kAccepted;
 }
 
-TrackerUpdate Tracker::add_gnss(const GnssSample& sample) {
+TrackerUpdate Tracker::add_gnss(const GnssSample& sample, Trust trust) {
   const GnssPose gnss = gnss_pose(sample);
   if (!gnss.map_from_vehicle.is_finite() || !std::isfinite(sample.sigma_east_m) ||
       !std::isfinite(sample.sigma_north_m) || !std::isfinite(gnss.yaw_sigma_rad)) {
@@ -119,16 +85,15 @@ TrackerUpdate Tracker::add_gnss(const GnssSample& sample) {
     return TrackerUpdate::kImplausible;
   }
   if (!has_odometry_for(sample.time)) return TrackerUpdate::kNoOdometry;
-  const PoseMeasurement measurement = measurement_from(gnss);
-  if (is_initialised()) {
-    return add_pose(sample.time, measurement, parameters_.gnss_correlation_s, last_gnss_);
-  }
+  const PoseMeasurement measurement =
+      measurement_from(gnss, parameters_.measurements, parameters_.correlation.gnss_s > 0.0);
+  if (is_initialised()) return add_pose(sample.time, measurement, trust);
   initialise(sample.time, measurement);
   return TrackerUpdate::kAccepted;
 }
 
-TrackerUpdate Tracker::add_correction(Time frame_time, const Se2& prior,
-                                      const MatchResult& result) {
+TrackerUpdate Tracker::add_correction(Time frame_time, const Se2& prior, const MatchResult& result,
+                                      Trust trust) {
   if (result.evidence != Evidence::kGood) return TrackerUpdate::kNoEvidence;
   if (!prior.is_finite() || !result.correction.is_finite() || !result.covariance.allFinite() ||
       !result.evidence_share.allFinite()) {
@@ -137,8 +102,10 @@ TrackerUpdate Tracker::add_correction(Time frame_time, const Se2& prior,
   if (!is_covariance(result.covariance)) return TrackerUpdate::kImplausible;
   if (!is_initialised()) return TrackerUpdate::kNotInitialised;
   if (!has_odometry_for(frame_time)) return TrackerUpdate::kNoOdometry;
-  return add_pose(frame_time, measurement_from(prior, result), parameters_.correction_correlation_s,
-                  last_correction_);
+  return add_pose(frame_time,
+                  measurement_from(prior, result, parameters_.measurements,
+                                   parameters_.correlation.match_m.array() > 0.0),
+                  trust);
 }
 
 std::optional<TrackedPose> Tracker::pose_at(Time time) const {
@@ -151,6 +118,14 @@ std::optional<TrackedPose> Tracker::pose_at(Time time) const {
                      .covariance = state.covariance.topLeftCorner<3, 3>(),
                      .speed_mps = state.speed_mps(motion),
                      .yaw_rate_radps = state.yaw_rate_radps(motion)};
+}
+
+Eigen::Vector3d Tracker::gnss_error() const {
+  if (!is_initialised()) return Eigen::Vector3d::Zero();
+  const FilterState& state = history_.back().state;
+  Eigen::Vector3d error = state.gnss_error;
+  error.head<2>() = Eigen::Rotation2Dd(-state.map_from_vehicle.yaw_rad) * error.head<2>();
+  return error;
 }
 
 double Tracker::speed_scale_error() const {
@@ -166,15 +141,22 @@ void Tracker::widen() {
   const TrackerEvent& latest = history_.back();
   insert(history_.size(),
          {.time = latest.time, .kind = TrackerEvent::Kind::kWiden, .motion = latest.motion});
-  last_gnss_.reset();
-  last_correction_.reset();
+}
+
+void Tracker::loosen_odometry() {
+  if (!is_initialised()) return;
+  const TrackerEvent& latest = history_.back();
+  insert(history_.size(),
+         {.time = latest.time, .kind = TrackerEvent::Kind::kLoosen, .motion = latest.motion});
+}
+
+void Tracker::restart() {
+  history_.clear();
 }
 
 void Tracker::reset() {
-  history_.clear();
+  restart();
   last_odometry_.reset();
-  last_gnss_.reset();
-  last_correction_.reset();
 }
 
 void Tracker::initialise(Time time, const PoseMeasurement& measurement) {
@@ -182,15 +164,9 @@ void Tracker::initialise(Time time, const PoseMeasurement& measurement) {
                      .kind = TrackerEvent::Kind::kPose,
                      .motion = {last_odometry_->speed_mps, last_odometry_->yaw_rate_radps},
                      .measurement = measurement};
-  event.state.map_from_vehicle = measurement.map_from_vehicle;
-  event.state.covariance.setZero();
-  event.state.covariance.topLeftCorner<3, 3>() = measurement.covariance;
-  event.state.covariance(FilterState::kSpeedScale, FilterState::kSpeedScale) =
-      square_of(parameters_.initial_speed_scale_sigma);
-  event.state.covariance(FilterState::kYawRateBias, FilterState::kYawRateBias) =
-      square_of(parameters_.initial_yaw_rate_bias_sigma_radps);
+  event.state = state_from(measurement, square_of(parameters_.initial_speed_scale_sigma),
+                           square_of(parameters_.initial_yaw_rate_bias_sigma_radps));
   history_.push_back(event);
-  last_gnss_ = time;
   if (last_odometry_->time > time) {
     insert(1, {.time = last_odometry_->time,
                .kind = TrackerEvent::Kind::kOdometry,
@@ -198,21 +174,14 @@ void Tracker::initialise(Time time, const PoseMeasurement& measurement) {
   }
 }
 
-TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, double correlation_s,
-                                std::optional<Time>& last_time) {
-  if (history_.full()) history_.pop_front();
+TrackerUpdate Tracker::add_pose(Time time, const PoseMeasurement& measurement, Trust trust) {
   const size_t events_until = count_until(history_, time);
   if (events_until == 0) return TrackerUpdate::kTooOld;
-  if (squared_distance(state_at(time, events_until), measurement) >
-      parameters_.gate_squared_distance) {
+  latest_innovation_ = innovation_of(state_at(time, events_until), measurement);
+  if (latest_innovation_.squared_distance > parameters_.gate_squared_distance) {
     return TrackerUpdate::kGated;
   }
-  if (last_time) {
-    constexpr double kMinInterval_s = 1e-3;
-    const double interval_s = std::abs(to_seconds(time - *last_time));
-    measurement.inflation = std::max(1.0, correlation_s / std::max(interval_s, kMinInterval_s));
-  }
-  last_time = last_time ? std::max(*last_time, time) : time;
+  if (trust == Trust::kExamine) return TrackerUpdate::kAccepted;
   insert(events_until, {.time = time,
                         .kind = TrackerEvent::Kind::kPose,
                         .motion = motion_at(time, events_until),
@@ -236,12 +205,13 @@ FilterState Tracker::state_at(Time time, size_t events_until) const {
   const TrackerEvent& before = history_[events_until - 1];
   FilterState state = before.state;
   predict(between(before.motion, motion_at(time, events_until), 0.5),
-          to_seconds(time - before.time), parameters_.motion, state);
+          to_seconds(time - before.time), parameters_.motion, parameters_.correlation, state);
   return state;
 }
 
 void Tracker::insert(size_t position, const TrackerEvent& event) {
   if (history_.full()) {
+    if (position == 1) return;  // older than all events but the one that would have to go
     history_.pop_front();
     --position;
   }
@@ -258,8 +228,14 @@ void Tracker::replay_from(size_t position) {
     TrackerEvent& event = history_[i];
     event.state = before.state;
     predict(between(before.motion, event.motion, 0.5), to_seconds(event.time - before.time),
-            parameters_.motion, event.state);
+            parameters_.motion, parameters_.correlation, event.state);
     if (event.kind == TrackerEvent::Kind::kPose) update(event.measurement, event.state);
+    if (event.kind == TrackerEvent::Kind::kLoosen) {
+      event.state.covariance(FilterState::kSpeedScale, FilterState::kSpeedScale) +=
+          square_of(parameters_.initial_speed_scale_sigma);
+      event.state.covariance(FilterState::kYawRateBias, FilterState::kYawRateBias) +=
+          square_of(parameters_.initial_yaw_rate_bias_sigma_radps);
+    }
     if (event.kind == TrackerEvent::Kind::kWiden) {
       event.state.covariance(FilterState::kX, FilterState::kX) +=
           square_of(parameters_.widened_position_sigma_m);

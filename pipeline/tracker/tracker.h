@@ -11,6 +11,7 @@
 #include "common/vehicle_samples.h"
 #include "pipeline/solver/solver_result.h"
 #include "pipeline/tracker/event_history.h"
+#include "pipeline/tracker/measurements.h"
 #include "pipeline/tracker/motion_model.h"
 
 namespace bevloc {
@@ -33,12 +34,9 @@ struct TrackerParameters {
   /// % quantile of the chi-square distribution with three degrees of freedom.
   double gate_squared_distance = 16.27;
 
-  /// Correlation times of the errors. Consecutive measurements are not independent, so the filter
-  /// multiplies the covariance of a measurement that comes dt after the previous one by
-  /// max(1, correlation time / dt). GNSS errors are correlated by multipath and the atmosphere,
-  /// errors of corrections because the same network sees the same part of the map again.
-  double gnss_correlation_s = 15.0;
-  double correction_correlation_s = 0.5;
+  /// Consecutive measurements are not independent: see FilterState and MeasurementModel.
+  ErrorCorrelation correlation;
+  MeasurementModel measurements;
 
   double widened_position_sigma_m = 3.0;  ///< added by widen(), per axis
   double widened_yaw_sigma_rad = radians(5.0);
@@ -49,6 +47,8 @@ struct TrackerParameters {
   double max_speed_mps = 80.0;     ///< a faster odometry sample is implausible
   double max_yaw_rate_radps = 3.0;
   double max_position_m = 1e6;  ///< per axis, from the map's origin; for GNSS samples
+
+  bool operator==(const TrackerParameters&) const = default;
 };
 
 /// What the tracker did with a measurement.
@@ -64,13 +64,22 @@ enum class TrackerUpdate {
   kImplausible,     ///< a value is beyond its physical limit
 };
 
+/// Number of values of TrackerUpdate.
+inline constexpr size_t kTrackerUpdates = 9;
+
 /// The name in words, for example "not finite".
 std::string_view name_of(TrackerUpdate update);
 
+/// What to do with a measured pose.
+enum class Trust : uint8_t {
+  kUse,      ///< update the estimate if the gate accepts it
+  kExamine,  ///< only compare it with the estimate, as the gate does
+};
+
 /// Error-state extended Kalman filter on SE(2). It also estimates the scale error of the wheel
-/// speed and the bias of the yaw rate sensor. Each measurement applies at its own time: a late one
-/// is inserted into the history, and the later states are computed again. A refused measurement
-/// changes nothing.
+/// speed, the bias of the yaw rate sensor and the correlated errors of matches and GNSS. Each
+/// measurement applies at its own time: a late one is inserted into the history, and the later
+/// states are computed again. A refused measurement changes nothing.
 ///
 /// Allocates in the constructor only. Not thread safe.
 class Tracker {
@@ -84,16 +93,26 @@ class Tracker {
 
   /// The first sample after odometry initialises the pose; later ones update it. Without a yaw the
   /// heading counts as unknown, with a sigma of pi.
-  TrackerUpdate add_gnss(const GnssSample& sample);
+  TrackerUpdate add_gnss(const GnssSample& sample, Trust trust = Trust::kUse);
 
   /// Adds a result of the solver: at `frame_time` the vehicle was at prior * result.correction.
-  TrackerUpdate add_correction(Time frame_time, const Se2& prior, const MatchResult& result);
+  TrackerUpdate add_correction(Time frame_time, const Se2& prior, const MatchResult& result,
+                               Trust trust = Trust::kUse);
 
   /// The pose at any time within the history, or predicted up to `max_prediction_s` past the last
   /// odometry sample. Nothing outside that range or before the first GNSS sample.
   std::optional<TrackedPose> pose_at(Time time) const;
 
+  const TrackerParameters& parameters() const { return parameters_; }
   bool is_initialised() const { return !history_.empty(); }
+
+  /// Of the latest GNSS sample or correction that reached the gate, refused or not.
+  const PoseInnovation& latest_innovation() const { return latest_innovation_; }
+
+  /// The correlated error of GNSS in its own standard deviations: (along, across, yaw) of the
+  /// vehicle's pose at the latest event. A large value means that GNSS contradicts the pose. Zero
+  /// before the first GNSS sample.
+  Eigen::Vector3d gnss_error() const;
 
   /// The latest estimates of the scale error and of the bias; zero before the first GNSS sample.
   double speed_scale_error() const;
@@ -103,13 +122,19 @@ class Tracker {
   /// measurements pass the gate and outweigh it.
   void widen();
 
+  /// Raises the uncertainty of the scale error and of the yaw rate bias, because dead reckoning
+  /// drifts: the next measurements correct them.
+  void loosen_odometry();
+
+  /// Forgets the pose; the next GNSS sample sets it again.
+  void restart();
+
   /// Returns to the state after construction.
   void reset();
 
  private:
   void initialise(Time time, const PoseMeasurement& measurement);
-  TrackerUpdate add_pose(Time time, PoseMeasurement measurement, double correlation_s,
-                         std::optional<Time>& last_time);
+  TrackerUpdate add_pose(Time time, const PoseMeasurement& measurement, Trust trust);
   bool has_odometry_for(Time time) const;
   MeasuredMotion motion_at(Time time, size_t events_until) const;
   FilterState state_at(Time time, size_t events_until) const;
@@ -121,8 +146,7 @@ class Tracker {
   TrackerParameters parameters_;
   EventHistory history_;
   std::optional<OdometrySample> last_odometry_;
-  std::optional<Time> last_gnss_;
-  std::optional<Time> last_correction_;
+  PoseInnovation latest_innovation_;
 };
 
 }  // namespace bevloc

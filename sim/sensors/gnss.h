@@ -16,6 +16,7 @@ struct GnssReading {
   double heading_rad = 0.0;
   double position_sigma_m = 0.0;  ///< per axis, as reported by the receiver
   double heading_sigma_rad = 0.0;
+  bool has_heading = true;
 };
 
 /// Readings at 10 Hz. The errors are a first-order Gauss-Markov process (sigma 1.0 m per axis, time

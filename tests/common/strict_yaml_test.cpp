@@ -183,6 +183,13 @@ TEST(StrictYaml, CallersCanRejectWhatTheyRead) {
   EXPECT_EQ(finish_error(yaml), "t.yaml:2: to: found 1, wanted at least from, which is 3");
 }
 
+/// Parsing such a text did not end, and filled the memory.
+TEST(StrictYaml, RefusesTextThatNeverEnds) {
+  for (const char* const text : {",", " ,\n", "# comment\n, a: 1\n", ",]", "--- ,"}) {
+    EXPECT_THAT(parse_error(text), StartsWith("t.yaml:")) << text;
+  }
+}
+
 TEST(StrictYaml, RefusesWhatIsNotOneMapping) {
   EXPECT_EQ(parse_error("- a\n- b\n"), "t.yaml:1: found a list of 2, wanted a mapping");
   EXPECT_THAT(parse_error(""), HasSubstr("found 0 YAML documents"));

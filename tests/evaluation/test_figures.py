@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from evaluation.figures import axis_features, distributions, frame_stages, spectra, style
+from evaluation.figures import axis_features, distributions, frame_stages, spectra, stanford, style
 
 RANDOM = np.random.default_rng(1)
 
@@ -93,6 +93,23 @@ def bench_data() -> frame_stages.Bench:
     }
 
 
+def stanford_data() -> list[stanford.Diagram]:
+    counts = np.zeros((60, 60), dtype=int)
+    counts[10:20, :8] = 100
+    counts[15, 30] = 1
+    axes: list[stanford.Axis] = [
+        {
+            "axis": name, "unit": "m", "alert_limit": 1.0, "bin": 0.05, "bins": 60,
+            "counts": counts.ravel().tolist(), "misleading": 1, "hazardous": 1,
+        }
+        for name in ("longitudinal", "lateral", "yaw")
+    ]
+    return [
+        {"name": "no fault", "valid_poses": 8001, "axes": axes},
+        {"name": "with faults", "valid_poses": 0, "axes": axes},
+    ]
+
+
 class FiguresTest(unittest.TestCase):
     def setUp(self) -> None:
         temporary = tempfile.TemporaryDirectory()
@@ -130,6 +147,12 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(names, ["solver", "can", "whole frame"])
         frame_stages.draw(data, self.file)
         self.check((frame_stages.WIDTH_PX, frame_stages.height_px(3)), [style.BLUE, style.GREEN])
+
+    def test_stanford_leaves_out_a_diagram_without_poses(self) -> None:
+        stanford.draw(stanford_data(), self.file)
+        width = stanford.LEFT + 3 * stanford.PANEL + 2 * stanford.GAP + stanford.RIGHT
+        height = stanford.TOP + stanford.PANEL + stanford.BOTTOM
+        self.check((width, height), [style.INK, style.ORANGE])
 
 
 class BevImageTest(unittest.TestCase):

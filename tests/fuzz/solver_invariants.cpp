@@ -78,8 +78,9 @@ Status check_no_evidence(const SolverResult& result, const HypothesisGrid& hypot
       return fail("{}: found a distribution that is not uniform without evidence", a.name);
     }
   }
-  if (!result.rival_peak.isZero(0.0) || !result.evidence_share.isZero(0.0)) {
-    return fail("found rival peaks or evidence shares without evidence");
+  if (!result.rival_peak.isZero(0.0) || !result.evidence_share.isZero(0.0) || result.score != 0.0 ||
+      !result.axis_score.isZero(0.0) || !result.edge_mass.isZero(0.0)) {
+    return fail("found rival peaks, evidence shares, scores or edge masses without evidence");
   }
   const Eigen::Matrix3d uniform = uniform_variance(hypotheses).asDiagonal();
   if (result.covariance != uniform)
@@ -98,9 +99,18 @@ Status check_result(const SolverResult& result, const HypothesisGrid& hypotheses
     if (!(result.rival_peak(i) >= 0.0 && result.rival_peak(i) <= 1.0)) {
       return fail("rival peak {}: found {}, wanted 0 to 1", i, result.rival_peak(i));
     }
+    if (!(result.axis_score(i) >= 0.0 && result.axis_score(i) <= 1.0)) {
+      return fail("score {}: found {}, wanted 0 to 1", i, result.axis_score(i));
+    }
+    if (!(result.edge_mass(i) >= 0.0 && result.edge_mass(i) <= 1.0 + kSumTolerance)) {
+      return fail("edge mass {}: found {}, wanted 0 to 1", i, result.edge_mass(i));
+    }
     if (!(std::isfinite(result.evidence_share(i)) && result.evidence_share(i) <= 1.0)) {
       return fail("evidence share {}: found {}, wanted at most 1", i, result.evidence_share(i));
     }
+  }
+  if (!(result.score >= 0.0 && result.score <= 1.0)) {
+    return fail("score: found {}, wanted 0 to 1", result.score);
   }
   return result.evidence == Evidence::kNone ? check_no_evidence(result, hypotheses) : Status{};
 }

@@ -53,7 +53,7 @@ TEST_F(BadInputTest, NoSuchConfiguration) {
 }
 
 TEST_F(BadInputTest, UnknownKey) {
-  expect_config_refused("rate_hz: 10", "rate_hz: 10\n  colour: red", {"config.yaml:6", "colour"});
+  expect_config_refused("rate_hz: 10", "rate_hz: 10\n  colour: red", {"config.yaml:7", "colour"});
 }
 
 TEST_F(BadInputTest, BrokenModel) {

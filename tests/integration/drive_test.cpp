@@ -91,7 +91,7 @@ TEST_F(DriveTest, EveryFrameOnTheBusPassesAnIndependentCheck) {
   EXPECT_EQ(report.unknown_frames, 0);
   EXPECT_EQ(report.unreadable_lines, 0);
   EXPECT_EQ(read_text(*scratch_ / "can.log").find("(-"), std::string::npos) << "a time before 0";
-  EXPECT_EQ(report.by_message.size(), 14U) << "messages of the DBC file that occur";
+  EXPECT_EQ(report.by_message.size(), 16U) << "messages of the DBC file that occur";
   int localizer_frames = 0;
   for (const auto& [name, tally] : report.by_message) {
     EXPECT_TRUE(tally.is_clean()) << name;
@@ -144,8 +144,8 @@ TEST(DriveVariantTest, ADeadCameraDegradesTheState) {
   const ScratchFolder scratch;
   write_file(scratch / "config.yaml",
              demo_config_with("  duration_s: 60\n",
-                              "  duration_s: 60\n  camera_faults:\n"
-                              "    - {camera: back_left, kind: dead, from_s: 5.0}\n"));
+                              "  duration_s: 60\n  faults:\n"
+                              "    - {kind: camera_dead, camera: back_left, from_s: 5.0}\n"));
   const nlohmann::json result =
       drive(scratch, (scratch / "config.yaml").string(), "--seed 901 --duration 8");
   EXPECT_LT(double(result["frames"]["captured"]), 470.0);
@@ -158,10 +158,10 @@ TEST(DriveVariantTest, ADeadCameraDegradesTheState) {
 /// The demo with free-running cameras: no two cameras expose at the same time.
 nlohmann::json unsynchronized_drive(bool compensate_motion) {
   const ScratchFolder scratch;
-  const std::string with_tolerance =
-      demo_config_with("  tolerance_ms: 2\n  wait_ms: 60\n",
-                       std::string("  tolerance_ms: 50\n  wait_ms: 100\n  compensate_motion: ") +
-                           (compensate_motion ? "true\n" : "false\n"));
+  const std::string with_tolerance = demo_config_with(
+      "  rate_hz: 10\n",
+      std::string("  rate_hz: 10\n  tolerance_ms: 50\n  wait_ms: 100\n  compensate_motion: ") +
+          (compensate_motion ? "true\n" : "false\n"));
   write_file(scratch / "config.yaml",
              with_tolerance + "  exposure_offsets_ms: [0, 50, 20, 35, 10, 45]\n");
   nlohmann::json result =

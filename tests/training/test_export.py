@@ -37,6 +37,8 @@ from training.quantize import (
 )
 from training.runtime import NativeNetwork
 
+ROOT = Path(__file__).resolve().parents[2]
+
 
 def constants_of(model: onnx.ModelProto) -> dict[str, np.ndarray]:
     return {tensor.name: numpy_helper.to_array(tensor) for tensor in model.graph.initializer}
@@ -199,6 +201,20 @@ class Export(unittest.TestCase):
                 float(properties[f"bevloc.solver.{name}_scale"]), expected, delta=1e-4 * expected
             )
         onnx.checker.check_model(self.model, full_check=True)
+
+    def test_the_model_file_states_the_rig_that_it_was_trained_with(self):
+        for path in (None, "models/nano.onnx", "models/nano_float.onnx"):
+            model = onnx.load(ROOT / path) if path else self.model
+            properties = {entry.key: entry.value for entry in model.metadata_props}
+            self.assertEqual(
+                properties["bevloc.rig.cameras"],
+                "front_left front front_right back_left back back_right",
+            )
+            self.assertEqual(properties["bevloc.rig.image_size_px"], "320 96")
+            focal_px = [float(word) for word in properties["bevloc.rig.focal_px"].split(" ")]
+            self.assertAlmostEqual(focal_px[1], 506.56 / 2, delta=0.1)
+            heights = [float(word) for word in properties["bevloc.rig.height_m"].split(" ")]
+            self.assertEqual(heights[4], 1.579)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <numeric>
 
+#include "pipeline/network/model/limits.h"
 #include "pipeline/network/model/load_error.h"
 
 namespace bevloc::nn {
@@ -25,11 +26,11 @@ Shape wanted_shape(const Node& node, const Shape& input, const Tensor& shape_ten
   const auto free_axis = std::ranges::find(wanted, -1);
   if (free_axis != wanted.end()) {
     *free_axis = 1;
-    const int64_t rest = element_count(wanted);
-    *free_axis = rest > 0 ? element_count(input) / rest : 0;
+    const int64_t rest = checked_element_count(wanted, node.label);
+    *free_axis = element_count(input) / rest;
   }
   const bool positive = std::ranges::all_of(wanted, [](int64_t n) { return n > 0; });
-  if (!positive || element_count(wanted) != element_count(input)) {
+  if (!positive || checked_element_count(wanted, node.label) != element_count(input)) {
     refuse("{}: shape {} cannot be reshaped to {}", node.label, to_string(input),
            to_string(shape_tensor.integers()));
   }
@@ -60,9 +61,9 @@ LayoutTrace transpose(const LayoutTrace& input, const Node& node) {
 
 int64_t block_size(const Node& node, const Shape& shape) {
   const int64_t block = node.integer("blocksize", 0);
-  if (shape.size() != 4 || block < 1) {
-    refuse("{}: shape is {} and blocksize {}, wanted 4 axes and a positive blocksize", node.label,
-           to_string(shape), block);
+  if (shape.size() != 4 || block < 1 || block > kLargestStep) {
+    refuse("{}: shape is {} and blocksize {}, wanted 4 axes and a blocksize of 1 to {}", node.label,
+           to_string(shape), block, kLargestStep);
   }
   return block;
 }

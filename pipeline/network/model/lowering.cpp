@@ -123,8 +123,10 @@ void lower_layout(LoweringState& state, const Node& node) {
   if (const auto* activation = std::get_if<Activation>(&input)) {
     Activation moved = *activation;
     moved.layout = traced_through(activation->layout, node, state.graph().constants);
+    state.spend(element_count(moved.layout.shape()), node.label);
     state.define_alias(node, std::move(moved));
   } else if (const auto* port = std::get_if<ViewPort>(&input)) {
+    state.spend(element_count(port->layout.shape()), node.label);
     state.define(node.output, ViewPort{port->is_weight, traced_through(port->layout, node,
                                                                        state.graph().constants)});
   } else {

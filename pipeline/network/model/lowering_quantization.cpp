@@ -1,7 +1,6 @@
 #include "pipeline/network/model/lowering_quantization.h"
 
-#include <cmath>
-
+#include "pipeline/network/model/limits.h"
 #include "pipeline/network/model/load_error.h"
 
 namespace bevloc::nn {
@@ -11,8 +10,9 @@ namespace {
 std::vector<float> checked_scales(const LoweringState& state, const Node& node) {
   const std::vector<float> scales = state.constant_input(node, 1, "scale").floats();
   for (const float scale : scales) {
-    if (!(scale > 0.0F) || !std::isfinite(scale)) {
-      refuse("{}: scale is {}, wanted more than 0", node.label, scale);
+    if (!(scale >= kSmallestScale && scale <= kLargestScale)) {
+      refuse("{}: scale is {:g}, wanted {:g} to {:g}", node.label, scale, kSmallestScale,
+             kLargestScale);
     }
   }
   if (scales.empty()) refuse("{}: there is no scale", node.label);
@@ -32,6 +32,11 @@ float single_scale(const LoweringState& state, const Node& node) {
 
 void dequantize_constant(LoweringState& state, const Node& node, const Tensor& elements) {
   const std::vector<float> scales = checked_scales(state, node);
+  if (elements.type == ElementType::kFloat32 || elements.type == ElementType::kInt64) {
+    refuse("{}: the constant is {}, wanted int8, uint8 or int32", node.label,
+           name_of(elements.type));
+  }
+  state.spend(static_cast<int64_t>(elements.bytes.size()), node.label);
   const int64_t axis = node.integer("axis", 1);
   const bool per_channel = axis == 0 && !elements.shape.empty() &&
                            static_cast<int64_t>(scales.size()) == elements.shape[0];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pipeline/network/model/limits.h"
 #include "pipeline/network/model/load_error.h"
 
 namespace bevloc::nn {
@@ -35,6 +36,9 @@ LoweringState::LoweringState(const Graph& graph) : graph_(graph) {
       continue;
     }
     const bool real = input.type == ElementType::kFloat32;
+    if (!real && !is_8_bit(input.type)) {
+      refuse("input '{}' is {}, wanted float, uint8 or int8", input.name, name_of(input.type));
+    }
     const int id = add_value(padded_dims(input.shape, fmt::format("input '{}'", input.name)),
                              input.type, real ? 1.0F : 0.0F);
     define(input.name, Activation{id, LayoutTrace(input.shape), real});
@@ -42,7 +46,17 @@ LoweringState::LoweringState(const Graph& graph) : graph_(graph) {
   }
 }
 
+void LoweringState::spend(int64_t elements, const std::string& what) {
+  elements_ += elements;
+  if (elements_ > kMostElementsTogether) {
+    refuse("{}: the model needs more than {} elements, wanted a smaller model", what,
+           kMostElementsTogether);
+  }
+}
+
 int LoweringState::add_value(const std::array<int64_t, 4>& dims, ElementType type, float scale) {
+  const std::string what = fmt::format("value {}", program_.values.size());
+  spend(checked_element_count({dims.begin(), dims.end()}, what), what);
   program_.values.push_back({dims, type, scale});
   return static_cast<int>(program_.values.size()) - 1;
 }

@@ -53,7 +53,11 @@ class LoweringState {
   Program& program() { return program_; }
   Value& value(int id) { return program_.values[static_cast<size_t>(id)]; }
 
-  /// Adds a value to the program and returns its index.
+  /// Counts elements that the program or its layouts keep. Throws LoadError, with `what`, if all
+  /// together exceed the bounds (limits.h).
+  void spend(int64_t elements, const std::string& what);
+
+  /// Adds a value to the program and returns its index. Throws LoadError if it exceeds the bounds.
   int add_value(const std::array<int64_t, 4>& dims, ElementType type = ElementType::kFloat32,
                 float scale = 1.0F);
   void define(const std::string& name, Symbol symbol) { symbols_[name] = std::move(symbol); }
@@ -97,6 +101,7 @@ class LoweringState {
   Program program_;
   std::map<std::string, Symbol> symbols_;
   std::map<std::string, int> use_count_;  ///< how often each name of the graph is read
+  int64_t elements_ = 0;                  ///< what spend() has counted
 };
 
 }  // namespace bevloc::nn

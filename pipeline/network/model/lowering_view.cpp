@@ -31,7 +31,7 @@ bool is_feature_table(const LayoutTrace& table, bool channels_first,
 /// Number of BEV cells in the view table, whose shape is [slots, cells].
 int64_t cell_count(const LoweringState& state) {
   for (const Port& port : state.graph().inputs) {
-    if (port.name == kViewIndexPort) return port.shape.back();
+    if (port.name == kViewIndexPort && port.shape.size() == 2) return port.shape[1];
   }
   return 0;
 }

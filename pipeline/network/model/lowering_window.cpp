@@ -1,29 +1,44 @@
 #include "pipeline/network/model/lowering_window.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
+#include "pipeline/network/model/limits.h"
 #include "pipeline/network/model/load_error.h"
 
 namespace bevloc::nn {
 namespace {
 
 /// An attribute of two numbers: one for the rows, one for the columns.
-std::array<int64_t, 2> rows_and_cols(const Node& node, const std::string& name, int64_t fallback) {
+std::array<int64_t, 2> rows_and_cols(const Node& node, const std::string& name, int64_t fallback,
+                                     int64_t largest) {
   const std::vector<int64_t> numbers = node.integers(name, {fallback, fallback});
-  if (numbers.size() != 2 || numbers[0] < 1 || numbers[1] < 1) {
-    refuse("{}: {} is {}, wanted two positive numbers", node.label, name, to_string(numbers));
+  const auto is_in_range = [largest](int64_t n) { return n >= 1 && n <= largest; };
+  if (numbers.size() != 2 || !std::ranges::all_of(numbers, is_in_range)) {
+    refuse("{}: {} is {}, wanted two numbers of 1 to {}", node.label, name, to_string(numbers),
+           largest);
   }
   return {numbers[0], numbers[1]};
 }
 
-std::array<int64_t, 4> padding(const Node& node) {
+/// Rows and columns that a window covers. Padding must be smaller, so that each window covers at
+/// least one cell of the image: the kernels rely on it.
+using WindowSize = std::array<int64_t, 2>;
+
+std::array<int64_t, 4> padding(const Node& node, const WindowSize& window) {
   if (node.text("auto_pad", "NOTSET") != "NOTSET") {
     refuse("{}: auto_pad is not supported, wanted pads", node.label);
   }
   const std::vector<int64_t> pads = node.integers("pads", {0, 0, 0, 0});
   if (pads.size() != 4 || std::ranges::any_of(pads, [](int64_t n) { return n < 0; })) {
     refuse("{}: pads are {}, wanted four numbers of at least 0", node.label, to_string(pads));
+  }
+  for (size_t i = 0; i < pads.size(); ++i) {
+    if (pads[i] >= window[i % 2]) {
+      refuse("{}: pads are {}, wanted fewer than the {}x{} cells of the window", node.label,
+             to_string(pads), window[0], window[1]);
+    }
   }
   return {pads[0], pads[1], pads[2], pads[3]};
 }
@@ -85,6 +100,26 @@ void choose_precision(LoweringState& state, ConvStep& conv) {
   conv.weight_scale.clear();
 }
 
+/// An int8 convolution sums in int32: refuses sums that do not fit.
+void check_sums(LoweringState& state, const Node& node, const ConvStep& conv) {
+  if (conv.weights.type != ElementType::kInt8) return;
+  const Shape& weights = conv.weights.shape;
+  const int64_t products = weights[1] * weights[2] * weights[3];
+  if (products > kMostProducts) {
+    refuse("{}: weights {} give sums of {} products, wanted at most {}", node.label,
+           to_string(weights), products, kMostProducts);
+  }
+  constexpr float kLargestBias = 1 << 30;
+  const float input_scale = state.value(conv.input).scale;
+  for (size_t c = 0; c < conv.bias.size(); ++c) {
+    const float units = conv.bias[c] / (conv.weight_scale[c] * input_scale);
+    if (!(std::abs(units) <= kLargestBias)) {
+      refuse("{}: bias {} of channel {} is {} units of its sum, wanted at most {}", node.label,
+             conv.bias[c], c, units, kLargestBias);
+    }
+  }
+}
+
 }  // namespace
 
 void lower_conv(LoweringState& state, const Node& node) {
@@ -92,9 +127,8 @@ void lower_conv(LoweringState& state, const Node& node) {
   set_weights(state, node, conv);
   conv.input = state.materialized_input(node, 0);
   conv.groups = node.integer("group", 1);
-  conv.strides = rows_and_cols(node, "strides", 1);
-  conv.dilations = rows_and_cols(node, "dilations", 1);
-  conv.pads = padding(node);
+  conv.strides = rows_and_cols(node, "strides", 1, kLargestStep);
+  conv.dilations = rows_and_cols(node, "dilations", 1, kLargestStep);
 
   const Shape& weights = conv.weights.shape;
   const auto dims = state.value(conv.input).dims;
@@ -109,24 +143,28 @@ void lower_conv(LoweringState& state, const Node& node) {
   }
   conv.bias = bias_of(state, node, weights[0]);
   choose_precision(state, conv);
-  const int64_t rows = window_count(node, dims[2], conv.pads[0] + conv.pads[2],
-                                    (weights[2] - 1) * conv.dilations[0] + 1, conv.strides[0]);
-  const int64_t cols = window_count(node, dims[3], conv.pads[1] + conv.pads[3],
-                                    (weights[3] - 1) * conv.dilations[1] + 1, conv.strides[1]);
+  check_sums(state, node, conv);
+  const WindowSize window{(weights[2] - 1) * conv.dilations[0] + 1,
+                          (weights[3] - 1) * conv.dilations[1] + 1};
+  conv.pads = padding(node, window);
+  const int64_t rows =
+      window_count(node, dims[2], conv.pads[0] + conv.pads[2], window[0], conv.strides[0]);
+  const int64_t cols =
+      window_count(node, dims[3], conv.pads[1] + conv.pads[3], window[1], conv.strides[1]);
   conv.output = state.define_value(node, {dims[0], weights[0], rows, cols});
   state.program().steps.push_back(std::move(conv));
 }
 
 void lower_max_pool(LoweringState& state, const Node& node) {
   if (node.integer("ceil_mode", 0) != 0 || node.integer("storage_order", 0) != 0 ||
-      rows_and_cols(node, "dilations", 1) != std::array<int64_t, 2>{1, 1}) {
+      rows_and_cols(node, "dilations", 1, kLargestStep) != std::array<int64_t, 2>{1, 1}) {
     refuse("{}: ceil_mode, storage_order and dilations are not supported", node.label);
   }
   MaxPoolStep pool;
   pool.input = state.materialized_input(node, 0);
-  pool.kernel = rows_and_cols(node, "kernel_shape", 0);
-  pool.strides = rows_and_cols(node, "strides", 1);
-  pool.pads = padding(node);
+  pool.kernel = rows_and_cols(node, "kernel_shape", 0, kLargestWindow);
+  pool.strides = rows_and_cols(node, "strides", 1, kLargestStep);
+  pool.pads = padding(node, pool.kernel);
   const Value input = state.value(pool.input);
   const int64_t rows = window_count(node, input.dims[2], pool.pads[0] + pool.pads[2],
                                     pool.kernel[0], pool.strides[0]);

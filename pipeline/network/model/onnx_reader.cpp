@@ -1,12 +1,16 @@
 #include "pipeline/network/model/onnx_reader.h"
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <span>
 
 #include <onnx/onnx_pb.h>
 
+#include "pipeline/network/model/limits.h"
 #include "pipeline/network/model/load_error.h"
 
 namespace bevloc::nn {
@@ -117,6 +121,11 @@ Tensor read_tensor(const onnx::TensorProto& proto, const std::string& name) {
     refuse("{} has {} bytes, which do not match its shape {} of {}", what, tensor.bytes.size(),
            to_string(tensor.shape), name_of(tensor.type));
   }
+  checked_element_count(tensor.shape, what);
+  if (tensor.type == ElementType::kFloat32 &&
+      !std::ranges::all_of(tensor.floats(), [](float value) { return std::isfinite(value); })) {
+    refuse("{} has an element that is not finite", what);
+  }
   return tensor;
 }
 
@@ -175,6 +184,7 @@ Port read_port(const onnx::ValueInfoProto& proto) {
     if (dimension.dim_value() <= 0) refuse("{} has a dynamic shape, wanted fixed dimensions", what);
     port.shape.push_back(dimension.dim_value());
   }
+  checked_element_count(port.shape, what);
   return port;
 }
 
@@ -192,7 +202,9 @@ void check_operator_set(const onnx::ModelProto& model) {
 void check_order(const Graph& graph) {
   std::set<std::string> known;
   for (const auto& [name, tensor] : graph.constants) known.insert(name);
-  for (const Port& input : graph.inputs) known.insert(input.name);
+  for (const Port& input : graph.inputs) {
+    if (!known.insert(input.name).second) refuse("input '{}' is defined twice", input.name);
+  }
   for (const Node& node : graph.nodes) {
     for (const std::string& input : node.inputs) {
       if (!input.empty() && !known.contains(input)) {
@@ -212,6 +224,9 @@ Graph convert(const onnx::ModelProto& model) {
   if (!model.has_graph()) refuse("contains no graph, wanted an ONNX model");
   check_operator_set(model);
   const onnx::GraphProto& proto = model.graph();
+  if (static_cast<size_t>(proto.node_size()) > kMostNodes) {
+    refuse("the graph has {} nodes, wanted at most {}", proto.node_size(), kMostNodes);
+  }
   Graph graph;
   graph.name = proto.name();
   for (const auto& initializer : proto.initializer()) {
@@ -236,16 +251,28 @@ Graph convert(const onnx::ModelProto& model) {
   return graph;
 }
 
+[[noreturn]] void refuse_length(uintmax_t bytes) {
+  refuse("is {} bytes long, wanted at most {}", bytes, kMostFileBytes);
+}
+
 }  // namespace
+
+Graph parse_onnx(std::string_view bytes) {
+  if (bytes.size() > kMostFileBytes) refuse_length(bytes.size());
+  onnx::ModelProto model;
+  if (!model.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    refuse("is not a complete ONNX file: it is damaged or truncated");
+  }
+  return convert(model);
+}
 
 Graph read_onnx(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse("cannot be opened: {}", std::strerror(errno));
-  onnx::ModelProto model;
-  if (!model.ParseFromIstream(&file)) {
-    refuse("is not a complete ONNX file: it is damaged or truncated");
-  }
-  return convert(model);
+  std::error_code not_a_file;
+  const uintmax_t length = std::filesystem::file_size(path, not_a_file);
+  if (!not_a_file && length > kMostFileBytes) refuse_length(length);
+  return parse_onnx(std::string(std::istreambuf_iterator<char>(file), {}));
 }
 
 }  // namespace bevloc::nn

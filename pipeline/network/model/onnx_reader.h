@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "pipeline/network/model/graph.h"
 
@@ -10,5 +11,8 @@ namespace bevloc::nn {
 /// Throws LoadError if the file is missing or truncated, or if it uses an operator, an attribute or
 /// an element type that is not supported (the message names it).
 Graph read_onnx(const std::string& path);
+
+/// The same for a file in memory.
+Graph parse_onnx(std::string_view bytes);
 
 }  // namespace bevloc::nn

@@ -1,5 +1,7 @@
 #include "can/bus/receive_clock.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace bevloc::can {
@@ -63,6 +65,47 @@ TEST(ReceiveClock, HardwareStampsRemoveTheJitterOfTheInterrupt) {
     EXPECT_GE(stamped.time, kSteady + sent);
     EXPECT_LE(stamped.time, kSteady + sent + microseconds(35));
   }
+}
+
+/// A frame every 20 ms for 20 s, read `waited` after it. CLOCK_REALTIME is set `step` ahead while
+/// the frame number `frame` waits in the socket.
+Duration largest_error(Duration step, int frame, Duration waited, bool with_hardware) {
+  ReceiveClock clock;
+  Duration largest{};
+  for (int i = 0; i < 1000; ++i) {
+    const Duration sent = milliseconds(20 * i);
+    KernelStamps stamps{.software = kRealtime + sent + (i > frame ? step : Duration::zero())};
+    if (with_hardware) stamps.hardware = seconds(7) + sent;
+    auto now = now_after(sent + waited);
+    if (i >= frame) now.realtime += step;
+    const Duration error = clock.to_steady(stamps, now).time - (kSteady + sent);
+    largest = std::max<Duration>(largest, std::chrono::abs(error));
+  }
+  return largest;
+}
+
+TEST(ReceiveClock, AStepOfTheRealtimeClockChangesNoTime) {
+  for (const bool with_hardware : {false, true}) {
+    for (const Duration step :
+         {Duration(milliseconds(900)), Duration(milliseconds(-900)), Duration(milliseconds(30)),
+          Duration(seconds(3)), Duration(seconds(-3600)), Duration(seconds(3600))}) {
+      EXPECT_LE(largest_error(step, 500, milliseconds(2), with_hardware), Duration(milliseconds(1)))
+          << to_seconds(step) << " s, hardware stamps: " << with_hardware;
+    }
+  }
+}
+
+TEST(ReceiveClock, FramesThatWaitedDuringAStepKeepTheirTimes) {
+  ReceiveClock clock;
+  clock.to_steady({.software = kRealtime}, now_after(milliseconds(1)));
+  auto now = now_after(milliseconds(120));
+  now.realtime += milliseconds(900);
+  for (const int sent_ms : {20, 40, 60}) {  // from before the step, read after it
+    const auto stamped = clock.to_steady({.software = kRealtime + milliseconds(sent_ms)}, now);
+    EXPECT_EQ(stamped.time, kSteady + milliseconds(sent_ms));
+  }
+  const auto after = clock.to_steady({.software = kRealtime + milliseconds(1000)}, now);
+  EXPECT_EQ(after.time, kSteady + milliseconds(100));
 }
 
 TEST(ReceiveClock, FollowsADriftingController) {

@@ -43,12 +43,41 @@ TEST(SendGate, ALatencyIsNeverNegative) {
   EXPECT_EQ(gate.confirm(0x500, kStart - milliseconds(1)), Duration::zero());
 }
 
-TEST(SendGate, ALostFrameBlocksOnlyForALimitedTime) {
+TEST(SendGate, ALostFrameBlocksOnlyForALimitedTimeWhileTheBusIsAlive) {
   SendGate gate(kIds);
   EXPECT_TRUE(gate.enter(0x500, kStart));
-  EXPECT_FALSE(gate.enter(0x500, kStart + SendGate::kGiveUp - Duration(1)));
-  EXPECT_TRUE(gate.enter(0x500, kStart + SendGate::kGiveUp));
-  EXPECT_FALSE(gate.enter(0x500, kStart + SendGate::kGiveUp)) << "still one frame at a time";
+  const Time later = kStart + SendGate::kGiveUp;
+  gate.note_alive(later - Duration(1));
+  EXPECT_FALSE(gate.enter(0x500, later));
+  gate.note_alive(later);
+  EXPECT_TRUE(gate.enter(0x500, later));
+  EXPECT_FALSE(gate.enter(0x500, later)) << "still one frame at a time";
+}
+
+TEST(SendGate, ABusWithoutAcknowledgementCollectsOneFrameOfEachIdentifier) {
+  SendGate gate(kIds);
+  int entered = 0;
+  for (Duration passed{}; passed < std::chrono::seconds(10); passed += milliseconds(10)) {
+    for (const uint32_t id : kIds) entered += gate.enter(id, kStart + passed);
+  }
+  EXPECT_EQ(entered, 2);
+  const Time returned = kStart + std::chrono::seconds(10);
+  for (const uint32_t id : kIds) EXPECT_TRUE(gate.confirm(id, returned));
+  for (const uint32_t id : kIds) EXPECT_TRUE(gate.enter(id, returned)) << "sending goes on";
+}
+
+TEST(SendGate, AStalledBusLetsNoOtherIdentifierEnter) {
+  SendGate gate(kIds);
+  EXPECT_TRUE(gate.enter(0x500, kStart));
+  EXPECT_FALSE(gate.is_stalled(kStart + SendGate::kStall));
+  const Time late = kStart + SendGate::kStall + Duration(1);
+  EXPECT_TRUE(gate.is_stalled(late));
+  EXPECT_FALSE(gate.enter(0x501, late)) << "it would be old when the bus returns";
+  gate.note_alive(late);
+  EXPECT_FALSE(gate.is_stalled(late)) << "a frame of low priority waits on a busy bus";
+  EXPECT_TRUE(gate.enter(0x501, late));
+  gate.reset();
+  EXPECT_FALSE(gate.is_stalled(late + std::chrono::seconds(1)));
 }
 
 TEST(SendGate, AResetFreesAllPlaces) {

@@ -64,10 +64,12 @@ TEST(IndependentE2e, FindsNoErrorOnTheClassicBus) {
   const auto report = check(one_second_of_bus());
   EXPECT_EQ(report.unreadable_lines, 0);
   EXPECT_EQ(report.unknown_frames, 0);
-  EXPECT_EQ(report.by_message.size(), 14u);
+  EXPECT_EQ(report.by_message.size(), 16u);
   for (const auto& [name, tally] : report.by_message) EXPECT_TRUE(tally.is_clean()) << name;
   EXPECT_EQ(report.by_message.at("LOC_PosLocal").good, 100);
   EXPECT_EQ(report.by_message.at("LOC_Status").good, 10);
+  EXPECT_EQ(report.by_message.at("LOC_Integrity").good, 100);
+  EXPECT_EQ(report.by_message.at("LOC_Identity").good, 5);
   EXPECT_EQ(report.by_message.at("VEH_GnssHeading").good, 10);
 }
 

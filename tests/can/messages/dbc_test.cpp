@@ -127,7 +127,9 @@ TEST(MessageTable, EnumerationsMatchTheValueNames) {
   EXPECT_EQ(name_of(loc_status::kTimeSource, TimeSource::kGnss), "GNSS");
 
   const auto why_name = [](Why why) {
-    return loc_status::kWhy[static_cast<size_t>(std::countr_zero(WhyMask(why).bits()))].name;
+    const auto bit = static_cast<size_t>(std::countr_zero(WhyMask(why).bits()));
+    const size_t in_status = loc_status::kWhy.size();
+    return bit < in_status ? loc_status::kWhy[bit].name : loc_integrity::kWhy[bit - in_status].name;
   };
   EXPECT_EQ(why_name(Why::kCameraMissing), "Why_CameraMissing");
   EXPECT_EQ(why_name(Why::kCamerasUnsynchronized), "Why_CamerasUnsynchronized");
@@ -145,6 +147,12 @@ TEST(MessageTable, EnumerationsMatchTheValueNames) {
   EXPECT_EQ(why_name(Why::kCalibrationFault), "Why_CalibrationFault");
   EXPECT_EQ(why_name(Why::kNetworkFault), "Why_NetworkFault");
   EXPECT_EQ(why_name(Why::kInternalFault), "Why_InternalFault");
+  EXPECT_EQ(why_name(Why::kGnssContradicts), "Why_GnssContradicts");
+  EXPECT_EQ(why_name(Why::kOdometryContradicts), "Why_OdometryContradicts");
+  EXPECT_EQ(why_name(Why::kMatchContradicts), "Why_MatchContradicts");
+  EXPECT_EQ(why_name(Why::kClockGap), "Why_ClockGap");
+  EXPECT_EQ(why_name(Why::kOdometryImplausible), "Why_OdometryImplausible");
+  EXPECT_EQ(why_name(Why::kForeignSender), "Why_ForeignSender");
 }
 
 TEST(MessageTable, BlankFramesAreNotAvailable) {

@@ -48,17 +48,21 @@ class PosePublisherTest : public testing::Test {
   }
 
   void expect_no_pose() const {
-    for (const auto& [message, signal] :
-         std::vector<std::pair<std::string, std::string>>{{"LOC_Latitude", "Latitude"},
-                                                          {"LOC_Latitude", "StdDevNorth"},
-                                                          {"LOC_Longitude", "Longitude"},
-                                                          {"LOC_Longitude", "StdDevEast"},
-                                                          {"LOC_PosLocal", "LocalEast"},
-                                                          {"LOC_PosLocal", "LocalNorth"},
-                                                          {"LOC_Attitude", "Heading"},
-                                                          {"LOC_StdDev", "StdDevLongitudinal"},
-                                                          {"LOC_StdDev", "StdDevLateral"},
-                                                          {"LOC_StdDev", "StdDevHeading"}}) {
+    for (const auto& [message, signal] : std::vector<std::pair<std::string, std::string>>{
+             {"LOC_Latitude", "Latitude"},
+             {"LOC_Latitude", "StdDevNorth"},
+             {"LOC_Longitude", "Longitude"},
+             {"LOC_Longitude", "StdDevEast"},
+             {"LOC_PosLocal", "LocalEast"},
+             {"LOC_PosLocal", "LocalNorth"},
+             {"LOC_Attitude", "Heading"},
+             {"LOC_StdDev", "StdDevLongitudinal"},
+             {"LOC_StdDev", "StdDevLateral"},
+             {"LOC_StdDev", "StdDevHeading"},
+             {"LOC_Integrity", "ProtectionLateral"},
+             {"LOC_Integrity", "ProtectionLongitudinal"},
+             {"LOC_Integrity", "ProtectionYaw"},
+             {"LOC_Integrity", "IntegrityRiskExponent"}}) {
       EXPECT_TRUE(is_sna(message, signal)) << message << "." << signal;
     }
   }
@@ -79,7 +83,7 @@ class PosePublisherTest : public testing::Test {
 
 TEST_F(PosePublisherTest, AConsumerWithTheDbcFileReadsTheReport) {
   publish(tracking_report(kNow), kNow);
-  EXPECT_EQ(frames_.size(), 9u);
+  EXPECT_EQ(frames_.size(), 11u);
   EXPECT_EQ(value("LOC_Status", "State"), 2.0);
   EXPECT_EQ(value("LOC_Status", "CameraOk_FrontLeft"), 1.0);
   EXPECT_EQ(value("LOC_Status", "CameraOk_Front"), 0.0);
@@ -99,6 +103,10 @@ TEST_F(PosePublisherTest, AConsumerWithTheDbcFileReadsTheReport) {
   EXPECT_NEAR(value("LOC_Correction", "DeltaLongitudinal"), 0.432, 1e-9);
   EXPECT_NEAR(value("LOC_Correction", "DeltaLateral"), -0.123, 1e-9);
   EXPECT_NEAR(value("LOC_Correction", "DeltaYaw"), 0.57, 1e-9);
+  EXPECT_NEAR(value("LOC_Integrity", "ProtectionLongitudinal"), 1.24, 1e-9) << "rounded up";
+  EXPECT_NEAR(value("LOC_Integrity", "ProtectionLateral"), 0.51, 1e-9) << "rounded up";
+  EXPECT_NEAR(value("LOC_Integrity", "ProtectionYaw"), 1.45, 1e-9) << "rounded up";
+  EXPECT_EQ(value("LOC_Integrity", "IntegrityRiskExponent"), 5.0);
 }
 
 TEST_F(PosePublisherTest, LatitudeAndLongitudeRoundTripTo1Cm) {
@@ -127,6 +135,40 @@ TEST_F(PosePublisherTest, StandardDeviationsAreAlongTheVehiclesAxes) {
   EXPECT_NEAR(value("LOC_StdDev", "StdDevHeading"), 0.58, 1e-9) << "0.573 degrees, rounded up";
 }
 
+TEST_F(PosePublisherTest, AProtectionLevelOutOfRangeIsNotAvailable) {
+  PoseReport report = tracking_report(kNow);
+  report.protection_level = {
+      .longitudinal_m = 40.941, .lateral_m = 20.46, .yaw_rad = -0.1, .integrity_risk = 3e-6};
+  publish(report, kNow);
+  EXPECT_TRUE(is_sna("LOC_Integrity", "ProtectionLongitudinal"));
+  EXPECT_NEAR(value("LOC_Integrity", "ProtectionLateral"), 20.46, 1e-9) << "the largest value";
+  EXPECT_TRUE(is_sna("LOC_Integrity", "ProtectionYaw")) << "no bound is negative";
+  EXPECT_EQ(value("LOC_Integrity", "IntegrityRiskExponent"), 5.0) << "at most 1e-5, but not 1e-6";
+
+  const Time later = kNow + seconds(1);
+  report = tracking_report(later);
+  report.protection_level = {};
+  publish(report, later);
+  EXPECT_TRUE(is_sna("LOC_Integrity", "ProtectionLateral"));
+  EXPECT_TRUE(is_sna("LOC_Integrity", "IntegrityRiskExponent"));
+  EXPECT_EQ(value("LOC_Status", "State"), 2.0) << "a pose without a bound is still a pose";
+}
+
+TEST_F(PosePublisherTest, EachReasonHasItsFlag) {
+  PoseReport report = tracking_report(kNow);
+  for (int bit = 0; bit < kWhyCount; ++bit) {
+    report.status.why = static_cast<Why>(1u << bit);
+    publish(report, kNow);
+    int flags = 0;
+    for (const char* message : {"LOC_Status", "LOC_Integrity"}) {
+      for (const test::DbcSignal& signal : dbc_.message(message).signals) {
+        if (signal.name.starts_with("Why_")) flags += value(message, signal.name) != 0.0;
+      }
+    }
+    EXPECT_EQ(flags, 1) << to_string(report.status.why);
+  }
+}
+
 TEST_F(PosePublisherTest, CaptureTimeIsModulo32BitMicroseconds) {
   PoseReport report = tracking_report(kNow);
   report.capture_time = kNow - microseconds(1500);
@@ -140,7 +182,7 @@ TEST_F(PosePublisherTest, FramesOfOneSolutionShareAnEpochAndCountersRise) {
     publish(tracking_report(now), now);
     for (const auto& [message, frame] : frames_) {
       EXPECT_EQ(value(message, "EPOCH"), cycle % 16) << message;
-      if (message == "LOC_Status") continue;
+      if (message == "LOC_Status" || message == "LOC_Identity") continue;
       EXPECT_EQ(value(message, "COUNTER"), cycle % 16) << message;
     }
   }
@@ -154,7 +196,8 @@ TEST_F(PosePublisherTest, StatusIsSentOnItsCycleAndOnChange) {
     if (cycle >= 14) report.status.state = HealthState::kDegraded;
     publish(report, now);
     if (frames_.contains("LOC_Status")) cycles_with_status.push_back(cycle);
-    EXPECT_EQ(frames_.size(), frames_.contains("LOC_Status") ? 9u : 8u);
+    EXPECT_EQ(frames_.size(),
+              9u + frames_.contains("LOC_Status") + frames_.contains("LOC_Identity"));
   }
   EXPECT_EQ(cycles_with_status, (std::vector<int>{0, 10, 14, 24}));
 }
@@ -168,6 +211,30 @@ TEST_F(PosePublisherTest, StatusKeepsItsCycleWhenCallsAreEarlyAndLate) {
     if (frames_.contains("LOC_Status")) cycles_with_status.push_back(cycle);
   }
   EXPECT_EQ(cycles_with_status, (std::vector<int>{0, 10, 20, 30, 40}));
+}
+
+TEST_F(PosePublisherTest, TheIdentityIsKnownAfterOneSecond) {
+  const Identity identity{
+      .program = 1, .configuration = 2, .model = 0xFFFFFFFF, .rig = 0x80000000, .map = 0xDEADBEEF};
+  PosePublisher publisher(*sender_, {.map_origin = kOrigin, .identity = identity});
+  const test::DbcMessage& message = dbc_.message("LOC_Identity");
+  std::map<double, double> checksums;
+  std::vector<int> cycles;
+  for (int cycle = 0; cycle < 100; ++cycle) {
+    const Time now = kNow + milliseconds(10 * cycle);
+    publisher.publish(tracking_report(now), now);
+    while (const auto received = reader_->receive()) {
+      if (received->frame.id != message.id) continue;
+      const auto payload = received->frame.payload();
+      cycles.push_back(cycle);
+      checksums[message.signal("IdentityItem").physical_from(payload)] =
+          message.signal("IdentityChecksum").physical_from(payload);
+    }
+  }
+  EXPECT_EQ(cycles, (std::vector<int>{0, 20, 40, 60, 80}));
+  const std::map<double, double> wanted = {
+      {0, 1}, {1, 2}, {2, 0xFFFFFFFF}, {3, 0x80000000}, {4, 0xDEADBEEF}};
+  EXPECT_EQ(checksums, wanted);
 }
 
 TEST_F(PosePublisherTest, AStatusThatCouldNotBeSentIsSentAgain) {
@@ -284,6 +351,7 @@ TEST_F(PosePublisherTest, RandomReportsGiveNoSignalOutOfRange) {
     report.forward_speed_mps = draw();
     report.yaw_rate_radps = draw();
     report.correction = Se2{draw(), draw(), draw()};
+    report.protection_level = {draw(), draw(), draw(), draw()};
     publish(report, now);
     for (const auto& [name, frame] : frames_) {
       for (const test::DbcSignal& signal : dbc_.message(name).signals) {

@@ -16,10 +16,10 @@ namespace {
 using std::chrono::milliseconds;
 using test::kNow;
 
-/// A report with a Why bit.
+/// A report with a Why bit in LOC_Status and one in LOC_Integrity.
 PoseReport report_with_reason() {
   PoseReport report = test::tracking_report(kNow);
-  report.status.why = Why::kGnssMissing;
+  report.status.why = Why::kGnssMissing | Why::kClockGap;
   return report;
 }
 
@@ -74,11 +74,13 @@ TEST(SolutionFd, SplittingReturnsTheJoinedFrames) {
   const LocalizerStatus status = status_to_send(report, {}, kNow);
   const Frame first = status_frame(status, base);
   const SolutionFrames frames = solution_frames(report, status, {}, geo, base, kNow);
-  const Frame joined = joined_solution(first, frames, base);
+  const Frame identity = identity_frame({.model = 0xDEADBEEF}, 2, base);
+  const Frame joined = joined_solution(first, frames, identity, base);
   EXPECT_EQ(part_of_solution(joined, 0, base), first);
   for (size_t i = 0; i < frames.size(); ++i) {
     EXPECT_EQ(part_of_solution(joined, i + 1, base), frames[i]);
   }
+  EXPECT_EQ(part_of_solution(joined, frames.size() + 1, base), identity);
 }
 
 TEST(SolutionFd, APublisherListsTheIdentifiersThatItSends) {

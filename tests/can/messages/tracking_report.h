@@ -23,6 +23,10 @@ inline can::PoseReport tracking_report(Time now) {
   report.pose_time = now;
   report.map_from_vehicle = {123.456, -78.9, radians(30.0)};
   report.covariance = Eigen::Vector3d(0.04, 0.01, 1e-4).asDiagonal();
+  report.protection_level = {.longitudinal_m = 1.234,
+                             .lateral_m = 0.501,
+                             .yaw_rad = radians(1.449),
+                             .integrity_risk = 1e-5};
   report.forward_speed_mps = 13.37;
   report.yaw_rate_radps = radians(-4.2);
   report.correction = Se2{0.4321, -0.123, radians(0.57)};

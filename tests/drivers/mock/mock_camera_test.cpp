@@ -12,7 +12,13 @@
 namespace bevloc::drivers {
 namespace {
 
+using sim::FaultKind;
+using sim::make_fault;
 using std::chrono::milliseconds;
+
+std::shared_ptr<const sim::FaultBoard> faults(const std::vector<sim::Fault>& list) {
+  return std::make_shared<const sim::FaultBoard>(list);
+}
 
 /// Captures the first `count` images of a camera.
 std::vector<Pixels> first_images(const MockCameraConfig& config, int count) {
@@ -63,7 +69,7 @@ TEST(MockCamera, AnImageDependsOnItsTimeAndNotOnTheStart) {
 
 TEST(MockCamera, AFrozenCameraRepeatsTheSamePixels) {
   MockCameraConfig config = small_front_camera();
-  config.faults = {{CameraFaultKind::kFrozen, 0.15}};
+  config.faults = faults({make_fault(FaultKind::kCameraFrozen, 0.15)});
   const auto taken = first_images(config, 5);
   EXPECT_NE(taken[1], taken[2]);
   EXPECT_EQ(taken[2], taken[3]);
@@ -89,7 +95,7 @@ TEST(MockCamera, CamerasThatDrawAtTheSameTimeGiveTheSameImagesAsAlone) {
 
 TEST(MockCamera, ADeadCameraIsSilentAndRecovers) {
   MockCameraConfig config = small_front_camera();
-  config.faults = {{CameraFaultKind::kDead, 0.0, 20.0}};
+  config.faults = faults({make_fault(FaultKind::kCameraDead, 0.0, 20.0)});
   VirtualClock clock;
   MockCamera camera(test_scene(), config, clock);
   ASSERT_TRUE(camera.start());
@@ -103,7 +109,7 @@ TEST(MockCamera, ADeadCameraIsSilentAndRecovers) {
 
 TEST(MockCamera, ACameraThatStaysDeadIsSilent) {
   MockCameraConfig config = small_front_camera();
-  config.faults = {{CameraFaultKind::kDead}};
+  config.faults = faults({make_fault(FaultKind::kCameraDead)});
   VirtualClock clock;
   MockCamera camera(test_scene(), config, clock);
   ASSERT_TRUE(camera.start());

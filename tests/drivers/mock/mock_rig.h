@@ -20,20 +20,22 @@ inline const std::shared_ptr<MockScene>& test_scene() {
   return scene;
 }
 
-/// The nominal front camera at 10 Hz, with a tenth of its width and height.
+/// The nominal front camera at 10 Hz, with a tenth of its width and height. All cameras
+/// have its view.
 inline MockCameraConfig small_front_camera() {
   constexpr int kFront = 1;
   constexpr double kScale = 0.1;
   MockCameraConfig config;
   config.camera = kFront;
-  config.true_camera = sim::nominal_rig().cameras[kFront];
-  Intrinsics& intrinsics = config.true_camera.intrinsics;
+  CameraModel camera = sim::nominal_rig().cameras[kFront];
+  Intrinsics& intrinsics = camera.intrinsics;
   intrinsics.width_px = static_cast<int>(kScale * intrinsics.width_px);
   intrinsics.height_px = static_cast<int>(kScale * intrinsics.height_px);
   intrinsics.fx_px *= kScale;
   intrinsics.fy_px *= kScale;
   intrinsics.cx_px *= kScale;
   intrinsics.cy_px *= kScale;
+  config.true_rig.cameras.fill(camera);
   config.timing.period = std::chrono::milliseconds(100);
   config.timing.exposure = std::chrono::milliseconds(8);
   config.timing.readout = std::chrono::milliseconds(20);

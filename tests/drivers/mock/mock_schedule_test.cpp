@@ -8,6 +8,8 @@
 namespace bevloc::drivers {
 namespace {
 
+using sim::FaultKind;
+using sim::make_fault;
 using std::chrono::milliseconds;
 using testing::ElementsAre;
 
@@ -22,16 +24,31 @@ CameraTiming ten_hertz() {
   return timing;
 }
 
-MockSchedule schedule_with(std::vector<CameraFault> faults, Time now = kStart) {
-  MockSchedule schedule(ten_hertz(), std::move(faults));
+MockSchedule schedule_with(const std::vector<sim::Fault>& faults, Time now = kStart) {
+  MockSchedule schedule(ten_hertz(), 1, std::make_shared<const sim::FaultBoard>(faults));
   schedule.restart(now);
   return schedule;
 }
 
 std::vector<uint64_t> sequences(MockSchedule schedule, int count) {
   std::vector<uint64_t> numbers;
-  for (int i = 0; i < count; ++i) numbers.push_back(schedule.next().sequence);
+  while (numbers.size() < static_cast<size_t>(count)) {
+    const Delivery delivery = schedule.next();
+    if (!delivery.lost) numbers.push_back(delivery.sequence);
+  }
   return numbers;
+}
+
+sim::Fault every(FaultKind kind, int n) {
+  sim::Fault fault = make_fault(kind);
+  fault.amounts.every = n;
+  return fault;
+}
+
+sim::Fault late(double from_s, double until_s, double delay_ms) {
+  sim::Fault fault = make_fault(FaultKind::kCameraLate, from_s, until_s);
+  fault.amounts.delay_ms = delay_ms;
+  return fault;
 }
 
 TEST(MockSchedule, KeepsThePeriod) {
@@ -58,30 +75,22 @@ TEST(MockSchedule, BeginsWithTheFirstExposureFromNowOn) {
 
 TEST(MockSchedule, DeadCameraLeavesAGap) {
   // The exposures at 0.203, 0.303 and 0.403 s are during the fault.
-  EXPECT_THAT(sequences(schedule_with({{CameraFaultKind::kDead, 0.2, 0.5}}), 4),
+  EXPECT_THAT(sequences(schedule_with({make_fault(FaultKind::kCameraDead, 0.2, 0.5)}), 4),
               ElementsAre(0, 1, 5, 6));
 }
 
-TEST(MockSchedule, ACameraThatStaysDeadIsNeverDue) {
-  MockSchedule schedule = schedule_with({{CameraFaultKind::kDead, 0.2}});
-  EXPECT_LT(schedule.next().due, Time::max());
-  EXPECT_LT(schedule.next().due, Time::max());
-  EXPECT_EQ(schedule.next().due, Time::max());
-  EXPECT_EQ(schedule.next().due, Time::max());
-}
-
 TEST(MockSchedule, DropsEveryNth) {
-  EXPECT_THAT(sequences(schedule_with({{.kind = CameraFaultKind::kDrop, .every = 3}}), 6),
+  EXPECT_THAT(sequences(schedule_with({every(FaultKind::kCameraDrop, 3)}), 6),
               ElementsAre(0, 1, 3, 4, 6, 7));
 }
 
 TEST(MockSchedule, DuplicatesEveryNth) {
-  EXPECT_THAT(sequences(schedule_with({{.kind = CameraFaultKind::kDuplicate, .every = 2}}), 6),
+  EXPECT_THAT(sequences(schedule_with({every(FaultKind::kCameraDuplicate, 2)}), 6),
               ElementsAre(0, 1, 1, 2, 3, 3));
 }
 
 TEST(MockSchedule, SwapsEveryNthWithTheNext) {
-  MockSchedule schedule = schedule_with({{.kind = CameraFaultKind::kSwap, .every = 3}});
+  MockSchedule schedule = schedule_with({every(FaultKind::kCameraOutOfOrder, 3)});
   EXPECT_THAT(sequences(schedule, 7), ElementsAre(0, 1, 3, 2, 4, 6, 5));
   Time due = Time::min();
   for (int i = 0; i < 20; ++i) {
@@ -92,8 +101,7 @@ TEST(MockSchedule, SwapsEveryNthWithTheNext) {
 }
 
 TEST(MockSchedule, LateFramesKeepTheirTimeOfExposure) {
-  const CameraFault late{CameraFaultKind::kLate, 0.1, 0.2, milliseconds(45)};
-  MockSchedule schedule = schedule_with({late});
+  MockSchedule schedule = schedule_with({late(0.1, 0.2, 45)});
   for (const int extra_ms : {0, 45, 0}) {
     const Delivery delivery = schedule.next();
     EXPECT_EQ(delivery.due - delivery.exposure_start, milliseconds(20 + extra_ms));
@@ -101,14 +109,14 @@ TEST(MockSchedule, LateFramesKeepTheirTimeOfExposure) {
 }
 
 TEST(MockSchedule, NothingOvertakesALateFrame) {
-  MockSchedule schedule = schedule_with({{CameraFaultKind::kLate, 0.1, 0.2, milliseconds(250)}});
+  MockSchedule schedule = schedule_with({late(0.1, 0.2, 250)});
   for (const int due_ms : {23, 373, 373, 373, 423}) {
     EXPECT_EQ(schedule.next().due, kStart + milliseconds(due_ms));
   }
 }
 
 TEST(MockSchedule, FrozenFramesShowOneMoment) {
-  MockSchedule schedule = schedule_with({{CameraFaultKind::kFrozen, 0.1, 0.4}});
+  MockSchedule schedule = schedule_with({make_fault(FaultKind::kCameraFrozen, 0.1, 0.4)});
   EXPECT_EQ(schedule.next().scene_time, kStart + milliseconds(3));
   for (int i = 0; i < 3; ++i) {
     const Delivery delivery = schedule.next();
@@ -116,6 +124,36 @@ TEST(MockSchedule, FrozenFramesShowOneMoment) {
     EXPECT_EQ(delivery.exposure_start, kStart + milliseconds(103 + 100 * i));
   }
   EXPECT_EQ(schedule.next().scene_time, kStart + milliseconds(403));
+}
+
+TEST(MockSchedule, ALoopRepeatsItsFirstPictures) {
+  sim::Fault loop = make_fault(FaultKind::kCameraLoop, 0.2);
+  loop.amounts.pictures = 3;
+  MockSchedule schedule = schedule_with({loop});
+  // The first exposure of the loop is at 0.203 s.
+  for (const int shown_ms : {3, 103, 203, 303, 403, 203, 303, 403, 203}) {
+    EXPECT_EQ(schedule.next().scene_time, kStart + milliseconds(shown_ms));
+  }
+}
+
+TEST(MockSchedule, ShiftedStampsLeavePictureAndArrivalAsTheyAre) {
+  sim::Fault shift = make_fault(FaultKind::kCameraTimeShift, 0.1);
+  shift.amounts.shift_ms = -80.0;
+  MockSchedule schedule = schedule_with({shift});
+  EXPECT_EQ(schedule.next().exposure_start, kStart + milliseconds(3));
+  const Delivery shifted = schedule.next();
+  EXPECT_EQ(shifted.exposure_start, kStart + milliseconds(23));
+  EXPECT_EQ(shifted.scene_time, kStart + milliseconds(103));
+  EXPECT_EQ(shifted.due, kStart + milliseconds(123));
+  EXPECT_EQ(schedule.true_exposure_start(shifted), kStart + milliseconds(103));
+}
+
+TEST(MockSchedule, AFaultOfAnotherCameraDoesNothing) {
+  sim::Fault dead = make_fault(FaultKind::kCameraDead);
+  dead.camera = 4;
+  EXPECT_FALSE(schedule_with({dead}).next().lost);
+  dead.camera = 1;
+  EXPECT_TRUE(schedule_with({dead}).next().lost);
 }
 
 }  // namespace

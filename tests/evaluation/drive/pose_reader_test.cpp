@@ -1,5 +1,7 @@
 #include "evaluation/drive/pose_reader.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,9 +23,18 @@ can::PoseReport valid_report(Time now) {
   report.pose_time = now;
   report.map_from_vehicle = {123.4, -56.7, 2.5};
   report.covariance = Eigen::Matrix3d::Identity() * 0.01;
+  report.protection_level = {
+      .longitudinal_m = 1.0, .lateral_m = 0.5, .yaw_rad = radians(0.8), .integrity_risk = 1e-5};
   report.forward_speed_mps = 10.0;
   report.yaw_rate_radps = 0.1;
   return report;
+}
+
+void expect_protection(const can::ProtectionLevel& level) {
+  EXPECT_NEAR(level.longitudinal_m, 1.0, 1e-9);
+  EXPECT_NEAR(level.lateral_m, 0.5, 1e-9);
+  EXPECT_NEAR(level.yaw_rad, radians(0.8), 1e-9);
+  EXPECT_NEAR(level.integrity_risk, 1e-5, 1e-12);
 }
 
 class PoseReaderTest : public testing::Test {
@@ -52,6 +63,7 @@ TEST_F(PoseReaderTest, ReadsAPublishedPose) {
   ASSERT_TRUE(pose);
   EXPECT_EQ(pose->received, now);
   EXPECT_THAT(pose->map_from_vehicle, test::PoseNear({123.4, -56.7, 2.5}, 0.006, radians(0.01)));
+  expect_protection(pose->protection_level);
   EXPECT_EQ(reader_.state(), HealthState::kTracking);
 }
 
@@ -64,6 +76,7 @@ TEST_F(PoseReaderTest, ReadsTheFdVariant) {
   const auto pose = reader_.accept(*received);
   ASSERT_TRUE(pose);
   EXPECT_THAT(pose->map_from_vehicle, test::PoseNear({123.4, -56.7, 2.5}, 0.006, radians(0.01)));
+  expect_protection(pose->protection_level);
   EXPECT_EQ(reader_.state(), HealthState::kTracking);
   EXPECT_FALSE(reader_.accept(*received)) << "the same frame again";
 }
@@ -74,6 +87,33 @@ TEST_F(PoseReaderTest, IgnoresAnInvalidPose) {
   report.status.state = HealthState::kLost;
   EXPECT_FALSE(send_and_read(report, now));
   EXPECT_EQ(reader_.state(), HealthState::kLost);
+}
+
+TEST_F(PoseReaderTest, ReadsAnUnknownProtectionLevel) {
+  const Time now(milliseconds(1000));
+  can::PoseReport report = valid_report(now);
+  report.protection_level = {};
+  const auto pose = send_and_read(report, now);
+  ASSERT_TRUE(pose);
+  EXPECT_TRUE(std::isnan(pose->protection_level.lateral_m));
+  EXPECT_TRUE(std::isnan(pose->protection_level.integrity_risk));
+}
+
+TEST_F(PoseReaderTest, ReadsTheReasonsOfBothVariants) {
+  EXPECT_EQ(reader_.why(), WhyMask());
+  const Time now(milliseconds(1000));
+  can::PoseReport report = valid_report(now);
+  report.status.why = Why::kCameraMissing | Why::kInternalFault | Why::kGnssContradicts;
+  send_and_read(report, now);
+  EXPECT_EQ(reader_.why(), report.status.why);
+
+  report.status.why = Why::kForeignSender;
+  can::PosePublisher fd(*sender_, {.map_origin = kOrigin, .format = can::FrameFormat::kFd});
+  fd.publish(report, now);
+  const auto received = receiver_->receive();
+  ASSERT_TRUE(received);
+  reader_.accept(*received);
+  EXPECT_EQ(reader_.why(), WhyMask(Why::kForeignSender));
 }
 
 TEST_F(PoseReaderTest, IgnoresCorruptFrames) {

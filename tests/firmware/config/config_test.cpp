@@ -32,7 +32,7 @@ TEST_F(ConfigTest, SmallestFileHasTheDefaults) {
   EXPECT_EQ(config->solver.tracking.x_m.count(), HypothesisGrid{}.x_m.count());
   EXPECT_EQ(config->solver.tracking.yaw_rad.count(), HypothesisGrid{}.yaw_rad.count());
   ASSERT_TRUE(config->simulation);
-  EXPECT_TRUE(config->simulation->camera_faults[0].empty());
+  EXPECT_TRUE(config->simulation->faults.empty());
   EXPECT_EQ(config->simulation->exposure_offsets[0], Duration::zero());
 }
 
@@ -96,10 +96,11 @@ TEST_F(ConfigTest, EverySectionIsRead) {
       "             yaw_range_deg: 4, yaw_step_deg: 1}\n"
       "can: {driver: socketcan, interface: can0, variant: fd, localizer_base_id: 0x600, "
       "vehicle_base_id: "
-      "0x300}\n"
+      "0x300, rear_track_m: 1.75,\n"
+      "  secoc: {key_file: secoc.key, starts_file: /var/lib/bevloc/starts}}\n"
       "tracker: {longitudinal_noise_m_per_sqrt_m: 0.03, lateral_noise_m_per_sqrt_m: 0.04, "
       "yaw_noise_deg_per_sqrt_s: 0.2, speed_scale_sigma: 0.05, yaw_rate_bias_sigma_degps: 0.5, "
-      "gnss_correlation_s: 20, correction_correlation_s: 0, gate_squared_distance: 12}\n"
+      "gnss_correlation_s: 20, correction_correlation_m: [5, 6, 7], gate_squared_distance: 12}\n"
       "health: {odometry_timeout_ms: 100, gnss_timeout_ms: 2000, degraded_after_ms: 300, "
       "lost_after_ms: 4000, corrections_to_track: 3, refusals_to_lose: 9, "
       "max_longitudinal_sigma_m: 0.5, max_lateral_sigma_m: 0.25, max_yaw_sigma_deg: 1}\n"
@@ -118,19 +119,23 @@ TEST_F(ConfigTest, EverySectionIsRead) {
   EXPECT_EQ(config->solver.tracking.x_m.count(), 13);
   EXPECT_EQ(config->solver.tracking.y_m.count(), 17);
   EXPECT_DOUBLE_EQ(config->solver.tracking.yaw_rad.range, radians(4.0));
-  EXPECT_DOUBLE_EQ(config->solver.acquiring.x_m.range, 6.0);
+  EXPECT_DOUBLE_EQ(config->solver.acquiring.x_m.range, 4.0);
   EXPECT_EQ(config->can.driver, CanDriver::kSocketCan);
   EXPECT_EQ(config->can.interface, "can0");
   EXPECT_EQ(config->can.variant, can::FrameFormat::kFd);
   EXPECT_EQ(config->can.base_ids.localizer, 0x600U);
   EXPECT_EQ(config->can.base_ids.vehicle, 0x300U);
+  EXPECT_DOUBLE_EQ(config->can.odometry.rear_track_m, 1.75);
+  ASSERT_TRUE(config->can.secoc);
+  EXPECT_EQ(config->can.secoc->key_file.filename(), "secoc.key");
+  EXPECT_EQ(config->can.secoc->starts_file, "/var/lib/bevloc/starts");
   EXPECT_DOUBLE_EQ(config->tracker.motion.longitudinal_m_per_sqrt_m, 0.03);
   EXPECT_DOUBLE_EQ(config->tracker.motion.lateral_m_per_sqrt_m, 0.04);
   EXPECT_DOUBLE_EQ(config->tracker.motion.yaw_rad_per_sqrt_s, radians(0.2));
   EXPECT_DOUBLE_EQ(config->tracker.initial_speed_scale_sigma, 0.05);
   EXPECT_DOUBLE_EQ(config->tracker.initial_yaw_rate_bias_sigma_radps, radians(0.5));
-  EXPECT_DOUBLE_EQ(config->tracker.gnss_correlation_s, 20.0);
-  EXPECT_DOUBLE_EQ(config->tracker.correction_correlation_s, 0.0);
+  EXPECT_DOUBLE_EQ(config->tracker.correlation.gnss_s, 20.0);
+  EXPECT_EQ(config->tracker.correlation.match_m, Eigen::Vector3d(5.0, 6.0, 7.0));
   EXPECT_DOUBLE_EQ(config->tracker.gate_squared_distance, 12.0);
   EXPECT_EQ(config->health.odometry_timeout, std::chrono::milliseconds(100));
   EXPECT_EQ(config->health.gnss_timeout, std::chrono::milliseconds(2000));
@@ -154,10 +159,11 @@ TEST_F(ConfigTest, SimulationIsRead) {
            "  conditions: {sun_azimuth_deg: 90, sun_elevation_deg: -10, rain: 0.5}\n"
            "  calibration_error: {rotation_deg: 1, translation_m: 0.02, relative_focal: 0.01}\n"
            "  exposure_offsets_ms: [0, 12.5, 25, 30, 40, 50]\n"
-           "  camera_faults:\n"
-           "    - {camera: back, kind: late, from_s: 1, until_s: 2, delay_ms: 40}\n"
-           "    - {camera: front, kind: drop, every: 7}\n"
-           "    - {camera: back, kind: dead, from_s: 3}\n"));
+           "  faults:\n"
+           "    - {kind: camera_late, camera: back, from_s: 1, until_s: 2, delay_ms: 40}\n"
+           "    - {kind: camera_drop, camera: front, every: 7}\n"
+           "    - {kind: camera_swapped, camera: front, with: back}\n"
+           "    - {kind: gnss_jump, from_s: 3, across_m: -3.5}\n"));
   ASSERT_TRUE(config) << config.error().message;
   ASSERT_TRUE(config->simulation);
   const evaluation::SimulationConfig& simulation = *config->simulation;
@@ -172,15 +178,22 @@ TEST_F(ConfigTest, SimulationIsRead) {
   EXPECT_DOUBLE_EQ(simulation.calibration_error.relative_focal, 0.01);
   EXPECT_EQ(simulation.exposure_offsets[1], std::chrono::microseconds(12'500));
   EXPECT_EQ(simulation.exposure_offsets[5], std::chrono::milliseconds(50));
-  const auto& back = simulation.camera_faults[4];
-  ASSERT_EQ(back.size(), 2U);
-  EXPECT_EQ(back[0].kind, drivers::CameraFaultKind::kLate);
-  EXPECT_EQ(back[0].delay, std::chrono::milliseconds(40));
-  EXPECT_DOUBLE_EQ(back[0].until_s, 2.0);
-  EXPECT_EQ(back[1].kind, drivers::CameraFaultKind::kDead);
-  EXPECT_TRUE(std::isinf(back[1].until_s));
-  ASSERT_EQ(simulation.camera_faults[1].size(), 1U);
-  EXPECT_EQ(simulation.camera_faults[1][0].every, 7);
+  ASSERT_EQ(simulation.faults.size(), 4U);
+  const sim::Fault& late = simulation.faults[0];
+  EXPECT_EQ(late.kind, sim::FaultKind::kCameraLate);
+  EXPECT_EQ(late.camera, 4);
+  EXPECT_DOUBLE_EQ(late.amounts.delay_ms, 40.0);
+  EXPECT_DOUBLE_EQ(late.until_s, 2.0);
+  EXPECT_DOUBLE_EQ(simulation.faults[1].amounts.every, 7.0);
+  EXPECT_EQ(simulation.faults[2].camera, 1);
+  EXPECT_EQ(simulation.faults[2].other_camera, 4);
+  const sim::Fault& jump = simulation.faults[3];
+  EXPECT_EQ(jump.kind, sim::FaultKind::kGnssJump);
+  EXPECT_FALSE(jump.camera);
+  EXPECT_DOUBLE_EQ(jump.from_s, 3.0);
+  EXPECT_TRUE(std::isinf(jump.until_s));
+  EXPECT_DOUBLE_EQ(jump.amounts.across_m, -3.5);
+  EXPECT_DOUBLE_EQ(jump.amounts.east_m, 0.0);
 }
 
 TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
@@ -216,6 +229,9 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
        "can.localizer_base_id"},
       {with("{driver: mock}", "{driver: mock, localizer_base_id: 0x410}"), 7,
        "can.localizer_base_id"},
+      {with("{driver: mock}", "{driver: mock, rear_track_m: 0.1}"), 7, "can.rear_track_m"},
+      {with("{driver: mock}", "{driver: mock, secoc: {key_file: k, starts_file: s}}"), 7,
+       "can.secoc"},
       {with("{driver: mock}", "{driver: mock, interface: can0}"), 7, "can.interface"},
       {with("{driver: mock}", "{driver: socketcan}"), 7, "can.interface"},
       {with("{driver: mock}", "{driver: mock, variant: xl}"), 7, "can.variant"},
@@ -235,18 +251,33 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
       {with(simulation,
             "simulation: {seed: 1, duration_s: 5, exposure_offsets_ms: [0, 0, 51, 0, 0, 0]}"),
        8, "simulation.exposure_offsets_ms[2]: found 51"},
+      {with(simulation, "simulation: {seed: 1, duration_s: 5, faults: [{kind: gnss, from_s: 1}]}"),
+       8, "simulation.faults[0].kind: found gnss, wanted"},
       {with(simulation,
-            "simulation: {seed: 1, duration_s: 5, camera_faults: [{camera: left, kind: "
-            "dead}]}"),
-       8, "simulation.camera_faults[0].camera: found left"},
+            "simulation: {seed: 1, duration_s: 5, faults: [{kind: camera_dead, camera: left}]}"),
+       8, "simulation.faults[0].camera: found left"},
       {with(simulation,
-            "simulation: {seed: 1, duration_s: 5, camera_faults: [{camera: back, kind: "
-            "dead, every: 3}]}"),
-       8, "simulation.camera_faults[0].every"},
+            "simulation: {seed: 1, duration_s: 5, faults: [{kind: camera_dead, every: 3}]}"),
+       8, "simulation.faults[0].every"},
       {with(simulation,
-            "simulation: {seed: 1, duration_s: 5, camera_faults: [{camera: back, kind: "
-            "dead, from_s: 3, until_s: 2}]}"),
-       8, "simulation.camera_faults[0].until_s"},
+            "simulation: {seed: 1, duration_s: 5, faults: [{kind: camera_dead, from_s: 3, until_s: "
+            "2}]}"),
+       8, "simulation.faults[0].until_s"},
+      {with(simulation, "simulation: {seed: 1, duration_s: 5, faults: [{kind: camera_drop}]}"), 8,
+       "simulation.faults[0].every"},
+      {with(simulation,
+            "simulation: {seed: 1, duration_s: 5, faults: [{kind: camera_drop, every: 2.5}]}"),
+       8, "simulation.faults[0].every: found 2.5, wanted a whole number"},
+      {with(simulation,
+            "simulation: {seed: 1, duration_s: 5, faults: [{kind: camera_swapped, camera: back, "
+            "with: back}]}"),
+       8, "simulation.faults[0].with"},
+      {with(simulation,
+            "simulation: {seed: 1, duration_s: 5, faults: [{kind: gnss_outage, camera: back}]}"),
+       8, "simulation.faults[0].camera"},
+      {with(simulation,
+            "simulation: {seed: 1, duration_s: 5, faults: [{kind: odometry_lock, factor: 1.5}]}"),
+       8, "simulation.faults[0].factor: found 1.5"},
   };
   for (const Mistake& mistake : mistakes) {
     EXPECT_THAT(error_of(mistake.yaml),

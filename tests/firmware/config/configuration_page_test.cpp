@@ -1,10 +1,12 @@
 // Tests the shipped configuration, and compares docs/configuration.md with the source code.
+#include <map>
 #include <regex>
 #include <set>
 
 #include <gmock/gmock.h>
 
 #include "pipeline/calibration/rig_yaml.h"
+#include "sim/faults/fault_table.h"
 #include "sim/sim_rig.h"
 #include "tests/firmware/config/config_fixture.h"
 #include "tests/support/pose_matchers.h"
@@ -18,6 +20,32 @@ TEST(ShippedConfig, DemoLoads) {
   EXPECT_EQ(config->rig_file, kSource / "config/rig_demo.yaml");
   EXPECT_EQ(config->can.driver, CanDriver::kMock);
   ASSERT_TRUE(config->simulation);
+}
+
+TEST(ShippedConfig, DemoUsesTheDefaults) {
+  const auto config = evaluation::load_drive_config(kSource / "config/demo.yaml");
+  ASSERT_TRUE(config) << config.error().message;
+  const Config defaults;
+  EXPECT_EQ(config->cameras.synchronizer, defaults.cameras.synchronizer);
+  EXPECT_EQ(config->cameras.compensate_motion, defaults.cameras.compensate_motion);
+  EXPECT_EQ(config->cameras.buffers, defaults.cameras.buffers);
+  EXPECT_EQ(config->cameras.rate_hz, defaults.cameras.rate_hz);
+  EXPECT_EQ(config->solver, defaults.solver);
+  EXPECT_EQ(config->tracker, defaults.tracker);
+  EXPECT_EQ(config->health, defaults.health);
+}
+
+/// The published figures were measured with these values. Who changes one must measure again.
+TEST(ShippedConfig, DefaultsAreThoseOfThePublishedFigures) {
+  const Config defaults;
+  EXPECT_EQ(defaults.solver.kind, SolverKind::kBandedRefined);
+  EXPECT_EQ(defaults.solver.tracking.x_m, (HypothesisAxis{2.0, 0.2}));
+  EXPECT_EQ(defaults.solver.tracking.y_m, (HypothesisAxis{1.0, 0.2}));
+  EXPECT_EQ(defaults.solver.acquiring.x_m, (HypothesisAxis{4.0, 0.2}));
+  EXPECT_EQ(defaults.solver.acquiring.y_m, (HypothesisAxis{3.0, 0.2}));
+  EXPECT_EQ(defaults.tracker.correlation.match_m, Eigen::Vector3d(20.0, 80.0, 20.0));
+  EXPECT_EQ(defaults.cameras.synchronizer.min_cameras, 3);
+  EXPECT_EQ(defaults.health.yaw_sigma_rad, radians(0.6));
 }
 
 TEST(ShippedConfig, DemoRigIsTheSimulatedOne) {
@@ -51,7 +79,8 @@ std::set<std::string> captured(const std::string& text, const std::string& patte
 /// The keys that the source code reads. A key is an argument of a reading function, so a word after
 /// a parenthesis or a comma. The arguments of reject() after the key are words of a message.
 std::set<std::string> keys_in_source() {
-  std::string source = read_text(kSource / "evaluation/drive/drive_config.cpp");
+  std::string source = read_text(kSource / "evaluation/drive/drive_config.cpp") +
+                       read_text(kSource / "evaluation/drive/fault_config.cpp");
   for (const auto& file : std::filesystem::directory_iterator(kSource / "firmware/config")) {
     if (file.path().extension() == ".cpp") source += read_text(file.path());
   }
@@ -66,6 +95,25 @@ TEST(ConfigurationPage, DescribesEveryKeyAndNoOther) {
   const std::set<std::string> keys = keys_in_source();
   EXPECT_GT(keys.size(), 50U);
   EXPECT_EQ(described, keys);
+}
+
+/// The first two cells of a row: a kind of fault and the keys of its amounts.
+std::map<std::string, std::set<std::string>> faults_of_page(const std::string& page) {
+  const std::regex row(R"re(\n\| `(\w+)` \|([^|]*)\|)re");
+  std::map<std::string, std::set<std::string>> faults;
+  for (std::sregex_iterator match(page.begin(), page.end(), row), end; match != end; ++match) {
+    faults[(*match)[1].str()] = captured((*match)[2].str(), "`([a-z_]+)`");
+  }
+  return faults;
+}
+
+TEST(SimulationPage, DescribesEveryKindOfFaultWithItsAmounts) {
+  std::map<std::string, std::set<std::string>> kinds;
+  for (const sim::FaultKindInfo& info : sim::fault_kinds()) {
+    std::set<std::string>& amounts = kinds[std::string(info.name)];
+    for (const sim::AmountInfo& amount : info.amounts) amounts.emplace(amount.key);
+  }
+  EXPECT_EQ(faults_of_page(read_text(kSource / "docs/simulation.md")), kinds);
 }
 
 }  // namespace

@@ -109,45 +109,63 @@ TEST(HealthTest, RefusedCorrectionsInARowLose) {
   EXPECT_TRUE(health.why().has(Why::kMatchRejected));
   ++inputs.refused_in_a_row;
   health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded) << "the arbiter has decided who is wrong";
+  inputs.verdict.undecided = true;
+  health.update(inputs);
   EXPECT_EQ(health.state(), HealthState::kLost);
 }
 
-TEST(HealthTest, AcquiringStartsAgainWhenItsPoseIsContradicted) {
-  for (const bool by_gnss : {false, true}) {
-    Health health{HealthLimits()};
+TEST(HealthTest, ANewPoseFarFromGnssIsNotTracked) {
+  Health health{HealthLimits()};
+  HealthInputs inputs = healthy();
+  inputs.gnss_confirms = false;
+  for (int i = 0; i < 5; ++i) health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kAcquiring);
+  EXPECT_TRUE(health.why().has(Why::kMatchUncertain));
+}
+
+TEST(HealthTest, AnExcludedVoterDegradesAndIsNamed) {
+  for (const auto& [voter, why] : {std::pair{&Verdict::gnss_contradicts, Why::kGnssContradicts},
+                                   {&Verdict::match_contradicts, Why::kMatchContradicts}}) {
+    Health health = tracking();
     HealthInputs inputs = healthy();
-    inputs.accepted_in_a_row = 0;
-    inputs.refused_in_a_row = HealthLimits().refusals_to_lose - 1;
+    inputs.verdict.*voter = true;
     health.update(inputs);
-    health.update(inputs);
-    EXPECT_EQ(health.state(), HealthState::kAcquiring);
-    EXPECT_FALSE(health.pose_contradicted());
-    (by_gnss ? inputs.contradicts_gnss = true : ++inputs.refused_in_a_row);
-    EXPECT_TRUE(health.update(inputs));
-    EXPECT_EQ(health.state(), HealthState::kLost);
-    EXPECT_TRUE(health.pose_contradicted());
-    health.update(healthy());
-    EXPECT_EQ(health.state(), HealthState::kAcquiring);
-    EXPECT_FALSE(health.pose_contradicted());
+    EXPECT_EQ(health.state(), HealthState::kDegraded);
+    EXPECT_EQ(health.why(), WhyMask(why));
   }
 }
 
-TEST(HealthTest, AnUncertainPoseIsLostAndNotContradicted) {
+TEST(HealthTest, AForeignSenderDegrades) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.foreign_sender = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+  EXPECT_EQ(health.why(), WhyMask(Why::kForeignSender));
+}
+
+TEST(HealthTest, WrongOdometryAndClockGapsLose) {
+  for (const auto& [change, why] :
+       {std::pair{+[](HealthInputs& i) { i.verdict.odometry_contradicts = true; },
+                  Why::kOdometryContradicts},
+        {+[](HealthInputs& i) { i.odometry_implausible = true; }, Why::kOdometryImplausible},
+        {+[](HealthInputs& i) { i.clock_gap = true; }, Why::kClockGap}}) {
+    Health health = tracking();
+    HealthInputs inputs = healthy();
+    change(inputs);
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kLost);
+    EXPECT_TRUE(health.why().has(why));
+  }
+}
+
+TEST(HealthTest, AnUncertainPoseIsLost) {
   Health health = tracking();
   HealthInputs inputs = healthy();
   inputs.longitudinal_sigma_m = HealthLimits().longitudinal_sigma_m + 0.01;
   health.update(inputs);
   EXPECT_EQ(health.state(), HealthState::kLost);
-  EXPECT_FALSE(health.pose_contradicted());
-}
-
-TEST(HealthTest, APoseThatContradictsGnssIsLost) {
-  Health health = tracking();
-  HealthInputs inputs = healthy();
-  inputs.contradicts_gnss = true;
-  health.update(inputs);
-  EXPECT_EQ(health.state(), HealthState::kLost);
-  EXPECT_TRUE(health.why().has(Why::kMatchUncertain));
 }
 
 TEST(HealthTest, WithoutOdometryThePoseIsLost) {
@@ -190,9 +208,23 @@ TEST(HealthTest, AnInternalErrorIsAPermanentFault) {
   EXPECT_FALSE(health.pose_valid());
 }
 
+TEST(HealthTest, AFaultOfTheNetworkIsPermanentAndNamed) {
+  for (Health health : {tracking(), Health(HealthLimits{})}) {
+    HealthInputs inputs = healthy();
+    inputs.network_fault = true;
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kFault);
+    EXPECT_TRUE(health.why().has(Why::kNetworkFault));
+    health.update(healthy());
+    EXPECT_EQ(health.state(), HealthState::kFault);
+    EXPECT_FALSE(health.pose_valid());
+  }
+}
+
 TEST(HealthTest, NamesTheReasonsInWords) {
   EXPECT_EQ(to_string(Why::kCameraMissing | Why::kPoseStale), "camera missing, pose stale");
   EXPECT_EQ(to_string(WhyMask()), "");
+  EXPECT_EQ(to_string(Why::kInternalFault | Why::kForeignSender), "internal fault, foreign sender");
 }
 
 }  // namespace

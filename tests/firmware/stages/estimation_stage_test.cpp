@@ -12,6 +12,7 @@ using std::chrono::milliseconds;
 
 constexpr can::GeodeticPosition kOrigin{49.0, 8.4};
 constexpr double kSpeed_mps = 10.0;
+constexpr double kNoise_mps = 0.01;
 
 /// A vehicle that drives east at constant speed. GNSS is one metre too far north. The vision
 /// reports contain the truth, or an error that the test sets.
@@ -22,7 +23,11 @@ class EstimationStageTest : public testing::Test {
   void run(Duration duration) {
     for (const Time end = now_ + duration; now_ < end; now_ += milliseconds(10)) {
       if (now_.time_since_epoch() % milliseconds(20) == Duration::zero() && odometry_) {
-        samples_.push(OdometrySample{now_, kSpeed_mps, 0.0});
+        // Real sensors never repeat their values.
+        const double noise_mps = now_.time_since_epoch() % milliseconds(40) == Duration::zero()
+                                     ? kNoise_mps
+                                     : -kNoise_mps;
+        samples_.push(OdometrySample{now_, kSpeed_mps + noise_mps, 0.0});
       }
       if (now_.time_since_epoch() % milliseconds(100) == Duration::zero()) {
         const Se2 truth = truth_at(now_);
@@ -46,6 +51,7 @@ class EstimationStageTest : public testing::Test {
     report.map_nearby = true;
     report.prior = truth_at(frame_time) * Se2{0.5, 0.4, 0.01};
     report.match.evidence = Evidence::kGood;
+    report.match.score = 0.33;
     report.match.correction =
         correction_between(report.prior, truth_at(frame_time)) * vision_error_;
     report.match.covariance = Eigen::Vector3d(0.01, 0.0025, 1e-5).asDiagonal().toDenseMatrix();
@@ -77,6 +83,24 @@ TEST_F(EstimationStageTest, CorrectsTheGnssOffsetAndSendsTheTruth) {
   const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
   EXPECT_NEAR(error.x_m, 0.0, 0.05);
   EXPECT_NEAR(error.y_m, 0.0, 0.05);
+}
+
+TEST_F(EstimationStageTest, AClockGapMeansLostUntilThePoseIsFoundAgain) {
+  run(milliseconds(5000));
+  ASSERT_EQ(stage_.counters().state, HealthState::kTracking);
+  now_ += std::chrono::seconds(10);
+  samples_.push(GnssSample{now_ - std::chrono::seconds(10), 0.0, 0.0, 1.0, 1.0, {}});
+  stage_.note_clock_gap(std::chrono::seconds(10));
+  latest_.reset();
+  run(milliseconds(10));
+  EXPECT_EQ(stage_.counters().state, HealthState::kLost);
+  EXPECT_TRUE(WhyMask::from_bits(stage_.counters().why).has(Why::kClockGap));
+  EXPECT_EQ(stage_.counters().clock_gaps, 1U);
+  run(milliseconds(200));
+  EXPECT_FALSE(latest_) << "no valid pose";
+  run(milliseconds(5000));
+  EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
+  EXPECT_FALSE(WhyMask::from_bits(stage_.counters().why).has(Why::kClockGap));
 }
 
 TEST_F(EstimationStageTest, SendsNoPoseBeforeVisionConfirmsIt) {

@@ -57,6 +57,25 @@ TEST_F(FramesetSourceTest, SkipsAndCountsOlderFramesets) {
   EXPECT_FALSE(next());
 }
 
+TEST_F(FramesetSourceTest, AGapOfTheClockForgetsTheFramesFromBefore) {
+  // Five cameras of a frameset wait for the sixth when the machine is suspended.
+  for (int camera = 0; camera < kCameraCount - 1; ++camera) {
+    push_frame(camera, clock_.now() - milliseconds(20));
+  }
+  EXPECT_FALSE(next());
+  push_frame(0, clock_.now() - milliseconds(10));  // still in the queue
+  clock_.advance(std::chrono::seconds(5));
+  EXPECT_FALSE(next());
+  EXPECT_EQ(source_->counters().clock_gaps, 1U);
+  push_frameset(clock_.now());
+  const auto newest = next();
+  ASSERT_TRUE(newest);
+  EXPECT_EQ(newest->frameset.time, clock_.now());
+  EXPECT_FALSE(newest->skipped);
+  EXPECT_TRUE(newest->frameset.present.all());
+  EXPECT_EQ(source_->counters().clock_gaps, 1U);
+}
+
 TEST_F(FramesetSourceTest, ALargeSpreadIsUnsynchronizedUnlessMotionIsCompensated) {
   for (const bool compensates : {false, true}) {
     make({.tolerance = milliseconds(50)}, compensates);

@@ -1,7 +1,10 @@
 #include "firmware/stages/vision_stage.h"
 
+#include <filesystem>
+
 #include <gtest/gtest.h>
 
+#include "common/files.h"
 #include "sim/sim_rig.h"
 
 namespace bevloc::firmware {
@@ -251,7 +254,7 @@ TEST_F(VisionStageFrozenTest, UsesTheCameraAgainAsSoonAsItsImageChanges) {
   EXPECT_EQ(drive_on(5.0, true), others_);
   EXPECT_TRUE(drive_on(5.0, false).all());
   EXPECT_EQ(stage_->counters().frozen, 0U);
-  expect_all_used(5.0, true, kBroken);
+  expect_all_used(5.0, true, kBroken - 1);  // the image is remembered
   EXPECT_EQ(drive_on(5.0, true), others_);
 }
 
@@ -261,6 +264,65 @@ TEST_F(VisionStageFrozenTest, OneChangedPixelIsAChange) {
   for (int i = 0; i < 3; ++i) {
     stuck_rgb_[middle] = static_cast<uint8_t>(stuck_rgb_[middle] ^ 0x80);
     EXPECT_TRUE(drive_on(5.0, true).all()) << i;
+  }
+}
+
+TEST_F(VisionStageFrozenTest, ChecksTheNetworkAtTheStartAndOnceAMinuteWhileStanding) {
+  EXPECT_EQ(stage_->counters().checks, 1U);
+  for (int i = 0; i < 12; ++i) drive_on(5.0, false);
+  EXPECT_EQ(stage_->counters().checks, 1U);
+  for (int i = 0; i < 12; ++i) drive_on(0.0, false);
+  EXPECT_EQ(stage_->counters().checks, 2U);
+  time_ += std::chrono::seconds(58);
+  drive_on(0.0, false);
+  EXPECT_EQ(stage_->counters().checks, 2U);
+  time_ += std::chrono::seconds(2);
+  drive_on(0.0, false);
+  EXPECT_EQ(stage_->counters().checks, 3U);
+  EXPECT_FALSE(stage_->counters().network_fault);
+}
+
+TEST_F(VisionStageFrozenTest, MatchesNothingWithADamagedNetwork) {
+  std::string bytes = read_file(std::string(BEVLOC_SOURCE_DIR) + "/models/nano.onnx").value();
+  for (size_t i = 0; i < 4096; ++i) {
+    char& byte = bytes[bytes.size() / 2 + i];
+    byte = static_cast<char>(byte ^ 0x20);
+  }
+  const auto path = std::filesystem::temp_directory_path() / "bevloc_vision_stage_test.onnx";
+  ASSERT_TRUE(write_file(path, bytes));
+  localizer_ = Localizer::create(sim::nominal_rig(), map_index_, path.string(), {}).value();
+  std::filesystem::remove(path);
+  stage_.emplace(*localizer_, VisionConfig{}, frames_, predictions_, reports_);
+  push_frameset(Time(milliseconds(900)));
+  const auto report = step();
+  ASSERT_TRUE(report);
+  EXPECT_TRUE(report->network_fault);
+  EXPECT_EQ(report->match.evidence, Evidence::kNone);
+  EXPECT_TRUE(stage_->counters().network_fault);
+}
+
+TEST_F(VisionStageFrozenTest, DoesNotUseADarkCamera) {
+  std::ranges::fill(stuck_rgb_, uint8_t{2});
+  EXPECT_EQ(drive_on(0.0, true), others_);
+  EXPECT_EQ(stage_->counters().dark, 1U << kFrozenCamera);
+  EXPECT_EQ(stage_->counters().unreadable[kFrozenCamera], 0U);
+  for (int i = 1; i < ViewMonitor::kRecovery; ++i) EXPECT_EQ(drive_on(0.0, false), others_) << i;
+  EXPECT_TRUE(drive_on(0.0, false).all());
+  EXPECT_EQ(stage_->counters().dark, 0U);
+}
+
+TEST_F(VisionStageFrozenTest, DoesNotUseABlindedCamera) {
+  std::ranges::fill(stuck_rgb_, uint8_t{250});
+  EXPECT_EQ(drive_on(0.0, true), others_);
+  EXPECT_EQ(stage_->counters().blinded, 1U << kFrozenCamera);
+}
+
+TEST_F(VisionStageFrozenTest, MatchesNothingWithSixDarkCameras) {
+  for (int i = 0; i < 3; ++i) {
+    std::ranges::fill(rgb_, static_cast<uint8_t>(i));  // drive_on() adds 1
+    EXPECT_TRUE(drive_on(5.0, false).none());
+    EXPECT_EQ(stage_->counters().dark, 0b111111U);
+    EXPECT_EQ(stage_->counters().refused, static_cast<uint64_t>(i) + 1);
   }
 }
 

@@ -81,8 +81,9 @@ class BusLog:
 
     def reasons(self, begin_s: float, end_s: float) -> list[str]:
         """Returns the Why_ signals that were set at any time between two times."""
-        statuses = (f.values for f in self.named("LOC_Status") if begin_s < f.time_s < end_s)
-        return sorted({name for s in statuses for name, v in s.items() if v == "YES"})
+        frames = self.named("LOC_Status") + self.named("LOC_Integrity")
+        sent = (f.values for f in frames if begin_s < f.time_s < end_s)
+        return sorted({name for values in sent for name, v in values.items() if v == "YES"})
 
     def valid_poses(self) -> list[Pose]:
         """Returns the poses of valid states: position and heading of the same epoch."""

@@ -69,8 +69,8 @@ Status drive(const std::string& config_file, const std::string& channel) {
   drivers::MonotonicClock clock;
   const Time drive_start = clock.now() + kLead;
   const Time drive_end = drive_start + from_seconds(config->simulation->duration_s);
-  SimulatedVehicle vehicle(drive->drive(), config->simulation->seed, drive->map().origin,
-                           config->can.base_ids, std::move(*bus), drive_start);
+  SimulatedVehicle vehicle(*drive, config->simulation->seed, config->can.base_ids, std::move(*bus),
+                           drive_start);
   Beat beat(channel, drive_start, config->cameras.rate_hz);
   announce(drive_start, clock.now());
   while (!g_stop_requested && clock.now() < drive_end) {

@@ -14,15 +14,13 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 Rig any_rig() {
-  Rig rig;
+  Rig rig = sim::nominal_rig();
   for (int i = 0; i < kCameraCount; ++i) {
     CameraModel& camera = rig.cameras[i];
     camera.intrinsics = {640, 360, 500.0 + i, 501.0, 320.25, 180.125, -0.1, 0.01, 1e-4, -2e-4};
     camera.vehicle_from_camera.translation_m = {1.5 - 0.3 * i, 0.4, 1.5};
-    camera.vehicle_from_camera.rotation =
-        (Eigen::AngleAxisd(1.1 * i, Eigen::Vector3d::UnitZ()) *
-         Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()))
-            .toRotationMatrix();
+    const Eigen::AngleAxisd tilt(0.1 + 0.02 * i, Eigen::Vector3d(1, 2, 3).normalized());
+    camera.vehicle_from_camera.rotation = tilt * camera.vehicle_from_camera.rotation;
   }
   return rig;
 }

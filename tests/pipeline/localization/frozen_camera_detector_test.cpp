@@ -58,6 +58,41 @@ TEST_F(FrozenCameraDetectorTest, AChangeOfAnyValueResetsTheCount) {
   }
 }
 
+TEST_F(FrozenCameraDetectorTest, DetectsALoopOfImages) {
+  for (const int length : {2, 4, 64, 500}) {
+    FrozenCameraDetector detector;
+    const auto shows = [&](int number) {
+      std::vector<int8_t> planes = image();
+      planes[0] = static_cast<int8_t>(number % 100);
+      planes[1] = static_cast<int8_t>(number / 100);
+      return detector.is_frozen(kCamera, planes, true);
+    };
+    for (int i = 0; i < length; ++i) EXPECT_FALSE(shows(i)) << length;
+    for (int i = 0; i < FrozenCameraDetector::kRepetitions - 1; ++i)
+      EXPECT_FALSE(shows(i % length));
+    for (int i = FrozenCameraDetector::kRepetitions - 1; i < 3 * length; ++i) {
+      EXPECT_TRUE(shows(i % length)) << length << ", image " << i;
+    }
+    EXPECT_FALSE(shows(length + 1)) << "a new image ends the loop";
+  }
+}
+
+TEST_F(FrozenCameraDetectorTest, RemembersTheLatestImagesOfALongDrive) {
+  std::vector<int8_t> planes = image();
+  const auto show_number = [&](int number) {
+    planes[0] = static_cast<int8_t>(number % 100);
+    planes[1] = static_cast<int8_t>(number / 100);
+    return detector_.is_frozen(kCamera, planes, true);
+  };
+  constexpr int kImages = 3 * FrozenCameraDetector::kRemembered;
+  for (int i = 0; i < kImages; ++i) ASSERT_FALSE(show_number(i)) << i;
+  const int oldest = kImages - FrozenCameraDetector::kRemembered;
+  for (int i = oldest; i < oldest + FrozenCameraDetector::kRepetitions - 1; ++i) {
+    EXPECT_FALSE(show_number(i));
+  }
+  EXPECT_TRUE(show_number(oldest + FrozenCameraDetector::kRepetitions));
+}
+
 TEST_F(FrozenCameraDetectorTest, TheChecksumDependsOnTheOrderOfTheValues) {
   std::vector<int8_t> swapped = planes_;
   std::swap_ranges(swapped.begin(), swapped.begin() + 64, swapped.begin() + 64);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "common/files.h"
 #include "sim/sim_rig.h"
 
 namespace bevloc {
@@ -69,6 +71,56 @@ TEST(Localizer, GivesTheSameResultOnAnyNumberOfThreads) {
     EXPECT_EQ(many.used, one.used) << threads;
     EXPECT_EQ(many.mask, one.mask) << threads;
   }
+}
+
+const std::string kModel = std::string(BEVLOC_SOURCE_DIR) + "/models/nano.onnx";
+
+TEST(Localizer, TheCheckPassesAndLeavesNoTrace) {
+  const Rig rig = sim::nominal_rig();
+  const Images noise_images = noise(rig);
+  CameraImages images;
+  for (size_t camera = 0; camera < noise_images.size(); ++camera) {
+    images.images[camera] = noise_images[camera].view();
+  }
+  images.present.set();
+  const HdMap map;
+  const MapIndex index(map);
+  auto localizer = Localizer::create(rig, index, kModel, {}).value();
+  EXPECT_TRUE(localizer->model_has_answer());
+  SolverResult result;
+  localizer->localize(images, {}, SearchRange::kTracking, result);
+  const auto mask = localizer->perceived_mask();
+  const std::vector<float> before(mask.begin(), mask.end());
+  const Status checked = localizer->check();
+  EXPECT_TRUE(checked) << checked.error().message;
+  localizer->localize(images, {}, SearchRange::kTracking, result);
+  EXPECT_TRUE(std::ranges::equal(localizer->perceived_mask(), before));
+}
+
+TEST(Localizer, TheCheckNeedsNoWideRange) {
+  const HdMap map;
+  const MapIndex index(map);
+  LocalizerOptions options;
+  options.tracking = {{0.4, 0.2}, {0.4, 0.2}, {radians(1.0), radians(0.2)}};
+  auto localizer = Localizer::create(sim::nominal_rig(), index, kModel, options).value();
+  const Status checked = localizer->check();
+  EXPECT_TRUE(checked) << checked.error().message;
+}
+
+TEST(Localizer, TheCheckFindsDamagedWeights) {
+  std::string bytes = read_file(kModel).value();
+  for (size_t i = 0; i < 4096; ++i) {
+    char& byte = bytes[bytes.size() / 2 + i];
+    byte = static_cast<char>(byte ^ 0x20);
+  }
+  const auto path = std::filesystem::temp_directory_path() / "bevloc_damaged_weights.onnx";
+  ASSERT_TRUE(write_file(path, bytes));
+  const HdMap map;
+  const MapIndex index(map);
+  auto localizer = Localizer::create(sim::nominal_rig(), index, path.string(), {});
+  ASSERT_TRUE(localizer) << localizer.error().message;
+  EXPECT_FALSE((*localizer)->check());
+  std::filesystem::remove(path);
 }
 
 }  // namespace

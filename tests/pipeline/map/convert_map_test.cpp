@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 
 #include "pipeline/map/map_binary.h"
+#include "pipeline/map/map_checksum.h"
 #include "pipeline/map/map_loader.h"
 
 namespace bevloc {
@@ -39,6 +40,7 @@ TEST_F(ConvertMapTest, ConvertsALanelet2MapWithMillimetreAccuracy) {
   const HdMap again = load_map(folder_ / "street.bvm").value();
   EXPECT_EQ(again.name, map.name);
   EXPECT_EQ(again.lanes.size(), map.lanes.size());
+  EXPECT_EQ(map_checksum(again), map_checksum(map)) << "one map, two formats";
   ASSERT_EQ(again.elements.size(), map.elements.size());
   for (size_t i = 0; i < map.elements.size(); ++i) {
     EXPECT_EQ(again.elements[i].element_class, map.elements[i].element_class);

@@ -149,16 +149,42 @@ TEST(Lanelet2Reader, LocalCoordinatesOfAnotherGridAreRotatedIntoTheTangentPlane)
   EXPECT_NEAR(std::abs(south.front().x() - south.back().x()), 146.3, 0.1);
 }
 
-TEST(Lanelet2Reader, LocalCoordinatesThatContradictTheAnglesAreUsedAlone) {
+/// Without the refusal the map would lie at latitude and longitude 0 without a word.
+TEST(Lanelet2Reader, RefusesLocalCoordinatesThatContradictTheAngles) {
   std::vector<std::string> nodes;
   for (const auto& [x, y] : std::vector<std::pair<int, int>>{{0, 0}, {20, 0}, {0, 4}, {20, 4}}) {
     nodes.push_back(fmt::format(
         "lat='35.{}' lon='139.{}'><tag k='local_x' v='{}'/><tag k='local_y' v='{}'/>", y, x, x, y));
   }
-  const auto map = parse_lanelet2(lanelet_of(nodes), "odd.osm");
-  ASSERT_TRUE(map.has_value()) << map.error().message;
-  EXPECT_EQ(map->lanes[0].right.back(), Eigen::Vector2d(20.0, 0.0));
-  EXPECT_EQ(map->origin.longitude_deg, 0.0);
+  EXPECT_THAT(
+      read_error(lanelet_of(nodes)),
+      AllOf(StartsWith("town.osm: found local_x and local_y that differ from lat and lon by "
+                       "a scale of "),
+            HasSubstr("wanted at most 1.01 and 1 m")));
+}
+
+TEST(Lanelet2Reader, RefusesTwoKindsOfCoordinatesThatNothingRelates) {
+  const std::string both = "lat='49' lon='8'><tag k='local_x' v='3'/><tag k='local_y' v='4'/>";
+  const std::string angles = "lat='49' lon='8.001'>";
+  const std::string local = "lat='' lon=''><tag k='local_x' v='3'/><tag k='local_y' v='9'/>";
+  EXPECT_THAT(read_error(lanelet_of({angles, angles, local, local})),
+              HasSubstr("both at 0 places"));
+  EXPECT_THAT(read_error(lanelet_of({both, angles, local, local})), HasSubstr("both at 1 places"));
+  EXPECT_THAT(read_error(lanelet_of({both, both, local, local})), HasSubstr("both at 1 places"));
+}
+
+TEST(Lanelet2Reader, RefusesFarPlaces) {
+  const auto at = [](double x, double y) {
+    return fmt::format("lat='' lon=''><tag k='local_x' v='{}'/><tag k='local_y' v='{}'/>", x, y);
+  };
+  EXPECT_THAT(
+      read_error(lanelet_of({at(0, 0), at(2e5, 0), at(0, 4), at(20, 4)})),
+      HasSubstr("node 2: found a place (200000, 0) m from the origin, wanted at most 100000"));
+  EXPECT_THAT(read_error(lanelet_of({at(0, 0), at(6e4, 0), at(0, 4), at(20, 4)})),
+              HasSubstr("way 10: found 60000 m in this bound of lanelet 20, wanted at most 50000"));
+  EXPECT_THAT(read_error(lanelet_of({"lat='49' lon='8'>", "lat='52' lon='8'>",
+                                     "lat='49' lon='8.1'>", "lat='52' lon='8.1'>"})),
+              HasSubstr("m from the origin, wanted at most 100000"));
 }
 
 TEST(Lanelet2Reader, LaneletsForOtherParticipantsAreNoLanes) {

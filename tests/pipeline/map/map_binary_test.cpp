@@ -1,9 +1,12 @@
 #include "pipeline/map/map_binary.h"
 
+#include <utility>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/crc32.h"
+#include "pipeline/map/map_checksum.h"
 #include "pipeline/map/map_loader.h"
 #include "sim/random.h"
 
@@ -63,6 +66,27 @@ std::string framed(const std::string& body) {
 
 TEST(Crc32, MatchesTheCheckValueOfTheStandard) {
   EXPECT_EQ(crc32("123456789"), 0xCBF43926U);
+}
+
+TEST(MapChecksum, IsTheSameAfterARoundTripAndChangesWithTheContent) {
+  const HdMap map = kilometre();
+  const uint32_t checksum = map_checksum(map);
+  EXPECT_EQ(map_checksum(decode_map(encode_map(map), "town.bvm").value()), checksum);
+
+  HdMap other = map;
+  other.name = "another name";
+  EXPECT_EQ(map_checksum(other), checksum) << "the name is not content";
+  other.elements[1].points[7].x() += 2.0 * kMapQuantumM;
+  EXPECT_NE(map_checksum(other), checksum);
+  other = map;
+  other.elements[0].element_class = ElementClass::kLaneDivider;
+  EXPECT_NE(map_checksum(other), checksum);
+  other = map;
+  other.origin.longitude_deg += 1e-9;
+  EXPECT_NE(map_checksum(other), checksum);
+  other = map;
+  std::swap(other.elements[0], other.elements[2]);
+  EXPECT_NE(map_checksum(other), checksum);
 }
 
 TEST(MapBinary, RoundTripsWithMillimetreAccuracy) {
@@ -204,6 +228,32 @@ TEST_F(MapFiles, LoadMapRecognisesTheFormats) {
   const auto osm =
       std::filesystem::path(BEVLOC_SOURCE_DIR) / "tests/pipeline/map/fixtures/street.osm";
   EXPECT_EQ(load_map(osm).value().lanes.size(), 4U);
+}
+
+TEST_F(MapFiles, LoadMapRefusesMapsWithoutLines) {
+  const auto binary = folder_ / "empty.bvm";
+  HdMap map;
+  ASSERT_TRUE(write_map_binary(map, binary).has_value());
+  EXPECT_THAT(load_map(binary).error().message,
+              HasSubstr("empty.bvm: found 0 lanes and no line of a divider, crossing or boundary"));
+  map = kilometre();
+  for (MapElement& element : map.elements) element.points.resize(1);
+  ASSERT_TRUE(write_map_binary(map, binary).has_value());
+  EXPECT_THAT(load_map(binary).error().message, HasSubstr("found 2 lanes and no line"));
+}
+
+TEST_F(MapFiles, LoadMapRefusesFarAndLongLines) {
+  const auto binary = folder_ / "far.bvm";
+  HdMap map = kilometre();
+  map.elements[1].points[7].x() = 1e7;
+  ASSERT_TRUE(write_map_binary(map, binary).has_value());
+  EXPECT_THAT(load_map(binary).error().message,
+              HasSubstr("far.bvm: element 1: found a point (1e+07"));
+  map = kilometre();
+  map.lanes[1].centerline = {{0, 0}, {30'000, 0}, {0, 0}};
+  ASSERT_TRUE(write_map_binary(map, binary).has_value());
+  EXPECT_THAT(load_map(binary).error().message,
+              HasSubstr("far.bvm: lane 1: found a line of 60000 m, wanted at most 50000 m"));
 }
 
 TEST_F(MapFiles, LoadMapRefusesOtherFiles) {

@@ -497,6 +497,21 @@ def wrong_shape() -> Model:
     return model
 
 
+def small_features() -> Model:
+    """A model with the ports that Network requires, but with image features of half the size."""
+    model = Model("small_features", quantized=True, evaluate=False)
+    s = 1.0 / 50.0
+    images = model.input("images", "int8", (6, 3, 96, 320), 1.0 / 64.0, seed=1)
+    model.view_ports(5000)
+    raster = model.input("raster", "uint8", (1, 3, 400, 200), 1.0 / 255.0, seed=2)
+    bev = model.quantize(model.view(model.unit(images, 4, s, stride=16), 100, 50), "uint8", s)
+    model.output(model.conv(bev, 16, size=1), "bev_features")
+    model.output(model.conv(raster, 16, stride=4), "map_features")
+    model.output(model.depth_to_space(model.conv(bev, 48, size=1), 4), "bev_mask")
+    solver_metadata(model)
+    return model
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--nano", type=Path)
@@ -510,6 +525,7 @@ def main() -> None:
             model.save()
         tiny_network(quantized).save()
     wrong_shape().save()
+    small_features().save()
 
 
 if __name__ == "__main__":

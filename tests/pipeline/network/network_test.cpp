@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <ranges>
 #include <thread>
 
@@ -13,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "evaluation/bench/allocation_count.h"
+#include "pipeline/network/test_frame.h"
 #include "tests/pipeline/network/engines/engine_under_test.h"
 #include "tests/pipeline/network/model_inputs.h"
 
@@ -294,17 +296,96 @@ TEST_F(RefusedModel, WrongShape) {
               HasSubstr("input 'images' is int8 [6, 3, 4, 4], wanted int8 [6, 3, 96, 320]"));
 }
 
+/// The view table's indices would point beyond such features.
+TEST_F(RefusedModel, ImageFeaturesOfAnotherSize) {
+  EXPECT_THAT(message_for(test::fixture("small_features.onnx")),
+              HasSubstr("the view transform reads features [6, 4, 6, 20], wanted [6, channels, 12, "
+                        "40]"));
+}
+
 TEST_F(RefusedModel, MissingMetadata) {
   EXPECT_THAT(message_after_replacing("bevloc.solver.x_scale", "bevloc.solver.q_scale"),
               HasSubstr("metadata 'bevloc.solver.x_scale' is missing"));
 }
 
-TEST_F(RefusedModel, MetadataThatIsNoPositiveNumber) {
-  for (const char* const text : {"-50.5", "150.x", "    5", "nan  "}) {
+TEST_F(RefusedModel, MetadataOutOfRange) {
+  for (const char* const text : {"-50.5", "150.x", "    5", "nan  ", "1.e37", "1e-37"}) {
     EXPECT_THAT(message_after_replacing("150.5", text),
                 HasSubstr(fmt::format("metadata 'bevloc.solver.joint_scale' is '{}', wanted a "
-                                      "number above 0",
+                                      "number of 0.01 to 1000000",
                                       text)));
+  }
+}
+
+std::unique_ptr<Network> load_shipped(const std::string& path) {
+  auto network = Network::load(path, options());
+  if (!network) ADD_FAILURE() << network.error().message;
+  return network ? std::move(*network) : nullptr;
+}
+
+const std::string kShipped = std::string(BEVLOC_SOURCE_DIR) + "/models/nano.onnx";
+
+TEST(TestFrame, TheShippedModelGivesItsStoredAnswer) {
+  const auto network = load_shipped(kShipped);
+  ASSERT_TRUE(network);
+  const auto stored = answer_from(network->stored_answer());
+  ASSERT_TRUE(stored) << stored.error().message;
+  const NetworkAnswer found = answer_to_test_frame(*network);
+  const Status same = check_answer(found, *stored);
+  EXPECT_TRUE(same) << same.error().message;
+  EXPECT_EQ(to_text(answer_to_test_frame(*network)), to_text(found));
+}
+
+TEST(TestFrame, AModelWithDamagedWeightsIsFound) {
+  const auto whole = load_shipped(kShipped);
+  ASSERT_TRUE(whole);
+  const NetworkAnswer wanted = answer_to_test_frame(*whole);
+  const std::string bytes = test::read_bytes(kShipped);
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "damaged_weights.onnx").string();
+  int judged = 0;
+  for (const size_t place : {bytes.size() / 5, bytes.size() / 2, bytes.size() * 4 / 5}) {
+    std::string damaged = bytes;
+    // One page of bits that do not hold their value.
+    for (size_t i = 0; i < 4096; ++i)
+      damaged[place + i] = static_cast<char>(damaged[place + i] ^ 0x20);
+    std::ofstream(path, std::ios::binary) << damaged;
+    const auto network = Network::load(path, options());
+    if (!network) continue;  // the page held more than weights
+    ++judged;
+    const Status same = check_answer(answer_to_test_frame(**network), wanted);
+    ASSERT_FALSE(same) << place;
+    EXPECT_THAT(same.error().message, HasSubstr("replace the model file"));
+  }
+  EXPECT_GT(judged, 0);
+  std::filesystem::remove(path);
+}
+
+TEST(TestFrame, AnAnswerSurvivesItsText) {
+  const auto network = load_shipped(kShipped);
+  ASSERT_TRUE(network);
+  const NetworkAnswer answer = answer_to_test_frame(*network);
+  const auto read = answer_from(to_text(answer));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_TRUE(check_answer(*read, answer));
+  NetworkAnswer other = answer;
+  other.map.sums[3] += 0.2 * answer.map.norm;
+  EXPECT_FALSE(check_answer(other, answer));
+  other.map.sums[3] = std::nan("");
+  EXPECT_FALSE(check_answer(other, answer));
+}
+
+TEST(TestFrame, ADamagedTextIsRefused) {
+  const std::string good = "1 2 3 4 5 6 7 8 9 1 2 3 4 5 6 7 8 9";
+  EXPECT_TRUE(answer_from(good));
+  const std::string rest = good.substr(1);
+  for (const std::string& text :
+       {std::string(), good + " 1", rest, std::string("0").append(rest),
+        std::string("x").append(rest), std::string("nan").append(rest), good + " ",
+        std::string(" ").append(good), std::string("1  2 3")}) {
+    const auto answer = answer_from(text);
+    ASSERT_FALSE(answer) << text;
+    EXPECT_THAT(answer.error().message, HasSubstr("bevloc store-answer"));
   }
 }
 
@@ -333,6 +414,35 @@ TEST_F(RefusedModel, SurvivesDamagedBytes) {
       EXPECT_NE(message_for_bytes(damaged), "loaded");
     }
   }
+}
+
+/// A damaged network is refused, or it runs within its memory.
+TEST_F(RefusedModel, RunsDamagedNetworksThatItAccepts) {
+  constexpr int kDamaged = 60;
+  const std::string whole = test::read_bytes(test::fixture("tiny_network_int8.onnx"));
+  const size_t nodes = whole.find("bev_features");  // the nodes come before the constants
+  ASSERT_NE(nodes, std::string::npos);
+  const std::string path =
+      ::testing::TempDir() + "/damaged_" + test::engine_under_test().name + ".onnx";
+  std::minstd_rand random(1);
+  int accepted = 0;
+  for (int i = 0; i < kDamaged; ++i) {
+    std::string damaged = whole;
+    // Small changes of bytes, because lengths are varints: larger ones break the file itself.
+    char& byte = damaged[random() % nodes];
+    byte = static_cast<char>(byte ^ (1 << random() % 3));
+    std::ofstream(path, std::ios::binary) << damaged;
+    auto network = Network::load(path, options());
+    if (!network) continue;
+    ++accepted;
+    (*network)->set_view_table(
+        test::view_table(kFeatureGrid.cells(), kCameraCount * kImageFeatureCells));
+    test::fill_input((*network)->image_input(), 1);
+    run_all(**network);
+  }
+  std::filesystem::remove(path);
+  EXPECT_GT(accepted, 0);
+  EXPECT_LT(accepted, kDamaged);
 }
 
 }  // namespace

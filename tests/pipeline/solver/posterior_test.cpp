@@ -34,6 +34,18 @@ TEST(PosteriorTest, TheParabolaStaysAtTheEndAndOnAPlateau) {
   EXPECT_NEAR(parabola_vertex(certain, kAxis), kAxis.value(3), 1e-9);
 }
 
+TEST(PosteriorTest, TheEdgeMassIsTheProbabilityWithinOneStepOfTheBorder) {
+  std::vector<float> probability(kAxis.count(), 0.0F);
+  probability[2] = 0.25F;
+  probability[6] = 0.25F;
+  EXPECT_EQ(edge_mass(probability), 0.0);
+  probability[1] = 0.125F;
+  probability[8] = 0.375F;
+  EXPECT_EQ(edge_mass(probability), 0.5);
+  // An axis of three hypotheses has none that is farther from the border.
+  EXPECT_EQ(edge_mass(std::vector<float>{0.25F, 0.5F, 0.25F}), 1.0);
+}
+
 TEST(PosteriorTest, ADependentAxisIsConvolvedWithTheSearchedAxis) {
   constexpr HypothesisAxis kSearched{0.5, 0.5};
   const std::vector<float> searched{0.25F, 0.5F, 0.25F};

@@ -52,6 +52,17 @@ TEST(SolverFactoryTest, TheLiteralSolverNeedsAGridThatItsTransformSupports) {
   EXPECT_THAT(refused.error().message, HasSubstr("90 x 50"));
 }
 
+/// A range of 3 m is more cells of 1e-9 m than an int counts.
+TEST(SolverFactoryTest, EverySolverRefusesCellsThatAreTooSmall) {
+  for (const SolverKind kind : all_solver_kinds()) {
+    for (const double cell_m : {0.0, 1e-300, 1e-9, 2.9e-9, 0.0009}) {
+      const auto solver = make_solver(kind, {100, 50, cell_m}, 4, {}, {});
+      ASSERT_FALSE(solver) << name_of(kind) << " " << cell_m;
+      EXPECT_THAT(solver.error().message, HasSubstr("100 x 50")) << name_of(kind);
+    }
+  }
+}
+
 TEST(SolverFactoryTest, OnlySolversWithAFixedTransformSizeLimitTheCells) {
   for (const SolverKind kind : all_solver_kinds()) {
     const bool decoupled = kind == SolverKind::kDecoupled || kind == SolverKind::kDecoupledRefined;

@@ -104,6 +104,15 @@ TEST(PoseTrailTest, MotionUnderConstantBrakingUsesTheMeanSpeed) {
   EXPECT_NEAR(motion->x_m, 0.05 * (10.0 - 0.05 * 4.5), 1e-9);
 }
 
+TEST(PoseTrailTest, ForgetsThePosesBeforeAGap) {
+  PoseTrail trail;
+  for (int ms = 0; ms <= 100; ms += 10) trail.add(pose_at(ms, 0.0));
+  trail.add(pose_at(5000, 40.0));
+  EXPECT_FALSE(trail.at(Time(milliseconds(100))));
+  EXPECT_FALSE(trail.at(Time(milliseconds(3000)))) << "nothing is interpolated across the gap";
+  EXPECT_TRUE(trail.at(Time(milliseconds(5000))));
+}
+
 TEST(PoseTrailTest, ReturnsNoMotionBeyondItsReach) {
   PoseTrail trail;
   EXPECT_FALSE(trail.motion(Time(milliseconds(0)), Time(milliseconds(0))));

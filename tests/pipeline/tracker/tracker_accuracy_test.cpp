@@ -68,8 +68,7 @@ TEST(TrackerAccuracyTest, CovarianceIsConsistentForWhiteErrors) {
   // independent. The parameters assume more motion noise than this vehicle has, so the lower bound
   // is wide.
   TrackerParameters parameters;
-  parameters.gnss_correlation_s = 0.0;
-  parameters.correction_correlation_s = 0.0;
+  parameters.correlation = {.match_m = Eigen::Vector3d::Zero(), .gnss_s = 0.0};
   parameters.motion.longitudinal_m_per_sqrt_m = 0.002;
   parameters.motion.lateral_m_per_sqrt_m = 0.002;
   parameters.motion.speed_scale_per_sqrt_s = 1e-5;

@@ -78,7 +78,7 @@ TEST_F(RefusedGraph, ScaleThatIsNotPositive) {
   Graph graph = model("conv_int8");
   auto& bytes = graph.constants.at(node(graph, Operator::kQuantizeLinear).inputs[1]).bytes;
   std::ranges::fill(bytes, std::byte{0});
-  EXPECT_THAT(message_for(graph), HasSubstr("scale is 0, wanted more than 0"));
+  EXPECT_THAT(message_for(graph), HasSubstr("scale is 0, wanted 1e-15 to 1e+09"));
 }
 
 TEST_F(RefusedGraph, DequantizeThatDoesNotUndoQuantize) {
@@ -150,10 +150,118 @@ TEST_F(RefusedGraph, OutputOfAnotherShapeThanDeclared) {
   EXPECT_THAT(message_for(graph), HasSubstr("output 'y' is declared with shape [1, 2, 3, 4]"));
 }
 
+constexpr int64_t kHuge = int64_t{1} << 62;
+
+TEST_F(RefusedGraph, PaddingThatIsNotSmallerThanTheWindow) {
+  for (const auto op : {Operator::kConv, Operator::kMaxPool}) {
+    for (const int64_t pad : {int64_t{3}, int64_t{1} << 31, kHuge}) {
+      Graph graph = model("max_pool_int8");
+      node(graph, op).attributes["pads"] = std::vector<int64_t>{1, pad, 1, pad};
+      EXPECT_THAT(message_for(graph), HasSubstr("wanted fewer than the 3x3 cells of the window"));
+    }
+  }
+}
+
+/// A 1x1 convolution reads its input in place, so its rows must not reach beyond the image.
+TEST_F(RefusedGraph, PaddingOfASinglePixel) {
+  Graph graph = model("conv_unrounded_int8");
+  node(graph, Operator::kConv).attributes["pads"] = std::vector<int64_t>{0, 0, 1, 0};
+  EXPECT_THAT(message_for(graph), HasSubstr("wanted fewer than the 1x1 cells of the window"));
+}
+
+TEST_F(RefusedGraph, StrideDilationOrWindowOutOfBounds) {
+  for (const int64_t step : {int64_t{65}, int64_t{1} << 32, kHuge}) {
+    for (const char* const name : {"strides", "dilations"}) {
+      Graph graph = model("conv_int8");
+      node(graph, Operator::kConv).attributes[name] = std::vector<int64_t>{1, step};
+      EXPECT_THAT(message_for(graph), HasSubstr("wanted two numbers of 1 to 64"));
+    }
+    Graph graph = model("max_pool_int8");
+    node(graph, Operator::kMaxPool).attributes["kernel_shape"] = std::vector<int64_t>{step, 3};
+    EXPECT_THAT(message_for(graph), HasSubstr("wanted two numbers of 1 to 64"));
+  }
+}
+
+/// The square of 2^32 is 0 in 64 bits.
+TEST_F(RefusedGraph, BlockSizeOutOfBounds) {
+  for (const int64_t block : {int64_t{-1}, int64_t{0}, int64_t{65}, int64_t{1} << 32, kHuge}) {
+    Graph to_space = model("depth_to_space_dcr_int8");
+    node(to_space, Operator::kDepthToSpace).attributes["blocksize"] = block;
+    EXPECT_THAT(message_for(to_space), HasSubstr("wanted 4 axes and a blocksize of 1 to 64"));
+    Graph to_depth = model("space_to_depth_int8");
+    node(to_depth, Operator::kSpaceToDepth).attributes["blocksize"] = block;
+    EXPECT_THAT(message_for(to_depth), HasSubstr("wanted 4 axes and a blocksize of 1 to 64"));
+  }
+}
+
+/// The shape that the first Reshape reads, replaced.
+Graph reshaped_to(const Shape& shape) {
+  Graph graph = model("view_channels_last_int8");
+  for (Node& n : graph.nodes) {
+    if (n.op != Operator::kReshape) continue;
+    Tensor tensor{ElementType::kInt64, {static_cast<int64_t>(shape.size())}, {}};
+    tensor.bytes.resize(shape.size() * sizeof(int64_t));
+    std::memcpy(tensor.bytes.data(), shape.data(), tensor.bytes.size());
+    graph.constants["other_shape"] = tensor;
+    n.inputs[1] = "other_shape";
+    break;
+  }
+  return graph;
+}
+
+TEST_F(RefusedGraph, ReshapeWhoseSizeOverflows) {
+  // In 64 bits, the product of the second is the number of elements.
+  EXPECT_THAT(message_for(reshaped_to({kHuge, -1})), HasSubstr("wanted axes of at least 1"));
+  EXPECT_THAT(message_for(reshaped_to({kHuge + 300, 4})), HasSubstr("wanted axes of at least 1"));
+  EXPECT_THAT(message_for(reshaped_to({-1, -1})), HasSubstr("wanted axes of at least 1"));
+  EXPECT_THAT(message_for(reshaped_to(Shape(9, 1))), HasSubstr("9 axes, wanted at most 8"));
+}
+
+TEST_F(RefusedGraph, InputBeyondTheBounds) {
+  Graph graph = model("conv_int8");
+  graph.inputs[0].shape = {1, 6, 4096, 4096};
+  EXPECT_THAT(message_for(graph), HasSubstr("at most 16777216 elements"));
+  graph.inputs[0].type = ElementType::kInt32;
+  EXPECT_THAT(message_for(graph), HasSubstr("input 'x' is int32, wanted float, uint8 or int8"));
+}
+
+TEST_F(RefusedGraph, MoreElementsTogetherThanTheBounds) {
+  Graph graph = model("conv_int8");
+  graph.inputs[0].shape = {1, 16, 1024, 1024};
+  for (int i = 0; i < 10; ++i) {
+    Node transpose{Operator::kTranspose, "turn", {"x"}, fmt::format("turned_{}", i), {}};
+    graph.nodes.insert(graph.nodes.begin(), transpose);
+  }
+  EXPECT_THAT(message_for(graph), HasSubstr("the model needs more than 134217728 elements"));
+}
+
+TEST_F(RefusedGraph, ViewTableWithoutAxes) {
+  Graph graph = model("view_channels_last_int8");
+  std::ranges::find(graph.inputs, "view_index", &Port::name)->shape = {};
+  EXPECT_THAT(message_for(graph), HasSubstr("only a gather by 'view_index' with two axes"));
+}
+
+TEST_F(RefusedGraph, ScaleOutOfBounds) {
+  for (const float scale : {1e-30F, 1e30F}) {
+    Graph graph = model("conv_int8");
+    auto& bytes = graph.constants.at(node(graph, Operator::kQuantizeLinear).inputs[1]).bytes;
+    std::memcpy(bytes.data(), &scale, sizeof(scale));
+    EXPECT_THAT(message_for(graph), HasSubstr("wanted 1e-15 to 1e+09"));
+  }
+}
+
+TEST_F(RefusedGraph, BiasThatDoesNotFitTheSum) {
+  Graph graph = model("conv_int8");
+  const std::string bias = node(graph, Operator::kConv).inputs[2];
+  const auto dequantized = std::ranges::find(graph.nodes, bias, &Node::output);
+  for (std::byte& byte : graph.constants.at(dequantized->inputs[0]).bytes) byte = std::byte{0x7F};
+  EXPECT_THAT(message_for(graph), HasSubstr("units of its sum, wanted at most"));
+}
+
 TEST_F(RefusedGraph, WindowLargerThanTheImage) {
   Graph graph = model("max_pool_int8");
-  node(graph, Operator::kMaxPool).attributes["kernel_shape"] = std::vector<int64_t>{99, 3};
-  EXPECT_THAT(message_for(graph), HasSubstr("a window of 99 does not fit"));
+  node(graph, Operator::kMaxPool).attributes["kernel_shape"] = std::vector<int64_t>{63, 3};
+  EXPECT_THAT(message_for(graph), HasSubstr("a window of 63 does not fit"));
 }
 
 }  // namespace

@@ -1,0 +1,123 @@
+#include "can/messages/odometry_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "can/messages/vehicle_messages.h"
+
+namespace bevloc::can {
+namespace {
+
+constexpr double kNominalInterval_s = 1e-3 * kOdometryCycleMs;
+constexpr double kSlowInterval_s = 0.045;
+constexpr double kTimelyInterval_s = 0.030;
+/// The mean follows the interval within about ten samples, so that one gap does not count as slow.
+constexpr double kIntervalGain = 0.1;
+
+}  // namespace
+
+OdometryVerdict OdometryCheck::judge(const Wheels& sample) {
+  watch_rate(sample.time);
+  const OdometryVerdict verdict = verdict_of(sample);
+  ++counts_[static_cast<size_t>(verdict)];
+  return verdict;
+}
+
+OdometryVerdict OdometryCheck::verdict_of(const Wheels& sample) {
+  if (is_too_sharp(sample)) return OdometryVerdict::kTooSharp;
+  if (wheels_contradict(sample)) return OdometryVerdict::kWheelsContradictYawRate;
+  if (disputed_) {
+    const bool same_level = jump(*disputed_, sample) == OdometryVerdict::kPlausible;
+    if (!same_level) disputed_level_since_ = sample.time;
+    disputed_ = sample;
+    const bool settled = sample.time - disputed_level_since_ >= limits_.settled_after;
+    if (!is_back(sample) && !settled) {
+      const OdometryVerdict verdict = jump(before_jump_, sample);
+      return verdict == OdometryVerdict::kPlausible ? OdometryVerdict::kSpeedJump : verdict;
+    }
+    disputed_.reset();
+    recent_count_ = 0;
+  } else if (const auto verdict = jump_from_recent(sample);
+             verdict != OdometryVerdict::kPlausible) {
+    disputed_ = sample;
+    disputed_level_since_ = sample.time;
+    return verdict;
+  }
+  keep(sample);
+  return OdometryVerdict::kPlausible;
+}
+
+OdometryVerdict OdometryCheck::jump_from_recent(const Wheels& sample) {
+  for (size_t i = 0; i < recent_count_; ++i) {
+    const OdometryVerdict verdict = jump(recent_[i], sample);
+    if (verdict == OdometryVerdict::kPlausible) continue;
+    before_jump_ = recent_[0];
+    return verdict;
+  }
+  return OdometryVerdict::kPlausible;
+}
+
+bool OdometryCheck::is_back(const Wheels& sample) const {
+  const double elapsed_s = to_seconds(sample.time - before_jump_.time);
+  const double allowed_mps =
+      limits_.speed_step_mps + limits_.disputed_acceleration_mps2 * elapsed_s;
+  return std::abs(sample.speed_mps() - before_jump_.speed_mps()) <= allowed_mps &&
+         !yaw_rate_jumps(before_jump_, sample);
+}
+
+/// Keeps the samples of the compared time, and at least the latest one.
+void OdometryCheck::keep(const Wheels& sample) {
+  const auto end = recent_.begin() + static_cast<std::ptrdiff_t>(recent_count_);
+  auto first = std::find_if(recent_.begin(), end, [&](const Wheels& kept) {
+    return sample.time - kept.time <= limits_.compared_with;
+  });
+  if (first == recent_.begin() && recent_count_ == kRecent) ++first;
+  recent_count_ = static_cast<size_t>(std::move(first, end, recent_.begin()) - recent_.begin());
+  recent_[recent_count_++] = sample;
+}
+
+bool OdometryCheck::is_too_sharp(const Wheels& sample) const {
+  const double speed_mps = std::abs(sample.speed_mps());
+  const double yaw_rate_radps = std::abs(sample.yaw_rate_radps);
+  return speed_mps * yaw_rate_radps > limits_.lateral_acceleration_mps2 ||
+         yaw_rate_radps >
+             limits_.yaw_rate_at_standstill_radps + speed_mps / limits_.turning_radius_m;
+}
+
+bool OdometryCheck::wheels_contradict(const Wheels& sample) const {
+  const double expected_mps = sample.yaw_rate_radps * limits_.rear_track_m;
+  const double allowed_mps = limits_.wheel_difference_mps +
+                             limits_.wheel_difference_share * std::abs(sample.speed_mps()) +
+                             limits_.wheel_difference_m * std::abs(sample.yaw_rate_radps);
+  return std::abs(sample.right_mps - sample.left_mps - expected_mps) > allowed_mps;
+}
+
+bool OdometryCheck::speed_jumps(const Wheels& from, const Wheels& to) const {
+  const double elapsed_s = std::max(0.0, to_seconds(to.time - from.time));
+  const bool gains = std::abs(to.speed_mps()) > std::abs(from.speed_mps());
+  const double acceleration_mps2 = gains ? limits_.gaining_mps2 : limits_.braking_mps2;
+  return std::abs(to.speed_mps() - from.speed_mps()) >
+         limits_.speed_step_mps + acceleration_mps2 * elapsed_s;
+}
+
+bool OdometryCheck::yaw_rate_jumps(const Wheels& from, const Wheels& to) const {
+  const double elapsed_s = std::max(0.0, to_seconds(to.time - from.time));
+  return std::abs(to.yaw_rate_radps - from.yaw_rate_radps) >
+         limits_.yaw_rate_step_radps + limits_.yaw_acceleration_radps2 * elapsed_s;
+}
+
+OdometryVerdict OdometryCheck::jump(const Wheels& from, const Wheels& to) const {
+  if (speed_jumps(from, to)) return OdometryVerdict::kSpeedJump;
+  return yaw_rate_jumps(from, to) ? OdometryVerdict::kYawRateJump : OdometryVerdict::kPlausible;
+}
+
+void OdometryCheck::watch_rate(Time time) {
+  if (!latest_) mean_interval_s_ = kNominalInterval_s;
+  if (latest_) mean_interval_s_ += kIntervalGain * (to_seconds(time - *latest_) - mean_interval_s_);
+  latest_ = time;
+  if (mean_interval_s_ > kSlowInterval_s) slow_ = true;
+  if (mean_interval_s_ < kTimelyInterval_s) slow_ = false;
+}
+
+}  // namespace bevloc::can

@@ -1,0 +1,92 @@
+#include "can/secoc/secoc_files.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <string>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "common/files.h"
+
+namespace bevloc::can {
+namespace {
+
+std::string cause(int error) {
+  return std::generic_category().message(error);
+}
+
+std::string without_end_of_line(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
+  return text;
+}
+
+/// Writes and synchronises a file, and returns 0 or an errno.
+int write_synchronised(const std::filesystem::path& file, const std::string& text) {
+  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  if (descriptor < 0) return errno;
+  const bool written =
+      write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+      fsync(descriptor) == 0;
+  const int error = written ? 0 : (errno == 0 ? EIO : errno);
+  close(descriptor);
+  return error;
+}
+
+}  // namespace
+
+Result<SecocKey> read_secoc_key(const std::filesystem::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0) {
+    return fail("{}: cannot be read ({}), wanted a key of 32 hexadecimal digits", file.string(),
+                cause(errno));
+  }
+  if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+    return fail("{}: found permissions {:04o}, wanted 0600 or 0400: `chmod 600 {}`", file.string(),
+                status.st_mode & 07777, file.string());
+  }
+  auto content = read_file(file);
+  if (!content) return tl::unexpected(content.error());
+  const std::string digits = without_end_of_line(std::move(*content));
+  SecocKey key{};
+  for (size_t i = 0; i < key.size(); ++i) {
+    const char* begin = digits.data() + 2 * i;
+    const bool long_enough = digits.size() == 2 * key.size();
+    if (!long_enough || std::from_chars(begin, begin + 2, key[i], 16).ptr != begin + 2) {
+      return fail("{}: found {} characters or others than hexadecimal digits, wanted 32 digits",
+                  file.string(), digits.size());
+    }
+  }
+  return key;
+}
+
+Result<uint32_t> next_start_number(const std::filesystem::path& file) {
+  uint32_t number = 0;
+  if (std::filesystem::exists(file)) {
+    auto content = read_file(file);
+    if (!content) return tl::unexpected(content.error());
+    const std::string text = without_end_of_line(std::move(*content));
+    const char* end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, number);
+    if (read.ec != std::errc{} || read.ptr != end || number == UINT32_MAX) {
+      return fail("{}: found '{}', wanted the number of starts; never start again below it",
+                  file.string(), text);
+    }
+  }
+  ++number;
+  const std::filesystem::path temporary = file.string() + ".new";
+  int error = write_synchronised(temporary, fmt::format("{}\n", number));
+  if (error == 0 && rename(temporary.c_str(), file.c_str()) != 0) error = errno;
+  if (error != 0) {
+    return fail(
+        "{}: the number of starts cannot be written ({}), wanted a folder that bevlocd may "
+        "write, such as /var/lib/bevloc",
+        file.string(), cause(error));
+  }
+  return number;
+}
+
+}  // namespace bevloc::can

@@ -1,0 +1,70 @@
+#include "evaluation/campaign/campaign.h"
+
+#include <utility>
+
+#include "evaluation/campaign/pictures_run.h"
+#include "pipeline/calibration/rig_yaml.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+std::vector<sim::Fault> timed(std::vector<sim::Fault> faults, const FaultTime& time) {
+  for (sim::Fault& fault : faults) {
+    fault.from_s = time.from_s;
+    fault.until_s = time.until_s;
+  }
+  return faults;
+}
+
+}  // namespace
+
+Result<Campaign> Campaign::create(const std::string& config_file, const std::string& table_file,
+                                  const CampaignOptions& options) {
+  auto config = load_drive_config(config_file);
+  if (!config) return tl::unexpected(config.error());
+  if (!config->simulation) {
+    return fail("{}: found cameras that are not mock, wanted mock ones", config_file);
+  }
+  auto rig = read_rig(config->rig_file);
+  if (!rig) return tl::unexpected(rig.error());
+  config->simulation->duration_s = options.duration_s;
+  Campaign campaign(std::move(*config), std::move(*rig), options);
+  if (options.level == Level::kStage) {
+    auto table = read_match_table(table_file);
+    if (!table) return tl::unexpected(table.error());
+    campaign.table_ = std::move(*table);
+  }
+  return campaign;
+}
+
+Status Campaign::drive(const Mode& mode, uint64_t seed, const std::string& map,
+                       const CycleSink& sink) const {
+  DriveConfig config = config_;
+  config.simulation->seed = seed;
+  config.simulation->town_seed = seed;
+  if (!map.empty()) {
+    config.simulation->town_seed.reset();
+    config.map_file = map;
+  }
+  config.simulation->faults = timed(mode.faults, mode.time_in(options_.duration_s));
+  return options_.level == Level::kStage ? run_stage(config, mode, table_, sink)
+                                         : run_pictures(config, rig_, sink);
+}
+
+Status Campaign::run(const std::vector<const Mode*>& modes,
+                     const std::function<void(const CampaignRow&)>& done) const {
+  for (int k = 0; k < options_.seeds; ++k) {
+    const uint64_t seed = options_.first_seed + static_cast<uint64_t>(k);
+    for (const Mode* mode : modes) {
+      const FaultTime time = mode->time_in(options_.duration_s);
+      RunJudge judge(time, mode->named_by);
+      const Status status = drive(*mode, seed, options_.map,
+                                  [&judge](const JudgedCycle& cycle) { judge.add(cycle); });
+      if (!status) return status;
+      done({mode, seed, time.until_s < options_.duration_s, judge.outcome()});
+    }
+  }
+  return {};
+}
+
+}  // namespace bevloc::evaluation

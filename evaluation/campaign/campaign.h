@@ -1,0 +1,61 @@
+// Runs modes x seeds of the campaign and collects their outcomes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/result.h"
+#include "evaluation/campaign/match_table.h"
+#include "evaluation/campaign/mode.h"
+#include "evaluation/campaign/run_outcome.h"
+#include "evaluation/campaign/stage_run.h"
+#include "pipeline/calibration/rig.h"
+
+namespace bevloc::evaluation {
+
+struct CampaignOptions {
+  Level level = Level::kStage;
+  uint64_t first_seed = 401;
+  int seeds = 1;
+  double duration_s = 60.0;
+  std::string map;  ///< drive through this map instead of procedural towns
+};
+
+struct CampaignRow {
+  const Mode* mode = nullptr;
+  uint64_t seed = 0;
+  bool fault_ends = false;  ///< within the drive
+  RunOutcome outcome;
+};
+
+/// What every run of a campaign needs, loaded once.
+class Campaign {
+ public:
+  /// Fails if the configuration (which must have mock cameras), the rig or the table cannot be
+  /// read. The table is needed on the stage level only.
+  static Result<Campaign> create(const std::string& config_file, const std::string& table_file,
+                                 const CampaignOptions& options);
+
+  /// One run, through a procedural town, or through `map` if it is not empty. Every cycle goes to
+  /// `sink`.
+  Status drive(const Mode& mode, uint64_t seed, const std::string& map,
+               const CycleSink& sink) const;
+
+  /// All modes of one seed after another, so that they share its pictures. `done` is called after
+  /// each row. Fails if a world cannot be made.
+  Status run(const std::vector<const Mode*>& modes,
+             const std::function<void(const CampaignRow&)>& done) const;
+
+ private:
+  Campaign(DriveConfig config, Rig rig, const CampaignOptions& options)
+      : config_(std::move(config)), rig_(std::move(rig)), options_(options) {}
+
+  DriveConfig config_;
+  Rig rig_;
+  CampaignOptions options_;
+  MatchTable table_;
+};
+
+}  // namespace bevloc::evaluation

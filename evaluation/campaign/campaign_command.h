@@ -1,0 +1,47 @@
+// `bevloc campaign`: runs failure modes and says how the appliance reacts.
+//
+// evaluation/campaign, from the command down:
+//   campaign_command  options of `bevloc campaign`; script/campaign runs it in parallel
+//   campaign          modes x seeds
+//   mode, mode_table  the failure modes: one table
+//   stage_run         one run of the estimation stage with the modelled matcher (--level stage)
+//   modelled_vision   in place of cameras and network; match_fault.h: its faults
+//   match_model       replays measured matches; match_table, match_recorder: how they are measured
+//   cycle_reader      reads every pose from the bus and compares it with the truth
+//   run_outcome       what a run shows
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "common/result.h"
+#include "evaluation/campaign/campaign.h"
+
+namespace bevloc::evaluation {
+
+class CampaignCommand {
+ public:
+  void declare(CLI::App& app);
+
+  /// Does what the parsed command line asks for.
+  Status run() const;
+
+  /// Whether the parsed command line names this command.
+  bool chosen() const { return chosen_; }
+
+ private:
+  Status list() const;
+
+  bool chosen_ = false;
+  bool list_ = false;
+  bool timeline_ = false;
+  std::string config_ = "config/demo.yaml";
+  std::string table_ = "evaluation/campaign/matches.csv";
+  std::vector<std::string> modes_;
+  CampaignOptions options_;
+  std::string json_file_;
+};
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,61 @@
+#include "evaluation/campaign/cycle_reader.h"
+
+#include <limits>
+#include <utility>
+
+#include "can/messages/message_table.h"
+#include "can/messages/solution_fd.h"
+#include "evaluation/drive/error_statistics.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr double kNotSent = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+CycleReader::CycleReader(std::unique_ptr<can::Bus> bus, const can::BaseIds& base,
+                         const GeoOrigin& origin, TruthAt truth, Time drive_start)
+    : bus_(std::move(bus)),
+      base_(base),
+      truth_(std::move(truth)),
+      drive_start_(drive_start),
+      reader_(base, {origin.latitude_deg, origin.longitude_deg}),
+      sigma_(Eigen::Vector3d::Constant(kNotSent)) {}
+
+JudgedCycle CycleReader::step(Time now) {
+  JudgedCycle cycle;
+  while (const auto received = bus_->receive()) {
+    if (received->frame.id == can::loc_std_dev::kMessage.id(base_)) take_deviation(received->frame);
+    if (received->frame.id == can::loc_solution::kMessage.id(base_)) {
+      for (size_t part = 0; part < can::loc_solution::kParts.size(); ++part) {
+        if (can::loc_solution::kParts[part] != &can::loc_std_dev::kMessage) continue;
+        take_deviation(can::part_of_solution(received->frame, part, base_));
+      }
+    }
+    if (const auto pose = reader_.accept(*received)) cycle.pose = judge(*pose);
+  }
+  cycle.time_s = to_seconds(now - drive_start_);
+  cycle.state = reader_.state();
+  cycle.why = reader_.why();
+  return cycle;
+}
+
+void CycleReader::take_deviation(const can::Frame& frame) {
+  const auto value_of = [&frame](const can::Signal& signal) {
+    return can::decode(frame, signal).value_or(kNotSent);
+  };
+  sigma_ = {value_of(can::loc_std_dev::kLongitudinal), value_of(can::loc_std_dev::kLateral),
+            radians(value_of(can::loc_std_dev::kHeading))};
+}
+
+JudgedError CycleReader::judge(const BusPose& pose) const {
+  const Se2 truth = truth_(to_seconds(pose.received - drive_start_));
+  const Se2 error = pose_error(truth, pose.map_from_vehicle);
+  const can::ProtectionLevel& level = pose.protection_level;
+  return {.error = {error.x_m, error.y_m, error.yaw_rad},
+          .sigma = sigma_,
+          .protection = {level.longitudinal_m, level.lateral_m, level.yaw_rad}};
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,27 @@
+// A fault of the modelled matcher.
+#pragma once
+
+#include <cstdint>
+
+#include "common/se2.h"
+#include "evaluation/campaign/run_outcome.h"
+
+namespace bevloc::evaluation {
+
+enum class MatchFaultKind : uint8_t {
+  kLocked,      ///< finds a place that is `offset` beside the true one, wherever the search began
+  kCreeping,    ///< finds a place that moves away from the true one by `offset` per second
+  kLanesAlike,  ///< finds the lane nearest to the prior; lanes are `offset` apart and look alike
+  kNoEvidence,  ///< Evidence::kNone
+  kSawNothing,  ///< stays near the prior, as wide as the search range: dark cameras
+  kOldStamps,   ///< framesets carry a time that is `delay_s` too early
+};
+
+/// Active while the mode's fault is.
+struct MatchFault {
+  MatchFaultKind kind = MatchFaultKind::kLocked;
+  Se2 offset{};  ///< in the frame of the true vehicle
+  double delay_s = 0.0;
+};
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,178 @@
+#include "evaluation/campaign/match_model.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "pipeline/solver/posterior.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr double kShortestBlock_m = 30.0;
+constexpr double kLongestBlock_m = 90.0;
+/// A vehicle on a tighter arc than 50 m turns.
+constexpr double kTurning_radpm = 0.02;
+/// Places this close count as one: a standing vehicle.
+constexpr double kSamePlace_m = 0.02;
+/// In how many framesets before and after the place a match with a similar prior is looked for.
+constexpr size_t kNeighbourhood = 12;
+/// What a frameset of distance costs against one search range of difference of the priors.
+constexpr double kCostPerFrameset = 0.02;
+/// A measured match whose prior was off by up to this part of the range differently still found the
+/// same place of the map.
+constexpr double kSamePeak = 0.5;
+/// A correction this close to the end of the range, in parts of it, was stopped by the border.
+constexpr double kAtBorder = 0.9;
+
+std::array<double, 3> values_of(const Se2& pose) {
+  return {pose.x_m, pose.y_m, pose.yaw_rad};
+}
+
+std::array<double, 3> ranges_of(const HypothesisGrid& grid) {
+  return {grid.x_m.range, grid.y_m.range, grid.yaw_rad.range};
+}
+
+bool is_turning(double curvature_radpm) {
+  return std::abs(curvature_radpm) > kTurning_radpm;
+}
+
+/// The first match of a place lies in the tracking range near the truth (record_matches()).
+Se2 error_near_truth(const MeasuredPlace& place) {
+  return place.matches.front().error();
+}
+
+}  // namespace
+
+MatchModel::MatchModel(const MatchTable& table, const HypothesisGrid& tracking,
+                       const HypothesisGrid& acquiring, uint64_t seed)
+    : table_(table), tracking_(tracking), acquiring_(acquiring), random_(seed) {
+  for (size_t i = 0; i < table_.places.size(); ++i) {
+    starts_[is_turning(table_.places[i].curvature_radpm) ? 1 : 0].push_back(i);
+  }
+  collect_scatter();
+}
+
+void MatchModel::collect_scatter() {
+  const auto& places = table_.places;
+  for (size_t i = 1; i < places.size(); ++i) {
+    const MeasuredPlace& a = places[i - 1];
+    const MeasuredPlace& b = places[i];
+    if (a.drive != b.drive || std::abs(b.station_m - a.station_m) > kSamePlace_m) continue;
+    const Se2 first = error_near_truth(a);
+    const Se2 second = error_near_truth(b);
+    // The difference of two independent errors is wider than one by the square root of two.
+    scatter_.push_back({(second.x_m - first.x_m) * std::numbers::sqrt2 / 2.0,
+                        (second.y_m - first.y_m) * std::numbers::sqrt2 / 2.0,
+                        wrap_angle(second.yaw_rad - first.yaw_rad) * std::numbers::sqrt2 / 2.0});
+  }
+}
+
+MatchResult MatchModel::match(const MatchedPlace& place, SearchRange range, const Se2& truth) {
+  follow(place);
+  const HypothesisGrid& grid = hypotheses(range);
+  const MeasuredMatch& measured = most_alike(range, truth);
+  MatchResult result;
+  result.evidence = Evidence::kGood;
+  result.correction = transfer(measured, truth, grid);
+  if (repeated_ && !scatter_.empty()) {
+    const Se2& scatter = scatter_[random_.index(scatter_.size())];
+    result.correction.x_m += scatter.x_m;
+    result.correction.y_m += scatter.y_m;
+    result.correction.yaw_rad += scatter.yaw_rad;
+  }
+  const auto ranges = ranges_of(grid);
+  result.correction = {std::clamp(result.correction.x_m, -ranges[0], ranges[0]),
+                       std::clamp(result.correction.y_m, -ranges[1], ranges[1]),
+                       std::clamp(result.correction.yaw_rad, -ranges[2], ranges[2])};
+  result.covariance = measured.covariance();
+  result.evidence_share =
+      Eigen::Vector3d::Ones() - result.covariance.diagonal().cwiseQuotient(uniform_variance(grid));
+  result.rival_peak = measured.rival_peak;
+  result.edge_mass = measured.edge_mass;
+  result.score = measured.score;
+  result.axis_score = measured.axis_score;
+  return result;
+}
+
+void MatchModel::follow(const MatchedPlace& place) {
+  const auto& places = table_.places;
+  if (place.distance_m >= block_end_m_) begin_block(place);
+  const double station_m = place.distance_m + offset_m_;
+  size_t next = at_;
+  while (next + 1 < places.size() && places[next + 1].drive == places[at_].drive &&
+         places[next + 1].station_m <= station_m) {
+    ++next;
+  }
+  const bool at_end = next + 1 == places.size() || places[next + 1].drive != places[at_].drive;
+  if (at_end && station_m > places[next].station_m + kSamePlace_m) {
+    begin_block(place);
+    return;
+  }
+  repeated_ = next == at_;
+  at_ = next;
+}
+
+void MatchModel::begin_block(const MatchedPlace& place) {
+  const auto& alike = starts_[is_turning(place.curvature_radpm) ? 1 : 0];
+  at_ = alike.empty() ? random_.index(table_.places.size()) : alike[random_.index(alike.size())];
+  offset_m_ = table_.places[at_].station_m - place.distance_m;
+  block_end_m_ = place.distance_m + random_.uniform(kShortestBlock_m, kLongestBlock_m);
+  repeated_ = false;
+}
+
+const MeasuredMatch& MatchModel::most_alike(SearchRange range, const Se2& truth) const {
+  const auto ranges = ranges_of(hypotheses(range));
+  const auto wanted = values_of(truth);
+  const MeasuredMatch* best = nullptr;
+  double least = std::numeric_limits<double>::max();
+  // Where the neighbourhood has no match of this range, as between two drives, it grows.
+  for (size_t reach = kNeighbourhood; best == nullptr; reach *= 2) {
+    assert(reach < 4 * table_.places.size() + 4 * kNeighbourhood);
+    const size_t first = at_ > reach ? at_ - reach : 0;
+    const size_t last = std::min(at_ + reach, table_.places.size() - 1);
+    for (size_t i = first; i <= last; ++i) {
+      const MeasuredPlace& place = table_.places[i];
+      if (place.drive != table_.places[at_].drive) continue;
+      const double distance = static_cast<double>(i > at_ ? i - at_ : at_ - i);
+      for (const MeasuredMatch& match : place.matches) {
+        if (match.range != range) continue;
+        const auto had = values_of(match.truth);
+        double cost = kCostPerFrameset * distance;
+        for (size_t axis = 0; axis < 3; ++axis) {
+          // Inside the range it hardly matters where the prior was.
+          const double inside = ranges[axis] * kSamePeak;
+          const double difference = std::abs(wanted[axis] - had[axis]);
+          const bool both_inside = std::abs(wanted[axis]) < inside && std::abs(had[axis]) < inside;
+          cost += both_inside ? 0.0 : std::pow(difference / ranges[axis], 2);
+        }
+        if (cost < least) {
+          least = cost;
+          best = &match;
+        }
+      }
+    }
+  }
+  return *best;
+}
+
+Se2 MatchModel::transfer(const MeasuredMatch& measured, const Se2& truth,
+                         const HypothesisGrid& grid) const {
+  const auto ranges = ranges_of(grid);
+  const auto wanted = values_of(truth);
+  const auto had = values_of(measured.truth);
+  const auto found = values_of(measured.found);
+  const auto same_peak = values_of(truth * measured.error());
+  std::array<double, 3> correction{};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const bool stopped = std::abs(found[axis]) > kAtBorder * ranges[axis];
+    const bool alike =
+        std::abs(wanted[axis] - had[axis]) < kSamePeak * ranges[axis] ||
+        (std::abs(wanted[axis]) < ranges[axis] && std::abs(had[axis]) < ranges[axis]);
+    correction[axis] = alike && !stopped ? same_peak[axis] : found[axis];
+  }
+  return {correction[0], correction[1], correction[2]};
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,64 @@
+// The modelled matcher: answers like network and solver, with errors that were measured on
+// pictures.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "evaluation/campaign/match_table.h"
+#include "pipeline/solver/hypotheses.h"
+#include "pipeline/solver/solver_result.h"
+#include "sim/random.h"
+
+namespace bevloc::evaluation {
+
+/// The true motion of the vehicle at a frameset.
+struct MatchedPlace {
+  double distance_m = 0.0;  ///< driven since the start of the drive
+  double curvature_radpm = 0.0;
+};
+
+/// Replays measured matches in blocks of 30 to 90 m of driving, so that they stay as biased and as
+/// correlated over distance as they are, and as blind along the road where the road shows nothing.
+/// A block begins where the measured vehicle turned, or drove straight, as the simulated one does.
+/// A vehicle that stands, or drives so slowly that it stays at one measured place, gets that
+/// place's match with the scatter that pictures of one place have.
+///
+/// Of the matches of a place and its neighbours the one is taken whose prior was off most alike. So
+/// where the truth is near the border of the search range or beyond it, the answer is as
+/// confidently wrong as it was measured there. One thread.
+class MatchModel {
+ public:
+  /// `table` must outlive the model and have a match in both ranges.
+  MatchModel(const MatchTable& table, const HypothesisGrid& tracking,
+             const HypothesisGrid& acquiring, uint64_t seed);
+
+  /// The match of a frameset from the prior T0; `truth` is the correction that leads from T0 to the
+  /// true pose. The distance must not decrease from call to call.
+  MatchResult match(const MatchedPlace& place, SearchRange range, const Se2& truth);
+
+  const HypothesisGrid& hypotheses(SearchRange range) const {
+    return range == SearchRange::kTracking ? tracking_ : acquiring_;
+  }
+
+ private:
+  void collect_scatter();
+  void follow(const MatchedPlace& place);
+  void begin_block(const MatchedPlace& place);
+  const MeasuredMatch& most_alike(SearchRange range, const Se2& truth) const;
+  Se2 transfer(const MeasuredMatch& measured, const Se2& truth, const HypothesisGrid& grid) const;
+
+  const MatchTable& table_;
+  HypothesisGrid tracking_;
+  HypothesisGrid acquiring_;
+  sim::Random random_;
+  std::vector<Se2> scatter_;                   ///< of matches at one place
+  std::array<std::vector<size_t>, 2> starts_;  ///< places of straight and of turning vehicles
+  size_t at_ = 0;                              ///< the measured place of the latest frameset
+  double offset_m_ = 0.0;      ///< its station minus the distance of the simulated vehicle
+  double block_end_m_ = -1.0;  ///< distance of the simulated vehicle
+  bool repeated_ = false;      ///< the latest two framesets have the same measured place
+};
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,25 @@
+// Measures matches on simulated pictures, for the modelled matcher of the campaign.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "evaluation/campaign/match_table.h"
+#include "evaluation/drive/drive_config.h"
+#include "pipeline/calibration/rig.h"
+
+namespace bevloc::evaluation {
+
+/// Drives through the world of `config.simulation` (which must be set) and matches every frameset
+/// from several priors around the true pose, with the configuration's model and solver:
+/// - always one prior in the tracking range, as far off as a tracked pose may be;
+/// - always one in the tracking range, for which the truth lies near the border of the search range
+///   or beyond it, by up to 3.5 ranges, along one axis (x, y and yaw in turn);
+/// - in every second frameset one in the acquiring range; in every fourth of those beyond it.
+/// No tracker is involved: a recorded error belongs to a place and a prior. `drive` is the number
+/// that the places get. Fails if the model, the rig or the map cannot be used.
+Result<std::vector<MeasuredPlace>> record_matches(const DriveConfig& config, const Rig& rig,
+                                                  int drive,
+                                                  const std::function<void(double)>& at_time_s);
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,52 @@
+// The failure modes of the campaign: one table.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "common/health_state.h"
+#include "common/result.h"
+#include "evaluation/campaign/match_fault.h"
+#include "sim/faults/fault.h"
+
+namespace bevloc::evaluation {
+
+/// Where a mode can be run (docs/integrity.md).
+enum class Level : uint8_t {
+  kStage,     ///< the estimation stage with the modelled matcher
+  kPictures,  ///< the whole appliance on pictures
+};
+
+/// How long the fault of a mode lasts. It begins after a third of the drive, unless it is there
+/// from the start.
+struct FaultLength {
+  double seconds = 0.0;  ///< 0: until the end of the drive
+  bool from_start = false;
+};
+
+struct Mode {
+  std::string_view name;
+  std::string_view what;  ///< what goes wrong, for the table
+  FaultLength length{};
+  /// For FaultTime {0, infinity}: the campaign sets the times.
+  std::vector<sim::Fault> faults{};
+  std::vector<MatchFault> match_faults{};  ///< on the stage level
+  double suspended_s = 0.0;                ///< the appliance sleeps this long; its clock goes on
+  WhyMask named_by{};                      ///< the why bits that name the fault
+  /// How long poses beyond the freeway alert limits may be valid, in the worst seed.
+  double limit_s = 0.3;
+  bool on_stage = true;
+  bool on_pictures = true;
+
+  bool is_on(Level level) const { return level == Level::kStage ? on_stage : on_pictures; }
+  FaultTime time_in(double duration_s) const;
+};
+
+/// All modes, in the order of the table.
+const std::vector<Mode>& all_modes();
+
+/// The modes with these names; all modes of the level without names. Fails for an unknown name, and
+/// for a mode that the level does not have.
+Result<std::vector<const Mode*>> modes_named(const std::vector<std::string>& names, Level level);
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,262 @@
+#include <optional>
+#include <utility>
+
+#include "evaluation/campaign/mode.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+using sim::Fault;
+using sim::FaultAmounts;
+using sim::FaultKind;
+
+// Indices into kCameraNames.
+constexpr int kFront = 1;
+constexpr int kBack = 4;
+
+constexpr FaultLength kTwenty{20.0};
+constexpr FaultLength kToTheEnd{};
+constexpr FaultLength kAlways{.seconds = 0.0, .from_start = true};
+
+Fault fault(FaultKind kind, const FaultAmounts& amounts = {}) {
+  return {.kind = kind, .amounts = amounts};
+}
+
+MatchFault locked(double across_m) {
+  return {.kind = MatchFaultKind::kLocked, .offset = {0.0, across_m, 0.0}};
+}
+
+/// Modes of GNSS alone, and of GNSS while the match shows less than usual.
+std::vector<Mode> gnss_modes() {
+  const WhyMask contradicts = Why::kGnssContradicts;
+  std::vector<Mode> modes;
+  const auto add = [&modes](std::string_view name, std::string_view what, FaultLength length,
+                            const Fault& what_fails, WhyMask named_by) {
+    modes.push_back({.name = name,
+                     .what = what,
+                     .length = length,
+                     .faults = {what_fails},
+                     .match_faults = {},
+                     .named_by = named_by});
+  };
+  add("gnss-outage", "GNSS missing for 20 s", kTwenty, fault(FaultKind::kGnssOutage),
+      Why::kGnssMissing);
+  add("gnss-jump-3m", "GNSS 3 m off to the side", kTwenty,
+      fault(FaultKind::kGnssJump, {.across_m = 3.0}), contradicts);
+  add("gnss-jump-20m", "GNSS 20 m off to the side", kTwenty,
+      fault(FaultKind::kGnssJump, {.across_m = 20.0}), contradicts);
+  add("gnss-jump-200m", "GNSS 200 m off", kTwenty, fault(FaultKind::kGnssJump, {.along_m = 200.0}),
+      contradicts);
+  add("gnss-spoof-20m", "GNSS pulled away by 20 m within 5 s", kTwenty,
+      fault(FaultKind::kGnssSpoof, {.across_m = 20.0, .pull_s = 5.0}), contradicts);
+  add("gnss-drag", "GNSS dragged along the road at 0.1 m/s", kToTheEnd,
+      fault(FaultKind::kGnssRamp, {.along_mps = 0.1}), contradicts);
+  add("gnss-wrong-sigma", "GNSS claims a tenth of its sigma", kToTheEnd,
+      fault(FaultKind::kGnssWrongSigma, {.factor = 0.1}), contradicts);
+  add("gnss-noise", "GNSS five times as noisy as it claims", kTwenty,
+      fault(FaultKind::kGnssNoise, {.factor = 5.0}), contradicts);
+  add("gnss-no-heading", "GNSS without heading", kToTheEnd, fault(FaultKind::kGnssNoHeading), {});
+  add("gnss-start-6m", "GNSS 6 m off from the start", kAlways,
+      fault(FaultKind::kGnssJump, {.across_m = 6.0}), contradicts | Why::kMatchContradicts);
+  return modes;
+}
+
+std::vector<Mode> odometry_modes() {
+  const WhyMask contradicts = Why::kOdometryContradicts | Why::kOdometryImplausible;
+  std::vector<Mode> modes;
+  const auto add = [&](std::string_view name, std::string_view what, FaultLength length,
+                       const Fault& what_fails, WhyMask named_by) {
+    modes.push_back({.name = name,
+                     .what = what,
+                     .length = length,
+                     .faults = {what_fails},
+                     .match_faults = {},
+                     .named_by = named_by});
+  };
+  add("odometry-stuck", "odometry repeats its values, with valid E2E", kTwenty,
+      fault(FaultKind::kOdometryStuck), contradicts);
+  add("odometry-spin", "wheels spin, speed x 1.3 for 2 s", {2.0},
+      fault(FaultKind::kOdometrySlip, {.factor = 1.3}), contradicts);
+  add("odometry-lock", "wheels lock, speed x 0.3 for 1.5 s", {1.5},
+      fault(FaultKind::kOdometryLock, {.factor = 0.3}), contradicts);
+  add("odometry-scale", "wheel speed 2 % too high", kToTheEnd,
+      fault(FaultKind::kOdometryScaled, {.factor = 1.02}), contradicts);
+  add("odometry-reversed", "wheel speeds with the wrong sign", kTwenty,
+      fault(FaultKind::kOdometryReversed), contradicts);
+  add("odometry-missing", "no odometry for 5 s", {5.0}, fault(FaultKind::kOdometryMissing),
+      Why::kOdometryMissing);
+  add("odometry-slow", "odometry every 180 ms", kTwenty,
+      fault(FaultKind::kOdometrySlow, {.period_ms = 180.0}), contradicts | Why::kOdometryMissing);
+  add("odometry-wheels-differ", "rear wheels +80 and -80 km/h", {5.0},
+      fault(FaultKind::kOdometryWheels, {.left_mps = 22.2, .right_mps = -22.2}), contradicts);
+  add("odometry-one-wheel", "left wheel 20 km/h, right wheel 0", {5.0},
+      fault(FaultKind::kOdometryWheels, {.left_mps = 5.6}), contradicts);
+  add("yaw-bias-1", "yaw rate 1 degree/s too high", kTwenty,
+      fault(FaultKind::kYawRateBias, {.bias_degps = 1.0}), contradicts);
+  add("yaw-bias-3", "yaw rate 3 degrees/s too high", kTwenty,
+      fault(FaultKind::kYawRateBias, {.bias_degps = 3.0}), contradicts);
+  add("yaw-rate-sign", "yaw rate with the wrong sign", kTwenty,
+      fault(FaultKind::kYawRateScaled, {.factor = -1.0}), contradicts);
+  add("yaw-rate-160", "yaw rate 160 degrees/s", {5.0},
+      fault(FaultKind::kYawRateWrong, {.yaw_rate_degps = 160.0}), contradicts);
+  return modes;
+}
+
+/// Faults of the matcher, which only the stage level can set at will.
+std::vector<Mode> match_modes() {
+  const WhyMask contradicts = Why::kMatchContradicts | Why::kMatchUncertain;
+  std::vector<Mode> modes;
+  const auto add = [&](std::string_view name, std::string_view what, FaultLength length,
+                       const MatchFault& what_fails, WhyMask named_by) {
+    modes.push_back({.name = name,
+                     .what = what,
+                     .length = length,
+                     .faults = {},
+                     .match_faults = {what_fails},
+                     .named_by = named_by,
+                     .limit_s = 1.0,
+                     .on_pictures = false});
+  };
+  add("match-locked-2m", "match 2 m to the side, from the start", kAlways, locked(2.0),
+      contradicts);
+  add("match-locked-3m", "match 3 m to the side, from the start", kAlways, locked(3.0),
+      contradicts);
+  add("match-locked-5m", "match 5 m to the side, from the start", kAlways, locked(5.0),
+      contradicts);
+  add("match-locked-20m", "match 20 m to the side, from the start", kAlways, locked(20.0),
+      contradicts);
+  add("match-locked-3m-later", "match 3 m to the side, later", kTwenty, locked(3.0), contradicts);
+  add("match-biased-0.4m", "match 0.4 m to the side (kerb and map differ)", kToTheEnd, locked(0.4),
+      {});
+  add("match-creeping", "match moves to the side at 0.05 m/s", kToTheEnd,
+      {.kind = MatchFaultKind::kCreeping, .offset = {0.0, 0.05, 0.0}}, contradicts);
+  add("match-creeping-along", "match moves along the road at 0.1 m/s", kToTheEnd,
+      {.kind = MatchFaultKind::kCreeping, .offset = {0.1, 0.0, 0.0}}, contradicts);
+  add("match-no-evidence", "the solver finds nothing for 20 s", kTwenty,
+      {.kind = MatchFaultKind::kNoEvidence}, Why::kPoseStale);
+  add("match-saw-nothing", "the match says nothing (dark cameras)", kTwenty,
+      {.kind = MatchFaultKind::kSawNothing}, Why::kPoseStale);
+  add("match-saw-nothing-start", "the match says nothing, from the start", kAlways,
+      {.kind = MatchFaultKind::kSawNothing}, Why::kPoseStale);
+  add("match-old-stamps", "frames carry times 100 ms too early", kToTheEnd,
+      {.kind = MatchFaultKind::kOldStamps, .delay_s = 0.1}, contradicts);
+  return modes;
+}
+
+/// Faults of the cameras, which only pictures can show.
+std::vector<Mode> camera_modes() {
+  const WhyMask missing = Why::kCameraMissing;
+  const WhyMask calibration = Why::kCalibrationFault;
+  std::vector<Mode> modes;
+  const auto add = [&modes](std::string_view name, std::string_view what, FaultLength length,
+                            Fault what_fails, WhyMask named_by,
+                            std::optional<int> camera = std::nullopt,
+                            std::optional<int> other = std::nullopt) {
+    what_fails.camera = camera;
+    what_fails.other_camera = other;
+    modes.push_back({.name = name,
+                     .what = what,
+                     .length = length,
+                     .faults = {what_fails},
+                     .match_faults = {},
+                     .named_by = named_by,
+                     .on_stage = false});
+  };
+  add("camera-dead", "no frames from the front camera", kTwenty, fault(FaultKind::kCameraDead),
+      missing, kFront);
+  add("cameras-dead", "no frames from all cameras", kTwenty, fault(FaultKind::kCameraDead),
+      missing | Why::kPoseStale);
+  add("cameras-dark", "all cameras dark", kTwenty, fault(FaultKind::kCameraDark),
+      missing | Why::kPoseStale);
+  add("cameras-dark-start", "all cameras dark, from the start", kAlways,
+      fault(FaultKind::kCameraDark), missing | Why::kPoseStale);
+  add("cameras-blinded", "all cameras blinded", kTwenty,
+      fault(FaultKind::kCameraBlinded, {.strength = 1.0}), missing | Why::kPoseStale);
+  add("camera-dirty", "dirt on half of the front camera's lens", kTwenty,
+      fault(FaultKind::kCameraDirty, {.share = 0.5}), missing, kFront);
+  add("cameras-dirty", "dirt on half of all lenses", kTwenty,
+      fault(FaultKind::kCameraDirty, {.share = 0.5}), missing | Why::kPoseStale);
+  add("cameras-frozen", "all pictures frozen", kTwenty, fault(FaultKind::kCameraFrozen), missing);
+  add("cameras-loop", "all cameras repeat four pictures", kTwenty,
+      fault(FaultKind::kCameraLoop, {.pictures = 4.0}), missing);
+  add("cameras-late", "all frames 500 ms late", kTwenty,
+      fault(FaultKind::kCameraLate, {.delay_ms = 500.0}), missing | Why::kPoseStale);
+  add("camera-stamps", "all cameras' times 100 ms too early", kToTheEnd,
+      fault(FaultKind::kCameraTimeShift, {.shift_ms = -100.0}),
+      Why::kCamerasUnsynchronized | Why::kMatchContradicts);
+  add("cameras-swapped", "front and back camera swapped, from the start", kAlways,
+      fault(FaultKind::kCameraSwapped), calibration, kFront, kBack);
+  add("camera-turned-1", "front camera turned by 1 degree", kToTheEnd,
+      fault(FaultKind::kCameraTurned, {.yaw_deg = 1.0}), calibration, kFront);
+  add("camera-turned-3", "front camera turned by 3 degrees", kToTheEnd,
+      fault(FaultKind::kCameraTurned, {.yaw_deg = 3.0}), calibration, kFront);
+  add("cameras-turned-1", "all cameras turned by 1 degree", kToTheEnd,
+      fault(FaultKind::kCameraTurned, {.yaw_deg = 1.0}), calibration);
+  add("cameras-turned-2", "all cameras turned by 2 degrees", kToTheEnd,
+      fault(FaultKind::kCameraTurned, {.yaw_deg = 2.0}), calibration);
+  return modes;
+}
+
+/// Two faults at once.
+std::vector<Mode> combined_modes() {
+  const MatchFault alike{.kind = MatchFaultKind::kLanesAlike, .offset = {0.0, 3.5, 0.0}};
+  std::vector<Mode> modes;
+  modes.push_back({.name = "lanes-alike",
+                   .what = "lanes look alike",
+                   .length = kAlways,
+                   .faults = {},
+                   .match_faults = {alike},
+                   .on_pictures = false});
+  modes.push_back({.name = "lanes-alike-gnss-3m",
+                   .what = "lanes look alike, GNSS 3 m off from the start",
+                   .length = kAlways,
+                   .faults = {fault(FaultKind::kGnssJump, {.across_m = 3.0})},
+                   .match_faults = {alike},
+                   .named_by = Why::kMatchUncertain | Why::kGnssContradicts,
+                   .on_pictures = false});
+  modes.push_back(
+      {.name = "creeping-without-gnss",
+       .what = "match creeps at 0.05 m/s while GNSS is missing",
+       .length = kToTheEnd,
+       .faults = {fault(FaultKind::kGnssOutage)},
+       .match_faults = {{.kind = MatchFaultKind::kCreeping, .offset = {0.0, 0.05, 0.0}}},
+       .named_by = Why::kGnssMissing,
+       .on_pictures = false});
+  modes.push_back({.name = "dark-gnss-drag",
+                   .what = "the match says nothing, and GNSS is dragged away at 0.2 m/s",
+                   .length = kToTheEnd,
+                   .faults = {fault(FaultKind::kGnssRamp, {.across_mps = 0.2})},
+                   .match_faults = {{.kind = MatchFaultKind::kSawNothing}},
+                   .named_by = Why::kPoseStale,
+                   .on_pictures = false});
+  modes.push_back({.name = "suspended",
+                   .what = "the appliance sleeps for 3 s",
+                   .length = {3.0},
+                   .faults = {},
+                   .match_faults = {},
+                   .suspended_s = 3.0,
+                   .named_by = Why::kClockGap,
+                   .on_pictures = false});
+  return modes;
+}
+
+}  // namespace
+
+const std::vector<Mode>& all_modes() {
+  static const std::vector<Mode> kModes = [] {
+    std::vector<Mode> modes;
+    modes.push_back({.name = "none",
+                     .what = "no fault",
+                     .length = {},
+                     .faults = {},
+                     .match_faults = {},
+                     .limit_s = 0.0});
+    for (auto* make : {gnss_modes, odometry_modes, match_modes, combined_modes, camera_modes}) {
+      for (Mode& mode : make()) modes.push_back(std::move(mode));
+    }
+    return modes;
+  }();
+  return kModes;
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,47 @@
+#include "evaluation/campaign/pictures_run.h"
+
+#include <memory>
+#include <utility>
+
+#include "can/bus/mock_bus.h"
+#include "evaluation/drive/simulated_drive.h"
+#include "firmware/runtime/runner.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+/// Time for the cameras to render their first images before the drive begins.
+constexpr Duration kLead = std::chrono::milliseconds(500);
+/// As many frames as 100 ms of bus can hold.
+constexpr size_t kWireCapacity = 4096;
+
+}  // namespace
+
+Status run_pictures(const DriveConfig& config, const Rig& rig, const CycleSink& sink) {
+  auto drive = SimulatedDrive::create(config);
+  if (!drive) return tl::unexpected(drive.error());
+  drivers::VirtualClock clock;
+  const Time drive_start = clock.now() + kLead;
+  can::MockWire wire(kWireCapacity);
+  firmware::Hardware hardware{drive->make_cameras(config, rig, clock, drive_start), wire.connect(),
+                              &clock};
+  auto appliance = firmware::Appliance::create(config, rig, drive->map(), std::move(hardware));
+  if (!appliance) return tl::unexpected(appliance.error());
+  SimulatedVehicle vehicle(*drive, config.simulation->seed, config.can.base_ids, wire.connect(),
+                           drive_start);
+  CycleReader reader(
+      wire.connect(), config.can.base_ids, drive->map().origin,
+      [&drive](double time_s) { return drive->truth_at(time_s); }, drive_start);
+  const firmware::Companion companion{[&vehicle] { return vehicle.next_due(); },
+                                      [&vehicle](Time now) { vehicle.send_due(now); },
+                                      [&](Duration) {
+                                        const JudgedCycle cycle = reader.step(clock.now());
+                                        if (cycle.time_s >= 0.0) sink(cycle);
+                                      }};
+  const double duration_s = config.simulation->duration_s;
+  firmware::run_lockstep(**appliance, clock, &companion,
+                         [&](Time now) { return to_seconds(now - drive_start) < duration_s; });
+  return {};
+}
+
+}  // namespace bevloc::evaluation

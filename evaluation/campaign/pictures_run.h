@@ -1,0 +1,15 @@
+// One run on the pictures level: the whole appliance in lockstep, with mock cameras.
+#pragma once
+
+#include "common/result.h"
+#include "evaluation/campaign/stage_run.h"
+#include "evaluation/drive/drive_config.h"
+#include "pipeline/calibration/rig.h"
+
+namespace bevloc::evaluation {
+
+/// Drives through the world of `config.simulation` (which must be set) with its faults, and calls
+/// `sink` after each bus cycle. Fails if the world or the appliance cannot be made.
+Status run_pictures(const DriveConfig& config, const Rig& rig, const CycleSink& sink);
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,85 @@
+// What one run of the campaign shows: detection, poses beyond the alert limits, honesty, recovery.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "evaluation/campaign/cycle_reader.h"
+
+namespace bevloc::evaluation {
+
+/// When the fault of a run is present, in seconds of the drive.
+struct FaultTime {
+  double from_s = 0.0;
+  double until_s = 0.0;  ///< may lie beyond the end of the drive
+};
+
+/// A change of the state or of the reasons.
+struct TimelineEntry {
+  double time_s = 0.0;
+  HealthState state = HealthState::kInit;
+  WhyMask why;
+};
+
+/// Numbers of valid poses, per axis: longitudinal, lateral, yaw.
+using PoseCounts = std::array<uint64_t, 3>;
+
+struct RunOutcome {
+  uint64_t cycles = 0;        ///< since the first valid pose
+  uint64_t valid = 0;         ///< cycles with a valid pose
+  uint64_t beyond_alert = 0;  ///< valid poses beyond an alert limit
+  uint64_t beyond_after = 0;  ///< of those, how many since the start of the fault
+  Eigen::Vector3d worst = Eigen::Vector3d::Zero();  ///< largest absolute errors of valid poses
+  std::array<PoseCounts, 3> within_sigma{};         ///< [k]: errors within k + 1 sigmas
+  PoseCounts with_level{};                          ///< poses with a protection level
+  PoseCounts misleading{};                          ///< of those: beyond the protection level
+  PoseCounts hazardous{};                           ///< of those: beyond the alert limit too
+  PoseCounts available{};             ///< poses with a protection level under the alert limit
+  int false_lost = 0;                 ///< how often a valid pose was lost before the fault
+  int lost = 0;                       ///< how often in all
+  double first_fix_s = -1.0;          ///< the first valid pose; negative if there was none
+  std::string detected_by;            ///< why bits, "not valid" or "never valid"; or empty
+  std::optional<double> detection_s;  ///< since the start of the fault
+  std::optional<double> recovery_s;   ///< since the end of the fault
+  std::vector<TimelineEntry> timeline;
+
+  double valid_share() const;
+  double beyond_alert_s() const;
+};
+
+/// Judges a run cycle by cycle. One thread.
+class RunJudge {
+ public:
+  /// `named_by`: the why bits that name this fault. The fault counts as detected when one of them
+  /// is set that was not set when the fault began, or when a pose that was valid is not any more.
+  RunJudge(const FaultTime& fault, WhyMask named_by);
+
+  void add(const JudgedCycle& cycle);
+
+  /// To be called after the last cycle.
+  RunOutcome outcome() const;
+
+ private:
+  void note_state(const JudgedCycle& cycle);
+  void note_pose(const JudgedCycle& cycle);
+  void note_detection(const JudgedCycle& cycle);
+  void note_recovery(const JudgedCycle& cycle);
+
+  FaultTime fault_;
+  WhyMask named_by_;
+  RunOutcome outcome_;
+  WhyMask why_before_;  ///< set since before the fault without a break
+  bool has_cycle_ = false;
+  bool was_valid_ = false;
+  std::optional<double> good_since_s_;  ///< since when, after the fault, the pose has been right
+};
+
+/// The names of the why bits as in the CAN message, without "Why_"; joined with "+".
+std::string names_of(WhyMask why);
+
+}  // namespace bevloc::evaluation

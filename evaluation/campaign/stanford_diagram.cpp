@@ -1,0 +1,102 @@
+#include "evaluation/campaign/stanford_diagram.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/campaign/alert_limits.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr std::array<const char*, 3> kAxisNames = {"longitudinal", "lateral", "yaw"};
+constexpr std::array<const char*, 3> kAxisUnits = {"m", "m", "deg"};
+
+int bin_of(double value, double limit) {
+  const double bin = StanfordDiagram::kBinsPerLimit * value / limit;
+  return static_cast<int>(std::min(bin, StanfordDiagram::kBins - 1.0));
+}
+
+double in_unit(int axis, double value) {
+  return axis == 2 ? degrees(value) : value;
+}
+
+double share(uint64_t part, uint64_t all) {
+  return all == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(all);
+}
+
+nlohmann::json json_of_axis(const StanfordDiagram& diagram, int axis) {
+  const StanfordDiagram::Axis& counted = diagram.axis(axis);
+  const double limit = in_unit(axis, kFreewayAlertLimits(axis));
+  nlohmann::json object;
+  object["axis"] = kAxisNames[static_cast<size_t>(axis)];
+  object["unit"] = kAxisUnits[static_cast<size_t>(axis)];
+  object["alert_limit"] = limit;
+  object["bin"] = limit / StanfordDiagram::kBinsPerLimit;
+  object["bins"] = StanfordDiagram::kBins;
+  object["counts"] = counted.counts;
+  object["with_protection_level"] = counted.with_level;
+  object["misleading"] = counted.misleading;
+  object["misleading_share"] = share(counted.misleading, counted.with_level);
+  object["hazardous"] = counted.hazardous;
+  object["hazardous_share"] = share(counted.hazardous, counted.with_level);
+  object["available_share"] = share(counted.available, diagram.cycles());
+  object["worst_excess"] = in_unit(axis, counted.worst_excess);
+  return object;
+}
+
+}  // namespace
+
+void StanfordDiagram::add(const JudgedCycle& cycle) {
+  ++cycles_;
+  if (!cycle.pose) return;
+  ++valid_;
+  for (int i = 0; i < 3; ++i) {
+    const double error = std::abs(cycle.pose->error(i));
+    const double level = cycle.pose->protection(i);
+    if (!std::isfinite(level)) continue;
+    const double limit = kFreewayAlertLimits(i);
+    Axis& axis = axes_[static_cast<size_t>(i)];
+    ++axis.with_level;
+    ++axis.counts[static_cast<size_t>(bin_of(level, limit) * kBins + bin_of(error, limit))];
+    if (level < limit) ++axis.available;
+    if (error <= level) continue;
+    ++axis.misleading;
+    if (error > limit) ++axis.hazardous;
+    axis.worst_excess = std::max(axis.worst_excess, error - level);
+  }
+}
+
+std::string to_table(const std::vector<NamedDiagram>& diagrams) {
+  std::string text =
+      "| drives | axis | valid poses | misleading | hazardous | protection level under the alert "
+      "limit |\n|---|---|---:|---:|---:|---:|\n";
+  for (const NamedDiagram& named : diagrams) {
+    for (int i = 0; i < 3; ++i) {
+      const StanfordDiagram::Axis& axis = named.diagram.axis(i);
+      text += fmt::format("| {} | {} | {} | {} ({:.1e}) | {} ({:.1e}) | {:.1f} % |\n", named.name,
+                          kAxisNames[static_cast<size_t>(i)], named.diagram.valid(),
+                          axis.misleading, share(axis.misleading, axis.with_level), axis.hazardous,
+                          share(axis.hazardous, axis.with_level),
+                          100.0 * share(axis.available, named.diagram.cycles()));
+    }
+  }
+  return text;
+}
+
+std::string to_json(const std::vector<NamedDiagram>& diagrams) {
+  nlohmann::json array = nlohmann::json::array();
+  for (const NamedDiagram& named : diagrams) {
+    nlohmann::json object;
+    object["name"] = named.name;
+    object["cycles"] = named.diagram.cycles();
+    object["valid_poses"] = named.diagram.valid();
+    for (int i = 0; i < 3; ++i) object["axes"].push_back(json_of_axis(named.diagram, i));
+    array.push_back(std::move(object));
+  }
+  return array.dump() + "\n";
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,52 @@
+// The Stanford diagram: how often poses had which error at which protection level.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "evaluation/campaign/cycle_reader.h"
+
+namespace bevloc::evaluation {
+
+/// Counts of valid poses. One thread.
+class StanfordDiagram {
+ public:
+  /// Along error and protection level: 60 bins of a twentieth of the alert limit; what is larger
+  /// than three alert limits counts in the last one.
+  static constexpr int kBins = 60;
+  static constexpr double kBinsPerLimit = 20.0;
+
+  struct Axis {
+    std::array<uint64_t, kBins * kBins> counts{};  ///< [protection level, error]
+    uint64_t with_level = 0;                       ///< poses with a protection level
+    uint64_t misleading = 0;                       ///< beyond the protection level
+    uint64_t hazardous = 0;                        ///< and beyond the alert limit
+    uint64_t available = 0;                        ///< protection level under the alert limit
+    double worst_excess = 0.0;  ///< largest error beyond the protection level, m or rad
+  };
+
+  /// Takes a cycle after the first valid pose of its drive.
+  void add(const JudgedCycle& cycle);
+
+  uint64_t cycles() const { return cycles_; }
+  uint64_t valid() const { return valid_; }
+  const Axis& axis(int i) const { return axes_[static_cast<size_t>(i)]; }
+
+ private:
+  uint64_t cycles_ = 0;
+  uint64_t valid_ = 0;
+  std::array<Axis, 3> axes_;  ///< longitudinal, lateral, yaw
+};
+
+/// A diagram with its name, such as "no fault".
+struct NamedDiagram {
+  std::string name;
+  StanfordDiagram diagram;
+};
+
+std::string to_table(const std::vector<NamedDiagram>& diagrams);
+std::string to_json(const std::vector<NamedDiagram>& diagrams);
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,106 @@
+"""One table of docs/integrity.md: one line per mode, with its worst seed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Optional, TypedDict
+
+HEAD = (
+    "| mode | what goes wrong | detected by | after, s | valid beyond the alert limits, s "
+    "| worst error, m / m / deg | recovered after, s | valid | |\n"
+    "|---|---|---|---:|---:|---:|---:|---:|---|\n"
+)
+
+
+class Row(TypedDict):
+    """One run (evaluation/campaign/campaign_report.cpp); only what the table shows."""
+
+    mode: str
+    what: str
+    seed: int
+    detected_by: Optional[str]
+    detection_s: Optional[float]
+    valid_beyond_alert_s: float
+    limit_s: float
+    worst: list[float]
+    fault_ends: bool
+    recovery_s: Optional[float]
+    valid_share: float
+
+
+def in_seconds(values: list[Optional[float]], runs: int) -> str:
+    """The median and the largest; and in how many of the runs there is none."""
+    known = sorted(value for value in values if value is not None)
+    if not known:
+        return "-"
+    text = f"{known[len(known) // 2]:.2f}"
+    if len(known) > 1:
+        text += f" to {known[-1]:.2f}"
+    return text if len(known) == runs else f"{text} in {len(known)} of {runs}"
+
+
+def most_common(names: list[Optional[str]]) -> str:
+    counts = Counter(name for name in names if name)
+    return ", ".join(name for name, _ in counts.most_common(2)) or "-"
+
+
+def line_of(rows: list[Row]) -> str:
+    """The line of one mode."""
+    runs = len(rows)
+    beyond = max(row["valid_beyond_alert_s"] for row in rows)
+    worst = [max(row["worst"][axis] for row in rows) for axis in range(3)]
+    valid = 100 * sum(row["valid_share"] for row in rows) / runs
+    ends = rows[0]["fault_ends"]
+    has_fault = rows[0]["mode"] != "none"
+    cells = [
+        f"`{rows[0]['mode']}`",
+        rows[0]["what"],
+        most_common([row["detected_by"] for row in rows]),
+        in_seconds([row["detection_s"] for row in rows], runs) if has_fault else "",
+        f"{beyond:.2f}",
+        " / ".join(f"{value:.2f}" for value in worst),
+        in_seconds([row["recovery_s"] for row in rows], runs) if ends else "",
+        f"{valid:.1f} %",
+        "" if beyond <= rows[0]["limit_s"] else f"**fails** ({rows[0]['limit_s']:g} s allowed)",
+    ]
+    return "| " + " | ".join(cells) + " |\n"
+
+
+def markdown(rows: list[Row]) -> str:
+    by_mode: dict[str, list[Row]] = {}
+    for row in rows:
+        by_mode.setdefault(row["mode"], []).append(row)
+    return HEAD + "".join(line_of(of_mode) for of_mode in by_mode.values())
+
+
+def marks(level: str) -> tuple[str, str]:
+    return f"<!-- campaign {level} -->\n", f"<!-- end of campaign {level} -->\n"
+
+
+def write(page: Path, level: str, command: str, text: str) -> None:
+    """Replaces what lies between the marks of the level."""
+    begin, end = marks(level)
+    old = page.read_text()
+    before, _, rest = old.partition(begin)
+    _, found, after = rest.partition(end)
+    if not found:
+        raise SystemExit(f"{page}: found no '{begin.strip()}' with its end, wanted both marks")
+    page.write_text(f"{before}{begin}\n    {command}\n\n{text}\n{end}{after}")
+
+
+def command_line(
+    level: str,
+    seeds: int,
+    first_seed: int,
+    duration_s: float,
+    modes: Optional[list[str]],
+    maps: list[Path],
+) -> str:
+    words = [f"script/campaign --level {level} --seeds {seeds} --first-seed {first_seed}"]
+    words.append(f"--duration {duration_s:g} --update")
+    if maps:
+        words.append("--map " + " ".join(path.name for path in maps))
+    if modes:
+        words.append("--modes " + " ".join(modes))
+    return " ".join(words)

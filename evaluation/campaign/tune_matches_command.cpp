@@ -1,0 +1,64 @@
+#include "evaluation/campaign/tune_matches_command.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "common/files.h"
+#include "evaluation/campaign/match_recorder.h"
+#include "evaluation/command_output.h"
+#include "pipeline/calibration/rig_yaml.h"
+
+namespace bevloc::evaluation {
+
+void TuneMatchesCommand::declare(CLI::App& tune) {
+  auto* matches = tune.add_subcommand(
+      "matches", "Measure matches on simulated pictures, for `bevloc campaign --level stage`");
+  matches->add_option("--config", config_, "Configuration with mock cameras")
+      ->capture_default_str();
+  matches->add_option("--drives", drives_, "Number of drives")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  matches->add_option("--first-seed", first_seed_, "Seed of the first drive")
+      ->capture_default_str();
+  matches->add_option("--duration", duration_s_, "Length of each drive, seconds")
+      ->check(CLI::Range(1.0, 3600.0))
+      ->capture_default_str();
+  matches->add_option("--map", maps_, "Every second drive goes through one of these maps, in turn");
+  matches->add_option("--csv", csv_file_, "File to write")->required();
+  matches->callback([this] { chosen_ = true; });
+}
+
+Status TuneMatchesCommand::run() const {
+  spdlog::set_level(spdlog::level::warn);
+  auto config = load_drive_config(config_);
+  if (!config) return tl::unexpected(config.error());
+  if (!config->simulation) {
+    return fail("{}: found cameras that are not mock, wanted mock ones", config_);
+  }
+  const auto rig = read_rig(config->rig_file);
+  if (!rig) return tl::unexpected(rig.error());
+  config->simulation->duration_s = duration_s_;
+  MatchTable table;
+  const auto seconds = static_cast<int>(duration_s_);
+  for (int drive = 0; drive < drives_; ++drive) {
+    config->simulation->seed = first_seed_ + static_cast<uint64_t>(drive);
+    config->simulation->town_seed = config->simulation->seed;
+    if (!maps_.empty() && drive % 2 == 1) {
+      config->simulation->town_seed.reset();
+      config->map_file = maps_[static_cast<size_t>(drive) / 2 % maps_.size()];
+    }
+    auto places = record_matches(*config, *rig, drive, [&](double time_s) {
+      show_progress(drive * seconds + static_cast<int>(time_s) + 1, drives_ * seconds,
+                    "seconds of driving");
+    });
+    if (!places) return tl::unexpected(places.error());
+    std::ranges::move(*places, std::back_inserter(table.places));
+    if (Status status = write_file(to_csv(table), csv_file_); !status) return status;
+  }
+  return {};
+}
+
+}  // namespace bevloc::evaluation

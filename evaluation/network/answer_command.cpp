@@ -1,0 +1,57 @@
+#include "evaluation/network/answer_command.h"
+
+#include <filesystem>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <onnx/onnx_pb.h>
+
+#include "common/files.h"
+#include "pipeline/network/test_frame.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+void set_metadata(onnx::ModelProto& model, std::string_view key, const std::string& value) {
+  onnx::StringStringEntryProto* entry = nullptr;
+  for (auto& known : *model.mutable_metadata_props()) {
+    if (known.key() == key) entry = &known;
+  }
+  if (entry == nullptr) entry = model.add_metadata_props();
+  entry->set_key(std::string(key));
+  entry->set_value(value);
+}
+
+}  // namespace
+
+Status store_answer(const std::string& model) {
+  const auto network = Network::load(model, {});
+  if (!network) return tl::unexpected(network.error());
+  const auto bytes = read_file(model);
+  if (!bytes) return tl::unexpected(bytes.error());
+  onnx::ModelProto proto;
+  if (!proto.ParseFromString(*bytes)) return fail("{}: is not a complete ONNX file", model);
+  set_metadata(proto, kAnswerKey, to_text(answer_to_test_frame(**network)));
+  const std::string written = model + ".new";
+  if (Status status = bevloc::write_file(written, proto.SerializeAsString()); !status) return status;
+  std::error_code error;
+  std::filesystem::rename(written, model, error);
+  if (error) return fail("{}: cannot replace this file ({})", model, error.message());
+  return {};
+}
+
+void AnswerCommand::declare(CLI::App& app) {
+  auto* answer = app.add_subcommand(
+      "store-answer",
+      "Store a model's answer to the test frame, which bevlocd checks, in its file");
+  answer->add_option("model", model_, "ONNX file")->capture_default_str();
+  answer->callback([this] { chosen_ = true; });
+}
+
+Status AnswerCommand::run() const {
+  Status status = store_answer(model_);
+  if (status) fmt::print("{}: stored the answer to the test frame\n", model_);
+  return status;
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,146 @@
+#include "pipeline/calibration/rig_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "common/se2.h"
+
+namespace bevloc {
+namespace {
+
+constexpr std::string_view kRotationKey = "rotation_wxyz";
+
+/// The direction of each camera's name, to the left of the vehicle's x axis.
+constexpr std::array<double, kCameraCount> kNamedAzimuthDeg = {60, 0, -60, 120, 180, -120};
+/// The cameras from right to left: back_right, front_right, front, front_left, back_left, back.
+constexpr std::array<int, kCameraCount> kRightToLeft = {5, 2, 1, 0, 3, 4};
+
+double azimuth_deg(const CameraModel& camera) {
+  const Eigen::Vector3d axis = camera.vehicle_from_camera.rotation.col(2);
+  return degrees(std::atan2(axis.y(), axis.x()));
+}
+
+/// The angle of least magnitude that differs by full turns.
+double turned_deg(double angle_deg) {
+  return std::remainder(angle_deg, 360.0);
+}
+
+/// Whether every pixel has its own ray: each must project back to its pixel, and to the right and
+/// below of it must lie rays to the right and below.
+bool is_one_to_one(const Intrinsics& camera) {
+  constexpr int kSteps = 16;
+  constexpr double kTolerancePx = 0.01;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      const Eigen::Vector2d pixel((camera.width_px - 1.0) * i / kSteps,
+                                  (camera.height_px - 1.0) * j / kSteps);
+      const Eigen::Vector3d ray = camera.ray(pixel);
+      const auto again = camera.project(ray);
+      if (!again || !((*again - pixel).norm() < kTolerancePx)) return false;
+      Eigen::Matrix2d change;
+      change.col(0) = (camera.ray(pixel + Eigen::Vector2d::UnitX()) - ray).head<2>();
+      change.col(1) = (camera.ray(pixel + Eigen::Vector2d::UnitY()) - ray).head<2>();
+      if (!(change.determinant() > 0.0)) return false;
+    }
+  }
+  return true;
+}
+
+std::optional<RigMistake> find_in_intrinsics(int index, const Intrinsics& camera) {
+  constexpr double kLeast = 0.05;
+  constexpr double kMost = 6.0;
+  for (const auto& [key, focal_px] :
+       {std::pair("fx_px", camera.fx_px), std::pair("fy_px", camera.fy_px)}) {
+    if (focal_px >= kLeast * camera.width_px && focal_px <= kMost * camera.width_px) continue;
+    return RigMistake{
+        index, false, key, fmt::format("a focal length of {:g} pixels", focal_px),
+        fmt::format("{:g} to {:g} for an image of {} columns", kLeast * camera.width_px,
+                    kMost * camera.width_px, camera.width_px)};
+  }
+  if (const double ratio = camera.fy_px / camera.fx_px; ratio < 0.5 || ratio > 2.0) {
+    return RigMistake{index, false, "fy_px", fmt::format("{:g} times fx_px", ratio),
+                      "0.5 to 2 times fx_px"};
+  }
+  if (is_one_to_one(camera)) return std::nullopt;
+  return RigMistake{index, false, "distortion",
+                    "a distortion that is not monotonic within the image",
+                    "one that gives every pixel its own ray"};
+}
+
+std::optional<RigMistake> find_in_mounting(int index, const Se3& vehicle_from_camera) {
+  constexpr double kLowest_m = 0.1;
+  constexpr double kHighest_m = 6.0;
+  constexpr double kMostUp_deg = 30.0;
+  constexpr double kMostDown_deg = 60.0;
+  constexpr double kMostRoll_deg = 15.0;
+  const double height_m = vehicle_from_camera.translation_m.z();
+  if (!(height_m >= kLowest_m && height_m <= kHighest_m)) {
+    return RigMistake{index, true, "translation_m",
+                      fmt::format("a camera {:g} m above the ground", height_m),
+                      fmt::format("{:g} to {:g} m", kLowest_m, kHighest_m)};
+  }
+  const Eigen::Matrix3d& rotation = vehicle_from_camera.rotation;
+  const double up_deg = degrees(std::asin(std::clamp(rotation(2, 2), -1.0, 1.0)));
+  if (!(up_deg >= -kMostDown_deg && up_deg <= kMostUp_deg)) {
+    return RigMistake{index, true, std::string(kRotationKey),
+                      fmt::format("an optical axis {:.1f} degrees above the horizon", up_deg),
+                      fmt::format("{:g} to {:g} degrees", -kMostDown_deg, kMostUp_deg)};
+  }
+  // 0 if the camera's x axis is level and its y axis points down.
+  const double roll_deg = degrees(std::atan2(rotation(2, 0), -rotation(2, 1)));
+  if (!(std::abs(roll_deg) <= kMostRoll_deg)) {
+    return RigMistake{
+        index, true, std::string(kRotationKey),
+        fmt::format("a camera rolled by {:.1f} degrees about its optical axis", roll_deg),
+        fmt::format("a roll of at most {:g} degrees", kMostRoll_deg)};
+  }
+  return std::nullopt;
+}
+
+std::optional<RigMistake> find_in_direction(int index, const CameraModel& camera) {
+  constexpr double kTolerance_deg = 55.0;
+  const double found_deg = azimuth_deg(camera);
+  const double named_deg = kNamedAzimuthDeg[index];
+  if (std::abs(turned_deg(found_deg - named_deg)) <= kTolerance_deg) return std::nullopt;
+  return RigMistake{
+      index, true, std::string(kRotationKey),
+      fmt::format("an optical axis {:.1f} degrees to the left of forward", found_deg),
+      fmt::format("{:g} to {:g} degrees for a camera named {}", named_deg - kTolerance_deg,
+                  named_deg + kTolerance_deg, kCameraNames[index])};
+}
+
+std::optional<RigMistake> find_in_order(const Rig& rig) {
+  constexpr double kLeastApart_deg = 10.0;
+  for (size_t i = 0; i < kRightToLeft.size(); ++i) {
+    const int right = kRightToLeft[i];
+    const int left = kRightToLeft[(i + 1) % kRightToLeft.size()];
+    const double right_deg = azimuth_deg(rig.cameras[right]);
+    const double left_deg = azimuth_deg(rig.cameras[left]);
+    if (turned_deg(left_deg - right_deg) >= kLeastApart_deg) continue;
+    return RigMistake{
+        left, true, std::string(kRotationKey),
+        fmt::format("optical axes {:.1f} degrees ({}) and {:.1f} degrees ({}) to the left of "
+                    "forward",
+                    left_deg, kCameraNames[left], right_deg, kCameraNames[right]),
+        fmt::format("{} at least {:g} degrees to the left of {}", kCameraNames[left],
+                    kLeastApart_deg, kCameraNames[right])};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<RigMistake> find_mistake(const Rig& rig) {
+  for (int i = 0; i < kCameraCount; ++i) {
+    const CameraModel& camera = rig.cameras[i];
+    if (auto mistake = find_in_intrinsics(i, camera.intrinsics)) return mistake;
+    if (auto mistake = find_in_mounting(i, camera.vehicle_from_camera)) return mistake;
+    if (auto mistake = find_in_direction(i, camera)) return mistake;
+  }
+  return find_in_order(rig);
+}
+
+}  // namespace bevloc

@@ -1,0 +1,48 @@
+#include "pipeline/map/map_check.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace bevloc {
+namespace {
+
+Status check_polyline(const std::vector<Eigen::Vector2d>& points, std::string_view what,
+                      size_t index, const std::string& file) {
+  double length_m = 0.0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    // Not finite numbers fail this comparison, too.
+    if (!(points[i].cwiseAbs().maxCoeff() <= kFarthestFromOriginM)) {
+      return fail("{}: {} {}: found a point ({:g}, {:g}) m from the origin, wanted at most {:g} m",
+                  file, what, index, points[i].x(), points[i].y(), kFarthestFromOriginM);
+    }
+    if (i > 0) length_m += (points[i] - points[i - 1]).norm();
+  }
+  if (length_m <= kLongestPolylineM) return {};
+  return fail("{}: {} {}: found a line of {:g} m, wanted at most {:g} m", file, what, index,
+              length_m, kLongestPolylineM);
+}
+
+}  // namespace
+
+Status check_map(const HdMap& map, const std::string& file) {
+  const bool has_line = std::ranges::any_of(
+      map.elements, [](const MapElement& element) { return element.points.size() > 1; });
+  if (!has_line) {
+    return fail(
+        "{}: found {} lanes and no line of a divider, crossing or boundary, wanted lines to match",
+        file, map.lanes.size());
+  }
+  for (size_t i = 0; i < map.elements.size(); ++i) {
+    const Status status = check_polyline(map.elements[i].points, "element", i, file);
+    if (!status) return status;
+  }
+  for (size_t i = 0; i < map.lanes.size(); ++i) {
+    const Lane& lane = map.lanes[i];
+    for (const auto* line : {&lane.left, &lane.right, &lane.centerline}) {
+      if (const Status status = check_polyline(*line, "lane", i, file); !status) return status;
+    }
+  }
+  return {};
+}
+
+}  // namespace bevloc

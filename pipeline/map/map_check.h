@@ -1,0 +1,22 @@
+// Whether a vehicle can be localized in a map at all.
+#pragma once
+
+#include <string>
+
+#include "common/result.h"
+#include "pipeline/map/hd_map.h"
+
+namespace bevloc {
+
+/// Points of a map must be this close to its origin along both axes: further away, the tangent
+/// plane no longer fits the earth, and the CAN bus cannot express the position.
+inline constexpr double kFarthestFromOriginM = 100'000.0;
+
+/// The longest polyline. A longer one is a mistake in its coordinates.
+inline constexpr double kLongestPolylineM = 50'000.0;
+
+/// Fails, with `file` in the message, if no element of the map has a line, or if an element or lane
+/// exceeds the limits above or is not finite.
+Status check_map(const HdMap& map, const std::string& file);
+
+}  // namespace bevloc

@@ -1,0 +1,89 @@
+#include "pipeline/network/model/model_rig.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pipeline/network/model/load_error.h"
+#include "pipeline/preprocessing/network_camera.h"
+
+namespace bevloc {
+namespace {
+
+constexpr double kMostRatio = 1.5;
+
+void check_statement(const nn::Graph& graph, const std::string& key, const std::string& wanted) {
+  const auto found = graph.metadata.find(key);
+  if (found == graph.metadata.end() || found->second == wanted) return;
+  nn::refuse("metadata '{}' is '{}', wanted '{}'", key, found->second, wanted);
+}
+
+std::optional<double> positive_number(std::string_view word) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  const bool is_whole = error == std::errc() && end == word.data() + word.size();
+  if (!is_whole || !std::isfinite(number) || number <= 0.0) return std::nullopt;
+  return number;
+}
+
+std::optional<PerCamera> numbers_in(const nn::Graph& graph, const std::string& key) {
+  const auto found = graph.metadata.find(key);
+  if (found == graph.metadata.end()) return std::nullopt;
+  PerCamera numbers{};
+  std::string_view rest = found->second;
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    const bool is_last = i + 1 == numbers.size();
+    const size_t end = is_last ? rest.size() : rest.find(' ');
+    const auto number = end == rest.npos ? std::nullopt : positive_number(rest.substr(0, end));
+    if (!number) {
+      nn::refuse("metadata '{}' is '{}', wanted {} positive numbers", key, found->second,
+                 numbers.size());
+    }
+    numbers[i] = *number;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return numbers;
+}
+
+Status check_camera(std::string_view camera, std::string_view what, double found, double trained) {
+  if (found <= trained * kMostRatio && found * kMostRatio >= trained) return {};
+  return fail(
+      "camera {}: found a {} of {:.3g} in the rig, wanted {:.3g} to {:.3g}, because the model was "
+      "trained with {:.3g}; take the model for this rig, or train one",
+      camera, what, found, trained / kMostRatio, trained * kMostRatio, trained);
+}
+
+}  // namespace
+
+ModelRig read_model_rig(const nn::Graph& graph) {
+  check_statement(graph, "bevloc.rig.cameras", fmt::format("{}", fmt::join(kCameraNames, " ")));
+  check_statement(graph, "bevloc.rig.image_size_px",
+                  fmt::format("{} {}", kNetworkWidthPx, kNetworkHeightPx));
+  return {numbers_in(graph, "bevloc.rig.focal_px"), numbers_in(graph, "bevloc.rig.height_m")};
+}
+
+Status check_rig_fits(const ModelRig& model, const Rig& rig) {
+  for (size_t i = 0; i < kCameraCount; ++i) {
+    const CameraModel camera = network_camera(rig.cameras[i]);
+    if (model.focal_px) {
+      const Status status = check_camera(
+          kCameraNames[i], fmt::format("focal length in pixels of {} columns", kNetworkWidthPx),
+          camera.intrinsics.fx_px, (*model.focal_px)[i]);
+      if (!status) return status;
+    }
+    if (model.height_m) {
+      const Status status =
+          check_camera(kCameraNames[i], "height in metres",
+                       camera.vehicle_from_camera.translation_m.z(), (*model.height_m)[i]);
+      if (!status) return status;
+    }
+  }
+  return {};
+}
+
+}  // namespace bevloc

@@ -1,0 +1,197 @@
+#include "pipeline/tracker/arbiter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bevloc {
+namespace {
+
+/// A match counts as agreeing for this long after it has passed the gate.
+constexpr Duration kMatchLifetime = std::chrono::milliseconds(500);
+/// GNSS samples after the start of a dispute that decide it.
+constexpr size_t kDecidingSamples = 3;
+/// Mean squared distance of GNSS (three degrees of freedom) that confirms dead reckoning, and the
+/// one that refutes it: 90 % and 99.99 % quantiles of single samples.
+constexpr double kConfirms = 6.25;
+constexpr double kRefutes = 21.1;
+/// Refused GNSS samples in a row that exclude GNSS while the match agrees.
+constexpr int kGnssRefusals = 5;
+/// Passes in a row that readmit an excluded voter: one second of matches, two of GNSS.
+constexpr int kMatchPasses = 10;
+constexpr int kGnssPasses = 20;
+/// Weight of a new innovation in the drift, and the limit of the drift in its own standard
+/// deviations. The average of independent innovations has a variance of gain / (2 - gain).
+constexpr double kDriftGain = 0.07;
+constexpr double kDriftLimit = 6.0;
+/// Correlation time of GNSS errors, and the limit for their change: 5 standard deviations.
+constexpr double kGnssCorrelation_s = 40.0;
+constexpr double kGnssMoveLimit = 5.0;
+/// Errors of odometry that OdometryMonitor does not find: of speed and yaw rate at once, and
+/// growing.
+constexpr double kOdometryError_mps = 0.6;
+constexpr double kOdometryError_mps2 = 26.0;
+constexpr double kOdometryError_radps = radians(2.0);
+constexpr double kOdometryError_radps2 = radians(150.0);
+/// How long a verdict against dead reckoning lasts after the last contradiction.
+constexpr Duration kOdometryMemory = std::chrono::seconds(1);
+
+}  // namespace
+
+void Arbiter::Voter::add(Time time, const PoseInnovation& innovation, bool passes_gate) {
+  const Eigen::Vector3d sigma = innovation.covariance.diagonal().cwiseSqrt();
+  drift += kDriftGain * (innovation.error.cwiseQuotient(sigma) - drift);
+  if (passes_gate) {
+    last_passed = time;
+    last_passed_error = innovation.error;
+    ++passed_in_a_row;
+    refused_in_a_row = 0;
+  } else {
+    ++refused_in_a_row;
+    passed_in_a_row = 0;
+  }
+}
+
+bool Arbiter::Voter::drifts() const {
+  static const double sigma = std::sqrt(kDriftGain / (2.0 - kDriftGain));
+  return drift.cwiseAbs().maxCoeff() > kDriftLimit * sigma;
+}
+
+void Arbiter::Voter::readmit_after(int passes) {
+  if (excluded && passed_in_a_row >= passes) {
+    excluded = false;
+    drift.setZero();
+  }
+}
+
+void Arbiter::add_match(Time time, const PoseInnovation& innovation, bool passes_gate) {
+  const bool begins = !passes_gate && match_.refused_in_a_row == 0;
+  if (begins) match_jumped_ = match_jumps(time, innovation);
+  match_.add(time, innovation, passes_gate);
+  if (passes_gate) explained_ = false;
+  if (begins) dispute_since_ = time;
+  if (!passes_gate) dispute_offset_ = innovation.error;
+  match_.readmit_after(kMatchPasses);
+}
+
+/// Whether the match has moved against dead reckoning by more than undetected errors of odometry
+/// explain: OdometryMonitor lets pass what a vehicle can do.
+bool Arbiter::match_jumps(Time time, const PoseInnovation& innovation) const {
+  if (!match_.last_passed) return false;
+  const double elapsed_s = std::abs(to_seconds(time - *match_.last_passed));
+  const double reach_m =
+      kOdometryError_mps * elapsed_s + 0.5 * kOdometryError_mps2 * square_of(elapsed_s);
+  const double reach_rad =
+      kOdometryError_radps * elapsed_s + 0.5 * kOdometryError_radps2 * square_of(elapsed_s);
+  const Eigen::Vector3d reach(reach_m, reach_m, reach_rad);
+  const Eigen::Vector3d noise = 4.0 * innovation.covariance.diagonal().cwiseSqrt();
+  const Eigen::Vector3d jump = (innovation.error - match_.last_passed_error).cwiseAbs();
+  return ((jump - noise - reach).array() > 0.0).any();
+}
+
+void Arbiter::add_gnss(Time time, const PoseInnovation& innovation, bool passes_gate,
+                       const std::optional<Eigen::Vector3d>& gnss_error) {
+  gnss_.add(time, innovation, passes_gate);
+  gnss_records_[gnss_count_++ % kGnssRecords] = {time, innovation.error,
+                                                 innovation.squared_distance};
+  if (!gnss_error) {
+    gnss_error_count_ = 0;
+    gnss_moved_ = false;
+    gnss_.drift.setZero();
+  } else if (!gnss_.excluded) {
+    note_gnss_error(time, *gnss_error);
+  }
+  gnss_.readmit_after(kGnssPasses);
+}
+
+void Arbiter::note_gnss_error(Time time, const Eigen::Vector3d& gnss_error) {
+  if (time < next_gnss_error_) return;
+  next_gnss_error_ = time + std::chrono::seconds(1);
+  gnss_moved_ = false;
+  const size_t known = std::min(gnss_error_count_, kGnssErrors);
+  for (size_t age = 1; age <= known; ++age) {
+    const Eigen::Vector3d& before = gnss_errors_[(gnss_error_count_ - age) % kGnssErrors];
+    const double expected =
+        std::sqrt(2.0 * (1.0 - std::exp(-static_cast<double>(age) / kGnssCorrelation_s)));
+    const double change = (gnss_error - before).cwiseAbs().maxCoeff();
+    gnss_moved_ = gnss_moved_ || change > kGnssMoveLimit * expected + 0.3;
+  }
+  gnss_errors_[gnss_error_count_++ % kGnssErrors] = gnss_error;
+}
+
+bool Arbiter::match_agrees(Time now) const {
+  return match_.refused_in_a_row == 0 && match_.last_passed &&
+         now - *match_.last_passed <= kMatchLifetime && !match_.excluded;
+}
+
+bool Arbiter::gnss_moved() const {
+  return gnss_.refused_in_a_row >= kGnssRefusals || gnss_.drifts() || gnss_moved_;
+}
+
+Verdict Arbiter::judge(Time now, bool trusted) {
+  Verdict verdict;
+  if (match_is_disputed() && !match_.excluded) {
+    decide_dispute(verdict, trusted);
+    if (verdict.odometry_contradicts) odometry_wrong_until_ = now + kOdometryMemory;
+  }
+  if (match_agrees(now) && gnss_moved()) gnss_.excluded = true;
+  if (!match_agrees(now) && !match_is_disputed() && gnss_.refused_in_a_row >= kGnssRefusals &&
+      !gnss_.excluded) {
+    verdict.undecided = true;
+  }
+  if (odometry_wrong_until_ && now < *odometry_wrong_until_) verdict.odometry_contradicts = true;
+  if (match_.excluded) verdict.match_contradicts = true;
+  if (gnss_.excluded) verdict.gnss_contradicts = true;
+  return verdict;
+}
+
+void Arbiter::decide_dispute(Verdict& verdict, bool trusted) {
+  if (explained_) return;
+  if (!trusted) {
+    verdict.undecided = true;
+    return;
+  }
+  if (match_jumped_) {
+    match_.excluded = true;
+    explained_ = true;
+    return;
+  }
+  ask_gnss(verdict);
+}
+
+/// GNSS samples since the start of the dispute decide whether dead reckoning or the match is wrong.
+void Arbiter::ask_gnss(Verdict& verdict) {
+  size_t samples = 0;
+  double squared_distance = 0.0;
+  Eigen::Vector3d error = Eigen::Vector3d::Zero();
+  for (size_t i = 0; i < std::min(gnss_count_, kGnssRecords); ++i) {
+    const GnssRecord& record = gnss_records_[i];
+    if (record.time <= dispute_since_) continue;
+    ++samples;
+    squared_distance += record.squared_distance;
+    error += record.error;
+  }
+  if (samples < kDecidingSamples || gnss_.excluded) {
+    verdict.undecided = true;
+    return;
+  }
+  const auto count = static_cast<double>(samples);
+  squared_distance /= count;
+  error /= count;
+  const bool same_side = error.dot(dispute_offset_) > 0.0;
+  if (squared_distance < kConfirms) {
+    match_.excluded = true;
+    explained_ = true;
+  } else if (squared_distance > kRefutes && same_side) {
+    verdict.odometry_contradicts = true;
+    explained_ = true;
+  } else {
+    verdict.undecided = true;
+  }
+}
+
+std::optional<Eigen::Vector3d> Arbiter::open_dispute() const {
+  if (!match_is_disputed() || match_.excluded) return std::nullopt;
+  return dispute_offset_;
+}
+
+}  // namespace bevloc

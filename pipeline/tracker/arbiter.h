@@ -1,0 +1,113 @@
+// Decides which of the three voters is wrong: the match, GNSS or dead reckoning.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "common/time.h"
+#include "pipeline/tracker/pose_update.h"
+
+namespace bevloc {
+
+/// The arbiter's judgement. At most one of the first three is set.
+struct Verdict {
+  bool match_contradicts = false;     ///< GNSS and dead reckoning agree, the match does not
+  bool gnss_contradicts = false;      ///< match and dead reckoning agree, GNSS does not
+  bool odometry_contradicts = false;  ///< match and GNSS agree, dead reckoning does not
+  bool undecided = false;             ///< two voters disagree, and the third does not decide
+};
+
+/// The filter's prediction is dead reckoning from all that was accepted before. A match or a GNSS
+/// sample that its gate refuses therefore contradicts dead reckoning, and the other one decides
+/// which of the two is wrong. A voter that was found wrong stays excluded until it has agreed with
+/// the filter for a while, so that a wrong place cannot win by patience.
+///
+/// Allocates nothing. One thread.
+class Arbiter {
+ public:
+  /// Adds a match that reached the gate; `time` is its frame time.
+  void add_match(Time time, const PoseInnovation& innovation, bool passes_gate);
+  /// Adds a GNSS sample that reached the gate. `gnss_error`: Tracker::gnss_error(), or nothing
+  /// while the pose is not valid and the error therefore not known.
+  void add_gnss(Time time, const PoseInnovation& innovation, bool passes_gate,
+                const std::optional<Eigen::Vector3d>& gnss_error);
+
+  /// To be called after the measurements of one cycle. `trusted`: the pose has been valid since the
+  /// filter started; before, a refused match says nothing about who is wrong.
+  Verdict judge(Time now, bool trusted);
+
+  /// Whether the filter may use a measurement of this voter.
+  bool trusts_match() const { return !match_.excluded; }
+  bool trusts_gnss() const { return !gnss_.excluded; }
+
+  /// Whether the innovations of the match lean to one side: dead reckoning or the match drifts.
+  bool match_drifts() const { return match_.drifts(); }
+  void forget_match_drift() { match_.drift.setZero(); }
+
+  int matches_refused_in_a_row() const { return match_.refused_in_a_row; }
+
+  /// While a refused match is unexplained: its offset from the estimate in the vehicle frame (m, m,
+  /// rad). The pose may be wrong by as much.
+  std::optional<Eigen::Vector3d> open_dispute() const;
+
+  /// Forgets everything, after the filter has started again.
+  void reset() { *this = Arbiter(); }
+
+ private:
+  /// The record of one voter.
+  struct Voter {
+    int refused_in_a_row = 0;
+    int passed_in_a_row = 0;
+    std::optional<Time> last_passed;
+    Eigen::Vector3d last_passed_error = Eigen::Vector3d::Zero();
+    bool excluded = false;
+    /// Moving average of the innovations in their standard deviations, per axis. Near zero unless
+    /// the voter drifts against the filter.
+    Eigen::Vector3d drift = Eigen::Vector3d::Zero();
+
+    void add(Time time, const PoseInnovation& innovation, bool passes_gate);
+    bool drifts() const;
+    /// Ends the exclusion after enough passes in a row.
+    void readmit_after(int passes);
+  };
+
+  /// A recent GNSS sample.
+  struct GnssRecord {
+    Time time;
+    Eigen::Vector3d error;
+    double squared_distance = 0.0;
+  };
+
+  static constexpr int kDisputingRefusals = 3;
+
+  bool match_is_disputed() const { return match_.refused_in_a_row >= kDisputingRefusals; }
+  bool match_agrees(Time now) const;
+  bool gnss_moved() const;
+  bool match_jumps(Time time, const PoseInnovation& innovation) const;
+  void decide_dispute(Verdict& verdict, bool trusted);
+  void ask_gnss(Verdict& verdict);
+  void note_gnss_error(Time time, const Eigen::Vector3d& gnss_error);
+
+  static constexpr size_t kGnssRecords = 8;
+  static constexpr size_t kGnssErrors = 20;
+
+  Voter match_;
+  Voter gnss_;
+  Time dispute_since_;
+  Eigen::Vector3d dispute_offset_ = Eigen::Vector3d::Zero();
+  bool match_jumped_ = false;  ///< the dispute began with a jump that no vehicle can make
+  bool explained_ = false;     ///< the open dispute has a verdict
+  std::array<GnssRecord, kGnssRecords> gnss_records_{};
+  size_t gnss_count_ = 0;
+  /// GNSS errors of the last seconds, one per second.
+  std::array<Eigen::Vector3d, kGnssErrors> gnss_errors_{};
+  size_t gnss_error_count_ = 0;
+  Time next_gnss_error_ = Time::min();
+  bool gnss_moved_ = false;
+  std::optional<Time> odometry_wrong_until_;
+};
+
+}  // namespace bevloc

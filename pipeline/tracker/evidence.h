@@ -1,0 +1,57 @@
+// Decides what a match confirms: only what was really seen counts.
+#pragma once
+
+#include "pipeline/solver/solver_result.h"
+
+namespace bevloc {
+
+/// Limits of what counts as seen. The scores are those of the shipped network (docs/solver.md).
+struct EvidenceLimits {
+  /// Largest probability near the border of the search range. With more of it the truth may lie
+  /// outside, and the answer on this axis is worth nothing.
+  double max_edge_mass = 0.25;
+  /// The match must have removed this share of the variance of the search range.
+  double min_share = 0.5;
+  /// A second peak this high means two places that look alike.
+  double max_rival_peak = 0.7;
+  /// Mean score of the recent matches that confirms the place.
+  double min_score = 0.20;
+  /// Below this score of an axis its answer often belongs to another place along the axis, and its
+  /// standard deviation grows in proportion.
+  double good_axis_score = 0.12;
+  double max_growth = 4.0;
+};
+
+/// What one match confirms.
+struct Seen {
+  bool across = false;
+  bool heading = false;
+  bool unique = false;   ///< no other place in the search range looks alike across the road
+  bool place = false;    ///< perceived and mapped lines lie on each other (mean score)
+  bool at_edge = false;  ///< the truth may lie outside the search range, on any axis
+
+  /// Confirms a pose that is already trusted. Along the road and of the heading there is often
+  /// nothing to see for seconds; dead reckoning then carries the pose, and its sigma grows.
+  bool confirms() const { return across && place; }
+  /// Confirms a new pose.
+  bool confirms_start() const { return confirms() && heading && unique; }
+};
+
+/// Keeps the mean score of the recent matches. Allocates nothing. One thread.
+class EvidenceMonitor {
+ public:
+  explicit EvidenceMonitor(const EvidenceLimits& limits = {}) : limits_(limits) {}
+
+  /// Judges a match. Takes the evidence from each axis of `match` whose answer is near the border,
+  /// and widens each axis with a low score.
+  Seen judge(MatchResult& match);
+
+  double mean_score() const { return mean_score_; }
+  void reset() { mean_score_ = 0.0; }
+
+ private:
+  EvidenceLimits limits_;
+  double mean_score_ = 0.0;
+};
+
+}  // namespace bevloc

@@ -1,0 +1,39 @@
+// Converts GNSS samples and matches to the pose measurements of the filter.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "pipeline/solver/solver_result.h"
+#include "pipeline/tracker/gnss_pose.h"
+#include "pipeline/tracker/pose_update.h"
+
+namespace bevloc {
+
+/// How the errors of matches and GNSS divide into noise and a correlated part.
+struct MeasurementModel {
+  /// Share of a match's variance that is correlated over distance: (x, y, yaw).
+  Eigen::Vector3d match_correlated_share{0.7, 0.8, 0.5};
+  /// Standard deviations that are added to the correlated part of every match, because calibration
+  /// and map have errors that the solver cannot see: (x m, y m, yaw rad).
+  Eigen::Vector3d match_floor{0.05, 0.08, radians(0.08)};
+  /// Share of a GNSS sample's variance that is correlated over time.
+  double gnss_correlated_share = 0.9;
+  /// A receiver that reports smaller sigmas is not trusted more.
+  double gnss_min_position_sigma_m = 0.3;
+  double gnss_min_yaw_sigma_rad = radians(0.3);
+
+  bool operator==(const MeasurementModel&) const = default;
+};
+
+/// A sample without yaw gets a standard deviation of yaw that changes no estimate. `correlated`:
+/// whether consecutive errors of GNSS are correlated at all.
+PoseMeasurement measurement_from(const GnssPose& gnss, const MeasurementModel& model,
+                                 bool correlated);
+
+/// The pose prior * result.correction. `correlated`: as above, per axis. An axis without
+/// evidence gets a standard deviation that is 100 times as large.
+PoseMeasurement measurement_from(const Se2& prior, const MatchResult& result,
+                                 const MeasurementModel& model,
+                                 const Eigen::Array<bool, 3, 1>& correlated);
+
+}  // namespace bevloc

@@ -1,0 +1,139 @@
+#include "pipeline/tracker/pose_estimator.h"
+
+#include <cmath>
+
+namespace bevloc {
+namespace {
+
+/// Largest GNSS errors (along, across, yaw), in standard deviations, with which the pose may become
+/// valid. Across is the smallest, because lanes look alike.
+constexpr double kConfirmingAlong = 3.0;
+constexpr double kConfirmingAcross = 2.5;
+constexpr double kConfirmingYaw = 3.0;
+/// A GNSS error beyond this refutes the pose: one in 150,000 independent errors per axis.
+constexpr double kRefuting = 4.5;
+/// Refused GNSS samples in a row, without a match, after which the pose starts again.
+constexpr int kRefusalsToRestart = 15;
+/// Refused matches in a row after which a pose that was never valid starts again.
+constexpr int kRefusalsToStartAgain = 5;
+constexpr Duration kMatchAbsence = std::chrono::seconds(1);
+/// A GNSS sample older than this says nothing about the pose.
+constexpr Duration kGnssLifetime = std::chrono::seconds(2);
+
+bool reached_the_gate(TrackerUpdate update) {
+  return update == TrackerUpdate::kAccepted || update == TrackerUpdate::kGated;
+}
+
+}  // namespace
+
+TrackerUpdate PoseEstimator::add(const VehicleSample& sample) {
+  if (const auto* gnss = std::get_if<GnssSample>(&sample)) return add_gnss(*gnss);
+  const OdometrySample& odometry = std::get<OdometrySample>(sample);
+  if (!odometry_monitor_.accept(odometry)) return TrackerUpdate::kImplausible;
+  return tracker_.add_odometry(odometry);
+}
+
+TrackerUpdate PoseEstimator::add_gnss(const GnssSample& sample) {
+  const bool had_pose = tracker_.is_initialised();
+  const bool trusted = arbiter_.trusts_gnss();
+  const TrackerUpdate update = tracker_.add_gnss(sample, trusted ? Trust::kUse : Trust::kExamine);
+  if (update == TrackerUpdate::kAccepted && trusted) {
+    const GnssPose gnss = gnss_pose(sample);
+    gnss_passed_ = sample.time;
+    gnss_sigma_ << gnss.position_sigma_m, gnss.position_sigma_m, gnss.yaw_sigma_rad;
+  }
+  if (!had_pose || !reached_the_gate(update)) return update;
+  const bool passes = update == TrackerUpdate::kAccepted;
+  std::optional<Eigen::Vector3d> error;
+  if (pose_valid_) error = tracker_.gnss_error();
+  arbiter_.add_gnss(sample.time, tracker_.latest_innovation(), passes, error);
+  gnss_refused_in_a_row_ = passes ? 0 : gnss_refused_in_a_row_ + 1;
+  return update;
+}
+
+PoseEstimator::MatchOutcome PoseEstimator::add_match(Time frame_time, const Se2& prior,
+                                                     const MatchResult& match) {
+  MatchResult judged = match;
+  MatchOutcome outcome;
+  outcome.seen = evidence_.judge(judged);
+  if (!outcome.seen.place) return outcome;
+  const bool trusted = arbiter_.trusts_match();
+  outcome.update =
+      tracker_.add_correction(frame_time, prior, judged, trusted ? Trust::kUse : Trust::kExamine);
+  if (!reached_the_gate(outcome.update)) return outcome;
+  const bool passes = outcome.update == TrackerUpdate::kAccepted;
+  arbiter_.add_match(frame_time, tracker_.latest_innovation(), passes);
+  if (!trusted) outcome.update = TrackerUpdate::kGated;
+  if (passes && trusted) match_passed_ = frame_time;
+  return outcome;
+}
+
+void PoseEstimator::judge(Time now, bool pose_valid) {
+  pose_valid_ = pose_valid;
+  trusted_ = trusted_ || pose_valid;
+  const bool odometry_was_wrong = verdict_.odometry_contradicts;
+  verdict_ = arbiter_.judge(now, trusted_);
+  if (verdict_.odometry_contradicts && !odometry_was_wrong) tracker_.widen();
+  if (arbiter_.match_drifts()) {
+    tracker_.loosen_odometry();
+    arbiter_.forget_match_drift();
+  }
+  const bool matched = match_passed_ && now - *match_passed_ <= kMatchAbsence;
+  const bool gnss_refused = gnss_refused_in_a_row_ >= kRefusalsToRestart && !matched;
+  const bool start_failed =
+      !trusted_ && arbiter_.matches_refused_in_a_row() >= kRefusalsToStartAgain;
+  if (gnss_refutes() || gnss_refused || start_failed) {
+    restart();
+    verdict_.undecided = true;
+  }
+}
+
+std::optional<TrackedPose> PoseEstimator::pose_at(Time time) const {
+  auto pose = tracker_.pose_at(time);
+  if (!pose) return pose;
+  if (const auto dispute = arbiter_.open_dispute()) {
+    pose->covariance.diagonal() += dispute->cwiseAbs2();
+  }
+  return pose;
+}
+
+bool PoseEstimator::gnss_confirms() const {
+  if (!arbiter_.trusts_gnss()) return true;  // excluded: the match and dead reckoning agree
+  const Eigen::Vector3d error = tracker_.gnss_error().cwiseAbs();
+  return error.x() <= kConfirmingAlong && error.y() <= kConfirmingAcross &&
+         error.z() <= kConfirmingYaw;
+}
+
+bool PoseEstimator::gnss_refutes() const {
+  return arbiter_.trusts_gnss() && tracker_.gnss_error().cwiseAbs().maxCoeff() > kRefuting;
+}
+
+Eigen::Vector3d PoseEstimator::protection_of(const TrackedPose& pose,
+                                             const ProtectionParameters& parameters) const {
+  const double gnss_correlation_s = tracker_.parameters().correlation.gnss_s;
+  const double since_gnss_s = gnss_passed_ ? to_seconds(pose.time - *gnss_passed_) : 0.0;
+  std::optional<GnssView> view;
+  if (gnss_passed_ && pose.time - *gnss_passed_ <= kGnssLifetime) {
+    view = GnssView{tracker_.gnss_error(), gnss_sigma_};
+  }
+  return protection_level(pose.covariance.diagonal().cwiseSqrt(), view,
+                          gnss_correlation_s + since_gnss_s, parameters);
+}
+
+void PoseEstimator::restart() {
+  tracker_.restart();
+  arbiter_.reset();
+  evidence_.reset();
+  trusted_ = false;
+  gnss_refused_in_a_row_ = 0;
+  match_passed_.reset();
+  gnss_passed_.reset();
+}
+
+void PoseEstimator::reset() {
+  restart();
+  tracker_.reset();
+  odometry_monitor_.reset();
+}
+
+}  // namespace bevloc

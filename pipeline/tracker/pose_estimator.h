@@ -1,0 +1,80 @@
+// Estimates the pose from three voters (match, GNSS, dead reckoning) and says which one is wrong.
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "common/time.h"
+#include "common/vehicle_samples.h"
+#include "pipeline/tracker/arbiter.h"
+#include "pipeline/tracker/evidence.h"
+#include "pipeline/tracker/odometry_monitor.h"
+#include "pipeline/tracker/protection_level.h"
+#include "pipeline/tracker/tracker.h"
+
+namespace bevloc {
+
+/// The tracker with its arbiter: excludes the voter that contradicts the two others, and starts
+/// again where nothing can be trusted. Allocates in the constructor only. One thread.
+class PoseEstimator {
+ public:
+  explicit PoseEstimator(const TrackerParameters& parameters) : tracker_(parameters) {}
+
+  /// Adds a sample of the vehicle. A sample of an excluded voter changes nothing.
+  TrackerUpdate add(const VehicleSample& sample);
+
+  /// What became of a match.
+  struct MatchOutcome {
+    TrackerUpdate update = TrackerUpdate::kNoEvidence;
+    Seen seen;
+  };
+
+  /// Adds a result of the solver, as Tracker::add_correction(). kGated also while matches are
+  /// excluded; kNoEvidence also where the score says that this is another place.
+  MatchOutcome add_match(Time frame_time, const Se2& prior, const MatchResult& match);
+
+  /// Judges the voters. To be called once per cycle, after all samples and matches. `pose_valid`:
+  /// whether the latest pose was sent as valid.
+  void judge(Time now, bool pose_valid);
+
+  /// As Tracker::pose_at(). While a match disputes the pose, the covariance covers both.
+  std::optional<TrackedPose> pose_at(Time time) const;
+
+  const Verdict& verdict() const { return verdict_; }
+  bool odometry_implausible() const { return odometry_monitor_.implausible(); }
+
+  /// Whether GNSS is near enough for a first trust in the pose.
+  bool gnss_confirms() const;
+
+  /// The bounds of the error of `pose` at `parameters.integrity_risk`: (longitudinal m, lateral m,
+  /// yaw rad).
+  Eigen::Vector3d protection_of(const TrackedPose& pose,
+                                const ProtectionParameters& parameters) const;
+
+  /// Forgets the pose and all verdicts; the next GNSS sample sets the pose.
+  void restart();
+
+  /// Returns to the state after construction.
+  void reset();
+
+  const Tracker& tracker() const { return tracker_; }
+
+ private:
+  TrackerUpdate add_gnss(const GnssSample& sample);
+  bool gnss_refutes() const;
+
+  Tracker tracker_;
+  Arbiter arbiter_;
+  OdometryMonitor odometry_monitor_;
+  EvidenceMonitor evidence_;
+  Verdict verdict_;
+  bool pose_valid_ = false;
+  bool trusted_ = false;  ///< the pose has been valid since the start or restart
+  int gnss_refused_in_a_row_ = 0;
+  std::optional<Time> match_passed_;  ///< latest match that passed the gate
+  std::optional<Time> gnss_passed_;   ///< latest trusted GNSS sample that passed the gate
+  Eigen::Vector3d gnss_sigma_ = Eigen::Vector3d::Ones();  ///< of that sample: (m, m, rad)
+};
+
+}  // namespace bevloc

@@ -1,0 +1,40 @@
+// Bounds the error of the pose at a stated integrity risk.
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+namespace bevloc {
+
+struct ProtectionParameters {
+  /// Largest probability per pose and axis that the error exceeds the protection level.
+  double integrity_risk = 1e-5;
+  /// Factor on sigma: the tails of real errors are wider than those of a normal distribution.
+  double tail_factor = 1.1;
+  /// How often the match settles on a wrong place without any other sign.
+  double wrong_place_rate_per_s = 1e-9;
+
+  bool operator==(const ProtectionParameters&) const = default;
+};
+
+/// What GNSS says about the pose.
+struct GnssView {
+  /// GNSS minus pose along the vehicle's axes, in standard deviations: (along, across, yaw).
+  Eigen::Vector3d error = Eigen::Vector3d::Zero();
+  /// The standard deviations: (m, m, rad).
+  Eigen::Vector3d sigma = Eigen::Vector3d::Ones();
+};
+
+/// Per axis, in the vehicle frame: (longitudinal m, lateral m, yaw rad).
+///
+/// The error has two causes. Either the match shows the right place, and the error is as large as
+/// the estimate's covariance says; or it shows a wrong one, and the pose is as wrong as GNSS says.
+/// The probability of the second follows from Bayes: its rate times `exposure_s`, the time in which
+/// GNSS would not have shown it, times how much better a wrong place explains what GNSS says. The
+/// protection level is the quantile of that mixture. Without a GNSS view a wrong place may be
+/// anywhere. Source: the multiple-hypothesis solution separation of aviation (ARAIM).
+Eigen::Vector3d protection_level(const Eigen::Vector3d& sigma, const std::optional<GnssView>& gnss,
+                                 double exposure_s, const ProtectionParameters& parameters);
+
+}  // namespace bevloc

@@ -1,0 +1,93 @@
+// A fault of one input of the simulated appliance: what goes wrong, when, and by how much.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace bevloc::sim {
+
+/// Every kind is described in fault_table.cpp and in docs/simulation.md.
+enum class FaultKind : uint8_t {
+  kGnssJump,
+  kGnssRamp,
+  kGnssSpoof,
+  kGnssNoise,
+  kGnssWrongSigma,
+  kGnssNoHeading,
+  kGnssOutage,
+  kOdometryStuck,
+  kOdometryScaled,
+  kOdometrySlip,
+  kOdometryLock,
+  kOdometryReversed,
+  kOdometrySlow,
+  kOdometryMissing,
+  kOdometryWheels,
+  kYawRateBias,
+  kYawRateScaled,
+  kYawRateWrong,
+  kCameraDead,
+  kCameraFrozen,
+  kCameraLoop,
+  kCameraLate,
+  kCameraDrop,
+  kCameraDuplicate,
+  kCameraOutOfOrder,
+  kCameraTimeShift,
+  kCameraDark,
+  kCameraBlinded,
+  kCameraDirty,
+  kCameraSwapped,
+  kCameraTurned,
+  kCameraMoved,
+};
+
+/// The amounts of all kinds. A kind uses those that the fault table names; the others stay 0.
+struct FaultAmounts {
+  double east_m = 0.0;
+  double north_m = 0.0;
+  double along_m = 0.0;   ///< forward along the vehicle
+  double across_m = 0.0;  ///< to the left of the vehicle
+  double heading_deg = 0.0;
+  double east_mps = 0.0;
+  double north_mps = 0.0;
+  double along_mps = 0.0;
+  double across_mps = 0.0;
+  double pull_s = 0.0;
+  double factor = 0.0;
+  double period_ms = 0.0;
+  double left_mps = 0.0;
+  double right_mps = 0.0;
+  double bias_degps = 0.0;
+  double yaw_rate_degps = 0.0;
+  double delay_ms = 0.0;
+  double every = 0.0;  ///< a whole number, like pictures
+  double pictures = 0.0;
+  double shift_ms = 0.0;
+  double brightness = 0.0;
+  double strength = 0.0;
+  double share = 0.0;
+  double yaw_deg = 0.0;
+  double pitch_deg = 0.0;
+  double roll_deg = 0.0;
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 0.0;
+};
+
+/// Active during [from_s, until_s) of the drive.
+struct Fault {
+  FaultKind kind = FaultKind::kGnssOutage;
+  double from_s = 0.0;
+  double until_s = std::numeric_limits<double>::infinity();
+  std::optional<int> camera{};        ///< index into kCameraNames; empty: all cameras
+  std::optional<int> other_camera{};  ///< the second camera of kCameraSwapped
+  FaultAmounts amounts{};
+
+  bool is_active(double time_s) const { return time_s >= from_s && time_s < until_s; }
+  /// Whether a fault of cameras concerns this one.
+  bool concerns(int index) const { return !camera || camera == index || other_camera == index; }
+};
+
+}  // namespace bevloc::sim

@@ -1,0 +1,48 @@
+#include "sim/faults/fault_board.h"
+
+namespace bevloc::sim {
+
+FaultBoard::FaultBoard(const std::vector<Fault>& faults) {
+  for (const Fault& fault : faults) add(fault);
+}
+
+uint32_t FaultBoard::add(const Fault& fault) {
+  const std::lock_guard lock(mutex_);
+  faults_.push_back({next_number_, fault});
+  return next_number_++;
+}
+
+bool FaultBoard::remove(uint32_t number) {
+  const std::lock_guard lock(mutex_);
+  return std::erase_if(faults_, [number](const NumberedFault& listed) {
+           return listed.number == number;
+         }) > 0;
+}
+
+void FaultBoard::clear() {
+  const std::lock_guard lock(mutex_);
+  faults_.clear();
+}
+
+std::vector<NumberedFault> FaultBoard::list() const {
+  const std::lock_guard lock(mutex_);
+  return faults_;
+}
+
+std::vector<Fault> FaultBoard::active(FaultInput input, double time_s) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Fault> found;
+  for (const NumberedFault& listed : faults_) {
+    const bool of_input = info_of(listed.fault.kind).input == input;
+    if (of_input && listed.fault.is_active(time_s)) found.push_back(listed.fault);
+  }
+  return found;
+}
+
+std::vector<Fault> FaultBoard::active_on_camera(int camera, double time_s) const {
+  std::vector<Fault> found = active(FaultInput::kCamera, time_s);
+  std::erase_if(found, [camera](const Fault& fault) { return !fault.concerns(camera); });
+  return found;
+}
+
+}  // namespace bevloc::sim

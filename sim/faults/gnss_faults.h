@@ -1,0 +1,18 @@
+// Applies faults to the readings of the simulated GNSS receiver.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "sim/faults/fault.h"
+#include "sim/sensors/gnss.h"
+#include "sim/vehicle/drive.h"
+
+namespace bevloc::sim {
+
+/// The reading that the receiver sends under the `active` faults; nothing in an outage. `drive`
+/// gives the truth that some faults refer to. Faults of other inputs are ignored.
+std::optional<GnssReading> with_faults(GnssReading reading, std::span<const Fault> active,
+                                       const Drive& drive);
+
+}  // namespace bevloc::sim

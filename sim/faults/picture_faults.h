@@ -1,0 +1,24 @@
+// Applies faults to the camera models and the pictures of the simulated cameras.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/image.h"
+#include "pipeline/calibration/camera_model.h"
+#include "sim/faults/fault.h"
+
+namespace bevloc::sim {
+
+/// The camera whose picture arrives in the place of `camera`: another one if cables are swapped.
+int source_camera(int camera, std::span<const Fault> active);
+
+/// The camera after it was turned or moved. A turn is about the vehicle's axes, at the camera's
+/// place: yaw to the left, pitch downwards, roll to the right.
+CameraModel disturbed(CameraModel camera, std::span<const Fault> active);
+
+/// Changes the pixels of a dark or blinded camera. `noise_seed` determines the sensor's noise,
+/// which such a picture still has.
+void disturb_light(RgbImage& image, std::span<const Fault> active, uint64_t noise_seed);
+
+}  // namespace bevloc::sim

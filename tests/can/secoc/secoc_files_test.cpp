@@ -1,0 +1,82 @@
+#include "can/secoc/secoc_files.h"
+
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace bevloc::can {
+namespace {
+
+using testing::HasSubstr;
+
+class SecocFilesTest : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::filesystem::path& file, const std::string& text,
+             std::filesystem::perms permissions = std::filesystem::perms::owner_read |
+                                                  std::filesystem::perms::owner_write) {
+    std::ofstream(file) << text;
+    std::filesystem::permissions(file, permissions);
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("bevloc_secoc_") +
+       testing::UnitTest::GetInstance()->current_test_info()->name());
+  const std::filesystem::path key_ = folder_ / "key";
+  const std::filesystem::path starts_ = folder_ / "starts";
+};
+
+TEST_F(SecocFilesTest, ReadsAKey) {
+  write(key_, "2b7e151628aed2a6ABF7158809cf4f3c\n");
+  const auto key = read_secoc_key(key_);
+  ASSERT_TRUE(key) << key.error().message;
+  EXPECT_EQ((*key)[0], 0x2b);
+  EXPECT_EQ((*key)[8], 0xab);
+  EXPECT_EQ((*key)[15], 0x3c);
+}
+
+TEST_F(SecocFilesTest, AKeyThatOthersMayReadIsRefused) {
+  using std::filesystem::perms;
+  for (const perms extra : {perms::group_read, perms::others_read, perms::group_write}) {
+    write(key_, "2b7e151628aed2a6abf7158809cf4f3c", perms::owner_read | perms::owner_write | extra);
+    const auto key = read_secoc_key(key_);
+    ASSERT_FALSE(key);
+    EXPECT_THAT(key.error().message, HasSubstr("wanted 0600"));
+  }
+}
+
+TEST_F(SecocFilesTest, ADamagedKeyIsRefusedWithoutShowingIt) {
+  EXPECT_FALSE(read_secoc_key(key_)) << "no file";
+  for (const char* text :
+       {"", "2b7e", "2b7e151628aed2a6abf7158809cf4fxy", "2b7e151628aed2a6abf7158809cf4f3c00",
+        "+b7e151628aed2a6abf7158809cf4f3c"}) {
+    write(key_, text);
+    const auto key = read_secoc_key(key_);
+    ASSERT_FALSE(key) << text;
+    EXPECT_THAT(key.error().message, testing::Not(HasSubstr("2b7e")));
+  }
+}
+
+TEST_F(SecocFilesTest, EachStartHasAHigherNumber) {
+  for (uint32_t start = 1; start < 5; ++start) {
+    const auto number = next_start_number(starts_);
+    ASSERT_TRUE(number) << number.error().message;
+    EXPECT_EQ(*number, start);
+  }
+}
+
+TEST_F(SecocFilesTest, AStartThatCannotBeCountedIsRefused) {
+  EXPECT_FALSE(next_start_number(folder_ / "none/starts"));
+  for (const char* text : {"", "x", "-1", "4294967295", "12 13"}) {
+    write(starts_, text);
+    EXPECT_FALSE(next_start_number(starts_)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace bevloc::can

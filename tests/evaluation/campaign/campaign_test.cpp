@@ -1,0 +1,125 @@
+// The short form of the campaign: every mode of the stage level with one seed.
+#include "evaluation/campaign/campaign.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr const char* kCampaignConfig = BEVLOC_SOURCE_DIR "/config/demo.yaml";
+constexpr const char* kMatchesFile = BEVLOC_SOURCE_DIR "/evaluation/campaign/matches.csv";
+
+CampaignOptions short_drives() {
+  CampaignOptions options;
+  options.first_seed = 2050;
+  options.duration_s = 45.0;
+  return options;
+}
+
+std::vector<std::string> stage_modes() {
+  std::vector<std::string> names;
+  for (const Mode& mode : all_modes()) {
+    if (mode.on_stage) names.emplace_back(mode.name);
+  }
+  return names;
+}
+
+RunOutcome run_mode(const std::string& name) {
+  const auto campaign = Campaign::create(kCampaignConfig, kMatchesFile, short_drives());
+  EXPECT_TRUE(campaign) << campaign.error().message;
+  const auto modes = modes_named({name}, Level::kStage);
+  EXPECT_TRUE(modes) << modes.error().message;
+  RunOutcome outcome;
+  const Status status =
+      campaign->run(*modes, [&outcome](const CampaignRow& row) { outcome = row.outcome; });
+  EXPECT_TRUE(status) << status.error().message;
+  return outcome;
+}
+
+/// Modes that do not keep their limit yet, with the seconds beyond the alert limits that they must
+/// not exceed. docs/integrity.md shows them as failing.
+const std::map<std::string, double>& known_failures() {
+  static const std::map<std::string, double> kSeconds = {
+      {"odometry-stuck", 25.0},
+      {"odometry-spin", 3.0},
+      {"odometry-lock", 6.0},
+      {"odometry-reversed", 5.0},
+      {"odometry-wheels-differ", 6.0},
+      {"odometry-one-wheel", 6.0},
+      {"yaw-bias-1", 11.0},
+      {"yaw-bias-3", 3.0},
+      {"yaw-rate-sign", 7.0},
+      {"yaw-rate-160", 4.0},
+      {"match-locked-2m", 61.0},
+      {"match-locked-3m", 46.0},
+      {"match-locked-3m-later", 21.0},
+      {"match-creeping", 25.0},
+      {"match-creeping-along", 19.0},
+      {"match-old-stamps", 7.0},
+      {"creeping-without-gnss", 25.0},
+  };
+  return kSeconds;
+}
+
+TEST(ModeTableTest, HasDistinctNamesAndEnoughModes) {
+  std::set<std::string_view> names;
+  for (const Mode& mode : all_modes()) {
+    EXPECT_TRUE(names.insert(mode.name).second) << mode.name;
+    EXPECT_TRUE(mode.on_stage || mode.on_pictures) << mode.name;
+    EXPECT_FALSE(mode.what.empty()) << mode.name;
+  }
+  EXPECT_GE(names.size(), 30);
+}
+
+TEST(ModeTableTest, RefusesAnUnknownMode) {
+  const auto modes = modes_named({"gnss-outage", "gnss-party"}, Level::kStage);
+  ASSERT_FALSE(modes);
+  EXPECT_THAT(modes.error().message, testing::HasSubstr("gnss-party"));
+}
+
+TEST(CampaignTest, RepeatsARunBitForBit) {
+  const RunOutcome first = run_mode("odometry-spin");
+  const RunOutcome second = run_mode("odometry-spin");
+  EXPECT_GT(first.valid, 0);
+  EXPECT_EQ(first.valid, second.valid);
+  EXPECT_EQ(first.worst, second.worst);
+  EXPECT_EQ(first.beyond_alert, second.beyond_alert);
+}
+
+TEST(CampaignTest, LocalizesWithoutAFault) {
+  const RunOutcome outcome = run_mode("none");
+  EXPECT_GE(outcome.first_fix_s, 0.0);
+  EXPECT_LT(outcome.first_fix_s, 5.0);
+  EXPECT_GT(outcome.valid_share(), 0.95);
+  EXPECT_EQ(outcome.beyond_alert, 0);
+  EXPECT_EQ(outcome.detected_by, "");
+}
+
+class CampaignModeTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(CampaignModeTest, SendsNoDangerousPoseForLong) {
+  const auto mode = std::ranges::find(all_modes(), GetParam(), &Mode::name);
+  const RunOutcome outcome = run_mode(GetParam());
+  EXPECT_GT(outcome.timeline.size(), 1);
+  const auto known = known_failures().find(GetParam());
+  EXPECT_LE(outcome.beyond_alert_s(),
+            known == known_failures().end() ? mode->limit_s : known->second);
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& mode) {
+  std::string name = mode.param;
+  for (char& c : name) c = c == '-' || c == '.' ? '_' : c;
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Stage, CampaignModeTest, testing::ValuesIn(stage_modes()), test_name);
+
+}  // namespace
+}  // namespace bevloc::evaluation

@@ -1,0 +1,46 @@
+// The short form of the campaign on pictures: some modes on short drives.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "evaluation/campaign/campaign.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+RunOutcome run_on_pictures(const std::string& mode) {
+  CampaignOptions options;
+  options.level = Level::kPictures;
+  options.first_seed = 2051;
+  options.duration_s = 12.0;
+  const auto campaign = Campaign::create(BEVLOC_SOURCE_DIR "/config/demo.yaml", "", options);
+  EXPECT_TRUE(campaign) << campaign.error().message;
+  const auto modes = modes_named({mode}, Level::kPictures);
+  EXPECT_TRUE(modes) << modes.error().message;
+  RunOutcome outcome;
+  const Status status =
+      campaign->run(*modes, [&outcome](const CampaignRow& row) { outcome = row.outcome; });
+  EXPECT_TRUE(status) << status.error().message;
+  return outcome;
+}
+
+TEST(PicturesCampaignTest, LocalizesWithoutAFault) {
+  const RunOutcome outcome = run_on_pictures("none");
+  EXPECT_GE(outcome.first_fix_s, 0.0);
+  EXPECT_LT(outcome.first_fix_s, 5.0);
+  EXPECT_GT(outcome.valid_share(), 0.95);
+  EXPECT_EQ(outcome.beyond_alert, 0);
+}
+
+TEST(PicturesCampaignTest, NamesACameraThatSendsNoFrames) {
+  const RunOutcome outcome = run_on_pictures("camera-dead");
+  EXPECT_EQ(outcome.detected_by, "CameraMissing");
+  EXPECT_LT(*outcome.detection_s, 0.5);
+  EXPECT_LE(outcome.beyond_alert_s(), 0.3);
+}
+
+TEST(PicturesCampaignTest, SendsNoDangerousPoseInTheDark) {
+  EXPECT_LE(run_on_pictures("cameras-dark-start").beyond_alert_s(), 0.3);
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation

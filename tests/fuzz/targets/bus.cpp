@@ -1,0 +1,116 @@
+// The CAN bus: frames as a socket delivers them, and logs of frames.
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+#include <variant>
+
+#include "can/bus/candump.h"
+#include "can/bus/controller_monitor.h"
+#include "can/bus/socketcan_codec.h"
+#include "can/e2e/e2e.h"
+#include "can/messages/message_table.h"
+#include "can/messages/solution_fd.h"
+#include "can/messages/vehicle_input.h"
+#include "tests/fuzz/targets.h"
+
+namespace bevloc::fuzz {
+namespace {
+
+/// Takes the input apart from its front. Reads as zero beyond its end.
+class Source {
+ public:
+  explicit Source(Bytes bytes) : bytes_(bytes) {}
+  bool is_empty() const { return bytes_.empty(); }
+  uint8_t byte() {
+    if (bytes_.empty()) return 0;
+    const uint8_t value = bytes_[0];
+    bytes_ = bytes_.subspan(1);
+    return value;
+  }
+  void fill(uint8_t* target, size_t count) {
+    for (size_t i = 0; i < count; ++i) target[i] = byte();
+  }
+
+ private:
+  Bytes bytes_;
+};
+
+bool is_finite(const VehicleSample& sample) {
+  if (const auto* odometry = std::get_if<OdometrySample>(&sample)) {
+    return std::isfinite(odometry->speed_mps) && std::isfinite(odometry->yaw_rate_radps);
+  }
+  const auto& gnss = std::get<GnssSample>(sample);
+  return std::isfinite(gnss.east_m) && std::isfinite(gnss.north_m) && gnss.sigma_east_m > 0.0 &&
+         gnss.sigma_north_m > 0.0;
+}
+
+/// Draws frames: raw ones, and ones of the project's messages with valid protection.
+class FrameReader {
+ public:
+  FrameReader() {
+    for (const can::Message* message : can::kMessages) senders_.emplace_back(message->protection());
+  }
+
+  can::ReadFrame next(Source& source) {
+    constexpr std::array<size_t, 4> kSizes = {CAN_MTU, CANFD_MTU, 3, 0};
+    const uint8_t choice = source.byte();
+    if (choice < 64) {
+      canfd_frame raw{};
+      source.fill(reinterpret_cast<uint8_t*>(&raw), sizeof(raw));
+      return can::frame_from(raw, kSizes[choice % kSizes.size()]);
+    }
+    const size_t index = choice % senders_.size();
+    const can::Message& message = *can::kMessages[index];
+    can::Frame frame = can::blank_frame(message, {});
+    const size_t header = can::header_length(message.format);
+    source.fill(frame.data.data() + header, frame.length - header);
+    frame.data[1] = static_cast<uint8_t>(choice >> 4U);  // the epoch, in the upper half
+    senders_[index].protect(frame);
+    return frame;
+  }
+
+ private:
+  std::vector<can::E2eSender> senders_;
+};
+
+void check_round_trip(const can::CandumpEntry& entry) {
+  if (entry.kind != can::CandumpKind::kData || entry.time.count() < 0) return;
+  const std::string line = can::candump_line(entry.time, entry.interface, entry.frame);
+  const auto again = can::parse_candump_line(line, "again");
+  expect(again && again->frame == entry.frame, "another frame after writing a line");
+}
+
+}  // namespace
+
+void run_can_frames(Bytes bytes) {
+  can::VehicleInput input({}, {49.0, 8.4});
+  can::ControllerMonitor monitor;
+  FrameReader reader;
+  Source source(bytes);
+  Time now{};
+  while (!source.is_empty()) {
+    now += std::chrono::milliseconds(1);
+    const can::ReadFrame read = reader.next(source);
+    if (const auto* error = std::get_if<can::ErrorFrame>(&read)) monitor.take(*error);
+    const auto* frame = std::get_if<can::Frame>(&read);
+    if (frame == nullptr) continue;
+    expect(can::is_valid_length(frame->format, frame->length), "a frame of invalid length");
+    const auto sample = input.accept({*frame, now});
+    expect(!sample || is_finite(*sample), "a sample that is not finite");
+    if (frame->length == can::loc_solution::kMessage.length) {
+      for (size_t part = 0; part < can::loc_solution::kParts.size(); ++part) {
+        can::part_of_solution(*frame, part, {});
+      }
+    }
+  }
+}
+
+void run_candump(Bytes bytes) {
+  std::istringstream log{std::string(text_of(bytes))};
+  const auto entries = can::read_candump(log, "fuzz.log");
+  if (!entries) return;
+  for (const can::CandumpEntry& entry : *entries) check_round_trip(entry);
+}
+
+}  // namespace bevloc::fuzz

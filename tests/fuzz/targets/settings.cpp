@@ -1,0 +1,68 @@
+// Files that an integrator writes: configuration, rig and the index of a recording.
+#include <cstdlib>
+#include <filesystem>
+
+#include <unistd.h>
+
+#include "common/files.h"
+#include "drivers/camera/replay/replay_camera.h"
+#include "firmware/config/config.h"
+#include "pipeline/calibration/rig_check.h"
+#include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/preprocessing/network_camera.h"
+#include "tests/fuzz/targets.h"
+
+namespace bevloc::fuzz {
+namespace {
+
+/// A folder with a file a.png, removed at the end of the program.
+class RecordingFolder {
+ public:
+  RecordingFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "fuzzXXXXXX").string();
+    expect(mkdtemp(pattern.data()) != nullptr, "no folder for a recording");
+    path_ = pattern;
+    expect(write_file(path_ / "a.png", "").has_value(), "no place for a picture");
+  }
+  ~RecordingFolder() { std::filesystem::remove_all(path_, ignored_); }
+  RecordingFolder(const RecordingFolder&) = delete;
+  RecordingFolder& operator=(const RecordingFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  std::error_code ignored_;
+};
+
+}  // namespace
+
+void run_config(Bytes bytes) {
+  const auto config = firmware::load_config(path_of_file_with(bytes));
+  if (!config) expect(!config.error().message.empty(), "an error without a message");
+}
+
+void run_rig(Bytes bytes) {
+  const auto rig = parse_rig(std::string(text_of(bytes)), "fuzz.yaml");
+  if (!rig) return;
+  expect(!find_mistake(*rig), "a rig with a mistake");
+  for (const CameraModel& camera : network_rig(*rig).cameras) {
+    expect(camera.vehicle_from_camera.rotation.allFinite(), "a rotation that is not finite");
+    expect(std::isfinite(camera.intrinsics.cy_px), "a network camera without a horizon");
+  }
+}
+
+void run_frames_txt(Bytes bytes) {
+  static const RecordingFolder folder;
+  expect(write_file(folder.path() / "frames.txt", text_of(bytes)).has_value(), "a full disk");
+  const auto recording = drivers::load_recording(folder.path());
+  if (!recording) return;
+  expect(!recording->empty(), "a recording without frames");
+  for (size_t i = 1; i < recording->size(); ++i) {
+    const drivers::RecordedFrame& before = (*recording)[i - 1];
+    const drivers::RecordedFrame& frame = (*recording)[i];
+    expect(frame.sequence > before.sequence && frame.time > before.time, "frames out of order");
+  }
+}
+
+}  // namespace bevloc::fuzz

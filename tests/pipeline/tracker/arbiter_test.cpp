@@ -1,0 +1,111 @@
+#include "pipeline/tracker/arbiter.h"
+
+#include <gtest/gtest.h>
+
+#include "common/se2.h"
+
+namespace bevloc {
+namespace {
+
+using std::chrono::milliseconds;
+
+PoseInnovation innovation(const Eigen::Vector3d& error) {
+  PoseInnovation result;
+  result.error = error;
+  result.covariance = Eigen::Vector3d(0.09, 0.04, 2e-5).asDiagonal();
+  result.squared_distance = error.dot(result.covariance.inverse() * error);
+  return result;
+}
+
+/// A pose that is valid, with a match and a GNSS sample every 0.1 s.
+class ArbiterTest : public testing::Test {
+ protected:
+  static constexpr double kGate = 16.27;
+
+  Verdict run(int samples, const Eigen::Vector3d& match_error, const Eigen::Vector3d& gnss_offset) {
+    Verdict verdict;
+    for (int i = 0; i < samples; ++i) {
+      now_ += milliseconds(100);
+      const PoseInnovation match = innovation(match_error);
+      arbiter_.add_match(now_, match, match.squared_distance < kGate);
+      const PoseInnovation gnss = innovation(gnss_offset);
+      arbiter_.add_gnss(now_, gnss, gnss.squared_distance < kGate, Eigen::Vector3d::Zero());
+      verdict = arbiter_.judge(now_, true);
+    }
+    return verdict;
+  }
+
+  const Eigen::Vector3d none_ = Eigen::Vector3d::Zero();
+  Arbiter arbiter_;
+  Time now_{std::chrono::seconds(100)};
+};
+
+TEST_F(ArbiterTest, TrustsVotersThatAgree) {
+  const Verdict verdict = run(100, none_, none_);
+  EXPECT_FALSE(verdict.match_contradicts || verdict.gnss_contradicts ||
+               verdict.odometry_contradicts || verdict.undecided);
+  EXPECT_TRUE(arbiter_.trusts_match());
+  EXPECT_TRUE(arbiter_.trusts_gnss());
+}
+
+TEST_F(ArbiterTest, BlamesAMatchThatJumpsFartherThanAnyVehicle) {
+  run(20, none_, none_);
+  EXPECT_TRUE(run(3, {0.0, 3.0, 0.0}, none_).match_contradicts);
+  EXPECT_FALSE(arbiter_.trusts_match());
+  EXPECT_FALSE(arbiter_.open_dispute());
+}
+
+TEST_F(ArbiterTest, LeavesASlowContradictionToGnss) {
+  run(20, none_, none_);
+  // The match departs in steps that wheels could explain, and GNSS stays with dead reckoning.
+  run(1, {1.0, 0.0, 0.0}, none_);
+  Verdict verdict = run(3, {1.5, 0.0, 0.0}, none_);
+  ASSERT_TRUE(arbiter_.open_dispute() || verdict.match_contradicts);
+  verdict = run(3, {1.5, 0.0, 0.0}, none_);
+  EXPECT_TRUE(verdict.match_contradicts);
+}
+
+TEST_F(ArbiterTest, BlamesDeadReckoningThatMatchAndGnssContradict) {
+  run(20, none_, none_);
+  run(1, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0});
+  const Verdict verdict = run(6, {2.0, 0.0, 0.0}, {2.0, 0.0, 0.0});
+  EXPECT_TRUE(verdict.odometry_contradicts);
+  EXPECT_FALSE(verdict.match_contradicts || verdict.gnss_contradicts);
+}
+
+TEST_F(ArbiterTest, BlamesGnssThatMatchAndDeadReckoningContradict) {
+  run(20, none_, none_);
+  const Verdict verdict = run(6, none_, {0.0, 20.0, 0.0});
+  EXPECT_TRUE(verdict.gnss_contradicts);
+  EXPECT_FALSE(verdict.match_contradicts || verdict.odometry_contradicts);
+  EXPECT_FALSE(arbiter_.trusts_gnss());
+}
+
+TEST_F(ArbiterTest, DoesNotDecideBeforeThePoseWasValid) {
+  for (int i = 0; i < 5; ++i) {
+    now_ += milliseconds(100);
+    arbiter_.add_match(now_, innovation({0.0, 3.0, 0.0}), false);
+  }
+  const Verdict verdict = arbiter_.judge(now_, false);
+  EXPECT_TRUE(verdict.undecided);
+  EXPECT_FALSE(verdict.match_contradicts);
+}
+
+TEST_F(ArbiterTest, ReadmitsAVoterThatAgreesForAWhile) {
+  run(20, none_, none_);
+  run(3, {0.0, 3.0, 0.0}, none_);
+  run(5, none_, none_);
+  EXPECT_FALSE(arbiter_.trusts_match());
+  run(5, none_, none_);
+  EXPECT_TRUE(arbiter_.trusts_match());
+}
+
+TEST_F(ArbiterTest, FindsInnovationsThatLeanToOneSide) {
+  run(100, none_, none_);
+  EXPECT_FALSE(arbiter_.match_drifts());
+  run(60, {0.5, 0.0, 0.0}, none_);  // within the gate, always ahead
+  EXPECT_TRUE(arbiter_.match_drifts());
+}
+
+}  // namespace
+}  // namespace bevloc

@@ -1,0 +1,48 @@
+#include "pipeline/tracker/protection_level.h"
+
+#include <gtest/gtest.h>
+
+#include "common/se2.h"
+
+namespace bevloc {
+namespace {
+
+const Eigen::Vector3d kSigma{0.2, 0.1, radians(0.2)};
+const Eigen::Vector3d kGnssSigma{1.0, 1.0, radians(1.0)};
+
+TEST(ProtectionLevelTest, IsTheQuantileOfANormalErrorWhileGnssAgrees) {
+  ProtectionParameters parameters;
+  parameters.tail_factor = 1.0;
+  const Eigen::Vector3d level =
+      protection_level(kSigma, GnssView{Eigen::Vector3d::Zero(), kGnssSigma}, 40.0, parameters);
+  // Two-sided quantile of the standard normal distribution at 1e-5, from a table.
+  EXPECT_NEAR(level.x() / kSigma.x(), 4.417, 0.01);
+  EXPECT_NEAR(level.y() / kSigma.y(), 4.417, 0.01);
+  EXPECT_NEAR(level.z() / kSigma.z(), 4.417, 0.01);
+}
+
+TEST(ProtectionLevelTest, GrowsWhereGnssPointsElsewhere) {
+  const auto level_at = [](double error) {
+    return protection_level(kSigma, GnssView{{0.0, error, 0.0}, kGnssSigma}, 40.0, {}).y();
+  };
+  EXPECT_NEAR(level_at(2.0), level_at(0.0), 0.05);
+  EXPECT_GT(level_at(4.4), 3.0) << "GNSS says 4.4 m to the side";
+}
+
+TEST(ProtectionLevelTest, GrowsWithTheTimeWithoutGnss) {
+  const double soon = protection_level(kSigma, std::nullopt, 60.0, {}).y();
+  const double late = protection_level(kSigma, std::nullopt, 1e5, {}).y();
+  EXPECT_LT(soon, 0.6);
+  EXPECT_GT(late, 2.0);
+}
+
+TEST(ProtectionLevelTest, FollowsTheIntegrityRisk) {
+  ProtectionParameters strict;
+  strict.integrity_risk = 1e-7;
+  const GnssView view{Eigen::Vector3d::Zero(), kGnssSigma};
+  EXPECT_GT(protection_level(kSigma, view, 40.0, strict).y(),
+            1.1 * protection_level(kSigma, view, 40.0, {}).y());
+}
+
+}  // namespace
+}  // namespace bevloc

@@ -1,0 +1,120 @@
+#include "sim/faults/picture_faults.h"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim/faults/fault_table.h"
+#include "sim/faults/lens_dirt.h"
+#include "sim/sim_rig.h"
+
+namespace bevloc::sim {
+namespace {
+
+/// A picture with a pattern of mean 100.
+RgbImage pattern() {
+  RgbImage image(64, 36);
+  for (size_t i = 0; i < image.pixels.size(); ++i) {
+    image.pixels[i] = static_cast<uint8_t>(60 + 80 * ((i / 3 + i / 192) % 2));
+  }
+  return image;
+}
+
+double mean(const RgbImage& image) {
+  return std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0) /
+         static_cast<double>(image.pixels.size());
+}
+
+int contrast(const RgbImage& image) {
+  const auto [low, high] = std::minmax_element(image.pixels.begin(), image.pixels.end());
+  return *high - *low;
+}
+
+RgbImage with(FaultKind kind, uint64_t seed, double brightness_or_strength) {
+  Fault fault = make_fault(kind);
+  fault.amounts.brightness = brightness_or_strength;
+  fault.amounts.strength = brightness_or_strength;
+  RgbImage image = pattern();
+  disturb_light(image, std::vector{fault}, seed);
+  return image;
+}
+
+TEST(PictureFaults, ADarkPictureShowsNoiseOnly) {
+  const RgbImage dark = with(FaultKind::kCameraDark, 1, 0.0);
+  EXPECT_LT(mean(dark), 2.0);
+  EXPECT_LT(contrast(dark), 10);
+  EXPECT_NE(dark.pixels, with(FaultKind::kCameraDark, 2, 0.0).pixels) << "not frozen";
+  EXPECT_EQ(dark.pixels, with(FaultKind::kCameraDark, 1, 0.0).pixels);
+  EXPECT_NEAR(mean(with(FaultKind::kCameraDark, 1, 0.3)), 30.0, 1.0);
+}
+
+TEST(PictureFaults, ABlindedPictureIsBrightAndFlatAndHalfBlindedOnlyInParts) {
+  const RgbImage blinded = with(FaultKind::kCameraBlinded, 1, 1.0);
+  EXPECT_GT(mean(blinded), 245.0);
+  EXPECT_LT(contrast(blinded), 20);
+  const RgbImage half = with(FaultKind::kCameraBlinded, 1, 0.2);
+  EXPECT_GT(mean(half), mean(pattern()) + 5.0);
+  EXPECT_GT(contrast(half), 60);
+}
+
+TEST(PictureFaults, DirtCoversItsShareAndStaysInItsPlace) {
+  for (const double share : {0.1, 0.4, 0.8}) {
+    const LensDirt dirt(64, 36, share, 7);
+    EXPECT_GE(dirt.covered(), share);
+    EXPECT_LT(dirt.covered(), share + 0.1);
+  }
+  const LensDirt dirt(64, 36, 0.4, 7);
+  RgbImage first = pattern();
+  dirt.cover(first);
+  RgbImage second = pattern();
+  dirt.cover(second);
+  EXPECT_EQ(first.pixels, second.pixels);
+  const RgbImage clean = pattern();
+  size_t changed = 0;
+  for (size_t i = 0; i < clean.pixels.size(); ++i) changed += first.pixels[i] != clean.pixels[i];
+  EXPECT_GT(changed, clean.pixels.size() / 3);
+  EXPECT_LT(changed, clean.pixels.size());
+}
+
+TEST(PictureFaults, SwappedCamerasShowEachOthersView) {
+  Fault swapped = make_fault(FaultKind::kCameraSwapped);
+  swapped.camera = 1;
+  swapped.other_camera = 4;
+  const std::vector active = {swapped};
+  EXPECT_EQ(source_camera(1, active), 4);
+  EXPECT_EQ(source_camera(4, active), 1);
+  EXPECT_EQ(source_camera(2, active), 2);
+}
+
+TEST(PictureFaults, ATurnedCameraLooksToTheLeftDownOrTiltsToTheRight) {
+  const CameraModel front = nominal_rig().cameras[1];
+  const auto axis_after = [&](double yaw_deg, double pitch_deg) -> Eigen::Vector3d {
+    Fault turned = make_fault(FaultKind::kCameraTurned);
+    turned.amounts.yaw_deg = yaw_deg;
+    turned.amounts.pitch_deg = pitch_deg;
+    const CameraModel camera = disturbed(front, std::vector{turned});
+    EXPECT_EQ(camera.vehicle_from_camera.translation_m, front.vehicle_from_camera.translation_m);
+    return camera.vehicle_from_camera.rotation.col(2);
+  };
+  const Eigen::Vector3d axis = axis_after(0.0, 0.0);
+  const Eigen::Vector3d left = axis_after(10.0, 0.0);
+  EXPECT_NEAR(std::acos(axis.dot(left)), radians(10.0), 1e-3);
+  EXPECT_GT(left.y(), axis.y());
+  EXPECT_LT(axis_after(0.0, 10.0).z(), axis.z());
+}
+
+TEST(PictureFaults, AMovedCameraKeepsItsDirection) {
+  const CameraModel front = nominal_rig().cameras[1];
+  Fault moved = make_fault(FaultKind::kCameraMoved);
+  moved.amounts.y_m = 0.2;
+  const CameraModel camera = disturbed(front, std::vector{moved});
+  EXPECT_EQ(camera.vehicle_from_camera.rotation, front.vehicle_from_camera.rotation);
+  EXPECT_NEAR(
+      camera.vehicle_from_camera.translation_m.y() - front.vehicle_from_camera.translation_m.y(),
+      0.2, 1e-12);
+}
+
+}  // namespace
+}  // namespace bevloc::sim
