@@ -155,6 +155,12 @@ TEST(DriveVariantTest, ADeadCameraDegradesTheState) {
   EXPECT_LT(double(result["estimate"]["lateral_m"]["mae"]), 0.4);
 }
 
+size_t count_of(const std::string& text, const std::string& word) {
+  size_t count = 0;
+  for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
 /// The demo with free-running cameras: no two cameras expose at the same time.
 nlohmann::json unsynchronized_drive(bool compensate_motion) {
   const ScratchFolder scratch;
@@ -167,8 +173,14 @@ nlohmann::json unsynchronized_drive(bool compensate_motion) {
   nlohmann::json result =
       drive(scratch, (scratch / "config.yaml").string(), "--seed 901 --duration 10");
   const std::string csv = read_text(scratch / "poses.csv");
-  const std::string last = csv.substr(csv.rfind('\n', csv.size() - 2));
-  EXPECT_EQ(last.find("TRACKING") != std::string::npos, compensate_motion) << last;
+  // One refused match is one frame of DEGRADED. Cameras that are not synchronized are all of them.
+  const size_t tracking = count_of(csv, "TRACKING");
+  const size_t degraded = count_of(csv, "DEGRADED");
+  if (compensate_motion) {
+    EXPECT_GT(tracking, 10 * degraded);
+  } else {
+    EXPECT_GT(degraded, 10 * tracking);
+  }
   return result;
 }
 
