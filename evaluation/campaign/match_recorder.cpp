@@ -25,7 +25,7 @@ constexpr double kFarAcquiring = 2.0;
 /// Share of the acquiring range in which the other priors of that range lie.
 constexpr double kInsideAcquiring = 0.8;
 /// Below this speed the curvature of the path means nothing.
-constexpr double kDriving_mps = 1.0;
+constexpr double kRecordedDriving_mps = 1.0;
 
 std::array<double, 3> reaches_of(const HypothesisGrid& grid) {
   return {grid.x_m.range, grid.y_m.range, grid.yaw_rad.range};
@@ -160,7 +160,7 @@ Result<std::vector<MeasuredPlace>> record_matches(const DriveConfig& config, con
     station_m += (state.map_from_vehicle.translation() - before.translation()).norm();
     before = state.map_from_vehicle;
     MeasuredPlace place{.drive = drive, .frame = frame, .station_m = station_m, .matches = {}};
-    if (state.speed_mps > kDriving_mps) {
+    if (state.speed_mps > kRecordedDriving_mps) {
       place.curvature_radpm = state.yaw_rate_radps / state.speed_mps;
     }
     recorder.record(recorded.images_at(time_s), state.map_from_vehicle, place);

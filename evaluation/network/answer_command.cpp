@@ -33,7 +33,8 @@ Status store_answer(const std::string& model) {
   if (!proto.ParseFromString(*bytes)) return fail("{}: is not a complete ONNX file", model);
   set_metadata(proto, kAnswerKey, to_text(answer_to_test_frame(**network)));
   const std::string written = model + ".new";
-  if (Status status = bevloc::write_file(written, proto.SerializeAsString()); !status) return status;
+  if (Status status = bevloc::write_file(written, proto.SerializeAsString()); !status)
+    return status;
   std::error_code error;
   std::filesystem::rename(written, model, error);
   if (error) return fail("{}: cannot replace this file ({})", model, error.message());

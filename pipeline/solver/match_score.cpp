@@ -11,12 +11,12 @@ namespace bevloc {
 namespace {
 
 /// Sums over cells and channels, of the map (m) and of the moved features (b).
-struct Products {
+struct ScoreProducts {
   double mm = 0.0;
   double mb = 0.0;
   double bb = 0.0;
 
-  Products& operator+=(const Products& other) {
+  ScoreProducts& operator+=(const ScoreProducts& other) {
     mm += other.mm;
     mb += other.mb;
     bb += other.bb;
@@ -34,14 +34,14 @@ struct LaneProducts {
     mb += m * b;
     bb += b * b;
   }
-  Products sum() const { return {sum_of(mm), sum_of(mb), sum_of(bb)}; }
+  ScoreProducts sum() const { return {sum_of(mm), sum_of(mb), sum_of(bb)}; }
 };
 
 struct Sums {
   double map_value = 0.0;
   double moved_value = 0.0;
-  Products value;
-  Products gradient[3];  ///< along x, along y, by yaw
+  ScoreProducts value;
+  ScoreProducts gradient[3];  ///< along x, along y, by yaw
 };
 
 /// Neighbouring cells of one row of both sides, none at the edge of the grid.
@@ -91,7 +91,7 @@ BEVLOC_TARGET_CLONES void add_row(const CellRow& row, Sums& sums) {
   sums.gradient[2] += by_yaw.sum();
 }
 
-double cosine(const Products& products) {
+double cosine(const ScoreProducts& products) {
   const double lengths = std::sqrt(products.mm) * std::sqrt(products.bb);
   return lengths > 0.0 ? std::clamp(products.mb / lengths, 0.0, 1.0) : 0.0;
 }
