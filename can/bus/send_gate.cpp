@@ -16,8 +16,10 @@ bool SendGate::enter(uint32_t id, Time now) {
   if (is_stalled(now)) return false;
   const int64_t handed_over_ns = slot->handed_over_ns;
   const int64_t alive_ns = alive_ns_;
-  const bool lost = alive_ns != kNone && alive_ns - handed_over_ns >= kGiveUp.count();
-  if (handed_over_ns != kNone && !lost) return false;
+  const bool handed_over = handed_over_ns != kNone;
+  const bool lost =
+      handed_over && alive_ns != kNone && alive_ns - handed_over_ns >= kGiveUp.count();
+  if (handed_over && !lost) return false;
   slot->handed_over_ns = now.time_since_epoch().count();
   return true;
 }

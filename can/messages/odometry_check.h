@@ -21,6 +21,10 @@ struct OdometryLimits {
   double wheel_difference_mps = 0.8;
   double wheel_difference_share = 0.03;
   double wheel_difference_m = 0.3;
+  /// The same for the mean of about the last 200 ms, in which the noise is small: a yaw rate with
+  /// the wrong sign shows in every bend.
+  double mean_wheel_difference_mps = 0.25;
+  double mean_wheel_difference_share = 0.03;
 
   /// Along the vehicle tyres hold about 1.2 g when braking; no series car gains more than 1 g. The
   /// step is for noise and a late time stamp. Each sample is compared with those of the last 100
@@ -79,16 +83,17 @@ class OdometryCheck {
  private:
   OdometryVerdict verdict_of(const Wheels& sample);
   bool is_too_sharp(const Wheels& sample) const;
-  bool wheels_contradict(const Wheels& sample) const;
   bool speed_jumps(const Wheels& from, const Wheels& to) const;
   bool yaw_rate_jumps(const Wheels& from, const Wheels& to) const;
   OdometryVerdict jump(const Wheels& from, const Wheels& to) const;
   OdometryVerdict jump_from_recent(const Wheels& sample);
   bool is_back(const Wheels& sample) const;
+  bool wheels_contradict(const Wheels& sample);
   void keep(const Wheels& sample);
   void watch_rate(Time time);
 
   OdometryLimits limits_;
+  double mean_wheel_difference_mps_ = 0.0;  ///< beyond what the yaw rate explains
   static constexpr size_t kRecent = 8;
   std::array<Wheels, kRecent> recent_{};  ///< plausible samples, oldest first
   size_t recent_count_ = 0;

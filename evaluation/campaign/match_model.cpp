@@ -23,6 +23,12 @@ constexpr double kCostPerFrameset = 0.02;
 /// A measured match whose prior was off by up to this part of the range differently still found the
 /// same place of the map.
 constexpr double kSamePeak = 0.5;
+/// Errors of matches that differ by this much are one unit unlike, and what a frameset of distance
+/// costs against it.
+constexpr double kAlikeAlong_m = 0.5;
+constexpr double kAlikeAcross_m = 0.15;
+constexpr double kAlikeYaw_rad = radians(1.0);
+constexpr double kCostPerFramesetBeside = 0.01;
 /// A correction this close to the end of the range, in parts of it, was stopped by the border.
 constexpr double kAtBorder = 0.9;
 
@@ -94,6 +100,37 @@ MatchResult MatchModel::match(const MatchedPlace& place, SearchRange range, cons
   result.score = measured.score;
   result.axis_score = measured.axis_score;
   return result;
+}
+
+MatchResult MatchModel::match_beside(const MatchedPlace& place, SearchRange range, const Se2& truth,
+                                     const Se2& offset) {
+  MatchResult result = match(place, range, Se2());
+  result.correction = truth * offset * result.correction;
+  const MeasuredMatch& measured = beside(offset);
+  result.score = std::min(result.score, measured.score);
+  result.axis_score = result.axis_score.cwiseMin(measured.axis_score);
+  return result;
+}
+
+/// The measured match whose error is most like `offset`, near the present place if there is one.
+const MeasuredMatch& MatchModel::beside(const Se2& offset) const {
+  const MeasuredMatch* best = nullptr;
+  double least = std::numeric_limits<double>::max();
+  for (size_t i = 0; i < table_.places.size(); ++i) {
+    const double distance = static_cast<double>(i > at_ ? i - at_ : at_ - i);
+    for (const MeasuredMatch& match : table_.places[i].matches) {
+      const Se2 error = match.error();
+      const double cost = std::abs(std::abs(error.x_m) - std::abs(offset.x_m)) / kAlikeAlong_m +
+                          std::abs(std::abs(error.y_m) - std::abs(offset.y_m)) / kAlikeAcross_m +
+                          std::abs(error.yaw_rad) / kAlikeYaw_rad +
+                          kCostPerFramesetBeside * distance;
+      if (cost < least) {
+        least = cost;
+        best = &match;
+      }
+    }
+  }
+  return *best;
 }
 
 void MatchModel::follow(const MatchedPlace& place) {

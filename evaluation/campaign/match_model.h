@@ -38,6 +38,11 @@ class MatchModel {
   /// true pose. The distance must not decrease from call to call.
   MatchResult match(const MatchedPlace& place, SearchRange range, const Se2& truth);
 
+  /// The match of a frameset that finds a place `offset` beside the true one: as exact as at the
+  /// right place, with the scores that were measured that far beside it.
+  MatchResult match_beside(const MatchedPlace& place, SearchRange range, const Se2& truth,
+                           const Se2& offset);
+
   const HypothesisGrid& hypotheses(SearchRange range) const {
     return range == SearchRange::kTracking ? tracking_ : acquiring_;
   }
@@ -47,6 +52,7 @@ class MatchModel {
   void follow(const MatchedPlace& place);
   void begin_block(const MatchedPlace& place);
   const MeasuredMatch& most_alike(SearchRange range, const Se2& truth) const;
+  const MeasuredMatch& beside(const Se2& offset) const;
   Se2 transfer(const MeasuredMatch& measured, const Se2& truth, const HypothesisGrid& grid) const;
 
   const MatchTable& table_;

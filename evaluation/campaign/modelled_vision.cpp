@@ -85,14 +85,12 @@ MatchResult ModelledVision::match(const Se2& prior, const Se2& truth, SearchRang
   } else if (active(MatchFaultKind::kSawNothing, time_s)) {
     result = nothing_seen(model_.hypotheses(range), Evidence::kGood);
   } else if (const auto* locked = active(MatchFaultKind::kLocked, time_s)) {
-    result = model_.match(place, range, Se2());
-    result.correction = wanted * locked->offset * result.correction;
+    result = model_.match_beside(place, range, wanted, locked->offset);
   } else if (const auto* creeping = active(MatchFaultKind::kCreeping, time_s)) {
     const double elapsed_s = time_s - faults_.time.from_s;
     const Se2& speed = creeping->offset;
-    result = model_.match(place, range, Se2());
-    result.correction =
-        wanted * Se2{elapsed_s * speed.x_m, elapsed_s * speed.y_m, 0.0} * result.correction;
+    result = model_.match_beside(place, range, wanted,
+                                 {elapsed_s * speed.x_m, elapsed_s * speed.y_m, 0.0});
   } else if (const auto* alike = active(MatchFaultKind::kLanesAlike, time_s)) {
     const double lane_m = alike->offset.y_m;
     const double lanes = std::floor(-wanted.y_m / lane_m + kHalf);

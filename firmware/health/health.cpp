@@ -49,16 +49,19 @@ bool Health::is_lost(const HealthInputs& inputs) const {
          inputs.correction_age > limits_.lost_timeout;
 }
 
+bool Health::is_confirmed(const HealthInputs& inputs) const {
+  return inputs.gnss_confirms && inputs.accepted_in_a_row >= limits_.corrections_to_track &&
+         (inputs.protection_level.array() <= limits_.alert_limit.array()).all();
+}
+
 HealthState Health::next_state(const HealthInputs& inputs) const {
   if (inputs.internal_error || inputs.network_fault) return HealthState::kFault;
   switch (state_) {
     case HealthState::kInit:
       return inputs.initialized ? HealthState::kAcquiring : HealthState::kInit;
     case HealthState::kAcquiring:
-      return !is_lost(inputs) && inputs.gnss_confirms &&
-                     inputs.accepted_in_a_row >= limits_.corrections_to_track
-                 ? HealthState::kTracking
-                 : HealthState::kAcquiring;
+      return !is_lost(inputs) && is_confirmed(inputs) ? HealthState::kTracking
+                                                      : HealthState::kAcquiring;
     case HealthState::kTracking:
     case HealthState::kDegraded:
       if (is_lost(inputs)) return HealthState::kLost;

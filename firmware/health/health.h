@@ -26,6 +26,9 @@ struct HealthLimits {
   double longitudinal_sigma_m = 0.60;
   double lateral_sigma_m = 0.30;
   double yaw_sigma_rad = radians(0.6);
+  /// Largest protection levels with which a pose becomes valid, (longitudinal m, lateral m, yaw
+  /// rad): the alert limits of a freeway.
+  Eigen::Vector3d alert_limit{1.40, 0.57, radians(1.5)};
   /// For the protection levels that are sent with the pose.
   ProtectionParameters protection;
 
@@ -54,6 +57,7 @@ struct HealthInputs {
   double longitudinal_sigma_m = 0.0;
   double lateral_sigma_m = 0.0;
   double yaw_sigma_rad = 0.0;
+  Eigen::Vector3d protection_level = Eigen::Vector3d::Zero();  ///< (m, m, rad)
   bool network_fault = false;   ///< the network failed its check (VisionStage)
   bool internal_error = false;  ///< the pose or its covariance is not finite
 };
@@ -79,6 +83,7 @@ class Health {
   WhyMask find_reasons(const HealthInputs& inputs) const;
   HealthState next_state(const HealthInputs& inputs) const;
   bool is_lost(const HealthInputs& inputs) const;
+  bool is_confirmed(const HealthInputs& inputs) const;
 
   HealthLimits limits_;
   HealthState state_ = HealthState::kInit;

@@ -169,6 +169,7 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
   inputs.gnss_confirms = estimator_.gnss_confirms();
   inputs.clock_gap = clock_gap_;
   if (pose) add_uncertainty(*pose, inputs);
+  inputs.protection_level = protection_;
   return inputs;
 }
 

@@ -16,13 +16,16 @@ constexpr double kConfirms = 6.25;
 constexpr double kRefutes = 21.1;
 /// Refused GNSS samples in a row that exclude GNSS while the match agrees.
 constexpr int kGnssRefusals = 5;
+/// Squared distance of an innovation that no scatter explains: more than 6 standard deviations on
+/// one axis. A single one begins a dispute.
+constexpr double kFarOff = 40.0;
 /// Passes in a row that readmit an excluded voter: one second of matches, two of GNSS.
 constexpr int kMatchPasses = 10;
 constexpr int kGnssPasses = 20;
 /// Weight of a new innovation in the drift, and the limit of the drift in its own standard
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
 constexpr double kDriftGain = 0.07;
-constexpr double kDriftLimit = 6.0;
+constexpr double kDriftLimit = 4.0;
 /// Correlation time of GNSS errors, and the limit for their change: 5 standard deviations.
 constexpr double kGnssCorrelation_s = 40.0;
 constexpr double kGnssMoveLimit = 5.0;
@@ -39,6 +42,7 @@ constexpr Duration kOdometryMemory = std::chrono::seconds(1);
 
 void Arbiter::Voter::add(Time time, const PoseInnovation& innovation, bool passes_gate) {
   const Eigen::Vector3d sigma = innovation.covariance.diagonal().cwiseSqrt();
+  far_off = !passes_gate && innovation.squared_distance > kFarOff;
   drift += kDriftGain * (innovation.error.cwiseQuotient(sigma) - drift);
   if (passes_gate) {
     last_passed = time;
@@ -127,13 +131,14 @@ bool Arbiter::gnss_moved() const {
   return gnss_.refused_in_a_row >= kGnssRefusals || gnss_.drifts() || gnss_moved_;
 }
 
-Verdict Arbiter::judge(Time now, bool trusted) {
+Verdict Arbiter::judge(Time now, bool trusted, bool pose_valid) {
   Verdict verdict;
+  if (!pose_valid) gnss_.excluded = false;
   if (match_is_disputed() && !match_.excluded) {
     decide_dispute(verdict, trusted);
     if (verdict.odometry_contradicts) odometry_wrong_until_ = now + kOdometryMemory;
   }
-  if (match_agrees(now) && gnss_moved()) gnss_.excluded = true;
+  if (pose_valid && match_agrees(now) && gnss_moved()) gnss_.excluded = true;
   if (!match_agrees(now) && !match_is_disputed() && gnss_.refused_in_a_row >= kGnssRefusals &&
       !gnss_.excluded) {
     verdict.undecided = true;

@@ -36,8 +36,9 @@ class Arbiter {
                 const std::optional<Eigen::Vector3d>& gnss_error);
 
   /// To be called after the measurements of one cycle. `trusted`: the pose has been valid since the
-  /// filter started; before, a refused match says nothing about who is wrong.
-  Verdict judge(Time now, bool trusted);
+  /// filter started; before, a refused match says nothing about who is wrong. `pose_valid`: it is
+  /// valid now. Only then GNSS can be outvoted: a lost pose needs it.
+  Verdict judge(Time now, bool trusted, bool pose_valid);
 
   /// Whether the filter may use a measurement of this voter.
   bool trusts_match() const { return !match_.excluded; }
@@ -64,6 +65,7 @@ class Arbiter {
     std::optional<Time> last_passed;
     Eigen::Vector3d last_passed_error = Eigen::Vector3d::Zero();
     bool excluded = false;
+    bool far_off = false;  ///< the latest innovation is larger than any scatter
     /// Moving average of the innovations in their standard deviations, per axis. Near zero unless
     /// the voter drifts against the filter.
     Eigen::Vector3d drift = Eigen::Vector3d::Zero();
@@ -83,7 +85,9 @@ class Arbiter {
 
   static constexpr int kDisputingRefusals = 3;
 
-  bool match_is_disputed() const { return match_.refused_in_a_row >= kDisputingRefusals; }
+  bool match_is_disputed() const {
+    return match_.refused_in_a_row >= kDisputingRefusals || match_.far_off;
+  }
   bool match_agrees(Time now) const;
   bool gnss_moved() const;
   bool match_jumps(Time time, const PoseInnovation& innovation) const;

@@ -30,6 +30,7 @@ Seen EvidenceMonitor::judge(MatchResult& match) {
   seen.heading = match.evidence_share.z() >= limits_.min_share;
   seen.unique = match.rival_peak.y() <= limits_.max_rival_peak;
   seen.place = mean_score_ >= limits_.min_score;
+  seen.clear = mean_score_ >= limits_.min_start_score;
   return seen;
 }
 

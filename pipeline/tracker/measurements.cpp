@@ -11,6 +11,10 @@ namespace {
 /// evidence: sigma grows by a factor of 100 at most.
 constexpr double kMinEvidenceShare = 1e-4;
 
+/// The solver's sigmas are those of the middle of the distribution. The 99 % quantiles of measured
+/// errors, in these sigmas, are this much larger than those of a normal distribution.
+constexpr double kTailFactor = 1.25;
+
 constexpr double kUnknownYaw_rad = 1e3;
 
 /// Covariance of the match alone. The solver's covariance includes its own prior, a uniform
@@ -20,7 +24,7 @@ constexpr double kUnknownYaw_rad = 1e3;
 /// without evidence along the road would confirm its own starting pose again and again.
 Eigen::Matrix3d covariance_of_match(const MatchResult& result) {
   const Eigen::Vector3d growth =
-      result.evidence_share.cwiseMax(kMinEvidenceShare).cwiseInverse().cwiseSqrt();
+      kTailFactor * result.evidence_share.cwiseMax(kMinEvidenceShare).cwiseInverse().cwiseSqrt();
   return growth.asDiagonal() * result.covariance * growth.asDiagonal();
 }
 

@@ -16,6 +16,9 @@ struct MeasurementModel {
   /// Standard deviations that are added to the correlated part of every match, because calibration
   /// and map have errors that the solver cannot see: (x m, y m, yaw rad).
   Eigen::Vector3d match_floor{0.05, 0.08, radians(0.08)};
+  /// Standard deviations of the error that all matches of a drive share, from calibration and map:
+  /// (x m, y m, yaw rad). No number of matches averages it out, so every pose has it.
+  Eigen::Vector3d constant_error{0.08, 0.06, radians(0.08)};
   /// Share of a GNSS sample's variance that is correlated over time.
   double gnss_correlated_share = 0.9;
   /// A receiver that reports smaller sigmas is not trusted more.

@@ -64,7 +64,7 @@ struct MotionNoise {
   double lateral_m_per_sqrt_m = 0.01;            ///< side slip
   double yaw_rad_per_sqrt_s = radians(0.1);      ///< yaw rate noise
   double speed_scale_per_sqrt_s = 2e-4;          ///< change of tyre temperature and pressure
-  double yaw_rate_bias_radps_per_sqrt_s = 5e-5;  ///< drift of the sensor bias
+  double yaw_rate_bias_radps_per_sqrt_s = 6e-4;  ///< drift of the sensor bias
   /// Unmeasured accelerations between two samples; they matter only where samples are missing.
   double acceleration_mps2 = 3.0;
   double yaw_acceleration_radps2 = 0.5;

@@ -16,13 +16,16 @@ constexpr double kDriving_mps = 0.5;
 /// changes its speed faster.
 constexpr double kMaxAcceleration_mps2 = 13.0;
 constexpr double kSpeedNoise_mps = 0.6;
+/// A vehicle that turns round stands for a moment. Samples further apart than this may miss it.
+constexpr double kStandstill_mps = 1.0;
+constexpr double kGap_s = 0.5;
 constexpr double kMaxYawAcceleration_radps2 = radians(150.0);
 constexpr double kYawRateNoise_radps = radians(2.0);
 
 }  // namespace
 
 bool OdometryMonitor::accept(const OdometrySample& sample) {
-  implausible_ = is_stuck(sample) || jumps(sample);
+  implausible_ = is_stuck(sample) || jumps(sample) || turns_round(sample);
   latest_ = sample;
   if (!implausible_) accepted_ = sample;
   return !implausible_;
@@ -34,6 +37,15 @@ bool OdometryMonitor::is_stuck(const OdometrySample& sample) {
                        std::abs(sample.speed_mps) > kDriving_mps;
   repetitions_ = repeats ? repetitions_ + 1 : 0;
   return repetitions_ >= kStuckRepetitions;
+}
+
+/// Whether the speed has changed its sign without a standstill in between. Unlike a jump this is
+/// never accepted in the end, as long as the samples follow each other.
+bool OdometryMonitor::turns_round(const OdometrySample& sample) const {
+  if (!accepted_ || !latest_ || to_seconds(sample.time - latest_->time) > kGap_s) return false;
+  return std::abs(sample.speed_mps) > kStandstill_mps &&
+         std::abs(accepted_->speed_mps) > kStandstill_mps &&
+         std::signbit(sample.speed_mps) != std::signbit(accepted_->speed_mps);
 }
 
 /// The permitted change grows with time since the last accepted sample, so a lasting change is

@@ -23,6 +23,7 @@ class OdometryMonitor {
  private:
   bool is_stuck(const OdometrySample& sample);
   bool jumps(const OdometrySample& sample) const;
+  bool turns_round(const OdometrySample& sample) const;
 
   std::optional<OdometrySample> latest_;    ///< refused or not
   std::optional<OdometrySample> accepted_;  ///< the reference for jumps

@@ -72,7 +72,7 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   pose_valid_ = pose_valid;
   trusted_ = trusted_ || pose_valid;
   const bool odometry_was_wrong = verdict_.odometry_contradicts;
-  verdict_ = arbiter_.judge(now, trusted_);
+  verdict_ = arbiter_.judge(now, trusted_, pose_valid);
   if (verdict_.odometry_contradicts && !odometry_was_wrong) tracker_.widen();
   if (arbiter_.match_drifts()) {
     tracker_.loosen_odometry();
@@ -91,14 +91,16 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
 std::optional<TrackedPose> PoseEstimator::pose_at(Time time) const {
   auto pose = tracker_.pose_at(time);
   if (!pose) return pose;
+  pose->covariance.diagonal() += tracker_.parameters().measurements.constant_error.cwiseAbs2();
   if (const auto dispute = arbiter_.open_dispute()) {
-    pose->covariance.diagonal() += dispute->cwiseAbs2();
+    // Two places are equally likely: the variance of their mixture.
+    pose->covariance.diagonal() += 0.25 * dispute->cwiseAbs2();
   }
   return pose;
 }
 
 bool PoseEstimator::gnss_confirms() const {
-  if (!arbiter_.trusts_gnss()) return true;  // excluded: the match and dead reckoning agree
+  if (!gnss_passed_ || gnss_refused_in_a_row_ > 0) return false;
   const Eigen::Vector3d error = tracker_.gnss_error().cwiseAbs();
   return error.x() <= kConfirmingAlong && error.y() <= kConfirmingAcross &&
          error.z() <= kConfirmingYaw;

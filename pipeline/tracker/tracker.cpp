@@ -234,7 +234,9 @@ void Tracker::replay_from(size_t position) {
       event.state.covariance(FilterState::kSpeedScale, FilterState::kSpeedScale) +=
           square_of(parameters_.initial_speed_scale_sigma);
       event.state.covariance(FilterState::kYawRateBias, FilterState::kYawRateBias) +=
-          square_of(parameters_.initial_yaw_rate_bias_sigma_radps);
+          square_of(parameters_.loosened_yaw_rate_bias_sigma_radps);
+      event.state.covariance(FilterState::kYaw, FilterState::kYaw) +=
+          square_of(parameters_.loosened_yaw_sigma_rad);
     }
     if (event.kind == TrackerEvent::Kind::kWiden) {
       event.state.covariance(FilterState::kX, FilterState::kX) +=

@@ -30,9 +30,9 @@ struct TrackerParameters {
   double initial_speed_scale_sigma = 0.02;
   double initial_yaw_rate_bias_sigma_radps = radians(0.3);
 
-  /// Gate: a measured pose with a larger squared Mahalanobis distance is refused. This is the 99.9
-  /// % quantile of the chi-square distribution with three degrees of freedom.
-  double gate_squared_distance = 16.27;
+  /// Gate: a measured pose with a larger squared Mahalanobis distance is refused. This is the
+  /// 99.99 % quantile of the chi-square distribution with three degrees of freedom.
+  double gate_squared_distance = 21.1;
 
   /// Consecutive measurements are not independent: see FilterState and MeasurementModel.
   ErrorCorrelation correlation;
@@ -40,6 +40,10 @@ struct TrackerParameters {
 
   double widened_position_sigma_m = 3.0;  ///< added by widen(), per axis
   double widened_yaw_sigma_rad = radians(5.0);
+
+  /// Added by loosen_odometry().
+  double loosened_yaw_rate_bias_sigma_radps = radians(1.0);
+  double loosened_yaw_sigma_rad = radians(0.5);
 
   double history_s = 2.0;          ///< a measurement may arrive this late
   size_t history_capacity = 1024;  ///< events in `history_s`: odometry, GNSS, corrections; > 1
@@ -122,8 +126,8 @@ class Tracker {
   /// measurements pass the gate and outweigh it.
   void widen();
 
-  /// Raises the uncertainty of the scale error and of the yaw rate bias, because dead reckoning
-  /// drifts: the next measurements correct them.
+  /// Raises the uncertainty of the scale error, of the yaw rate bias and of the yaw, because dead
+  /// reckoning drifts: the next measurements correct them.
   void loosen_odometry();
 
   /// Forgets the pose; the next GNSS sample sets it again.
