@@ -11,7 +11,7 @@ namespace {
 using namespace bevloc;
 using namespace bevloc::firmware;
 
-Status run(const ProgramOptions& options) {
+Status run(const ProgramOptions& options, const LogWriter& log) {
   const auto config = load_config(options.config_file);
   if (!config) return tl::unexpected(config.error());
   if (options.check_config) return check_and_print(options, *config);
@@ -20,7 +20,7 @@ Status run(const ProgramOptions& options) {
   if (!rig) return tl::unexpected(rig.error());
   drivers::LibgpiodGpio gpio;
   const auto open_bus = [&config] { return open_can_bus(config->can); };
-  return run_daemon(*config, *rig, gpio, open_bus, stop_requested);
+  return run_daemon(*config, *rig, {gpio, open_bus, stop_requested, &log});
 }
 
 }  // namespace
@@ -29,5 +29,6 @@ int main(int argc, char** argv) {
   CLI::App app("Localizes a vehicle in its HD map");
   ProgramOptions options;
   declare_options(app, options);
-  return run_program(app, argc, argv, [&options] { return run(options); });
+  return run_program(app, argc, argv,
+                     [&options](const LogWriter& log) { return run(options, log); });
 }

@@ -13,6 +13,9 @@ class Clock {
 
   /// Returns at `time` or later, and immediately if `time` has passed.
   virtual void sleep_until(Time time) = 0;
+
+  /// For how long the machine was suspended since its start. now() stood still meanwhile.
+  virtual Duration suspended() const = 0;
 };
 
 /// CLOCK_MONOTONIC, the clock of V4L2's frame timestamps. Thread-safe.
@@ -20,6 +23,7 @@ class MonotonicClock final : public Clock {
  public:
   Time now() const override;
   void sleep_until(Time time) override;
+  Duration suspended() const override;
 };
 
 /// A clock that advances only by advance() and by sleep_until(). For lockstep drives and for tests.
@@ -31,10 +35,15 @@ class VirtualClock final : public Clock {
   Time now() const override { return now_; }
   void sleep_until(Time time) override { now_ = time > now_ ? time : now_; }
 
+  Duration suspended() const override { return suspended_; }
+
   void advance(Duration duration);
+  /// Simulates that the machine was suspended.
+  void suspend(Duration duration) { suspended_ += duration; }
 
  private:
   Time now_;
+  Duration suspended_{};
 };
 
 }  // namespace bevloc::drivers

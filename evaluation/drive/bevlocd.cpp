@@ -71,7 +71,8 @@ Status simulate(const DriveOptions& options, const DriveConfig& config, const Ri
   return write_file(options.json_file, to_json(*report));
 }
 
-Status run(const firmware::ProgramOptions& program, const DriveOptions& drive) {
+Status run(const firmware::ProgramOptions& program, const DriveOptions& drive,
+           const firmware::LogWriter& log) {
   auto config = load_drive_config(program.config_file);
   if (!config) return tl::unexpected(config.error());
   if (Status status = apply(drive, program.config_file, *config); !status) return status;
@@ -83,7 +84,7 @@ Status run(const firmware::ProgramOptions& program, const DriveOptions& drive) {
   BusFactory buses(config->can);
   const auto open_bus = [&buses] { return buses.connect_appliance(); };
   drivers::LibgpiodGpio gpio;
-  return firmware::run_daemon(*config, *rig, gpio, open_bus, firmware::stop_requested);
+  return firmware::run_daemon(*config, *rig, {gpio, open_bus, firmware::stop_requested, &log});
 }
 
 }  // namespace
@@ -94,5 +95,6 @@ int main(int argc, char** argv) {
   DriveOptions drive;
   firmware::declare_options(app, program);
   declare_options(app, drive);
-  return firmware::run_program(app, argc, argv, [&] { return run(program, drive); });
+  return firmware::run_program(
+      app, argc, argv, [&](const firmware::LogWriter& log) { return run(program, drive, log); });
 }

@@ -125,8 +125,11 @@ void SimulatedRun::run(const StopWhen& stop) {
   const firmware::Companion companion{[this] { return vehicle_->next_due(); },
                                       [this](Time now) { vehicle_->send_due(now); },
                                       [this](Duration timeout) { judge_->step(timeout); }};
-  firmware::Supervisor supervisor(*appliance_, realtime_);
+  firmware::Watchdog watchdog(appliance_->estimation().counters().state);
+  watchdog.watch_stages(*appliance_);
+  firmware::Supervisor supervisor(*appliance_, realtime_, watchdog);
   const auto supervise = [&](Time now) {
+    watchdog.step(now);
     supervisor.step(now);
     const double time_s = to_seconds(now - drive_start_);
     const bool last = time_s >= duration_s || stop(supervisor.view());

@@ -9,6 +9,7 @@
 #include "drivers/camera/camera.h"
 #include "drivers/clock/clock.h"
 #include "firmware/config/config.h"
+#include "firmware/runtime/heartbeat.h"
 #include "firmware/stages/capture_stage.h"
 #include "firmware/stages/estimation_stage.h"
 #include "firmware/stages/vehicle_input_stage.h"
@@ -22,6 +23,13 @@ struct Hardware {
   std::unique_ptr<can::Bus> bus;
   drivers::Clock* clock = nullptr;            ///< must outlive the appliance
   const drivers::PulseLog* pulses = nullptr;  ///< of the trigger; null without one
+};
+
+/// The signs of life of the threads that have one stage each; a capture stage has its own.
+struct StageHeartbeats {
+  Heartbeat vision;
+  Heartbeat can_in;
+  Heartbeat can_out;
 };
 
 /// Where the frames of all cameras went.
@@ -49,6 +57,9 @@ class Appliance {
 
   drivers::Clock& clock() { return *hardware_.clock; }
   std::deque<CaptureStage>& capture() { return capture_; }
+  const std::deque<CaptureStage>& capture() const { return capture_; }
+  StageHeartbeats& heartbeats() { return heartbeats_; }
+  const StageHeartbeats& heartbeats() const { return heartbeats_; }
   VehicleInputStage& vehicle_input() { return vehicle_input_; }
   VisionStage& vision() { return vision_; }
   EstimationStage& estimation() { return estimation_; }
@@ -77,6 +88,7 @@ class Appliance {
   VehicleInputStage vehicle_input_;
   VisionStage vision_;
   EstimationStage estimation_;
+  StageHeartbeats heartbeats_;
 };
 
 /// The configuration of the publisher and of the localizer.

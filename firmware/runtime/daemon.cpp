@@ -1,50 +1,130 @@
 #include "firmware/runtime/daemon.h"
 
+#include <thread>
+
 #include <spdlog/spdlog.h>
 
 #include "firmware/runtime/camera_factory.h"
+#include "firmware/runtime/fault_line.h"
 #include "firmware/runtime/gpio_lines.h"
 #include "firmware/runtime/realtime.h"
 #include "firmware/runtime/runner.h"
+#include "firmware/runtime/status_led.h"
 #include "firmware/runtime/supervisor.h"
+#include "firmware/runtime/trigger_thread.h"
+#include "firmware/runtime/watchdog.h"
 #include "firmware/telemetry/totals_log.h"
 #include "firmware/telemetry/view_log.h"
 #include "pipeline/map/map_loader.h"
 
 namespace bevloc::firmware {
+namespace {
 
-Status run_daemon(const Config& config, const Rig& rig, drivers::Gpio& gpio,
-                  const OpenBus& open_bus, const std::function<bool()>& stop) {
+constexpr Duration kStandbyPeriod = std::chrono::milliseconds(100);
+/// The start of an appliance takes about a second. systemd/bevlocd.service allows as much at the
+/// start of the daemon.
+constexpr Duration kStartTimeout = std::chrono::seconds(30);
+
+/// The daemon's devices that live from its start to its end.
+struct Base {
+  explicit Base(const RealtimeConfig& realtime_config) : realtime(realtime_config) {}
+
   drivers::MonotonicClock clock;
-  Realtime realtime(config.realtime);
-  // The GPIO lines come first, so that the fault line is active while the rest starts.
-  auto lines = GpioLines::open(config.gpio, gpio, clock, realtime);
-  if (!lines) return tl::unexpected(lines.error());
-  const drivers::Trigger* const trigger = (*lines)->trigger();
-  const auto map = load_map(config.map_file);
-  if (!map) return tl::unexpected(map.error());
-  auto bus = open_bus();
-  if (!bus) return tl::unexpected(bus.error());
-  auto cameras = make_cameras(config.cameras, rig, clock);
-  if (!cameras) return tl::unexpected(cameras.error());
+  Realtime realtime;
+  std::unique_ptr<FaultLine> fault;
+  std::unique_ptr<GpioLines> lines;
+  HdMap map;
+};
 
-  auto appliance = Appliance::create(
-      config, rig, *map,
-      {std::move(*cameras), std::move(*bus), &clock, trigger ? &trigger->pulses() : nullptr});
-  if (!appliance) return tl::unexpected(appliance.error());
+/// Waits until the ignition is on. False if the daemon shall end. This thread is the only one, so
+/// it feeds the watchdog itself.
+bool wait_for_ignition(Base& base, const DaemonHost& host) {
+  ServiceNotifier notifier;
+  for (bool first = true; !base.lines->step(false, base.clock.now()); first = false) {
+    if (first) {
+      spdlog::info("ignition off: standby");
+      notifier.ready();
+      notifier.status("standby: ignition off");
+    }
+    notifier.feed_watchdog();
+    if (host.stop()) {
+      notifier.stopping();
+      return false;
+    }
+    base.clock.sleep_until(base.clock.now() + kStandbyPeriod);
+  }
+  // Nobody can feed the watchdog while the appliance starts.
+  notifier.set_watchdog_timeout(kStartTimeout);
+  return true;
+}
 
-  Supervisor supervisor(**appliance, realtime);
+/// Runs a complete appliance until the ignition goes off (true) or the daemon shall end (false).
+bool run_appliance(Appliance& appliance, TriggerThread* trigger, Base& base,
+                   const DaemonHost& host) {
+  Watchdog watchdog(appliance.estimation().counters().state, base.fault.get());
+  watchdog.watch_stages(appliance);
+  Supervisor supervisor(appliance, base.realtime, watchdog);
+  watchdog.watch("supervisor", supervisor.heartbeat());
+  if (trigger != nullptr) watchdog.watch("trigger", trigger->heartbeat());
+  if (host.log != nullptr) watchdog.watch("log", host.log->heartbeat());
+  std::jthread watching = start_watchdog(watchdog, *base.fault, base.clock);
+
   ViewLog log;
-  run_threads(**appliance, realtime, nullptr, [&](Time now) {
+  bool ignition = true;
+  run_threads(appliance, base.realtime, nullptr, [&](Time now) {
     supervisor.step(now);
     log.note(supervisor.view());
-    const bool ignition = (*lines)->step(supervisor.view(), now);
-    if (!ignition) spdlog::info("ignition off: stopping");
-    return ignition && !stop();
+    ignition = base.lines->step(is_lit(supervisor.view().state, now), now);
+    const bool goes_on = ignition && !host.stop();
+    if (!goes_on) watching.request_stop();  // the fault line becomes active
+    return goes_on;
   });
-  supervisor.finish();
-  (*lines)->stop_trigger();
-  log_totals(**appliance, trigger);
+  if (ignition) supervisor.finish();
+  if (trigger != nullptr) trigger->stop();
+  log_totals(appliance, trigger != nullptr ? &trigger->trigger() : nullptr);
+  return !ignition;
+}
+
+/// Opens the remaining devices and runs an appliance on them; the result is run_appliance()'s.
+Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
+                           const DaemonHost& host) {
+  std::unique_ptr<TriggerThread> trigger;
+  if (config.gpio.trigger) {
+    auto started = TriggerThread::start(*config.gpio.trigger, host.gpio, base.clock, base.realtime);
+    if (!started) return tl::unexpected(started.error());
+    trigger = std::move(*started);
+  }
+  auto bus = host.open_bus();
+  if (!bus) return tl::unexpected(bus.error());
+  auto cameras = make_cameras(config.cameras, rig, base.clock);
+  if (!cameras) return tl::unexpected(cameras.error());
+  auto appliance = Appliance::create(config, rig, base.map,
+                                     {std::move(*cameras), std::move(*bus), &base.clock,
+                                      trigger ? &trigger->trigger().pulses() : nullptr});
+  if (!appliance) return tl::unexpected(appliance.error());
+  return run_appliance(**appliance, trigger.get(), base, host);
+}
+
+}  // namespace
+
+Status run_daemon(const Config& config, const Rig& rig, const DaemonHost& host) {
+  Base base(config.realtime);
+  // The fault line comes first, so that it is active while the rest starts.
+  auto fault = FaultLine::open(config.gpio.fault, host.gpio);
+  if (!fault) return tl::unexpected(fault.error());
+  base.fault = std::move(*fault);
+  auto lines = GpioLines::open(config.gpio, host.gpio, base.clock.now());
+  if (!lines) return tl::unexpected(lines.error());
+  base.lines = std::move(*lines);
+  auto map = load_map(config.map_file);
+  if (!map) return tl::unexpected(map.error());
+  base.map = std::move(*map);
+
+  while (wait_for_ignition(base, host)) {
+    const auto ignition_went_off = start_and_run(config, rig, base, host);
+    if (!ignition_went_off) return tl::unexpected(ignition_went_off.error());
+    if (!*ignition_went_off) break;
+  }
   return {};
 }
 

@@ -7,17 +7,26 @@
 #include "can/bus/bus.h"
 #include "drivers/gpio/gpio.h"
 #include "firmware/config/config.h"
+#include "firmware/telemetry/log_writer.h"
 
 namespace bevloc::firmware {
 
 /// Opens the appliance's endpoint on the CAN bus.
 using OpenBus = std::function<Result<std::unique_ptr<can::Bus>>()>;
 
-/// Runs until `stop`, which is called about ten times per second, returns true or the ignition goes
-/// off. Fails if the map, the model, the bus, a recording or a GPIO line cannot be opened. A camera
-/// that fails is no error: CaptureStage restarts it. `gpio` must outlive the call.
-Status run_daemon(const Config& config, const Rig& rig, drivers::Gpio& gpio,
-                  const OpenBus& open_bus, const std::function<bool()>& stop);
+/// What the daemon gets from its program. `gpio` and `log` must outlive run_daemon().
+struct DaemonHost {
+  drivers::Gpio& gpio;
+  OpenBus open_bus;            ///< called at each start of the appliance
+  std::function<bool()> stop;  ///< called about ten times per second; true ends the daemon
+  const LogWriter* log;        ///< whose thread is watched; null without one
+};
+
+/// Runs until `stop` returns true. While the ignition is off, the appliance is not running: the
+/// daemon waits in standby and starts it when the ignition returns. Fails if the map, the model,
+/// the bus, a recording or a GPIO line cannot be opened. A camera that fails is no error:
+/// CaptureStage restarts it.
+Status run_daemon(const Config& config, const Rig& rig, const DaemonHost& host);
 
 /// Sets the least severe level that is logged.
 void set_log_level(LogLevel level);

@@ -3,7 +3,10 @@
 #include <atomic>
 #include <csignal>
 
+#include <fcntl.h>
 #include <malloc.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "common/version.h"
 
@@ -13,9 +16,22 @@ namespace {
 constexpr int kBadInput = 2;
 
 std::atomic<bool> g_stop_requested{false};
+std::atomic<bool> g_hangup{false};
 
 void request_stop(int) {
   g_stop_requested = true;
+}
+
+void note_hangup(int) {
+  g_hangup = true;
+}
+
+/// A file that is opened later must not get the number of stdout or stderr: the log would be
+/// written into a camera.
+void open_closed_standard_files() {
+  for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(file, F_GETFD) == -1) open("/dev/null", O_RDWR);
+  }
 }
 
 }  // namespace
@@ -27,7 +43,18 @@ void declare_options(CLI::App& app, ProgramOptions& options) {
                "Check the configuration and everything that it names, then exit");
 }
 
+void handle_signals() {
+  std::signal(SIGTERM, request_stop);
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGHUP, note_hangup);
+  // A write into a closed pipe then fails instead of ending the process.
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
 bool stop_requested() {
+  if (g_hangup.exchange(false)) {
+    spdlog::info("SIGHUP ignored: restart the service to read the configuration again");
+  }
   return g_stop_requested;
 }
 
@@ -37,20 +64,22 @@ Status check_and_print(const ProgramOptions& options, const Config& config) {
   return {};
 }
 
-int run_program(CLI::App& app, int argc, char** argv, const std::function<Status()>& run) {
+int run_program(CLI::App& app, int argc, char** argv, const Run& run) {
   // One heap arena for all threads. Threads allocate at their start and hardly ever later, so
   // separate arenas would only keep unused memory.
   mallopt(M_ARENA_MAX, 1);
-  std::signal(SIGTERM, request_stop);
-  std::signal(SIGINT, request_stop);
+  open_closed_standard_files();
+  handle_signals();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
-  const Status status = run();
+  const LogWriter log;
+  const Status status = run(log);
   if (status) return 0;
-  fmt::print(stderr, "bevlocd: {}\n", status.error().message);
+  write_with_patience(STDERR_FILENO, fmt::format("bevlocd: {}\n", status.error().message),
+                      LogWriter::kFarewell);
   return kBadInput;
 }
 

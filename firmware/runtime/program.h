@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "firmware/config/config.h"
+#include "firmware/telemetry/log_writer.h"
 
 namespace bevloc::firmware {
 
@@ -19,15 +20,22 @@ struct ProgramOptions {
 /// Adds the options of every bevlocd to `app`; parsing fills `options`, which must outlive it.
 void declare_options(CLI::App& app, ProgramOptions& options);
 
-/// True after SIGTERM or SIGINT. Thread-safe.
+/// SIGTERM and SIGINT set stop_requested(). SIGHUP is logged and ignored: it must not end the
+/// localization without a last LOST.
+void handle_signals();
+
+/// True after SIGTERM or SIGINT. Logs a SIGHUP. Thread-safe.
 bool stop_requested();
 
 /// Checks the configuration and everything that it names, and prints "FILE: good" if nothing is
 /// wrong (--check-config).
 Status check_and_print(const ProgramOptions& options, const Config& config);
 
-/// Parses the command line and calls `run`. Returns the exit code: 0 on success; 2 with one line on
-/// stderr if the command line or an input is wrong.
-int run_program(CLI::App& app, int argc, char** argv, const std::function<Status()>& run);
+/// What a program does after its command line was parsed. `log` writes the log meanwhile.
+using Run = std::function<Status(const LogWriter& log)>;
+
+/// Handles signals, parses the command line, starts the log and calls `run`. Returns the exit code:
+/// 0 on success; 2 with one line on stderr if the command line or an input is wrong.
+int run_program(CLI::App& app, int argc, char** argv, const Run& run);
 
 }  // namespace bevloc::firmware

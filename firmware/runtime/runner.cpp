@@ -1,10 +1,15 @@
 #include "firmware/runtime/runner.h"
 
 #include <atomic>
+#include <cstdlib>
+#include <deque>
+#include <string>
 #include <thread>
-#include <vector>
+
+#include <spdlog/spdlog.h>
 
 #include "can/messages/localizer_messages.h"
+#include "firmware/runtime/clock_gap.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -13,13 +18,24 @@ namespace {
 constexpr Duration kPatience = std::chrono::milliseconds(50);
 constexpr Duration kBusCycle = std::chrono::milliseconds(can::kSolutionCycleMs);
 constexpr Duration kSupervisionPeriod = std::chrono::milliseconds(100);
+/// Every thread ends after kPatience and one step. systemd kills the daemon after 5 s
+/// (TimeoutStopSec=).
+constexpr Duration kEndPatience = std::chrono::seconds(4);
+
+/// Forgets the pose when the clock had a gap, then publishes.
+void publish(Appliance& appliance, ClockGapDetector& gaps) {
+  if (const auto gap = gaps.look(appliance.clock())) appliance.estimation().note_clock_gap(*gap);
+  appliance.estimation().tick(appliance.clock().now());
+  appliance.heartbeats().can_out.beat();
+}
 
 void publish_on_cycle(Appliance& appliance, const std::atomic<bool>& running) {
+  ClockGapDetector gaps;
   Time due = appliance.clock().now();
   while (running) {
     appliance.clock().sleep_until(due);
+    publish(appliance, gaps);
     const Time now = appliance.clock().now();
-    appliance.estimation().tick(now);
     due += kBusCycle;
     // After a stall, continue from now instead of sending a burst.
     if (due < now) due = now;
@@ -34,27 +50,60 @@ void act_when_due(drivers::Clock& clock, const Companion& companion,
   }
 }
 
-using Threads = std::vector<std::jthread>;
+/// A thread that says when it has ended, because a join cannot give up.
+class EndingThread {
+ public:
+  template <typename Work>
+  EndingThread(std::string name, Work work)
+      : name_(std::move(name)), thread_([this, work = std::move(work)] {
+          work();
+          ended_ = true;
+        }) {}
+
+  bool ended() const { return ended_; }
+  const std::string& name() const { return name_; }
+
+ private:
+  const std::string name_;
+  std::atomic<bool> ended_{false};
+  std::jthread thread_;
+};
+
+/// A deque, because a thread cannot be moved.
+using Threads = std::deque<EndingThread>;
+
+void capture(CaptureStage& stage, const std::atomic<bool>& running) {
+  while (running && stage.step(kPatience)) {
+  }
+  stage.stop();
+  stage.heartbeat().end();
+}
 
 void start_stages(Appliance& appliance, Realtime& realtime, const std::atomic<bool>& running,
                   Threads& threads) {
+  StageHeartbeats& heartbeats = appliance.heartbeats();
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    threads.emplace_back([&stage = appliance.capture()[camera], camera, &realtime, &running] {
-      realtime.begin_thread(ThreadRole::kCapture, fmt::format("cam-{}", kCameraNames[camera]));
-      while (running && stage.step(kPatience)) {
-      }
-      stage.stop();
+    const std::string name = fmt::format("cam-{}", kCameraNames[camera]);
+    threads.emplace_back(name, [&stage = appliance.capture()[camera], name, &realtime, &running] {
+      realtime.begin_thread(ThreadRole::kCapture, name);
+      capture(stage, running);
     });
   }
-  threads.emplace_back([&] {
+  threads.emplace_back("vision", [&] {
     realtime.begin_thread(ThreadRole::kVision, "vision");
-    while (running) appliance.vision().step(appliance.clock(), kPatience);
+    while (running) {
+      heartbeats.vision.beat();
+      appliance.vision().step(appliance.clock(), kPatience);
+    }
   });
-  threads.emplace_back([&] {
+  threads.emplace_back("can-in", [&] {
     realtime.begin_thread(ThreadRole::kCan, "can-in");
-    while (running) appliance.vehicle_input().step(kPatience);
+    while (running) {
+      heartbeats.can_in.beat();
+      appliance.vehicle_input().step(kPatience);
+    }
   });
-  threads.emplace_back([&] {
+  threads.emplace_back("can-out", [&] {
     realtime.begin_thread(ThreadRole::kCan, "can-out");
     publish_on_cycle(appliance, running);
   });
@@ -62,14 +111,50 @@ void start_stages(Appliance& appliance, Realtime& realtime, const std::atomic<bo
 
 void start_companion(drivers::Clock& clock, const Companion& companion,
                      const std::atomic<bool>& running, Threads& threads) {
-  threads.emplace_back([&] {
+  threads.emplace_back("sim-vehicle", [&] {
     name_this_thread("sim-vehicle");
     act_when_due(clock, companion, running);
   });
-  threads.emplace_back([&] {
+  threads.emplace_back("sim-judge", [&] {
     name_this_thread("sim-judge");
     while (running) companion.listen(kPatience);
   });
+}
+
+/// Waits until the threads for which `wanted` is true have ended, until `give_up`. Returns the
+/// names of those that have not.
+template <typename Wanted>
+std::string wait_for_end(const Threads& threads, std::chrono::steady_clock::time_point give_up,
+                         Wanted wanted) {
+  std::string names;
+  for (const EndingThread& thread : threads) {
+    if (!wanted(thread.name())) continue;
+    while (!thread.ended() && std::chrono::steady_clock::now() < give_up) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (!thread.ended()) names += (names.empty() ? "" : ", ") + thread.name();
+  }
+  return names;
+}
+
+/// Says LOST on the bus. The threads of the bus are waited for; another one may still hang.
+void sign_off(Appliance& appliance, const Threads& threads,
+              std::chrono::steady_clock::time_point give_up) {
+  const auto has_ended = [&](const char* name) {
+    return wait_for_end(threads, give_up, [&](const auto& other) { return other == name; }).empty();
+  };
+  // Receives the confirmations of the last cycle; without them the bus would hold back the
+  // sign-off.
+  if (has_ended("can-in")) appliance.vehicle_input().step(Duration::zero());
+  if (has_ended("can-out")) appliance.estimation().sign_off(appliance.clock().now());
+}
+
+/// The stages still use the appliance, which therefore cannot be destroyed.
+[[noreturn]] void leave_behind(const std::string& names) {
+  spdlog::error("thread {} did not end within {} s: leaving without it", names,
+                to_seconds(kEndPatience));
+  std::this_thread::sleep_for(2 * kPatience);  // for the log
+  std::_Exit(kHungExitCode);
 }
 
 }  // namespace
@@ -89,23 +174,25 @@ void run_threads(Appliance& appliance, Realtime& realtime, const Companion* comp
   } while (supervise(clock.now()));
   running = false;
   appliance.close();
-  threads.clear();
-  // Receives the confirmations of the last cycle; without them the bus would hold back the
-  // sign-off.
-  appliance.vehicle_input().step(Duration::zero());
-  appliance.estimation().sign_off(clock.now());
+  const auto give_up = std::chrono::steady_clock::now() + kEndPatience;
+  sign_off(appliance, threads, give_up);
+  const std::string hung = wait_for_end(threads, give_up, [](const auto&) { return true; });
+  if (!hung.empty()) leave_behind(hung);
 }
 
 void run_lockstep(Appliance& appliance, drivers::VirtualClock& clock, const Companion* companion,
                   const Supervise& supervise) {
+  ClockGapDetector gaps;
   Time next_supervision = clock.now();
   for (bool running = true; running; clock.advance(kBusCycle)) {
     const Time now = clock.now();
     if (companion != nullptr) companion->act(now);
     appliance.vehicle_input().step(Duration::zero());
+    appliance.heartbeats().can_in.beat();
     for (CaptureStage& stage : appliance.capture()) stage.step(Duration::zero());
     appliance.vision().step(clock, Duration::zero());
-    appliance.estimation().tick(now);
+    appliance.heartbeats().vision.beat();
+    publish(appliance, gaps);
     if (companion != nullptr) companion->listen(Duration::zero());
     if (now >= next_supervision) {
       next_supervision = now + kSupervisionPeriod;

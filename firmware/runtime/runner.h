@@ -16,13 +16,17 @@ struct Companion {
   std::function<void(Duration timeout)> listen;  ///< the judge: waits for CAN frames
 };
 
+/// Exit code of a process that ended although one of its threads hung.
+inline constexpr int kHungExitCode = 3;
+
 /// Called about ten times per second in the calling thread. Returning false ends the run.
 using Supervise = std::function<bool(Time now)>;
 
 /// Starts one thread per camera, one each for vision, CAN in and CAN out, and two for the
 /// companion; the calling thread supervises. `realtime` applies to the appliance's threads only.
 /// `companion`: null without one. Returns after `supervise` has returned false, all threads have
-/// ended and the sign-off is sent.
+/// ended and the sign-off is sent. If a thread hangs and does not end within 4 s, the process exits
+/// with kHungExitCode after the sign-off.
 void run_threads(Appliance& appliance, Realtime& realtime, const Companion* companion,
                  const Supervise& supervise);
 

@@ -3,17 +3,22 @@
 
 #include <string>
 
+#include "common/time.h"
+
 namespace bevloc::firmware {
 
 /// Without a service manager, all calls do nothing. One thread.
 class ServiceNotifier {
  public:
+  /// Also returns to the watchdog timeout of the unit.
   void ready();
   void stopping();
   /// Sets the line that `systemctl status` shows. Sent only when it changes.
   void status(const std::string& text);
-  /// To be called only if every stage has made progress since the last call.
+  /// To be called only while every thread makes progress.
   void feed_watchdog();
+  /// Changes the watchdog timeout until ready().
+  void set_watchdog_timeout(Duration timeout);
 
  private:
   std::string sent_status_;

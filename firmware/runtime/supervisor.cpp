@@ -8,12 +8,11 @@ namespace {
 
 /// The frameset rate is averaged over this time.
 constexpr Duration kRatePeriod = std::chrono::seconds(1);
-/// A stage without progress for this long counts as stalled.
-constexpr Duration kStall = std::chrono::seconds(1);
 
 }  // namespace
 
 void Supervisor::step(Time now) {
+  heartbeat_.beat();
   const EstimationCounters& estimation = appliance_.estimation().counters();
   view_.state = estimation.state;
   view_.why = WhyMask::from_bits(estimation.why);
@@ -28,14 +27,9 @@ void Supervisor::step(Time now) {
   view_.dirty = CameraMask(vision.dirty);
   view_.network_fault = vision.network_fault;
   view_.realtime_refusals = realtime_.refusals();
+  view_.hung = hung_threads(now);
   update_rate(now);
-
-  if (!ready_) {
-    notifier_.ready();
-    ready_ = true;
-  }
   notifier_.status(status_text());
-  watch_stages(now);
 }
 
 std::string Supervisor::status_text() const {
@@ -43,23 +37,17 @@ std::string Supervisor::status_text() const {
   std::string text =
       fmt::format("{}{}{}, cameras {}/{}, CAN {}", to_string(view_.state), why.empty() ? "" : ": ",
                   why, view_.cameras, kCameraCount, can::to_string(view_.bus));
+  if (!view_.hung.empty()) text += fmt::format(", hangs: {}", view_.hung);
   if (view_.realtime_refusals > 0) {
     text += fmt::format(", {} realtime settings refused", view_.realtime_refusals);
   }
   return text;
 }
 
-void Supervisor::watch_stages(Time now) {
-  const uint64_t ticks = appliance_.estimation().counters().ticks;
-  const uint64_t steps = appliance_.vision().counters().steps;
-  if (!last_progress_) last_progress_ = now;
-  if (ticks != last_ticks_ && steps != last_steps_) {
-    notifier_.feed_watchdog();
-    last_ticks_ = ticks;
-    last_steps_ = steps;
-    last_progress_ = now;
-  }
-  view_.stalled = now - *last_progress_ > kStall;
+std::string Supervisor::hung_threads(Time now) {
+  std::string hung = watchdog_.hung();
+  if (watchdog_watch_.hangs(now)) hung += hung.empty() ? "watchdog" : ", watchdog";
+  return hung;
 }
 
 void Supervisor::update_rate(Time now) {

@@ -1,13 +1,13 @@
-// Checks that every stage makes progress, and reports the appliance state to the service manager.
+// Collects the state of the appliance and reports it to the service manager.
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 
 #include "firmware/runtime/appliance.h"
 #include "firmware/runtime/realtime.h"
 #include "firmware/runtime/service_notifier.h"
+#include "firmware/runtime/watchdog.h"
 
 namespace bevloc::firmware {
 
@@ -18,7 +18,7 @@ struct ApplianceView {
   int cameras = 0;  ///< used in the latest frameset
   can::BusCondition bus;
   double rate_hz = 0.0;       ///< framesets per second, averaged over about one second
-  bool stalled = false;       ///< a stage has made no progress for one second
+  std::string hung;           ///< names of the threads that hang, separated by commas
   int realtime_refusals = 0;  ///< settings of the section `realtime` that the kernel refused
   std::array<double, kCameraCount> drift_ppm{};  ///< as in SynchronyCounters
   CameraMask frozen;                             ///< as in VisionCounters, also the next three
@@ -28,34 +28,36 @@ struct ApplianceView {
   bool network_fault = false;
 };
 
-/// Thread-bound: called from the supervising thread.
+/// Thread-bound: called from the supervising thread; heartbeat() is readable from any thread.
 class Supervisor {
  public:
-  /// Both must outlive the supervisor.
-  Supervisor(const Appliance& appliance, const Realtime& realtime)
-      : appliance_(appliance), realtime_(realtime) {}
+  /// All must outlive the supervisor.
+  Supervisor(const Appliance& appliance, const Realtime& realtime, const Watchdog& watchdog)
+      : appliance_(appliance),
+        realtime_(realtime),
+        watchdog_(watchdog),
+        watchdog_watch_(watchdog.heartbeat()) {}
 
-  /// Updates the view and feeds the watchdog. To be called about ten times per second. The watchdog
-  /// is fed only if both vision and estimation have made progress since the last call.
+  /// Updates the view. To be called about ten times per second.
   void step(Time now);
   /// Reports to the service manager that the appliance stops.
   void finish() { notifier_.stopping(); }
 
+  const Heartbeat& heartbeat() const { return heartbeat_; }
   const ApplianceView& view() const { return view_; }
 
  private:
   void update_rate(Time now);
-  void watch_stages(Time now);
+  std::string hung_threads(Time now);
   std::string status_text() const;
 
   const Appliance& appliance_;
   const Realtime& realtime_;
+  const Watchdog& watchdog_;
+  HeartbeatWatch watchdog_watch_;  ///< who watches the watchdog
+  Heartbeat heartbeat_;
   ServiceNotifier notifier_;
   ApplianceView view_;
-  bool ready_ = false;
-  uint64_t last_ticks_ = 0;
-  uint64_t last_steps_ = 0;
-  std::optional<Time> last_progress_;  ///< when all stages had last made progress
   Time rate_since_ = Time::min();
   uint64_t framesets_at_rate_start_ = 0;
 };

@@ -13,6 +13,7 @@ CaptureStage::CaptureStage(drivers::Camera& camera, const drivers::Clock& clock,
     : camera_(camera), clock_(clock), frames_(frames) {}
 
 bool CaptureStage::step(Duration timeout) {
+  heartbeat_.beat();
   if (!ensure_started(clock_.now())) {
     std::this_thread::sleep_for(timeout);
     return true;
@@ -32,6 +33,7 @@ bool CaptureStage::step(Duration timeout) {
 }
 
 void CaptureStage::stop() {
+  heartbeat_.beat(kDeviceDeadline);
   camera_.stop();
   running_ = false;
 }
@@ -39,19 +41,20 @@ void CaptureStage::stop() {
 bool CaptureStage::ensure_started(Time now) {
   if (running_) return true;
   if (now < next_start_) return false;
+  heartbeat_.beat(kDeviceDeadline);
   if (const Status started = camera_.start(); !started) {
     log_failed_start(started.error());
     note_failure(now);
     return false;
   }
+  heartbeat_.beat();
   running_ = true;
   return true;
 }
 
 void CaptureStage::note_failure(Time now) {
   ++failures_;
-  camera_.stop();
-  running_ = false;
+  stop();
   next_start_ = now + kPauseAfterFailure;
 }
 

@@ -7,6 +7,7 @@
 #include "common/result.h"
 #include "drivers/camera/camera.h"
 #include "drivers/clock/clock.h"
+#include "firmware/runtime/heartbeat.h"
 #include "firmware/stages/messages.h"
 
 namespace bevloc::firmware {
@@ -25,11 +26,17 @@ class CaptureStage {
   /// Stops the camera; the next step() starts it again.
   void stop();
 
+  /// Beats at each step. While the camera starts or stops, its deadline is longer.
+  Heartbeat& heartbeat() { return heartbeat_; }
+  const Heartbeat& heartbeat() const { return heartbeat_; }
+
   uint64_t captured() const { return captured_; }
   uint64_t failures() const { return failures_; }
 
  private:
   static constexpr Duration kPauseAfterFailure = std::chrono::milliseconds(500);
+  /// To open or to close a device takes up to some seconds, while a kernel driver waits for it.
+  static constexpr Duration kDeviceDeadline = std::chrono::seconds(10);
 
   bool ensure_started(Time now);
   void note_failure(Time now);
@@ -38,6 +45,7 @@ class CaptureStage {
   drivers::Camera& camera_;
   const drivers::Clock& clock_;
   FrameQueue& frames_;
+  Heartbeat heartbeat_;
   bool running_ = false;
   Time next_start_ = Time::min();
   std::string logged_reason_;  ///< of the last failed start; empty after a frame

@@ -1,6 +1,7 @@
 #include "firmware/stages/estimation_stage.h"
 
 #include <cmath>
+#include <utility>
 
 namespace bevloc::firmware {
 namespace {
@@ -68,6 +69,15 @@ void EstimationStage::tick(Time now) {
   ++counters_.ticks;
 }
 
+void EstimationStage::note_clock_gap(Duration) {
+  clock_gap_noted_ = true;
+  while (samples_.pop(Duration::zero())) {
+  }
+  while (reports_.pop(Duration::zero())) {
+  }
+  latest_report_.reset();
+}
+
 void EstimationStage::sign_off(Time now) {
   can::PoseReport report;
   report.status = make_status();
@@ -92,7 +102,9 @@ void EstimationStage::take_samples() {
 }
 
 void EstimationStage::watch_clock(Time now) {
-  if (last_tick_ && now - *last_tick_ > kClockGap) {
+  const bool jumped = last_tick_ && now - *last_tick_ > kClockGap;
+  if (std::exchange(clock_gap_noted_, false) || jumped) {
+    ++counters_.clock_gaps;
     estimator_.restart();
     clock_gap_time_ = now;
   }

@@ -24,6 +24,7 @@ struct EstimationCounters {
   TrackerOutcomes odometry{};                 ///< by TrackerUpdate, as are the next two
   TrackerOutcomes gnss{};
   TrackerOutcomes corrections{};
+  std::atomic<uint64_t> clock_gaps{0};
   std::atomic<HealthState> state{HealthState::kInit};
   std::atomic<uint32_t> why{0};      ///< bits of a WhyMask
   std::atomic<unsigned> cameras{0};  ///< cameras used in the latest frameset, a CameraMask
@@ -46,6 +47,10 @@ class EstimationStage {
   /// Takes all queued samples and reports, then publishes the pose predicted to `now`. To be called
   /// once per bus cycle.
   void tick(Time now);
+
+  /// Forgets the pose and what is queued, because the vehicle may have been moved while the machine
+  /// was suspended. The next tick() reports LOST with Why::kClockGap.
+  void note_clock_gap(Duration gap);
 
   /// Publishes the state LOST without a pose, so that consumers need not wait for a timeout. To be
   /// called after the last tick().
@@ -88,6 +93,7 @@ class EstimationStage {
   std::optional<Time> clock_gap_time_;  ///< when the clock has jumped
   int accepted_in_a_row_ = 0;           ///< that confirm a start
   int refused_in_a_row_ = 0;
+  bool clock_gap_noted_ = false;  ///< note_clock_gap() was called since the latest tick
   EstimationCounters counters_;
 };
 

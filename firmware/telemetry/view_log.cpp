@@ -13,6 +13,13 @@ void ViewLog::note(const ApplianceView& view) {
   if (view.bus != before_.bus) {
     spdlog::warn("CAN {} -> {}", can::to_string(before_.bus), can::to_string(view.bus));
   }
+  if (view.hung != before_.hung) {
+    if (view.hung.empty()) {
+      spdlog::info("every thread makes progress again");
+    } else {
+      spdlog::error("no progress in thread {}; systemd restarts bevlocd if it lasts", view.hung);
+    }
+  }
   note_drifts(view);
   note_cameras(before_.frozen, view.frozen, "frozen, repeats images while the vehicle drives",
                "power-cycle the camera and check its lens");

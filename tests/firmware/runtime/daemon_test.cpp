@@ -10,6 +10,7 @@
 #include "can/bus/mock_bus.h"
 #include "drivers/mock/mock_gpio.h"
 #include "pipeline/calibration/rig_yaml.h"
+#include "tests/firmware/runtime/fake_manager.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -45,9 +46,10 @@ class DaemonTest : public testing::Test {
   Status run(const std::function<bool()>& stop) {
     const auto rig = read_rig(kSourceFolder / "config/rig_demo.yaml");
     EXPECT_TRUE(rig) << rig.error().message;
-    return run_daemon(
-        config_, *rig, gpio_, [this] { return wire_.connect(); }, stop);
+    return run_daemon(config_, *rig, {gpio_, [this] { return wire_.connect(); }, stop, nullptr});
   }
+
+  bool fault() const { return !gpio_.high("fault"); }  // active low
 
   std::filesystem::path folder_;
   Config config_;
@@ -56,24 +58,53 @@ class DaemonTest : public testing::Test {
   can::MockWire wire_{4096};
 };
 
-TEST_F(DaemonTest, EndsCleanlyWhenIgnitionGoesOff) {
+TEST_F(DaemonTest, WaitsInStandbyWhileTheIgnitionIsOffAndRunsAgain) {
+  FakeManager manager;
+  std::string messages;
+  const auto see = [&](const std::string& text) {
+    messages += manager.all();
+    return messages.find(text) != std::string::npos;
+  };
   int calls = 0;
-  bool fault_while_running = true;
+  int step = 0;
+  bool fault_in_standby = false;
+  const auto bus = wire_.connect();
   const Status status = run([&] {
-    if (++calls == 3) {
-      fault_while_running = !gpio_.high("fault");
+    if (step == 0 && see("READY=1") && !fault()) {
       gpio_.drive("ignition", false);
+      messages.clear();
+      step = 1;
+    } else if (step == 1 && see("STATUS=standby: ignition off") && see("WATCHDOG=1")) {
+      fault_in_standby = fault();
+      while (bus->receive()) {
+      }
+      EXPECT_EQ(messages.find("STOPPING"), std::string::npos);
+      messages.clear();
+      gpio_.drive("ignition", true);
+      step = 2;
+    } else if (step == 2 && see("READY=1") && !fault() && bus->receive()) {
+      step = 3;
     }
-    return calls == kMaxCalls;
+    return step == 3 || ++calls == kMaxCalls;
   });
   EXPECT_TRUE(status) << status.error().message;
-  EXPECT_LT(calls, kMaxCalls);
-  EXPECT_FALSE(fault_while_running);
-  EXPECT_FALSE(gpio_.high("fault")) << "active, which is low";
+  EXPECT_EQ(step, 3);
+  EXPECT_TRUE(fault_in_standby);
+  EXPECT_TRUE(see("STOPPING=1"));
+  EXPECT_TRUE(fault());
   EXPECT_FALSE(gpio_.high("trigger"));
   EXPECT_GE(gpio_.changes("trigger").size(), 2U);
   // All lines were released.
   EXPECT_TRUE(gpio_.open_input({MockGpio::kChip, "ignition"}));
+  EXPECT_TRUE(gpio_.open_output({MockGpio::kChip, "trigger"}, false));
+}
+
+TEST_F(DaemonTest, EndsInStandby) {
+  gpio_.drive("ignition", false);
+  int calls = 0;
+  EXPECT_TRUE(run([&] { return ++calls == 3; }));
+  EXPECT_EQ(calls, 3);
+  EXPECT_TRUE(gpio_.changes("trigger").empty());
 }
 
 TEST_F(DaemonTest, RunsWhileTheIgnitionIsOn) {

@@ -8,7 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "drivers/mock/mock_gpio.h"
+#include "firmware/runtime/fault_line.h"
 #include "firmware/runtime/status_led.h"
+#include "firmware/runtime/trigger_thread.h"
+#include "tests/firmware/log_capture.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -19,72 +22,109 @@ using std::chrono::milliseconds;
 
 constexpr Duration kDebounce = milliseconds(150);
 
-/// All lines but the trigger, whose thread cannot use the virtual clock of the test.
+/// A chip of which one output line fails.
+class OneBrokenLine final : public drivers::Gpio {
+ public:
+  OneBrokenLine(drivers::Gpio& gpio, std::string line) : gpio_(gpio), broken_(std::move(line)) {}
+
+  Result<std::unique_ptr<drivers::OutputLine>> open_output(const LineAddress& address,
+                                                           bool active) override {
+    if (address.line == broken_) return std::make_unique<Broken>();
+    return gpio_.open_output(address, active);
+  }
+  Result<std::unique_ptr<drivers::InputLine>> open_input(const LineAddress& address) override {
+    return gpio_.open_input(address);
+  }
+
+ private:
+  class Broken final : public drivers::OutputLine {
+   public:
+    Status set(bool) override { return fail("mock line: no such device"); }
+  };
+
+  drivers::Gpio& gpio_;
+  const std::string broken_;
+};
+
+const GpioConfig kLines{.trigger = {},
+                        .status_led = LineAddress{MockGpio::kChip, "led"},
+                        .fault = LineAddress{MockGpio::kChip, "fault", true},
+                        .ignition = IgnitionConfig{{MockGpio::kChip, "ignition"}, kDebounce}};
+
 class GpioLinesTest : public testing::Test {
  protected:
   GpioLinesTest() { gpio_.drive("ignition", true); }
 
-  static GpioConfig all_lines() {
-    GpioConfig config;
-    config.status_led = LineAddress{MockGpio::kChip, "led"};
-    config.fault = LineAddress{MockGpio::kChip, "fault", true};
-    config.ignition = IgnitionConfig{{MockGpio::kChip, "ignition"}, kDebounce};
-    return config;
-  }
-
-  void open(const GpioConfig& config = all_lines()) {
-    auto lines = GpioLines::open(config, gpio_, clock_, realtime_);
+  void open(const GpioConfig& config = kLines) { open(config, gpio_); }
+  void open(const GpioConfig& config, drivers::Gpio& gpio) {
+    auto lines = GpioLines::open(config, gpio, clock_.now());
     ASSERT_TRUE(lines) << lines.error().message;
     lines_ = std::move(*lines);
+    auto fault = FaultLine::open(config.fault, gpio);
+    ASSERT_TRUE(fault) << fault.error().message;
+    fault_ = std::move(*fault);
   }
 
-  bool step(HealthState state, Duration after = milliseconds(100)) {
+  bool step(bool lit = true, Duration after = milliseconds(100)) {
     clock_.advance(after);
-    ApplianceView view;
-    view.state = state;
-    return lines_->step(view, clock_.now());
+    return lines_->step(lit, clock_.now());
   }
 
   bool fault() const { return !gpio_.high("fault"); }  // active low
 
+  LogCapture log_;
   drivers::VirtualClock clock_{Time(milliseconds(1000))};
   MockGpio gpio_{{"led", "fault", "ignition"}, clock_};
-  Realtime realtime_{{}};
   std::unique_ptr<GpioLines> lines_;
+  std::unique_ptr<FaultLine> fault_;
 };
 
-TEST_F(GpioLinesTest, FaultIsActiveUntilTheStagesRunAndAfterTheEnd) {
+TEST_F(GpioLinesTest, FaultIsActiveFromTheStartAndAfterTheEnd) {
   open();
   EXPECT_TRUE(fault());
-  step(HealthState::kInit);
+  fault_->set(false, clock_.now());
   EXPECT_FALSE(fault());
-  step(HealthState::kLost);
-  EXPECT_FALSE(fault());
-  step(HealthState::kFault);
+  fault_.reset();
   EXPECT_TRUE(fault());
-  step(HealthState::kTracking);
-  EXPECT_FALSE(fault());
+}
+
+TEST_F(GpioLinesTest, TheLedIsOffAfterTheEnd) {
+  open();
+  step(true);
   EXPECT_TRUE(gpio_.high("led"));
   lines_.reset();
-  EXPECT_TRUE(fault());
   EXPECT_FALSE(gpio_.high("led"));
 }
 
-TEST_F(GpioLinesTest, FaultIsActiveWhileAStageIsStalled) {
-  open();
-  ApplianceView view;
-  view.state = HealthState::kTracking;
-  view.stalled = true;
-  lines_->step(view, clock_.now());
+TEST_F(GpioLinesTest, TheFaultLineIsDrivenAlthoughTheLedFails) {
+  OneBrokenLine gpio(gpio_, "led");
+  open(kLines, gpio);
+  step();
+  fault_->set(false, clock_.now());
+  EXPECT_FALSE(fault());
+  step();
+  fault_->set(true, clock_.now());
   EXPECT_TRUE(fault());
+}
+
+TEST_F(GpioLinesTest, ALineThatFailsIsLoggedOncePerLine) {
+  open();
+  gpio_.unplug();
+  for (int k = 0; k < 50; ++k) {
+    EXPECT_TRUE(step()) << "a lost chip does not end localization";
+    fault_->set(true, clock_.now());
+  }
+  EXPECT_THAT(log_.text(), testing::ContainsRegex("^warning: gpio: status LED: [^\n]*\n"
+                                                  "warning: gpio: ignition: [^\n]*\n"
+                                                  "error: gpio: fault line: [^\n]*\n$"));
 }
 
 TEST_F(GpioLinesTest, IgnitionIsOffAfterTheDebounceTime) {
   open();
-  EXPECT_TRUE(step(HealthState::kTracking));
+  EXPECT_TRUE(step());
   gpio_.drive("ignition", false);
-  EXPECT_TRUE(step(HealthState::kTracking, milliseconds(149)));
-  EXPECT_FALSE(step(HealthState::kTracking, milliseconds(1)));
+  EXPECT_TRUE(step(true, milliseconds(149)));
+  EXPECT_FALSE(step(true, milliseconds(1)));
 }
 
 TEST_F(GpioLinesTest, AShortInterruptionOfTheIgnitionIsIgnored) {
@@ -93,56 +133,50 @@ TEST_F(GpioLinesTest, AShortInterruptionOfTheIgnitionIsIgnored) {
     gpio_.drive("ignition", false);
     clock_.advance(milliseconds(20));
     gpio_.drive("ignition", true);
-    EXPECT_TRUE(step(HealthState::kTracking));
+    EXPECT_TRUE(step());
   }
 }
 
-TEST_F(GpioLinesTest, IgnitionThatIsOffAtTheStartEndsTheRun) {
+TEST_F(GpioLinesTest, IgnitionCanBeOffAtTheStartAndReturn) {
   gpio_.drive("ignition", false);
   open();
-  EXPECT_TRUE(step(HealthState::kInit));
-  EXPECT_FALSE(step(HealthState::kInit));
-}
-
-TEST_F(GpioLinesTest, LostChipDoesNotEndLocalization) {
-  open();
-  gpio_.unplug();
-  EXPECT_TRUE(step(HealthState::kTracking));
-  EXPECT_TRUE(step(HealthState::kTracking));
-}
-
-TEST(GpioLinesTriggerTest, AStoppedTriggerHasCountedEveryPulseOnTheLine) {
-  drivers::MonotonicClock clock;
-  MockGpio gpio({"trigger"}, clock);
-  Realtime realtime{{}};
-  GpioConfig config;
-  // The period is long, so that a busy machine does not skip all pulses.
-  config.trigger = {{MockGpio::kChip, "trigger"}, {milliseconds(100), milliseconds(1)}};
-  auto lines = GpioLines::open(config, gpio, clock, realtime);
-  ASSERT_TRUE(lines) << lines.error().message;
-  const drivers::PulseLog& pulses = (*lines)->trigger()->pulses();
-  while (pulses.count() < 2) std::this_thread::yield();
-  (*lines)->stop_trigger();
-  EXPECT_EQ(gpio.changes("trigger").size(), 2 * pulses.count());
-  EXPECT_FALSE(gpio.high("trigger"));
-  (*lines)->stop_trigger();
+  EXPECT_FALSE(step());
+  gpio_.drive("ignition", true);
+  EXPECT_FALSE(step(true, milliseconds(149)));
+  EXPECT_TRUE(step(true, milliseconds(1)));
 }
 
 TEST_F(GpioLinesTest, NoLinesAreNeeded) {
   open({});
-  lines_->stop_trigger();
-  EXPECT_TRUE(step(HealthState::kTracking));
-  EXPECT_EQ(lines_->trigger(), nullptr);
+  EXPECT_TRUE(step());
+  fault_->set(true, clock_.now());
   EXPECT_TRUE(gpio_.changes("led").empty());
 }
 
 TEST_F(GpioLinesTest, NamesTheLineThatCannotBeOpened) {
-  GpioConfig config = all_lines();
+  GpioConfig config = kLines;
   config.status_led->line = "lamp";
-  const auto lines = GpioLines::open(config, gpio_, clock_, realtime_);
+  const auto lines = GpioLines::open(config, gpio_, clock_.now());
   ASSERT_FALSE(lines);
   EXPECT_THAT(lines.error().message, testing::StartsWith("gpio: mock lamp: "));
-  EXPECT_TRUE(fault()) << "the appliance did not start";
+}
+
+TEST(TriggerThreadTest, AStoppedTriggerHasCountedEveryPulseOnTheLine) {
+  drivers::MonotonicClock clock;
+  MockGpio gpio({"trigger"}, clock);
+  Realtime realtime{{}};
+  // The period is long, so that a busy machine does not skip all pulses.
+  const auto trigger = TriggerThread::start(
+      {{MockGpio::kChip, "trigger"}, {milliseconds(100), milliseconds(1)}}, gpio, clock, realtime);
+  ASSERT_TRUE(trigger) << trigger.error().message;
+  const drivers::PulseLog& pulses = (*trigger)->trigger().pulses();
+  while (pulses.count() < 2) std::this_thread::yield();
+  EXPECT_GT((*trigger)->heartbeat().count(), 0U);
+  (*trigger)->stop();
+  EXPECT_TRUE((*trigger)->heartbeat().ended());
+  EXPECT_EQ(gpio.changes("trigger").size(), 2 * pulses.count());
+  EXPECT_FALSE(gpio.high("trigger"));
+  (*trigger)->stop();
 }
 
 TEST(StatusLed, ShowsEachStateDifferently) {

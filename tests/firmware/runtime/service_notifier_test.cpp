@@ -1,44 +1,9 @@
 #include "firmware/runtime/service_notifier.h"
 
-#include <cstdlib>
-#include <cstring>
-#include <string>
-
-#include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
+#include "tests/firmware/runtime/fake_manager.h"
 
 namespace bevloc::firmware {
 namespace {
-
-/// Receives the messages in place of the service manager.
-class FakeManager {
- public:
-  FakeManager() : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0)) {
-    // An abstract address needs no file.
-    const std::string name = "@bevloc-notify-" + std::to_string(getpid());
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::memcpy(address.sun_path + 1, name.data() + 1, name.size() - 1);
-    const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + name.size());
-    EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&address), length), 0);
-    setenv("NOTIFY_SOCKET", name.c_str(), 1);
-  }
-  ~FakeManager() {
-    unsetenv("NOTIFY_SOCKET");
-    close(socket_);
-  }
-  /// The next message; empty if there is none.
-  std::string next() {
-    char text[512];
-    const ssize_t size = recv(socket_, text, sizeof(text), 0);
-    return size > 0 ? std::string(text, static_cast<size_t>(size)) : std::string();
-  }
-
- private:
-  int socket_;
-};
 
 TEST(ServiceNotifierTest, SpeaksTheManagersProtocol) {
   FakeManager manager;
@@ -49,6 +14,17 @@ TEST(ServiceNotifierTest, SpeaksTheManagersProtocol) {
   EXPECT_EQ(manager.next(), "WATCHDOG=1");
   notifier.stopping();
   EXPECT_EQ(manager.next(), "STOPPING=1");
+}
+
+TEST(ServiceNotifierTest, ChangesTheWatchdogTimeoutUntilReady) {
+  FakeManager manager;
+  ServiceNotifier notifier;
+  setenv("WATCHDOG_USEC", "2000000", 1);
+  notifier.set_watchdog_timeout(std::chrono::seconds(30));
+  notifier.ready();
+  unsetenv("WATCHDOG_USEC");
+  EXPECT_EQ(manager.next(), "WATCHDOG_USEC=30000000");
+  EXPECT_EQ(manager.next(), "READY=1\nWATCHDOG_USEC=2000000");
 }
 
 TEST(ServiceNotifierTest, SendsAStatusOnlyWhenItChanges) {

@@ -85,6 +85,24 @@ TEST_F(EstimationStageTest, CorrectsTheGnssOffsetAndSendsTheTruth) {
   EXPECT_NEAR(error.y_m, 0.0, 0.05);
 }
 
+TEST_F(EstimationStageTest, AClockGapMeansLostUntilThePoseIsFoundAgain) {
+  run(milliseconds(5000));
+  ASSERT_EQ(stage_.counters().state, HealthState::kTracking);
+  now_ += std::chrono::seconds(10);
+  samples_.push(GnssSample{now_ - std::chrono::seconds(10), 0.0, 0.0, 1.0, 1.0, {}});
+  stage_.note_clock_gap(std::chrono::seconds(10));
+  latest_.reset();
+  run(milliseconds(10));
+  EXPECT_EQ(stage_.counters().state, HealthState::kLost);
+  EXPECT_TRUE(WhyMask::from_bits(stage_.counters().why).has(Why::kClockGap));
+  EXPECT_EQ(stage_.counters().clock_gaps, 1U);
+  run(milliseconds(200));
+  EXPECT_FALSE(latest_) << "no valid pose";
+  run(milliseconds(5000));
+  EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
+  EXPECT_FALSE(WhyMask::from_bits(stage_.counters().why).has(Why::kClockGap));
+}
+
 TEST_F(EstimationStageTest, SendsNoPoseBeforeVisionConfirmsIt) {
   vision_ = false;
   run(milliseconds(5000));

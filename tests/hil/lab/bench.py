@@ -103,7 +103,8 @@ class Bench:
             install -m 644 /payload/systemd/sysusers.d/* /usr/lib/sysusers.d/
             install -m 644 /payload/systemd/bevlocd.service /etc/systemd/system/
             systemd-sysusers
-            install -m 644 /payload/systemd/udev/60-bevloc.rules /etc/udev/rules.d/
+            sed 's/fe200000.gpio/gpio-sim.0/' /payload/systemd/udev/60-bevloc.rules \\
+              >/etc/udev/rules.d/60-bevloc.rules
             udevadm control --reload
             udevadm trigger --settle --subsystem-match=gpio
             """

@@ -109,19 +109,23 @@ def clock_step(run: Run) -> Outcome:
 
 
 def ignition_off(run: Run) -> Outcome:
-    """The daemon must end in good order, and systemd must not restart it."""
-    _start_settled(run)
+    """The daemon must wait in standby, and localize again when the ignition returns."""
+    pid = _start_settled(run)
     off_s = run.wall_s()
     run.agent.check(f"echo pull-down >{IGNITION_PULL}")
-    stopped = run.wait_for("ActiveState", "inactive", timeout_s=60)
-    stopped_s = run.wall_s() - off_s
+    standby = run.wait_for("StatusText", "standby: ignition off", timeout_s=60)
+    standby_s = run.wall_s() - off_s
     run.agent.check(f"sleep {SETTLE_S}; echo pull-up >{IGNITION_PULL}")
-    result, state = run.show("Result"), run.show("ActiveState")
+    on_s = run.wall_s()
+    run.agent.check(f"sleep {3 * SETTLE_S}")
+    same_daemon = run.show("MainPID") == pid and run.show("ActiveState") == "active"
+    back_s = run.finish_log().localizer_after(on_s)
     return Outcome(
-        injected="ignition line low",
-        seen=f"{'stopped' if stopped else 'NOT stopped'}, result {result}, then {state}",
-        recovery_s=stopped_s if stopped else None,
-        passed=stopped and result == "success" and state == "inactive",
+        injected="ignition line low, and high again",
+        seen=f"{'standby' if standby else 'NO standby'} after {standby_s:.2f} s, then "
+        f"{'the same' if same_daemon else 'ANOTHER'} daemon",
+        recovery_s=back_s - on_s if back_s else None,
+        passed=standby and same_daemon and back_s is not None,
     )
 
 

@@ -1,0 +1,31 @@
+#include "firmware/runtime/fault_line.h"
+
+#include <spdlog/spdlog.h>
+
+namespace bevloc::firmware {
+
+Result<std::unique_ptr<FaultLine>> FaultLine::open(
+    const std::optional<drivers::LineAddress>& address, drivers::Gpio& gpio) {
+  std::unique_ptr<drivers::OutputLine> line;
+  if (address) {
+    auto opened = gpio.open_output(*address, true);
+    if (!opened) return fail("gpio: {}", opened.error().message);
+    line = std::move(*opened);
+  }
+  return std::unique_ptr<FaultLine>(new FaultLine(std::move(line)));
+}
+
+FaultLine::~FaultLine() {
+  // Without a log: a process that ends cannot do more.
+  if (line_) std::ignore = line_->set(true);
+}
+
+void FaultLine::set(bool fault, Time now) {
+  if (!line_) return;
+  if (Status status = line_->set(fault); !status && errors_.is_new(status.error().message, now)) {
+    spdlog::error("gpio: fault line: {}; check the chip, then restart bevlocd",
+                  status.error().message);
+  }
+}
+
+}  // namespace bevloc::firmware

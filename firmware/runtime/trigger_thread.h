@@ -1,0 +1,38 @@
+// The thread that pulses the trigger line.
+#pragma once
+
+#include <memory>
+#include <thread>
+
+#include "drivers/trigger/trigger.h"
+#include "firmware/config/gpio_config.h"
+#include "firmware/runtime/heartbeat.h"
+#include "firmware/runtime/realtime.h"
+
+namespace bevloc::firmware {
+
+/// Pulses the line from start() to stop() or the destructor. One thread.
+class TriggerThread {
+ public:
+  /// Fails if the line cannot be opened. `realtime` applies to the thread. `clock` must be
+  /// thread-safe. All three must outlive the result.
+  static Result<std::unique_ptr<TriggerThread>> start(const TriggerLineConfig& config,
+                                                      drivers::Gpio& gpio, drivers::Clock& clock,
+                                                      Realtime& realtime);
+
+  /// Ends the thread; its counters are final then. To be called after capture has ended.
+  void stop();
+
+  const drivers::Trigger& trigger() const { return trigger_; }
+  const Heartbeat& heartbeat() const { return heartbeat_; }
+
+ private:
+  TriggerThread(std::unique_ptr<drivers::OutputLine> line, const drivers::TriggerConfig& timing,
+                drivers::Clock& clock, Realtime& realtime);
+
+  drivers::Trigger trigger_;
+  Heartbeat heartbeat_;
+  std::jthread thread_;  ///< the last member, so that it ends before what it uses is gone
+};
+
+}  // namespace bevloc::firmware
