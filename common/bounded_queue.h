@@ -1,6 +1,7 @@
 // A queue between threads that drops its oldest entry when it is full.
 #pragma once
 
+#include <atomic>
 #include <cassert>
 #include <condition_variable>
 #include <cstdint>
@@ -63,10 +64,7 @@ class BoundedQueue {
   }
 
   /// Number of entries that were dropped before a reader fetched them.
-  uint64_t dropped() const {
-    const std::lock_guard lock(mutex_);
-    return dropped_;
-  }
+  uint64_t dropped() const { return dropped_; }
 
  private:
   /// The caller holds the lock, and the queue is not empty.
@@ -79,7 +77,7 @@ class BoundedQueue {
   mutable std::mutex mutex_;
   std::condition_variable not_empty_;
   boost::circular_buffer<T> entries_;
-  uint64_t dropped_ = 0;
+  std::atomic<uint64_t> dropped_{0};
   bool closed_ = false;
 };
 

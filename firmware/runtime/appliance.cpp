@@ -57,8 +57,7 @@ FrameCounts Appliance::frame_counts() const {
   counts.displaced = queues_.frames.dropped();
   counts.skipped = vision_.framesets().counters().frames_skipped;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    const drivers::SynchronizerCounters& refused =
-        vision_.framesets().synchronizer().counters(camera);
+    const drivers::SynchronizerCounters refused = vision_.framesets().frames_of(camera);
     counts.mismatched += refused.duplicate + refused.out_of_order + refused.late + refused.future +
                          refused.overflow + refused.unmatched;
     const drivers::CameraCounters missed = hardware_.cameras[camera]->counters();

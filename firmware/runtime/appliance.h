@@ -61,6 +61,7 @@ class Appliance {
   StageHeartbeats& heartbeats() { return heartbeats_; }
   const StageHeartbeats& heartbeats() const { return heartbeats_; }
   VehicleInputStage& vehicle_input() { return vehicle_input_; }
+  const VehicleInputStage& vehicle_input() const { return vehicle_input_; }
   VisionStage& vision() { return vision_; }
   EstimationStage& estimation() { return estimation_; }
   const VisionStage& vision() const { return vision_; }
@@ -69,7 +70,7 @@ class Appliance {
   const MapIndex& map_index() const { return *map_index_; }
   const can::Bus& bus() const { return *hardware_.bus; }
 
-  /// To be called after all threads have ended.
+  /// Exact after all threads have ended. Callable from any thread.
   FrameCounts frame_counts() const;
 
   /// Wakes every stage that waits for a queue, so that its thread can end.

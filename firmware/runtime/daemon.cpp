@@ -13,6 +13,7 @@
 #include "firmware/runtime/supervisor.h"
 #include "firmware/runtime/trigger_thread.h"
 #include "firmware/runtime/watchdog.h"
+#include "firmware/telemetry/error_log.h"
 #include "firmware/telemetry/totals_log.h"
 #include "firmware/telemetry/view_log.h"
 #include "pipeline/map/map_loader.h"
@@ -69,11 +70,17 @@ bool run_appliance(Appliance& appliance, TriggerThread* trigger, Base& base,
   if (host.log != nullptr) watchdog.watch("log", host.log->heartbeat());
   std::jthread watching = start_watchdog(watchdog, *base.fault, base.clock);
 
+  const auto snapshot = [&] {
+    return take_snapshot(appliance, trigger != nullptr ? &trigger->trigger() : nullptr,
+                         host.log != nullptr ? host.log->dropped() : 0);
+  };
   ViewLog log;
+  ErrorLog errors;
   bool ignition = true;
   run_threads(appliance, base.realtime, nullptr, [&](Time now) {
     supervisor.step(now);
     log.note(supervisor.view());
+    errors.note(snapshot(), now);
     ignition = base.lines->step(is_lit(supervisor.view().state, now), now);
     const bool goes_on = ignition && !host.stop();
     if (!goes_on) watching.request_stop();  // the fault line becomes active
@@ -81,7 +88,7 @@ bool run_appliance(Appliance& appliance, TriggerThread* trigger, Base& base,
   });
   if (ignition) supervisor.finish();
   if (trigger != nullptr) trigger->stop();
-  log_totals(appliance, trigger != nullptr ? &trigger->trigger() : nullptr);
+  log_totals(snapshot());
   return !ignition;
 }
 

@@ -1,7 +1,8 @@
 #include "firmware/stages/capture_stage.h"
 
-#include <string_view>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -20,16 +21,27 @@ bool CaptureStage::step(Duration timeout) {
   }
   drivers::Frame frame;
   const auto event = camera_.next_frame(timeout, frame);
+  const Time now = clock_.now();
   if (!event) {
-    note_failure(clock_.now());
+    log_cause("fails", event.error().message, now);
+    note_failure(now);
     return true;
   }
   if (*event == drivers::FrameEvent::kFrame) {
-    ++captured_;
-    logged_reason_.clear();
+    note_frame(now);
     frames_.push(std::move(frame));
+  } else if (now - waiting_since_ > kSilence) {
+    log_cause("is silent", "no frame for 2 s; check cable, power and trigger", now);
+    waiting_since_ = now;
   }
   return *event != drivers::FrameEvent::kEnded;
+}
+
+void CaptureStage::note_frame(Time now) {
+  ++captured_;
+  waiting_since_ = now;
+  if (!std::exchange(failing_, false)) return;
+  spdlog::info("camera {}: delivers frames again", kCameraNames[camera_.description().camera]);
 }
 
 void CaptureStage::stop() {
@@ -43,12 +55,13 @@ bool CaptureStage::ensure_started(Time now) {
   if (now < next_start_) return false;
   heartbeat_.beat(kDeviceDeadline);
   if (const Status started = camera_.start(); !started) {
-    log_failed_start(started.error());
+    log_cause("cannot start", started.error().message, now);
     note_failure(now);
     return false;
   }
   heartbeat_.beat();
   running_ = true;
+  waiting_since_ = now;
   return true;
 }
 
@@ -58,14 +71,12 @@ void CaptureStage::note_failure(Time now) {
   next_start_ = now + kPauseAfterFailure;
 }
 
-void CaptureStage::log_failed_start(const Error& error) {
-  if (error.message == logged_reason_) return;
-  logged_reason_ = error.message;
+void CaptureStage::log_cause(std::string_view what, std::string_view reason, Time now) {
+  if (!causes_.is_new(reason, now)) return;
+  failing_ = true;
   const std::string place = fmt::format("camera {}: ", kCameraNames[camera_.description().camera]);
-  std::string_view reason = error.message;
   if (reason.starts_with(place)) reason.remove_prefix(place.size());
-  spdlog::warn("{}cannot start: {}; trying again every {} s", place, reason,
-               to_seconds(kPauseAfterFailure));
+  spdlog::warn("{}{}: {}; trying again until it works", place, what, reason);
 }
 
 }  // namespace bevloc::firmware

@@ -2,20 +2,21 @@
 #pragma once
 
 #include <atomic>
-#include <string>
+#include <string_view>
 
 #include "common/result.h"
 #include "drivers/camera/camera.h"
 #include "drivers/clock/clock.h"
 #include "firmware/runtime/heartbeat.h"
 #include "firmware/stages/messages.h"
+#include "firmware/telemetry/cause_log.h"
 
 namespace bevloc::firmware {
 
 /// Stops a camera that fails and starts it again after a pause, without limit: a loose connector
-/// must not end localization. Logs a warning with the reason when the camera cannot start, but not
-/// again for the same reason before a frame has arrived. Thread-bound: called from the camera's
-/// thread; counters are readable from any thread.
+/// must not end localization. A camera that cannot start, that fails while it runs, or that
+/// delivers no frame for two seconds is logged with the driver's own sentence, once per cause.
+/// Thread-bound: called from the camera's thread; counters are readable from any thread.
 class CaptureStage {
  public:
   /// Everything passed in must outlive the stage.
@@ -30,17 +31,23 @@ class CaptureStage {
   Heartbeat& heartbeat() { return heartbeat_; }
   const Heartbeat& heartbeat() const { return heartbeat_; }
 
+  drivers::CameraCounters driver_counters() const { return camera_.counters(); }
   uint64_t captured() const { return captured_; }
   uint64_t failures() const { return failures_; }
 
  private:
   static constexpr Duration kPauseAfterFailure = std::chrono::milliseconds(500);
+  /// A camera without frames for this long is silent. The slowest cameras have half a frame per
+  /// second.
+  static constexpr Duration kSilence = std::chrono::seconds(2);
   /// To open or to close a device takes up to some seconds, while a kernel driver waits for it.
   static constexpr Duration kDeviceDeadline = std::chrono::seconds(10);
 
   bool ensure_started(Time now);
   void note_failure(Time now);
-  void log_failed_start(const Error& error);
+  void note_frame(Time now);
+  /// Logs `what` the camera does not do and why, once per cause.
+  void log_cause(std::string_view what, std::string_view reason, Time now);
 
   drivers::Camera& camera_;
   const drivers::Clock& clock_;
@@ -48,7 +55,9 @@ class CaptureStage {
   Heartbeat heartbeat_;
   bool running_ = false;
   Time next_start_ = Time::min();
-  std::string logged_reason_;  ///< of the last failed start; empty after a frame
+  CauseLog causes_;
+  Time waiting_since_{};  ///< for the next frame
+  bool failing_ = false;  ///< a cause was logged and no frame has come since
   std::atomic<uint64_t> captured_{0};
   std::atomic<uint64_t> failures_{0};
 };

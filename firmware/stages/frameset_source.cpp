@@ -32,6 +32,9 @@ void FramesetSource::look_at_clock(Time now) {
 
 std::optional<NewestFrameset> FramesetSource::newest(Time now) {
   auto frameset = synchronizer_.poll(now);
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    frames_of_[camera].store(synchronizer_.counters(camera));
+  }
   if (!frameset) return std::nullopt;
   NewestFrameset newest;
   while (auto newer = synchronizer_.poll(now)) {

@@ -1,9 +1,11 @@
 // Forms framesets from the frames of the capture stages, and emits the newest.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <optional>
 
+#include "common/published.h"
 #include "drivers/clock/clock.h"
 #include "drivers/frameset/synchronizer.h"
 #include "firmware/stages/messages.h"
@@ -25,8 +27,8 @@ struct NewestFrameset {
   bool unsynchronized = false;  ///< the cameras do not expose together (Synchrony)
 };
 
-/// Owns the synchronizer. Thread-bound: called from the vision thread; counters() and synchrony()
-/// are readable from any thread.
+/// Owns the synchronizer. Thread-bound: called from the vision thread; counters(), synchrony() and
+/// frames_of() are readable from any thread.
 class FramesetSource {
  public:
   /// After a longer time between two looks at the clock (the machine was suspended, or the thread
@@ -54,8 +56,8 @@ class FramesetSource {
 
   const FramesetCounters& counters() const { return counters_; }
   const SynchronyCounters& synchrony() const { return synchrony_.counters(); }
-  /// Not to be read while the vision thread runs.
-  const drivers::FramesetSynchronizer& synchronizer() const { return synchronizer_; }
+  /// What became of the frames of one camera.
+  drivers::SynchronizerCounters frames_of(int camera) const { return frames_of_[camera].load(); }
 
  private:
   void look_at_clock(Time now);
@@ -65,6 +67,7 @@ class FramesetSource {
   FrameQueue& frames_;
   FramesetCounters counters_;
   std::optional<Time> latest_look_;
+  std::array<Published<drivers::SynchronizerCounters>, kCameraCount> frames_of_;
 };
 
 }  // namespace bevloc::firmware

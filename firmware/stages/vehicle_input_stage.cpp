@@ -11,6 +11,7 @@ void VehicleInputStage::step(Duration timeout) {
   while (const auto received = bus_.receive()) {
     if (const auto sample = input_.accept(*received)) samples_.push(*sample);
   }
+  counters_.store(input_.counters());
 }
 
 }  // namespace bevloc::firmware

@@ -17,27 +17,50 @@ void log_frames(const FrameCounts& frames) {
       frames.skipped, frames.under_way(), frames.missed);
 }
 
-void log_unreadable_images(const VisionCounters& vision) {
+void log_cameras(const std::array<CameraSnapshot, kCameraCount>& cameras) {
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    if (const uint64_t images = vision.unreadable[camera]; images > 0) {
+    const CameraSnapshot& counts = cameras[camera];
+    if (counts.failures > 0) {
+      spdlog::info("camera {}: failed {} times", kCameraNames[camera], counts.failures);
+    }
+    if (counts.unreadable > 0) {
       spdlog::warn(
           "camera {}: {} unreadable images (damaged JPEG or wrong size); check cable and bandwidth",
-          kCameraNames[camera], images);
+          kCameraNames[camera], counts.unreadable);
     }
   }
 }
 
-void log_synchrony(const SynchronyCounters& synchrony, uint64_t clock_gaps,
-                   const drivers::Trigger* trigger) {
-  spdlog::info("framesets: spread at most {:.3f} ms, {} clock gaps",
-               milliseconds(synchrony.spread_max), clock_gaps);
-  if (trigger == nullptr) return;
-  const drivers::TriggerCounters& counters = trigger->counters();
+void log_framesets(const FramesetsSnapshot& framesets,
+                   const std::optional<TriggerSnapshot>& trigger) {
+  spdlog::info(
+      "framesets: spread at most {:.3f} ms; {} taken, {} without a prior, {} with too few readable "
+      "images",
+      milliseconds(framesets.spread_max), framesets.taken, framesets.no_prior, framesets.refused);
+  if (!trigger) return;
   spdlog::info(
       "trigger: {} pulses, at most {:.3f} ms late, {} skipped, {} failed; {} framesets without a "
       "pulse",
-      trigger->pulses().count(), milliseconds(counters.max_lateness), counters.skipped,
-      counters.failed, synchrony.off_pulse);
+      trigger->pulses, milliseconds(trigger->max_lateness), trigger->skipped, trigger->failed,
+      framesets.off_pulse);
+}
+
+void log_vehicle_input(const can::VehicleInputCounters& input) {
+  spdlog::info(
+      "CAN in: {} odometry and {} GNSS samples; refused frames: {} wrong CRC, {} wrong length, {} "
+      "repeated; {} lost; epochs: {} incomplete, {} not available",
+      input.odometry_samples, input.gnss_samples, input.wrong_crc, input.wrong_length,
+      input.repeated, input.lost, input.incomplete, input.not_available);
+}
+
+void log_tracker(const char* input, const OutcomeCounts& outcomes) {
+  std::string text;
+  for (size_t i = 0; i < outcomes.size(); ++i) {
+    if (outcomes[i] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", outcomes[i],
+                        name_of(static_cast<TrackerUpdate>(i)));
+  }
+  spdlog::info("tracker: {}: {}", input, text.empty() ? "none" : text);
 }
 
 void log_bus(const can::BusCounters& bus) {
@@ -58,12 +81,20 @@ void log_bus(const can::BusCounters& bus) {
 
 }  // namespace
 
-void log_totals(const Appliance& appliance, const drivers::Trigger* trigger) {
-  log_frames(appliance.frame_counts());
-  log_unreadable_images(appliance.vision().counters());
-  const FramesetSource& framesets = appliance.vision().framesets();
-  log_synchrony(framesets.synchrony(), framesets.counters().clock_gaps, trigger);
-  log_bus(appliance.bus().counters());
+void log_totals(const Snapshot& snapshot) {
+  log_frames(snapshot.frames);
+  log_cameras(snapshot.cameras);
+  log_framesets(snapshot.framesets, snapshot.trigger);
+  log_vehicle_input(snapshot.vehicle_input);
+  log_tracker("odometry", snapshot.estimation.odometry);
+  log_tracker("GNSS", snapshot.estimation.gnss);
+  log_tracker("corrections", snapshot.estimation.corrections);
+  if (snapshot.estimation.clock_gaps > 0 || snapshot.framesets.clock_gaps > 0) {
+    spdlog::warn("clock: {} gaps seen by CAN out, {} by vision", snapshot.estimation.clock_gaps,
+                 snapshot.framesets.clock_gaps);
+  }
+  log_bus(snapshot.bus);
+  if (snapshot.log_dropped > 0) spdlog::warn("log: {} lines dropped", snapshot.log_dropped);
 }
 
 }  // namespace bevloc::firmware

@@ -1,12 +1,10 @@
-// Logs the appliance's totals at its end: frames, framesets, trigger and CAN bus.
+// Logs the appliance's totals at its end.
 #pragma once
 
-#include "drivers/trigger/trigger.h"
-#include "firmware/runtime/appliance.h"
+#include "firmware/telemetry/snapshot.h"
 
 namespace bevloc::firmware {
 
-/// To be called after all threads have ended. `trigger`: null without one.
-void log_totals(const Appliance& appliance, const drivers::Trigger* trigger);
+void log_totals(const Snapshot& snapshot);
 
 }  // namespace bevloc::firmware

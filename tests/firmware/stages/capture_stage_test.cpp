@@ -20,13 +20,14 @@ class BrokenCamera final : public drivers::Camera {
   void stop() override {}
   Result<drivers::FrameEvent> next_frame(Duration, drivers::Frame&) override {
     if (is_unplugged) return fail("camera front: c1: is unplugged");
-    return drivers::FrameEvent::kFrame;
+    return is_silent ? drivers::FrameEvent::kTimeout : drivers::FrameEvent::kFrame;
   }
   drivers::CameraDescription description() const override { return {.camera = 1}; }
   drivers::CameraCounters counters() const override { return {}; }
 
   std::string start_error;
   bool is_unplugged = false;
+  bool is_silent = false;
   int starts = 0;
 };
 
@@ -54,7 +55,7 @@ TEST_F(CaptureStageTest, LogsAFailedStartOnceAndTriesAgain) {
   EXPECT_EQ(stage_.failures(), 6U);
   EXPECT_EQ(log_.text(),
             "warning: camera front: cannot start: c1: offers 1280x720 NV12; wanted nv12 640x360; "
-            "trying again every 0.5 s\n");
+            "trying again until it works\n");
 }
 
 TEST_F(CaptureStageTest, LogsAFailedStartAgainWhenTheReasonChanges) {
@@ -63,23 +64,45 @@ TEST_F(CaptureStageTest, LogsAFailedStartAgainWhenTheReasonChanges) {
   camera_.start_error = "camera front: c1: another program uses it";
   run(milliseconds(1000));
   EXPECT_EQ(log_.text(),
-            "warning: camera front: cannot start: no such device; trying again every 0.5 s\n"
-            "warning: camera front: cannot start: c1: another program uses it; trying again every "
-            "0.5 s\n");
+            "warning: camera front: cannot start: no such device; trying again until it works\n"
+            "warning: camera front: cannot start: c1: another program uses it; trying again until "
+            "it works\n");
 }
 
-TEST_F(CaptureStageTest, LogsTheSameReasonAgainAfterAFrame) {
+TEST_F(CaptureStageTest, LogsTheSameReasonAgainAfterAMinuteWithoutIt) {
   camera_.start_error = "no such device";
   run(milliseconds(1000));
   const std::string once = log_.text();
   camera_.start_error.clear();
-  run(milliseconds(1000));
+  run(std::chrono::seconds(61));
   EXPECT_GT(stage_.captured(), 0U);
-  EXPECT_EQ(log_.text(), once);
-  camera_.start_error = "no such device";
+  EXPECT_EQ(log_.text(), once + "info: camera front: delivers frames again\n");
+}
+
+TEST_F(CaptureStageTest, LogsACameraThatStartsButFailsOnce) {
   camera_.is_unplugged = true;
-  run(milliseconds(1000));
-  EXPECT_EQ(log_.text(), once + once);
+  run(milliseconds(10'000));
+  EXPECT_GT(camera_.starts, 10);
+  EXPECT_EQ(log_.text(),
+            "warning: camera front: fails: c1: is unplugged; trying again until it works\n");
+}
+
+TEST_F(CaptureStageTest, AFlappingCameraIsLoggedOnce) {
+  for (int k = 0; k < 20; ++k) {
+    camera_.is_unplugged = k % 2 == 0;
+    run(milliseconds(1000));
+  }
+  const std::string text = log_.text();
+  EXPECT_EQ(text.find("fails"), text.rfind("fails")) << text;
+}
+
+TEST_F(CaptureStageTest, LogsASilentCameraOnce) {
+  camera_.is_silent = true;
+  run(milliseconds(10'000));
+  EXPECT_EQ(log_.text(),
+            "warning: camera front: is silent: no frame for 2 s; check cable, power and trigger; "
+            "trying again until it works\n");
+  EXPECT_EQ(stage_.failures(), 0U);
 }
 
 TEST_F(CaptureStageTest, LogsNothingWhileTheCameraWorks) {

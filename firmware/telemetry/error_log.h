@@ -1,0 +1,36 @@
+// Logs errors that the stages only count: once per cause.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+
+#include "firmware/telemetry/cause_log.h"
+#include "firmware/telemetry/snapshot.h"
+
+namespace bevloc::firmware {
+
+/// Compares snapshots. When an error count has grown, its cause is logged with what to do, and not
+/// again before it has not occurred for a minute. So no hot thread writes a log line. Thread-bound:
+/// called from the supervising thread.
+class ErrorLog {
+ public:
+  void note(const Snapshot& snapshot, Time now);
+
+ private:
+  struct Count {
+    uint64_t seen = 0;
+    Time grown = Time::min();  ///< when the count last grew
+  };
+
+  /// `text` says what happened and what to do.
+  void count(const std::string& text, uint64_t total, Time now);
+  void note_camera(int camera, const CameraSnapshot& snapshot, Time now);
+  void note_vehicle_input(const can::VehicleInputCounters& input, Time now);
+  void note_tracker(const EstimationSnapshot& estimation, Time now);
+  void note_bus(const can::BusCounters& bus, Time now);
+
+  std::map<std::string, Count> counts_;  ///< by text
+};
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,74 @@
+#include "firmware/telemetry/snapshot.h"
+
+namespace bevloc::firmware {
+namespace {
+
+OutcomeCounts counts_of(const TrackerOutcomes& outcomes) {
+  OutcomeCounts counts{};
+  for (size_t i = 0; i < counts.size(); ++i) counts[i] = outcomes[i];
+  return counts;
+}
+
+EstimationSnapshot estimation_of(const EstimationCounters& counters) {
+  return {.state = counters.state,
+          .why = WhyMask::from_bits(counters.why),
+          .cameras = CameraMask(counters.cameras),
+          .ticks = counters.ticks,
+          .clock_gaps = counters.clock_gaps,
+          .odometry = counts_of(counters.odometry),
+          .gnss = counts_of(counters.gnss),
+          .corrections = counts_of(counters.corrections)};
+}
+
+FramesetsSnapshot framesets_of(const VisionStage& vision) {
+  const VisionCounters& counters = vision.counters();
+  const SynchronyCounters& synchrony = vision.framesets().synchrony();
+  return {.taken = counters.framesets,
+          .skipped = vision.framesets().counters().skipped,
+          .no_prior = counters.no_prior,
+          .refused = counters.refused,
+          .off_pulse = synchrony.off_pulse,
+          .clock_gaps = vision.framesets().counters().clock_gaps,
+          .spread = synchrony.spread,
+          .spread_max = synchrony.spread_max};
+}
+
+CameraSnapshot camera_of(const Appliance& appliance, int camera) {
+  const CaptureStage& capture = appliance.capture()[camera];
+  const VisionCounters& vision = appliance.vision().counters();
+  return {.captured = capture.captured(),
+          .failures = capture.failures(),
+          .driver = capture.driver_counters(),
+          .synchronizer = appliance.vision().framesets().frames_of(camera),
+          .unreadable = vision.unreadable[camera],
+          .frozen = CameraMask(vision.frozen)[camera],
+          .drift_ppm = appliance.vision().framesets().synchrony().drift_ppm[camera]};
+}
+
+TriggerSnapshot trigger_of(const drivers::Trigger& trigger) {
+  return {.pulses = trigger.pulses().count(),
+          .skipped = trigger.counters().skipped,
+          .failed = trigger.counters().failed,
+          .max_lateness = trigger.counters().max_lateness};
+}
+
+}  // namespace
+
+Snapshot take_snapshot(const Appliance& appliance, const drivers::Trigger* trigger,
+                       uint64_t log_dropped) {
+  Snapshot snapshot;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    snapshot.cameras[camera] = camera_of(appliance, camera);
+  }
+  snapshot.frames = appliance.frame_counts();
+  snapshot.framesets = framesets_of(appliance.vision());
+  snapshot.vehicle_input = appliance.vehicle_input().counters();
+  snapshot.estimation = estimation_of(appliance.estimation().counters());
+  snapshot.bus = appliance.bus().counters();
+  snapshot.bus_condition = appliance.bus().condition();
+  if (trigger != nullptr) snapshot.trigger = trigger_of(*trigger);
+  snapshot.log_dropped = log_dropped;
+  return snapshot;
+}
+
+}  // namespace bevloc::firmware

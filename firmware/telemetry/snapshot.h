@@ -1,0 +1,73 @@
+// All counters of a running appliance in one plain struct.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "drivers/trigger/trigger.h"
+#include "firmware/runtime/appliance.h"
+
+namespace bevloc::firmware {
+
+/// What one camera delivered, and what became of it. Totals since start, as in the structs that
+/// they come from.
+struct CameraSnapshot {
+  uint64_t captured = 0;  ///< frames that the capture stage took
+  uint64_t failures = 0;  ///< starts and reads that failed
+  drivers::CameraCounters driver;
+  drivers::SynchronizerCounters synchronizer;
+  uint64_t unreadable = 0;  ///< images of a wrong size, or damaged
+  bool frozen = false;      ///< at the latest frameset
+  double drift_ppm = 0.0;
+};
+
+struct FramesetsSnapshot {
+  uint64_t taken = 0;     ///< framesets that vision took, matched or not
+  uint64_t skipped = 0;   ///< for a newer one
+  uint64_t no_prior = 0;  ///< no prediction covered their time
+  uint64_t refused = 0;   ///< too few readable images
+  uint64_t off_pulse = 0;
+  uint64_t clock_gaps = 0;  ///< seen by the vision thread
+  Duration spread{};        ///< of the latest one
+  Duration spread_max{};
+};
+
+/// Answers of the tracker, by TrackerUpdate.
+using OutcomeCounts = std::array<uint64_t, kTrackerUpdates>;
+
+struct EstimationSnapshot {
+  HealthState state = HealthState::kInit;
+  WhyMask why;
+  CameraMask cameras;  ///< used in the latest frameset
+  uint64_t ticks = 0;
+  uint64_t clock_gaps = 0;
+  OutcomeCounts odometry{};
+  OutcomeCounts gnss{};
+  OutcomeCounts corrections{};
+};
+
+struct TriggerSnapshot {
+  uint64_t pulses = 0;
+  uint64_t skipped = 0;
+  uint64_t failed = 0;
+  Duration max_lateness{};
+};
+
+struct Snapshot {
+  std::array<CameraSnapshot, kCameraCount> cameras;
+  FrameCounts frames;
+  FramesetsSnapshot framesets;
+  can::VehicleInputCounters vehicle_input;
+  EstimationSnapshot estimation;
+  can::BusCounters bus;
+  can::BusCondition bus_condition;
+  std::optional<TriggerSnapshot> trigger;
+  uint64_t log_dropped = 0;  ///< lines of the log that were not written
+};
+
+/// Reads all counters while the appliance runs. Waits for no thread, so values that change together
+/// may differ by one step. Callable from any thread. `trigger`: null without one.
+Snapshot take_snapshot(const Appliance& appliance, const drivers::Trigger* trigger,
+                       uint64_t log_dropped);
+
+}  // namespace bevloc::firmware
