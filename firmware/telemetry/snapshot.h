@@ -17,7 +17,10 @@ struct CameraSnapshot {
   drivers::CameraCounters driver;
   drivers::SynchronizerCounters synchronizer;
   uint64_t unreadable = 0;  ///< images of a wrong size, or damaged
-  bool frozen = false;      ///< at the latest frameset
+  bool frozen = false;      ///< at the latest frameset, as are the next three
+  bool dark = false;
+  bool blinded = false;
+  bool dirty = false;
   double drift_ppm = 0.0;
 };
 
