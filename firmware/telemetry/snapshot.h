@@ -31,7 +31,9 @@ struct FramesetsSnapshot {
   uint64_t refused = 0;   ///< too few readable images
   uint64_t off_pulse = 0;
   uint64_t clock_gaps = 0;  ///< seen by the vision thread
-  Duration spread{};        ///< of the latest one
+  uint64_t network_checks = 0;
+  bool network_fault = false;
+  Duration spread{};  ///< of the latest one
   Duration spread_max{};
 };
 

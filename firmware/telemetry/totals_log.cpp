@@ -35,8 +35,9 @@ void log_framesets(const FramesetsSnapshot& framesets,
                    const std::optional<TriggerSnapshot>& trigger) {
   spdlog::info(
       "framesets: spread at most {:.3f} ms; {} taken, {} without a prior, {} with too few readable "
-      "images",
-      milliseconds(framesets.spread_max), framesets.taken, framesets.no_prior, framesets.refused);
+      "images; network checked {} times",
+      milliseconds(framesets.spread_max), framesets.taken, framesets.no_prior, framesets.refused,
+      framesets.network_checks);
   if (!trigger) return;
   spdlog::info(
       "trigger: {} pulses, at most {:.3f} ms late, {} skipped, {} failed; {} framesets without a "
