@@ -4,6 +4,7 @@
 
 #include "common/version.h"
 #include "evaluation/bench/bench_command.h"
+#include "evaluation/drive/fault_command.h"
 #include "evaluation/network/answer_command.h"
 #include "evaluation/network/network_command.h"
 #include "evaluation/solver/draw_command.h"
@@ -38,6 +39,8 @@ int main(int argc, char** argv) {
   bench_command.declare(app);
   bevloc::evaluation::AnswerCommand answer_command;
   answer_command.declare(app);
+  bevloc::evaluation::FaultCommand fault_command;
+  fault_command.declare(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -47,6 +50,7 @@ int main(int argc, char** argv) {
                                 : bench_command.chosen()   ? bench_command.run()
                                 : answer_command.chosen()  ? answer_command.run()
                                 : network_command.chosen() ? network_command.run()
+                                : fault_command.chosen()   ? fault_command.run()
                                                            : solver_command.run();
   if (status) return 0;
   fmt::print(stderr, "bevloc: {}\n", status.error().message);

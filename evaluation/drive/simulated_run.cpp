@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "evaluation/drive/bus_factory.h"
+#include "evaluation/drive/fault_socket.h"
+#include "evaluation/drive/faulty_bus.h"
+#include "evaluation/drive/jumping_clock.h"
 #include "evaluation/drive/progress_line.h"
 #include "evaluation/drive/simulated_drive.h"
 #include "evaluation/drive/snapshot_keeper.h"
@@ -47,13 +50,14 @@ class SimulatedRun {
   SimulatedRun(const DriveConfig& config, const Rig& rig, const SimulatedRunOptions& options,
                SimulatedDrive drive);
   Status connect();
+  void jump_if_due(double time_s);
   const JudgedPose& judged_nearest(double time_s) const;
 
   const DriveConfig& config_;
   const Rig& rig_;
   const SimulatedRunOptions& options_;
   SimulatedDrive drive_;
-  drivers::MonotonicClock machine_clock_;
+  JumpingClock machine_clock_;
   drivers::VirtualClock virtual_clock_;
   drivers::Clock& clock_;
   Time log_start_;
@@ -65,6 +69,8 @@ class SimulatedRun {
   std::unique_ptr<firmware::Appliance> appliance_;
   std::unique_ptr<SimulatedVehicle> vehicle_;
   std::unique_ptr<Judge> judge_;
+  std::unique_ptr<FaultServer> fault_server_;  ///< null without simulation.fault_socket
+  double jumped_until_s_ = 0.0;
 };
 
 Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const DriveConfig& config,
@@ -72,6 +78,11 @@ Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const DriveConfig& co
                                                            const SimulatedRunOptions& options) {
   auto drive = SimulatedDrive::create(config);
   if (!drive) return tl::unexpected(drive.error());
+  const auto hanging = drive->faults()->all(sim::FaultInput::kThread);
+  if (options.fast && !hanging.empty()) {
+    return fail("simulation.faults: found {} in lockstep, wanted threads that run (no --fast)",
+                sim::info_of(hanging.front().kind).name);
+  }
   auto run =
       std::unique_ptr<SimulatedRun>(new SimulatedRun(config, rig, options, std::move(*drive)));
   if (Status status = run->connect(); !status) return tl::unexpected(status.error());
@@ -98,13 +109,18 @@ Status SimulatedRun::connect() {
   for (const auto* bus : {&own_bus, &vehicle_bus, &judge_bus}) {
     if (!*bus) return tl::unexpected(bus->error());
   }
-  firmware::Hardware hardware{drive_.make_cameras(config_, rig_, clock_, drive_start_),
-                              std::move(*own_bus), &clock_};
+  firmware::Hardware hardware{
+      drive_.make_cameras(config_, rig_, clock_, drive_start_, options_.pictures),
+      std::make_unique<FaultyBus>(std::move(*own_bus), drive_.faults(), clock_, drive_start_),
+      &clock_};
   auto appliance = firmware::Appliance::create(config_, rig_, drive_.map(), std::move(hardware));
   if (!appliance) return tl::unexpected(appliance.error());
   appliance_ = std::move(*appliance);
-  appliance_->vision().observe(
-      [this](const firmware::VisionSnapshot& snapshot) { keeper_.observe(snapshot); });
+  appliance_->vision().observe([this](const firmware::VisionSnapshot& snapshot) {
+    drive_.faults()->hang(sim::FaultKind::kHangVision, 0,
+                          [this] { return to_seconds(clock_.now() - drive_start_); });
+    keeper_.observe(snapshot);
+  });
   appliance_->estimation().observe_corrections(
       [this](Time frame_time) { latencies_.add(clock_.now() - frame_time); });
 
@@ -117,6 +133,11 @@ Status SimulatedRun::connect() {
       {log_start_, drive_start_}, (options_.out / "can.log").string());
   if (!judge) return tl::unexpected(judge.error());
   judge_ = std::move(*judge);
+  const std::filesystem::path& socket = config_.simulation->fault_socket;
+  if (socket.empty()) return {};
+  auto server = FaultServer::open(socket, drive_.faults(), options_.fast);
+  if (!server) return tl::unexpected(server.error());
+  fault_server_ = std::move(*server);
   return {};
 }
 
@@ -129,7 +150,13 @@ void SimulatedRun::run(const StopWhen& stop) {
   const auto supervise = [&](Time now) {
     supervisor.step(now);
     const double time_s = to_seconds(now - drive_start_);
+    if (fault_server_) fault_server_->step(time_s);
     const bool last = time_s >= duration_s || stop(supervisor.view());
+    if (last) {
+      drive_.faults()->release();
+    } else {
+      jump_if_due(time_s);
+    }
     if (options_.show_progress) {
       show_progress_line(supervisor.view(), judge_->view(), time_s, duration_s, last);
     }
@@ -141,6 +168,20 @@ void SimulatedRun::run(const StopWhen& stop) {
     firmware::run_threads(*appliance_, realtime_, &companion, supervise);
   }
   supervisor.finish();
+}
+
+/// The gap of a clock fault that has begun: time passes, but the appliance does not run.
+void SimulatedRun::jump_if_due(double time_s) {
+  for (const sim::Fault& fault : drive_.faults()->active(sim::FaultInput::kClock, time_s)) {
+    if (fault.kind != sim::FaultKind::kClockGap || fault.from_s < jumped_until_s_) continue;
+    jumped_until_s_ = fault.from_s + fault.amounts.gap_s;
+    const Duration gap = from_seconds(std::max(0.0, jumped_until_s_ - time_s));
+    if (options_.fast) {
+      virtual_clock_.advance(gap);
+    } else {
+      machine_clock_.jump(gap);
+    }
+  }
 }
 
 DriveReport SimulatedRun::report() const {
