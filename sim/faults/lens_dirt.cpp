@@ -23,9 +23,7 @@ constexpr std::array<double, 3> kMud = {0.62, 0.55, 0.45};
 }  // namespace
 
 LensDirt::LensDirt(int width_px, int height_px, double share, uint64_t seed)
-    : width_px_(width_px),
-      height_px_(height_px),
-      share_(share),
+    : share_(share),
       opacity_(static_cast<size_t>(width_px) * static_cast<size_t>(height_px), 0.0F) {
   Random random(seed_for(seed, "lens dirt"));
   for (int spot = 0; spot < kMostSpots && covered() < share; ++spot) {
@@ -56,7 +54,7 @@ double LensDirt::covered() const {
 }
 
 void LensDirt::cover(RgbImage& image) const {
-  assert(image.width == width_px_ && image.height == height_px_);
+  assert(static_cast<size_t>(image.width) * image.height == opacity_.size());
   const uint64_t sum = std::accumulate(image.pixels.begin(), image.pixels.end(), uint64_t{0});
   const double mean = static_cast<double>(sum) / static_cast<double>(image.pixels.size());
   for (size_t i = 0; i < opacity_.size(); ++i) {

@@ -23,8 +23,6 @@ class LensDirt {
   double covered() const;
 
  private:
-  int width_px_;
-  int height_px_;
   double share_;
   std::vector<float> opacity_;  ///< per pixel, 0 to 1
 };
