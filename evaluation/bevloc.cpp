@@ -7,6 +7,7 @@
 #include "evaluation/campaign/campaign_command.h"
 #include "evaluation/campaign/integrity_command.h"
 #include "evaluation/campaign/tune_matches_command.h"
+#include "evaluation/drive/fault_command.h"
 #include "evaluation/network/answer_command.h"
 #include "evaluation/network/network_command.h"
 #include "evaluation/solver/draw_command.h"
@@ -47,6 +48,8 @@ int main(int argc, char** argv) {
   answer_command.declare(app);
   bevloc::evaluation::CampaignCommand campaign_command;
   campaign_command.declare(app);
+  bevloc::evaluation::FaultCommand fault_command;
+  fault_command.declare(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -58,6 +61,7 @@ int main(int argc, char** argv) {
                                 : tune_matches_command.chosen() ? tune_matches_command.run()
                                 : bench_command.chosen()        ? bench_command.run()
                                 : answer_command.chosen()       ? answer_command.run()
+                                : fault_command.chosen()        ? fault_command.run()
                                 : network_command.chosen()      ? network_command.run()
                                                                 : solver_command.run();
   if (status) return 0;

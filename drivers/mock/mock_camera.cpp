@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/faults/drive_clock.h"
 #include "sim/faults/picture_faults.h"
 #include "sim/random.h"
 
@@ -22,6 +23,7 @@ MockCamera::MockCamera(std::shared_ptr<MockScene> scene, const MockCameraConfig&
     : PacedCamera(description_of(config), config.timing.exposure, clock),
       scene_(std::move(scene)),
       config_(config),
+      clock_(clock),
       schedule_(config.timing, config.camera, config.faults) {
   set_max_lateness(config.timing.period);
 }
@@ -31,12 +33,23 @@ Status MockCamera::open(Time now) {
   return {};
 }
 
+/// The time of the drive that a picture of this time shows.
+Duration MockCamera::drive_time(Time time) const {
+  const Duration elapsed = time - config_.timing.drive_start;
+  const auto faults = config_.faults->all(sim::FaultInput::kClock);
+  if (faults.empty()) return elapsed;
+  return from_seconds(sim::drive_time_s(to_seconds(elapsed), faults));
+}
+
 Status MockCamera::draw(const Delivery& delivery, RgbImage& image) {
-  const Duration scene_time = delivery.scene_time - config_.timing.drive_start;
   if (!config_.faults) {
-    scene_->draw(config_.camera, config_.true_rig.cameras[config_.camera], scene_time, image);
+    scene_->draw(config_.camera, config_.true_rig.cameras[config_.camera],
+                 delivery.scene_time - config_.timing.drive_start, image);
     return {};
   }
+  config_.faults->hang(sim::FaultKind::kHangCapture, config_.camera,
+                       [this] { return to_seconds(clock_.now() - config_.timing.drive_start); });
+  const Duration scene_time = drive_time(delivery.scene_time);
   const Duration true_time = schedule_.true_exposure_start(delivery) - config_.timing.drive_start;
   const double time_s = to_seconds(true_time);
   // What happens to the optics belongs to the camera, wherever its cable is plugged in.

@@ -32,10 +32,12 @@ class MockCamera final : public PacedCamera {
   Status open(Time now) override;
   std::optional<Delivery> next_delivery() override { return schedule_.next(); }
   Status draw(const Delivery& delivery, RgbImage& image) override;
+  Duration drive_time(Time time) const;
   void cover_lens(int source, double share, RgbImage& image);
 
   const std::shared_ptr<MockScene> scene_;
   const MockCameraConfig config_;
+  Clock& clock_;
   MockSchedule schedule_;
   std::optional<sim::LensDirt> dirt_;
   int dirty_camera_ = -1;  ///< whose pattern dirt_ is

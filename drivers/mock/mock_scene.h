@@ -8,6 +8,7 @@
 
 #include "common/image.h"
 #include "common/time.h"
+#include "drivers/mock/picture_cache.h"
 #include "pipeline/calibration/camera_model.h"
 #include "sim/render/ground_tiles.h"
 #include "sim/render/renderer.h"
@@ -21,8 +22,10 @@ namespace bevloc::drivers {
 /// and kept once.
 class MockScene {
  public:
+  /// `pictures`: keeps the pictures for other scenes too; null without.
   MockScene(std::shared_ptr<const sim::World> world, std::shared_ptr<const sim::Drive> drive,
-            const sim::Conditions& conditions, uint64_t noise_seed);
+            const sim::Conditions& conditions, uint64_t noise_seed,
+            std::shared_ptr<PictureCache> pictures = nullptr);
 
   /// Draws the view of camera `camera` (index into kCameraNames) at a time of the drive. The pixels
   /// do not depend on earlier calls. `true_camera` is the true camera model, from which the
@@ -40,12 +43,18 @@ class MockScene {
 
   MockScene(std::shared_ptr<const sim::World> world, std::shared_ptr<const sim::Drive> drive,
             const sim::Conditions& conditions, uint64_t noise_seed,
+            std::shared_ptr<PictureCache> pictures,
             const std::shared_ptr<sim::GroundTiles>& ground);
+
+  uint64_t key_of(const CameraModel& true_camera, const sim::Drive::State& state,
+                  const sim::BodyMotion& body, Duration drive_time, uint64_t image_seed) const;
 
   const std::shared_ptr<const sim::World> world_;
   const std::shared_ptr<const sim::Drive> drive_;
   const sim::Conditions conditions_;
   const uint64_t noise_seed_;
+  const std::shared_ptr<PictureCache> pictures_;
+  const uint64_t digest_;  ///< of what all pictures depend on
   std::array<RendererSlot, 2> renderers_;
 };
 

@@ -38,7 +38,8 @@ Result<Campaign> Campaign::create(const std::string& config_file, const std::str
 }
 
 Status Campaign::drive(const Mode& mode, uint64_t seed, const std::string& map,
-                       const CycleSink& sink) const {
+                       const CycleSink& sink,
+                       const std::shared_ptr<drivers::PictureCache>& pictures) const {
   DriveConfig config = config_;
   config.simulation->seed = seed;
   config.simulation->town_seed = seed;
@@ -48,18 +49,22 @@ Status Campaign::drive(const Mode& mode, uint64_t seed, const std::string& map,
   }
   config.simulation->faults = timed(mode.faults, mode.time_in(options_.duration_s));
   return options_.level == Level::kStage ? run_stage(config, mode, table_, sink)
-                                         : run_pictures(config, rig_, sink);
+                                         : run_pictures(config, rig_, pictures, sink);
 }
 
 Status Campaign::run(const std::vector<const Mode*>& modes,
                      const std::function<void(const CampaignRow&)>& done) const {
   for (int k = 0; k < options_.seeds; ++k) {
     const uint64_t seed = options_.first_seed + static_cast<uint64_t>(k);
+    // Most modes see the world as a drive without a fault does.
+    std::shared_ptr<drivers::PictureCache> pictures;
+    if (modes.size() > 1) pictures = std::make_shared<drivers::PictureCache>();
     for (const Mode* mode : modes) {
       const FaultTime time = mode->time_in(options_.duration_s);
       RunJudge judge(time, mode->named_by);
-      const Status status = drive(*mode, seed, options_.map,
-                                  [&judge](const JudgedCycle& cycle) { judge.add(cycle); });
+      const Status status = drive(
+          *mode, seed, options_.map, [&judge](const JudgedCycle& cycle) { judge.add(cycle); },
+          pictures);
       if (!status) return status;
       done({mode, seed, time.until_s < options_.duration_s, judge.outcome()});
     }

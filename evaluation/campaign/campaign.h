@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "common/result.h"
+#include "drivers/mock/picture_cache.h"
 #include "evaluation/campaign/match_table.h"
 #include "evaluation/campaign/mode.h"
 #include "evaluation/campaign/run_outcome.h"
@@ -39,9 +41,9 @@ class Campaign {
                                  const CampaignOptions& options);
 
   /// One run, through a procedural town, or through `map` if it is not empty. Every cycle goes to
-  /// `sink`.
-  Status drive(const Mode& mode, uint64_t seed, const std::string& map,
-               const CycleSink& sink) const;
+  /// `sink`. `pictures`: shared by runs of the same seed and map; null without.
+  Status drive(const Mode& mode, uint64_t seed, const std::string& map, const CycleSink& sink,
+               const std::shared_ptr<drivers::PictureCache>& pictures = nullptr) const;
 
   /// All modes of one seed after another, so that they share its pictures. `done` is called after
   /// each row. Fails if a world cannot be made.

@@ -1,3 +1,4 @@
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -197,6 +198,91 @@ std::vector<Mode> camera_modes() {
   return modes;
 }
 
+/// The map and the world differ. Only pictures can show it, and it is so from the start, except for
+/// the hole in the map.
+std::vector<Mode> map_modes() {
+  const WhyMask contradicts = Why::kMatchContradicts | Why::kGnssContradicts | Why::kMatchUncertain;
+  const WhyMask unseen = Why::kPoseStale | Why::kMatchUncertain;
+  std::vector<Mode> modes;
+  const auto add = [&modes](std::string_view name, std::string_view what, FaultLength length,
+                            const Fault& what_fails, WhyMask named_by) {
+    modes.push_back({.name = name,
+                     .what = what,
+                     .length = length,
+                     .faults = {what_fails},
+                     .match_faults = {},
+                     .named_by = named_by,
+                     .on_stage = false});
+  };
+  // To the north-east, so that the road is left whichever way it leads.
+  const auto shifted = [](double distance_m) {
+    const double part_m = distance_m * std::numbers::sqrt2 / 2.0;
+    return fault(FaultKind::kMapShifted, {.east_m = part_m, .north_m = part_m});
+  };
+  add("map-shifted-0.5m", "the map lies 0.5 m off", kAlways, shifted(0.5), contradicts);
+  add("map-shifted-1m", "the map lies 1 m off", kAlways, shifted(1.0), contradicts);
+  add("map-shifted-3m", "the map lies 3 m off", kAlways, shifted(3.0), contradicts);
+  add("map-cut", "the map has a hole along 20 s of the way", kTwenty,
+      fault(FaultKind::kMapCut, {.radius_m = 40.0}), unseen | Why::kOutsideMap);
+  add("map-elsewhere", "the map is that of another town", kAlways,
+      fault(FaultKind::kMapOfElsewhere, {.seed = 9.0}), contradicts | unseen);
+  add("map-border-0.4m", "mapped borders lie 0.4 m outside of the visible ones", kAlways,
+      fault(FaultKind::kMapBorderOff, {.outwards_m = 0.4}), contradicts);
+  add("grass-inside-2m", "grass grows 2 m into the road", kAlways,
+      fault(FaultKind::kWorldGrass, {.inside_m = 2.0}), contradicts | unseen);
+  return modes;
+}
+
+/// Faults of the bus between the vehicle and the appliance.
+std::vector<Mode> bus_modes() {
+  const WhyMask foreign =
+      Why::kForeignSender | Why::kOdometryImplausible | Why::kOdometryContradicts;
+  std::vector<Mode> modes;
+  const auto add = [&modes](std::string_view name, std::string_view what, FaultLength length,
+                            const Fault& what_fails, WhyMask named_by) {
+    modes.push_back({.name = name,
+                     .what = what,
+                     .length = length,
+                     .faults = {what_fails},
+                     .match_faults = {},
+                     .named_by = named_by});
+  };
+  add("bus-off", "the controller is bus-off for 5 s", {5.0}, fault(FaultKind::kBusOff),
+      Why::kOdometryMissing);
+  add("bus-no-acknowledge", "no node acknowledges for 5 s; 20 old frames follow", {5.0},
+      fault(FaultKind::kBusNoAcknowledge, {.stale_frames = 20.0}), Why::kOdometryMissing);
+  add("bus-flooded", "a flood takes the place of 90 % of the frames", {5.0},
+      fault(FaultKind::kBusFlooded, {.rate_hz = 4000.0, .loss = 0.9}), Why::kOdometryMissing);
+  add("bus-forged", "another node sends odometry of 20 m/s too", kTwenty,
+      fault(FaultKind::kBusForged, {.speed_mps = 20.0, .counter_step = 5.0}), foreign);
+  add("bus-replayed", "another node repeats frames of 5 s ago", kTwenty,
+      fault(FaultKind::kBusReplayed, {.age_s = 5.0}), foreign);
+  return modes;
+}
+
+/// Faults of the clocks of the whole appliance. A step of the wall clock has nothing to name,
+/// because nothing may come of it.
+std::vector<Mode> clock_modes() {
+  std::vector<Mode> modes;
+  const auto add = [&modes](std::string_view name, std::string_view what, FaultLength length,
+                            const Fault& what_fails, WhyMask named_by) {
+    modes.push_back({.name = name,
+                     .what = what,
+                     .length = length,
+                     .faults = {what_fails},
+                     .match_faults = {},
+                     .named_by = named_by,
+                     .on_stage = false});
+  };
+  add("wall-clock-step", "the wall clock is set 0.9 s ahead", kToTheEnd,
+      fault(FaultKind::kWallClockStep, {.step_s = 0.9}), {});
+  add("process-stopped", "the appliance stands still for 3 s", {3.0},
+      fault(FaultKind::kClockGap, {.gap_s = 3.0}), Why::kClockGap);
+  add("machine-suspended", "the machine is suspended for 3 s, which its clock does not show", {1.0},
+      fault(FaultKind::kClockSuspend, {.gap_s = 3.0}), Why::kClockGap);
+  return modes;
+}
+
 /// Two faults at once.
 std::vector<Mode> combined_modes() {
   const MatchFault alike{.kind = MatchFaultKind::kLanesAlike, .offset = {0.0, 3.5, 0.0}};
@@ -251,7 +337,8 @@ const std::vector<Mode>& all_modes() {
                      .faults = {},
                      .match_faults = {},
                      .limit_s = 0.0});
-    for (auto* make : {gnss_modes, odometry_modes, match_modes, combined_modes, camera_modes}) {
+    for (auto* make : {gnss_modes, odometry_modes, match_modes, combined_modes, camera_modes,
+                       map_modes, bus_modes, clock_modes}) {
       for (Mode& mode : make()) modes.push_back(std::move(mode));
     }
     return modes;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFrameset_s = 0.1;
 constexpr double kLatency_s = 0.03;
-constexpr double kDriving_mps = 1.0;
+constexpr double kTurning_mps = 1.0;
 /// Of two lanes that look alike, the distribution has a second peak nearly as high.
 constexpr double kRivalOfLaneAlike = 0.9;
 /// A wrong lane is a peak of its own only where the search range reaches.
@@ -76,7 +76,7 @@ MatchResult ModelledVision::match(const Se2& prior, const Se2& truth, SearchRang
                                   double time_s) {
   const sim::Drive::State state = drive_->at(time_s);
   const double curvature_radpm =
-      state.speed_mps > kDriving_mps ? state.yaw_rate_radps / state.speed_mps : 0.0;
+      state.speed_mps > kTurning_mps ? state.yaw_rate_radps / state.speed_mps : 0.0;
   const MatchedPlace place{distance_m_, curvature_radpm};
   const Se2 wanted = correction_between(prior, truth);
   MatchResult result;

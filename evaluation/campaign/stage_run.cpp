@@ -1,11 +1,11 @@
 #include "evaluation/campaign/stage_run.h"
 
-#include <memory>
 #include <utility>
 
 #include "can/bus/mock_bus.h"
 #include "can/messages/pose_publisher.h"
 #include "evaluation/campaign/modelled_vision.h"
+#include "evaluation/drive/faulty_bus.h"
 #include "evaluation/drive/simulated_drive.h"
 #include "firmware/runtime/appliance.h"
 #include "firmware/runtime/identity.h"
@@ -26,13 +26,13 @@ class StageRun {
            const SimulatedDrive& drive)
       : fault_(mode.time_in(config.simulation->duration_s)),
         suspended_s_(mode.suspended_s),
-        own_bus_(wire_.connect()),
+        own_bus_(wire_.connect(), drive.faults(), clock_, kDriveStart),
         vehicle_(drive, config.simulation->seed, config.can.base_ids, wire_.connect(), kDriveStart),
         reader_(
             wire_.connect(), config.can.base_ids, drive.map().origin,
             [&drive](double time_s) { return drive.truth_at(time_s); }, kDriveStart),
-        publisher_(*own_bus_, firmware::publisher_config(config, drive.map())),
-        input_(*own_bus_, config.can.base_ids,
+        publisher_(own_bus_, firmware::publisher_config(config, drive.map())),
+        input_(own_bus_, config.can.base_ids,
                {drive.map().origin.latitude_deg, drive.map().origin.longitude_deg}, queues_.samples,
                config.can.odometry),
         vision_(MatchModel(table, config.solver.tracking, config.solver.acquiring,
@@ -46,10 +46,11 @@ class StageRun {
 
   void run(double duration_s, const CycleSink& sink) {
     const Time end = kDriveStart + from_seconds(duration_s);
-    for (Time now = kDriveStart; now < end; now += kCycle) {
+    for (; clock_.now() < end; clock_.advance(kCycle)) {
+      const Time now = clock_.now();
       vehicle_.send_due(now);
       if (is_suspended(now)) {
-        while (own_bus_->receive()) {
+        while (own_bus_.receive()) {
         }
         continue;
       }
@@ -68,8 +69,9 @@ class StageRun {
 
   FaultTime fault_;
   double suspended_s_;
+  drivers::VirtualClock clock_{kDriveStart};
   can::MockWire wire_{256};
-  std::unique_ptr<can::Bus> own_bus_;
+  FaultyBus own_bus_;
   SimulatedVehicle vehicle_;
   CycleReader reader_;
   firmware::StageQueues queues_;

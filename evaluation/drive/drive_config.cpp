@@ -59,6 +59,7 @@ void read_simulation(YamlMap yaml, SimulationConfig& simulation) {
   simulation.conditions = read_conditions(yaml.optional_map("conditions"));
   simulation.calibration_error = read_calibration_error(yaml.optional_map("calibration_error"));
   simulation.exposure_offsets = read_offsets(yaml);
+  simulation.fault_socket = yaml.optional<std::string>("fault_socket", "");
   if (yaml.has("faults")) {
     for (YamlMap& fault : yaml.require_map_list("faults")) {
       simulation.faults.push_back(read_fault(fault));

@@ -23,6 +23,8 @@ struct SimulationConfig {
   sim::Conditions conditions;
   drivers::CalibrationError calibration_error;  ///< 1 sigma
   std::vector<sim::Fault> faults;
+  /// Where `bevloc fault` can reach the running drive; empty: nowhere.
+  std::filesystem::path fault_socket;
   /// Delay of each camera's exposure after the common tick.
   std::array<Duration, kCameraCount> exposure_offsets{};
 };

@@ -40,7 +40,8 @@ int read_camera(YamlMap& yaml, std::string_view key) {
 }
 
 void read_cameras(YamlMap& yaml, sim::Fault& fault) {
-  if (sim::info_of(fault.kind).input != FaultInput::kCamera) return;
+  const bool of_camera = sim::info_of(fault.kind).input == FaultInput::kCamera;
+  if (!of_camera && fault.kind != FaultKind::kHangCapture) return;
   if (fault.kind == FaultKind::kCameraSwapped) {
     fault.camera = read_camera(yaml, "camera");
     fault.other_camera = read_camera(yaml, "with");
@@ -64,9 +65,11 @@ double read_amount(YamlMap& yaml, const AmountInfo& amount) {
 
 sim::Fault read_fault(YamlMap& yaml) {
   sim::Fault fault = sim::make_fault(read_kind(yaml));
-  fault.from_s = yaml.optional<double>("from_s", fault.from_s, at_least(0.0));
-  fault.until_s = yaml.optional<double>("until_s", fault.until_s, at_least(0.0));
-  if (fault.until_s < fault.from_s) yaml.reject("until_s", "less than from_s", "from_s or more");
+  if (sim::has_time(fault.kind)) {
+    fault.from_s = yaml.optional<double>("from_s", fault.from_s, at_least(0.0));
+    fault.until_s = yaml.optional<double>("until_s", fault.until_s, at_least(0.0));
+    if (fault.until_s < fault.from_s) yaml.reject("until_s", "less than from_s", "from_s or more");
+  }
   read_cameras(yaml, fault);
   for (const AmountInfo& amount : sim::info_of(fault.kind).amounts) {
     fault.amounts.*amount.member = read_amount(yaml, amount);

@@ -1,9 +1,14 @@
 #include "evaluation/drive/simulated_drive.h"
 
+#include <cmath>
+
 #include "drivers/mock/true_rig.h"
 #include "evaluation/drive/configured_world.h"
+#include "sim/faults/drive_clock.h"
 #include "sim/faults/gnss_faults.h"
+#include "sim/faults/map_faults.h"
 #include "sim/faults/odometry_faults.h"
+#include "sim/faults/world_faults.h"
 #include "sim/random.h"
 
 namespace bevloc::evaluation {
@@ -18,6 +23,12 @@ constexpr double kSpareDuration_s = 10.0;
 
 Time at(Time drive_start, double time_s) {
   return drive_start + from_seconds(time_s);
+}
+
+/// The reading that is due at this time.
+uint64_t reading_index(double elapsed_s, const std::vector<sim::Fault>& clock_faults,
+                       double period_s) {
+  return static_cast<uint64_t>(std::llround(sim::drive_time_s(elapsed_s, clock_faults) / period_s));
 }
 
 GnssSample sample_of(const sim::GnssReading& reading, Time now) {
@@ -42,6 +53,7 @@ SimulatedVehicle::SimulatedVehicle(const SimulatedDrive& drive, uint64_t seed,
       gnss_(*drive_, sim::seed_for(seed, "gnss")),
       encoder_(base, {drive.map().origin.latitude_deg, drive.map().origin.longitude_deg},
                kRearTrack_m),
+      attacker_(encoder_),
       bus_(std::move(bus)),
       drive_start_(drive_start),
       next_odometry_(drive_start),
@@ -52,17 +64,24 @@ void SimulatedVehicle::send_due(Time now) {
   while (next_gnss_ <= now) send_gnss(now);
 }
 
+void SimulatedVehicle::send(const can::Frame& frame, double elapsed_s, Time now) {
+  bus_->send(frame, now);
+  attacker_.note(frame, elapsed_s);
+}
+
 void SimulatedVehicle::send_odometry(Time now) {
-  if (odometry_count_ < odometry_.count()) {
-    const double time_s = static_cast<double>(odometry_count_) * sim::OdometrySimulator::kPeriod_s;
-    const auto reading =
-        sim::reading_with_faults(odometry_, odometry_count_, kRearTrack_m,
-                                 faults_->active(sim::FaultInput::kOdometry, time_s));
+  const double elapsed_s = static_cast<double>(odometry_count_) * sim::OdometrySimulator::kPeriod_s;
+  const auto clock_faults = faults_->all(sim::FaultInput::kClock);
+  const uint64_t index = reading_index(elapsed_s, clock_faults, sim::OdometrySimulator::kPeriod_s);
+  if (index < odometry_.count() && !sim::is_in_clock_gap(elapsed_s, clock_faults)) {
+    const auto reading = sim::reading_with_faults(
+        odometry_, index, kRearTrack_m, faults_->active(sim::FaultInput::kOdometry, elapsed_s));
     if (reading) {
       const can::WheelOdometry measured{reading->left_mps, reading->right_mps,
                                         reading->yaw_rate_radps};
-      for (const can::Frame& frame : encoder_.odometry(measured)) bus_->send(frame, now);
+      for (const can::Frame& frame : encoder_.odometry(measured)) send(frame, elapsed_s, now);
     }
+    attacker_.act(*faults_, elapsed_s, *bus_, now);
   }
   ++odometry_count_;
   next_odometry_ =
@@ -70,13 +89,16 @@ void SimulatedVehicle::send_odometry(Time now) {
 }
 
 void SimulatedVehicle::send_gnss(Time now) {
-  if (gnss_count_ < gnss_.count()) {
-    const sim::GnssReading sensed = gnss_.reading(gnss_count_);
+  const double elapsed_s = static_cast<double>(gnss_count_) * sim::GnssSimulator::kPeriod_s;
+  const auto clock_faults = faults_->all(sim::FaultInput::kClock);
+  const uint64_t index = reading_index(elapsed_s, clock_faults, sim::GnssSimulator::kPeriod_s);
+  if (index < gnss_.count() && !sim::is_in_clock_gap(elapsed_s, clock_faults)) {
     const auto reading =
-        sim::with_faults(sensed, faults_->active(sim::FaultInput::kGnss, sensed.time_s), *drive_);
+        sim::with_faults(gnss_.reading(index), elapsed_s,
+                         faults_->active(sim::FaultInput::kGnss, elapsed_s), *drive_);
     if (reading) {
       for (const can::Frame& frame : encoder_.gnss(sample_of(*reading, now))) {
-        bus_->send(frame, now);
+        send(frame, elapsed_s, now);
       }
     }
   }
@@ -88,21 +110,32 @@ Result<SimulatedDrive> SimulatedDrive::create(const DriveConfig& config) {
   const SimulationConfig& simulation = *config.simulation;
   auto world = make_configured_world(config);
   if (!world) return tl::unexpected(world.error());
-  return SimulatedDrive(std::make_shared<const sim::World>(std::move(*world)), simulation);
+  return SimulatedDrive(
+      std::make_shared<const sim::World>(sim::with_faults(std::move(*world), simulation.faults)),
+      simulation);
 }
 
 SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,
                                const SimulationConfig& simulation)
     : world_(std::move(world)),
-      drive_(std::make_shared<sim::Drive>(*world_, sim::seed_for(simulation.seed, "drive"),
-                                          simulation.duration_s + kSpareDuration_s)),
-      faults_(std::make_shared<sim::FaultBoard>(simulation.faults)) {}
+      drive_(std::make_shared<sim::Drive>(
+          *world_, sim::seed_for(simulation.seed, "drive"),
+          simulation.duration_s + kSpareDuration_s + sim::added_time_s(simulation.faults))),
+      faults_(std::make_shared<sim::FaultBoard>(simulation.faults)),
+      map_(sim::with_faults(world_->map, simulation.faults, *drive_)) {}
+
+Se2 SimulatedDrive::truth_at(double elapsed_s) const {
+  const auto clock_faults = faults_->all(sim::FaultInput::kClock);
+  return drive_->at(sim::drive_time_s(elapsed_s, clock_faults)).map_from_vehicle;
+}
 
 std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(
-    const DriveConfig& config, const Rig& rig, drivers::Clock& clock, Time drive_start) const {
+    const DriveConfig& config, const Rig& rig, drivers::Clock& clock, Time drive_start,
+    const std::shared_ptr<drivers::PictureCache>& pictures) const {
   const SimulationConfig& simulation = *config.simulation;
-  const auto scene = std::make_shared<drivers::MockScene>(
-      world_, drive_, simulation.conditions, sim::seed_for(simulation.seed, "pixel noise"));
+  const auto scene =
+      std::make_shared<drivers::MockScene>(world_, drive_, simulation.conditions,
+                                           sim::seed_for(simulation.seed, "pixel noise"), pictures);
   const Rig true_rig = drivers::true_rig(rig, simulation.calibration_error,
                                          sim::seed_for(simulation.seed, "calibration"));
   std::vector<std::unique_ptr<drivers::Camera>> cameras;

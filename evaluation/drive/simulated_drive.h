@@ -8,6 +8,7 @@
 #include "can/bus/mock_bus.h"
 #include "can/messages/vehicle_encoder.h"
 #include "drivers/mock/mock_camera.h"
+#include "evaluation/drive/bus_attacker.h"
 #include "evaluation/drive/drive_config.h"
 #include "sim/faults/fault_board.h"
 #include "sim/sensors/gnss.h"
@@ -22,16 +23,19 @@ class SimulatedDrive {
   /// Fails as make_configured_world() does.
   static Result<SimulatedDrive> create(const DriveConfig& config);
 
-  const HdMap& map() const { return world_->map; }
-  Se2 truth_at(double time_s) const { return drive_->at(time_s).map_from_vehicle; }
+  /// The map that the appliance gets.
+  const HdMap& map() const { return map_; }
+  /// The vehicle's pose when the appliance's clock shows this time since the drive's start.
+  Se2 truth_at(double elapsed_s) const;
   std::shared_ptr<const sim::Drive> drive() const { return drive_; }
   /// The faults of the configuration. More may be set while the drive runs.
   std::shared_ptr<sim::FaultBoard> faults() const { return faults_; }
 
   /// Mock cameras that see the drive, which begins at `drive_start`. The clock must outlive them.
-  std::vector<std::unique_ptr<drivers::Camera>> make_cameras(const DriveConfig& config,
-                                                             const Rig& rig, drivers::Clock& clock,
-                                                             Time drive_start) const;
+  /// `pictures`: null without a cache.
+  std::vector<std::unique_ptr<drivers::Camera>> make_cameras(
+      const DriveConfig& config, const Rig& rig, drivers::Clock& clock, Time drive_start,
+      const std::shared_ptr<drivers::PictureCache>& pictures = nullptr) const;
 
  private:
   SimulatedDrive(std::shared_ptr<const sim::World> world, const SimulationConfig& simulation);
@@ -39,6 +43,7 @@ class SimulatedDrive {
   std::shared_ptr<const sim::World> world_;
   std::shared_ptr<const sim::Drive> drive_;
   std::shared_ptr<sim::FaultBoard> faults_;
+  HdMap map_;
 };
 
 /// Sends the vehicle's odometry and GNSS of a drive on the bus, each with its own period and with
@@ -57,12 +62,14 @@ class SimulatedVehicle {
  private:
   void send_odometry(Time now);
   void send_gnss(Time now);
+  void send(const can::Frame& frame, double elapsed_s, Time now);
 
   std::shared_ptr<const sim::Drive> drive_;
   std::shared_ptr<const sim::FaultBoard> faults_;
   sim::OdometrySimulator odometry_;
   sim::GnssSimulator gnss_;
   can::VehicleEncoder encoder_;
+  BusAttacker attacker_;
   std::unique_ptr<can::Bus> bus_;
   Time drive_start_;
   uint64_t odometry_count_ = 0;

@@ -4,6 +4,10 @@
 #include <cmath>
 
 #include "evaluation/drive/bus_factory.h"
+#include "evaluation/drive/clock_faults.h"
+#include "evaluation/drive/fault_socket.h"
+#include "evaluation/drive/faulty_bus.h"
+#include "evaluation/drive/jumping_clock.h"
 #include "evaluation/drive/progress_line.h"
 #include "evaluation/drive/simulated_drive.h"
 #include "evaluation/drive/snapshot_keeper.h"
@@ -47,13 +51,15 @@ class SimulatedRun {
   SimulatedRun(const DriveConfig& config, const Rig& rig, const SimulatedRunOptions& options,
                SimulatedDrive drive);
   Status connect();
+  void suspend_if_due(Time now);
+  void jump_if_due(double time_s);
   const JudgedPose& judged_nearest(double time_s) const;
 
   const DriveConfig& config_;
   const Rig& rig_;
   const SimulatedRunOptions& options_;
   SimulatedDrive drive_;
-  drivers::MonotonicClock machine_clock_;
+  JumpingClock machine_clock_;
   drivers::VirtualClock virtual_clock_;
   drivers::Clock& clock_;
   Time log_start_;
@@ -65,6 +71,8 @@ class SimulatedRun {
   std::unique_ptr<firmware::Appliance> appliance_;
   std::unique_ptr<SimulatedVehicle> vehicle_;
   std::unique_ptr<Judge> judge_;
+  std::unique_ptr<FaultServer> fault_server_;  ///< null without simulation.fault_socket
+  ClockFaults clock_faults_;
 };
 
 Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const DriveConfig& config,
@@ -72,6 +80,11 @@ Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const DriveConfig& co
                                                            const SimulatedRunOptions& options) {
   auto drive = SimulatedDrive::create(config);
   if (!drive) return tl::unexpected(drive.error());
+  const auto hanging = drive->faults()->all(sim::FaultInput::kThread);
+  if (options.fast && !hanging.empty()) {
+    return fail("simulation.faults: found {} in lockstep, wanted threads that run (no --fast)",
+                sim::info_of(hanging.front().kind).name);
+  }
   auto run =
       std::unique_ptr<SimulatedRun>(new SimulatedRun(config, rig, options, std::move(*drive)));
   if (Status status = run->connect(); !status) return tl::unexpected(status.error());
@@ -89,7 +102,8 @@ SimulatedRun::SimulatedRun(const DriveConfig& config, const Rig& rig,
       drive_start_(log_start_ + kLead),
       buses_(config.can),
       realtime_(config.realtime),
-      latencies_(config.simulation->duration_s) {}
+      latencies_(config.simulation->duration_s),
+      clock_faults_(drive_.faults()) {}
 
 Status SimulatedRun::connect() {
   auto own_bus = buses_.connect_appliance();
@@ -98,13 +112,18 @@ Status SimulatedRun::connect() {
   for (const auto* bus : {&own_bus, &vehicle_bus, &judge_bus}) {
     if (!*bus) return tl::unexpected(bus->error());
   }
-  firmware::Hardware hardware{drive_.make_cameras(config_, rig_, clock_, drive_start_),
-                              std::move(*own_bus), &clock_};
+  firmware::Hardware hardware{
+      drive_.make_cameras(config_, rig_, clock_, drive_start_, options_.pictures),
+      std::make_unique<FaultyBus>(std::move(*own_bus), drive_.faults(), clock_, drive_start_),
+      &clock_};
   auto appliance = firmware::Appliance::create(config_, rig_, drive_.map(), std::move(hardware));
   if (!appliance) return tl::unexpected(appliance.error());
   appliance_ = std::move(*appliance);
-  appliance_->vision().observe(
-      [this](const firmware::VisionSnapshot& snapshot) { keeper_.observe(snapshot); });
+  appliance_->vision().observe([this](const firmware::VisionSnapshot& snapshot) {
+    drive_.faults()->hang(sim::FaultKind::kHangVision, 0,
+                          [this] { return to_seconds(clock_.now() - drive_start_); });
+    keeper_.observe(snapshot);
+  });
   appliance_->estimation().observe_corrections(
       [this](Time frame_time) { latencies_.add(clock_.now() - frame_time); });
 
@@ -117,13 +136,21 @@ Status SimulatedRun::connect() {
       {log_start_, drive_start_}, (options_.out / "can.log").string());
   if (!judge) return tl::unexpected(judge.error());
   judge_ = std::move(*judge);
+  const std::filesystem::path& socket = config_.simulation->fault_socket;
+  if (socket.empty()) return {};
+  auto server = FaultServer::open(socket, drive_.faults(), options_.fast);
+  if (!server) return tl::unexpected(server.error());
+  fault_server_ = std::move(*server);
   return {};
 }
 
 void SimulatedRun::run(const StopWhen& stop) {
   const double duration_s = config_.simulation->duration_s;
   const firmware::Companion companion{[this] { return vehicle_->next_due(); },
-                                      [this](Time now) { vehicle_->send_due(now); },
+                                      [this](Time now) {
+                                        suspend_if_due(now);
+                                        vehicle_->send_due(now);
+                                      },
                                       [this](Duration timeout) { judge_->step(timeout); }};
   firmware::Watchdog watchdog(appliance_->estimation().counters().state);
   watchdog.watch_stages(*appliance_);
@@ -132,7 +159,13 @@ void SimulatedRun::run(const StopWhen& stop) {
     watchdog.step(now);
     supervisor.step(now);
     const double time_s = to_seconds(now - drive_start_);
+    if (fault_server_) fault_server_->step(time_s);
     const bool last = time_s >= duration_s || stop(supervisor.view());
+    if (last) {
+      drive_.faults()->release();
+    } else {
+      jump_if_due(time_s);
+    }
     if (options_.show_progress) {
       show_progress_line(supervisor.view(), judge_->view(), time_s, duration_s, last);
     }
@@ -144,6 +177,27 @@ void SimulatedRun::run(const StopWhen& stop) {
     firmware::run_threads(*appliance_, realtime_, &companion, supervise);
   }
   supervisor.finish();
+}
+
+/// The vehicle drove on while the machine was suspended.
+void SimulatedRun::suspend_if_due(Time now) {
+  const Duration length = clock_faults_.suspension_due(to_seconds(now - drive_start_));
+  if (length == Duration::zero()) return;
+  if (options_.fast) {
+    virtual_clock_.suspend(length);
+  } else {
+    machine_clock_.suspend(length);
+  }
+}
+
+/// The gap of a clock fault that has begun: time passes, but the appliance does not run.
+void SimulatedRun::jump_if_due(double time_s) {
+  const Duration gap = clock_faults_.gap_due(time_s);
+  if (options_.fast) {
+    virtual_clock_.advance(gap);
+  } else {
+    machine_clock_.advance(gap);
+  }
 }
 
 DriveReport SimulatedRun::report() const {

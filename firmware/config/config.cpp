@@ -117,10 +117,18 @@ std::optional<SecocConfig> read_secoc(YamlMap& can, CanDriver driver,
                      .starts_file = path_of(*yaml, "starts_file", folder)};
 }
 
-CanConfig read_can(YamlMap yaml, const std::filesystem::path& folder) {
+/// On a vehicle, poses on a mock bus reach nobody, and the status would say that CAN is well.
+bool is_real(CameraDriver driver) {
+  return driver == CameraDriver::kV4l2 || driver == CameraDriver::kLibcamera;
+}
+
+CanConfig read_can(YamlMap yaml, CameraDriver camera_driver, const std::filesystem::path& folder) {
   CanConfig config;
   config.driver = yaml.require_choice<CanDriver>(
       "driver", {{"mock", CanDriver::kMock}, {"socketcan", CanDriver::kSocketCan}});
+  if (config.driver == CanDriver::kMock && is_real(camera_driver)) {
+    yaml.reject("driver", "mock beside real cameras", "socketcan, so that poses reach the vehicle");
+  }
   if (config.driver == CanDriver::kSocketCan) {
     // IFNAMSIZ limits the length.
     const Wanted<std::string> interface_name{
@@ -173,32 +181,33 @@ TrackerParameters read_tracker(std::optional<YamlMap> yaml) {
     correlation.match_m = Eigen::Map<const Eigen::Vector3d>(lengths_m.data());
   }
   tracker.gate_squared_distance = yaml->optional<double>(
-      "gate_squared_distance", tracker.gate_squared_distance, between(1.0, 1000.0));
+      "gate_squared_distance", tracker.gate_squared_distance, between(4.0, 50.0));
   return tracker;
 }
 
 HealthLimits read_health(std::optional<YamlMap> yaml) {
   HealthLimits limits;
   if (!yaml) return limits;
-  const auto timeout = between(10.0, 60'000.0);
-  limits.odometry_timeout =
-      optional_milliseconds(*yaml, "odometry_timeout_ms", limits.odometry_timeout, timeout);
+  // The bounds exclude limits that declare any pose valid.
+  const auto timeout = between(10.0, 10'000.0);
+  limits.odometry_timeout = optional_milliseconds(*yaml, "odometry_timeout_ms",
+                                                  limits.odometry_timeout, between(10.0, 1000.0));
   limits.gnss_timeout =
       optional_milliseconds(*yaml, "gnss_timeout_ms", limits.gnss_timeout, timeout);
-  limits.correction_timeout =
-      optional_milliseconds(*yaml, "degraded_after_ms", limits.correction_timeout, timeout);
+  limits.correction_timeout = optional_milliseconds(
+      *yaml, "degraded_after_ms", limits.correction_timeout, between(10.0, 5000.0));
   limits.lost_timeout = optional_milliseconds(*yaml, "lost_after_ms", limits.lost_timeout, timeout);
-  const auto count = between(1, 1000);
   limits.corrections_to_track =
-      yaml->optional<int>("corrections_to_track", limits.corrections_to_track, count);
-  limits.refusals_to_lose = yaml->optional<int>("refusals_to_lose", limits.refusals_to_lose, count);
-  const auto sigma_m = between(0.01, 10.0);
-  limits.longitudinal_sigma_m =
-      yaml->optional<double>("max_longitudinal_sigma_m", limits.longitudinal_sigma_m, sigma_m);
+      yaml->optional<int>("corrections_to_track", limits.corrections_to_track, between(3, 1000));
+  limits.refusals_to_lose =
+      yaml->optional<int>("refusals_to_lose", limits.refusals_to_lose, between(1, 100));
+  // No sigma may exceed the freeway alert limit of its axis.
+  limits.longitudinal_sigma_m = yaml->optional<double>(
+      "max_longitudinal_sigma_m", limits.longitudinal_sigma_m, between(0.01, 1.4));
   limits.lateral_sigma_m =
-      yaml->optional<double>("max_lateral_sigma_m", limits.lateral_sigma_m, sigma_m);
+      yaml->optional<double>("max_lateral_sigma_m", limits.lateral_sigma_m, between(0.01, 0.57));
   limits.yaw_sigma_rad = radians(yaml->optional<double>(
-      "max_yaw_sigma_deg", degrees(limits.yaw_sigma_rad), between(0.01, 45.0)));
+      "max_yaw_sigma_deg", degrees(limits.yaw_sigma_rad), between(0.01, 1.5)));
   if (limits.lost_timeout <= limits.correction_timeout) {
     yaml->reject("lost_after_ms", "not more than degraded_after_ms", "more than degraded_after_ms");
   }
@@ -234,7 +243,7 @@ Result<Config> load_config(const std::filesystem::path& file, const SimulationRe
   YamlMap model = yaml->require_map("model");
   config.model_file = path_of(model, "file", folder);
   config.solver = read_solver(yaml->optional_map("solver"));
-  config.can = read_can(yaml->require_map("can"), folder);
+  config.can = read_can(yaml->require_map("can"), config.cameras.driver, folder);
   config.tracker = read_tracker(yaml->optional_map("tracker"));
   config.health = read_health(yaml->optional_map("health"));
   if (auto gpio = yaml->optional_map("gpio")) {

@@ -94,8 +94,9 @@ struct Config {
 Result<Config> load_config(const std::filesystem::path& file,
                            const SimulationReader* simulation = nullptr);
 
-/// Checks that everything that the configuration names can be read or found: rig, model, map, GPIO
-/// lines, camera devices and recordings (`bevlocd --check-config`). Returns the first error.
+/// Checks on this machine everything that the configuration names (`bevlocd --check-config`): reads
+/// rig, model, map and recordings, looks up the GPIO lines, opens the CAN interface, and starts the
+/// cameras. Returns the first error.
 Status check_config(const Config& config);
 
 }  // namespace bevloc::firmware

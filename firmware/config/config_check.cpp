@@ -3,6 +3,7 @@
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "firmware/config/config.h"
 #include "firmware/runtime/camera_factory.h"
+#include "firmware/runtime/can_bus.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_loader.h"
 #include "pipeline/network/network.h"
@@ -16,6 +17,14 @@ Status check_lines(const GpioConfig& gpio) {
       return fail("gpio: {}", status.error().message);
     }
   }
+  return {};
+}
+
+/// Opens and closes the appliance's socket.
+Status check_can(const CanConfig& can) {
+  if (can.driver == CanDriver::kMock) return {};
+  if (const auto bus = open_can_bus(can); !bus)
+    return fail("can.interface: {}", bus.error().message);
   return {};
 }
 
@@ -37,7 +46,8 @@ Status check_config(const Config& config) {
     if (!key) return tl::unexpected(key.error());
   }
   if (Status status = check_lines(config.gpio); !status) return status;
-  return check_cameras(config.cameras);
+  if (Status status = check_can(config.can); !status) return status;
+  return check_cameras(config.cameras, *rig);
 }
 
 }  // namespace bevloc::firmware

@@ -102,6 +102,19 @@ Status check_libcamera(const CameraConfig&) {
 }
 #endif
 
+/// All run at the same time, because they share buses and memory.
+Status start_and_stop(const CameraConfig& config, const Rig& rig) {
+  drivers::MonotonicClock clock;
+  auto cameras = make_cameras(config, rig, clock);
+  if (!cameras) return tl::unexpected(cameras.error());
+  Status result;
+  for (const auto& camera : *cameras) {
+    if (result) result = camera->start();
+  }
+  for (const auto& camera : *cameras) camera->stop();
+  return result;
+}
+
 Status check_recordings(const CameraConfig& config) {
   for (const std::string_view camera : kCameraNames) {
     const auto recording = drivers::load_recording(config.recording / camera);
@@ -126,12 +139,14 @@ Result<Cameras> make_cameras(const CameraConfig& config, const Rig& rig, drivers
   return fail("cameras.driver: found mock, wanted v4l2, libcamera or replay");
 }
 
-Status check_cameras(const CameraConfig& config) {
+Status check_cameras(const CameraConfig& config, const Rig& rig) {
   switch (config.driver) {
     case CameraDriver::kV4l2:
-      return check_v4l2(config);
+      if (Status found = check_v4l2(config); !found) return found;
+      return start_and_stop(config, rig);
     case CameraDriver::kLibcamera:
-      return check_libcamera(config);
+      if (Status found = check_libcamera(config); !found) return found;
+      return start_and_stop(config, rig);
     case CameraDriver::kReplay:
       return check_recordings(config);
     case CameraDriver::kMock:

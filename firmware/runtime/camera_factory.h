@@ -18,7 +18,10 @@ Result<std::vector<std::unique_ptr<drivers::Camera>>> make_cameras(const CameraC
                                                                    const Rig& rig,
                                                                    drivers::Clock& clock);
 
-/// Looks up every camera. The error names the first missing one and lists the devices that exist.
-Status check_cameras(const CameraConfig& config);
+/// Looks up every camera, then starts all of them together and stops them again: each sets its
+/// format, rate and controls and allocates its buffers. The error names the first camera that is
+/// missing (and lists the devices that exist) or that cannot do what is configured. Recordings are
+/// read.
+Status check_cameras(const CameraConfig& config, const Rig& rig);
 
 }  // namespace bevloc::firmware

@@ -31,6 +31,7 @@ void ServiceNotifier::feed_watchdog() {
 }
 
 void ServiceNotifier::set_watchdog_timeout(Duration timeout) {
+  if (std::getenv("WATCHDOG_USEC") == nullptr) return;
   const auto timeout_us = std::chrono::duration_cast<std::chrono::microseconds>(timeout).count();
   sd_notifyf(0, "WATCHDOG_USEC=%lld", static_cast<long long>(timeout_us));
 }

@@ -17,7 +17,7 @@ class ServiceNotifier {
   void status(const std::string& text);
   /// To be called only while every thread makes progress.
   void feed_watchdog();
-  /// Changes the watchdog timeout until ready().
+  /// Changes the watchdog timeout until ready(), if the unit has a watchdog.
   void set_watchdog_timeout(Duration timeout);
 
  private:

@@ -31,10 +31,15 @@ void FramesetSource::look_at_clock(Time now) {
 }
 
 std::optional<NewestFrameset> FramesetSource::newest(Time now) {
-  auto frameset = synchronizer_.poll(now);
+  auto newest = poll(now);
   for (int camera = 0; camera < kCameraCount; ++camera) {
     frames_of_[camera].store(synchronizer_.counters(camera));
   }
+  return newest;
+}
+
+std::optional<NewestFrameset> FramesetSource::poll(Time now) {
+  auto frameset = synchronizer_.poll(now);
   if (!frameset) return std::nullopt;
   NewestFrameset newest;
   while (auto newer = synchronizer_.poll(now)) {

@@ -61,6 +61,7 @@ class FramesetSource {
 
  private:
   void look_at_clock(Time now);
+  std::optional<NewestFrameset> poll(Time now);
 
   drivers::FramesetSynchronizer synchronizer_;
   Synchrony synchrony_;

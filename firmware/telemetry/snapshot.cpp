@@ -29,6 +29,8 @@ FramesetsSnapshot framesets_of(const VisionStage& vision) {
           .refused = counters.refused,
           .clock_gaps = vision.framesets().counters().clock_gaps,
           .off_pulse = synchrony.off_pulse,
+          .network_checks = counters.checks,
+          .network_fault = counters.network_fault,
           .spread = synchrony.spread,
           .spread_max = synchrony.spread_max};
 }
@@ -42,6 +44,9 @@ CameraSnapshot camera_of(const Appliance& appliance, int camera) {
           .synchronizer = appliance.vision().framesets().frames_of(camera),
           .unreadable = vision.unreadable[camera],
           .frozen = CameraMask(vision.frozen)[camera],
+          .dark = CameraMask(vision.dark)[camera],
+          .blinded = CameraMask(vision.blinded)[camera],
+          .dirty = CameraMask(vision.dirty)[camera],
           .drift_ppm = appliance.vision().framesets().synchrony().drift_ppm[camera]};
 }
 

@@ -17,7 +17,10 @@ struct CameraSnapshot {
   drivers::CameraCounters driver;
   drivers::SynchronizerCounters synchronizer;
   uint64_t unreadable = 0;  ///< images of a wrong size, or damaged
-  bool frozen = false;      ///< at the latest frameset
+  bool frozen = false;      ///< at the latest frameset, as are the next three
+  bool dark = false;
+  bool blinded = false;
+  bool dirty = false;
   double drift_ppm = 0.0;
 };
 
@@ -28,6 +31,8 @@ struct FramesetsSnapshot {
   uint64_t refused = 0;     ///< too few readable images
   uint64_t clock_gaps = 0;  ///< FramesetSource::kGap
   uint64_t off_pulse = 0;
+  uint64_t network_checks = 0;
+  bool network_fault = false;
   Duration spread{};  ///< of the latest one
   Duration spread_max{};
 };

@@ -35,9 +35,9 @@ void log_framesets(const FramesetsSnapshot& framesets,
                    const std::optional<TriggerSnapshot>& trigger) {
   spdlog::info(
       "framesets: spread at most {:.3f} ms; {} taken, {} without a prior, {} with too few readable "
-      "images, {} clock gaps",
+      "images; network checked {} times",
       milliseconds(framesets.spread_max), framesets.taken, framesets.no_prior, framesets.refused,
-      framesets.clock_gaps);
+      framesets.network_checks);
   if (!trigger) return;
   spdlog::info(
       "trigger: {} pulses, at most {:.3f} ms late, {} skipped, {} failed; {} framesets without a "
@@ -75,8 +75,8 @@ void log_bus(const can::BusCounters& bus) {
 void log_vehicle_input(const can::VehicleInputCounters& input) {
   spdlog::info(
       "vehicle: {} odometry and {} GNSS samples; frames: {} lost, {} with a wrong CRC or length, "
-      "{} "
-      "repeated, {} out of sequence, {} while not valid, {} incomplete, {} not available, {} with "
+      "{} repeated, {} out of sequence, {} while not valid, {} incomplete, {} not available, {} "
+      "with "
       "our identifiers; odometry refused: {} wheels against yaw rate, {} jumps, {} sharp turns",
       input.odometry_samples, input.gnss_samples, input.lost, input.wrong_crc + input.wrong_length,
       input.repeated, input.wrong_sequence, input.not_valid, input.incomplete, input.not_available,
@@ -101,8 +101,9 @@ void log_totals(const Snapshot& snapshot) {
   log_tracker("odometry", snapshot.estimation.odometry);
   log_tracker("GNSS", snapshot.estimation.gnss);
   log_tracker("corrections", snapshot.estimation.corrections);
-  if (snapshot.estimation.clock_gaps > 0) {
-    spdlog::warn("clock: {} gaps", snapshot.estimation.clock_gaps);
+  if (snapshot.estimation.clock_gaps > 0 || snapshot.framesets.clock_gaps > 0) {
+    spdlog::warn("clock: {} gaps seen by CAN out, {} by vision", snapshot.estimation.clock_gaps,
+                 snapshot.framesets.clock_gaps);
   }
   log_bus(snapshot.bus);
   if (snapshot.log_dropped > 0) spdlog::warn("log: {} lines dropped", snapshot.log_dropped);

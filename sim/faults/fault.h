@@ -41,6 +41,23 @@ enum class FaultKind : uint8_t {
   kCameraSwapped,
   kCameraTurned,
   kCameraMoved,
+  kMapShifted,
+  kMapCut,
+  kMapOfElsewhere,
+  kMapBorderOff,
+  kWorldGrass,
+  kClockGap,
+  kClockSuspend,
+  kWallClockStep,
+  kBusOff,
+  kBusNoAcknowledge,
+  kBusFlooded,
+  kBusForged,
+  kBusReplayed,
+  kHangCapture,
+  kHangVision,
+  kHangCanIn,
+  kHangCanOut,
 };
 
 /// The amounts of all kinds. A kind uses those that the fault table names; the others stay 0.
@@ -62,8 +79,8 @@ struct FaultAmounts {
   double bias_degps = 0.0;
   double yaw_rate_degps = 0.0;
   double delay_ms = 0.0;
-  double every = 0.0;  ///< a whole number, like pictures
-  double pictures = 0.0;
+  double every = 0.0;     ///< a whole number
+  double pictures = 0.0;  ///< a whole number
   double shift_ms = 0.0;
   double brightness = 0.0;
   double strength = 0.0;
@@ -74,6 +91,18 @@ struct FaultAmounts {
   double x_m = 0.0;
   double y_m = 0.0;
   double z_m = 0.0;
+  double radius_m = 0.0;
+  double seed = 0.0;  ///< a whole number
+  double outwards_m = 0.0;
+  double inside_m = 0.0;
+  double gap_s = 0.0;
+  double step_s = 0.0;
+  double stale_frames = 0.0;  ///< a whole number
+  double rate_hz = 0.0;
+  double loss = 0.0;
+  double speed_mps = 0.0;
+  double counter_step = 0.0;  ///< a whole number
+  double age_s = 0.0;
 };
 
 /// Active during [from_s, until_s) of the drive.

@@ -1,6 +1,14 @@
 #include "sim/faults/fault_board.h"
 
+#include <algorithm>
+
 namespace bevloc::sim {
+namespace {
+
+/// How often a hanging thread looks whether its fault has ended by itself.
+constexpr std::chrono::milliseconds kHangPoll{10};
+
+}  // namespace
 
 FaultBoard::FaultBoard(const std::vector<Fault>& faults) {
   for (const Fault& fault : faults) add(fault);
@@ -43,6 +51,33 @@ std::vector<Fault> FaultBoard::active_on_camera(int camera, double time_s) const
   std::vector<Fault> found = active(FaultInput::kCamera, time_s);
   std::erase_if(found, [camera](const Fault& fault) { return !fault.concerns(camera); });
   return found;
+}
+
+std::vector<Fault> FaultBoard::all(FaultInput input) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Fault> found;
+  for (const NumberedFault& listed : faults_) {
+    if (info_of(listed.fault.kind).input == input) found.push_back(listed.fault);
+  }
+  return found;
+}
+
+bool FaultBoard::hangs(FaultKind kind, int camera, double time_s) const {
+  return !released_ && std::ranges::any_of(faults_, [&](const NumberedFault& listed) {
+    const Fault& fault = listed.fault;
+    return fault.kind == kind && fault.concerns(camera) && fault.is_active(time_s);
+  });
+}
+
+void FaultBoard::hang(FaultKind kind, int camera, const std::function<double()>& time_s) const {
+  std::unique_lock lock(mutex_);
+  while (hangs(kind, camera, time_s())) changed_.wait_for(lock, kHangPoll);
+}
+
+void FaultBoard::release() {
+  const std::lock_guard lock(mutex_);
+  released_ = true;
+  changed_.notify_all();
 }
 
 }  // namespace bevloc::sim

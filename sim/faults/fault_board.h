@@ -1,7 +1,9 @@
 // The faults of a running simulated drive, which may be set and cleared while it runs.
 #pragma once
 
+#include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <vector>
 
@@ -32,9 +34,21 @@ class FaultBoard {
   std::vector<Fault> active(FaultInput input, double time_s) const;
   /// The faults of one camera.
   std::vector<Fault> active_on_camera(int camera, double time_s) const;
+  /// All faults of an input, whatever their time.
+  std::vector<Fault> all(FaultInput input) const;
+
+  /// Blocks while a fault of this kind hangs the calling thread, in real time. `time_s` gives the
+  /// time of the drive. `camera` matters for kHangCapture only.
+  void hang(FaultKind kind, int camera, const std::function<double()>& time_s) const;
+  /// Ends every hang() for good, so that the threads can end.
+  void release();
 
  private:
+  bool hangs(FaultKind kind, int camera, double time_s) const;
+
   mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  bool released_ = false;              // guarded by mutex_
   std::vector<NumberedFault> faults_;  // guarded by mutex_
   uint32_t next_number_ = 1;           // guarded by mutex_
 };

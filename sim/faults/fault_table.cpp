@@ -47,6 +47,23 @@ constexpr AmountInfo kMove[] = {{"x_m", &A::x_m, -10.0, 10.0, 0.0},
                                 {"y_m", &A::y_m, -10.0, 10.0, 0.0},
                                 {"z_m", &A::z_m, -1.0, 10.0, 0.0}};
 
+constexpr AmountInfo kMapShift[] = {{"east_m", &A::east_m, -kFar_m, kFar_m, 0.0},
+                                    {"north_m", &A::north_m, -kFar_m, kFar_m, 0.0},
+                                    {"yaw_deg", &A::yaw_deg, -180.0, 180.0, 0.0}};
+constexpr AmountInfo kRadius[] = {{"radius_m", &A::radius_m, 1.0, 1000.0, 40.0}};
+constexpr AmountInfo kSeed[] = {{"seed", &A::seed, 0.0, 1e9, std::nullopt, true}};
+constexpr AmountInfo kOutwards[] = {{"outwards_m", &A::outwards_m, -5.0, 5.0}};
+constexpr AmountInfo kInside[] = {{"inside_m", &A::inside_m, 0.0, 10.0, 2.0}};
+constexpr AmountInfo kGap[] = {{"gap_s", &A::gap_s, 0.0, 3600.0}};
+constexpr AmountInfo kStep[] = {{"step_s", &A::step_s, -1e6, 1e6}};
+constexpr AmountInfo kStale[] = {{"stale_frames", &A::stale_frames, 0.0, 1000.0, 0.0, true}};
+constexpr AmountInfo kFlood[] = {{"rate_hz", &A::rate_hz, 0.0, 10'000.0, 4000.0},
+                                 {"loss", &A::loss, 0.0, 1.0, 0.9}};
+constexpr AmountInfo kForgery[] = {{"speed_mps", &A::speed_mps, -kFast_mps, kFast_mps},
+                                   {"yaw_rate_degps", &A::yaw_rate_degps, -163.0, 163.0, 0.0},
+                                   {"counter_step", &A::counter_step, 1.0, 15.0, 5.0, true}};
+constexpr AmountInfo kAge[] = {{"age_s", &A::age_s, 0.1, 60.0, 5.0}};
+
 using K = FaultKind;
 using I = FaultInput;
 
@@ -83,6 +100,23 @@ constexpr std::array kKinds = {
     FaultKindInfo{K::kCameraSwapped, "camera_swapped", I::kCamera, {}},
     FaultKindInfo{K::kCameraTurned, "camera_turned", I::kCamera, kTurn},
     FaultKindInfo{K::kCameraMoved, "camera_moved", I::kCamera, kMove},
+    FaultKindInfo{K::kMapShifted, "map_shifted", I::kMap, kMapShift},
+    FaultKindInfo{K::kMapCut, "map_cut", I::kMap, kRadius},
+    FaultKindInfo{K::kMapOfElsewhere, "map_of_elsewhere", I::kMap, kSeed},
+    FaultKindInfo{K::kMapBorderOff, "map_border_off", I::kMap, kOutwards},
+    FaultKindInfo{K::kWorldGrass, "world_grass", I::kMap, kInside},
+    FaultKindInfo{K::kClockGap, "clock_gap", I::kClock, kGap},
+    FaultKindInfo{K::kClockSuspend, "clock_suspend", I::kClock, kGap},
+    FaultKindInfo{K::kWallClockStep, "wall_clock_step", I::kClock, kStep},
+    FaultKindInfo{K::kBusOff, "bus_off", I::kBus, {}},
+    FaultKindInfo{K::kBusNoAcknowledge, "bus_no_acknowledge", I::kBus, kStale},
+    FaultKindInfo{K::kBusFlooded, "bus_flooded", I::kBus, kFlood},
+    FaultKindInfo{K::kBusForged, "bus_forged", I::kBus, kForgery},
+    FaultKindInfo{K::kBusReplayed, "bus_replayed", I::kBus, kAge},
+    FaultKindInfo{K::kHangCapture, "hang_capture", I::kThread, {}},
+    FaultKindInfo{K::kHangVision, "hang_vision", I::kThread, {}},
+    FaultKindInfo{K::kHangCanIn, "hang_can_in", I::kThread, {}},
+    FaultKindInfo{K::kHangCanOut, "hang_can_out", I::kThread, {}},
 };
 
 /// info_of() looks kinds up by their number.
@@ -102,6 +136,10 @@ std::span<const FaultKindInfo> fault_kinds() {
 
 const FaultKindInfo& info_of(FaultKind kind) {
   return kKinds[static_cast<size_t>(kind)];
+}
+
+bool has_time(FaultKind kind) {
+  return info_of(kind).input != FaultInput::kMap || kind == FaultKind::kMapCut;
 }
 
 Fault make_fault(FaultKind kind, double from_s, double until_s) {

@@ -10,7 +10,15 @@
 namespace bevloc::sim {
 
 /// The input of the appliance that a fault disturbs.
-enum class FaultInput : uint8_t { kGnss, kOdometry, kCamera };
+enum class FaultInput : uint8_t {
+  kGnss,
+  kOdometry,
+  kCamera,
+  kMap,  ///< the map, or the world that it does not fit; only from the start of the drive
+  kClock,
+  kBus,
+  kThread,  ///< not an input: a thread of the appliance hangs in a simulated device
+};
 
 struct AmountInfo {
   std::string_view key;
@@ -31,6 +39,9 @@ struct FaultKindInfo {
 /// All kinds, in the order of FaultKind.
 std::span<const FaultKindInfo> fault_kinds();
 const FaultKindInfo& info_of(FaultKind kind);
+
+/// Whether the fault has a time. The others are there from the start of the drive.
+bool has_time(FaultKind kind);
 
 /// A fault of this kind with the fallback amounts.
 Fault make_fault(FaultKind kind, double from_s = 0.0,

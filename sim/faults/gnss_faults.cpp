@@ -20,20 +20,20 @@ double pulled_share(double elapsed_s, double pull_s) {
   return part * part * (3.0 - 2.0 * part);
 }
 
-Eigen::Vector2d offset_of(const Fault& fault, double time_s, const Drive& drive) {
+/// The offset `since_s` after the fault began.
+Eigen::Vector2d offset_of(const Fault& fault, double since_s, double time_s, const Drive& drive) {
   const FaultAmounts& by = fault.amounts;
   const auto yaw_at = [&drive](double at_s) { return drive.at(at_s).map_from_vehicle.yaw_rad; };
-  const double elapsed_s = time_s - fault.from_s;
   switch (fault.kind) {
     case FaultKind::kGnssJump:
       return in_map({by.east_m, by.north_m}, {by.along_m, by.across_m}, yaw_at(time_s));
     case FaultKind::kGnssRamp:
-      return elapsed_s *
+      return since_s *
              in_map({by.east_mps, by.north_mps}, {by.along_mps, by.across_mps}, yaw_at(time_s));
     case FaultKind::kGnssSpoof:
       // A spoofer moves the whole track, so the direction is that of the first moment.
-      return pulled_share(elapsed_s, by.pull_s) *
-             in_map({by.east_m, by.north_m}, {by.along_m, by.across_m}, yaw_at(fault.from_s));
+      return pulled_share(since_s, by.pull_s) *
+             in_map({by.east_m, by.north_m}, {by.along_m, by.across_m}, yaw_at(time_s - since_s));
     default:
       return Eigen::Vector2d::Zero();
   }
@@ -41,11 +41,11 @@ Eigen::Vector2d offset_of(const Fault& fault, double time_s, const Drive& drive)
 
 }  // namespace
 
-std::optional<GnssReading> with_faults(GnssReading reading, std::span<const Fault> active,
-                                       const Drive& drive) {
+std::optional<GnssReading> with_faults(GnssReading reading, double elapsed_s,
+                                       std::span<const Fault> active, const Drive& drive) {
   const Se2 truth = drive.at(reading.time_s).map_from_vehicle;
   for (const Fault& fault : active) {
-    reading.position_m += offset_of(fault, reading.time_s, drive);
+    reading.position_m += offset_of(fault, elapsed_s - fault.from_s, reading.time_s, drive);
     switch (fault.kind) {
       case FaultKind::kGnssOutage:
         return std::nullopt;

@@ -1,6 +1,8 @@
 // Drives with six mock cameras, judged by their result, their files and their CAN log.
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
+#include <future>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -159,6 +161,61 @@ size_t count_of(const std::string& text, const std::string& word) {
   size_t count = 0;
   for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
   return count;
+}
+
+/// Runs `bevloc fault`, again and again until the drive runs. Returns what it printed.
+std::string fault_command(const ScratchFolder& scratch, const std::string& command) {
+  const std::string line = std::string(BEVLOC_PROGRAM) + " fault --socket " +
+                           (scratch / "faults").string() + " " + command + " >" +
+                           (scratch / "answer").string() + " 2>&1";
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    const bool good = std::system(line.c_str()) == 0;
+    const std::string answer = read_text(scratch / "answer");
+    if (good || answer.find("no running drive") == std::string::npos) return answer;
+  }
+  return "the drive did not answer";
+}
+
+/// The longest time between two frames of an identifier in a candump log.
+double longest_gap_s(const std::filesystem::path& log, const std::string& id) {
+  std::ifstream lines(log);
+  double last_s = -1.0;
+  double longest_s = 0.0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(" " + id + "#") == std::string::npos) continue;
+    const double time_s = std::stod(line.substr(1));
+    if (last_s >= 0.0) longest_s = std::max(longest_s, time_s - last_s);
+    last_s = time_s;
+  }
+  return longest_s;
+}
+
+TEST(DriveVariantTest, FaultsAreSetAndClearedWhileTheDriveRuns) {
+  const ScratchFolder scratch;
+  write_file(scratch / "config.yaml",
+             demo_config_with("  duration_s: 60\n", "  duration_s: 60\n  fault_socket: " +
+                                                        (scratch / "faults").string() + "\n"));
+  auto run = std::async(std::launch::async, [&] {
+    return run_bevlocd("--config " + (scratch / "config.yaml").string() + " --out " +
+                       scratch.path().string() + " --seed 2901 --duration 10");
+  });
+  EXPECT_NE(fault_command(scratch, "set odometry_missing from_s=5 for_s=1").find("1: "),
+            std::string::npos);
+  EXPECT_NE(fault_command(scratch, "set gnss_outage from_s=1").find("2: gnss_outage"),
+            std::string::npos);
+  // The drive answers about ten commands a second, so it has passed 1 s after these.
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_NE(fault_command(scratch, "list").find("2: gnss_outage"), std::string::npos);
+  }
+  EXPECT_NE(fault_command(scratch, "set gnss_jump up_m=1").find("up_m"), std::string::npos);
+  EXPECT_EQ(fault_command(scratch, "clear 2"), "");
+  EXPECT_EQ(fault_command(scratch, "list").find("gnss_outage"), std::string::npos);
+  EXPECT_EQ(run.get().exit_code, 0);
+  EXPECT_NEAR(longest_gap_s(scratch / "can.log", "400"), 1.0, 0.2) << "odometry";
+  const double gnss_gap_s = longest_gap_s(scratch / "can.log", "402");
+  EXPECT_GT(gnss_gap_s, 0.15) << "GNSS was missing";
+  EXPECT_LT(gnss_gap_s, 6.0) << "GNSS came back";
+  EXPECT_FALSE(std::filesystem::exists(scratch / "faults"));
 }
 
 /// The demo with free-running cameras: no two cameras expose at the same time.

@@ -9,6 +9,7 @@
 
 #include "evaluation/drive/simulated_run.h"
 #include "pipeline/calibration/rig_yaml.h"
+#include "sim/faults/fault_table.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -121,6 +122,35 @@ TEST(ThreadsTest, LockstepAppliesNoRealtimeSettings) {
                                      [](const firmware::ApplianceView&) { return false; });
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->realtime_refusals, 0);
+}
+
+/// The number of frames of the localizer in the log of a run, from a time of the log on.
+int localizer_frames_from(const std::filesystem::path& log, double from_s) {
+  std::ifstream lines(log);
+  int count = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const bool is_localizers = line.find(" 5") != std::string::npos;  // identifiers from 0x500 on
+    if (is_localizers && std::stod(line.substr(1)) >= from_s) ++count;
+  }
+  return count;
+}
+
+TEST(ThreadsTest, HangingThreadsStandStillAndEndWithTheRun) {
+  DriveConfig config = endless_demo();
+  config.cameras.rate_hz = 10.0;
+  for (const sim::FaultKind kind : {sim::FaultKind::kHangCapture, sim::FaultKind::kHangVision,
+                                    sim::FaultKind::kHangCanIn, sim::FaultKind::kHangCanOut}) {
+    config.simulation->faults.push_back(sim::make_fault(kind));
+  }
+  int asked = 0;
+  const SimulatedRunOptions options = quiet_options();
+  const auto report =
+      run_simulation(config, small_rig(config), options,
+                     [&asked](const firmware::ApplianceView&) { return ++asked > 15; });
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_LE(report->frames.captured, uint64_t{kCameraCount}) << "drawn before the drive began";
+  EXPECT_GT(localizer_frames_from(options.out / "can.log", 0.0), 100);
+  EXPECT_LE(localizer_frames_from(options.out / "can.log", 0.7), 20) << "the sign-off";
 }
 
 TEST(ThreadsTest, StopsWhenAsked) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <thread>
 #include <vector>
 
@@ -74,6 +75,78 @@ TEST(MockCamera, AFrozenCameraRepeatsTheSamePixels) {
   EXPECT_NE(taken[1], taken[2]);
   EXPECT_EQ(taken[2], taken[3]);
   EXPECT_EQ(taken[3], taken[4]);
+}
+
+MockCameraConfig camera_with(int camera, sim::Fault fault) {
+  MockCameraConfig config = small_front_camera();
+  config.camera = camera;
+  // Each camera looks in its own direction.
+  for (int i = 0; i < kCameraCount; ++i) {
+    config.true_rig.cameras[i].vehicle_from_camera =
+        sim::nominal_rig().cameras[i].vehicle_from_camera;
+  }
+  config.faults = faults({fault});
+  return config;
+}
+
+double mean(const Pixels& pixels) {
+  return std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(pixels.size());
+}
+
+const sim::Fault kNoFault = make_fault(FaultKind::kGnssOutage);
+
+TEST(MockCamera, SwappedCamerasShowEachOthersPictures) {
+  sim::Fault swapped = make_fault(FaultKind::kCameraSwapped, 0.2);
+  swapped.camera = 1;
+  swapped.other_camera = 4;
+  const auto front = first_images(camera_with(1, kNoFault), 4);
+  const auto back = first_images(camera_with(4, kNoFault), 4);
+  const auto swapped_front = first_images(camera_with(1, swapped), 4);
+  const auto swapped_back = first_images(camera_with(4, swapped), 4);
+  EXPECT_EQ(swapped_front[1], front[1]);
+  for (size_t i = 2; i < 4; ++i) {
+    EXPECT_EQ(swapped_front[i], back[i]);
+    EXPECT_EQ(swapped_back[i], front[i]);
+  }
+}
+
+TEST(MockCamera, DarkBlindedDirtyTurnedAndMovedPicturesDifferOnlyDuringTheFault) {
+  const auto good = first_images(camera_with(1, kNoFault), 4);
+  for (const FaultKind kind :
+       {FaultKind::kCameraDark, FaultKind::kCameraBlinded, FaultKind::kCameraDirty,
+        FaultKind::kCameraTurned, FaultKind::kCameraMoved}) {
+    sim::Fault fault = make_fault(kind, 0.1, 0.3);
+    fault.amounts.yaw_deg = 5.0;
+    fault.amounts.y_m = 1.0;
+    const auto bad = first_images(camera_with(1, fault), 4);
+    EXPECT_EQ(bad[0], good[0]) << info_of(kind).name;
+    EXPECT_NE(bad[1], good[1]) << info_of(kind).name;
+    EXPECT_NE(bad[2], good[2]) << info_of(kind).name;
+    EXPECT_NE(bad[1], bad[2]) << info_of(kind).name << ": the picture still changes";
+    EXPECT_EQ(bad[3], good[3]) << info_of(kind).name;
+    const double level = mean(bad[1]);
+    EXPECT_EQ(level < 3.0, kind == FaultKind::kCameraDark) << level;
+    EXPECT_EQ(level > 240.0, kind == FaultKind::kCameraBlinded) << level;
+  }
+}
+
+TEST(MockCamera, ALoopShowsTheSamePixelsAgain) {
+  sim::Fault loop = make_fault(FaultKind::kCameraLoop, 0.1);
+  loop.amounts.pictures = 2;
+  const auto taken = first_images(camera_with(1, loop), 5);
+  EXPECT_EQ(taken[1], taken[3]);
+  EXPECT_EQ(taken[2], taken[4]);
+  EXPECT_NE(taken[1], taken[2]);
+}
+
+TEST(MockCamera, AfterASuspensionTheDriveHasGoneOn) {
+  sim::Fault suspend = make_fault(FaultKind::kClockSuspend, 0.2);
+  suspend.amounts.gap_s = 0.2;
+  const auto good = first_images(camera_with(1, kNoFault), 6);
+  const auto suspended = first_images(camera_with(1, suspend), 4);
+  EXPECT_EQ(suspended[1], good[1]);
+  EXPECT_EQ(suspended[2], good[4]);
+  EXPECT_EQ(suspended[3], good[5]);
 }
 
 TEST(MockCamera, CamerasThatDrawAtTheSameTimeGiveTheSameImagesAsAlone) {

@@ -82,7 +82,7 @@ TEST(CameraFactory, NamesTheMissingCamera) {
   CameraConfig config;
   config.driver = CameraDriver::kV4l2;
   config.devices.ids.fill("no-such-camera");
-  const Status status = check_cameras(config);
+  const Status status = check_cameras(config, Rig{});
   ASSERT_FALSE(status);
   EXPECT_NE(status.error().message.find("camera front_left"), std::string::npos);
   EXPECT_NE(status.error().message.find("no-such-camera"), std::string::npos);

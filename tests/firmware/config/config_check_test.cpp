@@ -76,5 +76,37 @@ TEST_F(ConfigCheckTest, ReadsTheRecordings) {
   EXPECT_TRUE(check_config(*config));
 }
 
+/// A configuration of real cameras, none of which is connected here.
+const std::string kVehicle =
+    "cameras:\n"
+    "  driver: v4l2\n"
+    "  ids: {front_left: c0, front: c1, front_right: c2, back_left: c3, back: c4, back_right: c5}\n"
+    "calibration: {rig: rig.yaml}\n"
+    "map: {file: town.osm}\n"
+    "model: {file: model.onnx}\n";
+
+TEST_F(ConfigCheckTest, RefusesAMockBusBesideRealCameras) {
+  EXPECT_EQ(error_of(kVehicle + "can: {driver: mock}\n"),
+            place(7) +
+                "can.driver: found mock beside real cameras, wanted socketcan, so that "
+                "poses reach the vehicle");
+  EXPECT_EQ(error_of(kVehicle + "can: {driver: socketcan, interface: nowhere0}\n"), "");
+}
+
+TEST_F(ConfigCheckTest, OpensTheInterfaceAndLooksForTheCameras) {
+  auto config = load(kVehicle + "can: {driver: socketcan, interface: nowhere0}\n");
+  ASSERT_TRUE(config) << config.error().message;
+  std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
+  put_model("model.onnx");
+  put_map("town.osm");
+  Status checked = check_config(*config);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message, StartsWith("can.interface: nowhere0: "));
+  config->can.driver = CanDriver::kMock;
+  checked = check_config(*config);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message, StartsWith("camera front_left: "));
+}
+
 }  // namespace
 }  // namespace bevloc::firmware

@@ -242,6 +242,16 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
        "solver.acquiring.y_range_m: found 7.6, wanted a number, 0.1 to 7.5"},
       {kSmallest + "health: {degraded_after_ms: 500, lost_after_ms: 400}\n", 9,
        "health.lost_after_ms"},
+      // limits that declare any pose valid
+      {kSmallest + "health: {max_longitudinal_sigma_m: 1.5}\n", 9,
+       "health.max_longitudinal_sigma_m: found 1.5, wanted a number, 0.01 to 1.4"},
+      {kSmallest + "health: {max_lateral_sigma_m: 0.6}\n", 9, "health.max_lateral_sigma_m"},
+      {kSmallest + "health: {max_yaw_sigma_deg: 2}\n", 9, "health.max_yaw_sigma_deg"},
+      {kSmallest + "health: {corrections_to_track: 1}\n", 9, "health.corrections_to_track"},
+      {kSmallest + "health: {refusals_to_lose: 101}\n", 9, "health.refusals_to_lose"},
+      {kSmallest + "health: {lost_after_ms: 10001}\n", 9, "health.lost_after_ms"},
+      {kSmallest + "health: {odometry_timeout_ms: 1001}\n", 9, "health.odometry_timeout_ms"},
+      {kSmallest + "tracker: {gate_squared_distance: 51}\n", 9, "tracker.gate_squared_distance"},
       {kSmallest + "log: {level: loud}\n", 9, "log.level: found loud"},
       // keys of another driver
       {with("driver: mock\n" + rate, "driver: replay\n  recording: r\n"), 5, "map.procedural_seed"},

@@ -23,7 +23,7 @@ class VehicleFaults : public testing::Test {
   /// The GNSS error in directions of the map, with minus without the fault, at 10 s.
   Eigen::Vector2d gnss_offset(const Fault& fault, double time_s = 10.0) const {
     const GnssReading good = gnss_.reading(static_cast<size_t>(std::lround(10.0 * time_s)));
-    const auto bad = with_faults(good, std::vector{fault}, drive_);
+    const auto bad = with_faults(good, good.time_s, std::vector{fault}, drive_);
     EXPECT_TRUE(bad);
     return bad->position_m - good.position_m;
   }
@@ -52,7 +52,7 @@ class VehicleFaults : public testing::Test {
 
 TEST_F(VehicleFaults, WithoutAFaultNothingChanges) {
   const GnssReading good = gnss_.reading(17);
-  const auto same = with_faults(good, {}, drive_);
+  const auto same = with_faults(good, good.time_s, {}, drive_);
   ASSERT_TRUE(same);
   EXPECT_EQ(same->position_m, good.position_m);
   EXPECT_EQ(same->heading_rad, good.heading_rad);
@@ -99,19 +99,21 @@ TEST_F(VehicleFaults, GnssSigmaNoiseHeadingAndOutage) {
   const Se2 truth = drive_.at(good.time_s).map_from_vehicle;
   Fault sigma = make_fault(FaultKind::kGnssWrongSigma);
   sigma.amounts.factor = 0.1;
-  const auto sure = with_faults(good, std::vector{sigma}, drive_);
+  const auto sure = with_faults(good, good.time_s, std::vector{sigma}, drive_);
   EXPECT_DOUBLE_EQ(sure->position_sigma_m, 0.1 * good.position_sigma_m);
   EXPECT_DOUBLE_EQ(sure->heading_sigma_rad, 0.1 * good.heading_sigma_rad);
   EXPECT_EQ(sure->position_m, good.position_m);
   Fault noise = make_fault(FaultKind::kGnssNoise);
   noise.amounts.factor = 3.0;
-  const auto noisy = with_faults(good, std::vector{noise}, drive_);
+  const auto noisy = with_faults(good, good.time_s, std::vector{noise}, drive_);
   EXPECT_NEAR((noisy->position_m - truth.translation()).norm(),
               3.0 * (good.position_m - truth.translation()).norm(), 1e-9);
   EXPECT_EQ(noisy->position_sigma_m, good.position_sigma_m);
   EXPECT_FALSE(
-      with_faults(good, std::vector{make_fault(FaultKind::kGnssNoHeading)}, drive_)->has_heading);
-  EXPECT_FALSE(with_faults(good, std::vector{make_fault(FaultKind::kGnssOutage)}, drive_));
+      with_faults(good, good.time_s, std::vector{make_fault(FaultKind::kGnssNoHeading)}, drive_)
+          ->has_heading);
+  EXPECT_FALSE(
+      with_faults(good, good.time_s, std::vector{make_fault(FaultKind::kGnssOutage)}, drive_));
 }
 
 TEST_F(VehicleFaults, StuckOdometryRepeatsTheValuesOfItsFirstMoment) {

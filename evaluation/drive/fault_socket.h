@@ -1,0 +1,48 @@
+// Sets, lists and clears the faults of a running simulated drive over a local socket.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "common/result.h"
+#include "sim/faults/fault_board.h"
+
+namespace bevloc::evaluation {
+
+/// A unix datagram socket. Each datagram is one command, and its answer one datagram: `set FAULT`
+/// (fault_text.h), `list`, `clear` or `clear NUMBER`. An answer begins with "error: " if the
+/// command was refused. One thread.
+class FaultServer {
+ public:
+  /// Fails if there is no way to make the socket. A socket that an earlier run left is replaced.
+  /// `lockstep`: the drive has one thread, so none may hang.
+  static Result<std::unique_ptr<FaultServer>> open(const std::filesystem::path& path,
+                                                   std::shared_ptr<sim::FaultBoard> faults,
+                                                   bool lockstep);
+  ~FaultServer();
+  FaultServer(const FaultServer&) = delete;
+  FaultServer& operator=(const FaultServer&) = delete;
+
+  /// Answers all waiting commands, without waiting for more. Faults begin at `now_s` of the drive.
+  void step(double now_s);
+
+ private:
+  FaultServer(int descriptor, std::filesystem::path path, std::shared_ptr<sim::FaultBoard> faults,
+              bool lockstep);
+  std::string answer(const std::string& command, double now_s);
+  std::string set(const std::string& text, double now_s);
+  std::string clear(const std::string& number);
+
+  const int descriptor_;
+  const std::filesystem::path path_;
+  const std::shared_ptr<sim::FaultBoard> faults_;
+  const bool lockstep_;
+};
+
+/// Sends one command to the server at `path` and returns its answer. Fails if nobody answers within
+/// two seconds, or if the command was refused.
+Result<std::string> send_fault_command(const std::filesystem::path& path,
+                                       const std::string& command);
+
+}  // namespace bevloc::evaluation

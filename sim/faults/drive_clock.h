@@ -1,0 +1,20 @@
+// Relates the time that the appliance's clock shows to the time that has passed in the world.
+#pragma once
+
+#include <span>
+
+#include "sim/faults/fault.h"
+
+namespace bevloc::sim {
+
+/// The time of the drive when the appliance's clock shows `elapsed_s` since the drive's start. It
+/// is later after a suspension, which the clock does not show.
+double drive_time_s(double elapsed_s, std::span<const Fault> faults);
+
+/// Whether the appliance stood still at this time, while its clock went on.
+bool is_in_clock_gap(double elapsed_s, std::span<const Fault> faults);
+
+/// How much longer than planned the drive may become.
+double added_time_s(std::span<const Fault> faults);
+
+}  // namespace bevloc::sim

@@ -1,0 +1,33 @@
+// Tells on which side of a road boundary the road is.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+
+#include "pipeline/map/hd_map.h"
+#include "sim/world/path.h"
+
+namespace bevloc::sim {
+
+/// Immutable.
+class RoadSide {
+ public:
+  /// Keeps no reference to the map.
+  explicit RoadSide(const HdMap& map);
+
+  struct Side {
+    bool is_right = false;    ///< the road is on the right of the line
+    double distance_m = 0.0;  ///< least distance to the centre line of a lane
+  };
+  /// Nothing if no lane is near.
+  std::optional<Side> of(const Path& boundary) const;
+
+ private:
+  /// The nearest point of a centre line within reach.
+  std::optional<Eigen::Vector2d> nearest_centre(const Eigen::Vector2d& point) const;
+
+  std::unordered_map<uint64_t, Polyline> centres_;  ///< points of centre lines, by their cell
+};
+
+}  // namespace bevloc::sim

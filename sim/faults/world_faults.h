@@ -1,0 +1,14 @@
+// Faults of the world that the cameras see, against the map that the appliance gets.
+#pragma once
+
+#include <span>
+
+#include "sim/faults/fault.h"
+#include "sim/world/world.h"
+
+namespace bevloc::sim {
+
+/// The world with its faults. Its map stays. Faults of other inputs are ignored.
+World with_faults(World world, std::span<const Fault> faults);
+
+}  // namespace bevloc::sim

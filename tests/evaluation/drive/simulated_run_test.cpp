@@ -1,0 +1,94 @@
+// Whole short drives in lockstep: pictures from a cache, gaps of the clock, threads that hang.
+#include "evaluation/drive/simulated_run.h"
+
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/calibration/rig_yaml.h"
+#include "sim/faults/fault_table.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+using sim::FaultKind;
+using sim::make_fault;
+
+class SimulatedRunTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto config = load_drive_config(std::string(BEVLOC_SOURCE_DIR) + "/config/demo.yaml");
+    ASSERT_TRUE(config) << config.error().message;
+    config_ = *config;
+    config_.simulation->seed = 2008;
+    config_.simulation->town_seed = 2008;
+    config_.simulation->duration_s = 3.0;
+    auto rig = read_rig(config_.rig_file);
+    ASSERT_TRUE(rig) << rig.error().message;
+    rig_ = *rig;
+    options_.fast = true;
+    options_.show_progress = false;
+    options_.out = std::filesystem::path(testing::TempDir()) /
+                   testing::UnitTest::GetInstance()->current_test_info()->name();
+  }
+  void TearDown() override { std::filesystem::remove_all(options_.out); }
+
+  Result<DriveReport> run() const {
+    return run_simulation(config_, rig_, options_,
+                          [](const firmware::ApplianceView&) { return false; });
+  }
+  std::string log() const {
+    std::ostringstream text;
+    text << std::ifstream(options_.out / "can.log").rdbuf();
+    return text.str();
+  }
+
+  DriveConfig config_;
+  Rig rig_;
+  SimulatedRunOptions options_;
+};
+
+TEST_F(SimulatedRunTest, PicturesFromTheCacheGiveTheSameLog) {
+  ASSERT_TRUE(run());
+  const std::string without = log();
+  options_.pictures = std::make_shared<drivers::PictureCache>();
+  ASSERT_TRUE(run());
+  EXPECT_EQ(log(), without);
+  const auto first = options_.pictures->counters();
+  EXPECT_GT(first.kept, 150U);
+  EXPECT_EQ(first.found, 0U);
+  config_.simulation->faults = {make_fault(FaultKind::kGnssOutage, 2.0)};
+  ASSERT_TRUE(run());
+  EXPECT_EQ(options_.pictures->counters().kept, first.kept) << "every picture was known";
+  EXPECT_EQ(options_.pictures->counters().found, first.kept);
+}
+
+TEST_F(SimulatedRunTest, AGapOfTheClockIsAGapOnTheBus) {
+  sim::Fault gap = make_fault(FaultKind::kClockGap, 1.0);
+  gap.amounts.gap_s = 1.5;
+  config_.simulation->faults = {gap};
+  const auto report = run();
+  ASSERT_TRUE(report) << report.error().message;
+  // The lines of the log begin with "(seconds)". The drive begins at 0.5 s.
+  std::istringstream lines(log());
+  double last_s = 0.0;
+  double largest_gap_s = 0.0;
+  for (std::string line; std::getline(lines, line);) {
+    const double time_s = std::stod(line.substr(1));
+    largest_gap_s = std::max(largest_gap_s, time_s - last_s);
+    last_s = time_s;
+  }
+  EXPECT_NEAR(largest_gap_s, 1.5, 0.02);
+  EXPECT_NEAR(last_s, 3.5, 0.1);
+}
+
+TEST_F(SimulatedRunTest, AThreadCannotHangInLockstep) {
+  config_.simulation->faults = {make_fault(FaultKind::kHangVision, 1.0)};
+  const auto report = run();
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("hang_vision"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation
