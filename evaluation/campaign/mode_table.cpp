@@ -140,7 +140,7 @@ std::vector<Mode> match_modes() {
   add("match-saw-nothing-start", "the match says nothing, from the start", kAlways,
       {.kind = MatchFaultKind::kSawNothing}, Why::kPoseStale);
   add("match-old-stamps", "frames carry times 100 ms too early", kToTheEnd,
-      {.kind = MatchFaultKind::kOldStamps, .delay_s = 0.1}, contradicts);
+      {.kind = MatchFaultKind::kOldStamps, .delay_s = 0.1}, contradicts | Why::kCalibrationFault);
   return modes;
 }
 
@@ -184,7 +184,7 @@ std::vector<Mode> camera_modes() {
       fault(FaultKind::kCameraLate, {.delay_ms = 500.0}), missing | Why::kPoseStale);
   add("camera-stamps", "all cameras' times 100 ms too early", kToTheEnd,
       fault(FaultKind::kCameraTimeShift, {.shift_ms = -100.0}),
-      Why::kCamerasUnsynchronized | Why::kMatchContradicts);
+      Why::kCamerasUnsynchronized | Why::kMatchContradicts | Why::kCalibrationFault);
   add("cameras-swapped", "front and back camera swapped, from the start", kAlways,
       fault(FaultKind::kCameraSwapped), calibration, kFront, kBack);
   add("camera-turned-1", "front camera turned by 1 degree", kToTheEnd,

@@ -3,6 +3,12 @@
 #include <utility>
 
 namespace bevloc::firmware {
+namespace {
+
+/// So many standard deviations of a new pose must lie within the alert limit.
+constexpr double kSigmasToTrack = 4.0;
+
+}  // namespace
 
 bool Health::update(const HealthInputs& inputs) {
   why_ = find_reasons(inputs);
@@ -35,6 +41,7 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
                                   inputs.yaw_sigma_rad > limits_.yaw_sigma_rad);
   set_if(Why::kPoseStale, inputs.correction_age > limits_.correction_timeout);
   set_if(Why::kOverload, inputs.overloaded);
+  set_if(Why::kCalibrationFault, inputs.stamps_contradict);
   set_if(Why::kNetworkFault, inputs.network_fault);
   set_if(Why::kInternalFault, inputs.internal_error);
   return why;
@@ -44,14 +51,16 @@ bool Health::is_lost(const HealthInputs& inputs) const {
   const bool contradicted =
       inputs.verdict.odometry_contradicts ||
       (inputs.verdict.undecided && inputs.refused_in_a_row >= limits_.refusals_to_lose);
-  return contradicted || !inputs.initialized || inputs.odometry_implausible || inputs.clock_gap ||
-         why_.has(Why::kPoseUncertain) || why_.has(Why::kOdometryMissing) ||
-         inputs.correction_age > limits_.lost_timeout;
+  return contradicted || inputs.stamps_contradict || !inputs.initialized ||
+         inputs.odometry_implausible || inputs.clock_gap || why_.has(Why::kPoseUncertain) ||
+         why_.has(Why::kOdometryMissing) || inputs.correction_age > limits_.lost_timeout;
 }
 
 bool Health::is_confirmed(const HealthInputs& inputs) const {
+  const Eigen::Array3d sigma(inputs.longitudinal_sigma_m, inputs.lateral_sigma_m,
+                             inputs.yaw_sigma_rad);
   return inputs.gnss_confirms && inputs.accepted_in_a_row >= limits_.corrections_to_track &&
-         (inputs.protection_level.array() <= limits_.alert_limit.array()).all();
+         (kSigmasToTrack * sigma <= limits_.alert_limit.array()).all();
 }
 
 HealthState Health::next_state(const HealthInputs& inputs) const {

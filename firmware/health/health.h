@@ -25,9 +25,9 @@ struct HealthLimits {
   /// Largest sigmas of a valid pose.
   double longitudinal_sigma_m = 0.60;
   double lateral_sigma_m = 0.30;
-  double yaw_sigma_rad = radians(0.6);
-  /// Largest protection levels with which a pose becomes valid, (longitudinal m, lateral m, yaw
-  /// rad): the alert limits of a freeway.
+  double yaw_sigma_rad = radians(0.75);
+  /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert
+  /// limits of a freeway. A new pose becomes valid only if its error is well within them.
   Eigen::Vector3d alert_limit{1.40, 0.57, radians(1.5)};
   /// For the protection levels that are sent with the pose.
   ProtectionParameters protection;
@@ -57,9 +57,9 @@ struct HealthInputs {
   double longitudinal_sigma_m = 0.0;
   double lateral_sigma_m = 0.0;
   double yaw_sigma_rad = 0.0;
-  Eigen::Vector3d protection_level = Eigen::Vector3d::Zero();  ///< (m, m, rad)
-  bool network_fault = false;   ///< the network failed its check (VisionStage)
-  bool internal_error = false;  ///< the pose or its covariance is not finite
+  bool stamps_contradict = false;  ///< camera stamps and yaw rate disagree (StampMonitor)
+  bool network_fault = false;      ///< the network failed its check (VisionStage)
+  bool internal_error = false;     ///< the pose or its covariance is not finite
 };
 
 /// Transitions: INIT -> ACQUIRING -> TRACKING <-> DEGRADED; ACQUIRING, TRACKING or DEGRADED -> LOST

@@ -26,6 +26,7 @@ void Supervisor::step(Time now) {
   view_.blinded = CameraMask(vision.blinded);
   view_.dirty = CameraMask(vision.dirty);
   view_.network_fault = vision.network_fault;
+  view_.stamp_offset_ms = estimation.stamp_offset_ms;
   view_.realtime_refusals = realtime_.refusals();
   view_.hung = hung_threads(now);
   update_rate(now);

@@ -26,6 +26,7 @@ struct ApplianceView {
   CameraMask blinded;
   CameraMask dirty;
   bool network_fault = false;
+  int stamp_offset_ms = 0;  ///< as in EstimationCounters
 };
 
 /// Thread-bound: called from the supervising thread; heartbeat() is readable from any thread.

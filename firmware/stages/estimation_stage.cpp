@@ -18,6 +18,9 @@ constexpr size_t index_of(TrackerUpdate outcome) {
   return static_cast<size_t>(outcome);
 }
 
+/// Headings with a smaller share of evidence are not compared with the yaw rate.
+constexpr double kLeastYawEvidence = 0.8;
+
 Duration age(const std::optional<Time>& time, Time now) {
   return time ? now - *time : Duration::max();
 }
@@ -74,6 +77,7 @@ void EstimationStage::note_clock_gap(Duration) {
   while (reports_.pop(Duration::zero())) {
   }
   estimator_.reset();
+  stamp_monitor_ = StampMonitor();
   last_tick_.reset();
   odometry_time_.reset();
   gnss_time_.reset();
@@ -97,6 +101,9 @@ void EstimationStage::sign_off(Time now) {
 void EstimationStage::take_samples() {
   while (const auto sample = samples_.pop(Duration::zero())) {
     const bool is_odometry = std::holds_alternative<OdometrySample>(*sample);
+    if (const auto* odometry = std::get_if<OdometrySample>(&*sample)) {
+      stamp_monitor_.add_rate(odometry->time, odometry->yaw_rate_radps);
+    }
     const TrackerUpdate outcome = estimator_.add(*sample);
     ++(is_odometry ? counters_.odometry : counters_.gnss)[index_of(outcome)];
     // A GNSS sample that the gate refuses is there, but contradicts.
@@ -119,9 +126,25 @@ void EstimationStage::take_reports(Time now) {
     latest_report_arrival_ = now;
     network_fault_ = network_fault_ || report->network_fault;
     if (report->had_prior) add_correction(*report);
+    compare_heading(*report);
   }
   // If all cameras stop, there are no more reports that say so.
   if (now - latest_report_arrival_ > report_lifetime_) latest_report_.reset();
+}
+
+void EstimationStage::compare_heading(const VisionReport& report) {
+  constexpr int kYaw = 2;
+  if (!report.had_prior || report.match.evidence != Evidence::kGood ||
+      report.match.evidence_share(kYaw) < kLeastYawEvidence) {
+    return;
+  }
+  stamp_monitor_.add_heading(report.frame_time, (report.prior * report.match.correction).yaw_rad);
+  const auto estimate = stamp_monitor_.estimate();
+  const bool contradicts = stamp_monitor_.contradicts() && estimate;
+  using std::chrono::duration_cast;
+  using std::chrono::milliseconds;
+  counters_.stamp_offset_ms =
+      contradicts ? static_cast<int>(duration_cast<milliseconds>(estimate->offset).count()) : 0;
 }
 
 void EstimationStage::add_correction(const VisionReport& report) {
@@ -157,6 +180,7 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
     inputs.map_nearby = latest_report_->map_nearby || !latest_report_->had_prior;
     inputs.overloaded = latest_report_->skipped;
   }
+  inputs.stamps_contradict = stamp_monitor_.contradicts();
   inputs.network_fault = network_fault_;
   inputs.latest_correction_refused = refused_in_a_row_ > 0;
   inputs.accepted_in_a_row = accepted_in_a_row_;
@@ -169,7 +193,6 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
   inputs.gnss_confirms = estimator_.gnss_confirms();
   inputs.clock_gap = clock_gap_;
   if (pose) add_uncertainty(*pose, inputs);
-  inputs.protection_level = protection_;
   return inputs;
 }
 

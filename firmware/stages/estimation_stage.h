@@ -9,6 +9,7 @@
 #include "firmware/health/health.h"
 #include "firmware/stages/messages.h"
 #include "firmware/stages/vehicle_input_stage.h"
+#include "pipeline/localization/stamp_monitor.h"
 #include "pipeline/tracker/pose_estimator.h"
 
 namespace bevloc::firmware {
@@ -27,7 +28,9 @@ struct EstimationCounters {
   TrackerOutcomes corrections{};
   std::atomic<uint64_t> clock_gaps{0};
   std::atomic<HealthState> state{HealthState::kInit};
-  std::atomic<uint32_t> why{0};      ///< bits of a WhyMask
+  std::atomic<uint32_t> why{0};  ///< bits of a WhyMask
+  /// Offset of the camera stamps against odometry; 0 while it is tolerated (StampMonitor).
+  std::atomic<int> stamp_offset_ms{0};
   std::atomic<unsigned> cameras{0};  ///< cameras used in the latest frameset, a CameraMask
 };
 
@@ -66,6 +69,7 @@ class EstimationStage {
   void take_samples();
   void take_reports(Time now);
   void add_correction(const VisionReport& report);
+  void compare_heading(const VisionReport& report);
   void watch_clock(Time now);
   HealthInputs health_inputs(const std::optional<TrackedPose>& pose, Time now) const;
   void update_health(const std::optional<TrackedPose>& pose, Time now);
@@ -94,6 +98,7 @@ class EstimationStage {
   std::optional<VisionReport> latest_report_;
   Time latest_report_arrival_;
   bool network_fault_ = false;
+  StampMonitor stamp_monitor_;
   std::optional<Time> last_tick_;
   int accepted_in_a_row_ = 0;  ///< that confirm a start
   int refused_in_a_row_ = 0;

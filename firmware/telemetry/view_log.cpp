@@ -29,6 +29,17 @@ void ViewLog::note(const ApplianceView& view) {
                "check its exposure if no bright light explains this");
   note_cameras(before_.dirty, view.dirty, "dirty, parts of its image do not move while driving",
                "clean the lens");
+  if ((view.stamp_offset_ms != 0) != (before_.stamp_offset_ms != 0)) {
+    if (view.stamp_offset_ms != 0) {
+      spdlog::warn(
+          "cameras: their time stamps are {:+} ms off odometry, as the headings in bends show; "
+          "check "
+          "the clock of the cameras and the delay of the yaw rate",
+          view.stamp_offset_ms);
+    } else {
+      spdlog::info("cameras: their time stamps agree with odometry again");
+    }
+  }
   if (view.network_fault && !before_.network_fault) {
     spdlog::critical(
         "network: it computed another answer to the test frame than its model stores; replace the "

@@ -131,14 +131,15 @@ bool Arbiter::gnss_moved() const {
   return gnss_.refused_in_a_row >= kGnssRefusals || gnss_.drifts() || gnss_moved_;
 }
 
-Verdict Arbiter::judge(Time now, bool trusted, bool pose_valid) {
+Verdict Arbiter::judge(Time now, PoseStanding standing) {
   Verdict verdict;
-  if (!pose_valid) gnss_.excluded = false;
+  const bool valid = standing == PoseStanding::kValid;
+  if (!valid) gnss_.excluded = false;
   if (match_is_disputed() && !match_.excluded) {
-    decide_dispute(verdict, trusted);
+    decide_dispute(verdict, standing);
     if (verdict.odometry_contradicts) odometry_wrong_until_ = now + kOdometryMemory;
   }
-  if (pose_valid && match_agrees(now) && gnss_moved()) gnss_.excluded = true;
+  if (valid && match_agrees(now) && gnss_moved()) gnss_.excluded = true;
   if (!match_agrees(now) && !match_is_disputed() && gnss_.refused_in_a_row >= kGnssRefusals &&
       !gnss_.excluded) {
     verdict.undecided = true;
@@ -149,9 +150,9 @@ Verdict Arbiter::judge(Time now, bool trusted, bool pose_valid) {
   return verdict;
 }
 
-void Arbiter::decide_dispute(Verdict& verdict, bool trusted) {
+void Arbiter::decide_dispute(Verdict& verdict, PoseStanding standing) {
   if (explained_) return;
-  if (!trusted) {
+  if (standing == PoseStanding::kNew) {
     verdict.undecided = true;
     return;
   }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include <Eigen/Core>
@@ -20,6 +21,13 @@ struct Verdict {
   bool undecided = false;             ///< two voters disagree, and the third does not decide
 };
 
+/// How far the pose is trusted.
+enum class PoseStanding : uint8_t {
+  kNew,    ///< not valid yet since the filter started: a refused match does not say who is wrong
+  kLost,   ///< was valid, and is not now
+  kValid,  ///< only now GNSS can be outvoted: a lost pose needs it
+};
+
 /// The filter's prediction is dead reckoning from all that was accepted before. A match or a GNSS
 /// sample that its gate refuses therefore contradicts dead reckoning, and the other one decides
 /// which of the two is wrong. A voter that was found wrong stays excluded until it has agreed with
@@ -35,10 +43,8 @@ class Arbiter {
   void add_gnss(Time time, const PoseInnovation& innovation, bool passes_gate,
                 const std::optional<Eigen::Vector3d>& gnss_error);
 
-  /// To be called after the measurements of one cycle. `trusted`: the pose has been valid since the
-  /// filter started; before, a refused match says nothing about who is wrong. `pose_valid`: it is
-  /// valid now. Only then GNSS can be outvoted: a lost pose needs it.
-  Verdict judge(Time now, bool trusted, bool pose_valid);
+  /// To be called after the measurements of one cycle.
+  Verdict judge(Time now, PoseStanding standing);
 
   /// Whether the filter may use a measurement of this voter.
   bool trusts_match() const { return !match_.excluded; }
@@ -91,7 +97,7 @@ class Arbiter {
   bool match_agrees(Time now) const;
   bool gnss_moved() const;
   bool match_jumps(Time time, const PoseInnovation& innovation) const;
-  void decide_dispute(Verdict& verdict, bool trusted);
+  void decide_dispute(Verdict& verdict, PoseStanding standing);
   void ask_gnss(Verdict& verdict);
   void note_gnss_error(Time time, const Eigen::Vector3d& gnss_error);
 

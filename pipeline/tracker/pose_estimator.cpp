@@ -72,7 +72,8 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   pose_valid_ = pose_valid;
   trusted_ = trusted_ || pose_valid;
   const bool odometry_was_wrong = verdict_.odometry_contradicts;
-  verdict_ = arbiter_.judge(now, trusted_, pose_valid);
+  const PoseStanding lost_or_new = trusted_ ? PoseStanding::kLost : PoseStanding::kNew;
+  verdict_ = arbiter_.judge(now, pose_valid ? PoseStanding::kValid : lost_or_new);
   if (verdict_.odometry_contradicts && !odometry_was_wrong) tracker_.widen();
   if (arbiter_.match_drifts()) {
     tracker_.loosen_odometry();

@@ -42,7 +42,7 @@ struct TrackerParameters {
   double widened_yaw_sigma_rad = radians(5.0);
 
   /// Added by loosen_odometry().
-  double loosened_yaw_rate_bias_sigma_radps = radians(1.0);
+  double loosened_yaw_rate_bias_sigma_radps = radians(0.5);
   double loosened_yaw_sigma_rad = radians(0.5);
 
   double history_s = 2.0;          ///< a measurement may arrive this late

@@ -45,7 +45,8 @@ TEST(ShippedConfig, DefaultsAreThoseOfThePublishedFigures) {
   EXPECT_EQ(defaults.solver.acquiring.y_m, (HypothesisAxis{3.0, 0.2}));
   EXPECT_EQ(defaults.tracker.correlation.match_m, Eigen::Vector3d(20.0, 80.0, 20.0));
   EXPECT_EQ(defaults.cameras.synchronizer.min_cameras, 3);
-  EXPECT_EQ(defaults.health.yaw_sigma_rad, radians(0.6));
+  EXPECT_EQ(defaults.health.yaw_sigma_rad, radians(0.75));
+  EXPECT_EQ(defaults.tracker.gate_squared_distance, 21.1);
 }
 
 TEST(ShippedConfig, DemoRigIsTheSimulatedOne) {

@@ -52,6 +52,7 @@ class EstimationStageTest : public testing::Test {
     report.prior = truth_at(frame_time) * Se2{0.5, 0.4, 0.01};
     report.match.evidence = Evidence::kGood;
     report.match.score = 0.33;
+    report.match.axis_score.setConstant(0.33);
     report.match.correction =
         correction_between(report.prior, truth_at(frame_time)) * vision_error_;
     report.match.covariance = Eigen::Vector3d(0.01, 0.0025, 1e-5).asDiagonal().toDenseMatrix();

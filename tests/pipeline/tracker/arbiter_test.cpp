@@ -1,5 +1,6 @@
 #include "pipeline/tracker/arbiter.h"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "common/se2.h"
@@ -30,7 +31,7 @@ class ArbiterTest : public testing::Test {
       arbiter_.add_match(now_, match, match.squared_distance < kGate);
       const PoseInnovation gnss = innovation(gnss_offset);
       arbiter_.add_gnss(now_, gnss, gnss.squared_distance < kGate, Eigen::Vector3d::Zero());
-      verdict = arbiter_.judge(now_, true);
+      verdict = arbiter_.judge(now_, PoseStanding::kValid);
     }
     return verdict;
   }
@@ -86,7 +87,7 @@ TEST_F(ArbiterTest, DoesNotDecideBeforeThePoseWasValid) {
     now_ += milliseconds(100);
     arbiter_.add_match(now_, innovation({0.0, 3.0, 0.0}), false);
   }
-  const Verdict verdict = arbiter_.judge(now_, false);
+  const Verdict verdict = arbiter_.judge(now_, PoseStanding::kNew);
   EXPECT_TRUE(verdict.undecided);
   EXPECT_FALSE(verdict.match_contradicts);
 }

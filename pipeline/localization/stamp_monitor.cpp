@@ -1,0 +1,121 @@
+#include "pipeline/localization/stamp_monitor.h"
+
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "common/se2.h"
+
+namespace bevloc {
+namespace {
+
+/// A row of the fit needs this change of the yaw rate.
+constexpr double kTurning_radps = 0.05;
+/// Rows that the fit remembers: some minutes of bends.
+constexpr double kRemembered = 1000.0;
+/// Rows until the first estimate: 3 s of bends.
+constexpr double kFewest = 30.0;
+/// Neighbouring rows share most of their lag, and errors of matches are correlated, so this many
+/// rows count as one.
+constexpr double kCorrelatedRows = 20.0;
+/// Lower limit of the residual's standard deviation.
+constexpr double kLeastResidual_rad = radians(0.05);
+constexpr double kCertain = 3.0;  ///< sigmas
+/// Variances of bias and scale error before the fit, as information (1 / sigma^2 of the residual).
+constexpr double kBiasSigma_radps = radians(0.5);
+constexpr double kScaleSigma = 0.03;
+
+}  // namespace
+
+StampMonitor::StampMonitor() = default;
+
+void StampMonitor::add_rate(Time time, double yaw_rate_radps) {
+  if (rates_.empty()) {
+    rates_.push_back({time, yaw_rate_radps, 0.0});
+    return;
+  }
+  const Rate& latest = rates_.back();
+  if (time <= latest.time) return;
+  if (time - latest.time > kGap) {
+    rates_.clear();
+    headings_.clear();
+    rates_.push_back({time, yaw_rate_radps, 0.0});
+    return;
+  }
+  const double step_rad =
+      0.5 * (latest.yaw_rate_radps + yaw_rate_radps) * to_seconds(time - latest.time);
+  rates_.push_back({time, yaw_rate_radps, latest.heading_rad + step_rad});
+}
+
+std::optional<StampMonitor::Rate> StampMonitor::rate_at(Time time) const {
+  if (rates_.empty() || time > rates_.back().time) return std::nullopt;
+  for (size_t after = rates_.size() - 1; after > 0; --after) {
+    const Rate& low = rates_[after - 1];
+    const Rate& high = rates_[after];
+    if (low.time > time) continue;
+    const double share = to_seconds(time - low.time) / to_seconds(high.time - low.time);
+    return Rate{time, std::lerp(low.yaw_rate_radps, high.yaw_rate_radps, share),
+                std::lerp(low.heading_rad, high.heading_rad, share)};
+  }
+  return std::nullopt;
+}
+
+void StampMonitor::add_heading(Time time, double heading_rad) {
+  const auto rate = rate_at(time);
+  if (!rate) return;
+  Heading now{time, heading_rad - rate->heading_rad, rate->heading_rad, rate->yaw_rate_radps};
+  if (!headings_.empty()) {
+    const double before = headings_.back().difference_rad;
+    now.difference_rad = before + wrap_angle(now.difference_rad - before);
+  }
+  while (!headings_.empty() && time - headings_.front().time > kLag) {
+    const Heading before = headings_.front();
+    headings_.pop_front();
+    // The latest of those that are old enough is used.
+    if (headings_.empty() || time - headings_.front().time <= kLag) fit(before, now);
+  }
+  headings_.push_back(now);
+}
+
+void StampMonitor::fit(const Heading& before, const Heading& now) {
+  const double change_radps = now.yaw_rate_radps - before.yaw_rate_radps;
+  if (std::abs(change_radps) < kTurning_radps) return;
+  const double change_rad = now.difference_rad - before.difference_rad;
+  const Eigen::Vector3d row(to_seconds(now.time - before.time),
+                            now.integrated_rad - before.integrated_rad, -change_radps);
+  constexpr double kKeep = 1.0 - 1.0 / kRemembered;
+  normal_ = kKeep * normal_ + row * row.transpose();
+  right_ = kKeep * right_ + row * change_rad;
+  square_ = kKeep * square_ + change_rad * change_rad;
+  rows_ = kKeep * rows_ + 1.0;
+  judge();
+}
+
+std::optional<StampMonitor::Estimate> StampMonitor::estimate() const {
+  if (rows_ < kFewest) return std::nullopt;
+  const auto solve = [this](double residual_variance) {
+    Eigen::Matrix3d normal = normal_;
+    normal(0, 0) += residual_variance / (kBiasSigma_radps * kBiasSigma_radps);
+    normal(1, 1) += residual_variance / (kScaleSigma * kScaleSigma);
+    return Eigen::Matrix3d(normal.inverse());
+  };
+  double variance = kLeastResidual_rad * kLeastResidual_rad;
+  const Eigen::Vector3d found = solve(variance) * right_;
+  const double squares = square_ - 2.0 * found.dot(right_) + found.dot(normal_ * found);
+  variance = std::max(variance, squares / rows_);
+  const Eigen::Matrix3d inverse = solve(variance);
+  const double sigma_s = std::sqrt(kCorrelatedRows * variance * inverse(2, 2));
+  return Estimate{from_seconds((inverse * right_)(2)), from_seconds(sigma_s)};
+}
+
+void StampMonitor::judge() {
+  const auto found = estimate();
+  if (!found) return;
+  const double offset_s = std::abs(to_seconds(found->offset));
+  const double margin_s = kCertain * to_seconds(found->sigma);
+  const double tolerated_s = to_seconds(kTolerated);
+  if (offset_s - margin_s > tolerated_s) contradicts_ = true;
+  if (offset_s + margin_s < tolerated_s) contradicts_ = false;
+}
+
+}  // namespace bevloc

@@ -1,0 +1,83 @@
+// Compares the headings of matches with the yaw rate of odometry, to find wrong camera time stamps.
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+#include <boost/circular_buffer.hpp>
+
+#include "common/time.h"
+
+namespace bevloc {
+
+/// A match says where the vehicle heads at the time of its frameset. If the time stamps of all
+/// cameras are late by `offset`, the heading is that of `offset` earlier: it lags by the yaw rate
+/// times `offset` behind the integrated yaw rate. A constant difference of the two says nothing, so
+/// the monitor compares changes over kLag, where the yaw rate has changed:
+///
+///   change of (matched heading - integrated heading)
+///       = bias of the yaw rate * kLag + scale error * change of heading - offset * change of rate,
+///
+/// and fits bias, scale error and offset by least squares. Straight roads say nothing about the
+/// offset; one bend tells it to about 20 ms. It is that of all cameras together: a single camera
+/// with another stamp than the others is found by the synchronizer (Synchrony).
+///
+/// Allocates in the constructor only. Not thread safe.
+class StampMonitor {
+ public:
+  struct Estimate {
+    Duration offset{0};  ///< positive: the stamps are later than the exposures
+    Duration sigma{0};
+  };
+
+  /// The largest offset that is no fault. A yaw-rate sensor delays by some 10 ms itself.
+  static constexpr Duration kTolerated = std::chrono::milliseconds(30);
+
+  StampMonitor();
+
+  /// Adds the vehicle's yaw rate. Times must increase; after a gap the history begins anew.
+  void add_rate(Time time, double yaw_rate_radps);
+
+  /// Adds a matched heading in the map, at the time of a frameset within the latest rates.
+  void add_heading(Time time, double heading_rad);
+
+  /// Nothing before the vehicle has turned enough.
+  std::optional<Estimate> estimate() const;
+
+  /// Whether the offset is certainly larger than kTolerated. Stays until it is certainly not.
+  bool contradicts() const { return contradicts_; }
+
+ private:
+  static constexpr size_t kRates = 128;
+  static constexpr Duration kGap = std::chrono::milliseconds(100);
+  static constexpr Duration kLag = std::chrono::seconds(2);
+  /// Headings that a lag may contain, at up to 30 framesets per second.
+  static constexpr size_t kHeadings = 64;
+
+  struct Rate {
+    Time time;
+    double yaw_rate_radps = 0.0;
+    double heading_rad = 0.0;  ///< integrated, with an arbitrary start
+  };
+  struct Heading {
+    Time time;
+    double difference_rad = 0.0;  ///< matched minus integrated, unwrapped
+    double integrated_rad = 0.0;
+    double yaw_rate_radps = 0.0;
+  };
+
+  std::optional<Rate> rate_at(Time time) const;
+  void fit(const Heading& before, const Heading& now);
+  void judge();
+
+  boost::circular_buffer<Rate> rates_{kRates};
+  boost::circular_buffer<Heading> headings_{kHeadings};
+  // Sums of the least-squares fit with exponential forgetting.
+  Eigen::Matrix3d normal_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
+  double square_ = 0.0;
+  double rows_ = 0.0;
+  bool contradicts_ = false;
+};
+
+}  // namespace bevloc

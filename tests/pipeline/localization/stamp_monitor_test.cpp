@@ -1,0 +1,101 @@
+#include "pipeline/localization/stamp_monitor.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "common/se2.h"
+
+namespace bevloc {
+namespace {
+
+/// A vehicle that drives through bends, its odometry at 50 Hz and its matches at 10 Hz.
+struct Ride {
+  double bend_radps = 0.3;  ///< largest yaw rate; 0: a straight road
+  double offset_s = 0.0;    ///< of the camera stamps
+  double bias_radps = radians(0.1);
+  double scale = 1.01;
+  double heading_noise_rad = radians(0.12);
+  double duration_s = 120.0;
+};
+
+/// Bends of 4 s, one every 12 s, to the left and to the right in turn.
+double yaw_rate_at(const Ride& ride, double time_s) {
+  const double in_period = std::fmod(time_s, 12.0);
+  const double side = std::fmod(time_s, 24.0) < 12.0 ? 1.0 : -1.0;
+  return in_period < 4.0 ? side * ride.bend_radps * std::pow(std::sin(M_PI * in_period / 4.0), 2)
+                         : 0.0;
+}
+
+StampMonitor after(const Ride& ride, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  StampMonitor monitor;
+  double heading_rad = 3.0;  // crosses 180 degrees
+  double correlated_rad = 0.0;
+  std::vector<double> headings;  // every millisecond
+  const int end_ms = static_cast<int>(1e3 * ride.duration_s);
+  for (int ms = 0; ms < end_ms; ++ms) {
+    const double time_s = 1e-3 * ms;
+    heading_rad += 1e-3 * yaw_rate_at(ride, time_s);
+    headings.push_back(heading_rad);
+    if (ms % 20 == 0) {
+      monitor.add_rate(
+          Time(from_seconds(time_s)),
+          ride.scale * yaw_rate_at(ride, time_s) + ride.bias_radps + radians(0.1) * normal(random));
+    }
+    // The report of a match comes 180 ms after its stamp, so that an exposure may be 100 ms later.
+    if (ms % 100 == 80 && ms > 1000) {
+      correlated_rad = 0.9 * correlated_rad + 0.44 * ride.heading_noise_rad * normal(random);
+      const int stamp_ms = ms - 180;
+      const int exposed_ms = stamp_ms - static_cast<int>(1e3 * ride.offset_s);
+      monitor.add_heading(Time(std::chrono::milliseconds(stamp_ms)),
+                          wrap_angle(headings[exposed_ms] + correlated_rad));
+    }
+  }
+  return monitor;
+}
+
+TEST(StampMonitorTest, FindsTheOffsetOfTheStampsInBends) {
+  for (const double offset_s : {-0.1, -0.05, 0.05, 0.1}) {
+    const StampMonitor monitor = after({.offset_s = offset_s});
+    const auto estimate = monitor.estimate();
+    ASSERT_TRUE(estimate);
+    EXPECT_NEAR(to_seconds(estimate->offset), offset_s, 0.012);
+    EXPECT_TRUE(monitor.contradicts()) << offset_s;
+  }
+}
+
+TEST(StampMonitorTest, AcceptsRightStampsWithUsualErrorsOfTheSensors) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    for (const double bias_degps : {-0.3, 0.3}) {
+      const StampMonitor monitor =
+          after({.bias_radps = radians(bias_degps), .scale = 1.03, .duration_s = 60.0}, seed);
+      EXPECT_FALSE(monitor.contradicts()) << "seed " << seed;
+      ASSERT_TRUE(monitor.estimate());
+      EXPECT_NEAR(to_seconds(monitor.estimate()->offset), 0.0, 0.03) << "seed " << seed;
+    }
+  }
+}
+
+TEST(StampMonitorTest, AStraightRoadSaysNothing) {
+  const StampMonitor monitor = after({.bend_radps = 0.0, .offset_s = 0.1});
+  EXPECT_FALSE(monitor.estimate());
+  EXPECT_FALSE(monitor.contradicts());
+}
+
+TEST(StampMonitorTest, AGapOfTheRatesBeginsAnew) {
+  StampMonitor monitor;
+  for (int ms = 0; ms < 3000; ms += 20) {
+    monitor.add_rate(Time(std::chrono::milliseconds(ms)), 0.2);
+  }
+  monitor.add_rate(Time(std::chrono::milliseconds(9000)), 0.2);
+  for (int ms = 1000; ms < 9000; ms += 100) {
+    monitor.add_heading(Time(std::chrono::milliseconds(ms)), 0.0);
+  }
+  EXPECT_FALSE(monitor.estimate());
+}
+
+}  // namespace
+}  // namespace bevloc
