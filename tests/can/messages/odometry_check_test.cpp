@@ -173,5 +173,16 @@ TEST_F(OdometryCheckTest, AFewLostSamplesAreNotSlow) {
   EXPECT_FALSE(check_.is_slow());
 }
 
+TEST_F(OdometryCheckTest, AYawRateWithTheWrongSignIsRefusedInABend) {
+  EXPECT_EQ(drive(10.0, 0.3, seconds(2)), 0);
+  int plausible = 0;
+  for (int i = 0; i < 50; ++i) {
+    Wheels wrong = at(10.0, 0.3);
+    wrong.yaw_rate_radps *= -1.0;
+    plausible += judge(wrong) == OdometryVerdict::kPlausible ? 1 : 0;
+  }
+  EXPECT_LT(plausible, 20) << "samples of 20 ms";
+}
+
 }  // namespace
 }  // namespace bevloc::can

@@ -152,5 +152,21 @@ TEST(MatchTableTest, SaysWhichLineIsBad) {
   EXPECT_THAT(read.error().message, testing::HasSubstr(":602: found '1,2,three'"));
 }
 
+TEST(MatchModelTest, APlaceBesideTheTrueOneHasTheScoreThatWasMeasuredThere) {
+  MatchTable table = biased_table();
+  for (MeasuredPlace& place : table.places) {
+    place.matches[0].score = 0.35;
+    MeasuredMatch beside = measured(SearchRange::kTracking, {0.0, -3.0, 0.0}, {0.0, 0.0, 0.0});
+    beside.score = 0.1;
+    place.matches.push_back(beside);
+  }
+  MatchModel model(table, kTracking, kAcquiring, 1);
+  const Se2 truth{0.2, 0.1, 0.0};
+  const MatchResult match =
+      model.match_beside({10.0, 0.0}, SearchRange::kTracking, truth, {0.0, 3.0, 0.0});
+  EXPECT_EQ(match.score, 0.1);
+  EXPECT_NEAR(match.correction.y_m, 3.1, 0.25);
+}
+
 }  // namespace
 }  // namespace bevloc::evaluation

@@ -227,5 +227,29 @@ TEST(HealthTest, NamesTheReasonsInWords) {
   EXPECT_EQ(to_string(Why::kInternalFault | Why::kForeignSender), "internal fault, foreign sender");
 }
 
+TEST(HealthTest, ANewPoseMustBeWellWithinTheAlertLimits) {
+  Health health{HealthLimits()};
+  HealthInputs inputs = healthy();
+  inputs.longitudinal_sigma_m = 0.4;  // good enough to keep a pose
+  health.update(inputs);
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kAcquiring);
+  inputs.longitudinal_sigma_m = 0.3;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kTracking);
+  inputs.longitudinal_sigma_m = 0.4;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kTracking);
+}
+
+TEST(HealthTest, WrongTimeStampsLoseThePoseAndAreNamed) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.stamps_contradict = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kLost);
+  EXPECT_TRUE(health.why().has(Why::kCalibrationFault));
+}
+
 }  // namespace
 }  // namespace bevloc::firmware

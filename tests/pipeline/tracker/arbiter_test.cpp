@@ -108,5 +108,22 @@ TEST_F(ArbiterTest, FindsInnovationsThatLeanToOneSide) {
   EXPECT_TRUE(arbiter_.match_drifts());
 }
 
+TEST_F(ArbiterTest, AMatchThatIsFarOffBeginsADisputeAtOnce) {
+  run(20, none_, none_);
+  now_ += milliseconds(100);
+  const PoseInnovation match = innovation({0.0, 1.4, 0.0});
+  arbiter_.add_match(now_, match, false);
+  ASSERT_TRUE(arbiter_.open_dispute());
+  EXPECT_EQ(arbiter_.open_dispute()->y(), 1.4);
+}
+
+TEST_F(ArbiterTest, ALostPoseNeedsGnss) {
+  run(20, none_, none_);
+  run(6, none_, {0.0, 20.0, 0.0});
+  ASSERT_FALSE(arbiter_.trusts_gnss());
+  EXPECT_FALSE(arbiter_.judge(now_, PoseStanding::kLost).gnss_contradicts);
+  EXPECT_TRUE(arbiter_.trusts_gnss());
+}
+
 }  // namespace
 }  // namespace bevloc

@@ -74,5 +74,14 @@ TEST(EvidenceTest, WidensAnAxisWithALowScore) {
   EXPECT_EQ(match.covariance(1, 1), good_match().covariance(1, 1));
 }
 
+TEST(EvidenceTest, AStartNeedsABetterScore) {
+  EvidenceMonitor monitor;
+  MatchResult match = good_match();
+  match.score = 0.22;
+  const Seen seen = judge_repeatedly(monitor, match);
+  EXPECT_TRUE(seen.confirms());
+  EXPECT_FALSE(seen.confirms_start());
+}
+
 }  // namespace
 }  // namespace bevloc

@@ -76,5 +76,18 @@ TEST(OdometryMonitorTest, AcceptsALastingChangeInTheEnd) {
   EXPECT_TRUE(accepted);
 }
 
+TEST(OdometryMonitorTest, RefusesAReversedSpeedUntilTheVehicleHasStood) {
+  OdometryMonitor monitor;
+  for (int ms = 0; ms < 1'000; ms += 20) monitor.accept(sample_at(ms));
+  for (int ms = 1'000; ms < 20'000; ms += 20) {
+    OdometrySample reversed = sample_at(ms);
+    reversed.speed_mps *= -1.0;
+    EXPECT_FALSE(monitor.accept(reversed)) << ms;
+  }
+  EXPECT_TRUE(monitor.accept({at_ms(20'000), 0.5, 0.001})) << "standing";
+  EXPECT_TRUE(monitor.accept({at_ms(20'020), -0.2, 0.002}));
+  EXPECT_TRUE(monitor.accept({at_ms(22'000), -2.0, 0.001})) << "in reverse";
+}
+
 }  // namespace
 }  // namespace bevloc
