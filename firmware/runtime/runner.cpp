@@ -19,8 +19,12 @@ constexpr Duration kPatience = std::chrono::milliseconds(50);
 constexpr Duration kBusCycle = std::chrono::milliseconds(can::kSolutionCycleMs);
 constexpr Duration kSupervisionPeriod = std::chrono::milliseconds(100);
 /// Every thread ends after kPatience and one step. systemd kills the daemon after 5 s
-/// (TimeoutStopSec=).
+/// (TimeoutStopSec=). The thread sanitizer makes a step of vision some hundred times slower.
+#ifdef __SANITIZE_THREAD__
+constexpr Duration kEndPatience = std::chrono::seconds(60);
+#else
 constexpr Duration kEndPatience = std::chrono::seconds(4);
+#endif
 
 /// Forgets the pose when the clock had a gap, then publishes.
 void publish(Appliance& appliance, ClockGapDetector& gaps) {
