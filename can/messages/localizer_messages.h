@@ -83,7 +83,8 @@ inline constexpr std::array<Signal, 16> kWhy{{
     reason_flag("Why_PoseInvalid", 10, "The pose is not a number or out of range."),
     reason_flag("Why_Overload", 11, "Frames are skipped because computation is too slow."),
     reason_flag("Why_MapFault", 12, "Reserved: this version never sets it."),
-    reason_flag("Why_CalibrationFault", 13, "The time stamps of the cameras contradict the yaw rate."),
+    reason_flag("Why_CalibrationFault", 13,
+                "The time stamps of the cameras contradict the yaw rate."),
     reason_flag("Why_NetworkFault", 14, "The network computed another answer than it should."),
     reason_flag("Why_InternalFault", 15, "Any other fault inside the localizer."),
 }};
