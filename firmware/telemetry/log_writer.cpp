@@ -106,6 +106,7 @@ void LogWriter::write(const Line& line) {
         heartbeat_.beat();
     }
   }
+  write_with_patience(file_, text, kFarewell);
 }
 
 void LogWriter::report_drops() {
