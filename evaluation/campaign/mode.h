@@ -25,8 +25,8 @@ struct FaultLength {
 };
 
 struct Mode {
-  std::string_view name;
-  std::string_view what;  ///< what goes wrong, for the table
+  std::string_view name{};
+  std::string_view what{};  ///< what goes wrong, for the table
   FaultLength length{};
   /// For FaultTime {0, infinity}: the campaign sets the times.
   std::vector<sim::Fault> faults{};

@@ -12,7 +12,7 @@ namespace {
 constexpr double kFrameset_s = 0.1;
 constexpr double kLatency_s = 0.03;
 constexpr double kTurning_mps = 1.0;
-/// Of two lanes that look alike, the distribution has a second peak nearly as high.
+/// Where two lanes look alike, the distribution has a second peak that is nearly as high.
 constexpr double kRivalOfLaneAlike = 0.9;
 /// A wrong lane is a peak of its own only where the search range reaches.
 constexpr double kHalf = 0.5;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "can/messages/message_table.h"
-#include "evaluation/campaign/alert_limits.h"
+#include "common/alert_limits.h"
 
 namespace bevloc::evaluation {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "evaluation/campaign/alert_limits.h"
+#include "common/alert_limits.h"
 
 namespace bevloc::evaluation {
 namespace {

@@ -202,12 +202,14 @@ HealthLimits read_health(std::optional<YamlMap> yaml) {
   limits.refusals_to_lose =
       yaml->optional<int>("refusals_to_lose", limits.refusals_to_lose, between(1, 100));
   // No sigma may exceed the freeway alert limit of its axis.
-  limits.longitudinal_sigma_m = yaml->optional<double>(
-      "max_longitudinal_sigma_m", limits.longitudinal_sigma_m, between(0.01, 1.4));
-  limits.lateral_sigma_m =
-      yaml->optional<double>("max_lateral_sigma_m", limits.lateral_sigma_m, between(0.01, 0.57));
-  limits.yaw_sigma_rad = radians(yaml->optional<double>(
-      "max_yaw_sigma_deg", degrees(limits.yaw_sigma_rad), between(0.01, 1.5)));
+  limits.longitudinal_sigma_m =
+      yaml->optional<double>("max_longitudinal_sigma_m", limits.longitudinal_sigma_m,
+                             between(0.01, kFreewayAlertLimits.x()));
+  limits.lateral_sigma_m = yaml->optional<double>("max_lateral_sigma_m", limits.lateral_sigma_m,
+                                                  between(0.01, kFreewayAlertLimits.y()));
+  limits.yaw_sigma_rad =
+      radians(yaml->optional<double>("max_yaw_sigma_deg", degrees(limits.yaw_sigma_rad),
+                                     between(0.01, degrees(kFreewayAlertLimits.z()))));
   if (limits.lost_timeout <= limits.correction_timeout) {
     yaml->reject("lost_after_ms", "not more than degraded_after_ms", "more than degraded_after_ms");
   }

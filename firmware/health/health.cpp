@@ -5,7 +5,7 @@
 namespace bevloc::firmware {
 namespace {
 
-/// So many standard deviations of a new pose must lie within the alert limit.
+/// A new pose becomes valid only if this many standard deviations lie within the alert limits.
 constexpr double kSigmasToTrack = 4.0;
 
 }  // namespace

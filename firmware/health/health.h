@@ -1,6 +1,7 @@
 // The state machine that decides whether the pose is valid, and why not.
 #pragma once
 
+#include "common/alert_limits.h"
 #include "common/cameras.h"
 #include "common/health_state.h"
 #include "common/se2.h"
@@ -28,7 +29,7 @@ struct HealthLimits {
   double yaw_sigma_rad = radians(0.75);
   /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert
   /// limits of a freeway. A new pose becomes valid only if its error is well within them.
-  Eigen::Vector3d alert_limit{1.40, 0.57, radians(1.5)};
+  Eigen::Vector3d alert_limit = kFreewayAlertLimits;
   /// For the protection levels that are sent with the pose.
   ProtectionParameters protection;
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "firmware/runtime/clock_gap.h"
+
 namespace bevloc::firmware {
 namespace {
 
@@ -24,10 +26,6 @@ constexpr double kLeastYawEvidence = 0.8;
 Duration age(const std::optional<Time>& time, Time now) {
   return time ? now - *time : Duration::max();
 }
-
-/// Ticks come every 10 ms. After a longer pause (suspend to memory, for example) the vehicle may be
-/// anywhere.
-constexpr Duration kClockGap = std::chrono::milliseconds(300);
 
 void add_uncertainty(const TrackedPose& pose, HealthInputs& inputs) {
   inputs.longitudinal_sigma_m = std::sqrt(pose.covariance(0, 0));
@@ -77,7 +75,7 @@ void EstimationStage::note_clock_gap(Duration) {
   while (reports_.pop(Duration::zero())) {
   }
   estimator_.reset();
-  stamp_monitor_ = StampMonitor();
+  stamp_monitor_.reset();
   last_tick_.reset();
   odometry_time_.reset();
   gnss_time_.reset();
@@ -100,10 +98,9 @@ void EstimationStage::sign_off(Time now) {
 
 void EstimationStage::take_samples() {
   while (const auto sample = samples_.pop(Duration::zero())) {
-    const bool is_odometry = std::holds_alternative<OdometrySample>(*sample);
-    if (const auto* odometry = std::get_if<OdometrySample>(&*sample)) {
-      stamp_monitor_.add_rate(odometry->time, odometry->yaw_rate_radps);
-    }
+    const auto* odometry = std::get_if<OdometrySample>(&*sample);
+    const bool is_odometry = odometry != nullptr;
+    if (is_odometry) stamp_monitor_.add_rate(odometry->time, odometry->yaw_rate_radps);
     const TrackerUpdate outcome = estimator_.add(*sample);
     ++(is_odometry ? counters_.odometry : counters_.gnss)[index_of(outcome)];
     // A GNSS sample that the gate refuses is there, but contradicts.
@@ -116,7 +113,7 @@ void EstimationStage::take_samples() {
 }
 
 void EstimationStage::watch_clock(Time now) {
-  if (last_tick_ && now - *last_tick_ > kClockGap) note_clock_gap(now - *last_tick_);
+  if (last_tick_ && now - *last_tick_ > ClockGapDetector::kGap) note_clock_gap(now - *last_tick_);
   last_tick_ = now;
 }
 
@@ -139,7 +136,7 @@ void EstimationStage::compare_heading(const VisionReport& report) {
     return;
   }
   stamp_monitor_.add_heading(report.frame_time, (report.prior * report.match.correction).yaw_rad);
-  const auto estimate = stamp_monitor_.estimate();
+  const auto& estimate = stamp_monitor_.estimate();
   const bool contradicts = stamp_monitor_.contradicts() && estimate;
   using std::chrono::duration_cast;
   using std::chrono::milliseconds;

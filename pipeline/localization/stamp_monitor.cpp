@@ -27,7 +27,13 @@ constexpr double kScaleSigma = 0.03;
 
 }  // namespace
 
-StampMonitor::StampMonitor() = default;
+void StampMonitor::reset() {
+  rates_.clear();
+  headings_.clear();
+  sums_ = {};
+  estimate_.reset();
+  contradicts_ = false;
+}
 
 void StampMonitor::add_rate(Time time, double yaw_rate_radps) {
   if (rates_.empty()) {
@@ -84,35 +90,36 @@ void StampMonitor::fit(const Heading& before, const Heading& now) {
   const Eigen::Vector3d row(to_seconds(now.time - before.time),
                             now.integrated_rad - before.integrated_rad, -change_radps);
   constexpr double kKeep = 1.0 - 1.0 / kRemembered;
-  normal_ = kKeep * normal_ + row * row.transpose();
-  right_ = kKeep * right_ + row * change_rad;
-  square_ = kKeep * square_ + change_rad * change_rad;
-  rows_ = kKeep * rows_ + 1.0;
+  sums_.normal = kKeep * sums_.normal + row * row.transpose();
+  sums_.right = kKeep * sums_.right + row * change_rad;
+  sums_.square = kKeep * sums_.square + change_rad * change_rad;
+  sums_.rows = kKeep * sums_.rows + 1.0;
   judge();
 }
 
-std::optional<StampMonitor::Estimate> StampMonitor::estimate() const {
-  if (rows_ < kFewest) return std::nullopt;
-  const auto solve = [this](double residual_variance) {
-    Eigen::Matrix3d normal = normal_;
+std::optional<StampMonitor::Estimate> StampMonitor::solve() const {
+  if (sums_.rows < kFewest) return std::nullopt;
+  const auto covariance_for = [this](double residual_variance) {
+    Eigen::Matrix3d normal = sums_.normal;
     normal(0, 0) += residual_variance / (kBiasSigma_radps * kBiasSigma_radps);
     normal(1, 1) += residual_variance / (kScaleSigma * kScaleSigma);
     return Eigen::Matrix3d(normal.inverse());
   };
   double variance = kLeastResidual_rad * kLeastResidual_rad;
-  const Eigen::Vector3d found = solve(variance) * right_;
-  const double squares = square_ - 2.0 * found.dot(right_) + found.dot(normal_ * found);
-  variance = std::max(variance, squares / rows_);
-  const Eigen::Matrix3d inverse = solve(variance);
+  const Eigen::Vector3d found = covariance_for(variance) * sums_.right;
+  const double squares =
+      sums_.square - 2.0 * found.dot(sums_.right) + found.dot(sums_.normal * found);
+  variance = std::max(variance, squares / sums_.rows);
+  const Eigen::Matrix3d inverse = covariance_for(variance);
   const double sigma_s = std::sqrt(kCorrelatedRows * variance * inverse(2, 2));
-  return Estimate{from_seconds((inverse * right_)(2)), from_seconds(sigma_s)};
+  return Estimate{from_seconds((inverse * sums_.right)(2)), from_seconds(sigma_s)};
 }
 
 void StampMonitor::judge() {
-  const auto found = estimate();
-  if (!found) return;
-  const double offset_s = std::abs(to_seconds(found->offset));
-  const double margin_s = kCertain * to_seconds(found->sigma);
+  estimate_ = solve();
+  if (!estimate_) return;
+  const double offset_s = std::abs(to_seconds(estimate_->offset));
+  const double margin_s = kCertain * to_seconds(estimate_->sigma);
   const double tolerated_s = to_seconds(kTolerated);
   if (offset_s - margin_s > tolerated_s) contradicts_ = true;
   if (offset_s + margin_s < tolerated_s) contradicts_ = false;

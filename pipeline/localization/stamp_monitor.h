@@ -33,8 +33,6 @@ class StampMonitor {
   /// The largest offset that is no fault. A yaw-rate sensor delays by some 10 ms itself.
   static constexpr Duration kTolerated = std::chrono::milliseconds(30);
 
-  StampMonitor();
-
   /// Adds the vehicle's yaw rate. Times must increase; after a gap the history begins anew.
   void add_rate(Time time, double yaw_rate_radps);
 
@@ -42,7 +40,10 @@ class StampMonitor {
   void add_heading(Time time, double heading_rad);
 
   /// Nothing before the vehicle has turned enough.
-  std::optional<Estimate> estimate() const;
+  const std::optional<Estimate>& estimate() const { return estimate_; }
+
+  /// Returns to the state after construction. Does not allocate.
+  void reset();
 
   /// Whether the offset is certainly larger than kTolerated. Stays until it is certainly not.
   bool contradicts() const { return contradicts_; }
@@ -68,15 +69,20 @@ class StampMonitor {
 
   std::optional<Rate> rate_at(Time time) const;
   void fit(const Heading& before, const Heading& now);
+  std::optional<Estimate> solve() const;
   void judge();
 
   boost::circular_buffer<Rate> rates_{kRates};
   boost::circular_buffer<Heading> headings_{kHeadings};
-  // Sums of the least-squares fit with exponential forgetting.
-  Eigen::Matrix3d normal_ = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
-  double square_ = 0.0;
-  double rows_ = 0.0;
+  /// Sums of the least-squares fit with exponential forgetting.
+  struct Sums {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    double square = 0.0;
+    double rows = 0.0;
+  };
+  Sums sums_;
+  std::optional<Estimate> estimate_;
   bool contradicts_ = false;
 };
 

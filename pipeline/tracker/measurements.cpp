@@ -11,8 +11,8 @@ namespace {
 /// evidence: sigma grows by a factor of 100 at most.
 constexpr double kMinEvidenceShare = 1e-4;
 
-/// The solver's sigmas are those of the middle of the distribution. The 99 % quantiles of measured
-/// errors, in these sigmas, are this much larger than those of a normal distribution.
+/// Measured match errors have wider tails than a normal distribution: divided by the solver's
+/// sigma, their 99 % quantile across the road is this much larger.
 constexpr double kTailFactor = 1.25;
 
 constexpr double kUnknownYaw_rad = 1e3;

@@ -10,11 +10,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/evaluation/campaign/run_mode.h"
+
 namespace bevloc::evaluation {
 namespace {
-
-constexpr const char* kCampaignConfig = BEVLOC_SOURCE_DIR "/config/demo.yaml";
-constexpr const char* kMatchesFile = BEVLOC_SOURCE_DIR "/evaluation/campaign/matches.csv";
 
 CampaignOptions short_drives() {
   CampaignOptions options;
@@ -32,15 +31,7 @@ std::vector<std::string> stage_modes() {
 }
 
 RunOutcome run_mode(const std::string& name) {
-  const auto campaign = Campaign::create(kCampaignConfig, kMatchesFile, short_drives());
-  EXPECT_TRUE(campaign) << campaign.error().message;
-  const auto modes = modes_named({name}, Level::kStage);
-  EXPECT_TRUE(modes) << modes.error().message;
-  RunOutcome outcome;
-  const Status status =
-      campaign->run(*modes, [&outcome](const CampaignRow& row) { outcome = row.outcome; });
-  EXPECT_TRUE(status) << status.error().message;
-  return outcome;
+  return run_mode(name, short_drives());
 }
 
 /// Modes that do not keep their limit yet, with the seconds beyond the alert limits that they must

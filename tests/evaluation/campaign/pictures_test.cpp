@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "evaluation/campaign/campaign.h"
+#include "tests/evaluation/campaign/run_mode.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -12,15 +12,7 @@ RunOutcome run_on_pictures(const std::string& mode) {
   options.level = Level::kPictures;
   options.first_seed = 2051;
   options.duration_s = 12.0;
-  const auto campaign = Campaign::create(BEVLOC_SOURCE_DIR "/config/demo.yaml", "", options);
-  EXPECT_TRUE(campaign) << campaign.error().message;
-  const auto modes = modes_named({mode}, Level::kPictures);
-  EXPECT_TRUE(modes) << modes.error().message;
-  RunOutcome outcome;
-  const Status status =
-      campaign->run(*modes, [&outcome](const CampaignRow& row) { outcome = row.outcome; });
-  EXPECT_TRUE(status) << status.error().message;
-  return outcome;
+  return run_mode(mode, options);
 }
 
 TEST(PicturesCampaignTest, LocalizesWithoutAFault) {

@@ -69,7 +69,7 @@ TEST_F(MapFaults, ACutLeavesNothingNearTheVehicleDuringItsTime) {
   EXPECT_NEAR(nearest_m(map, place(0.0)), nearest_m(world_.map, place(0.0)), 1.0);
 }
 
-TEST_F(MapFaults, TheMapOfElsewhereIsAnotherOneWithRoadsWhereTheDriveBegins) {
+TEST_F(MapFaults, TheMapOfElsewhereDiffersAndHasRoadsAtTheStartOfTheDrive) {
   Fault elsewhere = make_fault(FaultKind::kMapOfElsewhere);
   elsewhere.amounts.seed = 2004;
   const HdMap map = with(elsewhere);

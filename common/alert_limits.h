@@ -7,7 +7,7 @@
 
 #include "common/se2.h"
 
-namespace bevloc::evaluation {
+namespace bevloc {
 
 /// Alert limits of a freeway: longitudinal m, lateral m, yaw rad. Source: Reid et al.,
 /// "Localization Requirements for Autonomous Vehicles" (2019).
@@ -17,4 +17,4 @@ inline bool is_beyond(const Eigen::Vector3d& error, const Eigen::Vector3d& limit
   return (error.cwiseAbs() - limits).maxCoeff() > 0.0;
 }
 
-}  // namespace bevloc::evaluation
+}  // namespace bevloc
