@@ -3,15 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/temporary_folder.h"
+
 namespace bevloc {
 namespace {
 
 class Files : public testing::Test {
  protected:
-  std::filesystem::path path_ = std::filesystem::path(testing::TempDir()) /
-                                testing::UnitTest::GetInstance()->current_test_info()->name();
-
-  void TearDown() override { std::filesystem::remove(path_); }
+  const test::TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "file";
 };
 
 TEST_F(Files, BytesComeBackAsTheyWere) {
@@ -31,7 +31,7 @@ TEST_F(Files, SaysWhyAFileCannotBeReadOrWritten) {
   const auto missing = read_file("/nonexistent/file");
   ASSERT_FALSE(missing.has_value());
   EXPECT_THAT(missing.error().message, testing::HasSubstr("No such file"));
-  const auto directory = read_file(testing::TempDir());
+  const auto directory = read_file(folder_.path());
   ASSERT_FALSE(directory.has_value());
   EXPECT_THAT(directory.error().message, testing::HasSubstr("directory"));
   const auto unwritable = write_file("/nonexistent/file", "x");

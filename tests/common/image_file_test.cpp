@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc {
 namespace {
@@ -18,12 +19,6 @@ using testing::HasSubstr;
 
 class ImageFile : public testing::Test {
  protected:
-  ImageFile() {
-    std::string name = (std::filesystem::temp_directory_path() / "bevloc-test-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~ImageFile() override { std::filesystem::remove_all(folder_); }
-
   std::string path(const char* name) const { return (folder_ / name).string(); }
 
   /// Writes a smooth image with OpenCV. Each pixel has another value.
@@ -54,7 +49,7 @@ class ImageFile : public testing::Test {
 
   static constexpr int kWidth = 24;
   static constexpr int kHeight = 16;
-  std::filesystem::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 TEST_F(ImageFile, ReadsPngWithAndWithoutAlpha) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "drivers/camera/v4l2/device_finder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::drivers::v4l2 {
 namespace {
@@ -14,14 +15,11 @@ namespace fs = std::filesystem;
 class DeviceFinder : public testing::Test {
  protected:
   DeviceFinder() {
-    std::string pattern = (fs::temp_directory_path() / "bevloc-devices-XXXXXX").string();
-    root_ = mkdtemp(pattern.data());
-    tree_ = {root_ / "sys", root_ / "dev"};
+    tree_ = {folder_ / "sys", folder_ / "dev"};
     fs::create_directories(tree_.sysfs / "class/video4linux");
     fs::create_directories(tree_.dev / "v4l/by-id");
     fs::create_directories(tree_.dev / "v4l/by-path");
   }
-  ~DeviceFinder() override { fs::remove_all(root_); }
 
   static void write(const fs::path& file, const std::string& text) {
     fs::create_directories(file.parent_path());
@@ -53,7 +51,7 @@ class DeviceFinder : public testing::Test {
     return node ? node->filename().string() : "error: " + node.error().message;
   }
 
-  fs::path root_;
+  const test::TemporaryFolder folder_;
   DeviceTree tree_;
 };
 

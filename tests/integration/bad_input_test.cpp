@@ -39,7 +39,7 @@ class BadInputTest : public testing::Test {
     return (scratch_ / "config.yaml").string();
   }
 
-  ScratchFolder scratch_;
+  TemporaryFolder scratch_;
 };
 
 TEST_F(BadInputTest, TheShippedConfigurationIsGood) {

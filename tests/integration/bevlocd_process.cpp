@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include "tests/support/temporary_folder.h"
+
 namespace bevloc::test {
 namespace {
 
@@ -19,17 +21,8 @@ std::string with_replaced(std::string text, const std::string& piece,
 
 }  // namespace
 
-ScratchFolder::ScratchFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "bevloc-test-XXXXXX").string();
-  path_ = mkdtemp(pattern.data());
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::filesystem::remove_all(path_);
-}
-
 ProcessResult run_bevlocd(const std::string& arguments, const std::string& launcher) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const std::string command = launcher + " " + BEVLOCD_PROGRAM + " " + arguments + " >" +
                               (scratch / "out").string() + " 2>" + (scratch / "err").string();
   const int status = std::system(command.c_str());

@@ -4,27 +4,14 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/support/temporary_folder.h"
+
 namespace bevloc::test {
 
 struct ProcessResult {
   int exit_code = -1;  ///< 128 + signal number if a signal ended the process
   std::string out;
   std::string err;
-};
-
-/// A new empty folder, which the destructor removes.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
 };
 
 /// Runs bevlocd and waits for its end. `launcher` precedes the program on the command line, such as

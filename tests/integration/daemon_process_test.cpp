@@ -97,7 +97,7 @@ class DaemonProcessTest : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
 
-  ScratchFolder scratch_;
+  TemporaryFolder scratch_;
   std::filesystem::path config_ = scratch_ / "config.yaml";
   firmware::FakeManager manager_;
   std::string messages_;

@@ -17,7 +17,7 @@ namespace {
 
 const std::string kDemo = std::string(BEVLOC_SOURCE_DIR) + "/config/demo.yaml";
 
-nlohmann::json drive(const ScratchFolder& scratch, const std::string& config,
+nlohmann::json drive(const TemporaryFolder& scratch, const std::string& config,
                      const std::string& options) {
   const ProcessResult result =
       run_bevlocd("--config " + config + " --fast --out " + scratch.path().string() + " --json " +
@@ -35,7 +35,7 @@ E2eLogReport check_log(const std::filesystem::path& log) {
 class DriveTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    scratch_ = new ScratchFolder();
+    scratch_ = new TemporaryFolder();
     result_ = new nlohmann::json(drive(*scratch_, kDemo, "--seed 901 --duration 10"));
   }
   static void TearDownTestSuite() {
@@ -43,11 +43,11 @@ class DriveTest : public testing::Test {
     delete scratch_;
   }
 
-  static ScratchFolder* scratch_;
+  static TemporaryFolder* scratch_;
   static nlohmann::json* result_;
 };
 
-ScratchFolder* DriveTest::scratch_ = nullptr;
+TemporaryFolder* DriveTest::scratch_ = nullptr;
 nlohmann::json* DriveTest::result_ = nullptr;
 
 TEST_F(DriveTest, FindsThePoseAndBeatsThePrior) {
@@ -112,7 +112,7 @@ TEST_F(DriveTest, LeavesACsvAndASheet) {
 }
 
 TEST_F(DriveTest, TheSameSeedGivesTheSameLogByteForByte) {
-  const ScratchFolder again;
+  const TemporaryFolder again;
   drive(again, kDemo, "--seed 901 --duration 10");
   EXPECT_EQ(read_text(*scratch_ / "can.log"), read_text(again / "can.log"));
 }
@@ -126,15 +126,15 @@ TEST_F(DriveTest, StaysWithin120MibWithItsWholeCity) {
 #endif
 
 TEST(DriveVariantTest, AnotherSeedGivesAnotherLog) {
-  const ScratchFolder one;
-  const ScratchFolder other;
+  const TemporaryFolder one;
+  const TemporaryFolder other;
   drive(one, kDemo, "--seed 902 --duration 1");
   drive(other, kDemo, "--seed 903 --duration 1");
   EXPECT_NE(read_text(one / "can.log"), read_text(other / "can.log"));
 }
 
 TEST(DriveVariantTest, SigtermEndsADriveCleanly) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const ProcessResult result =
       run_bevlocd("--config " + kDemo + " --duration 3600 --out " + scratch.path().string(),
                   "timeout --preserve-status --signal=TERM 3");
@@ -143,7 +143,7 @@ TEST(DriveVariantTest, SigtermEndsADriveCleanly) {
 }
 
 TEST(DriveVariantTest, ADeadCameraDegradesTheState) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   write_file(scratch / "config.yaml",
              demo_config_with("  duration_s: 60\n",
                               "  duration_s: 60\n  faults:\n"
@@ -164,7 +164,7 @@ size_t count_of(const std::string& text, const std::string& word) {
 }
 
 /// Runs `bevloc fault`, again and again until the drive runs. Returns what it printed.
-std::string fault_command(const ScratchFolder& scratch, const std::string& command) {
+std::string fault_command(const TemporaryFolder& scratch, const std::string& command) {
   const std::string line = std::string(BEVLOC_PROGRAM) + " fault --socket " +
                            (scratch / "faults").string() + " " + command + " >" +
                            (scratch / "answer").string() + " 2>&1";
@@ -191,7 +191,7 @@ double longest_gap_s(const std::filesystem::path& log, const std::string& id) {
 }
 
 TEST(DriveVariantTest, FaultsAreSetAndClearedWhileTheDriveRuns) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   write_file(scratch / "config.yaml",
              demo_config_with("  duration_s: 60\n", "  duration_s: 60\n  fault_socket: " +
                                                         (scratch / "faults").string() + "\n"));
@@ -220,7 +220,7 @@ TEST(DriveVariantTest, FaultsAreSetAndClearedWhileTheDriveRuns) {
 
 /// The demo with free-running cameras: no two cameras expose at the same time.
 nlohmann::json unsynchronized_drive(bool compensate_motion) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const std::string with_tolerance = demo_config_with(
       "  rate_hz: 10\n",
       std::string("  rate_hz: 10\n  tolerance_ms: 50\n  wait_ms: 100\n  compensate_motion: ") +

@@ -10,6 +10,7 @@
 #include "evaluation/drive/simulated_run.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "sim/faults/fault_table.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -43,17 +44,18 @@ Rig small_rig(const DriveConfig& config) {
   return *rig;
 }
 
-SimulatedRunOptions quiet_options() {
+SimulatedRunOptions quiet_options(const test::TemporaryFolder& folder) {
   SimulatedRunOptions options;
   options.show_progress = false;
-  options.out = std::filesystem::path(testing::TempDir()) / "bevloc-threads";
+  options.out = folder.path();
   return options;
 }
 
 TEST(ThreadsTest, RunsUntilItHasLocalizedAndEndsEveryThread) {
+  const test::TemporaryFolder folder;
   const DriveConfig config = endless_demo();
   const auto report =
-      run_simulation(config, small_rig(config), quiet_options(),
+      run_simulation(config, small_rig(config), quiet_options(folder),
                      [](const firmware::ApplianceView& view) { return view.cameras > 0; });
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_GT(report->frames.used, 0U);
@@ -88,13 +90,14 @@ int last_cpu() {
 }
 
 TEST(ThreadsTest, AreNamedAndRunOnTheConfiguredCpus) {
+  const test::TemporaryFolder folder;
   DriveConfig config = endless_demo();
   config.realtime.vision.cpus = {last_cpu()};
   config.realtime.can.cpus = {last_cpu(), CPU_SETSIZE - 1};  // no machine has this CPU
   const int all = cpus_by_thread().begin()->second;
   std::map<std::string, int> cpus;
   int refusals = 0;
-  const auto report = run_simulation(config, small_rig(config), quiet_options(),
+  const auto report = run_simulation(config, small_rig(config), quiet_options(folder),
                                      [&](const firmware::ApplianceView& view) {
                                        cpus = cpus_by_thread();
                                        refusals = view.realtime_refusals;
@@ -113,10 +116,11 @@ TEST(ThreadsTest, AreNamedAndRunOnTheConfiguredCpus) {
 }
 
 TEST(ThreadsTest, LockstepAppliesNoRealtimeSettings) {
+  const test::TemporaryFolder folder;
   DriveConfig config = endless_demo();
   config.simulation->duration_s = 0.5;
   config.realtime.can.cpus = {CPU_SETSIZE - 1};
-  SimulatedRunOptions options = quiet_options();
+  SimulatedRunOptions options = quiet_options(folder);
   options.fast = true;
   const auto report = run_simulation(config, small_rig(config), options,
                                      [](const firmware::ApplianceView&) { return false; });
@@ -136,6 +140,7 @@ int localizer_frames_from(const std::filesystem::path& log, double from_s) {
 }
 
 TEST(ThreadsTest, HangingThreadsStandStillAndEndWithTheRun) {
+  const test::TemporaryFolder folder;
   DriveConfig config = endless_demo();
   config.cameras.rate_hz = 10.0;
   for (const sim::FaultKind kind : {sim::FaultKind::kHangCapture, sim::FaultKind::kHangVision,
@@ -143,7 +148,7 @@ TEST(ThreadsTest, HangingThreadsStandStillAndEndWithTheRun) {
     config.simulation->faults.push_back(sim::make_fault(kind));
   }
   int asked = 0;
-  const SimulatedRunOptions options = quiet_options();
+  const SimulatedRunOptions options = quiet_options(folder);
   const auto report =
       run_simulation(config, small_rig(config), options,
                      [&asked](const firmware::ApplianceView&) { return ++asked > 15; });
@@ -154,10 +159,11 @@ TEST(ThreadsTest, HangingThreadsStandStillAndEndWithTheRun) {
 }
 
 TEST(ThreadsTest, StopsWhenAsked) {
+  const test::TemporaryFolder folder;
   const DriveConfig config = endless_demo();
   int asked = 0;
   const auto report =
-      run_simulation(config, small_rig(config), quiet_options(),
+      run_simulation(config, small_rig(config), quiet_options(folder),
                      [&asked](const firmware::ApplianceView&) { return ++asked > 5; });
   EXPECT_TRUE(report) << report.error().message;
 }

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/temporary_folder.h"
+
 namespace bevloc::can {
 namespace {
 
@@ -13,9 +15,6 @@ using testing::HasSubstr;
 
 class SecocFilesTest : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   void write(const std::filesystem::path& file, const std::string& text,
              std::filesystem::perms permissions = std::filesystem::perms::owner_read |
                                                   std::filesystem::perms::owner_write) {
@@ -23,10 +22,7 @@ class SecocFilesTest : public testing::Test {
     std::filesystem::permissions(file, permissions);
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("bevloc_secoc_") +
-       testing::UnitTest::GetInstance()->current_test_info()->name());
+  const test::TemporaryFolder folder_;
   const std::filesystem::path key_ = folder_ / "key";
   const std::filesystem::path starts_ = folder_ / "starts";
 };

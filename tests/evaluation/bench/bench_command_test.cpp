@@ -13,6 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/support/temporary_folder.h"
+
 namespace bevloc::bench {
 namespace {
 
@@ -33,14 +35,10 @@ Status run(std::vector<std::string> arguments, const std::string& config = kConf
 
 class BenchCommandTest : public testing::Test {
  protected:
-  BenchCommandTest() { std::filesystem::create_directories(folder_); }
-  ~BenchCommandTest() override { std::filesystem::remove_all(folder_); }
-
   std::string file(const std::string& name) const { return folder_ / name; }
   nlohmann::json json() const { return nlohmann::json::parse(std::ifstream(file("a.json"))); }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("bench_command_test." + std::to_string(getpid()));
+  const test::TemporaryFolder folder_;
 };
 
 TEST_F(BenchCommandTest, MeasuresAFrameAndItsStages) {

@@ -7,6 +7,7 @@
 
 #include "common/files.h"
 #include "tests/support/pose_matchers.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -121,7 +122,8 @@ TEST(MatchModelTest, RepeatsItselfWithTheSameSeed) {
 }
 
 TEST(MatchTableTest, SurvivesTheWayThroughAFile) {
-  const std::string file = testing::TempDir() + "bevloc_matches.csv";
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "matches.csv";
   MatchTable table = biased_table();
   table.places[3].curvature_radpm = -0.05;
   table.places[3].matches[0].correlation = {0.5, -0.25, 0.0};
@@ -143,7 +145,8 @@ TEST(MatchTableTest, SurvivesTheWayThroughAFile) {
 }
 
 TEST(MatchTableTest, SaysWhichLineIsBad) {
-  const std::string file = testing::TempDir() + "bevloc_bad_matches.csv";
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "matches.csv";
   std::string text = to_csv(biased_table());
   text += "1,2,three\n";
   ASSERT_TRUE(write_file(file, text));

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/temporary_folder.h"
+
 namespace bevloc::evaluation {
 namespace {
 
@@ -32,10 +34,8 @@ class FaultSocketTest : public testing::Test {
     return answer ? "" : answer.error().message;
   }
 
-  const std::filesystem::path path_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("fault-socket-") +
-       testing::UnitTest::GetInstance()->current_test_info()->name());
+  const test::TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "socket";
   const std::shared_ptr<sim::FaultBoard> faults_ = std::make_shared<sim::FaultBoard>();
   std::unique_ptr<FaultServer> server_;
 };

@@ -8,6 +8,7 @@
 
 #include "pipeline/calibration/rig_yaml.h"
 #include "sim/faults/fault_table.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -29,10 +30,8 @@ class SimulatedRunTest : public testing::Test {
     rig_ = *rig;
     options_.fast = true;
     options_.show_progress = false;
-    options_.out = std::filesystem::path(testing::TempDir()) /
-                   testing::UnitTest::GetInstance()->current_test_info()->name();
+    options_.out = folder_.path();
   }
-  void TearDown() override { std::filesystem::remove_all(options_.out); }
 
   Result<DriveReport> run() const {
     return run_simulation(config_, rig_, options_,
@@ -46,6 +45,7 @@ class SimulatedRunTest : public testing::Test {
 
   DriveConfig config_;
   Rig rig_;
+  const test::TemporaryFolder folder_;
   SimulatedRunOptions options_;
 };
 

@@ -17,6 +17,7 @@
 
 #include "evaluation/network/network_evaluation.h"
 #include "evaluation/solver/read_out_case.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -50,13 +51,9 @@ std::string text_of(const std::filesystem::path& file) {
 
 class NetworkCommandTest : public testing::Test {
  protected:
-  NetworkCommandTest() { std::filesystem::create_directories(folder_); }
-  ~NetworkCommandTest() override { std::filesystem::remove_all(folder_); }
-
   std::string file(const std::string& name) const { return folder_ / name; }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("network_command_test." + std::to_string(getpid()));
+  const test::TemporaryFolder folder_;
 };
 
 TEST_F(NetworkCommandTest, WritesARowPerMethod) {

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "pipeline/bev_grid.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -31,20 +32,16 @@ namespace fs = std::filesystem;
 using Curve = std::vector<double>;
 using Plane = std::vector<Curve>;
 
-fs::path temporary_file(const std::string& name) {
-  return fs::path(testing::TempDir()) / (name + "." + std::to_string(getpid()));
-}
-
 /// The data of one scene, written once for all tests.
 class SolverFiguresTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    const fs::path file = temporary_file("solver_figures.json");
+    const test::TemporaryFolder folder;
+    const fs::path file = folder / "figures.json";
     const Status status = write_solver_figures(0, file.string());
     ASSERT_TRUE(status) << status.error().message;
     std::ifstream stream(file);
     data_ = new nlohmann::json(nlohmann::json::parse(stream));
-    fs::remove(file);
   }
   static void TearDownTestSuite() { delete data_; }
 
@@ -148,7 +145,8 @@ TEST_F(SolverFiguresTest, DistributionsSumToOneAndStayInRange) {
 }
 
 TEST(SolverFigures, NameAFileThatCannotBeWritten) {
-  const fs::path file = temporary_file("no_folder") / "figures.json";
+  const test::TemporaryFolder folder;
+  const fs::path file = folder / "no_folder/figures.json";
   const Status status = write_solver_figures(0, file.string());
   ASSERT_FALSE(status);
   EXPECT_THAT(status.error().message, HasSubstr(file.string()));

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "evaluation/drive/drive_config.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::firmware {
 
@@ -25,14 +26,6 @@ inline std::string read_text(const std::filesystem::path& path) {
 /// Gives each test an empty folder for a configuration and the files that it names.
 class ConfigTest : public testing::Test {
  protected:
-  void SetUp() override {
-    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ = std::filesystem::path(testing::TempDir()) / ("bevloc-config-" + name);
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
   }
@@ -62,7 +55,7 @@ class ConfigTest : public testing::Test {
     return (folder_ / "test.yaml").string() + ":" + std::to_string(line) + ": ";
   }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 /// The smallest valid configuration of a simulated drive. Line 1 is `cameras:`.

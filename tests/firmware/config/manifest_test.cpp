@@ -9,6 +9,7 @@
 #include "common/files.h"
 #include "common/sha256.h"
 #include "firmware/config/config.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -58,7 +59,6 @@ class ManifestFiles : public ::testing::Test {
     store("maps/town.bvm", "town");
     store("bevloc.manifest", line("config.yaml") + line("maps/town.bvm"));
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   void store(const char* name, std::string_view bytes) const {
     ASSERT_TRUE(write_file(folder_ / name, bytes).has_value());
@@ -72,9 +72,7 @@ class ManifestFiles : public ::testing::Test {
     return status ? "" : status.error().message;
   }
 
-  const fs::path folder_ =
-      fs::path(testing::TempDir()) /
-      (std::string("manifest_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  const test::TemporaryFolder folder_;
 };
 
 TEST_F(ManifestFiles, AcceptsTheRightFiles) {

@@ -11,6 +11,7 @@
 #include "drivers/mock/mock_gpio.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "tests/firmware/runtime/fake_manager.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -25,15 +26,13 @@ constexpr int kMaxCalls = 300;
 class DaemonTest : public testing::Test {
  protected:
   void SetUp() override {
-    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ = std::filesystem::path(testing::TempDir()) / ("bevloc-daemon-" + name);
     for (const std::string_view camera : kCameraNames) {
       std::filesystem::create_directories(folder_ / camera);
       std::ofstream(folder_ / camera / "frames.txt") << "0 0 none.png\n";
       std::ofstream(folder_ / camera / "none.png") << "";
     }
     config_.cameras.driver = CameraDriver::kReplay;
-    config_.cameras.recording = folder_;
+    config_.cameras.recording = folder_.path();
     config_.map_file = kSourceFolder / "tests/pipeline/map/fixtures/street.osm";
     config_.model_file = kSourceFolder / "models/nano.onnx";
     config_.gpio.fault = drivers::LineAddress{MockGpio::kChip, "fault", true};
@@ -41,7 +40,6 @@ class DaemonTest : public testing::Test {
     config_.gpio.trigger = TriggerLineConfig{{MockGpio::kChip, "trigger"}, {}};
     gpio_.drive("ignition", true);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   Status run(const std::function<bool()>& stop) {
     const auto rig = read_rig(kSourceFolder / "config/rig_demo.yaml");
@@ -51,7 +49,7 @@ class DaemonTest : public testing::Test {
 
   bool fault() const { return !gpio_.high("fault"); }  // active low
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder folder_;
   Config config_;
   drivers::MonotonicClock clock_;
   MockGpio gpio_{{"trigger", "fault", "ignition"}, clock_};

@@ -6,6 +6,7 @@
 
 #include "common/files.h"
 #include "sim/sim_rig.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -288,10 +289,10 @@ TEST_F(VisionStageFrozenTest, MatchesNothingWithADamagedNetwork) {
     char& byte = bytes[bytes.size() / 2 + i];
     byte = static_cast<char>(byte ^ 0x20);
   }
-  const auto path = std::filesystem::temp_directory_path() / "bevloc_vision_stage_test.onnx";
+  const test::TemporaryFolder folder;
+  const auto path = folder / "damaged.onnx";
   ASSERT_TRUE(write_file(path, bytes));
   localizer_ = Localizer::create(sim::nominal_rig(), map_index_, path.string(), {}).value();
-  std::filesystem::remove(path);
   stage_.emplace(*localizer_, VisionConfig{}, frames_, predictions_, reports_);
   push_frameset(Time(milliseconds(900)));
   const auto report = step();

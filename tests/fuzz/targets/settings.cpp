@@ -1,8 +1,5 @@
 // Files that an integrator writes: configuration, rig and the index of a recording.
-#include <cstdlib>
 #include <filesystem>
-
-#include <unistd.h>
 
 #include "common/files.h"
 #include "drivers/camera/replay/replay_camera.h"
@@ -11,28 +8,21 @@
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/preprocessing/network_camera.h"
 #include "tests/fuzz/targets.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::fuzz {
 namespace {
 
-/// A folder with a file a.png, removed at the end of the program.
+/// A folder with a file a.png.
 class RecordingFolder {
  public:
   RecordingFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "fuzzXXXXXX").string();
-    expect(mkdtemp(pattern.data()) != nullptr, "no folder for a recording");
-    path_ = pattern;
-    expect(write_file(path_ / "a.png", "").has_value(), "no place for a picture");
+    expect(write_file(folder_ / "a.png", "").has_value(), "no place for a picture");
   }
-  ~RecordingFolder() { std::filesystem::remove_all(path_, ignored_); }
-  RecordingFolder(const RecordingFolder&) = delete;
-  RecordingFolder& operator=(const RecordingFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
-  std::filesystem::path path_;
-  std::error_code ignored_;
+  const test::TemporaryFolder folder_;
 };
 
 }  // namespace

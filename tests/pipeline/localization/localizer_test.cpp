@@ -10,6 +10,7 @@
 
 #include "common/files.h"
 #include "sim/sim_rig.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc {
 namespace {
@@ -113,14 +114,14 @@ TEST(Localizer, TheCheckFindsDamagedWeights) {
     char& byte = bytes[bytes.size() / 2 + i];
     byte = static_cast<char>(byte ^ 0x20);
   }
-  const auto path = std::filesystem::temp_directory_path() / "bevloc_damaged_weights.onnx";
+  const test::TemporaryFolder folder;
+  const auto path = folder / "damaged.onnx";
   ASSERT_TRUE(write_file(path, bytes));
   const HdMap map;
   const MapIndex index(map);
   auto localizer = Localizer::create(sim::nominal_rig(), index, path.string(), {});
   ASSERT_TRUE(localizer) << localizer.error().message;
   EXPECT_FALSE((*localizer)->check());
-  std::filesystem::remove(path);
 }
 
 }  // namespace

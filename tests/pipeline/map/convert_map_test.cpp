@@ -9,6 +9,7 @@
 #include "pipeline/map/map_binary.h"
 #include "pipeline/map/map_checksum.h"
 #include "pipeline/map/map_loader.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc {
 namespace {
@@ -18,9 +19,6 @@ const std::filesystem::path kStreet =
 
 class ConvertMapTest : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   /// Returns the exit code.
   static int convert(const std::filesystem::path& in, const std::filesystem::path& out) {
     const std::string command =
@@ -29,9 +27,7 @@ class ConvertMapTest : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
-                                  (std::string("bevloc_convert_map_") +
-                                   testing::UnitTest::GetInstance()->current_test_info()->name());
+  const test::TemporaryFolder folder_;
 };
 
 TEST_F(ConvertMapTest, ConvertsALanelet2MapWithMillimetreAccuracy) {

@@ -9,6 +9,7 @@
 #include "pipeline/map/map_checksum.h"
 #include "pipeline/map/map_loader.h"
 #include "sim/random.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc {
 namespace {
@@ -215,9 +216,7 @@ TEST(MapBinary, SurvivesRandomBodies) {
 
 class MapFiles : public testing::Test {
  protected:
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "bevloc_map_files";
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  const test::TemporaryFolder folder_;
 };
 
 TEST_F(MapFiles, LoadMapRecognisesTheFormats) {

@@ -17,6 +17,7 @@
 #include "pipeline/network/test_frame.h"
 #include "tests/pipeline/network/engines/engine_under_test.h"
 #include "tests/pipeline/network/model_inputs.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc {
 namespace {
@@ -226,12 +227,10 @@ class RefusedModel : public ::testing::Test {
   }
 
   std::string message_for_bytes(const std::string& bytes) {
-    const std::string path = ::testing::TempDir() + "/" +
-                             ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
-                             test::engine_under_test().name + ".onnx";
+    const test::TemporaryFolder folder;
+    const std::string path = folder / "model.onnx";
     std::ofstream(path, std::ios::binary) << bytes;
     const std::string message = message_for(path);
-    std::filesystem::remove(path);
     EXPECT_THAT(message, ::testing::StartsWith(path + ": "));
     return message;
   }
@@ -341,8 +340,8 @@ TEST(TestFrame, AModelWithDamagedWeightsIsFound) {
   ASSERT_TRUE(whole);
   const NetworkAnswer wanted = answer_to_test_frame(*whole);
   const std::string bytes = test::read_bytes(kShipped);
-  const std::string path =
-      (std::filesystem::temp_directory_path() / "damaged_weights.onnx").string();
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "damaged.onnx";
   int judged = 0;
   for (const size_t place : {bytes.size() / 5, bytes.size() / 2, bytes.size() * 4 / 5}) {
     std::string damaged = bytes;
@@ -358,7 +357,6 @@ TEST(TestFrame, AModelWithDamagedWeightsIsFound) {
     EXPECT_THAT(same.error().message, HasSubstr("replace the model file"));
   }
   EXPECT_GT(judged, 0);
-  std::filesystem::remove(path);
 }
 
 TEST(TestFrame, AnAnswerSurvivesItsText) {
@@ -422,8 +420,8 @@ TEST_F(RefusedModel, RunsDamagedNetworksThatItAccepts) {
   const std::string whole = test::read_bytes(test::fixture("tiny_network_int8.onnx"));
   const size_t nodes = whole.find("bev_features");  // the nodes come before the constants
   ASSERT_NE(nodes, std::string::npos);
-  const std::string path =
-      ::testing::TempDir() + "/damaged_" + test::engine_under_test().name + ".onnx";
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "damaged.onnx";
   std::minstd_rand random(1);
   int accepted = 0;
   for (int i = 0; i < kDamaged; ++i) {
@@ -440,7 +438,6 @@ TEST_F(RefusedModel, RunsDamagedNetworksThatItAccepts) {
     test::fill_input((*network)->image_input(), 1);
     run_all(**network);
   }
-  std::filesystem::remove(path);
   EXPECT_GT(accepted, 0);
   EXPECT_LT(accepted, kDamaged);
 }
