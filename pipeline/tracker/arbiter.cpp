@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 namespace bevloc {
 namespace {
 
@@ -10,10 +12,14 @@ namespace {
 constexpr Duration kMatchLifetime = std::chrono::milliseconds(500);
 /// GNSS samples after the start of a dispute that decide it.
 constexpr size_t kDecidingSamples = 3;
-/// Mean squared distance of GNSS (three degrees of freedom) that confirms dead reckoning, and the
-/// one that refutes it: 90 % and 99.99 % quantiles of single samples.
+/// GNSS confirms a pose up to this mean squared distance (three degrees of freedom): the 90 %
+/// quantile of single samples. The other pose must be farther away by the second figure: its
+/// likelihood is 90 times smaller.
 constexpr double kConfirms = 6.25;
-constexpr double kRefutes = 21.1;
+constexpr double kDecides = 9.0;
+/// Squared distance of the disputed offset in the covariance of a match, from which the match can
+/// tell whether the offset is there.
+constexpr double kTelling = 9.0;
 /// Refused GNSS samples in a row that exclude GNSS while the match agrees.
 constexpr int kGnssRefusals = 5;
 /// Squared distance of an innovation that no scatter explains: more than 6 standard deviations on
@@ -35,8 +41,23 @@ constexpr double kOdometryError_mps = 0.6;
 constexpr double kOdometryError_mps2 = 26.0;
 constexpr double kOdometryError_radps = radians(2.0);
 constexpr double kOdometryError_radps2 = radians(150.0);
+/// Standard deviations of the offsets that a dispute is about: (m, m, rad).
+const Eigen::Vector3d kPlausibleOffset{1.0, 1.0, radians(2.0)};
+/// The covariance of the pose covers smaller disputes, so they need no decision: half the alert
+/// limits of a freeway.
+const Eigen::Vector3d kHarmlessOffset{0.7, 0.28, radians(0.75)};
 /// How long a verdict against dead reckoning lasts after the last contradiction.
 constexpr Duration kOdometryMemory = std::chrono::seconds(1);
+
+/// The offset of the pose that a match supports: an axis along which it sees little supports none.
+Eigen::Vector3d supported_offset(const PoseInnovation& innovation) {
+  const Eigen::Matrix3d plausible = kPlausibleOffset.cwiseAbs2().asDiagonal();
+  return plausible * (plausible + innovation.covariance).ldlt().solve(innovation.error);
+}
+
+double squared_distance(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
+  return error.dot(covariance.ldlt().solve(error));
+}
 
 }  // namespace
 
@@ -68,13 +89,21 @@ void Arbiter::Voter::readmit_after(int passes) {
 }
 
 void Arbiter::add_match(Time time, const PoseInnovation& innovation, bool passes_gate) {
+  if (passes_gate && !answers_dispute(innovation)) return;
   const bool begins = !passes_gate && match_.refused_in_a_row == 0;
   if (begins) match_jumped_ = match_jumps(time, innovation);
   match_.add(time, innovation, passes_gate);
   if (passes_gate) explained_ = false;
   if (begins) dispute_since_ = time;
-  if (!passes_gate) dispute_offset_ = innovation.error;
+  if (!passes_gate) dispute_offset_ = supported_offset(innovation);
   match_.readmit_after(kMatchPasses);
+}
+
+/// Whether a match that agrees with the estimate would have shown the disputed offset. One that
+/// found nothing along the axis of the dispute leaves it open.
+bool Arbiter::answers_dispute(const PoseInnovation& innovation) const {
+  return match_.refused_in_a_row == 0 ||
+         squared_distance(dispute_offset_, innovation.covariance) >= kTelling;
 }
 
 /// Whether the match has moved against dead reckoning by more than undetected errors of odometry
@@ -95,8 +124,9 @@ bool Arbiter::match_jumps(Time time, const PoseInnovation& innovation) const {
 void Arbiter::add_gnss(Time time, const PoseInnovation& innovation, bool passes_gate,
                        const std::optional<Eigen::Vector3d>& gnss_error) {
   gnss_.add(time, innovation, passes_gate);
-  gnss_records_[gnss_count_++ % kGnssRecords] = {time, innovation.error,
-                                                 innovation.squared_distance};
+  gnss_records_[gnss_count_++ % kGnssRecords] = {
+      time, innovation.squared_distance,
+      squared_distance(innovation.error - dispute_offset_, innovation.covariance)};
   if (!gnss_error) {
     gnss_error_count_ = 0;
     gnss_moved_ = false;
@@ -152,6 +182,8 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
 
 void Arbiter::decide_dispute(Verdict& verdict, PoseStanding standing) {
   if (explained_) return;
+  const bool harmless = (dispute_offset_.cwiseAbs().array() < kHarmlessOffset.array()).all();
+  if (harmless && standing == PoseStanding::kValid) return;
   if (standing == PoseStanding::kNew) {
     verdict.undecided = true;
     return;
@@ -164,30 +196,29 @@ void Arbiter::decide_dispute(Verdict& verdict, PoseStanding standing) {
   ask_gnss(verdict);
 }
 
-/// GNSS samples since the start of the dispute decide whether dead reckoning or the match is wrong.
+/// GNSS samples since the start of the dispute decide between the estimate, which dead reckoning
+/// carries, and the pose of the match.
 void Arbiter::ask_gnss(Verdict& verdict) {
   size_t samples = 0;
-  double squared_distance = 0.0;
-  Eigen::Vector3d error = Eigen::Vector3d::Zero();
+  double from_estimate = 0.0;
+  double from_match = 0.0;
   for (size_t i = 0; i < std::min(gnss_count_, kGnssRecords); ++i) {
     const GnssRecord& record = gnss_records_[i];
     if (record.time <= dispute_since_) continue;
     ++samples;
-    squared_distance += record.squared_distance;
-    error += record.error;
+    from_estimate += record.from_estimate;
+    from_match += record.from_match;
   }
   if (samples < kDecidingSamples || gnss_.excluded) {
     verdict.undecided = true;
     return;
   }
-  const auto count = static_cast<double>(samples);
-  squared_distance /= count;
-  error /= count;
-  const bool same_side = error.dot(dispute_offset_) > 0.0;
-  if (squared_distance < kConfirms) {
+  from_estimate /= static_cast<double>(samples);
+  from_match /= static_cast<double>(samples);
+  if (from_estimate < kConfirms && from_match - from_estimate > kDecides) {
     match_.excluded = true;
     explained_ = true;
-  } else if (squared_distance > kRefutes && same_side) {
+  } else if (from_match < kConfirms && from_estimate - from_match > kDecides) {
     verdict.odometry_contradicts = true;
     explained_ = true;
   } else {

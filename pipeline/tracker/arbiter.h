@@ -85,8 +85,8 @@ class Arbiter {
   /// A recent GNSS sample.
   struct GnssRecord {
     Time time;
-    Eigen::Vector3d error;
-    double squared_distance = 0.0;
+    double from_estimate = 0.0;  ///< squared distance
+    double from_match = 0.0;     ///< squared distance from the pose of the disputed match
   };
 
   static constexpr int kDisputingRefusals = 3;
@@ -96,6 +96,7 @@ class Arbiter {
   }
   bool match_agrees(Time now) const;
   bool gnss_moved() const;
+  bool answers_dispute(const PoseInnovation& innovation) const;
   bool match_jumps(Time time, const PoseInnovation& innovation) const;
   void decide_dispute(Verdict& verdict, PoseStanding standing);
   void ask_gnss(Verdict& verdict);

@@ -81,7 +81,8 @@ FilterState state_from(const PoseMeasurement& measurement, double speed_scale_va
 }
 
 void update(const PoseMeasurement& measurement, FilterState& state) {
-  const Linearised linearised = linearise(state, measurement);
+  Linearised linearised = linearise(state, measurement);
+  linearised.noise.diagonal() += measurement.repeated_variance;
   const Jacobian& h = linearised.jacobian;
   const Eigen::Matrix<double, FilterState::kSize, 3> gain =
       expected_covariance(state, linearised).ldlt().solve(h * state.covariance).transpose();

@@ -19,6 +19,9 @@ struct PoseMeasurement {
   /// Standard deviations of the correlated part: for a match in the vehicle frame (x, y, yaw), for
   /// GNSS in the map frame (east, north, yaw), the first two equal.
   Eigen::Vector3d correlated_sigma = Eigen::Vector3d::Zero();
+  /// Variance that update() adds to the noise, in the vehicle frame of the measured pose: the noise
+  /// of consecutive measurements is alike, so they count as fewer. The gate does without it.
+  Eigen::Vector3d repeated_variance = Eigen::Vector3d::Zero();
 };
 
 /// The difference between a measured pose and the estimate, in the vehicle frame of the estimate:

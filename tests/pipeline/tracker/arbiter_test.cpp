@@ -114,7 +114,60 @@ TEST_F(ArbiterTest, AMatchThatIsFarOffBeginsADisputeAtOnce) {
   const PoseInnovation match = innovation({0.0, 1.4, 0.0});
   arbiter_.add_match(now_, match, false);
   ASSERT_TRUE(arbiter_.open_dispute());
-  EXPECT_EQ(arbiter_.open_dispute()->y(), 1.4);
+  EXPECT_NEAR(arbiter_.open_dispute()->y(), 1.4, 0.1);
+}
+
+TEST_F(ArbiterTest, AMatchThatSeesNothingOfTheDisputedAxisLeavesItOpen) {
+  run(20, none_, none_);
+  now_ += milliseconds(100);
+  arbiter_.add_match(now_, innovation({0.0, 1.4, 0.0}), false);
+  ASSERT_TRUE(arbiter_.open_dispute());
+  PoseInnovation blind = innovation(none_);
+  blind.covariance(1, 1) = 100.0;
+  arbiter_.add_match(now_ + milliseconds(100), blind, true);
+  EXPECT_TRUE(arbiter_.open_dispute());
+  EXPECT_EQ(arbiter_.matches_refused_in_a_row(), 1);
+  arbiter_.add_match(now_ + milliseconds(200), innovation(none_), true);
+  EXPECT_FALSE(arbiter_.open_dispute());
+}
+
+TEST_F(ArbiterTest, AnAxisThatTheMatchDoesNotSeeIsNoPartOfTheDispute) {
+  run(20, none_, none_);
+  PoseInnovation match = innovation({5.0, 1.4, 0.0});
+  match.covariance(0, 0) = 400.0;
+  arbiter_.add_match(now_ + milliseconds(100), match, false);
+  match.squared_distance = 49.0;
+  arbiter_.add_match(now_ + milliseconds(200), match, false);
+  ASSERT_TRUE(arbiter_.open_dispute());
+  EXPECT_NEAR(arbiter_.open_dispute()->x(), 0.0, 0.1);
+  EXPECT_NEAR(arbiter_.open_dispute()->y(), 1.4, 0.1);
+}
+
+TEST_F(ArbiterTest, DecidesNothingWhereGnssCannotTellThePlacesApart) {
+  run(20, none_, none_);
+  now_ += milliseconds(100);
+  Verdict verdict;
+  for (int i = 0; i < 10; ++i) {
+    now_ += milliseconds(100);
+    arbiter_.add_match(now_, innovation({1.0 + 0.1 * i, 0.0, 0.0}), false);
+    PoseInnovation gnss = innovation(none_);
+    gnss.covariance = Eigen::Vector3d(4.0, 4.0, 1e-3).asDiagonal();
+    arbiter_.add_gnss(now_, gnss, true, none_);
+    verdict = arbiter_.judge(now_, PoseStanding::kValid);
+  }
+  EXPECT_TRUE(verdict.undecided);
+  EXPECT_FALSE(verdict.match_contradicts || verdict.odometry_contradicts);
+}
+
+TEST_F(ArbiterTest, ASmallDisputeOfAValidPoseNeedsNoDecision) {
+  run(20, none_, none_);
+  for (int i = 0; i < 5; ++i) {
+    now_ += milliseconds(100);
+    arbiter_.add_match(now_, innovation({0.0, 0.0, radians(0.5)}), false);
+  }
+  EXPECT_TRUE(arbiter_.open_dispute());
+  EXPECT_FALSE(arbiter_.judge(now_, PoseStanding::kValid).undecided);
+  EXPECT_TRUE(arbiter_.judge(now_, PoseStanding::kNew).undecided);
 }
 
 TEST_F(ArbiterTest, ALostPoseNeedsGnss) {

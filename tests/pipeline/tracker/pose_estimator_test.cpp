@@ -1,0 +1,83 @@
+#include "pipeline/tracker/pose_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/pipeline/tracker/simulated_vehicle.h"
+
+namespace bevloc {
+namespace {
+
+/// A pose that matches have confirmed for 10 s.
+class PoseEstimatorTest : public testing::Test {
+ protected:
+  PoseEstimatorTest() {
+    for (int i = 0; i < 500; ++i) step(true);
+  }
+
+  void step(bool with_match) {
+    time_s_ += 0.02;
+    vehicle_.drive_to(time_s_);
+    estimator_.add(vehicle_.odometry(time_s_));
+    if (++steps_ % 5 != 0) return;
+    estimator_.add(vehicle_.gnss());
+    if (with_match) match_with({});
+    estimator_.judge(at_s(time_s_), true);
+  }
+
+  /// A match at the true pose but for `offset`, in the vehicle frame.
+  MatchResult match_at(const Se2& prior, const Se2& offset) {
+    MatchResult match = vehicle_.correction_from(prior);
+    match.correction = match.correction * offset;
+    match.score = 0.4;
+    match.axis_score.setOnes();
+    return match;
+  }
+  TrackerUpdate match_with(const Se2& offset, double yaw_edge_mass = 0.0) {
+    const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
+    MatchResult match = match_at(prior, offset);
+    match.edge_mass.z() = yaw_edge_mass;
+    return estimator_.add_match(at_s(time_s_), prior, match).update;
+  }
+  double yaw_sigma_rad() const {
+    return std::sqrt(estimator_.tracker().pose_at(at_s(time_s_))->covariance(2, 2));
+  }
+
+  SimulatedVehicle vehicle_{{.gnss_position_sigma_m = 1.0,
+                             .gnss_yaw_sigma_rad = radians(1.0),
+                             .gnss_correlation_s = 40.0},
+                            1};
+  PoseEstimator estimator_{TrackerParameters()};
+  double time_s_ = 0.0;
+  int steps_ = 0;
+};
+
+TEST_F(PoseEstimatorTest, AModeAtTheBorderDoesNotCorrectThePose) {
+  const double before_rad = yaw_sigma_rad();
+  EXPECT_EQ(match_with({}, 1.0), TrackerUpdate::kAccepted);
+  EXPECT_NEAR(yaw_sigma_rad(), before_rad, 0.02 * before_rad);
+}
+
+TEST_F(PoseEstimatorTest, AModeAtTheBorderContradictsAPoseOfAnotherPlace) {
+  const Se2 border{0.0, 0.0, radians(2.0)};
+  EXPECT_EQ(match_with(border, 1.0), TrackerUpdate::kGated);
+  EXPECT_EQ(match_with(border, 1.0), TrackerUpdate::kGated);
+  EXPECT_EQ(match_with(border, 1.0), TrackerUpdate::kGated);
+  const TrackedPose pose = *estimator_.pose_at(at_s(time_s_));
+  EXPECT_GT(std::sqrt(pose.covariance(2, 2)), radians(0.9)) << "covers half the offset";
+}
+
+TEST_F(PoseEstimatorTest, MatchesWithoutHeadingTeachNothingAboutTheErrorsOfOthers) {
+  // Ten matches that do not see the heading. What they say of it is noise.
+  for (int i = 0; i < 10; ++i) {
+    const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
+    MatchResult match = match_at(prior, {0.0, 0.0, radians(1.9)});
+    match.evidence_share.z() = 0.0;
+    EXPECT_EQ(estimator_.add_match(at_s(time_s_), prior, match).update, TrackerUpdate::kAccepted);
+  }
+  // The next one that sees it is as far from the estimate as one at the start.
+  EXPECT_EQ(match_with({}), TrackerUpdate::kAccepted);
+  EXPECT_LT(estimator_.tracker().latest_innovation().squared_distance, 6.0);
+}
+
+}  // namespace
+}  // namespace bevloc
