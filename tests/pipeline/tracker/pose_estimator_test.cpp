@@ -66,18 +66,5 @@ TEST_F(PoseEstimatorTest, AModeAtTheBorderContradictsAPoseOfAnotherPlace) {
   EXPECT_GT(std::sqrt(pose.covariance(2, 2)), radians(0.9)) << "covers half the offset";
 }
 
-TEST_F(PoseEstimatorTest, MatchesWithoutHeadingTeachNothingAboutTheErrorsOfOthers) {
-  // Ten matches that do not see the heading. What they say of it is noise.
-  for (int i = 0; i < 10; ++i) {
-    const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
-    MatchResult match = match_at(prior, {0.0, 0.0, radians(1.9)});
-    match.evidence_share.z() = 0.0;
-    EXPECT_EQ(estimator_.add_match(at_s(time_s_), prior, match).update, TrackerUpdate::kAccepted);
-  }
-  // The next one that sees it is as far from the estimate as one at the start.
-  EXPECT_EQ(match_with({}), TrackerUpdate::kAccepted);
-  EXPECT_LT(estimator_.tracker().latest_innovation().squared_distance, 6.0);
-}
-
 }  // namespace
 }  // namespace bevloc
