@@ -24,7 +24,7 @@ struct HealthLimits {
   /// Refused corrections in a row that lead to LOST while nothing decides who is wrong.
   int refusals_to_lose = 15;
   /// Largest sigmas of a valid pose.
-  double longitudinal_sigma_m = 0.60;
+  double longitudinal_sigma_m = 0.70;
   double lateral_sigma_m = 0.30;
   double yaw_sigma_rad = radians(0.75);
   /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert

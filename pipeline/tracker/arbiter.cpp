@@ -32,6 +32,8 @@ constexpr int kGnssPasses = 20;
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
 constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
+/// A larger innovation counts as this many standard deviations: one outlier is no drift.
+constexpr double kMaxDriftStep = 3.0;
 /// Correlation time of GNSS errors, and the limit for their change: 5 standard deviations.
 constexpr double kGnssCorrelation_s = 40.0;
 constexpr double kGnssMoveLimit = 5.0;
@@ -64,7 +66,9 @@ double squared_distance(const Eigen::Vector3d& error, const Eigen::Matrix3d& cov
 void Arbiter::Voter::add(Time time, const PoseInnovation& innovation, bool passes_gate) {
   const Eigen::Vector3d sigma = innovation.covariance.diagonal().cwiseSqrt();
   far_off = !passes_gate && innovation.squared_distance > kFarOff;
-  drift += kDriftGain * (innovation.error.cwiseQuotient(sigma) - drift);
+  const Eigen::Vector3d in_sigmas =
+      innovation.error.cwiseQuotient(sigma).cwiseMax(-kMaxDriftStep).cwiseMin(kMaxDriftStep);
+  drift += kDriftGain * (in_sigmas - drift);
   if (passes_gate) {
     last_passed = time;
     last_passed_error = innovation.error;

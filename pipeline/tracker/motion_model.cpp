@@ -19,8 +19,10 @@ FilterState::Covariance transition(const MeasuredMotion& motion, double speed_mp
   f(S::kX, S::kYaw) = -c * step.y_m + s * step.x_m;
   f(S::kY, S::kYaw) = s * step.y_m + c * step.x_m;
   f(S::kX, S::kSpeedScale) = measured_m;
-  f(S::kYaw, S::kYawRateBias) = -duration_s;
-  f(S::kY, S::kYawRateBias) = -0.5 * speed_mps * duration_s * duration_s;
+  if (!stands(motion)) {
+    f(S::kYaw, S::kYawRateBias) = -duration_s;
+    f(S::kY, S::kYawRateBias) = -0.5 * speed_mps * duration_s * duration_s;
+  }
   return f;
 }
 
@@ -30,16 +32,17 @@ double kept_share(double amount, double correlation) {
 }
 
 /// Diagonal of the process noise covariance of the pose and of the odometry errors.
-Eigen::Matrix<double, FilterState::kMatchError, 1> motion_variance(double distance_m,
+Eigen::Matrix<double, FilterState::kMatchError, 1> motion_variance(const MeasuredMotion& motion,
+                                                                   double distance_m,
                                                                    double duration_s,
                                                                    const MotionNoise& noise) {
   const double half_square_s2 = 0.5 * duration_s * duration_s;
   Eigen::Matrix<double, FilterState::kMatchError, 1> variance;
+  const double yaw = square_of(noise.yaw_rad_per_sqrt_s) * duration_s +
+                     square_of(noise.yaw_acceleration_radps2 * half_square_s2);
   variance << square_of(noise.longitudinal_m_per_sqrt_m) * distance_m +
                   square_of(noise.acceleration_mps2 * half_square_s2),
-      square_of(noise.lateral_m_per_sqrt_m) * distance_m,
-      square_of(noise.yaw_rad_per_sqrt_s) * duration_s +
-          square_of(noise.yaw_acceleration_radps2 * half_square_s2),
+      square_of(noise.lateral_m_per_sqrt_m) * distance_m, stands(motion) ? 0.0 : yaw,
       square_of(noise.speed_scale_per_sqrt_s) * duration_s,
       square_of(noise.yaw_rate_bias_radps_per_sqrt_s) * duration_s;
   return variance;
@@ -71,7 +74,7 @@ void predict(const MeasuredMotion& motion, double duration_s, const MotionNoise&
   const S::Covariance moved = f * state.covariance * f.transpose();
   state.covariance = 0.5 * (moved + moved.transpose());
   auto variance = state.covariance.diagonal();
-  variance.head<S::kMatchError>() += motion_variance(distance_m, duration_s, noise);
+  variance.head<S::kMatchError>() += motion_variance(motion, distance_m, duration_s, noise);
   variance.segment<3>(S::kMatchError) += Eigen::Vector3d::Ones() - match_share.cwiseAbs2();
   variance.segment<3>(S::kGnssError).array() += 1.0 - square_of(gnss_share);
   state.match_error = state.match_error.cwiseProduct(match_share);

@@ -1,6 +1,8 @@
 // The state of the tracker's filter, and its prediction between odometry samples.
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 
 #include "common/se2.h"
@@ -16,6 +18,12 @@ struct MeasuredMotion {
   double speed_mps = 0.0;
   double yaw_rate_radps = 0.0;
 };
+
+/// Whether the wheels stand, within their noise, and the yaw rate is within what the sensor's bias
+/// explains. A road vehicle does not turn then, so its heading stays as it is.
+inline bool stands(const MeasuredMotion& motion) {
+  return std::abs(motion.speed_mps) < 0.1 && std::abs(motion.yaw_rate_radps) < radians(0.5);
+}
 
 /// The state that the filter estimates, with its covariance.
 ///
@@ -50,7 +58,7 @@ struct FilterState {
     return (1.0 + speed_scale_error) * motion.speed_mps;
   }
   double yaw_rate_radps(const MeasuredMotion& motion) const {
-    return motion.yaw_rate_radps - yaw_rate_bias_radps;
+    return stands(motion) ? 0.0 : motion.yaw_rate_radps - yaw_rate_bias_radps;
   }
 
   /// Adds an estimated error, in the order of Index, to the estimate.

@@ -108,6 +108,12 @@ TEST_F(ArbiterTest, FindsInnovationsThatLeanToOneSide) {
   EXPECT_TRUE(arbiter_.match_drifts());
 }
 
+TEST_F(ArbiterTest, OneOutlierIsNoDrift) {
+  run(100, none_, none_);
+  arbiter_.add_match(now_, innovation({5.0, 5.0, 0.1}), false);
+  EXPECT_FALSE(arbiter_.match_drifts());
+}
+
 TEST_F(ArbiterTest, AMatchThatIsFarOffBeginsADisputeAtOnce) {
   run(20, none_, none_);
   now_ += milliseconds(100);

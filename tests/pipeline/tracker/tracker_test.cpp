@@ -265,6 +265,24 @@ TEST(TrackerTest, CovarianceGrowsWithThePrediction) {
   EXPECT_GT(later.trace(), soon.trace());
 }
 
+TEST(TrackerTest, AStandingVehicleKeepsItsHeading) {
+  Tracker tracker;
+  const double bias_radps = radians(0.3);
+  tracker.add_odometry({at_s(0.0), 0.0, bias_radps});
+  GnssSample gnss{.time = at_s(0.0), .sigma_east_m = 0.5, .sigma_north_m = 0.5};
+  gnss.yaw = {0.2, radians(0.5)};
+  ASSERT_EQ(tracker.add_gnss(gnss), TrackerUpdate::kAccepted);
+  const TrackedPose before = *tracker.pose_at(at_s(0.0));
+  for (int i = 1; i <= 15000; ++i) tracker.add_odometry({at_s(0.02 * i), 0.05, bias_radps});
+  const TrackedPose after = *tracker.pose_at(at_s(300.0));
+  EXPECT_NEAR(after.map_from_vehicle.yaw_rad, before.map_from_vehicle.yaw_rad, radians(0.01));
+  EXPECT_NEAR(std::sqrt(after.covariance(2, 2)), std::sqrt(before.covariance(2, 2)), radians(0.01));
+  // A yaw rate beyond any bias is a turn.
+  tracker.add_odometry({at_s(300.02), 0.05, radians(20.0)});
+  tracker.add_odometry({at_s(300.52), 0.05, radians(20.0)});
+  EXPECT_GT(tracker.pose_at(at_s(300.52))->map_from_vehicle.yaw_rad, 0.2 + radians(8.0));
+}
+
 TEST(TrackerTest, AddsSamplesOfEitherKind) {
   SimulatedVehicle vehicle(typical_errors(), 14);
   Tracker by_kind;
