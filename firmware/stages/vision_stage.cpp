@@ -4,6 +4,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "pipeline/tracker/motion_model.h"
+
 namespace bevloc::firmware {
 namespace {
 
@@ -11,7 +13,6 @@ namespace {
 /// far below.
 constexpr double kDriving_mps = 1.0;
 
-constexpr double kStanding_mps = 0.1;
 /// The network is checked while the vehicle stands: after this time, and not more often than this.
 constexpr Duration kSettledStanding = std::chrono::seconds(1);
 constexpr Duration kCheckPeriod = std::chrono::seconds(60);
@@ -112,7 +113,7 @@ Status VisionStage::check_network() {
 }
 
 void VisionStage::check_network_again(const drivers::Frameset& frameset, const Prior& prior) {
-  if (std::abs(prior.speed_mps) > kStanding_mps) {
+  if (std::abs(prior.speed_mps) > kStandingSpeed_mps) {
     standing_since_.reset();
     return;
   }

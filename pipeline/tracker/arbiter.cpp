@@ -32,7 +32,7 @@ constexpr int kGnssPasses = 20;
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
 constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
-/// A larger innovation counts as this many standard deviations: one outlier is no drift.
+/// Larger innovations count as this many standard deviations, so that one outlier is no drift.
 constexpr double kMaxDriftStep = 3.0;
 /// Correlation time of GNSS errors, and the limit for their change: 5 standard deviations.
 constexpr double kGnssCorrelation_s = 40.0;
@@ -45,8 +45,8 @@ constexpr double kOdometryError_radps = radians(2.0);
 constexpr double kOdometryError_radps2 = radians(150.0);
 /// Standard deviations of the offsets that a dispute is about: (m, m, rad).
 const Eigen::Vector3d kPlausibleOffset{1.0, 1.0, radians(2.0)};
-/// The covariance of the pose covers smaller disputes, so they need no decision: half the alert
-/// limits of a freeway.
+/// Disputes about smaller offsets need no decision, because the covariance of the pose covers them.
+/// No offset is more than half the alert limit of a freeway: (m, m, rad).
 const Eigen::Vector3d kHarmlessOffset{0.7, 0.28, radians(0.75)};
 /// How long a verdict against dead reckoning lasts after the last contradiction.
 constexpr Duration kOdometryMemory = std::chrono::seconds(1);
@@ -55,10 +55,6 @@ constexpr Duration kOdometryMemory = std::chrono::seconds(1);
 Eigen::Vector3d supported_offset(const PoseInnovation& innovation) {
   const Eigen::Matrix3d plausible = kPlausibleOffset.cwiseAbs2().asDiagonal();
   return plausible * (plausible + innovation.covariance).ldlt().solve(innovation.error);
-}
-
-double squared_distance(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
-  return error.dot(covariance.ldlt().solve(error));
 }
 
 }  // namespace
@@ -103,8 +99,8 @@ void Arbiter::add_match(Time time, const PoseInnovation& innovation, bool passes
   match_.readmit_after(kMatchPasses);
 }
 
-/// Whether a match that agrees with the estimate would have shown the disputed offset. One that
-/// found nothing along the axis of the dispute leaves it open.
+/// Whether the match sees the disputed axis well enough to end the dispute. A match that sees
+/// nothing along this axis leaves the dispute open.
 bool Arbiter::answers_dispute(const PoseInnovation& innovation) const {
   return match_.refused_in_a_row == 0 ||
          squared_distance(dispute_offset_, innovation.covariance) >= kTelling;

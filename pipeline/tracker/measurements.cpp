@@ -13,8 +13,9 @@ constexpr double kMinEvidenceShare = 1e-4;
 
 constexpr double kUnknownYaw_rad = 1e3;
 
-/// How often the part of a correlated error beyond MeasurementModel::match_common_sigma counts
-/// again in an update. Tuned on simulated drives; values from 2 to 19 give the same errors.
+/// An update adds this multiple of the correlated variance beyond
+/// MeasurementModel::match_common_sigma. It was tuned on simulated drives. Values from 2 to 19 give
+/// nearly the same errors.
 constexpr double kRepeats = 2.0;
 
 /// Covariance of the match alone. The solver's covariance includes its own prior, a uniform

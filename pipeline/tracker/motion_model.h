@@ -19,10 +19,15 @@ struct MeasuredMotion {
   double yaw_rate_radps = 0.0;
 };
 
-/// Whether the wheels stand, within their noise, and the yaw rate is within what the sensor's bias
-/// explains. A road vehicle does not turn then, so its heading stays as it is.
+/// The noise of standing wheels stays below this speed.
+inline constexpr double kStandingSpeed_mps = 0.1;
+/// The bias of a yaw rate sensor stays below this rate.
+inline constexpr double kStandingYawRate_radps = radians(0.5);
+
+/// Whether the vehicle stands. It does not turn then, so its heading does not change.
 inline bool stands(const MeasuredMotion& motion) {
-  return std::abs(motion.speed_mps) < 0.1 && std::abs(motion.yaw_rate_radps) < radians(0.5);
+  return std::abs(motion.speed_mps) < kStandingSpeed_mps &&
+         std::abs(motion.yaw_rate_radps) < kStandingYawRate_radps;
 }
 
 /// The state that the filter estimates, with its covariance.

@@ -58,14 +58,15 @@ PoseEstimator::MatchOutcome PoseEstimator::add_match(Time frame_time, const Se2&
   outcome.seen = evidence_.judge(judged);
   if (!outcome.seen.place) return outcome;
   const bool trusted = arbiter_.trusts_match();
-  // A mode at the border of the search is no evidence of its place, but of another place than that
-  // of the estimate.
-  const bool elsewhere =
-      outcome.seen.at_edge &&
-      tracker_.add_correction(frame_time, prior, match, Trust::kExamine) == TrackerUpdate::kGated;
-  outcome.update = elsewhere ? TrackerUpdate::kGated
-                             : tracker_.add_correction(frame_time, prior, judged,
-                                                       trusted ? Trust::kUse : Trust::kExamine);
+  // If the best place lies at the border of the search, the match does not say where the vehicle
+  // is. But it contradicts the estimate if the gate refuses that place.
+  if (outcome.seen.at_edge) {
+    outcome.update = tracker_.add_correction(frame_time, prior, match, Trust::kExamine);
+  }
+  if (outcome.update != TrackerUpdate::kGated) {
+    outcome.update =
+        tracker_.add_correction(frame_time, prior, judged, trusted ? Trust::kUse : Trust::kExamine);
+  }
   if (!reached_the_gate(outcome.update)) return outcome;
   const bool passes = outcome.update == TrackerUpdate::kAccepted;
   arbiter_.add_match(frame_time, tracker_.latest_innovation(), passes);

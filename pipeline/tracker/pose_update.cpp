@@ -49,13 +49,16 @@ Eigen::Matrix3d expected_covariance(const FilterState& state, const Linearised& 
 
 }  // namespace
 
+double squared_distance(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
+  return error.dot(covariance.ldlt().solve(error));
+}
+
 PoseInnovation innovation_of(const FilterState& state, const PoseMeasurement& measurement) {
   const Linearised linearised = linearise(state, measurement);
   PoseInnovation innovation;
   innovation.error = linearised.error;
   innovation.covariance = expected_covariance(state, linearised);
-  innovation.squared_distance =
-      innovation.error.dot(innovation.covariance.ldlt().solve(innovation.error));
+  innovation.squared_distance = squared_distance(innovation.error, innovation.covariance);
   return innovation;
 }
 

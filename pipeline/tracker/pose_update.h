@@ -19,8 +19,8 @@ struct PoseMeasurement {
   /// Standard deviations of the correlated part: for a match in the vehicle frame (x, y, yaw), for
   /// GNSS in the map frame (east, north, yaw), the first two equal.
   Eigen::Vector3d correlated_sigma = Eigen::Vector3d::Zero();
-  /// Variance that update() adds to the noise, in the vehicle frame of the measured pose: the noise
-  /// of consecutive measurements is alike, so they count as fewer. The gate does without it.
+  /// Variance that update() adds to the noise, in the vehicle frame of the measured pose, because
+  /// the noise of consecutive measurements is alike. The gate does not add it.
   Eigen::Vector3d repeated_variance = Eigen::Vector3d::Zero();
 };
 
@@ -34,6 +34,9 @@ struct PoseInnovation {
   /// correct.
   double squared_distance = 0.0;
 };
+
+/// Squared Mahalanobis distance.
+double squared_distance(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance);
 
 PoseInnovation innovation_of(const FilterState& state, const PoseMeasurement& measurement);
 

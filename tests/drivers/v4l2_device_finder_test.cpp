@@ -2,7 +2,6 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "drivers/camera/v4l2/device_finder.h"
 #include "tests/support/temporary_folder.h"

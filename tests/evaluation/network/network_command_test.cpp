@@ -13,7 +13,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "evaluation/network/network_evaluation.h"
 #include "evaluation/solver/read_out_case.h"

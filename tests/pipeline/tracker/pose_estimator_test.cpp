@@ -11,16 +11,16 @@ namespace {
 class PoseEstimatorTest : public testing::Test {
  protected:
   PoseEstimatorTest() {
-    for (int i = 0; i < 500; ++i) step(true);
+    for (int i = 0; i < 500; ++i) step();
   }
 
-  void step(bool with_match) {
+  void step() {
     time_s_ += 0.02;
     vehicle_.drive_to(time_s_);
     estimator_.add(vehicle_.odometry(time_s_));
     if (++steps_ % 5 != 0) return;
     estimator_.add(vehicle_.gnss());
-    if (with_match) match_with({});
+    match_with({});
     estimator_.judge(at_s(time_s_), true);
   }
 
