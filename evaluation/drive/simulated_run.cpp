@@ -177,6 +177,7 @@ void SimulatedRun::run(const StopWhen& stop) {
     firmware::run_threads(*appliance_, realtime_, &companion, supervise);
   }
   supervisor.finish();
+  appliance_->save_learned_calibration();
 }
 
 /// The vehicle drove on while the machine was suspended.

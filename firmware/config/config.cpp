@@ -224,6 +224,18 @@ LogLevel read_log_level(std::optional<YamlMap> yaml) {
                                                   {"error", LogLevel::kError}});
 }
 
+void read_online_calibration(std::optional<YamlMap> yaml, const std::filesystem::path& folder,
+                             Config& config) {
+  if (!yaml) return;
+  OnlineCalibrationOptions& options = config.online_calibration;
+  options.enabled = yaml->optional<bool>("enabled", options.enabled);
+  options.max_rotation_rad = radians(yaml->optional<double>(
+      "max_rotation_deg", degrees(options.max_rotation_rad), between(0.1, 2.0)));
+  options.max_translation_m =
+      yaml->optional<double>("max_translation_m", options.max_translation_m, between(0.01, 0.5));
+  if (yaml->has("file")) config.learned_calibration_file = path_of(*yaml, "file", folder);
+}
+
 }  // namespace
 
 Result<Config> load_config(const std::filesystem::path& file, const SimulationReader* simulation) {
@@ -241,6 +253,7 @@ Result<Config> load_config(const std::filesystem::path& file, const SimulationRe
   }
   YamlMap calibration = yaml->require_map("calibration");
   config.rig_file = path_of(calibration, "rig", folder);
+  read_online_calibration(calibration.optional_map("online"), folder, config);
   config.map_file = read_map(yaml->require_map("map"), config.cameras.driver, folder, simulation);
   YamlMap model = yaml->require_map("model");
   config.model_file = path_of(model, "file", folder);

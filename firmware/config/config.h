@@ -75,7 +75,9 @@ struct Config {
   std::filesystem::path file;  ///< this configuration
   CameraConfig cameras;
   std::filesystem::path rig_file;
-  std::filesystem::path map_file;  ///< empty for a procedural town
+  OnlineCalibrationOptions online_calibration;
+  std::filesystem::path learned_calibration_file;  ///< empty: nothing is kept across restarts
+  std::filesystem::path map_file;                  ///< empty for a procedural town
   std::filesystem::path model_file;
   SolverConfig solver;
   CanConfig can;

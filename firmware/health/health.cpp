@@ -43,6 +43,7 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
   set_if(Why::kOverload, inputs.overloaded);
   set_if(Why::kCalibrationFault, inputs.stamps_contradict);
   set_if(Why::kNetworkFault, inputs.network_fault);
+  set_if(Why::kCalibrationFault, inputs.calibration_fault);
   set_if(Why::kInternalFault, inputs.internal_error);
   return why;
 }

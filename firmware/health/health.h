@@ -54,6 +54,7 @@ struct HealthInputs {
   bool foreign_sender = false;        ///< somebody else sends our messages or the vehicle's
   bool gnss_confirms = true;          ///< GNSS is near enough to trust a new pose
   bool clock_gap = false;             ///< time has jumped
+  bool calibration_fault = false;     ///< a camera is not where the calibration has it
   bool overloaded = false;            ///< framesets were skipped for the latest one
   double longitudinal_sigma_m = 0.0;
   double lateral_sigma_m = 0.0;

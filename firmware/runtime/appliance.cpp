@@ -1,9 +1,30 @@
 #include "firmware/runtime/appliance.h"
 
+#include <spdlog/spdlog.h>
+
 #include "can/secoc/secoc_files.h"
 #include "firmware/runtime/identity.h"
+#include "pipeline/calibration/online/calibration_file.h"
 
 namespace bevloc::firmware {
+namespace {
+
+/// Starts with what an earlier drive learned. Without it the drive learns it again, so nothing that
+/// is wrong with the file keeps the daemon from starting.
+void restore_calibration(const Config& config, const Rig& rig, Localizer& localizer) {
+  const std::filesystem::path& file = config.learned_calibration_file;
+  std::error_code ignored;
+  if (file.empty() || !std::filesystem::exists(file, ignored)) return;
+  const auto learned = load_learned(file, rig_crc32(rig));
+  if (!learned) {
+    spdlog::warn("{}", learned.error().message);
+  } else if (!localizer.restore_calibration(learned->errors, learned->covariance)) {
+    spdlog::warn("{}: found learned errors beyond the bounds, wanted less; they are not used",
+                 file.string());
+  }
+}
+
+}  // namespace
 
 Result<std::unique_ptr<Appliance>> Appliance::create(const Config& config, const Rig& rig,
                                                      const HdMap& map, Hardware hardware) {
@@ -12,14 +33,26 @@ Result<std::unique_ptr<Appliance>> Appliance::create(const Config& config, const
       Localizer::create(rig, *map_index, config.model_file.string(), localizer_options(config));
   if (!localizer) return tl::unexpected(localizer.error());
   log_identity(identity_of(config, map), map, (*localizer)->model_name());
+  restore_calibration(config, rig, **localizer);
   std::unique_ptr<Appliance> appliance(
       new Appliance(config, map, std::move(hardware), std::move(map_index), std::move(*localizer)));
+  appliance->learned_calibration_file_ = config.learned_calibration_file;
+  appliance->rig_crc32_ = rig_crc32(rig);
   if (config.can.secoc) {
     if (Status status = appliance->authenticate(*config.can.secoc, config.can.base_ids); !status) {
       return tl::unexpected(status.error());
     }
   }
   return appliance;
+}
+
+void Appliance::save_learned_calibration() const {
+  const OnlineCalibration* learned = localizer_->online_calibration();
+  if (learned == nullptr || learned_calibration_file_.empty() || learned->faults().any()) return;
+  const ExtrinsicFilter& filter = learned->filter();
+  const Status saved =
+      save_learned({rig_crc32_, filter.errors(), filter.covariance()}, learned_calibration_file_);
+  if (!saved) spdlog::warn("{}", saved.error().message);
 }
 
 Appliance::Appliance(const Config& config, const HdMap& map, Hardware hardware,
@@ -85,6 +118,7 @@ LocalizerOptions localizer_options(const Config& config) {
   options.solver = config.solver.kind;
   options.tracking = config.solver.tracking;
   options.acquiring = config.solver.acquiring;
+  options.online_calibration = config.online_calibration;
   return options;
 }
 

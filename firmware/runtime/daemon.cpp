@@ -88,6 +88,7 @@ bool run_appliance(Appliance& appliance, TriggerThread* trigger, Base& base,
   });
   if (ignition) supervisor.finish();
   if (trigger != nullptr) trigger->stop();
+  appliance.save_learned_calibration();
   log_totals(snapshot());
   return !ignition;
 }

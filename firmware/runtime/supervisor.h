@@ -21,10 +21,11 @@ struct ApplianceView {
   std::string hung;           ///< names of the threads that hang, separated by commas
   int realtime_refusals = 0;  ///< settings of the section `realtime` that the kernel refused
   std::array<double, kCameraCount> drift_ppm{};  ///< as in SynchronyCounters
-  CameraMask frozen;                             ///< as in VisionCounters, also the next three
+  CameraMask frozen;                             ///< as in VisionCounters, also the next four
   CameraMask dark;
   CameraMask blinded;
   CameraMask dirty;
+  CameraMask calibration_fault;
   bool network_fault = false;
   int stamp_offset_ms = 0;  ///< as in EstimationCounters
 };

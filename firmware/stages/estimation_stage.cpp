@@ -176,6 +176,7 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
     inputs.cameras_unsynchronized = latest_report_->unsynchronized;
     inputs.map_nearby = latest_report_->map_nearby || !latest_report_->had_prior;
     inputs.overloaded = latest_report_->skipped;
+    inputs.calibration_fault = latest_report_->calibration_fault.any();
   }
   inputs.stamps_contradict = stamp_monitor_.contradicts();
   inputs.network_fault = network_fault_;

@@ -19,9 +19,10 @@ struct VisionReport {
   bool skipped = false;     ///< older framesets were skipped for this one
   bool had_prior = false;   ///< false: no pose was known at frame_time, so nothing was matched
   bool map_nearby = false;  ///< the map has elements around the prior
-  bool unsynchronized = false;  ///< the cameras do not expose together (Synchrony)
-  bool network_fault = false;   ///< the network failed its check, so nothing was matched
-  Se2 prior;                    ///< T0: map_from_vehicle at frame_time
+  CameraMask calibration_fault;  ///< cameras that are not where the calibration has them
+  bool unsynchronized = false;   ///< the cameras do not expose together (Synchrony)
+  bool network_fault = false;    ///< the network failed its check, so nothing was matched
+  Se2 prior;                     ///< T0: map_from_vehicle at frame_time
   MatchResult match;
 };
 

@@ -18,6 +18,7 @@ struct Prior {
   CameraMotions reference_from_exposure{};
   double speed_mps = 0.0;  ///< negative when reversing
   SearchRange range = SearchRange::kAcquiring;
+  std::optional<Se2> motion{};  ///< since the frameset that was asked for before, where known
 };
 
 /// Keeps the latest predictions of the estimation stage. Thread-bound: called from the vision
@@ -33,15 +34,17 @@ class PriorSource {
   void take_predictions();
 
   /// Nothing when no prediction covers the frameset's time, or the motion to one of its exposures.
-  std::optional<Prior> at(const drivers::Frameset& frameset) const;
+  std::optional<Prior> at(const drivers::Frameset& frameset);
 
  private:
+  std::optional<Se2> motion_until(Time time);
   std::optional<CameraMotions> motions_in(const drivers::Frameset& frameset) const;
 
   const bool compensates_;
   PredictionQueue& predictions_;
   PoseTrail trail_;
   bool acquiring_ = true;
+  std::optional<Time> previous_time_;  ///< of the frameset that was asked for before
 };
 
 }  // namespace bevloc::firmware

@@ -87,12 +87,17 @@ VisionReport VisionStage::report_on(const NewestFrameset& newest) {
 void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
                         VisionReport& report) {
   const bool driving = std::abs(prior.speed_mps) > kDriving_mps;
-  CameraImages images{{}, frameset.present, prior.reference_from_exposure, driving};
+  CameraImages images{{},      frameset.present, prior.reference_from_exposure,
+                      driving, frameset.time,    prior.motion};
   for (int camera = 0; camera < kCameraCount; ++camera) {
     if (frameset.present[camera]) images.images[camera] = frameset.frames[camera].image();
   }
   report.present = localizer_.localize(images, prior.map_from_vehicle, prior.range, solution_);
   report.map_nearby = localizer_.map_nearby();
+  if (const OnlineCalibration* learned = localizer_.online_calibration()) {
+    report.calibration_fault = learned->faults();
+    counters_.calibration_fault = static_cast<unsigned>(learned->faults().to_ulong());
+  }
   note_unused_images(frameset.present, report.present);
   if (static_cast<int>(report.present.count()) < min_cameras_) {
     ++counters_.refused;

@@ -54,6 +54,8 @@ struct VisionCounters {
   std::atomic<unsigned> dirty{0};
   std::atomic<uint64_t> checks{0};         ///< of network and solvers (Localizer::check())
   std::atomic<bool> network_fault{false};  ///< one of them failed; stays until the restart
+  /// Cameras that are not where the calibration has them, a CameraMask.
+  std::atomic<unsigned> calibration_fault{0};
 };
 
 /// Checks network and solvers at construction, and again, at most once a minute, while the vehicle

@@ -40,6 +40,10 @@ void ViewLog::note(const ApplianceView& view) {
       spdlog::info("cameras: their time stamps agree with odometry again");
     }
   }
+  note_cameras(
+      before_.calibration_fault, view.calibration_fault,
+      "out of place, it is not where the calibration has it",
+      "check its mount and whether it is connected in another camera's place, then calibrate");
   if (view.network_fault && !before_.network_fault) {
     spdlog::critical(
         "network: it computed another answer to the test frame than its model stores; replace the "

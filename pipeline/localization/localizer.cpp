@@ -52,11 +52,16 @@ Result<std::unique_ptr<Localizer>> Localizer::create(const Rig& rig, const MapIn
 
 Localizer::Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Network> network,
                      const LocalizerOptions& options)
-    : network_rig_(network_rig(rig)),
+    : calibrated_rig_(network_rig(rig)),
+      network_rig_(calibrated_rig_),
       options_(options),
       network_(std::move(network)),
       rasterizer_(map) {
   for (const CameraModel& camera : rig.cameras) preprocessors_.emplace_back(camera);
+  if (options.online_calibration.enabled) {
+    online_calibration_.emplace(calibrated_rig_, kFeatureGrid, network_->bev_features().channels,
+                                options.online_calibration);
+  }
 }
 
 CameraMask Localizer::localize(const CameraImages& images, const Se2& prior, SearchRange range,
@@ -68,7 +73,39 @@ CameraMask Localizer::localize(const CameraImages& images, const Se2& prior, Sea
   network_->run_map_branch();
   solvers_[static_cast<size_t>(range)]->solve(network_->bev_features(), network_->map_features(),
                                               result);
+  if (online_calibration_) learn(images, usable, range, prior, result);
   return usable;
+}
+
+void Localizer::learn(const CameraImages& images, CameraMask usable, SearchRange range,
+                      const Se2& prior, const SolverResult& result) {
+  const Solver& solver = *solvers_[static_cast<size_t>(range)];
+  const bool changed = online_calibration_->observe({.cells = {.bev = solver.bev_cells(),
+                                                               .map = solver.map_cells(),
+                                                               .view = view_table_,
+                                                               .rig = network_rig_,
+                                                               .correction = result.correction},
+                                                     .match = result,
+                                                     .cameras = usable,
+                                                     .time = images.time,
+                                                     .tracking = range == SearchRange::kTracking,
+                                                     .driving = images.driving,
+                                                     .map_from_vehicle = prior * result.correction,
+                                                     .motion = images.motion});
+  if (changed) apply_learned();
+}
+
+bool Localizer::restore_calibration(const ExtrinsicErrors& errors,
+                                    const ExtrinsicCovariance& covariance) {
+  if (!online_calibration_ || !online_calibration_->restore(errors, covariance)) return false;
+  apply_learned();
+  return true;
+}
+
+void Localizer::apply_learned() {
+  network_rig_ = calibrated_rig_;
+  apply_errors(online_calibration_->used_errors(), network_rig_);
+  table_cameras_.reset();
 }
 
 CameraMask Localizer::load_images(const CameraImages& images) {

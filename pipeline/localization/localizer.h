@@ -12,6 +12,7 @@
 #include "common/image_view.h"
 #include "common/result.h"
 #include "common/se2.h"
+#include "pipeline/calibration/online/online_calibration.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/localization/frozen_camera_detector.h"
 #include "pipeline/localization/view_monitor.h"
@@ -32,6 +33,7 @@ struct LocalizerOptions {
   /// Hypotheses for SearchRange::kAcquiring, where the prior comes from GNSS and odometry alone.
   HypothesisGrid acquiring{{4.0, 0.2}, {3.0, 0.2}, {radians(4.0), radians(0.2)}};
   NetworkOptions network;
+  OnlineCalibrationOptions online_calibration;
 };
 
 /// The images of one frameset.
@@ -40,6 +42,9 @@ struct CameraImages {
   CameraMask present;
   CameraMotions reference_from_exposure{};  ///< reference time: that of the prior
   bool driving = false;  ///< a repeated image then counts as frozen, and a still one as dirty
+  // For the online calibration:
+  Time time{};                  ///< of the frameset
+  std::optional<Se2> motion{};  ///< since the previous frameset, from odometry, where known
 };
 
 enum class SearchRange : uint8_t { kTracking, kAcquiring };
@@ -82,6 +87,15 @@ class Localizer {
   /// The cameras whose view has this fault at their latest readable image.
   CameraMask with(ViewFault fault) const { return view_monitor_.with(fault); }
 
+  /// Starts the online calibration with what an earlier drive learned. Returns false if that is
+  /// impossible (OnlineCalibration::restore()) or the online calibration is switched off.
+  bool restore_calibration(const ExtrinsicErrors& errors, const ExtrinsicCovariance& covariance);
+
+  /// What was learned about the calibration; null if it is switched off.
+  const OnlineCalibration* online_calibration() const {
+    return online_calibration_ ? &*online_calibration_ : nullptr;
+  }
+
   /// The raster of the latest localize(), kRasterSize bytes.
   std::span<const uint8_t> map_raster() const { return network_->raster_input(); }
 
@@ -104,8 +118,13 @@ class Localizer {
   Status check_solver(SearchRange range);
   /// Updates the view table for the cameras and motions.
   void update_view(CameraMask present, const CameraMotions& reference_from_exposure);
+  /// Learns the errors of the calibration, and applies them from the next frameset on.
+  void learn(const CameraImages& images, CameraMask usable, SearchRange range, const Se2& prior,
+             const SolverResult& result);
+  void apply_learned();
 
-  Rig network_rig_;
+  Rig calibrated_rig_;  ///< the network rig of the calibration
+  Rig network_rig_;     ///< the same with the learned errors
   LocalizerOptions options_;
   std::unique_ptr<Network> network_;
   std::optional<NetworkAnswer> stored_answer_;
@@ -120,6 +139,7 @@ class Localizer {
   ViewTable view_table_;                            ///< computed for the next two members
   std::optional<CameraMask> table_cameras_;
   CameraMotions table_motions_{};
+  std::optional<OnlineCalibration> online_calibration_;
 };
 
 }  // namespace bevloc

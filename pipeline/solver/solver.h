@@ -41,6 +41,10 @@ class Solver {
   /// `result` is finite.
   void solve(const FeatureView& bev, const FeatureView& map, SolverResult& result);
 
+  /// The standardised features of the latest solve() with evidence.
+  const CellFeatures& bev_cells() const { return bev_cells_; }
+  const CellFeatures& map_cells() const { return map_cells_; }
+
  private:
   Eigen::Matrix3d covariance(const SolverResult& result);
   Eigen::Vector3d distribution_sigmas(const SolverResult& result) const;

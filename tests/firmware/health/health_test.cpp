@@ -186,6 +186,15 @@ TEST(HealthTest, MissingGnssOnlyDegrades) {
   EXPECT_TRUE(health.why().has(Why::kGnssMissing));
 }
 
+TEST(HealthTest, ACameraThatIsNotWhereTheCalibrationHasItDegrades) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.calibration_fault = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+  EXPECT_EQ(health.why(), WhyMask(Why::kCalibrationFault));
+}
+
 TEST(HealthTest, OverloadDegrades) {
   Health health = tracking();
   HealthInputs inputs = healthy();

@@ -1,0 +1,48 @@
+// Estimates the errors of the cameras' extrinsics from many matches.
+#pragma once
+
+#include "pipeline/calibration/online/extrinsic_sums.h"
+
+namespace bevloc {
+
+/// How large errors are and how fast they change, one sigma.
+struct ExtrinsicModel {
+  double rotation_rad = radians(0.3);       ///< of one camera, about each of its axes
+  double translation_m = 0.02;              ///< of one camera, along each of the vehicle's axes
+  double body_rotation_rad = radians(0.3);  ///< of all cameras together: the body's load
+  /// Growth after one hour of driving, of each angle and of each length.
+  double rotation_per_sqrt_hour_rad = radians(0.2);
+  double translation_per_sqrt_hour_m = 0.005;
+};
+
+/// A Kalman filter whose state are all errors together: cameras that share cells are correlated,
+/// and so are all of them through the pose. One thread; does not allocate.
+class ExtrinsicFilter {
+ public:
+  /// `rig` gives the axes along which the body's rotation turns each camera.
+  ExtrinsicFilter(const Rig& rig, const ExtrinsicModel& model);
+
+  /// Starts with an estimate of an earlier drive. Returns false, and changes nothing, if a value is
+  /// not finite or the covariance is not positive definite.
+  bool restore(const ExtrinsicErrors& errors, const ExtrinsicCovariance& covariance);
+
+  /// `match` was computed with extrinsics that had the errors `used` applied; `driven` is the time
+  /// since the previous update.
+  void update(const ExtrinsicInformation& match, const ExtrinsicErrors& used, double driven_s);
+
+  /// The matched heading is turned against the direction of motion by `turn_rad`, in a match with
+  /// the errors `used`: what the cameras have in common about the vertical axis, of which a match
+  /// alone knows nothing.
+  void update_heading(double turn_rad, const ExtrinsicErrors& used);
+
+  const ExtrinsicErrors& errors() const { return errors_; }
+  const ExtrinsicCovariance& covariance() const { return covariance_; }
+
+ private:
+  ExtrinsicModel model_;
+  ExtrinsicErrors heading_ = ExtrinsicErrors::Zero();  ///< mean turn of all cameras, per error
+  ExtrinsicErrors errors_ = ExtrinsicErrors::Zero();
+  ExtrinsicCovariance covariance_;
+};
+
+}  // namespace bevloc

@@ -1,0 +1,44 @@
+// Compares the heading of the matches with the direction in which the vehicle moves.
+#pragma once
+
+#include <optional>
+
+#include <boost/circular_buffer.hpp>
+
+#include "common/se2.h"
+
+namespace bevloc {
+
+/// The rear axle moves where the vehicle points. If all cameras are turned together, the matched
+/// heading is turned with them, while the matched positions still lie on the path. Over some metres
+/// the positions show the direction of motion: the path that odometry measured is laid over the
+/// matched positions, and its headings are compared with the matched ones.
+///
+/// One thread; allocates in the constructor only.
+class MotionDirection {
+ public:
+  /// Length of a stretch of road that gives one comparison.
+  static constexpr double kStretch_m = 20.0;
+
+  /// `map_from_vehicle`: the matched pose. `motion`: the vehicle's motion since the previous call,
+  /// from odometry; nothing if it is not known, which begins a new stretch. Returns, at the end of
+  /// a stretch, by how much the matched heading is turned against the direction of motion,
+  /// counter-clockwise.
+  std::optional<double> add(const Se2& map_from_vehicle, const std::optional<Se2>& motion);
+
+ private:
+  static constexpr size_t kMostPoses = 256;
+
+  struct Sample {
+    Se2 matched;
+    Se2 driven;  ///< from odometry, since the beginning of the stretch
+  };
+
+  void begin(const Se2& map_from_vehicle);
+  double turn() const;
+
+  boost::circular_buffer<Sample> samples_{kMostPoses};
+  double length_m_ = 0.0;
+};
+
+}  // namespace bevloc

@@ -1,0 +1,144 @@
+#include "pipeline/calibration/online/online_calibration.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bevloc {
+namespace {
+
+/// Between two observations. Matches of the next frameset see the same road.
+constexpr Duration kPeriod = std::chrono::milliseconds(380);
+/// An observation counts for at most this long, also after a pause.
+constexpr double kLongestStep_s = 1.0;
+
+// A clear match: close to the prior, and exact across the road and in heading.
+constexpr double kFarthestLateral_m = 0.6;
+constexpr double kFarthestYaw_rad = radians(1.5);
+constexpr double kLargestLateralSigma_m = 0.3;
+constexpr double kLargestYawSigma_rad = radians(0.6);
+
+/// The used errors follow the estimate when it has moved by more than this.
+constexpr double kStep_rad = radians(0.03);
+constexpr double kStep_m = 0.005;
+
+/// An error is beyond its bound for certain if it is by this many sigmas.
+constexpr double kCertainSigmas = 0.5;
+
+// Agreement of a camera with the map: ZNCC over the cells that it sees, against the median camera.
+constexpr double kFade_s = 20.0;
+constexpr double kLeastSeen_s = 15.0;
+// Swapped cameras agree with the map by at most 0.3 of the median camera, right ones by 0.6 and
+// more.
+constexpr double kContradictingShare = 0.4;
+constexpr double kAgreeingShare = 0.5;
+/// Of the median camera; below, nothing is known about any camera.
+constexpr double kLeastMedian = 0.1;
+
+double agreement(const SeenByCamera& seen) {
+  const double squares = seen.map_square * seen.bev_square;
+  return squares > 0.0 ? seen.product / std::sqrt(squares) : 0.0;
+}
+
+}  // namespace
+
+OnlineCalibration::OnlineCalibration(const Rig& rig, const BevGrid& grid, int channels,
+                                     const OnlineCalibrationOptions& options)
+    : options_(options), sums_(grid, channels), filter_(rig, {}) {}
+
+bool OnlineCalibration::restore(const ExtrinsicErrors& errors,
+                                const ExtrinsicCovariance& covariance) {
+  for (int error = 0; error < kExtrinsicErrors; ++error) {
+    if (!(std::abs(errors(error)) <= limit_of(error))) return false;
+  }
+  if (!filter_.restore(errors, covariance)) return false;
+  follow_estimate();
+  return true;
+}
+
+double OnlineCalibration::limit_of(int error) const {
+  return error % kErrorsPerCamera < 3 ? options_.max_rotation_rad : options_.max_translation_m;
+}
+
+bool OnlineCalibration::observe(const CalibrationObservation& observation) {
+  if (!observation.driving || observation.match.evidence != Evidence::kGood ||
+      !observation.cameras.all()) {
+    return false;
+  }
+  const bool learns = observation.tracking && is_clear(observation);
+  // A stretch that began with other extrinsics is not mixed with these.
+  const auto turn_rad = direction_.add(
+      observation.map_from_vehicle, learns && !used_changed_ ? observation.motion : std::nullopt);
+  used_changed_ = false;
+  if (turn_rad) filter_.update_heading(*turn_rad, used_);
+  if (observed_ && observation.time - *observed_ < kPeriod) return false;
+  const double step_s =
+      observed_ ? std::min(to_seconds(observation.time - *observed_), kLongestStep_s) : 0.0;
+  observed_ = observation.time;
+  sums_.compute(observation.cells, information_);
+  const double kept = std::exp(-step_s / kFade_s);
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    SeenByCamera& sum = seen_[camera];
+    const SeenByCamera& now = information_.seen[camera];
+    sum = {kept * sum.product + now.product, kept * sum.map_square + now.map_square,
+           kept * sum.bev_square + now.bev_square};
+  }
+  seen_s_ += step_s;
+  judge_agreement(seen_);
+  // Two cameras in each other's place would pull the estimates of all.
+  if (!learns || contradicting_.any()) return false;
+  filter_.update(information_, used_, step_s);
+  judge_bounds();
+  return follow_estimate();
+}
+
+bool OnlineCalibration::is_clear(const CalibrationObservation& observation) const {
+  const MatchResult& match = observation.match;
+  return std::abs(match.correction.y_m) < kFarthestLateral_m &&
+         std::abs(match.correction.yaw_rad) < kFarthestYaw_rad &&
+         match.covariance(1, 1) < kLargestLateralSigma_m * kLargestLateralSigma_m &&
+         match.covariance(2, 2) < kLargestYawSigma_rad * kLargestYawSigma_rad;
+}
+
+void OnlineCalibration::judge_agreement(const std::array<SeenByCamera, kCameraCount>& seen) {
+  if (seen_s_ < kLeastSeen_s) return;
+  std::array<double, kCameraCount> agreements{};
+  std::ranges::transform(seen, agreements.begin(), agreement);
+  std::array<double, kCameraCount> sorted = agreements;
+  std::ranges::sort(sorted);
+  // The better of the two in the middle: two swapped cameras leave four good ones.
+  const double median = sorted[kCameraCount / 2];
+  if (median < kLeastMedian) return;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const double limit = contradicting_[camera] ? kAgreeingShare : kContradictingShare;
+    contradicting_[camera] = agreements[camera] < limit * median;
+  }
+}
+
+void OnlineCalibration::judge_bounds() {
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    beyond_bounds_[camera] = false;
+    for (int i = 0; i < kErrorsPerCamera; ++i) {
+      const int error = camera * kErrorsPerCamera + i;
+      const double sigma = std::sqrt(filter_.covariance()(error, error));
+      if (std::abs(filter_.errors()(error)) - kCertainSigmas * sigma > limit_of(error)) {
+        beyond_bounds_[camera] = true;
+      }
+    }
+  }
+}
+
+bool OnlineCalibration::follow_estimate() {
+  ExtrinsicErrors wanted = filter_.errors();
+  bool moved = false;
+  for (int error = 0; error < kExtrinsicErrors; ++error) {
+    const bool is_rotation = error % kErrorsPerCamera < 3;
+    wanted(error) = std::clamp(wanted(error), -limit_of(error), limit_of(error));
+    moved |= std::abs(wanted(error) - used_(error)) > (is_rotation ? kStep_rad : kStep_m);
+  }
+  if (!moved) return false;
+  used_ = wanted;
+  used_changed_ = true;
+  return true;
+}
+
+}  // namespace bevloc

@@ -1,0 +1,88 @@
+// Online calibration: learns the errors of the cameras' extrinsics while driving, and says when a
+// camera is not where the calibration has it.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "common/cameras.h"
+#include "common/time.h"
+#include "pipeline/calibration/online/extrinsic_filter.h"
+#include "pipeline/calibration/online/motion_direction.h"
+#include "pipeline/solver/solver_result.h"
+
+namespace bevloc {
+
+struct OnlineCalibrationOptions {
+  bool enabled = true;
+  /// Errors beyond these are a fault of the calibration. What is used stays within them.
+  double max_rotation_rad = radians(0.65);
+  double max_translation_m = 0.1;
+
+  bool operator==(const OnlineCalibrationOptions&) const = default;
+};
+
+/// One match, and the condition under which it was made.
+struct CalibrationObservation {
+  MatchedCells cells;
+  const MatchResult& match;
+  CameraMask cameras;     ///< used in the match
+  Time time;              ///< of the frameset
+  bool tracking = false;  ///< the prior came from the tracker, which follows the map
+  bool driving = false;
+  Se2 map_from_vehicle;         ///< as matched
+  std::optional<Se2> motion{};  ///< since the previous observation, from odometry, where known
+};
+
+/// Learns only while the vehicle drives and tracks, from clear matches near the prior, with all
+/// cameras. A pose that is wrong by a lane has nothing to do with the cameras, so the errors that
+/// it pretends differ from place to place and average out; the bounds limit the rest.
+///
+/// One thread; the constructor allocates all memory.
+class OnlineCalibration {
+ public:
+  /// `rig`: the network rig of the calibration.
+  OnlineCalibration(const Rig& rig, const BevGrid& grid, int channels,
+                    const OnlineCalibrationOptions& options);
+
+  /// Starts with an estimate of an earlier drive. Returns false, and changes nothing, if it is
+  /// beyond the bounds, not finite, or its covariance is not positive definite.
+  bool restore(const ExtrinsicErrors& errors, const ExtrinsicCovariance& covariance);
+
+  /// Learns from a match; a few times per second, more often does nothing. Returns whether
+  /// used_errors() changed.
+  bool observe(const CalibrationObservation& observation);
+
+  /// The errors to be applied to the calibration. They follow the estimate in steps, because each
+  /// change computes the view table again.
+  const ExtrinsicErrors& used_errors() const { return used_; }
+  const ExtrinsicFilter& filter() const { return filter_; }
+
+  /// The cameras whose error is beyond the bounds for certain, or whose picture contradicts the map
+  /// while those of others agree with it.
+  CameraMask faults() const { return beyond_bounds_ | contradicting_; }
+  CameraMask beyond_bounds() const { return beyond_bounds_; }
+  CameraMask contradicting() const { return contradicting_; }
+
+ private:
+  bool is_clear(const CalibrationObservation& observation) const;
+  void judge_agreement(const std::array<SeenByCamera, kCameraCount>& seen);
+  void judge_bounds();
+  bool follow_estimate();
+  double limit_of(int error) const;
+
+  OnlineCalibrationOptions options_;
+  ExtrinsicSums sums_;
+  ExtrinsicFilter filter_;
+  MotionDirection direction_;
+  ExtrinsicInformation information_;
+  ExtrinsicErrors used_ = ExtrinsicErrors::Zero();
+  bool used_changed_ = false;     ///< since the previous observation
+  std::optional<Time> observed_;  ///< the time of the latest observation that was computed
+  std::array<SeenByCamera, kCameraCount> seen_{};  ///< sums that fade over some seconds of driving
+  double seen_s_ = 0.0;                            ///< driving time in them
+  CameraMask beyond_bounds_;
+  CameraMask contradicting_;
+};
+
+}  // namespace bevloc

@@ -1,0 +1,45 @@
+#include "pipeline/calibration/online/motion_direction.h"
+
+#include <gtest/gtest.h>
+
+namespace bevloc {
+namespace {
+
+/// Drives a bend with all cameras turned by `turn_rad`, odometry that measures `bias_radps` too
+/// much, and without odometry every `gap` framesets. Returns the comparisons.
+std::vector<double> drive(double turn_rad, double bias_radps, int gap = 1000) {
+  MotionDirection direction;
+  std::vector<double> turns;
+  Se2 truth{120.0, -40.0, 2.9};
+  constexpr double kPeriod_s = 0.1;
+  for (int i = 1; i <= 200; ++i) {
+    const double yaw_rate_radps = 0.15;
+    const Se2 half{0.5, 0.0, 0.5 * kPeriod_s * yaw_rate_radps};
+    truth = truth * half * half;
+    const Se2 measured_half{0.5, 0.0, 0.5 * kPeriod_s * (yaw_rate_radps + bias_radps)};
+    std::optional<Se2> motion = measured_half * measured_half;
+    if (i % gap == 0) motion.reset();
+    const Se2 matched{truth.x_m, truth.y_m, wrap_angle(truth.yaw_rad + turn_rad)};
+    if (const auto turn = direction.add(matched, motion)) turns.push_back(*turn);
+  }
+  return turns;
+}
+
+TEST(MotionDirection, FindsTheTurnOfAllCamerasInABend) {
+  for (const double turn_deg : {-1.0, 0.0, 1.0}) {
+    const std::vector<double> turns = drive(radians(turn_deg), 0.0);
+    ASSERT_EQ(turns.size(), 9U);
+    for (const double turn : turns) EXPECT_NEAR(degrees(turn), turn_deg, 0.01);
+  }
+}
+
+TEST(MotionDirection, BearsABiasOfTheYawRate) {
+  for (const double turn : drive(0.0, radians(0.3))) EXPECT_NEAR(degrees(turn), 0.0, 0.05);
+}
+
+TEST(MotionDirection, BeginsAgainWhereOdometryIsMissing) {
+  EXPECT_TRUE(drive(radians(1.0), 0.0, 15).empty());
+}
+
+}  // namespace
+}  // namespace bevloc
