@@ -41,9 +41,8 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
                                   inputs.yaw_sigma_rad > limits_.yaw_sigma_rad);
   set_if(Why::kPoseStale, inputs.correction_age > limits_.correction_timeout);
   set_if(Why::kOverload, inputs.overloaded);
-  set_if(Why::kCalibrationFault, inputs.stamps_contradict);
   set_if(Why::kNetworkFault, inputs.network_fault);
-  set_if(Why::kCalibrationFault, inputs.calibration_fault);
+  set_if(Why::kCalibrationFault, inputs.calibration_fault || inputs.stamps_contradict);
   set_if(Why::kInternalFault, inputs.internal_error);
   return why;
 }

@@ -128,13 +128,12 @@ TEST(ThreadsTest, LockstepAppliesNoRealtimeSettings) {
   EXPECT_EQ(report->realtime_refusals, 0);
 }
 
-/// The number of frames of the localizer in the log of a run, from a time of the log on.
-int localizer_frames_from(const std::filesystem::path& log, double from_s) {
+/// The number of frames of the localizer in the log of a run.
+int localizer_frames_in(const std::filesystem::path& log) {
   std::ifstream lines(log);
   int count = 0;
   for (std::string line; std::getline(lines, line);) {
-    const bool is_localizers = line.find(" 5") != std::string::npos;  // identifiers from 0x500 on
-    if (is_localizers && std::stod(line.substr(1)) >= from_s) ++count;
+    if (line.find(" 5") != std::string::npos) ++count;  // identifiers from 0x500 on
   }
   return count;
 }
@@ -145,7 +144,9 @@ TEST(ThreadsTest, HangingThreadsStandStillAndEndWithTheRun) {
   config.cameras.rate_hz = 10.0;
   for (const sim::FaultKind kind : {sim::FaultKind::kHangCapture, sim::FaultKind::kHangVision,
                                     sim::FaultKind::kHangCanIn, sim::FaultKind::kHangCanOut}) {
-    config.simulation->faults.push_back(sim::make_fault(kind));
+    sim::Fault fault = sim::make_fault(kind);
+    fault.from_s = -10.0;  // the devices open before the drive begins, on a busy machine long before
+    config.simulation->faults.push_back(fault);
   }
   int asked = 0;
   const SimulatedRunOptions options = quiet_options(folder);
@@ -153,9 +154,9 @@ TEST(ThreadsTest, HangingThreadsStandStillAndEndWithTheRun) {
       run_simulation(config, small_rig(config), options,
                      [&asked](const firmware::ApplianceView&) { return ++asked > 15; });
   ASSERT_TRUE(report) << report.error().message;
-  EXPECT_LE(report->frames.captured, uint64_t{kCameraCount}) << "drawn before the drive began";
-  EXPECT_GT(localizer_frames_from(options.out / "can.log", 0.0), 0);
-  EXPECT_LE(localizer_frames_from(options.out / "can.log", 0.7), 20) << "the sign-off";
+  EXPECT_EQ(report->frames.captured, 0U);
+  EXPECT_LE(localizer_frames_in(options.out / "can.log"), 100)
+      << "the epoch that hung, and the sign-off; the daemon sends more than 1,000 in this time";
 }
 
 TEST(ThreadsTest, StopsWhenAsked) {
