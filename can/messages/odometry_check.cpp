@@ -14,7 +14,6 @@ constexpr double kSlowInterval_s = 0.045;
 constexpr double kTimelyInterval_s = 0.030;
 /// The mean follows the interval within about ten samples, so that one gap does not count as slow.
 constexpr double kIntervalGain = 0.1;
-constexpr double kDifferenceGain = 0.1;
 
 }  // namespace
 
@@ -88,18 +87,13 @@ bool OdometryCheck::is_too_sharp(const Wheels& sample) const {
 
 bool OdometryCheck::wheels_contradict(const Wheels& sample) {
   const double expected_mps = sample.yaw_rate_radps * limits_.rear_track_m;
-  const double difference_mps = sample.right_mps - sample.left_mps - expected_mps;
-  const double speed_mps = std::abs(sample.speed_mps());
+  const double excess_mps = sample.right_mps - sample.left_mps - expected_mps;
   const double allowed_mps = limits_.wheel_difference_mps +
-                             limits_.wheel_difference_share * speed_mps +
+                             limits_.wheel_difference_share * std::abs(sample.speed_mps()) +
                              limits_.wheel_difference_m * std::abs(sample.yaw_rate_radps);
-  mean_wheel_difference_mps_ +=
-      kDifferenceGain *
-      (std::clamp(difference_mps, -allowed_mps, allowed_mps) - mean_wheel_difference_mps_);
-  const double allowed_mean_mps =
-      limits_.mean_wheel_difference_mps + limits_.mean_wheel_difference_share * speed_mps;
-  return std::abs(difference_mps) > allowed_mps ||
-         std::abs(mean_wheel_difference_mps_) > allowed_mean_mps;
+  return std::abs(excess_mps) > allowed_mps ||
+         learned_difference_.contradicts(
+             {sample.time, excess_mps, sample.speed_mps(), sample.yaw_rate_radps});
 }
 
 bool OdometryCheck::speed_jumps(const Wheels& from, const Wheels& to) const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "can/messages/wheel_difference.h"
 #include "common/time.h"
 
 namespace bevloc::can {
@@ -21,10 +22,8 @@ struct OdometryLimits {
   double wheel_difference_mps = 0.8;
   double wheel_difference_share = 0.03;
   double wheel_difference_m = 0.3;
-  /// The same for the mean of about the last 200 ms, in which the noise is small: a yaw rate with
-  /// the wrong sign shows in every bend.
-  double mean_wheel_difference_mps = 0.25;
-  double mean_wheel_difference_share = 0.03;
+  /// The mean of some samples is compared with what was learned from the samples before.
+  WheelDifferenceLimits learned_wheel_difference;
 
   /// Along the vehicle tyres hold about 1.2 g when braking; no series car gains more than 1 g. The
   /// step is for noise and a late time stamp. Each sample is compared with those of the last 100
@@ -69,7 +68,8 @@ class OdometryCheck {
     double speed_mps() const { return 0.5 * (left_mps + right_mps); }
   };
 
-  explicit OdometryCheck(const OdometryLimits& limits) : limits_(limits) {}
+  explicit OdometryCheck(const OdometryLimits& limits)
+      : limits_(limits), learned_difference_(limits.learned_wheel_difference) {}
 
   OdometryVerdict judge(const Wheels& sample);
 
@@ -93,7 +93,7 @@ class OdometryCheck {
   void watch_rate(Time time);
 
   OdometryLimits limits_;
-  double mean_wheel_difference_mps_ = 0.0;  ///< beyond what the yaw rate explains
+  WheelDifference learned_difference_;
   static constexpr size_t kRecent = 8;
   std::array<Wheels, kRecent> recent_{};  ///< plausible samples, oldest first
   size_t recent_count_ = 0;

@@ -79,7 +79,8 @@ std::optional<WheelReading> reading_with_faults(const OdometrySimulator& odometr
                                                 double rear_track_m,
                                                 std::span<const Fault> active) {
   const OdometryReading sensed = odometry.reading(stuck_index(index, active));
-  const double half_difference_mps = 0.5 * rear_track_m * sensed.yaw_rate_radps;
+  const double half_difference_mps =
+      0.5 * (rear_track_m * sensed.path_yaw_rate_radps + sensed.wheel_excess_mps);
   WheelReading reading{sensed.speed_mps - half_difference_mps,
                        sensed.speed_mps + half_difference_mps, sensed.yaw_rate_radps};
   const double time_s = static_cast<double>(index) * OdometrySimulator::kPeriod_s;

@@ -1,0 +1,78 @@
+// Compares the difference of the wheel speeds with the yaw rate.
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+#include <boost/circular_buffer.hpp>
+
+#include "common/time.h"
+
+namespace bevloc::can {
+
+/// Limits of WheelDifference. The wheels of a real vehicle differ by more than yaw rate times track,
+/// because radii, track and the zero of the yaw rate are not exactly known. These errors are
+/// constant for minutes, so they are learned; what changes within a second is a fault.
+struct WheelDifferenceLimits {
+  // Errors before anything was learned, 1 sigma.
+  double radius_share = 0.01;   ///< of the speed: tyres of different wear or pressure
+  double zero_mps = 0.015;      ///< of the yaw rate, times the track
+  double track_m = 0.1;         ///< of the track
+  double noise_mps = 0.06;      ///< of one sample
+  double memory_s = 60.0;       ///< older samples count less
+
+  /// What the mean of about the last 0.3 s may differ by from what was learned: a constant, a share
+  /// of the speed, and a time times the lateral acceleration, which moves load from tyre to tyre.
+  double change_mps = 0.05;
+  double change_share = 0.001;
+  double change_per_mps2_s = 0.005;
+  double mean_s = 0.3;
+  /// Besides, so many sigmas of what was learned.
+  double sigmas = 3.0;
+  /// A contradiction ends below this share of the limit.
+  double ends_below = 0.6;
+  /// Samples are learned this much later, and only if nothing contradicted until then, so that the
+  /// beginning of a fault is not learned.
+  Duration learned_after = std::chrono::seconds(1);
+
+  /// A difference that has changed for so long is learned from the beginning.
+  Duration settled_after = std::chrono::seconds(60);
+  /// A pause after which the mean begins again.
+  Duration gap = std::chrono::milliseconds(500);
+};
+
+/// Learns by recursive least squares how the wheels differ beyond what the yaw rate explains:
+/// radius error * speed + zero + track error * yaw rate. One thread; allocates in the constructor only.
+class WheelDifference {
+ public:
+  struct Sample {
+    Time time{};
+    double excess_mps = 0.0;  ///< right minus left wheel, minus yaw rate times track
+    double speed_mps = 0.0;
+    double yaw_rate_radps = 0.0;
+  };
+
+  explicit WheelDifference(const WheelDifferenceLimits& limits) : limits_(limits) {}
+
+  /// Whether the mean has left what was learned.
+  bool contradicts(const Sample& sample);
+
+ private:
+  void learn_late(const Sample& sample);
+  void learn(const Sample& sample);
+  void forget_all();
+  Eigen::Matrix3d information() const;
+
+  static constexpr size_t kMostWaiting = 128;
+
+  WheelDifferenceLimits limits_;
+  Eigen::Matrix3d normal_ = Eigen::Matrix3d::Zero();  ///< sums of the fit, with forgetting
+  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
+  boost::circular_buffer<Sample> waiting_{kMostWaiting};  ///< to be learned, oldest first
+  double mean_mps_ = 0.0;  ///< of the recent excess beyond the fit
+  std::optional<Time> latest_;
+  std::optional<Time> learned_until_;
+  std::optional<Time> contradicting_since_;
+};
+
+}  // namespace bevloc::can
