@@ -32,6 +32,7 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
   set_if(Why::kGnssContradicts, inputs.verdict.gnss_contradicts);
   set_if(Why::kOdometryContradicts, inputs.verdict.odometry_contradicts);
   set_if(Why::kMatchContradicts, inputs.verdict.match_contradicts);
+  set_if(Why::kMapFault, inputs.verdict.map_contradicts);
   set_if(Why::kOdometryImplausible, inputs.odometry_implausible);
   set_if(Why::kForeignSender, inputs.foreign_sender);
   set_if(Why::kClockGap, inputs.clock_gap);
@@ -51,7 +52,7 @@ bool Health::is_lost(const HealthInputs& inputs) const {
   const bool contradicted =
       inputs.verdict.odometry_contradicts ||
       (inputs.verdict.undecided && inputs.refused_in_a_row >= limits_.refusals_to_lose);
-  return contradicted || inputs.stamps_contradict || !inputs.initialized ||
+  return contradicted || inputs.verdict.map_contradicts || inputs.stamps_contradict || !inputs.initialized ||
          inputs.odometry_implausible || inputs.clock_gap || why_.has(Why::kPoseUncertain) ||
          why_.has(Why::kOdometryMissing) || inputs.correction_age > limits_.lost_timeout;
 }

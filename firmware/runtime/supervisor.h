@@ -27,7 +27,8 @@ struct ApplianceView {
   CameraMask dirty;
   CameraMask calibration_fault;
   bool network_fault = false;
-  int stamp_offset_ms = 0;  ///< as in EstimationCounters
+  int stamp_offset_ms = 0;  ///< as in EstimationCounters, as is the next
+  std::array<int, 2> map_offset_cm{};
 };
 
 /// Thread-bound: called from the supervising thread; heartbeat() is readable from any thread.

@@ -59,6 +59,7 @@ void EstimationStage::tick(Time now) {
   take_samples();
   take_reports(now);
   estimator_.judge(now, health_.pose_valid());
+  note_map_offset();
   const auto pose = estimator_.pose_at(now);
   if (pose) protection_ = estimator_.protection_of(*pose, protection_parameters_);
   update_health(pose, now);
@@ -109,6 +110,15 @@ void EstimationStage::take_samples() {
     if (!arrived) continue;
     std::optional<Time>& latest = is_odometry ? odometry_time_ : gnss_time_;
     latest = std::visit([](const auto& taken) { return taken.time; }, *sample);
+  }
+}
+
+void EstimationStage::note_map_offset() {
+  const MapOffsetMonitor& monitor = estimator_.map_offset();
+  for (int axis = 0; axis < 2; ++axis) {
+    const double offset_cm = 100.0 * monitor.offset_m()(axis);
+    counters_.map_offset_cm[axis] =
+        monitor.contradicts() ? static_cast<int>(std::lround(offset_cm)) : 0;
   }
 }
 

@@ -31,6 +31,8 @@ struct EstimationCounters {
   std::atomic<uint32_t> why{0};  ///< bits of a WhyMask
   /// Offset of the camera stamps against odometry; 0 while it is tolerated (StampMonitor).
   std::atomic<int> stamp_offset_ms{0};
+  /// GNSS minus map, east and north; 0 while they agree (MapOffsetMonitor).
+  std::array<std::atomic<int>, 2> map_offset_cm{};
   std::atomic<unsigned> cameras{0};  ///< cameras used in the latest frameset, a CameraMask
 };
 
@@ -70,6 +72,7 @@ class EstimationStage {
   void take_reports(Time now);
   void add_correction(const VisionReport& report);
   void compare_heading(const VisionReport& report);
+  void note_map_offset();
   void watch_clock(Time now);
   HealthInputs health_inputs(const std::optional<TrackedPose>& pose, Time now) const;
   void update_health(const std::optional<TrackedPose>& pose, Time now);

@@ -40,6 +40,7 @@ void ViewLog::note(const ApplianceView& view) {
       spdlog::info("cameras: their time stamps agree with odometry again");
     }
   }
+  note_map_offset(view.map_offset_cm);
   note_cameras(
       before_.calibration_fault, view.calibration_fault,
       "out of place, it is not where the calibration has it",
@@ -64,6 +65,19 @@ void ViewLog::note_drifts(const ApplianceView& view) {
     } else if (ppm == 0.0 && before_ppm != 0.0) {
       spdlog::info("camera {}: no drift any more", kCameraNames[camera]);
     }
+  }
+}
+
+void ViewLog::note_map_offset(const std::array<int, 2>& offset_cm) const {
+  constexpr std::array<int, 2> kNone{};
+  if ((offset_cm != kNone) == (before_.map_offset_cm != kNone)) return;
+  if (offset_cm != kNone) {
+    spdlog::error(
+        "map: it lies off GNSS by {:.1f} m to the east and {:.1f} m to the north all the time; "
+        "check the map's datum and origin and the place of the GNSS antenna",
+        -0.01 * offset_cm[0], -0.01 * offset_cm[1]);
+  } else {
+    spdlog::info("map: it agrees with GNSS again");
   }
 }
 

@@ -1,6 +1,8 @@
 // Logs changes of the appliance state while it runs.
 #pragma once
 
+#include <array>
+
 #include <string_view>
 
 #include "firmware/runtime/supervisor.h"
@@ -15,6 +17,7 @@ class ViewLog {
 
  private:
   void note_drifts(const ApplianceView& view);
+  void note_map_offset(const std::array<int, 2>& offset_cm) const;
   static void note_cameras(CameraMask before, CameraMask now, std::string_view what,
                            std::string_view advice);
 

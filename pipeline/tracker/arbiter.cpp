@@ -34,8 +34,7 @@ constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
 /// Larger innovations count as this many standard deviations, so that one outlier is no drift.
 constexpr double kMaxDriftStep = 3.0;
-/// Correlation time of GNSS errors, and the limit for their change: 5 standard deviations.
-constexpr double kGnssCorrelation_s = 40.0;
+/// Limit for the change of GNSS errors, in standard deviations.
 constexpr double kGnssMoveLimit = 5.0;
 /// Errors of odometry that OdometryMonitor does not find: of speed and yaw rate at once, and
 /// growing.
@@ -145,7 +144,7 @@ void Arbiter::note_gnss_error(Time time, const Eigen::Vector3d& gnss_error) {
   for (size_t age = 1; age <= known; ++age) {
     const Eigen::Vector3d& before = gnss_errors_[(gnss_error_count_ - age) % kGnssErrors];
     const double expected =
-        std::sqrt(2.0 * (1.0 - std::exp(-static_cast<double>(age) / kGnssCorrelation_s)));
+        std::sqrt(2.0 * (1.0 - std::exp(-static_cast<double>(age) / gnss_correlation_s_)));
     const double change = (gnss_error - before).cwiseAbs().maxCoeff();
     gnss_moved_ = gnss_moved_ || change > kGnssMoveLimit * expected + 0.3;
   }

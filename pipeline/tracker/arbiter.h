@@ -13,12 +13,13 @@
 
 namespace bevloc {
 
-/// The arbiter's judgement. At most one of the first three is set.
+/// The judgement of the voters. At most one of the first three is set.
 struct Verdict {
   bool match_contradicts = false;     ///< GNSS and dead reckoning agree, the match does not
   bool gnss_contradicts = false;      ///< match and dead reckoning agree, GNSS does not
   bool odometry_contradicts = false;  ///< match and GNSS agree, dead reckoning does not
   bool undecided = false;             ///< two voters disagree, and the third does not decide
+  bool map_contradicts = false;       ///< the map lies beside GNSS for good (MapOffsetMonitor)
 };
 
 /// How far the pose is trusted.
@@ -36,6 +37,9 @@ enum class PoseStanding : uint8_t {
 /// Allocates nothing. One thread.
 class Arbiter {
  public:
+  /// `gnss_correlation_s`: time constant of GNSS errors.
+  explicit Arbiter(double gnss_correlation_s) : gnss_correlation_s_(gnss_correlation_s) {}
+
   /// Adds a match that reached the gate; `time` is its frame time.
   void add_match(Time time, const PoseInnovation& innovation, bool passes_gate);
   /// Adds a GNSS sample that reached the gate. `gnss_error`: Tracker::gnss_error(), or nothing
@@ -61,7 +65,7 @@ class Arbiter {
   std::optional<Eigen::Vector3d> open_dispute() const;
 
   /// Forgets everything, after the filter has started again.
-  void reset() { *this = Arbiter(); }
+  void reset() { *this = Arbiter(gnss_correlation_s_); }
 
  private:
   /// The record of one voter.
@@ -105,6 +109,7 @@ class Arbiter {
   static constexpr size_t kGnssRecords = 8;
   static constexpr size_t kGnssErrors = 20;
 
+  double gnss_correlation_s_;
   Voter match_;
   Voter gnss_;
   Time dispute_since_;

@@ -48,7 +48,21 @@ TrackerUpdate PoseEstimator::add_gnss(const GnssSample& sample) {
   if (pose_valid_) error = tracker_.gnss_error();
   arbiter_.add_gnss(sample.time, tracker_.latest_innovation(), passes, error);
   gnss_refused_in_a_row_ = passes ? 0 : gnss_refused_in_a_row_ + 1;
+  if (passes && trusted) compare_map(sample);
   return update;
+}
+
+/// Only a pose that matches hold lies where the map does.
+void PoseEstimator::compare_map(const GnssSample& sample) {
+  const bool matched = match_passed_ && sample.time - *match_passed_ <= kMatchAbsence;
+  if (!matched || !(pose_valid_ || map_offset_.contradicts())) return;
+  const auto pose = tracker_.pose_at(sample.time);
+  if (!pose) return;
+  const GnssPose gnss = gnss_pose(sample);
+  map_offset_.add(
+      sample.time,
+      gnss.map_from_vehicle.translation() - pose->map_from_vehicle.translation(),
+      gnss.position_sigma_m);
 }
 
 PoseEstimator::MatchOutcome PoseEstimator::add_match(Time frame_time, const Se2& prior,
@@ -81,6 +95,7 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   const bool odometry_was_wrong = verdict_.odometry_contradicts;
   const PoseStanding lost_or_new = trusted_ ? PoseStanding::kLost : PoseStanding::kNew;
   verdict_ = arbiter_.judge(now, pose_valid ? PoseStanding::kValid : lost_or_new);
+  verdict_.map_contradicts = map_offset_.contradicts();
   if (verdict_.odometry_contradicts && !odometry_was_wrong) tracker_.widen();
   if (arbiter_.match_drifts()) {
     tracker_.loosen_odometry();
@@ -144,6 +159,7 @@ void PoseEstimator::reset() {
   restart();
   tracker_.reset();
   odometry_monitor_.reset();
+  map_offset_ = MapOffsetMonitor(tracker_.parameters().correlation.gnss_s);
 }
 
 }  // namespace bevloc

@@ -9,6 +9,7 @@
 #include "common/vehicle_samples.h"
 #include "pipeline/tracker/arbiter.h"
 #include "pipeline/tracker/evidence.h"
+#include "pipeline/tracker/map_offset_monitor.h"
 #include "pipeline/tracker/odometry_monitor.h"
 #include "pipeline/tracker/protection_level.h"
 #include "pipeline/tracker/tracker.h"
@@ -19,7 +20,10 @@ namespace bevloc {
 /// again where nothing can be trusted. Allocates in the constructor only. One thread.
 class PoseEstimator {
  public:
-  explicit PoseEstimator(const TrackerParameters& parameters) : tracker_(parameters) {}
+  explicit PoseEstimator(const TrackerParameters& parameters)
+      : tracker_(parameters),
+        arbiter_(parameters.correlation.gnss_s),
+        map_offset_(parameters.correlation.gnss_s) {}
 
   /// Adds a sample of the vehicle. A sample of an excluded voter changes nothing.
   TrackerUpdate add(const VehicleSample& sample);
@@ -42,6 +46,7 @@ class PoseEstimator {
   std::optional<TrackedPose> pose_at(Time time) const;
 
   const Verdict& verdict() const { return verdict_; }
+  const MapOffsetMonitor& map_offset() const { return map_offset_; }
   bool odometry_implausible() const { return odometry_monitor_.implausible(); }
 
   /// Whether GNSS is near enough for a first trust in the pose.
@@ -63,9 +68,11 @@ class PoseEstimator {
  private:
   TrackerUpdate add_gnss(const GnssSample& sample);
   bool gnss_refutes() const;
+  void compare_map(const GnssSample& sample);
 
   Tracker tracker_;
   Arbiter arbiter_;
+  MapOffsetMonitor map_offset_;
   OdometryMonitor odometry_monitor_;
   EvidenceMonitor evidence_;
   Verdict verdict_;

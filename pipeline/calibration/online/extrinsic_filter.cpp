@@ -14,8 +14,8 @@ constexpr double kNoise = 200.0;
 /// shift. The information is multiplied by this, so that one step goes nearly the whole way.
 constexpr double kResponse = 0.4;
 
-/// Of one comparison with the direction of motion, 20 m long, one sigma.
-constexpr double kHeadingNoise_rad = radians(0.6);
+/// Of one comparison with the direction of motion, one sigma.
+constexpr double kHeadingNoise_rad = radians(0.3);
 
 constexpr double kSecondsPerHour = 3600.0;
 
@@ -67,10 +67,10 @@ void ExtrinsicFilter::update(const ExtrinsicInformation& match, const ExtrinsicE
   errors_ += covariance_ * slope;
 }
 
-void ExtrinsicFilter::update_heading(double turn_rad, const ExtrinsicErrors& used) {
+void ExtrinsicFilter::update_heading(double turn_rad) {
   const ExtrinsicErrors gain = covariance_ * heading_;
   const double variance = heading_.dot(gain) + kHeadingNoise_rad * kHeadingNoise_rad;
-  errors_ += gain * ((turn_rad - heading_.dot(errors_ - used)) / variance);
+  errors_ += gain * ((turn_rad - turn_by(errors_)) / variance);
   covariance_ -= gain * gain.transpose() / variance;
 }
 

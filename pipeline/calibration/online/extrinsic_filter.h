@@ -30,10 +30,13 @@ class ExtrinsicFilter {
   /// since the previous update.
   void update(const ExtrinsicInformation& match, const ExtrinsicErrors& used, double driven_s);
 
-  /// The matched heading is turned against the direction of motion by `turn_rad`, in a match with
-  /// the errors `used`: what the cameras have in common about the vertical axis, of which a match
-  /// alone knows nothing.
-  void update_heading(double turn_rad, const ExtrinsicErrors& used);
+  /// A heading that is matched without correcting errors is turned against the direction of motion
+  /// by `turn_rad`: what the cameras have in common about the vertical axis, of which a match alone
+  /// knows nothing.
+  void update_heading(double turn_rad);
+
+  /// By how much these errors turn the matched heading.
+  double turn_by(const ExtrinsicErrors& errors) const { return heading_.dot(errors); }
 
   const ExtrinsicErrors& errors() const { return errors_; }
   const ExtrinsicCovariance& covariance() const { return covariance_; }

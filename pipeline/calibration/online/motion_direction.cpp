@@ -4,23 +4,24 @@
 
 namespace bevloc {
 
-std::optional<double> MotionDirection::add(const Se2& map_from_vehicle,
+std::optional<double> MotionDirection::add(const std::optional<Se2>& map_from_vehicle,
                                            const std::optional<Se2>& motion) {
-  if (samples_.empty() || !motion || samples_.full()) {
-    begin(map_from_vehicle);
-    return std::nullopt;
+  if (!motion || samples_.full()) begin();
+  if (motion) {
+    driven_ = driven_ * *motion;
+    length_m_ += motion->translation().norm();
   }
-  samples_.push_back({map_from_vehicle, samples_.back().driven * *motion});
-  length_m_ += motion->translation().norm();
+  if (map_from_vehicle) samples_.push_back({*map_from_vehicle, driven_});
   if (length_m_ < kStretch_m) return std::nullopt;
-  const double result_rad = turn();
-  begin(map_from_vehicle);
+  std::optional<double> result_rad;
+  if (samples_.size() >= kLeastPoses) result_rad = turn();
+  begin();
   return result_rad;
 }
 
-void MotionDirection::begin(const Se2& map_from_vehicle) {
+void MotionDirection::begin() {
   samples_.clear();
-  samples_.push_back({map_from_vehicle, Se2()});
+  driven_ = Se2();
   length_m_ = 0.0;
 }
 

@@ -17,27 +17,32 @@ namespace bevloc {
 /// One thread; allocates in the constructor only.
 class MotionDirection {
  public:
-  /// Length of a stretch of road that gives one comparison.
-  static constexpr double kStretch_m = 20.0;
+  /// Length of a stretch of road that gives one comparison. Twice the length gives a quarter of the
+  /// variance.
+  static constexpr double kStretch_m = 60.0;
 
-  /// `map_from_vehicle`: the matched pose. `motion`: the vehicle's motion since the previous call,
-  /// from odometry; nothing if it is not known, which begins a new stretch. Returns, at the end of
-  /// a stretch, by how much the matched heading is turned against the direction of motion,
-  /// counter-clockwise.
-  std::optional<double> add(const Se2& map_from_vehicle, const std::optional<Se2>& motion);
+  /// `map_from_vehicle`: the matched pose, if it is clear. `motion`: the vehicle's motion since the
+  /// previous call, from odometry; nothing if it is not known, which begins a new stretch. Returns,
+  /// at the end of a stretch, by how much the matched heading is turned against the direction of
+  /// motion, counter-clockwise.
+  std::optional<double> add(const std::optional<Se2>& map_from_vehicle,
+                            const std::optional<Se2>& motion);
 
  private:
-  static constexpr size_t kMostPoses = 256;
+  static constexpr size_t kMostPoses = 512;
+  /// A stretch with fewer clear matches says nothing.
+  static constexpr size_t kLeastPoses = 20;
 
   struct Sample {
     Se2 matched;
     Se2 driven;  ///< from odometry, since the beginning of the stretch
   };
 
-  void begin(const Se2& map_from_vehicle);
+  void begin();
   double turn() const;
 
   boost::circular_buffer<Sample> samples_{kMostPoses};
+  Se2 driven_;  ///< since the beginning of the stretch
   double length_m_ = 0.0;
 };
 

@@ -65,11 +65,7 @@ bool OnlineCalibration::observe(const CalibrationObservation& observation) {
     return false;
   }
   const bool learns = observation.tracking && is_clear(observation);
-  // A stretch that began with other extrinsics is not mixed with these.
-  const auto turn_rad = direction_.add(
-      observation.map_from_vehicle, learns && !used_changed_ ? observation.motion : std::nullopt);
-  used_changed_ = false;
-  if (turn_rad) filter_.update_heading(*turn_rad, used_);
+  learn_heading(observation, learns);
   if (observed_ && observation.time - *observed_ < kPeriod) return false;
   const double step_s =
       observed_ ? std::min(to_seconds(observation.time - *observed_), kLongestStep_s) : 0.0;
@@ -89,6 +85,16 @@ bool OnlineCalibration::observe(const CalibrationObservation& observation) {
   filter_.update(information_, used_, step_s);
   judge_bounds();
   return follow_estimate();
+}
+
+void OnlineCalibration::learn_heading(const CalibrationObservation& observation, bool is_clear) {
+  std::optional<Se2> matched;
+  if (is_clear) {
+    matched = observation.map_from_vehicle;
+    matched->yaw_rad += filter_.turn_by(used_);  // as it would be without the used errors
+  }
+  const auto turn_rad = direction_.add(matched, observation.motion);
+  if (turn_rad) filter_.update_heading(*turn_rad);
 }
 
 bool OnlineCalibration::is_clear(const CalibrationObservation& observation) const {
@@ -137,7 +143,6 @@ bool OnlineCalibration::follow_estimate() {
   }
   if (!moved) return false;
   used_ = wanted;
-  used_changed_ = true;
   return true;
 }
 

@@ -65,6 +65,7 @@ class OnlineCalibration {
   CameraMask contradicting() const { return contradicting_; }
 
  private:
+  void learn_heading(const CalibrationObservation& observation, bool is_clear);
   bool is_clear(const CalibrationObservation& observation) const;
   void judge_agreement(const std::array<SeenByCamera, kCameraCount>& seen);
   void judge_bounds();
@@ -77,7 +78,6 @@ class OnlineCalibration {
   MotionDirection direction_;
   ExtrinsicInformation information_;
   ExtrinsicErrors used_ = ExtrinsicErrors::Zero();
-  bool used_changed_ = false;     ///< since the previous observation
   std::optional<Time> observed_;  ///< the time of the latest observation that was computed
   std::array<SeenByCamera, kCameraCount> seen_{};  ///< sums that fade over some seconds of driving
   double seen_s_ = 0.0;                            ///< driving time in them

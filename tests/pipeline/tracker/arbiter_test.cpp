@@ -37,7 +37,7 @@ class ArbiterTest : public testing::Test {
   }
 
   const Eigen::Vector3d none_ = Eigen::Vector3d::Zero();
-  Arbiter arbiter_;
+  Arbiter arbiter_{40.0};
   Time now_{std::chrono::seconds(100)};
 };
 
