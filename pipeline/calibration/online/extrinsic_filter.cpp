@@ -10,13 +10,6 @@ namespace {
 /// frameset to frameset, so it counts much less than its sums say; found on drives of the
 /// development seeds, so that the errors of the estimates agree with their sigmas.
 constexpr double kNoise = 200.0;
-/// A network that was trained with calibration errors answers them with less than their full
-/// shift. The information is multiplied by this, so that one step goes nearly the whole way.
-constexpr double kResponse = 0.4;
-
-/// Of one comparison with the direction of motion, one sigma.
-constexpr double kHeadingNoise_rad = radians(0.3);
-
 constexpr double kSecondsPerHour = 3600.0;
 
 }  // namespace
@@ -34,7 +27,7 @@ ExtrinsicFilter::ExtrinsicFilter(const Rig& rig, const ExtrinsicModel& model) : 
         rig.cameras[camera].vehicle_from_camera.rotation.row(2).transpose() / kCameraCount;
     body.middleRows<3>(first) = rig.cameras[camera].vehicle_from_camera.rotation.transpose();
   }
-  covariance_ += model.body_rotation_rad * model.body_rotation_rad * body * body.transpose();
+  covariance_ += body * model.body_rotation_rad.cwiseAbs2().asDiagonal() * body.transpose();
 }
 
 bool ExtrinsicFilter::restore(const ExtrinsicErrors& errors,
@@ -58,7 +51,7 @@ void ExtrinsicFilter::update(const ExtrinsicInformation& match, const ExtrinsicE
         hours * model_.translation_per_sqrt_hour_m * model_.translation_per_sqrt_hour_m;
   }
   // P' = (P^-1 + A)^-1 = (I + P A)^-1 P, e' = e + P' (slope - A (e - used)).
-  const ExtrinsicCovariance information = (kResponse / kNoise) * match.information;
+  const ExtrinsicCovariance information = match.information / kNoise;
   ExtrinsicCovariance growth = covariance_ * information;
   growth.diagonal().array() += 1.0;
   const ExtrinsicCovariance posterior = growth.partialPivLu().solve(covariance_);
@@ -67,10 +60,10 @@ void ExtrinsicFilter::update(const ExtrinsicInformation& match, const ExtrinsicE
   errors_ += covariance_ * slope;
 }
 
-void ExtrinsicFilter::update_heading(double turn_rad) {
+void ExtrinsicFilter::update_heading(const HeadingTurn& turn) {
   const ExtrinsicErrors gain = covariance_ * heading_;
-  const double variance = heading_.dot(gain) + kHeadingNoise_rad * kHeadingNoise_rad;
-  errors_ += gain * ((turn_rad - turn_by(errors_)) / variance);
+  const double variance = heading_.dot(gain) + turn.variance;
+  errors_ += gain * ((turn.turn_rad - turn_by(errors_)) / variance);
   covariance_ -= gain * gain.transpose() / variance;
 }
 

@@ -2,14 +2,16 @@
 #pragma once
 
 #include "pipeline/calibration/online/extrinsic_sums.h"
+#include "pipeline/calibration/online/motion_direction.h"
 
 namespace bevloc {
 
 /// How large errors are and how fast they change, one sigma.
 struct ExtrinsicModel {
-  double rotation_rad = radians(0.3);       ///< of one camera, about each of its axes
-  double translation_m = 0.02;              ///< of one camera, along each of the vehicle's axes
-  double body_rotation_rad = radians(0.3);  ///< of all cameras together: the body's load
+  double rotation_rad = radians(0.3);  ///< of one camera, about each of its axes
+  double translation_m = 0.02;         ///< of one camera, along each of the vehicle's axes
+  /// Of all cameras together, about the vehicle's axes: the load turns the body about x and y.
+  Eigen::Vector3d body_rotation_rad{radians(0.2), radians(0.2), radians(0.1)};
   /// Growth after one hour of driving, of each angle and of each length.
   double rotation_per_sqrt_hour_rad = radians(0.2);
   double translation_per_sqrt_hour_m = 0.005;
@@ -31,9 +33,9 @@ class ExtrinsicFilter {
   void update(const ExtrinsicInformation& match, const ExtrinsicErrors& used, double driven_s);
 
   /// A heading that is matched without correcting errors is turned against the direction of motion
-  /// by `turn_rad`: what the cameras have in common about the vertical axis, of which a match alone
+  /// by `turn`: what the cameras have in common about the vertical axis, of which a match alone
   /// knows nothing.
-  void update_heading(double turn_rad);
+  void update_heading(const HeadingTurn& turn);
 
   /// By how much these errors turn the matched heading.
   double turn_by(const ExtrinsicErrors& errors) const { return heading_.dot(errors); }

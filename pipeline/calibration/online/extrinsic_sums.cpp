@@ -23,6 +23,13 @@ constexpr double kLeastShare = 0.99;
 /// width of a line in the features. Beyond, both sides no longer overlap, so the slope says
 /// nothing.
 constexpr double kReach_m = 16.0;
+/// The same for what lies across the ray of sight. Only yaw and roll of the camera move it, 0.3
+/// degrees at 40 m by 0.2 m.
+constexpr double kReachAcross_m = 40.0;
+/// A network that was trained with calibration errors answers them with less than their full shift:
+/// with these shares, along and across the ray of sight.
+constexpr double kResponseAlong = 0.4;
+constexpr double kResponseAcross = 0.9;
 /// Least ratio of perceived to mapped features; below, there is nothing to learn from.
 constexpr double kLeastStrength = 0.05;
 
@@ -93,10 +100,31 @@ std::array<double, kCameraCount> shares_of(const ViewTable& view, const BevGrid&
   return shares;
 }
 
-/// How much a point of the ground counts for a camera.
-double weight_of(const Se3& vehicle_from_camera, const Eigen::Vector2d& point) {
-  const double distance_m = (point - vehicle_from_camera.translation_m.head<2>()).norm();
-  return std::max(0.0, 1.0 - distance_m * distance_m / (kReach_m * kReach_m));
+/// How a point of the ground counts for a camera: symmetric matrices whose axes lie along and
+/// across the ray of sight.
+struct PointWeight {
+  Eigen::Matrix2d root;           ///< square root of the weights
+  Eigen::Matrix2d response_root;  ///< square root of the network's response
+};
+
+PointWeight weight_of(const Se3& vehicle_from_camera, const Eigen::Vector2d& point) {
+  const Eigen::Vector2d ray = point - vehicle_from_camera.translation_m.head<2>();
+  const double distance_m = ray.norm();
+  const auto root = [distance_m](double reach_m) {
+    return std::sqrt(std::max(0.0, 1.0 - distance_m * distance_m / (reach_m * reach_m)));
+  };
+  const Eigen::Vector2d ahead = ray / std::max(distance_m, 1e-6);
+  const auto with_axes = [&ahead](double along, double across) -> Eigen::Matrix2d {
+    return across * Eigen::Matrix2d::Identity() + (along - across) * ahead * ahead.transpose();
+  };
+  return {with_axes(root(kReach_m), root(kReachAcross_m)),
+          with_axes(std::sqrt(kResponseAlong), std::sqrt(kResponseAcross))};
+}
+
+/// The weight of a point for the agreement of the camera with the map.
+double near_weight_of(const Se3& vehicle_from_camera, const Eigen::Vector2d& point) {
+  const Eigen::Vector2d ray = point - vehicle_from_camera.translation_m.head<2>();
+  return std::max(0.0, 1.0 - ray.squaredNorm() / (kReach_m * kReach_m));
 }
 
 }  // namespace
@@ -137,7 +165,7 @@ void ExtrinsicSums::compute(const MatchedCells& match, ExtrinsicInformation& res
 void ExtrinsicSums::add_block(const MatchedCells& match, int first_row, int first_col,
                               std::array<SeenByCamera, kCameraCount>& seen) {
   const BlockView view = view_block(match, first_row, first_col);
-  if (view.weight <= 0.0) return;
+  if (view.cameras == 0) return;
   const std::ptrdiff_t moved_row = static_cast<std::ptrdiff_t>(grid_.cols) * lanes_;
   const BlockSums sums =
       sum_block({.map = match.map.cell(first_row, first_col),
@@ -146,7 +174,7 @@ void ExtrinsicSums::add_block(const MatchedCells& match, int first_row, int firs
                  .moved_row_stride = moved_row,
                  .lanes = lanes_});
   for (int part = 0; part < view.cameras; ++part) {
-    const double weight = view.weight * view.shares[part];
+    const double weight = view.near_weight * view.shares[part];
     SeenByCamera& sum = seen[view.seen_by[part]];
     sum.product += weight * sums.product;
     sum.map_square += weight * sums.map_square;
@@ -156,9 +184,10 @@ void ExtrinsicSums::add_block(const MatchedCells& match, int first_row, int firs
   const double per_m = 1.0 / (2.0 * grid_.cell_m);
   Eigen::Matrix2d curvature;
   curvature << sums.xx, sums.xy, sums.xy, sums.yy;
-  curvature *= view.weight * per_m * per_m;
-  add_equations(view, curvature,
-                0.5 * view.weight * per_m * Eigen::Vector2d(sums.slope_x, sums.slope_y));
+  const Eigen::Matrix2d root = per_m * view.response_root * view.weight_root;
+  add_equations(view, root * curvature * root.transpose(),
+                0.5 * per_m * view.weight_root * view.weight_root *
+                    Eigen::Vector2d(sums.slope_x, sums.slope_y));
 }
 
 ExtrinsicSums::BlockView ExtrinsicSums::view_block(const MatchedCells& match, int first_row,
@@ -186,7 +215,10 @@ ExtrinsicSums::BlockView ExtrinsicSums::view_block(const MatchedCells& match, in
         shares[camera] * turn * ground_shift(extrinsics, point.x(), point.y());
     view.shares[view.cameras] = shares[camera];
     view.seen_by[view.cameras++] = camera;
-    view.weight += shares[camera] * weight_of(extrinsics, point);
+    const PointWeight weight = weight_of(extrinsics, point);
+    view.weight_root += shares[camera] * turn * weight.root * turn.transpose();
+    view.response_root += shares[camera] * turn * weight.response_root * turn.transpose();
+    view.near_weight += shares[camera] * near_weight_of(extrinsics, point);
   }
   return view;
 }

@@ -70,7 +70,11 @@ class ExtrinsicSums {
     std::array<int, kMostCameras> seen_by{};
     std::array<double, kMostCameras> shares{};
     int cameras = 0;
-    double weight = 0.0;  ///< 0: the block does not count
+    /// Square root of the weights along and across the rays of sight, in the frame of the prior.
+    Eigen::Matrix2d weight_root = Eigen::Matrix2d::Zero();
+    /// Square root of the network's response to errors, along the same axes.
+    Eigen::Matrix2d response_root = Eigen::Matrix2d::Zero();
+    double near_weight = 0.0;  ///< of the agreement with the map
   };
 
   BlockView view_block(const MatchedCells& match, int first_row, int first_col) const;

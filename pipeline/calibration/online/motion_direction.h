@@ -9,6 +9,12 @@
 
 namespace bevloc {
 
+/// The matched heading against the direction of motion.
+struct HeadingTurn {
+  double turn_rad = 0.0;  ///< counter-clockwise
+  double variance = 0.0;  ///< rad^2
+};
+
 /// The rear axle moves where the vehicle points. If all cameras are turned together, the matched
 /// heading is turned with them, while the matched positions still lie on the path. Over some metres
 /// the positions show the direction of motion: the path that odometry measured is laid over the
@@ -17,16 +23,14 @@ namespace bevloc {
 /// One thread; allocates in the constructor only.
 class MotionDirection {
  public:
-  /// Length of a stretch of road that gives one comparison. Twice the length gives a quarter of the
-  /// variance.
+  /// Length of a stretch of road that gives one comparison.
   static constexpr double kStretch_m = 60.0;
 
   /// `map_from_vehicle`: the matched pose, if it is clear. `motion`: the vehicle's motion since the
-  /// previous call, from odometry; nothing if it is not known, which begins a new stretch. Returns,
-  /// at the end of a stretch, by how much the matched heading is turned against the direction of
-  /// motion, counter-clockwise.
-  std::optional<double> add(const std::optional<Se2>& map_from_vehicle,
-                            const std::optional<Se2>& motion);
+  /// previous call, from odometry; nothing if it is not known, which begins a new stretch. Returns
+  /// a comparison at the end of a stretch.
+  std::optional<HeadingTurn> add(const std::optional<Se2>& map_from_vehicle,
+                                 const std::optional<Se2>& motion);
 
  private:
   static constexpr size_t kMostPoses = 512;
@@ -39,7 +43,7 @@ class MotionDirection {
   };
 
   void begin();
-  double turn() const;
+  HeadingTurn turn() const;
 
   boost::circular_buffer<Sample> samples_{kMostPoses};
   Se2 driven_;  ///< since the beginning of the stretch

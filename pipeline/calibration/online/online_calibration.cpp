@@ -93,8 +93,8 @@ void OnlineCalibration::learn_heading(const CalibrationObservation& observation,
     matched = observation.map_from_vehicle;
     matched->yaw_rad += filter_.turn_by(used_);  // as it would be without the used errors
   }
-  const auto turn_rad = direction_.add(matched, observation.motion);
-  if (turn_rad) filter_.update_heading(*turn_rad);
+  const auto turn = direction_.add(matched, observation.motion);
+  if (turn) filter_.update_heading(*turn);
 }
 
 bool OnlineCalibration::is_clear(const CalibrationObservation& observation) const {

@@ -60,7 +60,10 @@ TEST_F(VehicleFaults, WithoutAFaultNothingChanges) {
   const WheelReading wheels = healthy(300);
   const OdometryReading sensed = odometry_.reading(300);
   EXPECT_NEAR(speed(wheels), sensed.speed_mps, 1e-12);
-  EXPECT_NEAR(wheels.right_mps - wheels.left_mps, kTrack_m * sensed.yaw_rate_radps, 1e-12);
+  EXPECT_EQ(wheels.yaw_rate_radps, sensed.yaw_rate_radps);
+  EXPECT_NEAR(wheels.right_mps - wheels.left_mps,
+              kTrack_m * sensed.path_yaw_rate_radps + sensed.wheel_excess_mps, 1e-12)
+      << "the wheels follow the path, not the measured yaw rate";
 }
 
 TEST_F(VehicleFaults, GnssJumpsInDirectionsOfTheMapAndOfTheVehicle) {

@@ -20,7 +20,7 @@ std::vector<double> drive(double turn_rad, double bias_radps, int gap = 1000) {
     std::optional<Se2> motion = measured_half * measured_half;
     if (i % gap == 0) motion.reset();
     const Se2 matched{truth.x_m, truth.y_m, wrap_angle(truth.yaw_rad + turn_rad)};
-    if (const auto turn = direction.add(matched, motion)) turns.push_back(*turn);
+    if (const auto turn = direction.add(matched, motion)) turns.push_back(turn->turn_rad);
   }
   return turns;
 }
