@@ -20,6 +20,11 @@ constexpr double kLargestYawSigma_rad = radians(0.6);
 /// The used errors follow the estimate when it has moved by more than this.
 constexpr double kStep_rad = radians(0.03);
 constexpr double kStep_m = 0.005;
+/// They follow no faster than this per second of learning. A street that contradicts the map for
+/// some seconds (grass on the kerb, wrong time stamps) would otherwise bend the calibration at
+/// once.
+constexpr double kFastest_radps = radians(0.005);
+constexpr double kFastest_mps = 0.0004;
 
 /// An error is beyond its bound for certain if it is by this many sigmas.
 constexpr double kCertainSigmas = 0.5;
@@ -51,7 +56,7 @@ bool OnlineCalibration::restore(const ExtrinsicErrors& errors,
     if (!(std::abs(errors(error)) <= limit_of(error))) return false;
   }
   if (!filter_.restore(errors, covariance)) return false;
-  follow_estimate();
+  used_ = filter_.errors();
   return true;
 }
 
@@ -84,6 +89,7 @@ bool OnlineCalibration::observe(const CalibrationObservation& observation) {
   if (!learns || contradicting_.any()) return false;
   filter_.update(information_, used_, step_s);
   judge_bounds();
+  unfollowed_s_ += step_s;
   return follow_estimate();
 }
 
@@ -138,11 +144,14 @@ bool OnlineCalibration::follow_estimate() {
   bool moved = false;
   for (int error = 0; error < kExtrinsicErrors; ++error) {
     const bool is_rotation = error % kErrorsPerCamera < 3;
+    const double reach = unfollowed_s_ * (is_rotation ? kFastest_radps : kFastest_mps);
     wanted(error) = std::clamp(wanted(error), -limit_of(error), limit_of(error));
+    wanted(error) = std::clamp(wanted(error), used_(error) - reach, used_(error) + reach);
     moved |= std::abs(wanted(error) - used_(error)) > (is_rotation ? kStep_rad : kStep_m);
   }
   if (!moved) return false;
   used_ = wanted;
+  unfollowed_s_ = 0.0;
   return true;
 }
 

@@ -78,6 +78,7 @@ class OnlineCalibration {
   MotionDirection direction_;
   ExtrinsicInformation information_;
   ExtrinsicErrors used_ = ExtrinsicErrors::Zero();
+  double unfollowed_s_ = 0.0;     ///< learning time since used_ has changed
   std::optional<Time> observed_;  ///< the time of the latest observation that was computed
   std::array<SeenByCamera, kCameraCount> seen_{};  ///< sums that fade over some seconds of driving
   double seen_s_ = 0.0;                            ///< driving time in them

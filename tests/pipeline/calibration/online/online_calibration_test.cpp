@@ -53,9 +53,16 @@ const ExtrinsicErrors kSmallError = error_of(1, 0, radians(0.3));
 
 TEST(OnlineCalibration, UsesWhatItLearned) {
   Driver driver;
-  driver.drive(kSmallError, 160);
+  driver.drive(kSmallError, 900);
   EXPECT_NEAR(degrees(driver.calibration().used_errors()(kErrorsPerCamera)), 0.3, 0.1);
   EXPECT_TRUE(driver.calibration().faults().none());
+}
+
+TEST(OnlineCalibration, FollowsWhatItLearnedSlowly) {
+  Driver driver;
+  driver.drive(kSmallError, 200);
+  EXPECT_GT(degrees(driver.calibration().filter().errors()(kErrorsPerCamera)), 0.2);
+  EXPECT_LE(degrees(driver.calibration().used_errors()(kErrorsPerCamera)), 0.1) << "in 20 s";
 }
 
 TEST(OnlineCalibration, LearnsOnlyFromClearMatchesWhileItDrivesAndTracks) {
