@@ -10,16 +10,16 @@
 
 namespace bevloc::can {
 
-/// Limits of WheelDifference. The wheels of a real vehicle differ by more than yaw rate times track,
-/// because radii, track and the zero of the yaw rate are not exactly known. These errors are
+/// Limits of WheelDifference. The wheels of a real vehicle differ by more than yaw rate times
+/// track, because radii, track and the zero of the yaw rate are not exactly known. These errors are
 /// constant for minutes, so they are learned; what changes within a second is a fault.
 struct WheelDifferenceLimits {
   // Errors before anything was learned, 1 sigma.
-  double radius_share = 0.01;   ///< of the speed: tyres of different wear or pressure
-  double zero_mps = 0.015;      ///< of the yaw rate, times the track
-  double track_m = 0.1;         ///< of the track
-  double noise_mps = 0.06;      ///< of one sample
-  double memory_s = 60.0;       ///< older samples count less
+  double radius_share = 0.01;  ///< of the speed: tyres of different wear or pressure
+  double zero_mps = 0.015;     ///< of the yaw rate, times the track
+  double track_m = 0.1;        ///< of the track
+  double noise_mps = 0.06;     ///< of one sample
+  double memory_s = 60.0;      ///< older samples count less
 
   /// What the mean of about the last 0.3 s may differ by from what was learned: a constant, a share
   /// of the speed, and a time times the lateral acceleration, which moves load from tyre to tyre.
@@ -42,7 +42,8 @@ struct WheelDifferenceLimits {
 };
 
 /// Learns by recursive least squares how the wheels differ beyond what the yaw rate explains:
-/// radius error * speed + zero + track error * yaw rate. One thread; allocates in the constructor only.
+/// radius error * speed + zero + track error * yaw rate. One thread; allocates in the constructor
+/// only.
 class WheelDifference {
  public:
   struct Sample {
@@ -69,7 +70,7 @@ class WheelDifference {
   Eigen::Matrix3d normal_ = Eigen::Matrix3d::Zero();  ///< sums of the fit, with forgetting
   Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
   boost::circular_buffer<Sample> waiting_{kMostWaiting};  ///< to be learned, oldest first
-  double mean_mps_ = 0.0;  ///< of the recent excess beyond the fit
+  double mean_mps_ = 0.0;                                 ///< of the recent excess beyond the fit
   std::optional<Time> latest_;
   std::optional<Time> learned_until_;
   std::optional<Time> contradicting_since_;

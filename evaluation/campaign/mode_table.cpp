@@ -208,9 +208,12 @@ std::vector<Mode> map_modes() {
     const double part_m = distance_m * std::numbers::sqrt2 / 2.0;
     return fault(FaultKind::kMapShifted, {.east_m = part_m, .north_m = part_m});
   };
-  modes.add("map-shifted-0.5m", "the map lies 0.5 m off", kAlways, shifted(0.5), contradicts | Why::kMapFault);
-  modes.add("map-shifted-1m", "the map lies 1 m off", kAlways, shifted(1.0), contradicts | Why::kMapFault);
-  modes.add("map-shifted-3m", "the map lies 3 m off", kAlways, shifted(3.0), contradicts | Why::kMapFault);
+  modes.add("map-shifted-0.5m", "the map lies 0.5 m off", kAlways, shifted(0.5),
+            contradicts | Why::kMapFault);
+  modes.add("map-shifted-1m", "the map lies 1 m off", kAlways, shifted(1.0),
+            contradicts | Why::kMapFault);
+  modes.add("map-shifted-3m", "the map lies 3 m off", kAlways, shifted(3.0),
+            contradicts | Why::kMapFault);
   modes.add("map-cut", "the map has a hole along 20 s of the way", kTwenty,
             fault(FaultKind::kMapCut, {.radius_m = 40.0}), unseen | Why::kOutsideMap);
   modes.add("map-elsewhere", "the map is that of another town", kAlways,

@@ -52,9 +52,10 @@ bool Health::is_lost(const HealthInputs& inputs) const {
   const bool contradicted =
       inputs.verdict.odometry_contradicts ||
       (inputs.verdict.undecided && inputs.refused_in_a_row >= limits_.refusals_to_lose);
-  return contradicted || inputs.verdict.map_contradicts || inputs.stamps_contradict || !inputs.initialized ||
-         inputs.odometry_implausible || inputs.clock_gap || why_.has(Why::kPoseUncertain) ||
-         why_.has(Why::kOdometryMissing) || inputs.correction_age > limits_.lost_timeout;
+  return contradicted || inputs.verdict.map_contradicts || inputs.stamps_contradict ||
+         !inputs.initialized || inputs.odometry_implausible || inputs.clock_gap ||
+         why_.has(Why::kPoseUncertain) || why_.has(Why::kOdometryMissing) ||
+         inputs.correction_age > limits_.lost_timeout;
 }
 
 bool Health::is_confirmed(const HealthInputs& inputs) const {

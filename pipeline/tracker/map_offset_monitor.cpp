@@ -29,7 +29,8 @@ void MapOffsetMonitor::predict(double elapsed_s, double sigma_m) {
   offset_variance_ += elapsed_s * square_of(kGrowth_m_per_sqrt_s);
   error_m_ *= kept;
   common_variance_ *= kept;
-  error_variance_ = square_of(kept) * error_variance_ + (1.0 - square_of(kept)) * square_of(sigma_m);
+  error_variance_ =
+      square_of(kept) * error_variance_ + (1.0 - square_of(kept)) * square_of(sigma_m);
 }
 
 void MapOffsetMonitor::add(Time time, const Eigen::Vector2d& difference_m, double sigma_m) {
@@ -59,8 +60,8 @@ void MapOffsetMonitor::judge() {
   if (contradicts_) {
     contradicts_ = offset_m_.norm() > kHarmless_m;
   } else {
-    contradicts_ = offset_m_.norm() > kMatters_m &&
-                   offset_m_.squaredNorm() > kCertain * offset_variance_;
+    contradicts_ =
+        offset_m_.norm() > kMatters_m && offset_m_.squaredNorm() > kCertain * offset_variance_;
   }
 }
 

@@ -10,10 +10,11 @@
 namespace bevloc {
 
 /// The matched pose is as wrong as the map. GNSS errors come and go within their correlation time,
-/// but a map that was surveyed in another datum, or moved, lies off by the same vector all the time.
-/// A Kalman filter splits the difference of GNSS and pose into this constant offset and the error of
-/// GNSS, a first-order Gauss-Markov process. A constant error of the receiver, such as of the place
-/// of its antenna, looks the same. It takes about three minutes to find 3 m, and 20 minutes to find 1 m.
+/// but a map that was surveyed in another datum, or moved, lies off by the same vector all the
+/// time. A Kalman filter splits the difference of GNSS and pose into this constant offset and the
+/// error of GNSS, a first-order Gauss-Markov process. A constant error of the receiver, such as of
+/// the place of its antenna, looks the same. It takes about three minutes to find 3 m, and 20
+/// minutes to find 1 m.
 ///
 /// One thread; does not allocate.
 class MapOffsetMonitor {
@@ -21,8 +22,8 @@ class MapOffsetMonitor {
   /// `correlation_s`: time constant of GNSS errors.
   explicit MapOffsetMonitor(double correlation_s) : correlation_s_(correlation_s) {}
 
-  /// `difference_m`: GNSS minus pose, along the axes of the map; `sigma_m`: of GNSS, per axis. Takes
-  /// one sample per second, and none that a jump of GNSS explains better.
+  /// `difference_m`: GNSS minus pose, along the axes of the map; `sigma_m`: of GNSS, per axis.
+  /// Takes one sample per second, and none that a jump of GNSS explains better.
   void add(Time time, const Eigen::Vector2d& difference_m, double sigma_m);
 
   /// Whether there certainly is an offset that matters. Stays until there certainly is none.

@@ -59,10 +59,9 @@ void PoseEstimator::compare_map(const GnssSample& sample) {
   const auto pose = tracker_.pose_at(sample.time);
   if (!pose) return;
   const GnssPose gnss = gnss_pose(sample);
-  map_offset_.add(
-      sample.time,
-      gnss.map_from_vehicle.translation() - pose->map_from_vehicle.translation(),
-      gnss.position_sigma_m);
+  map_offset_.add(sample.time,
+                  gnss.map_from_vehicle.translation() - pose->map_from_vehicle.translation(),
+                  gnss.position_sigma_m);
 }
 
 PoseEstimator::MatchOutcome PoseEstimator::add_match(Time frame_time, const Se2& prior,

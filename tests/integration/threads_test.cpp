@@ -145,7 +145,8 @@ TEST(ThreadsTest, HangingThreadsStandStillAndEndWithTheRun) {
   for (const sim::FaultKind kind : {sim::FaultKind::kHangCapture, sim::FaultKind::kHangVision,
                                     sim::FaultKind::kHangCanIn, sim::FaultKind::kHangCanOut}) {
     sim::Fault fault = sim::make_fault(kind);
-    fault.from_s = -10.0;  // the devices open before the drive begins, on a busy machine long before
+    fault.from_s =
+        -10.0;  // the devices open before the drive begins, on a busy machine long before
     config.simulation->faults.push_back(fault);
   }
   int asked = 0;
