@@ -84,8 +84,10 @@ inline constexpr std::array<Signal, 16> kWhy{{
     reason_flag("Why_Overload", 11, "Frames are skipped because computation is too slow."),
     reason_flag("Why_MapFault", 12,
                 "GNSS and map lie apart by a constant offset. The pose is not valid."),
-    reason_flag("Why_CalibrationFault", 13,
-                "The time stamps of the cameras contradict the yaw rate."),
+    reason_flag(
+        "Why_CalibrationFault", 13,
+        "A camera is not where the calibration has it, or the cameras' time stamps contradict "
+        "the yaw rate."),
     reason_flag("Why_NetworkFault", 14, "The network computed another answer than it should."),
     reason_flag("Why_InternalFault", 15, "Any other fault inside the localizer."),
 }};

@@ -11,7 +11,9 @@ nlohmann::ordered_json axis_json(const AxisError& error) {
   return {{"mae", error.mae}, {"rmse", error.rmse}, {"p95", error.p95}};
 }
 
-nlohmann::ordered_json pose_json(const PoseError& error) {
+/// Null without a valid pose: zeros would look like a perfect drive.
+nlohmann::ordered_json pose_json(const PoseError& error, bool has_pose) {
+  if (!has_pose) return nullptr;
   return {{"longitudinal_m", axis_json(error.longitudinal_m)},
           {"lateral_m", axis_json(error.lateral_m)},
           {"yaw_deg", axis_json(error.yaw_deg)}};
@@ -22,9 +24,8 @@ std::string axis_row(const char* name, const AxisError& prior, const AxisError& 
                      prior.mae, prior.rmse, prior.p95, estimate.mae, estimate.rmse, estimate.p95);
 }
 
-}  // namespace
-
-std::string to_table(const DriveReport& report) {
+std::string error_table(const DriveReport& report) {
+  if (report.poses.empty()) return "pose               never valid\n";
   std::string table =
       fmt::format("{:<18} {:^23}   {:^23}\n", "", "prior (GNSS+odometry)", "bevloc");
   table += fmt::format("{:<18} {:>7} {:>7} {:>7}   {:>7} {:>7} {:>7}\n", "error", "MAE", "RMSE",
@@ -34,6 +35,13 @@ std::string to_table(const DriveReport& report) {
   table += axis_row("yaw         deg", report.prior.yaw_deg, report.estimate.yaw_deg);
   table += fmt::format("pose               first after {:.1f} s, then valid {:.1f} % of the time\n",
                        report.first_fix_s, 100.0 * report.valid_share);
+  return table;
+}
+
+}  // namespace
+
+std::string to_table(const DriveReport& report) {
+  std::string table = error_table(report);
   table += fmt::format("frames             {} captured, {} used, {} dropped\n",
                        report.frames.captured, report.frames.used, report.frames.dropped());
   table += fmt::format("exposure to CAN    p50 {:.1f} ms, p99 {:.1f} ms\n", report.latency.p50_ms,
@@ -43,9 +51,10 @@ std::string to_table(const DriveReport& report) {
 }
 
 std::string to_json(const DriveReport& report) {
+  const bool has_pose = !report.poses.empty();
   const nlohmann::ordered_json json = {
-      {"prior", pose_json(report.prior)},
-      {"estimate", pose_json(report.estimate)},
+      {"prior", pose_json(report.prior, has_pose)},
+      {"estimate", pose_json(report.estimate, has_pose)},
       {"frames",
        {{"captured", report.frames.captured},
         {"used", report.frames.used},

@@ -35,6 +35,7 @@ struct DriveReport {
 };
 
 std::string to_table(const DriveReport& report);
+/// `prior` and `estimate` are null if no pose was valid.
 std::string to_json(const DriveReport& report);
 
 /// Writes one line per judged pose: time, state, truth, prior, estimate. Fails if the file cannot

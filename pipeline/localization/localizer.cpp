@@ -17,6 +17,9 @@ constexpr double kSameMotion_rad = radians(0.02);
 constexpr double kSolverTolerance_m = 0.2;
 constexpr double kSolverTolerance_rad = radians(0.5);
 
+/// If more cameras seem out of place, it is rather the map or the road that differs.
+constexpr size_t kMostOutOfPlace = 2;
+
 bool is_same(const Se2& a, const Se2& b) {
   return (a.translation() - b.translation()).norm() <= kSameMotion_m &&
          std::abs(wrap_angle(a.yaw_rad - b.yaw_rad)) <= kSameMotion_rad;
@@ -102,6 +105,12 @@ bool Localizer::restore_calibration(const ExtrinsicErrors& errors,
   return true;
 }
 
+CameraMask Localizer::out_of_place() const {
+  if (!online_calibration_) return {};
+  const CameraMask faults = online_calibration_->faults();
+  return faults.count() <= kMostOutOfPlace ? faults : CameraMask();
+}
+
 void Localizer::apply_learned() {
   network_rig_ = calibrated_rig_;
   apply_errors(online_calibration_->used_errors(), network_rig_);
@@ -124,10 +133,11 @@ CameraMask Localizer::load_images(const CameraImages& images) {
     view_monitor_.add(camera, planes_of(camera), images.driving);
   }
   view_monitor_.judge();
+  const CameraMask left_out = out_of_place();
   CameraMask usable;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    usable[camera] =
-        readable[camera] && !frozen_[camera] && view_monitor_.fault(camera) == ViewFault::kNone;
+    usable[camera] = readable[camera] && !frozen_[camera] && !left_out[camera] &&
+                     view_monitor_.fault(camera) == ViewFault::kNone;
     if (!usable[camera]) std::ranges::fill(planes_of(camera), kNetworkBlack);
   }
   return usable;

@@ -62,8 +62,9 @@ class Localizer {
 
   /// `prior` is T0, the predicted map_from_vehicle at the reference time; `result` corrects it.
   /// Returns the cameras that were used. A camera counts as missing if the size of its image
-  /// differs from the calibration, if its JPEG is damaged, if it is frozen, or if its view is dark,
-  /// blinded or dirty.
+  /// differs from the calibration, if its JPEG is damaged, if it is frozen, if its view is dark,
+  /// blinded or dirty, or if the online calibration found it out of place. The online calibration
+  /// learns with all cameras only, so a camera that is out of place is left out until the end.
   ///
   /// Computes the view table again when the set of cameras changes, or when a camera's motion
   /// differs by more than 1 cm or 0.02 degrees (1 cm at 30 m) from the one that the table was
@@ -122,6 +123,8 @@ class Localizer {
   void learn(const CameraImages& images, CameraMask usable, SearchRange range, const Se2& prior,
              const SolverResult& result);
   void apply_learned();
+  /// The cameras that must not be used because of where the online calibration found them.
+  CameraMask out_of_place() const;
 
   Rig calibrated_rig_;  ///< the network rig of the calibration
   Rig network_rig_;     ///< the same with the learned errors

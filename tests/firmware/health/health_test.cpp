@@ -195,6 +195,15 @@ TEST(HealthTest, ACameraThatIsNotWhereTheCalibrationHasItDegrades) {
   EXPECT_EQ(health.why(), WhyMask(Why::kCalibrationFault));
 }
 
+TEST(HealthTest, OutsideTheMapDegrades) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.map_nearby = false;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+  EXPECT_EQ(health.why(), WhyMask(Why::kOutsideMap));
+}
+
 TEST(HealthTest, OverloadDegrades) {
   Health health = tracking();
   HealthInputs inputs = healthy();

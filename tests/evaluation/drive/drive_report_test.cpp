@@ -1,0 +1,28 @@
+#include "evaluation/drive/drive_report.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace bevloc::evaluation {
+namespace {
+
+TEST(DriveReportTest, ADriveWithoutAValidPoseHasNoErrors) {
+  const DriveReport report;
+  const auto json = nlohmann::json::parse(to_json(report));
+  EXPECT_TRUE(json["estimate"].is_null());
+  EXPECT_TRUE(json["prior"].is_null());
+  const std::string table = to_table(report);
+  EXPECT_NE(table.find("never valid"), std::string::npos) << table;
+  EXPECT_EQ(table.find("MAE"), std::string::npos) << table;
+}
+
+TEST(DriveReportTest, ShowsTheErrorsOfValidPoses) {
+  DriveReport report;
+  report.estimate.lateral_m.mae = 0.125;
+  report.poses.emplace_back();
+  EXPECT_EQ(nlohmann::json::parse(to_json(report))["estimate"]["lateral_m"]["mae"], 0.125);
+  EXPECT_NE(to_table(report).find("0.125"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation
