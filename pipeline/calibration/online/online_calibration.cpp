@@ -57,6 +57,7 @@ bool OnlineCalibration::restore(const ExtrinsicErrors& errors,
   }
   if (!filter_.restore(errors, covariance)) return false;
   used_ = filter_.errors();
+  start_ = used_;
   return true;
 }
 
@@ -89,6 +90,7 @@ bool OnlineCalibration::observe(const CalibrationObservation& observation) {
   if (!learns || contradicting_.any()) return false;
   filter_.update(information_, used_, step_s);
   judge_bounds();
+  if (beyond_bounds_.any()) return use_again(start_);
   unfollowed_s_ += step_s;
   return follow_estimate();
 }
@@ -137,6 +139,13 @@ void OnlineCalibration::judge_bounds() {
       }
     }
   }
+}
+
+bool OnlineCalibration::use_again(const ExtrinsicErrors& errors) {
+  unfollowed_s_ = 0.0;
+  if (used_ == errors) return false;
+  used_ = errors;
+  return true;
 }
 
 bool OnlineCalibration::follow_estimate() {

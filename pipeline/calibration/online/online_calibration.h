@@ -54,7 +54,8 @@ class OnlineCalibration {
   bool observe(const CalibrationObservation& observation);
 
   /// The errors to be applied to the calibration. They follow the estimate in steps, because each
-  /// change computes the view table again.
+  /// change computes the view table again. While a camera is beyond the bounds they are those of
+  /// the start, because it has pulled the estimates of the others.
   const ExtrinsicErrors& used_errors() const { return used_; }
   const ExtrinsicFilter& filter() const { return filter_; }
 
@@ -69,6 +70,8 @@ class OnlineCalibration {
   bool is_clear(const CalibrationObservation& observation) const;
   void judge_agreement(const std::array<SeenByCamera, kCameraCount>& seen);
   void judge_bounds();
+  /// Returns whether the used errors change.
+  bool use_again(const ExtrinsicErrors& errors);
   bool follow_estimate();
   double limit_of(int error) const;
 
@@ -78,6 +81,7 @@ class OnlineCalibration {
   MotionDirection direction_;
   ExtrinsicInformation information_;
   ExtrinsicErrors used_ = ExtrinsicErrors::Zero();
+  ExtrinsicErrors start_ = ExtrinsicErrors::Zero();  ///< as restored
   double unfollowed_s_ = 0.0;     ///< learning time since used_ has changed
   std::optional<Time> observed_;  ///< the time of the latest observation that was computed
   std::array<SeenByCamera, kCameraCount> seen_{};  ///< sums that fade over some seconds of driving
