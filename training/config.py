@@ -20,7 +20,7 @@ class TrainingConfig:
     samples: int = 0
     stop_after_minutes: float = 0.0  # ends this process only; `resume` continues the run
     resume: bool = False
-    init: str = ""  # checkpoint whose averaged weights start a new run
+    init: str = ""  # checkpoint or float model file whose weights start a new run
 
     network: str = "nano"  # a preset of training/models/config.py
     view: str = ""  # view transform; empty: the preset's own
@@ -38,7 +38,7 @@ class TrainingConfig:
     sampler_threads: int = 1
     precision: str = "auto"  # or float32, bfloat16
     drop_camera_probability: float = 0.15
-    nuisances: str = "strong"  # or "usual"; simulator only
+    nuisances: str = "street"  # or "strong", "usual"; simulator only
 
     learning_rate: float = 2e-3
     scale_rate_factor: float = 5.0  # the softmax scales learn faster: they start far off

@@ -25,7 +25,7 @@ from training.model import (
 from training.native import address, library
 
 RASTER_ROWS, RASTER_COLS = 400, 200
-NUISANCES = ("usual", "strong")  # sim/samples/training_nuisances.h
+NUISANCES = ("usual", "strong", "street")  # numbered as in training/native/sampler.h
 
 
 @dataclass
@@ -116,7 +116,7 @@ class SamplerStream:
                 (first_sample + len(own) - 1 - k) // len(own),
                 threads,
                 drop_camera_probability,
-                nuisances == "strong",
+                NUISANCES.index(nuisances),
             )
             for k, sampler in enumerate(own)
         ]

@@ -24,7 +24,7 @@ from torch import Tensor, nn
 from training.checkpoint import load_weights, read_checkpoint
 from training.config import TrainingConfig
 from training.data import Batch, Stream, augment
-from training.distributed import Processes, Share
+from training.distributed import WHOLE, Processes, Share
 from training.early_stop import Patience
 from training.errors import CheckpointError, NotFiniteError, TrainingError
 from training.evaluate import (
@@ -47,6 +47,7 @@ from training.progress import Progress
 from training.run_table import append_row
 from training.solver import DEFINITION, estimate, standardise
 from training.sources import training_stream, validation_set
+from training.start_weights import start_with
 
 # By default, glibc returns large blocks to the kernel at once; faulting them in again takes 20 % of
 # a step. glibc reads these variables only at process start.
@@ -65,6 +66,17 @@ LOSSES = (
 )
 
 
+MakeStream = Callable[[TrainingConfig, int, Share], Stream]
+
+
+def measuring_batches(config: TrainingConfig, make_stream: MakeStream) -> list[Batch]:
+    """The first samples of the run, the same in every process."""
+    stream = make_stream(config, 0, WHOLE)
+    batches = [stream.next(16) for _ in range(8)]
+    stream.close()
+    return batches
+
+
 class Trainer:
     """One run: network, optimiser, averaged weights and progress. With several processes, each has
     its own Trainer, and all have the same weights after every step."""
@@ -72,7 +84,7 @@ class Trainer:
     def __init__(
         self,
         config: TrainingConfig,
-        make_stream: Callable[[TrainingConfig, int, Share], Stream],
+        make_stream: MakeStream,
         validation: list[Batch],
         processes: Processes = Processes(),
     ) -> None:
@@ -83,10 +95,10 @@ class Trainer:
         self.patience = Patience(config.patience_figure, config.patience)
         torch.manual_seed(config.seed)
         network = network_config(config.network, config.view)
-        self.net = channels_last(BevNetwork(network).to(self.device))
+        net = BevNetwork(network)
         if config.init:
-            init = Path(config.init)
-            load_weights(self.net, read_checkpoint(init, self.device), "ema", init)
+            start_with(net, Path(config.init), lambda: measuring_batches(config, make_stream))
+        self.net = channels_last(net.to(self.device))
         self.average = channels_last(BevNetwork(network).to(self.device))
         self.average.load_state_dict(self.net.state_dict())
         self.optimiser = torch.optim.AdamW(

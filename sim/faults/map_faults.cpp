@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/faults/road_side.h"
 #include "sim/world/path.h"
+#include "sim/world/road_side.h"
 #include "sim/world/world_generator.h"
 
 namespace bevloc::sim {

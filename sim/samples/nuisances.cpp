@@ -24,6 +24,9 @@ constexpr std::array<Entry, kNuisanceSets> kEntries{{
     {NuisanceSet::kOcclusion, "occlusion", "ten more standing vehicles"},
     {NuisanceSet::kWornPaint, "worn_paint", "paint twice as worn"},
     {NuisanceSet::kMapErrors, "map_errors", "10 % missing, 10 % doubled, shifted by 0.15 m"},
+    {NuisanceSet::kMapHabits, "map_habits",
+     "dividers end 5 to 30 m early or late, boundaries up to 0.7 m inside, across mouths, double"},
+    {NuisanceSet::kColour, "colour", "casts up to 25 %, saturation 0 to 1.5, a quarter grey"},
     {NuisanceSet::kCalibration, "calibration", "cameras off by 0.2 degrees and 2 cm"},
     {NuisanceSet::kPitch, "pitch", "body pitches and rolls by 1 degree"},
     {NuisanceSet::kMissingCamera, "missing_camera", "exactly one camera missing"},
@@ -77,6 +80,18 @@ Nuisances nuisances_of(NuisanceSet set) {
       break;
     case NuisanceSet::kMapErrors:
       nuisances.map_errors = {.omission = 0.1, .ghost = 0.1, .shift_sigma_m = 0.15};
+      break;
+    case NuisanceSet::kMapHabits:
+      nuisances.map_habits = {.short_divider = 0.4,
+                              .long_divider = 0.1,
+                              .broken_divider = 0.2,
+                              .inner_boundary = 0.4,
+                              .closed_mouth = 0.2,
+                              .double_boundary = 0.3};
+      break;
+    case NuisanceSet::kColour:
+      nuisances.looks = {
+          .cast = 0.25, .least_saturation = 0.0, .most_saturation = 1.5, .grey_share = 0.25};
       break;
     case NuisanceSet::kCalibration:
       nuisances.calibration.rotation_rad = radians(0.2);

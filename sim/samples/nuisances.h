@@ -8,6 +8,8 @@
 
 #include "common/result.h"
 #include "common/se2.h"
+#include "sim/samples/camera_looks.h"
+#include "sim/samples/map_habits.h"
 
 namespace bevloc::sim {
 
@@ -58,6 +60,10 @@ struct Nuisances {
   double paint_wear_factor = 1.0;  ///< multiplies the wear of all paint
   int extra_vehicles = 0;          ///< standing on the lanes around the vehicle
   MapErrors map_errors;
+  MapHabits map_habits;
+  double verge_share = 0.0;  ///< of the road's edges: overgrown by grass or dirt, up to 1.5 m
+  CameraLooks looks;
+  double noise_factor = 1.0;  ///< multiplies the noise of the pixels
   MissingCameras missing_cameras;
   Desynchronisation desynchronisation;
 };
@@ -75,6 +81,8 @@ enum class NuisanceSet : uint8_t {
   kOcclusion,
   kWornPaint,
   kMapErrors,
+  kMapHabits,
+  kColour,
   kCalibration,
   kPitch,
   kMissingCamera,
@@ -82,7 +90,7 @@ enum class NuisanceSet : uint8_t {
   kUnsynchronisedUncompensated,
 };
 
-inline constexpr size_t kNuisanceSets = 13;
+inline constexpr size_t kNuisanceSets = 15;
 
 std::array<NuisanceSet, kNuisanceSets> all_nuisance_sets();
 Nuisances nuisances_of(NuisanceSet set);

@@ -10,6 +10,8 @@
 #include "sim/random.h"
 #include "sim/render/conditions.h"
 #include "sim/render/renderer.h"
+#include "sim/samples/camera_looks.h"
+#include "sim/samples/map_habits.h"
 #include "sim/samples/passage.h"
 #include "sim/samples/world_changes.h"
 #include "sim/sim_rig.h"
@@ -122,7 +124,9 @@ void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisance
                         .roll_rad = random.normal(0.0, nuisances.body.tilt_rad),
                         .lift_m = random.normal(0.0, nuisances.body.lift_m)};
   const double time_s = random.uniform(0.0, kTrafficTimeS);
-  const Conditions conditions = conditions_for(nuisances.weather, seed);
+  Conditions conditions = conditions_for(nuisances.weather, seed);
+  conditions.noise_sigma *= nuisances.noise_factor;
+  const auto looks = random_looks(nuisances.looks, seed);
   Passage passage(nuisances.desynchronisation, seed_for(seed, "passage"));
   sample.images.resize(kImagesSize);
   RgbImage image(kNetworkWidthPx, kNetworkHeightPx);
@@ -134,6 +138,7 @@ void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisance
     sample.reference_from_exposure[i] = passage.known_motion(offset_s);
     renderer.render(camera, map_from_vehicle * passage.true_motion(offset_s), body,
                     time_s + offset_s, conditions, mix_seed(seed_for(seed, "noise") + i), image);
+    if (nuisances.looks != CameraLooks{}) apply(looks[i], image);
     copy_as_planes(image, sample.images.data() + i * (kImagesSize / kCameraCount));
   }
 }
@@ -181,7 +186,9 @@ void make_samples_of_world(const SampleStream& stream, uint64_t world_number, ui
   const Nuisances of_world = drawn_for_world(stream.nuisances, stream.training, world_seed);
   wear_paint(of_world.paint_wear_factor, world);
   add_standing_vehicles(poses, of_world.extra_vehicles, world_seed, world);
-  const HdMap localizer_map = with_errors(world.map, of_world.map_errors, world_seed);
+  add_verges(of_world.verge_share, world_seed, world);
+  const HdMap surveyed_map = with_habits(world.map, of_world.map_habits, world_seed);
+  const HdMap localizer_map = with_errors(surveyed_map, of_world.map_errors, world_seed);
   const MapIndex true_index(world.map);
   const MapIndex localizer_index(localizer_map);
   WorldViews views{Renderer(world), MapRasterizer(true_index), MapRasterizer(localizer_index)};

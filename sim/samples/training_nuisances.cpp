@@ -19,12 +19,35 @@ std::optional<double> drawn(const Strengthening& strengthening, uint64_t seed,
 }  // namespace
 
 TrainingNuisances strong_nuisances() {
-  return {.camera_spread_s = {.share = 0.25, .weakest = 0.05, .strongest = 0.05},
-          .calibration_factor = {.share = 1.0, .weakest = 1.0, .strongest = 1.7},
-          .body_tilt_rad = {.share = 1.0, .weakest = radians(0.2), .strongest = radians(1.0)},
-          .extra_vehicles = {.share = 0.2, .weakest = 1.0, .strongest = 8.0},
-          .paint_wear_factor = {.share = 0.2, .weakest = 1.0, .strongest = 2.0},
-          .map_errors = {.share = 0.15, .weakest = 1.0, .strongest = 1.0}};
+  TrainingNuisances nuisances;
+  nuisances.camera_spread_s = {.share = 0.25, .weakest = 0.05, .strongest = 0.05};
+  nuisances.calibration_factor = {.share = 1.0, .weakest = 1.0, .strongest = 1.7};
+  nuisances.body_tilt_rad = {.share = 1.0, .weakest = radians(0.2), .strongest = radians(1.0)};
+  nuisances.extra_vehicles = {.share = 0.2, .weakest = 1.0, .strongest = 8.0};
+  nuisances.paint_wear_factor = {.share = 0.2, .weakest = 1.0, .strongest = 2.0};
+  nuisances.map_errors = {.share = 0.15, .weakest = 1.0, .strongest = 1.0};
+  return nuisances;
+}
+
+TrainingNuisances street_nuisances() {
+  TrainingNuisances nuisances = strong_nuisances();
+  nuisances.looks = {.share = 0.8, .weakest = 0.2, .strongest = 1.3};
+  nuisances.noise_factor = {.share = 0.7, .weakest = 0.2, .strongest = 1.0};
+  nuisances.map_habits = {.share = 0.5, .weakest = 0.2, .strongest = 1.6};
+  nuisances.verge_share = {.share = 0.3, .weakest = 0.1, .strongest = 0.7};
+  return nuisances;
+}
+
+CameraLooks street_looks() {
+  return {.cast = 0.25,
+          .least_saturation = 0.0,
+          .most_saturation = 1.5,
+          .grey_share = 0.2,
+          .contrast = 0.35,
+          .sharpness = 0.5,
+          .smear_share = 0.1,
+          .body_share = 0.5,
+          .black_rows_share = 0.2};
 }
 
 Nuisances drawn_for_world(const Nuisances& usual, const TrainingNuisances& training,
@@ -42,6 +65,12 @@ Nuisances drawn_for_world(const Nuisances& usual, const TrainingNuisances& train
                             .ghost = *factor * errors.ghost,
                             .shift_sigma_m = *factor * errors.shift_sigma_m};
   }
+  if (const auto factor = drawn(training.map_habits, seed, "habits")) {
+    nuisances.map_habits = scaled(nuisances_of(NuisanceSet::kMapHabits).map_habits, *factor);
+  }
+  if (const auto share = drawn(training.verge_share, seed, "verges")) {
+    nuisances.verge_share = *share;
+  }
   return nuisances;
 }
 
@@ -58,6 +87,12 @@ Nuisances drawn_for_sample(const Nuisances& of_world, const TrainingNuisances& t
   }
   if (const auto tilt_rad = drawn(training.body_tilt_rad, seed, "tilt")) {
     nuisances.body.tilt_rad = *tilt_rad;
+  }
+  if (const auto factor = drawn(training.looks, seed, "looks")) {
+    nuisances.looks = scaled(street_looks(), *factor);
+  }
+  if (const auto factor = drawn(training.noise_factor, seed, "noise")) {
+    nuisances.noise_factor = *factor;
   }
   return nuisances;
 }

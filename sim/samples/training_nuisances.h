@@ -20,15 +20,26 @@ struct TrainingNuisances {
   Strengthening camera_spread_s;     ///< Desynchronisation::spread_s, with compensation
   Strengthening calibration_factor;  ///< multiplies all of CalibrationSigma
   Strengthening body_tilt_rad;       ///< BodySigma::tilt_rad
+  Strengthening looks;               ///< factor on street_looks()
+  Strengthening noise_factor;        ///< Nuisances::noise_factor
 
   // Drawn for each world, because they change the world.
   Strengthening extra_vehicles;     ///< Nuisances::extra_vehicles, rounded
   Strengthening paint_wear_factor;  ///< Nuisances::paint_wear_factor
   Strengthening map_errors;         ///< factor on the errors of NuisanceSet::kMapErrors
+  Strengthening map_habits;         ///< factor on the habits of NuisanceSet::kMapHabits
+  Strengthening verge_share;        ///< Nuisances::verge_share
 };
 
-/// The default of training.
+/// Weather, wear, calibration and map errors beyond the usual.
 TrainingNuisances strong_nuisances();
+
+/// The default of training: strong_nuisances(), and what real streets, cameras and maps have beyond
+/// the simulator's own.
+TrainingNuisances street_nuisances();
+
+/// How far the cameras of real vehicles differ from the simulator's.
+CameraLooks street_looks();
 
 /// Replaces the nuisances that are drawn for each world, or for each sample of a world. The value
 /// of one nuisance depends on the seed and its own entry alone.

@@ -7,6 +7,7 @@
 #include "sim/vehicle/smooth_noise.h"
 #include "sim/world/path.h"
 #include "sim/world/traffic.h"
+#include "sim/world/verge.h"
 
 namespace bevloc::sim {
 namespace {
@@ -20,6 +21,10 @@ constexpr double kSpotStep_m = 2.0;
 constexpr double kShortestLane_m = 2.0;
 constexpr double kClearance_m = 0.5;
 constexpr double kAxleToMiddle_m = 1.4;
+
+// Verges.
+constexpr double kNarrowestVerge_m = 0.1;
+constexpr double kWidestVerge_m = 1.5;
 
 // Errors of the map.
 constexpr double kShortestWave_m = 20.0;
@@ -144,6 +149,17 @@ void add_standing_vehicles(const std::vector<Se2>& poses, int count, uint64_t se
       ++placed;
     }
   }
+}
+
+void add_verges(double share, uint64_t seed, World& world) {
+  if (share <= 0.0) return;
+  Random random(seed_for(seed, "verges"));
+  grow_verges(world, [&] {
+    const bool grows = random.chance(share);
+    const double width_m = random.uniform(kNarrowestVerge_m, kWidestVerge_m);
+    const bool is_dirt = random.chance(0.3);
+    return Verge{grows ? width_m : 0.0, is_dirt ? GroundMaterial::kDirt : GroundMaterial::kGrass};
+  });
 }
 
 HdMap with_errors(const HdMap& map, const MapErrors& errors, uint64_t seed) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "sim/world/ground_mask.h"
+#include "sim/world/paving.h"
 #include "sim/world/scenery.h"
 #include "sim/world/traffic.h"
 #include "sim/world/world_builder.h"
@@ -9,15 +10,12 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr double kWidening_m = 0.4;  ///< by which a lane's surface exceeds its bounds
 constexpr double kShortestLine_m = 0.3;
 
-/// The area between two lines, widened by kWidening_m on both sides.
-Ring widened(const Polyline& left, const Polyline& right) {
-  const Path left_path(left);
-  const Path right_path(right);
-  Ring ring = left_path.parallel(0.0, left_path.length_m(), -kWidening_m);
-  append(ring, reversed(right_path.parallel(0.0, right_path.length_m(), kWidening_m)));
+/// The area up to `reach_m` on both sides of a line.
+Ring area_beside(const Path& line, double reach_m) {
+  Ring ring = line.parallel(0.0, line.length_m(), -reach_m);
+  append(ring, reversed(line.parallel(0.0, line.length_m(), reach_m)));
   return ring;
 }
 
@@ -65,19 +63,14 @@ void MapDresser::lay_asphalt() {
   const auto lay = [&](const Ring& ring) {
     builder_.add_surface(Layer::kCarriageway, ring, GroundMaterial::kAsphalt, brightness);
   };
-  for (const Lane& lane : map_.lanes) {
-    if (length_m(lane.left) < kShortestLine_m || length_m(lane.right) < kShortestLine_m) continue;
-    lay(widened(lane.left, lane.right));
-  }
+  for (const Ring& ring : paved_rings(map_)) lay(ring);
+  if (!map_.lanes.empty()) return;
+  // Without lanes, crossings are paved, and each divider is taken to have a lane on either side.
   for (const MapElement& element : map_.elements) {
     if (element.element_class == ElementClass::kPedestrianCrossing) lay(element.points);
-    // Without lanes in the map, each divider is taken to have a lane on either side.
-    const bool only_hint =
-        map_.lanes.empty() && element.element_class == ElementClass::kLaneDivider;
-    if (!only_hint || length_m(element.points) < kShortestLine_m) continue;
-    const Path path(element.points);
-    lay(widened(path.parallel(0.0, path.length_m(), -town_.lane_width_m),
-                path.parallel(0.0, path.length_m(), town_.lane_width_m)));
+    if (element.element_class != ElementClass::kLaneDivider) continue;
+    if (length_m(element.points) < kShortestLine_m) continue;
+    lay(area_beside(Path(element.points), town_.lane_width_m));
   }
 }
 

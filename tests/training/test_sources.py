@@ -10,6 +10,7 @@ import torch
 
 from tests.training.nuscenes_tree import SAMPLES_PER_SCENE, write_tree
 from training.config import TrainingConfig
+from training.data import NUISANCES
 from training.distributed import WHOLE, Share
 from training.nuscenes.errors import NuscenesError
 from training.sources import (
@@ -71,20 +72,21 @@ class Sources(unittest.TestCase):
 
     def test_training_has_stronger_nuisances_than_validation(self):
         streams = {
-            name: training_stream(TrainingConfig(nuisances=name), 0) for name in ("usual", "strong")
+            name: training_stream(TrainingConfig(nuisances=name), 0) for name in NUISANCES
         }
-        usual, strong = (stream.next(16) for stream in streams.values())
+        usual, strong, street = (stream.next(16) for stream in streams.values())
         for stream in streams.values():
             stream.close()
-        self.assertEqual(TrainingConfig().nuisances, "strong")
+        self.assertEqual(TrainingConfig().nuisances, "street")
         self.assertTrue(torch.equal(usual.correction, strong.correction))
         self.assertFalse(torch.equal(usual.images, strong.images))
+        self.assertFalse(torch.equal(strong.images, street.images))
         whole = [i for i, mask in enumerate(usual.camera_mask.tolist()) if mask == 63]
         self.assertEqual(len(usual.weight[whole].unique(dim=0)), 1)
         self.assertGreater(len(strong.weight[whole].unique(dim=0)), 1)
 
     def test_unknown_nuisances_are_refused(self):
-        with self.assertRaisesRegex(ValueError, "'mild', wanted one of usual, strong"):
+        with self.assertRaisesRegex(ValueError, "'mild', wanted one of usual, strong, street"):
             training_stream(TrainingConfig(nuisances="mild"), 0)
 
     def test_a_missing_folder_is_refused_by_name(self):

@@ -114,12 +114,20 @@ struct bevloc_sampler {
   std::vector<std::thread> workers_;
 };
 
+namespace {
+
+constexpr int kStrong = 1;
+constexpr int kStreet = 2;
+
+}  // namespace
+
 bevloc_sampler* bevloc_sampler_create(uint64_t first_seed, uint64_t first_sample, int threads,
-                                      double drop_camera_probability, int strong_nuisances) {
+                                      double drop_camera_probability, int nuisances) {
   SampleStream stream;
   stream.first_seed = first_seed;
   stream.nuisances.missing_cameras.probability = drop_camera_probability;
-  if (strong_nuisances != 0) stream.training = bevloc::sim::strong_nuisances();
+  if (nuisances == kStrong) stream.training = bevloc::sim::strong_nuisances();
+  if (nuisances == kStreet) stream.training = bevloc::sim::street_nuisances();
   return new bevloc_sampler(stream, first_sample, std::max(threads, 1));
 }
 

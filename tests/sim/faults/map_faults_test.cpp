@@ -8,8 +8,8 @@
 
 #include "sim/faults/drive_clock.h"
 #include "sim/faults/fault_table.h"
-#include "sim/faults/road_side.h"
 #include "sim/faults/world_faults.h"
+#include "sim/world/road_side.h"
 #include "sim/world/world_digest.h"
 #include "sim/world/world_generator.h"
 

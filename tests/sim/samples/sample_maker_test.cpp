@@ -63,14 +63,16 @@ TEST_P(NuisanceSetTest, ShowsTheSamePlacesFromTheSamePriors) {
     EXPECT_EQ(sample.correction.y_m, usual.correction.y_m);
     EXPECT_EQ(sample.correction.yaw_rad, usual.correction.yaw_rad);
     EXPECT_TRUE(sample.raster_truth == usual.raster_truth);
-    EXPECT_EQ(sample.raster_prior == usual.raster_prior, GetParam() != NuisanceSet::kMapErrors);
+    const bool other_map =
+        GetParam() == NuisanceSet::kMapErrors || GetParam() == NuisanceSet::kMapHabits;
+    EXPECT_EQ(sample.raster_prior == usual.raster_prior, !other_map);
   }
 }
 
 TEST_P(NuisanceSetTest, ChangesTheImagesUnlessItAffectsOtherParts) {
-  const bool same_images = GetParam() == NuisanceSet::kSixCameras ||
-                           GetParam() == NuisanceSet::kMapErrors ||
-                           GetParam() == NuisanceSet::kMissingCamera;
+  const bool same_images =
+      GetParam() == NuisanceSet::kSixCameras || GetParam() == NuisanceSet::kMapErrors ||
+      GetParam() == NuisanceSet::kMapHabits || GetParam() == NuisanceSet::kMissingCamera;
   size_t changed = 0;
   for (size_t i = 0; i < kCount; ++i) {
     const Sample& sample = samples_of(GetParam())[i];

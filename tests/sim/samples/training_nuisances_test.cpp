@@ -44,6 +44,28 @@ TEST(TrainingNuisances, AreDrawnInTheirSharesAndWithinTheirStrengths) {
   EXPECT_LE(most_calibration, 1.7 + 1e-9);
 }
 
+TEST(TrainingNuisances, OfTheStreetAddLooksHabitsAndVerges) {
+  const TrainingNuisances street = street_nuisances();
+  int looks = 0;
+  int habits = 0;
+  int verges = 0;
+  int clear = 0;
+  for (uint64_t seed = 0; seed < kDraws; ++seed) {
+    const Nuisances of_world = drawn_for_world({}, street, seed);
+    habits += of_world.map_habits != MapHabits{} ? 1 : 0;
+    verges += of_world.verge_share > 0.0 ? 1 : 0;
+    const Nuisances drawn = drawn_for_sample(of_world, street, seed);
+    looks += drawn.looks != CameraLooks{} ? 1 : 0;
+    clear += drawn.noise_factor < 1.0 ? 1 : 0;
+    EXPECT_EQ(drawn.map_habits, of_world.map_habits);
+    EXPECT_EQ(drawn.body.tilt_rad, drawn_for_sample({}, strong_nuisances(), seed).body.tilt_rad);
+  }
+  EXPECT_NEAR(looks, 0.8 * kDraws, 0.03 * kDraws);
+  EXPECT_NEAR(habits, 0.5 * kDraws, 0.03 * kDraws);
+  EXPECT_NEAR(verges, 0.3 * kDraws, 0.03 * kDraws);
+  EXPECT_NEAR(clear, 0.7 * kDraws, 0.03 * kDraws);
+}
+
 TEST(TrainingNuisances, EachCanBeEnabledOnItsOwn) {
   TrainingNuisances one;
   one.extra_vehicles = strong_nuisances().extra_vehicles;

@@ -1,4 +1,4 @@
-#include "sim/faults/road_side.h"
+#include "sim/world/road_side.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,16 +7,16 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr double kStep_m = 1.0;
+constexpr double kVoteStep_m = 1.0;
 /// A lane farther away does not belong to the boundary. Also the size of a cell.
-constexpr double kReach_m = 8.0;
+constexpr double kFarthestLane_m = 8.0;
 
 uint64_t cell_key(int64_t east, int64_t north) {
   return (static_cast<uint64_t>(east) << 32U) ^ static_cast<uint32_t>(north);
 }
 
 int64_t cell_of(double coordinate_m) {
-  return static_cast<int64_t>(std::floor(coordinate_m / kReach_m));
+  return static_cast<int64_t>(std::floor(coordinate_m / kFarthestLane_m));
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ RoadSide::RoadSide(const HdMap& map) {
   for (const Lane& lane : map.lanes) {
     if (lane.centerline.size() < 2 || length_m(lane.centerline) <= 0.0) continue;
     const Path path(lane.centerline);
-    const auto steps = static_cast<int>(std::ceil(path.length_m() / kStep_m));
+    const auto steps = static_cast<int>(std::ceil(path.length_m() / kVoteStep_m));
     for (int step = 0; step <= steps; ++step) {
       const Eigen::Vector2d point = path.position(path.length_m() * step / steps);
       centres_[cell_key(cell_of(point.x()), cell_of(point.y()))].push_back(point);
@@ -35,7 +35,7 @@ RoadSide::RoadSide(const HdMap& map) {
 
 std::optional<Eigen::Vector2d> RoadSide::nearest_centre(const Eigen::Vector2d& point) const {
   std::optional<Eigen::Vector2d> nearest;
-  double nearest_m = kReach_m;
+  double nearest_m = kFarthestLane_m;
   for (int64_t east = cell_of(point.x()) - 1; east <= cell_of(point.x()) + 1; ++east) {
     for (int64_t north = cell_of(point.y()) - 1; north <= cell_of(point.y()) + 1; ++north) {
       const auto cell = centres_.find(cell_key(east, north));
@@ -54,7 +54,7 @@ std::optional<Eigen::Vector2d> RoadSide::nearest_centre(const Eigen::Vector2d& p
 std::optional<RoadSide::Side> RoadSide::of(const Path& boundary) const {
   int votes = 0;
   double least_m = std::numeric_limits<double>::infinity();
-  const auto steps = static_cast<int>(std::ceil(boundary.length_m() / kStep_m));
+  const auto steps = static_cast<int>(std::ceil(boundary.length_m() / kVoteStep_m));
   for (int step = 0; step <= steps; ++step) {
     const double station_m = boundary.length_m() * step / steps;
     const Eigen::Vector2d point = boundary.position(station_m);

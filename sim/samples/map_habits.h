@@ -1,0 +1,28 @@
+// Redraws a map as surveys usually draw it, where that differs from what a camera sees.
+#pragma once
+
+#include <cstdint>
+
+#include "pipeline/map/hd_map.h"
+
+namespace bevloc::sim {
+
+/// Shares of lines that have a habit of published maps. All are independent; 0 changes nothing.
+struct MapHabits {
+  double short_divider = 0.0;    ///< of divider ends: 5 to 30 m before the end of the paint
+  double long_divider = 0.0;     ///< of divider ends: 5 to 20 m beyond it, through the junction
+  double broken_divider = 0.0;   ///< of dividers: 10 to 40 m are missing, as at a side road
+  double inner_boundary = 0.0;   ///< of boundaries: up to 0.7 m inside, as an outline of lanes
+  double closed_mouth = 0.0;     ///< of boundary ends: 5 to 20 m straight on, across a mouth
+  double double_boundary = 0.0;  ///< of boundaries: a second one 0.5 to 4 m outside, as a wall
+
+  bool operator==(const MapHabits&) const = default;
+};
+
+/// Multiplies all shares by a factor; none exceeds 1.
+MapHabits scaled(const MapHabits& habits, double factor);
+
+/// Lanes do not change. Elements that are too short for a habit keep their form.
+HdMap with_habits(const HdMap& map, const MapHabits& habits, uint64_t seed);
+
+}  // namespace bevloc::sim
