@@ -83,8 +83,8 @@ void MockScene::draw(int camera, const CameraModel& true_camera, Duration drive_
   RendererSlot& slot = renderers_[static_cast<size_t>(camera) * renderers_.size() / kCameraCount];
   {
     const std::lock_guard lock(slot.mutex);
-    slot.renderer.render(true_camera, state.map_from_vehicle, body, time_s, conditions_, image_seed,
-                         image);
+    slot.renderer.render(true_camera, state.map_from_vehicle, {.body = body}, time_s, conditions_,
+                         image_seed, image);
   }
   if (pictures_) pictures_->keep(key, image);
 }

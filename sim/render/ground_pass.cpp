@@ -13,6 +13,8 @@ namespace {
 constexpr int kMostTaps = 12;
 static_assert(kRun <= GroundTiles::kMostHeld, "all tiles of a run fit into the window at once");
 constexpr float kFarthestM = 900.0F;
+/// What is behind curved ground by more than this share of its distance is hidden.
+constexpr float kBehindGround = 0.97F;
 /// The tile directory reaches this far at the finest level.
 constexpr float kReachOfFinestM =
     static_cast<float>((GroundWindow::kReachTiles - 0.5) * tile_size_m(0));
@@ -21,7 +23,8 @@ constexpr float kReachOfFinestM =
 struct ImageConstants {
   float rotation[9];  ///< map_from_camera, row by row
   float camera_x, camera_y, height;
-  float pixel_angle;  ///< 1 / focal length
+  float along, across, twist;  ///< GroundShape
+  float pixel_angle;           ///< 1 / focal length
   float vehicle_x, vehicle_y, forward_x, forward_y;
   float light_x, light_y;  ///< GroundLight::origin()
   const uint32_t* light_cells;
@@ -39,40 +42,103 @@ struct GroundRun {
   alignas(64) int32_t level[kRun], tile_x[kRun], tile_y[kRun], inside[kRun], texel[kRun];
   alignas(64) float red[kRun], green[kRun], blue[kRun], gloss[kRun];
   alignas(64) float sky_red[kRun], sky_green[kRun], sky_blue[kRun];
+  alignas(64) int32_t is_ground[kRun];  ///< 1: ground, 0: sky
+  alignas(64) float nearness[kRun];     ///< of curved ground: 1 / t
 };
 
-/// Rotates the rays into the map and intersects them with the ground. Returns the number of taps
+/// Rotates a ray into the map.
+inline void rotate_ray(const float* m, int i, GroundRun& run) {
+  run.dx[i] = m[0] * run.rx[i] + m[1] * run.ry[i] + m[2];
+  run.dy[i] = m[3] * run.rx[i] + m[4] * run.ry[i] + m[5];
+  run.dz[i] = m[6] * run.rx[i] + m[7] * run.ry[i] + m[8];
+}
+
+/// Sets where a ray meets the ground, at t times its length, and the footprint of its pixel there.
+/// `down` is how fast the ray approaches the ground. Returns length by width of the footprint.
+inline float place_footprint(const ImageConstants& f, int i, float t, float down, GroundRun& run) {
+  const float horizontal2 = run.dx[i] * run.dx[i] + run.dy[i] * run.dy[i] + 1e-12F;
+  const float horizontal = std::sqrt(horizontal2);
+  const float range = t * horizontal;
+  run.x[i] = f.camera_x + t * run.dx[i];
+  run.y[i] = f.camera_y + t * run.dy[i];
+  run.range[i] = range;
+  run.steepness[i] = down / std::sqrt(horizontal2 + down * down);
+  // The pixel's width across the line of sight, and its length along it.
+  const float width = t * f.pixel_angle;
+  const float length = std::min(width * std::max(1.0F, range / f.height), 0.6F * range);
+  run.step_x[i] = length * run.dx[i] / horizontal;
+  run.step_y[i] = length * run.dy[i] / horizontal;
+  run.texels_per_m[i] = width;  // choose_levels() replaces it
+  return length / std::max(width, static_cast<float>(kFinestTexelM));
+}
+
+/// The number of taps for the longest footprint of a run; 0 if it has none.
+inline int taps_of(float most_ratio) {
+  if (most_ratio == 0.0F) return 0;
+  return std::clamp(static_cast<int>(0.75F * most_ratio + 0.999F), 1, kMostTaps);
+}
+
+/// Rotates the rays into the map and intersects them with flat ground. Returns the number of taps
 /// that the run needs; 0 if all pixels are sky.
 BEVLOC_TARGET_CLONES
 int trace_rays(const ImageConstants& constants, int count, GroundRun& run) {
   const ImageConstants& f = constants;
-  const float* m = f.rotation;
   float most_ratio = 0.0F;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
-    run.dx[i] = m[0] * run.rx[i] + m[1] * run.ry[i] + m[2];
-    run.dy[i] = m[3] * run.rx[i] + m[4] * run.ry[i] + m[5];
-    run.dz[i] = m[6] * run.rx[i] + m[7] * run.ry[i] + m[8];
-    const float horizontal2 = run.dx[i] * run.dx[i] + run.dy[i] * run.dy[i] + 1e-12F;
-    const float horizontal = std::sqrt(horizontal2);
+    rotate_ray(f.rotation, i, run);
+    const float horizontal = std::sqrt(run.dx[i] * run.dx[i] + run.dy[i] * run.dy[i] + 1e-12F);
     const float down = std::max(-run.dz[i], 1e-6F);
     const float t = std::min(f.height / down, kFarthestM / horizontal);
-    const float range = t * horizontal;
-    run.x[i] = f.camera_x + t * run.dx[i];
-    run.y[i] = f.camera_y + t * run.dy[i];
-    run.range[i] = range;
-    run.steepness[i] = down / std::sqrt(horizontal2 + down * down);
-    // The pixel's footprint on the ground: its width across and its length along the line of sight.
-    const float width = t * f.pixel_angle;
-    const float length = std::min(width * std::max(1.0F, range / f.height), 0.6F * range);
-    const float ratio = length / std::max(width, static_cast<float>(kFinestTexelM));
-    most_ratio = std::max(most_ratio, run.dz[i] < -1e-5F ? ratio : 0.0F);
-    run.step_x[i] = length * run.dx[i] / horizontal;
-    run.step_y[i] = length * run.dy[i] / horizontal;
-    run.texels_per_m[i] = width;  // choose_levels() replaces it
+    const float ratio = place_footprint(f, i, t, down, run);
+    run.is_ground[i] = run.dz[i] < -1e-5F ? 1 : 0;
+    most_ratio = std::max(most_ratio, run.is_ground[i] != 0 ? ratio : 0.0F);
   }
-  if (most_ratio == 0.0F) return 0;
-  return std::clamp(static_cast<int>(0.75F * most_ratio + 0.999F), 1, kMostTaps);
+  return taps_of(most_ratio);
+}
+
+/// The same with curved ground. Along a ray, at the distance u from the vehicle, the ground has the
+/// height g u + k u^2 / 2, and beyond kCurvedReach_m it goes on straight.
+BEVLOC_TARGET_CLONES
+int trace_rays_to_curved_ground(const ImageConstants& constants, int count, GroundRun& run) {
+  const ImageConstants& f = constants;
+  constexpr auto kReach = static_cast<float>(kCurvedReach_m);
+  // The camera in the vehicle frame, and the ground below it.
+  const float to_x = f.camera_x - f.vehicle_x;
+  const float to_y = f.camera_y - f.vehicle_y;
+  const float at_x = to_x * f.forward_x + to_y * f.forward_y;
+  const float at_y = to_y * f.forward_x - to_x * f.forward_y;
+  const float below =
+      0.5F * (f.along * at_x * at_x + f.across * at_y * at_y) + f.twist * at_x * at_y;
+  const float above = f.height - below;
+  float most_ratio = 0.0F;
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    rotate_ray(f.rotation, i, run);
+    const float horizontal = std::sqrt(run.dx[i] * run.dx[i] + run.dy[i] * run.dy[i] + 1e-12F);
+    const float x = (run.dx[i] * f.forward_x + run.dy[i] * f.forward_y) / horizontal;
+    const float y = (run.dy[i] * f.forward_x - run.dx[i] * f.forward_y) / horizontal;
+    const float bend = f.along * x * x + f.across * y * y + 2.0F * f.twist * x * y;
+    const float rise = f.along * at_x * x + f.across * at_y * y + f.twist * (at_x * y + at_y * x);
+    const float fall = rise - run.dz[i] / horizontal;  // towards the ground, per metre
+    // above = fall u + bend u^2 / 2, within reach.
+    const float root2 = fall * fall + 2.0F * bend * above;
+    const float sum = fall + std::sqrt(std::max(root2, 0.0F));
+    const float curved = root2 >= 0.0F && sum > 1e-6F ? 2.0F * above / sum : kFarthestM;
+    // above = fall u + bend reach u - bend reach^2 / 2, beyond.
+    const float fall_beyond = fall + bend * kReach;
+    const float straight =
+        fall_beyond > 1e-5F ? (above + 0.5F * bend * kReach * kReach) / fall_beyond : kFarthestM;
+    const bool is_near = curved <= kReach;
+    const bool is_beyond = fall_beyond > 1e-5F && straight > kReach;
+    const float distance = std::min(is_near ? curved : std::max(straight, kReach), kFarthestM);
+    const float down = std::max(fall + bend * std::min(distance, kReach), 1e-6F) * horizontal;
+    const float ratio = place_footprint(f, i, distance / horizontal, down, run);
+    run.is_ground[i] = is_near || is_beyond ? 1 : 0;
+    run.nearness[i] = run.is_ground[i] != 0 ? horizontal / distance : 0.0F;
+    most_ratio = std::max(most_ratio, run.is_ground[i] != 0 ? ratio : 0.0F);
+  }
+  return taps_of(most_ratio);
 }
 
 /// Selects the tile level of each pixel so that its taps cover its footprint.
@@ -214,6 +280,10 @@ ImageConstants make_constants(const View& view, const Lighting& lighting, const 
   constants.camera_x = camera.x();
   constants.camera_y = camera.y();
   constants.height = std::max(0.05F, static_cast<float>(view.position.z()));
+  const GroundShape& shape = view.ground.shape();
+  constants.along = static_cast<float>(shape.along_per_m);
+  constants.across = static_cast<float>(shape.across_per_m);
+  constants.twist = static_cast<float>(shape.twist_per_m);
   constants.pixel_angle = static_cast<float>(1.0 / view.rays->intrinsics().fx_px);
   constants.vehicle_x = vehicle.x();
   constants.vehicle_y = vehicle.y();
@@ -243,23 +313,27 @@ void draw_ground_run(const ImageConstants& constants, int taps, int count, Groun
 void draw_ground_and_sky(const View& view, const Lighting& lighting, const GroundLight& light,
                          const Sky& sky, GroundWindow& ground, LinearImage& image) {
   const ImageConstants constants = make_constants(view, lighting, light, ground.local_origin());
+  const bool is_flat = view.ground.shape().is_flat();
+  std::fill(image.nearness.begin(), image.nearness.end(), 0.0F);
   GroundRun run;
   const int pixels = view.width() * view.height();
   for (int start = 0; start < pixels; start += kRun) {
     const int count = std::min(kRun, pixels - start);
     view.rays->get(static_cast<size_t>(start), count, run.rx, run.ry);
-    const int taps = trace_rays(constants, count, run);
-    const float highest = *std::max_element(run.dz, run.dz + count);
+    const int taps = is_flat ? trace_rays(constants, count, run)
+                             : trace_rays_to_curved_ground(constants, count, run);
+    const bool has_sky = *std::min_element(run.is_ground, run.is_ground + count) == 0;
     if (taps > 0) draw_ground_run(constants, taps, count, ground, run);
-    if (highest > -1e-5F) {
+    if (has_sky) {
       shade_sky(sky, lighting,
                 {run.dx, run.dy, run.dz, 1.0F / constants.pixel_angle, run.sky_red, run.sky_green,
                  run.sky_blue},
                 count);
     }
     for (int i = 0; i < count; ++i) {
-      const bool is_ground = run.dz[i] < -1e-5F;
+      const bool is_ground = run.is_ground[i] != 0;
       const auto at = static_cast<size_t>(start + i);
+      if (!is_flat) image.nearness[at] = kBehindGround * run.nearness[i];
       image.red[at] = is_ground ? run.red[i] : run.sky_red[i];
       image.green[at] = is_ground ? run.green[i] : run.sky_green[i];
       image.blue[at] = is_ground ? run.blue[i] : run.sky_blue[i];

@@ -42,8 +42,10 @@ Pattern pattern_of(PostKind kind) {
 }  // namespace
 
 const std::vector<Panel>& PanelBuilder::build(const Eigen::Vector3d& camera,
+                                              const CurvedGround& ground,
                                               const Surroundings& surroundings) {
   camera_ = camera;
+  ground_ = ground;
   unsorted_.clear();
   for (const WallPiece* piece : surroundings.walls) add_wall(*piece);
   for (const Post* post : surroundings.posts) add_post(*post);
@@ -65,14 +67,15 @@ const std::vector<Panel>& PanelBuilder::build(const Eigen::Vector3d& camera,
 
 void PanelBuilder::add_wall(const WallPiece& piece) {
   const Wall& wall = *piece.wall;
-  const Eigen::Vector2d base = piece.to - piece.from;
   Panel panel;
-  panel.corner = from_camera(piece.from, wall.bottom_m);
-  panel.length_m = static_cast<float>(base.norm());
+  panel.corner = from_camera(piece.from, wall.bottom_m, piece.from);
+  const Eigen::Vector3f base = from_camera(piece.to, wall.bottom_m, piece.to) - panel.corner;
+  panel.length_m = base.norm();
   panel.height_m = static_cast<float>(wall.top_m - wall.bottom_m);
   if (panel.height_m <= 0.0F) return;
-  const Eigen::Vector2f direction = base.normalized().cast<float>();
-  panel.along = {direction.x(), direction.y(), 0.0F};
+  panel.along = base.normalized();
+  // A wall on a slope leans along its own line.
+  panel.up = (Eigen::Vector3f::UnitZ() - panel.along.z() * panel.along).normalized();
   panel.pattern = pattern_of(wall.texture);
   panel.tint = wall.albedo;
   panel.softness = wall.texture == WallTexture::kHedge ? 0.7F : 0.0F;
@@ -89,7 +92,7 @@ void PanelBuilder::add_post(const Post& post) {
   if (distance_m < post.radius_m + 0.2 || post.top_m <= post.bottom_m) return;
   const Eigen::Vector2d across(to_post.y() / distance_m, -to_post.x() / distance_m);
   Panel panel;
-  panel.corner = from_camera(post.position - post.radius_m * across, post.bottom_m);
+  panel.corner = from_camera(post.position - post.radius_m * across, post.bottom_m, post.position);
   panel.along = {static_cast<float>(across.x()), static_cast<float>(across.y()), 0.0F};
   panel.length_m = static_cast<float>(2.0 * post.radius_m);
   panel.height_m = static_cast<float>(post.top_m - post.bottom_m);
@@ -106,7 +109,7 @@ void PanelBuilder::add_vehicle(const VehicleBody& body, bool lights_on) {
   const Eigen::Vector2d left = Se2{0.0, 0.0, body.yaw_rad} * Eigen::Vector2d(0.0, 1.0);
   const auto corner_at = [&](const ProfileCorner& corner, double side) {
     const Eigen::Vector2d place(body.length_m * (corner.x - 0.5), 0.5 * side * body.width_m);
-    return from_camera(map_from_body * place, body.height_m * corner.z);
+    return from_camera(map_from_body * place, body.height_m * corner.z, body.centre);
   };
   for (size_t i = 0; i + 1 < corners.size(); ++i) {
     Panel panel;
@@ -135,7 +138,7 @@ void PanelBuilder::add_vehicle_sides(const VehicleBody& body, const Se2& map_fro
   for (const double side : {-0.5, 0.5}) {
     Panel panel;
     const Eigen::Vector2d rear(-0.5 * body.length_m, side * body.width_m);
-    panel.corner = from_camera(map_from_body * rear, 0.0);
+    panel.corner = from_camera(map_from_body * rear, 0.0, body.centre);
     panel.along = {static_cast<float>(forward.x()), static_cast<float>(forward.y()), 0.0F};
     panel.length_m = static_cast<float>(body.length_m);
     panel.height_m = static_cast<float>(body.height_m);

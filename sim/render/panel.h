@@ -7,6 +7,7 @@
 
 #include "sim/render/surroundings.h"
 #include "sim/render/texture.h"
+#include "sim/vehicle/stance.h"
 
 namespace bevloc::sim {
 
@@ -33,20 +34,25 @@ struct Panel {
 /// Makes the panels of everything that stands around the vehicle. Not thread safe.
 class PanelBuilder {
  public:
-  /// Returns the panels that a camera at `camera` (map frame) may see, sorted from far to near. The
-  /// result is valid until the next call.
-  const std::vector<Panel>& build(const Eigen::Vector3d& camera, const Surroundings& surroundings);
+  /// Returns the panels that a camera at `camera` (map frame) may see, sorted from far to near.
+  /// They stand on `ground`. The result is valid until the next call.
+  const std::vector<Panel>& build(const Eigen::Vector3d& camera, const CurvedGround& ground,
+                                  const Surroundings& surroundings);
 
  private:
   void add_wall(const WallPiece& piece);
   void add_post(const Post& post);
   void add_vehicle(const VehicleBody& body, bool lights_on);
   void add_vehicle_sides(const VehicleBody& body, const Se2& map_from_body);
-  Eigen::Vector3f from_camera(const Eigen::Vector2d& position, double height_m) const {
-    return (Eigen::Vector3d(position.x(), position.y(), height_m) - camera_).cast<float>();
+  /// `height_m` above the ground at `foot`.
+  Eigen::Vector3f from_camera(const Eigen::Vector2d& position, double height_m,
+                              const Eigen::Vector2d& foot) const {
+    const double above_plane_m = height_m + ground_.height_m(foot);
+    return (Eigen::Vector3d(position.x(), position.y(), above_plane_m) - camera_).cast<float>();
   }
 
   Eigen::Vector3d camera_ = Eigen::Vector3d::Zero();
+  CurvedGround ground_;
   std::vector<Panel> unsorted_;
   std::vector<Panel> panels_;
   std::vector<std::pair<float, int>> order_;

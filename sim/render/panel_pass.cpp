@@ -236,7 +236,6 @@ void draw_panel(const View& view, const PanelInView& panel, const PixelBox& box,
 
 void draw_panels(const View& view, const Lighting& lighting, std::span<const Panel> panels,
                  LinearImage& image) {
-  std::fill(image.nearness.begin(), image.nearness.end(), 0.0F);
   const Eigen::Matrix3f camera_from_map = view.map_from_camera.transpose();
   PanelInView seen;
   for (const Panel& panel : panels) {

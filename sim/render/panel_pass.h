@@ -10,7 +10,7 @@
 
 namespace bevloc::sim {
 
-/// Draws over `image` and fills its nearness buffer. `panels` must be sorted from far to near; the
+/// Draws over `image` and its nearness. `panels` must be sorted from far to near; the
 /// nearness buffer corrects pixels where that order is wrong.
 void draw_panels(const View& view, const Lighting& lighting, std::span<const Panel> panels,
                  LinearImage& image);

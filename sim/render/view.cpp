@@ -82,7 +82,8 @@ const CameraRays& RayCache::rays_of(const Intrinsics& intrinsics) {
 }
 
 View make_view(const CameraRays& rays, const Se3& vehicle_from_camera, const Se2& map_from_vehicle,
-               const BodyMotion& body) {
+               const Stance& stance) {
+  const BodyMotion& body = stance.body;
   const Eigen::Matrix3d heading =
       Eigen::AngleAxisd(map_from_vehicle.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   // A positive rotation about the vehicle's y axis lowers the nose; about x, the right side.
@@ -98,6 +99,7 @@ View make_view(const CameraRays& rays, const Se3& vehicle_from_camera, const Se2
   view.map_from_camera = map_from_camera.rotation.cast<float>();
   view.vehicle = map_from_vehicle.translation();
   view.vehicle_forward = heading.col(0).head<2>().cast<float>();
+  view.ground = CurvedGround(stance.ground, map_from_vehicle);
   return view;
 }
 

@@ -9,7 +9,7 @@
 
 #include "common/se2.h"
 #include "pipeline/calibration/camera_model.h"
-#include "sim/vehicle/body_motion.h"
+#include "sim/vehicle/stance.h"
 
 namespace bevloc::sim {
 
@@ -50,7 +50,8 @@ class RayCache {
   size_t oldest_ = 0;
 };
 
-/// Where a camera looks from. `rays` must outlive the view.
+/// Where a camera looks from. `rays` must outlive the view. Heights are above the plane on which
+/// the vehicle stands.
 struct View {
   const CameraRays* rays = nullptr;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the camera in the map
@@ -58,13 +59,14 @@ struct View {
   /// Position and heading of the vehicle on the ground, for its headlights.
   Eigen::Vector2d vehicle = Eigen::Vector2d::Zero();
   Eigen::Vector2f vehicle_forward = Eigen::Vector2f::UnitX();
+  CurvedGround ground;
 
   int width() const { return rays->intrinsics().width_px; }
   int height() const { return rays->intrinsics().height_px; }
 };
 
-/// Computes the camera's true pose from the pose on the ground, the body's motion and the mounting.
+/// Computes the camera's true pose from the pose on the ground, the stance and the mounting.
 View make_view(const CameraRays& rays, const Se3& vehicle_from_camera, const Se2& map_from_vehicle,
-               const BodyMotion& body);
+               const Stance& stance);
 
 }  // namespace bevloc::sim

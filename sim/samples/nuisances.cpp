@@ -29,6 +29,7 @@ constexpr std::array<Entry, kNuisanceSets> kEntries{{
     {NuisanceSet::kColour, "colour", "casts up to 25 %, saturation 0 to 1.5, a quarter grey"},
     {NuisanceSet::kCalibration, "calibration", "cameras off by 0.2 degrees and 2 cm"},
     {NuisanceSet::kPitch, "pitch", "body pitches and rolls by 1 degree"},
+    {NuisanceSet::kSlopes, "slopes", "crests and sags of 300 m radius and more, camber, banks"},
     {NuisanceSet::kMissingCamera, "missing_camera", "exactly one camera missing"},
     {NuisanceSet::kUnsynchronised, "unsynchronised", "each camera within 50 ms of the pose's time"},
     {NuisanceSet::kUnsynchronisedUncompensated, "unsynchronised_uncompensated",
@@ -99,6 +100,10 @@ Nuisances nuisances_of(NuisanceSet set) {
       break;
     case NuisanceSet::kPitch:
       nuisances.body.tilt_rad = radians(1.0);
+      break;
+    case NuisanceSet::kSlopes:
+      nuisances.slopes = {
+          .along_per_m = 1.0 / 300.0, .across_per_m = 1.0 / 200.0, .twist_per_m = 1.0 / 1000.0};
       break;
     case NuisanceSet::kMissingCamera:
       nuisances.missing_cameras = {.probability = 1.0, .most = 1};

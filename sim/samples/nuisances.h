@@ -26,6 +26,13 @@ struct BodySigma {
   double lift_m = 0.025;
 };
 
+/// The ground around the vehicle, uniform between minus and plus these values.
+struct Slopes {
+  double along_per_m = 0.0;
+  double across_per_m = 0.0;
+  double twist_per_m = 0.0;
+};
+
 /// kUsual: random_conditions(). kNight and kRain: the same, but always at night or always with
 /// rain. kClearNoon: high sun, no clouds or rain, exact exposure, little noise.
 enum class Weather : uint8_t { kUsual, kClearNoon, kNight, kRain };
@@ -56,6 +63,7 @@ struct Desynchronisation {
 struct Nuisances {
   CalibrationSigma calibration;
   BodySigma body;
+  Slopes slopes;
   Weather weather = Weather::kUsual;
   double paint_wear_factor = 1.0;  ///< multiplies the wear of all paint
   int extra_vehicles = 0;          ///< standing on the lanes around the vehicle
@@ -85,12 +93,13 @@ enum class NuisanceSet : uint8_t {
   kColour,
   kCalibration,
   kPitch,
+  kSlopes,
   kMissingCamera,
   kUnsynchronised,
   kUnsynchronisedUncompensated,
 };
 
-inline constexpr size_t kNuisanceSets = 15;
+inline constexpr size_t kNuisanceSets = 16;
 
 std::array<NuisanceSet, kNuisanceSets> all_nuisance_sets();
 Nuisances nuisances_of(NuisanceSet set);

@@ -106,6 +106,12 @@ Conditions conditions_for(Weather weather, uint64_t seed) {
   return conditions;
 }
 
+GroundShape random_ground(const Slopes& slopes, uint64_t seed) {
+  Random random(seed_for(seed, "ground"));
+  const auto within = [&random](double limit) { return random.uniform(-limit, limit); };
+  return {within(slopes.along_per_m), within(slopes.across_per_m), within(slopes.twist_per_m)};
+}
+
 /// Converts interleaved colours to planes.
 void copy_as_planes(const RgbImage& image, uint8_t* planes) {
   const size_t count = static_cast<size_t>(image.width) * image.height;
@@ -123,6 +129,7 @@ void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisance
   const BodyMotion body{.pitch_rad = random.normal(0.0, nuisances.body.tilt_rad),
                         .roll_rad = random.normal(0.0, nuisances.body.tilt_rad),
                         .lift_m = random.normal(0.0, nuisances.body.lift_m)};
+  const Stance stance{.body = body, .ground = random_ground(nuisances.slopes, seed)};
   const double time_s = random.uniform(0.0, kTrafficTimeS);
   Conditions conditions = conditions_for(nuisances.weather, seed);
   conditions.noise_sigma *= nuisances.noise_factor;
@@ -136,7 +143,7 @@ void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisance
     const double offset_s = passage.next_offset_s();
     if (!sample.cameras[i]) continue;
     sample.reference_from_exposure[i] = passage.known_motion(offset_s);
-    renderer.render(camera, map_from_vehicle * passage.true_motion(offset_s), body,
+    renderer.render(camera, map_from_vehicle * passage.true_motion(offset_s), stance,
                     time_s + offset_s, conditions, mix_seed(seed_for(seed, "noise") + i), image);
     if (nuisances.looks != CameraLooks{}) apply(looks[i], image);
     copy_as_planes(image, sample.images.data() + i * (kImagesSize / kCameraCount));

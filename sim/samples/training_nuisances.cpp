@@ -33,6 +33,7 @@ TrainingNuisances street_nuisances() {
   TrainingNuisances nuisances = strong_nuisances();
   nuisances.looks = {.share = 0.8, .weakest = 0.2, .strongest = 1.3};
   nuisances.noise_factor = {.share = 0.7, .weakest = 0.2, .strongest = 1.0};
+  nuisances.slopes = {.share = 0.5, .weakest = 0.2, .strongest = 1.2};
   nuisances.map_habits = {.share = 0.5, .weakest = 0.2, .strongest = 1.6};
   nuisances.verge_share = {.share = 0.3, .weakest = 0.1, .strongest = 0.7};
   return nuisances;
@@ -93,6 +94,12 @@ Nuisances drawn_for_sample(const Nuisances& of_world, const TrainingNuisances& t
   }
   if (const auto factor = drawn(training.noise_factor, seed, "noise")) {
     nuisances.noise_factor = *factor;
+  }
+  if (const auto factor = drawn(training.slopes, seed, "slopes")) {
+    const Slopes slopes = nuisances_of(NuisanceSet::kSlopes).slopes;
+    nuisances.slopes = {.along_per_m = *factor * slopes.along_per_m,
+                        .across_per_m = *factor * slopes.across_per_m,
+                        .twist_per_m = *factor * slopes.twist_per_m};
   }
   return nuisances;
 }

@@ -22,6 +22,7 @@ struct TrainingNuisances {
   Strengthening body_tilt_rad;       ///< BodySigma::tilt_rad
   Strengthening looks;               ///< factor on street_looks()
   Strengthening noise_factor;        ///< Nuisances::noise_factor
+  Strengthening slopes;              ///< factor on the slopes of NuisanceSet::kSlopes
 
   // Drawn for each world, because they change the world.
   Strengthening extra_vehicles;     ///< Nuisances::extra_vehicles, rounded

@@ -24,6 +24,7 @@ struct Options {
   std::string out = "world.png";
   std::vector<double> pose;  ///< x, y (metres), yaw (degrees); empty: a random pose on a road
   uint64_t pose_seed = 1;
+  std::vector<double> ground{0.0, 0.0, 0.0};  ///< curvature along, across and twist, per metre
   double time_s = 0.0;
   bool network_size = false;
   bool random_conditions = false;
@@ -42,6 +43,9 @@ Options read_options(int argc, char** argv) {
          "Pose of the vehicle as x y yaw, in metres and degrees (default: a random pose on a road)")
       ->expected(3);
   app.add_option("--pose-seed", options.pose_seed, "Seed of the random pose");
+  app.add_option("--ground", options.ground,
+                 "Curvature of the ground along the vehicle, across it, and its twist, per metre")
+      ->expected(3);
   app.add_option("--time", options.time_s, "Time of the simulated traffic in seconds");
   app.add_option("--sun-elevation", sun_elevation_deg, "Elevation of the sun in degrees");
   app.add_option("--overcast", options.conditions.overcast, "Cloud cover, 0 to 1");
@@ -93,8 +97,10 @@ int main(int argc, char** argv) {
 
   bevloc::sim::Renderer renderer(world);
   std::vector<bevloc::RgbImage> images(bevloc::kCameraCount);
+  const bevloc::sim::Stance stance{
+      .ground = {options.ground[0], options.ground[1], options.ground[2]}};
   for (size_t i = 0; i < images.size(); ++i) {
-    renderer.render(rig.cameras[i], pose, {}, options.time_s, options.conditions, i, images[i]);
+    renderer.render(rig.cameras[i], pose, stance, options.time_s, options.conditions, i, images[i]);
   }
   if (!cv::imwrite(options.out, image_grid(images))) {
     fmt::print(stderr, "{}: cannot write the image; check the folder and the file extension\n",

@@ -17,10 +17,10 @@ namespace bevloc::sim {
 namespace {
 
 RgbImage draw(const World& world, const CameraModel& camera, const Se2& pose,
-              const Conditions& conditions, uint64_t noise_seed = 0, const BodyMotion& body = {}) {
+              const Conditions& conditions, uint64_t noise_seed = 0, const Stance& stance = {}) {
   Renderer renderer(world);
   RgbImage image;
-  renderer.render(camera, pose, body, 0.0, conditions, noise_seed, image);
+  renderer.render(camera, pose, stance, 0.0, conditions, noise_seed, image);
   return image;
 }
 
@@ -76,6 +76,7 @@ struct PlacedView {
   BodyMotion body;
   Eigen::Vector2d spot;  ///< on the ground, in the vehicle frame
   bool network_size;
+  GroundShape ground{};
 };
 
 class PaintedSpot : public testing::TestWithParam<PlacedView> {};
@@ -92,9 +93,11 @@ TEST_P(PaintedSpot, AppearsWhereTheCameraModelProjectsIt) {
   painted.paint_areas.push_back({square(spot.x(), spot.y(), 0.2), {0.8F, 0.8F, 0.8F}, 0.0F});
 
   const Eigen::Vector2d seen =
-      centre_of_change(draw(bare, camera, pose, even_light(), 0, view.body),
-                       draw(painted, camera, pose, even_light(), 0, view.body));
-  const Eigen::Vector2d expected = pixel_of(camera, pose, view.body, {spot.x(), spot.y(), 0.0});
+      centre_of_change(draw(bare, camera, pose, even_light(), 0, {view.body, view.ground}),
+                       draw(painted, camera, pose, even_light(), 0, {view.body, view.ground}));
+  const double height_m = CurvedGround(view.ground, pose).height_m(spot);
+  const Eigen::Vector2d expected =
+      pixel_of(camera, pose, view.body, {spot.x(), spot.y(), height_m});
   EXPECT_NEAR(seen.x(), expected.x(), 0.5);
   EXPECT_NEAR(seen.y(), expected.y(), 0.5);
 }
@@ -108,7 +111,33 @@ INSTANTIATE_TEST_SUITE_P(
                     PlacedView{3, {}, {-2.0, 7.0}, false},
                     PlacedView{4, {0.01, -0.02, -0.04}, {-7.0, 3.5}, false},
                     PlacedView{1, {}, {9.0, 1.0}, true},
-                    PlacedView{5, {0.01, 0.01, 0.0}, {-1.0, -6.0}, true}));
+                    PlacedView{5, {0.01, 0.01, 0.0}, {-1.0, -6.0}, true},
+                    PlacedView{1, {}, {14.0, 1.0}, false, {0.01, 0.0, 0.0}},
+                    PlacedView{1, {}, {12.0, -2.0}, false, {-0.01, 0.004, 0.003}},
+                    PlacedView{0, {0.01, 0.01, 0.0}, {5.0, 6.0}, false, {0.0, 0.02, -0.005}},
+                    PlacedView{4, {}, {-9.0, 1.0}, true, {0.005, 0.01, 0.005}}));
+
+TEST(Renderer, ACrestHidesWhatIsBehindIt) {
+  const World bare = asphalt_plain();
+  World world = asphalt_plain();
+  world.posts.push_back(
+      {.position = {55.0, 0.0}, .radius_m = 1.0, .top_m = 1.0, .kind = PostKind::kSign});
+  const CameraModel camera = front_camera();
+  const auto draw_on = [&](const World& shown, const GroundShape& ground) {
+    return draw(shown, camera, {}, even_light(), 0, {.ground = ground}).pixels;
+  };
+  const GroundShape crest{.along_per_m = -0.005};  // 7.5 m lower at 55 m
+  EXPECT_NE(draw_on(bare, {}), draw_on(world, {}));
+  EXPECT_EQ(draw_on(bare, crest), draw_on(world, crest));
+}
+
+TEST(CurvedGround, GoesOnWithAConstantGradeFarAway) {
+  const CurvedGround ground({.along_per_m = 0.002}, {10.0, 0.0, 0.0});
+  EXPECT_DOUBLE_EQ(ground.height_m({10.0, 0.0}), 0.0);
+  EXPECT_NEAR(ground.height_m({40.0, 5.0}), 0.9, 1e-9);
+  const double grade = 0.002 * kCurvedReach_m;
+  EXPECT_NEAR(ground.height_m({210.0, 0.0}) - ground.height_m({110.0, 0.0}), 100.0 * grade, 1e-9);
+}
 
 TEST(Renderer, PutsASignWhereTheCameraModelProjectsIt) {
   const World bare = asphalt_plain();
@@ -275,7 +304,7 @@ TEST(Renderer, DrawsAnEmptyWorldAndOddBodies) {
   RgbImage image;
   for (const BodyMotion& body : {BodyMotion{0.5, 0.0, 0.0}, BodyMotion{-0.5, 0.3, 0.0},
                                  BodyMotion{0.0, 0.0, -2.0}, BodyMotion{0.0, 1.5, 3.0}}) {
-    renderer.render(front_camera(), {}, body, 0.0, {}, 3, image);
+    renderer.render(front_camera(), {}, {.body = body}, 0.0, {}, 3, image);
     EXPECT_GT(mean_of(image), 20.0);
   }
 }
