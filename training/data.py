@@ -60,24 +60,31 @@ class Stream(Protocol):
     def close(self) -> None: ...
 
 
-def _view_table(camera_mask: int, motions: np.ndarray | None) -> tuple[Tensor, Tensor]:
+def _view_table(
+    camera_mask: int, motions: np.ndarray | None, rig: np.ndarray | None
+) -> tuple[Tensor, Tensor]:
     index = np.empty((VIEW_SLOTS, BEV_ROWS * BEV_COLS), np.int32)
     weight = np.empty((VIEW_SLOTS, BEV_ROWS * BEV_COLS), np.float32)
-    where = None if motions is None else address(motions)
-    library().bevloc_view_table(camera_mask, address(index), address(weight), where)
+    given = (None if array is None else address(array) for array in (motions, rig))
+    library().bevloc_view_table(camera_mask, address(index), address(weight), *given)
     return torch.from_numpy(index.astype(np.int64)), torch.from_numpy(weight)
 
 
 @lru_cache(maxsize=64)
 def view_table(camera_mask: int) -> tuple[Tensor, Tensor]:
     """The view table, index int64 [8, 5000] and weight float [8, 5000], of the cameras in the mask
-    when all expose at the same time."""
-    return _view_table(camera_mask, None)
+    on the simulator's own rig when all expose at the same time."""
+    return _view_table(camera_mask, None, None)
 
 
-def sample_view_table(camera_mask: int, motions: np.ndarray) -> tuple[Tensor, Tensor]:
-    """The same for cameras whose exposures differ: motions float32 [6, 3] (sampler.h)."""
-    return _view_table(camera_mask, motions) if motions.any() else view_table(camera_mask)
+def sample_view_table(
+    camera_mask: int, motions: np.ndarray, rig: np.ndarray | None = None
+) -> tuple[Tensor, Tensor]:
+    """The same for cameras whose exposures differ, motions float32 [6, 3], and for another rig,
+    float32 [6, 15] (sampler.h)."""
+    if rig is None and not motions.any():
+        return view_table(camera_mask)
+    return _view_table(camera_mask, motions, rig)
 
 
 class SamplerStream:
@@ -130,8 +137,9 @@ class SamplerStream:
         raster_truth = np.empty_like(raster_prior)
         correction = np.empty((count, 3), np.float32)
         motions = np.empty((count, CAMERAS, 3), np.float32)
+        rigs = np.empty((count, CAMERAS, 15), np.float32)
         arrays: list[np.ndarray]
-        arrays = [images, camera_mask, raster_prior, raster_truth, correction, motions]
+        arrays = [images, camera_mask, raster_prior, raster_truth, correction, motions, rigs]
         filled = 0
         for k, sampler in enumerate(self._samplers):
             turns = len(self._samplers)
@@ -140,7 +148,7 @@ class SamplerStream:
             library().bevloc_sampler_next(sampler, own, *map(address, part))
             filled += own
         self._position += count
-        tables = list(map(sample_view_table, camera_mask.tolist(), motions))
+        tables = list(map(sample_view_table, camera_mask.tolist(), motions, rigs))
         return Batch(
             images=torch.from_numpy(images),
             camera_mask=torch.from_numpy(camera_mask),

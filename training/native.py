@@ -50,11 +50,11 @@ def library() -> ctypes.CDLL:
     lib.bevloc_sampler_create.restype = pointer
     lib.bevloc_sampler_destroy.argtypes = [pointer]
     lib.bevloc_sampler_destroy.restype = None
-    lib.bevloc_sampler_next.argtypes = [pointer, integer] + [pointer] * 6
+    lib.bevloc_sampler_next.argtypes = [pointer, integer] + [pointer] * 7
     lib.bevloc_sampler_next.restype = None
     lib.bevloc_scene_features.argtypes = [integer] + [pointer] * 3
     lib.bevloc_scene_features.restype = None
-    lib.bevloc_view_table.argtypes = [ctypes.c_uint8] + [pointer] * 3
+    lib.bevloc_view_table.argtypes = [ctypes.c_uint8] + [pointer] * 4
     lib.bevloc_view_table.restype = None
     lib.bevloc_network_create.argtypes = [ctypes.c_char_p, integer, pointer, integer]
     lib.bevloc_network_create.restype = pointer

@@ -30,6 +30,7 @@ constexpr std::array<Entry, kNuisanceSets> kEntries{{
     {NuisanceSet::kCalibration, "calibration", "cameras off by 0.2 degrees and 2 cm"},
     {NuisanceSet::kPitch, "pitch", "body pitches and rolls by 1 degree"},
     {NuisanceSet::kSlopes, "slopes", "crests and sags of 300 m radius and more, camber, banks"},
+    {NuisanceSet::kRigs, "rigs", "another rig for each frame, half as various as in training"},
     {NuisanceSet::kMissingCamera, "missing_camera", "exactly one camera missing"},
     {NuisanceSet::kUnsynchronised, "unsynchronised", "each camera within 50 ms of the pose's time"},
     {NuisanceSet::kUnsynchronisedUncompensated, "unsynchronised_uncompensated",
@@ -104,6 +105,9 @@ Nuisances nuisances_of(NuisanceSet set) {
     case NuisanceSet::kSlopes:
       nuisances.slopes = {
           .along_per_m = 1.0 / 300.0, .across_per_m = 1.0 / 200.0, .twist_per_m = 1.0 / 1000.0};
+      break;
+    case NuisanceSet::kRigs:
+      nuisances.rig_variety = 0.5;
       break;
     case NuisanceSet::kMissingCamera:
       nuisances.missing_cameras = {.probability = 1.0, .most = 1};

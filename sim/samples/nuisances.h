@@ -61,6 +61,7 @@ struct Desynchronisation {
 
 /// All nuisances of a sample. The defaults are the usual strengths.
 struct Nuisances {
+  double rig_variety = 0.0;  ///< random_rig(); 0: the simulator's own rig
   CalibrationSigma calibration;
   BodySigma body;
   Slopes slopes;
@@ -94,12 +95,13 @@ enum class NuisanceSet : uint8_t {
   kCalibration,
   kPitch,
   kSlopes,
+  kRigs,
   kMissingCamera,
   kUnsynchronised,
   kUnsynchronisedUncompensated,
 };
 
-inline constexpr size_t kNuisanceSets = 16;
+inline constexpr size_t kNuisanceSets = 17;
 
 std::array<NuisanceSet, kNuisanceSets> all_nuisance_sets();
 Nuisances nuisances_of(NuisanceSet set);

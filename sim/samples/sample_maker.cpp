@@ -13,6 +13,7 @@
 #include "sim/samples/camera_looks.h"
 #include "sim/samples/map_habits.h"
 #include "sim/samples/passage.h"
+#include "sim/samples/random_rig.h"
 #include "sim/samples/world_changes.h"
 #include "sim/sim_rig.h"
 #include "sim/vehicle/placement.h"
@@ -138,8 +139,7 @@ void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisance
   sample.images.resize(kImagesSize);
   RgbImage image(kNetworkWidthPx, kNetworkHeightPx);
   for (size_t i = 0; i < kCameraCount; ++i) {
-    const CameraModel camera =
-        true_camera(nominal_network_rig().cameras[i], nuisances.calibration, random);
+    const CameraModel camera = true_camera(sample.rig.cameras[i], nuisances.calibration, random);
     const double offset_s = passage.next_offset_s();
     if (!sample.cameras[i]) continue;
     sample.reference_from_exposure[i] = passage.known_motion(offset_s);
@@ -164,6 +164,8 @@ Sample make_sample(const Nuisances& nuisances, uint64_t seed, const Se2& map_fro
   sample.correction = {random.uniform(-kMaxLongitudinalM, kMaxLongitudinalM),
                        random.uniform(-kMaxLateralM, kMaxLateralM),
                        random.uniform(-kMaxYawRad, kMaxYawRad)};
+  sample.rig = nuisances.rig_variety > 0.0 ? network_rig(random_rig(nuisances.rig_variety, seed))
+                                           : nominal_network_rig();
   sample.cameras = random_cameras(nuisances.missing_cameras, random);
   take_images(views.renderer, map_from_vehicle, nuisances, seed, sample);
   sample.raster_truth.resize(kRasterSize);

@@ -32,6 +32,7 @@ inline constexpr size_t kImagesSize =
 /// T is the true pose, T0 the prior.
 struct Sample {
   std::vector<uint8_t> images;              ///< kImagesSize bytes; black where a camera is missing
+  Rig rig;                                  ///< the network's rig as calibrated
   CameraMask cameras;                       ///< the cameras that are present
   CameraMotions reference_from_exposure{};  ///< motion against the time of T, from odometry
   std::vector<uint8_t> raster_prior;        ///< the localizer's map at T0, kRasterSize bytes
@@ -51,8 +52,8 @@ struct SampleStream {
   TrainingNuisances training{};
 };
 
-/// The network's rig as calibrated. The cameras that take a sample's images differ from it by the
-/// calibration error.
+/// The network's rig of the simulator's own vehicle. The cameras that take a sample's images differ
+/// from the sample's rig by the calibration error.
 const Rig& nominal_network_rig();
 
 /// Makes the samples of one world and passes each to `deliver`. World w holds the samples from

@@ -31,6 +31,7 @@ TrainingNuisances strong_nuisances() {
 
 TrainingNuisances street_nuisances() {
   TrainingNuisances nuisances = strong_nuisances();
+  nuisances.rig_variety = {.share = 0.4, .weakest = 0.05, .strongest = 1.0};
   nuisances.looks = {.share = 0.8, .weakest = 0.2, .strongest = 1.3};
   nuisances.noise_factor = {.share = 0.7, .weakest = 0.2, .strongest = 1.0};
   nuisances.slopes = {.share = 0.5, .weakest = 0.2, .strongest = 1.2};
@@ -78,6 +79,9 @@ Nuisances drawn_for_world(const Nuisances& usual, const TrainingNuisances& train
 Nuisances drawn_for_sample(const Nuisances& of_world, const TrainingNuisances& training,
                            uint64_t seed) {
   Nuisances nuisances = of_world;
+  if (const auto variety = drawn(training.rig_variety, seed, "rig")) {
+    nuisances.rig_variety = *variety;
+  }
   if (const auto spread_s = drawn(training.camera_spread_s, seed, "spread")) {
     nuisances.desynchronisation.spread_s = *spread_s;
   }

@@ -17,6 +17,7 @@ struct Strengthening {
 /// By default all shares are zero, and then no bit of a sample changes.
 struct TrainingNuisances {
   // Drawn for each sample.
+  Strengthening rig_variety;         ///< Nuisances::rig_variety
   Strengthening camera_spread_s;     ///< Desynchronisation::spread_s, with compensation
   Strengthening calibration_factor;  ///< multiplies all of CalibrationSigma
   Strengthening body_tilt_rad;       ///< BodySigma::tilt_rad

@@ -21,8 +21,10 @@ constexpr size_t kImages = kCameras * 3 * kPixels;
 constexpr size_t kRaster = 3 * 400 * 200;
 constexpr size_t kViewTable = 8 * 5000;
 constexpr size_t kMotions = kCameras * 3;
+constexpr size_t kRig = kCameras * 15;
 constexpr int kUsual = 0;
 constexpr int kStrong = 1;
+constexpr int kStreet = 2;
 constexpr uint64_t kSamplesPerWorld = 16;
 
 // A seed that training never uses.
@@ -35,7 +37,8 @@ struct Batch {
         prior(count * kRaster),
         truth(count * kRaster),
         correction(count * 3),
-        motions(count * kMotions) {}
+        motions(count * kMotions),
+        rigs(count * kRig) {}
 
   std::vector<uint8_t> images;
   std::vector<uint8_t> cameras;
@@ -43,6 +46,7 @@ struct Batch {
   std::vector<uint8_t> truth;
   std::vector<float> correction;
   std::vector<float> motions;
+  std::vector<float> rigs;
 
   size_t size() const { return cameras.size(); }
   bool operator==(const Batch&) const = default;
@@ -56,7 +60,7 @@ Batch sample(uint64_t first_sample, int count, int threads, double drop_probabil
   Batch batch(static_cast<size_t>(count));
   bevloc_sampler_next(sampler.get(), count, batch.images.data(), batch.cameras.data(),
                       batch.prior.data(), batch.truth.data(), batch.correction.data(),
-                      batch.motions.data());
+                      batch.motions.data(), batch.rigs.data());
   return batch;
 }
 
@@ -87,7 +91,8 @@ TEST(Sampler, BatchesJoinWithoutAGap) {
   for (size_t i = 0; i < whole.size(); ++i) {
     Batch one(1);
     bevloc_sampler_next(sampler, 1, one.images.data(), one.cameras.data(), one.prior.data(),
-                        one.truth.data(), one.correction.data(), one.motions.data());
+                        one.truth.data(), one.correction.data(), one.motions.data(),
+                        one.rigs.data());
     EXPECT_EQ(one.cameras[0], whole.cameras[i]);
     EXPECT_TRUE(std::equal(one.images.begin(), one.images.end(),
                            whole.images.begin() + static_cast<std::ptrdiff_t>(i * kImages)));
@@ -189,7 +194,7 @@ TEST(Sampler, TheCorrectionTakesThePriorRasterToTheTrueOne) {
 TEST(Sampler, TheViewTableIsThatOfTheRigWithItsCameras) {
   std::vector<int32_t> index(kViewTable);
   std::vector<float> weight(kViewTable);
-  bevloc_view_table(0b111111, index.data(), weight.data(), nullptr);
+  bevloc_view_table(0b111111, index.data(), weight.data(), nullptr, nullptr);
   size_t seen = 0;
   for (size_t cell = 0; cell < 5000; ++cell) {
     float sum = 0.0F;
@@ -200,7 +205,7 @@ TEST(Sampler, TheViewTableIsThatOfTheRigWithItsCameras) {
   EXPECT_GT(seen, 4000U);
 
   std::vector<float> front_only(kViewTable);
-  bevloc_view_table(0b000010, index.data(), front_only.data(), nullptr);
+  bevloc_view_table(0b000010, index.data(), front_only.data(), nullptr, nullptr);
   EXPECT_NE(front_only, weight);
   for (size_t i = 0; i < kViewTable; ++i) {
     if (front_only[i] > 0.0F) {
@@ -225,17 +230,45 @@ TEST(Sampler, OnlyStrongNuisancesMoveCamerasInSomeSamples) {
   EXPECT_LT(moved, kSamplesPerWorld / 2);
 }
 
+TEST(Sampler, TheViewTableFollowsTheRig) {
+  const Batch usual = sample(0, 1, 1, 0.0);
+  std::vector<int32_t> index(kViewTable);
+  std::vector<int32_t> own_index(kViewTable);
+  std::vector<float> own(kViewTable);
+  std::vector<float> of_sample(kViewTable);
+  bevloc_view_table(0b111111, own_index.data(), own.data(), nullptr, nullptr);
+  bevloc_view_table(0b111111, index.data(), of_sample.data(), nullptr, usual.rigs.data());
+  EXPECT_EQ(index, own_index);
+  for (size_t i = 0; i < kViewTable; ++i) EXPECT_NEAR(of_sample[i], own[i], 1e-3);
+  std::vector<float> higher = usual.rigs;
+  for (size_t camera = 0; camera < kCameras; ++camera) higher[camera * 15 + 14] += 0.5F;
+  bevloc_view_table(0b111111, index.data(), of_sample.data(), nullptr, higher.data());
+  EXPECT_NE(of_sample, own);
+}
+
+TEST(Sampler, StreetNuisancesHaveOtherRigsInSomeSamples) {
+  const Batch street = sample(0, kSamplesPerWorld, 1, 0.0, kStreet);
+  const Batch usual = sample(0, 1, 1, 0.0);
+  size_t others = 0;
+  for (size_t i = 0; i < street.size(); ++i) {
+    const auto rig = street.rigs.begin() + static_cast<std::ptrdiff_t>(i * kRig);
+    others += std::equal(rig, rig + kRig, usual.rigs.begin()) ? 0 : 1;
+  }
+  EXPECT_GT(others, 1U);
+  EXPECT_LT(others, kSamplesPerWorld - 3);
+}
+
 TEST(Sampler, TheViewTableFollowsTheMotions) {
   std::vector<int32_t> index(kViewTable);
   std::vector<float> still(kViewTable);
   std::vector<float> zero_motion(kViewTable);
   std::vector<float> moved(kViewTable);
   std::vector<float> motions(kMotions);
-  bevloc_view_table(0b111111, index.data(), still.data(), nullptr);
-  bevloc_view_table(0b111111, index.data(), zero_motion.data(), motions.data());
+  bevloc_view_table(0b111111, index.data(), still.data(), nullptr, nullptr);
+  bevloc_view_table(0b111111, index.data(), zero_motion.data(), motions.data(), nullptr);
   EXPECT_EQ(zero_motion, still);
   motions[0] = 0.6F;
-  bevloc_view_table(0b111111, index.data(), moved.data(), motions.data());
+  bevloc_view_table(0b111111, index.data(), moved.data(), motions.data(), nullptr);
   EXPECT_NE(moved, still);
 }
 

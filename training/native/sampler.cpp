@@ -30,6 +30,37 @@ const float* read_motion(const float* in, Se2& motion) {
   return in + 3;
 }
 
+constexpr int kRigFloats = 15;
+
+/// Returns the position after the camera.
+float* write_camera(const bevloc::CameraModel& camera, float* out) {
+  const bevloc::Intrinsics& intrinsics = camera.intrinsics;
+  const bevloc::Se3& pose = camera.vehicle_from_camera;
+  for (const double value : {intrinsics.fx_px, intrinsics.cx_px, intrinsics.cy_px}) {
+    *out++ = static_cast<float>(value);
+  }
+  for (const double value : pose.rotation.reshaped<Eigen::RowMajor>()) {
+    *out++ = static_cast<float>(value);
+  }
+  for (const double value : pose.translation_m) *out++ = static_cast<float>(value);
+  return out;
+}
+
+bevloc::Rig read_rig(const float* in) {
+  bevloc::Rig rig = bevloc::sim::nominal_network_rig();
+  for (bevloc::CameraModel& camera : rig.cameras) {
+    camera.intrinsics.fx_px = camera.intrinsics.fy_px = in[0];
+    camera.intrinsics.cx_px = in[1];
+    camera.intrinsics.cy_px = in[2];
+    using Rows = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
+    camera.vehicle_from_camera.rotation = Eigen::Map<const Rows>(in + 3).cast<double>();
+    camera.vehicle_from_camera.translation_m =
+        Eigen::Map<const Eigen::Vector3f>(in + 12).cast<double>();
+    in += kRigFloats;
+  }
+  return rig;
+}
+
 }  // namespace
 
 /// Workers that make samples ahead of their use. Each worker makes whole worlds; samples are
@@ -137,7 +168,7 @@ void bevloc_sampler_destroy(bevloc_sampler* sampler) {
 
 void bevloc_sampler_next(bevloc_sampler* sampler, int count, uint8_t* images, uint8_t* camera_mask,
                          uint8_t* raster_prior, uint8_t* raster_truth, float* correction,
-                         float* motions) {
+                         float* motions, float* rig) {
   for (int i = 0; i < count; ++i) {
     const Sample sample = sampler->next();
     images = std::copy(sample.images.begin(), sample.images.end(), images);
@@ -147,17 +178,19 @@ void bevloc_sampler_next(bevloc_sampler* sampler, int count, uint8_t* images, ui
     correction = write_motion(sample.correction, correction);
     for (const Se2& motion : sample.reference_from_exposure)
       motions = write_motion(motion, motions);
+    for (const bevloc::CameraModel& camera : sample.rig.cameras) rig = write_camera(camera, rig);
   }
 }
 
-void bevloc_view_table(uint8_t camera_mask, int32_t* index, float* weight, const float* motions) {
+void bevloc_view_table(uint8_t camera_mask, int32_t* index, float* weight, const float* motions,
+                       const float* rig) {
   bevloc::CameraMotions reference_from_exposure{};
   if (motions != nullptr) {
     for (Se2& motion : reference_from_exposure) motions = read_motion(motions, motion);
   }
-  const bevloc::ViewTable table =
-      bevloc::make_view_table(bevloc::sim::nominal_network_rig(), bevloc::CameraMask(camera_mask),
-                              bevloc::kFeatureGrid, reference_from_exposure);
+  const bevloc::ViewTable table = bevloc::make_view_table(
+      rig != nullptr ? read_rig(rig) : bevloc::sim::nominal_network_rig(),
+      bevloc::CameraMask(camera_mask), bevloc::kFeatureGrid, reference_from_exposure);
   std::copy(table.index.begin(), table.index.end(), index);
   std::copy(table.weight.begin(), table.weight.end(), weight);
 }

@@ -27,16 +27,21 @@ void bevloc_sampler_destroy(bevloc_sampler* sampler);
 ///   correction      float [count, 3]              dT = T0^-1 T: x m, y m, yaw rad
 ///   motions         float [count, 6, 3]           reference_from_exposure of each camera
 ///                                                 (pipeline/calibration/rig.h): x m, y m, yaw rad
+///   rig             float [count, 6, 15]          the network cameras: focal length, principal
+///                                                 column and row in pixels, then the rotation (row
+///                                                 by row) and the translation of
+///                                                 vehicle_from_camera
 /// dT is uniform in +-2 m, +-1 m, +-2 degrees. All motions of a sample are zero if its cameras
 /// expose at the same time.
 void bevloc_sampler_next(bevloc_sampler* sampler, int count, uint8_t* images, uint8_t* camera_mask,
                          uint8_t* raster_prior, uint8_t* raster_truth, float* correction,
-                         float* motions);
+                         float* motions, float* rig);
 
-/// Writes the view table (pipeline/network/view/view_table.h) of the samples' rig for the cameras
-/// in `camera_mask`: index int32 [8, 5000], weight float [8, 5000]. `motions`: a sample's [6, 3],
-/// or null for cameras that expose at the same time.
-void bevloc_view_table(uint8_t camera_mask, int32_t* index, float* weight, const float* motions);
+/// Writes the view table (pipeline/network/view/view_table.h) for the cameras in `camera_mask`: index
+/// int32 [8, 5000], weight float [8, 5000]. `motions`: a sample's [6, 3], or null for cameras that
+/// expose at the same time. `rig`: a sample's [6, 15], or null for the simulator's own.
+void bevloc_view_table(uint8_t camera_mask, int32_t* index, float* weight, const float* motions,
+                       const float* rig);
 
 #ifdef __cplusplus
 }
