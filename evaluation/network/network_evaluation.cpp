@@ -134,8 +134,8 @@ SetResult NetworkEvaluation::run(const sim::SampleStream& stream, int samples,
 }
 
 void NetworkEvaluation::perceive(const sim::Sample& sample) {
-  update_view_table(sample.rig, sample.cameras, kFeatureGrid,
-                    sample.reference_from_exposure, view_table_);
+  update_view_table(sample.rig, sample.cameras, kFeatureGrid, sample.reference_from_exposure,
+                    view_table_);
   network_->set_view_table(view_table_);
   std::ranges::transform(sample.images, network_->image_input().begin(),
                          [](uint8_t value) { return static_cast<int8_t>(value + kNetworkBlack); });

@@ -18,7 +18,7 @@ from training.export_onnx import build_model
 from training.graph import folded_convolutions
 from training.model import real_images, real_raster
 from training.models.config import PRESETS
-from training.models.layers import running_statistics
+from training.models.layers import ConvBn, running_statistics
 from training.models.network import BevNetwork
 from training.onnx_graph import FloatOnnxBackend
 from training.start_weights import start_with
@@ -29,6 +29,10 @@ def outputs(net: BevNetwork, batch: Batch) -> tuple[Tensor, ...]:
         return net(
             real_images(batch.images), batch.index, batch.weight, real_raster(batch.raster_prior)
         )
+
+
+def largest(tensor: Tensor) -> float:
+    return tensor.abs().max().item()
 
 
 class ModelFile(unittest.TestCase):
@@ -53,7 +57,7 @@ class ModelFile(unittest.TestCase):
     def test_a_run_starts_with_the_network_of_a_float_model_file(self):
         net = self.start().eval()
         for found, wanted in zip(outputs(net, self.batch), outputs(self.trained, self.batch)):
-            torch.testing.assert_close(found, wanted, rtol=1e-3, atol=1e-3 * wanted.abs().max())
+            torch.testing.assert_close(found, wanted, rtol=1e-3, atol=1e-3 * largest(wanted))
         for name, scale in self.trained.solvers.log_scale.items():
             self.assertAlmostEqual(net.solvers.log_scale[name].item(), scale.item(), places=4)
 
@@ -61,16 +65,18 @@ class ModelFile(unittest.TestCase):
         """A batch normalisation in training uses the statistics of its batch, so those of the file
         must have been measured."""
         net = self.start()
-        mean, variance = running_statistics(net.trunk.stem.bn)
+        stem = net.get_submodule("trunk.stem")
+        assert isinstance(stem, ConvBn)
+        _, variance = running_statistics(stem.bn)
         self.assertGreater((variance - 1.0).abs().max().item(), 1e-3)
         before = outputs(net.eval(), self.batch)[0]
         torch.testing.assert_close(
-            outputs(net.train(), self.batch)[0], before, rtol=0.02, atol=0.02 * before.abs().max()
+            outputs(net.train(), self.batch)[0], before, rtol=0.02, atol=0.02 * largest(before)
         )
 
     def test_other_files_are_refused_with_what_is_wrong(self):
         small = BevNetwork(PRESETS["small"])
-        with self.assertRaisesRegex(CheckpointError, r"trunk.stem.weight: found .*, wanted float32"):
+        with self.assertRaisesRegex(CheckpointError, "trunk.stem.weight: found .*, wanted float32"):
             start_with(small, self.file, lambda: [])
         self.file.write_bytes(b"no model")
         with self.assertRaisesRegex(CheckpointError, "unreadable as a model"):

@@ -37,9 +37,9 @@ void bevloc_sampler_next(bevloc_sampler* sampler, int count, uint8_t* images, ui
                          uint8_t* raster_prior, uint8_t* raster_truth, float* correction,
                          float* motions, float* rig);
 
-/// Writes the view table (pipeline/network/view/view_table.h) for the cameras in `camera_mask`: index
-/// int32 [8, 5000], weight float [8, 5000]. `motions`: a sample's [6, 3], or null for cameras that
-/// expose at the same time. `rig`: a sample's [6, 15], or null for the simulator's own.
+/// Writes the view table (pipeline/network/view/view_table.h) for the cameras in `camera_mask`:
+/// index int32 [8, 5000], weight float [8, 5000]. `motions`: a sample's [6, 3], or null for cameras
+/// that expose at the same time. `rig`: a sample's [6, 15], or null for the simulator's own.
 void bevloc_view_table(uint8_t camera_mask, int32_t* index, float* weight, const float* motions,
                        const float* rig);
 

@@ -82,7 +82,7 @@ class OnlineCalibration {
   ExtrinsicInformation information_;
   ExtrinsicErrors used_ = ExtrinsicErrors::Zero();
   ExtrinsicErrors start_ = ExtrinsicErrors::Zero();  ///< as restored
-  double unfollowed_s_ = 0.0;     ///< learning time since used_ has changed
+  double unfollowed_s_ = 0.0;                        ///< learning time since used_ has changed
   std::optional<Time> observed_;  ///< the time of the latest observation that was computed
   std::array<SeenByCamera, kCameraCount> seen_{};  ///< sums that fade over some seconds of driving
   double seen_s_ = 0.0;                            ///< driving time in them
