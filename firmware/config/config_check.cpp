@@ -1,4 +1,6 @@
 // Looks up on this machine what a configuration names.
+#include <spdlog/spdlog.h>
+
 #include "can/secoc/secoc_files.h"
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "firmware/config/config.h"
@@ -6,6 +8,7 @@
 #include "firmware/runtime/can_bus.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_loader.h"
+#include "pipeline/map/map_summary.h"
 #include "pipeline/network/network.h"
 
 namespace bevloc::firmware {
@@ -39,7 +42,11 @@ Status check_config(const Config& config) {
     return fail("{}: {}", config.model_file.string(), fits.error().message);
   }
   if (!config.map_file.empty()) {
-    if (const auto map = load_map(config.map_file); !map) return tl::unexpected(map.error());
+    const auto map = load_map(config.map_file);
+    if (!map) return tl::unexpected(map.error());
+    for (const std::string& warning : warnings_of(*map)) {
+      spdlog::warn("{}: {}", config.map_file.string(), warning);
+    }
   }
   if (config.can.secoc) {
     const auto key = can::read_secoc_key(config.can.secoc->key_file);

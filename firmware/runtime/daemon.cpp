@@ -17,6 +17,7 @@
 #include "firmware/telemetry/totals_log.h"
 #include "firmware/telemetry/view_log.h"
 #include "pipeline/map/map_loader.h"
+#include "pipeline/map/map_summary.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -127,6 +128,8 @@ Status run_daemon(const Config& config, const Rig& rig, const DaemonHost& host) 
   auto map = load_map(config.map_file);
   if (!map) return tl::unexpected(map.error());
   base.map = std::move(*map);
+  spdlog::info("map: {}", contents_of(base.map));
+  for (const std::string& warning : warnings_of(base.map)) spdlog::warn("map: {}", warning);
 
   while (wait_for_ignition(base, host)) {
     const auto ignition_went_off = start_and_run(config, rig, base, host);

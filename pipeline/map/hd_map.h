@@ -61,6 +61,9 @@ struct HdMap {
   GeoOrigin origin;
   std::vector<MapElement> elements;
   std::vector<Lane> lanes;
+  /// What the reader left out of the file and why, one sentence each, with file and line. Compact
+  /// maps have none.
+  std::vector<std::string> left_out;
 };
 
 }  // namespace bevloc

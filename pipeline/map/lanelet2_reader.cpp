@@ -5,10 +5,12 @@
 #include <charconv>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "common/files.h"
 #include "pipeline/map/lanelet_geometry.h"
+#include "pipeline/map/line_neighbours.h"
 #include "pipeline/map/map_check.h"
 #include "pipeline/map/map_frame.h"
 #include "pipeline/map/osm_document.h"
@@ -18,12 +20,28 @@ namespace {
 
 enum class LaneletKind : uint8_t { kVehicles, kCrosswalk, kOther };
 
+/// What bounds a lanelet on one side.
+struct Bound {
+  std::vector<const OsmWay*> ways;
+  Polyline points;
+};
+
 struct Lanelet {
   const OsmRelation* relation;
   LaneletKind kind;
-  const OsmWay* left;
-  const OsmWay* right;
+  Bound left;
+  Bound right;
 };
+
+/// Pieces of a bound whose ends are closer belong together.
+constexpr double kJoint_m = 0.2;
+/// A line is the edge of the road if no other line is this close beside it ...
+constexpr double kBesideEdge_m = 2.5;
+/// ... along more than this share of it.
+constexpr double kEdgeShare = 0.5;
+/// Bounds of neighbouring lanelets that share no way are this close, along this share.
+constexpr double kSameLine_m = 0.5;
+constexpr double kSameLineShare = 0.8;
 
 bool is_yes(std::string_view value) {
   return value == "yes" || value == "true" || value == "1";
@@ -101,7 +119,40 @@ Lane reversed(const Lane& lane) {
   return other;
 }
 
-/// Converts one document to a map. Stops at the first error.
+/// Appends the piece to the end of the chain that it joins, in the right direction. Returns false
+/// if it joins neither end.
+bool attach(const Polyline& piece, Polyline& chain) {
+  const auto meet = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return (a - b).norm() <= kJoint_m;
+  };
+  if (meet(chain.back(), piece.front())) {
+    chain.insert(chain.end(), piece.begin() + 1, piece.end());
+  } else if (meet(chain.back(), piece.back())) {
+    chain.insert(chain.end(), piece.rbegin() + 1, piece.rend());
+  } else if (meet(chain.front(), piece.back())) {
+    chain.insert(chain.begin(), piece.begin(), piece.end() - 1);
+  } else if (meet(chain.front(), piece.front())) {
+    chain.insert(chain.begin(), piece.rbegin(), piece.rend() - 1);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// Joins pieces in any order and direction. Returns nothing if they do not form one line.
+std::optional<Polyline> joined(std::vector<Polyline> pieces) {
+  Polyline chain = std::move(pieces.front());
+  pieces.erase(pieces.begin());
+  while (!pieces.empty()) {
+    const auto next = std::ranges::find_if(
+        pieces, [&chain](const Polyline& piece) { return attach(piece, chain); });
+    if (next == pieces.end()) return std::nullopt;
+    pieces.erase(next);
+  }
+  return chain;
+}
+
+/// Converts one document to a map.
 class Lanelet2Reader {
  public:
   Lanelet2Reader(const OsmDocument& document, NodePositions nodes)
@@ -110,16 +161,11 @@ class Lanelet2Reader {
   }
 
   Result<HdMap> read() {
-    for (const auto step : {&Lanelet2Reader::find_lanelets, &Lanelet2Reader::add_lines,
-                            &Lanelet2Reader::add_lanes_and_crossings}) {
-      if (Status status = (this->*step)(); !status) return tl::unexpected(status.error());
-    }
-    if (map_.elements.empty() && map_.lanes.empty()) {
-      return fail(
-          "{}: found no lanelet for vehicles, lane divider, crossing or road boundary in {} ways "
-          "and {} relations, wanted a Lanelet2 map",
-          document_.file, document_.ways.size(), document_.relations.size());
-    }
+    find_lanelets();
+    for (const Lanelet& lanelet : lanelets_) add_lanelet(lanelet);
+    read_lines();
+    for (const OsmWay& way : document_.ways) add_line(way);
+    if (map_.elements.empty() && map_.lanes.empty()) return nothing_found();
     link_successors(map_.lanes);
     map_.origin = nodes_.origin;
     return std::move(map_);
@@ -130,114 +176,197 @@ class Lanelet2Reader {
   struct BoundUse {
     int vehicle_lanelets = 0;
     int crosswalks = 0;
+    int others = 0;
   };
 
-  Status find_lanelets() {
+  tl::unexpected<Error> nothing_found() const {
+    if (!map_.left_out.empty()) {
+      return fail("{}; nothing else in the file can be used", map_.left_out.front());
+    }
+    return fail(
+        "{}: found no lanelet for vehicles, lane divider, crossing or road boundary in {} ways "
+        "and {} relations, wanted a Lanelet2 map",
+        document_.file, document_.ways.size(), document_.relations.size());
+  }
+
+  void find_lanelets() {
     for (const OsmRelation& relation : document_.relations) {
       if (tag_value(relation.tags, "type") != "lanelet") continue;
       const LaneletKind kind = kind_of(relation.tags);
+      count_uses(relation, kind);
       if (kind == LaneletKind::kOther) continue;
-      const auto left = bound(relation, "left");
-      if (!left) return tl::unexpected(left.error());
-      const auto right = bound(relation, "right");
-      if (!right) return tl::unexpected(right.error());
-      lanelets_.push_back({&relation, kind, *left, *right});
-      for (const OsmWay* way : {*left, *right}) {
-        ++(kind == LaneletKind::kCrosswalk ? uses_[way].crosswalks : uses_[way].vehicle_lanelets);
+      Result<Bound> left = bound(relation, "left");
+      Result<Bound> right = left ? bound(relation, "right") : tl::unexpected(left.error());
+      if (!right) {
+        map_.left_out.push_back(right.error().message);
+        continue;
       }
+      lanelets_.push_back({&relation, kind, std::move(*left), std::move(*right)});
     }
-    return {};
   }
 
-  Status add_lines() {
-    for (const OsmWay& way : document_.ways) {
-      std::optional<MapElement> element = classify(way);
-      if (!element) continue;
-      Result<Polyline> points = points_of(way);
-      if (!points) return tl::unexpected(points.error());
-      if (points->size() < 2) continue;
-      element->points = std::move(*points);
-      map_.elements.push_back(std::move(*element));
+  void count_uses(const OsmRelation& relation, LaneletKind kind) {
+    for (const OsmMember& member : relation.members) {
+      if (member.type != "way" || (member.role != "left" && member.role != "right")) continue;
+      BoundUse& use = uses_[member.ref];
+      use.vehicle_lanelets += kind == LaneletKind::kVehicles ? 1 : 0;
+      use.crosswalks += kind == LaneletKind::kCrosswalk ? 1 : 0;
+      use.others += kind == LaneletKind::kOther ? 1 : 0;
     }
-    return {};
   }
 
-  Status add_lanes_and_crossings() {
-    for (const Lanelet& lanelet : lanelets_) {
-      Result<Polyline> left = bound_points(lanelet, *lanelet.left);
-      if (!left) return tl::unexpected(left.error());
-      Result<Polyline> right = bound_points(lanelet, *lanelet.right);
-      if (!right) return tl::unexpected(right.error());
-      if (lanelet.kind == LaneletKind::kCrosswalk) {
-        add_crossing(lanelet, *left, *right);
-      } else {
-        add_lanes(lanelet, std::move(*left), std::move(*right));
-      }
+  void add_lanelet(const Lanelet& lanelet) {
+    if (lanelet.kind == LaneletKind::kCrosswalk) {
+      add_crossing(lanelet);
+    } else {
+      add_lanes(lanelet);
     }
-    return {};
   }
 
-  void add_crossing(const Lanelet& lanelet, const Polyline& left, const Polyline& right) {
-    const bool is_zebra = tag_value(lanelet.left->tags, "type") == "zebra_marking" ||
-                          tag_value(lanelet.right->tags, "type") == "zebra_marking";
+  void add_crossing(const Lanelet& lanelet) {
+    const auto is_zebra = [](const OsmWay* way) {
+      return tag_value(way->tags, "type") == "zebra_marking";
+    };
+    const bool has_zebra = std::ranges::any_of(lanelet.left.ways, is_zebra) ||
+                           std::ranges::any_of(lanelet.right.ways, is_zebra);
     map_.elements.push_back({ElementClass::kPedestrianCrossing,
-                             is_zebra ? Appearance::kZebra : Appearance::kUnknown,
-                             ring_between(left, right)});
+                             has_zebra ? Appearance::kZebra : Appearance::kUnknown,
+                             ring_between(lanelet.left.points, lanelet.right.points)});
   }
 
-  void add_lanes(const Lanelet& lanelet, Polyline left, Polyline right) {
-    align_bounds(left, right);
+  void add_lanes(const Lanelet& lanelet) {
     Lane lane;
-    lane.centerline = centerline_between(left, right);
-    lane.left = std::move(left);
-    lane.right = std::move(right);
+    lane.left = lanelet.left.points;
+    lane.right = lanelet.right.points;
+    align_bounds(lane.left, lane.right);
+    lane.centerline = centerline_between(lane.left, lane.right);
     const OsmTags& tags = lanelet.relation->tags;
     lane.speed_limit_mps = speed_mps(tag_value(tags, "speed_limit")).value_or(lane.speed_limit_mps);
     map_.lanes.push_back(lane);
     if (is_no(tag_value(tags, "one_way"))) map_.lanes.push_back(reversed(lane));
   }
 
-  /// Class and appearance of a way, without its points. Nothing if the map does not use the way.
+  /// Reads the points of all ways that may be lines, and finds which run beside each other.
+  void read_lines() {
+    for (const Lanelet& lanelet : lanelets_) {
+      for (const auto* side : {&lanelet.left, &lanelet.right}) {
+        for (const OsmWay* way : side->ways) {
+          for (const auto* other : {&lanelet.left, &lanelet.right}) {
+            for (const OsmWay* own : other->ways) own_lanelet_[way->id].push_back(own->id);
+          }
+        }
+      }
+    }
+    for (const OsmWay& way : document_.ways) {
+      const bool is_boundary = boundary_appearance(tag_value(way.tags, "type")).has_value();
+      if (!is_boundary && use_of(way).vehicle_lanelets == 0) continue;
+      const Result<Polyline> points = points_of(way);
+      if (points && length_of(*points) <= kLongestPolylineM) beside_.add(way.id, *points);
+    }
+  }
+
+  void add_line(const OsmWay& way) {
+    std::optional<MapElement> element = classify(way);
+    if (!element) return;
+    Result<Polyline> points = points_of(way);
+    if (!points) {
+      map_.left_out.push_back(points.error().message);
+      return;
+    }
+    if (points->size() < 2) return;
+    if (length_of(*points) > kLongestPolylineM) {
+      map_.left_out.push_back(fmt::format("{}:{}: way {}: found {:g} m, wanted at most {:g} m",
+                                          document_.file, way.line, way.id, length_of(*points),
+                                          kLongestPolylineM));
+      return;
+    }
+    element->points = std::move(*points);
+    judge_by_neighbours(way, *element);
+    if (!is_second_of_a_pair(way, *element)) map_.elements.push_back(std::move(*element));
+  }
+
+  const BoundUse& use_of(const OsmWay& way) const {
+    static const BoundUse kUnused;
+    const auto found = uses_.find(way.id);
+    return found == uses_.end() ? kUnused : found->second;
+  }
+
+  /// Class and appearance of a way by its tags and use, without its points. Nothing if the map does
+  /// not use the way.
   std::optional<MapElement> classify(const OsmWay& way) const {
     const std::string_view type = tag_value(way.tags, "type");
     if (const auto appearance = boundary_appearance(type)) {
       return MapElement{ElementClass::kRoadBoundary, *appearance, {}};
     }
-    const auto found = uses_.find(&way);
-    const BoundUse use = found == uses_.end() ? BoundUse{} : found->second;
-    if (use.vehicle_lanelets == 0 || use.crosswalks > 0) return std::nullopt;
+    const BoundUse& use = use_of(way);
+    if (use.crosswalks > 0) return std::nullopt;
     if (type == "line_thin" || type == "line_thick") {
+      if (use.vehicle_lanelets == 0 && use.others > 0) return std::nullopt;
       return MapElement{
           ElementClass::kLaneDivider, divider_appearance(tag_value(way.tags, "subtype")), {}};
     }
-    if (!type.empty()) return std::nullopt;
+    if (!type.empty() || use.vehicle_lanelets == 0) return std::nullopt;
     return MapElement{
         use.vehicle_lanelets == 1 ? ElementClass::kRoadBoundary : ElementClass::kLaneDivider,
         Appearance::kUnknown,
         {}};
   }
 
-  /// The way with a role in a lanelet. Fails unless there is exactly one.
-  Result<const OsmWay*> bound(const OsmRelation& relation, std::string_view role) const {
-    const OsmMember* member = nullptr;
-    int count = 0;
-    for (const OsmMember& candidate : relation.members) {
-      if (candidate.role != role || candidate.type != "way") continue;
-      member = &candidate;
-      ++count;
+  /// Corrects the class of lines that bound one lanelet for vehicles by what runs beside them.
+  void judge_by_neighbours(const OsmWay& way, MapElement& element) {
+    if (use_of(way).vehicle_lanelets != 1) return;
+    const std::vector<int64_t>& own = own_lanelet_[way.id];
+    const auto is_foreign = [&own](int64_t id) { return std::ranges::find(own, id) == own.end(); };
+    const bool has_type = !tag_value(way.tags, "type").empty();
+    if (has_type && element.element_class == ElementClass::kLaneDivider) {
+      const double beside = beside_.share_beside(element.points, kBesideEdge_m, is_foreign);
+      if (beside > kEdgeShare) return;
+      element = {ElementClass::kRoadBoundary, Appearance::kRoadEdge, std::move(element.points)};
+    } else if (!has_type) {
+      const double same = beside_.share_beside(element.points, kSameLine_m, is_foreign);
+      if (same < kSameLineShare) return;
+      element.element_class = ElementClass::kLaneDivider;
+      drawn_by_pairs_.insert(way.id);
     }
-    if (count != 1) {
-      return fail("{}:{}: lanelet {}: found {} ways of role {}, wanted one", document_.file,
-                  relation.line, relation.id, count, role);
+  }
+
+  /// Whether the other bound that runs on this one is in the map already.
+  bool is_second_of_a_pair(const OsmWay& way, const MapElement& element) const {
+    if (!drawn_by_pairs_.contains(way.id)) return false;
+    return beside_.share_beside(element.points, kSameLine_m, [&](int64_t id) {
+      return id < way.id && drawn_by_pairs_.contains(id);
+    }) >= kSameLineShare;
+  }
+
+  /// The ways with a role in a lanelet, as one line.
+  Result<Bound> bound(const OsmRelation& relation, std::string_view role) const {
+    Bound bound;
+    std::vector<Polyline> pieces;
+    for (const OsmMember& member : relation.members) {
+      if (member.role != role || member.type != "way") continue;
+      const auto way = ways_.find(member.ref);
+      if (way == ways_.end()) {
+        return fail(
+            "{}:{}: lanelet {}: found a reference to way {}, which is missing, wanted its {} "
+            "bound in the file",
+            document_.file, relation.line, relation.id, member.ref, role);
+      }
+      Result<Polyline> points = bound_points(relation, *way->second);
+      if (!points) return tl::unexpected(points.error());
+      bound.ways.push_back(way->second);
+      pieces.push_back(std::move(*points));
     }
-    const auto way = ways_.find(member->ref);
-    if (way == ways_.end()) {
-      return fail(
-          "{}:{}: lanelet {}: found a reference to way {}, which is missing, wanted its {} "
-          "bound in the file",
-          document_.file, relation.line, relation.id, member->ref, role);
+    if (pieces.empty()) {
+      return fail("{}:{}: lanelet {}: found no way of role {}, wanted one or more", document_.file,
+                  relation.line, relation.id, role);
     }
-    return way->second;
+    std::optional<Polyline> line = joined(std::move(pieces));
+    if (!line) {
+      return fail("{}:{}: lanelet {}: found {} ways of role {} that do not join, wanted one line",
+                  document_.file, relation.line, relation.id, bound.ways.size(), role);
+    }
+    bound.points = std::move(*line);
+    return bound;
   }
 
   /// Points of a way, without consecutive duplicates.
@@ -270,16 +399,16 @@ class Lanelet2Reader {
     return points;
   }
 
-  Result<Polyline> bound_points(const Lanelet& lanelet, const OsmWay& way) const {
+  Result<Polyline> bound_points(const OsmRelation& relation, const OsmWay& way) const {
     Result<Polyline> points = points_of(way);
     if (points && points->size() < 2) {
       return fail("{}:{}: way {}: found {} points in this bound of lanelet {}, wanted at least 2",
-                  document_.file, way.line, way.id, points->size(), lanelet.relation->id);
+                  document_.file, way.line, way.id, points->size(), relation.id);
     }
     // Centerlines get a point every 2 m, so that a wrong coordinate would fill the memory.
     if (points && length_of(*points) > kLongestPolylineM) {
       return fail("{}:{}: way {}: found {:g} m in this bound of lanelet {}, wanted at most {:g} m",
-                  document_.file, way.line, way.id, length_of(*points), lanelet.relation->id,
+                  document_.file, way.line, way.id, length_of(*points), relation.id,
                   kLongestPolylineM);
     }
     return points;
@@ -289,7 +418,11 @@ class Lanelet2Reader {
   const NodePositions nodes_;
   std::unordered_map<int64_t, const OsmWay*> ways_;
   std::vector<Lanelet> lanelets_;
-  std::unordered_map<const OsmWay*, BoundUse> uses_;
+  std::unordered_map<int64_t, BoundUse> uses_;  ///< by way
+  /// By way: the ways of both bounds of its lanelets.
+  std::unordered_map<int64_t, std::vector<int64_t>> own_lanelet_;
+  LineNeighbours beside_;  ///< typed boundaries, and bounds of lanelets for vehicles
+  std::unordered_set<int64_t> drawn_by_pairs_;  ///< ways that run on a bound of another lanelet
   HdMap map_;
 };
 

@@ -12,18 +12,25 @@ namespace bevloc {
 
 /// Reads a Lanelet2 map. Uses these parts (tags as documented in Lanelet2's LinestringTagging.md
 /// and LaneletAndAreaTagging.md):
-/// - Lane dividers: ways of type line_thin and line_thick that bound a lanelet for vehicles but no
-///   crosswalk; ways without a type that bound two or more lanelets for vehicles.
+/// - Lane dividers: ways of type line_thin and line_thick, unless they bound a crosswalk, or only
+///   lanelets for others than vehicles, or are road boundaries (below); ways without a type that
+///   bound two or more lanelets for vehicles, or run beside a bound of another one.
 /// - Pedestrian crossings: the area between the bounds of lanelets of subtype crosswalk.
 /// - Road boundaries: ways of type curbstone, road_border, guard_rail, jersey_barrier, wall, fence
-///   and hedge; ways without a type that bound one lanelet for vehicles.
+///   and hedge; other ways without a type that bound one lanelet for vehicles; ways of type
+///   line_thin and line_thick that bound one lanelet for vehicles and have no other line beside
+///   them, because then they are the edge of the road.
 /// - Lanes: lanelets for vehicles, in both directions if one_way=no.
 ///
-/// Ignores everything else, such as virtual lines, stop lines and signs. locate_nodes()
-/// (map_frame.h) defines the map frame.
+/// A bound of a lanelet may be several ways that join; each keeps its own type. Ignores everything
+/// else, such as virtual lines, stop lines and signs. locate_nodes() (map_frame.h) defines the map
+/// frame.
 ///
-/// Fails with file, line and element on text that is not OSM XML, on bad coordinates, on references
-/// to missing elements, and on a file without any part listed above.
+/// A lanelet or way that cannot be used (missing elements, far places, bounds that do not join) is
+/// left out, and HdMap::left_out names it with file and line.
+///
+/// Fails with file, line and element on text that is not OSM XML, on bad coordinates, and on a file
+/// without any part listed above that can be used.
 Result<HdMap> read_lanelet2(const std::filesystem::path& path);
 
 /// The same for text in memory. Error messages show `file`; its stem becomes the name of the map.

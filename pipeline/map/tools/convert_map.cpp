@@ -7,6 +7,7 @@
 
 #include "pipeline/map/map_binary.h"
 #include "pipeline/map/map_loader.h"
+#include "pipeline/map/map_summary.h"
 
 namespace {
 
@@ -16,8 +17,11 @@ bevloc::Status convert(const std::filesystem::path& in, const std::filesystem::p
   const auto map = bevloc::load_map(in);
   if (!map) return tl::unexpected(map.error());
   if (auto status = bevloc::write_map_binary(*map, out); !status) return status;
-  fmt::print("{}: {} elements, {} lanes, {} bytes\n", out.string(), map->elements.size(),
-             map->lanes.size(), std::filesystem::file_size(out));
+  fmt::print("{}: {}, {} bytes\n", out.string(), bevloc::contents_of(*map),
+             std::filesystem::file_size(out));
+  for (const std::string& warning : bevloc::warnings_of(*map)) {
+    fmt::print(stderr, "{}: {}\n", in.string(), warning);
+  }
   return {};
 }
 

@@ -7,6 +7,8 @@
 namespace bevloc {
 namespace {
 
+using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -39,8 +41,9 @@ TEST(Lanelet2Reader, ClassifiesLinesByTagAndRole) {
   const HdMap map = read_fixture("street.osm");
   EXPECT_EQ(map.name, "street");
   const auto dividers = of_class(map, ElementClass::kLaneDivider);
-  ASSERT_EQ(dividers.size(), 1U);
+  ASSERT_EQ(dividers.size(), 2U);
   EXPECT_EQ(dividers[0]->appearance, Appearance::kDashed);
+  EXPECT_EQ(dividers[1]->appearance, Appearance::kSolid) << "bounds no lanelet";
   const auto boundaries = of_class(map, ElementClass::kRoadBoundary);
   ASSERT_EQ(boundaries.size(), 2U);
   EXPECT_EQ(boundaries[0]->appearance, Appearance::kKerb);
@@ -108,7 +111,7 @@ TEST(Lanelet2Reader, AutowareLocalCoordinatesReplaceMissingAngles) {
   ASSERT_EQ(map.lanes.size(), 1U);
   EXPECT_EQ(map.lanes[0].right.front(), Eigen::Vector2d(81500.0, 50100.0));
   EXPECT_NEAR(map.lanes[0].speed_limit_mps, 50.0 / 3.6, 1e-9);
-  EXPECT_EQ(of_class(map, ElementClass::kLaneDivider).size(), 2U);
+  EXPECT_EQ(of_class(map, ElementClass::kRoadBoundary).size(), 2U) << "the edges of the road";
   EXPECT_EQ(map.origin.latitude_deg, 0.0);
 }
 
@@ -173,15 +176,24 @@ TEST(Lanelet2Reader, RefusesTwoKindsOfCoordinatesThatNothingRelates) {
   EXPECT_THAT(read_error(lanelet_of({both, both, local, local})), HasSubstr("both at 1 places"));
 }
 
-TEST(Lanelet2Reader, RefusesFarPlaces) {
-  const auto at = [](double x, double y) {
-    return fmt::format("lat='' lon=''><tag k='local_x' v='{}'/><tag k='local_y' v='{}'/>", x, y);
+TEST(Lanelet2Reader, LeavesOutFarPlaces) {
+  const auto left_out_at = [](double second_x) {
+    const auto at = [](double x, double y) {
+      return fmt::format("lat='' lon=''><tag k='local_x' v='{}'/><tag k='local_y' v='{}'/>", x, y);
+    };
+    const auto map =
+        parse_lanelet2(lanelet_of({at(0, 0), at(second_x, 0), at(0, 4), at(20, 4)}), "town.osm");
+    EXPECT_TRUE(map.has_value()) << map.error().message;
+    EXPECT_EQ(map->elements.size(), 1U) << "the other line stays";
+    return map->left_out;
   };
-  EXPECT_THAT(
-      read_error(lanelet_of({at(0, 0), at(2e5, 0), at(0, 4), at(20, 4)})),
-      HasSubstr("node 2: found a place (200000, 0) m from the origin, wanted at most 100000"));
-  EXPECT_THAT(read_error(lanelet_of({at(0, 0), at(6e4, 0), at(0, 4), at(20, 4)})),
-              HasSubstr("way 10: found 60000 m in this bound of lanelet 20, wanted at most 50000"));
+  EXPECT_THAT(left_out_at(2e5),
+              Contains(HasSubstr(
+                  "node 2: found a place (200000, 0) m from the origin, wanted at most 100000")));
+  EXPECT_THAT(left_out_at(6e4),
+              ElementsAre(HasSubstr("way 10: found 60000 m in this bound of lanelet 20, wanted at "
+                                    "most 50000"),
+                          HasSubstr("way 10: found 60000 m, wanted at most 50000")));
   EXPECT_THAT(read_error(lanelet_of({"lat='49' lon='8'>", "lat='52' lon='8'>",
                                      "lat='49' lon='8.1'>", "lat='52' lon='8.1'>"})),
               HasSubstr("m from the origin, wanted at most 100000"));
@@ -228,23 +240,140 @@ TEST(Lanelet2Reader, RefusesBadCoordinates) {
               StartsWith("town.osm:3: node -7: found local_x \"far\""));
 }
 
-TEST(Lanelet2Reader, RefusesBrokenReferences) {
-  const std::vector<std::string> nodes = {"lat='49' lon='8'>", "lat='49' lon='8.001'>",
-                                          "lat='49.0001' lon='8'>", "lat='49.0001' lon='8.001'>"};
-  const auto error_with = [&nodes](const std::string& from, const std::string& to) {
-    std::string text = lanelet_of(nodes);
-    text.replace(text.find(from), from.size(), to);
-    return read_error(text);
-  };
-  EXPECT_THAT(error_with("<nd ref='2'/>", "<nd ref='99'/>"),
-              StartsWith("town.osm:6: way 10: found a reference to node 99, which is missing"));
-  EXPECT_THAT(error_with("role='left' ref='11'", "role='left' ref='98'"),
-              StartsWith("town.osm:8: lanelet 20: found a reference to way 98, which is missing"));
-  EXPECT_THAT(error_with("role='left'", "role='right'"), HasSubstr("found 0 ways of role left"));
-  EXPECT_THAT(error_with("role='right'", "role='left'"), HasSubstr("found 2 ways of role left"));
-  EXPECT_THAT(error_with("<nd ref='3'/>", ""), HasSubstr("found 1 points in this bound"));
-  EXPECT_THAT(error_with("lat='49.0001' lon='8'", "lat='' lon='8'"),
-              StartsWith("town.osm:4: node 3: found no coordinates"));
+/// What was left out of a map of one lanelet after a change of its text.
+std::vector<std::string> left_out_with(const std::string& from, const std::string& to) {
+  std::string text = lanelet_of({"lat='49' lon='8'>", "lat='49' lon='8.001'>",
+                                 "lat='49.0001' lon='8'>", "lat='49.0001' lon='8.001'>"});
+  text.replace(text.find(from), from.size(), to);
+  const auto map = parse_lanelet2(text, "town.osm");
+  EXPECT_TRUE(map.has_value()) << map.error().message;
+  if (!map) return {};
+  EXPECT_THAT(map->lanes, IsEmpty());
+  return map->left_out;
+}
+
+TEST(Lanelet2Reader, LeavesOutWhatIsBrokenAndNamesIt) {
+  EXPECT_THAT(
+      left_out_with("<nd ref='2'/>", "<nd ref='99'/>"),
+      Contains(StartsWith("town.osm:6: way 10: found a reference to node 99, which is missing")));
+  EXPECT_THAT(left_out_with("role='left' ref='11'", "role='left' ref='98'"),
+              ElementsAre(StartsWith(
+                  "town.osm:8: lanelet 20: found a reference to way 98, which is missing")));
+  EXPECT_THAT(left_out_with("role='left'", "role='centre'"),
+              ElementsAre(HasSubstr("lanelet 20: found no way of role left")));
+  EXPECT_THAT(left_out_with("role='right'", "role='left'"),
+              ElementsAre(HasSubstr("found 2 ways of role left that do not join")));
+  EXPECT_THAT(left_out_with("<nd ref='3'/>", ""),
+              ElementsAre(HasSubstr("found 1 points in this bound")));
+  EXPECT_THAT(left_out_with("lat='49.0001' lon='8'", "lat='' lon='8'"),
+              Contains(StartsWith("town.osm:4: node 3: found no coordinates")));
+}
+
+TEST(Lanelet2Reader, RefusesAMapOfWhichNothingIsLeft) {
+  std::string text = lanelet_of({"lat='49' lon='8'>", "lat='49' lon='8.001'>",
+                                 "lat='49.0001' lon='8'>", "lat='49.0001' lon='8.001'>"});
+  for (const std::string_view node : {"<nd ref='2'/>", "<nd ref='4'/>"}) {
+    text.replace(text.find(node), node.size(), "<nd ref='99'/>");
+  }
+  EXPECT_THAT(read_error(text), AllOf(StartsWith("town.osm:7: way 11"),
+                                      HasSubstr("nothing else in the file can be used")));
+}
+
+/// Text of a map in local coordinates.
+class MapText {
+ public:
+  /// A straight way along x. `tags`: pairs of key and value.
+  MapText& way(int id, double from_x, double to_x, double y, const std::string& type) {
+    const int first = 10 * id;
+    for (const auto& [node, x] : {std::pair(first, from_x), std::pair(first + 1, to_x)}) {
+      nodes_ += fmt::format(
+          "<node id='{}' lat='' lon=''><tag k='local_x' v='{}'/><tag k='local_y' v='{}'/></node>\n",
+          node, x, y);
+    }
+    const std::string tag = type.empty() ? "" : fmt::format("<tag k='type' v='{}'/>", type);
+    ways_ += fmt::format("<way id='{}'><nd ref='{}'/><nd ref='{}'/>{}</way>\n", id, first,
+                         first + 1, tag);
+    return *this;
+  }
+
+  MapText& lanelet(int id, const std::vector<int>& left, const std::vector<int>& right) {
+    relations_ += fmt::format("<relation id='{}'><tag k='type' v='lanelet'/>", id);
+    for (const int way : left)
+      relations_ += fmt::format("<member type='way' role='left' ref='{}'/>", way);
+    for (const int way : right)
+      relations_ += fmt::format("<member type='way' role='right' ref='{}'/>", way);
+    relations_ += "</relation>\n";
+    return *this;
+  }
+
+  HdMap read() const {
+    const auto map = parse_lanelet2("<osm>\n" + nodes_ + ways_ + relations_ + "</osm>", "text.osm");
+    EXPECT_TRUE(map.has_value()) << map.error().message;
+    return map.value_or(HdMap{});
+  }
+
+ private:
+  std::string nodes_;
+  std::string ways_;
+  std::string relations_;
+};
+
+TEST(Lanelet2Reader, ABoundMayBeSeveralWaysInAnyOrderAndDirection) {
+  MapText text;
+  text.way(1, 0, 60, 3.5, "virtual");
+  text.way(2, 20, 40, 0, "curbstone").way(3, 20, 0, 0, "guard_rail").way(4, 60, 40, 0, "fence");
+  const HdMap map = text.lanelet(20, {1}, {2, 3, 4}).read();
+  ASSERT_EQ(map.lanes.size(), 1U);
+  EXPECT_THAT(map.left_out, IsEmpty());
+  EXPECT_EQ(map.lanes[0].right.front(), Eigen::Vector2d(0, 0));
+  EXPECT_EQ(map.lanes[0].right.back(), Eigen::Vector2d(60, 0));
+  EXPECT_EQ(map.lanes[0].right.size(), 4U);
+  std::vector<Appearance> appearances;
+  for (const MapElement* element : of_class(map, ElementClass::kRoadBoundary)) {
+    appearances.push_back(element->appearance);
+  }
+  EXPECT_THAT(appearances,
+              ElementsAre(Appearance::kKerb, Appearance::kGuardRail, Appearance::kFence))
+      << "each piece has its own type";
+}
+
+TEST(Lanelet2Reader, KeepsDividersThatBoundNoLanelet) {
+  MapText text;
+  text.way(1, 0, 60, 7, "curbstone").way(2, 0, 60, 0, "curbstone").way(3, 0, 60, 3.5, "line_thin");
+  const HdMap map = text.lanelet(20, {1}, {2}).read();
+  EXPECT_EQ(of_class(map, ElementClass::kLaneDivider).size(), 1U);
+}
+
+TEST(Lanelet2Reader, AnOuterLineIsTheEdgeOfTheRoadWhereNothingElseIs) {
+  MapText text;
+  text.way(1, 0, 60, 3.5, "line_thin").way(2, 0, 60, 0, "line_thin").way(3, 0, 60, 7, "line_thin");
+  text.way(4, 0, 60, -1.5, "curbstone");
+  const HdMap map = text.lanelet(20, {1}, {2}).lanelet(21, {3}, {1}).read();
+  const auto boundaries = of_class(map, ElementClass::kRoadBoundary);
+  ASSERT_EQ(boundaries.size(), 2U) << "the kerb, and the line without a kerb";
+  EXPECT_EQ(boundaries[0]->points.front().y(), 7.0);
+  EXPECT_EQ(boundaries[0]->appearance, Appearance::kRoadEdge);
+  EXPECT_EQ(of_class(map, ElementClass::kLaneDivider).size(), 2U)
+      << "the middle, and the line beside the kerb";
+}
+
+TEST(Lanelet2Reader, WithoutTypesNeighboursNeedNotShareAWay) {
+  MapText text;
+  text.way(1, 0, 60, 7, "").way(2, 0, 60, 3.5, "").way(3, 0, 60, 3.6, "").way(4, 0, 60, 0, "");
+  const HdMap map = text.lanelet(20, {1}, {2}).lanelet(21, {3}, {4}).read();
+  EXPECT_EQ(map.lanes.size(), 2U);
+  EXPECT_EQ(of_class(map, ElementClass::kRoadBoundary).size(), 2U);
+  const auto dividers = of_class(map, ElementClass::kLaneDivider);
+  ASSERT_EQ(dividers.size(), 1U) << "the two bounds in the middle are one line";
+  EXPECT_EQ(dividers[0]->points.front().y(), 3.5);
+}
+
+TEST(Lanelet2Reader, OneBadLaneletDoesNotLoseTheMap) {
+  MapText text;
+  text.way(1, 0, 60, 3.5, "line_thin").way(2, 0, 60, 0, "curbstone");
+  const HdMap map = text.lanelet(20, {1}, {2}).lanelet(21, {1}, {}).lanelet(22, {7}, {2}).read();
+  EXPECT_EQ(map.lanes.size(), 1U);
+  EXPECT_THAT(map.left_out, ElementsAre(HasSubstr("lanelet 21"), HasSubstr("lanelet 22")));
 }
 
 TEST(Lanelet2Reader, NamesAMissingFile) {
