@@ -63,7 +63,7 @@ struct HdMap {
   std::vector<Lane> lanes;
   /// What the reader left out of the file and why, one sentence each, with file and line. Compact
   /// maps have none.
-  std::vector<std::string> left_out;
+  std::vector<std::string> left_out{};
 };
 
 }  // namespace bevloc

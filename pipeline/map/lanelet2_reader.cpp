@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -10,6 +9,7 @@
 
 #include "common/files.h"
 #include "pipeline/map/lanelet_geometry.h"
+#include "pipeline/map/lanelet_tags.h"
 #include "pipeline/map/line_neighbours.h"
 #include "pipeline/map/map_check.h"
 #include "pipeline/map/map_frame.h"
@@ -17,8 +17,6 @@
 
 namespace bevloc {
 namespace {
-
-enum class LaneletKind : uint8_t { kVehicles, kCrosswalk, kOther };
 
 /// What bounds a lanelet on one side.
 struct Bound {
@@ -33,8 +31,6 @@ struct Lanelet {
   Bound right;
 };
 
-/// Pieces of a bound whose ends are closer belong together.
-constexpr double kJoint_m = 0.2;
 /// A line is the edge of the road if no other line is this close beside it ...
 constexpr double kBesideEdge_m = 2.5;
 /// ... along more than this share of it.
@@ -42,67 +38,6 @@ constexpr double kEdgeShare = 0.5;
 /// Bounds of neighbouring lanelets that share no way are this close, along this share.
 constexpr double kSameLine_m = 0.5;
 constexpr double kSameLineShare = 0.8;
-
-bool is_yes(std::string_view value) {
-  return value == "yes" || value == "true" || value == "1";
-}
-bool is_no(std::string_view value) {
-  return value == "no" || value == "false" || value == "0";
-}
-
-/// Explicit participant tags override the participants that the subtype implies.
-LaneletKind kind_of(const OsmTags& tags) {
-  constexpr std::array<std::string_view, 6> kVehicleSubtypes = {
-      "", "road", "highway", "bus_lane", "play_street", "emergency_lane"};
-  constexpr std::string_view kParticipant = "participant:";
-  const std::string_view subtype = tag_value(tags, "subtype");
-  if (subtype == "crosswalk") return LaneletKind::kCrosswalk;
-  bool names_participants = false;
-  for (const auto& [key, value] : tags) {
-    if (!key.starts_with(kParticipant)) continue;
-    names_participants = true;
-    if (key.starts_with("participant:vehicle") && is_yes(value)) return LaneletKind::kVehicles;
-  }
-  const bool implies_vehicles = std::find(kVehicleSubtypes.begin(), kVehicleSubtypes.end(),
-                                          subtype) != kVehicleSubtypes.end();
-  return implies_vehicles && !names_participants ? LaneletKind::kVehicles : LaneletKind::kOther;
-}
-
-std::optional<Appearance> boundary_appearance(std::string_view type) {
-  constexpr std::array<std::pair<std::string_view, Appearance>, 7> kTypes = {{
-      {"curbstone", Appearance::kKerb},
-      {"road_border", Appearance::kRoadEdge},
-      {"guard_rail", Appearance::kGuardRail},
-      {"jersey_barrier", Appearance::kBarrier},
-      {"wall", Appearance::kWall},
-      {"fence", Appearance::kFence},
-      {"hedge", Appearance::kHedge},
-  }};
-  const auto* entry = std::find_if(kTypes.begin(), kTypes.end(),
-                                   [type](const auto& known) { return known.first == type; });
-  return entry == kTypes.end() ? std::nullopt : std::optional(entry->second);
-}
-
-Appearance divider_appearance(std::string_view subtype) {
-  if (subtype == "solid") return Appearance::kSolid;
-  if (subtype == "dashed" || subtype == "dashed_dashed") return Appearance::kDashed;
-  const bool is_double =
-      subtype == "solid_solid" || subtype == "solid_dashed" || subtype == "dashed_solid";
-  return is_double ? Appearance::kDoubleSolid : Appearance::kUnknown;
-}
-
-/// Parses a speed tag with the unit km/h, mph or m/s; without a unit it is km/h.
-std::optional<double> speed_mps(std::string_view text) {
-  double value = 0.0;
-  const auto number = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (number.ec != std::errc() || !(value > 0.0 && value < 1000.0)) return std::nullopt;
-  std::string_view unit = text.substr(static_cast<size_t>(number.ptr - text.data()));
-  while (unit.starts_with(' ')) unit.remove_prefix(1);
-  if (unit.empty() || unit == "km/h" || unit == "kmh") return value / 3.6;
-  if (unit == "mph") return value * 0.44704;
-  if (unit == "m/s") return value;
-  return std::nullopt;
-}
 
 double length_of(const Polyline& line) {
   double length_m = 0.0;
@@ -117,39 +52,6 @@ Lane reversed(const Lane& lane) {
     std::reverse(line->begin(), line->end());
   }
   return other;
-}
-
-/// Appends the piece to the end of the chain that it joins, in the right direction. Returns false
-/// if it joins neither end.
-bool attach(const Polyline& piece, Polyline& chain) {
-  const auto meet = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return (a - b).norm() <= kJoint_m;
-  };
-  if (meet(chain.back(), piece.front())) {
-    chain.insert(chain.end(), piece.begin() + 1, piece.end());
-  } else if (meet(chain.back(), piece.back())) {
-    chain.insert(chain.end(), piece.rbegin() + 1, piece.rend());
-  } else if (meet(chain.front(), piece.back())) {
-    chain.insert(chain.begin(), piece.begin(), piece.end() - 1);
-  } else if (meet(chain.front(), piece.front())) {
-    chain.insert(chain.begin(), piece.rbegin(), piece.rend() - 1);
-  } else {
-    return false;
-  }
-  return true;
-}
-
-/// Joins pieces in any order and direction. Returns nothing if they do not form one line.
-std::optional<Polyline> joined(std::vector<Polyline> pieces) {
-  Polyline chain = std::move(pieces.front());
-  pieces.erase(pieces.begin());
-  while (!pieces.empty()) {
-    const auto next = std::ranges::find_if(
-        pieces, [&chain](const Polyline& piece) { return attach(piece, chain); });
-    if (next == pieces.end()) return std::nullopt;
-    pieces.erase(next);
-  }
-  return chain;
 }
 
 /// Converts one document to a map.

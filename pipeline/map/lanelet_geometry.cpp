@@ -73,7 +73,42 @@ Polyline simplify(const Polyline& line, double tolerance_m) {
   return simplified;
 }
 
+/// Pieces of a line whose ends are closer belong together.
+constexpr double kJoint_m = 0.2;
+
+/// Appends the piece to the end of the chain that it joins, in the right direction. Returns false
+/// if it joins neither end.
+bool attach(const Polyline& piece, Polyline& chain) {
+  const auto meet = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return (a - b).norm() <= kJoint_m;
+  };
+  if (meet(chain.back(), piece.front())) {
+    chain.insert(chain.end(), piece.begin() + 1, piece.end());
+  } else if (meet(chain.back(), piece.back())) {
+    chain.insert(chain.end(), piece.rbegin() + 1, piece.rend());
+  } else if (meet(chain.front(), piece.back())) {
+    chain.insert(chain.begin(), piece.begin(), piece.end() - 1);
+  } else if (meet(chain.front(), piece.front())) {
+    chain.insert(chain.begin(), piece.rbegin(), piece.rend() - 1);
+  } else {
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
+
+std::optional<Polyline> joined(std::vector<Polyline> pieces) {
+  Polyline chain = std::move(pieces.front());
+  pieces.erase(pieces.begin());
+  while (!pieces.empty()) {
+    const auto next = std::ranges::find_if(
+        pieces, [&chain](const Polyline& piece) { return attach(piece, chain); });
+    if (next == pieces.end()) return std::nullopt;
+    pieces.erase(next);
+  }
+  return chain;
+}
 
 void align_bounds(Polyline& left, Polyline& right) {
   const bool left_runs_backwards = is_left_of(middle_of(right), left);

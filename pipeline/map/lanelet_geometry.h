@@ -1,6 +1,7 @@
 // Geometry of lanelets: aligns their bounds; computes centerlines, crossings and successors.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,6 +11,10 @@
 namespace bevloc {
 
 using Polyline = std::vector<Eigen::Vector2d>;
+
+/// Joins pieces in any order and direction whose ends are at most 0.2 m apart. Returns nothing if
+/// they do not form one line. There must be at least one piece, each with two points or more.
+std::optional<Polyline> joined(std::vector<Polyline> pieces);
 
 /// Reverses bounds where needed, so that both run in driving direction with `left` on the left. As
 /// in Lanelet2, a file may store each bound in either direction.

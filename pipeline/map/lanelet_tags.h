@@ -1,0 +1,30 @@
+// The meaning of the tags of Lanelet2 (LinestringTagging.md and LaneletAndAreaTagging.md).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "pipeline/map/hd_map.h"
+#include "pipeline/map/osm_document.h"
+
+namespace bevloc {
+
+enum class LaneletKind : uint8_t { kVehicles, kCrosswalk, kOther };
+
+/// Explicit participant tags override the participants that the subtype implies.
+LaneletKind kind_of(const OsmTags& tags);
+
+/// Nothing if ways of this type are no road boundaries.
+std::optional<Appearance> boundary_appearance(std::string_view type);
+
+/// kUnknown for an unknown subtype.
+Appearance divider_appearance(std::string_view subtype);
+
+/// Parses a speed tag with the unit km/h, mph or m/s; without a unit it is km/h.
+std::optional<double> speed_mps(std::string_view text);
+
+/// Whether a tag says no.
+bool is_no(std::string_view value);
+
+}  // namespace bevloc
