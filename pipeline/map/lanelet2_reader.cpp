@@ -151,12 +151,11 @@ class Lanelet2Reader {
   /// Reads the points of all ways that may be lines, and finds which run beside each other.
   void read_lines() {
     for (const Lanelet& lanelet : lanelets_) {
-      for (const auto* side : {&lanelet.left, &lanelet.right}) {
-        for (const OsmWay* way : side->ways) {
-          for (const auto* other : {&lanelet.left, &lanelet.right}) {
-            for (const OsmWay* own : other->ways) own_lanelet_[way->id].push_back(own->id);
-          }
-        }
+      std::vector<int64_t> own;
+      for (const OsmWay* way : lanelet.left.ways) own.push_back(way->id);
+      for (const OsmWay* way : lanelet.right.ways) own.push_back(way->id);
+      for (const int64_t id : own) {
+        own_lanelet_[id].insert(own_lanelet_[id].end(), own.begin(), own.end());
       }
     }
     for (const OsmWay& way : document_.ways) {
@@ -236,7 +235,7 @@ class Lanelet2Reader {
   bool is_second_of_a_pair(const OsmWay& way, const MapElement& element) const {
     if (!drawn_by_pairs_.contains(way.id)) return false;
     return beside_.share_beside(element.points, kSameLine_m, [&](int64_t id) {
-      return id < way.id && drawn_by_pairs_.contains(id);
+      return id != way.id && drawn_by_pairs_.contains(id);
     }) >= kSameLineShare;
   }
 

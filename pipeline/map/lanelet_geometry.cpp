@@ -76,8 +76,8 @@ Polyline simplify(const Polyline& line, double tolerance_m) {
 /// Pieces of a line whose ends are closer belong together.
 constexpr double kJoint_m = 0.2;
 
-/// Appends the piece to the end of the chain that it joins, in the right direction. Returns false
-/// if it joins neither end.
+/// Adds a piece to the chain, at the end of the chain that it meets. Returns false if it meets
+/// neither end.
 bool attach(const Polyline& piece, Polyline& chain) {
   const auto meet = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return (a - b).norm() <= kJoint_m;

@@ -28,8 +28,7 @@ std::vector<std::string> warnings_of(const HdMap& map) {
   if (map.origin.latitude_deg == 0.0 && map.origin.longitude_deg == 0.0) {
     warnings.push_back(
         "no place on earth: positions from GNSS, and the latitude and longitude on the CAN bus, "
-        "mean "
-        "nothing; add lat and lon to nodes of the map");
+        "mean nothing; add lat and lon to nodes of the map");
   }
   if (count_of(map, ElementClass::kLaneDivider) == 0) {
     warnings.push_back("no lane divider: the pose across the road rests on boundaries alone");

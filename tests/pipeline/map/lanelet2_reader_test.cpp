@@ -368,6 +368,13 @@ TEST(Lanelet2Reader, WithoutTypesNeighboursNeedNotShareAWay) {
   EXPECT_EQ(dividers[0]->points.front().y(), 3.5);
 }
 
+TEST(Lanelet2Reader, TheOrderOfNeighboursInTheFileDoesNotMatter) {
+  MapText text;
+  text.way(4, 0, 60, 7, "").way(3, 0, 60, 3.5, "").way(2, 0, 60, 3.6, "").way(1, 0, 60, 0, "");
+  const HdMap map = text.lanelet(20, {4}, {3}).lanelet(21, {2}, {1}).read();
+  EXPECT_EQ(of_class(map, ElementClass::kLaneDivider).size(), 1U);
+}
+
 TEST(Lanelet2Reader, OneBadLaneletDoesNotLoseTheMap) {
   MapText text;
   text.way(1, 0, 60, 3.5, "line_thin").way(2, 0, 60, 0, "curbstone");
