@@ -39,6 +39,7 @@ class TrainingConfig:
     precision: str = "auto"  # or float32, bfloat16
     drop_camera_probability: float = 0.15
     nuisances: str = "street"  # or "strong", "usual"; simulator only
+    photos: str = ""  # folder of script/photos; empty: textures of the simulator alone
 
     learning_rate: float = 2e-3
     scale_rate_factor: float = 5.0  # the softmax scales learn faster: they start far off

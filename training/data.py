@@ -13,6 +13,7 @@ import torch
 from torch import Tensor
 
 from training.distributed import WHOLE, Share
+from training.errors import TrainingError
 from training.model import (
     BEV_COLS,
     BEV_ROWS,
@@ -106,9 +107,11 @@ class SamplerStream:
         drop_camera_probability: float,
         share: Share = WHOLE,
         nuisances: str = "usual",
+        photos: str = "",
     ) -> None:
         """`first_sample` counts the samples of all processes and is a multiple of their number.
-        `nuisances`: one of NUISANCES, else ValueError."""
+        `nuisances`: one of NUISANCES, else ValueError. `photos`: a folder of script/photos, whose
+        photographs cover surfaces; empty: the simulator's own textures."""
         if nuisances not in NUISANCES:
             raise ValueError(
                 f"nuisances: found '{nuisances}', wanted one of {', '.join(NUISANCES)}"
@@ -124,9 +127,12 @@ class SamplerStream:
                 threads,
                 drop_camera_probability,
                 NUISANCES.index(nuisances),
+                photos.encode() if photos else None,
             )
             for k, sampler in enumerate(own)
         ]
+        if not all(self._samplers):
+            raise TrainingError(f"--photos {photos}: cannot be read, for the reason above")
         atexit.register(self.close)  # workers must not outlive the interpreter
 
     def next(self, count: int) -> Batch:

@@ -45,7 +45,7 @@ def library() -> ctypes.CDLL:
     lib.bevloc_moved_sums_gradients.restype = None
     lib.bevloc_sampler_create.argtypes = [
         *([ctypes.c_uint64] * 2),
-        *(integer, ctypes.c_double, integer),
+        *(integer, ctypes.c_double, integer, ctypes.c_char_p),
     ]
     lib.bevloc_sampler_create.restype = pointer
     lib.bevloc_sampler_destroy.argtypes = [pointer]

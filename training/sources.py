@@ -39,7 +39,9 @@ def training_stream(config: TrainingConfig, first: int, share: Share = WHOLE) ->
     if config.nuscenes:
         return _nuscenes(config, config.scenes, config.seed, first, drop_probability, share)
     threads = config.sampler_threads
-    return SamplerStream(config.seed, first, threads, drop_probability, share, config.nuisances)
+    return SamplerStream(
+        config.seed, first, threads, drop_probability, share, config.nuisances, config.photos
+    )
 
 
 def _batches(stream: Stream, samples: int) -> Iterator[Batch]:

@@ -62,6 +62,11 @@ GroundPainter::GroundPainter(const World& world) : world_(world), ageing_(age_ro
   index_surfaces();
   index_paint();
   index_ageing();
+  if (world.photos == nullptr) return;
+  for (size_t material = 0; material < kGroundMaterials; ++material) {
+    canvas_.photos[material] =
+        world.photos->ground(static_cast<GroundMaterial>(material), world.seed);
+  }
 }
 
 void GroundPainter::index_surfaces() {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/random.h"
+#include "sim/render/photo_library.h"
 #include "sim/render/vehicle_profile.h"
 
 namespace bevloc::sim {
@@ -13,14 +14,17 @@ constexpr float kStoreyM = 3.2F;
 
 /// Sets the texture coordinates so that the texture repeats or stretches over the panel.
 void fit_texture(Panel& panel, double start_m) {
-  const Texture& texture = texture_of(panel.pattern);
+  const Texture& texture = panel.texture();
   const bool repeats_u = texture.period_u_m > 0.0F;
   panel.u_per_m = 1.0F / (repeats_u ? texture.period_u_m : panel.length_m);
   panel.v_per_m = 1.0F / (texture.period_v_m > 0.0F ? texture.period_v_m : panel.height_m);
   if (panel.pattern == Pattern::kFacade) {
-    // Round to whole storeys, so that no roof cuts through a window.
-    const float storeys = std::max(1.0F, std::round(panel.height_m / kStoreyM));
-    panel.v_per_m = storeys / (static_cast<float>(kFacadeStoreys) * panel.height_m);
+    // Round to whole storeys, so that no roof cuts through a window. A photograph has storeys of
+    // its own.
+    const float storey_m = panel.photo != nullptr ? texture.period_v_m : kStoreyM;
+    const float storeys = std::max(1.0F, std::round(panel.height_m / storey_m));
+    const float in_period = panel.photo != nullptr ? 1.0F : static_cast<float>(kFacadeStoreys);
+    panel.v_per_m = storeys / (in_period * panel.height_m);
   }
   panel.u_start =
       repeats_u ? static_cast<float>(std::fmod(start_m, texture.period_u_m)) * panel.u_per_m : 0.0F;
@@ -44,6 +48,7 @@ Pattern pattern_of(PostKind kind) {
 const std::vector<Panel>& PanelBuilder::build(const Eigen::Vector3d& camera,
                                               const CurvedGround& ground,
                                               const Surroundings& surroundings) {
+  photos_ = surroundings.photos;
   camera_ = camera;
   ground_ = ground;
   unsorted_.clear();
@@ -80,6 +85,7 @@ void PanelBuilder::add_wall(const WallPiece& piece) {
   panel.tint = wall.albedo;
   panel.softness = wall.texture == WallTexture::kHedge ? 0.7F : 0.0F;
   panel.glows = wall.texture == WallTexture::kFacade;
+  if (photos_ != nullptr) panel.photo = photos_->wall(wall.texture, wall.seed);
   // The seed shifts the texture, so that walls of one kind differ.
   const double shift_m = static_cast<double>(mix_seed(wall.seed) % 4096U) * 0.05;
   fit_texture(panel, piece.start_m + shift_m);
@@ -99,6 +105,9 @@ void PanelBuilder::add_post(const Post& post) {
   panel.pattern = pattern_of(post.kind);
   panel.tint = post.albedo;
   panel.softness = post.kind == PostKind::kTreeCrown ? 0.8F : 0.4F;
+  if (photos_ != nullptr && post.kind == PostKind::kTreeCrown) {
+    panel.photo = photos_->crown(post.seed);
+  }
   fit_texture(panel, 0.0);
   unsorted_.push_back(panel);
 }

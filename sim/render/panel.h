@@ -21,6 +21,9 @@ struct Panel {
   float length_m = 0.0F;
   float height_m = 0.0F;
   Pattern pattern = Pattern::kPlain;
+  const Texture* photo = nullptr;  ///< replaces the texture of the pattern
+
+  const Texture& texture() const { return photo != nullptr ? *photo : texture_of(pattern); }
   /// Texture coordinates in periods: per metre along and up, and the value at the corner.
   float u_per_m = 0.0F;
   float v_per_m = 0.0F;
@@ -51,6 +54,7 @@ class PanelBuilder {
     return (Eigen::Vector3d(position.x(), position.y(), above_plane_m) - camera_).cast<float>();
   }
 
+  const PhotoLibrary* photos_ = nullptr;
   Eigen::Vector3d camera_ = Eigen::Vector3d::Zero();
   CurvedGround ground_;
   std::vector<Panel> unsorted_;

@@ -193,7 +193,7 @@ bool view_panel(const Panel& panel, const View& view, const Lighting& lighting, 
   seen.u_per_m = panel.u_per_m;
   seen.v_per_m = panel.v_per_m;
   seen.u_start = panel.u_start;
-  const Texture& texture = texture_of(panel.pattern);
+  const Texture& texture = panel.texture();
   const bool repeats_v = texture.period_v_m > 0.0F;
   seen.lowest_v = repeats_v ? -kNoLimit : 0.0F;
   seen.highest_v = repeats_v ? kNoLimit : 1.0F;

@@ -66,6 +66,7 @@ void SceneIndex::gather(const Se2& map_from_vehicle, double time_s, double radiu
   const Box wide = box_around(centre, radius_m);
   const Box close = box_around(centre, 0.5 * radius_m);
   surroundings = {};
+  surroundings.photos = world_.photos;
   found_.clear();
   piece_index_.query(wide, found_);
   for (const int item : found_) {

@@ -23,6 +23,7 @@ struct Surroundings {
   std::vector<const Post*> posts;
   std::vector<VehicleBody> parked;
   std::vector<VehicleBody> traffic;
+  const PhotoLibrary* photos = nullptr;  ///< World::photos
 };
 
 /// A spatial index of the walls, posts and vehicles of a world. The world must outlive the index.

@@ -286,6 +286,19 @@ std::vector<Paint> halved(const std::vector<Paint>& finer, int finer_side) {
   return result;
 }
 
+/// Packs the texels and their mip levels.
+Texture packed(std::vector<Paint> texels, float period_u_m, float period_v_m) {
+  Texture texture;
+  texture.period_u_m = period_u_m;
+  texture.period_v_m = period_v_m;
+  texture.texels.reserve(kMipOffsets.back() + kMipSides.back() * kMipSides.back());
+  for (int mip = 0; mip < kTextureMips; ++mip) {
+    if (mip > 0) texels = halved(texels, kTextureSide >> (mip - 1));
+    for (const Paint& paint : texels) texture.texels.push_back(pack(paint));
+  }
+  return texture;
+}
+
 Texture make_texture(const Recipe& recipe) {
   std::vector<Paint> texels;
   texels.reserve(static_cast<size_t>(kTextureSide) * kTextureSide);
@@ -295,18 +308,20 @@ Texture make_texture(const Recipe& recipe) {
       texels.push_back(recipe.paint({share(x), share(y), x, y}));
     }
   }
-  Texture texture;
-  texture.period_u_m = recipe.period_u_m;
-  texture.period_v_m = recipe.period_v_m;
-  texture.texels.reserve(kMipOffsets.back() + kMipSides.back() * kMipSides.back());
-  for (int mip = 0; mip < kTextureMips; ++mip) {
-    if (mip > 0) texels = halved(texels, kTextureSide >> (mip - 1));
-    for (const Paint& paint : texels) texture.texels.push_back(pack(paint));
-  }
-  return texture;
+  return packed(std::move(texels), recipe.period_u_m, recipe.period_v_m);
 }
 
 }  // namespace
+
+Texture texture_from(const std::vector<Rgb>& relative_colours, Pattern pattern, float period_m) {
+  std::vector<Paint> texels;
+  for (const Rgb& colour : relative_colours) {
+    const bool hole = colour.r + colour.g + colour.b <= 0.0F;
+    texels.push_back(hole ? kNothing : Paint{colour.r, colour.g, colour.b, kTinted});
+  }
+  const bool stretched = pattern == Pattern::kCrown;
+  return packed(std::move(texels), stretched ? 0.0F : period_m, stretched ? 0.0F : period_m);
+}
 
 const Texture& texture_of(Pattern pattern) {
   static const std::array<Texture, kPatternCount> textures = [] {

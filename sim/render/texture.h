@@ -73,6 +73,10 @@ struct Texture {
   float period_v_m = 0.0F;
 };
 
+/// A texture that shows a photograph: kTextureSide^2 colours from the lowest row, where 1 keeps the
+/// panel's tint and 0 is a hole. Crowns are stretched, everything else repeats every `period_m`.
+Texture texture_from(const std::vector<Rgb>& relative_colours, Pattern pattern, float period_m);
+
 /// The textures are made at the first call. Thread safe.
 const Texture& texture_of(Pattern pattern);
 

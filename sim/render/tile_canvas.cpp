@@ -31,9 +31,26 @@ const Material& material_of(GroundMaterial material) {
   return kMaterials[static_cast<size_t>(material)];
 }
 
+/// Factors on a material's albedo along a row.
+struct PhotoRow {
+  std::array<float, kTileNodes> red, green, blue;
+};
+
+/// `photo` may be null; then all factors are 1.
+PhotoRow photo_row(const TileCanvas& canvas, int j, const GroundPhoto* photo) {
+  PhotoRow row;
+  if (photo == nullptr) {
+    for (auto* channel : {&row.red, &row.green, &row.blue}) channel->fill(1.0F);
+  } else {
+    photo->copy_row(canvas.key.level, canvas.key.ix * kTileTexels, canvas.key.iy * kTileTexels + j,
+                    kTileNodes, row.red.data(), row.green.data(), row.blue.data());
+  }
+  return row;
+}
+
 BEVLOC_TARGET_CLONES
 void fill_row(const CanvasRow& row, const Material& material, float brightness,
-              const float* coverage) {
+              const PhotoRow& photo, const float* coverage) {
   float* __restrict red = row.red;
   float* __restrict green = row.green;
   float* __restrict blue = row.blue;
@@ -45,9 +62,9 @@ void fill_row(const CanvasRow& row, const Material& material, float brightness,
         std::max(0.3F, brightness * (1.0F + m.grain * row.grain[i] + m.patches * row.patches[i]));
     const float hue = brightness * row.patches[i];
     const float cover = coverage[i];
-    red[i] += cover * (shade * m.albedo.r + hue * m.patch_hue.r - red[i]);
-    green[i] += cover * (shade * m.albedo.g + hue * m.patch_hue.g - green[i]);
-    blue[i] += cover * (shade * m.albedo.b + hue * m.patch_hue.b - blue[i]);
+    red[i] += cover * (shade * photo.red[i] * m.albedo.r + hue * m.patch_hue.r - red[i]);
+    green[i] += cover * (shade * photo.green[i] * m.albedo.g + hue * m.patch_hue.g - green[i]);
+    blue[i] += cover * (shade * photo.blue[i] * m.albedo.b + hue * m.patch_hue.b - blue[i]);
     gloss[i] += cover * (m.gloss - gloss[i]);
   }
 }
@@ -163,7 +180,8 @@ void cover_with_material(TileCanvas& canvas, int j, GroundMaterial material, flo
                          const float* coverage) {
   const Material& look = material_of(material);
   if (coverage == nullptr) coverage = full_coverage().data();
-  fill_row(canvas_row(canvas, j, 0), look, brightness, coverage);
+  const PhotoRow photo = photo_row(canvas, j, canvas.photos[static_cast<size_t>(material)]);
+  fill_row(canvas_row(canvas, j, 0), look, brightness, photo, coverage);
   if (look.slab_m > 0.0) draw_joints(canvas, j, look.slab_m, coverage);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/render/noise.h"
+#include "sim/render/photo_library.h"
 #include "sim/world/world.h"
 
 namespace bevloc::sim {
@@ -33,6 +34,8 @@ struct TileCanvas {
   TileKey key;
   Plane red, green, blue, gloss;
   Plane patches;  ///< GroundNoise::patches() at every node
+  /// Photographs of the materials; null: noise alone.
+  std::array<const GroundPhoto*, kGroundMaterials> photos{};
 
  private:
   void look_up_patches(int j);

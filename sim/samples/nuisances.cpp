@@ -27,6 +27,8 @@ constexpr std::array<Entry, kNuisanceSets> kEntries{{
     {NuisanceSet::kMapHabits, "map_habits",
      "dividers end 5 to 30 m early or late, boundaries up to 0.7 m inside, across mouths, double"},
     {NuisanceSet::kColour, "colour", "casts up to 25 %, saturation 0 to 1.5, a quarter grey"},
+    {NuisanceSet::kClutter, "clutter",
+     "lines at kerbs, studs, boxes, works, bollards, railings, people, crossings with edge lines"},
     {NuisanceSet::kCalibration, "calibration", "cameras off by 0.2 degrees and 2 cm"},
     {NuisanceSet::kPitch, "pitch", "body pitches and rolls by 1 degree"},
     {NuisanceSet::kSlopes, "slopes", "crests and sags of 300 m radius and more, camber, banks"},
@@ -94,6 +96,16 @@ Nuisances nuisances_of(NuisanceSet set) {
     case NuisanceSet::kColour:
       nuisances.looks = {
           .cast = 0.25, .least_saturation = 0.0, .most_saturation = 1.5, .grey_share = 0.25};
+      break;
+    case NuisanceSet::kClutter:
+      nuisances.clutter = {.kerb_line = 0.3,
+                           .studs = 0.25,
+                           .crossing_edges = 0.5,
+                           .box = 0.08,
+                           .works = 0.05,
+                           .bollards = 0.15,
+                           .railing = 0.15,
+                           .people_per_100m = 2.0};
       break;
     case NuisanceSet::kCalibration:
       nuisances.calibration.rotation_rad = radians(0.2);

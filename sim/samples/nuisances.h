@@ -10,6 +10,7 @@
 #include "common/se2.h"
 #include "sim/samples/camera_looks.h"
 #include "sim/samples/map_habits.h"
+#include "sim/samples/street_clutter.h"
 
 namespace bevloc::sim {
 
@@ -70,6 +71,7 @@ struct Nuisances {
   int extra_vehicles = 0;          ///< standing on the lanes around the vehicle
   MapErrors map_errors;
   MapHabits map_habits;
+  StreetClutter clutter;
   double verge_share = 0.0;  ///< of the road's edges: overgrown by grass or dirt, up to 1.5 m
   CameraLooks looks;
   double noise_factor = 1.0;  ///< multiplies the noise of the pixels
@@ -92,6 +94,7 @@ enum class NuisanceSet : uint8_t {
   kMapErrors,
   kMapHabits,
   kColour,
+  kClutter,
   kCalibration,
   kPitch,
   kSlopes,
@@ -101,7 +104,7 @@ enum class NuisanceSet : uint8_t {
   kUnsynchronisedUncompensated,
 };
 
-inline constexpr size_t kNuisanceSets = 17;
+inline constexpr size_t kNuisanceSets = 18;
 
 std::array<NuisanceSet, kNuisanceSets> all_nuisance_sets();
 Nuisances nuisances_of(NuisanceSet set);

@@ -191,10 +191,12 @@ void make_samples_of_world(const SampleStream& stream, uint64_t world_number, ui
                            const std::function<bool(Sample&&)>& deliver) {
   const uint64_t world_seed = stream.first_seed + world_number;
   World world = world_of(stream, world_seed);
+  world.photos = stream.photos;
   const std::vector<Se2> poses = poses_in(world, world_seed);
   const Nuisances of_world = drawn_for_world(stream.nuisances, stream.training, world_seed);
   wear_paint(of_world.paint_wear_factor, world);
   add_standing_vehicles(poses, of_world.extra_vehicles, world_seed, world);
+  add_clutter(of_world.clutter, world_seed, world);
   add_verges(of_world.verge_share, world_seed, world);
   const HdMap surveyed_map = with_habits(world.map, of_world.map_habits, world_seed);
   const HdMap localizer_map = with_errors(surveyed_map, of_world.map_errors, world_seed);

@@ -48,6 +48,8 @@ struct SampleStream {
   /// If set, every world is this map, dressed anew; it must have lanes. If null, worlds are
   /// generated towns.
   const HdMap* map = nullptr;
+  /// If set, they cover surfaces of every world. Must outlive the stream.
+  const PhotoLibrary* photos = nullptr;
   /// Stronger nuisances in a share of the samples, on top of `nuisances`.
   TrainingNuisances training{};
 };

@@ -36,6 +36,7 @@ TrainingNuisances street_nuisances() {
   nuisances.noise_factor = {.share = 0.7, .weakest = 0.2, .strongest = 1.0};
   nuisances.slopes = {.share = 0.5, .weakest = 0.2, .strongest = 1.2};
   nuisances.map_habits = {.share = 0.5, .weakest = 0.2, .strongest = 1.6};
+  nuisances.clutter = {.share = 0.7, .weakest = 0.2, .strongest = 1.5};
   nuisances.verge_share = {.share = 0.3, .weakest = 0.1, .strongest = 0.7};
   return nuisances;
 }
@@ -69,6 +70,9 @@ Nuisances drawn_for_world(const Nuisances& usual, const TrainingNuisances& train
   }
   if (const auto factor = drawn(training.map_habits, seed, "habits")) {
     nuisances.map_habits = scaled(nuisances_of(NuisanceSet::kMapHabits).map_habits, *factor);
+  }
+  if (const auto factor = drawn(training.clutter, seed, "clutter")) {
+    nuisances.clutter = scaled(nuisances_of(NuisanceSet::kClutter).clutter, *factor);
   }
   if (const auto share = drawn(training.verge_share, seed, "verges")) {
     nuisances.verge_share = *share;

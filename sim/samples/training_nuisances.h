@@ -30,6 +30,7 @@ struct TrainingNuisances {
   Strengthening paint_wear_factor;  ///< Nuisances::paint_wear_factor
   Strengthening map_errors;         ///< factor on the errors of NuisanceSet::kMapErrors
   Strengthening map_habits;         ///< factor on the habits of NuisanceSet::kMapHabits
+  Strengthening clutter;            ///< factor on the clutter of NuisanceSet::kClutter
   Strengthening verge_share;        ///< Nuisances::verge_share
 };
 

@@ -10,6 +10,7 @@
 
 #include "pipeline/preprocessing/network_camera.h"
 #include "sim/random.h"
+#include "sim/render/photo_library.h"
 #include "sim/render/renderer.h"
 #include "sim/sim_rig.h"
 #include "sim/vehicle/placement.h"
@@ -25,6 +26,7 @@ struct Options {
   std::vector<double> pose;  ///< x, y (metres), yaw (degrees); empty: a random pose on a road
   uint64_t pose_seed = 1;
   std::vector<double> ground{0.0, 0.0, 0.0};  ///< curvature along, across and twist, per metre
+  std::string photos;
   double time_s = 0.0;
   bool network_size = false;
   bool random_conditions = false;
@@ -46,6 +48,7 @@ Options read_options(int argc, char** argv) {
   app.add_option("--ground", options.ground,
                  "Curvature of the ground along the vehicle, across it, and its twist, per metre")
       ->expected(3);
+  app.add_option("--photos", options.photos, "Folder of script/photos, to cover surfaces with");
   app.add_option("--time", options.time_s, "Time of the simulated traffic in seconds");
   app.add_option("--sun-elevation", sun_elevation_deg, "Elevation of the sun in degrees");
   app.add_option("--overcast", options.conditions.overcast, "Cloud cover, 0 to 1");
@@ -86,7 +89,17 @@ cv::Mat image_grid(const std::vector<bevloc::RgbImage>& images) {
 
 int main(int argc, char** argv) {
   const Options options = read_options(argc, argv);
-  const bevloc::sim::World world = bevloc::sim::generate_world(options.seed);
+  bevloc::sim::World world = bevloc::sim::generate_world(options.seed);
+  std::optional<bevloc::sim::PhotoLibrary> photos;
+  if (!options.photos.empty()) {
+    auto loaded = bevloc::sim::PhotoLibrary::load(options.photos);
+    if (!loaded) {
+      fmt::print(stderr, "{}\n", loaded.error().message);
+      return 1;
+    }
+    photos = std::move(*loaded);
+    world.photos = &*photos;
+  }
   bevloc::sim::Random random(options.pose_seed);
   bevloc::Se2 pose = bevloc::sim::random_pose_on_road(world, random);
   if (!options.pose.empty()) {

@@ -22,6 +22,7 @@ struct Rgb {
 };
 
 enum class GroundMaterial : uint8_t { kAsphalt, kConcrete, kPaving, kGrass, kDirt, kGravel };
+inline constexpr size_t kGroundMaterials = 6;
 
 /// A patch of ground. In World::surfaces a later surface covers an earlier one.
 struct Surface {
@@ -108,6 +109,8 @@ struct TrafficVehicle {
   double speed_mps = 10.0;
 };
 
+class PhotoLibrary;
+
 /// The moving vehicles at their places after `seconds` of simulated time.
 std::vector<VehicleBody> traffic_at(const std::vector<TrafficVehicle>& traffic, double seconds);
 
@@ -124,6 +127,9 @@ struct World {
   std::vector<VehicleBody> parked;
   std::vector<TrafficVehicle> traffic;
   std::vector<Post> posts;
+  /// Photographs of surfaces (sim/render/photo_library.h), which must outlive the world. Null: all
+  /// textures are the simulator's own.
+  const PhotoLibrary* photos = nullptr;
 };
 
 }  // namespace bevloc::sim

@@ -55,7 +55,7 @@ struct Batch {
 Batch sample(uint64_t first_sample, int count, int threads, double drop_probability,
              int nuisances = kUsual) {
   const std::unique_ptr<bevloc_sampler, decltype(&bevloc_sampler_destroy)> sampler(
-      bevloc_sampler_create(kSeed, first_sample, threads, drop_probability, nuisances),
+      bevloc_sampler_create(kSeed, first_sample, threads, drop_probability, nuisances, nullptr),
       &bevloc_sampler_destroy);
   Batch batch(static_cast<size_t>(count));
   bevloc_sampler_next(sampler.get(), count, batch.images.data(), batch.cameras.data(),
@@ -86,7 +86,8 @@ TEST(Sampler, ResumesInTheMiddleOfAStream) {
 }
 
 TEST(Sampler, BatchesJoinWithoutAGap) {
-  bevloc_sampler* sampler = bevloc_sampler_create(kSeed, kSamplesPerWorld - 3, 2, 1.0, kUsual);
+  bevloc_sampler* sampler =
+      bevloc_sampler_create(kSeed, kSamplesPerWorld - 3, 2, 1.0, kUsual, nullptr);
   const Batch& whole = two_worlds();
   for (size_t i = 0; i < whole.size(); ++i) {
     Batch one(1);
@@ -102,7 +103,7 @@ TEST(Sampler, BatchesJoinWithoutAGap) {
 
 TEST(Sampler, CanBeDestroyedWhileWorkersAreBusy) {
   for (int i = 0; i < 3; ++i)
-    bevloc_sampler_destroy(bevloc_sampler_create(kSeed, 0, 2, 0.0, kUsual));
+    bevloc_sampler_destroy(bevloc_sampler_create(kSeed, 0, 2, 0.0, kUsual, nullptr));
 }
 
 TEST(Sampler, CorrectionsLieInTheirRangeAndDiffer) {

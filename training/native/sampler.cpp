@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <cstdio>
 #include <deque>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <thread>
 
 #include "pipeline/network/view/view_table.h"
+#include "sim/render/photo_library.h"
 #include "sim/samples/sample_maker.h"
 
 using bevloc::Se2;
 using bevloc::sim::kSamplesPerWorld;
+using bevloc::sim::PhotoLibrary;
 using bevloc::sim::Sample;
 using bevloc::sim::SampleStream;
 
@@ -68,14 +72,18 @@ bevloc::Rig read_rig(const float* in) {
 /// that is too far ahead of the one being read.
 struct bevloc_sampler {
  public:
-  bevloc_sampler(const SampleStream& stream, uint64_t first_sample, int threads)
-      : stream_(stream),
+  /// `photos` may be null.
+  bevloc_sampler(const SampleStream& stream, std::unique_ptr<const PhotoLibrary> photos,
+                 uint64_t first_sample, int threads)
+      : photos_(std::move(photos)),
+        stream_(stream),
         worlds_ahead_(2 * static_cast<uint64_t>(threads)),
         first_world_(first_sample / kSamplesPerWorld),
         first_in_first_world_(first_sample % kSamplesPerWorld),
         next_world_to_make_(first_world_),
         world_being_read_(first_world_),
         left_in_world_(kSamplesPerWorld - first_in_first_world_) {
+    stream_.photos = photos_.get();
     for (int i = 0; i < threads; ++i) workers_.emplace_back([this] { make_worlds(); });
   }
 
@@ -128,7 +136,8 @@ struct bevloc_sampler {
     }
   }
 
-  const SampleStream stream_;
+  const std::unique_ptr<const PhotoLibrary> photos_;
+  SampleStream stream_;  ///< constant once the workers run
   const uint64_t worlds_ahead_;
   const uint64_t first_world_;
   const uint64_t first_in_first_world_;
@@ -153,13 +162,23 @@ constexpr int kStreet = 2;
 }  // namespace
 
 bevloc_sampler* bevloc_sampler_create(uint64_t first_seed, uint64_t first_sample, int threads,
-                                      double drop_camera_probability, int nuisances) {
+                                      double drop_camera_probability, int nuisances,
+                                      const char* photos) {
+  std::unique_ptr<PhotoLibrary> library;
+  if (photos != nullptr) {
+    auto loaded = PhotoLibrary::load(photos);
+    if (!loaded) {
+      std::fprintf(stderr, "%s\n", loaded.error().message.c_str());
+      return nullptr;
+    }
+    library = std::make_unique<PhotoLibrary>(std::move(*loaded));
+  }
   SampleStream stream;
   stream.first_seed = first_seed;
   stream.nuisances.missing_cameras.probability = drop_camera_probability;
   if (nuisances == kStrong) stream.training = bevloc::sim::strong_nuisances();
   if (nuisances == kStreet) stream.training = bevloc::sim::street_nuisances();
-  return new bevloc_sampler(stream, first_sample, std::max(threads, 1));
+  return new bevloc_sampler(stream, std::move(library), first_sample, std::max(threads, 1));
 }
 
 void bevloc_sampler_destroy(bevloc_sampler* sampler) {

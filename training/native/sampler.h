@@ -14,9 +14,12 @@ typedef struct bevloc_sampler bevloc_sampler;
 /// them. Samples come in order, and sample i depends only on (first_seed, i), not on the number of
 /// workers. `first_sample` resumes a stream in its middle. `drop_camera_probability`: probability
 /// that a sample lacks one or two cameras (their images are black). `nuisances`: 0 usual, 1 strong,
-/// 2 street (sim/samples/training_nuisances.h).
+/// 2 street (sim/samples/training_nuisances.h). `photos`: a folder of script/photos, or null for
+/// the simulator's own textures. Returns null if the photographs cannot be read, and writes the
+/// reason to stderr.
 bevloc_sampler* bevloc_sampler_create(uint64_t first_seed, uint64_t first_sample, int threads,
-                                      double drop_camera_probability, int nuisances);
+                                      double drop_camera_probability, int nuisances,
+                                      const char* photos);
 void bevloc_sampler_destroy(bevloc_sampler* sampler);
 
 /// Writes the next `count` samples and blocks until they are rendered. Only one thread may call it.

@@ -5,35 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "sim/world/path.h"
+#include "tests/sim/straight_road.h"
 
 namespace bevloc::sim {
 namespace {
 
 constexpr uint64_t kHabitSeed = 5;
-constexpr double kLength_m = 100.0;
-
-Polyline straight(double y) {
-  return {{0.0, y}, {kLength_m, y}};
-}
-
-/// One lane towards the east, a divider on its left, a boundary on its right, and a crossing.
-HdMap road() {
-  HdMap map;
-  map.elements = {
-      {ElementClass::kLaneDivider, Appearance::kDashed, straight(0.0)},
-      {ElementClass::kRoadBoundary, Appearance::kKerb, straight(-4.0)},
-      {ElementClass::kPedestrianCrossing,
-       Appearance::kZebra,
-       {{50.0, -4.0}, {54.0, -4.0}, {54.0, 0.0}, {50.0, 0.0}}},
-  };
-  Lane lane;
-  lane.left = straight(0.0);
-  lane.right = straight(-3.5);
-  lane.centerline = straight(-1.75);
-  map.lanes = {lane};
-  return map;
-}
-
 std::vector<Polyline> lines_of(const HdMap& map, ElementClass element_class) {
   std::vector<Polyline> lines;
   for (const MapElement& element : map.elements) {
@@ -43,18 +20,18 @@ std::vector<Polyline> lines_of(const HdMap& map, ElementClass element_class) {
 }
 
 std::vector<Polyline> dividers(const MapHabits& habits, uint64_t seed = kHabitSeed) {
-  return lines_of(with_habits(road(), habits, seed), ElementClass::kLaneDivider);
+  return lines_of(with_habits(straight_road(), habits, seed), ElementClass::kLaneDivider);
 }
 
 std::vector<Polyline> boundaries(const MapHabits& habits, uint64_t seed = kHabitSeed) {
-  return lines_of(with_habits(road(), habits, seed), ElementClass::kRoadBoundary);
+  return lines_of(with_habits(straight_road(), habits, seed), ElementClass::kRoadBoundary);
 }
 
 TEST(MapHabits, WithoutHabitsTheMapIsUnchanged) {
-  const HdMap same = with_habits(road(), {}, kHabitSeed);
-  ASSERT_EQ(same.elements.size(), road().elements.size());
+  const HdMap same = with_habits(straight_road(), {}, kHabitSeed);
+  ASSERT_EQ(same.elements.size(), straight_road().elements.size());
   for (size_t i = 0; i < same.elements.size(); ++i) {
-    EXPECT_EQ(same.elements[i].points, road().elements[i].points);
+    EXPECT_EQ(same.elements[i].points, straight_road().elements[i].points);
   }
 }
 
@@ -119,8 +96,9 @@ TEST(MapHabits, SharesAreKeptAndCrossingsStay) {
   for (uint64_t seed = 0; seed < 200; ++seed) {
     const auto lines = dividers(habits, seed);
     shorter += lines[0].front().x() > 0.0 ? 1 : 0;
-    EXPECT_EQ(lines_of(with_habits(road(), habits, seed), ElementClass::kPedestrianCrossing),
-              lines_of(road(), ElementClass::kPedestrianCrossing));
+    EXPECT_EQ(
+        lines_of(with_habits(straight_road(), habits, seed), ElementClass::kPedestrianCrossing),
+        lines_of(straight_road(), ElementClass::kPedestrianCrossing));
   }
   EXPECT_GT(shorter, 70);
   EXPECT_LT(shorter, 130);
