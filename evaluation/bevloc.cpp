@@ -8,6 +8,7 @@
 #include "evaluation/campaign/integrity_command.h"
 #include "evaluation/campaign/tune_matches_command.h"
 #include "evaluation/drive/fault_command.h"
+#include "evaluation/localize/localize_command.h"
 #include "evaluation/network/answer_command.h"
 #include "evaluation/network/network_command.h"
 #include "evaluation/solver/draw_command.h"
@@ -50,6 +51,8 @@ int main(int argc, char** argv) {
   campaign_command.declare(app);
   bevloc::evaluation::FaultCommand fault_command;
   fault_command.declare(app);
+  bevloc::evaluation::LocalizeCommand localize_command;
+  localize_command.declare(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -62,6 +65,7 @@ int main(int argc, char** argv) {
                                 : bench_command.chosen()        ? bench_command.run()
                                 : answer_command.chosen()       ? answer_command.run()
                                 : fault_command.chosen()        ? fault_command.run()
+                                : localize_command.chosen()     ? localize_command.run()
                                 : network_command.chosen()      ? network_command.run()
                                                                 : solver_command.run();
   if (status) return 0;

@@ -27,8 +27,9 @@ constexpr int kSheetHeightPx = kBlockHeightPx + kBevHeightPx + 2 * kCaptionPx + 
 
 const cv::Scalar kBar(190, 120, 40);
 
-std::string describe(const char* caption, const Se2& truth, const Se2& pose) {
-  const Se2 error = pose_error(truth, pose);
+std::string describe(const char* caption, const std::optional<Se2>& truth, const Se2& pose) {
+  if (!truth) return caption;
+  const Se2 error = pose_error(*truth, pose);
   return fmt::format("{}: off by {:+.2f} m longitudinal, {:+.2f} m lateral, {:+.2f} deg", caption,
                      error.x_m, error.y_m, degrees(error.yaw_rad));
 }
@@ -79,9 +80,9 @@ void draw_bev(cv::Mat& sheet, cv::Point corner, const SheetContent& content, con
   cv::rectangle(sheet, place, kInk, 1);
 }
 
-/// One distribution as bars. The red line is the truth.
+/// One distribution as bars. The red line is the truth, if it is known.
 void draw_distribution(cv::Mat& sheet, cv::Rect place, const std::vector<float>& probability,
-                       double range, double truth, const std::string& title) {
+                       double range, std::optional<double> truth, const std::string& title) {
   write_text(sheet, title, {place.x, place.y + 18}, 0.5);
   const cv::Rect plot(place.x, place.y + 28, place.width, place.height - 56);
   const float highest = *std::max_element(probability.begin(), probability.end());
@@ -94,25 +95,33 @@ void draw_distribution(cv::Mat& sheet, cv::Rect place, const std::vector<float>&
     const int right = plot.x + static_cast<int>((i + 1) * bar_px) - 1;
     cv::rectangle(sheet, {left, plot.br().y - height}, {right, plot.br().y}, kBar, cv::FILLED);
   }
-  const double step = 2.0 * range / (count - 1);
-  const auto x = static_cast<int>(plot.x + ((truth + range) / step + 0.5) * bar_px);
-  if (x >= plot.x && x <= plot.br().x) cv::line(sheet, {x, plot.y}, {x, plot.br().y}, kTruth, 2);
+  if (truth) {
+    const double step = 2.0 * range / (count - 1);
+    const auto x = static_cast<int>(plot.x + ((*truth + range) / step + 0.5) * bar_px);
+    if (x >= plot.x && x <= plot.br().x) cv::line(sheet, {x, plot.y}, {x, plot.br().y}, kTruth, 2);
+  }
   cv::rectangle(sheet, plot, kInk, 1);
   write_text(sheet, fmt::format("{:.1f}", -range), {plot.x, place.br().y - 8}, 0.45);
   write_text(sheet, fmt::format("{:.1f}", range), {plot.br().x - 30, place.br().y - 8}, 0.45);
 }
 
 void draw_distributions(cv::Mat& sheet, cv::Rect place, const SheetContent& content) {
-  const Se2 truth = correction_between(content.matched_at, content.truth);
+  std::optional<Se2> truth;
+  if (content.truth) truth = correction_between(content.matched_at, *content.truth);
+  const auto on_axis = [&truth](double value) {
+    return truth ? std::optional<double>(value) : std::nullopt;
+  };
+  const Se2 known = truth.value_or(Se2{});
   const int width = (place.width - 2 * kMarginPx) / 3;
   const HypothesisGrid& axes = content.hypotheses;
   draw_distribution(sheet, {place.x, place.y, width, place.height}, content.solution.x_probability,
-                    axes.x_m.range, truth.x_m, "P(x), m longitudinal");
+                    axes.x_m.range, on_axis(known.x_m), "P(x), m longitudinal");
   draw_distribution(sheet, {place.x + width + kMarginPx, place.y, width, place.height},
-                    content.solution.y_probability, axes.y_m.range, truth.y_m, "P(y), m lateral");
+                    content.solution.y_probability, axes.y_m.range, on_axis(known.y_m),
+                    "P(y), m lateral");
   draw_distribution(sheet, {place.x + 2 * (width + kMarginPx), place.y, width, place.height},
                     content.solution.yaw_probability, degrees(axes.yaw_rad.range),
-                    degrees(truth.yaw_rad), "P(yaw), deg");
+                    on_axis(degrees(known.yaw_rad)), "P(yaw), deg");
 }
 
 }  // namespace
@@ -123,7 +132,7 @@ Status write_sheet(const SheetContent& content, const Rig& rig, const MapIndex& 
   const cv::Point left(kMarginPx, kMarginPx + kCaptionPx);
   const cv::Point right(2 * kMarginPx + kBlockWidthPx, left.y);
   write_text(sheet,
-             describe("(b) map at the prior (GNSS + odometry)", content.truth, content.prior),
+             describe("(b) map at the prior", content.truth, content.prior),
              left - cv::Point(0, 10));
   write_text(sheet, describe("(c) map at bevloc's pose", content.truth, content.corrected),
              right - cv::Point(0, 10));
@@ -136,7 +145,9 @@ Status write_sheet(const SheetContent& content, const Rig& rig, const MapIndex& 
   draw_bev(sheet, {kMarginPx, lower}, content, map);
   const cv::Rect distributions(2 * kMarginPx + kBevWidthPx, lower,
                                kSheetWidthPx - kBevWidthPx - 3 * kMarginPx, kBevHeightPx);
-  write_text(sheet, "(d) distributions of the correction (red: truth)",
+  write_text(sheet,
+             content.truth ? "(d) distributions of the correction (red: truth)"
+                           : "(d) distributions of the correction",
              {distributions.x, lower - 10});
   draw_distributions(sheet, distributions, content);
 

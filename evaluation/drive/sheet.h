@@ -1,7 +1,8 @@
-// Draws one localization of a drive on a sheet, as in the paper's Fig. 5.
+// Draws one localization on a sheet, as in the paper's Fig. 5.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,9 @@ namespace bevloc::evaluation {
 struct SheetContent {
   std::array<RgbImage, kCameraCount> images;
   CameraMask present;
-  Se2 prior;      ///< GNSS and odometry alone
-  Se2 corrected;  ///< bevloc's pose at the same moment
-  Se2 truth;
+  Se2 prior;                       ///< GNSS and odometry alone
+  Se2 corrected;                   ///< bevloc's pose at the same moment
+  std::optional<Se2> truth;        ///< if it is known
   std::vector<float> mask_logits;  ///< the network's mask, [3, 400, 200]
   Se2 matched_at;                  ///< T0: the pose of the network's raster
   SolverResult solution;           ///< the solution for dT

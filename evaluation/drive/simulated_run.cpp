@@ -240,9 +240,10 @@ Status SimulatedRun::write_sheet_if_any() {
   const JudgedPose& nearest = judged_nearest(time_s);
   // The judge compares at other times than the frameset's, so the errors of its nearest comparison
   // are applied.
-  content.truth = drive_.truth_at(time_s);
-  content.prior = content.truth * pose_error(nearest.truth, nearest.prior);
-  content.corrected = content.truth * pose_error(nearest.truth, nearest.estimate);
+  const Se2 truth = drive_.truth_at(time_s);
+  content.truth = truth;
+  content.prior = truth * pose_error(nearest.truth, nearest.prior);
+  content.corrected = truth * pose_error(nearest.truth, nearest.estimate);
   return write_sheet(content, rig_, MapIndex(drive_.map()), file.string());
 }
 

@@ -1,4 +1,5 @@
 // bevloc_render_world: renders the images of the six cameras at a pose in a world, as one PNG.
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,10 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "common/files.h"
+#include "common/image_file.h"
+#include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/map/map_binary.h"
 #include "pipeline/preprocessing/network_camera.h"
 #include "sim/random.h"
 #include "sim/render/photo_library.h"
@@ -27,6 +32,7 @@ struct Options {
   uint64_t pose_seed = 1;
   std::vector<double> ground{0.0, 0.0, 0.0};  ///< curvature along, across and twist, per metre
   std::string photos;
+  std::string pictures;
   double time_s = 0.0;
   bool network_size = false;
   bool random_conditions = false;
@@ -48,6 +54,8 @@ Options read_options(int argc, char** argv) {
   app.add_option("--ground", options.ground,
                  "Curvature of the ground along the vehicle, across it, and its twist, per metre")
       ->expected(3);
+  app.add_option("--pictures", options.pictures,
+                 "Folder to which the six pictures, rig.yaml and map.bvm are written, too");
   app.add_option("--photos", options.photos, "Folder of script/photos, to cover surfaces with");
   app.add_option("--time", options.time_s, "Time of the simulated traffic in seconds");
   app.add_option("--sun-elevation", sun_elevation_deg, "Elevation of the sun in degrees");
@@ -85,6 +93,23 @@ cv::Mat image_grid(const std::vector<bevloc::RgbImage>& images) {
   return grid;
 }
 
+/// Writes what `bevloc localize` reads.
+bevloc::Status write_pictures(const std::filesystem::path& folder, const bevloc::Rig& rig,
+                              const bevloc::HdMap& map,
+                              const std::vector<bevloc::RgbImage>& images) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return bevloc::fail("{}: {}", folder.string(), error.message());
+  for (size_t i = 0; i < images.size(); ++i) {
+    const std::filesystem::path file = folder / (std::string(bevloc::kCameraNames[i]) + ".png");
+    if (auto status = bevloc::write_png(images[i].view(), file.string()); !status) return status;
+  }
+  if (auto status = bevloc::write_file(folder / "rig.yaml", bevloc::format_rig(rig)); !status) {
+    return status;
+  }
+  return bevloc::write_file(folder / "map.bvm", bevloc::encode_map(map));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -114,6 +139,12 @@ int main(int argc, char** argv) {
       .ground = {options.ground[0], options.ground[1], options.ground[2]}};
   for (size_t i = 0; i < images.size(); ++i) {
     renderer.render(rig.cameras[i], pose, stance, options.time_s, options.conditions, i, images[i]);
+  }
+  if (!options.pictures.empty()) {
+    if (auto status = write_pictures(options.pictures, rig, world.map, images); !status) {
+      fmt::print(stderr, "{}\n", status.error().message);
+      return 1;
+    }
   }
   if (!cv::imwrite(options.out, image_grid(images))) {
     fmt::print(stderr, "{}: cannot write the image; check the folder and the file extension\n",

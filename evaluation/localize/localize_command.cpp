@@ -1,0 +1,173 @@
+#include "evaluation/localize/localize_command.h"
+
+#include <fmt/format.h>
+
+#include "evaluation/choice_option.h"
+#include "evaluation/command_output.h"
+#include "evaluation/drive/sheet.h"
+#include "evaluation/localize/localize_report.h"
+#include "evaluation/localize/picture_set.h"
+#include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/map/map_loader.h"
+#include "pipeline/map/map_summary.h"
+#include "sim/random.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr int kMostPriors = 100'000;
+
+/// A localizer with the pictures that it localizes.
+class PictureLocalizer {
+ public:
+  PictureLocalizer(Localizer& localizer, const MapIndex& map, const PictureSet& pictures,
+                   SearchRange range)
+      : localizer_(localizer), rasterizer_(map), pictures_(pictures), range_(range) {}
+
+  /// The distributions are valid until the next call.
+  Localization localize(const Se2& prior) {
+    Localization localization;
+    localization.prior = prior;
+    localization.cameras = localizer_.localize(pictures_.images(), prior, range_, solution_);
+    localization.match = solution_;
+    return localization;
+  }
+
+  /// Compares what the latest call perceived with the map at a pose.
+  PerceptionScore perception_at(const Se2& pose) {
+    std::vector<uint8_t> raster(kRasterSize);
+    rasterizer_.draw(pose, raster);
+    return score_perception(localizer_.perceived_mask(), raster);
+  }
+
+  const SolverResult& solution() const { return solution_; }
+  const HypothesisGrid& hypotheses() const { return localizer_.hypotheses(range_); }
+  std::span<const float> perceived_mask() { return localizer_.perceived_mask(); }
+
+ private:
+  Localizer& localizer_;
+  MapRasterizer rasterizer_;
+  const PictureSet& pictures_;
+  SearchRange range_;
+  SolverResult solution_;
+};
+
+/// Draws priors uniformly within the range of the search around the truth.
+PriorScores score_priors(PictureLocalizer& localizer, const Se2& truth, int priors, uint64_t seed) {
+  const HypothesisGrid& range = localizer.hypotheses();
+  sim::Random random(sim::seed_for(seed, "priors"));
+  const auto within = [&random](double limit) { return random.uniform(-limit, limit); };
+  PriorScores scores;
+  for (int i = 0; i < priors; ++i) {
+    const Se2 correction{within(range.x_m.range), within(range.y_m.range),
+                         within(range.yaw_rad.range)};
+    const Localization localization = localizer.localize(truth * correction.inverse());
+    scores.priors.push_back(judge(Se2{}, correction));
+    scores.matches.push_back(judge(localizer.solution(), range, correction));
+    scores.without_evidence += localization.match.evidence == Evidence::kNone;
+    show_progress(i + 1, priors, "priors");
+  }
+  scores.perception = localizer.perception_at(truth);
+  return scores;
+}
+
+SheetContent sheet_of(const PictureSet& pictures, const Localization& localization,
+                      PictureLocalizer& localizer) {
+  SheetContent sheet;
+  sheet.images = pictures.pictures;
+  sheet.present = pictures.present;
+  sheet.prior = localization.prior;
+  sheet.corrected = localization.pose();
+  const std::span<const float> mask = localizer.perceived_mask();
+  sheet.mask_logits.assign(mask.begin(), mask.end());
+  sheet.matched_at = localization.prior;
+  sheet.solution = localizer.solution();
+  sheet.hypotheses = localizer.hypotheses();
+  return sheet;
+}
+
+}  // namespace
+
+void LocalizeCommand::declare(CLI::App& app) {
+  auto* localize =
+      app.add_subcommand("localize", "Localize six picture files: where were they taken?");
+  localize->add_option("--rig", rig_file_, "Calibration of the cameras")->required();
+  localize->add_option("--map", map_file_, "HD map: Lanelet2 (.osm) or compact (.bvm)")->required();
+  localize
+      ->add_option("--images", image_folder_,
+                   "Folder with a picture of each camera, such as front_left.jpg or back.png")
+      ->required();
+  localize
+      ->add_option("--prior", prior_,
+                   "About where they were taken: X,Y,YAW (metres and degrees in the map frame) or "
+                   "LATITUDE,LONGITUDE,HEADING (degrees)")
+      ->required();
+  add_choice(
+      *localize, "--frame", frame_,
+      {{"guess", PoseFrame::kGuess}, {"map", PoseFrame::kMap}, {"geodetic", PoseFrame::kGeodetic}},
+      "What the numbers of --prior are; guess: what lies on the map");
+  localize->add_option("--motion", motion_file_,
+                       "YAML file: how the vehicle moved between the pictures (docs/localize.md)");
+  localize->add_option("--model", model_, "Network")->capture_default_str();
+  add_choice(*localize, "--solver", solver_,
+             {{"banded+refine", SolverKind::kBandedRefined},
+              {"block", SolverKind::kBlock},
+              {"decoupled", SolverKind::kDecoupled}},
+             "Solver");
+  localize->add_flag("--wide", wide_, "Search in the wider range of a start: 4 m, 3 m, 4 degrees");
+  auto* truth = localize->add_flag("--truth", truth_, "The prior is the true pose: score --priors");
+  auto* priors = localize->add_option("--priors", priors_,
+                                      "Number of random priors around the true pose, all of which "
+                                      "are localized");
+  priors->check(CLI::Range(1, kMostPriors))->needs(truth);
+  truth->needs(priors);
+  localize->add_option("--seed", seed_, "Seed of the random priors")->capture_default_str();
+  localize->add_option("--json", json_file_, "Write the answer to this file");
+  localize->add_option("--sheet", sheet_file_,
+                       "Draw pictures, map and distributions to this PNG file");
+  localize->callback([this] { chosen_ = true; });
+}
+
+Status LocalizeCommand::run() const {
+  const auto rig = read_rig(rig_file_);
+  if (!rig) return tl::unexpected(rig.error());
+  const auto map = load_map(map_file_);
+  if (!map) return tl::unexpected(map.error());
+  for (const std::string& warning : warnings_of(*map)) {
+    fmt::print(stderr, "{}: {}\n", map_file_, warning);
+  }
+  const auto prior = pose_from(prior_, frame_, *map);
+  if (!prior) return tl::unexpected(prior.error());
+  auto pictures = read_pictures(image_folder_, *rig);
+  if (!pictures) return tl::unexpected(pictures.error());
+  if (!motion_file_.empty()) {
+    const auto motions = read_motions(motion_file_);
+    if (!motions) return tl::unexpected(motions.error());
+    pictures->reference_from_exposure = *motions;
+  }
+  const MapIndex index(*map);
+  LocalizerOptions options;
+  options.solver = solver_;
+  options.online_calibration.enabled = false;
+  auto localizer = Localizer::create(*rig, index, model_, options);
+  if (!localizer) return tl::unexpected(localizer.error());
+
+  const SearchRange range = wide_ ? SearchRange::kAcquiring : SearchRange::kTracking;
+  PictureLocalizer pictured(**localizer, index, *pictures, range);
+  Localization localization = pictured.localize(*prior);
+  localization.perception = pictured.perception_at(localization.pose());
+  nlohmann::json json = json_of(localization);
+  fmt::print("{}", text_of(localization));
+  if (!sheet_file_.empty()) {
+    const SheetContent sheet = sheet_of(*pictures, localization, pictured);
+    if (Status drawn = write_sheet(sheet, *rig, index, sheet_file_); !drawn) return drawn;
+  }
+  if (truth_) {
+    const PriorScores scores = score_priors(pictured, *prior, priors_, seed_);
+    json["priors"] = json_of(scores);
+    fmt::print("\n{}", text_of(scores));
+  }
+  return write_file(json.dump(2) + "\n", json_file_);
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,139 @@
+#include "evaluation/localize/localize_report.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "evaluation/summary_format.h"
+#include "pipeline/tracker/evidence.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+/// In the order of ElementClass.
+constexpr std::array<const char*, kRasterChannels> kClassNames = {"dividers", "crossings",
+                                                                  "boundaries"};
+
+PerAxis in_units(const Se2& pose) {
+  return {pose.x_m, pose.y_m, degrees(pose.yaw_rad)};
+}
+
+PerAxis sigmas_of(const MatchResult& match) {
+  const Eigen::Vector3d sigma = match.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  return {sigma.x(), sigma.y(), degrees(sigma.z())};
+}
+
+std::vector<std::string> names_of(CameraMask cameras) {
+  std::vector<std::string> names;
+  for (size_t i = 0; i < kCameraCount; ++i) {
+    if (cameras[i]) names.emplace_back(kCameraNames[i]);
+  }
+  return names;
+}
+
+std::string lines_of(const PerceptionScore& perception) {
+  std::string text =
+      fmt::format("perceived within {} m      recall  precision\n", kPerceivedWithin_m);
+  for (size_t i = 0; i < perception.size(); ++i) {
+    const ClassScore& score = perception[i];
+    text += fmt::format("  {:22} {:>8} {:>10}\n", kClassNames[i],
+                        score.mapped > 0 ? fmt::format("{:.2f}", score.recall) : "not mapped",
+                        score.perceived > 0 ? fmt::format("{:.2f}", score.precision) : "none seen");
+  }
+  return text;
+}
+
+nlohmann::json json_of(const PerceptionScore& perception) {
+  nlohmann::json json;
+  for (size_t i = 0; i < perception.size(); ++i) {
+    const ClassScore& score = perception[i];
+    nlohmann::json& entry = json[kClassNames[i]];
+    entry = {{"recall", nullptr}, {"precision", nullptr}};
+    if (score.mapped > 0) entry["recall"] = score.recall;
+    if (score.perceived > 0) entry["precision"] = score.precision;
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string text_of(const Localization& localization) {
+  const MatchResult& match = localization.match;
+  std::string text = fmt::format("cameras: {}\n", fmt::join(names_of(localization.cameras), ", "));
+  if (match.evidence == Evidence::kNone) {
+    return text + "no evidence: the pictures or the map show nothing to match\n" +
+           lines_of(localization.perception);
+  }
+  const PerAxis pose = in_units(localization.pose());
+  const PerAxis correction = in_units(match.correction);
+  const PerAxis sigma = sigmas_of(match);
+  text += fmt::format("pose: x {:.3f} m, y {:.3f} m, yaw {:.3f} degrees in the map\n", pose[0],
+                      pose[1], pose[2]);
+  text += "axis            correction     sigma  evidence     score\n";
+  constexpr std::array<const char*, 3> kAxes = {"along, m", "across, m", "yaw, degrees"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<size_t>(axis);
+    text += fmt::format("{:14} {:+11.3f} {:9.3f} {:9.2f} {:9.2f}\n", kAxes[at], correction[at],
+                        sigma[at], match.evidence_share(axis), match.axis_score(axis));
+  }
+  constexpr EvidenceLimits kDaemon;
+  text += fmt::format(
+      "score of the whole match: {:.2f} (bevlocd starts from {:.2f} and tracks from "
+      "{:.2f})\n",
+      match.score, kDaemon.min_start_score, kDaemon.min_score);
+  return text + lines_of(localization.perception);
+}
+
+nlohmann::json json_of(const Localization& localization) {
+  const MatchResult& match = localization.match;
+  nlohmann::json json{{"cameras", names_of(localization.cameras)},
+                      {"prior", in_units(localization.prior)},
+                      {"evidence", match.evidence == Evidence::kGood},
+                      {"perception", json_of(localization.perception)}};
+  for (const char* key : {"pose", "correction", "sigma", "evidence_share", "score"}) {
+    json[key] = nullptr;
+  }
+  if (match.evidence == Evidence::kNone) return json;
+  json["pose"] = in_units(localization.pose());
+  json["correction"] = in_units(match.correction);
+  json["sigma"] = sigmas_of(match);
+  json["evidence_share"] = {match.evidence_share.x(), match.evidence_share.y(),
+                            match.evidence_share.z()};
+  json["score"] = match.score;
+  return json;
+}
+
+PerAxis bias_of(const std::vector<Outcome>& outcomes) {
+  PerAxis bias{};
+  for (const Outcome& outcome : outcomes) {
+    for (size_t axis = 0; axis < bias.size(); ++axis) {
+      bias[axis] += outcome.error[axis] / static_cast<double>(outcomes.size());
+    }
+  }
+  return bias;
+}
+
+std::string text_of(const PriorScores& scores) {
+  const Summary prior = summarise(scores.priors);
+  const Summary match = summarise(scores.matches);
+  return fmt::format(
+      "{} priors, {} without evidence; along, across (m), yaw (degrees)\n"
+      "prior, mean absolute error      {}\n"
+      "bevloc, mean absolute error     {}\n"
+      "bevloc, mean error (bias)       {}\n"
+      "bevloc, errors within 3 sigma, % {}\n{}",
+      scores.priors.size(), scores.without_evidence, three(prior.mae), three(match.mae),
+      three(bias_of(scores.matches)), percent(match.coverage_3s), lines_of(scores.perception));
+}
+
+nlohmann::json json_of(const PriorScores& scores) {
+  return {{"priors", scores.priors.size()},
+          {"without_evidence", scores.without_evidence},
+          {"prior", json_of(summarise(scores.priors))},
+          {"bevloc", json_of(summarise(scores.matches))},
+          {"bias", bias_of(scores.matches)},
+          {"perception", json_of(scores.perception)}};
+}
+
+}  // namespace bevloc::evaluation

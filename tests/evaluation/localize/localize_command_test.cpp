@@ -1,0 +1,107 @@
+// `bevloc localize` on pictures of a simulated town.
+#include "evaluation/localize/localize_command.h"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "common/files.h"
+#include "common/image_file.h"
+#include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/map/map_binary.h"
+#include "sim/render/renderer.h"
+#include "sim/sim_rig.h"
+#include "sim/vehicle/placement.h"
+#include "sim/world/world_generator.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr uint64_t kTown = 11;
+
+/// A folder with what a user has: rig, map, and six pictures from `pose()`.
+class LocalizeCommandTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<test::TemporaryFolder>();
+    const sim::World world = sim::generate_world(kTown);
+    sim::Random random(3);
+    pose_ = sim::random_pose_on_road(world, random);
+    const Rig rig = sim::nominal_rig();
+    ASSERT_TRUE(write_file(file("rig.yaml"), format_rig(rig)));
+    ASSERT_TRUE(write_file(file("town.bvm"), encode_map(world.map)));
+    sim::Renderer renderer(world);
+    RgbImage image;
+    for (size_t i = 0; i < kCameraCount; ++i) {
+      renderer.render(rig.cameras[i], pose_, {}, 0.0, {}, i, image);
+      ASSERT_TRUE(write_png(image.view(), file(std::string(kCameraNames[i]) + ".png")));
+    }
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static std::string file(const std::string& name) { return *folder_ / name; }
+
+  static std::string text_of(const Se2& pose) {
+    return fmt::format("{},{},{}", pose.x_m, pose.y_m, degrees(pose.yaw_rad));
+  }
+
+  static Status run(std::vector<std::string> arguments) {
+    CLI::App app;
+    LocalizeCommand command;
+    command.declare(app);
+    arguments.insert(arguments.begin(), {"localize", "--rig", file("rig.yaml"), "--map",
+                                         file("town.bvm"), "--images", folder_->path(), "--frame",
+                                         "map", "--model", BEVLOC_SOURCE_DIR "/models/nano.onnx"});
+    std::ranges::reverse(arguments);  // as CLI11 expects
+    app.parse(arguments);
+    return command.run();
+  }
+
+  static nlohmann::json answer() {
+    return nlohmann::json::parse(std::ifstream(file("answer.json")));
+  }
+
+  static inline std::unique_ptr<test::TemporaryFolder> folder_;
+  static inline Se2 pose_;
+};
+
+TEST_F(LocalizeCommandTest, FindsThePoseFromAPriorBesideIt) {
+  const Se2 prior = pose_ * Se2{0.9, -0.5, radians(1.0)};
+  const Status status =
+      run({"--prior", text_of(prior), "--json", file("answer.json"), "--sheet", file("a.png")});
+  ASSERT_TRUE(status) << status.error().message;
+  const nlohmann::json json = answer();
+  EXPECT_TRUE(json["evidence"]);
+  EXPECT_EQ(json["cameras"].size(), 6U);
+  EXPECT_NEAR(json["pose"][0], pose_.x_m, 0.6);
+  EXPECT_NEAR(json["pose"][1], pose_.y_m, 0.6);
+  EXPECT_NEAR(json["pose"][2], degrees(pose_.yaw_rad), 0.6);
+  EXPECT_GT(json["perception"]["boundaries"]["recall"], 0.4);
+  EXPECT_TRUE(std::filesystem::file_size(file("a.png")) > 100'000);
+}
+
+TEST_F(LocalizeCommandTest, ScoresManyPriorsAroundAKnownPose) {
+  const Status status = run({"--prior", text_of(pose_), "--truth", "--priors", "20", "--seed", "5",
+                             "--json", file("answer.json")});
+  ASSERT_TRUE(status) << status.error().message;
+  const nlohmann::json scores = answer()["priors"];
+  EXPECT_EQ(scores["priors"], 20);
+  EXPECT_EQ(scores["without_evidence"], 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LT(scores["bevloc"]["mae"][axis], 0.7 * scores["prior"]["mae"][axis].get<double>());
+  }
+}
+
+TEST_F(LocalizeCommandTest, SaysWhatIsWrong) {
+  EXPECT_THAT(run({"--prior", "1,2"}).error().message, HasSubstr("wanted three numbers"));
+  EXPECT_THAT(run({"--prior", text_of(pose_), "--motion", file("none.yaml")}).error().message,
+              HasSubstr("none.yaml"));
+  EXPECT_THROW(run({"--prior", text_of(pose_), "--priors", "3"}), CLI::RequiresError);
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation
