@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "drivers/clock/clock.h"
+#include "evaluation/bench/camera_formats.h"
 #include "evaluation/bench/cost_model.h"
 #include "evaluation/bench/resident_memory.h"
 #include "evaluation/bench/scene.h"
@@ -58,19 +59,6 @@ Result<SweepResult> sweep_cameras(const evaluation::DriveConfig& config,
   return sweep;
 }
 
-/// The same camera with a different resolution.
-CameraModel scaled(CameraModel camera, double scale) {
-  auto& lens = camera.intrinsics;
-  lens.width_px = static_cast<int>(std::lround(scale * lens.width_px));
-  lens.height_px = static_cast<int>(std::lround(scale * lens.height_px));
-  lens.fx_px *= scale;
-  lens.fy_px *= scale;
-  // Pixel (0, 0) is the centre of the top left pixel.
-  lens.cx_px = (lens.cx_px + 0.5) * scale - 0.5;
-  lens.cy_px = (lens.cy_px + 0.5) * scale - 0.5;
-  return camera;
-}
-
 RgbImage resized(const RgbImage& image, int width_px, int height_px) {
   RgbImage larger(width_px, height_px);
   // OpenCV's constructor needs mutable pixels; those of `image` are only read.
@@ -84,29 +72,40 @@ Result<SweepResult> sweep_image(const evaluation::DriveConfig& config,
                                 const SweepOptions& options) {
   const auto scene = make_scene(config);
   if (!scene) return tl::unexpected(scene.error());
-  SweepResult sweep{"image",
-                    "From six RGB images of this size to network input. " + kFixedSize,
-                    {"width_px", "height_px", "p50_ms", "p99_ms"},
-                    {}};
-  for (const double scale : {0.5, 1.0, 2.0, 3.0, 4.0}) {
+  SweepResult sweep{
+      "image",
+      "From six images of this size to network input, from RGB and from MJPEG. " + kFixedSize,
+      {"width_px", "height_px", "p50_ms", "p99_ms", "mjpeg_p50_ms", "mjpeg_p99_ms"},
+      {}};
+  for (const double scale : {0.5, 1.0, 2.0, 3.0, 4.0, 6.0}) {
     std::vector<ImagePreprocessor> preprocessors;
     FramesetImages images;
     for (size_t camera = 0; camera < kCameraCount; ++camera) {
-      const CameraModel model = scaled(scene->rig.cameras[camera], scale);
+      CameraModel model = scene->rig.cameras[camera];
+      const auto length = [scale](int px) { return static_cast<int>(std::lround(scale * px)); };
+      model.intrinsics = resized(model.intrinsics, length(model.intrinsics.width_px),
+                                 length(model.intrinsics.height_px));
       preprocessors.emplace_back(model);
       images[camera] = resized(scene->places[0].framesets[0][camera], model.intrinsics.width_px,
                                model.intrinsics.height_px);
     }
+    const auto files = convert(images, PixelFormat::kMjpeg);
+    if (!files) return tl::unexpected(files.error());
     std::vector<int8_t> planes(kNetworkImageSize);
-    const TimeSummary time = time_of(
-        [&] {
-          for (size_t camera = 0; camera < kCameraCount; ++camera) {
-            (void)preprocessors[camera].run(ImageView(images[camera].view()), planes);
-          }
-        },
-        options.frames);
+    const auto time_all = [&](const auto& view_of) {
+      return time_of(
+          [&] {
+            for (size_t camera = 0; camera < kCameraCount; ++camera) {
+              (void)preprocessors[camera].run(view_of(camera), planes);
+            }
+          },
+          options.frames);
+    };
+    const TimeSummary rgb = time_all([&](size_t i) { return ImageView(images[i].view()); });
+    const TimeSummary mjpeg = time_all([&](size_t i) { return (*files)[i].view; });
     sweep.rows.push_back({static_cast<double>(images[0].width),
-                          static_cast<double>(images[0].height), time.p50_ms, time.p99_ms});
+                          static_cast<double>(images[0].height), rgb.p50_ms, rgb.p99_ms,
+                          mjpeg.p50_ms, mjpeg.p99_ms});
   }
   return sweep;
 }

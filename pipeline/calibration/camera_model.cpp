@@ -72,4 +72,18 @@ Eigen::Vector3d Intrinsics::ray(const Eigen::Vector2d& pixel) const {
   return {normalised.x(), normalised.y(), 1.0};
 }
 
+Intrinsics resized(const Intrinsics& lens, int width_px, int height_px) {
+  // One scale for both axes: a height that is not divisible is rounded, but the pixels stay square.
+  const double scale = static_cast<double>(width_px) / lens.width_px;
+  Intrinsics result = lens;
+  result.width_px = width_px;
+  result.height_px = height_px;
+  result.fx_px *= scale;
+  result.fy_px *= scale;
+  // Pixel centres are integers, so u + 0.5 scales.
+  result.cx_px = (lens.cx_px + 0.5) * scale - 0.5;
+  result.cy_px = (lens.cy_px + 0.5) * scale - 0.5;
+  return result;
+}
+
 }  // namespace bevloc

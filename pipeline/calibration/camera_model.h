@@ -44,6 +44,9 @@ struct Intrinsics {
   Eigen::Vector3d ray(const Eigen::Vector2d& pixel) const;
 };
 
+/// The same lens with images of another size.
+Intrinsics resized(const Intrinsics& lens, int width_px, int height_px);
+
 struct CameraModel {
   Intrinsics intrinsics;
   Se3 vehicle_from_camera;

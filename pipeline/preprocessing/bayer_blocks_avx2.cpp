@@ -139,18 +139,24 @@ __m256i colours_of(const SumsByKind& sums, __m256i first_rows, RedPixel red) {
                   mean_of(chosen(2 + blue_col, blue_col), kRedBits));
 }
 
-template <int kTaps>
+template <int kTaps, int kParts>
 void remap_blocks(const ImageView& image, const RemapBlocks& blocks, int8_t* planes) {
   const ImagePlane& plane = image.planes[0];
   const RedPixel red = red_of(image.format);
   for (size_t block = 0; block < blocks.index.size(); ++block) {
-    const __m256i first_rows = load_positions(blocks.first_row, block);
-    const Distances place(first_rows, plane.stride_bytes, load_positions(blocks.first_col, block));
-    prefetch_below<kTaps, 1>(plane.data + plane.stride_bytes + place[0], plane.stride_bytes);
-    __m256i sums[kPairs];
-    for (int pair = 0; pair < kPairs; ++pair) {
-      sums[pair] = lattice_sums<kTaps>(plane, place, blocks, block, pair);
-    }
+    __m256i sums[kPairs] = {};
+    for_each_part<kParts>(
+        block, [&](size_t part) __attribute__((always_inline)) {
+          const Distances place(load_positions(blocks.first_row, part), plane.stride_bytes,
+                                load_positions(blocks.first_col, part));
+          prefetch_below<kTaps, 1>(plane.data + plane.stride_bytes + place[0], plane.stride_bytes);
+          for (int pair = 0; pair < kPairs; ++pair) {
+            sums[pair] =
+                _mm256_add_epi32(sums[pair], lattice_sums<kTaps>(plane, place, blocks, part, pair));
+          }
+        });
+    // The rows of all parts are even or odd alike.
+    const __m256i first_rows = load_positions(blocks.first_row, kParts * block);
     store_block(colours_of(SumsByKind(sums), first_rows, red),
                 planes + kPixels * blocks.index[block]);
   }
@@ -159,8 +165,9 @@ void remap_blocks(const ImageView& image, const RemapBlocks& blocks, int8_t* pla
 }  // namespace
 
 BlockKernel<ImageView>* bayer_kernel_avx2(int taps) {
-  return kernel_of_taps(
-      taps, [](auto constant) -> BlockKernel<ImageView>* { return remap_blocks<constant.value>; });
+  return kernel_of_taps(taps, [](auto shape) -> BlockKernel<ImageView>* {
+    return remap_blocks<shape.taps, shape.parts>;
+  });
 }
 
 }  // namespace bevloc

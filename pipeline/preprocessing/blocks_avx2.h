@@ -118,24 +118,45 @@ constexpr auto shuffles(const Make& make) {
   (std::make_integer_sequence<int, kCount>());
 }
 
-/// The kernel for boxes of `taps` pixels: calls `choose` with an std::integral_constant. Null if
-/// there is no kernel for this width.
+/// Calls `add` with the index of each part of a block in RemapBlocks. kParts is 1 or 4.
+template <int kParts, typename Add>
+[[gnu::always_inline]] inline void for_each_part(size_t block, const Add& add) {
+  for (size_t part = 0; part < kParts; ++part) add(kParts * block + part);
+}
+
+template <int kTaps, int kParts>
+struct PartShape {
+  static constexpr int taps = kTaps;
+  static constexpr int parts = kParts;
+};
+
+/// The kernel for boxes of `taps` pixels: calls `choose` with a PartShape. Null if there is no
+/// kernel for this width.
 template <typename Choose>
-auto kernel_of_taps(int taps, const Choose& choose)
-    -> decltype(choose(std::integral_constant<int, RemapBlocks::kMaxTaps>())) {
+auto kernel_of_taps(int taps, const Choose& choose) -> decltype(choose(PartShape<2, 1>())) {
   switch (taps) {
     case 2:
-      return choose(std::integral_constant<int, 2>());
+      return choose(PartShape<2, 1>());
     case 3:
-      return choose(std::integral_constant<int, 3>());
+      return choose(PartShape<3, 1>());
     case 4:
-      return choose(std::integral_constant<int, 4>());
+      return choose(PartShape<4, 1>());
     case 5:
-      return choose(std::integral_constant<int, 5>());
+      return choose(PartShape<5, 1>());
     case 6:
-      return choose(std::integral_constant<int, 6>());
+      return choose(PartShape<6, 1>());
     case 7:
-      return choose(std::integral_constant<int, 7>());
+      return choose(PartShape<7, 1>());
+    case 8:
+      return choose(PartShape<4, 4>());
+    case 9:
+      return choose(PartShape<5, 4>());
+    case 10:
+    case 11:
+    case 12:
+      return choose(PartShape<6, 4>());
+    case 13:
+      return choose(PartShape<7, 4>());
     default:
       return nullptr;
   }

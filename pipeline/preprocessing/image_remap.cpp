@@ -1,6 +1,7 @@
 #include "pipeline/preprocessing/image_remap.h"
 
 #include <cassert>
+#include <utility>
 
 #include "pipeline/preprocessing/format_remap.h"
 
@@ -30,19 +31,36 @@ YuvLayout nv12(const ImageView& image) {
           .encoding = image.yuv};
 }
 
+/// The largest reduction that leaves at least two decoded pixels for each network pixel.
+int reduction_for(int width_px) {
+  constexpr int kLeastScale = 2;
+  for (const int reduction : {8, 4, 2}) {
+    if (width_px % reduction == 0 && width_px / reduction >= kLeastScale * kNetworkWidthPx) {
+      return reduction;
+    }
+  }
+  return 1;
+}
+
 }  // namespace
 
+ImagePreprocessor::MjpegReader::MjpegReader(const CameraModel& camera)
+    : decoder(camera.intrinsics.width_px, camera.intrinsics.height_px,
+              reduction_for(camera.intrinsics.width_px)),
+      table(make_remap_table(
+          {resized(camera.intrinsics, decoder.reduced_width_px(), decoder.reduced_height_px()),
+           camera.vehicle_from_camera})) {}
+
 ImagePreprocessor::ImagePreprocessor(const CameraModel& camera)
-    : width_px_(camera.intrinsics.width_px),
-      height_px_(camera.intrinsics.height_px),
-      table_(make_remap_table(camera)),
-      mjpeg_(width_px_, height_px_) {}
+    : camera_(camera), table_(make_remap_table(camera)) {}
 
 Status ImagePreprocessor::run(const ImageView& image, std::span<int8_t> planes) {
   assert(planes.size() == kNetworkImageSize);
-  if (image.width != width_px_ || image.height != height_px_) {
+  const auto [width_px, height_px] =
+      std::pair(camera_.intrinsics.width_px, camera_.intrinsics.height_px);
+  if (image.width != width_px || image.height != height_px) {
     return fail("camera frame: found {}x{} pixels, wanted {}x{} as in the calibration", image.width,
-                image.height, width_px_, height_px_);
+                image.height, width_px, height_px);
   }
   switch (image.format) {
     case PixelFormat::kRgb24:
@@ -58,9 +76,10 @@ Status ImagePreprocessor::run(const ImageView& image, std::span<int8_t> planes) 
       remap_yuv(nv12(image), table_, planes.data());
       return {};
     case PixelFormat::kMjpeg: {
-      const auto decoded = mjpeg_.decode(image);
+      if (!mjpeg_) mjpeg_.emplace(camera_);
+      const auto decoded = mjpeg_->decoder.decode(image);
       if (!decoded) return tl::unexpected(decoded.error());
-      remap_yuv(*decoded, table_, planes.data());
+      remap_yuv(*decoded, mjpeg_->table, planes.data());
       return {};
     }
     case PixelFormat::kBayerRggb:

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "common/image_view.h"
@@ -23,7 +24,8 @@ inline constexpr int8_t kNetworkBlack = -128;
 /// from the driver's memory; only MJPEG is decoded first. Each network pixel is the mean of the
 /// camera pixels in a box whose width is the scale (one pixel if the image is enlarged, which is
 /// bilinear interpolation). Pixels outside the camera image are black. Allocates in the constructor
-/// only, except for the memory that libjpeg-turbo uses per image. Not thread safe.
+/// only, except for the first MJPEG image and the memory that libjpeg-turbo uses per image. Not
+/// thread safe.
 class ImagePreprocessor {
  public:
   explicit ImagePreprocessor(const CameraModel& camera);
@@ -33,10 +35,16 @@ class ImagePreprocessor {
   Status run(const ImageView& image, std::span<int8_t> planes);
 
  private:
-  int width_px_;
-  int height_px_;
+  /// Decodes MJPEG images, at a reduced size if the network needs no more, and reads the result.
+  struct MjpegReader {
+    explicit MjpegReader(const CameraModel& camera);
+    MjpegDecoder decoder;
+    RemapTable table;
+  };
+
+  CameraModel camera_;
   RemapTable table_;
-  MjpegDecoder mjpeg_;
+  std::optional<MjpegReader> mjpeg_;  ///< made for the first MJPEG image
 };
 
 }  // namespace bevloc

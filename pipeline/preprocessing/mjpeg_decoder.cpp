@@ -1,6 +1,7 @@
 #include "pipeline/preprocessing/mjpeg_decoder.h"
 
 #include <array>
+#include <cassert>
 
 #include <turbojpeg.h>
 
@@ -19,11 +20,15 @@ struct MjpegDecoder::Handle {
   ~Handle() { tjDestroy(decompressor); }
 };
 
-MjpegDecoder::MjpegDecoder(int width_px, int height_px)
+MjpegDecoder::MjpegDecoder(int width_px, int height_px, int reduction)
     : width_px_(width_px),
       height_px_(height_px),
+      reduction_(reduction),
       handle_(std::make_unique<Handle>()),
-      planes_(std::make_unique_for_overwrite<uint8_t[]>(3 * plane_size(width_px, height_px))) {}
+      planes_(std::make_unique_for_overwrite<uint8_t[]>(
+          3 * plane_size(reduced(width_px), reduced(height_px)))) {
+  assert(reduction == 1 || reduction == 2 || reduction == 4 || reduction == 8);
+}
 
 MjpegDecoder::~MjpegDecoder() = default;
 MjpegDecoder::MjpegDecoder(MjpegDecoder&&) noexcept = default;
@@ -57,14 +62,16 @@ Result<YuvLayout> MjpegDecoder::decode(const ImageView& jpeg) {
 
   std::array<uint8_t*, 3> planes{};
   std::array<int, 3> strides{};
+  const int to_width = reduced_width_px();
+  const int to_height = reduced_height_px();
   for (int i = 0; i < 3; ++i) {
-    planes[i] = planes_.get() + i * plane_size(width_px_, height_px_);
-    strides[i] = tjPlaneWidth(i, width, subsampling);
+    planes[i] = planes_.get() + i * plane_size(to_width, to_height);
+    strides[i] = tjPlaneWidth(i, to_width, subsampling);
   }
   // A warning counts as an error: it means damaged or truncated data, with the rest of the image
   // grey.
-  if (tjDecompressToYUVPlanes(decompressor, data, size, planes.data(), 0, strides.data(), 0, 0) !=
-      0) {
+  if (tjDecompressToYUVPlanes(decompressor, data, size, planes.data(), to_width, strides.data(),
+                              to_height, 0) != 0) {
     return fail("JPEG frame: found damaged data ({}), wanted a complete JPEG image",
                 tjGetErrorStr2(decompressor));
   }

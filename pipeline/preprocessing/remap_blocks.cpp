@@ -18,7 +18,9 @@ class BlockMaker {
       : table_(table),
         width_px_(width_px),
         height_px_(height_px),
-        slots_(RemapBlocks::slots(table.taps)) {}
+        division_(RemapBlocks::division(table.taps)),
+        extent_((division_.parts - 1) * division_.offset + division_.taps),
+        slots_(RemapBlocks::slots(division_.taps)) {}
 
   RemapBlocks make() && {
     for (int first = 0; first < kNetworkPixels; first += kPixels) add_block(first);
@@ -37,11 +39,12 @@ class BlockMaker {
     if (*std::ranges::max_element(weights) > kMaxWeight) return false;
     const int col = table_.first_col[pixel];
     const int row = table_.first_row[pixel];
-    const int last_col = col + table_.taps - 1;
-    const int last_row = row + table_.taps - 1;
+    const int last_col = col + extent_ - 1;
+    const int last_row = row + extent_ - 1;
+    const int last_part_col = col + (division_.parts - 1) * division_.offset;
     return col >= RemapBlocks::kLeftMargin_px && last_col < width_px_ - RemapBlocks::kMargin_px &&
            row >= RemapBlocks::kMargin_px && last_row < height_px_ - RemapBlocks::kMargin_px &&
-           (col + RemapBlocks::kReach_px <= width_px_ ||
+           (last_part_col + RemapBlocks::kReach_px <= width_px_ ||
             last_row + RemapBlocks::kRowsBelow < height_px_);
   }
 
@@ -55,28 +58,48 @@ class BlockMaker {
     if (any == is_in.end()) return;
     const int safe = first + static_cast<int>(any - is_in.begin());
     blocks_.index.push_back(static_cast<uint16_t>(first / kPixels));
-    for (int i = 0; i < kPixels; ++i) {
-      const int pixel = is_in[i] ? first + i : safe;
-      blocks_.first_col.push_back(static_cast<uint16_t>(table_.first_col[pixel] / 2 * 2));
-      blocks_.first_row.push_back(table_.first_row[pixel]);
-    }
-    for (int i = 0; i < kPixels / 2; ++i) {
-      add_weights(first + i, is_in[i]);
-      add_weights(first + i + kPixels / 2, is_in[i + kPixels / 2]);
+    for (int part_row = 0; part_row < division_.parts; ++part_row) {
+      for (int part_col = 0; part_col < division_.parts; ++part_col) {
+        add_part(first, is_in, safe, part_row, part_col);
+      }
     }
   }
 
-  void add_weights(int pixel, bool is_in) {
+  void add_part(int first, const std::array<bool, kPixels>& is_in, int safe, int part_row,
+                int part_col) {
+    for (int i = 0; i < kPixels; ++i) {
+      const int pixel = is_in[i] ? first + i : safe;
+      const int col = table_.first_col[pixel] + part_col * division_.offset;
+      const int row = table_.first_row[pixel] + part_row * division_.offset;
+      blocks_.first_col.push_back(static_cast<uint16_t>(col / 2 * 2));
+      blocks_.first_row.push_back(static_cast<uint16_t>(row));
+    }
+    for (int i = 0; i < kPixels / 2; ++i) {
+      for (const int in_block : {i, i + kPixels / 2}) {
+        add_weights(first + in_block, is_in[in_block], part_row, part_col);
+      }
+    }
+  }
+
+  void add_weights(int pixel, bool is_in, int part_row, int part_col) {
     std::vector<uint8_t>& bytes = blocks_.weights;
     const size_t cols = bytes.size() + table_.first_col[pixel] % 2;
     const size_t rows = bytes.size() + slots_;
     bytes.resize(rows + slots_);
     if (!is_in) return;
     const std::span<const uint16_t> weights = weights_of(pixel);
-    for (int i = 0; i < table_.taps; ++i) {
-      bytes[cols + i] = static_cast<uint8_t>(weights[i]);
-      bytes[rows + i] = static_cast<uint8_t>(weights[table_.taps + i]);
+    const auto taps = static_cast<size_t>(table_.taps);
+    for (int i = 0; i < division_.taps; ++i) {
+      bytes[cols + i] = part_weight(weights.first(taps), part_col, i);
+      bytes[rows + i] = part_weight(weights.last(taps), part_row, i);
     }
+  }
+
+  /// A sample in both parts counts in the first one.
+  uint8_t part_weight(std::span<const uint16_t> weights, int part, int i) const {
+    const int tap = part * division_.offset + i;
+    if (tap >= table_.taps || (part > 0 && tap < division_.taps)) return 0;
+    return static_cast<uint8_t>(weights[static_cast<size_t>(tap)]);
   }
 
   void add_other(int pixel) {
@@ -88,6 +111,8 @@ class BlockMaker {
   const RemapTable& table_;
   int width_px_;
   int height_px_;
+  RemapBlocks::Division division_;
+  int extent_;  ///< of all parts together, along each axis
   size_t slots_;
   RemapBlocks blocks_;
 };

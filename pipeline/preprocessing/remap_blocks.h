@@ -17,9 +17,13 @@ struct PixelRange {
 /// A block is eight adjacent pixels of a row. A kernel computes a pixel if its box respects the
 /// margins below, so that samples of every format may be read in whole words, and if no weight
 /// exceeds 254. The plain code computes all other pixels, including those that see no camera pixel.
+///
+/// A box of more than kMaxPartTaps taps is divided into two by two parts, which may overlap; their
+/// sums add up to that of the box.
 struct RemapBlocks {
   static constexpr int kPixels = 8;
-  static constexpr int kMaxTaps = 7;
+  static constexpr int kMaxTaps = 13;
+  static constexpr int kMaxPartTaps = 7;
 
   /// No box may touch this many pixels at the left edge of the image, or at the other edges.
   static constexpr int kLeftMargin_px = 2;
@@ -29,13 +33,26 @@ struct RemapBlocks {
   static constexpr int kReach_px = 16;
   static constexpr int kRowsBelow = 2;
 
-  /// Number of weights of a pixel along each axis, padded with zeros.
-  static constexpr int slots(int taps) { return taps <= 3 ? 4 : 8; }
+  /// How a box along one axis is divided.
+  struct Division {
+    int parts = 1;   ///< 1 or 2
+    int taps = 0;    ///< of each part
+    int offset = 0;  ///< of the second part; even, so that both see the same chroma and colours
+  };
+  static constexpr Division division(int taps) {
+    if (taps <= kMaxPartTaps) return {1, taps, 0};
+    const int offset = taps < 11 ? 4 : 6;
+    return {2, taps - offset < offset ? offset : taps - offset, offset};
+  }
 
-  std::vector<uint16_t> index;      ///< per block: its first pixel is kPixels * index
-  std::vector<uint16_t> first_col;  ///< per pixel of a block, rounded down to an even number
+  /// Number of weights of a pixel along each axis of a part, padded with zeros.
+  static constexpr int slots(int part_taps) { return part_taps <= 3 ? 4 : 8; }
+
+  std::vector<uint16_t> index;  ///< per block: its first pixel is kPixels * index
+  // The next three contain the parts of a block one after the other, row by row.
+  std::vector<uint16_t> first_col;  ///< per pixel of a part, rounded down to an even number
   std::vector<uint16_t> first_row;
-  /// Column weights, then row weights, per pixel. The pixels of a block come in the order 0, 4, 1,
+  /// Column weights, then row weights, per pixel. The pixels of a part come in the order 0, 4, 1,
   /// 5, 2, 6, 3, 7. Weights of pixels for the plain code are 0.
   std::vector<uint8_t> weights;
   std::vector<PixelRange> others;  ///< for the plain code

@@ -37,20 +37,23 @@ struct RgbSource {
   }
 };
 
-template <int kTaps>
+template <int kTaps, int kParts>
 void remap_blocks(const RgbView& image, const RemapBlocks& blocks, int8_t* planes) {
   constexpr int kSumBits = 2 * RemapTable::kWeightBits;
   static constexpr Shuffle kByChannel([](int, int i) { return 4 * (i % 4) + i / 4; });
   const __m256i half = _mm256_set1_epi32(1 << (kSumBits - 1));
   const RgbSource source{image.data, image.stride_bytes};
   for (size_t block = 0; block < blocks.index.size(); ++block) {
-    const Distances place = source.place(blocks, block);
-    source.prefetch<kTaps>(place);
-    __m256i means[kPairs];
-    for (int pair = 0; pair < kPairs; ++pair) {
-      const __m256i sums = box_sums<kTaps>(source, place, blocks, block, pair, half);
-      means[pair] = _mm256_srai_epi32(sums, kSumBits);
-    }
+    __m256i means[kPairs] = {half, half, half, half};
+    for_each_part<kParts>(
+        block, [&](size_t part) __attribute__((always_inline)) {
+          const Distances place = source.place(blocks, part);
+          source.prefetch<kTaps>(place);
+          for (int pair = 0; pair < kPairs; ++pair) {
+            means[pair] = box_sums<kTaps>(source, place, blocks, part, pair, means[pair]);
+          }
+        });
+    for (__m256i& mean : means) mean = _mm256_srai_epi32(mean, kSumBits);
     const __m256i bytes = _mm256_packs_epi16(_mm256_packs_epi32(means[0], means[1]),
                                              _mm256_packs_epi32(means[2], means[3]));
     store_block(kByChannel(bytes), planes + kPixels * blocks.index[block]);
@@ -60,8 +63,9 @@ void remap_blocks(const RgbView& image, const RemapBlocks& blocks, int8_t* plane
 }  // namespace
 
 BlockKernel<RgbView>* rgb_kernel_avx2(int taps) {
-  return kernel_of_taps(
-      taps, [](auto constant) -> BlockKernel<RgbView>* { return remap_blocks<constant.value>; });
+  return kernel_of_taps(taps, [](auto shape) -> BlockKernel<RgbView>* {
+    return remap_blocks<shape.taps, shape.parts>;
+  });
 }
 
 }  // namespace bevloc

@@ -191,18 +191,22 @@ class ToRgb {
   int32_t start_;
 };
 
-template <int kTaps, typename Source>
+template <int kTaps, int kParts, typename Source>
 void remap_blocks(const YuvLayout& image, const RemapBlocks& blocks, int8_t* planes) {
   const Source source(image);
   const ToRgb to_rgb(rgb_from_yuv(image.encoding));
   for (size_t block = 0; block < blocks.index.size(); ++block) {
-    const typename Source::Place place = source.place(blocks, block);
-    source.template prefetch<kTaps>(place);
-    __m256i means[kPairs];
-    for (int pair = 0; pair < kPairs; ++pair) {
-      const __m256i sums =
-          box_sums<kTaps>(source, place, blocks, block, pair, _mm256_setzero_si256());
-      means[pair] = _mm256_srai_epi32(sums, 2 * RemapTable::kWeightBits - RgbFromYuv::kSampleBits);
+    __m256i means[kPairs] = {};
+    for_each_part<kParts>(
+        block, [&](size_t part) __attribute__((always_inline)) {
+          const typename Source::Place place = source.place(blocks, part);
+          source.template prefetch<kTaps>(place);
+          for (int pair = 0; pair < kPairs; ++pair) {
+            means[pair] = box_sums<kTaps>(source, place, blocks, part, pair, means[pair]);
+          }
+        });
+    for (__m256i& mean : means) {
+      mean = _mm256_srai_epi32(mean, 2 * RemapTable::kWeightBits - RgbFromYuv::kSampleBits);
     }
     const SumsByKind yuv(means);
     store_block(to_rgb(yuv.kinds[0], yuv.kinds[1], yuv.kinds[2]),
@@ -212,8 +216,8 @@ void remap_blocks(const YuvLayout& image, const RemapBlocks& blocks, int8_t* pla
 
 template <typename Source>
 BlockKernel<YuvLayout>* kernel_of_source(int taps) {
-  return kernel_of_taps(taps, [](auto constant) -> BlockKernel<YuvLayout>* {
-    return remap_blocks<constant.value, Source>;
+  return kernel_of_taps(taps, [](auto shape) -> BlockKernel<YuvLayout>* {
+    return remap_blocks<shape.taps, shape.parts, Source>;
   });
 }
 

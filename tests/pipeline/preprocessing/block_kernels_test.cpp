@@ -205,7 +205,7 @@ std::string name_of(const testing::TestParamInfo<BlockKernels::ParamType>& test)
 }
 
 INSTANTIATE_TEST_SUITE_P(Boxes, BlockKernels,
-                         testing::Combine(testing::Range(2, 10), testing::Bool(), testing::Bool()),
+                         testing::Combine(testing::Range(2, 15), testing::Bool(), testing::Bool()),
                          name_of);
 
 }  // namespace

@@ -70,7 +70,8 @@ TEST_P(ImageRemapSizes, ShowsTheSceneAsTheNetworkCameraSeesIt) {
 INSTANTIATE_TEST_SUITE_P(Cameras, ImageRemapSizes,
                          ::testing::Values(std::pair{320, 180}, std::pair{480, 270},
                                            std::pair{640, 360}, std::pair{800, 450},
-                                           std::pair{1280, 720}, std::pair{1920, 1080}));
+                                           std::pair{1280, 720}, std::pair{1920, 1080},
+                                           std::pair{2560, 1440}, std::pair{3840, 2160}));
 
 TEST(ImageRemap, AveragesDetailsBelowTheNetworkResolution) {
   const CameraModel camera = front_camera();

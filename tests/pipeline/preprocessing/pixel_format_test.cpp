@@ -98,17 +98,19 @@ FormatCase jpeg(const std::string& name, int subsampling) {
 
 INSTANTIATE_TEST_SUITE_P(
     Formats, EachFormat,
-    testing::Combine(
-        testing::Values(packed("yuyv_601_limited", PixelFormat::kYuyv, k601Limited),
-                        packed("yuyv_601_full", PixelFormat::kYuyv, k601Full),
-                        packed("uyvy_709_limited", PixelFormat::kUyvy, k709Limited),
-                        nv12("nv12_601_limited", k601Limited), nv12("nv12_601_full", k601Full),
-                        bayer(PixelFormat::kBayerRggb, {0, 1, 1, 2}),
-                        bayer(PixelFormat::kBayerGrbg, {1, 0, 2, 1}),
-                        bayer(PixelFormat::kBayerGbrg, {1, 2, 0, 1}),
-                        bayer(PixelFormat::kBayerBggr, {2, 1, 1, 0}), jpeg("jpeg_444", TJSAMP_444),
-                        jpeg("jpeg_422", TJSAMP_422), jpeg("jpeg_420", TJSAMP_420)),
-        testing::Values(std::pair{640, 360}, std::pair{1280, 720}, std::pair{960, 540})),
+    testing::Combine(testing::Values(packed("yuyv_601_limited", PixelFormat::kYuyv, k601Limited),
+                                     packed("yuyv_601_full", PixelFormat::kYuyv, k601Full),
+                                     packed("uyvy_709_limited", PixelFormat::kUyvy, k709Limited),
+                                     nv12("nv12_601_limited", k601Limited),
+                                     nv12("nv12_601_full", k601Full),
+                                     bayer(PixelFormat::kBayerRggb, {0, 1, 1, 2}),
+                                     bayer(PixelFormat::kBayerGrbg, {1, 0, 2, 1}),
+                                     bayer(PixelFormat::kBayerGbrg, {1, 2, 0, 1}),
+                                     bayer(PixelFormat::kBayerBggr, {2, 1, 1, 0}),
+                                     jpeg("jpeg_444", TJSAMP_444), jpeg("jpeg_422", TJSAMP_422),
+                                     jpeg("jpeg_420", TJSAMP_420)),
+                     testing::Values(std::pair{640, 360}, std::pair{1280, 720}, std::pair{960, 540},
+                                     std::pair{2560, 1440}, std::pair{1928, 1086})),
     [](const auto& test) {
       return std::get<0>(test.param).name + "_" + std::to_string(std::get<1>(test.param).first);
     });
