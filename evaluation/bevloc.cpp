@@ -11,6 +11,7 @@
 #include "evaluation/localize/localize_command.h"
 #include "evaluation/network/answer_command.h"
 #include "evaluation/network/network_command.h"
+#include "evaluation/network/rig_command.h"
 #include "evaluation/solver/draw_command.h"
 #include "evaluation/solver/solver_command.h"
 
@@ -33,6 +34,8 @@ int main(int argc, char** argv) {
   solver_command.declare_eval(*eval);
   bevloc::evaluation::NetworkCommand network_command;
   network_command.declare(*eval);
+  bevloc::evaluation::RigCommand rig_command;
+  rig_command.declare(*eval);
   bevloc::evaluation::IntegrityCommand integrity_command;
   integrity_command.declare(*eval);
   solver_command.declare_tune(*tune);
@@ -67,6 +70,7 @@ int main(int argc, char** argv) {
                                 : fault_command.chosen()        ? fault_command.run()
                                 : localize_command.chosen()     ? localize_command.run()
                                 : network_command.chosen()      ? network_command.run()
+                                : rig_command.chosen()          ? rig_command.run()
                                                                 : solver_command.run();
   if (status) return 0;
   fmt::print(stderr, "bevloc: {}\n", status.error().message);

@@ -38,6 +38,12 @@ def read_checkpoint(path: Path, device: str | torch.device = "cpu") -> dict[str,
     return state
 
 
+def nuisances_of(path: Path) -> str:
+    """The nuisances of a checkpoint's training samples (TrainingConfig.nuisances). Runs from before
+    the option had the usual ones."""
+    return str(read_checkpoint(path)["config"].get("nuisances", "usual"))
+
+
 def network_of(state: dict[str, Any], path: Path) -> ModelConfig:
     """The network configuration of a checkpoint. CheckpointError if it is unknown."""
     chosen = {key: state["config"].get(key, first) for key, first in _FIRST_NETWORK.items()}

@@ -21,7 +21,7 @@ import torch
 import yaml
 from onnx import TensorProto, helper
 
-from training.checkpoint import load_network, read_checkpoint
+from training.checkpoint import load_network, nuisances_of, read_checkpoint
 from training.config import FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream
 from training.errors import run_program
@@ -46,6 +46,11 @@ QUANTIZATION_FILE = "quantization.pt"
 SOLVERS_FILE = "solvers.pt"
 # The simulator's cameras vary around this rig.
 TRAINED_RIG = Path(__file__).parent.parent / "config/rig_demo.yaml"
+# Of the random rigs of --nuisances street (sim/samples/random_rig.cpp): 120 to 50 degrees of view.
+RANDOM_RIGS = {
+    "bevloc.rig.focal_range_px": "92.4 343",
+    "bevloc.rig.height_range_m": "0.6 2.6",
+}
 SHIPPED_SOLVER = "banded+refine"  # config/demo.yaml
 # Seeds of training scenes that no run reaches.
 CALIBRATION_SEED = FIRST_TRAINING_SEED + 2**27
@@ -90,13 +95,14 @@ def metadata(net: BevNetwork, sigma_scale: float) -> dict[str, str]:
     }
 
 
-def rig_statements(rig_file: Path = TRAINED_RIG) -> dict[str, str]:
+def rig_statements(nuisances: str = "usual", rig_file: Path = TRAINED_RIG) -> dict[str, str]:
     """What the model states about the cameras that it was trained with, so that bevlocd can refuse
-    a rig of very different ones (pipeline/network/model/model_rig.h)."""
+    a rig of very different ones (pipeline/network/model/model_rig.h). `nuisances`: of training."""
     cameras = yaml.safe_load(rig_file.read_text())["cameras"]
     focal_px = [c["fx_px"] * IMAGE_COLS / c["image_size_px"][0] for c in cameras.values()]
     height_m = [c["vehicle_from_camera"]["translation_m"][2] for c in cameras.values()]
-    return {
+    ranges = RANDOM_RIGS if nuisances == "street" else {}
+    return ranges | {
         "bevloc.rig.cameras": " ".join(cameras),
         "bevloc.rig.image_size_px": f"{IMAGE_COLS} {IMAGE_ROWS}",
         "bevloc.rig.focal_px": " ".join(f"{value:.4g}" for value in focal_px),
@@ -109,8 +115,9 @@ def build_model(
     convolutions: dict[str, FoldedConv],
     backend: FloatOnnxBackend,
     sigma_scale: float = 1.0,
+    nuisances: str = "usual",
 ) -> onnx.ModelProto:
-    """The whole network as one ONNX model, written by `backend`."""
+    """The whole network as one ONNX model, written by `backend`. `nuisances`: of training."""
     inputs = input_scales()
     walk = Walk(net, convolutions, backend)
     bev, _ = walk.run_images(backend.dequantize("images", inputs["images"]))
@@ -126,13 +133,16 @@ def build_model(
         opset_imports=[helper.make_opsetid("", OPSET)],
         ir_version=IR_VERSION,
     )
-    helper.set_model_props(model, metadata(net, sigma_scale) | rig_statements())
+    helper.set_model_props(model, metadata(net, sigma_scale) | rig_statements(nuisances))
     onnx.checker.check_model(model, full_check=True)
     return model
 
 
-def calibration_batches(samples: int, threads: int = 1) -> list[Batch]:
-    stream = SamplerStream(CALIBRATION_SEED, 0, threads, 0.1)
+def calibration_batches(
+    samples: int, threads: int = 1, nuisances: str = "usual"
+) -> list[Batch]:
+    """Samples with the nuisances of training, so that int8 ranges and sigmas hold for them."""
+    stream = SamplerStream(CALIBRATION_SEED, 0, threads, 0.1, nuisances=nuisances)
     batches = [stream.next(8) for _ in range(0, samples, 8)]
     stream.close()
     return batches
@@ -146,14 +156,22 @@ def quantization_of(net: BevNetwork, checkpoint: Path, calibration: list[Batch])
 
 
 def write_model(
-    net: BevNetwork, quantization: Quantization, sigma_scale: float, folder: Path
+    net: BevNetwork,
+    quantization: Quantization,
+    sigma_scale: float,
+    nuisances: str,
+    folder: Path,
 ) -> None:
     """Writes both model files."""
     name = net.config.name
     int8_backend = Int8OnnxBackend(quantization)
-    int8_model = build_model(net, quantization.convolutions, int8_backend, sigma_scale)
+    int8_model = build_model(
+        net, quantization.convolutions, int8_backend, sigma_scale, nuisances
+    )
     onnx.save(int8_model, str(folder / f"{name}.onnx"))
-    float_model = build_model(net, folded_convolutions(net), FloatOnnxBackend(), sigma_scale)
+    float_model = build_model(
+        net, folded_convolutions(net), FloatOnnxBackend(), sigma_scale, nuisances
+    )
     onnx.save(float_model, str(folder / f"{name}_float.onnx"))
 
 
@@ -167,17 +185,18 @@ def main() -> None:
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint)
     check_exportable(net.config)
-    batches = calibration_batches(arguments.calibration, arguments.threads)
+    nuisances = nuisances_of(arguments.checkpoint)
+    batches = calibration_batches(arguments.calibration, arguments.threads, nuisances)
     quantization = quantization_of(net, arguments.checkpoint, batches)
     quantization.save(arguments.checkpoint.with_name(QUANTIZATION_FILE))
     fit_scales(net.solvers, int8_inference(net, quantization), batches)
     torch.save(net.solvers.state_dict(), arguments.checkpoint.with_name(SOLVERS_FILE))
     arguments.models.mkdir(parents=True, exist_ok=True)
     shipped = arguments.models / f"{net.config.name}.onnx"
-    write_model(net, quantization, 1.0, arguments.models)
+    write_model(net, quantization, 1.0, nuisances, arguments.models)
     network = NativeNetwork(shipped, arguments.threads)
     sigma_scale = fit_sigma_scale(network, NativeSolver(network, SHIPPED_SOLVER), batches)
-    write_model(net, quantization, sigma_scale, arguments.models)
+    write_model(net, quantization, sigma_scale, nuisances, arguments.models)
     for path in (shipped, shipped.with_name(f"{net.config.name}_float.onnx")):
         print(f"{path}: {path.stat().st_size / 1e6:.2f} MB", flush=True)
 

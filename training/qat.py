@@ -16,7 +16,7 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from training.checkpoint import load_network, read_checkpoint
+from training.checkpoint import load_network, nuisances_of, read_checkpoint
 from training.config import FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream, Stream
 from training.errors import NotFiniteError, run_program
@@ -109,7 +109,9 @@ def main() -> None:
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint)
-    batches = calibration_batches(arguments.calibration, arguments.threads)
+    batches = calibration_batches(
+        arguments.calibration, arguments.threads, nuisances_of(arguments.checkpoint)
+    )
     network = FakeQuantized(net, quantize(net, batches))
     stream = SamplerStream(SEED, 0, arguments.threads, DROP_CAMERA_PROBABILITY)
     steps = arguments.samples // arguments.batch

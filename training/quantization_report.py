@@ -16,7 +16,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from training.checkpoint import load_network
+from training.checkpoint import load_network, nuisances_of
 from training.data import Batch
 from training.errors import run_program
 from training.evaluate import AXES, Inference
@@ -131,7 +131,9 @@ def main() -> None:
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint)
-    calibration = calibration_batches(arguments.calibration, arguments.threads)
+    calibration = calibration_batches(
+        arguments.calibration, arguments.threads, nuisances_of(arguments.checkpoint)
+    )
     quantization = quantization_of(net, arguments.checkpoint, calibration)
     batches = simulator_batches(arguments.samples, arguments.threads)
     layer_batches = batches[: math.ceil(arguments.layer_samples / BATCH)]

@@ -24,10 +24,11 @@ uint64_t digest_of_all(const sim::World& world, const sim::Conditions& condition
 
 void add(sim::Digest& digest, const CameraModel& camera) {
   const Intrinsics& lens = camera.intrinsics;
+  digest.add(static_cast<int>(lens.lens));
   digest.add(lens.width_px);
   digest.add(lens.height_px);
-  for (const double part :
-       {lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, lens.k1, lens.k2, lens.p1, lens.p2}) {
+  for (const double part : {lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, lens.k1, lens.k2,
+                            lens.p1, lens.p2, lens.k3, lens.k4}) {
     digest.add(part);
   }
   for (const double part : camera.vehicle_from_camera.rotation.reshaped()) digest.add(part);

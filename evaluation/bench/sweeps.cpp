@@ -83,8 +83,7 @@ Result<SweepResult> sweep_image(const evaluation::DriveConfig& config,
     for (size_t camera = 0; camera < kCameraCount; ++camera) {
       CameraModel model = scene->rig.cameras[camera];
       const auto length = [scale](int px) { return static_cast<int>(std::lround(scale * px)); };
-      model.intrinsics = resized(model.intrinsics, length(model.intrinsics.width_px),
-                                 length(model.intrinsics.height_px));
+      model = resized(model, length(model.intrinsics.width_px), length(model.intrinsics.height_px));
       preprocessors.emplace_back(model);
       images[camera] = resized(scene->places[0].framesets[0][camera], model.intrinsics.width_px,
                                model.intrinsics.height_px);

@@ -14,12 +14,6 @@
 namespace bevloc::evaluation {
 namespace {
 
-constexpr int kMostFrames = 100'000;
-/// World seeds reserved for each seed of the command line.
-constexpr uint64_t kWorldsPerSeed = 1ULL << 16U;
-static_assert(kMostFrames / kSamplesTakenPerWorld < kWorldsPerSeed);
-constexpr uint64_t kSampleSeeds = sim::kSampleSeedCount / kWorldsPerSeed;
-
 constexpr const char* kAllSets = "all";
 
 Result<HdMap> load_drivable_map(const std::string& file) {
@@ -83,7 +77,7 @@ Status NetworkCommand::run() const {
   fmt::print("{}, {} samples per set, seed {}, {}\n", subject.model, frames_, seed_,
              map ? map_file_ : "procedural towns");
   sim::SampleStream stream;
-  stream.first_seed = sim::kEvaluationSampleSeedBase + seed_ * kWorldsPerSeed;
+  stream.first_seed = first_seed_of(seed_);
   stream.map = map ? &*map : nullptr;
   std::vector<SetResult> results;
   int done = 0;

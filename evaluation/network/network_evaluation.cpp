@@ -16,6 +16,7 @@ namespace {
 
 static_assert(sim::kEvaluationSampleSeedBase + sim::kSampleSeedCount <= sim::kTuningSeedBase);
 static_assert(kSamplesTakenPerWorld <= sim::kSamplesPerWorld);
+static_assert(kMostFrames / kSamplesTakenPerWorld < kWorldsPerSeed);
 
 const HypothesisGrid kBaselineHypotheses;
 

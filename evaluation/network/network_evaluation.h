@@ -24,6 +24,17 @@
 
 namespace bevloc::evaluation {
 
+inline constexpr int kMostFrames = 100'000;
+
+/// World seeds reserved for each seed of the command line.
+inline constexpr uint64_t kWorldsPerSeed = 1ULL << 16U;
+inline constexpr uint64_t kSampleSeeds = sim::kSampleSeedCount / kWorldsPerSeed;
+
+/// The first world of the samples for a seed of the command line.
+constexpr uint64_t first_seed_of(uint64_t seed) {
+  return sim::kEvaluationSampleSeedBase + seed * kWorldsPerSeed;
+}
+
 /// Number of samples taken from each world. It is small, so that many worlds are seen.
 inline constexpr uint64_t kSamplesTakenPerWorld = 4;
 

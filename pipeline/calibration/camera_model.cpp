@@ -1,7 +1,9 @@
 #include "pipeline/calibration/camera_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <Eigen/LU>
 
@@ -42,10 +44,54 @@ Distorted distort(const Intrinsics& camera, const Eigen::Vector2d& normalised) {
   return result;
 }
 
+/// The distorted angle of a fisheye, and its derivative.
+struct DistortedAngle {
+  double value;
+  double slope;
+};
+
+DistortedAngle distort_angle(const Intrinsics& camera, double angle) {
+  const double s = angle * angle;
+  const auto& [k1, k2, k3, k4] = std::tie(camera.k1, camera.k2, camera.k3, camera.k4);
+  return {angle * (1.0 + s * (k1 + s * (k2 + s * (k3 + s * k4)))),
+          1.0 + s * (3.0 * k1 + s * (5.0 * k2 + s * (7.0 * k3 + s * 9.0 * k4)))};
+}
+
+std::optional<Eigen::Vector2d> project_fisheye(const Intrinsics& camera,
+                                               const Eigen::Vector3d& point_camera) {
+  const double radius = point_camera.head<2>().norm();
+  const double angle = std::atan2(radius, point_camera.z());
+  const DistortedAngle distorted = distort_angle(camera, angle);
+  if (!(angle <= Intrinsics::kWidestFisheye_rad && distorted.slope > 0.0)) return std::nullopt;
+  const double scale = radius > 0.0 ? distorted.value / radius : 0.0;
+  return Eigen::Vector2d(camera.fx_px * scale * point_camera.x() + camera.cx_px,
+                         camera.fy_px * scale * point_camera.y() + camera.cy_px);
+}
+
+/// The direction of `target`, whose length is the distorted angle, at z = 1.
+Eigen::Vector3d fisheye_ray(const Intrinsics& camera, const Eigen::Vector2d& target) {
+  constexpr int kMaxSteps = 30;
+  constexpr double kConverged = 1e-13;
+  const double wanted = target.norm();
+  if (wanted == 0.0) return Eigen::Vector3d::UnitZ();
+  double angle = std::min(wanted, Intrinsics::kWidestFisheye_rad);
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const DistortedAngle distorted = distort_angle(camera, angle);
+    const double change = (wanted - distorted.value) / std::max(distorted.slope, 1e-3);
+    const double next = std::clamp(angle + change, 0.0, Intrinsics::kWidestFisheye_rad);
+    const bool converged = std::abs(next - angle) < kConverged;
+    angle = next;
+    if (converged) break;
+  }
+  const Eigen::Vector2d beside = std::tan(angle) / wanted * target;
+  return {beside.x(), beside.y(), 1.0};
+}
+
 }  // namespace
 
 std::optional<Eigen::Vector2d> Intrinsics::project(const Eigen::Vector3d& point_camera) const {
   if (!(point_camera.z() > 0.0)) return std::nullopt;
+  if (lens == Lens::kFisheye) return project_fisheye(*this, point_camera);
   const Eigen::Vector2d normalised = point_camera.head<2>() / point_camera.z();
   if (!(normalised.squaredNorm() < monotonic_radius_squared(k1, k2))) return std::nullopt;
   const Eigen::Vector2d distorted = distort(*this, normalised).point;
@@ -56,6 +102,7 @@ Eigen::Vector3d Intrinsics::ray(const Eigen::Vector2d& pixel) const {
   constexpr int kMaxSteps = 30;
   constexpr double kConverged = 1e-13;
   const Eigen::Vector2d target((pixel.x() - cx_px) / fx_px, (pixel.y() - cy_px) / fy_px);
+  if (lens == Lens::kFisheye) return fisheye_ray(*this, target);
   const double limit_squared = monotonic_radius_squared(k1, k2);
   // Newton's method, limited to the radius where the distortion is monotonic.
   const auto within_limit = [limit_squared](const Eigen::Vector2d& point) -> Eigen::Vector2d {
@@ -83,6 +130,28 @@ Intrinsics resized(const Intrinsics& lens, int width_px, int height_px) {
   // Pixel centres are integers, so u + 0.5 scales.
   result.cx_px = (lens.cx_px + 0.5) * scale - 0.5;
   result.cy_px = (lens.cy_px + 0.5) * scale - 0.5;
+  return result;
+}
+
+bool CameraModel::shows_own_body(const Eigen::Vector2d& pixel) const {
+  bool inside = false;
+  for (size_t i = 0; i < own_body_px.size(); ++i) {
+    const Eigen::Vector2d& a = own_body_px[i];
+    const Eigen::Vector2d& b = own_body_px[(i + 1) % own_body_px.size()];
+    if ((a.y() > pixel.y()) == (b.y() > pixel.y())) continue;
+    const double edge_px = a.x() + (pixel.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+    if (pixel.x() < edge_px) inside = !inside;
+  }
+  return inside;
+}
+
+CameraModel resized(const CameraModel& camera, int width_px, int height_px) {
+  const double scale = static_cast<double>(width_px) / camera.intrinsics.width_px;
+  CameraModel result = camera;
+  result.intrinsics = resized(camera.intrinsics, width_px, height_px);
+  for (Eigen::Vector2d& corner : result.own_body_px) {
+    corner = (corner.array() + 0.5) * scale - 0.5;
+  }
   return result;
 }
 

@@ -1,7 +1,10 @@
 // Camera model: intrinsics with radial-tangential distortion, and extrinsics.
 #pragma once
 
+#include <cstdint>
+#include <numbers>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -21,9 +24,17 @@ struct Se3 {
   Se3 inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation_m)}; }
 };
 
-/// OpenCV's "plumb bob" model: u = fx * x_d + cx, where x_d is the distorted normalised coordinate.
+/// kPinhole is OpenCV's "plumb bob" model: u = fx * x_d + cx, where x_d is the distorted normalised
+/// coordinate. kFisheye is the model of cv::fisheye: the distance from the principal point grows
+/// with the angle t from the optical axis as t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8).
+enum class Lens : uint8_t { kPinhole, kFisheye };
+
 /// (0, 0) is the centre of the top left pixel.
 struct Intrinsics {
+  /// A fisheye is used up to this angle from its axis.
+  static constexpr double kWidestFisheye_rad = 80.0 * std::numbers::pi / 180.0;
+
+  Lens lens = Lens::kPinhole;
   int width_px = 0;
   int height_px = 0;
   double fx_px = 0.0;
@@ -32,11 +43,21 @@ struct Intrinsics {
   double cy_px = 0.0;
   double k1 = 0.0;
   double k2 = 0.0;
-  double p1 = 0.0;
+  double p1 = 0.0;  ///< of a pinhole
   double p2 = 0.0;
+  double k3 = 0.0;  ///< of a fisheye
+  double k4 = 0.0;
+
+  bool operator==(const Intrinsics&) const = default;
+
+  /// Whether straight lines stay straight.
+  bool is_straight() const {
+    return lens == Lens::kPinhole && k1 == 0.0 && k2 == 0.0 && p1 == 0.0 && p2 == 0.0;
+  }
 
   /// Pixel of a point in the camera frame (x right, y down, z forward). Nothing for a point with
-  /// z <= 0, or at an angle where the distorted radius no longer increases with the angle.
+  /// z <= 0, at an angle where the distorted radius no longer increases with the angle, or beyond
+  /// kWidestFisheye_rad.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& point_camera) const;
 
   /// Ray through a pixel in the camera frame, scaled to z = 1: the inverse of project(). A pixel
@@ -50,6 +71,14 @@ Intrinsics resized(const Intrinsics& lens, int width_px, int height_px);
 struct CameraModel {
   Intrinsics intrinsics;
   Se3 vehicle_from_camera;
+  /// Corners of the part of the image that shows the own vehicle, in pixels; empty: none. It is
+  /// black for the network.
+  std::vector<Eigen::Vector2d> own_body_px{};
+
+  bool shows_own_body(const Eigen::Vector2d& pixel) const;
 };
+
+/// The same camera with images of another size.
+CameraModel resized(const CameraModel& camera, int width_px, int height_px);
 
 }  // namespace bevloc

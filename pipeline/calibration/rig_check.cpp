@@ -28,9 +28,29 @@ double turned_deg(double angle_deg) {
   return std::remainder(angle_deg, 360.0);
 }
 
+/// Whether the distance from the principal point grows with the angle up to the farthest corner or
+/// kWidestFisheye_rad.
+bool grows_with_angle(const Intrinsics& fisheye) {
+  constexpr int kSteps = 160;
+  const double least_focal_px = std::min(fisheye.fx_px, fisheye.fy_px);
+  const double farthest_px = std::hypot(fisheye.width_px, fisheye.height_px);
+  double before_px = 0.0;
+  for (int i = 1; i <= kSteps; ++i) {
+    const double angle = Intrinsics::kWidestFisheye_rad * i / kSteps;
+    const auto pixel = fisheye.project({std::sin(angle), 0.0, std::cos(angle)});
+    const double distance_px =
+        pixel ? (pixel->x() - fisheye.cx_px) / fisheye.fx_px * least_focal_px : -1.0;
+    if (before_px >= farthest_px) return true;
+    if (!(distance_px > before_px)) return false;
+    before_px = distance_px;
+  }
+  return true;
+}
+
 /// Whether every pixel has its own ray: each must project back to its pixel, and to the right and
 /// below of it must lie rays to the right and below.
 bool is_one_to_one(const Intrinsics& camera) {
+  if (camera.lens == Lens::kFisheye) return grows_with_angle(camera);
   constexpr int kSteps = 16;
   constexpr double kTolerancePx = 0.01;
   for (int i = 0; i <= kSteps; ++i) {

@@ -25,13 +25,31 @@ Intrinsics read_intrinsics(YamlMap& yaml) {
   camera.fy_px = yaml.require<double>("fy_px", more_than(0.0));
   camera.cx_px = yaml.require<double>("cx_px", between(-kMaxPixel, kMaxPixel));
   camera.cy_px = yaml.require<double>("cy_px", between(-kMaxPixel, kMaxPixel));
+  camera.lens = yaml.optional_choice("lens", Lens::kPinhole,
+                                     {{"pinhole", Lens::kPinhole}, {"fisheye", Lens::kFisheye}});
   const auto distortion =
       yaml.require_list<double>("distortion", 4, between(-kMaxDistortion, kMaxDistortion));
+  const bool fisheye = camera.lens == Lens::kFisheye;
   camera.k1 = distortion[0];
   camera.k2 = distortion[1];
-  camera.p1 = distortion[2];
-  camera.p2 = distortion[3];
+  (fisheye ? camera.k3 : camera.p1) = distortion[2];
+  (fisheye ? camera.k4 : camera.p2) = distortion[3];
   return camera;
+}
+
+/// Corners as columns and rows in turn.
+std::vector<Eigen::Vector2d> read_own_body(YamlMap& yaml) {
+  constexpr size_t kLeast = 6;
+  std::vector<Eigen::Vector2d> corners;
+  if (!yaml.has("own_body_px")) return corners;
+  const auto numbers = yaml.require_list<double>("own_body_px", 0, between(-kMaxPixel, kMaxPixel));
+  if (numbers.size() < kLeast || numbers.size() % 2 != 0) {
+    yaml.reject("own_body_px", fmt::format("{} numbers", numbers.size()),
+                "column and row of at least three corners");
+    return corners;
+  }
+  for (size_t i = 0; i < numbers.size(); i += 2) corners.emplace_back(numbers[i], numbers[i + 1]);
+  return corners;
 }
 
 Se3 read_vehicle_from_camera(YamlMap& yaml) {
@@ -65,21 +83,31 @@ std::string format_list(Numbers... numbers) {
 
 std::string format_camera(const CameraModel& camera) {
   const Intrinsics& k = camera.intrinsics;
+  const bool fisheye = k.lens == Lens::kFisheye;
   const Eigen::Vector3d& t = camera.vehicle_from_camera.translation_m;
   Eigen::Quaterniond q(camera.vehicle_from_camera.rotation);
   if (q.w() < 0.0) q.coeffs() *= -1.0;
+  std::vector<std::string> body;
+  for (const Eigen::Vector2d& corner : camera.own_body_px) {
+    body.push_back(format_number(corner.x()));
+    body.push_back(format_number(corner.y()));
+  }
   return fmt::format(
       "    image_size_px: [{}, {}]\n"
+      "{}"
       "    fx_px: {}\n"
       "    fy_px: {}\n"
       "    cx_px: {}\n"
       "    cy_px: {}\n"
       "    distortion: {}\n"
+      "{}"
       "    vehicle_from_camera:\n"
       "      translation_m: {}\n"
       "      rotation_wxyz: {}\n",
-      k.width_px, k.height_px, format_number(k.fx_px), format_number(k.fy_px),
-      format_number(k.cx_px), format_number(k.cy_px), format_list(k.k1, k.k2, k.p1, k.p2),
+      k.width_px, k.height_px, fisheye ? "    lens: fisheye\n" : "", format_number(k.fx_px),
+      format_number(k.fy_px), format_number(k.cx_px), format_number(k.cy_px),
+      format_list(k.k1, k.k2, fisheye ? k.k3 : k.p1, fisheye ? k.k4 : k.p2),
+      body.empty() ? "" : fmt::format("    own_body_px: [{}]\n", fmt::join(body, ", ")),
       format_list(t.x(), t.y(), t.z()), format_list(q.w(), q.x(), q.y(), q.z()));
 }
 
@@ -102,6 +130,7 @@ Result<Rig> parse_rig(const std::string& text, const std::string& name) {
     intrinsics.push_back(cameras.require_map(kCameraNames[i]));
     mountings.push_back(intrinsics.back().require_map("vehicle_from_camera"));
     rig.cameras[i].intrinsics = read_intrinsics(intrinsics.back());
+    rig.cameras[i].own_body_px = read_own_body(intrinsics.back());
     rig.cameras[i].vehicle_from_camera = read_vehicle_from_camera(mountings.back());
   }
   // Mistakes in what the numbers mean are looked for only in a file whose numbers are all there.
@@ -116,7 +145,8 @@ Result<Rig> parse_rig(const std::string& text, const std::string& name) {
 std::string format_rig(const Rig& rig) {
   std::string text =
       "# Calibration of the six cameras. Pixel (0, 0) is the centre of the top left pixel;\n"
-      "# distortion is k1, k2, p1, p2 as OpenCV names them. Camera axes: x right, y down,\n"
+      "# distortion is k1, k2, p1, p2 as OpenCV names them, of a fisheye k1, k2, k3, k4. Camera "
+      "axes: x right, y down,\n"
       "# z forward; vehicle axes: x forward, y left, z up, from the ground under the rear axle.\n"
       "cameras:\n";
   for (size_t i = 0; i < kCameraCount; ++i) {

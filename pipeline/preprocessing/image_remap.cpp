@@ -48,8 +48,7 @@ ImagePreprocessor::MjpegReader::MjpegReader(const CameraModel& camera)
     : decoder(camera.intrinsics.width_px, camera.intrinsics.height_px,
               reduction_for(camera.intrinsics.width_px)),
       table(make_remap_table(
-          {resized(camera.intrinsics, decoder.reduced_width_px(), decoder.reduced_height_px()),
-           camera.vehicle_from_camera})) {}
+          resized(camera, decoder.reduced_width_px(), decoder.reduced_height_px()))) {}
 
 ImagePreprocessor::ImagePreprocessor(const CameraModel& camera)
     : camera_(camera), table_(make_remap_table(camera)) {}

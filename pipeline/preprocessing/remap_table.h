@@ -23,7 +23,7 @@ struct RemapTable {
   std::vector<uint16_t> first_col;
   std::vector<uint16_t> first_row;
   /// For each network pixel, the weights of its columns, then those of its rows. Each set sums to
-  /// kWeightSum, or to 0 outside the camera image.
+  /// kWeightSum, or to 0 outside the camera image and on the own vehicle.
   std::vector<uint16_t> weights;
   RemapBlocks blocks;  ///< the same boxes for the kernels
 };

@@ -48,9 +48,7 @@ bool cut_to_view(Polygon& polygon, const CameraRays& rays) {
 /// Lens distortion bends straight edges. This number of pieces follows the bend to within one
 /// pixel.
 int pieces_per_edge(const Intrinsics& camera) {
-  const bool straight =
-      camera.k1 == 0.0 && camera.k2 == 0.0 && camera.p1 == 0.0 && camera.p2 == 0.0;
-  return straight ? 1 : 4;
+  return camera.is_straight() ? 1 : camera.lens == Lens::kPinhole ? 4 : 12;
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "sim/render/view.h"
 
 #include <limits>
-#include <tuple>
 
 #include <Eigen/Geometry>
 
@@ -12,22 +11,10 @@ namespace {
 
 constexpr float kMostSteps = 65535.0F;
 
-bool same(const Intrinsics& a, const Intrinsics& b) {
-  const auto tie = [](const Intrinsics& k) {
-    return std::tie(k.width_px, k.height_px, k.fx_px, k.fy_px, k.cx_px, k.cy_px, k.k1, k.k2, k.p1,
-                    k.p2);
-  };
-  return tie(a) == tie(b);
-}
-
-bool is_distorted(const Intrinsics& k) {
-  return k.k1 != 0.0 || k.k2 != 0.0 || k.p1 != 0.0 || k.p2 != 0.0;
-}
-
 /// Calls take(ray) for all pixels, row by row.
 template <typename Take>
 void for_each_ray(const Intrinsics& camera, Take take) {
-  const bool distorted = is_distorted(camera);
+  const bool distorted = !camera.is_straight();
   for (int v = 0; v < camera.height_px; ++v) {
     for (int u = 0; u < camera.width_px; ++u) {
       Eigen::Vector2d ray((u - camera.cx_px) / camera.fx_px, (v - camera.cy_px) / camera.fy_px);
@@ -68,7 +55,7 @@ void CameraRays::get(size_t start, int count, float* x, float* y) const {
 
 const CameraRays& RayCache::rays_of(const Intrinsics& intrinsics) {
   for (const auto& table : tables_) {
-    if (same(table->intrinsics(), intrinsics)) return *table;
+    if (table->intrinsics() == intrinsics) return *table;
   }
   auto made = std::make_unique<CameraRays>(intrinsics);
   if (tables_.size() < kCapacity) {

@@ -48,6 +48,9 @@ struct SampleStream {
   /// If set, every world is this map, dressed anew; it must have lanes. If null, worlds are
   /// generated towns.
   const HdMap* map = nullptr;
+  /// If set, the vehicle's cameras instead of the simulator's own. Their lenses do not count,
+  /// because the network's images are rendered directly; what shows the own vehicle is black.
+  const Rig* rig = nullptr;
   /// If set, they cover surfaces of every world. Must outlive the stream.
   const PhotoLibrary* photos = nullptr;
   /// Stronger nuisances in a share of the samples, on top of `nuisances`.

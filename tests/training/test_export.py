@@ -16,7 +16,7 @@ from tests.training.untrained import untrained_network
 from training.data import Batch, view_table
 from training.errors import TrainingError
 from training.evaluate import float_inference
-from training.export_onnx import build_model
+from training.export_onnx import build_model, rig_statements
 from training.graph import Walk, check_exportable, folded_convolutions
 from training.models import PRESETS, BevNetwork
 from training.models.config import network_config
@@ -215,6 +215,14 @@ class Export(unittest.TestCase):
             self.assertAlmostEqual(focal_px[1], 506.56 / 2, delta=0.1)
             heights = [float(word) for word in properties["bevloc.rig.height_m"].split(" ")]
             self.assertEqual(heights[4], 1.579)
+
+    def test_a_model_trained_on_many_rigs_states_their_range(self):
+        self.assertNotIn("bevloc.rig.focal_range_px", rig_statements("strong"))
+        statements = rig_statements("street")
+        least, most = map(float, statements["bevloc.rig.focal_range_px"].split(" "))
+        widest, narrowest = math.radians(120 / 2), math.radians(50 / 2)
+        self.assertAlmostEqual(least, 160 / math.tan(widest), delta=0.1)
+        self.assertAlmostEqual(most, 160 / math.tan(narrowest), delta=0.2)
 
 
 if __name__ == "__main__":

@@ -32,8 +32,7 @@ class GroundView {
   GroundView(const CameraModel& camera, int camera_index, const Se2& reference_from_exposure)
       : intrinsics_(camera.intrinsics), camera_(camera_index) {
     assert(intrinsics_.width_px == kNetworkWidthPx && intrinsics_.height_px == kNetworkHeightPx);
-    assert(intrinsics_.k1 == 0.0 && intrinsics_.k2 == 0.0 && intrinsics_.p1 == 0.0 &&
-           intrinsics_.p2 == 0.0);
+    assert(intrinsics_.is_straight());
     const Se3 camera_from_reference =
         camera.vehicle_from_camera.inverse() * motion_in_space(reference_from_exposure.inverse());
     along_x_ = camera_from_reference.rotation.col(0);

@@ -57,6 +57,67 @@ TEST(CameraModel, RayIsTheInverseOfProjectWithoutDistortion) {
   EXPECT_LT((ray - Eigen::Vector3d(1, 0, 1)).norm(), 1e-12);
 }
 
+Intrinsics fisheye() {
+  return {.lens = Lens::kFisheye,
+          .width_px = 1280,
+          .height_px = 800,
+          .fx_px = 407.0,
+          .fy_px = 409.0,
+          .cx_px = 640.3,
+          .cy_px = 398.1,
+          .k1 = -0.02,
+          .k2 = 0.003,
+          .k3 = 2e-4,
+          .k4 = -1e-5};
+}
+
+TEST(CameraModel, ProjectsAFisheyeByTheOpenCvFormula) {
+  const Intrinsics camera = fisheye();
+  const double angle = std::atan2(5.0, 2.0);  // of the point (3, -4, 2)
+  const double s = angle * angle;
+  const double distorted =
+      angle * (1.0 - 0.02 * s + 0.003 * s * s + 2e-4 * s * s * s - 1e-5 * s * s * s * s);
+  const auto pixel = camera.project({3.0, -4.0, 2.0});
+  ASSERT_TRUE(pixel.has_value());
+  EXPECT_NEAR(pixel->x(), 640.3 + 407.0 * 0.6 * distorted, 1e-9);
+  EXPECT_NEAR(pixel->y(), 398.1 - 409.0 * 0.8 * distorted, 1e-9);
+  EXPECT_EQ(*camera.project({0.0, 0.0, 1.0}), Eigen::Vector2d(640.3, 398.1));
+}
+
+TEST(CameraModel, TheRayOfAFisheyeIsTheInverseOfProjectUpToTheWidestAngle) {
+  const Intrinsics camera = fisheye();
+  int used = 0;
+  for (int v = 0; v < camera.height_px; v += 23) {
+    for (int u = 0; u < camera.width_px; u += 23) {
+      const Eigen::Vector2d pixel(u, v);
+      const Eigen::Vector3d ray = camera.ray(pixel);
+      EXPECT_EQ(ray.z(), 1.0);
+      EXPECT_LE(std::atan(ray.head<2>().norm()), Intrinsics::kWidestFisheye_rad + 1e-9);
+      if (std::atan(ray.head<2>().norm()) > Intrinsics::kWidestFisheye_rad - 1e-6) continue;
+      const auto again = camera.project(3.0 * ray);
+      ASSERT_TRUE(again.has_value()) << u << " " << v;
+      EXPECT_LT((*again - pixel).norm(), 1e-6) << u << " " << v;
+      ++used;
+    }
+  }
+  EXPECT_GT(used, 1000);
+  const double beyond = Intrinsics::kWidestFisheye_rad + 0.01;
+  EXPECT_FALSE(camera.project({std::sin(beyond), 0.0, std::cos(beyond)}).has_value());
+}
+
+TEST(CameraModel, ResizingKeepsTheRaysAndTheOwnBody) {
+  CameraModel camera{wide_camera(), {}, {{0.0, 359.0}, {320.0, 300.0}, {639.0, 359.0}}};
+  const CameraModel half = resized(camera, 320, 180);
+  const Eigen::Vector2d pixel(411.5, 300.5);
+  const Eigen::Vector2d in_half = (pixel.array() + 0.5) / 2.0 - 0.5;
+  EXPECT_LT((half.intrinsics.ray(in_half) - camera.intrinsics.ray(pixel)).norm(), 1e-12);
+  for (const double row : {290.0, 340.0}) {
+    const Eigen::Vector2d place(320.0, row);
+    EXPECT_EQ(camera.shows_own_body(place), row > 300.0);
+    EXPECT_EQ(half.shows_own_body((place.array() + 0.5) / 2.0 - 0.5), row > 300.0);
+  }
+}
+
 TEST(CameraModel, ProjectsByTheOpenCvFormula) {
   const Intrinsics camera = wide_camera();
   // The documented formula with x = 0.4, y = -0.2, so r^2 = 0.2.

@@ -70,8 +70,12 @@ TEST(RigCheck, AcceptsANuscenesRig) {
   Rig rig;
   for (int i = 0; i < kCameraCount; ++i) {
     const Entry& entry = entries[i];
-    rig.cameras[i].intrinsics = {1600,           900,         entry.focal_px,
-                                 entry.focal_px, entry.cx_px, entry.cy_px};
+    rig.cameras[i].intrinsics = {.width_px = 1600,
+                                 .height_px = 900,
+                                 .fx_px = entry.focal_px,
+                                 .fy_px = entry.focal_px,
+                                 .cx_px = entry.cx_px,
+                                 .cy_px = entry.cy_px};
     rig.cameras[i].vehicle_from_camera = {entry.rotation.normalized().toRotationMatrix(),
                                           entry.place_m};
   }

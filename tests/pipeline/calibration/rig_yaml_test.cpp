@@ -17,7 +17,16 @@ Rig any_rig() {
   Rig rig = sim::nominal_rig();
   for (int i = 0; i < kCameraCount; ++i) {
     CameraModel& camera = rig.cameras[i];
-    camera.intrinsics = {640, 360, 500.0 + i, 501.0, 320.25, 180.125, -0.1, 0.01, 1e-4, -2e-4};
+    camera.intrinsics = {.width_px = 640,
+                         .height_px = 360,
+                         .fx_px = 500.0 + i,
+                         .fy_px = 501.0,
+                         .cx_px = 320.25,
+                         .cy_px = 180.125,
+                         .k1 = -0.1,
+                         .k2 = 0.01,
+                         .p1 = 1e-4,
+                         .p2 = -2e-4};
     camera.vehicle_from_camera.translation_m = {1.5 - 0.3 * i, 0.4, 1.5};
     const Eigen::AngleAxisd tilt(0.1 + 0.02 * i, Eigen::Vector3d(1, 2, 3).normalized());
     camera.vehicle_from_camera.rotation = tilt * camera.vehicle_from_camera.rotation;
@@ -118,6 +127,44 @@ TEST(RigYaml, TheDemoRigIsTheSimulatedRig) {
   const auto rig = read_rig(std::filesystem::path(BEVLOC_SOURCE_DIR) / "config/rig_demo.yaml");
   ASSERT_TRUE(rig.has_value()) << rig.error().message;
   EXPECT_EQ(format_rig(*rig), format_rig(sim::nominal_rig()));
+}
+
+TEST(RigYaml, KeepsFisheyesAndTheOwnBody) {
+  Rig rig = any_rig();
+  Intrinsics& fisheye = rig.cameras[4].intrinsics;
+  fisheye = {.lens = Lens::kFisheye,
+             .width_px = 1280,
+             .height_px = 800,
+             .fx_px = 407.0,
+             .fy_px = 407.0,
+             .cx_px = 639.5,
+             .cy_px = 399.5,
+             .k1 = -0.02,
+             .k2 = 0.003,
+             .k3 = 1e-4,
+             .k4 = -1e-5};
+  rig.cameras[4].own_body_px = {{0.0, 799.0}, {640.0, 700.5}, {1279.0, 799.0}};
+  const auto again = parse_rig(format_rig(rig), "rig.yaml");
+  ASSERT_TRUE(again.has_value()) << again.error().message;
+  EXPECT_EQ(again->cameras[4].intrinsics, fisheye);
+  EXPECT_EQ(again->cameras[4].own_body_px, rig.cameras[4].own_body_px);
+  EXPECT_TRUE(again->cameras[0].own_body_px.empty());
+}
+
+TEST(RigYaml, RefusesABodyWithoutThreeCornersAndAnUnknownLens) {
+  EXPECT_THAT(error_after("    fx_px: 500\n", "    fx_px: 500\n    own_body_px: [0, 1, 2, 3]\n"),
+              HasSubstr("own_body_px: found 4 numbers, wanted column and row of at least three"));
+  EXPECT_THAT(error_after("    fx_px: 500\n", "    fx_px: 500\n    lens: omni\n"),
+              HasSubstr("lens: found omni, wanted"));
+}
+
+TEST(RigYaml, TheRigsBesideTheDemosAreRead) {
+  for (const char* name : {"van", "fisheye", "nuscenes"}) {
+    const auto file = std::filesystem::path(BEVLOC_SOURCE_DIR) / "config" /
+                      (std::string("rig_") + name + ".yaml");
+    const auto rig = read_rig(file);
+    EXPECT_TRUE(rig.has_value()) << rig.error().message;
+  }
 }
 
 TEST(RigYaml, NamesAMissingFile) {

@@ -67,6 +67,25 @@ TEST_P(ImageRemapSizes, ShowsTheSceneAsTheNetworkCameraSeesIt) {
   EXPECT_LT(worst, 3.0);
 }
 
+TEST(ImageRemap, TheOwnBodyIsBlack) {
+  CameraModel camera = front_camera();
+  const RgbImage white = [] {
+    RgbImage image(640, 360);
+    std::ranges::fill(image.pixels, uint8_t{255});
+    return image;
+  }();
+  std::vector<int8_t> whole(kNetworkImageSize);
+  std::vector<int8_t> masked(kNetworkImageSize);
+  ASSERT_TRUE(ImagePreprocessor(camera).run(white.view(), whole));
+  camera.own_body_px = {{-1.0, 260.0}, {640.0, 260.0}, {640.0, 360.0}, {-1.0, 360.0}};
+  ASSERT_TRUE(ImagePreprocessor(camera).run(white.view(), masked));
+  const auto black = std::ranges::count(masked, kNetworkBlack);
+  EXPECT_EQ(std::ranges::count(whole, kNetworkBlack), 0);
+  EXPECT_GT(black, 3 * kNetworkWidthPx * 3);
+  EXPECT_EQ(black % (3 * kNetworkWidthPx), 0) << "whole rows are black";
+  EXPECT_EQ(masked[kNetworkImageSize / 6], 127) << "the middle stays";
+}
+
 INSTANTIATE_TEST_SUITE_P(Cameras, ImageRemapSizes,
                          ::testing::Values(std::pair{320, 180}, std::pair{480, 270},
                                            std::pair{640, 360}, std::pair{800, 450},

@@ -48,6 +48,21 @@ TEST(ModelRig, AModelThatStatesNothingFitsEveryRig) {
   EXPECT_TRUE(check_rig_fits(read_model_rig(graph), rig));
 }
 
+TEST(ModelRig, ARangeOfTrainingAllowsMoreThanTheFactor) {
+  nn::Graph graph = shipped();
+  graph.metadata["bevloc.rig.focal_range_px"] = "92 343";
+  graph.metadata["bevloc.rig.height_range_m"] = "0.6 2.6";
+  const ModelRig model = read_model_rig(graph);
+  Rig rig = sim::nominal_rig();
+  for (CameraModel& camera : rig.cameras) camera.vehicle_from_camera.translation_m.z() = 2.5;
+  rig.cameras[3].intrinsics.fx_px *= 0.4;
+  EXPECT_TRUE(check_rig_fits(model, rig));
+  rig.cameras[3].intrinsics.fx_px *= 0.5;
+  EXPECT_THAT(check_rig_fits(model, rig).error().message, HasSubstr("wanted 92 to"));
+  graph.metadata["bevloc.rig.height_range_m"] = "2.6 0.6";
+  EXPECT_THAT(error_of(graph), HasSubstr("wanted the least value first"));
+}
+
 TEST(ModelRig, RefusesCamerasOfAnotherWidthOfView) {
   for (const double factor : {0.6, 1.6}) {
     Rig rig = sim::nominal_rig();

@@ -1,0 +1,82 @@
+#include "evaluation/network/rig_command.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/command_output.h"
+#include "evaluation/network/network_evaluation.h"
+#include "evaluation/summary_format.h"
+#include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/network/model/model_rig.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr std::string_view kSolver = "banded+refine";
+
+/// The errors of the daemon's solver.
+Summary summary_of(const SetResult& result) {
+  const auto read_out = std::ranges::find(result.read_outs, kSolver, &ReadOut::name);
+  return summarise(read_out->outcomes);
+}
+
+PerAxis ratio_of(const PerAxis& a, const PerAxis& b) {
+  PerAxis ratio{};
+  for (size_t axis = 0; axis < ratio.size(); ++axis) ratio[axis] = a[axis] / b[axis];
+  return ratio;
+}
+
+}  // namespace
+
+void RigCommand::declare(CLI::App& eval) {
+  auto* rig = eval.add_subcommand("rig", "Say what a rig costs against the simulator's own");
+  rig->add_option("file", rig_file_, "Calibration of the cameras")->required();
+  rig->add_option("--model", model_, "ONNX file")->capture_default_str();
+  rig->add_option("--frames", frames_, "Number of samples with each rig")
+      ->check(CLI::Range(1, kMostFrames))
+      ->capture_default_str();
+  rig->add_option("--seed", seed_, "Seed of the samples")
+      ->check(CLI::Range(uint64_t{0}, kSampleSeeds - 1))
+      ->capture_default_str();
+  rig->add_option("--json", json_file_, "Write both results to this file");
+  rig->callback([this] { chosen_ = true; });
+}
+
+Status RigCommand::run() const {
+  const auto rig = read_rig(rig_file_);
+  if (!rig) return tl::unexpected(rig.error());
+  const auto network = Network::load(model_, {});
+  if (!network) return tl::unexpected(network.error());
+  if (const Status fits = check_rig_fits((*network)->rig(), *rig); !fits) {
+    fmt::print(stderr, "{}: bevlocd refuses it: {}\n", rig_file_, fits.error().message);
+  }
+  auto evaluation = NetworkEvaluation::create(model_);
+  if (!evaluation) return tl::unexpected(evaluation.error());
+  sim::SampleStream stream;
+  stream.first_seed = first_seed_of(seed_);
+  stream.nuisances = sim::nuisances_of(sim::NuisanceSet::kStandard);
+  int done = 0;
+  const auto progress = [&] { show_progress(++done, 2 * frames_); };
+  const Summary usual = summary_of(evaluation->run(stream, frames_, progress));
+  stream.rig = &*rig;
+  const Summary found = summary_of(evaluation->run(stream, frames_, progress));
+  fmt::print(
+      "{}, {} samples, {}; along, across (m), yaw (degrees)\n"
+      "                        MAE                 95 %                within 3 sigma, %\n"
+      "simulator's own rig     {}   {}   {}\n"
+      "{:22}  {}   {}   {}\n"
+      "ratio                   {}   {}\n",
+      evaluation->model_name(), frames_, kSolver, three(usual.mae), three(usual.p95),
+      percent(usual.coverage_3s), rig_file_, three(found.mae), three(found.p95),
+      percent(found.coverage_3s), three(ratio_of(found.mae, usual.mae), 2),
+      three(ratio_of(found.p95, usual.p95), 2));
+  const nlohmann::json json{{"rig", rig_file_},
+                            {"model", evaluation->model_name()},
+                            {"own", json_of(usual)},
+                            {"given", json_of(found)}};
+  return write_file(json.dump(2) + "\n", json_file_);
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,66 @@
+// `bevloc eval rig`: both rigs see the same places.
+#include "evaluation/network/rig_command.h"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "common/files.h"
+#include "pipeline/calibration/rig_yaml.h"
+#include "sim/sim_rig.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+class RigCommandTest : public testing::Test {
+ protected:
+  std::string file(const std::string& name) const { return folder_ / name; }
+
+  Status run(const std::string& rig) const {
+    CLI::App app;
+    RigCommand command;
+    command.declare(app);
+    std::vector<std::string> arguments{
+        "rig",      rig, "--model", BEVLOC_SOURCE_DIR "/models/nano.onnx",
+        "--frames", "8", "--json",  file("answer.json")};
+    std::ranges::reverse(arguments);  // as CLI11 expects
+    app.parse(arguments);
+    return command.run();
+  }
+
+  nlohmann::json answer() const {
+    return nlohmann::json::parse(std::ifstream(file("answer.json")));
+  }
+
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(RigCommandTest, TheSimulatorsOwnRigCostsNothing) {
+  ASSERT_TRUE(write_file(file("rig.yaml"), format_rig(sim::nominal_rig())));
+  const Status status = run(file("rig.yaml"));
+  ASSERT_TRUE(status) << status.error().message;
+  // The file keeps nine decimals.
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(answer()["own"]["mae"][axis], answer()["given"]["mae"][axis], 1e-3);
+  }
+}
+
+TEST_F(RigCommandTest, AnotherRigAndItsOwnBodyChangeTheErrors) {
+  Rig rig = sim::nominal_rig();
+  for (CameraModel& camera : rig.cameras)
+    camera.own_body_px = {{0, 0}, {639, 0}, {639, 359}, {0, 359}};
+  ASSERT_TRUE(write_file(file("rig.yaml"), format_rig(rig)));
+  const Status status = run(file("rig.yaml"));
+  ASSERT_TRUE(status) << status.error().message;
+  // Whoever sees only the own vehicle keeps the error of the prior.
+  EXPECT_GT(answer()["given"]["mae"][1], 3.0 * answer()["own"]["mae"][1].get<double>());
+}
+
+TEST_F(RigCommandTest, RefusesAFileThatIsNoRig) {
+  EXPECT_THAT(run("/nonexistent.yaml").error().message, testing::HasSubstr("/nonexistent.yaml"));
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation
