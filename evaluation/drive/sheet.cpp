@@ -131,8 +131,7 @@ Status write_sheet(const SheetContent& content, const Rig& rig, const MapIndex& 
   cv::Mat sheet(kSheetHeightPx, kSheetWidthPx, CV_8UC3, kPaper);
   const cv::Point left(kMarginPx, kMarginPx + kCaptionPx);
   const cv::Point right(2 * kMarginPx + kBlockWidthPx, left.y);
-  write_text(sheet,
-             describe("(b) map at the prior", content.truth, content.prior),
+  write_text(sheet, describe("(b) map at the prior", content.truth, content.prior),
              left - cv::Point(0, 10));
   write_text(sheet, describe("(c) map at bevloc's pose", content.truth, content.corrected),
              right - cv::Point(0, 10));

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/map/map_loader.h"
+#include "sim/sim_rig.h"
 
 namespace bevloc::sim {
 namespace {
@@ -138,6 +139,28 @@ TEST(SampleMaker, SeedsGiveDifferentSamples) {
     EXPECT_NE(sample.correction.x_m, other[i].correction.x_m);
     EXPECT_TRUE(sample.raster_truth != other[i].raster_truth);
   }
+}
+
+TEST(SampleMaker, ARigReplacesTheSimulatorsOwn) {
+  SampleStream stream = stream_of(NuisanceSet::kSixCameras);
+  Rig rig = nominal_rig();
+  stream.rig = &rig;
+  const std::vector<Sample>& own = samples_of(NuisanceSet::kSixCameras);
+  EXPECT_EQ(make(stream)[0].images, own[0].images) << "the own rig, given as a rig";
+  rig.cameras[1].vehicle_from_camera.translation_m.z() += 0.5;
+  const Intrinsics& back = rig.cameras[4].intrinsics;
+  const double right = back.width_px;
+  const double bottom = back.height_px;
+  rig.cameras[4].own_body_px = {
+      {-1, bottom / 2}, {right, bottom / 2}, {right, bottom}, {-1, bottom}};
+  const Sample changed = make(stream)[0];
+  for (size_t camera = 0; camera < kCameraCount; ++camera) {
+    EXPECT_EQ(same_image(changed, own[0], camera), camera != 1 && camera != 4) << camera;
+  }
+  const auto black = [](const Sample& sample) {
+    return std::ranges::count(image_of(sample, 4), 0);
+  };
+  EXPECT_GT(black(changed), black(own[0]) + 3 * kNetworkWidthPx);
 }
 
 TEST(SampleMaker, NightIsDark) {
