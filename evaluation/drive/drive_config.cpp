@@ -53,9 +53,21 @@ bool read_procedural_map(YamlMap& map, SimulationConfig& simulation) {
   return true;
 }
 
+sim::StopTimes read_stops(YamlMap& yaml) {
+  constexpr double kLongest_s = 1e6;
+  sim::StopTimes stops;
+  if (!yaml.has("stops_s")) return stops;
+  const auto times = yaml.require_list<double>("stops_s", 2, between(0.1, kLongest_s));
+  if (times[0] > times[1]) {
+    yaml.reject("stops_s", fmt::format("{} to {}", times[0], times[1]), "the shortest time first");
+  }
+  return {times[0], times[1]};
+}
+
 void read_simulation(YamlMap yaml, SimulationConfig& simulation) {
   simulation.seed = yaml.require<uint64_t>("seed");
   simulation.duration_s = yaml.require<double>("duration_s", between(0.1, 1e6));
+  simulation.stops = read_stops(yaml);
   simulation.conditions = read_conditions(yaml.optional_map("conditions"));
   simulation.calibration_error = read_calibration_error(yaml.optional_map("calibration_error"));
   simulation.exposure_offsets = read_offsets(yaml);

@@ -12,6 +12,7 @@
 #include "firmware/config/config.h"
 #include "sim/faults/fault.h"
 #include "sim/render/renderer.h"
+#include "sim/vehicle/drive.h"
 
 namespace bevloc::evaluation {
 
@@ -19,6 +20,7 @@ namespace bevloc::evaluation {
 struct SimulationConfig {
   uint64_t seed = 1;
   double duration_s = 60.0;
+  sim::StopTimes stops;
   std::optional<uint64_t> town_seed;  ///< of a procedural town; empty if the map is a file
   sim::Conditions conditions;
   drivers::CalibrationError calibration_error;  ///< 1 sigma

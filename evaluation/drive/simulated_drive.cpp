@@ -120,7 +120,8 @@ SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,
     : world_(std::move(world)),
       drive_(std::make_shared<sim::Drive>(
           *world_, sim::seed_for(simulation.seed, "drive"),
-          simulation.duration_s + kSpareDuration_s + sim::added_time_s(simulation.faults))),
+          simulation.duration_s + kSpareDuration_s + sim::added_time_s(simulation.faults),
+          simulation.stops)),
       faults_(std::make_shared<sim::FaultBoard>(simulation.faults)),
       map_(sim::with_faults(world_->map, simulation.faults, *drive_)) {}
 

@@ -65,7 +65,7 @@ Eigen::Vector2d hermite(const Eigen::Vector2d& a, const Eigen::Vector2d& tangent
 
 }  // namespace
 
-Drive::Drive(const World& world, uint64_t seed, double duration_s)
+Drive::Drive(const World& world, uint64_t seed, double duration_s, const StopTimes& times)
     : seed_(seed),
       duration_s_(duration_s),
       pitch_noise_(seed_for(seed, "pitch"), radians(0.27), 4.0, 40.0),
@@ -77,7 +77,7 @@ Drive::Drive(const World& world, uint64_t seed, double duration_s)
       random_lane_route(world.map, duration_s * kTopSpeed_mps * 0.8 + 50.0, random);
   lay_path(world.map, route);
   measure_path();
-  const std::vector<Stop> stops = choose_stops(world.map, route);
+  const std::vector<Stop> stops = choose_stops(world.map, route, times);
   plan_speed(world.map, route, stops);
   plan_time(stops);
 }
@@ -127,8 +127,8 @@ void Drive::measure_path() {
       heading_rad_[last - 1] + curvature_radpm_[last] * (station_m_[last] - station_m_[last - 1]);
 }
 
-std::vector<Drive::Stop> Drive::choose_stops(const HdMap& map,
-                                             const std::vector<uint32_t>& route) const {
+std::vector<Drive::Stop> Drive::choose_stops(const HdMap& map, const std::vector<uint32_t>& route,
+                                             const StopTimes& times) const {
   Random random(seed_for(seed_, "stops"));
   std::vector<Stop> stops;
   double end_m = 0.0;
@@ -136,7 +136,7 @@ std::vector<Drive::Stop> Drive::choose_stops(const HdMap& map,
     const double lane_m = length_m(map.lanes[lane].centerline);
     end_m += lane_m;
     const bool stops_here = random.chance(0.25);
-    const double wait_s = random.uniform(2.0, 7.0);
+    const double wait_s = random.uniform(times.shortest_s, times.longest_s);
     if (!stops_here || lane_m < 25.0 || map.lanes[lane].successors.size() < 2) continue;
     const auto sample = static_cast<size_t>((end_m - kStopBeforeLaneEnd_m) / lane_step_m_);
     if (sample + 1 < points_.size()) stops.push_back({sample, wait_s});

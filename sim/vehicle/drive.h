@@ -11,15 +11,21 @@
 
 namespace bevloc::sim {
 
+/// How long a vehicle waits where it stops, uniform between the two.
+struct StopTimes {
+  double shortest_s = 2.0;
+  double longest_s = 7.0;
+};
+
 /// Drives a random route along the lanes like a calm driver: lateral acceleration up to 2.5 m/s^2,
 /// longitudinal acceleration from -3 to 2 m/s^2, slower in bends, occasional stops at junctions, a
-/// small lateral wander within the lane. World, seed and duration determine the whole drive.
+/// small lateral wander within the lane. World, seed, duration and stops determine the whole drive.
 /// Immutable: safe to read from several threads.
 class Drive {
  public:
   /// The world's map must have lanes. If the route ends before the duration, the vehicle stops
   /// there and stays. Keeps no reference to the world.
-  Drive(const World& world, uint64_t seed, double duration_s);
+  Drive(const World& world, uint64_t seed, double duration_s, const StopTimes& stops = {});
 
   struct State {
     Se2 map_from_vehicle;  ///< of the middle of the rear axle, on the ground
@@ -45,7 +51,8 @@ class Drive {
 
   void lay_path(const HdMap& map, const std::vector<uint32_t>& route);
   void measure_path();
-  std::vector<Stop> choose_stops(const HdMap& map, const std::vector<uint32_t>& route) const;
+  std::vector<Stop> choose_stops(const HdMap& map, const std::vector<uint32_t>& route,
+                                 const StopTimes& times) const;
   void plan_speed(const HdMap& map, const std::vector<uint32_t>& route,
                   const std::vector<Stop>& stops);
   void plan_time(const std::vector<Stop>& stops);

@@ -256,6 +256,8 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
       // keys of another driver
       {with("driver: mock\n" + rate, "driver: replay\n  recording: r\n"), 5, "map.procedural_seed"},
       {with(simulation + "\n", ""), 1, "simulation"},
+      {with(simulation, "simulation: {seed: 1, duration_s: 5, stops_s: [7, 2]}"), 8,
+       "simulation.stops_s: found 7 to 2, wanted the shortest time first"},
       {with(simulation, "simulation: {seed: 1, duration_s: 5, exposure_offsets_ms: [1, 2, 3]}"), 8,
        "simulation.exposure_offsets_ms: found a list of 3, wanted a list of 6"},
       {with(simulation,

@@ -150,5 +150,27 @@ TEST(Route, AvoidsDeadEndsAndPrefersNewLanes) {
   }
 }
 
+TEST(Drive, WaitsAtStopsForTheGivenTime) {
+  const World world = generate_world(7);
+  int waits = 0;
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    const Drive drive(world, seed, 200.0, {50.0, 60.0});
+    double standing_s = 0.0;
+    for (double time_s = 0.0; time_s < 200.0; time_s += 0.1) {
+      if (drive.at(time_s).speed_mps > 0.0) {
+        if (standing_s > 1.0) {
+          EXPECT_GT(standing_s, 49.0) << seed;
+          EXPECT_LT(standing_s, 62.0) << seed;
+          ++waits;
+        }
+        standing_s = 0.0;
+      } else {
+        standing_s += 0.1;
+      }
+    }
+  }
+  EXPECT_GE(waits, 3);
+}
+
 }  // namespace
 }  // namespace bevloc::sim
