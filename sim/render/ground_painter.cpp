@@ -87,6 +87,9 @@ void GroundPainter::index_paint() {
   boxes.clear();
   for (const PaintArea& area : world_.paint_areas) boxes.push_back(box_of(area.ring));
   area_index_ = CellIndex(boxes);
+  boxes.clear();
+  for (const Shade& shade : world_.shades) boxes.push_back(box_of(shade.ring));
+  shade_index_ = CellIndex(boxes);
 }
 
 void GroundPainter::index_ageing() {
@@ -113,6 +116,7 @@ void GroundPainter::paint(const TileKey& key, GroundTexel* texels) {
   paint_surfaces(area);
   paint_ageing(area);
   paint_markings(area);
+  paint_shades(area);
   store(texels);
 }
 
@@ -173,6 +177,17 @@ void GroundPainter::paint_markings(const Box& area) {
     const PaintArea& paint = world_.paint_areas[static_cast<size_t>(item)];
     for_each_covered_row(paint.ring, [&](int j, const float* coverage) {
       cover_with_paint(canvas_, j, paint.albedo, paint.wear, coverage);
+    });
+  }
+}
+
+void GroundPainter::paint_shades(const Box& area) {
+  found_.clear();
+  shade_index_.query(area, found_);
+  for (const int item : found_) {
+    const Shade& shade = world_.shades[static_cast<size_t>(item)];
+    for_each_covered_row(shade.ring, [&](int j, const float* coverage) {
+      shade_row(canvas_, j, shade.light, coverage);
     });
   }
 }

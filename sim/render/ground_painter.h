@@ -31,6 +31,7 @@ class GroundPainter {
   void paint_ageing(const Box& area);
   void soil(const CellIndex& index, const std::vector<StrokeSegment>& segments, const Box& area);
   void paint_markings(const Box& area);
+  void paint_shades(const Box& area);
   /// Calls row(j, coverage) for each row of the tile that the ring touches. `coverage` is null for
   /// a fully covered row.
   template <typename Row>
@@ -42,6 +43,7 @@ class GroundPainter {
   std::vector<StrokeSegment> paint_segments_;
   CellIndex paint_index_;
   CellIndex area_index_;
+  CellIndex shade_index_;
   RoadAgeing ageing_;
   CellIndex track_index_;
   CellIndex crack_index_;

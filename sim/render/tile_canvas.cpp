@@ -191,6 +191,17 @@ void cover_with_paint(TileCanvas& canvas, int j, const Rgb& albedo, float wear,
   paint_row(canvas_row(canvas, j, 0), albedo, wear, coverage);
 }
 
+void shade_row(TileCanvas& canvas, int j, float light, const float* coverage) {
+  if (coverage == nullptr) coverage = full_coverage().data();
+  const CanvasRow row = canvas_row(canvas, j, 0);
+  for (int i = 0; i < kTileNodes; ++i) {
+    const float keep = 1.0F - (1.0F - light) * coverage[i];
+    row.red[i] *= keep;
+    row.green[i] *= keep;
+    row.blue[i] *= keep;
+  }
+}
+
 void darken_road(TileCanvas& canvas, int j, float factor, const float* coverage) {
   if (coverage == nullptr) coverage = full_coverage().data();
   const CanvasRow row = canvas_row(canvas, j, 0);

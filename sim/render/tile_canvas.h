@@ -64,6 +64,9 @@ void cover_with_material(TileCanvas& canvas, int j, GroundMaterial material, flo
 void cover_with_paint(TileCanvas& canvas, int j, const Rgb& albedo, float wear,
                       const float* coverage);
 
+/// Multiplies the albedo of everything in row j by `light`; `coverage` as above.
+void shade_row(TileCanvas& canvas, int j, float light, const float* coverage);
+
 /// Multiplies the albedo of asphalt in row j by `factor`; `coverage` as above.
 void darken_road(TileCanvas& canvas, int j, float factor, const float* coverage);
 

@@ -28,7 +28,7 @@ constexpr std::array<Entry, kNuisanceSets> kEntries{{
      "dividers end 5 to 30 m early or late, boundaries up to 0.7 m inside, across mouths, double"},
     {NuisanceSet::kColour, "colour", "casts up to 25 %, saturation 0 to 1.5, a quarter grey"},
     {NuisanceSet::kClutter, "clutter",
-     "lines at kerbs, studs, boxes, works, bollards, railings, people, crossings with edge lines"},
+     "lines at kerbs, studs, boxes, works, hard shadows, bollards, railings, people"},
     {NuisanceSet::kCalibration, "calibration", "cameras off by 0.2 degrees and 2 cm"},
     {NuisanceSet::kPitch, "pitch", "body pitches and rolls by 1 degree"},
     {NuisanceSet::kSlopes, "slopes", "crests and sags of 300 m radius and more, camber, banks"},
@@ -105,6 +105,7 @@ Nuisances nuisances_of(NuisanceSet set) {
                            .works = 0.05,
                            .bollards = 0.15,
                            .railing = 0.15,
+                           .shadow = 0.3,
                            .people_per_100m = 2.0};
       break;
     case NuisanceSet::kCalibration:

@@ -194,10 +194,39 @@ void set_works(const Stretch& stretch, Random& random, World& world) {
                          .albedo = random.chance(0.5) ? kRed : kWhite});
 }
 
+/// A band across the road, at any angle, as of a house or a bridge; or patches as of a tree.
+void cast_shadow(const Stretch& stretch, Random& random, World& world) {
+  constexpr double kReach_m = 25.0;
+  const auto light = static_cast<float>(random.uniform(0.2, 0.7));
+  const Eigen::Vector2d centre = stretch.path.position(stretch.from_m);
+  if (random.chance(0.3)) {
+    const int patches = random.integer(5, 25);
+    for (int i = 0; i < patches; ++i) {
+      const Eigen::Vector2d place =
+          centre + Eigen::Vector2d(random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0));
+      Ring ring;
+      for (int corner = 0; corner < 7; ++corner) {
+        ring.emplace_back(place + random.uniform(0.2, 1.0) *
+                                      unit_vector(corner * 2.0 * std::numbers::pi / 7.0));
+      }
+      world.shades.push_back({std::move(ring), light});
+    }
+    return;
+  }
+  const Eigen::Vector2d along =
+      unit_vector(stretch.path.heading_rad(stretch.from_m) + random.uniform(0.0, std::numbers::pi));
+  const Eigen::Vector2d half_length = random.uniform(4.0, kReach_m) * along;
+  const Eigen::Vector2d half_width = random.uniform(0.4, 8.0) * left_of(along);
+  world.shades.push_back({{centre - half_length - half_width, centre + half_length - half_width,
+                           centre + half_length + half_width, centre - half_length + half_width},
+                          light});
+}
+
 void clutter_lanes(const StreetClutter& clutter, Random& random, World& world) {
   for (const Lane& lane : world.map.lanes) {
     const bool box = random.chance(clutter.box);
     const bool works = random.chance(clutter.works);
+    const bool shadow = random.chance(clutter.shadow);
     if (length_m(lane.centerline) < kShortest_m) continue;
     const Path path(lane.centerline);
     const double from_m = random.uniform(0.0, path.length_m() - 0.5 * kShortest_m);
@@ -205,6 +234,7 @@ void clutter_lanes(const StreetClutter& clutter, Random& random, World& world) {
     const Stretch stretch{path, from_m, to_m};
     if (box) paint_box(stretch, random, world);
     if (works) set_works(stretch, random, world);
+    if (shadow) cast_shadow(stretch, random, world);
   }
 }
 
@@ -219,6 +249,7 @@ StreetClutter scaled(const StreetClutter& clutter, double factor) {
           .works = share(clutter.works),
           .bollards = share(clutter.bollards),
           .railing = share(clutter.railing),
+          .shadow = share(clutter.shadow),
           .people_per_100m = factor * clutter.people_per_100m};
 }
 

@@ -16,6 +16,7 @@ struct StreetClutter {
   double works = 0.0;            ///< of lanes: cones and a barrier board
   double bollards = 0.0;         ///< of boundaries: a row of bollards outside
   double railing = 0.0;          ///< of boundaries: a fence or guard rail outside
+  double shadow = 0.0;           ///< of lanes: a hard shadow across the road
   double people_per_100m = 0.0;  ///< of boundaries: beside the road, and some on it
 
   bool operator==(const StreetClutter&) const = default;

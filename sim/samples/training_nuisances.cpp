@@ -46,8 +46,8 @@ CameraLooks street_looks() {
           .least_saturation = 0.0,
           .most_saturation = 1.5,
           .grey_share = 0.2,
-          .contrast = 0.35,
-          .sharpness = 0.5,
+          .contrast = 0.6,
+          .sharpness = 0.8,
           .smear_share = 0.1,
           .body_share = 0.5,
           .black_rows_share = 0.2};

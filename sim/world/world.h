@@ -49,6 +49,12 @@ struct PaintArea {
   float wear = 0.0F;
 };
 
+/// The shadow of something outside of the world. It darkens road and paint alike.
+struct Shade {
+  Ring ring;
+  float light = 0.5F;  ///< share of the light that remains
+};
+
 enum class WallTexture : uint8_t {
   kKerbPlain,
   kKerbStriped,
@@ -123,6 +129,7 @@ struct World {
   std::vector<Surface> surfaces;
   std::vector<PaintLine> paint_lines;
   std::vector<PaintArea> paint_areas;
+  std::vector<Shade> shades;
   std::vector<Wall> walls;
   std::vector<VehicleBody> parked;
   std::vector<TrafficVehicle> traffic;

@@ -46,6 +46,10 @@ void add_ground(Digest& digest, const World& world) {
     add(digest, area.albedo);
     add(digest, area.ring);
   }
+  for (const Shade& shade : world.shades) {
+    digest.add(shade.light);
+    add(digest, shade.ring);
+  }
 }
 
 void add_upright(Digest& digest, const World& world) {

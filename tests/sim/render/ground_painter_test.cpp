@@ -128,5 +128,18 @@ TEST(GroundPainter, TilesFarOutsideAreBackground) {
   EXPECT_LT(mean, 0.15);
 }
 
+TEST(GroundPainter, AShadeDarkensRoadAndPaintAlike) {
+  World world = plain_with({.points = kAlongX, .width_m = 0.3});
+  const auto bright = tile_of(world, {kLevel, 0, 0});
+  world.shades.push_back({{{2.0, -20.0}, {4.0, -20.0}, {4.0, 20.0}, {2.0, 20.0}}, 0.4F});
+  const auto shaded = tile_of(world, {kLevel, 0, 0});
+  for (const int row : {kLineRow, kLineRow + 20}) {
+    const double before = mean_albedo(bright, kLevel, row, 2.2, 3.8);
+    EXPECT_NEAR(mean_albedo(shaded, kLevel, row, 2.2, 3.8) / before, 0.4, 0.02) << row;
+    EXPECT_DOUBLE_EQ(mean_albedo(shaded, kLevel, row, 4.2, 6.0),
+                     mean_albedo(bright, kLevel, row, 4.2, 6.0));
+  }
+}
+
 }  // namespace
 }  // namespace bevloc::sim

@@ -33,7 +33,7 @@ TEST(StreetClutterTest, WithoutClutterTheWorldIsUnchanged) {
 }
 
 TEST(StreetClutterTest, DependsOnTheSeedAlone) {
-  const StreetClutter all{1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 5.0};
+  const StreetClutter all{1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 5.0};
   EXPECT_EQ(digest_of(with(all, 4)), digest_of(with(all, 4)));
   EXPECT_NE(digest_of(with(all, 4)), digest_of(with(all, 5)));
 }
@@ -86,6 +86,19 @@ TEST(StreetClutterTest, BoxesAndWorksStayInTheLane) {
     EXPECT_TRUE(std::ranges::all_of(world.paint_lines[i].points, in_lane));
   }
   for (const Post& post : world.posts) EXPECT_TRUE(in_lane(post.position));
+}
+
+TEST(StreetClutterTest, ShadowsLieOnTheRoadAndLeaveSomeLight) {
+  int with_shade = 0;
+  for (uint64_t seed = 0; seed < 10; ++seed) {
+    for (const Shade& shade : with({.shadow = 1.0}, seed).shades) {
+      ++with_shade;
+      EXPECT_GT(shade.light, 0.1F);
+      EXPECT_LT(shade.light, 0.8F);
+      EXPECT_GE(shade.ring.size(), 4U);
+    }
+  }
+  EXPECT_GE(with_shade, 10);
 }
 
 TEST(StreetClutterTest, PeopleStandOnTheGround) {
