@@ -137,6 +137,7 @@ double Tracker::yaw_rate_bias_radps() const {
 }
 
 void Tracker::widen() {
+  standing_matches_ = 0;
   if (!is_initialised()) return;
   const TrackerEvent& latest = history_.back();
   insert(history_.size(),
@@ -144,6 +145,7 @@ void Tracker::widen() {
 }
 
 void Tracker::loosen_odometry() {
+  standing_matches_ = 0;
   if (!is_initialised()) return;
   const TrackerEvent& latest = history_.back();
   insert(history_.size(),
@@ -151,6 +153,7 @@ void Tracker::loosen_odometry() {
 }
 
 void Tracker::restart() {
+  standing_matches_ = 0;
   history_.clear();
 }
 
@@ -174,7 +177,15 @@ void Tracker::initialise(Time time, const PoseMeasurement& measurement) {
   }
 }
 
-TrackerUpdate Tracker::add_pose(Time time, const PoseMeasurement& measurement, Trust trust) {
+void Tracker::discount_standing(const MeasuredMotion& motion, PoseMeasurement& measurement) {
+  if (measurement.source != PoseSource::kMatch) return;
+  constexpr int kMost = 1000;
+  standing_matches_ = stands(motion) ? std::min(standing_matches_ + 1, kMost) : 0;
+  const double repeats = square_of(std::max(0, standing_matches_ - 1));
+  measurement.repeated_variance += repeats * measurement.covariance.diagonal();
+}
+
+TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, Trust trust) {
   const size_t events_until = count_until(history_, time);
   if (events_until == 0) return TrackerUpdate::kTooOld;
   latest_innovation_ = innovation_of(state_at(time, events_until), measurement);
@@ -182,9 +193,11 @@ TrackerUpdate Tracker::add_pose(Time time, const PoseMeasurement& measurement, T
     return TrackerUpdate::kGated;
   }
   if (trust == Trust::kExamine) return TrackerUpdate::kAccepted;
+  const MeasuredMotion motion = motion_at(time, events_until);
+  discount_standing(motion, measurement);
   insert(events_until, {.time = time,
                         .kind = TrackerEvent::Kind::kPose,
-                        .motion = motion_at(time, events_until),
+                        .motion = motion,
                         .measurement = measurement});
   return TrackerUpdate::kAccepted;
 }

@@ -85,6 +85,10 @@ enum class Trust : uint8_t {
 /// measurement applies at its own time: a late one is inserted into the history, and the later
 /// states are computed again. A refused measurement changes nothing.
 ///
+/// While the vehicle stands, all matches see the same picture, so their noise is alike, too: the
+/// k-th of them counts with 1 + k^2 times its noise. All of them together say little more than the
+/// first.
+///
 /// Allocates in the constructor only. Not thread safe.
 class Tracker {
  public:
@@ -138,7 +142,9 @@ class Tracker {
 
  private:
   void initialise(Time time, const PoseMeasurement& measurement);
-  TrackerUpdate add_pose(Time time, const PoseMeasurement& measurement, Trust trust);
+  TrackerUpdate add_pose(Time time, PoseMeasurement measurement, Trust trust);
+  /// Adds the variance of a match that repeats those before it, because the vehicle stands.
+  void discount_standing(const MeasuredMotion& motion, PoseMeasurement& measurement);
   bool has_odometry_for(Time time) const;
   MeasuredMotion motion_at(Time time, size_t events_until) const;
   FilterState state_at(Time time, size_t events_until) const;
@@ -151,6 +157,7 @@ class Tracker {
   EventHistory history_;
   std::optional<OdometrySample> last_odometry_;
   PoseInnovation latest_innovation_;
+  int standing_matches_ = 0;  ///< since the vehicle stands, or since its covariance was raised
 };
 
 }  // namespace bevloc

@@ -283,6 +283,30 @@ TEST(TrackerTest, AStandingVehicleKeepsItsHeading) {
   EXPECT_GT(tracker.pose_at(at_s(300.52))->map_from_vehicle.yaw_rad, 0.2 + radians(8.0));
 }
 
+TEST(TrackerTest, MatchesOfAStandingVehicleDoNotAddUp) {
+  Tracker tracker;
+  tracker.add_odometry({at_s(0.0), 0.0, 0.0});
+  GnssSample gnss{.time = at_s(0.0), .sigma_east_m = 1.0, .sigma_north_m = 1.0};
+  gnss.yaw = {0.0, radians(1.0)};
+  ASSERT_EQ(tracker.add_gnss(gnss), TrackerUpdate::kAccepted);
+  SolverResult match;
+  match.evidence = Evidence::kGood;
+  match.correction = {0.5, 0.3, radians(0.6)};  // the same error each time
+  match.covariance = Eigen::Vector3d(0.09, 0.04, square_of(radians(0.4))).asDiagonal();
+  const auto sigmas_after = [&](int from, int to) {
+    for (int i = from; i < to; ++i) {
+      const Time time = at_s(0.1 * i);
+      tracker.add_odometry({time, 0.0, 0.0});
+      EXPECT_EQ(tracker.add_correction(time, {}, match), TrackerUpdate::kAccepted);
+    }
+    const TrackedPose pose = *tracker.pose_at(at_s(0.1 * (to - 1)));
+    return Eigen::Vector3d(pose.covariance.diagonal().cwiseSqrt());
+  };
+  const Eigen::Vector3d few = sigmas_after(1, 6);
+  const Eigen::Vector3d many = sigmas_after(6, 3000);
+  EXPECT_GT((many.array() / few.array()).minCoeff(), 0.9) << few.transpose();
+}
+
 TEST(TrackerTest, AddsSamplesOfEitherKind) {
   SimulatedVehicle vehicle(typical_errors(), 14);
   Tracker by_kind;
