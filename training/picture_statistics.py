@@ -107,11 +107,11 @@ def main() -> None:
         print(f"| {name} | " + " | ".join(values) + " |", flush=True)
 
     for nuisances in ("usual", "street"):
-        print_row(f"`{nuisances}`", simulated(nuisances, "", options.samples))
+        print_row(f"{nuisances} samples", simulated(nuisances, "", options.samples))
     if options.photos:
-        print_row("`street`, photographs", simulated("street", options.photos, options.samples))
+        print_row("street samples, photographs", simulated("street", options.photos, options.samples))
     if options.real and options.rig:
-        print_row("real", real(options.real, options.rig))
+        print_row("real frame", real(options.real, options.rig))
 
 
 if __name__ == "__main__":
