@@ -68,6 +68,8 @@ class NetworkEvaluation {
                 const std::function<void()>& progress);
 
   const std::string& model_name() const { return network_->name(); }
+  /// What the model states about its cameras.
+  const ModelRig& model_rig() const { return network_->rig(); }
 
  private:
   /// Numbers of cells by class: in the perceived mask and in the map; in at least one of them.

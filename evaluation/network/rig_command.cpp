@@ -47,13 +47,11 @@ void RigCommand::declare(CLI::App& eval) {
 Status RigCommand::run() const {
   const auto rig = read_rig(rig_file_);
   if (!rig) return tl::unexpected(rig.error());
-  const auto network = Network::load(model_, {});
-  if (!network) return tl::unexpected(network.error());
-  if (const Status fits = check_rig_fits((*network)->rig(), *rig); !fits) {
-    fmt::print(stderr, "{}: bevlocd refuses it: {}\n", rig_file_, fits.error().message);
-  }
   auto evaluation = NetworkEvaluation::create(model_);
   if (!evaluation) return tl::unexpected(evaluation.error());
+  if (const Status fits = check_rig_fits(evaluation->model_rig(), *rig); !fits) {
+    fmt::print(stderr, "{}: bevlocd refuses it: {}\n", rig_file_, fits.error().message);
+  }
   sim::SampleStream stream;
   stream.first_seed = first_seed_of(seed_);
   stream.nuisances = sim::nuisances_of(sim::NuisanceSet::kStandard);

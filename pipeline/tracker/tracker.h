@@ -86,7 +86,7 @@ enum class Trust : uint8_t {
 /// states are computed again. A refused measurement changes nothing.
 ///
 /// While the vehicle stands, all matches see the same picture, so their noise is alike, too: the
-/// k-th of them counts with 1 + k^2 times its noise. All of them together say little more than the
+/// k-th of them counts with 1 + (k - 1)^2 times its noise. All of them say little more than the
 /// first.
 ///
 /// Allocates in the constructor only. Not thread safe.

@@ -13,16 +13,7 @@ namespace {
 using Planes = std::vector<int8_t>;
 
 CameraModel front_camera(int width_px = 640, int height_px = 360) {
-  CameraModel camera = test::camera_at(1.5, 0.0, 1.5, 0.0, radians(65.0), 0.02);
-  Intrinsics& intrinsics = camera.intrinsics;
-  const double scale = width_px / 640.0;
-  intrinsics.width_px = width_px;
-  intrinsics.height_px = height_px;
-  intrinsics.fx_px *= scale;
-  intrinsics.fy_px *= scale;
-  intrinsics.cx_px = (intrinsics.cx_px + 0.5) * scale - 0.5;
-  intrinsics.cy_px = (intrinsics.cy_px + 0.5) * scale - 0.5;
-  return camera;
+  return resized(test::camera_at(1.5, 0.0, 1.5, 0.0, radians(65.0), 0.02), width_px, height_px);
 }
 
 /// Brightness of a smooth scene in a direction, per channel.
