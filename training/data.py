@@ -1,4 +1,4 @@
-"""Batches from the simulator (training/native/sampler.h)."""
+"""Batches from the simulator (training/sampler_process.py)."""
 
 from __future__ import annotations
 
@@ -13,25 +13,16 @@ import torch
 from torch import Tensor
 
 from training.distributed import WHOLE, Share
-from training.errors import TrainingError
-from training.model import (
-    BEV_COLS,
-    BEV_ROWS,
-    CAMERAS,
-    IMAGE_COLS,
-    IMAGE_ROWS,
-    RASTER_CHANNELS,
-    VIEW_SLOTS,
-)
+from training.model import BEV_COLS, BEV_ROWS, CAMERAS, VIEW_SLOTS
 from training.native import address, library
+from training.sampler_process import RECORD, SamplerError, SamplerOptions, SamplerProcess
 
-RASTER_ROWS, RASTER_COLS = 400, 200
-NUISANCES = ("usual", "strong", "street")  # numbered as in training/native/sampler.h
+NUISANCES = ("usual", "strong", "street")
 
 
 @dataclass
 class Batch:
-    """Samples as described in training/native/sampler.h, each with its view table."""
+    """Samples as described in training/native/sample_record.h, each with its view table."""
 
     images: Tensor  # uint8 [n, 6, 3, 96, 320]
     camera_mask: Tensor  # uint8 [n]
@@ -61,37 +52,20 @@ class Stream(Protocol):
     def close(self) -> None: ...
 
 
-def _view_table(
-    camera_mask: int, motions: np.ndarray | None, rig: np.ndarray | None
-) -> tuple[Tensor, Tensor]:
-    index = np.empty((VIEW_SLOTS, BEV_ROWS * BEV_COLS), np.int32)
-    weight = np.empty((VIEW_SLOTS, BEV_ROWS * BEV_COLS), np.float32)
-    given = (None if array is None else address(array) for array in (motions, rig))
-    library().bevloc_view_table(camera_mask, address(index), address(weight), *given)
-    return torch.from_numpy(index.astype(np.int64)), torch.from_numpy(weight)
-
-
 @lru_cache(maxsize=64)
 def view_table(camera_mask: int) -> tuple[Tensor, Tensor]:
     """The view table, index int64 [8, 5000] and weight float [8, 5000], of the cameras in the mask
     on the simulator's own rig when all expose at the same time."""
-    return _view_table(camera_mask, None, None)
-
-
-def sample_view_table(
-    camera_mask: int, motions: np.ndarray, rig: np.ndarray | None = None
-) -> tuple[Tensor, Tensor]:
-    """The same for cameras whose exposures differ, motions float32 [6, 3], and for another rig,
-    float32 [6, 15] (sampler.h)."""
-    if rig is None and not motions.any():
-        return view_table(camera_mask)
-    return _view_table(camera_mask, motions, rig)
+    index = np.empty((VIEW_SLOTS, BEV_ROWS * BEV_COLS), np.int32)
+    weight = np.empty((VIEW_SLOTS, BEV_ROWS * BEV_COLS), np.float32)
+    library().bevloc_view_table(camera_mask, address(index), address(weight))
+    return torch.from_numpy(index.astype(np.int64)), torch.from_numpy(weight)
 
 
 class SamplerStream:
     """An endless stream of simulated samples. Workers render ahead while the network trains.
 
-    Consecutive samples of one native sampler share a world. To mix worlds within a batch, STREAMS
+    Consecutive samples of one sampler share a world. To mix worlds within a batch, STREAMS
     samplers with distant seeds take turns: sample i comes from sampler i % STREAMS. With several
     processes the number of samplers is the least common multiple of STREAMS and the number of
     processes, and each process runs an equal share of them."""
@@ -120,55 +94,61 @@ class SamplerStream:
         first_sample //= share.count
         own = range(share.index, math.lcm(self.STREAMS, share.count), share.count)
         self._position = first_sample
-        self._samplers = [
-            library().bevloc_sampler_create(
-                first_seed + sampler * self.SEED_STRIDE,
-                (first_sample + len(own) - 1 - k) // len(own),
-                threads,
-                drop_camera_probability,
-                NUISANCES.index(nuisances),
-                photos.encode() if photos else None,
+        options = [
+            SamplerOptions(
+                first_seed=first_seed + sampler * self.SEED_STRIDE,
+                first_sample=(first_sample + len(own) - 1 - k) // len(own),
+                threads=threads,
+                drop_camera_probability=drop_camera_probability,
+                nuisances=nuisances,
+                photos=photos,
             )
             for k, sampler in enumerate(own)
         ]
-        if not all(self._samplers):
-            raise TrainingError(f"--photos {photos}: cannot be read, for the reason above")
-        atexit.register(self.close)  # workers must not outlive the interpreter
+        self._samplers: list[SamplerProcess] = []
+        atexit.register(self.close)  # the programs must not outlive the interpreter
+        try:
+            for option in options:
+                self._samplers.append(SamplerProcess(option))
+        except SamplerError:
+            self.close()
+            raise
 
     def next(self, count: int) -> Batch:
         """The next `count` samples, grouped by sampler."""
-        images = np.empty((count, CAMERAS, 3, IMAGE_ROWS, IMAGE_COLS), np.uint8)
-        camera_mask = np.empty(count, np.uint8)
-        raster_prior = np.empty((count, RASTER_CHANNELS, RASTER_ROWS, RASTER_COLS), np.uint8)
-        raster_truth = np.empty_like(raster_prior)
-        correction = np.empty((count, 3), np.float32)
-        motions = np.empty((count, CAMERAS, 3), np.float32)
-        rigs = np.empty((count, CAMERAS, 15), np.float32)
-        arrays: list[np.ndarray]
-        arrays = [images, camera_mask, raster_prior, raster_truth, correction, motions, rigs]
-        filled = 0
-        for k, sampler in enumerate(self._samplers):
-            turns = len(self._samplers)
-            own = len(range((k - self._position) % turns, count, turns))
-            part = [array[filled : filled + own] for array in arrays]
-            library().bevloc_sampler_next(sampler, own, *map(address, part))
-            filled += own
-        self._position += count
-        tables = list(map(sample_view_table, camera_mask.tolist(), motions, rigs))
-        return Batch(
-            images=torch.from_numpy(images),
-            camera_mask=torch.from_numpy(camera_mask),
-            raster_prior=torch.from_numpy(raster_prior),
-            raster_truth=torch.from_numpy(raster_truth),
-            correction=torch.from_numpy(correction),
-            index=torch.stack([index for index, _ in tables]),
-            weight=torch.stack([weight for _, weight in tables]),
+        turns = len(self._samplers)
+        records = np.concatenate(
+            [
+                sampler.next(len(range((k - self._position) % turns, count, turns)))
+                for k, sampler in enumerate(self._samplers)
+            ]
         )
+        self._position += count
+        return _batch_of(records)
 
     def close(self) -> None:
         for sampler in self._samplers:
-            library().bevloc_sampler_destroy(sampler)
+            sampler.close()
         self._samplers = []
+        atexit.unregister(self.close)
+
+
+def _batch_of(records: np.ndarray) -> Batch:
+    """A batch from records of the sampler."""
+    assert records.dtype == RECORD
+
+    def tensor(name: str) -> Tensor:
+        return torch.from_numpy(np.ascontiguousarray(records[name]))
+
+    return Batch(
+        images=tensor("images"),
+        camera_mask=torch.from_numpy(records["camera_mask"].astype(np.uint8)),
+        raster_prior=tensor("raster_prior"),
+        raster_truth=tensor("raster_truth"),
+        correction=tensor("correction"),
+        index=tensor("index").long(),
+        weight=tensor("weight"),
+    )
 
 
 def augment(images: Tensor, generator: torch.Generator) -> Tensor:

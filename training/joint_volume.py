@@ -46,6 +46,6 @@ class _JointVolume(torch.autograd.Function):
 
 
 def joint_volume(bev: Tensor, features_map: Tensor, block_cells: int = 5) -> Tensor:
-    """Scores [batch, 21 yaw, 21 x, 11 y] of standardised features [batch, C, 100, 50]. The native
-    code runs on the CPU; features on another device are copied to it and the scores back."""
+    """Scores [batch, 21 yaw, 21 x, 11 y] of standardised features [batch, C, 100, 50]. For
+    features for which native.runs_natively()."""
     return _JointVolume.apply(bev, features_map, block_cells)

@@ -1,4 +1,4 @@
-"""Loads the native library (training/native): the daemon's code and the simulator for Python."""
+"""Loads the native library (training/native): the daemon's code for Python."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import torch
 from torch import Tensor
 
 ENVIRONMENT = "BEVLOC_TRAINING_LIBRARY"
-_REPOSITORY = Path(__file__).resolve().parent.parent
+_BUILD = Path(__file__).resolve().parent.parent / "build"
 _LIBRARY = Path("training/native/libbevloc_training.so")
 
 
@@ -20,14 +20,27 @@ def library_path() -> Path:
     """$BEVLOC_TRAINING_LIBRARY, or else the first library found in build/ or build/<preset>/."""
     if chosen := os.environ.get(ENVIRONMENT):
         return Path(chosen)
-    build = _REPOSITORY / "build"
-    candidates = [build / _LIBRARY, *sorted(build.glob(f"*/{_LIBRARY}"))]
-    for candidate in candidates:
-        if candidate.exists():
-            return candidate
+    if built := _built_library():
+        return built
     raise FileNotFoundError(
-        f"{build}: found no {_LIBRARY.name}; build the target bevloc_training or set {ENVIRONMENT}"
+        f"{_BUILD}: found no {_LIBRARY.name}; build the target bevloc_training or set {ENVIRONMENT}"
     )
+
+
+def _built_library() -> Path | None:
+    candidates = [_BUILD / _LIBRARY, *sorted(_BUILD.glob(f"*/{_LIBRARY}"))]
+    return next((candidate for candidate in candidates if candidate.exists()), None)
+
+
+@lru_cache(maxsize=1)
+def _is_built() -> bool:
+    return ENVIRONMENT in os.environ or _built_library() is not None
+
+
+def runs_natively(features: Tensor) -> bool:
+    """Whether the native code can compute with these features: it is built (a training bundle does
+    not have it), and they are float32 in the CPU's memory."""
+    return features.device.type == "cpu" and features.dtype == torch.float32 and _is_built()
 
 
 @lru_cache(maxsize=1)
@@ -43,18 +56,9 @@ def library() -> ctypes.CDLL:
     lib.bevloc_moved_sums.restype = None
     lib.bevloc_moved_sums_gradients.argtypes = [integer] * 5 + [pointer] * 6
     lib.bevloc_moved_sums_gradients.restype = None
-    lib.bevloc_sampler_create.argtypes = [
-        *([ctypes.c_uint64] * 2),
-        *(integer, ctypes.c_double, integer, ctypes.c_char_p),
-    ]
-    lib.bevloc_sampler_create.restype = pointer
-    lib.bevloc_sampler_destroy.argtypes = [pointer]
-    lib.bevloc_sampler_destroy.restype = None
-    lib.bevloc_sampler_next.argtypes = [pointer, integer] + [pointer] * 7
-    lib.bevloc_sampler_next.restype = None
     lib.bevloc_scene_features.argtypes = [integer] + [pointer] * 3
     lib.bevloc_scene_features.restype = None
-    lib.bevloc_view_table.argtypes = [ctypes.c_uint8] + [pointer] * 4
+    lib.bevloc_view_table.argtypes = [ctypes.c_uint8] + [pointer] * 2
     lib.bevloc_view_table.restype = None
     lib.bevloc_network_create.argtypes = [ctypes.c_char_p, integer, pointer, integer]
     lib.bevloc_network_create.restype = pointer

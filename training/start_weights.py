@@ -10,9 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import onnx
 import torch
-from onnx import numpy_helper
 from torch import Tensor, nn
 
 from training.checkpoint import load_weights, read_checkpoint
@@ -39,6 +37,9 @@ def start_with(net: BevNetwork, path: Path, make_batches: Callable[[], list[Batc
 
 def _load_model_file(net: BevNetwork, path: Path) -> None:
     """Loads the folded convolutions; the batch normalisations change nothing but add the bias."""
+    import onnx  # a training bundle starts from a checkpoint and does without it
+    from onnx import numpy_helper
+
     try:
         model = onnx.load(str(path))
     except Exception as error:  # a damaged file makes protobuf raise anything

@@ -1,67 +1,58 @@
-#include "training/native/sampler.h"
-
 #include <algorithm>
-#include <bitset>
 #include <cmath>
-#include <memory>
+#include <cstring>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "common/se2.h"
 #include "pipeline/bev_grid.h"
+#include "training/native/sample_queue.h"
+#include "training/native/sample_record.h"
 
 namespace bevloc {
 namespace {
 
-// Sizes of the C interface (sampler.h).
-constexpr size_t kCameras = 6;
-constexpr size_t kPixels = 96 * 320;
-constexpr size_t kImages = kCameras * 3 * kPixels;
-constexpr size_t kRaster = 3 * 400 * 200;
+using sim::kSamplesPerWorld;
+using sim::Sample;
+using sim::SampleStream;
+using sim::TrainingNuisances;
+
+constexpr size_t kPixels = static_cast<size_t>(kNetworkHeightPx) * kNetworkWidthPx;
 constexpr size_t kViewTable = 8 * 5000;
-constexpr size_t kMotions = kCameras * 3;
-constexpr size_t kRig = kCameras * 15;
-constexpr int kUsual = 0;
-constexpr int kStrong = 1;
-constexpr int kStreet = 2;
-constexpr uint64_t kSamplesPerWorld = 16;
 
 // A seed that training never uses.
 constexpr uint64_t kSeed = 17;
 
+SampleStream stream(double drop_probability, const TrainingNuisances& nuisances = {}) {
+  SampleStream found;
+  found.first_seed = kSeed;
+  found.nuisances.missing_cameras.probability = drop_probability;
+  found.training = nuisances;
+  return found;
+}
+
+/// Samples as the records that training reads.
+using Records = std::vector<std::vector<uint8_t>>;
+
 struct Batch {
-  explicit Batch(size_t count)
-      : images(count * kImages),
-        cameras(count),
-        prior(count * kRaster),
-        truth(count * kRaster),
-        correction(count * 3),
-        motions(count * kMotions),
-        rigs(count * kRig) {}
-
-  std::vector<uint8_t> images;
-  std::vector<uint8_t> cameras;
-  std::vector<uint8_t> prior;
-  std::vector<uint8_t> truth;
-  std::vector<float> correction;
-  std::vector<float> motions;
-  std::vector<float> rigs;
-
-  size_t size() const { return cameras.size(); }
-  bool operator==(const Batch&) const = default;
+  std::vector<TrainingSample> samples;
+  Records records;
 };
 
-Batch sample(uint64_t first_sample, int count, int threads, double drop_probability,
-             int nuisances = kUsual) {
-  const std::unique_ptr<bevloc_sampler, decltype(&bevloc_sampler_destroy)> sampler(
-      bevloc_sampler_create(kSeed, first_sample, threads, drop_probability, nuisances, nullptr),
-      &bevloc_sampler_destroy);
-  Batch batch(static_cast<size_t>(count));
-  bevloc_sampler_next(sampler.get(), count, batch.images.data(), batch.cameras.data(),
-                      batch.prior.data(), batch.truth.data(), batch.correction.data(),
-                      batch.motions.data(), batch.rigs.data());
+Batch read(SampleQueue& queue, int count) {
+  Batch batch;
+  for (int i = 0; i < count; ++i) {
+    batch.samples.push_back(queue.next());
+    write_sample_record(batch.samples.back(), batch.records.emplace_back());
+  }
   return batch;
+}
+
+Batch sample(uint64_t first_sample, int count, int threads, double drop_probability,
+             const TrainingNuisances& nuisances = {}) {
+  SampleQueue queue(stream(drop_probability, nuisances), nullptr, first_sample, threads);
+  return read(queue, count);
 }
 
 /// The last three samples of one world and the first two of the next, with missing cameras.
@@ -71,63 +62,44 @@ const Batch& two_worlds() {
 }
 
 TEST(Sampler, SamplesDoNotDependOnTheNumberOfThreads) {
-  EXPECT_TRUE(sample(kSamplesPerWorld - 3, 5, 3, 1.0) == two_worlds());
+  EXPECT_EQ(sample(kSamplesPerWorld - 3, 5, 3, 1.0).records, two_worlds().records);
 }
 
 TEST(Sampler, ResumesInTheMiddleOfAStream) {
-  const Batch later = sample(kSamplesPerWorld - 1, 2, 1, 1.0);
-  const Batch& whole = two_worlds();
-  EXPECT_TRUE(
-      std::equal(later.images.begin(), later.images.end(), whole.images.begin() + 2 * kImages));
-  EXPECT_TRUE(
-      std::equal(later.prior.begin(), later.prior.end(), whole.prior.begin() + 2 * kRaster));
-  EXPECT_TRUE(
-      std::equal(later.correction.begin(), later.correction.end(), whole.correction.begin() + 6));
+  const Records& whole = two_worlds().records;
+  EXPECT_EQ(sample(kSamplesPerWorld - 1, 2, 1, 1.0).records,
+            Records(whole.begin() + 2, whole.begin() + 4));
 }
 
 TEST(Sampler, BatchesJoinWithoutAGap) {
-  bevloc_sampler* sampler =
-      bevloc_sampler_create(kSeed, kSamplesPerWorld - 3, 2, 1.0, kUsual, nullptr);
-  const Batch& whole = two_worlds();
-  for (size_t i = 0; i < whole.size(); ++i) {
-    Batch one(1);
-    bevloc_sampler_next(sampler, 1, one.images.data(), one.cameras.data(), one.prior.data(),
-                        one.truth.data(), one.correction.data(), one.motions.data(),
-                        one.rigs.data());
-    EXPECT_EQ(one.cameras[0], whole.cameras[i]);
-    EXPECT_TRUE(std::equal(one.images.begin(), one.images.end(),
-                           whole.images.begin() + static_cast<std::ptrdiff_t>(i * kImages)));
+  SampleQueue queue(stream(1.0), nullptr, kSamplesPerWorld - 3, 2);
+  for (const std::vector<uint8_t>& record : two_worlds().records) {
+    EXPECT_EQ(read(queue, 1).records[0], record);
   }
-  bevloc_sampler_destroy(sampler);
 }
 
 TEST(Sampler, CanBeDestroyedWhileWorkersAreBusy) {
-  for (int i = 0; i < 3; ++i)
-    bevloc_sampler_destroy(bevloc_sampler_create(kSeed, 0, 2, 0.0, kUsual, nullptr));
+  for (int i = 0; i < 3; ++i) SampleQueue(stream(0.0), nullptr, 0, 2);
 }
 
 TEST(Sampler, CorrectionsLieInTheirRangeAndDiffer) {
-  const Batch& batch = two_worlds();
-  for (size_t i = 0; i < batch.size(); ++i) {
-    EXPECT_LE(std::abs(batch.correction[3 * i]), 2.0F);
-    EXPECT_LE(std::abs(batch.correction[3 * i + 1]), 1.0F);
-    EXPECT_LE(std::abs(batch.correction[3 * i + 2]), static_cast<float>(radians(2.0)));
-    for (size_t j = 0; j < i; ++j) {
-      EXPECT_NE(batch.correction[3 * i], batch.correction[3 * j]);
-    }
+  const std::vector<TrainingSample>& samples = two_worlds().samples;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const Se2& correction = samples[i].sample.correction;
+    EXPECT_LE(std::abs(correction.x_m), 2.0);
+    EXPECT_LE(std::abs(correction.y_m), 1.0);
+    EXPECT_LE(std::abs(correction.yaw_rad), radians(2.0));
+    for (size_t j = 0; j < i; ++j) EXPECT_NE(correction.x_m, samples[j].sample.correction.x_m);
   }
 }
 
 TEST(Sampler, MissingCamerasAreBlackAndTheOthersAreNot) {
-  const Batch& batch = two_worlds();
-
-  for (size_t i = 0; i < batch.size(); ++i) {
-    const std::bitset<kCameras> cameras(batch.cameras[i]);
-    EXPECT_GE(cameras.count(), kCameras - 2);
-    EXPECT_LT(cameras.count(), kCameras);
-    for (size_t camera = 0; camera < kCameras; ++camera) {
-      const auto first =
-          batch.images.begin() + static_cast<std::ptrdiff_t>(i * kImages + camera * 3 * kPixels);
+  for (const auto& [sample, table] : two_worlds().samples) {
+    const CameraMask cameras = sample.cameras;
+    EXPECT_GE(cameras.count(), kCameraCount - 2U);
+    EXPECT_LT(cameras.count(), static_cast<size_t>(kCameraCount));
+    for (size_t camera = 0; camera < kCameraCount; ++camera) {
+      const auto first = sample.images.begin() + static_cast<std::ptrdiff_t>(camera * 3 * kPixels);
       const auto [darkest, brightest] = std::minmax_element(first, first + 3 * kPixels);
       if (cameras[camera]) {
         EXPECT_GT(*brightest - *darkest, 10) << "an image of a present camera has no contrast";
@@ -136,8 +108,9 @@ TEST(Sampler, MissingCamerasAreBlackAndTheOthersAreNot) {
       }
     }
   }
-  const Batch complete = sample(0, 2, 1, 0.0);
-  for (const uint8_t cameras : complete.cameras) EXPECT_EQ(cameras, 0b111111);
+  for (const auto& [sample, table] : sample(0, 2, 1, 0.0).samples) {
+    EXPECT_TRUE(sample.cameras.all());
+  }
 }
 
 /// The value of a raster channel, interpolated bilinearly; -1 outside.
@@ -178,99 +151,90 @@ double mismatch(const uint8_t* prior, const uint8_t* truth, const Se2& correctio
 }
 
 TEST(Sampler, TheCorrectionTakesThePriorRasterToTheTrueOne) {
-  const Batch& batch = two_worlds();
-  for (size_t i = 0; i < batch.size(); ++i) {
-    const uint8_t* prior = batch.prior.data() + i * kRaster;
-    const uint8_t* truth = batch.truth.data() + i * kRaster;
-    ASSERT_GT(*std::max_element(truth, truth + kRaster), 0) << "the raster is empty";
-    const Se2 correction{batch.correction[3 * i], batch.correction[3 * i + 1],
-                         batch.correction[3 * i + 2]};
-    const double right = mismatch(prior, truth, correction);
+  for (const auto& [sample, table] : two_worlds().samples) {
+    const uint8_t* prior = sample.raster_prior.data();
+    const uint8_t* truth = sample.raster_truth.data();
+    ASSERT_GT(*std::ranges::max_element(sample.raster_truth), 0) << "the raster is empty";
+    const double right = mismatch(prior, truth, sample.correction);
     EXPECT_LT(right, 2.0);
-    EXPECT_LT(5.0 * right, mismatch(prior, truth, correction.inverse()));
+    EXPECT_LT(5.0 * right, mismatch(prior, truth, sample.correction.inverse()));
     EXPECT_LT(2.0 * right, mismatch(prior, truth, {}));
   }
 }
 
 TEST(Sampler, TheViewTableIsThatOfTheRigWithItsCameras) {
-  std::vector<int32_t> index(kViewTable);
-  std::vector<float> weight(kViewTable);
-  bevloc_view_table(0b111111, index.data(), weight.data(), nullptr, nullptr);
-  size_t seen = 0;
-  for (size_t cell = 0; cell < 5000; ++cell) {
-    float sum = 0.0F;
-    for (size_t slot = 0; slot < 8; ++slot) sum += weight[slot * 5000 + cell];
-    EXPECT_TRUE(sum == 0.0F || std::abs(sum - 1.0F) < 1e-4F);
-    seen += sum > 0.0F ? 1 : 0;
+  const Rig& own = sim::nominal_network_rig();
+  for (const auto& [sample, table] : two_worlds().samples) {
+    const ViewTable expected = make_view_table(own, sample.cameras, kFeatureGrid);
+    EXPECT_EQ(table.index, expected.index);
+    EXPECT_EQ(table.weight, expected.weight);
   }
-  EXPECT_GT(seen, 4000U);
+}
 
-  std::vector<float> front_only(kViewTable);
-  bevloc_view_table(0b000010, index.data(), front_only.data(), nullptr, nullptr);
-  EXPECT_NE(front_only, weight);
-  for (size_t i = 0; i < kViewTable; ++i) {
-    if (front_only[i] > 0.0F) {
-      EXPECT_EQ(index[i] / 480, 1);
-    }
-  }
+bool any_motion(const Sample& sample) {
+  return std::ranges::any_of(sample.reference_from_exposure, [](const Se2& motion) {
+    return motion.x_m != 0.0 || motion.y_m != 0.0 || motion.yaw_rad != 0.0;
+  });
 }
 
 TEST(Sampler, OnlyStrongNuisancesMoveCamerasInSomeSamples) {
   const Batch usual = sample(0, kSamplesPerWorld, 1, 0.0);
-  EXPECT_EQ(usual.motions, std::vector<float>(usual.motions.size()));
-  const Batch strong = sample(0, kSamplesPerWorld, 1, 0.0, kStrong);
-  EXPECT_TRUE(strong == sample(0, kSamplesPerWorld, 2, 0.0, kStrong));
-  EXPECT_EQ(strong.correction, usual.correction);
-  EXPECT_NE(strong.images, usual.images);
+  const Batch strong = sample(0, kSamplesPerWorld, 1, 0.0, sim::strong_nuisances());
+  EXPECT_EQ(strong.records, sample(0, kSamplesPerWorld, 2, 0.0, sim::strong_nuisances()).records);
   size_t moved = 0;
-  for (size_t i = 0; i < strong.size(); ++i) {
-    const auto motions = strong.motions.begin() + static_cast<std::ptrdiff_t>(i * kMotions);
-    moved += std::any_of(motions, motions + kMotions, [](float v) { return v != 0.0F; }) ? 1 : 0;
+  for (size_t i = 0; i < kSamplesPerWorld; ++i) {
+    EXPECT_FALSE(any_motion(usual.samples[i].sample));
+    EXPECT_EQ(strong.samples[i].sample.correction.x_m, usual.samples[i].sample.correction.x_m);
+    EXPECT_NE(strong.samples[i].sample.images, usual.samples[i].sample.images);
+    if (!any_motion(strong.samples[i].sample)) continue;
+    EXPECT_NE(strong.samples[i].table.weight, usual.samples[i].table.weight);
+    ++moved;
   }
   EXPECT_GT(moved, 0U);
   EXPECT_LT(moved, kSamplesPerWorld / 2);
 }
 
-TEST(Sampler, TheViewTableFollowsTheRig) {
-  const Batch usual = sample(0, 1, 1, 0.0);
-  std::vector<int32_t> index(kViewTable);
-  std::vector<int32_t> own_index(kViewTable);
-  std::vector<float> own(kViewTable);
-  std::vector<float> of_sample(kViewTable);
-  bevloc_view_table(0b111111, own_index.data(), own.data(), nullptr, nullptr);
-  bevloc_view_table(0b111111, index.data(), of_sample.data(), nullptr, usual.rigs.data());
-  EXPECT_EQ(index, own_index);
-  for (size_t i = 0; i < kViewTable; ++i) EXPECT_NEAR(of_sample[i], own[i], 1e-3);
-  std::vector<float> higher = usual.rigs;
-  for (size_t camera = 0; camera < kCameras; ++camera) higher[camera * 15 + 14] += 0.5F;
-  bevloc_view_table(0b111111, index.data(), of_sample.data(), nullptr, higher.data());
-  EXPECT_NE(of_sample, own);
-}
-
 TEST(Sampler, StreetNuisancesHaveOtherRigsInSomeSamples) {
-  const Batch street = sample(0, kSamplesPerWorld, 1, 0.0, kStreet);
-  const Batch usual = sample(0, 1, 1, 0.0);
+  const Batch street = sample(0, kSamplesPerWorld, 1, 0.0, sim::street_nuisances());
+  const Rig& own = sim::nominal_network_rig();
   size_t others = 0;
-  for (size_t i = 0; i < street.size(); ++i) {
-    const auto rig = street.rigs.begin() + static_cast<std::ptrdiff_t>(i * kRig);
-    others += std::equal(rig, rig + kRig, usual.rigs.begin()) ? 0 : 1;
+  for (const auto& [sample, table] : street.samples) {
+    const auto& rig = sample.rig;
+    const bool other = rig.cameras[0].vehicle_from_camera.translation_m !=
+                       own.cameras[0].vehicle_from_camera.translation_m;
+    if (!other || any_motion(sample)) continue;
+    EXPECT_NE(table.weight, make_view_table(own, sample.cameras, kFeatureGrid).weight);
+    ++others;
   }
   EXPECT_GT(others, 1U);
   EXPECT_LT(others, kSamplesPerWorld - 3);
 }
 
-TEST(Sampler, TheViewTableFollowsTheMotions) {
-  std::vector<int32_t> index(kViewTable);
-  std::vector<float> still(kViewTable);
-  std::vector<float> zero_motion(kViewTable);
-  std::vector<float> moved(kViewTable);
-  std::vector<float> motions(kMotions);
-  bevloc_view_table(0b111111, index.data(), still.data(), nullptr, nullptr);
-  bevloc_view_table(0b111111, index.data(), zero_motion.data(), motions.data(), nullptr);
-  EXPECT_EQ(zero_motion, still);
-  motions[0] = 0.6F;
-  bevloc_view_table(0b111111, index.data(), moved.data(), motions.data(), nullptr);
-  EXPECT_NE(moved, still);
+TEST(Sampler, RecordsHoldTheSampleInTheirStatedOrder) {
+  const Batch& batch = two_worlds();
+  ASSERT_EQ(sample_stream_header().size(), 40U);
+  EXPECT_EQ(std::memcmp(sample_stream_header().data(), "bevlocS1", 8), 0);
+  for (size_t i = 0; i < batch.records.size(); ++i) {
+    const auto& [sample, table] = batch.samples[i];
+    const std::vector<uint8_t>& record = batch.records[i];
+    ASSERT_EQ(record.size(), sample_record_size());
+    const uint8_t* at = record.data();
+    const auto expect = [&at](const void* bytes, size_t size) {
+      EXPECT_EQ(std::memcmp(at, bytes, size), 0);
+      at += size;
+    };
+    expect(sample.images.data(), sample.images.size());
+    expect(sample.raster_prior.data(), sample.raster_prior.size());
+    expect(sample.raster_truth.data(), sample.raster_truth.size());
+    expect(table.index.data(), kViewTable * sizeof(int32_t));
+    expect(table.weight.data(), kViewTable * sizeof(float));
+    const float x = static_cast<float>(sample.correction.x_m);
+    expect(&x, sizeof x);
+    at += 2 * sizeof(float);
+    const auto cameras = static_cast<uint32_t>(sample.cameras.to_ulong());
+    expect(&cameras, sizeof cameras);
+    EXPECT_EQ(at, record.data() + record.size());
+  }
 }
 
 }  // namespace

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image
 
 from training.nuscenes.errors import (
     CalibrationError,
@@ -14,6 +14,9 @@ from training.nuscenes.errors import (
     UnreadableImageError,
     WrongSizeError,
 )
+
+if TYPE_CHECKING:  # training on the simulator's samples does without it
+    from PIL import Image
 
 WIDTH_PX, HEIGHT_PX = 320, 96
 HORIZON_ROW = 14.0
@@ -65,6 +68,8 @@ def look_through(path: Path, real: Pinhole, network: Pinhole) -> np.ndarray:
     """Reads an image file and resamples it to the network camera: RGB planes uint8 [3, 96, 320],
     black outside the real camera's image. NuscenesError if the file is missing, unreadable or of
     another size."""
+    from PIL import Image
+
     try:
         with Image.open(path) as image:
             if image.size != (real.width_px, real.height_px):
@@ -84,6 +89,8 @@ def _resample(image: Image.Image, real: Pinhole, network: Pinhole) -> Image.Imag
     """Crops and scales in one pass. Pillow's bilinear filter (a triangle whose width follows the
     scale) preserves the position of a line to 0.01 pixels. A box filter over whole pixels would
     shift it by 0.1 pixels, which is 0.25 m at a distance of 30 m."""
+    from PIL import Image
+
     reduced = image.width / real.width_px
     per_row = real.fy_px / network.fy_px
     top = reduced * (real.cy_px + 0.5 - (network.cy_px + 0.5) * per_row)

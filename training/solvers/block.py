@@ -14,20 +14,23 @@ The features are standardised once, not per hypothesis. K_b is interpolated betw
 cubic convolution along each axis (cubic.py). P = softmax(joint_scale * ZNCC) over all hypotheses.
 The marginals of P are the distributions of x, y and yaw; the estimates are their means.
 
-The paper's hypotheses in float32 are scored by the C++ code (training/joint_volume.py,
-pipeline/solver/reference/joint_volume.h), which is faster. All others are scored here.
+On the CPU the paper's hypotheses in float32 are scored by the C++ code (training/joint_volume.py,
+pipeline/solver/reference/joint_volume.h), which is faster, where its library is built. All others
+are scored here.
 """
 
 from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import Any
 
 import torch
 import torch.nn.functional as F
 from torch import Tensor
 
 from training.joint_volume import joint_volume
+from training.native import runs_natively
 from training.solvers.cubic import cubic_weights
 from training.solvers.definition import DEFINITION, SolverDefinition
 
@@ -36,13 +39,13 @@ def block_scores(
     bev: Tensor, features_map: Tensor, definition: SolverDefinition = DEFINITION
 ) -> Tensor:
     """ZNCC of every hypothesis, [batch, yaw, x, y]."""
-    if definition == DEFINITION and bev.dtype == torch.float32:
+    if definition == DEFINITION and runs_natively(bev):
         return joint_volume(bev, features_map, definition.block_cells)
-    row_weights, col_weights = _look_up(definition)
+    row_weights, col_weights = _look_up(definition, bev.dtype, bev.device)
     shifts = row_weights.shape[3], col_weights.shape[3]
     correlation = _correlations(bev, features_map, definition.block_cells, shifts)
     scores = [
-        torch.einsum("bkmn,kxm,kyn->bxy", correlation, rows.to(bev), cols.to(bev))
+        torch.einsum("bkmn,kxm,kyn->bxy", correlation, rows, cols)
         for rows, cols in zip(row_weights, col_weights)
     ]
     return torch.stack(scores, dim=1) / bev[0].numel()
@@ -51,21 +54,54 @@ def block_scores(
 def _correlations(bev: Tensor, features_map: Tensor, size: int, shifts: tuple[int, int]) -> Tensor:
     """K of every block at every whole shift, [batch, block, row shift, column shift]. `size`: cells
     of a block's side; `shifts`: number of row and column shifts."""
-    batch, channels, rows, cols = bev.shape
     # The last blocks are padded with zeros, which add nothing.
-    fill = -rows % size, -cols % size
-    blocks = F.pad(bev, (0, fill[1], 0, fill[0])).unfold(2, size, size).unfold(3, size, size)
+    fill = -bev.shape[2] % size, -bev.shape[3] % size
     reach = shifts[0] // 2, shifts[1] // 2
+    blocks = F.pad(bev, (0, fill[1], 0, fill[0]))
     padded = F.pad(features_map, (reach[1], reach[1] + fill[1], reach[0], reach[0] + fill[0]))
-    windows = padded.unfold(2, size + shifts[0] - 1, size).unfold(3, size + shifts[1] - 1, size)
-    blocks = blocks.permute(0, 2, 3, 1, 4, 5).flatten(0, 2)  # [batch * block, C, size, size]
-    windows = windows.permute(0, 2, 3, 1, 4, 5).flatten(0, 2)
-    correlation = F.conv2d(windows.flatten(0, 1)[None], blocks, groups=len(blocks))
-    return correlation.reshape(batch, -1, *shifts)
+    correlation = _Correlation.apply(blocks, padded, size, shifts)
+    return correlation.permute(0, 3, 4, 1, 2).flatten(1, 2)
+
+
+class _Correlation(torch.autograd.Function):
+    """Sums over the blocks of `bev` times `features_map` at every shift: [batch, row shift, column
+    shift, block row, block column]. One shift at a time, so that the products of all shifts need no
+    memory, also not for the gradient; a GPU computes each in one go."""
+
+    @staticmethod
+    def forward(  # type: ignore[override]  # named arguments in place of *args
+        ctx: Any, bev: Tensor, features_map: Tensor, size: int, shifts: tuple[int, int]
+    ) -> Tensor:
+        ctx.save_for_backward(bev, features_map)
+        ctx.size, ctx.shifts = size, shifts
+        rows, cols = bev.shape[2:]
+        lines = []
+        for m in range(shifts[0]):
+            windows = (features_map[:, :, m : m + rows, n : n + cols] for n in range(shifts[1]))
+            line = torch.stack([(bev * window).sum(1) for window in windows], dim=1)
+            lines.append(F.avg_pool2d(line, size, divisor_override=1))
+        return torch.stack(lines, dim=1)
+
+    @staticmethod
+    def backward(  # type: ignore[override]  # named argument in place of *args
+        ctx: Any, gradient: Tensor
+    ) -> tuple[Tensor, Tensor, None, None]:
+        bev, features_map = ctx.saved_tensors
+        rows, cols = bev.shape[2:]
+        grad_bev, grad_map = torch.zeros_like(bev), torch.zeros_like(features_map)
+        for m in range(ctx.shifts[0]):
+            line = gradient[:, m].repeat_interleave(ctx.size, 2).repeat_interleave(ctx.size, 3)
+            for n in range(ctx.shifts[1]):
+                window = slice(None), slice(None), slice(m, m + rows), slice(n, n + cols)
+                grad_bev.addcmul_(line[:, n, None], features_map[window])
+                grad_map[window].addcmul_(line[:, n, None], bev)
+        return grad_bev, grad_map, None, None
 
 
 @lru_cache(maxsize=4)
-def _look_up(definition: SolverDefinition) -> tuple[Tensor, Tensor]:
+def _look_up(
+    definition: SolverDefinition, dtype: torch.dtype, device: torch.device
+) -> tuple[Tensor, Tensor]:
     """The interpolation weights of K for the hypotheses: [yaw, block, x, row shift] and
     [yaw, block, y, column shift]."""
     d = definition
@@ -79,7 +115,7 @@ def _look_up(definition: SolverDefinition) -> tuple[Tensor, Tensor]:
     cos, sin = torch.cos(yaw)[:, None], torch.sin(yaw)[:, None]
     row = -(cos * x_m - sin * y_m - x_m)[..., None] / d.cell_m - x / d.cell_m
     col = -(sin * x_m + cos * y_m - y_m)[..., None] / d.cell_m - y / d.cell_m
-    return _weights(row), _weights(col)
+    return _weights(row).to(device, dtype), _weights(col).to(device, dtype)
 
 
 def _block_centres(cells: int, size: int, cell_m: float) -> Tensor:

@@ -21,6 +21,23 @@ def standardise(features: Tensor, definition: SolverDefinition = DEFINITION) -> 
     return (features - mean) / (std + definition.standard_epsilon)
 
 
+def move_to(
+    features: Tensor, corrections: Tensor, cell_m: float, row: Tensor, col: Tensor
+) -> Tensor:
+    """The values at `row` and `col` [n] of features moved by each of `corrections` (x m, y m,
+    yaw rad), [batch, count, 3]: [batch, C, count, n]. The corrections get no gradient."""
+    rows, cols = features.shape[2:]
+    x_m, y_m, yaw = corrections.detach().double()[..., None].unbind(2)
+    # Positions in cells, relative to the vehicle.
+    x = 0.5 * rows - 0.5 - row.to(x_m) - x_m / cell_m
+    y = 0.5 * cols - 0.5 - col.to(y_m) - y_m / cell_m
+    source_x = torch.cos(yaw) * x + torch.sin(yaw) * y
+    source_y = torch.cos(yaw) * y - torch.sin(yaw) * x
+    # grid_sample expects (column, row) with the grid's edges at -1 and +1.
+    grid = torch.stack((-source_y / (0.5 * cols), -source_x / (0.5 * rows)), dim=3)
+    return F.grid_sample(features, grid.to(features), padding_mode="zeros", align_corners=False)
+
+
 def move(
     features: Tensor, corrections: Tensor, cell_m: float, margin: tuple[int, int] = (0, 0)
 ) -> Tensor:
@@ -28,19 +45,11 @@ def move(
     [batch, C, count, rows, cols]. The result covers the grid and `margin` rows and columns around
     it. The corrections get no gradient."""
     rows, cols = features.shape[2:]
-    x_m, y_m, yaw = corrections.detach().double()[..., None, None].unbind(2)
-    row = torch.arange(-margin[0], rows + margin[0], device=features.device, dtype=torch.float64)
-    col = torch.arange(-margin[1], cols + margin[1], device=features.device, dtype=torch.float64)
-    # Positions in cells, relative to the vehicle.
-    x = (0.5 * rows - 0.5 - row)[:, None] - x_m / cell_m
-    y = (0.5 * cols - 0.5 - col)[None, :] - y_m / cell_m
-    source_x = torch.cos(yaw) * x + torch.sin(yaw) * y
-    source_y = torch.cos(yaw) * y - torch.sin(yaw) * x
-    # grid_sample expects (column, row) with the grid's edges at -1 and +1.
-    grid = torch.stack((-source_y / (0.5 * cols), -source_x / (0.5 * rows)), dim=4)
-    grid = grid.to(features).flatten(1, 2)
-    moved = F.grid_sample(features, grid, padding_mode="zeros", align_corners=False)
-    return moved.unflatten(2, (corrections.shape[1], len(row)))
+    row = torch.arange(-margin[0], rows + margin[0])
+    col = torch.arange(-margin[1], cols + margin[1])
+    cells = torch.cartesian_prod(row, col).unbind(1)
+    moved = move_to(features, corrections, cell_m, *cells)
+    return moved.unflatten(3, (len(row), len(col)))
 
 
 def rotate(features: Tensor, yaw_rad: Tensor) -> Tensor:

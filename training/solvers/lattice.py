@@ -24,6 +24,11 @@ class CellLattice:
         row, col = torch.arange(rows)[:, None], torch.arange(cols)
         return (col - self.skew * row) % self.step == 0
 
+    def cells(self, rows: int, cols: int) -> tuple[Tensor, Tensor]:
+        """The rows and columns of the lattice's cells, [n] each."""
+        row, col = self.mask(rows, cols).nonzero().unbind(1)
+        return row, col
+
 
 EVERY_CELL = CellLattice(1, 0)
 EVERY_SECOND_CELL = CellLattice(2, 1)  # one colour of a chessboard

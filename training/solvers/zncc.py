@@ -4,8 +4,9 @@ channels together:
 ZNCC = (mean(a b) - mean(a) mean(b)) / sqrt(var(a) var(b)) with population moments; 0 if a side is
 constant. Moved features count as zero in cells that they do not cover.
 
-For float32 features and corrections in the range of the paper's hypotheses, the sums come from the
-C++ code (training/moved_sums.py), which is faster. All others are computed here.
+For float32 features on the CPU and corrections in the range of the paper's hypotheses, the sums
+come from the C++ code (training/moved_sums.py), which is faster, where its library is built. All
+others are computed here.
 """
 
 from __future__ import annotations
@@ -14,8 +15,9 @@ import torch
 from torch import Tensor
 
 from training.moved_sums import moved_sums
+from training.native import runs_natively
 from training.solvers.definition import DEFINITION
-from training.solvers.features import move
+from training.solvers.features import move_to
 from training.solvers.lattice import EVERY_CELL, CellLattice
 
 _ROUNDING = 1e-6
@@ -51,23 +53,25 @@ def moved_zncc(
     """ZNCC of F_M with F_B moved by each of the corrections, [batch, count]. `corrections` (x m,
     y m, yaw rad) is [batch, count, 3], or [1, count, 3] to use the same for the whole batch."""
     corrections = corrections.expand(len(bev), -1, -1)
-    mask = lattice.mask(*bev.shape[2:]).to(bev)
-    features_map = features_map * mask
+    row, col = lattice.cells(*bev.shape[2:])
+    map_cells = features_map[:, :, row.to(bev.device), col.to(bev.device)]
     if _is_native(bev, corrections, cell_m):
-        product, value, square = moved_sums(bev, features_map, corrections, lattice).unbind(2)
+        mask = lattice.mask(*bev.shape[2:]).to(bev)
+        sums = moved_sums(bev, features_map * mask, corrections, lattice)
+        product, value, square = sums.unbind(2)
     else:
-        moved = move(bev, corrections, cell_m) * mask
-        product = torch.einsum("bcnuv,bcuv->bn", moved, features_map)
-        value, square = sums_of(moved, (1, 3, 4))
-    map_side = sums_of(features_map[:, :, None], (1, 3, 4))
-    count = features_map.shape[1] * int(mask.sum())
+        moved = move_to(bev, corrections, cell_m, row, col)
+        product = torch.einsum("bcnk,bck->bn", moved, map_cells)
+        value, square = sums_of(moved, (1, 3))
+    map_side = sums_of(map_cells[:, :, None], (1, 3))
+    count = features_map.shape[1] * len(row)
     return zncc(product, (value, square), map_side, count).to(bev)
 
 
 def _is_native(bev: Tensor, corrections: Tensor, cell_m: float) -> bool:
     """Whether the C++ code supports these features and corrections."""
     grid = (*bev.shape[2:], cell_m)
-    if grid != (DEFINITION.rows, DEFINITION.cols, DEFINITION.cell_m) or bev.dtype != torch.float32:
+    if grid != (DEFINITION.rows, DEFINITION.cols, DEFINITION.cell_m) or not runs_natively(bev):
         return False
     farthest = torch.tensor(DEFINITION.farthest()).to(corrections)
     return bool((corrections.abs() <= farthest + _ROUNDING).all())

@@ -1,0 +1,149 @@
+"""Tests the training bundle: its size, its independence of the machine, and a run."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import io
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+import unittest.mock
+from pathlib import Path
+
+import torch
+
+from training.bundle import LIMIT_BYTES, BundleError, make, options_of_run, size_of
+from training.bundle_train import without_budget
+from training.checkpoint import read_checkpoint
+from training.config import FIRST_VALIDATION_SEED
+from training.sampler_process import (
+    ENVIRONMENT,
+    LOADER,
+    PROGRAM,
+    RECORD,
+    SamplerError,
+    SamplerOptions,
+    SamplerProcess,
+)
+
+# Packages that machines with PyTorch may lack.
+FOREIGN = ("onnx", "PIL", "matplotlib", "yaml")
+RUN = ("--batch", "1", "--validation-samples", "1", "--sampler-threads", "1")
+
+
+def first_sample(program: Path) -> bytes:
+    with unittest.mock.patch.dict(os.environ, {ENVIRONMENT: str(program)}):
+        process = SamplerProcess(SamplerOptions(FIRST_VALIDATION_SEED))
+    try:
+        return process.next(1).tobytes()
+    finally:
+        process.close()
+
+
+class Bundle(unittest.TestCase):
+    folder: Path
+    bundle: Path
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = Path(folder.name)
+        cls.bundle = cls.folder / "bundle"
+        arguments = argparse.Namespace(init=None, run=None, photos=None)
+        make(arguments, ["--samples", "2", *RUN], cls.bundle)
+
+    def bare(self, *command: str) -> subprocess.CompletedProcess:
+        """Runs a command without the environment and the further packages of this machine."""
+        hidden = self.folder / "hidden"
+        hidden.mkdir(exist_ok=True)
+        for package in FOREIGN:
+            (hidden / f"{package}.py").write_text(f"raise ImportError('no {package} here')\n")
+        environment = {"PATH": "", "LD_LIBRARY_PATH": "", "PYTHONPATH": str(hidden)}
+        return subprocess.run(
+            command, env=environment, cwd="/", capture_output=True, text=True, timeout=280
+        )
+
+    def test_it_is_small(self):
+        self.assertLess(size_of(self.bundle), LIMIT_BYTES)
+        self.assertFalse(list(self.bundle.rglob("*dnnl*")))
+
+    def test_the_sampler_loads_no_library_of_the_machine(self):
+        sampler = self.bundle / "sampler"
+        loader = (str(sampler / LOADER), "--inhibit-cache", "--library-path", str(sampler))
+        listed = self.bare(*loader, "--list", str(sampler / PROGRAM))
+        self.assertEqual(listed.returncode, 0, listed.stderr)
+        lines = [line.strip() for line in listed.stdout.splitlines() if "vdso" not in line]
+        self.assertGreater(len(lines), 5)
+        for line in lines:
+            self.assertIn(str(sampler), line)
+
+    def test_its_sampler_makes_the_same_samples(self):
+        own = first_sample(self.bundle / "sampler" / PROGRAM)
+        self.assertEqual(len(own), RECORD.itemsize)
+        self.assertEqual(own, first_sample(Path(os.environ[ENVIRONMENT])))
+
+    def test_it_trains_and_resumes_with_torch_and_numpy_alone(self):
+        train = (sys.executable, str(self.bundle / "train"))
+        first = self.bare(*train)
+        self.assertEqual(first.returncode, 0, first.stderr)
+        self.assertIn("finished", first.stdout)
+        checkpoint = self.bundle / "run" / "checkpoint.pt"
+        self.assertEqual(read_checkpoint(checkpoint)["samples"], 2)
+        self.assertEqual(options_of_run(checkpoint.parent), ["--samples", "2", *RUN[:4]])
+        second = self.bare(*train, "--samples", "3")
+        self.assertEqual(second.returncode, 0, second.stderr)
+        self.assertEqual(read_checkpoint(checkpoint)["samples"], 3)
+
+    def test_a_missing_package_is_named(self):
+        ended = self.bare(sys.executable, "-S", str(self.bundle / "train"))
+        self.assertEqual(ended.returncode, 1)
+        self.assertRegex(ended.stderr, "^train: .*found no NumPy, wanted it")
+
+    def test_wrong_options_are_refused_when_it_is_made(self):
+        arguments = argparse.Namespace(init=None, run=None, photos=None)
+        said = io.StringIO()
+        with self.assertRaises(SystemExit), contextlib.redirect_stderr(said):
+            make(arguments, ["--nuisances", "wild"], self.folder / "wrong")
+        self.assertIn("'wild'", said.getvalue())
+        self.assertFalse((self.folder / "wrong").exists())
+
+    def test_a_bundle_that_is_too_large_is_refused(self):
+        photos = self.folder / "photos"
+        photos.mkdir()
+        with (photos / "large").open("wb") as file:
+            file.truncate(LIMIT_BYTES)
+        arguments = argparse.Namespace(init=None, run=None, photos=photos)
+        with self.assertRaisesRegex(BundleError, "MiB, wanted at most 60 MiB"):
+            make(arguments, ["--samples", "2"], self.folder / "large")
+
+
+class Options(unittest.TestCase):
+    def test_a_given_budget_replaces_that_of_the_bundle(self):
+        own = ["--minutes", "60", "--batch", "32", "--samples=8"]
+        self.assertEqual(without_budget(own), ["--batch", "32"])
+
+
+class Sampler(unittest.TestCase):
+    def test_missing_photographs_end_it(self):
+        with self.assertRaisesRegex(SamplerError, "ended with status 2"):
+            SamplerProcess(SamplerOptions(1, photos="/nowhere"))
+
+    def test_its_end_is_reported(self):
+        process = SamplerProcess(SamplerOptions(1))
+        process._process.kill()
+        with self.assertRaisesRegex(SamplerError, "ended with status -9"):
+            process.next(100)
+
+    def test_a_missing_program_is_named(self):
+        with unittest.mock.patch.dict(os.environ, {ENVIRONMENT: "/nowhere/sampler"}):
+            with self.assertRaisesRegex(SamplerError, "^/nowhere/sampler: cannot be started"):
+                SamplerProcess(SamplerOptions(1))
+
+
+if __name__ == "__main__":
+    torch.set_num_threads(1)
+    unittest.main()

@@ -1,0 +1,155 @@
+"""Runs bevloc_sampler, the program that renders the simulator's samples, and reads its records.
+
+A process of its own needs no library of this Python's machine: in a training bundle
+(training/bundle.py) it runs with the libraries and the loader that lie beside it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from training.errors import TrainingError
+from training.model import (
+    BEV_COLS,
+    BEV_ROWS,
+    CAMERAS,
+    IMAGE_COLS,
+    IMAGE_ROWS,
+    RASTER_CHANNELS,
+    VIEW_SLOTS,
+)
+from training.models.config import RASTER_COLS, RASTER_ROWS
+
+ENVIRONMENT = "BEVLOC_SAMPLER"
+LOADER = "ld-linux-x86-64.so.2"
+PROGRAM = "bevloc_sampler"
+BUNDLED = Path("sampler")  # the folder of the program in a training bundle
+_ROOT = Path(__file__).resolve().parent.parent
+_PIPE_BYTES = 2**20  # Linux allows this much without privileges
+_FOREIGN = ("LD_LIBRARY_PATH", "LD_PRELOAD", "LD_AUDIT")  # of this Python, not of the program
+
+# training/native/sample_record.h
+_HEADER = np.dtype([("magic", "S8"), ("sizes", "<u4", (8,))])
+_MAGIC = b"bevlocS1"
+_SIZES = (
+    *(CAMERAS, IMAGE_ROWS, IMAGE_COLS),
+    *(RASTER_CHANNELS, RASTER_ROWS, RASTER_COLS),
+    *(VIEW_SLOTS, BEV_ROWS * BEV_COLS),
+)
+RECORD = np.dtype(
+    [
+        ("images", "u1", (CAMERAS, 3, IMAGE_ROWS, IMAGE_COLS)),
+        ("raster_prior", "u1", (RASTER_CHANNELS, RASTER_ROWS, RASTER_COLS)),
+        ("raster_truth", "u1", (RASTER_CHANNELS, RASTER_ROWS, RASTER_COLS)),
+        ("index", "<i4", (VIEW_SLOTS, BEV_ROWS * BEV_COLS)),
+        ("weight", "<f4", (VIEW_SLOTS, BEV_ROWS * BEV_COLS)),
+        ("correction", "<f4", (3,)),
+        ("camera_mask", "<u4"),
+    ]
+)
+
+
+class SamplerError(TrainingError):
+    """The sampler is missing, refused its options or ended early."""
+
+
+@dataclass(frozen=True)
+class SamplerOptions:
+    """Which samples a sampler renders. `nuisances`: usual, strong or street. `photos`: a folder of
+    script/photos; empty: the simulator's own textures."""
+
+    first_seed: int
+    first_sample: int = 0
+    threads: int = 1
+    drop_camera_probability: float = 0.0
+    nuisances: str = "usual"
+    photos: str = ""
+
+    def arguments(self) -> list[str]:
+        given = {name: value for name, value in vars(self).items() if value != ""}
+        return [f"--{name.replace('_', '-')}={value}" for name, value in given.items()]
+
+
+def sampler_program() -> Path:
+    """$BEVLOC_SAMPLER, or the bundle's own program, or the first one in build/<preset>/bin."""
+    if chosen := os.environ.get(ENVIRONMENT):
+        return Path(chosen)
+    candidates = [_ROOT / BUNDLED / PROGRAM, *sorted(_ROOT.glob(f"build/*/bin/{PROGRAM}"))]
+    for candidate in candidates:
+        if candidate.exists():
+            return candidate
+    raise SamplerError(
+        f"{_ROOT}: found no {PROGRAM}; build the target {PROGRAM} or set {ENVIRONMENT}"
+    )
+
+
+def sampler_command(program: Path) -> list[str]:
+    """The command that starts the program: with the loader and the libraries that lie beside it, if
+    they do."""
+    folder = program.resolve().parent
+    if not (folder / LOADER).exists():
+        return [str(program)]
+    return [str(folder / LOADER), "--inhibit-cache", "--library-path", str(folder), str(program)]
+
+
+class SamplerProcess:
+    """One running sampler. Its samples come in order and depend on the options alone, except
+    `threads`, which only sets how many are rendered ahead at once."""
+
+    def __init__(self, options: SamplerOptions) -> None:
+        """SamplerError if the program is missing or refuses the options."""
+        program = sampler_program()
+        command = [*sampler_command(program), *options.arguments()]
+        environment = {key: v for key, v in os.environ.items() if key not in _FOREIGN}
+        try:
+            self._process = subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, env=environment
+            )
+        except OSError as error:
+            raise SamplerError(f"{program}: cannot be started ({error.strerror})") from error
+        assert self._process.stdout is not None
+        self._pipe = self._process.stdout
+        with contextlib.suppress(OSError):  # a user may have used up the memory of all pipes
+            fcntl.fcntl(self._pipe, fcntl.F_SETPIPE_SZ, _PIPE_BYTES)
+        header = np.empty(1, _HEADER)
+        self._fill(header)
+        sizes = tuple(header["sizes"][0].tolist())
+        if header["magic"][0] != _MAGIC or sizes != _SIZES:
+            self.close()
+            raise SamplerError(
+                f"{program}: found samples of {header['magic'][0]!r} {sizes}, wanted {_MAGIC!r} "
+                f"{_SIZES}; build it again"
+            )
+
+    def next(self, count: int) -> np.ndarray:
+        """The next `count` samples, [count] of RECORD. Blocks until they are rendered. SamplerError
+        if the program has ended."""
+        records = np.empty(count, RECORD)
+        self._fill(records)
+        return records
+
+    def close(self) -> None:
+        """Ends the program. Does nothing if that is done."""
+        self._process.kill()
+        self._process.wait()
+        self._pipe.close()
+
+    def _fill(self, array: np.ndarray) -> None:
+        """Reads as many bytes as the array has."""
+        bytes_left = array.view(np.uint8).data
+        while bytes_left.nbytes:
+            found = self._pipe.readinto(bytes_left)  # type: ignore[attr-defined]  # BufferedReader
+            if not found:
+                status = self._process.wait()
+                self.close()
+                raise SamplerError(
+                    f"{PROGRAM}: ended with status {status}, wanted samples; the reason is above"
+                )
+            bytes_left = bytes_left[found:]
