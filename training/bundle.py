@@ -33,6 +33,8 @@ from training.sources import training_stream
 from training.start_weights import start_with
 
 LIMIT_BYTES = 60 * 2**20
+CHECKPOINT_BYTES = 16 * 2**20  # what other machines return
+_BYTES_PER_WEIGHT = 16  # of a checkpoint: weights, average, two moments of the gradient
 PACKAGES = ("training", "training/models", "training/solvers", "training/nuscenes")
 ARCHIVE = ".tar.gz"
 _ROOT = Path(__file__).resolve().parent.parent
@@ -159,6 +161,10 @@ def make(arguments: argparse.Namespace, options: list[str], out: Path) -> None:
     if arguments.run is not None:
         options = [*options_of_run(arguments.run), *options]
     config = checked(options, arguments)
+    net = BevNetwork(network_config(config.network, config.view))
+    weights = sum(parameter.numel() for parameter in net.parameters())
+    if _BYTES_PER_WEIGHT * weights > CHECKPOINT_BYTES and not config.compact:
+        options = [*options, "--compact"]
     out.mkdir(parents=True)
     copy_python(out)
     copy_sampler(out / BUNDLED)

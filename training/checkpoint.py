@@ -13,6 +13,7 @@ from typing import Any
 
 import torch
 
+from training.compact import unpack
 from training.errors import CheckpointError, run_program
 from training.models.config import ModelConfig, network_config
 from training.models.network import BevNetwork
@@ -35,7 +36,7 @@ def read_checkpoint(path: Path, device: str | torch.device = "cpu") -> dict[str,
             raise CheckpointError(
                 f"{path}: found no '{key}', wanted a checkpoint of training.train"
             )
-    return state
+    return unpack(state)
 
 
 def nuisances_of(path: Path) -> str:

@@ -56,6 +56,7 @@ class TrainingConfig:
     refined_weight: float = 0.1
 
     checkpoint_minutes: float = 2.0
+    compact: bool = False  # checkpoints with 5 bytes for a weight (training/compact.py)
     validation_minutes: float = 6.0
     validation_samples: int = 96
     patience: int = 0  # stop after so many validations without improvement; 0: never

@@ -117,12 +117,12 @@ class SamplerStream:
     def next(self, count: int) -> Batch:
         """The next `count` samples, grouped by sampler."""
         turns = len(self._samplers)
-        records = np.concatenate(
-            [
-                sampler.next(len(range((k - self._position) % turns, count, turns)))
-                for k, sampler in enumerate(self._samplers)
-            ]
-        )
+        records = np.empty(count, RECORD)
+        filled = 0
+        for k, sampler in enumerate(self._samplers):
+            own = len(range((k - self._position) % turns, count, turns))
+            sampler.read(records[filled : filled + own])
+            filled += own
         self._position += count
         return _batch_of(records)
 

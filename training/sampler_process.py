@@ -119,7 +119,7 @@ class SamplerProcess:
         with contextlib.suppress(OSError):  # a user may have used up the memory of all pipes
             fcntl.fcntl(self._pipe, fcntl.F_SETPIPE_SZ, _PIPE_BYTES)
         header = np.empty(1, _HEADER)
-        self._fill(header)
+        self.read(header)
         sizes = tuple(header["sizes"][0].tolist())
         if header["magic"][0] != _MAGIC or sizes != _SIZES:
             self.close()
@@ -128,21 +128,9 @@ class SamplerProcess:
                 f"{_SIZES}; build it again"
             )
 
-    def next(self, count: int) -> np.ndarray:
-        """The next `count` samples, [count] of RECORD. Blocks until they are rendered. SamplerError
-        if the program has ended."""
-        records = np.empty(count, RECORD)
-        self._fill(records)
-        return records
-
-    def close(self) -> None:
-        """Ends the program. Does nothing if that is done."""
-        self._process.kill()
-        self._process.wait()
-        self._pipe.close()
-
-    def _fill(self, array: np.ndarray) -> None:
-        """Reads as many bytes as the array has."""
+    def read(self, array: np.ndarray) -> None:
+        """Fills a contiguous array of RECORD with the next samples. Blocks until they are rendered.
+        SamplerError if the program has ended."""
         bytes_left = array.view(np.uint8).data
         while bytes_left.nbytes:
             found = self._pipe.readinto(bytes_left)  # type: ignore[attr-defined]  # BufferedReader
@@ -153,3 +141,9 @@ class SamplerProcess:
                     f"{PROGRAM}: ended with status {status}, wanted samples; the reason is above"
                 )
             bytes_left = bytes_left[found:]
+
+    def close(self) -> None:
+        """Ends the program. Does nothing if that is done."""
+        self._process.kill()
+        self._process.wait()
+        self._pipe.close()

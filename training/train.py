@@ -22,6 +22,7 @@ import torch
 from torch import Tensor, nn
 
 from training.checkpoint import load_weights, read_checkpoint
+from training.compact import pack
 from training.config import TrainingConfig
 from training.data import Batch, Stream, augment
 from training.distributed import WHOLE, Processes, Share
@@ -152,20 +153,18 @@ class Trainer:
             if not torch.isfinite(value).all():
                 raise NotFiniteError(f"step {self.step}: {name} is not finite; {self._last_good()}")
         partial = self.checkpoint_path.with_suffix(".partial")
-        torch.save(
-            {
-                "model": self.net.state_dict(),
-                "ema": self.average.state_dict(),
-                "optimiser": self.optimiser.state_dict(),
-                "step": self.step,
-                "samples": self.samples,
-                "elapsed_s": self.elapsed_s,
-                "patience": self.patience.state(),
-                "processes": self.processes.count,
-                "config": self.config.as_dict(),
-            },
-            partial,
-        )
+        state = {
+            "model": self.net.state_dict(),
+            "ema": self.average.state_dict(),
+            "optimiser": self.optimiser.state_dict(),
+            "step": self.step,
+            "samples": self.samples,
+            "elapsed_s": self.elapsed_s,
+            "patience": self.patience.state(),
+            "processes": self.processes.count,
+            "config": self.config.as_dict(),
+        }
+        torch.save(pack(state) if self.config.compact else state, partial)
         partial.replace(self.checkpoint_path)
 
     def _load(self) -> None:

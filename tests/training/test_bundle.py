@@ -13,6 +13,7 @@ import unittest
 import unittest.mock
 from pathlib import Path
 
+import numpy as np
 import torch
 
 from training.bundle import LIMIT_BYTES, BundleError, make, options_of_run, size_of
@@ -37,8 +38,10 @@ RUN = ("--batch", "1", "--validation-samples", "1", "--sampler-threads", "1")
 def first_sample(program: Path) -> bytes:
     with unittest.mock.patch.dict(os.environ, {ENVIRONMENT: str(program)}):
         process = SamplerProcess(SamplerOptions(FIRST_VALIDATION_SEED))
+    record = np.empty(1, RECORD)
     try:
-        return process.next(1).tobytes()
+        process.read(record)
+        return record.tobytes()
     finally:
         process.close()
 
@@ -136,7 +139,7 @@ class Sampler(unittest.TestCase):
         process = SamplerProcess(SamplerOptions(1))
         process._process.kill()
         with self.assertRaisesRegex(SamplerError, "ended with status -9"):
-            process.next(100)
+            process.read(np.empty(100, RECORD))
 
     def test_a_missing_program_is_named(self):
         with unittest.mock.patch.dict(os.environ, {ENVIRONMENT: "/nowhere/sampler"}):
