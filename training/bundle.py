@@ -23,7 +23,6 @@ import torch
 from training.bundle_train import BUDGETS
 from training.checkpoint import network_of, read_checkpoint
 from training.config import TrainingConfig
-from training.distributed import WHOLE
 from training.errors import TrainingError, run_program
 from training.models.config import network_config
 from training.models.network import BevNetwork
@@ -31,6 +30,7 @@ from training.options import parse_config
 from training.sampler_process import BUNDLED, LOADER, PROGRAM, sampler_program
 from training.sources import training_stream
 from training.start_weights import start_with
+from training.train import measuring_batches
 
 LIMIT_BYTES = 60 * 2**20
 CHECKPOINT_BYTES = 16 * 2**20  # what other machines return
@@ -40,7 +40,6 @@ ARCHIVE = ".tar.gz"
 _ROOT = Path(__file__).resolve().parent.parent
 # Options that belong to the machine or are set by the bundle's program itself.
 _OWN_OPTIONS = ("run", "resume", "init", "photos", "threads", "sampler_threads")
-_MEASURED_SAMPLES = 128
 
 README = """# Training bundle of bevloc
 
@@ -101,14 +100,7 @@ def copy_sampler(out: Path) -> None:
 def write_start_weights(config: TrainingConfig, out: Path) -> None:
     """The weights of --init as a checkpoint: a model file needs packages that the bundle lacks."""
     net = BevNetwork(network_config(config.network, config.view))
-
-    def batches() -> list:
-        stream = training_stream(config, 0, WHOLE)
-        found = [stream.next(16) for _ in range(_MEASURED_SAMPLES // 16)]
-        stream.close()
-        return found
-
-    start_with(net, Path(config.init), batches)
+    start_with(net, Path(config.init), lambda: measuring_batches(config, training_stream))
     weights = net.state_dict()
     state = {"model": weights, "ema": weights, "samples": 0, "config": config.as_dict()}
     torch.save(state, out)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import io
+import json
 import os
 import subprocess
 import sys
@@ -105,6 +106,14 @@ class Bundle(unittest.TestCase):
         ended = self.bare(sys.executable, "-S", str(self.bundle / "train"))
         self.assertEqual(ended.returncode, 1)
         self.assertRegex(ended.stderr, "^train: .*found no NumPy, wanted it")
+
+    def test_checkpoints_that_would_be_too_large_are_compact(self):
+        arguments = argparse.Namespace(init=None, run=None, photos=None)
+        options = ["--samples", "2", "--network", "small", "--view", "lut"]
+        make(arguments, options, self.folder / "small")
+        stored = json.loads((self.folder / "small" / "options.json").read_text())
+        self.assertEqual(stored, [*options, "--compact"])
+        self.assertNotIn("--compact", (self.bundle / "options.json").read_text())
 
     def test_wrong_options_are_refused_when_it_is_made(self):
         arguments = argparse.Namespace(init=None, run=None, photos=None)
