@@ -109,7 +109,8 @@ def main() -> None:
     for nuisances in ("usual", "street"):
         print_row(f"{nuisances} samples", simulated(nuisances, "", options.samples))
     if options.photos:
-        print_row("street samples, photographs", simulated("street", options.photos, options.samples))
+        with_photos = simulated("street", options.photos, options.samples)
+        print_row("street samples, photographs", with_photos)
     if options.real and options.rig:
         print_row("real frame", real(options.real, options.rig))
 
