@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <deque>
-#include <sstream>
 #include <type_traits>
 
-#include <yaml-cpp/eventhandler.h>
-#include <yaml-cpp/yaml.h>
-
 #include "common/files.h"
+#include "common/yaml_scalar.h"
+#include "common/yaml_text.h"
 
 namespace bevloc {
 
@@ -46,7 +43,8 @@ struct YamlMap::Document {
   std::string name;
   std::deque<Mapping> mappings;  ///< in the order of opening; their addresses do not change
   std::optional<std::string> mistake;
-  const Mapping* lacking = nullptr;  ///< the mapping that lacks a key, if that is the mistake
+  const Mapping* lacking = nullptr;    ///< the mapping that lacks a key, if that is the mistake
+  YamlRecording* recording = nullptr;  ///< set: there is no file, and the keys are recorded
 
   void report(int line, std::string_view place, std::string_view found, std::string_view wanted) {
     if (mistake) return;
@@ -61,128 +59,69 @@ struct YamlMap::Document {
 
 namespace {
 
-int line_of(const YAML::Node& node) {
-  return node.Mark().line + 1;
-}
-
-std::string describe(const YAML::Node& node) {
-  switch (node.Type()) {
-    case YAML::NodeType::Scalar:
-      return node.Tag() == "!" ? fmt::format("\"{}\"", node.Scalar()) : node.Scalar();
-    case YAML::NodeType::Sequence:
-      return fmt::format("a list of {}", node.size());
-    case YAML::NodeType::Map:
-      return "a mapping";
-    default:
-      return "nothing";
-  }
-}
-
 template <typename T>
-constexpr std::string_view type_name() {
+constexpr YamlType yaml_type() {
   if constexpr (std::is_same_v<T, bool>) {
-    return "true or false";
+    return YamlType::kFlag;
   } else if constexpr (std::is_same_v<T, std::string>) {
-    return "a text";
+    return YamlType::kText;
   } else if constexpr (std::is_floating_point_v<T>) {
-    return "a number";
+    return YamlType::kNumber;
   } else {
-    return "a whole number";
+    return std::is_signed_v<T> ? YamlType::kWholeNumber : YamlType::kCount;
   }
 }
 
+/// As JSON; empty if JSON cannot say it.
 template <typename T>
-std::string describe_wanted(const Wanted<T>& wanted) {
-  if (wanted.description.empty()) return std::string(type_name<T>());
-  if constexpr (std::is_arithmetic_v<T>) {
-    return fmt::format("{}, {}", type_name<T>(), wanted.description);
-  }
-  return wanted.description;
-}
-
-template <typename T>
-std::optional<T> number_from(std::string_view text) {
-  T value{};
-  std::from_chars_result result{};
-  const char* end = text.data() + text.size();
-  if constexpr (std::is_floating_point_v<T>) {
-    result = std::from_chars(text.data(), end, value);
-    if (!std::isfinite(value)) return std::nullopt;
-  } else {
-    const bool is_hex = text.starts_with("0x");
-    result = std::from_chars(text.data() + (is_hex ? 2 : 0), end, value, is_hex ? 16 : 10);
-  }
-  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
-  return value;
-}
-
-template <typename T>
-std::optional<T> scalar_from(const YAML::Node& node) {
-  if (!node.IsScalar()) return std::nullopt;
-  const std::string& text = node.Scalar();
+std::string default_text(const T& value) {
   if constexpr (std::is_same_v<T, std::string>) {
-    return text;
+    return fmt::format("\"{}\"", value);
   } else {
-    const bool is_quoted = node.Tag() == "!";
-    if (is_quoted) return std::nullopt;
-    if constexpr (std::is_same_v<T, bool>) {
-      if (text == "true") return true;
-      if (text == "false") return false;
-      return std::nullopt;
-    } else {
-      return number_from<T>(text);
+    if constexpr (std::is_floating_point_v<T>) {
+      if (!std::isfinite(value)) return "";
+      // A default that was converted to radians and back has wrong last digits.
+      return fmt::format("{:.12g}", value);
     }
+    return fmt::format("{}", value);
   }
 }
 
+/// Records a key and makes up a value that the reader accepts.
 template <typename T>
-std::optional<T> accepted_scalar(const YAML::Node& node, const Wanted<T>& wanted) {
-  const std::optional<T> value = scalar_from<T>(node);
-  return value && wanted.accepts && !wanted.accepts(*value) ? std::nullopt : value;
-}
-
-/// Takes a document apart and keeps nothing of it.
-class IgnoringHandler : public YAML::EventHandler {
-  using Mark = YAML::Mark;
-  using Text = std::string;
-  using Style = YAML::EmitterStyle::value;
-  void OnDocumentStart(const Mark&) override {}
-  void OnDocumentEnd() override {}
-  void OnNull(const Mark&, YAML::anchor_t) override {}
-  void OnAlias(const Mark&, YAML::anchor_t) override {}
-  void OnScalar(const Mark&, const Text&, YAML::anchor_t, const Text&) override {}
-  void OnSequenceStart(const Mark&, const Text&, YAML::anchor_t, Style) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const Mark&, const Text&, YAML::anchor_t, Style) override {}
-  void OnMapEnd() override {}
-};
-
-/// The number of documents in a text, up to 2. YAML::LoadAll() reads documents without end from
-/// some texts, such as a single comma.
-int count_documents(const std::string& text) {
-  constexpr int kEnough = 2;
-  std::istringstream stream(text);
-  YAML::Parser parser(stream);
-  IgnoringHandler handler;
-  int count = 0;
-  while (count < kEnough && parser.HandleNextDocument(handler)) ++count;
-  return count;
-}
-
-/// Parses a text that holds exactly one YAML document.
-Result<YAML::Node> parse_document(const std::string& text, const std::string& name) {
-  try {
-    const int documents = count_documents(text);
-    if (documents > 1) return fail("{}: found 2 YAML documents or more, wanted one", name);
-    if (documents < 1) return fail("{}: found 0 YAML documents, wanted one", name);
-    return YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    return fail("{}:{}: found text that is not YAML ({}), wanted YAML", name, error.mark.line + 1,
-                error.msg);
+T recorded(YamlRecording& recording, YamlKey key, const Wanted<T>& wanted) {
+  key.type = yaml_type<T>();
+  key.limits = wanted.limits;
+  const std::string path = key.path;
+  const std::string word = recording.add(std::move(key));
+  if constexpr (std::is_same_v<T, std::string>) {
+    return word.empty() ? path : word;
+  } else if constexpr (std::is_same_v<T, bool>) {
+    return false;
+  } else {
+    // Four numbers without limits are a quaternion of norm 1.
+    const double low = wanted.limits.low.value_or(std::is_floating_point_v<T> ? 0.5 : 0.0);
+    return static_cast<T>(wanted.limits.excludes_low ? low + 1.0 : low);
   }
 }
 
 }  // namespace
+
+Wanted<std::string> not_empty(std::string description, size_t longest) {
+  return {std::move(description),
+          [longest](const std::string& text) { return !text.empty() && text.size() <= longest; },
+          {.low = 1.0,
+           .high = longest == std::numeric_limits<size_t>::max() ? std::optional<double>()
+                                                                 : static_cast<double>(longest)}};
+}
+
+Wanted<std::string> one_of(std::vector<std::string> words) {
+  return {fmt::format("one of {}", fmt::join(words, ", ")),
+          [words](const std::string& word) {
+            return std::find(words.begin(), words.end(), word) != words.end();
+          },
+          {.words = words}};
+}
 
 YamlMap::Mapping* YamlMap::Document::open(const YAML::Node& node, std::string path, int line) {
   Mapping& mapping = mappings.emplace_back();
@@ -226,8 +165,26 @@ Result<YamlMap> YamlMap::parse(const std::string& text, const std::string& name)
   return YamlMap(std::move(document), mapping);
 }
 
+YamlMap YamlMap::record(YamlRecording& recording) {
+  auto document = std::make_shared<Document>();
+  document->name = "schema";
+  document->recording = &recording;
+  Mapping* mapping = &document->mappings.emplace_back();
+  return YamlMap(std::move(document), mapping);
+}
+
 bool YamlMap::has(std::string_view key) const {
+  if (YamlRecording* recording = document_->recording) {
+    return recording->test(mapping_->path_of(key));
+  }
   return mapping_->find(key) != nullptr;
+}
+
+bool YamlMap::has_in_place_of(std::string_view key) const {
+  if (YamlRecording* recording = document_->recording) {
+    return recording->test_in_place_of(mapping_->path_of(key));
+  }
+  return has(key);
 }
 
 YamlMap::Entry* YamlMap::use(std::string_view key) {
@@ -250,6 +207,9 @@ YamlMap::Entry* YamlMap::use_required(std::string_view key, std::string_view wan
 
 template <typename T>
 T YamlMap::require(std::string_view key, const Wanted<T>& wanted) {
+  if (YamlRecording* recording = document_->recording) {
+    return recorded<T>(*recording, {.path = mapping_->path_of(key)}, wanted);
+  }
   const Entry* entry = use_required(key, describe_wanted(wanted));
   if (entry == nullptr) return T{};
   if (const std::optional<T> value = accepted_scalar<T>(entry->node, wanted)) return *value;
@@ -260,11 +220,23 @@ T YamlMap::require(std::string_view key, const Wanted<T>& wanted) {
 
 template <typename T>
 T YamlMap::optional(std::string_view key, T fallback, const Wanted<T>& wanted) {
+  if (YamlRecording* recording = document_->recording) {
+    const std::string path = mapping_->path_of(key);
+    recording->test(path);
+    YamlKey entry{.path = path, .default_text = default_text(fallback)};
+    const T probe = recorded<T>(*recording, std::move(entry), wanted);
+    return wanted.limits.words.empty() ? fallback : probe;
+  }
   return has(key) ? require<T>(key, wanted) : fallback;
 }
 
 template <typename T>
 std::vector<T> YamlMap::require_list(std::string_view key, size_t count, const Wanted<T>& wanted) {
+  if (YamlRecording* recording = document_->recording) {
+    const T item = recorded<T>(
+        *recording, {.path = mapping_->path_of(key), .is_list = true, .count = count}, wanted);
+    return std::vector<T>(std::max(count, size_t{1}), item);
+  }
   const std::string wanted_list = count == 0 ? "a list" : fmt::format("a list of {}", count);
   std::vector<T> values(count);
   const Entry* entry = use_required(key, wanted_list);
@@ -288,15 +260,25 @@ std::vector<T> YamlMap::require_list(std::string_view key, size_t count, const W
 }
 
 size_t YamlMap::require_word(std::string_view key, const std::vector<std::string_view>& words) {
-  const Wanted<std::string> wanted{
-      fmt::format("one of {}", fmt::join(words, ", ")), [&words](const std::string& word) {
-        return std::find(words.begin(), words.end(), word) != words.end();
-      }};
+  const Wanted<std::string> wanted = one_of({words.begin(), words.end()});
   const auto found = std::find(words.begin(), words.end(), require<std::string>(key, wanted));
   return found == words.end() ? 0 : static_cast<size_t>(found - words.begin());
 }
 
+void YamlMap::note_default_word(std::string_view key, std::string_view word) {
+  if (YamlRecording* recording = document_->recording) {
+    recording->note_default(mapping_->path_of(key), fmt::format("\"{}\"", word));
+  }
+}
+
 YamlMap YamlMap::require_map(std::string_view key) {
+  if (YamlRecording* recording = document_->recording) {
+    const std::string path = mapping_->path_of(key);
+    recording->add({.path = path, .type = YamlType::kMap});
+    Mapping& mapping = document_->mappings.emplace_back();
+    mapping.path = path;
+    return {document_, &mapping};
+  }
   const Entry* entry = use_required(key, "a mapping");
   const YAML::Node node = entry != nullptr ? entry->node : YAML::Node(YAML::NodeType::Map);
   const int line = entry != nullptr ? entry->line : mapping_->line;
@@ -310,6 +292,14 @@ std::optional<YamlMap> YamlMap::optional_map(std::string_view key) {
 
 std::vector<YamlMap> YamlMap::require_map_list(std::string_view key) {
   std::vector<YamlMap> maps;
+  if (YamlRecording* recording = document_->recording) {
+    const std::string path = mapping_->path_of(key);
+    recording->add({.path = path, .type = YamlType::kMap, .is_list = true});
+    Mapping& mapping = document_->mappings.emplace_back();
+    mapping.path = path + "[]";
+    maps.push_back({document_, &mapping});
+    return maps;
+  }
   const Entry* entry = use_required(key, "a list of mappings");
   if (entry == nullptr) return maps;
   if (!entry->node.IsSequence()) {
@@ -325,7 +315,25 @@ std::vector<YamlMap> YamlMap::require_map_list(std::string_view key) {
   return maps;
 }
 
+void YamlMap::reject_key(std::string_view key, std::string_view found, std::string_view wanted) {
+  if (document_->recording != nullptr) {
+    document_->recording->rejected_keys.insert(mapping_->path_of(key));
+  } else if (has(key)) {
+    reject(key, found, wanted);
+  }
+}
+
+void YamlMap::reject_word(std::string_view key, std::string_view found, std::string_view wanted) {
+  if (document_->recording != nullptr) {
+    document_->recording->rejected_words.insert(mapping_->path_of(key));
+  } else {
+    reject(key, found, wanted);
+  }
+}
+
 void YamlMap::reject(std::string_view key, std::string_view found, std::string_view wanted) {
+  // A recording's values are made up, so it says nothing about values that contradict each other.
+  if (document_->recording != nullptr) return;
   const Entry* entry = mapping_->find(key);
   document_->report(entry != nullptr ? entry->line : mapping_->line, mapping_->path_of(key), found,
                     wanted);

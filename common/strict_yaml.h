@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "common/result.h"
+#include "common/yaml_recording.h"
 
 namespace bevloc {
 
@@ -22,24 +24,37 @@ template <typename T>
 struct Wanted {
   std::string description;
   std::function<bool(const T&)> accepts;
+  YamlLimits limits{};  ///< the same condition for the schema, as far as it can be said there
 };
 
 template <typename T>
 Wanted<T> more_than(T limit) {
-  return {fmt::format("more than {}", limit), [limit](const T& value) { return value > limit; }};
+  return {fmt::format("more than {}", limit),
+          [limit](const T& value) { return value > limit; },
+          {.low = static_cast<double>(limit), .excludes_low = true}};
 }
 
 template <typename T>
 Wanted<T> at_least(T limit) {
-  return {fmt::format("at least {}", limit), [limit](const T& value) { return value >= limit; }};
+  return {fmt::format("at least {}", limit),
+          [limit](const T& value) { return value >= limit; },
+          {.low = static_cast<double>(limit)}};
 }
 
 /// The limits themselves are allowed.
 template <typename T>
 Wanted<T> between(T low, T high) {
   return {fmt::format("{} to {}", low, high),
-          [low, high](const T& value) { return value >= low && value <= high; }};
+          [low, high](const T& value) { return value >= low && value <= high; },
+          {.low = static_cast<double>(low), .high = static_cast<double>(high)}};
 }
+
+/// A text of 1 to `longest` bytes.
+Wanted<std::string> not_empty(std::string description,
+                              size_t longest = std::numeric_limits<size_t>::max());
+
+/// One of these words.
+Wanted<std::string> one_of(std::vector<std::string> words);
 
 /// One mapping of a YAML file. Callers read all keys and check for errors once, at the end:
 ///
@@ -60,6 +75,10 @@ class YamlMap {
   static Result<YamlMap> read_file(const std::filesystem::path& path);
   /// The same for text in memory. Messages show `name` as the file.
   static Result<YamlMap> parse(const std::string& text, const std::string& name);
+  /// A mapping that has every key which the reader asks for, with a value that the reader accepts
+  /// (yaml_recording.h). It records the keys, and finish() finds no mistake. `recording` must
+  /// outlive it.
+  static YamlMap record(YamlRecording& recording);
 
   /// Reads a mandatory value. T: bool, int, int64_t, uint32_t, uint64_t, double, std::string.
   template <typename T>
@@ -85,7 +104,12 @@ class YamlMap {
   template <typename T>
   T optional_choice(std::string_view key, T fallback,
                     std::initializer_list<std::pair<std::string_view, T>> choices) {
-    return has(key) ? require_choice(key, choices) : fallback;
+    if (!has(key)) return fallback;
+    const T value = require_choice(key, choices);
+    for (const auto& [word, meaning] : choices) {
+      if (meaning == fallback) note_default_word(key, word);
+    }
+    return value;
   }
 
   YamlMap require_map(std::string_view key);
@@ -93,10 +117,17 @@ class YamlMap {
   std::vector<YamlMap> require_map_list(std::string_view key);
 
   bool has(std::string_view key) const;
+  /// The same for a key in whose place another one is read if it is not there.
+  bool has_in_place_of(std::string_view key) const;
 
   /// Reports a mistake that only the caller can detect, at the line of `key` (which may have been
   /// read before): reject("rotation_wxyz", "a quaternion of norm 1.2", "norm 1").
   void reject(std::string_view key, std::string_view found, std::string_view wanted);
+  /// The same for a key that is not allowed here, whatever its value is: the words that were read
+  /// before exclude it. Does nothing if the mapping lacks the key.
+  void reject_key(std::string_view key, std::string_view found, std::string_view wanted);
+  /// The same for a word that other words exclude.
+  void reject_word(std::string_view key, std::string_view found, std::string_view wanted);
 
   /// Returns the first mistake of the whole file, or the first key that was not read. Call it once,
   /// after all keys were read.
@@ -113,6 +144,7 @@ class YamlMap {
   Entry* use(std::string_view key);
   Entry* use_required(std::string_view key, std::string_view wanted);
   size_t require_word(std::string_view key, const std::vector<std::string_view>& words);
+  void note_default_word(std::string_view key, std::string_view word);
 
   std::shared_ptr<Document> document_;
   Mapping* mapping_;

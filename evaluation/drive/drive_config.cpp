@@ -1,6 +1,7 @@
 #include "evaluation/drive/drive_config.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "evaluation/drive/fault_config.h"
@@ -47,7 +48,7 @@ std::array<Duration, kCameraCount> read_offsets(YamlMap& yaml) {
 
 /// Returns false if the map is a file.
 bool read_procedural_map(YamlMap& map, SimulationConfig& simulation) {
-  if (!map.has("procedural_seed")) return false;
+  if (!map.has_in_place_of("procedural_seed")) return false;
   simulation.town_seed =
       map.require<uint64_t>("procedural_seed", between(uint64_t{0}, sim::kFirstTrainingSeed - 1));
   return true;
@@ -72,6 +73,7 @@ void read_simulation(YamlMap yaml, SimulationConfig& simulation) {
   simulation.calibration_error = read_calibration_error(yaml.optional_map("calibration_error"));
   simulation.exposure_offsets = read_offsets(yaml);
   simulation.fault_socket = yaml.optional<std::string>("fault_socket", "");
+  simulation.faults.clear();
   if (yaml.has("faults")) {
     for (YamlMap& fault : yaml.require_map_list("faults")) {
       simulation.faults.push_back(read_fault(fault));
@@ -81,15 +83,18 @@ void read_simulation(YamlMap yaml, SimulationConfig& simulation) {
 
 }  // namespace
 
+firmware::SimulationReader simulation_reader(std::optional<SimulationConfig>& simulation) {
+  const auto read = std::make_shared<SimulationConfig>();
+  return {[read](YamlMap& map) { return read_procedural_map(map, *read); },
+          [read, &simulation](YamlMap yaml) {
+            read_simulation(std::move(yaml), *read);
+            simulation = *read;
+          }};
+}
+
 Result<DriveConfig> load_drive_config(const std::filesystem::path& file) {
   std::optional<SimulationConfig> simulation;
-  SimulationConfig read;
-  const firmware::SimulationReader reader{
-      [&read](YamlMap& map) { return read_procedural_map(map, read); },
-      [&](YamlMap yaml) {
-        read_simulation(std::move(yaml), read);
-        simulation = read;
-      }};
+  const firmware::SimulationReader reader = simulation_reader(simulation);
   auto config = firmware::load_config(file, &reader);
   if (!config) return tl::unexpected(config.error());
   return DriveConfig{std::move(*config), std::move(simulation)};

@@ -36,6 +36,10 @@ struct DriveConfig : firmware::Config {
   std::optional<SimulationConfig> simulation;
 };
 
+/// Reads what only a program with the simulator reads, into `simulation`, which must outlive it.
+/// After read_simulation() there is a SimulationConfig.
+firmware::SimulationReader simulation_reader(std::optional<SimulationConfig>& simulation);
+
 /// Like firmware::load_config(), but accepts mock cameras.
 Result<DriveConfig> load_drive_config(const std::filesystem::path& file);
 

@@ -16,25 +16,23 @@ using sim::FaultKindInfo;
 
 /// Accepts the names that `name_of` gives for the elements of `all`.
 template <typename All, typename NameOf>
-Wanted<std::string> one_of(const All& all, NameOf name_of) {
-  std::vector<std::string_view> names;
-  for (const auto& element : all) names.push_back(name_of(element));
-  return {fmt::format("one of {}", fmt::join(names, ", ")), [names](const std::string& name) {
-            return std::ranges::find(names, name) != names.end();
-          }};
+Wanted<std::string> one_of_names(const All& all, NameOf name_of) {
+  std::vector<std::string> names;
+  for (const auto& element : all) names.emplace_back(name_of(element));
+  return one_of(std::move(names));
 }
 
 FaultKind read_kind(YamlMap& yaml) {
   const auto kinds = sim::fault_kinds();
   const std::string name = yaml.require<std::string>(
-      "kind", one_of(kinds, [](const FaultKindInfo& info) { return info.name; }));
+      "kind", one_of_names(kinds, [](const FaultKindInfo& info) { return info.name; }));
   const auto found = std::ranges::find(kinds, name, &FaultKindInfo::name);
   return found == kinds.end() ? kinds.front().kind : found->kind;
 }
 
 int read_camera(YamlMap& yaml, std::string_view key) {
   const std::string name = yaml.require<std::string>(
-      key, one_of(kCameraNames, [](std::string_view camera) { return camera; }));
+      key, one_of_names(kCameraNames, [](std::string_view camera) { return camera; }));
   const auto found = std::ranges::find(kCameraNames, name);
   return found == kCameraNames.end() ? 0 : static_cast<int>(found - kCameraNames.begin());
 }

@@ -16,11 +16,9 @@ const NamedPixelFormat* find_format(const std::string& name) {
 
 std::vector<PixelFormat> read_formats(YamlMap& yaml) {
   if (!yaml.has("formats")) return {PixelFormat::kNv12, PixelFormat::kYuyv, PixelFormat::kUyvy};
-  std::vector<std::string_view> names;
-  for (const NamedPixelFormat& format : kPixelFormats) names.push_back(format.name);
-  const Wanted<std::string> known{
-      fmt::format("{}", fmt::join(names, ", ")),
-      [](const std::string& name) { return find_format(name) != nullptr; }};
+  std::vector<std::string> names;
+  for (const NamedPixelFormat& format : kPixelFormats) names.emplace_back(format.name);
+  const Wanted<std::string> known = one_of(names);
   std::vector<PixelFormat> formats;
   for (const std::string& name : yaml.require_list<std::string>("formats", 0, known)) {
     if (const NamedPixelFormat* format = find_format(name)) formats.push_back(format->format);
@@ -36,7 +34,8 @@ CameraDevicesConfig read_camera_devices(YamlMap& cameras) {
   YamlMap ids = cameras.require_map("ids");
   const Wanted<std::string> named{
       "a persistent camera id, not /dev/video...",
-      [](const std::string& id) { return !id.empty() && !id.starts_with("/dev/video"); }};
+      [](const std::string& id) { return !id.empty() && !id.starts_with("/dev/video"); },
+      {.low = 1.0}};
   for (int camera = 0; camera < kCameraCount; ++camera) {
     config.ids[camera] = ids.require<std::string>(kCameraNames[camera], named);
   }

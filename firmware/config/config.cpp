@@ -15,9 +15,7 @@ namespace {
 
 std::filesystem::path path_of(YamlMap& yaml, std::string_view key,
                               const std::filesystem::path& folder) {
-  const Wanted<std::string> named{"the name of a file",
-                                  [](const std::string& name) { return !name.empty(); }};
-  return folder / yaml.require<std::string>(key, named);
+  return folder / yaml.require<std::string>(key, not_empty("the name of a file"));
 }
 
 CameraConfig read_cameras(YamlMap yaml, const std::filesystem::path& folder) {
@@ -60,8 +58,8 @@ std::filesystem::path read_map(YamlMap yaml, CameraDriver camera_driver,
                                const SimulationReader* simulation) {
   if (camera_driver != CameraDriver::kMock && yaml.has("procedural_seed")) {
     yaml.require<uint64_t>("procedural_seed");
-    yaml.reject("procedural_seed", "a procedural map with cameras that are not mocks", "`file`");
-    return {};
+    yaml.reject_key("procedural_seed", "a procedural map with cameras that are not mocks",
+                    "`file`");
   }
   const bool procedural = camera_driver == CameraDriver::kMock && simulation != nullptr &&
                           simulation->read_procedural_map(yaml);
@@ -92,13 +90,10 @@ HypothesisGrid read_hypotheses(std::optional<YamlMap> yaml, const HypothesisGrid
 SolverConfig read_solver(std::optional<YamlMap> yaml) {
   SolverConfig solver;
   if (!yaml) return solver;
-  std::vector<std::string_view> names;
-  for (const SolverKind kind : all_solver_kinds()) names.push_back(name_of(kind));
-  const Wanted<std::string> known{
-      fmt::format("one of {}", fmt::join(names, ", ")),
-      [](const std::string& name) { return solver_kind_from(name).has_value(); }};
+  std::vector<std::string> names;
+  for (const SolverKind kind : all_solver_kinds()) names.emplace_back(name_of(kind));
   const std::string default_name(name_of(solver.kind));
-  solver.kind = solver_kind_from(yaml->optional<std::string>("kind", default_name, known))
+  solver.kind = solver_kind_from(yaml->optional<std::string>("kind", default_name, one_of(names)))
                     .value_or(solver.kind);
   solver.tracking = read_hypotheses(yaml->optional_map("tracking"), solver.tracking);
   solver.acquiring = read_hypotheses(yaml->optional_map("acquiring"), solver.acquiring);
@@ -110,8 +105,8 @@ std::optional<SecocConfig> read_secoc(YamlMap& can, CanDriver driver,
   auto yaml = can.optional_map("secoc");
   if (!yaml) return std::nullopt;
   if (driver == CanDriver::kMock) {
-    can.reject("secoc", "authentication on a bus inside the process",
-               "no section secoc with can.driver: mock");
+    can.reject_key("secoc", "authentication on a bus inside the process",
+                   "no section secoc with can.driver: mock");
   }
   return SecocConfig{.key_file = path_of(*yaml, "key_file", folder),
                      .starts_file = path_of(*yaml, "starts_file", folder)};
@@ -127,19 +122,17 @@ CanConfig read_can(YamlMap yaml, CameraDriver camera_driver, const std::filesyst
   config.driver = yaml.require_choice<CanDriver>(
       "driver", {{"mock", CanDriver::kMock}, {"socketcan", CanDriver::kSocketCan}});
   if (config.driver == CanDriver::kMock && is_real(camera_driver)) {
-    yaml.reject("driver", "mock beside real cameras", "socketcan, so that poses reach the vehicle");
+    yaml.reject_word("driver", "mock beside real cameras",
+                     "socketcan, so that poses reach the vehicle");
   }
   if (config.driver == CanDriver::kSocketCan) {
     // IFNAMSIZ limits the length.
-    const Wanted<std::string> interface_name{
-        "the name of a network interface, 1 to 15 characters",
-        [](const std::string& name) { return !name.empty() && name.size() <= 15; }};
-    config.interface = yaml.require<std::string>("interface", interface_name);
+    config.interface = yaml.require<std::string>(
+        "interface", not_empty("the name of a network interface, 1 to 15 characters", 15));
   }
-  if (yaml.has("variant")) {
-    config.variant = yaml.require_choice<can::FrameFormat>(
-        "variant", {{"classic", can::FrameFormat::kClassic}, {"fd", can::FrameFormat::kFd}});
-  }
+  config.variant = yaml.optional_choice<can::FrameFormat>(
+      "variant", config.variant,
+      {{"classic", can::FrameFormat::kClassic}, {"fd", can::FrameFormat::kFd}});
   // Each family of messages has fewer than 0x40 of the 11-bit identifiers.
   constexpr uint32_t kFamily = 0x40;
   const auto base_id = between(uint32_t{1}, 0x800 - kFamily);
@@ -238,47 +231,52 @@ void read_online_calibration(std::optional<YamlMap> yaml, const std::filesystem:
 
 }  // namespace
 
-Result<Config> load_config(const std::filesystem::path& file, const SimulationReader* simulation) {
-  Result<YamlMap> yaml = YamlMap::read_file(file);
-  if (!yaml) return tl::unexpected(yaml.error());
-  const std::filesystem::path folder = file.parent_path();
+Config read_config(YamlMap& yaml, const std::filesystem::path& folder,
+                   const SimulationReader* simulation) {
   Config config;
-  config.file = file;
-  YamlMap cameras = yaml->require_map("cameras");
+  YamlMap cameras = yaml.require_map("cameras");
   config.cameras = read_cameras(cameras, folder);
   if (config.cameras.driver == CameraDriver::kMock && simulation == nullptr) {
-    cameras.reject(
+    cameras.reject_word(
         "driver", "mock",
         "v4l2, libcamera or replay, because this bevlocd was built without the simulator");
   }
-  YamlMap calibration = yaml->require_map("calibration");
+  YamlMap calibration = yaml.require_map("calibration");
   config.rig_file = path_of(calibration, "rig", folder);
   read_online_calibration(calibration.optional_map("online"), folder, config);
-  config.map_file = read_map(yaml->require_map("map"), config.cameras.driver, folder, simulation);
-  YamlMap model = yaml->require_map("model");
+  config.map_file = read_map(yaml.require_map("map"), config.cameras.driver, folder, simulation);
+  YamlMap model = yaml.require_map("model");
   config.model_file = path_of(model, "file", folder);
-  config.solver = read_solver(yaml->optional_map("solver"));
-  config.can = read_can(yaml->require_map("can"), config.cameras.driver, folder);
-  config.tracker = read_tracker(yaml->optional_map("tracker"));
-  config.health = read_health(yaml->optional_map("health"));
-  if (auto gpio = yaml->optional_map("gpio")) {
+  config.solver = read_solver(yaml.optional_map("solver"));
+  config.can = read_can(yaml.require_map("can"), config.cameras.driver, folder);
+  config.tracker = read_tracker(yaml.optional_map("tracker"));
+  config.health = read_health(yaml.optional_map("health"));
+  if (auto gpio = yaml.optional_map("gpio")) {
     config.gpio = read_gpio(*gpio);
     if (config.cameras.driver == CameraDriver::kMock) {
-      yaml->reject("gpio", "GPIO lines with mock cameras",
-                   "no section gpio, because a simulated drive has no lines");
+      yaml.reject_key("gpio", "GPIO lines with mock cameras",
+                      "no section gpio, because a simulated drive has no lines");
     }
   }
-  config.realtime = read_realtime(yaml->optional_map("realtime"));
-  config.log_level = read_log_level(yaml->optional_map("log"));
-  const bool has_manifest = yaml->has("manifest");
-  const auto manifest = has_manifest ? path_of(*yaml, "manifest", folder) : folder;
+  config.realtime = read_realtime(yaml.optional_map("realtime"));
+  config.log_level = read_log_level(yaml.optional_map("log"));
+  if (yaml.has("manifest")) config.manifest_file = path_of(yaml, "manifest", folder);
   if (config.cameras.driver == CameraDriver::kMock && simulation != nullptr) {
-    simulation->read_simulation(yaml->require_map("simulation"));
+    simulation->read_simulation(yaml.require_map("simulation"));
   }
+  return config;
+}
+
+Result<Config> load_config(const std::filesystem::path& file, const SimulationReader* simulation) {
+  Result<YamlMap> yaml = YamlMap::read_file(file);
+  if (!yaml) return tl::unexpected(yaml.error());
+  Config config = read_config(*yaml, file.parent_path(), simulation);
+  config.file = file;
   if (Status finished = yaml->finish(); !finished) return tl::unexpected(finished.error());
-  if (!has_manifest) return config;
+  if (config.manifest_file.empty()) return config;
   const std::array used{file, config.rig_file, config.model_file, config.map_file};
-  if (Status same = check_manifest(manifest, used); !same) return tl::unexpected(same.error());
+  if (Status same = check_manifest(config.manifest_file, used); !same)
+    return tl::unexpected(same.error());
   return config;
 }
 

@@ -79,6 +79,7 @@ struct Config {
   std::filesystem::path learned_calibration_file;  ///< empty: nothing is kept across restarts
   std::filesystem::path map_file;                  ///< empty for a procedural town
   std::filesystem::path model_file;
+  std::filesystem::path manifest_file;  ///< empty: no checksums are compared
   SolverConfig solver;
   CanConfig can;
   TrackerParameters tracker;
@@ -95,6 +96,11 @@ struct Config {
 /// (manifest.h): the result names only files with the right checksums.
 Result<Config> load_config(const std::filesystem::path& file,
                            const SimulationReader* simulation = nullptr);
+
+/// Reads the keys of a configuration; load_config() finishes it. The schema of the configuration is
+/// made from this function (command/schema).
+Config read_config(YamlMap& yaml, const std::filesystem::path& folder,
+                   const SimulationReader* simulation);
 
 /// Checks on this machine everything that the configuration names (`bevlocd --check-config`): reads
 /// rig, model, map and recordings, looks up the GPIO lines, opens the CAN interface, and starts the

@@ -8,7 +8,7 @@ namespace {
 using drivers::LineAddress;
 
 LineAddress read_address(YamlMap& yaml) {
-  const Wanted<std::string> named{"a name", [](const std::string& name) { return !name.empty(); }};
+  const Wanted<std::string> named = not_empty("a name");
   LineAddress address;
   address.chip = yaml.require<std::string>("chip", named);
   address.line = yaml.require<std::string>("line", named);

@@ -14,7 +14,9 @@ int cpu_count() {
 
 std::vector<int> read_cpus(YamlMap& yaml) {
   if (!yaml.has("cpus")) return {};
-  std::vector<int> cpus = yaml.require_list<int>("cpus", 0, between(0, cpu_count() - 1));
+  auto cpu_of_this_machine = between(0, cpu_count() - 1);
+  cpu_of_this_machine.limits.high.reset();  // The schema is for other machines too.
+  std::vector<int> cpus = yaml.require_list<int>("cpus", 0, cpu_of_this_machine);
   std::ranges::sort(cpus);
   if (cpus.empty()) yaml.reject("cpus", "an empty list", "one CPU or more, or no key cpus");
   if (std::ranges::adjacent_find(cpus) != cpus.end()) {

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 
 #include "common/files.h"
-#include "common/strict_yaml.h"
 #include "pipeline/calibration/rig_check.h"
+#include "pipeline/calibration/rig_keys.h"
 
 namespace bevloc {
 namespace {
@@ -119,25 +119,29 @@ Result<Rig> read_rig(const std::filesystem::path& path) {
   return parse_rig(*text, path.string());
 }
 
+Rig read_rig_keys(YamlMap& yaml, RigKeys& keys) {
+  Rig rig;
+  YamlMap cameras = yaml.require_map("cameras");
+  for (size_t i = 0; i < kCameraCount; ++i) {
+    keys.intrinsics.push_back(cameras.require_map(kCameraNames[i]));
+    keys.mountings.push_back(keys.intrinsics.back().require_map("vehicle_from_camera"));
+    rig.cameras[i].intrinsics = read_intrinsics(keys.intrinsics.back());
+    rig.cameras[i].own_body_px = read_own_body(keys.intrinsics.back());
+    rig.cameras[i].vehicle_from_camera = read_vehicle_from_camera(keys.mountings.back());
+  }
+  return rig;
+}
+
 Result<Rig> parse_rig(const std::string& text, const std::string& name) {
   Result<YamlMap> yaml = YamlMap::parse(text, name);
   if (!yaml) return tl::unexpected(yaml.error());
-  Rig rig;
-  YamlMap cameras = yaml->require_map("cameras");
-  std::vector<YamlMap> intrinsics;
-  std::vector<YamlMap> mountings;
-  for (size_t i = 0; i < kCameraCount; ++i) {
-    intrinsics.push_back(cameras.require_map(kCameraNames[i]));
-    mountings.push_back(intrinsics.back().require_map("vehicle_from_camera"));
-    rig.cameras[i].intrinsics = read_intrinsics(intrinsics.back());
-    rig.cameras[i].own_body_px = read_own_body(intrinsics.back());
-    rig.cameras[i].vehicle_from_camera = read_vehicle_from_camera(mountings.back());
-  }
+  RigKeys keys;
+  const Rig rig = read_rig_keys(*yaml, keys);
   // Mistakes in what the numbers mean are looked for only in a file whose numbers are all there.
   if (const Status status = yaml->finish(); !status) return tl::unexpected(status.error());
   const std::optional<RigMistake> mistake = find_mistake(rig);
   if (!mistake) return rig;
-  std::vector<YamlMap>& maps = mistake->is_mounting ? mountings : intrinsics;
+  std::vector<YamlMap>& maps = mistake->is_mounting ? keys.mountings : keys.intrinsics;
   maps[static_cast<size_t>(mistake->camera)].reject(mistake->key, mistake->found, mistake->wanted);
   return tl::unexpected(yaml->finish().error());
 }

@@ -85,7 +85,7 @@ std::set<std::string> keys_in_source() {
   for (const auto& file : std::filesystem::directory_iterator(kSource / "firmware/config")) {
     if (file.path().extension() == ".cpp") source += read_text(file.path());
   }
-  const std::regex rejection(R"re(\breject\([^;]*;)re");
+  const std::regex rejection(R"re(\breject\w*\([^;]*;)re");
   return captured(std::regex_replace(source, rejection, ""), R"re([(,]\s*"([a-z][a-z0-9_]*)")re");
 }
 
