@@ -1,12 +1,13 @@
-// The command bevloc: evaluates, tunes, benchmarks and draws parts of the appliance.
+// The command bevloc with the simulator: evaluates, tunes, benchmarks and draws parts of the
+// appliance. It also has the commands of command/, which need no simulator.
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
-#include "common/version.h"
+#include "command/vehicle_commands.h"
 #include "evaluation/bench/bench_command.h"
 #include "evaluation/campaign/campaign_command.h"
 #include "evaluation/campaign/integrity_command.h"
 #include "evaluation/campaign/tune_matches_command.h"
+#include "evaluation/drive/drive_config.h"
 #include "evaluation/drive/fault_command.h"
 #include "evaluation/localize/localize_command.h"
 #include "evaluation/network/answer_command.h"
@@ -17,62 +18,39 @@
 
 namespace {
 
-/// Exit codes: 0 success; 2 bad input or environment, with one line on stderr.
-constexpr int kBadInput = 2;
+using namespace bevloc::evaluation;
+
+CLI::App& add_group(CLI::App& app, const std::string& name, const std::string& description) {
+  auto* group = app.add_subcommand(name, description);
+  group->require_subcommand(1);
+  return *group;
+}
+
+void add_evaluation_commands(CLI::App& app, bevloc::command::CommandList& commands) {
+  auto& eval = add_group(app, "eval", "Evaluate a part on scenes that no tuning has used");
+  auto& tune = add_group(app, "tune", "Find the parameters of a part on tuning scenes");
+  auto& draw = add_group(app, "draw", "Write the data of the figures that script/figures draws");
+  commands.add<SolverCommand>(eval, tune);
+  commands.add<NetworkCommand>(eval);
+  commands.add<RigCommand>(eval);
+  commands.add<IntegrityCommand>(eval);
+  commands.add<TuneMatchesCommand>(tune);
+  commands.add<DrawCommand>(draw);
+  commands.add<bevloc::bench::BenchCommand>(app);
+  commands.add<AnswerCommand>(app);
+  commands.add<CampaignCommand>(app);
+  commands.add<FaultCommand>(app);
+  commands.add<LocalizeCommand>(app);
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Evaluates, tunes, benchmarks and draws parts of the appliance");
-  app.set_version_flag("--version", std::string(bevloc::version()));
-  app.require_subcommand(1);
-  auto* eval = app.add_subcommand("eval", "Evaluate a part on scenes that no tuning has used");
-  eval->require_subcommand(1);
-  auto* tune = app.add_subcommand("tune", "Find the parameters of a part on tuning scenes");
-  tune->require_subcommand(1);
-  bevloc::evaluation::SolverCommand solver_command;
-  solver_command.declare_eval(*eval);
-  bevloc::evaluation::NetworkCommand network_command;
-  network_command.declare(*eval);
-  bevloc::evaluation::RigCommand rig_command;
-  rig_command.declare(*eval);
-  bevloc::evaluation::IntegrityCommand integrity_command;
-  integrity_command.declare(*eval);
-  solver_command.declare_tune(*tune);
-  bevloc::evaluation::TuneMatchesCommand tune_matches_command;
-  tune_matches_command.declare(*tune);
-  auto* draw =
-      app.add_subcommand("draw", "Write the data of the figures that script/figures draws");
-  draw->require_subcommand(1);
-  bevloc::evaluation::DrawCommand draw_command;
-  draw_command.declare(*draw);
-  bevloc::bench::BenchCommand bench_command;
-  bench_command.declare(app);
-  bevloc::evaluation::AnswerCommand answer_command;
-  answer_command.declare(app);
-  bevloc::evaluation::CampaignCommand campaign_command;
-  campaign_command.declare(app);
-  bevloc::evaluation::FaultCommand fault_command;
-  fault_command.declare(app);
-  bevloc::evaluation::LocalizeCommand localize_command;
-  localize_command.declare(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
-  }
-  const bevloc::Status status = draw->parsed()                  ? draw_command.run()
-                                : campaign_command.chosen()     ? campaign_command.run()
-                                : integrity_command.chosen()    ? integrity_command.run()
-                                : tune_matches_command.chosen() ? tune_matches_command.run()
-                                : bench_command.chosen()        ? bench_command.run()
-                                : answer_command.chosen()       ? answer_command.run()
-                                : fault_command.chosen()        ? fault_command.run()
-                                : localize_command.chosen()     ? localize_command.run()
-                                : network_command.chosen()      ? network_command.run()
-                                : rig_command.chosen()          ? rig_command.run()
-                                                                : solver_command.run();
-  if (status) return 0;
-  fmt::print(stderr, "bevloc: {}\n", status.error().message);
-  return kBadInput;
+  CLI::App app("Sets up, checks, evaluates, tunes, benchmarks and draws parts of the appliance");
+  std::optional<SimulationConfig> simulation;
+  const bevloc::firmware::SimulationReader reader = simulation_reader(simulation);
+  bevloc::command::CommandList commands;
+  bevloc::command::add_vehicle_commands(app, commands, &reader);
+  add_evaluation_commands(app, commands);
+  return commands.run(app, argc, argv);
 }

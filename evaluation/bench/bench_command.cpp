@@ -39,6 +39,11 @@ void BenchCommand::declare(CLI::App& app) {
       ->check(CLI::IsMember(names(kSweepNames)))
       ->excludes(stages);
   bench->add_option("--json", json_file_, "Write the results as JSON to this file");
+  bench->footer(
+      "Examples:\n"
+      "  bevloc bench --json bench.json\n"
+      "  bevloc bench --stage solver map-raster\n"
+      "  bevloc bench --sweep map hypotheses");
   bench->callback([this] { chosen_ = true; });
 }
 

@@ -36,6 +36,11 @@ void CampaignCommand::declare(CLI::App& app) {
   campaign->add_option("--json", json_file_, "Write the rows as JSON to this file");
   campaign->add_flag("--timeline", timeline_, "Print all changes of state and reasons");
   campaign->add_flag("--list", list_, "Print all modes and end");
+  campaign->footer(
+      "Examples:\n"
+      "  bevloc campaign --list\n"
+      "  bevloc campaign --modes odometry-spin --timeline\n"
+      "  bevloc campaign --seeds 20 --json campaign.json");
   campaign->callback([this] { chosen_ = true; });
 }
 

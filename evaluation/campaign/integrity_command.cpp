@@ -36,6 +36,10 @@ void IntegrityCommand::declare(CLI::App& eval) {
   integrity->add_option("--matches", table_, "Measured matches for --level stage")
       ->capture_default_str();
   integrity->add_option("--json", json_file_, "Write the diagrams as JSON to this file");
+  integrity->footer(
+      "Examples:\n"
+      "  bevloc eval integrity --modes none --drives 200\n"
+      "  bevloc eval integrity --drives 20 --json integrity.json");
   integrity->callback([this] { chosen_ = true; });
 }
 

@@ -28,6 +28,9 @@ void TuneMatchesCommand::declare(CLI::App& tune) {
       ->capture_default_str();
   matches->add_option("--map", maps_, "Every second drive goes through one of these maps, in turn");
   matches->add_option("--csv", csv_file_, "File to write")->required();
+  matches->footer(
+      "Examples:\n"
+      "  bevloc tune matches --drives 10 --first-seed 2000 --csv matches.csv");
   matches->callback([this] { chosen_ = true; });
 }
 

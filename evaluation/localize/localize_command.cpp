@@ -125,6 +125,12 @@ void LocalizeCommand::declare(CLI::App& app) {
   localize->add_option("--json", json_file_, "Write the answer to this file");
   localize->add_option("--sheet", sheet_file_,
                        "Draw pictures, map and distributions to this PNG file");
+  localize->footer(
+      "Examples:\n"
+      "  bevloc localize --rig rig.yaml --map town.osm --images pictures --prior 49.012,8.423,90 "
+      "--sheet sheet.png\n"
+      "  bevloc localize --rig rig.yaml --map town.osm --images pictures --prior 10,20,90 --truth "
+      "--priors 300");
   localize->callback([this] { chosen_ = true; });
 }
 

@@ -46,6 +46,9 @@ void AnswerCommand::declare(CLI::App& app) {
       "store-answer",
       "Store a model's answer to the test frame, which bevlocd checks, in its file");
   answer->add_option("model", model_, "ONNX file")->capture_default_str();
+  answer->footer(
+      "Examples:\n"
+      "  bevloc store-answer models/nano.onnx");
   answer->callback([this] { chosen_ = true; });
 }
 

@@ -50,6 +50,11 @@ void NetworkCommand::declare(CLI::App& eval) {
                       "Take the samples on this map instead of in procedural towns");
   network->add_option("--json", json_file_, "Write the rows as JSON to this file");
   network->add_option("--csv", csv_file_, "Write the rows as CSV to this file");
+  network->footer(
+      "Examples:\n"
+      "  bevloc eval network --frames 50\n"
+      "  bevloc eval network --set all --csv sets.csv\n"
+      "  bevloc eval network --model my.onnx --set night --json night.json");
   network->callback([this] { chosen_ = true; });
 }
 

@@ -41,6 +41,10 @@ void RigCommand::declare(CLI::App& eval) {
       ->check(CLI::Range(uint64_t{0}, kSampleSeeds - 1))
       ->capture_default_str();
   rig->add_option("--json", json_file_, "Write both results to this file");
+  rig->footer(
+      "Examples:\n"
+      "  bevloc eval rig config/rig_van.yaml\n"
+      "  bevloc eval rig rig.yaml --frames 500 --json rig.json");
   rig->callback([this] { chosen_ = true; });
 }
 

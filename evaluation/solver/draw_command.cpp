@@ -12,6 +12,10 @@ void DrawCommand::declare(CLI::App& draw) {
   solver->add_option("--scene", scene_, "Number of the scene; each kind of road has its own scenes")
       ->check(CLI::Range(uint64_t{0}, kMostFigureScenes - 1))
       ->capture_default_str();
+  solver->footer(
+      "Examples:\n"
+      "  bevloc draw solver --scene 3 --json figures.json");
+  solver->callback([this] { chosen_ = true; });
 }
 
 Status DrawCommand::run() const {

@@ -19,6 +19,11 @@ constexpr uint64_t kSceneSeeds = sim::kSceneSeedCount / kTownsPerSeed;
 
 }  // namespace
 
+void SolverCommand::declare(CLI::App& eval, CLI::App& tune) {
+  declare_eval(eval);
+  declare_tune(tune);
+}
+
 void SolverCommand::declare_eval(CLI::App& eval) {
   auto* solver = eval.add_subcommand("solver", "Compare all solvers on synthetic scenes");
   solver->add_option("--scenes", scenes_, "Number of scenes")
@@ -36,6 +41,11 @@ void SolverCommand::declare_eval(CLI::App& eval) {
   declare_rows(*solver);
   solver->add_option("--json", json_file_, "Write the rows as JSON to this file");
   solver->add_option("--csv", csv_file_, "Write the rows as CSV to this file");
+  solver->footer(
+      "Examples:\n"
+      "  bevloc eval solver --scenes 200\n"
+      "  bevloc eval solver --corruption hard --rows variants --json solver.json");
+  solver->callback([this] { chosen_ = true; });
 }
 
 void SolverCommand::declare_rows(CLI::App& command) {
@@ -54,7 +64,13 @@ void SolverCommand::declare_tune(CLI::App& tune) {
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   declare_rows(*solver);
-  solver->callback([this] { tunes_ = true; });
+  solver->footer(
+      "Examples:\n"
+      "  bevloc tune solver --scenes 1000 --rows variants");
+  solver->callback([this] {
+    chosen_ = true;
+    tunes_ = true;
+  });
 }
 
 Status SolverCommand::run() const {

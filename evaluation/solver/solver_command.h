@@ -14,14 +14,19 @@ namespace bevloc::evaluation {
 
 class SolverCommand {
  public:
-  void declare_eval(CLI::App& eval);
-  void declare_tune(CLI::App& tune);
+  void declare(CLI::App& eval, CLI::App& tune);
 
   /// Does what the parsed command line asks for.
   Status run() const;
 
+  /// Whether the parsed command line names one of these commands.
+  bool chosen() const { return chosen_; }
+
  private:
   enum class Rows { kVariants, kTableThree, kTableFour, kAll };
+
+  void declare_eval(CLI::App& eval);
+  void declare_tune(CLI::App& tune);
 
   Status evaluate() const;
   Status tune() const;
@@ -29,6 +34,7 @@ class SolverCommand {
   std::vector<SolverCase> cases_to_tune() const;
   void declare_rows(CLI::App& command);
 
+  bool chosen_ = false;
   bool tunes_ = false;
   int scenes_ = 200;
   uint64_t seed_ = 1;

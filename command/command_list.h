@@ -1,0 +1,75 @@
+// The table of the commands of `bevloc`: one line registers a command.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "common/result.h"
+
+namespace bevloc::command {
+
+/// What a command found, where it judges something. Its value is the exit code.
+enum class Verdict : uint8_t {
+  kGood = 0,
+  kBad = 1,  ///< what was judged is not good enough
+};
+
+/// Exit code of wrong use, and of an input or environment that a command cannot work with.
+inline constexpr int kBadInput = 2;
+
+/// Holds the commands and runs the one that the command line names. A command is a class with
+///
+///     void declare(CLI::App& parent);       // or more parents; options, help, examples
+///     bool chosen() const;                  // whether the parsed command line names it
+///     Status run();                         // or Result<Verdict>, or Result<int>: an exit code
+///
+/// One thread.
+class CommandList {
+ public:
+  /// Makes a command and declares it under `parents`: add<FaultCommand>(app). What its constructor
+  /// wants stands in `with`: add_with<SchemaCommand>(std::tuple{reader}, app).
+  template <typename Command, typename... Parents>
+  void add(Parents&... parents) {
+    keep(std::make_shared<Command>(), parents...);
+  }
+  template <typename Command, typename Argument, typename... Parents>
+  void add_with(Argument&& argument, Parents&... parents) {
+    keep(std::make_shared<Command>(std::forward<Argument>(argument)), parents...);
+  }
+
+  /// Parses the command line and runs the command that it names. Returns the exit code: 0 good, 1
+  /// judged bad, 2 wrong use or input with one line on stderr.
+  int run(CLI::App& app, int argc, char** argv) const;
+
+ private:
+  struct Entry {
+    std::function<bool()> chosen;
+    std::function<Result<int>()> run;
+  };
+
+  template <typename Command, typename... Parents>
+  void keep(std::shared_ptr<Command> command, Parents&... parents) {
+    command->declare(parents...);
+    entries_.push_back(
+        {[command] { return command->chosen(); }, [command] { return exit_code(command->run()); }});
+  }
+
+  static Result<int> exit_code(const Status& status) {
+    return status ? Result<int>(0) : Result<int>(tl::unexpected(status.error()));
+  }
+  static Result<int> exit_code(const Result<Verdict>& verdict) {
+    return verdict.map([](Verdict value) { return static_cast<int>(value); });
+  }
+  static Result<int> exit_code(const Result<int>& code) { return code; }
+
+  std::vector<Entry> entries_;
+};
+
+}  // namespace bevloc::command

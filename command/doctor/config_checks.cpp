@@ -1,0 +1,224 @@
+#include "command/doctor/config_checks.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "command/doctor/machine_checks.h"
+#include "common/files.h"
+#include "common/sha256.h"
+#include "drivers/camera/v4l2/device_finder.h"
+#include "pipeline/calibration/rig_yaml.h"
+
+namespace bevloc::command {
+namespace {
+
+using firmware::CameraDriver;
+using firmware::CanDriver;
+using firmware::Config;
+
+Finding check_file(const std::string& part, const std::filesystem::path& file) {
+  const Result<std::string> bytes = read_file(file);
+  if (!bytes) {
+    return {Level::kProblem, part, bytes.error().message, "a readable file",
+            fmt::format("ls -l {}", file.string())};
+  }
+  return ok(part, fmt::format("{}, SHA-256 {}", file.string(), sha256_hex(*bytes)));
+}
+
+Finding check_rig_file(const Config& config) {
+  Finding finding = check_file("rig", config.rig_file);
+  const auto rig = read_rig(config.rig_file);
+  if (finding.level != Level::kOk || rig) return finding;
+  return {Level::kProblem, "rig", rig.error().message, "a rig file",
+          fmt::format("bevlocd --config {} --check-config", config.file.string())};
+}
+
+/// Whether this user may open a device.
+Finding check_access(const Machine& machine, const std::string& part,
+                     const std::filesystem::path& node, const std::string& found,
+                     const std::string& group) {
+  if (machine.may_use(node)) return ok(part, found);
+  return {Level::kProblem, part, fmt::format("found {}, which this user may not open", found),
+          fmt::format("read and write access, by the group {}", group),
+          fmt::format("sudo usermod -aG {} $USER   # then log in again", group)};
+}
+
+Findings check_v4l2_cameras(const Machine& machine, const Config& config) {
+  const drivers::v4l2::DeviceTree tree{machine.real("/sys"), machine.real("/dev")};
+  Findings findings;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const std::string part = fmt::format("camera {}", kCameraNames[camera]);
+    const std::string& id = config.cameras.devices.ids[camera];
+    const auto node = drivers::v4l2::find_video_node(id, tree);
+    findings.push_back(node ? check_access(machine, part, *node,
+                                           fmt::format("{} ({})", id, node->filename().string()),
+                                           "video")
+                            : Finding{Level::kProblem, part, node.error().message,
+                                      "the device of cameras.ids", "ls -l /dev/v4l/by-id"});
+  }
+  return findings;
+}
+
+Findings check_gpio_chips(const Machine& machine) {
+  Findings findings;
+  for (const std::string& name : machine.names_in("/dev")) {
+    if (!name.starts_with("gpiochip")) continue;
+    const std::string node = "/dev/" + name;
+    findings.push_back(check_access(machine, "gpio", machine.real(node), node, "bevloc"));
+  }
+  // A vehicle needs only one of them, which systemd/udev/60-bevloc.rules opens.
+  const auto usable = std::ranges::find(findings, Level::kOk, &Finding::level);
+  if (usable != findings.end()) return {*usable};
+  if (!findings.empty()) return {findings.front()};
+  return {{Level::kProblem, "gpio", "found no /dev/gpiochip*", "the chip of the section gpio",
+           "gpiodetect"}};
+}
+
+/// The part of `ip -details -json link show` that the doctor reads.
+struct CanLink {
+  bool up = false;
+  bool is_virtual = false;
+  std::string state;  ///< ERROR-ACTIVE, ERROR-PASSIVE, BUS-OFF, STOPPED
+  int64_t bit_rate = 0;
+  int64_t restart_ms = 0;
+  int64_t tx_errors = 0;
+  int64_t rx_errors = 0;
+};
+
+std::optional<CanLink> parse_link(const std::string& text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_array() || json.empty() || !json[0].is_object()) return std::nullopt;
+  const auto& link = json[0];
+  CanLink can;
+  if (link.contains("flags") && link["flags"].is_array()) {
+    can.up = std::ranges::find(link["flags"], "UP") != link["flags"].end();
+  }
+  const auto info = link.value("linkinfo", nlohmann::json::object());
+  can.is_virtual = info.value("info_kind", "") == "vcan";
+  const auto data = info.value("info_data", nlohmann::json::object());
+  can.state = data.value("state", "");
+  can.restart_ms = data.value("restart_ms", 0);
+  can.bit_rate = data.value("bittiming", nlohmann::json::object()).value("bitrate", 0);
+  const auto errors = data.value("berr_counter", nlohmann::json::object());
+  can.tx_errors = errors.value("tx", 0);
+  can.rx_errors = errors.value("rx", 0);
+  return can;
+}
+
+Findings judge_link(const std::string& name, const CanLink& link) {
+  if (!link.up) {
+    const std::string how = link.is_virtual ? "" : " type can bitrate 500000 restart-ms 100";
+    return {{Level::kProblem, name, "found the interface down", "it up",
+             fmt::format("sudo ip link set {} up{}", name, how)}};
+  }
+  if (link.is_virtual) return {ok(name, "up, virtual: no other machine hears it")};
+  Findings findings;
+  const std::string counters =
+      fmt::format("{} bit/s, {}, error counters tx {} rx {}", link.bit_rate, link.state,
+                  link.tx_errors, link.rx_errors);
+  if (link.state == "BUS-OFF" || link.state == "STOPPED") {
+    findings.push_back({Level::kProblem, name, "found " + counters, "ERROR-ACTIVE",
+                        fmt::format("sudo ip link set {} type can restart", name)});
+  } else if (link.state != "ERROR-ACTIVE" || link.tx_errors > 0 || link.rx_errors > 0) {
+    findings.push_back({Level::kWarning, name, "found " + counters,
+                        "ERROR-ACTIVE without errors: check bit rate, wiring and termination",
+                        fmt::format("ip -details -statistics link show {}", name)});
+  } else {
+    findings.push_back(ok(name, counters));
+  }
+  if (link.restart_ms == 0) {
+    findings.push_back(
+        {Level::kWarning, name, "found restart-ms 0: the controller stays off after bus-off",
+         "restart-ms 100",
+         fmt::format("sudo ip link set {0} down && sudo ip link set {0} type can restart-ms 100 && "
+                     "sudo ip link set {0} up",
+                     name)});
+  }
+  return findings;
+}
+
+}  // namespace
+
+Findings check_files(const Config& config) {
+  Findings findings{check_rig_file(config), check_file("model", config.model_file)};
+  if (!config.map_file.empty()) findings.push_back(check_file("map", config.map_file));
+  if (config.can.secoc) findings.push_back(check_file("key", config.can.secoc->key_file));
+  return findings;
+}
+
+Findings check_devices(const Machine& machine, const Config& config) {
+  Findings findings;
+  if (config.cameras.driver == CameraDriver::kV4l2) {
+    // Cameras that are no USB cameras have drivers of their own.
+    findings.push_back(check_module(machine, "uvcvideo", Level::kWarning));
+    const Findings cameras = check_v4l2_cameras(machine, config);
+    findings.insert(findings.end(), cameras.begin(), cameras.end());
+  }
+  if (!lines_of(config.gpio).empty()) {
+    const Findings chips = check_gpio_chips(machine);
+    findings.insert(findings.end(), chips.begin(), chips.end());
+  }
+  return findings;
+}
+
+Findings check_realtime(const Machine& machine, const Config& config) {
+  const firmware::RealtimeConfig& realtime = config.realtime;
+  int priority = 0;
+  for (const auto* thread : {&realtime.capture, &realtime.vision, &realtime.can}) {
+    priority = std::max(priority, thread->fifo_priority.value_or(0));
+  }
+  const ProcessLimits limits = machine.limits();
+  Findings findings;
+  if (limits.realtime_priority < priority) {
+    findings.push_back({Level::kWarning, "priority",
+                        fmt::format("found a limit of {}", limits.realtime_priority),
+                        fmt::format("{} (LimitRTPRIO= in the unit)", priority),
+                        fmt::format("sudo prlimit --pid $$ --rtprio={}", priority)});
+  } else {
+    findings.push_back(ok("priority", priority == 0 ? "none is configured"
+                                                    : fmt::format("{} is permitted", priority)));
+  }
+  if (realtime.lock_memory && limits.locked_memory_bytes) {
+    findings.push_back({Level::kWarning, "locked memory",
+                        fmt::format("found a limit of {} bytes", *limits.locked_memory_bytes),
+                        "no limit (LimitMEMLOCK=infinity in the unit)",
+                        "sudo prlimit --pid $$ --memlock=unlimited"});
+  } else {
+    findings.push_back(ok("locked memory", realtime.lock_memory ? "unlimited" : "not configured"));
+  }
+  return findings;
+}
+
+Findings check_can_interface(const Machine& machine, const Config& config) {
+  if (config.can.driver == CanDriver::kMock) return {ok("can", "mock: a bus inside the process")};
+  Findings findings{check_module(machine, "can", Level::kProblem),
+                    check_module(machine, "can_raw", Level::kProblem)};
+  const std::string& name = config.can.interface;
+  if (name.starts_with("vcan")) {
+    findings.push_back(check_module(machine, "vcan", Level::kProblem));
+  }
+  if (!machine.exists("/sys/class/net/" + name)) {
+    const bool is_virtual = name.starts_with("vcan");
+    findings.push_back({Level::kProblem, name, "found no such interface", "one of can.interface",
+                        is_virtual ? fmt::format("sudo ip link add {0} type vcan && sudo ip link "
+                                                 "set {0} up",
+                                                 name)
+                                   : std::string("ip -details link show type can")});
+    return findings;
+  }
+  const auto text = machine.run({"ip", "-details", "-json", "link", "show", name});
+  const auto link = text ? parse_link(*text) : std::nullopt;
+  if (!link) {
+    findings.push_back({Level::kWarning, name, "found no answer of the command ip",
+                        "its state, bit rate and errors", "sudo apt-get install iproute2"});
+    return findings;
+  }
+  const Findings state = judge_link(name, *link);
+  findings.insert(findings.end(), state.begin(), state.end());
+  return findings;
+}
+
+}  // namespace bevloc::command

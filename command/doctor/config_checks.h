@@ -1,0 +1,19 @@
+// Looks at what a configuration names: files, devices, interface, limits.
+#pragma once
+
+#include "command/doctor/finding.h"
+#include "command/doctor/machine.h"
+#include "firmware/config/config.h"
+
+namespace bevloc::command {
+
+/// Rig, model, map and key file: readable, with their SHA-256.
+Findings check_files(const firmware::Config& config);
+/// Cameras and GPIO chips: there, and this user may use them.
+Findings check_devices(const Machine& machine, const firmware::Config& config);
+/// The limits that the section `realtime` needs.
+Findings check_realtime(const Machine& machine, const firmware::Config& config);
+/// The CAN interface: its modules, state, bit rate and errors.
+Findings check_can_interface(const Machine& machine, const firmware::Config& config);
+
+}  // namespace bevloc::command

@@ -1,0 +1,61 @@
+// What the doctor and `bevloc init` ask of the operating system.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/result.h"
+
+namespace bevloc::command {
+
+/// The hard limits of this process.
+struct ProcessLimits {
+  int64_t realtime_priority = 0;               ///< RLIMIT_RTPRIO
+  std::optional<int64_t> locked_memory_bytes;  ///< RLIMIT_MEMLOCK; nothing: unlimited
+};
+
+/// This machine, or a folder that stands for one in a test. Paths are those of the machine,
+/// "/proc/cpuinfo". One thread.
+class Machine {
+ public:
+  virtual ~Machine() = default;
+
+  /// The folder that is "/".
+  virtual std::filesystem::path root() const = 0;
+  virtual ProcessLimits limits() const = 0;
+  /// Whether the kernel's clock is kept synchronous by NTP, PTP or GNSS.
+  virtual bool clock_is_synchronous() const = 0;
+  /// The free space for this user of the file system that holds `path`.
+  virtual Result<int64_t> free_bytes(const std::filesystem::path& path) const = 0;
+  /// Whether this user may read and write the file.
+  virtual bool may_use(const std::filesystem::path& path) const = 0;
+  /// What a program prints to stdout. Fails if it is missing or ends with another exit code than 0.
+  virtual Result<std::string> run(const std::vector<std::string>& words) const = 0;
+
+  std::filesystem::path real(const std::filesystem::path& path) const {
+    return root() / path.relative_path();
+  }
+  bool exists(const std::filesystem::path& path) const;
+  /// The first line of a file; empty if it cannot be read.
+  std::string line_of(const std::filesystem::path& path) const;
+  /// The whole file; empty if it cannot be read.
+  std::string text_of(const std::filesystem::path& path) const;
+  /// The names in a folder, sorted; none if it cannot be read.
+  std::vector<std::string> names_in(const std::filesystem::path& folder) const;
+};
+
+/// The machine that this process runs on.
+class LinuxMachine final : public Machine {
+ public:
+  std::filesystem::path root() const override { return "/"; }
+  ProcessLimits limits() const override;
+  bool clock_is_synchronous() const override;
+  Result<int64_t> free_bytes(const std::filesystem::path& path) const override;
+  bool may_use(const std::filesystem::path& path) const override;
+  Result<std::string> run(const std::vector<std::string>& words) const override;
+};
+
+}  // namespace bevloc::command

@@ -1,0 +1,20 @@
+// Looks at what the machine offers, whatever the configuration says.
+#pragma once
+
+#include "command/doctor/finding.h"
+#include "command/doctor/machine.h"
+
+namespace bevloc::command {
+
+/// Vector instructions of the CPU, and its frequency governor.
+Findings check_cpu(const Machine& machine);
+/// Free memory, and free space of the disk.
+Findings check_room(const Machine& machine);
+Findings check_clock(const Machine& machine);
+/// The state of bevlocd.service.
+Findings check_unit(const Machine& machine);
+
+/// A kernel module, loaded or built in.
+Finding check_module(const Machine& machine, const std::string& module, Level if_missing);
+
+}  // namespace bevloc::command

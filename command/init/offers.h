@@ -1,0 +1,36 @@
+// What a machine offers for a configuration: cameras, CAN interfaces and the files that come with
+// bevloc.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command/doctor/machine.h"
+
+namespace bevloc::command {
+
+/// A camera that is there.
+struct OfferedCamera {
+  std::string id;    ///< as cameras.ids takes it
+  std::string name;  ///< such as "HD USB Camera"
+};
+
+struct Offers {
+  std::vector<OfferedCamera> v4l2;
+  std::vector<OfferedCamera> libcamera;
+  std::vector<std::string> can_interfaces;
+};
+
+/// Looks for devices. `libcamera_ids` are those that libcamera lists, which needs no machine.
+Offers offers_of(const Machine& machine, const std::vector<std::string>& libcamera_ids);
+
+/// libcamera's cameras; none if this program was built without libcamera.
+std::vector<std::string> libcamera_ids_of_this_machine();
+
+/// A file that comes with bevloc, "models/nano.onnx": in the present folder, in the tree that this
+/// program was built in, or in /usr/share/bevloc. Nothing if it is in none of them.
+std::optional<std::filesystem::path> shipped_file(const std::filesystem::path& name);
+
+}  // namespace bevloc::command

@@ -1,0 +1,83 @@
+#include "command/manual/manual_commands.h"
+
+#include <fmt/format.h>
+
+#include "command/manual/completion.h"
+#include "command/manual/man_page.h"
+#include "command/manual/option_table.h"
+#include "command/schema/schema_command.h"
+#include "common/files.h"
+#include "firmware/runtime/program.h"
+
+namespace bevloc::command {
+namespace {
+
+/// The options that every bevlocd has.
+CommandEntry daemon_table() {
+  CLI::App app("Localizes a vehicle in its HD map");
+  firmware::ProgramOptions options;
+  firmware::declare_options(app, options);
+  return table_of(app);
+}
+
+}  // namespace
+
+void ManualCommand::declare(CLI::App& app) {
+  app_ = &app;
+  auto* manual =
+      app.add_subcommand("manual", "Write the manual pages bevloc.1, bevlocd.8 and bevloc.yaml.5");
+  manual->add_option("--out", folder_, "Folder that they are written to")
+      ->check(CLI::ExistingDirectory)
+      ->capture_default_str();
+  manual->footer("Examples:\n  bevloc manual --out . && man ./bevloc.1");
+  manual->callback([this] { chosen_ = true; });
+}
+
+Status ManualCommand::run() const {
+  const std::string program = man_page_of_program(
+      {.name = "bevloc",
+       .section = 1,
+       .what = "sets up, checks and evaluates bevloc",
+       .see_also = {"bevlocd(8)", "bevloc.yaml(5)"},
+       .exit_codes = "0  good\n1  what was judged is bad\n2  wrong use or input"},
+      table_of(*app_));
+  const std::string daemon =
+      man_page_of_program({.name = "bevlocd",
+                           .section = 8,
+                           .what = "localizes a vehicle in its HD map",
+                           .see_also = {"bevloc(1)", "bevloc.yaml(5)"},
+                           .exit_codes = "0  it was told to end\n2  wrong use or input"},
+                          daemon_table());
+  const std::string configuration = man_page_of_schema({.name = "bevloc.yaml",
+                                                        .section = 5,
+                                                        .what = "configuration of bevlocd",
+                                                        .see_also = {"bevlocd(8)", "bevloc(1)"}},
+                                                       configuration_schema(simulation_));
+  const std::filesystem::path folder = folder_;
+  if (Status status = write_file(folder / "bevloc.1", program); !status) return status;
+  if (Status status = write_file(folder / "bevlocd.8", daemon); !status) return status;
+  return write_file(folder / "bevloc.yaml.5", configuration);
+}
+
+void CompletionCommand::declare(CLI::App& app) {
+  app_ = &app;
+  auto* completion =
+      app.add_subcommand("completion", "Print a script with which the shell completes commands");
+  completion->add_option("shell", shell_, "The shell")
+      ->check(CLI::IsMember({"bash", "zsh"}))
+      ->required();
+  completion->footer(
+      "Examples:\n"
+      "  source <(bevloc completion bash)\n"
+      "  bevloc completion zsh > ~/.zfunc/_bevloc");
+  completion->callback([this] { chosen_ = true; });
+}
+
+Status CompletionCommand::run() const {
+  const auto write = shell_ == "zsh" ? zsh_completion : bash_completion;
+  CommandEntry program = table_of(*app_);
+  fmt::print("{}{}", write("bevloc", program), write("bevlocd", daemon_table()));
+  return {};
+}
+
+}  // namespace bevloc::command

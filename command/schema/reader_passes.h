@@ -1,0 +1,41 @@
+// Finds out all keys of a reader of YAML by running it with every combination of words that changes
+// what it asks for.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/strict_yaml.h"
+
+namespace bevloc::command {
+
+/// Reads all keys of a file, such as firmware::read_config().
+using KeyReader = std::function<void(YamlMap& yaml)>;
+
+/// What the reader asks for when these options are taken.
+struct ReaderPass {
+  std::map<std::string, std::string> options;  ///< of YamlDecision, by path
+  std::map<std::string, YamlKey> keys;         ///< by path, without those that are not allowed
+  std::set<std::string> rejected_words;        ///< not empty: the options exclude each other
+};
+
+/// The reader, seen from outside.
+struct ReaderPasses {
+  std::vector<ReaderPass> passes;
+  std::vector<std::string> paths;  ///< of all keys, in the order of reading
+  /// The options of each decision that changes which keys are read, or how.
+  std::map<std::string, std::vector<std::string>> decisions;
+};
+
+/// Takes one pass for each combination of the options that matter.
+ReaderPasses explore(const KeyReader& reader);
+
+/// "simulation.faults[]" of "simulation.faults[].kind"; empty for a key of the file.
+std::string parent_of(const std::string& path);
+/// "kind" of "simulation.faults[].kind".
+std::string name_of_key(const std::string& path);
+
+}  // namespace bevloc::command

@@ -1,0 +1,30 @@
+// `bevloc schema`: the JSON Schema of the configuration and of rig files.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/result.h"
+#include "firmware/config/config.h"
+
+namespace bevloc::command {
+
+/// `simulation` may be null: mock cameras are then no word of the schema.
+nlohmann::ordered_json configuration_schema(const firmware::SimulationReader* simulation);
+nlohmann::ordered_json rig_schema();
+
+class SchemaCommand {
+ public:
+  explicit SchemaCommand(const firmware::SimulationReader* simulation) : simulation_(simulation) {}
+
+  void declare(CLI::App& app);
+  bool chosen() const { return chosen_; }
+  Status run() const;
+
+ private:
+  const firmware::SimulationReader* simulation_;
+  bool chosen_ = false;
+  bool rig_ = false;
+};
+
+}  // namespace bevloc::command
