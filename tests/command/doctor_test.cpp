@@ -1,0 +1,224 @@
+// Tests the doctor on machines that are folders.
+#include <fstream>
+#include <map>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "command/doctor/config_checks.h"
+#include "command/doctor/doctor_command.h"
+#include "command/doctor/machine_checks.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bevloc::command {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// A machine whose files lie in a folder of the test.
+class FakeMachine final : public Machine {
+ public:
+  std::filesystem::path root() const override { return folder_.path(); }
+  ProcessLimits limits() const override { return process_limits; }
+  bool clock_is_synchronous() const override { return synchronous; }
+  Result<int64_t> free_bytes(const std::filesystem::path&) const override { return free; }
+  bool may_use(const std::filesystem::path&) const override { return permitted; }
+  Result<std::string> run(const std::vector<std::string>& words) const override {
+    const auto answer = programs.find(words.front());
+    if (answer == programs.end()) return fail("{}: missing", words.front());
+    return answer->second;
+  }
+
+  void put(const std::string& file, const std::string& text) {
+    std::filesystem::create_directories(real(file).parent_path());
+    std::ofstream(real(file)) << text;
+  }
+
+  ProcessLimits process_limits;
+  bool synchronous = true;
+  bool permitted = true;
+  int64_t free = int64_t{10} << 30;
+  std::map<std::string, std::string> programs;  ///< what they print
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+firmware::Config socketcan_config(const std::string& interface) {
+  firmware::Config config;
+  config.can.driver = firmware::CanDriver::kSocketCan;
+  config.can.interface = interface;
+  return config;
+}
+
+/// What `ip -details -json link show can0` of iproute2 6.1 prints, shortened.
+std::string ip_answer(const std::string& state, int tx_errors, int restart_ms) {
+  return R"([{"ifname":"can0","flags":["NOARP","UP"],"linkinfo":{"info_kind":"can","info_data":{)"
+         R"("state":")" +
+         state + R"(","berr_counter":{"tx":)" + std::to_string(tx_errors) +
+         R"(,"rx":0},"restart_ms":)" + std::to_string(restart_ms) +
+         R"(,"bittiming":{"bitrate":500000}}}}])";
+}
+
+class DoctorTest : public testing::Test {
+ protected:
+  DoctorTest() {
+    machine_.put("/sys/module/can/refcnt", "1");
+    machine_.put("/sys/module/can_raw/refcnt", "1");
+    machine_.put("/sys/class/net/can0/type", "280\n");
+  }
+  /// The finding about the interface can0.
+  Finding can0() {
+    for (const Finding& finding : check_can_interface(machine_, socketcan_config("can0"))) {
+      if (finding.part == "can0") return finding;
+    }
+    ADD_FAILURE() << "nothing about can0";
+    return {};
+  }
+
+  FakeMachine machine_;
+};
+
+TEST_F(DoctorTest, JudgesTheInstructionsOfTheCpu) {
+  const auto level = [this](const std::string& flags) {
+    machine_.put("/proc/cpuinfo", "processor : 0\nflags\t\t: fpu " + flags + "\n");
+    return check_cpu(machine_).front().level;
+  };
+  EXPECT_EQ(level("avx2 avx512_vnni"), Level::kOk);
+  EXPECT_EQ(level("avx2 avx_vnni"), Level::kOk);
+  EXPECT_EQ(level("avx2"), Level::kWarning);
+  EXPECT_EQ(level("sse4_2"), Level::kProblem);
+  machine_.put("/proc/cpuinfo", "processor : 0\nFeatures : fp asimd asimddp\n");
+  EXPECT_EQ(check_cpu(machine_).front().level, Level::kOk);
+}
+
+TEST_F(DoctorTest, NamesAGovernorThatSavesPower) {
+  machine_.put("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance\n");
+  EXPECT_EQ(check_cpu(machine_).back().level, Level::kOk);
+  machine_.put("/sys/devices/system/cpu/cpu1/cpufreq/scaling_governor", "powersave\n");
+  EXPECT_EQ(check_cpu(machine_).back().level, Level::kWarning);
+  EXPECT_THAT(check_cpu(machine_).back().found, HasSubstr("powersave"));
+}
+
+TEST_F(DoctorTest, FindsModulesThatAreLoadedBuiltInOrMissing) {
+  EXPECT_EQ(check_module(machine_, "can", Level::kProblem).found, "loaded");
+  machine_.put("/proc/sys/kernel/osrelease", "6.1.0\n");
+  machine_.put("/lib/modules/6.1.0/modules.builtin", "kernel/drivers/net/can/vcan.ko\n");
+  EXPECT_EQ(check_module(machine_, "vcan", Level::kProblem).found, "built in");
+  const Finding missing = check_module(machine_, "uvcvideo", Level::kWarning);
+  EXPECT_EQ(missing.level, Level::kWarning);
+  EXPECT_EQ(missing.fix, "sudo modprobe uvcvideo");
+}
+
+TEST_F(DoctorTest, JudgesTheCanController) {
+  machine_.programs["ip"] = ip_answer("ERROR-ACTIVE", 0, 100);
+  EXPECT_EQ(can0().level, Level::kOk);
+  EXPECT_THAT(can0().found, StartsWith("500000 bit/s, ERROR-ACTIVE"));
+  machine_.programs["ip"] = ip_answer("ERROR-PASSIVE", 128, 100);
+  EXPECT_EQ(can0().level, Level::kWarning);
+  machine_.programs["ip"] = ip_answer("BUS-OFF", 248, 100);
+  EXPECT_EQ(can0().level, Level::kProblem);
+  EXPECT_EQ(can0().fix, "sudo ip link set can0 type can restart");
+  machine_.programs["ip"] = "not JSON";
+  EXPECT_EQ(can0().level, Level::kWarning);
+  machine_.programs["ip"] = R"([{"flags":[]}])";
+  EXPECT_THAT(can0().found, HasSubstr("down"));
+}
+
+TEST_F(DoctorTest, WarnsOfAControllerThatStaysOff) {
+  machine_.programs["ip"] = ip_answer("ERROR-ACTIVE", 0, 0);
+  const Findings findings = check_can_interface(machine_, socketcan_config("can0"));
+  EXPECT_THAT(findings.back().found, HasSubstr("restart-ms 0"));
+  EXPECT_THAT(findings.back().fix, HasSubstr("restart-ms 100"));
+}
+
+TEST_F(DoctorTest, NamesAMissingInterface) {
+  const Findings findings = check_can_interface(machine_, socketcan_config("vcan3"));
+  EXPECT_EQ(findings.back().level, Level::kProblem);
+  EXPECT_THAT(findings.back().fix, HasSubstr("ip link add vcan3 type vcan"));
+}
+
+TEST_F(DoctorTest, ComparesTheLimitsWithWhatIsConfigured) {
+  firmware::Config config;
+  EXPECT_EQ(worst_of(check_realtime(machine_, config)), Level::kOk);
+  config.realtime.lock_memory = true;
+  config.realtime.can.fifo_priority = 30;
+  machine_.process_limits = {.realtime_priority = 20, .locked_memory_bytes = 65536};
+  const Findings refused = check_realtime(machine_, config);
+  ASSERT_EQ(refused.size(), 2U);
+  EXPECT_THAT(refused[0].fix, HasSubstr("--rtprio=30"));
+  EXPECT_THAT(refused[1].found, HasSubstr("65536"));
+  machine_.process_limits = {.realtime_priority = 30, .locked_memory_bytes = std::nullopt};
+  EXPECT_EQ(worst_of(check_realtime(machine_, config)), Level::kOk);
+}
+
+TEST_F(DoctorTest, LooksForEveryConfiguredCamera) {
+  firmware::Config config;
+  config.cameras.driver = firmware::CameraDriver::kV4l2;
+  for (int i = 0; i < kCameraCount; ++i)
+    config.cameras.devices.ids[i] = "Camera " + std::to_string(i);
+  machine_.put("/sys/class/video4linux/video0/name", "Camera 0\n");
+  machine_.put("/sys/class/video4linux/video0/index", "0\n");
+  machine_.put("/dev/video0", "");
+  const Findings findings = check_devices(machine_, config);
+  ASSERT_EQ(findings.size(), 7U);  // the module, then the cameras
+  EXPECT_EQ(findings[1].level, Level::kOk) << findings[1].found;
+  for (size_t i = 2; i < 7; ++i) EXPECT_EQ(findings[i].level, Level::kProblem);
+  machine_.permitted = false;
+  EXPECT_THAT(check_devices(machine_, config)[1].fix, StartsWith("sudo usermod -aG video"));
+}
+
+TEST_F(DoctorTest, JudgesMemoryDiskAndClock) {
+  machine_.put("/proc/meminfo", "MemTotal: 4000000 kB\nMemAvailable: 1000000 kB\n");
+  EXPECT_EQ(worst_of(check_room(machine_)), Level::kOk);
+  EXPECT_EQ(check_room(machine_).front().found, "976 MiB available");
+  machine_.put("/proc/meminfo", "MemAvailable: 1000 kB\n");
+  machine_.free = 1000;
+  EXPECT_EQ(check_room(machine_)[0].level, Level::kProblem);
+  EXPECT_EQ(check_room(machine_)[1].level, Level::kWarning);
+  EXPECT_EQ(check_clock(machine_).front().level, Level::kOk);
+  machine_.synchronous = false;
+  EXPECT_EQ(check_clock(machine_).front().level, Level::kWarning);
+}
+
+TEST_F(DoctorTest, ReadsTheStateOfTheUnit) {
+  const auto findings = [this](const std::string& active, const std::string& file) {
+    machine_.programs["systemctl"] = "LoadState=loaded\nActiveState=" + active +
+                                     "\nSubState=x\nUnitFileState=" + file + "\nNRestarts=2\n";
+    return check_unit(machine_);
+  };
+  EXPECT_EQ(check_unit(machine_).front().level, Level::kWarning);  // no systemd
+  EXPECT_EQ(worst_of(findings("active", "enabled")), Level::kOk);
+  EXPECT_EQ(worst_of(findings("failed", "enabled")), Level::kProblem);
+  EXPECT_EQ(findings("active", "disabled").back().fix, "sudo systemctl enable bevlocd");
+  machine_.programs["systemctl"] = "LoadState=not-found\n";
+  EXPECT_THAT(check_unit(machine_).front().found, HasSubstr("no bevlocd.service"));
+}
+
+TEST_F(DoctorTest, AConfigurationWithAMistakeIsAProblem) {
+  machine_.put("/bad.yaml", "cameras: {driver: v4l2}\n");
+  const Findings findings = examine(machine_, machine_.real("/bad.yaml"), nullptr);
+  EXPECT_EQ(findings.front().level, Level::kProblem);
+  EXPECT_THAT(findings.front().found, HasSubstr("cameras.ids"));
+  EXPECT_EQ(examine(machine_, "", nullptr).front().fix, "bevloc init");
+}
+
+TEST(Findings, AreWrittenAsTextAndJson) {
+  const Findings findings{ok("cpu", "AVX2"),
+                          {Level::kProblem, "can0", "found it", "that", "do it"}};
+  EXPECT_EQ(to_text(findings),
+            "ok       cpu   AVX2\n"
+            "problem  can0  found it; wanted that\n"
+            "               fix: do it\n"
+            "2 checks: 1 ok, 0 warnings, 1 problems\n");
+  const auto json = nlohmann::json::parse(to_json(findings));
+  EXPECT_EQ(json["worst"], "problem");
+  EXPECT_EQ(json["findings"][1]["fix"], "do it");
+  EXPECT_FALSE(json["findings"][0].contains("fix"));
+}
+
+}  // namespace
+}  // namespace bevloc::command
