@@ -25,7 +25,7 @@ DriveConfig config_of(const std::string& name) {
 
 std::vector<JudgedCycle> cycles_of(const DriveConfig& config) {
   const auto table =
-      MatchTable::read(std::string(BEVLOC_SOURCE_DIR) + "/evaluation/campaign/matches.csv");
+      read_match_table(std::string(BEVLOC_SOURCE_DIR) + "/evaluation/campaign/matches.csv");
   EXPECT_TRUE(table) << table.error().message;
   std::vector<JudgedCycle> cycles;
   const Status ran = run_stage(config, Mode{}, *table,
