@@ -43,7 +43,8 @@ class ConsumersTest(unittest.TestCase):
 
     def test_constants_are_those_of_the_message_table(self) -> None:
         writer = os.environ["BEVLOC_DBC"]
-        for option, name in (("--c-header", "bevloc_messages.h"), ("--python", "bevloc_messages.py")):
+        files = {"--c-header": "bevloc_messages.h", "--python": "bevloc_messages.py"}
+        for option, name in files.items():
             with self.subTest(name):
                 self.assertEqual(output_of(writer, option), (CONSUMER / name).read_text(),
                                  f"write it again: bevloc_dbc {option} > can/consumer/{name}")
