@@ -32,7 +32,7 @@ TEST(MessageProtectionTest, AcceptsWhatItProtectsAndNoOtherByte) {
   for (const ChecksumKind kind : {ChecksumKind::kXor, ChecksumKind::kCrc8Sae,
                                   ChecksumKind::kCrc8H2f, ChecksumKind::kE2eP02}) {
     const MessageProtection protection = protection_of(kind);
-    for (const uint8_t counter : {0, 7, 15}) {
+    for (const uint8_t counter : {uint8_t{0}, uint8_t{7}, uint8_t{15}}) {
       Frame frame = some_frame();
       protect(frame, protection, counter);
       const E2eFrame good = e2e_frame_of(frame, protection, 8);
