@@ -44,7 +44,7 @@ def random_message(source: random.Random, number: int) -> list[str]:
     if number % 3 == 0:
         taken.update(range(4))
         lines.append(' SG_ Page M : 0|4@1+ (1,0) [0|0] "" Y')
-    for index in range(12):
+    for index in range(40):
         mark = f"m{index % 3} " if number % 3 == 0 else ""
         line = random_signal(source, f"S{number}_{index}", taken, mark)
         if line is not None:
