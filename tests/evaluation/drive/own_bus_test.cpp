@@ -99,7 +99,9 @@ TEST(OwnBusTest, GivesTheSamplesOfTheStandardMessagesWithoutAllocation) {
     EXPECT_NEAR(gnss.north_m, other.north_m, 0.02);
     EXPECT_NEAR(gnss.sigma_east_m, other.sigma_east_m, 0.011);
     ASSERT_EQ(gnss.yaw.has_value(), other.yaw.has_value());
-    if (gnss.yaw) EXPECT_NEAR(gnss.yaw->yaw_rad, other.yaw->yaw_rad, radians(0.011));
+    if (gnss.yaw) {
+      EXPECT_NEAR(gnss.yaw->yaw_rad, other.yaw->yaw_rad, radians(0.011));
+    }
   }
 }
 

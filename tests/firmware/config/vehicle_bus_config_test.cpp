@@ -55,7 +55,7 @@ TEST_F(VehicleBusConfigTest, BindsTheSignals) {
 
 TEST_F(VehicleBusConfigTest, NamesWhatWasProbablyMeant) {
   EXPECT_EQ(error_with("message: ESP_Motion", "message: ESP_Motoin"),
-            place(23) +
+            place(22) +
                 "can.vehicle.yaw_rate.message: found ESP_Motoin (did you mean ESP_Motion?), "
                 "wanted the name of a message of " +
                 (folder_ / "vehicle_demo.dbc").string());
