@@ -2,6 +2,8 @@
 // documentation are made.
 #pragma once
 
+#include <algorithm>
+
 #include "can/messages/identity_message.h"
 #include "can/messages/integrity_message.h"
 #include "can/messages/localizer_messages.h"
@@ -36,5 +38,12 @@ inline constexpr const Message* kMessages[] = {
     &veh_gnss_authentication::kMessage,
     &veh_freshness::kMessage,
 };
+
+/// Whether a message of the localizer has this identifier.
+inline bool is_localizer_id(uint32_t id, const BaseIds& base) {
+  return std::ranges::any_of(kMessages, [&](const Message* message) {
+    return message->sender == Sender::kLocalizer && message->id(base) == id;
+  });
+}
 
 }  // namespace bevloc::can

@@ -30,12 +30,6 @@ std::array<E2eReceiver, sizeof...(I)> receivers_of(const auto& messages,
       E2eReceiver(messages[I]->protection(), messages[I]->length, parameters_of(*messages[I]))...};
 }
 
-bool is_sent_by_localizer(uint32_t id, const BaseIds& base) {
-  return std::ranges::any_of(kMessages, [&](const Message* message) {
-    return message->sender == Sender::kLocalizer && message->id(base) == id;
-  });
-}
-
 /// A sigma of 0 on the bus means less than one step, because no measurement is exact.
 double at_least_one_step(double sigma, const Signal& signal) {
   return std::max(sigma, signal.scale);
@@ -46,27 +40,26 @@ double at_least_one_step(double sigma, const Signal& signal) {
 VehicleInput::VehicleInput(const BaseIds& base, GeodeticPosition map_origin,
                            const OdometryLimits& limits)
     : base_(base),
-      geo_(map_origin),
+      maker_(map_origin, limits),
       receivers_(receivers_of(kInputs, std::make_index_sequence<kInputs.size()>())),
       odometry_group_(window_of(kOdometryCycleMs)),
-      gnss_group_(window_of(kGnssCycleMs)),
-      odometry_check_(limits) {}
+      gnss_group_(window_of(kGnssCycleMs)) {}
 
 std::optional<VehicleSample> VehicleInput::accept(const ReceivedFrame& received) {
-  latest_ = received.received;
+  maker_.note_frame(received.received);
   const auto input = std::ranges::find_if(
       kInputs, [&](const Message* message) { return message->id(base_) == received.frame.id; });
   if (input == kInputs.end()) {
-    const bool own_id = is_sent_by_localizer(received.frame.id, base_);
+    const bool own_id = is_localizer_id(received.frame.id, base_);
     ++(own_id ? counters_.own_ids : counters_.foreign);
-    if (own_id) foreign_sender_ = latest_;
+    if (own_id) maker_.note_foreign_sender();
     return std::nullopt;
   }
   const auto index = static_cast<size_t>(input - kInputs.begin());
   const bool accepted = receivers_[index].accept(received);
-  if (receivers_[index].has_second_sender()) foreign_sender_ = latest_;
+  if (receivers_[index].has_second_sender()) maker_.note_foreign_sender();
   const bool invalid = receivers_[index].state() == E2eState::kInvalid;
-  if (invalid && index < kFirstGnss) implausible_ = latest_;
+  if (invalid && index < kFirstGnss) maker_.note_implausible();
   if (!accepted) return std::nullopt;
 
   const auto epoch = static_cast<uint8_t>(extract_raw(received.frame, kEpoch));
@@ -87,18 +80,12 @@ std::optional<VehicleSample> VehicleInput::odometry_from(const EpochGroup<2>::Se
     ++counters_.not_available;
     return std::nullopt;
   }
-  const OdometryCheck::Wheels sample{.time = set.received,
-                                     .left_mps = *left_mps,
-                                     .right_mps = *right_mps,
-                                     .yaw_rate_radps = radians(*yaw_rate_degps)};
-  const bool plausible = odometry_check_.judge(sample) == OdometryVerdict::kPlausible;
-  if (!plausible || odometry_check_.is_slow()) implausible_ = latest_;
-  if (!plausible) return std::nullopt;
-  ++counters_.odometry_samples;
-  last_odometry_ = set.received;
-  return OdometrySample{.time = sample.time,
-                        .speed_mps = sample.speed_mps(),
-                        .yaw_rate_radps = sample.yaw_rate_radps};
+  const auto sample = maker_.odometry({.time = set.received,
+                                       .left_mps = *left_mps,
+                                       .right_mps = *right_mps,
+                                       .yaw_rate_radps = radians(*yaw_rate_degps)});
+  if (sample) last_odometry_ = set.received;
+  return sample;
 }
 
 std::optional<VehicleSample> VehicleInput::gnss_from(const EpochGroup<3>::Set& set) {
@@ -113,21 +100,14 @@ std::optional<VehicleSample> VehicleInput::gnss_from(const EpochGroup<3>::Set& s
   }
   const auto heading_deg = decode(heading, veh_gnss_heading::kHeading);
   const auto sigma_heading_deg = decode(heading, veh_gnss_heading::kStdDev);
-  const Se2 map_from_vehicle =
-      geo_.map_from_geodetic({{*latitude_deg, *longitude_deg}, heading_deg.value_or(0.0)});
-
-  GnssSample sample{.time = set.received,
-                    .east_m = map_from_vehicle.x_m,
-                    .north_m = map_from_vehicle.y_m,
-                    .sigma_east_m = at_least_one_step(*sigma_east_m, veh_gnss_longitude::kStdDev),
-                    .sigma_north_m = at_least_one_step(*sigma_north_m, veh_gnss_latitude::kStdDev)};
+  GeodeticFix fix{.position = {*latitude_deg, *longitude_deg},
+                  .sigma_north_m = at_least_one_step(*sigma_north_m, veh_gnss_latitude::kStdDev),
+                  .sigma_east_m = at_least_one_step(*sigma_east_m, veh_gnss_longitude::kStdDev)};
   if (heading_deg && sigma_heading_deg) {
-    const double sigma_deg = at_least_one_step(*sigma_heading_deg, veh_gnss_heading::kStdDev);
-    sample.yaw = {map_from_vehicle.yaw_rad, radians(sigma_deg)};
+    fix.heading = {*heading_deg, at_least_one_step(*sigma_heading_deg, veh_gnss_heading::kStdDev)};
   }
-  ++counters_.gnss_samples;
   last_gnss_ = set.received;
-  return sample;
+  return maker_.gnss(fix, set.received);
 }
 
 VehicleInputCounters VehicleInput::counters() const {
@@ -141,22 +121,9 @@ VehicleInputCounters VehicleInput::counters() const {
     total.not_valid += counters.not_valid;
     total.lost += counters.lost;
   }
-  total.contradicting_wheels = odometry_check_.count(OdometryVerdict::kWheelsContradictYawRate);
-  total.odometry_jumps = odometry_check_.count(OdometryVerdict::kSpeedJump) +
-                         odometry_check_.count(OdometryVerdict::kYawRateJump);
-  total.sharp_turns = odometry_check_.count(OdometryVerdict::kTooSharp);
+  maker_.add_to(total);
   total.incomplete = odometry_group_.incomplete() + gnss_group_.incomplete();
   return total;
-}
-
-WhyMask VehicleInput::why() const {
-  const auto is_recent = [&](const std::optional<Time>& cause) {
-    return cause && latest_ - *cause <= kWhyHold;
-  };
-  WhyMask why;
-  if (is_recent(implausible_)) why |= Why::kOdometryImplausible;
-  if (is_recent(foreign_sender_)) why |= Why::kForeignSender;
-  return why;
 }
 
 std::vector<uint32_t> VehicleInput::accepted_ids(const BaseIds& base, bool secoc) {

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "can/messages/consumer_writer.h"
 #include "can/messages/dbc_writer.h"
 #include "can/messages/markdown_writer.h"
 
@@ -18,6 +19,13 @@ int main(int argc, char** argv) {
       ->check(base_range)
       ->capture_default_str();
   app.add_flag("--markdown", markdown, "print the tables of docs/can.md instead");
+  bool c_header = false;
+  app.add_flag("--c-header", c_header, "print can/consumer/bevloc_messages.h instead");
+  bool python = false;
+  app.add_flag("--python", python, "print can/consumer/bevloc_messages.py instead");
   CLI11_PARSE(app, argc, argv);
-  std::cout << (markdown ? bevloc::can::markdown_tables(base) : bevloc::can::dbc_text(base));
+  std::cout << (markdown   ? bevloc::can::markdown_tables(base)
+                : c_header ? bevloc::can::consumer_header_text()
+                : python   ? bevloc::can::consumer_python_text()
+                           : bevloc::can::dbc_text(base));
 }

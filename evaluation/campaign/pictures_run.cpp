@@ -30,7 +30,7 @@ Status run_pictures(const DriveConfig& config, const Rig& rig,
       std::make_unique<FaultyBus>(wire.connect(), drive->faults(), clock, drive_start), &clock};
   auto appliance = firmware::Appliance::create(config, rig, drive->map(), std::move(hardware));
   if (!appliance) return tl::unexpected(appliance.error());
-  SimulatedVehicle vehicle(*drive, config.simulation->seed, config.can.base_ids, wire.connect(),
+  SimulatedVehicle vehicle(*drive, config.simulation->seed, config.can, wire.connect(),
                            drive_start);
   CycleReader reader(
       wire.connect(), config.can.base_ids, drive->map().origin,

@@ -8,6 +8,7 @@
 #include "evaluation/drive/faulty_bus.h"
 #include "evaluation/drive/simulated_drive.h"
 #include "firmware/runtime/appliance.h"
+#include "firmware/runtime/can_bus.h"
 #include "firmware/runtime/identity.h"
 #include "sim/random.h"
 
@@ -27,14 +28,15 @@ class StageRun {
       : fault_(mode.time_in(config.simulation->duration_s)),
         suspended_s_(mode.suspended_s),
         own_bus_(wire_.connect(), drive.faults(), clock_, kDriveStart),
-        vehicle_(drive, config.simulation->seed, config.can.base_ids, wire_.connect(), kDriveStart),
+        vehicle_(drive, config.simulation->seed, config.can, wire_.connect(), kDriveStart),
         reader_(
             wire_.connect(), config.can.base_ids, drive.map().origin,
             [&drive](double time_s) { return drive.truth_at(time_s); }, kDriveStart),
         publisher_(own_bus_, firmware::publisher_config(config, drive.map())),
-        input_(own_bus_, config.can.base_ids,
-               {drive.map().origin.latitude_deg, drive.map().origin.longitude_deg}, queues_.samples,
-               config.can.odometry),
+        input_(own_bus_,
+               firmware::make_vehicle_decoder(
+                   config.can, {drive.map().origin.latitude_deg, drive.map().origin.longitude_deg}),
+               queues_.samples),
         vision_(MatchModel(table, config.solver.tracking, config.solver.acquiring,
                            sim::seed_for(config.simulation->seed, "matches")),
                 drive.drive(), kDriveStart, {fault_, mode.match_faults}, queues_.predictions,

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "can/bus/candump.h"
+#include "firmware/runtime/can_bus.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -14,25 +15,26 @@ constexpr const char* kInterfaceInLog = "can0";
 }  // namespace
 
 Result<std::unique_ptr<Judge>> Judge::create(std::unique_ptr<can::Bus> bus,
-                                             const can::BaseIds& base, const GeoOrigin& origin,
-                                             TruthAt truth, JudgeTimes times,
-                                             const std::string& log_path) {
+                                             const firmware::CanConfig& can,
+                                             const GeoOrigin& origin, TruthAt truth,
+                                             JudgeTimes times, const std::string& log_path) {
   auto judge =
-      std::unique_ptr<Judge>(new Judge(std::move(bus), base, origin, std::move(truth), times));
+      std::unique_ptr<Judge>(new Judge(std::move(bus), can, origin, std::move(truth), times));
   judge->log_.open(log_path);
   if (!judge->log_)
     return fail("{}: found no way to write the bus log, wanted to create it", log_path);
   return judge;
 }
 
-Judge::Judge(std::unique_ptr<can::Bus> bus, const can::BaseIds& base, const GeoOrigin& origin,
+Judge::Judge(std::unique_ptr<can::Bus> bus, const firmware::CanConfig& can, const GeoOrigin& origin,
              TruthAt truth, JudgeTimes times)
     : bus_(std::move(bus)),
-      base_(base),
+      base_(can.base_ids),
       truth_(std::move(truth)),
       times_(times),
-      reader_(base, {origin.latitude_deg, origin.longitude_deg}),
-      prior_input_(base, {origin.latitude_deg, origin.longitude_deg}),
+      reader_(can.base_ids, {origin.latitude_deg, origin.longitude_deg}),
+      prior_input_(
+          firmware::make_vehicle_decoder(can, {origin.latitude_deg, origin.longitude_deg})),
       prior_tracker_(TrackerParameters()),
       next_comparison_(times.drive_start) {}
 
@@ -44,7 +46,7 @@ void Judge::step(Duration timeout) {
 void Judge::take(const can::ReceivedFrame& received) {
   log_ << can::candump_line(received.received - times_.log_start, kInterfaceInLog, received.frame)
        << '\n';
-  if (const auto sample = prior_input_.accept(received)) {
+  if (const auto sample = prior_input_->accept(received)) {
     prior_tracker_.add(*sample);
     return;
   }

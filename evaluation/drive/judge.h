@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "can/bus/bus.h"
-#include "can/messages/vehicle_input.h"
+#include "can/messages/vehicle_decoder.h"
 #include "common/result.h"
 #include "evaluation/drive/error_statistics.h"
 #include "evaluation/drive/pose_reader.h"
+#include "firmware/config/config.h"
 #include "firmware/health/health.h"
 #include "pipeline/map/hd_map.h"
 #include "pipeline/tracker/tracker.h"
@@ -52,9 +53,9 @@ class Judge {
 
   /// `truth` must be callable as long as the judge exists. Fails if the log cannot be written.
   static Result<std::unique_ptr<Judge>> create(std::unique_ptr<can::Bus> bus,
-                                               const can::BaseIds& base, const GeoOrigin& origin,
-                                               TruthAt truth, JudgeTimes times,
-                                               const std::string& log_path);
+                                               const firmware::CanConfig& can,
+                                               const GeoOrigin& origin, TruthAt truth,
+                                               JudgeTimes times, const std::string& log_path);
 
   /// Reads all received frames. Waits at most `timeout` for the first one.
   void step(Duration timeout);
@@ -72,7 +73,7 @@ class Judge {
   uint64_t localizer_frames() const { return localizer_frames_; }
 
  private:
-  Judge(std::unique_ptr<can::Bus> bus, const can::BaseIds& base, const GeoOrigin& origin,
+  Judge(std::unique_ptr<can::Bus> bus, const firmware::CanConfig& can, const GeoOrigin& origin,
         TruthAt truth, JudgeTimes times);
 
   void take(const can::ReceivedFrame& received);
@@ -85,7 +86,7 @@ class Judge {
   JudgeTimes times_;
   std::ofstream log_;
   PoseReader reader_;
-  can::VehicleInput prior_input_;
+  std::unique_ptr<can::VehicleDecoder> prior_input_;
   Tracker prior_tracker_;
   Time next_comparison_;
   std::vector<JudgedPose> poses_;

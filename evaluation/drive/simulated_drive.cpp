@@ -45,28 +45,35 @@ GnssSample sample_of(const sim::GnssReading& reading, Time now) {
 }  // namespace
 
 SimulatedVehicle::SimulatedVehicle(const SimulatedDrive& drive, uint64_t seed,
-                                   const can::BaseIds& base, std::unique_ptr<can::Bus> bus,
+                                   const firmware::CanConfig& can, std::unique_ptr<can::Bus> bus,
                                    Time drive_start)
     : drive_(drive.drive()),
       faults_(drive.faults()),
       odometry_(*drive_, sim::seed_for(seed, "odometry")),
       gnss_(*drive_, sim::seed_for(seed, "gnss")),
-      encoder_(base, {drive.map().origin.latitude_deg, drive.map().origin.longitude_deg},
+      encoder_(can.base_ids, {drive.map().origin.latitude_deg, drive.map().origin.longitude_deg},
                kRearTrack_m),
       attacker_(encoder_),
       bus_(std::move(bus)),
       drive_start_(drive_start),
       next_odometry_(drive_start),
-      next_gnss_(drive_start) {}
+      next_gnss_(drive_start) {
+  if (!can.vehicle) return;
+  const GeoOrigin& origin = drive.map().origin;
+  own_encoder_.emplace(
+      *can.vehicle, can::GeodeticPosition{origin.latitude_deg, origin.longitude_deg}, kRearTrack_m);
+}
 
 void SimulatedVehicle::send_due(Time now) {
   while (next_odometry_ <= now) send_odometry(now);
   while (next_gnss_ <= now) send_gnss(now);
 }
 
-void SimulatedVehicle::send(const can::Frame& frame, double elapsed_s, Time now) {
-  bus_->send(frame, now);
-  attacker_.note(frame, elapsed_s);
+void SimulatedVehicle::send(std::span<const can::Frame> frames, double elapsed_s, Time now) {
+  for (const can::Frame& frame : frames) {
+    bus_->send(frame, now);
+    attacker_.note(frame, elapsed_s);
+  }
 }
 
 void SimulatedVehicle::send_odometry(Time now) {
@@ -79,7 +86,11 @@ void SimulatedVehicle::send_odometry(Time now) {
     if (reading) {
       const can::WheelOdometry measured{reading->left_mps, reading->right_mps,
                                         reading->yaw_rate_radps};
-      for (const can::Frame& frame : encoder_.odometry(measured)) send(frame, elapsed_s, now);
+      if (own_encoder_) {
+        send(own_encoder_->odometry(measured), elapsed_s, now);
+      } else {
+        send(encoder_.odometry(measured), elapsed_s, now);
+      }
     }
     attacker_.act(*faults_, elapsed_s, *bus_, now);
   }
@@ -97,8 +108,11 @@ void SimulatedVehicle::send_gnss(Time now) {
         sim::with_faults(gnss_.reading(index), elapsed_s,
                          faults_->active(sim::FaultInput::kGnss, elapsed_s), *drive_);
     if (reading) {
-      for (const can::Frame& frame : encoder_.gnss(sample_of(*reading, now))) {
-        send(frame, elapsed_s, now);
+      const GnssSample sample = sample_of(*reading, now);
+      if (own_encoder_) {
+        send(own_encoder_->gnss(sample), elapsed_s, now);
+      } else {
+        send(encoder_.gnss(sample), elapsed_s, now);
       }
     }
   }

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "can/bus/mock_bus.h"
 #include "can/messages/vehicle_encoder.h"
 #include "drivers/mock/mock_camera.h"
 #include "evaluation/drive/bus_attacker.h"
+#include "evaluation/drive/dbc_vehicle_encoder.h"
 #include "evaluation/drive/drive_config.h"
 #include "sim/faults/fault_board.h"
 #include "sim/sensors/gnss.h"
@@ -50,7 +53,7 @@ class SimulatedDrive {
 /// its faults. One thread.
 class SimulatedVehicle {
  public:
-  SimulatedVehicle(const SimulatedDrive& drive, uint64_t seed, const can::BaseIds& base,
+  SimulatedVehicle(const SimulatedDrive& drive, uint64_t seed, const firmware::CanConfig& can,
                    std::unique_ptr<can::Bus> bus, Time drive_start);
 
   /// The time at which the next frames are due.
@@ -62,13 +65,14 @@ class SimulatedVehicle {
  private:
   void send_odometry(Time now);
   void send_gnss(Time now);
-  void send(const can::Frame& frame, double elapsed_s, Time now);
+  void send(std::span<const can::Frame> frames, double elapsed_s, Time now);
 
   std::shared_ptr<const sim::Drive> drive_;
   std::shared_ptr<const sim::FaultBoard> faults_;
   sim::OdometrySimulator odometry_;
   sim::GnssSimulator gnss_;
   can::VehicleEncoder encoder_;
+  std::optional<DbcVehicleEncoder> own_encoder_;  ///< with can.vehicle
   BusAttacker attacker_;
   std::unique_ptr<can::Bus> bus_;
   Time drive_start_;

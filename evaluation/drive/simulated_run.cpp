@@ -127,13 +127,13 @@ Status SimulatedRun::connect() {
   appliance_->estimation().observe_corrections(
       [this](Time frame_time) { latencies_.add(clock_.now() - frame_time); });
 
-  const can::BaseIds& ids = config_.can.base_ids;
   const GeoOrigin& origin = drive_.map().origin;
-  vehicle_ = std::make_unique<SimulatedVehicle>(drive_, config_.simulation->seed, ids,
+  vehicle_ = std::make_unique<SimulatedVehicle>(drive_, config_.simulation->seed, config_.can,
                                                 std::move(*vehicle_bus), drive_start_);
   auto judge = Judge::create(
-      std::move(*judge_bus), ids, origin, [this](double time_s) { return drive_.truth_at(time_s); },
-      {log_start_, drive_start_}, (options_.out / "can.log").string());
+      std::move(*judge_bus), config_.can, origin,
+      [this](double time_s) { return drive_.truth_at(time_s); }, {log_start_, drive_start_},
+      (options_.out / "can.log").string());
   if (!judge) return tl::unexpected(judge.error());
   judge_ = std::move(*judge);
   const std::filesystem::path& socket = config_.simulation->fault_socket;

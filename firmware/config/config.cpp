@@ -9,6 +9,7 @@
 
 #include "firmware/config/config_milliseconds.h"
 #include "firmware/config/manifest.h"
+#include "firmware/config/vehicle_bus_config.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -145,6 +146,13 @@ CanConfig read_can(YamlMap yaml, CameraDriver camera_driver, const std::filesyst
                 "at least 0x40, so that messages do not share identifiers");
   }
   config.secoc = read_secoc(yaml, config.driver, folder);
+  if (auto vehicle = yaml.optional_map("vehicle")) {
+    config.vehicle = read_vehicle_bus(*vehicle, config.base_ids, folder);
+    if (config.secoc) {
+      yaml.reject("vehicle", "the vehicle's own messages, which bevloc cannot authenticate",
+                  "no section vehicle with can.secoc");
+    }
+  }
   config.odometry.rear_track_m =
       yaml.optional<double>("rear_track_m", config.odometry.rear_track_m, between(0.8, 3.0));
   return config;

@@ -10,6 +10,7 @@
 
 #include "can/messages/message.h"
 #include "can/messages/odometry_check.h"
+#include "can/vehicle/vehicle_binding.h"
 #include "common/result.h"
 #include "common/strict_yaml.h"
 #include "drivers/frameset/synchronizer.h"
@@ -59,6 +60,8 @@ struct CanConfig {
   can::BaseIds base_ids;
   can::OdometryLimits odometry;  ///< what the vehicle's odometry is checked with
   std::optional<SecocConfig> secoc;
+  /// The vehicle's own messages, read in place of bevloc's VEH_ messages.
+  std::optional<can::VehicleBinding> vehicle;
 };
 
 /// Reads the parts of a configuration that only a program with the simulator supports. Used only

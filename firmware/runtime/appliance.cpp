@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "can/secoc/secoc_files.h"
+#include "firmware/runtime/can_bus.h"
 #include "firmware/runtime/identity.h"
 #include "pipeline/calibration/online/calibration_file.h"
 
@@ -34,6 +35,11 @@ Result<std::unique_ptr<Appliance>> Appliance::create(const Config& config, const
   if (!localizer) return tl::unexpected(localizer.error());
   log_identity(identity_of(config, map), map, (*localizer)->model_name());
   restore_calibration(config, rig, **localizer);
+  if (config.can.vehicle) {
+    for (const std::string& warning : can::warnings_of(*config.can.vehicle)) {
+      spdlog::warn("can.vehicle: {}", warning);
+    }
+  }
   std::unique_ptr<Appliance> appliance(
       new Appliance(config, map, std::move(hardware), std::move(map_index), std::move(*localizer)));
   appliance->learned_calibration_file_ = config.learned_calibration_file;
@@ -61,9 +67,10 @@ Appliance::Appliance(const Config& config, const HdMap& map, Hardware hardware,
       map_index_(std::move(map_index)),
       localizer_(std::move(localizer)),
       publisher_(*hardware_.bus, publisher_config(config, map)),
-      vehicle_input_(*hardware_.bus, config.can.base_ids,
-                     {map.origin.latitude_deg, map.origin.longitude_deg}, queues_.samples,
-                     config.can.odometry),
+      vehicle_input_(
+          *hardware_.bus,
+          make_vehicle_decoder(config.can, {map.origin.latitude_deg, map.origin.longitude_deg}),
+          queues_.samples),
       vision_(*localizer_,
               {config.cameras.synchronizer, config.cameras.compensate_motion, hardware_.pulses},
               queues_.frames, queues_.predictions, queues_.reports),

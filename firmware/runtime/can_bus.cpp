@@ -3,16 +3,28 @@
 #include "can/bus/socketcan_bus.h"
 #include "can/messages/pose_publisher.h"
 #include "can/messages/vehicle_input.h"
+#include "can/vehicle/dbc_vehicle_input.h"
 
 namespace bevloc::firmware {
 
 can::SocketCanOptions appliance_options(const CanConfig& config) {
   can::SocketCanOptions options;
-  options.accepted_ids = can::VehicleInput::accepted_ids(config.base_ids, config.secoc.has_value());
+  options.accepted_ids =
+      config.vehicle ? can::ids_of(*config.vehicle)
+                     : can::VehicleInput::accepted_ids(config.base_ids, config.secoc.has_value());
   options.confirmed_ids =
       can::PosePublisher::sent_ids(config.base_ids, config.variant, config.secoc.has_value());
   options.fd = config.variant == can::FrameFormat::kFd;
   return options;
+}
+
+std::unique_ptr<can::VehicleDecoder> make_vehicle_decoder(const CanConfig& config,
+                                                          can::GeodeticPosition map_origin) {
+  if (config.vehicle) {
+    return std::make_unique<can::DbcVehicleInput>(*config.vehicle, config.base_ids, map_origin,
+                                                  config.odometry);
+  }
+  return std::make_unique<can::VehicleInput>(config.base_ids, map_origin, config.odometry);
 }
 
 Result<std::unique_ptr<can::Bus>> open_can_bus(const CanConfig& config) {

@@ -5,6 +5,8 @@
 
 #include "can/bus/bus.h"
 #include "can/bus/socketcan_link.h"
+#include "can/messages/geo_reference.h"
+#include "can/messages/vehicle_decoder.h"
 #include "firmware/config/config.h"
 
 namespace bevloc::firmware {
@@ -12,6 +14,10 @@ namespace bevloc::firmware {
 /// The options of the appliance's socket. The kernel's filter passes only the vehicle's messages
 /// and the confirmations of sent frames, so nothing else wakes the CAN-in thread.
 can::SocketCanOptions appliance_options(const CanConfig& config);
+
+/// Makes what decodes the vehicle's messages: those of `can.vehicle`, or else bevloc's own.
+std::unique_ptr<can::VehicleDecoder> make_vehicle_decoder(const CanConfig& config,
+                                                          can::GeodeticPosition map_origin);
 
 /// Opens the appliance's socket. Fails if the interface cannot be opened, and with `can.driver:
 /// mock`.

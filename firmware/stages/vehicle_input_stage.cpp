@@ -2,10 +2,9 @@
 
 namespace bevloc::firmware {
 
-VehicleInputStage::VehicleInputStage(can::Bus& bus, const can::BaseIds& base,
-                                     can::GeodeticPosition map_origin, VehicleQueue& samples,
-                                     const can::OdometryLimits& limits)
-    : bus_(bus), input_(base, map_origin, limits), samples_(samples) {}
+VehicleInputStage::VehicleInputStage(can::Bus& bus, std::unique_ptr<can::VehicleDecoder> decoder,
+                                     VehicleQueue& samples)
+    : bus_(bus), decoder_(std::move(decoder)), samples_(samples) {}
 
 void VehicleInputStage::step(Duration timeout) {
   if (!bus_.wait(timeout)) return;
@@ -16,14 +15,14 @@ void VehicleInputStage::step(Duration timeout) {
       take(*received);
     }
   }
-  counters_.store(input_.counters());
+  counters_.store(decoder_->counters());
   if (secoc_) secoc_counters_.store(secoc_->counters());
 }
 
 void VehicleInputStage::take(const can::ReceivedFrame& received) {
-  const auto sample = input_.accept(received);
-  WhyMask why = input_.why();
-  const bool forged = forged_ && received.received - *forged_ <= can::VehicleInput::kWhyHold;
+  const auto sample = decoder_->accept(received);
+  WhyMask why = decoder_->why();
+  const bool forged = forged_ && received.received - *forged_ <= can::VehicleDecoder::kWhyHold;
   if (forged) why |= Why::kForeignSender;
   why_ = why.bits();  // before the sample, so that whoever reads the sample knows it
   if (sample) samples_.push(*sample);

@@ -3,11 +3,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "can/bus/bus.h"
-#include "can/messages/vehicle_input.h"
+#include "can/messages/vehicle_decoder.h"
 #include "can/secoc/secoc_receiver.h"
 #include "common/published.h"
 #include "firmware/stages/messages.h"
@@ -19,8 +20,8 @@ namespace bevloc::firmware {
 class VehicleInputStage {
  public:
   /// `bus` and `samples` must outlive the stage.
-  VehicleInputStage(can::Bus& bus, const can::BaseIds& base, can::GeodeticPosition map_origin,
-                    VehicleQueue& samples, const can::OdometryLimits& limits = {});
+  VehicleInputStage(can::Bus& bus, std::unique_ptr<can::VehicleDecoder> decoder,
+                    VehicleQueue& samples);
 
   /// From now on, uses only frames that are authentic.
   void authenticate(can::SecocReceiver receiver) { secoc_.emplace(std::move(receiver)); }
@@ -29,7 +30,7 @@ class VehicleInputStage {
   void step(Duration timeout);
 
   /// What is wrong with the vehicle's messages now: a set of kOdometryImplausible and
-  /// kForeignSender (can::VehicleInput::why(), or frames that are not authentic).
+  /// kForeignSender (can::VehicleDecoder::why(), or frames that are not authentic).
   WhyMask why() const { return WhyMask::from_bits(why_); }
 
   can::VehicleInputCounters counters() const { return counters_.load(); }
@@ -43,7 +44,7 @@ class VehicleInputStage {
   void take_authentic(const can::ReceivedFrame& received);
 
   can::Bus& bus_;
-  can::VehicleInput input_;
+  const std::unique_ptr<can::VehicleDecoder> decoder_;
   VehicleQueue& samples_;
   Published<can::VehicleInputCounters> counters_;
   Published<can::SecocCounters> secoc_counters_;

@@ -17,6 +17,7 @@ void run_bvm(Bytes bytes);
 void run_can_frames(Bytes bytes);
 void run_candump(Bytes bytes);
 void run_config(Bytes bytes);
+void run_dbc(Bytes bytes);
 void run_frames_txt(Bytes bytes);
 void run_image_file(Bytes bytes);
 void run_mjpeg(Bytes bytes);
@@ -34,6 +35,7 @@ inline constexpr Target kTargets[] = {
     {"can_frames", run_can_frames},
     {"candump", run_candump},
     {"config", run_config},
+    {"dbc", run_dbc},
     {"frames_txt", run_frames_txt},
     {"image_file", run_image_file},
     {"mjpeg", run_mjpeg},

@@ -116,8 +116,7 @@ Received drive_with(const std::vector<sim::Fault>& faults) {
   can::MockWire wire(4096);
   drivers::VirtualClock clock(kStart);
   FaultyBus bus(wire.connect(), drive->faults(), clock, kStart);
-  SimulatedVehicle vehicle(*drive, config.simulation->seed, config.can.base_ids, wire.connect(),
-                           kStart);
+  SimulatedVehicle vehicle(*drive, config.simulation->seed, config.can, wire.connect(), kStart);
   Reader reader(drive->map().origin);
   for (; clock.now() < kStart + std::chrono::seconds(12);
        clock.advance(std::chrono::milliseconds(10))) {

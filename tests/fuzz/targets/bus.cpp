@@ -8,6 +8,7 @@
 #include "can/bus/candump.h"
 #include "can/bus/controller_monitor.h"
 #include "can/bus/socketcan_codec.h"
+#include "can/dbc/dbc.h"
 #include "can/e2e/e2e.h"
 #include "can/messages/message_table.h"
 #include "can/messages/solution_fd.h"
@@ -111,6 +112,24 @@ void run_candump(Bytes bytes) {
   const auto entries = can::read_candump(log, "fuzz.log");
   if (!entries) return;
   for (const can::CandumpEntry& entry : *entries) check_round_trip(entry);
+}
+
+/// Every signal of an accepted file can be read from a frame of its message.
+void run_dbc(Bytes bytes) {
+  const auto dbc = can::parse_dbc(text_of(bytes), "fuzz.dbc");
+  if (!dbc) return;
+  const std::array<uint8_t, can::kMaxFdLength> zeros{};
+  for (const can::DbcMessage& message : dbc->messages) {
+    expect(message.length <= can::kMaxFdLength, "a message that is too long");
+    const std::span<const uint8_t> frame(zeros.data(), message.length);
+    for (const can::DbcSignal& signal : message.signals) {
+      expect(can::bytes_needed(signal.layout) <= message.length, "a signal beyond its message");
+      const double value = can::physical_from(signal.layout, frame);
+      expect(value == signal.layout.offset, "a signal of zeros that is not its offset");
+      const bool has_multiplexor = message.nested_multiplexing || message.multiplexor() != nullptr;
+      expect(!signal.multiplexed_at || has_multiplexor, "a signal without its multiplexor");
+    }
+  }
 }
 
 }  // namespace bevloc::fuzz

@@ -69,7 +69,7 @@ Status drive(const std::string& config_file, const std::string& channel) {
   drivers::MonotonicClock clock;
   const Time drive_start = clock.now() + kLead;
   const Time drive_end = drive_start + from_seconds(config->simulation->duration_s);
-  SimulatedVehicle vehicle(*drive, config->simulation->seed, config->can.base_ids, std::move(*bus),
+  SimulatedVehicle vehicle(*drive, config->simulation->seed, config->can, std::move(*bus),
                            drive_start);
   Beat beat(channel, drive_start, config->cameras.rate_hz);
   announce(drive_start, clock.now());

@@ -1,0 +1,328 @@
+/* Reads bevloc's pose from the CAN bus and says whether a function may use it. C99, one header, no
+   allocation, no global state. docs/vehicle-bus.md shows its use; docs/can.md is the reference.
+
+   Checks every frame (AUTOSAR E2E profile P02, or P05 for CAN FD), puts the frames of one EPOCH
+   together, watches the time, and compares the protection levels with your alert limits:
+
+     struct bevloc_receiver receiver;
+     bevloc_init(&receiver, BEVLOC_LOCALIZER_BASE, alert_limits);
+     // for every frame, with the time of your own clock:
+     bevloc_receive(&receiver, id, data, length, now_us);
+     // whenever the function needs the pose:
+     if (bevloc_answer(&receiver, now_us) == BEVLOC_USABLE) use(receiver.pose);
+
+   One thread per receiver. */
+#ifndef BEVLOC_H
+#define BEVLOC_H
+
+#include <stddef.h>
+#include <string.h>
+
+#include "can/consumer/bevloc_messages.h"
+
+/* Why the latest pose may or may not be used, in the order of the checks. */
+enum bevloc_answer {
+  BEVLOC_USABLE,
+  BEVLOC_NO_POSE,       /* no complete pose was received yet */
+  BEVLOC_TIMEOUT,       /* none for three cycles, or no LOC_Status for three of its cycles */
+  BEVLOC_NOT_VALID,     /* the state is neither TRACKING nor DEGRADED */
+  BEVLOC_NOT_AVAILABLE, /* a value, a protection level or the integrity risk is not available */
+  BEVLOC_BEYOND_LIMIT   /* a protection level is beyond its alert limit, or the risk too high */
+};
+
+/* The largest errors with which the function is still safe. 0: the function does not need this
+   axis. */
+struct bevloc_alert_limits {
+  double lateral_m;
+  double longitudinal_m;
+  double yaw_deg;
+  int risk_exponent; /* n: a risk of at most 10^-n for each pose */
+};
+
+/* The frames of the messages that make one pose, in the order of sending. */
+enum { BEVLOC_PARTS = 8 };
+
+struct bevloc_pose {
+  uint64_t received_us; /* when its last frame arrived: it holds at the moment of sending */
+  double age_ms;        /* of the newest images behind it */
+  double latitude_deg, longitude_deg;
+  double east_m, north_m; /* in the map */
+  double heading_deg;     /* clockwise from true north */
+  double speed_mps;
+  double lateral_m, longitudinal_m, yaw_deg; /* protection levels */
+  int risk_exponent;
+  bool complete; /* no value is missing */
+};
+
+struct bevloc_counters {
+  uint32_t ok, lost, repeated, wrong_crc, wrong_length;
+  uint32_t incomplete; /* epochs with a missing frame */
+};
+
+struct bevloc_receiver {
+  uint32_t base_id;
+  struct bevloc_alert_limits limits;
+  struct bevloc_counters counters;
+  bool has_status, has_pose;
+  int state;          /* BEVLOC_LOC_Status_State_... */
+  int time_source;    /* BEVLOC_LOC_Status_TimeSource_... */
+  uint64_t status_us; /* when LOC_Status arrived */
+  struct bevloc_pose pose;
+  /* inside */
+  int last_counter[16]; /* by id_offset; -1: none */
+  uint8_t frames[BEVLOC_PARTS][8];
+  unsigned present;
+  int epoch;
+  uint64_t epoch_us;
+};
+
+static inline const struct bevloc_message* bevloc_part(int part) {
+  const struct bevloc_message* parts[BEVLOC_PARTS];
+  parts[0] = &BEVLOC_LOC_Time;
+  parts[1] = &BEVLOC_LOC_Latitude;
+  parts[2] = &BEVLOC_LOC_Longitude;
+  parts[3] = &BEVLOC_LOC_PosLocal;
+  parts[4] = &BEVLOC_LOC_Attitude;
+  parts[5] = &BEVLOC_LOC_Velocity;
+  parts[6] = &BEVLOC_LOC_StdDev;
+  parts[7] = &BEVLOC_LOC_Integrity;
+  return parts[part];
+}
+
+static inline void bevloc_init(struct bevloc_receiver* receiver, uint32_t base_id,
+                               struct bevloc_alert_limits limits) {
+  int i;
+  memset(receiver, 0, sizeof *receiver);
+  receiver->base_id = base_id;
+  receiver->limits = limits;
+  receiver->epoch = -1;
+  for (i = 0; i < 16; ++i) receiver->last_counter[i] = -1;
+}
+
+/* CRC-8H2F over bytes 1 to the last, then the data id. */
+static inline uint8_t bevloc_crc8(const uint8_t* data, size_t length, uint8_t data_id) {
+  uint8_t crc = 0xFF;
+  size_t i;
+  int bit;
+  for (i = 1; i <= length; ++i) {
+    crc = (uint8_t)(crc ^ (i < length ? data[i] : data_id));
+    for (bit = 0; bit < 8; ++bit) {
+      crc = (uint8_t)((crc & 0x80) != 0 ? (crc << 1) ^ 0x2F : crc << 1);
+    }
+  }
+  return (uint8_t)(crc ^ 0xFF);
+}
+
+/* CRC-16/CCITT-FALSE over bytes 2 to the last, then the data id, low byte first. */
+static inline uint16_t bevloc_crc16(const uint8_t* data, size_t length, uint16_t data_id) {
+  uint16_t crc = 0xFFFF;
+  size_t i;
+  int bit;
+  for (i = 2; i < length + 2; ++i) {
+    const uint8_t byte = i < length ? data[i] : (uint8_t)(data_id >> (i == length ? 0 : 8));
+    crc = (uint16_t)(crc ^ (uint16_t)(byte << 8));
+    for (bit = 0; bit < 8; ++bit) {
+      crc = (uint16_t)((crc & 0x8000) != 0 ? (crc << 1) ^ 0x1021 : crc << 1);
+    }
+  }
+  return crc;
+}
+
+/* False if the signal is not available. */
+static inline bool bevloc_decode(const uint8_t* data, const struct bevloc_signal* signal,
+                                 double* value) {
+  uint64_t raw = 0;
+  int64_t number;
+  unsigned i;
+  for (i = 0; i < signal->length_bits; ++i) {
+    const unsigned bit = signal->start_bit + i;
+    raw |= (uint64_t)(data[bit / 8] >> (bit % 8) & 1) << i;
+  }
+  number = (int64_t)raw;
+  if (signal->is_signed && (raw >> (signal->length_bits - 1) & 1) != 0) {
+    number = (int64_t)raw - ((int64_t)1 << signal->length_bits);
+  }
+  if (signal->has_sna) {
+    const int64_t sna = signal->is_signed ? -((int64_t)1 << (signal->length_bits - 1))
+                                          : ((int64_t)1 << signal->length_bits) - 1;
+    if (number == sna) return false;
+  }
+  *value = (double)number * signal->scale + signal->offset;
+  /* The limits are whole steps, so half a step is enough for rounding. */
+  return *value >= signal->min - 0.5 * signal->scale && *value <= signal->max + 0.5 * signal->scale;
+}
+
+/* Length, checksum and counter of one frame. */
+static inline bool bevloc_check(struct bevloc_receiver* receiver,
+                                const struct bevloc_message* message, const uint8_t* data,
+                                size_t length) {
+  int* last = &receiver->last_counter[message->id_offset];
+  const int counters = message->is_fd ? 256 : 16;
+  int counter;
+  bool good;
+  if (length != message->length) {
+    ++receiver->counters.wrong_length;
+    return false;
+  }
+  if (message->is_fd) {
+    good = bevloc_crc16(data, length, message->data_id) == (uint16_t)(data[0] | data[1] << 8);
+  } else {
+    good = bevloc_crc8(data, length, (uint8_t)message->data_id) == data[0];
+  }
+  if (!good) {
+    ++receiver->counters.wrong_crc;
+    return false;
+  }
+  counter = message->is_fd ? data[2] : data[1] & 0x0F;
+  if (counter == *last) {
+    ++receiver->counters.repeated;
+    return false;
+  }
+  if (*last >= 0) {
+    receiver->counters.lost += (uint32_t)((counter - *last - 1 + counters) % counters);
+  }
+  *last = counter;
+  ++receiver->counters.ok;
+  return true;
+}
+
+static inline void bevloc_take_status(struct bevloc_receiver* receiver, const uint8_t* data,
+                                      uint64_t now_us) {
+  double value = 0;
+  if (bevloc_decode(data, &BEVLOC_LOC_Status_TimeSource, &value)) {
+    receiver->time_source = (int)value;
+  }
+  if (!bevloc_decode(data, &BEVLOC_LOC_Status_State, &value)) value = BEVLOC_LOC_Status_State_FAULT;
+  receiver->state = (int)value;
+  receiver->has_status = true;
+  receiver->status_us = now_us;
+}
+
+static inline void bevloc_take_pose(struct bevloc_receiver* receiver, uint64_t now_us) {
+  struct bevloc_pose* pose = &receiver->pose;
+  double risk = 0;
+  bool complete = true;
+  memset(pose, 0, sizeof *pose);
+  complete &= bevloc_decode(receiver->frames[0], &BEVLOC_LOC_Time_CaptureAge, &pose->age_ms);
+  complete &=
+      bevloc_decode(receiver->frames[1], &BEVLOC_LOC_Latitude_Latitude, &pose->latitude_deg);
+  complete &=
+      bevloc_decode(receiver->frames[2], &BEVLOC_LOC_Longitude_Longitude, &pose->longitude_deg);
+  complete &= bevloc_decode(receiver->frames[3], &BEVLOC_LOC_PosLocal_LocalEast, &pose->east_m);
+  complete &= bevloc_decode(receiver->frames[3], &BEVLOC_LOC_PosLocal_LocalNorth, &pose->north_m);
+  complete &= bevloc_decode(receiver->frames[4], &BEVLOC_LOC_Attitude_Heading, &pose->heading_deg);
+  complete &= bevloc_decode(receiver->frames[5], &BEVLOC_LOC_Velocity_VelocityX, &pose->speed_mps);
+  complete &=
+      bevloc_decode(receiver->frames[7], &BEVLOC_LOC_Integrity_ProtectionLateral, &pose->lateral_m);
+  complete &= bevloc_decode(receiver->frames[7], &BEVLOC_LOC_Integrity_ProtectionLongitudinal,
+                            &pose->longitudinal_m);
+  complete &=
+      bevloc_decode(receiver->frames[7], &BEVLOC_LOC_Integrity_ProtectionYaw, &pose->yaw_deg);
+  complete &=
+      bevloc_decode(receiver->frames[7], &BEVLOC_LOC_Integrity_IntegrityRiskExponent, &risk);
+  pose->risk_exponent = (int)risk;
+  pose->complete = complete;
+  pose->received_us = now_us;
+  receiver->has_pose = true;
+}
+
+/* Adds one checked frame of a pose. True when the pose is complete. */
+static inline bool bevloc_take_part(struct bevloc_receiver* receiver, int part, int epoch,
+                                    const uint8_t* data, size_t length, uint64_t now_us) {
+  const bool continues = epoch == receiver->epoch && now_us - receiver->epoch_us < 40000 &&
+                         (receiver->present >> part & 1) == 0;
+  if (!continues) {
+    if (receiver->present != 0) ++receiver->counters.incomplete;
+    receiver->present = 0;
+    receiver->epoch = epoch;
+    receiver->epoch_us = now_us;
+  }
+  memcpy(receiver->frames[part], data, length);
+  receiver->present |= 1u << part;
+  if (receiver->present != (1u << BEVLOC_PARTS) - 1) return false;
+  receiver->present = 0;
+  bevloc_take_pose(receiver, now_us);
+  return true;
+}
+
+/* Takes LOC_Solution apart into the contents of the classic messages. */
+static inline bool bevloc_take_solution(struct bevloc_receiver* receiver, const uint8_t* data,
+                                        uint64_t now_us) {
+  uint8_t status[8] = {0};
+  int part;
+  memcpy(status + 2, data + BEVLOC_LOC_Status.fd_first_byte, BEVLOC_LOC_Status.length - 2u);
+  bevloc_take_status(receiver, status, now_us);
+  for (part = 0; part < BEVLOC_PARTS; ++part) {
+    const struct bevloc_message* message = bevloc_part(part);
+    memcpy(receiver->frames[part] + 2, data + message->fd_first_byte, message->length - 2u);
+  }
+  bevloc_take_pose(receiver, now_us);
+  return true;
+}
+
+/* Takes any frame of the bus; `now_us` is the time of arrival on your clock. True when it completes
+   a pose. */
+static inline bool bevloc_receive(struct bevloc_receiver* receiver, uint32_t id,
+                                  const uint8_t* data, size_t length, uint64_t now_us) {
+  int part;
+  const uint32_t offset = id - receiver->base_id;
+  if (offset == BEVLOC_LOC_Status.id_offset) {
+    if (bevloc_check(receiver, &BEVLOC_LOC_Status, data, length)) {
+      bevloc_take_status(receiver, data, now_us);
+    }
+    return false;
+  }
+  if (offset == BEVLOC_LOC_Solution.id_offset) {
+    return bevloc_check(receiver, &BEVLOC_LOC_Solution, data, length) &&
+           bevloc_take_solution(receiver, data, now_us);
+  }
+  for (part = 0; part < BEVLOC_PARTS; ++part) {
+    const struct bevloc_message* message = bevloc_part(part);
+    if (offset != message->id_offset) continue;
+    return bevloc_check(receiver, message, data, length) &&
+           bevloc_take_part(receiver, part, data[1] >> 4, data, length, now_us);
+  }
+  return false;
+}
+
+/* Whether the latest pose may be used now, and else why not. */
+static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* receiver,
+                                               uint64_t now_us) {
+  const struct bevloc_pose* pose = &receiver->pose;
+  const struct bevloc_alert_limits* limits = &receiver->limits;
+  if (!receiver->has_pose || !receiver->has_status) return BEVLOC_NO_POSE;
+  if (now_us - pose->received_us > 3000u * BEVLOC_LOC_Time.cycle_ms) return BEVLOC_TIMEOUT;
+  if (now_us - receiver->status_us > 3000u * BEVLOC_LOC_Status.cycle_ms) return BEVLOC_TIMEOUT;
+  if (receiver->state != BEVLOC_LOC_Status_State_TRACKING &&
+      receiver->state != BEVLOC_LOC_Status_State_DEGRADED) {
+    return BEVLOC_NOT_VALID;
+  }
+  if (!pose->complete) return BEVLOC_NOT_AVAILABLE;
+  if ((limits->lateral_m > 0 && pose->lateral_m > limits->lateral_m) ||
+      (limits->longitudinal_m > 0 && pose->longitudinal_m > limits->longitudinal_m) ||
+      (limits->yaw_deg > 0 && pose->yaw_deg > limits->yaw_deg) ||
+      pose->risk_exponent < limits->risk_exponent) {
+    return BEVLOC_BEYOND_LIMIT;
+  }
+  return BEVLOC_USABLE;
+}
+
+static inline const char* bevloc_answer_name(enum bevloc_answer answer) {
+  switch (answer) {
+    case BEVLOC_USABLE:
+      return "usable";
+    case BEVLOC_NO_POSE:
+      return "no_pose";
+    case BEVLOC_TIMEOUT:
+      return "timeout";
+    case BEVLOC_NOT_VALID:
+      return "not_valid";
+    case BEVLOC_NOT_AVAILABLE:
+      return "not_available";
+    case BEVLOC_BEYOND_LIMIT:
+      return "beyond_limit";
+  }
+  return "";
+}
+
+#endif

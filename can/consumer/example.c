@@ -1,0 +1,111 @@
+/* Prints each change of the answer, and a pose a second, from a candump log or a CAN interface:
+     consumer_c can.log
+     consumer_c --interface vcan0
+   The alert limits are those of a freeway (docs/can.md). */
+#define _POSIX_C_SOURCE 200809L
+#include <inttypes.h>
+#include <linux/can.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "can/consumer/bevloc.h"
+#include "can/consumer/candump_line.h"
+
+static const struct bevloc_alert_limits kFreeway = {0.57, 1.40, 1.50, 5};
+
+/* The same in all three examples, so that their outputs can be compared. */
+struct printer {
+  struct bevloc_receiver receiver;
+  uint64_t first_us;
+  uint64_t next_us;
+  int answer;
+};
+
+static void print_line(struct printer* printer, uint64_t now_us, enum bevloc_answer answer) {
+  const struct bevloc_pose* pose = &printer->receiver.pose;
+  printf("%.3f %s", (double)(now_us - printer->first_us) * 1e-6, bevloc_answer_name(answer));
+  if (answer == BEVLOC_USABLE) {
+    printf(" east %.2f north %.2f heading %.2f lateral %.2f longitudinal %.2f yaw %.2f",
+           pose->east_m, pose->north_m, pose->heading_deg, pose->lateral_m, pose->longitudinal_m,
+           pose->yaw_deg);
+  }
+  printf("\n");
+}
+
+static void look(struct printer* printer, uint64_t now_us) {
+  const enum bevloc_answer answer = bevloc_answer(&printer->receiver, now_us);
+  if ((int)answer == printer->answer && (answer != BEVLOC_USABLE || now_us < printer->next_us))
+    return;
+  print_line(printer, now_us, answer);
+  printer->answer = (int)answer;
+  printer->next_us = now_us + 1000000;
+}
+
+static void take(struct printer* printer, uint32_t id, const uint8_t* data, size_t length,
+                 uint64_t now_us) {
+  if (printer->first_us == 0) printer->first_us = now_us;
+  if (printer->answer >= 0) look(printer, now_us);
+  bevloc_receive(&printer->receiver, id, data, length, now_us);
+  look(printer, now_us);
+}
+
+static void print_counters(const struct bevloc_counters* counters) {
+  printf("frames: %" PRIu32 " ok, %" PRIu32 " lost, %" PRIu32 " repeated, %" PRIu32
+         " wrong CRC, %" PRIu32 " wrong length; %" PRIu32 " incomplete poses\n",
+         counters->ok, counters->lost, counters->repeated, counters->wrong_crc,
+         counters->wrong_length, counters->incomplete);
+}
+
+static int read_log(struct printer* printer, const char* path) {
+  char line[512];
+  FILE* log = fopen(path, "r");
+  if (log == NULL) {
+    fprintf(stderr, "%s: found no readable file, wanted a candump log\n", path);
+    return 2;
+  }
+  while (fgets(line, sizeof line, log) != NULL) {
+    struct candump_line frame;
+    if (!candump_parse(line, &frame)) continue; /* remote and extended frames */
+    take(printer, frame.id, frame.data, frame.length, frame.time_us);
+  }
+  fclose(log);
+  print_counters(&printer->receiver.counters);
+  return 0;
+}
+
+static int read_interface(struct printer* printer, const char* interface) {
+  struct canfd_frame frame;
+  struct sockaddr_can address = {0};
+  const int on = 1;
+  const int bus = socket(PF_CAN, SOCK_RAW, CAN_RAW);
+  address.can_family = AF_CAN;
+  address.can_ifindex = (int)if_nametoindex(interface);
+  if (bus < 0 || address.can_ifindex == 0 ||
+      setsockopt(bus, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) != 0 ||
+      bind(bus, (struct sockaddr*)&address, sizeof address) != 0) {
+    fprintf(stderr, "%s: found no such CAN interface, wanted one that is up\n", interface);
+    return 2;
+  }
+  while (read(bus, &frame, sizeof frame) > 0) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    if ((frame.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_ERR_FLAG)) != 0) continue;
+    take(printer, frame.can_id, frame.data, frame.len,
+         (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u);
+  }
+  return 2;
+}
+
+int main(int argc, char** argv) {
+  struct printer printer = {.answer = -1};
+  bevloc_init(&printer.receiver, BEVLOC_LOCALIZER_BASE, kFreeway);
+  if (argc == 3 && strcmp(argv[1], "--interface") == 0) return read_interface(&printer, argv[2]);
+  if (argc == 2) return read_log(&printer, argv[1]);
+  fprintf(stderr, "usage: consumer_c FILE | consumer_c --interface NAME\n");
+  return 2;
+}

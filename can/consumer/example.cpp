@@ -1,0 +1,71 @@
+// The example of example.c in C++, for candump logs: consumer_cpp can.log
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include "can/consumer/bevloc.hpp"
+#include "can/consumer/candump_line.h"
+
+namespace {
+
+using std::chrono::microseconds;
+
+constexpr bevloc::consumer::AlertLimits kFreeway = {0.57, 1.40, 1.50, 5};
+
+/// Prints each change of the answer, and a pose a second.
+class Printer {
+ public:
+  void take(const candump_line& frame) {
+    const microseconds now(frame.time_us);
+    if (!first_) first_ = now;
+    if (answer_) look(now);
+    receiver_.receive(frame.id, {frame.data, frame.length}, now);
+    look(now);
+  }
+
+  void print_counters() const {
+    const auto& counters = receiver_.counters();
+    std::printf(
+        "frames: %u ok, %u lost, %u repeated, %u wrong CRC, %u wrong length; %u incomplete poses\n",
+        counters.ok, counters.lost, counters.repeated, counters.wrong_crc, counters.wrong_length,
+        counters.incomplete);
+  }
+
+ private:
+  void look(microseconds now) {
+    const auto answer = receiver_.answer(now);
+    if (answer == answer_ && (answer != BEVLOC_USABLE || now < next_)) return;
+    const double time_s = std::chrono::duration<double>(now - *first_).count();
+    std::printf("%.3f %s", time_s, std::string(bevloc::consumer::name_of(answer)).c_str());
+    if (const auto pose = receiver_.usable_pose(now)) {
+      std::printf(" east %.2f north %.2f heading %.2f lateral %.2f longitudinal %.2f yaw %.2f",
+                  pose->east_m, pose->north_m, pose->heading_deg, pose->lateral_m,
+                  pose->longitudinal_m, pose->yaw_deg);
+    }
+    std::printf("\n");
+    answer_ = answer;
+    next_ = now + std::chrono::seconds(1);
+  }
+
+  bevloc::consumer::Receiver receiver_{kFreeway};
+  std::optional<microseconds> first_;
+  std::optional<bevloc::consumer::Answer> answer_;
+  microseconds next_{};
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::ifstream log(argc == 2 ? argv[1] : "");
+  if (!log) {
+    std::fprintf(stderr, "usage: consumer_cpp FILE, a candump log\n");
+    return 2;
+  }
+  Printer printer;
+  candump_line frame{};
+  for (std::string line; std::getline(log, line);) {
+    if (candump_parse(line.c_str(), &frame)) printer.take(frame);
+  }
+  printer.print_counters();
+}

@@ -1,0 +1,81 @@
+// Reads DBC files, in which vehicle makers describe the messages and signals of their buses.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "can/dbc/signal_layout.h"
+#include "common/result.h"
+
+namespace bevloc::can {
+
+/// One line of VAL_: the name of a raw value.
+struct DbcValueName {
+  int64_t raw = 0;
+  std::string name;
+};
+
+struct DbcSignal {
+  std::string name;
+  int line = 0;
+  SignalLayout layout;
+  double min = 0.0;  ///< physical; min == max: the file states no range
+  double max = 0.0;
+  std::string unit;
+  bool is_multiplexor = false;               ///< M: says which multiplexed signals a frame has
+  std::optional<uint64_t> multiplexed_at{};  ///< mN: only in frames whose multiplexor is N
+  std::vector<DbcValueName> value_names{};
+
+  /// Null if no value has this name.
+  const DbcValueName* find_value(std::string_view value_name) const;
+};
+
+struct DbcMessage {
+  std::string name;
+  int line = 0;
+  uint32_t id = 0;
+  bool is_extended = false;  ///< an identifier of 29 bits
+  uint8_t length = 0;        ///< bytes; more than 8 on CAN FD only
+  std::string sender;
+  std::vector<DbcSignal> signals{};
+  /// Values of BA_ for this message, and the defaults of the file (BA_DEF_DEF_). Values of ENUM
+  /// attributes are names.
+  std::map<std::string, std::string, std::less<>> attributes{};
+  /// Multiplexors behind multiplexors (mNM, SG_MUL_VAL_): which multiplexed signals a frame has is
+  /// not known.
+  bool nested_multiplexing = false;
+
+  /// Null if there is none.
+  const DbcSignal* find(std::string_view signal_name) const;
+  const DbcSignal* multiplexor() const;
+  /// GenMsgCycleTime; nothing if the file does not state it.
+  std::optional<double> cycle_ms() const;
+};
+
+struct Dbc {
+  std::string file;
+  std::vector<DbcMessage> messages;
+  /// Number of statements of each kind that say nothing about how frames are read (comments, nodes,
+  /// environment variables and so on).
+  std::map<std::string, size_t> skipped;
+
+  /// Null if there is none.
+  const DbcMessage* find(std::string_view message_name) const;
+  const DbcMessage* find(uint32_t id, bool is_extended) const;
+};
+
+/// Reads BO_, SG_, VAL_, BA_ (of messages), SIG_VALTYPE_ and SG_MUL_VAL_, and skips and counts
+/// other statements. Fails with "file:line: found X, wanted Y" for what it cannot read, for names
+/// and identifiers that occur twice, for signals beyond their message, and for statements about
+/// missing messages or signals. Text that is not UTF-8 is read as Latin-1. Errors show `name` as
+/// the file.
+Result<Dbc> parse_dbc(std::string_view text, const std::string& name);
+Result<Dbc> read_dbc_file(const std::filesystem::path& path);
+
+}  // namespace bevloc::can

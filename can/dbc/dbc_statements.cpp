@@ -1,0 +1,106 @@
+// The statements of DBC files about messages and signals that were read before.
+#include "can/dbc/dbc_reader.h"
+
+namespace bevloc::can {
+
+void DbcReader::read_value_names() {
+  if (!next_is_number()) return skip_statement("VAL_ (environment variable)");
+  DbcMessage* message = take_message();
+  DbcSignal* signal = take_signal_of(message);
+  while (!tokens_.peek().is_sign(';')) {
+    DbcValueName value;
+    value.raw = take_raw();
+    if (tokens_.peek().kind != DbcToken::Kind::kText) {
+      refuse(tokens_.peek(), "the name of a value in quotes");
+    }
+    value.name = tokens_.take().text;
+    if (signal != nullptr) signal->value_names.push_back(std::move(value));
+  }
+  tokens_.take();
+}
+
+void DbcReader::read_value_type() {
+  DbcMessage* message = take_message();
+  DbcSignal* signal = take_signal_of(message);
+  if (tokens_.peek().is_sign(':')) tokens_.take();
+  const DbcToken token = tokens_.peek();
+  const uint64_t type = take_unsigned("0 (integer), 1 (float) or 2 (double)");
+  if (type > 2) refuse(token, "0 (integer), 1 (float) or 2 (double)");
+  take_sign(';');
+  if (signal == nullptr || type == 0) return;
+  const int bits = type == 1 ? 32 : 64;
+  if (signal->layout.length_bits != bits) {
+    refuse(token.line,
+           fmt::format("signal {} with {} bits", signal->name, signal->layout.length_bits),
+           fmt::format("{} bits for this type", bits));
+  }
+  signal->layout.type = type == 1 ? RawType::kFloat : RawType::kDouble;
+}
+
+void DbcReader::read_nested_multiplexing() {
+  DbcMessage* message = take_message();
+  take_signal_of(message);
+  if (message != nullptr) message->nested_multiplexing = true;
+  while (!tokens_.peek().is_sign(';')) {
+    if (tokens_.peek().kind == DbcToken::Kind::kEnd) refuse(tokens_.peek(), "';'");
+    tokens_.take();
+  }
+  tokens_.take();
+}
+
+void DbcReader::read_attribute_definition() {
+  const bool of_messages = tokens_.peek().is_word("BO_");
+  if (tokens_.peek().kind == DbcToken::Kind::kWord) tokens_.take();
+  const DbcToken name = tokens_.take();
+  if (name.kind != DbcToken::Kind::kText) refuse(name, "the name of an attribute in quotes");
+  if (of_messages) message_attributes_.insert(name.text);
+  const bool is_enum = tokens_.peek().is_word("ENUM");
+  while (!tokens_.peek().is_sign(';')) {
+    const DbcToken token = tokens_.take();
+    if (token.kind == DbcToken::Kind::kEnd) refuse(token, "';'");
+    if (is_enum && token.kind == DbcToken::Kind::kText) enums_[name.text].push_back(token.text);
+  }
+  tokens_.take();
+}
+
+/// The value of an attribute; that of an ENUM may be a name or its number.
+std::string DbcReader::attribute_value(const std::string& name) {
+  const DbcToken value = tokens_.take();
+  if (value.kind != DbcToken::Kind::kText && value.kind != DbcToken::Kind::kWord) {
+    refuse(value, "the value of an attribute");
+  }
+  const auto values = enums_.find(name);
+  if (values == enums_.end() || value.kind == DbcToken::Kind::kText) return value.text;
+  const uint64_t number = unsigned_of(value, "the number of an ENUM value");
+  if (number >= values->second.size()) {
+    refuse(value, fmt::format("0 to {} for attribute {}", values->second.size() - 1, name));
+  }
+  return values->second[number];
+}
+
+void DbcReader::read_attribute_default() {
+  const DbcToken name = tokens_.take();
+  if (name.kind != DbcToken::Kind::kText) refuse(name, "the name of an attribute in quotes");
+  defaults_[name.text] = attribute_value(name.text);
+  take_sign(';');
+}
+
+void DbcReader::read_attribute() {
+  const DbcToken name = tokens_.take();
+  if (name.kind != DbcToken::Kind::kText) refuse(name, "the name of an attribute in quotes");
+  if (!tokens_.peek().is_word("BO_")) return skip_statement("BA_ (not of a message)");
+  tokens_.take();
+  DbcMessage* message = take_message();
+  const std::string value = attribute_value(name.text);
+  if (message != nullptr) message->attributes[name.text] = value;
+  take_sign(';');
+}
+
+/// Adds the defaults of the attributes.
+void DbcReader::complete(DbcMessage& message) const {
+  for (const auto& [name, value] : defaults_) {
+    if (message_attributes_.contains(name)) message.attributes.emplace(name, value);
+  }
+}
+
+}  // namespace bevloc::can

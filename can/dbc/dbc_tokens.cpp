@@ -1,0 +1,78 @@
+#include "can/dbc/dbc_tokens.h"
+
+#include <utility>
+
+namespace bevloc::can {
+namespace {
+
+constexpr std::string_view kSigns = ":;,|@()[]";
+
+bool is_space(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
+}  // namespace
+
+DbcToken DbcTokens::take() {
+  DbcToken taken = std::move(next_);
+  advance();
+  return taken;
+}
+
+void DbcTokens::skip_space() {
+  while (!rest_.empty() && is_space(rest_[0])) {
+    if (rest_[0] == '\n') {
+      ++line_;
+      starts_line_ = true;
+    }
+    rest_.remove_prefix(1);
+  }
+}
+
+std::string DbcTokens::take_text() {
+  std::string text;
+  rest_.remove_prefix(1);
+  while (!rest_.empty() && rest_[0] != '"') {
+    const bool escaped =
+        rest_[0] == '\\' && rest_.size() > 1 && (rest_[1] == '"' || rest_[1] == '\\');
+    if (escaped) rest_.remove_prefix(1);
+    if (rest_[0] == '\n') ++line_;
+    text += rest_[0];
+    rest_.remove_prefix(1);
+  }
+  if (!rest_.empty()) rest_.remove_prefix(1);
+  return text;
+}
+
+void DbcTokens::advance() {
+  skip_space();
+  next_ = {.kind = DbcToken::Kind::kEnd, .text = {}, .line = line_, .starts_line = starts_line_};
+  starts_line_ = false;
+  if (rest_.empty()) return;
+  if (rest_[0] == '"') {
+    next_.kind = DbcToken::Kind::kText;
+    next_.text = take_text();
+    return;
+  }
+  size_t length = 1;
+  next_.kind = DbcToken::Kind::kSign;
+  if (kSigns.find(rest_[0]) == std::string_view::npos) {
+    next_.kind = DbcToken::Kind::kWord;
+    while (length < rest_.size() && !is_space(rest_[length]) && rest_[length] != '"' &&
+           kSigns.find(rest_[length]) == std::string_view::npos) {
+      ++length;
+    }
+  }
+  next_.text = std::string(rest_.substr(0, length));
+  rest_.remove_prefix(length);
+}
+
+std::string describe(const DbcToken& token) {
+  constexpr size_t kLongest = 40;
+  if (token.kind == DbcToken::Kind::kEnd) return "the end of the file";
+  const std::string shown =
+      token.text.size() <= kLongest ? token.text : token.text.substr(0, kLongest) + "...";
+  return token.kind == DbcToken::Kind::kText ? fmt::format("\"{}\"", shown) : shown;
+}
+
+}  // namespace bevloc::can

@@ -1,0 +1,49 @@
+// Where the bits of a signal lie in a frame, in either byte order, and what they mean.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace bevloc::can {
+
+enum class ByteOrder : uint8_t {
+  kIntel,     ///< the start bit is the lowest bit of the signal
+  kMotorola,  ///< the start bit is the highest bit of the signal
+};
+enum class RawType : uint8_t { kUnsigned, kSigned, kFloat, kDouble };
+
+/// Bits are numbered as in DBC files: bit 0 is the lowest bit of byte 0, bit 8 that of byte 1.
+/// physical = raw * scale + offset.
+struct SignalLayout {
+  int start_bit = 0;
+  int length_bits = 0;  ///< 1 to 64
+  ByteOrder order = ByteOrder::kIntel;
+  RawType type = RawType::kUnsigned;
+  double scale = 1.0;
+  double offset = 0.0;
+
+  bool operator==(const SignalLayout&) const = default;
+};
+
+/// Number of bytes that a frame must have for this signal.
+size_t bytes_needed(const SignalLayout& layout);
+
+/// The functions below want a frame of at least bytes_needed().
+
+uint64_t raw_bits_from(const SignalLayout& layout, std::span<const uint8_t> bytes);
+/// The raw value as a whole number, with its sign. An unsigned value of 64 bits wraps to negative;
+/// of kFloat and kDouble these are the bits.
+int64_t raw_from(const SignalLayout& layout, std::span<const uint8_t> bytes);
+/// Not finite if a float of the frame is not.
+double physical_from(const SignalLayout& layout, std::span<const uint8_t> bytes);
+
+void insert_bits(const SignalLayout& layout, uint64_t raw, std::span<uint8_t> bytes);
+/// Writes the nearest value, limited to what the bits can hold. `physical` must be finite.
+void insert_physical(const SignalLayout& layout, double physical, std::span<uint8_t> bytes);
+
+/// The lowest and highest physical values that the bits can hold. Infinite for floats.
+double lowest_physical(const SignalLayout& layout);
+double highest_physical(const SignalLayout& layout);
+
+}  // namespace bevloc::can

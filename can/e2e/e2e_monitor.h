@@ -1,0 +1,79 @@
+// Watches the counters of one protected message and decides whether its frames can be used.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "can/e2e/e2e.h"
+#include "can/e2e/e2e_state.h"
+#include "common/time.h"
+
+namespace bevloc::can {
+
+struct E2eReceiverParameters {
+  Duration cycle{};
+  /// MaxDeltaCounterInit: by how much the counter may rise within one cycle. Each further cycle
+  /// without a used frame allows one step more.
+  int max_delta_counter = 1;
+  /// SyncCounterInit: frames in sequence that prove a new sender after a wrong sequence.
+  int sync_frames = 3;
+  /// A sender that was silent for this many cycles may be replaced by another one.
+  int silent_cycles = 4;
+  /// So many repeated or wrong counters in the window show a second sender.
+  int second_sender = 5;
+  E2eStateParameters state{};
+};
+
+/// What the protection of one frame says, whatever the profile.
+struct E2eFrame {
+  bool right_length = false;
+  bool right_crc = false;
+  /// Nothing if the message has no counter: then neither repeated nor lost frames are noticed.
+  std::optional<uint8_t> counter{};
+};
+
+/// The receiving side of the E2E profiles (AUTOSAR_PRS_E2EProtocol): CRC, length, repeated counter,
+/// MaxDeltaCounter, and resynchronisation after a wrong sequence, on top of which E2eStateMachine
+/// decides. AUTOSAR counts calls of a periodic task; here the time of arrival counts the cycles.
+///
+/// Beyond the standard, a wrong sequence does not move the counter of a sender that is still there:
+/// frames that somebody else sends in between are refused, and the sender's own are used. One
+/// thread.
+class E2eMonitor {
+ public:
+  /// Counters run from 0 to `highest_counter`. A frame with a higher one must not be passed in as
+  /// one with the right CRC.
+  E2eMonitor(uint8_t highest_counter, const E2eReceiverParameters& parameters)
+      : highest_counter_(highest_counter), parameters_(parameters), machine_(parameters.state) {}
+
+  /// Returns whether the frame can be used: it passed the check, and the state is VALID.
+  bool accept(const E2eFrame& frame, Time received);
+
+  E2eState state() const { return machine_.state(); }
+  bool has_second_sender() const { return machine_.contradictions() >= parameters_.second_sender; }
+  const E2eCounters& counters() const { return counters_; }
+
+ private:
+  E2eCheck check(const E2eFrame& frame, Time received);
+  E2eCheck check_counter(uint8_t counter, Time received);
+  /// Follows a sequence that is not the used one. Returns true when it has proven itself.
+  bool follow(uint8_t counter);
+  int delta(uint8_t counter, uint8_t before) const {
+    const int count = highest_counter_ + 1;
+    return (counter - before + count) % count;
+  }
+  void add_missing_cycles(Time received);
+
+  uint8_t highest_counter_;
+  E2eReceiverParameters parameters_;
+  E2eStateMachine machine_;
+  std::optional<Time> arrival_;  ///< of the latest frame, usable or not
+
+  std::optional<uint8_t> counter_;        ///< of the latest frame in sequence
+  Time in_sequence_{};                    ///< when it arrived
+  std::optional<uint8_t> other_counter_;  ///< of a sequence that may replace it
+  int other_run_ = 0;
+  E2eCounters counters_;
+};
+
+}  // namespace bevloc::can

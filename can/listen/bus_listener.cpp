@@ -1,0 +1,141 @@
+#include "can/listen/bus_listener.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "can/messages/dbc_writer.h"
+#include "can/messages/message_table.h"
+
+namespace bevloc::can {
+namespace {
+
+/// Bevloc's own messages as a DBC file.
+Dbc own_dbc(const BaseIds& base) {
+  auto dbc = parse_dbc(dbc_text(base), "bevloc");
+  return dbc ? std::move(*dbc) : Dbc();
+}
+
+const Message* own_message(std::string_view name, uint32_t id, const BaseIds& base) {
+  const auto found = std::ranges::find_if(kMessages, [&](const Message* message) {
+    return message->name == name && message->id(base) == id;
+  });
+  return found == std::end(kMessages) ? nullptr : *found;
+}
+
+bool is_present(const DbcMessage& message, const DbcSignal& signal,
+                std::span<const uint8_t> bytes) {
+  if (!signal.multiplexed_at) return true;
+  if (message.nested_multiplexing) return false;
+  const SignalLayout& multiplexor = message.multiplexor()->layout;
+  return bytes_needed(multiplexor) <= bytes.size() &&
+         raw_bits_from(multiplexor, bytes) == *signal.multiplexed_at;
+}
+
+DecodedSignal decoded(const DbcSignal& signal, std::span<const uint8_t> bytes) {
+  DecodedSignal result{.signal = &signal, .value = physical_from(signal.layout, bytes)};
+  const int64_t raw = raw_from(signal.layout, bytes);
+  const auto named = std::ranges::find(signal.value_names, raw, &DbcValueName::raw);
+  if (named != signal.value_names.end()) result.value_name = named->name;
+  result.is_available = result.value_name != "SNA" && std::isfinite(result.value);
+  return result;
+}
+
+}  // namespace
+
+BusListener::BusListener(std::vector<Dbc> files, const BaseIds& base) : files_(std::move(files)) {
+  files_.push_back(own_dbc(base));
+  for (const Dbc& file : files_) {
+    for (const DbcMessage& message : file.messages) {
+      if (message.is_extended) continue;
+      Known known{.message = &message};
+      const Message* own = own_message(message.name, message.id, base);
+      if (own != nullptr) known.checker.emplace(own->protection(), own->length);
+      known_.emplace(message.id, known);
+    }
+  }
+}
+
+bool BusListener::knows(std::string_view message) const {
+  return std::ranges::any_of(files_,
+                             [&](const Dbc& file) { return file.find(message) != nullptr; });
+}
+
+void BusListener::add_signals(const DbcMessage& message, std::span<const uint8_t> bytes) {
+  for (const DbcSignal& signal : message.signals) {
+    const bool fits = bytes_needed(signal.layout) <= bytes.size();
+    if (fits && is_present(message, signal, bytes)) {
+      decoded_.signals.push_back(decoded(signal, bytes));
+    }
+  }
+}
+
+const DecodedFrame* BusListener::decode(const Frame& frame) {
+  const auto known = known_.find(frame.id);
+  if (known == known_.end()) {
+    ++unknown_;
+    return nullptr;
+  }
+  const DbcMessage& message = *known->second.message;
+  decoded_ = {.message = &message, .is_short = frame.length < message.length};
+  Total& total = totals_[message.name];
+  ++total.frames;
+  if (auto& checker = known->second.checker) {
+    decoded_.e2e = checker->check(frame);
+    if (!is_usable(*decoded_.e2e)) ++total.unusable;
+    total.lost = checker->counters().lost;
+  }
+  add_signals(message, frame.payload());
+  return &decoded_;
+}
+
+std::string_view name_of(E2eResult result) {
+  switch (result) {
+    case E2eResult::kOk:
+      return "ok";
+    case E2eResult::kSomeLost:
+      return "some_lost";
+    case E2eResult::kRepeated:
+      return "repeated";
+    case E2eResult::kWrongCrc:
+      return "wrong_crc";
+    case E2eResult::kWrongLength:
+      return "wrong_length";
+  }
+  return "";
+}
+
+std::string text_of(const DecodedFrame& frame, double time_s) {
+  std::string text = fmt::format("{:.6f} {}", time_s, frame.message->name);
+  if (frame.e2e) text += fmt::format(" {}", name_of(*frame.e2e));
+  if (frame.is_short) text += " short";
+  for (const DecodedSignal& signal : frame.signals) {
+    text += fmt::format(" {}=", signal.signal->name);
+    if (!signal.value_name.empty()) {
+      text += signal.value_name;
+    } else {
+      text += fmt::format("{:.10g}{}", signal.value, signal.signal->unit);
+    }
+  }
+  return text;
+}
+
+std::string json_of(const DecodedFrame& frame, double time_s) {
+  nlohmann::ordered_json json;
+  json["time_s"] = time_s;
+  json["id"] = frame.message->id;
+  json["message"] = frame.message->name;
+  if (frame.e2e) json["e2e"] = name_of(*frame.e2e);
+  if (frame.is_short) json["short"] = true;
+  auto& signals = json["signals"] = nlohmann::ordered_json::object();
+  for (const DecodedSignal& signal : frame.signals) {
+    auto& value = signals[signal.signal->name];
+    if (signal.is_available) value = signal.value;
+  }
+  return json.dump();
+}
+
+}  // namespace bevloc::can

@@ -1,0 +1,80 @@
+// Decodes every frame of a bus by DBC files, and checks the protection of bevloc's own messages.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "can/bus/frame.h"
+#include "can/dbc/dbc.h"
+#include "can/e2e/e2e.h"
+#include "can/messages/message.h"
+
+namespace bevloc::can {
+
+/// The value of one signal in one frame.
+struct DecodedSignal {
+  const DbcSignal* signal = nullptr;
+  double value = 0.0;
+  bool is_available = true;       ///< not the value that VAL_ names SNA
+  std::string_view value_name{};  ///< of VAL_; empty without one
+};
+
+/// One frame of a message that a DBC file describes.
+struct DecodedFrame {
+  const DbcMessage* message = nullptr;
+  std::optional<E2eResult> e2e{};  ///< of bevloc's own messages
+  bool is_short = false;           ///< fewer bytes than the message has; only what fits is decoded
+  std::vector<DecodedSignal> signals{};
+};
+
+/// One thread.
+class BusListener {
+ public:
+  struct Total {
+    uint64_t frames = 0;
+    uint64_t unusable = 0;  ///< of bevloc's own messages: repeated, wrong CRC or wrong length
+    uint64_t lost = 0;      ///< likewise: missing before a usable frame
+  };
+
+  /// Knows bevloc's messages with these base ids, unless one of the files has their identifiers.
+  BusListener(std::vector<Dbc> files, const BaseIds& base);
+
+  /// Nothing for a message that no file describes. Valid until the next call.
+  const DecodedFrame* decode(const Frame& frame);
+
+  /// By name of the message.
+  const std::map<std::string, Total>& totals() const { return totals_; }
+  uint64_t unknown() const { return unknown_; }
+  /// Whether some file has a message of this name.
+  bool knows(std::string_view message) const;
+
+ private:
+  struct Known {
+    const DbcMessage* message = nullptr;
+    std::optional<E2eChecker> checker{};
+  };
+
+  void add_signals(const DbcMessage& message, std::span<const uint8_t> bytes);
+
+  std::vector<Dbc> files_;
+  std::map<uint32_t, Known> known_;  ///< by identifier
+  std::map<std::string, Total> totals_;
+  uint64_t unknown_ = 0;
+  DecodedFrame decoded_;
+};
+
+std::string_view name_of(E2eResult result);
+
+/// "0.520000 LOC_PosLocal ok LocalEast=1.23m LocalNorth=-4.50m".
+std::string text_of(const DecodedFrame& frame, double time_s);
+/// One line of JSON with time_s, id, message, e2e and signals; the value of a signal that is not
+/// available is null.
+std::string json_of(const DecodedFrame& frame, double time_s);
+
+}  // namespace bevloc::can

@@ -1,0 +1,14 @@
+// Writes the constants of the localizer's messages for the consumers in can/consumer.
+#pragma once
+
+#include <string>
+
+namespace bevloc::can {
+
+/// A C99 header: length, cycle, data id and signals of each LOC_ message.
+std::string consumer_header_text();
+
+/// The same as a Python module.
+std::string consumer_python_text();
+
+}  // namespace bevloc::can

@@ -1,0 +1,51 @@
+#include "can/messages/sample_maker.h"
+
+namespace bevloc::can {
+
+GnssSample gnss_sample_of(const GeodeticFix& fix, GeoReference& geo, Time time) {
+  const double heading_deg = fix.heading ? fix.heading->heading_deg : 0.0;
+  const Se2 map_from_vehicle = geo.map_from_geodetic({fix.position, heading_deg});
+  GnssSample sample{.time = time,
+                    .east_m = map_from_vehicle.x_m,
+                    .north_m = map_from_vehicle.y_m,
+                    .sigma_east_m = fix.sigma_east_m,
+                    .sigma_north_m = fix.sigma_north_m};
+  if (fix.heading) sample.yaw = {map_from_vehicle.yaw_rad, radians(fix.heading->sigma_deg)};
+  return sample;
+}
+
+std::optional<VehicleSample> SampleMaker::odometry(const OdometryCheck::Wheels& wheels) {
+  const bool plausible = odometry_check_.judge(wheels) == OdometryVerdict::kPlausible;
+  if (!plausible || odometry_check_.is_slow()) note_implausible();
+  if (!plausible) return std::nullopt;
+  ++odometry_samples_;
+  return OdometrySample{.time = wheels.time,
+                        .speed_mps = wheels.speed_mps(),
+                        .yaw_rate_radps = wheels.yaw_rate_radps};
+}
+
+VehicleSample SampleMaker::gnss(const GeodeticFix& fix, Time time) {
+  ++gnss_samples_;
+  return gnss_sample_of(fix, geo_, time);
+}
+
+WhyMask SampleMaker::why() const {
+  const auto is_recent = [&](const std::optional<Time>& cause) {
+    return cause && latest_ - *cause <= VehicleDecoder::kWhyHold;
+  };
+  WhyMask why;
+  if (is_recent(implausible_)) why |= Why::kOdometryImplausible;
+  if (is_recent(foreign_sender_)) why |= Why::kForeignSender;
+  return why;
+}
+
+void SampleMaker::add_to(VehicleInputCounters& counters) const {
+  counters.contradicting_wheels += odometry_check_.count(OdometryVerdict::kWheelsContradictYawRate);
+  counters.odometry_jumps += odometry_check_.count(OdometryVerdict::kSpeedJump) +
+                             odometry_check_.count(OdometryVerdict::kYawRateJump);
+  counters.sharp_turns += odometry_check_.count(OdometryVerdict::kTooSharp);
+  counters.odometry_samples += odometry_samples_;
+  counters.gnss_samples += gnss_samples_;
+}
+
+}  // namespace bevloc::can

@@ -1,0 +1,58 @@
+// Makes samples from odometry and GNSS that were decoded, and remembers what is wrong with them.
+#pragma once
+
+#include <optional>
+
+#include "can/messages/geo_reference.h"
+#include "can/messages/odometry_check.h"
+#include "can/messages/vehicle_decoder.h"
+
+namespace bevloc::can {
+
+/// A position of the middle of the rear axle on the ground. Each sigma is one standard deviation.
+struct GeodeticFix {
+  struct Heading {
+    double heading_deg = 0.0;  ///< clockwise from true north
+    double sigma_deg = 0.0;
+  };
+
+  GeodeticPosition position;
+  double sigma_north_m = 0.0;
+  double sigma_east_m = 0.0;
+  std::optional<Heading> heading{};  ///< empty when the receiver has no heading
+};
+
+/// Returns the fix in the map frame.
+GnssSample gnss_sample_of(const GeodeticFix& fix, GeoReference& geo, Time time);
+
+/// Shared by the implementations of VehicleDecoder. Does not allocate after construction. One
+/// thread.
+class SampleMaker {
+ public:
+  SampleMaker(GeodeticPosition map_origin, const OdometryLimits& limits)
+      : geo_(map_origin), odometry_check_(limits) {}
+
+  /// To be called first for each frame, with its time of arrival.
+  void note_frame(Time received) { latest_ = received; }
+  void note_implausible() { implausible_ = latest_; }
+  void note_foreign_sender() { foreign_sender_ = latest_; }
+
+  /// Nothing if the wheels are not plausible.
+  std::optional<VehicleSample> odometry(const OdometryCheck::Wheels& wheels);
+  VehicleSample gnss(const GeodeticFix& fix, Time time);
+
+  WhyMask why() const;
+  /// Adds what was refused here.
+  void add_to(VehicleInputCounters& counters) const;
+
+ private:
+  GeoReference geo_;
+  OdometryCheck odometry_check_;
+  uint64_t odometry_samples_ = 0;
+  uint64_t gnss_samples_ = 0;
+  Time latest_{};                       ///< when the latest frame arrived
+  std::optional<Time> implausible_;     ///< the latest refused odometry
+  std::optional<Time> foreign_sender_;  ///< the latest sign of another sender
+};
+
+}  // namespace bevloc::can

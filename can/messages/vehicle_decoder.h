@@ -1,0 +1,51 @@
+// The interface of what decodes odometry and GNSS from the vehicle's CAN frames.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "can/bus/frame.h"
+#include "common/health_state.h"
+#include "common/vehicle_samples.h"
+
+namespace bevloc::can {
+
+struct VehicleInputCounters {
+  uint64_t foreign = 0;  ///< frames that are neither the vehicle's nor LOC_ messages
+  uint64_t own_ids = 0;  ///< frames of another node with an identifier of a LOC_ message
+  uint64_t wrong_crc = 0;
+  uint64_t wrong_length = 0;
+  uint64_t repeated = 0;
+  uint64_t wrong_sequence = 0;        ///< the counter does not continue the sequence
+  uint64_t not_valid = 0;             ///< good frames of a message that is not VALID (E2eReceiver)
+  uint64_t lost = 0;                  ///< missing frames, detected by the counter
+  uint64_t incomplete = 0;            ///< epochs with a missing message
+  uint64_t not_available = 0;         ///< complete epochs with a signal that is SNA or out of range
+  uint64_t contradicting_wheels = 0;  ///< odometry refused: the wheels contradict the yaw rate
+  uint64_t odometry_jumps = 0;        ///< odometry refused: faster changes than a vehicle can make
+  uint64_t sharp_turns = 0;           ///< odometry refused: sharper turns than a vehicle can make
+  uint64_t odometry_samples = 0;
+  uint64_t gnss_samples = 0;
+};
+
+/// Samples are always finite, and odometry is plausible (OdometryCheck). The caller has to detect
+/// time-outs from the time of the last sample. accept() does not allocate. One thread.
+class VehicleDecoder {
+ public:
+  /// How long a cause is told by why().
+  static constexpr Duration kWhyHold = std::chrono::seconds(1);
+
+  virtual ~VehicleDecoder() = default;
+
+  /// Returns a sample when this frame completes one.
+  virtual std::optional<VehicleSample> accept(const ReceivedFrame& received) = 0;
+
+  virtual VehicleInputCounters counters() const = 0;
+
+  /// kOdometryImplausible while odometry is refused, INVALID or too slow, kForeignSender while
+  /// another node sends LOC_ messages or two nodes send the same message. Each is kept for
+  /// `kWhyHold` after its cause.
+  virtual WhyMask why() const = 0;
+};
+
+}  // namespace bevloc::can

@@ -1,0 +1,223 @@
+#include "can/vehicle/dbc_vehicle_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "can/messages/message_table.h"
+#include "can/vehicle/wheel_fusion.h"
+
+namespace bevloc::can {
+namespace {
+
+constexpr int kMostCycles = 4;
+/// No measurement is exact.
+constexpr double kLeastSigma_m = 0.01;
+constexpr double kLeastSigma_deg = 0.01;
+
+E2eReceiverParameters parameters_of(const BoundMessage& message) {
+  E2eReceiverParameters parameters{.cycle = message.cycle};
+  if (!message.has_odometry) {
+    // As VehicleInput: a receiver of GNSS may be slow.
+    parameters.state.window = 20;
+    parameters.state.min_ok_invalid = 2;
+  }
+  return parameters;
+}
+
+void add_if(std::vector<size_t>& signals, const std::optional<size_t>& signal) {
+  if (signal && std::ranges::find(signals, *signal) == signals.end()) signals.push_back(*signal);
+}
+
+}  // namespace
+
+DbcVehicleInput::DbcVehicleInput(VehicleBinding binding, const BaseIds& base,
+                                 GeodeticPosition map_origin, const OdometryLimits& limits)
+    : binding_(std::move(binding)),
+      base_(base),
+      rear_track_m_(limits.rear_track_m),
+      maker_(map_origin, limits),
+      slots_(binding_.signals.size()) {
+  for (const BoundMessage& message : binding_.messages) {
+    const MessageProtection& protection = message.protection;
+    const uint8_t highest =
+        protection.checksum == ChecksumKind::kE2eP05 ? UINT8_MAX : protection.highest_counter;
+    monitors_.emplace_back(highest, parameters_of(message));
+  }
+  for (const BoundWheels::Wheel& wheel : binding_.wheels.wheels) {
+    odometry_signals_.push_back(wheel.signal);
+  }
+  odometry_signals_.push_back(binding_.yaw_rate.signal);
+  if (!binding_.gnss) return;
+  const BoundGnss& gnss = *binding_.gnss;
+  position_signals_ = {gnss.latitude, gnss.longitude};
+  for (const auto& signal : {gnss.sigma_north, gnss.sigma_east}) add_if(position_signals_, signal);
+  gnss_signals_ = position_signals_;
+  for (const auto& signal : {gnss.heading, gnss.sigma_heading}) add_if(gnss_signals_, signal);
+}
+
+std::optional<VehicleSample> DbcVehicleInput::accept(const ReceivedFrame& received) {
+  maker_.note_frame(received.received);
+  const auto message = std::ranges::find(binding_.messages, received.frame.id, &BoundMessage::id);
+  if (message == binding_.messages.end()) {
+    const bool own_id = is_localizer_id(received.frame.id, base_);
+    ++(own_id ? counters_.own_ids : counters_.foreign);
+    if (own_id) maker_.note_foreign_sender();
+    return std::nullopt;
+  }
+  const auto index = static_cast<size_t>(message - binding_.messages.begin());
+  E2eMonitor& monitor = monitors_[index];
+  const bool accepted = monitor.accept(
+      e2e_frame_of(received.frame, message->protection, message->length), received.received);
+  if (monitor.has_second_sender()) maker_.note_foreign_sender();
+  if (monitor.state() == E2eState::kInvalid && message->has_odometry) maker_.note_implausible();
+  if (!accepted) return std::nullopt;
+  store(index, received);
+  if (all_new(odometry_signals_)) return odometry(received.received);
+  if (!gnss_signals_.empty() && all_new(gnss_signals_)) return gnss(received.received);
+  return std::nullopt;
+}
+
+void DbcVehicleInput::store(size_t message, const ReceivedFrame& received) {
+  const std::span<const uint8_t> bytes = received.frame.payload();
+  for (size_t i = 0; i < slots_.size(); ++i) {
+    const BoundSignal& signal = binding_.signals[i];
+    if (signal.message != message) continue;
+    const bool is_absent = signal.multiplexed && raw_bits_from(signal.multiplexed->multiplexor,
+                                                               bytes) != signal.multiplexed->value;
+    if (is_absent) continue;
+    const double physical = physical_from(signal.layout, bytes);
+    Slot& slot = slots_[i];
+    slot.raw = raw_from(signal.layout, bytes);
+    slot.value = physical * signal.factor;
+    slot.received = received.received;
+    slot.is_new = true;
+    slot.available =
+        std::isfinite(physical) && physical >= signal.min && physical <= signal.max &&
+        std::ranges::find(signal.not_available, slot.raw) == signal.not_available.end();
+  }
+}
+
+bool DbcVehicleInput::all_new(const std::vector<size_t>& signals) const {
+  return std::ranges::all_of(signals, [this](size_t signal) { return slots_[signal].is_new; });
+}
+
+std::optional<Time> DbcVehicleInput::take(const std::vector<size_t>& signals) {
+  Time first = Time::max();
+  Time last = Time::min();
+  Duration window{};
+  bool available = true;
+  for (const size_t index : signals) {
+    Slot& slot = slots_[index];
+    slot.is_new = false;
+    first = std::min(first, slot.received);
+    last = std::max(last, slot.received);
+    available = available && slot.available;
+    window =
+        std::max(window, kMostCycles * binding_.messages[binding_.signals[index].message].cycle);
+  }
+  if (!available) ++counters_.not_available;
+  const bool together = last - first <= window;
+  if (!together) ++counters_.incomplete;
+  return available && together ? std::optional(first) : std::nullopt;
+}
+
+/// Nothing if the signal of the condition is missing or too old. No condition always holds.
+std::optional<bool> DbcVehicleInput::holds(const std::optional<BoundCondition>& condition,
+                                           Time now) const {
+  if (!condition) return true;
+  const Slot& slot = slots_[condition->signal];
+  const BoundMessage& message = binding_.messages[binding_.signals[condition->signal].message];
+  if (slot.received == Time::min() || now - slot.received > kMostCycles * message.cycle) {
+    return std::nullopt;
+  }
+  return std::ranges::find(condition->values, slot.raw) != condition->values.end();
+}
+
+std::optional<VehicleSample> DbcVehicleInput::odometry(Time now) {
+  const auto time = take(odometry_signals_);
+  if (!time) return std::nullopt;
+  const BoundYawRate& turning = binding_.yaw_rate;
+  const BoundWheels& moving = binding_.wheels;
+  const auto negative = turning.negative ? holds(turning.negative, now) : std::optional(false);
+  const auto backward = moving.backward ? holds(moving.backward, now) : std::optional(false);
+  const bool valid =
+      holds(turning.valid, now).value_or(false) && holds(moving.valid, now).value_or(false);
+  if (!valid || !negative || !backward) {
+    ++counters_.not_available;
+    return std::nullopt;
+  }
+  double yaw_rate_radps = slots_[turning.signal].value;
+  if (turning.positive_right != *negative) yaw_rate_radps = -yaw_rate_radps;
+  WheelFusion fusion(rear_track_m_, moving.wheelbase_m, yaw_rate_radps);
+  for (const BoundWheels::Wheel& wheel : moving.wheels) {
+    const double speed_mps = slots_[wheel.signal].value;
+    fusion.add(wheel.place, *backward ? -speed_mps : speed_mps);
+  }
+  const auto speeds = fusion.speeds();
+  if (!speeds) {
+    ++counters_.contradicting_wheels;
+    maker_.note_implausible();
+    return std::nullopt;
+  }
+  return maker_.odometry({.time = *time,
+                          .left_mps = speeds->left_mps,
+                          .right_mps = speeds->right_mps,
+                          .yaw_rate_radps = yaw_rate_radps});
+}
+
+double DbcVehicleInput::sigma_m(const std::optional<size_t>& signal) const {
+  return std::max(kLeastSigma_m, signal ? slots_[*signal].value : binding_.gnss->sigma_m);
+}
+
+/// Nothing while the receiver has a position without a heading.
+std::optional<GeodeticFix::Heading> DbcVehicleInput::heading(Time now) const {
+  const BoundGnss& gnss = *binding_.gnss;
+  if (!gnss.heading || !holds(gnss.heading_valid, now).value_or(false)) return std::nullopt;
+  double sigma_deg = gnss.sigma_heading_deg;
+  if (gnss.sigma_heading) {
+    if (!slots_[*gnss.sigma_heading].available) return std::nullopt;
+    sigma_deg = slots_[*gnss.sigma_heading].value;
+  }
+  if (!slots_[*gnss.heading].available) return std::nullopt;
+  return GeodeticFix::Heading{slots_[*gnss.heading].value, std::max(kLeastSigma_deg, sigma_deg)};
+}
+
+std::optional<VehicleSample> DbcVehicleInput::gnss(Time now) {
+  const BoundGnss& gnss = *binding_.gnss;
+  const auto time = take(position_signals_);
+  for (const size_t signal : gnss_signals_) slots_[signal].is_new = false;
+  if (!time) return std::nullopt;
+  if (!holds(gnss.valid, now).value_or(false)) {
+    ++counters_.not_available;
+    return std::nullopt;
+  }
+  GeodeticFix fix{.position = {slots_[gnss.latitude].value, slots_[gnss.longitude].value},
+                  .sigma_north_m = sigma_m(gnss.sigma_north),
+                  .sigma_east_m = sigma_m(gnss.sigma_east)};
+  const bool on_earth =
+      std::abs(fix.position.latitude_deg) <= 90.0 && std::abs(fix.position.longitude_deg) <= 180.0;
+  if (!on_earth) {
+    ++counters_.not_available;
+    return std::nullopt;
+  }
+  fix.heading = heading(now);
+  return maker_.gnss(fix, *time);
+}
+
+VehicleInputCounters DbcVehicleInput::counters() const {
+  VehicleInputCounters total = counters_;
+  for (const E2eMonitor& monitor : monitors_) {
+    const E2eCounters& counters = monitor.counters();
+    total.wrong_crc += counters.wrong_crc;
+    total.wrong_length += counters.wrong_length;
+    total.repeated += counters.repeated;
+    total.wrong_sequence += counters.wrong_sequence;
+    total.not_valid += counters.not_valid;
+    total.lost += counters.lost;
+  }
+  maker_.add_to(total);
+  return total;
+}
+
+}  // namespace bevloc::can

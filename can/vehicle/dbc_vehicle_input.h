@@ -1,0 +1,63 @@
+// Decodes odometry and GNSS from the messages of the vehicle's own bus.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "can/e2e/e2e_monitor.h"
+#include "can/messages/message.h"
+#include "can/messages/sample_maker.h"
+#include "can/vehicle/vehicle_binding.h"
+
+namespace bevloc::can {
+
+/// Does with the signals of a VehicleBinding what VehicleInput does with bevloc's own messages.
+/// Uses only frames that pass counter and checksum (E2eMonitor). An odometry sample is made when a
+/// new value of each wheel and of the yaw rate has come, a GNSS sample when one of each of its
+/// values has. Their times are that of the first of them. Values that belong to one sample may be
+/// at most four cycles of their message apart; the same holds for the age of a condition (valid,
+/// backward). One thread; does not allocate after construction.
+class DbcVehicleInput final : public VehicleDecoder {
+ public:
+  /// `base` has the identifiers of the localizer's own messages.
+  DbcVehicleInput(VehicleBinding binding, const BaseIds& base, GeodeticPosition map_origin,
+                  const OdometryLimits& limits);
+
+  std::optional<VehicleSample> accept(const ReceivedFrame& received) override;
+  VehicleInputCounters counters() const override;
+  WhyMask why() const override { return maker_.why(); }
+
+ private:
+  /// The latest value of a signal.
+  struct Slot {
+    double value = 0.0;  ///< in the unit of Quantity
+    int64_t raw = 0;
+    Time received = Time::min();
+    bool available = false;  ///< in range and not SNA
+    bool is_new = false;     ///< since the latest sample
+  };
+
+  void store(size_t message, const ReceivedFrame& received);
+  bool all_new(const std::vector<size_t>& signals) const;
+  /// Marks the values as used, and returns the time of the first. Nothing if they are too far apart
+  /// or one is not available.
+  std::optional<Time> take(const std::vector<size_t>& signals);
+  std::optional<bool> holds(const std::optional<BoundCondition>& condition, Time now) const;
+  std::optional<VehicleSample> odometry(Time now);
+  std::optional<VehicleSample> gnss(Time now);
+  std::optional<GeodeticFix::Heading> heading(Time now) const;
+  double sigma_m(const std::optional<size_t>& signal) const;
+
+  VehicleBinding binding_;
+  BaseIds base_;
+  double rear_track_m_;
+  SampleMaker maker_;
+  std::vector<E2eMonitor> monitors_;
+  std::vector<Slot> slots_;
+  std::vector<size_t> odometry_signals_;
+  std::vector<size_t> position_signals_;  ///< latitude, longitude and their sigmas
+  std::vector<size_t> gnss_signals_;      ///< these, the heading and its sigma
+  VehicleInputCounters counters_;
+};
+
+}  // namespace bevloc::can

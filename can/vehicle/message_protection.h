@@ -1,0 +1,54 @@
+// How a message of the vehicle's own bus is protected: its counter and its checksum.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "can/bus/frame.h"
+#include "can/dbc/signal_layout.h"
+#include "can/e2e/e2e_monitor.h"
+
+namespace bevloc::can {
+
+enum class ChecksumKind : uint8_t {
+  kNone,
+  kXor,      ///< exclusive or of all bytes
+  kCrc8Sae,  ///< SAE J1850: polynomial 0x1D, start 0xFF, final xor 0xFF
+  kCrc8H2f,  ///< AUTOSAR: polynomial 0x2F, start 0xFF, final xor 0xFF
+  kE2eP02,   ///< AUTOSAR E2E profile P02, with its own places for checksum and counter
+  kE2eP05,   ///< AUTOSAR E2E profile P05, likewise
+};
+
+/// A checksum covers all bytes of the frame but its own, and after them the data id, if there is
+/// one. Of kXor the data id is one more byte. With 16 data ids, the frame's counter chooses one.
+struct MessageProtection {
+  ChecksumKind checksum = ChecksumKind::kNone;
+  size_t checksum_byte = 0;               ///< not of the profiles, nor of kNone
+  std::optional<SignalLayout> counter{};  ///< at most 8 bits; not of the profiles
+  uint8_t highest_counter = 15;           ///< after it comes 0
+  std::vector<uint16_t> data_ids{};       ///< none, 1 or 16; of kE2eP05 one
+
+  bool has_counter() const { return counter || is_profile(); }
+  bool is_profile() const {
+    return checksum == ChecksumKind::kE2eP02 || checksum == ChecksumKind::kE2eP05;
+  }
+};
+
+/// CRC-8 SAE J1850; check value 0x4B for "123456789".
+class Crc8Sae {
+ public:
+  void add(uint8_t byte);
+  uint8_t value() const { return static_cast<uint8_t>(remainder_ ^ 0xFF); }
+
+ private:
+  uint8_t remainder_ = 0xFF;
+};
+
+/// What the protection says about a frame of a message of `length` bytes. Does not allocate.
+E2eFrame e2e_frame_of(const Frame& frame, const MessageProtection& protection, uint8_t length);
+
+/// Writes counter and checksum.
+void protect(Frame& frame, const MessageProtection& protection, uint8_t counter);
+
+}  // namespace bevloc::can

@@ -1,0 +1,81 @@
+// Finds the signals of a configuration in a DBC file, and checks that they can be what they shall.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "can/dbc/dbc.h"
+#include "can/vehicle/units.h"
+#include "can/vehicle/vehicle_binding.h"
+
+namespace bevloc::can {
+
+/// Why a value of the configuration cannot be used: "found X, wanted Y".
+struct Refusal {
+  std::string found;
+  std::string wanted;
+};
+template <typename T>
+using Bound = tl::expected<T, Refusal>;
+
+/// What the configuration says about the protection of a message.
+struct ProtectionRequest {
+  std::string message;
+  std::optional<double> cycle_ms{};
+  std::string counter{};                      ///< a signal; empty: none
+  std::optional<uint32_t> highest_counter{};  ///< default: all bits of the counter set
+  std::string checksum{};                     ///< a signal; empty: none
+  ChecksumKind kind = ChecksumKind::kNone;
+  std::vector<uint16_t> data_ids{};
+};
+
+/// Fills a VehicleBinding. Signals are named "Signal" or "Message.Signal". Misspelt names are
+/// refused with the one that was probably meant. One thread.
+class VehicleBinder {
+ public:
+  /// `dbc` must outlive this.
+  explicit VehicleBinder(const Dbc& dbc) : dbc_(dbc) { binding_.dbc_file = dbc.file; }
+
+  Bound<std::string> message_name(const std::string& name) const;
+
+  /// The index of a signal in the binding that carries this quantity. `unit` replaces the unit of
+  /// the DBC file unless it is empty. Refuses units that are not known, and ranges and steps that
+  /// no signal of this quantity has.
+  Bound<size_t> quantity(const std::string& signal, const std::string& default_message,
+                         Quantity quantity, const std::string& unit);
+
+  /// The values are raw numbers or names of VAL_.
+  Bound<BoundCondition> condition(const std::string& signal, const std::string& default_message,
+                                  const std::vector<std::string>& values);
+
+  Bound<void> protect(const ProtectionRequest& request);
+
+  VehicleBinding& binding() { return binding_; }
+
+  /// To be called last: completes cycles and protection from the attributes of the DBC file, and
+  /// checks cycles and identifiers. The string names the message that is refused.
+  struct MessageRefusal {
+    std::string message;
+    Refusal refusal;
+  };
+  tl::expected<VehicleBinding, MessageRefusal> finish();
+
+ private:
+  Bound<const DbcSignal*> find(const std::string& signal, const std::string& default_message,
+                               const DbcMessage*& message) const;
+  Bound<size_t> bind(const DbcMessage& message, const DbcSignal& signal, double factor);
+  size_t bind_message(const DbcMessage& message);
+  Bound<void> finish_message(BoundMessage& message);
+  Bound<void> protect_by_attributes(const DbcMessage& dbc, BoundMessage& message) const;
+  void mark_odometry();
+
+  const Dbc& dbc_;
+  VehicleBinding binding_;
+  std::vector<ProtectionRequest> requests_;
+};
+
+}  // namespace bevloc::can

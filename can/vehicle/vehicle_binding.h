@@ -1,0 +1,103 @@
+// Which signals of the vehicle's own DBC file carry odometry and GNSS.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "can/dbc/signal_layout.h"
+#include "can/vehicle/message_protection.h"
+#include "common/time.h"
+
+namespace bevloc::can {
+
+struct BoundMessage {
+  std::string name;
+  uint32_t id = 0;  ///< 11 bits
+  uint8_t length = 0;
+  Duration cycle{};
+  MessageProtection protection;
+  bool has_odometry = false;  ///< carries a value of odometry, not only one of GNSS
+};
+
+struct BoundSignal {
+  /// Signals that only some frames of the message have.
+  struct Multiplexed {
+    SignalLayout multiplexor;
+    uint64_t value = 0;
+  };
+
+  std::string name;    ///< "Message.Signal"
+  size_t message = 0;  ///< in VehicleBinding::messages
+  SignalLayout layout;
+  std::optional<Multiplexed> multiplexed{};
+  double min = 0.0;  ///< physical, in the unit of the DBC file; values outside are not available
+  double max = 0.0;
+  std::vector<int64_t> not_available{};  ///< raw values that VAL_ names SNA
+  double factor = 1.0;                   ///< from the unit of the DBC file to that of Quantity
+};
+
+/// Holds while the raw value of a signal is one of some values.
+struct BoundCondition {
+  size_t signal = 0;
+  std::vector<int64_t> values;
+};
+
+enum class WheelPlace : uint8_t {
+  kRearLeft,
+  kRearRight,
+  kFrontLeft,
+  kFrontRight,
+  kVehicle,  ///< the middle of the rear axle, as a speedometer shows it
+};
+
+struct BoundWheels {
+  struct Wheel {
+    size_t signal = 0;
+    WheelPlace place = WheelPlace::kVehicle;
+  };
+  std::vector<Wheel> wheels;
+  double wheelbase_m = 0.0;  ///< with front wheels
+  std::optional<BoundCondition> valid{};
+  std::optional<BoundCondition> backward{};  ///< the vehicle reverses: speeds are negative
+};
+
+struct BoundYawRate {
+  size_t signal = 0;
+  bool positive_right = false;  ///< positive clockwise
+  std::optional<BoundCondition> valid{};
+  std::optional<BoundCondition> negative{};  ///< the signal is a magnitude, and this its sign
+};
+
+struct BoundGnss {
+  size_t latitude = 0;
+  size_t longitude = 0;
+  std::optional<BoundCondition> valid{};
+  double sigma_m = 0.0;                 ///< used without the signals
+  std::optional<size_t> sigma_north{};  ///< may be the same signal as sigma_east
+  std::optional<size_t> sigma_east{};
+  std::optional<size_t> heading{};
+  std::optional<BoundCondition> heading_valid{};
+  double sigma_heading_deg = 0.0;
+  std::optional<size_t> sigma_heading{};
+};
+
+/// What DbcVehicleInput reads.
+struct VehicleBinding {
+  std::string dbc_file;
+  std::vector<BoundMessage> messages;
+  std::vector<BoundSignal> signals;
+  BoundWheels wheels;
+  BoundYawRate yaw_rate;
+  std::optional<BoundGnss> gnss{};  ///< empty: GNSS comes from elsewhere
+};
+
+/// Identifiers that a filter of the bus has to let pass.
+std::vector<uint32_t> ids_of(const VehicleBinding& binding);
+
+/// Messages without counter or checksum, of which a receiver cannot notice every fault.
+std::vector<std::string> warnings_of(const VehicleBinding& binding);
+
+}  // namespace bevloc::can

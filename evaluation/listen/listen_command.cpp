@@ -1,0 +1,144 @@
+#include "evaluation/listen/listen_command.h"
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include "can/bus/candump.h"
+#include "can/bus/socketcan_bus.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+void note_interrupt(int) {
+  interrupted = 1;
+}
+
+}  // namespace
+
+void ListenCommand::declare(CLI::App& app) {
+  app_ = app.add_subcommand("listen", "Decode a CAN bus, live or from a candump log");
+  app_->footer(
+      "Examples:\n"
+      "  bevloc listen can0                         bevloc's messages on an interface\n"
+      "  bevloc listen --dbc vehicle.dbc can.log    a log of another bus, too\n"
+      "  bevloc listen --message LOC_Status --json can.log\n"
+      "  candump -L can0 | bevloc listen -");
+  app_->add_option("SOURCE", source_, "CAN interface, candump log, or - for standard input")
+      ->required();
+  app_->add_option("--dbc", dbc_files_, "DBC files; bevloc's own messages are known without one");
+  app_->add_option("--message", messages_, "Print these messages only");
+  app_->add_flag("--bad", only_bad_, "Print only frames that fail the end-to-end check");
+  app_->add_flag("--quiet", quiet_, "Print the totals only");
+  app_->add_flag("--json", json_, "Print one JSON object a frame");
+  app_->add_flag("--fd", fd_, "Receive CAN FD, too");
+  app_->add_option("--count", count_, "End after so many printed frames");
+  app_->add_option("--duration", duration_s_, "End after so many seconds")
+      ->check(CLI::PositiveNumber);
+  app_->add_option("--localizer-base", base_.localizer, "First identifier of the LOC_ messages");
+  app_->add_option("--vehicle-base", base_.vehicle, "First identifier of the VEH_ messages");
+}
+
+Result<can::BusListener> ListenCommand::make_listener() const {
+  std::vector<can::Dbc> files;
+  for (const std::string& file : dbc_files_) {
+    auto dbc = can::read_dbc_file(file);
+    if (!dbc) return tl::unexpected(dbc.error());
+    files.push_back(std::move(*dbc));
+  }
+  can::BusListener listener(std::move(files), base_);
+  for (const std::string& message : messages_) {
+    if (!listener.knows(message)) {
+      return fail("--message: found {}, wanted a message of the DBC files", message);
+    }
+  }
+  return listener;
+}
+
+bool ListenCommand::is_wanted(const can::DecodedFrame& frame) const {
+  const bool named =
+      messages_.empty() || std::ranges::find(messages_, frame.message->name) != messages_.end();
+  const bool bad = frame.e2e && *frame.e2e != can::E2eResult::kOk;
+  return named && !quiet_ && (bad || !only_bad_);
+}
+
+bool ListenCommand::show(const can::Frame& frame, double time_s, can::BusListener& listener) {
+  const can::DecodedFrame* decoded = listener.decode(frame);
+  if (decoded == nullptr || !is_wanted(*decoded)) return true;
+  std::cout << (json_ ? can::json_of(*decoded, time_s) : can::text_of(*decoded, time_s)) << '\n';
+  ++printed_;
+  return count_ == 0 || printed_ < count_;
+}
+
+Status ListenCommand::listen_to_log(std::istream& log, const std::string& name,
+                                    can::BusListener& listener) {
+  std::string line;
+  std::optional<double> first_s;
+  for (int number = 1; interrupted == 0 && std::getline(log, line); ++number) {
+    if (line.ends_with('\r')) line.pop_back();
+    if (line.empty()) continue;
+    const auto entry = can::parse_candump_line(line, fmt::format("{}:{}", name, number));
+    if (!entry) return tl::unexpected(entry.error());
+    if (entry->kind != can::CandumpKind::kData) continue;
+    const double time_s = std::chrono::duration<double>(entry->time).count();
+    if (!first_s) first_s = time_s;
+    if (duration_s_ > 0.0 && time_s - *first_s > duration_s_) break;
+    if (!show(entry->frame, time_s, listener)) break;
+  }
+  return {};
+}
+
+Status ListenCommand::listen_to_interface(can::BusListener& listener) {
+  auto bus = can::SocketCanBus::open(source_, {.fd = fd_});
+  if (!bus) {
+    return fail("{} (a log file of this name was not found either)", bus.error().message);
+  }
+  std::optional<Time> first;
+  const auto started = std::chrono::steady_clock::now();
+  while (interrupted == 0) {
+    const auto elapsed = std::chrono::steady_clock::now() - started;
+    if (duration_s_ > 0.0 && std::chrono::duration<double>(elapsed).count() > duration_s_) break;
+    (*bus)->wait(std::chrono::milliseconds(100));
+    while (const auto received = (*bus)->receive()) {
+      if (!first) first = received->received;
+      if (!show(received->frame, to_seconds(received->received - *first), listener)) return {};
+    }
+    std::cout.flush();
+  }
+  return {};
+}
+
+void ListenCommand::print_totals(const can::BusListener& listener) const {
+  fmt::print("\n{:<28} {:>10} {:>10} {:>8}\n", "message", "frames", "unusable", "lost");
+  for (const auto& [name, total] : listener.totals()) {
+    fmt::print("{:<28} {:>10} {:>10} {:>8}\n", name, total.frames, total.unusable, total.lost);
+  }
+  fmt::print("{:<28} {:>10}\n", "frames of other messages", listener.unknown());
+}
+
+Status ListenCommand::run() {
+  auto listener = make_listener();
+  if (!listener) return tl::unexpected(listener.error());
+  std::signal(SIGINT, note_interrupt);
+  Status status;
+  if (source_ == "-") {
+    status = listen_to_log(std::cin, "standard input", *listener);
+  } else if (std::filesystem::is_regular_file(source_)) {
+    std::ifstream log(source_);
+    if (!log) return fail("{}: found no readable file, wanted a candump log", source_);
+    status = listen_to_log(log, source_, *listener);
+  } else {
+    status = listen_to_interface(*listener);
+  }
+  std::cout.flush();
+  if (status && !json_) print_totals(*listener);
+  return status;
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,49 @@
+// The command `bevloc listen`: decodes a CAN bus, live or from a log.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "can/listen/bus_listener.h"
+#include "common/result.h"
+
+namespace bevloc::evaluation {
+
+/// Declare the command, parse the command line, then run the command if it was chosen.
+class ListenCommand {
+ public:
+  void declare(CLI::App& app);
+  bool chosen() const { return app_->parsed(); }
+
+  /// Prints each decoded frame. Ends with the log, after --duration, --count frames, or on SIGINT.
+  /// Fails if a file cannot be read or the interface cannot be opened.
+  Status run();
+
+ private:
+  Result<can::BusListener> make_listener() const;
+  Status listen_to_log(std::istream& log, const std::string& name, can::BusListener& listener);
+  Status listen_to_interface(can::BusListener& listener);
+  /// False when enough was printed.
+  bool show(const can::Frame& frame, double time_s, can::BusListener& listener);
+  bool is_wanted(const can::DecodedFrame& frame) const;
+  void print_totals(const can::BusListener& listener) const;
+
+  CLI::App* app_ = nullptr;
+  std::string source_;
+  std::vector<std::string> dbc_files_;
+  std::vector<std::string> messages_;
+  bool json_ = false;
+  bool only_bad_ = false;
+  bool quiet_ = false;
+  bool fd_ = false;
+  uint64_t count_ = 0;  ///< 0: no limit
+  double duration_s_ = 0.0;
+  can::BaseIds base_;
+  uint64_t printed_ = 0;
+};
+
+}  // namespace bevloc::evaluation

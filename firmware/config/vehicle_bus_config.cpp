@@ -1,0 +1,251 @@
+#include "firmware/config/vehicle_bus_config.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "can/messages/message_table.h"
+#include "can/vehicle/vehicle_binder.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using can::Bound;
+using can::Quantity;
+using can::WheelPlace;
+
+const Wanted<std::string>& some_name() {
+  static const Wanted<std::string> wanted{"a name",
+                                          [](const std::string& name) { return !name.empty(); }};
+  return wanted;
+}
+
+/// One group of signals (wheel_speed, yaw_rate or gnss) and the message that they are in.
+class SignalGroup {
+ public:
+  SignalGroup(YamlMap yaml, can::VehicleBinder& binder) : yaml_(std::move(yaml)), binder_(binder) {
+    const auto name = yaml_.require<std::string>("message", some_name());
+    if (name.empty()) return;
+    const auto known = binder_.message_name(name);
+    if (known) message_ = *known;
+    if (!known) refuse("message", known.error());
+  }
+
+  /// The signal that `key` of `yaml` names, or an index that is not used after a mistake.
+  size_t signal(YamlMap& yaml, std::string_view key, Quantity quantity, const std::string& unit) {
+    const auto name = yaml.require<std::string>(key, some_name());
+    if (message_.empty() || name.empty()) return 0;
+    return take(binder_.quantity(name, message_, quantity, unit), yaml, key);
+  }
+  size_t signal(std::string_view key, Quantity quantity, const std::string& unit) {
+    return signal(yaml_, key, quantity, unit);
+  }
+  std::optional<size_t> optional_signal(std::string_view key, Quantity quantity,
+                                        const std::string& unit) {
+    if (!yaml_.has(key)) return std::nullopt;
+    return signal(key, quantity, unit);
+  }
+
+  /// Reads `{signal: NAME, values: [A, B]}`.
+  std::optional<can::BoundCondition> condition(std::string_view key) {
+    auto yaml = yaml_.optional_map(key);
+    if (!yaml) return std::nullopt;
+    const auto name = yaml->require<std::string>("signal", some_name());
+    const auto values = yaml->require_list<std::string>("values", 0, some_name());
+    if (values.empty()) yaml->reject("values", "no value", "one value or more");
+    if (message_.empty() || name.empty()) return can::BoundCondition{};
+    auto bound = binder_.condition(name, message_, values);
+    if (bound) return std::move(*bound);
+    yaml->reject("signal", bound.error().found, bound.error().wanted);
+    return can::BoundCondition{};
+  }
+
+  std::string unit(std::string_view key) { return yaml_.optional<std::string>(key, ""); }
+  YamlMap& yaml() { return yaml_; }
+  void refuse(std::string_view key, const can::Refusal& refusal) {
+    yaml_.reject(key, refusal.found, refusal.wanted);
+  }
+
+ private:
+  static size_t take(const Bound<size_t>& bound, YamlMap& yaml, std::string_view key) {
+    if (bound) return *bound;
+    yaml.reject(key, bound.error().found, bound.error().wanted);
+    return 0;
+  }
+
+  YamlMap yaml_;
+  can::VehicleBinder& binder_;
+  std::string message_;
+};
+
+can::BoundWheels read_wheels(YamlMap yaml, can::VehicleBinder& binder) {
+  SignalGroup group(std::move(yaml), binder);
+  can::BoundWheels wheels;
+  const std::string unit = group.unit("unit");
+  YamlMap signals = group.yaml().require_map("signals");
+  const auto add = [&](std::string_view key, WheelPlace place) {
+    if (!signals.has(key)) return false;
+    wheels.wheels.push_back({group.signal(signals, key, Quantity::kSpeed, unit), place});
+    return true;
+  };
+  const bool left = add("rear_left", WheelPlace::kRearLeft);
+  const bool right = add("rear_right", WheelPlace::kRearRight);
+  const bool front_left = add("front_left", WheelPlace::kFrontLeft);
+  const bool front_right = add("front_right", WheelPlace::kFrontRight);
+  const bool vehicle = add("vehicle", WheelPlace::kVehicle);
+  if (!vehicle && !(left && right)) {
+    group.yaml().reject("signals", "neither both rear wheels nor the vehicle's speed",
+                        "rear_left and rear_right, or vehicle");
+  }
+  if (front_left || front_right) {
+    wheels.wheelbase_m = group.yaml().require<double>("wheelbase_m", between(1.0, 8.0));
+  }
+  wheels.valid = group.condition("valid");
+  wheels.backward = group.condition("backward");
+  return wheels;
+}
+
+can::BoundYawRate read_yaw_rate(YamlMap yaml, can::VehicleBinder& binder) {
+  SignalGroup group(std::move(yaml), binder);
+  can::BoundYawRate yaw_rate;
+  yaw_rate.signal = group.signal("signal", Quantity::kYawRate, group.unit("unit"));
+  yaw_rate.positive_right =
+      group.yaml().optional_choice<bool>("positive", false, {{"left", false}, {"right", true}});
+  yaw_rate.valid = group.condition("valid");
+  yaw_rate.negative = group.condition("negative");
+  return yaw_rate;
+}
+
+/// Reads the sigma of a group: a number or signals, but not both.
+void read_position_sigma(SignalGroup& group, can::BoundGnss& gnss) {
+  const std::string unit = group.unit("sigma_unit");
+  YamlMap& yaml = group.yaml();
+  if (yaml.has("sigma_m")) gnss.sigma_m = yaml.require<double>("sigma_m", between(0.01, 100.0));
+  if (auto both = group.optional_signal("sigma", Quantity::kLength, unit)) {
+    gnss.sigma_north = gnss.sigma_east = both;
+  }
+  if (auto north = group.optional_signal("sigma_north", Quantity::kLength, unit)) {
+    gnss.sigma_north = north;
+  }
+  if (auto east = group.optional_signal("sigma_east", Quantity::kLength, unit)) {
+    gnss.sigma_east = east;
+  }
+  const int ways = (yaml.has("sigma_m") ? 1 : 0) + (yaml.has("sigma") ? 1 : 0) +
+                   (yaml.has("sigma_north") || yaml.has("sigma_east") ? 1 : 0);
+  if (ways != 1 || yaml.has("sigma_north") != yaml.has("sigma_east")) {
+    yaml.reject("message", fmt::format("{} statements of the position's sigma", ways),
+                "one of sigma_m, sigma, or sigma_north with sigma_east");
+  }
+}
+
+void read_heading(SignalGroup& group, can::BoundGnss& gnss) {
+  YamlMap& yaml = group.yaml();
+  if (!yaml.has("heading")) return;
+  const std::string unit = group.unit("heading_unit");
+  gnss.heading = group.signal("heading", Quantity::kAngle, unit);
+  gnss.heading_valid = group.condition("heading_valid");
+  gnss.sigma_heading = group.optional_signal("sigma_heading", Quantity::kAngle, unit);
+  if (!gnss.sigma_heading) {
+    gnss.sigma_heading_deg = yaml.require<double>("sigma_heading_deg", between(0.01, 90.0));
+  }
+}
+
+can::BoundGnss read_gnss_signals(YamlMap yaml, can::VehicleBinder& binder) {
+  SignalGroup group(std::move(yaml), binder);
+  can::BoundGnss gnss;
+  const std::string unit = group.unit("position_unit");
+  gnss.latitude = group.signal("latitude", Quantity::kAngle, unit);
+  gnss.longitude = group.signal("longitude", Quantity::kAngle, unit);
+  gnss.valid = group.condition("valid");
+  read_position_sigma(group, gnss);
+  read_heading(group, gnss);
+  return gnss;
+}
+
+can::ProtectionRequest read_protection_request(YamlMap& yaml) {
+  can::ProtectionRequest request;
+  request.message = yaml.require<std::string>("message", some_name());
+  if (yaml.has("cycle_ms")) request.cycle_ms = yaml.require<double>("cycle_ms", between(1.0, 5e3));
+  request.kind =
+      yaml.optional_choice<can::ChecksumKind>("algorithm", can::ChecksumKind::kNone,
+                                              {{"none", can::ChecksumKind::kNone},
+                                               {"xor", can::ChecksumKind::kXor},
+                                               {"crc8_sae_j1850", can::ChecksumKind::kCrc8Sae},
+                                               {"crc8_h2f", can::ChecksumKind::kCrc8H2f},
+                                               {"e2e_p02", can::ChecksumKind::kE2eP02},
+                                               {"e2e_p05", can::ChecksumKind::kE2eP05}});
+  const bool is_profile =
+      request.kind == can::ChecksumKind::kE2eP02 || request.kind == can::ChecksumKind::kE2eP05;
+  if (!is_profile) {
+    request.counter = yaml.optional<std::string>("counter", "");
+    if (request.kind != can::ChecksumKind::kNone) {
+      request.checksum = yaml.require<std::string>("checksum", some_name());
+    }
+    if (yaml.has("highest_counter")) {
+      request.highest_counter =
+          yaml.require<uint32_t>("highest_counter", between(uint32_t{1}, uint32_t{255}));
+    }
+  }
+  const auto data_id = between(uint32_t{0}, uint32_t{0xFFFF});
+  if (yaml.has("data_id")) {
+    request.data_ids = {static_cast<uint16_t>(yaml.require<uint32_t>("data_id", data_id))};
+  } else if (yaml.has("data_ids")) {
+    const auto ids = yaml.require_list<uint32_t>("data_ids", 16, data_id);
+    request.data_ids.assign(ids.begin(), ids.end());
+  }
+  return request;
+}
+
+/// Reads the table `protection`.
+void read_protection(YamlMap& yaml, can::VehicleBinder& binder) {
+  if (!yaml.has("protection")) return;
+  for (YamlMap& entry : yaml.require_map_list("protection")) {
+    const can::ProtectionRequest request = read_protection_request(entry);
+    if (request.message.empty()) continue;
+    if (const auto good = binder.protect(request); !good) {
+      entry.reject("message", good.error().found, good.error().wanted);
+    }
+  }
+}
+
+/// The localizer's frames must not look like those of another message of this bus.
+void check_identifiers(YamlMap& yaml, const can::Dbc& dbc, const can::BaseIds& base) {
+  for (const can::Message* own : can::kMessages) {
+    if (own->sender != can::Sender::kLocalizer) continue;
+    const can::DbcMessage* other = dbc.find(own->id(base), false);
+    if (other == nullptr || other->name == own->name) continue;
+    yaml.reject(
+        "dbc",
+        fmt::format("message {} with identifier {:#x} of {}", other->name, other->id, own->name),
+        "another can.localizer_base_id");
+  }
+}
+
+}  // namespace
+
+can::VehicleBinding read_vehicle_bus(YamlMap& yaml, const can::BaseIds& base,
+                                     const std::filesystem::path& folder) {
+  const auto file = yaml.require<std::string>("dbc", some_name());
+  const auto dbc = file.empty() ? Result<can::Dbc>() : can::read_dbc_file(folder / file);
+  if (!dbc) yaml.reject("dbc", dbc.error().message, "a DBC file that can be read");
+  if (file.empty() || !dbc) return {};
+  check_identifiers(yaml, *dbc, base);
+  can::VehicleBinder binder(*dbc);
+  auto wheels = read_wheels(yaml.require_map("wheel_speed"), binder);
+  binder.binding().wheels = std::move(wheels);
+  auto yaw_rate = read_yaw_rate(yaml.require_map("yaw_rate"), binder);
+  binder.binding().yaw_rate = std::move(yaw_rate);
+  if (auto gnss = yaml.optional_map("gnss")) {
+    binder.binding().gnss = read_gnss_signals(std::move(*gnss), binder);
+  }
+  read_protection(yaml, binder);
+  if (binder.binding().signals.empty()) return {};
+  auto binding = binder.finish();
+  if (binding) return std::move(*binding);
+  const auto& refused = binding.error();
+  yaml.reject("dbc", fmt::format("message {} with {}", refused.message, refused.refusal.found),
+              refused.refusal.wanted);
+  return {};
+}
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,65 @@
+#include "can/listen/bus_listener.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "can/messages/vehicle_encoder.h"
+
+namespace bevloc::can {
+namespace {
+
+BusListener listener_of(const std::string& text) {
+  auto dbc = parse_dbc(text, "x.dbc");
+  EXPECT_TRUE(dbc) << dbc.error().message;
+  std::vector<Dbc> files;
+  files.push_back(std::move(*dbc));
+  return BusListener(std::move(files), {});
+}
+
+const std::string kMultiplexed =
+    "BO_ 16 A: 8 X\n SG_ Page M : 0|4@1+ (1,0) [0|15] \"\" Y\n"
+    " SG_ One m1 : 8|8@1+ (0.5,0) [0|0] \"m\" Y\n SG_ Two m2 : 8|8@1+ (1,0) [0|0] \"\" Y\n"
+    "VAL_ 16 Two 7 \"SEVEN\" 255 \"SNA\" ;\n";
+
+TEST(BusListenerTest, DecodesTheSignalsOfTheFrame) {
+  BusListener listener = listener_of(kMultiplexed);
+  const DecodedFrame* one = listener.decode({.id = 16, .length = 8, .data = {1, 5}});
+  ASSERT_NE(one, nullptr);
+  EXPECT_EQ(text_of(*one, 1.5), "1.500000 A Page=1 One=2.5m");
+  const DecodedFrame* two = listener.decode({.id = 16, .length = 8, .data = {2, 7}});
+  EXPECT_EQ(text_of(*two, 1.5), "1.500000 A Page=2 Two=SEVEN");
+  const DecodedFrame* sna = listener.decode({.id = 16, .length = 8, .data = {2, 255}});
+  EXPECT_TRUE(nlohmann::json::parse(json_of(*sna, 2.0))["signals"]["Two"].is_null());
+  EXPECT_EQ(listener.decode({.id = 17, .length = 0}), nullptr);
+  EXPECT_EQ(listener.unknown(), 1U);
+  EXPECT_EQ(listener.totals().at("A").frames, 3U);
+}
+
+TEST(BusListenerTest, DecodesWhatFitsIntoAShortFrame) {
+  BusListener listener = listener_of(kMultiplexed);
+  const DecodedFrame* frame = listener.decode({.id = 16, .length = 1, .data = {1}});
+  EXPECT_EQ(text_of(*frame, 0.0), "0.000000 A short Page=1");
+  const DecodedFrame* empty = listener.decode({.id = 16, .length = 0});
+  EXPECT_TRUE(empty->signals.empty());
+}
+
+TEST(BusListenerTest, ChecksTheProtectionOfBevlocsMessages) {
+  BusListener listener({}, {});
+  VehicleEncoder encoder(BaseIds{}, {49.0, 8.4}, 1.6);
+  const Frame first = encoder.odometry(OdometrySample{.speed_mps = 10.0})[0];
+  EXPECT_EQ(listener.decode(first)->e2e, E2eResult::kOk);
+  EXPECT_EQ(listener.decode(first)->e2e, E2eResult::kRepeated);
+  Frame damaged = encoder.odometry(OdometrySample{.speed_mps = 10.0})[0];
+  damaged.data[3] ^= 1;
+  const DecodedFrame* decoded = listener.decode(damaged);
+  EXPECT_EQ(decoded->e2e, E2eResult::kWrongCrc);
+  const auto json = nlohmann::json::parse(json_of(*decoded, 0.0));
+  EXPECT_EQ(json["message"], "VEH_WheelSpeed");
+  EXPECT_EQ(json["e2e"], "wrong_crc");
+  EXPECT_EQ(listener.totals().at("VEH_WheelSpeed").unusable, 2U);
+}
+
+}  // namespace
+}  // namespace bevloc::can

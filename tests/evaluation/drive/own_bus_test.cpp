@@ -1,0 +1,109 @@
+// Drives on a vehicle with a bus of its own: poses and samples are those of the standard messages.
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "can/bus/mock_bus.h"
+#include "evaluation/bench/allocation_count.h"
+#include "evaluation/campaign/stage_run.h"
+#include "evaluation/drive/simulated_drive.h"
+#include "firmware/runtime/can_bus.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr Time kStart{std::chrono::seconds(100)};
+constexpr double kDuration_s = 30.0;
+
+DriveConfig config_of(const std::string& name) {
+  auto config = load_drive_config(std::string(BEVLOC_SOURCE_DIR) + "/config/" + name);
+  EXPECT_TRUE(config) << config.error().message;
+  config->simulation->duration_s = kDuration_s;
+  return *config;
+}
+
+std::vector<JudgedCycle> cycles_of(const DriveConfig& config) {
+  const auto table =
+      read_match_table(std::string(BEVLOC_SOURCE_DIR) + "/evaluation/campaign/matches.csv");
+  EXPECT_TRUE(table) << table.error().message;
+  std::vector<JudgedCycle> cycles;
+  const Status ran = run_stage(config, Mode{}, *table,
+                               [&cycles](const JudgedCycle& cycle) { cycles.push_back(cycle); });
+  EXPECT_TRUE(ran) << ran.error().message;
+  return cycles;
+}
+
+TEST(OwnBusTest, GivesThePosesOfTheStandardMessages) {
+  const auto standard = cycles_of(config_of("demo.yaml"));
+  const auto own = cycles_of(config_of("demo_own_bus.yaml"));
+  ASSERT_EQ(own.size(), standard.size());
+  size_t both = 0;
+  for (size_t i = 0; i < own.size(); ++i) {
+    if (!own[i].pose || !standard[i].pose) continue;
+    ++both;
+    const Eigen::Vector3d difference = own[i].pose->error - standard[i].pose->error;
+    EXPECT_LT(difference.head<2>().norm(), 0.03) << own[i].time_s;
+    EXPECT_LT(std::abs(difference.z()), radians(0.03)) << own[i].time_s;
+  }
+  EXPECT_GT(both, own.size() / 2);
+}
+
+TEST(OwnBusTest, GivesTheSamplesOfTheStandardMessagesWithoutAllocation) {
+  const DriveConfig config = config_of("demo_own_bus.yaml");
+  const auto drive = SimulatedDrive::create(config);
+  ASSERT_TRUE(drive) << drive.error().message;
+  const can::GeodeticPosition origin{drive->map().origin.latitude_deg,
+                                     drive->map().origin.longitude_deg};
+  firmware::CanConfig standard = config.can;
+  standard.vehicle.reset();
+  can::MockWire own_wire;
+  can::MockWire standard_wire;
+  const auto own_bus = own_wire.connect();
+  const auto standard_bus = standard_wire.connect();
+  SimulatedVehicle own_vehicle(*drive, 1, config.can, own_wire.connect(), kStart);
+  SimulatedVehicle standard_vehicle(*drive, 1, standard, standard_wire.connect(), kStart);
+  const auto own_decoder = firmware::make_vehicle_decoder(config.can, origin);
+  const auto standard_decoder = firmware::make_vehicle_decoder(standard, origin);
+  std::vector<VehicleSample> own;
+  std::vector<VehicleSample> wanted;
+  own.reserve(10'000);
+  for (Time now = kStart; now < kStart + from_seconds(kDuration_s); now = own_vehicle.next_due()) {
+    own_vehicle.send_due(now);
+    standard_vehicle.send_due(now);
+    while (const auto frame = standard_bus->receive()) {
+      if (const auto sample = standard_decoder->accept(*frame)) wanted.push_back(*sample);
+    }
+    while (const auto frame = own_bus->receive()) {
+      const uint64_t before = bench::allocation_count();
+      const auto sample = own_decoder->accept(*frame);
+      EXPECT_EQ(bench::allocation_count(), before);
+      if (sample) own.push_back(*sample);
+    }
+  }
+  ASSERT_EQ(own.size(), wanted.size());
+  EXPECT_GT(own.size(), 1700U);
+  for (size_t i = 0; i < own.size(); ++i) {
+    ASSERT_EQ(own[i].index(), wanted[i].index());
+    if (const auto* odometry = std::get_if<OdometrySample>(&own[i])) {
+      const auto& other = std::get<OdometrySample>(wanted[i]);
+      EXPECT_EQ(odometry->time, other.time);
+      EXPECT_NEAR(odometry->speed_mps, other.speed_mps, 0.005);
+      EXPECT_NEAR(odometry->yaw_rate_radps, other.yaw_rate_radps, radians(0.005));
+      continue;
+    }
+    const auto& gnss = std::get<GnssSample>(own[i]);
+    const auto& other = std::get<GnssSample>(wanted[i]);
+    EXPECT_EQ(gnss.time, other.time);
+    EXPECT_NEAR(gnss.east_m, other.east_m, 0.02);
+    EXPECT_NEAR(gnss.north_m, other.north_m, 0.02);
+    EXPECT_NEAR(gnss.sigma_east_m, other.sigma_east_m, 0.011);
+    ASSERT_EQ(gnss.yaw.has_value(), other.yaw.has_value());
+    if (gnss.yaw) {
+      EXPECT_NEAR(gnss.yaw->yaw_rad, other.yaw->yaw_rad, radians(0.011));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation

@@ -1,0 +1,109 @@
+#include "firmware/config/vehicle_bus_config.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/firmware/config/config_fixture.h"
+
+namespace bevloc::firmware {
+namespace {
+
+/// The section `can` of config/demo_own_bus.yaml in a configuration of its own.
+class VehicleBusConfigTest : public ConfigTest {
+ protected:
+  VehicleBusConfigTest() {
+    std::filesystem::copy_file(kSource / "config/vehicle_demo.dbc", folder_ / "vehicle_demo.dbc");
+    const std::string demo = read_text(kSource / "config/demo_own_bus.yaml");
+    const size_t begin = demo.find("can:\n");
+    section_ = demo.substr(begin, demo.find("log:\n") - begin);
+  }
+
+  /// Loads the section with `from`, which occurs in it, replaced by `to`.
+  Result<evaluation::DriveConfig> load_with(const std::string& from, const std::string& to) const {
+    std::string section = section_;
+    const size_t position = section.find(from);
+    EXPECT_NE(position, std::string::npos) << from;
+    return load(with("can: {driver: mock}\n", section.replace(position, from.size(), to)));
+  }
+  std::string error_with(const std::string& from, const std::string& to) const {
+    const auto config = load_with(from, to);
+    return config ? "" : config.error().message;
+  }
+
+  std::string section_;
+};
+
+TEST_F(VehicleBusConfigTest, BindsTheSignals) {
+  const auto config = load_with("mock", "mock");
+  ASSERT_TRUE(config) << config.error().message;
+  ASSERT_TRUE(config->can.vehicle);
+  const can::VehicleBinding& binding = *config->can.vehicle;
+  EXPECT_EQ(can::ids_of(binding), (std::vector<uint32_t>{288, 289, 291, 290, 292, 293}));
+  EXPECT_EQ(binding.wheels.wheels.size(), 4U);
+  EXPECT_NEAR(binding.signals[0].factor, 1.0 / 3.6, 1e-12);
+  EXPECT_TRUE(binding.yaw_rate.positive_right);
+  EXPECT_EQ(binding.wheels.backward->values, std::vector<int64_t>{1}) << "R in VAL_";
+  EXPECT_EQ(binding.gnss->valid->values, (std::vector<int64_t>{3, 4}));
+  EXPECT_EQ(binding.messages[0].protection.checksum, can::ChecksumKind::kCrc8Sae);
+  EXPECT_EQ(binding.messages[0].protection.highest_counter, 14);
+  EXPECT_EQ(binding.messages[1].protection.checksum, can::ChecksumKind::kE2eP02)
+      << "from the attribute E2EProfile";
+  EXPECT_EQ(binding.messages[1].protection.data_ids, std::vector<uint16_t>{77});
+  EXPECT_EQ(can::warnings_of(binding).size(), 8U) << "four messages without protection";
+}
+
+TEST_F(VehicleBusConfigTest, NamesWhatWasProbablyMeant) {
+  EXPECT_EQ(error_with("message: ESP_Motion", "message: ESP_Motoin"),
+            place(22) +
+                "can.vehicle.yaw_rate.message: found ESP_Motoin (did you mean ESP_Motion?), "
+                "wanted the name of a message of " +
+                (folder_ / "vehicle_demo.dbc").string());
+  EXPECT_NE(error_with("rear_left: WR_Left", "rear_left: WR_left2")
+                .find("can.vehicle.wheel_speed.signals.rear_left: found WR_left2 (did you mean "
+                      "WR_Left?), wanted the name of a signal of message ESP_WheelsRear"),
+            std::string::npos);
+  EXPECT_NE(error_with("FIX_3D, RTK", "FIX_3").find("found FIX_3 (did you mean FIX_3D?)"),
+            std::string::npos);
+}
+
+TEST_F(VehicleBusConfigTest, RefusesWrongUnitsRangesAndCycles) {
+  EXPECT_NE(error_with("signal: MO_YawRate ", "signal: MO_Accel ")
+                .find("found MO_Accel with unit \"m/s2\", wanted rad/s or deg/s"),
+            std::string::npos);
+  EXPECT_NE(error_with("rear_right: WR_Right", "rear_right: WR_Valid").find("with unit \"\""),
+            std::string::npos);
+  EXPECT_NE(error_with("latitude: GP_Latitude", "latitude: GP_Latitude\n      position_unit: km")
+                .find("found GP_Latitude with unit \"km\", wanted deg, rad or arcmin"),
+            std::string::npos);
+  EXPECT_NE(error_with("        algorithm: crc8_sae_j1850",
+                       "        algorithm: crc8_sae_j1850\n        cycle_ms: 100")
+                .find("found message ESP_WheelsRear with a cycle of 100 ms, wanted 1 to 40 ms for "
+                      "odometry"),
+            std::string::npos);
+}
+
+TEST_F(VehicleBusConfigTest, RefusesWhatBevlocCannotReceive) {
+  EXPECT_NE(error_with("message: GPS_Position", "message: DIAG_Extended").find("29-bit identifier"),
+            std::string::npos);
+  EXPECT_NE(error_with("  driver: mock\n", "  driver: mock\n  localizer_base_id: 0x120\n")
+                .find("can.vehicle.dbc: found message ESP_WheelsRear with identifier 0x120 of "
+                      "LOC_Status"),
+            std::string::npos);
+  EXPECT_NE(error_with("dbc: vehicle_demo.dbc", "dbc: no.dbc").find("can.vehicle.dbc"),
+            std::string::npos);
+}
+
+TEST_F(VehicleBusConfigTest, WantsOneStatementOfEachFact) {
+  EXPECT_NE(error_with("      sigma: GPS", "      sigma_m: 2\n      sigma: GPS")
+                .find("found 2 statements of the position's sigma"),
+            std::string::npos);
+  EXPECT_NE(
+      error_with("        rear_left: WR_Left\n", "").find("rear_left and rear_right, or vehicle"),
+      std::string::npos);
+  EXPECT_NE(error_with("checksum: WR_Checksum", "checksum: WR_Counter").find("wanted a whole byte"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace bevloc::firmware
