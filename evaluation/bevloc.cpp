@@ -9,6 +9,7 @@
 #include "evaluation/campaign/tune_matches_command.h"
 #include "evaluation/drive/fault_command.h"
 #include "evaluation/localize/localize_command.h"
+#include "evaluation/maps/map_command.h"
 #include "evaluation/network/answer_command.h"
 #include "evaluation/network/network_command.h"
 #include "evaluation/network/rig_command.h"
@@ -56,6 +57,8 @@ int main(int argc, char** argv) {
   fault_command.declare(app);
   bevloc::evaluation::LocalizeCommand localize_command;
   localize_command.declare(app);
+  bevloc::evaluation::MapCommand map_command;
+  map_command.declare(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -69,6 +72,7 @@ int main(int argc, char** argv) {
                                 : answer_command.chosen()       ? answer_command.run()
                                 : fault_command.chosen()        ? fault_command.run()
                                 : localize_command.chosen()     ? localize_command.run()
+                                : map_command.chosen()          ? map_command.run()
                                 : network_command.chosen()      ? network_command.run()
                                 : rig_command.chosen()          ? rig_command.run()
                                                                 : solver_command.run();
