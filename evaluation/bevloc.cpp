@@ -11,6 +11,7 @@
 #include "evaluation/drive/fault_command.h"
 #include "evaluation/listen/listen_command.h"
 #include "evaluation/localize/localize_command.h"
+#include "evaluation/maps/map_command.h"
 #include "evaluation/network/answer_command.h"
 #include "evaluation/network/network_command.h"
 #include "evaluation/network/rig_command.h"
@@ -43,6 +44,7 @@ void add_evaluation_commands(CLI::App& app, bevloc::command::CommandList& comman
   commands.add<FaultCommand>(app);
   commands.add<LocalizeCommand>(app);
   commands.add<ListenCommand>(app);
+  commands.add<MapCommand>(app);
 }
 
 }  // namespace

@@ -45,24 +45,15 @@ double length_of(const Polyline& line) {
   return length_m;
 }
 
-Lane reversed(const Lane& lane) {
-  Lane other = lane;
-  std::swap(other.left, other.right);
-  for (Polyline* line : {&other.left, &other.right, &other.centerline}) {
-    std::reverse(line->begin(), line->end());
-  }
-  return other;
-}
-
 /// Converts one document to a map.
 class Lanelet2Reader {
  public:
-  Lanelet2Reader(const OsmDocument& document, NodePositions nodes)
-      : document_(document), nodes_(std::move(nodes)) {
+  Lanelet2Reader(const OsmDocument& document, NodePositions nodes, const ClassTable& classes)
+      : document_(document), nodes_(std::move(nodes)), classes_(classes) {
     for (const OsmWay& way : document_.ways) ways_[way.id] = &way;
   }
 
-  Result<HdMap> read() {
+  Result<ImportedMap> read() {
     find_lanelets();
     for (const Lanelet& lanelet : lanelets_) add_lanelet(lanelet);
     read_lines();
@@ -70,7 +61,7 @@ class Lanelet2Reader {
     if (map_.elements.empty() && map_.lanes.empty()) return nothing_found();
     link_successors(map_.lanes);
     map_.origin = nodes_.origin;
-    return std::move(map_);
+    return ImportedMap{std::move(map_), std::move(report_), std::move(heights_m_)};
   }
 
  private:
@@ -131,9 +122,32 @@ class Lanelet2Reader {
     };
     const bool has_zebra = std::ranges::any_of(lanelet.left.ways, is_zebra) ||
                            std::ranges::any_of(lanelet.right.ways, is_zebra);
-    map_.elements.push_back({ElementClass::kPedestrianCrossing,
-                             has_zebra ? Appearance::kZebra : Appearance::kUnknown,
-                             ring_between(lanelet.left.points, lanelet.right.points)});
+    MapElement crossing{ElementClass::kPedestrianCrossing,
+                        has_zebra ? Appearance::kZebra : Appearance::kUnknown,
+                        ring_between(lanelet.left.points, lanelet.right.points)};
+    const std::string where =
+        fmt::format("lanelet {} (line {})", lanelet.relation->id, lanelet.relation->line);
+    take(std::move(crossing), "lanelet crosswalk", where);
+  }
+
+  /// Adds an element, unless the class table has another meaning for its kind.
+  void take(std::optional<MapElement> element, const std::string& kind, const std::string& where,
+            std::string_view why_not = "", Heights heights_m = {}) {
+    std::string_view why = element ? "" : why_not;
+    if (element && !element->points.empty()) {
+      if (const auto* rule = classes_.rule_for(kind)) {
+        why = "by the class table";
+        element->element_class = rule->becomes.value_or(Meaning()).element_class;
+        element->appearance = rule->becomes.value_or(Meaning()).appearance;
+        if (!rule->becomes) element.reset();
+      }
+    }
+    std::optional<Meaning> meaning;
+    if (element) meaning = Meaning{element->element_class, element->appearance};
+    report_.note(kind, meaning, why, element ? length_of(element->points) : 0.0, where);
+    if (!element) return;
+    map_.elements.push_back(std::move(*element));
+    heights_m_.push_back(std::move(heights_m));
   }
 
   void add_lanes(const Lanelet& lanelet) {
@@ -167,23 +181,31 @@ class Lanelet2Reader {
   }
 
   void add_line(const OsmWay& way) {
+    const std::string kind = way_kind(way.tags);
+    const std::string where = fmt::format("way {} (line {})", way.id, way.line);
     std::optional<MapElement> element = classify(way);
-    if (!element) return;
+    const auto* rule = classes_.rule_for(kind);
+    if (!element && rule != nullptr && rule->becomes) element = MapElement{};
+    if (!element) return take(std::nullopt, kind, where, "no line of the road");
     Result<Polyline> points = points_of(way);
     if (!points) {
       map_.left_out.push_back(points.error().message);
-      return;
+      return take(std::nullopt, kind, where, "left out, see below");
     }
-    if (points->size() < 2) return;
+    if (points->size() < 2) return take(std::nullopt, kind, where, "too few points");
     if (length_of(*points) > kLongestPolylineM) {
       map_.left_out.push_back(fmt::format("{}:{}: way {}: found {:g} m, wanted at most {:g} m",
                                           document_.file, way.line, way.id, length_of(*points),
                                           kLongestPolylineM));
-      return;
+      return take(std::nullopt, kind, where, "left out, see below");
     }
     element->points = std::move(*points);
     judge_by_neighbours(way, *element);
-    if (!is_second_of_a_pair(way, *element)) map_.elements.push_back(std::move(*element));
+    if (is_second_of_a_pair(way, *element)) {
+      return take(std::nullopt, kind, where, "the neighbouring lanelet has the same line");
+    }
+    Heights heights_m = heights_of(way, document_, nodes_, element->points.size());
+    take(std::move(element), kind, where, "", std::move(heights_m));
   }
 
   const BoundUse& use_of(const OsmWay& way) const {
@@ -222,7 +244,8 @@ class Lanelet2Reader {
     if (has_type && element.element_class == ElementClass::kLaneDivider) {
       const double beside = beside_.share_beside(element.points, kBesideEdge_m, is_foreign);
       if (beside > kEdgeShare) return;
-      element = {ElementClass::kRoadBoundary, Appearance::kRoadEdge, std::move(element.points)};
+      element.element_class = ElementClass::kRoadBoundary;
+      element.appearance = Appearance::kRoadEdge;
     } else if (!has_type) {
       const double same = beside_.share_beside(element.points, kSameLine_m, is_foreign);
       if (same < kSameLineShare) return;
@@ -317,6 +340,7 @@ class Lanelet2Reader {
 
   const OsmDocument& document_;
   const NodePositions nodes_;
+  const ClassTable& classes_;
   std::unordered_map<int64_t, const OsmWay*> ways_;
   std::vector<Lanelet> lanelets_;
   std::unordered_map<int64_t, BoundUse> uses_;  ///< by way
@@ -325,6 +349,8 @@ class Lanelet2Reader {
   LineNeighbours beside_;  ///< typed boundaries, and bounds of lanelets for vehicles
   std::unordered_set<int64_t> drawn_by_pairs_;  ///< ways that run on a bound of another lanelet
   HdMap map_;
+  std::vector<Heights> heights_m_;  ///< of each element
+  ImportReport report_;
 };
 
 }  // namespace
@@ -336,13 +362,34 @@ Result<HdMap> read_lanelet2(const std::filesystem::path& path) {
 }
 
 Result<HdMap> parse_lanelet2(std::string_view text, const std::filesystem::path& file) {
+  Result<ImportedMap> imported = parse_lanelet2_with_report(text, file, {});
+  if (!imported) return tl::unexpected(imported.error());
+  return std::move(imported->map);
+}
+
+Result<ImportedMap> parse_lanelet2_with_report(std::string_view text,
+                                               const std::filesystem::path& file,
+                                               const ImportOptions& options) {
   const Result<OsmDocument> document = parse_osm(text, file.string());
   if (!document) return tl::unexpected(document.error());
   Result<NodePositions> nodes = locate_nodes(*document);
   if (!nodes) return tl::unexpected(nodes.error());
-  Result<HdMap> map = Lanelet2Reader(*document, std::move(*nodes)).read();
-  if (map) map->name = file.stem().string();
-  return map;
+  const bool has_place = nodes->origin.latitude_deg != 0.0 || nodes->origin.longitude_deg != 0.0;
+  if (options.origin && has_place) {
+    return fail(
+        "{}: found an origin for a map whose nodes have latitude and longitude, wanted none",
+        file.string());
+  }
+  if (options.origin) nodes->origin = *options.origin;
+  const ClassTable none;
+  const ClassTable& classes = options.classes != nullptr ? *options.classes : none;
+  Result<ImportedMap> imported = Lanelet2Reader(*document, std::move(*nodes), classes).read();
+  if (!imported) return imported;
+  if (Status status = check_rules(classes, imported->report, file.string()); !status) {
+    return tl::unexpected(status.error());
+  }
+  imported->map.name = file.stem().string();
+  return imported;
 }
 
 }  // namespace bevloc

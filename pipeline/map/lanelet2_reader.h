@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "common/result.h"
+#include "pipeline/map/formats/map_builder.h"
 #include "pipeline/map/hd_map.h"
 
 namespace bevloc {
@@ -35,5 +36,12 @@ Result<HdMap> read_lanelet2(const std::filesystem::path& path);
 
 /// The same for text in memory. Error messages show `file`; its stem becomes the name of the map.
 Result<HdMap> parse_lanelet2(std::string_view text, const std::filesystem::path& file);
+
+/// The same with a report by kind of way ("way line_thin dashed") and with a class table, which may
+/// also take ways that are otherwise ignored. An origin of the options is for files that have local
+/// coordinates only; others are refused with it.
+Result<ImportedMap> parse_lanelet2_with_report(std::string_view text,
+                                               const std::filesystem::path& file,
+                                               const ImportOptions& options);
 
 }  // namespace bevloc

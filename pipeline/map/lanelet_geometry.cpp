@@ -147,6 +147,15 @@ Polyline ring_between(const Polyline& left, const Polyline& right) {
   return ring;
 }
 
+Lane reversed(const Lane& lane) {
+  Lane other = lane;
+  std::swap(other.left, other.right);
+  for (Polyline* line : {&other.left, &other.right, &other.centerline}) {
+    std::reverse(line->begin(), line->end());
+  }
+  return other;
+}
+
 void link_successors(std::vector<Lane>& lanes) {
   constexpr double kSamePlaceM = 0.1;
   std::vector<uint32_t> by_start(lanes.size());

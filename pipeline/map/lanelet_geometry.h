@@ -27,6 +27,9 @@ Polyline centerline_between(const Polyline& left, const Polyline& right);
 /// within 0.3 m of a straight line, so that each long side of a crossing is a single edge.
 Polyline ring_between(const Polyline& left, const Polyline& right);
 
+/// The lane in the other direction.
+Lane reversed(const Lane& lane);
+
 /// Fills the successors. Lane b follows lane a if both bounds of b start where those of a end, to
 /// within 0.1 m.
 void link_successors(std::vector<Lane>& lanes);

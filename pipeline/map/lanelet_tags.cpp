@@ -70,4 +70,13 @@ bool is_no(std::string_view value) {
   return value == "no" || value == "false" || value == "0";
 }
 
+std::string way_kind(const OsmTags& tags) {
+  std::string kind = "way ";
+  const std::string_view type = tag_value(tags, "type");
+  const std::string_view subtype = tag_value(tags, "subtype");
+  kind += type.empty() ? "without type" : type;
+  if (!subtype.empty()) kind.append(" ").append(subtype);
+  return kind;
+}
+
 }  // namespace bevloc

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "pipeline/map/hd_map.h"
@@ -23,6 +24,9 @@ Appearance divider_appearance(std::string_view subtype);
 
 /// Parses a speed tag with the unit km/h, mph or m/s; without a unit it is km/h.
 std::optional<double> speed_mps(std::string_view text);
+
+/// How a report calls a way: "way line_thin dashed".
+std::string way_kind(const OsmTags& tags);
 
 /// Whether a tag says no.
 bool is_no(std::string_view value);

@@ -16,7 +16,8 @@ inline constexpr double kMapQuantumM = 0.001;
 /// The first bytes of every compact map file.
 inline constexpr std::string_view kMapMagic = "BVMP";
 
-/// Encodes a map. File layout, all numbers little-endian:
+/// Encodes a map as version 1 of the format, which every release reads, as a whole. Version 2, in
+/// tiles, is described in tiles/tile_codec.h. File layout, all numbers little-endian:
 ///
 ///     magic "BVMP" | version u16 | size of the body in bytes u32 | body | CRC-32 u32
 ///
@@ -36,10 +37,14 @@ inline constexpr std::string_view kMapMagic = "BVMP";
 /// Coordinates must be finite and below 100,000 km.
 std::string encode_map(const HdMap& map);
 
-/// Decodes a map. Fails, with `file` in the message, unless encode_map() wrote the bytes.
+/// Decodes a map of either version. Fails, with `file` in the message, unless encode_map() or
+/// encode_tiles() wrote the bytes.
 Result<HdMap> decode_map(std::string_view bytes, const std::string& file);
 
 Result<HdMap> read_map_binary(const std::filesystem::path& path);
+/// Writes version 1.
 Status write_map_binary(const HdMap& map, const std::filesystem::path& path);
+/// Writes version 2. Fails if check_map() does not hold.
+Status write_tiled_map(const HdMap& map, const std::filesystem::path& path);
 
 }  // namespace bevloc

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <exception>
 #include <numeric>
 #include <optional>
 #include <vector>
 
 #include <GeographicLib/LocalCartesian.hpp>
+#include <GeographicLib/MGRS.hpp>
+#include <GeographicLib/UTMUPS.hpp>
 
 namespace bevloc {
 namespace {
@@ -88,9 +91,53 @@ Result<Similarity> plane_from_local(const std::vector<std::complex<double>>& loc
       file, std::abs(factor), worst_m, 1.0 + kMaxScaleError, kMaxDisagreementM);
 }
 
+constexpr double kMgrsSquare_m = 100'000.0;
+
+/// The place on earth of local coordinates in an MGRS square. Nothing if there is no such square.
+std::optional<GeoOrigin> place_in_square(const OsmNode& node) {
+  try {
+    int zone = 0, precision = 0;
+    bool north = true;
+    double east_m = 0.0, north_m = 0.0;
+    constexpr bool kCenter = false;
+    GeographicLib::MGRS::Reverse(node.mgrs_square, zone, north, east_m, north_m, precision,
+                                 kCenter);
+    if (precision != 0) return std::nullopt;
+    GeoOrigin place;
+    GeographicLib::UTMUPS::Reverse(zone, north, east_m + std::fmod(*node.local_x_m, kMgrsSquare_m),
+                                   north_m + std::fmod(*node.local_y_m, kMgrsSquare_m),
+                                   place.latitude_deg, place.longitude_deg);
+    return place;
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
+/// Autoware's maps without latitude and longitude say in which MGRS square their local coordinates
+/// are. The document with the latitude and longitude of each node, or nothing if not all nodes with
+/// local coordinates have a square.
+std::optional<OsmDocument> with_angles_of_squares(const OsmDocument& document) {
+  OsmDocument located = document;
+  bool any = false;
+  for (auto& [id, node] : located.nodes) {
+    if (has_angles(node)) return std::nullopt;
+    if (!has_local(node)) continue;
+    const auto place = place_in_square(node);
+    if (!place) return std::nullopt;
+    node.latitude_deg = place->latitude_deg;
+    node.longitude_deg = place->longitude_deg;
+    node.local_x_m.reset();
+    node.local_y_m.reset();
+    any = true;
+  }
+  if (!any) return std::nullopt;
+  return located;
+}
+
 }  // namespace
 
 Result<NodePositions> locate_nodes(const OsmDocument& document) {
+  if (const auto located = with_angles_of_squares(document)) return locate_nodes(*located);
   NodePositions positions;
   std::vector<std::complex<double>> local;
   std::vector<std::complex<double>> plane;
@@ -124,6 +171,21 @@ Result<NodePositions> locate_nodes(const OsmDocument& document) {
     positions.of_node[id] = {position.real(), position.imag()};
   }
   return positions;
+}
+
+std::vector<double> heights_of(const OsmWay& way, const OsmDocument& document,
+                               const NodePositions& nodes, size_t count) {
+  std::vector<double> heights_m;
+  const Eigen::Vector2d* last = nullptr;
+  for (const int64_t id : way.nodes) {
+    const Eigen::Vector2d& position = nodes.of_node.at(id);
+    const std::optional<double>& height_m = document.nodes.at(id).height_m;
+    if (!height_m) return {};
+    if (last == nullptr || *last != position) heights_m.push_back(*height_m);
+    last = &position;
+  }
+  if (heights_m.size() != count) heights_m.clear();
+  return heights_m;
 }
 
 }  // namespace bevloc

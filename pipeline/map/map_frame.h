@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <unordered_map>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -21,11 +22,17 @@ struct NodePositions {
 /// The map frame is the east-north tangent plane at the middle of the file's nodes. Where a node
 /// has Autoware's local coordinates, they take precedence over its latitude and longitude: one
 /// similarity (shift, rotation, scale) maps all local coordinates into the tangent plane. It is
-/// fitted to the nodes that have both. If no node has latitude and longitude, the local coordinates
-/// are the map frame and the unknown origin is (0, 0).
+/// fitted to the nodes that have both. If no node has latitude and longitude, but all with local
+/// coordinates have an MGRS square (tag mgrs_code), the local coordinates are UTM coordinates
+/// within it. Otherwise the local coordinates are the map frame and the unknown origin is (0, 0).
 ///
 /// Fails if some nodes have latitude and longitude, others local coordinates, and fewer than two at
 /// different places have both; and if the two kinds disagree by more than 1 m or 1 % of scale.
 Result<NodePositions> locate_nodes(const OsmDocument& document);
+
+/// The heights of a way's nodes, without consecutive nodes at one place: one for each of `count`
+/// points, or none if a node lacks its height. All nodes must have a position.
+std::vector<double> heights_of(const OsmWay& way, const OsmDocument& document,
+                               const NodePositions& nodes, size_t count);
 
 }  // namespace bevloc

@@ -9,8 +9,8 @@
 
 namespace bevloc {
 
-/// Loads a compact map, recognised by its magic number, or a Lanelet2 map, recognised by the
-/// extension .osm. Fails on a map in which nothing can be localized, too (map_check.h).
+/// Loads a map of any format of map_formats() (formats/map_format.h), without the report of its
+/// import. Fails on a map in which nothing can be localized, too (map_check.h).
 Result<HdMap> load_map(const std::filesystem::path& path);
 
 /// The same for the bytes of a file in memory. `path` gives the extension and the name in messages.

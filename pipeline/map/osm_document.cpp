@@ -8,26 +8,10 @@
 
 #include <pugixml.hpp>
 
+#include "pipeline/map/text_lines.h"
+
 namespace bevloc {
 namespace {
-
-/// Finds the line number of a position in the text.
-class LineFinder {
- public:
-  explicit LineFinder(std::string_view text) {
-    for (size_t i = 0; i < text.size(); ++i) {
-      if (text[i] == '\n') line_ends_.push_back(static_cast<std::ptrdiff_t>(i));
-    }
-  }
-  int line_at(std::ptrdiff_t offset) const {
-    return static_cast<int>(std::lower_bound(line_ends_.begin(), line_ends_.end(), offset) -
-                            line_ends_.begin()) +
-           1;
-  }
-
- private:
-  std::vector<std::ptrdiff_t> line_ends_;
-};
 
 template <typename T>
 std::optional<T> number_from(std::string_view text) {
@@ -36,6 +20,15 @@ std::optional<T> number_from(std::string_view text) {
   const auto result = std::from_chars(text.data(), end, value);
   if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
   return value;
+}
+
+/// Zone, band and square ("54SUE") of an MGRS code: what comes before its numbers.
+std::string mgrs_square_of(std::string_view code) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  size_t end = 0;
+  while (end < code.size() && is_digit(code[end])) ++end;
+  while (end < code.size() && !is_digit(code[end])) ++end;
+  return std::string(code.substr(0, end));
 }
 
 /// Reads the elements of one file. Stops at the first error.
@@ -115,6 +108,10 @@ class OsmReader {
         status = store(tag, "local_x", value, kMaxLocalM, node.local_x_m);
       } else if (status && key == "local_y") {
         status = store(tag, "local_y", value, kMaxLocalM, node.local_y_m);
+      } else if (status && key == "ele") {
+        status = store(tag, "ele", value, kMaxLocalM, node.height_m);
+      } else if (key == "mgrs_code") {
+        node.mgrs_square = mgrs_square_of(value);
       }
     }
     return status;

@@ -20,6 +20,8 @@ struct OsmNode {
   std::optional<double> longitude_deg;
   std::optional<double> local_x_m;  ///< Autoware's tag local_x
   std::optional<double> local_y_m;  ///< Autoware's tag local_y
+  std::optional<double> height_m;   ///< tag ele
+  std::string mgrs_square;          ///< the 100 km square of Autoware's tag mgrs_code, or ""
 };
 
 using OsmTags = std::map<std::string, std::string, std::less<>>;

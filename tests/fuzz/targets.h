@@ -20,10 +20,12 @@ void run_config(Bytes bytes);
 void run_dbc(Bytes bytes);
 void run_frames_txt(Bytes bytes);
 void run_image_file(Bytes bytes);
+void run_map_json(Bytes bytes);
 void run_mjpeg(Bytes bytes);
 void run_onnx(Bytes bytes);
 void run_osm(Bytes bytes);
 void run_rig(Bytes bytes);
+void run_xodr(Bytes bytes);
 
 struct Target {
   std::string_view name;
@@ -38,10 +40,12 @@ inline constexpr Target kTargets[] = {
     {"dbc", run_dbc},
     {"frames_txt", run_frames_txt},
     {"image_file", run_image_file},
+    {"map_json", run_map_json},
     {"mjpeg", run_mjpeg},
     {"onnx", run_onnx},
     {"osm", run_osm},
     {"rig", run_rig},
+    {"xodr", run_xodr},
 };
 
 /// Ends the program with the message unless the condition holds, in every build type.

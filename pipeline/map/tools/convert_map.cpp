@@ -16,7 +16,7 @@ constexpr int kBadInput = 2;
 bevloc::Status convert(const std::filesystem::path& in, const std::filesystem::path& out) {
   const auto map = bevloc::load_map(in);
   if (!map) return tl::unexpected(map.error());
-  if (auto status = bevloc::write_map_binary(*map, out); !status) return status;
+  if (auto status = bevloc::write_tiled_map(*map, out); !status) return status;
   fmt::print("{}: {}, {} bytes\n", out.string(), bevloc::contents_of(*map),
              std::filesystem::file_size(out));
   for (const std::string& warning : bevloc::warnings_of(*map)) {
@@ -28,7 +28,7 @@ bevloc::Status convert(const std::filesystem::path& in, const std::filesystem::p
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Converts a map, Lanelet2 (.osm) or compact, to a compact map (.bvm)");
+  CLI::App app("Converts a map of any format (docs/maps.md) to a compact map (.bvm)");
   std::string in;
   std::string out;
   app.add_option("in", in, "Map to read")->required();

@@ -1,4 +1,4 @@
-// Compact maps (.bvm) and Lanelet2 maps (.osm): loads, draws and stores them.
+// Maps of all formats: loads, draws and stores them.
 #include <cmath>
 
 #include "common/crc32.h"
@@ -6,6 +6,7 @@
 #include "pipeline/map/map_check.h"
 #include "pipeline/map/map_loader.h"
 #include "pipeline/map/rasterizer.h"
+#include "pipeline/map/tiles/tile_codec.h"
 #include "tests/fuzz/targets.h"
 
 namespace bevloc::fuzz {
@@ -41,6 +42,9 @@ void use(const HdMap& map) {
   expect(again.has_value(), "a loaded map that cannot be stored and read again");
   expect(again->elements.size() == map.elements.size(), "another number of elements when stored");
   expect(check_map(*again, "again.bvm").has_value(), "a stored map that is refused");
+  const auto tiled = decode_map(encode_tiles(map), "tiled.bvm");
+  expect(tiled.has_value(), "a loaded map that cannot be stored in tiles and read again");
+  expect(encode_map(*tiled) == encode_map(*again), "another map when stored in tiles");
 }
 
 }  // namespace
@@ -53,6 +57,16 @@ void run_bvm(Bytes bytes) {
 
 void run_osm(Bytes bytes) {
   const auto map = parse_map(text_of(bytes), "fuzz.osm");
+  if (map) use(*map);
+}
+
+void run_xodr(Bytes bytes) {
+  const auto map = parse_map(text_of(bytes), "fuzz.xodr");
+  if (map) use(*map);
+}
+
+void run_map_json(Bytes bytes) {
+  const auto map = parse_map(text_of(bytes), "fuzz.geojson");
   if (map) use(*map);
 }
 

@@ -172,7 +172,7 @@ TEST(MapBinary, ErrorsNameTheCause) {
   EXPECT_THAT(decode_error("PK" + bytes), HasSubstr("wanted \"BVMP\""));
   std::string newer = bytes;
   newer[4] = 9;
-  EXPECT_EQ(decode_error(newer), "town.bvm: found version 9 of the format, wanted 1");
+  EXPECT_EQ(decode_error(newer), "town.bvm: found version 9 of the format, wanted 1 or 2");
   std::string damaged = bytes;
   damaged[60] ^= 1;
   EXPECT_THAT(decode_error(damaged), StartsWith("town.bvm: found CRC-32 "));

@@ -1,0 +1,159 @@
+#include "evaluation/maps/map_command.h"
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "common/files.h"
+#include "evaluation/maps/map_diff.h"
+#include "evaluation/maps/map_facts.h"
+#include "evaluation/maps/map_picture.h"
+#include "pipeline/map/formats/geojson.h"
+#include "pipeline/map/formats/map_format.h"
+#include "pipeline/map/map_binary.h"
+#include "pipeline/map/map_loader.h"
+#include "pipeline/map/map_summary.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+Result<GeoOrigin> origin_from(const std::string& text) {
+  GeoOrigin origin;
+  const char* end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, origin.latitude_deg);
+  const bool has_comma = first.ec == std::errc() && first.ptr != end && *first.ptr == ',';
+  const auto second = has_comma ? std::from_chars(first.ptr + 1, end, origin.longitude_deg) : first;
+  const bool is_good = has_comma && second.ec == std::errc() && second.ptr == end &&
+                       std::abs(origin.latitude_deg) <= 90.0 &&
+                       std::abs(origin.longitude_deg) <= 180.0;
+  if (is_good) return origin;
+  return fail("--origin: found \"{}\", wanted LATITUDE,LONGITUDE in degrees", text);
+}
+
+Status write_json(const nlohmann::json& json, const std::string& path) {
+  return path.empty() ? Status() : bevloc::write_file(path, json.dump(2) + "\n");
+}
+
+Status write_map(const ImportedMap& imported, const std::filesystem::path& path, bool version_1) {
+  const std::string extension = path.extension().string();
+  if (extension == ".bvm") {
+    return version_1 ? write_map_binary(imported.map, path) : write_tiled_map(imported.map, path);
+  }
+  if (extension == ".geojson" || extension == ".json") {
+    const Result<std::string> text = to_geojson(imported);
+    return text ? bevloc::write_file(path, *text) : Status(tl::unexpected(text.error()));
+  }
+  return fail("{}: found the extension \"{}\", wanted .bvm or .geojson", path.string(), extension);
+}
+
+void print_map(const ImportedMap& imported, const std::string& file) {
+  fmt::print("{}: {}\n", file, contents_of(imported.map));
+  for (const std::string& warning : warnings_of(imported.map)) {
+    fmt::print(stderr, "{}: {}\n", file, warning);
+  }
+}
+
+}  // namespace
+
+void MapCommand::declare(CLI::App& app) {
+  auto* map = app.add_subcommand("map", "Import, describe, check, draw and compare maps");
+  map->require_subcommand(1);
+  map->footer(
+      "Formats: Lanelet2, OpenDRIVE, Argoverse 2, nuScenes, GeoJSON and bevloc's own .bvm. "
+      "docs/maps.md");
+  const auto add = [&](const char* name, const char* what, Status (MapCommand::*action)() const) {
+    auto* command = map->add_subcommand(name, what);
+    command->add_option("map", in_, "Map file of any format")->required();
+    command->callback([this, action] { action_ = action; });
+    return command;
+  };
+  auto* imports =
+      add("import", "Convert a map, and say what was taken, dropped and why", &MapCommand::import);
+  imports->add_option("out", out_, "Map to write: .bvm or .geojson")->required();
+  imports->add_option("--classes", classes_, "YAML file: what kinds of lines become");
+  imports->add_option("--origin", origin_,
+                      "LATITUDE,LONGITUDE of the zero of the file's coordinates");
+  imports->add_flag("--bvm-1", version_1_,
+                    "Write a .bvm of version 1, for releases that know no tiles");
+  imports->add_option("--report", json_, "Write the report to this JSON file");
+  imports->add_option("--picture", picture_, "Draw the map to this PNG file");
+  auto* infos = add("info", "Say what a map contains", &MapCommand::info);
+  infos->add_option("--json", json_, "Write it to this JSON file, too");
+  auto* checks = add("check", "Look for what is wrong with a map", &MapCommand::check);
+  checks->add_option("--json", json_, "Write it to this JSON file, too");
+  auto* renders = add("render", "Draw a map with legend and scale", &MapCommand::render);
+  renders->add_option("out", out_, "PNG file to write")->required();
+  renders->add_option("--pixels", size_px_, "Width and height")
+      ->capture_default_str()
+      ->check(CLI::Range(800, 8000));
+  auto* diffs = add("diff", "Compare the lines of two maps by class", &MapCommand::diff);
+  diffs->add_option("other", other_, "Map to compare with")->required();
+  diffs->add_option("--json", json_, "Write the result to this JSON file, too");
+  diffs->add_option("--picture", picture_, "Draw the differences to this PNG file");
+}
+
+Status MapCommand::import() const {
+  ImportOptions options;
+  ClassTable classes;
+  if (!classes_.empty()) {
+    auto read = ClassTable::read_file(classes_);
+    if (!read) return tl::unexpected(read.error());
+    classes = std::move(*read);
+    options.classes = &classes;
+  }
+  if (!origin_.empty()) {
+    const auto origin = origin_from(origin_);
+    if (!origin) return tl::unexpected(origin.error());
+    options.origin = *origin;
+  }
+  const auto imported = import_map(in_, options);
+  if (!imported) return tl::unexpected(imported.error());
+  fmt::print("{}", text_of(imported->report));
+  if (Status status = write_map(*imported, out_, version_1_); !status) return status;
+  print_map(*imported, out_);
+  if (Status status = write_json(json_of(*imported), json_); !status) return status;
+  return picture_.empty() ? Status() : write_map_picture(imported->map, size_px_, picture_);
+}
+
+Status MapCommand::info() const {
+  const auto imported = import_map(in_, {});
+  if (!imported) return tl::unexpected(imported.error());
+  print_map(*imported, in_);
+  const MapFacts facts = facts_of(imported->map);
+  fmt::print("{}", text_of(facts));
+  return write_json(json_of(facts), json_);
+}
+
+Status MapCommand::check() const {
+  const auto imported = import_map(in_, {});
+  if (!imported) return tl::unexpected(imported.error());
+  const std::vector<std::string> found = faults_of(imported->map);
+  for (const std::string& fault : found) fmt::print("{}: {}\n", in_, fault);
+  if (Status status = write_json({{"faults", found}}, json_); !status) return status;
+  if (!found.empty()) return fail("{}: found {} faults, wanted none", in_, found.size());
+  fmt::print("good: {}\n", contents_of(imported->map));
+  return {};
+}
+
+Status MapCommand::render() const {
+  const auto map = load_map(in_);
+  if (!map) return tl::unexpected(map.error());
+  return write_map_picture(*map, size_px_, out_);
+}
+
+Status MapCommand::diff() const {
+  const auto first = load_map(in_);
+  if (!first) return tl::unexpected(first.error());
+  auto second = load_map(other_);
+  if (!second) return tl::unexpected(second.error());
+  const MapDiff difference = compare(*first, *second);
+  fmt::print("{}", text_of(difference));
+  if (Status status = write_json(json_of(difference), json_); !status) return status;
+  return picture_.empty() ? Status() : write_diff_picture(difference, size_px_, picture_);
+}
+
+}  // namespace bevloc::evaluation

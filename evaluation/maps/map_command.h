@@ -1,0 +1,37 @@
+// `bevloc map`: imports, describes, checks, draws and compares maps.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "common/result.h"
+
+namespace bevloc::evaluation {
+
+class MapCommand {
+ public:
+  void declare(CLI::App& app);
+  bool chosen() const { return action_ != nullptr; }
+  Status run() const { return (this->*action_)(); }
+
+ private:
+  Status import() const;
+  Status info() const;
+  Status check() const;
+  Status render() const;
+  Status diff() const;
+
+  Status (MapCommand::*action_)() const = nullptr;
+  std::string in_;
+  std::string other_;
+  std::string out_;
+  std::string classes_;
+  std::string origin_;
+  std::string json_;
+  std::string picture_;
+  bool version_1_ = false;
+  int size_px_ = 1200;
+};
+
+}  // namespace bevloc::evaluation

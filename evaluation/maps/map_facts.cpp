@@ -1,0 +1,179 @@
+#include "evaluation/maps/map_facts.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "pipeline/map/class_names.h"
+#include "pipeline/map/line_neighbours.h"
+#include "pipeline/map/map_checksum.h"
+#include "pipeline/map/map_summary.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+using Points = std::vector<Eigen::Vector2d>;
+
+/// Lines of one class this close, along nearly all of the line, are the same line twice.
+constexpr double kSameLine_m = 0.05;
+constexpr double kSameShare = 0.95;
+constexpr double kShortLine_m = 0.1;
+/// A BEV reaches this far to the side.
+constexpr double kReach_m = 15.0;
+/// Lanes may lack lines beside them along this share.
+constexpr double kMostBare = 0.02;
+
+double length_of_points(const Points& points) {
+  double length_m = 0.0;
+  for (size_t i = 1; i < points.size(); ++i) length_m += (points[i] - points[i - 1]).norm();
+  return length_m;
+}
+
+/// Numbers of elements, the first few of many.
+std::string list_of(const std::vector<size_t>& numbers) {
+  constexpr size_t kMost = 5;
+  std::string text;
+  for (size_t i = 0; i < std::min(numbers.size(), kMost); ++i) {
+    text += fmt::format("{}{}", i > 0 ? ", " : "", numbers[i]);
+  }
+  return text + (numbers.size() > kMost ? " and more" : "");
+}
+
+void find_double_lines(const HdMap& map, std::vector<std::string>& faults) {
+  std::vector<size_t> doubled;
+  for (size_t c = 0; c < kClassCount; ++c) {
+    LineNeighbours before;
+    for (size_t i = 0; i < map.elements.size(); ++i) {
+      const MapElement& element = map.elements[i];
+      if (static_cast<size_t>(element.element_class) != c || element.points.size() < 2) continue;
+      const auto any = [](int64_t) { return true; };
+      if (before.share_beside(element.points, kSameLine_m, any) >= kSameShare) doubled.push_back(i);
+      before.add(static_cast<int64_t>(i), element.points);
+    }
+  }
+  if (doubled.empty()) return;
+  faults.push_back(fmt::format("{} elements lie on another one of their class: {}", doubled.size(),
+                               list_of(doubled)));
+}
+
+void find_bare_lanes(const HdMap& map, std::vector<std::string>& faults) {
+  LineNeighbours lines;
+  for (size_t i = 0; i < map.elements.size(); ++i) {
+    lines.add(static_cast<int64_t>(i), map.elements[i].points);
+  }
+  double bare_m = 0.0, all_m = 0.0;
+  std::vector<size_t> worst;
+  for (size_t i = 0; i < map.lanes.size(); ++i) {
+    const Points& center = map.lanes[i].centerline;
+    const double length_m = length_of_points(center);
+    const double bare =
+        length_m > 0.0 ? 1.0 - lines.share_beside(center, kReach_m, [](int64_t) { return true; })
+                       : 0.0;
+    if (bare > 0.5) worst.push_back(i);
+    bare_m += bare * length_m;
+    all_m += length_m;
+  }
+  if (bare_m <= kMostBare * all_m) return;
+  faults.push_back(fmt::format("{:.0f} of {:.0f} m of lanes have no line within {:g} m{}{}", bare_m,
+                               all_m, kReach_m, worst.empty() ? "" : ": lanes ", list_of(worst)));
+}
+
+}  // namespace
+
+double length_of(const MapElement& element) {
+  const double length_m = length_of_points(element.points);
+  const bool is_ring =
+      element.element_class == ElementClass::kPedestrianCrossing && element.points.size() > 2;
+  return is_ring ? length_m + (element.points.front() - element.points.back()).norm() : length_m;
+}
+
+MapFacts facts_of(const HdMap& map) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  MapFacts facts;
+  facts.origin = map.origin;
+  facts.lanes = map.lanes.size();
+  facts.checksum = map_checksum(map);
+  facts.low = {kFar, kFar};
+  facts.high = -facts.low;
+  for (const MapElement& element : map.elements) {
+    auto& of_class = facts.classes[static_cast<size_t>(element.element_class)];
+    ++of_class.elements;
+    of_class.points += element.points.size();
+    of_class.length_m += length_of(element);
+    for (const Eigen::Vector2d& point : element.points) {
+      facts.low = facts.low.cwiseMin(point);
+      facts.high = facts.high.cwiseMax(point);
+    }
+  }
+  for (const Lane& lane : map.lanes) facts.lanes_m += length_of_points(lane.centerline);
+  return facts;
+}
+
+std::string text_of(const MapFacts& facts) {
+  std::string text = fmt::format("{:<22} {:>8} {:>8} {:>11}\n", "", "elements", "points", "length");
+  for (size_t c = 0; c < kClassCount; ++c) {
+    const auto& of_class = facts.classes[c];
+    text += fmt::format("{:<22} {:8} {:8} {:9.1f} m\n", name_of(static_cast<ElementClass>(c)),
+                        of_class.elements, of_class.points, of_class.length_m);
+  }
+  text += fmt::format("{:<22} {:8} {:8} {:9.1f} m\n", "lane", facts.lanes, "", facts.lanes_m);
+  text +=
+      fmt::format("origin {:.7f}, {:.7f}; {:.0f} m x {:.0f} m; checksum {:08x}\n",
+                  facts.origin.latitude_deg, facts.origin.longitude_deg,
+                  facts.high.x() - facts.low.x(), facts.high.y() - facts.low.y(), facts.checksum);
+  return text;
+}
+
+nlohmann::json json_of(const MapFacts& facts) {
+  nlohmann::json classes;
+  for (size_t c = 0; c < kClassCount; ++c) {
+    const auto& of_class = facts.classes[c];
+    classes[std::string(name_of(static_cast<ElementClass>(c)))] = {{"elements", of_class.elements},
+                                                                   {"points", of_class.points},
+                                                                   {"length_m", of_class.length_m}};
+  }
+  return {{"classes", classes},
+          {"lanes", facts.lanes},
+          {"lanes_m", facts.lanes_m},
+          {"latitude_deg", facts.origin.latitude_deg},
+          {"longitude_deg", facts.origin.longitude_deg},
+          {"low_m", {facts.low.x(), facts.low.y()}},
+          {"high_m", {facts.high.x(), facts.high.y()}},
+          {"checksum", fmt::format("{:08x}", facts.checksum)}};
+}
+
+nlohmann::json json_of(const ImportedMap& imported) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const ImportRow& row : imported.report.rows()) {
+    nlohmann::json entry{{"kind", row.kind},         {"taken", row.meaning.has_value()},
+                         {"why", row.why},           {"count", row.count},
+                         {"length_m", row.length_m}, {"examples", row.examples}};
+    if (row.meaning) {
+      entry["class"] = name_of(row.meaning->element_class);
+      entry["appearance"] = name_of(row.meaning->appearance);
+    }
+    rows.push_back(std::move(entry));
+  }
+  return {{"rows", rows},
+          {"remarks", imported.report.remarks()},
+          {"left_out", imported.map.left_out},
+          {"map", json_of(facts_of(imported.map))}};
+}
+
+std::vector<std::string> faults_of(const HdMap& map) {
+  std::vector<std::string> faults = warnings_of(map);
+  std::vector<size_t> short_ones;
+  for (size_t i = 0; i < map.elements.size(); ++i) {
+    if (length_of(map.elements[i]) < kShortLine_m) short_ones.push_back(i);
+  }
+  if (!short_ones.empty()) {
+    faults.push_back(fmt::format("{} elements are shorter than {:g} m: {}", short_ones.size(),
+                                 kShortLine_m, list_of(short_ones)));
+  }
+  find_double_lines(map, faults);
+  find_bare_lanes(map, faults);
+  return faults;
+}
+
+}  // namespace bevloc::evaluation

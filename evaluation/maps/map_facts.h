@@ -1,0 +1,47 @@
+// Figures of a map, and what is wrong with it.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/map/formats/map_builder.h"
+#include "pipeline/map/hd_map.h"
+
+namespace bevloc::evaluation {
+
+inline constexpr size_t kClassCount = 3;
+
+struct MapFacts {
+  struct OfClass {
+    size_t elements = 0;
+    size_t points = 0;
+    double length_m = 0.0;
+  };
+  GeoOrigin origin;
+  std::array<OfClass, kClassCount> classes{};  ///< in the order of ElementClass
+  size_t lanes = 0;
+  double lanes_m = 0.0;
+  Eigen::Vector2d low = Eigen::Vector2d::Zero();  ///< corners of the box around all elements, m
+  Eigen::Vector2d high = Eigen::Vector2d::Zero();
+  uint32_t checksum = 0;
+};
+
+MapFacts facts_of(const HdMap& map);
+std::string text_of(const MapFacts& facts);
+nlohmann::json json_of(const MapFacts& facts);
+
+/// The report of an import and the figures of its map.
+nlohmann::json json_of(const ImportedMap& imported);
+
+/// What makes a map worse than it looks, one sentence each: the warnings of map_summary.h, lines
+/// that lie on each other, lines that are too short to be any, and parts of lanes beside which
+/// nothing can be matched.
+std::vector<std::string> faults_of(const HdMap& map);
+
+/// Length of a line; of a ring with its closing edge.
+double length_of(const MapElement& element);
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,153 @@
+#include "pipeline/map/formats/area_cover.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include <boost/geometry.hpp>
+#include <boost/geometry/index/rtree.hpp>
+
+#include "common/plane.h"
+
+namespace bevloc {
+namespace {
+
+namespace geometry = boost::geometry;
+
+using CoverPoint = geometry::model::point<double, 2, geometry::cs::cartesian>;
+using CoverBox = geometry::model::box<CoverPoint>;
+using CoverEntry = std::pair<CoverBox, size_t>;
+
+constexpr double kPiece_m = 0.5;
+/// A longer edge is cut into no more pieces than that.
+constexpr int kMostPieces = 10'000;
+
+CoverBox box_of_ring(const Line3& ring) {
+  Eigen::Vector2d low = ring.front().head<2>();
+  Eigen::Vector2d high = low;
+  for (const Eigen::Vector3d& point : ring) {
+    low = low.cwiseMin(point.head<2>());
+    high = high.cwiseMax(point.head<2>());
+  }
+  return {{low.x(), low.y()}, {high.x(), high.y()}};
+}
+
+/// Even-odd rule: whether a ray to the east crosses the ring an odd number of times.
+bool is_in_ring(const Eigen::Vector2d& point, const Line3& ring) {
+  bool inside = false;
+  for (size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+    const Eigen::Vector3d& a = ring[i];
+    const Eigen::Vector3d& b = ring[j];
+    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+    const double x = a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+    if (point.x() < x) inside = !inside;
+  }
+  return inside;
+}
+
+bool is_in_area(const Eigen::Vector2d& point, const Area& area) {
+  return is_in_ring(point, area.outer) &&
+         std::ranges::none_of(area.holes,
+                              [&point](const Line3& hole) { return is_in_ring(point, hole); });
+}
+
+double doubled_area(const Line3& ring) {
+  double sum = 0.0;
+  for (size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+    sum += cross(ring[j].head<2>(), ring[i].head<2>());
+  }
+  return sum;
+}
+
+/// The ring with the area to its left, closed by its first point.
+Line3 directed(Line3 ring, bool is_hole) {
+  if ((doubled_area(ring) > 0.0) == is_hole) std::ranges::reverse(ring);
+  ring.push_back(ring.front());
+  return ring;
+}
+
+/// Collects consecutive pieces into lines.
+class PieceJoiner {
+ public:
+  void add(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    if (!open_) lines_.push_back({from});
+    lines_.back().push_back(to);
+    open_ = true;
+  }
+  void interrupt() { open_ = false; }
+
+  /// The last line continues in the first one if the ring was free where it starts and ends.
+  std::vector<Line3> take() {
+    if (lines_.size() > 1 && open_ && lines_.front().front() == lines_.back().back()) {
+      lines_.back().insert(lines_.back().end(), lines_.front().begin() + 1, lines_.front().end());
+      lines_.front() = std::move(lines_.back());
+      lines_.pop_back();
+    }
+    return std::move(lines_);
+  }
+
+ private:
+  std::vector<Line3> lines_;
+  bool open_ = false;
+};
+
+}  // namespace
+
+struct AreaCover::Tree {
+  geometry::index::rtree<CoverEntry, geometry::index::quadratic<16>> boxes;
+};
+
+AreaCover::AreaCover(std::vector<Area> areas) : areas_(std::move(areas)) {
+  std::vector<CoverEntry> entries;
+  for (size_t i = 0; i < areas_.size(); ++i) {
+    if (areas_[i].outer.size() > 2) entries.emplace_back(box_of_ring(areas_[i].outer), i);
+    std::erase_if(areas_[i].holes, [](const Line3& hole) { return hole.size() < 3; });
+  }
+  tree_ = std::make_unique<const Tree>(Tree{decltype(Tree::boxes)(entries)});
+}
+
+AreaCover::AreaCover(AreaCover&&) noexcept = default;
+AreaCover& AreaCover::operator=(AreaCover&&) noexcept = default;
+AreaCover::~AreaCover() = default;
+
+bool AreaCover::covers(const Eigen::Vector2d& point) const {
+  const CoverBox at({point.x(), point.y()}, {point.x(), point.y()});
+  const auto is_here = geometry::index::satisfies(
+      [&](const CoverEntry& entry) { return is_in_area(point, areas_[entry.second]); });
+  return tree_->boxes.qbegin(geometry::index::intersects(at) && is_here) != tree_->boxes.qend();
+}
+
+std::vector<Line3> AreaCover::outline_of(size_t index) const {
+  std::vector<Line3> outline;
+  const Area& area = areas_[index];
+  for (size_t r = 0; r <= area.holes.size(); ++r) {
+    const Line3& source = r == 0 ? area.outer : area.holes[r - 1];
+    if (source.size() < 3) continue;
+    const Line3 ring = directed(source, r > 0);
+    PieceJoiner joiner;
+    for (size_t i = 0; i + 1 < ring.size(); ++i) {
+      const Eigen::Vector3d edge = ring[i + 1] - ring[i];
+      const double length_m = edge.head<2>().norm();
+      if (length_m == 0.0) continue;
+      const Eigen::Vector2d outwards(edge.y() / length_m, -edge.x() / length_m);
+      const int pieces =
+          static_cast<int>(std::clamp(std::ceil(length_m / kPiece_m), 1.0, double{kMostPieces}));
+      for (int piece = 0; piece < pieces; ++piece) {
+        const auto at = [&](double along) {
+          return along == pieces ? ring[i + 1] : Eigen::Vector3d(ring[i] + along / pieces * edge);
+        };
+        const Eigen::Vector2d middle = at(piece + 0.5).head<2>();
+        if (covers(middle + kBesideArea_m * outwards)) {
+          joiner.interrupt();
+        } else {
+          joiner.add(at(piece), at(piece + 1));
+        }
+      }
+    }
+    for (Line3& line : joiner.take()) outline.push_back(std::move(line));
+  }
+  return outline;
+}
+
+}  // namespace bevloc

@@ -1,0 +1,45 @@
+// The union of many areas, such as all asphalt of a map: what it covers, and where it ends.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pipeline/map/formats/map_builder.h"
+
+namespace bevloc {
+
+/// An area with holes. The rings may run in either direction, with or without a repeated corner.
+struct Area {
+  Line3 outer;
+  std::vector<Line3> holes{};
+};
+
+/// Immutable. Several threads may ask at the same time.
+class AreaCover {
+ public:
+  explicit AreaCover(std::vector<Area> areas);
+  AreaCover(AreaCover&&) noexcept;
+  AreaCover& operator=(AreaCover&&) noexcept;
+  ~AreaCover();
+
+  /// Whether a point lies in at least one area.
+  bool covers(const Eigen::Vector2d& point) const;
+
+  /// The parts of the outlines of area `index` where no area lies beside them, cut to about 0.5 m.
+  std::vector<Line3> outline_of(size_t index) const;
+
+  const std::vector<Area>& areas() const { return areas_; }
+
+ private:
+  struct Tree;
+
+  std::vector<Area> areas_;
+  std::unique_ptr<const Tree> tree_;
+};
+
+/// How far beside an edge one looks for another area, m.
+inline constexpr double kBesideArea_m = 0.25;
+
+}  // namespace bevloc

@@ -1,0 +1,71 @@
+#include "pipeline/map/formats/class_table.h"
+
+#include <algorithm>
+
+#include "common/files.h"
+#include "common/strict_yaml.h"
+#include "pipeline/map/class_names.h"
+
+namespace bevloc {
+namespace {
+
+bool rule_fits(std::string_view pattern, std::string_view kind) {
+  if (!pattern.ends_with('*')) return pattern == kind;
+  return kind.starts_with(pattern.substr(0, pattern.size() - 1));
+}
+
+ClassTable::Rule read_rule(YamlMap& yaml) {
+  ClassTable::Rule rule;
+  rule.kind = yaml.require<std::string>("kind");
+  const auto becomes = yaml.require<std::string>("becomes");
+  const auto look = yaml.optional<std::string>("appearance", "unknown");
+  const auto element_class = class_named(becomes);
+  const auto appearance = appearance_named(look);
+  if (!element_class && becomes != "nothing") {
+    yaml.reject("becomes", fmt::format("\"{}\"", becomes),
+                "divider, crossing, boundary or nothing");
+  } else if (!appearance || (element_class && !fits(*appearance, *element_class))) {
+    yaml.reject("appearance", fmt::format("\"{}\"", look),
+                fmt::format("an appearance of a {} (docs/maps.md)", becomes));
+  } else if (element_class) {
+    rule.becomes = Meaning{*element_class, *appearance};
+  }
+  return rule;
+}
+
+}  // namespace
+
+Result<ClassTable> ClassTable::read_file(const std::filesystem::path& path) {
+  const Result<std::string> text = bevloc::read_file(path);
+  if (!text) return tl::unexpected(text.error());
+  return parse(*text, path.string());
+}
+
+Result<ClassTable> ClassTable::parse(const std::string& text, const std::string& name) {
+  auto yaml = YamlMap::parse(text, name);
+  if (!yaml) return tl::unexpected(yaml.error());
+  ClassTable table;
+  for (YamlMap& rule : yaml->require_map_list("rules")) table.rules_.push_back(read_rule(rule));
+  if (Status status = yaml->finish(); !status) return tl::unexpected(status.error());
+  return table;
+}
+
+const ClassTable::Rule* ClassTable::rule_for(std::string_view kind) const {
+  const auto found =
+      std::ranges::find_if(rules_, [kind](const Rule& rule) { return rule_fits(rule.kind, kind); });
+  return found == rules_.end() ? nullptr : &*found;
+}
+
+Status check_rules(const ClassTable& classes, const ImportReport& report, const std::string& file) {
+  const std::vector<ImportRow> rows = report.rows();
+  for (const ClassTable::Rule& rule : classes.rules()) {
+    const bool is_used = std::ranges::any_of(
+        rows, [&](const ImportRow& row) { return classes.rule_for(row.kind) == &rule; });
+    if (is_used) continue;
+    return fail("class table: found a rule for \"{}\", wanted a kind that is in {} ({} kinds)",
+                rule.kind, file, rows.size());
+  }
+  return {};
+}
+
+}  // namespace bevloc

@@ -1,0 +1,279 @@
+#include "pipeline/map/formats/geojson.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <GeographicLib/LocalCartesian.hpp>
+
+#include "pipeline/map/class_names.h"
+#include "pipeline/map/formats/json_points.h"
+#include "pipeline/map/lanelet_geometry.h"
+
+namespace bevloc {
+namespace {
+
+using nlohmann::json;
+
+/// 1e-9 degrees are 0.1 mm.
+double rounded_deg(double degrees) {
+  return std::round(degrees * 1e9) / 1e9;
+}
+
+class GeojsonReader {
+ public:
+  GeojsonReader(const JsonText& document, const ImportOptions& options)
+      : json_(document), options_(options), builder_(document.file(), options) {}
+
+  Result<ImportedMap> read(const std::filesystem::path& file) {
+    const json& features = member(json_.root(), "features");
+    const JsonPath path("/features");
+    if (options_.origin) {
+      return fail(
+          "{}: found an origin for GeoJSON, wanted none: its positions are on earth already",
+          json_.file());
+    }
+    const std::optional<GeoOrigin> stored = stored_origin();
+    const GeoOrigin anchor = stored.value_or(first_position(json_.root()).value_or(GeoOrigin()));
+    plane_.Reset(anchor.latitude_deg, anchor.longitude_deg);
+    if (!features.is_array()) {
+      return fail("{}: found {}, wanted a list of features", json_.place(path),
+                  features.type_name());
+    }
+    for (size_t i = 0; i < features.size(); ++i) {
+      if (Status status = read_feature(features[i], path / i, i); !status) {
+        return tl::unexpected(status.error());
+      }
+    }
+    for (Lane& lane : builder_.lanes()) {
+      std::erase_if(lane.successors,
+                    [this](uint32_t next) { return next >= builder_.lanes().size(); });
+    }
+    if (builder_.lanes().size() != lanes_with_successors_) link_successors(builder_.lanes());
+    const std::string name = text_member(json_.root(), "name");
+    if (stored) builder_.keep_plane_at(*stored);
+    return builder_.finish(name.empty() ? file.stem().string() : name, tangent_projection(anchor));
+  }
+
+ private:
+  Status read_feature(const json& feature, const JsonPath& path, size_t index) {
+    const json& geometry = member(feature, "geometry");
+    const json& properties = member(feature, "properties");
+    const std::string shape = text_member(geometry, "type");
+    const json& positions = member(geometry, "coordinates");
+    const JsonPath at = path / "geometry" / "coordinates";
+    const std::string id = id_text(member(feature, "id"));
+    const std::string where = "feature " + (id.empty() ? fmt::format("{}", index) : id);
+    std::string kind = text_member(properties, "class");
+    if (kind.empty()) kind = text_member(properties, "type");
+    if (kind.empty()) kind = "no class";
+    if (kind == "lane" && shape == "LineString") return read_lane(positions, at, properties, path);
+    if (shape == "LineString") return add(kind, where, properties, positions, at);
+    if (shape == "MultiLineString" || shape == "Polygon") {
+      return add_each(kind, where, properties, positions, at);
+    }
+    if (shape == "MultiPolygon" && positions.is_array()) {
+      for (size_t i = 0; i < positions.size(); ++i) {
+        Status status = add_each(kind, where, properties, positions[i], at / i);
+        if (!status) return status;
+      }
+      return {};
+    }
+    builder_.drop(kind, where, "no line or polygon", 0.0);
+    return {};
+  }
+
+  Status add_each(const std::string& kind, const std::string& where, const json& properties,
+                  const json& lines, const JsonPath& path) {
+    if (!lines.is_array()) return fail("{}: found no list, wanted lists", json_.place(path));
+    for (size_t i = 0; i < lines.size(); ++i) {
+      Status status = add(kind, where, properties, lines[i], path / i);
+      if (!status) return status;
+    }
+    return {};
+  }
+
+  Status add(const std::string& kind, const std::string& where, const json& properties,
+             const json& positions, const JsonPath& path) {
+    auto line = line_at(positions, path);
+    if (!line) return tl::unexpected(line.error());
+    std::optional<Meaning> meaning;
+    if (const auto element_class = class_named(kind)) {
+      const auto look = appearance_named(text_member(properties, "appearance"));
+      meaning = Meaning{*element_class,
+                        look && fits(*look, *element_class) ? *look : Appearance::kUnknown};
+    }
+    builder_.add(kind, where, meaning, "no class of bevloc", std::move(*line));
+    return {};
+  }
+
+  Result<Line3> line_at(const json& positions, const JsonPath& path) const {
+    if (!positions.is_array()) {
+      return fail("{}: found {}, wanted a list of positions", json_.place(path),
+                  positions.type_name());
+    }
+    Line3 line;
+    for (size_t i = 0; i < positions.size(); ++i) {
+      const json& position = positions[i];
+      const auto place = position_at(position);
+      if (!place) {
+        return fail("{}: found {:.60}, wanted longitude and latitude in degrees",
+                    json_.place(path / i), position.dump());
+      }
+      Eigen::Vector3d point;
+      plane_.Forward(place->latitude_deg, place->longitude_deg, 0.0, point.x(), point.y(),
+                     point.z());
+      const bool has_height = position.size() > 2 && position[2].is_number();
+      point.z() = has_height ? position[2].get<double>() : std::numeric_limits<double>::quiet_NaN();
+      line.push_back(point);
+    }
+    return line;
+  }
+
+  Status read_lane(const json& positions, const JsonPath& at, const json& properties,
+                   const JsonPath& path) {
+    Lane lane;
+    const std::pair<const json*, JsonPath> sources[] = {
+        {&positions, at},
+        {&member(properties, "left"), path / "properties" / "left"},
+        {&member(properties, "right"), path / "properties" / "right"}};
+    std::vector<Eigen::Vector2d>* targets[] = {&lane.centerline, &lane.left, &lane.right};
+    for (size_t i = 0; i < 3; ++i) {
+      const auto line = line_at(*sources[i].first, sources[i].second);
+      if (!line) return tl::unexpected(line.error());
+      if (line->size() < 2) {
+        return fail("{}: found {} positions, wanted at least 2", json_.place(sources[i].second),
+                    line->size());
+      }
+      for (const Eigen::Vector3d& point : *line) targets[i]->emplace_back(point.head<2>());
+    }
+    const json& speed = member(properties, "speed_mps");
+    if (speed.is_number() && speed.get<double>() > 0.0 && speed.get<double>() < 1000.0) {
+      lane.speed_limit_mps = speed.get<double>();
+    }
+    const json& successors = member(properties, "successors");
+    if (successors.is_array()) ++lanes_with_successors_;
+    for (const json& next : successors) {
+      if (next.is_number_unsigned()) lane.successors.push_back(next.get<uint32_t>());
+    }
+    builder_.add_lane(std::move(lane));
+    return {};
+  }
+
+  /// A file of to_geojson() says where its origin was, so that the map stays the same.
+  std::optional<GeoOrigin> stored_origin() const {
+    return position_at(member(json_.root(), "bevloc_origin"));
+  }
+
+  /// Longitude and latitude in degrees. Nothing for any other value.
+  static std::optional<GeoOrigin> position_at(const json& value) {
+    const bool is_position = value.is_array() && value.size() >= 2 && value[0].is_number() &&
+                             value[1].is_number() && std::abs(value[0].get<double>()) <= 180.0 &&
+                             std::abs(value[1].get<double>()) <= 90.0;
+    if (!is_position) return std::nullopt;
+    return GeoOrigin{value[1].get<double>(), value[0].get<double>()};
+  }
+
+  static std::optional<GeoOrigin> first_position(const json& value) {
+    if (const auto position = position_at(value)) return position;
+    if (!value.is_structured()) return std::nullopt;
+    for (const json& part : value) {
+      if (const auto position = first_position(part)) return position;
+    }
+    return std::nullopt;
+  }
+
+  const JsonText& json_;
+  const ImportOptions& options_;
+  MapBuilder builder_;
+  GeographicLib::LocalCartesian plane_;  ///< of the coordinates in the builder
+  size_t lanes_with_successors_ = 0;
+};
+
+class GeojsonWriter {
+ public:
+  GeojsonWriter(const HdMap& map, const std::vector<Heights>& heights_m)
+      : map_(map),
+        heights_m_(heights_m),
+        plane_(map.origin.latitude_deg, map.origin.longitude_deg) {}
+
+  std::string write() {
+    json features = json::array();
+    for (size_t i = 0; i < map_.elements.size(); ++i) features.push_back(element(i));
+    for (const Lane& lane : map_.lanes) features.push_back(feature_of(lane));
+    const json collection{{"type", "FeatureCollection"},
+                          {"name", map_.name},
+                          {"bevloc_origin", {map_.origin.longitude_deg, map_.origin.latitude_deg}},
+                          {"features", std::move(features)}};
+    return collection.dump() + "\n";
+  }
+
+ private:
+  json positions(const std::vector<Eigen::Vector2d>& points, const Heights& heights_m = {}) const {
+    json list = json::array();
+    for (size_t i = 0; i < points.size(); ++i) {
+      double latitude_deg = 0.0, longitude_deg = 0.0, unused_m = 0.0;
+      plane_.Reverse(points[i].x(), points[i].y(), 0.0, latitude_deg, longitude_deg, unused_m);
+      list.push_back({rounded_deg(longitude_deg), rounded_deg(latitude_deg)});
+      if (heights_m.size() == points.size()) {
+        list.back().push_back(std::round(heights_m[i] * 1e3) / 1e3);
+      }
+    }
+    return list;
+  }
+
+  json element(size_t index) const {
+    const MapElement& element = map_.elements[index];
+    const bool is_ring = element.element_class == ElementClass::kPedestrianCrossing;
+    json line =
+        positions(element.points, index < heights_m_.size() ? heights_m_[index] : Heights());
+    if (is_ring && !line.empty()) line.push_back(line.front());
+    return {
+        {"type", "Feature"},
+        {"id", index},
+        {"properties",
+         {{"class", name_of(element.element_class)}, {"appearance", name_of(element.appearance)}}},
+        {"geometry",
+         {{"type", is_ring ? "Polygon" : "LineString"},
+          {"coordinates", is_ring ? json::array({line}) : line}}}};
+  }
+
+  json feature_of(const Lane& lane) const {
+    return {{"type", "Feature"},
+            {"properties",
+             {{"class", "lane"},
+              {"left", positions(lane.left)},
+              {"right", positions(lane.right)},
+              {"speed_mps", lane.speed_limit_mps},
+              {"successors", lane.successors}}},
+            {"geometry", {{"type", "LineString"}, {"coordinates", positions(lane.centerline)}}}};
+  }
+
+  const HdMap& map_;
+  const std::vector<Heights>& heights_m_;
+  GeographicLib::LocalCartesian plane_;
+};
+
+}  // namespace
+
+Result<ImportedMap> parse_geojson(std::string_view text, const std::filesystem::path& file,
+                                  const ImportOptions& options) {
+  const auto document = JsonText::parse(text, file.string());
+  if (!document) return tl::unexpected(document.error());
+  return GeojsonReader(*document, options).read(file);
+}
+
+Result<std::string> to_geojson(const ImportedMap& imported) {
+  const HdMap& map = imported.map;
+  if (map.origin.latitude_deg == 0.0 && map.origin.longitude_deg == 0.0) {
+    return fail(
+        "{}: found no place on earth, wanted one for GeoJSON; --origin LATITUDE,LONGITUDE "
+        "of an import gives it",
+        map.name);
+  }
+  return GeojsonWriter(map, imported.heights_m).write();
+}
+
+}  // namespace bevloc

@@ -1,0 +1,56 @@
+// What an importer took from a map file, what it dropped, and why.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/map/hd_map.h"
+
+namespace bevloc {
+
+/// What a line of a file becomes in the map.
+struct Meaning {
+  ElementClass element_class = ElementClass::kLaneDivider;
+  Appearance appearance = Appearance::kUnknown;
+
+  friend bool operator==(const Meaning&, const Meaning&) = default;
+};
+
+/// Such as "lane divider, dashed".
+std::string text_of(const Meaning& meaning);
+
+/// All lines of one kind that had the same fate.
+struct ImportRow {
+  std::string kind;                ///< in the words of the file, such as "road mark solid"
+  std::optional<Meaning> meaning;  ///< nothing if they were dropped
+  std::string why;                 ///< why they were dropped, or that the class table decided
+  size_t count = 0;
+  double length_m = 0.0;
+  std::vector<std::string> examples;  ///< the first few: element and line
+};
+
+/// One thread.
+class ImportReport {
+ public:
+  /// Counts one line of the file. `where` names it, such as "way 12 (line 340)".
+  void note(std::string_view kind, const std::optional<Meaning>& meaning, std::string_view why,
+            double length_m, std::string_view where);
+
+  /// A remark on the whole file, such as where its origin comes from.
+  void remark(std::string text) { remarks_.push_back(std::move(text)); }
+
+  /// What was taken comes first; within each part by kind.
+  std::vector<ImportRow> rows() const;
+  const std::vector<std::string>& remarks() const { return remarks_; }
+
+ private:
+  std::vector<ImportRow> rows_;
+  std::vector<std::string> remarks_;
+};
+
+/// A table for a terminal, with a line feed at its end.
+std::string text_of(const ImportReport& report);
+
+}  // namespace bevloc

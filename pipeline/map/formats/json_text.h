@@ -1,0 +1,37 @@
+// JSON text with line numbers for messages.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "common/result.h"
+
+namespace bevloc {
+
+/// A parsed JSON file. The text must outlive it. Immutable.
+class JsonText {
+ public:
+  /// Fails with file, line and column on text that is not JSON, or is nested deeper than maps are.
+  static Result<JsonText> parse(std::string_view text, const std::string& file);
+
+  const nlohmann::json& root() const { return root_; }
+  const std::string& file() const { return file_; }
+
+  /// "file:line: /path" of a value, for the start of a message. Searches the text: for errors only.
+  std::string place(const nlohmann::json::json_pointer& path) const;
+
+ private:
+  JsonText(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
+
+  std::string_view text_;
+  std::string file_;
+  nlohmann::json root_;
+};
+
+/// The line (from 1) of a byte of a text.
+int line_of_byte(std::string_view text, size_t byte);
+
+}  // namespace bevloc

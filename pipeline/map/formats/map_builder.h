@@ -1,0 +1,102 @@
+// Collects the lines that an importer finds, and makes a map and a report of them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/result.h"
+#include "pipeline/map/formats/class_table.h"
+#include "pipeline/map/formats/import_report.h"
+#include "pipeline/map/formats/projection.h"
+#include "pipeline/map/hd_map.h"
+
+namespace bevloc {
+
+struct ImportOptions {
+  /// Overrides what lines become. Null: the defaults of each format.
+  const ClassTable* classes = nullptr;
+  /// Where the origin of the file's coordinates lies on earth. Takes precedence over what the file
+  /// says.
+  std::optional<GeoOrigin> origin{};
+};
+
+/// Heights of the points of one element in metres, or none where the file lacks one of them.
+using Heights = std::vector<double>;
+
+struct ImportedMap {
+  HdMap map;
+  ImportReport report;
+  /// For each element of the map, or empty if the format has none. The localizer does not use
+  /// heights; the export does.
+  std::vector<Heights> heights_m{};
+};
+
+/// A line in the coordinates of the file, in metres; z is NaN where the file has no height.
+using Line3 = std::vector<Eigen::Vector3d>;
+
+double length_of(const Line3& line);
+
+/// Whether bounds have points, and lengths that a lane can have.
+bool can_be_lane(const std::vector<Eigen::Vector2d>& left,
+                 const std::vector<Eigen::Vector2d>& right);
+
+/// Removes points that lie within `tolerance_m` of the line through their neighbours (in x and y).
+Line3 simplified(const Line3& line, double tolerance_m);
+
+/// One thread.
+class MapBuilder {
+ public:
+  MapBuilder(std::string file, const ImportOptions& options);
+
+  /// What a line of this kind becomes; `normally` unless the class table has a rule for it.
+  std::optional<Meaning> meaning_of(std::string_view kind,
+                                    const std::optional<Meaning>& normally) const;
+
+  /// Adds a line, or the ring of a crossing, if it becomes something, and reports it. `where` names
+  /// it ("way 12"); `why_not` says why it is dropped if `normally` is nothing.
+  void add(std::string_view kind, std::string_view where, const std::optional<Meaning>& normally,
+           std::string_view why_not, Line3 line);
+
+  /// Reports a line that the map does not take for a reason that no class table changes.
+  void drop(std::string_view kind, std::string_view where, std::string_view why, double length_m);
+
+  /// Names a part that was lost because the file is wrong there. See HdMap::left_out.
+  void leave_out(std::string sentence) { map_.left_out.push_back(std::move(sentence)); }
+
+  /// Returns the index of the lane. The bounds are in the coordinates of the file.
+  uint32_t add_lane(Lane lane);
+  std::vector<Lane>& lanes() { return map_.lanes; }
+
+  /// Says that the coordinates are already those of the tangent plane at this place.
+  void keep_plane_at(const GeoOrigin& origin) { plane_at_ = origin; }
+
+  void remark(std::string text) { report_.remark(std::move(text)); }
+  const std::string& file() const { return file_; }
+
+  /// The map in the tangent plane at the middle of its points, if `projection` or the options say
+  /// where that is; else in the coordinates of the file, which are shifted only if they are far
+  /// from zero. Drops what is too far away or too long. Fails if nothing was taken, or if a rule of
+  /// the class table fits no line of the file. Call it once.
+  Result<ImportedMap> finish(std::string name, std::unique_ptr<Projection> projection);
+
+ private:
+  void place(const Projection* projection);
+  void drop_impossible();
+
+  std::string file_;
+  ImportOptions options_;
+  std::optional<GeoOrigin> plane_at_;
+  HdMap map_;
+  std::vector<Heights> heights_m_;   ///< of each element
+  std::vector<std::string> kinds_;   ///< of each element
+  std::vector<std::string> wheres_;  ///< of each element
+  ImportReport report_;
+};
+
+}  // namespace bevloc

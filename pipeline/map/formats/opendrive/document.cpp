@@ -1,0 +1,271 @@
+#include "pipeline/map/formats/opendrive/document.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include <pugixml.hpp>
+
+#include "pipeline/map/map_check.h"
+#include "pipeline/map/text_lines.h"
+
+namespace bevloc::opendrive {
+namespace {
+
+constexpr double kLargestNumber = 1e9;
+/// 1/m: the radius is 0.1 m.
+constexpr double kMostCurvature = 10.0;
+
+double mps_from(std::string_view unit) {
+  if (unit == "km/h") return 1.0 / 3.6;
+  if (unit == "mph") return 0.44704;
+  return 1.0;
+}
+
+/// Reads the elements of one file. After the first error every value is zero.
+class DocumentReader {
+ public:
+  DocumentReader(std::string_view text, std::string file) : lines_(text) {
+    document_.file = std::move(file);
+  }
+
+  Result<Document> read(const pugi::xml_node& root) {
+    read_header(root.child("header"));
+    for (const pugi::xml_node& road : root.children("road")) {
+      if (!error_) document_.roads.push_back(read_road(road));
+    }
+    if (error_) return tl::unexpected(*error_);
+    if (document_.roads.empty()) {
+      return fail("{}:{}: found no <road>, wanted at least one", document_.file, line_of(root));
+    }
+    return std::move(document_);
+  }
+
+  int line_of(const pugi::xml_node& node) const { return lines_.line_at(node.offset_debug()); }
+
+ private:
+  void reject(const pugi::xml_node& node, std::string_view found, std::string_view wanted) {
+    if (error_) return;
+    error_ = Error{fmt::format("{}:{}: <{}>: found {}, wanted {}", document_.file, line_of(node),
+                               node.name(), found, wanted)};
+  }
+
+  /// A number of an attribute; `fallback` where it is missing, if there is one.
+  double number(const pugi::xml_node& node, const char* name, double limit = kLargestNumber,
+                std::optional<double> fallback = std::nullopt) {
+    std::string_view text = node.attribute(name).value();
+    if (text.empty() && fallback) return *fallback;
+    while (text.starts_with(' ') || text.starts_with('+')) text.remove_prefix(1);
+    while (text.ends_with(' ')) text.remove_suffix(1);
+    double value = 0.0;
+    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_number = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
+    if (is_number && std::abs(value) <= limit) return value;
+    reject(node, fmt::format("{}=\"{:.40}\"", name, text),
+           fmt::format("a number from {:g} to {:g}", -limit, limit));
+    return 0.0;
+  }
+
+  double length(const pugi::xml_node& node, const char* name) {
+    const double value = number(node, name, kLongestPolylineM);
+    if (value < 0.0) reject(node, fmt::format("{}={:g}", name, value), "0 or more");
+    return std::max(value, 0.0);
+  }
+
+  void read_header(const pugi::xml_node& header) {
+    if (!header) return;
+    const double major = number(header, "revMajor", 100.0, 1.0);
+    if (major != 1.0) reject(header, fmt::format("revMajor={:g}", major), "OpenDRIVE 1");
+    if (const pugi::xml_node reference = header.child("geoReference")) {
+      document_.georeference = reference.text().get();
+      document_.georeference_line = line_of(reference);
+    }
+    if (const pugi::xml_node offset = header.child("offset")) {
+      document_.offset = {number(offset, "x", kLargestNumber, 0.0),
+                          number(offset, "y", kLargestNumber, 0.0)};
+      document_.offset_heading_rad = number(offset, "hdg", 10.0, 0.0);
+    }
+  }
+
+  Cubic read_cubic(const pugi::xml_node& node, const char* start) {
+    return {number(node, start, kLargestNumber), number(node, "a"), number(node, "b"),
+            number(node, "c"), number(node, "d")};
+  }
+
+  Cubics read_cubics(const pugi::xml_node& parent, const char* name, const char* start) {
+    Cubics cubics;
+    for (const pugi::xml_node& node : parent.children(name)) {
+      cubics.push_back(read_cubic(node, start));
+    }
+    std::ranges::stable_sort(cubics, {}, &Cubic::start_m);
+    return cubics;
+  }
+
+  Geometry read_geometry(const pugi::xml_node& node) {
+    Geometry geometry;
+    geometry.start_m = length(node, "s");
+    geometry.length_m = length(node, "length");
+    geometry.origin = {number(node, "x"), number(node, "y")};
+    geometry.heading_rad = number(node, "hdg", 1e4);
+    if (node.child("line")) return geometry;
+    if (const pugi::xml_node arc = node.child("arc")) {
+      geometry.kind = Geometry::Kind::kArc;
+      geometry.start_curvature = number(arc, "curvature", kMostCurvature);
+    } else if (const pugi::xml_node spiral = node.child("spiral")) {
+      geometry.kind = Geometry::Kind::kSpiral;
+      geometry.start_curvature = number(spiral, "curvStart", kMostCurvature);
+      geometry.end_curvature = number(spiral, "curvEnd", kMostCurvature);
+    } else if (const pugi::xml_node poly = node.child("poly3")) {
+      geometry.kind = Geometry::Kind::kPoly3;
+      geometry.v = {0.0, number(poly, "a"), number(poly, "b"), number(poly, "c"),
+                    number(poly, "d")};
+    } else if (const pugi::xml_node param = node.child("paramPoly3")) {
+      geometry.kind = Geometry::Kind::kParamPoly3;
+      geometry.u = {0.0, number(param, "aU"), number(param, "bU"), number(param, "cU"),
+                    number(param, "dU")};
+      geometry.v = {0.0, number(param, "aV"), number(param, "bV"), number(param, "cV"),
+                    number(param, "dV")};
+      geometry.is_normalized = std::strcmp(param.attribute("pRange").value(), "arcLength") != 0;
+    } else {
+      reject(node, "none of them", "line, arc, spiral, poly3 or paramPoly3");
+    }
+    return geometry;
+  }
+
+  std::optional<double> read_speed(const pugi::xml_node& parent) {
+    const pugi::xml_node speed = parent.child("speed");
+    double value = 0.0;
+    const std::string_view text = speed.attribute("max").value();
+    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+    // "no limit" and "undefined" are allowed.
+    if (parsed.ec != std::errc() || !(value > 0.0 && value < 500.0)) return std::nullopt;
+    return value * mps_from(speed.attribute("unit").value());
+  }
+
+  LaneSpec read_lane(const pugi::xml_node& node) {
+    LaneSpec lane;
+    lane.id = static_cast<int>(number(node, "id", 1000.0));
+    lane.line = line_of(node);
+    lane.type = node.attribute("type").value();
+    lane.widths = read_cubics(node, "width", "sOffset");
+    lane.borders = read_cubics(node, "border", "sOffset");
+    for (const pugi::xml_node& mark : node.children("roadMark")) {
+      lane.marks.push_back(
+          {number(mark, "sOffset", kLargestNumber, 0.0), mark.attribute("type").value()});
+    }
+    std::ranges::stable_sort(lane.marks, {}, &RoadMark::start_m);
+    lane.speed_mps = read_speed(node);
+    return lane;
+  }
+
+  LaneSection read_section(const pugi::xml_node& node) {
+    LaneSection section;
+    section.start_m = length(node, "s");
+    for (const char* side : {"right", "center", "left"}) {
+      for (const pugi::xml_node& lane : node.child(side).children("lane")) {
+        section.lanes.push_back(read_lane(lane));
+      }
+    }
+    std::ranges::stable_sort(section.lanes, {}, &LaneSpec::id);
+    const auto has = [&](int id) {
+      return std::ranges::count(section.lanes, id, &LaneSpec::id) == 1;
+    };
+    for (const LaneSpec& lane : section.lanes) {
+      // Between a lane and the centre none is missing.
+      if (!has(lane.id) || (lane.id != 0 && !has(lane.id > 0 ? lane.id - 1 : lane.id + 1))) {
+        reject(node, fmt::format("lane {} without its inner neighbour, or twice", lane.id),
+               "lanes with consecutive ids from 0");
+      }
+    }
+    if (!has(0)) reject(node, "no centre lane", "one of id 0");
+    return section;
+  }
+
+  RoadObject read_object(const pugi::xml_node& node) {
+    RoadObject object;
+    object.id = node.attribute("id").value();
+    object.name = node.attribute("name").value();
+    object.type = node.attribute("type").value();
+    object.line = line_of(node);
+    object.s_m = number(node, "s", kLargestNumber, 0.0);
+    object.t_m = number(node, "t", kLargestNumber, 0.0);
+    object.z_m = number(node, "zOffset", kLargestNumber, 0.0);
+    object.heading_rad = number(node, "hdg", 1e4, 0.0);
+    object.length_m = number(node, "length", kLargestNumber, 0.0);
+    object.width_m = number(node, "width", kLargestNumber, 0.0);
+    pugi::xml_node outline = node.child("outlines").child("outline");
+    if (!outline) outline = node.child("outline");
+    for (const pugi::xml_node& corner : outline.children()) {
+      if (std::strcmp(corner.name(), "cornerLocal") == 0) {
+        object.outline.push_back(
+            {true,
+             {number(corner, "u"), number(corner, "v"), number(corner, "z", kLargestNumber, 0.0)}});
+      } else if (std::strcmp(corner.name(), "cornerRoad") == 0) {
+        object.outline.push_back({false,
+                                  {number(corner, "s"), number(corner, "t"),
+                                   number(corner, "dz", kLargestNumber, 0.0)}});
+      }
+    }
+    return object;
+  }
+
+  Road read_road(const pugi::xml_node& node) {
+    Road road;
+    road.id = node.attribute("id").value();
+    road.line = line_of(node);
+    road.length_m = length(node, "length");
+    const std::string_view junction = node.attribute("junction").value();
+    road.is_in_junction = !junction.empty() && junction != "-1";
+    road.drives_left = std::strcmp(node.attribute("rule").value(), "LHT") == 0;
+    road.speed_mps = read_speed(node.child("type"));
+    for (const pugi::xml_node& geometry : node.child("planView").children("geometry")) {
+      road.geometries.push_back(read_geometry(geometry));
+    }
+    if (road.geometries.empty()) reject(node, "no <geometry>", "a <planView> with at least one");
+    std::ranges::stable_sort(road.geometries, {}, &Geometry::start_m);
+    road.elevations = read_cubics(node.child("elevationProfile"), "elevation", "s");
+    const pugi::xml_node lanes = node.child("lanes");
+    road.lane_offsets = read_cubics(lanes, "laneOffset", "s");
+    for (const pugi::xml_node& section : lanes.children("laneSection")) {
+      road.sections.push_back(read_section(section));
+    }
+    if (road.sections.empty()) reject(node, "no <laneSection>", "at least one");
+    std::ranges::stable_sort(road.sections, {}, &LaneSection::start_m);
+    for (size_t i = 0; i < road.sections.size(); ++i) {
+      road.sections[i].end_m =
+          i + 1 < road.sections.size() ? road.sections[i + 1].start_m : road.length_m;
+    }
+    for (const pugi::xml_node& object : node.child("objects").children("object")) {
+      road.objects.push_back(read_object(object));
+    }
+    return road;
+  }
+
+  LineFinder lines_;
+  Document document_;
+  std::optional<Error> error_;
+};
+
+}  // namespace
+
+Result<Document> parse_document(std::string_view text, std::string file) {
+  pugi::xml_document xml;
+  const pugi::xml_parse_result parsed =
+      xml.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+  if (!parsed) {
+    return fail("{}:{}: found text that is not XML ({}), wanted OpenDRIVE XML", file,
+                LineFinder(text).line_at(parsed.offset), parsed.description());
+  }
+  DocumentReader reader(text, file);
+  const pugi::xml_node root = xml.document_element();
+  if (std::strcmp(root.name(), "OpenDRIVE") != 0) {
+    return fail("{}:{}: found <{}> as the outermost element, wanted <OpenDRIVE>", file,
+                reader.line_of(root), root.name());
+  }
+  return reader.read(root);
+}
+
+}  // namespace bevloc::opendrive

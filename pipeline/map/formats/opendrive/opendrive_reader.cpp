@@ -1,0 +1,376 @@
+#include "pipeline/map/formats/opendrive/opendrive_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "pipeline/map/formats/area_cover.h"
+#include "pipeline/map/formats/opendrive/document.h"
+#include "pipeline/map/formats/opendrive/section_lines.h"
+#include "pipeline/map/lanelet_geometry.h"
+#include "pipeline/map/line_neighbours.h"
+
+namespace bevloc {
+namespace {
+
+namespace od = opendrive;
+
+/// A lane that is narrower is not there.
+constexpr double kNoWidth_m = 0.05;
+/// Vehicles do not drive on lanes that are narrower everywhere.
+constexpr double kNarrowLane_m = 1.5;
+/// Points this close to a line are left out of it.
+constexpr double kTolerance_m = 0.01;
+/// Gaps between the roads of a junction are narrower.
+constexpr double kJunctionGap_m = 3.0;
+/// More points than any map has (200 bytes each).
+constexpr size_t kMostPoints = 10'000'000;
+
+std::optional<Meaning> meaning_of_mark_type(std::string_view type) {
+  using Look = Appearance;
+  struct Row {
+    std::string_view type;
+    ElementClass element_class;
+    Look appearance;
+  };
+  constexpr auto kDivider = ElementClass::kLaneDivider;
+  constexpr auto kBoundary = ElementClass::kRoadBoundary;
+  static constexpr std::array kRows{
+      Row{"solid", kDivider, Look::kSolid},
+      Row{"broken", kDivider, Look::kDashed},
+      Row{"solid solid", kDivider, Look::kDoubleSolid},
+      Row{"solid broken", kDivider, Look::kSolid},
+      Row{"broken solid", kDivider, Look::kSolid},
+      Row{"broken broken", kDivider, Look::kDashed},
+      Row{"botts dots", kDivider, Look::kDashed},
+      Row{"custom", kDivider, Look::kUnknown},
+      Row{"curb", kBoundary, Look::kKerb},
+      Row{"grass", kBoundary, Look::kRoadEdge},
+      Row{"edge", kBoundary, Look::kRoadEdge},
+  };
+  const auto row = std::ranges::find(kRows, type, &Row::type);
+  if (row == kRows.end()) return std::nullopt;
+  return Meaning{row->element_class, row->appearance};
+}
+
+/// Lines of one class this close, along nearly all of a line, are the same line.
+constexpr double kSameBorder_m = 0.05;
+constexpr double kSameBorderShare = 0.95;
+
+/// The lines that were taken, by class.
+using TakenLines = std::array<LineNeighbours, 3>;
+
+/// Collects pieces of one border that are of the same kind, and adds them as lines.
+class BorderRun {
+ public:
+  BorderRun(MapBuilder& builder, TakenLines& taken, std::string where)
+      : builder_(builder), taken_(taken), where_(std::move(where)) {}
+  ~BorderRun() { flush(); }
+  BorderRun(const BorderRun&) = delete;
+  BorderRun& operator=(const BorderRun&) = delete;
+
+  void add(const std::string& kind, const std::optional<Meaning>& meaning, std::string_view why,
+           const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    if (kind != kind_ || meaning != meaning_ || why != why_) {
+      flush();
+      kind_ = kind;
+      meaning_ = meaning;
+      why_ = why;
+      line_ = {from};
+    }
+    line_.push_back(to);
+  }
+
+  void flush() {
+    if (line_.size() > 1) add_line(simplified(line_, kTolerance_m));
+    line_.clear();
+    kind_.clear();
+  }
+
+ private:
+  /// The roads of a junction repeat the lines of each other.
+  void add_line(const Line3& line) {
+    const auto meaning = builder_.meaning_of(kind_, meaning_);
+    if (meaning) {
+      LineNeighbours& taken = taken_[static_cast<size_t>(meaning->element_class)];
+      Polyline points;
+      for (const Eigen::Vector3d& point : line) points.emplace_back(point.head<2>());
+      const auto any = [](int64_t) { return true; };
+      if (taken.share_beside(points, kSameBorder_m, any) >= kSameBorderShare) {
+        builder_.drop(kind_, where_, "another road has the same line", length_of(line));
+        return;
+      }
+      taken.add(0, points);
+    }
+    builder_.add(kind_, where_, meaning_, why_, line);
+  }
+
+  MapBuilder& builder_;
+  TakenLines& taken_;
+  std::string where_;
+  std::string kind_;
+  std::optional<Meaning> meaning_;
+  std::string_view why_;
+  Line3 line_;
+};
+
+struct CutSection {
+  const od::Road* road;
+  const od::LaneSection* section;
+  od::SectionLines lines;
+
+  double width_m(size_t lane, size_t piece) const {
+    return std::max(lines.lateral_m[lane + 1][piece] - lines.lateral_m[lane][piece],
+                    lines.lateral_m[lane + 1][piece + 1] - lines.lateral_m[lane][piece + 1]);
+  }
+  /// The type of the first lane with a width, from `lane` on in a direction; "none" beyond.
+  std::string type_from(std::ptrdiff_t lane, int step, size_t piece) const {
+    for (; lane >= 0 && lane < std::ssize(section->lanes); lane += step) {
+      const od::LaneSpec& spec = section->lanes[lane];
+      if (spec.id != 0 && width_m(lane, piece) > kNoWidth_m) return spec.type;
+    }
+    return "none";
+  }
+};
+
+class OpendriveReader {
+ public:
+  OpendriveReader(const od::Document& document, const ImportOptions& options)
+      : document_(document), builder_(document.file, options) {}
+
+  Status read() {
+    size_t points = 0;
+    for (const od::Road& road : document_.roads) {
+      for (const od::LaneSection& section : road.sections) {
+        const double length_m = section.end_m - section.start_m;
+        points += static_cast<size_t>(std::max(2.0, 2.0 * length_m)) * section.lanes.size();
+        if (points > kMostPoints) {
+          return fail("{}:{}: road {}: found roads of more than {} points in all, wanted less",
+                      document_.file, road.line, road.id, kMostPoints);
+        }
+        if (length_m < kTolerance_m) continue;
+        sections_.push_back({&road, &section, od::lines_of(road, section)});
+      }
+    }
+    pave();
+    for (const CutSection& cut : sections_) {
+      add_borders(cut);
+      add_lanes(cut);
+    }
+    link_successors(builder_.lanes());
+    for (const od::Road& road : document_.roads) {
+      for (const od::RoadObject& object : road.objects) add_object(road, object);
+    }
+    return {};
+  }
+
+  Result<ImportedMap> finish(const std::string& name, const ImportOptions& options) {
+    std::unique_ptr<Projection> projection;
+    const bool has_reference =
+        document_.georeference.find_first_not_of(" \t\r\n") != std::string::npos;
+    if (has_reference && !options.origin) {
+      auto read = projection_from_proj(document_.georeference);
+      if (!read) {
+        return fail("{}:{}: <geoReference>: {}; --origin LATITUDE,LONGITUDE takes its place",
+                    document_.file, document_.georeference_line, read.error().message);
+      }
+      projection =
+          moved_projection(std::move(*read), document_.offset, document_.offset_heading_rad);
+    }
+    return builder_.finish(name, std::move(projection));
+  }
+
+ private:
+  /// The asphalt of all roads, as one quadrangle for each piece of neighbouring paved lanes.
+  void pave() {
+    std::vector<Area> areas;
+    for (const CutSection& cut : sections_) {
+      const auto& lanes = cut.section->lanes;
+      for (size_t first = 0; first < lanes.size();) {
+        if (!od::is_paved(lanes[first].type) && lanes[first].id != 0) {
+          ++first;
+          continue;
+        }
+        size_t end = first + 1;
+        while (end < lanes.size() && (od::is_paved(lanes[end].type) || lanes[end].id == 0)) ++end;
+        pave_between(cut.lines.borders[first], cut.lines.borders[end], areas);
+        first = end;
+      }
+    }
+    asphalt_.emplace(std::move(areas));
+  }
+
+  static void pave_between(const Line3& right, const Line3& left, std::vector<Area>& areas) {
+    for (size_t i = 0; i + 1 < right.size(); ++i) {
+      const bool has_width = (left[i] - right[i]).norm() > kNoWidth_m ||
+                             (left[i + 1] - right[i + 1]).norm() > kNoWidth_m;
+      if (has_width) areas.push_back({{right[i], right[i + 1], left[i + 1], left[i]}});
+    }
+  }
+
+  void add_borders(const CutSection& cut) {
+    const auto& lanes = cut.section->lanes;
+    for (size_t border = 0; border <= lanes.size(); ++border) {
+      // The centre has two borders at the same place; its left one stands for both.
+      if (border < lanes.size() && lanes[border].id == 0) continue;
+      const bool is_right = border < lanes.size() && lanes[border].id < 0;
+      const od::LaneSpec& owner = is_right ? lanes[border] : lanes[border - 1];
+      BorderRun run(builder_, taken_,
+                    fmt::format("road {} lane {} (line {})", cut.road->id, owner.id, owner.line));
+      for (size_t piece = 0; piece + 1 < cut.lines.along_m.size(); ++piece) {
+        const size_t own = is_right ? border : border - 1;
+        if (owner.id != 0 && cut.width_m(own, piece) <= kNoWidth_m) {
+          run.flush();
+          continue;
+        }
+        add_piece(cut, border, owner, piece, run);
+      }
+    }
+  }
+
+  void add_piece(const CutSection& cut, size_t border, const od::LaneSpec& owner, size_t piece,
+                 BorderRun& run) {
+    const Eigen::Vector3d& from = cut.lines.borders[border][piece];
+    const Eigen::Vector3d& to = cut.lines.borders[border][piece + 1];
+    const std::string left = cut.type_from(static_cast<std::ptrdiff_t>(border), 1, piece);
+    const std::string right = cut.type_from(static_cast<std::ptrdiff_t>(border) - 1, -1, piece);
+    const double middle_m = 0.5 * (cut.lines.along_m[piece] + cut.lines.along_m[piece + 1]);
+    const std::string mark(od::mark_at(owner, middle_m - cut.section->start_m));
+    const auto of_mark = meaning_of_mark_type(mark);
+    const bool left_paved = od::is_paved(left);
+    const bool right_paved = od::is_paved(right);
+    const bool is_kerb = of_mark && of_mark->element_class == ElementClass::kRoadBoundary;
+    if (left_paved != right_paved && !is_kerb) {
+      const std::string& inside = left_paved ? left : right;
+      const std::string& beside = left_paved ? right : left;
+      const std::string kind = fmt::format("edge of {} beside {}", inside, beside);
+      if (!continues_beside(from, to, left_paved, cut.road->is_in_junction)) {
+        const bool has_kerb = beside == "sidewalk" || beside == "walking" || beside == "curb";
+        run.add(kind,
+                Meaning{ElementClass::kRoadBoundary,
+                        has_kerb ? Appearance::kKerb : Appearance::kRoadEdge},
+                "", from, to);
+        return;
+      }
+      if (!of_mark) {
+        run.add(kind, std::nullopt, "the asphalt of another road continues there", from, to);
+        return;
+      }
+    }
+    if (!left_paved && !right_paved && !is_kerb) {
+      run.add("border of " + left + " beside " + right, std::nullopt, "not beside asphalt", from,
+              to);
+      return;
+    }
+    run.add("road mark " + (mark.empty() ? "none" : mark), of_mark, "not painted", from, to);
+  }
+
+  /// Whether there is asphalt on the side of a piece where its own road has none. The roads of a
+  /// junction leave small gaps between each other that are asphalt in truth.
+  bool continues_beside(const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool left_paved,
+                        bool in_junction) const {
+    const Eigen::Vector2d along = (to - from).head<2>();
+    const double length_m = along.norm();
+    if (length_m == 0.0) return false;
+    const Eigen::Vector2d left(-along.y() / length_m, along.x() / length_m);
+    const Eigen::Vector2d middle = 0.5 * (from + to).head<2>();
+    const Eigen::Vector2d outwards = left_paved ? -left : left;
+    if (asphalt_->covers(middle + kBesideArea_m * outwards)) return true;
+    for (double reach_m = 0.5; in_junction && reach_m <= kJunctionGap_m; reach_m += 0.5) {
+      if (asphalt_->covers(middle + reach_m * outwards)) return true;
+    }
+    return false;
+  }
+
+  void add_lanes(const CutSection& cut) {
+    for (size_t i = 0; i < cut.section->lanes.size(); ++i) {
+      const od::LaneSpec& spec = cut.section->lanes[i];
+      if (spec.id == 0 || !od::is_driven(spec.type)) continue;
+      double widest_m = 0.0;
+      for (size_t piece = 0; piece + 1 < cut.lines.along_m.size(); ++piece) {
+        widest_m = std::max(widest_m, cut.width_m(i, piece));
+      }
+      if (widest_m < kNarrowLane_m) continue;
+      Lane lane;
+      lane.right = flat_line(cut.lines.borders[i]);
+      lane.left = flat_line(cut.lines.borders[i + 1]);
+      if (!can_be_lane(lane.left, lane.right)) continue;
+      if ((spec.id > 0) != cut.road->drives_left) {
+        std::swap(lane.left, lane.right);
+        std::ranges::reverse(lane.left);
+        std::ranges::reverse(lane.right);
+      }
+      lane.centerline = centerline_between(lane.left, lane.right);
+      lane.speed_limit_mps =
+          spec.speed_mps.value_or(cut.road->speed_mps.value_or(lane.speed_limit_mps));
+      builder_.add_lane(std::move(lane));
+    }
+  }
+
+  static Polyline flat_line(const Line3& line) {
+    Polyline points;
+    for (const Eigen::Vector3d& point : simplified(line, kTolerance_m)) {
+      if (points.empty() || points.back() != point.head<2>()) points.emplace_back(point.head<2>());
+    }
+    return points;
+  }
+
+  void add_object(const od::Road& road, const od::RoadObject& object) {
+    std::string name = object.name;
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const bool is_crossing =
+        object.type == "crosswalk" || name.find("crosswalk") != std::string::npos;
+    const std::string kind =
+        is_crossing ? "object crosswalk" : "object " + (object.type.empty() ? "-1" : object.type);
+    std::optional<Meaning> meaning;
+    if (is_crossing) meaning = Meaning{ElementClass::kPedestrianCrossing, Appearance::kUnknown};
+    builder_.add(kind, fmt::format("object {} (line {})", object.id, object.line), meaning,
+                 "not a line of the road", outline_of(road, object));
+  }
+
+  static Line3 outline_of(const od::Road& road, const od::RoadObject& object) {
+    std::vector<od::Corner> corners = object.outline;
+    const double u = 0.5 * object.length_m;
+    const double v = 0.5 * object.width_m;
+    if (corners.empty() && u > 0.0 && v > 0.0) {
+      corners = {{true, {u, v, 0}}, {true, {-u, v, 0}}, {true, {-u, -v, 0}}, {true, {u, -v, 0}}};
+    }
+    const Eigen::Vector3d origin = od::point_at(road, object.s_m, object.t_m);
+    const double heading = road.pose_at(object.s_m).heading_rad + object.heading_rad;
+    Line3 outline;
+    for (const od::Corner& corner : corners) {
+      if (corner.is_local) {
+        const double c = std::cos(heading);
+        const double s = std::sin(heading);
+        outline.emplace_back(origin.x() + c * corner.place.x() - s * corner.place.y(),
+                             origin.y() + s * corner.place.x() + c * corner.place.y(),
+                             origin.z() + object.z_m + corner.place.z());
+      } else {
+        outline.push_back(od::point_at(road, corner.place.x(), corner.place.y()));
+        outline.back().z() += corner.place.z();
+      }
+    }
+    return outline;
+  }
+
+  const od::Document& document_;
+  MapBuilder builder_;
+  TakenLines taken_;
+  std::vector<CutSection> sections_;
+  std::optional<AreaCover> asphalt_;
+};
+
+}  // namespace
+
+Result<ImportedMap> parse_opendrive(std::string_view text, const std::filesystem::path& file,
+                                    const ImportOptions& options) {
+  const Result<od::Document> document = od::parse_document(text, file.string());
+  if (!document) return tl::unexpected(document.error());
+  OpendriveReader reader(*document, options);
+  if (Status status = reader.read(); !status) return tl::unexpected(status.error());
+  return reader.finish(file.stem().string(), options);
+}
+
+}  // namespace bevloc

@@ -1,0 +1,125 @@
+// The parts of an OpenDRIVE road (ASAM OpenDRIVE 1.4 to 1.7) that a map needs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace bevloc::opendrive {
+
+/// a + b x + c x^2 + d x^3 with x = s - start.
+struct Cubic {
+  double start_m = 0.0;
+  double a = 0.0;
+  double b = 0.0;
+  double c = 0.0;
+  double d = 0.0;
+
+  double at(double s_m) const {
+    const double x = s_m - start_m;
+    return a + x * (b + x * (c + x * d));
+  }
+};
+
+/// Cubics in the order of their starts; each is valid up to the next.
+using Cubics = std::vector<Cubic>;
+
+/// The value at s; before the first cubic, and without any, `fallback`.
+double value_at(const Cubics& cubics, double s_m, double fallback = 0.0);
+
+/// One piece of the reference line. Lengths in m, angles in rad, curvatures in 1/m.
+struct Geometry {
+  enum class Kind : uint8_t { kLine, kArc, kSpiral, kPoly3, kParamPoly3 };
+
+  Kind kind = Kind::kLine;
+  double start_m = 0.0;
+  double length_m = 0.0;
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();
+  double heading_rad = 0.0;
+  double start_curvature = 0.0;  ///< of an arc everywhere
+  double end_curvature = 0.0;
+  Cubic u;  ///< of a parametric cubic
+  Cubic v;
+  bool is_normalized = false;  ///< the parameter of the cubics runs from 0 to 1
+};
+
+/// A place on the reference line.
+struct LinePose {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();
+  double heading_rad = 0.0;
+};
+
+/// The pose at `along_m` (0 to the length) of a piece.
+LinePose pose_along(const Geometry& geometry, double along_m);
+
+struct RoadMark {
+  double start_m = 0.0;  ///< from the start of the lane section
+  std::string type;
+};
+
+struct LaneSpec {
+  int id = 0;
+  int line = 0;  ///< in the file
+  std::string type;
+  Cubics widths;   ///< from the start of the lane section
+  Cubics borders;  ///< the same; used where there are no widths
+  std::vector<RoadMark> marks;
+  std::optional<double> speed_mps;
+};
+
+struct LaneSection {
+  double start_m = 0.0;
+  double end_m = 0.0;
+  /// From the rightmost (smallest id) to the leftmost. Contains the centre, whose id is 0.
+  std::vector<LaneSpec> lanes;
+};
+
+/// A corner of an object, in the frame of the object (local) or of the road (s, t).
+struct Corner {
+  bool is_local = true;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+};
+
+struct RoadObject {
+  std::string id;
+  std::string name;
+  std::string type;
+  int line = 0;
+  double s_m = 0.0;
+  double t_m = 0.0;
+  double z_m = 0.0;
+  double heading_rad = 0.0;  ///< relative to the road
+  double length_m = 0.0;
+  double width_m = 0.0;
+  std::vector<Corner> outline;
+};
+
+struct Road {
+  std::string id;
+  int line = 0;
+  double length_m = 0.0;
+  bool is_in_junction = false;
+  bool drives_left = false;
+  std::optional<double> speed_mps;
+  std::vector<Geometry> geometries;
+  Cubics elevations;
+  Cubics lane_offsets;
+  std::vector<LaneSection> sections;
+  std::vector<RoadObject> objects;
+
+  LinePose pose_at(double s_m) const;
+};
+
+struct Document {
+  std::string file;
+  std::string georeference;  ///< the PROJ string, "" without one
+  int georeference_line = 0;
+  Eigen::Vector2d offset = Eigen::Vector2d::Zero();
+  double offset_heading_rad = 0.0;
+  std::vector<Road> roads;
+};
+
+}  // namespace bevloc::opendrive

@@ -1,0 +1,111 @@
+#include "pipeline/map/formats/opendrive/section_lines.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace bevloc::opendrive {
+namespace {
+
+constexpr double kSpacing_m = 0.5;
+
+/// The places where a formula changes, from start to end of the section.
+std::vector<double> changes_in(const Road& road, const LaneSection& section) {
+  std::vector<double> at{section.start_m, section.end_m};
+  for (const Geometry& geometry : road.geometries) at.push_back(geometry.start_m);
+  for (const Cubics* cubics : {&road.lane_offsets, &road.elevations}) {
+    for (const Cubic& cubic : *cubics) at.push_back(cubic.start_m);
+  }
+  for (const LaneSpec& lane : section.lanes) {
+    for (const Cubics* cubics : {&lane.widths, &lane.borders}) {
+      for (const Cubic& cubic : *cubics) at.push_back(section.start_m + cubic.start_m);
+    }
+    for (const RoadMark& mark : lane.marks) at.push_back(section.start_m + mark.start_m);
+  }
+  std::erase_if(at, [&](double s) { return s < section.start_m || s > section.end_m; });
+  std::ranges::sort(at);
+  constexpr double kSamePlace_m = 1e-6;
+  const auto [first, last] =
+      std::ranges::unique(at, [](double a, double b) { return b - a < kSamePlace_m; });
+  at.erase(first, last);
+  return at;
+}
+
+/// The lateral position of the outer border of a lane, beyond `inner_m`.
+double outer_border(const LaneSpec& lane, double along_m, double inner_m, double offset_m) {
+  const double side = lane.id > 0 ? 1.0 : -1.0;
+  if (lane.widths.empty() && !lane.borders.empty()) {
+    // Files disagree about the sign on the right side.
+    return offset_m + side * std::abs(value_at(lane.borders, along_m));
+  }
+  return inner_m + side * std::max(0.0, value_at(lane.widths, along_m));
+}
+
+}  // namespace
+
+Eigen::Vector3d point_at(const Road& road, double s_m, double t_m) {
+  const LinePose pose = road.pose_at(s_m);
+  return {pose.position.x() - t_m * std::sin(pose.heading_rad),
+          pose.position.y() + t_m * std::cos(pose.heading_rad), value_at(road.elevations, s_m)};
+}
+
+SectionLines lines_of(const Road& road, const LaneSection& section) {
+  SectionLines lines;
+  const std::vector<double> changes = changes_in(road, section);
+  for (size_t i = 0; i + 1 < changes.size(); ++i) {
+    const double span_m = changes[i + 1] - changes[i];
+    const auto pieces = static_cast<int>(std::max(1.0, std::ceil(span_m / kSpacing_m)));
+    for (int piece = 0; piece < pieces; ++piece) {
+      lines.along_m.push_back(changes[i] + span_m * piece / pieces);
+    }
+  }
+  if (!lines.along_m.empty()) lines.along_m.push_back(changes.back());
+
+  const auto center = static_cast<size_t>(std::ranges::find(section.lanes, 0, &LaneSpec::id) -
+                                          section.lanes.begin());
+  const size_t count = section.lanes.size() + 1;
+  lines.borders.resize(count);
+  lines.lateral_m.resize(count);
+  std::vector<double> lateral(count);
+  for (const double s : lines.along_m) {
+    const double along_m = s - section.start_m;
+    const double offset_m = value_at(road.lane_offsets, s);
+    lateral[center] = lateral[center + 1] = offset_m;
+    for (size_t lane = center; lane-- > 0;) {
+      lateral[lane] = outer_border(section.lanes[lane], along_m, lateral[lane + 1], offset_m);
+    }
+    for (size_t lane = center + 1; lane < section.lanes.size(); ++lane) {
+      lateral[lane + 1] = outer_border(section.lanes[lane], along_m, lateral[lane], offset_m);
+    }
+    const LinePose pose = road.pose_at(s);
+    const Eigen::Vector2d left(-std::sin(pose.heading_rad), std::cos(pose.heading_rad));
+    const double height_m = value_at(road.elevations, s);
+    for (size_t border = 0; border < count; ++border) {
+      const Eigen::Vector2d point = pose.position + lateral[border] * left;
+      lines.borders[border].emplace_back(point.x(), point.y(), height_m);
+      lines.lateral_m[border].push_back(lateral[border]);
+    }
+  }
+  return lines;
+}
+
+bool is_driven(std::string_view lane_type) {
+  static constexpr std::array<std::string_view, 14> kTypes{
+      "driving",  "entry", "exit", "onRamp", "offRamp",  "connectingRamp", "bidirectional",
+      "slipLane", "bus",   "taxi", "HOV",    "mwyEntry", "mwyExit",        "special1"};
+  return std::ranges::find(kTypes, lane_type) != kTypes.end();
+}
+
+bool is_paved(std::string_view lane_type) {
+  static constexpr std::array<std::string_view, 10> kTypes{
+      "shoulder", "parking", "biking",    "stop",     "restricted",
+      "tram",     "rail",    "roadWorks", "special2", "special3"};
+  return is_driven(lane_type) || std::ranges::find(kTypes, lane_type) != kTypes.end();
+}
+
+std::string_view mark_at(const LaneSpec& lane, double along_m) {
+  const auto next = std::ranges::upper_bound(lane.marks, along_m, {}, &RoadMark::start_m);
+  return next == lane.marks.begin() ? "none" : std::string_view(std::prev(next)->type);
+}
+
+}  // namespace bevloc::opendrive

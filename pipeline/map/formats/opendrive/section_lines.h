@@ -1,0 +1,37 @@
+// The borders of the lanes of an OpenDRIVE lane section, as points.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/map/formats/map_builder.h"
+#include "pipeline/map/formats/opendrive/road.h"
+
+namespace bevloc::opendrive {
+
+/// A lane section cut into pieces: `along_m[i]` to `along_m[i + 1]` (s). Border i lies to the left
+/// of lane i of the section; border 0 is the right edge of the rightmost lane. The centre takes no
+/// space: both borders beside it are the same.
+struct SectionLines {
+  std::vector<double> along_m;
+  std::vector<Line3> borders;  ///< one more than lanes; each with one point per value of along_m
+
+  /// The lateral position (t) of each border, as the points.
+  std::vector<std::vector<double>> lateral_m;
+};
+
+/// Cuts a section at all places where a formula changes, and about every 0.5 m.
+SectionLines lines_of(const Road& road, const LaneSection& section);
+
+/// The point of a road at (s, t), with its height.
+Eigen::Vector3d point_at(const Road& road, double s_m, double t_m);
+
+/// Whether vehicles can roll over lanes of this type, and whether they drive there.
+bool is_paved(std::string_view lane_type);
+bool is_driven(std::string_view lane_type);
+
+/// The type of the road mark at the outer border of a lane, `along_m` after the section's start.
+std::string_view mark_at(const LaneSpec& lane, double along_m);
+
+}  // namespace bevloc::opendrive

@@ -1,0 +1,207 @@
+#include "pipeline/map/formats/projection.h"
+
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <GeographicLib/LocalCartesian.hpp>
+#include <GeographicLib/TransverseMercator.hpp>
+#include <GeographicLib/UTMUPS.hpp>
+
+namespace bevloc {
+namespace {
+
+/// Beyond this the series of the projections mean nothing.
+constexpr double kFarthest_m = 2e7;
+
+/// A transverse Mercator plane (EPSG method 9807).
+class TransverseMercatorPlane : public Projection {
+ public:
+  struct Parameters {
+    double latitude_deg = 0.0;
+    double longitude_deg = 0.0;
+    double scale = 1.0;
+    Eigen::Vector2d false_origin_m = Eigen::Vector2d::Zero();
+  };
+
+  explicit TransverseMercatorPlane(const Parameters& parameters)
+      : parameters_(parameters), mercator_(6378137.0, 1.0 / 298.257223563, parameters.scale) {
+    double east = 0.0;
+    mercator_.Forward(parameters.longitude_deg, parameters.latitude_deg, parameters.longitude_deg,
+                      east, north_of_origin_m_);
+  }
+
+  GeoOrigin geographic(const Eigen::Vector2d& point) const override {
+    const Eigen::Vector2d plane = point - parameters_.false_origin_m;
+    GeoOrigin place;
+    mercator_.Reverse(parameters_.longitude_deg, plane.x(), plane.y() + north_of_origin_m_,
+                      place.latitude_deg, place.longitude_deg);
+    return place;
+  }
+
+ private:
+  Parameters parameters_;
+  GeographicLib::TransverseMercator mercator_;
+  double north_of_origin_m_ = 0.0;
+};
+
+class DegreesPlane : public Projection {
+ public:
+  GeoOrigin geographic(const Eigen::Vector2d& point) const override {
+    return {point.y(), point.x()};
+  }
+};
+
+class TangentPlane : public Projection {
+ public:
+  explicit TangentPlane(const GeoOrigin& origin)
+      : plane_(origin.latitude_deg, origin.longitude_deg) {}
+
+  GeoOrigin geographic(const Eigen::Vector2d& point) const override {
+    GeoOrigin place;
+    double height_m = 0.0;
+    plane_.Reverse(point.x(), point.y(), 0.0, place.latitude_deg, place.longitude_deg, height_m);
+    return place;
+  }
+
+ private:
+  GeographicLib::LocalCartesian plane_;
+};
+
+class MovedPlane : public Projection {
+ public:
+  MovedPlane(std::unique_ptr<Projection> inner, Eigen::Vector2d shift, double yaw_rad)
+      : inner_(std::move(inner)), shift_(std::move(shift)) {
+    rotation_ << std::cos(yaw_rad), -std::sin(yaw_rad), std::sin(yaw_rad), std::cos(yaw_rad);
+  }
+
+  GeoOrigin geographic(const Eigen::Vector2d& point) const override {
+    return inner_->geographic(rotation_ * point + shift_);
+  }
+
+ private:
+  std::unique_ptr<Projection> inner_;
+  Eigen::Matrix2d rotation_;
+  Eigen::Vector2d shift_;
+};
+
+using ProjWords = std::map<std::string, std::string, std::less<>>;
+
+ProjWords words_of(std::string_view text) {
+  ProjWords words;
+  constexpr std::string_view kSpace = " \t\r\n";
+  while (true) {
+    const size_t begin = text.find_first_not_of(kSpace);
+    if (begin == std::string_view::npos) return words;
+    const size_t end = std::min(text.find_first_of(kSpace, begin), text.size());
+    std::string_view word = text.substr(begin, end - begin);
+    text.remove_prefix(end);
+    if (word.starts_with('+')) word.remove_prefix(1);
+    const size_t equals = std::min(word.find('='), word.size());
+    const std::string_view value = word.substr(std::min(equals + 1, word.size()));
+    words[std::string(word.substr(0, equals))] = value;
+  }
+}
+
+/// The number of a word, or `fallback` where the word is missing.
+Result<double> proj_number(const ProjWords& words, std::string_view key, double fallback,
+                           double limit) {
+  const auto word = words.find(key);
+  if (word == words.end()) return fallback;
+  const std::string& text = word->second;
+  double value = 0.0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
+  if (is_number && std::abs(value) <= limit) return value;
+  return fail("found +{}={}, wanted a number from {:g} to {:g}", key, text, -limit, limit);
+}
+
+Status check_datum(const ProjWords& words) {
+  const auto is = [&words](std::string_view key, std::initializer_list<std::string_view> wanted) {
+    const auto word = words.find(key);
+    return word == words.end() || std::ranges::find(wanted, word->second) != wanted.end();
+  };
+  for (const auto& [key, wanted] :
+       {std::pair<std::string_view, std::initializer_list<std::string_view>>{
+            "datum", {"WGS84", "NAD83", "ETRS89"}},
+        {"ellps", {"WGS84", "GRS80"}},
+        {"units", {"m"}},
+        {"to_meter", {"1", "1.0"}},
+        {"axis", {"enu"}}}) {
+    if (is(key, wanted)) continue;
+    return fail("found +{}={}, wanted {}", key, words.find(key)->second, *wanted.begin());
+  }
+  return {};
+}
+
+Result<std::unique_ptr<Projection>> transverse_mercator(const ProjWords& words) {
+  TransverseMercatorPlane::Parameters parameters;
+  const double own_scale = words.contains("k_0") ? 0.0 : 1.0;
+  for (const auto& [key, limit, fallback, value] :
+       {std::tuple<std::string_view, double, double, double*>{"lat_0", 90.0, 0.0,
+                                                              &parameters.latitude_deg},
+        {"lon_0", 180.0, 0.0, &parameters.longitude_deg},
+        {own_scale > 0.0 ? "k" : "k_0", 2.0, 1.0, &parameters.scale},
+        {"x_0", kFarthest_m, 0.0, &parameters.false_origin_m.x()},
+        {"y_0", kFarthest_m, 0.0, &parameters.false_origin_m.y()}}) {
+    const Result<double> number = proj_number(words, key, fallback, limit);
+    if (!number) return tl::unexpected(number.error());
+    *value = *number;
+  }
+  if (parameters.scale < 0.5)
+    return fail("found a scale of {:g}, wanted 0.5 to 2", parameters.scale);
+  return std::make_unique<TransverseMercatorPlane>(parameters);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Projection>> projection_from_proj(std::string_view text) {
+  const ProjWords words = words_of(text);
+  const auto kind = words.find("proj");
+  if (kind == words.end()) {
+    return fail("found \"{:.60}\", wanted a PROJ string with +proj=", text);
+  }
+  if (Status status = check_datum(words); !status) return tl::unexpected(status.error());
+  if (kind->second == "tmerc") return transverse_mercator(words);
+  if (kind->second == "longlat" || kind->second == "latlong") {
+    return std::make_unique<DegreesPlane>();
+  }
+  if (kind->second == "utm") {
+    const Result<double> zone = proj_number(words, "zone", 0.0, 60.0);
+    if (!zone) return tl::unexpected(zone.error());
+    if (*zone < 1.0 || *zone != std::floor(*zone)) {
+      return fail("found +zone={:g}, wanted 1 to 60", *zone);
+    }
+    return utm_projection(static_cast<int>(*zone), !words.contains("south"), {0.0, 0.0});
+  }
+  return fail("found +proj={}, wanted utm, tmerc or longlat", kind->second);
+}
+
+std::unique_ptr<Projection> utm_projection(int zone, bool north, const Eigen::Vector2d& offset) {
+  constexpr double kCentralScale = 0.9996;
+  const Eigen::Vector2d false_origin(500'000.0, north ? 0.0 : 10'000'000.0);
+  return std::make_unique<TransverseMercatorPlane>(TransverseMercatorPlane::Parameters{
+      0.0, 6.0 * zone - 183.0, kCentralScale, false_origin - offset});
+}
+
+Eigen::Vector2d utm_point(const GeoOrigin& place, int zone) {
+  int found_zone = 0;
+  bool north = true;
+  Eigen::Vector2d point;
+  GeographicLib::UTMUPS::Forward(place.latitude_deg, place.longitude_deg, found_zone, north,
+                                 point.x(), point.y(), zone);
+  return point;
+}
+
+std::unique_ptr<Projection> tangent_projection(const GeoOrigin& origin) {
+  return std::make_unique<TangentPlane>(origin);
+}
+
+std::unique_ptr<Projection> moved_projection(std::unique_ptr<Projection> inner,
+                                             const Eigen::Vector2d& shift, double yaw_rad) {
+  return std::make_unique<MovedPlane>(std::move(inner), shift, yaw_rad);
+}
+
+}  // namespace bevloc

@@ -1,0 +1,41 @@
+// Converts between a file's plane coordinates and latitude and longitude.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include "common/result.h"
+#include "pipeline/map/hd_map.h"
+
+namespace bevloc {
+
+/// The plane of a map file. Shapes: x to the east, y to the north, metres. Immutable.
+class Projection {
+ public:
+  virtual ~Projection() = default;
+  /// Latitude and longitude of a point of the file.
+  virtual GeoOrigin geographic(const Eigen::Vector2d& point) const = 0;
+};
+
+/// Reads a PROJ string. Understands +proj=utm (+zone, +south), +proj=tmerc (+lat_0, +lon_0, +k or
+/// +k_0, +x_0, +y_0) and +proj=latlong or longlat, on WGS84 or GRS80 in metres. The error says what
+/// is not understood, without a file name.
+Result<std::unique_ptr<Projection>> projection_from_proj(std::string_view text);
+
+/// UTM north or south of the equator, with `offset` added to the coordinates of the file.
+std::unique_ptr<Projection> utm_projection(int zone, bool north, const Eigen::Vector2d& offset);
+
+/// The point of a UTM zone (north) that has this place on earth.
+Eigen::Vector2d utm_point(const GeoOrigin& place, int zone);
+
+/// The tangent plane at a place on earth.
+std::unique_ptr<Projection> tangent_projection(const GeoOrigin& origin);
+
+/// `inner` after a rotation by `yaw_rad` and a shift of the coordinates of the file.
+std::unique_ptr<Projection> moved_projection(std::unique_ptr<Projection> inner,
+                                             const Eigen::Vector2d& shift, double yaw_rad);
+
+}  // namespace bevloc

@@ -1,0 +1,113 @@
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/files.h"
+#include "evaluation/maps/map_command.h"
+#include "evaluation/maps/map_diff.h"
+#include "evaluation/maps/map_facts.h"
+#include "pipeline/map/map_checksum.h"
+#include "pipeline/map/map_loader.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kStreet =
+    std::string(BEVLOC_SOURCE_DIR) + "/tests/pipeline/map/fixtures/street.osm";
+
+HdMap road() {
+  HdMap map;
+  map.origin = {49.0, 8.4};
+  map.elements = {{ElementClass::kRoadBoundary, Appearance::kKerb, {{-50, 4}, {50, 4}}},
+                  {ElementClass::kLaneDivider, Appearance::kDashed, {{-50, 0}, {50, 0}}},
+                  {ElementClass::kPedestrianCrossing,
+                   Appearance::kZebra,
+                   {{9, -4}, {12, -4}, {12, 4}, {9, 4}}}};
+  map.lanes = {{{{-50, 4}, {50, 4}}, {{-50, 0}, {50, 0}}, {{-50, 2}, {50, 2}}, {}, 13.9}};
+  return map;
+}
+
+Status run(std::vector<std::string> words) {
+  CLI::App app("test");
+  MapCommand command;
+  command.declare(app);
+  std::ranges::reverse(words);  // as CLI11 wants them
+  app.parse(words);
+  return command.run();
+}
+
+TEST(MapFacts, CountsByClass) {
+  const MapFacts facts = facts_of(road());
+  EXPECT_EQ(facts.classes[1].elements, 1U);
+  EXPECT_DOUBLE_EQ(facts.classes[1].length_m, 22.0) << "with the closing edge";
+  EXPECT_DOUBLE_EQ(facts.classes[2].length_m, 100.0);
+  EXPECT_DOUBLE_EQ(facts.lanes_m, 100.0);
+  EXPECT_EQ(facts.high, Eigen::Vector2d(50.0, 4.0));
+}
+
+TEST(MapFacts, NamesFaults) {
+  HdMap map = road();
+  EXPECT_TRUE(faults_of(map).empty());
+  map.elements.push_back(map.elements[0]);
+  map.elements.push_back({ElementClass::kLaneDivider, Appearance::kSolid, {{0, 10}, {0.05, 10}}});
+  map.lanes.push_back({{{0, 90}, {99, 90}}, {{0, 86}, {99, 86}}, {{0, 88}, {99, 88}}, {}, 13.9});
+  const auto faults = faults_of(map);
+  ASSERT_EQ(faults.size(), 3U);
+  EXPECT_THAT(faults[0], HasSubstr("shorter than 0.1 m: 4"));
+  EXPECT_THAT(faults[1], HasSubstr("lie on another one of their class: 3"));
+  EXPECT_THAT(faults[2], HasSubstr("99 of 199 m of lanes have no line within 15 m: lanes 1"));
+}
+
+TEST(MapDiff, FindsWhatOnlyOneMapHasInAnotherFrame) {
+  const HdMap first = road();
+  HdMap second = road();
+  second.origin.longitude_deg += 0.001;  // 73.2 m to the east
+  for (MapElement& element : second.elements) {
+    for (Eigen::Vector2d& point : element.points) point.x() -= 73.19;
+  }
+  MapDiff same = compare(first, second);
+  EXPECT_LT(same.classes[0].only_first_m + same.classes[0].only_second_m, 2.1);
+  for (Eigen::Vector2d& point : second.elements[1].points) point.y() += 1.0;
+  same = compare(first, second);
+  EXPECT_DOUBLE_EQ(same.classes[0].only_first_m, same.classes[0].first_m);
+  EXPECT_NEAR(same.classes[0].only_second_m, 100.0, 1e-6);
+  EXPECT_LT(same.classes[2].only_first_m, 2.1) << "the boundary has not moved";
+}
+
+class MapCommandTest : public testing::Test {
+ protected:
+  std::string at(const char* name) const { return (folder_ / name).string(); }
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(MapCommandTest, ImportsKeepTheMapThroughAllFormats) {
+  ASSERT_TRUE(run(
+      {"map", "import", kStreet, at("a.bvm"), "--picture", at("a.png"), "--report", at("a.json")}));
+  ASSERT_TRUE(run({"map", "import", at("a.bvm"), at("b.geojson")}));
+  ASSERT_TRUE(run({"map", "import", at("b.geojson"), at("c.bvm"), "--bvm-1"}));
+  const uint32_t checksum = map_checksum(load_map(kStreet).value());
+  for (const char* name : {"a.bvm", "b.geojson", "c.bvm"}) {
+    EXPECT_EQ(map_checksum(load_map(at(name)).value()), checksum) << name;
+  }
+  EXPECT_EQ(read_file(at("a.png"))->substr(1, 3), "PNG");
+  EXPECT_THAT(*read_file(at("a.json")), HasSubstr("\"kind\": \"way line_thin"));
+  EXPECT_TRUE(run({"map", "diff", kStreet, at("c.bvm"), "--json", at("d.json")}));
+  EXPECT_THAT(*read_file(at("d.json")), HasSubstr("\"only_first_m\": 0.0"));
+}
+
+TEST_F(MapCommandTest, SaysWhatIsWrong) {
+  EXPECT_THAT(run({"map", "import", kStreet, at("a.png")}).error().message,
+              HasSubstr("wanted .bvm or .geojson"));
+  EXPECT_THAT(run({"map", "import", kStreet, at("a.bvm"), "--origin", "49"}).error().message,
+              HasSubstr("--origin: found \"49\", wanted LATITUDE,LONGITUDE"));
+  ASSERT_TRUE(write_file(at("text.txt"), "hello").has_value());
+  EXPECT_THAT(run({"map", "info", at("text.txt")}).error().message,
+              HasSubstr("wanted one of compact (.bvm), Lanelet2 (.osm), OpenDRIVE (.xodr)"));
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation

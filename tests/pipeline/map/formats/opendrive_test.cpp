@@ -1,0 +1,266 @@
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/map/formats/opendrive/opendrive_reader.h"
+#include "pipeline/map/formats/opendrive/road.h"
+
+namespace bevloc {
+namespace {
+
+using opendrive::Geometry;
+using testing::HasSubstr;
+
+constexpr std::string_view kStraight =
+    R"(<geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry>)";
+
+/// A road of 100 m: sidewalk, shoulder (1 m), lane (3.5 m) | lane (3.5 m), nothing.
+constexpr std::string_view kLanes = R"(<laneSection s="0">
+  <left><lane id="1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/>
+    <roadMark sOffset="0" type="solid"/></lane></left>
+  <center><lane id="0" type="none"><roadMark sOffset="0" type="broken"/>
+    <roadMark sOffset="40" type="solid"/></lane></center>
+  <right>
+    <lane id="-1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/>
+      <roadMark sOffset="0" type="none"/></lane>
+    <lane id="-2" type="shoulder"><width sOffset="0" a="1" b="0.01" c="0" d="0"/></lane>
+    <lane id="-3" type="sidewalk"><width sOffset="0" a="2" b="0" c="0" d="0"/></lane>
+  </right></laneSection>)";
+
+std::string file_with(std::string_view roads, std::string_view header = "") {
+  return fmt::format(
+      "<?xml version=\"1.0\"?>\n<OpenDRIVE>\n<header revMajor=\"1\" "
+      "revMinor=\"6\">{}</header>\n{}\n"
+      "</OpenDRIVE>\n",
+      header, roads);
+}
+
+std::string road_with(std::string_view geometry, std::string_view lanes,
+                      std::string_view objects = "", std::string_view before = "",
+                      std::string_view junction = "-1", double length_m = 100.0) {
+  return fmt::format(
+      "<road id=\"7\" length=\"{}\" junction=\"{}\"><planView>{}</planView>\n"
+      "<elevationProfile><elevation s=\"0\" a=\"5\" b=\"0.02\" c=\"0\" "
+      "d=\"0\"/></elevationProfile>\n"
+      "<lanes>{}{}</lanes><objects>{}</objects></road>",
+      length_m, junction, geometry, before, lanes, objects);
+}
+
+Result<ImportedMap> read(const std::string& text, const ImportOptions& options = {}) {
+  return parse_opendrive(text, "town.xodr", options);
+}
+
+std::string error_of(const std::string& text) {
+  const auto map = read(text);
+  return map ? "" : map.error().message;
+}
+
+/// The elements of a class and appearance.
+std::vector<MapElement> of(const ImportedMap& imported, ElementClass element_class,
+                           Appearance appearance) {
+  std::vector<MapElement> found;
+  for (const MapElement& element : imported.map.elements) {
+    if (element.element_class == element_class && element.appearance == appearance) {
+      found.push_back(element);
+    }
+  }
+  return found;
+}
+
+TEST(OpendriveGeometry, AnArcEndsWhereItsCircleDoes) {
+  Geometry arc;
+  arc.kind = Geometry::Kind::kArc;
+  arc.length_m = 10.0 * std::numbers::pi;
+  arc.start_curvature = 0.05;  // radius 20 m: a quarter of the circle
+  arc.origin = {3.0, 4.0};
+  arc.heading_rad = 0.5 * std::numbers::pi;
+  const auto pose = opendrive::pose_along(arc, arc.length_m);
+  EXPECT_NEAR(pose.position.x(), 3.0 - 20.0, 1e-9);
+  EXPECT_NEAR(pose.position.y(), 4.0 + 20.0, 1e-9);
+  EXPECT_NEAR(pose.heading_rad, std::numbers::pi, 1e-12);
+}
+
+TEST(OpendriveGeometry, ASpiralAgreesWithSmallSteps) {
+  Geometry spiral;
+  spiral.kind = Geometry::Kind::kSpiral;
+  spiral.length_m = 60.0;
+  spiral.start_curvature = -0.01;
+  spiral.end_curvature = 0.08;
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();
+  constexpr int kSteps = 200'000;
+  const double step_m = spiral.length_m / kSteps;
+  for (int i = 0; i < kSteps; ++i) {
+    const double s = (i + 0.5) * step_m;
+    const double heading = s * (-0.01 + 0.5 * 0.09 / 60.0 * s);
+    place += step_m * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+  }
+  const auto pose = opendrive::pose_along(spiral, spiral.length_m);
+  EXPECT_NEAR((pose.position - place).norm(), 0.0, 1e-5);
+  EXPECT_NEAR(pose.heading_rad, 0.5 * (-0.01 + 0.08) * 60.0, 1e-12);
+}
+
+TEST(OpendriveGeometry, CubicsGiveTheSameCurveInAllThreeWays) {
+  // v = 0.002 u^2; the length of the curve up to u = 40 is known in closed form.
+  const double slope = 0.004 * 40.0;
+  const double length_m = 0.5 * 40.0 * std::hypot(1.0, slope) + 0.5 / 0.004 * std::asinh(slope);
+  Geometry poly;
+  poly.kind = Geometry::Kind::kPoly3;
+  poly.length_m = length_m;
+  poly.v = {0.0, 0.0, 0.0, 0.002, 0.0};
+  const auto end = opendrive::pose_along(poly, length_m);
+  EXPECT_NEAR(end.position.x(), 40.0, 1e-6);
+  EXPECT_NEAR(end.position.y(), 3.2, 1e-6);
+  EXPECT_NEAR(end.heading_rad, std::atan(slope), 1e-9);
+
+  Geometry param = poly;
+  param.kind = Geometry::Kind::kParamPoly3;
+  param.is_normalized = true;
+  param.u = {0.0, 0.0, 40.0, 0.0, 0.0};
+  param.v = {0.0, 0.0, 0.0, 0.002 * 1600.0, 0.0};
+  EXPECT_NEAR((opendrive::pose_along(param, length_m).position - end.position).norm(), 0.0, 1e-6);
+  param.is_normalized = false;  // now in metres along u
+  param.u = {0.0, 0.0, 1.0, 0.0, 0.0};
+  param.v = {0.0, 0.0, 0.0, 0.002, 0.0};
+  EXPECT_NEAR(opendrive::pose_along(param, 40.0).position.y(), 3.2, 1e-12);
+}
+
+TEST(Opendrive, MarksAndEdgesLieWhereTheWidthsSay) {
+  const auto imported = read(file_with(road_with(kStraight, kLanes)));
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  const auto dashed = of(*imported, ElementClass::kLaneDivider, Appearance::kDashed);
+  ASSERT_EQ(dashed.size(), 1U);
+  EXPECT_EQ(dashed[0].points.front(), Eigen::Vector2d(0, 0));
+  EXPECT_EQ(dashed[0].points.back(), Eigen::Vector2d(40, 0)) << "the mark changes at 40 m";
+  const auto solid = of(*imported, ElementClass::kLaneDivider, Appearance::kSolid);
+  ASSERT_EQ(solid.size(), 1U) << "the painted outer edge of lane 1 is the edge of the road";
+  EXPECT_EQ(solid[0].points.back(), Eigen::Vector2d(100, 0));
+
+  const auto kerb = of(*imported, ElementClass::kRoadBoundary, Appearance::kKerb);
+  ASSERT_EQ(kerb.size(), 1U) << "between shoulder and sidewalk";
+  EXPECT_NEAR(kerb[0].points.front().y(), -4.5, 1e-9);
+  EXPECT_NEAR(kerb[0].points.back().y(), -5.5, 1e-9) << "the shoulder widens by 1 m in 100 m";
+  const auto edge = of(*imported, ElementClass::kRoadBoundary, Appearance::kRoadEdge);
+  ASSERT_EQ(edge.size(), 1U);
+  EXPECT_NEAR(edge[0].points.front().y(), 3.5, 1e-9);
+  ASSERT_EQ(imported->map.lanes.size(), 2U);
+  EXPECT_NEAR(imported->map.lanes[1].centerline.front().x(), 100.0, 1e-9)
+      << "left lanes run against the road";
+}
+
+TEST(Opendrive, KeepsHeightsAndAppliesLaneOffsets) {
+  const auto imported = read(file_with(
+      road_with(kStraight, kLanes, "", R"(<laneOffset s="50" a="2" b="0" c="0" d="0"/>)")));
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  const auto& elements = imported->map.elements;
+  ASSERT_EQ(imported->heights_m.size(), elements.size());
+  for (size_t i = 0; i < elements.size(); ++i) {
+    ASSERT_EQ(imported->heights_m[i].size(), elements[i].points.size());
+    EXPECT_NEAR(imported->heights_m[i][0], 5.0 + 0.02 * elements[i].points[0].x(), 1e-9);
+  }
+  const auto solid = of(*imported, ElementClass::kLaneDivider, Appearance::kSolid);
+  EXPECT_NEAR(solid[0].points.back().y(), 2.0, 1e-9);
+}
+
+TEST(Opendrive, CrosswalksHaveTheirOutlineInBothFrames) {
+  const auto imported = read(file_with(road_with(kStraight, kLanes, R"(
+    <object id="1" type="crosswalk" s="20" t="1" hdg="1.5707963267948966"><outline>
+      <cornerLocal u="4" v="1"/><cornerLocal u="4" v="-1"/><cornerLocal u="-4" v="-1"/>
+      <cornerLocal u="-4" v="1"/><cornerLocal u="4" v="1"/></outline></object>
+    <object id="2" type="crosswalk" s="0" t="0"><outlines><outline>
+      <cornerRoad s="60" t="3"/><cornerRoad s="63" t="3"/><cornerRoad s="63" t="-3"/>
+    </outline></outlines></object>
+    <object id="3" type="tree" s="9" t="9"/>)")));
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  const auto crossings = of(*imported, ElementClass::kPedestrianCrossing, Appearance::kUnknown);
+  ASSERT_EQ(crossings.size(), 2U);
+  ASSERT_EQ(crossings[0].points.size(), 4U) << "the repeated corner is left out";
+  EXPECT_NEAR((crossings[0].points[0] - Eigen::Vector2d(19.0, 5.0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((crossings[1].points[1] - Eigen::Vector2d(63.0, 3.0)).norm(), 0.0, 1e-9);
+}
+
+TEST(Opendrive, RoadsOfAJunctionHaveNoEdgesWithinEachOther) {
+  constexpr std::string_view kPlain =
+      R"(<laneSection s="0"><center><lane id="0" type="none"/></center>
+    <right><lane id="-1" type="driving"><width sOffset="0" a="6" b="0" c="0" d="0"/></lane></right>
+    </laneSection>)";
+  const std::string crossing =
+      R"(<geometry s="0" x="47" y="-50" hdg="1.5707963267948966" length="100"><line/></geometry>)";
+  const auto imported = read(file_with(road_with(kStraight, kPlain, "", "", "4") +
+                                       road_with(crossing, kPlain, "", "", "4")));
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  for (const MapElement& element : imported->map.elements) {
+    for (size_t i = 0; i + 1 < element.points.size(); ++i) {
+      const Eigen::Vector2d middle = 0.5 * (element.points[i] + element.points[i + 1]);
+      const bool inside_first = middle.y() < -0.5 && middle.y() > -5.5;
+      const bool inside_second = middle.x() > 47.5 && middle.x() < 52.5;
+      EXPECT_FALSE(inside_first || inside_second) << middle.transpose();
+    }
+  }
+  EXPECT_EQ(imported->map.elements.size(), 8U) << "four corners of two edges each";
+}
+
+TEST(Opendrive, TheGeoreferenceGivesThePlaceOnEarth) {
+  const std::string utm =
+      "<geoReference><![CDATA[+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs]]></geoReference>"
+      "<offset x=\"456000\" y=\"5429000\" z=\"0\" hdg=\"0\"/>";
+  const auto imported = read(file_with(road_with(kStraight, kLanes), utm));
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  EXPECT_NEAR(imported->map.origin.latitude_deg, 49.0117, 1e-3);
+  EXPECT_NEAR(imported->map.origin.longitude_deg, 8.3986, 1e-3);
+  const auto dashed = of(*imported, ElementClass::kLaneDivider, Appearance::kDashed);
+  const double length_m = (dashed[0].points.back() - dashed[0].points.front()).norm();
+  EXPECT_NEAR(length_m, 40.0 / 0.9996, 2e-3) << "UTM shrinks lengths near its meridian";
+}
+
+TEST(Opendrive, AGeoreferenceThatCannotBeReadIsRefusedWithItsLine) {
+  const std::string text =
+      file_with(road_with(kStraight, kLanes), "\n<geoReference>+proj=aea +lat_1=29</geoReference>");
+  EXPECT_EQ(error_of(text),
+            "town.xodr:4: <geoReference>: found +proj=aea, wanted utm, tmerc or longlat; --origin "
+            "LATITUDE,LONGITUDE takes its place");
+  ImportOptions options;
+  options.origin = GeoOrigin{49.0, 8.0};
+  const auto imported = read(text, options);
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  EXPECT_NEAR(imported->map.origin.latitude_deg, 49.0, 1e-2);
+}
+
+TEST(Opendrive, RefusesBrokenFilesWithTheirLine) {
+  EXPECT_THAT(error_of("<OpenDRIVE><road>"), HasSubstr("town.xodr:1: found text that is not XML"));
+  EXPECT_THAT(error_of("<osm/>"), HasSubstr("wanted <OpenDRIVE>"));
+  EXPECT_THAT(error_of(file_with("")), HasSubstr("town.xodr:2: found no <road>"));
+  EXPECT_EQ(error_of(file_with(road_with(
+                R"(<geometry s="0" x="a" y="0" hdg="0" length="100"><line/></geometry>)", kLanes))),
+            "town.xodr:4: <geometry>: found x=\"a\", wanted a number from -1e+09 to 1e+09");
+  EXPECT_THAT(error_of(file_with(road_with(
+                  R"(<geometry s="0" x="0" y="0" hdg="0" length="9"><bow/></geometry>)", kLanes))),
+              HasSubstr("wanted line, arc, spiral, poly3 or paramPoly3"));
+  EXPECT_THAT(error_of(file_with(road_with("", kLanes))), HasSubstr("<road>: found no <geometry>"));
+  EXPECT_THAT(error_of(file_with(road_with(kStraight, ""))), HasSubstr("found no <laneSection>"));
+  EXPECT_THAT(error_of(file_with(
+                  road_with(kStraight, R"(<laneSection s="0"><center><lane id="0"/></center><right>
+                  <lane id="-2" type="driving"/></right></laneSection>)"))),
+              HasSubstr("lane -2 without its inner neighbour"));
+  EXPECT_THAT(error_of(file_with(road_with(kStraight, kLanes, "", "", "-1", 1e7))),
+              HasSubstr("town.xodr:4: <road>: found length"));
+}
+
+TEST(Opendrive, TheClassTableOverridesMarks) {
+  const auto table = ClassTable::parse(
+      "rules:\n  - kind: road mark broken\n    becomes: nothing\n"
+      "  - kind: edge of driving*\n    becomes: divider\n    appearance: solid\n",
+      "classes.yaml");
+  ASSERT_TRUE(table.has_value()) << table.error().message;
+  ImportOptions options;
+  options.classes = &*table;
+  const auto imported = read(file_with(road_with(kStraight, kLanes)), options);
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  EXPECT_TRUE(of(*imported, ElementClass::kLaneDivider, Appearance::kDashed).empty());
+  EXPECT_EQ(of(*imported, ElementClass::kLaneDivider, Appearance::kSolid).size(), 2U);
+  EXPECT_TRUE(of(*imported, ElementClass::kRoadBoundary, Appearance::kRoadEdge).empty());
+}
+
+}  // namespace
+}  // namespace bevloc
