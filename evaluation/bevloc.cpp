@@ -14,6 +14,7 @@
 #include "evaluation/network/rig_command.h"
 #include "evaluation/solver/draw_command.h"
 #include "evaluation/solver/solver_command.h"
+#include "firmware/live/status_command.h"
 
 namespace {
 
@@ -56,11 +57,14 @@ int main(int argc, char** argv) {
   fault_command.declare(app);
   bevloc::evaluation::LocalizeCommand localize_command;
   localize_command.declare(app);
+  bevloc::firmware::StatusCommand status_command;
+  status_command.declare(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
+  if (status_command.chosen()) return status_command.run();
   const bevloc::Status status = draw->parsed()                  ? draw_command.run()
                                 : campaign_command.chosen()     ? campaign_command.run()
                                 : integrity_command.chosen()    ? integrity_command.run()

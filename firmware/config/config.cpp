@@ -270,6 +270,7 @@ Result<Config> load_config(const std::filesystem::path& file, const SimulationRe
   }
   config.realtime = read_realtime(yaml->optional_map("realtime"));
   config.log_level = read_log_level(yaml->optional_map("log"));
+  config.live = read_live(yaml->optional_map("live"));
   const bool has_manifest = yaml->has("manifest");
   const auto manifest = has_manifest ? path_of(*yaml, "manifest", folder) : folder;
   if (config.cameras.driver == CameraDriver::kMock && simulation != nullptr) {
