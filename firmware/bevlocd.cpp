@@ -12,8 +12,9 @@ using namespace bevloc;
 using namespace bevloc::firmware;
 
 Status run(const ProgramOptions& options, const LogWriter& log) {
-  const auto config = load_config(options.config_file);
+  auto config = load_config(options.config_file);
   if (!config) return tl::unexpected(config.error());
+  override_config(options, *config);
   if (options.check_config) return check_and_print(options, *config);
   set_log_level(config->log_level);
   const auto rig = read_rig(config->rig_file);

@@ -11,6 +11,7 @@
 #include "evaluation/drive/progress_line.h"
 #include "evaluation/drive/simulated_drive.h"
 #include "evaluation/drive/snapshot_keeper.h"
+#include "firmware/live/live_server.h"
 #include "firmware/runtime/runner.h"
 #include "firmware/runtime/supervisor.h"
 
@@ -71,7 +72,8 @@ class SimulatedRun {
   std::unique_ptr<firmware::Appliance> appliance_;
   std::unique_ptr<SimulatedVehicle> vehicle_;
   std::unique_ptr<Judge> judge_;
-  std::unique_ptr<FaultServer> fault_server_;  ///< null without simulation.fault_socket
+  std::unique_ptr<firmware::LiveServer> live_;  ///< null without the section `live`
+  std::unique_ptr<FaultServer> fault_server_;   ///< null without simulation.fault_socket
   ClockFaults clock_faults_;
 };
 
@@ -136,6 +138,12 @@ Status SimulatedRun::connect() {
       (options_.out / "can.log").string());
   if (!judge) return tl::unexpected(judge.error());
   judge_ = std::move(*judge);
+  if (config_.live) {
+    auto live = firmware::LiveServer::start(*config_.live);
+    if (!live) return tl::unexpected(live.error());
+    live_ = std::move(*live);
+    live_->attach(*appliance_, rig_);
+  }
   const std::filesystem::path& socket = config_.simulation->fault_socket;
   if (socket.empty()) return {};
   auto server = FaultServer::open(socket, drive_.faults(), options_.fast);
@@ -158,6 +166,10 @@ void SimulatedRun::run(const StopWhen& stop) {
   const auto supervise = [&](Time now) {
     watchdog.step(now);
     supervisor.step(now);
+    if (live_) {
+      live_->publish({firmware::Phase::kRunning, now,
+                      firmware::take_snapshot(*appliance_, nullptr, 0), supervisor.view()});
+    }
     const double time_s = to_seconds(now - drive_start_);
     if (fault_server_) fault_server_->step(time_s);
     const bool last = time_s >= duration_s || stop(supervisor.view());
@@ -176,6 +188,7 @@ void SimulatedRun::run(const StopWhen& stop) {
   } else {
     firmware::run_threads(*appliance_, realtime_, &companion, supervise);
   }
+  if (live_) live_->detach();
   supervisor.finish();
   appliance_->save_learned_calibration();
 }

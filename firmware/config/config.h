@@ -16,6 +16,7 @@
 #include "drivers/frameset/synchronizer.h"
 #include "firmware/config/camera_devices_config.h"
 #include "firmware/config/gpio_config.h"
+#include "firmware/config/live_config.h"
 #include "firmware/config/realtime_config.h"
 #include "firmware/health/health.h"
 #include "pipeline/calibration/rig.h"
@@ -90,6 +91,7 @@ struct Config {
   GpioConfig gpio;
   RealtimeConfig realtime;
   LogLevel log_level = LogLevel::kInfo;
+  std::optional<LiveConfig> live;  ///< empty: no server
 };
 
 /// Reads a configuration file; docs/configuration.md describes each key. Every key must be known,

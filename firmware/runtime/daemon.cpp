@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "firmware/live/live_server.h"
 #include "firmware/runtime/camera_factory.h"
 #include "firmware/runtime/fault_line.h"
 #include "firmware/runtime/gpio_lines.h"
@@ -36,6 +37,7 @@ struct Base {
   std::unique_ptr<FaultLine> fault;
   std::unique_ptr<GpioLines> lines;
   HdMap map;
+  std::unique_ptr<LiveServer> live;  ///< null without one
 };
 
 /// Waits until the ignition is on. False if the daemon shall end. This thread is the only one, so
@@ -47,6 +49,7 @@ bool wait_for_ignition(Base& base, const DaemonHost& host) {
       spdlog::info("ignition off: standby");
       notifier.ready();
       notifier.status("standby: ignition off");
+      if (base.live) base.live->publish({Phase::kStandby, base.clock.now(), {}, {}});
     }
     notifier.feed_watchdog();
     if (host.stop()) {
@@ -61,7 +64,7 @@ bool wait_for_ignition(Base& base, const DaemonHost& host) {
 }
 
 /// Runs a complete appliance until the ignition goes off (true) or the daemon shall end (false).
-bool run_appliance(Appliance& appliance, TriggerThread* trigger, Base& base,
+bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger, Base& base,
                    const DaemonHost& host) {
   Watchdog watchdog(appliance.estimation().counters().state, base.fault.get());
   watchdog.watch_stages(appliance);
@@ -78,15 +81,19 @@ bool run_appliance(Appliance& appliance, TriggerThread* trigger, Base& base,
   ViewLog log;
   ErrorLog errors;
   bool ignition = true;
+  if (base.live) base.live->attach(appliance, rig);
   run_threads(appliance, base.realtime, nullptr, [&](Time now) {
     supervisor.step(now);
     log.note(supervisor.view());
-    errors.note(snapshot(), now);
+    const Snapshot counters = snapshot();
+    errors.note(counters, now);
+    if (base.live) base.live->publish({Phase::kRunning, now, counters, supervisor.view()});
     ignition = base.lines->step(is_lit(supervisor.view().state, now), now);
     const bool goes_on = ignition && !host.stop();
     if (!goes_on) watching.request_stop();  // the fault line becomes active
     return goes_on;
   });
+  if (base.live) base.live->detach();
   if (ignition) supervisor.finish();
   if (trigger != nullptr) trigger->stop();
   appliance.save_learned_calibration();
@@ -111,7 +118,7 @@ Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
                                      {std::move(*cameras), std::move(*bus), &base.clock,
                                       trigger ? &trigger->trigger().pulses() : nullptr});
   if (!appliance) return tl::unexpected(appliance.error());
-  return run_appliance(**appliance, trigger.get(), base, host);
+  return run_appliance(**appliance, rig, trigger.get(), base, host);
 }
 
 }  // namespace
@@ -131,6 +138,11 @@ Status run_daemon(const Config& config, const Rig& rig, const DaemonHost& host) 
   spdlog::info("map: {}", contents_of(base.map));
   for (const std::string& warning : warnings_of(base.map)) spdlog::warn("map: {}", warning);
 
+  if (config.live) {
+    auto live = LiveServer::start(*config.live);
+    if (!live) return tl::unexpected(live.error());
+    base.live = std::move(*live);
+  }
   while (wait_for_ignition(base, host)) {
     const auto ignition_went_off = start_and_run(config, rig, base, host);
     if (!ignition_went_off) return tl::unexpected(ignition_went_off.error());

@@ -1,6 +1,7 @@
 #include "firmware/runtime/program.h"
 
 #include <atomic>
+#include <charconv>
 #include <csignal>
 
 #include <fcntl.h>
@@ -34,6 +35,18 @@ void open_closed_standard_files() {
   }
 }
 
+/// Without a port CLI11 gives "true".
+void take_live_option(const std::string& port, ProgramOptions& options) {
+  options.live = true;
+  if (port.empty() || port == "true") return;
+  int number = 0;
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (error != std::errc() || end != port.data() + port.size() || number < 1 || number > 65535) {
+    throw CLI::ValidationError("--live", fmt::format("found {}, wanted a port, 1 to 65535", port));
+  }
+  options.live_port = number;
+}
+
 }  // namespace
 
 void declare_options(CLI::App& app, ProgramOptions& options) {
@@ -41,6 +54,17 @@ void declare_options(CLI::App& app, ProgramOptions& options) {
   app.add_option("--config", options.config_file, "Configuration file")->required();
   app.add_flag("--check-config", options.check_config,
                "Check the configuration and everything that it names, then exit");
+  app.add_option_function<std::string>(
+         "--live", [&options](const std::string& port) { take_live_option(port, options); },
+         "Serve the live page at http://127.0.0.1:PORT/ (8080)")
+      ->expected(0, 1)
+      ->type_name("[PORT]");
+}
+
+void override_config(const ProgramOptions& options, Config& config) {
+  if (!options.live) return;
+  if (!config.live) config.live.emplace();
+  if (options.live_port) config.live->port = *options.live_port;
 }
 
 void handle_signals() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -15,10 +16,15 @@ namespace bevloc::firmware {
 struct ProgramOptions {
   std::string config_file;
   bool check_config = false;
+  bool live = false;  ///< --live: serve the live page at this machine alone
+  std::optional<int> live_port;
 };
 
 /// Adds the options of every bevlocd to `app`; parsing fills `options`, which must outlive it.
 void declare_options(CLI::App& app, ProgramOptions& options);
+
+/// Applies the options that override the configuration.
+void override_config(const ProgramOptions& options, Config& config);
 
 /// SIGTERM and SIGINT set stop_requested(). SIGHUP is logged and ignored: it must not end the
 /// localization without a last LOST.

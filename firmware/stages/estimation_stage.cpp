@@ -63,6 +63,7 @@ void EstimationStage::tick(Time now) {
   const auto pose = estimator_.pose_at(now);
   if (pose) protection_ = estimator_.protection_of(*pose, protection_parameters_);
   update_health(pose, now);
+  note_pose(pose);
   if (pose) predictions_.push({*pose, !health_.pose_valid() || wide_search_});
   publish(pose, now);
   ++counters_.ticks;
@@ -217,6 +218,25 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
   counters_.cameras = static_cast<unsigned>(inputs.cameras_present.to_ulong());
 }
 
+void EstimationStage::note_pose(const std::optional<TrackedPose>& pose) {
+  PoseSnapshot snapshot;
+  if (pose) {
+    snapshot.known = true;
+    snapshot.valid = health_.pose_valid();
+    snapshot.time = pose->time;
+    snapshot.map_from_vehicle = pose->map_from_vehicle;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<size_t>(axis);
+      snapshot.sigma[at] = std::sqrt(pose->covariance(axis, axis));
+      snapshot.protection_level[at] = protection_(axis);
+    }
+    snapshot.longitudinal_lateral_covariance_m2 = pose->covariance(0, 1);
+    snapshot.speed_mps = pose->speed_mps;
+    snapshot.yaw_rate_radps = pose->yaw_rate_radps;
+  }
+  counters_.pose.store(snapshot);
+}
+
 void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) {
   can::PoseReport report;
   report.status = make_status();
@@ -234,8 +254,9 @@ void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) 
     report.correction = latest_report_->match.correction;
   }
   publisher_.publish(report, now);
-  if (health_.pose_valid() && unsent_correction_ && correction_observer_) {
-    correction_observer_(*unsent_correction_);
+  if (health_.pose_valid() && unsent_correction_) {
+    counters_.latency.add(now - *unsent_correction_);
+    if (correction_observer_) correction_observer_(*unsent_correction_);
   }
   unsent_correction_.reset();
 }

@@ -6,9 +6,12 @@
 #include <functional>
 
 #include "can/messages/pose_publisher.h"
+#include "common/published.h"
 #include "firmware/health/health.h"
 #include "firmware/stages/messages.h"
 #include "firmware/stages/vehicle_input_stage.h"
+#include "firmware/telemetry/latency_histogram.h"
+#include "firmware/telemetry/pose_snapshot.h"
 #include "pipeline/localization/stamp_monitor.h"
 #include "pipeline/tracker/pose_estimator.h"
 
@@ -34,6 +37,9 @@ struct EstimationCounters {
   /// GNSS minus map, east and north; 0 while they agree (MapOffsetMonitor).
   std::array<std::atomic<int>, 2> map_offset_cm{};
   std::atomic<unsigned> cameras{0};  ///< cameras used in the latest frameset, a CameraMask
+  Published<PoseSnapshot> pose;      ///< of the latest tick()
+  /// From the time of a frameset until the first valid pose with its correction is sent.
+  LatencyHistogram latency;
 };
 
 /// Called after a valid pose was sent that contains a new correction. `frame_time` is the time of
@@ -76,6 +82,7 @@ class EstimationStage {
   void watch_clock(Time now);
   HealthInputs health_inputs(const std::optional<TrackedPose>& pose, Time now) const;
   void update_health(const std::optional<TrackedPose>& pose, Time now);
+  void note_pose(const std::optional<TrackedPose>& pose);
   void publish(const std::optional<TrackedPose>& pose, Time now);
   can::LocalizerStatus make_status() const;
 

@@ -104,9 +104,9 @@ void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
     return;
   }
   report.match = solution_;
-  if (observer_) {
-    observer_({frameset, report, solution_, prior.range, localizer_.hypotheses(prior.range),
-               localizer_.map_raster(), perceived_mask_});
+  for (const VisionObserver& observer : observers_) {
+    observer({frameset, report, solution_, prior.range, localizer_.hypotheses(prior.range),
+              localizer_.map_raster(), perceived_mask_});
   }
 }
 

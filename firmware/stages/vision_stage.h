@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "drivers/clock/clock.h"
 #include "firmware/stages/frameset_source.h"
@@ -70,8 +71,9 @@ class VisionStage {
   VisionStage(Localizer& localizer, const VisionConfig& config, FrameQueue& frames,
               PredictionQueue& predictions, VisionQueue& reports);
 
-  /// `observer` is called in the vision thread after each match, before its report is queued.
-  void observe(VisionObserver observer) { observer_ = std::move(observer); }
+  /// Adds an observer, which is called in the vision thread after each match, before its report is
+  /// queued. To be called before the first step().
+  void observe(VisionObserver observer) { observers_.push_back(std::move(observer)); }
 
   /// Waits for a frame, at most `timeout`, takes all queued frames and predictions, and matches the
   /// newest frameset. Returns whether there was a frameset.
@@ -94,7 +96,7 @@ class VisionStage {
   PriorSource priors_;
   VisionQueue& reports_;
   SolverResult solution_;
-  VisionObserver observer_;
+  std::vector<VisionObserver> observers_;
   const std::function<std::span<const float>()> perceived_mask_;
   VisionCounters counters_;
   Time latest_check_ = Time::min();

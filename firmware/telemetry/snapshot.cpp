@@ -17,7 +17,9 @@ EstimationSnapshot estimation_of(const EstimationCounters& counters) {
           .clock_gaps = counters.clock_gaps,
           .odometry = counts_of(counters.odometry),
           .gnss = counts_of(counters.gnss),
-          .corrections = counts_of(counters.corrections)};
+          .corrections = counts_of(counters.corrections),
+          .pose = counters.pose.load(),
+          .latency = counters.latency.counts()};
 }
 
 FramesetsSnapshot framesets_of(const VisionStage& vision) {

@@ -6,6 +6,8 @@
 
 #include "drivers/trigger/trigger.h"
 #include "firmware/runtime/appliance.h"
+#include "firmware/telemetry/latency_histogram.h"
+#include "firmware/telemetry/pose_snapshot.h"
 
 namespace bevloc::firmware {
 
@@ -49,6 +51,8 @@ struct EstimationSnapshot {
   OutcomeCounts odometry{};
   OutcomeCounts gnss{};
   OutcomeCounts corrections{};
+  PoseSnapshot pose;
+  LatencyCounts latency;
 };
 
 struct TriggerSnapshot {

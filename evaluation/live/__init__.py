@@ -1,0 +1,1 @@
+"""Looks at the live page with a browser: for its test and its screenshots."""

@@ -1,0 +1,44 @@
+// The events of the live page: JSON texts as server-sent events.
+#pragma once
+
+#include <deque>
+#include <string>
+
+#include "firmware/live/live_feed.h"
+#include "firmware/live/picture.h"
+#include "firmware/telemetry/status_json.h"
+#include "pipeline/calibration/rig.h"
+#include "pipeline/map/map_index.h"
+
+namespace bevloc::firmware {
+
+/// A place where the vehicle was.
+struct TrailPoint {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  bool valid = false;
+};
+
+/// "event: NAME\ndata: JSON\n\n".
+std::string server_sent_event(const char* name, const nlohmann::json& data);
+
+// The events; docs/live.md describes their keys.
+
+std::string status_event(const Telemetry& telemetry, const ProcessUse& process, Duration age);
+std::string trail_event(const std::deque<TrailPoint>& trail);
+/// The map's lines around a place, in metres in the map frame.
+std::string map_event(const MapIndex& map, const Eigen::Vector2d& centre_m, double reach_m);
+/// What the network perceives, the map's lines at the prior and at the corrected pose, and the
+/// distributions. `sample` must have a mask.
+std::string match_event(const MapIndex& map, const LiveSample& sample);
+/// One camera image, and where the map's lines lie in it at the prior and at the corrected pose.
+/// `sample` must have an image. Empty if the image is damaged.
+std::string camera_event(const MapIndex& map, const Rig& rig, const LiveSample& sample,
+                         PictureMaker& pictures);
+
+/// The perceived mask as text: one character for each 2 x 2 cells, row by row from the front left.
+/// The character '0' + v has for class c the level (v >> 2 c) & 3 of its probability: 0 below 1/4,
+/// 1 below 1/2, 2 below 3/4, 3.
+std::string mask_text(std::span<const float> logits);
+
+}  // namespace bevloc::firmware

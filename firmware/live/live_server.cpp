@@ -1,0 +1,282 @@
+#include "firmware/live/live_server.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "firmware/live/event_queue.h"
+#include "firmware/live/http_server.h"
+#include "firmware/live/httplib_header.h"
+#include "firmware/live/live_events.h"
+#include "firmware/live/page_files.h"
+#include "firmware/telemetry/metrics.h"
+
+namespace bevloc::firmware {
+namespace {
+
+constexpr Duration kDrawPeriod = std::chrono::milliseconds(40);
+constexpr Duration kStatusPeriod = std::chrono::milliseconds(200);
+/// A viewer who gets no event for so long gets a comment, so that a closed connection is noticed.
+constexpr Duration kSilence = std::chrono::seconds(1);
+constexpr double kMapReach_m = 150.0;
+/// The map is sent again when the vehicle is this far from the place where it was sent.
+constexpr double kMapRenewal_m = 60.0;
+constexpr double kTrailStep_m = 0.5;
+constexpr size_t kTrailPoints = 2000;
+
+}  // namespace
+
+class LiveServer::Impl {
+ public:
+  explicit Impl(std::unique_ptr<HttpServer> http) : http_(std::move(http)) {
+    add_routes();
+    http_->start();
+    drawing_ = std::jthread([this](const std::stop_token& stop) { draw_until(stop); });
+  }
+
+  ~Impl() {
+    events_.close();
+    drawing_.request_stop();
+    wake_.notify_all();
+    http_->stop();
+  }
+
+  void attach(Appliance& appliance, const Rig& rig) {
+    const HypothesisGrid& acquiring = appliance.localizer().hypotheses(SearchRange::kAcquiring);
+    const HypothesisGrid& tracking = appliance.localizer().hypotheses(SearchRange::kTracking);
+    int most = 0;
+    for (const HypothesisGrid* grid : {&acquiring, &tracking}) {
+      most = std::max({most, grid->x_m.count(), grid->y_m.count(), grid->yaw_rad.count()});
+    }
+    auto feed = std::make_shared<LiveFeed>(rig, most);
+    appliance.vision().observe([feed](const VisionSnapshot& snapshot) { feed->offer(snapshot); });
+    const std::lock_guard lock(scene_mutex_);
+    feed_ = std::move(feed);
+    feed_->set_viewers(viewers_);
+    rig_ = rig;
+    map_ = &appliance.map_index();
+    map_centre_.reset();
+  }
+
+  void detach() {
+    const std::lock_guard lock(scene_mutex_);
+    map_ = nullptr;
+    feed_.reset();
+  }
+
+  void publish(const Telemetry& telemetry) {
+    const std::lock_guard lock(telemetry_mutex_);
+    telemetry_ = telemetry;
+    published_ = std::chrono::steady_clock::now();
+    const PoseSnapshot& pose = telemetry.snapshot.estimation.pose;
+    if (!pose.known) return;
+    const Eigen::Vector2d place = pose.map_from_vehicle.translation();
+    if (!trail_.empty()) {
+      const TrailPoint& last = trail_.back();
+      if ((place - Eigen::Vector2d(last.x_m, last.y_m)).norm() < kTrailStep_m) return;
+    }
+    trail_.push_back({place.x(), place.y(), pose.valid});
+    if (trail_.size() > kTrailPoints) trail_.pop_front();
+  }
+
+  int port() const { return http_->port(); }
+
+ private:
+  void add_routes();
+  void stream_events(httplib::Response& response);
+  void change_viewers(int by);
+
+  /// The latest telemetry, and the time since it was published.
+  std::pair<Telemetry, Duration> telemetry() const {
+    const std::lock_guard lock(telemetry_mutex_);
+    return {telemetry_, std::chrono::steady_clock::now() - published_};
+  }
+
+  void draw_until(const std::stop_token& stop);
+  void draw();
+  void send_map(const MapIndex& map, const PoseSnapshot& pose);
+
+  EventQueue events_;
+  std::atomic<int> viewers_{0};
+  std::atomic<bool> newcomer_{false};  ///< a viewer lacks map and trail
+
+  mutable std::mutex telemetry_mutex_;  ///< for the next three
+  Telemetry telemetry_;
+  std::chrono::steady_clock::time_point published_{};
+  std::deque<TrailPoint> trail_;
+
+  std::mutex scene_mutex_;  ///< for the next four; held while something is drawn
+  std::shared_ptr<LiveFeed> feed_;
+  Rig rig_;
+  const MapIndex* map_ = nullptr;
+  std::optional<Eigen::Vector2d> map_centre_;
+
+  // Of the drawing thread.
+  PictureMaker pictures_;
+  std::chrono::steady_clock::time_point status_due_{};
+
+  std::mutex wake_mutex_;
+  std::condition_variable wake_;
+  std::unique_ptr<HttpServer> http_;
+  std::jthread drawing_;
+};
+
+void LiveServer::Impl::add_routes() {
+  http_->set_headers(
+      {{"Content-Security-Policy",
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+        "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+       {"X-Content-Type-Options", "nosniff"},
+       {"Cross-Origin-Resource-Policy", "same-origin"},
+       {"Referrer-Policy", "no-referrer"},
+       {"Cache-Control", "no-store"}});
+  const auto file = [this](const char* path, std::string_view text, const char* type) {
+    http_->get(path, [text, type](const httplib::Request&, httplib::Response& response) {
+      response.set_content(text.data(), text.size(), type);
+    });
+  };
+  file("/", page_html(), "text/html; charset=utf-8");
+  file("/page.css", page_css(), "text/css; charset=utf-8");
+  file("/page.js", page_js(), "text/javascript; charset=utf-8");
+  http_->get("/metrics", [this](const httplib::Request&, httplib::Response& response) {
+    const auto [latest, age] = telemetry();
+    response.set_content(metrics_text(latest, use_of_this_process(), age),
+                         "text/plain; version=0.0.4; charset=utf-8");
+  });
+  http_->get("/status.json", [this](const httplib::Request&, httplib::Response& response) {
+    const auto [latest, age] = telemetry();
+    response.set_content(status_json(latest, use_of_this_process(), age).dump(2) + "\n",
+                         "application/json");
+  });
+  http_->get("/healthz", [this](const httplib::Request&, httplib::Response& response) {
+    const auto [latest, age] = telemetry();
+    const HealthCheck health = check_health(latest, age);
+    response.status = health.good ? 200 : 503;
+    response.set_content(health.reason + "\n", "text/plain; charset=utf-8");
+  });
+  http_->get("/events", [this](const httplib::Request&, httplib::Response& response) {
+    stream_events(response);
+  });
+}
+
+void LiveServer::Impl::change_viewers(int by) {
+  const int viewers = viewers_ += by;
+  const std::lock_guard lock(scene_mutex_);
+  if (feed_) feed_->set_viewers(viewers);
+}
+
+void LiveServer::Impl::stream_events(httplib::Response& response) {
+  if (viewers_.load() >= kViewers) {
+    response.status = 503;
+    response.set_content(
+        fmt::format("found {} viewers, wanted at most {}: close one\n", kViewers, kViewers),
+        "text/plain");
+    return;
+  }
+  change_viewers(1);
+  {
+    const std::lock_guard lock(wake_mutex_);
+    newcomer_ = true;
+  }
+  wake_.notify_all();
+  const auto write = [this, next = events_.end()](size_t, httplib::DataSink& sink) mutable {
+    const auto event = events_.wait_for(next, kSilence);
+    if (events_.closed()) {
+      sink.done();
+      return true;
+    }
+    const std::string_view text = event ? std::string_view(*event) : std::string_view(": idle\n\n");
+    return sink.write(text.data(), text.size());
+  };
+  response.set_chunked_content_provider("text/event-stream", write,
+                                        [this](bool) { change_viewers(-1); });
+}
+
+void LiveServer::Impl::draw_until(const std::stop_token& stop) {
+  begin_low_thread("live-draw");
+  while (!stop.stop_requested()) {
+    {
+      std::unique_lock lock(wake_mutex_);
+      const auto wanted = [&] { return stop.stop_requested() || viewers_ > 0; };
+      wake_.wait_for(lock, std::chrono::seconds(1), wanted);
+    }
+    if (viewers_ == 0 || stop.stop_requested()) continue;
+    draw();
+    std::this_thread::sleep_for(kDrawPeriod);
+  }
+}
+
+void LiveServer::Impl::send_map(const MapIndex& map, const PoseSnapshot& pose) {
+  const bool newcomer = newcomer_.exchange(false);
+  if (newcomer) {
+    std::deque<TrailPoint> trail;
+    {
+      const std::lock_guard lock(telemetry_mutex_);
+      trail = trail_;
+    }
+    events_.push(trail_event(trail));
+  }
+  if (!pose.known) return;
+  const Eigen::Vector2d place = pose.map_from_vehicle.translation();
+  const bool moved = !map_centre_ || (place - *map_centre_).norm() > kMapRenewal_m;
+  if (moved) map_centre_ = place;
+  if (moved || newcomer) events_.push(map_event(map, *map_centre_, kMapReach_m));
+}
+
+void LiveServer::Impl::draw() {
+  const auto [latest, age] = telemetry();
+  const auto time = std::chrono::steady_clock::now();
+  const std::lock_guard lock(scene_mutex_);
+  if (time >= status_due_) {
+    status_due_ = time + kStatusPeriod;
+    events_.push(status_event(latest, use_of_this_process(), age));
+    if (map_ != nullptr) send_map(*map_, latest.snapshot.estimation.pose);
+  }
+  if (map_ == nullptr) return;
+  feed_->take([this](const LiveSample& sample) {
+    if (sample.has_image) {
+      std::string event = camera_event(*map_, rig_, sample, pictures_);
+      if (!event.empty()) events_.push(std::move(event));
+    }
+    if (sample.has_mask) events_.push(match_event(*map_, sample));
+  });
+}
+
+Result<std::unique_ptr<LiveServer>> LiveServer::start(const LiveConfig& config) {
+  auto http = HttpServer::open(config.address, config.port);
+  if (!http) return tl::unexpected(http.error());
+  std::unique_ptr<LiveServer> server(new LiveServer(std::make_unique<Impl>(std::move(*http))));
+  spdlog::info("live page: http://{}/", authority_of(config));
+  if (config.open_to_network) {
+    spdlog::warn("live page: every machine that reaches {} sees the cameras; anybody may look",
+                 config.address);
+  }
+  return server;
+}
+
+LiveServer::LiveServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+LiveServer::~LiveServer() = default;
+
+void LiveServer::attach(Appliance& appliance, const Rig& rig) {
+  impl_->attach(appliance, rig);
+}
+
+void LiveServer::detach() {
+  impl_->detach();
+}
+
+void LiveServer::publish(const Telemetry& telemetry) {
+  impl_->publish(telemetry);
+}
+
+int LiveServer::port() const {
+  return impl_->port();
+}
+
+}  // namespace bevloc::firmware

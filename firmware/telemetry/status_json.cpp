@@ -1,0 +1,247 @@
+#include "firmware/telemetry/status_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "common/version.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using nlohmann::json;
+
+const char* name_of(Phase phase) {
+  switch (phase) {
+    case Phase::kStarting:
+      return "starting";
+    case Phase::kRunning:
+      return "running";
+    case Phase::kStandby:
+      return "standby";
+  }
+  return "";
+}
+
+json why_of(WhyMask why) {
+  json list = json::array();
+  for (int bit = 0; bit < kWhyCount; ++bit) {
+    const auto reason = static_cast<Why>(1u << bit);
+    if (why.has(reason)) list.push_back({{"reason", words_of(reason)}, {"do", advice_for(reason)}});
+  }
+  return list;
+}
+
+json in_degrees(const std::array<double, 3>& axes) {
+  return {{"longitudinal_m", axes[0]}, {"lateral_m", axes[1]}, {"yaw_deg", degrees(axes[2])}};
+}
+
+json pose_of(const PoseSnapshot& pose) {
+  if (!pose.known) return nullptr;
+  return {{"x_m", pose.map_from_vehicle.x_m},
+          {"y_m", pose.map_from_vehicle.y_m},
+          {"yaw_deg", degrees(pose.map_from_vehicle.yaw_rad)},
+          {"sigma", in_degrees(pose.sigma)},
+          {"protection_level", in_degrees(pose.protection_level)},
+          {"longitudinal_lateral_covariance_m2", pose.longitudinal_lateral_covariance_m2},
+          {"speed_mps", pose.speed_mps},
+          {"yaw_rate_degps", degrees(pose.yaw_rate_radps)}};
+}
+
+json camera_of(const Telemetry& telemetry, int index) {
+  const CameraSnapshot& camera = telemetry.snapshot.cameras[index];
+  json faults = json::array();
+  if (camera.frozen) faults.push_back("frozen");
+  if (camera.dark) faults.push_back("dark");
+  if (camera.blinded) faults.push_back("blinded");
+  if (camera.dirty) faults.push_back("dirty");
+  if (telemetry.view.calibration_fault[index]) faults.push_back("out of place");
+  const drivers::SynchronizerCounters& refused = camera.synchronizer;
+  return {{"name", kCameraNames[index]},
+          {"used", static_cast<bool>(telemetry.snapshot.estimation.cameras[index])},
+          {"captured", camera.captured},
+          {"lost", camera.driver.no_buffer + camera.driver.overrun + camera.driver.lost +
+                       camera.driver.damaged},
+          {"dropped", refused.duplicate + refused.out_of_order + refused.late + refused.future +
+                          refused.overflow + refused.unmatched},
+          {"missed_framesets", refused.missing},
+          {"unreadable", camera.unreadable},
+          {"failures", camera.failures},
+          {"faults", faults},
+          {"drift_ppm", camera.drift_ppm}};
+}
+
+json tracker_of(const OutcomeCounts& outcomes) {
+  json counts = json::object();
+  for (size_t i = 0; i < outcomes.size(); ++i) {
+    counts[std::string(bevloc::name_of(static_cast<TrackerUpdate>(i)))] = outcomes[i];
+  }
+  return counts;
+}
+
+json bus_of(const Snapshot& snapshot) {
+  const can::BusCounters& bus = snapshot.bus;
+  const double mean_s =
+      bus.confirmed == 0 ? 0.0
+                         : to_seconds(bus.confirmation_total) / static_cast<double>(bus.confirmed);
+  return {{"condition", can::to_string(snapshot.bus_condition)},
+          {"sent", bus.sent},
+          {"received", bus.received},
+          {"waiting", bus.send_waiting},
+          {"send_dropped", bus.send_replaced + bus.send_expired + bus.send_bus_down},
+          {"receive_dropped", bus.receive_dropped},
+          {"error_frames", bus.error_frames},
+          {"bus_off", bus.bus_off},
+          {"confirmation_mean_ms", 1e3 * mean_s},
+          {"confirmation_max_ms", 1e3 * to_seconds(bus.confirmation_max)}};
+}
+
+json vehicle_of(const can::VehicleInputCounters& input) {
+  return {
+      {"odometry_samples", input.odometry_samples},
+      {"gnss_samples", input.gnss_samples},
+      {"frames_lost", input.lost},
+      {"e2e_refused", input.wrong_crc + input.wrong_length + input.repeated + input.wrong_sequence +
+                          input.not_valid},
+      {"incomplete", input.incomplete},
+      {"not_available", input.not_available},
+      {"own_ids", input.own_ids},
+      {"odometry_refused", input.contradicting_wheels + input.odometry_jumps + input.sharp_turns}};
+}
+
+/// The value at a path such as "pose.sigma.lateral_m" as text.
+std::string text_at(const json& status, const std::string& path, const char* format = "{}") {
+  const json* at = &status;
+  for (size_t start = 0; start <= path.size();) {
+    const size_t end = std::min(path.find('.', start), path.size());
+    const auto found = at->is_object() ? at->find(path.substr(start, end - start)) : at->end();
+    if (!at->is_object() || found == at->end()) return "-";
+    at = &*found;
+    start = end + 1;
+  }
+  if (at->is_string()) return at->get<std::string>();
+  if (at->is_number_integer()) return fmt::format("{}", at->get<int64_t>());
+  if (at->is_number()) return fmt::format(fmt::runtime(format), at->get<double>());
+  return "-";
+}
+
+std::string list_of(const json& items) {
+  std::string text;
+  for (const json& item : items) {
+    if (item.is_string()) text += (text.empty() ? "" : ", ") + item.get<std::string>();
+  }
+  return text;
+}
+
+std::string reasons_of(const json& status) {
+  std::string text;
+  for (const json& why : status.value("why", json::array())) {
+    text += fmt::format("  {}: {}\n", text_at(why, "reason"), text_at(why, "do"));
+  }
+  return text;
+}
+
+std::string accuracy_of(const json& status) {
+  std::string text = "            longitudinal     lateral         yaw\n";
+  for (const auto& [title, key] :
+       {std::pair{"sigma", "sigma"}, {"protection", "protection_level"}}) {
+    const std::string path = fmt::format("pose.{}.", key);
+    text += fmt::format("{:10} {:>11} m {:>9} m {:>7} deg\n", title,
+                        text_at(status, path + "longitudinal_m", "{:.2f}"),
+                        text_at(status, path + "lateral_m", "{:.2f}"),
+                        text_at(status, path + "yaw_deg", "{:.2f}"));
+  }
+  return text;
+}
+
+std::string cameras_of(const json& status) {
+  std::string text = "camera      used  captured      lost   dropped  faults\n";
+  for (const json& camera : status.value("cameras", json::array())) {
+    if (!camera.is_object()) continue;
+    text += fmt::format("{:12}{:4} {:>9} {:>9} {:>9}  {}\n", text_at(camera, "name"),
+                        camera.value("used", false) ? "yes" : "NO", text_at(camera, "captured"),
+                        text_at(camera, "lost"), text_at(camera, "dropped"),
+                        list_of(camera.value("faults", json::array())));
+  }
+  return text;
+}
+
+}  // namespace
+
+json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration age) {
+  const Snapshot& snapshot = telemetry.snapshot;
+  const EstimationSnapshot& estimation = snapshot.estimation;
+  const HealthCheck health = check_health(telemetry, age);
+  json status{{"version", version()},
+              {"phase", name_of(telemetry.phase)},
+              {"healthy", health.good},
+              {"health", health.reason}};
+  if (telemetry.phase != Phase::kRunning) {
+    status["valid"] = false;
+    return status;
+  }
+  status["time_s"] = to_seconds(telemetry.time.time_since_epoch());
+  status["state"] = to_string(estimation.state);
+  status["why"] = why_of(estimation.why);
+  status["valid"] = estimation.pose.valid;
+  status["pose"] = pose_of(estimation.pose);
+  status["rate_hz"] = telemetry.view.rate_hz;
+  status["latency_ms"] = {{"median", estimation.latency.quantile_ms(0.5)},
+                          {"p99", estimation.latency.quantile_ms(0.99)},
+                          {"count", estimation.latency.total()}};
+  json cameras = json::array();
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    cameras.push_back(camera_of(telemetry, camera));
+  }
+  status["cameras"] = std::move(cameras);
+  status["framesets"] = {{"taken", snapshot.framesets.taken},
+                         {"skipped", snapshot.framesets.skipped},
+                         {"without_prior", snapshot.framesets.no_prior},
+                         {"refused", snapshot.framesets.refused},
+                         {"spread_ms", 1e3 * to_seconds(snapshot.framesets.spread)}};
+  status["tracker"] = {{"odometry", tracker_of(estimation.odometry)},
+                       {"gnss", tracker_of(estimation.gnss)},
+                       {"corrections", tracker_of(estimation.corrections)}};
+  status["vehicle"] = vehicle_of(snapshot.vehicle_input);
+  status["can"] = bus_of(snapshot);
+  status["hung_threads"] = telemetry.view.hung;
+  status["log_lines_dropped"] = snapshot.log_dropped;
+  status["memory_mb"] = process.resident_bytes / 1e6;
+  status["cpu_s"] = process.cpu_s;
+  return status;
+}
+
+std::string status_page(const json& status) {
+  if (!status.is_object()) return "the daemon sent no status\n";
+  if (status.value("phase", "running") != "running") {
+    return fmt::format("bevlocd {}: {}\n", text_at(status, "version"), text_at(status, "health"));
+  }
+  std::string text = fmt::format(
+      "bevlocd {}: {}, pose {}\n{}", text_at(status, "version"), text_at(status, "state"),
+      status.value("valid", false) ? "valid" : "NOT valid", reasons_of(status));
+  const std::string hung = text_at(status, "hung_threads");
+  if (!hung.empty() && hung != "-") text += fmt::format("  hangs: {}\n", hung);
+  text += fmt::format("\npose        x {} m, y {} m, yaw {} deg in the map; {} m/s\n",
+                      text_at(status, "pose.x_m", "{:.2f}"), text_at(status, "pose.y_m", "{:.2f}"),
+                      text_at(status, "pose.yaw_deg", "{:.2f}"),
+                      text_at(status, "pose.speed_mps", "{:.1f}"));
+  text += accuracy_of(status);
+  text += fmt::format("rate        {} framesets per second; latency {} ms median, {} ms for 99 %\n",
+                      text_at(status, "rate_hz", "{:.1f}"),
+                      text_at(status, "latency_ms.median", "{:.0f}"),
+                      text_at(status, "latency_ms.p99", "{:.0f}"));
+  text += fmt::format("framesets   {} taken, {} skipped, {} without a prior\n\n{}",
+                      text_at(status, "framesets.taken"), text_at(status, "framesets.skipped"),
+                      text_at(status, "framesets.without_prior"), cameras_of(status));
+  text += fmt::format(
+      "\nvehicle     {} odometry and {} GNSS samples; {} frames lost, {} refused by E2E\n",
+      text_at(status, "vehicle.odometry_samples"), text_at(status, "vehicle.gnss_samples"),
+      text_at(status, "vehicle.frames_lost"), text_at(status, "vehicle.e2e_refused"));
+  text += fmt::format("CAN         {}; {} sent, {} received, {} dropped, {} error frames\n",
+                      text_at(status, "can.condition"), text_at(status, "can.sent"),
+                      text_at(status, "can.received"), text_at(status, "can.send_dropped"),
+                      text_at(status, "can.error_frames"));
+  text += fmt::format("process     {} MB, {} s of CPU time\n",
+                      text_at(status, "memory_mb", "{:.0f}"), text_at(status, "cpu_s", "{:.0f}"));
+  return text;
+}
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,105 @@
+// Tests what the vision thread copies for the live page, and that it costs nothing without viewers.
+#include "firmware/live/live_feed.h"
+
+#include <gtest/gtest.h>
+
+#include "evaluation/bench/allocation_count.h"
+#include "tests/firmware/live/hand_made_localization.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using std::chrono::milliseconds;
+
+class LiveFeedTest : public testing::Test {
+ protected:
+  /// Offers the localization as of this time. Returns whether there was a copy.
+  bool offer_at(int time_ms) {
+    made_.frameset.time = Time(milliseconds(time_ms));
+    feed_.offer(made_.snapshot());
+    return feed_.take([this](const LiveSample& sample) {
+      camera_ = sample.camera;
+      has_image_ = sample.has_image;
+      has_mask_ = sample.has_mask;
+      if (has_image_) grey_ = sample.image.planes[0].data[0];
+      prior_ = sample.prior;
+      likeliest_ = sample.probabilities[0][2];
+    });
+  }
+
+  HandMadeLocalization made_;
+  LiveFeed feed_{made_.rig, 5};
+  int camera_ = -1;
+  bool has_image_ = false;
+  bool has_mask_ = false;
+  int grey_ = 0;
+  Se2 prior_;
+  float likeliest_ = 0.0F;
+};
+
+TEST_F(LiveFeedTest, CopiesNothingWithoutViewers) {
+  EXPECT_FALSE(offer_at(1000));
+  EXPECT_EQ(made_.masks_computed, 0);
+}
+
+TEST_F(LiveFeedTest, CopiesOneCameraAfterTheOther) {
+  feed_.set_viewers(1);
+  for (int i = 0; i < 2 * kCameraCount; ++i) {
+    ASSERT_TRUE(offer_at(1000 + 100 * i));
+    EXPECT_EQ(camera_, i % kCameraCount);
+    ASSERT_TRUE(has_image_);
+    EXPECT_EQ(grey_, 10 * camera_ + 10);
+  }
+  EXPECT_EQ(prior_.x_m, 5.0);
+  EXPECT_EQ(likeliest_, 0.5F);
+}
+
+TEST_F(LiveFeedTest, KeepsToItsRates) {
+  feed_.set_viewers(1);
+  int copies = 0;
+  for (int time_ms = 1000; time_ms < 3000; time_ms += 20) copies += offer_at(time_ms) ? 1 : 0;
+  EXPECT_EQ(copies, 20);
+  EXPECT_EQ(made_.masks_computed, 2);
+}
+
+TEST_F(LiveFeedTest, AMissingCameraHasNoImage) {
+  feed_.set_viewers(1);
+  made_.frameset.present.reset(0);
+  ASSERT_TRUE(offer_at(1000));
+  EXPECT_FALSE(has_image_);
+  EXPECT_TRUE(has_mask_);
+}
+
+TEST_F(LiveFeedTest, DoesNotWaitForTheDrawingThread) {
+  feed_.set_viewers(1);
+  made_.frameset.time = Time(milliseconds(1000));
+  feed_.offer(made_.snapshot());
+  feed_.take([this](const LiveSample& sample) {
+    made_.frameset.time = Time(milliseconds(5000));
+    made_.report.prior.x_m = 99.0;
+    feed_.offer(made_.snapshot());  // while the copy is being read
+    EXPECT_EQ(sample.prior.x_m, 5.0);
+  });
+  EXPECT_FALSE(feed_.take([](const LiveSample&) {}));
+}
+
+TEST_F(LiveFeedTest, AnImageThatIsLargerThanTheCalibrationIsNotCopied) {
+  feed_.set_viewers(1);
+  const auto large = drivers::FramePool::create(1, 640, 360);
+  made_.frameset.frames[0].buffer = large->borrow();
+  ASSERT_TRUE(offer_at(1000));
+  EXPECT_FALSE(has_image_);
+}
+
+TEST_F(LiveFeedTest, OfferingAllocatesNothing) {
+  feed_.set_viewers(1);
+  made_.frameset.time = Time(milliseconds(1000));
+  const VisionSnapshot snapshot = made_.snapshot();
+  const uint64_t before = bench::allocation_count();
+  feed_.offer(snapshot);
+  EXPECT_EQ(bench::allocation_count(), before);
+  EXPECT_TRUE(feed_.take([](const LiveSample&) {}));
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

@@ -1,0 +1,149 @@
+// Tests what the daemon's HTTP server answers without an appliance.
+#include "firmware/live/live_server.h"
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "firmware/live/httplib_header.h"
+#include "firmware/live/status_command.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using testing::HasSubstr;
+
+class LiveServerTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    LiveConfig config;
+    config.port = 0;  // a free one; the configuration does not allow it
+    auto started = LiveServer::start(config);
+    ASSERT_TRUE(started) << started.error().message;
+    server_ = std::move(*started);
+  }
+
+  httplib::Result get(const std::string& path) const {
+    httplib::Client client("127.0.0.1", server_->port());
+    return client.Get(path);
+  }
+
+  void publish(HealthState state, WhyMask why = {}, bool valid = false) const {
+    Telemetry telemetry;
+    telemetry.phase = Phase::kRunning;
+    telemetry.view.state = state;
+    telemetry.view.why = why;
+    telemetry.snapshot.estimation.state = state;
+    telemetry.snapshot.estimation.why = why;
+    telemetry.snapshot.estimation.pose.known = true;
+    telemetry.snapshot.estimation.pose.valid = valid;
+    server_->publish(telemetry);
+  }
+
+  /// The exit code of `bevloc status` with these arguments.
+  int status(const std::vector<std::string>& arguments) const {
+    CLI::App app;
+    StatusCommand command;
+    command.declare(app);
+    std::vector<std::string> words{"status", "--port", std::to_string(server_->port())};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::reverse(words.begin(), words.end());
+    app.parse(words);
+    EXPECT_TRUE(command.chosen());
+    return command.run();
+  }
+
+  std::unique_ptr<LiveServer> server_;
+};
+
+TEST_F(LiveServerTest, ServesThePageWithoutForeignAddresses) {
+  for (const char* path : {"/", "/page.css", "/page.js"}) {
+    const auto answer = get(path);
+    ASSERT_TRUE(answer) << path;
+    EXPECT_EQ(answer->status, 200) << path;
+    EXPECT_THAT(answer->body, testing::Not(testing::ContainsRegex("https?://"))) << path;
+    EXPECT_THAT(answer->get_header_value("Content-Security-Policy"),
+                HasSubstr("default-src 'none'"));
+  }
+}
+
+TEST_F(LiveServerTest, SaysWhetherTheDaemonIsHealthy) {
+  EXPECT_EQ(get("/healthz")->status, 200);  // it starts
+  publish(HealthState::kTracking, {}, true);
+  EXPECT_EQ(get("/healthz")->status, 200);
+  publish(HealthState::kLost, Why::kOdometryMissing);
+  const auto lost = get("/healthz");
+  EXPECT_EQ(lost->status, 503);
+  EXPECT_THAT(lost->body, HasSubstr("LOST: odometry missing: Check that wheel speed"));
+}
+
+TEST_F(LiveServerTest, SendsMetricsAndStatus) {
+  publish(HealthState::kTracking, {}, true);
+  EXPECT_THAT(get("/metrics")->body, HasSubstr("bevloc_state{state=\"TRACKING\"} 1"));
+  const auto status = nlohmann::json::parse(get("/status.json")->body);
+  EXPECT_EQ(status["state"], "TRACKING");
+  EXPECT_EQ(status["valid"], true);
+}
+
+TEST_F(LiveServerTest, BevlocStatusReturnsWhetherThePoseIsValid) {
+  publish(HealthState::kTracking, {}, true);
+  EXPECT_EQ(status({}), StatusCommand::kValid);
+  EXPECT_EQ(status({"--json"}), StatusCommand::kValid);
+  publish(HealthState::kLost, Why::kOdometryMissing);
+  EXPECT_EQ(status({}), StatusCommand::kNotValid);
+}
+
+TEST_F(LiveServerTest, BevlocStatusSaysThatNobodyAnswers) {
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(status({"--address", "127.0.0.2"}), StatusCommand::kNotReachable);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("found no bevlocd that answers"));
+}
+
+TEST_F(LiveServerTest, RefusesTooManyViewersAndTakesThemAgainLater) {
+  publish(HealthState::kTracking, {}, true);
+  /// One that reads events until it is told to end.
+  struct Viewer {
+    explicit Viewer(int port)
+        : thread([this, port] {
+            httplib::Client client("127.0.0.1", port);
+            client.Get("/events", [this](const char*, size_t) {
+              reads = true;
+              reads.notify_all();
+              return !end;
+            });
+          }) {}
+    ~Viewer() { end = true; }
+    std::atomic<bool> reads{false};
+    std::atomic<bool> end{false};
+    std::jthread thread;
+  };
+  {
+    std::deque<Viewer> viewers;
+    for (int i = 0; i < LiveServer::kViewers; ++i) {
+      viewers.emplace_back(server_->port()).reads.wait(false);
+    }
+    EXPECT_EQ(get("/events")->status, 503);
+    EXPECT_EQ(get("/healthz")->status, 200);
+  }
+  // The server notices at its next event, so a newcomer may be refused until then.
+  int answer = 503;
+  while (answer == 503) {
+    httplib::Client client("127.0.0.1", server_->port());
+    client.Get(
+        "/events",
+        [&answer](const httplib::Response& response) {
+          answer = response.status;
+          return true;
+        },
+        [](const char*, size_t) { return false; });
+  }
+  EXPECT_EQ(answer, 200);
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

@@ -1,0 +1,130 @@
+// Tests the pictures of the live page for each pixel format.
+#include "firmware/live/picture.h"
+
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <turbojpeg.h>
+
+namespace bevloc::firmware {
+namespace {
+
+RgbImage decoded(const std::string& jpeg) {
+  const tjhandle handle = tjInitDecompress();
+  const auto* file = reinterpret_cast<const unsigned char*>(jpeg.data());
+  int width = 0;
+  int height = 0;
+  int subsampling = 0;
+  int colours = 0;
+  EXPECT_EQ(tjDecompressHeader3(handle, file, jpeg.size(), &width, &height, &subsampling, &colours),
+            0);
+  RgbImage image(width, height);
+  EXPECT_EQ(tjDecompress2(handle, file, jpeg.size(), image.row(0), width, 0, height, TJPF_RGB, 0),
+            0);
+  tjDestroy(handle);
+  return image;
+}
+
+/// Checks that the picture of `image` has this colour in its middle.
+void expect_colour(const ImageView& image, int red, int green, int blue) {
+  PictureMaker pictures;
+  const auto jpeg = pictures.jpeg_of(image);
+  ASSERT_TRUE(jpeg) << jpeg.error().message;
+  const RgbImage picture = decoded(*jpeg);
+  const uint8_t* const middle = picture.row(picture.height / 2) + 3 * (picture.width / 2);
+  EXPECT_NEAR(middle[0], red, 6);
+  EXPECT_NEAR(middle[1], green, 6);
+  EXPECT_NEAR(middle[2], blue, 6);
+}
+
+ImageView view_of(PixelFormat format, int width, int height, const std::vector<uint8_t>& bytes,
+                  int stride_bytes) {
+  ImageView view;
+  view.format = format;
+  view.width = width;
+  view.height = height;
+  view.planes[0] = {bytes.data(), stride_bytes};
+  return view;
+}
+
+TEST(PictureMaker, MakesLargeImagesSmaller) {
+  const RgbImage image(1920, 1080);
+  PictureMaker pictures;
+  const auto jpeg = pictures.jpeg_of(image.view());
+  ASSERT_TRUE(jpeg) << jpeg.error().message;
+  const RgbImage picture = decoded(*jpeg);
+  EXPECT_EQ(picture.width, 640);
+  EXPECT_EQ(picture.height, 360);
+}
+
+TEST(PictureMaker, KeepsColoursOfRgb) {
+  RgbImage image(64, 32);
+  for (size_t i = 0; i < image.pixels.size(); i += 3) image.pixels[i] = 200;
+  expect_colour(image.view(), 200, 0, 0);
+}
+
+TEST(PictureMaker, ConvertsYuv) {
+  // Full range BT.601: (120, 90, 160) is R 164.9, G 110.2, B 52.7.
+  std::vector<uint8_t> yuyv;
+  std::vector<uint8_t> uyvy;
+  for (int i = 0; i < 32 * 32; ++i) {
+    yuyv.insert(yuyv.end(), {120, 90, 120, 160});
+    uyvy.insert(uyvy.end(), {90, 120, 160, 120});
+  }
+  ImageView view = view_of(PixelFormat::kYuyv, 64, 32, yuyv, 128);
+  view.yuv.full_range = true;
+  expect_colour(view, 165, 110, 53);
+  view = view_of(PixelFormat::kUyvy, 64, 32, uyvy, 128);
+  view.yuv.full_range = true;
+  expect_colour(view, 165, 110, 53);
+  const std::vector<uint8_t> luma(64 * 32, 120);
+  std::vector<uint8_t> chroma;
+  for (int i = 0; i < 32 * 16; ++i) chroma.insert(chroma.end(), {90, 160});
+  view = view_of(PixelFormat::kNv12, 64, 32, luma, 64);
+  view.planes[1] = {chroma.data(), 64};
+  view.yuv.full_range = true;
+  expect_colour(view, 165, 110, 53);
+}
+
+TEST(PictureMaker, ConvertsEachBayerOrder) {
+  constexpr int kRed = 180;
+  constexpr int kGreen = 90;
+  constexpr int kBlue = 30;
+  const std::pair<PixelFormat, std::array<int, 4>> orders[] = {
+      {PixelFormat::kBayerRggb, {kRed, kGreen, kGreen, kBlue}},
+      {PixelFormat::kBayerGrbg, {kGreen, kRed, kBlue, kGreen}},
+      {PixelFormat::kBayerGbrg, {kGreen, kBlue, kRed, kGreen}},
+      {PixelFormat::kBayerBggr, {kBlue, kGreen, kGreen, kRed}}};
+  for (const auto& [format, quad] : orders) {
+    std::vector<uint8_t> bytes(64 * 32);
+    for (int row = 0; row < 32; ++row) {
+      for (int col = 0; col < 64; ++col) {
+        bytes[64 * row + col] = static_cast<uint8_t>(quad[2 * (row % 2) + col % 2]);
+      }
+    }
+    SCOPED_TRACE(to_string(format));
+    expect_colour(view_of(format, 64, 32, bytes, 64), kRed, kGreen, kBlue);
+  }
+}
+
+TEST(PictureMaker, ReadsJpegAndRefusesADamagedOne) {
+  RgbImage image(1280, 720);
+  for (size_t i = 1; i < image.pixels.size(); i += 3) image.pixels[i] = 150;
+  PictureMaker pictures;
+  const auto first = pictures.jpeg_of(image.view());
+  ASSERT_TRUE(first);
+  const std::vector<uint8_t> file(first->begin(), first->end());
+  ImageView view = view_of(PixelFormat::kMjpeg, 640, 360, file, 0);
+  view.bytes_used = file.size();
+  expect_colour(view, 0, 150, 0);
+  view.bytes_used = 20;
+  EXPECT_FALSE(pictures.jpeg_of(view));
+  view.bytes_used = file.size();
+  view.width = 320;
+  EXPECT_FALSE(pictures.jpeg_of(view)) << "another size than the camera's";
+  EXPECT_FALSE(pictures.jpeg_of(ImageView()));
+}
+
+}  // namespace
+}  // namespace bevloc::firmware
