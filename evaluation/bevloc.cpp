@@ -4,6 +4,8 @@
 
 #include "common/version.h"
 #include "evaluation/bench/bench_command.h"
+#include "evaluation/calib/calib_command.h"
+#include "evaluation/calib/calib_evaluation.h"
 #include "evaluation/campaign/campaign_command.h"
 #include "evaluation/campaign/integrity_command.h"
 #include "evaluation/campaign/tune_matches_command.h"
@@ -17,7 +19,9 @@
 
 namespace {
 
-/// Exit codes: 0 success; 2 bad input or environment, with one line on stderr.
+/// Exit codes: 0 success; 1 what was checked is not good; 2 bad input or environment, with one line
+/// on stderr.
+constexpr int kNotGood = 1;
 constexpr int kBadInput = 2;
 
 }  // namespace
@@ -38,6 +42,8 @@ int main(int argc, char** argv) {
   rig_command.declare(*eval);
   bevloc::evaluation::IntegrityCommand integrity_command;
   integrity_command.declare(*eval);
+  bevloc::evaluation::CalibEvaluation calib_evaluation;
+  calib_evaluation.declare(*eval);
   solver_command.declare_tune(*tune);
   bevloc::evaluation::TuneMatchesCommand tune_matches_command;
   tune_matches_command.declare(*tune);
@@ -50,6 +56,8 @@ int main(int argc, char** argv) {
   bench_command.declare(app);
   bevloc::evaluation::AnswerCommand answer_command;
   answer_command.declare(app);
+  bevloc::evaluation::CalibCommand calib_command;
+  calib_command.declare(app);
   bevloc::evaluation::CampaignCommand campaign_command;
   campaign_command.declare(app);
   bevloc::evaluation::FaultCommand fault_command;
@@ -61,8 +69,15 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
+  if (calib_command.chosen()) {
+    const bevloc::Result<bool> good = calib_command.run();
+    if (good) return *good ? 0 : kNotGood;
+    fmt::print(stderr, "bevloc: {}\n", good.error().message);
+    return kBadInput;
+  }
   const bevloc::Status status = draw->parsed()                  ? draw_command.run()
                                 : campaign_command.chosen()     ? campaign_command.run()
+                                : calib_evaluation.chosen()     ? calib_evaluation.run()
                                 : integrity_command.chosen()    ? integrity_command.run()
                                 : tune_matches_command.chosen() ? tune_matches_command.run()
                                 : bench_command.chosen()        ? bench_command.run()
