@@ -4,6 +4,8 @@
 
 #include "command/vehicle_commands.h"
 #include "evaluation/bench/bench_command.h"
+#include "evaluation/calib/calib_command.h"
+#include "evaluation/calib/calib_evaluation.h"
 #include "evaluation/campaign/campaign_command.h"
 #include "evaluation/campaign/integrity_command.h"
 #include "evaluation/campaign/tune_matches_command.h"
@@ -35,6 +37,7 @@ void add_evaluation_commands(CLI::App& app, bevloc::command::CommandList& comman
   commands.add<SolverCommand>(eval, tune);
   commands.add<NetworkCommand>(eval);
   commands.add<RigCommand>(eval);
+  commands.add<CalibEvaluation>(eval);
   commands.add<IntegrityCommand>(eval);
   commands.add<TuneMatchesCommand>(tune);
   commands.add<DrawCommand>(draw);
@@ -45,6 +48,7 @@ void add_evaluation_commands(CLI::App& app, bevloc::command::CommandList& comman
   commands.add<LocalizeCommand>(app);
   commands.add<ListenCommand>(app);
   commands.add<MapCommand>(app);
+  commands.add<CalibCommand>(app);
 }
 
 }  // namespace

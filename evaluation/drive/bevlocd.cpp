@@ -21,10 +21,14 @@ struct DriveOptions {
   std::optional<double> duration_s;
   std::string map_file;
   std::string out = "out";
+  std::string pictures_folder;
   std::string json_file;
   bool fast = false;
 
-  bool any() const { return seed || duration_s || !map_file.empty() || !json_file.empty() || fast; }
+  bool any() const {
+    return seed || duration_s || !map_file.empty() || !json_file.empty() ||
+           !pictures_folder.empty() || fast;
+  }
 };
 
 void declare_options(CLI::App& app, DriveOptions& options) {
@@ -34,6 +38,8 @@ void declare_options(CLI::App& app, DriveOptions& options) {
       ->check(CLI::PositiveNumber);
   drive->add_option("--map", options.map_file, "Drive through this HD map (.osm or .bvm)");
   drive->add_option("--out", options.out, "Folder for can.log, poses.csv and sheet.png");
+  drive->add_option("--save-pictures", options.pictures_folder,
+                    "Write pictures and reference poses to this folder, for `bevloc calib`");
   drive->add_option("--json", options.json_file, "Write the result as JSON to this file");
   drive->add_flag("--fast", options.fast,
                   "Virtual clock: runs as fast as the machine can, with repeatable results");
@@ -44,7 +50,7 @@ Status apply(const DriveOptions& options, const std::string& config_file, DriveC
     if (!options.any()) return {};
     return fail(
         "{}: found cameras that are not mock, wanted mock ones for --seed, --duration, "
-        "--map, --json and --fast",
+        "--map, --json, --save-pictures and --fast",
         config_file);
   }
   if (options.seed) {
@@ -63,6 +69,7 @@ Status simulate(const DriveOptions& options, const DriveConfig& config, const Ri
   SimulatedRunOptions run;
   run.fast = options.fast;
   run.out = options.out;
+  run.pictures_folder = options.pictures_folder;
   const auto report = run_simulation(
       config, rig, run, [](const firmware::ApplianceView&) { return firmware::stop_requested(); });
   if (!report) return tl::unexpected(report.error());

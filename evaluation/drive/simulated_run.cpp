@@ -8,12 +8,15 @@
 #include "evaluation/drive/fault_socket.h"
 #include "evaluation/drive/faulty_bus.h"
 #include "evaluation/drive/jumping_clock.h"
+#include "evaluation/drive/picture_recorder.h"
 #include "evaluation/drive/progress_line.h"
+#include "evaluation/drive/reference_receiver.h"
 #include "evaluation/drive/simulated_drive.h"
 #include "evaluation/drive/snapshot_keeper.h"
 #include "firmware/live/live_server.h"
 #include "firmware/runtime/runner.h"
 #include "firmware/runtime/supervisor.h"
+#include "sim/random.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -45,6 +48,8 @@ class SimulatedRun {
 
   void run(const StopWhen& stop);
   DriveReport report() const;
+  /// Writes what the pictures of the drive lack to be a recording.
+  Status finish_recording();
   /// Frees the appliance first, so it must be the last call.
   Status write_sheet_if_any();
 
@@ -68,6 +73,7 @@ class SimulatedRun {
   BusFactory buses_;
   firmware::Realtime realtime_;
   SnapshotKeeper keeper_;
+  std::optional<PictureRecorder> recorder_;  ///< with SimulatedRunOptions::pictures_folder
   LatencyRecorder latencies_;
   std::unique_ptr<firmware::Appliance> appliance_;
   std::unique_ptr<SimulatedVehicle> vehicle_;
@@ -105,7 +111,9 @@ SimulatedRun::SimulatedRun(const DriveConfig& config, const Rig& rig,
       buses_(config.can),
       realtime_(config.realtime),
       latencies_(config.simulation->duration_s),
-      clock_faults_(drive_.faults()) {}
+      clock_faults_(drive_.faults()) {
+  if (!options.pictures_folder.empty()) recorder_.emplace(options.pictures_folder);
+}
 
 Status SimulatedRun::connect() {
   auto own_bus = buses_.connect_appliance();
@@ -125,6 +133,7 @@ Status SimulatedRun::connect() {
     drive_.faults()->hang(sim::FaultKind::kHangVision, 0,
                           [this] { return to_seconds(clock_.now() - drive_start_); });
     keeper_.observe(snapshot);
+    if (recorder_) recorder_->record(snapshot.frameset);
   });
   appliance_->estimation().observe_corrections(
       [this](Time frame_time) { latencies_.add(clock_.now() - frame_time); });
@@ -214,6 +223,12 @@ void SimulatedRun::jump_if_due(double time_s) {
   }
 }
 
+Status SimulatedRun::finish_recording() {
+  if (!recorder_) return {};
+  const uint64_t seed = sim::seed_for(config_.simulation->seed, "reference");
+  return recorder_->finish(receive_reference(*drive_.drive(), seed, drive_start_), drive_.map());
+}
+
 DriveReport SimulatedRun::report() const {
   DriveReport report;
   report.prior = judge_->prior_error();
@@ -275,6 +290,9 @@ Result<DriveReport> run_simulation(const DriveConfig& config, const Rig& rig,
   (*run)->run(stop);
   DriveReport report = (*run)->report();
   if (Status status = write_csv(report, (options.out / "poses.csv").string()); !status) {
+    return tl::unexpected(status.error());
+  }
+  if (Status status = (*run)->finish_recording(); !status) {
     return tl::unexpected(status.error());
   }
   if (Status status = (*run)->write_sheet_if_any(); !status) {

@@ -16,6 +16,8 @@ struct SimulatedRunOptions {
   bool fast = false;          ///< lockstep: virtual clock, one thread, as fast as possible
   bool show_progress = true;  ///< show_progress_line()
   std::filesystem::path out;  ///< folder for can.log, poses.csv and sheet.png
+  /// Folder for the pictures and the reference poses (PictureRecorder); empty: none are written.
+  std::filesystem::path pictures_folder{};
   /// Shares the drawn pictures with other runs, which may have other faults; null without.
   std::shared_ptr<drivers::PictureCache> pictures;
 };

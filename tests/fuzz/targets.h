@@ -14,6 +14,7 @@ using Bytes = std::span<const uint8_t>;
 /// Each parses the bytes and checks what must hold for whatever was accepted. Ends the program if
 /// it does not hold.
 void run_bvm(Bytes bytes);
+void run_calibration(Bytes bytes);
 void run_can_frames(Bytes bytes);
 void run_candump(Bytes bytes);
 void run_config(Bytes bytes);
@@ -34,6 +35,7 @@ struct Target {
 
 inline constexpr Target kTargets[] = {
     {"bvm", run_bvm},
+    {"calibration", run_calibration},
     {"can_frames", run_can_frames},
     {"candump", run_candump},
     {"config", run_config},

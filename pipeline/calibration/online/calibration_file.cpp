@@ -1,17 +1,14 @@
 #include "pipeline/calibration/online/calibration_file.h"
 
-#include <cerrno>
-#include <cstring>
 #include <string_view>
 #include <vector>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include "common/crc32.h"
 #include "common/files.h"
+#include "common/replace_file.h"
 #include "common/strict_yaml.h"
 #include "pipeline/calibration/rig_yaml.h"
 
@@ -28,16 +25,6 @@ std::string list_of(const std::vector<double>& numbers) {
     text += fmt::format("{}{:.17g}", text.empty() ? "" : ", ", number);
   }
   return "[" + text + "]";
-}
-
-/// Writes what is in memory to the disk, so that a rename cannot overtake the content.
-Status flush_to_disk(const std::filesystem::path& path, int flags) {
-  const int file = ::open(path.c_str(), flags | O_CLOEXEC);
-  const bool flushed = file >= 0 && ::fsync(file) == 0;
-  const int error = errno;
-  if (file >= 0) ::close(file);
-  if (flushed) return {};
-  return fail("{}: cannot write this to disk ({})", path.string(), std::strerror(error));
 }
 
 }  // namespace
@@ -85,15 +72,7 @@ Result<LearnedCalibration> parse_learned(const std::string& text, const std::str
 }
 
 Status save_learned(const LearnedCalibration& learned, const std::filesystem::path& path) {
-  std::filesystem::path draft = path;
-  draft += ".new";
-  if (Status status = write_file(draft, format_learned(learned)); !status) return status;
-  if (Status status = flush_to_disk(draft, O_RDONLY); !status) return status;
-  std::error_code error;
-  std::filesystem::rename(draft, path, error);
-  if (error) return fail("{}: cannot replace this file ({})", path.string(), error.message());
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  return flush_to_disk(folder, O_RDONLY | O_DIRECTORY);
+  return replace_file(path, format_learned(learned));
 }
 
 Result<LearnedCalibration> load_learned(const std::filesystem::path& path, uint32_t rig_crc32) {

@@ -4,6 +4,8 @@
 #include "common/files.h"
 #include "drivers/camera/replay/replay_camera.h"
 #include "firmware/config/config.h"
+#include "pipeline/calibration/import/import_rig.h"
+#include "pipeline/calibration/refine/reference_trajectory.h"
 #include "pipeline/calibration/rig_check.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/preprocessing/network_camera.h"
@@ -32,6 +34,31 @@ class RecordingFolder {
 void run_config(Bytes bytes) {
   const auto config = firmware::load_config(path_of_file_with(bytes));
   if (!config) expect(!config.error().message.empty(), "an error without a message");
+}
+
+/// A calibration of another program, as any of the files that are recognised.
+void run_calibration(Bytes bytes) {
+  const std::string text(text_of(bytes));
+  const ForeignFile sensors{"sensor.json",
+                            R"([{"token": "s", "channel": "front", "modality": "camera"}])"};
+  const ForeignFile cameras{"cameras.txt", "1 PINHOLE 640 360 500 500 320 180\n"};
+  ImportOptions options;
+  options.vehicle_from = {{"imu", {}}, {"world", {}}};
+  for (const auto& files : {std::vector<ForeignFile>{{"front.yaml", text}},
+                            std::vector<ForeignFile>{{"a.json", text}, sensors},
+                            std::vector<ForeignFile>{{"cameras.txt", text}},
+                            std::vector<ForeignFile>{cameras, {"images.txt", text}}}) {
+    const auto imported = import_rig(files, options);
+    if (!imported) {
+      expect(!imported.error().message.empty(), "an error without a message");
+    } else {
+      expect(!find_mistake(imported->rig), "an imported rig with a mistake");
+    }
+  }
+  const auto places = parse_extrinsics(text, "fuzz.yaml");
+  expect(places || !places.error().message.empty(), "an error without a message");
+  const auto reference = ReferenceTrajectory::parse(text, "fuzz.csv");
+  if (reference) expect(reference->poses().size() >= 2, "a reference without poses");
 }
 
 void run_rig(Bytes bytes) {

@@ -1,0 +1,57 @@
+#include "common/replace_file.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "common/files.h"
+
+namespace bevloc {
+namespace {
+
+/// Writes what is in memory to the disk, so that a rename cannot overtake the content.
+Status flush_to_disk(const std::filesystem::path& path, int flags) {
+  const int file = ::open(path.c_str(), flags | O_CLOEXEC);
+  const bool flushed = file >= 0 && ::fsync(file) == 0;
+  const int error = errno;
+  if (file >= 0) ::close(file);
+  if (flushed) return {};
+  return fail("{}: cannot write this to disk ({})", path.string(), std::strerror(error));
+}
+
+std::filesystem::path free_backup_of(const std::filesystem::path& path) {
+  std::filesystem::path backup = path;
+  backup += ".bak";
+  for (int number = 2; std::filesystem::exists(backup); ++number) {
+    backup = path;
+    backup += fmt::format(".bak{}", number);
+  }
+  return backup;
+}
+
+}  // namespace
+
+Status replace_file(const std::filesystem::path& path, std::string_view bytes) {
+  std::filesystem::path draft = path;
+  draft += ".new";
+  if (Status status = write_file(draft, bytes); !status) return status;
+  if (Status status = flush_to_disk(draft, O_RDONLY); !status) return status;
+  std::error_code error;
+  std::filesystem::rename(draft, path, error);
+  if (error) return fail("{}: cannot replace this file ({})", path.string(), error.message());
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  return flush_to_disk(folder, O_RDONLY | O_DIRECTORY);
+}
+
+Status replace_file_with_backup(const std::filesystem::path& path, std::string_view bytes) {
+  if (std::filesystem::exists(path)) {
+    const Result<std::string> earlier = read_file(path);
+    if (!earlier) return tl::unexpected(earlier.error());
+    if (Status status = replace_file(free_backup_of(path), *earlier); !status) return status;
+  }
+  return replace_file(path, bytes);
+}
+
+}  // namespace bevloc

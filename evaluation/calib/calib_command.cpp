@@ -1,0 +1,226 @@
+#include "evaluation/calib/calib_command.h"
+
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "common/files.h"
+#include "common/replace_file.h"
+#include "evaluation/calib/calib_picture.h"
+#include "evaluation/calib/calib_report.h"
+#include "evaluation/calib/folder_recording.h"
+#include "evaluation/calib/kept_frameset.h"
+#include "evaluation/command_output.h"
+#include "pipeline/calibration/import/import_rig.h"
+#include "pipeline/calibration/refine/refine_rig.h"
+#include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/map/map_loader.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+Result<std::pair<int, int>> image_size_from(const std::string& text) {
+  std::pair<int, int> size;
+  const char* end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size.first);
+  if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
+    const auto height = std::from_chars(width.ptr + 1, end, size.second);
+    if (height.ec == std::errc() && height.ptr == end) return size;
+  }
+  return fail("--image-size: found {}, wanted WIDTHxHEIGHT, such as 1600x900", text);
+}
+
+Result<ParameterSet> free_parameters(const std::vector<std::string>& keep) {
+  ParameterSet free;
+  free.set();
+  for (const std::string& name : keep) {
+    if (name == "rotation") {
+      for (const int p : {kPitch, kYaw, kRoll}) free.reset(static_cast<size_t>(p));
+    } else if (name == "position") {
+      for (const int p : {kForward, kLeft, kUp}) free.reset(static_cast<size_t>(p));
+    } else if (name == "focal") {
+      free.reset(kFocal);
+    } else if (name == "time") {
+      free.reset(kTimeOffset);
+    } else {
+      return fail("--keep: found {}, wanted rotation, position, focal or time", name);
+    }
+  }
+  return free;
+}
+
+/// The time offsets, which a rig file cannot hold.
+void print_time_offsets(const Refinement& refinement) {
+  for (int c = 0; c < kCameraCount; ++c) {
+    const double offset_s = refinement.cameras[c].change[kTimeOffset];
+    if (std::abs(offset_s) < 3.0 * refinement.cameras[c].sigma[kTimeOffset]) continue;
+    fmt::print(
+        "{}: pictures are taken {:.1f} ms {} their timestamps say; correct it where the "
+        "timestamps are made, a rig file has no time offset\n",
+        kCameraNames[c], 1e3 * std::abs(offset_s), offset_s > 0.0 ? "later than" : "before");
+  }
+}
+
+}  // namespace
+
+void CalibCommand::declare(CLI::App& app) {
+  auto* calib = app.add_subcommand("calib", "Import, check or refine a calibration");
+  calib->require_subcommand(1);
+  declare_import(*calib);
+  declare_check(*calib);
+  declare_refine(*calib);
+}
+
+void CalibCommand::declare_import(CLI::App& calib) {
+  auto* import = calib.add_subcommand(
+      "import", "Make a rig file of calibrations from Kalibr, OpenCV, ROS, nuScenes or COLMAP");
+  import->add_option("FILE", files_, "Files of the other program")->required();
+  import->add_option("--out", out_, "Rig file to write; the one before is kept as .bak")
+      ->required();
+  import->add_option("--map-camera", camera_names_,
+                     "THEIRS=OURS: what a camera of the files is called here, such as cam0=front");
+  import->add_option("--extrinsics", extrinsics_file_,
+                     "File with places on the vehicle, for formats without (docs/calibration.md)");
+  import->add_option("--base", base_file_, "Rig file from which all comes that the files lack");
+  import->add_option("--image-size", image_size_,
+                     "WIDTHxHEIGHT in pixels, for formats without (nuScenes: 1600x900)");
+  import->add_option("--token", tokens_, "Calibrated sensor of nuScenes to use");
+  import->callback([this] { import_ = true;
+});
+}  // namespace bevloc::evaluation
+
+void CalibCommand::declare_inputs(CLI::App& command, CalibCommand& self) {
+  command.add_option("RECORDING", self.recording_, "Folder with pictures and reference poses")
+      ->required();
+  command.add_option("--rig", self.rig_file_, "Calibration of the cameras")->required();
+  command.add_option("--map", self.map_file_, "HD map")->required();
+  command
+      .add_option("--interval", self.interval_s_, "Least time between two framesets used, seconds")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  command
+      .add_option("--position-sigma", self.reference_position_m_,
+                  "One sigma of the reference positions, metres")
+      ->check(CLI::Range(0.001, 10.0))
+      ->capture_default_str();
+  command
+      .add_option("--yaw-sigma", self.reference_yaw_deg_,
+                  "One sigma of the reference headings, degrees")
+      ->check(CLI::Range(0.001, 10.0))
+      ->capture_default_str();
+  command.add_option("--picture", self.picture_file_,
+                     "Draw the map over pictures to this PNG file");
+  command.add_option("--json", self.json_file_, "Write the result to this file");
+}
+
+void CalibCommand::declare_check(CLI::App& calib) {
+  auto* check = calib.add_subcommand(
+      "check", "Compare a recording with the map and judge each camera; exit code 1: not good");
+  declare_inputs(*check, *this);
+  check->callback([this] { check_ = true; });
+}
+
+void CalibCommand::declare_refine(CLI::App& calib) {
+  auto* refine = calib.add_subcommand(
+      "refine", "Estimate the calibration of each camera from a recording and the map");
+  declare_inputs(*refine, *this);
+  refine->add_option("--keep", keep_, "What must not change: rotation, position, focal, time");
+  refine->add_option("--out", out_, "Rig file to write; the one before is kept as .bak");
+  refine->callback([this] { refine_ = true; });
+}
+
+Result<bool> CalibCommand::run() const {
+  if (!import_) return run_recording();
+  if (Status status = run_import(); !status) return tl::unexpected(status.error());
+  return true;
+}
+
+Status CalibCommand::run_import() const {
+  ImportOptions options;
+  for (const std::string& names : camera_names_) {
+    const size_t equals = names.find('=');
+    if (equals == std::string::npos) {
+      return fail("--map-camera: found {}, wanted THEIRS=OURS, such as cam0=front", names);
+    }
+    options.our_names[names.substr(0, equals)] = names.substr(equals + 1);
+  }
+  if (!extrinsics_file_.empty()) {
+    const auto text = read_file(extrinsics_file_);
+    if (!text) return tl::unexpected(text.error());
+    auto given = parse_extrinsics(*text, extrinsics_file_);
+    if (!given) return tl::unexpected(given.error());
+    options.vehicle_from = std::move(*given);
+  }
+  if (!base_file_.empty()) {
+    const auto base = read_rig(base_file_);
+    if (!base) return tl::unexpected(base.error());
+    options.base = *base;
+  }
+  if (!image_size_.empty()) {
+    const auto size = image_size_from(image_size_);
+    if (!size) return tl::unexpected(size.error());
+    options.image_size_px = *size;
+  }
+  options.tokens = tokens_;
+  std::vector<ForeignFile> files;
+  for (const std::string& name : files_) {
+    auto text = read_file(name);
+    if (!text) return tl::unexpected(text.error());
+    files.push_back({name, std::move(*text)});
+  }
+  const auto imported = import_rig(files, options);
+  if (!imported) return tl::unexpected(imported.error());
+  for (const std::string& note : imported->notes) fmt::print("{}\n", note);
+  return replace_file_with_backup(out_, format_rig(imported->rig));
+}
+
+Result<bool> CalibCommand::run_recording() const {
+  const auto rig = read_rig(rig_file_);
+  if (!rig) return tl::unexpected(rig.error());
+  const auto map = load_map(map_file_);
+  if (!map) return tl::unexpected(map.error());
+  const MapIndex index(*map);
+  auto recording = FolderRecording::open(recording_, *rig, from_seconds(interval_s_));
+  if (!recording) return tl::unexpected(recording.error());
+  RefinementOptions options;
+  options.reference_position_m = reference_position_m_;
+  options.reference_yaw_rad = radians(reference_yaw_deg_);
+  const auto free =
+      free_parameters(check_ ? std::vector<std::string>{"position", "focal", "time"} : keep_);
+  if (!free) return tl::unexpected(free.error());
+  options.free = *free;
+  KeepingRecording keeping(**recording, index);
+  const auto refinement = refine_rig(*rig, index, keeping, options, [](int done, int all) {
+    show_progress(done, all, "framesets");
+  });
+  if (!refinement) return tl::unexpected(refinement.error());
+  fmt::print("{}", check_ ? text_of_check(*refinement) : text_of_refinement(*refinement));
+  if (Status s = write_file(json_of(*refinement, check_).dump(2) + "\n", json_file_); !s) {
+    return tl::unexpected(s.error());
+  }
+  const Rig after = refined(*rig, *refinement);
+  if (!picture_file_.empty()) {
+    std::vector<CalibrationView> views = {{"with " + rig_file_, *rig}};
+    if (refine_) {
+      views.push_back({"refined", after});
+      for (size_t c = 0; c < kCameraCount; ++c) {
+        views.back().time_offset_s[c] = refinement->cameras[c].change[kTimeOffset];
+      }
+    }
+    const Status drawn = write_calibration_picture(views, keeping.kept(), (*recording)->reference(),
+                                                   index, picture_file_);
+    if (!drawn) return tl::unexpected(drawn.error());
+  }
+  if (check_) return all_good(*refinement);
+  print_time_offsets(*refinement);
+  if (out_.empty()) return true;
+  // Read again, because a rig that cannot be that of a vehicle must not be written.
+  const std::string text = format_rig(after);
+  if (const auto sound = parse_rig(text, "refined rig"); !sound) {
+    return tl::unexpected(sound.error());
+  }
+  if (Status s = replace_file_with_backup(out_, text); !s) return tl::unexpected(s.error());
+  return true;
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,49 @@
+// `bevloc calib`: imports, checks and refines a calibration.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "common/result.h"
+
+namespace bevloc::evaluation {
+
+class CalibCommand {
+ public:
+  void declare(CLI::App& app);
+  bool chosen() const { return import_ || check_ || refine_; }
+  /// Whether all that was asked is good. A check of a rig that is not good gives false.
+  Result<bool> run() const;
+
+ private:
+  void declare_import(CLI::App& calib);
+  void declare_check(CLI::App& calib);
+  void declare_refine(CLI::App& calib);
+  static void declare_inputs(CLI::App& command, CalibCommand& self);
+  Status run_import() const;
+  Result<bool> run_recording() const;
+
+  bool import_ = false;
+  bool check_ = false;
+  bool refine_ = false;
+  std::vector<std::string> files_;
+  std::vector<std::string> camera_names_;
+  std::string extrinsics_file_;
+  std::string base_file_;
+  std::string image_size_;
+  std::vector<std::string> tokens_;
+  std::string rig_file_;
+  std::string map_file_;
+  std::string recording_;
+  double interval_s_ = 0.5;
+  double reference_position_m_ = 0.03;
+  double reference_yaw_deg_ = 0.1;
+  std::vector<std::string> keep_;
+  std::string picture_file_;
+  std::string json_file_;
+  std::string out_;
+};
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,105 @@
+#include "evaluation/calib/calib_evaluation.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/calib/calib_report.h"
+#include "evaluation/command_output.h"
+#include "pipeline/calibration/refine/refine_rig.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+/// One parameter over all cameras and drives.
+struct ErrorSums {
+  int cameras = 0;
+  int observable = 0;
+  double before = 0.0;  ///< sum of squares of the errors of the observable ones
+  double after = 0.0;
+  int within_sigma = 0;  ///< errors within one sigma
+  int within_three = 0;
+};
+
+void judge_camera(const CameraRefinement& camera, const CameraAdjustment& truth,
+                  std::array<ErrorSums, kCameraParameters>& sums) {
+  for (int p = 0; p < kCameraParameters; ++p) {
+    ErrorSums& sum = sums[static_cast<size_t>(p)];
+    ++sum.cameras;
+    if (camera.unobservable[static_cast<size_t>(p)]) continue;
+    const double error = camera.change[p] - truth[p];
+    ++sum.observable;
+    sum.before += truth[p] * truth[p];
+    sum.after += error * error;
+    sum.within_sigma += std::abs(error) <= camera.sigma[p];
+    sum.within_three += std::abs(error) <= 3.0 * camera.sigma[p];
+  }
+}
+
+}  // namespace
+
+void CalibEvaluation::declare(CLI::App& eval) {
+  auto* calib = eval.add_subcommand(
+      "calib", "Refine calibrations with known errors from simulated recordings");
+  calib->add_option("--first-seed", options_.seed, "Seed of the first drive")
+      ->capture_default_str();
+  calib->add_option("--drives", drives_, "Number of drives, each with the next seed")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  calib->add_option("--duration", options_.duration_s, "Length of a drive, seconds")
+      ->check(CLI::Range(5.0, 600.0))
+      ->capture_default_str();
+  calib->add_option("--interval", options_.interval_s, "Time between two framesets, seconds")
+      ->check(CLI::Range(0.05, 10.0))
+      ->capture_default_str();
+  calib->add_option("--json", json_file_, "Write the errors to this file");
+  calib->callback([this] { chosen_ = true; });
+}
+
+Status CalibEvaluation::run() const {
+  std::array<ErrorSums, kCameraParameters> sums;
+  nlohmann::json json;
+  for (int i = 0; i < drives_; ++i) {
+    SimulatedRecordingOptions options = options_;
+    options.seed += static_cast<uint64_t>(i);
+    SimulatedRecording recording(options);
+    const MapIndex index(recording.map());
+    const auto refinement = refine_rig(recording.rig(), index, recording, {});
+    if (!refinement) return tl::unexpected(refinement.error());
+    nlohmann::json drive = json_of(*refinement, false);
+    drive["seed"] = options.seed;
+    for (int c = 0; c < kCameraCount; ++c) {
+      const CameraAdjustment& truth = recording.truth()[c];
+      judge_camera(refinement->cameras[c], truth, sums);
+      for (size_t p = 0; p < kCameraParameters; ++p) {
+        const CameraParameterInfo& info = kCameraParameterInfos[p];
+        drive["cameras"][std::string(kCameraNames[c])]["truth"][std::string(info.key)] =
+            truth[static_cast<int>(p)] / info.per_unit;
+      }
+    }
+    json["drives"].push_back(std::move(drive));
+    show_progress(i + 1, drives_, "drives");
+  }
+  fmt::print("{:15} {:>10} {:>11} {:>11} {:>9} {:>9}\n", "root mean square", "observable", "before",
+             "after", "1 sigma", "3 sigma");
+  for (size_t p = 0; p < kCameraParameters; ++p) {
+    const ErrorSums& sum = sums[p];
+    const CameraParameterInfo& info = kCameraParameterInfos[p];
+    const double count = std::max(1, sum.observable);
+    const double before = std::sqrt(sum.before / count) / info.per_unit;
+    const double after = std::sqrt(sum.after / count) / info.per_unit;
+    fmt::print("{:16} {:>10} {:>11.3f} {:>11.3f} {:>7.0f} % {:>7.0f} %\n", info.key,
+               fmt::format("{}/{}", sum.observable, sum.cameras), before, after,
+               100.0 * sum.within_sigma / count, 100.0 * sum.within_three / count);
+    json["errors"][std::string(info.key)] = {{"observable", sum.observable},
+                                             {"cameras", sum.cameras},
+                                             {"rms_before", before},
+                                             {"rms_after", after},
+                                             {"within_1_sigma", sum.within_sigma / count},
+                                             {"within_3_sigma", sum.within_three / count}};
+  }
+  return write_file(json.dump(2) + "\n", json_file_);
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,71 @@
+#include "evaluation/calib/folder_recording.h"
+
+#include <algorithm>
+
+#include "common/files.h"
+#include "common/image_file.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr Duration kWidestSpread = std::chrono::milliseconds(50);
+
+}  // namespace
+
+Result<std::unique_ptr<FolderRecording>> FolderRecording::open(const std::filesystem::path& folder,
+                                                               const Rig& rig, Duration interval) {
+  const std::string reference_file = (folder / kReferenceFile).string();
+  const auto text = bevloc::read_file(reference_file);
+  if (!text) return tl::unexpected(text.error());
+  auto reference = ReferenceTrajectory::parse(*text, reference_file);
+  if (!reference) return tl::unexpected(reference.error());
+  Frames frames;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const std::filesystem::path directory = folder / kCameraNames[camera];
+    if (!std::filesystem::is_directory(directory)) continue;
+    const auto recorded = drivers::load_recording(directory);
+    if (!recorded) return tl::unexpected(recorded.error());
+    for (const drivers::RecordedFrame& frame : *recorded) frames.push_back({camera, frame});
+  }
+  if (frames.empty()) {
+    return fail("{}: found no folder of a camera, wanted folders such as {}", folder.string(),
+                kCameraNames[1]);
+  }
+  return std::unique_ptr<FolderRecording>(
+      new FolderRecording(rig, std::move(*reference), interval, std::move(frames)));
+}
+
+FolderRecording::FolderRecording(const Rig& rig, ReferenceTrajectory reference, Duration interval,
+                                 Frames frames)
+    : rig_(rig), reference_(std::move(reference)) {
+  std::ranges::stable_sort(frames, {}, [](const CameraFrame& of) { return of.frame.time; });
+  std::optional<Time> start;
+  std::optional<Time> kept;
+  for (CameraFrame& of : frames) {
+    const bool begins = !start || of.frame.time - *start > kWidestSpread;
+    if (begins) {
+      start = of.frame.time;
+      if (kept && *start - *kept < interval) continue;
+      kept = start;
+      framesets_.emplace_back();
+    }
+    if (kept == start) framesets_.back().push_back(std::move(of));
+  }
+}
+
+Status FolderRecording::next(std::vector<RecordedPicture>& pictures) {
+  pictures.clear();
+  if (next_ == framesets_.size()) return {};
+  RgbImage image;
+  for (const auto& [camera, frame] : framesets_[next_++]) {
+    const Intrinsics& lens = rig_.cameras[camera].intrinsics;
+    if (image.width != lens.width_px || image.height != lens.height_px) {
+      image = RgbImage(lens.width_px, lens.height_px);
+    }
+    if (Status read = read_image(frame.file.string(), image); !read) return read;
+    pictures.push_back({camera, frame.time, grey_from(image.view())});
+  }
+  return {};
+}
+
+}  // namespace bevloc::evaluation

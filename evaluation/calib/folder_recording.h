@@ -1,0 +1,48 @@
+// A recording in a folder: what the replay cameras play, with reference poses beside it.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "common/cameras.h"
+#include "drivers/camera/replay/replay_camera.h"
+#include "pipeline/calibration/refine/picture_recording.h"
+#include "pipeline/calibration/rig.h"
+
+namespace bevloc::evaluation {
+
+/// The file of reference poses in the folder of a recording (ReferenceTrajectory::parse).
+inline constexpr const char* kReferenceFile = "reference.csv";
+
+class FolderRecording final : public PictureRecording {
+ public:
+  /// Reads the indexes: for each camera CAMERA/frames.txt (drivers::load_recording), and
+  /// reference.csv. A camera without a folder is missing. Frames within 50 ms of each other are one
+  /// frameset; framesets closer than `interval` to the one before are skipped. Fails if there is no
+  /// camera, or if an index is wrong.
+  static Result<std::unique_ptr<FolderRecording>> open(const std::filesystem::path& folder,
+                                                       const Rig& rig, Duration interval);
+
+  const ReferenceTrajectory& reference() const override { return reference_; }
+  int framesets() const override { return static_cast<int>(framesets_.size()); }
+  void rewind() override { next_ = 0; }
+  Status next(std::vector<RecordedPicture>& pictures) override;
+
+ private:
+  struct CameraFrame {
+    int camera;
+    drivers::RecordedFrame frame;
+  };
+  using Frames = std::vector<CameraFrame>;
+
+  FolderRecording(const Rig& rig, ReferenceTrajectory reference, Duration interval, Frames frames);
+
+  const Rig rig_;
+  const ReferenceTrajectory reference_;
+  std::vector<Frames> framesets_;
+  size_t next_ = 0;
+};
+
+}  // namespace bevloc::evaluation

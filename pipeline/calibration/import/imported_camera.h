@@ -1,0 +1,40 @@
+// One camera as another program's calibration has it, in bevloc's conventions.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/calibration/camera_model.h"
+
+namespace bevloc::calibration_import {
+
+/// Where a file places a camera. `parent` is "vehicle", "imu", "world" or the name of a camera.
+struct Mounting {
+  std::string parent;
+  Se3 parent_from_camera;
+};
+
+struct ImportedCamera {
+  std::string name;       ///< in the file that it comes from
+  std::string place;      ///< "file:line: key"
+  Intrinsics intrinsics;  ///< width_px is 0 where the format lacks the size of the images
+  std::optional<Mounting> mounting{};
+};
+
+/// Sets the distortion k1, k2, p1, p2 and k3 to k6 in OpenCV's order. Refuses k3 to k6 other than
+/// 0, which bevloc's camera model does not have, and any other number of coefficients.
+void set_pinhole_distortion(const std::vector<double>& coefficients, const std::string& place,
+                            Intrinsics& intrinsics);
+
+/// Sets k1 to k4 of a fisheye (cv::fisheye, equidistant).
+void set_fisheye_distortion(const std::vector<double>& coefficients, const std::string& place,
+                            Intrinsics& intrinsics);
+
+/// Sets focal lengths and principal point from a 3 x 3 matrix, row by row. Refuses skew.
+void set_camera_matrix(const std::vector<double>& rows, const std::string& place,
+                       Intrinsics& intrinsics);
+
+inline constexpr int kLargestImage_px = 16384;
+
+}  // namespace bevloc::calibration_import

@@ -1,0 +1,75 @@
+#include <array>
+
+#include <fmt/format.h>
+
+#include "pipeline/calibration/import/readers.h"
+
+namespace bevloc::calibration_import {
+namespace {
+
+/// The first of the keys that the document has; the first of all if it has none.
+ForeignNode first_of(const ForeignNode& document, std::initializer_list<std::string_view> keys) {
+  for (const std::string_view key : keys) {
+    if (document.has(key)) return document.at(key);
+  }
+  return document.at(*keys.begin());
+}
+
+/// The numbers of a matrix with rows, cols and data. `count` 0: any.
+std::vector<double> matrix_data(const ForeignNode& matrix, size_t count) {
+  const int rows = matrix.at("rows").whole_number(0, 100);
+  const int cols = matrix.at("cols").whole_number(0, 100);
+  const ForeignNode data = matrix.at("data");
+  const auto numbers = data.numbers(count);
+  if (numbers.size() != static_cast<size_t>(rows) * static_cast<size_t>(cols)) {
+    data.reject(fmt::format("{} numbers", numbers.size()),
+                fmt::format("{} rows of {}", rows, cols));
+  }
+  return numbers;
+}
+
+void read_size(const ForeignNode& document, Intrinsics& lens) {
+  if (!document.has("image_width")) return;
+  lens.width_px = document.at("image_width").whole_number(1, kLargestImage_px);
+  lens.height_px = document.at("image_height").whole_number(1, kLargestImage_px);
+}
+
+std::string name_in(const ForeignNode& document, const std::string& name) {
+  return document.has("camera_name") ? document.at("camera_name").text() : name;
+}
+
+}  // namespace
+
+ImportedCamera read_opencv(const ForeignNode& document, const std::string& name) {
+  Intrinsics lens;
+  read_size(document, lens);
+  const ForeignNode matrix = first_of(document, {"camera_matrix", "K"});
+  set_camera_matrix(matrix_data(matrix, 9), matrix.place(), lens);
+  const ForeignNode distortion =
+      first_of(document, {"distortion_coefficients", "distortion", "dist_coeffs", "D"});
+  const bool fisheye =
+      document.has("fisheye_model") && document.at("fisheye_model").whole_number(0, 1) == 1;
+  const auto set = fisheye ? set_fisheye_distortion : set_pinhole_distortion;
+  set(matrix_data(distortion, 0), distortion.at("data").place(), lens);
+  return {name_in(document, name), document.place(), lens};
+}
+
+ImportedCamera read_camera_info(const ForeignNode& document, const std::string& name) {
+  Intrinsics lens;
+  read_size(document, lens);
+  const ForeignNode matrix = document.at("camera_matrix");
+  set_camera_matrix(matrix_data(matrix, 9), matrix.place(), lens);
+  const ForeignNode model = document.at("distortion_model");
+  const ForeignNode distortion = document.at("distortion_coefficients");
+  const std::string kind = model.text();
+  if (kind == "equidistant") {
+    set_fisheye_distortion(matrix_data(distortion, 0), distortion.at("data").place(), lens);
+  } else if (kind == "plumb_bob" || kind == "rational_polynomial") {
+    set_pinhole_distortion(matrix_data(distortion, 0), distortion.at("data").place(), lens);
+  } else {
+    model.reject(kind, "plumb_bob, rational_polynomial or equidistant");
+  }
+  return {name_in(document, name), document.place(), lens};
+}
+
+}  // namespace bevloc::calibration_import

@@ -1,0 +1,40 @@
+// Reads the calibration files of other programs. All functions throw ImportError (foreign_node.h).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/calibration/import/foreign_node.h"
+#include "pipeline/calibration/import/imported_camera.h"
+
+namespace bevloc::calibration_import {
+
+/// Kalibr's camchain: `cam0`, `cam1` and so on, named so or by their `rostopic` (first word of the
+/// topic). camera_model pinhole with distortion_model radtan, equidistant or none. T_cam_imu maps
+/// points of the IMU into the camera, T_cn_cnm1 those of the previous camera into this one.
+/// timeshift_cam_imu is not used.
+std::vector<ImportedCamera> read_kalibr(const ForeignNode& document);
+
+/// A FileStorage file of OpenCV: camera_matrix (or K), distortion_coefficients (or distortion,
+/// dist_coeffs, D), image_width and image_height where it has them. The lens is a fisheye where
+/// fisheye_model is 1. The camera has the name `name` unless the file has camera_name.
+ImportedCamera read_opencv(const ForeignNode& document, const std::string& name);
+
+/// A camera_info file of ROS with distortion_model plumb_bob, rational_polynomial or equidistant.
+ImportedCamera read_camera_info(const ForeignNode& document, const std::string& name);
+
+/// calibrated_sensor.json with sensor.json of nuScenes. A camera has the name of its channel
+/// (CAM_FRONT). Its rotation (w, x, y, z) and translation map camera points into the ego vehicle.
+/// Where a channel has several different calibrations, `tokens` must choose one.
+std::vector<ImportedCamera> read_nuscenes(const ForeignNode& calibrated_sensors,
+                                          const ForeignNode& sensors,
+                                          const std::vector<std::string>& tokens);
+
+/// cameras.txt of COLMAP and, unless empty, images.txt. COLMAP's principal point counts from the
+/// corner of the image, bevloc's from the centre of the first pixel. An image gives its camera a
+/// name: its first folder, or its stem if it has none; its pose (w, x, y, z and translation) maps
+/// points of COLMAP's world into the camera. Without images.txt the id is the name.
+std::vector<ImportedCamera> read_colmap(const std::string& cameras, const std::string& cameras_name,
+                                        const std::string& images, const std::string& images_name);
+
+}  // namespace bevloc::calibration_import

@@ -1,0 +1,54 @@
+// What a recording changes about a camera's calibration.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include "pipeline/calibration/camera_model.h"
+
+namespace bevloc {
+
+/// Rotation vector about the camera's axes (pitch about x, yaw about y, roll about z), translation
+/// along the vehicle's axes, relative change of both focal lengths, and the time offset: a picture
+/// was taken so much later than its timestamp says.
+enum CameraParameter : int {
+  kPitch = 0,
+  kYaw = 1,
+  kRoll = 2,
+  kForward = 3,
+  kLeft = 4,
+  kUp = 5,
+  kFocal = 6,
+  kTimeOffset = 7,
+};
+inline constexpr int kCameraParameters = 8;
+
+struct CameraParameterInfo {
+  std::string_view name;
+  std::string_view key;   ///< in JSON, with the unit
+  double per_unit;        ///< radians, metres, 1 or seconds in the unit that people read
+  double expected_error;  ///< 1 sigma before a recording, in radians, metres, 1 or seconds
+};
+inline constexpr double kPerDegree = 3.14159265358979323846 / 180.0;
+inline constexpr std::array<CameraParameterInfo, kCameraParameters> kCameraParameterInfos{{
+    {"pitch", "pitch_deg", kPerDegree, 1.0 * kPerDegree},
+    {"yaw", "yaw_deg", kPerDegree, 1.0 * kPerDegree},
+    {"roll", "roll_deg", kPerDegree, 1.0 * kPerDegree},
+    {"forward", "forward_m", 1.0, 0.1},
+    {"left", "left_m", 1.0, 0.1},
+    {"up", "up_m", 1.0, 0.1},
+    {"focal length", "focal_percent", 0.01, 0.02},
+    {"time offset", "time_offset_ms", 0.001, 0.03},
+}};
+
+using CameraAdjustment = Eigen::Matrix<double, kCameraParameters, 1>;
+
+/// The rotation by a vector of angle times axis.
+Eigen::Matrix3d rotation_by(const Eigen::Vector3d& vector);
+
+/// The camera with rotation, translation and focal length changed.
+CameraModel adjusted(const CameraModel& camera, const CameraAdjustment& by);
+
+}  // namespace bevloc

@@ -1,0 +1,202 @@
+#include "pipeline/calibration/refine/paint_finder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace bevloc {
+namespace {
+
+constexpr double kStep_px = 0.5;  // between two samples of a profile
+constexpr double kThinnest_px = 1.0;
+constexpr double kPaint_m = 0.12;
+constexpr double kNarrowest_m = 0.06;
+constexpr double kWidest_m = 0.35;
+constexpr double kBlur_px = 1.5;     // that a stripe may look wider than it is
+constexpr float kLeastSlope = 2.5F;  // grey levels per pixel
+constexpr float kOverNoise = 4.0F;
+constexpr float kWeakest = 0.5F;  // of the strongest candidate
+
+struct Edge {
+  double offset_px;
+  float slope;  ///< grey levels per pixel, positive: brighter along the normal
+};
+
+/// A camera at one moment.
+class GroundView {
+ public:
+  GroundView(const CameraModel& camera, const Se2& vehicle_from_map)
+      : camera_(camera),
+        camera_from_vehicle_(camera.vehicle_from_camera.inverse()),
+        vehicle_from_map_(vehicle_from_map) {}
+
+  std::optional<Eigen::Vector2d> project(const Eigen::Vector2d& point_m) const {
+    const Eigen::Vector2d at = vehicle_from_map_ * point_m;
+    return camera_.intrinsics.project(camera_from_vehicle_ * Eigen::Vector3d(at.x(), at.y(), 0.0));
+  }
+
+  /// Nothing where the camera does not see the line wide enough.
+  std::optional<PaintSighting> look_at(const PaintPoint& point) const {
+    constexpr double kApart_m = 0.05;
+    const auto here = project(point.point_m);
+    const auto ahead = project(point.point_m + kApart_m * point.along);
+    const auto beside = project(point.point_m + kApart_m * point.across);
+    if (!here || !ahead || !beside || camera_.shows_own_body(*here)) return std::nullopt;
+    PaintSighting sighting;
+    sighting.point_m = point.point_m;
+    sighting.element = point.element;
+    sighting.predicted_px = *here;
+    const Eigen::Vector2d tangent = (*ahead - *here).normalized();
+    sighting.normal_px = {-tangent.y(), tangent.x()};
+    sighting.pixels_per_m = sighting.normal_px.dot(*beside - *here) / kApart_m;
+    if (sighting.pixels_per_m < 0.0) {
+      sighting.pixels_per_m = -sighting.pixels_per_m;
+      sighting.normal_px = -sighting.normal_px;
+    }
+    if (!(sighting.pixels_per_m * kPaint_m >= kThinnest_px)) return std::nullopt;
+    return sighting;
+  }
+
+ private:
+  const CameraModel& camera_;
+  Se3 camera_from_vehicle_;
+  Se2 vehicle_from_map_;
+};
+
+/// Looks for edges across a line.
+class ProfileReader {
+ public:
+  ProfileReader(const GreyImage& image, double reach_px) : image_(image), reach_px_(reach_px) {}
+
+  /// False if the profile leaves the image.
+  bool read(const PaintSighting& sighting) {
+    constexpr int kAlong = 2;           // neighbours to either side, 1 px apart
+    constexpr double kAround_px = 6.0;  // asphalt beyond the paint, to tell paint from noise
+    half_ = static_cast<int>(
+        std::ceil((reach_px_ + kAround_px + 0.5 * kWidest_m * sighting.pixels_per_m) / kStep_px));
+    const Eigen::Vector2d tangent(sighting.normal_px.y(), -sighting.normal_px.x());
+    profile_.clear();
+    for (int i = -half_ - 3; i <= half_ + 3; ++i) {
+      const Eigen::Vector2d at = sighting.predicted_px + i * kStep_px * sighting.normal_px;
+      float sum = 0.0F;
+      for (int k = -kAlong; k <= kAlong; ++k) {
+        const Eigen::Vector2d p = at + k * tangent;
+        if (!image_.contains(p.x(), p.y())) return false;
+        sum += image_.at(p.x(), p.y());
+      }
+      profile_.push_back(sum / (2 * kAlong + 1));
+    }
+    find_edges();
+    return true;
+  }
+
+  const std::vector<Edge>& edges() const { return edges_; }
+
+ private:
+  /// The slope over two steps of the smoothed profile, and its local extrema.
+  void find_edges() {
+    slopes_.clear();
+    for (size_t i = 3; i + 3 < profile_.size(); ++i) {
+      const auto smooth = [&](size_t k) {
+        return 0.25F * profile_[k - 1] + 0.5F * profile_[k] + 0.25F * profile_[k + 1];
+      };
+      slopes_.push_back((smooth(i + 1) - smooth(i - 1)) / static_cast<float>(2 * kStep_px));
+    }
+    magnitudes_.assign(slopes_.begin(), slopes_.end());
+    for (float& value : magnitudes_) value = std::abs(value);
+    const auto middle = magnitudes_.begin() + static_cast<std::ptrdiff_t>(magnitudes_.size() / 2);
+    std::ranges::nth_element(magnitudes_, middle);
+    const float least = std::max(kLeastSlope, kOverNoise * *middle);
+    edges_.clear();
+    for (size_t i = 1; i + 1 < slopes_.size(); ++i) {
+      const float sign = slopes_[i] > 0.0F ? 1.0F : -1.0F;
+      const float a = sign * slopes_[i - 1];
+      const float b = sign * slopes_[i];
+      const float c = sign * slopes_[i + 1];
+      if (b < least || b < a || b <= c) continue;
+      const double peak = 0.5 * (a - c) / (a - 2.0F * b + c);
+      edges_.push_back({(static_cast<double>(i) + peak - half_) * kStep_px, sign * b});
+    }
+  }
+
+  const GreyImage& image_;
+  const double reach_px_;
+  int half_ = 0;
+  std::vector<float> profile_;
+  std::vector<float> slopes_;
+  std::vector<float> magnitudes_;
+  std::vector<Edge> edges_;
+};
+
+void keep_strongest(std::vector<Edge>& found, double reach_px, PaintSighting& sighting) {
+  std::erase_if(found, [=](const Edge& edge) { return std::abs(edge.offset_px) > reach_px; });
+  std::ranges::sort(found, std::greater<>(), &Edge::slope);
+  for (const Edge& edge : found) {
+    if (sighting.candidates == PaintSighting::kMostCandidates) break;
+    if (edge.slope < kWeakest * found.front().slope) break;
+    sighting.offset_px[static_cast<size_t>(sighting.candidates++)] = edge.offset_px;
+  }
+}
+
+/// The middles of a rising and the next falling edge.
+void find_stripes(const std::vector<Edge>& edges, double reach_px, PaintSighting& sighting) {
+  std::vector<Edge> found;
+  for (size_t i = 0; i + 1 < edges.size(); ++i) {
+    const Edge& rise = edges[i];
+    const Edge& fall = edges[i + 1];
+    if (rise.slope < 0.0F || fall.slope > 0.0F) continue;
+    const double width_px = fall.offset_px - rise.offset_px;
+    if (width_px < kNarrowest_m * sighting.pixels_per_m) continue;
+    if (width_px > kWidest_m * sighting.pixels_per_m + kBlur_px) continue;
+    found.push_back({0.5 * (rise.offset_px + fall.offset_px), std::min(rise.slope, -fall.slope)});
+  }
+  keep_strongest(found, reach_px, sighting);
+}
+
+void find_steps(const std::vector<Edge>& edges, double reach_px, PaintSighting& sighting) {
+  std::vector<Edge> found;
+  std::ranges::copy_if(edges, std::back_inserter(found),
+                       [](const Edge& edge) { return edge.slope > 0.0F; });
+  keep_strongest(found, reach_px, sighting);
+}
+
+}  // namespace
+
+std::vector<PaintSighting> find_paint(const GreyImage& image, const CameraModel& camera,
+                                      const Se2& vehicle_from_map,
+                                      std::span<const PaintPoint> points,
+                                      const PaintSearch& search) {
+  const GroundView view(camera, vehicle_from_map);
+  ProfileReader reader(image, search.reach_px);
+  std::vector<PaintSighting> sightings;
+  std::vector<PaintKind> kinds;
+  uint32_t last_element = std::numeric_limits<uint32_t>::max();
+  for (const PaintPoint& point : points) {
+    const auto sighting = view.look_at(point);
+    if (!sighting || !image.contains(sighting->predicted_px.x(), sighting->predicted_px.y())) {
+      continue;
+    }
+    const bool near_last =
+        last_element == point.element && !sightings.empty() &&
+        (sighting->predicted_px - sightings.back().predicted_px).norm() < search.spacing_px;
+    if (near_last) continue;
+    last_element = point.element;
+    sightings.push_back(*sighting);
+    kinds.push_back(point.kind);
+  }
+  const size_t every = 1 + sightings.size() / static_cast<size_t>(search.most_sightings);
+  std::vector<PaintSighting> result;
+  for (size_t i = 0; i < sightings.size(); i += every) {
+    if (!reader.read(sightings[i])) continue;
+    if (kinds[i] == PaintKind::kStripe) {
+      find_stripes(reader.edges(), search.reach_px, sightings[i]);
+    } else {
+      find_steps(reader.edges(), search.reach_px, sightings[i]);
+    }
+    result.push_back(sightings[i]);
+  }
+  return result;
+}
+
+}  // namespace bevloc

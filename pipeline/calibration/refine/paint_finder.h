@@ -1,0 +1,45 @@
+// Finds painted lines in an image, to a fraction of a pixel, near where the map has them.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pipeline/calibration/camera_model.h"
+#include "pipeline/calibration/refine/grey_image.h"
+#include "pipeline/calibration/refine/paint_lines.h"
+
+namespace bevloc {
+
+/// One place in an image where the map has paint, and the paint that was found across it.
+struct PaintSighting {
+  static constexpr int kMostCandidates = 3;
+
+  Eigen::Vector2d point_m;       ///< in the map frame, on the ground
+  uint32_t element = 0;          ///< of the map
+  Eigen::Vector2d predicted_px;  ///< the point by the calibration that was searched with
+  Eigen::Vector2d normal_px;     ///< unit, across the line in the image
+  double pixels_per_m = 0.0;     ///< along the normal, per metre across the line on the ground
+  int candidates = 0;
+  /// Offsets of the paint along the normal from predicted_px, the strongest first.
+  std::array<double, kMostCandidates> offset_px{};
+};
+
+struct PaintSearch {
+  double reach_px = 16.0;    ///< to either side of the predicted line
+  double spacing_px = 6.0;   ///< least distance of two sightings of one element
+  int most_sightings = 120;  ///< per image; more are thinned out evenly
+};
+
+/// Searches the image at each point that the camera should see with a line at least 1 px wide.
+/// Points without paint have sightings without candidates. A stripe has a rising and a falling edge
+/// that are 0.06 to 0.35 m apart; a step has a rising edge towards its bright side.
+/// `camera_from_vehicle` and `vehicle_from_map` are the best known ones.
+std::vector<PaintSighting> find_paint(const GreyImage& image, const CameraModel& camera,
+                                      const Se2& vehicle_from_map,
+                                      std::span<const PaintPoint> points,
+                                      const PaintSearch& search);
+
+}  // namespace bevloc

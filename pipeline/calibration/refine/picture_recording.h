@@ -1,0 +1,33 @@
+// A recording of a drive: pictures of the cameras, and reference poses.
+#pragma once
+
+#include <vector>
+
+#include "common/result.h"
+#include "common/time.h"
+#include "pipeline/calibration/refine/grey_image.h"
+#include "pipeline/calibration/refine/reference_trajectory.h"
+
+namespace bevloc {
+
+struct RecordedPicture {
+  int camera = 0;  ///< index into kCameraNames
+  Time time;       ///< as the recording has it
+  GreyImage image;
+};
+
+/// Each kind of recording implements this. Reading goes from the first frameset to the last, and
+/// may start again. One thread.
+class PictureRecording {
+ public:
+  virtual ~PictureRecording() = default;
+
+  virtual const ReferenceTrajectory& reference() const = 0;
+  virtual int framesets() const = 0;
+  virtual void rewind() = 0;
+  /// Replaces `pictures` by those of the next frameset, at most one of each camera; by none at the
+  /// end. Times of pictures are on the same clock as the reference's.
+  virtual Status next(std::vector<RecordedPicture>& pictures) = 0;
+};
+
+}  // namespace bevloc

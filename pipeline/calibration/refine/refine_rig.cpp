@@ -1,0 +1,104 @@
+#include "pipeline/calibration/refine/refine_rig.h"
+
+#include <array>
+
+namespace bevloc {
+namespace {
+
+constexpr double kReach_m = 25.0;
+constexpr int kLeastFramesets = 20;
+
+/// How far from its prediction paint is looked for, in each round.
+constexpr std::array<double, 3> kSearches_rad = {0.04, 0.016, 0.01};
+
+class RigRefiner {
+ public:
+  RigRefiner(const Rig& rig, const MapIndex& map, PictureRecording& recording,
+             const RefinementOptions& options, const RefinementProgress& progress)
+      : rig_(rig),
+        map_(map),
+        recording_(recording),
+        progress_(progress),
+        problem_(rig, recording.reference(), options) {}
+
+  Result<Refinement> run() {
+    for (const double search_rad : kSearches_rad) {
+      if (Status read = look(search_rad); !read) return tl::unexpected(read.error());
+      if (framesets_ < kLeastFramesets) {
+        return fail("recording: found {} framesets apart with a reference pose, wanted {} or more",
+                    framesets_, kLeastFramesets);
+      }
+      problem_.solve(search_rad);
+    }
+    problem_.fix_unobservable(kSearches_rad.back());
+    return problem_.result(kSearches_rad.back());
+  }
+
+ private:
+  /// Reads all framesets once and replaces the problem's sightings.
+  Status look(double search_rad) {
+    problem_.clear_sightings();
+    recording_.rewind();
+    framesets_ = 0;
+    std::optional<Se2> last;
+    for (std::vector<RecordedPicture> pictures;;) {
+      if (Status read = recording_.next(pictures); !read) return read;
+      if (pictures.empty()) return {};
+      if (progress_) {
+        progress_(++read_, recording_.framesets() * static_cast<int>(kSearches_rad.size()));
+      }
+      const auto pose = recording_.reference().at(pictures.front().time);
+      if (!pose || (last && is_near(*last, *pose))) continue;
+      last = pose;
+      look_at(pictures, *pose, search_rad);
+      ++framesets_;
+    }
+  }
+
+  static bool is_near(const Se2& a, const Se2& b) {
+    const Se2 between = correction_between(a, b);
+    return between.translation().norm() < 1.5 && std::abs(between.yaw_rad) < 2.0 * kPerDegree;
+  }
+
+  void look_at(const std::vector<RecordedPicture>& pictures, const Se2& pose, double search_rad) {
+    find_paint_points(map_, pose, kReach_m, points_);
+    for (const RecordedPicture& picture : pictures) {
+      const CameraAdjustment& change = problem_.change(picture.camera);
+      const auto exposed =
+          recording_.reference().at(picture.time + from_seconds(change[kTimeOffset]));
+      if (!exposed) continue;
+      const CameraModel camera = adjusted(rig_.cameras[picture.camera], change);
+      PaintSearch search;
+      search.reach_px = search_rad * camera.intrinsics.fx_px;
+      problem_.add(framesets_, picture.camera, picture.time,
+                   find_paint(picture.image, camera, exposed->inverse(), points_, search));
+    }
+  }
+
+  const Rig& rig_;
+  const MapIndex& map_;
+  PictureRecording& recording_;
+  const RefinementProgress& progress_;
+  RefinementProblem problem_;
+  std::vector<PaintPoint> points_;
+  int framesets_ = 0;
+  int read_ = 0;
+};
+
+}  // namespace
+
+Result<Refinement> refine_rig(const Rig& rig, const MapIndex& map, PictureRecording& recording,
+                              const RefinementOptions& options,
+                              const RefinementProgress& progress) {
+  return RigRefiner(rig, map, recording, options, progress).run();
+}
+
+Rig refined(const Rig& rig, const Refinement& refinement) {
+  Rig result = rig;
+  for (int c = 0; c < kCameraCount; ++c) {
+    result.cameras[c] = adjusted(rig.cameras[c], refinement.cameras[c].change);
+  }
+  return result;
+}
+
+}  // namespace bevloc

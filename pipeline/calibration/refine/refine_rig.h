@@ -1,0 +1,25 @@
+// Compares a recording with the map, and estimates the rig from it.
+#pragma once
+
+#include <functional>
+
+#include "pipeline/calibration/refine/picture_recording.h"
+#include "pipeline/calibration/refine/refinement.h"
+#include "pipeline/map/map_index.h"
+
+namespace bevloc {
+
+/// Called after each frameset with how many of all have been read, over all rounds.
+using RefinementProgress = std::function<void(int done, int all)>;
+
+/// Reads the recording three times: with the given rig and a wide search, then twice with what was
+/// found and a narrower one. Uses framesets at least 1.5 m or 2 degrees apart. Fails if the
+/// recording cannot be read, or if fewer than 20 framesets have reference poses.
+Result<Refinement> refine_rig(const Rig& rig, const MapIndex& map, PictureRecording& recording,
+                              const RefinementOptions& options,
+                              const RefinementProgress& progress = {});
+
+/// The rig with the changes applied. Time offsets are not part of a rig.
+Rig refined(const Rig& rig, const Refinement& refinement);
+
+}  // namespace bevloc

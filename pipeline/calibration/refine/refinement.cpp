@@ -1,0 +1,243 @@
+#include "pipeline/calibration/refine/refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace bevloc {
+namespace {
+
+constexpr double kAgrees = 3.0;  // sigmas
+/// A camera with fewer sightings that agree keeps its calibration.
+constexpr int kLeastSightings = 100;
+
+double median_of(std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+}  // namespace
+
+RefinementProblem::RefinementProblem(const Rig& rig, const ReferenceTrajectory& reference,
+                                     const RefinementOptions& options)
+    : rig_(rig), reference_(reference), options_(options) {
+  free_.fill(options.free);
+  estimate_.changes.fill(CameraAdjustment::Zero());
+}
+
+void RefinementProblem::clear_sightings() {
+  views_.clear();
+}
+
+void RefinementProblem::add(int frame, int camera, Time time,
+                            std::vector<PaintSighting> sightings) {
+  while (static_cast<int>(estimate_.frames.size()) <= frame) {
+    estimate_.frames.push_back({FrameVector::Zero(), acceleration_at(time)});
+  }
+  for (const PaintSighting& sighting : sightings) {
+    const int next = static_cast<int>(elements_.size());
+    if (elements_.emplace(sighting.element, next).second) {
+      estimate_.shifts.push_back(Eigen::Vector2d::Zero());
+    }
+  }
+  views_.push_back({frame, camera, time, std::move(sightings)});
+}
+
+/// In the vehicle frame, from the reference positions; 0 where they are not known.
+Eigen::Vector2d RefinementProblem::acceleration_at(Time time) const {
+  constexpr Duration kAround = std::chrono::milliseconds(500);
+  const auto pose = reference_.at(time);
+  const auto before = reference_.at(time - kAround);
+  const auto after = reference_.at(time + kAround);
+  if (!pose || !before || !after) return Eigen::Vector2d::Zero();
+  const Eigen::Vector2d in_map =
+      (before->translation() - 2.0 * pose->translation() + after->translation()) /
+      (to_seconds(kAround) * to_seconds(kAround));
+  return Se2{0.0, 0.0, -pose->yaw_rad} * in_map;
+}
+
+RefinementProblem::FrameVector RefinementProblem::frame_sigma() const {
+  FrameVector sigma;
+  sigma << options_.body_tilt_rad, options_.body_tilt_rad, options_.reference_yaw_rad,
+      options_.reference_position_m, options_.reference_position_m, options_.body_lift_m;
+  return sigma;
+}
+
+RefinementProblem::FrameVector RefinementProblem::expected_error(const Frame& frame) const {
+  FrameVector expected = estimate_.mean;
+  expected[0] += estimate_.tilt_per_acceleration[0] * frame.acceleration_mps2.y();
+  expected[1] += estimate_.tilt_per_acceleration[1] * frame.acceleration_mps2.x();
+  return expected;
+}
+
+/// Of a parameter that is not free it is so large that it stays.
+Eigen::VectorXd RefinementProblem::camera_prior() const {
+  constexpr double kFixed = 1e12;
+  Eigen::VectorXd prior(kCameraUnknowns);
+  for (int i = 0; i < kCameraUnknowns; ++i) {
+    const auto parameter = static_cast<size_t>(i % kCameraParameters);
+    const double sigma = kCameraParameterInfos[parameter].expected_error;
+    const bool is_free = free_[static_cast<size_t>(i / kCameraParameters)][parameter];
+    prior[i] = (is_free ? 1.0 : kFixed) / (sigma * sigma);
+  }
+  return prior;
+}
+
+/// Moves all unknowns; the framesets' follow from the others.
+void RefinementProblem::move(const Sums& sums, const Eigen::VectorXd& by) {
+  for (int c = 0; c < kCameraCount; ++c) {
+    estimate_.changes[c] += by.segment<kCameraParameters>(c * kCameraParameters);
+  }
+  estimate_.mean += by.segment<kFrameUnknowns>(kCameraUnknowns);
+  estimate_.tilt_per_acceleration +=
+      by.segment<kTiltsPerAcceleration>(kCameraUnknowns + kFrameUnknowns);
+  for (size_t i = 0; i < estimate_.shifts.size(); ++i) {
+    estimate_.shifts[i] += by.segment<2>(static_cast<Eigen::Index>(kFirstElement + 2 * i));
+  }
+  for (size_t k = 0; k < estimate_.frames.size(); ++k) {
+    const FrameSums& frame = sums.frames[k];
+    estimate_.frames[k].error -=
+        frame.information.llt().solve(frame.gradient + frame.shared.transpose() * by);
+  }
+}
+
+/// One step of Levenberg-Marquardt. Returns whether another one may still improve the estimate.
+bool RefinementProblem::step(double gate_rad, double& damping) {
+  constexpr double kMostDamping = 1e4;
+  constexpr double kConverged = 1e-3;  // of the expected errors
+  const Eigen::VectorXd prior = camera_prior();
+  const auto cost_of = [&](const Sums& sums) {
+    double cost = sums.cost;
+    for (int c = 0; c < kCameraCount; ++c) {
+      const auto weight = prior.segment<kCameraParameters>(c * kCameraParameters);
+      cost += 0.5 * estimate_.changes[c].dot(weight.cwiseProduct(estimate_.changes[c]));
+    }
+    return cost;
+  };
+  const Sums sums = linearize(gate_rad);
+  const double cost = cost_of(sums);
+  Eigen::MatrixXd information = reduced(sums);
+  Eigen::VectorXd gradient = sums.gradient;
+  for (const FrameSums& frame : sums.frames) {
+    gradient -= frame.shared * frame.information.llt().solve(frame.gradient);
+  }
+  information.diagonal().head<kCameraUnknowns>() += prior;
+  for (int c = 0; c < kCameraCount; ++c) {
+    const Eigen::Index first = c * kCameraParameters;
+    gradient.segment<kCameraParameters>(first) +=
+        prior.segment<kCameraParameters>(first).cwiseProduct(estimate_.changes[c]);
+  }
+  const Estimate before = estimate_;
+  for (; damping < kMostDamping; damping *= 10.0) {
+    Eigen::MatrixXd damped = information;
+    damped.diagonal() += damping * information.diagonal();
+    const Eigen::VectorXd by = -damped.llt().solve(gradient);
+    move(sums, by);
+    if (cost_of(linearize(gate_rad)) < cost) {
+      damping = std::max(1e-6, 0.1 * damping);
+      return by.head<kCameraUnknowns>().cwiseAbs2().cwiseProduct(prior).maxCoeff() >
+             kConverged * kConverged;
+    }
+    estimate_ = before;
+  }
+  return false;
+}
+
+void RefinementProblem::solve(double gate_rad) {
+  constexpr int kMostSteps = 20;
+  double damping = 1e-4;
+  for (int i = 0; i < kMostSteps && step(gate_rad, damping); ++i) {
+  }
+}
+
+/// Fixes cameras that see too little paint.
+bool RefinementProblem::fix_rarely_seen(double gate_rad) {
+  std::array<int, kCameraCount> seen{};
+  for (const View& view : views_) {
+    visit(view, gate_rad, [&](const PaintSighting&, const Line* line, double) {
+      if (line && std::abs(line->residual) <= kAgrees) ++seen[view.camera];
+    });
+  }
+  bool any = false;
+  for (int c = 0; c < kCameraCount; ++c) {
+    if (seen[c] >= kLeastSightings || free_[c].none()) continue;
+    free_[c].reset();
+    estimate_.changes[c].setZero();
+    any = true;
+  }
+  return any;
+}
+
+void RefinementProblem::fix_unobservable(double gate_rad) {
+  // In units of the expected error: the recording's own sigma is at most half of it.
+  constexpr double kLeastInformation = 4.0;
+  const Eigen::VectorXd scale = camera_prior().cwiseInverse().cwiseSqrt();
+  const Eigen::MatrixXd information =
+      scale.asDiagonal() * camera_information(gate_rad) * scale.asDiagonal();
+  bool any = fix_rarely_seen(gate_rad);
+  while (true) {
+    std::vector<int> indices;
+    for (int i = 0; i < kCameraUnknowns; ++i) {
+      if (free_[i / kCameraParameters][static_cast<size_t>(i % kCameraParameters)]) {
+        indices.push_back(i);
+      }
+    }
+    if (indices.empty()) break;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(information(indices, indices));
+    if (parts.eigenvalues()[0] >= kLeastInformation) break;
+    Eigen::Index largest = 0;
+    parts.eigenvectors().col(0).cwiseAbs().maxCoeff(&largest);
+    const int worst = indices[static_cast<size_t>(largest)];
+    free_[worst / kCameraParameters].reset(static_cast<size_t>(worst % kCameraParameters));
+    estimate_.changes[worst / kCameraParameters][worst % kCameraParameters] = 0.0;
+    any = true;
+  }
+  if (any) solve(gate_rad);
+}
+
+Refinement RefinementProblem::result(double gate_rad) const {
+  constexpr double kEverywhere_rad = 1.0;
+  Refinement result;
+  result.frames = static_cast<int>(estimate_.frames.size());
+  Eigen::MatrixXd information = camera_information(gate_rad);
+  information.diagonal() += camera_prior();
+  const Eigen::VectorXd variance = information.inverse().diagonal();
+  RefinementProblem unchanged = *this;
+  unchanged.estimate_.changes.fill(CameraAdjustment::Zero());
+  std::array<std::vector<double>, kCameraCount> before;
+  std::array<std::vector<double>, kCameraCount> after;
+  std::set<const PaintSighting*> agreeing;
+  for (const View& view : views_) {
+    CameraRefinement& camera = result.cameras[view.camera];
+    visit(view, gate_rad, [&](const PaintSighting& sighting, const Line* line, double distance_px) {
+      ++camera.looked_at;
+      if (!line || std::abs(line->residual) > kAgrees) return;
+      ++camera.found;
+      agreeing.insert(&sighting);
+      after[view.camera].push_back(std::abs(distance_px));
+    });
+    unchanged.visit(view, kEverywhere_rad,
+                    [&](const PaintSighting& sighting, const Line*, double distance_px) {
+                      if (!agreeing.contains(&sighting)) return;
+                      before[view.camera].push_back(std::abs(distance_px));
+                    });
+  }
+  for (int c = 0; c < kCameraCount; ++c) {
+    CameraRefinement& camera = result.cameras[c];
+    camera.change = estimate_.changes[c];
+    camera.unobservable = options_.free & ~free_[c];
+    camera.sigma = variance.segment<kCameraParameters>(c * kCameraParameters).cwiseSqrt();
+    camera.before_px = median_of(before[c]);
+    camera.after_px = median_of(after[c]);
+  }
+  return result;
+}
+
+}  // namespace bevloc

@@ -1,0 +1,161 @@
+// Estimates the calibration of all cameras from the paint that a drive's pictures show.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/cameras.h"
+#include "pipeline/calibration/refine/camera_adjustment.h"
+#include "pipeline/calibration/refine/paint_finder.h"
+#include "pipeline/calibration/refine/reference_trajectory.h"
+#include "pipeline/calibration/rig.h"
+
+namespace bevloc {
+
+using ParameterSet = std::bitset<kCameraParameters>;
+
+struct RefinementOptions {
+  ParameterSet free = ParameterSet().set();  ///< what may change
+  // One sigma of the reference poses, and of the body against them.
+  double reference_position_m = 0.03;
+  double reference_yaw_rad = 0.1 * kPerDegree;
+  double body_tilt_rad = 0.4 * kPerDegree;
+  double body_lift_m = 0.02;
+  // One sigma of where paint is found: in the image, and on the ground against its line.
+  double image_px = 0.4;
+  double paint_m = 0.01;
+  /// One sigma of the place of a whole element of the map, along each axis.
+  double map_m = 0.04;
+};
+
+struct CameraRefinement {
+  CameraAdjustment change = CameraAdjustment::Zero();
+  CameraAdjustment sigma = CameraAdjustment::Zero();
+  /// Parameters that the recording does not determine. Their change is 0.
+  ParameterSet unobservable;
+  int looked_at = 0;       ///< places where the map has paint
+  int found = 0;           ///< of them with paint that agrees after the refinement
+  double before_px = 0.0;  ///< median distance of paint from the map, of those found
+  double after_px = 0.0;
+};
+
+struct Refinement {
+  std::array<CameraRefinement, kCameraCount> cameras;
+  int frames = 0;
+};
+
+/// Robust least squares (Levenberg-Marquardt with Huber's weights). The unknowns, each with a
+/// Gaussian prior (RefinementOptions, kCameraParameterInfos):
+/// - eight parameters of each camera;
+/// - six of each frameset, which all cameras share: an error of its reference pose, and tilt and
+///   lift of the body. They are eliminated by their Schur complement;
+/// - the mean of these six over the drive, and how much the body tilts per acceleration;
+/// - the shift of each element of the map.
+///
+/// A parameter is unobservable if it has the largest part in a direction (an eigenvector of the
+/// information about the cameras, in units of the expected errors) that the recording determines no
+/// better than to half the expected error. It keeps its value, and the others are estimated again.
+/// So do all of a camera with fewer than 100 sightings that agree.
+class RefinementProblem {
+ public:
+  /// `rig` and `reference` must outlive the problem.
+  RefinementProblem(const Rig& rig, const ReferenceTrajectory& reference,
+                    const RefinementOptions& options);
+
+  /// Forgets all sightings, not what was estimated.
+  void clear_sightings();
+
+  /// Adds what one camera saw. `frame` counts framesets from 0. The reference must cover `time`.
+  void add(int frame, int camera, Time time, std::vector<PaintSighting> sightings);
+
+  /// Improves the estimate with the sightings whose paint is at most `gate_rad` times the focal
+  /// length from where the estimate has it.
+  void solve(double gate_rad);
+
+  /// Fixes what is unobservable and solves again.
+  void fix_unobservable(double gate_rad);
+
+  const CameraAdjustment& change(int camera) const { return estimate_.changes[camera]; }
+  Refinement result(double gate_rad) const;
+
+ private:
+  static constexpr int kCameraUnknowns = kCameraCount * kCameraParameters;
+  static constexpr int kFrameUnknowns = 6;  // roll, pitch, yaw, forward, left, up
+  static constexpr int kTiltsPerAcceleration = 2;
+  /// Of the unknowns that are not of one frameset: where the shifts of the elements begin.
+  static constexpr int kFirstElement = kCameraUnknowns + kFrameUnknowns + kTiltsPerAcceleration;
+  using FrameVector = Eigen::Matrix<double, kFrameUnknowns, 1>;
+  using FrameMatrix = Eigen::Matrix<double, kFrameUnknowns, kFrameUnknowns>;
+
+  struct Frame {
+    FrameVector error = FrameVector::Zero();
+    /// Of the vehicle, along x and y.
+    Eigen::Vector2d acceleration_mps2 = Eigen::Vector2d::Zero();
+  };
+  struct Estimate {
+    std::array<CameraAdjustment, kCameraCount> changes;
+    std::vector<Frame> frames;
+    FrameVector mean = FrameVector::Zero();
+    /// Roll by the acceleration along y, pitch by that along x.
+    Eigen::Vector2d tilt_per_acceleration = Eigen::Vector2d::Zero();
+    std::vector<Eigen::Vector2d> shifts;  ///< of the map's elements
+  };
+  struct View {
+    int frame;
+    int camera;
+    Time time;
+    std::vector<PaintSighting> sightings;
+  };
+  /// One linearized sighting.
+  struct Line {
+    double residual;  ///< in sigmas
+    double weight;
+    CameraAdjustment of_camera;
+    FrameVector of_frame;
+    Eigen::Vector2d of_element;
+  };
+  struct FrameSums {
+    FrameMatrix information = FrameMatrix::Zero();
+    FrameVector gradient = FrameVector::Zero();
+    Eigen::MatrixXd shared;  ///< with all other unknowns, one row for each
+  };
+  /// Without the priors of the cameras.
+  struct Sums {
+    Eigen::MatrixXd information;
+    Eigen::VectorXd gradient;
+    std::vector<FrameSums> frames;
+    double cost = 0.0;
+  };
+
+  /// Calls visitor(sighting, line or null, distance in pixels) for each sighting of a view.
+  using Visitor = std::function<void(const PaintSighting&, const Line*, double)>;
+  void visit(const View& view, double gate_rad, const Visitor& visitor) const;
+  Sums linearize(double gate_rad) const;
+  void add_frame_priors(Sums& sums) const;
+  void add_line(const View& view, const PaintSighting& sighting, const Line& line,
+                Sums& sums) const;
+  Eigen::MatrixXd reduced(const Sums& sums) const;
+  Eigen::MatrixXd camera_information(double gate_rad) const;
+  Eigen::VectorXd camera_prior() const;
+  void move(const Sums& sums, const Eigen::VectorXd& by);
+  bool step(double gate_rad, double& damping);
+  bool fix_rarely_seen(double gate_rad);
+  Eigen::Vector2d acceleration_at(Time time) const;
+  FrameVector frame_sigma() const;
+  FrameVector expected_error(const Frame& frame) const;
+
+  const Rig& rig_;
+  const ReferenceTrajectory& reference_;
+  const RefinementOptions options_;
+  std::array<ParameterSet, kCameraCount> free_;
+  Estimate estimate_;
+  std::map<uint32_t, int> elements_;  ///< from the map's index to ours
+  std::vector<View> views_;
+};
+
+}  // namespace bevloc

@@ -1,0 +1,327 @@
+// Calibrations of other programs: conventions, compared with OpenCV's own projections, and
+// refusals.
+#include "pipeline/calibration/import/import_rig.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+#include <opencv2/calib3d.hpp>
+
+#include "pipeline/calibration/rig_yaml.h"
+
+namespace bevloc {
+namespace {
+
+Rig base_rig() {
+  auto rig = read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml");
+  EXPECT_TRUE(rig);
+  return *rig;
+}
+
+ImportOptions with_base() {
+  ImportOptions options;
+  options.base = base_rig();
+  return options;
+}
+
+constexpr int kFront = 1;
+
+/// Compares the projections of a grid of rays with those of OpenCV.
+void expect_projects_as(const Intrinsics& lens, const cv::Matx33d& matrix,
+                        const std::vector<double>& distortion, bool fisheye = false,
+                        double shift_px = 0.0) {
+  std::vector<cv::Point3d> points;
+  for (double x = -0.5; x <= 0.5; x += 0.25) {
+    for (double y = -0.3; y <= 0.3; y += 0.15) points.emplace_back(7.0 * x, 7.0 * y, 7.0);
+  }
+  std::vector<cv::Point2d> expected;
+  const cv::Vec3d zero(0.0, 0.0, 0.0);
+  if (fisheye) {
+    cv::fisheye::projectPoints(points, expected, zero, zero, matrix, distortion);
+  } else {
+    cv::projectPoints(points, zero, zero, matrix, distortion, expected);
+  }
+  for (size_t i = 0; i < points.size(); ++i) {
+    const auto pixel = lens.project({points[i].x, points[i].y, points[i].z});
+    ASSERT_TRUE(pixel);
+    EXPECT_NEAR(pixel->x(), expected[i].x + shift_px, 1e-9);
+    EXPECT_NEAR(pixel->y(), expected[i].y + shift_px, 1e-9);
+  }
+}
+
+void expect_refused(const std::vector<ForeignFile>& files, const ImportOptions& options,
+                    const std::string& part) {
+  const auto imported = import_rig(files, options);
+  ASSERT_FALSE(imported) << part;
+  EXPECT_NE(imported.error().message.find(part), std::string::npos) << imported.error().message;
+}
+
+const std::string kCameraInfo = R"(image_width: 1280
+image_height: 720
+camera_name: front
+camera_matrix:
+  rows: 3
+  cols: 3
+  data: [900.5, 0, 640.25, 0, 901.5, 361.75, 0, 0, 1]
+distortion_model: plumb_bob
+distortion_coefficients:
+  rows: 1
+  cols: 5
+  data: [-0.12, 0.03, 0.001, -0.002, 0]
+rectification_matrix:
+  rows: 3
+  cols: 3
+  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]
+)";
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+TEST(ImportRig, CameraInfoOfRosProjectsAsOpenCv) {
+  const auto imported = import_rig({{"front.yaml", kCameraInfo}}, with_base());
+  ASSERT_TRUE(imported) << imported.error().message;
+  const CameraModel& front = imported->rig.cameras[kFront];
+  EXPECT_EQ(front.intrinsics.width_px, 1280);
+  expect_projects_as(front.intrinsics, {900.5, 0, 640.25, 0, 901.5, 361.75, 0, 0, 1},
+                     {-0.12, 0.03, 0.001, -0.002});
+  // What the file lacks comes from the base.
+  const Rig base = base_rig();
+  EXPECT_TRUE(front.vehicle_from_camera.rotation.isApprox(
+      base.cameras[kFront].vehicle_from_camera.rotation, 1e-6));
+  EXPECT_EQ(imported->rig.cameras[4].intrinsics, base.cameras[4].intrinsics);
+}
+
+TEST(ImportRig, CameraInfoWithAFisheye) {
+  const std::string text = replaced(replaced(kCameraInfo, "plumb_bob", "equidistant"),
+                                    "cols: 5\n  data: [-0.12, 0.03, 0.001, -0.002, 0]",
+                                    "cols: 4\n  data: [-0.02, 0.003, 0.0004, -0.0001]");
+  const auto imported = import_rig({{"front.yaml", text}}, with_base());
+  ASSERT_TRUE(imported) << imported.error().message;
+  expect_projects_as(imported->rig.cameras[kFront].intrinsics,
+                     {900.5, 0, 640.25, 0, 901.5, 361.75, 0, 0, 1}, {-0.02, 0.003, 0.0004, -0.0001},
+                     true);
+}
+
+TEST(ImportRig, ADistortionThatBevlocLacksIsRefusedByNameAndLine) {
+  expect_refused({{"a.yaml", replaced(kCameraInfo, "-0.002, 0]", "-0.002, 0.01]")}}, with_base(),
+                 "a.yaml:12: distortion_coefficients.data: found k3 = 0.01, wanted k3 = 0");
+  expect_refused({{"a.yaml", replaced(kCameraInfo, "plumb_bob", "ftheta")}}, with_base(),
+                 "a.yaml:8: distortion_model: found ftheta, wanted plumb_bob");
+  expect_refused({{"a.yaml", replaced(kCameraInfo, "[900.5, 0,", "[900.5, 3,")}}, with_base(),
+                 "skew");
+  expect_refused({{"a.yaml", replaced(kCameraInfo, "[900.5", "[nine")}}, with_base(),
+                 "a.yaml:7: camera_matrix.data[0]: found \"nine\", wanted a number");
+}
+
+TEST(ImportRig, WithoutAPlaceItSaysHowToGiveOne) {
+  expect_refused({{"front.yaml", kCameraInfo}}, {}, "--base RIG");
+  ImportOptions named;
+  named.our_names = {{"front", "nose"}};
+  expect_refused({{"front.yaml", kCameraInfo}}, named, "--map-camera: found nose");
+}
+
+TEST(ImportRig, FileStorageOfOpenCv) {
+  const std::string text = R"(%YAML:1.0
+---
+image_width: 800
+image_height: 600
+camera_matrix: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 5.0e+02, 0., 3.995e+02, 0., 5.1e+02, 2.995e+02, 0., 0., 1. ]
+distortion_coefficients: !!opencv-matrix
+   rows: 4
+   cols: 1
+   dt: d
+   data: [ -1.0e-01, 1.0e-02, 1.0e-03, 2.0e-03 ]
+)";
+  ImportOptions options = with_base();
+  options.our_names = {{"left_camera", "front_left"}};
+  const auto imported = import_rig({{"calib/left_camera.yml", text}}, options);
+  ASSERT_TRUE(imported) << imported.error().message;
+  expect_projects_as(imported->rig.cameras[0].intrinsics, {500, 0, 399.5, 0, 510, 299.5, 0, 0, 1},
+                     {-0.1, 0.01, 0.001, 0.002});
+  expect_refused({{"calib/left_camera.yml", text.substr(0, text.find("distortion"))}}, options,
+                 "no distortion_coefficients");
+  expect_refused({{"b.yml", replaced(text, "rows: 4", "rows: 3")}}, options, "b.yml:14");
+}
+
+/// A chain in which cam0 has the IMU and cam1 hangs on cam0.
+std::string kalibr_chain(const Se3& camera0_from_imu, const Se3& camera1_from_camera0) {
+  const auto rows = [](const Se3& t) {
+    std::string text;
+    for (int r = 0; r < 3; ++r) {
+      text += fmt::format("  - [{:.12f}, {:.12f}, {:.12f}, {:.12f}]\n", t.rotation(r, 0),
+                          t.rotation(r, 1), t.rotation(r, 2), t.translation_m[r]);
+    }
+    return text + "  - [0.0, 0.0, 0.0, 1.0]\n";
+  };
+  return "cam0:\n  T_cam_imu:\n" + rows(camera0_from_imu) +
+         "  cam_overlaps: [1]\n  camera_model: pinhole\n"
+         "  distortion_coeffs: [-0.1, 0.01, 0.001, 0.002]\n  distortion_model: radtan\n"
+         "  intrinsics: [510.0, 511.0, 330.0, 180.0]\n  resolution: [640, 360]\n"
+         "  rostopic: /front/image_raw\n"
+         "cam1:\n  T_cn_cnm1:\n" +
+         rows(camera1_from_camera0) +
+         "  camera_model: pinhole\n  distortion_coeffs: [0.01, 0.02, 0.0, 0.0]\n"
+         "  distortion_model: equidistant\n  intrinsics: [400.0, 400.0, 320.0, 180.0]\n"
+         "  resolution: [640, 360]\n  rostopic: /side/image_raw\n";
+}
+
+TEST(ImportRig, TheChainOfKalibrEndsAtTheVehicle) {
+  const Rig base = base_rig();
+  const Se3 vehicle_from_front = base.cameras[1].vehicle_from_camera;
+  const Se3 vehicle_from_right = base.cameras[2].vehicle_from_camera;
+  const Se3 vehicle_from_imu{
+      Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(),
+      {0.8, 0.1, 0.6}};
+  const std::string chain = kalibr_chain(vehicle_from_front.inverse() * vehicle_from_imu,
+                                         vehicle_from_right.inverse() * vehicle_from_front);
+  ImportOptions options = with_base();
+  options.our_names = {{"side", "front_right"}};
+  options.vehicle_from = {{"imu", vehicle_from_imu}};
+  const auto imported = import_rig({{"camchain.yaml", chain}}, options);
+  ASSERT_TRUE(imported) << imported.error().message;
+  for (const int camera : {1, 2}) {
+    const Se3& found = imported->rig.cameras[camera].vehicle_from_camera;
+    const Se3& wanted = base.cameras[camera].vehicle_from_camera;
+    EXPECT_TRUE(found.rotation.isApprox(wanted.rotation, 1e-6)) << camera;
+    EXPECT_TRUE(found.translation_m.isApprox(wanted.translation_m, 1e-6)) << camera;
+  }
+  expect_projects_as(imported->rig.cameras[1].intrinsics, {510, 0, 330, 0, 511, 180, 0, 0, 1},
+                     {-0.1, 0.01, 0.001, 0.002});
+  expect_projects_as(imported->rig.cameras[2].intrinsics, {400, 0, 320, 0, 400, 180, 0, 0, 1},
+                     {0.01, 0.02, 0.0, 0.0}, true);
+
+  // One camera's place is enough for the other, in either direction.
+  options.vehicle_from = {{"front_right", vehicle_from_right}};
+  const auto anchored = import_rig({{"camchain.yaml", chain}}, options);
+  ASSERT_TRUE(anchored) << anchored.error().message;
+  EXPECT_TRUE(anchored->rig.cameras[1].vehicle_from_camera.translation_m.isApprox(
+      vehicle_from_front.translation_m, 1e-6));
+
+  ImportOptions bare;
+  bare.our_names = {{"side", "back"}};
+  expect_refused({{"camchain.yaml", chain}}, bare, "front_left: found no such camera");
+  expect_refused({{"c.yaml", replaced(chain, "camera_model: pinhole", "camera_model: omni")}},
+                 options, "c.yaml:8: cam0.camera_model: found omni, wanted pinhole");
+  expect_refused({{"c.yaml", replaced(chain, "[0.0, 0.0, 0.0, 1.0]", "[0.0, 0.0, 0.0, 2.0]")}},
+                 options, "wanted a rigid transform");
+}
+
+const std::string kSensors = R"([
+{"token": "s1", "channel": "CAM_FRONT", "modality": "camera"},
+{"token": "s2", "channel": "LIDAR_TOP", "modality": "lidar"}
+])";
+const std::string kCalibrated = R"([
+{"token": "c1", "sensor_token": "s1", "translation": [1.70079, 0.01594, 1.51095],
+ "rotation": [0.4998015, -0.5030317, 0.4997798, -0.4973747],
+ "camera_intrinsic": [[1266.4, 0.0, 816.3], [0.0, 1266.4, 491.5], [0.0, 0.0, 1.0]]},
+{"token": "c2", "sensor_token": "s2", "translation": [0.9, 0.0, 1.8],
+ "rotation": [0.7, 0.0, 0.0, -0.7], "camera_intrinsic": []}
+])";
+
+TEST(ImportRig, NuScenesHasThePoseOfTheCameraOnTheVehicle) {
+  ImportOptions options = with_base();
+  options.our_names = {{"CAM_FRONT", "front"}};
+  const std::vector<ForeignFile> files = {{"calibrated_sensor.json", kCalibrated},
+                                          {"sensor.json", kSensors}};
+  expect_refused(files, options, "wanted --image-size");
+  options.image_size_px = {1600, 900};
+  const auto imported = import_rig(files, options);
+  ASSERT_TRUE(imported) << imported.error().message;
+  const CameraModel& front = imported->rig.cameras[1];
+  EXPECT_NEAR(front.vehicle_from_camera.translation_m.x(), 1.70079, 1e-6);
+  // It looks ahead, with its x axis to the right.
+  EXPECT_GT(front.vehicle_from_camera.rotation(0, 2), 0.99);
+  EXPECT_LT(front.vehicle_from_camera.rotation(1, 0), -0.99);
+  expect_projects_as(front.intrinsics, {1266.4, 0, 816.3, 0, 1266.4, 491.5, 0, 0, 1}, {});
+  expect_refused({files[0]}, options, "wanted sensor.json too");
+
+  const std::string second = kCalibrated.substr(kCalibrated.find("{\"token\": \"c1\""),
+                                                kCalibrated.find(",\n{\"token\": \"c2\"") - 2);
+  const std::string two =
+      "[" + second + ",\n" + replaced(replaced(second, "c1", "c3"), "1.70079", "1.6") + "]";
+  expect_refused({{"calibrated_sensor.json", two}, files[1]}, options, "--token c3");
+  options.tokens = {"c3"};
+  const auto chosen = import_rig({{"calibrated_sensor.json", two}, files[1]}, options);
+  ASSERT_TRUE(chosen) << chosen.error().message;
+  EXPECT_NEAR(chosen->rig.cameras[1].vehicle_from_camera.translation_m.x(), 1.6, 1e-6);
+}
+
+TEST(ImportRig, ColmapCountsPixelsFromTheCornerAndMapsIntoTheCamera) {
+  const Rig base = base_rig();
+  const Se3 camera_from_world = base.cameras[1].vehicle_from_camera.inverse();
+  const Eigen::Quaterniond q(camera_from_world.rotation);
+  const Eigen::Vector3d& t = camera_from_world.translation_m;
+  const std::string images = fmt::format(
+      "# Image list\n1 {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} 3 front.png\n\n", q.w(),
+      q.x(), q.y(), q.z(), t.x(), t.y(), t.z());
+  const auto cameras = [](const std::string& line) {
+    return ForeignFile{"sparse/cameras.txt", "# Camera list\n3 " + line + "\n"};
+  };
+  ImportOptions options = with_base();
+  options.vehicle_from = {{"world", Se3{}}};
+  const auto imported =
+      import_rig({cameras("OPENCV 640 360 510 512 320.5 180.5 -0.1 0.02 0.001 -0.002"),
+                  {"sparse/images.txt", images}},
+                 options);
+  ASSERT_TRUE(imported) << imported.error().message;
+  const CameraModel& front = imported->rig.cameras[1];
+  expect_projects_as(front.intrinsics, {510, 0, 320.5, 0, 512, 180.5, 0, 0, 1},
+                     {-0.1, 0.02, 0.001, -0.002}, false, -0.5);
+  EXPECT_TRUE(front.vehicle_from_camera.translation_m.isApprox(
+      base.cameras[1].vehicle_from_camera.translation_m, 1e-6));
+
+  options.our_names = {{"3", "front"}};
+  const struct {
+    const char* line;
+    std::vector<double> distortion;
+    bool fisheye;
+  } kModels[] = {{"SIMPLE_PINHOLE 640 360 500 320 180", {}, false},
+                 {"PINHOLE 640 360 500 500 320 180", {}, false},
+                 {"SIMPLE_RADIAL 640 360 500 320 180 -0.1", {-0.1, 0, 0, 0}, false},
+                 {"RADIAL 640 360 500 320 180 -0.1 0.02", {-0.1, 0.02, 0, 0}, false},
+                 {"FULL_OPENCV 640 360 500 500 320 180 -0.1 0.02 0.001 0.002 0 0 0 0",
+                  {-0.1, 0.02, 0.001, 0.002},
+                  false},
+                 {"OPENCV_FISHEYE 640 360 500 500 320 180 0.01 0.02 0.003 0.004",
+                  {0.01, 0.02, 0.003, 0.004},
+                  true}};
+  for (const auto& model : kModels) {
+    const auto read = import_rig({cameras(model.line)}, options);
+    ASSERT_TRUE(read) << model.line << ": " << read.error().message;
+    expect_projects_as(read->rig.cameras[1].intrinsics, {500, 0, 320, 0, 500, 180, 0, 0, 1},
+                       model.distortion, model.fisheye, -0.5);
+  }
+  expect_refused({cameras("FOV 640 360 500 500 320 180 0.9")}, options,
+                 "sparse/cameras.txt:2: found FOV");
+  expect_refused({cameras("FULL_OPENCV 640 360 500 500 320 180 0 0 0 0 0.1 0 0 0")}, options,
+                 "found k3 = 0.1");
+  expect_refused({cameras("PINHOLE 640 360 500 500 320")}, options, "found 3 parameters, wanted 4");
+}
+
+TEST(ImportRig, UnknownFilesAreRefused) {
+  expect_refused({{"a.yaml", "key: value\n"}}, {}, "a.yaml: found no known calibration");
+  expect_refused({{"a.yaml", "key: [1, 2\n"}}, {}, "a.yaml:2:");
+  expect_refused({{"a.json", "[]"}}, {}, "a.json: found no known calibration");
+}
+
+TEST(ParseExtrinsics, ReadsPlacesByName) {
+  const auto places = parse_extrinsics(
+      "imu: {translation_m: [1, 2, 3], rotation_wxyz: [1, 0, 0, 0]}\n", "places.yaml");
+  ASSERT_TRUE(places) << places.error().message;
+  EXPECT_EQ(places->at("imu").translation_m, Eigen::Vector3d(1, 2, 3));
+  const auto wrong = parse_extrinsics(
+      "\nimu: {translation_m: [1, 2, 3], rotation_wxyz: [2, 0, 0, 0]}\n", "places.yaml");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().message.find("places.yaml:2: imu.rotation_wxyz: found a quaternion"),
+            std::string::npos)
+      << wrong.error().message;
+}
+
+}  // namespace
+}  // namespace bevloc

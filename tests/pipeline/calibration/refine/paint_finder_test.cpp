@@ -1,0 +1,144 @@
+// Finds painted lines in pictures that follow from formulas.
+#include "pipeline/calibration/refine/paint_finder.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/calibration/refine/reference_trajectory.h"
+#include "pipeline/calibration/rig_yaml.h"
+
+namespace bevloc {
+namespace {
+
+/// Grey asphalt with a painted line at y = `left_m` and a bar edge at x = `edge_m`.
+GreyImage picture_of_road(const CameraModel& camera, double left_m, double edge_m) {
+  GreyImage image{camera.intrinsics.width_px, camera.intrinsics.height_px, {}};
+  constexpr int kParts = 3;
+  for (int v = 0; v < image.height; ++v) {
+    for (int u = 0; u < image.width; ++u) {
+      double sum = 0.0;
+      for (int i = 0; i < kParts * kParts; ++i) {
+        const Eigen::Vector2d pixel(u + (i % kParts - 1.0) / kParts,
+                                    v + (i / kParts - 1.0) / kParts);
+        const Eigen::Vector3d ray =
+            camera.vehicle_from_camera.rotation * camera.intrinsics.ray(pixel);
+        const Eigen::Vector3d& from = camera.vehicle_from_camera.translation_m;
+        double grey = 150.0;
+        if (ray.z() < 0.0) {
+          const Eigen::Vector3d ground = from - from.z() / ray.z() * ray;
+          const bool line = std::abs(ground.y() - left_m) < 0.06;
+          const bool bar = ground.x() > edge_m && ground.x() < edge_m + 3.0 && ground.y() < -2.5;
+          grey = line || bar ? 200.0 : 80.0;
+        }
+        sum += grey;
+      }
+      image.pixels.push_back(static_cast<uint8_t>(sum / (kParts * kParts)));
+    }
+  }
+  return image;
+}
+
+HdMap street(bool crossing) {
+  HdMap map;
+  if (crossing) {
+    map.elements = {{ElementClass::kPedestrianCrossing,
+                     Appearance::kZebra,
+                     {{10.0, -8.0}, {13.0, -8.0}, {13.0, 8.0}, {10.0, 8.0}}}};
+  } else {
+    map.elements = {
+        {ElementClass::kLaneDivider, Appearance::kSolid, {{-30.0, 1.75}, {30.0, 1.75}}},
+        {ElementClass::kRoadBoundary, Appearance::kKerb, {{-30.0, 4.0}, {30.0, 4.0}}},
+        {ElementClass::kLaneDivider, Appearance::kDoubleSolid, {{-30.0, -1.0}, {30.0, -1.0}}}};
+  }
+  return map;
+}
+
+CameraModel front_camera() {
+  return read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml")->cameras[1];
+}
+
+TEST(FindPaintPoints, TakesDividersAndTheLongSidesOfCrossings) {
+  const HdMap lines = street(false);
+  std::vector<PaintPoint> points;
+  find_paint_points(MapIndex(lines), {}, 20.0, points);
+  EXPECT_NEAR(static_cast<double>(points.size()), 200.0, 4.0);
+  for (const PaintPoint& point : points) EXPECT_NEAR(point.point_m.y(), 1.75, 1e-9);
+  const HdMap crossing = street(true);
+  find_paint_points(MapIndex(crossing), {}, 40.0, points);
+  ASSERT_FALSE(points.empty());
+  for (const PaintPoint& point : points) {
+    EXPECT_EQ(point.kind, PaintKind::kStep);
+    EXPECT_NEAR(std::abs(point.point_m.x() - 11.5), 1.5, 1e-9);
+    // Towards the bars.
+    EXPECT_GT(point.across.x() * (11.5 - point.point_m.x()), 0.0);
+  }
+}
+
+TEST(FindPaint, MeasuresAStripeToAFractionOfAPixel) {
+  const CameraModel camera = front_camera();
+  const HdMap map = street(false);
+  std::vector<PaintPoint> points;
+  find_paint_points(MapIndex(map), {}, 25.0, points);
+  // The paint is 0.1 m to the left of the map.
+  const GreyImage image = picture_of_road(camera, 1.85, 100.0);
+  const auto sightings = find_paint(image, camera, {}, points, {});
+  ASSERT_GT(sightings.size(), 10U);
+  int found = 0;
+  for (const PaintSighting& sighting : sightings) {
+    if (sighting.candidates == 0) continue;
+    ++found;
+    EXPECT_NEAR(std::abs(sighting.offset_px[0]), 0.1 * sighting.pixels_per_m,
+                0.3 + 0.02 * sighting.pixels_per_m);
+  }
+  EXPECT_GT(found, static_cast<int>(sightings.size()) * 3 / 4);
+}
+
+TEST(FindPaint, FindsNothingOnBareAsphalt) {
+  const CameraModel camera = front_camera();
+  const HdMap map = street(false);
+  std::vector<PaintPoint> points;
+  find_paint_points(MapIndex(map), {}, 25.0, points);
+  const GreyImage image = picture_of_road(camera, 100.0, 100.0);
+  for (const PaintSighting& sighting : find_paint(image, camera, {}, points, {})) {
+    EXPECT_EQ(sighting.candidates, 0);
+  }
+}
+
+TEST(FindPaint, FindsTheEndsOfTheBarsOfACrossing) {
+  const CameraModel camera = front_camera();
+  const HdMap map = street(true);
+  std::vector<PaintPoint> points;
+  find_paint_points(MapIndex(map), {}, 25.0, points);
+  const GreyImage image = picture_of_road(camera, 100.0, 10.0);
+  int found = 0;
+  int agreeing = 0;
+  for (const PaintSighting& sighting : find_paint(image, camera, {}, points, {})) {
+    if (sighting.candidates == 0) continue;
+    ++found;
+    agreeing += sighting.point_m.y() < -2.3 && std::abs(sighting.offset_px[0]) < 0.5;
+  }
+  EXPECT_GT(found, 3);
+  // The sides of the bars are edges, too.
+  EXPECT_GE(agreeing, 0.8 * found);
+}
+
+TEST(ReferenceTrajectory, InterpolatesAndNamesABadLine) {
+  const std::string header = "time_ns,x_m,y_m,yaw_deg\n";
+  const auto read = ReferenceTrajectory::parse(header + "0,0,0,179\n100000000,1,2,-179\n", "r.csv");
+  ASSERT_TRUE(read) << read.error().message;
+  const auto pose = read->at(Time{} + std::chrono::milliseconds(50));
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->x_m, 0.5, 1e-9);
+  EXPECT_NEAR(std::abs(pose->yaw_rad), radians(180.0), 1e-9);
+  EXPECT_FALSE(read->at(Time{} + std::chrono::seconds(1)));
+  EXPECT_EQ(ReferenceTrajectory::parse(read->to_csv(), "again")->poses().size(), 2U);
+  const auto bad = ReferenceTrajectory::parse(header + "0,0,0,1\n5,zero,0,1\n", "r.csv");
+  ASSERT_FALSE(bad);
+  EXPECT_NE(bad.error().message.find("r.csv:3: found \"5,zero,0,1\""), std::string::npos);
+  EXPECT_FALSE(ReferenceTrajectory::parse(header + "5,0,0,1\n5,0,0,1\n", "r.csv"));
+  EXPECT_FALSE(ReferenceTrajectory::parse("x\n", "r.csv"));
+}
+
+}  // namespace
+}  // namespace bevloc

@@ -1,0 +1,217 @@
+// Recovers known errors of a calibration from exact and noisy sightings of paint.
+#include "pipeline/calibration/refine/refinement.h"
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/calibration/rig_yaml.h"
+
+namespace bevloc {
+namespace {
+
+constexpr double kEverything_rad = 1.0;
+
+/// A drive at a changing speed, straight or along a winding road, with paint around it.
+class Drive {
+ public:
+  Drive(bool winding, double speed_change) {
+    Se2 pose;
+    std::vector<ReferenceTrajectory::Pose> poses;
+    for (int i = 0; i <= kSteps; ++i) {
+      const double time_s = i * kStep_s;
+      poses.push_back({Time{} + from_seconds(time_s), pose});
+      const double speed_mps = 8.0 + speed_change * std::sin(0.4 * time_s);
+      const double rate_radps = winding ? 0.35 * std::sin(0.3 * time_s) : 0.0;
+      pose = pose * arc_motion(speed_mps, rate_radps, kStep_s);
+    }
+    reference = ReferenceTrajectory(std::move(poses));
+  }
+
+  Time time_of(int frame) const { return Time{} + from_seconds(1.0 + 0.5 * frame); }
+
+  ReferenceTrajectory reference{{}};
+  static constexpr int kFrames = 60;
+
+ private:
+  static constexpr double kStep_s = 0.02;
+  static constexpr int kSteps = 1700;
+};
+
+std::optional<Eigen::Vector2d> seen(const CameraModel& camera, const Se2& map_from_vehicle,
+                                    const Eigen::Vector2d& point) {
+  const Eigen::Vector2d at = map_from_vehicle.inverse() * point;
+  return camera.intrinsics.project(camera.vehicle_from_camera.inverse() *
+                                   Eigen::Vector3d(at.x(), at.y(), 0.0));
+}
+
+/// What the true cameras see of lines along and, with `crossing`, across the vehicle's path, looked
+/// for where the problem has them.
+void add_sightings(RefinementProblem& problem, const Rig& rig,
+                   const std::function<Rig(int frame)>& truth_of, const Drive& drive,
+                   double time_offset_s, bool crossing, double noise_px) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  for (int frame = 0; frame < Drive::kFrames; ++frame) {
+    const Rig truth = truth_of(frame);
+    const Time time = drive.time_of(frame);
+    const Se2 exposed = *drive.reference.at(time + from_seconds(time_offset_s));
+    for (int c = 0; c < kCameraCount; ++c) {
+      const CameraModel camera = adjusted(rig.cameras[c], problem.change(c));
+      const Se2 assumed = *drive.reference.at(time + from_seconds(problem.change(c)[kTimeOffset]));
+      std::vector<PaintSighting> sightings;
+      for (double forward = -20.0; forward <= 20.0; forward += 1.0) {
+        for (const double left : {-5.25, -1.75, 1.75, 5.25}) {
+          for (const bool across : {false, true}) {
+            if (across && (!crossing || static_cast<int>(forward) % 7 != 0)) continue;
+            const Eigen::Vector2d point = assumed * Eigen::Vector2d(forward, left);
+            const Eigen::Vector2d along(across ? 0.0 : 1.0, across ? 1.0 : 0.0);
+            const Eigen::Vector2d ahead = assumed * (Eigen::Vector2d(forward, left) + 0.05 * along);
+            const auto here_px = seen(camera, assumed, point);
+            const auto ahead_px = seen(camera, assumed, ahead);
+            const auto true_px = seen(truth.cameras[c], exposed, point);
+            if (!here_px || !ahead_px || !true_px) continue;
+            if (here_px->x() < 0 || here_px->x() > 639 || here_px->y() < 0 || here_px->y() > 359) {
+              continue;
+            }
+            const Eigen::Vector2d tangent = (*ahead_px - *here_px).normalized();
+            PaintSighting sighting;
+            sighting.point_m = point;
+            sighting.predicted_px = *here_px;
+            sighting.normal_px = {-tangent.y(), tangent.x()};
+            sighting.pixels_per_m = 20.0;
+            sighting.candidates = 1;
+            sighting.offset_px[0] =
+                sighting.normal_px.dot(*true_px - *here_px) + noise_px * noise(random);
+            sightings.push_back(sighting);
+          }
+        }
+      }
+      problem.add(frame, c, time, std::move(sightings));
+    }
+  }
+}
+
+Rig demo_rig() {
+  return *read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml");
+}
+
+std::array<CameraAdjustment, kCameraCount> some_errors() {
+  std::array<CameraAdjustment, kCameraCount> errors;
+  for (int c = 0; c < kCameraCount; ++c) {
+    for (int p = 0; p < kCameraParameters; ++p) {
+      const double sigma = kCameraParameterInfos[static_cast<size_t>(p)].expected_error;
+      errors[c][p] = 0.5 * sigma * std::sin(3.0 * c + 1.7 * p + 1.0);
+    }
+    errors[c][kTimeOffset] = 0.0;
+  }
+  return errors;
+}
+
+TEST(Refinement, RecoversAllParametersOfAWindingDrive) {
+  const Rig rig = demo_rig();
+  Rig truth = rig;
+  const auto errors = some_errors();
+  for (int c = 0; c < kCameraCount; ++c) truth.cameras[c] = adjusted(rig.cameras[c], errors[c]);
+  const Drive drive(true, 4.0);
+  RefinementOptions options;
+  // Exact poses: what the cameras have in common counts for the cameras.
+  options.reference_position_m = 1e-3;
+  options.reference_yaw_rad = 1e-4;
+  options.body_tilt_rad = 1e-4;
+  options.body_lift_m = 1e-3;
+  RefinementProblem problem(rig, drive.reference, options);
+  // The second time where the first estimate has them, as refine_rig() does.
+  for (int round = 0; round < 2; ++round) {
+    problem.clear_sightings();
+    add_sightings(
+        problem, rig, [&truth](int) { return truth; }, drive, 0.02, true, 0.3);
+    problem.solve(kEverything_rad);
+  }
+  problem.fix_unobservable(kEverything_rad);
+  const Refinement result = problem.result(kEverything_rad);
+  EXPECT_EQ(result.frames, Drive::kFrames);
+  for (int c = 0; c < kCameraCount; ++c) {
+    const CameraRefinement& camera = result.cameras[c];
+    EXPECT_TRUE(camera.unobservable.none()) << kCameraNames[c];
+    const CameraAdjustment error = camera.change - errors[c];
+    for (const int p : {kPitch, kYaw, kRoll}) EXPECT_LT(std::abs(error[p]), radians(0.1)) << c;
+    for (const int p : {kForward, kLeft, kUp}) EXPECT_LT(std::abs(error[p]), 0.02) << c << p;
+    EXPECT_NEAR(camera.change[kTimeOffset], 0.02, 0.003) << c;
+    EXPECT_LT(camera.after_px, 0.5);
+    EXPECT_GT(camera.before_px, 3.0 * camera.after_px);
+  }
+}
+
+TEST(Refinement, TakesWhatAllCamerasShareForTheBody) {
+  const Rig rig = demo_rig();
+  const Drive drive(true, 4.0);
+  // The body pitches to and fro by 0.4 degrees, which no camera's mounting does.
+  const auto pitched = [&rig](int frame) {
+    const double pitch_rad = radians(frame % 2 == 0 ? 0.4 : -0.4);
+    const Se3 body{rotation_by({0.0, pitch_rad, 0.0}), Eigen::Vector3d::Zero()};
+    Rig turned = rig;
+    for (CameraModel& camera : turned.cameras) {
+      camera.vehicle_from_camera = body * camera.vehicle_from_camera;
+    }
+    return turned;
+  };
+  RefinementProblem problem(rig, drive.reference, {});
+  add_sightings(problem, rig, pitched, drive, 0.0, true, 0.1);
+  problem.solve(kEverything_rad);
+  const Refinement result = problem.result(kEverything_rad);
+  for (int c = 0; c < kCameraCount; ++c) {
+    for (const int p : {kPitch, kYaw, kRoll}) {
+      EXPECT_LT(std::abs(result.cameras[c].change[p]), radians(0.05)) << c << p;
+    }
+    EXPECT_LT(result.cameras[c].after_px, 0.5);
+  }
+}
+
+TEST(Refinement, RefusesWhatAStraightRoadCannotShow) {
+  const Rig rig = demo_rig();
+  const Drive drive(false, 0.0);
+  RefinementProblem problem(rig, drive.reference, {});
+  add_sightings(
+      problem, rig, [&rig](int) { return rig; }, drive, 0.0, false, 0.3);
+  problem.solve(kEverything_rad);
+  problem.fix_unobservable(kEverything_rad);
+  const Refinement result = problem.result(kEverything_rad);
+  for (const CameraRefinement& camera : result.cameras) {
+    // Lines along the road look the same wherever along it the camera is.
+    EXPECT_TRUE(camera.unobservable[kForward]);
+    EXPECT_TRUE(camera.unobservable[kTimeOffset]);
+    EXPECT_EQ(camera.change[kForward], 0.0);
+    EXPECT_EQ(camera.change[kTimeOffset], 0.0);
+  }
+  // Lines that run away from a camera show where it points, those that pass beside it less.
+  for (const int c : {1, 4}) EXPECT_FALSE(result.cameras[c].unobservable[kYaw]) << c;
+}
+
+TEST(Refinement, IgnoresPaintThatIsNotInTheMap) {
+  const Rig rig = demo_rig();
+  const Drive drive(true, 4.0);
+  RefinementProblem problem(rig, drive.reference, {});
+  add_sightings(
+      problem, rig, [&rig](int) { return rig; }, drive, 0.0, true, 0.2);
+  // A second line beside each fifth point, as a strong outlier of all cameras to one side.
+  for (int frame = 0; frame < Drive::kFrames; ++frame) {
+    PaintSighting wrong;
+    wrong.point_m = *drive.reference.at(drive.time_of(frame)) * Eigen::Vector2d(8.0, 1.75);
+    const auto px = seen(rig.cameras[1], *drive.reference.at(drive.time_of(frame)), wrong.point_m);
+    ASSERT_TRUE(px);
+    wrong.predicted_px = *px;
+    wrong.normal_px = {1.0, 0.0};
+    wrong.pixels_per_m = 20.0;
+    wrong.candidates = 1;
+    wrong.offset_px[0] = 6.0;
+    problem.add(frame, 1, drive.time_of(frame), std::vector<PaintSighting>(5, wrong));
+  }
+  problem.solve(0.016);
+  EXPECT_LT(std::abs(problem.change(1)[kYaw]), radians(0.05));
+}
+
+}  // namespace
+}  // namespace bevloc
