@@ -4,9 +4,11 @@
 
 #include "command/doctor/doctor_command.h"
 #include "command/init/init_command.h"
+#include "command/listen/listen_command.h"
 #include "command/manual/manual_commands.h"
 #include "command/schema/schema_command.h"
 #include "common/version.h"
+#include "firmware/live/status_command.h"
 
 namespace bevloc::command {
 
@@ -18,6 +20,8 @@ void add_vehicle_commands(CLI::App& app, CommandList& commands,
   commands.add_with<InitCommand>(simulation, app);
   commands.add_with<SchemaCommand>(simulation, app);
   commands.add_with<ManualCommand>(simulation, app);
+  commands.add<firmware::StatusCommand>(app);
+  commands.add<ListenCommand>(app);
   commands.add<CompletionCommand>(app);
 }
 

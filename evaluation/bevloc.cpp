@@ -11,7 +11,6 @@
 #include "evaluation/campaign/tune_matches_command.h"
 #include "evaluation/drive/drive_config.h"
 #include "evaluation/drive/fault_command.h"
-#include "evaluation/listen/listen_command.h"
 #include "evaluation/localize/localize_command.h"
 #include "evaluation/maps/map_command.h"
 #include "evaluation/network/answer_command.h"
@@ -46,7 +45,6 @@ void add_evaluation_commands(CLI::App& app, bevloc::command::CommandList& comman
   commands.add<CampaignCommand>(app);
   commands.add<FaultCommand>(app);
   commands.add<LocalizeCommand>(app);
-  commands.add<ListenCommand>(app);
   commands.add<MapCommand>(app);
   commands.add<CalibCommand>(app);
 }

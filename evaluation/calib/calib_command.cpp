@@ -129,10 +129,10 @@ void CalibCommand::declare_refine(CLI::App& calib) {
   refine->callback([this] { refine_ = true; });
 }
 
-Result<bool> CalibCommand::run() const {
-  if (!import_) return run_recording();
-  if (Status status = run_import(); !status) return tl::unexpected(status.error());
-  return true;
+Result<command::Verdict> CalibCommand::run() const {
+  if (import_) return run_import().map([] { return command::Verdict::kGood; });
+  return run_recording().map(
+      [](bool good) { return good ? command::Verdict::kGood : command::Verdict::kBad; });
 }
 
 Status CalibCommand::run_import() const {

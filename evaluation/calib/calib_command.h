@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "command/command_list.h"
 #include "common/result.h"
 
 namespace bevloc::evaluation {
@@ -15,7 +16,7 @@ class CalibCommand {
   void declare(CLI::App& app);
   bool chosen() const { return import_ || check_ || refine_; }
   /// Whether all that was asked is good. A check of a rig that is not good gives false.
-  Result<bool> run() const;
+  Result<command::Verdict> run() const;
 
  private:
   void declare_import(CLI::App& calib);

@@ -1,4 +1,4 @@
-#include "evaluation/listen/listen_command.h"
+#include "command/listen/listen_command.h"
 
 #include <algorithm>
 #include <csignal>
@@ -11,7 +11,7 @@
 #include "can/bus/candump.h"
 #include "can/bus/socketcan_bus.h"
 
-namespace bevloc::evaluation {
+namespace bevloc::command {
 namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
@@ -141,4 +141,4 @@ Status ListenCommand::run() {
   return status;
 }
 
-}  // namespace bevloc::evaluation
+}  // namespace bevloc::command

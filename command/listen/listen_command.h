@@ -11,7 +11,7 @@
 #include "can/listen/bus_listener.h"
 #include "common/result.h"
 
-namespace bevloc::evaluation {
+namespace bevloc::command {
 
 /// Declare the command, parse the command line, then run the command if it was chosen.
 class ListenCommand {
@@ -46,4 +46,4 @@ class ListenCommand {
   uint64_t printed_ = 0;
 };
 
-}  // namespace bevloc::evaluation
+}  // namespace bevloc::command
