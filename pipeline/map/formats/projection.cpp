@@ -118,22 +118,23 @@ Result<double> proj_number(const ProjWords& words, std::string_view key, double 
   return fail("found +{}={}, wanted a number from {:g} to {:g}", key, text, -limit, limit);
 }
 
+/// Refuses a value of a word that is neither of two, which may be the same.
+Status check_word(const ProjWords& words, std::string_view key, std::string_view wanted,
+                  std::string_view same) {
+  const auto word = words.find(key);
+  if (word == words.end() || word->second == wanted || word->second == same) return {};
+  return fail("found +{}={}, wanted {}{}", key, word->second, wanted,
+              same == wanted ? "" : fmt::format(" or {}", same));
+}
+
+/// ETRS89 and GRS80 differ from WGS84 by less than a metre.
 Status check_datum(const ProjWords& words) {
-  const auto is = [&words](std::string_view key, std::initializer_list<std::string_view> wanted) {
-    const auto word = words.find(key);
-    return word == words.end() || std::ranges::find(wanted, word->second) != wanted.end();
-  };
-  for (const auto& [key, wanted] :
-       {std::pair<std::string_view, std::initializer_list<std::string_view>>{
-            "datum", {"WGS84", "NAD83", "ETRS89"}},
-        {"ellps", {"WGS84", "GRS80"}},
-        {"units", {"m"}},
-        {"to_meter", {"1", "1.0"}},
-        {"axis", {"enu"}}}) {
-    if (is(key, wanted)) continue;
-    return fail("found +{}={}, wanted {}", key, words.find(key)->second, *wanted.begin());
-  }
-  return {};
+  Status status = check_word(words, "datum", "WGS84", "ETRS89");
+  if (status) status = check_word(words, "ellps", "WGS84", "GRS80");
+  if (status) status = check_word(words, "units", "m", "metre");
+  if (status) status = check_word(words, "to_meter", "1", "1.0");
+  if (status) status = check_word(words, "axis", "enu", "enu");
+  return status;
 }
 
 Result<std::unique_ptr<Projection>> transverse_mercator(const ProjWords& words) {

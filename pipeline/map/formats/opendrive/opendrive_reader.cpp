@@ -11,6 +11,7 @@
 #include "pipeline/map/formats/opendrive/section_lines.h"
 #include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/line_neighbours.h"
+#include "pipeline/map/map_check.h"
 
 namespace bevloc {
 namespace {
@@ -93,7 +94,8 @@ class BorderRun {
   /// The roads of a junction repeat the lines of each other.
   void add_line(const Line3& line) {
     const auto meaning = builder_.meaning_of(kind_, meaning_);
-    if (meaning) {
+    // finish() drops longer lines.
+    if (meaning && length_of(line) <= kLongestPolylineM) {
       LineNeighbours& taken = taken_[static_cast<size_t>(meaning->element_class)];
       Polyline points;
       for (const Eigen::Vector3d& point : line) points.emplace_back(point.head<2>());

@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string error_of(const std::string& text) {
+std::string table_error(const std::string& text) {
   const auto table = ClassTable::parse(text, "classes.yaml");
   return table ? "" : table.error().message;
 }
@@ -28,12 +28,12 @@ TEST(ClassTable, TheFirstRuleThatFitsCounts) {
 }
 
 TEST(ClassTable, RefusesWordsThatMeanNothing) {
-  EXPECT_EQ(error_of("rules:\n  - kind: a\n    becomes: pavement\n"),
+  EXPECT_EQ(table_error("rules:\n  - kind: a\n    becomes: pavement\n"),
             "classes.yaml:3: rules[0].becomes: found \"pavement\", wanted divider, crossing, "
             "boundary or nothing");
-  EXPECT_THAT(error_of("rules:\n  - kind: a\n    becomes: divider\n    appearance: kerb\n"),
+  EXPECT_THAT(table_error("rules:\n  - kind: a\n    becomes: divider\n    appearance: kerb\n"),
               HasSubstr("classes.yaml:4: rules[0].appearance: found \"kerb\""));
-  EXPECT_THAT(error_of("rules:\n  - kind: a\n"), HasSubstr("becomes"));
+  EXPECT_THAT(table_error("rules:\n  - kind: a\n"), HasSubstr("becomes"));
 }
 
 TEST(ClassTable, ChangesLanelet2Maps) {

@@ -47,7 +47,7 @@ std::string replaced(std::string_view text, std::string_view from, std::string_v
   return at == std::string::npos ? result : result.replace(at, from.size(), to);
 }
 
-std::string error_of(std::string_view text, const std::string& file = "map.json") {
+std::string json_error(std::string_view text, const std::string& file = "map.json") {
   const auto map = parse_imported(text, file, {});
   return map ? "" : map.error().message;
 }
@@ -84,17 +84,17 @@ TEST(Argoverse2, TheNameOfTheFileGivesTheCity) {
 }
 
 TEST(Argoverse2, RefusesBrokenFilesWithLineAndPath) {
-  EXPECT_THAT(error_of(kArgoverse.substr(0, 900)),
+  EXPECT_THAT(json_error(kArgoverse.substr(0, 900)),
               HasSubstr("map.json:14: byte 900: found text that"));
   EXPECT_EQ(
-      error_of(replaced(kArgoverse, R"({"x": 50, "y": 4, "z": 1}],)",
-                        R"({"x": "no", "y": 4, "z": 1}],)")),
+      json_error(replaced(kArgoverse, R"({"x": 50, "y": 4, "z": 1}],)",
+                          R"({"x": "no", "y": 4, "z": 1}],)")),
       "map.json:4: /lane_segments/1/left_lane_boundary/1: found x = \"no\", wanted a number of "
       "metres");
-  EXPECT_THAT(error_of(replaced(kArgoverse, R"("edge2")", R"("edge3")")),
+  EXPECT_THAT(json_error(replaced(kArgoverse, R"("edge2")", R"("edge3")")),
               HasSubstr("/pedestrian_crossings/7/edge2: found 0 points"));
-  EXPECT_THAT(error_of(std::string(100, '[') + "\"lane_segments\""), HasSubstr("wanted one of"));
-  EXPECT_THAT(error_of("{\"lane_segments\":" + std::string(100, '[')),
+  EXPECT_THAT(json_error(std::string(100, '[') + "\"lane_segments\""), HasSubstr("wanted one of"));
+  EXPECT_THAT(json_error("{\"lane_segments\":" + std::string(100, '[')),
               HasSubstr("brackets within each other"));
 }
 
@@ -137,11 +137,11 @@ TEST(Nuscenes, CutsDividersByTypeAndFollowsTheCurves) {
 }
 
 TEST(Nuscenes, RefusesReferencesToNothing) {
-  EXPECT_THAT(error_of(replaced(kNuscenes, R"(["e", "f", "g"])", R"(["e", "x", "g"])")),
+  EXPECT_THAT(json_error(replaced(kNuscenes, R"(["e", "f", "g"])", R"(["e", "x", "g"])")),
               HasSubstr("map.json:5: /line/0/node_tokens/1: found a reference to node \"x\""));
-  EXPECT_THAT(error_of(replaced(kNuscenes, R"("line_token": "l1")", R"("line_token": "l2")")),
+  EXPECT_THAT(json_error(replaced(kNuscenes, R"("line_token": "l1")", R"("line_token": "l2")")),
               HasSubstr("/lane_divider/0: found a line_token that is missing"));
-  EXPECT_THAT(error_of(replaced(kNuscenes, R"("radius": 10)", R"("radius": "10")")),
+  EXPECT_THAT(json_error(replaced(kNuscenes, R"("radius": 10)", R"("radius": "10")")),
               HasSubstr("/arcline_path_3/lb/0: found no start_pose"));
 }
 
@@ -184,7 +184,7 @@ TEST(Geojson, ReadsForeignFeaturesWithAClassTable) {
     {"type": "Feature", "properties": {"type": "kerbstone"}, "geometry": {"type": "MultiLineString",
      "coordinates": [[[8.4, 49.0], [8.401, 49.0]], [[8.4, 49.001], [8.401, 49.001]]]}},
     {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": [8, 49]}}]})";
-  EXPECT_THAT(error_of(kForeign), HasSubstr("found 0 lanes and no line"));
+  EXPECT_THAT(json_error(kForeign), HasSubstr("found 0 lanes and no line"));
   const auto table = ClassTable::parse(
       "rules:\n  - kind: kerbstone\n    becomes: boundary\n    appearance: kerb\n", "t.yaml");
   ImportOptions options;
@@ -201,7 +201,7 @@ TEST(Geojson, RefusesWhatIsNotOnEarth) {
     {"type": "Feature", "properties": {"class": "divider"}, "geometry": {"type": "LineString",
      "coordinates": [[8.4, 49.0],
       [458000, 5428000]]}}]})";
-  EXPECT_EQ(error_of(kFar),
+  EXPECT_EQ(json_error(kFar),
             "map.json:4: /features/0/geometry/coordinates/1: found [458000,5428000], wanted "
             "longitude and latitude in degrees");
   ImportedMap nowhere = small_map();

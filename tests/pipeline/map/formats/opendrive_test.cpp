@@ -52,7 +52,7 @@ Result<ImportedMap> read(const std::string& text, const ImportOptions& options =
   return parse_opendrive(text, "town.xodr", options);
 }
 
-std::string error_of(const std::string& text) {
+std::string road_error(const std::string& text) {
   const auto map = read(text);
   return map ? "" : map.error().message;
 }
@@ -217,7 +217,7 @@ TEST(Opendrive, TheGeoreferenceGivesThePlaceOnEarth) {
 TEST(Opendrive, AGeoreferenceThatCannotBeReadIsRefusedWithItsLine) {
   const std::string text =
       file_with(road_with(kStraight, kLanes), "\n<geoReference>+proj=aea +lat_1=29</geoReference>");
-  EXPECT_EQ(error_of(text),
+  EXPECT_EQ(road_error(text),
             "town.xodr:4: <geoReference>: found +proj=aea, wanted utm, tmerc or longlat; --origin "
             "LATITUDE,LONGITUDE takes its place");
   ImportOptions options;
@@ -228,22 +228,24 @@ TEST(Opendrive, AGeoreferenceThatCannotBeReadIsRefusedWithItsLine) {
 }
 
 TEST(Opendrive, RefusesBrokenFilesWithTheirLine) {
-  EXPECT_THAT(error_of("<OpenDRIVE><road>"), HasSubstr("town.xodr:1: found text that is not XML"));
-  EXPECT_THAT(error_of("<osm/>"), HasSubstr("wanted <OpenDRIVE>"));
-  EXPECT_THAT(error_of(file_with("")), HasSubstr("town.xodr:2: found no <road>"));
-  EXPECT_EQ(error_of(file_with(road_with(
+  EXPECT_THAT(road_error("<OpenDRIVE><road>"),
+              HasSubstr("town.xodr:1: found text that is not XML"));
+  EXPECT_THAT(road_error("<osm/>"), HasSubstr("wanted <OpenDRIVE>"));
+  EXPECT_THAT(road_error(file_with("")), HasSubstr("town.xodr:2: found no <road>"));
+  EXPECT_EQ(road_error(file_with(road_with(
                 R"(<geometry s="0" x="a" y="0" hdg="0" length="100"><line/></geometry>)", kLanes))),
             "town.xodr:4: <geometry>: found x=\"a\", wanted a number from -1e+09 to 1e+09");
-  EXPECT_THAT(error_of(file_with(road_with(
+  EXPECT_THAT(road_error(file_with(road_with(
                   R"(<geometry s="0" x="0" y="0" hdg="0" length="9"><bow/></geometry>)", kLanes))),
               HasSubstr("wanted line, arc, spiral, poly3 or paramPoly3"));
-  EXPECT_THAT(error_of(file_with(road_with("", kLanes))), HasSubstr("<road>: found no <geometry>"));
-  EXPECT_THAT(error_of(file_with(road_with(kStraight, ""))), HasSubstr("found no <laneSection>"));
-  EXPECT_THAT(error_of(file_with(
+  EXPECT_THAT(road_error(file_with(road_with("", kLanes))),
+              HasSubstr("<road>: found no <geometry>"));
+  EXPECT_THAT(road_error(file_with(road_with(kStraight, ""))), HasSubstr("found no <laneSection>"));
+  EXPECT_THAT(road_error(file_with(
                   road_with(kStraight, R"(<laneSection s="0"><center><lane id="0"/></center><right>
                   <lane id="-2" type="driving"/></right></laneSection>)"))),
               HasSubstr("lane -2 without its inner neighbour"));
-  EXPECT_THAT(error_of(file_with(road_with(kStraight, kLanes, "", "", "-1", 1e7))),
+  EXPECT_THAT(road_error(file_with(road_with(kStraight, kLanes, "", "", "-1", 1e7))),
               HasSubstr("town.xodr:4: <road>: found length"));
 }
 

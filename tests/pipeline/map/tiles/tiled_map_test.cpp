@@ -43,7 +43,7 @@ HdMap wide_map() {
   return map;
 }
 
-std::string error_of(std::string_view bytes) {
+std::string tile_error(std::string_view bytes) {
   const auto map = decode_map(bytes, "wide.bvm");
   return map ? "" : map.error().message;
 }
@@ -76,10 +76,10 @@ TEST(TileCodec, ErrorsNameTheByte) {
   std::string bytes = encode_tiles(wide_map());
   const auto entry = TileDirectory::open(bytes, "wide.bvm")->entry(3);
   bytes[entry.offset] ^= 1;
-  EXPECT_THAT(error_of(bytes),
+  EXPECT_THAT(tile_error(bytes),
               HasSubstr(fmt::format("wide.bvm: byte {}: found a damaged tile", entry.offset)));
   bytes[20] ^= 1;
-  EXPECT_THAT(error_of(bytes), HasSubstr("wide.bvm: byte 0: found CRC-32"));
+  EXPECT_THAT(tile_error(bytes), HasSubstr("wide.bvm: byte 0: found CRC-32"));
 }
 
 class TiledMapTest : public testing::Test {
