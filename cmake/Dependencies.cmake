@@ -25,6 +25,7 @@ pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 pkg_check_modules(PROMETHEUS REQUIRED IMPORTED_TARGET prometheus-cpp-core)
 pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 # Cameras behind libcamera are left out where it is missing.
 pkg_check_modules(LIBCAMERA IMPORTED_TARGET libcamera)
 

@@ -16,6 +16,9 @@
 #include "evaluation/network/answer_command.h"
 #include "evaluation/network/network_command.h"
 #include "evaluation/network/rig_command.h"
+#include "evaluation/recording/record_command.h"
+#include "evaluation/recording/replay_command.h"
+#include "evaluation/report/report_command.h"
 #include "evaluation/solver/draw_command.h"
 #include "evaluation/solver/solver_command.h"
 
@@ -47,6 +50,9 @@ void add_evaluation_commands(CLI::App& app, bevloc::command::CommandList& comman
   commands.add<LocalizeCommand>(app);
   commands.add<MapCommand>(app);
   commands.add<CalibCommand>(app);
+  commands.add<RecordCommand>(app);
+  commands.add<ReplayCommand>(app);
+  commands.add<ReportCommand>(app);
 }
 
 }  // namespace

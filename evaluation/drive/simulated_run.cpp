@@ -14,6 +14,8 @@
 #include "evaluation/drive/simulated_drive.h"
 #include "evaluation/drive/snapshot_keeper.h"
 #include "firmware/live/live_server.h"
+#include "firmware/recording/recording_session.h"
+#include "firmware/runtime/recorder_thread.h"
 #include "firmware/runtime/runner.h"
 #include "firmware/runtime/supervisor.h"
 #include "sim/random.h"
@@ -59,6 +61,7 @@ class SimulatedRun {
   Status connect();
   void suspend_if_due(Time now);
   void jump_if_due(double time_s);
+  void record_truth(Time now);
   const JudgedPose& judged_nearest(double time_s) const;
 
   const DriveConfig& config_;
@@ -75,12 +78,14 @@ class SimulatedRun {
   SnapshotKeeper keeper_;
   std::optional<PictureRecorder> recorder_;  ///< with SimulatedRunOptions::pictures_folder
   LatencyRecorder latencies_;
+  std::unique_ptr<firmware::Recorder> recording_;  ///< null without a recording
   std::unique_ptr<firmware::Appliance> appliance_;
   std::unique_ptr<SimulatedVehicle> vehicle_;
   std::unique_ptr<Judge> judge_;
   std::unique_ptr<firmware::LiveServer> live_;  ///< null without the section `live`
   std::unique_ptr<FaultServer> fault_server_;   ///< null without simulation.fault_socket
   ClockFaults clock_faults_;
+  Time next_truth_{};
 };
 
 Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const DriveConfig& config,
@@ -126,9 +131,14 @@ Status SimulatedRun::connect() {
       drive_.make_cameras(config_, rig_, clock_, drive_start_, options_.pictures),
       std::make_unique<FaultyBus>(std::move(*own_bus), drive_.faults(), clock_, drive_start_),
       &clock_};
+  auto recorder = firmware::open_recorder(config_, rig_, drive_.map(), options_.fast, clock_.now());
+  if (!recorder) return tl::unexpected(recorder.error());
+  recording_ = std::move(*recorder);
+  if (recording_) firmware::tap(hardware, *recording_);
   auto appliance = firmware::Appliance::create(config_, rig_, drive_.map(), std::move(hardware));
   if (!appliance) return tl::unexpected(appliance.error());
   appliance_ = std::move(*appliance);
+  if (recording_) firmware::watch(*appliance_, *recording_);
   appliance_->vision().observe([this](const firmware::VisionSnapshot& snapshot) {
     drive_.faults()->hang(sim::FaultKind::kHangVision, 0,
                           [this] { return to_seconds(clock_.now() - drive_start_); });
@@ -167,8 +177,14 @@ void SimulatedRun::run(const StopWhen& stop) {
                                       [this](Time now) {
                                         suspend_if_due(now);
                                         vehicle_->send_due(now);
+                                        record_truth(now);
                                       },
-                                      [this](Duration timeout) { judge_->step(timeout); }};
+                                      [this](Duration timeout) {
+                                        judge_->step(timeout);
+                                        if (recording_ && options_.fast) {
+                                          recording_->write_queued(clock_.now());
+                                        }
+                                      }};
   firmware::Watchdog watchdog(appliance_->estimation().counters().state);
   watchdog.watch_stages(*appliance_);
   firmware::Supervisor supervisor(*appliance_, realtime_, watchdog);
@@ -194,7 +210,10 @@ void SimulatedRun::run(const StopWhen& stop) {
   };
   if (options_.fast) {
     firmware::run_lockstep(*appliance_, virtual_clock_, &companion, supervise);
+    if (recording_) recording_->finish(clock_.now());
   } else {
+    std::jthread writing;
+    if (recording_) writing = firmware::start_recording(*recording_, clock_);
     firmware::run_threads(*appliance_, realtime_, &companion, supervise);
   }
   if (live_) live_->detach();
@@ -211,6 +230,13 @@ void SimulatedRun::suspend_if_due(Time now) {
   } else {
     machine_clock_.suspend(length);
   }
+}
+
+/// Ten times a second.
+void SimulatedRun::record_truth(Time now) {
+  if (!recording_ || now < next_truth_ || now < drive_start_) return;
+  next_truth_ = now + std::chrono::milliseconds(100);
+  recording_->note_truth({now, drive_.truth_at(to_seconds(now - drive_start_))});
 }
 
 /// The gap of a clock fault that has begun: time passes, but the appliance does not run.

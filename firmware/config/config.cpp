@@ -269,6 +269,7 @@ Config read_config(YamlMap& yaml, const std::filesystem::path& folder,
   config.realtime = read_realtime(yaml.optional_map("realtime"));
   config.log_level = read_log_level(yaml.optional_map("log"));
   config.live = read_live(yaml.optional_map("live"));
+  config.record = read_record(yaml.optional_map("record"), folder);
   if (yaml.has("manifest")) config.manifest_file = path_of(yaml, "manifest", folder);
   if (config.cameras.driver == CameraDriver::kMock && simulation != nullptr) {
     simulation->read_simulation(yaml.require_map("simulation"));

@@ -18,6 +18,7 @@
 #include "firmware/config/gpio_config.h"
 #include "firmware/config/live_config.h"
 #include "firmware/config/realtime_config.h"
+#include "firmware/config/record_config.h"
 #include "firmware/health/health.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/localization/localizer.h"
@@ -90,6 +91,7 @@ struct Config {
   HealthLimits health;
   GpioConfig gpio;
   RealtimeConfig realtime;
+  std::optional<RecordConfig> record;  ///< empty: nothing is recorded
   LogLevel log_level = LogLevel::kInfo;
   std::optional<LiveConfig> live;  ///< empty: no server
 };

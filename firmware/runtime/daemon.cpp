@@ -5,10 +5,12 @@
 #include <spdlog/spdlog.h>
 
 #include "firmware/live/live_server.h"
+#include "firmware/recording/recording_session.h"
 #include "firmware/runtime/camera_factory.h"
 #include "firmware/runtime/fault_line.h"
 #include "firmware/runtime/gpio_lines.h"
 #include "firmware/runtime/realtime.h"
+#include "firmware/runtime/recorder_thread.h"
 #include "firmware/runtime/runner.h"
 #include "firmware/runtime/status_led.h"
 #include "firmware/runtime/supervisor.h"
@@ -114,10 +116,18 @@ Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
   if (!bus) return tl::unexpected(bus.error());
   auto cameras = make_cameras(config.cameras, rig, base.clock);
   if (!cameras) return tl::unexpected(cameras.error());
-  auto appliance = Appliance::create(config, rig, base.map,
-                                     {std::move(*cameras), std::move(*bus), &base.clock,
-                                      trigger ? &trigger->trigger().pulses() : nullptr});
+  Hardware hardware{std::move(*cameras), std::move(*bus), &base.clock,
+                    trigger ? &trigger->trigger().pulses() : nullptr};
+  const auto recorder = open_recorder(config, rig, base.map, false, base.clock.now());
+  if (!recorder) return tl::unexpected(recorder.error());
+  if (*recorder) tap(hardware, **recorder);
+  auto appliance = Appliance::create(config, rig, base.map, std::move(hardware));
   if (!appliance) return tl::unexpected(appliance.error());
+  std::jthread recording;
+  if (*recorder) {
+    watch(**appliance, **recorder);
+    recording = start_recording(**recorder, base.clock);
+  }
   return run_appliance(**appliance, rig, trigger.get(), base, host);
 }
 

@@ -59,9 +59,18 @@ void declare_options(CLI::App& app, ProgramOptions& options) {
          "Serve the live page at http://127.0.0.1:PORT/ (8080)")
       ->expected(0, 1)
       ->type_name("[PORT]");
+  app.add_option("--record", options.record,
+                 "Record images, bus and poses into this folder (docs/recording.md)");
+  app.add_flag("--record-raw", options.record_raw,
+               "Record the images without loss, so that a replay gives the same poses");
 }
 
 void override_config(const ProgramOptions& options, Config& config) {
+  if (!options.record.empty()) {
+    if (!config.record) config.record.emplace();
+    config.record->directory = options.record;
+  }
+  if (config.record && options.record_raw) config.record->images = RecordedImages::kRaw;
   if (!options.live) return;
   if (!config.live) config.live.emplace();
   if (options.live_port) config.live->port = *options.live_port;

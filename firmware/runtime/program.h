@@ -16,6 +16,8 @@ namespace bevloc::firmware {
 struct ProgramOptions {
   std::string config_file;
   bool check_config = false;
+  std::string record;  ///< folder of the recording; empty: as the configuration says
+  bool record_raw = false;
   bool live = false;  ///< --live: serve the live page at this machine alone
   std::optional<int> live_port;
 };

@@ -54,6 +54,10 @@ void EstimationStage::observe_corrections(CorrectionObserver observer) {
   correction_observer_ = std::move(observer);
 }
 
+void EstimationStage::observe_reports(ReportObserver observer) {
+  report_observer_ = std::move(observer);
+}
+
 void EstimationStage::tick(Time now) {
   watch_clock(now);
   take_samples();
@@ -254,6 +258,7 @@ void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) 
     report.correction = latest_report_->match.correction;
   }
   publisher_.publish(report, now);
+  if (report_observer_) report_observer_(report);
   if (health_.pose_valid() && unsent_correction_) {
     counters_.latency.add(now - *unsent_correction_);
     if (correction_observer_) correction_observer_(*unsent_correction_);

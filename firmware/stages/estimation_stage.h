@@ -46,6 +46,9 @@ struct EstimationCounters {
 /// the frameset that the correction came from.
 using CorrectionObserver = std::function<void(Time frame_time)>;
 
+/// Called with each report that goes to the bus, except the sign-off.
+using ReportObserver = std::function<void(const can::PoseReport& report)>;
+
 /// Thread-bound: called from the CAN-out thread; counters() is readable from any thread.
 class EstimationStage {
  public:
@@ -55,6 +58,7 @@ class EstimationStage {
                   PredictionQueue& predictions);
 
   void observe_corrections(CorrectionObserver observer);
+  void observe_reports(ReportObserver observer);
 
   /// Reports what is wrong with the vehicle's messages. `input` must outlive the stage.
   void watch(const VehicleInputStage& input) { vehicle_input_ = &input; }
@@ -93,6 +97,7 @@ class EstimationStage {
   VisionQueue& reports_;
   PredictionQueue& predictions_;
   CorrectionObserver correction_observer_;
+  ReportObserver report_observer_;
   const VehicleInputStage* vehicle_input_ = nullptr;
 
   ProtectionParameters protection_parameters_;

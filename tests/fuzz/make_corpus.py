@@ -6,8 +6,10 @@ Usage: make_corpus.py. It replaces only its own files; what libFuzzer found stay
 
 from __future__ import annotations
 
+import ctypes
 import io
 import struct
+import zlib
 from pathlib import Path
 
 from PIL import Image
@@ -136,12 +138,61 @@ def recordings() -> None:
     write("frames_txt", "one.txt", b"0 -5 a.png\r\n")
 
 
+def text(value: str) -> bytes:
+    return struct.pack("<I", len(value)) + value.encode()
+
+
+def record(opcode: int, content: bytes) -> bytes:
+    return struct.pack("<BQ", opcode, len(content)) + content
+
+
+def chunk(records: bytes, packed: bytes, compression: str) -> bytes:
+    head = struct.pack("<QQQI", 5, 9, len(records), zlib.crc32(records)) + text(compression)
+    return record(6, head + struct.pack("<Q", len(packed)) + packed)
+
+
+def zstd(data: bytes) -> bytes:
+    library = ctypes.CDLL("libzstd.so.1")
+    library.ZSTD_compress.restype = ctypes.c_size_t
+    room = ctypes.create_string_buffer(1000)
+    size = library.ZSTD_compress(
+        room, ctypes.c_size_t(len(room)), data, ctypes.c_size_t(len(data)), 1
+    )
+    return room.raw[:size]
+
+
+def mcap_files() -> None:
+    magic = b"\x89MCAP0\r\n"
+    start = magic + record(1, text("") + text("fuzz"))
+    start += record(0x0C, text("bevloc") + struct.pack("<I", 10) + text("a") + text("b"))
+    attachment = struct.pack("<QQ", 1, 1) + text("a.yaml") + text("") + struct.pack("<Q", 2) + b"{}"
+    start += record(9, attachment + struct.pack("<I", zlib.crc32(attachment)))
+    start += record(3, struct.pack("<H", 1) + text("S") + text("protobuf") + text("d"))
+    channel = struct.pack("<HH", 1, 1) + text("/t") + text("protobuf") + struct.pack("<I", 0)
+    start += record(4, channel)
+    messages = b"".join(
+        record(5, struct.pack("<HIQQ", 1, i, 5 + i, 5) + b"payload") for i in range(3)
+    )
+    plain = chunk(messages, messages, "")
+    packed = chunk(messages, zstd(messages), "zstd")
+    write("mcap", "no_end.mcap", start + plain + packed)
+    begin = len(start + packed)
+    index = struct.pack("<QQQQIQ", 5, 9, len(start), len(packed), 0, 0)
+    index += text("zstd") + struct.pack("<QQ", len(packed), len(messages))
+    summary = record(4, channel) + record(8, index)
+    footer = struct.pack("<BQQQ", 2, 20, begin, 0)
+    summary += footer
+    end = summary + struct.pack("<I", zlib.crc32(summary)) + magic
+    write("mcap", "whole.mcap", start + packed + end)
+
+
 def main() -> None:
     write("bvm", "street.body", map_body())
     write("bvm", "empty.body", Body().data + b"\0\0")
     pictures()
     buses()
     recordings()
+    mcap_files()
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ void run_dbc(Bytes bytes);
 void run_frames_txt(Bytes bytes);
 void run_image_file(Bytes bytes);
 void run_map_json(Bytes bytes);
+void run_mcap(Bytes bytes);
 void run_mjpeg(Bytes bytes);
 void run_onnx(Bytes bytes);
 void run_osm(Bytes bytes);
@@ -43,6 +44,7 @@ inline constexpr Target kTargets[] = {
     {"frames_txt", run_frames_txt},
     {"image_file", run_image_file},
     {"map_json", run_map_json},
+    {"mcap", run_mcap},
     {"mjpeg", run_mjpeg},
     {"onnx", run_onnx},
     {"osm", run_osm},

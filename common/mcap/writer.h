@@ -1,0 +1,97 @@
+// Writes MCAP files that stay readable after a crash or a power cut.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/mcap/format.h"
+#include "common/result.h"
+#include "common/time.h"
+
+struct ZSTD_CCtx_s;
+
+namespace bevloc::mcap {
+
+struct WriterOptions {
+  /// A chunk is written when its messages span this time or its size exceeds `chunk_bytes`. What is
+  /// not written yet is lost with the process.
+  Duration chunk_span = std::chrono::milliseconds(500);
+  size_t chunk_bytes = size_t{4} << 20U;
+  int zstd_level = 1;
+};
+
+/// Schemas, channels, metadata and attachments go to the file at once, messages in chunks
+/// compressed with zstd. A file without its end is complete but for the last chunk, and Reader
+/// reads it. After an error every call fails with the same error. One thread.
+class Writer {
+ public:
+  /// Creates the file, which must not exist.
+  static Result<std::unique_ptr<Writer>> create(const std::filesystem::path& path,
+                                                const WriterOptions& options = {});
+  ~Writer();
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  /// Returns the id of the schema.
+  Result<uint16_t> add_schema(std::string name, std::string encoding, std::string data);
+  /// Returns the id of the channel.
+  Result<uint16_t> add_channel(uint16_t schema_id, std::string topic, std::string message_encoding);
+  Status add_metadata(const Metadata& metadata);
+  Status add_attachment(const Attachment& attachment);
+
+  /// `message.channel_id` must be of add_channel().
+  Status write(const Message& message);
+  /// Writes the open chunk, and waits until the file is on the disk.
+  Status flush();
+  /// Writes the open chunk, the summary and the end. Nothing may be added afterwards.
+  Status finish();
+
+  uint64_t bytes_written() const { return offset_; }
+
+ private:
+  struct ChunkIndex {
+    uint64_t first_ns = 0, last_ns = 0;
+    uint64_t offset = 0, length = 0;
+    std::map<uint16_t, uint64_t> index_offsets;
+    uint64_t index_length = 0;
+    uint64_t compressed_bytes = 0, bytes = 0;
+  };
+  struct IndexEntry {
+    uint64_t log_time_ns = 0;
+    uint64_t offset = 0;
+  };
+
+  Writer(int file, std::filesystem::path path, const WriterOptions& options);
+  Status put(Opcode opcode, std::string_view content);
+  Status put_bytes(std::string_view bytes);
+  Status close_chunk();
+  Status write_index(ChunkIndex& chunk);
+  std::string summary();
+  void append_indices(std::string& summary) const;
+  std::string statistics() const;
+
+  const int file_;
+  const std::filesystem::path path_;
+  const WriterOptions options_;
+  ZSTD_CCtx_s* const compressor_;
+  Status state_;
+  uint64_t offset_ = 0;
+  std::vector<std::string> schemas_;   ///< contents of the records, again for the summary
+  std::vector<std::string> channels_;  ///< the same
+  std::vector<std::string> attachment_indices_;
+  std::vector<std::string> metadata_indices_;
+  std::vector<ChunkIndex> chunks_;
+  std::map<uint16_t, uint64_t> message_counts_;
+  uint64_t first_ns_ = 0, last_ns_ = 0;  ///< of all messages
+  // The open chunk.
+  std::string records_;
+  std::map<uint16_t, std::vector<IndexEntry>> entries_;
+  uint64_t chunk_first_ns_ = 0, chunk_last_ns_ = 0;
+  std::string compressed_;
+};
+
+}  // namespace bevloc::mcap

@@ -1,0 +1,34 @@
+#include "evaluation/recording/record_command.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include <unistd.h>
+
+namespace bevloc::evaluation {
+
+void RecordCommand::declare(CLI::App& app) {
+  auto* record = app.add_subcommand("record", "Run bevlocd and record what it sees and sends");
+  record->add_option("--config", config_file_, "Configuration of bevlocd")->required();
+  record->add_option("--out", out_, "Folder of the recording")->capture_default_str();
+  record->add_flag("--raw", raw_, "Record the images without loss");
+  record->add_option("options", rest_, "After --: more options of bevlocd, such as --fast");
+  record->callback([this] { chosen_ = true; });
+}
+
+Status RecordCommand::run() const {
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::string program = (self.parent_path() / "bevlocd").string();
+  std::vector<std::string> words{program, "--config", config_file_, "--record", out_};
+  if (raw_) words.emplace_back("--record-raw");
+  words.insert(words.end(), rest_.begin(), rest_.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execv(program.c_str(), arguments.data());
+  return fail("{}: cannot start this program ({}), wanted bevlocd beside bevloc", program,
+              std::strerror(errno));
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,31 @@
+// `bevloc record`: runs bevlocd and records it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "common/result.h"
+
+namespace bevloc::evaluation {
+
+/// Becomes the bevlocd that lies beside this program, with --record. What follows `--` goes to
+/// bevlocd.
+class RecordCommand {
+ public:
+  void declare(CLI::App& app);
+  bool chosen() const { return chosen_; }
+  /// Returns only if bevlocd cannot be started.
+  Status run() const;
+
+ private:
+  bool chosen_ = false;
+  std::string config_file_;
+  std::string out_ = "recording";
+  bool raw_ = false;
+  std::vector<std::string> rest_;
+};
+
+}  // namespace bevloc::evaluation

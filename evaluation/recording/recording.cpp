@@ -1,0 +1,121 @@
+#include "evaluation/recording/recording.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "firmware/recording/topics.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr size_t kCachedChunks = 8;
+
+/// Topics that a run writes while it goes on, in contrast to the head of each file.
+bool is_of_the_run(std::string_view topic) {
+  return topic != firmware::kMapTopic && !topic.ends_with("/calibration");
+}
+
+}  // namespace
+
+Result<Recording> Recording::open(const std::vector<std::filesystem::path>& files) {
+  Recording recording;
+  for (const auto& file : files) {
+    if (Status added = recording.add(file); !added) return tl::unexpected(added.error());
+  }
+  for (auto& [topic, places] : recording.topics_) {
+    std::ranges::stable_sort(places, {}, &MessagePlace::log_time_ns);
+  }
+  recording.note_times();
+  return recording;
+}
+
+Status Recording::add(const std::filesystem::path& path) {
+  auto reader = mcap::Reader::open(path);
+  if (!reader) return tl::unexpected(reader.error());
+  const mcap::Metadata* metadata = reader->metadata(firmware::kMetadataName);
+  if (metadata == nullptr || !metadata->values.contains(std::string(firmware::kClockOffsetKey))) {
+    return fail("{}: found an MCAP file of another program, wanted a recording of bevloc",
+                path.string());
+  }
+  int64_t offset_ns = 0;
+  const std::string& text = metadata->values.at(std::string(firmware::kClockOffsetKey));
+  std::from_chars(text.data(), text.data() + text.size(), offset_ns);
+  if (!readers_.empty() && Duration(offset_ns) != offset_) {
+    return fail("{}: found a file of another run than {}, wanted files of one run", path.string(),
+                names_.front());
+  }
+  offset_ = Duration(offset_ns);
+  const auto file = static_cast<uint32_t>(readers_.size());
+  for (uint32_t i = 0; i < reader->chunks().size(); ++i) {
+    const auto chunk = reader->read_chunk(i);
+    if (!chunk) return tl::unexpected(chunk.error());
+    for (uint32_t index = 0; index < chunk->messages.size(); ++index) {
+      const mcap::Message& message = chunk->messages[index];
+      const auto channel = reader->channels().find(message.channel_id);
+      if (channel == reader->channels().end()) continue;
+      topics_[channel->second.topic].push_back({message.log_time_ns, file, i, index});
+      const auto schema = reader->schemas().find(channel->second.schema_id);
+      if (schema != reader->schemas().end()) {
+        schemas_[channel->second.topic] = schema->second.name;
+      }
+    }
+  }
+  if (!reader->complete()) cut_files_.push_back(path.string());
+  readers_.push_back(std::move(*reader));
+  names_.push_back(path.string());
+  return {};
+}
+
+void Recording::note_times() {
+  for (const auto& [topic, places] : topics_) {
+    if (places.empty() || !is_of_the_run(topic)) continue;
+    begin_ns_ = begin_ns_ == 0 ? places.front().log_time_ns
+                               : std::min(begin_ns_, places.front().log_time_ns);
+    end_ns_ = std::max(end_ns_, places.back().log_time_ns);
+  }
+}
+
+const std::vector<MessagePlace>& Recording::messages(std::string_view topic) const {
+  static const std::vector<MessagePlace> kNone;
+  const auto found = topics_.find(topic);
+  return found == topics_.end() ? kNone : found->second;
+}
+
+bool Recording::has_schema(std::string_view topic, std::string_view schema) const {
+  const auto found = schemas_.find(topic);
+  return found != schemas_.end() && found->second == schema;
+}
+
+std::string Recording::value(std::string_view key) const {
+  const auto& values = readers_.front().metadata(firmware::kMetadataName)->values;
+  const auto found = values.find(std::string(key));
+  return found == values.end() ? "" : found->second;
+}
+
+const mcap::Attachment* Recording::attachment(std::string_view name) const {
+  return readers_.front().attachment(name);
+}
+
+Result<std::string_view> Recording::bytes_of(const MessagePlace& place) {
+  auto cached = std::ranges::find_if(cache_, [&](const Cached& known) {
+    return known.file == place.file && known.chunk == place.chunk;
+  });
+  if (cached == cache_.end()) {
+    auto chunk = readers_[place.file].read_chunk(place.chunk);
+    if (!chunk) return tl::unexpected(chunk.error());
+    if (cache_.size() == kCachedChunks) cache_.erase(cache_.begin());
+    cache_.push_back({place.file, place.chunk, std::move(*chunk)});
+    cached = std::prev(cache_.end());
+  }
+  return cached->content.messages[place.index].data;
+}
+
+Result<std::optional<HdMap>> Recording::map() {
+  const auto& places = messages(firmware::kMapTopic);
+  if (places.empty()) return std::optional<HdMap>();
+  const auto message = read<bevloc::recording::Map>(places.front());
+  if (!message) return tl::unexpected(message.error());
+  return firmware::map_of(*message);
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,90 @@
+// Reads the files of one recording.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/mcap/reader.h"
+#include "common/time.h"
+#include "firmware/recording/messages.h"
+#include "pipeline/map/hd_map.h"
+
+namespace bevloc::evaluation {
+
+/// Where a message is. `log_time_ns` is since 1970.
+struct MessagePlace {
+  uint64_t log_time_ns = 0;
+  uint32_t file = 0;
+  uint32_t chunk = 0;
+  uint32_t index = 0;  ///< in the chunk
+};
+
+/// One or more files that one run of the daemon wrote. Keeps the places of all messages in memory,
+/// and of the messages themselves those of a few chunks. One thread.
+class Recording {
+ public:
+  /// Fails if a file is no recording of bevloc, or if two files are of different runs.
+  static Result<Recording> open(const std::vector<std::filesystem::path>& files);
+
+  /// The places of all messages of a topic, in the order of time.
+  const std::vector<MessagePlace>& messages(std::string_view topic) const;
+
+  /// Parses the message at this place.
+  template <typename T>
+  Result<T> read(const MessagePlace& place) {
+    const auto bytes = bytes_of(place);
+    if (!bytes) return tl::unexpected(bytes.error());
+    T message;
+    if (message.ParseFromArray(bytes->data(), static_cast<int>(bytes->size()))) return message;
+    return fail("{}: found a damaged message, wanted a {}", names_[place.file],
+                message.GetDescriptor()->full_name());
+  }
+  /// Whether the messages of this topic have this schema.
+  bool has_schema(std::string_view topic, std::string_view schema) const;
+
+  /// An entry of the metadata; empty if it is missing.
+  std::string value(std::string_view key) const;
+  /// Null without it.
+  const mcap::Attachment* attachment(std::string_view name) const;
+
+  /// The time of the appliance's clock.
+  Time clock_time(uint64_t log_time_ns) const {
+    return Time(Duration(static_cast<int64_t>(log_time_ns)) - offset_);
+  }
+  /// The recorded map; nothing if it was too large.
+  Result<std::optional<HdMap>> map();
+
+  /// Log times of the first and the last message, without those at the head of each file.
+  uint64_t begin_ns() const { return begin_ns_; }
+  uint64_t end_ns() const { return end_ns_; }
+  /// The files without their end: the process was ended or the power was cut.
+  const std::vector<std::string>& cut_files() const { return cut_files_; }
+
+ private:
+  Status add(const std::filesystem::path& path);
+  void note_times();
+  Result<std::string_view> bytes_of(const MessagePlace& place);
+
+  std::vector<mcap::Reader> readers_;
+  std::vector<std::string> names_;
+  std::vector<std::string> cut_files_;
+  std::map<std::string, std::vector<MessagePlace>, std::less<>> topics_;
+  std::map<std::string, std::string, std::less<>> schemas_;  ///< of each topic
+  Duration offset_{};
+  uint64_t begin_ns_ = 0;
+  uint64_t end_ns_ = 0;
+  struct Cached {
+    uint32_t file = 0;
+    uint32_t chunk = 0;
+    mcap::Chunk content;
+  };
+  std::vector<Cached> cache_;  ///< newest last
+};
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,70 @@
+#include "evaluation/recording/replay.h"
+
+#include <fstream>
+
+#include "can/bus/candump.h"
+#include "common/image_view.h"
+#include "firmware/runtime/runner.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr Duration kBusCycle = std::chrono::milliseconds(10);
+constexpr const char* kInterface = "can0";
+
+std::string describe(const PlayedFrame& frame) {
+  return can::candump_line(frame.frame.received.time_since_epoch(), kInterface, frame.frame.frame,
+                           can::CandumpDigits::kNanoseconds);
+}
+
+bool same(const PlayedFrame& a, const PlayedFrame& b) {
+  return a.frame.frame == b.frame.frame && a.frame.received == b.frame.received;
+}
+
+}  // namespace
+
+Result<ReplayOutcome> replay(const ReplaySetup& setup, const ReplayInputs& inputs,
+                             const std::filesystem::path& can_log) {
+  std::ofstream log(can_log);
+  if (!log) return fail("{}: cannot write this file, wanted a place for the log", can_log.string());
+  drivers::VirtualClock clock(inputs.begin);
+  ReplayOutcome outcome;
+  const auto seen = [&](const can::Frame& frame, Time time, bool sent) {
+    log << can::candump_line(time - inputs.begin, kInterface, frame) << '\n';
+    if (sent) outcome.sent.push_back({time, {frame, time}});
+  };
+  firmware::Hardware hardware{inputs.cameras(clock),
+                              std::make_unique<PlayedBus>(inputs.bus, clock, seen), &clock};
+  auto appliance =
+      firmware::Appliance::create(setup.config, setup.rig, setup.map, std::move(hardware));
+  if (!appliance) return tl::unexpected(appliance.error());
+  (*appliance)->estimation().observe_reports([&outcome](const can::PoseReport& report) {
+    ReplayedPose pose{report.pose_time, report.status.state, std::nullopt};
+    if (report.map_from_vehicle.is_finite()) pose.map_from_vehicle = report.map_from_vehicle;
+    outcome.poses.push_back(pose);
+  });
+  // The live run ends one cycle before its sign-off, which is the last frame.
+  firmware::run_lockstep(**appliance, clock, nullptr,
+                         [&](Time now) { return now + kBusCycle < inputs.end; });
+  outcome.framesets = (*appliance)->vision().counters().framesets;
+  if (!log.flush()) return fail("{}: cannot write this file", can_log.string());
+  return outcome;
+}
+
+BusComparison compare_bus(const std::vector<PlayedFrame>& recorded,
+                          const std::vector<PlayedFrame>& replayed) {
+  BusComparison comparison{recorded.size(), replayed.size(), 0, std::nullopt};
+  const size_t shared = std::min(recorded.size(), replayed.size());
+  while (comparison.equal < shared &&
+         same(recorded[comparison.equal], replayed[comparison.equal])) {
+    ++comparison.equal;
+  }
+  if (comparison.equal < shared) {
+    comparison.different =
+        fmt::format("recorded {}, replayed {}", describe(recorded[comparison.equal]),
+                    describe(replayed[comparison.equal]));
+  }
+  return comparison;
+}
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,49 @@
+// Finds what a replay needs: configuration, calibration, model and map of a recording.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "evaluation/recording/replay.h"
+
+namespace bevloc::evaluation {
+
+/// What the command line overrides; empty: as recorded.
+struct ReplayOverrides {
+  std::filesystem::path config;  ///< with its calibration, model and solver
+  std::filesystem::path model;
+  std::filesystem::path map;
+};
+
+/// A folder for files that the recording contains, removed at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The configuration is the recorded one. Files that it names are taken from where they were if
+/// they are still the same, else from the recording. Authentication is left out, because a
+/// recording holds no key. Warns if the model is another one than recorded.
+Result<ReplaySetup> setup_of(Recording& recording, const ReplayOverrides& overrides,
+                             const ScratchFolder& scratch);
+
+/// A configuration and nothing recorded, for candump logs.
+Result<ReplaySetup> setup_of(const ReplayOverrides& overrides);
+
+/// The recorded frames and images.
+Result<ReplayInputs> inputs_of(Recording& recording, const Rig& rig);
+
+/// Frames of a candump log, and for each camera a folder of `images` with pictures and frames.txt.
+/// The times of both are of one clock.
+Result<ReplayInputs> inputs_of_candump(const std::filesystem::path& log,
+                                       const std::filesystem::path& images,
+                                       const ReplaySetup& setup);
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,33 @@
+// Charts and maps as inline SVG.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "evaluation/report/report_data.h"
+
+namespace bevloc::evaluation {
+
+struct Series {
+  std::string name;
+  std::string_view color;
+  std::vector<TimedValue> points;
+};
+
+/// Values over time. Axes begin at second 0; the values' axis covers all points and zero.
+std::string line_chart(std::string_view title, std::string_view unit,
+                       const std::vector<Series>& series, double length_s);
+
+/// The states over time as a bar.
+std::string state_bar(const std::vector<StatePeriod>& periods, double length_s);
+
+/// The track in the colours of its states, the truth, and the map around them. North is up.
+std::string track_map(const ReportData& data);
+
+std::string_view color_of(HealthState state);
+
+/// Text that may stand in HTML.
+std::string escaped(std::string_view text);
+
+}  // namespace bevloc::evaluation

@@ -1,0 +1,99 @@
+#include "evaluation/report/report_command.h"
+
+#include <algorithm>
+
+#include <opencv2/imgproc.hpp>
+
+#include "common/files.h"
+#include "common/jpeg.h"
+#include "evaluation/recording/played_devices.h"
+#include "evaluation/report/report_page.h"
+#include "firmware/recording/topics.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+constexpr int kPictureWidth_px = 480;
+constexpr int kPictureQuality = 80;
+
+Result<std::string> small_jpeg(const RgbImage& image, JpegEncoder& encoder) {
+  const int width = std::min(kPictureWidth_px, image.width);
+  const int height = std::max(1, image.height * width / image.width);
+  RgbImage small(width, height);
+  const cv::Mat source(image.height, image.width, CV_8UC3, const_cast<uint8_t*>(image.row(0)));
+  cv::Mat target(height, width, CV_8UC3, small.row(0));
+  cv::resize(source, target, target.size(), 0.0, 0.0, cv::INTER_AREA);
+  const auto jpeg = encoder.encode(small.view(), kPictureQuality);
+  if (!jpeg) return tl::unexpected(jpeg.error());
+  return std::string(*jpeg);
+}
+
+/// The pictures that were exposed last before the moment.
+Status add_pictures(Recording& recording, const ReportData& data, ShownFrame& frame) {
+  JpegEncoder encoder;
+  const auto moment_ns = data.begin_ns + static_cast<uint64_t>(frame.time_s * 1e9);
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const auto& places = recording.messages(firmware::image_topic(camera));
+    const auto behind = std::ranges::upper_bound(places, moment_ns, {}, &MessagePlace::log_time_ns);
+    if (behind == places.begin()) continue;
+    const auto image = picture_at(recording, camera, *std::prev(behind));
+    if (!image) return tl::unexpected(image.error());
+    auto jpeg = small_jpeg(*image, encoder);
+    if (!jpeg) return tl::unexpected(jpeg.error());
+    frame.pictures[camera] = std::move(*jpeg);
+  }
+  return {};
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const Recording& recording) {
+  std::vector<std::pair<std::string, std::string>> facts{
+      {"bevloc", recording.value("version")},
+      {"configuration", recording.value(firmware::kConfigKey)},
+      {"model", fmt::format("{} (SHA-256 {})", recording.value(firmware::kModelFileKey),
+                            recording.value(firmware::kModelChecksumKey).substr(0, 16))},
+      {"map", fmt::format("checksum {}", recording.value(firmware::kMapChecksumKey))}};
+  for (const std::string& cut : recording.cut_files()) {
+    facts.emplace_back("without its end",
+                       cut + ": the daemon crashed, or the power was cut, or it still runs");
+  }
+  return facts;
+}
+
+}  // namespace
+
+void ReportCommand::declare(CLI::App& app) {
+  auto* report = app.add_subcommand("report", "Make one HTML page of a recording");
+  report->add_option("files", files_, "Files of one recording (.mcap), in any order")->required();
+  report->add_option("--out", out_, "The page")->capture_default_str();
+  report->add_option("--at", moments_,
+                     "Explain the state at this time: 14:32, 14:32:05 (local time), or seconds");
+  report->callback([this] { chosen_ = true; });
+}
+
+Status ReportCommand::run() const {
+  auto recording = Recording::open(files_);
+  if (!recording) return tl::unexpected(recording.error());
+  const auto data = read_report_data(*recording);
+  if (!data) return tl::unexpected(data.error());
+  std::vector<Answer> answers;
+  for (const std::string& text : moments_) {
+    const auto moment_s = parse_moment(*data, text);
+    if (!moment_s) return tl::unexpected(moment_s.error());
+    answers.push_back(
+        {fmt::format("What was the state at {}, and why?", text), explain(*data, *moment_s)});
+    for (const std::string& sentence : answers.back().sentences) fmt::print("{}\n", sentence);
+  }
+  std::vector<ShownFrame> frames = choose_frames(*data);
+  for (ShownFrame& frame : frames) {
+    if (Status added = add_pictures(*recording, *data, frame); !added) return added;
+  }
+  std::vector<std::string> names;
+  for (const auto& file : files_) names.push_back(file.string());
+  const std::string page = report_page(*data, names, facts_of(*recording), frames, answers);
+  if (Status written = write_file(out_, page); !written) return written;
+  for (const auto& [name, text] : key_figures(*data)) fmt::print("{:<20}{}\n", name, text);
+  fmt::print("{}\n", out_.string());
+  return {};
+}
+
+}  // namespace bevloc::evaluation

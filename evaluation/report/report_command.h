@@ -1,0 +1,27 @@
+// `bevloc report`: makes one HTML page of a recording.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "common/result.h"
+
+namespace bevloc::evaluation {
+
+class ReportCommand {
+ public:
+  void declare(CLI::App& app);
+  bool chosen() const { return chosen_; }
+  Status run() const;
+
+ private:
+  bool chosen_ = false;
+  std::vector<std::filesystem::path> files_;
+  std::filesystem::path out_ = "report.html";
+  std::vector<std::string> moments_;
+};
+
+}  // namespace bevloc::evaluation

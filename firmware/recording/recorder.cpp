@@ -1,0 +1,187 @@
+#include "firmware/recording/recorder.h"
+
+#include <algorithm>
+
+#include <spdlog/spdlog.h>
+
+#include "firmware/recording/messages.h"
+#include "firmware/recording/topics.h"
+#include "firmware/telemetry/snapshot.h"
+
+namespace bevloc::firmware {
+namespace {
+
+/// How often chunks go to the disk and counters are recorded.
+constexpr Duration kStep = std::chrono::milliseconds(500);
+
+void copy_distribution(const std::vector<float>& from, RecordedDistribution& to) {
+  to.count = from.size() <= to.probability.size() ? from.size() : 0;
+  std::copy_n(from.begin(), to.count, to.probability.begin());
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Recorder>> Recorder::open(const RecordConfig& config, RecordingHead head,
+                                                 Duration log_time_minus_clock, Time now) {
+  const Duration begin = now.time_since_epoch() + log_time_minus_clock;
+  auto ring = RecordingRing::open(config, std::move(head), static_cast<uint64_t>(begin.count()));
+  if (!ring) return tl::unexpected(ring.error());
+  spdlog::info("recording: writes {}", ring->file().string());
+  return std::unique_ptr<Recorder>(new Recorder(config, std::move(*ring), log_time_minus_clock));
+}
+
+void Recorder::expect_images(int camera, int width_px, int height_px) {
+  memory_[camera] = std::make_unique<ImageMemory>(kImagesPerCamera, width_px, height_px);
+}
+
+void Recorder::note_image(const drivers::Frame& frame, Time now) {
+  if (auto copy = memory_[frame.camera]->copy(frame, now)) {
+    images_.push(std::move(*copy));
+  } else {
+    ++counters_.images_dropped;
+  }
+}
+
+void Recorder::note_match(const VisionSnapshot& snapshot, Time now) {
+  RecordedMatch match;
+  match.time = now;
+  match.frame_time = snapshot.frameset.time;
+  match.cameras = static_cast<unsigned>(snapshot.report.present.to_ulong());
+  match.acquiring = snapshot.range == SearchRange::kAcquiring;
+  match.prior = snapshot.report.prior;
+  match.match = snapshot.report.match;
+  match.ranges = {snapshot.hypotheses.x_m.range, snapshot.hypotheses.y_m.range,
+                  snapshot.hypotheses.yaw_rad.range};
+  copy_distribution(snapshot.solution.x_probability, match.distributions[0]);
+  copy_distribution(snapshot.solution.y_probability, match.distributions[1]);
+  copy_distribution(snapshot.solution.yaw_probability, match.distributions[2]);
+  matches_.push(match);
+}
+
+uint64_t Recorder::log_time(Time time) const {
+  return static_cast<uint64_t>((time.time_since_epoch() + offset_).count());
+}
+
+void Recorder::put(std::string_view topic, const google::protobuf::Message& message, Time time,
+                   Time made_at) {
+  note_failure(ring_.write(topic, message, log_time(time), log_time(made_at)));
+}
+
+void Recorder::note_failure(const Status& status) {
+  if (status || counters_.failed.exchange(true)) return;
+  spdlog::error("recording ends: {}", status.error().message);
+}
+
+void Recorder::write_queued(Time now) {
+  while (const auto image = images_.pop(Duration::zero())) {
+    if (!counters_.failed) write_image(*image);
+  }
+  while (const auto event = events_.pop(Duration::zero())) {
+    if (counters_.failed) continue;
+    std::visit([this](const auto& recorded) { write_event(recorded); }, *event);
+    ++counters_.events;
+  }
+  while (const auto match = matches_.pop(Duration::zero())) {
+    if (!counters_.failed) write_match(*match);
+  }
+  if (counters_.failed || now < next_step_) return;
+  next_step_ = now + kStep;
+  write_counters(now);
+  note_failure(ring_.step(log_time(now)));
+  counters_.bytes = ring_.bytes_written();
+  log_drops();
+}
+
+void Recorder::write_image(const RecordedImage& image) {
+  const std::string topic = image_topic(image.camera);
+  const uint64_t start_ns = log_time(image.exposure_start);
+  ++counters_.images;
+  if (image.image.format == PixelFormat::kMjpeg) {
+    const std::string_view file(reinterpret_cast<const char*>(image.image.planes[0].data),
+                                image.image.bytes_used);
+    return put(topic, compressed_image(image, file, start_ns), image.time, image.exposure_start);
+  }
+  if (config_.images == RecordedImages::kJpeg && can_encode_jpeg(image.image.format)) {
+    const auto jpeg = jpeg_.encode(image.image, config_.jpeg_quality);
+    if (!jpeg) return note_failure(tl::unexpected(jpeg.error()));
+    return put(topic, compressed_image(image, *jpeg, start_ns), image.time, image.exposure_start);
+  }
+  put(topic, raw_image(image, start_ns), image.time, image.exposure_start);
+}
+
+void Recorder::write_event(const RecordedBusFrame& frame) {
+  put(frame.sent ? kBusOutTopic : kBusInTopic, bus_message(frame), frame.time, frame.stamp);
+}
+
+void Recorder::write_event(const RecordedSolution& solution) {
+  const can::PoseReport& report = solution.report;
+  const Time time = report.pose_time;
+  put(kSolutionTopic, solution_message(report), time, time);
+  if (report.map_from_vehicle.is_finite()) {
+    put(kPoseTopic, pose_message(report.map_from_vehicle, log_time(time)), time, time);
+  }
+  watch_state(report.status.state, time);
+}
+
+void Recorder::write_event(const RecordedTruth& truth) {
+  put(kTruthTopic, pose_message(truth.map_from_vehicle, log_time(truth.time)), truth.time,
+      truth.time);
+}
+
+void Recorder::write_match(const RecordedMatch& match) {
+  put(kMatchTopic, match_message(match), match.time, match.frame_time);
+  ++counters_.events;
+}
+
+void Recorder::write_counters(Time now) {
+  if (!snapshot_) return;
+  const Snapshot snapshot = snapshot_();
+  recording::Counters message;
+  message.set_frames_captured(snapshot.frames.captured);
+  message.set_frames_used(snapshot.frames.used);
+  message.set_frames_missed(snapshot.frames.missed);
+  message.set_frames_displaced(snapshot.frames.displaced);
+  message.set_frames_mismatched(snapshot.frames.mismatched);
+  message.set_frames_skipped(snapshot.frames.skipped);
+  message.set_framesets(snapshot.framesets.taken);
+  message.set_bus_sent(snapshot.bus.sent);
+  message.set_bus_received(snapshot.bus.received);
+  message.set_bus_lost(snapshot.bus.send_replaced + snapshot.bus.send_expired +
+                       snapshot.bus.send_bus_down + snapshot.bus.receive_dropped);
+  message.set_images_not_recorded(counters_.images_dropped + images_.dropped());
+  message.set_events_not_recorded(events_dropped());
+  put(kCountersTopic, message, now, now);
+}
+
+void Recorder::watch_state(HealthState state, Time now) {
+  const bool bad = state == HealthState::kLost || state == HealthState::kFault;
+  const bool became_bad = bad && state != state_;
+  state_ = state;
+  if (!became_bad) return;
+  const auto kept = ring_.keep(log_time(now));
+  if (!kept) return spdlog::warn("recording: {}", kept.error().message);
+  ++counters_.black_boxes;
+  spdlog::warn("recording: {}, so the last minute is kept in {}", to_string(state), kept->string());
+}
+
+void Recorder::log_drops() {
+  const uint64_t images = counters_.images_dropped + images_.dropped();
+  if (drops_logged_ || images + events_dropped() == 0) return;
+  drops_logged_ = true;
+  spdlog::warn(
+      "recording: {} images and {} events were dropped because encoder or disk is too slow; "
+      "record JPEG, or use a faster disk",
+      images, events_dropped());
+}
+
+void Recorder::finish(Time now) {
+  write_queued(now);
+  if (!counters_.failed) note_failure(ring_.finish());
+  counters_.bytes = ring_.bytes_written();
+  spdlog::info("recording: {} images and {} events in {:.1f} MB, {} images and {} events dropped",
+               counters_.images.load(), counters_.events.load(),
+               static_cast<double>(counters_.bytes) / 1e6,
+               counters_.images_dropped + images_.dropped(), events_dropped());
+}
+
+}  // namespace bevloc::firmware

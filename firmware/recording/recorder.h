@@ -1,0 +1,102 @@
+// Records what the appliance sees, decides and sends.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "common/bounded_queue.h"
+#include "common/health_state.h"
+#include "common/jpeg.h"
+#include "firmware/config/record_config.h"
+#include "firmware/recording/image_memory.h"
+#include "firmware/recording/recorded_events.h"
+#include "firmware/recording/recording_ring.h"
+#include "firmware/stages/vision_stage.h"
+
+namespace bevloc::firmware {
+
+struct Snapshot;
+
+/// Totals since start; readable from any thread.
+struct RecorderCounters {
+  std::atomic<uint64_t> images{0};  ///< written
+  std::atomic<uint64_t> events{0};  ///< written: bus frames, solutions, matches
+  std::atomic<uint64_t> images_dropped{0};
+  std::atomic<uint64_t> bytes{0};
+  std::atomic<uint64_t> black_boxes{0};
+  std::atomic<bool> failed{false};  ///< the disk refused to take more; nothing is recorded since
+};
+
+/// The stages hand over what is to be recorded; they copy it into memory that was allocated at the
+/// start, and never wait. write_queued() writes it. When the disk is too slow the oldest entries
+/// are dropped and counted. When it fails, recording ends and the appliance goes on.
+///
+/// Threads: note_image() of a camera from its own thread, note_match() from the vision thread, the
+/// other note functions from any thread; open(), write_queued() and finish() from one thread.
+class Recorder {
+ public:
+  /// `log_time_minus_clock`: added to the appliance's clock it is the time since 1970.
+  /// Fails if the folder or its first file cannot be created.
+  static Result<std::unique_ptr<Recorder>> open(const RecordConfig& config, RecordingHead head,
+                                                Duration log_time_minus_clock, Time now);
+
+  /// Allocates the memory for the images of one camera. Before the first note_image().
+  void expect_images(int camera, int width_px, int height_px);
+
+  void note_image(const drivers::Frame& frame, Time now);
+  void note_bus_frame(const RecordedBusFrame& frame) { events_.push(frame); }
+  void note_solution(const can::PoseReport& report) { events_.push(RecordedSolution{report}); }
+  void note_truth(const RecordedTruth& truth) { events_.push(truth); }
+  void note_match(const VisionSnapshot& snapshot, Time now);
+
+  /// What write_queued() records once a second; called in its thread.
+  void count_with(std::function<Snapshot()> snapshot) { snapshot_ = std::move(snapshot); }
+
+  /// Writes everything that is queued, and does what is due at `now`: chunks to the disk, the next
+  /// file, the black box. Logs the first failure and the first drop.
+  void write_queued(Time now);
+  /// Writes the rest and ends the file. Logs the totals.
+  void finish(Time now);
+
+  const RecorderCounters& counters() const { return counters_; }
+  uint64_t events_dropped() const { return events_.dropped() + matches_.dropped(); }
+
+ private:
+  static constexpr int kImagesPerCamera = 6;
+
+  Recorder(const RecordConfig& config, RecordingRing ring, Duration log_time_minus_clock)
+      : config_(config), offset_(log_time_minus_clock), ring_(std::move(ring)) {}
+
+  uint64_t log_time(Time time) const;
+  void put(std::string_view topic, const google::protobuf::Message& message, Time time,
+           Time made_at);
+  void write_image(const RecordedImage& image);
+  void write_event(const RecordedBusFrame& frame);
+  void write_event(const RecordedSolution& solution);
+  void write_event(const RecordedTruth& truth);
+  void write_match(const RecordedMatch& match);
+  void write_counters(Time now);
+  void watch_state(HealthState state, Time now);
+  void note_failure(const Status& status);
+  void log_drops();
+
+  const RecordConfig config_;
+  const Duration offset_;
+  RecordingRing ring_;
+  std::array<std::unique_ptr<ImageMemory>, kCameraCount> memory_;
+  BoundedQueue<RecordedImage> images_{kImagesPerCamera * kCameraCount};
+  /// Two seconds of a busy bus.
+  BoundedQueue<RecordedEvent> events_{8192};
+  BoundedQueue<RecordedMatch> matches_{64};
+  std::function<Snapshot()> snapshot_;
+  JpegEncoder jpeg_;
+  Time next_step_ = Time::min();
+  HealthState state_ = HealthState::kInit;
+  bool drops_logged_ = false;
+  RecorderCounters counters_;
+};
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,135 @@
+#include "firmware/recording/recording_ring.h"
+
+#include <algorithm>
+#include <ctime>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+
+namespace bevloc::firmware {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPrefix = "bevloc-";
+constexpr uint64_t kLogSecond_ns = 1'000'000'000;
+
+/// Such as bevloc-20261123T143205Z-0001.mcap: the order of the names is that of time.
+std::string file_name(uint64_t log_time_ns, int number) {
+  const auto seconds = static_cast<time_t>(log_time_ns / kLogSecond_ns);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  return fmt::format("{}{:04}{:02}{:02}T{:02}{:02}{:02}Z-{:04}.mcap", kPrefix, utc.tm_year + 1900,
+                     utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, number);
+}
+
+struct Listed {
+  fs::path path;
+  uint64_t bytes = 0;
+  fs::file_time_type changed;
+};
+
+/// The recordings of a folder, oldest first.
+std::vector<Listed> list_recordings(const fs::path& folder) {
+  std::vector<Listed> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(kPrefix) || entry.path().extension() != ".mcap") continue;
+    std::error_code gone;
+    const Listed listed{entry.path(), entry.file_size(gone), entry.last_write_time(gone)};
+    if (!gone) files.push_back(listed);
+  }
+  std::ranges::sort(files, {}, &Listed::path);
+  return files;
+}
+
+void remove_file(const fs::path& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) spdlog::warn("recording: cannot delete {} ({})", path.string(), error.message());
+}
+
+}  // namespace
+
+Result<RecordingRing> RecordingRing::open(const RecordConfig& config, RecordingHead head,
+                                          uint64_t log_time_ns) {
+  std::error_code error;
+  fs::create_directories(config.directory / "kept", error);
+  if (error) {
+    return fail("{}: cannot create this folder ({}), wanted one for the recording",
+                (config.directory / "kept").string(), error.message());
+  }
+  RecordingRing ring(config, std::move(head));
+  if (Status begun = ring.begin_file(log_time_ns); !begun) return tl::unexpected(begun.error());
+  return ring;
+}
+
+Status RecordingRing::begin_file(uint64_t log_time_ns) {
+  fs::path path;
+  std::error_code ignored;
+  do {
+    path = config_.directory / file_name(log_time_ns, ++number_);
+  } while (fs::exists(path, ignored));
+  auto file = RecordingFile::create(path, head_, log_time_ns);
+  if (!file) return tl::unexpected(file.error());
+  file_.emplace(std::move(*file));
+  const auto covered = static_cast<uint64_t>(kBlackBox.count());
+  std::erase_if(recent_, [&](const RecentFile& old) { return old.end_ns + covered < log_time_ns; });
+  recent_.push_back({path, log_time_ns, 0});
+  delete_old(log_time_ns);
+  return {};
+}
+
+/// Deletes by the clock of the machine, because files may be of an earlier run.
+void RecordingRing::delete_old(uint64_t log_time_ns) const {
+  std::vector<Listed> files = list_recordings(config_.directory);
+  uint64_t total = 0;
+  for (const Listed& file : files) total += file.bytes;
+  const auto now = fs::file_time_type::clock::from_sys(
+      std::chrono::sys_time<Duration>(Duration(static_cast<int64_t>(log_time_ns))));
+  for (const Listed& file : files) {
+    if (file.path == recent_.back().path) break;
+    if (total <= config_.max_bytes && now - file.changed <= config_.max_age) continue;
+    remove_file(file.path);
+    total -= file.bytes;
+  }
+}
+
+Status RecordingRing::write(std::string_view topic, const google::protobuf::Message& message,
+                            uint64_t log_time_ns, uint64_t publish_time_ns) {
+  return file_->write(topic, message, log_time_ns, publish_time_ns);
+}
+
+Status RecordingRing::step(uint64_t log_time_ns) {
+  const auto length = static_cast<uint64_t>(config_.file_length.count());
+  const uint64_t share = config_.max_bytes / 4;  // so that the black box fits into the ring
+  RecentFile& newest = recent_.back();
+  if (log_time_ns < newest.begin_ns + length && file_->bytes_written() < share) {
+    return file_->flush();
+  }
+  newest.end_ns = log_time_ns;
+  if (Status finished = file_->finish(); !finished) return finished;
+  bytes_of_closed_ += file_->bytes_written();
+  return begin_file(log_time_ns);
+}
+
+Result<fs::path> RecordingRing::keep(uint64_t log_time_ns) {
+  const auto covered = static_cast<uint64_t>(kBlackBox.count());
+  const fs::path folder = config_.directory / "kept";
+  for (const RecentFile& file : recent_) {
+    if (&file != &recent_.back() && file.end_ns + covered < log_time_ns) continue;
+    std::error_code error;
+    fs::create_hard_link(file.path, folder / file.path.filename(), error);
+    if (error && error != std::errc::file_exists) {
+      return fail("{}: cannot keep this file in {} ({}), wanted a file system with hard links",
+                  file.path.string(), folder.string(), error.message());
+    }
+  }
+  std::vector<Listed> kept = list_recordings(folder);
+  const auto most = static_cast<size_t>(config_.black_box_files);
+  for (size_t i = 0; i + most < kept.size(); ++i) remove_file(kept[i].path);
+  return folder / recent_.back().path.filename();
+}
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,59 @@
+// The files of a recording: a ring that is bounded in size and age, and a black box.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "firmware/config/record_config.h"
+#include "firmware/recording/recording_file.h"
+
+namespace bevloc::firmware {
+
+/// Writes one file after the other into the folder, and deletes the oldest ones beyond the limits.
+/// keep() gives the files of the last minute a second name (a hard link) in the folder `kept`,
+/// which the ring does not delete; the file that is being written grows there too. One thread.
+class RecordingRing {
+ public:
+  /// What a black box covers before its event.
+  static constexpr Duration kBlackBox = std::chrono::seconds(60);
+
+  /// Creates the folders and the first file. Times are log times: nanoseconds since 1970.
+  static Result<RecordingRing> open(const RecordConfig& config, RecordingHead head,
+                                    uint64_t log_time_ns);
+
+  Status write(std::string_view topic, const google::protobuf::Message& message,
+               uint64_t log_time_ns, uint64_t publish_time_ns);
+  /// Begins the next file when it is time, otherwise puts what is written on the disk.
+  Status step(uint64_t log_time_ns);
+  Status finish() { return file_->finish(); }
+
+  /// Keeps the files of the last minute. Returns the name of the newest of them.
+  Result<std::filesystem::path> keep(uint64_t log_time_ns);
+
+  uint64_t bytes_written() const { return bytes_of_closed_ + file_->bytes_written(); }
+  const std::filesystem::path& file() const { return recent_.back().path; }
+
+ private:
+  struct RecentFile {
+    std::filesystem::path path;
+    uint64_t begin_ns = 0;
+    uint64_t end_ns = 0;  ///< meaningless for the newest
+  };
+
+  RecordingRing(const RecordConfig& config, RecordingHead head)
+      : config_(config), head_(std::move(head)) {}
+  Status begin_file(uint64_t log_time_ns);
+  void delete_old(uint64_t log_time_ns) const;
+
+  RecordConfig config_;
+  RecordingHead head_;
+  std::optional<RecordingFile> file_;
+  std::deque<RecentFile> recent_;  ///< the files that overlap the last minute, oldest first
+  int number_ = 0;
+  uint64_t bytes_of_closed_ = 0;
+};
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,89 @@
+#include "firmware/recording/recording_session.h"
+
+#include "common/files.h"
+#include "common/kernel_time.h"
+#include "common/sha256.h"
+#include "common/version.h"
+#include "firmware/recording/messages.h"
+#include "firmware/recording/recording_file.h"
+#include "firmware/recording/taps.h"
+#include "firmware/recording/topics.h"
+#include "firmware/telemetry/snapshot.h"
+#include "pipeline/map/map_checksum.h"
+
+namespace bevloc::firmware {
+namespace {
+
+std::string absolute_name(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return path.empty() ? "" : std::filesystem::absolute(path, ignored).lexically_normal().string();
+}
+
+void attach_file(std::string_view name, const std::filesystem::path& path, RecordingHead& head) {
+  auto content = read_file(path);
+  if (!content) return;
+  head.attachments.push_back({0, std::string(name), "application/yaml", std::move(*content)});
+}
+
+std::map<std::string, std::string> metadata_of(const Config& config, const HdMap& map,
+                                               bool lockstep, Time now, Duration offset) {
+  const auto model = read_file(config.model_file);
+  std::map<std::string, std::string> values;
+  const auto set = [&values](std::string_view key, std::string value) {
+    values.emplace(key, std::move(value));
+  };
+  set("version", std::string(version()));
+  set(kClockOffsetKey, std::to_string(offset.count()));
+  set(kStartKey, std::to_string(now.time_since_epoch().count()));
+  set(kLockstepKey, lockstep ? "yes" : "no");
+  set(kConfigKey, absolute_name(config.file));
+  set(kMapFileKey, absolute_name(config.map_file));
+  set(kModelFileKey, absolute_name(config.model_file));
+  set(kMapChecksumKey, fmt::format("{:08x}", map_checksum(map)));
+  set(kModelChecksumKey, model ? sha256_hex(*model) : "");
+  return values;
+}
+
+template <typename Message>
+void add_message(std::string topic, Message message, RecordingHead& head) {
+  head.messages.push_back({std::move(topic), std::make_shared<Message>(std::move(message))});
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Recorder>> open_recorder(const Config& config, const Rig& rig,
+                                                const HdMap& map, bool lockstep, Time now) {
+  if (!config.record) return nullptr;
+  const Duration offset = read_clock(CLOCK_REALTIME) - now.time_since_epoch();
+  RecordingHead head;
+  head.metadata = metadata_of(config, map, lockstep, now, offset);
+  attach_file(kConfigAttachment, config.file, head);
+  attach_file(kRigAttachment, config.rig_file, head);
+  if (!config.learned_calibration_file.empty()) {
+    attach_file(kLearnedAttachment, config.learned_calibration_file, head);
+  }
+  add_message(std::string(kMapTopic), map_message(map), head);
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    add_message(calibration_topic(camera), calibration_message(rig.cameras[camera], camera), head);
+  }
+  return Recorder::open(*config.record, std::move(head), offset, now);
+}
+
+void tap(Hardware& hardware, Recorder& recorder) {
+  for (auto& camera : hardware.cameras) {
+    camera = std::make_unique<RecordedCamera>(std::move(camera), recorder, *hardware.clock);
+  }
+  hardware.bus = std::make_unique<RecordedBus>(std::move(hardware.bus), recorder, *hardware.clock);
+}
+
+void watch(Appliance& appliance, Recorder& recorder) {
+  const drivers::Clock& clock = appliance.clock();
+  appliance.vision().observe([&recorder, &clock](const VisionSnapshot& snapshot) {
+    recorder.note_match(snapshot, clock.now());
+  });
+  appliance.estimation().observe_reports(
+      [&recorder](const can::PoseReport& report) { recorder.note_solution(report); });
+  recorder.count_with([&appliance] { return take_snapshot(appliance, nullptr, 0); });
+}
+
+}  // namespace bevloc::firmware

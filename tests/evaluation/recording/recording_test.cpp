@@ -1,0 +1,190 @@
+// A simulated drive is recorded and replayed: the replay sends the same frames, byte for byte. A
+// report is made of it. One drive serves all tests.
+#include "evaluation/recording/recording.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "common/files.h"
+#include "evaluation/drive/simulated_run.h"
+#include "evaluation/recording/replay_setup.h"
+#include "evaluation/report/report_page.h"
+#include "firmware/recording/recording_file.h"
+#include "firmware/recording/topics.h"
+#include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/map/map_checksum.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> recordings_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".mcap") files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+/// A drive of four seconds in lockstep with raw images, in files of two seconds.
+class RecordedDriveTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TemporaryFolder;
+    auto config = load_drive_config(std::string(BEVLOC_SOURCE_DIR) + "/config/demo.yaml");
+    ASSERT_TRUE(config) << config.error().message;
+    config->simulation->seed = 2018;
+    config->simulation->town_seed = 2018;
+    config->simulation->duration_s = 4.0;
+    config->record.emplace();
+    config->record->directory = *folder_ / "recording";
+    config->record->images = firmware::RecordedImages::kRaw;
+    config->record->file_length = std::chrono::seconds(2);
+    const auto rig = read_rig(config->rig_file);
+    ASSERT_TRUE(rig) << rig.error().message;
+    SimulatedRunOptions options;
+    options.fast = true;
+    options.show_progress = false;
+    options.out = folder_->path();
+    const auto report = run_simulation(*config, *rig, options,
+                                       [](const firmware::ApplianceView&) { return false; });
+    ASSERT_TRUE(report) << report.error().message;
+    captured_ = report->frames.captured;
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+
+  void SetUp() override {
+    files_ = recordings_in(*folder_ / "recording");
+    ASSERT_GE(files_.size(), 2U);
+    auto recording = Recording::open(files_);
+    ASSERT_TRUE(recording) << recording.error().message;
+    recording_ = std::make_unique<Recording>(std::move(*recording));
+  }
+
+  static test::TemporaryFolder* folder_;
+  static uint64_t captured_;
+  std::vector<fs::path> files_;
+  std::unique_ptr<Recording> recording_;
+};
+
+test::TemporaryFolder* RecordedDriveTest::folder_ = nullptr;
+uint64_t RecordedDriveTest::captured_ = 0;
+
+TEST_F(RecordedDriveTest, TheReplaySendsTheSameFramesByteForByte) {
+  const ScratchFolder scratch;
+  const auto setup = setup_of(*recording_, {}, scratch);
+  ASSERT_TRUE(setup) << setup.error().message;
+  const auto inputs = inputs_of(*recording_, setup->rig);
+  ASSERT_TRUE(inputs) << inputs.error().message;
+  const auto outcome = replay(*setup, *inputs, *folder_ / "replayed.log");
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_GT(outcome->framesets, 30U);
+
+  const auto recorded = played_frames(*recording_, firmware::kBusOutTopic);
+  ASSERT_TRUE(recorded);
+  const BusComparison bus = compare_bus(*recorded, outcome->sent);
+  EXPECT_FALSE(bus.different) << *bus.different;
+  EXPECT_EQ(bus.recorded, bus.replayed);
+  EXPECT_GT(bus.equal, 2000U);
+
+  // The judge's log of the live drive ends before the sign-off.
+  const std::string live = read_file(*folder_ / "can.log").value();
+  const std::string replayed = read_file(*folder_ / "replayed.log").value();
+  ASSERT_GT(live.size(), 100'000U);
+  EXPECT_TRUE(replayed.starts_with(live));
+}
+
+TEST_F(RecordedDriveTest, EveryFrameIsThereAndTheMapIsTheSame) {
+  size_t images = 0;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    images += recording_->messages(firmware::image_topic(camera)).size();
+  }
+  EXPECT_EQ(images, captured_);
+  const auto map = recording_->map();
+  ASSERT_TRUE(map && *map);
+  EXPECT_EQ(fmt::format("{:08x}", map_checksum(**map)),
+            recording_->value(firmware::kMapChecksumKey));
+  EXPECT_TRUE(recording_->cut_files().empty());
+  EXPECT_EQ(recording_->value(firmware::kLockstepKey), "yes");
+}
+
+TEST_F(RecordedDriveTest, ACutFileReplaysUpToItsCut) {
+  const std::string whole = read_file(files_[0]).value();
+  const fs::path cut = *folder_ / "cut.mcap";
+  ASSERT_TRUE(write_file(cut, std::string_view(whole).substr(0, whole.size() * 2 / 3)));
+  auto recording = Recording::open({cut});
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->cut_files().size(), 1U);
+  const ScratchFolder scratch;
+  const auto setup = setup_of(*recording, {}, scratch);
+  ASSERT_TRUE(setup) << setup.error().message;
+  const auto inputs = inputs_of(*recording, setup->rig);
+  ASSERT_TRUE(inputs);
+  const auto outcome = replay(*setup, *inputs, *folder_ / "cut.log");
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  const auto recorded = played_frames(*recording, firmware::kBusOutTopic);
+  ASSERT_TRUE(recorded);
+  const BusComparison bus = compare_bus(*recorded, outcome->sent);
+  EXPECT_GT(bus.recorded, 300U);
+  EXPECT_EQ(bus.equal, bus.recorded) << bus.different.value_or("");
+}
+
+TEST_F(RecordedDriveTest, AnotherModelIsUsedWhenItIsNamed) {
+  const ScratchFolder scratch;
+  const fs::path model = std::string(BEVLOC_SOURCE_DIR) + "/models/nano_float.onnx";
+  const auto setup = setup_of(*recording_, {{}, model, {}}, scratch);
+  ASSERT_TRUE(setup) << setup.error().message;
+  EXPECT_EQ(setup->config.model_file, model);
+  EXPECT_FALSE(setup->config.record);
+}
+
+TEST_F(RecordedDriveTest, TheReportTellsErrorsStatesAndReasons) {
+  const auto data = read_report_data(*recording_);
+  ASSERT_TRUE(data) << data.error().message;
+  EXPECT_GT(data->truth.size(), 30U);
+  ASSERT_GE(data->periods.size(), 2U);
+  EXPECT_EQ(data->periods.front().state, HealthState::kInit);
+  EXPECT_GT(data->matches.size(), 20U);
+  const auto sentences = explain(*data, data->length_s - 0.1);
+  ASSERT_GE(sentences.size(), 4U);
+  EXPECT_NE(sentences[0].find(to_string(data->periods.back().state)), std::string::npos)
+      << sentences[0];
+  const std::string page =
+      report_page(*data, {"a & b"}, {}, choose_frames(*data), {{"Why?", sentences}});
+  EXPECT_NE(page.find("a &amp; b"), std::string::npos);
+  EXPECT_NE(page.find("Errors against the truth"), std::string::npos);
+  EXPECT_EQ(page.find("http"), std::string::npos) << "an outside address";
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+TEST_F(RecordedDriveTest, AMomentIsReadAsTimeOfDayOrSeconds) {
+  const auto data = read_report_data(*recording_);
+  ASSERT_TRUE(data);
+  EXPECT_DOUBLE_EQ(parse_moment(*data, "1.5").value(), 1.5);
+  const std::string time = time_of_day(*data, 2.0);
+  EXPECT_NEAR(parse_moment(*data, time).value(), 2.0, 0.11);
+  EXPECT_TRUE(parse_moment(*data, time.substr(0, 5)));
+  EXPECT_FALSE(parse_moment(*data, "noon"));
+  EXPECT_FALSE(parse_moment(*data, "1e9"));
+}
+
+TEST_F(RecordedDriveTest, FilesOfTwoRunsAreRefused) {
+  auto head = firmware::RecordingHead{{{"log_time_minus_clock_ns", "5"}}, {}, {}};
+  auto other = firmware::RecordingFile::create(*folder_ / "other.mcap", head, 1);
+  ASSERT_TRUE(other);
+  ASSERT_TRUE(other->finish());
+  const auto both = Recording::open({files_[0], *folder_ / "other.mcap"});
+  ASSERT_FALSE(both);
+  EXPECT_NE(both.error().message.find("of another run"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation

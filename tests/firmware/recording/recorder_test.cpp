@@ -1,0 +1,207 @@
+// The recorder: bounded queues and files, the black box, and a disk that refuses.
+#include "firmware/recording/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include "common/mcap/reader.h"
+#include "firmware/recording/messages.h"
+#include "firmware/recording/topics.h"
+#include "firmware/telemetry/snapshot.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bevloc::firmware {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Duration kOffset = std::chrono::hours(24 * 365 * 50);
+
+class RecorderTest : public testing::Test {
+ protected:
+  RecorderTest() {
+    config_.directory = folder_ / "ring";
+    config_.images = RecordedImages::kRaw;
+  }
+
+  std::unique_ptr<Recorder> open() {
+    auto recorder = Recorder::open(config_, {}, kOffset, Time{});
+    EXPECT_TRUE(recorder) << recorder.error().message;
+    (*recorder)->expect_images(0, 16, 8);
+    return std::move(*recorder);
+  }
+
+  static can::PoseReport report(HealthState state, Time time) {
+    can::PoseReport report;
+    report.status.state = state;
+    report.pose_time = time;
+    return report;
+  }
+
+  drivers::Frame frame(uint64_t sequence, Time time) {
+    drivers::FrameBuffer buffer = pool_->borrow();
+    std::ranges::fill(pool_->image(buffer).pixels, static_cast<uint8_t>(sequence));
+    return {0, time, sequence, std::chrono::milliseconds(8), std::move(buffer)};
+  }
+
+  static size_t files_in(const fs::path& folder) {
+    size_t count = 0;
+    for (const auto& entry : fs::directory_iterator(folder)) count += entry.is_regular_file();
+    return count;
+  }
+
+  static fs::path first_in(const fs::path& folder) {
+    fs::path first;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      if (entry.is_regular_file() && (first.empty() || entry.path() < first)) first = entry.path();
+    }
+    return first;
+  }
+
+  const test::TemporaryFolder folder_;
+  RecordConfig config_;
+  std::shared_ptr<drivers::FramePool> pool_ = drivers::FramePool::create(32, 16, 8);
+};
+
+TEST_F(RecorderTest, ImagesKeepTheirPixelsAndTimes) {
+  const auto recorder = open();
+  const Time exposed{std::chrono::milliseconds(70)};
+  recorder->note_image(frame(42, exposed), exposed + std::chrono::milliseconds(28));
+  recorder->finish(Time{std::chrono::milliseconds(100)});
+  EXPECT_EQ(recorder->counters().images, 1U);
+  const auto reader = mcap::Reader::open(first_in(config_.directory));
+  ASSERT_TRUE(reader) << reader.error().message;
+  EXPECT_TRUE(reader->complete());
+  const auto chunk = reader->read_chunk(0);
+  ASSERT_TRUE(chunk);
+  ASSERT_EQ(chunk->messages.size(), 1U);
+  const mcap::Message& message = chunk->messages[0];
+  EXPECT_EQ(reader->channels().at(message.channel_id).topic, "/camera/front_left");
+  EXPECT_EQ(message.log_time_ns,
+            static_cast<uint64_t>((kOffset + std::chrono::milliseconds(98)).count()));
+  foxglove::RawImage image;
+  ASSERT_TRUE(image.ParseFromArray(message.data.data(), static_cast<int>(message.data.size())));
+  EXPECT_EQ(image.encoding(), "rgb8");
+  EXPECT_EQ(image.sequence(), 42U);
+  EXPECT_EQ(image.exposure_ns(), 8'000'000);
+  EXPECT_EQ(image.data(), std::string(16 * 8 * 3, '\x2a'));
+}
+
+TEST_F(RecorderTest, ImagesThatFindNoMemoryAreDroppedAndCounted) {
+  const auto recorder = open();
+  for (uint64_t i = 0; i < 20; ++i) recorder->note_image(frame(i, Time{}), Time{});
+  EXPECT_GT(recorder->counters().images_dropped, 0U);
+  recorder->finish(Time{std::chrono::seconds(1)});
+  EXPECT_EQ(recorder->counters().images + recorder->counters().images_dropped, 20U);
+}
+
+TEST_F(RecorderTest, EventsBeyondTheQueueAreDroppedAndCounted) {
+  const auto recorder = open();
+  for (int i = 0; i < 10'000; ++i) recorder->note_truth({Time{}, {}});
+  EXPECT_EQ(recorder->events_dropped(), 10'000U - 8192U);
+  recorder->finish(Time{std::chrono::seconds(1)});
+  EXPECT_EQ(recorder->counters().events, 8192U);
+}
+
+TEST_F(RecorderTest, TheRingDeletesItsOldestFiles) {
+  config_.file_length = std::chrono::seconds(1);
+  config_.max_bytes = 200'000;
+  const auto recorder = open();
+  const fs::path first = first_in(config_.directory);
+  for (int second = 0; second < 60; ++second) {
+    const Time now{std::chrono::seconds(second)};
+    for (uint64_t i = 0; i < 6; ++i) {
+      auto noisy = frame(i, now);
+      uint8_t value = 1;
+      for (uint8_t& byte : pool_->image(noisy.buffer).pixels) {
+        value = static_cast<uint8_t>(value * 29 + 7 + second);
+        byte = static_cast<uint8_t>(value ^ (value >> 3));
+      }
+      recorder->note_image(noisy, now);
+    }
+    recorder->write_queued(now);
+  }
+  recorder->finish(Time{std::chrono::seconds(60)});
+  EXPECT_FALSE(fs::exists(first));
+  uintmax_t bytes = 0;
+  for (const auto& entry : fs::directory_iterator(config_.directory)) {
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  }
+  EXPECT_LT(bytes, 250'000U);
+  EXPECT_GT(files_in(config_.directory), 5U);
+}
+
+TEST_F(RecorderTest, LostKeepsTheLastMinute) {
+  config_.file_length = std::chrono::seconds(30);
+  const auto recorder = open();
+  const auto drive = [&](int from_s, int to_s, HealthState state) {
+    for (int second = from_s; second < to_s; ++second) {
+      const Time now{std::chrono::seconds(second)};
+      recorder->note_solution(report(state, now));
+      recorder->write_queued(now);
+    }
+  };
+  drive(0, 200, HealthState::kTracking);
+  EXPECT_EQ(files_in(config_.directory / "kept"), 0U);
+  drive(200, 210, HealthState::kLost);
+  // 60 s before second 200: the files from second 120, 150 and 180 on.
+  EXPECT_EQ(files_in(config_.directory / "kept"), 3U);
+  EXPECT_EQ(recorder->counters().black_boxes, 1U);
+  recorder->finish(Time{std::chrono::seconds(210)});
+  const auto kept = mcap::Reader::open(first_in(config_.directory / "kept"));
+  ASSERT_TRUE(kept);
+  EXPECT_TRUE(kept->complete());
+}
+
+TEST_F(RecorderTest, AFolderThatCannotBeMadeIsRefused) {
+  config_.directory = "/proc/no/such";
+  const auto recorder = Recorder::open(config_, {}, kOffset, Time{});
+  ASSERT_FALSE(recorder);
+  EXPECT_NE(recorder.error().message.find("/proc/no/such"), std::string::npos);
+}
+
+TEST(RecordedMessagesTest, AMapSurvivesWithoutLoss) {
+  HdMap map;
+  map.name = "street";
+  map.origin = {49.0123456789, 8.4};
+  map.elements.push_back(
+      {ElementClass::kRoadBoundary, Appearance::kKerb, {{0.1, -1e-9}, {1.0 / 3.0, 5.0}}});
+  const auto read = map_of(map_message(map));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->origin.latitude_deg, map.origin.latitude_deg);
+  ASSERT_EQ(read->elements.size(), 1U);
+  EXPECT_EQ(read->elements[0].points, map.elements[0].points);
+  EXPECT_EQ(read->elements[0].appearance, Appearance::kKerb);
+}
+
+TEST(RecordedMessagesTest, ALargeMapIsLeftOut) {
+  HdMap map;
+  map.elements.resize(1);
+  map.elements[0].points.resize(kMostMapPoints + 1);
+  EXPECT_FALSE(map_of(map_message(map)));
+}
+
+TEST(RecordedMessagesTest, BusFramesAreCheckedWhenTheyAreRead) {
+  RecordedBusFrame frame;
+  frame.frame.id = 0x321;
+  frame.frame.length = 2;
+  frame.frame.data[1] = 7;
+  recording::CanFrame message = bus_message(frame);
+  ASSERT_TRUE(bus_frame_of(message));
+  EXPECT_EQ(bus_frame_of(message)->frame, frame.frame);
+  message.set_id(0x800);
+  EXPECT_FALSE(bus_frame_of(message));
+  message.set_id(1);
+  message.set_data(std::string(65, 'x'));
+  EXPECT_FALSE(bus_frame_of(message));
+}
+
+TEST(RecordedMessagesTest, APoseSurvives) {
+  const Se2 pose{1.5, -2.5, 3.0};
+  const Se2 read = pose_of(pose_message(pose, 1));
+  EXPECT_DOUBLE_EQ(read.x_m, pose.x_m);
+  EXPECT_DOUBLE_EQ(read.y_m, pose.y_m);
+  EXPECT_NEAR(read.yaw_rad, pose.yaw_rad, 1e-12);
+}
+
+}  // namespace
+}  // namespace bevloc::firmware
