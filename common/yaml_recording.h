@@ -82,7 +82,7 @@ struct YamlRecording {
     return decide(path, {kPresent, kAbsent}) == kPresent;
   }
 
-  void note_default(const std::string& path, std::string text) {
+  void note_default(const std::string& path, const std::string& text) {
     for (YamlKey& key : keys) {
       if (key.path == path) key.default_text = text;
     }

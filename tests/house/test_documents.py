@@ -10,7 +10,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
-PRODUCTION = ("common", "pipeline", "drivers", "can", "firmware", "evaluation", "sim", "training")
+PRODUCTION = ("common", "pipeline", "drivers", "can", "firmware", "command", "evaluation", "sim",
+              "training")
 MOST_LINES = 400
 
 
