@@ -72,10 +72,7 @@ void Recorder::note_failure(const Status& status) {
   spdlog::error("recording ends: {}", status.error().message);
 }
 
-void Recorder::write_queued(Time now) {
-  while (const auto image = images_.pop(Duration::zero())) {
-    if (!counters_.failed) write_image(*image);
-  }
+void Recorder::write_events() {
   while (const auto event = events_.pop(Duration::zero())) {
     if (counters_.failed) continue;
     std::visit([this](const auto& recorded) { write_event(recorded); }, *event);
@@ -83,6 +80,16 @@ void Recorder::write_queued(Time now) {
   }
   while (const auto match = matches_.pop(Duration::zero())) {
     if (!counters_.failed) write_match(*match);
+  }
+}
+
+void Recorder::write_queued(Time now) {
+  // Events first: they are small, and on a busy machine the images take long.
+  write_events();
+  for (int i = 0; i < kCameraCount; ++i) {
+    const auto image = images_.pop(Duration::zero());
+    if (!image) break;
+    if (!counters_.failed) write_image(*image);
   }
   if (counters_.failed || now < next_step_) return;
   next_step_ = now + kStep;
@@ -175,6 +182,9 @@ void Recorder::log_drops() {
 }
 
 void Recorder::finish(Time now) {
+  while (const auto image = images_.pop(Duration::zero())) {
+    if (!counters_.failed) write_image(*image);
+  }
   write_queued(now);
   if (!counters_.failed) note_failure(ring_.finish());
   counters_.bytes = ring_.bytes_written();

@@ -55,8 +55,8 @@ class Recorder {
   /// What write_queued() records once a second; called in its thread.
   void count_with(std::function<Snapshot()> snapshot) { snapshot_ = std::move(snapshot); }
 
-  /// Writes everything that is queued, and does what is due at `now`: chunks to the disk, the next
-  /// file, the black box. Logs the first failure and the first drop.
+  /// Writes all queued events and a few images, and does what is due at `now`: chunks to the disk,
+  /// the next file, the black box. Logs the first failure and the first drop.
   void write_queued(Time now);
   /// Writes the rest and ends the file. Logs the totals.
   void finish(Time now);
@@ -73,6 +73,7 @@ class Recorder {
   uint64_t log_time(Time time) const;
   void put(std::string_view topic, const google::protobuf::Message& message, Time time,
            Time made_at);
+  void write_events();
   void write_image(const RecordedImage& image);
   void write_event(const RecordedBusFrame& frame);
   void write_event(const RecordedSolution& solution);

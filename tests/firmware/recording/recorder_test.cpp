@@ -94,6 +94,23 @@ TEST_F(RecorderTest, ImagesThatFindNoMemoryAreDroppedAndCounted) {
   EXPECT_EQ(recorder->counters().images + recorder->counters().images_dropped, 20U);
 }
 
+TEST_F(RecorderTest, EventsDoNotWaitForManyImages) {
+  const auto recorder = open();
+  recorder->expect_images(1, 16, 8);
+  for (uint64_t i = 0; i < 6; ++i) {
+    recorder->note_image(frame(i, Time{}), Time{});
+    auto other = frame(i, Time{});
+    other.camera = 1;
+    recorder->note_image(other, Time{});
+  }
+  for (int i = 0; i < 500; ++i) recorder->note_truth({Time{}, {}});
+  recorder->write_queued(Time{});
+  EXPECT_EQ(recorder->counters().events, 500U);
+  EXPECT_EQ(recorder->counters().images, 6U);
+  recorder->finish(Time{std::chrono::seconds(1)});
+  EXPECT_EQ(recorder->counters().images, 12U);
+}
+
 TEST_F(RecorderTest, EventsBeyondTheQueueAreDroppedAndCounted) {
   const auto recorder = open();
   for (int i = 0; i < 10'000; ++i) recorder->note_truth({Time{}, {}});
