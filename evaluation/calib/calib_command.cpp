@@ -72,22 +72,25 @@ void CalibCommand::declare(CLI::App& app) {
 }
 
 void CalibCommand::declare_import(CLI::App& calib) {
-  auto* import = calib.add_subcommand(
+  auto* imports = calib.add_subcommand(
       "import", "Make a rig file of calibrations from Kalibr, OpenCV, ROS, nuScenes or COLMAP");
-  import->add_option("FILE", files_, "Files of the other program")->required();
-  import->add_option("--out", out_, "Rig file to write; the one before is kept as .bak")
+  imports->add_option("FILE", files_, "Files of the other program")->required();
+  imports->add_option("--out", out_, "Rig file to write; the one before is kept as .bak")
       ->required();
-  import->add_option("--map-camera", camera_names_,
-                     "THEIRS=OURS: what a camera of the files is called here, such as cam0=front");
-  import->add_option("--extrinsics", extrinsics_file_,
-                     "File with places on the vehicle, for formats without (docs/calibration.md)");
-  import->add_option("--base", base_file_, "Rig file from which all comes that the files lack");
-  import->add_option("--image-size", image_size_,
-                     "WIDTHxHEIGHT in pixels, for formats without (nuScenes: 1600x900)");
-  import->add_option("--token", tokens_, "Calibrated sensor of nuScenes to use");
-  import->callback([this] { import_ = true;
-});
-}  // namespace bevloc::evaluation
+  imports->add_option("--map-camera", camera_names_,
+                      "THEIRS=OURS: what a camera of the files is called here, such as cam0=front");
+  imports->add_option("--extrinsics", extrinsics_file_,
+                      "File with places on the vehicle, for formats without (docs/calibration.md)");
+  imports->add_option("--base", base_file_, "Rig file from which all comes that the files lack");
+  imports->add_option("--image-size", image_size_,
+                      "WIDTHxHEIGHT in pixels, for formats without (nuScenes: 1600x900)");
+  imports->add_option("--token", tokens_, "Calibrated sensor of nuScenes to use");
+  imports->footer(
+      "Examples:\n"
+      "  bevloc calib import camchain.yaml --map-camera cam0=front --base rig.yaml --out new.yaml\n"
+      "  bevloc calib import cameras.txt images.txt --base rig.yaml --out new.yaml");
+  imports->callback([this] { import_ = true; });
+}
 
 void CalibCommand::declare_inputs(CLI::App& command, CalibCommand& self) {
   command.add_option("RECORDING", self.recording_, "Folder with pictures and reference poses")
@@ -117,6 +120,9 @@ void CalibCommand::declare_check(CLI::App& calib) {
   auto* check = calib.add_subcommand(
       "check", "Compare a recording with the map and judge each camera; exit code 1: not good");
   declare_inputs(*check, *this);
+  check->footer(
+      "Examples:\n"
+      "  bevloc calib check recording --rig rig.yaml --map town.osm --picture check.png");
   check->callback([this] { check_ = true; });
 }
 
@@ -126,6 +132,9 @@ void CalibCommand::declare_refine(CLI::App& calib) {
   declare_inputs(*refine, *this);
   refine->add_option("--keep", keep_, "What must not change: rotation, position, focal, time");
   refine->add_option("--out", out_, "Rig file to write; the one before is kept as .bak");
+  refine->footer(
+      "Examples:\n"
+      "  bevloc calib refine recording --rig rig.yaml --map town.osm --out refined.yaml");
   refine->callback([this] { refine_ = true; });
 }
 

@@ -54,6 +54,9 @@ void CalibEvaluation::declare(CLI::App& eval) {
       ->check(CLI::Range(0.05, 10.0))
       ->capture_default_str();
   calib->add_option("--json", json_file_, "Write the errors to this file");
+  calib->footer(
+      "Examples:\n"
+      "  bevloc eval calib --first-seed 401 --drives 5 --json errors.json");
   calib->callback([this] { chosen_ = true; });
 }
 

@@ -94,6 +94,11 @@ void MapCommand::declare(CLI::App& app) {
   diffs->add_option("other", other_, "Map to compare with")->required();
   diffs->add_option("--json", json_, "Write the result to this JSON file, too");
   diffs->add_option("--picture", picture_, "Draw the differences to this PNG file");
+  imports->footer("Examples:\n  bevloc map import town.xodr town.bvm --picture town.png");
+  infos->footer("Examples:\n  bevloc map info town.osm");
+  checks->footer("Examples:\n  bevloc map check town.osm --json check.json");
+  renders->footer("Examples:\n  bevloc map render town.osm town.png --pixels 2000");
+  diffs->footer("Examples:\n  bevloc map diff old.osm new.osm --picture changes.png");
 }
 
 Status MapCommand::import() const {

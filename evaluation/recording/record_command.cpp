@@ -13,6 +13,10 @@ void RecordCommand::declare(CLI::App& app) {
   record->add_option("--out", out_, "Folder of the recording")->capture_default_str();
   record->add_flag("--raw", raw_, "Record the images without loss");
   record->add_option("options", rest_, "After --: more options of bevlocd, such as --fast");
+  record->footer(
+      "Examples:\n"
+      "  bevloc record --config my_config.yaml --out recording\n"
+      "  bevloc record --config config/demo.yaml --out recording --raw");
   record->callback([this] { chosen_ = true; });
 }
 

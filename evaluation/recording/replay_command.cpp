@@ -70,6 +70,10 @@ void ReplayCommand::declare(CLI::App& app) {
                      "With --from-candump: one folder per camera with pictures and frames.txt");
   replay->add_option("--out", out_, "Folder for can.log and poses.csv")->capture_default_str();
   replay->add_option("--json", json_file_, "Write the result as JSON to this file");
+  replay->footer(
+      "Examples:\n"
+      "  bevloc replay recording/*.mcap --out replay\n"
+      "  bevloc replay --from-candump bus.log --images pictures --config my_config.yaml");
   replay->callback([this] { chosen_ = true; });
 }
 

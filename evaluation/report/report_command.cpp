@@ -67,6 +67,10 @@ void ReportCommand::declare(CLI::App& app) {
   report->add_option("--out", out_, "The page")->capture_default_str();
   report->add_option("--at", moments_,
                      "Explain the state at this time: 14:32, 14:32:05 (local time), or seconds");
+  report->footer(
+      "Examples:\n"
+      "  bevloc report recording/*.mcap --out report.html\n"
+      "  bevloc report recording/*.mcap --at 14:32");
   report->callback([this] { chosen_ = true; });
 }
 

@@ -20,13 +20,14 @@ const Wanted<std::string>& some_name() {
   return wanted;
 }
 
-/// One group of signals (wheel_speed, yaw_rate or gnss) and the message that they are in.
+/// One group of signals (wheel_speed, yaw_rate or gnss) and the message that they are in. Without a
+/// binder, because there is no DBC file, the keys are read but nothing is bound.
 class SignalGroup {
  public:
-  SignalGroup(YamlMap yaml, can::VehicleBinder& binder) : yaml_(std::move(yaml)), binder_(binder) {
+  SignalGroup(YamlMap yaml, can::VehicleBinder* binder) : yaml_(std::move(yaml)), binder_(binder) {
     const auto name = yaml_.require<std::string>("message", some_name());
-    if (name.empty()) return;
-    const auto known = binder_.message_name(name);
+    if (name.empty() || binder_ == nullptr) return;
+    const auto known = binder_->message_name(name);
     if (known) message_ = *known;
     if (!known) refuse("message", known.error());
   }
@@ -35,7 +36,7 @@ class SignalGroup {
   size_t signal(YamlMap& yaml, std::string_view key, Quantity quantity, const std::string& unit) {
     const auto name = yaml.require<std::string>(key, some_name());
     if (message_.empty() || name.empty()) return 0;
-    return take(binder_.quantity(name, message_, quantity, unit), yaml, key);
+    return take(binder_->quantity(name, message_, quantity, unit), yaml, key);
   }
   size_t signal(std::string_view key, Quantity quantity, const std::string& unit) {
     return signal(yaml_, key, quantity, unit);
@@ -54,7 +55,7 @@ class SignalGroup {
     const auto values = yaml->require_list<std::string>("values", 0, some_name());
     if (values.empty()) yaml->reject("values", "no value", "one value or more");
     if (message_.empty() || name.empty()) return can::BoundCondition{};
-    auto bound = binder_.condition(name, message_, values);
+    auto bound = binder_->condition(name, message_, values);
     if (bound) return std::move(*bound);
     yaml->reject("signal", bound.error().found, bound.error().wanted);
     return can::BoundCondition{};
@@ -74,11 +75,11 @@ class SignalGroup {
   }
 
   YamlMap yaml_;
-  can::VehicleBinder& binder_;
+  can::VehicleBinder* binder_;  ///< null without a DBC file
   std::string message_;
 };
 
-can::BoundWheels read_wheels(YamlMap yaml, can::VehicleBinder& binder) {
+can::BoundWheels read_wheels(YamlMap yaml, can::VehicleBinder* binder) {
   SignalGroup group(std::move(yaml), binder);
   can::BoundWheels wheels;
   const std::string unit = group.unit("unit");
@@ -98,14 +99,19 @@ can::BoundWheels read_wheels(YamlMap yaml, can::VehicleBinder& binder) {
                         "rear_left and rear_right, or vehicle");
   }
   if (front_left || front_right) {
-    wheels.wheelbase_m = group.yaml().require<double>("wheelbase_m", between(1.0, 8.0));
+    if (group.yaml().has("wheelbase_m")) {
+      wheels.wheelbase_m = group.yaml().require<double>("wheelbase_m", between(1.0, 8.0));
+    } else {
+      group.yaml().reject("signals", "front wheels without wheelbase_m",
+                          "wheelbase_m, or the rear wheels alone");
+    }
   }
   wheels.valid = group.condition("valid");
   wheels.backward = group.condition("backward");
   return wheels;
 }
 
-can::BoundYawRate read_yaw_rate(YamlMap yaml, can::VehicleBinder& binder) {
+can::BoundYawRate read_yaw_rate(YamlMap yaml, can::VehicleBinder* binder) {
   SignalGroup group(std::move(yaml), binder);
   can::BoundYawRate yaw_rate;
   yaw_rate.signal = group.signal("signal", Quantity::kYawRate, group.unit("unit"));
@@ -145,12 +151,15 @@ void read_heading(SignalGroup& group, can::BoundGnss& gnss) {
   gnss.heading = group.signal("heading", Quantity::kAngle, unit);
   gnss.heading_valid = group.condition("heading_valid");
   gnss.sigma_heading = group.optional_signal("sigma_heading", Quantity::kAngle, unit);
-  if (!gnss.sigma_heading) {
+  if (yaml.has("sigma_heading_deg")) {
     gnss.sigma_heading_deg = yaml.require<double>("sigma_heading_deg", between(0.01, 90.0));
+  }
+  if (yaml.has("sigma_heading") == yaml.has("sigma_heading_deg")) {
+    yaml.reject("heading", "both or none of sigma_heading and sigma_heading_deg", "one of them");
   }
 }
 
-can::BoundGnss read_gnss_signals(YamlMap yaml, can::VehicleBinder& binder) {
+can::BoundGnss read_gnss_signals(YamlMap yaml, can::VehicleBinder* binder) {
   SignalGroup group(std::move(yaml), binder);
   can::BoundGnss gnss;
   const std::string unit = group.unit("position_unit");
@@ -160,6 +169,20 @@ can::BoundGnss read_gnss_signals(YamlMap yaml, can::VehicleBinder& binder) {
   read_position_sigma(group, gnss);
   read_heading(group, gnss);
   return gnss;
+}
+
+void read_data_ids(YamlMap& yaml, can::ProtectionRequest& request) {
+  const auto data_id = between(uint32_t{0}, uint32_t{0xFFFF});
+  if (yaml.has("data_id")) {
+    request.data_ids = {static_cast<uint16_t>(yaml.require<uint32_t>("data_id", data_id))};
+  }
+  if (yaml.has("data_ids")) {
+    const auto ids = yaml.require_list<uint32_t>("data_ids", 16, data_id);
+    request.data_ids.assign(ids.begin(), ids.end());
+  }
+  if (yaml.has("data_id") && yaml.has("data_ids")) {
+    yaml.reject("data_ids", "data_id beside data_ids", "one of them");
+  }
 }
 
 can::ProtectionRequest read_protection_request(YamlMap& yaml) {
@@ -176,33 +199,31 @@ can::ProtectionRequest read_protection_request(YamlMap& yaml) {
                                                {"e2e_p05", can::ChecksumKind::kE2eP05}});
   const bool is_profile =
       request.kind == can::ChecksumKind::kE2eP02 || request.kind == can::ChecksumKind::kE2eP05;
-  if (!is_profile) {
-    request.counter = yaml.optional<std::string>("counter", "");
-    if (request.kind != can::ChecksumKind::kNone) {
-      request.checksum = yaml.require<std::string>("checksum", some_name());
-    }
-    if (yaml.has("highest_counter")) {
-      request.highest_counter =
-          yaml.require<uint32_t>("highest_counter", between(uint32_t{1}, uint32_t{255}));
-    }
+  const bool has_checksum = request.kind != can::ChecksumKind::kNone && !is_profile;
+  if (yaml.has("counter")) request.counter = yaml.require<std::string>("counter");
+  if (yaml.has("checksum")) request.checksum = yaml.require<std::string>("checksum", some_name());
+  if (yaml.has("highest_counter")) {
+    request.highest_counter =
+        yaml.require<uint32_t>("highest_counter", between(uint32_t{1}, uint32_t{255}));
   }
-  const auto data_id = between(uint32_t{0}, uint32_t{0xFFFF});
-  if (yaml.has("data_id")) {
-    request.data_ids = {static_cast<uint16_t>(yaml.require<uint32_t>("data_id", data_id))};
-  } else if (yaml.has("data_ids")) {
-    const auto ids = yaml.require_list<uint32_t>("data_ids", 16, data_id);
-    request.data_ids.assign(ids.begin(), ids.end());
+  if (yaml.has("checksum") != has_checksum) {
+    yaml.reject("algorithm", has_checksum ? "no checksum" : "a checksum without its algorithm",
+                "checksum with xor, crc8_sae_j1850 or crc8_h2f, and only with them");
   }
+  if (is_profile && (yaml.has("counter") || yaml.has("highest_counter"))) {
+    yaml.reject("algorithm", "a profile with a counter of its own", "no counter, highest_counter");
+  }
+  read_data_ids(yaml, request);
   return request;
 }
 
 /// Reads the table `protection`.
-void read_protection(YamlMap& yaml, can::VehicleBinder& binder) {
+void read_protection(YamlMap& yaml, can::VehicleBinder* binder) {
   if (!yaml.has("protection")) return;
   for (YamlMap& entry : yaml.require_map_list("protection")) {
     const can::ProtectionRequest request = read_protection_request(entry);
-    if (request.message.empty()) continue;
-    if (const auto good = binder.protect(request); !good) {
+    if (request.message.empty() || binder == nullptr) continue;
+    if (const auto good = binder->protect(request); !good) {
       entry.reject("message", good.error().found, good.error().wanted);
     }
   }
@@ -228,17 +249,21 @@ can::VehicleBinding read_vehicle_bus(YamlMap& yaml, const can::BaseIds& base,
   const auto file = yaml.require<std::string>("dbc", some_name());
   const auto dbc = file.empty() ? Result<can::Dbc>() : can::read_dbc_file(folder / file);
   if (!dbc) yaml.reject("dbc", dbc.error().message, "a DBC file that can be read");
-  if (file.empty() || !dbc) return {};
-  check_identifiers(yaml, *dbc, base);
-  can::VehicleBinder binder(*dbc);
-  auto wheels = read_wheels(yaml.require_map("wheel_speed"), binder);
-  binder.binding().wheels = std::move(wheels);
-  auto yaw_rate = read_yaw_rate(yaml.require_map("yaw_rate"), binder);
-  binder.binding().yaw_rate = std::move(yaw_rate);
-  if (auto gnss = yaml.optional_map("gnss")) {
-    binder.binding().gnss = read_gnss_signals(std::move(*gnss), binder);
+  const bool usable = !file.empty() && dbc;
+  if (usable) check_identifiers(yaml, *dbc, base);
+  const can::Dbc nothing;
+  can::VehicleBinder binder(usable ? *dbc : nothing);
+  can::VehicleBinder* usable_binder = usable ? &binder : nullptr;
+  auto wheels = read_wheels(yaml.require_map("wheel_speed"), usable_binder);
+  auto yaw_rate = read_yaw_rate(yaml.require_map("yaw_rate"), usable_binder);
+  std::optional<can::BoundGnss> gnss;
+  if (auto section = yaml.optional_map("gnss")) {
+    gnss = read_gnss_signals(std::move(*section), usable_binder);
   }
-  read_protection(yaml, binder);
+  read_protection(yaml, usable_binder);
+  binder.binding().wheels = std::move(wheels);
+  binder.binding().yaw_rate = std::move(yaw_rate);
+  if (gnss) binder.binding().gnss = std::move(*gnss);
   if (binder.binding().signals.empty()) return {};
   auto binding = binder.finish();
   if (binding) return std::move(*binding);

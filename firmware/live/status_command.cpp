@@ -53,6 +53,10 @@ void StatusCommand::declare(CLI::App& app) {
       ->check(CLI::Range(1, 65535))
       ->capture_default_str();
   command->add_flag("--json", json_, "Print the status as JSON");
+  command->footer(
+      "Examples:\n"
+      "  bevloc status                 the daemon of this machine\n"
+      "  bevloc status --port 9000 --json");
   command->callback([this] { chosen_ = true; });
 }
 
