@@ -13,7 +13,7 @@ namespace {
 constexpr uint32_t kExtendedFlag = 0x80000000;
 /// The pseudo message that holds signals without a message.
 constexpr uint32_t kNoMessage = 0xC0000000;
-constexpr uint32_t kMaxExtendedId = 0x1FFFFFFF;
+constexpr uint32_t kHighestExtendedId = 0x1FFFFFFF;
 
 constexpr std::string_view kKeywords[] = {"VERSION",
                                           "NS_",
@@ -187,7 +187,7 @@ void DbcReader::read_message() {
   const bool is_pseudo = raw == kNoMessage;
   message.is_extended = raw <= UINT32_MAX && (raw & kExtendedFlag) != 0;
   message.id = static_cast<uint32_t>(raw & ~uint64_t{kExtendedFlag});
-  const uint32_t highest = message.is_extended ? kMaxExtendedId : kMaxStandardId;
+  const uint32_t highest = message.is_extended ? kHighestExtendedId : kMaxStandardId;
   if (!is_pseudo) {
     if (raw > UINT32_MAX || message.id > highest) {
       refuse(message.line, fmt::format("identifier {}", raw),

@@ -48,8 +48,8 @@ class ForeignNode {
   [[noreturn]] void reject(std::string_view found, std::string_view wanted) const;
 
  private:
-  ForeignNode(YAML::Node node, std::string name, std::string path)
-      : node_(std::move(node)), name_(std::move(name)), path_(std::move(path)) {}
+  ForeignNode(const YAML::Node& node, std::string name, std::string path)
+      : node_(node), name_(std::move(name)), path_(std::move(path)) {}
 
   YAML::Node node_;
   std::string name_;

@@ -104,8 +104,10 @@ void TiledMap::query(const Eigen::Vector2d& min_corner, const Eigen::Vector2d& m
     return std::tuple(segment.element, segment.first);
   };
   std::ranges::sort(found, {}, place);
-  const auto twice = std::ranges::unique(found, {}, place);
-  found.erase(twice.begin(), twice.end());
+  const auto is_same = [&place](const Segment& a, const Segment& b) {
+    return place(a) == place(b);
+  };
+  found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
 }
 
 void TiledMap::add_tile(size_t index, const Eigen::Vector2d& min_corner,

@@ -25,9 +25,8 @@ std::vector<double> changes_in(const Road& road, const LaneSection& section) {
   std::erase_if(at, [&](double s) { return s < section.start_m || s > section.end_m; });
   std::ranges::sort(at);
   constexpr double kSamePlace_m = 1e-6;
-  const auto [first, last] =
-      std::ranges::unique(at, [](double a, double b) { return b - a < kSamePlace_m; });
-  at.erase(first, last);
+  const auto is_same = [](double a, double b) { return b - a < kSamePlace_m; };
+  at.erase(std::unique(at.begin(), at.end(), is_same), at.end());
   return at;
 }
 
