@@ -32,6 +32,12 @@ class TrainingConfig:
     line_width_cells: float = 5.0
     on_error: str = "refuse"  # or "skip": what to do with unusable samples
 
+    recordings: str = ""  # folder of recorded drives; empty: none
+    map: str = ""  # HD map of the recorded drives
+    rig: str = ""  # their calibration; empty: as recorded
+    reference: str = "file"  # or "own": where their reference poses come from
+    simulated_share: float = 0.5  # of the samples beside recorded ones
+
     seed: int = FIRST_TRAINING_SEED
     batch: int = 8  # samples of all processes together
     threads: int = 1

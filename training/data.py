@@ -1,4 +1,4 @@
-"""Batches from the simulator (training/sampler_process.py)."""
+"""Batches from the simulator and from recorded drives (training/sampler_process.py)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,14 @@ from torch import Tensor
 from training.distributed import WHOLE, Share
 from training.model import BEV_COLS, BEV_ROWS, CAMERAS, VIEW_SLOTS
 from training.native import address, library
-from training.sampler_process import RECORD, SamplerError, SamplerOptions, SamplerProcess
+from training.sampler_process import (
+    RECORD,
+    DriveOptions,
+    Drives,
+    SamplerError,
+    SamplerOptions,
+    SamplerProcess,
+)
 
 NUISANCES = ("usual", "strong", "street")
 
@@ -62,7 +69,42 @@ def view_table(camera_mask: int) -> tuple[Tensor, Tensor]:
     return torch.from_numpy(index.astype(np.int64)), torch.from_numpy(weight)
 
 
-class SamplerStream:
+class ProcessStream:
+    """A stream whose samples come from several programs in turn."""
+
+    def __init__(self, options: list[SamplerOptions] | list[DriveOptions], position: int) -> None:
+        """`position`: the number of this process's first sample; sample i comes from program
+        i % len(options). SamplerError if a program refuses its options."""
+        self._position = position
+        self._samplers: list[SamplerProcess] = []
+        atexit.register(self.close)  # the programs must not outlive the interpreter
+        try:
+            for option in options:
+                self._samplers.append(SamplerProcess(option))
+        except SamplerError:
+            self.close()
+            raise
+
+    def next(self, count: int) -> Batch:
+        """The next `count` samples, grouped by program."""
+        turns = len(self._samplers)
+        records = np.empty(count, RECORD)
+        filled = 0
+        for k, sampler in enumerate(self._samplers):
+            own = len(range((k - self._position) % turns, count, turns))
+            sampler.read(records[filled : filled + own])
+            filled += own
+        self._position += count
+        return _batch_of(records)
+
+    def close(self) -> None:
+        for sampler in self._samplers:
+            sampler.close()
+        self._samplers = []
+        atexit.unregister(self.close)
+
+
+class SamplerStream(ProcessStream):
     """An endless stream of simulated samples. Workers render ahead while the network trains.
 
     Consecutive samples of one sampler share a world. To mix worlds within a batch, STREAMS
@@ -93,7 +135,6 @@ class SamplerStream:
         assert first_sample % share.count == 0
         first_sample //= share.count
         own = range(share.index, math.lcm(self.STREAMS, share.count), share.count)
-        self._position = first_sample
         options = [
             SamplerOptions(
                 first_seed=first_seed + sampler * self.SEED_STRIDE,
@@ -105,36 +146,69 @@ class SamplerStream:
             )
             for k, sampler in enumerate(own)
         ]
-        self._samplers: list[SamplerProcess] = []
-        atexit.register(self.close)  # the programs must not outlive the interpreter
-        try:
-            for option in options:
-                self._samplers.append(SamplerProcess(option))
-        except SamplerError:
-            self.close()
-            raise
+        super().__init__(options, first_sample)
+
+
+class DriveStream(ProcessStream):
+    """An endless stream of samples of recorded drives: each sample once, then all again in another
+    order and with other priors. `threads` programs read them."""
+
+    def __init__(
+        self,
+        drives: Drives,
+        part: str,
+        first_seed: int,
+        first_sample: int,
+        threads: int,
+        drop_camera_probability: float,
+        share: Share = WHOLE,
+    ) -> None:
+        """`part`: training or held-back. `first_sample` counts the samples of all processes and is
+        a multiple of their number."""
+        assert first_sample % share.count == 0
+        options = [
+            DriveOptions(
+                drives=drives,
+                first_seed=first_seed,
+                first_sample=first_sample + share.index + share.count * program,
+                stride=share.count * threads,
+                part=part,
+                drop_camera_probability=drop_camera_probability,
+            )
+            for program in range(threads)
+        ]
+        super().__init__(options, 0)
+
+
+class MixedStream:
+    """Takes `second_share` of the samples from the second stream and the others from the first."""
+
+    def __init__(self, first: Stream, second: Stream, second_share: float, position: int) -> None:
+        """`position`: the number of this process's samples before the first one. Both streams must
+        start behind their parts of them (taken())."""
+        self._streams = (first, second)
+        self._share = second_share
+        self._position = position
+
+    @staticmethod
+    def taken(position: int, second_share: float) -> int:
+        """How many of the first `position` samples are from the second stream."""
+        return math.floor(position * second_share + 1e-9)
 
     def next(self, count: int) -> Batch:
-        """The next `count` samples, grouped by sampler."""
-        turns = len(self._samplers)
-        records = np.empty(count, RECORD)
-        filled = 0
-        for k, sampler in enumerate(self._samplers):
-            own = len(range((k - self._position) % turns, count, turns))
-            sampler.read(records[filled : filled + own])
-            filled += own
+        before = self.taken(self._position, self._share)
         self._position += count
-        return _batch_of(records)
+        second = self.taken(self._position, self._share) - before
+        counts = (count - second, second)
+        return Batch.joined([s.next(n) for s, n in zip(self._streams, counts) if n > 0])
 
     def close(self) -> None:
-        for sampler in self._samplers:
-            sampler.close()
-        self._samplers = []
-        atexit.unregister(self.close)
+        for stream in self._streams:
+            stream.close()
 
 
 def _batch_of(records: np.ndarray) -> Batch:
-    """A batch from records of the sampler."""
+    """A batch from records of a sampler."""
     assert records.dtype == RECORD
 
     def tensor(name: str) -> Tensor:

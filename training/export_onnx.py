@@ -2,7 +2,8 @@
 
     /usr/bin/python3 -m training.export_onnx training/runs/nano/checkpoint.pt models
 
-Writes NETWORK.onnx (int8, QDQ) and NETWORK_float.onnx into the folder. Writes quantization.pt and
+Writes NETWORK.onnx (int8, QDQ) and NETWORK_float.onnx into the folder. The ranges of int8 are those
+of simulated samples, or with `--recordings DIR --map FILE` of recorded drives. Writes quantization.pt and
 solvers.pt (the solvers with the scales of the model files) next to the checkpoint.
 
 Inputs of the model: images int8 [6, 3, 96, 320] (RGB - 128), raster uint8 [1, 3, 400, 200],
@@ -38,8 +39,10 @@ from training.model import (
 )
 from training.models.network import BevNetwork
 from training.onnx_graph import MASK_OUTPUT, FloatOnnxBackend, Int8OnnxBackend
+from training.options import add_drive_options, drives_of
 from training.quantize import Quantization, input_scales, int8_inference, quantize
 from training.runtime import NativeNetwork, NativeSolver
+from training.sources import drive_batches
 
 OPSET, IR_VERSION = 13, 8
 QUANTIZATION_FILE = "quantization.pt"
@@ -181,12 +184,17 @@ def main() -> None:
     parser.add_argument("models", type=Path, help="folder for the model files")
     parser.add_argument("--calibration", type=int, default=384, help="number of samples")
     parser.add_argument("--threads", type=int, default=1)
+    add_drive_options(parser)
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint)
     check_exportable(net.config)
     nuisances = nuisances_of(arguments.checkpoint)
-    batches = calibration_batches(arguments.calibration, arguments.threads, nuisances)
+    samples, threads = arguments.calibration, arguments.threads
+    if arguments.recordings:
+        batches = drive_batches(drives_of(arguments), "training", samples, threads)
+    else:
+        batches = calibration_batches(samples, threads, nuisances)
     quantization = quantization_of(net, arguments.checkpoint, batches)
     quantization.save(arguments.checkpoint.with_name(QUANTIZATION_FILE))
     fit_scales(net.solvers, int8_inference(net, quantization), batches)

@@ -11,8 +11,15 @@ from training.model import check_fits_sampler
 from training.models.config import network_config
 from training.nuscenes.stream import ON_ERROR
 from training.precision import PRECISIONS
+from training.sampler_process import Drives
 
-_CHOICES = {"precision": PRECISIONS, "nuisances": NUISANCES, "on_error": ON_ERROR}
+REFERENCES = ("file", "own")
+_CHOICES = {
+    "precision": PRECISIONS,
+    "nuisances": NUISANCES,
+    "on_error": ON_ERROR,
+    "reference": REFERENCES,
+}
 
 
 def parse_config(arguments: list[str], description: str, processes: int = 1) -> TrainingConfig:
@@ -31,6 +38,25 @@ def parse_config(arguments: list[str], description: str, processes: int = 1) -> 
     except ValueError as error:
         parser.error(str(error))
     return config
+
+
+def add_drive_options(parser: argparse.ArgumentParser) -> None:
+    """The options of TrainingConfig that name recorded drives, for other programs."""
+    fields = {field.name: field for field in dataclasses.fields(TrainingConfig)}
+    for name in ("recordings", "map", "rig", "reference", "on_error"):
+        choices = _CHOICES.get(name)
+        parser.add_argument(_option_name(name), default=fields[name].default, choices=choices)
+
+
+def drives_of(options: argparse.Namespace) -> Drives:
+    """The drives that these options name."""
+    return Drives(
+        options.recordings,
+        options.map,
+        options.rig,
+        options.reference,
+        options.on_error == "skip",
+    )
 
 
 def _option_name(field: str) -> str:
@@ -52,4 +78,11 @@ def _check(config: TrainingConfig, processes: int) -> None:
     for field in ("checkpoint_minutes", "validation_minutes"):
         if (minutes := getattr(config, field)) <= 0:
             raise ValueError(f"{_option_name(field)}: found {minutes:g} minutes, wanted more")
+    if config.recordings and config.nuscenes:
+        raise ValueError("--recordings: found --nuscenes too, wanted one of them")
+    if bool(config.recordings) != bool(config.map):
+        raise ValueError("--recordings and --map: found one of them, wanted both or none")
+    if not 0.0 <= config.simulated_share < 1.0:
+        found = f"found {config.simulated_share:g}"
+        raise ValueError(f"--simulated-share: {found}, wanted at least 0 and less than 1")
     check_fits_sampler(network_config(config.network, config.view))

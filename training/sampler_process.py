@@ -1,4 +1,5 @@
-"""Runs bevloc_sampler, the program that renders the simulator's samples, and reads its records.
+"""Runs the programs that make samples, and reads their records: bevloc_sampler renders those of the
+simulator, bevloc_drive_sampler reads those of recorded drives.
 
 A process of its own needs no library of this Python's machine: in a training bundle
 (training/bundle.py) it runs with the libraries and the loader that lie beside it.
@@ -12,6 +13,7 @@ import os
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 
@@ -30,6 +32,7 @@ from training.models.config import RASTER_COLS, RASTER_ROWS
 ENVIRONMENT = "BEVLOC_SAMPLER"
 LOADER = "ld-linux-x86-64.so.2"
 PROGRAM = "bevloc_sampler"
+DRIVE_PROGRAM = "bevloc_drive_sampler"
 BUNDLED = Path("sampler")  # the folder of the program in a training bundle
 _ROOT = Path(__file__).resolve().parent.parent
 _PIPE_BYTES = 2**20  # Linux allows this much without privileges
@@ -65,6 +68,7 @@ class SamplerOptions:
     """Which samples a sampler renders. `nuisances`: usual, strong or street. `photos`: a folder of
     script/photos; empty: the simulator's own textures."""
 
+    program: ClassVar[str] = PROGRAM
     first_seed: int
     first_sample: int = 0
     threads: int = 1
@@ -72,22 +76,75 @@ class SamplerOptions:
     nuisances: str = "usual"
     photos: str = ""
 
-    def arguments(self) -> list[str]:
-        given = {name: value for name, value in vars(self).items() if value != ""}
-        return [f"--{name.replace('_', '-')}={value}" for name, value in given.items()]
+
+@dataclass(frozen=True)
+class Drives:
+    """Recorded drives (training/drives/drive_set.h). `rig`: a calibration of all drives instead of
+    the recorded ones. `reference`: file or own. `skip_bad`: whether the next good sample replaces a
+    bad one; else a bad one ends the program."""
+
+    recordings: str
+    map: str
+    rig: str = ""
+    reference: str = "file"
+    skip_bad: bool = False
+
+    def counts(self) -> tuple[int, int]:
+        """How many samples they have for training, and how many are held back."""
+        options = DriveOptions(self, first_seed=0)
+        command = [*sampler_command(sampler_program(DRIVE_PROGRAM)), *arguments_of(options)]
+        done = subprocess.run(
+            [*command, "--count"], env=_own_environment(), capture_output=True, text=True
+        )
+        if done.returncode != 0:
+            raise SamplerError(done.stderr.strip())
+        training, held_back = done.stdout.split()
+        return int(training), int(held_back)
 
 
-def sampler_program() -> Path:
-    """$BEVLOC_SAMPLER, or the bundle's own program, or the first one in build/<preset>/bin."""
+@dataclass(frozen=True)
+class DriveOptions:
+    """Which samples of recorded drives are read: those of `part` (training or held-back) with the
+    numbers first_sample, first_sample + stride, and so on, in an order that the seed gives."""
+
+    program: ClassVar[str] = DRIVE_PROGRAM
+    drives: Drives
+    first_seed: int
+    first_sample: int = 0
+    stride: int = 1
+    part: str = "training"
+    drop_camera_probability: float = 0.0
+
+
+def arguments_of(options: SamplerOptions | DriveOptions) -> list[str]:
+    """The options on the command line of their program."""
+    given = dict(vars(options))
+    if drives := given.pop("drives", None):
+        given |= vars(drives)
+    arguments = []
+    for name, value in given.items():
+        option = f"--{name.replace('_', '-')}"
+        if value is True:
+            arguments.append(option)
+        elif value is not False and value != "":
+            arguments.append(f"{option}={value}")
+    return arguments
+
+
+def sampler_program(name: str = PROGRAM) -> Path:
+    """A program beside $BEVLOC_SAMPLER, or the bundle's own one, or the first one in
+    build/<preset>/bin."""
     if chosen := os.environ.get(ENVIRONMENT):
-        return Path(chosen)
-    candidates = [_ROOT / BUNDLED / PROGRAM, *sorted(_ROOT.glob(f"build/*/bin/{PROGRAM}"))]
+        return Path(chosen) if name == PROGRAM else Path(chosen).with_name(name)
+    candidates = [_ROOT / BUNDLED / name, *sorted(_ROOT.glob(f"build/*/bin/{name}"))]
     for candidate in candidates:
         if candidate.exists():
             return candidate
-    raise SamplerError(
-        f"{_ROOT}: found no {PROGRAM}; build the target {PROGRAM} or set {ENVIRONMENT}"
-    )
+    raise SamplerError(f"{_ROOT}: found no {name}; build the target {name} or set {ENVIRONMENT}")
+
+
+def _own_environment() -> dict[str, str]:
+    return {key: value for key, value in os.environ.items() if key not in _FOREIGN}
 
 
 def sampler_command(program: Path) -> list[str]:
@@ -103,14 +160,14 @@ class SamplerProcess:
     """One running sampler. Its samples come in order and depend on the options alone, except
     `threads`, which only sets how many are rendered ahead at once."""
 
-    def __init__(self, options: SamplerOptions) -> None:
+    def __init__(self, options: SamplerOptions | DriveOptions) -> None:
         """SamplerError if the program is missing or refuses the options."""
-        program = sampler_program()
-        command = [*sampler_command(program), *options.arguments()]
-        environment = {key: v for key, v in os.environ.items() if key not in _FOREIGN}
+        program = sampler_program(options.program)
+        self._name = program.name
+        command = [*sampler_command(program), *arguments_of(options)]
         try:
             self._process = subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, env=environment
+                command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, env=_own_environment()
             )
         except OSError as error:
             raise SamplerError(f"{program}: cannot be started ({error.strerror})") from error
@@ -138,7 +195,7 @@ class SamplerProcess:
                 status = self._process.wait()
                 self.close()
                 raise SamplerError(
-                    f"{PROGRAM}: ended with status {status}, wanted samples; the reason is above"
+                    f"{self._name}: ended with status {status}, wanted samples; the reason is above"
                 )
             bytes_left = bytes_left[found:]
 

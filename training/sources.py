@@ -1,4 +1,4 @@
-"""Makes streams and sets of samples from the simulator or from nuScenes."""
+"""Makes streams and sets of samples from the simulator, from nuScenes or from recorded drives."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from functools import lru_cache
 from pathlib import Path
 
 from training.config import FIRST_VALIDATION_SEED, TrainingConfig
-from training.data import Batch, SamplerStream, Stream
+from training.data import Batch, DriveStream, MixedStream, SamplerStream, Stream
 from training.distributed import WHOLE, Share
 from training.nuscenes.dataset import NuscenesDataset
 from training.nuscenes.stream import NuscenesStream
+from training.sampler_process import Drives, SamplerError
 
 BATCH = 8
 
@@ -38,10 +39,51 @@ def training_stream(config: TrainingConfig, first: int, share: Share = WHOLE) ->
     drop_probability = config.drop_camera_probability
     if config.nuscenes:
         return _nuscenes(config, config.scenes, config.seed, first, drop_probability, share)
-    threads = config.sampler_threads
-    return SamplerStream(
-        config.seed, first, threads, drop_probability, share, config.nuisances, config.photos
+    if config.recordings:
+        return _drives_and_simulator(config, first, share)
+    return _simulator(config, first, share)
+
+
+def _drives(config: TrainingConfig) -> Drives:
+    return Drives(
+        config.recordings, config.map, config.rig, config.reference, config.on_error == "skip"
     )
+
+
+def _simulator(config: TrainingConfig, first: int, share: Share) -> SamplerStream:
+    return SamplerStream(
+        config.seed,
+        first,
+        config.sampler_threads,
+        config.drop_camera_probability,
+        share,
+        config.nuisances,
+        config.photos,
+    )
+
+
+def _drives_and_simulator(config: TrainingConfig, first: int, share: Share) -> Stream:
+    """Samples of recorded drives, with simulated ones between them, so that the network does not
+    forget what the drives do not show."""
+    own = first // share.count
+    simulated = MixedStream.taken(own, config.simulated_share)
+    drives = DriveStream(
+        _drives(config),
+        "training",
+        config.seed,
+        (own - simulated) * share.count,
+        config.sampler_threads,
+        config.drop_camera_probability,
+        share,
+    )
+    if config.simulated_share == 0.0:
+        return drives
+    try:
+        simulator = _simulator(config, simulated * share.count, share)
+    except SamplerError:
+        drives.close()
+        raise
+    return MixedStream(drives, simulator, config.simulated_share, own)
 
 
 def _batches(stream: Stream, samples: int) -> Iterator[Batch]:
@@ -66,9 +108,20 @@ def nuscenes_batches(
     return _batches(stream, len(_dataset(root, scenes, "", line_width_cells)))
 
 
+def drive_batches(drives: Drives, part: str, samples: int, threads: int) -> list[Batch]:
+    """The first samples of a part in a fixed order, with all cameras; each at most once."""
+    counts = dict(zip(("training", "held-back"), drives.counts()))
+    stream = DriveStream(drives, part, FIRST_VALIDATION_SEED, 0, threads, 0.0)
+    return list(_batches(stream, min(samples, counts[part])))
+
+
 def validation_set(config: TrainingConfig) -> list[Batch]:
     """A fixed set that training does not see, with all cameras. For nuScenes the set is empty
     unless `validation_scenes` is given."""
+    if config.recordings:
+        return drive_batches(
+            _drives(config), "held-back", config.validation_samples, config.sampler_threads
+        )
     if not config.nuscenes:
         return simulator_batches(config.validation_samples, config.sampler_threads)
     if not config.validation_scenes:

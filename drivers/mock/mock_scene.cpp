@@ -39,18 +39,20 @@ void add(sim::Digest& digest, const CameraModel& camera) {
 
 MockScene::MockScene(std::shared_ptr<const sim::World> world,
                      std::shared_ptr<const sim::Drive> drive, const sim::Conditions& conditions,
-                     uint64_t noise_seed, std::shared_ptr<PictureCache> pictures)
-    : MockScene(world, std::move(drive), conditions, noise_seed, std::move(pictures),
+                     uint64_t noise_seed, std::shared_ptr<PictureCache> pictures,
+                     const MockStreet& street)
+    : MockScene(world, std::move(drive), conditions, noise_seed, std::move(pictures), street,
                 std::make_shared<sim::GroundTiles>(*world)) {}
 
 MockScene::MockScene(std::shared_ptr<const sim::World> world,
                      std::shared_ptr<const sim::Drive> drive, const sim::Conditions& conditions,
                      uint64_t noise_seed, std::shared_ptr<PictureCache> pictures,
-                     const std::shared_ptr<sim::GroundTiles>& ground)
+                     const MockStreet& street, const std::shared_ptr<sim::GroundTiles>& ground)
     : world_(std::move(world)),
       drive_(std::move(drive)),
       conditions_(conditions),
       noise_seed_(noise_seed),
+      street_(street),
       pictures_(std::move(pictures)),
       digest_(pictures_ ? digest_of_all(*world_, conditions_) : 0),
       renderers_{RendererSlot(ground), RendererSlot(ground)} {}
@@ -60,6 +62,7 @@ uint64_t MockScene::key_of(const CameraModel& true_camera, const sim::Drive::Sta
                            uint64_t image_seed) const {
   sim::Digest digest;
   digest.add(digest_);
+  digest.add(street_.digest);
   digest.add(drive_time.count());
   digest.add(image_seed);
   const Se2& pose = state.map_from_vehicle;
@@ -82,11 +85,13 @@ void MockScene::draw(int camera, const CameraModel& true_camera, Duration drive_
   const uint64_t key = pictures_ ? key_of(true_camera, state, body, drive_time, image_seed) : 0;
   if (pictures_ && pictures_->find(key, image)) return;
   RendererSlot& slot = renderers_[static_cast<size_t>(camera) * renderers_.size() / kCameraCount];
+  const sim::Stance stance{.body = body, .ground = drive_->ground_at(time_s, street_.slopes)};
   {
     const std::lock_guard lock(slot.mutex);
-    slot.renderer.render(true_camera, state.map_from_vehicle, {.body = body}, time_s, conditions_,
+    slot.renderer.render(true_camera, state.map_from_vehicle, stance, time_s, conditions_,
                          image_seed, image);
   }
+  if (street_.changes_pictures) sim::apply(street_.looks[static_cast<size_t>(camera)], image);
   if (pictures_) pictures_->keep(key, image);
 }
 

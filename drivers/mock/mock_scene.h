@@ -6,16 +6,26 @@
 #include <memory>
 #include <mutex>
 
+#include "common/cameras.h"
 #include "common/image.h"
 #include "common/time.h"
 #include "drivers/mock/picture_cache.h"
 #include "pipeline/calibration/camera_model.h"
 #include "sim/render/ground_tiles.h"
+#include "sim/render/picture_look.h"
 #include "sim/render/renderer.h"
 #include "sim/vehicle/drive.h"
 #include "sim/world/world.h"
 
 namespace bevloc::drivers {
+
+/// How the street and the cameras differ from the simulator's own. By default they do not.
+struct MockStreet {
+  std::array<sim::PictureLook, kCameraCount> looks{};
+  bool changes_pictures = false;  ///< whether `looks` counts
+  sim::GroundShape slopes{};      ///< of sim::Drive::ground_at()
+  uint64_t digest = 0;            ///< of all of these
+};
 
 /// Thread-safe. There are two renderers, and three cameras share each of them. So two images are
 /// drawn at the same time, and memory is needed for two. Ground that several cameras see is painted
@@ -25,7 +35,7 @@ class MockScene {
   /// `pictures`: keeps the pictures for other scenes too; null without.
   MockScene(std::shared_ptr<const sim::World> world, std::shared_ptr<const sim::Drive> drive,
             const sim::Conditions& conditions, uint64_t noise_seed,
-            std::shared_ptr<PictureCache> pictures = nullptr);
+            std::shared_ptr<PictureCache> pictures = nullptr, const MockStreet& street = {});
 
   /// Draws the view of camera `camera` (index into kCameraNames) at a time of the drive. The pixels
   /// do not depend on earlier calls. `true_camera` is the true camera model, from which the
@@ -43,7 +53,7 @@ class MockScene {
 
   MockScene(std::shared_ptr<const sim::World> world, std::shared_ptr<const sim::Drive> drive,
             const sim::Conditions& conditions, uint64_t noise_seed,
-            std::shared_ptr<PictureCache> pictures,
+            std::shared_ptr<PictureCache> pictures, const MockStreet& street,
             const std::shared_ptr<sim::GroundTiles>& ground);
 
   uint64_t key_of(const CameraModel& true_camera, const sim::Drive::State& state,
@@ -53,6 +63,7 @@ class MockScene {
   const std::shared_ptr<const sim::Drive> drive_;
   const sim::Conditions conditions_;
   const uint64_t noise_seed_;
+  const MockStreet street_;
   const std::shared_ptr<PictureCache> pictures_;
   const uint64_t digest_;  ///< of what all pictures depend on
   std::array<RendererSlot, 2> renderers_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "common/files.h"
 #include "common/image_file.h"
 
 namespace bevloc::evaluation {
@@ -14,10 +13,7 @@ constexpr Duration kWidestSpread = std::chrono::milliseconds(50);
 
 Result<std::unique_ptr<FolderRecording>> FolderRecording::open(const std::filesystem::path& folder,
                                                                const Rig& rig, Duration interval) {
-  const std::string reference_file = (folder / kReferenceFile).string();
-  const auto text = bevloc::read_file(reference_file);
-  if (!text) return tl::unexpected(text.error());
-  auto reference = ReferenceTrajectory::parse(*text, reference_file);
+  auto reference = ReferenceTrajectory::read(folder / kReferenceFile);
   if (!reference) return tl::unexpected(reference.error());
   Frames frames;
   for (int camera = 0; camera < kCameraCount; ++camera) {

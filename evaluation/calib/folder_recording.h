@@ -13,9 +13,6 @@
 
 namespace bevloc::evaluation {
 
-/// The file of reference poses in the folder of a recording (ReferenceTrajectory::parse).
-inline constexpr const char* kReferenceFile = "reference.csv";
-
 class FolderRecording final : public PictureRecording {
  public:
   /// Reads the indexes: for each camera CAMERA/frames.txt (drivers::load_recording), and

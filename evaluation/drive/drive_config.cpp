@@ -37,6 +37,16 @@ drivers::CalibrationError read_calibration_error(std::optional<YamlMap> yaml) {
   return sigma;
 }
 
+StreetConfig read_street(std::optional<YamlMap> yaml) {
+  StreetConfig street;
+  if (!yaml) return street;
+  if (yaml->has("seed")) street.seed = yaml->require<uint64_t>("seed");
+  street.looks = yaml->optional<double>("looks", 0.0, between(0.0, 2.0));
+  street.slopes = yaml->optional<double>("slopes", 0.0, between(0.0, 2.0));
+  street.photos = yaml->optional<std::string>("photos", "");
+  return street;
+}
+
 std::array<Duration, kCameraCount> read_offsets(YamlMap& yaml) {
   std::array<Duration, kCameraCount> offsets{};
   if (!yaml.has("exposure_offsets_ms")) return offsets;
@@ -71,6 +81,7 @@ void read_simulation(YamlMap yaml, SimulationConfig& simulation) {
   simulation.stops = read_stops(yaml);
   simulation.conditions = read_conditions(yaml.optional_map("conditions"));
   simulation.calibration_error = read_calibration_error(yaml.optional_map("calibration_error"));
+  simulation.street = read_street(yaml.optional_map("street"));
   simulation.exposure_offsets = read_offsets(yaml);
   simulation.fault_socket = yaml.optional<std::string>("fault_socket", "");
   simulation.faults.clear();

@@ -17,6 +17,14 @@
 namespace bevloc::evaluation {
 
 /// The drive that the mock cameras see: the section `simulation` and the map's `procedural_seed`.
+/// How the street of a drive differs from the simulator's own, as in training.
+struct StreetConfig {
+  std::optional<uint64_t> seed;  ///< of the looks; empty: the drive's
+  double looks = 0.0;            ///< factor on the ranges of sim::street_looks()
+  double slopes = 0.0;           ///< factor on the curvatures of the evaluation set "slopes"
+  std::filesystem::path photos;  ///< folder of script/photos; empty: the simulator's own textures
+};
+
 struct SimulationConfig {
   uint64_t seed = 1;
   double duration_s = 60.0;
@@ -24,6 +32,7 @@ struct SimulationConfig {
   std::optional<uint64_t> town_seed;  ///< of a procedural town; empty if the map is a file
   sim::Conditions conditions;
   drivers::CalibrationError calibration_error;  ///< 1 sigma
+  StreetConfig street;
   std::vector<sim::Fault> faults;
   /// Where `bevloc fault` can reach the running drive; empty: nowhere.
   std::filesystem::path fault_socket;

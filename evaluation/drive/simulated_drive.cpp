@@ -4,12 +4,14 @@
 
 #include "drivers/mock/true_rig.h"
 #include "evaluation/drive/configured_world.h"
+#include "evaluation/drive/drive_street.h"
 #include "sim/faults/drive_clock.h"
 #include "sim/faults/gnss_faults.h"
 #include "sim/faults/map_faults.h"
 #include "sim/faults/odometry_faults.h"
 #include "sim/faults/world_faults.h"
 #include "sim/random.h"
+#include "sim/render/photo_library.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -124,9 +126,19 @@ Result<SimulatedDrive> SimulatedDrive::create(const DriveConfig& config) {
   const SimulationConfig& simulation = *config.simulation;
   auto world = make_configured_world(config);
   if (!world) return tl::unexpected(world.error());
-  return SimulatedDrive(
-      std::make_shared<const sim::World>(sim::with_faults(std::move(*world), simulation.faults)),
-      simulation);
+  struct PhotographedWorld {
+    sim::World world;
+    std::optional<sim::PhotoLibrary> photos;
+  };
+  const auto owned = std::make_shared<PhotographedWorld>();
+  owned->world = sim::with_faults(std::move(*world), simulation.faults);
+  if (!simulation.street.photos.empty()) {
+    auto photos = sim::PhotoLibrary::load(simulation.street.photos);
+    if (!photos) return tl::unexpected(photos.error());
+    owned->photos.emplace(std::move(*photos));
+    owned->world.photos = &*owned->photos;
+  }
+  return SimulatedDrive(std::shared_ptr<const sim::World>(owned, &owned->world), simulation);
 }
 
 SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,
@@ -148,9 +160,9 @@ std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(
     const DriveConfig& config, const Rig& rig, drivers::Clock& clock, Time drive_start,
     const std::shared_ptr<drivers::PictureCache>& pictures) const {
   const SimulationConfig& simulation = *config.simulation;
-  const auto scene =
-      std::make_shared<drivers::MockScene>(world_, drive_, simulation.conditions,
-                                           sim::seed_for(simulation.seed, "pixel noise"), pictures);
+  const auto scene = std::make_shared<drivers::MockScene>(
+      world_, drive_, simulation.conditions, sim::seed_for(simulation.seed, "pixel noise"),
+      pictures, street_of(simulation.street, simulation.seed));
   const Rig true_rig = drivers::true_rig(rig, simulation.calibration_error,
                                          sim::seed_for(simulation.seed, "calibration"));
   std::vector<std::unique_ptr<drivers::Camera>> cameras;

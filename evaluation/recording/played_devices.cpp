@@ -204,6 +204,13 @@ Result<std::vector<PlayedFrame>> played_frames(Recording& recording, std::string
   return frames;
 }
 
+Result<drivers::Frame> read_recorded_frame(Recording& recording, int camera, size_t number,
+                                           const Intrinsics& lens) {
+  const std::string topic = firmware::image_topic(camera);
+  return read_frame(recording, recording.messages(topic)[number],
+                    recording.has_schema(topic, kRawSchema), camera, lens.width_px, lens.height_px);
+}
+
 Result<RgbImage> picture_at(Recording& recording, int camera, const MessagePlace& place) {
   const bool raw = recording.has_schema(firmware::image_topic(camera), kRawSchema);
   const auto frame = read_frame(recording, place, raw, camera, 0, 0);

@@ -8,6 +8,7 @@
 #include "drivers/camera/camera.h"
 #include "drivers/clock/clock.h"
 #include "evaluation/recording/recording.h"
+#include "pipeline/calibration/camera_model.h"
 
 namespace bevloc::evaluation {
 
@@ -72,6 +73,10 @@ class PlayedBus final : public can::Bus {
 
 /// The recorded frames of a topic, in the order of time.
 Result<std::vector<PlayedFrame>> played_frames(Recording& recording, std::string_view topic);
+
+/// The camera's frame of this number. `lens` states the size that its images should have.
+Result<drivers::Frame> read_recorded_frame(Recording& recording, int camera, size_t number,
+                                           const Intrinsics& lens);
 
 /// The recorded image as RGB, for people. Bayer images become grey.
 Result<RgbImage> picture_at(Recording& recording, int camera, const MessagePlace& place);

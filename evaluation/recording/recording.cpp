@@ -53,7 +53,8 @@ Status Recording::add(const std::filesystem::path& path) {
       const mcap::Message& message = chunk->messages[index];
       const auto channel = reader->channels().find(message.channel_id);
       if (channel == reader->channels().end()) continue;
-      topics_[channel->second.topic].push_back({message.log_time_ns, file, i, index});
+      topics_[channel->second.topic].push_back(
+          {message.log_time_ns, message.publish_time_ns, file, i, index});
       const auto schema = reader->schemas().find(channel->second.schema_id);
       if (schema != reader->schemas().end()) {
         schemas_[channel->second.topic] = schema->second.name;

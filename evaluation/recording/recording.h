@@ -17,9 +17,10 @@
 
 namespace bevloc::evaluation {
 
-/// Where a message is. `log_time_ns` is since 1970.
+/// Where a message is. Times are since 1970.
 struct MessagePlace {
   uint64_t log_time_ns = 0;
+  uint64_t publish_time_ns = 0;  ///< of an image: when its exposure started
   uint32_t file = 0;
   uint32_t chunk = 0;
   uint32_t index = 0;  ///< in the chunk

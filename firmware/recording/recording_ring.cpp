@@ -6,6 +6,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "firmware/recording/topics.h"
+
 namespace bevloc::firmware {
 namespace {
 
@@ -55,10 +57,10 @@ void remove_file(const fs::path& path) {
 Result<RecordingRing> RecordingRing::open(const RecordConfig& config, RecordingHead head,
                                           uint64_t log_time_ns) {
   std::error_code error;
-  fs::create_directories(config.directory / "kept", error);
+  fs::create_directories(config.directory / kBlackBoxFolder, error);
   if (error) {
     return fail("{}: cannot create this folder ({}), wanted one for the recording",
-                (config.directory / "kept").string(), error.message());
+                (config.directory / kBlackBoxFolder).string(), error.message());
   }
   RecordingRing ring(config, std::move(head));
   if (Status begun = ring.begin_file(log_time_ns); !begun) return tl::unexpected(begun.error());
@@ -116,7 +118,7 @@ Status RecordingRing::step(uint64_t log_time_ns) {
 
 Result<fs::path> RecordingRing::keep(uint64_t log_time_ns) {
   const auto covered = static_cast<uint64_t>(kBlackBox.count());
-  const fs::path folder = config_.directory / "kept";
+  const fs::path folder = config_.directory / kBlackBoxFolder;
   for (const RecentFile& file : recent_) {
     if (&file != &recent_.back() && file.end_ns + covered < log_time_ns) continue;
     std::error_code error;

@@ -27,6 +27,9 @@ inline std::string calibration_topic(int camera) {
   return image_topic(camera) + "/calibration";
 }
 
+/// The folder of the black box, in that of a recording.
+inline constexpr const char* kBlackBoxFolder = "kept";
+
 /// The metadata record of a recording, and its keys.
 inline constexpr std::string_view kMetadataName = "bevloc";
 inline constexpr std::string_view kClockOffsetKey = "log_time_minus_clock_ns";

@@ -63,6 +63,10 @@ Eigen::Vector2d hermite(const Eigen::Vector2d& a, const Eigen::Vector2d& tangent
          (3.0 * t2 - 2.0 * t3) * b + (t3 - t2) * length * tangent_b;
 }
 
+// Wavelengths of the road's height.
+constexpr double kShortestSlope_m = 80.0;
+constexpr double kLongestSlope_m = 400.0;
+
 }  // namespace
 
 Drive::Drive(const World& world, uint64_t seed, double duration_s, const StopTimes& times)
@@ -70,7 +74,10 @@ Drive::Drive(const World& world, uint64_t seed, double duration_s, const StopTim
       duration_s_(duration_s),
       pitch_noise_(seed_for(seed, "pitch"), radians(0.27), 4.0, 40.0),
       roll_noise_(seed_for(seed, "roll"), radians(0.2), 4.0, 40.0),
-      lift_noise_(seed_for(seed, "lift"), 0.012, 4.0, 40.0) {
+      lift_noise_(seed_for(seed, "lift"), 0.012, 4.0, 40.0),
+      crest_noise_(seed_for(seed, "crest"), 1.0, kShortestSlope_m, kLongestSlope_m),
+      camber_noise_(seed_for(seed, "camber"), 1.0, kShortestSlope_m, kLongestSlope_m),
+      twist_noise_(seed_for(seed, "twist"), 1.0, kShortestSlope_m, kLongestSlope_m) {
   assert(!world.map.lanes.empty());
   Random random(seed_for(seed, "route"));
   const std::vector<uint32_t> route =
@@ -225,6 +232,20 @@ Drive::State Drive::at(double time_s) const {
   return state;
 }
 
+double Drive::distance_at(double time_s) const {
+  const Progress now = progress_at(time_s);
+  return station_m_[now.sample] +
+         now.fraction * (station_m_[now.sample + 1] - station_m_[now.sample]);
+}
+
+GroundShape Drive::ground_at(double time_s, const GroundShape& sigma) const {
+  if (sigma.is_flat()) return {};
+  const double distance_m = distance_at(time_s);
+  return {.along_per_m = sigma.along_per_m * crest_noise_.at(distance_m),
+          .across_per_m = sigma.across_per_m * camber_noise_.at(distance_m),
+          .twist_per_m = sigma.twist_per_m * twist_noise_.at(distance_m)};
+}
+
 BodyMotion Drive::body_at(double time_s) const {
   constexpr double kPitchPerAcceleration = 0.004;  // rad per m/s^2, typical of cars
   constexpr double kRollPerAcceleration = 0.007;
@@ -236,9 +257,7 @@ BodyMotion Drive::body_at(double time_s) const {
     longitudinal += state.acceleration_mps2 / kTaps;
     lateral += state.speed_mps * state.yaw_rate_radps / kTaps;
   }
-  const Progress now = progress_at(time_s);
-  const double distance_m =
-      station_m_[now.sample] + now.fraction * (station_m_[now.sample + 1] - station_m_[now.sample]);
+  const double distance_m = distance_at(time_s);
   return {.pitch_rad = pitch_noise_.at(distance_m) - kPitchPerAcceleration * longitudinal,
           .roll_rad = roll_noise_.at(distance_m) + kRollPerAcceleration * lateral,
           .lift_m = lift_noise_.at(distance_m)};

@@ -7,6 +7,7 @@
 #include "common/se2.h"
 #include "sim/vehicle/body_motion.h"
 #include "sim/vehicle/smooth_noise.h"
+#include "sim/vehicle/stance.h"
 #include "sim/world/world.h"
 
 namespace bevloc::sim {
@@ -38,6 +39,9 @@ class Drive {
   State at(double time_s) const;
   /// Pitch, roll and lift of the body from accelerations and road bumps; same times as at().
   BodyMotion body_at(double time_s) const;
+  /// The ground around the vehicle on a road that rises and falls; same times as at(). Along the
+  /// way each curvature varies around zero, with the one in `sigma` as standard deviation.
+  GroundShape ground_at(double time_s, const GroundShape& sigma) const;
 
   double duration_s() const { return duration_s_; }
   /// The path of the rear axle, with a point about every 0.5 m.
@@ -65,12 +69,16 @@ class Drive {
     double acceleration_mps2 = 0.0;
   };
   Progress progress_at(double time_s) const;
+  double distance_at(double time_s) const;
 
   uint64_t seed_;
   double duration_s_;
   SmoothNoise pitch_noise_;  ///< as a function of the distance driven, like roll and lift
   SmoothNoise roll_noise_;
   SmoothNoise lift_noise_;
+  SmoothNoise crest_noise_;  ///< of the ground's curvatures, with standard deviation 1
+  SmoothNoise camber_noise_;
+  SmoothNoise twist_noise_;
 
   double lane_step_m_ = 0.0;  ///< between two samples, measured along the lanes' centre lines
   // Samples along the path.

@@ -44,7 +44,7 @@ Batch read(SampleQueue& queue, int count) {
   Batch batch;
   for (int i = 0; i < count; ++i) {
     batch.samples.push_back(queue.next());
-    write_sample_record(batch.samples.back(), batch.records.emplace_back());
+    write_sample_record(batch.samples.back().content(), batch.records.emplace_back());
   }
   return batch;
 }

@@ -13,6 +13,7 @@
 #include "pipeline/network/view/view_table.h"
 #include "sim/render/photo_library.h"
 #include "sim/samples/sample_maker.h"
+#include "training/native/sample_record.h"
 
 namespace bevloc {
 
@@ -20,6 +21,11 @@ namespace bevloc {
 struct TrainingSample {
   sim::Sample sample;
   ViewTable table;
+
+  SampleContent content() const {
+    return {sample.images, sample.raster_prior, sample.raster_truth,
+            table,         sample.correction,   sample.cameras};
+  }
 };
 
 /// Workers that make samples ahead of their use. Each worker makes whole worlds; samples are

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pipeline/bev_grid.h"
+#include "pipeline/preprocessing/network_camera.h"
 
 namespace bevloc {
 
@@ -15,6 +16,8 @@ static_assert(std::endian::native == std::endian::little);
 namespace {
 
 constexpr std::string_view kMagic = "bevlocS1";
+constexpr size_t kImageBytes =
+    static_cast<size_t>(kCameraCount) * 3 * kNetworkHeightPx * kNetworkWidthPx;
 constexpr size_t kTableEntries = static_cast<size_t>(kViewSlots) * kFeatureGrid.cells();
 constexpr size_t kRasterBytes = static_cast<size_t>(kRasterChannels) * kRasterGrid.cells();
 
@@ -51,19 +54,18 @@ std::vector<uint8_t> sample_stream_header() {
 }
 
 size_t sample_record_size() {
-  return sim::kImagesSize + 2 * kRasterBytes + kTableEntries * (sizeof(int32_t) + sizeof(float)) +
+  return kImageBytes + 2 * kRasterBytes + kTableEntries * (sizeof(int32_t) + sizeof(float)) +
          3 * sizeof(float) + sizeof(uint32_t);
 }
 
-void write_sample_record(const TrainingSample& training, std::vector<uint8_t>& record) {
-  const sim::Sample& sample = training.sample;
+void write_sample_record(const SampleContent& sample, std::vector<uint8_t>& record) {
   record.resize(sample_record_size());
   Bytes bytes(record);
-  bytes.add(sample.images.data(), sim::kImagesSize);
+  bytes.add(sample.images.data(), kImageBytes);
   bytes.add(sample.raster_prior.data(), kRasterBytes);
   bytes.add(sample.raster_truth.data(), kRasterBytes);
-  bytes.add(training.table.index.data(), kTableEntries);
-  bytes.add(training.table.weight.data(), kTableEntries);
+  bytes.add(sample.table.index.data(), kTableEntries);
+  bytes.add(sample.table.weight.data(), kTableEntries);
   const std::array<float, 3> correction = {static_cast<float>(sample.correction.x_m),
                                            static_cast<float>(sample.correction.y_m),
                                            static_cast<float>(sample.correction.yaw_rad)};

@@ -1,11 +1,15 @@
-// The binary form in which bevloc_sampler passes samples to training (training/sampler_process.py).
+// The binary form in which samples go to training (training/sampler_process.py): simulated ones
+// from bevloc_sampler, recorded ones from bevloc_drive_sampler.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "training/native/sample_queue.h"
+#include "common/cameras.h"
+#include "common/se2.h"
+#include "pipeline/network/view/view_table.h"
 
 namespace bevloc {
 
@@ -26,7 +30,17 @@ std::vector<uint8_t> sample_stream_header();
 /// The number of bytes of one record.
 size_t sample_record_size();
 
+/// What a record contains. It borrows its values.
+struct SampleContent {
+  std::span<const uint8_t> images;
+  std::span<const uint8_t> raster_prior;
+  std::span<const uint8_t> raster_truth;
+  const ViewTable& table;
+  Se2 correction;
+  CameraMask cameras;
+};
+
 /// Writes the record of a sample; `record` gets sample_record_size() bytes.
-void write_sample_record(const TrainingSample& sample, std::vector<uint8_t>& record);
+void write_sample_record(const SampleContent& sample, std::vector<uint8_t>& record);
 
 }  // namespace bevloc

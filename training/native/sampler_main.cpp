@@ -2,23 +2,20 @@
 // without end, in the form of training/native/sample_record.h. It ends when nobody reads any more.
 // training/sampler_process.py starts it. It needs neither Python nor the network's engine, so a
 // training bundle can carry it to another machine.
-#include <cerrno>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <map>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <unistd.h>
 
 #include "sim/render/photo_library.h"
 #include "sim/samples/sample_maker.h"
 #include "sim/samples/training_nuisances.h"
+#include "training/native/record_output.h"
 #include "training/native/sample_queue.h"
 #include "training/native/sample_record.h"
 
@@ -28,6 +25,7 @@ using bevloc::sim::PhotoLibrary;
 using bevloc::sim::SampleStream;
 using bevloc::sim::TrainingNuisances;
 
+constexpr const char* kProgram = "bevloc_sampler";
 constexpr int kExitWrongInput = 2;
 
 struct Options {
@@ -61,20 +59,6 @@ void add_options(CLI::App& app, Options& options) {
                  "Folder of script/photos; without it all textures are the simulator's own");
 }
 
-/// Writes all bytes to standard output. False when nobody reads any more or the write fails.
-bool write_all(std::span<const uint8_t> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      std::fprintf(stderr, "bevloc_sampler: standard output: %s\n", std::strerror(errno));
-      return false;
-    }
-    bytes = bytes.subspan(static_cast<size_t>(written));
-  }
-  return true;
-}
-
 /// Returns only if writing fails. A reader that goes away ends the program by SIGPIPE.
 int write_samples(const Options& options) {
   std::unique_ptr<const PhotoLibrary> photos;
@@ -91,9 +75,9 @@ int write_samples(const Options& options) {
   stream.nuisances.missing_cameras.probability = options.drop_camera_probability;
   stream.training = nuisances_by_name().at(options.nuisances)();
   bevloc::SampleQueue queue(stream, std::move(photos), options.first_sample, options.threads);
-  bool written = write_all(bevloc::sample_stream_header());
-  for (std::vector<uint8_t> record; written; written = write_all(record)) {
-    bevloc::write_sample_record(queue.next(), record);
+  bool written = bevloc::write_output(bevloc::sample_stream_header(), kProgram);
+  for (std::vector<uint8_t> record; written; written = bevloc::write_output(record, kProgram)) {
+    bevloc::write_sample_record(queue.next().content(), record);
   }
   return 1;
 }
@@ -109,9 +93,6 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitWrongInput;
   }
-  if (::isatty(STDOUT_FILENO) != 0) {
-    std::fputs("bevloc_sampler: standard output is a terminal, wanted a pipe or a file\n", stderr);
-    return kExitWrongInput;
-  }
+  if (!bevloc::output_is_pipe(kProgram)) return kExitWrongInput;
   return write_samples(options);
 }

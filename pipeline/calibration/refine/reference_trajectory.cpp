@@ -4,6 +4,8 @@
 #include <charconv>
 #include <sstream>
 
+#include "common/files.h"
+
 namespace bevloc {
 namespace {
 
@@ -52,6 +54,12 @@ Result<ReferenceTrajectory> ReferenceTrajectory::parse(const std::string& text,
   }
   if (poses.size() < 2) return fail("{}: found {} poses, wanted two or more", name, poses.size());
   return ReferenceTrajectory(std::move(poses));
+}
+
+Result<ReferenceTrajectory> ReferenceTrajectory::read(const std::filesystem::path& file) {
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  return parse(*text, file.string());
 }
 
 std::optional<Se2> ReferenceTrajectory::at(Time time) const {

@@ -1,6 +1,7 @@
 // The vehicle's poses from a reference system, such as RTK GNSS with an IMU.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,9 @@
 #include "common/time.h"
 
 namespace bevloc {
+
+/// The file of reference poses in the folder of a recording.
+inline constexpr const char* kReferenceFile = "reference.csv";
 
 /// Poses in the order of time. Immutable.
 class ReferenceTrajectory {
@@ -23,6 +27,9 @@ class ReferenceTrajectory {
   /// with `name` and line, on anything else, on times that are negative or do not increase, and
   /// with fewer than two poses.
   static Result<ReferenceTrajectory> parse(const std::string& text, const std::string& name);
+
+  /// Reads such a text from a file.
+  static Result<ReferenceTrajectory> read(const std::filesystem::path& file);
 
   /// `poses` must be in the order of time.
   explicit ReferenceTrajectory(std::vector<Pose> poses) : poses_(std::move(poses)) {}

@@ -1,0 +1,199 @@
+"""Tests training on recorded drives: streams, what is held back, bad samples and the report."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import io
+import tempfile
+import unittest
+from pathlib import Path
+
+import torch
+from PIL import Image
+
+from training.config import TrainingConfig
+from training.data import DriveStream, MixedStream
+from training.distributed import Share
+from training.drive_report import report, table
+from training.evaluate import AXES, CLASSES
+from training.options import parse_config
+from training.sampler_process import Drives, SamplerError
+from training.sources import drive_batches, training_stream, validation_set
+
+ROOT = Path(__file__).parent.parent.parent
+RIG = ROOT / "config/rig_demo.yaml"
+CAMERAS = ("front_left", "front", "front_right", "back_left", "back", "back_right")
+LENGTH_M, SPACING_M = 500, 5
+STEP_NS = 200_000_000
+
+
+def write_drive(folder: Path) -> None:
+    """A drive to the east with one picture per camera that every frame shows, and a map."""
+    size = (640, 360)
+    frames = LENGTH_M // SPACING_M
+    for number, camera in enumerate(CAMERAS):
+        (folder / camera).mkdir(parents=True)
+        Image.new("RGB", size, (40 + number, 90, 90)).save(folder / camera / "0.png")
+        lines = [f"{i} {(i + 1) * STEP_NS} 0.png" for i in range(frames)]
+        (folder / camera / "frames.txt").write_text("\n".join(lines) + "\n")
+    poses = [f"{i * STEP_NS},{i * SPACING_M},0,0" for i in range(frames + 3)]
+    (folder / "reference.csv").write_text("time_ns,x_m,y_m,yaw_deg\n" + "\n".join(poses) + "\n")
+
+
+def write_map(path: Path) -> None:
+    """Lane dividers 2 m beside the drive, and boundaries 5 m beside it."""
+    ways, nodes = [], []
+    for number, (y_m, kind) in enumerate(
+        ((-5, "curbstone"), (-2, "line_thin"), (2, "line_thin"), (5, "curbstone"))
+    ):
+        ids = []
+        for x_m in range(-50, LENGTH_M + 60, 10):
+            ids.append(1 + len(nodes))
+            nodes.append(
+                f'<node id="{ids[-1]}" lat="0" lon="0"><tag k="local_x" v="{x_m}"/>'
+                f'<tag k="local_y" v="{y_m}"/></node>'
+            )
+        refs = "".join(f'<nd ref="{i}"/>' for i in ids)
+        subtype = '<tag k="subtype" v="dashed"/>' if kind == "line_thin" else ""
+        ways.append(f'<way id="{1000 + number}">{refs}<tag k="type" v="{kind}"/>{subtype}</way>')
+    lanelets = [
+        f'<relation id="{2000 + k}"><member type="way" ref="{1001 + k}" role="left"/>'
+        f'<member type="way" ref="{1000 + k}" role="right"/><tag k="type" v="lanelet"/>'
+        '<tag k="subtype" v="road"/></relation>'
+        for k in range(3)
+    ]
+    path.write_text(
+        '<?xml version="1.0"?><osm version="0.6">' + "\n".join(nodes + ways + lanelets) + "</osm>"
+    )
+
+
+class DrivesTest(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+        write_drive(self.root / "drive")
+        write_map(self.root / "map.osm")
+        self.drives = Drives(str(self.root / "drive"), str(self.root / "map.osm"), str(RIG))
+
+    def stream(self, first: int = 0, threads: int = 1, share: Share = Share(0, 1)) -> DriveStream:
+        stream = DriveStream(self.drives, "training", 5, first, threads, 0.0, share)
+        self.addCleanup(stream.close)
+        return stream
+
+    def stream_that_skips(self) -> DriveStream:
+        drives = dataclasses.replace(self.drives, skip_bad=True)
+        stream = DriveStream(drives, "training", 5, 0, 1, 0.0)
+        self.addCleanup(stream.close)
+        return stream
+
+    def test_every_fourth_square_is_held_back(self) -> None:
+        training, held_back = self.drives.counts()
+        self.assertEqual(held_back, 100 // SPACING_M)
+        # Of 500 m, 100 are held back, and 30 on both sides of these are left out.
+        self.assertAlmostEqual(training, (LENGTH_M - 100 - 2 * 30) // SPACING_M, delta=2)
+        self.assertEqual(sum(map(len, drive_batches(self.drives, "held-back", 999, 1))), held_back)
+
+    def test_an_epoch_has_each_sample_once(self) -> None:
+        training, _ = self.drives.counts()
+        rasters = self.stream().next(2 * training).raster_truth.flatten(1)
+        first = {bytes(row.numpy()) for row in rasters[:training]}
+        self.assertEqual(first, {bytes(row.numpy()) for row in rasters[training:]})
+
+    def test_samples_depend_on_their_number_alone(self) -> None:
+        corrections = self.stream().next(12).correction
+        self.assertTrue(torch.equal(self.stream(first=4).next(8).correction, corrections[4:]))
+        # Two programs: a batch is grouped by program.
+        taken = self.stream(threads=2).next(12).correction
+        self.assertTrue(torch.equal(taken[:6], corrections[0::2]))
+        # Two processes.
+        parts = [self.stream(share=Share(rank, 2)).next(6).correction for rank in (0, 1)]
+        self.assertTrue(torch.equal(torch.stack(parts, 1).flatten(0, 1), corrections))
+
+    def test_a_bad_sample_ends_the_run_or_is_replaced(self) -> None:
+        index = self.root / "drive/back/frames.txt"
+        lines = index.read_text().splitlines()
+        for i in range(0, 60):
+            lines[i] = lines[i].replace("0.png", "bad.png")
+        index.write_text("\n".join(lines) + "\n")
+        (self.root / "drive/back/bad.png").write_bytes(b"no picture")
+        with self.assertRaisesRegex(SamplerError, "bevloc_drive_sampler: ended with status 1"):
+            self.stream().next(60)
+        good = {bytes(row.numpy()) for row in self.stream_that_skips().next(60).raster_truth}
+        self.assertLess(len(good), 40)  # of 68 samples, more than half are bad
+
+    def test_refuses_a_missing_map(self) -> None:
+        drives = Drives(self.drives.recordings, str(self.root / "no.osm"), str(RIG))
+        with self.assertRaisesRegex(SamplerError, "status 2"):
+            DriveStream(drives, "training", 0, 0, 1, 0.0)
+
+    def config(self, share: float) -> TrainingConfig:
+        return TrainingConfig(
+            recordings=self.drives.recordings,
+            map=self.drives.map,
+            rig=self.drives.rig,
+            simulated_share=share,
+            validation_samples=3,
+            drop_camera_probability=0.0,
+        )
+
+    def test_half_of_the_samples_are_simulated(self) -> None:
+        stream = training_stream(self.config(0.5), 0)
+        self.addCleanup(stream.close)
+        batch = stream.next(4)
+        # The drive's pictures have one colour.
+        plain = batch.images[:, 0, 0].flatten(1).float().std(1) == 0.0
+        self.assertEqual(plain.tolist(), [True, True, False, False])
+        resumed = training_stream(self.config(0.5), 2)
+        self.addCleanup(resumed.close)
+        expected = torch.cat((batch.correction[1:2], batch.correction[3:4]))
+        self.assertTrue(torch.equal(resumed.next(2).correction, expected))
+
+    def test_the_parts_of_a_mixed_stream_add_up(self) -> None:
+        for share in (0.0, 0.3, 0.5, 0.9):
+            taken = [MixedStream.taken(position, share) for position in range(101)]
+            self.assertEqual(taken[100], round(100 * share))
+            self.assertLessEqual(max(b - a for a, b in zip(taken, taken[1:])), 1)
+
+    def test_validates_where_nothing_is_trained(self) -> None:
+        batches = validation_set(self.config(0.0))
+        self.assertEqual(sum(map(len, batches)), 3)
+
+    def test_options_need_each_other(self) -> None:
+        for wrong in (
+            ["--recordings", "x"],
+            ["--map", "x"],
+            ["--recordings", "x", "--map", "y", "--nuscenes", "z"],
+            ["--recordings", "x", "--map", "y", "--reference", "gps"],
+            ["--simulated-share", "1"],
+        ):
+            with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()):
+                parse_config(["--minutes", "1", *wrong], "")
+
+    def test_reports_both_models(self) -> None:
+        model = ROOT / "models/nano.onnx"
+        text = report(model, model, self.drives, 4, 1)
+        self.assertIn("4 of them used here", text)
+        self.assertIn("do not trust these figures", text)
+        rows = [line.split("|")[2:4] for line in text.splitlines() if line.startswith("| IoU")]
+        self.assertEqual(len(rows), len(CLASSES))
+        self.assertTrue(all(before == after for before, after in rows))
+
+    def test_the_table_keeps_before_and_after_apart(self) -> None:
+        def metrics(value: float) -> dict[str, float]:
+            solver = "banded+refine"
+            keys = [
+                f"{solver}_{axis}_{kind}"
+                for axis in AXES
+                for kind in ("mae", "p90", "within_3_sigma")
+            ]
+            return {key: value for key in keys} | {f"iou_{name}": value for name in CLASSES}
+
+        rows = table(metrics(0.25), metrics(0.125))
+        self.assertIn("| lateral, mean error, m | 0.250 | 0.125 |", rows)
+        self.assertIn("| yaw, within 3 sigma | 25.0 % | 12.5 % |", rows)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,178 @@
+// bevloc_drive_sampler: makes training samples of recorded drives and writes them to standard
+// output, without end, in the form of training/native/sample_record.h. training/sampler_process.py
+// starts it.
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/map/map_index.h"
+#include "pipeline/map/map_loader.h"
+#include "sim/random.h"
+#include "training/drives/drive_sample.h"
+#include "training/drives/drive_set.h"
+#include "training/native/record_output.h"
+
+namespace {
+
+using bevloc::drives::DrivePart;
+using bevloc::drives::DriveSample;
+using bevloc::drives::DriveSampleMaker;
+using bevloc::drives::DriveSet;
+using bevloc::drives::ReferenceKind;
+using bevloc::drives::SamplePlace;
+
+constexpr const char* kProgram = "bevloc_drive_sampler";
+constexpr int kExitBadSamples = 1;
+constexpr int kExitWrongInput = 2;
+
+struct Options {
+  std::string recordings;
+  std::string map;
+  std::string rig;
+  ReferenceKind reference = ReferenceKind::kFile;
+  DrivePart part = DrivePart::kTraining;
+  uint64_t first_seed = 0;
+  uint64_t first_sample = 0;
+  uint64_t stride = 1;
+  double drop_camera_probability = 0.0;
+  bool skip = false;
+  bool count = false;
+  bool check = false;
+};
+
+void add_options(CLI::App& app, Options& options) {
+  const std::map<std::string, ReferenceKind> references{{"file", ReferenceKind::kFile},
+                                                        {"own", ReferenceKind::kOwn}};
+  const std::map<std::string, DrivePart> parts{{"training", DrivePart::kTraining},
+                                               {"held-back", DrivePart::kHeldBack}};
+  app.add_option("--recordings", options.recordings, "Folder of recorded drives")->required();
+  app.add_option("--map", options.map, "HD map of all drives")->required();
+  app.add_option("--rig", options.rig, "Calibration of all drives, instead of the recorded one");
+  app.add_option("--reference", options.reference,
+                 "Reference poses: file (reference.csv) or own (where bevloc was sure)")
+      ->transform(CLI::CheckedTransformer(references));
+  app.add_option("--part", options.part, "Places: training or held-back")
+      ->transform(CLI::CheckedTransformer(parts));
+  app.add_option("--first-seed", options.first_seed, "Seed of order, priors and missing cameras");
+  app.add_option("--first-sample", options.first_sample, "Number of the first sample to write");
+  app.add_option("--stride", options.stride, "Write every so many samples")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--drop-camera-probability", options.drop_camera_probability,
+                 "Probability that a sample lacks one or two cameras")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_flag("--skip-bad", options.skip, "The next good sample replaces a bad one");
+  app.add_flag("--count", options.count, "Print the numbers of samples of both parts, and end");
+  app.add_flag("--check", options.check, "Read every sample once, name the bad ones, and end");
+}
+
+/// Reads every sample of both parts once.
+int check(DriveSet& set, DriveSampleMaker& maker) {
+  size_t bad = 0;
+  DriveSample sample;
+  for (const DrivePart part : {DrivePart::kTraining, DrivePart::kHeldBack}) {
+    for (const SamplePlace& place : set.places(part)) {
+      const auto made = maker.make(place, bevloc::drives::random_choice(0, 0, 0.0), sample);
+      if (made) continue;
+      ++bad;
+      fmt::print("bad sample: {}\n", made.error().message);
+    }
+  }
+  const auto& left_out = set.left_out();
+  fmt::print(
+      "{} drives: {} samples for training, {} held back, {} of them bad\n"
+      "left out: {} framesets without a reference pose, {} close to the one before, {} beside a "
+      "place that is held back\n",
+      set.drives(), set.places(DrivePart::kTraining).size(),
+      set.places(DrivePart::kHeldBack).size(), bad, left_out.without_pose, left_out.too_close,
+      left_out.beside_held_back);
+  return bad == 0 ? 0 : kExitBadSamples;
+}
+
+/// The places of one epoch in a random order.
+std::vector<SamplePlace> shuffled(std::vector<SamplePlace> places, uint64_t seed, uint64_t epoch) {
+  bevloc::sim::Random random(bevloc::sim::seed_for(seed, "order") + epoch);
+  for (size_t i = places.size(); i > 1; --i) std::swap(places[i - 1], places[random.index(i)]);
+  return places;
+}
+
+/// Returns only if a sample is bad or writing fails.
+int write_samples(const Options& options, DriveSet& set, DriveSampleMaker& maker) {
+  const std::vector<SamplePlace>& places = set.places(options.part);
+  if (places.empty()) {
+    fmt::print(stderr,
+               "{}: found no sample of this part, wanted some; the drives need reference poses and "
+               "at least {} squares of {:g} m\n",
+               options.recordings, DriveSet::kHeldBackEvery, DriveSet::kSquare_m);
+    return kExitWrongInput;
+  }
+  if (!bevloc::write_output(bevloc::sample_stream_header(), kProgram)) return kExitBadSamples;
+  std::vector<SamplePlace> order;
+  std::vector<uint8_t> record;
+  DriveSample sample;
+  size_t bad_in_a_row = 0;
+  std::optional<uint64_t> epoch;
+  for (uint64_t i = options.first_sample;; i += options.stride) {
+    if (epoch != i / places.size()) {
+      epoch = i / places.size();
+      order = shuffled(places, options.first_seed, *epoch);
+    }
+    const auto choice =
+        bevloc::drives::random_choice(options.first_seed, i, options.drop_camera_probability);
+    if (const auto made = maker.make(order[i % places.size()], choice, sample); !made) {
+      fmt::print(stderr, "bad sample: {}\n", made.error().message);
+      if (!options.skip || ++bad_in_a_row == places.size()) return kExitBadSamples;
+      continue;
+    }
+    bad_in_a_row = 0;
+    bevloc::write_sample_record(sample.content(), record);
+    if (!bevloc::write_output(record, kProgram)) return kExitBadSamples;
+  }
+}
+
+int run(const Options& options) {
+  const auto refuse = [](const bevloc::Error& error) {
+    fmt::print(stderr, "{}\n", error.message);
+    return kExitWrongInput;
+  };
+  bevloc::drives::DriveSetOptions chosen{options.recordings, options.reference, std::nullopt};
+  if (!options.rig.empty()) {
+    const auto rig = bevloc::read_rig(options.rig);
+    if (!rig) return refuse(rig.error());
+    chosen.rig = *rig;
+  }
+  auto set = DriveSet::open(chosen);
+  if (!set) return refuse(set.error());
+  if (options.count) {
+    fmt::print("{} {}\n", set->places(DrivePart::kTraining).size(),
+               set->places(DrivePart::kHeldBack).size());
+    return 0;
+  }
+  const auto map = bevloc::load_map(options.map);
+  if (!map) return refuse(map.error());
+  const bevloc::MapIndex index(*map);
+  DriveSampleMaker maker(*set, index);
+  if (options.check) return check(*set, maker);
+  if (!bevloc::output_is_pipe(kProgram)) return kExitWrongInput;
+  return write_samples(options, *set, maker);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Writes samples of recorded drives to standard output (training/README.md)."};
+  Options options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitWrongInput;
+  }
+  return run(options);
+}

@@ -1,0 +1,59 @@
+// A recorded drive with reference poses: the framesets from which training samples are made.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/cameras.h"
+#include "common/result.h"
+#include "common/time.h"
+#include "pipeline/calibration/refine/reference_trajectory.h"
+#include "pipeline/calibration/rig.h"
+#include "pipeline/preprocessing/image_remap.h"
+
+namespace bevloc::drives {
+
+/// Frames of several cameras within this time are one frameset.
+inline constexpr Duration kWidestSpread = std::chrono::milliseconds(50);
+
+/// Where the frames of a frameset are in their drive.
+struct FramesetPlace {
+  Time time;                                 ///< when its earliest exposure started
+  CameraMask present{};                      ///< the cameras that have a frame
+  std::array<size_t, kCameraCount> frame{};  ///< its number among the camera's frames
+};
+
+/// What is known of a drive before an image is read.
+struct DriveIndex {
+  std::string name;  ///< for messages
+  Rig rig;           ///< of the cameras that took the images
+  ReferenceTrajectory reference;
+  std::vector<FramesetPlace> framesets;  ///< in the order of time
+};
+
+/// A drive in files. One thread.
+class RecordedDrive {
+ public:
+  explicit RecordedDrive(DriveIndex index) : index_(std::move(index)) {}
+  virtual ~RecordedDrive() = default;
+  RecordedDrive(const RecordedDrive&) = delete;
+  RecordedDrive& operator=(const RecordedDrive&) = delete;
+
+  const DriveIndex& index() const { return index_; }
+
+  /// Reads the camera's frame of a frameset that has one. Writes the network's image
+  /// (ImagePreprocessor::run) and returns when the exposure started. Fails if the image is missing,
+  /// damaged or of another size than the rig states.
+  virtual Result<Time> read(const FramesetPlace& frameset, int camera,
+                            ImagePreprocessor& preprocessor, std::span<int8_t> planes) = 0;
+
+ private:
+  const DriveIndex index_;
+};
+
+/// Joins the frames of all cameras to framesets. `times`: of each camera's frames, in order.
+std::vector<FramesetPlace> framesets_of(const std::array<std::vector<Time>, kCameraCount>& times);
+
+}  // namespace bevloc::drives
