@@ -35,7 +35,7 @@ class TrainingConfig:
     recordings: str = ""  # folder of recorded drives; empty: none
     map: str = ""  # HD map of the recorded drives
     rig: str = ""  # their calibration; empty: as recorded
-    reference: str = "file"  # or "own": where their reference poses come from
+    reference: str = "file"  # or "own", "truth": where their reference poses come from
     simulated_share: float = 0.5  # of the samples beside recorded ones
 
     seed: int = FIRST_TRAINING_SEED

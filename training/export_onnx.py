@@ -3,8 +3,9 @@
     /usr/bin/python3 -m training.export_onnx training/runs/nano/checkpoint.pt models
 
 Writes NETWORK.onnx (int8, QDQ) and NETWORK_float.onnx into the folder. The ranges of int8 are those
-of simulated samples, or with `--recordings DIR --map FILE` of recorded drives. Writes quantization.pt and
-solvers.pt (the solvers with the scales of the model files) next to the checkpoint.
+of simulated samples, or with `--recordings DIR --map FILE` of recorded drives. Writes
+quantization.pt and solvers.pt (the solvers with the scales of the model files) next to the
+checkpoint.
 
 Inputs of the model: images int8 [6, 3, 96, 320] (RGB - 128), raster uint8 [1, 3, 400, 200],
 view_index int32 [8, 5000] and view_weight float [8, 5000] (pipeline/network/view/view_table.h).

@@ -13,7 +13,7 @@ from training.nuscenes.stream import ON_ERROR
 from training.precision import PRECISIONS
 from training.sampler_process import Drives
 
-REFERENCES = ("file", "own")
+REFERENCES = ("file", "own", "truth")
 _CHOICES = {
     "precision": PRECISIONS,
     "nuisances": NUISANCES,

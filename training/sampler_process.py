@@ -79,8 +79,8 @@ class SamplerOptions:
 
 @dataclass(frozen=True)
 class Drives:
-    """Recorded drives (training/drives/drive_set.h). `rig`: a calibration of all drives instead of
-    the recorded ones. `reference`: file or own. `skip_bad`: whether the next good sample replaces a
+    """Recorded drives (training/drives/drive_set.h). `rig`: a calibration instead of the recorded
+    ones. `reference`: file, own or truth. `skip_bad`: whether the next good sample replaces a
     bad one; else a bad one ends the program."""
 
     recordings: str

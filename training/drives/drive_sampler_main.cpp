@@ -49,14 +49,17 @@ struct Options {
 
 void add_options(CLI::App& app, Options& options) {
   const std::map<std::string, ReferenceKind> references{{"file", ReferenceKind::kFile},
-                                                        {"own", ReferenceKind::kOwn}};
+                                                        {"own", ReferenceKind::kOwn},
+                                                        {"truth", ReferenceKind::kTruth}};
   const std::map<std::string, DrivePart> parts{{"training", DrivePart::kTraining},
                                                {"held-back", DrivePart::kHeldBack}};
   app.add_option("--recordings", options.recordings, "Folder of recorded drives")->required();
   app.add_option("--map", options.map, "HD map of all drives")->required();
   app.add_option("--rig", options.rig, "Calibration of all drives, instead of the recorded one");
-  app.add_option("--reference", options.reference,
-                 "Reference poses: file (reference.csv) or own (where bevloc was sure)")
+  app.add_option(
+         "--reference", options.reference,
+         "Reference poses: file (reference.csv), own (where bevloc was sure) or truth (of a "
+         "simulated drive)")
       ->transform(CLI::CheckedTransformer(references));
   app.add_option("--part", options.part, "Places: training or held-back")
       ->transform(CLI::CheckedTransformer(parts));

@@ -1,6 +1,7 @@
 #include "training/drives/mcap_drive.h"
 
 #include "evaluation/recording/played_devices.h"
+#include "evaluation/recording/track.h"
 #include "firmware/recording/topics.h"
 #include "pipeline/calibration/online/calibration_file.h"
 #include "pipeline/calibration/rig_yaml.h"
@@ -36,10 +37,22 @@ ReferenceTrajectory on_recorded_clock(const ReferenceTrajectory& reference,
   return ReferenceTrajectory(std::move(poses));
 }
 
+Result<ReferenceTrajectory> recorded_truth(Recording& recording, const std::string& name) {
+  const auto track = evaluation::read_track(recording, firmware::kTruthTopic);
+  if (!track) return tl::unexpected(track.error());
+  if (track->size() < 2) {
+    return fail("{}: found no truth, wanted the recording of a simulated drive", name);
+  }
+  std::vector<ReferenceTrajectory::Pose> poses;
+  for (const auto& [time, pose] : *track) poses.push_back({time, pose});
+  return ReferenceTrajectory(std::move(poses));
+}
+
 Result<ReferenceTrajectory> reference_of(Recording& recording, ReferenceKind kind,
                                          const std::filesystem::path& folder,
                                          const std::string& name) {
-  if (kind == ReferenceKind::kOwn) return own_track(recording, name);
+  if (kind == ReferenceKind::kOwn) return own_track(recording);
+  if (kind == ReferenceKind::kTruth) return recorded_truth(recording, name);
   const auto reference = ReferenceTrajectory::read(folder / kReferenceFile);
   if (!reference) return reference;
   return on_recorded_clock(*reference, recording);

@@ -13,8 +13,9 @@ namespace bevloc::drives {
 
 /// Where the reference poses of a recording come from.
 enum class ReferenceKind : uint8_t {
-  kFile,  ///< reference.csv beside the files
-  kOwn,   ///< what the appliance sent where it was sure (own_track())
+  kFile,   ///< reference.csv beside the files
+  kOwn,    ///< what the appliance sent where it was sure (own_track())
+  kTruth,  ///< the recorded truth of a simulated drive
 };
 
 class McapDrive final : public RecordedDrive {

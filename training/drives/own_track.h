@@ -16,8 +16,8 @@ struct SureLimits {
 
 /// The recorded solutions where the state was TRACKING and their sigmas were within the limits. A
 /// pose is smoothed with the solutions of half a second before and after it: the value at its time
-/// of the parabola that fits them best. Fails if there are none.
-Result<ReferenceTrajectory> own_track(evaluation::Recording& recording, const std::string& name,
+/// of the parabola that fits them best. It has no poses where the appliance was never sure.
+Result<ReferenceTrajectory> own_track(evaluation::Recording& recording,
                                       const SureLimits& limits = {});
 
 /// The smoothed middle of `poses`, which are in the order of time. Fewer than five poses are not
