@@ -4,11 +4,34 @@ include(GNUInstallDirs)
 set(BEVLOC_DATA_DIR ${CMAKE_INSTALL_DATADIR}/bevloc)
 
 if(NOT BEVLOC_SIMULATION)
-  install(TARGETS bevlocd COMPONENT bevloc)
+  # What the command bevloc says of itself.
+  set(said ${CMAKE_BINARY_DIR}/said)
+  add_custom_command(
+    OUTPUT ${said}/bevloc.1 ${said}/bevlocd.8 ${said}/bevloc.yaml.5 ${said}/bevloc ${said}/_bevloc
+           ${said}/bevlocd.schema.json ${said}/rig.schema.json
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${said}
+    COMMAND bevloc manual --out ${said}
+    COMMAND bevloc completion bash > ${said}/bevloc
+    COMMAND bevloc completion zsh > ${said}/_bevloc
+    COMMAND bevloc schema > ${said}/bevlocd.schema.json
+    COMMAND bevloc schema --rig > ${said}/rig.schema.json
+    DEPENDS bevloc VERBATIM)
+  add_custom_target(bevloc_said ALL DEPENDS ${said}/bevloc.1)
+  install(FILES ${said}/bevloc.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT bevloc)
+  install(FILES ${said}/bevloc.yaml.5 DESTINATION ${CMAKE_INSTALL_MANDIR}/man5 COMPONENT bevloc)
+  install(FILES ${said}/bevlocd.8 DESTINATION ${CMAKE_INSTALL_MANDIR}/man8 COMPONENT bevloc)
+  install(FILES ${said}/bevloc DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+          COMPONENT bevloc)
+  install(FILES ${said}/_bevloc DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
+          COMPONENT bevloc)
+  install(FILES ${said}/bevlocd.schema.json ${said}/rig.schema.json
+          DESTINATION ${BEVLOC_DATA_DIR}/schema COMPONENT bevloc)
+
+  install(TARGETS bevlocd bevloc COMPONENT bevloc)
   install(FILES systemd/bevlocd.service DESTINATION lib/systemd/system COMPONENT bevloc)
   install(FILES systemd/sysusers.d/bevloc.conf DESTINATION lib/sysusers.d COMPONENT bevloc)
   install(FILES systemd/network/80-bevloc-can.link systemd/network/80-bevloc-can.network
-                systemd/udev/60-bevloc.rules
+                systemd/live.conf systemd/udev/60-bevloc.rules
           DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT bevloc)
   install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT bevloc
           FILES_MATCHING PATTERN "*.md" PATTERN "images" EXCLUDE PATTERN "decisions" EXCLUDE)
@@ -27,3 +50,6 @@ install(FILES config/demo.yaml DESTINATION ${BEVLOC_DATA_DIR}/config COMPONENT b
 
 install(TARGETS bevloc-compliance bevloc_convert_map COMPONENT bevloc-dev)
 install(FILES can/bevloc.dbc DESTINATION ${BEVLOC_DATA_DIR} COMPONENT bevloc-dev)
+install(DIRECTORY can/consumer/ DESTINATION ${BEVLOC_DATA_DIR}/consumer COMPONENT bevloc-dev
+        FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp" PATTERN "*.py" PATTERN "*.c" PATTERN "*.cpp"
+        PATTERN "golden.*" PATTERN "__pycache__" EXCLUDE)

@@ -1,10 +1,39 @@
 // The command bevloc of a vehicle. It contains no simulator; the program with the simulator is
-// evaluation/bevloc.cpp.
+// evaluation/bevloc.cpp. Where that one is installed too (package bevloc-sim), it gets the commands
+// that this one does not have.
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include "command/vehicle_commands.h"
+#include "common/replace_process.h"
+
+namespace {
+
+/// The program with the simulator, relative to the folder of this one.
+constexpr const char* kSimulatorProgram = "../libexec/bevloc-sim/bevloc";
+
+bool is_installed(const std::filesystem::path& program) {
+  return access(program.c_str(), X_OK) == 0;
+}
+
+bool has_command(const CLI::App& app, const std::string& word) {
+  return app.get_subcommand_no_throw(word) != nullptr;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("Sets up and checks the appliance");
   bevloc::command::CommandList commands;
   bevloc::command::add_vehicle_commands(app, commands, nullptr);
+  const auto simulator = bevloc::folder_of_this_program() / kSimulatorProgram;
+  const bool is_own = argc < 2 || (argv[1][0] != '-' && has_command(app, argv[1]));
+  if (!is_own && is_installed(simulator)) {
+    const auto failed = bevloc::replace_process(simulator, {argv + 1, argv + argc});
+    std::fprintf(stderr, "bevloc: %s\n", failed.error().message.c_str());
+    return bevloc::command::kBadInput;
+  }
   return commands.run(app, argc, argv);
 }

@@ -9,6 +9,7 @@
 #include "evaluation/campaign/campaign_command.h"
 #include "evaluation/campaign/integrity_command.h"
 #include "evaluation/campaign/tune_matches_command.h"
+#include "evaluation/drive/demo_command.h"
 #include "evaluation/drive/drive_config.h"
 #include "evaluation/drive/fault_command.h"
 #include "evaluation/localize/localize_command.h"
@@ -44,6 +45,7 @@ void add_evaluation_commands(CLI::App& app, bevloc::command::CommandList& comman
   commands.add<TuneMatchesCommand>(tune);
   commands.add<DrawCommand>(draw);
   commands.add<bevloc::bench::BenchCommand>(app);
+  commands.add<DemoCommand>(app);
   commands.add<AnswerCommand>(app);
   commands.add<CampaignCommand>(app);
   commands.add<FaultCommand>(app);

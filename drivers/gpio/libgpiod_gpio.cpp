@@ -82,6 +82,10 @@ Result<std::unique_ptr<InputLine>> LibgpiodGpio::open_input(const LineAddress& a
   return request_input(std::move(found->chip), found->line, address);
 }
 
+std::vector<GpioChipInfo> LibgpiodGpio::chips() {
+  return open_chips().infos;
+}
+
 Status LibgpiodGpio::look_for(const LineAddress& address) const {
   const Chips chips = open_chips();
   const auto place = find_line(chips.infos, address);

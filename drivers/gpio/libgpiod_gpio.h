@@ -1,7 +1,10 @@
 // The machine's GPIO lines, by libgpiod and the kernel's character devices.
 #pragma once
 
+#include <vector>
+
 #include "drivers/gpio/gpio.h"
+#include "drivers/gpio/line_lookup.h"
 
 namespace bevloc::drivers {
 
@@ -12,6 +15,9 @@ class LibgpiodGpio final : public Gpio {
  public:
   Result<std::unique_ptr<OutputLine>> open_output(const LineAddress& address, bool active) override;
   Result<std::unique_ptr<InputLine>> open_input(const LineAddress& address) override;
+
+  /// All chips of this machine that can be opened.
+  static std::vector<GpioChipInfo> chips();
 
   /// Checks that there is such a line, in use or not.
   Status look_for(const LineAddress& address) const;

@@ -1,9 +1,6 @@
 #include "evaluation/recording/record_command.h"
 
-#include <cerrno>
-#include <cstring>
-
-#include <unistd.h>
+#include "common/replace_process.h"
 
 namespace bevloc::evaluation {
 
@@ -21,18 +18,10 @@ void RecordCommand::declare(CLI::App& app) {
 }
 
 Status RecordCommand::run() const {
-  std::error_code error;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::string program = (self.parent_path() / "bevlocd").string();
-  std::vector<std::string> words{program, "--config", config_file_, "--record", out_};
+  std::vector<std::string> words{"--config", config_file_, "--record", out_};
   if (raw_) words.emplace_back("--record-raw");
   words.insert(words.end(), rest_.begin(), rest_.end());
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  execv(program.c_str(), arguments.data());
-  return fail("{}: cannot start this program ({}), wanted bevlocd beside bevloc", program,
-              std::strerror(errno));
+  return replace_process(folder_of_this_program() / "bevlocd", std::move(words));
 }
 
 }  // namespace bevloc::evaluation

@@ -1,0 +1,70 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "command/udev/udev_rules_command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bevloc::command {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class UdevRulesTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(sysfs_ / "bus/gpio/devices");
+    add("gpiochip0", "fe200000.gpio");
+    add("gpiochip1", "1-0020");
+  }
+
+  /// A chip of a device, as the kernel shows it.
+  void add(const std::string& chip, const std::string& device) {
+    const auto node = sysfs_ / "devices/platform" / device / chip;
+    std::filesystem::create_directories(node);
+    std::filesystem::create_directory_symlink(node, sysfs_ / "bus/gpio/devices" / chip);
+  }
+
+  test::TemporaryFolder folder_;
+  const std::filesystem::path sysfs_ = folder_ / "sys";
+  const std::vector<drivers::GpioChipInfo> chips_{
+      {"gpiochip0", "pinctrl-bcm2711", {{"TRIGGER", ""}, {"FAULT", ""}}},
+      {"gpiochip1", "pca9555", {{"LED", ""}}},
+      {"gpiochip2", "without-device", {{"X", ""}}}};
+};
+
+TEST_F(UdevRulesTest, NamesTheDeviceOfEachChipOnce) {
+  const auto rules = udev_rules(
+      chips_, {{"pinctrl-bcm2711", "TRIGGER"}, {"gpiochip0", "1"}, {"pca9555", "LED"}}, sysfs_);
+  ASSERT_TRUE(rules) << rules.error().message;
+  EXPECT_THAT(*rules, HasSubstr(R"(SUBSYSTEM=="gpio", KERNEL=="gpiochip*", KERNELS=="1-0020", )"
+                                R"(GROUP="bevloc", MODE="0660")"));
+  const auto first = rules->find("fe200000.gpio");
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(rules->find("fe200000.gpio", first + 1), std::string::npos);
+}
+
+TEST_F(UdevRulesTest, LeavesOutChipsThatNoLineIsOn) {
+  const auto rules = udev_rules(chips_, {{"pca9555", "LED"}}, sysfs_);
+  ASSERT_TRUE(rules);
+  EXPECT_THAT(*rules, Not(HasSubstr("fe200000")));
+}
+
+TEST_F(UdevRulesTest, SaysThatThereIsNoLine) {
+  const auto rules = udev_rules(chips_, {}, sysfs_);
+  ASSERT_TRUE(rules);
+  EXPECT_THAT(*rules, HasSubstr("names no GPIO line"));
+  EXPECT_THAT(*rules, Not(HasSubstr("SUBSYSTEM")));
+}
+
+TEST_F(UdevRulesTest, RefusesUnknownLinesAndChipsWithoutDevice) {
+  const auto unknown = udev_rules(chips_, {{"pca9555", "HORN"}}, sysfs_);
+  ASSERT_FALSE(unknown);
+  EXPECT_THAT(unknown.error().message, HasSubstr("found no such line"));
+  const auto without = udev_rules(chips_, {{"without-device", "X"}}, sysfs_);
+  ASSERT_FALSE(without);
+  EXPECT_THAT(without.error().message, HasSubstr("found no device of this chip"));
+}
+
+}  // namespace
+}  // namespace bevloc::command
