@@ -15,6 +15,7 @@
 #include "common/strict_yaml.h"
 #include "drivers/frameset/synchronizer.h"
 #include "firmware/config/camera_devices_config.h"
+#include "firmware/config/gnss_config.h"
 #include "firmware/config/gpio_config.h"
 #include "firmware/config/live_config.h"
 #include "firmware/config/realtime_config.h"
@@ -87,6 +88,7 @@ struct Config {
   std::filesystem::path manifest_file;  ///< empty: no checksums are compared
   SolverConfig solver;
   CanConfig can;
+  std::optional<GnssConfig> gnss;  ///< empty: GNSS comes on the CAN bus
   TrackerParameters tracker;
   HealthLimits health;
   GpioConfig gpio;

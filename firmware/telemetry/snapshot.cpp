@@ -71,6 +71,7 @@ Snapshot take_snapshot(const Appliance& appliance, const drivers::Trigger* trigg
   snapshot.framesets = framesets_of(appliance.vision());
   snapshot.vehicle_input = appliance.vehicle_input().counters();
   snapshot.authentication = appliance.vehicle_input().secoc_counters();
+  if (appliance.gnss() != nullptr) snapshot.gnss = appliance.gnss()->counters();
   snapshot.estimation = estimation_of(appliance.estimation().counters());
   snapshot.bus = appliance.bus().counters();
   snapshot.bus_condition = appliance.bus().condition();

@@ -68,6 +68,7 @@ struct Snapshot {
   FramesetsSnapshot framesets;
   can::VehicleInputCounters vehicle_input;
   std::optional<can::SecocCounters> authentication;  ///< empty without authentication
+  std::optional<GnssCounters> gnss;                  ///< empty if GNSS comes on the bus
   EstimationSnapshot estimation;
   can::BusCounters bus;
   can::BusCondition bus_condition;
