@@ -286,6 +286,12 @@ Config read_config(YamlMap& yaml, const std::filesystem::path& folder,
                       "no section gpio, because a simulated drive has no lines");
     }
   }
+  config.clock = read_clock_section(yaml.optional_map("clock"));
+  config.can.sends_clock = config.clock.source != can::TimeSource::kFreeRunning;
+  if (config.cameras.driver == CameraDriver::kMock) {
+    yaml.reject_key("clock", "the clock of this machine with mock cameras",
+                    "no section clock, because a simulated drive has a clock of its own");
+  }
   config.realtime = read_realtime(yaml.optional_map("realtime"));
   config.log_level = read_log_level(yaml.optional_map("log"));
   config.live = read_live(yaml.optional_map("live"));

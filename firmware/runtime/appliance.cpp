@@ -122,6 +122,7 @@ can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map
   publisher.base_ids = config.can.base_ids;
   publisher.format = config.can.variant;
   publisher.identity = identity_of(config, map);
+  publisher.sends_clock = config.can.sends_clock;
   publisher.map_origin = {map.origin.latitude_deg, map.origin.longitude_deg};
   return publisher;
 }

@@ -75,6 +75,9 @@ void add_state(Families& families, const Telemetry& telemetry) {
   }
   families.gauge("bevloc_standby", "1 while the ignition is off",
                  telemetry.phase == Phase::kStandby ? 1 : 0);
+  families.gauge("bevloc_time_source",
+                 "What keeps the clock, as LOC_Status tells it: 0 nothing, 1 PTP, 2 GNSS, 3 NTP",
+                 static_cast<double>(estimation.time_source));
   families.count("bevloc_clock_gaps_total",
                  "Suspensions and stops of the process that were noticed", estimation.clock_gaps);
 }

@@ -12,6 +12,7 @@ OutcomeCounts counts_of(const TrackerOutcomes& outcomes) {
 EstimationSnapshot estimation_of(const EstimationCounters& counters) {
   return {.state = counters.state,
           .why = WhyMask::from_bits(counters.why),
+          .time_source = counters.time_source,
           .cameras = CameraMask(counters.cameras),
           .ticks = counters.ticks,
           .clock_gaps = counters.clock_gaps,

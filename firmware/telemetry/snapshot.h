@@ -45,6 +45,7 @@ using OutcomeCounts = std::array<uint64_t, kTrackerUpdates>;
 struct EstimationSnapshot {
   HealthState state = HealthState::kInit;
   WhyMask why;
+  can::TimeSource time_source = can::TimeSource::kFreeRunning;
   CameraMask cameras;  ///< used in the latest frameset
   uint64_t ticks = 0;
   uint64_t clock_gaps = 0;

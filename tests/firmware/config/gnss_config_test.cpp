@@ -82,6 +82,23 @@ TEST_F(GnssConfigTest, RefusesUnauthenticatedPositionsBesideSecoc) {
                 "can.secoc, wanted gpsd on this machine");
 }
 
+TEST_F(GnssConfigTest, ReadsTheSourceOfTime) {
+  const std::string gnss = "driver: gpsd, antenna_m: [0, 0], latency_ms: 90}\nclock: {";
+  const auto config = load_gnss(gnss + "source: ptp, max_error_ms: 0.5");
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_EQ(config->clock.source, can::TimeSource::kPtp);
+  EXPECT_EQ(config->clock.max_error, std::chrono::microseconds(500));
+  EXPECT_TRUE(config->can.sends_clock);
+  EXPECT_FALSE(load_gnss(gnss + "source: none")->can.sends_clock);
+  EXPECT_EQ(load_gnss(gnss + "source: ntp")->clock.max_error, milliseconds(10));
+  EXPECT_EQ(gnss_error(gnss + "source: pps"),
+            place(8) + "clock.source: found pps, wanted one of none, ntp, ptp, gnss");
+  EXPECT_EQ(error_of(kSmallest + "clock: {source: ptp}\n"),
+            place(9) +
+                "clock: found the clock of this machine with mock cameras, wanted no section "
+                "clock, because a simulated drive has a clock of its own");
+}
+
 TEST_F(GnssConfigTest, RefusesASimulatedDrive) {
   EXPECT_EQ(error_of(kSmallest + "gnss: {driver: gpsd, antenna_m: [0, 0], latency_ms: 90}\n"),
             place(9) +
