@@ -15,19 +15,27 @@ struct OdometrySample {
   double yaw_rate_radps = 0.0;  ///< positive counter-clockwise
 };
 
-/// Position of the middle of the rear axle in the map frame. Each sigma is one standard deviation.
+/// Position in the map frame, of the middle of the rear axle or of an antenna. Each sigma is one
+/// standard deviation.
 struct GnssSample {
   struct Yaw {
     double yaw_rad = 0.0;  ///< counter-clockwise from the map's east
     double sigma_rad = 0.0;
   };
 
-  Time time{};  ///< when the sample arrived
+  /// The place of an antenna in the vehicle frame, seen from above.
+  struct Antenna {
+    double x_m = 0.0;
+    double y_m = 0.0;
+  };
+
+  Time time{};  ///< when the position held; of a sample from the bus, when it arrived
   double east_m = 0.0;
   double north_m = 0.0;
   double sigma_east_m = 0.0;
   double sigma_north_m = 0.0;
-  std::optional<Yaw> yaw{};  ///< empty when the receiver has no heading
+  std::optional<Yaw> yaw{};          ///< empty when the receiver has no heading
+  std::optional<Antenna> antenna{};  ///< whose position it is; empty: of the rear axle
 };
 
 using VehicleSample = std::variant<OdometrySample, GnssSample>;

@@ -45,6 +45,7 @@ enum { BEVLOC_PARTS = 8 };
 struct bevloc_pose {
   uint64_t received_us; /* when its last frame arrived: it holds at the moment of sending */
   double age_ms;        /* of the newest images behind it */
+  uint32_t capture_us;  /* when they were taken, on the localizer's clock, modulo 2^32 */
   double latitude_deg, longitude_deg;
   double east_m, north_m; /* in the map */
   double heading_deg;     /* clockwise from true north */
@@ -67,6 +68,10 @@ struct bevloc_receiver {
   int state;          /* BEVLOC_LOC_Status_State_... */
   int time_source;    /* BEVLOC_LOC_Status_TimeSource_... */
   uint64_t status_us; /* when LOC_Status arrived */
+  bool has_clock;
+  uint32_t utc_offset_us; /* UTC minus the localizer's clock, modulo 2^32 */
+  double utc_error_ms;    /* bound of its error */
+  uint64_t clock_us;      /* when LOC_Clock arrived */
   struct bevloc_pose pose;
   /* inside */
   int last_counter[16]; /* by id_offset; -1: none */
@@ -198,12 +203,24 @@ static inline void bevloc_take_status(struct bevloc_receiver* receiver, const ui
   receiver->status_us = now_us;
 }
 
+static inline void bevloc_take_clock(struct bevloc_receiver* receiver, const uint8_t* data,
+                                     uint64_t now_us) {
+  double offset_us = 0;
+  receiver->has_clock = bevloc_decode(data, &BEVLOC_LOC_Clock_UtcOffset, &offset_us) &&
+                        bevloc_decode(data, &BEVLOC_LOC_Clock_UtcError, &receiver->utc_error_ms);
+  receiver->utc_offset_us = (uint32_t)offset_us;
+  receiver->clock_us = now_us;
+}
+
 static inline void bevloc_take_pose(struct bevloc_receiver* receiver, uint64_t now_us) {
   struct bevloc_pose* pose = &receiver->pose;
   double risk = 0;
+  double capture_us = 0;
   bool complete = true;
   memset(pose, 0, sizeof *pose);
   complete &= bevloc_decode(receiver->frames[0], &BEVLOC_LOC_Time_CaptureAge, &pose->age_ms);
+  complete &= bevloc_decode(receiver->frames[0], &BEVLOC_LOC_Time_CaptureTime, &capture_us);
+  pose->capture_us = (uint32_t)capture_us;
   complete &=
       bevloc_decode(receiver->frames[1], &BEVLOC_LOC_Latitude_Latitude, &pose->latitude_deg);
   complete &=
@@ -272,6 +289,12 @@ static inline bool bevloc_receive(struct bevloc_receiver* receiver, uint32_t id,
     }
     return false;
   }
+  if (offset == BEVLOC_LOC_Clock.id_offset) {
+    if (bevloc_check(receiver, &BEVLOC_LOC_Clock, data, length)) {
+      bevloc_take_clock(receiver, data, now_us);
+    }
+    return false;
+  }
   if (offset == BEVLOC_LOC_Solution.id_offset) {
     return bevloc_check(receiver, &BEVLOC_LOC_Solution, data, length) &&
            bevloc_take_solution(receiver, data, now_us);
@@ -305,6 +328,16 @@ static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* rec
     return BEVLOC_BEYOND_LIMIT;
   }
   return BEVLOC_USABLE;
+}
+
+/* When the images behind the latest pose were taken: UTC modulo 2^32 us. False without a fresh
+   LOC_Clock, or while the localizer's computer does not know UTC. The pose holds age_ms later. */
+static inline bool bevloc_capture_utc(const struct bevloc_receiver* receiver, uint64_t now_us,
+                                      uint32_t* utc_us) {
+  if (!receiver->has_clock || !receiver->has_pose) return false;
+  if (now_us - receiver->clock_us > 3000u * BEVLOC_LOC_Clock.cycle_ms) return false;
+  *utc_us = receiver->pose.capture_us + receiver->utc_offset_us;
+  return true;
 }
 
 static inline const char* bevloc_answer_name(enum bevloc_answer answer) {

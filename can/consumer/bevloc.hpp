@@ -40,6 +40,13 @@ class Receiver {
     return receiver_.pose;
   }
 
+  /// When the images behind the latest pose were taken, UTC modulo 2^32 us, if that is known.
+  std::optional<uint32_t> capture_utc_us(std::chrono::microseconds now) const {
+    uint32_t utc_us = 0;
+    if (!bevloc_capture_utc(&receiver_, count(now), &utc_us)) return std::nullopt;
+    return utc_us;
+  }
+
   int state() const { return receiver_.state; }
   const Pose& latest() const { return receiver_.pose; }
   const ::bevloc_counters& counters() const { return receiver_.counters; }

@@ -44,10 +44,11 @@ static const struct bevloc_signal BEVLOC_LOC_Status_State = {
 #define BEVLOC_LOC_Status_State_LOST 4
 #define BEVLOC_LOC_Status_State_FAULT 5
 static const struct bevloc_signal BEVLOC_LOC_Status_TimeSource = {
-    20, 3, false, false, 1, 0, 0, 2};
+    20, 3, false, false, 1, 0, 0, 3};
 #define BEVLOC_LOC_Status_TimeSource_FREE_RUNNING 0
 #define BEVLOC_LOC_Status_TimeSource_PTP 1
 #define BEVLOC_LOC_Status_TimeSource_GNSS 2
+#define BEVLOC_LOC_Status_TimeSource_NTP 3
 static const struct bevloc_signal BEVLOC_LOC_Status_MapOk = {
     23, 1, false, false, 1, 0, 0, 1};
 static const struct bevloc_signal BEVLOC_LOC_Status_CameraOk_FrontLeft = {
@@ -208,5 +209,12 @@ static const struct bevloc_message BEVLOC_LOC_Freshness = {
     "LOC_Freshness", 13, 8, false, 100, 0x5D, 0};
 static const struct bevloc_signal BEVLOC_LOC_Freshness_FreshnessHigh = {
     16, 48, false, false, 1, 0, 0, 281474976710655};
+
+static const struct bevloc_message BEVLOC_LOC_Clock = {
+    "LOC_Clock", 14, 8, false, 100, 0x5E, 0};
+static const struct bevloc_signal BEVLOC_LOC_Clock_UtcOffset = {
+    16, 32, false, false, 1, 0, 0, 4294967295};
+static const struct bevloc_signal BEVLOC_LOC_Clock_UtcError = {
+    48, 16, false, true, 0.01, 0, 0, 655.34};
 
 #endif

@@ -36,7 +36,7 @@ LOCALIZER_BASE = 0x500
 MESSAGES = {
     "LOC_Status": Message(0, 8, False, 100, 0x51, 3, {
         "State": Signal(16, 4, False, False, 1, 0, 0, 5),
-        "TimeSource": Signal(20, 3, False, False, 1, 0, 0, 2),
+        "TimeSource": Signal(20, 3, False, False, 1, 0, 0, 3),
         "MapOk": Signal(23, 1, False, False, 1, 0, 0, 1),
         "CameraOk_FrontLeft": Signal(24, 1, False, False, 1, 0, 0, 1),
         "CameraOk_Front": Signal(25, 1, False, False, 1, 0, 0, 1),
@@ -122,6 +122,10 @@ MESSAGES = {
     "LOC_Freshness": Message(13, 8, False, 100, 0x5D, 0, {
         "FreshnessHigh": Signal(16, 48, False, False, 1, 0, 0, 281474976710655),
     }),
+    "LOC_Clock": Message(14, 8, False, 100, 0x5E, 0, {
+        "UtcOffset": Signal(16, 32, False, False, 1, 0, 0, 4294967295),
+        "UtcError": Signal(48, 16, False, True, 0.01, 0, 0, 655.34),
+    }),
 }
 
 VALUE_NAMES = {
@@ -137,6 +141,7 @@ VALUE_NAMES = {
         0: "FREE_RUNNING",
         1: "PTP",
         2: "GNSS",
+        3: "NTP",
     },
     "LOC_Identity.IdentityItem": {
         0: "PROGRAM",

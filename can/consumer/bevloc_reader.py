@@ -40,6 +40,7 @@ PARTS = (
 
 VALUES = {
     "age_ms": ("LOC_Time", "CaptureAge"),
+    "capture_us": ("LOC_Time", "CaptureTime"),
     "latitude_deg": ("LOC_Latitude", "Latitude"),
     "longitude_deg": ("LOC_Longitude", "Longitude"),
     "east_m": ("LOC_PosLocal", "LocalEast"),
@@ -131,6 +132,9 @@ class Receiver:
     pose: dict[str, float | None] | None = None
     pose_time_s: float = 0.0
     status_time_s: float = 0.0
+    utc_offset_us: int | None = None
+    utc_error_ms: float | None = None
+    clock_time_s: float = 0.0
 
     def __post_init__(self) -> None:
         self._names = {message.id_offset: name for name, message in MESSAGES.items()}
@@ -142,7 +146,11 @@ class Receiver:
     def receive(self, identifier: int, data: bytes, time_s: float) -> bool:
         """Takes any frame of the bus. True when it completes a pose."""
         name = self._names.get(identifier - self.base_id)
-        if name not in ("LOC_Status", "LOC_Solution", *PARTS) or not self._check(name, data):
+        known = ("LOC_Status", "LOC_Clock", "LOC_Solution", *PARTS)
+        if name not in known or not self._check(name, data):
+            return False
+        if name == "LOC_Clock":
+            self._take_clock(data, time_s)
             return False
         if name == "LOC_Status":
             self._take_status(data, time_s)
@@ -166,6 +174,17 @@ class Receiver:
         if None in self.pose.values():
             return "not_available"
         return "beyond_limit" if self._is_beyond_limit() else "usable"
+
+    def capture_utc_us(self, time_s: float) -> int | None:
+        """When the images behind the latest pose were taken, UTC modulo 2^32 us. None without a
+        fresh LOC_Clock, or while the localizer's computer does not know UTC."""
+        limit_s = 1e-3 * CYCLES_TO_TIMEOUT * MESSAGES["LOC_Clock"].cycle_ms
+        if time_s - self.clock_time_s > limit_s + 5e-7 or self.utc_error_ms is None:
+            return None
+        capture_us = None if self.pose is None else self.pose["capture_us"]
+        if capture_us is None or self.utc_offset_us is None:
+            return None
+        return (int(capture_us) + self.utc_offset_us) % 2**32
 
     def _is_beyond_limit(self) -> bool:
         assert self.pose is not None
@@ -204,6 +223,13 @@ class Receiver:
         self.state = name_of("State", "FAULT")
         self.time_source = name_of("TimeSource", "FREE_RUNNING")
         self.status_time_s = time_s
+
+    def _take_clock(self, data: bytes, time_s: float) -> None:
+        signals = MESSAGES["LOC_Clock"].signals
+        offset_us = decode(data, signals["UtcOffset"])
+        self.utc_offset_us = None if offset_us is None else int(offset_us)
+        self.utc_error_ms = decode(data, signals["UtcError"])
+        self.clock_time_s = time_s
 
     def _take_part(self, name: str, data: bytes, time_s: float) -> bool:
         epoch = data[1] >> 4

@@ -16,7 +16,8 @@ namespace loc_status {
 
 inline constexpr ValueName kStateNames[] = {{0, "INIT"},     {1, "ACQUIRING"}, {2, "TRACKING"},
                                             {3, "DEGRADED"}, {4, "LOST"},      {5, "FAULT"}};
-inline constexpr ValueName kTimeSourceNames[] = {{0, "FREE_RUNNING"}, {1, "PTP"}, {2, "GNSS"}};
+inline constexpr ValueName kTimeSourceNames[] = {
+    {0, "FREE_RUNNING"}, {1, "PTP"}, {2, "GNSS"}, {3, "NTP"}};
 inline constexpr ValueName kOkNames[] = {{0, "MISSING"}, {1, "OK"}};
 inline constexpr ValueName kReasonNames[] = {{0, "NO"}, {1, "YES"}};
 
@@ -50,7 +51,7 @@ inline constexpr Signal kState{
 inline constexpr Signal kTimeSource{.name = "TimeSource",
                                     .start_bit = 20,
                                     .length_bits = 3,
-                                    .max = 2,
+                                    .max = 3,
                                     .value_names = kTimeSourceNames,
                                     .comment = "What disciplines the clock behind CaptureTime."};
 inline constexpr Signal kMapOk =

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "can/messages/clock_message.h"
 #include "can/messages/identity_message.h"
 #include "can/messages/integrity_message.h"
 #include "can/messages/localizer_messages.h"
@@ -29,6 +30,7 @@ inline constexpr const Message* kMessages[] = {
     &loc_solution::kMessage,
     &loc_authentication::kMessage,
     &loc_freshness::kMessage,
+    &loc_clock::kMessage,
     &veh_wheel_speed::kMessage,
     &veh_yaw_rate::kMessage,
     &veh_gnss_latitude::kMessage,

@@ -30,6 +30,7 @@ PosePublisher::PosePublisher(Bus& bus, const PosePublisherConfig& config)
       senders_(solution_senders(std::make_index_sequence<kSolutionMessages.size()>())),
       fd_sender_(loc_solution::kMessage.protection()),
       identity_sender_(loc_identity::kMessage.protection()),
+      clock_sender_(loc_clock::kMessage.protection()),
       authentication_sender_(loc_authentication::kMessage.protection()),
       freshness_sender_(loc_freshness::kMessage.protection()) {}
 
@@ -42,6 +43,7 @@ void PosePublisher::publish(const PoseReport& report, Time now) {
   } else {
     publish_classic(frames, status, now);
   }
+  if (config_.sends_clock) send_clock_if_due(report.clock, now);
   if (secoc_) send_authentication(now);
   epoch_ = (epoch_ + 1) & 0x0F;
 }
@@ -64,10 +66,13 @@ void PosePublisher::publish_fd(const SolutionFrames& frames, const LocalizerStat
   bus_.send(solution, now);
 }
 
-std::vector<uint32_t> PosePublisher::sent_ids(const BaseIds& base, FrameFormat format, bool secoc) {
+std::vector<uint32_t> PosePublisher::sent_ids(const BaseIds& base, FrameFormat format, bool secoc,
+                                              bool clock) {
   std::vector<uint32_t> ids;
   for (const Message* message : kMessages) {
-    const bool is_sent = is_secoc_message(*message) ? secoc : message->format == format;
+    const bool is_clock = message == &loc_clock::kMessage;
+    const bool is_always_sent = !is_clock && message->format == format;
+    const bool is_sent = is_secoc_message(*message) ? secoc : is_always_sent || (is_clock && clock);
     if (is_sent && message->sender == Sender::kLocalizer) ids.push_back(message->id(base));
   }
   return ids;
@@ -103,6 +108,16 @@ void PosePublisher::send_authentication(Time now) {
   }
   send(authentication, authentication_sender_, now);
   epoch_frame_count_ = 0;
+}
+
+/// Not part of what LOC_Authentication covers, so that a receiver need not know it.
+void PosePublisher::send_clock_if_due(const ClockReport& clock, Time now) {
+  if (clock_sent_at_ && !is_due(*clock_sent_at_, loc_clock::kCycleMs, now)) return;
+  clock_sent_at_ = now;
+  Frame frame = clock_frame(clock, config_.base_ids);
+  insert_raw(frame, kEpoch, epoch_);
+  clock_sender_.protect(frame);
+  bus_.send(frame, now);
 }
 
 bool PosePublisher::advance_identity(Time now) {

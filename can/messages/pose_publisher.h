@@ -23,11 +23,13 @@ struct PosePublisherConfig {
   ReportLimits limits{};
   FrameFormat format = FrameFormat::kClassic;
   Identity identity{};
+  bool sends_clock = false;  ///< LOC_Clock
 };
 
 /// Sends each report as one epoch of protected frames, or on CAN FD as one frame. The caller calls
 /// publish() once per cycle (kSolutionCycleMs). LOC_Status is sent on every change and every
-/// kStatusCycleMs, LOC_Identity every loc_identity::kItemCycleMs. A status frame that found no room
+/// kStatusCycleMs, LOC_Identity every loc_identity::kItemCycleMs, LOC_Clock every
+/// loc_clock::kCycleMs. A status frame that found no room
 /// on the bus is sent again in the next cycle. A pose that must not be used is sent as SNA, with
 /// the reason in the status (status_to_send()).
 ///
@@ -42,9 +44,10 @@ class PosePublisher {
 
   void publish(const PoseReport& report, Time now);
 
-  /// Returns the identifiers that a publisher of this format sends, with or without authentication.
-  static std::vector<uint32_t> sent_ids(const BaseIds& base, FrameFormat format,
-                                        bool secoc = false);
+  /// Returns the identifiers that a publisher of this format sends, with or without authentication
+  /// and LOC_Clock.
+  static std::vector<uint32_t> sent_ids(const BaseIds& base, FrameFormat format, bool secoc = false,
+                                        bool clock = false);
 
  private:
   void publish_classic(const SolutionFrames& frames, const LocalizerStatus& status, Time now);
@@ -53,6 +56,7 @@ class PosePublisher {
   void send_status_if_due(const LocalizerStatus& status, Time now);
   void send_identity_if_due(Time now);
   void send_authentication(Time now);
+  void send_clock_if_due(const ClockReport& clock, Time now);
   /// Goes on to the next item of the identity when it is due. Returns whether it was.
   bool advance_identity(Time now);
 
@@ -68,6 +72,8 @@ class PosePublisher {
   E2eSender identity_sender_;
   int identity_item_ = 0;
   std::optional<Time> identity_changed_at_;
+  E2eSender clock_sender_;
+  std::optional<Time> clock_sent_at_;
 
   std::optional<SecocSender> secoc_;
   E2eSender authentication_sender_;

@@ -14,7 +14,14 @@
 namespace bevloc::can {
 
 /// Values of LOC_Status.TimeSource.
-enum class TimeSource : uint8_t { kFreeRunning = 0, kPtp = 1, kGnss = 2 };
+enum class TimeSource : uint8_t { kFreeRunning = 0, kPtp = 1, kGnss = 2, kNtp = 3 };
+
+/// What LOC_Status and LOC_Clock tell about the localizer's clock.
+struct ClockReport {
+  TimeSource source = TimeSource::kFreeRunning;
+  Duration utc_offset{};  ///< UTC since 1970 minus the localizer's clock
+  Duration utc_error{};   ///< bound of its error; meaningless while free running, as is the offset
+};
 
 /// The content of LOC_Status.
 struct LocalizerStatus {
@@ -47,6 +54,7 @@ struct PoseReport {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
   LocalizerStatus status;
+  ClockReport clock;                 ///< of LOC_Clock; the status has its own source
   std::optional<Time> capture_time;  ///< time of the newest frames that contributed to the pose
   Time pose_time{};                  ///< the moment to which pose and velocity are predicted
   Se2 map_from_vehicle{kUnknown, kUnknown, kUnknown};

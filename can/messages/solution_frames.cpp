@@ -5,6 +5,7 @@
 #include <numbers>
 #include <span>
 
+#include "can/messages/clock_message.h"
 #include "can/messages/encode_quantity.h"
 
 namespace bevloc::can {
@@ -138,6 +139,15 @@ Frame status_frame(const LocalizerStatus& status, const BaseIds& base) {
   insert_raw(frame, loc_status::kGnssOk, status.gnss_ok);
   insert_reasons(frame, loc_status::kWhy, status.why, 0);
   insert_raw(frame, loc_status::kMapId, status.map_id);
+  return frame;
+}
+
+Frame clock_frame(const ClockReport& clock, const BaseIds& base) {
+  Frame frame = blank_frame(loc_clock::kMessage, base);
+  if (clock.source == TimeSource::kFreeRunning) return frame;
+  const auto offset_us = std::chrono::round<std::chrono::microseconds>(clock.utc_offset).count();
+  insert_raw(frame, loc_clock::kUtcOffset, offset_us & UINT32_MAX);
+  encode_bound(frame, loc_clock::kUtcError, 1e3 * to_seconds(clock.utc_error));
   return frame;
 }
 

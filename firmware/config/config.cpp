@@ -237,6 +237,25 @@ void read_online_calibration(std::optional<YamlMap> yaml, const std::filesystem:
   if (yaml->has("file")) config.learned_calibration_file = path_of(*yaml, "file", folder);
 }
 
+/// GNSS from elsewhere excludes GNSS of the vehicle's own bus.
+std::optional<GnssConfig> read_gnss_source(YamlMap& yaml, const Config& config) {
+  auto section = yaml.optional_map("gnss");
+  if (!section) return std::nullopt;
+  GnssConfig gnss = read_gnss(*section);
+  if (config.cameras.driver == CameraDriver::kMock) {
+    yaml.reject_key("gnss", "a GNSS receiver with mock cameras",
+                    "no section gnss, because a simulated drive has a receiver of its own");
+  }
+  if (config.can.vehicle && config.can.vehicle->gnss) {
+    yaml.reject("gnss", "a second source of GNSS", "can.vehicle without gnss, or no section gnss");
+  }
+  if (config.can.secoc && !is_loopback(gnss.gpsd.address)) {
+    yaml.reject("gnss", "positions over the network, which nobody authenticates, with can.secoc",
+                "gpsd on this machine");
+  }
+  return gnss;
+}
+
 }  // namespace
 
 Config read_config(YamlMap& yaml, const std::filesystem::path& folder,
@@ -257,6 +276,7 @@ Config read_config(YamlMap& yaml, const std::filesystem::path& folder,
   config.model_file = path_of(model, "file", folder);
   config.solver = read_solver(yaml.optional_map("solver"));
   config.can = read_can(yaml.require_map("can"), config.cameras.driver, folder);
+  config.gnss = read_gnss_source(yaml, config);
   config.tracker = read_tracker(yaml.optional_map("tracker"));
   config.health = read_health(yaml.optional_map("health"));
   if (auto gpio = yaml.optional_map("gpio")) {
@@ -265,6 +285,12 @@ Config read_config(YamlMap& yaml, const std::filesystem::path& folder,
       yaml.reject_key("gpio", "GPIO lines with mock cameras",
                       "no section gpio, because a simulated drive has no lines");
     }
+  }
+  config.clock = read_clock_section(yaml.optional_map("clock"));
+  config.can.sends_clock = config.clock.source != can::TimeSource::kFreeRunning;
+  if (config.cameras.driver == CameraDriver::kMock) {
+    yaml.reject_key("clock", "the clock of this machine with mock cameras",
+                    "no section clock, because a simulated drive has a clock of its own");
   }
   config.realtime = read_realtime(yaml.optional_map("realtime"));
   config.log_level = read_log_level(yaml.optional_map("log"));

@@ -15,6 +15,8 @@
 #include "common/strict_yaml.h"
 #include "drivers/frameset/synchronizer.h"
 #include "firmware/config/camera_devices_config.h"
+#include "firmware/config/clock_config.h"
+#include "firmware/config/gnss_config.h"
 #include "firmware/config/gpio_config.h"
 #include "firmware/config/live_config.h"
 #include "firmware/config/realtime_config.h"
@@ -62,6 +64,7 @@ struct CanConfig {
   can::BaseIds base_ids;
   can::OdometryLimits odometry;  ///< what the vehicle's odometry is checked with
   std::optional<SecocConfig> secoc;
+  bool sends_clock = false;  ///< LOC_Clock, with the section `clock`
   /// The vehicle's own messages, read in place of bevloc's VEH_ messages.
   std::optional<can::VehicleBinding> vehicle;
 };
@@ -87,11 +90,13 @@ struct Config {
   std::filesystem::path manifest_file;  ///< empty: no checksums are compared
   SolverConfig solver;
   CanConfig can;
+  std::optional<GnssConfig> gnss;  ///< empty: GNSS comes on the CAN bus
   TrackerParameters tracker;
   HealthLimits health;
   GpioConfig gpio;
   RealtimeConfig realtime;
   std::optional<RecordConfig> record;  ///< empty: nothing is recorded
+  ClockConfig clock;
   LogLevel log_level = LogLevel::kInfo;
   std::optional<LiveConfig> live;  ///< empty: no server
 };

@@ -77,6 +77,12 @@ Appliance::Appliance(const Config& config, const HdMap& map, Hardware hardware,
       estimation_(config.tracker, config.health, map_id_of(map), publisher_, queues_.samples,
                   queues_.reports, queues_.predictions) {
   estimation_.watch(vehicle_input_);
+  if (config.gnss) {
+    vehicle_input_.ignore_gnss();
+    gnss_.emplace(*config.gnss,
+                  can::GeodeticPosition{map.origin.latitude_deg, map.origin.longitude_deg},
+                  *hardware_.clock, queues_.samples);
+  }
   for (const auto& camera : hardware_.cameras) {
     capture_.emplace_back(*camera, *hardware_.clock, queues_.frames);
   }
@@ -116,6 +122,7 @@ can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map
   publisher.base_ids = config.can.base_ids;
   publisher.format = config.can.variant;
   publisher.identity = identity_of(config, map);
+  publisher.sends_clock = config.can.sends_clock;
   publisher.map_origin = {map.origin.latitude_deg, map.origin.longitude_deg};
   return publisher;
 }

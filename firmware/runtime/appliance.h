@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "can/bus/bus.h"
@@ -12,6 +13,7 @@
 #include "firmware/runtime/heartbeat.h"
 #include "firmware/stages/capture_stage.h"
 #include "firmware/stages/estimation_stage.h"
+#include "firmware/stages/gnss_stage.h"
 #include "firmware/stages/vehicle_input_stage.h"
 #include "firmware/stages/vision_stage.h"
 
@@ -30,6 +32,7 @@ struct StageHeartbeats {
   Heartbeat vision;
   Heartbeat can_in;
   Heartbeat can_out;
+  Heartbeat gnss;  ///< only with a GNSS stage
 };
 
 /// Where the frames of all cameras went.
@@ -62,6 +65,9 @@ class Appliance {
   const StageHeartbeats& heartbeats() const { return heartbeats_; }
   VehicleInputStage& vehicle_input() { return vehicle_input_; }
   const VehicleInputStage& vehicle_input() const { return vehicle_input_; }
+  /// Null if GNSS comes on the bus.
+  GnssStage* gnss() { return gnss_ ? &*gnss_ : nullptr; }
+  const GnssStage* gnss() const { return gnss_ ? &*gnss_ : nullptr; }
   VisionStage& vision() { return vision_; }
   EstimationStage& estimation() { return estimation_; }
   const VisionStage& vision() const { return vision_; }
@@ -94,6 +100,7 @@ class Appliance {
   can::PosePublisher publisher_;
   std::deque<CaptureStage> capture_;  ///< a deque, because a stage cannot be moved
   VehicleInputStage vehicle_input_;
+  std::optional<GnssStage> gnss_;
   VisionStage vision_;
   EstimationStage estimation_;
   StageHeartbeats heartbeats_;

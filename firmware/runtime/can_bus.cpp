@@ -12,8 +12,8 @@ can::SocketCanOptions appliance_options(const CanConfig& config) {
   options.accepted_ids =
       config.vehicle ? can::ids_of(*config.vehicle)
                      : can::VehicleInput::accepted_ids(config.base_ids, config.secoc.has_value());
-  options.confirmed_ids =
-      can::PosePublisher::sent_ids(config.base_ids, config.variant, config.secoc.has_value());
+  options.confirmed_ids = can::PosePublisher::sent_ids(
+      config.base_ids, config.variant, config.secoc.has_value(), config.sends_clock);
   options.fd = config.variant == can::FrameFormat::kFd;
   return options;
 }

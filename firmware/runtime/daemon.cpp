@@ -7,6 +7,7 @@
 #include "firmware/live/live_server.h"
 #include "firmware/recording/recording_session.h"
 #include "firmware/runtime/camera_factory.h"
+#include "firmware/runtime/clock_watch.h"
 #include "firmware/runtime/fault_line.h"
 #include "firmware/runtime/gpio_lines.h"
 #include "firmware/runtime/realtime.h"
@@ -67,7 +68,7 @@ bool wait_for_ignition(Base& base, const DaemonHost& host) {
 
 /// Runs a complete appliance until the ignition goes off (true) or the daemon shall end (false).
 bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger, Base& base,
-                   const DaemonHost& host) {
+                   const ClockConfig& clock, const DaemonHost& host) {
   Watchdog watchdog(appliance.estimation().counters().state, base.fault.get());
   watchdog.watch_stages(appliance);
   Supervisor supervisor(appliance, base.realtime, watchdog);
@@ -82,10 +83,12 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
   };
   ViewLog log;
   ErrorLog errors;
+  ClockWatch clock_watch(clock);
   bool ignition = true;
   if (base.live) base.live->attach(appliance, rig);
   run_threads(appliance, base.realtime, nullptr, [&](Time now) {
     supervisor.step(now);
+    appliance.estimation().note_clock(clock_watch.step());
     log.note(supervisor.view());
     const Snapshot counters = snapshot();
     errors.note(counters, now);
@@ -128,7 +131,7 @@ Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
     watch(**appliance, **recorder);
     recording = start_recording(**recorder, base.clock);
   }
-  return run_appliance(**appliance, rig, trigger.get(), base, host);
+  return run_appliance(**appliance, rig, trigger.get(), base, config.clock, host);
 }
 
 }  // namespace

@@ -107,6 +107,15 @@ void start_stages(Appliance& appliance, Realtime& realtime, const std::atomic<bo
       appliance.vehicle_input().step(kPatience);
     }
   });
+  if (GnssStage* gnss = appliance.gnss(); gnss != nullptr) {
+    threads.emplace_back("gnss", [gnss, &heartbeats, &running] {
+      name_this_thread("gnss");
+      while (running) {
+        heartbeats.gnss.beat();
+        gnss->step(kPatience);
+      }
+    });
+  }
   threads.emplace_back("can-out", [&] {
     realtime.begin_thread(ThreadRole::kCan, "can-out");
     publish_on_cycle(appliance, running);

@@ -26,6 +26,7 @@ void Watchdog::watch_stages(const Appliance& appliance) {
   watch("vision", stages.vision);
   watch("can-in", stages.can_in);
   watch("can-out", stages.can_out);
+  if (appliance.gnss() != nullptr) watch("gnss", stages.gnss);
 }
 
 void Watchdog::watch(std::string name, const Heartbeat& heartbeat) {

@@ -98,6 +98,8 @@ void EstimationStage::sign_off(Time now) {
   report.status = make_status();
   report.status.state = HealthState::kLost;
   report.status.why |= Why::kPoseStale;
+  report.clock = clock_.load();
+  report.status.time_source = report.clock.source;
   report.pose_time = now;
   publisher_.publish(report, now);
 }
@@ -244,6 +246,9 @@ void EstimationStage::note_pose(const std::optional<TrackedPose>& pose) {
 void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) {
   can::PoseReport report;
   report.status = make_status();
+  report.clock = clock_.load();
+  report.status.time_source = report.clock.source;
+  counters_.time_source = report.clock.source;
   report.capture_time = accepted_frame_time_;
   report.pose_time = now;
   if (pose) {

@@ -38,6 +38,7 @@ struct EstimationCounters {
   std::array<std::atomic<int>, 2> map_offset_cm{};
   std::atomic<unsigned> cameras{0};  ///< cameras used in the latest frameset, a CameraMask
   Published<PoseSnapshot> pose;      ///< of the latest tick()
+  std::atomic<can::TimeSource> time_source{can::TimeSource::kFreeRunning};
   /// From the time of a frameset until the first valid pose with its correction is sent.
   LatencyHistogram latency;
 };
@@ -49,7 +50,8 @@ using CorrectionObserver = std::function<void(Time frame_time)>;
 /// Called with each report that goes to the bus, except the sign-off.
 using ReportObserver = std::function<void(const can::PoseReport& report)>;
 
-/// Thread-bound: called from the CAN-out thread; counters() is readable from any thread.
+/// Thread-bound: called from the CAN-out thread, but for note_clock(); counters() is readable from
+/// any thread.
 class EstimationStage {
  public:
   /// `publisher` and the queues must outlive the stage.
@@ -62,6 +64,9 @@ class EstimationStage {
 
   /// Reports what is wrong with the vehicle's messages. `input` must outlive the stage.
   void watch(const VehicleInputStage& input) { vehicle_input_ = &input; }
+
+  /// What the status tells about the clock from now on. Callable from one other thread.
+  void note_clock(const can::ClockReport& clock) { clock_.store(clock); }
 
   /// Takes all queued samples and reports, then publishes the pose predicted to `now`. To be called
   /// once per bus cycle.
@@ -113,6 +118,7 @@ class EstimationStage {
   std::optional<VisionReport> latest_report_;
   Time latest_report_arrival_;
   bool network_fault_ = false;
+  Published<can::ClockReport> clock_;
   StampMonitor stamp_monitor_;
   std::optional<Time> last_tick_;
   int accepted_in_a_row_ = 0;  ///< that confirm a start

@@ -25,7 +25,8 @@ void VehicleInputStage::take(const can::ReceivedFrame& received) {
   const bool forged = forged_ && received.received - *forged_ <= can::VehicleDecoder::kWhyHold;
   if (forged) why |= Why::kForeignSender;
   why_ = why.bits();  // before the sample, so that whoever reads the sample knows it
-  if (sample) samples_.push(*sample);
+  const bool wanted = sample && !(ignores_gnss_ && std::holds_alternative<GnssSample>(*sample));
+  if (wanted) samples_.push(*sample);
 }
 
 void VehicleInputStage::take_authentic(const can::ReceivedFrame& received) {

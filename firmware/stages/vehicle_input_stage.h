@@ -26,6 +26,9 @@ class VehicleInputStage {
   /// From now on, uses only frames that are authentic.
   void authenticate(can::SecocReceiver receiver) { secoc_.emplace(std::move(receiver)); }
 
+  /// From now on, drops the positions of the bus: GNSS comes from elsewhere.
+  void ignore_gnss() { ignores_gnss_ = true; }
+
   /// Waits for CAN frames, at most `timeout`, and queues the samples that they complete.
   void step(Duration timeout);
 
@@ -48,6 +51,7 @@ class VehicleInputStage {
   VehicleQueue& samples_;
   Published<can::VehicleInputCounters> counters_;
   Published<can::SecocCounters> secoc_counters_;
+  bool ignores_gnss_ = false;
   std::optional<can::SecocReceiver> secoc_;
   std::optional<Time> forged_;  ///< the latest frame that was not authentic
   std::atomic<uint32_t> why_{0};

@@ -22,6 +22,7 @@ void ErrorLog::note(const Snapshot& snapshot, Time now) {
     note_camera(camera, snapshot.cameras[camera], now);
   }
   note_vehicle_input(snapshot.vehicle_input, now);
+  if (snapshot.gnss) note_gnss(*snapshot.gnss, now);
   note_tracker(snapshot.estimation, now);
   note_bus(snapshot.bus, now);
 }
@@ -68,6 +69,37 @@ void ErrorLog::note_vehicle_input(const can::VehicleInputCounters& input, Time n
         input.incomplete, now);
   count("CAN in: found a signal that is not available or out of range; check the sender",
         input.not_available, now);
+}
+
+void ErrorLog::note_gnss(const GnssCounters& gnss, Time now) {
+  using drivers::FixVerdict;
+  using drivers::GpsdLine;
+  const auto line = [&](GpsdLine kind) { return gnss.gpsd.lines[static_cast<size_t>(kind)]; };
+  const auto fix = [&](FixVerdict verdict) { return gnss.fixes[static_cast<size_t>(verdict)]; };
+  count("gpsd: cannot be reached; check that it runs, gnss.address and gnss.port", gnss.gpsd.failed,
+        now);
+  count("gpsd: found no report for 10 s, wanted one a second; check the receiver and gnss.device",
+        gnss.gpsd.silent, now);
+  count("gpsd: found a line that is not JSON or too long; check that gnss.port is that of gpsd",
+        line(GpsdLine::kNotReadable) + gnss.gpsd.too_long, now);
+  count(
+      "gpsd: found a fix without accuracy (epx and epy, or eph) or time; check the receiver's "
+      "messages",
+      line(GpsdLine::kNoAccuracy) + line(GpsdLine::kNoTime), now);
+  count("gpsd: found a value that no receiver can have; check the receiver",
+        line(GpsdLine::kOutOfRange), now);
+  count("gpsd: found dead reckoning or a simulation, wanted satellites; check the receiver's setup",
+        line(GpsdLine::kNotSatellites), now);
+  count("gpsd: found a fix that is too old; check the receiver's rate and the load of this machine",
+        fix(FixVerdict::kStale), now);
+  count("gpsd: found a fix from the future; check that the system clock is UTC",
+        fix(FixVerdict::kFuture), now);
+  count(
+      "gpsd: found a system clock that is not synchronized; check chrony or linuxptp, or choose "
+      "gnss.timing: arrival",
+      fix(FixVerdict::kUnsynchronized), now);
+  count("gpsd: found the same fix twice; choose one receiver with gnss.device",
+        fix(FixVerdict::kRepeated), now);
 }
 
 void ErrorLog::note_tracker(const EstimationSnapshot& estimation, Time now) {

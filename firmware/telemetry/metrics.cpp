@@ -75,6 +75,9 @@ void add_state(Families& families, const Telemetry& telemetry) {
   }
   families.gauge("bevloc_standby", "1 while the ignition is off",
                  telemetry.phase == Phase::kStandby ? 1 : 0);
+  families.gauge("bevloc_time_source",
+                 "What keeps the clock, as LOC_Status tells it: 0 nothing, 1 PTP, 2 GNSS, 3 NTP",
+                 static_cast<double>(estimation.time_source));
   families.count("bevloc_clock_gaps_total",
                  "Suspensions and stops of the process that were noticed", estimation.clock_gaps);
 }
@@ -205,6 +208,35 @@ void add_vehicle(Families& families, const Snapshot& snapshot) {
   refused("no_freshness", snapshot.authentication->no_freshness);
 }
 
+void add_gnss(Families& families, const GnssCounters& gnss) {
+  using drivers::FixVerdict;
+  using drivers::GpsdLine;
+  families.gauge("bevloc_gnss_connected", "1 while gpsd is connected", gnss.connected ? 1 : 0);
+  families.count("bevloc_gnss_connections_total", "How often gpsd was connected",
+                 gnss.gpsd.connected);
+  families.count("bevloc_gnss_samples_total", "Positions of gpsd that were used", gnss.samples);
+  families.gauge("bevloc_gnss_age_max_seconds", "Largest age of a position that was used",
+                 to_seconds(gnss.max_age));
+  const auto refused = [&](const char* reason, uint64_t value) {
+    families.count("bevloc_gnss_refused_total", "Reports of gpsd that were not used", value,
+                   {{"reason", reason}});
+  };
+  const auto line = [&](GpsdLine kind) { return gnss.gpsd.lines[static_cast<size_t>(kind)]; };
+  const auto fix = [&](FixVerdict verdict) { return gnss.fixes[static_cast<size_t>(verdict)]; };
+  refused("no_fix", line(GpsdLine::kNoFix));
+  refused("no_accuracy", line(GpsdLine::kNoAccuracy));
+  refused("no_time", line(GpsdLine::kNoTime));
+  refused("not_satellites", line(GpsdLine::kNotSatellites));
+  refused("out_of_range", line(GpsdLine::kOutOfRange));
+  refused("not_readable", line(GpsdLine::kNotReadable));
+  refused("too_long", gnss.gpsd.too_long);
+  refused("learning", fix(FixVerdict::kLearning));
+  refused("repeated", fix(FixVerdict::kRepeated));
+  refused("stale", fix(FixVerdict::kStale));
+  refused("future", fix(FixVerdict::kFuture));
+  refused("clock_unsynchronized", fix(FixVerdict::kUnsynchronized));
+}
+
 void add_bus(Families& families, const Snapshot& snapshot) {
   const can::BusCounters& bus = snapshot.bus;
   for (int i = 0; i <= static_cast<int>(can::BusState::kDown); ++i) {
@@ -288,6 +320,7 @@ std::string metrics_text(const Telemetry& telemetry, const ProcessUse& process, 
   add_tracker(families, "gnss", telemetry.snapshot.estimation.gnss);
   add_tracker(families, "correction", telemetry.snapshot.estimation.corrections);
   add_vehicle(families, telemetry.snapshot);
+  if (telemetry.snapshot.gnss) add_gnss(families, *telemetry.snapshot.gnss);
   add_bus(families, telemetry.snapshot);
   add_process(families, telemetry, process);
   return families.text();

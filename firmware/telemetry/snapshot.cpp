@@ -12,6 +12,7 @@ OutcomeCounts counts_of(const TrackerOutcomes& outcomes) {
 EstimationSnapshot estimation_of(const EstimationCounters& counters) {
   return {.state = counters.state,
           .why = WhyMask::from_bits(counters.why),
+          .time_source = counters.time_source,
           .cameras = CameraMask(counters.cameras),
           .ticks = counters.ticks,
           .clock_gaps = counters.clock_gaps,
@@ -71,6 +72,7 @@ Snapshot take_snapshot(const Appliance& appliance, const drivers::Trigger* trigg
   snapshot.framesets = framesets_of(appliance.vision());
   snapshot.vehicle_input = appliance.vehicle_input().counters();
   snapshot.authentication = appliance.vehicle_input().secoc_counters();
+  if (appliance.gnss() != nullptr) snapshot.gnss = appliance.gnss()->counters();
   snapshot.estimation = estimation_of(appliance.estimation().counters());
   snapshot.bus = appliance.bus().counters();
   snapshot.bus_condition = appliance.bus().condition();

@@ -45,6 +45,7 @@ using OutcomeCounts = std::array<uint64_t, kTrackerUpdates>;
 struct EstimationSnapshot {
   HealthState state = HealthState::kInit;
   WhyMask why;
+  can::TimeSource time_source = can::TimeSource::kFreeRunning;
   CameraMask cameras;  ///< used in the latest frameset
   uint64_t ticks = 0;
   uint64_t clock_gaps = 0;
@@ -68,6 +69,7 @@ struct Snapshot {
   FramesetsSnapshot framesets;
   can::VehicleInputCounters vehicle_input;
   std::optional<can::SecocCounters> authentication;  ///< empty without authentication
+  std::optional<GnssCounters> gnss;                  ///< empty if GNSS comes on the bus
   EstimationSnapshot estimation;
   can::BusCounters bus;
   can::BusCondition bus_condition;

@@ -107,6 +107,23 @@ json vehicle_of(const can::VehicleInputCounters& input) {
       {"odometry_refused", input.contradicting_wheels + input.odometry_jumps + input.sharp_turns}};
 }
 
+json gnss_of(const GnssCounters& gnss) {
+  using drivers::GpsdLine;
+  uint64_t refused = gnss.gpsd.too_long;
+  for (const GpsdLine kind :
+       {GpsdLine::kNoFix, GpsdLine::kNoAccuracy, GpsdLine::kNoTime, GpsdLine::kNotSatellites,
+        GpsdLine::kOutOfRange, GpsdLine::kNotReadable}) {
+    refused += gnss.gpsd.lines[static_cast<size_t>(kind)];
+  }
+  uint64_t fixes = 0;
+  for (const uint64_t count : gnss.fixes) fixes += count;
+  return {{"connected", gnss.connected},
+          {"samples", gnss.samples},
+          {"reports_refused", refused},
+          {"fixes_refused", fixes - gnss.samples},
+          {"age_max_ms", 1e3 * to_seconds(gnss.max_age)}};
+}
+
 /// The value at a path such as "pose.sigma.lateral_m" as text.
 std::string text_at(const json& status, const std::string& path, const char* format = "{}") {
   const json* at = &status;
@@ -201,6 +218,7 @@ json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration
                        {"gnss", tracker_of(estimation.gnss)},
                        {"corrections", tracker_of(estimation.corrections)}};
   status["vehicle"] = vehicle_of(snapshot.vehicle_input);
+  if (snapshot.gnss) status["gnss"] = gnss_of(*snapshot.gnss);
   status["can"] = bus_of(snapshot);
   status["hung_threads"] = telemetry.view.hung;
   status["log_lines_dropped"] = snapshot.log_dropped;
@@ -235,6 +253,13 @@ std::string status_page(const json& status) {
       "\nvehicle     {} odometry and {} GNSS samples; {} frames lost, {} refused by E2E\n",
       text_at(status, "vehicle.odometry_samples"), text_at(status, "vehicle.gnss_samples"),
       text_at(status, "vehicle.frames_lost"), text_at(status, "vehicle.e2e_refused"));
+  if (status.contains("gnss")) {
+    text += fmt::format(
+        "gpsd        {}; {} samples, {} reports and {} fixes refused, at most {} ms old\n",
+        status["gnss"].value("connected", false) ? "connected" : "NOT connected",
+        text_at(status, "gnss.samples"), text_at(status, "gnss.reports_refused"),
+        text_at(status, "gnss.fixes_refused"), text_at(status, "gnss.age_max_ms", "{:.0f}"));
+  }
   text += fmt::format("CAN         {}; {} sent, {} received, {} dropped, {} error frames\n",
                       text_at(status, "can.condition"), text_at(status, "can.sent"),
                       text_at(status, "can.received"), text_at(status, "can.send_dropped"),

@@ -83,6 +83,24 @@ void log_vehicle_input(const can::VehicleInputCounters& input) {
       input.own_ids, input.contradicting_wheels, input.odometry_jumps, input.sharp_turns);
 }
 
+void log_gnss(const GnssCounters& gnss) {
+  using drivers::FixVerdict;
+  using drivers::GpsdLine;
+  const auto line = [&](GpsdLine kind) { return gnss.gpsd.lines[static_cast<size_t>(kind)]; };
+  const auto fix = [&](FixVerdict verdict) { return gnss.fixes[static_cast<size_t>(verdict)]; };
+  spdlog::info(
+      "gpsd: {} samples, at most {:.0f} ms old; reports refused: {} without a fix, {} without "
+      "accuracy or time, {} not of satellites, {} out of range, {} not readable or too long; fixes "
+      "refused: {} to learn the delay, {} repeated, {} stale, {} from the future, {} while the "
+      "clock was not synchronized; connected {} times, {} attempts failed, silent {} times",
+      gnss.samples, milliseconds(gnss.max_age), line(GpsdLine::kNoFix),
+      line(GpsdLine::kNoAccuracy) + line(GpsdLine::kNoTime), line(GpsdLine::kNotSatellites),
+      line(GpsdLine::kOutOfRange), line(GpsdLine::kNotReadable) + gnss.gpsd.too_long,
+      fix(FixVerdict::kLearning), fix(FixVerdict::kRepeated), fix(FixVerdict::kStale),
+      fix(FixVerdict::kFuture), fix(FixVerdict::kUnsynchronized), gnss.gpsd.connected,
+      gnss.gpsd.failed, gnss.gpsd.silent);
+}
+
 void log_authentication(const can::SecocCounters& secoc) {
   spdlog::info(
       "vehicle: {} epochs authentic; refused: {} with a wrong code or replayed, {} incomplete, {} "
@@ -98,6 +116,7 @@ void log_totals(const Snapshot& snapshot) {
   log_framesets(snapshot.framesets, snapshot.trigger);
   log_vehicle_input(snapshot.vehicle_input);
   if (snapshot.authentication) log_authentication(*snapshot.authentication);
+  if (snapshot.gnss) log_gnss(*snapshot.gnss);
   log_tracker("odometry", snapshot.estimation.odometry);
   log_tracker("GNSS", snapshot.estimation.gnss);
   log_tracker("corrections", snapshot.estimation.corrections);

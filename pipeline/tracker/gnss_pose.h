@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "common/se2.h"
 #include "common/vehicle_samples.h"
@@ -23,6 +25,29 @@ inline GnssPose gnss_pose(const GnssSample& sample) {
           .position_sigma_m = std::max(sample.sigma_east_m, sample.sigma_north_m),
           .yaw_sigma_rad = yaw.sigma_rad,
           .has_yaw = sample.yaw.has_value()};
+}
+
+/// Moves the position of an antenna to the middle of the rear axle. The vehicle's yaw is that of
+/// `estimate` or of the sample, whichever is more certain. What the yaw does not know is added to
+/// the sigmas: without any yaw, the whole distance.
+inline GnssSample at_rear_axle(GnssSample sample, const std::optional<GnssSample::Yaw>& estimate) {
+  if (!sample.antenna) return sample;
+  const GnssSample::Antenna antenna = *sample.antenna;
+  sample.antenna.reset();
+  std::optional<GnssSample::Yaw> yaw = sample.yaw;
+  if (estimate && (!yaw || estimate->sigma_rad < yaw->sigma_rad)) yaw = estimate;
+  const bool is_known = yaw && yaw->sigma_rad < 1.0;
+  const double distance_m = std::hypot(antenna.x_m, antenna.y_m);
+  const double sigma_m = is_known ? yaw->sigma_rad * distance_m : distance_m;
+  if (is_known) {
+    const double c = std::cos(yaw->yaw_rad);
+    const double s = std::sin(yaw->yaw_rad);
+    sample.east_m -= c * antenna.x_m - s * antenna.y_m;
+    sample.north_m -= s * antenna.x_m + c * antenna.y_m;
+  }
+  sample.sigma_east_m = std::hypot(sample.sigma_east_m, sigma_m);
+  sample.sigma_north_m = std::hypot(sample.sigma_north_m, sigma_m);
+  return sample;
 }
 
 }  // namespace bevloc

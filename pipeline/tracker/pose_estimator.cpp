@@ -33,7 +33,15 @@ TrackerUpdate PoseEstimator::add(const VehicleSample& sample) {
   return tracker_.add_odometry(odometry);
 }
 
-TrackerUpdate PoseEstimator::add_gnss(const GnssSample& sample) {
+std::optional<GnssSample::Yaw> PoseEstimator::yaw_at(Time time) const {
+  const auto pose = tracker_.pose_at(time);
+  if (!pose) return std::nullopt;
+  return GnssSample::Yaw{pose->map_from_vehicle.yaw_rad, std::sqrt(pose->covariance(2, 2))};
+}
+
+TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
+  const GnssSample sample =
+      received.antenna ? at_rear_axle(received, yaw_at(received.time)) : received;
   const bool had_pose = tracker_.is_initialised();
   const bool trusted = arbiter_.trusts_gnss();
   const TrackerUpdate update = tracker_.add_gnss(sample, trusted ? Trust::kUse : Trust::kExamine);

@@ -66,7 +66,8 @@ class PoseEstimator {
   const Tracker& tracker() const { return tracker_; }
 
  private:
-  TrackerUpdate add_gnss(const GnssSample& sample);
+  TrackerUpdate add_gnss(const GnssSample& received);
+  std::optional<GnssSample::Yaw> yaw_at(Time time) const;
   bool gnss_refutes() const;
   void compare_map(const GnssSample& sample);
 

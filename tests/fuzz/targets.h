@@ -20,6 +20,7 @@ void run_candump(Bytes bytes);
 void run_config(Bytes bytes);
 void run_dbc(Bytes bytes);
 void run_frames_txt(Bytes bytes);
+void run_gpsd(Bytes bytes);
 void run_image_file(Bytes bytes);
 void run_map_json(Bytes bytes);
 void run_mcap(Bytes bytes);
@@ -42,6 +43,7 @@ inline constexpr Target kTargets[] = {
     {"config", run_config},
     {"dbc", run_dbc},
     {"frames_txt", run_frames_txt},
+    {"gpsd", run_gpsd},
     {"image_file", run_image_file},
     {"map_json", run_map_json},
     {"mcap", run_mcap},

@@ -37,6 +37,29 @@ class ConsumersTest(unittest.TestCase):
         reader = str(CONSUMER / "bevloc_reader.py")
         self.assertEqual(output_of(sys.executable, reader, self.log), self.expected)
 
+    def test_python_knows_the_capture_time_in_utc(self) -> None:
+        sys.path.insert(0, str(CONSUMER))
+        self.addCleanup(sys.path.remove, str(CONSUMER))
+        reader = importlib.import_module("bevloc_reader")
+        receiver = reader.Receiver()
+
+        def receive(name: str, counter: int, content: bytes, time_s: float) -> None:
+            message = reader.MESSAGES[name]
+            data = bytes([counter]) + content.ljust(message.length - 2, b"\0")
+            crc = reader.crc8_h2f(data + bytes([message.data_id]))
+            receiver.receive(reader.LOCALIZER_BASE + message.id_offset, bytes([crc]) + data, time_s)
+
+        for part in reader.PARTS:
+            capture_us = (2**32 - 5).to_bytes(4, "little") if part == "LOC_Time" else b""
+            receive(part, 0, capture_us, 1.0)
+        self.assertIsNone(receiver.capture_utc_us(1.0), "no LOC_Clock yet")
+        receive("LOC_Clock", 0, (7).to_bytes(4, "little") + (123).to_bytes(2, "little"), 1.0)
+        self.assertEqual(receiver.capture_utc_us(1.3), 2)
+        self.assertAlmostEqual(receiver.utc_error_ms, 1.23)
+        self.assertIsNone(receiver.capture_utc_us(1.301), "too old")
+        receive("LOC_Clock", 1, (7).to_bytes(4, "little") + b"\xff\xff", 1.2)
+        self.assertIsNone(receiver.capture_utc_us(1.2), "not synchronized")
+
     def test_the_golden_log_has_every_fault(self) -> None:
         for word in ("timeout", "beyond_limit", "not_valid", " 1 wrong CRC", " 1 repeated"):
             self.assertIn(word, self.expected)

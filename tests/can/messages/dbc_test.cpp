@@ -125,6 +125,7 @@ TEST(MessageTable, EnumerationsMatchTheValueNames) {
   EXPECT_EQ(name_of(loc_status::kTimeSource, TimeSource::kFreeRunning), "FREE_RUNNING");
   EXPECT_EQ(name_of(loc_status::kTimeSource, TimeSource::kPtp), "PTP");
   EXPECT_EQ(name_of(loc_status::kTimeSource, TimeSource::kGnss), "GNSS");
+  EXPECT_EQ(name_of(loc_status::kTimeSource, TimeSource::kNtp), "NTP");
 
   const auto why_name = [](Why why) {
     const auto bit = static_cast<size_t>(std::countr_zero(WhyMask(why).bits()));

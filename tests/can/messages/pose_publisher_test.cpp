@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -30,7 +31,7 @@ class PosePublisherTest : public testing::Test {
  protected:
   void publish(const PoseReport& report, Time now) {
     frames_.clear();
-    publisher_.publish(report, now);
+    (with_clock_ ? *with_clock_ : publisher_).publish(report, now);
     while (const auto received = reader_->receive()) {
       frames_[dbc_.messages.at(received->frame.id).name] = received->frame;
     }
@@ -78,6 +79,7 @@ class PosePublisherTest : public testing::Test {
   std::unique_ptr<Bus> sender_ = wire_.connect();
   std::unique_ptr<Bus> reader_ = wire_.connect();
   PosePublisher publisher_{*sender_, {.map_origin = kOrigin}};
+  std::optional<PosePublisher> with_clock_;  ///< publishes instead, if there is one
   std::map<std::string, Frame> frames_;
 };
 
@@ -167,6 +169,31 @@ TEST_F(PosePublisherTest, EachReasonHasItsFlag) {
     }
     EXPECT_EQ(flags, 1) << to_string(report.status.why);
   }
+}
+
+/// A reader adds CaptureTime and UtcOffset modulo 2^32 us.
+TEST_F(PosePublisherTest, AReaderKnowsTheCaptureTimeInUtc) {
+  with_clock_.emplace(*sender_, PosePublisherConfig{.map_origin = kOrigin, .sends_clock = true});
+  PoseReport report = tracking_report(kNow);
+  report.clock = {.source = TimeSource::kPtp,
+                  .utc_offset = seconds(1'795'472'500) + microseconds(123'456),
+                  .utc_error = microseconds(1234)};
+  publish(report, kNow);
+  const auto utc_us = static_cast<uint64_t>(value("LOC_Time", "CaptureTime")) +
+                      static_cast<uint64_t>(value("LOC_Clock", "UtcOffset"));
+  const auto expected = std::chrono::floor<microseconds>(report.capture_time->time_since_epoch()) +
+                        seconds(1'795'472'500) + microseconds(123'456);
+  EXPECT_EQ(static_cast<uint32_t>(utc_us), static_cast<uint32_t>(expected.count()));
+  EXPECT_NEAR(value("LOC_Clock", "UtcError"), 1.24, 1e-9) << "rounded up";
+
+  publish(report, kNow + milliseconds(10));
+  EXPECT_FALSE(frames_.contains("LOC_Clock")) << "every 100 ms";
+  report.clock.source = TimeSource::kFreeRunning;
+  publish(report, kNow + milliseconds(100));
+  EXPECT_TRUE(is_sna("LOC_Clock", "UtcError"));
+  report.clock = {.source = TimeSource::kNtp, .utc_error = milliseconds(656)};
+  publish(report, kNow + milliseconds(200));
+  EXPECT_TRUE(is_sna("LOC_Clock", "UtcError")) << "beyond the range";
 }
 
 TEST_F(PosePublisherTest, CaptureTimeIsModulo32BitMicroseconds) {

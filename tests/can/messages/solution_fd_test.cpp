@@ -89,6 +89,9 @@ TEST(SolutionFd, APublisherListsTheIdentifiersThatItSends) {
     const auto frames = published(format, report_with_reason());
     EXPECT_EQ(ids.size(), frames.size());
     for (const uint32_t id : ids) EXPECT_TRUE(frames.contains(id)) << id;
+    auto with_clock = PosePublisher::sent_ids(BaseIds{}, format, false, true);
+    EXPECT_EQ(with_clock.size(), ids.size() + 1);
+    EXPECT_EQ(with_clock.back(), loc_clock::kMessage.id(BaseIds{}));
   }
 }
 

@@ -174,7 +174,7 @@ bool is_authentic(const std::map<uint32_t, Frame>& frames) {
       authentication = frame;
     } else if (id == loc_freshness::kMessage.id(BaseIds{})) {
       freshness = frame;
-    } else {
+    } else if (id != loc_clock::kMessage.id(BaseIds{})) {
       members.push_back(frame);
     }
   }
@@ -191,7 +191,8 @@ TEST_F(SecocTest, TheLocalizerAuthenticatesEachEpochOfBothVariants) {
     MockWire wire;
     const auto sender = wire.connect();
     const auto reader = wire.connect();
-    PosePublisher publisher(*sender, {.map_origin = kOrigin, .format = format});
+    PosePublisher publisher(*sender,
+                            {.map_origin = kOrigin, .format = format, .sends_clock = true});
     publisher.authenticate(SecocSender(Cmac::create(kKey).value(), 7));
     std::map<uint32_t, Frame> frames;
     for (int cycle = 0; cycle < 30; ++cycle) {
@@ -208,7 +209,7 @@ TEST_F(SecocTest, TheLocalizerAuthenticatesEachEpochOfBothVariants) {
       changed.begin()->second.data[3] ^= 1;
       EXPECT_FALSE(is_authentic(changed)) << cycle;
     }
-    const auto ids = PosePublisher::sent_ids(BaseIds{}, format, true);
+    const auto ids = PosePublisher::sent_ids(BaseIds{}, format, true, true);
     for (const auto& [id, frame] : frames) EXPECT_TRUE(std::ranges::count(ids, id)) << id;
   }
 }

@@ -104,6 +104,20 @@ TEST_F(EstimationStageTest, AClockGapMeansLostUntilThePoseIsFoundAgain) {
   EXPECT_FALSE(WhyMask::from_bits(stage_.counters().why).has(Why::kClockGap));
 }
 
+TEST_F(EstimationStageTest, TellsTheSourceOfTime) {
+  std::vector<can::PoseReport> reports;
+  stage_.observe_reports([&](const can::PoseReport& report) { reports.push_back(report); });
+  run(milliseconds(10));
+  stage_.note_clock(
+      {.source = can::TimeSource::kPtp, .utc_offset = milliseconds(7), .utc_error = {}});
+  run(milliseconds(10));
+  ASSERT_EQ(reports.size(), 2U);
+  EXPECT_EQ(reports[0].status.time_source, can::TimeSource::kFreeRunning);
+  EXPECT_EQ(reports[1].status.time_source, can::TimeSource::kPtp);
+  EXPECT_EQ(reports[1].clock.utc_offset, milliseconds(7));
+  EXPECT_EQ(stage_.counters().time_source, can::TimeSource::kPtp);
+}
+
 TEST_F(EstimationStageTest, SendsNoPoseBeforeVisionConfirmsIt) {
   vision_ = false;
   run(milliseconds(5000));

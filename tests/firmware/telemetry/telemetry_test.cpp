@@ -129,6 +129,28 @@ TEST(Metrics, ShowCountersOfEachCamera) {
   }
 }
 
+TEST(Metrics, ShowWhatBecameOfTheReportsOfGpsd) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  EXPECT_THAT(metrics(telemetry), Not(HasSubstr("bevloc_gnss_connected")));
+  GnssCounters& gnss = telemetry.snapshot.gnss.emplace();
+  gnss.connected = true;
+  gnss.samples = 5;
+  gnss.gpsd.lines[static_cast<size_t>(drivers::GpsdLine::kNoFix)] = 3;
+  gnss.fixes[static_cast<size_t>(drivers::FixVerdict::kStale)] = 2;
+  gnss.fixes[static_cast<size_t>(drivers::FixVerdict::kUsable)] = 5;
+  gnss.max_age = milliseconds(250);
+  const std::string text = metrics(telemetry);
+  for (const char* line :
+       {"bevloc_gnss_connected 1\n", "bevloc_gnss_samples_total 5\n",
+        "bevloc_gnss_refused_total{reason=\"no_fix\"} 3\n",
+        "bevloc_gnss_refused_total{reason=\"stale\"} 2\n", "bevloc_gnss_age_max_seconds 0.25\n"}) {
+    EXPECT_THAT(text, HasSubstr(line));
+  }
+  const nlohmann::json status = status_json(telemetry, {}, Duration{});
+  EXPECT_EQ(status["gnss"]["fixes_refused"], 2);
+  EXPECT_THAT(status_page(status), HasSubstr("gpsd        connected; 5 samples, 3 reports and 2"));
+}
+
 TEST(Metrics, LatencyBucketsAreCumulative) {
   Telemetry telemetry = running(HealthState::kTracking);
   telemetry.snapshot.estimation.latency.in_range[0] = 1;
@@ -144,6 +166,7 @@ TEST(Metrics, NoSeriesOccursTwice) {
   Telemetry telemetry = running(HealthState::kTracking);
   telemetry.snapshot.authentication.emplace();
   telemetry.snapshot.trigger.emplace();
+  telemetry.snapshot.gnss.emplace();
   std::istringstream lines(metrics(telemetry));
   std::set<std::string> seen;
   for (std::string line; std::getline(lines, line);) {
@@ -173,6 +196,7 @@ std::set<std::string> existing_metrics() {
   Telemetry telemetry = running(HealthState::kTracking);
   telemetry.snapshot.authentication.emplace();
   telemetry.snapshot.trigger.emplace();
+  telemetry.snapshot.gnss.emplace();
   return metric_names_in(metrics(telemetry));
 }
 
@@ -197,6 +221,7 @@ TEST(Metrics, ThePageListsEachOne) {
     Telemetry telemetry = running(HealthState::kTracking);
     telemetry.snapshot.authentication.emplace();
     telemetry.snapshot.trigger.emplace();
+    telemetry.snapshot.gnss.emplace();
     return telemetry;
   }()));
   for (std::string word, name; lines >> word;) {

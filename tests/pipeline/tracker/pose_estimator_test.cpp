@@ -66,5 +66,32 @@ TEST_F(PoseEstimatorTest, AModeAtTheBorderContradictsAPoseOfAnotherPlace) {
   EXPECT_GT(std::sqrt(pose.covariance(2, 2)), radians(0.9)) << "covers half the offset";
 }
 
+/// The position of an antenna counts as that of the rear axle would.
+TEST(PoseEstimatorAntennaTest, MovesThePositionWithItsOwnYaw) {
+  SimulatedVehicle vehicle({}, 1);
+  PoseEstimator with_antenna{TrackerParameters()};
+  PoseEstimator at_axle{TrackerParameters()};
+  const Se2 vehicle_from_antenna{2.5, -0.5, 0.0};
+  for (int i = 1; i <= 500; ++i) {
+    const double time_s = 0.02 * i;
+    const Se2 antenna = vehicle.drive_to(time_s) * vehicle_from_antenna;
+    const OdometrySample odometry = vehicle.odometry(time_s);
+    with_antenna.add(odometry);
+    at_axle.add(odometry);
+    if (i % 5 != 0) continue;
+    GnssSample gnss = vehicle.gnss();
+    gnss.sigma_east_m = gnss.sigma_north_m = 0.5;
+    gnss.yaw->sigma_rad = radians(0.5);
+    at_axle.add(gnss);
+    gnss.east_m = antenna.x_m;
+    gnss.north_m = antenna.y_m;
+    gnss.antenna = GnssSample::Antenna{vehicle_from_antenna.x_m, vehicle_from_antenna.y_m};
+    EXPECT_EQ(with_antenna.add(gnss), TrackerUpdate::kAccepted);
+  }
+  const Se2 difference = at_axle.pose_at(at_s(10.0))->map_from_vehicle.inverse() *
+                         with_antenna.pose_at(at_s(10.0))->map_from_vehicle;
+  EXPECT_LT(std::hypot(difference.x_m, difference.y_m), 0.02);
+}
+
 }  // namespace
 }  // namespace bevloc

@@ -1,0 +1,66 @@
+#include "drivers/gnss/fix_clock.h"
+
+#include <algorithm>
+
+namespace bevloc::drivers {
+namespace {
+
+constexpr Duration kBucket = std::chrono::seconds(5);
+/// A UTC that goes back by more is a new start of the receiver's time.
+constexpr Duration kRestart = std::chrono::seconds(1);
+constexpr Duration kLeastSigma = std::chrono::milliseconds(1);
+
+}  // namespace
+
+FixTime FixClock::judge(std::chrono::nanoseconds utc, const FixArrival& arrival) {
+  if (latest_utc_ && utc <= *latest_utc_) {
+    if (*latest_utc_ - utc <= kRestart) return {FixVerdict::kRepeated};
+    buckets_ = {};
+    learned_ = 0;
+  }
+  latest_utc_ = utc;
+  return parameters_.timing == FixTiming::kArrival
+             ? by_arrival(arrival.time.time_since_epoch() - utc, arrival)
+             : by_system_clock(utc, arrival);
+}
+
+FixTime FixClock::by_arrival(Duration delay, const FixArrival& arrival) {
+  const Duration later_than_fastest = delay - least_delay(delay, arrival.time);
+  learned_ = std::min(learned_ + 1, kLearned);
+  const Duration age = parameters_.latency + later_than_fastest;
+  if (age > parameters_.max_age) return {FixVerdict::kStale};
+  if (learned_ < kLearned) return {FixVerdict::kLearning};
+  return usable(age, parameters_.latency_sigma, arrival.time);
+}
+
+FixTime FixClock::by_system_clock(std::chrono::nanoseconds utc, const FixArrival& arrival) {
+  const ClockDiscipline& clock = arrival.wall.discipline;
+  if (!clock.synchronized || clock.max_error > kMaxClockError) {
+    return {FixVerdict::kUnsynchronized};
+  }
+  const Duration age = arrival.wall.since_1970 - utc;
+  if (age > parameters_.max_age) return {FixVerdict::kStale};
+  if (age < -clock.max_error) return {FixVerdict::kFuture};
+  // The bound counts as three standard deviations.
+  return usable(std::max(age, Duration::zero()), std::max(clock.max_error / 3, kLeastSigma),
+                arrival.time);
+}
+
+Duration FixClock::least_delay(Duration delay, Time arrival) {
+  const int64_t number = arrival.time_since_epoch() / kBucket;
+  const auto count = static_cast<int64_t>(buckets_.size());
+  Bucket& own = buckets_[static_cast<size_t>(number % count)];
+  own = {number, own.number == number ? std::min(own.least, delay) : delay};
+  Duration least = delay;
+  for (const Bucket& bucket : buckets_) {
+    if (bucket.number > number - count) least = std::min(least, bucket.least);
+  }
+  return least;
+}
+
+FixTime FixClock::usable(Duration age, Duration sigma, Time arrival) {
+  max_usable_age_ = std::max(max_usable_age_, age);
+  return {FixVerdict::kUsable, arrival - age, sigma};
+}
+
+}  // namespace bevloc::drivers

@@ -1,0 +1,89 @@
+// Finds out when a GNSS position held, on the steady clock.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "common/time.h"
+#include "drivers/clock/clock_discipline.h"
+
+namespace bevloc::drivers {
+
+/// From what the time of a fix is made.
+enum class FixTiming : uint8_t {
+  /// A fix held `latency` before the fastest reports arrive. A report that comes later than the
+  /// fastest of the last minutes, measured by its UTC, held that much earlier.
+  kArrival,
+  /// The system clock is UTC, as the kernel confirms, so the age of a fix is known.
+  kSystemClock,
+};
+
+struct FixClockParameters {
+  FixTiming timing = FixTiming::kArrival;
+  Duration latency{};  ///< kArrival only, as is the next
+  Duration latency_sigma = std::chrono::milliseconds(50);
+  Duration max_age = std::chrono::seconds(1);  ///< an older fix is stale
+};
+
+/// When a report arrived, on both clocks.
+struct FixArrival {
+  Time time{};
+  WallTime wall;
+};
+
+enum class FixVerdict : uint8_t {
+  kUsable,
+  kLearning,        ///< kArrival: too few reports to know how fast they can be
+  kRepeated,        ///< not newer than the fix before it
+  kStale,           ///< older than max_age
+  kFuture,          ///< kSystemClock: newer than the system clock permits
+  kUnsynchronized,  ///< kSystemClock: the kernel does not know how far the clock is off
+};
+inline constexpr size_t kFixVerdicts = 6;
+
+struct FixTime {
+  FixVerdict verdict = FixVerdict::kLearning;
+  Time time{};       ///< when the fix held; only of kUsable, as is the next
+  Duration sigma{};  ///< one standard deviation of `time`
+};
+
+/// Does not allocate. One thread.
+class FixClock {
+ public:
+  /// So many fixes are needed before the first one is used with kArrival.
+  static constexpr int kLearned = 3;
+  /// With kSystemClock the kernel's bound of the clock's error may be this large.
+  static constexpr Duration kMaxClockError = std::chrono::milliseconds(100);
+
+  explicit FixClock(const FixClockParameters& parameters) : parameters_(parameters) {}
+
+  /// `utc` is what the receiver says about the fix. Fixes in the order of their arrival.
+  FixTime judge(std::chrono::nanoseconds utc, const FixArrival& arrival);
+
+  /// The largest age of a fix that was usable, by kSystemClock or as far as kArrival can tell.
+  Duration max_usable_age() const { return max_usable_age_; }
+
+ private:
+  /// The fastest report of some seconds: the least of arrival minus UTC.
+  struct Bucket {
+    int64_t number = std::numeric_limits<int64_t>::min();
+    Duration least{};
+  };
+
+  FixTime by_arrival(Duration delay, const FixArrival& arrival);
+  FixTime by_system_clock(std::chrono::nanoseconds utc, const FixArrival& arrival);
+  Duration least_delay(Duration delay, Time arrival);
+  FixTime usable(Duration age, Duration sigma, Time arrival);
+
+  FixClockParameters parameters_;
+  std::optional<std::chrono::nanoseconds> latest_utc_;
+  std::array<Bucket, 64> buckets_{};  ///< five minutes
+  int learned_ = 0;
+  Duration max_usable_age_{};
+};
+
+}  // namespace bevloc::drivers

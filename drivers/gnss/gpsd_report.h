@@ -1,0 +1,75 @@
+// Reads the reports of gpsd: JSON objects, one a line (gpsd_json(5)).
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace bevloc::drivers {
+
+/// A position of a receiver's antenna. Each sigma is one standard deviation.
+struct GnssFix {
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double sigma_north_m = 0.0;
+  double sigma_east_m = 0.0;
+  std::optional<double> speed_mps{};   ///< over ground
+  std::optional<double> course_deg{};  ///< over ground, clockwise from true north, in [0, 360)
+  double sigma_course_deg = 0.0;       ///< 0 if the receiver does not say
+  std::chrono::nanoseconds utc{};      ///< when the position held, since 1970
+};
+
+/// What one line is.
+enum class GpsdLine : uint8_t {
+  kFix,
+  kAccuracy,       ///< standard deviations of the next fixes (GST)
+  kOther,          ///< a report of another kind, such as SKY or VERSION
+  kNoFix,          ///< a position report without a position (mode below 2)
+  kNoAccuracy,     ///< without epx and epy or eph: nobody knows how good it is
+  kNoTime,         ///< without a time: nobody knows how old it is
+  kNotSatellites,  ///< dead reckoning or a simulation of the receiver
+  kOutOfRange,     ///< a value that no receiver can have
+  kNotReadable,    ///< not a JSON object with a class
+};
+inline constexpr size_t kGpsdLines = 9;
+
+struct GpsdReport {
+  GpsdLine line = GpsdLine::kOther;
+  GnssFix fix{};  ///< only of kFix
+};
+
+/// Reads the lines of one gpsd in their order.
+///
+/// The sigma of a fix is that of the receiver's own statement (GST), if the latest one is at most
+/// 1.5 s older and mode and status have not changed since. Otherwise epx and epy, or eph, of the
+/// position report (TPV) are taken as one sigma. gpsd does not state their certainty; many
+/// receivers give 95 %, and without a statement of the receiver gpsd guesses from the dilution of
+/// precision, so this is cautious. One thread.
+class GpsdReader {
+ public:
+  GpsdReport read(std::string_view line);
+
+ private:
+  struct Accuracy {
+    std::chrono::nanoseconds utc{};
+    double sigma_north_m = 0.0;
+    double sigma_east_m = 0.0;
+  };
+  struct Quality {
+    double mode = 0.0;
+    double status = 0.0;
+    bool operator==(const Quality&) const = default;
+  };
+
+  void use_accuracy(const Quality& quality, GnssFix& fix);
+
+  std::optional<Accuracy> accuracy_;
+  Quality quality_;  ///< of the latest position report
+};
+
+/// "2026-11-23T22:23:04.125Z" as the time since 1970; nothing for anything else.
+std::optional<std::chrono::nanoseconds> utc_of(std::string_view text);
+
+}  // namespace bevloc::drivers

@@ -1,0 +1,47 @@
+#include "firmware/runtime/clock_watch.h"
+
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "common/kernel_time.h"
+
+namespace bevloc::firmware {
+
+ClockWatch::Reading ClockWatch::read_clocks() {
+  return {drivers::read_wall_time(), steady_now()};
+}
+
+can::ClockReport ClockWatch::step() {
+  if (config_.source == can::TimeSource::kFreeRunning) return {};
+  const Reading reading = read_();
+  const drivers::ClockDiscipline& discipline = reading.wall.discipline;
+  const bool good = discipline.synchronized && discipline.max_error <= config_.max_error;
+  const bool was_good = std::exchange(good_, good);
+  if (!good) {
+    if (was_good || !std::exchange(loss_logged_, true)) log_loss(discipline);
+    return {};
+  }
+  if (!was_good) {
+    spdlog::info("clock: synchronized, error at most {:.3f} ms",
+                 1e3 * to_seconds(discipline.max_error));
+  }
+  return {.source = config_.source,
+          .utc_offset = reading.wall.since_1970 - reading.steady.time_since_epoch(),
+          .utc_error = discipline.max_error};
+}
+
+void ClockWatch::log_loss(const drivers::ClockDiscipline& discipline) const {
+  if (discipline.synchronized) {
+    spdlog::warn(
+        "clock: found an error of up to {:.3f} ms, wanted {:.3f} ms (clock.max_error_ms); "
+        "TimeSource is FREE_RUNNING; check chrony or phc2sys",
+        1e3 * to_seconds(discipline.max_error), 1e3 * to_seconds(config_.max_error));
+  } else {
+    spdlog::warn(
+        "clock: found one that the kernel calls not synchronized, wanted clock.source; TimeSource "
+        "is FREE_RUNNING; check chrony or phc2sys, and that systemd/clock.conf is installed");
+  }
+}
+
+}  // namespace bevloc::firmware

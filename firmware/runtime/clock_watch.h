@@ -1,0 +1,38 @@
+// Decides what the bus tells about the clock: the configured source, while the kernel agrees.
+#pragma once
+
+#include "can/messages/pose_report.h"
+#include "drivers/clock/clock_discipline.h"
+#include "firmware/config/clock_config.h"
+
+namespace bevloc::firmware {
+
+/// The configured source, while the kernel says that a service keeps the system clock and that its
+/// error is within the configured bound. Otherwise free running. Thread-bound: called from the
+/// supervising thread.
+class ClockWatch {
+ public:
+  /// Both clocks at one moment.
+  struct Reading {
+    drivers::WallTime wall;
+    Time steady{};
+  };
+  using Read = Reading (*)();
+
+  explicit ClockWatch(const ClockConfig& config, Read read = read_clocks)
+      : config_(config), read_(read) {}
+
+  /// Asks the kernel, and logs a change with what to do.
+  can::ClockReport step();
+
+ private:
+  static Reading read_clocks();
+  void log_loss(const drivers::ClockDiscipline& discipline) const;
+
+  const ClockConfig config_;
+  const Read read_;
+  bool good_ = false;
+  bool loss_logged_ = false;
+};
+
+}  // namespace bevloc::firmware

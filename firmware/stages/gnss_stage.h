@@ -1,0 +1,61 @@
+// The GNSS stage: takes positions from gpsd and queues them as samples.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "can/messages/sample_maker.h"
+#include "common/published.h"
+#include "drivers/clock/clock.h"
+#include "drivers/gnss/fix_clock.h"
+#include "drivers/gnss/gpsd_client.h"
+#include "firmware/config/gnss_config.h"
+#include "firmware/stages/messages.h"
+
+namespace bevloc::firmware {
+
+/// Totals since start, and the latest state.
+struct GnssCounters {
+  drivers::GpsdCounters gpsd;
+  std::array<uint64_t, drivers::kFixVerdicts> fixes{};  ///< by FixVerdict
+  uint64_t samples = 0;
+  bool connected = false;
+  Duration max_age{};  ///< of a fix that was used
+};
+
+/// Thread-bound: called from the GNSS thread; counters() is readable from any thread.
+class GnssStage {
+ public:
+  using ReadWall = drivers::WallTime (*)();
+
+  /// `clock` and `samples` must outlive the stage.
+  GnssStage(const GnssConfig& config, can::GeodeticPosition map_origin, const drivers::Clock& clock,
+            VehicleQueue& samples, ReadWall read_wall = drivers::read_wall_time);
+
+  /// Waits for reports of gpsd, at most `timeout` of real time, and queues the samples they make.
+  void step(Duration timeout);
+
+  GnssCounters counters() const { return published_.load(); }
+
+ private:
+  void take(const drivers::GnssFix& fix, const drivers::FixArrival& arrival);
+
+  const GnssConfig config_;
+  can::GeoReference geo_;
+  const drivers::Clock& clock_;
+  VehicleQueue& samples_;
+  const ReadWall read_wall_;
+  drivers::GpsdClient client_;
+  drivers::FixClock fix_clock_;
+  GnssCounters counters_;
+  Published<GnssCounters> published_;
+};
+
+/// The sample of a fix that held at `time`. The uncertainty of the time counts as one of the
+/// position, by the speed. The course counts as the heading from 5 m/s on, because no vehicle
+/// reverses so fast.
+GnssSample gnss_sample_of(const drivers::GnssFix& fix, const drivers::FixTime& time,
+                          const GnssConfig& config, can::GeoReference& geo);
+
+}  // namespace bevloc::firmware
