@@ -261,7 +261,9 @@ TEST_F(MapFiles, LoadMapRefusesOtherFiles) {
   EXPECT_THAT(missing.error().message, HasSubstr("none.bvm: found no readable file"));
   const auto other = load_map(std::filesystem::path(BEVLOC_SOURCE_DIR) / "CMakeLists.txt");
   ASSERT_FALSE(other.has_value());
-  EXPECT_THAT(other.error().message, HasSubstr("no map format begins with, wanted one of compact (.bvm), Lanelet2 (.osm)"));
+  EXPECT_THAT(
+      other.error().message,
+      HasSubstr("no map format begins with, wanted one of compact (.bvm), Lanelet2 (.osm)"));
 }
 
 }  // namespace
