@@ -28,7 +28,7 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
   set_if(Why::kNoInitialPose, !inputs.initialized);
   set_if(Why::kOutsideMap, !inputs.map_nearby);
   set_if(Why::kMatchUncertain,
-         inputs.verdict.undecided || (!pose_valid() && !inputs.gnss_confirms));
+         inputs.verdict.undecided || (!pose_valid() && !has_enough_matches(inputs)));
   set_if(Why::kGnssContradicts, inputs.verdict.gnss_contradicts);
   set_if(Why::kOdometryContradicts, inputs.verdict.odometry_contradicts);
   set_if(Why::kMatchContradicts, inputs.verdict.match_contradicts);
@@ -37,9 +37,8 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
   set_if(Why::kForeignSender, inputs.foreign_sender);
   set_if(Why::kClockGap, inputs.clock_gap);
   set_if(Why::kMatchRejected, inputs.latest_correction_refused);
-  set_if(Why::kPoseUncertain, inputs.longitudinal_sigma_m > limits_.longitudinal_sigma_m ||
-                                  inputs.lateral_sigma_m > limits_.lateral_sigma_m ||
-                                  inputs.yaw_sigma_rad > limits_.yaw_sigma_rad);
+  set_if(Why::kPoseUncertain,
+         is_too_uncertain(inputs) || (!pose_valid() && !is_within_alert_limits(inputs)));
   set_if(Why::kPoseStale, inputs.correction_age > limits_.correction_timeout);
   set_if(Why::kOverload, inputs.overloaded);
   set_if(Why::kNetworkFault, inputs.network_fault);
@@ -54,15 +53,28 @@ bool Health::is_lost(const HealthInputs& inputs) const {
       (inputs.verdict.undecided && inputs.refused_in_a_row >= limits_.refusals_to_lose);
   return contradicted || inputs.verdict.map_contradicts || inputs.stamps_contradict ||
          !inputs.initialized || inputs.odometry_implausible || inputs.clock_gap ||
-         why_.has(Why::kPoseUncertain) || why_.has(Why::kOdometryMissing) ||
+         is_too_uncertain(inputs) || why_.has(Why::kOdometryMissing) ||
          inputs.correction_age > limits_.lost_timeout;
 }
 
-bool Health::is_confirmed(const HealthInputs& inputs) const {
+bool Health::is_too_uncertain(const HealthInputs& inputs) const {
+  return inputs.longitudinal_sigma_m > limits_.longitudinal_sigma_m ||
+         inputs.lateral_sigma_m > limits_.lateral_sigma_m ||
+         inputs.yaw_sigma_rad > limits_.yaw_sigma_rad;
+}
+
+bool Health::has_enough_matches(const HealthInputs& inputs) const {
+  return inputs.gnss_confirms && inputs.accepted_in_a_row >= limits_.corrections_to_track;
+}
+
+bool Health::is_within_alert_limits(const HealthInputs& inputs) const {
   const Eigen::Array3d sigma(inputs.longitudinal_sigma_m, inputs.lateral_sigma_m,
                              inputs.yaw_sigma_rad);
-  return inputs.gnss_confirms && inputs.accepted_in_a_row >= limits_.corrections_to_track &&
-         (kSigmasToTrack * sigma <= limits_.alert_limit.array()).all();
+  return (kSigmasToTrack * sigma <= limits_.alert_limit.array()).all();
+}
+
+bool Health::is_confirmed(const HealthInputs& inputs) const {
+  return has_enough_matches(inputs) && is_within_alert_limits(inputs);
 }
 
 HealthState Health::next_state(const HealthInputs& inputs) const {

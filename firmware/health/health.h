@@ -85,6 +85,10 @@ class Health {
   WhyMask find_reasons(const HealthInputs& inputs) const;
   HealthState next_state(const HealthInputs& inputs) const;
   bool is_lost(const HealthInputs& inputs) const;
+  bool is_too_uncertain(const HealthInputs& inputs) const;
+  // What a new pose needs to become valid.
+  bool has_enough_matches(const HealthInputs& inputs) const;
+  bool is_within_alert_limits(const HealthInputs& inputs) const;
   bool is_confirmed(const HealthInputs& inputs) const;
 
   HealthLimits limits_;

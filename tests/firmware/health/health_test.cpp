@@ -62,6 +62,35 @@ TEST(HealthTest, AcquiresUntilEnoughCorrectionsWereAccepted) {
   EXPECT_TRUE(health.pose_valid());
 }
 
+TEST(HealthTest, SaysWhatANewPoseLacks) {
+  const auto reason_with = [](const HealthInputs& inputs) {
+    Health health{HealthLimits()};
+    health.update(healthy());
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kAcquiring);
+    return health.why();
+  };
+  HealthInputs few_matches = healthy();
+  few_matches.accepted_in_a_row = HealthLimits().corrections_to_track - 1;
+  EXPECT_EQ(reason_with(few_matches), WhyMask(Why::kMatchUncertain));
+  HealthInputs far_from_gnss = healthy();
+  far_from_gnss.gnss_confirms = false;
+  EXPECT_EQ(reason_with(far_from_gnss), WhyMask(Why::kMatchUncertain));
+  HealthInputs wide = healthy();
+  wide.lateral_sigma_m = 0.3 * HealthLimits().alert_limit.y();
+  ASSERT_LT(wide.lateral_sigma_m, HealthLimits().lateral_sigma_m);
+  EXPECT_EQ(reason_with(wide), WhyMask(Why::kPoseUncertain));
+}
+
+TEST(HealthTest, AValidPoseNeedsNoSigmaOfANewOne) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.lateral_sigma_m = 0.3 * HealthLimits().alert_limit.y();
+  inputs.accepted_in_a_row = 0;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kTracking);
+}
+
 TEST(HealthTest, AnUncertainPoseIsNeverTracked) {
   Health health{HealthLimits()};
   HealthInputs inputs = healthy();
