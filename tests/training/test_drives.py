@@ -43,7 +43,8 @@ def write_drive(folder: Path) -> None:
 
 def write_map(path: Path) -> None:
     """Lane dividers 2 m beside the drive, and boundaries 5 m beside it."""
-    ways, nodes = [], []
+    ways: list[str] = []
+    nodes: list[str] = []
     for number, (y_m, kind) in enumerate(
         ((-5, "curbstone"), (-2, "line_thin"), (2, "line_thin"), (5, "curbstone"))
     ):
