@@ -19,7 +19,9 @@ bool is_installed(const std::filesystem::path& program) {
 }
 
 bool has_command(const CLI::App& app, const std::string& word) {
-  return app.get_subcommand_no_throw(word) != nullptr;
+  return !app.get_subcommands(
+                 [&word](const CLI::App* command) { return command->check_name(word); })
+              .empty();
 }
 
 }  // namespace

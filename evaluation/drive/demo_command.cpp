@@ -18,7 +18,7 @@ void DemoCommand::declare(CLI::App& app) {
   auto* demo = app.add_subcommand("demo", "Drive through a simulated town, without any hardware");
   demo->prefix_command();
   demo->footer(
-      "All options are those of bevlocd.\n"
+      "All options are those of bevlocd, such as --fast, --duration, --seed and --out.\n"
       "Examples:\n"
       "  bevloc demo --fast --duration 20\n"
       "  bevloc demo --seed 5 --out drive");
