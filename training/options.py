@@ -48,7 +48,7 @@ def add_drive_options(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(_option_name(name), default=fields[name].default, choices=choices)
 
 
-def drives_of(options: argparse.Namespace) -> Drives:
+def drives_of(options: argparse.Namespace | TrainingConfig) -> Drives:
     """The drives that these options name."""
     return Drives(
         options.recordings,

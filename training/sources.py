@@ -11,6 +11,7 @@ from training.data import Batch, DriveStream, MixedStream, SamplerStream, Stream
 from training.distributed import WHOLE, Share
 from training.nuscenes.dataset import NuscenesDataset
 from training.nuscenes.stream import NuscenesStream
+from training.options import drives_of
 from training.sampler_process import Drives, SamplerError
 
 BATCH = 8
@@ -44,12 +45,6 @@ def training_stream(config: TrainingConfig, first: int, share: Share = WHOLE) ->
     return _simulator(config, first, share)
 
 
-def _drives(config: TrainingConfig) -> Drives:
-    return Drives(
-        config.recordings, config.map, config.rig, config.reference, config.on_error == "skip"
-    )
-
-
 def _simulator(config: TrainingConfig, first: int, share: Share) -> SamplerStream:
     return SamplerStream(
         config.seed,
@@ -68,7 +63,7 @@ def _drives_and_simulator(config: TrainingConfig, first: int, share: Share) -> S
     own = first // share.count
     simulated = MixedStream.taken(own, config.simulated_share)
     drives = DriveStream(
-        _drives(config),
+        drives_of(config),
         "training",
         config.seed,
         (own - simulated) * share.count,
@@ -120,7 +115,7 @@ def validation_set(config: TrainingConfig) -> list[Batch]:
     unless `validation_scenes` is given."""
     if config.recordings:
         return drive_batches(
-            _drives(config), "held-back", config.validation_samples, config.sampler_threads
+            drives_of(config), "held-back", config.validation_samples, config.sampler_threads
         )
     if not config.nuscenes:
         return simulator_batches(config.validation_samples, config.sampler_threads)

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdlib>
 
+#include "common/replace_process.h"
 #include "drivers/camera/v4l2/device_finder.h"
 #ifdef BEVLOC_HAS_LIBCAMERA
 #include "drivers/camera/libcamera/libcamera_camera.h"
@@ -53,9 +54,8 @@ std::vector<std::string> libcamera_ids_of_this_machine() {
 
 std::optional<std::filesystem::path> shipped_file(const std::filesystem::path& name) {
   std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  // build/PRESET/bin/bevloc
-  const auto tree = program.parent_path().parent_path().parent_path().parent_path();
+  // build/PRESET/bin
+  const auto tree = folder_of_this_program().parent_path().parent_path().parent_path();
   for (const std::filesystem::path& folder :
        {std::filesystem::current_path(error), tree, std::filesystem::path("/usr/share/bevloc")}) {
     if (std::filesystem::is_regular_file(folder / name, error)) return folder / name;

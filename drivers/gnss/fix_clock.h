@@ -13,7 +13,7 @@
 
 namespace bevloc::drivers {
 
-/// From what the time of a fix is made.
+/// How the time of a fix is found.
 enum class FixTiming : uint8_t {
   /// A fix held `latency` before the fastest reports arrive. A report that comes later than the
   /// fastest of the last minutes, measured by its UTC, held that much earlier.
@@ -24,7 +24,7 @@ enum class FixTiming : uint8_t {
 
 struct FixClockParameters {
   FixTiming timing = FixTiming::kArrival;
-  Duration latency{};  ///< kArrival only, as is the next
+  Duration latency{};  ///< like latency_sigma only for kArrival
   Duration latency_sigma = std::chrono::milliseconds(50);
   Duration max_age = std::chrono::seconds(1);  ///< an older fix is stale
 };
@@ -47,14 +47,14 @@ inline constexpr size_t kFixVerdicts = 6;
 
 struct FixTime {
   FixVerdict verdict = FixVerdict::kLearning;
-  Time time{};       ///< when the fix held; only of kUsable, as is the next
+  Time time{};       ///< when the fix held; like sigma only of kUsable
   Duration sigma{};  ///< one standard deviation of `time`
 };
 
 /// Does not allocate. One thread.
 class FixClock {
  public:
-  /// So many fixes are needed before the first one is used with kArrival.
+  /// With kArrival, the first fix that is used is the one of this number.
   static constexpr int kLearned = 3;
   /// With kSystemClock the kernel's bound of the clock's error may be this large.
   static constexpr Duration kMaxClockError = std::chrono::milliseconds(100);

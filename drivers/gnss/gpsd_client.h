@@ -25,13 +25,15 @@ struct GpsdCounters {
   uint64_t connected = 0;                    ///< how often a connection was made
   uint64_t failed = 0;                       ///< attempts without a connection
   uint64_t silent = 0;                       ///< connections that were closed after a silence
+
+  uint64_t of(GpsdLine line) const { return lines[static_cast<size_t>(line)]; }
 };
 
-/// A TCP connection that is made again after each loss, at growing intervals of up to 5 s. Only
-/// wait() waits, and never longer than it is told. One thread.
+/// A TCP connection to gpsd. After a loss it connects again, at growing intervals of up to 5 s.
+/// Only wait() blocks, and at most for its timeout. One thread.
 class GpsdClient {
  public:
-  /// A connection without a byte for so long is made again: the other end may be gone.
+  /// The client closes a connection that was silent for this long: the other end may be gone.
   static constexpr Duration kSilence = std::chrono::seconds(10);
   static constexpr Duration kConnectPatience = std::chrono::seconds(2);
   static constexpr size_t kLongestLine = 16'384;

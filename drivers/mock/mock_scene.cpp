@@ -11,9 +11,11 @@ namespace bevloc::drivers {
 
 namespace {
 
-uint64_t digest_of_all(const sim::World& world, const sim::Conditions& conditions) {
+uint64_t digest_of_all(const sim::World& world, const sim::Conditions& conditions,
+                       const MockStreet& street) {
   sim::Digest digest;
   digest.add(sim::digest_of(world));
+  digest.add(street.digest);
   for (const double part :
        {conditions.sun_azimuth_rad, conditions.sun_elevation_rad, conditions.overcast,
         conditions.rain, conditions.exposure, conditions.noise_sigma}) {
@@ -54,7 +56,7 @@ MockScene::MockScene(std::shared_ptr<const sim::World> world,
       noise_seed_(noise_seed),
       street_(street),
       pictures_(std::move(pictures)),
-      digest_(pictures_ ? digest_of_all(*world_, conditions_) : 0),
+      digest_(pictures_ ? digest_of_all(*world_, conditions_, street_) : 0),
       renderers_{RendererSlot(ground), RendererSlot(ground)} {}
 
 uint64_t MockScene::key_of(const CameraModel& true_camera, const sim::Drive::State& state,
@@ -62,7 +64,6 @@ uint64_t MockScene::key_of(const CameraModel& true_camera, const sim::Drive::Sta
                            uint64_t image_seed) const {
   sim::Digest digest;
   digest.add(digest_);
-  digest.add(street_.digest);
   digest.add(drive_time.count());
   digest.add(image_seed);
   const Se2& pose = state.map_from_vehicle;

@@ -24,7 +24,7 @@ struct MockStreet {
   std::array<sim::PictureLook, kCameraCount> looks{};
   bool changes_pictures = false;  ///< whether `looks` counts
   sim::GroundShape slopes{};      ///< of sim::Drive::ground_at()
-  uint64_t digest = 0;            ///< of all of these
+  uint64_t digest = 0;            ///< of all that makes the street another one
 };
 
 /// Thread-safe. There are two renderers, and three cameras share each of them. So two images are

@@ -15,13 +15,13 @@ Result<std::unique_ptr<FolderRecording>> FolderRecording::open(const std::filesy
                                                                const Rig& rig, Duration interval) {
   auto reference = ReferenceTrajectory::read(folder / kReferenceFile);
   if (!reference) return tl::unexpected(reference.error());
+  const auto recorded = drivers::load_recordings(folder);
+  if (!recorded) return tl::unexpected(recorded.error());
   Frames frames;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    const std::filesystem::path directory = folder / kCameraNames[camera];
-    if (!std::filesystem::is_directory(directory)) continue;
-    const auto recorded = drivers::load_recording(directory);
-    if (!recorded) return tl::unexpected(recorded.error());
-    for (const drivers::RecordedFrame& frame : *recorded) frames.push_back({camera, frame});
+    for (const drivers::RecordedFrame& frame : (*recorded)[camera]) {
+      frames.push_back({camera, frame});
+    }
   }
   if (frames.empty()) {
     return fail("{}: found no folder of a camera, wanted folders such as {}", folder.string(),

@@ -1,18 +1,14 @@
 #include "evaluation/drive/demo_command.h"
 
+#include "command/init/offers.h"
 #include "common/replace_process.h"
 
 namespace bevloc::evaluation {
+namespace {
 
-Result<std::filesystem::path> demo_config(const std::filesystem::path& folder) {
-  const auto installed = (folder / "../../share/bevloc/config/demo.yaml").lexically_normal();
-  const auto in_tree = (folder / "../../../config/demo.yaml").lexically_normal();
-  for (const auto& file : {installed, in_tree}) {
-    if (std::filesystem::exists(file)) return file;
-  }
-  return fail("{}: found no configuration of the demo, wanted this file or {}", installed.string(),
-              in_tree.string());
-}
+constexpr const char* kConfig = "config/demo.yaml";
+
+}  // namespace
 
 void DemoCommand::declare(CLI::App& app) {
   auto* demo = app.add_subcommand("demo", "Drive through a simulated town, without any hardware");
@@ -29,12 +25,11 @@ void DemoCommand::declare(CLI::App& app) {
 }
 
 Status DemoCommand::run() const {
-  const auto folder = folder_of_this_program();
-  const auto config = demo_config(folder);
-  if (!config) return tl::unexpected(config.error());
+  const auto config = command::shipped_file(kConfig);
+  if (!config) return fail("{}: found no such file of bevloc, wanted that of the demo", kConfig);
   std::vector<std::string> arguments{"--config", config->string()};
   arguments.insert(arguments.end(), rest_.begin(), rest_.end());
-  return replace_process(folder / "bevlocd", std::move(arguments));
+  return replace_process(folder_of_this_program() / "bevlocd", std::move(arguments));
 }
 
 }  // namespace bevloc::evaluation

@@ -1,7 +1,6 @@
 // `bevloc demo`: the demo's drive, wherever bevloc is installed.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -10,11 +9,6 @@
 #include "common/result.h"
 
 namespace bevloc::evaluation {
-
-/// The demo's configuration for programs in `folder`: installed in PREFIX/libexec/bevloc-sim it is
-/// PREFIX/share/bevloc/config/demo.yaml, built in build/PRESET/bin it is that of the source tree.
-/// Fails if neither exists.
-Result<std::filesystem::path> demo_config(const std::filesystem::path& folder);
 
 /// Replaces itself by bevlocd with the demo's configuration.
 class DemoCommand {

@@ -41,6 +41,7 @@ drivers::MockStreet street_of(const StreetConfig& config, uint64_t drive_seed) {
   digest.add(config.looks);
   digest.add(config.slopes);
   digest.add(config.looks > 0.0 ? seed : 0);
+  digest.add(sim::seed_for(0, config.photos.string()));
   street.digest = digest.value();
   return street;
 }

@@ -94,12 +94,9 @@ void EstimationStage::note_clock_gap(Duration) {
 }
 
 void EstimationStage::sign_off(Time now) {
-  can::PoseReport report;
-  report.status = make_status();
+  can::PoseReport report = begin_report();
   report.status.state = HealthState::kLost;
   report.status.why |= Why::kPoseStale;
-  report.clock = clock_.load();
-  report.status.time_source = report.clock.source;
   report.pose_time = now;
   publisher_.publish(report, now);
 }
@@ -243,11 +240,16 @@ void EstimationStage::note_pose(const std::optional<TrackedPose>& pose) {
   counters_.pose.store(snapshot);
 }
 
-void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) {
+can::PoseReport EstimationStage::begin_report() const {
   can::PoseReport report;
   report.status = make_status();
   report.clock = clock_.load();
   report.status.time_source = report.clock.source;
+  return report;
+}
+
+void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) {
+  can::PoseReport report = begin_report();
   counters_.time_source = report.clock.source;
   report.capture_time = accepted_frame_time_;
   report.pose_time = now;

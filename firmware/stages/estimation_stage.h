@@ -94,6 +94,8 @@ class EstimationStage {
   void note_pose(const std::optional<TrackedPose>& pose);
   void publish(const std::optional<TrackedPose>& pose, Time now);
   can::LocalizerStatus make_status() const;
+  /// A report with what does not depend on the pose.
+  can::PoseReport begin_report() const;
 
   PoseEstimator estimator_;
   Health health_;

@@ -22,6 +22,9 @@ struct GnssCounters {
   uint64_t samples = 0;
   bool connected = false;
   Duration max_age{};  ///< of a fix that was used
+
+  uint64_t of(drivers::GpsdLine line) const { return gpsd.of(line); }
+  uint64_t of(drivers::FixVerdict verdict) const { return fixes[static_cast<size_t>(verdict)]; }
 };
 
 /// Thread-bound: called from the GNSS thread; counters() is readable from any thread.

@@ -74,32 +74,30 @@ void ErrorLog::note_vehicle_input(const can::VehicleInputCounters& input, Time n
 void ErrorLog::note_gnss(const GnssCounters& gnss, Time now) {
   using drivers::FixVerdict;
   using drivers::GpsdLine;
-  const auto line = [&](GpsdLine kind) { return gnss.gpsd.lines[static_cast<size_t>(kind)]; };
-  const auto fix = [&](FixVerdict verdict) { return gnss.fixes[static_cast<size_t>(verdict)]; };
   count("gpsd: cannot be reached; check that it runs, gnss.address and gnss.port", gnss.gpsd.failed,
         now);
   count("gpsd: found no report for 10 s, wanted one a second; check the receiver and gnss.device",
         gnss.gpsd.silent, now);
   count("gpsd: found a line that is not JSON or too long; check that gnss.port is that of gpsd",
-        line(GpsdLine::kNotReadable) + gnss.gpsd.too_long, now);
+        gnss.of(GpsdLine::kNotReadable) + gnss.gpsd.too_long, now);
   count(
       "gpsd: found a fix without accuracy (epx and epy, or eph) or time; check the receiver's "
       "messages",
-      line(GpsdLine::kNoAccuracy) + line(GpsdLine::kNoTime), now);
+      gnss.of(GpsdLine::kNoAccuracy) + gnss.of(GpsdLine::kNoTime), now);
   count("gpsd: found a value that no receiver can have; check the receiver",
-        line(GpsdLine::kOutOfRange), now);
+        gnss.of(GpsdLine::kOutOfRange), now);
   count("gpsd: found dead reckoning or a simulation, wanted satellites; check the receiver's setup",
-        line(GpsdLine::kNotSatellites), now);
+        gnss.of(GpsdLine::kNotSatellites), now);
   count("gpsd: found a fix that is too old; check the receiver's rate and the load of this machine",
-        fix(FixVerdict::kStale), now);
+        gnss.of(FixVerdict::kStale), now);
   count("gpsd: found a fix from the future; check that the system clock is UTC",
-        fix(FixVerdict::kFuture), now);
+        gnss.of(FixVerdict::kFuture), now);
   count(
       "gpsd: found a system clock that is not synchronized; check chrony or linuxptp, or choose "
       "gnss.timing: arrival",
-      fix(FixVerdict::kUnsynchronized), now);
+      gnss.of(FixVerdict::kUnsynchronized), now);
   count("gpsd: found the same fix twice; choose one receiver with gnss.device",
-        fix(FixVerdict::kRepeated), now);
+        gnss.of(FixVerdict::kRepeated), now);
 }
 
 void ErrorLog::note_tracker(const EstimationSnapshot& estimation, Time now) {

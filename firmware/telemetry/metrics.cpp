@@ -221,20 +221,18 @@ void add_gnss(Families& families, const GnssCounters& gnss) {
     families.count("bevloc_gnss_refused_total", "Reports of gpsd that were not used", value,
                    {{"reason", reason}});
   };
-  const auto line = [&](GpsdLine kind) { return gnss.gpsd.lines[static_cast<size_t>(kind)]; };
-  const auto fix = [&](FixVerdict verdict) { return gnss.fixes[static_cast<size_t>(verdict)]; };
-  refused("no_fix", line(GpsdLine::kNoFix));
-  refused("no_accuracy", line(GpsdLine::kNoAccuracy));
-  refused("no_time", line(GpsdLine::kNoTime));
-  refused("not_satellites", line(GpsdLine::kNotSatellites));
-  refused("out_of_range", line(GpsdLine::kOutOfRange));
-  refused("not_readable", line(GpsdLine::kNotReadable));
+  refused("no_fix", gnss.of(GpsdLine::kNoFix));
+  refused("no_accuracy", gnss.of(GpsdLine::kNoAccuracy));
+  refused("no_time", gnss.of(GpsdLine::kNoTime));
+  refused("not_satellites", gnss.of(GpsdLine::kNotSatellites));
+  refused("out_of_range", gnss.of(GpsdLine::kOutOfRange));
+  refused("not_readable", gnss.of(GpsdLine::kNotReadable));
   refused("too_long", gnss.gpsd.too_long);
-  refused("learning", fix(FixVerdict::kLearning));
-  refused("repeated", fix(FixVerdict::kRepeated));
-  refused("stale", fix(FixVerdict::kStale));
-  refused("future", fix(FixVerdict::kFuture));
-  refused("clock_unsynchronized", fix(FixVerdict::kUnsynchronized));
+  refused("learning", gnss.of(FixVerdict::kLearning));
+  refused("repeated", gnss.of(FixVerdict::kRepeated));
+  refused("stale", gnss.of(FixVerdict::kStale));
+  refused("future", gnss.of(FixVerdict::kFuture));
+  refused("clock_unsynchronized", gnss.of(FixVerdict::kUnsynchronized));
 }
 
 void add_bus(Families& families, const Snapshot& snapshot) {

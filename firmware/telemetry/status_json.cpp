@@ -113,7 +113,7 @@ json gnss_of(const GnssCounters& gnss) {
   for (const GpsdLine kind :
        {GpsdLine::kNoFix, GpsdLine::kNoAccuracy, GpsdLine::kNoTime, GpsdLine::kNotSatellites,
         GpsdLine::kOutOfRange, GpsdLine::kNotReadable}) {
-    refused += gnss.gpsd.lines[static_cast<size_t>(kind)];
+    refused += gnss.of(kind);
   }
   uint64_t fixes = 0;
   for (const uint64_t count : gnss.fixes) fixes += count;

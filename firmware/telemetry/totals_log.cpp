@@ -86,19 +86,18 @@ void log_vehicle_input(const can::VehicleInputCounters& input) {
 void log_gnss(const GnssCounters& gnss) {
   using drivers::FixVerdict;
   using drivers::GpsdLine;
-  const auto line = [&](GpsdLine kind) { return gnss.gpsd.lines[static_cast<size_t>(kind)]; };
-  const auto fix = [&](FixVerdict verdict) { return gnss.fixes[static_cast<size_t>(verdict)]; };
   spdlog::info(
       "gpsd: {} samples, at most {:.0f} ms old; reports refused: {} without a fix, {} without "
       "accuracy or time, {} not of satellites, {} out of range, {} not readable or too long; fixes "
       "refused: {} to learn the delay, {} repeated, {} stale, {} from the future, {} while the "
       "clock was not synchronized; connected {} times, {} attempts failed, silent {} times",
-      gnss.samples, milliseconds(gnss.max_age), line(GpsdLine::kNoFix),
-      line(GpsdLine::kNoAccuracy) + line(GpsdLine::kNoTime), line(GpsdLine::kNotSatellites),
-      line(GpsdLine::kOutOfRange), line(GpsdLine::kNotReadable) + gnss.gpsd.too_long,
-      fix(FixVerdict::kLearning), fix(FixVerdict::kRepeated), fix(FixVerdict::kStale),
-      fix(FixVerdict::kFuture), fix(FixVerdict::kUnsynchronized), gnss.gpsd.connected,
-      gnss.gpsd.failed, gnss.gpsd.silent);
+      gnss.samples, milliseconds(gnss.max_age), gnss.of(GpsdLine::kNoFix),
+      gnss.of(GpsdLine::kNoAccuracy) + gnss.of(GpsdLine::kNoTime),
+      gnss.of(GpsdLine::kNotSatellites), gnss.of(GpsdLine::kOutOfRange),
+      gnss.of(GpsdLine::kNotReadable) + gnss.gpsd.too_long, gnss.of(FixVerdict::kLearning),
+      gnss.of(FixVerdict::kRepeated), gnss.of(FixVerdict::kStale), gnss.of(FixVerdict::kFuture),
+      gnss.of(FixVerdict::kUnsynchronized), gnss.gpsd.connected, gnss.gpsd.failed,
+      gnss.gpsd.silent);
 }
 
 void log_authentication(const can::SecocCounters& secoc) {

@@ -28,8 +28,8 @@ inline GnssPose gnss_pose(const GnssSample& sample) {
 }
 
 /// Moves the position of an antenna to the middle of the rear axle. The vehicle's yaw is that of
-/// `estimate` or of the sample, whichever is more certain. What the yaw does not know is added to
-/// the sigmas: without any yaw, the whole distance.
+/// `estimate` or of the sample, whichever is more certain. The sigmas grow by the uncertainty of
+/// the yaw times the distance; without any yaw, by the distance.
 inline GnssSample at_rear_axle(GnssSample sample, const std::optional<GnssSample::Yaw>& estimate) {
   if (!sample.antenna) return sample;
   const GnssSample::Antenna antenna = *sample.antenna;

@@ -7,7 +7,6 @@
 
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/rasterizer.h"
-#include "sim/random.h"
 #include "sim/render/conditions.h"
 #include "sim/render/renderer.h"
 #include "sim/samples/camera_looks.h"
@@ -72,16 +71,6 @@ CameraModel true_camera(const CameraModel& calibrated, const CalibrationSigma& s
   camera.intrinsics.fx_px *= focal_factor;
   camera.intrinsics.fy_px *= focal_factor;
   return camera;
-}
-
-/// Draws which cameras are present.
-CameraMask random_cameras(const MissingCameras& missing, Random& random) {
-  CameraMask cameras;
-  cameras.set();
-  if (!random.chance(missing.probability)) return cameras;
-  const int count = random.integer(1, missing.most);
-  for (int i = 0; i < count; ++i) cameras.reset(random.integer(0, kCameraCount - 1));
-  return cameras;
 }
 
 Conditions conditions_for(Weather weather, uint64_t seed) {
@@ -175,9 +164,7 @@ Sample make_sample(const Nuisances& nuisances, const Rig& usual_rig, uint64_t se
                    const Se2& map_from_vehicle, WorldViews& views) {
   Random random(seed_for(seed, "prior"));
   Sample sample;
-  sample.correction = {random.uniform(-kMaxLongitudinalM, kMaxLongitudinalM),
-                       random.uniform(-kMaxLateralM, kMaxLateralM),
-                       random.uniform(-kMaxYawRad, kMaxYawRad)};
+  sample.correction = random_correction(random);
   const Rig real =
       nuisances.rig_variety > 0.0 ? random_rig(nuisances.rig_variety, seed) : usual_rig;
   sample.rig = network_rig(real);
@@ -196,6 +183,20 @@ World world_of(const SampleStream& stream, uint64_t seed) {
 }
 
 }  // namespace
+
+Se2 random_correction(Random& random) {
+  return {random.uniform(-kMaxLongitudinalM, kMaxLongitudinalM),
+          random.uniform(-kMaxLateralM, kMaxLateralM), random.uniform(-kMaxYawRad, kMaxYawRad)};
+}
+
+CameraMask random_cameras(const MissingCameras& missing, Random& random) {
+  CameraMask cameras;
+  cameras.set();
+  if (!random.chance(missing.probability)) return cameras;
+  const int count = random.integer(1, missing.most);
+  for (int i = 0; i < count; ++i) cameras.reset(random.integer(0, kCameraCount - 1));
+  return cameras;
+}
 
 const Rig& nominal_network_rig() {
   static const Rig rig = network_rig(nominal_rig());

@@ -10,6 +10,7 @@
 #include "common/se2.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/preprocessing/network_camera.h"
+#include "sim/random.h"
 #include "sim/samples/nuisances.h"
 #include "sim/samples/training_nuisances.h"
 #include "sim/world/world_generator.h"
@@ -56,6 +57,11 @@ struct SampleStream {
   /// Stronger nuisances in a share of the samples, on top of `nuisances`.
   TrainingNuisances training{};
 };
+
+/// Draws the correction of a prior: uniform up to 2 m, 1 m and 2 degrees (paper, section IV-A).
+Se2 random_correction(Random& random);
+/// Draws which cameras are present.
+CameraMask random_cameras(const MissingCameras& missing, Random& random);
 
 /// The network's rig of the simulator's own vehicle. The cameras that take a sample's images differ
 /// from the sample's rig by the calibration error.

@@ -4,16 +4,10 @@
 
 #include "pipeline/bev_grid.h"
 #include "pipeline/preprocessing/network_camera.h"
-#include "sim/random.h"
+#include "sim/samples/sample_maker.h"
 
 namespace bevloc::drives {
 namespace {
-
-// As in the paper, IV-A.
-constexpr double kMaxLongitudinal_m = 2.0;
-constexpr double kMaxLateral_m = 1.0;
-constexpr double kMaxYaw_rad = radians(2.0);
-constexpr int kMostMissing = 2;
 
 /// "FILE, 12.3 s": a frameset in messages.
 std::string name_of(const DriveIndex& drive, const SamplePlace& place) {
@@ -27,14 +21,8 @@ std::string name_of(const DriveIndex& drive, const SamplePlace& place) {
 SampleChoice random_choice(uint64_t seed, uint64_t sample, double drop_camera_probability) {
   sim::Random random(sim::seed_for(seed, "drive sample") + sample);
   SampleChoice choice;
-  choice.correction = {random.uniform(-kMaxLongitudinal_m, kMaxLongitudinal_m),
-                       random.uniform(-kMaxLateral_m, kMaxLateral_m),
-                       random.uniform(-kMaxYaw_rad, kMaxYaw_rad)};
-  choice.cameras.set();
-  if (random.chance(drop_camera_probability)) {
-    const int count = random.integer(1, kMostMissing);
-    for (int i = 0; i < count; ++i) choice.cameras.reset(random.index(kCameraCount));
-  }
+  choice.correction = sim::random_correction(random);
+  choice.cameras = sim::random_cameras({.probability = drop_camera_probability}, random);
   return choice;
 }
 

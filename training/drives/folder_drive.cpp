@@ -8,18 +8,16 @@ Result<std::unique_ptr<RecordedDrive>> FolderDrive::open(const std::filesystem::
                                                          const Rig& rig) {
   auto reference = ReferenceTrajectory::read(folder / kReferenceFile);
   if (!reference) return tl::unexpected(reference.error());
-  Frames frames;
+  auto frames = drivers::load_recordings(folder);
+  if (!frames) return tl::unexpected(frames.error());
   std::array<std::vector<Time>, kCameraCount> times;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    const std::filesystem::path directory = folder / kCameraNames[camera];
-    if (!std::filesystem::is_directory(directory)) continue;
-    auto recorded = drivers::load_recording(directory);
-    if (!recorded) return tl::unexpected(recorded.error());
-    for (const drivers::RecordedFrame& frame : *recorded) times[camera].push_back(frame.time);
-    frames[camera] = std::move(*recorded);
+    for (const drivers::RecordedFrame& frame : (*frames)[camera]) {
+      times[camera].push_back(frame.time);
+    }
   }
   DriveIndex index{folder.string(), rig, std::move(*reference), framesets_of(times)};
-  return std::unique_ptr<RecordedDrive>(new FolderDrive(std::move(index), std::move(frames)));
+  return std::unique_ptr<RecordedDrive>(new FolderDrive(std::move(index), std::move(*frames)));
 }
 
 Result<Time> FolderDrive::read(const FramesetPlace& frameset, int camera,

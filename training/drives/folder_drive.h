@@ -9,8 +9,8 @@
 
 namespace bevloc::drives {
 
-/// Has CAMERA/frames.txt for each camera (drivers::load_recording()) and reference.csv, with times
-/// of one clock.
+/// The folder has CAMERA/frames.txt for each camera (drivers::load_recordings()) and reference.csv.
+/// All times are of one clock.
 class FolderDrive final : public RecordedDrive {
  public:
   static Result<std::unique_ptr<RecordedDrive>> open(const std::filesystem::path& folder,
@@ -20,12 +20,10 @@ class FolderDrive final : public RecordedDrive {
                     std::span<int8_t> planes) override;
 
  private:
-  using Frames = std::array<std::vector<drivers::RecordedFrame>, kCameraCount>;
-
-  FolderDrive(DriveIndex index, Frames frames)
+  FolderDrive(DriveIndex index, drivers::RecordedFrames frames)
       : RecordedDrive(std::move(index)), frames_(std::move(frames)) {}
 
-  const Frames frames_;
+  const drivers::RecordedFrames frames_;
   RgbImage image_;  ///< the latest one; keeps its memory
 };
 

@@ -31,19 +31,20 @@ bool is_sure(const bevloc::recording::Solution& solution, const SureLimits& limi
          std::sqrt(solution.covariance(8)) <= limits.yaw_sigma_rad;
 }
 
-/// The value at 0 of the parabola through (times_s, values) with the least squared distances.
-double parabola_at_zero(const Eigen::ArrayXd& times_s, const Eigen::VectorXd& values) {
+/// For each column of `values`, the value at 0 of the parabola over the times with the least
+/// squared distances.
+Eigen::Vector3d parabolas_at_zero(const Eigen::ArrayXd& times_s, const Eigen::MatrixX3d& values) {
   Eigen::MatrixXd powers(times_s.size(), 3);
   powers.col(0).setOnes();
   powers.col(1) = times_s.matrix();
   powers.col(2) = times_s.square().matrix();
-  return powers.householderQr().solve(values).x();
+  return powers.householderQr().solve(values).row(0);
 }
 
 Pose smoothed_at(Time time, std::span<const Pose> window) {
   const auto count = static_cast<Eigen::Index>(window.size());
   Eigen::ArrayXd times_s(count);
-  Eigen::MatrixXd values(count, 3);
+  Eigen::MatrixX3d values(count, 3);
   const Se2& origin = window[window.size() / 2].map_from_vehicle;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Se2& pose = window[static_cast<size_t>(i)].map_from_vehicle;
@@ -51,10 +52,10 @@ Pose smoothed_at(Time time, std::span<const Pose> window) {
     values.row(i) << pose.x_m - origin.x_m, pose.y_m - origin.y_m,
         wrap_angle(pose.yaw_rad - origin.yaw_rad);
   }
-  return {time,
-          {origin.x_m + parabola_at_zero(times_s, values.col(0)),
-           origin.y_m + parabola_at_zero(times_s, values.col(1)),
-           wrap_angle(origin.yaw_rad + parabola_at_zero(times_s, values.col(2)))}};
+  const Eigen::Vector3d offset = parabolas_at_zero(times_s, values);
+  return {
+      time,
+      {origin.x_m + offset.x(), origin.y_m + offset.y(), wrap_angle(origin.yaw_rad + offset.z())}};
 }
 
 }  // namespace

@@ -53,7 +53,8 @@ class RecordedDrive {
   const DriveIndex index_;
 };
 
-/// Joins the frames of all cameras to framesets. `times`: of each camera's frames, in order.
+/// Groups the frames of all cameras into framesets. `times` has the times of each camera's frames,
+/// in order.
 std::vector<FramesetPlace> framesets_of(const std::array<std::vector<Time>, kCameraCount>& times);
 
 }  // namespace bevloc::drives

@@ -7,11 +7,11 @@
 
 namespace bevloc {
 
-/// Fails if standard output is a terminal. Messages on standard error begin with `program`.
+/// False if standard output is a terminal; then a message of `program` is on standard error.
 bool output_is_pipe(const std::string& program);
 
-/// Writes all bytes to standard output. False when nobody reads any more or the write fails; then
-/// the reason is on standard error.
+/// Writes all bytes to standard output. Returns false if the reader has gone or the write fails,
+/// and prints the reason to standard error.
 bool write_output(std::span<const uint8_t> bytes, const std::string& program);
 
 }  // namespace bevloc

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "pipeline/bev_grid.h"
-#include "pipeline/preprocessing/network_camera.h"
+#include "pipeline/preprocessing/image_remap.h"
 
 namespace bevloc {
 
@@ -16,8 +16,7 @@ static_assert(std::endian::native == std::endian::little);
 namespace {
 
 constexpr std::string_view kMagic = "bevlocS1";
-constexpr size_t kImageBytes =
-    static_cast<size_t>(kCameraCount) * 3 * kNetworkHeightPx * kNetworkWidthPx;
+constexpr size_t kImageBytes = kCameraCount * kNetworkImageSize;
 constexpr size_t kTableEntries = static_cast<size_t>(kViewSlots) * kFeatureGrid.cells();
 constexpr size_t kRasterBytes = static_cast<size_t>(kRasterChannels) * kRasterGrid.cells();
 

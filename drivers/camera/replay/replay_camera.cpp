@@ -61,6 +61,18 @@ Result<std::vector<RecordedFrame>> load_recording(const std::filesystem::path& d
   return recording;
 }
 
+Result<RecordedFrames> load_recordings(const std::filesystem::path& directory) {
+  RecordedFrames frames;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const std::filesystem::path folder = directory / kCameraNames[camera];
+    if (!std::filesystem::is_directory(folder)) continue;
+    auto recording = load_recording(folder);
+    if (!recording) return tl::unexpected(recording.error());
+    frames[camera] = std::move(*recording);
+  }
+  return frames;
+}
+
 ReplayCamera::ReplayCamera(const ReplayCameraConfig& config, Clock& clock)
     : PacedCamera(description_of(config), config.exposure, clock), config_(config) {}
 

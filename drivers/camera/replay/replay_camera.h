@@ -1,9 +1,11 @@
 // A camera that plays recorded images.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <vector>
 
+#include "common/cameras.h"
 #include "drivers/camera/paced_camera.h"
 
 namespace bevloc::drivers {
@@ -31,6 +33,11 @@ struct RecordedFrame {
 
 /// Reads `directory`/frames.txt and checks that each file exists. An error names file and line.
 Result<std::vector<RecordedFrame>> load_recording(const std::filesystem::path& directory);
+
+/// The frames of all cameras of a recording: those of each `directory`/CAMERA. None of a camera
+/// without a folder.
+using RecordedFrames = std::array<std::vector<RecordedFrame>, kCameraCount>;
+Result<RecordedFrames> load_recordings(const std::filesystem::path& directory);
 
 /// start() reads the index and plays the frames that are due from that moment on. next_frame()
 /// fails for an image that cannot be read or has another size, and continues with the following one
