@@ -63,6 +63,9 @@ void ModelledVision::report(double time_s) {
   firmware::VisionReport report;
   report.frame_time = frameset.time;
   report.present.set();
+  const Time arrival = drive_start_ + from_seconds(time_s + kLatency_s);
+  report.stamps_jumped =
+      stamp_steps_.add(report.frame_time, arrival, static_cast<uint64_t>(frame_));
   if (const auto prior = priors_.at(frameset)) {
     report.had_prior = true;
     report.map_nearby = true;

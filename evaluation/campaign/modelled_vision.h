@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "drivers/camera/stamp_steps.h"
 #include "evaluation/campaign/match_fault.h"
 #include "evaluation/campaign/match_model.h"
 #include "firmware/stages/messages.h"
@@ -40,6 +41,7 @@ class ModelledVision {
   Faults faults_;
   firmware::PriorSource priors_;
   firmware::VisionQueue& reports_;
+  drivers::StampSteps stamp_steps_;
   int frame_ = 0;
   double distance_m_ = 0.0;
   Se2 last_truth_;

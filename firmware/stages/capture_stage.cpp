@@ -28,7 +28,7 @@ bool CaptureStage::step(Duration timeout) {
     return true;
   }
   if (*event == drivers::FrameEvent::kFrame) {
-    note_frame(now);
+    note_frame(now, frame);
     frames_.push(std::move(frame));
   } else if (now - waiting_since_ > kSilence) {
     log_cause("is silent", "no frame for 2 s; check cable, power and trigger", now);
@@ -37,9 +37,15 @@ bool CaptureStage::step(Duration timeout) {
   return *event != drivers::FrameEvent::kEnded;
 }
 
-void CaptureStage::note_frame(Time now) {
+void CaptureStage::note_frame(Time now, drivers::Frame& frame) {
   ++captured_;
   waiting_since_ = now;
+  frame.stamp_jumped = stamp_steps_.add(frame.time, now, frame.sequence);
+  constexpr std::string_view kJumped = "its time stamps jumped, but its frames arrive as before";
+  if (frame.stamp_jumped && causes_.is_new(kJumped, now)) {
+    spdlog::warn("camera {}: {}; check its clock and its driver, then restart bevlocd",
+                 kCameraNames[camera_.description().camera], kJumped);
+  }
   if (!std::exchange(failing_, false)) return;
   spdlog::info("camera {}: delivers frames again", kCameraNames[camera_.description().camera]);
 }
@@ -61,6 +67,7 @@ bool CaptureStage::ensure_started(Time now) {
   }
   heartbeat_.beat();
   running_ = true;
+  stamp_steps_.reset();
   waiting_since_ = now;
   return true;
 }

@@ -6,6 +6,7 @@
 
 #include "common/result.h"
 #include "drivers/camera/camera.h"
+#include "drivers/camera/stamp_steps.h"
 #include "drivers/clock/clock.h"
 #include "firmware/runtime/heartbeat.h"
 #include "firmware/stages/messages.h"
@@ -45,7 +46,7 @@ class CaptureStage {
 
   bool ensure_started(Time now);
   void note_failure(Time now);
-  void note_frame(Time now);
+  void note_frame(Time now, drivers::Frame& frame);
   /// Logs `what` the camera does not do and why, once per cause.
   void log_cause(std::string_view what, std::string_view reason, Time now);
 
@@ -56,6 +57,7 @@ class CaptureStage {
   bool running_ = false;
   Time next_start_ = Time::min();
   CauseLog causes_;
+  drivers::StampSteps stamp_steps_;
   Time waiting_since_{};  ///< for the next frame
   bool failing_ = false;  ///< a cause was logged and no frame has come since
   std::atomic<uint64_t> captured_{0};

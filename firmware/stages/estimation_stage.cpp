@@ -82,6 +82,7 @@ void EstimationStage::note_clock_gap(Duration) {
   }
   estimator_.reset();
   stamp_monitor_.reset();
+  stamps_jumped_ = false;
   last_tick_.reset();
   odometry_time_.reset();
   gnss_time_.reset();
@@ -137,10 +138,19 @@ void EstimationStage::take_reports(Time now) {
     latest_report_arrival_ = now;
     network_fault_ = network_fault_ || report->network_fault;
     if (report->had_prior) add_correction(*report);
+    note_stamps(report->stamps_jumped);
     compare_heading(*report);
   }
   // If all cameras stop, there are no more reports that say so.
   if (now - latest_report_arrival_ > report_lifetime_) latest_report_.reset();
+}
+
+/// What matches and yaw rate said about the stamps before a jump says nothing about those after it.
+void EstimationStage::note_stamps(bool jumped) {
+  if (jumped != latest_stamps_jumped_) stamp_monitor_.reset();
+  stamps_jumped_ = jumped && (stamps_jumped_ || !latest_stamps_jumped_);
+  latest_stamps_jumped_ = jumped;
+  if (stamp_monitor_.agrees()) stamps_jumped_ = false;
 }
 
 void EstimationStage::compare_heading(const VisionReport& report) {
@@ -192,7 +202,7 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
     inputs.overloaded = latest_report_->skipped;
     inputs.calibration_fault = latest_report_->calibration_fault.any();
   }
-  inputs.stamps_contradict = stamp_monitor_.contradicts();
+  inputs.stamps_contradict = stamp_monitor_.contradicts() || stamps_jumped_;
   inputs.network_fault = network_fault_;
   inputs.latest_correction_refused = refused_in_a_row_ > 0;
   inputs.accepted_in_a_row = accepted_in_a_row_;

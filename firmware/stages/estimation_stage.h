@@ -86,6 +86,7 @@ class EstimationStage {
   void take_samples();
   void take_reports(Time now);
   void add_correction(const VisionReport& report);
+  void note_stamps(bool jumped);
   void compare_heading(const VisionReport& report);
   void note_map_offset();
   void watch_clock(Time now);
@@ -119,6 +120,8 @@ class EstimationStage {
   std::optional<Time> unsent_correction_;    ///< the same, until a pose was published
   std::optional<VisionReport> latest_report_;
   Time latest_report_arrival_;
+  bool latest_stamps_jumped_ = false;
+  bool stamps_jumped_ = false;  ///< and no bend has shown since that they are right
   bool network_fault_ = false;
   Published<can::ClockReport> clock_;
   StampMonitor stamp_monitor_;

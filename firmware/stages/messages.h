@@ -21,6 +21,7 @@ struct VisionReport {
   bool map_nearby = false;  ///< the map has elements around the prior
   CameraMask calibration_fault;  ///< cameras that are not where the calibration has them
   bool unsynchronized = false;   ///< the cameras do not expose together (Synchrony)
+  bool stamps_jumped = false;    ///< the time stamps of most cameras have (drivers::StampSteps)
   bool network_fault = false;    ///< the network failed its check, so nothing was matched
   Se2 prior;                     ///< T0: map_from_vehicle at frame_time
   MatchResult match;

@@ -17,6 +17,14 @@ constexpr double kDriving_mps = 1.0;
 constexpr Duration kSettledStanding = std::chrono::seconds(1);
 constexpr Duration kCheckPeriod = std::chrono::seconds(60);
 
+bool stamps_jumped(const drivers::Frameset& frameset) {
+  size_t jumped = 0;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (frameset.present[camera] && frameset.frames[camera].stamp_jumped) ++jumped;
+  }
+  return 2 * jumped > frameset.present.count();
+}
+
 VisionReport report_without_frameset(Time now) {
   VisionReport report;
   report.frame_time = now;
@@ -69,6 +77,7 @@ VisionReport VisionStage::report_on(const NewestFrameset& newest) {
   report.present = frameset.present;
   report.skipped = newest.skipped;
   report.unsynchronized = newest.unsynchronized;
+  report.stamps_jumped = stamps_jumped(frameset);
   if (counters_.network_fault) {
     report.network_fault = true;
     return report;

@@ -20,7 +20,7 @@ constexpr double kFewest = 30.0;
 constexpr double kCorrelatedRows = 20.0;
 /// Lower limit of the residual's standard deviation.
 constexpr double kLeastResidual_rad = radians(0.05);
-constexpr double kCertain = 3.0;  ///< sigmas
+constexpr int kCertain = 3;  ///< sigmas
 /// Variances of bias and scale error before the fit, as information (1 / sigma^2 of the residual).
 constexpr double kBiasSigma_radps = radians(0.5);
 constexpr double kScaleSigma = 0.03;
@@ -118,11 +118,15 @@ std::optional<StampMonitor::Estimate> StampMonitor::solve() const {
 void StampMonitor::judge() {
   estimate_ = solve();
   if (!estimate_) return;
-  const double offset_s = std::abs(to_seconds(estimate_->offset));
-  const double margin_s = kCertain * to_seconds(estimate_->sigma);
-  const double tolerated_s = to_seconds(kTolerated);
-  if (offset_s - margin_s > tolerated_s) contradicts_ = true;
-  if (offset_s + margin_s < tolerated_s) contradicts_ = false;
+  if (std::chrono::abs(estimate_->offset) - kCertain * estimate_->sigma > kTolerated) {
+    contradicts_ = true;
+  }
+  if (agrees()) contradicts_ = false;
+}
+
+bool StampMonitor::agrees() const {
+  return estimate_ &&
+         std::chrono::abs(estimate_->offset) + kCertain * estimate_->sigma < kTolerated;
 }
 
 }  // namespace bevloc

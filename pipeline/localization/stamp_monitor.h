@@ -48,6 +48,9 @@ class StampMonitor {
   /// Whether the offset is certainly larger than kTolerated. Stays until it is certainly not.
   bool contradicts() const { return contradicts_; }
 
+  /// Whether the offset is certainly smaller than kTolerated.
+  bool agrees() const;
+
  private:
   static constexpr size_t kRates = 128;
   static constexpr Duration kGap = std::chrono::milliseconds(100);

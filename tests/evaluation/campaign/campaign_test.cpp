@@ -40,7 +40,6 @@ const std::map<std::string, double>& known_failures() {
   static const std::map<std::string, double> kSeconds = {
       {"match-creeping", 11.0},
       {"match-creeping-along", 15.0},
-      {"match-old-stamps", 5.0},
       {"creeping-without-gnss", 11.0},
   };
   return kSeconds;

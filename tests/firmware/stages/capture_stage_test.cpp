@@ -18,8 +18,10 @@ class BrokenCamera final : public drivers::Camera {
     return {};
   }
   void stop() override {}
-  Result<drivers::FrameEvent> next_frame(Duration, drivers::Frame&) override {
+  Result<drivers::FrameEvent> next_frame(Duration, drivers::Frame& frame) override {
     if (is_unplugged) return fail("camera front: c1: is unplugged");
+    frame.sequence = sequence++;
+    frame.time = Time(milliseconds(100 * sequence)) + stamp_error;
     return is_silent ? drivers::FrameEvent::kTimeout : drivers::FrameEvent::kFrame;
   }
   drivers::CameraDescription description() const override { return {.camera = 1}; }
@@ -29,6 +31,8 @@ class BrokenCamera final : public drivers::Camera {
   bool is_unplugged = false;
   bool is_silent = false;
   int starts = 0;
+  uint64_t sequence = 10;
+  Duration stamp_error{0};
 };
 
 class CaptureStageTest : public testing::Test {
@@ -103,6 +107,17 @@ TEST_F(CaptureStageTest, LogsASilentCameraOnce) {
             "warning: camera front: is silent: no frame for 2 s; check cable, power and trigger; "
             "trying again until it works\n");
   EXPECT_EQ(stage_.failures(), 0U);
+}
+
+TEST_F(CaptureStageTest, MarksFramesWhoseStampsHaveJumped) {
+  run(milliseconds(1000));
+  while (const auto frame = frames_.pop(Duration::zero())) EXPECT_FALSE(frame->stamp_jumped);
+  camera_.stamp_error = milliseconds(-100);
+  run(milliseconds(1000));
+  while (const auto frame = frames_.pop(Duration::zero())) EXPECT_TRUE(frame->stamp_jumped);
+  EXPECT_EQ(log_.text(),
+            "warning: camera front: its time stamps jumped, but its frames arrive as before; check "
+            "its clock and its driver, then restart bevlocd\n");
 }
 
 TEST_F(CaptureStageTest, LogsNothingWhileTheCameraWorks) {

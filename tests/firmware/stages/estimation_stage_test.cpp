@@ -47,6 +47,7 @@ class EstimationStageTest : public testing::Test {
     report.frame_time = frame_time;
     report.present.set();
     report.skipped = skipped_;
+    report.stamps_jumped = stamps_jumped_;
     report.had_prior = true;
     report.map_nearby = true;
     report.prior = truth_at(frame_time) * Se2{0.5, 0.4, 0.01};
@@ -74,6 +75,7 @@ class EstimationStageTest : public testing::Test {
   bool odometry_ = true;
   bool vision_ = true;
   bool skipped_ = false;
+  bool stamps_jumped_ = false;
   std::optional<evaluation::BusPose> latest_;
 };
 
@@ -171,6 +173,19 @@ TEST_F(EstimationStageTest, ReportsThatVisionSkipsFramesets) {
   skipped_ = false;
   run(milliseconds(200));
   EXPECT_EQ(stage_.counters().why, 0);
+}
+
+TEST_F(EstimationStageTest, LosesThePoseWhileTheStampsAreWrong) {
+  run(milliseconds(5000));
+  stamps_jumped_ = true;
+  run(milliseconds(200));
+  latest_.reset();
+  EXPECT_TRUE(WhyMask::from_bits(stage_.counters().why).has(Why::kCalibrationFault));
+  run(milliseconds(5000));
+  EXPECT_FALSE(latest_) << "no valid pose";
+  stamps_jumped_ = false;
+  run(milliseconds(5000));
+  EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
 }
 
 TEST_F(EstimationStageTest, ReportsAllCamerasMissingWithoutFramesets) {

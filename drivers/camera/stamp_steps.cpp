@@ -1,0 +1,42 @@
+#include "drivers/camera/stamp_steps.h"
+
+namespace bevloc::drivers {
+namespace {
+
+/// Stamp and arrival may tell times that differ by this: arrivals wait for busy threads.
+constexpr Duration kAgreement = std::chrono::milliseconds(20);
+/// After more lost frames than this the period is not known well enough to judge.
+constexpr uint64_t kMostFrames = 5;
+/// Frames in which most of a tolerated offset is forgotten.
+constexpr int kForgetting = 16;
+
+}  // namespace
+
+bool StampSteps::add(Time stamp, Time arrival, uint64_t sequence) {
+  const Seen frame{stamp, arrival, sequence};
+  if (latest_) judge(frame);
+  latest_ = frame;
+  return std::chrono::abs(offset_) > kTolerated;
+}
+
+void StampSteps::judge(const Seen& frame) {
+  if (frame.sequence <= latest_->sequence) return;
+  const uint64_t frames = frame.sequence - latest_->sequence;
+  if (frames > kMostFrames) return;
+  const Duration stamped = frame.stamp - latest_->stamp;
+  const Duration arrived = frame.arrival - latest_->arrival;
+  const auto count = static_cast<Duration::rep>(frames);
+  if (std::chrono::abs(stamped - arrived) <= kAgreement) {
+    period_ = stamped / count;
+    // What is tolerated is forgotten, so that small errors of single stamps do not add up.
+    if (std::chrono::abs(offset_) <= kTolerated) offset_ -= offset_ / kForgetting;
+    return;
+  }
+  if (!period_) return;
+  const Duration expected = *period_ * count;
+  const Duration jump = stamped - expected;
+  const bool timely = std::chrono::abs(arrived - expected) <= kAgreement;
+  if (timely && std::chrono::abs(jump) > kAgreement) offset_ += jump;
+}
+
+}  // namespace bevloc::drivers
