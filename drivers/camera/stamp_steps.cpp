@@ -3,9 +3,9 @@
 namespace bevloc::drivers {
 namespace {
 
-/// Stamp and arrival may tell times that differ by this: arrivals wait for busy threads.
+/// Stamp and arrival may differ by this, because a busy thread takes a frame late.
 constexpr Duration kAgreement = std::chrono::milliseconds(20);
-/// After more lost frames than this the period is not known well enough to judge.
+/// Frames further apart than this are not judged: small errors of the period would add up.
 constexpr uint64_t kMostFrames = 5;
 /// Frames in which most of a tolerated offset is forgotten.
 constexpr int kForgetting = 16;

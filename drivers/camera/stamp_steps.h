@@ -8,13 +8,14 @@
 
 namespace bevloc::drivers {
 
-/// A frame's stamp, its arrival and its sequence number tell three times since the frame before.
-/// If stamp and arrival disagree, the sequence number decides: a frame that was delivered late has
-/// the right stamp, and a stamp that jumps belongs to a frame that arrived when it should. The sum
-/// of the jumps is the offset of the stamps since start().
+/// The stamp, the arrival and the sequence number of a frame each say how much time has passed
+/// since the frame before. If stamp and arrival disagree, the sequence number decides. A frame that
+/// arrives late has the right stamp. A frame that arrives on time and has another stamp than
+/// expected has a wrong one: the stamps have jumped. The sum of all jumps is the offset of the
+/// stamps.
 ///
-/// It finds nothing that was wrong from the start; StampMonitor compares stamps with the vehicle's
-/// motion. Allocates nothing. One thread.
+/// It does not find stamps that were wrong from the start. StampMonitor finds those in bends.
+/// Allocates nothing. One thread.
 class StampSteps {
  public:
   /// The largest offset that is no fault.

@@ -82,7 +82,7 @@ void EstimationStage::note_clock_gap(Duration) {
   }
   estimator_.reset();
   stamp_monitor_.reset();
-  stamps_jumped_ = false;
+  stamps_jumped_ = latest_stamps_jumped_ = false;
   last_tick_.reset();
   odometry_time_.reset();
   gnss_time_.reset();
@@ -145,7 +145,7 @@ void EstimationStage::take_reports(Time now) {
   if (now - latest_report_arrival_ > report_lifetime_) latest_report_.reset();
 }
 
-/// What matches and yaw rate said about the stamps before a jump says nothing about those after it.
+/// A jump ends what was learned about the stamps before it.
 void EstimationStage::note_stamps(bool jumped) {
   if (jumped != latest_stamps_jumped_) stamp_monitor_.reset();
   stamps_jumped_ = jumped && (stamps_jumped_ || !latest_stamps_jumped_);
