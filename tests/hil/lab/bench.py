@@ -97,6 +97,7 @@ class Bench:
 
     def _set_up_guest(self) -> None:
         self.agent.check("/lab/devices")
+        self._check_libraries()
         self.agent.check(
             """
             install -m 755 /payload/bevlocd /payload/vehicle_can /usr/bin/
@@ -119,6 +120,16 @@ class Bench:
                 "install -D -m 644 /payload/bevlocd.yaml /etc/bevloc/bevlocd.yaml"
             )
         self.agent.check("systemctl daemon-reload")
+
+    def _check_libraries(self) -> None:
+        programs = " ".join(f"/payload/{pathlib.Path(path).name}" for path in _PROGRAMS)
+        found = self.agent.check(f"ldd {programs}")
+        missing = sorted({line.split()[0] for line in found.splitlines() if "not found" in line})
+        if missing:
+            raise LabError(
+                f"the guest has no {', '.join(missing)}: "
+                "add the packages to tests/hil/image/packages.txt"
+            )
 
 
 @dataclasses.dataclass(frozen=True)
