@@ -188,6 +188,18 @@ TEST_F(EstimationStageTest, LosesThePoseWhileTheStampsAreWrong) {
   EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
 }
 
+TEST_F(EstimationStageTest, StampsAreStillWrongAfterAClockGap) {
+  run(milliseconds(5000));
+  stamps_jumped_ = true;
+  run(milliseconds(200));
+  now_ += std::chrono::seconds(10);
+  stage_.note_clock_gap(std::chrono::seconds(10));
+  latest_.reset();
+  run(milliseconds(5000));
+  EXPECT_FALSE(latest_) << "no valid pose";
+  EXPECT_TRUE(WhyMask::from_bits(stage_.counters().why).has(Why::kCalibrationFault));
+}
+
 TEST_F(EstimationStageTest, ReportsAllCamerasMissingWithoutFramesets) {
   run(milliseconds(5000));
   EXPECT_EQ(stage_.counters().cameras, 0b111111U);
