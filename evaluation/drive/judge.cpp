@@ -69,7 +69,7 @@ void Judge::note_solution(const can::ReceivedFrame& received, bool valid) {
   ++localizer_frames_;
   if (valid && first_fix_s_ < 0.0)
     first_fix_s_ = to_seconds(received.received - times_.drive_start);
-  const bool completes_solution = received.frame.id == can::loc_attitude::kMessage.id(base_) ||
+  const bool completes_solution = received.frame.id == can::loc_integrity::kMessage.id(base_) ||
                                   received.frame.id == can::loc_solution::kMessage.id(base_);
   if (first_fix_s_ >= 0.0 && completes_solution) ++solutions_since_fix_;
 }

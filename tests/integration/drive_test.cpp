@@ -55,6 +55,7 @@ TEST_F(DriveTest, FindsThePoseAndBeatsThePrior) {
   const nlohmann::json& prior = (*result_)["prior"];
   EXPECT_LT((*result_)["first_fix_s"], 5.0);
   EXPECT_GT((*result_)["valid_share"], 0.9);
+  EXPECT_LE((*result_)["valid_share"], 1.0);
   EXPECT_LT(estimate["longitudinal_m"]["mae"], 0.5);
   EXPECT_LT(estimate["lateral_m"]["mae"], 0.25);
   EXPECT_LT(estimate["yaw_deg"]["mae"], 0.6);
