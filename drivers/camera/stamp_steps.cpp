@@ -3,11 +3,12 @@
 namespace bevloc::drivers {
 namespace {
 
-/// Stamp and arrival may differ by this, because a busy thread takes a frame late.
+/// Stamp and arrival may differ by up to this, because a busy thread takes a frame late.
 constexpr Duration kAgreement = std::chrono::milliseconds(20);
-/// Frames further apart than this are not judged: small errors of the period would add up.
+/// Only two frames that are at most this many periods apart are compared. Over more periods, small
+/// errors of the period would add up.
 constexpr uint64_t kMostFrames = 5;
-/// Frames in which most of a tolerated offset is forgotten.
+/// A tolerated offset shrinks by 1/kForgetting with each frame.
 constexpr int kForgetting = 16;
 
 }  // namespace
@@ -28,7 +29,7 @@ void StampSteps::judge(const Seen& frame) {
   const auto count = static_cast<Duration::rep>(frames);
   if (std::chrono::abs(stamped - arrived) <= kAgreement) {
     period_ = stamped / count;
-    // What is tolerated is forgotten, so that small errors of single stamps do not add up.
+    // A tolerated offset shrinks, so that small errors of single stamps do not add up.
     if (std::chrono::abs(offset_) <= kTolerated) offset_ -= offset_ / kForgetting;
     return;
   }

@@ -9,12 +9,12 @@
 namespace bevloc::drivers {
 
 /// The stamp, the arrival and the sequence number of a frame each say how much time has passed
-/// since the frame before. If stamp and arrival disagree, the sequence number decides. A frame that
-/// arrives late has the right stamp. A frame that arrives on time and has another stamp than
-/// expected has a wrong one: the stamps have jumped. The sum of all jumps is the offset of the
-/// stamps.
+/// since the frame before. If stamp and arrival disagree, the sequence number decides. If the frame
+/// arrived late, its stamp is right. If the frame arrived on time, its stamp is wrong: the stamps
+/// have jumped. The sum of all jumps is the offset of the stamps.
 ///
-/// It does not find stamps that were wrong from the start. StampMonitor finds those in bends.
+/// This class cannot find stamps that were wrong from the start. StampMonitor finds them when the
+/// vehicle drives through a bend.
 /// Allocates nothing. One thread.
 class StampSteps {
  public:

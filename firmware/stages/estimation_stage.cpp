@@ -145,7 +145,7 @@ void EstimationStage::take_reports(Time now) {
   if (now - latest_report_arrival_ > report_lifetime_) latest_report_.reset();
 }
 
-/// A jump ends what was learned about the stamps before it.
+/// After a jump, what was learned about the earlier stamps no longer holds.
 void EstimationStage::note_stamps(bool jumped) {
   if (jumped != latest_stamps_jumped_) stamp_monitor_.reset();
   stamps_jumped_ = jumped && (stamps_jumped_ || !latest_stamps_jumped_);
