@@ -21,7 +21,7 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 # takes the whole build from 35 to 15 minutes of CPU. Names in unnamed namespaces must therefore be
 # unique within a target. An editor's single-file checks want -DBEVLOC_UNITY=OFF.
 option(BEVLOC_UNITY "Compile several sources of a target as one" ON)
-set(BEVLOC_UNITY_BATCH 8 CACHE STRING "How many sources are compiled as one")
+set(BEVLOC_UNITY_BATCH 40 CACHE STRING "How many sources are compiled as one")
 option(BEVLOC_LINT "Only for script/lint: treat SEPARATE libraries like the others" OFF)
 function(bevloc_compile_together name)
   set_target_properties(${name} PROPERTIES
@@ -40,7 +40,7 @@ function(bevloc_library name)
     bevloc_compile_together(${name})
     # The sources for one instruction set use the same names, and two others only compile with GCC.
     list(FILTER ARG_UNPARSED_ARGUMENTS INCLUDE REGEX
-      "_(avx2|avxvnni|avx512vnni|plain)\\.cpp$|^(cell_features|kernels/strip_kernels)\\.cpp$")
+      "_(avx2|avxvnni|avx512vnni|dotprod|i8mm|neon|plain)\\.cpp$|^(cell_features|kernels/strip_kernels)\\.cpp$")
     set_source_files_properties(${ARG_UNPARSED_ARGUMENTS} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     if(BEVLOC_FUZZ)
       # clang ignores the pragmas that select their instruction set.

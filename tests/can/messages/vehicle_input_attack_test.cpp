@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 using test::kNow;
 using test::kOrigin;
 
-constexpr milliseconds kCycle(kOdometryCycleMs);
+constexpr milliseconds kOdometryCycle(kOdometryCycleMs);
 
 /// A vehicle that drives at 10 m/s, and an input that listens to it and to others.
 class VehicleInputAttackTest : public testing::Test {
@@ -36,7 +36,7 @@ class VehicleInputAttackTest : public testing::Test {
     int samples = 0;
     for (int i = 0; i < cycles; ++i) {
       samples += feed(honest(), now_);
-      now_ += kCycle;
+      now_ += kOdometryCycle;
     }
     return samples;
   }
@@ -76,7 +76,7 @@ TEST_F(VehicleInputAttackTest, ForgedFramesThatReplaceTheVehicleAreRefused) {
   drive(50);
   Forger forger(1, 5);  // the vehicle's last counter was 1
   int accepted = 0;
-  for (int i = 0; i < 200; ++i) accepted += feed(forger.next(), now_ + i * kCycle);
+  for (int i = 0; i < 200; ++i) accepted += feed(forger.next(), now_ + i * kOdometryCycle);
   EXPECT_EQ(accepted, 0);
 }
 
@@ -88,8 +88,8 @@ TEST_F(VehicleInputAttackTest, ForgedFramesBesideTheVehicleAreRefusedAndTheVehic
     int honest_samples = 0;
     for (int i = 0; i < 200; ++i) {
       honest_samples += feed(honest(), now_);
-      forged += feed(forger.next(), now_ + kCycle / 2);
-      now_ += kCycle;
+      forged += feed(forger.next(), now_ + kOdometryCycle / 2);
+      now_ += kOdometryCycle;
     }
     EXPECT_LE(forged, 12) << "one in 16 has the next counter by chance; start " << start;
     EXPECT_GE(honest_samples, 188);
@@ -102,14 +102,14 @@ TEST_F(VehicleInputAttackTest, AReplayBesideTheVehicleIsRefused) {
     for (int i = 0; i < 80; ++i) {
       recorded.push_back(honest());
       feed(recorded.back(), now_);
-      now_ += kCycle;
+      now_ += kOdometryCycle;
     }
     drive(offset);
     int replayed = 0;
     for (const Pair& frames : recorded) {
       feed(honest(), now_);
-      replayed += feed(frames, now_ + kCycle / 2);
-      now_ += kCycle;
+      replayed += feed(frames, now_ + kOdometryCycle / 2);
+      now_ += kOdometryCycle;
     }
     EXPECT_LE(replayed, 4) << "of 80, replayed " << offset << " frames later";
     now_ += std::chrono::seconds(1);
@@ -131,9 +131,9 @@ TEST_F(VehicleInputAttackTest, LostFramesDoNotStopTheUse) {
   drive(20);
   for (int lost = 1; lost <= 7; ++lost) {
     for (int i = 0; i < lost; ++i) honest();
-    now_ += lost * kCycle;
+    now_ += lost * kOdometryCycle;
     EXPECT_TRUE(feed(honest(), now_)) << lost << " frames lost";
-    now_ += kCycle;
+    now_ += kOdometryCycle;
     EXPECT_EQ(drive(20), 20);
   }
 }
@@ -142,7 +142,7 @@ TEST_F(VehicleInputAttackTest, LateFramesInOneBurstAreUsed) {
   drive(20);
   std::deque<Pair> late;
   for (int i = 0; i < 5; ++i) late.push_back(honest());
-  now_ += 5 * kCycle;
+  now_ += 5 * kOdometryCycle;
   int samples = 0;
   for (const Pair& frames : late) samples += feed(frames, now_);
   EXPECT_EQ(samples, 5);
@@ -166,8 +166,8 @@ TEST_F(VehicleInputAttackTest, ASecondSenderIsNamed) {
   Forger forger(9, 5);
   for (int i = 0; i < 20; ++i) {
     feed(honest(), now_);
-    feed(forger.next(), now_ + kCycle / 2);
-    now_ += kCycle;
+    feed(forger.next(), now_ + kOdometryCycle / 2);
+    now_ += kOdometryCycle;
   }
   EXPECT_TRUE(input_.why().has(Why::kForeignSender));
   drive(100);
@@ -205,7 +205,7 @@ TEST_F(VehicleInputAttackTest, ImplausibleOdometryIsRefusedCountedAndNamed) {
   EXPECT_FALSE(feed(wheels, now_));
   EXPECT_EQ(input_.counters().sharp_turns, 1u);
   EXPECT_EQ(input_.why(), WhyMask(Why::kOdometryImplausible));
-  now_ += kCycle;
+  now_ += kOdometryCycle;
   EXPECT_EQ(drive(60), 60);
   EXPECT_EQ(input_.why(), WhyMask());
 }
