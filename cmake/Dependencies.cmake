@@ -37,6 +37,12 @@ find_library(ONNX_PROTO_LIBRARY onnx_proto REQUIRED)
 # oneDNN's own CMake package asks for OpenCL headers that its CPU engine does not need.
 find_path(DNNL_INCLUDE_DIR dnnl.hpp)
 find_library(DNNL_LIBRARY dnnl)
+if(DNNL_LIBRARY)
+  # Version 2 in Debian 12, version 3 in Debian 13.
+  file(STRINGS ${DNNL_INCLUDE_DIR}/oneapi/dnnl/dnnl_version.h DNNL_VERSION_MAJOR
+       REGEX "define DNNL_VERSION_MAJOR")
+  string(REGEX MATCH "[0-9]+$" DNNL_VERSION_MAJOR "${DNNL_VERSION_MAJOR}")
+endif()
 find_path(XNNPACK_INCLUDE_DIR xnnpack.h)
 find_library(XNNPACK_LIBRARY XNNPACK)
 find_library(PTHREADPOOL_LIBRARY pthreadpool)

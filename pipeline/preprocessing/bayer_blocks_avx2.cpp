@@ -12,6 +12,7 @@
 namespace bevloc {
 namespace {
 
+#include "pipeline/preprocessing/block_shapes.h"
 #include "pipeline/preprocessing/blocks_avx2.h"
 
 /// Columns of one parity in 8 bytes. Where four are enough, the 8 bytes contain them twice.
@@ -164,7 +165,7 @@ void remap_blocks(const ImageView& image, const RemapBlocks& blocks, int8_t* pla
 
 }  // namespace
 
-BlockKernel<ImageView>* bayer_kernel_avx2(int taps) {
+BlockKernel<ImageView>* bayer_block_kernel(int taps) {
   return kernel_of_taps(taps, [](auto shape) -> BlockKernel<ImageView>* {
     return remap_blocks<shape.taps, shape.parts>;
   });

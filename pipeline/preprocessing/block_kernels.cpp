@@ -1,38 +1,39 @@
 #include "pipeline/preprocessing/block_kernels.h"
 
-namespace bevloc {
-namespace {
+#include "common/cpu_features.h"
 
-bool has_avx2() {
-#ifdef __x86_64__
-  return __builtin_cpu_supports("avx2") != 0;
+namespace bevloc {
+
+#if !defined(__x86_64__) && !defined(__aarch64__)
+BlockKernel<RgbView>* rgb_block_kernel(int) {
+  return nullptr;
+}
+BlockKernel<YuvLayout>* yuv_block_kernel(const YuvLayout&, int) {
+  return nullptr;
+}
+BlockKernel<ImageView>* bayer_block_kernel(int) {
+  return nullptr;
+}
+#endif
+
+bool can_run_block_kernels() {
+#if defined(__x86_64__)
+  return has_avx2();
+#elif defined(__aarch64__)
+  return has_dot_product();
 #else
   return false;
 #endif
 }
 
-}  // namespace
-
-#ifndef __x86_64__
-BlockKernel<RgbView>* rgb_kernel_avx2(int) {
-  return nullptr;
-}
-BlockKernel<YuvLayout>* yuv_kernel_avx2(const YuvLayout&, int) {
-  return nullptr;
-}
-BlockKernel<ImageView>* bayer_kernel_avx2(int) {
-  return nullptr;
-}
-#endif
-
 BlockKernel<RgbView>* rgb_kernel_for(int taps) {
-  return has_avx2() ? rgb_kernel_avx2(taps) : nullptr;
+  return can_run_block_kernels() ? rgb_block_kernel(taps) : nullptr;
 }
 BlockKernel<YuvLayout>* yuv_kernel_for(const YuvLayout& layout, int taps) {
-  return has_avx2() ? yuv_kernel_avx2(layout, taps) : nullptr;
+  return can_run_block_kernels() ? yuv_block_kernel(layout, taps) : nullptr;
 }
 BlockKernel<ImageView>* bayer_kernel_for(int taps) {
-  return has_avx2() ? bayer_kernel_avx2(taps) : nullptr;
+  return can_run_block_kernels() ? bayer_block_kernel(taps) : nullptr;
 }
 
 }  // namespace bevloc

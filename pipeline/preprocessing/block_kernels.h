@@ -14,16 +14,21 @@ namespace bevloc {
 template <typename Image>
 using BlockKernel = void(const Image& image, const RemapBlocks& blocks, int8_t* planes);
 
-// The fastest kernel for this CPU; null if there is none for `taps` or for the layout.
+/// Whether this CPU has the instructions of the kernels: AVX2, or on arm64 FEAT_DotProd.
+bool can_run_block_kernels();
+
+// The kernel for this CPU; null if there is none for `taps` or for the layout, or if the CPU cannot
+// run it.
 
 BlockKernel<RgbView>* rgb_kernel_for(int taps);
 BlockKernel<YuvLayout>* yuv_kernel_for(const YuvLayout& layout, int taps);
 BlockKernel<ImageView>* bayer_kernel_for(int taps);
 
-// The kernels for AVX2; null if the program is not built for x86-64.
+// The kernel for the processor family that the program is built for, whether or not this CPU can
+// run it. Each family defines them in files of its own.
 
-BlockKernel<RgbView>* rgb_kernel_avx2(int taps);
-BlockKernel<YuvLayout>* yuv_kernel_avx2(const YuvLayout& layout, int taps);
-BlockKernel<ImageView>* bayer_kernel_avx2(int taps);
+BlockKernel<RgbView>* rgb_block_kernel(int taps);
+BlockKernel<YuvLayout>* yuv_block_kernel(const YuvLayout& layout, int taps);
+BlockKernel<ImageView>* bayer_block_kernel(int taps);
 
 }  // namespace bevloc

@@ -1,9 +1,9 @@
-// Parts of the AVX2 kernels. Include it inside a namespace, after "#pragma GCC target("avx2")".
+// Parts of the AVX2 kernels. Include it inside a namespace, after "#pragma GCC target("avx2")" and
+// block_shapes.h.
 //
 // A register contains a pair of pixels, i and i + 4 of a block, one in each 128-bit half. Within a
 // half come the channels: four bytes, four words or one 32-bit sum for each.
 
-constexpr int kPixels = RemapBlocks::kPixels;
 constexpr int kPairs = kPixels / 2;
 constexpr int kNone = -1;
 
@@ -69,25 +69,6 @@ inline __m256i load_pair(const uint8_t* first, const Distances& place, int pair)
   return _mm256_set_m128i(load_16(first + place[pair + kPairs]), load_16(first + place[pair]));
 }
 
-/// Prefetches the samples that the network pixels below a block will read. Camera frames come from
-/// other cores and devices; without prefetching, a frame outside the near caches takes nearly twice
-/// as long. `first` is the first sample of the block; a sample has `kSampleBytes`. The rows and
-/// columns of the plane are those of the image divided by 2^kRowShift and 2^kColShift.
-template <int kTaps, int kSampleBytes, int kRowShift = 0, int kColShift = 0>
-[[gnu::always_inline]] inline void prefetch_below(const uint8_t* first,
-                                                  std::ptrdiff_t stride_bytes) {
-  constexpr int kCacheLine = 64;
-  constexpr int kScale = kTaps - 1;  // approximate number of camera pixels per network pixel
-  constexpr int kBytes = kPixels * kScale * kSampleBytes >> kColShift;
-  constexpr int kBegin = kTaps >> kRowShift;
-  constexpr int kEnd = (kTaps + kScale) >> kRowShift;
-  for (int row = kBegin; row < kEnd; ++row) {
-    for (int byte = 0; byte < kBytes; byte += kCacheLine) {
-      _mm_prefetch(reinterpret_cast<const char*>(first + row * stride_bytes + byte), _MM_HINT_T0);
-    }
-  }
-}
-
 /// Loads the weights of a pair. col_weight() and row_weight() select from them.
 template <int kSlots>
 __m256i load_weights(const RemapBlocks& blocks, size_t block, int pair) {
@@ -116,50 +97,6 @@ constexpr auto shuffles(const Make& make) {
     return std::array{make(kIndex)...};
   }
   (std::make_integer_sequence<int, kCount>());
-}
-
-/// Calls `add` with the index of each part of a block in RemapBlocks. kParts is 1 or 4.
-template <int kParts, typename Add>
-[[gnu::always_inline]] inline void for_each_part(size_t block, const Add& add) {
-  for (size_t part = 0; part < kParts; ++part) add(kParts * block + part);
-}
-
-template <int kTaps, int kParts>
-struct PartShape {
-  static constexpr int taps = kTaps;
-  static constexpr int parts = kParts;
-};
-
-/// The kernel for boxes of `taps` pixels: calls `choose` with a PartShape. Null if there is no
-/// kernel for this width.
-template <typename Choose>
-auto kernel_of_taps(int taps, const Choose& choose) -> decltype(choose(PartShape<2, 1>())) {
-  switch (taps) {
-    case 2:
-      return choose(PartShape<2, 1>());
-    case 3:
-      return choose(PartShape<3, 1>());
-    case 4:
-      return choose(PartShape<4, 1>());
-    case 5:
-      return choose(PartShape<5, 1>());
-    case 6:
-      return choose(PartShape<6, 1>());
-    case 7:
-      return choose(PartShape<7, 1>());
-    case 8:
-      return choose(PartShape<4, 4>());
-    case 9:
-      return choose(PartShape<5, 4>());
-    case 10:
-    case 11:
-    case 12:
-      return choose(PartShape<6, 4>());
-    case 13:
-      return choose(PartShape<7, 4>());
-    default:
-      return nullptr;
-  }
 }
 
 /// Writes a block to the three planes. Each half of `bytes` has red, green and blue of four pixels.

@@ -12,6 +12,7 @@
 namespace bevloc {
 namespace {
 
+#include "pipeline/preprocessing/block_shapes.h"
 #include "pipeline/preprocessing/blocks_avx2.h"
 #include "pipeline/preprocessing/boxes_avx2.h"
 
@@ -62,7 +63,7 @@ void remap_blocks(const RgbView& image, const RemapBlocks& blocks, int8_t* plane
 
 }  // namespace
 
-BlockKernel<RgbView>* rgb_kernel_avx2(int taps) {
+BlockKernel<RgbView>* rgb_block_kernel(int taps) {
   return kernel_of_taps(taps, [](auto shape) -> BlockKernel<RgbView>* {
     return remap_blocks<shape.taps, shape.parts>;
   });

@@ -14,6 +14,7 @@
 namespace bevloc {
 namespace {
 
+#include "pipeline/preprocessing/block_shapes.h"
 #include "pipeline/preprocessing/blocks_avx2.h"
 #include "pipeline/preprocessing/boxes_avx2.h"
 
@@ -223,7 +224,7 @@ BlockKernel<YuvLayout>* kernel_of_source(int taps) {
 
 }  // namespace
 
-BlockKernel<YuvLayout>* yuv_kernel_avx2(const YuvLayout& layout, int taps) {
+BlockKernel<YuvLayout>* yuv_block_kernel(const YuvLayout& layout, int taps) {
   if (layout.chroma_shift_x == 0) return nullptr;
   if (layout.y_step == 2) {
     const bool is_luma_first = layout.y.data < layout.u.data;

@@ -40,18 +40,18 @@ float unit_of_sum(const ConvStep& step, const Value& input, int channel) {
   return step.weight_scale[static_cast<size_t>(channel)] * input.scale;
 }
 
-/// The initial value of the channel's sum: its bias, minus what kSignOffset adds to the sum.
-int32_t start_of(const ConvStep& step, const Value& input, int channel) {
+/// The initial value of the channel's sum: its bias, minus what the offset of the input bytes adds
+/// to the sum.
+int32_t start_of(const ConvStep& step, const Value& input, int channel, int input_offset) {
   int32_t start = 0;
   if (!step.bias.empty()) {
     const float bias = step.bias[static_cast<size_t>(channel)];
     start = static_cast<int32_t>(std::lround(bias / unit_of_sum(step, input, channel)));
   }
-  if (input.type != ElementType::kInt8) return start;
   const std::span<const int8_t> weights = weights_of(step);
   const auto count = weights.size() / static_cast<size_t>(step.weights.shape[0]);
   for (const int8_t weight : weights.subspan(static_cast<size_t>(channel) * count, count)) {
-    start -= kSignOffset * weight;
+    start -= input_offset * weight;
   }
   return start;
 }
@@ -195,8 +195,9 @@ DirectConvolution::DirectConvolution(const ConvStep& step, const Value& input, c
   assert(order == ChannelOrder::kLast || in_channels_ <= kMostPlanes);
   make_groups(step, kernels);
   starts_.resize(static_cast<size_t>(sums_per_pixel_));
+  const int input_offset = (is_signed_ ? kSignOffset : 0) - kernels.input_offset;
   for (int c = 0; c < requantizer_.channels; ++c) {
-    starts_[static_cast<size_t>(c)] = start_of(step, input, c);
+    starts_[static_cast<size_t>(c)] = start_of(step, input, c, input_offset);
   }
 }
 

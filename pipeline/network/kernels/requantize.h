@@ -36,8 +36,9 @@ using Requantize = void (*)(const Requantizer&, const RequantizedRow&);
 /// The fastest function that this CPU supports.
 Requantize requantize_for(const Requantizer& requantizer, bool has_residual);
 
-/// The function of one instruction set. requantize_avx2() returns null on other architectures.
+/// The function in plain C++, and the one with vector instructions (AVX2 or NEON). The latter is
+/// null on a CPU without them.
 Requantize requantize_plain(ElementType output, ElementType residual, bool has_residual);
-Requantize requantize_avx2(ElementType output, ElementType residual, bool has_residual);
+Requantize requantize_vector(ElementType output, ElementType residual, bool has_residual);
 
 }  // namespace bevloc::nn

@@ -1,4 +1,5 @@
 // Requantization with AVX2.
+#include "common/cpu_features.h"
 #include "pipeline/network/kernels/requantize.h"
 
 #ifdef __x86_64__
@@ -17,7 +18,8 @@ namespace {
 
 }  // namespace
 
-Requantize requantize_avx2(ElementType output, ElementType residual, bool has_residual) {
+Requantize requantize_vector(ElementType output, ElementType residual, bool has_residual) {
+  if (!has_avx2()) return nullptr;
   return requantize_by_type(output, residual, has_residual);
 }
 

@@ -1,4 +1,4 @@
-// Requantization in plain C++, and the choice between it and AVX2.
+// Requantization in plain C++, and the choice between it and vector instructions.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -18,19 +18,9 @@ Requantize requantize_plain(ElementType output, ElementType residual, bool has_r
   return requantize_by_type(output, residual, has_residual);
 }
 
-#ifndef __x86_64__
-Requantize requantize_avx2(ElementType, ElementType, bool) {
-  return nullptr;
-}
-#endif
-
-Requantize requantize_for(const Requantizer& requantizer, bool has_residual) {
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) {
-    return requantize_avx2(requantizer.output, requantizer.residual, has_residual);
-  }
-#endif
-  return requantize_plain(requantizer.output, requantizer.residual, has_residual);
+Requantize requantize_for(const Requantizer& r, bool has_residual) {
+  const Requantize vector = requantize_vector(r.output, r.residual, has_residual);
+  return vector != nullptr ? vector : requantize_plain(r.output, r.residual, has_residual);
 }
 
 }  // namespace bevloc::nn

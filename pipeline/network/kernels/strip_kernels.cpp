@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "common/cpu_features.h"
 #include "pipeline/network/kernels/strip_kernels_by_isa.h"
 
 namespace bevloc::nn {
@@ -10,12 +11,13 @@ namespace {
 std::vector<const KernelSet*> runnable_sets() {
   std::vector<const KernelSet*> sets;
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx512vnni") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512vl")) {
-    sets.push_back(&kAvx512VnniKernels);
-  }
-  if (__builtin_cpu_supports("avxvnni")) sets.push_back(&kAvxVnniKernels);
-  if (__builtin_cpu_supports("avx2")) sets.push_back(&kAvx2Kernels);
+  if (has_avx512_vnni()) sets.push_back(&kAvx512VnniKernels);
+  if (has_avx_vnni()) sets.push_back(&kAvxVnniKernels);
+  if (has_avx2()) sets.push_back(&kAvx2Kernels);
+#endif
+#ifdef __aarch64__
+  if (has_i8mm()) sets.push_back(&kI8mmKernels);
+  if (has_dot_product()) sets.push_back(&kDotProductKernels);
 #endif
   sets.push_back(&kPlainKernels);
   return sets;

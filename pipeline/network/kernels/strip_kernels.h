@@ -11,7 +11,8 @@ namespace bevloc::nn {
 
 /// Input and output of a kernel: one output row of one group of output channels. A kernel computes
 ///   sums[p][lane] = start[lane]
-///       + sum over rows r and bytes b of lines[r][p * pixel_step + b] * weights[r][b][lane].
+///       + sum over rows r and bytes b of
+///         (lines[r][p * pixel_step + b] - KernelSet::input_offset) * weights[r][b][lane].
 /// Weights are stored as [rows][words][lanes][4], because an instruction multiplies a word (four
 /// bytes of input) by four weights per lane.
 struct KernelStrip {
@@ -40,6 +41,8 @@ struct KernelSet {
   StripKernel kernels[kMostVectors + 1][2] = {};
   /// The largest absolute weight with which no intermediate sum saturates.
   int largest_weight = 127;
+  /// Subtracted from each byte of input before the product. `start` must make up for it.
+  int input_offset = 0;
 };
 
 /// All sets that this CPU supports, the fastest first. The last one is plain C++.

@@ -11,5 +11,9 @@ extern const KernelSet kAvx2Kernels;
 extern const KernelSet kAvxVnniKernels;
 extern const KernelSet kAvx512VnniKernels;
 #endif
+#ifdef __aarch64__
+extern const KernelSet kDotProductKernels;
+extern const KernelSet kI8mmKernels;
+#endif
 
 }  // namespace bevloc::nn

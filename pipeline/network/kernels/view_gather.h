@@ -16,8 +16,9 @@ using Gather = void (*)(const ViewEntries& entries, const std::byte* features, i
 /// The fastest function that this CPU supports.
 Gather gather_for(ElementType input, ElementType output);
 
-/// The function of one instruction set. gather_avx2() returns null on other architectures.
+/// The function in plain C++, and the one with vector instructions (AVX2 or NEON). The latter is
+/// null on a CPU without them.
 Gather gather_plain(ElementType input, ElementType output);
-Gather gather_avx2(ElementType input, ElementType output);
+Gather gather_vector(ElementType input, ElementType output);
 
 }  // namespace bevloc::nn

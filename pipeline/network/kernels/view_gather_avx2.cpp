@@ -1,4 +1,5 @@
 // The view transform with AVX2.
+#include "common/cpu_features.h"
 #include "pipeline/network/kernels/view_gather.h"
 #include "pipeline/network/view/view_transform.h"
 
@@ -17,7 +18,8 @@ namespace {
 
 }  // namespace
 
-Gather gather_avx2(ElementType input, ElementType output) {
+Gather gather_vector(ElementType input, ElementType output) {
+  if (!has_avx2()) return nullptr;
   return gather_by_type(input, output);
 }
 

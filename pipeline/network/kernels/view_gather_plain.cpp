@@ -1,4 +1,4 @@
-// The view transform in plain C++, and the choice between it and AVX2.
+// The view transform in plain C++, and the choice between it and vector instructions.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -18,17 +18,9 @@ Gather gather_plain(ElementType input, ElementType output) {
   return gather_by_type(input, output);
 }
 
-#ifndef __x86_64__
-Gather gather_avx2(ElementType, ElementType) {
-  return nullptr;
-}
-#endif
-
 Gather gather_for(ElementType input, ElementType output) {
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) return gather_avx2(input, output);
-#endif
-  return gather_plain(input, output);
+  const Gather vector = gather_vector(input, output);
+  return vector != nullptr ? vector : gather_plain(input, output);
 }
 
 }  // namespace bevloc::nn

@@ -165,12 +165,8 @@ TEST_P(BlockKernels, OfBayerEqualThePlainCode) {
   }
 }
 
-TEST_P(BlockKernels, ExistForCommonBoxesOnCpusWithAvx2) {
-#ifdef __x86_64__
-  const bool has_kernels = __builtin_cpu_supports("avx2") && taps() <= RemapBlocks::kMaxTaps;
-#else
-  const bool has_kernels = false;
-#endif
+TEST_P(BlockKernels, ExistForCommonBoxes) {
+  const bool has_kernels = can_run_block_kernels() && taps() <= RemapBlocks::kMaxTaps;
   YuvLayout halved;
   halved.chroma_shift_x = 1;
   EXPECT_EQ(rgb_kernel_for(taps()) != nullptr, has_kernels);

@@ -17,6 +17,12 @@ namespace {
 constexpr uint32_t kAmxBits = 1U << 22 | 1U << 24 | 1U << 25;  // bf16, tile, int8
 constexpr uint32_t kTileLeaf = 0x1D;
 
+#if DNNL_VERSION_MAJOR >= 3
+constexpr auto kNoCap = dnnl::cpu_isa::isa_default;
+#else
+constexpr auto kNoCap = dnnl::cpu_isa::all;
+#endif
+
 AmxCpuid read_cpuid() {
   AmxCpuid cpuid;
 #ifdef __x86_64__
@@ -34,7 +40,7 @@ AmxCpuid read_cpuid() {
 dnnl::cpu_isa onednn_isa(IsaCap cap) {
   switch (cap) {
     case IsaCap::kBest:
-      return amx_is_broken(read_cpuid()) ? dnnl::cpu_isa::avx512_core_bf16 : dnnl::cpu_isa::all;
+      return amx_is_broken(read_cpuid()) ? dnnl::cpu_isa::avx512_core_bf16 : kNoCap;
     case IsaCap::kAvx512Vnni:
       return dnnl::cpu_isa::avx512_core_vnni;
     case IsaCap::kAvx512:
@@ -44,7 +50,7 @@ dnnl::cpu_isa onednn_isa(IsaCap cap) {
     case IsaCap::kAvx2:
       return dnnl::cpu_isa::avx2;
   }
-  return dnnl::cpu_isa::all;
+  return kNoCap;
 }
 
 }  // namespace
@@ -61,8 +67,8 @@ void cap_cpu_isa(IsaCap cap) {
   if (current == cap) return;
   const dnnl::cpu_isa isa = onednn_isa(cap);
   // Without a cap nothing must be set, so another library may have used oneDNN before.
-  const bool is_set = !current && (isa == dnnl::cpu_isa::all ||
-                                   dnnl::set_max_cpu_isa(isa) == dnnl::status::success);
+  const bool is_set =
+      !current && (isa == kNoCap || dnnl::set_max_cpu_isa(isa) == dnnl::status::success);
   if (!is_set) {
     refuse("the instruction set of oneDNN is already fixed in this process, wanted another");
   }

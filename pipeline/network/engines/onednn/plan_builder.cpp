@@ -1,6 +1,5 @@
 #include "pipeline/network/engines/onednn/plan_builder.h"
 
-#include "pipeline/network/engines/onednn/convolution.h"
 #include "pipeline/network/engines/onednn/direct_task.h"
 #include "pipeline/network/engines/onednn/plan_state.h"
 #include "pipeline/network/plan/schedule.h"
@@ -12,8 +11,8 @@ using Tag = dnnl::memory::format_tag;
 
 /// For each element in row-major order, its offset in memory.
 std::vector<int32_t> memory_offsets(const MemoryDesc& desc) {
-  const auto& dims = desc.data.dims;
-  const auto& strides = desc.data.format_desc.blocking.strides;
+  const dnnl::memory::dims dims = dims_of(desc);
+  const dnnl::memory::dims strides = strides_of(desc);
   std::vector<int32_t> offsets;
   for (int64_t n = 0; n < dims[0]; ++n) {
     for (int64_t c = 0; c < dims[1]; ++c) {
@@ -50,6 +49,8 @@ class PlanBuilder {
   void add(const ConcatStep& step);
   void add(const ViewStep& step);
   void add_direct(const ConvStep& step);
+  template <typename Make>
+  void add_channels_last(int input, int output, const Make& make);
   void add_output(size_t output);
 
   const Value& value(int id) const { return state_.value(id); }
@@ -102,8 +103,8 @@ int PlanBuilder::destination_with_residual(const ConvStep& step, const MemoryDes
     return state_.new_buffer_over(source, wanted);
   }
   const int destination = state_.new_buffer(wanted);
-  state_.push_reorder(source, state_.desc(source), destination, as_residual,
-                      scaled(same_width ? 1.0F : residual.scale));
+  state_.push_copy(source, state_.desc(source), destination, as_residual,
+                   {.scale = same_width ? 1.0F : residual.scale});
   return destination;
 }
 
@@ -141,57 +142,50 @@ void PlanBuilder::add(const ConvStep& step) {
     return add_direct(step);
   }
   const Value* residual = residual_of(step);
-  const Convolution convolution =
+  Convolution convolution =
       make_convolution(step, value(step.input), value(step.output), residual, state_.engine());
-  const auto& pd = convolution.primitive_desc;
-  const int source = convolution.input_offset == 0
-                         ? state_.buffer_in(step.input, pd.src_desc())
-                         : state_.offset_copy(step.input, pd.src_desc(), convolution.input_offset);
-  const int destination = residual == nullptr ? state_.new_buffer(pd.dst_desc())
-                                              : destination_with_residual(step, pd.dst_desc());
+  const int source =
+      convolution.input_offset == 0
+          ? state_.buffer_in(step.input, convolution.source)
+          : state_.offset_copy(step.input, convolution.source, convolution.input_offset);
+  const int destination = residual == nullptr
+                              ? state_.new_buffer(convolution.destination)
+                              : destination_with_residual(step, convolution.destination);
   state_.set_buffer_of(step.output, destination);
-  state_.push_primitive(
-      pd, dnnl::convolution_forward(pd),
-      {{DNNL_ARG_SRC, source, pd.src_desc()}, {DNNL_ARG_DST, destination, pd.dst_desc()}},
-      convolution.constants);
+  state_.push_primitive(std::move(convolution.primitive),
+                        {{DNNL_ARG_SRC, source, convolution.source},
+                         {DNNL_ARG_DST, destination, convolution.destination}});
+}
+
+/// Adds a primitive from one channel-last buffer to another.
+template <typename Make>
+void PlanBuilder::add_channels_last(int input, int output, const Make& make) {
+  const MemoryDesc from = state_.dense(input, Tag::acdb);
+  const MemoryDesc to = state_.dense(output, Tag::acdb);
+  const int source = state_.buffer_in(input, from);
+  const int destination = state_.set_buffer_of(output, state_.new_buffer(to));
+  state_.push_primitive(make(from, to),
+                        {{DNNL_ARG_SRC, source, from}, {DNNL_ARG_DST, destination, to}});
 }
 
 void PlanBuilder::add(const MaxPoolStep& step) {
-  const int source = state_.buffer_of(step.input);
-  const dnnl::pooling_forward::primitive_desc pd({dnnl::prop_kind::forward_inference,
-                                                  dnnl::algorithm::pooling_max,
-                                                  state_.desc(source),
-                                                  state_.dense(step.output, Tag::any),
-                                                  to_dims(step.strides),
-                                                  to_dims(step.kernel),
-                                                  {step.pads[0], step.pads[1]},
-                                                  {step.pads[2], step.pads[3]}},
-                                                 own_scratchpad(), state_.engine());
-  const int destination = state_.set_buffer_of(step.output, state_.new_buffer(pd.dst_desc()));
-  state_.push_primitive(
-      pd, dnnl::pooling_forward(pd),
-      {{DNNL_ARG_SRC, source, pd.src_desc()}, {DNNL_ARG_DST, destination, pd.dst_desc()}});
+  add_channels_last(step.input, step.output, [&](const MemoryDesc& from, const MemoryDesc& to) {
+    return make_max_pool(step, from, to, state_.engine());
+  });
 }
 
 void PlanBuilder::add(const UpsampleStep& step) {
-  const int source = state_.buffer_of(step.input);
-  if (!step.linear && state_.desc(source) == state_.dense(step.input, Tag::acdb)) {
-    const int destination =
-        state_.set_buffer_of(step.output, state_.new_buffer(state_.dense(step.output, Tag::acdb)));
-    return state_.push(
-        std::make_unique<NearestUpsampleTask>(value(step.input), source, destination),
-        {source, destination});
+  if (step.linear) {
+    return add_channels_last(step.input, step.output,
+                             [&](const MemoryDesc& from, const MemoryDesc& to) {
+                               return make_upsample(step, from, to, state_.engine());
+                             });
   }
-  const auto algorithm =
-      step.linear ? dnnl::algorithm::resampling_linear : dnnl::algorithm::resampling_nearest;
-  const dnnl::resampling_forward::primitive_desc pd(
-      {dnnl::prop_kind::forward_inference, algorithm, state_.desc(source),
-       state_.dense(step.output, Tag::any)},
-      own_scratchpad(), state_.engine());
-  const int destination = state_.set_buffer_of(step.output, state_.new_buffer(pd.dst_desc()));
-  state_.push_primitive(
-      pd, dnnl::resampling_forward(pd),
-      {{DNNL_ARG_SRC, source, pd.src_desc()}, {DNNL_ARG_DST, destination, pd.dst_desc()}});
+  const int source = state_.buffer_in(step.input, state_.dense(step.input, Tag::acdb));
+  const int destination =
+      state_.set_buffer_of(step.output, state_.new_buffer(state_.dense(step.output, Tag::acdb)));
+  state_.push(std::make_unique<NearestUpsampleTask>(value(step.input), source, destination),
+              {source, destination});
 }
 
 void PlanBuilder::add(const AddStep& step) {
@@ -199,20 +193,11 @@ void PlanBuilder::add(const AddStep& step) {
   const int right =
       state_.buffer_in(step.right, with_type(state_.desc(left), value(step.right).type));
   const float scale = value(step.output).scale;
-  dnnl::primitive_attr attributes = own_scratchpad();
-  attributes.set_scales(DNNL_ARG_SRC_0, 0, {value(step.left).scale / scale});
-  attributes.set_scales(DNNL_ARG_SRC_1, 0, {value(step.right).scale / scale});
-  if (step.relu) {
-    dnnl::post_ops relu;
-    relu.append_eltwise(1.0F, dnnl::algorithm::eltwise_relu, 0.0F, 0.0F);
-    attributes.set_post_ops(relu);
-  }
   const MemoryDesc layout = with_type(state_.desc(left), value(step.output).type);
-  const dnnl::binary::primitive_desc pd(
-      {dnnl::algorithm::binary_add, state_.desc(left), state_.desc(right), layout}, attributes,
-      state_.engine());
   const int destination = state_.set_buffer_of(step.output, state_.new_buffer(layout));
-  state_.push_primitive(pd, dnnl::binary(pd),
+  state_.push_primitive(make_sum(state_.desc(left), state_.desc(right), layout,
+                                 {value(step.left).scale / scale, value(step.right).scale / scale},
+                                 step.relu, state_.engine()),
                         {{DNNL_ARG_SRC_0, left, state_.desc(left)},
                          {DNNL_ARG_SRC_1, right, state_.desc(right)},
                          {DNNL_ARG_DST, destination, layout}});
@@ -221,11 +206,8 @@ void PlanBuilder::add(const AddStep& step) {
 void PlanBuilder::add(const ReluStep& step) {
   const int source = state_.buffer_of(step.input);
   const MemoryDesc layout = state_.desc(source);
-  const dnnl::eltwise_forward::primitive_desc pd(
-      {dnnl::prop_kind::forward_inference, dnnl::algorithm::eltwise_relu, layout, 0.0F, 0.0F},
-      own_scratchpad(), state_.engine());
   const int destination = state_.set_buffer_of(step.output, state_.new_buffer(layout));
-  state_.push_primitive(pd, dnnl::eltwise_forward(pd),
+  state_.push_primitive(make_relu(layout, state_.engine()),
                         {{DNNL_ARG_SRC, source, layout}, {DNNL_ARG_DST, destination, layout}});
 }
 
@@ -234,12 +216,12 @@ void PlanBuilder::add(const ConvertStep& step) {
   const MemoryDesc from = state_.desc(source);
   const MemoryDesc to = with_type(from, value(step.output).type);
   const int destination = state_.set_buffer_of(step.output, state_.new_buffer(to));
-  state_.push_reorder(source, from, destination, to,
-                      scaled(value(step.input).scale / value(step.output).scale));
+  state_.push_copy(source, from, destination, to,
+                   {.scale = value(step.input).scale / value(step.output).scale});
 }
 
 void PlanBuilder::add(const RearrangeStep& step) {
-  const int source = state_.plain_buffer_of(step.input);
+  const int source = state_.buffer_of(step.input);
   const int destination =
       state_.set_buffer_of(step.output, state_.new_buffer(state_.dense(step.output, Tag::acdb)));
   const std::vector<int32_t> from = memory_offsets(state_.desc(source));
@@ -260,11 +242,10 @@ void PlanBuilder::add(const ConcatStep& step) {
     sources.push_back(state_.desc(state_.buffer_of(input)));
     arguments.push_back({argument, state_.buffer_of(input), sources.back()});
   }
-  const dnnl::concat::primitive_desc pd(state_.dense(step.output, Tag::any), 1, sources,
-                                        state_.engine(), own_scratchpad());
-  const int destination = state_.set_buffer_of(step.output, state_.new_buffer(pd.dst_desc()));
-  arguments.push_back({DNNL_ARG_DST, destination, pd.dst_desc()});
-  state_.push_primitive(pd, dnnl::concat(pd), std::move(arguments));
+  const MemoryDesc joined = state_.dense(step.output, Tag::acdb);
+  const int destination = state_.set_buffer_of(step.output, state_.new_buffer(joined));
+  arguments.push_back({DNNL_ARG_DST, destination, joined});
+  state_.push_primitive(make_concat(sources, joined, state_.engine()), std::move(arguments));
 }
 
 void PlanBuilder::add(const ViewStep& step) {
@@ -290,7 +271,7 @@ void PlanBuilder::add_output(size_t output) {
     state_.push(std::make_unique<ExportTask>(value(id), source, destination),
                 {source, destination});
   } else {
-    state_.push_reorder(source, state_.desc(source), destination, wanted, scaled(value(id).scale));
+    state_.push_copy(source, state_.desc(source), destination, wanted, {.scale = value(id).scale});
   }
   state_.storages().keep(state_.storage(destination));
   state_.plan().output_buffers[output] = destination;

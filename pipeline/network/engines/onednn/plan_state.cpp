@@ -2,28 +2,7 @@
 
 #include <algorithm>
 
-#include "pipeline/network/engines/onednn/convolution.h"
-
 namespace bevloc::nn::onednn {
-namespace {
-
-bool is_plain(const MemoryDesc& desc) {
-  return desc.data.format_kind == dnnl_blocked && desc.data.format_desc.blocking.inner_nblks == 0;
-}
-
-}  // namespace
-
-MemoryDesc with_type(const MemoryDesc& desc, ElementType type) {
-  MemoryDesc changed = desc;
-  changed.data.data_type = dnnl::memory::convert_to_c(onednn_type(type));
-  return changed;
-}
-
-dnnl::primitive_attr scaled(float scale) {
-  dnnl::primitive_attr attributes = own_scratchpad();
-  if (scale != 1.0F) attributes.set_output_scales(0, {scale});
-  return attributes;
-}
 
 PlanState::PlanState(const Program& program, size_t branches, const dnnl::engine& engine)
     : program_(program), engine_(engine), buffer_of_value_(program.values.size(), -1) {
@@ -55,23 +34,15 @@ int PlanState::buffer_in(int id, const MemoryDesc& wanted) {
     if (desc(copy) == wanted) return copy;
   }
   const int copy = new_buffer(wanted);
-  push_reorder(original, desc(original), copy, wanted, own_scratchpad());
+  push_copy(original, desc(original), copy, wanted);
   copies.push_back(copy);
   return copy;
-}
-
-int PlanState::plain_buffer_of(int id) {
-  const int original = buffer_of(id);
-  if (is_plain(desc(original))) return original;
-  return buffer_in(id, dense(id, dnnl::memory::format_tag::acdb));
 }
 
 int PlanState::offset_copy(int id, const MemoryDesc& wanted, int offset) {
   const int source = buffer_of(id);
   const int copy = new_buffer(wanted);
-  dnnl::primitive_attr attributes = own_scratchpad();
-  attributes.set_zero_points(DNNL_ARG_DST, 0, {offset});
-  push_reorder(source, desc(source), copy, wanted, attributes);
+  push_copy(source, desc(source), copy, wanted, {.offset = offset});
   return copy;
 }
 
@@ -81,22 +52,18 @@ void PlanState::push(std::unique_ptr<Task> task, std::initializer_list<int> used
   storages_.next_task();
 }
 
-void PlanState::push_primitive(const dnnl::primitive_desc_base& primitive_desc,
-                               dnnl::primitive primitive,
-                               std::vector<PrimitiveTask::BufferArgument> arguments,
-                               std::vector<std::pair<int, dnnl::memory>> constants) {
-  plan_.scratchpad_bytes =
-      std::max(plan_.scratchpad_bytes, primitive_desc.scratchpad_desc().get_size());
+void PlanState::push_primitive(Primitive primitive,
+                               std::vector<PrimitiveTask::BufferArgument> arguments) {
+  plan_.scratchpad_bytes = std::max(plan_.scratchpad_bytes, primitive.scratchpad_bytes);
   for (const auto& argument : arguments) storages_.use(storage(argument.buffer));
-  push(std::make_unique<PrimitiveTask>(std::move(primitive), std::move(arguments),
-                                       std::move(constants)),
+  push(std::make_unique<PrimitiveTask>(std::move(primitive.primitive), std::move(arguments),
+                                       std::move(primitive.constants)),
        {});
 }
 
-void PlanState::push_reorder(int from, const MemoryDesc& from_desc, int to,
-                             const MemoryDesc& to_desc, const dnnl::primitive_attr& attributes) {
-  const dnnl::reorder::primitive_desc reorder(engine_, from_desc, engine_, to_desc, attributes);
-  push_primitive(reorder, dnnl::reorder(reorder),
+void PlanState::push_copy(int from, const MemoryDesc& from_desc, int to, const MemoryDesc& to_desc,
+                          Conversion conversion) {
+  push_primitive(make_copy(from_desc, to_desc, conversion, engine_),
                  {{DNNL_ARG_FROM, from, from_desc}, {DNNL_ARG_TO, to, to_desc}});
 }
 

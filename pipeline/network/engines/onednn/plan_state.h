@@ -15,12 +15,6 @@
 
 namespace bevloc::nn::onednn {
 
-/// The layout with another element type.
-MemoryDesc with_type(const MemoryDesc& desc, ElementType type);
-
-/// Attributes of a primitive that multiplies its result by `scale`.
-dnnl::primitive_attr scaled(float scale);
-
 class PlanState {
  public:
   /// `program` and `engine` must outlive the state.
@@ -50,18 +44,14 @@ class PlanState {
   }
   /// The buffer of the value in another layout: a copy, made once per branch.
   int buffer_in(int id, const MemoryDesc& wanted);
-  /// The buffer of the value in a layout without blocks: its own or a copy.
-  int plain_buffer_of(int id);
   /// A copy of the value with `offset` added to its elements, which makes them unsigned.
   int offset_copy(int id, const MemoryDesc& wanted, int offset);
 
   /// Adds a task to the current branch. `used`: the buffers that it reads or writes.
   void push(std::unique_ptr<Task> task, std::initializer_list<int> used);
-  void push_primitive(const dnnl::primitive_desc_base& primitive_desc, dnnl::primitive primitive,
-                      std::vector<PrimitiveTask::BufferArgument> arguments,
-                      std::vector<std::pair<int, dnnl::memory>> constants = {});
-  void push_reorder(int from, const MemoryDesc& from_desc, int to, const MemoryDesc& to_desc,
-                    const dnnl::primitive_attr& attributes);
+  void push_primitive(Primitive primitive, std::vector<PrimitiveTask::BufferArgument> arguments);
+  void push_copy(int from, const MemoryDesc& from_desc, int to, const MemoryDesc& to_desc,
+                 Conversion conversion = {});
 
  private:
   const Program& program_;

@@ -9,7 +9,7 @@
 namespace bevloc::nn::onednn {
 
 PrimitiveTask::PrimitiveTask(dnnl::primitive primitive, std::vector<BufferArgument> buffers,
-                             std::vector<std::pair<int, dnnl::memory>> constants)
+                             Constants constants)
     : primitive_(std::move(primitive)),
       buffers_(std::move(buffers)),
       memories_(std::move(constants)) {}

@@ -9,12 +9,11 @@
 
 #include <dnnl.hpp>
 
+#include "pipeline/network/engines/onednn/primitives.h"
 #include "pipeline/network/model/program.h"
 #include "pipeline/network/view/view_transform.h"
 
 namespace bevloc::nn::onednn {
-
-using MemoryDesc = dnnl::memory::desc;
 
 /// A buffer with its address.
 struct PlacedBuffer {
@@ -43,7 +42,7 @@ class PrimitiveTask : public Task {
 
   /// `constants`: further arguments, by argument index.
   PrimitiveTask(dnnl::primitive primitive, std::vector<BufferArgument> buffers,
-                std::vector<std::pair<int, dnnl::memory>> constants = {});
+                Constants constants);
 
   void bind(std::span<const PlacedBuffer> buffers, const dnnl::memory& scratchpad) override;
   void run(dnnl_stream_t stream) override;
@@ -51,7 +50,7 @@ class PrimitiveTask : public Task {
  private:
   dnnl::primitive primitive_;
   std::vector<BufferArgument> buffers_;
-  std::vector<std::pair<int, dnnl::memory>> memories_;
+  Constants memories_;
   std::vector<dnnl_exec_arg_t> arguments_;
 };
 

@@ -353,8 +353,10 @@ TEST(DirectConvolution, LargestSumsAreExact) {
 
 TEST(KernelSets, TheCapIsKept) {
   EXPECT_EQ(&kernel_set(IsaCap::kBest), kernel_sets().front());
+#ifdef __x86_64__
   const std::string name = kernel_set(IsaCap::kAvx2).name;
   EXPECT_TRUE(name == "AVX2" || name == "plain") << name;
+#endif
   EXPECT_STREQ(kernel_sets().back()->name, "plain");
 }
 

@@ -1,0 +1,35 @@
+// Instruction sets that this CPU has and that the hand-written kernels need. NEON is not asked for,
+// because every arm64 CPU has it.
+#pragma once
+
+#ifdef __aarch64__
+#include <sys/auxv.h>
+#endif
+
+namespace bevloc {
+
+#ifdef __x86_64__
+inline bool has_avx2() {
+  return __builtin_cpu_supports("avx2") != 0;
+}
+inline bool has_avx_vnni() {
+  return __builtin_cpu_supports("avxvnni") != 0;
+}
+inline bool has_avx512_vnni() {
+  return __builtin_cpu_supports("avx512vnni") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+         __builtin_cpu_supports("avx512vl") != 0;
+}
+#endif
+
+#ifdef __aarch64__
+/// Dot products of signed bytes and of unsigned bytes (FEAT_DotProd, Armv8.2).
+inline bool has_dot_product() {
+  return (getauxval(AT_HWCAP) & HWCAP_ASIMDDP) != 0;
+}
+/// Dot products of signed with unsigned bytes (FEAT_I8MM, Armv8.6).
+inline bool has_i8mm() {
+  return (getauxval(AT_HWCAP2) & HWCAP2_I8MM) != 0;
+}
+#endif
+
+}  // namespace bevloc
