@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <span>
 
 namespace bevloc::can {
 namespace {
@@ -60,8 +61,9 @@ double WheelFusion::wheel_speed(WheelPlace place, double speed_mps) const {
 
 double WheelFusion::median() const {
   std::array<double, 5> sorted{};
-  for (size_t i = 0; i < count_; ++i) sorted[i] = estimates_[i].speed_mps;
-  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count_));
+  const std::span<double> known = std::span(sorted).first(std::min(count_, sorted.size()));
+  for (size_t i = 0; i < known.size(); ++i) known[i] = estimates_[i].speed_mps;
+  std::ranges::sort(known);
   const size_t middle = count_ / 2;
   return count_ % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
 }

@@ -36,13 +36,16 @@ std::string row(const StageResult& stage, const MachinePeak& peak, bool counted)
 
 std::string machine_lines(const BenchResult& result) {
   const MachinePeak& peak = result.peak;
-  return fmt::format(
-      "{}, {} frames at {} places, threads: {}\n{}, {}\n"
-      "peak of int8: {:.0f} GMAC/s (convolution {:.0f}, matrix product {:.0f}); copy: {:.1f} "
-      "GB/s\n\n",
-      result.model, result.frames, result.places, result.threads, result.processor,
-      result.instruction_set, peak.macs_per_s() / kGiga, peak.convolution_macs_per_s / kGiga,
-      peak.matmul_macs_per_s / kGiga, peak.copy_bytes_per_s / kGiga);
+  const std::string lines =
+      fmt::format("{}, {} frames at {} places, threads: {}\n{}, {}\n", result.model, result.frames,
+                  result.places, result.threads, result.processor, result.instruction_set);
+  if (peak.copy_bytes_per_s == 0.0) return lines + "the machine's peak was not measured\n\n";
+  return lines + fmt::format(
+                     "peak of int8: {:.0f} GMAC/s (convolution {:.0f}, matrix product {:.0f}); "
+                     "copy: {:.1f} "
+                     "GB/s\n\n",
+                     peak.macs_per_s() / kGiga, peak.convolution_macs_per_s / kGiga,
+                     peak.matmul_macs_per_s / kGiga, peak.copy_bytes_per_s / kGiga);
 }
 
 std::string frame_lines(const BenchResult& result) {
@@ -54,7 +57,7 @@ std::string frame_lines(const BenchResult& result) {
              "stages)\n"
              "{:16} {:>7.3f}   the whole frame takes {:.2f} times as long\n",
              "sum of stages", result.sum_of_stages_ms(), "unattributed", result.outside_ms(),
-             "sum of ideals", ideals_ms, whole_ms / ideals_ms);
+             "sum of ideals", ideals_ms, ideals_ms > 0.0 ? whole_ms / ideals_ms : 0.0);
 }
 
 std::string memory_lines(const MemoryResult& memory) {

@@ -12,7 +12,8 @@ double MachinePeak::macs_per_s() const {
 
 double ideal_s(const Work& work, const MachinePeak& peak) {
   const double multiplying_s = peak.macs_per_s() > 0.0 ? work.macs / peak.macs_per_s() : 0.0;
-  return std::max(multiplying_s, work.bytes / peak.copy_bytes_per_s);
+  const double copying_s = peak.copy_bytes_per_s > 0.0 ? work.bytes / peak.copy_bytes_per_s : 0.0;
+  return std::max(multiplying_s, copying_s);
 }
 
 TimeSummary summarize(const std::vector<double>& times_ms) {

@@ -23,6 +23,30 @@ memory::desc any_layout(const memory::dims& dims, memory::data_type type) {
   return {dims, type, memory::format_tag::any};
 }
 
+// Version 3 of oneDNN has no descriptions of operations besides those of primitives.
+
+dnnl::convolution_forward::primitive_desc convolution_of(const memory::desc& map,
+                                                         const memory::desc& weights,
+                                                         const dnnl::engine& engine) {
+  constexpr auto kKind = dnnl::prop_kind::forward_inference;
+  constexpr auto kAlgorithm = dnnl::algorithm::convolution_direct;
+  const memory::dims ones{1, 1};
+#if DNNL_VERSION_MAJOR >= 3
+  return {engine, kKind, kAlgorithm, map, weights, map, ones, ones, ones};
+#else
+  return {{kKind, kAlgorithm, map, weights, map, ones, ones, ones}, engine};
+#endif
+}
+
+dnnl::matmul::primitive_desc product_of(const memory::desc& left, const memory::desc& right,
+                                        const memory::desc& result, const dnnl::engine& engine) {
+#if DNNL_VERSION_MAJOR >= 3
+  return {engine, left, right, result};
+#else
+  return {{left, right, result}, engine};
+#endif
+}
+
 template <typename Primitive>
 double seconds_per_run(const typename Primitive::primitive_desc& description,
                        const dnnl::engine& engine, const TimeOfRun& time_s) {
@@ -45,16 +69,9 @@ double convolution_macs_per_s(const dnnl::engine& engine, const TimeOfRun& time_
   constexpr memory::dim kCols = 56;
   constexpr memory::dim kSide = 3;
   const memory::dims map{kImages, kChannels, kRows, kCols};
-  const dnnl::convolution_forward::primitive_desc description(
-      {dnnl::prop_kind::forward_inference,
-       dnnl::algorithm::convolution_direct,
-       any_layout(map, memory::data_type::u8),
-       any_layout({kChannels, kChannels, kSide, kSide}, memory::data_type::s8),
-       any_layout(map, memory::data_type::u8),
-       {1, 1},
-       {1, 1},
-       {1, 1}},
-      engine);
+  const auto description = convolution_of(
+      any_layout(map, memory::data_type::u8),
+      any_layout({kChannels, kChannels, kSide, kSide}, memory::data_type::s8), engine);
   const double seconds = seconds_per_run<dnnl::convolution_forward>(description, engine, time_s);
   return static_cast<double>(kImages * kRows * kCols * kChannels * kChannels * kSide * kSide) /
          seconds;
@@ -63,10 +80,9 @@ double convolution_macs_per_s(const dnnl::engine& engine, const TimeOfRun& time_
 double matmul_macs_per_s(const dnnl::engine& engine, const TimeOfRun& time_s) {
   constexpr memory::dim kSize = 1024;
   const memory::dims square{kSize, kSize};
-  const dnnl::matmul::primitive_desc description(
-      {any_layout(square, memory::data_type::u8), any_layout(square, memory::data_type::s8),
-       any_layout(square, memory::data_type::s32)},
-      engine);
+  const auto description = product_of(any_layout(square, memory::data_type::u8),
+                                      any_layout(square, memory::data_type::s8),
+                                      any_layout(square, memory::data_type::s32), engine);
   const double seconds = seconds_per_run<dnnl::matmul>(description, engine, time_s);
   return static_cast<double>(kSize * kSize * kSize) / seconds;
 }

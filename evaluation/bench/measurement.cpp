@@ -40,6 +40,7 @@ StageResult result_of(const Stage& stage, const Record& record) {
 
 /// The median of each field.
 MachinePeak median_of(const std::vector<MachinePeak>& rounds) {
+  if (rounds.empty()) return {};
   const auto median = [&](double MachinePeak::*field) {
     std::vector<double> values;
     for (const MachinePeak& round : rounds) values.push_back(round.*field);
@@ -193,7 +194,7 @@ Status Bench::run(const std::function<void(int, int)>& progress) {
 /// Measured after each place, so that a machine that slows down slows stages and peak alike.
 void Bench::measure_peak() {
   if (peaks_.empty()) memory_ = resident_memory();
-  peaks_.push_back(measure_machine(options_.threads));
+  if (options_.measures_peak) peaks_.push_back(measure_machine(options_.threads));
 }
 
 void Bench::write(BenchResult& result) const {

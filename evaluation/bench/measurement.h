@@ -17,6 +17,7 @@ struct BenchOptions {
   int frames = 200;
   int threads = 1;
   std::vector<std::string> stages;  ///< from kStageNames; empty: all, and the whole frame
+  bool measures_peak = true;        ///< the machine's peak, with which the stages are compared
 };
 
 struct StageResult {

@@ -104,9 +104,18 @@ class HttpServer::Responder final : public httplib::Server {
   /// Without a socket cpp-httplib would take itself for shut down and end every stream.
   Responder() { svr_sock_ = 0; }
 
-  void answer(httplib::Stream& stream) {
+  void answer(httplib::Stream& stream) { answer_by(*this, stream); }
+
+ private:
+  /// cpp-httplib of Debian 13 wants both addresses too, which no handler of ours reads.
+  template <typename Server>
+  static void answer_by(Server& server, httplib::Stream& stream) {
     bool closed = false;
-    process_request(stream, true, closed, nullptr);
+    if constexpr (requires { server.process_request(stream, true, closed, nullptr); }) {
+      server.process_request(stream, true, closed, nullptr);
+    } else {
+      server.process_request(stream, "", 0, "", 0, true, closed, nullptr);
+    }
   }
 };
 
