@@ -21,6 +21,16 @@ dnnl::memory::dims weight_dims(const ConvStep& step) {
   return dims;
 }
 
+/// Version 3.7.2 (Debian 13) packs weights wrongly into its blocks if the input has more than 16
+/// channels and their number is no multiple of 16. So it gets a layout without blocks.
+Tag weight_layout([[maybe_unused]] int64_t groups) {
+#if DNNL_VERSION_MAJOR >= 3
+  return groups > 1 ? Tag::hwigo : Tag::hwio;
+#else
+  return Tag::any;
+#endif
+}
+
 int input_offset_of(const Value& input) {
   return input.type == ElementType::kInt8 && !has_exact_int8_products() ? kSignOffset : 0;
 }
@@ -58,7 +68,7 @@ ConvolutionLayouts::ConvolutionLayouts(const ConvStep& step, const Value& input,
     : source(to_dims(input.dims),
              onednn_type(input_offset_of(input) != 0 ? ElementType::kUint8 : input.type),
              Tag::acdb),
-      weights(weight_dims(step), onednn_type(step.weights.type), Tag::any),
+      weights(weight_dims(step), onednn_type(step.weights.type), weight_layout(step.groups)),
       destination(to_dims(output.dims), onednn_type(output.type), Tag::acdb),
       dilations{step.dilations[0] - 1, step.dilations[1] - 1},
       input_offset(input_offset_of(input)) {

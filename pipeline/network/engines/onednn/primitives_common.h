@@ -21,8 +21,8 @@ Primitive primitive_of(const typename Made::primitive_desc& desc, Constants cons
 /// The layouts of a convolution, and the offset of its input.
 struct ConvolutionLayouts {
   MemoryDesc source;
-  MemoryDesc weights;  ///< oneDNN chooses it
-  MemoryDesc bias;     ///< empty without a bias
+  MemoryDesc weights;
+  MemoryDesc bias;  ///< empty without a bias
   MemoryDesc destination;
   dnnl::memory::dims dilations;
   int input_offset = 0;
