@@ -1,4 +1,4 @@
-# Every third-party library, found once. All are Debian 12 packages (script/packages.txt).
+# Every third-party library, found once. All are packages of Debian 12 and 13 (script/packages.txt).
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs)

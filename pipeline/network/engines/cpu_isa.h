@@ -4,7 +4,7 @@
 namespace bevloc {
 
 /// The newest instruction set that the network may use. kBest: no cap, use what the CPU supports.
-/// Only engines that compile their kernels at load accept a cap.
+/// Only engines that compile their kernels at load accept a cap, and only on x86-64.
 enum class IsaCap { kBest, kAvx512Vnni, kAvx512, kAvx2Vnni, kAvx2 };
 
 }  // namespace bevloc
