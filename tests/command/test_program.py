@@ -55,7 +55,9 @@ class ProgramTest(unittest.TestCase):
             taken.write_text("mine")
             refused = run("init", "--yes", "--out", str(taken))
             self.assertEqual(refused.returncode, 2)
-            self.assertEqual(len(refused.stderr.splitlines()), 1)
+            # Libraries may write lines of their own, as libcamera 0.4 does without a DMA heap.
+            own = [line for line in refused.stderr.splitlines() if line.startswith("bevloc")]
+            self.assertEqual(len(own), 1)
             self.assertEqual(taken.read_text(), "mine")
 
     def test_doctor_prints_json(self) -> None:
