@@ -12,13 +12,6 @@ namespace bevloc {
 inline bool has_avx2() {
   return __builtin_cpu_supports("avx2") != 0;
 }
-inline bool has_avx_vnni() {
-  return __builtin_cpu_supports("avxvnni") != 0;
-}
-inline bool has_avx512_vnni() {
-  return __builtin_cpu_supports("avx512vnni") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
-         __builtin_cpu_supports("avx512vl") != 0;
-}
 #endif
 
 #ifdef __aarch64__
