@@ -15,19 +15,8 @@ namespace {
 #include "pipeline/preprocessing/block_shapes.h"
 #include "pipeline/preprocessing/blocks_avx2.h"
 
-/// Columns of one parity in 8 bytes. Where four are enough, the 8 bytes contain them twice.
-template <int kTaps>
-constexpr int kColumns = kTaps <= 5 ? 4 : 8;
 template <int kTaps>
 constexpr int kSlots = RemapBlocks::slots(kTaps);
-
-/// Column of byte i of a half, counted from the first loaded column. Loading starts one column to
-/// the left of a block's first column, which is even, so that a half contains odd columns of the
-/// frame in its lower 8 bytes and even ones in its upper 8 bytes.
-template <int kTaps>
-constexpr int column(int i) {
-  return 2 * (i % kColumns<kTaps>)+i / 8;
-}
 
 /// Shuffles that fetch, for each sample along one axis, the box weights of its pixel and of the two
 /// neighbours. The weight of the sample is twice its own box weight plus those of the neighbours.
@@ -53,7 +42,7 @@ struct Lattice {
 template <int kTaps>
 __m256i lattice_cols(__m256i weights, __m256i down) {
   static constexpr Lattice kCols([](int half, int i, int by) {
-    const int slot = column<kTaps>(i) - 1 + by;
+    const int slot = bayer_column<kTaps>(i) - 1 + by;
     return slot >= 0 && slot < kSlots<kTaps> ? col_weight<kSlots<kTaps>>(half, slot) : kNone;
   });
   // avg rounds up. Rounding up the complement of x rounds x down.
@@ -86,9 +75,9 @@ template <int kTaps>
 [[gnu::always_inline]] inline __m256i lattice_sums(const ImagePlane& plane, const Distances& place,
                                                    const RemapBlocks& blocks, size_t block,
                                                    int pair) {
-  static constexpr Shuffle kByColumn([](int, int i) { return column<kTaps>(i); });
+  static constexpr Shuffle kByColumn([](int, int i) { return bayer_column<kTaps>(i); });
   static constexpr auto kAllWords = shuffles<8>(all_words);
-  constexpr bool kIsTwice = kColumns<kTaps> == 4;
+  constexpr bool kIsTwice = kBayerColumns<kTaps> == 4;
   // Each halved weight is used twice, once rounded down and once rounded up.
   const __m256i down = kIsTwice ? _mm256_set1_epi64x(static_cast<int64_t>(0xFF00FF00'00FF00FF))
                                 : _mm256_set1_epi16(0x00FF);

@@ -14,19 +14,8 @@ namespace {
 #include "pipeline/preprocessing/block_shapes.h"
 #include "pipeline/preprocessing/blocks_dotprod.h"
 
-/// Columns of one parity in 8 bytes. Where four are enough, the 8 bytes contain them twice.
-template <int kTaps>
-constexpr int kColumns = kTaps <= 5 ? 4 : 8;
 template <int kTaps>
 constexpr int kSlots = RemapBlocks::slots(kTaps);
-
-/// Column of byte i, counted from the first loaded column. Loading starts one column to the left of
-/// a block's first column, which is even, so that a register contains odd columns of the frame in
-/// its lower 8 bytes and even ones in its upper 8 bytes.
-template <int kTaps>
-constexpr int column(int i) {
-  return 2 * (i % kColumns<kTaps>)+i / 8;
-}
 
 /// Weights of the columns, each divided into two bytes: the box weight of the column plus the mean
 /// of its neighbours' box weights, rounded down in one and rounded up in the other.
@@ -39,7 +28,7 @@ template <int kTaps>
 ColumnWeights lattice_cols(uint8x16_t weights) {
   constexpr auto moved = [](int by) {
     return Shuffle([by](int i) {
-      const int slot = column<kTaps>(i) - 1 + by;
+      const int slot = bayer_column<kTaps>(i) - 1 + by;
       return slot >= 0 && slot < kSlots<kTaps> ? slot : kNone;
     });
   };
@@ -73,8 +62,8 @@ void lattice_rows(uint8x16_t weights, uint32x4_t (&rows)[3]) {
 /// Weighted sums of odd columns (two lanes) and of even columns (two lanes).
 template <int kTaps>
 [[gnu::always_inline]] inline Sums line_sums(const uint8_t* first, const ColumnWeights& cols) {
-  static constexpr Shuffle kByColumn([](int i) { return column<kTaps>(i); });
-  if constexpr (kColumns<kTaps> == 4) {
+  static constexpr Shuffle kByColumn([](int i) { return bayer_column<kTaps>(i); });
+  if constexpr (kBayerColumns<kTaps> == 4) {
     const uint8x16_t samples = kByColumn(vcombine_u8(vld1_u8(first), vdup_n_u8(0)));
     return vdotq_u32(vdupq_n_u32(0), samples, cols.down);
   } else {
@@ -89,7 +78,7 @@ template <int kTaps>
 [[gnu::always_inline]] inline Sums lattice_sums(const ImagePlane& plane, Corner corner,
                                                 uint8x16_t weights) {
   ColumnWeights cols = lattice_cols<kTaps>(weights);
-  if constexpr (kColumns<kTaps> == 4) {
+  if constexpr (kBayerColumns<kTaps> == 4) {
     // The samples are there twice: once for each of the divided weights.
     const uint8x16_t is_second = vreinterpretq_u8_u64(vdupq_n_u64(0xFFFFFFFF'00000000));
     cols.down = vbslq_u8(is_second, cols.up, cols.down);

@@ -65,3 +65,31 @@ auto kernel_of_taps(int taps, const Choose& choose) -> decltype(choose(PartShape
       return nullptr;
   }
 }
+
+/// Calls `choose` with the reader of a YUV layout that has a kernel: Readers::Yuyv, Uyvy, Nv12,
+/// I420 or I422. Null if no kernel reads the layout.
+template <typename Readers, typename Choose>
+BlockKernel<YuvLayout>* kernel_of_layout(const YuvLayout& layout, const Choose& choose) {
+  if (layout.chroma_shift_x == 0) return nullptr;
+  if (layout.y_step == 2) {
+    const bool is_luma_first = layout.y.data < layout.u.data;
+    return is_luma_first ? choose.template operator()<typename Readers::Yuyv>()
+                         : choose.template operator()<typename Readers::Uyvy>();
+  }
+  if (layout.chroma_step == 2) return choose.template operator()<typename Readers::Nv12>();
+  if (layout.chroma_shift_y == 1) return choose.template operator()<typename Readers::I420>();
+  return choose.template operator()<typename Readers::I422>();
+}
+
+/// Samples of a Bayer row as their kernels order them. Columns of one parity fill 8 bytes. Where
+/// four columns are enough, the 8 bytes contain them twice.
+template <int kTaps>
+constexpr int kBayerColumns = kTaps <= 5 ? 4 : 8;
+
+/// Column of byte i, counted from the first loaded column. Loading starts one column to the left of
+/// a block's first column, which is even, so that 16 bytes contain odd columns of the frame in the
+/// lower half and even ones in the upper half.
+template <int kTaps>
+constexpr int bayer_column(int i) {
+  return 2 * (i % kBayerColumns<kTaps>)+i / 8;
+}

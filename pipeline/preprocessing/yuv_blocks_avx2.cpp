@@ -215,25 +215,22 @@ void remap_blocks(const YuvLayout& image, const RemapBlocks& blocks, int8_t* pla
   }
 }
 
-template <typename Source>
-BlockKernel<YuvLayout>* kernel_of_source(int taps) {
-  return kernel_of_taps(taps, [](auto shape) -> BlockKernel<YuvLayout>* {
-    return remap_blocks<shape.taps, shape.parts, Source>;
-  });
-}
+struct Readers {
+  using Yuyv = PackedSource<0>;
+  using Uyvy = PackedSource<1>;
+  using Nv12 = SemiPlanarSource;
+  using I420 = PlanarSource<true>;
+  using I422 = PlanarSource<false>;
+};
 
 }  // namespace
 
 BlockKernel<YuvLayout>* yuv_block_kernel(const YuvLayout& layout, int taps) {
-  if (layout.chroma_shift_x == 0) return nullptr;
-  if (layout.y_step == 2) {
-    const bool is_luma_first = layout.y.data < layout.u.data;
-    return is_luma_first ? kernel_of_source<PackedSource<0>>(taps)
-                         : kernel_of_source<PackedSource<1>>(taps);
-  }
-  if (layout.chroma_step == 2) return kernel_of_source<SemiPlanarSource>(taps);
-  if (layout.chroma_shift_y == 1) return kernel_of_source<PlanarSource<true>>(taps);
-  return kernel_of_source<PlanarSource<false>>(taps);
+  return kernel_of_layout<Readers>(layout, [taps]<typename Reader>() {
+    return kernel_of_taps(taps, [](auto shape) -> BlockKernel<YuvLayout>* {
+      return remap_blocks<shape.taps, shape.parts, Reader>;
+    });
+  });
 }
 
 }  // namespace bevloc

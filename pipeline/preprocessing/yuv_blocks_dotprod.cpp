@@ -200,25 +200,22 @@ void remap_blocks(const YuvLayout& image, const RemapBlocks& blocks, int8_t* pla
   }
 }
 
-template <typename Place>
-BlockKernel<YuvLayout>* kernel_of_place(int taps) {
-  return kernel_of_taps(taps, [](auto shape) -> BlockKernel<YuvLayout>* {
-    return remap_blocks<shape.taps, shape.parts, Place>;
-  });
-}
+struct Readers {
+  using Yuyv = PackedPlace<0>;
+  using Uyvy = PackedPlace<1>;
+  using Nv12 = SemiPlanarPlace;
+  using I420 = ThreePlanesPlace<true>;
+  using I422 = ThreePlanesPlace<false>;
+};
 
 }  // namespace
 
 BlockKernel<YuvLayout>* yuv_block_kernel(const YuvLayout& layout, int taps) {
-  if (layout.chroma_shift_x == 0) return nullptr;
-  if (layout.y_step == 2) {
-    const bool is_luma_first = layout.y.data < layout.u.data;
-    return is_luma_first ? kernel_of_place<PackedPlace<0>>(taps)
-                         : kernel_of_place<PackedPlace<1>>(taps);
-  }
-  if (layout.chroma_step == 2) return kernel_of_place<SemiPlanarPlace>(taps);
-  if (layout.chroma_shift_y == 1) return kernel_of_place<ThreePlanesPlace<true>>(taps);
-  return kernel_of_place<ThreePlanesPlace<false>>(taps);
+  return kernel_of_layout<Readers>(layout, [taps]<typename Reader>() {
+    return kernel_of_taps(taps, [](auto shape) -> BlockKernel<YuvLayout>* {
+      return remap_blocks<shape.taps, shape.parts, Reader>;
+    });
+  });
 }
 
 }  // namespace bevloc

@@ -1,6 +1,6 @@
-"""The program that test_distributed starts with torchrun: a short run on synthetic samples.
+"""The program that test_distributed starts twice: a short run on synthetic samples.
 
-    torchrun --nproc_per_node 2 -m tests.training.process_of_two FOLDER [POISONED_POSITION]
+    python3 -m tests.training.process_of_two FOLDER [POISONED_POSITION]
 """
 
 from __future__ import annotations

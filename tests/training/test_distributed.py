@@ -18,12 +18,6 @@ from training.distributed import Processes, Share
 from training.errors import CheckpointError
 from training.train import Trainer
 
-LAUNCHER = [sys.executable, "-m", "torch.distributed.run", "--nproc_per_node", "2"]
-# PyTorch 1.13 does not start on Python 3.11 without redirections, because its empty default is not
-# a valid member of the enumeration of streams. These options name a process that does not exist.
-LAUNCHER += ["--redirects", "9:1", "--tee", "9:1"]
-
-
 def free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
@@ -31,13 +25,31 @@ def free_port() -> int:
 
 
 def run_two(*arguments: str) -> None:
+    """Starts two processes with the variables that torchrun would set.
+
+    Debian's torchrun needs other options with each version of PyTorch, and with 2.6 it does not run.
+    """
+    command = [sys.executable, "-m", "tests.training.process_of_two", *arguments]
     # Addresses and the loopback interface, because a minimal machine resolves no host name.
-    meeting = ["--master_addr", "127.0.0.1", "--master_port", str(free_port())]
-    command = [*LAUNCHER, *meeting, "-m", "tests.training.process_of_two", *arguments]
-    environment = {**os.environ, "GLOO_SOCKET_IFNAME": "lo"}
-    ended = subprocess.run(command, capture_output=True, text=True, timeout=240, env=environment)
-    if ended.returncode != 0:
-        raise AssertionError(ended.stderr)
+    common = {"WORLD_SIZE": "2", "MASTER_ADDR": "127.0.0.1", "MASTER_PORT": str(free_port())}
+    common |= {"GLOO_SOCKET_IFNAME": "lo", "USE_LIBUV": "0"}
+    started = [
+        subprocess.Popen(
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env={**os.environ, **common, "RANK": rank, "LOCAL_RANK": rank},
+        )
+        for rank in ("0", "1")
+    ]
+    try:
+        outputs = [process.communicate(timeout=240)[0] for process in started]
+    finally:
+        for process in started:
+            process.kill()
+    if any(process.returncode != 0 for process in started):
+        raise AssertionError("\n".join(outputs))
 
 
 class TwoProcesses(unittest.TestCase):

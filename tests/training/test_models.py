@@ -17,6 +17,7 @@ from training.models.cost import cost_of, measure, sample_inputs
 from training.models.efficientnet import EfficientNetB0
 from training.models.layers import Attention, cell_centres, sine_encoding
 from training.models.network import make_view
+from training.models.onednn import turn_off_if_wrong
 from training.models.resnet50 import ResNet50
 from training.models.rig import Camera, nominal_cameras
 from training.models.view_dense import DenseView
@@ -319,6 +320,23 @@ class DenseViews(unittest.TestCase):
             [math.sin(v), math.sin(v / 100), math.cos(v), math.cos(v / 100)] for v in (-2.0, 3.0)
         )
         torch.testing.assert_close(encoded, torch.tensor(y + x))
+
+
+class Convolutions(unittest.TestCase):
+    def test_equal_the_products_for_24_channels(self):
+        """oneDNN 3.7 fails this, so importing training.models must have turned it off."""
+        image, weights = torch.rand(1, 24, 6, 8), torch.rand(16, 24, 3, 3)
+        patches = nn.functional.unfold(image, 3)
+        wanted = (weights.flatten(1) @ patches).reshape(1, 16, 4, 6)
+        found = nn.functional.conv2d(image, weights)
+        self.assertLess((found - wanted).abs().max().item(), 1e-4)
+
+    def test_only_wrong_versions_are_turned_off(self):
+        was_on = torch.backends.mkldnn.set_flags(True)[0]
+        self.addCleanup(torch.backends.mkldnn.set_flags, was_on)
+        for version, is_on in (("v2.6.3", True), ("v3.8.1", True), ("v3.7.2", False)):
+            turn_off_if_wrong(f"  - Intel(R) MKL-DNN {version} (Git Hash N/A)")
+            self.assertEqual(torch._C._get_mkldnn_enabled(), is_on, version)
 
 
 class Costs(unittest.TestCase):
