@@ -215,8 +215,9 @@ FalseLine beside(const VisibleLine& line, Random& random) {
 FalseLine anywhere(Random& random) {
   const double length_m = random.uniform(3.0, 10.0);
   const Eigen::Vector2d along = unit_vector(random.uniform(0.0, 2.0 * std::numbers::pi));
-  const Eigen::Vector2d middle(random.uniform(-1.0, 1.0) * kRasterGrid.x_range_m(),
-                               random.uniform(-1.0, 1.0) * kRasterGrid.y_range_m());
+  const double y_m = random.uniform(-1.0, 1.0) * kRasterGrid.y_range_m();
+  const double x_m = random.uniform(-1.0, 1.0) * kRasterGrid.x_range_m();
+  const Eigen::Vector2d middle(x_m, y_m);
   FalseLine line{static_cast<ElementClass>(random.integer(0, 2)), {}, {}};
   const int pieces = static_cast<int>(length_m) + 1;
   for (int k = 0; k <= pieces; ++k) {

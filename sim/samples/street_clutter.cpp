@@ -202,8 +202,9 @@ void cast_shadow(const Stretch& stretch, Random& random, World& world) {
   if (random.chance(0.3)) {
     const int patches = random.integer(5, 25);
     for (int i = 0; i < patches; ++i) {
-      const Eigen::Vector2d place =
-          centre + Eigen::Vector2d(random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0));
+      const double y_m = random.uniform(-5.0, 5.0);
+      const double x_m = random.uniform(-5.0, 5.0);
+      const Eigen::Vector2d place = centre + Eigen::Vector2d(x_m, y_m);
       Ring ring;
       for (int corner = 0; corner < 7; ++corner) {
         ring.emplace_back(place + random.uniform(0.2, 1.0) *

@@ -177,8 +177,9 @@ void Scenery::scatter_trees() {
   const double area_m2 = (high - low).prod();
   const int attempts = static_cast<int>(0.0015 * area_m2 * builder_.town().tree_density);
   for (int i = 0; i < attempts; ++i) {
-    const Eigen::Vector2d position(random_.uniform(low.x(), high.x()),
-                                   random_.uniform(low.y(), high.y()));
+    const double y_m = random_.uniform(low.y(), high.y());
+    const double x_m = random_.uniform(low.x(), high.x());
+    const Eigen::Vector2d position(x_m, y_m);
     const double distance_m = mask_.distance_to_paved_m(position);
     if (distance_m < 2.0 || distance_m > 30.0 || !mask_.is_free({position})) continue;
     add_tree(position);

@@ -45,8 +45,9 @@ float WorldBuilder::varied(float wear) {
 
 void WorldBuilder::add_element(ElementClass element_class, Appearance appearance,
                                const Polyline& points) {
-  const Eigen::Vector2d shift(random_.normal(0.0, town_.map_shift_m),
-                              random_.normal(0.0, town_.map_shift_m));
+  const double y_m = random_.normal(0.0, town_.map_shift_m);
+  const double x_m = random_.normal(0.0, town_.map_shift_m);
+  const Eigen::Vector2d shift(x_m, y_m);
   MapElement element{element_class, appearance, points};
   for (Eigen::Vector2d& point : element.points) point += shift;
   world_.map.elements.push_back(std::move(element));
@@ -150,19 +151,16 @@ void WorldBuilder::build_boundary(const Polyline& line, const EdgeStyle& edge) {
       break;
     }
     case Appearance::kBarrier:
-      add_wall(line, WallTexture::kConcreteBarrier, 0.0, random_.uniform(0.6, 1.1),
-               grey(random_.uniform(0.35, 0.65)));
+      add_grey_wall(line, WallTexture::kConcreteBarrier, {0.6, 1.1}, {0.35, 0.65});
       break;
     case Appearance::kGuardRail:
       add_wall(line, WallTexture::kGuardRail, 0.4, 0.75, grey(random_.uniform(0.4, 0.65)));
       break;
     case Appearance::kWall:
-      add_wall(line, WallTexture::kStoneWall, 0.0, random_.uniform(0.5, 2.5),
-               grey(random_.uniform(0.25, 0.6)));
+      add_grey_wall(line, WallTexture::kStoneWall, {0.5, 2.5}, {0.25, 0.6});
       break;
     case Appearance::kFence:
-      add_wall(line, WallTexture::kFence, 0.0, random_.uniform(0.9, 2.0),
-               grey(random_.uniform(0.15, 0.6)));
+      add_grey_wall(line, WallTexture::kFence, {0.9, 2.0}, {0.15, 0.6});
       break;
     case Appearance::kHedge:
       add_wall(line, WallTexture::kHedge, 0.0, random_.uniform(0.6, 2.2), kHedgeGreen);
@@ -170,6 +168,12 @@ void WorldBuilder::build_boundary(const Polyline& line, const EdgeStyle& edge) {
     default:
       break;  // at a road edge only the ground changes
   }
+}
+
+void WorldBuilder::add_grey_wall(const Polyline& base, WallTexture texture,
+                                 std::array<double, 2> top_m, std::array<double, 2> shade) {
+  const Rgb albedo = grey(random_.uniform(shade[0], shade[1]));
+  add_wall(base, texture, 0.0, random_.uniform(top_m[0], top_m[1]), albedo);
 }
 
 void WorldBuilder::add_wall(const Polyline& base, WallTexture texture, double bottom_m,

@@ -60,6 +60,9 @@ class WorldBuilder {
 
  private:
   void add_element(ElementClass element_class, Appearance appearance, const Polyline& points);
+  /// Adds a wall of random height and shade, both between the two values given.
+  void add_grey_wall(const Polyline& base, WallTexture texture, std::array<double, 2> top_m,
+                     std::array<double, 2> shade);
   /// The wear with a random variation.
   float varied(float wear);
 

@@ -215,30 +215,32 @@ void DirectConvolution::make_groups(const ConvStep& step, const KernelSet& kerne
     const int share = (units - first + left - 1) / left;
     const int take = left == 1 ? share : std::min(round_up(share, units_per_vector), most);
     const StripKernel kernel = kernels.kernels[take / units_per_vector][take % units_per_vector];
-    groups_.push_back(make_group(step, kernel, first * unit, take * unit));
+    groups_.push_back(make_group(step, kernels, kernel, first * unit, take * unit));
     first += take;
   }
   sums_per_pixel_ = units * unit;
 }
 
-/// Packs the weights as [rows][words][lanes][4]. Channels beyond those of the model get weight 0.
-DirectConvolution::Group DirectConvolution::make_group(const ConvStep& step, StripKernel kernel,
+/// Packs the weights as KernelStrip wants them. Channels beyond those of the model get weight 0.
+DirectConvolution::Group DirectConvolution::make_group(const ConvStep& step,
+                                                       const KernelSet& kernels, StripKernel kernel,
                                                        int first_channel, int lanes) const {
   assert(kernel != nullptr);
   const std::span<const int8_t> from = weights_of(step);
   Group group{kernel, first_channel, lanes, {}};
-  const int line_bytes = kernel_cols_ * line_channels_;
-  group.weights.resize(static_cast<size_t>(kernel_rows_) * line_bytes * lanes);
+  const int step_bytes = kernels.step_words * kWordBytes;
+  const int steps = round_up(kernel_cols_ * line_channels_, step_bytes) / step_bytes;
+  group.weights.resize(static_cast<size_t>(kernel_rows_) * steps * lanes * step_bytes);
   const int last_channel = std::min(first_channel + lanes, requantizer_.channels);
   for (int out = first_channel; out < last_channel; ++out) {
     for (int in = 0; in < in_channels_; ++in) {
       for (int row = 0; row < kernel_rows_; ++row) {
         for (int col = 0; col < kernel_cols_; ++col) {
           const int byte = col * line_channels_ + in;
-          const int word = row * (line_bytes / kWordBytes) + byte / kWordBytes;
-          const int to = (word * lanes + out - first_channel) * kWordBytes + byte % kWordBytes;
-          group.weights[static_cast<size_t>(to)] = from[static_cast<size_t>(
-              ((out * in_channels_ + in) * kernel_rows_ + row) * kernel_cols_ + col)];
+          const int lane = (row * steps + byte / step_bytes) * lanes + out - first_channel;
+          group.weights[static_cast<size_t>(lane * step_bytes + byte % step_bytes)] =
+              from[static_cast<size_t>(
+                  ((out * in_channels_ + in) * kernel_rows_ + row) * kernel_cols_ + col)];
         }
       }
     }

@@ -54,7 +54,8 @@ class DirectConvolution {
   class Lines;
 
   void make_groups(const ConvStep& step, const KernelSet& kernels);
-  Group make_group(const ConvStep& step, StripKernel kernel, int first_channel, int lanes) const;
+  Group make_group(const ConvStep& step, const KernelSet& kernels, StripKernel kernel,
+                   int first_channel, int lanes) const;
   bool reads_in_place() const;
   size_t line_bytes() const;
 

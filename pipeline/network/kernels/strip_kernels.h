@@ -13,8 +13,9 @@ namespace bevloc::nn {
 ///   sums[p][lane] = start[lane]
 ///       + sum over rows r and bytes b of
 ///         (lines[r][p * pixel_step + b] - KernelSet::input_offset) * weights[r][b][lane].
-/// Weights are stored as [rows][words][lanes][4], because an instruction multiplies a word (four
-/// bytes of input) by four weights per lane.
+/// A word is four bytes of input. An instruction multiplies one or two words, a step, by as many
+/// weights per lane, so weights are stored as [rows][steps][lanes][bytes of a step]. Where the
+/// words of a line do not fill its last step, the weights there are 0.
 struct KernelStrip {
   const uint8_t* const* lines = nullptr;  ///< `rows` padded input rows, channel last
   int rows = 0;
@@ -41,6 +42,7 @@ struct KernelSet {
   StripKernel kernels[kMostVectors + 1][2] = {};
   /// The largest absolute weight with which no intermediate sum saturates.
   int largest_weight = 127;
+  int step_words = 1;  ///< words in a step: 1 or 2
   /// Subtracted from each byte of input before the product. `start` must make up for it.
   int input_offset = 0;
 };

@@ -1,0 +1,74 @@
+// Parts of the strip kernels for arm64. Include it inside an anonymous namespace, after
+// "#pragma GCC target" has selected an instruction set.
+//
+// A kernel computes a strip tile by tile. A tile has a few pixels and all channels of a group; its
+// sums stay in registers. Each register of input is used for all channels, and each register of
+// weights for all pixels.
+
+constexpr int kBytesPerWord = 4;
+constexpr int kRegisterLanes = 4;
+constexpr int kBytesPerRegister = kBytesPerWord * kRegisterLanes;
+
+/// Loads two registers of weights and moves on to the next.
+[[gnu::always_inline]] inline int8x16x2_t next_weights(const int8_t*& weights) {
+  const int8x16x2_t pair = vld1q_s8_x2(weights);
+  weights += 2 * kBytesPerRegister;
+  // Otherwise the compiler loads the weights of many words first and has no registers for the sums.
+  asm("" : "+r"(weights));
+  return pair;
+}
+
+/// Loads one or two words. The bytes after them are 0.
+template <int kWords>
+inline uint8x8_t load_half(const uint8_t* line) {
+  if constexpr (kWords == 2) return vld1_u8(line);
+  uint32_t word = 0;
+  std::memcpy(&word, line, sizeof(word));
+  return vreinterpret_u8_u32(vset_lane_u32(word, vdup_n_u32(0), 0));
+}
+
+/// Calls add.operator()<kWords>(line) for the words of a line: as often as possible for four, then
+/// for two and for one.
+template <typename Add>
+[[gnu::always_inline]] inline void for_words(const uint8_t* line, int words, const Add& add) {
+  for (int left = words / 4; left > 0; --left) {
+    add.template operator()<4>(line);
+    line += 4 * kBytesPerWord;
+  }
+  if ((words & 2) != 0) {
+    add.template operator()<2>(line);
+    line += 2 * kBytesPerWord;
+  }
+  if ((words & 1) != 0) add.template operator()<1>(line);
+}
+
+/// Computes the pixels from `first` on: in tiles of kPixels, then of half as many, and so on.
+/// Isa::sum_tile<kRegisters, kPixels>(strip, first) computes kRegisters * kRegisterLanes channels.
+template <typename Isa, int kRegisters, int kPixels>
+[[gnu::always_inline]] inline void sum_from(const KernelStrip& strip, int first) {
+  for (; first + kPixels <= strip.pixels; first += kPixels) {
+    Isa::template sum_tile<kRegisters, kPixels>(strip, first);
+  }
+  if constexpr (kPixels > 1) {
+    if (first < strip.pixels) sum_from<Isa, kRegisters, kPixels / 2>(strip, first);
+  }
+}
+
+template <typename Isa, int kRegisters, int kPixels>
+void sum_strip(const KernelStrip& strip) {
+  sum_from<Isa, kRegisters, kPixels>(strip, 0);
+}
+
+/// The kernels for groups of 8, 16 and 24 channels. The sums of a tile and its input fill the 32
+/// registers almost.
+template <typename Isa>
+constexpr KernelSet neon_kernels(const char* name) {
+  return {.name = name,
+          .lanes = 8,
+          .kernels = {{},
+                      {sum_strip<Isa, 2, 10>, nullptr},
+                      {sum_strip<Isa, 4, 6>, nullptr},
+                      {sum_strip<Isa, 6, 4>, nullptr}},
+          .step_words = Isa::kStepWords,
+          .input_offset = Isa::kInputOffset};
+}
