@@ -56,7 +56,8 @@ class RandomDrawsTest(unittest.TestCase):
         self.assertEqual(found, [], "store each draw in a variable of its own (sim/random.h)")
 
     def test_finds_two_draws(self) -> None:
-        self.assertEqual(lines_with_two_draws("Vector2d(random.normal(),\n random_.normal());"), [1])
+        two = "Vector2d(random.normal(),\n random_.normal());"
+        self.assertEqual(lines_with_two_draws(two), [1])
         self.assertEqual(lines_with_two_draws("f(random.normal(0, g(1)), {1, 2});"), [])
 
 

@@ -18,6 +18,7 @@ from training.distributed import Processes, Share
 from training.errors import CheckpointError
 from training.train import Trainer
 
+
 def free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
@@ -27,7 +28,7 @@ def free_port() -> int:
 def run_two(*arguments: str) -> None:
     """Starts two processes with the variables that torchrun would set.
 
-    Debian's torchrun needs other options with each version of PyTorch, and with 2.6 it does not run.
+    Debian's torchrun needs other options with each version of PyTorch; that of 2.6 does not run.
     """
     command = [sys.executable, "-m", "tests.training.process_of_two", *arguments]
     # Addresses and the loopback interface, because a minimal machine resolves no host name.
