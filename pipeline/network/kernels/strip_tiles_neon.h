@@ -27,8 +27,8 @@ inline uint8x8_t load_half(const uint8_t* line) {
   return vreinterpret_u8_u32(vset_lane_u32(word, vdup_n_u32(0), 0));
 }
 
-/// Calls add.operator()<kWords>(line) for the words of a line: as often as possible for four, then
-/// for two and for one.
+/// Calls `add` with a part of the line, and the number of its words as template argument: four
+/// words as often as possible, then two and one.
 template <typename Add>
 [[gnu::always_inline]] inline void for_words(const uint8_t* line, int words, const Add& add) {
   for (int left = words / 4; left > 0; --left) {
@@ -43,7 +43,7 @@ template <typename Add>
 }
 
 /// Computes the pixels from `first` on: in tiles of kPixels, then of half as many, and so on.
-/// Isa::sum_tile<kRegisters, kPixels>(strip, first) computes kRegisters * kRegisterLanes channels.
+/// Isa::sum_tile(strip, first) computes kRegisters * kRegisterLanes channels of a tile.
 template <typename Isa, int kRegisters, int kPixels>
 [[gnu::always_inline]] inline void sum_from(const KernelStrip& strip, int first) {
   for (; first + kPixels <= strip.pixels; first += kPixels) {
