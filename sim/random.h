@@ -25,8 +25,8 @@ constexpr uint64_t seed_for(uint64_t seed, std::string_view purpose) {
 
 /// A random number generator on SplitMix64. Not thread safe.
 ///
-/// Store each number in a variable before a call needs two of them: the compiler chooses the order
-/// in which it evaluates arguments, and it chooses another one for arm64 than for amd64.
+/// If a call needs two random numbers, store each in a variable first. GCC evaluates the arguments
+/// of a call in another order on arm64 than on amd64.
 class Random {
  public:
   explicit Random(uint64_t seed) : state_(mix_seed(seed)) {}

@@ -49,6 +49,10 @@ class CompareTest(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "frame 0"):
                 self.script.compare([self.frame(1.0)], second)
 
+    def test_refuses_empty_logs(self) -> None:
+        with self.assertRaisesRegex(ValueError, "no frames"):
+            self.script.compare([], [])
+
 
 if __name__ == "__main__":
     unittest.main()

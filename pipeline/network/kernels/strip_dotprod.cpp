@@ -1,6 +1,6 @@
 // Strip kernels for arm64 with the dot product of signed bytes (FEAT_DotProd, Armv8.2). An
-// instruction multiplies four registers' lanes of weights by one word of input, which it takes from
-// a register of four words.
+// instruction multiplies one word of input by the weights of four channels. It takes the word from
+// a register that holds four.
 #include "pipeline/network/kernels/strip_kernels_by_isa.h"
 
 #ifdef __aarch64__

@@ -22,7 +22,8 @@ constexpr int kStepBytes = 8;
 template <int kPixels>
 constexpr int kPairs = (kPixels + 1) / 2;
 
-/// sums[pair][c] has the sums of two pixels for the channels 2c and 2c + 1, pixel by pixel.
+/// sums[pair][c] holds four sums: of the pair's first pixel for channels 2c and 2c + 1, then of its
+/// second pixel for the same channels.
 template <int kRegisters, int kPixels>
 using TileSums = int32x4_t[kPairs<kPixels>][2 * kRegisters];
 

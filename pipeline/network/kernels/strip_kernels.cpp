@@ -8,8 +8,8 @@
 namespace bevloc::nn {
 namespace {
 
-// These two stand here because clang-tidy reads every header, and clang 14 does not know the name
-// "avxvnni".
+// These two functions are not in common/cpu_features.h, because clang-tidy reads every header and
+// clang 14 does not know the name "avxvnni".
 #ifdef __x86_64__
 bool has_avx_vnni() {
   return __builtin_cpu_supports("avxvnni") != 0;

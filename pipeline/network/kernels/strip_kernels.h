@@ -13,9 +13,10 @@ namespace bevloc::nn {
 ///   sums[p][lane] = start[lane]
 ///       + sum over rows r and bytes b of
 ///         (lines[r][p * pixel_step + b] - KernelSet::input_offset) * weights[r][b][lane].
-/// A word is four bytes of input. An instruction multiplies one or two words, a step, by as many
-/// weights per lane, so weights are stored as [rows][steps][lanes][bytes of a step]. Where the
-/// words of a line do not fill its last step, the weights there are 0.
+/// A word is four bytes of input. A step is the one or two words that an instruction multiplies; it
+/// needs one weight for each byte of the step and each lane. So weights are stored as
+/// [rows][steps][lanes][bytes of a step]. If the words of a line do not fill its last step, the
+/// weights of the missing word are 0.
 struct KernelStrip {
   const uint8_t* const* lines = nullptr;  ///< `rows` padded input rows, channel last
   int rows = 0;

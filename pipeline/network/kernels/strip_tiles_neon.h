@@ -1,9 +1,9 @@
 // Parts of the strip kernels for arm64. Include it inside an anonymous namespace, after
 // "#pragma GCC target" has selected an instruction set.
 //
-// A kernel computes a strip tile by tile. A tile has a few pixels and all channels of a group; its
-// sums stay in registers. Each register of input is used for all channels, and each register of
-// weights for all pixels.
+// A kernel divides a strip into tiles of a few pixels and all channels of a group. The sums of a
+// tile stay in registers. A register of input is loaded once for all channels, and a register of
+// weights once for all pixels of the tile.
 
 constexpr int kBytesPerWord = 4;
 constexpr int kRegisterLanes = 4;
@@ -42,8 +42,9 @@ template <typename Add>
   if ((words & 1) != 0) add.template operator()<1>(line);
 }
 
-/// Computes the pixels from `first` on: in tiles of kPixels, then of half as many, and so on.
-/// Isa::sum_tile(strip, first) computes kRegisters * kRegisterLanes channels of a tile.
+/// Computes the pixels from `first` on. As many as possible are computed in tiles of kPixels, the
+/// rest in tiles of half that size, and so on. Isa::sum_tile(strip, first) computes one tile, for
+/// kRegisters * kRegisterLanes channels.
 template <typename Isa, int kRegisters, int kPixels>
 [[gnu::always_inline]] inline void sum_from(const KernelStrip& strip, int first) {
   for (; first + kPixels <= strip.pixels; first += kPixels) {
@@ -59,8 +60,8 @@ void sum_strip(const KernelStrip& strip) {
   sum_from<Isa, kRegisters, kPixels>(strip, 0);
 }
 
-/// The kernels for groups of 8, 16 and 24 channels. The sums of a tile and its input fill the 32
-/// registers almost.
+/// The kernels for groups of 8, 16 and 24 channels. The sums of a tile and its input almost
+/// fill the 32 registers.
 template <typename Isa>
 constexpr KernelSet neon_kernels(const char* name) {
   return {.name = name,
