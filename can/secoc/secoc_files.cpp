@@ -2,15 +2,13 @@
 
 #include <cerrno>
 #include <charconv>
-#include <cstdio>
 #include <string>
 #include <system_error>
 
-#include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "common/files.h"
+#include "common/replace_file.h"
 
 namespace bevloc::can {
 namespace {
@@ -22,18 +20,6 @@ std::string cause(int error) {
 std::string without_end_of_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
   return text;
-}
-
-/// Writes and synchronises a file, and returns 0 or an errno.
-int write_synchronised(const std::filesystem::path& file, const std::string& text) {
-  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  if (descriptor < 0) return errno;
-  const bool written =
-      write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
-      fsync(descriptor) == 0;
-  const int error = written ? 0 : (errno == 0 ? EIO : errno);
-  close(descriptor);
-  return error;
 }
 
 }  // namespace
@@ -77,14 +63,11 @@ Result<uint32_t> next_start_number(const std::filesystem::path& file) {
     }
   }
   ++number;
-  const std::filesystem::path temporary = file.string() + ".new";
-  int error = write_synchronised(temporary, fmt::format("{}\n", number));
-  if (error == 0 && rename(temporary.c_str(), file.c_str()) != 0) error = errno;
-  if (error != 0) {
+  if (Status written = replace_file(file, fmt::format("{}\n", number)); !written) {
     return fail(
         "{}: the number of starts cannot be written ({}), wanted a folder that bevlocd may "
         "write, such as /var/lib/bevloc",
-        file.string(), cause(error));
+        file.string(), written.error().message);
   }
   return number;
 }

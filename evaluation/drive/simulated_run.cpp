@@ -15,6 +15,7 @@
 #include "evaluation/drive/snapshot_keeper.h"
 #include "firmware/live/live_server.h"
 #include "firmware/recording/recording_session.h"
+#include "firmware/runtime/calibration_saver.h"
 #include "firmware/runtime/recorder_thread.h"
 #include "firmware/runtime/runner.h"
 #include "firmware/runtime/supervisor.h"
@@ -185,6 +186,8 @@ void SimulatedRun::run(const StopWhen& stop) {
                                           recording_->write_queued(clock_.now());
                                         }
                                       }};
+  const auto saver =
+      firmware::make_calibration_saver(config_, rig_, std::as_const(*appliance_).localizer());
   firmware::Watchdog watchdog(appliance_->estimation().counters().state);
   watchdog.watch_stages(*appliance_);
   firmware::Supervisor supervisor(*appliance_, realtime_, watchdog);
@@ -218,7 +221,7 @@ void SimulatedRun::run(const StopWhen& stop) {
   }
   if (live_) live_->detach();
   supervisor.finish();
-  appliance_->save_learned_calibration();
+  if (saver) saver->finish();
 }
 
 /// The vehicle drove on while the machine was suspended.

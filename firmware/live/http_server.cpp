@@ -14,7 +14,6 @@
 #include <poll.h>
 #include <spdlog/spdlog.h>
 #include <sys/eventfd.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -28,7 +27,6 @@ namespace {
 using SteadyTime = std::chrono::steady_clock::time_point;
 
 constexpr int kBacklog = 128;
-constexpr int kLowestPriority = 19;
 
 httplib::Server::HandlerResponse refuse(httplib::Response& response, int status, const char* text) {
   response.status = status;
@@ -82,11 +80,6 @@ int port_of(const Socket& socket) {
 }
 
 }  // namespace
-
-void begin_low_thread(const char* name) {
-  name_this_thread(name);
-  setpriority(PRIO_PROCESS, 0, kLowestPriority);  // of this thread alone, on Linux
-}
 
 bool is_local_host_header(const std::string& host) {
   std::string name = host.substr(0, host.find(':'));

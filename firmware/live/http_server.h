@@ -66,10 +66,6 @@ class HttpServer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Names the calling thread and gives it the lowest priority of the normal scheduler, so that it
-/// slows no stage down.
-void begin_low_thread(const char* name);
-
 /// Whether a Host header names this machine by address or as "localhost".
 bool is_local_host_header(const std::string& host);
 

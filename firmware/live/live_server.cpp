@@ -15,6 +15,7 @@
 #include "firmware/live/httplib_header.h"
 #include "firmware/live/live_events.h"
 #include "firmware/live/page_files.h"
+#include "firmware/runtime/realtime.h"
 #include "firmware/telemetry/metrics.h"
 
 namespace bevloc::firmware {

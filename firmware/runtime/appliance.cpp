@@ -42,23 +42,12 @@ Result<std::unique_ptr<Appliance>> Appliance::create(const Config& config, const
   }
   std::unique_ptr<Appliance> appliance(
       new Appliance(config, map, std::move(hardware), std::move(map_index), std::move(*localizer)));
-  appliance->learned_calibration_file_ = config.learned_calibration_file;
-  appliance->rig_crc32_ = rig_crc32(rig);
   if (config.can.secoc) {
     if (Status status = appliance->authenticate(*config.can.secoc, config.can.base_ids); !status) {
       return tl::unexpected(status.error());
     }
   }
   return appliance;
-}
-
-void Appliance::save_learned_calibration() const {
-  const OnlineCalibration* learned = localizer_->online_calibration();
-  if (learned == nullptr || learned_calibration_file_.empty() || learned->faults().any()) return;
-  const ExtrinsicFilter& filter = learned->filter();
-  const Status saved =
-      save_learned({rig_crc32_, filter.errors(), filter.covariance()}, learned_calibration_file_);
-  if (!saved) spdlog::warn("{}", saved.error().message);
 }
 
 Appliance::Appliance(const Config& config, const HdMap& map, Hardware hardware,

@@ -76,10 +76,6 @@ class Appliance {
   const MapIndex& map_index() const { return *map_index_; }
   const can::Bus& bus() const { return *hardware_.bus; }
 
-  /// Keeps what was learned about the calibration, if the configuration names a file for it. To be
-  /// called after all threads have ended. Logs what fails.
-  void save_learned_calibration() const;
-
   /// Exact after all threads have ended. Callable from any thread.
   FrameCounts frame_counts() const;
 
@@ -92,8 +88,6 @@ class Appliance {
   Status authenticate(const SecocConfig& config, const can::BaseIds& base);
 
   Hardware hardware_;
-  std::filesystem::path learned_calibration_file_;
-  uint32_t rig_crc32_ = 0;
   std::unique_ptr<MapIndex> map_index_;
   std::unique_ptr<Localizer> localizer_;
   StageQueues queues_;

@@ -6,6 +6,7 @@
 
 #include "firmware/live/live_server.h"
 #include "firmware/recording/recording_session.h"
+#include "firmware/runtime/calibration_saver.h"
 #include "firmware/runtime/camera_factory.h"
 #include "firmware/runtime/clock_watch.h"
 #include "firmware/runtime/fault_line.h"
@@ -101,7 +102,6 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
   if (base.live) base.live->detach();
   if (ignition) supervisor.finish();
   if (trigger != nullptr) trigger->stop();
-  appliance.save_learned_calibration();
   log_totals(snapshot());
   return !ignition;
 }
@@ -130,6 +130,12 @@ Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
   if (*recorder) {
     watch(**appliance, **recorder);
     recording = start_recording(**recorder, base.clock);
+  }
+  const auto saver = make_calibration_saver(config, rig, (*appliance)->localizer());
+  std::jthread saving;
+  if (saver) {
+    saver->watch((*appliance)->vision(), base.clock);
+    saving = start_saving(*saver);
   }
   return run_appliance(**appliance, rig, trigger.get(), base, config.clock, host);
 }

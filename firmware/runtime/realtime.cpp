@@ -15,6 +15,8 @@
 namespace bevloc::firmware {
 namespace {
 
+constexpr int kLowestPriority = 19;
+
 /// Under a finite limit, locking could succeed now and a later allocation fail. So the soft limit
 /// is set to unlimited if the hard limit allows it, else to 0: with limit 0, mlockall() succeeds
 /// only with CAP_IPC_LOCK.
@@ -99,6 +101,11 @@ void Realtime::note(const Status& status) {
 void name_this_thread(const std::string& name) {
   assert(name.size() <= 15);
   pthread_setname_np(pthread_self(), name.c_str());
+}
+
+void begin_low_thread(const std::string& name) {
+  name_this_thread(name);
+  (void)setpriority(PRIO_PROCESS, 0, kLowestPriority);  // of this thread alone, on Linux
 }
 
 }  // namespace bevloc::firmware

@@ -41,4 +41,8 @@ class Realtime {
 /// Sets the calling thread's name, which `top -H` shows: at most 15 characters.
 void name_this_thread(const std::string& name);
 
+/// Names the calling thread and gives it the lowest priority of the normal scheduler, so that it
+/// slows no stage down. A refusal only makes the thread less polite.
+void begin_low_thread(const std::string& name);
+
 }  // namespace bevloc::firmware

@@ -15,6 +15,8 @@ struct LearnedCalibration {
   uint32_t rig_crc32 = 0;  ///< of the rig as format_rig() writes it
   ExtrinsicErrors errors = ExtrinsicErrors::Zero();
   ExtrinsicCovariance covariance = ExtrinsicCovariance::Zero();
+
+  bool operator==(const LearnedCalibration&) const = default;
 };
 
 /// Identifies a rig: another calibration has other errors.

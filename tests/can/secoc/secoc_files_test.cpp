@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::can {
@@ -63,15 +64,24 @@ TEST_F(SecocFilesTest, EachStartHasAHigherNumber) {
     const auto number = next_start_number(starts_);
     ASSERT_TRUE(number) << number.error().message;
     EXPECT_EQ(*number, start);
+    EXPECT_EQ(read_file(starts_).value(), std::to_string(start) + "\n");
+    EXPECT_FALSE(std::filesystem::exists(starts_.string() + ".new"));
   }
 }
 
 TEST_F(SecocFilesTest, AStartThatCannotBeCountedIsRefused) {
-  EXPECT_FALSE(next_start_number(folder_ / "none/starts"));
   for (const char* text : {"", "x", "-1", "4294967295", "12 13"}) {
     write(starts_, text);
     EXPECT_FALSE(next_start_number(starts_)) << text;
   }
+}
+
+TEST_F(SecocFilesTest, AFolderThatCannotBeWrittenIsNamedWithTheCause) {
+  const auto number = next_start_number(folder_ / "none/starts");
+  ASSERT_FALSE(number);
+  EXPECT_THAT(number.error().message, HasSubstr("none/starts: the number of starts cannot be"));
+  EXPECT_THAT(number.error().message, HasSubstr("No such file or directory"));
+  EXPECT_THAT(number.error().message, HasSubstr("wanted a folder that bevlocd may write"));
 }
 
 }  // namespace

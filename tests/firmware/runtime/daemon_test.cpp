@@ -112,6 +112,31 @@ TEST_F(DaemonTest, RunsWhileTheIgnitionIsOn) {
   EXPECT_EQ(calls, 5);
 }
 
+bool has_thread(const std::string& wanted) {
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::string name;
+    std::getline(std::ifstream(thread.path() / "comm"), name);
+    if (name == wanted) return true;
+  }
+  return false;
+}
+
+TEST_F(DaemonTest, KeepsWhatItLearnsInAThreadOfItsOwn) {
+  for (const bool with_file : {false, true}) {
+    if (with_file) config_.learned_calibration_file = folder_ / "calibration.yaml";
+    int calls = 0;
+    bool seen = false;
+    const Status status = run([&] {
+      seen |= has_thread("calibration");
+      return ++calls == (with_file ? kMaxCalls : 5) || seen;
+    });
+    EXPECT_TRUE(status) << status.error().message;
+    EXPECT_EQ(seen, with_file);
+  }
+  EXPECT_FALSE(has_thread("calibration"));
+  EXPECT_FALSE(std::filesystem::exists(config_.learned_calibration_file)) << "nothing was learned";
+}
+
 TEST_F(DaemonTest, DoesNotStartWithoutAConfiguredLine) {
   config_.gpio.ignition->address.line = "key";
   const Status status = run([] { return true; });

@@ -1,0 +1,79 @@
+// Keeps what the online calibration learns: while the appliance runs, and at its end.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "common/bounded_queue.h"
+#include "drivers/clock/clock.h"
+#include "firmware/config/config.h"
+#include "firmware/stages/vision_stage.h"
+#include "pipeline/calibration/online/calibration_file.h"
+
+namespace bevloc::firmware {
+
+/// The vision thread hands over what was learned, at most once in kPeriod, and never waits. Another
+/// thread writes it if it differs from what was written last. While a camera is out of place, what
+/// was known at the start is kept, because that camera has pulled the estimates of the others since
+/// before it was found.
+///
+/// Threads: note() from the vision thread, write_next() from one other thread, close() from any
+/// thread, finish() after the vision thread has ended and write_next() is no longer called.
+class CalibrationSaver {
+ public:
+  /// A vehicle that cuts the power without a warning loses what it learned in one minute, in which
+  /// the estimate moves little. A file of 17 kB a minute, 25 MB in 24 hours of driving, does not
+  /// wear a flash memory out.
+  static constexpr Duration kPeriod = std::chrono::minutes(1);
+
+  /// What `online` knows now counts as written. It must outlive the saver. `rig_crc32`: of the rig
+  /// that the errors belong to.
+  CalibrationSaver(const OnlineCalibration& online, uint32_t rig_crc32, std::filesystem::path file);
+
+  /// Calls note() after each match. Before the first step of the stage; saver and clock must
+  /// outlive its last step.
+  void watch(VisionStage& vision, const drivers::Clock& clock);
+
+  /// Hands over what is worth keeping if it is time for it. Does not allocate.
+  void note(Time now);
+
+  /// Waits up to `timeout` for what is handed over, and returns whether it was written. Logs a
+  /// failure, once per cause.
+  bool write_next(Duration timeout);
+
+  /// Wakes write_next(), which waits no longer from then on.
+  void close() { handed_over_.close(); }
+
+  /// Writes what is worth keeping at the end.
+  void finish();
+
+ private:
+  LearnedCalibration known() const;
+  /// What is known, or was known at the start.
+  LearnedCalibration worth_keeping() const;
+  bool write(const LearnedCalibration& learned);
+
+  const OnlineCalibration& online_;
+  const uint32_t rig_crc32_;
+  const std::filesystem::path file_;
+  const LearnedCalibration start_;
+  std::optional<Time> due_;  ///< of the vision thread
+  BoundedQueue<LearnedCalibration> handed_over_{1};
+  LearnedCalibration written_;
+  std::string failure_;  ///< why the latest write failed; empty if it did not
+};
+
+/// Null if nothing is kept: without calibration.online.file, or without online calibration. Before
+/// the first step of the vision stage. The localizer must outlive the saver.
+std::unique_ptr<CalibrationSaver> make_calibration_saver(const Config& config, const Rig& rig,
+                                                         const Localizer& localizer);
+
+/// Writes what is handed over, with the lowest priority of the machine, and finishes when it is
+/// asked to stop: after the vision thread has ended. Nothing waits for this thread before. `saver`
+/// must outlive it.
+std::jthread start_saving(CalibrationSaver& saver);
+
+}  // namespace bevloc::firmware
