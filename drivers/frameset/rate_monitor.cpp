@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kFramesBetweenFits = 32;
 /// In periods. After a longer pause the number of missed frames is uncertain.
-constexpr int kLongestPause = 10;
+constexpr int kLongestPausePeriods = 10;
 constexpr double kSigmas = 3.0;
 /// Lower bound of the jitter: no timestamp is more accurate.
 constexpr double kLeastJitter_s = 1e-6;
@@ -23,7 +23,7 @@ bool CameraDrift::certain() const {
 void RateMonitor::add(int camera, Time time) {
   Track& track = tracks_[camera];
   if (track.period &&
-      to_seconds(time - track.times.back()) > kLongestPause * track.period->seconds) {
+      to_seconds(time - track.times.back()) > kLongestPausePeriods * track.period->seconds) {
     track.times.clear();
     track.period.reset();
   }

@@ -50,7 +50,7 @@ Result<ParameterSet> free_parameters(const std::vector<std::string>& keep) {
 }
 
 /// The time offsets, which a rig file cannot hold.
-void print_time_offsets(const Refinement& refinement) {
+void print_time_offsets(const RigRefinement& refinement) {
   for (int c = 0; c < kCameraCount; ++c) {
     const double offset_s = refinement.cameras[c].change[kTimeOffset];
     if (std::abs(offset_s) < 3.0 * refinement.cameras[c].sigma[kTimeOffset]) continue;
@@ -145,7 +145,7 @@ Result<command::Verdict> CalibCommand::run() const {
 }
 
 Status CalibCommand::run_import() const {
-  ImportOptions options;
+  RigImportOptions options;
   for (const std::string& names : camera_names_) {
     const size_t equals = names.find('=');
     if (equals == std::string::npos) {

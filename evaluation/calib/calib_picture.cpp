@@ -13,7 +13,7 @@ constexpr int kPictureWidth_px = 640;
 constexpr int kPictureHeight_px = 360;
 constexpr int kGap_px = 8;
 constexpr int kTitle_px = 40;
-constexpr int kColumns = 3;
+constexpr int kPicturesPerRow = 3;
 
 void draw_picture(const CalibrationView& view, const RecordedPicture& picture,
                   const ReferenceTrajectory& reference, const MapIndex& map, cv::Mat place) {
@@ -37,14 +37,14 @@ Status write_calibration_picture(const std::vector<CalibrationView>& views,
                                  const std::string& file) {
   const int block_px = kTitle_px + 2 * (kPictureHeight_px + kGap_px);
   cv::Mat sheet(static_cast<int>(views.size()) * block_px,
-                kColumns * (kPictureWidth_px + kGap_px) + kGap_px, CV_8UC3, kPaper);
+                kPicturesPerRow * (kPictureWidth_px + kGap_px) + kGap_px, CV_8UC3, kPaper);
   for (size_t i = 0; i < views.size(); ++i) {
     const int top_px = static_cast<int>(i) * block_px;
     write_text(sheet, views[i].title, {kGap_px, top_px + 28}, 0.8);
     for (const RecordedPicture& picture : pictures) {
       const cv::Rect place(
-          kGap_px + picture.camera % kColumns * (kPictureWidth_px + kGap_px),
-          top_px + kTitle_px + picture.camera / kColumns * (kPictureHeight_px + kGap_px),
+          kGap_px + picture.camera % kPicturesPerRow * (kPictureWidth_px + kGap_px),
+          top_px + kTitle_px + picture.camera / kPicturesPerRow * (kPictureHeight_px + kGap_px),
           kPictureWidth_px, kPictureHeight_px);
       draw_picture(views[i], picture, reference, map, sheet(place));
     }

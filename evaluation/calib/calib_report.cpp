@@ -17,7 +17,7 @@ double share_of(const CameraRefinement& camera) {
   return camera.looked_at > 0 ? static_cast<double>(camera.found) / camera.looked_at : 0.0;
 }
 
-double best_share_of(const Refinement& checked) {
+double best_share_of(const RigRefinement& checked) {
   double best = 0.0;
   for (const CameraRefinement& camera : checked.cameras) {
     if (camera.found >= kLeastFound) best = std::max(best, share_of(camera));
@@ -72,14 +72,14 @@ CameraVerdict verdict_on(const CameraRefinement& camera, double best_share) {
   return CameraVerdict::kGood;
 }
 
-bool all_good(const Refinement& checked) {
+bool all_good(const RigRefinement& checked) {
   const double best = best_share_of(checked);
   return std::ranges::all_of(checked.cameras, [best](const CameraRefinement& camera) {
     return verdict_on(camera, best) == CameraVerdict::kGood;
   });
 }
 
-std::string text_of_check(const Refinement& checked) {
+std::string text_of_check(const RigRefinement& checked) {
   std::string text = fmt::format(
       "{} framesets. Turned by: what would lay the map on the paint, with one sigma.\n"
       "{:12} {:>13} {:>9}  {:>15} {:>15} {:>15}  verdict\n",
@@ -100,7 +100,7 @@ std::string text_of_check(const Refinement& checked) {
   return text;
 }
 
-std::string text_of_refinement(const Refinement& refinement) {
+std::string text_of_refinement(const RigRefinement& refinement) {
   std::string text = fmt::format("{} framesets. Change of each parameter, with one sigma.\n{:15}",
                                  refinement.frames, "");
   for (const std::string_view name : kCameraNames) text += fmt::format(" {:>16}", name);
@@ -126,7 +126,7 @@ std::string text_of_refinement(const Refinement& refinement) {
   return text + "\n";
 }
 
-nlohmann::json json_of(const Refinement& refinement, bool with_verdicts) {
+nlohmann::json json_of(const RigRefinement& refinement, bool with_verdicts) {
   nlohmann::json json{{"framesets", refinement.frames}};
   const double best = best_share_of(refinement);
   for (int c = 0; c < kCameraCount; ++c) {

@@ -21,11 +21,11 @@ enum class CameraVerdict : uint8_t {
 CameraVerdict verdict_on(const CameraRefinement& camera, double best_share);
 
 /// Whether each camera is good.
-bool all_good(const Refinement& checked);
+bool all_good(const RigRefinement& checked);
 
-std::string text_of_check(const Refinement& checked);
-std::string text_of_refinement(const Refinement& refinement);
+std::string text_of_check(const RigRefinement& checked);
+std::string text_of_refinement(const RigRefinement& refinement);
 /// `with_verdicts`: of a check.
-nlohmann::json json_of(const Refinement& refinement, bool with_verdicts);
+nlohmann::json json_of(const RigRefinement& refinement, bool with_verdicts);
 
 }  // namespace bevloc::evaluation

@@ -12,7 +12,7 @@ namespace bevloc::evaluation {
 namespace {
 
 /// Time for the cameras to render their first images before the drive begins.
-constexpr Duration kLead = std::chrono::milliseconds(500);
+constexpr Duration kPicturesLead = std::chrono::milliseconds(500);
 /// As many frames as 100 ms of bus can hold.
 constexpr size_t kWireCapacity = 4096;
 
@@ -23,7 +23,7 @@ Status run_pictures(const DriveConfig& config, const Rig& rig,
   auto drive = SimulatedDrive::create(config);
   if (!drive) return tl::unexpected(drive.error());
   drivers::VirtualClock clock;
-  const Time drive_start = clock.now() + kLead;
+  const Time drive_start = clock.now() + kPicturesLead;
   can::MockWire wire(kWireCapacity);
   firmware::Hardware hardware{
       drive->make_cameras(config, rig, clock, drive_start, pictures),

@@ -24,7 +24,7 @@ namespace {
 constexpr Duration kDrawPeriod = std::chrono::milliseconds(40);
 constexpr Duration kStatusPeriod = std::chrono::milliseconds(200);
 /// A viewer who gets no event for so long gets a comment, so that a closed connection is noticed.
-constexpr Duration kSilence = std::chrono::seconds(1);
+constexpr Duration kEventSilence = std::chrono::seconds(1);
 constexpr double kMapReach_m = 150.0;
 /// The map is sent again when the vehicle is this far from the place where it was sent.
 constexpr double kMapRenewal_m = 60.0;
@@ -187,7 +187,7 @@ void LiveServer::Impl::stream_events(httplib::Response& response) {
   }
   wake_.notify_all();
   const auto write = [this, next = events_.end()](size_t, httplib::DataSink& sink) mutable {
-    const auto event = events_.wait_for(next, kSilence);
+    const auto event = events_.wait_for(next, kEventSilence);
     if (events_.closed()) {
       sink.done();
       return true;

@@ -14,7 +14,7 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr double kFar_m = 30.0;  ///< the range of the "far" parameters
+constexpr double kFarRange_m = 30.0;  ///< the range of the "far" parameters
 constexpr double kLineHalfWidth_m = 0.5 * kRasterLineWidthCells * kRasterGrid.cell_m;
 constexpr double kSharp_m = 0.5 * kRasterGrid.cell_m;
 
@@ -28,13 +28,13 @@ struct Spread {
   double near_m;
   double far_m;
 
-  double at(double range_m) const { return near_m + (far_m - near_m) * range_m / kFar_m; }
+  double at(double range_m) const { return near_m + (far_m - near_m) * range_m / kFarRange_m; }
 };
 
 /// The error model of one corruption level. Confidences are log-odds.
 struct Perception {
   std::array<double, kRasterChannels> confidence;  ///< per class, at range 0
-  double confidence_loss;                          ///< from range 0 to kFar_m
+  double confidence_loss;                          ///< from range 0 to kFarRange_m
   double confidence_sigma;                         ///< of the variation along a line
   double occlusion_loss;                           ///< behind an obstacle
   double overlooked;                               ///< chance that an element is missed completely
@@ -163,7 +163,7 @@ class LineObserver {
       if (i > 0) station_m += (line[i] - line[i - 1]).norm();
       const double range_m = line[i].norm();
       const Eigen::Vector2d ray = line[i] / std::max(range_m, 1e-6);
-      const double log_odds = confidence - perception_.confidence_loss * range_m / kFar_m -
+      const double log_odds = confidence - perception_.confidence_loss * range_m / kFarRange_m -
                               perception_.occlusion_loss * hidden(obstacles_, line[i]) +
                               perception_.confidence_sigma * confidence_noise.at(station_m);
       const double along_m = perception_.along_ray.at(range_m) * along_noise.at(station_m);

@@ -9,7 +9,7 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr int kPeriod = 512;
+constexpr int kNoisePeriod = 512;
 
 /// One octave of smooth value noise with `cells` lattice cells per period.
 void add_octave(std::vector<float>& field, int cells, float amplitude, uint64_t seed) {
@@ -19,20 +19,20 @@ void add_octave(std::vector<float>& field, int cells, float amplitude, uint64_t 
   const auto lattice_at = [&](int x, int y) {
     return lattice[static_cast<size_t>(y % cells) * cells + x % cells];
   };
-  for (int y = 0; y < kPeriod; ++y) {
+  for (int y = 0; y < kNoisePeriod; ++y) {
     const int scaled_y = y * cells;
-    const int cell_y = scaled_y / kPeriod;
-    const float fy = static_cast<float>(scaled_y % kPeriod) / kPeriod;
+    const int cell_y = scaled_y / kNoisePeriod;
+    const float fy = static_cast<float>(scaled_y % kNoisePeriod) / kNoisePeriod;
     const float wy = fy * fy * (3.0F - 2.0F * fy);
-    for (int x = 0; x < kPeriod; ++x) {
+    for (int x = 0; x < kNoisePeriod; ++x) {
       const int scaled_x = x * cells;
-      const int cell_x = scaled_x / kPeriod;
-      const float fx = static_cast<float>(scaled_x % kPeriod) / kPeriod;
+      const int cell_x = scaled_x / kNoisePeriod;
+      const float fx = static_cast<float>(scaled_x % kNoisePeriod) / kNoisePeriod;
       const float wx = fx * fx * (3.0F - 2.0F * fx);
       const float low = std::lerp(lattice_at(cell_x, cell_y), lattice_at(cell_x + 1, cell_y), wx);
       const float high =
           std::lerp(lattice_at(cell_x, cell_y + 1), lattice_at(cell_x + 1, cell_y + 1), wx);
-      field[static_cast<size_t>(y) * kPeriod + x] += amplitude * std::lerp(low, high, wy);
+      field[static_cast<size_t>(y) * kNoisePeriod + x] += amplitude * std::lerp(low, high, wy);
     }
   }
 }
@@ -56,7 +56,7 @@ struct Octave {
 
 template <size_t N>
 std::vector<float> make_field(const std::array<Octave, N>& octaves, uint64_t seed) {
-  std::vector<float> field(static_cast<size_t>(kPeriod) * kPeriod, 0.0F);
+  std::vector<float> field(static_cast<size_t>(kNoisePeriod) * kNoisePeriod, 0.0F);
   for (const auto& [cells, amplitude] : octaves) {
     add_octave(field, cells, amplitude, mix_seed(seed + static_cast<uint64_t>(cells)));
   }
@@ -97,7 +97,7 @@ const float* NoiseField::row(int64_t ix, int64_t iy) const {
 
 GroundNoise::GroundNoise()
     : patches_(
-          kPeriod,
+          kNoisePeriod,
           make_field(
               std::array<Octave, 5>{{{8, 0.6F}, {16, 0.7F}, {32, 0.8F}, {64, 0.8F}, {128, 0.7F}}},
               0x9A7C)) {
@@ -105,7 +105,7 @@ GroundNoise::GroundNoise()
       std::array<Octave, 6>{
           {{16, 0.35F}, {32, 0.4F}, {64, 0.6F}, {128, 0.8F}, {256, 1.0F}, {512, 0.9F}}},
       0x6EA1);
-  int period = kPeriod;
+  int period = kNoisePeriod;
   for (int level = 0; level < kGroundLevels; ++level) {
     grain_.emplace_back(period, field);
     field = halved(field, period);

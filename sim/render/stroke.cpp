@@ -11,7 +11,7 @@ namespace {
 
 /// A segment in texels. Node (i, j) lies `across` texels from the axis and `along` texels from its
 /// start.
-struct Axis {
+struct StrokeAxis {
   Eigen::Vector2f from;
   Eigen::Vector2f direction;
   float length;
@@ -24,7 +24,7 @@ struct Axis {
   }
 };
 
-Axis axis_of(const TileCanvas& canvas, const StrokeSegment& segment) {
+StrokeAxis axis_of(const TileCanvas& canvas, const StrokeSegment& segment) {
   const Eigen::Vector2f from = canvas.texel(segment.from);
   const Eigen::Vector2f edge = canvas.texel(segment.to) - from;
   const float length = std::max(edge.norm(), 1e-6F);
@@ -45,7 +45,7 @@ void narrow(float value, float slope, float from, float to, float& low, float& h
 
 /// Calls span(j, first, last) for the nodes of each row within `reach` texels of the segment.
 template <typename Span>
-void for_each_span(const Axis& axis, float reach, Span span) {
+void for_each_span(const StrokeAxis& axis, float reach, Span span) {
   const float end_y = axis.from.y() + axis.direction.y() * axis.length;
   const float low_y = std::min(axis.from.y(), end_y) - reach;
   const float high_y = std::max(axis.from.y(), end_y) + reach;
@@ -124,7 +124,7 @@ void paint_span(const CanvasRow& row, const PaintSpan& span, int count) {
 }  // namespace
 
 void draw_paint(TileCanvas& canvas, const StrokeSegment& segment, const PaintLine& line) {
-  const Axis axis = axis_of(canvas, segment);
+  const StrokeAxis axis = axis_of(canvas, segment);
   const double texel_m = canvas.texel_m();
   PaintSpan span{};
   span.half_width = static_cast<float>(0.5 * line.width_m / texel_m);
@@ -141,7 +141,7 @@ void draw_paint(TileCanvas& canvas, const StrokeSegment& segment, const PaintLin
 }
 
 void draw_soiling(TileCanvas& canvas, const StrokeSegment& segment, const Soiling& soiling) {
-  const Axis axis = axis_of(canvas, segment);
+  const StrokeAxis axis = axis_of(canvas, segment);
   const float half = static_cast<float>(0.5 * soiling.width_m / canvas.texel_m());
   // A stripe thinner than a texel darkens the texel in proportion to its width.
   const float strength = soiling.strength * std::min(1.0F, 2.0F * half);

@@ -11,7 +11,7 @@ namespace bevloc::sim {
 namespace {
 
 constexpr Rgb kWhite{0.75F, 0.75F, 0.75F};
-constexpr Rgb kYellow{0.72F, 0.52F, 0.08F};
+constexpr Rgb kClutterYellow{0.72F, 0.52F, 0.08F};
 constexpr Rgb kRed{0.5F, 0.06F, 0.04F};
 constexpr Rgb kOrange{0.7F, 0.2F, 0.03F};
 
@@ -47,7 +47,7 @@ class BoundaryClutter {
   }
 
   void paint_lines() {
-    const Rgb albedo = random_.chance(0.5) ? kYellow : kWhite;
+    const Rgb albedo = random_.chance(0.5) ? kClutterYellow : kWhite;
     const double width_m = random_.uniform(0.06, 0.12);
     const double inset_m = random_.uniform(0.12, 0.45);
     const auto wear = static_cast<float>(random_.uniform(0.0, 0.6));
@@ -155,7 +155,7 @@ struct Stretch {
 
 /// A box with diagonals in one or both directions.
 void paint_box(const Stretch& stretch, Random& random, World& world) {
-  const Rgb albedo = random.chance(0.6) ? kYellow : kWhite;
+  const Rgb albedo = random.chance(0.6) ? kClutterYellow : kWhite;
   const double spacing_m = random.uniform(0.8, 2.0);
   const auto wear = static_cast<float>(random.uniform(0.0, 0.6));
   const auto stroke = [&](double from_m, double from_right_m, double to_m, double to_right_m) {

@@ -8,7 +8,7 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr double kSpeedScaleSigma = 0.01;
+constexpr double kOdometryScaleSigma = 0.01;
 constexpr double kSpeedWhite_mps = 0.03;
 constexpr double kYawRateBias_radps = radians(0.1);
 constexpr double kYawRateBiasWalk = radians(0.003);  ///< random walk, rad/s per sqrt(s)
@@ -19,7 +19,7 @@ constexpr double kRadiusDifference = 0.003;
 
 OdometrySimulator::OdometrySimulator(const Drive& drive, uint64_t seed) : drive_(drive) {
   Random random(seed_for(seed, "odometry"));
-  speed_scale_ = random.normal(1.0, kSpeedScaleSigma);
+  speed_scale_ = random.normal(1.0, kOdometryScaleSigma);
   Random wheels(seed_for(seed, "wheels"));
   radius_difference_ = wheels.normal(0.0, kRadiusDifference);
   double bias = random.normal(0.0, kYawRateBias_radps);

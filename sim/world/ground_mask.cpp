@@ -10,7 +10,7 @@ namespace bevloc::sim {
 namespace {
 
 constexpr double kMargin_m = 40.0;
-constexpr double kCell_m = 1.0;
+constexpr double kMaskCell_m = 1.0;
 constexpr int kCoarsening = 2;  ///< cells of the raster per cell of the distances
 constexpr int kSubpixelBits = 4;
 
@@ -27,7 +27,8 @@ GroundMask::GroundMask(const std::vector<const Ring*>& paved) {
   }
   if (low.x() > high.x()) low = high = Eigen::Vector2d::Zero();
   min_corner_ = low - Eigen::Vector2d::Constant(kMargin_m);
-  const Eigen::Vector2d size = (high - low) / kCell_m + Eigen::Vector2d::Constant(2.0 * kMargin_m);
+  const Eigen::Vector2d size =
+      (high - low) / kMaskCell_m + Eigen::Vector2d::Constant(2.0 * kMargin_m);
   occupied_ = cv::Mat(static_cast<int>(std::ceil(size.y())), static_cast<int>(std::ceil(size.x())),
                       CV_8U, cv::Scalar(0));
   for (const Ring* ring : paved) occupy(*ring);
@@ -37,11 +38,11 @@ GroundMask::GroundMask(const std::vector<const Ring*>& paved) {
 }
 
 Eigen::Vector2d GroundMask::max_corner() const {
-  return min_corner_ + kCell_m * Eigen::Vector2d(occupied_.cols, occupied_.rows);
+  return min_corner_ + kMaskCell_m * Eigen::Vector2d(occupied_.cols, occupied_.rows);
 }
 
 bool GroundMask::cell_at(const Eigen::Vector2d& point, cv::Point& cell) const {
-  const Eigen::Vector2d local = (point - min_corner_) / kCell_m;
+  const Eigen::Vector2d local = (point - min_corner_) / kMaskCell_m;
   cell = {static_cast<int>(std::floor(local.x())), static_cast<int>(std::floor(local.y()))};
   return cell.x >= 0 && cell.y >= 0 && cell.x < occupied_.cols && cell.y < occupied_.rows;
 }
@@ -51,14 +52,14 @@ double GroundMask::distance_to_paved_m(const Eigen::Vector2d& point) const {
   if (!cell_at(point, cell)) return 0.0;
   const cv::Point coarse(std::min(cell.x / kCoarsening, distance_.cols - 1),
                          std::min(cell.y / kCoarsening, distance_.rows - 1));
-  return kCell_m * kCoarsening * static_cast<double>(distance_.at<float>(coarse));
+  return kMaskCell_m * kCoarsening * static_cast<double>(distance_.at<float>(coarse));
 }
 
 bool GroundMask::is_free(const Ring& ring) const {
   for (size_t i = 0; i < ring.size(); ++i) {
     const Eigen::Vector2d& a = ring[i];
     const Eigen::Vector2d edge = ring[(i + 1) % ring.size()] - a;
-    const int pieces = std::max(1, static_cast<int>(std::ceil(edge.norm() / kCell_m)));
+    const int pieces = std::max(1, static_cast<int>(std::ceil(edge.norm() / kMaskCell_m)));
     for (int k = 0; k < pieces; ++k) {
       cv::Point cell;
       const Eigen::Vector2d point = a + edge * k / pieces;
@@ -84,7 +85,8 @@ std::vector<cv::Point> GroundMask::fixed_point(const Polyline& line) const {
   points.reserve(line.size());
   for (const Eigen::Vector2d& point : line) {
     const Eigen::Vector2d local =
-        ((point - min_corner_) / kCell_m - Eigen::Vector2d::Constant(0.5)) * (1 << kSubpixelBits);
+        ((point - min_corner_) / kMaskCell_m - Eigen::Vector2d::Constant(0.5)) *
+        (1 << kSubpixelBits);
     points.emplace_back(static_cast<int>(std::lround(local.x())),
                         static_cast<int>(std::lround(local.y())));
   }

@@ -10,7 +10,7 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr double kShortestLane_m = 0.3;
+constexpr double kShortestPavedLane_m = 0.3;
 constexpr double kReach_m = 6.0;
 constexpr double kShoulder_m = 0.3;
 constexpr double kStripStep_m = 1.0;
@@ -151,7 +151,8 @@ std::vector<Ring> paved_rings(const HdMap& map) {
   std::vector<Ring> rings;
   for (size_t index = 0; index < map.lanes.size(); ++index) {
     const Lane& lane = map.lanes[index];
-    if (length_m(lane.left) < kShortestLane_m || length_m(lane.right) < kShortestLane_m) continue;
+    if (length_m(lane.left) < kShortestPavedLane_m || length_m(lane.right) < kShortestPavedLane_m)
+      continue;
     Ring surface = lane.left;
     append(surface, reversed(lane.right));
     rings.push_back(std::move(surface));

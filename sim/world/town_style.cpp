@@ -6,7 +6,7 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr Rgb kYellow{0.72F, 0.55F, 0.12F};
+constexpr Rgb kCentreYellow{0.72F, 0.55F, 0.12F};
 
 struct DashPattern {
   double dash_m;
@@ -104,7 +104,7 @@ void draw_markings(const TownStyle& town, Random& random, RoadStyle& road) {
   road.divider.albedo = white_paint(random);
   road.divider.appearance = random.chance(0.88) ? Appearance::kDashed : Appearance::kSolid;
   road.centre = road.divider;
-  if (town.yellow_centre_lines) road.centre.albedo = kYellow;
+  if (town.yellow_centre_lines) road.centre.albedo = kCentreYellow;
   const bool single_lanes = road.lanes_forward + road.lanes_backward == 2;
   const double draw = random.uniform() + (single_lanes ? 0.0 : 0.3);
   road.centre.appearance = draw < 0.45   ? Appearance::kDashed

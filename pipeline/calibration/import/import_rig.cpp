@@ -35,7 +35,7 @@ bool is_list_with(const ForeignNode& document, std::string_view key) {
 /// Formats that take several files are read when all have been seen.
 class Collector {
  public:
-  explicit Collector(const ImportOptions& options) : options_(options) {}
+  explicit Collector(const RigImportOptions& options) : options_(options) {}
 
   void add(const ForeignFile& file) {
     const std::filesystem::path path(file.name);
@@ -91,7 +91,7 @@ class Collector {
     }
   }
 
-  const ImportOptions& options_;
+  const RigImportOptions& options_;
   std::vector<ImportedCamera> cameras_;
   std::optional<ForeignNode> calibrated_;
   std::optional<ForeignNode> sensors_;
@@ -102,7 +102,7 @@ class Collector {
 /// The imported cameras with what our rig still lacks: names and places on the vehicle.
 class RigBuilder {
  public:
-  RigBuilder(std::vector<ImportedCamera> cameras, const ImportOptions& options)
+  RigBuilder(std::vector<ImportedCamera> cameras, const RigImportOptions& options)
       : cameras_(std::move(cameras)), options_(options) {}
 
   ImportedRig build() {
@@ -235,13 +235,13 @@ class RigBuilder {
   }
 
   std::vector<ImportedCamera> cameras_;
-  const ImportOptions& options_;
+  const RigImportOptions& options_;
 };
 
 }  // namespace
 
 Result<ImportedRig> import_rig(const std::vector<ForeignFile>& files,
-                               const ImportOptions& options) {
+                               const RigImportOptions& options) {
   try {
     Collector collector(options);
     for (const ForeignFile& file : files) collector.add(file);

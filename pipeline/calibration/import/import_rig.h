@@ -17,7 +17,7 @@ struct ForeignFile {
   std::string text;
 };
 
-struct ImportOptions {
+struct RigImportOptions {
   /// Our names of cameras by theirs. A camera without an entry must already have one of our names,
   /// or it is left out.
   std::map<std::string, std::string> our_names;
@@ -41,9 +41,10 @@ struct ImportedRig {
 /// conventions. Fails with file, line and key on what is broken, on what bevloc's camera model
 /// cannot express, on a camera that is missing, and on a rig that cannot be that of a vehicle
 /// (rig_check.h).
-Result<ImportedRig> import_rig(const std::vector<ForeignFile>& files, const ImportOptions& options);
+Result<ImportedRig> import_rig(const std::vector<ForeignFile>& files,
+                               const RigImportOptions& options);
 
-/// Reads vehicle_from_X for ImportOptions: for each name a map with translation_m and
+/// Reads vehicle_from_X for RigImportOptions: for each name a map with translation_m and
 /// rotation_wxyz, as in a rig file.
 Result<std::map<std::string, Se3>> parse_extrinsics(const std::string& text,
                                                     const std::string& name);

@@ -5,7 +5,7 @@
 namespace bevloc {
 namespace {
 
-constexpr double kStep_m = 0.2;
+constexpr double kPaintStep_m = 0.2;
 
 Eigen::Vector2d left_of_direction(const Eigen::Vector2d& direction) {
   return {-direction.y(), direction.x()};
@@ -39,7 +39,7 @@ void find_paint_points(const MapIndex& map, const Se2& map_from_vehicle, double 
     const Eigen::Vector2d& from = element.points[segment.first];
     const Eigen::Vector2d& to = element.points[(segment.first + 1) % element.points.size()];
     const double length_m = (to - from).norm();
-    if (length_m < kStep_m) continue;
+    if (length_m < kPaintStep_m) continue;
     PaintPoint point;
     point.along = (to - from) / length_m;
     point.across = left_of_direction(point.along);
@@ -49,7 +49,7 @@ void find_paint_points(const MapIndex& map, const Se2& map_from_vehicle, double 
       const Eigen::Vector2d opposite = element.points[(segment.first + 2) % element.points.size()];
       if (point.across.dot(opposite - from) < 0.0) point.across = -point.across;
     }
-    const int steps = static_cast<int>(length_m / kStep_m);
+    const int steps = static_cast<int>(length_m / kPaintStep_m);
     for (int i = 0; i < steps; ++i) {
       point.point_m = from + (i + 0.5) * length_m / steps * point.along;
       if ((point.point_m - here).norm() <= reach_m) points.push_back(point);

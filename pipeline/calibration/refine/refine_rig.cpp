@@ -5,7 +5,7 @@
 namespace bevloc {
 namespace {
 
-constexpr double kReach_m = 25.0;
+constexpr double kPaintReach_m = 25.0;
 constexpr int kLeastFramesets = 20;
 
 /// How far from its prediction paint is looked for, in each round.
@@ -21,7 +21,7 @@ class RigRefiner {
         progress_(progress),
         problem_(rig, recording.reference(), options) {}
 
-  Result<Refinement> run() {
+  Result<RigRefinement> run() {
     for (const double search_rad : kSearches_rad) {
       if (Status read = look(search_rad); !read) return tl::unexpected(read.error());
       if (framesets_ < kLeastFramesets) {
@@ -61,7 +61,7 @@ class RigRefiner {
   }
 
   void look_at(const std::vector<RecordedPicture>& pictures, const Se2& pose, double search_rad) {
-    find_paint_points(map_, pose, kReach_m, points_);
+    find_paint_points(map_, pose, kPaintReach_m, points_);
     for (const RecordedPicture& picture : pictures) {
       const CameraAdjustment& change = problem_.change(picture.camera);
       const auto exposed =
@@ -87,13 +87,13 @@ class RigRefiner {
 
 }  // namespace
 
-Result<Refinement> refine_rig(const Rig& rig, const MapIndex& map, PictureRecording& recording,
-                              const RefinementOptions& options,
-                              const RefinementProgress& progress) {
+Result<RigRefinement> refine_rig(const Rig& rig, const MapIndex& map, PictureRecording& recording,
+                                 const RefinementOptions& options,
+                                 const RefinementProgress& progress) {
   return RigRefiner(rig, map, recording, options, progress).run();
 }
 
-Rig refined(const Rig& rig, const Refinement& refinement) {
+Rig refined(const Rig& rig, const RigRefinement& refinement) {
   Rig result = rig;
   for (int c = 0; c < kCameraCount; ++c) {
     result.cameras[c] = adjusted(rig.cameras[c], refinement.cameras[c].change);

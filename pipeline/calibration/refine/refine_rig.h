@@ -15,11 +15,11 @@ using RefinementProgress = std::function<void(int done, int all)>;
 /// Reads the recording three times: with the given rig and a wide search, then twice with what was
 /// found and a narrower one. Uses framesets at least 1.5 m or 2 degrees apart. Fails if the
 /// recording cannot be read, or if fewer than 20 framesets have reference poses.
-Result<Refinement> refine_rig(const Rig& rig, const MapIndex& map, PictureRecording& recording,
-                              const RefinementOptions& options,
-                              const RefinementProgress& progress = {});
+Result<RigRefinement> refine_rig(const Rig& rig, const MapIndex& map, PictureRecording& recording,
+                                 const RefinementOptions& options,
+                                 const RefinementProgress& progress = {});
 
 /// The rig with the changes applied. Time offsets are not part of a rig.
-Rig refined(const Rig& rig, const Refinement& refinement);
+Rig refined(const Rig& rig, const RigRefinement& refinement);
 
 }  // namespace bevloc

@@ -202,9 +202,9 @@ void RefinementProblem::fix_unobservable(double gate_rad) {
   if (any) solve(gate_rad);
 }
 
-Refinement RefinementProblem::result(double gate_rad) const {
+RigRefinement RefinementProblem::result(double gate_rad) const {
   constexpr double kEverywhere_rad = 1.0;
-  Refinement result;
+  RigRefinement result;
   result.frames = static_cast<int>(estimate_.frames.size());
   Eigen::MatrixXd information = camera_information(gate_rad);
   information.diagonal() += camera_prior();

@@ -44,7 +44,7 @@ struct CameraRefinement {
   double after_px = 0.0;
 };
 
-struct Refinement {
+struct RigRefinement {
   std::array<CameraRefinement, kCameraCount> cameras;
   int frames = 0;
 };
@@ -81,7 +81,7 @@ class RefinementProblem {
   void fix_unobservable(double gate_rad);
 
   const CameraAdjustment& change(int camera) const { return estimate_.changes[camera]; }
-  Refinement result(double gate_rad) const;
+  RigRefinement result(double gate_rad) const;
 
  private:
   static constexpr int kCameraUnknowns = kCameraCount * kCameraParameters;

@@ -42,7 +42,7 @@ void run_calibration(Bytes bytes) {
   const ForeignFile sensors{"sensor.json",
                             R"([{"token": "s", "channel": "front", "modality": "camera"}])"};
   const ForeignFile cameras{"cameras.txt", "1 PINHOLE 640 360 500 500 320 180\n"};
-  ImportOptions options;
+  RigImportOptions options;
   options.vehicle_from = {{"imu", {}}, {"world", {}}};
   for (const auto& files : {std::vector<ForeignFile>{{"front.yaml", text}},
                             std::vector<ForeignFile>{{"a.json", text}, sensors},

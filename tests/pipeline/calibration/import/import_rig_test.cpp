@@ -17,8 +17,8 @@ Rig base_rig() {
   return *rig;
 }
 
-ImportOptions with_base() {
-  ImportOptions options;
+RigImportOptions with_base() {
+  RigImportOptions options;
   options.base = base_rig();
   return options;
 }
@@ -48,7 +48,7 @@ void expect_projects_as(const Intrinsics& lens, const cv::Matx33d& matrix,
   }
 }
 
-void expect_refused(const std::vector<ForeignFile>& files, const ImportOptions& options,
+void expect_refused(const std::vector<ForeignFile>& files, const RigImportOptions& options,
                     const std::string& part) {
   const auto imported = import_rig(files, options);
   ASSERT_FALSE(imported) << part;
@@ -117,7 +117,7 @@ TEST(ImportRig, ADistortionThatBevlocLacksIsRefusedByNameAndLine) {
 
 TEST(ImportRig, WithoutAPlaceItSaysHowToGiveOne) {
   expect_refused({{"front.yaml", kCameraInfo}}, {}, "--base RIG");
-  ImportOptions named;
+  RigImportOptions named;
   named.our_names = {{"front", "nose"}};
   expect_refused({{"front.yaml", kCameraInfo}}, named, "--map-camera: found nose");
 }
@@ -138,7 +138,7 @@ distortion_coefficients: !!opencv-matrix
    dt: d
    data: [ -1.0e-01, 1.0e-02, 1.0e-03, 2.0e-03 ]
 )";
-  ImportOptions options = with_base();
+  RigImportOptions options = with_base();
   options.our_names = {{"left_camera", "front_left"}};
   const auto imported = import_rig({{"calib/left_camera.yml", text}}, options);
   ASSERT_TRUE(imported) << imported.error().message;
@@ -180,7 +180,7 @@ TEST(ImportRig, TheChainOfKalibrEndsAtTheVehicle) {
       {0.8, 0.1, 0.6}};
   const std::string chain = kalibr_chain(vehicle_from_front.inverse() * vehicle_from_imu,
                                          vehicle_from_right.inverse() * vehicle_from_front);
-  ImportOptions options = with_base();
+  RigImportOptions options = with_base();
   options.our_names = {{"side", "front_right"}};
   options.vehicle_from = {{"imu", vehicle_from_imu}};
   const auto imported = import_rig({{"camchain.yaml", chain}}, options);
@@ -203,7 +203,7 @@ TEST(ImportRig, TheChainOfKalibrEndsAtTheVehicle) {
   EXPECT_TRUE(anchored->rig.cameras[1].vehicle_from_camera.translation_m.isApprox(
       vehicle_from_front.translation_m, 1e-6));
 
-  ImportOptions bare;
+  RigImportOptions bare;
   bare.our_names = {{"side", "back"}};
   expect_refused({{"camchain.yaml", chain}}, bare, "front_left: found no such camera");
   expect_refused({{"c.yaml", replaced(chain, "camera_model: pinhole", "camera_model: omni")}},
@@ -225,7 +225,7 @@ const std::string kCalibrated = R"([
 ])";
 
 TEST(ImportRig, NuScenesHasThePoseOfTheCameraOnTheVehicle) {
-  ImportOptions options = with_base();
+  RigImportOptions options = with_base();
   options.our_names = {{"CAM_FRONT", "front"}};
   const std::vector<ForeignFile> files = {{"calibrated_sensor.json", kCalibrated},
                                           {"sensor.json", kSensors}};
@@ -263,7 +263,7 @@ TEST(ImportRig, ColmapCountsPixelsFromTheCornerAndMapsIntoTheCamera) {
   const auto cameras = [](const std::string& line) {
     return ForeignFile{"sparse/cameras.txt", "# Camera list\n3 " + line + "\n"};
   };
-  ImportOptions options = with_base();
+  RigImportOptions options = with_base();
   options.vehicle_from = {{"world", Se3{}}};
   const auto imported =
       import_rig({cameras("OPENCV 640 360 510 512 320.5 180.5 -0.1 0.02 0.001 -0.002"),

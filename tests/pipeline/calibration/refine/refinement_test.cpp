@@ -131,7 +131,7 @@ TEST(Refinement, RecoversAllParametersOfAWindingDrive) {
     problem.solve(kEverything_rad);
   }
   problem.fix_unobservable(kEverything_rad);
-  const Refinement result = problem.result(kEverything_rad);
+  const RigRefinement result = problem.result(kEverything_rad);
   EXPECT_EQ(result.frames, Drive::kFrames);
   auto truth_of = errors;
   for (CameraAdjustment& of : truth_of) of[kTimeOffset] = 0.02;
@@ -170,7 +170,7 @@ TEST(Refinement, TakesWhatAllCamerasShareForTheBody) {
   RefinementProblem problem(rig, drive.reference, {});
   add_sightings(problem, rig, pitched, drive, 0.0, true, 0.1);
   problem.solve(kEverything_rad);
-  const Refinement result = problem.result(kEverything_rad);
+  const RigRefinement result = problem.result(kEverything_rad);
   for (int c = 0; c < kCameraCount; ++c) {
     for (const int p : {kPitch, kYaw, kRoll}) {
       EXPECT_LT(std::abs(result.cameras[c].change[p]), radians(0.05)) << c << p;
@@ -187,7 +187,7 @@ TEST(Refinement, RefusesWhatAStraightRoadCannotShow) {
       problem, rig, [&rig](int) { return rig; }, drive, 0.0, false, 0.3);
   problem.solve(kEverything_rad);
   problem.fix_unobservable(kEverything_rad);
-  const Refinement result = problem.result(kEverything_rad);
+  const RigRefinement result = problem.result(kEverything_rad);
   for (const CameraRefinement& camera : result.cameras) {
     // Lines along the road look the same wherever along it the camera is.
     EXPECT_TRUE(camera.unobservable[kForward]);
