@@ -7,10 +7,15 @@ import time
 
 # Generous for emulation on a busy host: only a guest that hangs exceeds it.
 TIMEOUT_S = 600.0
+_READY = "agent ready"
 
 
 class LabError(Exception):
     """The lab itself failed, so the test says nothing about the daemon."""
+
+
+class GuestRestarted(LabError):
+    """The guest restarted while it ran a script. Its agent is ready again."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -27,13 +32,19 @@ class Agent:
         self._socket = connect_unix(socket_path)
         self._received = b""
         line = self._read_line(boot_timeout_s)
-        if line != "agent ready":
-            raise LabError(f"agent: found '{line}', wanted 'agent ready'")
+        if line != _READY:
+            raise LabError(f"agent: found '{line}', wanted '{_READY}'")
+
+    def close(self) -> None:
+        self._socket.close()
 
     def run(self, script: str, timeout_s: float = TIMEOUT_S) -> Reply:
         data = script.encode()
         self._socket.sendall(f"{len(data)}\n".encode() + data)
-        status, length, uptime_s = self._read_line(timeout_s).split()
+        line = self._read_line(timeout_s)
+        if line == _READY:
+            raise GuestRestarted("guest: restarted in a script")
+        status, length, uptime_s = line.split()
         output = self._read(int(length), timeout_s).decode(errors="replace")
         return Reply(int(status), output, float(uptime_s))
 

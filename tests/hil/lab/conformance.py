@@ -66,7 +66,7 @@ def _play(run: Run, suite: Suite) -> tuple[str, bool]:
     """Runs a suite and counts its passed cases. A skipped case does not count as passed."""
     log = suite.name.replace(" ", "-") + ".log"
     reply = run.agent.run(
-        f"/payload/bevloc-compliance {suite.options} --gtest_filter='{suite.filter}' "
+        f"/usr/bin/bevloc-compliance {suite.options} --gtest_filter='{suite.filter}' "
         f">{run.guest}/{log} 2>&1",
         TIMEOUT_S,
     )

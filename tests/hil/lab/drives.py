@@ -39,8 +39,8 @@ def drive(run: Run) -> Outcome:
     resident_mib = _resident_mib(run)
     run.agent.check("systemctl stop bevlocd")
     log = run.finish_log()
-    errors = _errors(run, log)
-    passed, judged = _judge(errors)
+    errors = errors_of(run, log)
+    passed, judged = judge_poses(errors)
     balanced, frames = _frames_balance(run)
     return Outcome(
         injected="nothing: a drive with six USB cameras",
@@ -57,7 +57,7 @@ def camera_garbage(run: Run) -> Outcome:
     broken_s, healed_s = _break_camera(run, "garbage", "heal", duration_s=8, settle_s=4)
     same_daemon = run.show("MainPID") == pid
     log = run.finish_log()
-    passed, judged = _judge(_errors(run, log))
+    passed, judged = judge_poses(errors_of(run, log))
     why = log.reasons(broken_s, healed_s)
     return Outcome(
         injected=f"noise and half frames from {NAMES[BROKEN_CAMERA]} for 8 s",
@@ -133,7 +133,7 @@ def _lose_camera(run: Run, fault: str, cure: str, max_framesets: int) -> Outcome
     all_ok = {name: "OK" for name in _camera_signals(log)}
     back_s = log.first_status(healed_s, **all_ok)
     tracking = log.first_status(healed_s, **all_ok, State="TRACKING") is not None
-    passed, judged = _judge(_errors(run, log))
+    passed, judged = judge_poses(errors_of(run, log))
     framesets = _framesets_between(run, broken_s, noticed_s) if noticed_s else None
     noticed = (
         f"DEGRADED after {framesets} framesets, {noticed_s - broken_s:.2f} s"
@@ -184,14 +184,16 @@ def _resident_mib(run: Run) -> float:
     return int(found[1]) / 1024
 
 
-def _errors(run: Run, log: BusLog) -> list[PoseError]:
+def errors_of(run: Run, log: BusLog) -> list[PoseError]:
+    """Returns the errors of all valid poses of the drive."""
     truth = Truth(run.bench.folders.pictures / "truth.csv")
     start_s = run.drive_start().wall_s
     errors = (truth.error_of(pose, start_s) for pose in log.valid_poses())
     return [error for error in errors if error]
 
 
-def _judge(errors: list[PoseError]) -> tuple[bool, str]:
+def judge_poses(errors: list[PoseError]) -> tuple[bool, str]:
+    """Returns whether the errors are within the limits, and says what they are."""
     if not errors:
         return False, "no valid pose"
     longitudinal = [error.longitudinal_m for error in errors]

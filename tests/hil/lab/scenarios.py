@@ -4,7 +4,7 @@ import dataclasses
 import math
 from collections.abc import Callable
 
-from tests.hil.lab import conformance, devices, drives, tools
+from tests.hil.lab import bring_up, conformance, devices, drives, tools
 from tests.hil.lab.bench import IGNITION_PULL, Run
 from tests.hil.lab.outcome import Outcome
 
@@ -139,6 +139,7 @@ SCENARIOS = {
     "devices": Scenario(devices.devices, needs_usb=False),
     "conformance": Scenario(conformance.conformance, needs_usb=False),
     "tools": Scenario(tools.tools, needs_usb=True),
+    "bring-up": Scenario(bring_up.bring_up, needs_usb=True),
     "drive": Scenario(drives.drive, needs_usb=True),
     "unplug-camera": Scenario(drives.unplug_camera, needs_usb=True),
     "freeze-camera": Scenario(drives.freeze_camera, needs_usb=True),
