@@ -79,9 +79,7 @@ class Machine:
 
     def cut_power(self) -> None:
         self._processes.kill()
-        if self._agent is not None:
-            self._agent.close()
-        self._agent = None
+        self._forget_agent()
 
     def _save_journal(self, agent: Agent) -> None:
         try:
@@ -100,10 +98,9 @@ class Machine:
     def restart(self) -> None:
         """Restarts the guest; its agent will say again that it is ready."""
         self.agent.check("systemctl --no-block reboot")
-        self.expect_restart()
+        self._forget_agent()
 
-    def expect_restart(self) -> None:
-        """To be called when the guest restarts by itself, before its agent starts again."""
+    def _forget_agent(self) -> None:
         if self._agent is not None:
             self._agent.close()
         self._agent = None
