@@ -16,8 +16,8 @@
 namespace bevloc::firmware {
 
 /// The vision thread hands over what was learned, at most once in kPeriod, and never waits. Another
-/// thread writes it if it differs from what was written last. While a camera is out of place, what
-/// was known at the start is kept, because that camera has pulled the estimates of the others since
+/// thread writes it if it differs from what was written last. While a camera is out of place, the
+/// file keeps what was known at the start: that camera changed the estimates of the other cameras
 /// before it was found.
 ///
 /// Threads: note() from the vision thread, write_next() from one other thread, close() from any

@@ -42,7 +42,7 @@ class Realtime {
 void name_this_thread(const std::string& name);
 
 /// Names the calling thread and gives it the lowest priority of the normal scheduler, so that it
-/// slows no stage down. A refusal only makes the thread less polite.
+/// slows no stage down. If the kernel refuses, the thread keeps its priority.
 void begin_low_thread(const std::string& name);
 
 }  // namespace bevloc::firmware

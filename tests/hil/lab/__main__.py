@@ -1,13 +1,15 @@
 """The program behind script/hil: boots the guest once and plays scenarios in it."""
 
 import argparse
+import functools
 import pathlib
 import signal
 import sys
 
 from tests.hil.lab.agent import LabError
 from tests.hil.lab.bench import Bench, Folders, Run
-from tests.hil.lab.outcome import Outcome, row, table
+from tests.hil.lab.outcome import Outcome
+from tests.hil.lab.program import play, report, run
 from tests.hil.lab.scenarios import SCENARIOS
 
 
@@ -21,14 +23,10 @@ def main() -> int:
     with Bench(folders, arguments.driver) as bench:
         print("lab: the guest is up", flush=True)
         for name in arguments.names:
-            outcomes[name] = _play(bench, name)
-            print(f"lab: {row(name, outcomes[name])}", flush=True)
+            outcomes[name] = play(name, functools.partial(_play, bench, name))
         if arguments.keep:
             _talk(bench)
-    text = table(outcomes)
-    (folders.results / "table.md").write_text(text + "\n", encoding="utf-8")
-    print(text)
-    return 0 if all(outcome.passed for outcome in outcomes.values()) else 1
+    return report(outcomes, folders.results)
 
 
 def _arguments() -> argparse.Namespace:
@@ -55,11 +53,8 @@ def _arguments() -> argparse.Namespace:
 
 
 def _play(bench: Bench, name: str) -> Outcome:
-    try:
-        with Run(bench, name) as run:
-            return SCENARIOS[name].play(run)
-    except LabError as error:
-        return Outcome("-", str(error).strip().replace("\n", " / "), None, False)
+    with Run(bench, name) as scenario:
+        return SCENARIOS[name].play(scenario)
 
 
 def _talk(bench: Bench) -> None:
@@ -75,8 +70,4 @@ def _talk(bench: Bench) -> None:
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except LabError as error:
-        print(f"lab: {error}", file=sys.stderr)
-        sys.exit(1)
+    run(main)

@@ -124,6 +124,14 @@ class DriveStart:
     monotonic_s: float
 
 
+def drive_start_of(vehicle_log: str) -> DriveStart:
+    """Reads the start of the drive from what vehicle_can has printed."""
+    found = re.search(r"drive_start ([\d.]+) ([\d.]+)", vehicle_log)
+    if not found:
+        raise LabError(f"vehicle.log: found '{vehicle_log}', wanted drive_start")
+    return DriveStart(float(found[1]), float(found[2]))
+
+
 class Run:
     """One scenario: its bus log, daemon, vehicle and results."""
 
@@ -194,11 +202,7 @@ class Run:
         )
 
     def drive_start(self) -> DriveStart:
-        text = (self.folder / "vehicle.log").read_text()
-        found = re.search(r"drive_start ([\d.]+) ([\d.]+)", text)
-        if not found:
-            raise LabError(f"vehicle.log: found '{text}', wanted drive_start")
-        return DriveStart(float(found[1]), float(found[2]))
+        return drive_start_of((self.folder / "vehicle.log").read_text())
 
     def show(self, name: str) -> str:
         """Returns a property of the daemon's unit."""

@@ -187,9 +187,7 @@ def _resident_mib(run: Run) -> float:
 def errors_of(run: Run, log: BusLog) -> list[PoseError]:
     """Returns the errors of all valid poses of the drive."""
     truth = Truth(run.bench.folders.pictures / "truth.csv")
-    start_s = run.drive_start().wall_s
-    errors = (truth.error_of(pose, start_s) for pose in log.valid_poses())
-    return [error for error in errors if error]
+    return truth.errors_of(log.valid_poses(), run.drive_start().wall_s)
 
 
 def judge_poses(errors: list[PoseError]) -> tuple[bool, str]:

@@ -130,6 +130,11 @@ class Truth:
             math.degrees(_wrapped(pose.yaw_rad - yaw_rad)),
         )
 
+    def errors_of(self, poses: list[Pose], drive_start_s: float) -> list[PoseError]:
+        """Returns the errors of the poses during the drive."""
+        errors = (self.error_of(pose, drive_start_s) for pose in poses)
+        return [error for error in errors if error]
+
 
 def quantile(values: list[float], share: float) -> float:
     """Quantile of the absolute values."""

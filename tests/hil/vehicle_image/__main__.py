@@ -1,6 +1,7 @@
 """The program behind script/try-image: makes the vehicle's disk and plays scenarios with it."""
 
 import argparse
+import functools
 import pathlib
 import re
 import shutil
@@ -8,8 +9,8 @@ import signal
 import subprocess
 import sys
 
-from tests.hil.lab.agent import LabError
-from tests.hil.lab.outcome import Outcome, row, table
+from tests.hil.lab.outcome import Outcome
+from tests.hil.lab.program import play, report, run
 from tests.hil.lab.qemu import KERNEL_OPTIONS
 from tests.hil.vehicle_image.disk import Disk
 from tests.hil.vehicle_image.machine import Parts
@@ -43,15 +44,9 @@ def main() -> int:
         parts = Parts(
             Disk(used), cameras, arguments.pictures, results / name, repositories.folder
         )
-        try:
-            outcomes[name] = SCENARIOS[name](parts, arguments.cuts, arguments.seed)
-        except LabError as error:
-            outcomes[name] = Outcome("-", str(error).strip().replace("\n", " / "), None, False)
-        print(f"lab: {row(name, outcomes[name])}", flush=True)
-    text = table(outcomes)
-    (results / "table.md").write_text(text + "\n", encoding="utf-8")
-    print(text)
-    return 0 if all(outcome.passed for outcome in outcomes.values()) else 1
+        scenario = functools.partial(SCENARIOS[name], parts, arguments.cuts, arguments.seed)
+        outcomes[name] = play(name, scenario)
+    return report(outcomes, results)
 
 
 def _arguments() -> argparse.Namespace:
@@ -108,8 +103,4 @@ def _copy_libraries(program: pathlib.Path, folder: pathlib.Path) -> None:
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except LabError as error:
-        print(f"lab: {error}", file=sys.stderr)
-        sys.exit(1)
+    run(main)

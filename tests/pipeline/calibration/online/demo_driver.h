@@ -12,7 +12,7 @@ inline MatchResult clear_match() {
   return match;
 }
 
-/// Drives past the same road with true extrinsics that differ by `errors`.
+/// Drives along the same road. The true extrinsics differ from the nominal ones by `errors`.
 class DemoDriver {
  public:
   explicit DemoDriver(const OnlineCalibrationOptions& options = {})
