@@ -28,7 +28,10 @@ _TICKS_PER_S = 1e9
 _DRIVE_TIMEOUT_S = 900.0
 _DRIVE_ENDED = "[ $(systemctl show lab-vehicle --value -p ActiveState) = inactive ]"
 # Files that were there before this start.
-_SETTLED = "cd /var/lib/bevloc && find . -type f ! -newer /run/candump.log -printf '%s %P\\n'"
+_SETTLED = """
+    started=$(sed -n 's/^btime //p' /proc/stat)
+    cd /var/lib/bevloc && find . -type f ! -newermt @$started -printf '%s %P\\n'
+"""
 
 
 def start(parts: Parts, _: int, __: int) -> Outcome:
