@@ -28,7 +28,8 @@ struct HealthLimits {
   double lateral_sigma_m = 0.30;
   double yaw_sigma_rad = radians(0.75);
   /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert
-  /// limits of a freeway. A new pose becomes valid only if its error is well within them.
+  /// limits of a freeway. A new pose becomes valid only if its error is well within them, and a
+  /// pose without matches stays valid only while its protection level is.
   Eigen::Vector3d alert_limit = kFreewayAlertLimits;
   /// For the protection levels that are sent with the pose.
   ProtectionParameters protection;
@@ -59,6 +60,8 @@ struct HealthInputs {
   double longitudinal_sigma_m = 0.0;
   double lateral_sigma_m = 0.0;
   double yaw_sigma_rad = 0.0;
+  /// Of the pose: (longitudinal m, lateral m, yaw rad).
+  Eigen::Vector3d protection_level = Eigen::Vector3d::Zero();
   bool stamps_contradict = false;  ///< camera stamps and yaw rate disagree (StampMonitor)
   bool network_fault = false;      ///< the network failed its check (VisionStage)
   bool internal_error = false;     ///< the pose or its covariance is not finite
@@ -85,7 +88,9 @@ class Health {
   WhyMask find_reasons(const HealthInputs& inputs) const;
   HealthState next_state(const HealthInputs& inputs) const;
   bool is_lost(const HealthInputs& inputs) const;
+  bool is_stale(const HealthInputs& inputs) const;
   bool is_too_uncertain(const HealthInputs& inputs) const;
+  bool is_unprotected(const HealthInputs& inputs) const;
   // What a new pose needs to become valid.
   bool has_enough_matches(const HealthInputs& inputs) const;
   bool is_within_alert_limits(const HealthInputs& inputs) const;

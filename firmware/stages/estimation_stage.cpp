@@ -214,7 +214,10 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
   inputs.foreign_sender = vehicle_input.has(Why::kForeignSender);
   inputs.gnss_confirms = estimator_.gnss_confirms();
   inputs.clock_gap = clock_gap_;
-  if (pose) add_uncertainty(*pose, inputs);
+  if (pose) {
+    add_uncertainty(*pose, inputs);
+    inputs.protection_level = protection_;
+  }
   return inputs;
 }
 

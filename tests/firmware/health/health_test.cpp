@@ -40,6 +40,35 @@ TEST(HealthTest, CamerasOutOfStepDegrade) {
   EXPECT_EQ(health.why(), WhyMask(Why::kCamerasUnsynchronized));
 }
 
+/// Without matches for `age`, with these protection levels across and of heading.
+HealthInputs unmatched(Duration age, double across_m, double heading_rad) {
+  HealthInputs inputs = healthy();
+  inputs.correction_age = age;
+  inputs.protection_level = {0.0, across_m, heading_rad};
+  return inputs;
+}
+
+TEST(HealthTest, LosesAPoseWithoutMatchesWhoseProtectionLevelIsBeyondTheAlertLimit) {
+  const Eigen::Vector3d limit = HealthLimits().alert_limit;
+  for (const auto& inputs : {unmatched(milliseconds(3001), limit.y() + 0.01, 0.0),
+                             unmatched(milliseconds(3001), 0.0, limit.z() + 0.001)}) {
+    Health health = tracking();
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kLost);
+    EXPECT_TRUE(health.why().has(Why::kPoseUncertain));
+  }
+}
+
+TEST(HealthTest, KeepsAPoseWithoutMatchesWithinTheAlertLimits) {
+  const Eigen::Vector3d limit = HealthLimits().alert_limit;
+  for (const auto& inputs : {unmatched(milliseconds(3001), limit.y() - 0.01, limit.z() - 0.001),
+                             unmatched(milliseconds(2999), limit.y() + 0.01, 0.0)}) {
+    Health health = tracking();
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kDegraded);
+  }
+}
+
 TEST(HealthTest, StaysInInitWithoutAFirstPose) {
   Health health{HealthLimits()};
   EXPECT_FALSE(health.update(HealthInputs()));
