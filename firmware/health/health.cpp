@@ -7,8 +7,8 @@ namespace {
 
 /// A new pose becomes valid only if this many standard deviations lie within the alert limits.
 constexpr double kSigmasToTrack = 4.0;
-/// After this time without a match, the protection levels across and of heading must lie within the
-/// alert limits. Matches that see nothing for a shorter time are usual.
+/// Dead reckoning alone is trusted for this long. A fault-free drive often has no match that
+/// confirms the pose for a shorter time.
 constexpr Duration kTrustedDeadReckoning = std::chrono::seconds(3);
 
 }  // namespace
@@ -42,7 +42,7 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
   set_if(Why::kMatchRejected, inputs.latest_correction_refused);
   set_if(Why::kPoseUncertain,
          is_too_uncertain(inputs) || (!pose_valid() && !is_within_alert_limits(inputs)));
-  set_if(Why::kPoseStale, is_stale(inputs));
+  set_if(Why::kPoseStale, inputs.correction_age > limits_.correction_timeout);
   set_if(Why::kOverload, inputs.overloaded);
   set_if(Why::kNetworkFault, inputs.network_fault);
   set_if(Why::kCalibrationFault, inputs.calibration_fault || inputs.stamps_contradict);
@@ -60,10 +60,6 @@ bool Health::is_lost(const HealthInputs& inputs) const {
          inputs.correction_age > limits_.lost_timeout;
 }
 
-bool Health::is_stale(const HealthInputs& inputs) const {
-  return inputs.correction_age > limits_.correction_timeout;
-}
-
 bool Health::is_too_uncertain(const HealthInputs& inputs) const {
   return is_unprotected(inputs) || inputs.longitudinal_sigma_m > limits_.longitudinal_sigma_m ||
          inputs.lateral_sigma_m > limits_.lateral_sigma_m ||
@@ -72,8 +68,9 @@ bool Health::is_too_uncertain(const HealthInputs& inputs) const {
 
 /// Dead reckoning alone may be wrong by its whole protection level.
 bool Health::is_unprotected(const HealthInputs& inputs) const {
-  const auto within = inputs.protection_level.array() <= limits_.alert_limit.array();
-  return inputs.correction_age > kTrustedDeadReckoning && !within.tail<2>().all();
+  return inputs.correction_age > kTrustedDeadReckoning &&
+         (inputs.protection_level.y() > limits_.alert_limit.y() ||
+          inputs.protection_level.z() > limits_.alert_limit.z());
 }
 
 bool Health::has_enough_matches(const HealthInputs& inputs) const {

@@ -28,8 +28,8 @@ struct HealthLimits {
   double lateral_sigma_m = 0.30;
   double yaw_sigma_rad = radians(0.75);
   /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert
-  /// limits of a freeway. A new pose becomes valid only if its error is well within them, and a
-  /// pose without matches stays valid only while its protection level is.
+  /// limits of a freeway. A new pose becomes valid only if its error is well within them. After 3 s
+  /// without a match, the pose is lost if its protection level across or of heading exceeds them.
   Eigen::Vector3d alert_limit = kFreewayAlertLimits;
   /// For the protection levels that are sent with the pose.
   ProtectionParameters protection;
@@ -88,7 +88,6 @@ class Health {
   WhyMask find_reasons(const HealthInputs& inputs) const;
   HealthState next_state(const HealthInputs& inputs) const;
   bool is_lost(const HealthInputs& inputs) const;
-  bool is_stale(const HealthInputs& inputs) const;
   bool is_too_uncertain(const HealthInputs& inputs) const;
   bool is_unprotected(const HealthInputs& inputs) const;
   // What a new pose needs to become valid.

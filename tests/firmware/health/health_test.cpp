@@ -40,7 +40,7 @@ TEST(HealthTest, CamerasOutOfStepDegrade) {
   EXPECT_EQ(health.why(), WhyMask(Why::kCamerasUnsynchronized));
 }
 
-/// Without matches for `age`, with these protection levels across and of heading.
+/// No match has confirmed the pose for `age`. It has these protection levels.
 HealthInputs unmatched(Duration age, double across_m, double heading_rad) {
   HealthInputs inputs = healthy();
   inputs.correction_age = age;
