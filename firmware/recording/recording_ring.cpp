@@ -1,6 +1,7 @@
 #include "firmware/recording/recording_ring.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <ctime>
 #include <vector>
 
@@ -25,24 +26,39 @@ std::string file_name(uint64_t log_time_ns, int number) {
                      utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, number);
 }
 
+/// The log time in such a name, which begins with kPrefix. Nothing if a user has chosen the rest.
+std::optional<uint64_t> log_time_in(const std::string& file_name) {
+  std::tm utc{};
+  int length = 0;
+  std::sscanf(file_name.c_str() + kPrefix.size(), "%4d%2d%2dT%2d%2d%2dZ-%n", &utc.tm_year,
+              &utc.tm_mon, &utc.tm_mday, &utc.tm_hour, &utc.tm_min, &utc.tm_sec, &length);
+  utc.tm_year -= 1900;
+  utc.tm_mon -= 1;
+  const time_t seconds = timegm(&utc);
+  if (length == 0 || seconds < 0) return std::nullopt;
+  return static_cast<uint64_t>(seconds) * kLogSecond_ns;
+}
+
 struct Listed {
   fs::path path;
   uint64_t bytes = 0;
-  fs::file_time_type changed;
 };
 
-/// The recordings of a folder, oldest first.
-std::vector<Listed> list_recordings(const fs::path& folder) {
+/// The recordings of a folder in the order in which they are to be deleted: `newest` is last. Files
+/// of the future are of a run whose clock was wrong, and come first; then the oldest.
+std::vector<Listed> list_recordings(const fs::path& folder, const fs::path& newest) {
   std::vector<Listed> files;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(kPrefix) || entry.path().extension() != ".mcap") continue;
     std::error_code gone;
-    const Listed listed{entry.path(), entry.file_size(gone), entry.last_write_time(gone)};
+    const Listed listed{entry.path(), entry.file_size(gone)};
     if (!gone) files.push_back(listed);
   }
   std::ranges::sort(files, {}, &Listed::path);
+  const auto future = std::ranges::upper_bound(files, folder / newest, {}, &Listed::path);
+  std::rotate(files.begin(), future, files.end());
   return files;
 }
 
@@ -83,16 +99,19 @@ Status RecordingRing::begin_file(uint64_t log_time_ns) {
   return {};
 }
 
-/// Deletes by the clock of the machine, because files may be of an earlier run.
+/// The age of a file counts from the time in its name. The time of its last change would be wrong
+/// after the wall clock was set, which does not change log times.
 void RecordingRing::delete_old(uint64_t log_time_ns) const {
-  std::vector<Listed> files = list_recordings(config_.directory);
+  const fs::path& newest = recent_.back().path;
+  const std::vector<Listed> files = list_recordings(config_.directory, newest.filename());
   uint64_t total = 0;
   for (const Listed& file : files) total += file.bytes;
-  const auto now = fs::file_time_type::clock::from_sys(
-      std::chrono::sys_time<Duration>(Duration(static_cast<int64_t>(log_time_ns))));
+  const auto longest = static_cast<uint64_t>(config_.max_age.count());
   for (const Listed& file : files) {
-    if (file.path == recent_.back().path) break;
-    if (total <= config_.max_bytes && now - file.changed <= config_.max_age) continue;
+    if (file.path == newest) break;
+    const auto begin_ns = log_time_in(file.path.filename().string());
+    const bool is_old = begin_ns && *begin_ns + longest < log_time_ns;
+    if (total <= config_.max_bytes && !is_old) continue;
     remove_file(file.path);
     total -= file.bytes;
   }
@@ -128,10 +147,11 @@ Result<fs::path> RecordingRing::keep(uint64_t log_time_ns) {
                   file.path.string(), folder.string(), error.message());
     }
   }
-  std::vector<Listed> kept = list_recordings(folder);
+  const fs::path newest = recent_.back().path.filename();
+  const std::vector<Listed> kept = list_recordings(folder, newest);
   const auto most = static_cast<size_t>(config_.black_box_files);
   for (size_t i = 0; i + most < kept.size(); ++i) remove_file(kept[i].path);
-  return folder / recent_.back().path.filename();
+  return folder / newest;
 }
 
 }  // namespace bevloc::firmware

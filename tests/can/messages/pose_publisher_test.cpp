@@ -171,18 +171,18 @@ TEST_F(PosePublisherTest, EachReasonHasItsFlag) {
   }
 }
 
-/// A reader adds CaptureTime and UtcOffset modulo 2^32 us.
+/// A reader adds CaptureTime and UtcOffset modulo 2^32 us. 32 bits of seconds end in 2038.
 TEST_F(PosePublisherTest, AReaderKnowsTheCaptureTimeInUtc) {
+  constexpr Duration kIn2040 = seconds(2'224'540'800) + microseconds(123'456);
   with_clock_.emplace(*sender_, PosePublisherConfig{.map_origin = kOrigin, .sends_clock = true});
   PoseReport report = tracking_report(kNow);
-  report.clock = {.source = TimeSource::kPtp,
-                  .utc_offset = seconds(1'795'472'500) + microseconds(123'456),
-                  .utc_error = microseconds(1234)};
+  report.clock = {
+      .source = TimeSource::kPtp, .utc_offset = kIn2040, .utc_error = microseconds(1234)};
   publish(report, kNow);
   const auto utc_us = static_cast<uint64_t>(value("LOC_Time", "CaptureTime")) +
                       static_cast<uint64_t>(value("LOC_Clock", "UtcOffset"));
-  const auto expected = std::chrono::floor<microseconds>(report.capture_time->time_since_epoch()) +
-                        seconds(1'795'472'500) + microseconds(123'456);
+  const auto expected =
+      std::chrono::floor<microseconds>(report.capture_time->time_since_epoch() + kIn2040);
   EXPECT_EQ(static_cast<uint32_t>(utc_us), static_cast<uint32_t>(expected.count()));
   EXPECT_NEAR(value("LOC_Clock", "UtcError"), 1.24, 1e-9) << "rounded up";
 

@@ -1,6 +1,8 @@
 // The recorder: bounded queues and files, the black box, and a disk that refuses.
 #include "firmware/recording/recorder.h"
 
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "common/mcap/reader.h"
@@ -14,7 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Duration kOffset = std::chrono::hours(24 * 365 * 50);
+/// The start of the clock in UTC: 32 bits of seconds end in 2038.
+constexpr Duration kOffset =
+    std::chrono::sys_days(std::chrono::year(2040) / 3 / 1).time_since_epoch();
 
 class RecorderTest : public testing::Test {
  protected:
@@ -41,6 +45,14 @@ class RecorderTest : public testing::Test {
     drivers::FrameBuffer buffer = pool_->borrow();
     std::ranges::fill(pool_->image(buffer).pixels, static_cast<uint8_t>(sequence));
     return {0, time, sequence, std::chrono::milliseconds(8), std::move(buffer)};
+  }
+
+  /// A file of an earlier run.
+  fs::path leave(const std::string& name, size_t bytes) const {
+    const fs::path path = config_.directory / name;
+    fs::create_directories(path.parent_path());
+    std::ofstream(path) << std::string(bytes, 'x');
+    return path;
   }
 
   static size_t files_in(const fs::path& folder) {
@@ -84,6 +96,11 @@ TEST_F(RecorderTest, ImagesKeepTheirPixelsAndTimes) {
   EXPECT_EQ(image.sequence(), 42U);
   EXPECT_EQ(image.exposure_ns(), 8'000'000);
   EXPECT_EQ(image.data(), std::string(16 * 8 * 3, '\x2a'));
+}
+
+TEST_F(RecorderTest, NamesAFileByTheTimeInUtcAlsoAfter2038) {
+  open()->finish(Time{});
+  EXPECT_EQ(first_in(config_.directory).filename(), "bevloc-20400301T000000Z-0001.mcap");
 }
 
 TEST_F(RecorderTest, ImagesThatFindNoMemoryAreDroppedAndCounted) {
@@ -147,6 +164,27 @@ TEST_F(RecorderTest, TheRingDeletesItsOldestFiles) {
   EXPECT_GT(files_in(config_.directory), 5U);
 }
 
+TEST_F(RecorderTest, AgeCountsFromTheTimeInTheName) {
+  config_.max_age = std::chrono::hours(24 * 7);
+  for (const char* date : {"20400222", "20400224", "20500101", "garbage!"}) {
+    leave("bevloc-" + std::string(date) + "T000000Z-0001.mcap", 10);
+  }
+  open()->finish(Time{});
+  EXPECT_FALSE(fs::exists(config_.directory / "bevloc-20400222T000000Z-0001.mcap")) << "8 days";
+  EXPECT_TRUE(fs::exists(config_.directory / "bevloc-20400224T000000Z-0001.mcap")) << "6 days";
+  EXPECT_TRUE(fs::exists(config_.directory / "bevloc-20500101T000000Z-0001.mcap"));
+  EXPECT_TRUE(fs::exists(config_.directory / "bevloc-garbage!T000000Z-0001.mcap"));
+}
+
+TEST_F(RecorderTest, AFullRingDeletesFilesOfTheFutureFirst) {
+  const fs::path before = leave("bevloc-20400224T000000Z-0001.mcap", 60'000);
+  const fs::path future = leave("bevloc-20500101T000000Z-0001.mcap", 60'000);
+  config_.max_bytes = 100'000;
+  open()->finish(Time{});
+  EXPECT_TRUE(fs::exists(before));
+  EXPECT_FALSE(fs::exists(future));
+}
+
 TEST_F(RecorderTest, LostKeepsTheLastMinute) {
   config_.file_length = std::chrono::seconds(30);
   const auto recorder = open();
@@ -167,6 +205,20 @@ TEST_F(RecorderTest, LostKeepsTheLastMinute) {
   const auto kept = mcap::Reader::open(first_in(config_.directory / "kept"));
   ASSERT_TRUE(kept);
   EXPECT_TRUE(kept->complete());
+}
+
+TEST_F(RecorderTest, AFullBlackBoxKeepsTheNewestFileBesideFilesOfTheFuture) {
+  config_.black_box_files = 2;
+  for (const char* date : {"20500101", "20500102"}) {
+    leave("kept/bevloc-" + std::string(date) + "T000000Z-0001.mcap", 10);
+  }
+  const auto recorder = open();
+  for (const auto state : {HealthState::kTracking, HealthState::kLost}) {
+    recorder->note_solution(report(state, Time{}));
+    recorder->write_queued(Time{});
+  }
+  EXPECT_TRUE(fs::exists(config_.directory / "kept/bevloc-20400301T000000Z-0001.mcap"));
+  EXPECT_EQ(files_in(config_.directory / "kept"), 2U);
 }
 
 TEST_F(RecorderTest, AFolderThatCannotBeMadeIsRefused) {
