@@ -26,7 +26,8 @@ std::string file_name(uint64_t log_time_ns, int number) {
                      utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, number);
 }
 
-/// The log time in such a name, which begins with kPrefix. Nothing if a user has chosen the rest.
+/// Reads the log time from such a name, which must begin with kPrefix. Returns nothing if no time
+/// follows.
 std::optional<uint64_t> log_time_in(const std::string& file_name) {
   std::tm utc{};
   int length = 0;
@@ -44,12 +45,13 @@ struct Listed {
   uint64_t bytes = 0;
 };
 
-/// The recordings of a folder in the order in which they are to be deleted: `newest` is last. Files
-/// of the future are of a run whose clock was wrong, and come first; then the oldest.
-std::vector<Listed> list_recordings(const fs::path& folder, const fs::path& newest) {
+/// Lists the recordings in the folder of `newest` in the order of deletion. Files with a later time
+/// come first, because the clock was wrong when they were written. The others follow, oldest first,
+/// and `newest` is last.
+std::vector<Listed> list_recordings(const fs::path& newest) {
   std::vector<Listed> files;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
+  for (const auto& entry : fs::directory_iterator(newest.parent_path(), error)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(kPrefix) || entry.path().extension() != ".mcap") continue;
     std::error_code gone;
@@ -57,8 +59,8 @@ std::vector<Listed> list_recordings(const fs::path& folder, const fs::path& newe
     if (!gone) files.push_back(listed);
   }
   std::ranges::sort(files, {}, &Listed::path);
-  const auto future = std::ranges::upper_bound(files, folder / newest, {}, &Listed::path);
-  std::rotate(files.begin(), future, files.end());
+  const auto later = std::ranges::upper_bound(files, newest, {}, &Listed::path);
+  std::rotate(files.begin(), later, files.end());
   return files;
 }
 
@@ -99,11 +101,11 @@ Status RecordingRing::begin_file(uint64_t log_time_ns) {
   return {};
 }
 
-/// The age of a file counts from the time in its name. The time of its last change would be wrong
-/// after the wall clock was set, which does not change log times.
+/// Takes the age of a file from the time in its name, which is a log time. The time of its last
+/// change comes from the wall clock, which may be set during a drive.
 void RecordingRing::delete_old(uint64_t log_time_ns) const {
   const fs::path& newest = recent_.back().path;
-  const std::vector<Listed> files = list_recordings(config_.directory, newest.filename());
+  const std::vector<Listed> files = list_recordings(newest);
   uint64_t total = 0;
   for (const Listed& file : files) total += file.bytes;
   const auto longest = static_cast<uint64_t>(config_.max_age.count());
@@ -147,11 +149,11 @@ Result<fs::path> RecordingRing::keep(uint64_t log_time_ns) {
                   file.path.string(), folder.string(), error.message());
     }
   }
-  const fs::path newest = recent_.back().path.filename();
-  const std::vector<Listed> kept = list_recordings(folder, newest);
+  fs::path newest = folder / recent_.back().path.filename();
+  const std::vector<Listed> kept = list_recordings(newest);
   const auto most = static_cast<size_t>(config_.black_box_files);
   for (size_t i = 0; i + most < kept.size(); ++i) remove_file(kept[i].path);
-  return folder / newest;
+  return newest;
 }
 
 }  // namespace bevloc::firmware

@@ -171,7 +171,8 @@ TEST_F(PosePublisherTest, EachReasonHasItsFlag) {
   }
 }
 
-/// A reader adds CaptureTime and UtcOffset modulo 2^32 us. 32 bits of seconds end in 2038.
+/// A reader adds CaptureTime and UtcOffset modulo 2^32 us. The date lies after 2038, when 32 bits
+/// of seconds overflow.
 TEST_F(PosePublisherTest, AReaderKnowsTheCaptureTimeInUtc) {
   constexpr Duration kIn2040 = seconds(2'224'540'800) + microseconds(123'456);
   with_clock_.emplace(*sender_, PosePublisherConfig{.map_origin = kOrigin, .sends_clock = true});

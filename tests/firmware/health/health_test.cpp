@@ -40,7 +40,8 @@ TEST(HealthTest, CamerasOutOfStepDegrade) {
   EXPECT_EQ(health.why(), WhyMask(Why::kCamerasUnsynchronized));
 }
 
-/// No match has confirmed the pose for `age`. It has these protection levels.
+/// Returns the inputs for a pose that no match has confirmed for `age`, with these protection
+/// levels.
 HealthInputs unmatched(Duration age, double across_m, double heading_rad) {
   HealthInputs inputs = healthy();
   inputs.correction_age = age;

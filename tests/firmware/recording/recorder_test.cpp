@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The start of the clock in UTC: 32 bits of seconds end in 2038.
+/// The log time when the clock is zero. It lies after 2038, when 32 bits of seconds overflow.
 constexpr Duration kOffset =
     std::chrono::sys_days(std::chrono::year(2040) / 3 / 1).time_since_epoch();
 
@@ -207,7 +207,7 @@ TEST_F(RecorderTest, LostKeepsTheLastMinute) {
   EXPECT_TRUE(kept->complete());
 }
 
-TEST_F(RecorderTest, AFullBlackBoxKeepsTheNewestFileBesideFilesOfTheFuture) {
+TEST_F(RecorderTest, AFullBlackBoxDeletesFilesOfTheFutureFirst) {
   config_.black_box_files = 2;
   for (const char* date : {"20500101", "20500102"}) {
     leave("kept/bevloc-" + std::string(date) + "T000000Z-0001.mcap", 10);
