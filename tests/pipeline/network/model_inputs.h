@@ -1,5 +1,5 @@
-// Pseudo-random inputs for the test models, equal to those of make_fixtures.py, and the files of
-// the models.
+// Pseudo-random inputs for the test models, equal to those of fixture_models/pseudo_random.py, and
+// the files of the models.
 #pragma once
 
 #include <cstdint>
@@ -47,6 +47,11 @@ inline ViewTable view_table(int cells, int keys) {
     table.weight.push_back(unused ? 0.0F : static_cast<float>((h >> 8) & 127) / 1024.0F);
   }
   return table;
+}
+
+/// A pseudo-random table for the grid and the cameras of a whole network.
+inline ViewTable network_view_table() {
+  return view_table(kFeatureGrid.cells(), kCameraCount * kImageFeatureCells);
 }
 
 /// The path of a file in fixtures/.

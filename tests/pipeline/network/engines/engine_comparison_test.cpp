@@ -106,8 +106,7 @@ class EngineComparison : public ::testing::TestWithParam<std::string> {
 TEST_P(EngineComparison, OnRandomInput) {
   for (uint32_t seed = 1; seed < 4; ++seed) {
     for (const auto& network : networks_) {
-      network->set_view_table(
-          test::view_table(kFeatureGrid.cells(), kCameraCount * kImageFeatureCells));
+      network->set_view_table(test::network_view_table());
       test::fill_input(network->image_input(), seed);
       test::fill_input(network->raster_input(), seed + 100);
     }
