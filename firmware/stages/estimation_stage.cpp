@@ -65,6 +65,8 @@ void EstimationStage::tick(Time now) {
   estimator_.judge(now, health_.pose_valid());
   note_map_offset();
   const auto pose = estimator_.pose_at(now);
+  // Matches say nothing about the pose with which the estimator will start again.
+  if (!pose) forget_matches();
   if (pose) protection_ = estimator_.protection_of(*pose, protection_parameters_);
   update_health(pose, now);
   note_pose(pose);
@@ -86,10 +88,14 @@ void EstimationStage::note_clock_gap(Duration) {
   last_tick_.reset();
   odometry_time_.reset();
   gnss_time_.reset();
+  latest_report_.reset();
+  forget_matches();
+}
+
+void EstimationStage::forget_matches() {
   accepted_frame_time_.reset();
   confirmed_time_.reset();
   unsent_correction_.reset();
-  latest_report_.reset();
   accepted_in_a_row_ = 0;
   refused_in_a_row_ = 0;
 }

@@ -90,6 +90,7 @@ class EstimationStage {
   void compare_heading(const VisionReport& report);
   void note_map_offset();
   void watch_clock(Time now);
+  void forget_matches();
   HealthInputs health_inputs(const std::optional<TrackedPose>& pose, Time now) const;
   void update_health(const std::optional<TrackedPose>& pose, Time now);
   void note_pose(const std::optional<TrackedPose>& pose);

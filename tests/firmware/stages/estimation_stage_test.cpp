@@ -32,7 +32,7 @@ class EstimationStageTest : public testing::Test {
       if (now_.time_since_epoch() % milliseconds(100) == Duration::zero()) {
         const Se2 truth = truth_at(now_);
         samples_.push(
-            GnssSample{now_, truth.x_m, truth.y_m + 1.0, 1.0, 1.0, GnssSample::Yaw{0.0, 0.02}});
+            GnssSample{now_, truth.x_m, truth.y_m + gnss_north_m_, 1.0, 1.0, GnssSample::Yaw{0.0, 0.02}});
         if (vision_) push_report(now_ - milliseconds(40));
       }
       stage_.tick(now_);
@@ -72,6 +72,7 @@ class EstimationStageTest : public testing::Test {
   evaluation::PoseReader reader_{{}, kOrigin};
   Time now_{milliseconds(1000)};
   Se2 vision_error_;
+  double gnss_north_m_ = 1.0;
   bool odometry_ = true;
   bool vision_ = true;
   bool skipped_ = false;
@@ -162,6 +163,26 @@ TEST_F(EstimationStageTest, RecoversFromAWrongMatchWhileAcquiring) {
   const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
   EXPECT_NEAR(error.x_m, 0.0, 0.1);
   EXPECT_NEAR(error.y_m, 0.0, 0.1);
+}
+
+TEST_F(EstimationStageTest, APoseThatStartedAgainNeedsNewMatches) {
+  vision_error_ = {0.0, -2.5, 0.0};  // too far from GNSS for TRACKING
+  run(milliseconds(3000));
+  ASSERT_EQ(stage_.counters().state, HealthState::kAcquiring);
+  ASSERT_GT(stage_.counters().accepted, static_cast<uint64_t>(HealthLimits().corrections_to_track));
+  gnss_north_m_ = 8.0;  // refutes the pose
+  vision_ = false;
+  const auto has_started_again = [this] {
+    return WhyMask::from_bits(stage_.counters().why).has(Why::kNoInitialPose);
+  };
+  for (int i = 0; i < 500 && !has_started_again(); ++i) run(milliseconds(10));
+  ASSERT_TRUE(has_started_again());
+  gnss_north_m_ = 1.0;
+  run(milliseconds(300));
+  const auto why = WhyMask::from_bits(stage_.counters().why);
+  EXPECT_FALSE(why.has(Why::kNoInitialPose));
+  EXPECT_TRUE(why.has(Why::kMatchUncertain));
+  EXPECT_TRUE(why.has(Why::kPoseStale));
 }
 
 TEST_F(EstimationStageTest, ReportsThatVisionSkipsFramesets) {
