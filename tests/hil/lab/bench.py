@@ -4,6 +4,7 @@ import dataclasses
 import pathlib
 import re
 import shutil
+import subprocess
 import tempfile
 import time
 
@@ -13,8 +14,11 @@ from tests.hil.lab.judge import BusLog
 from tests.hil.lab.machine import Machine
 
 UNIT = "bevlocd.service"
+VEHICLE = "/lab/vehicle"  # folder of vehicle_can in the guest
 # Writing pull-up or pull-down to this file drives the ignition line.
 IGNITION_PULL = "/sys/devices/platform/gpio-sim.0/gpiochip*/sim_gpio3/pull"
+# The two GPIO chips of tests/hil/guest/devices, by label.
+_BANKS = {"bevloc": "bank0", "bench": "bank1"}
 DRIVE_CONFIG = "tests/hil/config/drive.yaml"
 CAMERA_PERIOD_S = 0.5  # as in DRIVE_CONFIG
 USB_CONFIG = "tests/hil/config/usb.yaml"
@@ -49,6 +53,7 @@ class Bench:
         self._sockets = pathlib.Path(tempfile.mkdtemp(prefix="bevloc-lab-"))
         try:
             payload = self._stage_payload()
+            self._install_vehicle()
             self.cameras = Cameras(
                 self.folders.build / "bin/usb_cameras", self.folders.pictures, self._sockets
             )
@@ -74,10 +79,22 @@ class Bench:
         shutil.rmtree(payload, ignore_errors=True)
         for folder in ("config", "models", "tests/hil/config"):
             shutil.copytree(self.folders.source / folder, payload / folder)
-        shutil.copy2(self.folders.build / "bin/vehicle_can", payload)
         shutil.copy2(self.folders.pictures / "map.bvm", payload / "tests/hil/config")
         (payload / "bevlocd.yaml").write_text(self._daemon_config(), encoding="utf-8")
         return payload
+
+    def _install_vehicle(self) -> None:
+        """Copies vehicle_can and its libraries from the host, because other Debians lack them."""
+        program = self.folders.build / "bin/vehicle_can"
+        folder = self.folders.image / f"root{VEHICLE}"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        needed = subprocess.run(["ldd", program], check=True, capture_output=True, text=True).stdout
+        libraries = re.findall(r"=> (/\S+)", needed)
+        # The C library belongs to the guest, because its dynamic linker does.
+        glibc = re.compile(r"lib(c|m|dl|rt|pthread)\.so\.\d+$")
+        for file in [program, *(name for name in libraries if not glibc.search(name))]:
+            shutil.copy2(file, folder)
 
     def _daemon_config(self) -> str:
         text = (self.folders.source / USB_CONFIG).read_text(encoding="utf-8")
@@ -91,7 +108,7 @@ class Bench:
         return text
 
     def _set_up_guest(self) -> None:
-        self.agent.check("/lab/devices; install -m 755 /payload/vehicle_can /usr/bin/")
+        self.agent.check("/lab/devices")
         if self.driver == "none":
             folder = f"/etc/systemd/system/{UNIT}.d"
             self.agent.check(
@@ -114,6 +131,11 @@ class Bench:
             udevadm trigger --settle --subsystem-match=gpio
             """
         )
+
+
+def chip_of(label: str) -> str:
+    """Returns shell text that expands to the name of the GPIO chip with this label."""
+    return f"$(cat /sys/kernel/config/gpio-sim/lab/{_BANKS[label]}/chip_name)"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -197,7 +219,7 @@ class Run:
     def start_vehicle(self) -> None:
         self.background(
             "vehicle",
-            f"/usr/bin/vehicle_can --config /payload/{DRIVE_CONFIG} "
+            f"env LD_LIBRARY_PATH={VEHICLE} {VEHICLE}/vehicle_can --config /payload/{DRIVE_CONFIG} "
             "--beat /dev/virtio-ports/bevloc.beat",
         )
 

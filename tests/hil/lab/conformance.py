@@ -3,7 +3,7 @@
 import dataclasses
 import re
 
-from tests.hil.lab.bench import LIBCAMERA_ID, Run
+from tests.hil.lab.bench import LIBCAMERA_ID, Run, chip_of
 from tests.hil.lab.cameras import NAMES
 from tests.hil.lab.outcome import Outcome
 
@@ -36,7 +36,7 @@ def _suites() -> list[Suite]:
         f"--replug-command 'echo plug {CAMERA} >{_CABLE}' --formats yuyv"
     )
     rate = f"--rate {1 / BEAT_S:.0f}"
-    chip = "$(gpiofind trigger | cut -d' ' -f1)"
+    chip = chip_of("bevloc")
     libcamera = LIBCAMERA_ID.format(port=CAMERA + 1)
     return [
         Suite("V4L2 mmap", f"--v4l2 {name} {rate} {cable}", "Cameras/*/v4l2_*"),

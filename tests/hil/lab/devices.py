@@ -3,7 +3,7 @@
 import pathlib
 import re
 
-from tests.hil.lab.bench import CAMERA_PERIOD_S, IGNITION_PULL, Run
+from tests.hil.lab.bench import CAMERA_PERIOD_S, IGNITION_PULL, Run, chip_of
 from tests.hil.lab.cameras import BROKEN_CAMERA, NAMES
 from tests.hil.lab.outcome import Outcome
 
@@ -107,15 +107,14 @@ def _can(run: Run) -> list[str]:
 def _gpio(run: Run) -> list[str]:
     """Makes four edges on the ignition line, as a switch would."""
     output = run.agent.check(
-        "chip=$(gpiodetect | sed -n 's/ .*bevloc.*//p'); "
         f"pull=$(echo {IGNITION_PULL}); "
-        "timeout 60 gpiomon --num-events=4 $chip 3 & sleep 2; "
+        f"timeout 60 /lab/edges {chip_of('bevloc')} 3 --num-events=4 & sleep 2; "
         "for level in down up down up; do echo pull-$level >$pull; sleep 0.2; done; wait; "
-        "gpioinfo $chip"
+        "gpioinfo"
     )
     (run.folder / "gpio.txt").write_text(output)
-    edges = re.findall(r"(RISING|FALLING) EDGE", output)
-    wanted = ["FALLING", "RISING"] * 2
-    problems = [] if edges == wanted else [f"GPIO: edges {edges}, wanted {wanted}"]
+    rising = [kind == "1" for kind in re.findall(r"^(\d) \d+ \d+$", output, re.M)]
+    wanted = [False, True] * 2
+    problems = [] if rising == wanted else [f"GPIO: rising: found {rising}, wanted {wanted}"]
     names = ("trigger", "status", "fault", "ignition")
     return problems + [f"GPIO: no line {name}" for name in names if f'"{name}"' not in output]

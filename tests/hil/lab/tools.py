@@ -6,7 +6,7 @@ import statistics
 import yaml
 
 from tests.hil.lab import dbc
-from tests.hil.lab.bench import USB_CONFIG, Run
+from tests.hil.lab.bench import USB_CONFIG, Run, chip_of
 from tests.hil.lab.cameras import NAMES
 from tests.hil.lab.devices import device_of
 from tests.hil.lab.outcome import Outcome
@@ -27,7 +27,7 @@ def tools(run: Run) -> Outcome:
     config = yaml.safe_load((source / USB_CONFIG).read_text(encoding="utf-8"))
     run.background("wire", "/lab/wire")
     run.agent.check(f"until grep -q 1 {_TRACE}; do sleep 0.1; done", timeout_s=60)
-    run.background("gpiomon", "gpiomon --line-buffered --format='%e %s %n' $(gpiofind probe)")
+    run.background("gpiomon", f"/lab/edges {chip_of('bench')} 0")
     run.start_daemon()
     run.start_vehicle()
     run.agent.check(f"sleep {RUN_S}")
