@@ -40,6 +40,23 @@ std::array<double, 3> ranges_of(const HypothesisGrid& grid) {
   return {grid.x_m.range, grid.y_m.range, grid.yaw_rad.range};
 }
 
+/// The part of a normal distribution that lies at the border of the axis, as edge_mass() counts it:
+/// the last two hypotheses and everything beyond them.
+double mass_at_border(double mean, double sigma, const HypothesisAxis& axis) {
+  const double border = axis.farthest() - 1.5 * axis.step;
+  const auto beyond = [=](double distance) {
+    return 0.5 * std::erfc(distance / (sigma * std::numbers::sqrt2));
+  };
+  return beyond(border - mean) + beyond(border + mean);
+}
+
+Eigen::Vector3d mass_at_border(const Se2& mean, const Eigen::Vector3d& sigma,
+                               const HypothesisGrid& grid) {
+  return {mass_at_border(mean.x_m, sigma.x(), grid.x_m),
+          mass_at_border(mean.y_m, sigma.y(), grid.y_m),
+          mass_at_border(mean.yaw_rad, sigma.z(), grid.yaw_rad)};
+}
+
 bool is_turning(double curvature_radpm) {
   return std::abs(curvature_radpm) > kTurning_radpm;
 }
@@ -88,15 +105,15 @@ MatchResult MatchModel::match(const MatchedPlace& place, SearchRange range, cons
     result.correction.y_m += scatter.y_m;
     result.correction.yaw_rad += scatter.yaw_rad;
   }
+  result.covariance = measured.covariance();
+  result.edge_mass = edge_mass_of(measured, result.correction, grid);
   const auto ranges = ranges_of(grid);
   result.correction = {std::clamp(result.correction.x_m, -ranges[0], ranges[0]),
                        std::clamp(result.correction.y_m, -ranges[1], ranges[1]),
                        std::clamp(result.correction.yaw_rad, -ranges[2], ranges[2])};
-  result.covariance = measured.covariance();
   result.evidence_share =
       Eigen::Vector3d::Ones() - result.covariance.diagonal().cwiseQuotient(uniform_variance(grid));
   result.rival_peak = measured.rival_peak;
-  result.edge_mass = measured.edge_mass;
   result.score = measured.score;
   result.axis_score = measured.axis_score;
   return result;
@@ -192,6 +209,15 @@ const MeasuredMatch& MatchModel::most_alike(SearchRange range, const Se2& truth)
     }
   }
   return *best;
+}
+
+/// A peak that lies nearer to the border than the measured one has more mass there.
+Eigen::Vector3d MatchModel::edge_mass_of(const MeasuredMatch& measured, const Se2& peak,
+                                         const HypothesisGrid& grid) const {
+  const Eigen::Vector3d sigma = measured.covariance().diagonal().cwiseSqrt();
+  const Eigen::Vector3d more =
+      mass_at_border(peak, sigma, grid) - mass_at_border(measured.found, sigma, grid);
+  return (measured.edge_mass + more.cwiseMax(0.0)).cwiseMin(1.0);
 }
 
 Se2 MatchModel::transfer(const MeasuredMatch& measured, const Se2& truth,

@@ -85,6 +85,24 @@ TEST(MatchModelTest, NeverAnswersOutsideTheRange) {
   EXPECT_LE(std::abs(result.correction.yaw_rad), radians(2.0));
 }
 
+TEST(MatchModelTest, APeakAtTheBorderHasItsMassThere) {
+  MatchTable table;
+  MeasuredPlace place{.drive = 0, .frame = 0, .station_m = 0.0, .matches = {}};
+  place.matches.push_back(measured(SearchRange::kTracking, {}, {}));
+  place.matches.push_back(measured(SearchRange::kAcquiring, {}, {}));
+  table.places.push_back(place);
+  MatchModel model(table, kTracking, kAcquiring, 1);
+  const auto edge_mass = [&](const Se2& truth) {
+    return model.match({0.0, 0.0}, SearchRange::kAcquiring, truth).edge_mass;
+  };
+  EXPECT_LT(edge_mass({0.0, 2.0, 0.0}).maxCoeff(), 1e-6);
+  // Between the second and the third hypothesis from the border.
+  EXPECT_NEAR(edge_mass({0.0, -2.7, 0.0}).y(), 0.5, 1e-6);
+  EXPECT_GT(edge_mass({0.0, 2.95, 0.0}).y(), 0.99);
+  EXPECT_GT(edge_mass({3.95, 0.0, 0.0}).x(), 0.99);
+  EXPECT_GT(edge_mass({0.0, 0.0, radians(3.95)}).z(), 0.99);
+}
+
 TEST(MatchModelTest, ScattersWhileTheVehicleStands) {
   MatchTable table;
   for (int frame = 0; frame < 100; ++frame) {
