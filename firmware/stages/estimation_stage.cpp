@@ -176,7 +176,7 @@ void EstimationStage::compare_heading(const VisionReport& report) {
 
 void EstimationStage::add_correction(const VisionReport& report) {
   const auto [outcome, seen] = estimator_.add_match(report.frame_time, report.prior, report.match);
-  wide_search_ = seen.at_edge;
+  wide_search_ = seen.at_border.any();
   ++counters_.corrections[index_of(outcome)];
   if (outcome == TrackerUpdate::kAccepted) {
     ++counters_.accepted;

@@ -22,16 +22,22 @@ Seen EvidenceMonitor::judge(MatchResult& match) {
         limits_.good_axis_score / std::max(match.axis_score(axis), 1e-6), 1.0, limits_.max_growth);
     match.covariance.row(axis) *= growth;
     match.covariance.col(axis) *= growth;
-    if (match.edge_mass(axis) <= limits_.max_edge_mass) continue;
-    match.evidence_share(axis) = 0.0;
-    seen.at_edge = true;
+    seen.at_border(axis) = match.edge_mass(axis) > limits_.max_edge_mass;
   }
-  seen.across = match.evidence_share.y() >= limits_.min_share;
-  seen.heading = match.evidence_share.z() >= limits_.min_share;
+  const auto is_seen = [&](int axis) {
+    return !seen.at_border(axis) && match.evidence_share(axis) >= limits_.min_share;
+  };
+  seen.across = is_seen(1);
+  seen.heading = is_seen(2);
   seen.unique = match.rival_peak.y() <= limits_.max_rival_peak;
   seen.place = mean_score_ >= limits_.min_score;
   seen.clear = mean_score_ >= limits_.min_start_score;
   return seen;
+}
+
+void forget_border(const Seen& seen, MatchResult& match) {
+  match.evidence_share =
+      seen.at_border.select(Eigen::Array3d::Zero(), match.evidence_share.array());
 }
 
 }  // namespace bevloc

@@ -28,10 +28,11 @@ struct EvidenceLimits {
 struct Seen {
   bool across = false;
   bool heading = false;
-  bool unique = false;   ///< no other place in the search range looks alike across the road
-  bool place = false;    ///< perceived and mapped lines lie on each other (mean score)
-  bool clear = false;    ///< they lie on each other well enough for a first trust (mean score)
-  bool at_edge = false;  ///< the truth may lie outside the search range, on any axis
+  bool unique = false;  ///< no other place in the search range looks alike across the road
+  bool place = false;   ///< perceived and mapped lines lie on each other (mean score)
+  bool clear = false;   ///< they lie on each other well enough for a first trust (mean score)
+  /// Axes on which the best place is at the border of the search range: the truth may lie outside.
+  Eigen::Array<bool, 3, 1> at_border{false, false, false};
 
   /// Confirms a pose that is already trusted. Along the road and of the heading there is often
   /// nothing to see for seconds; dead reckoning then carries the pose, and its sigma grows.
@@ -45,8 +46,7 @@ class EvidenceMonitor {
  public:
   explicit EvidenceMonitor(const EvidenceLimits& limits = {}) : limits_(limits) {}
 
-  /// Judges a match. Takes the evidence from each axis of `match` whose answer is near the border,
-  /// and widens each axis with a low score.
+  /// Judges a match, and widens each axis of `match` that has a low score.
   Seen judge(MatchResult& match);
 
   double mean_score() const { return mean_score_; }
@@ -56,5 +56,8 @@ class EvidenceMonitor {
   EvidenceLimits limits_;
   double mean_score_ = 0.0;
 };
+
+/// Takes the evidence from the axes of `match` on which the best place is at the border.
+void forget_border(const Seen& seen, MatchResult& match);
 
 }  // namespace bevloc

@@ -81,8 +81,9 @@ PoseEstimator::MatchOutcome PoseEstimator::add_match(Time frame_time, const Se2&
   const bool trusted = arbiter_.trusts_match();
   // If the best place lies at the border of the search, the match does not say where the vehicle
   // is. But it contradicts the estimate if the gate refuses that place.
-  if (outcome.seen.at_edge) {
-    outcome.update = tracker_.add_correction(frame_time, prior, match, Trust::kExamine);
+  if (outcome.seen.at_border.any()) {
+    outcome.update = tracker_.add_correction(frame_time, prior, judged, Trust::kExamine);
+    forget_border(outcome.seen, judged);
   }
   if (outcome.update != TrackerUpdate::kGated) {
     outcome.update =

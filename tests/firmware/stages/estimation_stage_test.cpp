@@ -31,8 +31,8 @@ class EstimationStageTest : public testing::Test {
       }
       if (now_.time_since_epoch() % milliseconds(100) == Duration::zero()) {
         const Se2 truth = truth_at(now_);
-        samples_.push(
-            GnssSample{now_, truth.x_m, truth.y_m + gnss_north_m_, 1.0, 1.0, GnssSample::Yaw{0.0, 0.02}});
+        samples_.push(GnssSample{now_, truth.x_m, truth.y_m + gnss_north_m_, 1.0, 1.0,
+                                 GnssSample::Yaw{0.0, 0.02}});
         if (vision_) push_report(now_ - milliseconds(40));
       }
       stage_.tick(now_);

@@ -50,8 +50,9 @@ TEST(EvidenceTest, AnAnswerAtTheBorderIsNoEvidence) {
   MatchResult match = good_match();
   match.edge_mass.y() = 0.9;
   const Seen seen = monitor.judge(match);
-  EXPECT_TRUE(seen.at_edge);
+  EXPECT_TRUE(seen.at_border.y());
   EXPECT_FALSE(seen.across);
+  forget_border(seen, match);
   EXPECT_EQ(match.evidence_share.y(), 0.0);
   EXPECT_EQ(match.evidence_share.x(), 1.0);
 }

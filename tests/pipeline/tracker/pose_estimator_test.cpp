@@ -57,6 +57,16 @@ TEST_F(PoseEstimatorTest, AModeAtTheBorderDoesNotCorrectThePose) {
   EXPECT_NEAR(yaw_sigma_rad(), before_rad, 0.02 * before_rad);
 }
 
+TEST_F(PoseEstimatorTest, AModeAtTheBorderWithALowScoreContradictsLess) {
+  const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
+  MatchResult match = match_at(prior, {0.0, 0.0, radians(2.0)});
+  match.covariance(2, 2) = square_of(radians(0.3));
+  match.edge_mass.z() = 1.0;
+  EXPECT_EQ(estimator_.add_match(at_s(time_s_), prior, match).update, TrackerUpdate::kGated);
+  match.axis_score.z() = 0.0;
+  EXPECT_EQ(estimator_.add_match(at_s(time_s_), prior, match).update, TrackerUpdate::kAccepted);
+}
+
 TEST_F(PoseEstimatorTest, AModeAtTheBorderContradictsAPoseOfAnotherPlace) {
   const Se2 border{0.0, 0.0, radians(2.0)};
   EXPECT_EQ(match_with(border, 1.0), TrackerUpdate::kGated);
