@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/normal_distribution.h"
 #include "pipeline/solver/posterior.h"
 
 namespace bevloc::evaluation {
@@ -44,10 +45,7 @@ std::array<double, 3> ranges_of(const HypothesisGrid& grid) {
 /// the last two hypotheses and everything beyond them.
 double mass_at_border(double mean, double sigma, const HypothesisAxis& axis) {
   const double border = axis.farthest() - 1.5 * axis.step;
-  const auto beyond = [=](double distance) {
-    return 0.5 * std::erfc(distance / (sigma * std::numbers::sqrt2));
-  };
-  return beyond(border - mean) + beyond(border + mean);
+  return upper_tail((border - mean) / sigma) + upper_tail((border + mean) / sigma);
 }
 
 Eigen::Vector3d mass_at_border(const Se2& mean, const Eigen::Vector3d& sigma,
@@ -64,6 +62,34 @@ bool is_turning(double curvature_radpm) {
 /// The first match of a place lies in the tracking range near the truth (record_matches()).
 Se2 error_near_truth(const MeasuredPlace& place) {
   return place.matches.front().error();
+}
+
+/// The correction that a measured match gives from another prior, whose true correction is `truth`.
+Se2 transfer(const MeasuredMatch& measured, const Se2& truth, const HypothesisGrid& grid) {
+  const auto ranges = ranges_of(grid);
+  const auto wanted = values_of(truth);
+  const auto had = values_of(measured.truth);
+  const auto found = values_of(measured.found);
+  const auto same_peak = values_of(truth * measured.error());
+  std::array<double, 3> correction{};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const bool stopped = std::abs(found[axis]) > kAtBorder * ranges[axis];
+    const bool alike =
+        std::abs(wanted[axis] - had[axis]) < kSamePeak * ranges[axis] ||
+        (std::abs(wanted[axis]) < ranges[axis] && std::abs(had[axis]) < ranges[axis]);
+    correction[axis] = alike && !stopped ? same_peak[axis] : found[axis];
+  }
+  return {correction[0], correction[1], correction[2]};
+}
+
+/// The mass at the border of a measured match whose peak is moved to `peak`: a peak that comes
+/// nearer to the border has more mass there.
+Eigen::Vector3d edge_mass_of(const MeasuredMatch& measured, const Se2& peak,
+                             const HypothesisGrid& grid) {
+  const Eigen::Vector3d sigma = measured.covariance().diagonal().cwiseSqrt();
+  const Eigen::Vector3d more =
+      mass_at_border(peak, sigma, grid) - mass_at_border(measured.found, sigma, grid);
+  return (measured.edge_mass + more.cwiseMax(0.0)).cwiseMin(1.0);
 }
 
 }  // namespace
@@ -209,33 +235,6 @@ const MeasuredMatch& MatchModel::most_alike(SearchRange range, const Se2& truth)
     }
   }
   return *best;
-}
-
-/// A peak that lies nearer to the border than the measured one has more mass there.
-Eigen::Vector3d MatchModel::edge_mass_of(const MeasuredMatch& measured, const Se2& peak,
-                                         const HypothesisGrid& grid) const {
-  const Eigen::Vector3d sigma = measured.covariance().diagonal().cwiseSqrt();
-  const Eigen::Vector3d more =
-      mass_at_border(peak, sigma, grid) - mass_at_border(measured.found, sigma, grid);
-  return (measured.edge_mass + more.cwiseMax(0.0)).cwiseMin(1.0);
-}
-
-Se2 MatchModel::transfer(const MeasuredMatch& measured, const Se2& truth,
-                         const HypothesisGrid& grid) const {
-  const auto ranges = ranges_of(grid);
-  const auto wanted = values_of(truth);
-  const auto had = values_of(measured.truth);
-  const auto found = values_of(measured.found);
-  const auto same_peak = values_of(truth * measured.error());
-  std::array<double, 3> correction{};
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const bool stopped = std::abs(found[axis]) > kAtBorder * ranges[axis];
-    const bool alike =
-        std::abs(wanted[axis] - had[axis]) < kSamePeak * ranges[axis] ||
-        (std::abs(wanted[axis]) < ranges[axis] && std::abs(had[axis]) < ranges[axis]);
-    correction[axis] = alike && !stopped ? same_peak[axis] : found[axis];
-  }
-  return {correction[0], correction[1], correction[2]};
 }
 
 }  // namespace bevloc::evaluation

@@ -52,10 +52,7 @@ class MatchModel {
   void follow(const MatchedPlace& place);
   void begin_block(const MatchedPlace& place);
   const MeasuredMatch& most_alike(SearchRange range, const Se2& truth) const;
-  Eigen::Vector3d edge_mass_of(const MeasuredMatch& measured, const Se2& peak,
-                               const HypothesisGrid& grid) const;
   const MeasuredMatch& beside(const Se2& offset) const;
-  Se2 transfer(const MeasuredMatch& measured, const Se2& truth, const HypothesisGrid& grid) const;
 
   const MatchTable& table_;
   HypothesisGrid tracking_;

@@ -65,9 +65,12 @@ void EstimationStage::tick(Time now) {
   estimator_.judge(now, health_.pose_valid());
   note_map_offset();
   const auto pose = estimator_.pose_at(now);
-  // Matches say nothing about the pose with which the estimator will start again.
-  if (!pose) forget_matches();
-  if (pose) protection_ = estimator_.protection_of(*pose, protection_parameters_);
+  if (pose) {
+    protection_ = estimator_.protection_of(*pose, protection_parameters_);
+  } else {
+    // Matches say nothing about the pose with which the estimator will start again.
+    forget_matches();
+  }
   update_health(pose, now);
   note_pose(pose);
   if (pose) predictions_.push({*pose, !health_.pose_valid() || wide_search_});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/normal_distribution.h"
 #include "common/se2.h"
 
 namespace bevloc {
@@ -12,11 +13,6 @@ namespace {
 /// A wrong place lies anywhere within this distance: (m, m, rad).
 const Eigen::Vector3d kWrongWithin{10.0, 10.0, radians(10.0)};
 constexpr int kBisections = 30;
-
-/// Probability that a normal variable exceeds `value`.
-double upper_tail(double value) {
-  return 0.5 * std::erfc(value / std::numbers::sqrt2);
-}
 
 /// How much better a wrong place explains the normalised GNSS error of one axis than the right one.
 double likelihood_ratio(double error, double sigma, double wrong_within) {

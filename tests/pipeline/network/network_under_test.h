@@ -20,8 +20,8 @@ inline NetworkOptions network_options(int threads = 1) {
   return {.threads = threads, .isa = tested.isa, .engine = tested.make};
 }
 
-/// The network of a file in fixtures/, with the inputs for which numpy computed its outputs. Ends
-/// the program if it does not load.
+/// Loads a network of fixtures/ and fills its inputs with those from which numpy computed the
+/// outputs. Ends the program if the network does not load.
 inline std::unique_ptr<Network> load_network(const std::string& model, int threads = 1) {
   auto network = Network::load(fixture(model + ".onnx"), network_options(threads));
   if (!network) {
@@ -34,7 +34,7 @@ inline std::unique_ptr<Network> load_network(const std::string& model, int threa
   return std::move(*network);
 }
 
-/// Null, and a failure of the test, if the shipped model does not load.
+/// Loads the shipped network. If that fails, the test fails, and the result is null.
 inline std::unique_ptr<Network> load_shipped() {
   auto network = Network::load(kShippedModel, network_options());
   if (!network) ADD_FAILURE() << network.error().message;

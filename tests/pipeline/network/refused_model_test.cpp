@@ -1,4 +1,5 @@
-// Each reason to refuse a model file or an option, and what loading does with damaged files.
+// Tests each reason for which loading refuses a model file or an option, and that damaged files
+// never crash it.
 // engines/under_test/ lists the engines that these test cases run on.
 #include <fstream>
 #include <random>
@@ -132,7 +133,7 @@ TEST_F(RefusedModel, AnotherInstructionSetThanThisProcessUses) {
   EXPECT_THAT(network.error().message, HasSubstr(test::engine_under_test().cap_refusal));
 }
 
-/// With any single damaged byte, loading must report an error and never crash.
+/// Loading reports an error for every single damaged byte, and never crashes.
 TEST_F(RefusedModel, SurvivesDamagedBytes) {
   const std::string whole = test::read_bytes(test::fixture("wrong_shape.onnx"));
   for (size_t i = 0; i < whole.size(); ++i) {
