@@ -30,7 +30,11 @@ WHOLE = Share()
 
 @dataclass(frozen=True)
 class Processes:
-    """This process (`rank`) of `count` processes. With one process, nothing is communicated."""
+    """This process (`rank`) of `count` processes. With one process, nothing is communicated.
+
+    A context manager that leaves the group at its end, also after an error: the interpreter that
+    ends while Gloo's threads still run can be aborted by the C++ library.
+    """
 
     rank: int = 0
     count: int = 1
@@ -51,7 +55,10 @@ class Processes:
         dist.init_process_group("nccl" if cuda else "gloo")
         return Processes(dist.get_rank(), count, device)
 
-    def leave(self) -> None:
+    def __enter__(self) -> Processes:
+        return self
+
+    def __exit__(self, *_: object) -> None:
         if self.count > 1:
             dist.destroy_process_group()
 

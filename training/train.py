@@ -376,9 +376,9 @@ def main() -> None:
         command = [sys.executable, "-m", "training.train", *sys.argv[1:]]
         os.execve(sys.executable, command, environment)
     torch.set_num_threads(config.threads)
-    joined = Processes.join()
     try:
-        finished = train(config, joined)
+        with Processes.join() as joined:
+            finished = train(config, joined)
     except NotFiniteError as error:
         print(error, file=sys.stderr, flush=True)
         sys.exit(EXIT_NOT_FINITE)
@@ -386,7 +386,6 @@ def main() -> None:
         sys.exit(str(error))
     except NuscenesError as error:
         sys.exit(f"nuScenes: {error}")
-    joined.leave()
     sys.exit(0 if finished else EXIT_STOPPED)
 
 

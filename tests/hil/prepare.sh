@@ -34,7 +34,9 @@ render_pictures() {
     sha256sum | cut -c1-16)
   pictures=$cache/pictures/$key
   [[ ! -f $pictures/truth.csv ]] || return 0
+  # Another run may still use the images of the version before: only old ones are removed.
+  mkdir -p "$cache/pictures"
+  find "$cache/pictures" -mindepth 1 -maxdepth 1 -mtime +7 -exec rm -rf {} +
   echo "$(basename "$0"): rendering the images of the drive"
-  rm -rf "$cache/pictures"
   $build/bin/drive_pictures tests/hil/config/drive.yaml "$pictures"
 }

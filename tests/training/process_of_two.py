@@ -52,11 +52,8 @@ def own_gradients(processes: Processes) -> list[torch.Tensor]:
     return gradients
 
 
-def main() -> None:
-    torch.set_num_threads(1)
-    folder = Path(sys.argv[1])
-    PoisonedStream.poisoned = int(sys.argv[2]) if len(sys.argv) > 2 else -1
-    processes = Processes.join()
+def train_with(processes: Processes, folder: Path) -> None:
+    """Trains, and writes this process's state or its error into `folder`."""
     config = TrainingConfig(
         run=folder, batch=BATCH, samples=SAMPLES, warm_up_steps=1, precision="float32"
     )
@@ -80,7 +77,13 @@ def main() -> None:
         "first_says": processes.from_first(10.0 + processes.rank),
     }
     torch.save(state, folder / f"rank{processes.rank}.pt")
-    processes.leave()
+
+
+def main() -> None:
+    torch.set_num_threads(1)
+    PoisonedStream.poisoned = int(sys.argv[2]) if len(sys.argv) > 2 else -1
+    with Processes.join() as processes:
+        train_with(processes, Path(sys.argv[1]))
 
 
 if __name__ == "__main__":
