@@ -60,7 +60,7 @@ Eigen::Vector3d supported_offset(const PoseInnovation& innovation) {
 
 void Arbiter::Voter::add(Time time, const PoseInnovation& innovation, bool passes_gate) {
   const Eigen::Vector3d sigma = innovation.covariance.diagonal().cwiseSqrt();
-  far_off = !passes_gate && innovation.squared_distance > kFarOff;
+  far_off = !passes_gate && innovation.unexplained > kFarOff;
   const Eigen::Vector3d in_sigmas =
       innovation.error.cwiseQuotient(sigma).cwiseMax(-kMaxDriftStep).cwiseMin(kMaxDriftStep);
   drift += kDriftGain * (in_sigmas - drift);
@@ -80,11 +80,16 @@ bool Arbiter::Voter::drifts() const {
   return drift.cwiseAbs().maxCoeff() > kDriftLimit * sigma;
 }
 
-void Arbiter::Voter::readmit_after(int passes) {
-  if (excluded && passed_in_a_row >= passes) {
-    excluded = false;
-    drift.setZero();
-  }
+void Arbiter::Voter::exclude() {
+  excluded = true;
+  passed_in_a_row = 0;
+}
+
+bool Arbiter::Voter::readmit_after(int passes) {
+  if (!excluded || passed_in_a_row < passes) return false;
+  excluded = false;
+  drift.setZero();
+  return true;
 }
 
 void Arbiter::add_match(Time time, const PoseInnovation& innovation, bool passes_gate) {
@@ -127,13 +132,17 @@ void Arbiter::add_gnss(Time time, const PoseInnovation& innovation, bool passes_
       time, innovation.squared_distance,
       squared_distance(innovation.error - dispute_offset_, innovation.covariance)};
   if (!gnss_error) {
-    gnss_error_count_ = 0;
-    gnss_moved_ = false;
-    gnss_.drift.setZero();
+    forget_gnss_errors();
   } else if (!gnss_.excluded) {
     note_gnss_error(time, *gnss_error);
   }
-  gnss_.readmit_after(kGnssPasses);
+  if (gnss_.readmit_after(kGnssPasses)) forget_gnss_errors();
+}
+
+void Arbiter::forget_gnss_errors() {
+  gnss_error_count_ = 0;
+  gnss_moved_ = false;
+  gnss_.drift.setZero();
 }
 
 void Arbiter::note_gnss_error(Time time, const Eigen::Vector3d& gnss_error) {
@@ -168,7 +177,7 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
     decide_dispute(verdict, standing);
     if (verdict.odometry_contradicts) odometry_wrong_until_ = now + kOdometryMemory;
   }
-  if (valid && match_agrees(now) && gnss_moved()) gnss_.excluded = true;
+  if (valid && match_agrees(now) && gnss_moved() && !gnss_.excluded) gnss_.exclude();
   if (!match_agrees(now) && !match_is_disputed() && gnss_.refused_in_a_row >= kGnssRefusals &&
       !gnss_.excluded) {
     verdict.undecided = true;
@@ -188,7 +197,7 @@ void Arbiter::decide_dispute(Verdict& verdict, PoseStanding standing) {
     return;
   }
   if (match_jumped_) {
-    match_.excluded = true;
+    match_.exclude();
     explained_ = true;
     return;
   }
@@ -215,7 +224,7 @@ void Arbiter::ask_gnss(Verdict& verdict) {
   from_estimate /= static_cast<double>(samples);
   from_match /= static_cast<double>(samples);
   if (from_estimate < kConfirms && from_match - from_estimate > kDecides) {
-    match_.excluded = true;
+    match_.exclude();
     explained_ = true;
   } else if (from_match < kConfirms && from_estimate - from_match > kDecides) {
     verdict.odometry_contradicts = true;

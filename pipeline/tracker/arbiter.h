@@ -82,8 +82,9 @@ class Arbiter {
 
     void add(Time time, const PoseInnovation& innovation, bool passes_gate);
     bool drifts() const;
-    /// Ends the exclusion after enough passes in a row.
-    void readmit_after(int passes);
+    void exclude();
+    /// Ends the exclusion after enough passes in a row. Returns whether it ended now.
+    bool readmit_after(int passes);
   };
 
   /// A recent GNSS sample.
@@ -104,6 +105,7 @@ class Arbiter {
   bool match_jumps(Time time, const PoseInnovation& innovation) const;
   void decide_dispute(Verdict& verdict, PoseStanding standing);
   void ask_gnss(Verdict& verdict);
+  void forget_gnss_errors();
   void note_gnss_error(Time time, const Eigen::Vector3d& gnss_error);
 
   static constexpr size_t kGnssRecords = 8;

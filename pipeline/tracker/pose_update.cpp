@@ -59,6 +59,7 @@ PoseInnovation innovation_of(const FilterState& state, const PoseMeasurement& me
   innovation.error = linearised.error;
   innovation.covariance = expected_covariance(state, linearised);
   innovation.squared_distance = squared_distance(innovation.error, innovation.covariance);
+  innovation.unexplained = innovation.squared_distance;
   return innovation;
 }
 
@@ -83,7 +84,16 @@ FilterState state_from(const PoseMeasurement& measurement, double speed_scale_va
   return state;
 }
 
+void renew_match_error(FilterState& state) {
+  constexpr int kError = FilterState::kMatchError;
+  state.match_error.setZero();
+  state.covariance.middleRows<3>(kError).setZero();
+  state.covariance.middleCols<3>(kError).setZero();
+  state.covariance.block<3, 3>(kError, kError).setIdentity();
+}
+
 void update(const PoseMeasurement& measurement, FilterState& state) {
+  if (measurement.has_new_error) renew_match_error(state);
   Linearised linearised = linearise(state, measurement);
   linearised.noise.diagonal() += measurement.repeated_variance;
   const Jacobian& h = linearised.jacobian;

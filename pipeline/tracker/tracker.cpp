@@ -16,6 +16,9 @@ MeasuredMotion between(const MeasuredMotion& a, const MeasuredMotion& b, double 
           std::lerp(a.yaw_rate_radps, b.yaw_rate_radps, weight_of_b)};
 }
 
+/// Refused matches in a row after which a match may have a new error. An outlier is shorter.
+constexpr int kRefusalsForNewError = 3;
+
 bool is_covariance(const Eigen::Matrix3d& matrix) {
   return matrix.allFinite() && matrix.isApprox(matrix.transpose(), 1e-6) &&
          matrix.llt().info() == Eigen::Success;
@@ -153,6 +156,7 @@ void Tracker::loosen_odometry() {
 }
 
 void Tracker::restart() {
+  refused_matches_ = 0;
   standing_matches_ = 0;
   history_.clear();
 }
@@ -188,10 +192,7 @@ void Tracker::discount_standing(const MeasuredMotion& motion, PoseMeasurement& m
 TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, Trust trust) {
   const size_t events_until = count_until(history_, time);
   if (events_until == 0) return TrackerUpdate::kTooOld;
-  latest_innovation_ = innovation_of(state_at(time, events_until), measurement);
-  if (latest_innovation_.squared_distance > parameters_.gate_squared_distance) {
-    return TrackerUpdate::kGated;
-  }
+  if (!passes_gate(state_at(time, events_until), trust, measurement)) return TrackerUpdate::kGated;
   if (trust == Trust::kExamine) return TrackerUpdate::kAccepted;
   const MeasuredMotion motion = motion_at(time, events_until);
   discount_standing(motion, measurement);
@@ -200,6 +201,25 @@ TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, Trust tr
                         .motion = motion,
                         .measurement = measurement});
   return TrackerUpdate::kAccepted;
+}
+
+bool Tracker::passes_gate(FilterState state, Trust trust, PoseMeasurement& measurement) {
+  latest_innovation_ = innovation_of(state, measurement);
+  const bool passes = latest_innovation_.squared_distance <= parameters_.gate_squared_distance;
+  if (measurement.source != PoseSource::kMatch) return passes;
+  refused_matches_ = passes || trust == Trust::kExamine ? 0 : refused_matches_ + 1;
+  if (passes) return true;
+
+  renew_match_error(state);
+  const PoseInnovation renewed = innovation_of(state, measurement);
+  latest_innovation_.unexplained =
+      std::min(latest_innovation_.squared_distance, renewed.squared_distance);
+  measurement.has_new_error = refused_matches_ >= kRefusalsForNewError &&
+                              renewed.squared_distance <= parameters_.gate_squared_distance;
+  if (!measurement.has_new_error) return false;
+  latest_innovation_ = renewed;
+  refused_matches_ = 0;
+  return true;
 }
 
 bool Tracker::has_odometry_for(Time time) const {

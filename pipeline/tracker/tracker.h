@@ -85,6 +85,11 @@ enum class Trust : uint8_t {
 /// measurement applies at its own time: a late one is inserted into the history, and the later
 /// states are computed again. A refused measurement changes nothing.
 ///
+/// The error of the matches can change from one frame to the next, for example where another line
+/// comes into view. The gate refuses such matches, because it expects the error of the frames
+/// before. The third one in a row is accepted if a new match error, as large as any match may have,
+/// explains its offset.
+///
 /// While the vehicle stands, all matches see the same picture, so their noise is alike, too: the
 /// k-th of them counts with 1 + (k - 1)^2 times its noise. All of them say little more than the
 /// first.
@@ -143,6 +148,9 @@ class Tracker {
  private:
   void initialise(Time time, const PoseMeasurement& measurement);
   TrackerUpdate add_pose(Time time, PoseMeasurement measurement, Trust trust);
+  /// Sets latest_innovation(). A match may also pass as the last of several refused ones whose
+  /// offset a new match error explains; it then has `has_new_error`.
+  bool passes_gate(FilterState state, Trust trust, PoseMeasurement& measurement);
   /// Adds the variance of a match that repeats those before it, because the vehicle stands.
   void discount_standing(const MeasuredMotion& motion, PoseMeasurement& measurement);
   bool has_odometry_for(Time time) const;
@@ -157,6 +165,7 @@ class Tracker {
   EventHistory history_;
   std::optional<OdometrySample> last_odometry_;
   PoseInnovation latest_innovation_;
+  int refused_matches_ = 0;   ///< in a row, up to the latest match
   int standing_matches_ = 0;  ///< since the vehicle stands, or since its covariance was raised
 };
 

@@ -15,6 +15,7 @@ PoseInnovation innovation(const Eigen::Vector3d& error) {
   result.error = error;
   result.covariance = Eigen::Vector3d(0.09, 0.04, 2e-5).asDiagonal();
   result.squared_distance = error.dot(result.covariance.inverse() * error);
+  result.unexplained = result.squared_distance;
   return result;
 }
 
@@ -101,6 +102,34 @@ TEST_F(ArbiterTest, ReadmitsAVoterThatAgreesForAWhile) {
   EXPECT_TRUE(arbiter_.trusts_match());
 }
 
+TEST_F(ArbiterTest, ReadmitsGnssWhoseErrorHasMovedOnce) {
+  const auto add_gnss = [&](int samples, double error) {
+    for (int i = 0; i < samples; ++i) {
+      now_ += milliseconds(100);
+      arbiter_.add_match(now_, innovation(none_), true);
+      arbiter_.add_gnss(now_, innovation(none_), true, Eigen::Vector3d(error, 0.0, 0.0));
+      arbiter_.judge(now_, PoseStanding::kValid);
+    }
+  };
+  add_gnss(30, 0.0);
+  add_gnss(10, 2.5);
+  ASSERT_FALSE(arbiter_.trusts_gnss());
+  add_gnss(10, 2.5);
+  EXPECT_FALSE(arbiter_.trusts_gnss());
+  add_gnss(10, 2.5);
+  EXPECT_TRUE(arbiter_.trusts_gnss());
+  add_gnss(50, 2.5);
+  EXPECT_TRUE(arbiter_.trusts_gnss());
+}
+
+TEST_F(ArbiterTest, AMatchWhoseNewErrorExplainsItIsNotFarOff) {
+  run(20, none_, none_);
+  PoseInnovation match = innovation({0.0, 1.4, 0.0});
+  match.unexplained = 15.0;
+  arbiter_.add_match(now_ + milliseconds(100), match, false);
+  EXPECT_FALSE(arbiter_.open_dispute());
+}
+
 TEST_F(ArbiterTest, FindsInnovationsThatLeanToOneSide) {
   run(100, none_, none_);
   EXPECT_FALSE(arbiter_.match_drifts());
@@ -142,7 +171,7 @@ TEST_F(ArbiterTest, AnAxisThatTheMatchDoesNotSeeIsNoPartOfTheDispute) {
   PoseInnovation match = innovation({5.0, 1.4, 0.0});
   match.covariance(0, 0) = 400.0;
   arbiter_.add_match(now_ + milliseconds(100), match, false);
-  match.squared_distance = 49.0;
+  match.unexplained = 49.0;
   arbiter_.add_match(now_ + milliseconds(200), match, false);
   ASSERT_TRUE(arbiter_.open_dispute());
   EXPECT_NEAR(arbiter_.open_dispute()->x(), 0.0, 0.1);

@@ -84,6 +84,59 @@ TEST(TrackerTest, AGatedOutlierChangesNothing) {
   EXPECT_EQ(after.covariance, before.covariance);
 }
 
+/// Matches whose error is 0.3 m across from one frame to the next.
+class NewMatchErrorTest : public testing::Test {
+ protected:
+  static constexpr double kEnd_s = 20.0;
+
+  NewMatchErrorTest() {
+    Drive{.gnss_every = 10, .correction_every = 5}.run(tracker_, vehicle_, kEnd_s);
+    prior_ = tracker_.pose_at(at_s(kEnd_s))->map_from_vehicle;
+  }
+
+  static SensorErrors errors() {
+    SensorErrors errors = typical_errors();
+    errors.correction_sigma_m = 0.03;
+    return errors;
+  }
+
+  TrackerUpdate add(double across_m) {
+    SolverResult match = vehicle_.correction_from(prior_);
+    match.correction.y_m += across_m;
+    return tracker_.add_correction(at_s(kEnd_s), prior_, match);
+  }
+
+  Tracker tracker_;
+  SimulatedVehicle vehicle_{errors(), 5};
+  Se2 prior_;
+};
+
+TEST_F(NewMatchErrorTest, TheThirdMatchIsBelieved) {
+  const double before = tracker_.pose_at(at_s(kEnd_s))->covariance(1, 1);
+  EXPECT_EQ(add(0.3), TrackerUpdate::kGated);
+  EXPECT_EQ(add(0.3), TrackerUpdate::kGated);
+  EXPECT_EQ(add(0.3), TrackerUpdate::kAccepted);
+  EXPECT_EQ(add(0.3), TrackerUpdate::kAccepted);
+  // Two places, each with the same systematic error: the pose lies between them.
+  const TrackedPose pose = *tracker_.pose_at(at_s(kEnd_s));
+  const double moved_m = correction_between(prior_, pose.map_from_vehicle).y_m;
+  EXPECT_GT(moved_m, 0.03);
+  EXPECT_LT(moved_m, 0.2);
+  EXPECT_GT(pose.covariance(1, 1), 0.4 * before);
+}
+
+TEST_F(NewMatchErrorTest, AMatchThatAgreesBeginsTheCountAgain) {
+  EXPECT_EQ(add(0.3), TrackerUpdate::kGated);
+  EXPECT_EQ(add(0.3), TrackerUpdate::kGated);
+  EXPECT_EQ(add(0.0), TrackerUpdate::kAccepted);
+  EXPECT_EQ(add(0.3), TrackerUpdate::kGated);
+}
+
+TEST_F(NewMatchErrorTest, ALargeErrorIsRefusedForever) {
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(add(1.0), TrackerUpdate::kGated);
+  EXPECT_GT(tracker_.latest_innovation().unexplained, tracker_.parameters().gate_squared_distance);
+}
+
 TEST(TrackerTest, AcceptsTheNextMeasurementAfterWiden) {
   Tracker tracker;
   SimulatedVehicle vehicle(typical_errors(), 6);
