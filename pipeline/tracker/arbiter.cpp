@@ -32,6 +32,9 @@ constexpr int kGnssPasses = 20;
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
 constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
+/// Where the heading of GNSS drifts, that of the match need only lean to the same side by this much:
+/// two voters then say that the yaw rate has a bias.
+constexpr double kSharedLean = 2.5;
 /// Larger innovations count as this many standard deviations, so that one outlier is no drift.
 constexpr double kMaxDriftStep = 3.0;
 /// Limit for the change of GNSS errors, in standard deviations.
@@ -75,9 +78,25 @@ void Arbiter::Voter::add(Time time, const PoseInnovation& innovation, bool passe
   }
 }
 
-bool Arbiter::Voter::drifts() const {
+Eigen::Vector3d Arbiter::Voter::lean() const {
   static const double sigma = std::sqrt(kDriftGain / (2.0 - kDriftGain));
-  return drift.cwiseAbs().maxCoeff() > kDriftLimit * sigma;
+  return drift / sigma;
+}
+
+bool Arbiter::Voter::drifts() const {
+  return lean().cwiseAbs().maxCoeff() > kDriftLimit;
+}
+
+bool Arbiter::odometry_drifts() const {
+  if (match_.drifts()) return true;
+  const double gnss = gnss_.lean().z();
+  const double match = std::copysign(1.0, gnss) * match_.lean().z();
+  return std::abs(gnss) > kDriftLimit && match > kSharedLean;
+}
+
+void Arbiter::forget_drift() {
+  match_.drift.setZero();
+  gnss_.drift.setZero();
 }
 
 void Arbiter::Voter::exclude() {
@@ -177,7 +196,7 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
     decide_dispute(verdict, standing);
     if (verdict.odometry_contradicts) odometry_wrong_until_ = now + kOdometryMemory;
   }
-  if (valid && match_agrees(now) && gnss_moved() && !gnss_.excluded) gnss_.exclude();
+  if (valid && match_agrees(now) && gnss_moved() && !odometry_drifts() && !gnss_.excluded) gnss_.exclude();
   if (!match_agrees(now) && !match_is_disputed() && gnss_.refused_in_a_row >= kGnssRefusals &&
       !gnss_.excluded) {
     verdict.undecided = true;

@@ -54,9 +54,10 @@ class Arbiter {
   bool trusts_match() const { return !match_.excluded; }
   bool trusts_gnss() const { return !gnss_.excluded; }
 
-  /// Whether the innovations of the match lean to one side: dead reckoning or the match drifts.
-  bool match_drifts() const { return match_.drifts(); }
-  void forget_match_drift() { match_.drift.setZero(); }
+  /// Whether dead reckoning drifts: the innovations of the match lean to one side, or the headings
+  /// of GNSS and of the match lean to the same side.
+  bool odometry_drifts() const;
+  void forget_drift();
 
   int matches_refused_in_a_row() const { return match_.refused_in_a_row; }
 
@@ -81,6 +82,8 @@ class Arbiter {
     Eigen::Vector3d drift = Eigen::Vector3d::Zero();
 
     void add(Time time, const PoseInnovation& innovation, bool passes_gate);
+    /// `drift` in its own standard deviations.
+    Eigen::Vector3d lean() const;
     bool drifts() const;
     void exclude();
     /// Ends the exclusion after enough passes in a row. Returns whether it ended now.

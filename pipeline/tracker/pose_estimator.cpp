@@ -105,9 +105,9 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   verdict_ = arbiter_.judge(now, pose_valid ? PoseStanding::kValid : lost_or_new);
   verdict_.map_contradicts = map_offset_.contradicts();
   if (verdict_.odometry_contradicts && !odometry_was_wrong) tracker_.widen();
-  if (arbiter_.match_drifts()) {
+  if (arbiter_.odometry_drifts()) {
     tracker_.loosen_odometry();
-    arbiter_.forget_match_drift();
+    arbiter_.forget_drift();
   }
   const bool matched = match_passed_ && now - *match_passed_ <= kMatchAbsence;
   const bool gnss_refused = gnss_refused_in_a_row_ >= kRefusalsToRestart && !matched;

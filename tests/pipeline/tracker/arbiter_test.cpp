@@ -132,15 +132,32 @@ TEST_F(ArbiterTest, AMatchWhoseNewErrorExplainsItIsNotFarOff) {
 
 TEST_F(ArbiterTest, FindsInnovationsThatLeanToOneSide) {
   run(100, none_, none_);
-  EXPECT_FALSE(arbiter_.match_drifts());
+  EXPECT_FALSE(arbiter_.odometry_drifts());
   run(60, {0.5, 0.0, 0.0}, none_);  // within the gate, always ahead
-  EXPECT_TRUE(arbiter_.match_drifts());
+  EXPECT_TRUE(arbiter_.odometry_drifts());
+}
+
+/// With a yaw rate that has a bias, match and GNSS see the same heading error.
+TEST_F(ArbiterTest, HeadingsThatLeanToTheSameSideDoNotExcludeGnss) {
+  run(100, none_, none_);
+  run(25, {0.0, 0.0, radians(0.18)}, {0.0, 0.0, radians(0.25)});
+  EXPECT_TRUE(arbiter_.odometry_drifts());
+  EXPECT_TRUE(arbiter_.trusts_gnss());
+  arbiter_.forget_drift();
+  EXPECT_FALSE(arbiter_.odometry_drifts());
+}
+
+TEST_F(ArbiterTest, HeadingsThatLeanApartExcludeGnss) {
+  run(100, none_, none_);
+  run(25, {0.0, 0.0, radians(-0.18)}, {0.0, 0.0, radians(0.25)});
+  EXPECT_FALSE(arbiter_.odometry_drifts());
+  EXPECT_FALSE(arbiter_.trusts_gnss());
 }
 
 TEST_F(ArbiterTest, OneOutlierIsNoDrift) {
   run(100, none_, none_);
   arbiter_.add_match(now_, innovation({5.0, 5.0, 0.1}), false);
-  EXPECT_FALSE(arbiter_.match_drifts());
+  EXPECT_FALSE(arbiter_.odometry_drifts());
 }
 
 TEST_F(ArbiterTest, AMatchThatIsFarOffBeginsADisputeAtOnce) {
