@@ -32,8 +32,8 @@ constexpr int kGnssPasses = 20;
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
 constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
-/// Where the heading of GNSS drifts, that of the match need only lean to the same side by this much:
-/// two voters then say that the yaw rate has a bias.
+/// Where the heading of GNSS drifts, that of the match need only lean to the same side by this
+/// much: two voters then say that the yaw rate has a bias.
 constexpr double kSharedLean = 2.5;
 /// Larger innovations count as this many standard deviations, so that one outlier is no drift.
 constexpr double kMaxDriftStep = 3.0;
@@ -196,7 +196,8 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
     decide_dispute(verdict, standing);
     if (verdict.odometry_contradicts) odometry_wrong_until_ = now + kOdometryMemory;
   }
-  if (valid && match_agrees(now) && gnss_moved() && !odometry_drifts() && !gnss_.excluded) gnss_.exclude();
+  const bool gnss_alone = gnss_moved() && !odometry_drifts();
+  if (valid && match_agrees(now) && gnss_alone && !gnss_.excluded) gnss_.exclude();
   if (!match_agrees(now) && !match_is_disputed() && gnss_.refused_in_a_row >= kGnssRefusals &&
       !gnss_.excluded) {
     verdict.undecided = true;
