@@ -82,8 +82,8 @@ Se2 transfer(const MeasuredMatch& measured, const Se2& truth, const HypothesisGr
   return {correction[0], correction[1], correction[2]};
 }
 
-/// The mass at the border of a measured match whose peak is moved to `peak`: a peak that comes
-/// nearer to the border has more mass there.
+/// The probability near the border of the search, per axis, if the peak of a measured match moves
+/// to `peak`. It grows if the peak comes nearer to the border.
 Eigen::Vector3d edge_mass_of(const MeasuredMatch& measured, const Se2& peak,
                              const HypothesisGrid& grid) {
   const Eigen::Vector3d sigma = measured.covariance().diagonal().cwiseSqrt();

@@ -32,8 +32,8 @@ constexpr int kGnssPasses = 20;
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
 constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
-/// Where the heading of GNSS drifts, that of the match need only lean to the same side by this
-/// much: two voters then say that the yaw rate has a bias.
+/// If the heading of GNSS drifts, this lean of the match's heading to the same side is enough: two
+/// voters then say that the yaw rate has a bias.
 constexpr double kSharedLean = 2.5;
 /// Larger innovations count as this many standard deviations, so that one outlier is no drift.
 constexpr double kMaxDriftStep = 3.0;
@@ -87,6 +87,19 @@ bool Arbiter::Voter::drifts() const {
   return lean().cwiseAbs().maxCoeff() > kDriftLimit;
 }
 
+void Arbiter::Voter::exclude() {
+  if (excluded) return;
+  excluded = true;
+  passed_in_a_row = 0;
+}
+
+bool Arbiter::Voter::readmit_after(int passes) {
+  if (!excluded || passed_in_a_row < passes) return false;
+  excluded = false;
+  drift.setZero();
+  return true;
+}
+
 bool Arbiter::odometry_drifts() const {
   if (match_.drifts()) return true;
   const double gnss = gnss_.lean().z();
@@ -97,18 +110,6 @@ bool Arbiter::odometry_drifts() const {
 void Arbiter::forget_drift() {
   match_.drift.setZero();
   gnss_.drift.setZero();
-}
-
-void Arbiter::Voter::exclude() {
-  excluded = true;
-  passed_in_a_row = 0;
-}
-
-bool Arbiter::Voter::readmit_after(int passes) {
-  if (!excluded || passed_in_a_row < passes) return false;
-  excluded = false;
-  drift.setZero();
-  return true;
 }
 
 void Arbiter::add_match(Time time, const PoseInnovation& innovation, bool passes_gate) {
@@ -196,8 +197,7 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
     decide_dispute(verdict, standing);
     if (verdict.odometry_contradicts) odometry_wrong_until_ = now + kOdometryMemory;
   }
-  const bool gnss_alone = gnss_moved() && !odometry_drifts();
-  if (valid && match_agrees(now) && gnss_alone && !gnss_.excluded) gnss_.exclude();
+  if (valid && match_agrees(now) && gnss_moved() && !odometry_drifts()) gnss_.exclude();
   if (!match_agrees(now) && !match_is_disputed() && gnss_.refused_in_a_row >= kGnssRefusals &&
       !gnss_.excluded) {
     verdict.undecided = true;

@@ -85,6 +85,7 @@ class Arbiter {
     /// `drift` in its own standard deviations.
     Eigen::Vector3d lean() const;
     bool drifts() const;
+    /// Does nothing if the voter is excluded already.
     void exclude();
     /// Ends the exclusion after enough passes in a row. Returns whether it ended now.
     bool readmit_after(int passes);

@@ -22,8 +22,8 @@ struct PoseMeasurement {
   /// Variance that update() adds to the noise, in the vehicle frame of the measured pose, because
   /// the noise of consecutive measurements is alike. The gate does not add it.
   Eigen::Vector3d repeated_variance = Eigen::Vector3d::Zero();
-  /// Whether the correlated error is a new one, and says nothing about that of the measurements
-  /// before it: see renew_match_error().
+  /// Whether the correlated error is independent of that of the measurements before. update() then
+  /// calls renew_match_error().
   bool has_new_error = false;
 };
 
@@ -36,8 +36,8 @@ struct PoseInnovation {
   /// Squared Mahalanobis distance. Chi-square with three degrees of freedom if the covariances are
   /// correct.
   double squared_distance = 0.0;
-  /// Squared distance that remains if the match has a new error (see renew_match_error()). Not
-  /// larger than `squared_distance`; for GNSS the same.
+  /// Squared distance after renew_match_error(), but at most `squared_distance`. For GNSS it equals
+  /// `squared_distance`.
   double unexplained = 0.0;
 };
 
@@ -51,8 +51,8 @@ PoseInnovation innovation_of(const FilterState& state, const PoseMeasurement& me
 FilterState state_from(const PoseMeasurement& measurement, double speed_scale_variance,
                        double yaw_rate_bias_variance);
 
-/// Forgets the match error: the next match has another one, of which nothing is known. The pose
-/// keeps its uncertainty.
+/// Forgets what is known about the match error, because the next match has another one. The pose
+/// and its uncertainty stay as they are.
 void renew_match_error(FilterState& state);
 
 /// Kalman update in Joseph form, which keeps the covariance symmetric and positive definite.

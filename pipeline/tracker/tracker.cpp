@@ -16,7 +16,7 @@ MeasuredMotion between(const MeasuredMotion& a, const MeasuredMotion& b, double 
           std::lerp(a.yaw_rate_radps, b.yaw_rate_radps, weight_of_b)};
 }
 
-/// Refused matches in a row after which a match may have a new error. An outlier is shorter.
+/// This many refused matches in a row may have a new error. Fewer are outliers.
 constexpr int kRefusalsForNewError = 3;
 
 bool is_covariance(const Eigen::Matrix3d& matrix) {

@@ -86,9 +86,9 @@ enum class Trust : uint8_t {
 /// states are computed again. A refused measurement changes nothing.
 ///
 /// The error of the matches can change from one frame to the next, for example where another line
-/// comes into view. The gate refuses such matches, because it expects the error of the frames
-/// before. The third one in a row is accepted if a new match error, as large as any match may have,
-/// explains its offset.
+/// comes into view. The gate then refuses the matches, because the filter expects the earlier error
+/// again. The third refused match in a row is accepted if it passes the gate without this
+/// expectation.
 ///
 /// While the vehicle stands, all matches see the same picture, so their noise is alike, too: the
 /// k-th of them counts with 1 + (k - 1)^2 times its noise. All of them say little more than the
@@ -148,8 +148,8 @@ class Tracker {
  private:
   void initialise(Time time, const PoseMeasurement& measurement);
   TrackerUpdate add_pose(Time time, PoseMeasurement measurement, Trust trust);
-  /// Sets latest_innovation(). A match may also pass as the last of several refused ones whose
-  /// offset a new match error explains; it then has `has_new_error`.
+  /// Whether the gate accepts `measurement`. Sets latest_innovation(), and `has_new_error` of a
+  /// match that is accepted without the expected match error.
   bool passes_gate(FilterState state, Trust trust, PoseMeasurement& measurement);
   /// Adds the variance of a match that repeats those before it, because the vehicle stands.
   void discount_standing(const MeasuredMotion& motion, PoseMeasurement& measurement);

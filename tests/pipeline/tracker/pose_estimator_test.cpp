@@ -51,13 +51,13 @@ class PoseEstimatorTest : public testing::Test {
   int steps_ = 0;
 };
 
-TEST_F(PoseEstimatorTest, AModeAtTheBorderDoesNotCorrectThePose) {
+TEST_F(PoseEstimatorTest, AMatchAtTheBorderDoesNotCorrectThePose) {
   const double before_rad = yaw_sigma_rad();
   EXPECT_EQ(match_with({}, 1.0), TrackerUpdate::kAccepted);
   EXPECT_NEAR(yaw_sigma_rad(), before_rad, 0.02 * before_rad);
 }
 
-TEST_F(PoseEstimatorTest, AModeAtTheBorderWithALowScoreContradictsLess) {
+TEST_F(PoseEstimatorTest, AMatchAtTheBorderWithALowScoreContradictsLess) {
   const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
   MatchResult match = match_at(prior, {0.0, 0.0, radians(2.0)});
   match.covariance(2, 2) = square_of(radians(0.3));
@@ -67,7 +67,7 @@ TEST_F(PoseEstimatorTest, AModeAtTheBorderWithALowScoreContradictsLess) {
   EXPECT_EQ(estimator_.add_match(at_s(time_s_), prior, match).update, TrackerUpdate::kAccepted);
 }
 
-TEST_F(PoseEstimatorTest, AModeAtTheBorderContradictsAPoseOfAnotherPlace) {
+TEST_F(PoseEstimatorTest, AMatchAtTheBorderContradictsAPoseOfAnotherPlace) {
   const Se2 border{0.0, 0.0, radians(2.0)};
   EXPECT_EQ(match_with(border, 1.0), TrackerUpdate::kGated);
   EXPECT_EQ(match_with(border, 1.0), TrackerUpdate::kGated);
