@@ -1,6 +1,9 @@
 #include "evaluation/calib/calib_evaluation.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,10 +18,9 @@ namespace {
 /// One parameter over all cameras and drives.
 struct ErrorSums {
   int cameras = 0;
-  int observable = 0;
-  double before = 0.0;  ///< sum of squares of the errors of the observable ones
-  double after = 0.0;
-  int within_sigma = 0;  ///< errors within one sigma
+  double before = 0.0;         ///< sum of squares of the errors of the observable ones
+  std::vector<double> errors;  ///< absolute, of the observable ones
+  int within_sigma = 0;        ///< errors within one sigma
   int within_three = 0;
 };
 
@@ -29,11 +31,48 @@ void judge_camera(const CameraRefinement& camera, const CameraAdjustment& truth,
     ++sum.cameras;
     if (camera.unobservable[static_cast<size_t>(p)]) continue;
     const double error = camera.change[p] - truth[p];
-    ++sum.observable;
     sum.before += truth[p] * truth[p];
-    sum.after += error * error;
+    sum.errors.push_back(std::abs(error));
     sum.within_sigma += std::abs(error) <= camera.sigma[p];
     sum.within_three += std::abs(error) <= 3.0 * camera.sigma[p];
+  }
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double root_mean_square(double sum_of_squares, size_t count) {
+  return count == 0 ? 0.0 : std::sqrt(sum_of_squares / static_cast<double>(count));
+}
+
+/// Prints one row for each parameter, and adds it to `json`.
+void print_table(const std::array<ErrorSums, kCameraParameters>& sums, nlohmann::json& json) {
+  fmt::print("{:15} {:>10} {:>10} {:>12} {:>10} {:>9} {:>9}\n", "error", "observable", "before RMS",
+             "after median", "after RMS", "1 sigma", "3 sigma");
+  for (size_t p = 0; p < kCameraParameters; ++p) {
+    const ErrorSums& sum = sums[p];
+    const CameraParameterInfo& info = kCameraParameterInfos[p];
+    const size_t observable = sum.errors.size();
+    const double squares =
+        std::inner_product(sum.errors.begin(), sum.errors.end(), sum.errors.begin(), 0.0);
+    const double before = root_mean_square(sum.before, observable) / info.per_unit;
+    const double median = median_of(sum.errors) / info.per_unit;
+    const double after = root_mean_square(squares, observable) / info.per_unit;
+    const double count = std::max(1.0, static_cast<double>(observable));
+    fmt::print("{:15} {:>10} {:>10.3f} {:>12.3f} {:>10.3f} {:>7.0f} % {:>7.0f} %\n", info.key,
+               fmt::format("{}/{}", observable, sum.cameras), before, median, after,
+               100.0 * sum.within_sigma / count, 100.0 * sum.within_three / count);
+    json[std::string(info.key)] = {{"observable", observable},
+                                   {"cameras", sum.cameras},
+                                   {"rms_before", before},
+                                   {"median_after", median},
+                                   {"rms_after", after},
+                                   {"within_1_sigma", sum.within_sigma / count},
+                                   {"within_3_sigma", sum.within_three / count}};
   }
 }
 
@@ -84,24 +123,7 @@ Status CalibEvaluation::run() const {
     json["drives"].push_back(std::move(drive));
     show_progress(i + 1, drives_, "drives");
   }
-  fmt::print("{:15} {:>10} {:>11} {:>11} {:>9} {:>9}\n", "root mean square", "observable", "before",
-             "after", "1 sigma", "3 sigma");
-  for (size_t p = 0; p < kCameraParameters; ++p) {
-    const ErrorSums& sum = sums[p];
-    const CameraParameterInfo& info = kCameraParameterInfos[p];
-    const double count = std::max(1, sum.observable);
-    const double before = std::sqrt(sum.before / count) / info.per_unit;
-    const double after = std::sqrt(sum.after / count) / info.per_unit;
-    fmt::print("{:16} {:>10} {:>11.3f} {:>11.3f} {:>7.0f} % {:>7.0f} %\n", info.key,
-               fmt::format("{}/{}", sum.observable, sum.cameras), before, after,
-               100.0 * sum.within_sigma / count, 100.0 * sum.within_three / count);
-    json["errors"][std::string(info.key)] = {{"observable", sum.observable},
-                                             {"cameras", sum.cameras},
-                                             {"rms_before", before},
-                                             {"rms_after", after},
-                                             {"within_1_sigma", sum.within_sigma / count},
-                                             {"within_3_sigma", sum.within_three / count}};
-  }
+  print_table(sums, json["errors"]);
   return write_file(json.dump(2) + "\n", json_file_);
 }
 

@@ -8,8 +8,13 @@ namespace {
 constexpr double kPaintReach_m = 25.0;
 constexpr int kLeastFramesets = 20;
 
-/// How far from its prediction paint is looked for, in each round.
-constexpr std::array<double, 3> kSearches_rad = {0.04, 0.016, 0.01};
+struct Round {
+  double search_rad;   ///< how far from its prediction paint is looked for
+  double sigma_scale;  ///< of the places of paint
+};
+/// A wide search meets paint of other lines, so it has a large sigma and moves the estimate less.
+constexpr std::array<Round, 5> kRounds{
+    {{0.04, 8.0}, {0.02, 4.0}, {0.014, 2.0}, {0.01, 1.0}, {0.01, 1.0}}};
 
 class RigRefiner {
  public:
@@ -22,16 +27,16 @@ class RigRefiner {
         problem_(rig, recording.reference(), options) {}
 
   Result<RigRefinement> run() {
-    for (const double search_rad : kSearches_rad) {
+    for (const auto& [search_rad, sigma_scale] : kRounds) {
       if (Status read = look(search_rad); !read) return tl::unexpected(read.error());
       if (framesets_ < kLeastFramesets) {
         return fail("recording: found {} framesets apart with a reference pose, wanted {} or more",
                     framesets_, kLeastFramesets);
       }
-      problem_.solve(search_rad);
+      problem_.solve(search_rad, sigma_scale);
     }
-    problem_.fix_unobservable(kSearches_rad.back());
-    return problem_.result(kSearches_rad.back());
+    problem_.finish(kRounds.back().search_rad);
+    return problem_.result(kRounds.back().search_rad);
   }
 
  private:
@@ -45,7 +50,7 @@ class RigRefiner {
       if (Status read = recording_.next(pictures); !read) return read;
       if (pictures.empty()) return {};
       if (progress_) {
-        progress_(++read_, recording_.framesets() * static_cast<int>(kSearches_rad.size()));
+        progress_(++read_, recording_.framesets() * static_cast<int>(kRounds.size()));
       }
       const auto pose = recording_.reference().at(pictures.front().time);
       if (!pose || (last && is_near(*last, *pose))) continue;

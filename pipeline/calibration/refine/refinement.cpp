@@ -23,6 +23,16 @@ double median_of(std::vector<double>& values) {
   return *middle;
 }
 
+/// Whether mounts and lenses change so much. A wrong line fits, too, if they may change enough.
+bool is_plausible(const CameraAdjustment& change) {
+  constexpr double kMostOfExpected = 3.0;
+  for (int p = 0; p < kCameraParameters; ++p) {
+    const double expected = kCameraParameterInfos[static_cast<size_t>(p)].expected_error;
+    if (std::abs(change[p]) > kMostOfExpected * expected) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 RefinementProblem::RefinementProblem(const Rig& rig, const ReferenceTrajectory& reference,
@@ -150,15 +160,17 @@ bool RefinementProblem::step(double gate_rad, double& damping) {
   return false;
 }
 
-void RefinementProblem::solve(double gate_rad) {
+void RefinementProblem::solve(double gate_rad, double sigma_scale) {
+  sigma_scale_ = sigma_scale;
   constexpr int kMostSteps = 20;
   double damping = 1e-4;
   for (int i = 0; i < kMostSteps && step(gate_rad, damping); ++i) {
   }
 }
 
-/// Fixes cameras that see too little paint.
-bool RefinementProblem::fix_rarely_seen(double gate_rad) {
+/// Leaves out cameras that see too little or would change too much. Returns whether there are new
+/// ones.
+bool RefinementProblem::leave_out_doubtful(double gate_rad) {
   std::array<int, kCameraCount> seen{};
   for (const View& view : views_) {
     visit(view, gate_rad, [&](const PaintSighting&, const Line* line, double) {
@@ -167,39 +179,73 @@ bool RefinementProblem::fix_rarely_seen(double gate_rad) {
   }
   bool any = false;
   for (int c = 0; c < kCameraCount; ++c) {
-    if (seen[c] >= kLeastSightings || free_[c].none()) continue;
+    if (free_[c].none() || (seen[c] >= kLeastSightings && is_plausible(estimate_.changes[c])))
+      continue;
     free_[c].reset();
+    unobservable_[c] = options_.free;
     estimate_.changes[c].setZero();
     any = true;
   }
   return any;
 }
 
-void RefinementProblem::fix_unobservable(double gate_rad) {
+void RefinementProblem::find_unobservable(double gate_rad) {
   // In units of the expected error: the recording's own sigma is at most half of it.
   constexpr double kLeastInformation = 4.0;
   const Eigen::VectorXd scale = camera_prior().cwiseInverse().cwiseSqrt();
   const Eigen::MatrixXd information =
       scale.asDiagonal() * camera_information(gate_rad) * scale.asDiagonal();
-  bool any = fix_rarely_seen(gate_rad);
-  while (true) {
-    std::vector<int> indices;
-    for (int i = 0; i < kCameraUnknowns; ++i) {
-      if (free_[i / kCameraParameters][static_cast<size_t>(i % kCameraParameters)]) {
-        indices.push_back(i);
-      }
+  std::vector<int> indices;
+  for (int i = 0; i < kCameraUnknowns; ++i) {
+    if (free_[i / kCameraParameters][static_cast<size_t>(i % kCameraParameters)]) {
+      indices.push_back(i);
     }
-    if (indices.empty()) break;
+  }
+  while (!indices.empty()) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(information(indices, indices));
-    if (parts.eigenvalues()[0] >= kLeastInformation) break;
+    if (parts.eigenvalues()[0] >= kLeastInformation) return;
     Eigen::Index largest = 0;
     parts.eigenvectors().col(0).cwiseAbs().maxCoeff(&largest);
     const int worst = indices[static_cast<size_t>(largest)];
-    free_[worst / kCameraParameters].reset(static_cast<size_t>(worst % kCameraParameters));
-    estimate_.changes[worst / kCameraParameters][worst % kCameraParameters] = 0.0;
-    any = true;
+    unobservable_[worst / kCameraParameters].set(static_cast<size_t>(worst % kCameraParameters));
+    indices.erase(indices.begin() + largest);
   }
-  if (any) solve(gate_rad);
+}
+
+/// Gives the unobservable parameters of a camera their value of before, and estimates its others
+/// again (Gauss-Newton). Nothing else moves.
+void RefinementProblem::keep_unobservable(int camera, double gate_rad) {
+  constexpr int kSteps = 5;
+  const Eigen::Index first = camera * kCameraParameters;
+  const CameraAdjustment prior = camera_prior().segment<kCameraParameters>(first);
+  CameraAdjustment& change = estimate_.changes[camera];
+  std::vector<int> others;
+  for (int p = 0; p < kCameraParameters; ++p) {
+    if (unobservable_[camera][static_cast<size_t>(p)]) {
+      change[p] = 0.0;
+    } else {
+      others.push_back(p);
+    }
+  }
+  if (others.empty()) return;
+  for (int i = 0; i < kSteps; ++i) {
+    const Sums sums = linearize(gate_rad);
+    Eigen::Matrix<double, kCameraParameters, kCameraParameters> information =
+        sums.information.block<kCameraParameters, kCameraParameters>(first, first);
+    information.diagonal() += prior;
+    const CameraAdjustment gradient =
+        sums.gradient.segment<kCameraParameters>(first) + prior.cwiseProduct(change);
+    const Eigen::MatrixXd of_others = information(others, others);
+    change(others) -= of_others.llt().solve(gradient(others));
+  }
+}
+
+void RefinementProblem::finish(double gate_rad) {
+  while (leave_out_doubtful(gate_rad)) solve(gate_rad);
+  find_unobservable(gate_rad);
+  for (int c = 0; c < kCameraCount; ++c) {
+    if (free_[c].any() && unobservable_[c].any()) keep_unobservable(c, gate_rad);
+  }
 }
 
 RigRefinement RefinementProblem::result(double gate_rad) const {
@@ -232,7 +278,7 @@ RigRefinement RefinementProblem::result(double gate_rad) const {
   for (int c = 0; c < kCameraCount; ++c) {
     CameraRefinement& camera = result.cameras[c];
     camera.change = estimate_.changes[c];
-    camera.unobservable = options_.free & ~free_[c];
+    camera.unobservable = unobservable_[c];
     camera.sigma = variance.segment<kCameraParameters>(c * kCameraParameters).cwiseSqrt();
     camera.before_px = median_of(before[c]);
     camera.after_px = median_of(after[c]);

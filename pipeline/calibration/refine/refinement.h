@@ -49,8 +49,8 @@ struct RigRefinement {
   int frames = 0;
 };
 
-/// Robust least squares (Levenberg-Marquardt with Huber's weights). The unknowns, each with a
-/// Gaussian prior (RefinementOptions, kCameraParameterInfos):
+/// Robust least squares (Levenberg-Marquardt with the weights of Geman and McClure). The unknowns,
+/// each with a Gaussian prior (RefinementOptions, kCameraParameterInfos):
 /// - eight parameters of each camera;
 /// - six of each frameset, which all cameras share: an error of its reference pose, and tilt and
 ///   lift of the body. They are eliminated by their Schur complement;
@@ -59,8 +59,9 @@ struct RigRefinement {
 ///
 /// A parameter is unobservable if it has the largest part in a direction (an eigenvector of the
 /// information about the cameras, in units of the expected errors) that the recording determines no
-/// better than to half the expected error. It keeps its value, and the others are estimated again.
-/// So do all of a camera with fewer than 100 sightings that agree.
+/// better than to half the expected error. It keeps its value of before, and the others of its
+/// camera follow. A camera keeps all its values, and its sightings do not count, if fewer than 100
+/// of them agree or if one of its parameters would change by more than three expected errors.
 class RefinementProblem {
  public:
   /// `rig` and `reference` must outlive the problem.
@@ -74,11 +75,13 @@ class RefinementProblem {
   void add(int frame, int camera, Time time, std::vector<PaintSighting> sightings);
 
   /// Improves the estimate with the sightings whose paint is at most `gate_rad` times the focal
-  /// length from where the estimate has it.
-  void solve(double gate_rad);
+  /// length from where the estimate has it. The sigma of where paint is found is `sigma_scale`
+  /// times that of the options: a large one for a rig that may be far off.
+  void solve(double gate_rad, double sigma_scale = 1.0);
 
-  /// Fixes what is unobservable and solves again.
-  void fix_unobservable(double gate_rad);
+  /// Leaves out doubtful cameras, solves without them, and gives unobservable parameters their
+  /// value of before.
+  void finish(double gate_rad);
 
   const CameraAdjustment& change(int camera) const { return estimate_.changes[camera]; }
   RigRefinement result(double gate_rad) const;
@@ -144,7 +147,9 @@ class RefinementProblem {
   Eigen::VectorXd camera_prior() const;
   void move(const Sums& sums, const Eigen::VectorXd& by);
   bool step(double gate_rad, double& damping);
-  bool fix_rarely_seen(double gate_rad);
+  bool leave_out_doubtful(double gate_rad);
+  void find_unobservable(double gate_rad);
+  void keep_unobservable(int camera, double gate_rad);
   Eigen::Vector2d acceleration_at(Time time) const;
   FrameVector frame_sigma() const;
   FrameVector expected_error(const Frame& frame) const;
@@ -152,10 +157,12 @@ class RefinementProblem {
   const Rig& rig_;
   const ReferenceTrajectory& reference_;
   const RefinementOptions options_;
-  std::array<ParameterSet, kCameraCount> free_;
+  std::array<ParameterSet, kCameraCount> free_;  ///< none: the camera is left out
+  std::array<ParameterSet, kCameraCount> unobservable_;
   Estimate estimate_;
   std::map<uint32_t, int> elements_;  ///< from the map's index to ours
   std::vector<View> views_;
+  double sigma_scale_ = 1.0;
 };
 
 }  // namespace bevloc

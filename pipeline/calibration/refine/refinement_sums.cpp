@@ -11,9 +11,7 @@
 namespace bevloc {
 namespace {
 
-constexpr double kHuber = 1.5;   // sigmas
-constexpr double kBeyond = 5.0;  // sigmas: no weight at all, with a narrow gate
-constexpr double kNarrowGate_rad = 0.017;
+constexpr double kFar = 3.0;  // sigmas
 /// The mean over a drive of what differs between framesets, relative to its sigma.
 constexpr double kMeanOfSigma = 0.3;
 /// One sigma of the body's tilt per acceleration, in radians per m/s^2.
@@ -25,9 +23,14 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   return m;
 }
 
-double huber_cost(double residual) {
-  const double size = std::abs(residual);
-  return size <= kHuber ? 0.5 * size * size : kHuber * (size - 0.5 * kHuber);
+/// Geman and McClure: what is far off hardly counts.
+double weight_of(double residual) {
+  const double share = 1.0 / (1.0 + residual * residual / (kFar * kFar));
+  return share * share;
+}
+
+double cost_of(double residual) {
+  return 0.5 * residual * residual / (1.0 + residual * residual / (kFar * kFar));
 }
 
 /// d(n . pixel) / d(point in the camera), by central differences. Nothing beyond the lens.
@@ -86,15 +89,14 @@ void RefinementProblem::visit(const View& view, double gate_rad, const Visitor& 
       continue;
     }
     const double per_sigma =
-        1.0 / std::hypot(options_.image_px, options_.paint_m * sighting.pixels_per_m);
+        1.0 /
+        (sigma_scale_ * std::hypot(options_.image_px, options_.paint_m * sighting.pixels_per_m));
     const Eigen::RowVector3d of_vehicle = *slope * camera_from_vehicle.rotation;
     const Eigen::Vector3d motion =
         (in_vehicle(*after, point) - in_vehicle(*before, point)) / (2.0 * to_seconds(kAround));
     Line line;
     line.residual = nearest_px * per_sigma;
-    const double size = std::abs(line.residual);
-    line.weight = size <= kHuber ? 1.0 : kHuber / size;
-    if (gate_rad <= kNarrowGate_rad && size > kBeyond) line.weight = 0.0;
+    line.weight = weight_of(line.residual);
     line.of_camera.head<3>() = (*slope * skew(in_camera)).transpose();
     line.of_camera.segment<3>(kForward) = -of_vehicle.transpose();
     line.of_camera[kFocal] = sighting.normal_px.dot(
@@ -182,11 +184,11 @@ RefinementProblem::Sums RefinementProblem::linearize(double gate_rad) const {
   }
   add_frame_priors(sums);
   for (const View& view : views_) {
+    if (free_[view.camera].none()) continue;
     visit(view, gate_rad, [&](const PaintSighting& sighting, const Line* line, double) {
-      // A sighting without paint near the estimate costs as much as one at kBeyond.
-      const bool counts = line && line->weight > 0.0;
-      sums.cost += huber_cost(counts ? line->residual : kBeyond);
-      if (counts) add_line(view, sighting, *line, sums);
+      // A sighting without paint near the estimate costs as much as paint that is far off.
+      sums.cost += line ? cost_of(line->residual) : 0.5 * kFar * kFar;
+      if (line) add_line(view, sighting, *line, sums);
     });
   }
   return sums;
