@@ -7,8 +7,8 @@ namespace {
 
 /// A new pose becomes valid only if this many standard deviations lie within the alert limits.
 constexpr double kSigmasToTrack = 4.0;
-/// Dead reckoning alone is trusted for this long. Shorter gaps between matches that confirm the
-/// pose are common in drives without a fault.
+/// Dead reckoning alone is trusted for this long, if nothing contradicts match or GNSS. Shorter gaps
+/// between matches that confirm the pose are common in drives without a fault.
 constexpr Duration kTrustedDeadReckoning = std::chrono::seconds(3);
 
 }  // namespace
@@ -68,7 +68,9 @@ bool Health::is_too_uncertain(const HealthInputs& inputs) const {
 
 /// Dead reckoning alone may be wrong by its whole protection level.
 bool Health::is_unprotected(const HealthInputs& inputs) const {
-  return inputs.correction_age > kTrustedDeadReckoning &&
+  const bool disputed = inputs.verdict.match_contradicts || inputs.verdict.gnss_contradicts;
+  const Duration trusted = disputed ? limits_.correction_timeout : kTrustedDeadReckoning;
+  return inputs.correction_age > trusted &&
          (inputs.protection_level.y() > limits_.alert_limit.y() ||
           inputs.protection_level.z() > limits_.alert_limit.z());
 }

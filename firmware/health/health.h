@@ -29,7 +29,8 @@ struct HealthLimits {
   double yaw_sigma_rad = radians(0.75);
   /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert
   /// limits of a freeway. A new pose becomes valid only if its error is well within them. After 3 s
-  /// without a match, the pose is lost if its protection level across or of heading exceeds them.
+  /// without a match, the pose is lost if its protection level across or of heading exceeds them;
+  /// while match or GNSS is excluded, already after `correction_timeout`.
   Eigen::Vector3d alert_limit = kFreewayAlertLimits;
   /// For the protection levels that are sent with the pose.
   ProtectionParameters protection;

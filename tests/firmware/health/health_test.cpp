@@ -49,6 +49,31 @@ HealthInputs unmatched(Duration age, double across_m, double heading_rad) {
   return inputs;
 }
 
+TEST(HealthTest, LosesAPoseSoonerThatOnlyOdometrySupports) {
+  const HealthLimits limits;
+  const Duration soon = limits.correction_timeout + milliseconds(1);
+  HealthInputs inputs = unmatched(soon, limits.alert_limit.y() + 0.01, 0.0);
+  Health trusting = tracking();
+  trusting.update(inputs);
+  EXPECT_EQ(trusting.state(), HealthState::kDegraded);
+  for (bool Verdict::*excluded : {&Verdict::match_contradicts, &Verdict::gnss_contradicts}) {
+    inputs.verdict = {};
+    inputs.verdict.*excluded = true;
+    Health health = tracking();
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kLost);
+  }
+}
+
+TEST(HealthTest, KeepsAProtectedPoseAlsoWhileAVoterIsExcluded) {
+  const HealthLimits limits;
+  HealthInputs inputs = unmatched(milliseconds(2900), limits.alert_limit.y() - 0.01, 0.0);
+  inputs.verdict.match_contradicts = true;
+  Health health = tracking();
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+}
+
 TEST(HealthTest, LosesAPoseWithoutMatchesWhoseProtectionLevelIsBeyondTheAlertLimit) {
   const Eigen::Vector3d limit = HealthLimits().alert_limit;
   for (const auto& inputs : {unmatched(milliseconds(3001), limit.y() + 0.01, 0.0),
