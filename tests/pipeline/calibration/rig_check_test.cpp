@@ -134,7 +134,7 @@ TEST(RigCheck, RefusesImpossibleMountings) {
   Rig rig = sim::nominal_rig();
   Se3& front = rig.cameras[kFront].vehicle_from_camera;
   front.rotation = looking(0, 1, 179);
-  EXPECT_THAT(message_for(rig), HasSubstr("found a camera rolled by 179.0 degrees"));
+  EXPECT_THAT(message_for(rig), HasSubstr("found a camera rolled by -179.0 degrees"));
   front.rotation = looking(0, 1, 90);
   EXPECT_THAT(message_for(rig), HasSubstr("degrees about its optical axis, wanted a roll of at "
                                           "most 15 degrees"));
