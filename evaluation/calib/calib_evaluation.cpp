@@ -10,6 +10,7 @@
 
 #include "evaluation/calib/calib_report.h"
 #include "evaluation/command_output.h"
+#include "evaluation/drive/error_statistics.h"
 #include "pipeline/calibration/refine/refine_rig.h"
 
 namespace bevloc::evaluation {
@@ -38,13 +39,6 @@ void judge_camera(const CameraRefinement& camera, const CameraAdjustment& truth,
   }
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 double root_mean_square(double sum_of_squares, size_t count) {
   return count == 0 ? 0.0 : std::sqrt(sum_of_squares / static_cast<double>(count));
 }
@@ -60,7 +54,7 @@ void print_table(const std::array<ErrorSums, kCameraParameters>& sums, nlohmann:
     const double squares =
         std::inner_product(sum.errors.begin(), sum.errors.end(), sum.errors.begin(), 0.0);
     const double before = root_mean_square(sum.before, observable) / info.per_unit;
-    const double median = median_of(sum.errors) / info.per_unit;
+    const double median = quantile_of(sum.errors, 0.5) / info.per_unit;
     const double after = root_mean_square(squares, observable) / info.per_unit;
     const double count = std::max(1.0, static_cast<double>(observable));
     fmt::print("{:15} {:>10} {:>10.3f} {:>12.3f} {:>10.3f} {:>7.0f} % {:>7.0f} %\n", info.key,

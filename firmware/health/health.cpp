@@ -7,8 +7,8 @@ namespace {
 
 /// A new pose becomes valid only if this many standard deviations lie within the alert limits.
 constexpr double kSigmasToTrack = 4.0;
-/// Dead reckoning alone is trusted for this long, if nothing contradicts match or GNSS. Shorter
-/// gaps between matches that confirm the pose are common in drives without a fault.
+/// A pose without matches is trusted for this long, unless match or GNSS is excluded. In drives
+/// without a fault, shorter times without a match are common.
 constexpr Duration kTrustedDeadReckoning = std::chrono::seconds(3);
 
 }  // namespace

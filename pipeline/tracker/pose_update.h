@@ -51,8 +51,8 @@ PoseInnovation innovation_of(const FilterState& state, const PoseMeasurement& me
 FilterState state_from(const PoseMeasurement& measurement, double speed_scale_variance,
                        double yaw_rate_bias_variance);
 
-/// Forgets what is known about the match error, because the next match has another one. The pose
-/// and its uncertainty stay as they are.
+/// Forgets what is known about the match error. To be called when the next match has another error.
+/// The pose and its uncertainty stay as they are.
 void renew_match_error(FilterState& state);
 
 /// Kalman update in Joseph form, which keeps the covariance symmetric and positive definite.

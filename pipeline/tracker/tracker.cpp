@@ -16,7 +16,8 @@ MeasuredMotion between(const MeasuredMotion& a, const MeasuredMotion& b, double 
           std::lerp(a.yaw_rate_radps, b.yaw_rate_radps, weight_of_b)};
 }
 
-/// This many refused matches in a row may have a new error. Fewer are outliers.
+/// After this many refused matches in a row, the match error may have changed. Fewer count as
+/// outliers.
 constexpr int kRefusalsForNewError = 3;
 
 bool is_covariance(const Eigen::Matrix3d& matrix) {

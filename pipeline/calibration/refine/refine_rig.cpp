@@ -9,10 +9,11 @@ constexpr double kPaintReach_m = 25.0;
 constexpr int kLeastFramesets = 20;
 
 struct Round {
-  double search_rad;   ///< how far from its prediction paint is looked for
-  double sigma_scale;  ///< of the places of paint
+  double search_rad;   ///< largest distance between predicted and found paint
+  double sigma_scale;  ///< of where paint is found (RefinementProblem::solve)
 };
-/// A wide search meets paint of other lines, so it has a large sigma and moves the estimate less.
+/// A wide search also finds the paint of wrong lines. With a large sigma they change the estimate
+/// less.
 constexpr std::array<Round, 5> kRounds{
     {{0.04, 8.0}, {0.02, 4.0}, {0.014, 2.0}, {0.01, 1.0}, {0.01, 1.0}}};
 

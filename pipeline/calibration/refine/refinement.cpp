@@ -23,7 +23,8 @@ double median_of(std::vector<double>& values) {
   return *middle;
 }
 
-/// Whether mounts and lenses change so much. A wrong line fits, too, if they may change enough.
+/// Whether a mount or a lens can change this much. A camera that may change more can also fit the
+/// paint of wrong lines.
 bool is_plausible(const CameraAdjustment& change) {
   constexpr double kMostOfExpected = 3.0;
   for (int p = 0; p < kCameraParameters; ++p) {
@@ -212,40 +213,47 @@ void RefinementProblem::find_unobservable(double gate_rad) {
   }
 }
 
-/// Gives the unobservable parameters of a camera their value of before, and estimates its others
-/// again (Gauss-Newton). Nothing else moves.
-void RefinementProblem::keep_unobservable(int camera, double gate_rad) {
+/// Sets the change of unobservable parameters to 0 and estimates the other parameters of their
+/// cameras again (Gauss-Newton). All other unknowns keep their estimate, so the cameras are
+/// independent.
+void RefinementProblem::keep_unobservable(double gate_rad) {
   constexpr int kSteps = 5;
+  for (int c = 0; c < kCameraCount; ++c) {
+    for (int p = 0; p < kCameraParameters; ++p) {
+      if (unobservable_[c][static_cast<size_t>(p)]) estimate_.changes[c][p] = 0.0;
+    }
+  }
+  for (int i = 0; i < kSteps; ++i) {
+    const Sums sums = linearize(gate_rad);
+    for (int c = 0; c < kCameraCount; ++c) {
+      if (free_[c].any() && unobservable_[c].any()) step_alone(c, sums);
+    }
+  }
+}
+
+/// One Gauss-Newton step of a camera's observable parameters.
+void RefinementProblem::step_alone(int camera, const Sums& sums) {
+  std::vector<int> observable;
+  for (int p = 0; p < kCameraParameters; ++p) {
+    if (!unobservable_[camera][static_cast<size_t>(p)]) observable.push_back(p);
+  }
+  if (observable.empty()) return;
   const Eigen::Index first = camera * kCameraParameters;
   const CameraAdjustment prior = camera_prior().segment<kCameraParameters>(first);
   CameraAdjustment& change = estimate_.changes[camera];
-  std::vector<int> others;
-  for (int p = 0; p < kCameraParameters; ++p) {
-    if (unobservable_[camera][static_cast<size_t>(p)]) {
-      change[p] = 0.0;
-    } else {
-      others.push_back(p);
-    }
-  }
-  if (others.empty()) return;
-  for (int i = 0; i < kSteps; ++i) {
-    const Sums sums = linearize(gate_rad);
-    Eigen::Matrix<double, kCameraParameters, kCameraParameters> information =
-        sums.information.block<kCameraParameters, kCameraParameters>(first, first);
-    information.diagonal() += prior;
-    const CameraAdjustment gradient =
-        sums.gradient.segment<kCameraParameters>(first) + prior.cwiseProduct(change);
-    const Eigen::MatrixXd of_others = information(others, others);
-    change(others) -= of_others.llt().solve(gradient(others));
-  }
+  Eigen::Matrix<double, kCameraParameters, kCameraParameters> information =
+      sums.information.block<kCameraParameters, kCameraParameters>(first, first);
+  information.diagonal() += prior;
+  const CameraAdjustment gradient =
+      sums.gradient.segment<kCameraParameters>(first) + prior.cwiseProduct(change);
+  const Eigen::MatrixXd part = information(observable, observable);
+  change(observable) -= part.llt().solve(gradient(observable));
 }
 
 void RefinementProblem::finish(double gate_rad) {
   while (leave_out_doubtful(gate_rad)) solve(gate_rad);
   find_unobservable(gate_rad);
-  for (int c = 0; c < kCameraCount; ++c) {
-    if (free_[c].any() && unobservable_[c].any()) keep_unobservable(c, gate_rad);
-  }
+  keep_unobservable(gate_rad);
 }
 
 RigRefinement RefinementProblem::result(double gate_rad) const {

@@ -59,9 +59,10 @@ struct RigRefinement {
 ///
 /// A parameter is unobservable if it has the largest part in a direction (an eigenvector of the
 /// information about the cameras, in units of the expected errors) that the recording determines no
-/// better than to half the expected error. It keeps its value of before, and the others of its
-/// camera follow. A camera keeps all its values, and its sightings do not count, if fewer than 100
-/// of them agree or if one of its parameters would change by more than three expected errors.
+/// better than to half the expected error. Its change is 0, and the other parameters of its
+/// camera are estimated again. A camera keeps all its values, and its sightings do not count, if
+/// fewer than 100 of them agree or if one of its parameters would change by more than three
+/// expected errors.
 class RefinementProblem {
  public:
   /// `rig` and `reference` must outlive the problem.
@@ -79,8 +80,8 @@ class RefinementProblem {
   /// times that of the options: a large one for a rig that may be far off.
   void solve(double gate_rad, double sigma_scale = 1.0);
 
-  /// Leaves out doubtful cameras, solves without them, and gives unobservable parameters their
-  /// value of before.
+  /// Leaves out doubtful cameras, solves without them, and sets the change of unobservable
+  /// parameters to 0.
   void finish(double gate_rad);
 
   const CameraAdjustment& change(int camera) const { return estimate_.changes[camera]; }
@@ -149,7 +150,8 @@ class RefinementProblem {
   bool step(double gate_rad, double& damping);
   bool leave_out_doubtful(double gate_rad);
   void find_unobservable(double gate_rad);
-  void keep_unobservable(int camera, double gate_rad);
+  void keep_unobservable(double gate_rad);
+  void step_alone(int camera, const Sums& sums);
   Eigen::Vector2d acceleration_at(Time time) const;
   FrameVector frame_sigma() const;
   FrameVector expected_error(const Frame& frame) const;
@@ -162,7 +164,7 @@ class RefinementProblem {
   Estimate estimate_;
   std::map<uint32_t, int> elements_;  ///< from the map's index to ours
   std::vector<View> views_;
-  double sigma_scale_ = 1.0;
+  double sigma_scale_ = 1.0;  ///< of the latest solve()
 };
 
 }  // namespace bevloc

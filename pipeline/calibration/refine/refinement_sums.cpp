@@ -11,7 +11,8 @@
 namespace bevloc {
 namespace {
 
-constexpr double kFar = 3.0;  // sigmas
+/// With a residual of this many sigmas, a sighting has a quarter of its weight.
+constexpr double kFar = 3.0;
 /// The mean over a drive of what differs between framesets, relative to its sigma.
 constexpr double kMeanOfSigma = 0.3;
 /// One sigma of the body's tilt per acceleration, in radians per m/s^2.
@@ -23,14 +24,13 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   return m;
 }
 
-/// Geman and McClure: what is far off hardly counts.
-double weight_of(double residual) {
-  const double share = 1.0 / (1.0 + residual * residual / (kFar * kFar));
-  return share * share;
+/// The root of a sighting's weight by Geman and McClure: 1 on the line, nearly 0 far from it.
+double nearness_of(double residual) {
+  return 1.0 / (1.0 + residual * residual / (kFar * kFar));
 }
 
 double cost_of(double residual) {
-  return 0.5 * residual * residual / (1.0 + residual * residual / (kFar * kFar));
+  return 0.5 * residual * residual * nearness_of(residual);
 }
 
 /// d(n . pixel) / d(point in the camera), by central differences. Nothing beyond the lens.
@@ -96,7 +96,7 @@ void RefinementProblem::visit(const View& view, double gate_rad, const Visitor& 
         (in_vehicle(*after, point) - in_vehicle(*before, point)) / (2.0 * to_seconds(kAround));
     Line line;
     line.residual = nearest_px * per_sigma;
-    line.weight = weight_of(line.residual);
+    line.weight = nearness_of(line.residual) * nearness_of(line.residual);
     line.of_camera.head<3>() = (*slope * skew(in_camera)).transpose();
     line.of_camera.segment<3>(kForward) = -of_vehicle.transpose();
     line.of_camera[kFocal] = sighting.normal_px.dot(

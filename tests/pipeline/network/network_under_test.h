@@ -20,8 +20,9 @@ inline NetworkOptions network_options(int threads = 1) {
   return {.threads = threads, .isa = tested.isa, .engine = tested.make};
 }
 
-/// Loads a network of fixtures/ and sets its inputs. numpy computed the expected outputs from the
-/// same inputs. Ends the program if the network does not load.
+/// Loads a network from the folder fixtures/ and sets its inputs. The expected outputs in that
+/// folder were computed by numpy from the same inputs. Ends the program if the network does not
+/// load.
 inline std::unique_ptr<Network> load_network(const std::string& model, int threads = 1) {
   auto network = Network::load(fixture(model + ".onnx"), network_options(threads));
   if (!network) {

@@ -57,7 +57,7 @@ TEST_F(PoseEstimatorTest, AMatchAtTheBorderDoesNotCorrectThePose) {
   EXPECT_NEAR(yaw_sigma_rad(), before_rad, 0.02 * before_rad);
 }
 
-TEST_F(PoseEstimatorTest, AMatchAtTheBorderWithALowScoreContradictsLess) {
+TEST_F(PoseEstimatorTest, ALowScoreMakesTheGateAcceptAMatchAtTheSearchBorder) {
   const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
   MatchResult match = match_at(prior, {0.0, 0.0, radians(2.0)});
   match.covariance(2, 2) = square_of(radians(0.3));
