@@ -64,7 +64,7 @@ def library() -> ctypes.CDLL:
     lib.bevloc_network_create.restype = pointer
     lib.bevloc_network_destroy.argtypes = [pointer]
     lib.bevloc_network_destroy.restype = None
-    lib.bevloc_network_run.argtypes = [pointer, pointer, ctypes.c_uint8] + [pointer] * 4
+    lib.bevloc_network_run.argtypes = [pointer] * 8
     lib.bevloc_network_run.restype = None
     lib.bevloc_solver_create.argtypes = [pointer, ctypes.c_char_p, pointer, integer]
     lib.bevloc_solver_create.restype = pointer

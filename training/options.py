@@ -75,14 +75,19 @@ def _check(config: TrainingConfig, processes: int) -> None:
     if config.batch < 1 or config.batch % processes:
         wanted = f"wanted a positive multiple of {processes} processes"
         raise ValueError(f"--batch: found {config.batch}, {wanted}")
-    for field in ("checkpoint_minutes", "validation_minutes"):
-        if (minutes := getattr(config, field)) <= 0:
-            raise ValueError(f"{_option_name(field)}: found {minutes:g} minutes, wanted more")
+    _check_ranges(config)
     if config.recordings and config.nuscenes:
         raise ValueError("--recordings: found --nuscenes too, wanted one of them")
     if bool(config.recordings) != bool(config.map):
         raise ValueError("--recordings and --map: found one of them, wanted both or none")
-    if not 0.0 <= config.simulated_share < 1.0:
-        found = f"found {config.simulated_share:g}"
-        raise ValueError(f"--simulated-share: {found}, wanted at least 0 and less than 1")
     check_fits_sampler(network_config(config.network, config.view))
+
+
+def _check_ranges(config: TrainingConfig) -> None:
+    for field in ("checkpoint_minutes", "validation_minutes"):
+        if (minutes := getattr(config, field)) <= 0:
+            raise ValueError(f"{_option_name(field)}: found {minutes:g} minutes, wanted more")
+    for field in ("simulated_share", "usual_share"):
+        if not 0.0 <= (share := getattr(config, field)) < 1.0:
+            wanted = "wanted at least 0 and less than 1"
+            raise ValueError(f"{_option_name(field)}: found {share:g}, {wanted}")

@@ -37,11 +37,11 @@ class NativeNetwork:
         features_map = np.empty_like(bev)
         mask = np.empty(batch.raster_prior.shape, np.float32)
         images, raster = batch.images.numpy(), batch.raster_prior.numpy()
+        index, weight = batch.index.int().numpy(), batch.weight.numpy()
         for i in range(count):
-            arrays = (raster[i], bev[i], features_map[i], mask[i])
-            library().bevloc_network_run(
-                self.handle, address(images[i]), int(batch.camera_mask[i]), *map(address, arrays)
-            )
+            inputs = (images[i], index[i], weight[i], raster[i])
+            outputs = (bev[i], features_map[i], mask[i])
+            library().bevloc_network_run(self.handle, *map(address, inputs + outputs))
         return torch.from_numpy(bev), torch.from_numpy(features_map), torch.from_numpy(mask)
 
 

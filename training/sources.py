@@ -15,6 +15,8 @@ from training.options import drives_of
 from training.sampler_process import Drives, SamplerError
 
 BATCH = 8
+# Between the seeds of a run and those of its samples with the usual nuisances.
+_USUAL_SEEDS = 2**26
 
 
 @lru_cache(maxsize=2)
@@ -42,19 +44,28 @@ def training_stream(config: TrainingConfig, first: int, share: Share = WHOLE) ->
         return _nuscenes(config, config.scenes, config.seed, first, drop_probability, share)
     if config.recordings:
         return _drives_and_simulator(config, first, share)
-    return _simulator(config, first, share)
+    return simulator_stream(config, first, share)
 
 
-def _simulator(config: TrainingConfig, first: int, share: Share) -> SamplerStream:
-    return SamplerStream(
-        config.seed,
-        first,
-        config.sampler_threads,
-        config.drop_camera_probability,
-        share,
-        config.nuisances,
-        config.photos,
-    )
+def simulator_stream(config: TrainingConfig, first: int = 0, share: Share = WHOLE) -> Stream:
+    """A process's share of the simulated samples, starting at sample `first`. Takes `usual_share`
+    of them from a stream of its own, in other worlds."""
+
+    def stream(seed: int, first: int, nuisances: str) -> SamplerStream:
+        threads, drop = config.sampler_threads, config.drop_camera_probability
+        return SamplerStream(seed, first, threads, drop, share, nuisances, config.photos)
+
+    if config.usual_share == 0.0:
+        return stream(config.seed, first, config.nuisances)
+    own = first // share.count
+    usual = MixedStream.taken(own, config.usual_share)
+    disturbed_samples = stream(config.seed, (own - usual) * share.count, config.nuisances)
+    try:
+        usual_samples = stream(config.seed + _USUAL_SEEDS, usual * share.count, "usual")
+    except SamplerError:
+        disturbed_samples.close()
+        raise
+    return MixedStream(disturbed_samples, usual_samples, config.usual_share, own)
 
 
 def _drives_and_simulator(config: TrainingConfig, first: int, share: Share) -> Stream:
@@ -74,7 +85,7 @@ def _drives_and_simulator(config: TrainingConfig, first: int, share: Share) -> S
     if config.simulated_share == 0.0:
         return drives
     try:
-        simulator = _simulator(config, simulated * share.count, share)
+        simulator = simulator_stream(config, simulated * share.count, share)
     except SamplerError:
         drives.close()
         raise

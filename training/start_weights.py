@@ -29,13 +29,13 @@ def start_with(net: BevNetwork, path: Path, make_batches: Callable[[], list[Batc
     a network on the CPU. `make_batches` makes the samples on which the statistics of a model file
     are measured. CheckpointError if the file is unreadable or holds another network."""
     if path.suffix == ".onnx":
-        _load_model_file(net, path)
+        load_model_file(net, path)
         _unfold(net, make_batches())
     else:
         load_weights(net, read_checkpoint(path), "ema", path)
 
 
-def _load_model_file(net: BevNetwork, path: Path) -> None:
+def load_model_file(net: BevNetwork, path: Path) -> None:
     """Loads the folded convolutions; the batch normalisations change nothing but add the bias."""
     import onnx  # a training bundle starts from a checkpoint and does without it
     from onnx import numpy_helper

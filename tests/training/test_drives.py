@@ -168,6 +168,7 @@ class DrivesTest(unittest.TestCase):
             ["--recordings", "x", "--map", "y", "--nuscenes", "z"],
             ["--recordings", "x", "--map", "y", "--reference", "gps"],
             ["--simulated-share", "1"],
+            ["--usual-share", "1"],
         ):
             with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()):
                 parse_config(["--minutes", "1", *wrong], "")

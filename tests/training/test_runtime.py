@@ -71,6 +71,13 @@ class RunTime(unittest.TestCase):
         self.check(self.network, self.net, batch)
 
     @torch.no_grad()
+    def test_each_sample_is_seen_through_its_own_view_table(self):
+        batch = SyntheticStream(0).next(1)
+        index, weight = view_table(int(batch.camera_mask[0]))
+        batch.index, batch.weight = index[None].roll(7, -1), weight[None].roll(7, -1)
+        self.check(self.network, self.net, batch)
+
+    @torch.no_grad()
     def test_a_larger_network_runs_too(self):
         net = BevNetwork(network_config("small", "lut")).eval()
         batch = SyntheticStream(0).next(1)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import tempfile
 import unittest
+from dataclasses import replace
 from pathlib import Path
 
 import torch
 
 from tests.training.nuscenes_tree import SAMPLES_PER_SCENE, write_tree
 from training.config import TrainingConfig
-from training.data import NUISANCES
+from training.data import NUISANCES, Batch
 from training.distributed import WHOLE, Share
 from training.nuscenes.errors import NuscenesError
 from training.sources import (
@@ -84,6 +85,23 @@ class Sources(unittest.TestCase):
         whole = [i for i, mask in enumerate(usual.camera_mask.tolist()) if mask == 63]
         self.assertEqual(len(usual.weight[whole].unique(dim=0)), 1)
         self.assertGreater(len(strong.weight[whole].unique(dim=0)), 1)
+
+    def test_a_share_of_the_samples_has_the_usual_nuisances(self):
+        mixed = TrainingConfig(nuisances="strong", usual_share=0.5, drop_camera_probability=0.0)
+
+        def samples(config: TrainingConfig, first: int, count: int) -> Batch:
+            stream = training_stream(config, first)
+            self.addCleanup(stream.close)
+            return stream.next(count)
+
+        batch = samples(mixed, 0, 8)
+        alone = samples(replace(mixed, usual_share=0.0), 0, 4)
+        self.assertTrue(torch.equal(batch.correction[:4], alone.correction))
+        # The usual samples have one view table; strong ones have cameras that are out of step.
+        self.assertEqual(len(batch.weight[4:].unique(dim=0)), 1)
+        resumed = samples(mixed, 4, 4)
+        expected = torch.cat((batch.correction[2:4], batch.correction[6:8]))
+        self.assertTrue(torch.equal(resumed.correction, expected))
 
     def test_unknown_nuisances_are_refused(self):
         with self.assertRaisesRegex(ValueError, "'mild', wanted one of usual, strong, street"):

@@ -7,7 +7,6 @@
 
 #include "pipeline/network/network.h"
 #include "pipeline/solver/solver_factory.h"
-#include "sim/samples/sample_maker.h"
 
 namespace {
 
@@ -40,11 +39,12 @@ void bevloc_network_destroy(bevloc_network* network) {
   delete network;
 }
 
-void bevloc_network_run(bevloc_network* network, const uint8_t* images, uint8_t camera_mask,
-                        const uint8_t* raster, float* bev, float* map, float* mask) {
+void bevloc_network_run(bevloc_network* network, const uint8_t* images, const int32_t* index,
+                        const float* weight, const uint8_t* raster, float* bev, float* map,
+                        float* mask) {
   bevloc::Network& net = *network->network;
-  net.set_view_table(bevloc::make_view_table(
-      bevloc::sim::nominal_network_rig(), bevloc::CameraMask(camera_mask), bevloc::kFeatureGrid));
+  const size_t entries = static_cast<size_t>(bevloc::kViewSlots) * bevloc::kFeatureGrid.cells();
+  net.set_view_table({.index = {index, index + entries}, .weight = {weight, weight + entries}});
   const std::span<int8_t> image_input = net.image_input();
   std::transform(images, images + image_input.size(), image_input.begin(),
                  [](uint8_t value) { return static_cast<int8_t>(value - kImageOffset); });

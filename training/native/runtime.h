@@ -16,10 +16,11 @@ typedef struct bevloc_solver bevloc_solver;
 bevloc_network* bevloc_network_create(const char* model, int threads, char* error, int error_size);
 void bevloc_network_destroy(bevloc_network* network);
 
-/// Runs the network on one sample (images and raster as in sampler.h). Writes bev and map, float
-/// [16, 100, 50] each, and mask, float logits [3, 400, 200].
-void bevloc_network_run(bevloc_network* network, const uint8_t* images, uint8_t camera_mask,
-                        const uint8_t* raster, float* bev, float* map, float* mask);
+/// Runs the network on one sample (images, index, weight and raster as in sample_record.h). Writes
+/// bev and map, float [16, 100, 50] each, and mask, float logits [3, 400, 200].
+void bevloc_network_run(bevloc_network* network, const uint8_t* images, const int32_t* index,
+                        const float* weight, const uint8_t* raster, float* bev, float* map,
+                        float* mask);
 
 /// Makes the solver named `kind` (pipeline/solver/solver_factory.h) with the parameters of the
 /// network's model, for the paper's hypotheses; bevloc_solver_destroy() frees it. It does not refer

@@ -1,0 +1,72 @@
+"""Tests the average of two networks."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import onnx
+import torch
+
+from training import blend
+from training.checkpoint import load_network, nuisances_of
+from training.export_onnx import build_model
+from training.graph import folded_convolutions
+from training.models import PRESETS, BevNetwork
+from training.onnx_graph import FloatOnnxBackend
+
+LAST = "head.second.weight"
+
+
+def write_network(seed: int, path: Path) -> BevNetwork:
+    torch.manual_seed(seed)
+    net = BevNetwork(PRESETS["nano"]).eval()
+    onnx.save(build_model(net, folded_convolutions(net), FloatOnnxBackend()), str(path))
+    return net
+
+
+class Blend(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+        self.files = [self.root / "first.onnx", self.root / "second.onnx"]
+        self.networks = [write_network(seed, path) for seed, path in enumerate(self.files)]
+
+    def run_program(self, share: str) -> Path:
+        arguments = ["blend", *map(str, self.files), "--share", share, "--run", str(self.root)]
+        with mock.patch("sys.argv", arguments), contextlib.redirect_stdout(io.StringIO()):
+            blend.main()
+        return self.root / "checkpoint.pt"
+
+    def test_a_quarter_of_the_second_network(self) -> None:
+        net = load_network(self.run_program("0.25"))
+        first, second = (network.state_dict()[LAST] for network in self.networks)
+        torch.testing.assert_close(net.state_dict()[LAST], 0.75 * first + 0.25 * second)
+
+    def test_no_share_of_the_second_network_computes_the_first(self) -> None:
+        net = load_network(self.run_program("0"))
+        for name, (weight, bias) in weights_and_biases(net).items():
+            expected = weights_and_biases(self.networks[0])[name]
+            torch.testing.assert_close(weight, expected[0])
+            torch.testing.assert_close(bias, expected[1])
+
+    def test_the_export_measures_on_street_samples(self) -> None:
+        self.assertEqual(nuisances_of(self.run_program("0.5")), "street")
+
+    def test_refuses_a_share_beyond_1(self) -> None:
+        with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()) as errors:
+            self.run_program("1.5")
+        self.assertIn("--share: found 1.5, wanted 0 to 1", errors.getvalue())
+
+
+def weights_and_biases(net: BevNetwork) -> dict[str, tuple[torch.Tensor, torch.Tensor]]:
+    return {name: (c.weight, c.bias) for name, c in folded_convolutions(net).items()}
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,65 @@
+"""Averages the weights of two float model files of the same network.
+
+    /usr/bin/python3 -m training.blend FIRST_float.onnx SECOND_float.onnx --share 0.35 --run RUN
+
+Writes RUN/checkpoint.pt for `script/train --export-only RUN`. If the second network was fine-tuned
+from the first one, the average keeps what the first does well and gains much of what the second has
+learned (Wortsman et al., "Robust fine-tuning of zero-shot models", CVPR 2022).
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import torch
+
+from training.config import TrainingConfig
+from training.errors import run_program
+from training.models.config import network_config
+from training.models.network import BevNetwork
+from training.start_weights import load_model_file
+
+
+def network_of(path: Path, config: TrainingConfig) -> BevNetwork:
+    net = BevNetwork(network_config(config.network, config.view))
+    load_model_file(net, path)
+    return net
+
+
+@torch.no_grad()
+def blend(first: BevNetwork, second: BevNetwork, share: float) -> None:
+    """Moves each weight of `first` by `share` of the way to that of `second`."""
+    others = second.state_dict()
+    for name, value in first.state_dict().items():
+        if value.is_floating_point():
+            value.lerp_(others[name], share)
+
+
+def checkpoint_of(net: BevNetwork, config: TrainingConfig) -> dict:
+    """A checkpoint with these weights. `config`: the samples on which the export measures ranges
+    and scales."""
+    weights = net.state_dict()
+    return {"model": weights, "ema": weights, "samples": 0, "config": config.as_dict()}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("first", type=Path, help="float model file")
+    parser.add_argument("second", type=Path, help="float model file")
+    parser.add_argument("--share", type=float, required=True, help="of the second one, 0 to 1")
+    parser.add_argument("--run", type=Path, required=True, help="folder for checkpoint.pt")
+    arguments = parser.parse_args()
+    if not 0.0 <= arguments.share <= 1.0:
+        parser.error(f"--share: found {arguments.share:g}, wanted 0 to 1")
+    config = TrainingConfig(run=arguments.run)
+    first, second = (network_of(path, config) for path in (arguments.first, arguments.second))
+    blend(first, second, arguments.share)
+    arguments.run.mkdir(parents=True, exist_ok=True)
+    out = arguments.run / "checkpoint.pt"
+    torch.save(checkpoint_of(first, config), out)
+    print(out)
+
+
+if __name__ == "__main__":
+    run_program(main)
