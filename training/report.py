@@ -74,11 +74,9 @@ def _iou_table(results: Results) -> list[str]:
 
 def markdown(results: Results) -> str:
     """One table per axis and one for the masks."""
-    lines = [
-        f"Training samples of the last run: {results.trained_samples:,}. "
-        f"Evaluation scenes: {results.samples}.",
-        "",
-    ]
+    trained = results.trained_samples  # 0 for a blend of networks
+    samples = f"Training samples of the last run: {trained:,}. " if trained > 0 else ""
+    lines = [f"{samples}Evaluation scenes: {results.samples}.", ""]
     for axis, title in _AXES:
         lines += [*_axis_table(results, axis, title), ""]
     return "\n".join([*lines, *_iou_table(results)])

@@ -3,6 +3,7 @@
 import json
 import tempfile
 import unittest
+from dataclasses import replace
 from pathlib import Path
 
 import torch
@@ -86,6 +87,12 @@ class Written(unittest.TestCase):
         self.assertEqual(card.read_text(), first)
         saved = json.loads((self.models / "nano_results.json").read_text())
         self.assertEqual(saved["int8"]["block_x_mae"], self.results.int8["block_x_mae"])
+
+    def test_the_card_of_a_blend_states_no_training_samples(self):
+        write_results(self.models, "blend", replace(self.results, trained_samples=0))
+        card = (self.models / "blend.md").read_text()
+        self.assertIn("Evaluation scenes: ", card)
+        self.assertNotIn("Training samples", card)
 
     def test_a_card_without_marks_is_refused(self):
         (self.models / "README.md").write_text("no marks\n")
