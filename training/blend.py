@@ -21,7 +21,7 @@ from training.models.network import BevNetwork
 from training.start_weights import load_model_file
 
 
-def network_of(path: Path, config: TrainingConfig) -> BevNetwork:
+def load_float_model(path: Path, config: TrainingConfig) -> BevNetwork:
     net = BevNetwork(network_config(config.network, config.view))
     load_model_file(net, path)
     return net
@@ -53,7 +53,7 @@ def main() -> None:
     if not 0.0 <= arguments.share <= 1.0:
         parser.error(f"--share: found {arguments.share:g}, wanted 0 to 1")
     config = TrainingConfig(run=arguments.run)
-    first, second = (network_of(path, config) for path in (arguments.first, arguments.second))
+    first, second = (load_float_model(path, config) for path in (arguments.first, arguments.second))
     blend(first, second, arguments.share)
     arguments.run.mkdir(parents=True, exist_ok=True)
     out = arguments.run / "checkpoint.pt"

@@ -45,7 +45,7 @@ class TrainingConfig:
     precision: str = "auto"  # or float32, bfloat16
     drop_camera_probability: float = 0.15
     nuisances: str = "street"  # or "strong", "usual"; simulator only
-    usual_share: float = 0.0  # of the simulated samples: these have the usual nuisances instead
+    usual_share: float = 0.0  # of the simulated samples with usual nuisances instead
     photos: str = ""  # folder of script/photos; empty: textures of the simulator alone
 
     learning_rate: float = 2e-3

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from training.options import drives_of
 from training.sampler_process import Drives, SamplerError
 
 BATCH = 8
-# Between the seeds of a run and those of its samples with the usual nuisances.
+# The distance between a run's seeds and the seeds of its samples with the usual nuisances.
 _USUAL_SEEDS = 2**26
 
 
@@ -44,52 +44,61 @@ def training_stream(config: TrainingConfig, first: int, share: Share = WHOLE) ->
         return _nuscenes(config, config.scenes, config.seed, first, drop_probability, share)
     if config.recordings:
         return _drives_and_simulator(config, first, share)
-    return simulator_stream(config, first, share)
+    return _simulator(config, first, share)
 
 
-def simulator_stream(config: TrainingConfig, first: int = 0, share: Share = WHOLE) -> Stream:
-    """A process's share of the simulated samples, starting at sample `first`. Takes `usual_share`
-    of them from a stream of its own, in other worlds."""
+def _mixed(
+    make_first: Callable[[int], Stream],
+    make_second: Callable[[int], Stream],
+    second_share: float,
+    first: int,
+    share: Share,
+) -> Stream:
+    """Two streams in one, starting at sample `first`. Each maker gets the number of the first
+    sample of its own stream."""
+    if second_share == 0.0:
+        return make_first(first)
+    own = first // share.count
+    taken = MixedStream.taken(own, second_share)
+    stream = make_first((own - taken) * share.count)
+    try:
+        second = make_second(taken * share.count)
+    except SamplerError:
+        stream.close()
+        raise
+    return MixedStream(stream, second, second_share, own)
 
-    def stream(seed: int, first: int, nuisances: str) -> SamplerStream:
+
+def _simulator(config: TrainingConfig, first: int, share: Share) -> Stream:
+    """Simulated samples. Those with the usual nuisances show other worlds."""
+
+    def stream(seed: int, first: int, nuisances: str) -> Stream:
         threads, drop = config.sampler_threads, config.drop_camera_probability
         return SamplerStream(seed, first, threads, drop, share, nuisances, config.photos)
 
-    if config.usual_share == 0.0:
-        return stream(config.seed, first, config.nuisances)
-    own = first // share.count
-    usual = MixedStream.taken(own, config.usual_share)
-    disturbed_samples = stream(config.seed, (own - usual) * share.count, config.nuisances)
-    try:
-        usual_samples = stream(config.seed + _USUAL_SEEDS, usual * share.count, "usual")
-    except SamplerError:
-        disturbed_samples.close()
-        raise
-    return MixedStream(disturbed_samples, usual_samples, config.usual_share, own)
+    return _mixed(
+        lambda first: stream(config.seed, first, config.nuisances),
+        lambda first: stream(config.seed + _USUAL_SEEDS, first, "usual"),
+        config.usual_share,
+        first,
+        share,
+    )
 
 
 def _drives_and_simulator(config: TrainingConfig, first: int, share: Share) -> Stream:
     """Samples of recorded drives, with simulated ones between them, so that the network does not
     forget what the drives do not show."""
-    own = first // share.count
-    simulated = MixedStream.taken(own, config.simulated_share)
-    drives = DriveStream(
-        drives_of(config),
-        "training",
-        config.seed,
-        (own - simulated) * share.count,
-        config.sampler_threads,
-        config.drop_camera_probability,
-        share,
-    )
-    if config.simulated_share == 0.0:
-        return drives
-    try:
-        simulator = simulator_stream(config, simulated * share.count, share)
-    except SamplerError:
-        drives.close()
-        raise
-    return MixedStream(drives, simulator, config.simulated_share, own)
+
+    def drives(first: int) -> Stream:
+        threads, drop = config.sampler_threads, config.drop_camera_probability
+        return DriveStream(
+            drives_of(config), "training", config.seed, first, threads, drop, share
+        )
+
+    def simulator(first: int) -> Stream:
+        return _simulator(config, first, share)
+
+    return _mixed(drives, simulator, config.simulated_share, first, share)
 
 
 def _batches(stream: Stream, samples: int) -> Iterator[Batch]:
