@@ -14,6 +14,7 @@ from pathlib import Path
 
 import torch
 
+from training.checkpoint import state_of_weights
 from training.config import TrainingConfig
 from training.errors import run_program
 from training.models.config import network_config
@@ -36,13 +37,6 @@ def blend(first: BevNetwork, second: BevNetwork, share: float) -> None:
             value.lerp_(others[name], share)
 
 
-def checkpoint_of(net: BevNetwork, config: TrainingConfig) -> dict:
-    """A checkpoint with these weights. `config`: the samples on which the export measures ranges
-    and scales."""
-    weights = net.state_dict()
-    return {"model": weights, "ema": weights, "samples": 0, "config": config.as_dict()}
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("first", type=Path, help="float model file")
@@ -57,7 +51,7 @@ def main() -> None:
     blend(first, second, arguments.share)
     arguments.run.mkdir(parents=True, exist_ok=True)
     out = arguments.run / "checkpoint.pt"
-    torch.save(checkpoint_of(first, config), out)
+    torch.save(state_of_weights(first.state_dict(), config.as_dict()), out)
     print(out)
 
 

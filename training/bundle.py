@@ -21,7 +21,7 @@ from pathlib import Path
 import torch
 
 from training.bundle_train import BUDGETS
-from training.checkpoint import network_of, read_checkpoint
+from training.checkpoint import network_of, read_checkpoint, state_of_weights
 from training.config import TrainingConfig
 from training.errors import TrainingError, run_program
 from training.models.config import network_config
@@ -101,9 +101,7 @@ def write_start_weights(config: TrainingConfig, out: Path) -> None:
     """The weights of --init as a checkpoint: a model file needs packages that the bundle lacks."""
     net = BevNetwork(network_config(config.network, config.view))
     start_with(net, Path(config.init), lambda: measuring_batches(config, training_stream))
-    weights = net.state_dict()
-    state = {"model": weights, "ema": weights, "samples": 0, "config": config.as_dict()}
-    torch.save(state, out)
+    torch.save(state_of_weights(net.state_dict(), config.as_dict()), out)
 
 
 def options_of_run(run: Path) -> list[str]:

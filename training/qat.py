@@ -16,7 +16,7 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from training.checkpoint import load_network, nuisances_of, read_checkpoint
+from training.checkpoint import load_network, nuisances_of, read_checkpoint, state_of_weights
 from training.config import FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream, Stream
 from training.errors import NotFiniteError, run_program
@@ -82,17 +82,9 @@ def save(network: FakeQuantized, first: Path, samples: int, path: Path) -> None:
     """Writes a checkpoint in the format of training.train; `first` is the initial checkpoint."""
     quantization, state = network.finish(), read_checkpoint(first)
     weights = network.net.state_dict()
+    finished = state_of_weights(weights, state["config"], state["samples"] + samples)
     path.parent.mkdir(parents=True, exist_ok=True)
-    torch.save(
-        {
-            "model": weights,
-            "ema": weights,
-            "samples": state["samples"] + samples,
-            "config": state["config"],
-            "quantization": quantization.state(),
-        },
-        path,
-    )
+    torch.save({**finished, "quantization": quantization.state()}, path)
 
 
 def main() -> None:
