@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json_dump.h"
+
 namespace bevloc::command {
 namespace {
 
@@ -58,7 +60,7 @@ std::string to_json(const Findings& findings) {
   }
   const nlohmann::ordered_json all = {{"worst", name_of_level(worst_of(findings))},
                                       {"findings", std::move(list)}};
-  return all.dump(2) + "\n";
+  return dump_json(all, 2) + "\n";
 }
 
 }  // namespace bevloc::command

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json_dump.h"
+
 namespace bevloc::evaluation {
 namespace {
 
@@ -64,7 +66,7 @@ std::string seconds(const std::optional<double>& value) {
 }  // namespace
 
 std::string to_json_line(const CampaignRow& row, Level level) {
-  return json_of(row, level).dump();
+  return dump_json(json_of(row, level));
 }
 
 std::string to_json(const std::vector<CampaignRow>& rows, Level level) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/alert_limits.h"
+#include "common/json_dump.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -96,7 +97,7 @@ std::string to_json(const std::vector<NamedDiagram>& diagrams) {
     for (int i = 0; i < 3; ++i) object["axes"].push_back(json_of_axis(named.diagram, i));
     array.push_back(std::move(object));
   }
-  return array.dump() + "\n";
+  return dump_json(array) + "\n";
 }
 
 }  // namespace bevloc::evaluation

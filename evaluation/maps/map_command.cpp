@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/files.h"
+#include "common/json_dump.h"
+#include "common/option_checks.h"
 #include "evaluation/maps/map_diff.h"
 #include "evaluation/maps/map_facts.h"
 #include "evaluation/maps/map_picture.h"
@@ -35,7 +37,13 @@ Result<GeoOrigin> origin_from(const std::string& text) {
 }
 
 Status write_json(const nlohmann::json& json, const std::string& path) {
-  return path.empty() ? Status() : bevloc::write_file(path, json.dump(2) + "\n");
+  return path.empty() ? Status() : bevloc::write_file(path, dump_json(json, 2) + "\n");
+}
+
+Status check_extension(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".bvm" || extension == ".geojson" || extension == ".json") return {};
+  return fail("{}: found the extension \"{}\", wanted .bvm or .geojson", path.string(), extension);
 }
 
 Status write_map(const ImportedMap& imported, const std::filesystem::path& path, bool version_1) {
@@ -43,11 +51,8 @@ Status write_map(const ImportedMap& imported, const std::filesystem::path& path,
   if (extension == ".bvm") {
     return version_1 ? write_map_binary(imported.map, path) : write_tiled_map(imported.map, path);
   }
-  if (extension == ".geojson" || extension == ".json") {
-    const Result<std::string> text = to_geojson(imported);
-    return text ? bevloc::write_file(path, *text) : Status(tl::unexpected(text.error()));
-  }
-  return fail("{}: found the extension \"{}\", wanted .bvm or .geojson", path.string(), extension);
+  const Result<std::string> text = to_geojson(imported);
+  return text ? bevloc::write_file(path, *text) : Status(tl::unexpected(text.error()));
 }
 
 void print_map(const ImportedMap& imported, const std::string& file) {
@@ -82,9 +87,9 @@ void MapCommand::declare(CLI::App& app) {
   imports->add_option("--report", json_, "Write the report to this JSON file");
   imports->add_option("--picture", picture_, "Draw the map to this PNG file");
   auto* infos = add("info", "Say what a map contains", &MapCommand::info);
-  infos->add_option("--json", json_, "Write it to this JSON file, too");
+  infos->add_option("--json", json_, "Write it to this JSON file, too")->check(output_file());
   auto* checks = add("check", "Look for what is wrong with a map", &MapCommand::check);
-  checks->add_option("--json", json_, "Write it to this JSON file, too");
+  checks->add_option("--json", json_, "Write it to this JSON file, too")->check(output_file());
   auto* renders = add("render", "Draw a map with legend and scale", &MapCommand::render);
   renders->add_option("out", out_, "PNG file to write")->required();
   renders->add_option("--pixels", size_px_, "Width and height")
@@ -92,7 +97,8 @@ void MapCommand::declare(CLI::App& app) {
       ->check(CLI::Range(800, 8000));
   auto* diffs = add("diff", "Compare the lines of two maps by class", &MapCommand::diff);
   diffs->add_option("other", other_, "Map to compare with")->required();
-  diffs->add_option("--json", json_, "Write the result to this JSON file, too");
+  diffs->add_option("--json", json_, "Write the result to this JSON file, too")
+      ->check(output_file());
   diffs->add_option("--picture", picture_, "Draw the differences to this PNG file");
   imports->footer("Examples:\n  bevloc map import town.xodr town.bvm --picture town.png");
   infos->footer("Examples:\n  bevloc map info town.osm");
@@ -102,6 +108,7 @@ void MapCommand::declare(CLI::App& app) {
 }
 
 Status MapCommand::import() const {
+  if (Status status = check_extension(out_); !status) return status;
   ImportOptions options;
   ClassTable classes;
   if (!classes_.empty()) {
@@ -118,9 +125,9 @@ Status MapCommand::import() const {
   const auto imported = import_map(in_, options);
   if (!imported) return tl::unexpected(imported.error());
   fmt::print("{}", text_of(imported->report));
+  if (Status status = write_json(json_of(*imported), json_); !status) return status;
   if (Status status = write_map(*imported, out_, version_1_); !status) return status;
   print_map(*imported, out_);
-  if (Status status = write_json(json_of(*imported), json_); !status) return status;
   return picture_.empty() ? Status() : write_map_picture(imported->map, size_px_, picture_);
 }
 
@@ -155,6 +162,13 @@ Status MapCommand::diff() const {
   if (!first) return tl::unexpected(first.error());
   auto second = load_map(other_);
   if (!second) return tl::unexpected(second.error());
+  if (is_known(first->origin) != is_known(second->origin)) {
+    fmt::print(
+        stderr,
+        "{}: this map does not say where on earth it is, so that its coordinates are compared "
+        "with those of the other one as they are; --origin of an import gives it a place\n",
+        is_known(first->origin) ? other_ : in_);
+  }
   const MapDiff difference = compare(*first, *second);
   fmt::print("{}", text_of(difference));
   if (Status status = write_json(json_of(difference), json_); !status) return status;

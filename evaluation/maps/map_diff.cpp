@@ -8,27 +8,24 @@
 
 #include "pipeline/map/class_names.h"
 #include "pipeline/map/line_neighbours.h"
+#include "pipeline/map/tangent_plane.h"
 
 namespace bevloc::evaluation {
 namespace {
 
 constexpr double kPiece_m = 1.0;
 
-bool has_place(const HdMap& map) {
-  return map.origin.latitude_deg != 0.0 || map.origin.longitude_deg != 0.0;
-}
-
 /// The elements of `map` in the frame of `other`.
 std::vector<MapElement> moved_elements(const HdMap& map, const HdMap& other) {
   std::vector<MapElement> elements = map.elements;
-  if (!has_place(map) || !has_place(other)) return elements;
+  if (!is_known(map.origin) || !is_known(other.origin)) return elements;
   const GeographicLib::LocalCartesian from(map.origin.latitude_deg, map.origin.longitude_deg);
   const GeographicLib::LocalCartesian to(other.origin.latitude_deg, other.origin.longitude_deg);
   for (MapElement& element : elements) {
     for (Eigen::Vector2d& point : element.points) {
-      double latitude_deg = 0.0, longitude_deg = 0.0, height_m = 0.0;
-      from.Reverse(point.x(), point.y(), 0.0, latitude_deg, longitude_deg, height_m);
-      to.Forward(latitude_deg, longitude_deg, 0.0, point.x(), point.y(), height_m);
+      const GeoOrigin place = place_of(from, point);
+      double height_m = 0.0;
+      to.Forward(place.latitude_deg, place.longitude_deg, 0.0, point.x(), point.y(), height_m);
     }
   }
   return elements;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/files.h"
+#include "common/json_dump.h"
 #include "evaluation/solver/axis_figure.h"
 #include "evaluation/solver/distribution_figure.h"
 #include "evaluation/solver/spectra_figure.h"
@@ -39,7 +40,7 @@ Status write_solver_figures(uint64_t scene, const std::string& file) {
                             {"spectra", std::move(*spectra)},
                             {"axis_features", axis_figure(scenes.front())},
                             {"distributions", std::move(*distributions)}};
-  return bevloc::write_file(file, json.dump() + "\n");
+  return bevloc::write_file(file, dump_json(json) + "\n");
 }
 
 }  // namespace bevloc::evaluation

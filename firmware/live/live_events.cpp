@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <openssl/evp.h>
 
+#include "common/json_dump.h"
 #include "pipeline/bev_grid.h"
 #include "pipeline/localization/projected_map.h"
 
@@ -57,7 +58,7 @@ json distribution_of(const HypothesisAxis& axis, const std::vector<float>& proba
 }  // namespace
 
 std::string server_sent_event(const char* name, const json& data) {
-  return fmt::format("event: {}\ndata: {}\n\n", name, data.dump());
+  return fmt::format("event: {}\ndata: {}\n\n", name, dump_json(data));
 }
 
 std::string status_event(const Telemetry& telemetry, const ProcessUse& process, Duration age) {

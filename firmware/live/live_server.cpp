@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "common/json_dump.h"
 #include "firmware/live/event_queue.h"
 #include "firmware/live/http_server.h"
 #include "firmware/live/httplib_header.h"
@@ -152,7 +153,7 @@ void LiveServer::Impl::add_routes() {
   });
   http_->get("/status.json", [this](const httplib::Request&, httplib::Response& response) {
     const auto [latest, age] = telemetry();
-    response.set_content(status_json(latest, use_of_this_process(), age).dump(2) + "\n",
+    response.set_content(dump_json(status_json(latest, use_of_this_process(), age), 2) + "\n",
                          "application/json");
   });
   http_->get("/healthz", [this](const httplib::Request&, httplib::Response& response) {

@@ -56,6 +56,11 @@ struct GeoOrigin {
   double longitude_deg = 0.0;
 };
 
+/// (0, 0) stands for a map that does not say where on earth it is.
+inline bool is_known(const GeoOrigin& origin) {
+  return origin.latitude_deg != 0.0 || origin.longitude_deg != 0.0;
+}
+
 struct HdMap {
   std::string name;
   GeoOrigin origin;

@@ -39,11 +39,8 @@ constexpr double kEdgeShare = 0.5;
 constexpr double kSameLine_m = 0.5;
 constexpr double kSameLineShare = 0.8;
 
-double way_length(const Polyline& line) {
-  double length_m = 0.0;
-  for (size_t i = 1; i < line.size(); ++i) length_m += (line[i] - line[i - 1]).norm();
-  return length_m;
-}
+/// The smallest area of a crossing: one bound named twice has none.
+constexpr double kLeastCrossing_m2 = 0.5;
 
 /// Converts one document to a map.
 class Lanelet2Reader {
@@ -84,10 +81,14 @@ class Lanelet2Reader {
 
   void find_lanelets() {
     for (const OsmRelation& relation : document_.relations) {
-      if (tag_value(relation.tags, "type") != "lanelet") continue;
-      const LaneletKind kind = kind_of(relation.tags);
-      count_uses(relation, kind);
-      if (kind == LaneletKind::kOther) continue;
+      const bool is_lanelet = tag_value(relation.tags, "type") == "lanelet";
+      const LaneletKind kind = is_lanelet ? kind_of(relation.tags) : LaneletKind::kOther;
+      if (is_lanelet) count_uses(relation, kind);
+      if (kind == LaneletKind::kOther) {
+        report_.note(relation_kind(relation.tags), std::nullopt, "not for vehicles, no crossing",
+                     0.0, place_of(relation));
+        continue;
+      }
       Result<Bound> left = bound(relation, "left");
       Result<Bound> right = left ? bound(relation, "right") : tl::unexpected(left.error());
       if (!right) {
@@ -96,6 +97,10 @@ class Lanelet2Reader {
       }
       lanelets_.push_back({&relation, kind, std::move(*left), std::move(*right)});
     }
+  }
+
+  static std::string place_of(const OsmRelation& relation) {
+    return fmt::format("relation {} (line {})", relation.id, relation.line);
   }
 
   void count_uses(const OsmRelation& relation, LaneletKind kind) {
@@ -127,7 +132,16 @@ class Lanelet2Reader {
                         ring_between(lanelet.left.points, lanelet.right.points)};
     const std::string where =
         fmt::format("lanelet {} (line {})", lanelet.relation->id, lanelet.relation->line);
-    take(std::move(crossing), "lanelet crosswalk", where);
+    if (area_of_ring_m2(crossing.points) < kLeastCrossing_m2) {
+      map_.left_out.push_back(
+          fmt::format("{}:{}: lanelet {}: found bounds without an area between, wanted a crossing",
+                      document_.file, lanelet.relation->line, lanelet.relation->id));
+      return take(std::nullopt, "lanelet crosswalk", where, "left out, see below");
+    }
+    std::vector<const OsmWay*> ways = lanelet.left.ways;
+    ways.insert(ways.end(), lanelet.right.ways.begin(), lanelet.right.ways.end());
+    Heights heights_m = heights_at(crossing.points, ways, document_, nodes_);
+    take(std::move(crossing), "lanelet crosswalk", where, "", std::move(heights_m));
   }
 
   /// Adds an element, unless the class table has another meaning for its kind.
@@ -144,7 +158,7 @@ class Lanelet2Reader {
     }
     std::optional<Meaning> meaning;
     if (element) meaning = Meaning{element->element_class, element->appearance};
-    report_.note(kind, meaning, why, element ? way_length(element->points) : 0.0, where);
+    report_.note(kind, meaning, why, element ? length_of(element->points) : 0.0, where);
     if (!element) return;
     map_.elements.push_back(std::move(*element));
     heights_m_.push_back(std::move(heights_m));
@@ -175,8 +189,8 @@ class Lanelet2Reader {
     for (const OsmWay& way : document_.ways) {
       const bool is_boundary = boundary_appearance(tag_value(way.tags, "type")).has_value();
       if (!is_boundary && use_of(way).vehicle_lanelets == 0) continue;
-      const Result<Polyline> points = points_of(way);
-      if (points && way_length(*points) <= kLongestPolylineM) beside_.add(way.id, *points);
+      const Result<Polyline> points = points_of(way, document_, nodes_);
+      if (points && length_of(*points) <= kLongestPolylineM) beside_.add(way.id, *points);
     }
   }
 
@@ -187,15 +201,15 @@ class Lanelet2Reader {
     const auto* rule = classes_.rule_for(kind);
     if (!element && rule != nullptr && rule->becomes) element = MapElement{};
     if (!element) return take(std::nullopt, kind, where, "no line of the road");
-    Result<Polyline> points = points_of(way);
+    Result<Polyline> points = points_of(way, document_, nodes_);
     if (!points) {
       map_.left_out.push_back(points.error().message);
       return take(std::nullopt, kind, where, "left out, see below");
     }
     if (points->size() < 2) return take(std::nullopt, kind, where, "too few points");
-    if (way_length(*points) > kLongestPolylineM) {
+    if (length_of(*points) > kLongestPolylineM) {
       map_.left_out.push_back(fmt::format("{}:{}: way {}: found {:g} m, wanted at most {:g} m",
-                                          document_.file, way.line, way.id, way_length(*points),
+                                          document_.file, way.line, way.id, length_of(*points),
                                           kLongestPolylineM));
       return take(std::nullopt, kind, where, "left out, see below");
     }
@@ -293,46 +307,16 @@ class Lanelet2Reader {
     return bound;
   }
 
-  /// Points of a way, without consecutive duplicates.
-  Result<Polyline> points_of(const OsmWay& way) const {
-    Polyline points;
-    for (const int64_t id : way.nodes) {
-      const auto node = document_.nodes.find(id);
-      if (node == document_.nodes.end()) {
-        return fail(
-            "{}:{}: way {}: found a reference to node {}, which is missing, wanted all its "
-            "nodes in the file",
-            document_.file, way.line, way.id, id);
-      }
-      const auto position = nodes_.of_node.find(id);
-      if (position == nodes_.of_node.end()) {
-        return fail(
-            "{}:{}: node {}: found no coordinates, wanted lat and lon, or local_x and "
-            "local_y",
-            document_.file, node->second.line, id);
-      }
-      if (!(position->second.cwiseAbs().maxCoeff() <= kFarthestFromOriginM)) {
-        return fail(
-            "{}:{}: node {}: found a place ({:g}, {:g}) m from the origin, wanted at most "
-            "{:g} m",
-            document_.file, node->second.line, id, position->second.x(), position->second.y(),
-            kFarthestFromOriginM);
-      }
-      if (points.empty() || points.back() != position->second) points.push_back(position->second);
-    }
-    return points;
-  }
-
   Result<Polyline> bound_points(const OsmRelation& relation, const OsmWay& way) const {
-    Result<Polyline> points = points_of(way);
+    Result<Polyline> points = points_of(way, document_, nodes_);
     if (points && points->size() < 2) {
       return fail("{}:{}: way {}: found {} points in this bound of lanelet {}, wanted at least 2",
                   document_.file, way.line, way.id, points->size(), relation.id);
     }
     // Centerlines get a point every 2 m, so that a wrong coordinate would fill the memory.
-    if (points && way_length(*points) > kLongestPolylineM) {
+    if (points && length_of(*points) > kLongestPolylineM) {
       return fail("{}:{}: way {}: found {:g} m in this bound of lanelet {}, wanted at most {:g} m",
-                  document_.file, way.line, way.id, way_length(*points), relation.id,
+                  document_.file, way.line, way.id, length_of(*points), relation.id,
                   kLongestPolylineM);
     }
     return points;
@@ -374,17 +358,19 @@ Result<ImportedMap> parse_lanelet2_with_report(std::string_view text,
   if (!document) return tl::unexpected(document.error());
   Result<NodePositions> nodes = locate_nodes(*document);
   if (!nodes) return tl::unexpected(nodes.error());
-  const bool has_place = nodes->origin.latitude_deg != 0.0 || nodes->origin.longitude_deg != 0.0;
-  if (options.origin && has_place) {
+  if (options.origin && is_known(nodes->origin)) {
     return fail(
         "{}: found an origin for a map whose nodes have latitude and longitude, wanted none",
         file.string());
   }
   if (options.origin) nodes->origin = *options.origin;
+  std::optional<Eigen::Vector2d> shift;
+  if (!is_known(nodes->origin)) shift = shift_to_zero(*nodes);
   const ClassTable none;
   const ClassTable& classes = options.classes != nullptr ? *options.classes : none;
   Result<ImportedMap> imported = Lanelet2Reader(*document, std::move(*nodes), classes).read();
   if (!imported) return imported;
+  if (shift) imported->report.remark_shift(*shift);
   if (Status status = check_rules(classes, imported->report, file.string()); !status) {
     return tl::unexpected(status.error());
   }

@@ -132,6 +132,22 @@ Polyline centerline_between(const Polyline& left, const Polyline& right) {
   return centerline;
 }
 
+double length_of(const Polyline& line) {
+  double length_m = 0.0;
+  for (size_t i = 1; i < line.size(); ++i) length_m += (line[i] - line[i - 1]).norm();
+  return length_m;
+}
+
+double area_of_ring_m2(const Polyline& ring) {
+  double twice_m2 = 0.0;
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const Eigen::Vector2d a = ring[i] - ring.front();
+    const Eigen::Vector2d b = ring[(i + 1) % ring.size()] - ring.front();
+    twice_m2 += a.x() * b.y() - a.y() * b.x();
+  }
+  return 0.5 * std::abs(twice_m2);
+}
+
 Polyline ring_between(const Polyline& left, const Polyline& right) {
   constexpr double kToleranceM = 0.3;
   Polyline ring = simplify(left, kToleranceM);

@@ -23,6 +23,11 @@ void align_bounds(Polyline& left, Polyline& right);
 /// The line midway between two aligned bounds, with points at most 2 m apart.
 Polyline centerline_between(const Polyline& left, const Polyline& right);
 
+double length_of(const Polyline& line);
+
+/// The area of a ring without a repeated corner.
+double area_of_ring_m2(const Polyline& ring);
+
 /// The ring around the area between two bounds, which may run in either direction. Removes points
 /// within 0.3 m of a straight line, so that each long side of a crossing is a single edge.
 Polyline ring_between(const Polyline& left, const Polyline& right);

@@ -12,6 +12,15 @@ bool is_yes(std::string_view value) {
   return value == "yes" || value == "true" || value == "1";
 }
 
+std::string kind_of(std::string_view element, const OsmTags& tags) {
+  const std::string_view type = tag_value(tags, "type");
+  const std::string_view subtype = tag_value(tags, "subtype");
+  std::string kind(element);
+  kind.append(" ").append(type.empty() ? "without type" : type);
+  if (!subtype.empty()) kind.append(" ").append(subtype);
+  return kind;
+}
+
 }  // namespace
 
 LaneletKind kind_of(const OsmTags& tags) {
@@ -71,12 +80,11 @@ bool is_no(std::string_view value) {
 }
 
 std::string way_kind(const OsmTags& tags) {
-  std::string kind = "way ";
-  const std::string_view type = tag_value(tags, "type");
-  const std::string_view subtype = tag_value(tags, "subtype");
-  kind += type.empty() ? "without type" : type;
-  if (!subtype.empty()) kind.append(" ").append(subtype);
-  return kind;
+  return kind_of("way", tags);
+}
+
+std::string relation_kind(const OsmTags& tags) {
+  return kind_of("relation", tags);
 }
 
 }  // namespace bevloc

@@ -28,6 +28,9 @@ std::optional<double> speed_mps(std::string_view text);
 /// How a report calls a way: "way line_thin dashed".
 std::string way_kind(const OsmTags& tags);
 
+/// How a report calls a relation: "relation regulatory_element speed_limit".
+std::string relation_kind(const OsmTags& tags);
+
 /// Whether a tag says no.
 bool is_no(std::string_view value);
 

@@ -12,6 +12,9 @@
 #include <GeographicLib/MGRS.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 
+#include "common/median.h"
+#include "pipeline/map/map_check.h"
+
 namespace bevloc {
 namespace {
 
@@ -26,18 +29,28 @@ bool has_angles(const OsmNode& node) {
   return !has_local(node) || *node.latitude_deg != 0.0 || *node.longitude_deg != 0.0;
 }
 
-/// The middle of all nodes with latitude and longitude.
+/// The middle of the values; their median if they lie farther apart than any map, so that a few
+/// wrong ones do not move it.
+double middle_of(std::vector<double>& values_deg) {
+  constexpr double kWidestMap_deg = 1.0;
+  const auto [least, most] = std::ranges::minmax(values_deg);
+  if (most - least <= kWidestMap_deg) return 0.5 * (least + most);
+  return median(values_deg);
+}
+
+/// The middle of the nodes of all ways, as far as they have latitude and longitude.
 std::optional<GeoOrigin> middle_of(const OsmDocument& document) {
-  double south = 90.0, north = -90.0, west = 180.0, east = -180.0;
-  for (const auto& [id, node] : document.nodes) {
-    if (!has_angles(node)) continue;
-    south = std::min(south, *node.latitude_deg);
-    north = std::max(north, *node.latitude_deg);
-    west = std::min(west, *node.longitude_deg);
-    east = std::max(east, *node.longitude_deg);
+  std::vector<double> latitudes_deg, longitudes_deg;
+  for (const OsmWay& way : document.ways) {
+    for (const int64_t id : way.nodes) {
+      const auto node = document.nodes.find(id);
+      if (node == document.nodes.end() || !has_angles(node->second)) continue;
+      latitudes_deg.push_back(*node->second.latitude_deg);
+      longitudes_deg.push_back(*node->second.longitude_deg);
+    }
   }
-  if (south > north) return std::nullopt;
-  return GeoOrigin{0.5 * (south + north), 0.5 * (west + east)};
+  if (latitudes_deg.empty()) return std::nullopt;
+  return GeoOrigin{middle_of(latitudes_deg), middle_of(longitudes_deg)};
 }
 
 /// Rotation, scale and shift of the plane. Points are complex numbers.
@@ -171,6 +184,70 @@ Result<NodePositions> locate_nodes(const OsmDocument& document) {
     positions.of_node[id] = {position.real(), position.imag()};
   }
   return positions;
+}
+
+Result<std::vector<Eigen::Vector2d>> points_of(const OsmWay& way, const OsmDocument& document,
+                                               const NodePositions& nodes) {
+  std::vector<Eigen::Vector2d> points;
+  for (const int64_t id : way.nodes) {
+    const auto node = document.nodes.find(id);
+    if (node == document.nodes.end()) {
+      return fail(
+          "{}:{}: way {}: found a reference to node {}, which is missing, wanted all its "
+          "nodes in the file",
+          document.file, way.line, way.id, id);
+    }
+    const auto position = nodes.of_node.find(id);
+    if (position == nodes.of_node.end()) {
+      return fail(
+          "{}:{}: node {}: found no coordinates, wanted lat and lon, or local_x and "
+          "local_y",
+          document.file, node->second.line, id);
+    }
+    if (!(position->second.cwiseAbs().maxCoeff() <= kFarthestFromOriginM)) {
+      return fail(
+          "{}:{}: node {}: found a place ({:g}, {:g}) m from the origin, wanted at most "
+          "{:g} m",
+          document.file, node->second.line, id, position->second.x(), position->second.y(),
+          kFarthestFromOriginM);
+    }
+    if (points.empty() || points.back() != position->second) points.push_back(position->second);
+  }
+  return points;
+}
+
+std::optional<Eigen::Vector2d> shift_to_zero(NodePositions& nodes) {
+  std::vector<double> axes[2];
+  for (const auto& [id, position] : nodes.of_node) {
+    for (int axis = 0; axis < 2; ++axis) axes[axis].push_back(position[axis]);
+  }
+  if (axes[0].empty()) return std::nullopt;
+  Eigen::Vector2d middle;
+  for (int axis = 0; axis < 2; ++axis) middle[axis] = median(axes[axis]);
+  if (middle.cwiseAbs().maxCoeff() <= kFarthestFromOriginM) return std::nullopt;
+  const Eigen::Vector2d shift = -middle.array().round().matrix();
+  for (auto& [id, position] : nodes.of_node) position += shift;
+  return shift;
+}
+
+std::vector<double> heights_at(const std::vector<Eigen::Vector2d>& points,
+                               const std::vector<const OsmWay*>& ways, const OsmDocument& document,
+                               const NodePositions& nodes) {
+  std::vector<double> heights_m;
+  const auto height_of = [&](const Eigen::Vector2d& point) -> std::optional<double> {
+    for (const OsmWay* way : ways) {
+      for (const int64_t id : way->nodes) {
+        if (nodes.of_node.at(id) == point) return document.nodes.at(id).height_m;
+      }
+    }
+    return std::nullopt;
+  };
+  for (const Eigen::Vector2d& point : points) {
+    const std::optional<double> height_m = height_of(point);
+    if (!height_m) return {};
+    heights_m.push_back(*height_m);
+  }
+  return heights_m;
 }
 
 std::vector<double> heights_of(const OsmWay& way, const OsmDocument& document,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -19,16 +20,31 @@ struct NodePositions {
   std::unordered_map<int64_t, Eigen::Vector2d> of_node;
 };
 
-/// The map frame is the east-north tangent plane at the middle of the file's nodes. Where a node
-/// has Autoware's local coordinates, they take precedence over its latitude and longitude: one
-/// similarity (shift, rotation, scale) maps all local coordinates into the tangent plane. It is
-/// fitted to the nodes that have both. If no node has latitude and longitude, but all with local
-/// coordinates have an MGRS square (tag mgrs_code), the local coordinates are UTM coordinates
-/// within it. Otherwise the local coordinates are the map frame and the unknown origin is (0, 0).
+/// The map frame is the east-north tangent plane at the middle of the nodes of the file's ways.
+/// Where a node has Autoware's local coordinates, they take precedence over its latitude and
+/// longitude: one similarity (shift, rotation, scale) maps all local coordinates into the tangent
+/// plane. It is fitted to the nodes that have both. If no node has latitude and longitude, but all
+/// with local coordinates have an MGRS square (tag mgrs_code), the local coordinates are UTM
+/// coordinates within it. Otherwise the local coordinates are the map frame and the unknown origin
+/// is (0, 0).
 ///
 /// Fails if some nodes have latitude and longitude, others local coordinates, and fewer than two at
 /// different places have both; and if the two kinds disagree by more than 1 m or 1 % of scale.
 Result<NodePositions> locate_nodes(const OsmDocument& document);
+
+/// The points of a way, without consecutive duplicates. Fails if a node is missing, has no
+/// position, or lies too far from the origin.
+Result<std::vector<Eigen::Vector2d>> points_of(const OsmWay& way, const OsmDocument& document,
+                                               const NodePositions& nodes);
+
+/// Shifts coordinates that no map can have (kFarthestFromOriginM), such as those of UTM, to zero.
+/// Returns by how much.
+std::optional<Eigen::Vector2d> shift_to_zero(NodePositions& nodes);
+
+/// The heights of points that are nodes of these ways, or none if one of them has no height.
+std::vector<double> heights_at(const std::vector<Eigen::Vector2d>& points,
+                               const std::vector<const OsmWay*>& ways, const OsmDocument& document,
+                               const NodePositions& nodes);
 
 /// The heights of a way's nodes, without consecutive nodes at one place: one for each of `count`
 /// points, or none if a node lacks its height. All nodes must have a position.

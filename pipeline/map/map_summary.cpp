@@ -25,7 +25,7 @@ std::string contents_of(const HdMap& map) {
 
 std::vector<std::string> warnings_of(const HdMap& map) {
   std::vector<std::string> warnings;
-  if (map.origin.latitude_deg == 0.0 && map.origin.longitude_deg == 0.0) {
+  if (!is_known(map.origin)) {
     warnings.push_back(
         "no place on earth: positions from GNSS, and the latitude and longitude on the CAN bus, "
         "mean nothing; add lat and lon to nodes of the map");

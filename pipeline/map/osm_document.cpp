@@ -13,13 +13,34 @@
 namespace bevloc {
 namespace {
 
+/// Without white space around it, and without the "+" that std::from_chars does not know.
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\r\n";
+  const size_t first = text.find_first_not_of(kSpace);
+  if (first == std::string_view::npos) return {};
+  text = text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+  if (text.starts_with('+') && text.size() > 1 && text[1] != '-') text.remove_prefix(1);
+  return text;
+}
+
 template <typename T>
 std::optional<T> number_from(std::string_view text) {
+  text = trimmed(text);
   T value{};
   const char* end = text.data() + text.size();
   const auto result = std::from_chars(text.data(), end, value);
   if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
   return value;
+}
+
+/// The tag `ele`: metres, also with their unit. Nothing for anything else, because a map without
+/// heights serves as well.
+std::optional<double> height_from(std::string_view text) {
+  constexpr double kHighest_m = 1e5;
+  text = trimmed(text);
+  if (text.ends_with('m')) text.remove_suffix(1);
+  const auto height_m = number_from<double>(text);
+  return height_m && std::abs(*height_m) <= kHighest_m ? height_m : std::nullopt;
 }
 
 /// Zone, band and square ("54SUE") of an MGRS code: what comes before its numbers.
@@ -108,8 +129,8 @@ class OsmReader {
         status = store(tag, "local_x", value, kMaxLocalM, node.local_x_m);
       } else if (status && key == "local_y") {
         status = store(tag, "local_y", value, kMaxLocalM, node.local_y_m);
-      } else if (status && key == "ele") {
-        status = store(tag, "ele", value, kMaxLocalM, node.height_m);
+      } else if (key == "ele") {
+        node.height_m = height_from(value);
       } else if (key == "mgrs_code") {
         node.mgrs_square = mgrs_square_of(value);
       }

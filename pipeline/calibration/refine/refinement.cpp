@@ -9,6 +9,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "common/median.h"
+
 namespace bevloc {
 namespace {
 
@@ -16,11 +18,8 @@ constexpr double kAgrees = 3.0;  // sigmas
 /// A camera with fewer sightings that agree keeps its calibration.
 constexpr int kLeastSightings = 100;
 
-double median_of(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+double median_or_zero(std::vector<double>& values) {
+  return values.empty() ? 0.0 : median(values);
 }
 
 /// Whether a mount or a lens can change this much. A camera that may change more can also fit the
@@ -288,8 +287,8 @@ RigRefinement RefinementProblem::result(double gate_rad) const {
     camera.change = estimate_.changes[c];
     camera.unobservable = unobservable_[c];
     camera.sigma = variance.segment<kCameraParameters>(c * kCameraParameters).cwiseSqrt();
-    camera.before_px = median_of(before[c]);
-    camera.after_px = median_of(after[c]);
+    camera.before_px = median_or_zero(before[c]);
+    camera.after_px = median_or_zero(after[c]);
   }
   return result;
 }

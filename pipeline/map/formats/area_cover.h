@@ -16,6 +16,10 @@ struct Area {
   std::vector<Line3> holes{};
 };
 
+/// The longest outline of an area. Outlines are sampled every 0.5 m, so a wrong coordinate would
+/// take minutes.
+inline constexpr double kLongestOutline_m = 200'000.0;
+
 /// Immutable. Several threads may ask at the same time.
 class AreaCover {
  public:

@@ -191,6 +191,11 @@ class Argoverse2Reader {
         [&](const json& area, const JsonPath& path, const std::string& id) -> Status {
           auto ring = xyz_points(json_, member(area, "area_boundary"), path / "area_boundary", 3);
           if (!ring) return tl::unexpected(ring.error());
+          if (!(length_of(*ring) <= kLongestOutline_m)) {
+            builder_.leave_out(fmt::format("{}: found an outline of {:g} m, wanted at most {:g} m",
+                                           json_.place(path), length_of(*ring), kLongestOutline_m));
+            return {};
+          }
           areas.push_back({std::move(*ring)});
           ids.push_back(id);
           return {};

@@ -8,9 +8,12 @@
 
 #include <GeographicLib/LocalCartesian.hpp>
 
+#include "common/json_dump.h"
+#include "common/median.h"
 #include "pipeline/map/class_names.h"
 #include "pipeline/map/formats/json_points.h"
 #include "pipeline/map/lanelet_geometry.h"
+#include "pipeline/map/tangent_plane.h"
 
 namespace bevloc {
 namespace {
@@ -35,13 +38,13 @@ class GeojsonReader {
           "{}: found an origin for GeoJSON, wanted none: its positions are on earth already",
           json_.file());
     }
-    const std::optional<GeoOrigin> stored = stored_origin();
-    const GeoOrigin anchor = stored.value_or(first_position(json_.root()).value_or(GeoOrigin()));
-    plane_.Reset(anchor.latitude_deg, anchor.longitude_deg);
     if (!features.is_array()) {
       return fail("{}: found {}, wanted a list of features", json_.place(path),
                   features.type_name());
     }
+    const std::optional<GeoOrigin> stored = stored_origin();
+    const GeoOrigin anchor = stored ? *stored : middle_of_lines(features);
+    plane_.Reset(anchor.latitude_deg, anchor.longitude_deg);
     for (size_t i = 0; i < features.size(); ++i) {
       if (Status status = read_feature(features[i], path / i, i); !status) {
         return tl::unexpected(status.error());
@@ -120,7 +123,7 @@ class GeojsonReader {
       const auto place = position_at(position);
       if (!place) {
         return fail("{}: found {:.60}, wanted longitude and latitude in degrees",
-                    json_.place(path / i), position.dump());
+                    json_.place(path / i), dump_json(position));
       }
       Eigen::Vector3d point;
       plane_.Forward(place->latitude_deg, place->longitude_deg, 0.0, point.x(), point.y(),
@@ -176,13 +179,30 @@ class GeojsonReader {
     return GeoOrigin{value[1].get<double>(), value[0].get<double>()};
   }
 
-  static std::optional<GeoOrigin> first_position(const json& value) {
-    if (const auto position = position_at(value)) return position;
-    if (!value.is_structured()) return std::nullopt;
-    for (const json& part : value) {
-      if (const auto position = first_position(part)) return position;
+  static bool is_drawn(std::string_view shape) {
+    return shape == "LineString" || shape == "MultiLineString" || shape == "Polygon" ||
+           shape == "MultiPolygon";
+  }
+
+  /// The median of the latitudes and longitudes of all lines and polygons: a few wrong ones do not
+  /// move it. Bounding boxes, points and other members may lie anywhere.
+  static GeoOrigin middle_of_lines(const json& features) {
+    std::vector<double> latitudes_deg, longitudes_deg;
+    const auto add = [&](const auto& self, const json& value) -> void {
+      if (const auto position = position_at(value)) {
+        latitudes_deg.push_back(position->latitude_deg);
+        longitudes_deg.push_back(position->longitude_deg);
+        return;
+      }
+      if (!value.is_array()) return;
+      for (const json& part : value) self(self, part);
+    };
+    for (const json& feature : features) {
+      const json& geometry = member(feature, "geometry");
+      if (is_drawn(text_member(geometry, "type"))) add(add, member(geometry, "coordinates"));
     }
-    return std::nullopt;
+    if (latitudes_deg.empty()) return {};
+    return {median(latitudes_deg), median(longitudes_deg)};
   }
 
   const JsonText& json_;
@@ -207,16 +227,15 @@ class GeojsonWriter {
                           {"name", map_.name},
                           {"bevloc_origin", {map_.origin.longitude_deg, map_.origin.latitude_deg}},
                           {"features", std::move(features)}};
-    return collection.dump() + "\n";
+    return dump_json(collection) + "\n";
   }
 
  private:
   json positions(const std::vector<Eigen::Vector2d>& points, const Heights& heights_m = {}) const {
     json list = json::array();
     for (size_t i = 0; i < points.size(); ++i) {
-      double latitude_deg = 0.0, longitude_deg = 0.0, unused_m = 0.0;
-      plane_.Reverse(points[i].x(), points[i].y(), 0.0, latitude_deg, longitude_deg, unused_m);
-      list.push_back({rounded_deg(longitude_deg), rounded_deg(latitude_deg)});
+      const GeoOrigin place = place_of(plane_, points[i]);
+      list.push_back({rounded_deg(place.longitude_deg), rounded_deg(place.latitude_deg)});
       if (heights_m.size() == points.size()) {
         list.back().push_back(std::round(heights_m[i] * 1e3) / 1e3);
       }
@@ -267,7 +286,7 @@ Result<ImportedMap> parse_geojson(std::string_view text, const std::filesystem::
 
 Result<std::string> to_geojson(const ImportedMap& imported) {
   const HdMap& map = imported.map;
-  if (map.origin.latitude_deg == 0.0 && map.origin.longitude_deg == 0.0) {
+  if (!is_known(map.origin)) {
     return fail(
         "{}: found no place on earth, wanted one for GeoJSON; --origin LATITUDE,LONGITUDE "
         "of an import gives it",

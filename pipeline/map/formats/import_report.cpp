@@ -36,6 +36,10 @@ void ImportReport::note(std::string_view kind, const std::optional<Meaning>& mea
   if (row->examples.size() < kMostExamples) row->examples.emplace_back(where);
 }
 
+void ImportReport::remark_shift(const Eigen::Vector2d& shift) {
+  remark(fmt::format("all coordinates were shifted by ({:.0f}, {:.0f}) m", shift.x(), shift.y()));
+}
+
 std::vector<ImportRow> ImportReport::rows() const {
   std::vector<ImportRow> sorted = rows_;
   std::ranges::stable_sort(sorted, [](const ImportRow& a, const ImportRow& b) {

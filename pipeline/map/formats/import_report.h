@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "pipeline/map/hd_map.h"
 
 namespace bevloc {
@@ -40,6 +42,8 @@ class ImportReport {
 
   /// A remark on the whole file, such as where its origin comes from.
   void remark(std::string text) { remarks_.push_back(std::move(text)); }
+
+  void remark_shift(const Eigen::Vector2d& shift);
 
   /// What was taken comes first; within each part by kind.
   std::vector<ImportRow> rows() const;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/json_dump.h"
+
 namespace bevloc {
 namespace {
 
@@ -16,14 +18,14 @@ Result<double> coordinate_at(const JsonText& document, const nlohmann::json& poi
     return value.get<double>();
   }
   return fail("{}: found {} = {:.40}, wanted a number of metres", document.place(path), axis,
-              value.dump());
+              dump_json(value));
 }
 
 }  // namespace
 
 std::string id_text(const nlohmann::json& value) {
   if (value.is_string()) return value.get<std::string>();
-  return value.is_number_integer() ? value.dump() : "";
+  return value.is_number_integer() ? dump_json(value) : "";
 }
 
 const nlohmann::json& member(const nlohmann::json& object, std::string_view key) {

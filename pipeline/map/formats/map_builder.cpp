@@ -7,7 +7,9 @@
 
 #include <GeographicLib/LocalCartesian.hpp>
 
+#include "common/median.h"
 #include "common/plane.h"
+#include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/map_check.h"
 
 namespace bevloc {
@@ -15,12 +17,6 @@ namespace {
 
 /// Coordinates of a file that are further from zero are shifted.
 constexpr double kFarFromZero_m = 20'000.0;
-
-double plane_length(const std::vector<Eigen::Vector2d>& points) {
-  double length_m = 0.0;
-  for (size_t i = 1; i < points.size(); ++i) length_m += (points[i] - points[i - 1]).norm();
-  return length_m;
-}
 
 /// The median of each axis: a few wrong points do not move it.
 Eigen::Vector2d middle_of_elements(const HdMap& map) {
@@ -32,9 +28,7 @@ Eigen::Vector2d middle_of_elements(const HdMap& map) {
   }
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (int axis = 0; axis < 2 && !axes[axis].empty(); ++axis) {
-    const auto half = axes[axis].begin() + static_cast<std::ptrdiff_t>(axes[axis].size() / 2);
-    std::nth_element(axes[axis].begin(), half, axes[axis].end());
-    middle[axis] = *half;
+    middle[axis] = median(axes[axis]);
   }
   return middle;
 }
@@ -65,7 +59,7 @@ void drop_impossible_lanes(std::vector<Lane>& lanes) {
     const Lane& lane = lanes[i];
     const bool good = is_possible(lane.left) && is_possible(lane.right) &&
                       is_possible(lane.centerline) &&
-                      plane_length(lane.centerline) <= kLongestPolylineM;
+                      length_of(lane.centerline) <= kLongestPolylineM;
     if (good) new_index[i] = kept++;
   }
   for (size_t i = 0; i < lanes.size(); ++i) {
@@ -80,8 +74,8 @@ void drop_impossible_lanes(std::vector<Lane>& lanes) {
 
 bool can_be_lane(const std::vector<Eigen::Vector2d>& left,
                  const std::vector<Eigen::Vector2d>& right) {
-  return left.size() > 1 && right.size() > 1 && plane_length(left) <= kLongestPolylineM &&
-         plane_length(right) <= kLongestPolylineM;
+  return left.size() > 1 && right.size() > 1 && length_of(left) <= kLongestPolylineM &&
+         length_of(right) <= kLongestPolylineM;
 }
 
 double length_of(const Line3& line) {
@@ -192,7 +186,7 @@ void MapBuilder::place(const Projection* projection) {
   remark("the file does not say where on earth it is: --origin LATITUDE,LONGITUDE does");
   if (middle.norm() <= kFarFromZero_m) return;
   const Eigen::Vector2d shift = -middle.array().round().matrix();
-  remark(fmt::format("all coordinates were shifted by ({:.0f}, {:.0f}) m", shift.x(), shift.y()));
+  report_.remark_shift(shift);
   move_points(map_,
               [&shift](const Eigen::Vector2d& point) { return Eigen::Vector2d(point + shift); });
 }
@@ -202,7 +196,7 @@ void MapBuilder::drop_impossible() {
   for (size_t i = 0; i < map_.elements.size(); ++i) {
     MapElement& element = map_.elements[i];
     const bool near = is_possible(element.points);
-    if (near && plane_length(element.points) <= kLongestPolylineM) {
+    if (near && length_of(element.points) <= kLongestPolylineM) {
       if (kept != i) {
         map_.elements[kept] = std::move(element);
         heights_m_[kept] = std::move(heights_m_[i]);
@@ -216,7 +210,14 @@ void MapBuilder::drop_impossible() {
   }
   map_.elements.resize(kept);
   heights_m_.resize(kept);
+  const size_t lanes = map_.lanes.size();
   drop_impossible_lanes(map_.lanes);
+  if (const size_t gone = lanes - map_.lanes.size(); gone > 0) {
+    leave_out(
+        fmt::format("{}: found {} lanes that are too long or too far from the middle, wanted "
+                    "at most {:g} and {:g} km",
+                    file_, gone, kLongestPolylineM / 1000.0, kFarthestFromOriginM / 1000.0));
+  }
 }
 
 Result<ImportedMap> MapBuilder::finish(std::string name, std::unique_ptr<Projection> projection) {

@@ -16,16 +16,38 @@
 namespace bevloc {
 namespace {
 
-/// An outermost XML element stands within this many bytes, after comments.
-constexpr size_t kHead = 4096;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 bool has(std::string_view bytes, std::string_view part) {
   return bytes.find(part) != std::string_view::npos;
 }
 
-bool is_json(std::string_view bytes) {
+/// The text without a byte order mark and white space before it.
+std::string_view without_lead(std::string_view bytes) {
+  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   const size_t first = bytes.find_first_not_of(" \t\r\n");
-  return first != std::string_view::npos && bytes[first] == '{';
+  return first == std::string_view::npos ? std::string_view() : bytes.substr(first);
+}
+
+bool is_json(std::string_view bytes) {
+  return without_lead(bytes).starts_with('{');
+}
+
+/// Whether the outermost XML element has this name. Comments and declarations before it, which may
+/// contain anything, do not count.
+bool is_xml_of(std::string_view bytes, std::string_view element) {
+  for (std::string_view rest = without_lead(bytes); rest.starts_with('<');
+       rest = without_lead(rest)) {
+    const bool is_comment = rest.starts_with("<!--");
+    if (!is_comment && rest[1] != '?' && rest[1] != '!') {
+      return rest.substr(1).starts_with(element);
+    }
+    const std::string_view end = is_comment ? "-->" : ">";
+    const size_t at = rest.find(end);
+    if (at == std::string_view::npos) return false;
+    rest.remove_prefix(at + end.size());
+  }
+  return false;
 }
 
 Result<ImportedMap> read_compact(std::string_view bytes, const std::filesystem::path& file,
@@ -44,11 +66,10 @@ Result<ImportedMap> read_compact(std::string_view bytes, const std::filesystem::
 constexpr std::array kFormats{
     MapFormat{"compact", ".bvm",
               [](std::string_view bytes) { return bytes.starts_with(kMapMagic); }, read_compact},
-    MapFormat{"Lanelet2", ".osm",
-              [](std::string_view bytes) { return has(bytes.substr(0, kHead), "<osm"); },
+    MapFormat{"Lanelet2", ".osm", [](std::string_view bytes) { return is_xml_of(bytes, "osm"); },
               parse_lanelet2_with_report},
     MapFormat{"OpenDRIVE", ".xodr",
-              [](std::string_view bytes) { return has(bytes.substr(0, kHead), "<OpenDRIVE"); },
+              [](std::string_view bytes) { return is_xml_of(bytes, "OpenDRIVE"); },
               parse_opendrive},
     MapFormat{"GeoJSON", ".geojson",
               [](std::string_view bytes) {

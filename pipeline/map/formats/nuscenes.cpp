@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "common/json_dump.h"
 #include "pipeline/map/formats/area_cover.h"
 #include "pipeline/map/formats/json_points.h"
 #include "pipeline/map/lanelet_geometry.h"
@@ -121,7 +122,7 @@ class NuscenesReader {
       const auto node = nodes_.find(id_text(tokens[i]));
       if (node == nodes_.end()) {
         return fail("{}: found a reference to node {:.60}, which is missing, wanted it in the file",
-                    json_.place(path / i), tokens[i].dump());
+                    json_.place(path / i), dump_json(tokens[i]));
       }
       line.push_back(node->second);
     }
@@ -226,6 +227,12 @@ class NuscenesReader {
       for (size_t i = 0; tokens.is_array() && i < tokens.size(); ++i) {
         auto area = area_of(id_text(tokens[i]), path / "polygon_tokens" / i);
         if (!area) return tl::unexpected(area.error());
+        if (!(length_of(area->outer) <= kLongestOutline_m)) {
+          builder_.leave_out(fmt::format("{}: found an outline of {:g} m, wanted at most {:g} m",
+                                         json_.place(path / "polygon_tokens" / i),
+                                         length_of(area->outer), kLongestOutline_m));
+          continue;
+        }
         areas.push_back(std::move(*area));
         names.push_back("drivable_area " + text_member(record, "token"));
       }

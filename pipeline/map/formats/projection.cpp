@@ -47,13 +47,6 @@ class TransverseMercatorPlane : public Projection {
   double north_of_origin_m_ = 0.0;
 };
 
-class DegreesPlane : public Projection {
- public:
-  GeoOrigin geographic(const Eigen::Vector2d& point) const override {
-    return {point.y(), point.x()};
-  }
-};
-
 class TangentPlane : public Projection {
  public:
   explicit TangentPlane(const GeoOrigin& origin)
@@ -164,11 +157,9 @@ Result<std::unique_ptr<Projection>> projection_from_proj(std::string_view text) 
   if (kind == words.end()) {
     return fail("found \"{:.60}\", wanted a PROJ string with +proj=", text);
   }
+  if (kind->second == "longlat" || kind->second == "latlong") return nullptr;
   if (Status status = check_datum(words); !status) return tl::unexpected(status.error());
   if (kind->second == "tmerc") return transverse_mercator(words);
-  if (kind->second == "longlat" || kind->second == "latlong") {
-    return std::make_unique<DegreesPlane>();
-  }
   if (kind->second == "utm") {
     const Result<double> zone = proj_number(words, "zone", 0.0, 60.0);
     if (!zone) return tl::unexpected(zone.error());
@@ -177,7 +168,7 @@ Result<std::unique_ptr<Projection>> projection_from_proj(std::string_view text) 
     }
     return utm_projection(static_cast<int>(*zone), !words.contains("south"), {0.0, 0.0});
   }
-  return fail("found +proj={}, wanted utm, tmerc or longlat", kind->second);
+  return fail("found +proj={}, wanted utm or tmerc", kind->second);
 }
 
 std::unique_ptr<Projection> utm_projection(int zone, bool north, const Eigen::Vector2d& offset) {

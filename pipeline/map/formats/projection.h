@@ -20,9 +20,10 @@ class Projection {
   virtual GeoOrigin geographic(const Eigen::Vector2d& point) const = 0;
 };
 
-/// Reads a PROJ string. Understands +proj=utm (+zone, +south), +proj=tmerc (+lat_0, +lon_0, +k or
-/// +k_0, +x_0, +y_0) and +proj=latlong or longlat, on WGS84 or GRS80 in metres. The error says what
-/// is not understood, without a file name.
+/// Reads a PROJ string. Understands +proj=utm (+zone, +south) and +proj=tmerc (+lat_0, +lon_0, +k
+/// or +k_0, +x_0, +y_0), on WGS84 or GRS80 in metres. Null for +proj=longlat or latlong, which do
+/// not say where a plane in metres lies. The error says what is not understood, without a file
+/// name.
 Result<std::unique_ptr<Projection>> projection_from_proj(std::string_view text);
 
 /// UTM north or south of the equator, with `offset` added to the coordinates of the file.

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -18,11 +19,22 @@ namespace {
 constexpr double kLargestNumber = 1e9;
 /// 1/m: the radius is 0.1 m.
 constexpr double kMostCurvature = 10.0;
+/// A length that is less than this below 0 is 0.
+constexpr double kRounding_m = 1e-6;
+/// More lanes than any file has on the other side of single-sided lane sections.
+constexpr size_t kMostOtherLanes = 1'000'000;
 
 double mps_from(std::string_view unit) {
   if (unit == "km/h") return 1.0 / 3.6;
   if (unit == "mph") return 0.44704;
   return 1.0;
+}
+
+/// A number beyond the range of double: 0 if it is too small, infinite if it is too large.
+double wide_number(std::string_view text) {
+  long double value = std::numeric_limits<long double>::infinity();
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return static_cast<double>(value);
 }
 
 /// Reads the elements of one file. After the first error every value is zero.
@@ -62,7 +74,9 @@ class DocumentReader {
     while (text.ends_with(' ')) text.remove_suffix(1);
     double value = 0.0;
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool is_number = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
+    if (parsed.ec == std::errc::result_out_of_range) value = wide_number(text);
+    const bool is_number =
+        parsed.ec != std::errc::invalid_argument && parsed.ptr == text.data() + text.size();
     if (is_number && std::abs(value) <= limit) return value;
     reject(node, fmt::format("{}=\"{:.40}\"", name, text),
            fmt::format("a number from {:g} to {:g}", -limit, limit));
@@ -71,7 +85,7 @@ class DocumentReader {
 
   double length(const pugi::xml_node& node, const char* name) {
     const double value = number(node, name, kLongestPolylineM);
-    if (value < 0.0) reject(node, fmt::format("{}={:g}", name, value), "0 or more");
+    if (value < -kRounding_m) reject(node, fmt::format("{}={:g}", name, value), "0 or more");
     return std::max(value, 0.0);
   }
 
@@ -164,6 +178,7 @@ class DocumentReader {
   LaneSection read_section(const pugi::xml_node& node) {
     LaneSection section;
     section.start_m = length(node, "s");
+    section.line = line_of(node);
     for (const char* side : {"right", "center", "left"}) {
       for (const pugi::xml_node& lane : node.child(side).children("lane")) {
         section.lanes.push_back(read_lane(lane));
@@ -180,7 +195,13 @@ class DocumentReader {
                "lanes with consecutive ids from 0");
       }
     }
-    if (!has(0)) reject(node, "no centre lane", "one of id 0");
+    if (!has(0)) {
+      reject(node, "no centre lane", "one of id 0");
+      return section;
+    }
+    const bool has_both = section.lanes.front().id < 0 && section.lanes.back().id > 0;
+    section.is_single_side =
+        node.attribute("singleSide").as_bool() && !has_both && section.lanes.size() > 1;
     return section;
   }
 
@@ -196,20 +217,51 @@ class DocumentReader {
     object.heading_rad = number(node, "hdg", 1e4, 0.0);
     object.length_m = number(node, "length", kLargestNumber, 0.0);
     object.width_m = number(node, "width", kLargestNumber, 0.0);
-    pugi::xml_node outline = node.child("outlines").child("outline");
-    if (!outline) outline = node.child("outline");
-    for (const pugi::xml_node& corner : outline.children()) {
+    const pugi::xml_node outlines = node.child("outlines");
+    const pugi::xml_node parent = outlines.child("outline") ? outlines : node;
+    for (const pugi::xml_node& outline : parent.children("outline")) {
+      // An inner outline is a hole.
+      const bool is_hole = !outline.attribute("outer").as_bool(true);
+      if (is_hole && !object.outlines.empty()) continue;
+      object.outlines.push_back(read_outline(outline));
+      if (object.outlines.back().empty()) object.outlines.pop_back();
+    }
+    for (const pugi::xml_node& repeat : node.children("repeat")) {
+      if (is_crosswalk(object)) object.repeats.push_back(read_repeat(repeat, object));
+    }
+    return object;
+  }
+
+  std::vector<Corner> read_outline(const pugi::xml_node& node) {
+    std::vector<Corner> outline;
+    for (const pugi::xml_node& corner : node.children()) {
       if (std::strcmp(corner.name(), "cornerLocal") == 0) {
-        object.outline.push_back(
+        outline.push_back(
             {true,
              {number(corner, "u"), number(corner, "v"), number(corner, "z", kLargestNumber, 0.0)}});
       } else if (std::strcmp(corner.name(), "cornerRoad") == 0) {
-        object.outline.push_back({false,
-                                  {number(corner, "s"), number(corner, "t"),
-                                   number(corner, "dz", kLargestNumber, 0.0)}});
+        outline.push_back({false,
+                           {number(corner, "s"), number(corner, "t"),
+                            number(corner, "dz", kLargestNumber, 0.0)}});
       }
     }
-    return object;
+    return outline;
+  }
+
+  Repeat read_repeat(const pugi::xml_node& node, const RoadObject& object) {
+    const auto ends = [&](const char* first, const char* last, double fallback) {
+      return std::array<double, 2>{number(node, first, kLargestNumber, fallback),
+                                   number(node, last, kLargestNumber, fallback)};
+    };
+    Repeat repeat;
+    repeat.start_m = number(node, "s", kLargestNumber, object.s_m);
+    repeat.length_m = number(node, "length", kLargestNumber, 0.0);
+    repeat.distance_m = number(node, "distance", kLargestNumber, 0.0);
+    repeat.t_m = ends("tStart", "tEnd", object.t_m);
+    repeat.z_m = ends("zOffsetStart", "zOffsetEnd", object.z_m);
+    repeat.object_length_m = ends("lengthStart", "lengthEnd", object.length_m);
+    repeat.object_width_m = ends("widthStart", "widthEnd", object.width_m);
+    return repeat;
   }
 
   Road read_road(const pugi::xml_node& node) {
@@ -226,6 +278,7 @@ class DocumentReader {
     }
     if (road.geometries.empty()) reject(node, "no <geometry>", "a <planView> with at least one");
     std::ranges::stable_sort(road.geometries, {}, &Geometry::start_m);
+    road.stretches = stretches_of(road);
     road.elevations = read_cubics(node.child("elevationProfile"), "elevation", "s");
     const pugi::xml_node lanes = node.child("lanes");
     road.lane_offsets = read_cubics(lanes, "laneOffset", "s");
@@ -233,19 +286,37 @@ class DocumentReader {
       road.sections.push_back(read_section(section));
     }
     if (road.sections.empty()) reject(node, "no <laneSection>", "at least one");
-    std::ranges::stable_sort(road.sections, {}, &LaneSection::start_m);
-    for (size_t i = 0; i < road.sections.size(); ++i) {
-      road.sections[i].end_m =
-          i + 1 < road.sections.size() ? road.sections[i + 1].start_m : road.length_m;
-    }
+    join_sections(lanes, road);
     for (const pugi::xml_node& object : node.child("objects").children("object")) {
       road.objects.push_back(read_object(object));
     }
     return road;
   }
 
+  /// Orders the sections, completes them, and ends each where the next begins.
+  void join_sections(const pugi::xml_node& lanes, Road& road) {
+    std::ranges::stable_sort(road.sections, {}, &LaneSection::start_m);
+    if (error_) return;
+    size_t most = 0;
+    for (const LaneSection& section : road.sections) {
+      most = std::max(most, section.lanes.size());
+      if (section.is_single_side) other_lanes_ += most;
+    }
+    if (other_lanes_ > kMostOtherLanes) {
+      reject(lanes, "too many lane sections with singleSide", "less");
+      return;
+    }
+    complete_sides(road.sections);
+    for (size_t i = 0; i < road.sections.size(); ++i) {
+      const bool is_last = i + 1 == road.sections.size();
+      road.sections[i].end_m =
+          is_last ? road.length_m : std::min(road.sections[i + 1].start_m, road.length_m);
+    }
+  }
+
   LineFinder lines_;
   Document document_;
+  size_t other_lanes_ = 0;
   std::optional<Error> error_;
 };
 

@@ -28,6 +28,8 @@ constexpr double kTolerance_m = 0.01;
 constexpr double kJunctionGap_m = 3.0;
 /// More points than any map has (200 bytes each).
 constexpr size_t kMostPoints = 10'000'000;
+/// More crossings than any map has by repetition.
+constexpr size_t kMostCopiesInAll = 100'000;
 
 std::optional<Meaning> meaning_of_mark_type(std::string_view type) {
   using Look = Appearance;
@@ -145,6 +147,9 @@ class OpendriveReader {
   Status read() {
     size_t points = 0;
     for (const od::Road& road : document_.roads) {
+      for (std::string& fault : od::faults_of(road, document_.file)) {
+        builder_.leave_out(std::move(fault));
+      }
       for (const od::LaneSection& section : road.sections) {
         const double length_m = section.end_m - section.start_m;
         points += static_cast<size_t>(std::max(2.0, 2.0 * length_m)) * section.lanes.size();
@@ -152,8 +157,11 @@ class OpendriveReader {
           return fail("{}:{}: road {}: found roads of more than {} points in all, wanted less",
                       document_.file, road.line, road.id, kMostPoints);
         }
-        if (length_m < kTolerance_m) continue;
-        sections_.push_back({&road, &section, od::lines_of(road, section)});
+        for (const od::Stretch& stretch : road.stretches) {
+          const od::Stretch part = od::part_of(section, stretch);
+          if (part.end_m - part.start_m < kTolerance_m) continue;
+          sections_.push_back({&road, &section, od::lines_of(road, section, part)});
+        }
       }
     }
     pave();
@@ -178,8 +186,12 @@ class OpendriveReader {
         return fail("{}:{}: <geoReference>: {}; --origin LATITUDE,LONGITUDE takes its place",
                     document_.file, document_.georeference_line, read.error().message);
       }
-      projection =
-          moved_projection(std::move(*read), document_.offset, document_.offset_heading_rad);
+      if (*read) {
+        projection =
+            moved_projection(std::move(*read), document_.offset, document_.offset_heading_rad);
+      } else {
+        builder_.remark("the geoReference is longlat, which does not say where metres lie");
+      }
     }
     return builder_.finish(name, std::move(projection));
   }
@@ -206,8 +218,8 @@ class OpendriveReader {
 
   static void pave_between(const Line3& right, const Line3& left, std::vector<Area>& areas) {
     for (size_t i = 0; i + 1 < right.size(); ++i) {
-      const bool has_width = (left[i] - right[i]).norm() > kNoWidth_m ||
-                             (left[i + 1] - right[i + 1]).norm() > kNoWidth_m;
+      const bool has_width = (left[i] - right[i]).head<2>().norm() > kNoWidth_m ||
+                             (left[i + 1] - right[i + 1]).head<2>().norm() > kNoWidth_m;
       if (has_width) areas.push_back({{right[i], right[i + 1], left[i + 1], left[i]}});
     }
   }
@@ -320,41 +332,47 @@ class OpendriveReader {
   }
 
   void add_object(const od::Road& road, const od::RoadObject& object) {
-    std::string name = object.name;
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-    const bool is_crossing =
-        object.type == "crosswalk" || name.find("crosswalk") != std::string::npos;
+    const bool is_crossing = od::is_crosswalk(object);
     const std::string kind =
         is_crossing ? "object crosswalk" : "object " + (object.type.empty() ? "-1" : object.type);
     std::optional<Meaning> meaning;
     if (is_crossing) meaning = Meaning{ElementClass::kPedestrianCrossing, Appearance::kUnknown};
-    builder_.add(kind, fmt::format("object {} (line {})", object.id, object.line), meaning,
-                 "not a line of the road", outline_of(road, object));
-  }
-
-  static Line3 outline_of(const od::Road& road, const od::RoadObject& object) {
-    std::vector<od::Corner> corners = object.outline;
-    const double u = 0.5 * object.length_m;
-    const double v = 0.5 * object.width_m;
-    if (corners.empty() && u > 0.0 && v > 0.0) {
-      corners = {{true, {u, v, 0}}, {true, {-u, v, 0}}, {true, {-u, -v, 0}}, {true, {u, -v, 0}}};
+    std::vector<od::RoadObject> copies = od::copies_of(object);
+    if (copies.size() > 1) copies_ += copies.size();
+    if (copies.empty() || (copies.size() > 1 && copies_ > kMostCopiesInAll)) {
+      leave_out(road, object,
+                "a <repeat> that is not read, wanted a distance, few copies and no cornerRoad");
+      copies = {object};
     }
-    const Eigen::Vector3d origin = od::point_at(road, object.s_m, object.t_m);
-    const double heading = road.pose_at(object.s_m).heading_rad + object.heading_rad;
-    Line3 outline;
-    for (const od::Corner& corner : corners) {
-      if (corner.is_local) {
-        const double c = std::cos(heading);
-        const double s = std::sin(heading);
-        outline.emplace_back(origin.x() + c * corner.place.x() - s * corner.place.y(),
-                             origin.y() + s * corner.place.x() + c * corner.place.y(),
-                             origin.z() + object.z_m + corner.place.z());
-      } else {
-        outline.push_back(od::point_at(road, corner.place.x(), corner.place.y()));
-        outline.back().z() += corner.place.z();
+    const std::string where = fmt::format("object {} (line {})", object.id, object.line);
+    for (const od::RoadObject& copy : copies) {
+      for (const std::vector<od::Corner>& outline : od::outlines_of(copy)) {
+        if (is_crossing && !is_on_road(road, copy, outline)) continue;
+        builder_.add(kind, where, meaning, "not a line of the road",
+                     od::points_of(road, copy, outline));
       }
     }
-    return outline;
+  }
+
+  /// Names corners of a crossing that lie where the road has no line; false if all do.
+  bool is_on_road(const od::Road& road, const od::RoadObject& object,
+                  const std::vector<od::Corner>& outline) {
+    double first_m = 0.0;
+    size_t lost = 0;
+    for (const od::Corner& corner : outline) {
+      const double s_m = corner.is_local ? object.s_m : corner.place.x();
+      if (!road.has_line_at(s_m) && lost++ == 0) first_m = s_m;
+    }
+    if (lost == 0) return true;
+    leave_out(road, object,
+              fmt::format("{} of {} corners beyond the road, first by s={:g}, wanted none", lost,
+                          outline.size(), first_m));
+    return lost < outline.size();
+  }
+
+  void leave_out(const od::Road& road, const od::RoadObject& object, std::string_view found) {
+    builder_.leave_out(fmt::format("{}:{}: road {}: object {}: found {}", document_.file,
+                                   object.line, road.id, object.id, found));
   }
 
   const od::Document& document_;
@@ -362,6 +380,7 @@ class OpendriveReader {
   TakenLines taken_;
   std::vector<CutSection> sections_;
   std::optional<AreaCover> asphalt_;
+  size_t copies_ = 0;
 };
 
 }  // namespace

@@ -13,12 +13,15 @@ namespace bevloc {
 ///   that is not (sidewalk, none, median and so on) or no lane, unless another road's paved lanes
 ///   continue there, as in junctions; and road marks of type curb, grass and edge.
 /// - Lane dividers: other road marks, by their type.
-/// - Pedestrian crossings: objects of type crosswalk, by their outline, or by length and width.
+/// - Pedestrian crossings: objects of type crosswalk and their copies, by their outlines, or by
+///   length and width.
 /// - Lanes: lanes on which vehicles drive, one for each lane section.
 ///
-/// Heights are those of the elevation profile. The place on earth comes from the header's
-/// geoReference (projection.h) with its offset. Fails as parse_document() does, and with file and
-/// line on a geoReference that cannot be read, unless the options give an origin.
+/// Heights are those of the elevation profile; without one there are none. The place on earth comes
+/// from the header's geoReference (projection.h) with its offset. HdMap::left_out names parts that
+/// are lost because a road contradicts itself, such as gaps in its reference line. Fails as
+/// parse_document() does, and with file and line on a geoReference that cannot be read, unless the
+/// options give an origin.
 Result<ImportedMap> parse_opendrive(std::string_view text, const std::filesystem::path& file,
                                     const ImportOptions& options);
 

@@ -1,7 +1,11 @@
 #include "pipeline/map/formats/opendrive/road.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace bevloc::opendrive {
 namespace {
@@ -9,6 +13,13 @@ namespace {
 /// Integrates along a spiral and along the length of a cubic in pieces this long.
 constexpr double kStep_m = 2.0;
 constexpr double kMostSteps = 10'000.0;
+/// Gaps in a road that are not larger are rounding.
+constexpr double kGap_m = 0.1;
+/// Sections that start closer start together.
+constexpr double kSameStart_m = 1e-6;
+/// More copies of an object, and more corners of each, than any road has.
+constexpr double kMostCopies = 1000.0;
+constexpr size_t kMostCorners = 100;
 
 /// Gauss-Legendre quadrature with three points of f from 0 to `end`.
 template <typename Value, typename Function>
@@ -70,6 +81,37 @@ LinePose local_pose(const Geometry& geometry, double along_m) {
   return {};
 }
 
+bool has_paint(const LaneSpec& lane) {
+  return std::ranges::any_of(
+      lane.marks, [](const RoadMark& mark) { return !mark.type.empty() && mark.type != "none"; });
+}
+
+/// The lane with its places from another start of its section.
+LaneSpec moved(LaneSpec lane, double shift_m) {
+  for (Cubics* cubics : {&lane.widths, &lane.borders}) {
+    for (Cubic& cubic : *cubics) cubic.start_m += shift_m;
+  }
+  for (RoadMark& mark : lane.marks) mark.start_m += shift_m;
+  return lane;
+}
+
+/// Gives a single-sided section what it does not say itself.
+void take_over(const LaneSection& before, LaneSection& section) {
+  const double shift_m = before.start_m - section.start_m;
+  const bool has_right = section.lanes.front().id < 0;
+  const bool has_left = section.lanes.back().id > 0;
+  for (const LaneSpec& lane : before.lanes) {
+    if (lane.id != 0) {
+      if (!(lane.id < 0 ? has_right : has_left)) section.lanes.push_back(moved(lane, shift_m));
+      continue;
+    }
+    LaneSpec& centre = *std::ranges::find(section.lanes, 0, &LaneSpec::id);
+    const bool says_marks = -shift_m < kSameStart_m ? has_paint(centre) : !centre.marks.empty();
+    if (!says_marks) centre.marks = moved(lane, shift_m).marks;
+  }
+  std::ranges::stable_sort(section.lanes, {}, &LaneSpec::id);
+}
+
 }  // namespace
 
 double value_at(const Cubics& cubics, double s_m, double fallback) {
@@ -88,10 +130,124 @@ LinePose pose_along(const Geometry& geometry, double along_m) {
           geometry.heading_rad + local.heading_rad};
 }
 
-LinePose Road::pose_at(double s_m) const {
-  const auto next = std::ranges::upper_bound(geometries, s_m, {}, &Geometry::start_m);
+LinePose Road::pose_at(double s_m, bool from_before) const {
+  const auto next = from_before ? std::ranges::lower_bound(geometries, s_m, {}, &Geometry::start_m)
+                                : std::ranges::upper_bound(geometries, s_m, {}, &Geometry::start_m);
   const Geometry& geometry = next == geometries.begin() ? *next : *std::prev(next);
   return pose_along(geometry, std::clamp(s_m - geometry.start_m, 0.0, geometry.length_m));
+}
+
+bool Road::has_line_at(double s_m) const {
+  return std::ranges::any_of(stretches, [s_m](const Stretch& stretch) {
+    return s_m >= stretch.start_m - kGap_m && s_m <= stretch.end_m + kGap_m;
+  });
+}
+
+std::vector<Stretch> stretches_of(const Road& road) {
+  std::vector<Stretch> stretches;
+  if (road.geometries.empty()) return stretches;
+  const double first_m = road.geometries.front().start_m;
+  double start_m = first_m > kGap_m ? first_m : 0.0;
+  for (size_t i = 0; i + 1 < road.geometries.size(); ++i) {
+    const Geometry& piece = road.geometries[i];
+    const Geometry& next = road.geometries[i + 1];
+    const double along_m = std::min(next.start_m - piece.start_m, piece.length_m);
+    const double jump_m = (next.origin - pose_along(piece, along_m).position).norm();
+    if (jump_m <= kGap_m) continue;
+    stretches.push_back({start_m, std::min(next.start_m, piece.start_m + along_m), jump_m});
+    start_m = next.start_m;
+  }
+  const double end_m = road.geometries.back().start_m + road.geometries.back().length_m;
+  stretches.push_back({start_m, end_m + kGap_m < road.length_m ? end_m : road.length_m});
+  return stretches;
+}
+
+void complete_sides(std::vector<LaneSection>& sections) {
+  if (std::ranges::none_of(sections, &LaneSection::is_single_side)) return;
+  std::vector<LaneSection> whole;
+  for (LaneSection& section : sections) {
+    const bool completes = section.is_single_side && !whole.empty();
+    if (completes) take_over(whole.back(), section);
+    if (completes && section.start_m - whole.back().start_m < kSameStart_m) {
+      section.start_m = whole.back().start_m;
+      whole.back() = std::move(section);
+    } else {
+      whole.push_back(std::move(section));
+    }
+  }
+  sections = std::move(whole);
+}
+
+std::vector<std::string> faults_of(const Road& road, std::string_view file) {
+  std::vector<std::string> faults;
+  const auto add = [&](int line, const std::string& found_and_wanted) {
+    faults.push_back(
+        fmt::format("{}:{}: road {}: found {}", file, line, road.id, found_and_wanted));
+  };
+  const double first_m = road.geometries.front().start_m;
+  const double end_m = road.geometries.back().start_m + road.geometries.back().length_m;
+  if (first_m > kGap_m) {
+    add(road.line, fmt::format("the first <geometry> at s={:g}, wanted s=0", first_m));
+  }
+  if (std::abs(end_m - road.length_m) > kGap_m) {
+    add(road.line, fmt::format("a length of {:g} m, wanted {:g} m, where its <planView> ends",
+                               road.length_m, end_m));
+  }
+  for (size_t i = 0; i + 1 < road.stretches.size(); ++i) {
+    add(road.line, fmt::format("a gap of {:g} m after s={:g}, wanted a <planView> without gaps",
+                               road.stretches[i].jump_m, road.stretches[i].end_m));
+  }
+  const LaneSection& first = road.sections.front();
+  if (first.start_m > kGap_m) {
+    add(first.line, fmt::format("the first <laneSection> at s={:g}, wanted s=0", first.start_m));
+  }
+  for (const LaneSection& section : road.sections) {
+    if (section.start_m <= road.length_m + kGap_m) continue;
+    add(section.line, fmt::format("a <laneSection> at s={:g}, wanted at most the length of {:g} m",
+                                  section.start_m, road.length_m));
+  }
+  return faults;
+}
+
+bool is_crosswalk(const RoadObject& object) {
+  std::string name = object.name;
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  return object.type == "crosswalk" || name.find("crosswalk") != std::string::npos;
+}
+
+std::vector<RoadObject> copies_of(const RoadObject& object) {
+  if (object.repeats.empty()) return {object};
+  RoadObject single = object;
+  single.repeats.clear();
+  size_t corners = 0;
+  for (const std::vector<Corner>& outline : object.outlines) {
+    corners += outline.size();
+    if (!std::ranges::all_of(outline, &Corner::is_local) || corners > kMostCorners) return {};
+  }
+  std::vector<RoadObject> copies;
+  for (const Repeat& repeat : object.repeats) {
+    const double last = std::floor(repeat.length_m / repeat.distance_m + 1e-6);
+    const bool is_possible =
+        repeat.distance_m > 0.0 && static_cast<double>(copies.size()) + last < kMostCopies;
+    if (!is_possible) return {};
+    for (double i = 0.0; i <= last; i += 1.0) {
+      const double along_m = i * repeat.distance_m;
+      const double share = repeat.length_m > 0.0 ? along_m / repeat.length_m : 0.0;
+      const auto between = [share](const std::array<double, 2>& ends) {
+        return std::lerp(ends[0], ends[1], share);
+      };
+      RoadObject& copy = copies.emplace_back(single);
+      copy.s_m = repeat.start_m + along_m;
+      copy.t_m = between(repeat.t_m);
+      copy.z_m = between(repeat.z_m);
+      const double length_m = between(repeat.object_length_m);
+      const double width_m = between(repeat.object_width_m);
+      // 0 stands for the size of the object itself.
+      if (length_m > 0.0) copy.length_m = length_m;
+      if (width_m > 0.0) copy.width_m = width_m;
+    }
+  }
+  return copies;
 }
 
 }  // namespace bevloc::opendrive

@@ -1,9 +1,11 @@
 // The parts of an OpenDRIVE road (ASAM OpenDRIVE 1.4 to 1.7) that a map needs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -52,6 +54,13 @@ struct LinePose {
   double heading_rad = 0.0;
 };
 
+/// A part of a road whose reference line has no gap.
+struct Stretch {
+  double start_m = 0.0;
+  double end_m = 0.0;
+  double jump_m = 0.0;  ///< from its end to the start of the next; 0 if no gap ends it
+};
+
 /// The pose at `along_m` (0 to the length) of a piece.
 LinePose pose_along(const Geometry& geometry, double along_m);
 
@@ -73,6 +82,8 @@ struct LaneSpec {
 struct LaneSection {
   double start_m = 0.0;
   double end_m = 0.0;
+  int line = 0;                 ///< in the file
+  bool is_single_side = false;  ///< the other side goes on with the section before
   /// From the rightmost (smallest id) to the leftmost. Contains the centre, whose id is 0.
   std::vector<LaneSpec> lanes;
 };
@@ -81,6 +92,17 @@ struct LaneSection {
 struct Corner {
   bool is_local = true;
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
+};
+
+/// Copies of an object along the road. Values at the first and at the last copy.
+struct Repeat {
+  double start_m = 0.0;
+  double length_m = 0.0;
+  double distance_m = 0.0;
+  std::array<double, 2> t_m{};
+  std::array<double, 2> z_m{};
+  std::array<double, 2> object_length_m{};
+  std::array<double, 2> object_width_m{};
 };
 
 struct RoadObject {
@@ -94,8 +116,16 @@ struct RoadObject {
   double heading_rad = 0.0;  ///< relative to the road
   double length_m = 0.0;
   double width_m = 0.0;
-  std::vector<Corner> outline;
+  std::vector<std::vector<Corner>> outlines;
+  std::vector<Repeat> repeats;  ///< of crosswalks only
 };
+
+/// Whether the type or the name says that an object is a crosswalk.
+bool is_crosswalk(const RoadObject& object);
+
+/// The object, or its copies if it is repeated; nothing if the repetition has no distance, has too
+/// many copies, or has corners in the frame of the road.
+std::vector<RoadObject> copies_of(const RoadObject& object);
 
 struct Road {
   std::string id;
@@ -105,13 +135,25 @@ struct Road {
   bool drives_left = false;
   std::optional<double> speed_mps;
   std::vector<Geometry> geometries;
+  std::vector<Stretch> stretches;
   Cubics elevations;
   Cubics lane_offsets;
   std::vector<LaneSection> sections;
   std::vector<RoadObject> objects;
 
-  LinePose pose_at(double s_m) const;
+  /// The pose at s. Where two pieces meet, that of the later one unless `from_before`.
+  LinePose pose_at(double s_m, bool from_before = false) const;
+  bool has_line_at(double s_m) const;
 };
+
+/// The parts of the reference line between its gaps, up to the length of the road.
+std::vector<Stretch> stretches_of(const Road& road);
+
+/// Gives single-sided sections, which are in the order of their starts, the other side.
+void complete_sides(std::vector<LaneSection>& sections);
+
+/// What of a road is lost because it is wrong there: sentences with file, line, road and s.
+std::vector<std::string> faults_of(const Road& road, std::string_view file);
 
 struct Document {
   std::string file;

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace bevloc::opendrive {
 namespace {
 
 constexpr double kSpacing_m = 0.5;
 
-/// The places where a formula changes, from start to end of the section.
-std::vector<double> changes_in(const Road& road, const LaneSection& section) {
-  std::vector<double> at{section.start_m, section.end_m};
+/// The places where a formula changes, from start to end of a part of the section.
+std::vector<double> changes_in(const Road& road, const LaneSection& section, const Stretch& part) {
+  std::vector<double> at{part.start_m, part.end_m};
   for (const Geometry& geometry : road.geometries) at.push_back(geometry.start_m);
   for (const Cubics* cubics : {&road.lane_offsets, &road.elevations}) {
     for (const Cubic& cubic : *cubics) at.push_back(cubic.start_m);
@@ -22,10 +23,10 @@ std::vector<double> changes_in(const Road& road, const LaneSection& section) {
     }
     for (const RoadMark& mark : lane.marks) at.push_back(section.start_m + mark.start_m);
   }
-  std::erase_if(at, [&](double s) { return s < section.start_m || s > section.end_m; });
+  std::erase_if(at, [&](double s) { return s < part.start_m || s > part.end_m; });
   std::ranges::sort(at);
-  constexpr double kSamePlace_m = 1e-6;
-  const auto is_same = [](double a, double b) { return b - a < kSamePlace_m; };
+  constexpr double kSamePoint_m = 1e-6;
+  const auto is_same = [](double a, double b) { return b - a < kSamePoint_m; };
   at.erase(std::unique(at.begin(), at.end(), is_same), at.end());
   return at;
 }
@@ -40,17 +41,58 @@ double outer_border(const LaneSpec& lane, double along_m, double inner_m, double
   return inner_m + side * std::max(0.0, value_at(lane.widths, along_m));
 }
 
+double height_at(const Road& road, double s_m) {
+  if (road.elevations.empty()) return std::numeric_limits<double>::quiet_NaN();
+  return value_at(road.elevations, s_m);
+}
+
 }  // namespace
+
+Stretch part_of(const LaneSection& section, const Stretch& stretch) {
+  Stretch part{std::max(section.start_m, stretch.start_m), section.end_m};
+  if (stretch.end_m <= section.end_m) {
+    part.end_m = stretch.end_m;
+    part.jump_m = stretch.jump_m;
+  }
+  return part;
+}
+
+std::vector<std::vector<Corner>> outlines_of(const RoadObject& object) {
+  if (!object.outlines.empty()) return object.outlines;
+  const double u = 0.5 * object.length_m;
+  const double v = 0.5 * object.width_m;
+  if (u <= 0.0 || v <= 0.0) return {{}};
+  return {{{true, {u, v, 0}}, {true, {-u, v, 0}}, {true, {-u, -v, 0}}, {true, {u, -v, 0}}}};
+}
+
+Line3 points_of(const Road& road, const RoadObject& object, const std::vector<Corner>& outline) {
+  const Eigen::Vector3d origin = point_at(road, object.s_m, object.t_m);
+  const double heading = road.pose_at(object.s_m).heading_rad + object.heading_rad;
+  const double c = std::cos(heading);
+  const double s = std::sin(heading);
+  Line3 points;
+  for (const Corner& corner : outline) {
+    if (corner.is_local) {
+      points.emplace_back(origin.x() + c * corner.place.x() - s * corner.place.y(),
+                          origin.y() + s * corner.place.x() + c * corner.place.y(),
+                          origin.z() + object.z_m + corner.place.z());
+    } else {
+      points.push_back(point_at(road, corner.place.x(), corner.place.y()));
+      points.back().z() += corner.place.z();
+    }
+  }
+  return points;
+}
 
 Eigen::Vector3d point_at(const Road& road, double s_m, double t_m) {
   const LinePose pose = road.pose_at(s_m);
   return {pose.position.x() - t_m * std::sin(pose.heading_rad),
-          pose.position.y() + t_m * std::cos(pose.heading_rad), value_at(road.elevations, s_m)};
+          pose.position.y() + t_m * std::cos(pose.heading_rad), height_at(road, s_m)};
 }
 
-SectionLines lines_of(const Road& road, const LaneSection& section) {
+SectionLines lines_of(const Road& road, const LaneSection& section, const Stretch& part) {
   SectionLines lines;
-  const std::vector<double> changes = changes_in(road, section);
+  const std::vector<double> changes = changes_in(road, section, part);
   for (size_t i = 0; i + 1 < changes.size(); ++i) {
     const double span_m = changes[i + 1] - changes[i];
     const auto pieces = static_cast<int>(std::max(1.0, std::ceil(span_m / kSpacing_m)));
@@ -76,9 +118,9 @@ SectionLines lines_of(const Road& road, const LaneSection& section) {
     for (size_t lane = center + 1; lane < section.lanes.size(); ++lane) {
       lateral[lane + 1] = outer_border(section.lanes[lane], along_m, lateral[lane], offset_m);
     }
-    const LinePose pose = road.pose_at(s);
+    const LinePose pose = road.pose_at(s, part.jump_m > 0.0 && s == part.end_m);
     const Eigen::Vector2d left(-std::sin(pose.heading_rad), std::cos(pose.heading_rad));
-    const double height_m = value_at(road.elevations, s);
+    const double height_m = height_at(road, s);
     for (size_t border = 0; border < count; ++border) {
       const Eigen::Vector2d point = pose.position + lateral[border] * left;
       lines.borders[border].emplace_back(point.x(), point.y(), height_m);

@@ -1,4 +1,4 @@
-// The borders of the lanes of an OpenDRIVE lane section, as points.
+// The borders of the lanes of an OpenDRIVE lane section, and the outlines of objects, as points.
 #pragma once
 
 #include <string>
@@ -21,10 +21,19 @@ struct SectionLines {
   std::vector<std::vector<double>> lateral_m;
 };
 
-/// Cuts a section at all places where a formula changes, and about every 0.5 m.
-SectionLines lines_of(const Road& road, const LaneSection& section);
+/// The part of a section on a stretch. Its end is before its start if they do not meet.
+Stretch part_of(const LaneSection& section, const Stretch& stretch);
 
-/// The point of a road at (s, t), with its height.
+/// Cuts a part of a section at all places where a formula changes, and about every 0.5 m.
+SectionLines lines_of(const Road& road, const LaneSection& section, const Stretch& part);
+
+/// The outlines of an object, or one from its length and width, or an empty one.
+std::vector<std::vector<Corner>> outlines_of(const RoadObject& object);
+
+/// The points of an outline of an object.
+Line3 points_of(const Road& road, const RoadObject& object, const std::vector<Corner>& outline);
+
+/// The point of a road at (s, t), with its height, which is NaN without an elevation profile.
 Eigen::Vector3d point_at(const Road& road, double s_m, double t_m);
 
 /// Whether vehicles can roll over lanes of this type, and whether they drive there.

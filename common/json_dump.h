@@ -1,0 +1,15 @@
+// Writes JSON with text from outside.
+#pragma once
+
+#include <string>
+
+namespace bevloc {
+
+/// A value of nlohmann's JSON as text. Bytes that are not UTF-8, such as names from a file in
+/// Latin-1, become U+FFFD; the library's own dump() throws there.
+template <typename Json>
+std::string dump_json(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace bevloc
