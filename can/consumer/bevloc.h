@@ -24,7 +24,8 @@
 enum bevloc_answer {
   BEVLOC_USABLE,
   BEVLOC_NO_POSE,       /* no complete pose was received yet */
-  BEVLOC_TIMEOUT,       /* none for three cycles, or no LOC_Status for three of its cycles */
+  BEVLOC_TIMEOUT,       /* none for three cycles, or no LOC_Status for three of its cycles, or
+                           `now_us` is more than a cycle before them: the clock was set back */
   BEVLOC_NOT_VALID,     /* the state is neither TRACKING nor DEGRADED */
   BEVLOC_NOT_AVAILABLE, /* a value, a protection level or the integrity risk is not available */
   BEVLOC_BEYOND_LIMIT   /* a protection level is beyond its alert limit, or the risk too high */
@@ -191,6 +192,20 @@ static inline bool bevloc_check(struct bevloc_receiver* receiver,
   return true;
 }
 
+/* Whether at most `limit_us` passed since a stamp. Stamps may be out of order by one cycle of their
+   message. Further back the clock was set, and the true age is not known. */
+static inline bool bevloc_is_fresh(uint64_t now_us, uint64_t stamp_us, uint32_t limit_us,
+                                   const struct bevloc_message* message) {
+  const int64_t age_us = (int64_t)(now_us - stamp_us);
+  return age_us <= (int64_t)limit_us && age_us >= -1000 * (int64_t)message->cycle_ms;
+}
+
+/* The same for a limit of three cycles. */
+static inline bool bevloc_is_in_time(uint64_t now_us, uint64_t stamp_us,
+                                     const struct bevloc_message* message) {
+  return bevloc_is_fresh(now_us, stamp_us, 3000u * message->cycle_ms, message);
+}
+
 static inline void bevloc_take_status(struct bevloc_receiver* receiver, const uint8_t* data,
                                       uint64_t now_us) {
   double value = 0;
@@ -246,8 +261,8 @@ static inline void bevloc_take_pose(struct bevloc_receiver* receiver, uint64_t n
 /* Adds one checked frame of a pose. True when the pose is complete. */
 static inline bool bevloc_take_part(struct bevloc_receiver* receiver, int part, int epoch,
                                     const uint8_t* data, size_t length, uint64_t now_us) {
-  const bool continues = epoch == receiver->epoch && now_us - receiver->epoch_us < 40000 &&
-                         (receiver->present >> part & 1) == 0;
+  const bool continues = epoch == receiver->epoch && (receiver->present >> part & 1) == 0 &&
+                         bevloc_is_fresh(now_us, receiver->epoch_us, 39999, &BEVLOC_LOC_Time);
   if (!continues) {
     if (receiver->present != 0) ++receiver->counters.incomplete;
     receiver->present = 0;
@@ -314,8 +329,8 @@ static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* rec
   const struct bevloc_pose* pose = &receiver->pose;
   const struct bevloc_alert_limits* limits = &receiver->limits;
   if (!receiver->has_pose || !receiver->has_status) return BEVLOC_NO_POSE;
-  if (now_us - pose->received_us > 3000u * BEVLOC_LOC_Time.cycle_ms) return BEVLOC_TIMEOUT;
-  if (now_us - receiver->status_us > 3000u * BEVLOC_LOC_Status.cycle_ms) return BEVLOC_TIMEOUT;
+  if (!bevloc_is_in_time(now_us, pose->received_us, &BEVLOC_LOC_Time)) return BEVLOC_TIMEOUT;
+  if (!bevloc_is_in_time(now_us, receiver->status_us, &BEVLOC_LOC_Status)) return BEVLOC_TIMEOUT;
   if (receiver->state != BEVLOC_LOC_Status_State_TRACKING &&
       receiver->state != BEVLOC_LOC_Status_State_DEGRADED) {
     return BEVLOC_NOT_VALID;
@@ -335,7 +350,7 @@ static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* rec
 static inline bool bevloc_capture_utc(const struct bevloc_receiver* receiver, uint64_t now_us,
                                       uint32_t* utc_us) {
   if (!receiver->has_clock || !receiver->has_pose) return false;
-  if (now_us - receiver->clock_us > 3000u * BEVLOC_LOC_Clock.cycle_ms) return false;
+  if (!bevloc_is_in_time(now_us, receiver->clock_us, &BEVLOC_LOC_Clock)) return false;
   *utc_us = receiver->pose.capture_us + receiver->utc_offset_us;
   return true;
 }

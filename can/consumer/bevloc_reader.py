@@ -8,7 +8,7 @@ As a module, with any source of frames:
     if receiver.answer(time_s) == "usable":
         use(receiver.pose)
 
-As a program, with python3-can: prints each change of the answer, and a pose a second.
+As a program: prints each change of the answer, and a pose a second. A live bus needs python3-can.
 
     can/consumer/bevloc_reader.py can.log
     can/consumer/bevloc_reader.py --interface socketcan --channel vcan0
@@ -20,9 +20,11 @@ so import this module from its own folder.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
+import re
+import sys
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import NamedTuple
 
 from bevloc_messages import LOCALIZER_BASE, MESSAGES, VALUE_NAMES, Message, Signal
 
@@ -54,8 +56,10 @@ VALUES = {
 }
 """The values of a pose; lateral_m, longitudinal_m and yaw_deg are its protection levels."""
 
-EPOCH_WINDOW_S = 0.040
+EPOCH_LIMIT_S = 0.039999
 CYCLES_TO_TIMEOUT = 3
+HALF_MICROSECOND_S = 5e-7
+"""Times are whole microseconds, so this is enough for rounding."""
 
 
 @dataclass
@@ -120,6 +124,18 @@ def decode(data: bytes, signal: Signal) -> float | None:
     return value if within else None
 
 
+def is_fresh(time_s: float, stamp_s: float, limit_s: float, name: str) -> bool:
+    """Whether at most limit_s passed since a stamp. Stamps may be out of order by one cycle of
+    their message. Further back the clock was set, and the true age is not known."""
+    cycle_s = 1e-3 * MESSAGES[name].cycle_ms
+    return -cycle_s - HALF_MICROSECOND_S <= time_s - stamp_s <= limit_s + HALF_MICROSECOND_S
+
+
+def is_in_time(time_s: float, stamp_s: float, name: str) -> bool:
+    """The same for a limit of three cycles."""
+    return is_fresh(time_s, stamp_s, 1e-3 * CYCLES_TO_TIMEOUT * MESSAGES[name].cycle_ms, name)
+
+
 @dataclass
 class Receiver:
     """Checks every frame, puts the frames of one EPOCH together, and judges the pose."""
@@ -163,11 +179,8 @@ class Receiver:
         """Whether the latest pose may be used now ("usable"), and else why not."""
         if self.pose is None or self.state is None:
             return "no_pose"
-        pose_limit_s = 1e-3 * CYCLES_TO_TIMEOUT * MESSAGES["LOC_Time"].cycle_ms
-        status_limit_s = 1e-3 * CYCLES_TO_TIMEOUT * MESSAGES["LOC_Status"].cycle_ms
-        # Times are whole microseconds.
-        late = time_s - self.pose_time_s > pose_limit_s + 5e-7
-        if late or time_s - self.status_time_s > status_limit_s + 5e-7:
+        in_time = is_in_time(time_s, self.pose_time_s, "LOC_Time")
+        if not in_time or not is_in_time(time_s, self.status_time_s, "LOC_Status"):
             return "timeout"
         if self.state not in ("TRACKING", "DEGRADED"):
             return "not_valid"
@@ -178,8 +191,7 @@ class Receiver:
     def capture_utc_us(self, time_s: float) -> int | None:
         """When the images behind the latest pose were taken, UTC modulo 2^32 us. None without a
         fresh LOC_Clock, or while the localizer's computer does not know UTC."""
-        limit_s = 1e-3 * CYCLES_TO_TIMEOUT * MESSAGES["LOC_Clock"].cycle_ms
-        if time_s - self.clock_time_s > limit_s + 5e-7 or self.utc_error_ms is None:
+        if self.utc_error_ms is None or not is_in_time(time_s, self.clock_time_s, "LOC_Clock"):
             return None
         capture_us = None if self.pose is None else self.pose["capture_us"]
         if capture_us is None or self.utc_offset_us is None:
@@ -233,7 +245,7 @@ class Receiver:
 
     def _take_part(self, name: str, data: bytes, time_s: float) -> bool:
         epoch = data[1] >> 4
-        in_time = time_s - self._epoch_time_s < EPOCH_WINDOW_S
+        in_time = is_fresh(time_s, self._epoch_time_s, EPOCH_LIMIT_S, "LOC_Time")
         if epoch != self._epoch or not in_time or name in self._frames:
             self.counters.incomplete += 1 if self._frames else 0
             self._frames = {}
@@ -286,7 +298,7 @@ class Printer:
 
     def _look(self, time_s: float) -> None:
         answer = self.receiver.answer(time_s)
-        is_due = answer == "usable" and time_s >= self.next_s - 5e-7
+        is_due = answer == "usable" and time_s >= self.next_s - HALF_MICROSECOND_S
         if answer == self.answer and not is_due:
             return
         line = f"{time_s - (self.first_s or 0.0):.3f} {answer}"
@@ -306,15 +318,53 @@ class Printer:
               f"{counters.incomplete} incomplete poses")
 
 
-def messages_of(arguments: argparse.Namespace) -> Iterable[Any]:
+class Frame(NamedTuple):
+    """A data frame with an 11-bit identifier."""
+
+    identifier: int
+    data: bytes
+    time_s: float
+
+
+class LogError(Exception):
+    """What is wrong with a log, in one sentence."""
+
+
+LINE = re.compile(
+    r"\((?P<time>\d{1,13}\.\d{6})(?:\d{3})?\) [^ ]+ (?:"
+    r"(?P<id>[0-7][0-9A-Fa-f]{2})#(?:#[0-9A-Fa-f](?P<fd>(?:[0-9A-Fa-f]{2}){0,64})"
+    r"|(?P<classic>(?:[0-9A-Fa-f]{2}){0,8})(?:_[0-9A-Fa-f])?)(?: .*)?"
+    r"|[0-9A-Fa-f]{3}#R.*|[0-9A-Fa-f]{8}#.*)", re.ASCII)
+"""A data frame, whose raw length code such as "_F" is not used, or any other frame."""
+
+
+def frames_of_log(path: str) -> Iterator[Frame]:
+    """The frames of a candump log. Raises LogError where it is none."""
+    try:
+        with open(path, encoding="utf-8", errors="replace", newline="\n") as log:
+            for number, line in enumerate(log, start=1):
+                text = line.rstrip("\r\n")
+                found = LINE.fullmatch(text)
+                if text and not found:
+                    raise LogError(
+                        f"{path}:{number}: found something else, wanted a line of candump -l, "
+                        "such as '(1436509052.249713) can0 044#2A366C2BBA'")
+                if found and found["id"]:
+                    data = bytes.fromhex(found["fd"] or found["classic"] or "")
+                    yield Frame(int(found["id"], 16), data, float(found["time"]))
+    except OSError:
+        raise LogError(f"{path}: found no readable file, wanted a candump log") from None
+
+
+def frames_of_bus(interface: str, channel: str) -> Iterator[Frame]:
     import can  # python3-can
 
-    if arguments.log:
-        return can.LogReader(arguments.log)
-    return can.interface.Bus(interface=arguments.interface, channel=arguments.channel, fd=True)
+    for message in can.interface.Bus(interface=interface, channel=channel, fd=True):
+        if not (message.is_extended_id or message.is_remote_frame or message.is_error_frame):
+            yield Frame(message.arbitration_id, bytes(message.data), message.timestamp)
 
 
-def main() -> None:
+def main() -> int:
     parser = argparse.ArgumentParser(description="Prints bevloc's pose and whether it may be used.")
     parser.add_argument("log", nargs="?", help="a candump log")
     parser.add_argument("--interface", default="socketcan", help="of python-can")
@@ -324,12 +374,18 @@ def main() -> None:
         parser.error("found no source or two, wanted a log or --channel")
     freeway = AlertLimits(lateral_m=0.57, longitudinal_m=1.40, yaw_deg=1.50)
     printer = Printer(Receiver(freeway))
-    for message in messages_of(arguments):
-        if message.is_extended_id or message.is_remote_frame or message.is_error_frame:
-            continue
-        printer.take(message.arbitration_id, bytes(message.data), message.timestamp)
+    try:
+        frames = (frames_of_log(arguments.log) if arguments.log is not None
+                  else frames_of_bus(arguments.interface, arguments.channel))
+        for frame in frames:
+            printer.take(*frame)
+    except LogError as error:
+        sys.stdout.flush()
+        print(error, file=sys.stderr)
+        return 1
     printer.print_counters()
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

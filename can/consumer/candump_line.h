@@ -4,9 +4,18 @@
 #define BEVLOC_CANDUMP_LINE_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#define CANDUMP_WANTED "a line of candump -l, such as '(1436509052.249713) can0 044#2A366C2BBA'"
+
+enum candump_kind {
+  CANDUMP_DATA,  /* a data frame with an 11-bit identifier */
+  CANDUMP_OTHER, /* an empty line, a remote frame, or a 29-bit identifier as error frames have */
+  CANDUMP_BAD    /* anything else */
+};
 
 struct candump_line {
   uint64_t time_us;
@@ -15,29 +24,58 @@ struct candump_line {
   uint8_t length;
 };
 
-/* False for a line that is not a data frame with an 11-bit identifier. */
-static inline bool candump_parse(const char* text, struct candump_line* line) {
-  unsigned long long seconds = 0;
-  unsigned microseconds = 0;
-  char frame[256];
-  const char* digits;
-  unsigned byte;
-  if (sscanf(text, "(%llu.%6u%*[0-9)] %*s %255s", &seconds, &microseconds, frame) != 3)
-    return false;
-  if (strlen(frame) < 4 || frame[3] != '#' || sscanf(frame, "%3x", &line->id) != 1) return false;
-  digits = frame + 4;
-  if (digits[0] == '#') {
-    if (digits[1] == '\0') return false;
-    digits += 2; /* FD: the flags */
-  }
-  if (strlen(digits) % 2 != 0 || strlen(digits) > 128) return false;
-  line->time_us = seconds * 1000000u + microseconds;
-  line->length = 0;
-  for (; *digits != '\0'; digits += 2) {
-    if (sscanf(digits, "%2x", &byte) != 1) return false;
-    line->data[line->length++] = (uint8_t)byte;
+static inline size_t candump_digits(const char* text, bool hexadecimal) {
+  return strspn(text, hexadecimal ? "0123456789ABCDEFabcdef" : "0123456789");
+}
+
+/* Reads "(1.000000) can0 ", with 6 or 9 digits after the point. The rest of the line, or NULL. */
+static inline const char* candump_parse_time(const char* text, uint64_t* time_us) {
+  size_t whole, parts;
+  if (*text++ != '(') return NULL;
+  whole = candump_digits(text, false);
+  if (whole == 0 || whole > 13 || text[whole] != '.') return NULL;
+  parts = candump_digits(text + whole + 1, false);
+  if ((parts != 6 && parts != 9) || strncmp(text + whole + 1 + parts, ") ", 2) != 0) return NULL;
+  *time_us = (uint64_t)strtoull(text, NULL, 10) * 1000000u;
+  text += whole + 1;
+  *time_us += (uint64_t)strtoull(text, NULL, 10) / (parts == 9 ? 1000u : 1u);
+  text += parts + 2;
+  whole = strcspn(text, " ");
+  return whole == 0 || text[whole] == '\0' ? NULL : text + whole + 1;
+}
+
+/* Reads the bytes up to the end of the frame, which a raw length code such as "_F" may precede. */
+static inline bool candump_parse_data(const char* digits, bool fd, struct candump_line* line) {
+  const size_t count = candump_digits(digits, true);
+  const char* end = digits + count;
+  size_t i;
+  if (!fd && *end == '_' && candump_digits(end + 1, true) > 0) end += 2;
+  if (*end != '\0' && strchr(" \r\n", *end) == NULL) return false;
+  if (count % 2 != 0 || count > (fd ? 128u : 16u)) return false;
+  line->length = (uint8_t)(count / 2);
+  for (i = 0; i < line->length; ++i) {
+    const char byte[3] = {digits[2 * i], digits[2 * i + 1], '\0'};
+    line->data[i] = (uint8_t)strtoul(byte, NULL, 16);
   }
   return true;
+}
+
+/* Takes a line with its line end, so that an empty text can only come of a file with zero bytes. */
+static inline enum candump_kind candump_parse(const char* text, struct candump_line* line) {
+  size_t count;
+  bool fd;
+  if (*text != '\0' && text[strspn(text, "\r\n")] == '\0') return CANDUMP_OTHER;
+  text = candump_parse_time(text, &line->time_us);
+  if (text == NULL) return CANDUMP_BAD;
+  count = candump_digits(text, true);
+  if ((count != 3 && count != 8) || text[count] != '#') return CANDUMP_BAD;
+  line->id = (uint32_t)strtoul(text, NULL, 16);
+  text += count + 1;
+  if (count == 8 || *text == 'R') return CANDUMP_OTHER;
+  fd = *text == '#';
+  if (fd && candump_digits(++text, true) == 0) return CANDUMP_BAD;
+  if (fd) ++text; /* the flags */
+  return line->id <= 0x7FF && candump_parse_data(text, fd, line) ? CANDUMP_DATA : CANDUMP_BAD;
 }
 
 #endif

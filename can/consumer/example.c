@@ -21,6 +21,7 @@ static const struct bevloc_alert_limits kFreeway = {0.57, 1.40, 1.50, 5};
 /* The same in all three examples, so that their outputs can be compared. */
 struct printer {
   struct bevloc_receiver receiver;
+  bool has_first;
   uint64_t first_us;
   uint64_t next_us;
   int answer;
@@ -28,7 +29,9 @@ struct printer {
 
 static void print_line(struct printer* printer, uint64_t now_us, enum bevloc_answer answer) {
   const struct bevloc_pose* pose = &printer->receiver.pose;
-  printf("%.3f %s", (double)(now_us - printer->first_us) * 1e-6, bevloc_answer_name(answer));
+  /* Negative after the clock was set back. */
+  const int64_t since_first_us = (int64_t)(now_us - printer->first_us);
+  printf("%.3f %s", (double)since_first_us * 1e-6, bevloc_answer_name(answer));
   if (answer == BEVLOC_USABLE) {
     printf(" east %.2f north %.2f heading %.2f lateral %.2f longitudinal %.2f yaw %.2f",
            pose->east_m, pose->north_m, pose->heading_deg, pose->lateral_m, pose->longitudinal_m,
@@ -48,7 +51,8 @@ static void look(struct printer* printer, uint64_t now_us) {
 
 static void take(struct printer* printer, uint32_t id, const uint8_t* data, size_t length,
                  uint64_t now_us) {
-  if (printer->first_us == 0) printer->first_us = now_us;
+  if (!printer->has_first) printer->first_us = now_us;
+  printer->has_first = true;
   if (printer->answer >= 0) look(printer, now_us);
   bevloc_receive(&printer->receiver, id, data, length, now_us);
   look(printer, now_us);
@@ -61,19 +65,32 @@ static void print_counters(const struct bevloc_counters* counters) {
          counters->wrong_length, counters->incomplete);
 }
 
+static int refuse_file(const char* path) {
+  fprintf(stderr, "%s: found no readable file, wanted a candump log\n", path);
+  return 1;
+}
+
 static int read_log(struct printer* printer, const char* path) {
-  char line[512];
+  char text[512];
+  bool readable = false;
+  int number = 0;
+  struct candump_line frame;
+  enum candump_kind kind = CANDUMP_OTHER;
   FILE* log = fopen(path, "r");
-  if (log == NULL) {
-    fprintf(stderr, "%s: found no readable file, wanted a candump log\n", path);
-    return 2;
+  if (log == NULL) return refuse_file(path);
+  while (kind != CANDUMP_BAD && fgets(text, sizeof text, log) != NULL) {
+    ++number;
+    kind = candump_parse(text, &frame);
+    if (kind == CANDUMP_DATA) take(printer, frame.id, frame.data, frame.length, frame.time_us);
   }
-  while (fgets(line, sizeof line, log) != NULL) {
-    struct candump_line frame;
-    if (!candump_parse(line, &frame)) continue; /* remote and extended frames */
-    take(printer, frame.id, frame.data, frame.length, frame.time_us);
-  }
+  readable = ferror(log) == 0; /* a folder opens, but cannot be read */
   fclose(log);
+  if (!readable) return refuse_file(path);
+  if (kind == CANDUMP_BAD) {
+    fflush(stdout);
+    fprintf(stderr, "%s:%d: found something else, wanted %s\n", path, number, CANDUMP_WANTED);
+    return 1;
+  }
   print_counters(&printer->receiver.counters);
   return 0;
 }

@@ -54,18 +54,37 @@ class Printer {
   microseconds next_{};
 };
 
+/// 0, or 1 after saying why the log cannot be read.
+int read_log(const char* path) {
+  std::ifstream log(path);
+  // A folder opens, but has no first character.
+  if (log) log.peek();
+  if (!log.is_open() || log.bad()) {
+    std::fprintf(stderr, "%s: found no readable file, wanted a candump log\n", path);
+    return 1;
+  }
+  log.clear();
+  Printer printer;
+  candump_line frame{};
+  int number = 0;
+  for (std::string line; std::getline(log, line);) {
+    ++number;
+    line += '\n';
+    const candump_kind kind = candump_parse(line.c_str(), &frame);
+    if (kind == CANDUMP_DATA) printer.take(frame);
+    if (kind != CANDUMP_BAD) continue;
+    std::fflush(stdout);
+    std::fprintf(stderr, "%s:%d: found something else, wanted %s\n", path, number, CANDUMP_WANTED);
+    return 1;
+  }
+  printer.print_counters();
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::ifstream log(argc == 2 ? argv[1] : "");
-  if (!log) {
-    std::fprintf(stderr, "usage: consumer_cpp FILE, a candump log\n");
-    return 2;
-  }
-  Printer printer;
-  candump_line frame{};
-  for (std::string line; std::getline(log, line);) {
-    if (candump_parse(line.c_str(), &frame)) printer.take(frame);
-  }
-  printer.print_counters();
+  if (argc == 2) return read_log(argv[1]);
+  std::fprintf(stderr, "usage: consumer_cpp FILE, a candump log\n");
+  return 2;
 }

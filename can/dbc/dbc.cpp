@@ -10,19 +10,32 @@
 namespace bevloc::can {
 namespace {
 
+/// The bytes of the character at the start of the text; 0 if it is not UTF-8 (RFC 3629).
+size_t utf8_length(std::string_view text) {
+  constexpr uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+  const auto first = static_cast<uint8_t>(text[0]);
+  const size_t length = first < 0x80             ? 1
+                        : (first & 0xE0) == 0xC0 ? 2
+                        : (first & 0xF0) == 0xE0 ? 3
+                        : (first & 0xF8) == 0xF0 ? 4
+                                                 : 0;
+  if (length <= 1) return length;
+  if (length > text.size()) return 0;
+  uint32_t code = first & (0x7FU >> length);
+  for (const char c : text.substr(1, length - 1)) {
+    const auto byte = static_cast<uint8_t>(c);
+    if ((byte & 0xC0) != 0x80) return 0;
+    code = code << 6 | (byte & 0x3FU);
+  }
+  const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
+  return code < kLeast[length] || code > 0x10FFFF || is_surrogate ? 0 : length;
+}
+
 bool is_utf8(std::string_view text) {
-  for (size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<uint8_t>(text[i]);
-    const size_t length = byte < 0x80             ? 1
-                          : (byte & 0xE0) == 0xC0 ? 2
-                          : (byte & 0xF0) == 0xE0 ? 3
-                          : (byte & 0xF8) == 0xF0 ? 4
-                                                  : 0;
-    if (length == 0 || i + length > text.size()) return false;
-    for (size_t j = 1; j < length; ++j) {
-      if ((static_cast<uint8_t>(text[i + j]) & 0xC0) != 0x80) return false;
-    }
-    i += length;
+  while (!text.empty()) {
+    const size_t length = utf8_length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
   }
   return true;
 }
@@ -43,9 +56,12 @@ std::string utf8_from_latin1(std::string_view text) {
 
 }  // namespace
 
-const DbcValueName* DbcSignal::find_value(std::string_view value_name) const {
-  const auto found = std::ranges::find(value_names, value_name, &DbcValueName::name);
-  return found == value_names.end() ? nullptr : &*found;
+std::vector<int64_t> DbcSignal::values_named(std::string_view value_name) const {
+  std::vector<int64_t> values;
+  for (const DbcValueName& value : value_names) {
+    if (value.name == value_name) values.push_back(value.raw);
+  }
+  return values;
 }
 
 const DbcSignal* DbcMessage::find(std::string_view signal_name) const {

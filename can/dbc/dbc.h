@@ -32,8 +32,8 @@ struct DbcSignal {
   std::optional<uint64_t> multiplexed_at{};  ///< mN: only in frames whose multiplexor is N
   std::vector<DbcValueName> value_names{};
 
-  /// Null if no value has this name.
-  const DbcValueName* find_value(std::string_view value_name) const;
+  /// The raw values that have this name.
+  std::vector<int64_t> values_named(std::string_view value_name) const;
 };
 
 struct DbcMessage {
@@ -50,6 +50,8 @@ struct DbcMessage {
   /// Multiplexors behind multiplexors (mNM, SG_MUL_VAL_): which multiplexed signals a frame has is
   /// not known.
   bool nested_multiplexing = false;
+  /// The mistake for which the message is left out, as an error message. It then has no signals.
+  std::string left_out{};
 
   /// Null if there is none.
   const DbcSignal* find(std::string_view signal_name) const;
@@ -72,9 +74,9 @@ struct Dbc {
 
 /// Reads BO_, SG_, VAL_, BA_ (of messages), SIG_VALTYPE_ and SG_MUL_VAL_, and skips and counts
 /// other statements. Fails with "file:line: found X, wanted Y" for what it cannot read, for names
-/// and identifiers that occur twice, for signals beyond their message, and for statements about
-/// missing messages or signals. Text that is not UTF-8 is read as Latin-1. Errors show `name` as
-/// the file.
+/// and identifiers of messages that occur twice, and for statements about missing messages or
+/// signals. A message whose signals cannot be right is left out. Text that is not UTF-8 is read as
+/// Latin-1. Errors show `name` as the file.
 Result<Dbc> parse_dbc(std::string_view text, const std::string& name);
 Result<Dbc> read_dbc_file(const std::filesystem::path& path);
 

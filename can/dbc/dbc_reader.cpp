@@ -30,6 +30,8 @@ constexpr std::string_view kKeywords[] = {"VERSION",
                                           "CM_",
                                           "BA_DEF_",
                                           "BA_DEF_DEF_",
+                                          "BA_DEF_SGTYPE_",
+                                          "BA_SGTYPE_",
                                           "BA_",
                                           "VAL_",
                                           "SIG_VALTYPE_",
@@ -46,6 +48,23 @@ constexpr std::string_view kKeywords[] = {"VERSION",
                                           "CAT_",
                                           "FILTER",
                                           "DBC_DEF_"};
+
+bool is_keyword(const DbcToken& token) {
+  return token.kind == DbcToken::Kind::kWord &&
+         std::ranges::find(kKeywords, token.text) != std::end(kKeywords);
+}
+
+/// Letters, digits and '_', as keywords have.
+bool is_name(const DbcToken& token) {
+  return token.kind == DbcToken::Kind::kWord && std::ranges::all_of(token.text, [](char c) {
+           return c == '_' || (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
+                  (c >= 'a' && c <= 'z');
+         });
+}
+
+bool starts_messages(const DbcToken& token) {
+  return token.is_word("BO_") || token.is_word("SG_");
+}
 
 }  // namespace
 
@@ -132,11 +151,8 @@ DbcSignal* DbcReader::take_signal_of(DbcMessage* message) {
 
 void DbcReader::read_statement() {
   const DbcToken token = tokens_.take();
-  if (token.kind == DbcToken::Kind::kSign && token.is_sign(';')) return;
-  if (token.kind != DbcToken::Kind::kWord ||
-      std::ranges::find(kKeywords, token.text) == std::end(kKeywords)) {
-    refuse(token, "a keyword of DBC files, such as BO_ or VAL_");
-  }
+  if (token.is_sign(';')) return;
+  if (!is_keyword(token)) return skip_unknown(token);
   const std::string& keyword = token.text;
   if (keyword == "BO_") return read_message();
   if (keyword == "VAL_") return read_value_names();
@@ -152,26 +168,41 @@ void DbcReader::read_statement() {
   skip_statement(keyword);
 }
 
-/// Skips to the semicolon.
+/// Skips to the semicolon, but over no message.
 void DbcReader::skip_statement(const std::string& keyword) {
   ++dbc_.skipped[keyword];
   while (!tokens_.peek().is_sign(';')) {
-    if (tokens_.peek().kind == DbcToken::Kind::kEnd) refuse(tokens_.peek(), "';'");
+    const DbcToken& next = tokens_.peek();
+    const bool is_message = next.starts_line && starts_messages(next);
+    if (next.kind == DbcToken::Kind::kEnd || is_message) refuse(next, "';'");
     tokens_.take();
   }
   tokens_.take();
 }
 
+/// Skips a statement that begins with an unknown word, if it ends with a semicolon.
+void DbcReader::skip_unknown(const DbcToken& first) {
+  bool good = first.starts_line && is_name(first);
+  while (good && !tokens_.peek().is_sign(';')) {
+    const DbcToken next = tokens_.take();
+    good = next.kind != DbcToken::Kind::kEnd && !(next.starts_line && is_keyword(next));
+  }
+  if (!good) refuse(first, "a keyword of DBC files, such as BO_ or VAL_");
+  ++dbc_.skipped[first.text];
+  tokens_.take();
+}
+
 /// Skips a statement without a semicolon. The list of NS_ holds keywords itself; it ends where one
-/// of the sections BS_ or BU_ begins.
+/// of the sections BS_ or BU_ begins. In BU_, a node may be named like a keyword.
 void DbcReader::skip_list(const std::string& keyword) {
   ++dbc_.skipped[keyword];
   while (tokens_.peek().kind != DbcToken::Kind::kEnd) {
     const DbcToken& next = tokens_.peek();
     const bool is_section = next.is_word("BS_") || next.is_word("BU_") || next.is_word("BO_");
-    const bool is_keyword = next.kind == DbcToken::Kind::kWord &&
-                            std::ranges::find(kKeywords, next.text) != std::end(kKeywords);
-    if (keyword == "NS_" ? is_section && next.starts_line : is_keyword) return;
+    bool is_end = is_keyword(next);
+    if (keyword == "NS_") is_end = is_section && next.starts_line;
+    if (keyword == "BU_") is_end = is_end && (next.starts_line || starts_messages(next));
+    if (is_end) return;
     tokens_.take();
   }
 }
@@ -194,7 +225,7 @@ void DbcReader::read_message() {
              "at most 2047, or 29 bits plus 2147483648");
     }
     if (length > kMaxFdLength) {
-      refuse(message.line, fmt::format("{} bytes", length), "at most 64");
+      leave_out(message, message.line, fmt::format("{} bytes", length), "at most 64");
     }
     if (!ids_.insert(raw).second) {
       refuse(message.line, fmt::format("identifier {} a second time", raw), "each identifier once");
@@ -205,15 +236,12 @@ void DbcReader::read_message() {
   }
   message.length = static_cast<uint8_t>(std::min<uint64_t>(length, kMaxFdLength));
   while (tokens_.peek().is_word("SG_")) {
-    // The signals of the pseudo message belong to no frame.
-    if (is_pseudo) message.length = kMaxFdLength;
     read_signal(message);
   }
   if (is_pseudo) {
     ++dbc_.skipped["BO_ (signals without a message)"];
     return;
   }
-  check_message(message);
   dbc_.messages.push_back(std::move(message));
 }
 
@@ -268,42 +296,72 @@ void DbcReader::read_signal(DbcMessage& message) {
   take_sign(']');
   if (tokens_.peek().kind != DbcToken::Kind::kText) refuse(tokens_.peek(), "a unit in quotes");
   signal.unit = tokens_.take().text;
-  // Receivers, until the next line.
-  while (!tokens_.peek().starts_line && tokens_.peek().kind != DbcToken::Kind::kEnd) tokens_.take();
+  skip_receivers();
   check_signal(signal, message);
   message.signals.push_back(std::move(signal));
 }
 
-void DbcReader::check_signal(const DbcSignal& signal, const DbcMessage& message) const {
+/// Names with commas between them. A file without receivers, or with blanks instead of commas, is
+/// read, too.
+void DbcReader::skip_receivers() {
+  const auto ends = [this] {
+    const DbcToken& next = tokens_.peek();
+    return next.kind != DbcToken::Kind::kWord || starts_messages(next) ||
+           (next.starts_line && is_keyword(next));
+  };
+  if (ends()) return;
+  do {
+    tokens_.take();
+    while (tokens_.peek().is_sign(',')) {
+      tokens_.take();
+      if (ends()) refuse(tokens_.peek(), "the name of a receiver");
+      tokens_.take();
+    }
+  } while (!ends() && !tokens_.peek().starts_line);
+  if (tokens_.peek().is_sign(';')) tokens_.take();
+}
+
+/// Notes the first mistake of a message.
+void DbcReader::leave_out(DbcMessage& message, int line, std::string_view found,
+                          std::string_view wanted) const {
+  if (message.left_out.empty()) message.left_out = mistake(line, found, wanted);
+}
+
+void DbcReader::check_signal(const DbcSignal& signal, DbcMessage& message) const {
   const SignalLayout& layout = signal.layout;
   if (layout.length_bits < 1 || layout.length_bits > 64) {
-    refuse(signal.line, fmt::format("signal {} with {} bits", signal.name, layout.length_bits),
-           "1 to 64");
+    leave_out(message, signal.line,
+              fmt::format("signal {} with {} bits", signal.name, layout.length_bits), "1 to 64");
   }
   if (bytes_needed(layout) > message.length) {
-    refuse(signal.line, fmt::format("signal {} up to byte {}", signal.name, bytes_needed(layout)),
-           fmt::format("within the {} bytes of message {}", message.length, message.name));
+    leave_out(message, signal.line,
+              fmt::format("signal {} up to byte {}", signal.name, bytes_needed(layout)),
+              fmt::format("within the {} bytes of message {}", message.length, message.name));
   }
   if (layout.scale == 0.0) {
-    refuse(signal.line, fmt::format("signal {} with scale 0", signal.name), "another scale");
+    leave_out(message, signal.line, fmt::format("signal {} with scale 0", signal.name),
+              "another scale");
   }
   if (signal.min > signal.max) {
-    refuse(signal.line, fmt::format("signal {} from {} to {}", signal.name, signal.min, signal.max),
-           "the smaller value first");
+    leave_out(message, signal.line,
+              fmt::format("signal {} from {} to {}", signal.name, signal.min, signal.max),
+              "the smaller value first");
   }
   if (message.find(signal.name) != nullptr) {
-    refuse(signal.line, fmt::format("signal {} a second time", signal.name), "each name once");
+    leave_out(message, signal.line, fmt::format("signal {} a second time", signal.name),
+              "each name once");
   }
 }
 
-void DbcReader::check_message(const DbcMessage& message) const {
+void DbcReader::check_multiplexors(DbcMessage& message) const {
   if (message.nested_multiplexing) return;
   const auto multiplexors = std::ranges::count_if(message.signals, &DbcSignal::is_multiplexor);
   const bool is_multiplexed = std::ranges::any_of(
       message.signals, [](const DbcSignal& signal) { return signal.multiplexed_at.has_value(); });
   if (multiplexors > 1 || (is_multiplexed && multiplexors == 0)) {
-    refuse(message.line, fmt::format("message {} with {} multiplexors", message.name, multiplexors),
-           "one multiplexor (M) beside multiplexed signals");
+    leave_out(message, message.line,
+              fmt::format("message {} with {} multiplexors", message.name, multiplexors),
+              "one multiplexor (M) beside multiplexed signals");
   }
 }
 

@@ -30,8 +30,11 @@ class DbcReader {
   }
 
  private:
+  std::string mistake(int line, std::string_view found, std::string_view wanted) const {
+    return fmt::format("{}:{}: found {}, wanted {}", dbc_.file, line, found, wanted);
+  }
   [[noreturn]] void refuse(int line, std::string_view found, std::string_view wanted) const {
-    throw DbcMistake{{fmt::format("{}:{}: found {}, wanted {}", dbc_.file, line, found, wanted)}};
+    throw DbcMistake{{mistake(line, found, wanted)}};
   }
   [[noreturn]] void refuse(const DbcToken& token, std::string_view wanted) const {
     refuse(token.line, describe(token), wanted);
@@ -41,8 +44,11 @@ class DbcReader {
   void read_message();
   void read_signal(DbcMessage& message);
   void read_multiplexing(DbcSignal& signal, DbcMessage& message);
-  void check_signal(const DbcSignal& signal, const DbcMessage& message) const;
-  void check_message(const DbcMessage& message) const;
+  void skip_receivers();
+  void leave_out(DbcMessage& message, int line, std::string_view found,
+                 std::string_view wanted) const;
+  void check_signal(const DbcSignal& signal, DbcMessage& message) const;
+  void check_multiplexors(DbcMessage& message) const;
   void read_value_names();
   void read_value_type();
   void read_nested_multiplexing();
@@ -50,6 +56,7 @@ class DbcReader {
   void read_attribute_default();
   void read_attribute();
   void skip_statement(const std::string& keyword);
+  void skip_unknown(const DbcToken& first);
   void skip_list(const std::string& keyword);
   void complete(DbcMessage& message) const;
 

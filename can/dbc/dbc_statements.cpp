@@ -30,9 +30,10 @@ void DbcReader::read_value_type() {
   if (signal == nullptr || type == 0) return;
   const int bits = type == 1 ? 32 : 64;
   if (signal->layout.length_bits != bits) {
-    refuse(token.line,
-           fmt::format("signal {} with {} bits", signal->name, signal->layout.length_bits),
-           fmt::format("{} bits for this type", bits));
+    return leave_out(
+        *message, token.line,
+        fmt::format("signal {} with {} bits", signal->name, signal->layout.length_bits),
+        fmt::format("{} bits for this type", bits));
   }
   signal->layout.type = type == 1 ? RawType::kFloat : RawType::kDouble;
 }
@@ -96,8 +97,10 @@ void DbcReader::read_attribute() {
   take_sign(';');
 }
 
-/// Adds the defaults of the attributes.
+/// Checks what later statements say, and adds the defaults of the attributes.
 void DbcReader::complete(DbcMessage& message) const {
+  check_multiplexors(message);
+  if (!message.left_out.empty()) message.signals.clear();
   for (const auto& [name, value] : defaults_) {
     if (message_attributes_.contains(name)) message.attributes.emplace(name, value);
   }

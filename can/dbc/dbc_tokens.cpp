@@ -11,6 +11,11 @@ bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
+/// Whether a line ends with the first character: LF, CR LF, or CR alone.
+bool ends_line(std::string_view text) {
+  return text[0] == '\n' || (text[0] == '\r' && !text.starts_with("\r\n"));
+}
+
 }  // namespace
 
 DbcToken DbcTokens::take() {
@@ -21,7 +26,7 @@ DbcToken DbcTokens::take() {
 
 void DbcTokens::skip_space() {
   while (!rest_.empty() && is_space(rest_[0])) {
-    if (rest_[0] == '\n') {
+    if (ends_line(rest_)) {
       ++line_;
       starts_line_ = true;
     }
@@ -36,7 +41,7 @@ std::string DbcTokens::take_text() {
     const bool escaped =
         rest_[0] == '\\' && rest_.size() > 1 && (rest_[1] == '"' || rest_[1] == '\\');
     if (escaped) rest_.remove_prefix(1);
-    if (rest_[0] == '\n') ++line_;
+    if (ends_line(rest_)) ++line_;
     text += rest_[0];
     rest_.remove_prefix(1);
   }

@@ -11,10 +11,6 @@ namespace {
 
 constexpr int kByteBits = 8;
 
-bool is_integer(const SignalLayout& layout) {
-  return layout.type == RawType::kUnsigned || layout.type == RawType::kSigned;
-}
-
 /// The number of the next lower bit of a Motorola signal: bit 0 of a byte is followed by bit 7 of
 /// the next byte.
 int below(int bit) {
@@ -52,6 +48,10 @@ uint64_t integer_bits(const SignalLayout& layout, double raw) {
 }
 
 }  // namespace
+
+bool is_integer(const SignalLayout& layout) {
+  return layout.type == RawType::kUnsigned || layout.type == RawType::kSigned;
+}
 
 size_t bytes_needed(const SignalLayout& layout) {
   size_t last = 0;

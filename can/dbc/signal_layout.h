@@ -26,6 +26,8 @@ struct SignalLayout {
   bool operator==(const SignalLayout&) const = default;
 };
 
+/// Whether the raw value is a whole number, not a float.
+bool is_integer(const SignalLayout& layout);
 /// Number of bytes that a frame must have for this signal.
 size_t bytes_needed(const SignalLayout& layout);
 

@@ -9,6 +9,7 @@
 
 #include "can/messages/dbc_writer.h"
 #include "can/messages/message_table.h"
+#include "common/json_dump.h"
 
 namespace bevloc::can {
 namespace {
@@ -36,12 +37,41 @@ bool is_present(const DbcMessage& message, const DbcSignal& signal,
 }
 
 DecodedSignal decoded(const DbcSignal& signal, std::span<const uint8_t> bytes) {
-  DecodedSignal result{.signal = &signal, .value = physical_from(signal.layout, bytes)};
-  const int64_t raw = raw_from(signal.layout, bytes);
-  const auto named = std::ranges::find(signal.value_names, raw, &DbcValueName::raw);
+  DecodedSignal result{.signal = &signal,
+                       .value = physical_from(signal.layout, bytes),
+                       .raw = raw_from(signal.layout, bytes)};
+  const auto named = std::ranges::find(signal.value_names, result.raw, &DbcValueName::raw);
   if (named != signal.value_names.end()) result.value_name = named->name;
   result.is_available = result.value_name != "SNA" && std::isfinite(result.value);
   return result;
+}
+
+/// Whether the raw value is the value, which a double may not hold.
+bool is_raw(const SignalLayout& layout) {
+  return is_integer(layout) && layout.scale == 1.0 && layout.offset == 0.0;
+}
+
+std::string number_text(const DecodedSignal& decoded) {
+  const SignalLayout& layout = decoded.signal->layout;
+  if (is_raw(layout) && layout.type == RawType::kUnsigned) {
+    return fmt::format("{}", static_cast<uint64_t>(decoded.raw));
+  }
+  if (is_raw(layout)) return fmt::format("{}", decoded.raw);
+  constexpr double kLarge = 1e6;
+  constexpr double kExact = 9007199254740992.0;  // 2^53
+  const double value = decoded.value;
+  const bool is_whole = std::abs(value) < kExact && value == std::trunc(value);
+  if (is_whole && std::abs(value) >= kLarge) return fmt::format("{:.0f}", value);
+  // More digits of a small value may be those of rounding.
+  return fmt::format("{:.{}g}", value, std::abs(value) < kLarge ? 10 : 15);
+}
+
+nlohmann::ordered_json json_value(const DecodedSignal& decoded) {
+  const SignalLayout& layout = decoded.signal->layout;
+  if (!decoded.is_available) return nullptr;
+  if (!is_raw(layout)) return decoded.value;
+  if (layout.type == RawType::kUnsigned) return static_cast<uint64_t>(decoded.raw);
+  return decoded.raw;
 }
 
 }  // namespace
@@ -60,8 +90,10 @@ BusListener::BusListener(std::vector<Dbc> files, const BaseIds& base) : files_(s
 }
 
 bool BusListener::knows(std::string_view message) const {
-  return std::ranges::any_of(files_,
-                             [&](const Dbc& file) { return file.find(message) != nullptr; });
+  return std::ranges::any_of(files_, [&](const Dbc& file) {
+    const DbcMessage* found = file.find(message);
+    return found != nullptr && found->left_out.empty();
+  });
 }
 
 void BusListener::add_signals(const DbcMessage& message, std::span<const uint8_t> bytes) {
@@ -75,7 +107,7 @@ void BusListener::add_signals(const DbcMessage& message, std::span<const uint8_t
 
 const DecodedFrame* BusListener::decode(const Frame& frame) {
   const auto known = known_.find(frame.id);
-  if (known == known_.end()) {
+  if (known == known_.end() || !known->second.message->left_out.empty()) {
     ++unknown_;
     return nullptr;
   }
@@ -117,7 +149,7 @@ std::string text_of(const DecodedFrame& frame, double time_s) {
     if (!signal.value_name.empty()) {
       text += signal.value_name;
     } else {
-      text += fmt::format("{:.10g}{}", signal.value, signal.signal->unit);
+      text += number_text(signal) + signal.signal->unit;
     }
   }
   return text;
@@ -132,10 +164,9 @@ std::string json_of(const DecodedFrame& frame, double time_s) {
   if (frame.is_short) json["short"] = true;
   auto& signals = json["signals"] = nlohmann::ordered_json::object();
   for (const DecodedSignal& signal : frame.signals) {
-    auto& value = signals[signal.signal->name];
-    if (signal.is_available) value = signal.value;
+    signals[signal.signal->name] = json_value(signal);
   }
-  return json.dump();
+  return dump_json(json);
 }
 
 }  // namespace bevloc::can

@@ -21,6 +21,7 @@ namespace bevloc::can {
 struct DecodedSignal {
   const DbcSignal* signal = nullptr;
   double value = 0.0;
+  int64_t raw = 0;                ///< as raw_from() has it
   bool is_available = true;       ///< not the value that VAL_ names SNA
   std::string_view value_name{};  ///< of VAL_; empty without one
 };
@@ -43,6 +44,7 @@ class BusListener {
   };
 
   /// Knows bevloc's messages with these base ids, unless one of the files has their identifiers.
+  /// Messages that a file leaves out are unknown.
   BusListener(std::vector<Dbc> files, const BaseIds& base);
 
   /// Nothing for a message that no file describes. Valid until the next call.
@@ -51,12 +53,12 @@ class BusListener {
   /// By name of the message.
   const std::map<std::string, Total>& totals() const { return totals_; }
   uint64_t unknown() const { return unknown_; }
-  /// Whether some file has a message of this name.
+  /// Whether some file has a message of this name and does not leave it out.
   bool knows(std::string_view message) const;
 
  private:
   struct Known {
-    const DbcMessage* message = nullptr;
+    const DbcMessage* message = nullptr;  ///< may be left out
     std::optional<E2eChecker> checker{};
   };
 
@@ -73,8 +75,8 @@ std::string_view name_of(E2eResult result);
 
 /// "0.520000 LOC_PosLocal ok LocalEast=1.23m LocalNorth=-4.50m".
 std::string text_of(const DecodedFrame& frame, double time_s);
-/// One line of JSON with time_s, id, message, e2e and signals; the value of a signal that is not
-/// available is null.
+/// One line of JSON with time_s, id, message, e2e and signals. The value of a signal that is not
+/// available is null, that of a signal without scale and offset a whole number.
 std::string json_of(const DecodedFrame& frame, double time_s);
 
 }  // namespace bevloc::can

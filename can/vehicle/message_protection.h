@@ -27,7 +27,7 @@ struct MessageProtection {
   size_t checksum_byte = 0;               ///< not of the profiles, nor of kNone
   std::optional<SignalLayout> counter{};  ///< at most 8 bits; not of the profiles
   uint8_t highest_counter = 15;           ///< after it comes 0
-  std::vector<uint16_t> data_ids{};       ///< none, 1 or 16; of kE2eP05 one
+  std::vector<uint16_t> data_ids{};       ///< none, 1 or 16 of 8 bits; of kE2eP05 one of 16 bits
 
   bool has_counter() const { return counter || is_profile(); }
   bool is_profile() const {

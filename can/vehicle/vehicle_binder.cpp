@@ -7,19 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "can/bus/frame.h"
 #include "can/dbc/near_name.h"
 
 namespace bevloc::can {
 namespace {
-
-constexpr double kSlowestOdometry_ms = 40.0;
-constexpr double kSlowestGnss_ms = 2000.0;
-constexpr double kFastest_ms = 1.0;
-
-tl::unexpected<Refusal> refusal(std::string found, std::string wanted) {
-  return tl::unexpected(Refusal{std::move(found), std::move(wanted)});
-}
 
 std::string meant(const std::string& name, const std::vector<std::string>& known) {
   const auto near = near_name(name, known);
@@ -79,10 +70,8 @@ Bound<void> check_range(const DbcSignal& signal, Quantity quantity, double facto
         fmt::format("{}, which reaches {:.4g} {} at most", signal.name, reaches, inside),
         fmt::format("a signal that reaches {} {}; check its unit", sanity.reaches, inside));
   }
-  const bool is_integer =
-      signal.layout.type == RawType::kUnsigned || signal.layout.type == RawType::kSigned;
   const double step = std::abs(signal.layout.scale) * factor;
-  if (is_integer && step > sanity.step) {
+  if (is_integer(signal.layout) && step > sanity.step) {
     return refusal(fmt::format("{} in steps of {:.4g} {}", signal.name, step, inside),
                    fmt::format("steps of at most {} {}; check its unit", sanity.step, inside));
   }
@@ -97,35 +86,43 @@ std::vector<int64_t> not_available_values(const DbcSignal& signal) {
   return values;
 }
 
+/// The raw values that a value of a condition means.
+Bound<std::vector<int64_t>> raw_values_of(const std::string& text, const DbcSignal& signal) {
+  std::vector<int64_t> values = signal.values_named(text);
+  if (values.empty()) {
+    const auto number = whole_number(text);
+    if (!number) {
+      return refusal(
+          text + meant(text, names_in(signal.value_names)),
+          fmt::format("a raw value of signal {} or a name that VAL_ gives it", signal.name));
+    }
+    values.push_back(*number);
+  }
+  SignalLayout unscaled = signal.layout;
+  unscaled.scale = 1.0;
+  unscaled.offset = 0.0;
+  for (const int64_t raw : values) {
+    const auto number = static_cast<double>(raw);
+    if (number < lowest_physical(unscaled) || number > highest_physical(unscaled)) {
+      return refusal(text, fmt::format("a raw value that fits into the {} bits of {}",
+                                       signal.layout.length_bits, signal.name));
+    }
+  }
+  return values;
+}
+
+bool fits(uint64_t value, const SignalLayout& layout) {
+  return layout.length_bits == 64 || value >> layout.length_bits == 0;
+}
+
+}  // namespace
+
 std::optional<int64_t> whole_number(const std::string& text) {
   int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
-
-Bound<size_t> checksum_byte_of(const DbcSignal& signal) {
-  const SignalLayout& layout = signal.layout;
-  const bool whole_byte = layout.length_bits == 8 &&
-                          layout.start_bit % 8 == (layout.order == ByteOrder::kIntel ? 0 : 7);
-  if (whole_byte) return static_cast<size_t>(layout.start_bit / 8);
-  return refusal(fmt::format("checksum {} with {} bits from bit {}", signal.name,
-                             layout.length_bits, layout.start_bit),
-                 "a whole byte");
-}
-
-/// "P02", "Profile 2", "E2E_P05": the last number of the text.
-int profile_number(const std::string& text) {
-  const size_t end = text.find_last_of("0123456789");
-  if (end == std::string::npos) return 0;
-  size_t begin = end;
-  while (begin > 0 && text[begin - 1] >= '0' && text[begin - 1] <= '9') --begin;
-  int number = 0;
-  std::from_chars(text.data() + begin, text.data() + end + 1, number);
-  return number;
-}
-
-}  // namespace
 
 Bound<std::string> VehicleBinder::message_name(const std::string& name) const {
   const DbcMessage* message = dbc_.find(name);
@@ -136,6 +133,10 @@ Bound<std::string> VehicleBinder::message_name(const std::string& name) const {
   if (message->is_extended) {
     return refusal(fmt::format("{} with the 29-bit identifier {:#x}", name, message->id),
                    "one with 11 bits, which bevloc receives");
+  }
+  if (!message->left_out.empty()) {
+    return refusal(fmt::format("{}, which is left out ({})", name, message->left_out),
+                   "a message without mistakes");
   }
   return name;
 }
@@ -159,6 +160,12 @@ Bound<const DbcSignal*> VehicleBinder::find(const std::string& signal,
     return refusal(fmt::format("{} behind several multiplexors", name),
                    "a signal with one multiplexor or none");
   }
+  if (found->multiplexed_at && !fits(*found->multiplexed_at, message->multiplexor()->layout)) {
+    return refusal(
+        fmt::format("{}, which is multiplexed at {}", name, *found->multiplexed_at),
+        fmt::format("a value that fits into the {} bits of {}",
+                    message->multiplexor()->layout.length_bits, message->multiplexor()->name));
+  }
   return found;
 }
 
@@ -175,16 +182,14 @@ size_t VehicleBinder::bind_message(const DbcMessage& message) {
   return binding_.messages.size() - 1;
 }
 
-Bound<size_t> VehicleBinder::bind(const DbcMessage& message, const DbcSignal& signal,
-                                  double factor) {
+size_t VehicleBinder::bind(const DbcMessage& message, const DbcSignal& signal) {
   BoundSignal bound{.name = fmt::format("{}.{}", message.name, signal.name),
                     .message = bind_message(message),
                     .layout = signal.layout,
                     .multiplexed = {},
                     .min = signal.min,
                     .max = signal.max,
-                    .not_available = not_available_values(signal),
-                    .factor = factor};
+                    .not_available = not_available_values(signal)};
   const auto known = std::ranges::find(binding_.signals, bound.name, &BoundSignal::name);
   if (known != binding_.signals.end()) {
     return static_cast<size_t>(known - binding_.signals.begin());
@@ -219,7 +224,17 @@ Bound<size_t> VehicleBinder::quantity(const std::string& signal, const std::stri
   if (auto good = check_range(**found, quantity, *factor); !good) {
     return tl::unexpected(good.error());
   }
-  return bind(*message, **found, *factor);
+  const auto index = bind(*message, **found);
+  const auto other = quantities_.find(index);
+  const bool both_lengths =
+      quantity == Quantity::kLength && other != quantities_.end() && other->second == quantity;
+  if (other != quantities_.end() && !both_lengths) {
+    return refusal(fmt::format("{} for a second value", binding_.signals[index].name),
+                   "a signal for each value");
+  }
+  quantities_.emplace(index, quantity);
+  binding_.signals[index].factor = *factor;
+  return index;
 }
 
 Bound<BoundCondition> VehicleBinder::condition(const std::string& signal,
@@ -228,142 +243,18 @@ Bound<BoundCondition> VehicleBinder::condition(const std::string& signal,
   const DbcMessage* message = nullptr;
   const auto found = find(signal, default_message, message);
   if (!found) return tl::unexpected(found.error());
-  const SignalLayout& layout = (*found)->layout;
+  if (!is_integer((*found)->layout)) {
+    return refusal(fmt::format("{}, which is a float", (*found)->name),
+                   "a signal with whole numbers");
+  }
   BoundCondition condition;
   for (const std::string& text : values) {
-    auto raw = whole_number(text);
-    if (const DbcValueName* named = (*found)->find_value(text)) raw = named->raw;
-    if (!raw) {
-      return refusal(
-          text + meant(text, names_in((*found)->value_names)),
-          fmt::format("a raw value of signal {} or a name that VAL_ gives it", (*found)->name));
-    }
-    SignalLayout unscaled = layout;
-    unscaled.scale = 1.0;
-    unscaled.offset = 0.0;
-    const auto number = static_cast<double>(*raw);
-    if (number < lowest_physical(unscaled) || number > highest_physical(unscaled)) {
-      return refusal(text, fmt::format("a raw value that fits into the {} bits of {}",
-                                       layout.length_bits, (*found)->name));
-    }
-    condition.values.push_back(*raw);
+    const auto raw = raw_values_of(text, **found);
+    if (!raw) return tl::unexpected(raw.error());
+    condition.values.insert(condition.values.end(), raw->begin(), raw->end());
   }
-  const auto bound = bind(*message, **found, 1.0);
-  if (!bound) return tl::unexpected(bound.error());
-  condition.signal = *bound;
+  condition.signal = bind(*message, **found);
   return condition;
-}
-
-Bound<void> VehicleBinder::protect(const ProtectionRequest& request) {
-  const auto name = message_name(request.message);
-  if (!name) return tl::unexpected(name.error());
-  const auto bound = std::ranges::find(binding_.messages, *name, &BoundMessage::name);
-  if (bound == binding_.messages.end()) {
-    return refusal(*name, "a message that odometry or GNSS uses");
-  }
-  if (request.cycle_ms) bound->cycle = from_seconds(1e-3 * *request.cycle_ms);
-  MessageProtection& protection = bound->protection;
-  protection.checksum = request.kind;
-  protection.data_ids = request.data_ids;
-  const bool is_profile = protection.is_profile();
-  const DbcMessage* message = nullptr;
-  if (is_profile) {
-    const size_t ids = request.kind == ChecksumKind::kE2eP02 ? 16 : 1;
-    if (protection.data_ids.size() != 1 && protection.data_ids.size() != ids) {
-      return refusal(fmt::format("{} data ids", protection.data_ids.size()),
-                     "data_id, or 16 data_ids for profile P02");
-    }
-  }
-  if (!request.counter.empty()) {
-    const auto counter = find(request.counter, *name, message);
-    if (!counter) return tl::unexpected(counter.error());
-    const int bits = (*counter)->layout.length_bits;
-    if (bits > 8) return refusal(fmt::format("a counter with {} bits", bits), "at most 8 bits");
-    protection.counter = (*counter)->layout;
-    const uint32_t highest = (1U << bits) - 1;
-    protection.highest_counter = static_cast<uint8_t>(request.highest_counter.value_or(highest));
-    if (protection.highest_counter > highest) {
-      return refusal(fmt::format("highest counter {}", protection.highest_counter),
-                     fmt::format("at most {}", highest));
-    }
-  }
-  if (!request.checksum.empty()) {
-    const auto checksum = find(request.checksum, *name, message);
-    if (!checksum) return tl::unexpected(checksum.error());
-    const auto byte = checksum_byte_of(**checksum);
-    if (!byte) return tl::unexpected(byte.error());
-    protection.checksum_byte = *byte;
-  }
-  requests_.push_back(request);
-  return {};
-}
-
-Bound<void> VehicleBinder::protect_by_attributes(const DbcMessage& dbc,
-                                                 BoundMessage& message) const {
-  const auto profile = dbc.attributes.find("E2EProfile");
-  const auto data_id = dbc.attributes.find("E2EDataId");
-  if (profile == dbc.attributes.end() || data_id == dbc.attributes.end()) return {};
-  const int number = profile_number(profile->second);
-  if (number == 0) return {};  // "none"
-  if (number != 2 && number != 5) {
-    return refusal(fmt::format("E2EProfile {}", profile->second),
-                   "P02 or P05, or an entry for this message in protection");
-  }
-  const auto id = whole_number(data_id->second);
-  if (!id || *id < 0 || *id > UINT16_MAX) {
-    return refusal(fmt::format("E2EDataId {}", data_id->second), "0 to 65535");
-  }
-  message.protection.checksum = number == 2 ? ChecksumKind::kE2eP02 : ChecksumKind::kE2eP05;
-  message.protection.data_ids = {static_cast<uint16_t>(*id)};
-  return {};
-}
-
-void VehicleBinder::mark_odometry() {
-  const auto mark = [this](size_t signal) {
-    binding_.messages[binding_.signals[signal].message].has_odometry = true;
-  };
-  for (const BoundWheels::Wheel& wheel : binding_.wheels.wheels) mark(wheel.signal);
-  mark(binding_.yaw_rate.signal);
-}
-
-Bound<void> VehicleBinder::finish_message(BoundMessage& message) {
-  const bool requested = std::ranges::any_of(
-      requests_, [&](const auto& request) { return request.message == message.name; });
-  if (!requested) {
-    auto protection = protect_by_attributes(*dbc_.find(message.name), message);
-    if (!protection) return protection;
-  }
-  if (message.protection.is_profile()) {
-    const uint8_t header = message.protection.checksum == ChecksumKind::kE2eP02 ? 2 : 3;
-    if (message.length < header) {
-      return refusal(fmt::format("{} bytes", message.length), "room for checksum and counter");
-    }
-  }
-  if (message.protection.checksum == ChecksumKind::kE2eP05) {
-    message.protection.highest_counter = UINT8_MAX;
-  }
-  const double cycle_ms = 1e3 * to_seconds(message.cycle);
-  if (cycle_ms == 0.0) {
-    return refusal("no cycle time (attribute GenMsgCycleTime)",
-                   "one, or cycle_ms for this message in protection");
-  }
-  const double slowest_ms = message.has_odometry ? kSlowestOdometry_ms : kSlowestGnss_ms;
-  if (cycle_ms < kFastest_ms || cycle_ms > slowest_ms) {
-    return refusal(fmt::format("a cycle of {:g} ms", cycle_ms),
-                   fmt::format("{:g} to {:g} ms for {}", kFastest_ms, slowest_ms,
-                               message.has_odometry ? "odometry" : "GNSS and conditions"));
-  }
-  return {};
-}
-
-tl::expected<VehicleBinding, VehicleBinder::MessageRefusal> VehicleBinder::finish() {
-  mark_odometry();
-  for (BoundMessage& message : binding_.messages) {
-    if (auto good = finish_message(message); !good) {
-      return tl::unexpected(MessageRefusal{message.name, good.error()});
-    }
-  }
-  return std::move(binding_);
 }
 
 }  // namespace bevloc::can

@@ -1,9 +1,11 @@
 // Finds the signals of a configuration in a DBC file, and checks that they can be what they shall.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -21,6 +23,13 @@ struct Refusal {
 };
 template <typename T>
 using Bound = tl::expected<T, Refusal>;
+
+inline tl::unexpected<Refusal> refusal(std::string found, std::string wanted) {
+  return tl::unexpected(Refusal{std::move(found), std::move(wanted)});
+}
+
+/// Nothing unless all of the text is a whole number.
+std::optional<int64_t> whole_number(const std::string& text);
 
 /// What the configuration says about the protection of a message.
 struct ProtectionRequest {
@@ -43,21 +52,22 @@ class VehicleBinder {
   Bound<std::string> message_name(const std::string& name) const;
 
   /// The index of a signal in the binding that carries this quantity. `unit` replaces the unit of
-  /// the DBC file unless it is empty. Refuses units that are not known, and ranges and steps that
-  /// no signal of this quantity has.
+  /// the DBC file unless it is empty. Refuses units that are not known, ranges and steps that no
+  /// signal of this quantity has, and a second value from one signal, except for lengths.
   Bound<size_t> quantity(const std::string& signal, const std::string& default_message,
                          Quantity quantity, const std::string& unit);
 
-  /// The values are raw numbers or names of VAL_.
+  /// The values are raw numbers or names of VAL_. A name means all values that have it.
   Bound<BoundCondition> condition(const std::string& signal, const std::string& default_message,
                                   const std::vector<std::string>& values);
 
+  /// Refuses a second request for a message.
   Bound<void> protect(const ProtectionRequest& request);
 
   VehicleBinding& binding() { return binding_; }
 
-  /// To be called last: completes cycles and protection from the attributes of the DBC file, and
-  /// checks cycles and identifiers. The string names the message that is refused.
+  /// To be called last: completes protection from the attributes of the DBC file, and checks
+  /// cycles, lengths, and that no value lies where counter or checksum are.
   struct MessageRefusal {
     std::string message;
     Refusal refusal;
@@ -67,14 +77,19 @@ class VehicleBinder {
  private:
   Bound<const DbcSignal*> find(const std::string& signal, const std::string& default_message,
                                const DbcMessage*& message) const;
-  Bound<size_t> bind(const DbcMessage& message, const DbcSignal& signal, double factor);
+  size_t bind(const DbcMessage& message, const DbcSignal& signal);
   size_t bind_message(const DbcMessage& message);
+  bool is_requested(const std::string& message) const;
+  Bound<const DbcSignal*> protecting(const std::string& signal, const std::string& message) const;
+  Bound<void> set_counter(const ProtectionRequest& request, MessageProtection& protection) const;
   Bound<void> finish_message(BoundMessage& message);
+  Bound<void> check_places(const BoundMessage& message) const;
   Bound<void> protect_by_attributes(const DbcMessage& dbc, BoundMessage& message) const;
   void mark_odometry();
 
   const Dbc& dbc_;
   VehicleBinding binding_;
+  std::map<size_t, Quantity> quantities_;  ///< of the signals that carry a value
   std::vector<ProtectionRequest> requests_;
 };
 

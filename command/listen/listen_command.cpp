@@ -10,6 +10,7 @@
 
 #include "can/bus/candump.h"
 #include "can/bus/socketcan_bus.h"
+#include "common/option_checks.h"
 
 namespace bevloc::command {
 namespace {
@@ -18,6 +19,13 @@ volatile std::sig_atomic_t interrupted = 0;
 
 void note_interrupt(int) {
   interrupted = 1;
+}
+
+void print_left_out(const can::Dbc& dbc) {
+  for (const can::DbcMessage& message : dbc.messages) {
+    if (message.left_out.empty()) continue;
+    fmt::print(stderr, "bevloc: {}; message {} is left out\n", message.left_out, message.name);
+  }
 }
 
 }  // namespace
@@ -32,17 +40,24 @@ void ListenCommand::declare(CLI::App& app) {
       "  candump -L can0 | bevloc listen -");
   app_->add_option("SOURCE", source_, "CAN interface, candump log, or - for standard input")
       ->required();
-  app_->add_option("--dbc", dbc_files_, "DBC files; bevloc's own messages are known without one");
-  app_->add_option("--message", messages_, "Print these messages only");
+  // One value for each: a further one is the SOURCE.
+  app_->add_option("--dbc", dbc_files_,
+                   "DBC file, may be repeated; bevloc's own messages are known without one")
+      ->allow_extra_args(false);
+  app_->add_option("--message", messages_, "Print this message only, may be repeated")
+      ->allow_extra_args(false);
   app_->add_flag("--bad", only_bad_, "Print only frames that fail the end-to-end check");
   app_->add_flag("--quiet", quiet_, "Print the totals only");
   app_->add_flag("--json", json_, "Print one JSON object a frame");
   app_->add_flag("--fd", fd_, "Receive CAN FD, too");
   app_->add_option("--count", count_, "End after so many printed frames");
   app_->add_option("--duration", duration_s_, "End after so many seconds")
-      ->check(CLI::PositiveNumber);
-  app_->add_option("--localizer-base", base_.localizer, "First identifier of the LOC_ messages");
-  app_->add_option("--vehicle-base", base_.vehicle, "First identifier of the VEH_ messages");
+      ->check(number_between(0.001, 1e9));
+  const CLI::Range base_range(0u, 0x7F0u);
+  app_->add_option("--localizer-base", base_.localizer, "First identifier of the LOC_ messages")
+      ->check(base_range);
+  app_->add_option("--vehicle-base", base_.vehicle, "First identifier of the VEH_ messages")
+      ->check(base_range);
 }
 
 Result<can::BusListener> ListenCommand::make_listener() const {
@@ -50,6 +65,7 @@ Result<can::BusListener> ListenCommand::make_listener() const {
   for (const std::string& file : dbc_files_) {
     auto dbc = can::read_dbc_file(file);
     if (!dbc) return tl::unexpected(dbc.error());
+    print_left_out(*dbc);
     files.push_back(std::move(*dbc));
   }
   can::BusListener listener(std::move(files), base_);

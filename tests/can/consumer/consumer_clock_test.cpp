@@ -39,6 +39,8 @@ TEST(ConsumerClockTest, KnowsTheCaptureTimeInUtcOfBothVariants) {
     EXPECT_EQ(receiver.capture_utc_us(now), static_cast<uint32_t>((capture + offset).count()));
     EXPECT_TRUE(receiver.capture_utc_us(now + milliseconds(300)));
     EXPECT_FALSE(receiver.capture_utc_us(now + microseconds(300'001))) << "too old";
+    EXPECT_TRUE(receiver.capture_utc_us(now - milliseconds(100)));
+    EXPECT_FALSE(receiver.capture_utc_us(now - microseconds(100'001))) << "set back";
   }
 }
 

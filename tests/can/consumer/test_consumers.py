@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import os
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -17,6 +18,20 @@ def output_of(*command: str) -> str:
     # From the folder of the consumer, because ROOT/can would hide the package can of python3-can.
     done = subprocess.run(command, check=True, capture_output=True, text=True, cwd=CONSUMER)
     return done.stdout
+
+
+def programs() -> list[list[str]]:
+    reader = [sys.executable, str(CONSUMER / "bevloc_reader.py")]
+    return [[os.environ["CONSUMER_C"]], [os.environ["CONSUMER_CPP"]], reader]
+
+
+def time_us(line: str) -> int:
+    return int(line[1:11]) * 1_000_000 + int(line[12:18])
+
+
+def shifted(line: str, shift_us: int) -> str:
+    now_us = time_us(line) + shift_us
+    return f"({now_us // 1_000_000:010}.{now_us % 1_000_000:06}){line[19:]}"
 
 
 class ConsumersTest(unittest.TestCase):
@@ -32,7 +47,6 @@ class ConsumersTest(unittest.TestCase):
     def test_cpp_reads_the_golden_log(self) -> None:
         self.assertEqual(output_of(os.environ["CONSUMER_CPP"], self.log), self.expected)
 
-    @unittest.skipIf(importlib.util.find_spec("can.io") is None, "python3-can is not installed")
     def test_python_reads_the_golden_log(self) -> None:
         reader = str(CONSUMER / "bevloc_reader.py")
         self.assertEqual(output_of(sys.executable, reader, self.log), self.expected)
@@ -57,8 +71,76 @@ class ConsumersTest(unittest.TestCase):
         self.assertEqual(receiver.capture_utc_us(1.3), 2)
         self.assertAlmostEqual(receiver.utc_error_ms, 1.23)
         self.assertIsNone(receiver.capture_utc_us(1.301), "too old")
+        self.assertEqual(receiver.capture_utc_us(0.9), 2)
+        self.assertIsNone(receiver.capture_utc_us(0.899), "set back")
         receive("LOC_Clock", 1, (7).to_bytes(4, "little") + b"\xff\xff", 1.2)
         self.assertIsNone(receiver.capture_utc_us(1.2), "not synchronized")
+
+    def answers_to(self, lines: list[str]) -> str:
+        """What all three print for a log."""
+        with tempfile.TemporaryDirectory() as folder:
+            log = Path(folder) / "can.log"
+            log.write_text("".join(line + "\n" for line in lines))
+            outputs = [output_of(*program, str(log)) for program in programs()]
+        self.assertEqual(outputs[0], outputs[1])
+        self.assertEqual(outputs[0], outputs[2])
+        return outputs[0]
+
+    def golden_lines(self, end_us: int = 10**9) -> list[str]:
+        lines = Path(self.log).read_text().splitlines()
+        return [line for line in lines if time_us(line) < end_us]
+
+    def test_a_clock_that_is_set_back_is_a_timeout(self) -> None:
+        lines = self.golden_lines(5_400_000)
+        statuses = [line for line in lines if " 500#" in line]
+        # No message of the pose after the step.
+        late = [shifted(line, -300_000) for line in self.golden_lines() if " 500#" in line
+                and line not in statuses]
+        output = self.answers_to(lines + late)
+        self.assertIn("timeout", output.splitlines()[-2])
+        back = self.answers_to(lines + [shifted(lines[-1], -6 * 10**5)])
+        self.assertEqual(back.splitlines()[-2], "-0.210 timeout")
+
+    def test_stamps_that_are_out_of_order_within_a_pose_do_not_matter(self) -> None:
+        lines = self.golden_lines()
+        jittered = [shifted(line, 700 - 300 * (i % 3)) for i, line in enumerate(lines)]
+        self.assertEqual(self.answers_to(jittered).splitlines()[-1], self.expected.splitlines()[-1])
+
+    def test_a_log_may_begin_at_zero(self) -> None:
+        lines = [shifted(line, -5_000_000) for line in self.golden_lines()]
+        self.assertEqual(self.answers_to(lines), self.expected)
+
+    def test_other_lines_of_candump_are_passed_over(self) -> None:
+        lines = [line + "_F" if i % 7 == 0 else line
+                 for i, line in enumerate(self.golden_lines())]
+        others = ["123#R", "123#R8", "123#0011_F", "12345678#0011", "20000004#0004000000000000",
+                  "7FF#", "123##1" + 64 * "0a"]
+        lines += ["", *(f"{lines[-1][:19]} can0 {frame}" for frame in others)]
+        lines += [f"{lines[0][:18]}123) vcan0 123#00 R"]
+        self.assertIn("frames: 840 ok, 52 lost", self.answers_to(lines))
+
+    def test_what_is_no_log_is_refused(self) -> None:
+        time = "(0000000005.000000) can0 "
+        with tempfile.TemporaryDirectory() as folder:
+            log = Path(folder) / "can.log"
+            for bad in ("garbage", time + "500#ABC", time + "500#00" + 8 * "00", time + "800#00",
+                        time + "500#00x", time + "50#00", "(5.0) can0 500#00", "500#00"):
+                log.write_text(f"\n{time}123#00\n{bad}\n")
+                for program in programs():
+                    self.assert_refuses(program, str(log), f"{log}:3: found something else, wanted")
+            log.write_bytes(bytes(range(256)))
+            for program in programs():
+                self.assert_refuses(program, str(log), f"{log}:1: found something else, wanted")
+                for other in (folder, folder + "/none"):
+                    self.assert_refuses(program, other, f"{other}: found no readable file, wanted")
+
+    def assert_refuses(self, program: list[str], log: str, message: str) -> None:
+        done = subprocess.run([*program, log], capture_output=True, text=True, cwd=CONSUMER)
+        with self.subTest(program=program, log=log):
+            self.assertEqual(done.returncode, 1)
+            self.assertTrue(done.stderr.startswith(message), done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+            self.assertNotIn("frames:", done.stdout)
 
     def test_the_golden_log_has_every_fault(self) -> None:
         for word in ("timeout", "beyond_limit", "not_valid", " 1 wrong CRC", " 1 repeated"):

@@ -45,6 +45,29 @@ TEST(BusListenerTest, DecodesWhatFitsIntoAShortFrame) {
   EXPECT_TRUE(empty->signals.empty());
 }
 
+TEST(BusListenerTest, KeepsWholeNumbersExact) {
+  BusListener listener = listener_of(
+      "BO_ 16 A: 8 X\n SG_ U : 0|64@1+ (1,0) [0|0] \"\" Y\n SG_ S : 0|64@1- (1,0) [0|0] \"\" Y\n"
+      "BO_ 17 B: 8 X\n SG_ N : 0|40@1+ (2,0) [0|0] \"m\" Y\n SG_ F : 0|40@1+ (0.01,0) [0|0] \"\" "
+      "Y\n"
+      " SG_ P : 0|8@1+ (0.1,0) [0|0] \"\" Y\n");
+  const DecodedFrame* whole = listener.decode(
+      {.id = 16, .length = 8, .data = {0xFE, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}});
+  EXPECT_EQ(text_of(*whole, 0.0), "0.000000 A U=18446744073709551614 S=-2");
+  EXPECT_NE(json_of(*whole, 0.0).find("{\"U\":18446744073709551614,\"S\":-2}"), std::string::npos);
+  const DecodedFrame* scaled =
+      listener.decode({.id = 17, .length = 8, .data = {3, 0xFF, 0xFF, 0xFF, 0xFF}});
+  EXPECT_EQ(text_of(*scaled, 0.0), "0.000000 B N=2199023255046m F=10995116275.23 P=0.3");
+}
+
+TEST(BusListenerTest, DoesNotKnowMessagesThatAreLeftOut) {
+  BusListener listener =
+      listener_of("BO_ 1280 LOC_Status: 8 X\n SG_ S : 0|8@1+ (0,0) [0|0] \"\" Y\nBO_ 16 B: 8 X\n");
+  EXPECT_EQ(listener.decode({.id = 1280, .length = 8}), nullptr);
+  EXPECT_EQ(listener.unknown(), 1U);
+  EXPECT_NE(listener.decode({.id = 16, .length = 8}), nullptr);
+}
+
 TEST(BusListenerTest, ChecksTheProtectionOfBevlocsMessages) {
   BusListener listener({}, {});
   VehicleEncoder encoder(BaseIds{}, {49.0, 8.4}, 1.6);
