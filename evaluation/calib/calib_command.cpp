@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "common/files.h"
+#include "common/json_dump.h"
+#include "common/option_checks.h"
 #include "common/replace_file.h"
 #include "evaluation/calib/calib_picture.h"
 #include "evaluation/calib/calib_report.h"
@@ -99,17 +101,17 @@ void CalibCommand::declare_inputs(CLI::App& command, CalibCommand& self) {
   command.add_option("--map", self.map_file_, "HD map")->required();
   command
       .add_option("--interval", self.interval_s_, "Least time between two framesets used, seconds")
-      ->check(CLI::Range(0.0, 60.0))
+      ->check(number_between(0.0, 60.0))
       ->capture_default_str();
   command
       .add_option("--position-sigma", self.reference_position_m_,
                   "One sigma of the reference positions, metres")
-      ->check(CLI::Range(0.001, 10.0))
+      ->check(number_between(0.001, 10.0))
       ->capture_default_str();
   command
       .add_option("--yaw-sigma", self.reference_yaw_deg_,
                   "One sigma of the reference headings, degrees")
-      ->check(CLI::Range(0.001, 10.0))
+      ->check(number_between(0.001, 10.0))
       ->capture_default_str();
   command.add_option("--picture", self.picture_file_,
                      "Draw the map over pictures to this PNG file");
@@ -146,13 +148,9 @@ Result<command::Verdict> CalibCommand::run() const {
 
 Status CalibCommand::run_import() const {
   RigImportOptions options;
-  for (const std::string& names : camera_names_) {
-    const size_t equals = names.find('=');
-    if (equals == std::string::npos) {
-      return fail("--map-camera: found {}, wanted THEIRS=OURS, such as cam0=front", names);
-    }
-    options.our_names[names.substr(0, equals)] = names.substr(equals + 1);
-  }
+  auto our_names = parse_camera_names(camera_names_);
+  if (!our_names) return tl::unexpected(our_names.error());
+  options.our_names = std::move(*our_names);
   if (!extrinsics_file_.empty()) {
     const auto text = read_file(extrinsics_file_);
     if (!text) return tl::unexpected(text.error());
@@ -204,7 +202,7 @@ Result<bool> CalibCommand::run_recording() const {
   });
   if (!refinement) return tl::unexpected(refinement.error());
   fmt::print("{}", check_ ? text_of_check(*refinement) : text_of_refinement(*refinement));
-  if (Status s = write_file(json_of(*refinement, check_).dump(2) + "\n", json_file_); !s) {
+  if (Status s = write_file(dump_json(json_of(*refinement, check_), 2) + "\n", json_file_); !s) {
     return tl::unexpected(s.error());
   }
   const Rig after = refined(*rig, *refinement);

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json_dump.h"
+#include "common/option_checks.h"
 #include "evaluation/calib/calib_report.h"
 #include "evaluation/command_output.h"
 #include "evaluation/drive/error_statistics.h"
@@ -81,12 +83,12 @@ void CalibEvaluation::declare(CLI::App& eval) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   calib->add_option("--duration", options_.duration_s, "Length of a drive, seconds")
-      ->check(CLI::Range(5.0, 600.0))
+      ->check(number_between(5.0, 600.0))
       ->capture_default_str();
   calib->add_option("--interval", options_.interval_s, "Time between two framesets, seconds")
-      ->check(CLI::Range(0.05, 10.0))
+      ->check(number_between(0.05, 10.0))
       ->capture_default_str();
-  calib->add_option("--json", json_file_, "Write the errors to this file");
+  calib->add_option("--json", json_file_, "Write the errors to this file")->check(output_file());
   calib->footer(
       "Examples:\n"
       "  bevloc eval calib --first-seed 401 --drives 5 --json errors.json");
@@ -118,7 +120,7 @@ Status CalibEvaluation::run() const {
     show_progress(i + 1, drives_, "drives");
   }
   print_table(sums, json["errors"]);
-  return write_file(json.dump(2) + "\n", json_file_);
+  return write_file(dump_json(json, 2) + "\n", json_file_);
 }
 
 }  // namespace bevloc::evaluation

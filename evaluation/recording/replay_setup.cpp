@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <fstream>
 
 #include <spdlog/spdlog.h>
 
@@ -86,6 +87,12 @@ Result<HdMap> map_for(Recording& recording, const ReplayOverrides& overrides,
   if (*recorded) return std::move(**recorded);
   const fs::path file =
       config.map_file.empty() ? fs::path(recording.value(firmware::kMapFileKey)) : config.map_file;
+  if (file.empty()) {
+    return fail(
+        "{}: found no map, wanted a recording that holds one, or --map; {}", recording.name(),
+        recording.messages(firmware::kMapTopic).empty() ? "it was cut before its first second"
+                                                        : "its map was too large to be recorded");
+  }
   auto map = load_map(file);
   if (!map) return map;
   const std::string checksum = fmt::format("{:08x}", map_checksum(*map));
@@ -115,6 +122,41 @@ uint64_t first_input_ns(const Recording& recording) {
   look_at(firmware::kBusOutTopic);
   for (int camera = 0; camera < kCameraCount; ++camera) look_at(firmware::image_topic(camera));
   return first;
+}
+
+/// Where an entry of a log is. A log can have empty lines, which are no entries.
+std::string place_of_entry(const fs::path& log, size_t entry) {
+  std::ifstream lines(log);
+  std::string line;
+  int number = 0;
+  for (size_t entries = 0; entries <= entry && std::getline(lines, line); ++number) {
+    if (line != "" && line != "\r") ++entries;
+  }
+  return fmt::format("{}:{}", log.string(), number);
+}
+
+/// Whether the log's clock runs on: a replay of a step, such as from 1970 to today, would not end.
+/// Lines of several interfaces may be a little out of order.
+Status check_times(const std::vector<can::CandumpEntry>& entries, const fs::path& log) {
+  constexpr Duration kLongestGap = std::chrono::seconds(60);
+  constexpr Duration kFarthestBack = std::chrono::seconds(1);
+  for (size_t i = 1, newest = 0; i < entries.size(); ++i) {
+    const Duration step = entries[i].time - entries[newest].time;
+    if (step > kLongestGap) {
+      return fail(
+          "{}: found a time {:.1f} s after the line before, wanted at most {:g} s; the clock was "
+          "set or the log was paused, so cut the log there and replay one part",
+          place_of_entry(log, i), to_seconds(step), to_seconds(kLongestGap));
+    }
+    if (step < -kFarthestBack) {
+      return fail(
+          "{}: found a time {:.1f} s before that of an earlier line, wanted at most {:g} s; the "
+          "clock was set back or logs were joined, so cut the log there and replay one part",
+          place_of_entry(log, i), to_seconds(-step), to_seconds(kFarthestBack));
+    }
+    if (step > Duration::zero()) newest = i;
+  }
+  return {};
 }
 
 }  // namespace
@@ -206,6 +248,7 @@ Result<ReplayInputs> inputs_of_candump(const fs::path& log, const fs::path& imag
                                        const ReplaySetup& setup) {
   const auto entries = can::read_candump_file(log.string());
   if (!entries) return tl::unexpected(entries.error());
+  if (Status status = check_times(*entries, log); !status) return tl::unexpected(status.error());
   const auto accepted = firmware::appliance_options(setup.config.can).accepted_ids;
   ReplayInputs inputs;
   for (const can::CandumpEntry& entry : *entries) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -83,6 +84,14 @@ std::optional<RigMistake> find_in_intrinsics(int index, const Intrinsics& camera
   if (const double ratio = camera.fy_px / camera.fx_px; ratio < 0.5 || ratio > 2.0) {
     return RigMistake{index, false, "fy_px", fmt::format("{:g} times fx_px", ratio),
                       "0.5 to 2 times fx_px"};
+  }
+  for (const auto& [key, found_px, size_px] :
+       {std::tuple("cx_px", camera.cx_px, camera.width_px),
+        std::tuple("cy_px", camera.cy_px, camera.height_px)}) {
+    if (found_px >= -0.5 * size_px && found_px <= 1.5 * size_px) continue;
+    return RigMistake{index, false, key, fmt::format("a principal point at {:g}", found_px),
+                      fmt::format("{:g} to {:g} for an image of {} x {}", -0.5 * size_px,
+                                  1.5 * size_px, camera.width_px, camera.height_px)};
   }
   if (is_one_to_one(camera)) return std::nullopt;
   return RigMistake{index, false, "distortion",

@@ -18,6 +18,7 @@ struct RigMistake {
 
 /// The first mistake of the rig, or nothing. Each camera must have
 /// - a focal length of 0.05 to 6 times the width of its image, alike along both axes to a factor 2,
+/// - a principal point outside of its image by at most half the image's size,
 /// - a distortion that gives every pixel its own ray (of a fisheye up to kWidestFisheye_rad),
 /// - a place 0.1 to 6 m above the ground,
 /// - an optical axis from 60 degrees down to 30 degrees up, and a roll of at most 15 degrees,

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -14,6 +15,16 @@ std::string described(const YAML::Node& node) {
   if (node.IsScalar()) return fmt::format("\"{}\"", node.Scalar().substr(0, 60));
   if (node.IsSequence()) return fmt::format("a list of {}", node.size());
   return node.IsMap() ? "a mapping" : "nothing";
+}
+
+/// The first document. A `---` at the end of a file, as `rostopic echo` writes it, begins no other.
+YAML::Node only_document(const std::vector<YAML::Node>& documents, std::string_view name) {
+  for (size_t i = 1; i < documents.size(); ++i) {
+    if (documents[i].IsNull()) continue;
+    refuse(fmt::format("{}:{}", name, documents[i].Mark().line + 1), "a second document",
+           "one in each file; split the file at its `---`");
+  }
+  return documents.empty() ? YAML::Node() : documents.front();
 }
 
 }  // namespace
@@ -38,10 +49,21 @@ ForeignNode ForeignNode::parse(const std::string& text, const std::string& name)
     std::string yaml = text;
     // OpenCV's header lacks the space that YAML demands. The line stays, so that numbers fit.
     if (yaml.starts_with("%YAML:")) yaml[0] = '#';
-    return {YAML::Load(yaml), name, ""};
+    return {only_document(YAML::LoadAll(yaml), name), name, ""};
   } catch (const YAML::Exception& error) {
     throw ImportError{
         fmt::format("{}:{}: found {}, wanted YAML or JSON", name, error.mark.line + 1, error.msg)};
+  }
+}
+
+ForeignNode::ForeignNode(const YAML::Node& node, std::string name, std::string path)
+    : node_(node), name_(std::move(name)), path_(std::move(path)) {
+  if (!is_map()) return;
+  std::set<std::string> keys;
+  for (const auto& entry : node_) {
+    if (!entry.first.IsScalar() || keys.insert(entry.first.Scalar()).second) continue;
+    refuse(ForeignNode(entry.first, name_, path_).place(),
+           fmt::format("{} again", entry.first.Scalar()), "each key once");
   }
 }
 

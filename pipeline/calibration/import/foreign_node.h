@@ -1,5 +1,5 @@
-// Reads YAML and JSON files of other programs: unknown keys are allowed, and every error has a
-// line.
+// Reads YAML and JSON files of other programs: unknown keys are allowed, repeated ones and a second
+// document are not, and every error has a line.
 #pragma once
 
 #include <string>
@@ -48,8 +48,7 @@ class ForeignNode {
   [[noreturn]] void reject(std::string_view found, std::string_view wanted) const;
 
  private:
-  ForeignNode(const YAML::Node& node, std::string name, std::string path)
-      : node_(node), name_(std::move(name)), path_(std::move(path)) {}
+  ForeignNode(const YAML::Node& node, std::string name, std::string path);
 
   YAML::Node node_;
   std::string name_;

@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "pipeline/calibration/import/readers.h"
+#include "pipeline/calibration/import/rig_builder.h"
 #include "pipeline/calibration/rig_yaml.h"
 
 namespace bevloc {
 namespace {
 
+using calibration_import::CameraSource;
 using calibration_import::ForeignNode;
 using calibration_import::ImportedCamera;
 using calibration_import::ImportError;
@@ -40,9 +40,9 @@ class Collector {
   void add(const ForeignFile& file) {
     const std::filesystem::path path(file.name);
     if (path.filename() == "cameras.txt") {
-      colmap_cameras_ = &file;
+      keep(colmap_cameras_, &file, file);
     } else if (path.filename() == "images.txt") {
-      colmap_images_ = &file;
+      keep(colmap_images_, &file, file);
     } else {
       add_document(file, path.stem().string());
     }
@@ -72,12 +72,18 @@ class Collector {
     std::ranges::move(cameras, std::back_inserter(cameras_));
   }
 
+  template <typename Kept, typename Value>
+  static void keep(Kept& kept, const Value& value, const ForeignFile& file) {
+    if (kept) refuse(file.name, "a second file of its kind", "one");
+    kept = value;
+  }
+
   void add_document(const ForeignFile& file, const std::string& stem) {
     const ForeignNode document = ForeignNode::parse(file.text, file.name);
     if (is_list_with(document, "camera_intrinsic")) {
-      calibrated_ = document;
+      keep(calibrated_, document, file);
     } else if (is_list_with(document, "channel")) {
-      sensors_ = document;
+      keep(sensors_, document, file);
     } else if (document.has("distortion_model") && document.has("camera_matrix")) {
       cameras_.push_back(calibration_import::read_camera_info(document, stem));
     } else if (file.text.starts_with("%YAML:")) {
@@ -99,144 +105,21 @@ class Collector {
   const ForeignFile* colmap_images_ = nullptr;
 };
 
-/// The imported cameras with what our rig still lacks: names and places on the vehicle.
-class RigBuilder {
- public:
-  RigBuilder(std::vector<ImportedCamera> cameras, const RigImportOptions& options)
-      : cameras_(std::move(cameras)), options_(options) {}
-
-  ImportedRig build() {
-    check_names();
-    ImportedRig imported;
-    for (int i = 0; i < kCameraCount; ++i) {
-      imported.rig.cameras[i] = camera_named(i, imported.notes);
-    }
-    return imported;
+/// A message of the check of rig files, about the camera's source instead of a rig file that does
+/// not exist yet.
+std::string with_source(const std::string& message,
+                        const std::array<CameraSource, kCameraCount>& sources) {
+  constexpr std::string_view kKey = ": cameras.";
+  const size_t key = message.find(kKey);
+  if (key == std::string::npos) return message;
+  const std::string rest = message.substr(key + kKey.size());
+  for (size_t i = 0; i < kCameraCount; ++i) {
+    if (!rest.starts_with(fmt::format("{}.", kCameraNames[i]))) continue;
+    const bool is_place = rest.find(".vehicle_from_camera.") < rest.find(": ");
+    return fmt::format("{}: {}", is_place ? sources[i].extrinsics : sources[i].intrinsics, rest);
   }
-
- private:
-  std::string our_name(const ImportedCamera& camera) const {
-    const auto mapped = options_.our_names.find(camera.name);
-    return mapped == options_.our_names.end() ? camera.name : mapped->second;
-  }
-
-  void check_names() const {
-    for (const auto& [theirs, ours] : options_.our_names) {
-      const auto named = [&name = theirs](const auto& camera) { return camera.name == name; };
-      if (std::ranges::none_of(cameras_, named)) {
-        refuse("--map-camera", theirs, fmt::format("one of the files' cameras: {}", names()));
-      }
-      if (std::ranges::find(kCameraNames, ours) == kCameraNames.end()) {
-        refuse("--map-camera", ours, fmt::format("one of {}", fmt::join(kCameraNames, ", ")));
-      }
-    }
-  }
-
-  std::string names() const {
-    std::vector<std::string> found;
-    for (const ImportedCamera& camera : cameras_) found.push_back(camera.name);
-    return fmt::format("{}", fmt::join(found, ", "));
-  }
-
-  const ImportedCamera* find(std::string_view ours) const {
-    const ImportedCamera* found = nullptr;
-    for (const ImportedCamera& camera : cameras_) {
-      if (our_name(camera) != ours) continue;
-      if (found) {
-        refuse(camera.place, fmt::format("a second camera {} (first at {})", ours, found->place),
-               "one of each name");
-      }
-      found = &camera;
-    }
-    return found;
-  }
-
-  CameraModel camera_named(int index, std::vector<std::string>& notes) const {
-    const std::string name(kCameraNames[index]);
-    const ImportedCamera* found = find(name);
-    if (!found) {
-      if (!options_.base) {
-        refuse(name, fmt::format("no such camera among {}", names()),
-               "all six: name it with --map-camera THEIRS=OURS, or give --base RIG");
-      }
-      notes.push_back(fmt::format("{}: as in the base", name));
-      return options_.base->cameras[index];
-    }
-    CameraModel camera;
-    camera.intrinsics = found->intrinsics;
-    if (camera.intrinsics.width_px == 0) {
-      if (!options_.image_size_px) {
-        refuse(found->place, "no size of the images", "--image-size WIDTHxHEIGHT");
-      }
-      camera.intrinsics.width_px = options_.image_size_px->first;
-      camera.intrinsics.height_px = options_.image_size_px->second;
-    }
-    std::set<std::string> visited;
-    std::optional<Se3> placed = vehicle_from(*found, visited);
-    std::string source = "the files";
-    if (const auto given = options_.vehicle_from.find(name); given != options_.vehicle_from.end()) {
-      placed = given->second;
-      source = "--extrinsics";
-    } else if (!placed && options_.base) {
-      placed = options_.base->cameras[index].vehicle_from_camera;
-      source = "the base";
-    }
-    if (!placed) refuse(found->place, lacks(*found), wanted_for(*found, name));
-    camera.vehicle_from_camera = *placed;
-    notes.push_back(
-        fmt::format("{}: {} ({}), extrinsics from {}", name, found->place, found->name, source));
-    return camera;
-  }
-
-  static std::string lacks(const ImportedCamera& camera) {
-    return camera.mounting ? fmt::format("a pose relative to {}", camera.mounting->parent)
-                           : std::string("no pose on the vehicle");
-  }
-
-  static std::string wanted_for(const ImportedCamera& camera, const std::string& ours) {
-    const std::string frame =
-        camera.mounting && (camera.mounting->parent == "imu" || camera.mounting->parent == "world")
-            ? camera.mounting->parent
-            : ours;
-    return fmt::format(
-        "its place: --extrinsics FILE with `{}: {{translation_m: [x, y, z], rotation_wxyz: "
-        "[w, x, y, z]}}` (vehicle_from_{}), or --base RIG",
-        frame, frame == ours ? "camera" : frame);
-  }
-
-  /// Along the chain of parents, in either direction: a camera whose child has a known place has
-  /// one, too.
-  std::optional<Se3> vehicle_from(const ImportedCamera& camera,
-                                  std::set<std::string>& visited) const {
-    if (!visited.insert(camera.name).second) return std::nullopt;
-    if (const auto given = options_.vehicle_from.find(our_name(camera));
-        given != options_.vehicle_from.end()) {
-      return given->second;
-    }
-    if (camera.mounting) {
-      const auto& [parent, parent_from_camera] = *camera.mounting;
-      if (parent == "vehicle") return parent_from_camera;
-      if (const auto given = options_.vehicle_from.find(parent);
-          given != options_.vehicle_from.end()) {
-        return given->second * parent_from_camera;
-      }
-      for (const ImportedCamera& other : cameras_) {
-        if (other.name != parent) continue;
-        if (const auto placed = vehicle_from(other, visited)) return *placed * parent_from_camera;
-      }
-    }
-    for (const ImportedCamera& child : cameras_) {
-      if (!child.mounting || child.mounting->parent != camera.name) continue;
-      if (const auto placed = vehicle_from(child, visited)) {
-        return *placed * child.mounting->parent_from_camera.inverse();
-      }
-    }
-    return std::nullopt;
-  }
-
-  std::vector<ImportedCamera> cameras_;
-  const RigImportOptions& options_;
-};
+  return message;
+}
 
 }  // namespace
 
@@ -245,17 +128,39 @@ Result<ImportedRig> import_rig(const std::vector<ForeignFile>& files,
   try {
     Collector collector(options);
     for (const ForeignFile& file : files) collector.add(file);
-    ImportedRig imported = RigBuilder(collector.finish(), options).build();
+    auto cameras = collector.finish();
+    if (cameras.empty()) {
+      refuse(files.empty() ? "calib import" : files.front().name, "no camera",
+             options.tokens.empty() ? "at least one" : "one with the token of --token");
+    }
+    auto built = calibration_import::build_rig(std::move(cameras), options);
     // What a rig file would refuse is refused here.
-    auto rig = parse_rig(format_rig(imported.rig), "imported rig");
-    if (!rig) return tl::unexpected(rig.error());
-    imported.rig = std::move(*rig);
-    return imported;
+    const auto rig = parse_rig(format_rig(built.rig), "imported rig");
+    if (!rig) return tl::unexpected(Error{with_source(rig.error().message, built.sources)});
+    return ImportedRig{*rig, std::move(built.notes)};
   } catch (const ImportError& error) {
     return tl::unexpected(Error{error.message});
   } catch (const YAML::Exception& error) {
     return fail("line {}: found {}, wanted YAML or JSON", error.mark.line + 1, error.msg);
   }
+}
+
+Result<std::map<std::string, std::string>> parse_camera_names(
+    const std::vector<std::string>& pairs) {
+  std::map<std::string, std::string> our_names;
+  for (const std::string& pair : pairs) {
+    const size_t equals = pair.find('=');
+    if (equals == std::string::npos) {
+      return fail("--map-camera: found {}, wanted THEIRS=OURS, such as cam0=front", pair);
+    }
+    const auto [earlier, is_new] =
+        our_names.emplace(pair.substr(0, equals), pair.substr(equals + 1));
+    if (!is_new) {
+      return fail("--map-camera: found {} after {}={}, wanted each camera once", pair,
+                  earlier->first, earlier->second);
+    }
+  }
+  return our_names;
 }
 
 Result<std::map<std::string, Se3>> parse_extrinsics(const std::string& text,
@@ -266,6 +171,10 @@ Result<std::map<std::string, Se3>> parse_extrinsics(const std::string& text,
       const bool known = frame == "imu" || frame == "world" ||
                          std::ranges::find(kCameraNames, frame) != kCameraNames.end();
       if (!known) entry.reject(frame, "imu, world or one of our cameras");
+      for (const auto& [key, value] : entry.entries()) {
+        if (key == "translation_m" || key == "rotation_wxyz") continue;
+        value.reject("an unknown key", "translation_m and rotation_wxyz only");
+      }
       const ForeignNode rotation = entry.at("rotation_wxyz");
       const auto at = entry.at("translation_m").numbers(3);
       result[frame] = {

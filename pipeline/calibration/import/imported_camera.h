@@ -9,10 +9,12 @@
 
 namespace bevloc::calibration_import {
 
-/// Where a file places a camera. `parent` is "vehicle", "imu", "world" or the name of a camera.
+/// Where a file places a camera. `parent` is "vehicle", "imu" or "world"; with `is_on_camera` it is
+/// the name of another camera of the file.
 struct Mounting {
   std::string parent;
   Se3 parent_from_camera;
+  bool is_on_camera = false;
 };
 
 struct ImportedCamera {

@@ -68,7 +68,7 @@ std::vector<ImportedCamera> read_kalibr(const ForeignNode& document) {
       imported.mounting = {"imu", transform_at(camera, "T_cam_imu").inverse()};
     } else if (camera.has("T_cn_cnm1")) {
       if (cameras.empty()) camera.at("T_cn_cnm1").reject("a first camera", "a camera before it");
-      imported.mounting = {cameras.back().name, transform_at(camera, "T_cn_cnm1").inverse()};
+      imported.mounting = {cameras.back().name, transform_at(camera, "T_cn_cnm1").inverse(), true};
     }
     cameras.push_back(std::move(imported));
   }

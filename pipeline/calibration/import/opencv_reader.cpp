@@ -38,6 +38,33 @@ std::string name_in(const ForeignNode& document, const std::string& name) {
   return document.has("camera_name") ? document.at("camera_name").text() : name;
 }
 
+/// ROS means the camera matrix for the full image, also where the driver delivers a part of it or
+/// fewer pixels. How pixels are put together is not said, so the matrix cannot be converted.
+void refuse_other_pictures(const ForeignNode& document, const Intrinsics& lens) {
+  constexpr std::string_view kWanted =
+      ", because the camera matrix is that of the full image; calibrate with the pictures as the "
+      "driver delivers them, or let it deliver full images and remove binning and roi here";
+  for (const std::string_view key : {"binning_x", "binning_y"}) {
+    if (!document.has(key)) continue;
+    const ForeignNode binning = document.at(key);
+    const int pixels = binning.whole_number(0, kLargestImage_px);
+    if (pixels > 1) binning.reject(std::to_string(pixels), fmt::format("0 or 1{}", kWanted));
+  }
+  if (!document.has("roi") || !document.at("roi").is_map()) return;
+  const ForeignNode roi = document.at("roi");
+  const auto check = [&](std::string_view key, int full_px) {
+    if (!roi.has(key)) return;
+    const int found = roi.at(key).whole_number(0, kLargestImage_px);
+    if (found == 0 || found == full_px) return;
+    const std::string_view or_full = full_px == 0 ? "0" : "0 or the size of the image";
+    roi.at(key).reject(std::to_string(found), fmt::format("{}{}", or_full, kWanted));
+  };
+  check("x_offset", 0);
+  check("y_offset", 0);
+  check("width", lens.width_px);
+  check("height", lens.height_px);
+}
+
 }  // namespace
 
 ImportedCamera read_opencv(const ForeignNode& document, const std::string& name) {
@@ -57,6 +84,7 @@ ImportedCamera read_opencv(const ForeignNode& document, const std::string& name)
 ImportedCamera read_camera_info(const ForeignNode& document, const std::string& name) {
   Intrinsics lens;
   read_size(document, lens);
+  refuse_other_pictures(document, lens);
   const ForeignNode matrix = document.at("camera_matrix");
   set_camera_matrix(matrix_data(matrix, 9), matrix.place(), lens);
   const ForeignNode model = document.at("distortion_model");

@@ -20,7 +20,8 @@ std::vector<ImportedCamera> read_kalibr(const ForeignNode& document);
 /// fisheye_model is 1. The camera has the name `name` unless the file has camera_name.
 ImportedCamera read_opencv(const ForeignNode& document, const std::string& name);
 
-/// A camera_info file of ROS with distortion_model plumb_bob, rational_polynomial or equidistant.
+/// A camera_info file of ROS with distortion_model plumb_bob, rational_polynomial or equidistant,
+/// and without binning and region of interest.
 ImportedCamera read_camera_info(const ForeignNode& document, const std::string& name);
 
 /// calibrated_sensor.json with sensor.json of nuScenes. A camera has the name of its channel

@@ -14,6 +14,7 @@ TEST(DriveReportTest, ADriveWithoutAValidPoseHasNoErrors) {
   const std::string table = to_table(report);
   EXPECT_NE(table.find("never valid"), std::string::npos) << table;
   EXPECT_EQ(table.find("MAE"), std::string::npos) << table;
+  EXPECT_NE(table.find("exposure to CAN    none\n"), std::string::npos) << table;
 }
 
 TEST(DriveReportTest, ShowsTheErrorsOfValidPoses) {

@@ -96,6 +96,21 @@ TEST_F(LocalizeCommandTest, ScoresManyPriorsAroundAKnownPose) {
   }
 }
 
+TEST_F(LocalizeCommandTest, SaysWhichCameraIsNotUsed) {
+  const std::string picture = file("back.png");
+  std::filesystem::rename(picture, file("kept"));
+  const Intrinsics back = sim::nominal_rig().cameras[4].intrinsics;
+  ASSERT_TRUE(write_png(RgbImage(back.width_px, back.height_px).view(), picture));
+  testing::internal::CaptureStderr();
+  const Status status = run({"--prior", text_of(pose_), "--json", file("answer.json")});
+  const std::string said = testing::internal::GetCapturedStderr();
+  std::filesystem::rename(file("kept"), picture);
+  ASSERT_TRUE(status) << status.error().message;
+  EXPECT_THAT(said, HasSubstr("back: this camera is not used, because its picture is dark"));
+  EXPECT_EQ(answer()["cameras_left_out"],
+            nlohmann::json::parse(R"({"back": "its picture is dark"})"));
+}
+
 TEST_F(LocalizeCommandTest, SaysWhatIsWrong) {
   EXPECT_THAT(run({"--prior", "1,2"}).error().message, HasSubstr("wanted three numbers"));
   EXPECT_THAT(run({"--prior", text_of(pose_), "--motion", file("none.yaml")}).error().message,

@@ -54,6 +54,10 @@ TEST(PriorText, RefusesOtherTextAndPlacesFarAway) {
     ASSERT_FALSE(pose) << text;
     EXPECT_THAT(pose.error().message, HasSubstr("wanted three numbers"));
   }
+  for (const char* text : {"1e300,0,0", "0,-1e8,0", "0,0,99999"}) {
+    EXPECT_EQ(pose_from(text, PoseFrame::kMap, kKarlsruhe).error().message,
+              fmt::format("pose: found '{}', wanted at most 10000000 m and 360 degrees", text));
+  }
   const auto far = pose_from("5000,0,0", PoseFrame::kGuess, kKarlsruhe);
   ASSERT_FALSE(far);
   EXPECT_THAT(far.error().message, HasSubstr("x 5000 m"));
@@ -86,7 +90,19 @@ TEST_F(PictureSetTest, RefusesAFolderWithoutPicturesOtherSizesAndTwoPicturesOfAC
   add_picture("back.png", 64);
   EXPECT_THAT(message(), HasSubstr("back.png"));
   add_picture("back.jpg");
-  EXPECT_THAT(message(), HasSubstr("found back.png and back.jpg"));
+  EXPECT_THAT(message(), HasSubstr("found back.jpg and back.png"));
+}
+
+TEST_F(PictureSetTest, TakesExtensionsInCapitalsAndNamesPicturesOfNoCamera) {
+  const Intrinsics& front = rig_.cameras[1].intrinsics;
+  for (const char* name : {"front.PNG", "frontleft.png"}) {
+    ASSERT_TRUE(write_png(RgbImage(front.width_px, front.height_px).view(), folder_ / name));
+  }
+  std::ofstream(folder_ / "rig.yaml") << "front: 1\n";
+  const auto set = read_pictures(folder_.path(), rig_);
+  ASSERT_TRUE(set) << set.error().message;
+  EXPECT_TRUE(set->present[1]);
+  EXPECT_THAT(set->strays, testing::ElementsAre(folder_ / "frontleft.png"));
 }
 
 TEST_F(PictureSetTest, ReadsMotionsByCamera) {

@@ -139,6 +139,38 @@ TEST_F(RecordedDriveTest, ACutFileReplaysUpToItsCut) {
   EXPECT_LE(bus.recorded - bus.equal, 20U) << bus.different.value_or("");
 }
 
+TEST_F(RecordedDriveTest, ABeginningWithoutAHeadIsNamedAsSuch) {
+  const std::string whole = read_file(files_[0]).value();
+  const fs::path cut = *folder_ / "head.mcap";
+  for (const size_t bytes : {0, 5, 100}) {
+    ASSERT_TRUE(write_file(cut, std::string_view(whole).substr(0, bytes)));
+    const auto recording = Recording::open({cut});
+    ASSERT_FALSE(recording) << bytes;
+    EXPECT_NE(recording.error().message.find(fmt::format("found {} bytes without", bytes)),
+              std::string::npos)
+        << recording.error().message;
+  }
+}
+
+TEST_F(RecordedDriveTest, OfADamagedFileTheBeginningIsRead) {
+  std::string bytes = read_file(files_[0]).value();
+  const auto reader = mcap::Reader::parse(bytes, "whole");
+  ASSERT_TRUE(reader && reader->chunks().size() >= 3);
+  const mcap::ChunkPlace bad = reader->chunks()[2];
+  bytes[bad.offset + 200] = static_cast<char>(bytes[bad.offset + 200] ^ 1);
+  const fs::path damaged = *folder_ / "damaged.mcap";
+  ASSERT_TRUE(write_file(damaged, bytes));
+  auto recording = Recording::open({damaged});
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_EQ(recording->gaps().size(), 1U);
+  EXPECT_NE(recording->gaps()[0].find(fmt::format("offset {}: found", bad.offset)),
+            std::string::npos)
+      << recording->gaps()[0];
+  EXPECT_FALSE(recording->messages(firmware::kSolutionTopic).empty());
+  EXPECT_LE(recording->end_ns(), bad.last_ns);
+  EXPECT_TRUE(read_report_data(*recording));
+}
+
 TEST_F(RecordedDriveTest, AnotherModelIsUsedWhenItIsNamed) {
   const ScratchFolder scratch;
   const fs::path model = std::string(BEVLOC_SOURCE_DIR) + "/models/nano_float.onnx";
@@ -175,7 +207,9 @@ TEST_F(RecordedDriveTest, AMomentIsReadAsTimeOfDayOrSeconds) {
   EXPECT_NEAR(parse_moment(*data, time).value(), 2.0, 0.11);
   EXPECT_TRUE(parse_moment(*data, time.substr(0, 5)));
   EXPECT_FALSE(parse_moment(*data, "noon"));
-  EXPECT_FALSE(parse_moment(*data, "1e9"));
+  for (const char* text : {"1e9", "nan", "-nan", "inf", "14:32:nan"}) {
+    EXPECT_FALSE(parse_moment(*data, text)) << text;
+  }
 }
 
 TEST_F(RecordedDriveTest, FilesOfTwoRunsAreRefused) {

@@ -161,6 +161,24 @@ TEST(RigCheck, RefusesImpossibleFocalLengths) {
   EXPECT_THAT(message_for(rig), HasSubstr("fy_px: found 2.1 times fx_px, wanted 0.5 to 2"));
 }
 
+TEST(RigCheck, RefusesAPrincipalPointFarOutsideOfTheImage) {
+  Rig rig = sim::nominal_rig();
+  Intrinsics& back = rig.cameras[kBack].intrinsics;
+  const Intrinsics good = back;
+  for (const double share : {-8.0, -0.51, 1.51, 14.0}) {
+    back = good;
+    back.cx_px = share * back.width_px;
+    EXPECT_THAT(message_for(rig), HasSubstr("cameras.back.cx_px: found a principal point at"));
+    back = good;
+    back.cy_px = share * back.height_px;
+    EXPECT_THAT(message_for(rig), HasSubstr("cameras.back.cy_px: found a principal point at"));
+  }
+  back = good;
+  back.cx_px = -0.1 * back.width_px;
+  back.cy_px = 1.2 * back.height_px;
+  EXPECT_EQ(message_for(rig), "") << "a part of a larger image";
+}
+
 TEST(RigCheck, RefusesADistortionThatFoldsAnywhere) {
   const auto refused = [](double k1, double k2, double p1, double p2) {
     Rig rig = sim::nominal_rig();

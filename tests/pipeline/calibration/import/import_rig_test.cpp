@@ -1,27 +1,13 @@
 // Calibrations of other programs: conventions, compared with OpenCV's own projections, and
 // refusals.
-#include "pipeline/calibration/import/import_rig.h"
-
-#include <Eigen/Geometry>
-#include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
 
-#include "pipeline/calibration/rig_yaml.h"
+#include "tests/pipeline/calibration/import/import_fixture.h"
 
 namespace bevloc {
 namespace {
 
-Rig base_rig() {
-  auto rig = read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml");
-  EXPECT_TRUE(rig);
-  return *rig;
-}
-
-RigImportOptions with_base() {
-  RigImportOptions options;
-  options.base = base_rig();
-  return options;
-}
+using namespace test;
 
 constexpr int kFront = 1;
 
@@ -46,37 +32,6 @@ void expect_projects_as(const Intrinsics& lens, const cv::Matx33d& matrix,
     EXPECT_NEAR(pixel->x(), expected[i].x + shift_px, 1e-9);
     EXPECT_NEAR(pixel->y(), expected[i].y + shift_px, 1e-9);
   }
-}
-
-void expect_refused(const std::vector<ForeignFile>& files, const RigImportOptions& options,
-                    const std::string& part) {
-  const auto imported = import_rig(files, options);
-  ASSERT_FALSE(imported) << part;
-  EXPECT_NE(imported.error().message.find(part), std::string::npos) << imported.error().message;
-}
-
-const std::string kCameraInfo = R"(image_width: 1280
-image_height: 720
-camera_name: front
-camera_matrix:
-  rows: 3
-  cols: 3
-  data: [900.5, 0, 640.25, 0, 901.5, 361.75, 0, 0, 1]
-distortion_model: plumb_bob
-distortion_coefficients:
-  rows: 1
-  cols: 5
-  data: [-0.12, 0.03, 0.001, -0.002, 0]
-rectification_matrix:
-  rows: 3
-  cols: 3
-  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]
-)";
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const size_t at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), by);
 }
 
 TEST(ImportRig, CameraInfoOfRosProjectsAsOpenCv) {
@@ -147,28 +102,6 @@ distortion_coefficients: !!opencv-matrix
   expect_refused({{"calib/left_camera.yml", text.substr(0, text.find("distortion"))}}, options,
                  "no distortion_coefficients");
   expect_refused({{"b.yml", replaced(text, "rows: 4", "rows: 3")}}, options, "b.yml:14");
-}
-
-/// A chain in which cam0 has the IMU and cam1 hangs on cam0.
-std::string kalibr_chain(const Se3& camera0_from_imu, const Se3& camera1_from_camera0) {
-  const auto rows = [](const Se3& t) {
-    std::string text;
-    for (int r = 0; r < 3; ++r) {
-      text += fmt::format("  - [{:.12f}, {:.12f}, {:.12f}, {:.12f}]\n", t.rotation(r, 0),
-                          t.rotation(r, 1), t.rotation(r, 2), t.translation_m[r]);
-    }
-    return text + "  - [0.0, 0.0, 0.0, 1.0]\n";
-  };
-  return "cam0:\n  T_cam_imu:\n" + rows(camera0_from_imu) +
-         "  cam_overlaps: [1]\n  camera_model: pinhole\n"
-         "  distortion_coeffs: [-0.1, 0.01, 0.001, 0.002]\n  distortion_model: radtan\n"
-         "  intrinsics: [510.0, 511.0, 330.0, 180.0]\n  resolution: [640, 360]\n"
-         "  rostopic: /front/image_raw\n"
-         "cam1:\n  T_cn_cnm1:\n" +
-         rows(camera1_from_camera0) +
-         "  camera_model: pinhole\n  distortion_coeffs: [0.01, 0.02, 0.0, 0.0]\n"
-         "  distortion_model: equidistant\n  intrinsics: [400.0, 400.0, 320.0, 180.0]\n"
-         "  resolution: [640, 360]\n  rostopic: /side/image_raw\n";
 }
 
 TEST(ImportRig, TheChainOfKalibrEndsAtTheVehicle) {
@@ -277,6 +210,7 @@ TEST(ImportRig, ColmapCountsPixelsFromTheCornerAndMapsIntoTheCamera) {
       base.cameras[1].vehicle_from_camera.translation_m, 1e-6));
 
   options.our_names = {{"3", "front"}};
+  options.vehicle_from.clear();
   const struct {
     const char* line;
     std::vector<double> distortion;

@@ -1,0 +1,60 @@
+// Checks of command line options. Their messages say what was found and what was wanted.
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace bevloc {
+
+/// A number from `low` to `high`, which nan and inf are not.
+inline CLI::Validator number_between(double low, double high) {
+  const auto check = [low, high](const std::string& text) -> std::string {
+    double number = 0.0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, number);
+    if (error == std::errc() && rest == end && number >= low && number <= high) return "";
+    return fmt::format("found '{}', wanted a number from {} to {}", text, low, high);
+  };
+  return {check, fmt::format("{} to {}", low, high), ""};
+}
+
+/// A seed: a whole number of 64 bits without a sign, also in hexadecimal (0x1F).
+inline CLI::Validator whole_number() {
+  const auto check = [](const std::string& text) -> std::string {
+    const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
+    const std::string_view digits = std::string_view(text).substr(hexadecimal ? 2 : 0);
+    uint64_t number = 0;
+    const char* const end = digits.data() + digits.size();
+    const auto [rest, error] = std::from_chars(digits.data(), end, number, hexadecimal ? 16 : 10);
+    if (error == std::errc() && rest == end) return "";
+    return fmt::format("found '{}', wanted a whole number from 0 to {}", text,
+                       std::numeric_limits<uint64_t>::max());
+  };
+  return {check, "", ""};
+}
+
+/// A name that is not empty, as that of an unset variable of a script is. `wanted`: "a folder".
+inline CLI::Validator name_of(const std::string& wanted) {
+  const auto check = [wanted](const std::string& text) -> std::string {
+    return text.empty() ? fmt::format("found an empty name, wanted {}", wanted) : "";
+  };
+  return {check, "", ""};
+}
+
+/// The name of a file to write. A "-" is refused: the result would mix with what is printed.
+inline CLI::Validator output_file() {
+  const auto check = [](const std::string& text) -> std::string {
+    if (text.empty()) return "found an empty name, wanted a file to write";
+    return text == "-" ? "found '-', wanted the name of a file, not standard output" : "";
+  };
+  return {check, "", ""};
+}
+
+}  // namespace bevloc

@@ -1,0 +1,28 @@
+// Makes our rig of imported cameras: their names, and their places on the vehicle.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "pipeline/calibration/import/import_rig.h"
+#include "pipeline/calibration/import/imported_camera.h"
+
+namespace bevloc::calibration_import {
+
+/// Where a camera's values come from, as the place in messages.
+struct CameraSource {
+  std::string intrinsics;
+  std::string extrinsics;
+};
+
+struct BuiltRig {
+  Rig rig;
+  std::vector<std::string> notes;  ///< one sentence per camera
+  std::array<CameraSource, kCameraCount> sources;
+};
+
+/// Throws ImportError if a camera or its place is missing, or if nothing needs one of the options.
+BuiltRig build_rig(std::vector<ImportedCamera> cameras, const RigImportOptions& options);
+
+}  // namespace bevloc::calibration_import

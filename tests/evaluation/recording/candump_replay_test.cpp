@@ -1,0 +1,40 @@
+// Which candump logs are refused for their times.
+#include <gtest/gtest.h>
+
+#include "common/files.h"
+#include "evaluation/recording/replay_setup.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bevloc::evaluation {
+namespace {
+
+/// What inputs_of_candump() says about lines with these times, and without the file's path. There
+/// are no pictures, so that it always fails.
+std::string message_for(const std::vector<std::string>& times) {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder.path() / "can.log").string();
+  std::string text = "\n";
+  for (const std::string& time : times) text += fmt::format("({}) can0 7F0#00\n", time);
+  EXPECT_TRUE(write_file(log, text));
+  const auto inputs = inputs_of_candump(log, folder.path(), ReplaySetup{});
+  EXPECT_FALSE(inputs);
+  return inputs ? "" : inputs.error().message.substr(log.size());
+}
+
+TEST(CandumpReplay, RefusesAClockThatSteps) {
+  EXPECT_EQ(message_for({"1.000000", "2.000000", "31536002.500000"}),
+            ":4: found a time 31536000.5 s after the line before, wanted at most 60 s; the clock "
+            "was set or the log was paused, so cut the log there and replay one part");
+  EXPECT_EQ(message_for({"9.000000", "10.500000", "9.600000", "9.400000"}),
+            ":5: found a time 1.1 s before that of an earlier line, wanted at most 1 s; the clock "
+            "was set back or logs were joined, so cut the log there and replay one part");
+}
+
+TEST(CandumpReplay, AcceptsPausesAndFineDisorder) {
+  EXPECT_EQ(message_for({"1.000000", "61.000000", "60.000000", "61.100000"})
+                .find(": found none of the vehicle's messages"),
+            0U);
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation
