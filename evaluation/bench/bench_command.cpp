@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "common/option_checks.h"
 #include "evaluation/bench/bench_report.h"
 #include "evaluation/bench/stages.h"
 #include "evaluation/bench/sweeps.h"
@@ -40,7 +41,8 @@ void BenchCommand::declare(CLI::App& app) {
       ->excludes(stages);
   bench->add_flag("!--no-peak", options_.measures_peak,
                   "Do not measure the peak of the machine, which an emulator takes hours for");
-  bench->add_option("--json", json_file_, "Write the results as JSON to this file");
+  bench->add_option("--json", json_file_, "Write the results as JSON to this file")
+      ->check(output_file());
   bench->footer(
       "Examples:\n"
       "  bevloc bench --json bench.json\n"

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json_dump.h"
+
 namespace bevloc::bench {
 namespace {
 
@@ -153,7 +155,7 @@ std::string to_json(const BenchResult& result) {
     frame["times_ideal"] = result.whole_frame->time.p50_ms / ideals_ms;
     json["frame"] = frame;
   }
-  return json.dump(2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 std::string to_json(const std::vector<SweepResult>& sweeps) {
@@ -167,7 +169,7 @@ std::string to_json(const std::vector<SweepResult>& sweeps) {
     }
     json["sweeps"][sweep.name] = rows;
   }
-  return json.dump(2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 }  // namespace bevloc::bench

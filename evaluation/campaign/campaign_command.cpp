@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "common/option_checks.h"
 #include "evaluation/campaign/campaign_report.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/command_output.h"
@@ -26,14 +27,15 @@ void CampaignCommand::declare(CLI::App& app) {
   campaign->add_option("--first-seed", options_.first_seed, "The first seed")
       ->capture_default_str();
   campaign->add_option("--duration", options_.duration_s, "Length of each drive, seconds")
-      ->check(CLI::Range(5.0, 1e6))
+      ->check(number_between(5.0, 1e6))
       ->capture_default_str();
   campaign->add_option("--map", options_.map, "Drive through this map instead of towns");
   campaign->add_option("--config", config_, "Configuration with mock cameras")
       ->capture_default_str();
   campaign->add_option("--matches", table_, "Measured matches for --level stage")
       ->capture_default_str();
-  campaign->add_option("--json", json_file_, "Write the rows as JSON to this file");
+  campaign->add_option("--json", json_file_, "Write the rows as JSON to this file")
+      ->check(output_file());
   campaign->add_flag("--timeline", timeline_, "Print all changes of state and reasons");
   campaign->add_flag("--list", list_, "Print all modes and end");
   campaign->footer(

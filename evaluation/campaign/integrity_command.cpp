@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "common/option_checks.h"
 #include "evaluation/campaign/stanford_diagram.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/command_output.h"
@@ -27,7 +28,7 @@ void IntegrityCommand::declare(CLI::App& eval) {
   integrity->add_option("--first-seed", options_.first_seed, "The first seed")
       ->capture_default_str();
   integrity->add_option("--duration", options_.duration_s, "Length of each drive, seconds")
-      ->check(CLI::Range(5.0, 1e6))
+      ->check(number_between(5.0, 1e6))
       ->capture_default_str();
   integrity->add_option("--modes", modes_, "Modes (`bevloc campaign --list`); without: all");
   integrity->add_option("--map", maps_, "Every second seed drives through one of these, in turn");
@@ -35,7 +36,8 @@ void IntegrityCommand::declare(CLI::App& eval) {
       ->capture_default_str();
   integrity->add_option("--matches", table_, "Measured matches for --level stage")
       ->capture_default_str();
-  integrity->add_option("--json", json_file_, "Write the diagrams as JSON to this file");
+  integrity->add_option("--json", json_file_, "Write the diagrams as JSON to this file")
+      ->check(output_file());
   integrity->footer(
       "Examples:\n"
       "  bevloc eval integrity --modes none --drives 200\n"

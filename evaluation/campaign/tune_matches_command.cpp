@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/files.h"
+#include "common/option_checks.h"
 #include "evaluation/campaign/match_recorder.h"
 #include "evaluation/command_output.h"
 #include "pipeline/calibration/rig_yaml.h"
@@ -24,7 +25,7 @@ void TuneMatchesCommand::declare(CLI::App& tune) {
   matches->add_option("--first-seed", first_seed_, "Seed of the first drive")
       ->capture_default_str();
   matches->add_option("--duration", duration_s_, "Length of each drive, seconds")
-      ->check(CLI::Range(1.0, 3600.0))
+      ->check(number_between(1.0, 3600.0))
       ->capture_default_str();
   matches->add_option("--map", maps_, "Every second drive goes through one of these maps, in turn");
   matches->add_option("--csv", csv_file_, "File to write")->required();

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/files.h"
+#include "common/option_checks.h"
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "evaluation/drive/bus_factory.h"
 #include "evaluation/drive/simulated_run.h"
@@ -33,14 +34,22 @@ struct DriveOptions {
 
 void declare_options(CLI::App& app, DriveOptions& options) {
   auto* drive = app.add_option_group("Simulated drive (mock cameras)");
-  drive->add_option("--seed", options.seed, "Seed of the town, the drive and all noise");
+  drive->add_option("--seed", options.seed, "Seed of the town, the drive and all noise")
+      ->check(whole_number());
   drive->add_option("--duration", options.duration_s, "Length of the drive, seconds")
-      ->check(CLI::PositiveNumber);
-  drive->add_option("--map", options.map_file, "Drive through this HD map (.osm or .bvm)");
-  drive->add_option("--out", options.out, "Folder for can.log, poses.csv and sheet.png");
-  drive->add_option("--save-pictures", options.pictures_folder,
-                    "Write pictures and reference poses to this folder, for `bevloc calib`");
-  drive->add_option("--json", options.json_file, "Write the result as JSON to this file");
+      ->check(number_between(kShortestDrive_s, kLongestDrive_s));
+  drive
+      ->add_option("--map", options.map_file,
+                   "Drive through this HD map of any format (docs/maps.md)")
+      ->check(name_of("a map"));
+  drive->add_option("--out", options.out, "Folder for can.log, poses.csv and sheet.png")
+      ->check(name_of("a folder"));
+  drive
+      ->add_option("--save-pictures", options.pictures_folder,
+                   "Write pictures and reference poses to this folder, for `bevloc calib`")
+      ->check(name_of("a folder"));
+  drive->add_option("--json", options.json_file, "Write the result as JSON to this file")
+      ->check(output_file());
   drive->add_flag("--fast", options.fast,
                   "Virtual clock: runs as fast as the machine can, with repeatable results");
 }

@@ -77,7 +77,8 @@ sim::StopTimes read_stops(YamlMap& yaml) {
 
 void read_simulation(YamlMap yaml, SimulationConfig& simulation) {
   simulation.seed = yaml.require<uint64_t>("seed");
-  simulation.duration_s = yaml.require<double>("duration_s", between(0.1, 1e6));
+  simulation.duration_s =
+      yaml.require<double>("duration_s", between(kShortestDrive_s, kLongestDrive_s));
   simulation.stops = read_stops(yaml);
   simulation.conditions = read_conditions(yaml.optional_map("conditions"));
   simulation.calibration_error = read_calibration_error(yaml.optional_map("calibration_error"));

@@ -16,6 +16,10 @@
 
 namespace bevloc::evaluation {
 
+// Limits of the length of a drive.
+inline constexpr double kShortestDrive_s = 0.1;
+inline constexpr double kLongestDrive_s = 1e6;
+
 /// The drive that the mock cameras see: the section `simulation` and the map's `procedural_seed`.
 /// How the street of a drive differs from the simulator's own, as in training.
 struct StreetConfig {

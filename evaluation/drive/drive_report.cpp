@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/files.h"
+#include "common/json_dump.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -38,14 +39,19 @@ std::string error_table(const DriveReport& report) {
   return table;
 }
 
+/// Without a valid pose no image has reached the bus.
+std::string latency_text(const DriveReport& report) {
+  if (report.poses.empty()) return "none";
+  return fmt::format("p50 {:.1f} ms, p99 {:.1f} ms", report.latency.p50_ms, report.latency.p99_ms);
+}
+
 }  // namespace
 
 std::string to_table(const DriveReport& report) {
   std::string table = error_table(report);
   table += fmt::format("frames             {} captured, {} used, {} dropped\n",
                        report.frames.captured, report.frames.used, report.frames.dropped());
-  table += fmt::format("exposure to CAN    p50 {:.1f} ms, p99 {:.1f} ms\n", report.latency.p50_ms,
-                       report.latency.p99_ms);
+  table += "exposure to CAN    " + latency_text(report) + "\n";
   table += fmt::format("CAN frames sent    {}\n", report.can_sent);
   return table;
 }
@@ -73,7 +79,7 @@ std::string to_json(const DriveReport& report) {
       {"duration_s", report.duration_s},
       {"map", report.map},
       {"model", report.model}};
-  return json.dump(2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 Status write_csv(const DriveReport& report, const std::string& path) {

@@ -12,7 +12,7 @@ void show_progress_line(const firmware::ApplianceView& appliance, const JudgeVie
                         double time_s, double duration_s, bool last) {
   const bool is_terminal = isatty(STDERR_FILENO) == 1;
   if (!is_terminal && !last) return;
-  std::string line = fmt::format("{:>5.1f}/{:.0f} s  {:<9}  cameras {}/{}  {:>4.1f} Hz",
+  std::string line = fmt::format("{:>5.1f}/{} s  {:<9}  cameras {}/{}  {:>4.1f} Hz",
                                  std::max(0.0, time_s), duration_s, to_string(appliance.state),
                                  appliance.cameras, kCameraCount, appliance.rate_hz);
   if (judge.latest) {

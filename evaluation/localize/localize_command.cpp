@@ -1,7 +1,10 @@
 #include "evaluation/localize/localize_command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "common/json_dump.h"
+#include "common/option_checks.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/command_output.h"
 #include "evaluation/drive/sheet.h"
@@ -17,6 +20,15 @@ namespace {
 
 constexpr int kMostPriors = 100'000;
 
+/// Why a camera's picture was not used in the latest localize().
+std::string reason_of(const Localizer& localizer, const PictureSet& pictures, size_t camera) {
+  if (!pictures.present[camera]) return "it has no picture";
+  if (localizer.with(ViewFault::kDark)[camera]) return "its picture is dark";
+  if (localizer.with(ViewFault::kBlinded)[camera]) return "its picture is blinded by light";
+  if (localizer.with(ViewFault::kDirty)[camera]) return "its picture is dirty";
+  return "its picture cannot be used";
+}
+
 /// A localizer with the pictures that it localizes.
 class PictureLocalizer {
  public:
@@ -30,6 +42,10 @@ class PictureLocalizer {
     localization.prior = prior;
     localization.cameras = localizer_.localize(pictures_.images(), prior, range_, solution_);
     localization.match = solution_;
+    for (size_t i = 0; i < kCameraCount; ++i) {
+      if (localization.cameras[i]) continue;
+      localization.left_out.emplace(kCameraNames[i], reason_of(localizer_, pictures_, i));
+    }
     return localization;
   }
 
@@ -71,6 +87,19 @@ PriorScores score_priors(PictureLocalizer& localizer, const Se2& truth, int prio
   return scores;
 }
 
+void print_strays(const PictureSet& pictures) {
+  for (const std::filesystem::path& file : pictures.strays) {
+    fmt::print(stderr, "{}: found a picture of no camera, wanted one of: {}\n", file.string(),
+               fmt::join(kCameraNames, ", "));
+  }
+}
+
+void print_left_out(const Localization& localization) {
+  for (const auto& [camera, reason] : localization.left_out) {
+    fmt::print(stderr, "{}: this camera is not used, because {}\n", camera, reason);
+  }
+}
+
 SheetContent sheet_of(const PictureSet& pictures, const Localization& localization,
                       PictureLocalizer& localizer) {
   SheetContent sheet;
@@ -92,7 +121,7 @@ void LocalizeCommand::declare(CLI::App& app) {
   auto* localize =
       app.add_subcommand("localize", "Localize six picture files: where were they taken?");
   localize->add_option("--rig", rig_file_, "Calibration of the cameras")->required();
-  localize->add_option("--map", map_file_, "HD map: Lanelet2 (.osm) or compact (.bvm)")->required();
+  localize->add_option("--map", map_file_, "HD map of any format (docs/maps.md)")->required();
   localize
       ->add_option("--images", image_folder_,
                    "Folder with a picture of each camera, such as front_left.jpg or back.png")
@@ -106,8 +135,10 @@ void LocalizeCommand::declare(CLI::App& app) {
       *localize, "--frame", frame_,
       {{"guess", PoseFrame::kGuess}, {"map", PoseFrame::kMap}, {"geodetic", PoseFrame::kGeodetic}},
       "What the numbers of --prior are; guess: what lies on the map");
-  localize->add_option("--motion", motion_file_,
-                       "YAML file: how the vehicle moved between the pictures (docs/localize.md)");
+  localize
+      ->add_option("--motion", motion_file_,
+                   "YAML file: how the vehicle moved between the pictures (docs/localize.md)")
+      ->check(name_of("a file"));
   localize->add_option("--model", model_, "Network")->capture_default_str();
   add_choice(*localize, "--solver", solver_,
              {{"banded+refine", SolverKind::kBandedRefined},
@@ -121,10 +152,13 @@ void LocalizeCommand::declare(CLI::App& app) {
                                       "are localized");
   priors->check(CLI::Range(1, kMostPriors))->needs(truth);
   truth->needs(priors);
-  localize->add_option("--seed", seed_, "Seed of the random priors")->capture_default_str();
-  localize->add_option("--json", json_file_, "Write the answer to this file");
-  localize->add_option("--sheet", sheet_file_,
-                       "Draw pictures, map and distributions to this PNG file");
+  localize->add_option("--seed", seed_, "Seed of the random priors")
+      ->check(whole_number())
+      ->capture_default_str();
+  localize->add_option("--json", json_file_, "Write the answer to this file")->check(output_file());
+  localize
+      ->add_option("--sheet", sheet_file_, "Draw pictures, map and distributions to this PNG file")
+      ->check(output_file());
   localize->footer(
       "Examples:\n"
       "  bevloc localize --rig rig.yaml --map town.osm --images pictures --prior 49.012,8.423,90 "
@@ -146,6 +180,7 @@ Status LocalizeCommand::run() const {
   if (!prior) return tl::unexpected(prior.error());
   auto pictures = read_pictures(image_folder_, *rig);
   if (!pictures) return tl::unexpected(pictures.error());
+  print_strays(*pictures);
   if (!motion_file_.empty()) {
     const auto motions = read_motions(motion_file_);
     if (!motions) return tl::unexpected(motions.error());
@@ -161,6 +196,7 @@ Status LocalizeCommand::run() const {
   const SearchRange range = wide_ ? SearchRange::kAcquiring : SearchRange::kTracking;
   PictureLocalizer pictured(**localizer, index, *pictures, range);
   Localization localization = pictured.localize(*prior);
+  print_left_out(localization);
   localization.perception = pictured.perception_at(localization.pose());
   nlohmann::json json = json_of(localization);
   fmt::print("{}", text_of(localization));
@@ -173,7 +209,7 @@ Status LocalizeCommand::run() const {
     json["priors"] = json_of(scores);
     fmt::print("\n{}", text_of(scores));
   }
-  return write_file(json.dump(2) + "\n", json_file_);
+  return write_file(dump_json(json, 2) + "\n", json_file_);
 }
 
 }  // namespace bevloc::evaluation

@@ -88,6 +88,7 @@ std::string text_of(const Localization& localization) {
 nlohmann::json json_of(const Localization& localization) {
   const MatchResult& match = localization.match;
   nlohmann::json json{{"cameras", names_of(localization.cameras)},
+                      {"cameras_left_out", localization.left_out},
                       {"prior", in_units(localization.prior)},
                       {"evidence", match.evidence == Evidence::kGood},
                       {"perception", json_of(localization.perception)}};

@@ -1,6 +1,7 @@
 // What `bevloc localize` says, as text and as JSON.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -17,7 +18,8 @@ namespace bevloc::evaluation {
 struct Localization {
   Se2 prior;
   MatchResult match;
-  CameraMask cameras;  ///< that were used
+  CameraMask cameras;                           ///< that were used
+  std::map<std::string, std::string> left_out;  ///< why each other camera was not
   PerceptionScore perception{};
 
   Se2 pose() const { return prior * match.correction; }

@@ -1,5 +1,7 @@
 #include "evaluation/localize/picture_set.h"
 
+#include <algorithm>
+#include <cctype>
 #include <optional>
 
 #include "common/image_file.h"
@@ -14,20 +16,37 @@ constexpr std::array<std::string_view, 3> kExtensions = {".png", ".jpg", ".jpeg"
 constexpr double kFarthest_m = 10.0;
 constexpr double kMostTurned_deg = 30.0;
 
-/// Nothing if the camera has no file.
-Result<std::optional<std::filesystem::path>> file_of(const std::filesystem::path& folder,
-                                                     std::string_view camera) {
-  std::optional<std::filesystem::path> found;
-  for (const std::string_view extension : kExtensions) {
-    const std::filesystem::path file = folder / (std::string(camera) + std::string(extension));
-    if (!std::filesystem::exists(file)) continue;
-    if (found) {
-      return fail("{}: found {} and {}, wanted one picture of each camera", folder.string(),
-                  found->filename().string(), file.filename().string());
+/// What has the name of a picture, in the order of the names.
+std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code unreadable;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
+    std::string extension = entry.path().extension();
+    for (char& letter : extension) letter = static_cast<char>(std::tolower(letter));
+    if (std::ranges::find(kExtensions, extension) != kExtensions.end()) {
+      files.push_back(entry.path());
     }
-    found = file;
   }
-  return found;
+  std::ranges::sort(files);
+  return files;
+}
+
+/// Takes the camera's file out of `files`. Nothing if it has none.
+Result<std::optional<std::filesystem::path>> take_file_of(
+    std::string_view camera, std::vector<std::filesystem::path>& files) {
+  const auto is_of_camera = [camera](const std::filesystem::path& file) {
+    return file.stem() == camera;
+  };
+  const auto found = std::ranges::find_if(files, is_of_camera);
+  if (found == files.end()) return std::nullopt;
+  std::filesystem::path file = *found;
+  files.erase(found);
+  const auto other = std::ranges::find_if(files, is_of_camera);
+  if (other != files.end()) {
+    return fail("{}: found {} and {}, wanted one picture of each camera",
+                file.parent_path().string(), file.filename().string(), other->filename().string());
+  }
+  return file;
 }
 
 }  // namespace
@@ -44,8 +63,9 @@ CameraImages PictureSet::images() const {
 
 Result<PictureSet> read_pictures(const std::filesystem::path& folder, const Rig& rig) {
   PictureSet set;
+  set.strays = pictures_in(folder);
   for (size_t i = 0; i < kCameraCount; ++i) {
-    const auto file = file_of(folder, kCameraNames[i]);
+    const auto file = take_file_of(kCameraNames[i], set.strays);
     if (!file) return tl::unexpected(file.error());
     if (!*file) continue;
     const Intrinsics& intrinsics = rig.cameras[i].intrinsics;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <vector>
 
 #include "common/image.h"
 #include "common/result.h"
@@ -16,14 +17,16 @@ struct PictureSet {
   std::array<RgbImage, kCameraCount> pictures;
   CameraMask present;
   CameraMotions reference_from_exposure{};
+  std::vector<std::filesystem::path> strays;  ///< pictures of the folder that are of no camera
 
   /// The borrowed pictures. The set must outlive the result.
   CameraImages images() const;
 };
 
 /// Reads the pictures of a folder: for each camera a file CAMERA.png, CAMERA.jpg or CAMERA.jpeg,
-/// such as front_left.jpg, of the size that the rig states. A camera without a file is missing.
-/// Fails if all are missing, if a camera has several files, or if one cannot be read.
+/// such as front_left.jpg, of the size that the rig states. The case of the extension does not
+/// matter. A camera without a file is missing. Fails if all are missing, if a camera has several
+/// files, or if one cannot be read.
 Result<PictureSet> read_pictures(const std::filesystem::path& folder, const Rig& rig);
 
 /// Reads a file of motions: for each camera the vehicle's pose at its exposure, in the vehicle

@@ -12,6 +12,9 @@ namespace bevloc::evaluation {
 namespace {
 
 constexpr double kAround_m = 1000.0;
+// Beyond these a number is a mistake.
+constexpr double kFarthest = 1e7;
+constexpr double kFullTurn_deg = 360.0;
 
 struct Numbers {
   double first = 0.0;
@@ -36,8 +39,7 @@ Se2 in_map_frame(const Numbers& numbers) {
 
 /// Nothing if the numbers are no place on earth, or if that of the map is unknown.
 std::optional<Se2> from_geodetic(const Numbers& numbers, const GeoOrigin& origin) {
-  const bool is_unknown = origin.latitude_deg == 0.0 && origin.longitude_deg == 0.0;
-  if (is_unknown || std::abs(numbers.first) > 90.0 || std::abs(numbers.second) > 180.0)
+  if (!is_known(origin) || std::abs(numbers.first) > 90.0 || std::abs(numbers.second) > 180.0)
     return std::nullopt;
   can::GeoReference reference({origin.latitude_deg, origin.longitude_deg});
   return reference.map_from_geodetic({{numbers.first, numbers.second}, numbers.third});
@@ -62,6 +64,13 @@ Result<Se2> pose_from(const std::string& text, PoseFrame frame, const HdMap& map
   if (!numbers) {
     return fail("pose: found '{}', wanted three numbers: X,Y,YAW or LATITUDE,LONGITUDE,HEADING",
                 text);
+  }
+  const bool sensible = std::abs(numbers->first) <= kFarthest &&
+                        std::abs(numbers->second) <= kFarthest &&
+                        std::abs(numbers->third) <= kFullTurn_deg;
+  if (!sensible) {
+    return fail("pose: found '{}', wanted at most {:.0f} m and {:.0f} degrees", text, kFarthest,
+                kFullTurn_deg);
   }
   const Eigen::AlignedBox2d area = area_of(map);
   const auto is_near = [&area](const Se2& pose) {

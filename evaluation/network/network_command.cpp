@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "common/option_checks.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/command_output.h"
 #include "evaluation/network/network_evaluation.h"
@@ -48,7 +49,8 @@ void NetworkCommand::declare(CLI::App& eval) {
       ->capture_default_str();
   network->add_option("--map", map_file_,
                       "Take the samples on this map instead of in procedural towns");
-  network->add_option("--json", json_file_, "Write the rows as JSON to this file");
+  network->add_option("--json", json_file_, "Write the rows as JSON to this file")
+      ->check(output_file());
   network->add_option("--csv", csv_file_, "Write the rows as CSV to this file");
   network->footer(
       "Examples:\n"

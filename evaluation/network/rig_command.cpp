@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json_dump.h"
+#include "common/option_checks.h"
 #include "evaluation/command_output.h"
 #include "evaluation/network/network_evaluation.h"
 #include "evaluation/summary_format.h"
@@ -40,7 +42,7 @@ void RigCommand::declare(CLI::App& eval) {
   rig->add_option("--seed", seed_, "Seed of the samples")
       ->check(CLI::Range(uint64_t{0}, kSampleSeeds - 1))
       ->capture_default_str();
-  rig->add_option("--json", json_file_, "Write both results to this file");
+  rig->add_option("--json", json_file_, "Write both results to this file")->check(output_file());
   rig->footer(
       "Examples:\n"
       "  bevloc eval rig config/rig_van.yaml\n"
@@ -78,7 +80,7 @@ Status RigCommand::run() const {
                             {"model", evaluation->model_name()},
                             {"own", json_of(usual)},
                             {"given", json_of(found)}};
-  return write_file(json.dump(2) + "\n", json_file_);
+  return write_file(dump_json(json, 2) + "\n", json_file_);
 }
 
 }  // namespace bevloc::evaluation

@@ -1,13 +1,18 @@
 #include "evaluation/recording/record_command.h"
 
+#include "common/option_checks.h"
 #include "common/replace_process.h"
 
 namespace bevloc::evaluation {
 
 void RecordCommand::declare(CLI::App& app) {
   auto* record = app.add_subcommand("record", "Run bevlocd and record what it sees and sends");
-  record->add_option("--config", config_file_, "Configuration of bevlocd")->required();
-  record->add_option("--out", out_, "Folder of the recording")->capture_default_str();
+  record->add_option("--config", config_file_, "Configuration of bevlocd")
+      ->required()
+      ->check(name_of("a configuration"));
+  record->add_option("--out", out_, "Folder of the recording")
+      ->check(name_of("a folder"))
+      ->capture_default_str();
   record->add_flag("--raw", raw_, "Record the images without loss");
   record->add_option("options", rest_, "After --: more options of bevlocd, such as --fast");
   record->footer(

@@ -15,6 +15,13 @@ bool is_of_the_run(std::string_view topic) {
   return topic != firmware::kMapTopic && !topic.ends_with("/calibration");
 }
 
+tl::unexpected<Error> refuse_short(const std::filesystem::path& path, uintmax_t bytes) {
+  return fail(
+      "{}: found {} bytes without the head of a recording, wanted a recording of bevloc; "
+      "was it cut off?",
+      path.string(), bytes);
+}
+
 }  // namespace
 
 Result<Recording> Recording::open(const std::vector<std::filesystem::path>& files) {
@@ -30,8 +37,14 @@ Result<Recording> Recording::open(const std::vector<std::filesystem::path>& file
 }
 
 Status Recording::add(const std::filesystem::path& path) {
+  std::error_code unreadable;
+  const uintmax_t size = std::filesystem::file_size(path, unreadable);
+  if (!unreadable && size < mcap::kMagic.size()) return refuse_short(path, size);
   auto reader = mcap::Reader::open(path);
   if (!reader) return tl::unexpected(reader.error());
+  if (!reader->complete() && reader->metadata().empty() && reader->chunks().empty()) {
+    return refuse_short(path, size);
+  }
   const mcap::Metadata* metadata = reader->metadata(firmware::kMetadataName);
   if (metadata == nullptr || !metadata->values.contains(std::string(firmware::kClockOffsetKey))) {
     return fail("{}: found an MCAP file of another program, wanted a recording of bevloc",
@@ -46,25 +59,41 @@ Status Recording::add(const std::filesystem::path& path) {
   }
   offset_ = Duration(offset_ns);
   const auto file = static_cast<uint32_t>(readers_.size());
-  for (uint32_t i = 0; i < reader->chunks().size(); ++i) {
-    const auto chunk = reader->read_chunk(i);
-    if (!chunk) return tl::unexpected(chunk.error());
-    for (uint32_t index = 0; index < chunk->messages.size(); ++index) {
-      const mcap::Message& message = chunk->messages[index];
-      const auto channel = reader->channels().find(message.channel_id);
-      if (channel == reader->channels().end()) continue;
-      topics_[channel->second.topic].push_back(
-          {message.log_time_ns, message.publish_time_ns, file, i, index});
-      const auto schema = reader->schemas().find(channel->second.schema_id);
-      if (schema != reader->schemas().end()) {
-        schemas_[channel->second.topic] = schema->second.name;
-      }
-    }
+  if (Status added = add_messages(*reader, file); !added) {
+    damages_.push_back(added.error().message + "; the rest of the file is left out");
   }
   if (!reader->complete()) cut_files_.push_back(path.string());
   readers_.push_back(std::move(*reader));
   names_.push_back(path.string());
   return {};
+}
+
+/// Fails at the first damaged chunk.
+Status Recording::add_messages(const mcap::Reader& reader, uint32_t file) {
+  for (uint32_t i = 0; i < reader.chunks().size(); ++i) {
+    const auto chunk = reader.read_chunk(i);
+    if (!chunk) return tl::unexpected(chunk.error());
+    for (uint32_t index = 0; index < chunk->messages.size(); ++index) {
+      const mcap::Message& message = chunk->messages[index];
+      const auto channel = reader.channels().find(message.channel_id);
+      if (channel == reader.channels().end()) continue;
+      topics_[channel->second.topic].push_back(
+          {message.log_time_ns, message.publish_time_ns, file, i, index});
+      const auto schema = reader.schemas().find(channel->second.schema_id);
+      if (schema != reader.schemas().end()) {
+        schemas_[channel->second.topic] = schema->second.name;
+      }
+    }
+  }
+  return {};
+}
+
+std::vector<std::string> Recording::gaps() const {
+  std::vector<std::string> sentences = damages_;
+  for (const std::string& cut : cut_files_) {
+    sentences.push_back(cut + ": has no end (crash, power cut or damage); reads what is there");
+  }
+  return sentences;
 }
 
 void Recording::note_times() {

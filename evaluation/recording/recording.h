@@ -30,7 +30,8 @@ struct MessagePlace {
 /// and of the messages themselves those of a few chunks. One thread.
 class Recording {
  public:
-  /// Fails if a file is no recording of bevloc, or if two files are of different runs.
+  /// Fails if a file is no recording of bevloc, or if two files are of different runs. Of a file
+  /// with a damaged chunk it reads what comes before.
   static Result<Recording> open(const std::vector<std::filesystem::path>& files);
 
   /// The places of all messages of a topic, in the order of time.
@@ -66,15 +67,21 @@ class Recording {
   uint64_t end_ns() const { return end_ns_; }
   /// The files without their end: the process was ended or the power was cut.
   const std::vector<std::string>& cut_files() const { return cut_files_; }
+  /// What is missing of the files, one sentence each, for stderr.
+  std::vector<std::string> gaps() const;
+  /// The name of the first file.
+  const std::string& name() const { return names_.front(); }
 
  private:
   Status add(const std::filesystem::path& path);
+  Status add_messages(const mcap::Reader& reader, uint32_t file);
   void note_times();
   Result<std::string_view> bytes_of(const MessagePlace& place);
 
   std::vector<mcap::Reader> readers_;
   std::vector<std::string> names_;
   std::vector<std::string> cut_files_;
+  std::vector<std::string> damages_;
   std::map<std::string, std::vector<MessagePlace>, std::less<>> topics_;
   std::map<std::string, std::string, std::less<>> schemas_;  ///< of each topic
   Duration offset_{};

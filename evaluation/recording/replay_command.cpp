@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/files.h"
+#include "common/json_dump.h"
+#include "common/option_checks.h"
 #include "evaluation/recording/track.h"
 #include "firmware/recording/topics.h"
 
@@ -60,16 +62,26 @@ nlohmann::json json_of(const Distances& found) {
 void ReplayCommand::declare(CLI::App& app) {
   auto* replay = app.add_subcommand("replay", "Run the real pipeline on a recording");
   replay->add_option("files", files_, "Files of one recording (.mcap), in any order");
-  replay->add_option("--config", overrides_.config,
-                     "Another configuration, with its calibration, model and solver");
-  replay->add_option("--model", overrides_.model, "Another model (.onnx)");
-  replay->add_option("--map", overrides_.map, "Another map");
-  replay->add_option("--from-candump", candump_,
-                     "The bus from a candump log; needs --config and --images");
-  replay->add_option("--images", images_,
-                     "With --from-candump: one folder per camera with pictures and frames.txt");
-  replay->add_option("--out", out_, "Folder for can.log and poses.csv")->capture_default_str();
-  replay->add_option("--json", json_file_, "Write the result as JSON to this file");
+  replay
+      ->add_option("--config", overrides_.config,
+                   "Another configuration, with its calibration, model and solver")
+      ->check(name_of("a configuration"));
+  replay->add_option("--model", overrides_.model, "Another model (.onnx)")
+      ->check(name_of("a model"));
+  replay->add_option("--map", overrides_.map, "Another map")->check(name_of("a map"));
+  replay
+      ->add_option("--from-candump", candump_,
+                   "The bus from a candump log; needs --config and --images")
+      ->check(name_of("a log"));
+  replay
+      ->add_option("--images", images_,
+                   "With --from-candump: one folder per camera with pictures and frames.txt")
+      ->check(name_of("a folder"));
+  replay->add_option("--out", out_, "Folder for can.log and poses.csv")
+      ->check(name_of("a folder"))
+      ->capture_default_str();
+  replay->add_option("--json", json_file_, "Write the result as JSON to this file")
+      ->check(output_file());
   replay->footer(
       "Examples:\n"
       "  bevloc replay recording/*.mcap --out replay\n"
@@ -109,8 +121,10 @@ Status ReplayCommand::write_poses(const ReplayOutcome& outcome, Time begin) cons
 Status ReplayCommand::replay_recording() const {
   auto recording = Recording::open(files_);
   if (!recording) return tl::unexpected(recording.error());
-  for (const std::string& cut : recording->cut_files()) {
-    fmt::print("{}: has no end (crash or power cut); replays what is there\n", cut);
+  for (const std::string& gap : recording->gaps()) fmt::print(stderr, "{}\n", gap);
+  if (recording->end_ns() == 0) {
+    return fail("{}: found no message of a drive, wanted a recording that holds some",
+                recording->name());
   }
   const ScratchFolder scratch;
   const auto setup = setup_of(*recording, overrides_, scratch);
@@ -138,7 +152,7 @@ Status ReplayCommand::replay_recording() const {
   const nlohmann::json json{{"framesets", outcome->framesets},  {"frames_recorded", bus.recorded},
                             {"frames_replayed", bus.replayed},  {"frames_equal", bus.equal},
                             {"recorded", json_of(to_recorded)}, {"truth", json_of(to_truth)}};
-  return write_file(json_file_, json.dump(2) + "\n");
+  return write_file(json_file_, dump_json(json, 2) + "\n");
 }
 
 Status ReplayCommand::replay_candump() const {
@@ -155,7 +169,7 @@ Status ReplayCommand::replay_candump() const {
   if (json_file_.empty()) return {};
   const nlohmann::json json{{"framesets", outcome->framesets},
                             {"frames_replayed", outcome->sent.size()}};
-  return write_file(json_file_, json.dump(2) + "\n");
+  return write_file(json_file_, dump_json(json, 2) + "\n");
 }
 
 }  // namespace bevloc::evaluation

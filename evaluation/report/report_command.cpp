@@ -6,6 +6,7 @@
 
 #include "common/files.h"
 #include "common/jpeg.h"
+#include "common/option_checks.h"
 #include "evaluation/recording/played_devices.h"
 #include "evaluation/report/report_page.h"
 #include "firmware/recording/topics.h"
@@ -52,10 +53,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Recording& recor
       {"model", fmt::format("{} (SHA-256 {})", recording.value(firmware::kModelFileKey),
                             recording.value(firmware::kModelChecksumKey).substr(0, 16))},
       {"map", fmt::format("checksum {}", recording.value(firmware::kMapChecksumKey))}};
-  for (const std::string& cut : recording.cut_files()) {
-    facts.emplace_back("without its end",
-                       cut + ": the daemon crashed, or the power was cut, or it still runs");
-  }
+  for (const std::string& gap : recording.gaps()) facts.emplace_back("incomplete", gap);
   return facts;
 }
 
@@ -64,7 +62,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Recording& recor
 void ReportCommand::declare(CLI::App& app) {
   auto* report = app.add_subcommand("report", "Make one HTML page of a recording");
   report->add_option("files", files_, "Files of one recording (.mcap), in any order")->required();
-  report->add_option("--out", out_, "The page")->capture_default_str();
+  report->add_option("--out", out_, "The page")->check(output_file())->capture_default_str();
   report->add_option("--at", moments_,
                      "Explain the state at this time: 14:32, 14:32:05 (local time), or seconds");
   report->footer(
@@ -77,6 +75,10 @@ void ReportCommand::declare(CLI::App& app) {
 Status ReportCommand::run() const {
   auto recording = Recording::open(files_);
   if (!recording) return tl::unexpected(recording.error());
+  for (const std::string& gap : recording->gaps()) fmt::print(stderr, "{}\n", gap);
+  if (recording->messages(firmware::kSolutionTopic).empty()) {
+    return fail("{}: found no pose, wanted a recording that holds some", recording->name());
+  }
   const auto data = read_report_data(*recording);
   if (!data) return tl::unexpected(data.error());
   std::vector<Answer> answers;

@@ -158,6 +158,11 @@ Result<double> parse_moment(const ReportData& data, const std::string& text) {
   int minute = 0;
   double second = 0.0;
   char surplus = 0;
+  const auto refuse = [&text] {
+    return fail(
+        "--at: found '{}', wanted a time of day such as 14:32 or 14:32:05, or seconds such as 12.5",
+        text);
+  };
   const int parts = std::sscanf(text.c_str(), "%2d:%2d:%lf%c", &hour, &minute, &second, &surplus);
   double moment_s = 0.0;
   const bool whole_minute = parts == 2;
@@ -168,11 +173,9 @@ Result<double> parse_moment(const ReportData& data, const std::string& text) {
     // The last minute of the day before may be meant, or the recording passes midnight.
     if (moment_s < -60.0) moment_s += kDay_s;
   } else if (std::sscanf(text.c_str(), "%lf%c", &moment_s, &surplus) != 1) {
-    return fail(
-        "--at: found '{}', wanted a time of day such as 14:32 or 14:32:05, or seconds such "
-        "as 12.5",
-        text);
+    return refuse();
   }
+  if (!std::isfinite(moment_s)) return refuse();
   const double last_s = whole_minute ? moment_s + 60.0 : moment_s;
   if (last_s < 0.0 || moment_s > data.length_s) {
     return fail("--at: found {}, wanted a time within the recording, {} to {}", text,

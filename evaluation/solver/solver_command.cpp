@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "common/option_checks.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/command_output.h"
 #include "evaluation/solver/scale_tuning.h"
@@ -39,7 +40,8 @@ void SolverCommand::declare_eval(CLI::App& eval) {
               {"hard", sim::CorruptionLevel::kHard}},
              "Errors of the perceived masks; \"paper\" gives the IoU of the paper's Table II");
   declare_rows(*solver);
-  solver->add_option("--json", json_file_, "Write the rows as JSON to this file");
+  solver->add_option("--json", json_file_, "Write the rows as JSON to this file")
+      ->check(output_file());
   solver->add_option("--csv", csv_file_, "Write the rows as CSV to this file");
   solver->footer(
       "Examples:\n"

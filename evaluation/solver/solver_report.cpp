@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json_dump.h"
 #include "evaluation/solver/paper_tables.h"
 #include "evaluation/summary_format.h"
 
@@ -161,7 +162,7 @@ std::string to_json(const std::vector<CaseResult>& results, const EvaluationOpti
     }
     json["rows"].push_back(std::move(row));
   }
-  return json.dump(2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 std::string to_csv(const std::vector<CaseResult>& results) {

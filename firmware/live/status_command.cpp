@@ -1,7 +1,15 @@
 #include "firmware/live/status_command.h"
 
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
 #include <fmt/format.h>
+#include <netdb.h>
 #include <nlohmann/json.hpp>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "firmware/config/live_config.h"
 #include "firmware/live/httplib_header.h"
@@ -11,6 +19,32 @@ namespace bevloc::firmware {
 namespace {
 
 constexpr time_t kPatience_s = 3;
+
+/// Why the system does not connect to this address, from a try of its own: httplib does not say.
+std::string connection_error(const std::string& address, int port) {
+  addrinfo wanted{};
+  wanted.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  const int unknown = getaddrinfo(address.c_str(), std::to_string(port).c_str(), &wanted, &found);
+  if (unknown != 0) return gai_strerror(unknown);
+  const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owned(found, freeaddrinfo);
+  const int file = socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (file < 0) return std::strerror(errno);
+  int error = connect(file, found->ai_addr, found->ai_addrlen) == 0 ? 0 : errno;
+  if (error == EINPROGRESS) {
+    pollfd connecting{file, POLLOUT, 0};
+    poll(&connecting, 1, 1000);
+    socklen_t size = sizeof error;
+    getsockopt(file, SOL_SOCKET, SO_ERROR, &error, &size);
+  }
+  close(file);
+  return error == 0 ? "no answer" : std::strerror(error);
+}
+
+std::string reason_of(httplib::Error error, const std::string& address, int port) {
+  if (error == httplib::Error::Connection) return connection_error(address, port);
+  return error == httplib::Error::Read ? "no answer" : httplib::to_string(error);
+}
 
 /// The status that the daemon sends, parsed, and as text.
 struct Answer {
@@ -28,7 +62,7 @@ Result<Answer> ask(const std::string& address, int port) {
     return fail(
         "{}: found no bevlocd that answers ({}), wanted one with the section live in its "
         "configuration or the option --live",
-        place, httplib::to_string(response.error()));
+        place, reason_of(response.error(), address, port));
   }
   if (response->status != 200) {
     return fail("{}: found the answer {}, wanted 200 from a bevlocd", place, response->status);

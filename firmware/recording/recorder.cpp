@@ -69,18 +69,26 @@ void Recorder::put(std::string_view topic, const google::protobuf::Message& mess
 
 void Recorder::note_failure(const Status& status) {
   if (status || counters_.failed.exchange(true)) return;
+  counters_.images_dropped += counters_.images.exchange(images_on_disk_) - images_on_disk_;
+  counters_.events_lost += counters_.events.exchange(events_on_disk_) - events_on_disk_;
   spdlog::error("recording ends: {}", status.error().message);
 }
 
 void Recorder::write_events() {
   while (const auto event = events_.pop(Duration::zero())) {
-    if (counters_.failed) continue;
-    std::visit([this](const auto& recorded) { write_event(recorded); }, *event);
-    ++counters_.events;
+    if (!counters_.failed) {
+      std::visit([this](const auto& recorded) { write_event(recorded); }, *event);
+    }
+    count_event();
   }
   while (const auto match = matches_.pop(Duration::zero())) {
     if (!counters_.failed) write_match(*match);
+    count_event();
   }
+}
+
+void Recorder::count_event() {
+  ++(counters_.failed ? counters_.events_lost : counters_.events);
 }
 
 void Recorder::write_queued(Time now) {
@@ -89,20 +97,28 @@ void Recorder::write_queued(Time now) {
   for (int i = 0; i < kCameraCount; ++i) {
     const auto image = images_.pop(Duration::zero());
     if (!image) break;
-    if (!counters_.failed) write_image(*image);
+    write_image(*image);
   }
   if (counters_.failed || now < next_step_) return;
   next_step_ = now + kStep;
   write_counters(now);
   note_failure(ring_.step(log_time(now)));
+  if (!counters_.failed) {
+    images_on_disk_ = counters_.images;
+    events_on_disk_ = counters_.events;
+  }
   counters_.bytes = ring_.bytes_written();
   log_drops();
 }
 
 void Recorder::write_image(const RecordedImage& image) {
+  if (!counters_.failed) put_image(image);
+  ++(counters_.failed ? counters_.images_dropped : counters_.images);
+}
+
+void Recorder::put_image(const RecordedImage& image) {
   const std::string topic = image_topic(image.camera);
   const uint64_t start_ns = log_time(image.exposure_start);
-  ++counters_.images;
   if (image.image.format == PixelFormat::kMjpeg) {
     const std::string_view file(reinterpret_cast<const char*>(image.image.planes[0].data),
                                 image.image.bytes_used);
@@ -137,7 +153,6 @@ void Recorder::write_event(const RecordedTruth& truth) {
 
 void Recorder::write_match(const RecordedMatch& match) {
   put(kMatchTopic, match_message(match), match.time, match.frame_time);
-  ++counters_.events;
 }
 
 void Recorder::write_counters(Time now) {
@@ -155,7 +170,7 @@ void Recorder::write_counters(Time now) {
   message.set_bus_received(snapshot.bus.received);
   message.set_bus_lost(snapshot.bus.send_replaced + snapshot.bus.send_expired +
                        snapshot.bus.send_bus_down + snapshot.bus.receive_dropped);
-  message.set_images_not_recorded(counters_.images_dropped + images_.dropped());
+  message.set_images_not_recorded(images_dropped());
   message.set_events_not_recorded(events_dropped());
   put(kCountersTopic, message, now, now);
 }
@@ -172,7 +187,7 @@ void Recorder::watch_state(HealthState state, Time now) {
 }
 
 void Recorder::log_drops() {
-  const uint64_t images = counters_.images_dropped + images_.dropped();
+  const uint64_t images = images_dropped();
   if (drops_logged_ || images + events_dropped() == 0) return;
   drops_logged_ = true;
   spdlog::warn(
@@ -182,16 +197,13 @@ void Recorder::log_drops() {
 }
 
 void Recorder::finish(Time now) {
-  while (const auto image = images_.pop(Duration::zero())) {
-    if (!counters_.failed) write_image(*image);
-  }
+  while (const auto image = images_.pop(Duration::zero())) write_image(*image);
   write_queued(now);
   if (!counters_.failed) note_failure(ring_.finish());
   counters_.bytes = ring_.bytes_written();
   spdlog::info("recording: {} images and {} events in {:.1f} MB, {} images and {} events dropped",
                counters_.images.load(), counters_.events.load(),
-               static_cast<double>(counters_.bytes) / 1e6,
-               counters_.images_dropped + images_.dropped(), events_dropped());
+               static_cast<double>(counters_.bytes) / 1e6, images_dropped(), events_dropped());
 }
 
 }  // namespace bevloc::firmware

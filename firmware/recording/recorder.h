@@ -22,9 +22,10 @@ struct Snapshot;
 
 /// Totals since start; readable from any thread.
 struct RecorderCounters {
-  std::atomic<uint64_t> images{0};  ///< written
-  std::atomic<uint64_t> events{0};  ///< written: bus frames, solutions, matches
-  std::atomic<uint64_t> images_dropped{0};
+  std::atomic<uint64_t> images{0};          ///< written
+  std::atomic<uint64_t> events{0};          ///< written: bus frames, solutions, matches
+  std::atomic<uint64_t> images_dropped{0};  ///< for want of memory, or lost to a failure
+  std::atomic<uint64_t> events_lost{0};     ///< to a failure
   std::atomic<uint64_t> bytes{0};
   std::atomic<uint64_t> black_boxes{0};
   std::atomic<bool> failed{false};  ///< the disk refused to take more; nothing is recorded since
@@ -62,7 +63,10 @@ class Recorder {
   void finish(Time now);
 
   const RecorderCounters& counters() const { return counters_; }
-  uint64_t events_dropped() const { return events_.dropped() + matches_.dropped(); }
+  uint64_t images_dropped() const { return counters_.images_dropped + images_.dropped(); }
+  uint64_t events_dropped() const {
+    return events_.dropped() + matches_.dropped() + counters_.events_lost;
+  }
 
  private:
   static constexpr int kImagesPerCamera = 6;
@@ -75,10 +79,12 @@ class Recorder {
            Time made_at);
   void write_events();
   void write_image(const RecordedImage& image);
+  void put_image(const RecordedImage& image);
   void write_event(const RecordedBusFrame& frame);
   void write_event(const RecordedSolution& solution);
   void write_event(const RecordedTruth& truth);
   void write_match(const RecordedMatch& match);
+  void count_event();
   void write_counters(Time now);
   void watch_state(HealthState state, Time now);
   void note_failure(const Status& status);
@@ -94,6 +100,8 @@ class Recorder {
   BoundedQueue<RecordedMatch> matches_{64};
   std::function<Snapshot()> snapshot_;
   JpegEncoder jpeg_;
+  uint64_t images_on_disk_ = 0;  ///< of those that are counted as written
+  uint64_t events_on_disk_ = 0;
   Time next_step_ = Time::min();
   HealthState state_ = HealthState::kInit;
   bool drops_logged_ = false;

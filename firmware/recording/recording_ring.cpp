@@ -1,11 +1,14 @@
 #include "firmware/recording/recording_ring.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <vector>
 
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "firmware/recording/topics.h"
 
@@ -70,16 +73,29 @@ void remove_file(const fs::path& path) {
   if (error) spdlog::warn("recording: cannot delete {} ({})", path.string(), error.message());
 }
 
+tl::unexpected<Error> refuse_folder(const fs::path& directory, const std::string& reason) {
+  return fail("{}: cannot create this folder ({}), wanted one for the recording",
+              (directory / kBlackBoxFolder).string(), reason);
+}
+
 }  // namespace
+
+Status check_folder(const fs::path& directory) {
+  std::error_code error;
+  fs::path there = fs::absolute(directory, error).lexically_normal();
+  while (!fs::exists(fs::symlink_status(there, error)) && there.has_relative_path()) {
+    there = there.parent_path();
+  }
+  if (!fs::is_directory(there, error)) return refuse_folder(directory, std::strerror(ENOTDIR));
+  if (access(there.c_str(), W_OK | X_OK) == 0) return {};
+  return refuse_folder(directory, std::strerror(errno));
+}
 
 Result<RecordingRing> RecordingRing::open(const RecordConfig& config, RecordingHead head,
                                           uint64_t log_time_ns) {
   std::error_code error;
   fs::create_directories(config.directory / kBlackBoxFolder, error);
-  if (error) {
-    return fail("{}: cannot create this folder ({}), wanted one for the recording",
-                (config.directory / kBlackBoxFolder).string(), error.message());
-  }
+  if (error) return refuse_folder(config.directory, error.message());
   RecordingRing ring(config, std::move(head));
   if (Status begun = ring.begin_file(log_time_ns); !begun) return tl::unexpected(begun.error());
   return ring;

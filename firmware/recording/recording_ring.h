@@ -12,6 +12,9 @@
 
 namespace bevloc::firmware {
 
+/// Whether open() could create its folders here. Changes nothing.
+Status check_folder(const std::filesystem::path& directory);
+
 /// Writes one file after the other into the folder, and deletes the oldest ones beyond the limits.
 /// keep() gives the files of the last minute a second name (a hard link) in the folder `kept`,
 /// which the ring does not delete; the file that is being written grows there too. One thread.

@@ -9,7 +9,9 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "common/option_checks.h"
 #include "common/version.h"
+#include "firmware/recording/recording_ring.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -51,7 +53,9 @@ void take_live_option(const std::string& port, ProgramOptions& options) {
 
 void declare_options(CLI::App& app, ProgramOptions& options) {
   app.set_version_flag("--version", std::string(version()));
-  app.add_option("--config", options.config_file, "Configuration file")->required();
+  app.add_option("--config", options.config_file, "Configuration file")
+      ->required()
+      ->check(name_of("a configuration"));
   app.add_flag("--check-config", options.check_config,
                "Check the configuration and everything that it names, then exit");
   app.add_option_function<std::string>(
@@ -60,7 +64,8 @@ void declare_options(CLI::App& app, ProgramOptions& options) {
       ->expected(0, 1)
       ->type_name("[PORT]");
   app.add_option("--record", options.record,
-                 "Record images, bus and poses into this folder (docs/recording.md)");
+                 "Record images, bus and poses into this folder (docs/recording.md)")
+      ->check(name_of("a folder"));
   app.add_flag("--record-raw", options.record_raw,
                "Record the images without loss, so that a replay gives the same poses");
 }
@@ -93,6 +98,9 @@ bool stop_requested() {
 
 Status check_and_print(const ProgramOptions& options, const Config& config) {
   if (Status status = check_config(config); !status) return status;
+  if (config.record) {
+    if (Status status = check_folder(config.record->directory); !status) return status;
+  }
   fmt::print("{}: good\n", options.config_file);
   return {};
 }

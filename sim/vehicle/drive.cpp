@@ -1,8 +1,10 @@
 #include "sim/vehicle/drive.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 
 #include "sim/vehicle/route.h"
 #include "sim/world/path.h"
@@ -36,6 +38,10 @@ Polyline resampled(const Polyline& line) {
 Polyline smoothed(const Polyline& line) {
   constexpr int kReach = 9;
   constexpr double kSigma_m = 1.5;
+  std::array<double, kReach + 1> weight_at{};
+  for (int k = 0; k <= kReach; ++k) {
+    weight_at[static_cast<size_t>(k)] = std::exp(-0.5 * std::pow(k * kStep_m / kSigma_m, 2));
+  }
   const int last = static_cast<int>(line.size()) - 1;
   Polyline result(line.size());
   for (int i = 0; i <= last; ++i) {
@@ -44,7 +50,7 @@ Polyline smoothed(const Polyline& line) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     double weights = 0.0;
     for (int k = -reach; k <= reach; ++k) {
-      const double weight = std::exp(-0.5 * std::pow(k * kStep_m / kSigma_m, 2));
+      const double weight = weight_at[static_cast<size_t>(std::abs(k))];
       sum += weight * line[static_cast<size_t>(i + k)];
       weights += weight;
     }
@@ -181,15 +187,14 @@ void Drive::plan_time(const std::vector<Stop>& stops) {
   const size_t count = points_.size();
   arrival_s_.assign(count, 0.0);
   departure_s_.assign(count, 0.0);
+  auto stop = stops.begin();  // they are in the order of the path
   for (size_t i = 0; i < count; ++i) {
     if (i > 0) {
       const double mean_speed = 0.5 * (speed_mps_[i] + speed_mps_[i - 1]);
       arrival_s_[i] = departure_s_[i - 1] + (station_m_[i] - station_m_[i - 1]) / mean_speed;
     }
     departure_s_[i] = arrival_s_[i];
-    for (const Stop& stop : stops) {
-      if (stop.sample == i) departure_s_[i] += stop.wait_s;
-    }
+    for (; stop != stops.end() && stop->sample == i; ++stop) departure_s_[i] += stop->wait_s;
   }
 }
 

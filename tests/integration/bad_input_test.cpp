@@ -78,6 +78,23 @@ TEST_F(BadInputTest, OutputFolderThatCannotBeMade) {
                  {"file/out"});
 }
 
+TEST_F(BadInputTest, OptionsWithoutSense) {
+  const std::string demo = "--config " + std::string(BEVLOC_SOURCE_DIR) + "/config/demo.yaml ";
+  for (const char* option : {"--duration nan", "--duration 1e7", "--seed -1", "--record ''",
+                             "--map ''", "--save-pictures ''", "--json ''", "--json -"}) {
+    const ProcessResult result = run_bevlocd(demo + "--check-config " + option);
+    EXPECT_EQ(result.exit_code, 2) << option;
+    EXPECT_NE(result.err.find("found"), std::string::npos) << option << ": " << result.err;
+  }
+}
+
+TEST_F(BadInputTest, ARecordFolderThatIsAFile) {
+  write_file(scratch_ / "file", "");
+  expect_refused("--config " + std::string(BEVLOC_SOURCE_DIR) +
+                     "/config/demo.yaml --check-config --record " + (scratch_ / "file").string(),
+                 {"file", "wanted one for the recording"});
+}
+
 TEST_F(BadInputTest, UnknownOption) {
   const ProcessResult result = run_bevlocd("--config x --colour red");
   EXPECT_EQ(result.exit_code, 2);

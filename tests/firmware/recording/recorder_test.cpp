@@ -1,14 +1,17 @@
 // The recorder: bounded queues and files, the black box, and a disk that refuses.
 #include "firmware/recording/recorder.h"
 
+#include <csignal>
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "common/mcap/reader.h"
 #include "firmware/recording/messages.h"
 #include "firmware/recording/topics.h"
 #include "firmware/telemetry/snapshot.h"
+#include "tests/firmware/log_capture.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::firmware {
@@ -136,6 +139,31 @@ TEST_F(RecorderTest, EventsBeyondTheQueueAreDroppedAndCounted) {
   EXPECT_EQ(recorder->counters().events, 8192U);
 }
 
+TEST_F(RecorderTest, WhatIsNotOnTheDiskAfterAFailureCountsAsDropped) {
+  const LogCapture log;
+  const auto recorder = open();
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{1, before.rlim_max};
+  std::signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+  for (int i = 0; i < 3; ++i) {
+    const Time now{std::chrono::seconds(i)};
+    recorder->note_image(frame(7, now), now);
+    recorder->note_truth({now, {}});
+    recorder->write_queued(now);
+  }
+  recorder->finish(Time{std::chrono::seconds(3)});
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, SIG_DFL);
+  EXPECT_TRUE(recorder->counters().failed);
+  EXPECT_EQ(recorder->counters().images, 0U);
+  EXPECT_EQ(recorder->images_dropped(), 3U);
+  EXPECT_EQ(recorder->counters().events, 0U);
+  EXPECT_EQ(recorder->events_dropped(), 3U);
+  EXPECT_NE(log.text().find("3 images and 3 events dropped"), std::string::npos) << log.text();
+}
+
 TEST_F(RecorderTest, TheRingDeletesItsOldestFiles) {
   config_.file_length = std::chrono::seconds(1);
   config_.max_bytes = 200'000;
@@ -226,6 +254,18 @@ TEST_F(RecorderTest, AFolderThatCannotBeMadeIsRefused) {
   const auto recorder = Recorder::open(config_, {}, kOffset, Time{});
   ASSERT_FALSE(recorder);
   EXPECT_NE(recorder.error().message.find("/proc/no/such"), std::string::npos);
+}
+
+TEST_F(RecorderTest, AFolderIsCheckedWithoutMakingIt) {
+  EXPECT_TRUE(check_folder(folder_ / "new/folder"));
+  EXPECT_FALSE(fs::exists(folder_ / "new"));
+  std::ofstream(folder_ / "file") << "x";
+  for (const char* place : {"file", "file/below"}) {
+    const Status checked = check_folder(folder_ / place);
+    ASSERT_FALSE(checked) << place;
+    EXPECT_NE(checked.error().message.find("(Not a directory)"), std::string::npos)
+        << checked.error().message;
+  }
 }
 
 TEST(RecordedMessagesTest, AMapSurvivesWithoutLoss) {
