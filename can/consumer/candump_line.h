@@ -17,6 +17,8 @@ enum candump_kind {
   CANDUMP_BAD    /* anything else */
 };
 
+/* C has no nullptr. NOLINTBEGIN(modernize-use-nullptr) */
+
 struct candump_line {
   uint64_t time_us;
   uint32_t id;
@@ -77,5 +79,7 @@ static inline enum candump_kind candump_parse(const char* text, struct candump_l
   if (fd) ++text; /* the flags */
   return line->id <= 0x7FF && candump_parse_data(text, fd, line) ? CANDUMP_DATA : CANDUMP_BAD;
 }
+
+/* NOLINTEND(modernize-use-nullptr) */
 
 #endif

@@ -74,7 +74,7 @@ static int read_log(struct printer* printer, const char* path) {
   char text[512];
   bool readable = false;
   int number = 0;
-  struct candump_line frame;
+  struct candump_line frame = {0};
   enum candump_kind kind = CANDUMP_OTHER;
   FILE* log = fopen(path, "r");
   if (log == NULL) return refuse_file(path);

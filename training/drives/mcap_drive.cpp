@@ -1,5 +1,7 @@
 #include "training/drives/mcap_drive.h"
 
+#include <fmt/format.h>
+
 #include "evaluation/recording/played_devices.h"
 #include "evaluation/recording/track.h"
 #include "firmware/recording/topics.h"
@@ -65,6 +67,7 @@ Result<std::unique_ptr<RecordedDrive>> McapDrive::open(
     const std::optional<Rig>& rig) {
   auto recording = Recording::open(files);
   if (!recording) return tl::unexpected(recording.error());
+  for (const std::string& gap : recording->gaps()) fmt::print(stderr, "{}\n", gap);
   const std::string name = files.front().string();
   auto used_rig = rig ? Result<Rig>(*rig) : recorded_rig(*recording, name);
   if (!used_rig) return tl::unexpected(used_rig.error());
