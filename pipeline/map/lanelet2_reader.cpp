@@ -158,7 +158,7 @@ class Lanelet2Reader {
     }
     std::optional<Meaning> meaning;
     if (element) meaning = Meaning{element->element_class, element->appearance};
-    report_.note(kind, meaning, why, element ? length_of(element->points) : 0.0, where);
+    report_.note(kind, meaning, why, element ? polyline_length(element->points) : 0.0, where);
     if (!element) return;
     map_.elements.push_back(std::move(*element));
     heights_m_.push_back(std::move(heights_m));
@@ -190,7 +190,7 @@ class Lanelet2Reader {
       const bool is_boundary = boundary_appearance(tag_value(way.tags, "type")).has_value();
       if (!is_boundary && use_of(way).vehicle_lanelets == 0) continue;
       const Result<Polyline> points = points_of(way, document_, nodes_);
-      if (points && length_of(*points) <= kLongestPolylineM) beside_.add(way.id, *points);
+      if (points && polyline_length(*points) <= kLongestPolylineM) beside_.add(way.id, *points);
     }
   }
 
@@ -207,10 +207,10 @@ class Lanelet2Reader {
       return take(std::nullopt, kind, where, "left out, see below");
     }
     if (points->size() < 2) return take(std::nullopt, kind, where, "too few points");
-    if (length_of(*points) > kLongestPolylineM) {
+    if (polyline_length(*points) > kLongestPolylineM) {
       map_.left_out.push_back(fmt::format("{}:{}: way {}: found {:g} m, wanted at most {:g} m",
-                                          document_.file, way.line, way.id, length_of(*points),
-                                          kLongestPolylineM));
+                                          document_.file, way.line, way.id,
+                                          polyline_length(*points), kLongestPolylineM));
       return take(std::nullopt, kind, where, "left out, see below");
     }
     element->points = std::move(*points);
@@ -314,9 +314,9 @@ class Lanelet2Reader {
                   document_.file, way.line, way.id, points->size(), relation.id);
     }
     // Centerlines get a point every 2 m, so that a wrong coordinate would fill the memory.
-    if (points && length_of(*points) > kLongestPolylineM) {
+    if (points && polyline_length(*points) > kLongestPolylineM) {
       return fail("{}:{}: way {}: found {:g} m in this bound of lanelet {}, wanted at most {:g} m",
-                  document_.file, way.line, way.id, length_of(*points), relation.id,
+                  document_.file, way.line, way.id, polyline_length(*points), relation.id,
                   kLongestPolylineM);
     }
     return points;

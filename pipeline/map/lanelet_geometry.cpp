@@ -132,7 +132,7 @@ Polyline centerline_between(const Polyline& left, const Polyline& right) {
   return centerline;
 }
 
-double length_of(const Polyline& line) {
+double polyline_length(const Polyline& line) {
   double length_m = 0.0;
   for (size_t i = 1; i < line.size(); ++i) length_m += (line[i] - line[i - 1]).norm();
   return length_m;

@@ -23,7 +23,7 @@ void align_bounds(Polyline& left, Polyline& right);
 /// The line midway between two aligned bounds, with points at most 2 m apart.
 Polyline centerline_between(const Polyline& left, const Polyline& right);
 
-double length_of(const Polyline& line);
+double polyline_length(const Polyline& line);
 
 /// The area of a ring without a repeated corner.
 double area_of_ring_m2(const Polyline& ring);

@@ -59,7 +59,7 @@ void drop_impossible_lanes(std::vector<Lane>& lanes) {
     const Lane& lane = lanes[i];
     const bool good = is_possible(lane.left) && is_possible(lane.right) &&
                       is_possible(lane.centerline) &&
-                      length_of(lane.centerline) <= kLongestPolylineM;
+                      polyline_length(lane.centerline) <= kLongestPolylineM;
     if (good) new_index[i] = kept++;
   }
   for (size_t i = 0; i < lanes.size(); ++i) {
@@ -74,8 +74,8 @@ void drop_impossible_lanes(std::vector<Lane>& lanes) {
 
 bool can_be_lane(const std::vector<Eigen::Vector2d>& left,
                  const std::vector<Eigen::Vector2d>& right) {
-  return left.size() > 1 && right.size() > 1 && length_of(left) <= kLongestPolylineM &&
-         length_of(right) <= kLongestPolylineM;
+  return left.size() > 1 && right.size() > 1 && polyline_length(left) <= kLongestPolylineM &&
+         polyline_length(right) <= kLongestPolylineM;
 }
 
 double length_of(const Line3& line) {
@@ -196,7 +196,7 @@ void MapBuilder::drop_impossible() {
   for (size_t i = 0; i < map_.elements.size(); ++i) {
     MapElement& element = map_.elements[i];
     const bool near = is_possible(element.points);
-    if (near && length_of(element.points) <= kLongestPolylineM) {
+    if (near && polyline_length(element.points) <= kLongestPolylineM) {
       if (kept != i) {
         map_.elements[kept] = std::move(element);
         heights_m_[kept] = std::move(heights_m_[i]);
