@@ -48,7 +48,8 @@ inline CLI::Validator name_of(const std::string& wanted) {
   return {check, "", ""};
 }
 
-/// The name of a file to write. A "-" is refused: the result would mix with what is printed.
+/// The name of a file to write. Refuses "-" (standard output), where the file would mix with what
+/// the command prints.
 inline CLI::Validator output_file() {
   const auto check = [](const std::string& text) -> std::string {
     if (text.empty()) return "found an empty name, wanted a file to write";

@@ -21,7 +21,7 @@ namespace bevloc::can {
 struct DecodedSignal {
   const DbcSignal* signal = nullptr;
   double value = 0.0;
-  int64_t raw = 0;                ///< as raw_from() has it
+  int64_t raw = 0;                ///< from raw_from()
   bool is_available = true;       ///< not the value that VAL_ names SNA
   std::string_view value_name{};  ///< of VAL_; empty without one
 };

@@ -15,6 +15,9 @@ enum class Sender : uint8_t { kLocalizer, kVehicle };
 
 /// The first identifiers of the LOC_ and of the VEH_ messages. Each message adds its own offset.
 struct BaseIds {
+  /// The largest one, because identifiers have 11 bits.
+  static constexpr uint32_t kLast = 0x7F0;
+
   uint32_t localizer = 0x500;
   uint32_t vehicle = 0x400;
 };

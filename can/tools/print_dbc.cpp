@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   CLI::App app("Prints the DBC file of bevloc's CAN messages.");
   bevloc::can::BaseIds base;
   bool markdown = false;
-  const CLI::Range base_range(0u, 0x7F0u);
+  const CLI::Range base_range(0u, uint32_t{bevloc::can::BaseIds::kLast});
   app.add_option("--localizer-base", base.localizer, "first identifier of the LOC_ messages")
       ->check(base_range)
       ->capture_default_str();

@@ -89,7 +89,7 @@ FrameBits counter_bits(const MessageProtection& protection) {
   return bits;
 }
 
-/// Those of the value and of its multiplexor.
+/// The bits of the value and of its multiplexor.
 FrameBits bits_of(const BoundSignal& signal) {
   FrameBits bits;
   bits.add(signal.layout);
@@ -103,7 +103,7 @@ bool VehicleBinder::is_requested(const std::string& message) const {
   return std::ranges::find(requests_, message, &ProtectionRequest::message) != requests_.end();
 }
 
-/// A counter or a checksum, which every frame has to have.
+/// Finds the signal of a counter or checksum, which every frame of the message must contain.
 Bound<const DbcSignal*> VehicleBinder::protecting(const std::string& signal,
                                                   const std::string& message) const {
   const DbcMessage* of = nullptr;

@@ -53,7 +53,7 @@ void ListenCommand::declare(CLI::App& app) {
   app_->add_option("--count", count_, "End after so many printed frames");
   app_->add_option("--duration", duration_s_, "End after so many seconds")
       ->check(number_between(0.001, 1e9));
-  const CLI::Range base_range(0u, 0x7F0u);
+  const CLI::Range base_range(0u, uint32_t{can::BaseIds::kLast});
   app_->add_option("--localizer-base", base_.localizer, "First identifier of the LOC_ messages")
       ->check(base_range);
   app_->add_option("--vehicle-base", base_.vehicle, "First identifier of the VEH_ messages")

@@ -20,7 +20,7 @@ namespace {
 
 constexpr time_t kPatience_s = 3;
 
-/// Why the system does not connect to this address, from a try of its own: httplib does not say.
+/// Tries to connect and returns the reason of the system, which httplib does not give.
 std::string connection_error(const std::string& address, int port) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_STREAM;

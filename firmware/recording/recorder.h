@@ -24,8 +24,8 @@ struct Snapshot;
 struct RecorderCounters {
   std::atomic<uint64_t> images{0};          ///< written
   std::atomic<uint64_t> events{0};          ///< written: bus frames, solutions, matches
-  std::atomic<uint64_t> images_dropped{0};  ///< for want of memory, or lost to a failure
-  std::atomic<uint64_t> events_lost{0};     ///< to a failure
+  std::atomic<uint64_t> images_dropped{0};  ///< no memory was free, or writing failed
+  std::atomic<uint64_t> events_lost{0};     ///< writing failed
   std::atomic<uint64_t> bytes{0};
   std::atomic<uint64_t> black_boxes{0};
   std::atomic<bool> failed{false};  ///< the disk refused to take more; nothing is recorded since

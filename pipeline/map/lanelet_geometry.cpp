@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "common/median.h"
 #include "common/plane.h"
 
 namespace bevloc {
@@ -130,6 +131,17 @@ Polyline centerline_between(const Polyline& left, const Polyline& right) {
         0.5 * (point_at(left, left_lengths, fraction) + point_at(right, right_lengths, fraction)));
   }
   return centerline;
+}
+
+Eigen::Vector2d median_point(const std::vector<Eigen::Vector2d>& points) {
+  Eigen::Vector2d middle;
+  std::vector<double> values;
+  for (int axis = 0; axis < 2; ++axis) {
+    values.clear();
+    for (const Eigen::Vector2d& point : points) values.push_back(point[axis]);
+    middle[axis] = median(values);
+  }
+  return middle;
 }
 
 double polyline_length(const Polyline& line) {

@@ -13,6 +13,7 @@
 #include <GeographicLib/UTMUPS.hpp>
 
 #include "common/median.h"
+#include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/map_check.h"
 
 namespace bevloc {
@@ -217,13 +218,10 @@ Result<std::vector<Eigen::Vector2d>> points_of(const OsmWay& way, const OsmDocum
 }
 
 std::optional<Eigen::Vector2d> shift_to_zero(NodePositions& nodes) {
-  std::vector<double> axes[2];
-  for (const auto& [id, position] : nodes.of_node) {
-    for (int axis = 0; axis < 2; ++axis) axes[axis].push_back(position[axis]);
-  }
-  if (axes[0].empty()) return std::nullopt;
-  Eigen::Vector2d middle;
-  for (int axis = 0; axis < 2; ++axis) middle[axis] = median(axes[axis]);
+  if (nodes.of_node.empty()) return std::nullopt;
+  std::vector<Eigen::Vector2d> points;
+  for (const auto& [id, position] : nodes.of_node) points.push_back(position);
+  const Eigen::Vector2d middle = median_point(points);
   if (middle.cwiseAbs().maxCoeff() <= kFarthestFromOriginM) return std::nullopt;
   const Eigen::Vector2d shift = -middle.array().round().matrix();
   for (auto& [id, position] : nodes.of_node) position += shift;

@@ -55,7 +55,7 @@ class RigBuilder {
     }
   }
 
-  /// Each place that is given must be of use.
+  /// Refuses a place that no imported camera needs.
   void check_places() const {
     for (const auto& [frame, place] : options_.vehicle_from) {
       if (is_ours(frame)) {
@@ -158,7 +158,7 @@ class RigBuilder {
     return given->second;
   }
 
-  /// Along the chain of parents, in either direction: a camera whose child has a known place has
+  /// Follows the chain of parents in both directions: a camera whose child has a known place has
   /// one, too. `visited` holds the files' names.
   std::optional<Se3> vehicle_from(const ImportedCamera& camera,
                                   std::set<std::string>& visited) const {

@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "common/median.h"
+
 namespace bevloc {
 namespace {
 
@@ -105,9 +107,7 @@ class ProfileReader {
     }
     magnitudes_.assign(slopes_.begin(), slopes_.end());
     for (float& value : magnitudes_) value = std::abs(value);
-    const auto middle = magnitudes_.begin() + static_cast<std::ptrdiff_t>(magnitudes_.size() / 2);
-    std::ranges::nth_element(magnitudes_, middle);
-    const float least = std::max(kLeastSlope, kOverNoise * *middle);
+    const float least = std::max(kLeastSlope, kOverNoise * median(magnitudes_));
     edges_.clear();
     for (size_t i = 1; i + 1 < slopes_.size(); ++i) {
       const float sign = slopes_[i] > 0.0F ? 1.0F : -1.0F;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -19,6 +20,9 @@ struct Area {
 /// The longest outline of an area. Outlines are sampled every 0.5 m, so a wrong coordinate would
 /// take minutes.
 inline constexpr double kLongestOutline_m = 200'000.0;
+
+/// Whether an outline can be sampled. If it is too long, the builder names `place` as left out.
+bool take_outline(const Line3& outline, std::string_view place, MapBuilder& builder);
 
 /// Immutable. Several threads may ask at the same time.
 class AreaCover {

@@ -191,11 +191,7 @@ class Argoverse2Reader {
         [&](const json& area, const JsonPath& path, const std::string& id) -> Status {
           auto ring = xyz_points(json_, member(area, "area_boundary"), path / "area_boundary", 3);
           if (!ring) return tl::unexpected(ring.error());
-          if (!(length_of(*ring) <= kLongestOutline_m)) {
-            builder_.leave_out(fmt::format("{}: found an outline of {:g} m, wanted at most {:g} m",
-                                           json_.place(path), length_of(*ring), kLongestOutline_m));
-            return {};
-          }
+          if (!take_outline(*ring, json_.place(path), builder_)) return {};
           areas.push_back({std::move(*ring)});
           ids.push_back(id);
           return {};

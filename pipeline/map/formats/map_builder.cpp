@@ -7,7 +7,6 @@
 
 #include <GeographicLib/LocalCartesian.hpp>
 
-#include "common/median.h"
 #include "common/plane.h"
 #include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/map_check.h"
@@ -18,19 +17,13 @@ namespace {
 /// Coordinates of a file that are further from zero are shifted.
 constexpr double kFarFromZero_m = 20'000.0;
 
-/// The median of each axis: a few wrong points do not move it.
+/// Zero if there are none.
 Eigen::Vector2d middle_of_elements(const HdMap& map) {
-  std::vector<double> axes[2];
+  std::vector<Eigen::Vector2d> points;
   for (const MapElement& element : map.elements) {
-    for (const Eigen::Vector2d& point : element.points) {
-      for (int axis = 0; axis < 2; ++axis) axes[axis].push_back(point[axis]);
-    }
+    points.insert(points.end(), element.points.begin(), element.points.end());
   }
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-  for (int axis = 0; axis < 2 && !axes[axis].empty(); ++axis) {
-    middle[axis] = median(axes[axis]);
-  }
-  return middle;
+  return points.empty() ? Eigen::Vector2d(0.0, 0.0) : median_point(points);
 }
 
 void move_points(HdMap& map, const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& moved) {

@@ -227,12 +227,8 @@ class NuscenesReader {
       for (size_t i = 0; tokens.is_array() && i < tokens.size(); ++i) {
         auto area = area_of(id_text(tokens[i]), path / "polygon_tokens" / i);
         if (!area) return tl::unexpected(area.error());
-        if (!(length_of(area->outer) <= kLongestOutline_m)) {
-          builder_.leave_out(fmt::format("{}: found an outline of {:g} m, wanted at most {:g} m",
-                                         json_.place(path / "polygon_tokens" / i),
-                                         length_of(area->outer), kLongestOutline_m));
-          continue;
-        }
+        const std::string place = json_.place(path / "polygon_tokens" / i);
+        if (!take_outline(area->outer, place, builder_)) continue;
         areas.push_back(std::move(*area));
         names.push_back("drivable_area " + text_member(record, "token"));
       }

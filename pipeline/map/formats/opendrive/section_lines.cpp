@@ -25,8 +25,8 @@ std::vector<double> changes_in(const Road& road, const LaneSection& section, con
   }
   std::erase_if(at, [&](double s) { return s < part.start_m || s > part.end_m; });
   std::ranges::sort(at);
-  constexpr double kSamePoint_m = 1e-6;
-  const auto is_same = [](double a, double b) { return b - a < kSamePoint_m; };
+  constexpr double kSamePlace_m = 1e-6;
+  const auto is_same = [](double a, double b) { return b - a < kSamePlace_m; };
   at.erase(std::unique(at.begin(), at.end(), is_same), at.end());
   return at;
 }
