@@ -45,6 +45,7 @@ from training.nuscenes.errors import NuscenesError
 from training.options import parse_config
 from training.precision import choose_precision, cpu_flags
 from training.progress import Progress
+from training.read_ahead import ReadAhead
 from training.run_table import append_row
 from training.solver import DEFINITION, estimate, standardise
 from training.sources import training_stream, validation_set
@@ -120,7 +121,7 @@ class Trainer:
             self._load()
         self.validation = validation
         self._check_patience()
-        self.stream = make_stream(config, self.samples, processes.share)
+        self.stream = ReadAhead(make_stream(config, self.samples, processes.share), self.device)
 
     @property
     def checkpoint_path(self) -> Path:
@@ -258,7 +259,7 @@ class Trainer:
         began = time.monotonic()
         batch = self.stream.next(self.config.batch // self.processes.count)
         self.waited_s = time.monotonic() - began
-        return batch.to(self.device)
+        return batch
 
     def _refuse_not_finite(self, losses: Tensor, norm: Tensor) -> None:
         """NotFiniteError if a loss or the gradient's norm is not finite. The arguments are
