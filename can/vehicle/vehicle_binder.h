@@ -38,8 +38,11 @@ struct ProtectionRequest {
   std::string counter{};                      ///< a signal; empty: none
   std::optional<uint32_t> highest_counter{};  ///< default: all bits of the counter set
   std::string checksum{};                     ///< a signal; empty: none
-  ChecksumKind kind = ChecksumKind::kNone;
+  std::optional<ChecksumKind> kind{};
   std::vector<uint16_t> data_ids{};
+
+  /// Otherwise the attributes of the DBC file say how the message is protected.
+  bool replaces_attributes() const { return kind || !counter.empty(); }
 };
 
 /// Fills a VehicleBinding. Signals are named "Signal" or "Message.Signal". Misspelt names are
@@ -79,7 +82,7 @@ class VehicleBinder {
                                const DbcMessage*& message) const;
   size_t bind(const DbcMessage& message, const DbcSignal& signal);
   size_t bind_message(const DbcMessage& message);
-  bool is_requested(const std::string& message) const;
+  const ProtectionRequest* request_of(const std::string& message) const;
   Bound<const DbcSignal*> protecting(const std::string& signal, const std::string& message) const;
   Bound<void> set_counter(const ProtectionRequest& request, MessageProtection& protection) const;
   Bound<void> finish_message(BoundMessage& message);

@@ -43,13 +43,17 @@ int highest_data_id(ChecksumKind kind) {
 
 Bound<void> check_data_ids(const ProtectionRequest& request) {
   const size_t ids = request.data_ids.size();
-  const bool is_p02 = request.kind == ChecksumKind::kE2eP02;
-  const bool is_profile = is_p02 || request.kind == ChecksumKind::kE2eP05;
+  const ChecksumKind kind = request.kind.value_or(ChecksumKind::kNone);
+  const bool is_p02 = kind == ChecksumKind::kE2eP02;
+  const bool is_profile = is_p02 || kind == ChecksumKind::kE2eP05;
   if (is_profile && ids != 1 && ids != (is_p02 ? 16 : 1)) {
     return refusal(fmt::format("{} data ids", ids), "data_id, or 16 data_ids for profile P02");
   }
+  if (kind == ChecksumKind::kNone && ids > 0) {
+    return refusal("data ids without a checksum", "an algorithm beside them");
+  }
   for (const uint16_t id : request.data_ids) {
-    if (id > highest_data_id(request.kind)) {
+    if (id > highest_data_id(kind)) {
       return refusal(fmt::format("data id {}", id), "at most 255; only e2e_p05 has 16 bits");
     }
   }
@@ -99,8 +103,9 @@ FrameBits bits_of(const BoundSignal& signal) {
 
 }  // namespace
 
-bool VehicleBinder::is_requested(const std::string& message) const {
-  return std::ranges::find(requests_, message, &ProtectionRequest::message) != requests_.end();
+const ProtectionRequest* VehicleBinder::request_of(const std::string& message) const {
+  const auto found = std::ranges::find(requests_, message, &ProtectionRequest::message);
+  return found == requests_.end() ? nullptr : &*found;
 }
 
 /// Finds the signal of a counter or checksum, which every frame of the message must contain.
@@ -144,13 +149,13 @@ Bound<void> VehicleBinder::protect(const ProtectionRequest& request) {
   if (bound == binding_.messages.end()) {
     return refusal(*name, "a message that odometry or GNSS uses");
   }
-  if (is_requested(*name)) {
+  if (request_of(*name) != nullptr) {
     return refusal(fmt::format("a second entry for {}", *name), "one for each message");
   }
   if (auto good = check_data_ids(request); !good) return good;
   if (request.cycle_ms) bound->cycle = from_seconds(1e-3 * *request.cycle_ms);
   MessageProtection& protection = bound->protection;
-  protection.checksum = request.kind;
+  protection.checksum = request.kind.value_or(ChecksumKind::kNone);
   protection.data_ids = request.data_ids;
   if (auto good = set_counter(request, protection); !good) return good;
   if (!request.checksum.empty()) {
@@ -218,7 +223,8 @@ Bound<void> VehicleBinder::finish_message(BoundMessage& message) {
     return refusal(fmt::format("{} bytes", message.length),
                    "a length of CAN frames: 0 to 8, 12, 16, 20, 24, 32, 48 or 64 bytes");
   }
-  if (!is_requested(message.name)) {
+  const ProtectionRequest* request = request_of(message.name);
+  if (request == nullptr || !request->replaces_attributes()) {
     auto protection = protect_by_attributes(*dbc_.find(message.name), message);
     if (!protection) return protection;
   }

@@ -189,7 +189,7 @@ can::ProtectionRequest read_protection_request(YamlMap& yaml) {
   can::ProtectionRequest request;
   request.message = yaml.require<std::string>("message", some_name());
   if (yaml.has("cycle_ms")) request.cycle_ms = yaml.require<double>("cycle_ms", between(1.0, 5e3));
-  request.kind =
+  const auto kind =
       yaml.optional_choice<can::ChecksumKind>("algorithm", can::ChecksumKind::kNone,
                                               {{"none", can::ChecksumKind::kNone},
                                                {"xor", can::ChecksumKind::kXor},
@@ -197,9 +197,9 @@ can::ProtectionRequest read_protection_request(YamlMap& yaml) {
                                                {"crc8_h2f", can::ChecksumKind::kCrc8H2f},
                                                {"e2e_p02", can::ChecksumKind::kE2eP02},
                                                {"e2e_p05", can::ChecksumKind::kE2eP05}});
-  const bool is_profile =
-      request.kind == can::ChecksumKind::kE2eP02 || request.kind == can::ChecksumKind::kE2eP05;
-  const bool has_checksum = request.kind != can::ChecksumKind::kNone && !is_profile;
+  if (yaml.has("algorithm")) request.kind = kind;
+  const bool is_profile = kind == can::ChecksumKind::kE2eP02 || kind == can::ChecksumKind::kE2eP05;
+  const bool has_checksum = kind != can::ChecksumKind::kNone && !is_profile;
   if (yaml.has("counter")) request.counter = yaml.require<std::string>("counter");
   if (yaml.has("checksum")) request.checksum = yaml.require<std::string>("checksum", some_name());
   if (yaml.has("highest_counter")) {

@@ -72,6 +72,8 @@ TEST_F(VehicleBinderTest, RefusesDataIdsThatTheChecksumDoesNotHold) {
     EXPECT_EQ(protect({.message = "A", .kind = kind, .data_ids = {256}}),
               "data id 256, wanted at most 255; only e2e_p05 has 16 bits");
   }
+  EXPECT_EQ(protect({.message = "A", .data_ids = {3}}),
+            "data ids without a checksum, wanted an algorithm beside them");
   std::vector<uint16_t> ids(16, 3);
   ids.back() = 777;
   EXPECT_NE(protect({.message = "A", .kind = ChecksumKind::kE2eP02, .data_ids = ids}), "");
@@ -92,6 +94,23 @@ TEST_F(VehicleBinderTest, RefusesDataIdsOfAttributesLikewise) {
   EXPECT_EQ(finish_with("P02", 255), "");
   EXPECT_EQ(finish_with("P05", 333), "");
   EXPECT_EQ(finish_with("P05", 65536), "E2EDataId 65536, wanted 0 to 65535 for profile P05");
+}
+
+TEST_F(VehicleBinderTest, AnEntryReplacesTheProfileOfAttributesOnlyIfItSaysHow) {
+  const Dbc dbc = dbc_of(kBus +
+                         "BA_ \"E2EProfile\" BO_ 16 \"P02\";\n"
+                         "BA_ \"E2EDataId\" BO_ 16 7;\n");
+  const auto checksum_with = [&](const ProtectionRequest& request) {
+    VehicleBinder binder(dbc);
+    binder.binding().wheels.wheels = {
+        {*binder.quantity("Other", "A", Quantity::kSpeed, ""), WheelPlace::kVehicle}};
+    EXPECT_EQ(error_of(binder.protect(request)), "");
+    const auto binding = binder.finish();
+    EXPECT_TRUE(binding);
+    return binding ? binding->messages[0].protection.checksum : ChecksumKind::kXor;
+  };
+  EXPECT_EQ(checksum_with({.message = "A", .cycle_ms = 10.0}), ChecksumKind::kE2eP02);
+  EXPECT_EQ(checksum_with({.message = "A", .kind = ChecksumKind::kNone}), ChecksumKind::kNone);
 }
 
 TEST_F(VehicleBinderTest, RefusesASecondEntryForAMessage) {
