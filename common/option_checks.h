@@ -40,7 +40,7 @@ inline CLI::Validator whole_number() {
   return {check, "", ""};
 }
 
-/// A name that is not empty, as that of an unset variable of a script is. `wanted`: "a folder".
+/// Refuses an empty name, which an unset variable of a script gives. `wanted`: "a folder".
 inline CLI::Validator name_of(const std::string& wanted) {
   const auto check = [wanted](const std::string& text) -> std::string {
     return text.empty() ? fmt::format("found an empty name, wanted {}", wanted) : "";
@@ -48,8 +48,8 @@ inline CLI::Validator name_of(const std::string& wanted) {
   return {check, "", ""};
 }
 
-/// The name of a file to write. Refuses "-" (standard output), where the file would mix with what
-/// the command prints.
+/// Requires the name of a file to write. Refuses "-", which means standard output, because the file
+/// would mix with what the command prints.
 inline CLI::Validator output_file() {
   const auto check = [](const std::string& text) -> std::string {
     if (text.empty()) return "found an empty name, wanted a file to write";

@@ -12,8 +12,8 @@ from training.data import Batch, Stream
 class ReadAhead:
     """A Stream whose batches all have the same size and lie on `device`.
 
-    One thread reads and copies them, one batch ahead, because a GPU would wait for that. The
-    samples and their order are those of `stream`."""
+    A thread reads the next batch and copies it to the device, so that a GPU does not wait for
+    either. The samples and their order are those of `stream`."""
 
     def __init__(self, stream: Stream, device: torch.device) -> None:
         self._stream = stream

@@ -41,7 +41,8 @@ struct ProtectionRequest {
   std::optional<ChecksumKind> kind{};
   std::vector<uint16_t> data_ids{};
 
-  /// Otherwise the attributes of the DBC file say how the message is protected.
+  /// True if this says how the message is protected. If it does not, the attributes of the DBC file
+  /// do.
   bool replaces_attributes() const { return kind || !counter.empty(); }
 };
 

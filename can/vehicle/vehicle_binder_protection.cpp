@@ -108,7 +108,7 @@ const ProtectionRequest* VehicleBinder::request_of(const std::string& message) c
   return found == requests_.end() ? nullptr : &*found;
 }
 
-/// Finds the signal of a counter or checksum, which every frame of the message must contain.
+/// Finds the signal of a counter or checksum. Every frame of the message must contain it.
 Bound<const DbcSignal*> VehicleBinder::protecting(const std::string& signal,
                                                   const std::string& message) const {
   const DbcMessage* of = nullptr;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "pipeline/map/lanelet_geometry.h"
+
 namespace bevloc::bench {
 namespace {
 
@@ -14,11 +16,7 @@ constexpr double kGap_m = 100.0;
 
 double road_km(const MapElement& element) {
   if (element.element_class != ElementClass::kRoadBoundary) return 0.0;
-  double length_m = 0.0;
-  for (size_t i = 1; i < element.points.size(); ++i) {
-    length_m += (element.points[i] - element.points[i - 1]).norm();
-  }
-  return 0.5 * length_m / kM_per_km;
+  return 0.5 * polyline_length(element.points) / kM_per_km;
 }
 
 double distance_m(const MapElement& element, const Eigen::Vector2d& place) {

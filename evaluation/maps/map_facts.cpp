@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/map/class_names.h"
+#include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/line_neighbours.h"
 #include "pipeline/map/map_checksum.h"
 #include "pipeline/map/map_summary.h"
@@ -23,12 +24,6 @@ constexpr double kShortLine_m = 0.1;
 constexpr double kReach_m = 15.0;
 /// Lanes may lack lines beside them along this share.
 constexpr double kMostBare = 0.02;
-
-double length_of_points(const Points& points) {
-  double length_m = 0.0;
-  for (size_t i = 1; i < points.size(); ++i) length_m += (points[i] - points[i - 1]).norm();
-  return length_m;
-}
 
 /// Numbers of elements, the first few of many.
 std::string list_of(const std::vector<size_t>& numbers) {
@@ -66,7 +61,7 @@ void find_bare_lanes(const HdMap& map, std::vector<std::string>& faults) {
   std::vector<size_t> worst;
   for (size_t i = 0; i < map.lanes.size(); ++i) {
     const Points& center = map.lanes[i].centerline;
-    const double length_m = length_of_points(center);
+    const double length_m = polyline_length(center);
     const double bare =
         length_m > 0.0 ? 1.0 - lines.share_beside(center, kReach_m, [](int64_t) { return true; })
                        : 0.0;
@@ -82,7 +77,7 @@ void find_bare_lanes(const HdMap& map, std::vector<std::string>& faults) {
 }  // namespace
 
 double length_of(const MapElement& element) {
-  const double length_m = length_of_points(element.points);
+  const double length_m = polyline_length(element.points);
   const bool is_ring =
       element.element_class == ElementClass::kPedestrianCrossing && element.points.size() > 2;
   return is_ring ? length_m + (element.points.front() - element.points.back()).norm() : length_m;
@@ -106,7 +101,7 @@ MapFacts facts_of(const HdMap& map) {
       facts.high = facts.high.cwiseMax(point);
     }
   }
-  for (const Lane& lane : map.lanes) facts.lanes_m += length_of_points(lane.centerline);
+  for (const Lane& lane : map.lanes) facts.lanes_m += polyline_length(lane.centerline);
   return facts;
 }
 

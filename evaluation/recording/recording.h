@@ -30,8 +30,8 @@ struct MessagePlace {
 /// and of the messages themselves those of a few chunks. One thread.
 class Recording {
  public:
-  /// Fails if a file is no recording of bevloc, or if two files are of different runs. If
-  /// a chunk is damaged, only what comes before it in its file is read.
+  /// Fails if a file is no recording of bevloc, or if two files are of different runs. Reads a file
+  /// with a damaged chunk only up to that chunk.
   static Result<Recording> open(const std::vector<std::filesystem::path>& files);
 
   /// The places of all messages of a topic, in the order of time.

@@ -135,8 +135,8 @@ std::string place_of_entry(const fs::path& log, size_t entry) {
   return fmt::format("{}:{}", log.string(), number);
 }
 
-/// Refuses a log whose clock jumps. The replay of a jump, such as from 1970 to today, would not
-/// end. Lines of several interfaces may be a little out of order.
+/// Refuses a log whose clock jumps, for example from 1970 to today, because its replay would take
+/// as long as the jump. Lines of several interfaces may be a little out of order.
 Status check_times(const std::vector<can::CandumpEntry>& entries, const fs::path& log) {
   constexpr Duration kLongestGap = std::chrono::seconds(60);
   constexpr Duration kFarthestBack = std::chrono::seconds(1);

@@ -20,7 +20,7 @@ namespace {
 
 constexpr time_t kPatience_s = 3;
 
-/// Tries to connect and returns the reason of the system, which httplib does not give.
+/// Tries to connect, and returns why the system cannot. httplib does not say why.
 std::string connection_error(const std::string& address, int port) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_STREAM;

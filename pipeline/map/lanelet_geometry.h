@@ -23,9 +23,11 @@ void align_bounds(Polyline& left, Polyline& right);
 /// The line midway between two aligned bounds, with points at most 2 m apart.
 Polyline centerline_between(const Polyline& left, const Polyline& right);
 
-/// The median of each axis: a few wrong points do not move it. There must be a point.
+/// The median of the x and the median of the y coordinates. A few wrong points hardly change it.
+/// `points` must not be empty.
 Eigen::Vector2d median_point(const std::vector<Eigen::Vector2d>& points);
 
+/// In metres.
 double polyline_length(const Polyline& line);
 
 /// The area of a ring without a repeated corner.

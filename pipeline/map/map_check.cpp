@@ -3,20 +3,21 @@
 #include <algorithm>
 #include <string_view>
 
+#include "pipeline/map/lanelet_geometry.h"
+
 namespace bevloc {
 namespace {
 
 Status check_polyline(const std::vector<Eigen::Vector2d>& points, std::string_view what,
                       size_t index, const std::string& file) {
-  double length_m = 0.0;
   for (size_t i = 0; i < points.size(); ++i) {
     // Not finite numbers fail this comparison, too.
     if (!(points[i].cwiseAbs().maxCoeff() <= kFarthestFromOriginM)) {
       return fail("{}: {} {}: found a point ({:g}, {:g}) m from the origin, wanted at most {:g} m",
                   file, what, index, points[i].x(), points[i].y(), kFarthestFromOriginM);
     }
-    if (i > 0) length_m += (points[i] - points[i - 1]).norm();
   }
+  const double length_m = polyline_length(points);
   if (length_m <= kLongestPolylineM) return {};
   return fail("{}: {} {}: found a line of {:g} m, wanted at most {:g} m", file, what, index,
               length_m, kLongestPolylineM);

@@ -21,7 +21,8 @@ struct Area {
 /// take minutes.
 inline constexpr double kLongestOutline_m = 200'000.0;
 
-/// Whether an outline can be sampled. If it is too long, the builder names `place` as left out.
+/// True if the outline is short enough to be sampled. If it is not, the builder reports that the
+/// area at `place` was left out.
 bool take_outline(const Line3& outline, std::string_view place, MapBuilder& builder);
 
 /// Immutable. Several threads may ask at the same time.

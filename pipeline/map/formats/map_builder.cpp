@@ -17,7 +17,7 @@ namespace {
 /// Coordinates of a file that are further from zero are shifted.
 constexpr double kFarFromZero_m = 20'000.0;
 
-/// Zero if there are none.
+/// The median of all points; (0, 0) if there are none.
 Eigen::Vector2d middle_of_elements(const HdMap& map) {
   std::vector<Eigen::Vector2d> points;
   for (const MapElement& element : map.elements) {

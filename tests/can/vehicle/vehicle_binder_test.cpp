@@ -96,7 +96,7 @@ TEST_F(VehicleBinderTest, RefusesDataIdsOfAttributesLikewise) {
   EXPECT_EQ(finish_with("P05", 65536), "E2EDataId 65536, wanted 0 to 65535 for profile P05");
 }
 
-TEST_F(VehicleBinderTest, AnEntryReplacesTheProfileOfAttributesOnlyIfItSaysHow) {
+TEST_F(VehicleBinderTest, AnEntryKeepsTheProfileOfTheDbcUnlessItNamesAnAlgorithm) {
   const Dbc dbc = dbc_of(kBus +
                          "BA_ \"E2EProfile\" BO_ 16 \"P02\";\n"
                          "BA_ \"E2EDataId\" BO_ 16 7;\n");
