@@ -76,7 +76,7 @@ bool Health::is_unprotected(const HealthInputs& inputs) const {
 }
 
 bool Health::has_enough_matches(const HealthInputs& inputs) const {
-  return inputs.gnss_confirms && inputs.accepted_in_a_row >= limits_.corrections_to_track;
+  return inputs.start_confirmed && inputs.accepted_in_a_row >= limits_.corrections_to_track;
 }
 
 bool Health::is_within_alert_limits(const HealthInputs& inputs) const {

@@ -54,7 +54,7 @@ struct HealthInputs {
   Verdict verdict;                    ///< of the arbiter
   bool odometry_implausible = false;  ///< the latest odometry sample was refused (OdometryMonitor)
   bool foreign_sender = false;        ///< somebody else sends our messages or the vehicle's
-  bool gnss_confirms = true;          ///< GNSS is near enough to trust a new pose
+  bool start_confirmed = true;        ///< matches and GNSS say enough to trust a new pose
   bool clock_gap = false;             ///< time has jumped
   bool calibration_fault = false;     ///< a camera is not where the calibration has it
   bool overloaded = false;            ///< framesets were skipped for the latest one

@@ -18,8 +18,7 @@ Seen EvidenceMonitor::judge(MatchResult& match) {
   mean_score_ += kGain * (match.score - mean_score_);
   Seen seen;
   for (int axis = 0; axis < 3; ++axis) {
-    const double growth = std::clamp(
-        limits_.good_axis_score / std::max(match.axis_score(axis), 1e-6), 1.0, limits_.max_growth);
+    const double growth = growth_of(match.axis_score(axis));
     match.covariance.row(axis) *= growth;
     match.covariance.col(axis) *= growth;
     seen.at_border(axis) = match.edge_mass(axis) > limits_.max_edge_mass;
@@ -31,8 +30,11 @@ Seen EvidenceMonitor::judge(MatchResult& match) {
   seen.heading = is_seen(2);
   seen.unique = match.rival_peak.y() <= limits_.max_rival_peak;
   seen.place = mean_score_ >= limits_.min_score;
-  seen.clear = mean_score_ >= limits_.min_start_score;
   return seen;
+}
+
+double EvidenceMonitor::growth_of(double axis_score) const {
+  return std::clamp(limits_.good_axis_score / std::max(axis_score, 1e-6), 1.0, limits_.max_growth);
 }
 
 void forget_border(const Seen& seen, MatchResult& match) {

@@ -16,8 +16,6 @@ struct EvidenceLimits {
   double max_rival_peak = 0.7;
   /// Mean score of the recent matches that confirms the place.
   double min_score = 0.20;
-  /// The same for a new pose: before the first trust a wrong place must be ruled out.
-  double min_start_score = 0.25;
   /// Below this score of an axis its answer often belongs to another place along the axis, and its
   /// standard deviation grows in proportion.
   double good_axis_score = 0.12;
@@ -30,15 +28,14 @@ struct Seen {
   bool heading = false;
   bool unique = false;  ///< no other place in the search range looks alike across the road
   bool place = false;   ///< perceived and mapped lines lie on each other (mean score)
-  bool clear = false;   ///< they lie on each other well enough for a first trust (mean score)
   /// Axes on which the best place is at the border of the search range: the truth may lie outside.
   Eigen::Array<bool, 3, 1> at_border{false, false, false};
 
   /// Confirms a pose that is already trusted. Along the road and of the heading there is often
   /// nothing to see for seconds; dead reckoning then carries the pose, and its sigma grows.
   bool confirms() const { return across && place; }
-  /// Confirms a new pose.
-  bool confirms_start() const { return confirms() && clear && heading && unique; }
+  /// Speaks for a new pose (StartEvidence).
+  bool confirms_start() const { return confirms() && heading && unique; }
 };
 
 /// Keeps the mean score of the recent matches. Allocates nothing. One thread.
@@ -48,6 +45,9 @@ class EvidenceMonitor {
 
   /// Judges a match, and widens each axis of `match` that has a low score.
   Seen judge(MatchResult& match);
+
+  /// By how much the standard deviation of an axis grows because of its score.
+  double growth_of(double axis_score) const;
 
   double mean_score() const { return mean_score_; }
   void reset() { mean_score_ = 0.0; }

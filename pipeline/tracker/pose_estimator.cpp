@@ -30,6 +30,7 @@ TrackerUpdate PoseEstimator::add(const VehicleSample& sample) {
   if (const auto* gnss = std::get_if<GnssSample>(&sample)) return add_gnss(*gnss);
   const OdometrySample& odometry = std::get<OdometrySample>(sample);
   if (!odometry_monitor_.accept(odometry)) return TrackerUpdate::kImplausible;
+  start_evidence_.add(odometry);
   return tracker_.add_odometry(odometry);
 }
 
@@ -77,7 +78,10 @@ PoseEstimator::MatchOutcome PoseEstimator::add_match(Time frame_time, const Se2&
   MatchResult judged = match;
   MatchOutcome outcome;
   outcome.seen = evidence_.judge(judged);
-  if (!outcome.seen.place) return outcome;
+  if (!outcome.seen.place) {
+    weigh_start(match, outcome);
+    return outcome;
+  }
   const bool trusted = arbiter_.trusts_match();
   // If the best place lies at the border of the search, the match does not say where the vehicle
   // is. But it contradicts the estimate if the gate refuses that place.
@@ -94,10 +98,25 @@ PoseEstimator::MatchOutcome PoseEstimator::add_match(Time frame_time, const Se2&
   arbiter_.add_match(frame_time, tracker_.latest_innovation(), passes);
   if (!trusted) outcome.update = TrackerUpdate::kGated;
   if (passes && trusted) match_passed_ = frame_time;
+  weigh_start(match, outcome);
   return outcome;
 }
 
+void PoseEstimator::weigh_start(const MatchResult& match, const MatchOutcome& outcome) {
+  if (outcome.update == TrackerUpdate::kGated || outcome.seen.at_border.y()) {
+    // While the pose is valid, the arbiter judges a refused match.
+    if (!pose_valid_) start_evidence_.reset();
+    return;
+  }
+  start_evidence_.add({.score = match.score,
+                       .along_score = match.axis_score.x(),
+                       .along_growth = evidence_.growth_of(match.axis_score.x()),
+                       .sees = outcome.seen.confirms_start()});
+}
+
 void PoseEstimator::judge(Time now, bool pose_valid) {
+  const bool is_lost = pose_valid_ && !pose_valid;
+  if (is_lost && is_contradicted()) start_evidence_.reset();
   pose_valid_ = pose_valid;
   trusted_ = trusted_ || pose_valid;
   const bool odometry_was_wrong = verdict_.odometry_contradicts;
@@ -130,6 +149,15 @@ std::optional<TrackedPose> PoseEstimator::pose_at(Time time) const {
   return pose;
 }
 
+bool PoseEstimator::confirms_start() const {
+  return gnss_confirms() && start_evidence_.suffices(tracker_.gnss_error(), gnss_sigma_.x());
+}
+
+bool PoseEstimator::is_contradicted() const {
+  return verdict_.undecided || verdict_.odometry_contradicts || verdict_.match_contradicts ||
+         odometry_monitor_.implausible();
+}
+
 bool PoseEstimator::gnss_confirms() const {
   if (!gnss_passed_ || gnss_refused_in_a_row_ > 0) return false;
   const Eigen::Vector3d error = tracker_.gnss_error().cwiseAbs();
@@ -157,6 +185,7 @@ void PoseEstimator::restart() {
   tracker_.restart();
   arbiter_.reset();
   evidence_.reset();
+  start_evidence_.reset();
   trusted_ = false;
   gnss_refused_in_a_row_ = 0;
   match_passed_.reset();

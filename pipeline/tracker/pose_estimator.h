@@ -12,6 +12,7 @@
 #include "pipeline/tracker/map_offset_monitor.h"
 #include "pipeline/tracker/odometry_monitor.h"
 #include "pipeline/tracker/protection_level.h"
+#include "pipeline/tracker/start_evidence.h"
 #include "pipeline/tracker/tracker.h"
 
 namespace bevloc {
@@ -49,8 +50,8 @@ class PoseEstimator {
   const MapOffsetMonitor& map_offset() const { return map_offset_; }
   bool odometry_implausible() const { return odometry_monitor_.implausible(); }
 
-  /// Whether GNSS is near enough for a first trust in the pose.
-  bool gnss_confirms() const;
+  /// Whether GNSS is near enough for a first trust in the pose, and the matches have shown enough.
+  bool confirms_start() const;
 
   /// The bounds of the error of `pose` at `parameters.integrity_risk`: (longitudinal m, lateral m,
   /// yaw rad).
@@ -68,6 +69,10 @@ class PoseEstimator {
  private:
   TrackerUpdate add_gnss(const GnssSample& received);
   std::optional<GnssSample::Yaw> yaw_at(Time time) const;
+  void weigh_start(const MatchResult& match, const MatchOutcome& outcome);
+  bool gnss_confirms() const;
+  /// Whether a voter disagrees, so that the pose may be that of another place.
+  bool is_contradicted() const;
   bool gnss_refutes() const;
   void compare_map(const GnssSample& sample);
 
@@ -76,6 +81,7 @@ class PoseEstimator {
   MapOffsetMonitor map_offset_;
   OdometryMonitor odometry_monitor_;
   EvidenceMonitor evidence_;
+  StartEvidence start_evidence_;
   Verdict verdict_;
   bool pose_valid_ = false;
   bool trusted_ = false;  ///< the pose has been valid since the start or restart

@@ -129,7 +129,7 @@ TEST(HealthTest, SaysWhatANewPoseLacks) {
   few_matches.accepted_in_a_row = HealthLimits().corrections_to_track - 1;
   EXPECT_EQ(reason_with(few_matches), WhyMask(Why::kMatchUncertain));
   HealthInputs far_from_gnss = healthy();
-  far_from_gnss.gnss_confirms = false;
+  far_from_gnss.start_confirmed = false;
   EXPECT_EQ(reason_with(far_from_gnss), WhyMask(Why::kMatchUncertain));
   HealthInputs wide = healthy();
   wide.lateral_sigma_m = 0.3 * HealthLimits().alert_limit.y();
@@ -202,7 +202,7 @@ TEST(HealthTest, RefusedCorrectionsInARowLose) {
 TEST(HealthTest, ANewPoseFarFromGnssIsNotTracked) {
   Health health{HealthLimits()};
   HealthInputs inputs = healthy();
-  inputs.gnss_confirms = false;
+  inputs.start_confirmed = false;
   for (int i = 0; i < 5; ++i) health.update(inputs);
   EXPECT_EQ(health.state(), HealthState::kAcquiring);
   EXPECT_TRUE(health.why().has(Why::kMatchUncertain));

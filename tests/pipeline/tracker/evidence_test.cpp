@@ -75,13 +75,12 @@ TEST(EvidenceTest, WidensAnAxisWithALowScore) {
   EXPECT_EQ(match.covariance(1, 1), good_match().covariance(1, 1));
 }
 
-TEST(EvidenceTest, AStartNeedsABetterScore) {
-  EvidenceMonitor monitor;
-  MatchResult match = good_match();
-  match.score = 0.22;
-  const Seen seen = judge_repeatedly(monitor, match);
-  EXPECT_TRUE(seen.confirms());
-  EXPECT_FALSE(seen.confirms_start());
+TEST(EvidenceTest, TheGrowthFollowsTheScoreUpToALimit) {
+  const EvidenceMonitor monitor;
+  EXPECT_EQ(monitor.growth_of(0.3), 1.0);
+  EXPECT_NEAR(monitor.growth_of(0.06), 2.0, 1e-12);
+  EXPECT_EQ(monitor.growth_of(0.0), EvidenceLimits().max_growth);
+  EXPECT_EQ(monitor.growth_of(-0.2), EvidenceLimits().max_growth);
 }
 
 }  // namespace

@@ -76,6 +76,92 @@ TEST_F(PoseEstimatorTest, AMatchAtTheBorderContradictsAPoseOfAnotherPlace) {
   EXPECT_GT(std::sqrt(pose.covariance(2, 2)), radians(0.9)) << "covers half the offset";
 }
 
+/// A vehicle that has no trusted pose yet, with GNSS `gnss_error_m_` to the left of the true place.
+class PoseEstimatorStartTest : public testing::Test {
+ protected:
+  /// Drives while matches find the place `beside_m` to the left of the true one.
+  void drive(double duration_s, double beside_m, double score, double along_score) {
+    for (int i = 0; i < static_cast<int>(duration_s * 50.0); ++i) {
+      time_s_ += 0.02;
+      const Se2 truth = vehicle_.drive_to(time_s_);
+      estimator_.add(vehicle_.odometry(time_s_));
+      if (i % 5 != 0) continue;
+      estimator_.add(gnss_beside(truth));
+      const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
+      MatchResult match = vehicle_.correction_from(prior);
+      match.correction = match.correction * Se2{0.0, beside_m, 0.0};
+      match.score = score;
+      match.axis_score = {along_score, 0.35, 0.35};
+      estimator_.add_match(at_s(time_s_), prior, match);
+      estimator_.judge(at_s(time_s_), false);
+    }
+  }
+
+  GnssSample gnss_beside(const Se2& truth) {
+    GnssSample gnss = vehicle_.gnss();
+    const Se2 beside = truth * Se2{0.0, gnss_error_m_, 0.0};
+    gnss.east_m = beside.x_m;
+    gnss.north_m = beside.y_m;
+    gnss.sigma_east_m = gnss.sigma_north_m = 1.2;
+    gnss.yaw->sigma_rad = radians(1.0);
+    return gnss;
+  }
+
+  SimulatedVehicle vehicle_{{}, 1};
+  PoseEstimator estimator_{TrackerParameters()};
+  double gnss_error_m_ = 0.0;
+  double time_s_ = 0.0;
+};
+
+TEST_F(PoseEstimatorStartTest, GoodMatchesNearGnssConfirmAStart) {
+  drive(2.0, 0.0, 0.33, 0.3);
+  EXPECT_TRUE(estimator_.confirms_start());
+}
+
+TEST_F(PoseEstimatorStartTest, AnotherLaneThatLooksAlikeAcrossTheRoadConfirmsNoStart) {
+  gnss_error_m_ = 2.2;
+  for (int second = 0; second < 30; ++second) {
+    drive(1.0, 0.0, 0.25, 0.04);
+    EXPECT_FALSE(estimator_.confirms_start()) << second;
+  }
+}
+
+TEST_F(PoseEstimatorStartTest, APoseThatIsLostWithoutAContradictionKeepsItsEvidence) {
+  drive(10.0, 0.0, 0.33, 0.3);
+  estimator_.judge(at_s(time_s_), true);
+  estimator_.judge(at_s(time_s_), false);
+  EXPECT_TRUE(estimator_.confirms_start());
+}
+
+TEST_F(PoseEstimatorStartTest, APoseThatIsLostBecauseOfImplausibleOdometryNeedsNewEvidence) {
+  drive(10.0, 0.0, 0.33, 0.3);
+  estimator_.judge(at_s(time_s_), true);
+  OdometrySample slipping = vehicle_.odometry(time_s_ + 0.02);
+  slipping.speed_mps *= 3.0;
+  ASSERT_EQ(estimator_.add(slipping), TrackerUpdate::kImplausible);
+  estimator_.judge(at_s(time_s_), false);
+  EXPECT_FALSE(estimator_.confirms_start());
+}
+
+TEST_F(PoseEstimatorStartTest, ARefusedMatchTakesNothingFromAValidPose) {
+  drive(10.0, 0.0, 0.33, 0.3);
+  estimator_.judge(at_s(time_s_), true);
+  const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
+  MatchResult match = vehicle_.correction_from(prior);
+  match.correction = match.correction * Se2{0.0, 3.5, 0.0};
+  match.score = 0.33;
+  match.axis_score.setConstant(0.3);
+  ASSERT_EQ(estimator_.add_match(at_s(time_s_), prior, match).update, TrackerUpdate::kGated);
+  EXPECT_TRUE(estimator_.confirms_start());
+}
+
+TEST_F(PoseEstimatorStartTest, ARefusedMatchTakesTheEvidenceAway) {
+  drive(10.0, 0.0, 0.33, 0.3);
+  ASSERT_TRUE(estimator_.confirms_start());
+  drive(0.1, 3.5, 0.33, 0.3);
+  EXPECT_FALSE(estimator_.confirms_start());
+}
+
 /// The position of an antenna counts as that of the rear axle would.
 TEST(PoseEstimatorAntennaTest, MovesThePositionWithItsOwnYaw) {
   SimulatedVehicle vehicle({}, 1);
