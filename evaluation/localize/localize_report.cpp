@@ -77,8 +77,8 @@ std::string text_of(const Localization& localization) {
     text += fmt::format("{:14} {:+11.3f} {:9.3f} {:9.2f} {:9.2f}\n", kAxes[at], correction[at],
                         sigma[at], match.evidence_share(axis), match.axis_score(axis));
   }
-  text += fmt::format("score of the whole match: {:.2f} (bevlocd tracks from {:.2f})\n", match.score,
-                      EvidenceLimits().min_score);
+  text += fmt::format("score of the whole match: {:.2f} (bevlocd tracks from {:.2f})\n",
+                      match.score, EvidenceLimits().min_score);
   return text + lines_of(localization.perception);
 }
 
