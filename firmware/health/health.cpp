@@ -10,6 +10,8 @@ constexpr double kSigmasToTrack = 4.0;
 /// A pose without matches is trusted for this long, unless match or GNSS is excluded. In drives
 /// without a fault, shorter times without a match are common.
 constexpr Duration kTrustedDeadReckoning = std::chrono::seconds(3);
+/// The filter knows the bias of the yaw rate only after this time.
+constexpr Duration kNewPose = std::chrono::seconds(10);
 
 }  // namespace
 
@@ -69,7 +71,8 @@ bool Health::is_too_uncertain(const HealthInputs& inputs) const {
 /// Dead reckoning alone may be wrong by its whole protection level.
 bool Health::is_unprotected(const HealthInputs& inputs) const {
   const bool disputed = inputs.verdict.match_contradicts || inputs.verdict.gnss_contradicts;
-  const Duration trusted = disputed ? limits_.correction_timeout : kTrustedDeadReckoning;
+  const bool is_new = inputs.valid_age < kNewPose;
+  const Duration trusted = disputed || is_new ? limits_.correction_timeout : kTrustedDeadReckoning;
   return inputs.correction_age > trusted &&
          (inputs.protection_level.y() > limits_.alert_limit.y() ||
           inputs.protection_level.z() > limits_.alert_limit.z());

@@ -30,7 +30,8 @@ struct HealthLimits {
   /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert
   /// limits of a freeway. A new pose becomes valid only if its error is well within them. After 3 s
   /// without a match, the pose is lost if its protection level across or of heading exceeds them;
-  /// while match or GNSS is excluded, already after `correction_timeout`.
+  /// already after `correction_timeout` while match or GNSS is excluded, and in the first 10 s of a
+  /// pose.
   Eigen::Vector3d alert_limit = kFreewayAlertLimits;
   /// For the protection levels that are sent with the pose.
   ProtectionParameters protection;
@@ -49,6 +50,7 @@ struct HealthInputs {
   bool cameras_unsynchronized = false;  ///< in the latest frameset (Synchrony)
   bool map_nearby = true;               ///< the map has elements around the prior
   bool latest_correction_refused = false;
+  Duration valid_age = Duration::max();  ///< since the pose became valid, while it is
   int accepted_in_a_row = 0;
   int refused_in_a_row = 0;
   Verdict verdict;                    ///< of the arbiter

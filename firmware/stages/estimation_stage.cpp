@@ -204,6 +204,7 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
   inputs.odometry_age = age(odometry_time_, now);
   inputs.gnss_age = age(gnss_time_, now);
   inputs.correction_age = age(confirmed_time_, now);
+  inputs.valid_age = age(valid_since_, now);
   if (latest_report_) {
     inputs.cameras_present = latest_report_->present;
     inputs.cameras_unsynchronized = latest_report_->unsynchronized;
@@ -237,6 +238,11 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
   if (health_.update(inputs) && health_.state() == HealthState::kLost) {
     accepted_in_a_row_ = 0;
     refused_in_a_row_ = 0;
+  }
+  if (!health_.pose_valid()) {
+    valid_since_.reset();
+  } else if (!valid_since_) {
+    valid_since_ = now;
   }
   counters_.state = health_.state();
   counters_.why = health_.why().bits();

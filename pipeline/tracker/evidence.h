@@ -34,7 +34,7 @@ struct Seen {
   /// Confirms a pose that is already trusted. Along the road and of the heading there is often
   /// nothing to see for seconds; dead reckoning then carries the pose, and its sigma grows.
   bool confirms() const { return across && place; }
-  /// Speaks for a new pose (StartEvidence).
+  /// Speaks for a new pose (StartConfirmation).
   bool confirms_start() const { return confirms() && heading && unique; }
 };
 

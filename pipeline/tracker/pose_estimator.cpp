@@ -30,7 +30,7 @@ TrackerUpdate PoseEstimator::add(const VehicleSample& sample) {
   if (const auto* gnss = std::get_if<GnssSample>(&sample)) return add_gnss(*gnss);
   const OdometrySample& odometry = std::get<OdometrySample>(sample);
   if (!odometry_monitor_.accept(odometry)) return TrackerUpdate::kImplausible;
-  start_evidence_.add(odometry);
+  start_confirmation_.add(odometry);
   return tracker_.add_odometry(odometry);
 }
 
@@ -105,18 +105,18 @@ PoseEstimator::MatchOutcome PoseEstimator::add_match(Time frame_time, const Se2&
 void PoseEstimator::weigh_start(const MatchResult& match, const MatchOutcome& outcome) {
   if (outcome.update == TrackerUpdate::kGated || outcome.seen.at_border.y()) {
     // While the pose is valid, the arbiter judges a refused match.
-    if (!pose_valid_) start_evidence_.reset();
+    if (!pose_valid_) start_confirmation_.reset();
     return;
   }
-  start_evidence_.add({.score = match.score,
-                       .along_score = match.axis_score.x(),
-                       .along_growth = evidence_.growth_of(match.axis_score.x()),
-                       .sees = outcome.seen.confirms_start()});
+  start_confirmation_.add({.score = match.score,
+                           .along_score = match.axis_score.x(),
+                           .along_growth = evidence_.growth_of(match.axis_score.x()),
+                           .sees = outcome.seen.confirms_start()});
 }
 
 void PoseEstimator::judge(Time now, bool pose_valid) {
   const bool is_lost = pose_valid_ && !pose_valid;
-  if (is_lost && is_contradicted()) start_evidence_.reset();
+  if (is_lost && is_contradicted()) start_confirmation_.reset();
   pose_valid_ = pose_valid;
   trusted_ = trusted_ || pose_valid;
   const bool odometry_was_wrong = verdict_.odometry_contradicts;
@@ -150,7 +150,7 @@ std::optional<TrackedPose> PoseEstimator::pose_at(Time time) const {
 }
 
 bool PoseEstimator::confirms_start() const {
-  return gnss_confirms() && start_evidence_.suffices(tracker_.gnss_error(), gnss_sigma_.x());
+  return gnss_confirms() && start_confirmation_.confirms(tracker_.gnss_error(), gnss_sigma_.x());
 }
 
 bool PoseEstimator::is_contradicted() const {
@@ -185,7 +185,7 @@ void PoseEstimator::restart() {
   tracker_.restart();
   arbiter_.reset();
   evidence_.reset();
-  start_evidence_.reset();
+  start_confirmation_.reset();
   trusted_ = false;
   gnss_refused_in_a_row_ = 0;
   match_passed_.reset();

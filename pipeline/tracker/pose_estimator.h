@@ -12,7 +12,7 @@
 #include "pipeline/tracker/map_offset_monitor.h"
 #include "pipeline/tracker/odometry_monitor.h"
 #include "pipeline/tracker/protection_level.h"
-#include "pipeline/tracker/start_evidence.h"
+#include "pipeline/tracker/start_confirmation.h"
 #include "pipeline/tracker/tracker.h"
 
 namespace bevloc {
@@ -81,7 +81,7 @@ class PoseEstimator {
   MapOffsetMonitor map_offset_;
   OdometryMonitor odometry_monitor_;
   EvidenceMonitor evidence_;
-  StartEvidence start_evidence_;
+  StartConfirmation start_confirmation_;
   Verdict verdict_;
   bool pose_valid_ = false;
   bool trusted_ = false;  ///< the pose has been valid since the start or restart

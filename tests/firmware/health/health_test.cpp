@@ -65,6 +65,20 @@ TEST(HealthTest, LosesAPoseSoonerThatOnlyOdometrySupports) {
   }
 }
 
+TEST(HealthTest, LosesANewPoseSooner) {
+  const HealthLimits limits;
+  const Duration soon = limits.correction_timeout + milliseconds(1);
+  HealthInputs inputs = unmatched(soon, limits.alert_limit.y() + 0.01, 0.0);
+  inputs.valid_age = std::chrono::seconds(10);
+  Health known = tracking();
+  known.update(inputs);
+  EXPECT_EQ(known.state(), HealthState::kDegraded);
+  inputs.valid_age = milliseconds(9999);
+  Health health = tracking();
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kLost);
+}
+
 TEST(HealthTest, KeepsAProtectedPoseAlsoWhileAVoterIsExcluded) {
   const HealthLimits limits;
   HealthInputs inputs = unmatched(milliseconds(2900), limits.alert_limit.y() - 0.01, 0.0);

@@ -126,14 +126,14 @@ TEST_F(PoseEstimatorStartTest, AnotherLaneThatLooksAlikeAcrossTheRoadConfirmsNoS
   }
 }
 
-TEST_F(PoseEstimatorStartTest, APoseThatIsLostWithoutAContradictionKeepsItsEvidence) {
+TEST_F(PoseEstimatorStartTest, APoseThatIsLostWithoutAContradictionKeepsItsSupport) {
   drive(10.0, 0.0, 0.33, 0.3);
   estimator_.judge(at_s(time_s_), true);
   estimator_.judge(at_s(time_s_), false);
   EXPECT_TRUE(estimator_.confirms_start());
 }
 
-TEST_F(PoseEstimatorStartTest, APoseThatIsLostBecauseOfImplausibleOdometryNeedsNewEvidence) {
+TEST_F(PoseEstimatorStartTest, APoseThatIsLostBecauseOfImplausibleOdometryNeedsNewSupport) {
   drive(10.0, 0.0, 0.33, 0.3);
   estimator_.judge(at_s(time_s_), true);
   OdometrySample slipping = vehicle_.odometry(time_s_ + 0.02);
@@ -155,7 +155,7 @@ TEST_F(PoseEstimatorStartTest, ARefusedMatchTakesNothingFromAValidPose) {
   EXPECT_TRUE(estimator_.confirms_start());
 }
 
-TEST_F(PoseEstimatorStartTest, ARefusedMatchTakesTheEvidenceAway) {
+TEST_F(PoseEstimatorStartTest, ARefusedMatchTakesTheSupportAway) {
   drive(10.0, 0.0, 0.33, 0.3);
   ASSERT_TRUE(estimator_.confirms_start());
   drive(0.1, 3.5, 0.33, 0.3);

@@ -1,4 +1,4 @@
-#include "pipeline/tracker/start_evidence.h"
+#include "pipeline/tracker/start_confirmation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr double kNeutralScore = 0.20;
 constexpr double kNeutralAlongScore = 0.15;
 /// Scores far beyond the neutral ones are rarer at wrong places than their distance says.
 constexpr double kSquareWeight = 20.0;
-/// The evidence that a start needs where GNSS agrees, and how much more it needs for each squared
+/// The support that a start needs where GNSS agrees, and how much more it needs for each squared
 /// standard deviation of the GNSS error.
 constexpr double kNeeded = 0.5;
 constexpr double kNeededPerSquaredSigma = 4.0;
@@ -27,14 +27,14 @@ constexpr double kMatchesPerMetre = 1.0;
 /// The distance driven between two samples of odometry counts for at most this time.
 constexpr double kLongestStep_s = 0.5;
 
-/// The evidence of a score that is `beyond` the neutral one.
-double evidence_of(double beyond) {
+/// The support of a score that is `beyond` the neutral one.
+double support_of(double beyond) {
   return beyond > 0.0 ? beyond + kSquareWeight * beyond * beyond : 0.0;
 }
 
 }  // namespace
 
-void StartEvidence::add(const OdometrySample& odometry) {
+void StartConfirmation::add(const OdometrySample& odometry) {
   if (odometry_time_) {
     const double step_s = std::min(to_seconds(odometry.time - *odometry_time_), kLongestStep_s);
     const double driven_m = std::abs(odometry.speed_mps) * std::max(step_s, 0.0);
@@ -43,27 +43,27 @@ void StartEvidence::add(const OdometrySample& odometry) {
   odometry_time_ = odometry.time;
 }
 
-void StartEvidence::add(const StartMatch& match) {
+void StartConfirmation::add(const StartMatch& match) {
   if (countable_ < 1.0) return;
   countable_ -= 1.0;
-  sum_ *= 1.0 - 1.0 / kMemory_matches;
+  support_ *= 1.0 - 1.0 / kMemory_matches;
   const double beyond = match.score - kNeutralScore;
-  sum_ = std::max(sum_ + std::min(beyond, 0.0), 0.0);
+  support_ = std::max(support_ + std::min(beyond, 0.0), 0.0);
   if (match.sees) {
-    sum_ += evidence_of(beyond) / match.along_growth +
-            evidence_of(match.along_score - kNeutralAlongScore);
+    support_ += support_of(beyond) / match.along_growth +
+                support_of(match.along_score - kNeutralAlongScore);
   }
 }
 
-void StartEvidence::reset() {
-  sum_ = 0.0;
+void StartConfirmation::reset() {
+  support_ = 0.0;
   countable_ = kMostMatches;
 }
 
-bool StartEvidence::suffices(const Eigen::Vector3d& gnss_error, double gnss_sigma_m) const {
-  const double farthest = gnss_error.head<2>().cwiseAbs().maxCoeff() *
-                          std::min(gnss_sigma_m / kLeastGnssSigma_m, 1.0);
-  return sum_ >= kNeeded + kNeededPerSquaredSigma * farthest * farthest;
+bool StartConfirmation::confirms(const Eigen::Vector3d& gnss_error, double gnss_sigma_m) const {
+  const double farthest =
+      gnss_error.head<2>().cwiseAbs().maxCoeff() * std::min(gnss_sigma_m / kLeastGnssSigma_m, 1.0);
+  return support_ >= kNeeded + kNeededPerSquaredSigma * farthest * farthest;
 }
 
 }  // namespace bevloc

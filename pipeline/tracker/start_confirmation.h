@@ -1,4 +1,4 @@
-// Weighs what speaks for a new pose, until it may be trusted for the first time.
+// Decides when matches and GNSS together confirm a new pose.
 #pragma once
 
 #include <optional>
@@ -18,29 +18,30 @@ struct StartMatch {
 };
 
 /// One lane looks like the next for a while: a match beside the right lane has a good score across
-/// the road, and a low one along it, because crossings and line ends do not fit. The evidence of
-/// the matches therefore adds up, as in a sequential test (Wald, "Sequential Tests of Statistical
+/// the road, and a low one along it, because crossings and line ends do not fit. The support that
+/// matches give therefore adds up, as in a sequential test (Wald, "Sequential Tests of Statistical
 /// Hypotheses", 1945), until it outweighs the distance between the pose and GNSS.
 ///
 /// Allocates nothing. One thread.
-class StartEvidence {
+class StartConfirmation {
  public:
   /// A standing vehicle sees the same in every match, so only the first ones count.
   void add(const OdometrySample& odometry);
 
-  /// Adds a match that the tracker has not refused. A low score takes evidence away.
+  /// Adds a match that the tracker has not refused. A low score takes support away.
   void add(const StartMatch& match);
 
   /// Forgets what was seen: a match was refused, or the pose begins again.
   void reset();
 
-  /// `gnss_error`: Tracker::gnss_error(). `gnss_sigma_m`: standard deviation of the position.
-  bool suffices(const Eigen::Vector3d& gnss_error, double gnss_sigma_m) const;
+  /// Whether the support suffices. `gnss_error`: Tracker::gnss_error(). `gnss_sigma_m`: standard
+  /// deviation of the position.
+  bool confirms(const Eigen::Vector3d& gnss_error, double gnss_sigma_m) const;
 
  private:
   static constexpr double kMostMatches = 20.0;
 
-  double sum_ = 0.0;
+  double support_ = 0.0;
   double countable_ = kMostMatches;  ///< matches that may still count before the vehicle drives on
   std::optional<Time> odometry_time_;
 };
