@@ -119,7 +119,7 @@ class EstimationStage {
   std::optional<Time> accepted_frame_time_;  ///< frameset of the latest accepted correction
   std::optional<Time> confirmed_time_;       ///< the same, of those with evidence across
   std::optional<Time> valid_since_;
-  std::optional<Time> unsent_correction_;    ///< the same, until a pose was published
+  std::optional<Time> unsent_correction_;  ///< the same, until a pose was published
   std::optional<VisionReport> latest_report_;
   Time latest_report_arrival_;
   bool latest_stamps_jumped_ = false;
