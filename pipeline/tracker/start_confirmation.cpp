@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/tracker/evidence.h"
+
 namespace bevloc {
 namespace {
 
-/// A match with this score says nothing: the right place has a higher one, a wrong place a lower
-/// one (EvidenceLimits).
-constexpr double kNeutralScore = 0.20;
-/// The same for the score along the road. Where nothing crosses the road, the right place has no
-/// more than a wrong one.
+/// A match with this score tells nothing about the place. The right place mostly has a higher
+/// score, and a wrong place has a lower one.
+constexpr double kNeutralScore = EvidenceLimits().min_score;
+/// The same for the score along the road. Where nothing crosses the road, the right place may have
+/// a score as low as that of a wrong place.
 constexpr double kNeutralAlongScore = 0.15;
-/// Scores far beyond the neutral ones are rarer at wrong places than their distance says.
+/// Weight of the square of a score beyond the neutral one. Wrong places hardly ever have scores far
+/// beyond it.
 constexpr double kSquareWeight = 20.0;
 /// The support that a start needs where GNSS agrees, and how much more it needs for each squared
 /// standard deviation of the GNSS error.

@@ -11,7 +11,7 @@ const Eigen::Vector3d kOneLaneFromGnss{0.3, 2.0, 0.0};
 
 /// A match at the right place, on a road that nothing crosses.
 constexpr StartMatch kRight{.score = 0.33, .sees = true};
-/// One lane beside it: the lines along the road lie on each other, all else does not.
+/// One lane beside it: the lines along the road lie on each other, but nothing else does.
 constexpr StartMatch kLaneBeside{
     .score = 0.25, .along_score = 0.04, .along_growth = 3.0, .sees = true};
 
