@@ -36,8 +36,18 @@ constexpr double kLeastSeen_s = 15.0;
 // more.
 constexpr double kContradictingShare = 0.4;
 constexpr double kAgreeingShare = 0.5;
+/// A camera contradicts the map after this long below kContradictingShare. Right ones were below it
+/// for up to 1 s where the road showed other lines than the map.
+constexpr double kLeastContradicted_s = 4.0;
+// Where parked vehicles or grass hide one side of the road, both cameras of that side were below it
+// for up to 23 s. While the other one agrees by less than kWellAgreeingShare, time counts a tenth.
+constexpr double kWellAgreeingShare = 0.7;
+constexpr double kHiddenSideRate = 0.1;
 /// Of the median camera; below, nothing is known about any camera.
 constexpr double kLeastMedian = 0.1;
+
+/// The other camera that sees the same side of the road; -1 for the front and the back one.
+constexpr std::array<int, kCameraCount> kSameSide = {3, -1, 5, 0, -1, 2};
 
 double agreement(const SeenByCamera& seen) {
   const double squares = seen.map_square * seen.bev_square;
@@ -85,7 +95,7 @@ bool OnlineCalibration::observe(const CalibrationObservation& observation) {
            kept * sum.bev_square + now.bev_square};
   }
   seen_s_ += step_s;
-  judge_agreement(seen_);
+  judge_agreement(step_s);
   // Two cameras in each other's place would pull the estimates of all.
   if (!learns || contradicting_.any()) return false;
   filter_.update(information_, used_, step_s);
@@ -113,18 +123,27 @@ bool OnlineCalibration::is_clear(const CalibrationObservation& observation) cons
          match.covariance(2, 2) < kLargestYawSigma_rad * kLargestYawSigma_rad;
 }
 
-void OnlineCalibration::judge_agreement(const std::array<SeenByCamera, kCameraCount>& seen) {
+void OnlineCalibration::judge_agreement(double step_s) {
   if (seen_s_ < kLeastSeen_s) return;
-  std::array<double, kCameraCount> agreements{};
-  std::ranges::transform(seen, agreements.begin(), agreement);
-  std::array<double, kCameraCount> sorted = agreements;
+  std::array<double, kCameraCount> shares{};
+  std::ranges::transform(seen_, shares.begin(), agreement);
+  std::array<double, kCameraCount> sorted = shares;
   std::ranges::sort(sorted);
   // The better of the two in the middle: two swapped cameras leave four good ones.
   const double median = sorted[kCameraCount / 2];
   if (median < kLeastMedian) return;
+  for (double& share : shares) share /= median;
   for (int camera = 0; camera < kCameraCount; ++camera) {
     const double limit = contradicting_[camera] ? kAgreeingShare : kContradictingShare;
-    contradicting_[camera] = agreements[camera] < limit * median;
+    if (shares[camera] >= limit) {
+      contradicted_s_[camera] = 0.0;
+      contradicting_[camera] = false;
+      continue;
+    }
+    const int other = kSameSide[camera];
+    const bool is_side_hidden = other >= 0 && shares[other] < kWellAgreeingShare;
+    contradicted_s_[camera] += is_side_hidden ? kHiddenSideRate * step_s : step_s;
+    contradicting_[camera] = contradicted_s_[camera] >= kLeastContradicted_s;
   }
 }
 

@@ -68,7 +68,7 @@ class OnlineCalibration {
  private:
   void learn_heading(const CalibrationObservation& observation, bool is_clear);
   bool is_clear(const CalibrationObservation& observation) const;
-  void judge_agreement(const std::array<SeenByCamera, kCameraCount>& seen);
+  void judge_agreement(double step_s);
   void judge_bounds();
   /// Returns whether the used errors change.
   bool use_again(const ExtrinsicErrors& errors);
@@ -86,6 +86,7 @@ class OnlineCalibration {
   std::optional<Time> observed_;  ///< the time of the latest observation that was computed
   std::array<SeenByCamera, kCameraCount> seen_{};  ///< sums that fade over some seconds of driving
   double seen_s_ = 0.0;                            ///< driving time in them
+  std::array<double, kCameraCount> contradicted_s_{};  ///< for so long, without a break
   CameraMask beyond_bounds_;
   CameraMask contradicting_;
 };

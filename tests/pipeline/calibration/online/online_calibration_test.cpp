@@ -71,12 +71,36 @@ TEST(OnlineCalibration, RestoresWhatIsWithinTheBounds) {
   EXPECT_EQ(calibration.used_errors(), kSmallError);
 }
 
+TEST(OnlineCalibration, NamesACameraOnlyAfterItHasContradictedTheMapForSomeSeconds) {
+  DemoDriver driver;
+  driver.drive(ExtrinsicErrors::Zero(), 150);
+  const auto named_after_s = [&driver] {
+    for (int after_s = 1; after_s <= 60; ++after_s) {
+      driver.drive(ExtrinsicErrors::Zero(), 10, CameraMask().set(0));
+      if (driver.calibration().contradicting().any()) return after_s;
+    }
+    return 0;
+  };
+  const int crossed_s = 11;  // its agreement falls below the limit
+  EXPECT_GE(named_after_s(), crossed_s + 3);
+}
+
+TEST(OnlineCalibration, NamesTwoCamerasOfOneSideLater) {
+  const CameraMask left = CameraMask().set(0).set(3);
+  DemoDriver driver;
+  driver.tracking = false;
+  driver.drive(ExtrinsicErrors::Zero(), 450, left);
+  EXPECT_TRUE(driver.calibration().faults().none()) << "parked vehicles may hide that side";
+  driver.drive(ExtrinsicErrors::Zero(), 150, left);
+  EXPECT_EQ(driver.calibration().contradicting(), left);
+}
+
 TEST(OnlineCalibration, NamesCamerasThatShowAnotherRoad) {
   DemoDriver driver;
   driver.tracking = false;
   driver.drive(ExtrinsicErrors::Zero(), 100, CameraMask().set(1).set(4));
   EXPECT_TRUE(driver.calibration().contradicting().none()) << "too early to say";
-  driver.drive(ExtrinsicErrors::Zero(), 100, CameraMask().set(1).set(4));
+  driver.drive(ExtrinsicErrors::Zero(), 120, CameraMask().set(1).set(4));
   EXPECT_TRUE(driver.calibration().contradicting()[1]);
   EXPECT_TRUE(driver.calibration().contradicting()[4]);
   driver.drive(ExtrinsicErrors::Zero(), 1000);
