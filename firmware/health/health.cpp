@@ -10,8 +10,10 @@ constexpr double kSigmasToTrack = 4.0;
 /// A pose without matches is trusted for this long, unless match or GNSS is excluded. In drives
 /// without a fault, shorter times without a match are common.
 constexpr Duration kTrustedDeadReckoning = std::chrono::seconds(3);
-/// The filter knows the bias of the yaw rate only after this time.
-constexpr Duration kNewPose = std::chrono::seconds(10);
+/// A new pose without matches is trusted for a shorter time, because the filter does not know the
+/// bias of the yaw rate yet.
+constexpr Duration kNewPose = std::chrono::seconds(5);
+constexpr Duration kTrustedNewPose = std::chrono::seconds(2);
 
 }  // namespace
 
@@ -72,7 +74,8 @@ bool Health::is_too_uncertain(const HealthInputs& inputs) const {
 bool Health::is_unprotected(const HealthInputs& inputs) const {
   const bool disputed = inputs.verdict.match_contradicts || inputs.verdict.gnss_contradicts;
   const bool is_new = inputs.valid_age < kNewPose;
-  const Duration trusted = disputed || is_new ? limits_.correction_timeout : kTrustedDeadReckoning;
+  const Duration undisputed = is_new ? kTrustedNewPose : kTrustedDeadReckoning;
+  const Duration trusted = disputed ? limits_.correction_timeout : undisputed;
   return inputs.correction_age > trusted &&
          (inputs.protection_level.y() > limits_.alert_limit.y() ||
           inputs.protection_level.z() > limits_.alert_limit.z());

@@ -30,8 +30,8 @@ struct HealthLimits {
   /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert
   /// limits of a freeway. A new pose becomes valid only if its error is well within them. After 3 s
   /// without a match, the pose is lost if its protection level across or of heading exceeds them;
-  /// already after `correction_timeout` while match or GNSS is excluded, and in the first 10 s of a
-  /// pose.
+  /// after 2 s in the first 5 s of a pose, and after `correction_timeout` while match or GNSS is
+  /// excluded.
   Eigen::Vector3d alert_limit = kFreewayAlertLimits;
   /// For the protection levels that are sent with the pose.
   ProtectionParameters protection;

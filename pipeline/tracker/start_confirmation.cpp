@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/tracker/evidence.h"
-
 namespace bevloc {
 namespace {
 
 /// A match with this score tells nothing about the place. The right place mostly has a higher
-/// score, and a wrong place has a lower one.
-constexpr double kNeutralScore = EvidenceLimits().min_score;
+/// score, and a wrong place has a lower one. Found, like those below, for the shipped network.
+constexpr double kNeutralScore = 0.18;
 /// The same for the score along the road. Where nothing crosses the road, the right place may have
 /// a score as low as that of a wrong place.
-constexpr double kNeutralAlongScore = 0.15;
+constexpr double kNeutralAlongScore = 0.14;
 /// Weight of the square of a score beyond the neutral one. Wrong places hardly ever have scores far
 /// beyond it.
 constexpr double kSquareWeight = 20.0;

@@ -66,17 +66,17 @@ TEST(HealthTest, LosesAPoseSoonerThatOnlyOdometrySupports) {
 }
 
 TEST(HealthTest, LosesANewPoseSooner) {
-  const HealthLimits limits;
-  const Duration soon = limits.correction_timeout + milliseconds(1);
-  HealthInputs inputs = unmatched(soon, limits.alert_limit.y() + 0.01, 0.0);
-  inputs.valid_age = std::chrono::seconds(10);
-  Health known = tracking();
-  known.update(inputs);
-  EXPECT_EQ(known.state(), HealthState::kDegraded);
-  inputs.valid_age = milliseconds(9999);
-  Health health = tracking();
-  health.update(inputs);
-  EXPECT_EQ(health.state(), HealthState::kLost);
+  const double beyond_m = HealthLimits().alert_limit.y() + 0.01;
+  const auto state_after = [beyond_m](Duration correction_age, Duration valid_age) {
+    HealthInputs inputs = unmatched(correction_age, beyond_m, 0.0);
+    inputs.valid_age = valid_age;
+    Health health = tracking();
+    health.update(inputs);
+    return health.state();
+  };
+  EXPECT_EQ(state_after(milliseconds(2001), milliseconds(4999)), HealthState::kLost);
+  EXPECT_EQ(state_after(milliseconds(2000), milliseconds(4999)), HealthState::kDegraded);
+  EXPECT_EQ(state_after(milliseconds(2001), milliseconds(5000)), HealthState::kDegraded);
 }
 
 TEST(HealthTest, KeepsAProtectedPoseAlsoWhileAVoterIsExcluded) {

@@ -47,7 +47,7 @@ TEST_F(StartConfirmationTest, ALaneBesideNeverConfirmsWhereGnssIsALaneAway) {
 }
 
 TEST_F(StartConfirmationTest, ALowScoreConfirmsOnlyAfterALongerWay) {
-  constexpr StartMatch kWorn{.score = 0.23, .sees = true};
+  constexpr StartMatch kWorn{.score = 0.21, .sees = true};
   see(kWorn, 10);
   EXPECT_FALSE(confirms(kGnssAgrees));
   see(kWorn, 20);
