@@ -57,15 +57,18 @@ def _draw_losses(axes: plt.Axes, title: str, curves: Table, names: tuple[str, ..
 
 
 def draw(run: Path, out: Path) -> None:
-    """Writes a figure with six panels, made from curves.csv and validation.csv of a run."""
+    """Writes a figure with the losses in curves.csv of a run and, if there is one, the errors in its
+    validation.csv."""
     curves = read_table(run / "curves.csv")
-    figure, panels = plt.subplots(2, 3, figsize=(14, 6.5), constrained_layout=True)
+    validated = (run / "validation.csv").exists()
+    columns = 3 if validated else 2
+    figure, panels = plt.subplots(2, columns, figsize=(4.7 * columns, 6.5), constrained_layout=True)
     for axes, (title, names) in zip(panels.flat, _LOSS_PANELS):
         _draw_losses(axes, title, curves, names)
-    for axes, (title, names) in zip(panels.flat[len(_LOSS_PANELS) :], _VALIDATION_PANELS):
-        axes.set_title(title)
-        if (run / "validation.csv").exists():
-            validation = read_table(run / "validation.csv")
+    if validated:
+        validation = read_table(run / "validation.csv")
+        for axes, (title, names) in zip(panels.flat[len(_LOSS_PANELS) :], _VALIDATION_PANELS):
+            axes.set_title(title)
             for name in names:
                 axes.plot(validation["samples"] / 1000, validation[name], marker=".", label=name)
     for axes in panels.flat:
