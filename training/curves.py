@@ -57,12 +57,13 @@ def _draw_losses(axes: plt.Axes, title: str, curves: Table, names: tuple[str, ..
 
 
 def draw(run: Path, out: Path) -> None:
-    """Writes a figure with the losses in curves.csv of a run and, if there is one, the errors in its
-    validation.csv."""
+    """Writes a figure with the losses in curves.csv of a run, and with the errors in its
+    validation.csv if there is one."""
     curves = read_table(run / "curves.csv")
     validated = (run / "validation.csv").exists()
     columns = 3 if validated else 2
-    figure, panels = plt.subplots(2, columns, figsize=(4.7 * columns, 6.5), constrained_layout=True)
+    size = (4.7 * columns, 6.5)
+    figure, panels = plt.subplots(2, columns, figsize=size, constrained_layout=True)
     for axes, (title, names) in zip(panels.flat, _LOSS_PANELS):
         _draw_losses(axes, title, curves, names)
     if validated:
