@@ -32,15 +32,15 @@ constexpr double kCertainSigmas = 0.5;
 // Agreement of a camera with the map: ZNCC over the cells that it sees, against the median camera.
 constexpr double kFade_s = 20.0;
 constexpr double kLeastSeen_s = 15.0;
-// Swapped cameras agree with the map by at most 0.3 of the median camera, right ones by 0.6 and
-// more.
+// Swapped cameras mostly agree with the map by less than 0.4 of the median camera, right ones by
+// 0.6 and more.
 constexpr double kContradictingShare = 0.4;
 constexpr double kAgreeingShare = 0.5;
-/// A camera contradicts the map after this long below kContradictingShare. Right ones were below it
-/// for up to 1 s where the road showed other lines than the map.
+/// A camera contradicts the map if its share is below kContradictingShare for this long. In drives
+/// without a fault, the share of a single camera was below it for up to 1 s.
 constexpr double kLeastContradicted_s = 4.0;
-// Where parked vehicles or grass hide one side of the road, both cameras of that side were below it
-// for up to 23 s. While the other one agrees by less than kWellAgreeingShare, time counts a tenth.
+// In such drives, the shares of both cameras of one side were below it for up to 23 s. While the
+// other camera's share is below kWellAgreeingShare, time counts a tenth.
 constexpr double kWellAgreeingShare = 0.7;
 constexpr double kHiddenSideRate = 0.1;
 /// Of the median camera; below, nothing is known about any camera.
