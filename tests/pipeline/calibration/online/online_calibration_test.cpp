@@ -90,7 +90,8 @@ TEST(OnlineCalibration, NamesTwoCamerasOfOneSideLater) {
   DemoDriver driver;
   driver.tracking = false;
   driver.drive(ExtrinsicErrors::Zero(), 450, left);
-  EXPECT_TRUE(driver.calibration().faults().none()) << "the road may differ from the map on that side";
+  EXPECT_TRUE(driver.calibration().faults().none())
+      << "the road may differ from the map on that side";
   driver.drive(ExtrinsicErrors::Zero(), 150, left);
   EXPECT_EQ(driver.calibration().contradicting(), left);
 }
