@@ -36,9 +36,9 @@ class ScoreValley:
         f_y = (f[:, :, 1:-1, :-2] - f[:, :, 1:-1, 2:]) / (2 * cell_m)
         # All channels of a cell share its position, so products are summed over channels first.
         products = ((f_x * f_x).sum(1), (f_x * f_y).sum(1), (f_y * f_y).sum(1))
-        xx, xy, yy = (product.double().cpu() for product in products)  # [batch, row, col]
-        x = (0.5 * rows - 0.5 - torch.arange(1, rows - 1, dtype=torch.float64))[:, None] * cell_m
-        y = (0.5 * cols - 0.5 - torch.arange(1, cols - 1, dtype=torch.float64)) * cell_m
+        xx, xy, yy = (product.double() for product in products)  # [batch, row, col]
+        x = (0.5 * rows - 0.5 - torch.arange(1, rows - 1).to(xx))[:, None] * cell_m
+        y = (0.5 * cols - 0.5 - torch.arange(1, cols - 1).to(xx)) * cell_m
         x_turn, y_turn = x * xy - y * xx, x * yy - y * xy
         turn_turn = x * y_turn - y * x_turn
         rows_of_h = ((xx, xy, x_turn), (xy, yy, y_turn), (x_turn, y_turn, turn_turn))
@@ -48,19 +48,23 @@ class ScoreValley:
     def _curvature_at(self, pose: Tensor) -> Tensor:
         """H at `pose` (x m, y m, yaw rad), [batch, 3]. A rotation about the pose equals a rotation
         about the grid's centre plus a shift by (y, -x)."""
-        middle_from_here = torch.eye(3, dtype=torch.float64).repeat(len(pose), 1, 1)
-        middle_from_here[:, 0, 2] = pose[:, 1].double().cpu()
-        middle_from_here[:, 1, 2] = -pose[:, 0].double().cpu()
+        middle_from_here = torch.eye(3).to(self._curvature).repeat(len(pose), 1, 1)
+        middle_from_here[:, 0, 2] = pose[:, 1].double()
+        middle_from_here[:, 1, 2] = -pose[:, 0].double()
         curvature = middle_from_here.transpose(1, 2) @ self._curvature @ middle_from_here
-        trace = (curvature.diagonal(dim1=1, dim2=2) @ self._uniform).clamp(min=_LEAST_TRACE)
-        return curvature + _RIDGE * trace[:, None, None] * torch.diag(1 / self._uniform)
+        uniform = self._uniform.to(curvature)
+        trace = (curvature.diagonal(dim1=1, dim2=2) @ uniform).clamp(min=_LEAST_TRACE)
+        return curvature + _RIDGE * trace[:, None, None] * torch.diag(1 / uniform)
 
     def along_x(self, pose: Tensor) -> Tensor:
         """The displacement that moves x by 1 m, with the best y and yaw, [batch, 3]."""
         curvature = self._curvature_at(pose)
-        others = -torch.linalg.solve(curvature[:, 1:, 1:], curvature[:, 1:, :1])[:, :, 0]
-        one = torch.ones(len(pose), 1, dtype=torch.float64)
-        return torch.cat((one, others), dim=1).to(pose)
+        yy, yaw_y, yaw_yaw = curvature[:, 1, 1], curvature[:, 1, 2], curvature[:, 2, 2]
+        y_x, yaw_x = curvature[:, 1, 0], curvature[:, 2, 0]
+        determinant = yy * yaw_yaw - yaw_y * yaw_y
+        y = (yaw_y * yaw_x - yaw_yaw * y_x) / determinant
+        yaw = (yaw_y * y_x - yy * yaw_x) / determinant
+        return torch.stack((torch.ones_like(y), y, yaw), dim=1).to(pose)
 
     def along_yaw(self, pose: Tensor) -> Tensor:
         """The displacement that turns by 1 rad with the best y and unchanged x, [batch, 3]."""
