@@ -79,7 +79,7 @@ PriorScores score_priors(PictureLocalizer& localizer, const Se2& truth, int prio
                          within(range.yaw_rad.range)};
     const Localization localization = localizer.localize(truth * correction.inverse());
     scores.priors.push_back(judge(Se2{}, correction));
-    scores.matches.push_back(judge(localizer.solution(), range, correction));
+    scores.matches.push_back(judge_pose(localizer.solution(), range, correction));
     scores.without_evidence += localization.match.evidence == Evidence::kNone;
     show_progress(i + 1, priors, "priors");
   }

@@ -7,6 +7,7 @@
 
 #include "evaluation/summary_format.h"
 #include "pipeline/tracker/evidence.h"
+#include "pipeline/tracker/measurements.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -17,11 +18,6 @@ constexpr std::array<const char*, kRasterChannels> kClassNames = {"dividers", "c
 
 PerAxis in_units(const Se2& pose) {
   return {pose.x_m, pose.y_m, degrees(pose.yaw_rad)};
-}
-
-PerAxis sigmas_of(const MatchResult& match) {
-  const Eigen::Vector3d sigma = match.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  return {sigma.x(), sigma.y(), degrees(sigma.z())};
 }
 
 std::vector<std::string> names_of(CameraMask cameras) {
@@ -67,7 +63,7 @@ std::string text_of(const Localization& localization) {
   }
   const PerAxis pose = in_units(localization.pose());
   const PerAxis correction = in_units(match.correction);
-  const PerAxis sigma = sigmas_of(match);
+  const PerAxis sigma = in_units(pose_sigma(match));
   text += fmt::format("pose: x {:.3f} m, y {:.3f} m, yaw {:.3f} degrees in the map\n", pose[0],
                       pose[1], pose[2]);
   text += "axis            correction     sigma  evidence     score\n";
@@ -95,7 +91,7 @@ nlohmann::json json_of(const Localization& localization) {
   if (match.evidence == Evidence::kNone) return json;
   json["pose"] = in_units(localization.pose());
   json["correction"] = in_units(match.correction);
-  json["sigma"] = sigmas_of(match);
+  json["sigma"] = in_units(pose_sigma(match));
   json["evidence_share"] = {match.evidence_share.x(), match.evidence_share.y(),
                             match.evidence_share.z()};
   json["score"] = match.score;

@@ -182,7 +182,7 @@ void NetworkEvaluation::judge_solvers(const Se2& correction, std::span<ReadOut> 
     reader.solver->solve(masks ? reader.masks->bev() : network_->bev_features(),
                          masks ? reader.masks->map() : network_->map_features(), solution_);
     read_outs[i].outcomes.push_back(
-        judge(solution_, reader.read_out.solver_case.hypotheses(), correction));
+        judge_pose(solution_, reader.read_out.solver_case.hypotheses(), correction));
   }
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "pipeline/tracker/measurements.h"
+
 namespace bevloc::evaluation {
 namespace {
 
@@ -41,16 +43,25 @@ double quantile(std::vector<double>& values, double share) {
 
 }  // namespace
 
+PerAxis in_units(const Eigen::Vector3d& pose) {
+  return {pose.x(), pose.y(), degrees(pose.z())};
+}
+
 Outcome judge(const SolverResult& result, const HypothesisGrid& hypotheses, const Se2& truth) {
   Outcome outcome;
   outcome.error = error_of(result.correction, truth);
   outcome.parabola_error = error_of(result.parabola, truth);
-  outcome.sigma = {std::sqrt(result.covariance(0, 0)), std::sqrt(result.covariance(1, 1)),
-                   degrees(std::sqrt(result.covariance(2, 2)))};
+  outcome.sigma = in_units(result.covariance.diagonal().cwiseSqrt());
   outcome.nll = {
       negative_log_likelihood(result.x_probability, hypotheses.x_m, truth.x_m),
       negative_log_likelihood(result.y_probability, hypotheses.y_m, truth.y_m),
       negative_log_likelihood(result.yaw_probability, hypotheses.yaw_rad, truth.yaw_rad)};
+  return outcome;
+}
+
+Outcome judge_pose(const SolverResult& result, const HypothesisGrid& hypotheses, const Se2& truth) {
+  Outcome outcome = judge(result, hypotheses, truth);
+  outcome.sigma = in_units(pose_sigma(result));
   return outcome;
 }
 

@@ -22,12 +22,18 @@ struct Outcome {
   sim::RoadKind road = sim::RoadKind::kStraightSolid;
   PerAxis error{};           ///< of the correction
   PerAxis parabola_error{};  ///< of SolverResult::parabola
-  PerAxis sigma{};           ///< reported by the solver
+  PerAxis sigma{};           ///< as reported
   PerAxis nll{};             ///< -log of the probability at the truth, interpolated
   double time_ms = 0.0;      ///< processor time of one run with warm caches
 };
 
+/// (m, m, rad) -> (m, m, degrees).
+PerAxis in_units(const Eigen::Vector3d& pose);
+
 Outcome judge(const SolverResult& result, const HypothesisGrid& hypotheses, const Se2& truth);
+/// The same, but `sigma` is that of the pose (pose_sigma()): it includes the errors of map and
+/// calibration, which no match sees.
+Outcome judge_pose(const SolverResult& result, const HypothesisGrid& hypotheses, const Se2& truth);
 /// For a method that reports a correction only.
 Outcome judge(const Se2& correction, const Se2& truth);
 

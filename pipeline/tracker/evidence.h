@@ -15,7 +15,7 @@ struct EvidenceLimits {
   /// A second peak this high means two places that look alike.
   double max_rival_peak = 0.7;
   /// Mean score of the recent matches that confirms the place.
-  double min_score = 0.19;
+  double min_score = 0.18;
   /// Below this score of an axis its answer often belongs to another place along the axis, and its
   /// standard deviation grows in proportion.
   double good_axis_score = 0.12;

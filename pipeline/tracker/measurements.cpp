@@ -50,6 +50,10 @@ PoseMeasurement measurement_from(const GnssPose& gnss, const MeasurementModel& m
   return measurement;
 }
 
+Eigen::Vector3d pose_sigma(const MatchResult& result, const MeasurementModel& model) {
+  return (result.covariance.diagonal().cwiseMax(0.0) + model.match_floor.cwiseAbs2()).cwiseSqrt();
+}
+
 PoseMeasurement measurement_from(const Se2& prior, const MatchResult& result,
                                  const MeasurementModel& model,
                                  const Eigen::Array<bool, 3, 1>& correlated) {

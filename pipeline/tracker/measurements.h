@@ -19,7 +19,7 @@ struct MeasurementModel {
   Eigen::Vector3d match_common_sigma{0.25, 0.15, radians(0.3)};
   /// Standard deviations that are added to the correlated part of every match, because calibration
   /// and map have errors that the solver cannot see: (x m, y m, yaw rad).
-  Eigen::Vector3d match_floor{0.05, 0.08, radians(0.08)};
+  Eigen::Vector3d match_floor{0.05, 0.08, radians(0.12)};
   /// Standard deviations of the error that all matches of a drive share, from calibration and map:
   /// (x m, y m, yaw rad). No number of matches averages it out, so every pose has it.
   Eigen::Vector3d constant_error{0.08, 0.06, radians(0.08)};
@@ -36,6 +36,10 @@ struct MeasurementModel {
 /// whether consecutive errors of GNSS are correlated at all.
 PoseMeasurement measurement_from(const GnssPose& gnss, const MeasurementModel& model,
                                  bool correlated);
+
+/// Standard deviations (x m, y m, yaw rad) of the pose that one match gives: those of the match,
+/// and MeasurementModel::match_floor, because no match sees the errors of map and calibration.
+Eigen::Vector3d pose_sigma(const MatchResult& result, const MeasurementModel& model = {});
 
 /// The pose prior * result.correction. `correlated`: as above, per axis. An axis without
 /// evidence gets a standard deviation that is 100 times as large.

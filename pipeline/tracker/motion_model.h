@@ -75,7 +75,7 @@ struct FilterState {
 struct MotionNoise {
   double longitudinal_m_per_sqrt_m = 0.02;       ///< wheel speed noise: 0.2 m after 100 m
   double lateral_m_per_sqrt_m = 0.01;            ///< side slip
-  double yaw_rad_per_sqrt_s = radians(0.1);      ///< yaw rate noise
+  double yaw_rad_per_sqrt_s = radians(0.03);     ///< yaw rate noise
   double speed_scale_per_sqrt_s = 2e-4;          ///< change of tyre temperature and pressure
   double yaw_rate_bias_radps_per_sqrt_s = 6e-4;  ///< drift of the sensor bias
   /// Unmeasured accelerations between two samples; they matter only where samples are missing.

@@ -71,6 +71,7 @@ TEST(TrackerAccuracyTest, CovarianceIsConsistentForWhiteErrors) {
   parameters.correlation = {.match_m = Eigen::Vector3d::Zero(), .gnss_s = 0.0};
   parameters.motion.longitudinal_m_per_sqrt_m = 0.002;
   parameters.motion.lateral_m_per_sqrt_m = 0.002;
+  parameters.motion.yaw_rad_per_sqrt_s = radians(0.1);  // typical_errors()
   parameters.motion.speed_scale_per_sqrt_s = 1e-5;
   parameters.motion.yaw_rate_bias_radps_per_sqrt_s = 1e-6;
   SensorErrors errors = typical_errors();
