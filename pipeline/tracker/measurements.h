@@ -37,8 +37,9 @@ struct MeasurementModel {
 PoseMeasurement measurement_from(const GnssPose& gnss, const MeasurementModel& model,
                                  bool correlated);
 
-/// Standard deviations (x m, y m, yaw rad) of the pose that one match gives: those of the match,
-/// and MeasurementModel::match_floor, because no match sees the errors of map and calibration.
+/// The standard deviations (x m, y m, yaw rad) of a pose that comes from one match. They combine
+/// the match's own sigma with MeasurementModel::match_floor, because a match cannot see the errors
+/// of map and calibration.
 Eigen::Vector3d pose_sigma(const MatchResult& result, const MeasurementModel& model = {});
 
 /// The pose prior * result.correction. `correlated`: as above, per axis. An axis without

@@ -27,7 +27,7 @@ class ScoreValley:
     """The valley of the score of map features [batch, C, rows, cols]."""
 
     def __init__(self, features_map: Tensor, definition: SolverDefinition) -> None:
-        self._uniform = uniform_variance(definition)
+        self._uniform = uniform_variance(definition).to(features_map.device)
         rows, cols = features_map.shape[2:]
         f = features_map.detach()
         cell_m = definition.cell_m
@@ -52,9 +52,8 @@ class ScoreValley:
         middle_from_here[:, 0, 2] = pose[:, 1].double()
         middle_from_here[:, 1, 2] = -pose[:, 0].double()
         curvature = middle_from_here.transpose(1, 2) @ self._curvature @ middle_from_here
-        uniform = self._uniform.to(curvature)
-        trace = (curvature.diagonal(dim1=1, dim2=2) @ uniform).clamp(min=_LEAST_TRACE)
-        return curvature + _RIDGE * trace[:, None, None] * torch.diag(1 / uniform)
+        trace = (curvature.diagonal(dim1=1, dim2=2) @ self._uniform).clamp(min=_LEAST_TRACE)
+        return curvature + _RIDGE * trace[:, None, None] * torch.diag(1 / self._uniform)
 
     def along_x(self, pose: Tensor) -> Tensor:
         """The displacement that moves x by 1 m, with the best y and yaw, [batch, 3]."""

@@ -32,15 +32,15 @@ constexpr double kCertainSigmas = 0.5;
 // Agreement of a camera with the map: ZNCC over the cells that it sees, against the median camera.
 constexpr double kFade_s = 20.0;
 constexpr double kLeastSeen_s = 15.0;
-// Swapped cameras mostly agree with the map by less than 0.4 of the median camera, right ones by
-// 0.6 and more.
+// The share of a swapped camera is mostly below 0.4. That of a camera at its own place is mostly
+// 0.6 or more.
 constexpr double kContradictingShare = 0.4;
 constexpr double kAgreeingShare = 0.5;
-/// A camera contradicts the map if its share is below kContradictingShare for this long. In drives
-/// without a fault, the share of a single camera was below it for up to 1 s.
+/// A camera contradicts the map if its share stays below kContradictingShare for this long. In
+/// drives without a fault, the share of a single camera stayed below it for 1 s or less.
 constexpr double kLeastContradicted_s = 4.0;
-// In such drives, the shares of both cameras of one side were below it for up to 23 s. While the
-// other camera's share is below kWellAgreeingShare, time counts a tenth.
+// In drives without a fault, both cameras of one side together stayed below it for 23 s or less. So
+// time counts only a tenth while the share of the other camera is below kWellAgreeingShare.
 constexpr double kWellAgreeingShare = 0.7;
 constexpr double kHiddenSideRate = 0.1;
 /// Of the median camera; below, nothing is known about any camera.

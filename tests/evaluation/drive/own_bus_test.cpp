@@ -42,8 +42,8 @@ double first_pose_s(const std::vector<JudgedCycle>& cycles) {
   return first == cycles.end() ? kDuration_s : first->time_s;
 }
 
-// The signals of both buses have other steps, so a start may need some matches more or less, and
-// the pose differs until the start is forgotten.
+// The signals of the two buses have different steps. One drive may therefore need more matches for
+// its start than the other, and for some seconds their poses differ by the errors of their starts.
 TEST(OwnBusTest, GivesThePosesOfTheStandardMessages) {
   const auto standard = cycles_of(config_of("demo.yaml"));
   const auto own = cycles_of(config_of("demo_own_bus.yaml"));
@@ -52,10 +52,11 @@ TEST(OwnBusTest, GivesThePosesOfTheStandardMessages) {
   constexpr double kStartForgotten_s = 10.0;
   size_t both = 0;
   for (size_t i = 0; i < own.size(); ++i) {
-    if (own[i].time_s < kStartForgotten_s || !own[i].pose || !standard[i].pose) continue;
+    if (!own[i].pose || !standard[i].pose) continue;
     ++both;
     const Eigen::Vector3d difference = own[i].pose->error - standard[i].pose->error;
-    EXPECT_LT(difference.head<2>().norm(), 0.03) << own[i].time_s;
+    const double limit_m = own[i].time_s < kStartForgotten_s ? 0.3 : 0.03;
+    EXPECT_LT(difference.head<2>().norm(), limit_m) << own[i].time_s;
     EXPECT_LT(std::abs(difference.z()), radians(0.03)) << own[i].time_s;
   }
   EXPECT_GT(both, own.size() / 2);
