@@ -37,7 +37,8 @@ if(NOT BEVLOC_SIMULATION)
           FILES_MATCHING PATTERN "*.md" PATTERN "images" EXCLUDE PATTERN "decisions" EXCLUDE)
   install(DIRECTORY config/ DESTINATION ${BEVLOC_DATA_DIR}/config COMPONENT bevloc
           FILES_MATCHING PATTERN "rig_*.yaml")
-  install(FILES models/nano.onnx DESTINATION ${BEVLOC_DATA_DIR}/models COMPONENT bevloc-models)
+  install(FILES models/nano.onnx models/small-lut.onnx
+          DESTINATION ${BEVLOC_DATA_DIR}/models COMPONENT bevloc-models)
   install(FILES models/README.md DESTINATION share/doc/bevloc-models COMPONENT bevloc-models)
   return()
 endif()

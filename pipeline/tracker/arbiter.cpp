@@ -35,6 +35,9 @@ constexpr double kDriftLimit = 4.0;
 /// If the heading of GNSS drifts, this lean of the match's heading to the same side is enough: two
 /// voters then say that the yaw rate has a bias.
 constexpr double kSharedLean = 2.5;
+/// If the heading of GNSS leans this far away from that of the match, dead reckoning lies between
+/// them. It does not drift then.
+constexpr double kOpposingLean = 1.5;
 /// Larger innovations count as this many standard deviations, so that one outlier is no drift.
 constexpr double kMaxDriftStep = 3.0;
 /// Limit for the change of GNSS errors, in standard deviations.
@@ -100,11 +103,22 @@ bool Arbiter::Voter::readmit_after(int passes) {
   return true;
 }
 
+double Arbiter::gnss_lean_with_match() const {
+  return std::copysign(1.0, match_.lean().z()) * gnss_.lean().z();
+}
+
 bool Arbiter::odometry_drifts() const {
-  if (match_.drifts()) return true;
-  const double gnss = gnss_.lean().z();
-  const double match = std::copysign(1.0, gnss) * match_.lean().z();
-  return std::abs(gnss) > kDriftLimit && match > kSharedLean;
+  const double match = std::abs(match_.lean().z());
+  const double gnss = gnss_lean_with_match();
+  if (match_.drifts()) return match < kSharedLean || gnss > -kOpposingLean;
+  return match > kSharedLean && gnss > kDriftLimit;
+}
+
+/// Whether the heading of the match drifts, and dead reckoning is nearer to that of GNSS.
+bool Arbiter::match_turns_alone() const {
+  const double match = std::abs(match_.lean().z());
+  const double gnss = gnss_lean_with_match();
+  return match > kDriftLimit && gnss < -kOpposingLean && match > -gnss;
 }
 
 void Arbiter::forget_drift() {
@@ -196,6 +210,11 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
   if (match_is_disputed() && !match_.excluded) {
     decide_dispute(verdict, standing);
     if (verdict.odometry_contradicts) odometry_wrong_until_ = now + kOdometryMemory;
+  }
+  if (valid && match_turns_alone() && !gnss_.excluded) {
+    match_.exclude();
+    match_.drift.setZero();
+    explained_ = true;
   }
   if (valid && match_agrees(now) && gnss_moved() && !odometry_drifts()) gnss_.exclude();
   if (!match_agrees(now) && !match_is_disputed() && gnss_.refused_in_a_row >= kGnssRefusals &&

@@ -55,7 +55,7 @@ class Arbiter {
   bool trusts_gnss() const { return !gnss_.excluded; }
 
   /// Whether dead reckoning drifts: the innovations of the match lean to one side, or the headings
-  /// of GNSS and of the match lean to the same side.
+  /// of GNSS and of the match lean to the same side. Not if they lean to opposite sides.
   bool odometry_drifts() const;
   void forget_drift();
 
@@ -104,9 +104,12 @@ class Arbiter {
     return match_.refused_in_a_row >= kDisputingRefusals || match_.far_off;
   }
   bool match_agrees(Time now) const;
+  bool match_turns_alone() const;
   bool gnss_moved() const;
   bool answers_dispute(const PoseInnovation& innovation) const;
   bool match_jumps(Time time, const PoseInnovation& innovation) const;
+  /// Lean of GNSS's heading, positive to the side to which the match's heading leans.
+  double gnss_lean_with_match() const;
   void decide_dispute(Verdict& verdict, PoseStanding standing);
   void ask_gnss(Verdict& verdict);
   void forget_gnss_errors();

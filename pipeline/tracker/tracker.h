@@ -41,9 +41,10 @@ struct TrackerParameters {
   double widened_position_sigma_m = 3.0;  ///< added by widen(), per axis
   double widened_yaw_sigma_rad = radians(5.0);
 
-  /// Added by loosen_odometry().
-  double loosened_yaw_rate_bias_sigma_radps = radians(0.5);
-  double loosened_yaw_sigma_rad = radians(0.5);
+  /// Added by loosen_odometry(). The yaw stays below HealthLimits::yaw_sigma_rad, so a valid pose
+  /// stays valid.
+  double loosened_yaw_rate_bias_sigma_radps = radians(1.0);
+  double loosened_yaw_sigma_rad = radians(0.6);
 
   double history_s = 2.0;          ///< a measurement may arrive this late
   size_t history_capacity = 1024;  ///< events in `history_s`: odometry, GNSS, corrections; > 1

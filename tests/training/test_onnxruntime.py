@@ -46,6 +46,9 @@ class OnnxRuntime(unittest.TestCase):
     def test_the_shipped_model_gives_the_same_values(self):
         self.check("nano.onnx")
 
+    def test_the_larger_model_gives_the_same_values(self):
+        self.check("small-lut.onnx")
+
     def test_the_float_model_gives_the_same_values(self):
         self.check("nano_float.onnx")
 

@@ -43,7 +43,7 @@ TEST(ShippedConfig, DefaultsAreThoseOfThePublishedFigures) {
   EXPECT_EQ(defaults.solver.tracking.y_m, (HypothesisAxis{1.0, 0.2}));
   EXPECT_EQ(defaults.solver.acquiring.x_m, (HypothesisAxis{4.0, 0.2}));
   EXPECT_EQ(defaults.solver.acquiring.y_m, (HypothesisAxis{3.0, 0.2}));
-  EXPECT_EQ(defaults.tracker.correlation.match_m, Eigen::Vector3d(20.0, 80.0, 20.0));
+  EXPECT_EQ(defaults.tracker.correlation.match_m, Eigen::Vector3d(5.0, 10.0, 10.0));
   EXPECT_EQ(defaults.cameras.synchronizer.min_cameras, 3);
   EXPECT_EQ(defaults.health.yaw_sigma_rad, radians(0.75));
   EXPECT_EQ(defaults.tracker.gate_squared_distance, 21.1);

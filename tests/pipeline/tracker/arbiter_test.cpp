@@ -1,5 +1,7 @@
 #include "pipeline/tracker/arbiter.h"
 
+#include <cmath>
+
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
@@ -152,6 +154,18 @@ TEST_F(ArbiterTest, HeadingsThatLeanApartExcludeGnss) {
   run(25, {0.0, 0.0, radians(-0.18)}, {0.0, 0.0, radians(0.25)});
   EXPECT_FALSE(arbiter_.odometry_drifts());
   EXPECT_FALSE(arbiter_.trusts_gnss());
+}
+
+TEST_F(ArbiterTest, AMatchWhoseHeadingLeansAwayFromThatOfGnssIsExcluded) {
+  const double sigma = std::sqrt(2e-5);
+  EXPECT_TRUE(run(30, {0.0, 0.0, 1.5 * sigma}, {0.0, 0.0, -0.5 * sigma}).match_contradicts);
+  EXPECT_FALSE(arbiter_.odometry_drifts());
+}
+
+TEST_F(ArbiterTest, AMatchWhoseHeadingLeansWhileThatOfGnssDoesNotMeansDrift) {
+  const double sigma = std::sqrt(2e-5);
+  EXPECT_FALSE(run(30, {0.0, 0.0, 1.5 * sigma}, none_).match_contradicts);
+  EXPECT_TRUE(arbiter_.odometry_drifts());
 }
 
 TEST_F(ArbiterTest, OneOutlierIsNoDrift) {

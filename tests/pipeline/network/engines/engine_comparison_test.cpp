@@ -124,7 +124,7 @@ TEST_P(EngineComparison, OnTheGoldenSamples) {
 
 INSTANTIATE_TEST_SUITE_P(
     Models, EngineComparison,
-    ::testing::Values("models/nano.onnx", "models/nano_float.onnx",
+    ::testing::Values("models/nano.onnx", "models/nano_float.onnx", "models/small-lut.onnx",
                       "tests/pipeline/network/fixtures/tiny_network_int8.onnx",
                       "tests/pipeline/network/fixtures/tiny_network_float.onnx"),
     [](const auto& model) {
