@@ -130,7 +130,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& model) {
       const std::string& path = model.param;
       const size_t begin = path.rfind('/') + 1;
-      return path.substr(begin, path.rfind('.') - begin);
+      std::string name = path.substr(begin, path.rfind('.') - begin);
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
     });
 
 }  // namespace
