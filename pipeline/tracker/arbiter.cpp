@@ -35,8 +35,8 @@ constexpr double kDriftLimit = 4.0;
 /// If the heading of GNSS drifts, this lean of the match's heading to the same side is enough: two
 /// voters then say that the yaw rate has a bias.
 constexpr double kSharedLean = 2.5;
-/// If the heading of GNSS leans this far away from that of the match, dead reckoning lies between
-/// them. It does not drift then.
+/// If the headings of match and GNSS lean to opposite sides, and that of GNSS by this much, dead
+/// reckoning lies between them and does not drift.
 constexpr double kOpposingLean = 1.5;
 /// Larger innovations count as this many standard deviations, so that one outlier is no drift.
 constexpr double kMaxDriftStep = 3.0;
@@ -212,9 +212,8 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
     if (verdict.odometry_contradicts) odometry_wrong_until_ = now + kOdometryMemory;
   }
   if (valid && match_turns_alone() && !gnss_.excluded) {
-    match_.exclude();
+    exclude_match();
     match_.drift.setZero();
-    explained_ = true;
   }
   if (valid && match_agrees(now) && gnss_moved() && !odometry_drifts()) gnss_.exclude();
   if (!match_agrees(now) && !match_is_disputed() && gnss_.refused_in_a_row >= kGnssRefusals &&
@@ -227,6 +226,11 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
   return verdict;
 }
 
+void Arbiter::exclude_match() {
+  match_.exclude();
+  explained_ = true;
+}
+
 void Arbiter::decide_dispute(Verdict& verdict, PoseStanding standing) {
   if (explained_) return;
   const bool harmless = (dispute_offset_.cwiseAbs().array() < kHarmlessOffset.array()).all();
@@ -236,8 +240,7 @@ void Arbiter::decide_dispute(Verdict& verdict, PoseStanding standing) {
     return;
   }
   if (match_jumped_) {
-    match_.exclude();
-    explained_ = true;
+    exclude_match();
     return;
   }
   ask_gnss(verdict);
@@ -263,8 +266,7 @@ void Arbiter::ask_gnss(Verdict& verdict) {
   from_estimate /= static_cast<double>(samples);
   from_match /= static_cast<double>(samples);
   if (from_estimate < kConfirms && from_match - from_estimate > kDecides) {
-    match_.exclude();
-    explained_ = true;
+    exclude_match();
   } else if (from_match < kConfirms && from_estimate - from_match > kDecides) {
     verdict.odometry_contradicts = true;
     explained_ = true;

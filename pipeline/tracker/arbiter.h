@@ -110,6 +110,8 @@ class Arbiter {
   bool match_jumps(Time time, const PoseInnovation& innovation) const;
   /// Lean of GNSS's heading, positive to the side to which the match's heading leans.
   double gnss_lean_with_match() const;
+  /// Excludes the match, which also explains an open dispute.
+  void exclude_match();
   void decide_dispute(Verdict& verdict, PoseStanding standing);
   void ask_gnss(Verdict& verdict);
   void forget_gnss_errors();

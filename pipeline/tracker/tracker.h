@@ -41,8 +41,8 @@ struct TrackerParameters {
   double widened_position_sigma_m = 3.0;  ///< added by widen(), per axis
   double widened_yaw_sigma_rad = radians(5.0);
 
-  /// Added by loosen_odometry(). The yaw stays below HealthLimits::yaw_sigma_rad, so a valid pose
-  /// stays valid.
+  /// Added by loosen_odometry(). The yaw's is smaller than HealthLimits::yaw_sigma_rad, so that a
+  /// pose with a heading sigma below 0.45 degrees stays valid.
   double loosened_yaw_rate_bias_sigma_radps = radians(1.0);
   double loosened_yaw_sigma_rad = radians(0.6);
 

@@ -39,8 +39,9 @@ constexpr double kAgreeingShare = 0.5;
 /// A camera contradicts the map if its share stays below kContradictingShare for this long. In
 /// drives without a fault, the share of a single camera stayed below it for 1 s or less.
 constexpr double kLeastContradicted_s = 4.0;
-// In drives without a fault, both cameras of one side together stayed below it for 23 s or less. So
-// time counts only a tenth while the share of the other camera is below kWellAgreeingShare.
+// In drives without a fault, the shares of both cameras of one side stayed below it for 23 s or
+// less. So a second counts as 0.1 s while the share of the other camera is below
+// kWellAgreeingShare.
 constexpr double kWellAgreeingShare = 0.7;
 constexpr double kHiddenSideRate = 0.1;
 /// Of the median camera; below, nothing is known about any camera.

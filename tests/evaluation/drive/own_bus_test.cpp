@@ -42,8 +42,9 @@ double first_pose_s(const std::vector<JudgedCycle>& cycles) {
   return first == cycles.end() ? kDuration_s : first->time_s;
 }
 
-// The signals of the two buses have different steps. One drive may therefore need more matches for
-// its start than the other, and for some seconds their poses differ by the errors of their starts.
+// The signals of the two buses have different resolutions. Therefore one drive may need more
+// matches for its start than the other. Their poses then start with different errors, which last
+// for some seconds.
 TEST(OwnBusTest, GivesThePosesOfTheStandardMessages) {
   const auto standard = cycles_of(config_of("demo.yaml"));
   const auto own = cycles_of(config_of("demo_own_bus.yaml"));

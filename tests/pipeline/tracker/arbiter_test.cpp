@@ -12,10 +12,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
+const double kYawSigma_rad = std::sqrt(2e-5);
+
 PoseInnovation innovation(const Eigen::Vector3d& error) {
   PoseInnovation result;
   result.error = error;
-  result.covariance = Eigen::Vector3d(0.09, 0.04, 2e-5).asDiagonal();
+  result.covariance = Eigen::Vector3d(0.09, 0.04, kYawSigma_rad * kYawSigma_rad).asDiagonal();
   result.squared_distance = error.dot(result.covariance.inverse() * error);
   result.unexplained = result.squared_distance;
   return result;
@@ -157,14 +159,13 @@ TEST_F(ArbiterTest, HeadingsThatLeanApartExcludeGnss) {
 }
 
 TEST_F(ArbiterTest, AMatchWhoseHeadingLeansAwayFromThatOfGnssIsExcluded) {
-  const double sigma = std::sqrt(2e-5);
-  EXPECT_TRUE(run(15, {0.0, 0.0, 1.5 * sigma}, {0.0, 0.0, -0.5 * sigma}).match_contradicts);
+  EXPECT_TRUE(
+      run(15, {0.0, 0.0, 1.5 * kYawSigma_rad}, {0.0, 0.0, -0.5 * kYawSigma_rad}).match_contradicts);
   EXPECT_FALSE(arbiter_.odometry_drifts());
 }
 
 TEST_F(ArbiterTest, AMatchWhoseHeadingLeansWhileThatOfGnssDoesNotMeansDrift) {
-  const double sigma = std::sqrt(2e-5);
-  EXPECT_FALSE(run(30, {0.0, 0.0, 1.5 * sigma}, none_).match_contradicts);
+  EXPECT_FALSE(run(30, {0.0, 0.0, 1.5 * kYawSigma_rad}, none_).match_contradicts);
   EXPECT_TRUE(arbiter_.odometry_drifts());
 }
 

@@ -21,7 +21,7 @@ TEST(PoseSigma, IncludesWhatNoMatchSees) {
   EXPECT_NEAR(sigma.z(), 0.01, 1e-12);
 }
 
-// What is added to the sigma of one match must be what the filter cannot average out.
+// pose_sigma() states the same variance as the measurement that the filter gets.
 TEST(PoseSigma, IsWhatTheFilterIsTold) {
   const MatchResult match = match_with_sigma({0.1, 0.05, radians(0.2)});
   const MeasurementModel model;
