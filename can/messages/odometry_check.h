@@ -77,6 +77,9 @@ class OdometryCheck {
   /// more on average set it, less than 30 ms clear it.
   bool is_slow() const { return slow_; }
 
+  /// OdometrySample::wheel_lean of the latest sample.
+  double wheel_lean() const { return learned_difference_.lean(); }
+
   /// Number of samples with this verdict.
   uint64_t count(OdometryVerdict verdict) const { return counts_[static_cast<size_t>(verdict)]; }
 

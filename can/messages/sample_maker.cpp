@@ -21,7 +21,8 @@ std::optional<VehicleSample> SampleMaker::odometry(const OdometryCheck::Wheels& 
   ++odometry_samples_;
   return OdometrySample{.time = wheels.time,
                         .speed_mps = wheels.speed_mps(),
-                        .yaw_rate_radps = wheels.yaw_rate_radps};
+                        .yaw_rate_radps = wheels.yaw_rate_radps,
+                        .wheel_lean = odometry_check_.wheel_lean()};
 }
 
 VehicleSample SampleMaker::gnss(const GeodeticFix& fix, Time time) {

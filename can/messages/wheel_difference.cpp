@@ -16,7 +16,7 @@ Eigen::Vector3d inputs_of(const WheelDifference::Sample& sample) {
 }  // namespace
 
 bool WheelDifference::contradicts(const Sample& sample) {
-  if (latest_ && sample.time - *latest_ > limits_.gap) mean_mps_ = 0.0;
+  if (latest_ && sample.time - *latest_ > limits_.gap) mean_mps_ = slow_mean_mps_ = 0.0;
   const double elapsed_s =
       latest_ ? std::clamp(to_seconds(sample.time - *latest_), 0.0, limits_.mean_s) : 0.0;
   latest_ = sample.time;
@@ -31,6 +31,7 @@ bool WheelDifference::contradicts(const Sample& sample) {
       limits_.sigmas * sigma_mps;
   const double gain = 1.0 - std::exp(-elapsed_s / limits_.mean_s);
   mean_mps_ += gain * (sample.excess_mps - expected_mps - mean_mps_);
+  lean_ = lean_after(sample.excess_mps - expected_mps, elapsed_s, sample, sigma_mps);
 
   const double share = contradicting_since_ ? limits_.ends_below : 1.0;
   if (std::abs(mean_mps_) <= share * allowed_mps) {
@@ -42,6 +43,20 @@ bool WheelDifference::contradicts(const Sample& sample) {
   if (!contradicting_since_) contradicting_since_ = sample.time;
   if (sample.time - *contradicting_since_ >= limits_.settled_after) forget_all();
   return true;
+}
+
+double WheelDifference::lean_after(double excess_mps, double elapsed_s, const Sample& sample,
+                                   double sigma_mps) {
+  const double gain = 1.0 - std::exp(-elapsed_s / limits_.lean_mean_s);
+  slow_mean_mps_ += gain * (excess_mps - slow_mean_mps_);
+  if (gain <= 0.0) return lean_;
+  const double noise_mps = limits_.noise_mps * std::sqrt(gain / (2.0 - gain));
+  // What may change within a second, as three standard deviations.
+  const double change_mps =
+      (limits_.change_share * std::abs(sample.speed_mps) +
+       limits_.change_per_mps2_s * std::abs(sample.speed_mps * sample.yaw_rate_radps)) /
+      3.0;
+  return slow_mean_mps_ / std::hypot(noise_mps, change_mps, sigma_mps);
 }
 
 /// Of the fit, with what is known before anything was learned.
@@ -74,6 +89,7 @@ void WheelDifference::forget_all() {
   normal_.setZero();
   right_.setZero();
   mean_mps_ = 0.0;
+  slow_mean_mps_ = 0.0;
   contradicting_since_.reset();
 }
 

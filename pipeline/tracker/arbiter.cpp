@@ -32,12 +32,17 @@ constexpr int kGnssPasses = 20;
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
 constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
-/// If the heading of GNSS drifts, this lean of the match's heading to the same side is enough: two
-/// voters then say that the yaw rate has a bias.
-constexpr double kSharedLean = 2.5;
+/// The headings of match and GNSS and the turn of the wheels count together if at least two of them
+/// lean to the same side, each by more than this. Their sum has this limit, in its own standard
+/// deviations: together they say that the yaw rate has a bias.
+constexpr double kSharedLean = 2.0;
+constexpr double kSharedLimit = 3.5;
 /// If the headings of match and GNSS lean to opposite sides, and that of GNSS by this much, dead
 /// reckoning lies between them and does not drift.
 constexpr double kOpposingLean = 1.5;
+/// After the wheels have shown a bias, they are ignored for this long: they go on showing it until
+/// they have learned it.
+constexpr Duration kWheelMemory = std::chrono::seconds(30);
 /// Larger innovations count as this many standard deviations, so that one outlier is no drift.
 constexpr double kMaxDriftStep = 3.0;
 /// Limit for the change of GNSS errors, in standard deviations.
@@ -69,7 +74,9 @@ void Arbiter::Voter::add(Time time, const PoseInnovation& innovation, bool passe
   far_off = !passes_gate && innovation.unexplained > kFarOff;
   const Eigen::Vector3d in_sigmas =
       innovation.error.cwiseQuotient(sigma).cwiseMax(-kMaxDriftStep).cwiseMin(kMaxDriftStep);
-  drift += kDriftGain * (in_sigmas - drift);
+  // A measurement that does not see an axis says nothing about its drift.
+  const auto seen = (sigma.array() <= kPlausibleOffset.array()).cast<double>();
+  drift.array() += kDriftGain * seen * (in_sigmas - drift).array();
   if (passes_gate) {
     last_passed = time;
     last_passed_error = innovation.error;
@@ -111,7 +118,23 @@ bool Arbiter::odometry_drifts() const {
   const double match = std::abs(match_.lean().z());
   const double gnss = gnss_lean_with_match();
   if (match_.drifts()) return match < kSharedLean || gnss > -kOpposingLean;
-  return match > kSharedLean && gnss > kDriftLimit;
+  return yaw_rate_drifts();
+}
+
+/// Whether two or three of match, GNSS and wheels say together that the yaw rate has a bias.
+bool Arbiter::yaw_rate_drifts() const {
+  const std::array leans{match_.lean().z(), gnss_.lean().z(), wheel_lean_};
+  const auto agree_on = [&leans](double side) {
+    int leaning = 0;
+    double sum = 0.0;
+    for (const double lean : leans) {
+      if (side * lean <= kSharedLean) continue;
+      ++leaning;
+      sum += side * lean;
+    }
+    return leaning >= 2 && sum > kSharedLimit * std::sqrt(leaning);
+  };
+  return agree_on(-1.0) || agree_on(1.0);
 }
 
 /// Whether the heading of the match drifts, and dead reckoning is nearer to that of GNSS.
@@ -121,9 +144,15 @@ bool Arbiter::match_turns_alone() const {
   return match > kDriftLimit && gnss < -kOpposingLean && match > -gnss;
 }
 
-void Arbiter::forget_drift() {
+void Arbiter::forget_drift(Time now) {
+  if (std::abs(wheel_lean_) > kSharedLean) wheels_ignored_until_ = now + kWheelMemory;
+  wheel_lean_ = 0.0;
   match_.drift.setZero();
   gnss_.drift.setZero();
+}
+
+void Arbiter::add_odometry(Time time, double wheel_lean) {
+  wheel_lean_ = time < wheels_ignored_until_ ? 0.0 : wheel_lean;
 }
 
 void Arbiter::add_match(Time time, const PoseInnovation& innovation, bool passes_gate) {

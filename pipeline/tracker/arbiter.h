@@ -47,6 +47,9 @@ class Arbiter {
   void add_gnss(Time time, const PoseInnovation& innovation, bool passes_gate,
                 const std::optional<Eigen::Vector3d>& gnss_error);
 
+  /// `wheel_lean`: OdometrySample::wheel_lean of a plausible sample.
+  void add_odometry(Time time, double wheel_lean);
+
   /// To be called after the measurements of one cycle.
   Verdict judge(Time now, PoseStanding standing);
 
@@ -54,10 +57,11 @@ class Arbiter {
   bool trusts_match() const { return !match_.excluded; }
   bool trusts_gnss() const { return !gnss_.excluded; }
 
-  /// Whether dead reckoning drifts: the innovations of the match lean to one side, or the headings
-  /// of GNSS and of the match lean to the same side. Not if they lean to opposite sides.
+  /// Whether dead reckoning drifts: the innovations of the match lean to one side, or at least two
+  /// of match, GNSS and wheels say that the yaw rate has a bias. Not if the headings of match and
+  /// GNSS lean to opposite sides.
   bool odometry_drifts() const;
-  void forget_drift();
+  void forget_drift(Time now);
 
   int matches_refused_in_a_row() const { return match_.refused_in_a_row; }
 
@@ -110,6 +114,7 @@ class Arbiter {
   bool match_jumps(Time time, const PoseInnovation& innovation) const;
   /// Lean of GNSS's heading, positive to the side to which the match's heading leans.
   double gnss_lean_with_match() const;
+  bool yaw_rate_drifts() const;
   /// Excludes the match, which also explains an open dispute.
   void exclude_match();
   void decide_dispute(Verdict& verdict, PoseStanding standing);
@@ -123,6 +128,8 @@ class Arbiter {
   double gnss_correlation_s_;
   Voter match_;
   Voter gnss_;
+  double wheel_lean_ = 0.0;  ///< OdometrySample::wheel_lean
+  Time wheels_ignored_until_ = Time::min();
   Time dispute_since_;
   Eigen::Vector3d dispute_offset_ = Eigen::Vector3d::Zero();
   bool match_jumped_ = false;  ///< the dispute began with a jump that no vehicle can make

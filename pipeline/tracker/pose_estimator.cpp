@@ -31,6 +31,7 @@ TrackerUpdate PoseEstimator::add(const VehicleSample& sample) {
   const OdometrySample& odometry = std::get<OdometrySample>(sample);
   if (!odometry_monitor_.accept(odometry)) return TrackerUpdate::kImplausible;
   start_confirmation_.add(odometry);
+  arbiter_.add_odometry(odometry.time, odometry.wheel_lean);
   return tracker_.add_odometry(odometry);
 }
 
@@ -126,7 +127,7 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   if (verdict_.odometry_contradicts && !odometry_was_wrong) tracker_.widen();
   if (arbiter_.odometry_drifts()) {
     tracker_.loosen_odometry();
-    arbiter_.forget_drift();
+    arbiter_.forget_drift(now);
   }
   const bool matched = match_passed_ && now - *match_passed_ <= kMatchAbsence;
   const bool gnss_refused = gnss_refused_in_a_row_ >= kRefusalsToRestart && !matched;

@@ -70,6 +70,35 @@ TEST_F(WheelDifferenceTest, ABiasOf3DegreesPerSecondIsFoundWithinASecond) {
   }
 }
 
+TEST_F(WheelDifferenceTest, TheLeanHasUnitVarianceAtMost) {
+  for (const double speed_mps : {3.0, 14.0, 30.0}) {
+    drive(speed_mps, seconds(60));
+    double sum = 0.0;
+    constexpr int kDraws = 300;
+    for (int i = 0; i < kDraws; ++i) {
+      drive(speed_mps, seconds(4));
+      sum += difference_.lean() * difference_.lean();
+    }
+    EXPECT_LT(std::sqrt(sum / kDraws), 1.1) << speed_mps << " m/s";
+    EXPECT_GT(std::sqrt(sum / kDraws), 0.3) << speed_mps << " m/s";
+  }
+}
+
+TEST_F(WheelDifferenceTest, ABiasOf1DegreePerSecondLeansByTwoSigmasAfterASecondAndAHalf) {
+  for (const double sign : {-1.0, 1.0}) {
+    double sum = 0.0;
+    constexpr int kFaults = 20;
+    for (int i = 0; i < kFaults; ++i) {
+      bias_radps_ = 0.0;
+      drive(14.0, seconds(60));
+      bias_radps_ = sign * radians(1.0);
+      drive(14.0, milliseconds(1500));
+      sum += sign * difference_.lean();
+    }
+    EXPECT_LT(sum / kFaults, -2.0);
+  }
+}
+
 TEST_F(WheelDifferenceTest, AYawRateOfTheWrongSignIsFoundInTheFirstBend) {
   drive(10.0, seconds(30));
   sign_ = -1.0;

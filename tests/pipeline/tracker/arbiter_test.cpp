@@ -147,8 +147,48 @@ TEST_F(ArbiterTest, HeadingsThatLeanToTheSameSideDoNotExcludeGnss) {
   run(25, {0.0, 0.0, radians(0.18)}, {0.0, 0.0, radians(0.25)});
   EXPECT_TRUE(arbiter_.odometry_drifts());
   EXPECT_TRUE(arbiter_.trusts_gnss());
-  arbiter_.forget_drift();
+  arbiter_.forget_drift(now_);
   EXPECT_FALSE(arbiter_.odometry_drifts());
+}
+
+TEST_F(ArbiterTest, WheelsThatLeanWithGnssMeanDrift) {
+  run(100, none_, none_);
+  run(25, none_, {0.0, 0.0, 0.5 * kYawSigma_rad});
+  arbiter_.add_odometry(now_, 2.0);
+  EXPECT_FALSE(arbiter_.odometry_drifts());
+  arbiter_.add_odometry(now_, -4.0);
+  EXPECT_FALSE(arbiter_.odometry_drifts()) << "to the other side";
+  arbiter_.add_odometry(now_, 4.0);
+  EXPECT_TRUE(arbiter_.odometry_drifts());
+}
+
+TEST_F(ArbiterTest, WheelsAloneMeanNoDrift) {
+  run(100, none_, none_);
+  arbiter_.add_odometry(now_, 8.0);
+  EXPECT_FALSE(arbiter_.odometry_drifts());
+}
+
+/// The wheels show the same bias until they have learned it, but the filter needs to be told once.
+TEST_F(ArbiterTest, WheelsMeanDriftOnceUntilTheyHaveLearnedIt) {
+  const Eigen::Vector3d turned(0.0, 0.0, 0.5 * kYawSigma_rad);
+  run(25, none_, turned);
+  arbiter_.add_odometry(now_, 4.0);
+  ASSERT_TRUE(arbiter_.odometry_drifts());
+  arbiter_.forget_drift(now_);
+  run(25, none_, turned);
+  arbiter_.add_odometry(now_, 4.0);
+  EXPECT_FALSE(arbiter_.odometry_drifts());
+  arbiter_.add_odometry(now_ + std::chrono::seconds(60), 4.0);
+  EXPECT_TRUE(arbiter_.odometry_drifts());
+}
+
+TEST_F(ArbiterTest, AMatchThatDoesNotSeeTheHeadingLeavesItsLean) {
+  run(30, {0.0, 0.0, 1.5 * kYawSigma_rad}, none_);
+  ASSERT_TRUE(arbiter_.odometry_drifts());
+  PoseInnovation blind = innovation(none_);
+  blind.covariance(2, 2) = 1.0;
+  for (int i = 0; i < 30; ++i) arbiter_.add_match(now_ += milliseconds(100), blind, true);
+  EXPECT_TRUE(arbiter_.odometry_drifts());
 }
 
 TEST_F(ArbiterTest, HeadingsThatLeanApartExcludeGnss) {
