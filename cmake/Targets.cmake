@@ -19,9 +19,9 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 # Compiling with -O3 takes 1.5 times as long as with -O2. Only the SEPARATE libraries below need it.
 string(REPLACE "-O3" "-O2" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
 
-# Several sources of a target are compiled as one, because most of the time goes into headers: this
-# takes the whole build from 35 to 15 minutes of CPU. Names in unnamed namespaces must therefore be
-# unique within a target. An editor's single-file checks want -DBEVLOC_UNITY=OFF.
+# Several sources of a target are compiled as one, because most of the time goes into headers: the
+# whole build then takes less than half of the processor time. Names in unnamed namespaces must
+# therefore be unique within a target. An editor's single-file checks want -DBEVLOC_UNITY=OFF.
 option(BEVLOC_UNITY "Compile several sources of a target as one" ON)
 set(BEVLOC_UNITY_BATCH 40 CACHE STRING "How many sources are compiled as one")
 option(BEVLOC_LINT "Only for script/lint: treat SEPARATE libraries like the others" OFF)

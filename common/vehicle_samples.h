@@ -14,8 +14,8 @@ struct OdometrySample {
   double speed_mps = 0.0;       ///< along x, negative when reversing
   double yaw_rate_radps = 0.0;  ///< positive counter-clockwise
   /// How much faster than `yaw_rate_radps` the vehicle turns according to its wheels: mean of about
-  /// the last second, in standard deviations. Zero if unknown.
-  double wheel_lean = 0.0;
+  /// the last second, in standard deviations. Empty while a bias of 1 degree/s would not show.
+  std::optional<double> wheel_lean{};
 };
 
 /// Position in the map frame, of the middle of the rear axle or of an antenna. Each sigma is one

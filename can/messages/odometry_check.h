@@ -78,7 +78,7 @@ class OdometryCheck {
   bool is_slow() const { return slow_; }
 
   /// OdometrySample::wheel_lean of the latest sample.
-  double wheel_lean() const { return learned_difference_.lean(); }
+  std::optional<double> wheel_lean() const { return learned_difference_.lean(); }
 
   /// Number of samples with this verdict.
   uint64_t count(OdometryVerdict verdict) const { return counts_[static_cast<size_t>(verdict)]; }

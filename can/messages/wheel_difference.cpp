@@ -31,7 +31,7 @@ bool WheelDifference::contradicts(const Sample& sample) {
       limits_.sigmas * sigma_mps;
   const double gain = 1.0 - std::exp(-elapsed_s / limits_.mean_s);
   mean_mps_ += gain * (sample.excess_mps - expected_mps - mean_mps_);
-  lean_ = lean_after(sample.excess_mps - expected_mps, elapsed_s, sample, sigma_mps);
+  update_lean(sample.excess_mps - expected_mps, elapsed_s, sample, sigma_mps);
 
   const double share = contradicting_since_ ? limits_.ends_below : 1.0;
   if (std::abs(mean_mps_) <= share * allowed_mps) {
@@ -45,18 +45,20 @@ bool WheelDifference::contradicts(const Sample& sample) {
   return true;
 }
 
-double WheelDifference::lean_after(double excess_mps, double elapsed_s, const Sample& sample,
-                                   double sigma_mps) {
+void WheelDifference::update_lean(double excess_mps, double elapsed_s, const Sample& sample,
+                                  double fit_sigma_mps) {
   const double gain = 1.0 - std::exp(-elapsed_s / limits_.lean_mean_s);
+  if (gain <= 0.0) return;
   slow_mean_mps_ += gain * (excess_mps - slow_mean_mps_);
-  if (gain <= 0.0) return lean_;
   const double noise_mps = limits_.noise_mps * std::sqrt(gain / (2.0 - gain));
   // What may change within a second, as three standard deviations.
   const double change_mps =
       (limits_.change_share * std::abs(sample.speed_mps) +
        limits_.change_per_mps2_s * std::abs(sample.speed_mps * sample.yaw_rate_radps)) /
       3.0;
-  return slow_mean_mps_ / std::hypot(noise_mps, change_mps, sigma_mps);
+  const double sigma_mps = std::hypot(noise_mps, change_mps, fit_sigma_mps);
+  lean_.reset();
+  if (sigma_mps <= limits_.lean_most_sigma_mps) lean_ = slow_mean_mps_ / sigma_mps;
 }
 
 /// Of the fit, with what is known before anything was learned.

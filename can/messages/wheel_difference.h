@@ -31,6 +31,7 @@ struct WheelDifferenceLimits {
   double sigmas = 3.0;
   /// Time of the mean that lean() gives.
   double lean_mean_s = 0.8;
+  double lean_most_sigma_mps = 0.014;  ///< 0.5 degrees/s times the track
   /// A contradiction ends below this share of the limit.
   double ends_below = 0.6;
   /// Samples are learned this much later, and only if nothing contradicted until then, so that the
@@ -61,11 +62,12 @@ class WheelDifference {
   bool contradicts(const Sample& sample);
 
   /// The mean of about the last second beyond what was learned, in its standard deviations. It
-  /// shows a smaller change than contradicts(), but not reliably enough to refuse samples.
-  double lean() const { return lean_; }
+  /// shows a smaller change than contradicts(), but not reliably enough to refuse samples. Empty
+  /// while the standard deviation exceeds `lean_most_sigma_mps`.
+  std::optional<double> lean() const { return lean_; }
 
  private:
-  double lean_after(double excess_mps, double elapsed_s, const Sample& sample, double sigma_mps);
+  void update_lean(double excess_mps, double elapsed_s, const Sample& sample, double fit_sigma_mps);
   void learn_late(const Sample& sample);
   void learn(const Sample& sample);
   void forget_all();
@@ -79,7 +81,7 @@ class WheelDifference {
   boost::circular_buffer<Sample> waiting_{kMostWaiting};  ///< to be learned, oldest first
   double mean_mps_ = 0.0;                                 ///< of the recent excess beyond the fit
   double slow_mean_mps_ = 0.0;                            ///< the same, for lean()
-  double lean_ = 0.0;
+  std::optional<double> lean_;
   std::optional<Time> latest_;
   std::optional<Time> learned_until_;
   std::optional<Time> contradicting_since_;

@@ -19,6 +19,11 @@ constexpr FaultLength kTwenty{20.0};
 constexpr FaultLength kToTheEnd{};
 constexpr FaultLength kAlways{.seconds = 0.0, .from_start = true};
 
+// The reasons that name a map which does not fit, and that the match sees nothing.
+const WhyMask kMapContradicts =
+    Why::kMatchContradicts | Why::kGnssContradicts | Why::kMatchUncertain;
+const WhyMask kUnseen = Why::kPoseStale | Why::kMatchUncertain;
+
 Fault fault(FaultKind kind, const FaultAmounts& amounts = {}) {
   return {.kind = kind, .amounts = amounts};
 }
@@ -200,8 +205,6 @@ std::vector<Mode> camera_modes() {
 /// The map and the world differ. Only pictures can show it, and it is so from the start, except for
 /// the hole in the map.
 std::vector<Mode> map_modes() {
-  const WhyMask contradicts = Why::kMatchContradicts | Why::kGnssContradicts | Why::kMatchUncertain;
-  const WhyMask unseen = Why::kPoseStale | Why::kMatchUncertain;
   ModeList modes(Mode{.on_stage = false});
   // To the north-east, so that the road is left whichever way it leads.
   const auto shifted = [](double distance_m) {
@@ -209,19 +212,25 @@ std::vector<Mode> map_modes() {
     return fault(FaultKind::kMapShifted, {.east_m = part_m, .north_m = part_m});
   };
   modes.add("map-shifted-0.5m", "the map lies 0.5 m off", kAlways, shifted(0.5),
-            contradicts | Why::kMapFault);
+            kMapContradicts | Why::kMapFault);
   modes.add("map-shifted-1m", "the map lies 1 m off", kAlways, shifted(1.0),
-            contradicts | Why::kMapFault);
+            kMapContradicts | Why::kMapFault);
   modes.add("map-shifted-3m", "the map lies 3 m off", kAlways, shifted(3.0),
-            contradicts | Why::kMapFault);
+            kMapContradicts | Why::kMapFault);
   modes.add("map-cut", "the map has a hole along 20 s of the way", kTwenty,
-            fault(FaultKind::kMapCut, {.radius_m = 40.0}), unseen | Why::kOutsideMap);
+            fault(FaultKind::kMapCut, {.radius_m = 40.0}), kUnseen | Why::kOutsideMap);
   modes.add("map-elsewhere", "the map is that of another town", kAlways,
-            fault(FaultKind::kMapOfElsewhere, {.seed = 9.0}), contradicts | unseen);
+            fault(FaultKind::kMapOfElsewhere, {.seed = 9.0}), kMapContradicts | kUnseen);
+  return std::move(modes).all();
+}
+
+/// Visible lines that are not where the map has them, so that the match itself is wrong.
+std::vector<Mode> line_modes() {
+  ModeList modes(Mode{.limit_s = 1.0, .on_stage = false});
   modes.add("map-border-0.4m", "mapped borders lie 0.4 m outside of the visible ones", kAlways,
-            fault(FaultKind::kMapBorderOff, {.outwards_m = 0.4}), contradicts);
+            fault(FaultKind::kMapBorderOff, {.outwards_m = 0.4}), kMapContradicts);
   modes.add("grass-inside-2m", "grass grows 2 m into the road", kAlways,
-            fault(FaultKind::kWorldGrass, {.inside_m = 2.0}), contradicts | unseen);
+            fault(FaultKind::kWorldGrass, {.inside_m = 2.0}), kMapContradicts | kUnseen);
   return std::move(modes).all();
 }
 
@@ -311,7 +320,7 @@ const std::vector<Mode>& all_modes() {
                      .match_faults = {},
                      .limit_s = 0.0});
     for (auto* make : {gnss_modes, odometry_modes, match_modes, combined_modes, camera_modes,
-                       map_modes, bus_modes, clock_modes}) {
+                       map_modes, line_modes, bus_modes, clock_modes}) {
       for (Mode& mode : make()) modes.push_back(std::move(mode));
     }
     return modes;

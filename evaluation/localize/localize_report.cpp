@@ -16,10 +16,6 @@ namespace {
 constexpr std::array<const char*, kRasterChannels> kClassNames = {"dividers", "crossings",
                                                                   "boundaries"};
 
-PerAxis in_units(const Se2& pose) {
-  return {pose.x_m, pose.y_m, degrees(pose.yaw_rad)};
-}
-
 std::vector<std::string> names_of(CameraMask cameras) {
   std::vector<std::string> names;
   for (size_t i = 0; i < kCameraCount; ++i) {

@@ -47,6 +47,10 @@ PerAxis in_units(const Eigen::Vector3d& pose) {
   return {pose.x(), pose.y(), degrees(pose.z())};
 }
 
+PerAxis in_units(const Se2& pose) {
+  return in_units(Eigen::Vector3d(pose.x_m, pose.y_m, pose.yaw_rad));
+}
+
 Outcome judge(const SolverResult& result, const HypothesisGrid& hypotheses, const Se2& truth) {
   Outcome outcome;
   outcome.error = error_of(result.correction, truth);

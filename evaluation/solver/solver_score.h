@@ -29,6 +29,7 @@ struct Outcome {
 
 /// (m, m, rad) -> (m, m, degrees).
 PerAxis in_units(const Eigen::Vector3d& pose);
+PerAxis in_units(const Se2& pose);
 
 Outcome judge(const SolverResult& result, const HypothesisGrid& hypotheses, const Se2& truth);
 /// The same, but `sigma` is that of the pose (pose_sigma()): it includes the errors of map and

@@ -123,7 +123,7 @@ bool Arbiter::odometry_drifts() const {
 
 /// Whether two or three of match, GNSS and wheels say together that the yaw rate has a bias.
 bool Arbiter::yaw_rate_drifts() const {
-  const std::array leans{match_.lean().z(), gnss_.lean().z(), wheel_lean_};
+  const std::array leans{match_.lean().z(), gnss_.lean().z(), wheel_lean_.value_or(0.0)};
   const auto agree_on = [&leans](double side) {
     int leaning = 0;
     double sum = 0.0;
@@ -145,14 +145,15 @@ bool Arbiter::match_turns_alone() const {
 }
 
 void Arbiter::forget_drift(Time now) {
-  if (std::abs(wheel_lean_) > kSharedLean) wheels_ignored_until_ = now + kWheelMemory;
-  wheel_lean_ = 0.0;
+  if (std::abs(wheel_lean_.value_or(0.0)) > kSharedLean) wheels_ignored_until_ = now + kWheelMemory;
+  wheel_lean_.reset();
   match_.drift.setZero();
   gnss_.drift.setZero();
 }
 
-void Arbiter::add_odometry(Time time, double wheel_lean) {
-  wheel_lean_ = time < wheels_ignored_until_ ? 0.0 : wheel_lean;
+void Arbiter::add_odometry(Time time, const std::optional<double>& wheel_lean) {
+  wheel_lean_ = wheel_lean;
+  if (time < wheels_ignored_until_) wheel_lean_.reset();
 }
 
 void Arbiter::add_match(Time time, const PoseInnovation& innovation, bool passes_gate) {

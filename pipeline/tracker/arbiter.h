@@ -48,7 +48,7 @@ class Arbiter {
                 const std::optional<Eigen::Vector3d>& gnss_error);
 
   /// `wheel_lean`: OdometrySample::wheel_lean of a plausible sample.
-  void add_odometry(Time time, double wheel_lean);
+  void add_odometry(Time time, const std::optional<double>& wheel_lean);
 
   /// To be called after the measurements of one cycle.
   Verdict judge(Time now, PoseStanding standing);
@@ -128,7 +128,7 @@ class Arbiter {
   double gnss_correlation_s_;
   Voter match_;
   Voter gnss_;
-  double wheel_lean_ = 0.0;  ///< OdometrySample::wheel_lean
+  std::optional<double> wheel_lean_;  ///< OdometrySample::wheel_lean
   Time wheels_ignored_until_ = Time::min();
   Time dispute_since_;
   Eigen::Vector3d dispute_offset_ = Eigen::Vector3d::Zero();
