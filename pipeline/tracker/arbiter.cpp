@@ -38,8 +38,10 @@ constexpr double kDriftLimit = 4.0;
 constexpr double kSharedLean = 2.0;
 constexpr double kSharedLimit = 3.5;
 /// If the headings of match and GNSS lean to opposite sides, and that of GNSS by this much, dead
-/// reckoning lies between them and does not drift.
+/// reckoning lies between them and does not drift. A smaller lean of GNSS is enough if the wheels
+/// are known to lean with the match by less than the second figure.
 constexpr double kOpposingLean = 1.5;
+constexpr double kSupportingLean = 1.0;
 /// After the wheels have shown a bias, they are ignored for this long: they go on showing it until
 /// they have learned it.
 constexpr Duration kWheelMemory = std::chrono::seconds(30);
@@ -110,15 +112,19 @@ bool Arbiter::Voter::readmit_after(int passes) {
   return true;
 }
 
-double Arbiter::gnss_lean_with_match() const {
-  return std::copysign(1.0, match_.lean().z()) * gnss_.lean().z();
+double Arbiter::with_match(double lean) const {
+  return std::copysign(lean, lean * match_.lean().z());
+}
+
+bool Arbiter::match_leans_alone() const {
+  const double gnss = with_match(gnss_.lean().z());
+  const bool wheels_deny = wheel_lean_ && with_match(*wheel_lean_) < kSupportingLean;
+  return gnss < -kOpposingLean || (gnss < 0.0 && wheels_deny);
 }
 
 bool Arbiter::odometry_drifts() const {
-  const double match = std::abs(match_.lean().z());
-  const double gnss = gnss_lean_with_match();
-  if (match_.drifts()) return match < kSharedLean || gnss > -kOpposingLean;
-  return yaw_rate_drifts();
+  if (!match_.drifts()) return yaw_rate_drifts();
+  return std::abs(match_.lean().z()) < kSharedLean || !match_leans_alone();
 }
 
 /// Whether two or three of match, GNSS and wheels say together that the yaw rate has a bias.
@@ -140,8 +146,7 @@ bool Arbiter::yaw_rate_drifts() const {
 /// Whether the heading of the match drifts, and dead reckoning is nearer to that of GNSS.
 bool Arbiter::match_turns_alone() const {
   const double match = std::abs(match_.lean().z());
-  const double gnss = gnss_lean_with_match();
-  return match > kDriftLimit && gnss < -kOpposingLean && match > -gnss;
+  return match > kDriftLimit && match > std::abs(gnss_.lean().z()) && match_leans_alone();
 }
 
 void Arbiter::forget_drift(Time now) {

@@ -58,8 +58,8 @@ class Arbiter {
   bool trusts_gnss() const { return !gnss_.excluded; }
 
   /// Whether dead reckoning drifts: the innovations of the match lean to one side, or at least two
-  /// of match, GNSS and wheels say that the yaw rate has a bias. Not if the headings of match and
-  /// GNSS lean to opposite sides.
+  /// of match, GNSS and wheels say that the yaw rate has a bias. Not if the match's heading leans
+  /// alone.
   bool odometry_drifts() const;
   void forget_drift(Time now);
 
@@ -112,8 +112,10 @@ class Arbiter {
   bool gnss_moved() const;
   bool answers_dispute(const PoseInnovation& innovation) const;
   bool match_jumps(Time time, const PoseInnovation& innovation) const;
-  /// Lean of GNSS's heading, positive to the side to which the match's heading leans.
-  double gnss_lean_with_match() const;
+  /// `lean`, positive to the side to which the match's heading leans.
+  double with_match(double lean) const;
+  /// Whether GNSS leans to the other side than the match's heading, clearly or with the wheels.
+  bool match_leans_alone() const;
   bool yaw_rate_drifts() const;
   /// Excludes the match, which also explains an open dispute.
   void exclude_match();

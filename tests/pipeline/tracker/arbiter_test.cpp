@@ -204,6 +204,18 @@ TEST_F(ArbiterTest, AMatchWhoseHeadingLeansAwayFromThatOfGnssIsExcluded) {
   EXPECT_FALSE(arbiter_.odometry_drifts());
 }
 
+TEST_F(ArbiterTest, AMatchWhoseHeadingLeansAloneIsExcludedIfTheWheelsDenyADrift) {
+  const Eigen::Vector3d match(0.0, 0.0, 1.5 * kYawSigma_rad);
+  const Eigen::Vector3d gnss(0.0, 0.0, -0.1 * kYawSigma_rad);
+  arbiter_.add_odometry(now_, 0.0);
+  EXPECT_TRUE(run(15, match, gnss).match_contradicts);
+  arbiter_.reset();
+  arbiter_.add_odometry(now_, 3.0);
+  EXPECT_FALSE(run(15, match, gnss).match_contradicts) << "the wheels lean too";
+  arbiter_.reset();
+  EXPECT_FALSE(run(15, match, gnss).match_contradicts) << "the wheels are not known";
+}
+
 TEST_F(ArbiterTest, AMatchWhoseHeadingLeansWhileThatOfGnssDoesNotMeansDrift) {
   EXPECT_FALSE(run(30, {0.0, 0.0, 1.5 * kYawSigma_rad}, none_).match_contradicts);
   EXPECT_TRUE(arbiter_.odometry_drifts());
