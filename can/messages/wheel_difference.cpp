@@ -13,6 +13,13 @@ Eigen::Vector3d inputs_of(const WheelDifference::Sample& sample) {
   return {sample.speed_mps, 1.0, sample.yaw_rate_radps};
 }
 
+/// How far the difference of real wheels may change with the speed and in bends.
+double change_with_motion(const WheelDifference::Sample& sample,
+                          const WheelDifferenceLimits& limits) {
+  return limits.change_share * std::abs(sample.speed_mps) +
+         limits.change_per_mps2_s * std::abs(sample.speed_mps * sample.yaw_rate_radps);
+}
+
 }  // namespace
 
 bool WheelDifference::contradicts(const Sample& sample) {
@@ -26,9 +33,7 @@ bool WheelDifference::contradicts(const Sample& sample) {
   const double expected_mps = inputs.dot(information.solve(right_));
   const double sigma_mps = limits_.noise_mps * std::sqrt(inputs.dot(information.solve(inputs)));
   const double allowed_mps =
-      limits_.change_mps + limits_.change_share * std::abs(sample.speed_mps) +
-      limits_.change_per_mps2_s * std::abs(sample.speed_mps * sample.yaw_rate_radps) +
-      limits_.sigmas * sigma_mps;
+      limits_.change_mps + change_with_motion(sample, limits_) + limits_.sigmas * sigma_mps;
   const double gain = 1.0 - std::exp(-elapsed_s / limits_.mean_s);
   mean_mps_ += gain * (sample.excess_mps - expected_mps - mean_mps_);
   update_lean(sample.excess_mps - expected_mps, elapsed_s, sample, sigma_mps);
@@ -51,11 +56,8 @@ void WheelDifference::update_lean(double excess_mps, double elapsed_s, const Sam
   if (gain <= 0.0) return;
   slow_mean_mps_ += gain * (excess_mps - slow_mean_mps_);
   const double noise_mps = limits_.noise_mps * std::sqrt(gain / (2.0 - gain));
-  // What may change within a second, as three standard deviations.
-  const double change_mps =
-      (limits_.change_share * std::abs(sample.speed_mps) +
-       limits_.change_per_mps2_s * std::abs(sample.speed_mps * sample.yaw_rate_radps)) /
-      3.0;
+  // The permitted change counts as three standard deviations.
+  const double change_mps = change_with_motion(sample, limits_) / 3.0;
   const double sigma_mps = std::hypot(noise_mps, change_mps, fit_sigma_mps);
   lean_.reset();
   if (sigma_mps <= limits_.lean_most_sigma_mps) lean_ = slow_mean_mps_ / sigma_mps;

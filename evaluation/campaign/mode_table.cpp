@@ -19,9 +19,10 @@ constexpr FaultLength kTwenty{20.0};
 constexpr FaultLength kToTheEnd{};
 constexpr FaultLength kAlways{.seconds = 0.0, .from_start = true};
 
-// The reasons that name a map which does not fit, and that the match sees nothing.
+// These reasons say that the map does not fit.
 const WhyMask kMapContradicts =
     Why::kMatchContradicts | Why::kGnssContradicts | Why::kMatchUncertain;
+// These reasons say that the match sees nothing.
 const WhyMask kUnseen = Why::kPoseStale | Why::kMatchUncertain;
 
 Fault fault(FaultKind kind, const FaultAmounts& amounts = {}) {

@@ -23,8 +23,8 @@ double negative_log_likelihood(std::span<const float> probability, const Hypothe
 }
 
 PerAxis error_of(const Se2& estimate, const Se2& truth) {
-  return in_units(Eigen::Vector3d(estimate.x_m - truth.x_m, estimate.y_m - truth.y_m,
-                                  estimate.yaw_rad - truth.yaw_rad));
+  return in_units(
+      Se2{estimate.x_m - truth.x_m, estimate.y_m - truth.y_m, estimate.yaw_rad - truth.yaw_rad});
 }
 
 /// 1 if the error is at most `limit`, else 0; kNotGiven if `limit` is.

@@ -32,18 +32,18 @@ constexpr int kGnssPasses = 20;
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
 constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
-/// The headings of match and GNSS and the turn of the wheels count together if at least two of them
-/// lean to the same side, each by more than this. Their sum has this limit, in its own standard
-/// deviations: together they say that the yaw rate has a bias.
+/// Match, GNSS and wheels can each lean because the yaw rate has a bias. A lean counts if it is
+/// larger than the first figure. The yaw rate has a bias if at least two leans count to the same
+/// side, and their sum exceeds the second figure in standard deviations of the sum.
 constexpr double kSharedLean = 2.0;
 constexpr double kSharedLimit = 3.5;
-/// If the headings of match and GNSS lean to opposite sides, and that of GNSS by this much, dead
-/// reckoning lies between them and does not drift. A smaller lean of GNSS is enough if the wheels
-/// are known to lean with the match by less than the second figure.
+/// The heading of the match leans alone if the heading of GNSS leans to the other side by the first
+/// figure. GNSS may lean by less if the lean of the wheels is known, and is below the second figure
+/// to the side of the match. Dead reckoning does not drift then.
 constexpr double kOpposingLean = 1.5;
 constexpr double kSupportingLean = 1.0;
-/// After the wheels have shown a bias, they are ignored for this long: they go on showing it until
-/// they have learned it.
+/// The arbiter ignores the wheels for this long after they have helped to find a bias. They lean
+/// until WheelDifference has learned it.
 constexpr Duration kWheelMemory = std::chrono::seconds(30);
 /// Larger innovations count as this many standard deviations, so that one outlier is no drift.
 constexpr double kMaxDriftStep = 3.0;
@@ -127,7 +127,7 @@ bool Arbiter::odometry_drifts() const {
   return std::abs(match_.lean().z()) < kSharedLean || !match_leans_alone();
 }
 
-/// Whether two or three of match, GNSS and wheels say together that the yaw rate has a bias.
+/// Whether at least two of match, GNSS and wheels say that the yaw rate has a bias.
 bool Arbiter::yaw_rate_drifts() const {
   const std::array leans{match_.lean().z(), gnss_.lean().z(), wheel_lean_.value_or(0.0)};
   const auto agree_on = [&leans](double side) {

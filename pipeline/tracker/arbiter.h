@@ -114,7 +114,7 @@ class Arbiter {
   bool match_jumps(Time time, const PoseInnovation& innovation) const;
   /// `lean`, positive to the side to which the match's heading leans.
   double with_match(double lean) const;
-  /// Whether GNSS leans to the other side than the match's heading, clearly or with the wheels.
+  /// Whether the heading of the match leans, and neither GNSS nor the wheels lean with it.
   bool match_leans_alone() const;
   bool yaw_rate_drifts() const;
   /// Excludes the match, which also explains an open dispute.

@@ -92,7 +92,7 @@ TEST_F(WheelDifferenceTest, TheLeanIsUnknownBeforeTheWheelsAreLearned) {
   EXPECT_TRUE(difference_.lean());
 }
 
-TEST_F(WheelDifferenceTest, ABiasOf1DegreePerSecondLeansByTwoSigmasAfterASecondAndAHalf) {
+TEST_F(WheelDifferenceTest, TheLeanReachesTwoSigmasSoonAfterABiasOf1DegreePerSecond) {
   for (const double sign : {-1.0, 1.0}) {
     double sum = 0.0;
     constexpr int kFaults = 20;

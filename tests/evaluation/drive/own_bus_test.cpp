@@ -42,9 +42,9 @@ double first_pose_s(const std::vector<JudgedCycle>& cycles) {
   return first == cycles.end() ? kDuration_s : first->time_s;
 }
 
-// The signals of the two buses have different resolutions. Therefore one drive may need more
-// matches for its start than the other. Their poses then start with different errors, which last
-// for some seconds.
+// The two buses send their signals with different resolutions. So one drive may need more matches
+// than the other before its pose is valid. The two poses then differ for some seconds, because
+// their first errors differ.
 TEST(OwnBusTest, GivesThePosesOfTheStandardMessages) {
   const auto standard = cycles_of(config_of("demo.yaml"));
   const auto own = cycles_of(config_of("demo_own_bus.yaml"));

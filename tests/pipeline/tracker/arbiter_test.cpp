@@ -168,7 +168,7 @@ TEST_F(ArbiterTest, WheelsAloneMeanNoDrift) {
   EXPECT_FALSE(arbiter_.odometry_drifts());
 }
 
-/// The wheels show the same bias until they have learned it, but the filter needs to be told once.
+/// The wheels lean until they have learned the bias. One notice is enough for the filter.
 TEST_F(ArbiterTest, WheelsMeanDriftOnceUntilTheyHaveLearnedIt) {
   const Eigen::Vector3d turned(0.0, 0.0, 0.5 * kYawSigma_rad);
   run(25, none_, turned);
@@ -204,7 +204,7 @@ TEST_F(ArbiterTest, AMatchWhoseHeadingLeansAwayFromThatOfGnssIsExcluded) {
   EXPECT_FALSE(arbiter_.odometry_drifts());
 }
 
-TEST_F(ArbiterTest, AMatchWhoseHeadingLeansAloneIsExcludedIfTheWheelsDenyADrift) {
+TEST_F(ArbiterTest, ExcludesAMatchWhoseHeadingLeansAloneIfTheWheelsShowNoBias) {
   const Eigen::Vector3d match(0.0, 0.0, 1.5 * kYawSigma_rad);
   const Eigen::Vector3d gnss(0.0, 0.0, -0.1 * kYawSigma_rad);
   arbiter_.add_odometry(now_, 0.0);
