@@ -56,10 +56,9 @@ function(bevloc_library name)
   endif()
 endfunction()
 
-# bevloc_test(NAME SOURCES... [WHOLE] [LINK libs...]): a GoogleTest program; each of its cases is a
-# CTest test, or, with WHOLE, the program is one (its cases share an expensive set-up). With sanitizers
-# every program is one, because each start of a program takes long.
-include(GoogleTest)
+# bevloc_test(NAME SOURCES... [WHOLE] [LINK libs...]): a GoogleTest program; each of its suites is a
+# CTest test, or, with WHOLE, the program is one (its suites share an expensive set-up). With
+# sanitizers every program is one, because each start of a program takes long.
 function(bevloc_test name)
   cmake_parse_arguments(ARG "WHOLE" "" "LINK" ${ARGN})
   add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
@@ -72,6 +71,22 @@ function(bevloc_test name)
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES TIMEOUT 900)
   else()
-    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES PROPERTIES TIMEOUT 600)
+    set(suites ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake)
+    file(GENERATE OUTPUT ${suites}
+      CONTENT "set(name ${name})
+set(command ${CMAKE_CROSSCOMPILING_EMULATOR} \"$<TARGET_FILE:${name}>\")
+include(\"${PROJECT_SOURCE_DIR}/cmake/Suites.cmake\")
+")
+    set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${suites})
   endif()
+endfunction()
+
+# bevloc_python_test(NAME MODULES... [ENVIRONMENT NAME=VALUE...]): modules of Python tests that run in
+# one process, because most of them spend their time on importing PyTorch.
+function(bevloc_python_test name)
+  cmake_parse_arguments(ARG "" "" "ENVIRONMENT" ${ARGN})
+  add_test(NAME ${name} COMMAND /usr/bin/python3 -m unittest ${ARG_UNPARSED_ARGUMENTS}
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS python
+    ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1;${ARG_ENVIRONMENT}")
 endfunction()

@@ -159,7 +159,3 @@ class ConsumersTest(unittest.TestCase):
         subprocess.run(
             ["cc", "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", f"-I{ROOT}",
              "-fsyntax-only", "-x", "c", "-"], input=source, text=True, check=True)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -99,7 +99,3 @@ class CanmatrixTest(unittest.TestCase):
                 compared += 1
             self.assertEqual(set(found["signals"]), set(wanted), f"M{identifier}")
         self.assertGreater(compared, 5 * FRAMES * MESSAGES // 2)
-
-
-if __name__ == "__main__":
-    unittest.main()

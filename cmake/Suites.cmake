@@ -1,0 +1,13 @@
+# Makes each suite of a GoogleTest program a CTest test named PROGRAM.SUITE. CTest reads this file
+# before it runs; bevloc_test() in Targets.cmake includes it with `name` and `command` set.
+execute_process(COMMAND ${command} --gtest_list_tests OUTPUT_VARIABLE listed RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "${name} cannot list its tests: build it first")
+endif()
+# The line of a suite begins in the first column. A dot ends its name, and a comment may follow.
+string(REGEX MATCHALL "(^|\n)[A-Za-z][A-Za-z0-9_/]*\\." lines "${listed}")
+foreach(line IN LISTS lines)
+  string(REGEX REPLACE "^\n|\\.$" "" suite "${line}")
+  add_test(${name}.${suite} ${command} "--gtest_filter=${suite}.*")
+  set_tests_properties(${name}.${suite} PROPERTIES TIMEOUT 600)
+endforeach()
