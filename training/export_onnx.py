@@ -27,7 +27,7 @@ from training.checkpoint import load_network, nuisances_of, read_checkpoint
 from training.config import FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream
 from training.errors import run_program
-from training.fit_scales import fit_scales, fit_sigma_scale
+from training.fit_scales import ResultScales, fit_scales, fit_score_scale, fit_sigma_scale
 from training.graph import FoldedConv, Walk, check_exportable, folded_convolutions
 from training.model import (
     BEV_COLS,
@@ -85,7 +85,7 @@ def _outputs(net: BevNetwork) -> list[onnx.ValueInfoProto]:
     ]
 
 
-def metadata(net: BevNetwork, sigma_scale: float) -> dict[str, str]:
+def metadata(net: BevNetwork, result: ResultScales) -> dict[str, str]:
     """The model's metadata: the solver parameters that the C++ code reads."""
     scales = {
         f"bevloc.solver.{name}_scale": f"{net.solvers.scale(name).item():.6g}"
@@ -94,7 +94,8 @@ def metadata(net: BevNetwork, sigma_scale: float) -> dict[str, str]:
     return {
         "bevloc.model": net.config.name,
         **scales,
-        "bevloc.solver.sigma_scale": f"{sigma_scale:.6g}",
+        "bevloc.solver.sigma_scale": f"{result.sigma:.6g}",
+        "bevloc.solver.score_scale": f"{result.score:.6g}",
         "bevloc.solver.gem_omega": "1",
     }
 
@@ -118,7 +119,7 @@ def build_model(
     net: BevNetwork,
     convolutions: dict[str, FoldedConv],
     backend: FloatOnnxBackend,
-    sigma_scale: float = 1.0,
+    result: ResultScales = ResultScales(),
     nuisances: str = "usual",
 ) -> onnx.ModelProto:
     """The whole network as one ONNX model, written by `backend`. `nuisances`: of training."""
@@ -137,7 +138,7 @@ def build_model(
         opset_imports=[helper.make_opsetid("", OPSET)],
         ir_version=IR_VERSION,
     )
-    helper.set_model_props(model, metadata(net, sigma_scale) | rig_statements(nuisances))
+    helper.set_model_props(model, metadata(net, result) | rig_statements(nuisances))
     onnx.checker.check_model(model, full_check=True)
     return model
 
@@ -162,19 +163,17 @@ def quantization_of(net: BevNetwork, checkpoint: Path, calibration: list[Batch])
 def write_model(
     net: BevNetwork,
     quantization: Quantization,
-    sigma_scale: float,
+    result: ResultScales,
     nuisances: str,
     folder: Path,
 ) -> None:
     """Writes both model files."""
     name = net.config.name
     int8_backend = Int8OnnxBackend(quantization)
-    int8_model = build_model(
-        net, quantization.convolutions, int8_backend, sigma_scale, nuisances
-    )
+    int8_model = build_model(net, quantization.convolutions, int8_backend, result, nuisances)
     onnx.save(int8_model, str(folder / f"{name}.onnx"))
     float_model = build_model(
-        net, folded_convolutions(net), FloatOnnxBackend(), sigma_scale, nuisances
+        net, folded_convolutions(net), FloatOnnxBackend(), result, nuisances
     )
     onnx.save(float_model, str(folder / f"{name}_float.onnx"))
 
@@ -202,10 +201,17 @@ def main() -> None:
     torch.save(net.solvers.state_dict(), arguments.checkpoint.with_name(SOLVERS_FILE))
     arguments.models.mkdir(parents=True, exist_ok=True)
     shipped = arguments.models / f"{net.config.name}.onnx"
-    write_model(net, quantization, 1.0, nuisances, arguments.models)
+    write_model(net, quantization, ResultScales(), nuisances, arguments.models)
     network = NativeNetwork(shipped, arguments.threads)
-    sigma_scale = fit_sigma_scale(network, NativeSolver(network, SHIPPED_SOLVER), batches)
-    write_model(net, quantization, sigma_scale, nuisances, arguments.models)
+    solver = NativeSolver(network, SHIPPED_SOLVER)
+    # Samples with rare nuisances have lower scores, and most of a drive has none.
+    usual = batches
+    if not arguments.recordings and nuisances != "usual":
+        usual = calibration_batches(samples, threads)
+    result = ResultScales(
+        fit_sigma_scale(network, solver, batches), fit_score_scale(network, solver, usual)
+    )
+    write_model(net, quantization, result, nuisances, arguments.models)
     for path in (shipped, shipped.with_name(f"{net.config.name}_float.onnx")):
         print(f"{path}: {path.stat().st_size / 1e6:.2f} MB", flush=True)
 

@@ -3,16 +3,32 @@ with the float network, and none for the solvers that are not part of its loss."
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Callable
+
 import torch
 from torch import Tensor
 
 from training.data import Batch
 from training.evaluate import Inference, Solver
 from training.losses import pose_losses
+from training.runtime import NativeSolution
 from training.solver import Posterior, PoseSolvers, estimate, standardise
 
 RATE, FINAL_RATE = 0.2, 0.02
 ROUNDS = 3
+RIGHT_M = (1.0, 0.3)  # a match with smaller errors in x and y has found the right place
+TYPICAL_SCORE = 0.32  # of such matches, by the network for which the limits of evidence were chosen
+
+ScoringSolver = Callable[[Tensor, Tensor], NativeSolution]
+
+
+@dataclass(frozen=True)
+class ResultScales:
+    """Factors for the standard deviations and the scores of the solvers."""
+
+    sigma: float = 1.0
+    score: float = 1.0
 
 
 def _posteriors(solvers: PoseSolvers, bev: Tensor, features_map: Tensor) -> list[Posterior]:
@@ -54,3 +70,18 @@ def fit_sigma_scale(infer: Inference, solver: Solver, batches: list[Batch]) -> f
         ratios.append((solution.estimate - batch.correction).abs() / solution.deviation)
     quantiles = torch.cat(ratios).quantile(0.683, dim=0)
     return quantiles.log().mean().exp().item()
+
+
+@torch.no_grad()
+def fit_score_scale(
+    infer: Inference, solver: ScoringSolver, batches: list[Batch]
+) -> float:
+    """The factor by which to multiply the scores so that matches of the right place have the mean
+    score TYPICAL_SCORE. The limits of evidence (pipeline/tracker/evidence.h) then fit `infer`."""
+    scores = []
+    for batch in batches:
+        solution = solver(*infer(batch)[:2])
+        errors = (solution.estimate - batch.correction).abs()
+        right = (errors[:, :2] < torch.tensor(RIGHT_M)).all(dim=1)
+        scores.append(solution.score[right])
+    return TYPICAL_SCORE / torch.cat(scores).mean().item()

@@ -70,7 +70,7 @@ def library() -> ctypes.CDLL:
     lib.bevloc_solver_create.restype = pointer
     lib.bevloc_solver_destroy.argtypes = [pointer]
     lib.bevloc_solver_destroy.restype = None
-    lib.bevloc_solver_solve.argtypes = [pointer] * 6
+    lib.bevloc_solver_solve.argtypes = [pointer] * 7
     lib.bevloc_solver_solve.restype = None
     return lib
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import weakref
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -45,6 +46,13 @@ class NativeNetwork:
         return torch.from_numpy(bev), torch.from_numpy(features_map), torch.from_numpy(mask)
 
 
+@dataclass(frozen=True)
+class NativeSolution(Solution):
+    """A solution with the score of each match (pipeline/solver/solver_result.h), [batch]."""
+
+    score: Tensor
+
+
 class NativeSolver:
     """A solver of the given kind with the parameters of a model file. ValueError for an unknown
     kind."""
@@ -57,16 +65,18 @@ class NativeSolver:
             raise ValueError(error.value.decode())
         weakref.finalize(self, library().bevloc_solver_destroy, self.handle)
 
-    def __call__(self, bev: Tensor, features_map: Tensor) -> Solution:
+    def __call__(self, bev: Tensor, features_map: Tensor) -> NativeSolution:
         counts = [len(hypotheses(*axis)) for axis in DEFINITION.axes()]
         correction = np.empty((len(bev), 3), np.float32)
         deviation = np.empty_like(correction)
         probabilities = np.empty((len(bev), sum(counts)), np.float32)
+        score = np.empty((len(bev), 1), np.float32)
         sides = bev.contiguous().numpy(), features_map.contiguous().numpy()
-        for arrays in zip(*sides, correction, deviation, probabilities):
+        for arrays in zip(*sides, correction, deviation, probabilities, score):
             library().bevloc_solver_solve(self.handle, *map(address, arrays))
-        return Solution(
+        return NativeSolution(
             torch.from_numpy(correction),
             torch.from_numpy(deviation),
             Posterior(*torch.from_numpy(probabilities).split(counts, dim=1)),
+            torch.from_numpy(score[:, 0]),
         )

@@ -118,6 +118,7 @@ SolverParameters read_solver_parameters(const nn::Graph& graph) {
     *value = parameter_or(graph, std::string("bevloc.solver.") + name, joint);
   }
   parameters.sigma_scale = parameter_or(graph, "bevloc.solver.sigma_scale", 1.0F);
+  parameters.score_scale = parameter_or(graph, "bevloc.solver.score_scale", 1.0F);
   return parameters;
 }
 

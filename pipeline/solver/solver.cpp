@@ -46,6 +46,7 @@ Solver::Solver(const BevGrid& grid, int channels, const HypothesisGrid& hypothes
     : hypotheses_(hypotheses),
       sigma_scale_(parameters.sigma_scale *
                    (refine == Refine::kYes ? kRefinedFactor : kUnrefinedFactor)),
+      score_scale_(parameters.score_scale),
       bev_cells_(grid, channels, hypotheses),
       map_cells_(grid, channels, hypotheses),
       matcher_(std::move(matcher)),
@@ -72,7 +73,7 @@ void Solver::solve(const FeatureView& bev, const FeatureView& map, SolverResult&
   result.covariance = covariance(result);
   const MatchScore score = score_match(map_cells_, match_covariance_.moved(), result.correction,
                                        match_covariance_.border());
-  result.score = score.overlap;
+  result.score = score_scale_ * score.overlap;
   result.axis_score = score.axis;
   result.evidence_share = Eigen::Vector3d::Ones() -
                           result.covariance.diagonal().cwiseQuotient(uniform_variance(hypotheses_));

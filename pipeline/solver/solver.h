@@ -51,6 +51,7 @@ class Solver {
 
   HypothesisGrid hypotheses_;
   double sigma_scale_;
+  double score_scale_;
   CellFeatures bev_cells_;
   CellFeatures map_cells_;
   std::unique_ptr<Matcher> matcher_;

@@ -67,6 +67,7 @@ Status check_parameters(SolverKind kind, const SolverParameters& parameters) {
         std::pair("refine_y_scale", parameters.refine_y_scale),
         std::pair("refine_yaw_scale", parameters.refine_yaw_scale),
         std::pair("sigma_scale", parameters.sigma_scale),
+        std::pair("score_scale", parameters.score_scale),
         std::pair("banded_x_scale", parameters.banded_x_scale),
         std::pair("banded_y_scale", parameters.banded_y_scale),
         std::pair("gem_omega", parameters.gem_omega)}) {

@@ -25,11 +25,12 @@ struct MatchResult {
   /// Per axis (x, y, yaw): the share of the hypotheses' variance that the match removed. At 0 or
   /// less the match says nothing about the axis; near 1 it is as exact as the steps allow.
   Eigen::Vector3d evidence_share = Eigen::Vector3d::Ones();
-  /// How well the perceived features lie on the mapped ones at the correction (match_score.h): 1 is
-  /// a perfect overlap, 0 none. Unlike the distributions it is absolute: it tells a match of the
-  /// right place from the best match of a wrong one.
+  /// How well the perceived features lie on the mapped ones at the correction: their overlap
+  /// (match_score.h) times SolverParameters::score_scale, 0 for none. Unlike the distributions it
+  /// is absolute: it tells a match of the right place from the best match of a wrong one.
   double score = 0.0;
-  /// Per axis (x, y, yaw): the same for the structure that shows a movement along the axis.
+  /// Per axis (x, y, yaw): the overlap of the structure that shows a movement along the axis, at
+  /// most 1.
   Eigen::Vector3d axis_score = Eigen::Vector3d::Zero();
   /// Per axis: the probability of the hypotheses at the border of the search range or one step away
   /// from it. With much of it the true correction may lie outside the range.

@@ -5,7 +5,7 @@
 
 namespace bevloc {
 
-/// Limits of what counts as seen. The scores are those of the shipped network (docs/solver.md).
+/// Limits of what counts as seen. SolverParameters::score_scale makes the scores of networks alike.
 struct EvidenceLimits {
   /// Largest probability near the border of the search range. With more of it the truth may lie
   /// outside, and the answer on this axis is worth nothing.

@@ -7,7 +7,7 @@ namespace bevloc {
 namespace {
 
 /// A match with this score tells nothing about the place. The right place mostly has a higher
-/// score, and a wrong place has a lower one. This and the next limit fit the shipped network.
+/// score, and a wrong place has a lower one.
 constexpr double kNeutralScore = 0.18;
 /// The same for the score along the road. Where nothing crosses the road, the right place may have
 /// a score as low as that of a wrong place.

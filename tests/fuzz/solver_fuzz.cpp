@@ -62,7 +62,7 @@ Status check_solves(Random& random, Solver& solver, const SolverRequest& request
   for (std::int64_t i = 0; i < cases; ++i) {
     FeaturePair pair = draw_features(random, request);
     SolverResult result = solve(solver, request, pair);
-    Status status = check_result(result, request.hypotheses);
+    Status status = check_result(result, request.hypotheses, request.parameters.score_scale);
     if (status) status = check_evidence(result, pair);
     if (!status) {
       return fail("case {}, {} on {}: {}", i, name_of(pair.bev_sort), name_of(pair.map_sort),

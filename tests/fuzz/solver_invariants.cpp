@@ -90,7 +90,8 @@ Status check_no_evidence(const SolverResult& result, const HypothesisGrid& hypot
 
 }  // namespace
 
-Status check_result(const SolverResult& result, const HypothesisGrid& hypotheses) {
+Status check_result(const SolverResult& result, const HypothesisGrid& hypotheses,
+                    double score_scale) {
   for (const AxisResult& axis : axes_of(result, hypotheses)) {
     if (auto status = check_axis(axis); !status) return status;
   }
@@ -100,7 +101,7 @@ Status check_result(const SolverResult& result, const HypothesisGrid& hypotheses
       return fail("rival peak {}: found {}, wanted 0 to 1", i, result.rival_peak(i));
     }
     if (!(result.axis_score(i) >= 0.0 && result.axis_score(i) <= 1.0)) {
-      return fail("score {}: found {}, wanted 0 to 1", i, result.axis_score(i));
+      return fail("axis score {}: found {}, wanted 0 to 1", i, result.axis_score(i));
     }
     if (!(result.edge_mass(i) >= 0.0 && result.edge_mass(i) <= 1.0 + kSumTolerance)) {
       return fail("edge mass {}: found {}, wanted 0 to 1", i, result.edge_mass(i));
@@ -109,8 +110,8 @@ Status check_result(const SolverResult& result, const HypothesisGrid& hypotheses
       return fail("evidence share {}: found {}, wanted at most 1", i, result.evidence_share(i));
     }
   }
-  if (!(result.score >= 0.0 && result.score <= 1.0)) {
-    return fail("score: found {}, wanted 0 to 1", result.score);
+  if (!(result.score >= 0.0 && result.score <= score_scale)) {
+    return fail("score: found {}, wanted 0 to {}", result.score, score_scale);
   }
   return result.evidence == Evidence::kNone ? check_no_evidence(result, hypotheses) : Status{};
 }

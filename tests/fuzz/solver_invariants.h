@@ -7,7 +7,8 @@
 
 namespace bevloc::fuzz {
 
-/// Fails with the first property that does not hold.
-Status check_result(const SolverResult& result, const HypothesisGrid& hypotheses);
+/// Fails with the first property that does not hold. `score_scale`: the solver's parameter.
+Status check_result(const SolverResult& result, const HypothesisGrid& hypotheses,
+                    double score_scale);
 
 }  // namespace bevloc::fuzz

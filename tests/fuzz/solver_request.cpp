@@ -55,7 +55,7 @@ HypothesisAxis draw_axis(Random& random, double max_range) {
   return {(half_count + fraction) * step, step};
 }
 
-std::array<std::pair<const char*, float*>, 11> parameters_of(SolverParameters& p) {
+std::array<std::pair<const char*, float*>, 12> parameters_of(SolverParameters& p) {
   return {{{"joint_scale", &p.joint_scale},
            {"x_scale", &p.x_scale},
            {"y_scale", &p.y_scale},
@@ -66,6 +66,7 @@ std::array<std::pair<const char*, float*>, 11> parameters_of(SolverParameters& p
            {"banded_x_scale", &p.banded_x_scale},
            {"banded_y_scale", &p.banded_y_scale},
            {"sigma_scale", &p.sigma_scale},
+           {"score_scale", &p.score_scale},
            {"gem_omega", &p.gem_omega}}};
 }
 

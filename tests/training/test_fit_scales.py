@@ -8,8 +8,9 @@ import torch
 from torch import Tensor
 
 from training.data import Batch
-from training.fit_scales import fit_scales, fit_sigma_scale
+from training.fit_scales import TYPICAL_SCORE, fit_scales, fit_score_scale, fit_sigma_scale
 from training.losses import pose_losses
+from training.runtime import NativeSolution
 from training.solver import KINDS, Posterior, PoseSolvers, Solution
 from training.synthetic_scene import features_under
 
@@ -68,6 +69,17 @@ class FitScales(unittest.TestCase):
             return Solution(bev + 2.0 * error, torch.ones_like(bev), unused)
 
         self.assertAlmostEqual(fit_sigma_scale(infer, solve, samples), 2.0, delta=0.1)
+
+    def test_matches_of_the_right_place_have_the_typical_score(self):
+        truth = torch.zeros(4, 3)
+        found = torch.tensor([[0.2, 0.1, 0.0], [0.9, 0.2, 0.1], [0.2, 0.4, 0.0], [1.2, 0.1, 0.0]])
+        unused = Posterior(NOTHING, NOTHING, NOTHING)
+        scores = torch.tensor([0.1, 0.3, 0.9, 0.8])
+        solution = NativeSolution(found, torch.ones_like(found), unused, scores)
+        scale = fit_score_scale(
+            infer, lambda *_: solution, [features_batch(truth, truth, truth)]
+        )
+        self.assertAlmostEqual(scale, TYPICAL_SCORE / 0.2, places=5)
 
 
 if __name__ == "__main__":

@@ -74,7 +74,7 @@ void bevloc_solver_destroy(bevloc_solver* solver) {
 }
 
 void bevloc_solver_solve(bevloc_solver* solver, const float* bev, const float* map,
-                         float* correction, float* deviation, float* probabilities) {
+                         float* correction, float* deviation, float* probabilities, float* score) {
   const auto view = [](const float* data) {
     const size_t size =
         static_cast<size_t>(bevloc::kFeatureChannels) * bevloc::kFeatureGrid.cells();
@@ -92,4 +92,5 @@ void bevloc_solver_solve(bevloc_solver* solver, const float* bev, const float* m
        {&result.x_probability, &result.y_probability, &result.yaw_probability}) {
     probabilities = std::ranges::copy(*probability, probabilities).out;
   }
+  *score = static_cast<float>(result.score);
 }

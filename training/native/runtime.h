@@ -30,9 +30,10 @@ bevloc_solver* bevloc_solver_create(const bevloc_network* network, const char* k
 void bevloc_solver_destroy(bevloc_solver* solver);
 
 /// Solves for bev and map, float [16, 100, 50] each. Writes the correction [3] (x m, y m, yaw rad),
-/// its standard deviations [3] and the distributions of x, y and yaw, concatenated [21 + 11 + 21].
+/// its standard deviations [3], the distributions of x, y and yaw, concatenated [21 + 11 + 21], and
+/// the score [1].
 void bevloc_solver_solve(bevloc_solver* solver, const float* bev, const float* map,
-                         float* correction, float* deviation, float* probabilities);
+                         float* correction, float* deviation, float* probabilities, float* score);
 
 #ifdef __cplusplus
 }

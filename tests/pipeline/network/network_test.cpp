@@ -141,6 +141,14 @@ TEST(Network, DescribesItsFeaturesAndParameters) {
   EXPECT_FLOAT_EQ(parameters.gem_omega, 1.25F);
 }
 
+TEST(Network, TheScaleOfTheScoreIsOneUnlessTheModelHasAnother) {
+  EXPECT_EQ(test::load_network("tiny_network_int8")->solver_parameters().score_scale, 1.0F);
+  const auto small = Network::load(
+      std::filesystem::path(BEVLOC_SOURCE_DIR) / "models/small-lut.onnx", test::network_options(1));
+  ASSERT_TRUE(small) << small.error().message;
+  EXPECT_FLOAT_EQ(small->solver_parameters().score_scale, 1.07157F);
+}
+
 TEST(Network, AllocatesNothingInARun) {
   const auto network = test::load_network("tiny_network_int8");
   const ViewTable table = test::network_view_table();

@@ -11,9 +11,10 @@ namespace {
 
 constexpr int kScoreChannels = 16;
 
-SolverResult match(const std::vector<float>& bev, const std::vector<float>& map) {
+SolverResult match(const std::vector<float>& bev, const std::vector<float>& map,
+                   const SolverParameters& parameters = {}) {
   auto solver =
-      make_solver(SolverKind::kBandedRefined, kFeatureGrid, kScoreChannels, {}, {}).value();
+      make_solver(SolverKind::kBandedRefined, kFeatureGrid, kScoreChannels, {}, parameters).value();
   SolverResult result;
   solver->solve(view(bev, kScoreChannels, kFeatureGrid), view(map, kScoreChannels, kFeatureGrid),
                 result);
@@ -48,6 +49,19 @@ TEST(MatchScoreTest, IsSmallWhereTheTruthLiesOutsideTheSearchRange) {
         match(scene.seen_from({0.0, 4.0, 0.0}, kFeatureGrid), scene.seen_from({}, kFeatureGrid));
     EXPECT_LT(result.score, 0.3) << "seed " << seed;
   }
+}
+
+TEST(MatchScoreTest, OnlyTheWholeScoreIsScaled) {
+  const SyntheticScene scene = SyntheticScene::structured(kScoreChannels, 1);
+  const std::vector<float> bev = scene.seen_from({0.7, -0.3, radians(0.7)}, kFeatureGrid);
+  const std::vector<float> map = scene.seen_from({}, kFeatureGrid);
+  SolverParameters parameters;
+  parameters.score_scale = 1.25F;
+  const SolverResult plain = match(bev, map);
+  const SolverResult scaled = match(bev, map, parameters);
+  EXPECT_DOUBLE_EQ(scaled.score, 1.25 * plain.score);
+  EXPECT_EQ(scaled.axis_score, plain.axis_score);
+  EXPECT_EQ(scaled.covariance, plain.covariance);
 }
 
 TEST(MatchScoreTest, TheEdgeMassShowsATruthAtTheBorder) {
