@@ -1,6 +1,10 @@
 #include "can/vehicle/vehicle_binding.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
+
+#include "can/bus/frame.h"
 
 namespace bevloc::can {
 
@@ -8,6 +12,12 @@ std::vector<uint32_t> ids_of(const VehicleBinding& binding) {
   std::vector<uint32_t> ids;
   for (const BoundMessage& message : binding.messages) ids.push_back(message.id);
   return ids;
+}
+
+bool needs_fd(const VehicleBinding& binding) {
+  return std::ranges::any_of(binding.messages, [](const BoundMessage& message) {
+    return !is_valid_length(FrameFormat::kClassic, message.length);
+  });
 }
 
 std::vector<std::string> warnings_of(const VehicleBinding& binding) {

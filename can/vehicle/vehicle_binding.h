@@ -97,6 +97,9 @@ struct VehicleBinding {
 /// Identifiers that a filter of the bus has to let pass.
 std::vector<uint32_t> ids_of(const VehicleBinding& binding);
 
+/// Whether a message has more bytes than a classic frame.
+bool needs_fd(const VehicleBinding& binding);
+
 /// Messages without counter or checksum, of which a receiver cannot notice every fault.
 std::vector<std::string> warnings_of(const VehicleBinding& binding);
 

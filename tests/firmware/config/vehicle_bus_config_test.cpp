@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "firmware/runtime/can_bus.h"
 #include "tests/firmware/config/config_fixture.h"
 
 namespace bevloc::firmware {
@@ -51,6 +52,15 @@ TEST_F(VehicleBusConfigTest, BindsTheSignals) {
       << "from the attribute E2EProfile";
   EXPECT_EQ(binding.messages[1].protection.data_ids, std::vector<uint16_t>{77});
   EXPECT_EQ(can::warnings_of(binding).size(), 8U) << "four messages without protection";
+}
+
+/// A socket for classic frames would never receive them.
+TEST_F(VehicleBusConfigTest, LongMessagesNeedAnFdInterface) {
+  auto config = load_with("mock", "mock");
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_FALSE(appliance_options(config->can).fd);
+  config->can.vehicle->messages[2].length = 12;
+  EXPECT_TRUE(appliance_options(config->can).fd);
 }
 
 TEST_F(VehicleBusConfigTest, NamesWhatWasProbablyMeant) {
