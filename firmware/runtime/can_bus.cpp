@@ -14,8 +14,8 @@ can::SocketCanOptions appliance_options(const CanConfig& config) {
                      : can::VehicleInput::accepted_ids(config.base_ids, config.secoc.has_value());
   options.confirmed_ids = can::PosePublisher::sent_ids(
       config.base_ids, config.variant, config.secoc.has_value(), config.sends_clock);
-  options.fd = config.variant == can::FrameFormat::kFd ||
-               (config.vehicle && can::needs_fd(*config.vehicle));
+  options.fd =
+      config.variant == can::FrameFormat::kFd || (config.vehicle && can::needs_fd(*config.vehicle));
   return options;
 }
 
