@@ -39,8 +39,9 @@ struct NetworkOptions {
 /// Computes in int8 where the file has QuantizeLinear and DequantizeLinear (with zero points 0 and
 /// weight scales per channel), and in float elsewhere. The metadata must contain
 /// bevloc.solver.{joint_scale, x_scale, y_scale, yaw_scale, gem_omega}. Optional are
-/// bevloc.solver.{refine,banded}_..._scale (default: joint_scale), bevloc.solver.{sigma,score}_scale
-/// (default: 1), bevloc.rig.* (model_rig.h) and bevloc.test_frame_answer (test_frame.h).
+/// bevloc.solver.{refine,banded}_..._scale (default: joint_scale) and
+/// bevloc.solver.{sigma,score}_scale (default: 1), bevloc.rig.* (model_rig.h) and
+/// bevloc.test_frame_answer (test_frame.h).
 ///
 /// load() allocates all buffers. The other functions do not allocate, throw or lock, except for
 /// what make_onednn_engine() and make_xnnpack_engine() document about their libraries.
