@@ -5,7 +5,8 @@
 
 namespace bevloc {
 
-/// Limits of what counts as seen. SolverParameters::score_scale makes the scores of networks alike.
+/// Limits of what counts as seen. They fit every network, because the model file scales its scores
+/// (SolverParameters::score_scale).
 struct EvidenceLimits {
   /// Largest probability near the border of the search range. With more of it the truth may lie
   /// outside, and the answer on this axis is worth nothing.
