@@ -50,9 +50,10 @@ QUANTIZATION_FILE = "quantization.pt"
 SOLVERS_FILE = "solvers.pt"
 # The simulator's cameras vary around this rig.
 TRAINED_RIG = Path(__file__).parent.parent / "config/rig_demo.yaml"
-# Of the random rigs of --nuisances street (sim/samples/random_rig.cpp): 120 to 50 degrees of view.
+# Of the random rigs of --nuisances street (sim/samples/random_rig.cpp): 50 to 120 degrees of view,
+# of which a network image shows 90 (pipeline/preprocessing/network_camera.h).
 RANDOM_RIGS = {
-    "bevloc.rig.focal_range_px": "92.4 343",
+    "bevloc.rig.focal_range_px": "160 343",
     "bevloc.rig.height_range_m": "0.6 2.6",
 }
 SHIPPED_SOLVER = "banded+refine"  # config/demo.yaml

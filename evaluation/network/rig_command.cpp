@@ -12,6 +12,7 @@
 #include "evaluation/summary_format.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/network/model/model_rig.h"
+#include "sim/samples/random_rig.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -34,7 +35,11 @@ PerAxis ratio_of(const PerAxis& a, const PerAxis& b) {
 
 void RigCommand::declare(CLI::App& eval) {
   auto* rig = eval.add_subcommand("rig", "Say what a rig costs against the simulator's own");
-  rig->add_option("file", rig_file_, "Calibration of the cameras")->required();
+  auto* drawn = rig->add_option("--random", drawn_seed_, "Draw a rig by this seed, read no file");
+  rig->add_option("file", rig_file_, "Calibration of the cameras")->excludes(drawn);
+  rig->add_option("--write", drawn_file_, "Write the drawn rig to this file")
+      ->check(output_file())
+      ->needs(drawn);
   rig->add_option("--model", model_, "ONNX file")->capture_default_str();
   rig->add_option("--frames", frames_, "Number of samples with each rig")
       ->check(CLI::Range(1, kMostFrames))
@@ -46,17 +51,32 @@ void RigCommand::declare(CLI::App& eval) {
   rig->footer(
       "Examples:\n"
       "  bevloc eval rig config/rig_van.yaml\n"
-      "  bevloc eval rig rig.yaml --frames 500 --json rig.json");
+      "  bevloc eval rig rig.yaml --frames 500 --json rig.json\n"
+      "  bevloc eval rig --random 7 --write rig_7.yaml");
   rig->callback([this] { chosen_ = true; });
 }
 
+Result<RigCommand::NamedRig> RigCommand::chosen_rig() const {
+  if (drawn_seed_) {
+    const Rig rig = sim::random_rig(1.0, *drawn_seed_);
+    if (const Status written = write_file(format_rig(rig), drawn_file_); !written)
+      return tl::unexpected(written.error());
+    return NamedRig{fmt::format("random rig {}", *drawn_seed_), rig};
+  }
+  if (rig_file_.empty())
+    return fail("bevloc eval rig: found no rig, wanted a file or --random SEED");
+  auto rig = read_rig(rig_file_);
+  if (!rig) return tl::unexpected(rig.error());
+  return NamedRig{rig_file_, std::move(*rig)};
+}
+
 Status RigCommand::run() const {
-  const auto rig = read_rig(rig_file_);
+  const auto rig = chosen_rig();
   if (!rig) return tl::unexpected(rig.error());
   auto evaluation = NetworkEvaluation::create(model_);
   if (!evaluation) return tl::unexpected(evaluation.error());
-  if (const Status fits = check_rig_fits(evaluation->model_rig(), *rig); !fits) {
-    fmt::print(stderr, "{}: bevlocd refuses it: {}\n", rig_file_, fits.error().message);
+  if (const Status fits = check_rig_fits(evaluation->model_rig(), rig->rig); !fits) {
+    fmt::print(stderr, "{}: bevlocd refuses it: {}\n", rig->name, fits.error().message);
   }
   sim::SampleStream stream;
   stream.first_seed = first_seed_of(seed_);
@@ -64,7 +84,7 @@ Status RigCommand::run() const {
   int done = 0;
   const auto progress = [&] { show_progress(++done, 2 * frames_); };
   const Summary usual = summary_of(evaluation->run(stream, frames_, progress));
-  stream.rig = &*rig;
+  stream.rig = &rig->rig;
   const Summary found = summary_of(evaluation->run(stream, frames_, progress));
   fmt::print(
       "{}, {} samples, {}; along, across (m), yaw (degrees)\n"
@@ -73,10 +93,10 @@ Status RigCommand::run() const {
       "{:22}  {}   {}   {}\n"
       "ratio                   {}   {}\n",
       evaluation->model_name(), frames_, kSolver, three(usual.mae), three(usual.p95),
-      percent(usual.coverage_3s), rig_file_, three(found.mae), three(found.p95),
+      percent(usual.coverage_3s), rig->name, three(found.mae), three(found.p95),
       percent(found.coverage_3s), three(ratio_of(found.mae, usual.mae), 2),
       three(ratio_of(found.p95, usual.p95), 2));
-  const nlohmann::json json{{"rig", rig_file_},
+  const nlohmann::json json{{"rig", rig->name},
                             {"model", evaluation->model_name()},
                             {"own", json_of(usual)},
                             {"given", json_of(found)}};

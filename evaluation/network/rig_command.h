@@ -1,16 +1,19 @@
 // `bevloc eval rig`: what a rig will cost before anything is mounted.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
 #include "common/result.h"
+#include "pipeline/calibration/rig.h"
 
 namespace bevloc::evaluation {
 
-/// Evaluates a model on the same simulated places with the simulator's own rig and with the rig of
-/// a file, and prints both errors and their ratio.
+/// Evaluates a model on the same simulated places with the simulator's own rig and with another
+/// one, which is read from a file or drawn at random, and prints both errors and their ratio.
 class RigCommand {
  public:
   void declare(CLI::App& eval);
@@ -18,8 +21,17 @@ class RigCommand {
   Status run() const;
 
  private:
+  struct NamedRig {
+    std::string name;
+    Rig rig;
+  };
+  /// Reads or draws the other rig. Writes a drawn one to the file that was asked for.
+  Result<NamedRig> chosen_rig() const;
+
   bool chosen_ = false;
   std::string rig_file_;
+  std::optional<uint64_t> drawn_seed_;
+  std::string drawn_file_;
   std::string model_ = "models/nano.onnx";
   int frames_ = 200;
   uint64_t seed_ = 1;

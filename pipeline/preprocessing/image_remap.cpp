@@ -32,12 +32,10 @@ YuvLayout nv12(const ImageView& image) {
 }
 
 /// The largest reduction that leaves at least two decoded pixels for each network pixel.
-int reduction_for(int width_px) {
-  constexpr int kLeastScale = 2;
+int reduction_for(const Intrinsics& real) {
+  const double largest = 0.5 * real_pixels_per_network_pixel(real);
   for (const int reduction : {8, 4, 2}) {
-    if (width_px % reduction == 0 && width_px / reduction >= kLeastScale * kNetworkWidthPx) {
-      return reduction;
-    }
+    if (real.width_px % reduction == 0 && reduction <= largest) return reduction;
   }
   return 1;
 }
@@ -46,7 +44,7 @@ int reduction_for(int width_px) {
 
 ImagePreprocessor::MjpegReader::MjpegReader(const CameraModel& camera)
     : decoder(camera.intrinsics.width_px, camera.intrinsics.height_px,
-              reduction_for(camera.intrinsics.width_px)),
+              reduction_for(camera.intrinsics)),
       table(make_remap_table(
           resized(camera, decoder.reduced_width_px(), decoder.reduced_height_px()))) {}
 

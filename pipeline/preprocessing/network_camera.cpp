@@ -1,5 +1,6 @@
 #include "pipeline/preprocessing/network_camera.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace bevloc {
@@ -14,18 +15,24 @@ double horizon_slope(const Se3& vehicle_from_camera) {
 
 }  // namespace
 
+double real_pixels_per_network_pixel(const Intrinsics& real) {
+  return std::min(static_cast<double>(real.width_px) / kNetworkWidthPx,
+                  real.fx_px / kLeastNetworkFocalPx);
+}
+
 CameraModel network_camera(const CameraModel& camera) {
   const Intrinsics& real = camera.intrinsics;
-  const double scale = static_cast<double>(kNetworkWidthPx) / real.width_px;
+  const double reduction = real_pixels_per_network_pixel(real);
+  const double cut_left_px = 0.5 * (real.width_px / reduction - kNetworkWidthPx);
 
   CameraModel network;
   network.vehicle_from_camera = camera.vehicle_from_camera;
   network.intrinsics.width_px = kNetworkWidthPx;
   network.intrinsics.height_px = kNetworkHeightPx;
-  network.intrinsics.fx_px = real.fx_px * scale;
+  network.intrinsics.fx_px = real.fx_px / reduction;
   network.intrinsics.fy_px = network.intrinsics.fx_px;
   // Pixel centres are integers, so u + 0.5 scales.
-  network.intrinsics.cx_px = (real.cx_px + 0.5) * scale - 0.5;
+  network.intrinsics.cx_px = (real.cx_px + 0.5) / reduction - cut_left_px - 0.5;
   network.intrinsics.cy_px =
       kNetworkHorizonRow - network.intrinsics.fy_px * horizon_slope(camera.vehicle_from_camera);
   return network;

@@ -36,7 +36,7 @@ int box_weights(double centre, double box, int length, std::span<uint16_t> weigh
 RemapTable make_remap_table(const CameraModel& camera) {
   const Intrinsics& real = camera.intrinsics;
   const Intrinsics network = network_camera(camera).intrinsics;
-  const double box = std::max(1.0, static_cast<double>(real.width_px) / kNetworkWidthPx);
+  const double box = std::max(1.0, real_pixels_per_network_pixel(real));
 
   RemapTable table;
   table.taps = static_cast<int>(std::ceil(box)) + 1;

@@ -1,13 +1,16 @@
 // `bevloc eval rig`: both rigs see the same places.
 #include "evaluation/network/rig_command.h"
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include "common/files.h"
 #include "pipeline/calibration/rig_yaml.h"
+#include "sim/samples/random_rig.h"
 #include "sim/sim_rig.h"
 #include "tests/support/temporary_folder.h"
 
@@ -18,13 +21,14 @@ class RigCommandTest : public testing::Test {
  protected:
   std::string file(const std::string& name) const { return folder_ / name; }
 
-  Status run(const std::string& rig) const {
+  Status run(std::vector<std::string> rig) const {
     CLI::App app;
     RigCommand command;
     command.declare(app);
     std::vector<std::string> arguments{
-        "rig",      rig, "--model", BEVLOC_SOURCE_DIR "/models/nano.onnx",
-        "--frames", "8", "--json",  file("answer.json")};
+        "rig",    "--model",          BEVLOC_SOURCE_DIR "/models/nano.onnx", "--frames", "8",
+        "--json", file("answer.json")};
+    std::ranges::move(rig, std::back_inserter(arguments));
     std::ranges::reverse(arguments);  // as CLI11 expects
     app.parse(arguments);
     return command.run();
@@ -39,7 +43,7 @@ class RigCommandTest : public testing::Test {
 
 TEST_F(RigCommandTest, TheSimulatorsOwnRigCostsNothing) {
   ASSERT_TRUE(write_file(file("rig.yaml"), format_rig(sim::nominal_rig())));
-  const Status status = run(file("rig.yaml"));
+  const Status status = run({file("rig.yaml")});
   ASSERT_TRUE(status) << status.error().message;
   // The file keeps nine decimals, so that a few pixels are rounded the other way.
   for (int axis = 0; axis < 3; ++axis) {
@@ -52,14 +56,27 @@ TEST_F(RigCommandTest, AnotherRigAndItsOwnBodyChangeTheErrors) {
   for (CameraModel& camera : rig.cameras)
     camera.own_body_px = {{0, 0}, {639, 0}, {639, 359}, {0, 359}};
   ASSERT_TRUE(write_file(file("rig.yaml"), format_rig(rig)));
-  const Status status = run(file("rig.yaml"));
+  const Status status = run({file("rig.yaml")});
   ASSERT_TRUE(status) << status.error().message;
   // Whoever sees only the own vehicle keeps the error of the prior.
   EXPECT_GT(answer()["given"]["mae"][1], 3.0 * answer()["own"]["mae"][1].get<double>());
 }
 
+TEST_F(RigCommandTest, WritesTheRigThatItDraws) {
+  const Status status = run({"--random", "7", "--write", file("drawn.yaml")});
+  ASSERT_TRUE(status) << status.error().message;
+  const auto drawn = read_rig(file("drawn.yaml"));
+  ASSERT_TRUE(drawn) << drawn.error().message;
+  EXPECT_EQ(format_rig(*drawn), format_rig(sim::random_rig(1.0, 7)));
+  EXPECT_EQ(answer()["rig"], "random rig 7");
+}
+
+TEST_F(RigCommandTest, WantsAFileOrASeed) {
+  EXPECT_THAT(run({}).error().message, testing::HasSubstr("wanted a file or --random SEED"));
+}
+
 TEST_F(RigCommandTest, RefusesAFileThatIsNoRig) {
-  EXPECT_THAT(run("/nonexistent.yaml").error().message, testing::HasSubstr("/nonexistent.yaml"));
+  EXPECT_THAT(run({"/nonexistent.yaml"}).error().message, testing::HasSubstr("/nonexistent.yaml"));
 }
 
 }  // namespace

@@ -39,6 +39,26 @@ TEST(NetworkCamera, ScalesTheFullWidthFromEdgeToEdge) {
   EXPECT_NEAR(network.intrinsics.project(right_edge)->x(), kNetworkWidthPx - 0.5, 1e-9);
 }
 
+TEST(NetworkCamera, ShowsTheMiddle90DegreesOfAWiderLens) {
+  CameraModel real = camera_at(1.5, 0.0, 1.5, 0.0, radians(120.0));
+  for (const Lens lens : {Lens::kPinhole, Lens::kFisheye}) {
+    real.intrinsics.lens = lens;
+    real.intrinsics.cx_px = 0.5 * (real.intrinsics.width_px - 1);
+    const Intrinsics network = network_camera(real).intrinsics;
+    EXPECT_EQ(network.fx_px, kLeastNetworkFocalPx);
+    EXPECT_NEAR(network.project({-1.0, 0.0, 1.0})->x(), -0.5, 1e-9);
+    EXPECT_NEAR(network.project({1.0, 0.0, 1.0})->x(), kNetworkWidthPx - 0.5, 1e-9);
+  }
+}
+
+TEST(NetworkCamera, CutsAWiderLensAlikeOnBothSidesOfItsImage) {
+  CameraModel real = camera_at(1.5, 0.0, 1.5, 0.0, radians(120.0));
+  real.intrinsics.cx_px = 0.5 * (real.intrinsics.width_px - 1) + 10.0;
+  const double reduction = real_pixels_per_network_pixel(real.intrinsics);
+  EXPECT_NEAR(network_camera(real).intrinsics.cx_px, 0.5 * (kNetworkWidthPx - 1) + 10.0 / reduction,
+              1e-9);
+}
+
 TEST(NetworkCamera, PutsTheHorizonAtTheSameRowForAnyPitch) {
   for (const double pitch_down_rad : {-0.1, 0.0, 0.2}) {
     for (const double azimuth_rad : {0.0, 1.0, 3.1}) {
