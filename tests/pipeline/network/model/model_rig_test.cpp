@@ -65,7 +65,7 @@ TEST(ModelRig, ARangeOfTrainingAllowsMoreThanTheFactor) {
   for (CameraModel& camera : rig.cameras) camera.vehicle_from_camera.translation_m.z() = 2.5;
   rig.cameras[3].intrinsics.fx_px *= 0.4;
   EXPECT_TRUE(check_rig_fits(model, rig));
-  rig.cameras[3].intrinsics.fx_px *= 0.5;
+  rig.cameras[3].intrinsics.fx_px *= 5.0;
   EXPECT_THAT(check_rig_fits(model, rig).error().message, HasSubstr("wanted 92 to"));
   graph.metadata["bevloc.rig.height_range_m"] = "2.6 0.6";
   EXPECT_THAT(error_of(graph), HasSubstr("wanted the least value first"));
