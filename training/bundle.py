@@ -38,8 +38,8 @@ CHECKPOINT_BYTES = 16 * 2**20  # what other machines return
 _BYTES_PER_WEIGHT = 16  # of a checkpoint: weights, average, two moments of the gradient
 PACKAGES = ("training", "training/models", "training/solvers", "training/nuscenes")
 ARCHIVE = ".tar.gz"
-# OpenCV loads BLAS and LAPACK, which the sampler does not call. Where OpenBLAS stands in for them, it
-# would add 35 MB to the bundle.
+# OpenCV loads BLAS and LAPACK, which the sampler does not call. Where OpenBLAS stands in for them,
+# it would add 35 MB to the bundle.
 PLAIN_BLAS = "/usr/lib/x86_64-linux-gnu/blas:/usr/lib/x86_64-linux-gnu/lapack"
 _ROOT = Path(__file__).resolve().parent.parent
 # Options that belong to the machine or are set by the bundle's program itself.
