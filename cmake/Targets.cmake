@@ -64,7 +64,7 @@ function(bevloc_test name)
   add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PRIVATE bevloc_options ${ARG_LINK} GTest::gmock GTest::gtest_main)
   # The tests' own sources are compiled once and run once, so optimizing them costs more than it gains.
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1> $<$<CONFIG:Sanitize>:-O0>)
   bevloc_compile_together(${name})
   target_compile_definitions(${name} PRIVATE BEVLOC_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   if(ARG_WHOLE OR BEVLOC_SANITIZE)
