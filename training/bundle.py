@@ -77,12 +77,13 @@ def copy_python(out: Path) -> None:
 
 def libraries_of(program: Path) -> dict[str, Path]:
     """The shared libraries that a program loads here, by name, and its loader."""
+    folders = [PLAIN_BLAS, *filter(None, [os.environ.get("LD_LIBRARY_PATH")])]
     listed = subprocess.run(
         ["ldd", str(program)],
         check=True,
         capture_output=True,
         text=True,
-        env={**os.environ, "LD_LIBRARY_PATH": PLAIN_BLAS},
+        env={**os.environ, "LD_LIBRARY_PATH": ":".join(folders)},
     )
     found: dict[str, Path] = {}
     for line in listed.stdout.splitlines():

@@ -1,6 +1,7 @@
 #include "evaluation/network/rig_command.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -35,7 +36,8 @@ PerAxis ratio_of(const PerAxis& a, const PerAxis& b) {
 
 void RigCommand::declare(CLI::App& eval) {
   auto* rig = eval.add_subcommand("rig", "Say what a rig costs against the simulator's own");
-  auto* drawn = rig->add_option("--random", drawn_seed_, "Draw a rig by this seed, read no file");
+  auto* drawn =
+      rig->add_option("--random", drawn_seed_, "Draw a rig with this seed, instead of a file");
   rig->add_option("file", rig_file_, "Calibration of the cameras")->excludes(drawn);
   rig->add_option("--write", drawn_file_, "Write the drawn rig to this file")
       ->check(output_file())

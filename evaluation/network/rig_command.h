@@ -12,8 +12,8 @@
 
 namespace bevloc::evaluation {
 
-/// Evaluates a model on the same simulated places with the simulator's own rig and with another
-/// one, which is read from a file or drawn at random, and prints both errors and their ratio.
+/// Evaluates a model on the same simulated places with two rigs: the simulator's own, and one that
+/// is read from a file or drawn at random. Prints the errors of both and their ratio.
 class RigCommand {
  public:
   void declare(CLI::App& eval);

@@ -10,16 +10,16 @@ inline constexpr int kNetworkWidthPx = 320;
 inline constexpr int kNetworkHeightPx = 96;
 /// Row of the horizon, close to the top, so that the image contains little sky.
 inline constexpr double kNetworkHorizonRow = 14.0;
-/// The least focal length: a network image shows at most 90 degrees, enough for six cameras around
-/// a vehicle. A lens that sees more would only make everything smaller.
+/// The least focal length of a network image, with which it shows 90 degrees. Six cameras then see
+/// all around the vehicle. A wider image would show everything smaller.
 inline constexpr double kLeastNetworkFocalPx = 0.5 * kNetworkWidthPx;
 
-/// How many pixels of the real image fit side by side into one pixel of the network image.
+/// The width of one pixel of the network image, in pixels of the real image.
 double real_pixels_per_network_pixel(const Intrinsics& real);
 
-/// Has the position and direction of the real camera, without distortion. The image width, or its
-/// middle part (kLeastNetworkFocalPx), is scaled to kNetworkWidthPx with square pixels. The rows
-/// are shifted so that the horizon of a level vehicle is at kNetworkHorizonRow in the principal
+/// The network's camera has the position and direction of the real camera, and no distortion. It
+/// shows the whole width of the real image, or its middle 90 degrees if the lens is wider. Its
+/// pixels are square. The horizon of a level vehicle is at kNetworkHorizonRow in the principal
 /// column.
 CameraModel network_camera(const CameraModel& camera);
 

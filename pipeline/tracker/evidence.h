@@ -5,8 +5,8 @@
 
 namespace bevloc {
 
-/// Limits of what counts as seen. They fit every network, because the model file scales its scores
-/// (SolverParameters::score_scale).
+/// These limits decide what counts as seen. They fit every network, because its file has a factor
+/// on its scores (SolverParameters::score_scale).
 struct EvidenceLimits {
   /// Largest probability near the border of the search range. With more of it the truth may lie
   /// outside, and the answer on this axis is worth nothing.

@@ -220,9 +220,8 @@ class Export(unittest.TestCase):
         self.assertNotIn("bevloc.rig.focal_range_px", rig_statements("strong"))
         statements = rig_statements("street")
         least, most = map(float, statements["bevloc.rig.focal_range_px"].split(" "))
-        widest, narrowest = math.radians(120 / 2), math.radians(50 / 2)
-        # Of a lens of more than 90 degrees the network sees the middle 90.
-        widest = min(widest, math.radians(90 / 2))
+        # The rigs see up to 120 degrees, and a network image shows the middle 90 of them.
+        widest, narrowest = math.radians(90 / 2), math.radians(50 / 2)
         self.assertAlmostEqual(least, 160 / math.tan(widest), delta=0.1)
         self.assertAlmostEqual(most, 160 / math.tan(narrowest), delta=0.2)
 
