@@ -60,11 +60,13 @@ void enlarge_receive_buffer(int descriptor) {
   set_option(descriptor, SOL_SOCKET, SO_RCVBUF, kBytes);
 }
 
+/// FD frames are always received: a vehicle may send them beside classic ones, also with up to 8
+/// bytes. On a classic interface there are none.
 bool set_options(int descriptor, const SocketCanOptions& options) {
   const int on = 1;
   enlarge_receive_buffer(descriptor);
   return set_option(descriptor, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kReportedErrors) &&
-         (!options.fd || set_option(descriptor, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on)) &&
+         set_option(descriptor, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on) &&
          (options.confirmed_ids.empty() ||
           set_option(descriptor, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, on)) &&
          request_stamps(descriptor) && set_option(descriptor, SOL_SOCKET, SO_RXQ_OVFL, on);

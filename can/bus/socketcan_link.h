@@ -20,7 +20,8 @@ struct SocketCanOptions {
   /// Identifiers whose frames this endpoint sends and confirms by their echo (SendGate). Empty: no
   /// confirmation. Frames of other nodes with these identifiers also pass the filter.
   std::vector<uint32_t> confirmed_ids{};
-  bool fd = false;  ///< also send and receive FD frames
+  /// Refuse a classic interface, so that FD frames can be sent. FD frames are always received.
+  bool fd = false;
   /// A frame that waits longer for room is dropped. The default is two cycles of the solution.
   Duration max_send_age = std::chrono::milliseconds(20);
 };

@@ -49,7 +49,6 @@ void ListenCommand::declare(CLI::App& app) {
   app_->add_flag("--bad", only_bad_, "Print only frames that fail the end-to-end check");
   app_->add_flag("--quiet", quiet_, "Print the totals only");
   app_->add_flag("--json", json_, "Print one JSON object a frame");
-  app_->add_flag("--fd", fd_, "Receive CAN FD, too");
   app_->add_option("--count", count_, "End after so many printed frames");
   app_->add_option("--duration", duration_s_, "End after so many seconds")
       ->check(number_between(0.001, 1e9));
@@ -111,7 +110,7 @@ Status ListenCommand::listen_to_log(std::istream& log, const std::string& name,
 }
 
 Status ListenCommand::listen_to_interface(can::BusListener& listener) {
-  auto bus = can::SocketCanBus::open(source_, {.fd = fd_});
+  auto bus = can::SocketCanBus::open(source_);
   if (!bus) {
     return fail("{} (a log file of this name was not found either)", bus.error().message);
   }

@@ -39,7 +39,6 @@ class ListenCommand {
   bool json_ = false;
   bool only_bad_ = false;
   bool quiet_ = false;
-  bool fd_ = false;
   uint64_t count_ = 0;  ///< 0: no limit
   double duration_s_ = 0.0;
   can::BaseIds base_;

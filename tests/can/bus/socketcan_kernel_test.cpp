@@ -60,6 +60,17 @@ TEST_F(SocketCanKernel, FiltersInTheKernel) {
   EXPECT_FALSE(reader->receive());
 }
 
+TEST_F(SocketCanKernel, ReceivesFdFramesWithoutBeingOpenedForFd) {
+  const auto sender = open({.fd = true});
+  if (!sender) GTEST_SKIP() << "SocketCan: a classic interface";
+  for (const uint8_t length : {uint8_t{8}, uint8_t{12}}) {
+    const Frame frame{.id = 0x401, .length = length, .format = FrameFormat::kFd};
+    ASSERT_EQ(sender->send(frame, Time{}), SendResult::kSent);
+    ASSERT_TRUE(other_->wait(seconds(10)));
+    EXPECT_EQ(other_->receive()->frame, frame);
+  }
+}
+
 TEST_F(SocketCanKernel, ConfirmsItsOwnFramesThroughTheFilter) {
   const auto sender = open({.accepted_ids = {0x401}, .confirmed_ids = {0x510, 0x511}});
   ASSERT_TRUE(sender);
