@@ -17,7 +17,7 @@ constexpr Duration kMaxJump = std::chrono::seconds(1);
 /// A larger change of the difference of the clocks from one frame to the next is a step: somebody
 /// has set CLOCK_REALTIME. Time services change its rate by at most 500 ppm.
 constexpr Duration kMinStep = std::chrono::milliseconds(1);
-/// From then on, frames of at most this age are read.
+/// For this long after a step, a frame may still have a stamp from before the step.
 constexpr Duration kStepLasts = kMaxAge;
 
 /// The largest drift between the controller's clock and ours: 100 ppm.
@@ -42,9 +42,9 @@ ReceiveClock::Stamped ReceiveClock::to_steady(const KernelStamps& stamps, const 
   return stamped;
 }
 
-/// A stamp from before the step has another age by the clock of today. The two ages differ by the
-/// step; the smaller one that is not negative is the right one, unless a frame waited longer than
-/// the step.
+/// After a step, a stamp has two possible ages, because it may be from before or from after the
+/// step. They differ by the step. The smaller one that is not negative is right, unless the frame
+/// waited longer than the step.
 std::optional<Duration> ReceiveClock::age_of(nanoseconds software, const Now& now) const {
   const auto is_possible = [](Duration age) { return age >= Duration::zero() && age <= kMaxAge; };
   const Duration age = now.realtime - software;

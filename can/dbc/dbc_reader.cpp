@@ -168,7 +168,7 @@ void DbcReader::read_statement() {
   skip_statement(keyword);
 }
 
-/// Skips to the semicolon, but over no message.
+/// Skips to the semicolon. Fails if a message begins before it.
 void DbcReader::skip_statement(const std::string& keyword) {
   ++dbc_.skipped[keyword];
   while (!tokens_.peek().is_sign(';')) {

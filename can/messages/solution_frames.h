@@ -28,10 +28,10 @@ LocalizerStatus status_to_send(const PoseReport& report, const ReportLimits& lim
 
 Frame status_frame(const LocalizerStatus& status, const BaseIds& base);
 
-/// `item` is a raw value of loc_identity::kItem.
 /// LOC_Clock. Without a source of time the error is SNA.
 Frame clock_frame(const ClockReport& clock, const BaseIds& base);
 
+/// `item` is a raw value of loc_identity::kItem.
 Frame identity_frame(const Identity& identity, int item, const BaseIds& base);
 
 /// The messages of a solution in the order of sending, without LOC_Status.

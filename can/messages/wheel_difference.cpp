@@ -63,7 +63,7 @@ void WheelDifference::update_lean(double excess_mps, double elapsed_s, const Sam
   if (sigma_mps <= limits_.lean_most_sigma_mps) lean_ = slow_mean_mps_ / sigma_mps;
 }
 
-/// Of the fit, with what is known before anything was learned.
+/// The information matrix of the fit, including the prior knowledge before anything was learned.
 Eigen::Matrix3d WheelDifference::information() const {
   const Eigen::Array3d sigmas(limits_.radius_share, limits_.zero_mps, limits_.track_m);
   Eigen::Matrix3d information = normal_;

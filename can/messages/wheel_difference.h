@@ -21,8 +21,8 @@ struct WheelDifferenceLimits {
   double noise_mps = 0.06;     ///< of one sample
   double memory_s = 60.0;      ///< older samples count less
 
-  /// What the mean of about the last 0.3 s may differ by from what was learned: a constant, a share
-  /// of the speed, and a time times the lateral acceleration, which moves load from tyre to tyre.
+  /// Permitted deviation of the mean of about the last 0.3 s from what was learned: a constant, a
+  /// share of the speed, and a time times the lateral acceleration, which moves load between tyres.
   double change_mps = 0.05;
   double change_share = 0.001;
   double change_per_mps2_s = 0.005;

@@ -11,9 +11,9 @@ namespace bevloc::can {
 /// Reads 32 hexadecimal digits. Refuses a file that group or others may read or write.
 Result<SecocKey> read_secoc_key(const std::filesystem::path& file);
 
-/// Counts this start: returns the number in the file plus one, 1 without a file, after file and
-/// folder are on the disk: a power cut does not bring an earlier number back. A number that cannot
-/// be kept is an error, because freshness values would repeat.
+/// Counts this start: returns the number in the file plus one, or 1 if there is no file. Returns
+/// only after file and folder are on the disk, so a power cut does not restore an earlier number.
+/// Fails if the number cannot be stored, because freshness values would repeat.
 Result<uint32_t> next_start_number(const std::filesystem::path& file);
 
 }  // namespace bevloc::can

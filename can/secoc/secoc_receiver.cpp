@@ -53,8 +53,8 @@ std::span<const ReceivedFrame> SecocReceiver::release(Group& group, const Frame&
   return std::span(group.frames).first(group.members.size());
 }
 
-/// The lower bits belong to the announced upper bits, to the next ones, or to those of the latest
-/// authentic epoch, if the announcement is forged. Only a value higher than the latest one counts.
+/// Tries the lower bits with the announced upper bits and, as the announcement may be forged, with
+/// those of the latest authentic epoch, each also plus one. Only values above the latest one count.
 bool SecocReceiver::is_authentic(const Group& group, const Frame& authentication) {
   std::array<Frame, kMaxMembers> frames;
   std::ranges::transform(group.frames, frames.begin(), &ReceivedFrame::frame);

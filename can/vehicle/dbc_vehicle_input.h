@@ -12,11 +12,11 @@
 namespace bevloc::can {
 
 /// Does with the signals of a VehicleBinding what VehicleInput does with bevloc's own messages.
-/// Uses only frames that pass counter and checksum (E2eMonitor). An odometry sample is made when a
-/// new value of each wheel and of the yaw rate has come, a GNSS sample when one of each of its
-/// values has. Their times are that of the first of them. Values that belong to one sample may be
-/// at most four cycles of their message apart; the same holds for the age of a condition (valid,
-/// backward). One thread; does not allocate after construction.
+/// Uses only frames that pass counter and checksum (E2eMonitor). Makes an odometry sample when all
+/// wheels and the yaw rate have new values, and a GNSS sample when all its signals have new values.
+/// The time of a sample is that of its earliest value. The values of one sample may be at most four
+/// cycles of their message apart, and a condition (valid, backward) may be at most four cycles of
+/// its message old. One thread; does not allocate after construction.
 class DbcVehicleInput final : public VehicleDecoder {
  public:
   /// `base` has the identifiers of the localizer's own messages.

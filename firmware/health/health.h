@@ -28,10 +28,10 @@ struct HealthLimits {
   double lateral_sigma_m = 0.30;
   double yaw_sigma_rad = radians(0.75);
   /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert
-  /// limits of a freeway. A new pose becomes valid only if its error is well within them. After 3 s
-  /// without a match, the pose is lost if its protection level across or of heading exceeds them;
-  /// after 2 s in the first 5 s of a pose, and after `correction_timeout` while match or GNSS is
-  /// excluded.
+  /// limits of a freeway. A new pose becomes valid only if its error is well within them. A pose
+  /// is lost if its lateral or heading protection level exceeds them and the latest match is older
+  /// than 3 s. Instead of 3 s, it is 2 s in the first 5 s of a pose, and `correction_timeout` while
+  /// match or GNSS is excluded.
   Eigen::Vector3d alert_limit = kFreewayAlertLimits;
   /// For the protection levels that are sent with the pose.
   ProtectionParameters protection;

@@ -34,10 +34,10 @@ class HeartbeatWatch {
   std::optional<Time> moved_;  ///< when the count last changed
 };
 
-/// Feeds systemd's watchdog only while every thread beats within its deadline, so at the latest one
-/// second after a thread has stopped no feed follows. Sends READY when every thread has beaten
-/// once. The fault line is active before READY, while a thread hangs and in FAULT; it is set before
-/// anything else, because nothing may keep it from being set.
+/// Feeds systemd's watchdog only while every thread beats within its deadline. So the feeding ends
+/// at the latest one second after a thread has stopped. Sends READY when every thread has beaten
+/// once. The fault line is active before READY, while a thread hangs and in FAULT. It is set before
+/// anything else, so that nothing can prevent it.
 ///
 /// Thread-bound: watch() before the first step(); step() from one thread. The rest is readable from
 /// any thread.

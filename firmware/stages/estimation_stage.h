@@ -123,7 +123,7 @@ class EstimationStage {
   std::optional<VisionReport> latest_report_;
   Time latest_report_arrival_;
   bool latest_stamps_jumped_ = false;
-  bool stamps_jumped_ = false;  ///< and no bend has shown since that they are right
+  bool stamps_jumped_ = false;  ///< the stamps jumped, and no bend has confirmed them since
   bool network_fault_ = false;
   Published<can::ClockReport> clock_;
   StampMonitor stamp_monitor_;

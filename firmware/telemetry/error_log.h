@@ -10,8 +10,8 @@
 
 namespace bevloc::firmware {
 
-/// Compares snapshots. When an error count has grown, its cause is logged with what to do, and not
-/// again before it has not occurred for a minute. So no hot thread writes a log line. Thread-bound:
+/// Compares snapshots. When an error count has grown, logs its cause and what to do, but only if
+/// the count had not grown for a minute before. So no hot thread writes a log line. Thread-bound:
 /// called from the supervising thread.
 class ErrorLog {
  public:

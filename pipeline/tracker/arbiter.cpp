@@ -17,8 +17,8 @@ constexpr size_t kDecidingSamples = 3;
 /// likelihood is 90 times smaller.
 constexpr double kConfirms = 6.25;
 constexpr double kDecides = 9.0;
-/// Squared distance of the disputed offset in the covariance of a match, from which the match can
-/// tell whether the offset is there.
+/// A match can tell whether the disputed offset exists if the squared distance of this offset, in
+/// the covariance of the match, is at least this.
 constexpr double kTelling = 9.0;
 /// Refused GNSS samples in a row that exclude GNSS while the match agrees.
 constexpr int kGnssRefusals = 5;
@@ -32,14 +32,14 @@ constexpr int kGnssPasses = 20;
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
 constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
-/// Match, GNSS and wheels can each lean because the yaw rate has a bias. A lean counts if it is
-/// larger than the first figure. The yaw rate has a bias if at least two leans count to the same
-/// side, and their sum exceeds the second figure in standard deviations of the sum.
+/// A lean is a mean deviation to one side, in its standard deviations. A bias of the yaw rate makes
+/// match, GNSS and wheels lean. It is found if at least two leans to the same side exceed the first
+/// figure, and their sum exceeds the second figure in standard deviations of the sum.
 constexpr double kSharedLean = 2.0;
 constexpr double kSharedLimit = 3.5;
-/// The heading of the match leans alone if the heading of GNSS leans to the other side by the first
-/// figure. GNSS may lean by less if the lean of the wheels is known, and is below the second figure
-/// to the side of the match. Dead reckoning does not drift then.
+/// The match leans alone in heading, so dead reckoning does not drift, if GNSS leans to the other
+/// side by more than the first figure. A smaller lean of GNSS to that side suffices if the lean of
+/// the wheels is known and is below the second figure (positive to the side of the match).
 constexpr double kOpposingLean = 1.5;
 constexpr double kSupportingLean = 1.0;
 /// The arbiter ignores the wheels for this long after they have helped to find a bias. They lean

@@ -26,13 +26,13 @@ struct Verdict {
 enum class PoseStanding : uint8_t {
   kNew,    ///< not valid yet since the filter started: a refused match does not say who is wrong
   kLost,   ///< was valid, and is not now
-  kValid,  ///< only now GNSS can be outvoted: a lost pose needs it
+  kValid,  ///< only in this state can GNSS be outvoted, because a lost pose needs GNSS
 };
 
-/// The filter's prediction is dead reckoning from all that was accepted before. A match or a GNSS
-/// sample that its gate refuses therefore contradicts dead reckoning, and the other one decides
-/// which of the two is wrong. A voter that was found wrong stays excluded until it has agreed with
-/// the filter for a while, so that a wrong place cannot win by patience.
+/// The filter's prediction is dead reckoning from all measurements that were accepted before. So a
+/// match or a GNSS sample that the gate refuses contradicts dead reckoning, and the third voter
+/// decides which of the two is wrong. A voter that was found wrong stays excluded until it has
+/// agreed with the filter for a while. So a wrong place does not win just because it persists.
 ///
 /// Allocates nothing. One thread.
 class Arbiter {

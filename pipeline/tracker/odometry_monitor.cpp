@@ -39,8 +39,8 @@ bool OdometryMonitor::is_stuck(const OdometrySample& sample) {
   return repetitions_ >= kStuckRepetitions;
 }
 
-/// Whether the speed has changed its sign without a standstill in between. Unlike a jump this is
-/// never accepted in the end, as long as the samples follow each other.
+/// Whether the speed has changed its sign without a standstill in between. A lasting jump is
+/// accepted after a while, but such a change is not, as long as there is no gap between samples.
 bool OdometryMonitor::turns_round(const OdometrySample& sample) const {
   if (!accepted_ || !latest_ || to_seconds(sample.time - latest_->time) > kGap_s) return false;
   return std::abs(sample.speed_mps) > kStandstill_mps &&

@@ -62,7 +62,7 @@ TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
   return update;
 }
 
-/// Only a pose that matches hold lies where the map does.
+/// Uses only a pose with recent matches, because only such a pose has the same offset as the map.
 void PoseEstimator::compare_map(const GnssSample& sample) {
   const bool matched = match_passed_ && sample.time - *match_passed_ <= kMatchAbsence;
   if (!matched || !(pose_valid_ || map_offset_.contradicts())) return;

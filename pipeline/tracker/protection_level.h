@@ -28,12 +28,12 @@ struct GnssView {
 
 /// Per axis, in the vehicle frame: (longitudinal m, lateral m, yaw rad).
 ///
-/// The error has two causes. Either the match shows the right place, and the error is as large as
-/// the estimate's covariance says; or it shows a wrong one, and the pose is as wrong as GNSS says.
-/// The probability of the second follows from Bayes: its rate times `exposure_s`, the time in which
-/// GNSS would not have shown it, times how much better a wrong place explains what GNSS says. The
-/// protection level is the quantile of that mixture. Without a GNSS view a wrong place may be
-/// anywhere. Source: the multiple-hypothesis solution separation of aviation (ARAIM).
+/// There are two cases. If the match shows the right place, the error is as large as the estimate's
+/// covariance says. If it shows a wrong place, the pose is as wrong as GNSS says. Bayes' rule gives
+/// the odds of a wrong place: its rate, times `exposure_s` (the time in which GNSS would not have
+/// shown it), times the factor by which a wrong place explains the GNSS error better. The level is
+/// the quantile of this mixture. Without a GNSS view, a wrong place may be anywhere.
+/// Source: the multiple-hypothesis solution separation of aviation (ARAIM).
 Eigen::Vector3d protection_level(const Eigen::Vector3d& sigma, const std::optional<GnssView>& gnss,
                                  double exposure_s, const ProtectionParameters& parameters);
 

@@ -32,9 +32,9 @@ class ExtrinsicFilter {
   /// since the previous update.
   void update(const ExtrinsicInformation& match, const ExtrinsicErrors& used, double driven_s);
 
-  /// A heading that is matched without correcting errors is turned against the direction of motion
-  /// by `turn`: what the cameras have in common about the vertical axis, of which a match alone
-  /// knows nothing.
+  /// `turn` is the angle from the direction of motion to the heading that is matched without
+  /// correcting errors. It shows the rotation about the vertical axis that all cameras have in
+  /// common. A match alone cannot show this rotation.
   void update_heading(const HeadingTurn& turn);
 
   /// By how much these errors turn the matched heading.

@@ -18,16 +18,16 @@ constexpr int kBlockCells = 3;
 constexpr int kBorderCells = 2;
 /// Cells that hardly any camera sees carry no features.
 constexpr double kLeastShare = 0.99;
-/// Farther from the camera a cell does not count, and before that ever less. An error of pitch
-/// moves what is seen at distance d by d^2 / height: at 16 m and 0.3 degrees by 0.9 m, about the
-/// width of a line in the features. Beyond, both sides no longer overlap, so the slope says
-/// nothing.
+/// The weight along the ray of sight falls to 0 at this distance from the camera. A pitch error
+/// moves a point at distance d by the error times d^2 / height: by 0.9 m for 0.3 degrees at 16 m,
+/// about the width of a line in the features. Beyond this distance, perceived and mapped lines no
+/// longer overlap, so the slope says nothing.
 constexpr double kReach_m = 16.0;
-/// The same for what lies across the ray of sight. Only yaw and roll of the camera move it, 0.3
-/// degrees at 40 m by 0.2 m.
+/// The same for the weight across the ray of sight. Only yaw and roll errors of the camera move a
+/// point in this direction: by 0.2 m for 0.3 degrees at 40 m.
 constexpr double kReachAcross_m = 40.0;
-/// A network that was trained with calibration errors answers them with less than their full shift:
-/// with these shares, along and across the ray of sight.
+/// If the network was trained with calibration errors, its features move by less than the full
+/// shift that an error causes: by these shares of it, along and across the ray of sight.
 constexpr double kResponseAlong = 0.4;
 constexpr double kResponseAcross = 0.9;
 /// Least ratio of perceived to mapped features; below, there is nothing to learn from.

@@ -32,18 +32,18 @@ struct MatchedCells {
   Se2 correction;           ///< that aligns `bev` with `map`
 };
 
-/// Compares where the lines lie that each camera sees with where the map has them.
+/// Compares the positions of the lines that each camera sees with their positions in the map.
 ///
-/// An error e of a camera moves what it shows at the point p of the ground by D(p) e
+/// An error e of a camera shifts the features that it shows at the point p of the ground by D(p) e
 /// (ground_shift()), so F_B(p) = a(p) F_M(p + D e), with a(p) < 1 because far features fade. The
-/// slope of the score is taken as D' (F_B grad F_M - F_M grad F_B) / 2: in the difference, what
-/// F_M does by itself cancels, and of a(p) only the gradient remains. (Least squares of F_M - F_B
+/// slope of the score is computed as D' (F_B grad F_M - F_M grad F_B) / 2. In this difference, the
+/// terms of F_M alone cancel, and only the gradient of a(p) remains. (Least squares of F_M - F_B
 /// instead showed 0.6 degrees of pitch where there was no error.)
-/// The information uses the map's gradients only, because those of misplaced features fall
-/// together with the true ones by chance.
+/// The information uses only the gradients of the map, because the gradients of misplaced features
+/// coincide with the true ones by chance.
 ///
-/// The correction of the match is unknown in the same equations, and is eliminated: what all
-/// cameras have in common with a shift or a turn of the vehicle gives no information.
+/// The same equations contain the correction of the match as an unknown, which is eliminated. So
+/// errors that act on all cameras like a shift or a turn of the vehicle give no information.
 ///
 /// The constructor allocates all memory. One thread.
 class ExtrinsicSums {

@@ -44,7 +44,7 @@ constexpr double kLeastContradicted_s = 4.0;
 // kWellAgreeingShare.
 constexpr double kWellAgreeingShare = 0.7;
 constexpr double kHiddenSideRate = 0.1;
-/// Of the median camera; below, nothing is known about any camera.
+/// Least agreement of the median camera. If it is lower, no camera is judged.
 constexpr double kLeastMedian = 0.1;
 
 /// The other camera that sees the same side of the road; -1 for the front and the back one.

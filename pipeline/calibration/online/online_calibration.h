@@ -35,8 +35,8 @@ struct CalibrationObservation {
 };
 
 /// Learns only while the vehicle drives and tracks, from clear matches near the prior, with all
-/// cameras. A pose that is wrong by a lane has nothing to do with the cameras, so the errors that
-/// it pretends differ from place to place and average out; the bounds limit the rest.
+/// cameras. A pose that is wrong by a lane looks like camera errors that do not exist. These differ
+/// from place to place, so they average out; the bounds limit the rest.
 ///
 /// One thread; the constructor allocates all memory.
 class OnlineCalibration {

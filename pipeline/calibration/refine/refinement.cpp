@@ -87,7 +87,7 @@ RefinementProblem::FrameVector RefinementProblem::expected_error(const Frame& fr
   return expected;
 }
 
-/// Of a parameter that is not free it is so large that it stays.
+/// Prior information of each parameter: so large that the parameter stays, unless it is free.
 Eigen::VectorXd RefinementProblem::camera_prior() const {
   constexpr double kFixed = 1e12;
   Eigen::VectorXd prior(kCameraUnknowns);

@@ -57,12 +57,12 @@ struct RigRefinement {
 /// - the mean of these six over the drive, and how much the body tilts per acceleration;
 /// - the shift of each element of the map.
 ///
-/// A parameter is unobservable if it has the largest part in a direction (an eigenvector of the
-/// information about the cameras, in units of the expected errors) that the recording determines no
-/// better than to half the expected error. Its change is 0, and the other parameters of its
-/// camera are estimated again. A camera keeps all its values, and its sightings do not count, if
-/// fewer than 100 of them agree or if one of its parameters would change by more than three
-/// expected errors.
+/// The directions of change are the eigenvectors of the information about the cameras, in units of
+/// the expected errors. If the recording determines a direction no better than to half the expected
+/// error, the parameter with the largest part in this direction is unobservable. Its change is 0,
+/// and the other parameters of its camera are estimated again. A camera keeps all its values, and
+/// its sightings do not count, if fewer than 100 of them agree or if one of its parameters would
+/// change by more than three expected errors.
 class RefinementProblem {
  public:
   /// `rig` and `reference` must outlive the problem.
@@ -91,7 +91,7 @@ class RefinementProblem {
   static constexpr int kCameraUnknowns = kCameraCount * kCameraParameters;
   static constexpr int kFrameUnknowns = 6;  // roll, pitch, yaw, forward, left, up
   static constexpr int kTiltsPerAcceleration = 2;
-  /// Of the unknowns that are not of one frameset: where the shifts of the elements begin.
+  /// Index of the first element's shift among the unknowns that do not belong to a single frameset.
   static constexpr int kFirstElement = kCameraUnknowns + kFrameUnknowns + kTiltsPerAcceleration;
   using FrameVector = Eigen::Matrix<double, kFrameUnknowns, 1>;
   using FrameMatrix = Eigen::Matrix<double, kFrameUnknowns, kFrameUnknowns>;
