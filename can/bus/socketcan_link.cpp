@@ -60,8 +60,8 @@ void enlarge_receive_buffer(int descriptor) {
   set_option(descriptor, SOL_SOCKET, SO_RCVBUF, kBytes);
 }
 
-/// FD frames are always received: a vehicle may send them beside classic ones, also with up to 8
-/// bytes. On a classic interface there are none.
+/// The socket always receives FD frames, because a vehicle may send them beside classic frames,
+/// even for 8 bytes or fewer. A classic interface carries none.
 bool set_options(int descriptor, const SocketCanOptions& options) {
   const int on = 1;
   enlarge_receive_buffer(descriptor);

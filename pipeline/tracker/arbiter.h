@@ -29,10 +29,10 @@ enum class PoseStanding : uint8_t {
   kValid,  ///< only in this state can GNSS be outvoted, because a lost pose needs GNSS
 };
 
-/// The filter's prediction is dead reckoning from all measurements that were accepted before. So a
-/// match or a GNSS sample that the gate refuses contradicts dead reckoning, and the third voter
-/// decides which of the two is wrong. A voter that was found wrong stays excluded until it has
-/// agreed with the filter for a while. So a wrong place does not win just because it persists.
+/// There are three voters: dead reckoning (the filter's prediction), the match, and GNSS. If the
+/// gate refuses a match, it contradicts dead reckoning, and GNSS decides which of them is wrong. If
+/// the gate refuses GNSS, the match decides. A wrong voter stays excluded until it has agreed with
+/// the filter for a while, so a voter that only repeats a wrong place stays excluded.
 ///
 /// Allocates nothing. One thread.
 class Arbiter {

@@ -29,10 +29,10 @@ struct GnssView {
 /// Per axis, in the vehicle frame: (longitudinal m, lateral m, yaw rad).
 ///
 /// There are two cases. If the match shows the right place, the error is as large as the estimate's
-/// covariance says. If it shows a wrong place, the pose is as wrong as GNSS says. Bayes' rule gives
-/// the odds of a wrong place: its rate, times `exposure_s` (the time in which GNSS would not have
-/// shown it), times the factor by which a wrong place explains the GNSS error better. The level is
-/// the quantile of this mixture. Without a GNSS view, a wrong place may be anywhere.
+/// covariance says. If it shows a wrong place, the pose is as wrong as GNSS says. The odds of a
+/// wrong place (Bayes' rule) are a product: how often a match settles on one, for how long GNSS
+/// could not show it (`exposure_s`), and how much likelier the GNSS error is there than at the true
+/// place. The level is the quantile of the mixture. Without GNSS, a wrong place may be anywhere.
 /// Source: the multiple-hypothesis solution separation of aviation (ARAIM).
 Eigen::Vector3d protection_level(const Eigen::Vector3d& sigma, const std::optional<GnssView>& gnss,
                                  double exposure_s, const ProtectionParameters& parameters);
