@@ -7,7 +7,7 @@
 
 #include "common/result.h"
 #include "drivers/frameset/frameset.h"
-#include "pipeline/calibration/refine/reference_trajectory.h"
+#include "pipeline/calibration/reference_trajectory.h"
 #include "pipeline/map/hd_map.h"
 
 namespace bevloc::evaluation {

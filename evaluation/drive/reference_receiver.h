@@ -1,7 +1,7 @@
 // The reference system of a simulated recording: RTK GNSS with an IMU, and its errors.
 #pragma once
 
-#include "pipeline/calibration/refine/reference_trajectory.h"
+#include "pipeline/calibration/reference_trajectory.h"
 #include "sim/vehicle/drive.h"
 
 namespace bevloc::evaluation {

@@ -13,11 +13,6 @@ constexpr double kMinEvidenceShare = 1e-4;
 
 constexpr double kUnknownYaw_rad = 1e3;
 
-/// An update adds this multiple of the correlated variance beyond
-/// MeasurementModel::match_common_sigma. It was tuned on simulated drives. Values from 2 to 19 give
-/// nearly the same errors.
-constexpr double kRepeats = 2.0;
-
 /// Covariance of the match alone. The solver's covariance includes its own prior, a uniform
 /// distribution over the search range, which the filter replaces by its estimate. If all were
 /// Gaussian, the precision along an axis without that prior would be
@@ -71,8 +66,8 @@ PoseMeasurement measurement_from(const Se2& prior, const MatchResult& result,
   measurement.source = PoseSource::kMatch;
   measurement.map_from_vehicle = prior * result.correction;
   measurement.covariance = noise_scale.asDiagonal() * covariance * noise_scale.asDiagonal();
-  measurement.covariance.diagonal() += alike - common;
-  measurement.repeated_variance = kRepeats * (alike - common);
+  measurement.uncommon_variance = alike - common;
+  measurement.covariance.diagonal() += measurement.uncommon_variance;
   measurement.correlated_sigma = (common + floor.cwiseAbs2()).cwiseSqrt();
   return measurement;
 }

@@ -15,7 +15,7 @@ struct MeasurementModel {
   Eigen::Vector3d match_correlated_share{0.7, 0.8, 0.5};
   /// Largest standard deviations of the error that consecutive matches share: (x m, y m, yaw rad).
   /// An uncertain match says little about the error of a certain one, so the rest of its error
-  /// counts as noise.
+  /// counts as noise (PoseMeasurement::uncommon_variance).
   Eigen::Vector3d match_common_sigma{0.25, 0.15, radians(0.3)};
   /// Standard deviations that are added to the correlated part of every match, because calibration
   /// and map have errors that the solver cannot see: (x m, y m, yaw rad).

@@ -19,8 +19,11 @@ struct PoseMeasurement {
   /// Standard deviations of the correlated part: for a match in the vehicle frame (x, y, yaw), for
   /// GNSS in the map frame (east, north, yaw), the first two equal.
   Eigen::Vector3d correlated_sigma = Eigen::Vector3d::Zero();
+  /// Part of the diagonal of `covariance`: consecutive matches share it only while they are about
+  /// equally certain, so it is no part of `correlated_sigma`.
+  Eigen::Vector3d uncommon_variance = Eigen::Vector3d::Zero();
   /// Variance that update() adds to the noise, in the vehicle frame of the measured pose, because
-  /// the noise of consecutive measurements is alike. The gate does not add it.
+  /// the noise of consecutive measurements is alike (MatchRepetition). The gate does not add it.
   Eigen::Vector3d repeated_variance = Eigen::Vector3d::Zero();
   /// Whether the correlated error is independent of that of the measurements before. update() then
   /// calls renew_match_error().

@@ -141,7 +141,7 @@ double Tracker::yaw_rate_bias_radps() const {
 }
 
 void Tracker::widen() {
-  standing_matches_ = 0;
+  repetition_.forget();
   if (!is_initialised()) return;
   const TrackerEvent& latest = history_.back();
   insert(history_.size(),
@@ -149,7 +149,7 @@ void Tracker::widen() {
 }
 
 void Tracker::loosen_odometry() {
-  standing_matches_ = 0;
+  repetition_.forget();
   if (!is_initialised()) return;
   const TrackerEvent& latest = history_.back();
   insert(history_.size(),
@@ -158,7 +158,7 @@ void Tracker::loosen_odometry() {
 
 void Tracker::restart() {
   refused_matches_ = 0;
-  standing_matches_ = 0;
+  repetition_.forget();
   history_.clear();
 }
 
@@ -182,21 +182,15 @@ void Tracker::initialise(Time time, const PoseMeasurement& measurement) {
   }
 }
 
-void Tracker::discount_standing(const MeasuredMotion& motion, PoseMeasurement& measurement) {
-  if (measurement.source != PoseSource::kMatch) return;
-  constexpr int kMost = 1000;
-  standing_matches_ = stands(motion) ? std::min(standing_matches_ + 1, kMost) : 0;
-  const double repeats = square_of(std::max(0, standing_matches_ - 1));
-  measurement.repeated_variance += repeats * measurement.covariance.diagonal();
-}
-
 TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, Trust trust) {
   const size_t events_until = count_until(history_, time);
   if (events_until == 0) return TrackerUpdate::kTooOld;
   if (!passes_gate(state_at(time, events_until), trust, measurement)) return TrackerUpdate::kGated;
   if (trust == Trust::kExamine) return TrackerUpdate::kAccepted;
   const MeasuredMotion motion = motion_at(time, events_until);
-  discount_standing(motion, measurement);
+  if (measurement.source == PoseSource::kMatch) {
+    repetition_.discount(time, motion, parameters_.correlation, measurement);
+  }
   insert(events_until, {.time = time,
                         .kind = TrackerEvent::Kind::kPose,
                         .motion = motion,

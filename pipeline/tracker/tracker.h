@@ -11,6 +11,7 @@
 #include "common/vehicle_samples.h"
 #include "pipeline/solver/solver_result.h"
 #include "pipeline/tracker/event_history.h"
+#include "pipeline/tracker/match_repetition.h"
 #include "pipeline/tracker/measurements.h"
 #include "pipeline/tracker/motion_model.h"
 
@@ -91,9 +92,7 @@ enum class Trust : uint8_t {
 /// again. The third refused match in a row is accepted if it passes the gate without this
 /// expectation.
 ///
-/// While the vehicle stands, all matches see the same picture, so their noise is alike, too: the
-/// k-th of them counts with 1 + (k - 1)^2 times its noise. All of them say little more than the
-/// first.
+/// Matches that repeat what earlier ones said count less: see MatchRepetition.
 ///
 /// Allocates in the constructor only. Not thread safe.
 class Tracker {
@@ -152,8 +151,6 @@ class Tracker {
   /// Whether the gate accepts `measurement`. Sets latest_innovation(), and `has_new_error` of a
   /// match that is accepted without the expected match error.
   bool passes_gate(FilterState state, Trust trust, PoseMeasurement& measurement);
-  /// Adds the variance of a match that repeats those before it, because the vehicle stands.
-  void discount_standing(const MeasuredMotion& motion, PoseMeasurement& measurement);
   bool has_odometry_for(Time time) const;
   MeasuredMotion motion_at(Time time, size_t events_until) const;
   FilterState state_at(Time time, size_t events_until) const;
@@ -166,8 +163,8 @@ class Tracker {
   EventHistory history_;
   std::optional<OdometrySample> last_odometry_;
   PoseInnovation latest_innovation_;
-  int refused_matches_ = 0;   ///< in a row, up to the latest match
-  int standing_matches_ = 0;  ///< since the vehicle stands, or since its covariance was raised
+  int refused_matches_ = 0;  ///< in a row, up to the latest match
+  MatchRepetition repetition_;
 };
 
 }  // namespace bevloc

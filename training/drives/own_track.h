@@ -3,7 +3,7 @@
 
 #include "common/result.h"
 #include "evaluation/recording/recording.h"
-#include "pipeline/calibration/refine/reference_trajectory.h"
+#include "pipeline/calibration/reference_trajectory.h"
 
 namespace bevloc::drives {
 

@@ -9,7 +9,7 @@
 #include "common/cameras.h"
 #include "common/result.h"
 #include "common/time.h"
-#include "pipeline/calibration/refine/reference_trajectory.h"
+#include "pipeline/calibration/reference_trajectory.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/preprocessing/image_remap.h"
 

@@ -5,8 +5,8 @@
 
 #include "common/result.h"
 #include "common/time.h"
+#include "pipeline/calibration/reference_trajectory.h"
 #include "pipeline/calibration/refine/grey_image.h"
-#include "pipeline/calibration/refine/reference_trajectory.h"
 
 namespace bevloc {
 

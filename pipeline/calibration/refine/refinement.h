@@ -10,9 +10,9 @@
 #include <Eigen/Core>
 
 #include "common/cameras.h"
+#include "pipeline/calibration/reference_trajectory.h"
 #include "pipeline/calibration/refine/camera_adjustment.h"
 #include "pipeline/calibration/refine/paint_finder.h"
-#include "pipeline/calibration/refine/reference_trajectory.h"
 #include "pipeline/calibration/rig.h"
 
 namespace bevloc {

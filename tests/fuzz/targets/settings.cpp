@@ -5,7 +5,7 @@
 #include "drivers/camera/replay/replay_camera.h"
 #include "firmware/config/config.h"
 #include "pipeline/calibration/import/import_rig.h"
-#include "pipeline/calibration/refine/reference_trajectory.h"
+#include "pipeline/calibration/reference_trajectory.h"
 #include "pipeline/calibration/rig_check.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/preprocessing/network_camera.h"

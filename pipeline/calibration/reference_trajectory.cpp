@@ -1,4 +1,4 @@
-#include "pipeline/calibration/refine/reference_trajectory.h"
+#include "pipeline/calibration/reference_trajectory.h"
 
 #include <algorithm>
 #include <charconv>

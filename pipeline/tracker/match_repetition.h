@@ -1,0 +1,35 @@
+// Discounts matches that repeat what earlier matches said.
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "common/time.h"
+#include "pipeline/tracker/motion_model.h"
+#include "pipeline/tracker/pose_update.h"
+
+namespace bevloc {
+
+/// The filter has a state for the error that consecutive matches share (FilterState::match_error).
+/// This class raises the variance of matches for what that state does not cover:
+/// - Uncertain matches have larger errors than they state, and near ones have similar errors.
+/// - All matches of a standing vehicle see the same picture, so the k-th of them counts with
+///   1 + (k - 1)^2 times its noise. All of them say little more than the first.
+///
+/// Allocates nothing. One thread.
+class MatchRepetition {
+ public:
+  /// Sets the `repeated_variance` of a match that the filter is about to use, and remembers it.
+  void discount(Time time, const MeasuredMotion& motion, const ErrorCorrelation& correlation,
+                PoseMeasurement& match);
+
+  /// The next match repeats nothing: the pose is new, or its covariance was raised.
+  void forget() { *this = {}; }
+
+ private:
+  int standing_matches_ = 0;  ///< since the vehicle stands
+  std::optional<Time> latest_;
+};
+
+}  // namespace bevloc
