@@ -19,8 +19,8 @@ struct PoseMeasurement {
   /// Standard deviations of the correlated part: for a match in the vehicle frame (x, y, yaw), for
   /// GNSS in the map frame (east, north, yaw), the first two equal.
   Eigen::Vector3d correlated_sigma = Eigen::Vector3d::Zero();
-  /// Part of the diagonal of `covariance`: consecutive matches share it only while they are about
-  /// equally certain, so it is no part of `correlated_sigma`.
+  /// Part of the diagonal of `covariance`: the correlated variance beyond
+  /// MeasurementModel::match_common_sigma, which only uncertain matches have.
   Eigen::Vector3d uncommon_variance = Eigen::Vector3d::Zero();
   /// Variance that update() adds to the noise, in the vehicle frame of the measured pose, because
   /// the noise of consecutive measurements is alike (MatchRepetition). The gate does not add it.
