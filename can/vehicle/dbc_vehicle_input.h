@@ -11,9 +11,9 @@
 
 namespace bevloc::can {
 
-/// Does with the signals of a VehicleBinding what VehicleInput does with bevloc's own messages.
-/// Uses only frames that pass counter and checksum (E2eMonitor). Makes an odometry sample when all
-/// wheels and the yaw rate have new values, and a GNSS sample when all its signals have new values.
+/// Makes samples from the signals of a VehicleBinding, as VehicleInput does from bevloc's own
+/// messages. Frames must pass counter and checksum (E2eMonitor). An odometry sample is complete
+/// when all wheels and the yaw rate have new values, a GNSS sample when all its signals have some.
 /// The time of a sample is that of its earliest value. The values of one sample may be at most four
 /// cycles of their message apart, and a condition (valid, backward) may be at most four cycles of
 /// its message old. One thread; does not allocate after construction.

@@ -10,9 +10,9 @@
 
 namespace bevloc::firmware {
 
-/// Compares snapshots. When an error count has grown, logs its cause and what to do, but only if
-/// the count had not grown for a minute before. So no hot thread writes a log line. Thread-bound:
-/// called from the supervising thread.
+/// Compares snapshots, so that no hot thread has to write a log line. When an error count grows
+/// for the first time in a minute, it logs the cause and what to do. Thread-bound: called from the
+/// supervising thread.
 class ErrorLog {
  public:
   void note(const Snapshot& snapshot, Time now);

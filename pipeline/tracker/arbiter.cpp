@@ -33,13 +33,13 @@ constexpr int kGnssPasses = 20;
 constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
 /// A lean is a mean deviation to one side, in its standard deviations. A bias of the yaw rate makes
-/// match, GNSS and wheels lean. It is found if at least two leans to the same side exceed the first
-/// figure, and their sum exceeds the second figure in standard deviations of the sum.
+/// match, GNSS and wheels lean. It is found if two or three leans to the same side exceed
+/// kSharedLean, and their sum exceeds kSharedLimit standard deviations of the sum.
 constexpr double kSharedLean = 2.0;
 constexpr double kSharedLimit = 3.5;
 /// The match leans alone in heading, so dead reckoning does not drift, if GNSS leans to the other
-/// side by more than the first figure. A smaller lean of GNSS to that side suffices if the lean of
-/// the wheels is known and is below the second figure (positive to the side of the match).
+/// side by more than kOpposingLean. A smaller lean of GNSS to that side suffices if the lean of the
+/// wheels is known and is below kSupportingLean (positive to the side of the match).
 constexpr double kOpposingLean = 1.5;
 constexpr double kSupportingLean = 1.0;
 /// The arbiter ignores the wheels for this long after they have helped to find a bias. They lean

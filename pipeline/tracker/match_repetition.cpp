@@ -10,11 +10,10 @@ namespace {
 /// across, heading). Measured on 7,214, 460 and 2,814 such matches of 33 drives with two rigs
 /// (`bevloc tune matches`).
 const Eigen::Vector3d kExcess{2.3, 5.7, 3.3};
-/// The correlation between the errors of two such matches that are less than 1.5 m apart.
+/// About the correlation between the errors of two such matches that are less than 1.5 m apart. The
+/// measured values are 0.10, 0.14 and 0.06.
 const Eigen::Vector3d kCorrelation{0.1, 0.15, 0.06};
-/// No match of a driving vehicle counts as more than this many repetitions.
-constexpr double kMostRepeats = 1000.0;
-constexpr int kMostStanding = 1000;
+constexpr int kMostRepeats = 1000;
 
 /// If an error decays by a factor of e over `length_m` (a first-order Gauss-Markov process), the
 /// mean of many matches that are `distance_m` apart has the variance of independent ones times
@@ -41,7 +40,7 @@ void MatchRepetition::discount(Time time, const MeasuredMotion& motion,
   match.repeated_variance = match.uncommon_variance.cwiseProduct(factor - Eigen::Vector3d::Ones());
   latest_ = time;
 
-  standing_matches_ = stands(motion) ? std::min(standing_matches_ + 1, kMostStanding) : 0;
+  standing_matches_ = stands(motion) ? std::min(standing_matches_ + 1, kMostRepeats) : 0;
   const double standing_repeats = square_of(std::max(0, standing_matches_ - 1));
   match.repeated_variance += standing_repeats * match.covariance.diagonal();
 }

@@ -1,4 +1,4 @@
-// Discounts matches that repeat what earlier matches said.
+// Raises the variance of uncertain matches and of those that repeat what earlier matches said.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,8 @@ namespace bevloc {
 
 /// The filter has a state for the error that consecutive matches share (FilterState::match_error).
 /// This class raises the variance of matches for what that state does not cover:
-/// - Uncertain matches have larger errors than they state, and near ones have similar errors.
+/// - An uncertain match has a larger error than its sigma says. Uncertain matches near each other
+///   have similar errors.
 /// - All matches of a standing vehicle see the same picture, so the k-th of them counts with
 ///   1 + (k - 1)^2 times its noise. All of them say little more than the first.
 ///
@@ -28,8 +29,8 @@ class MatchRepetition {
   void forget() { *this = {}; }
 
  private:
-  int standing_matches_ = 0;  ///< since the vehicle stands
-  std::optional<Time> latest_;
+  int standing_matches_ = 0;    ///< since the vehicle stands
+  std::optional<Time> latest_;  ///< of the latest match that the filter has used
 };
 
 }  // namespace bevloc

@@ -22,8 +22,8 @@ struct PoseMeasurement {
   /// Part of the diagonal of `covariance`: the correlated variance beyond
   /// MeasurementModel::match_common_sigma, which only uncertain matches have.
   Eigen::Vector3d uncommon_variance = Eigen::Vector3d::Zero();
-  /// Variance that update() adds to the noise, in the vehicle frame of the measured pose, because
-  /// the noise of consecutive measurements is alike (MatchRepetition). The gate does not add it.
+  /// Variance that update() adds to the noise of a match, in the vehicle frame of the measured
+  /// pose (MatchRepetition). The gate does not add it.
   Eigen::Vector3d repeated_variance = Eigen::Vector3d::Zero();
   /// Whether the correlated error is independent of that of the measurements before. update() then
   /// calls renew_match_error().

@@ -29,10 +29,11 @@ struct GnssView {
 /// Per axis, in the vehicle frame: (longitudinal m, lateral m, yaw rad).
 ///
 /// There are two cases. If the match shows the right place, the error is as large as the estimate's
-/// covariance says. If it shows a wrong place, the pose is as wrong as GNSS says. The odds of a
-/// wrong place (Bayes' rule) are a product: how often a match settles on one, for how long GNSS
-/// could not show it (`exposure_s`), and how much likelier the GNSS error is there than at the true
-/// place. The level is the quantile of the mixture. Without GNSS, a wrong place may be anywhere.
+/// covariance says. If it shows a wrong place, the pose is as wrong as GNSS says. Bayes' rule gives
+/// the odds of a wrong place as a product of three factors: the rate of wrong places, the time
+/// `exposure_s` in which GNSS could not show one, and the likelihood ratio of the GNSS error (wrong
+/// to right place). The level is the quantile of the mixture. Without GNSS, a wrong place may be
+/// anywhere.
 /// Source: the multiple-hypothesis solution separation of aviation (ARAIM).
 Eigen::Vector3d protection_level(const Eigen::Vector3d& sigma, const std::optional<GnssView>& gnss,
                                  double exposure_s, const ProtectionParameters& parameters);

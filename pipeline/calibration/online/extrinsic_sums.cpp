@@ -23,8 +23,8 @@ constexpr double kLeastShare = 0.99;
 /// about the width of a line in the features. Beyond this distance, perceived and mapped lines no
 /// longer overlap, so the slope says nothing.
 constexpr double kReach_m = 16.0;
-/// The same for the weight across the ray of sight. Only yaw and roll errors of the camera move a
-/// point in this direction: by 0.2 m for 0.3 degrees at 40 m.
+/// The weight across the ray of sight falls to 0 at this distance. Only yaw and roll errors of the
+/// camera move a point in this direction: by 0.2 m for 0.3 degrees at 40 m.
 constexpr double kReachAcross_m = 40.0;
 /// If the network was trained with calibration errors, its features move by less than the full
 /// shift that an error causes: by these shares of it, along and across the ray of sight.

@@ -34,7 +34,7 @@ struct MatchedCells {
 
 /// Compares the positions of the lines that each camera sees with their positions in the map.
 ///
-/// An error e of a camera shifts the features that it shows at the point p of the ground by D(p) e
+/// If a camera has an error e, its features at the ground point p are shifted by D(p) e
 /// (ground_shift()), so F_B(p) = a(p) F_M(p + D e), with a(p) < 1 because far features fade. The
 /// slope of the score is computed as D' (F_B grad F_M - F_M grad F_B) / 2. In this difference, the
 /// terms of F_M alone cancel, and only the gradient of a(p) remains. (Least squares of F_M - F_B
@@ -42,8 +42,8 @@ struct MatchedCells {
 /// The information uses only the gradients of the map, because the gradients of misplaced features
 /// coincide with the true ones by chance.
 ///
-/// The same equations contain the correction of the match as an unknown, which is eliminated. So
-/// errors that act on all cameras like a shift or a turn of the vehicle give no information.
+/// The equations also contain the correction of the match, which is eliminated. A match therefore
+/// does not show camera errors whose effect equals a shift or a turn of the vehicle.
 ///
 /// The constructor allocates all memory. One thread.
 class ExtrinsicSums {

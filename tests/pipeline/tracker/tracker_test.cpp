@@ -336,54 +336,6 @@ TEST(TrackerTest, AStandingVehicleKeepsItsHeading) {
   EXPECT_GT(tracker.pose_at(at_s(300.52))->map_from_vehicle.yaw_rad, 0.2 + radians(8.0));
 }
 
-TEST(TrackerTest, MatchesOfAStandingVehicleDoNotAddUp) {
-  Tracker tracker;
-  tracker.add_odometry({at_s(0.0), 0.0, 0.0});
-  GnssSample gnss{.time = at_s(0.0), .sigma_east_m = 1.0, .sigma_north_m = 1.0};
-  gnss.yaw = {0.0, radians(1.0)};
-  ASSERT_EQ(tracker.add_gnss(gnss), TrackerUpdate::kAccepted);
-  SolverResult match;
-  match.evidence = Evidence::kGood;
-  match.correction = {0.5, 0.3, radians(0.6)};  // the same error each time
-  match.covariance = Eigen::Vector3d(0.09, 0.04, square_of(radians(0.4))).asDiagonal();
-  const auto sigmas_after = [&](int from, int to) {
-    for (int i = from; i < to; ++i) {
-      const Time time = at_s(0.1 * i);
-      tracker.add_odometry({time, 0.0, 0.0});
-      EXPECT_EQ(tracker.add_correction(time, {}, match), TrackerUpdate::kAccepted);
-    }
-    const TrackedPose pose = *tracker.pose_at(at_s(0.1 * (to - 1)));
-    return Eigen::Vector3d(pose.covariance.diagonal().cwiseSqrt());
-  };
-  const Eigen::Vector3d few = sigmas_after(1, 6);
-  const Eigen::Vector3d many = sigmas_after(6, 3000);
-  EXPECT_GT((many.array() / few.array()).minCoeff(), 0.9) << few.transpose();
-}
-
-// All marks are far away: for 3 s, uncertain matches have the same error of two sigmas.
-TEST(TrackerTest, UncertainMatchesOfOnePlaceDoNotAddUp) {
-  constexpr double kSpeed_mps = 5.0;
-  const Eigen::Vector3d sigma(0.3, 0.4, radians(0.8));
-  const Se2 error{0.0, 2.0 * sigma.y(), 0.0};
-  Tracker tracker;
-  tracker.add_odometry({at_s(0.0), kSpeed_mps, 0.0});
-  GnssSample gnss{.time = at_s(0.0), .sigma_east_m = 1.0, .sigma_north_m = 1.0};
-  gnss.yaw = {0.0, radians(1.0)};
-  ASSERT_EQ(tracker.add_gnss(gnss), TrackerUpdate::kAccepted);
-  SolverResult match;
-  match.evidence = Evidence::kGood;
-  match.correction = error;
-  match.covariance = sigma.cwiseAbs2().asDiagonal();
-  for (double time_s = 0.1; time_s < 3.05; time_s += 0.1) {
-    tracker.add_odometry({at_s(time_s), kSpeed_mps, 0.0});
-    const Se2 truth{kSpeed_mps * time_s, 0.0, 0.0};
-    EXPECT_EQ(tracker.add_correction(at_s(time_s), truth, match), TrackerUpdate::kAccepted);
-    const TrackedPose pose = *tracker.pose_at(at_s(time_s));
-    EXPECT_LT(std::abs(error_of(pose, truth).y()), 2.5 * std::sqrt(pose.covariance(1, 1)))
-        << time_s << " s";
-  }
-}
-
 TEST(TrackerTest, AddsSamplesOfEitherKind) {
   SimulatedVehicle vehicle(typical_errors(), 14);
   Tracker by_kind;
