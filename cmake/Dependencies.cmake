@@ -1,7 +1,6 @@
 # Every third-party library, found once. All are packages of Debian 12 and 13 (script/packages.txt).
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs)
 find_package(ZLIB REQUIRED)
 find_package(OpenSSL 3 REQUIRED)
 find_package(yaml-cpp REQUIRED)
@@ -32,6 +31,17 @@ pkg_check_modules(LIBCAMERA IMPORTED_TARGET libcamera)
 # Debian's libonnx-dev ships the protobuf messages of the ONNX format as a library of their own.
 find_path(ONNX_INCLUDE_DIR onnx/onnx_pb.h REQUIRED)
 find_library(ONNX_PROTO_LIBRARY onnx_proto REQUIRED)
+
+# OpenCV's own CMake package needs all of its modules, which are 280 packages more.
+find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
+foreach(module core imgproc)
+  find_library(OPENCV_${module}_LIBRARY opencv_${module} REQUIRED)
+  add_library(opencv_${module} UNKNOWN IMPORTED)
+  set_target_properties(opencv_${module} PROPERTIES
+    IMPORTED_LOCATION ${OPENCV_${module}_LIBRARY}
+    INTERFACE_INCLUDE_DIRECTORIES ${OPENCV_INCLUDE_DIR})
+endforeach()
+set_property(TARGET opencv_imgproc PROPERTY INTERFACE_LINK_LIBRARIES opencv_core)
 
 # The network's engines: the chosen one is needed, the tests compare both where both are installed.
 # oneDNN's own CMake package asks for OpenCL headers that its CPU engine does not need.

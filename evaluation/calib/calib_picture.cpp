@@ -2,7 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "common/image_file.h"
+#include "common/picture_file.h"
 #include "evaluation/drive/drawing.h"
 #include "evaluation/drive/map_overlay.h"
 
@@ -49,9 +49,7 @@ Status write_calibration_picture(const std::vector<CalibrationView>& views,
       draw_picture(views[i], picture, reference, map, sheet(place));
     }
   }
-  cv::cvtColor(sheet, sheet, cv::COLOR_BGR2RGB);
-  return write_png({sheet.data, sheet.cols, sheet.rows, static_cast<std::ptrdiff_t>(sheet.step)},
-                   file);
+  return write_picture(sheet, file);
 }
 
 }  // namespace bevloc::evaluation

@@ -5,7 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "common/image_file.h"
+#include "common/picture_file.h"
 #include "evaluation/drive/drawing.h"
 #include "evaluation/drive/error_statistics.h"
 #include "evaluation/drive/map_overlay.h"
@@ -150,9 +150,7 @@ Status write_sheet(const SheetContent& content, const Rig& rig, const MapIndex& 
              {distributions.x, lower - 10});
   draw_distributions(sheet, distributions, content);
 
-  cv::cvtColor(sheet, sheet, cv::COLOR_BGR2RGB);
-  return write_png({sheet.data, sheet.cols, sheet.rows, static_cast<std::ptrdiff_t>(sheet.step)},
-                   path);
+  return write_picture(sheet, path);
 }
 
 }  // namespace bevloc::evaluation

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-#include "common/image_file.h"
+#include "common/picture_file.h"
 #include "evaluation/drive/drawing.h"
 #include "pipeline/map/class_names.h"
 
@@ -81,11 +81,7 @@ class MapSheet {
     write_text(image_, "N", {north - 22, y + 2}, 0.5);
   }
 
-  Status write(const std::string& path) const {
-    cv::Mat rgb;
-    cv::cvtColor(image_, rgb, cv::COLOR_BGR2RGB);
-    return write_png({rgb.data, rgb.cols, rgb.rows, static_cast<std::ptrdiff_t>(rgb.step)}, path);
-  }
+  Status write(const std::string& path) const { return write_picture(image_, path); }
 
  private:
   cv::Mat image_;

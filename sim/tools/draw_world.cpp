@@ -5,9 +5,9 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "common/picture_file.h"
 #include "pipeline/map/map_loader.h"
 #include "sim/world/path.h"
 #include "sim/world/world_generator.h"
@@ -68,10 +68,10 @@ class Drawing {
     if (with_map) draw_map(world.map);
   }
 
-  bool save(const std::string& path) const {
+  Status save(const std::string& path) const {
     cv::Mat upright;
     cv::flip(image_, upright, 0);
-    return cv::imwrite(path, upright);
+    return write_picture(upright, path);
   }
 
  private:
@@ -218,9 +218,8 @@ int main(int argc, char** argv) {
                                north_m.value_or(whole.centre.y()));
   Drawing drawing(centre, size_m.value_or(whole.size_m), image_size);
   drawing.draw(world, seconds, !without_map);
-  if (!drawing.save(output)) {
-    std::fprintf(stderr, "%s: cannot write the image; check the folder and the file extension\n",
-                 output.c_str());
+  if (Status saved = drawing.save(output); !saved) {
+    std::fprintf(stderr, "%s\n", saved.error().message.c_str());
     return 1;
   }
   return 0;

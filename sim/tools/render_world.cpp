@@ -6,11 +6,11 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "common/files.h"
 #include "common/image_file.h"
+#include "common/picture_file.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_binary.h"
 #include "pipeline/preprocessing/network_camera.h"
@@ -146,9 +146,8 @@ int main(int argc, char** argv) {
       return 1;
     }
   }
-  if (!cv::imwrite(options.out, image_grid(images))) {
-    fmt::print(stderr, "{}: cannot write the image; check the folder and the file extension\n",
-               options.out);
+  if (auto status = bevloc::write_picture(image_grid(images), options.out); !status) {
+    fmt::print(stderr, "{}\n", status.error().message);
     return 1;
   }
   fmt::print("{}: world {}, pose x {:.2f} m, y {:.2f} m, yaw {:.1f} deg\n", options.out,

@@ -2,12 +2,14 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
+#include <png.h>
 
 #include "common/files.h"
+#include "common/jpeg.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc {
@@ -21,18 +23,41 @@ class ImageFile : public testing::Test {
  protected:
   std::string path(const char* name) const { return (folder_ / name).string(); }
 
-  /// Writes a smooth image with OpenCV. Each pixel has another value.
-  std::string written_by_opencv(const char* name, int type) const {
-    cv::Mat image(kHeight, kWidth, type);
+  /// A smooth image, in which each pixel has another value. `png_format`: one of libpng's.
+  static std::vector<uint8_t> smooth_pixels(png_uint_32 png_format) {
+    const size_t channels = PNG_IMAGE_SAMPLE_CHANNELS(png_format);
+    std::vector<uint8_t> pixels;
     for (int v = 0; v < kHeight; ++v) {
       for (int u = 0; u < kWidth; ++u) {
-        uint8_t* const pixel = image.ptr(v) + u * image.elemSize();
-        const uint8_t bgra[] = {static_cast<uint8_t>(40 + 3 * u), static_cast<uint8_t>(90 + 5 * v),
-                                static_cast<uint8_t>(200 - 2 * u - v), 255};
-        for (size_t i = 0; i < image.elemSize(); ++i) pixel[i] = bgra[i];
+        const auto blue = static_cast<uint8_t>(40 + 3 * u);
+        const uint8_t rgba[] = {static_cast<uint8_t>(200 - 2 * u - v),
+                                static_cast<uint8_t>(90 + 5 * v), blue, 255};
+        if (channels == 1) {
+          pixels.push_back(blue);
+        } else {
+          pixels.insert(pixels.end(), rgba, rgba + channels);
+        }
       }
     }
-    cv::imwrite(path(name), image);
+    return pixels;
+  }
+
+  std::string smooth_png(const char* name, png_uint_32 format = PNG_FORMAT_RGB) const {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = kWidth;
+    image.height = kHeight;
+    image.format = format;
+    const std::vector<uint8_t> pixels = smooth_pixels(format);
+    EXPECT_NE(png_image_write_to_file(&image, path(name).c_str(), 0, pixels.data(), 0, nullptr), 0);
+    return path(name);
+  }
+
+  std::string smooth_jpeg(const char* name) const {
+    const std::vector<uint8_t> pixels = smooth_pixels(PNG_FORMAT_RGB);
+    JpegEncoder encoder;
+    const auto jpeg = encoder.encode(RgbView{pixels.data(), kWidth, kHeight, 3 * kWidth}, 95);
+    EXPECT_TRUE(jpeg && write_file(path(name), *jpeg));
     return path(name);
   }
 
@@ -53,9 +78,9 @@ class ImageFile : public testing::Test {
 };
 
 TEST_F(ImageFile, ReadsPngWithAndWithoutAlpha) {
-  for (const int type : {CV_8UC3, CV_8UC4}) {
+  for (const png_uint_32 format : {PNG_FORMAT_RGB, PNG_FORMAT_RGBA}) {
     RgbImage image(kWidth, kHeight);
-    const Status read = read_image(written_by_opencv("a.png", type), image);
+    const Status read = read_image(smooth_png("a.png", format), image);
     ASSERT_TRUE(read) << read.error().message;
     expect_smooth_image(image, 0);
   }
@@ -63,20 +88,20 @@ TEST_F(ImageFile, ReadsPngWithAndWithoutAlpha) {
 
 TEST_F(ImageFile, ReadsGreyPngAsRgb) {
   RgbImage image(kWidth, kHeight);
-  ASSERT_TRUE(read_image(written_by_opencv("grey.png", CV_8UC1), image));
+  ASSERT_TRUE(read_image(smooth_png("grey.png", PNG_FORMAT_GRAY), image));
   for (int channel = 0; channel < 3; ++channel) EXPECT_EQ(image.row(3)[3 * 5 + channel], 40 + 15);
 }
 
 TEST_F(ImageFile, ReadsJpeg) {
   RgbImage image(kWidth, kHeight);
-  const Status read = read_image(written_by_opencv("a.jpg", CV_8UC3), image);
+  const Status read = read_image(smooth_jpeg("a.jpg"), image);
   ASSERT_TRUE(read) << read.error().message;
   expect_smooth_image(image, 8);
 }
 
 TEST_F(ImageFile, WritesWhatItReads) {
   RgbImage image(kWidth, kHeight);
-  ASSERT_TRUE(read_image(written_by_opencv("a.png", CV_8UC3), image));
+  ASSERT_TRUE(read_image(smooth_png("a.png"), image));
   ASSERT_TRUE(write_png(image.view(), path("b.png")));
   RgbImage again(kWidth, kHeight);
   ASSERT_TRUE(read_image(path("b.png"), again));
@@ -100,9 +125,10 @@ TEST_F(ImageFile, SaysWhatIsWrong) {
   EXPECT_THAT(error_of("wide.png"),
               EndsWith("wide.png: found an image of 25x16 pixels, wanted 24x16"));
 
-  for (const char* name : {"cut.png", "cut.jpg"}) {
-    const std::string whole = read_file(written_by_opencv(name, CV_8UC3)).value();
-    ASSERT_TRUE(write_file(path(name), whole.substr(0, whole.size() * 3 / 4)));
+  for (const std::string& file : {smooth_png("cut.png"), smooth_jpeg("cut.jpg")}) {
+    const std::string whole = read_file(file).value();
+    ASSERT_TRUE(write_file(file, whole.substr(0, whole.size() * 3 / 4)));
+    const std::string name = std::filesystem::path(file).filename();
     EXPECT_THAT(error_of(name), AllOf(HasSubstr(name), HasSubstr("found a damaged"))) << name;
   }
   EXPECT_FALSE(write_png(image.view(), path("no/such/folder.png")));

@@ -6,9 +6,10 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
+#include "common/picture_file.h"
 #include "pipeline/map/rasterizer.h"
 #include "sim/perception/mask_features.h"
 #include "sim/perception/matching_scene.h"
@@ -99,7 +100,7 @@ cv::Mat3b image_of(const std::vector<Value>& planes, double scale) {
 
 /// Writes one image per scene: the map at the true pose, the perceived masks from mild to hard, and
 /// the map at the prior.
-void write_images(const Options& options, uint64_t seed_base) {
+Status write_images(const Options& options, uint64_t seed_base) {
   std::filesystem::create_directories(options.out);
   SceneSampler sampler(seed_base);
   MatchingScene scene;
@@ -119,8 +120,9 @@ void write_images(const Options& options, uint64_t seed_base) {
     cv::hconcat(parts, row);
     const std::string file =
         options.out + "/" + std::to_string(i) + "_" + name(scene.kind) + ".png";
-    cv::imwrite(file, row);
+    if (Status written = write_picture(row, file); !written) return written;
   }
+  return {};
 }
 
 }  // namespace
@@ -142,5 +144,7 @@ int main(int argc, char** argv) {
     bevloc::sim::measure_overlap(options, seed_base);
     bevloc::sim::measure_time(options, seed_base);
   }
-  bevloc::sim::write_images(options, seed_base);
+  const bevloc::Status written = bevloc::sim::write_images(options, seed_base);
+  if (!written) fmt::print(stderr, "{}\n", written.error().message);
+  return written ? 0 : 1;
 }

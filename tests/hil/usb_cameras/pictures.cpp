@@ -4,21 +4,25 @@
 #include <fstream>
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+
+#include "common/jpeg.h"
 
 namespace bevloc::hil {
 namespace {
 
 constexpr int kJpegQuality = 95;
 
-Bytes jpeg_from_yuyv(Bytes& yuyv) {
-  const cv::Mat raw(kHeightPx, kWidthPx, CV_8UC2, yuyv.data());
-  cv::Mat bgr;
-  cv::cvtColor(raw, bgr, cv::COLOR_YUV2BGR_YUY2);
-  Bytes jpeg;
-  cv::imencode(".jpg", bgr, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
-  return jpeg;
+Result<Bytes> jpeg_from_yuyv(const Bytes& yuyv) {
+  ImageView image;
+  image.format = PixelFormat::kYuyv;
+  image.width = kWidthPx;
+  image.height = kHeightPx;
+  image.planes[0] = {reinterpret_cast<const uint8_t*>(yuyv.data()), 2 * kWidthPx};
+  image.bytes_used = yuyv.size();
+  JpegEncoder encoder;
+  const auto jpeg = encoder.encode(image, kJpegQuality);
+  if (!jpeg) return tl::unexpected(jpeg.error());
+  return Bytes(jpeg->begin(), jpeg->end());
 }
 
 }  // namespace
@@ -41,7 +45,8 @@ Result<Bytes> Pictures::read(uint64_t index, PixelFormat format) const {
   Bytes yuyv(kYuyvBytes);
   stream.read(reinterpret_cast<char*>(yuyv.data()), kYuyvBytes);
   if (!stream) return fail("{}: found a short file, wanted {} bytes", file.string(), kYuyvBytes);
-  return format == PixelFormat::kMjpeg ? jpeg_from_yuyv(yuyv) : std::move(yuyv);
+  if (format == PixelFormat::kMjpeg) return jpeg_from_yuyv(yuyv);
+  return yuyv;
 }
 
 }  // namespace bevloc::hil

@@ -1,0 +1,25 @@
+// The size of a PNG file.
+#pragma once
+
+#include <cassert>
+#include <string_view>
+
+namespace bevloc::test {
+
+struct SizePx {
+  int width = 0;
+  int height = 0;
+};
+
+/// Reads the IHDR chunk, with which the bytes of a PNG file begin.
+inline SizePx png_size(std::string_view png) {
+  assert(png.size() >= 24);
+  const auto number = [&](size_t at) {
+    int value = 0;
+    for (size_t i = at; i < at + 4; ++i) value = value << 8 | static_cast<unsigned char>(png[i]);
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+}  // namespace bevloc::test
