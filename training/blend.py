@@ -43,10 +43,16 @@ def main() -> None:
     parser.add_argument("second", type=Path, help="float model file")
     parser.add_argument("--share", type=float, required=True, help="of the second one, 0 to 1")
     parser.add_argument("--run", type=Path, required=True, help="folder for checkpoint.pt")
+    parser.add_argument("--network", default="nano", help="as of training.train")
+    parser.add_argument("--view", default="", help="as of training.train")
     arguments = parser.parse_args()
     if not 0.0 <= arguments.share <= 1.0:
         parser.error(f"--share: found {arguments.share:g}, wanted 0 to 1")
-    config = TrainingConfig(run=arguments.run)
+    try:
+        network_config(arguments.network, arguments.view)
+    except ValueError as error:
+        parser.error(str(error))
+    config = TrainingConfig(run=arguments.run, network=arguments.network, view=arguments.view)
     first, second = (load_float_model(path, config) for path in (arguments.first, arguments.second))
     blend(first, second, arguments.share)
     arguments.run.mkdir(parents=True, exist_ok=True)

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "can/bus/frame.h"
+#include "can/e2e/e2e.h"
 #include "common/health_state.h"
 #include "common/vehicle_samples.h"
 
@@ -26,6 +27,16 @@ struct VehicleInputCounters {
   uint64_t sharp_turns = 0;           ///< odometry refused: sharper turns than a vehicle can make
   uint64_t odometry_samples = 0;
   uint64_t gnss_samples = 0;
+
+  /// Adds what was counted for one message.
+  void add(const E2eCounters& message) {
+    wrong_crc += message.wrong_crc;
+    wrong_length += message.wrong_length;
+    repeated += message.repeated;
+    wrong_sequence += message.wrong_sequence;
+    not_valid += message.not_valid;
+    lost += message.lost;
+  }
 };
 
 /// Samples are always finite, and odometry is plausible (OdometryCheck). The caller has to detect

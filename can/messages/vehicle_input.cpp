@@ -112,15 +112,7 @@ std::optional<VehicleSample> VehicleInput::gnss_from(const EpochGroup<3>::Set& s
 
 VehicleInputCounters VehicleInput::counters() const {
   VehicleInputCounters total = counters_;
-  for (const E2eReceiver& receiver : receivers_) {
-    const E2eCounters& counters = receiver.counters();
-    total.wrong_crc += counters.wrong_crc;
-    total.wrong_length += counters.wrong_length;
-    total.repeated += counters.repeated;
-    total.wrong_sequence += counters.wrong_sequence;
-    total.not_valid += counters.not_valid;
-    total.lost += counters.lost;
-  }
+  for (const E2eReceiver& receiver : receivers_) total.add(receiver.counters());
   maker_.add_to(total);
   total.incomplete = odometry_group_.incomplete() + gnss_group_.incomplete();
   return total;

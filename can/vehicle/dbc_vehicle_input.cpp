@@ -207,15 +207,7 @@ std::optional<VehicleSample> DbcVehicleInput::gnss(Time now) {
 
 VehicleInputCounters DbcVehicleInput::counters() const {
   VehicleInputCounters total = counters_;
-  for (const E2eMonitor& monitor : monitors_) {
-    const E2eCounters& counters = monitor.counters();
-    total.wrong_crc += counters.wrong_crc;
-    total.wrong_length += counters.wrong_length;
-    total.repeated += counters.repeated;
-    total.wrong_sequence += counters.wrong_sequence;
-    total.not_valid += counters.not_valid;
-    total.lost += counters.lost;
-  }
+  for (const E2eMonitor& monitor : monitors_) total.add(monitor.counters());
   maker_.add_to(total);
   return total;
 }

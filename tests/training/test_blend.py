@@ -17,14 +17,15 @@ from training.checkpoint import load_network, nuisances_of
 from training.export_onnx import build_model
 from training.graph import folded_convolutions
 from training.models import PRESETS, BevNetwork
+from training.models.config import ModelConfig, network_config
 from training.onnx_graph import FloatOnnxBackend
 
 LAST = "head.second.weight"
 
 
-def write_network(seed: int, path: Path) -> BevNetwork:
+def write_network(seed: int, path: Path, config: ModelConfig = PRESETS["nano"]) -> BevNetwork:
     torch.manual_seed(seed)
-    net = BevNetwork(PRESETS["nano"]).eval()
+    net = BevNetwork(config).eval()
     onnx.save(build_model(net, folded_convolutions(net), FloatOnnxBackend()), str(path))
     return net
 
@@ -37,8 +38,9 @@ class Blend(unittest.TestCase):
         self.files = [self.root / "first.onnx", self.root / "second.onnx"]
         self.networks = [write_network(seed, path) for seed, path in enumerate(self.files)]
 
-    def run_program(self, share: str) -> Path:
+    def run_program(self, share: str, *options: str) -> Path:
         arguments = ["blend", *map(str, self.files), "--share", share, "--run", str(self.root)]
+        arguments += options
         with mock.patch("sys.argv", arguments), contextlib.redirect_stdout(io.StringIO()):
             blend.main()
         return self.root / "checkpoint.pt"
@@ -55,6 +57,13 @@ class Blend(unittest.TestCase):
             torch.testing.assert_close(weight, expected[0])
             torch.testing.assert_close(bias, expected[1])
 
+    def test_another_network(self) -> None:
+        config = network_config("small", "lut")
+        networks = [write_network(seed, path, config) for seed, path in enumerate(self.files)]
+        net = load_network(self.run_program("0.5", "--network", "small", "--view", "lut"))
+        first, second = (network.state_dict()[LAST] for network in networks)
+        torch.testing.assert_close(net.state_dict()[LAST], 0.5 * (first + second))
+
     def test_the_export_measures_on_street_samples(self) -> None:
         self.assertEqual(nuisances_of(self.run_program("0.5")), "street")
 
@@ -62,6 +71,11 @@ class Blend(unittest.TestCase):
         with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()) as errors:
             self.run_program("1.5")
         self.assertIn("--share: found 1.5, wanted 0 to 1", errors.getvalue())
+
+    def test_refuses_an_unknown_network(self) -> None:
+        with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()) as errors:
+            self.run_program("0.5", "--network", "tiny")
+        self.assertIn("'tiny'", errors.getvalue())
 
 
 def weights_and_biases(net: BevNetwork) -> dict[str, tuple[torch.Tensor, torch.Tensor]]:
