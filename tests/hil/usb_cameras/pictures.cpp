@@ -14,7 +14,7 @@ constexpr int kJpegQuality = 95;
 
 Result<Bytes> jpeg_from_yuyv(const Bytes& yuyv) {
   ImageView image;
-  image.format = PixelFormat::kYuyv;
+  image.format = bevloc::PixelFormat::kYuyv;
   image.width = kWidthPx;
   image.height = kHeightPx;
   image.planes[0] = {reinterpret_cast<const uint8_t*>(yuyv.data()), 2 * kWidthPx};
