@@ -69,6 +69,22 @@ Eigen::Vector2d hermite(const Eigen::Vector2d& a, const Eigen::Vector2d& tangent
          (3.0 * t2 - 2.0 * t3) * b + (t3 - t2) * length * tangent_b;
 }
 
+/// A value between two samples, and its derivative.
+struct Interpolated {
+  double value;
+  double slope;
+};
+
+/// The same between two values with given slopes. The derivative is exact.
+Interpolated hermite(double a, double slope_a, double b, double slope_b, double length, double t) {
+  const double t2 = t * t;
+  const double t3 = t2 * t;
+  return {.value = (2.0 * t3 - 3.0 * t2 + 1.0) * a + (t3 - 2.0 * t2 + t) * length * slope_a +
+                   (3.0 * t2 - 2.0 * t3) * b + (t3 - t2) * length * slope_b,
+          .slope = 6.0 * (t - t2) * (b - a) / length + (3.0 * t2 - 4.0 * t + 1.0) * slope_a +
+                   (3.0 * t2 - 2.0 * t) * slope_b};
+}
+
 // Wavelengths of the road's height.
 constexpr double kShortestSlope_m = 80.0;
 constexpr double kLongestSlope_m = 400.0;
@@ -224,15 +240,15 @@ Drive::State Drive::at(double time_s) const {
   const Progress now = progress_at(time_s);
   const size_t i = now.sample;
   const double step_m = station_m_[i + 1] - station_m_[i];
-  const auto between = [&](const std::vector<double>& values) {
-    return values[i] + now.fraction * (values[i + 1] - values[i]);
-  };
   const Eigen::Vector2d position = hermite(points_[i], unit_vector(heading_rad_[i]), points_[i + 1],
                                            unit_vector(heading_rad_[i + 1]), step_m, now.fraction);
+  // The yaw rate is the derivative of the heading, so that odometry and truth agree.
+  const Interpolated heading = hermite(heading_rad_[i], curvature_radpm_[i], heading_rad_[i + 1],
+                                       curvature_radpm_[i + 1], step_m, now.fraction);
   State state;
-  state.map_from_vehicle = {position.x(), position.y(), wrap_angle(between(heading_rad_))};
+  state.map_from_vehicle = {position.x(), position.y(), wrap_angle(heading.value)};
   state.speed_mps = now.speed_mps;
-  state.yaw_rate_radps = now.speed_mps * between(curvature_radpm_);
+  state.yaw_rate_radps = now.speed_mps * heading.slope;
   state.acceleration_mps2 = now.acceleration_mps2;
   return state;
 }

@@ -74,6 +74,25 @@ TEST_P(DriveThroughTown, BodyMotionIsThatOfACar) {
   EXPECT_LT(std::sqrt(sum_squares / count), radians(0.8));
 }
 
+TEST(Drive, TheYawRateMatchesTheHeadingWhereAMapBendsSharplyAtTheEndsOfARoute) {
+  constexpr double kDuration_s = 40.0;
+  constexpr double kStep_s = 0.005;
+  World world;
+  world.map.lanes.resize(1);
+  world.map.lanes[0].centerline = {{-2.0, 1.5}, {0.0, 0.0}, {80.0, 0.0}, {82.0, 1.5}};
+  world.map.lanes[0].speed_limit_mps = 10.0;
+  const Drive drive(world, 1, kDuration_s);
+  Drive::State before = drive.at(0.0);
+  double turned_rad = before.map_from_vehicle.yaw_rad;
+  for (double t = kStep_s; t < kDuration_s; t += kStep_s) {
+    const Drive::State now = drive.at(t);
+    turned_rad += 0.5 * kStep_s * (before.yaw_rate_radps + now.yaw_rate_radps);
+    ASSERT_NEAR(degrees(turned_rad), degrees(now.map_from_vehicle.yaw_rad), 0.05) << t;
+    before = now;
+  }
+  EXPECT_EQ(before.speed_mps, 0.0) << "the route has ended";
+}
+
 TEST(Drive, IsDeterminedByItsSeed) {
   const World world = generate_world(4);
   const Drive a(world, 9, 30.0);
