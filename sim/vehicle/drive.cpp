@@ -75,7 +75,7 @@ struct Interpolated {
   double slope;
 };
 
-/// The same between two values with given slopes. The derivative is exact.
+/// Cubic Hermite interpolation between two values with given slopes.
 Interpolated hermite(double a, double slope_a, double b, double slope_b, double length, double t) {
   const double t2 = t * t;
   const double t3 = t2 * t;
