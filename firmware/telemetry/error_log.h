@@ -10,8 +10,8 @@
 
 namespace bevloc::firmware {
 
-/// Compares snapshots, so that no hot thread has to write a log line. When an error count grows
-/// for the first time in a minute, it logs the cause and what to do. Thread-bound: called from the
+/// Compares snapshots. When an error count grows for the first time in a minute, it logs the cause
+/// and what to do. Hot threads only count and never write a log line. Thread-bound: called from the
 /// supervising thread.
 class ErrorLog {
  public:

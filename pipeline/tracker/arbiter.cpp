@@ -33,8 +33,9 @@ constexpr int kGnssPasses = 20;
 constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
 /// A lean is a mean deviation to one side, in its standard deviations. A bias of the yaw rate makes
-/// match, GNSS and wheels lean. It is found if two or three leans to the same side exceed
-/// kSharedLean, and their sum exceeds kSharedLimit standard deviations of the sum.
+/// match, GNSS and wheels lean to the same side. The arbiter assumes a bias if two or three of them
+/// lean by more than kSharedLean, and their sum exceeds kSharedLimit standard deviations of the
+/// sum.
 constexpr double kSharedLean = 2.0;
 constexpr double kSharedLimit = 3.5;
 /// The match leans alone in heading, so dead reckoning does not drift, if GNSS leans to the other

@@ -59,29 +59,22 @@ Polyline smoothed(const Polyline& line) {
   return result;
 }
 
-/// Cubic Hermite interpolation between two points `length` apart, with unit tangents.
-Eigen::Vector2d hermite(const Eigen::Vector2d& a, const Eigen::Vector2d& tangent_a,
-                        const Eigen::Vector2d& b, const Eigen::Vector2d& tangent_b, double length,
-                        double t) {
-  const double t2 = t * t;
-  const double t3 = t2 * t;
-  return (2.0 * t3 - 3.0 * t2 + 1.0) * a + (t3 - 2.0 * t2 + t) * length * tangent_a +
-         (3.0 * t2 - 2.0 * t3) * b + (t3 - t2) * length * tangent_b;
-}
-
 /// A value between two samples, and its derivative.
+template <typename T>
 struct Interpolated {
-  double value;
-  double slope;
+  T value;
+  T slope;
 };
 
-/// Cubic Hermite interpolation between two values with given slopes.
-Interpolated hermite(double a, double slope_a, double b, double slope_b, double length, double t) {
+/// Cubic Hermite interpolation between two values with given slopes, `length` apart.
+template <typename T>
+Interpolated<T> hermite(const T& a, const T& slope_a, const T& b, const T& slope_b, double length,
+                        double t) {
   const double t2 = t * t;
   const double t3 = t2 * t;
   return {.value = (2.0 * t3 - 3.0 * t2 + 1.0) * a + (t3 - 2.0 * t2 + t) * length * slope_a +
                    (3.0 * t2 - 2.0 * t3) * b + (t3 - t2) * length * slope_b,
-          .slope = 6.0 * (t - t2) * (b - a) / length + (3.0 * t2 - 4.0 * t + 1.0) * slope_a +
+          .slope = 6.0 * (t - t2) / length * (b - a) + (3.0 * t2 - 4.0 * t + 1.0) * slope_a +
                    (3.0 * t2 - 2.0 * t) * slope_b};
 }
 
@@ -241,10 +234,11 @@ Drive::State Drive::at(double time_s) const {
   const size_t i = now.sample;
   const double step_m = station_m_[i + 1] - station_m_[i];
   const Eigen::Vector2d position = hermite(points_[i], unit_vector(heading_rad_[i]), points_[i + 1],
-                                           unit_vector(heading_rad_[i + 1]), step_m, now.fraction);
+                                           unit_vector(heading_rad_[i + 1]), step_m, now.fraction)
+                                       .value;
   // The yaw rate is the derivative of the heading, so that odometry and truth agree.
-  const Interpolated heading = hermite(heading_rad_[i], curvature_radpm_[i], heading_rad_[i + 1],
-                                       curvature_radpm_[i + 1], step_m, now.fraction);
+  const auto heading = hermite(heading_rad_[i], curvature_radpm_[i], heading_rad_[i + 1],
+                               curvature_radpm_[i + 1], step_m, now.fraction);
   State state;
   state.map_from_vehicle = {position.x(), position.y(), wrap_angle(heading.value)};
   state.speed_mps = now.speed_mps;

@@ -10,7 +10,7 @@ struct SizePx {
   int height = 0;
 };
 
-/// Reads the IHDR chunk, with which the bytes of a PNG file begin. 0 x 0 if they are too few.
+/// Reads the size from the IHDR chunk, which begins a PNG file. Returns 0 x 0 if it is incomplete.
 inline SizePx png_size(std::string_view png) {
   if (png.size() < 24) return {};
   const auto number = [&](size_t at) {

@@ -1,9 +1,11 @@
 // Calibrations of other programs: conventions, compared with OpenCV's own projections, and
 // refusals.
 #include <algorithm>
+#include <array>
+#include <fstream>
+#include <sstream>
 
 #include "tests/pipeline/calibration/import/import_fixture.h"
-#include "tests/pipeline/calibration/import/opencv_projections.h"
 
 namespace bevloc {
 namespace {
@@ -17,22 +19,45 @@ struct CameraMatrix {
   double fx_px, fy_px, cx_px, cy_px;
 };
 
-/// Compares projections with those of OpenCV, which are stored for each distortion.
-void expect_projects_as(const Intrinsics& lens, const CameraMatrix& matrix,
-                        const std::vector<double>& distortion, bool fisheye = false,
-                        double shift_px = 0.0) {
-  const auto stored = std::find_if(kOpenCvProjections.begin(), kOpenCvProjections.end(),
-                                   [&](const OpenCvProjection& p) {
-                                     return p.distortion == distortion && p.fisheye == fisheye;
-                                   });
-  ASSERT_NE(stored, kOpenCvProjections.end()) << "OpenCV's projections are not stored";
-  for (size_t i = 0; i < kProjectedPoints.size(); ++i) {
-    const auto pixel = lens.project(kProjectedPoints[i]);
-    ASSERT_TRUE(pixel);
-    const Eigen::Vector2d& expected = stored->points[i];
-    EXPECT_NEAR(pixel->x(), matrix.fx_px * expected.x() + matrix.cx_px + shift_px, 1e-9);
-    EXPECT_NEAR(pixel->y(), matrix.fy_px * expected.y() + matrix.cy_px + shift_px, 1e-9);
+/// A row of opencv_projections.csv.
+struct OpenCvProjection {
+  double fisheye;
+  std::array<double, 4> distortion;
+  Eigen::Vector3d point;
+  Eigen::Vector2d projected;
+};
+
+std::vector<OpenCvProjection> opencv_projections() {
+  std::ifstream file(BEVLOC_SOURCE_DIR "/tests/pipeline/calibration/import/opencv_projections.csv");
+  std::vector<OpenCvProjection> rows;
+  for (std::string line; std::getline(file, line);) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream values(line);
+    OpenCvProjection row;
+    values >> row.fisheye;
+    for (double& coefficient : row.distortion) values >> coefficient;
+    for (double& coordinate : row.point) values >> coordinate;
+    for (double& coordinate : row.projected) values >> coordinate;
+    if (values) rows.push_back(row);
   }
+  return rows;
+}
+
+/// Compares the projections of a grid of rays with those of OpenCV, which are stored for each
+/// distortion.
+void expect_projects_as(const Intrinsics& lens, const CameraMatrix& matrix,
+                        const std::array<double, 4>& distortion, bool fisheye = false,
+                        double shift_px = 0.0) {
+  int compared = 0;
+  for (const OpenCvProjection& row : opencv_projections()) {
+    if (row.distortion != distortion || (row.fisheye != 0.0) != fisheye) continue;
+    const auto pixel = lens.project(row.point);
+    ASSERT_TRUE(pixel);
+    EXPECT_NEAR(pixel->x(), matrix.fx_px * row.projected.x() + matrix.cx_px + shift_px, 1e-9);
+    EXPECT_NEAR(pixel->y(), matrix.fy_px * row.projected.y() + matrix.cy_px + shift_px, 1e-9);
+    ++compared;
+  }
+  EXPECT_EQ(compared, 25);
 }
 
 TEST(ImportRig, CameraInfoOfRosProjectsAsOpenCv) {
@@ -213,7 +238,7 @@ TEST(ImportRig, ColmapCountsPixelsFromTheCornerAndMapsIntoTheCamera) {
   options.vehicle_from.clear();
   const struct {
     const char* line;
-    std::vector<double> distortion;
+    std::array<double, 4> distortion;
     bool fisheye;
   } kModels[] = {{"SIMPLE_PINHOLE 640 360 500 320 180", {}, false},
                  {"PINHOLE 640 360 500 500 320 180", {}, false},
