@@ -20,32 +20,35 @@ constexpr double kDecides = 9.0;
 /// A match can tell whether the disputed offset exists if the squared distance of this offset, in
 /// the covariance of the match, is at least this.
 constexpr double kTelling = 9.0;
-/// Refused GNSS samples in a row that exclude GNSS while the match agrees.
-constexpr int kGnssRefusals = 5;
 /// Squared distance of an innovation that no scatter explains: more than 6 standard deviations on
 /// one axis. A single one begins a dispute.
 constexpr double kFarOff = 40.0;
-/// Passes in a row that readmit an excluded voter: one second of matches, two of GNSS.
-constexpr int kMatchPasses = 10;
-constexpr int kGnssPasses = 20;
+/// Measurements in a row that must agree with the filter to readmit an excluded voter: one second
+/// of matches, two of GNSS.
+constexpr int kMatchesToReadmit = 10;
+constexpr int kGnssToReadmit = 20;
+/// They agree up to this squared distance: 97 % of independent measurements. The gate allows more,
+/// and the covariance grows while a voter is excluded, so a wrong voter would pass the gate again.
+constexpr double kAgrees = 9.0;
 /// Weight of a new innovation in the drift, and the limit of the drift in its own standard
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
 constexpr double kDriftGain = 0.07;
 constexpr double kDriftLimit = 4.0;
 /// A lean is a mean deviation to one side, in its standard deviations. A bias of the yaw rate makes
-/// match, GNSS and wheels lean to the same side. The arbiter assumes a bias if two or three of them
-/// lean by more than kSharedLean, and their sum exceeds kSharedLimit standard deviations of the
-/// sum.
+/// match, GNSS and wheels lean to the same side. The arbiter assumes a bias if two of them lean by
+/// more than kSharedLean, or all three by more than kLeanOfThree, and the sum of those that lean
+/// exceeds kSharedLimit standard deviations of the sum.
 constexpr double kSharedLean = 2.0;
+constexpr double kLeanOfThree = 1.0;
 constexpr double kSharedLimit = 3.5;
 /// The match leans alone in heading, so dead reckoning does not drift, if GNSS leans to the other
 /// side by more than kOpposingLean. A smaller lean of GNSS to that side suffices if the lean of the
 /// wheels is known and is below kSupportingLean (positive to the side of the match).
 constexpr double kOpposingLean = 1.5;
 constexpr double kSupportingLean = 1.0;
-/// The arbiter ignores the wheels for this long after they have helped to find a bias. They lean
-/// until WheelDifference has learned it.
-constexpr Duration kWheelMemory = std::chrono::seconds(30);
+/// The wheels lean until WheelDifference has learned a bias, so the part of their lean that is
+/// known decays with this time constant.
+constexpr double kWheelMemory_s = 30.0;
 /// Larger innovations count as this many standard deviations, so that one outlier is no drift.
 constexpr double kMaxDriftStep = 3.0;
 /// Limit for the change of GNSS errors, in standard deviations.
@@ -70,7 +73,27 @@ Eigen::Vector3d supported_offset(const PoseInnovation& innovation) {
   return plausible * (plausible + innovation.covariance).ldlt().solve(innovation.error);
 }
 
+/// The axis with the largest absolute value.
+size_t largest_of(const Eigen::Vector3d& values) {
+  Eigen::Index axis = 0;
+  values.cwiseAbs().maxCoeff(&axis);
+  return static_cast<size_t>(axis);
+}
+
 }  // namespace
+
+bool Arbiter::Voter::jumps(Time time, const PoseInnovation& innovation) const {
+  if (!last_passed) return false;
+  const double elapsed_s = std::abs(to_seconds(time - *last_passed));
+  const double reach_m =
+      kOdometryError_mps * elapsed_s + 0.5 * kOdometryError_mps2 * square_of(elapsed_s);
+  const double reach_rad =
+      kOdometryError_radps * elapsed_s + 0.5 * kOdometryError_radps2 * square_of(elapsed_s);
+  const Eigen::Vector3d reach(reach_m, reach_m, reach_rad);
+  const Eigen::Vector3d noise = 4.0 * innovation.covariance.diagonal().cwiseSqrt();
+  const Eigen::Vector3d jump = (innovation.error - last_passed_error).cwiseAbs();
+  return ((jump - noise - reach).array() > 0.0).any();
+}
 
 void Arbiter::Voter::add(Time time, const PoseInnovation& innovation, bool passes_gate) {
   const Eigen::Vector3d sigma = innovation.covariance.diagonal().cwiseSqrt();
@@ -78,17 +101,21 @@ void Arbiter::Voter::add(Time time, const PoseInnovation& innovation, bool passe
   const Eigen::Vector3d in_sigmas =
       innovation.error.cwiseQuotient(sigma).cwiseMax(-kMaxDriftStep).cwiseMin(kMaxDriftStep);
   // A measurement that does not see an axis says nothing about its drift.
-  const auto seen = (sigma.array() <= kPlausibleOffset.array()).cast<double>();
-  drift.array() += kDriftGain * seen * (in_sigmas - drift).array();
+  const Eigen::Array<bool, 3, 1> seen = sigma.array() <= kPlausibleOffset.array();
+  drift.array() += kDriftGain * seen.cast<double>() * (in_sigmas - drift).array();
   if (passes_gate) {
     last_passed = time;
     last_passed_error = innovation.error;
-    ++passed_in_a_row;
     refused_in_a_row = 0;
+    for (size_t axis = 0; axis < seen_at.size(); ++axis) {
+      if (seen(static_cast<Eigen::Index>(axis))) seen_at[axis] = time;
+    }
   } else {
-    ++refused_in_a_row;
-    passed_in_a_row = 0;
+    if (refused_in_a_row++ == 0) jumped = jumps(time, innovation);
+    offset = supported_offset(innovation);
+    refused_axis = largest_of(innovation.error.cwiseQuotient(sigma));
   }
+  agreed_in_a_row = innovation.squared_distance <= kAgrees ? agreed_in_a_row + 1 : 0;
 }
 
 Eigen::Vector3d Arbiter::Voter::lean() const {
@@ -103,11 +130,11 @@ bool Arbiter::Voter::drifts() const {
 void Arbiter::Voter::exclude() {
   if (excluded) return;
   excluded = true;
-  passed_in_a_row = 0;
+  agreed_in_a_row = 0;
 }
 
-bool Arbiter::Voter::readmit_after(int passes) {
-  if (!excluded || passed_in_a_row < passes) return false;
+bool Arbiter::Voter::readmit_after(int agreeing) {
+  if (!excluded || agreed_in_a_row < agreeing) return false;
   excluded = false;
   drift.setZero();
   return true;
@@ -131,17 +158,20 @@ bool Arbiter::odometry_drifts() const {
 /// Whether at least two of match, GNSS and wheels say that the yaw rate has a bias.
 bool Arbiter::yaw_rate_drifts() const {
   const std::array leans{match_.lean().z(), gnss_.lean().z(), wheel_lean_.value_or(0.0)};
-  const auto agree_on = [&leans](double side) {
-    int leaning = 0;
-    double sum = 0.0;
-    for (const double lean : leans) {
-      if (side * lean <= kSharedLean) continue;
-      ++leaning;
-      sum += side * lean;
+  const auto agree = [&leans](int voters, double least_lean) {
+    for (const double side : {-1.0, 1.0}) {
+      int leaning = 0;
+      double sum = 0.0;
+      for (const double lean : leans) {
+        if (side * lean <= least_lean) continue;
+        ++leaning;
+        sum += side * lean;
+      }
+      if (leaning >= voters && sum > kSharedLimit * std::sqrt(leaning)) return true;
     }
-    return leaning >= 2 && sum > kSharedLimit * std::sqrt(leaning);
+    return false;
   };
-  return agree_on(-1.0) || agree_on(1.0);
+  return agree(2, kSharedLean) || agree(3, kLeanOfThree);
 }
 
 /// Whether the heading of the match drifts, and dead reckoning is nearer to that of GNSS.
@@ -151,7 +181,10 @@ bool Arbiter::match_turns_alone() const {
 }
 
 void Arbiter::forget_drift(Time now) {
-  if (std::abs(wheel_lean_.value_or(0.0)) > kSharedLean) wheels_ignored_until_ = now + kWheelMemory;
+  if (wheel_lean_ && std::abs(*wheel_lean_) > kSharedLean) {
+    known_wheel_lean_ = *wheel_lean_ + known_wheel_lean_at(now);
+    wheel_lean_known_at_ = now;
+  }
   wheel_lean_.reset();
   match_.drift.setZero();
   gnss_.drift.setZero();
@@ -159,40 +192,27 @@ void Arbiter::forget_drift(Time now) {
 
 void Arbiter::add_odometry(Time time, const std::optional<double>& wheel_lean) {
   wheel_lean_ = wheel_lean;
-  if (time < wheels_ignored_until_) wheel_lean_.reset();
+  if (wheel_lean_) *wheel_lean_ -= known_wheel_lean_at(time);
+}
+
+double Arbiter::known_wheel_lean_at(Time time) const {
+  return known_wheel_lean_ * std::exp(-to_seconds(time - wheel_lean_known_at_) / kWheelMemory_s);
 }
 
 void Arbiter::add_match(Time time, const PoseInnovation& innovation, bool passes_gate) {
   if (passes_gate && !answers_dispute(innovation)) return;
   const bool begins = !passes_gate && match_.refused_in_a_row == 0;
-  if (begins) match_jumped_ = match_jumps(time, innovation);
   match_.add(time, innovation, passes_gate);
   if (passes_gate) explained_ = false;
   if (begins) dispute_since_ = time;
-  if (!passes_gate) dispute_offset_ = supported_offset(innovation);
-  match_.readmit_after(kMatchPasses);
+  match_.readmit_after(kMatchesToReadmit);
 }
 
 /// Whether the match sees the disputed axis well enough to end the dispute. A match that sees
 /// nothing along this axis leaves the dispute open.
 bool Arbiter::answers_dispute(const PoseInnovation& innovation) const {
   return match_.refused_in_a_row == 0 ||
-         squared_distance(dispute_offset_, innovation.covariance) >= kTelling;
-}
-
-/// Whether the match has moved against dead reckoning by more than undetected errors of odometry
-/// explain: OdometryMonitor lets pass what a vehicle can do.
-bool Arbiter::match_jumps(Time time, const PoseInnovation& innovation) const {
-  if (!match_.last_passed) return false;
-  const double elapsed_s = std::abs(to_seconds(time - *match_.last_passed));
-  const double reach_m =
-      kOdometryError_mps * elapsed_s + 0.5 * kOdometryError_mps2 * square_of(elapsed_s);
-  const double reach_rad =
-      kOdometryError_radps * elapsed_s + 0.5 * kOdometryError_radps2 * square_of(elapsed_s);
-  const Eigen::Vector3d reach(reach_m, reach_m, reach_rad);
-  const Eigen::Vector3d noise = 4.0 * innovation.covariance.diagonal().cwiseSqrt();
-  const Eigen::Vector3d jump = (innovation.error - match_.last_passed_error).cwiseAbs();
-  return ((jump - noise - reach).array() > 0.0).any();
+         squared_distance(match_.offset, innovation.covariance) >= kTelling;
 }
 
 void Arbiter::add_gnss(Time time, const PoseInnovation& innovation, bool passes_gate,
@@ -200,32 +220,32 @@ void Arbiter::add_gnss(Time time, const PoseInnovation& innovation, bool passes_
   gnss_.add(time, innovation, passes_gate);
   gnss_records_[gnss_count_++ % kGnssRecords] = {
       time, innovation.squared_distance,
-      squared_distance(innovation.error - dispute_offset_, innovation.covariance)};
+      squared_distance(innovation.error - match_.offset, innovation.covariance)};
   if (!gnss_error) {
     forget_gnss_errors();
   } else if (!gnss_.excluded) {
     note_gnss_error(time, *gnss_error);
   }
-  if (gnss_.readmit_after(kGnssPasses)) forget_gnss_errors();
+  if (gnss_.readmit_after(kGnssToReadmit)) forget_gnss_errors();
 }
 
 void Arbiter::forget_gnss_errors() {
   gnss_error_count_ = 0;
-  gnss_moved_ = false;
+  moved_gnss_axis_.reset();
   gnss_.drift.setZero();
 }
 
 void Arbiter::note_gnss_error(Time time, const Eigen::Vector3d& gnss_error) {
   if (time < next_gnss_error_) return;
   next_gnss_error_ = time + std::chrono::seconds(1);
-  gnss_moved_ = false;
+  moved_gnss_axis_.reset();
   const size_t known = std::min(gnss_error_count_, kGnssErrors);
   for (size_t age = 1; age <= known; ++age) {
     const Eigen::Vector3d& before = gnss_errors_[(gnss_error_count_ - age) % kGnssErrors];
     const double expected =
         std::sqrt(2.0 * (1.0 - std::exp(-static_cast<double>(age) / gnss_correlation_s_)));
-    const double change = (gnss_error - before).cwiseAbs().maxCoeff();
-    gnss_moved_ = gnss_moved_ || change > kGnssMoveLimit * expected + 0.3;
+    const Eigen::Vector3d change = (gnss_error - before).cwiseAbs();
+    if (change.maxCoeff() > kGnssMoveLimit * expected + 0.3) moved_gnss_axis_ = largest_of(change);
   }
   gnss_errors_[gnss_error_count_++ % kGnssErrors] = gnss_error;
 }
@@ -235,8 +255,27 @@ bool Arbiter::match_agrees(Time now) const {
          now - *match_.last_passed <= kMatchLifetime && !match_.excluded;
 }
 
-bool Arbiter::gnss_moved() const {
-  return gnss_.refused_in_a_row >= kGnssRefusals || gnss_.drifts() || gnss_moved_;
+bool Arbiter::match_sees(size_t axis, Time now) const {
+  const auto& seen_at = match_.seen_at[axis];
+  return match_agrees(now) && seen_at && now - *seen_at <= kMatchLifetime;
+}
+
+/// Whether refused GNSS is wrong: it jumped, or the match sees that the vehicle is not there.
+bool Arbiter::gnss_refusals_are_denied(Time now) const {
+  return match_agrees(now) && (gnss_.jumped || match_sees(gnss_.refused_axis, now));
+}
+
+/// Whether the match sees that GNSS drifts, and does not lean to the same side itself.
+bool Arbiter::match_denies_drift(size_t axis, Time now) const {
+  const auto i = static_cast<Eigen::Index>(axis);
+  const double with_gnss = std::copysign(1.0, gnss_.lean()(i)) * match_.lean()(i);
+  return match_sees(axis, now) && with_gnss < kSupportingLean;
+}
+
+bool Arbiter::gnss_moved(Time now) const {
+  return (gnss_is_refused() && gnss_refusals_are_denied(now)) ||
+         (gnss_.drifts() && match_denies_drift(largest_of(gnss_.lean()), now)) ||
+         (moved_gnss_axis_ && match_sees(*moved_gnss_axis_, now));
 }
 
 Verdict Arbiter::judge(Time now, PoseStanding standing) {
@@ -251,11 +290,10 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
     exclude_match();
     match_.drift.setZero();
   }
-  if (valid && match_agrees(now) && gnss_moved() && !odometry_drifts()) gnss_.exclude();
-  if (!match_agrees(now) && !match_is_disputed() && gnss_.refused_in_a_row >= kGnssRefusals &&
-      !gnss_.excluded) {
-    verdict.undecided = true;
-  }
+  if (valid && gnss_moved(now) && !odometry_drifts()) gnss_.exclude();
+  gnss_disputed_ = gnss_is_refused() && !gnss_.excluded && !match_is_disputed() &&
+                   !gnss_refusals_are_denied(now);
+  if (gnss_disputed_) verdict.undecided = true;
   if (odometry_wrong_until_ && now < *odometry_wrong_until_) verdict.odometry_contradicts = true;
   if (match_.excluded) verdict.match_contradicts = true;
   if (gnss_.excluded) verdict.gnss_contradicts = true;
@@ -269,13 +307,13 @@ void Arbiter::exclude_match() {
 
 void Arbiter::decide_dispute(Verdict& verdict, PoseStanding standing) {
   if (explained_) return;
-  const bool harmless = (dispute_offset_.cwiseAbs().array() < kHarmlessOffset.array()).all();
+  const bool harmless = (match_.offset.cwiseAbs().array() < kHarmlessOffset.array()).all();
   if (harmless && standing == PoseStanding::kValid) return;
   if (standing == PoseStanding::kNew) {
     verdict.undecided = true;
     return;
   }
-  if (match_jumped_) {
+  if (match_.jumped) {
     exclude_match();
     return;
   }
@@ -312,8 +350,9 @@ void Arbiter::ask_gnss(Verdict& verdict) {
 }
 
 std::optional<Eigen::Vector3d> Arbiter::open_dispute() const {
-  if (!match_is_disputed() || match_.excluded) return std::nullopt;
-  return dispute_offset_;
+  if (match_is_disputed() && !match_.excluded) return match_.offset;
+  if (gnss_disputed_ && !gnss_.jumped) return gnss_.offset;
+  return std::nullopt;
 }
 
 }  // namespace bevloc

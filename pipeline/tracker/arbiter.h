@@ -65,8 +65,9 @@ class Arbiter {
 
   int matches_refused_in_a_row() const { return match_.refused_in_a_row; }
 
-  /// While a refused match is unexplained: its offset from the estimate in the vehicle frame (m, m,
-  /// rad). The pose may be wrong by as much.
+  /// While a refused match is unexplained, or refused GNSS along an axis that the match does not
+  /// see: its offset from the estimate in the vehicle frame (m, m, rad). The pose may be wrong by
+  /// as much.
   std::optional<Eigen::Vector3d> open_dispute() const;
 
   /// Forgets everything, after the filter has started again.
@@ -76,7 +77,7 @@ class Arbiter {
   /// The record of one voter.
   struct Voter {
     int refused_in_a_row = 0;
-    int passed_in_a_row = 0;
+    int agreed_in_a_row = 0;
     std::optional<Time> last_passed;
     Eigen::Vector3d last_passed_error = Eigen::Vector3d::Zero();
     bool excluded = false;
@@ -86,13 +87,22 @@ class Arbiter {
     Eigen::Vector3d drift = Eigen::Vector3d::Zero();
 
     void add(Time time, const PoseInnovation& innovation, bool passes_gate);
+    bool jumped = false;  ///< the refusals began with a jump that no vehicle can make
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< of the latest refused measurement
+    size_t refused_axis = 0;  ///< on which that measurement is farthest off in standard deviations
+    /// When a measurement that passed last saw each axis well enough to judge another voter.
+    std::array<std::optional<Time>, 3> seen_at;
+
+    /// Whether `innovation` differs from the last one that passed by more than undetected errors of
+    /// odometry explain: OdometryMonitor lets pass what a vehicle can do.
+    bool jumps(Time time, const PoseInnovation& innovation) const;
     /// `drift` in its own standard deviations.
     Eigen::Vector3d lean() const;
     bool drifts() const;
     /// Does nothing if the voter is excluded already.
     void exclude();
-    /// Ends the exclusion after enough passes in a row. Returns whether it ended now.
-    bool readmit_after(int passes);
+    /// Ends the exclusion after so many agreeing measurements in a row. Returns whether it ended.
+    bool readmit_after(int agreeing);
   };
 
   /// A recent GNSS sample.
@@ -103,20 +113,27 @@ class Arbiter {
   };
 
   static constexpr int kDisputingRefusals = 3;
+  /// Refused GNSS samples in a row that exclude GNSS while the match agrees.
+  static constexpr int kGnssRefusals = 5;
 
   bool match_is_disputed() const {
     return match_.refused_in_a_row >= kDisputingRefusals || match_.far_off;
   }
   bool match_agrees(Time now) const;
+  bool match_sees(size_t axis, Time now) const;
   bool match_turns_alone() const;
-  bool gnss_moved() const;
+  bool gnss_is_refused() const { return gnss_.refused_in_a_row >= kGnssRefusals; }
+  bool gnss_refusals_are_denied(Time now) const;
+  bool match_denies_drift(size_t axis, Time now) const;
+  bool gnss_moved(Time now) const;
   bool answers_dispute(const PoseInnovation& innovation) const;
-  bool match_jumps(Time time, const PoseInnovation& innovation) const;
   /// `lean`, positive to the side to which the match's heading leans.
   double with_match(double lean) const;
   /// Whether the heading of the match leans, and neither GNSS nor the wheels lean with it.
   bool match_leans_alone() const;
   bool yaw_rate_drifts() const;
+  /// The lean of a bias that the filter has taken into account already.
+  double known_wheel_lean_at(Time time) const;
   /// Excludes the match, which also explains an open dispute.
   void exclude_match();
   void decide_dispute(Verdict& verdict, PoseStanding standing);
@@ -130,19 +147,19 @@ class Arbiter {
   double gnss_correlation_s_;
   Voter match_;
   Voter gnss_;
-  std::optional<double> wheel_lean_;  ///< OdometrySample::wheel_lean
-  Time wheels_ignored_until_ = Time::min();
+  std::optional<double> wheel_lean_;  ///< OdometrySample::wheel_lean minus what is known of it
+  double known_wheel_lean_ = 0.0;     ///< at `wheel_lean_known_at_`
+  Time wheel_lean_known_at_{};
   Time dispute_since_;
-  Eigen::Vector3d dispute_offset_ = Eigen::Vector3d::Zero();
-  bool match_jumped_ = false;  ///< the dispute began with a jump that no vehicle can make
-  bool explained_ = false;     ///< the open dispute has a verdict
+  bool explained_ = false;      ///< the open dispute of the match has a verdict
+  bool gnss_disputed_ = false;  ///< GNSS is refused, and nothing tells whether it is right
   std::array<GnssRecord, kGnssRecords> gnss_records_{};
   size_t gnss_count_ = 0;
   /// GNSS errors of the last seconds, one per second.
   std::array<Eigen::Vector3d, kGnssErrors> gnss_errors_{};
   size_t gnss_error_count_ = 0;
   Time next_gnss_error_ = Time::min();
-  bool gnss_moved_ = false;
+  std::optional<size_t> moved_gnss_axis_;
   std::optional<Time> odometry_wrong_until_;
 };
 

@@ -1,5 +1,6 @@
 #include "pipeline/tracker/pose_estimator.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bevloc {
@@ -12,6 +13,9 @@ constexpr double kConfirmingAcross = 2.5;
 constexpr double kConfirmingYaw = 3.0;
 /// A GNSS error beyond this refutes the pose: one in 150,000 independent errors per axis.
 constexpr double kRefuting = 4.5;
+/// A larger scale error of the wheels, in standard deviations of what a vehicle has, means that
+/// they slip. The filter would carry it on when they grip again.
+constexpr double kMostScaleSigmas = 5.0;
 /// Refused GNSS samples in a row, without a match, after which the pose starts again.
 constexpr int kRefusalsToRestart = 15;
 /// Refused matches in a row after which a pose that was never valid starts again.
@@ -19,6 +23,14 @@ constexpr int kRefusalsToStartAgain = 5;
 constexpr Duration kMatchAbsence = std::chrono::seconds(1);
 /// A GNSS sample older than this says nothing about the pose.
 constexpr Duration kGnssLifetime = std::chrono::seconds(2);
+
+/// Nothing has confirmed a new pose but GNSS, and a receiver may claim to be more exact than it is.
+/// The right match must be able to outweigh it.
+GnssSample with_start_sigma(GnssSample sample) {
+  sample.sigma_east_m = std::max(sample.sigma_east_m, StartConfirmation::kLeastGnssSigma_m);
+  sample.sigma_north_m = std::max(sample.sigma_north_m, StartConfirmation::kLeastGnssSigma_m);
+  return sample;
+}
 
 bool reached_the_gate(TrackerUpdate update) {
   return update == TrackerUpdate::kAccepted || update == TrackerUpdate::kGated;
@@ -29,7 +41,11 @@ bool reached_the_gate(TrackerUpdate update) {
 TrackerUpdate PoseEstimator::add(const VehicleSample& sample) {
   if (const auto* gnss = std::get_if<GnssSample>(&sample)) return add_gnss(*gnss);
   const OdometrySample& odometry = std::get<OdometrySample>(sample);
-  if (!odometry_monitor_.accept(odometry)) return TrackerUpdate::kImplausible;
+  if (!odometry_monitor_.accept(odometry)) {
+    gnss_scatter_.forget_samples();
+    return TrackerUpdate::kImplausible;
+  }
+  gnss_scatter_.add(odometry);
   start_confirmation_.add(odometry);
   arbiter_.add_odometry(odometry.time, odometry.wheel_lean);
   return tracker_.add_odometry(odometry);
@@ -41,9 +57,17 @@ std::optional<GnssSample::Yaw> PoseEstimator::yaw_at(Time time) const {
   return GnssSample::Yaw{pose->map_from_vehicle.yaw_rad, std::sqrt(pose->covariance(2, 2))};
 }
 
+GnssSample PoseEstimator::examined(const GnssSample& received) {
+  const auto yaw = yaw_at(received.time);
+  const GnssSample sample = received.antenna ? at_rear_axle(received, yaw) : received;
+  if (!yaw) return sample;
+  gnss_scatter_.add(sample, yaw->yaw_rad);
+  return gnss_scatter_.with_seen_sigma(sample);
+}
+
 TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
-  const GnssSample sample =
-      received.antenna ? at_rear_axle(received, yaw_at(received.time)) : received;
+  GnssSample sample = examined(received);
+  if (!trusted_) sample = with_start_sigma(sample);
   const bool had_pose = tracker_.is_initialised();
   const bool trusted = arbiter_.trusts_gnss();
   const TrackerUpdate update = tracker_.add_gnss(sample, trusted ? Trust::kUse : Trust::kExamine);
@@ -124,6 +148,7 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   const PoseStanding lost_or_new = trusted_ ? PoseStanding::kLost : PoseStanding::kNew;
   verdict_ = arbiter_.judge(now, pose_valid ? PoseStanding::kValid : lost_or_new);
   verdict_.map_contradicts = map_offset_.contradicts();
+  verdict_.gnss_contradicts = verdict_.gnss_contradicts || gnss_scatter_.contradicts();
   if (verdict_.odometry_contradicts && !odometry_was_wrong) tracker_.widen();
   if (arbiter_.odometry_drifts()) {
     tracker_.loosen_odometry();
@@ -133,9 +158,12 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   const bool gnss_refused = gnss_refused_in_a_row_ >= kRefusalsToRestart && !matched;
   const bool start_failed =
       !trusted_ && arbiter_.matches_refused_in_a_row() >= kRefusalsToStartAgain;
-  if (gnss_refutes() || gnss_refused || start_failed) {
+  const bool wheels_slip = std::abs(tracker_.speed_scale_error()) >
+                           kMostScaleSigmas * tracker_.parameters().initial_speed_scale_sigma;
+  if (gnss_refutes() || gnss_refused || start_failed || wheels_slip) {
     restart();
     verdict_.undecided = true;
+    verdict_.odometry_contradicts = verdict_.odometry_contradicts || wheels_slip;
   }
 }
 
@@ -197,7 +225,9 @@ void PoseEstimator::reset() {
   restart();
   tracker_.reset();
   odometry_monitor_.reset();
-  map_offset_ = MapOffsetMonitor(tracker_.parameters().correlation.gnss_s);
+  const TrackerParameters& parameters = tracker_.parameters();
+  map_offset_ = MapOffsetMonitor(parameters.correlation.gnss_s);
+  gnss_scatter_ = GnssScatter(parameters.measurements, parameters.correlation.gnss_s);
 }
 
 }  // namespace bevloc

@@ -9,6 +9,7 @@
 #include "common/vehicle_samples.h"
 #include "pipeline/tracker/arbiter.h"
 #include "pipeline/tracker/evidence.h"
+#include "pipeline/tracker/gnss_scatter.h"
 #include "pipeline/tracker/map_offset_monitor.h"
 #include "pipeline/tracker/odometry_monitor.h"
 #include "pipeline/tracker/protection_level.h"
@@ -24,7 +25,8 @@ class PoseEstimator {
   explicit PoseEstimator(const TrackerParameters& parameters)
       : tracker_(parameters),
         arbiter_(parameters.correlation.gnss_s),
-        map_offset_(parameters.correlation.gnss_s) {}
+        map_offset_(parameters.correlation.gnss_s),
+        gnss_scatter_(parameters.measurements, parameters.correlation.gnss_s) {}
 
   /// Adds a sample of the vehicle. A sample of an excluded voter changes nothing.
   TrackerUpdate add(const VehicleSample& sample);
@@ -68,6 +70,8 @@ class PoseEstimator {
 
  private:
   TrackerUpdate add_gnss(const GnssSample& received);
+  /// Moves the position to the rear axle, and raises sigmas that are too small.
+  GnssSample examined(const GnssSample& received);
   std::optional<GnssSample::Yaw> yaw_at(Time time) const;
   void weigh_start(const MatchResult& match, const MatchOutcome& outcome);
   bool gnss_confirms() const;
@@ -79,6 +83,7 @@ class PoseEstimator {
   Tracker tracker_;
   Arbiter arbiter_;
   MapOffsetMonitor map_offset_;
+  GnssScatter gnss_scatter_;
   OdometryMonitor odometry_monitor_;
   EvidenceMonitor evidence_;
   StartConfirmation start_confirmation_;

@@ -19,8 +19,6 @@ constexpr double kSquareWeight = 20.0;
 /// standard deviation of the GNSS error.
 constexpr double kNeeded = 0.5;
 constexpr double kNeededPerSquaredSigma = 4.0;
-/// More exact GNSS tells lanes apart by itself: its errors count in units of this.
-constexpr double kLeastGnssSigma_m = 1.0;
 /// What was seen this many matches ago counts a third: a wrong lane has good scores for a while.
 constexpr double kMemory_matches = 100.0;
 /// Matches that may count for each metre driven.

@@ -25,6 +25,9 @@ struct StartMatch {
 /// Allocates nothing. One thread.
 class StartConfirmation {
  public:
+  /// More exact GNSS tells lanes apart by itself: its errors count in units of this.
+  static constexpr double kLeastGnssSigma_m = 1.0;
+
   /// A standing vehicle sees the same in every match, so only the first ones count.
   void add(const OdometrySample& odometry);
 

@@ -106,6 +106,13 @@ TEST_F(ArbiterTest, ReadmitsAVoterThatAgreesForAWhile) {
   EXPECT_TRUE(arbiter_.trusts_match());
 }
 
+TEST_F(ArbiterTest, AVoterThatOnlyPassesTheGateStaysExcluded) {
+  run(20, none_, none_);
+  run(3, {0.0, 3.0, 0.0}, none_);
+  run(30, {0.0, 0.7, 0.0}, none_);  // 3.5 standard deviations
+  EXPECT_FALSE(arbiter_.trusts_match());
+}
+
 TEST_F(ArbiterTest, ReadmitsGnssWhoseErrorHasMovedOnce) {
   const auto add_gnss = [&](int samples, double error) {
     for (int i = 0; i < samples; ++i) {
@@ -168,6 +175,17 @@ TEST_F(ArbiterTest, WheelsAloneMeanNoDrift) {
   EXPECT_FALSE(arbiter_.odometry_drifts());
 }
 
+/// Match and GNSS lean by 1.7 and 2.2 standard deviations.
+TEST_F(ArbiterTest, AThirdVoterThatLeansALittleMakesDrift) {
+  run(100, none_, none_);
+  run(20, {0.0, 0.0, 0.42 * kYawSigma_rad}, {0.0, 0.0, 0.55 * kYawSigma_rad});
+  EXPECT_FALSE(arbiter_.odometry_drifts());
+  arbiter_.add_odometry(now_, 0.9);
+  EXPECT_FALSE(arbiter_.odometry_drifts());
+  arbiter_.add_odometry(now_, 2.4);
+  EXPECT_TRUE(arbiter_.odometry_drifts());
+}
+
 /// The wheels lean until they have learned the bias. One notice is enough for the filter.
 TEST_F(ArbiterTest, WheelsMeanDriftOnceUntilTheyHaveLearnedIt) {
   const Eigen::Vector3d turned(0.0, 0.0, 0.5 * kYawSigma_rad);
@@ -179,6 +197,18 @@ TEST_F(ArbiterTest, WheelsMeanDriftOnceUntilTheyHaveLearnedIt) {
   arbiter_.add_odometry(now_, 4.0);
   EXPECT_FALSE(arbiter_.odometry_drifts());
   arbiter_.add_odometry(now_ + std::chrono::seconds(60), 4.0);
+  EXPECT_TRUE(arbiter_.odometry_drifts());
+}
+
+TEST_F(ArbiterTest, WheelsShowTheEndOfABiasThatTheyHaveShown) {
+  const Eigen::Vector3d turned(0.0, 0.0, 0.5 * kYawSigma_rad);
+  run(25, none_, turned);
+  arbiter_.add_odometry(now_, 4.0);
+  arbiter_.forget_drift(now_);
+  run(25, none_, -turned);
+  arbiter_.add_odometry(now_, 3.5);
+  EXPECT_FALSE(arbiter_.odometry_drifts());
+  arbiter_.add_odometry(now_, 0.5);
   EXPECT_TRUE(arbiter_.odometry_drifts());
 }
 

@@ -84,7 +84,9 @@ class PoseEstimatorStartTest : public testing::Test {
     for (int i = 0; i < static_cast<int>(duration_s * 50.0); ++i) {
       time_s_ += 0.02;
       const Se2 truth = vehicle_.drive_to(time_s_);
-      estimator_.add(vehicle_.odometry(time_s_));
+      OdometrySample odometry = vehicle_.odometry(time_s_);
+      odometry.speed_mps *= speed_factor_;
+      estimator_.add(odometry);
       if (i % 5 != 0) continue;
       estimator_.add(gnss_beside(truth));
       const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
@@ -102,7 +104,7 @@ class PoseEstimatorStartTest : public testing::Test {
     const Se2 beside = truth * Se2{0.0, gnss_error_m_, 0.0};
     gnss.east_m = beside.x_m;
     gnss.north_m = beside.y_m;
-    gnss.sigma_east_m = gnss.sigma_north_m = 1.2;
+    gnss.sigma_east_m = gnss.sigma_north_m = gnss_sigma_m_;
     gnss.yaw->sigma_rad = radians(1.0);
     return gnss;
   }
@@ -110,6 +112,8 @@ class PoseEstimatorStartTest : public testing::Test {
   SimulatedVehicle vehicle_{{}, 1};
   PoseEstimator estimator_{TrackerParameters()};
   double gnss_error_m_ = 0.0;
+  double gnss_sigma_m_ = 1.2;
+  double speed_factor_ = 1.0;  ///< of the wheels
   double time_s_ = 0.0;
 };
 
@@ -124,6 +128,26 @@ TEST_F(PoseEstimatorStartTest, AnotherLaneThatLooksAlikeAcrossTheRoadConfirmsNoS
     drive(1.0, 0.0, 0.25, 0.04);
     EXPECT_FALSE(estimator_.confirms_start()) << second;
   }
+}
+
+TEST_F(PoseEstimatorStartTest, MatchesOutweighGnssThatClaimsTooSmallASigma) {
+  gnss_error_m_ = 2.0;
+  gnss_sigma_m_ = 0.1;
+  drive(20.0, 0.0, 0.36, 0.33);
+  EXPECT_TRUE(estimator_.confirms_start());
+  const Se2 truth = vehicle_.drive_to(time_s_);
+  EXPECT_LT(error_of(*estimator_.pose_at(at_s(time_s_)), truth).head<2>().norm(), 0.3);
+}
+
+TEST_F(PoseEstimatorStartTest, WheelsThatSlipMakeThePoseBeginAgain) {
+  speed_factor_ = 1.15;
+  bool contradicts = false;
+  for (int i = 0; i < 100; ++i) {
+    drive(0.1, 0.0, 0.33, 0.3);
+    contradicts = contradicts || estimator_.verdict().odometry_contradicts;
+    EXPECT_LT(std::abs(estimator_.tracker().speed_scale_error()), 0.1);
+  }
+  EXPECT_TRUE(contradicts);
 }
 
 TEST_F(PoseEstimatorStartTest, APoseThatIsLostWithoutAContradictionKeepsItsSupport) {
