@@ -123,7 +123,7 @@ void GnssScatter::compare_middle() {
 
 GnssSample GnssScatter::with_seen_sigma(GnssSample sample) const {
   const auto grow = [](double& sigma, double least, double factor) {
-    if (factor > 1.0) sigma = std::max(sigma, least) * factor;
+    if (factor > 1.0 && sigma > 0.0) sigma = std::max(sigma, least) * factor;
   };
   grow(sample.sigma_east_m, model_.gnss_min_position_sigma_m, position_.factor());
   grow(sample.sigma_north_m, model_.gnss_min_position_sigma_m, position_.factor());

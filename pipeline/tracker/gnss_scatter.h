@@ -27,13 +27,14 @@ class GnssScatter {
   GnssScatter(const MeasurementModel& model, double correlation_s)
       : model_(model), correlation_s_(correlation_s) {}
 
-  /// Adds odometry that is plausible.
+  /// Adds finite, plausible odometry.
   void add(const OdometrySample& sample);
 
-  /// Adds a sample of the vehicle's position. `yaw_rad`: the vehicle's yaw.
+  /// Adds a finite sample of the position of the rear axle. `yaw_rad`: the vehicle's yaw.
   void add(const GnssSample& sample, double yaw_rad);
 
-  /// `sample` with the sigmas that the scatter of the latest samples shows.
+  /// `sample` with the sigmas that the scatter of the latest samples shows. A sigma that is not
+  /// positive stays.
   GnssSample with_seen_sigma(GnssSample sample) const;
 
   /// Whether the sigma is too small by a factor of two or more.

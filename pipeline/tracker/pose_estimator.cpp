@@ -27,8 +27,9 @@ constexpr Duration kGnssLifetime = std::chrono::seconds(2);
 /// Nothing has confirmed a new pose but GNSS, and a receiver may claim to be more exact than it is.
 /// The right match must be able to outweigh it.
 GnssSample with_start_sigma(GnssSample sample) {
-  sample.sigma_east_m = std::max(sample.sigma_east_m, StartConfirmation::kLeastGnssSigma_m);
-  sample.sigma_north_m = std::max(sample.sigma_north_m, StartConfirmation::kLeastGnssSigma_m);
+  for (double* sigma_m : {&sample.sigma_east_m, &sample.sigma_north_m}) {
+    if (*sigma_m > 0.0) *sigma_m = std::max(*sigma_m, StartConfirmation::kLeastGnssSigma_m);
+  }
   return sample;
 }
 
@@ -45,10 +46,11 @@ TrackerUpdate PoseEstimator::add(const VehicleSample& sample) {
     gnss_scatter_.forget_samples();
     return TrackerUpdate::kImplausible;
   }
-  gnss_scatter_.add(odometry);
   start_confirmation_.add(odometry);
   arbiter_.add_odometry(odometry.time, odometry.wheel_lean);
-  return tracker_.add_odometry(odometry);
+  const TrackerUpdate update = tracker_.add_odometry(odometry);
+  if (update == TrackerUpdate::kAccepted) gnss_scatter_.add(odometry);
+  return update;
 }
 
 std::optional<GnssSample::Yaw> PoseEstimator::yaw_at(Time time) const {
@@ -57,16 +59,10 @@ std::optional<GnssSample::Yaw> PoseEstimator::yaw_at(Time time) const {
   return GnssSample::Yaw{pose->map_from_vehicle.yaw_rad, std::sqrt(pose->covariance(2, 2))};
 }
 
-GnssSample PoseEstimator::examined(const GnssSample& received) {
-  const auto yaw = yaw_at(received.time);
-  const GnssSample sample = received.antenna ? at_rear_axle(received, yaw) : received;
-  if (!yaw) return sample;
-  gnss_scatter_.add(sample, yaw->yaw_rad);
-  return gnss_scatter_.with_seen_sigma(sample);
-}
-
 TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
-  GnssSample sample = examined(received);
+  const auto yaw = yaw_at(received.time);
+  const GnssSample at_axle = received.antenna ? at_rear_axle(received, yaw) : received;
+  GnssSample sample = gnss_scatter_.with_seen_sigma(at_axle);
   if (!trusted_) sample = with_start_sigma(sample);
   const bool had_pose = tracker_.is_initialised();
   const bool trusted = arbiter_.trusts_gnss();
@@ -77,6 +73,7 @@ TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
     gnss_sigma_ << gnss.position_sigma_m, gnss.position_sigma_m, gnss.yaw_sigma_rad;
   }
   if (!had_pose || !reached_the_gate(update)) return update;
+  if (yaw) gnss_scatter_.add(at_axle, yaw->yaw_rad);
   const bool passes = update == TrackerUpdate::kAccepted;
   std::optional<Eigen::Vector3d> error;
   if (pose_valid_) error = tracker_.gnss_error();

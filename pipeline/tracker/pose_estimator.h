@@ -70,8 +70,6 @@ class PoseEstimator {
 
  private:
   TrackerUpdate add_gnss(const GnssSample& received);
-  /// Moves the position to the rear axle, and raises sigmas that are too small.
-  GnssSample examined(const GnssSample& received);
   std::optional<GnssSample::Yaw> yaw_at(Time time) const;
   void weigh_start(const MatchResult& match, const MatchOutcome& outcome);
   bool gnss_confirms() const;

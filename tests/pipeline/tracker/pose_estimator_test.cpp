@@ -67,6 +67,25 @@ TEST_F(PoseEstimatorTest, ALowScoreMakesTheGateAcceptAMatchAtTheSearchBorder) {
   EXPECT_EQ(estimator_.add_match(at_s(time_s_), prior, match).update, TrackerUpdate::kAccepted);
 }
 
+TEST_F(PoseEstimatorTest, ASampleThatIsNotFiniteDoesNotSpoilTheNextOnes) {
+  GnssSample bad = vehicle_.gnss();
+  bad.time += std::chrono::milliseconds(50);
+  bad.east_m = std::nan("");
+  EXPECT_EQ(estimator_.add(bad), TrackerUpdate::kNotFinite);
+  bad.east_m = 0.0;
+  bad.sigma_east_m = bad.sigma_north_m = 0.0;
+  EXPECT_EQ(estimator_.add(bad), TrackerUpdate::kImplausible);
+  PoseEstimator without_pose{TrackerParameters()};
+  without_pose.add(vehicle_.odometry(time_s_));
+  EXPECT_EQ(without_pose.add(bad), TrackerUpdate::kImplausible);
+  OdometrySample odometry = vehicle_.odometry(time_s_ + 0.01);
+  odometry.yaw_rate_radps = std::nan("");
+  EXPECT_NE(estimator_.add(odometry), TrackerUpdate::kAccepted);
+  for (int i = 0; i < 100; ++i) step();
+  EXPECT_EQ(estimator_.add(vehicle_.gnss()), TrackerUpdate::kAccepted);
+  EXPECT_FALSE(estimator_.verdict().gnss_contradicts);
+}
+
 TEST_F(PoseEstimatorTest, AMatchAtTheBorderContradictsAPoseOfAnotherPlace) {
   const Se2 border{0.0, 0.0, radians(2.0)};
   EXPECT_EQ(match_with(border, 1.0), TrackerUpdate::kGated);
