@@ -77,7 +77,7 @@ void GnssScatter::add(const GnssSample& sample, double yaw_rad) {
     if (pause_s > kLongestPause_s) forget_samples();
   }
   if (known_ == records_.size()) {
-    std::ranges::rotate(records_, records_.begin() + 1);
+    std::rotate(records_.begin(), records_.begin() + 1, records_.end());
     --known_;
   }
   records_[known_++] = {sample, start_from_vehicle_at(sample.time), yaw_rad};
@@ -85,7 +85,9 @@ void GnssScatter::add(const GnssSample& sample, double yaw_rad) {
 }
 
 void GnssScatter::compare_middle() {
-  const auto& [first, middle, last] = records_;
+  const Record& first = records_[0];
+  const Record& middle = records_[1];
+  const Record& last = records_[2];
   const Weights weights =
       weights_of(to_seconds(middle.sample.time - first.sample.time),
                  to_seconds(last.sample.time - middle.sample.time), correlation_s_);
