@@ -23,12 +23,13 @@ constexpr double kTelling = 9.0;
 /// Squared distance of an innovation that no scatter explains: more than 6 standard deviations on
 /// one axis. A single one begins a dispute.
 constexpr double kFarOff = 40.0;
-/// Measurements in a row that must agree with the filter to readmit an excluded voter: one second
-/// of matches, two of GNSS.
+/// An excluded voter counts again after so many measurements in a row that agree with the filter:
+/// one second of matches, two seconds of GNSS.
 constexpr int kMatchesToReadmit = 10;
 constexpr int kGnssToReadmit = 20;
-/// They agree up to this squared distance: 97 % of independent measurements. The gate allows more,
-/// and the covariance grows while a voter is excluded, so a wrong voter would pass the gate again.
+/// A measurement agrees if its squared distance is at most this; 97 % of independent measurements
+/// do. The gate is wider. The covariance grows while a voter is excluded, so a wrong voter could
+/// pass the gate again.
 constexpr double kAgrees = 9.0;
 /// Weight of a new innovation in the drift, and the limit of the drift in its own standard
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
@@ -158,20 +159,18 @@ bool Arbiter::odometry_drifts() const {
 /// Whether at least two of match, GNSS and wheels say that the yaw rate has a bias.
 bool Arbiter::yaw_rate_drifts() const {
   const std::array leans{match_.lean().z(), gnss_.lean().z(), wheel_lean_.value_or(0.0)};
-  const auto agree = [&leans](int voters, double least_lean) {
-    for (const double side : {-1.0, 1.0}) {
-      int leaning = 0;
-      double sum = 0.0;
-      for (const double lean : leans) {
-        if (side * lean <= least_lean) continue;
-        ++leaning;
-        sum += side * lean;
-      }
-      if (leaning >= voters && sum > kSharedLimit * std::sqrt(leaning)) return true;
+  const auto agree_on = [&leans](double side, int voters, double least_lean) {
+    int leaning = 0;
+    double sum = 0.0;
+    for (const double lean : leans) {
+      if (side * lean <= least_lean) continue;
+      ++leaning;
+      sum += side * lean;
     }
-    return false;
+    return leaning >= voters && sum > kSharedLimit * std::sqrt(leaning);
   };
-  return agree(2, kSharedLean) || agree(3, kLeanOfThree);
+  return agree_on(-1.0, 2, kSharedLean) || agree_on(1.0, 2, kSharedLean) ||
+         agree_on(-1.0, 3, kLeanOfThree) || agree_on(1.0, 3, kLeanOfThree);
 }
 
 /// Whether the heading of the match drifts, and dead reckoning is nearer to that of GNSS.
@@ -260,12 +259,13 @@ bool Arbiter::match_sees(size_t axis, Time now) const {
   return match_agrees(now) && seen_at && now - *seen_at <= kMatchLifetime;
 }
 
-/// Whether refused GNSS is wrong: it jumped, or the match sees that the vehicle is not there.
+/// Whether the refused GNSS samples are wrong. They are if GNSS has jumped, or if the match sees
+/// the axis on which GNSS is off.
 bool Arbiter::gnss_refusals_are_denied(Time now) const {
   return match_agrees(now) && (gnss_.jumped || match_sees(gnss_.refused_axis, now));
 }
 
-/// Whether the match sees that GNSS drifts, and does not lean to the same side itself.
+/// Whether the match sees the axis on which GNSS drifts, and does not lean to the same side.
 bool Arbiter::match_denies_drift(size_t axis, Time now) const {
   const auto i = static_cast<Eigen::Index>(axis);
   const double with_gnss = std::copysign(1.0, gnss_.lean()(i)) * match_.lean()(i);

@@ -5,6 +5,9 @@
 
 #include <Eigen/Geometry>
 
+#include "pipeline/tracker/gnss_pose.h"
+#include "pipeline/tracker/motion_model.h"
+
 namespace bevloc {
 namespace {
 
@@ -14,7 +17,8 @@ constexpr double kScatterGain = 0.05;
 constexpr double kMostOfMean = 4.0;
 /// The mean of samples with the right sigma stays below 1 plus this.
 constexpr double kUsualExcess = 0.5;
-/// The sigma is wrong from the first factor on, and until it falls below the second.
+/// The sigma counts as wrong when the factor exceeds the first limit, until it falls below the
+/// second.
 constexpr double kWrongFactor = 2.0;
 constexpr double kFactorNoLongerWrong = 1.5;
 /// Samples with a longer pause between them are not compared.
@@ -34,9 +38,7 @@ struct Weights {
 };
 
 Weights weights_of(double first_s, double last_s, double correlation_s) {
-  const auto alike = [correlation_s](double apart_s) {
-    return correlation_s > 0.0 ? std::exp(-apart_s / correlation_s) : 0.0;
-  };
+  const auto alike = [correlation_s](double apart_s) { return kept_share(apart_s, correlation_s); };
   Weights weights;
   weights.last = first_s / (first_s + last_s);
   weights.first = 1.0 - weights.last;
@@ -91,9 +93,11 @@ void GnssScatter::compare_middle() {
   const Weights weights =
       weights_of(to_seconds(middle.sample.time - first.sample.time),
                  to_seconds(last.sample.time - middle.sample.time), correlation_s_);
-  const auto expected = [this, &weights](double sigma, double motion_sigma) {
-    const double share = correlation_s_ > 0.0 ? model_.gnss_correlated_share : 0.0;
-    return square_of(sigma) * ((1.0 - share) * weights.of_noise + share * weights.of_correlated) +
+  const PoseMeasurement claimed =
+      measurement_from(gnss_pose(middle.sample), model_, correlation_s_ > 0.0);
+  const auto expected = [&claimed, &weights](Eigen::Index axis, double motion_sigma) {
+    return weights.of_noise * claimed.covariance(axis, axis) +
+           weights.of_correlated * square_of(claimed.correlated_sigma(axis)) +
            square_of(motion_sigma);
   };
   // Where the middle sample should lie, seen from one of its neighbours.
@@ -106,9 +110,7 @@ void GnssScatter::compare_middle() {
   const Eigen::Vector2d error = Eigen::Vector2d(middle.sample.east_m, middle.sample.north_m) -
                                 weights.first * position_from(first) -
                                 weights.last * position_from(last);
-  const double sigma_m = std::max(
-      {middle.sample.sigma_east_m, middle.sample.sigma_north_m, model_.gnss_min_position_sigma_m});
-  position_.add(0.5 * error.squaredNorm() / expected(sigma_m, kMotionNoise_m));
+  position_.add(0.5 * error.squaredNorm() / expected(0, kMotionNoise_m));
 
   if (first.sample.yaw && middle.sample.yaw && last.sample.yaw) {
     const auto turn_from = [&middle](const Record& from) {
@@ -116,8 +118,7 @@ void GnssScatter::compare_middle() {
       return wrap_angle(middle.sample.yaw->yaw_rad - from.sample.yaw->yaw_rad - motion_rad);
     };
     const double error_rad = weights.first * turn_from(first) + weights.last * turn_from(last);
-    const double sigma_rad = std::max(middle.sample.yaw->sigma_rad, model_.gnss_min_yaw_sigma_rad);
-    yaw_.add(square_of(error_rad) / expected(sigma_rad, kMotionNoise_rad));
+    yaw_.add(square_of(error_rad) / expected(2, kMotionNoise_rad));
   }
   const double limit = contradicts_ ? kFactorNoLongerWrong : kWrongFactor;
   contradicts_ = std::max(position_.factor(), yaw_.factor()) > limit;

@@ -40,7 +40,7 @@ class GnssScatter {
   /// Whether the sigma is too small by a factor of two or more.
   bool contradicts() const { return contradicts_; }
 
-  /// Begins a new comparison, because the odometry was wrong or the yaw is not known.
+  /// Begins a new comparison, because the odometry between the samples was wrong.
   void forget_samples() { known_ = 0; }
 
  private:

@@ -26,11 +26,6 @@ FilterState::Covariance transition(const MeasuredMotion& motion, double speed_mp
   return f;
 }
 
-/// Share of a correlated error that is left after `amount` of distance or time.
-double kept_share(double amount, double correlation) {
-  return correlation > 0.0 ? std::exp(-amount / correlation) : 0.0;
-}
-
 /// Diagonal of the process noise covariance of the pose and of the odometry errors.
 Eigen::Matrix<double, FilterState::kMatchError, 1> motion_variance(const MeasuredMotion& motion,
                                                                    double distance_m,

@@ -100,6 +100,12 @@ struct ErrorCorrelation {
   bool operator==(const ErrorCorrelation&) const = default;
 };
 
+/// Share of a correlated error that is left after `amount` of distance or time. None if
+/// `correlation`, the distance or time of ErrorCorrelation, is 0.
+inline double kept_share(double amount, double correlation) {
+  return correlation > 0.0 ? std::exp(-amount / correlation) : 0.0;
+}
+
 /// Predicts `state` forward by `duration_s` >= 0 with constant `motion`. A standing vehicle keeps
 /// its match error, so standing still adds no knowledge.
 void predict(const MeasuredMotion& motion, double duration_s, const MotionNoise& noise,

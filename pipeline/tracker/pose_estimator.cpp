@@ -13,8 +13,8 @@ constexpr double kConfirmingAcross = 2.5;
 constexpr double kConfirmingYaw = 3.0;
 /// A GNSS error beyond this refutes the pose: one in 150,000 independent errors per axis.
 constexpr double kRefuting = 4.5;
-/// A larger scale error of the wheels, in standard deviations of what a vehicle has, means that
-/// they slip. The filter would carry it on when they grip again.
+/// The wheels slip if their estimated scale error exceeds so many standard deviations. Without a
+/// new start, the filter would keep this error after the wheels grip again.
 constexpr double kMostScaleSigmas = 5.0;
 /// Refused GNSS samples in a row, without a match, after which the pose starts again.
 constexpr int kRefusalsToRestart = 15;
@@ -24,8 +24,8 @@ constexpr Duration kMatchAbsence = std::chrono::seconds(1);
 /// A GNSS sample older than this says nothing about the pose.
 constexpr Duration kGnssLifetime = std::chrono::seconds(2);
 
-/// Nothing has confirmed a new pose but GNSS, and a receiver may claim to be more exact than it is.
-/// The right match must be able to outweigh it.
+/// Only GNSS supports a new pose, and a receiver may claim to be more exact than it is. With this
+/// sigma, right matches outweigh GNSS.
 GnssSample with_start_sigma(GnssSample sample) {
   for (double* sigma_m : {&sample.sigma_east_m, &sample.sigma_north_m}) {
     if (*sigma_m > 0.0) *sigma_m = std::max(*sigma_m, StartConfirmation::kLeastGnssSigma_m);

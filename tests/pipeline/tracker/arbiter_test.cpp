@@ -87,6 +87,50 @@ TEST_F(ArbiterTest, BlamesGnssThatMatchAndDeadReckoningContradict) {
   EXPECT_FALSE(arbiter_.trusts_gnss());
 }
 
+/// Matches that agree, but see nothing along the road, and GNSS that moves away along it.
+class BlindMatchTest : public ArbiterTest {
+ protected:
+  BlindMatchTest() {
+    run(20, none_, none_);
+    see_nothing_along(10, 0.0);
+  }
+
+  Verdict see_nothing_along(int samples, double gnss_along_m) {
+    PoseInnovation match = innovation(none_);
+    match.covariance(0, 0) = 100.0;
+    Verdict verdict;
+    for (int i = 0; i < samples; ++i) {
+      now_ += milliseconds(100);
+      arbiter_.add_match(now_, match, true);
+      const PoseInnovation gnss = innovation({gnss_along_m, 0.0, 0.0});
+      arbiter_.add_gnss(now_, gnss, gnss.squared_distance < kGate, none_);
+      verdict = arbiter_.judge(now_, PoseStanding::kValid);
+    }
+    return verdict;
+  }
+};
+
+TEST_F(BlindMatchTest, DoesNotExcludeGnssThatIsRefusedAlongTheRoad) {
+  see_nothing_along(3, 1.0);
+  const Verdict verdict = see_nothing_along(6, 1.4);
+  EXPECT_TRUE(verdict.undecided);
+  EXPECT_TRUE(arbiter_.trusts_gnss());
+  ASSERT_TRUE(arbiter_.open_dispute());
+  EXPECT_GT(arbiter_.open_dispute()->x(), 1.0) << "the pose may be where GNSS says";
+}
+
+TEST_F(BlindMatchTest, ExcludesGnssThatJumpsAlongTheRoad) {
+  EXPECT_TRUE(see_nothing_along(6, 20.0).gnss_contradicts);
+  EXPECT_FALSE(arbiter_.open_dispute());
+}
+
+TEST_F(BlindMatchTest, DoesNotExcludeGnssThatLeansAlongTheRoad) {
+  see_nothing_along(60, 0.5);
+  EXPECT_TRUE(arbiter_.trusts_gnss());
+  run(60, none_, {0.5, 0.0, 0.0});
+  EXPECT_FALSE(arbiter_.trusts_gnss()) << "now the match sees along the road";
+}
+
 TEST_F(ArbiterTest, DoesNotDecideBeforeThePoseWasValid) {
   for (int i = 0; i < 5; ++i) {
     now_ += milliseconds(100);

@@ -67,7 +67,7 @@ TEST_F(PoseEstimatorTest, ALowScoreMakesTheGateAcceptAMatchAtTheSearchBorder) {
   EXPECT_EQ(estimator_.add_match(at_s(time_s_), prior, match).update, TrackerUpdate::kAccepted);
 }
 
-TEST_F(PoseEstimatorTest, ASampleThatIsNotFiniteDoesNotSpoilTheNextOnes) {
+TEST_F(PoseEstimatorTest, InvalidSamplesDoNotAffectTheNextOnes) {
   GnssSample bad = vehicle_.gnss();
   bad.time += std::chrono::milliseconds(50);
   bad.east_m = std::nan("");
