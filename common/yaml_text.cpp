@@ -1,5 +1,6 @@
 #include "common/yaml_text.h"
 
+#include <optional>
 #include <sstream>
 
 #include <yaml-cpp/eventhandler.h>
@@ -7,41 +8,71 @@
 namespace bevloc {
 namespace {
 
-/// Takes a document apart and keeps nothing of it.
-class IgnoringHandler : public YAML::EventHandler {
+/// Notes where a document and its content begin, and keeps nothing else of it.
+class PlaceHandler : public YAML::EventHandler {
+ public:
+  /// Position of the document in the text, in characters.
+  int start() const { return start_; }
+  /// From 1; nothing for an empty document.
+  std::optional<int> content_line() const { return content_line_; }
+
+ private:
   using Mark = YAML::Mark;
   using Text = std::string;
   using Style = YAML::EmitterStyle::value;
-  void OnDocumentStart(const Mark&) override {}
+  void OnDocumentStart(const Mark& mark) override {
+    start_ = mark.pos;
+    content_line_.reset();
+  }
   void OnDocumentEnd() override {}
   void OnNull(const Mark&, YAML::anchor_t) override {}
-  void OnAlias(const Mark&, YAML::anchor_t) override {}
-  void OnScalar(const Mark&, const Text&, YAML::anchor_t, const Text&) override {}
-  void OnSequenceStart(const Mark&, const Text&, YAML::anchor_t, Style) override {}
+  void OnAlias(const Mark& mark, YAML::anchor_t) override { note(mark); }
+  void OnScalar(const Mark& mark, const Text&, YAML::anchor_t, const Text&) override { note(mark); }
+  void OnSequenceStart(const Mark& mark, const Text&, YAML::anchor_t, Style) override {
+    note(mark);
+  }
   void OnSequenceEnd() override {}
-  void OnMapStart(const Mark&, const Text&, YAML::anchor_t, Style) override {}
+  void OnMapStart(const Mark& mark, const Text&, YAML::anchor_t, Style) override { note(mark); }
   void OnMapEnd() override {}
+
+  void note(const Mark& mark) {
+    if (!content_line_) content_line_ = mark.line + 1;
+  }
+
+  int start_ = 0;
+  std::optional<int> content_line_;
 };
 
-/// The number of documents in a text, up to 2. YAML::LoadAll() reads documents without end from
-/// some texts, such as a single comma.
-int count_documents(const std::string& text) {
-  constexpr int kEnough = 2;
+/// Fails unless the text holds one document; empty ones may follow.
+Status check_documents(const std::string& text, const std::string& name) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
-  IgnoringHandler handler;
-  int count = 0;
-  while (count < kEnough && parser.HandleNextDocument(handler)) ++count;
-  return count;
+  PlaceHandler place;
+  if (!parser.HandleNextDocument(place)) {
+    return fail("{}: found 0 YAML documents, wanted one", name);
+  }
+  for (int last = place.start(); parser.HandleNextDocument(place); last = place.start()) {
+    if (place.content_line()) {
+      return fail(
+          "{}:{}: found a second document, wanted one in each file; split the file at its "
+          "`---`",
+          name, *place.content_line());
+    }
+    // From some texts, such as a single comma, the parser reads the same empty document forever.
+    if (place.start() == last) {
+      return fail("{}: found text that is not YAML, wanted YAML", name);
+    }
+  }
+  return {};
 }
 
 }  // namespace
 
 Result<YAML::Node> parse_document(const std::string& text, const std::string& name) {
   try {
-    const int documents = count_documents(text);
-    if (documents > 1) return fail("{}: found 2 YAML documents or more, wanted one", name);
-    if (documents < 1) return fail("{}: found 0 YAML documents, wanted one", name);
+    if (Status checked = check_documents(text, name); !checked) {
+      return tl::unexpected(checked.error());
+    }
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     return fail("{}:{}: found text that is not YAML ({}), wanted YAML", name, error.mark.line + 1,

@@ -1,4 +1,4 @@
-// Parses a text that holds exactly one YAML document.
+// Parses a text that holds one YAML document.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace bevloc {
 
-/// Fails if the text is not YAML or holds no document or several. Messages show `name` as the file.
+/// Fails if the text is not YAML, holds no document or several. Messages show `name` as the file.
+/// A `---` at the end of a file, as `rostopic echo` writes it, begins no other document.
 Result<YAML::Node> parse_document(const std::string& text, const std::string& name);
 
 }  // namespace bevloc

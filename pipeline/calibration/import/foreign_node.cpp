@@ -8,6 +8,8 @@
 #include <Eigen/LU>
 #include <fmt/format.h>
 
+#include "common/yaml_text.h"
+
 namespace bevloc::calibration_import {
 namespace {
 
@@ -15,16 +17,6 @@ std::string described(const YAML::Node& node) {
   if (node.IsScalar()) return fmt::format("\"{}\"", node.Scalar().substr(0, 60));
   if (node.IsSequence()) return fmt::format("a list of {}", node.size());
   return node.IsMap() ? "a mapping" : "nothing";
-}
-
-/// The first document. A `---` at the end of a file, as `rostopic echo` writes it, begins no other.
-YAML::Node only_document(const std::vector<YAML::Node>& documents, std::string_view name) {
-  for (size_t i = 1; i < documents.size(); ++i) {
-    if (documents[i].IsNull()) continue;
-    refuse(fmt::format("{}:{}", name, documents[i].Mark().line + 1), "a second document",
-           "one in each file; split the file at its `---`");
-  }
-  return documents.empty() ? YAML::Node() : documents.front();
 }
 
 }  // namespace
@@ -45,15 +37,12 @@ double number_from(const std::string& text, std::string_view place) {
 }
 
 ForeignNode ForeignNode::parse(const std::string& text, const std::string& name) {
-  try {
-    std::string yaml = text;
-    // OpenCV's header lacks the space that YAML demands. The line stays, so that numbers fit.
-    if (yaml.starts_with("%YAML:")) yaml[0] = '#';
-    return {only_document(YAML::LoadAll(yaml), name), name, ""};
-  } catch (const YAML::Exception& error) {
-    throw ImportError{
-        fmt::format("{}:{}: found {}, wanted YAML or JSON", name, error.mark.line + 1, error.msg)};
-  }
+  std::string yaml = text;
+  // OpenCV's header lacks the space that YAML demands. The line stays, so that numbers fit.
+  if (yaml.starts_with("%YAML:")) yaml[0] = '#';
+  Result<YAML::Node> node = parse_document(yaml, name);
+  if (!node) throw ImportError{std::move(node.error().message)};
+  return {*node, name, ""};
 }
 
 ForeignNode::ForeignNode(const YAML::Node& node, std::string name, std::string path)

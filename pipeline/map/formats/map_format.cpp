@@ -38,11 +38,9 @@ bool is_json(std::string_view bytes) {
 bool is_xml_of(std::string_view bytes, std::string_view element) {
   for (std::string_view rest = without_lead(bytes); rest.starts_with('<');
        rest = without_lead(rest)) {
-    const bool is_comment = rest.starts_with("<!--");
-    if (!is_comment && rest[1] != '?' && rest[1] != '!') {
-      return rest.substr(1).starts_with(element);
-    }
-    const std::string_view end = is_comment ? "-->" : ">";
+    const bool is_declaration = rest.starts_with("<?") || rest.starts_with("<!");
+    if (!is_declaration) return rest.substr(1).starts_with(element);
+    const std::string_view end = rest.starts_with("<!--") ? "-->" : ">";
     const size_t at = rest.find(end);
     if (at == std::string_view::npos) return false;
     rest.remove_prefix(at + end.size());
