@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <Eigen/Geometry>
-
 namespace bevloc {
 namespace {
 
@@ -52,10 +50,7 @@ Eigen::Vector3d pose_sigma(const MatchResult& result, const MeasurementModel& mo
 PoseMeasurement measurement_from(const Se2& prior, const MatchResult& result,
                                  const MeasurementModel& model,
                                  const Eigen::Array<bool, 3, 1>& correlated) {
-  // The covariance is rotated from the frame of the prior into that of the corrected pose.
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-result.correction.yaw_rad).toRotationMatrix();
-  const Eigen::Matrix3d covariance = turn * covariance_of_match(result) * turn.transpose();
+  const Eigen::Matrix3d covariance = covariance_of_match(result);
   const Eigen::Vector3d used = correlated.cast<double>();
   const Eigen::Vector3d share = model.match_correlated_share.cwiseProduct(used);
   const Eigen::Vector3d noise_scale = (Eigen::Vector3d::Ones() - share).cwiseSqrt();
@@ -65,6 +60,7 @@ PoseMeasurement measurement_from(const Se2& prior, const MatchResult& result,
   PoseMeasurement measurement;
   measurement.source = PoseSource::kMatch;
   measurement.map_from_vehicle = prior * result.correction;
+  measurement.axes_yaw_rad = prior.yaw_rad;
   measurement.covariance = noise_scale.asDiagonal() * covariance * noise_scale.asDiagonal();
   measurement.uncommon_variance = alike - common;
   measurement.covariance.diagonal() += measurement.uncommon_variance;

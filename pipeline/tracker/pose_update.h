@@ -14,16 +14,18 @@ enum class PoseSource : uint8_t { kMatch, kGnss };
 struct PoseMeasurement {
   PoseSource source = PoseSource::kMatch;
   Se2 map_from_vehicle;
-  /// Of the independent noise, in the vehicle frame of the measured pose: (x m, y m, yaw rad).
+  /// Direction of the first axis (x) of all errors below, in the map frame: 0 for GNSS, for a match
+  /// the yaw of its prior, because the solver searched along and across the prior.
+  double axes_yaw_rad = 0.0;
+  /// Of the independent noise: (x m, y m, yaw rad).
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  /// Standard deviations of the correlated part: for a match in the vehicle frame (x, y, yaw), for
-  /// GNSS in the map frame (east, north, yaw), the first two equal.
+  /// Standard deviations of the correlated part.
   Eigen::Vector3d correlated_sigma = Eigen::Vector3d::Zero();
   /// Part of the diagonal of `covariance`: the correlated variance beyond
   /// MeasurementModel::match_common_sigma, which only uncertain matches have.
   Eigen::Vector3d uncommon_variance = Eigen::Vector3d::Zero();
-  /// Variance that update() adds to the noise of a match, in the vehicle frame of the measured
-  /// pose (MatchRepetition). The gate does not add it.
+  /// Variance that update() adds to the noise of a match (MatchRepetition). The gate does not add
+  /// it.
   Eigen::Vector3d repeated_variance = Eigen::Vector3d::Zero();
   /// Whether the correlated error is independent of that of the measurements before. update() then
   /// calls renew_match_error().
