@@ -14,8 +14,8 @@ enum class PoseSource : uint8_t { kMatch, kGnss };
 struct PoseMeasurement {
   PoseSource source = PoseSource::kMatch;
   Se2 map_from_vehicle;
-  /// Direction of the first axis (x) of all errors below, in the map frame: 0 for GNSS, for a match
-  /// the yaw of its prior, because the solver searched along and across the prior.
+  /// Direction of the x axis of all errors below, in the map frame. It is 0 for GNSS. For a match
+  /// it is the yaw of the prior, because the solver searches along and across the prior.
   double axes_yaw_rad = 0.0;
   /// Of the independent noise: (x m, y m, yaw rad).
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
