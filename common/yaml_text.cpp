@@ -60,7 +60,7 @@ Status check_documents(const std::string& text, const std::string& name) {
     }
     // From some texts, such as a single comma, the parser reads the same empty document forever.
     if (place.start() == last) {
-      return fail("{}: found text that is not YAML, wanted YAML", name);
+      return fail("{}: found text that is not YAML, wanted YAML or JSON", name);
     }
   }
   return {};
@@ -75,8 +75,8 @@ Result<YAML::Node> parse_document(const std::string& text, const std::string& na
     }
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    return fail("{}:{}: found text that is not YAML ({}), wanted YAML", name, error.mark.line + 1,
-                error.msg);
+    return fail("{}:{}: found text that is not YAML ({}), wanted YAML or JSON", name,
+                error.mark.line + 1, error.msg);
   }
 }
 

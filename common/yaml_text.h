@@ -9,8 +9,9 @@
 
 namespace bevloc {
 
-/// Fails if the text is not YAML, holds no document or several. Messages show `name` as the file.
-/// A `---` at the end of a file, as `rostopic echo` writes it, begins no other document.
+/// Fails if the text is not YAML, holds no document, or holds several. Empty documents may follow
+/// the first: `rostopic echo` ends a file with `---`. Messages show `name` as the file. JSON is
+/// YAML.
 Result<YAML::Node> parse_document(const std::string& text, const std::string& name);
 
 }  // namespace bevloc

@@ -13,8 +13,8 @@
 
 namespace bevloc {
 
-/// The judgement of the voters. At most one of the first three is set by the arbiter; PoseEstimator
-/// also sets `gnss_contradicts` while GnssScatter::contradicts().
+/// Says which voters are wrong. The arbiter sets at most one of the first three. PoseEstimator also
+/// sets `gnss_contradicts` while GnssScatter::contradicts() holds.
 struct Verdict {
   bool match_contradicts = false;     ///< GNSS and dead reckoning agree, the match does not
   bool gnss_contradicts = false;      ///< match and dead reckoning agree, GNSS does not

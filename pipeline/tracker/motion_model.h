@@ -100,8 +100,9 @@ struct ErrorCorrelation {
   bool operator==(const ErrorCorrelation&) const = default;
 };
 
-/// Share of a correlated error that is left after `amount` of distance or time. None if
-/// `correlation`, the distance or time of ErrorCorrelation, is 0.
+/// Returns the share of a correlated error that is left after `amount` of distance or time. The
+/// error decays by a factor of e over `correlation` (ErrorCorrelation); if that is 0, nothing is
+/// left.
 inline double kept_share(double amount, double correlation) {
   return correlation > 0.0 ? std::exp(-amount / correlation) : 0.0;
 }

@@ -21,7 +21,6 @@ Eigen::Matrix3d turn_by(double yaw_rad) {
 struct Linearised {
   Eigen::Vector3d error;  ///< measured pose minus expected pose, in the estimate's vehicle frame
   Jacobian jacobian;
-  Eigen::Matrix3d axes;  ///< turns errors from the measurement's axes into that frame
   Eigen::Matrix3d noise;
 };
 
@@ -29,16 +28,17 @@ Linearised linearise(const FilterState& state, const PoseMeasurement& measuremen
   const Se2 difference = correction_between(state.map_from_vehicle, measurement.map_from_vehicle);
   const bool is_match = measurement.source == PoseSource::kMatch;
   const int correlated = is_match ? FilterState::kMatchError : FilterState::kGnssError;
+  // Turns errors from the axes of the measurement into the vehicle frame of the estimate.
+  const Eigen::Matrix3d axes = turn_by(measurement.axes_yaw_rad - state.map_from_vehicle.yaw_rad);
+  const Eigen::Matrix3d scale = axes * measurement.correlated_sigma.asDiagonal();
 
   Linearised result;
-  result.axes = turn_by(measurement.axes_yaw_rad - state.map_from_vehicle.yaw_rad);
-  const Eigen::Matrix3d scale = result.axes * measurement.correlated_sigma.asDiagonal();
   result.jacobian.setZero();
   result.jacobian.leftCols<3>().setIdentity();
   result.jacobian.middleCols<3>(correlated) = scale;
   result.error = Eigen::Vector3d(difference.x_m, difference.y_m, difference.yaw_rad) -
                  scale * (is_match ? state.match_error : state.gnss_error);
-  result.noise = result.axes * measurement.covariance * result.axes.transpose();
+  result.noise = axes * measurement.covariance * axes.transpose();
   return result;
 }
 
@@ -94,9 +94,9 @@ void renew_match_error(FilterState& state) {
 
 void update(const PoseMeasurement& measurement, FilterState& state) {
   if (measurement.has_new_error) renew_match_error(state);
-  Linearised linearised = linearise(state, measurement);
-  linearised.noise +=
-      linearised.axes * measurement.repeated_variance.asDiagonal() * linearised.axes.transpose();
+  PoseMeasurement repeated = measurement;
+  repeated.covariance.diagonal() += measurement.repeated_variance;
+  const Linearised linearised = linearise(state, repeated);
   const Jacobian& h = linearised.jacobian;
   const Eigen::Matrix<double, FilterState::kSize, 3> gain =
       expected_covariance(state, linearised).ldlt().solve(h * state.covariance).transpose();

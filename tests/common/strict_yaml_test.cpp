@@ -191,6 +191,10 @@ TEST(StrictYaml, RefusesTextThatNeverEnds) {
   }
 }
 
+TEST(StrictYaml, AllowsAnEmptyDocumentAtTheEnd) {
+  EXPECT_EQ(parsed("a: 1\n---\n").require<int>("a"), 1);
+}
+
 TEST(StrictYaml, RefusesWhatIsNotOneMapping) {
   EXPECT_EQ(parse_error("- a\n- b\n"), "t.yaml:1: found a list of 2, wanted a mapping");
   EXPECT_THAT(parse_error(""), HasSubstr("found 0 YAML documents"));
