@@ -11,11 +11,18 @@ constexpr int kLeastFramesets = 20;
 struct Round {
   double search_rad;   ///< largest distance between predicted and found paint
   double sigma_scale;  ///< of where paint is found (RefinementProblem::solve)
+  /// Whether paint is searched where the estimated error of each frameset's pose and body puts it.
+  bool follows_body;
 };
 /// A wide search also finds the paint of wrong lines. With a large sigma they change the estimate
-/// less.
-constexpr std::array<Round, 5> kRounds{
-    {{0.04, 8.0}, {0.02, 4.0}, {0.014, 2.0}, {0.01, 1.0}, {0.01, 1.0}}};
+/// less. The body tilts by more than a narrow search reaches, so the last rounds follow it. The
+/// first ones do not, because they do not yet tell the tilt from errors of the cameras.
+constexpr std::array<Round, 6> kRounds{{{0.04, 8.0, false},
+                                        {0.02, 4.0, false},
+                                        {0.014, 2.0, false},
+                                        {0.011, 1.0, false},
+                                        {0.01, 1.0, true},
+                                        {0.01, 0.5, true}}};
 
 class RigRefiner {
  public:
@@ -28,13 +35,13 @@ class RigRefiner {
         problem_(rig, recording.reference(), options) {}
 
   Result<RigRefinement> run() {
-    for (const auto& [search_rad, sigma_scale] : kRounds) {
-      if (Status read = look(search_rad); !read) return tl::unexpected(read.error());
+    for (const Round& round : kRounds) {
+      if (Status read = look(round); !read) return tl::unexpected(read.error());
       if (framesets_ < kLeastFramesets) {
         return fail("recording: found {} framesets apart with a reference pose, wanted {} or more",
                     framesets_, kLeastFramesets);
       }
-      problem_.solve(search_rad, sigma_scale);
+      problem_.solve(round.search_rad, round.sigma_scale);
     }
     problem_.finish(kRounds.back().search_rad);
     return problem_.result(kRounds.back().search_rad);
@@ -42,7 +49,7 @@ class RigRefiner {
 
  private:
   /// Reads all framesets once and replaces the problem's sightings.
-  Status look(double search_rad) {
+  Status look(const Round& round) {
     problem_.clear_sightings();
     recording_.rewind();
     framesets_ = 0;
@@ -56,7 +63,7 @@ class RigRefiner {
       const auto pose = recording_.reference().at(pictures.front().time);
       if (!pose || (last && is_near(*last, *pose))) continue;
       last = pose;
-      look_at(pictures, *pose, search_rad);
+      look_at(pictures, *pose, round);
       ++framesets_;
     }
   }
@@ -66,16 +73,18 @@ class RigRefiner {
     return between.translation().norm() < 1.5 && std::abs(between.yaw_rad) < 2.0 * kPerDegree;
   }
 
-  void look_at(const std::vector<RecordedPicture>& pictures, const Se2& pose, double search_rad) {
+  void look_at(const std::vector<RecordedPicture>& pictures, const Se2& pose, const Round& round) {
     find_paint_points(map_, pose, kPaintReach_m, points_);
+    const Se3 body = round.follows_body ? problem_.body_error(framesets_) : Se3{};
     for (const RecordedPicture& picture : pictures) {
       const CameraAdjustment& change = problem_.change(picture.camera);
       const auto exposed =
           recording_.reference().at(picture.time + from_seconds(change[kTimeOffset]));
       if (!exposed) continue;
-      const CameraModel camera = adjusted(rig_.cameras[picture.camera], change);
+      CameraModel camera = adjusted(rig_.cameras[picture.camera], change);
+      camera.vehicle_from_camera = body.inverse() * camera.vehicle_from_camera;
       PaintSearch search;
-      search.reach_px = search_rad * camera.intrinsics.fx_px;
+      search.reach_px = round.search_rad * camera.intrinsics.fx_px;
       problem_.add(framesets_, picture.camera, picture.time,
                    find_paint(picture.image, camera, exposed->inverse(), points_, search));
     }

@@ -60,6 +60,12 @@ void RefinementProblem::add(int frame, int camera, Time time,
   views_.push_back({frame, camera, time, std::move(sightings)});
 }
 
+Se3 RefinementProblem::body_error(int frame) const {
+  if (frame >= static_cast<int>(estimate_.frames.size())) return {};
+  const FrameVector& error = estimate_.frames[static_cast<size_t>(frame)].error;
+  return {rotation_by(error.head<3>()), error.tail<3>()};
+}
+
 /// In the vehicle frame, from the reference positions; 0 where they are not known.
 Eigen::Vector2d RefinementProblem::acceleration_at(Time time) const {
   constexpr Duration kAround = std::chrono::milliseconds(500);
@@ -250,7 +256,9 @@ void RefinementProblem::step_alone(int camera, const Sums& sums) {
 }
 
 void RefinementProblem::finish(double gate_rad) {
-  while (leave_out_doubtful(gate_rad)) solve(gate_rad);
+  do {
+    solve(gate_rad);
+  } while (leave_out_doubtful(gate_rad));
   find_unobservable(gate_rad);
   keep_unobservable(gate_rad);
 }

@@ -80,11 +80,16 @@ class RefinementProblem {
   /// times that of the options: a large one for a rig that may be far off.
   void solve(double gate_rad, double sigma_scale = 1.0);
 
-  /// Leaves out doubtful cameras, solves without them, and sets the change of unobservable
-  /// parameters to 0.
+  /// Solves with the sigma of the options, leaves out doubtful cameras, and sets the change of
+  /// unobservable parameters to 0.
   void finish(double gate_rad);
 
   const CameraAdjustment& change(int camera) const { return estimate_.changes[camera]; }
+
+  /// `body_from_vehicle`: moves points from where the reference pose has them to where the body of
+  /// a frameset has them. The identity if the frameset was not added yet.
+  Se3 body_error(int frame) const;
+
   RigRefinement result(double gate_rad) const;
 
  private:

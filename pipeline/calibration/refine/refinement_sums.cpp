@@ -63,9 +63,8 @@ void RefinementProblem::visit(const View& view, double gate_rad, const Visitor& 
   const auto before = reference_.at(time - kAround);
   const auto after = reference_.at(time + kAround);
   if (!pose || !before || !after) return;
-  const FrameVector& frame = estimate_.frames[static_cast<size_t>(view.frame)].error;
   const Eigen::Matrix2d vehicle_from_map = Eigen::Rotation2Dd(-pose->yaw_rad).toRotationMatrix();
-  const Se3 body{rotation_by(frame.head<3>()), frame.tail<3>()};
+  const Se3 body = body_error(view.frame);
   const auto in_vehicle = [](const Se2& map_from_vehicle, const Eigen::Vector2d& point) {
     const Eigen::Vector2d at = map_from_vehicle.inverse() * point;
     return Eigen::Vector3d(at.x(), at.y(), 0.0);

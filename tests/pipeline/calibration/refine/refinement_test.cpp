@@ -200,6 +200,18 @@ TEST(Refinement, TakesWhatAllCamerasShareForTheBody) {
     }
     EXPECT_LT(result.cameras[c].after_px, 0.5);
   }
+  for (const int frame : {20, 21}) {
+    const Eigen::Matrix3d pitched_back = rotation_by({0.0, radians(frame == 20 ? -0.4 : 0.4), 0.0});
+    EXPECT_TRUE(problem.body_error(frame).rotation.isApprox(pitched_back, radians(0.1))) << frame;
+  }
+}
+
+TEST(Refinement, KnowsNoBodyErrorOfAFramesetThatWasNotAdded) {
+  const Rig rig = demo_rig();
+  const Drive drive(true, 4.0);
+  const RefinementProblem problem(rig, drive.reference, {});
+  EXPECT_TRUE(problem.body_error(0).rotation.isIdentity());
+  EXPECT_TRUE(problem.body_error(0).translation_m.isZero());
 }
 
 TEST(Refinement, RefusesWhatAStraightRoadCannotShow) {
