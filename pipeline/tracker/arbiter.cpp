@@ -23,13 +23,13 @@ constexpr double kTelling = 9.0;
 /// Squared distance of an innovation that no scatter explains: more than 6 standard deviations on
 /// one axis. A single one begins a dispute.
 constexpr double kFarOff = 40.0;
-/// An excluded voter counts again after this many of its measurements in a row have agreed with the
+/// An excluded voter counts again once this many of its measurements in a row agree with the
 /// filter. That takes one second for matches and two seconds for GNSS.
 constexpr int kMatchesToReadmit = 10;
 constexpr int kGnssToReadmit = 20;
-/// A measurement agrees with the filter if its squared distance is at most this limit, which 97 %
-/// of independent measurements keep. The limit of the gate is larger. It would not do here, because
-/// the covariance grows while a voter is excluded, and a wrong voter could then pass the gate.
+/// A measurement agrees with the filter if its squared distance is at most this limit. 97 % of
+/// independent measurements agree. The limit is smaller than that of the gate, because the
+/// covariance grows while a voter is excluded, and a wrong voter could then pass the gate.
 constexpr double kAgrees = 9.0;
 /// Weight of a new innovation in the drift, and the limit of the drift in its own standard
 /// deviations. The average of independent innovations has a variance of gain / (2 - gain).
@@ -259,8 +259,8 @@ bool Arbiter::match_sees(size_t axis, Time now) const {
   return match_agrees(now) && seen_at && now - *seen_at <= kMatchLifetime;
 }
 
-/// Whether the refused GNSS samples are wrong. They are wrong if the match agrees with the filter,
-/// and if GNSS has jumped or the match sees the axis on which GNSS is off.
+/// Returns whether the refused GNSS samples are wrong. The match must agree with the filter. In
+/// addition, either GNSS has jumped, or the match sees the axis on which GNSS is off.
 bool Arbiter::gnss_refusals_are_denied(Time now) const {
   return match_agrees(now) && (gnss_.jumped || match_sees(gnss_.refused_axis, now));
 }

@@ -13,8 +13,8 @@
 
 namespace bevloc {
 
-/// Says which voters are wrong. The arbiter sets at most one of the first three. PoseEstimator also
-/// sets `gnss_contradicts` while GnssScatter::contradicts() holds.
+/// Says which voters are wrong. The arbiter sets at most one of the first three fields.
+/// PoseEstimator also sets `gnss_contradicts` while GnssScatter::contradicts() returns true.
 struct Verdict {
   bool match_contradicts = false;     ///< GNSS and dead reckoning agree, the match does not
   bool gnss_contradicts = false;      ///< match and dead reckoning agree, GNSS does not

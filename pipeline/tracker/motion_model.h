@@ -100,9 +100,9 @@ struct ErrorCorrelation {
   bool operator==(const ErrorCorrelation&) const = default;
 };
 
-/// Returns the share of a correlated error that is left after `amount` of distance or time. The
-/// error decays by a factor of e over `correlation` (ErrorCorrelation); if that is 0, nothing is
-/// left.
+/// Returns the share of a correlated error that is left after a distance or time of `amount`. The
+/// error decays by a factor of e over `correlation`, the distance or time of ErrorCorrelation. With
+/// a correlation of 0, the share is 0.
 inline double kept_share(double amount, double correlation) {
   return correlation > 0.0 ? std::exp(-amount / correlation) : 0.0;
 }

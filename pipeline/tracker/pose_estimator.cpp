@@ -13,9 +13,9 @@ constexpr double kConfirmingAcross = 2.5;
 constexpr double kConfirmingYaw = 3.0;
 /// A GNSS error beyond this refutes the pose: one in 150,000 independent errors per axis.
 constexpr double kRefuting = 4.5;
-/// If the estimated scale error of the wheels exceeds this many standard deviations, the wheels
-/// slip and the pose begins again. Otherwise the filter would keep this error after the wheels grip
-/// again.
+/// The pose starts again if the estimated scale error of the wheels exceeds this many standard
+/// deviations, because the wheels then slip. Without a new start, the filter would keep the error
+/// after the wheels grip again.
 constexpr double kMostScaleSigmas = 5.0;
 /// Refused GNSS samples in a row, without a match, after which the pose starts again.
 constexpr int kRefusalsToRestart = 15;

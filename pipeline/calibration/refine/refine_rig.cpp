@@ -75,14 +75,15 @@ class RigRefiner {
 
   void look_at(const std::vector<RecordedPicture>& pictures, const Se2& pose, const Round& round) {
     find_paint_points(map_, pose, kPaintReach_m, points_);
-    const Se3 body = round.follows_body ? problem_.body_error(framesets_) : Se3{};
+    const Se3 vehicle_from_body =
+        round.follows_body ? problem_.body_from_vehicle(framesets_).inverse() : Se3{};
     for (const RecordedPicture& picture : pictures) {
       const CameraAdjustment& change = problem_.change(picture.camera);
       const auto exposed =
           recording_.reference().at(picture.time + from_seconds(change[kTimeOffset]));
       if (!exposed) continue;
       CameraModel camera = adjusted(rig_.cameras[picture.camera], change);
-      camera.vehicle_from_camera = body.inverse() * camera.vehicle_from_camera;
+      camera.vehicle_from_camera = vehicle_from_body * camera.vehicle_from_camera;
       PaintSearch search;
       search.reach_px = round.search_rad * camera.intrinsics.fx_px;
       problem_.add(framesets_, picture.camera, picture.time,

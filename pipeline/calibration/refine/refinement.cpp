@@ -60,7 +60,7 @@ void RefinementProblem::add(int frame, int camera, Time time,
   views_.push_back({frame, camera, time, std::move(sightings)});
 }
 
-Se3 RefinementProblem::body_error(int frame) const {
+Se3 RefinementProblem::body_from_vehicle(int frame) const {
   if (frame >= static_cast<int>(estimate_.frames.size())) return {};
   const FrameVector& error = estimate_.frames[static_cast<size_t>(frame)].error;
   return {rotation_by(error.head<3>()), error.tail<3>()};

@@ -86,9 +86,9 @@ class RefinementProblem {
 
   const CameraAdjustment& change(int camera) const { return estimate_.changes[camera]; }
 
-  /// `body_from_vehicle`: moves points from where the reference pose has them to where the body of
-  /// a frameset has them. The identity if the frameset was not added yet.
-  Se3 body_error(int frame) const;
+  /// From the vehicle frame of a frameset's reference pose to that of its tilted body, as
+  /// estimated. The identity if the frameset was not added yet.
+  Se3 body_from_vehicle(int frame) const;
 
   RigRefinement result(double gate_rad) const;
 

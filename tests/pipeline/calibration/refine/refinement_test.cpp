@@ -202,16 +202,17 @@ TEST(Refinement, TakesWhatAllCamerasShareForTheBody) {
   }
   for (const int frame : {20, 21}) {
     const Eigen::Matrix3d pitched_back = rotation_by({0.0, radians(frame == 20 ? -0.4 : 0.4), 0.0});
-    EXPECT_TRUE(problem.body_error(frame).rotation.isApprox(pitched_back, radians(0.1))) << frame;
+    EXPECT_TRUE(problem.body_from_vehicle(frame).rotation.isApprox(pitched_back, radians(0.1)))
+        << frame;
   }
 }
 
-TEST(Refinement, KnowsNoBodyErrorOfAFramesetThatWasNotAdded) {
+TEST(Refinement, KnowsNoTiltOfAFramesetThatWasNotAdded) {
   const Rig rig = demo_rig();
   const Drive drive(true, 4.0);
   const RefinementProblem problem(rig, drive.reference, {});
-  EXPECT_TRUE(problem.body_error(0).rotation.isIdentity());
-  EXPECT_TRUE(problem.body_error(0).translation_m.isZero());
+  EXPECT_TRUE(problem.body_from_vehicle(0).rotation.isIdentity());
+  EXPECT_TRUE(problem.body_from_vehicle(0).translation_m.isZero());
 }
 
 TEST(Refinement, RefusesWhatAStraightRoadCannotShow) {
