@@ -14,8 +14,11 @@ constexpr double kStep_px = 0.5;  // between two samples of a profile
 constexpr double kThinnest_px = 1.0;
 constexpr double kPaint_m = 0.12;
 constexpr double kNarrowest_m = 0.06;
-constexpr double kWidest_m = 0.35;
-constexpr double kBlur_px = 1.5;     // that a stripe may look wider than it is
+constexpr double kWidest_m = 0.30;
+constexpr double kBlur_px = 1.5;  // of the edges of a stripe
+/// The two sides of a stripe differ at most by this share of its contrast. The road is equally dark
+/// on both sides of a line. A bright kerb has the road on one side only.
+constexpr double kSidesDiffer = 0.4;
 constexpr float kLeastSlope = 2.5F;  // grey levels per pixel
 constexpr float kOverNoise = 4.0F;
 constexpr float kWeakest = 0.5F;  // of the strongest candidate
@@ -95,7 +98,21 @@ class ProfileReader {
 
   const std::vector<Edge>& edges() const { return edges_; }
 
+  /// The mean grey level between two offsets.
+  float level(double from_px, double to_px) const {
+    const size_t first = index_of(from_px);
+    const size_t last = std::max(first, index_of(to_px));
+    float sum = 0.0F;
+    for (size_t i = first; i <= last; ++i) sum += profile_[i];
+    return sum / static_cast<float>(last - first + 1);
+  }
+
  private:
+  size_t index_of(double offset_px) const {
+    const auto index = std::lround(offset_px / kStep_px) + half_ + 3;
+    return static_cast<size_t>(std::clamp(index, 0L, static_cast<long>(profile_.size()) - 1));
+  }
+
   /// The slope over two steps of the smoothed profile, and its local extrema.
   void find_edges() {
     slopes_.clear();
@@ -139,16 +156,31 @@ void keep_strongest(std::vector<Edge>& found, double reach_px, PaintSighting& si
   }
 }
 
+bool sides_are_alike(const ProfileReader& profile, double rise_px, double fall_px,
+                     double pixels_per_m) {
+  constexpr double kSide_m = 0.08;
+  constexpr double kLeastSide_px = 2.5;
+  const double side_px = std::max(kLeastSide_px, kSide_m * pixels_per_m);
+  const double inset_px = 0.3 * (fall_px - rise_px);
+  const float left = profile.level(rise_px - kBlur_px - side_px, rise_px - kBlur_px);
+  const float right = profile.level(fall_px + kBlur_px, fall_px + kBlur_px + side_px);
+  const float contrast =
+      profile.level(rise_px + inset_px, fall_px - inset_px) - 0.5F * (left + right);
+  return std::abs(left - right) <= kSidesDiffer * contrast;
+}
+
 /// The middles of a rising and the next falling edge.
-void find_stripes(const std::vector<Edge>& edges, double reach_px, PaintSighting& sighting) {
+void find_stripes(const ProfileReader& profile, double reach_px, PaintSighting& sighting) {
   std::vector<Edge> found;
+  const std::vector<Edge>& edges = profile.edges();
+  const double widest_px = std::hypot(kWidest_m * sighting.pixels_per_m, kBlur_px);
   for (size_t i = 0; i + 1 < edges.size(); ++i) {
     const Edge& rise = edges[i];
     const Edge& fall = edges[i + 1];
     if (rise.slope < 0.0F || fall.slope > 0.0F) continue;
     const double width_px = fall.offset_px - rise.offset_px;
-    if (width_px < kNarrowest_m * sighting.pixels_per_m) continue;
-    if (width_px > kWidest_m * sighting.pixels_per_m + kBlur_px) continue;
+    if (width_px < kNarrowest_m * sighting.pixels_per_m || width_px > widest_px) continue;
+    if (!sides_are_alike(profile, rise.offset_px, fall.offset_px, sighting.pixels_per_m)) continue;
     found.push_back({0.5 * (rise.offset_px + fall.offset_px), std::min(rise.slope, -fall.slope)});
   }
   keep_strongest(found, reach_px, sighting);
@@ -190,7 +222,7 @@ std::vector<PaintSighting> find_paint(const GreyImage& image, const CameraModel&
   for (size_t i = 0; i < sightings.size(); i += every) {
     if (!reader.read(sightings[i])) continue;
     if (kinds[i] == PaintKind::kStripe) {
-      find_stripes(reader.edges(), search.reach_px, sightings[i]);
+      find_stripes(reader, search.reach_px, sightings[i]);
     } else {
       find_steps(reader.edges(), search.reach_px, sightings[i]);
     }

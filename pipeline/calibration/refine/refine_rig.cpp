@@ -9,20 +9,24 @@ constexpr double kPaintReach_m = 25.0;
 constexpr int kLeastFramesets = 20;
 
 struct Round {
-  double search_rad;   ///< largest distance between predicted and found paint
-  double sigma_scale;  ///< of where paint is found (RefinementProblem::solve)
-  /// Whether paint is searched where the estimated error of each frameset's pose and body puts it.
-  bool follows_body;
+  double search_rad;  ///< largest distance between predicted and found paint
+  /// Of where paint is found (RefinementProblem::solve), halved from the first to the last.
+  double first_sigma_scale;
+  double last_sigma_scale;
+  /// Whether paint is searched where the expected tilt of the body puts it.
+  bool expects_tilt;
 };
 /// A wide search also finds the paint of wrong lines. With a large sigma they change the estimate
-/// less. The body tilts by more than a narrow search reaches, so the last rounds follow it. The
-/// first ones do not, because they do not yet tell the tilt from errors of the cameras.
-constexpr std::array<Round, 6> kRounds{{{0.04, 8.0, false},
-                                        {0.02, 4.0, false},
-                                        {0.014, 2.0, false},
-                                        {0.011, 1.0, false},
-                                        {0.01, 1.0, true},
-                                        {0.01, 0.5, true}}};
+/// less. The body tilts by more than a narrow search reaches, so the last rounds expect its tilt.
+/// They also start again with each frameset, from a large sigma, because a frameset that has fitted
+/// a kerb beside a line would stay there. The first rounds do neither, because they do not yet tell
+/// the tilt from errors of the cameras.
+constexpr std::array<Round, 6> kRounds{{{0.04, 8.0, 8.0, false},
+                                        {0.02, 4.0, 4.0, false},
+                                        {0.014, 2.0, 2.0, false},
+                                        {0.014, 4.0, 1.0, true},
+                                        {0.014, 4.0, 1.0, true},
+                                        {0.014, 4.0, 1.0, true}}};
 
 class RigRefiner {
  public:
@@ -41,7 +45,7 @@ class RigRefiner {
         return fail("recording: found {} framesets apart with a reference pose, wanted {} or more",
                     framesets_, kLeastFramesets);
       }
-      problem_.solve(round.search_rad, round.sigma_scale);
+      solve(round);
     }
     problem_.finish(kRounds.back().search_rad);
     return problem_.result(kRounds.back().search_rad);
@@ -68,6 +72,13 @@ class RigRefiner {
     }
   }
 
+  void solve(const Round& round) {
+    if (round.expects_tilt) problem_.restart_frames();
+    for (double scale = round.first_sigma_scale; scale >= round.last_sigma_scale; scale *= 0.5) {
+      problem_.solve(round.search_rad, scale);
+    }
+  }
+
   static bool is_near(const Se2& a, const Se2& b) {
     const Se2 between = correction_between(a, b);
     return between.translation().norm() < 1.5 && std::abs(between.yaw_rad) < 2.0 * kPerDegree;
@@ -76,7 +87,7 @@ class RigRefiner {
   void look_at(const std::vector<RecordedPicture>& pictures, const Se2& pose, const Round& round) {
     find_paint_points(map_, pose, kPaintReach_m, points_);
     const Se3 vehicle_from_body =
-        round.follows_body ? problem_.body_from_vehicle(framesets_).inverse() : Se3{};
+        round.expects_tilt ? problem_.expected_body_from_vehicle(framesets_).inverse() : Se3{};
     for (const RecordedPicture& picture : pictures) {
       const CameraAdjustment& change = problem_.change(picture.camera);
       const auto exposed =

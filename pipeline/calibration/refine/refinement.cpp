@@ -60,9 +60,16 @@ void RefinementProblem::add(int frame, int camera, Time time,
   views_.push_back({frame, camera, time, std::move(sightings)});
 }
 
-Se3 RefinementProblem::body_from_vehicle(int frame) const {
+void RefinementProblem::restart_frames() {
+  for (Frame& frame : estimate_.frames) frame.error = expected_error(frame);
+}
+
+Se3 RefinementProblem::expected_body_from_vehicle(int frame) const {
   if (frame >= static_cast<int>(estimate_.frames.size())) return {};
-  const FrameVector& error = estimate_.frames[static_cast<size_t>(frame)].error;
+  return body_from_vehicle(expected_error(estimate_.frames[static_cast<size_t>(frame)]));
+}
+
+Se3 RefinementProblem::body_from_vehicle(const FrameVector& error) {
   return {rotation_by(error.head<3>()), error.tail<3>()};
 }
 

@@ -80,15 +80,20 @@ class RefinementProblem {
   /// times that of the options: a large one for a rig that may be far off.
   void solve(double gate_rad, double sigma_scale = 1.0);
 
+  /// Sets the error of each frameset's pose and body to the one expected from the mean of the drive
+  /// and from the acceleration. A frameset that fitted wrong paint can then leave it.
+  void restart_frames();
+
   /// Solves with the sigma of the options, leaves out doubtful cameras, and sets the change of
   /// unobservable parameters to 0.
   void finish(double gate_rad);
 
   const CameraAdjustment& change(int camera) const { return estimate_.changes[camera]; }
 
-  /// From the vehicle frame of a frameset's reference pose to that of its tilted body, as
-  /// estimated. The identity if the frameset was not added yet.
-  Se3 body_from_vehicle(int frame) const;
+  /// From the vehicle frame of a frameset's reference pose to that of its tilted body, as expected
+  /// from the mean of the drive and from the acceleration. The identity if the frameset was not
+  /// added yet.
+  Se3 expected_body_from_vehicle(int frame) const;
 
   RigRefinement result(double gate_rad) const;
 
@@ -158,6 +163,7 @@ class RefinementProblem {
   void keep_unobservable(double gate_rad);
   void step_alone(int camera, const Sums& sums);
   Eigen::Vector2d acceleration_at(Time time) const;
+  static Se3 body_from_vehicle(const FrameVector& error);
   FrameVector frame_sigma() const;
   FrameVector expected_error(const Frame& frame) const;
 

@@ -64,7 +64,7 @@ void RefinementProblem::visit(const View& view, double gate_rad, const Visitor& 
   const auto after = reference_.at(time + kAround);
   if (!pose || !before || !after) return;
   const Eigen::Matrix2d vehicle_from_map = Eigen::Rotation2Dd(-pose->yaw_rad).toRotationMatrix();
-  const Se3 body = body_from_vehicle(view.frame);
+  const Se3 body = body_from_vehicle(estimate_.frames[static_cast<size_t>(view.frame)].error);
   const auto in_vehicle = [](const Se2& map_from_vehicle, const Eigen::Vector2d& point) {
     const Eigen::Vector2d at = map_from_vehicle.inverse() * point;
     return Eigen::Vector3d(at.x(), at.y(), 0.0);

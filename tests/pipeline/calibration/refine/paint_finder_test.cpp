@@ -1,42 +1,36 @@
 // Finds painted lines in pictures that follow from formulas.
 #include "pipeline/calibration/refine/paint_finder.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "pipeline/calibration/reference_trajectory.h"
 #include "pipeline/calibration/rig_yaml.h"
+#include "tests/pipeline/calibration/refine/road_picture.h"
 
 namespace bevloc {
 namespace {
 
 /// Grey asphalt with a painted line at y = `left_m` and a bar edge at x = `edge_m`.
-GreyImage picture_of_road(const CameraModel& camera, double left_m, double edge_m) {
-  GreyImage image{camera.intrinsics.width_px, camera.intrinsics.height_px, {}};
-  constexpr int kParts = 3;
-  for (int v = 0; v < image.height; ++v) {
-    for (int u = 0; u < image.width; ++u) {
-      double sum = 0.0;
-      for (int i = 0; i < kParts * kParts; ++i) {
-        const Eigen::Vector2d pixel(u + (i % kParts - 1.0) / kParts,
-                                    v + (i / kParts - 1.0) / kParts);
-        const Eigen::Vector3d ray =
-            camera.vehicle_from_camera.rotation * camera.intrinsics.ray(pixel);
-        const Eigen::Vector3d& from = camera.vehicle_from_camera.translation_m;
-        double grey = 150.0;
-        if (ray.z() < 0.0) {
-          const Eigen::Vector3d ground = from - from.z() / ray.z() * ray;
-          const bool line = std::abs(ground.y() - left_m) < 0.06;
-          const bool bar = ground.x() > edge_m && ground.x() < edge_m + 3.0 && ground.y() < -2.5;
-          grey = line || bar ? 200.0 : 80.0;
-        }
-        sum += grey;
-      }
-      image.pixels.push_back(static_cast<uint8_t>(sum / (kParts * kParts)));
-    }
-  }
-  return image;
+GreyImage picture_of_paint(const CameraModel& camera, double left_m, double edge_m) {
+  return RoadPainter(camera.intrinsics)
+      .picture(camera.vehicle_from_camera, [=](const Eigen::Vector2d& at) {
+        const bool line = std::abs(at.y() - left_m) < 0.06;
+        const bool bar = at.x() > edge_m && at.x() < edge_m + 3.0 && at.y() < -2.5;
+        return line || bar ? 200.0 : 80.0;
+      });
+}
+
+/// Asphalt up to a stripe in the middle of which the map has a line, and other ground beyond.
+GreyImage picture_of_stripe(const CameraModel& camera, double width_m, double grey_beyond) {
+  return RoadPainter(camera.intrinsics)
+      .picture(camera.vehicle_from_camera, [=](const Eigen::Vector2d& at) {
+        const double off_m = at.y() - 1.75;
+        if (std::abs(off_m) < 0.5 * width_m) return 200.0;
+        return off_m > 0.0 ? grey_beyond : 80.0;
+      });
 }
 
 HdMap street(bool crossing) {
@@ -81,7 +75,7 @@ TEST(FindPaint, MeasuresAStripeToAFractionOfAPixel) {
   std::vector<PaintPoint> points;
   find_paint_points(MapIndex(map), {}, 25.0, points);
   // The paint is 0.1 m to the left of the map.
-  const GreyImage image = picture_of_road(camera, 1.85, 100.0);
+  const GreyImage image = picture_of_paint(camera, 1.85, 100.0);
   const auto sightings = find_paint(image, camera, {}, points, {});
   ASSERT_GT(sightings.size(), 10U);
   int found = 0;
@@ -99,10 +93,35 @@ TEST(FindPaint, FindsNothingOnBareAsphalt) {
   const HdMap map = street(false);
   std::vector<PaintPoint> points;
   find_paint_points(MapIndex(map), {}, 25.0, points);
-  const GreyImage image = picture_of_road(camera, 100.0, 100.0);
+  const GreyImage image = picture_of_paint(camera, 100.0, 100.0);
   for (const PaintSighting& sighting : find_paint(image, camera, {}, points, {})) {
     EXPECT_EQ(sighting.candidates, 0);
   }
+}
+
+/// How many of the places on the line of street(false) have paint in the picture.
+int found_in(const GreyImage& image, const CameraModel& camera) {
+  const HdMap map = street(false);
+  std::vector<PaintPoint> points;
+  find_paint_points(MapIndex(map), {}, 25.0, points);
+  const auto sightings = find_paint(image, camera, {}, points, {});
+  return static_cast<int>(std::ranges::count_if(
+      sightings, [](const PaintSighting& sighting) { return sighting.candidates > 0; }));
+}
+
+TEST(FindPaint, TakesNoKerbForALine) {
+  const CameraModel camera = front_camera();
+  EXPECT_GT(found_in(picture_of_stripe(camera, 0.15, 80.0), camera), 10);
+  EXPECT_GT(found_in(picture_of_stripe(camera, 0.15, 110.0), camera), 10);
+  // A kerb of light stone between asphalt and a pavement, and between asphalt and dark soil.
+  EXPECT_EQ(found_in(picture_of_stripe(camera, 0.15, 150.0), camera), 0);
+  EXPECT_EQ(found_in(picture_of_stripe(camera, 0.15, 10.0), camera), 0);
+}
+
+TEST(FindPaint, TakesNothingWiderThanALine) {
+  const CameraModel camera = front_camera();
+  EXPECT_GT(found_in(picture_of_stripe(camera, 0.28, 80.0), camera), 10);
+  EXPECT_EQ(found_in(picture_of_stripe(camera, 0.36, 80.0), camera), 0);
 }
 
 TEST(FindPaint, FindsTheEndsOfTheBarsOfACrossing) {
@@ -110,7 +129,7 @@ TEST(FindPaint, FindsTheEndsOfTheBarsOfACrossing) {
   const HdMap map = street(true);
   std::vector<PaintPoint> points;
   find_paint_points(MapIndex(map), {}, 25.0, points);
-  const GreyImage image = picture_of_road(camera, 100.0, 10.0);
+  const GreyImage image = picture_of_paint(camera, 100.0, 10.0);
   int found = 0;
   int agreeing = 0;
   for (const PaintSighting& sighting : find_paint(image, camera, {}, points, {})) {
