@@ -16,9 +16,9 @@ namespace {
 /// Grey asphalt with a painted line at y = `left_m` and a bar edge at x = `edge_m`.
 GreyImage picture_of_paint(const CameraModel& camera, double left_m, double edge_m) {
   return RoadPainter(camera.intrinsics)
-      .picture(camera.vehicle_from_camera, [=](const Eigen::Vector2d& at) {
-        const bool line = std::abs(at.y() - left_m) < 0.06;
-        const bool bar = at.x() > edge_m && at.x() < edge_m + 3.0 && at.y() < -2.5;
+      .picture(camera.vehicle_from_camera, [=](double x_m, double y_m) {
+        const bool line = std::abs(y_m - left_m) < 0.06;
+        const bool bar = x_m > edge_m && x_m < edge_m + 3.0 && y_m < -2.5;
         return line || bar ? 200.0 : 80.0;
       });
 }
@@ -26,8 +26,8 @@ GreyImage picture_of_paint(const CameraModel& camera, double left_m, double edge
 /// Asphalt up to a stripe in the middle of which the map has a line, and other ground beyond.
 GreyImage picture_of_stripe(const CameraModel& camera, double width_m, double grey_beyond) {
   return RoadPainter(camera.intrinsics)
-      .picture(camera.vehicle_from_camera, [=](const Eigen::Vector2d& at) {
-        const double off_m = at.y() - 1.75;
+      .picture(camera.vehicle_from_camera, [=](double, double y_m) {
+        const double off_m = y_m - 1.75;
         if (std::abs(off_m) < 0.5 * width_m) return 200.0;
         return off_m > 0.0 ? grey_beyond : 80.0;
       });

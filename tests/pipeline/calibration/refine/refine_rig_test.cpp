@@ -28,11 +28,11 @@ HdMap street() {
 }
 
 /// A worn line on the left with a kerb of light stone and grass beside it, and one on the right.
-double grey_of_street(const Eigen::Vector2d& at) {
-  if (std::abs(at.y() - kLineRight_m) < 0.07) return 200.0;
-  const bool worn = std::fmod(at.x() + 100.0, 2.0) < 0.8;
-  if (!worn && std::abs(at.y() - kLineLeft_m) < 0.07) return 200.0;
-  const double from_kerb_m = at.y() - kLineLeft_m - kKerbFromLine_m;
+double grey_of_street(double x_m, double y_m) {
+  if (std::abs(y_m - kLineRight_m) < 0.07) return 200.0;
+  const bool worn = std::fmod(x_m + 100.0, 2.0) < 0.8;
+  if (!worn && std::abs(y_m - kLineLeft_m) < 0.07) return 200.0;
+  const double from_kerb_m = y_m - kLineLeft_m - kKerbFromLine_m;
   if (std::abs(from_kerb_m) < 0.09) return 170.0;
   return from_kerb_m > 0.0 ? 45.0 : 80.0;
 }
@@ -65,7 +65,7 @@ class StreetRecording : public PictureRecording {
   }
 
  private:
-  static constexpr int kFramesets = 24;
+  static constexpr int kFramesets = 20;
 
   static std::vector<ReferenceTrajectory::Pose> poses() {
     std::vector<ReferenceTrajectory::Pose> poses;
