@@ -259,8 +259,9 @@ bool Arbiter::match_sees(size_t axis, Time now) const {
   return match_agrees(now) && seen_at && now - *seen_at <= kMatchLifetime;
 }
 
-/// Returns whether the refused GNSS samples are wrong. The match must agree with the filter. In
-/// addition, either GNSS has jumped, or the match sees the axis on which GNSS is off.
+/// Returns whether the refused GNSS samples are wrong. For this, the match must agree with the
+/// filter. Either GNSS must also have jumped, or the match must see the axis that GNSS is off
+/// along.
 bool Arbiter::gnss_refusals_are_denied(Time now) const {
   return match_agrees(now) && (gnss_.jumped || match_sees(gnss_.refused_axis, now));
 }

@@ -82,7 +82,7 @@ class ProfileReader {
         std::ceil((reach_px_ + kAround_px + 0.5 * kWidest_m * sighting.pixels_per_m) / kStep_px));
     const Eigen::Vector2d tangent(sighting.normal_px.y(), -sighting.normal_px.x());
     profile_.clear();
-    for (int i = -half_ - 3; i <= half_ + 3; ++i) {
+    for (int i = -half_ - kMargin; i <= half_ + kMargin; ++i) {
       const Eigen::Vector2d at = sighting.predicted_px + i * kStep_px * sighting.normal_px;
       float sum = 0.0F;
       for (int k = -kAlong; k <= kAlong; ++k) {
@@ -109,14 +109,14 @@ class ProfileReader {
 
  private:
   size_t index_of(double offset_px) const {
-    const auto index = std::lround(offset_px / kStep_px) + half_ + 3;
+    const auto index = std::lround(offset_px / kStep_px) + half_ + kMargin;
     return static_cast<size_t>(std::clamp(index, 0L, static_cast<long>(profile_.size()) - 1));
   }
 
   /// The slope over two steps of the smoothed profile, and its local extrema.
   void find_edges() {
     slopes_.clear();
-    for (size_t i = 3; i + 3 < profile_.size(); ++i) {
+    for (size_t i = kMargin; i + kMargin < profile_.size(); ++i) {
       const auto smooth = [&](size_t k) {
         return 0.25F * profile_[k - 1] + 0.5F * profile_[k] + 0.25F * profile_[k + 1];
       };
@@ -136,6 +136,8 @@ class ProfileReader {
       edges_.push_back({(static_cast<double>(i) + peak - half_) * kStep_px, sign * b});
     }
   }
+
+  static constexpr int kMargin = 3;  // samples at each end, which only smoothing uses
 
   const GreyImage& image_;
   const double reach_px_;

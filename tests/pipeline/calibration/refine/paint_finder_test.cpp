@@ -23,7 +23,7 @@ GreyImage picture_of_paint(const CameraModel& camera, double left_m, double edge
       });
 }
 
-/// Asphalt up to a stripe in the middle of which the map has a line, and other ground beyond.
+/// Asphalt, and to its left a stripe and other ground. The middle of the stripe is the map's line.
 GreyImage picture_of_stripe(const CameraModel& camera, double width_m, double grey_beyond) {
   return RoadPainter(camera.intrinsics)
       .picture(camera.vehicle_from_camera, [=](double, double y_m) {
@@ -52,6 +52,13 @@ CameraModel front_camera() {
   return read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml")->cameras[1];
 }
 
+std::vector<PaintSighting> sightings_in(const GreyImage& image, const CameraModel& camera,
+                                        const HdMap& map) {
+  std::vector<PaintPoint> points;
+  find_paint_points(MapIndex(map), {}, 25.0, points);
+  return find_paint(image, camera, {}, points, {});
+}
+
 TEST(FindPaintPoints, TakesDividersAndTheLongSidesOfCrossings) {
   const HdMap lines = street(false);
   std::vector<PaintPoint> points;
@@ -71,12 +78,8 @@ TEST(FindPaintPoints, TakesDividersAndTheLongSidesOfCrossings) {
 
 TEST(FindPaint, MeasuresAStripeToAFractionOfAPixel) {
   const CameraModel camera = front_camera();
-  const HdMap map = street(false);
-  std::vector<PaintPoint> points;
-  find_paint_points(MapIndex(map), {}, 25.0, points);
   // The paint is 0.1 m to the left of the map.
-  const GreyImage image = picture_of_paint(camera, 1.85, 100.0);
-  const auto sightings = find_paint(image, camera, {}, points, {});
+  const auto sightings = sightings_in(picture_of_paint(camera, 1.85, 100.0), camera, street(false));
   ASSERT_GT(sightings.size(), 10U);
   int found = 0;
   for (const PaintSighting& sighting : sightings) {
@@ -90,21 +93,15 @@ TEST(FindPaint, MeasuresAStripeToAFractionOfAPixel) {
 
 TEST(FindPaint, FindsNothingOnBareAsphalt) {
   const CameraModel camera = front_camera();
-  const HdMap map = street(false);
-  std::vector<PaintPoint> points;
-  find_paint_points(MapIndex(map), {}, 25.0, points);
   const GreyImage image = picture_of_paint(camera, 100.0, 100.0);
-  for (const PaintSighting& sighting : find_paint(image, camera, {}, points, {})) {
+  for (const PaintSighting& sighting : sightings_in(image, camera, street(false))) {
     EXPECT_EQ(sighting.candidates, 0);
   }
 }
 
 /// How many of the places on the line of street(false) have paint in the picture.
 int found_in(const GreyImage& image, const CameraModel& camera) {
-  const HdMap map = street(false);
-  std::vector<PaintPoint> points;
-  find_paint_points(MapIndex(map), {}, 25.0, points);
-  const auto sightings = find_paint(image, camera, {}, points, {});
+  const auto sightings = sightings_in(image, camera, street(false));
   return static_cast<int>(std::ranges::count_if(
       sightings, [](const PaintSighting& sighting) { return sighting.candidates > 0; }));
 }
@@ -126,13 +123,10 @@ TEST(FindPaint, TakesNothingWiderThanALine) {
 
 TEST(FindPaint, FindsTheEndsOfTheBarsOfACrossing) {
   const CameraModel camera = front_camera();
-  const HdMap map = street(true);
-  std::vector<PaintPoint> points;
-  find_paint_points(MapIndex(map), {}, 25.0, points);
   const GreyImage image = picture_of_paint(camera, 100.0, 10.0);
   int found = 0;
   int agreeing = 0;
-  for (const PaintSighting& sighting : find_paint(image, camera, {}, points, {})) {
+  for (const PaintSighting& sighting : sightings_in(image, camera, street(true))) {
     if (sighting.candidates == 0) continue;
     ++found;
     agreeing += sighting.point_m.y() < -2.3 && std::abs(sighting.offset_px[0]) < 0.5;

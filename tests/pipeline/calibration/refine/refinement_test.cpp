@@ -130,6 +130,16 @@ Rig demo_rig() {
   return *read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml");
 }
 
+/// All cameras, turned together about the vehicle's axes.
+Rig on_tilted_body(const Rig& rig, const Eigen::Vector3d& tilt_rad) {
+  const Se3 body{rotation_by(tilt_rad), Eigen::Vector3d::Zero()};
+  Rig tilted = rig;
+  for (CameraModel& camera : tilted.cameras) {
+    camera.vehicle_from_camera = body * camera.vehicle_from_camera;
+  }
+  return tilted;
+}
+
 std::array<CameraAdjustment, kCameraCount> some_errors() {
   std::array<CameraAdjustment, kCameraCount> errors;
   for (int c = 0; c < kCameraCount; ++c) {
@@ -192,12 +202,7 @@ TEST(Refinement, TakesWhatAllCamerasShareForTheBody) {
   // The body pitches to and fro by 0.4 degrees, which no camera's mounting does.
   const auto pitched = [&rig](int frame) {
     const double pitch_rad = radians(frame % 2 == 0 ? 0.4 : -0.4);
-    const Se3 body{rotation_by({0.0, pitch_rad, 0.0}), Eigen::Vector3d::Zero()};
-    Rig turned = rig;
-    for (CameraModel& camera : turned.cameras) {
-      camera.vehicle_from_camera = body * camera.vehicle_from_camera;
-    }
-    return turned;
+    return on_tilted_body(rig, {0.0, pitch_rad, 0.0});
   };
   RefinementProblem problem(rig, drive.reference, {});
   add_sightings(problem, rig, pitched, drive, {.noise_px = 0.1});
@@ -219,16 +224,9 @@ TEST(Refinement, ExpectsTheTiltThatTheAccelerationsCause) {
     return kRollPerAcceleration * drive.lateral_mps2(frame);
   };
   const auto rolled = [&](int frame) {
-    const Se3 body{rotation_by({expected_roll(frame), 0.0, 0.0}), Eigen::Vector3d::Zero()};
-    Rig turned = rig;
-    for (CameraModel& camera : turned.cameras) {
-      camera.vehicle_from_camera = body * camera.vehicle_from_camera;
-    }
-    return turned;
+    return on_tilted_body(rig, {expected_roll(frame), 0.0, 0.0});
   };
   RefinementProblem problem(rig, drive.reference, {});
-  EXPECT_TRUE(problem.expected_body_from_vehicle(0).rotation.isIdentity());
-  EXPECT_TRUE(problem.expected_body_from_vehicle(0).translation_m.isZero());
   add_sightings(problem, rig, rolled, drive, {.noise_px = 0.1});
   problem.solve(kEverything_rad);
   double most_rad = 0.0;
@@ -241,6 +239,14 @@ TEST(Refinement, ExpectsTheTiltThatTheAccelerationsCause) {
         << frame;
   }
   EXPECT_GT(most_rad, radians(0.4));
+}
+
+TEST(Refinement, ExpectsNoTiltOfAFramesetThatWasNotAdded) {
+  const Rig rig = demo_rig();
+  const Drive drive(true, 4.0);
+  const RefinementProblem problem(rig, drive.reference, {});
+  EXPECT_TRUE(problem.expected_body_from_vehicle(0).rotation.isIdentity());
+  EXPECT_TRUE(problem.expected_body_from_vehicle(0).translation_m.isZero());
 }
 
 TEST(Refinement, RefusesWhatAStraightRoadCannotShow) {
