@@ -68,7 +68,32 @@ class RigRefiner {
       if (!pose || (last && is_near(*last, *pose))) continue;
       last = pose;
       look_at(pictures, *pose, round);
+      find_ties_of(pictures, round);
+      before_ = pictures;
       ++framesets_;
+    }
+  }
+
+  void find_ties_of(const std::vector<RecordedPicture>& pictures, const Round& round) {
+    const auto tie = [&](const RecordedPicture& first, int frame, const RecordedPicture& second) {
+      const RefinementProblem::Picture a{frame, first.camera, first.time};
+      const RefinementProblem::Picture b{framesets_, second.camera, second.time};
+      const auto first_view = problem_.expected_view(a);
+      const auto second_view = problem_.expected_view(b);
+      if (!first_view || !second_view) return;
+      TieSearch search;
+      search.reach_px = round.search_rad * first_view->camera().intrinsics.fx_px;
+      auto ties = find_ties(first.image, *first_view, second.image, *second_view, search);
+      if (!ties.empty()) problem_.add_ties(a, b, std::move(ties));
+    };
+    for (const RecordedPicture& first : pictures) {
+      for (const RecordedPicture& second : pictures) {
+        if (first.camera < second.camera) tie(first, framesets_, second);
+      }
+    }
+    if (framesets_ == 0) return;
+    for (const RecordedPicture& first : before_) {
+      for (const RecordedPicture& second : pictures) tie(first, framesets_ - 1, second);
     }
   }
 
@@ -108,6 +133,7 @@ class RigRefiner {
   const RefinementProgress& progress_;
   RefinementProblem problem_;
   std::vector<PaintPoint> points_;
+  std::vector<RecordedPicture> before_;  ///< the frameset before
   int framesets_ = 0;
   int read_ = 0;
 };

@@ -44,12 +44,15 @@ RefinementProblem::RefinementProblem(const Rig& rig, const ReferenceTrajectory& 
 
 void RefinementProblem::clear_sightings() {
   views_.clear();
+  ties_.clear();
 }
 
 void RefinementProblem::add(int frame, int camera, Time time,
                             std::vector<PaintSighting> sightings) {
   while (static_cast<int>(estimate_.frames.size()) <= frame) {
-    estimate_.frames.push_back({FrameVector::Zero(), acceleration_at(time)});
+    const auto pose = reference_.at(time);
+    estimate_.frames.push_back(
+        {FrameVector::Zero(), acceleration_at(time), time, pose ? pose->yaw_rad : 0.0});
   }
   for (const PaintSighting& sighting : sightings) {
     const int next = static_cast<int>(elements_.size());
@@ -57,7 +60,20 @@ void RefinementProblem::add(int frame, int camera, Time time,
       estimate_.shifts.push_back(Eigen::Vector2d::Zero());
     }
   }
-  views_.push_back({frame, camera, time, std::move(sightings)});
+  views_.push_back({{frame, camera, time}, std::move(sightings)});
+}
+
+void RefinementProblem::add_ties(const Picture& first, const Picture& second,
+                                 std::vector<GroundTie> ties) {
+  ties_.push_back({first, second, std::move(ties)});
+}
+
+std::optional<MomentView> RefinementProblem::expected_view(const Picture& picture) const {
+  const auto frame = static_cast<size_t>(picture.frame);
+  const FrameVector error = frame < estimate_.frames.size() ? expected_error(estimate_.frames[frame])
+                                                            : FrameVector::Zero().eval();
+  return MomentView::make(rig_.cameras[picture.camera], estimate_.changes[picture.camera], error,
+                          reference_, picture.time);
 }
 
 void RefinementProblem::restart_frames() {
@@ -67,10 +83,6 @@ void RefinementProblem::restart_frames() {
 Se3 RefinementProblem::expected_body_from_vehicle(int frame) const {
   if (frame >= static_cast<int>(estimate_.frames.size())) return {};
   return body_from_vehicle(expected_error(estimate_.frames[static_cast<size_t>(frame)]));
-}
-
-Se3 RefinementProblem::body_from_vehicle(const FrameVector& error) {
-  return {rotation_by(error.head<3>()), error.tail<3>()};
 }
 
 /// In the vehicle frame, from the reference positions; 0 where they are not known.
@@ -86,14 +98,14 @@ Eigen::Vector2d RefinementProblem::acceleration_at(Time time) const {
   return Se2{0.0, 0.0, -pose->yaw_rad} * in_map;
 }
 
-RefinementProblem::FrameVector RefinementProblem::frame_sigma() const {
+FrameVector RefinementProblem::frame_sigma() const {
   FrameVector sigma;
   sigma << options_.body_tilt_rad, options_.body_tilt_rad, options_.reference_yaw_rad,
       options_.reference_position_m, options_.reference_position_m, options_.body_lift_m;
   return sigma;
 }
 
-RefinementProblem::FrameVector RefinementProblem::expected_error(const Frame& frame) const {
+FrameVector RefinementProblem::expected_error(const Frame& frame) const {
   FrameVector expected = estimate_.mean;
   expected[0] += estimate_.tilt_per_acceleration[0] * frame.acceleration_mps2.y();
   expected[1] += estimate_.tilt_per_acceleration[1] * frame.acceleration_mps2.x();
@@ -114,7 +126,7 @@ Eigen::VectorXd RefinementProblem::camera_prior() const {
 }
 
 /// Moves all unknowns; the framesets' follow from the others.
-void RefinementProblem::move(const Sums& sums, const Eigen::VectorXd& by) {
+void RefinementProblem::move(const EliminatedFrames& eliminated, const Eigen::VectorXd& by) {
   for (int c = 0; c < kCameraCount; ++c) {
     estimate_.changes[c] += by.segment<kCameraParameters>(c * kCameraParameters);
   }
@@ -124,11 +136,8 @@ void RefinementProblem::move(const Sums& sums, const Eigen::VectorXd& by) {
   for (size_t i = 0; i < estimate_.shifts.size(); ++i) {
     estimate_.shifts[i] += by.segment<2>(static_cast<Eigen::Index>(kFirstElement + 2 * i));
   }
-  for (size_t k = 0; k < estimate_.frames.size(); ++k) {
-    const FrameSums& frame = sums.frames[k];
-    estimate_.frames[k].error -=
-        frame.information.llt().solve(frame.gradient + frame.shared.transpose() * by);
-  }
+  const std::vector<FrameVector> of_frames = eliminated.changes(by);
+  for (size_t k = 0; k < estimate_.frames.size(); ++k) estimate_.frames[k].error += of_frames[k];
 }
 
 /// One step of Levenberg-Marquardt. Returns whether another one may still improve the estimate.
@@ -136,7 +145,7 @@ bool RefinementProblem::step(double gate_rad, double& damping) {
   constexpr double kMostDamping = 1e4;
   constexpr double kConverged = 1e-3;  // of the expected errors
   const Eigen::VectorXd prior = camera_prior();
-  const auto cost_of = [&](const Sums& sums) {
+  const auto cost_of = [&](const RefinementSums& sums) {
     double cost = sums.cost;
     for (int c = 0; c < kCameraCount; ++c) {
       const auto weight = prior.segment<kCameraParameters>(c * kCameraParameters);
@@ -144,13 +153,11 @@ bool RefinementProblem::step(double gate_rad, double& damping) {
     }
     return cost;
   };
-  const Sums sums = linearize(gate_rad);
+  const RefinementSums sums = linearize(gate_rad);
   const double cost = cost_of(sums);
-  Eigen::MatrixXd information = reduced(sums);
-  Eigen::VectorXd gradient = sums.gradient;
-  for (const FrameSums& frame : sums.frames) {
-    gradient -= frame.shared * frame.information.llt().solve(frame.gradient);
-  }
+  const EliminatedFrames eliminated(sums);
+  Eigen::MatrixXd information = eliminated.information();
+  Eigen::VectorXd gradient = eliminated.gradient();
   information.diagonal().head<kCameraUnknowns>() += prior;
   for (int c = 0; c < kCameraCount; ++c) {
     const Eigen::Index first = c * kCameraParameters;
@@ -162,7 +169,7 @@ bool RefinementProblem::step(double gate_rad, double& damping) {
     Eigen::MatrixXd damped = information;
     damped.diagonal() += damping * information.diagonal();
     const Eigen::VectorXd by = -damped.llt().solve(gradient);
-    move(sums, by);
+    move(eliminated, by);
     if (cost_of(linearize(gate_rad)) < cost) {
       damping = std::max(1e-6, 0.1 * damping);
       return by.head<kCameraUnknowns>().cwiseAbs2().cwiseProduct(prior).maxCoeff() >
@@ -187,7 +194,14 @@ bool RefinementProblem::leave_out_doubtful(double gate_rad) {
   std::array<int, kCameraCount> seen{};
   for (const View& view : views_) {
     visit(view, gate_rad, [&](const PaintSighting&, const Line* line, double) {
-      if (line && std::abs(line->residual) <= kAgrees) ++seen[view.camera];
+      if (line && std::abs(line->residual) <= kAgrees) ++seen[view.picture.camera];
+    });
+  }
+  for (const Ties& ties : ties_) {
+    visit(ties, gate_rad, [&](const TieRows* tie) {
+      if (!tie || tie->residual > kAgrees) return;
+      ++seen[ties.first.camera];
+      ++seen[ties.second.camera];
     });
   }
   bool any = false;
@@ -236,7 +250,7 @@ void RefinementProblem::keep_unobservable(double gate_rad) {
     }
   }
   for (int i = 0; i < kSteps; ++i) {
-    const Sums sums = linearize(gate_rad);
+    const RefinementSums sums = linearize(gate_rad);
     for (int c = 0; c < kCameraCount; ++c) {
       if (free_[c].any() && unobservable_[c].any()) step_alone(c, sums);
     }
@@ -244,7 +258,7 @@ void RefinementProblem::keep_unobservable(double gate_rad) {
 }
 
 /// One Gauss-Newton step of a camera's observable parameters.
-void RefinementProblem::step_alone(int camera, const Sums& sums) {
+void RefinementProblem::step_alone(int camera, const RefinementSums& sums) {
   std::vector<int> observable;
   for (int p = 0; p < kCameraParameters; ++p) {
     if (!unobservable_[camera][static_cast<size_t>(p)]) observable.push_back(p);
@@ -283,18 +297,18 @@ RigRefinement RefinementProblem::result(double gate_rad) const {
   std::array<std::vector<double>, kCameraCount> after;
   std::set<const PaintSighting*> agreeing;
   for (const View& view : views_) {
-    CameraRefinement& camera = result.cameras[view.camera];
+    CameraRefinement& camera = result.cameras[view.picture.camera];
     visit(view, gate_rad, [&](const PaintSighting& sighting, const Line* line, double distance_px) {
       ++camera.looked_at;
       if (!line || std::abs(line->residual) > kAgrees) return;
       ++camera.found;
       agreeing.insert(&sighting);
-      after[view.camera].push_back(std::abs(distance_px));
+      after[view.picture.camera].push_back(std::abs(distance_px));
     });
     unchanged.visit(view, kEverywhere_rad,
                     [&](const PaintSighting& sighting, const Line*, double distance_px) {
                       if (!agreeing.contains(&sighting)) return;
-                      before[view.camera].push_back(std::abs(distance_px));
+                      before[view.picture.camera].push_back(std::abs(distance_px));
                     });
   }
   for (int c = 0; c < kCameraCount; ++c) {

@@ -5,6 +5,7 @@
 #include <bitset>
 #include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,7 +13,10 @@
 #include "common/cameras.h"
 #include "pipeline/calibration/reference_trajectory.h"
 #include "pipeline/calibration/refine/camera_adjustment.h"
+#include "pipeline/calibration/refine/moment_view.h"
 #include "pipeline/calibration/refine/paint_finder.h"
+#include "pipeline/calibration/refine/refinement_sums.h"
+#include "pipeline/calibration/refine/tie_finder.h"
 #include "pipeline/calibration/rig.h"
 
 namespace bevloc {
@@ -24,6 +28,8 @@ struct RefinementOptions {
   // One sigma of the reference poses, and of the body against them.
   double reference_position_m = 0.03;
   double reference_yaw_rad = 0.1 * kPerDegree;
+  /// The errors of the reference poses are correlated over this time.
+  double reference_drift_s = 10.0;
   double body_tilt_rad = 0.4 * kPerDegree;
   double body_lift_m = 0.02;
   // One sigma of where paint is found: in the image, and on the ground against its line.
@@ -31,6 +37,10 @@ struct RefinementOptions {
   double paint_m = 0.01;
   /// One sigma of the place of a whole element of the map, along each axis.
   double map_m = 0.04;
+  // One sigma of tie points: of each pixel, of the ground's height, and of the rest.
+  double tie_px = 0.4;
+  double tie_height_m = 0.08;
+  double tie_m = 0.01;
 };
 
 struct CameraRefinement {
@@ -75,6 +85,20 @@ class RefinementProblem {
   /// Adds what one camera saw. `frame` counts framesets from 0. The reference must cover `time`.
   void add(int frame, int camera, Time time, std::vector<PaintSighting> sightings);
 
+  /// One picture: of a frameset, counted from 0, by a camera, at a time by its own clock.
+  struct Picture {
+    int frame;
+    int camera;
+    Time time;
+  };
+
+  /// Adds tie points of two pictures, of the same frameset or of two that follow each other.
+  void add_ties(const Picture& first, const Picture& second, std::vector<GroundTie> ties);
+
+  /// A picture as it is expected from the estimate of its camera, with the error of its frameset
+  /// as expected from the mean of the drive and the acceleration.
+  std::optional<MomentView> expected_view(const Picture& picture) const;
+
   /// Improves the estimate with the sightings whose paint is at most `gate_rad` times the focal
   /// length from where the estimate has it. The sigma of where paint is found is `sigma_scale`
   /// times that of the options: a large one for a rig that may be far off.
@@ -99,17 +123,15 @@ class RefinementProblem {
 
  private:
   static constexpr int kCameraUnknowns = kCameraCount * kCameraParameters;
-  static constexpr int kFrameUnknowns = 6;  // roll, pitch, yaw, forward, left, up
   static constexpr int kTiltsPerAcceleration = 2;
   /// Index of the first element's shift among the unknowns that do not belong to a single frameset.
   static constexpr int kFirstElement = kCameraUnknowns + kFrameUnknowns + kTiltsPerAcceleration;
-  using FrameVector = Eigen::Matrix<double, kFrameUnknowns, 1>;
-  using FrameMatrix = Eigen::Matrix<double, kFrameUnknowns, kFrameUnknowns>;
-
   struct Frame {
     FrameVector error = FrameVector::Zero();
     /// Of the vehicle, along x and y.
     Eigen::Vector2d acceleration_mps2 = Eigen::Vector2d::Zero();
+    Time time;
+    double reference_yaw_rad = 0.0;
   };
   struct Estimate {
     std::array<CameraAdjustment, kCameraCount> changes;
@@ -120,50 +142,49 @@ class RefinementProblem {
     std::vector<Eigen::Vector2d> shifts;  ///< of the map's elements
   };
   struct View {
-    int frame;
-    int camera;
-    Time time;
+    Picture picture;
     std::vector<PaintSighting> sightings;
   };
-  /// One linearized sighting.
+  struct Ties {
+    Picture first;
+    Picture second;
+    std::vector<GroundTie> ties;
+  };
+  /// A sighting's distance from the estimate, in pixels and in sigmas, along its normal.
   struct Line {
-    double residual;  ///< in sigmas
-    double weight;
-    CameraAdjustment of_camera;
-    FrameVector of_frame;
-    Eigen::Vector2d of_element;
+    double residual;
+    double per_px;  ///< sigmas
+    PointView point;
   };
-  struct FrameSums {
-    FrameMatrix information = FrameMatrix::Zero();
-    FrameVector gradient = FrameVector::Zero();
-    Eigen::MatrixXd shared;  ///< with all other unknowns, one row for each
-  };
-  /// Without the priors of the cameras.
-  struct Sums {
-    Eigen::MatrixXd information;
-    Eigen::VectorXd gradient;
-    std::vector<FrameSums> frames;
-    double cost = 0.0;
+  /// A tie's two rows, and how far its two points are from each other in sigmas.
+  struct TieRows {
+    double residual;
+    std::vector<RefinementRow> rows;
   };
 
   /// Calls visitor(sighting, line or null, distance in pixels) for each sighting of a view.
   using Visitor = std::function<void(const PaintSighting&, const Line*, double)>;
   void visit(const View& view, double gate_rad, const Visitor& visitor) const;
-  Sums linearize(double gate_rad) const;
-  void add_frame_priors(Sums& sums) const;
-  void add_line(const View& view, const PaintSighting& sighting, const Line& line,
-                Sums& sums) const;
-  Eigen::MatrixXd reduced(const Sums& sums) const;
+  /// Calls visitor(rows or null) for each tie.
+  using TieVisitor = std::function<void(const TieRows*)>;
+  void visit(const Ties& ties, double gate_rad, const TieVisitor& visitor) const;
+  std::optional<MomentView> view_of(const Picture& picture) const;
+  std::optional<TieRows> linearize(const GroundTie& tie, const Ties& ties, const MomentView& first,
+                                   const MomentView& second, double gate_rad) const;
+  /// Without the priors of the cameras.
+  CameraAdjustment only_free(int camera, CameraAdjustment slope) const;
+  RefinementSums linearize(double gate_rad) const;
+  void add_priors(RefinementSums& sums) const;
+  void add_frame_prior(size_t k, RefinementSums& sums) const;
   Eigen::MatrixXd camera_information(double gate_rad) const;
   Eigen::VectorXd camera_prior() const;
-  void move(const Sums& sums, const Eigen::VectorXd& by);
+  void move(const EliminatedFrames& eliminated, const Eigen::VectorXd& by);
   bool step(double gate_rad, double& damping);
   bool leave_out_doubtful(double gate_rad);
   void find_unobservable(double gate_rad);
   void keep_unobservable(double gate_rad);
-  void step_alone(int camera, const Sums& sums);
+  void step_alone(int camera, const RefinementSums& sums);
   Eigen::Vector2d acceleration_at(Time time) const;
-  static Se3 body_from_vehicle(const FrameVector& error);
   FrameVector frame_sigma() const;
   FrameVector expected_error(const Frame& frame) const;
 
@@ -175,6 +196,7 @@ class RefinementProblem {
   Estimate estimate_;
   std::map<uint32_t, int> elements_;  ///< from the map's index to ours
   std::vector<View> views_;
+  std::vector<Ties> ties_;
   double sigma_scale_ = 1.0;  ///< of the latest solve()
 };
 

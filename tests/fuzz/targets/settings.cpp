@@ -15,24 +15,30 @@
 namespace bevloc::fuzz {
 namespace {
 
-/// A folder with a picture a.png, and with an index that is a file in memory, so that no input
-/// waits for a disk.
-class RecordingFolder {
+/// A folder with one file, which lies in memory, so that no input waits for a disk. A relative path
+/// in the file leads to nothing else: beside the file in memory lie the open files of the fuzzer,
+/// and reading one of its pipes would wait forever.
+class FolderInMemory {
  public:
-  RecordingFolder() {
-    expect(write_file(folder_ / "a.png", "").has_value(), "no place for a picture");
-    std::filesystem::create_symlink(path_of_file_with({}), folder_ / "frames.txt");
+  explicit FolderInMemory(const char* name) : file_(folder_ / name) {
+    std::filesystem::create_symlink(path_of_file_with({}), file_);
   }
   const std::filesystem::path& path() const { return folder_.path(); }
+  const std::filesystem::path& file_with(Bytes bytes) const {
+    (void)path_of_file_with(bytes);
+    return file_;
+  }
 
  private:
   const test::TemporaryFolder folder_;
+  const std::filesystem::path file_;
 };
 
 }  // namespace
 
 void run_config(Bytes bytes) {
-  const auto config = firmware::load_config(path_of_file_with(bytes));
+  static const FolderInMemory folder("fuzz.yaml");
+  const auto config = firmware::load_config(folder.file_with(bytes));
   if (!config) expect(!config.error().message.empty(), "an error without a message");
 }
 
@@ -72,8 +78,10 @@ void run_rig(Bytes bytes) {
 }
 
 void run_frames_txt(Bytes bytes) {
-  static const RecordingFolder folder;
-  (void)path_of_file_with(bytes);
+  static const FolderInMemory folder("frames.txt");
+  static const Status picture = write_file(folder.path() / "a.png", "");
+  expect(picture.has_value(), "no place for a picture");
+  (void)folder.file_with(bytes);
   const auto recording = drivers::load_recording(folder.path());
   if (!recording) return;
   expect(!recording->empty(), "a recording without frames");

@@ -1,0 +1,31 @@
+// Finds the same place of the ground in two pictures, to a fraction of a pixel.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pipeline/calibration/refine/grey_image.h"
+#include "pipeline/calibration/refine/moment_view.h"
+
+namespace bevloc {
+
+/// A tie point: the pixels of one place on the ground in two pictures.
+struct GroundTie {
+  Eigen::Vector2d first_px;
+  Eigen::Vector2d second_px;
+};
+
+struct TieSearch {
+  double reach_px = 6.0;  ///< to each side of where the views have the place
+  double spacing_px = 32.0;
+  double farthest_m = 20.0;  ///< from the camera
+};
+
+/// Compares patches of the ground around a grid of places of the first picture. A tie needs texture
+/// that differs along both axes, and one place within the reach where both pictures agree.
+std::vector<GroundTie> find_ties(const GreyImage& first, const MomentView& first_view,
+                                 const GreyImage& second, const MomentView& second_view,
+                                 const TieSearch& search);
+
+}  // namespace bevloc
