@@ -118,6 +118,10 @@ std::string text_of_refinement(const RigRefinement& refinement) {
   for (const CameraRefinement& camera : refinement.cameras) {
     text += fmt::format(" {:>16}", fmt::format("{} of {}", camera.found, camera.looked_at));
   }
+  text += fmt::format("\n{:15}", "tie points");
+  for (const CameraRefinement& camera : refinement.cameras) {
+    text += fmt::format(" {:>16}", camera.ties);
+  }
   text += fmt::format("\n{:15}", "off, px");
   for (const CameraRefinement& camera : refinement.cameras) {
     text +=
@@ -134,6 +138,7 @@ nlohmann::json json_of(const RigRefinement& refinement, bool with_verdicts) {
     nlohmann::json& entry = json["cameras"][std::string(kCameraNames[c])];
     entry = {{"looked_at", camera.looked_at},
              {"found", camera.found},
+             {"ties", camera.ties},
              {"before_px", camera.before_px},
              {"after_px", camera.after_px}};
     if (with_verdicts) entry["verdict"] = name_of(verdict_on(camera, best));

@@ -9,24 +9,27 @@ constexpr double kPaintReach_m = 25.0;
 constexpr int kLeastFramesets = 20;
 
 struct Round {
-  double search_rad;  ///< largest distance between predicted and found paint
-  /// Of where paint is found (RefinementProblem::solve), halved from the first to the last.
+  double search_rad;  ///< largest distance between where paint and ties are expected and found
+  /// Of where they are found (RefinementProblem::solve), halved from the first to the last.
   double first_sigma_scale;
   double last_sigma_scale;
+  bool uses_paint;
   /// Whether paint is searched where the expected tilt of the body puts it.
   bool expects_tilt;
 };
-/// A wide search also finds the paint of wrong lines. With a large sigma they change the estimate
-/// less. The body tilts by more than a narrow search reaches, so the last rounds expect its tilt.
-/// They also start again with each frameset, from a large sigma, because a frameset that has fitted
-/// a kerb beside a line would stay there. The first rounds do neither, because they do not yet tell
-/// the tilt from errors of the cameras.
-constexpr std::array<Round, 6> kRounds{{{0.04, 8.0, 8.0, false},
-                                        {0.02, 4.0, 4.0, false},
-                                        {0.014, 2.0, 2.0, false},
-                                        {0.014, 4.0, 1.0, true},
-                                        {0.014, 4.0, 1.0, true},
-                                        {0.014, 4.0, 1.0, true}}};
+/// A wide search also finds the paint of wrong lines. So the first round uses the ties only, which
+/// need no map. With a large sigma, wrong lines change the estimate less. The body tilts by more
+/// than a narrow search reaches, so the last rounds expect its tilt. They also start again with
+/// each frameset, from a large sigma, because a frameset that has fitted a kerb beside a line would
+/// stay there. The rounds before do neither, because they do not yet tell the tilt from errors of
+/// the cameras.
+constexpr std::array<Round, 7> kRounds{{{0.04, 8.0, 1.0, false, false},
+                                        {0.04, 8.0, 8.0, true, false},
+                                        {0.02, 4.0, 4.0, true, false},
+                                        {0.014, 2.0, 2.0, true, false},
+                                        {0.014, 4.0, 1.0, true, true},
+                                        {0.014, 4.0, 1.0, true, true},
+                                        {0.014, 4.0, 1.0, true, true}}};
 
 class RigRefiner {
  public:
@@ -57,6 +60,7 @@ class RigRefiner {
     problem_.clear_sightings();
     recording_.rewind();
     framesets_ = 0;
+    before_.clear();
     std::optional<Se2> last;
     for (std::vector<RecordedPicture> pictures;;) {
       if (Status read = recording_.next(pictures); !read) return read;
@@ -68,33 +72,38 @@ class RigRefiner {
       if (!pose || (last && is_near(*last, *pose))) continue;
       last = pose;
       look_at(pictures, *pose, round);
-      find_ties_of(pictures, round);
-      before_ = pictures;
+      tie(pictures, round);
+      before_.swap(pictures);
       ++framesets_;
     }
   }
 
-  void find_ties_of(const std::vector<RecordedPicture>& pictures, const Round& round) {
-    const auto tie = [&](const RecordedPicture& first, int frame, const RecordedPicture& second) {
-      const RefinementProblem::Picture a{frame, first.camera, first.time};
-      const RefinementProblem::Picture b{framesets_, second.camera, second.time};
-      const auto first_view = problem_.expected_view(a);
-      const auto second_view = problem_.expected_view(b);
-      if (!first_view || !second_view) return;
-      TieSearch search;
-      search.reach_px = round.search_rad * first_view->camera().intrinsics.fx_px;
-      auto ties = find_ties(first.image, *first_view, second.image, *second_view, search);
-      if (!ties.empty()) problem_.add_ties(a, b, std::move(ties));
-    };
+  /// Ties the pictures of a frameset to each other and to those of the frameset before.
+  void tie(const std::vector<RecordedPicture>& pictures, const Round& round) {
     for (const RecordedPicture& first : pictures) {
       for (const RecordedPicture& second : pictures) {
-        if (first.camera < second.camera) tie(first, framesets_, second);
+        if (first.camera < second.camera) tie_two(first, framesets_, second, round);
       }
     }
-    if (framesets_ == 0) return;
     for (const RecordedPicture& first : before_) {
-      for (const RecordedPicture& second : pictures) tie(first, framesets_ - 1, second);
+      for (const RecordedPicture& second : pictures) {
+        tie_two(first, framesets_ - 1, second, round);
+      }
     }
+  }
+
+  /// The second picture belongs to the present frameset.
+  void tie_two(const RecordedPicture& first, int frame, const RecordedPicture& second,
+               const Round& round) {
+    const RefinementProblem::Picture a{frame, first.camera, first.time};
+    const RefinementProblem::Picture b{framesets_, second.camera, second.time};
+    const auto first_view = problem_.expected_view(a);
+    const auto second_view = problem_.expected_view(b);
+    if (!first_view || !second_view) return;
+    TieSearch search;
+    search.reach_px = round.search_rad * first_view->camera().intrinsics.fx_px;
+    auto ties = find_ties(first.image, *first_view, second.image, *second_view, search);
+    if (!ties.empty()) problem_.add_ties(a, b, std::move(ties));
   }
 
   void solve(const Round& round) {
@@ -123,7 +132,9 @@ class RigRefiner {
       PaintSearch search;
       search.reach_px = round.search_rad * camera.intrinsics.fx_px;
       problem_.add(framesets_, picture.camera, picture.time,
-                   find_paint(picture.image, camera, exposed->inverse(), points_, search));
+                   round.uses_paint
+                       ? find_paint(picture.image, camera, exposed->inverse(), points_, search)
+                       : std::vector<PaintSighting>{});
     }
   }
 

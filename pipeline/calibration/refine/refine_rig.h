@@ -12,8 +12,8 @@ namespace bevloc {
 /// Called after each frameset with how many of all have been read, over all rounds.
 using RefinementProgress = std::function<void(int done, int all)>;
 
-/// Reads the recording six times. It first uses the given rig and a wide search, and later
-/// the rig found so far and a narrower search. Uses framesets at least 1.5 m or 2 degrees apart.
+/// Reads the recording seven times. It first uses the given rig and a wide search, and later the
+/// rig found so far and a narrower search. Uses framesets at least 1.5 m or 2 degrees apart.
 /// Fails if the recording cannot be read, or if fewer than 20 framesets have reference poses.
 Result<RigRefinement> refine_rig(const Rig& rig, const MapIndex& map, PictureRecording& recording,
                                  const RefinementOptions& options,

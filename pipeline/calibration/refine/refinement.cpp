@@ -15,7 +15,7 @@ namespace bevloc {
 namespace {
 
 constexpr double kAgrees = 3.0;  // sigmas
-/// A camera with fewer sightings that agree keeps its calibration.
+/// A camera with fewer sightings and ties that agree keeps its calibration.
 constexpr int kLeastSightings = 100;
 
 double median_or_zero(std::vector<double>& values) {
@@ -70,8 +70,9 @@ void RefinementProblem::add_ties(const Picture& first, const Picture& second,
 
 std::optional<MomentView> RefinementProblem::expected_view(const Picture& picture) const {
   const auto frame = static_cast<size_t>(picture.frame);
-  const FrameVector error = frame < estimate_.frames.size() ? expected_error(estimate_.frames[frame])
-                                                            : FrameVector::Zero().eval();
+  const FrameVector error = frame < estimate_.frames.size()
+                                ? expected_error(estimate_.frames[frame])
+                                : FrameVector::Zero().eval();
   return MomentView::make(rig_.cameras[picture.camera], estimate_.changes[picture.camera], error,
                           reference_, picture.time);
 }
@@ -133,6 +134,7 @@ void RefinementProblem::move(const EliminatedFrames& eliminated, const Eigen::Ve
   estimate_.mean += by.segment<kFrameUnknowns>(kCameraUnknowns);
   estimate_.tilt_per_acceleration +=
       by.segment<kTiltsPerAcceleration>(kCameraUnknowns + kFrameUnknowns);
+  for (int c = 0; c < kCameraCount; ++c) estimate_.heights_m[c] += by[kFirstHeight + c];
   for (size_t i = 0; i < estimate_.shifts.size(); ++i) {
     estimate_.shifts[i] += by.segment<2>(static_cast<Eigen::Index>(kFirstElement + 2 * i));
   }
@@ -188,20 +190,25 @@ void RefinementProblem::solve(double gate_rad, double sigma_scale) {
   }
 }
 
-/// Leaves out cameras that see too little or would change too much. Returns whether there are new
-/// ones.
-bool RefinementProblem::leave_out_doubtful(double gate_rad) {
-  std::array<int, kCameraCount> seen{};
-  for (const View& view : views_) {
-    visit(view, gate_rad, [&](const PaintSighting&, const Line* line, double) {
-      if (line && std::abs(line->residual) <= kAgrees) ++seen[view.picture.camera];
-    });
-  }
+std::array<int, kCameraCount> RefinementProblem::agreeing_ties(double gate_rad) const {
+  std::array<int, kCameraCount> count{};
   for (const Ties& ties : ties_) {
     visit(ties, gate_rad, [&](const TieRows* tie) {
       if (!tie || tie->residual > kAgrees) return;
-      ++seen[ties.first.camera];
-      ++seen[ties.second.camera];
+      ++count[ties.first.camera];
+      if (ties.second.camera != ties.first.camera) ++count[ties.second.camera];
+    });
+  }
+  return count;
+}
+
+/// Leaves out cameras that see too little or would change too much. Returns whether there are new
+/// ones.
+bool RefinementProblem::leave_out_doubtful(double gate_rad) {
+  std::array<int, kCameraCount> seen = agreeing_ties(gate_rad);
+  for (const View& view : views_) {
+    visit(view, gate_rad, [&](const PaintSighting&, const Line* line, double) {
+      if (line && std::abs(line->residual) <= kAgrees) ++seen[view.picture.camera];
     });
   }
   bool any = false;
@@ -257,23 +264,28 @@ void RefinementProblem::keep_unobservable(double gate_rad) {
   }
 }
 
-/// One Gauss-Newton step of a camera's observable parameters.
+/// One Gauss-Newton step of a camera's observable parameters, and of the height of the ground that
+/// its ties show.
 void RefinementProblem::step_alone(int camera, const RefinementSums& sums) {
-  std::vector<int> observable;
-  for (int p = 0; p < kCameraParameters; ++p) {
-    if (!unobservable_[camera][static_cast<size_t>(p)]) observable.push_back(p);
-  }
-  if (observable.empty()) return;
-  const Eigen::Index first = camera * kCameraParameters;
-  const CameraAdjustment prior = camera_prior().segment<kCameraParameters>(first);
+  const Eigen::VectorXd prior = camera_prior();
   CameraAdjustment& change = estimate_.changes[camera];
-  Eigen::Matrix<double, kCameraParameters, kCameraParameters> information =
-      sums.information.block<kCameraParameters, kCameraParameters>(first, first);
-  information.diagonal() += prior;
-  const CameraAdjustment gradient =
-      sums.gradient.segment<kCameraParameters>(first) + prior.cwiseProduct(change);
-  const Eigen::MatrixXd part = information(observable, observable);
-  change(observable) -= part.llt().solve(gradient(observable));
+  Eigen::MatrixXd information = sums.information;
+  Eigen::VectorXd gradient = sums.gradient;
+  std::vector<Eigen::Index> unknowns;
+  for (int p = 0; p < kCameraParameters; ++p) {
+    if (unobservable_[camera][static_cast<size_t>(p)]) continue;
+    const Eigen::Index unknown = camera * kCameraParameters + p;
+    information(unknown, unknown) += prior[unknown];
+    gradient[unknown] += prior[unknown] * change[p];
+    unknowns.push_back(unknown);
+  }
+  unknowns.push_back(kFirstHeight + camera);
+  const Eigen::MatrixXd part = information(unknowns, unknowns);
+  const Eigen::VectorXd by = -part.llt().solve(gradient(unknowns));
+  for (size_t i = 0; i + 1 < unknowns.size(); ++i) {
+    change[unknowns[i] % kCameraParameters] += by[static_cast<Eigen::Index>(i)];
+  }
+  estimate_.heights_m[camera] += by[by.size() - 1];
 }
 
 void RefinementProblem::finish(double gate_rad) {
@@ -311,8 +323,10 @@ RigRefinement RefinementProblem::result(double gate_rad) const {
                       before[view.picture.camera].push_back(std::abs(distance_px));
                     });
   }
+  const std::array<int, kCameraCount> ties = agreeing_ties(gate_rad);
   for (int c = 0; c < kCameraCount; ++c) {
     CameraRefinement& camera = result.cameras[c];
+    camera.ties = ties[c];
     camera.change = estimate_.changes[c];
     camera.unobservable = unobservable_[c];
     camera.sigma = variance.segment<kCameraParameters>(c * kCameraParameters).cwiseSqrt();

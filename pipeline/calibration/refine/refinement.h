@@ -1,4 +1,5 @@
-// Estimates the calibration of all cameras from the paint that a drive's pictures show.
+// Estimates the calibration of all cameras from the paint and the ground that a drive's pictures
+// show.
 #pragma once
 
 #include <array>
@@ -37,7 +38,8 @@ struct RefinementOptions {
   double paint_m = 0.01;
   /// One sigma of the place of a whole element of the map, along each axis.
   double map_m = 0.04;
-  // One sigma of tie points: of each pixel, of the ground's height, and of the rest.
+  // One sigma of tie points: of their pixels, of the height of the ground (of all that a camera
+  // sees, and of each against them), and along the ground.
   double tie_px = 0.4;
   double tie_height_m = 0.08;
   double tie_m = 0.01;
@@ -50,6 +52,7 @@ struct CameraRefinement {
   ParameterSet unobservable;
   int looked_at = 0;       ///< places where the map has paint
   int found = 0;           ///< of them with paint that agrees after the refinement
+  int ties = 0;            ///< tie points that agree after the refinement
   double before_px = 0.0;  ///< median distance of paint from the map, of those found
   double after_px = 0.0;
 };
@@ -63,23 +66,26 @@ struct RigRefinement {
 /// each with a Gaussian prior (RefinementOptions, kCameraParameterInfos):
 /// - eight parameters of each camera;
 /// - six of each frameset, which all cameras share: an error of its reference pose, and tilt and
-///   lift of the body. They are eliminated by their Schur complement;
+///   lift of the body. The error of the reference pose drifts from one frameset to the next (a
+///   first-order Gauss-Markov process). These unknowns are eliminated by their Schur complement;
 /// - the mean of these six over the drive, and how much the body tilts per acceleration;
+/// - for each camera the height of the ground that its ties show, because a pavement is higher than
+///   the road;
 /// - the shift of each element of the map.
 ///
 /// The directions of change are the eigenvectors of the information about the cameras, in units of
 /// the expected errors. If the recording determines a direction no better than to half the expected
 /// error, the parameter with the largest part in this direction is unobservable. Its change is 0,
 /// and the other parameters of its camera are estimated again. A camera keeps all its values, and
-/// its sightings do not count, if fewer than 100 of them agree or if one of its parameters would
-/// change by more than three expected errors.
+/// its sightings and ties do not count, if fewer than 100 of them agree or if one of its parameters
+/// would change by more than three expected errors.
 class RefinementProblem {
  public:
   /// `rig` and `reference` must outlive the problem.
   RefinementProblem(const Rig& rig, const ReferenceTrajectory& reference,
                     const RefinementOptions& options);
 
-  /// Forgets all sightings, not what was estimated.
+  /// Forgets all sightings and ties, not what was estimated.
   void clear_sightings();
 
   /// Adds what one camera saw. `frame` counts framesets from 0. The reference must cover `time`.
@@ -99,8 +105,8 @@ class RefinementProblem {
   /// as expected from the mean of the drive and the acceleration.
   std::optional<MomentView> expected_view(const Picture& picture) const;
 
-  /// Improves the estimate with the sightings whose paint is at most `gate_rad` times the focal
-  /// length from where the estimate has it. The sigma of where paint is found is `sigma_scale`
+  /// Improves the estimate with the sightings and ties that are at most `gate_rad` times the focal
+  /// length from where the estimate has them. The sigma of where they are found is `sigma_scale`
   /// times that of the options: a large one for a rig that may be far off.
   void solve(double gate_rad, double sigma_scale = 1.0);
 
@@ -124,8 +130,9 @@ class RefinementProblem {
  private:
   static constexpr int kCameraUnknowns = kCameraCount * kCameraParameters;
   static constexpr int kTiltsPerAcceleration = 2;
-  /// Index of the first element's shift among the unknowns that do not belong to a single frameset.
-  static constexpr int kFirstElement = kCameraUnknowns + kFrameUnknowns + kTiltsPerAcceleration;
+  // Indices among the unknowns that do not belong to a single frameset.
+  static constexpr int kFirstHeight = kCameraUnknowns + kFrameUnknowns + kTiltsPerAcceleration;
+  static constexpr int kFirstElement = kFirstHeight + kCameraCount;
   struct Frame {
     FrameVector error = FrameVector::Zero();
     /// Of the vehicle, along x and y.
@@ -139,6 +146,8 @@ class RefinementProblem {
     FrameVector mean = FrameVector::Zero();
     /// Roll by the acceleration along y, pitch by that along x.
     Eigen::Vector2d tilt_per_acceleration = Eigen::Vector2d::Zero();
+    /// Of the ground that a camera's ties show, above the road.
+    std::array<double, kCameraCount> heights_m{};
     std::vector<Eigen::Vector2d> shifts;  ///< of the map's elements
   };
   struct View {
@@ -150,22 +159,22 @@ class RefinementProblem {
     Picture second;
     std::vector<GroundTie> ties;
   };
-  /// A sighting's distance from the estimate, in pixels and in sigmas, along its normal.
+  /// One linearized sighting.
   struct Line {
-    double residual;
-    double per_px;  ///< sigmas
+    double residual;  ///< in sigmas
+    double per_px;    ///< sigmas per pixel along the normal
     PointView point;
   };
-  /// A tie's two rows, and how far its two points are from each other in sigmas.
+  /// One linearized tie.
   struct TieRows {
-    double residual;
-    std::vector<RefinementRow> rows;
+    double residual;  ///< distance of the two places on the ground, in sigmas
+    std::array<RefinementRow, 2> rows;
   };
 
   /// Calls visitor(sighting, line or null, distance in pixels) for each sighting of a view.
   using Visitor = std::function<void(const PaintSighting&, const Line*, double)>;
   void visit(const View& view, double gate_rad, const Visitor& visitor) const;
-  /// Calls visitor(rows or null) for each tie.
+  /// Calls visitor(rows or null) for each tie. Null: its two places are too far from each other.
   using TieVisitor = std::function<void(const TieRows*)>;
   void visit(const Ties& ties, double gate_rad, const TieVisitor& visitor) const;
   std::optional<MomentView> view_of(const Picture& picture) const;
@@ -180,6 +189,7 @@ class RefinementProblem {
   Eigen::VectorXd camera_prior() const;
   void move(const EliminatedFrames& eliminated, const Eigen::VectorXd& by);
   bool step(double gate_rad, double& damping);
+  std::array<int, kCameraCount> agreeing_ties(double gate_rad) const;
   bool leave_out_doubtful(double gate_rad);
   void find_unobservable(double gate_rad);
   void keep_unobservable(double gate_rad);

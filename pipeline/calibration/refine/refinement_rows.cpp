@@ -115,29 +115,38 @@ std::optional<RefinementProblem::TieRows> RefinementProblem::linearize(
   const auto first = ground_point(first_view, tie.first_px);
   const auto second = ground_point(second_view, tie.second_px);
   if (!first || !second) return std::nullopt;
-  const Eigen::Vector2d apart = first->at - second->at;
+  const double first_height_m = estimate_.heights_m[ties.first.camera];
+  const double second_height_m = estimate_.heights_m[ties.second.camera];
+  const Eigen::Vector2d apart = first->at + first_height_m * first->of_height - second->at -
+                                second_height_m * second->of_height;
   const Eigen::Vector2d apart_px = second->of_pixel.inverse() * apart;
   if (!(apart_px.norm() <= gate_rad * second_view.camera().intrinsics.fx_px)) return std::nullopt;
   const double px = sigma_scale_ * options_.tie_px;
   const double floor_m = sigma_scale_ * options_.tie_m;
   const Eigen::Vector2d of_height = options_.tie_height_m * (first->of_height - second->of_height);
-  const Eigen::Matrix2d covariance =
-      px * px * (first->of_pixel * first->of_pixel.transpose() +
-                 second->of_pixel * second->of_pixel.transpose()) +
-      of_height * of_height.transpose() + floor_m * floor_m * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d covariance = px * px *
+                                         (first->of_pixel * first->of_pixel.transpose() +
+                                          second->of_pixel * second->of_pixel.transpose()) +
+                                     of_height * of_height.transpose() +
+                                     floor_m * floor_m * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d whiten = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
   const Eigen::Vector2d residual = whiten * apart;
-  TieRows result{residual.norm(), {}};
+  const double weight = weight_of(residual.norm());
+  TieRows result{residual.norm(), {{{residual[0], weight}, {residual[1], weight}}}};
   const Eigen::Matrix<double, 2, kCameraParameters> of_first = whiten * first->of_camera;
   const Eigen::Matrix<double, 2, kCameraParameters> of_second = -whiten * second->of_camera;
   const Eigen::Matrix<double, 2, kFrameUnknowns> of_first_frame = whiten * first->of_frame;
   const Eigen::Matrix<double, 2, kFrameUnknowns> of_second_frame = -whiten * second->of_frame;
   for (int axis = 0; axis < 2; ++axis) {
-    RefinementRow& row = result.rows.emplace_back(residual[axis], weight_of(result.residual));
+    RefinementRow& row = result.rows[static_cast<size_t>(axis)];
     row.add_shared(ties.first.camera * kCameraParameters,
                    only_free(ties.first.camera, of_first.row(axis).transpose()));
     row.add_shared(ties.second.camera * kCameraParameters,
                    only_free(ties.second.camera, of_second.row(axis).transpose()));
+    row.add_shared(kFirstHeight + ties.first.camera,
+                   Eigen::Matrix<double, 1, 1>(whiten.row(axis).dot(first->of_height)));
+    row.add_shared(kFirstHeight + ties.second.camera,
+                   Eigen::Matrix<double, 1, 1>(-whiten.row(axis).dot(second->of_height)));
     row.add_frame(ties.first.frame, of_first_frame.row(axis).transpose());
     row.add_frame(ties.second.frame, of_second_frame.row(axis).transpose());
   }
@@ -198,10 +207,13 @@ void RefinementProblem::add_priors(RefinementSums& sums) const {
     add_shared(kCameraUnknowns + kFrameUnknowns + i, estimate_.tilt_per_acceleration[i],
                kTiltPerAcceleration);
   }
+  for (int c = 0; c < kCameraCount; ++c) {
+    add_shared(kFirstHeight + c, estimate_.heights_m[c], options_.tie_height_m);
+  }
   for (size_t i = 0; i < estimate_.shifts.size(); ++i) {
     for (int axis = 0; axis < 2; ++axis) {
-      add_shared(kFirstElement + static_cast<Eigen::Index>(2 * i) + axis,
-                 estimate_.shifts[i][axis], options_.map_m);
+      add_shared(kFirstElement + static_cast<Eigen::Index>(2 * i) + axis, estimate_.shifts[i][axis],
+                 options_.map_m);
     }
   }
 }

@@ -20,11 +20,12 @@ using FrameVector = Eigen::Matrix<double, kFrameUnknowns, 1>;
 using FrameMatrix = Eigen::Matrix<double, kFrameUnknowns, kFrameUnknowns>;
 
 /// One linearized equation: a residual in sigmas, and its derivative by the unknowns that it
-/// depends on. These are at most two groups of the shared unknowns, and at most two framesets,
+/// depends on. These are at most four groups of the shared unknowns, and at most two framesets,
 /// which are the same or follow each other.
 class RefinementRow {
  public:
-  static constexpr int kMostParts = 2;
+  static constexpr int kMostShared = 4;
+  static constexpr int kMostFrames = 2;
   struct SharedPart {
     Eigen::Index first = 0;
     Eigen::Index size = 0;
@@ -53,8 +54,8 @@ class RefinementRow {
 
   double residual;
   double weight;
-  std::array<SharedPart, kMostParts> shared;
-  std::array<FramePart, kMostParts> frames;
+  std::array<SharedPart, kMostShared> shared;
+  std::array<FramePart, kMostFrames> frames;
   int shared_parts = 0;
   int frame_parts = 0;
 };

@@ -38,8 +38,8 @@ std::optional<Patch> read_patch(const GreyImage& image, const Eigen::Vector2d& c
       for (int b = -1; b <= 1; ++b) {
         for (int a = -1; a <= 1; ++a) {
           const Eigen::Vector2d at =
-              centre + image_from_patch *
-                           Eigen::Vector2d(i - kHalf + kThird * a, j - kHalf + kThird * b);
+              centre +
+              image_from_patch * Eigen::Vector2d(i - kHalf + kThird * a, j - kHalf + kThird * b);
           sum += image.at(at.x(), at.y());
         }
       }
@@ -53,7 +53,7 @@ std::optional<Patch> read_patch(const GreyImage& image, const Eigen::Vector2d& c
 /// both axes.
 bool normalize(Patch& patch) {
   constexpr float kLeastContrast = 2.5F;  // grey levels, one sigma
-  constexpr float kLeastTexture = 0.6F;     // grey levels per pixel along the axis of least texture
+  constexpr float kLeastTexture = 0.6F;   // grey levels per pixel along the axis of least texture
   float sum = 0.0F;
   for (const float value : patch) sum += value;
   float squares = 0.0F;
@@ -141,7 +141,9 @@ class Correlation {
     return variance > 1.0F ? product / std::sqrt(variance) : 0.0F;
   }
 
-  float& at(int x, int y) { return values_[static_cast<size_t>((y + reach_) * side_ + x + reach_)]; }
+  float& at(int x, int y) {
+    return values_[static_cast<size_t>((y + reach_) * side_ + x + reach_)];
+  }
   float at(int x, int y) const {
     return values_[static_cast<size_t>((y + reach_) * side_ + x + reach_)];
   }
