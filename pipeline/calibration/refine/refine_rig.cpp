@@ -13,9 +13,9 @@ struct Round {
   /// Of where they are found (RefinementProblem::solve), halved from the first to the last.
   double first_sigma_scale;
   double last_sigma_scale;
-  bool uses_paint;
+  bool uses_paint = true;
   /// Whether paint is searched where the expected tilt of the body puts it.
-  bool expects_tilt;
+  bool expects_tilt = false;
 };
 /// A wide search also finds the paint of wrong lines. So the first round uses the ties only, which
 /// need no map. With a large sigma, wrong lines change the estimate less. The body tilts by more
@@ -23,13 +23,12 @@ struct Round {
 /// each frameset, from a large sigma, because a frameset that has fitted a kerb beside a line would
 /// stay there. The rounds before do neither, because they do not yet tell the tilt from errors of
 /// the cameras.
-constexpr std::array<Round, 7> kRounds{{{0.04, 8.0, 1.0, false, false},
-                                        {0.04, 8.0, 8.0, true, false},
-                                        {0.02, 4.0, 4.0, true, false},
-                                        {0.014, 2.0, 2.0, true, false},
-                                        {0.014, 4.0, 1.0, true, true},
-                                        {0.014, 4.0, 1.0, true, true},
-                                        {0.014, 4.0, 1.0, true, true}}};
+constexpr Round kTiesOnly{
+    .search_rad = 0.04, .first_sigma_scale = 8.0, .last_sigma_scale = 1.0, .uses_paint = false};
+constexpr Round kLast{
+    .search_rad = 0.014, .first_sigma_scale = 4.0, .last_sigma_scale = 1.0, .expects_tilt = true};
+constexpr std::array<Round, 7> kRounds{
+    {kTiesOnly, {0.04, 8.0, 8.0}, {0.02, 4.0, 4.0}, {0.014, 2.0, 2.0}, kLast, kLast, kLast}};
 
 class RigRefiner {
  public:

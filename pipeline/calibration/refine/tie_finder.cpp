@@ -50,7 +50,7 @@ std::optional<Patch> read_patch(const GreyImage& image, const Eigen::Vector2d& c
 }
 
 /// Subtracts the mean and divides by the root of the sum of squares. False without texture along
-/// both axes.
+/// both axes: more than one place would agree with it, so this saves the search.
 bool normalize(Patch& patch) {
   constexpr float kLeastContrast = 2.5F;  // grey levels, one sigma
   constexpr float kLeastTexture = 0.6F;   // grey levels per pixel along the axis of least texture
