@@ -45,7 +45,7 @@ void add_ties(RefinementProblem& problem, const Rig& rig, const CameraAdjustment
     const Se2 vehicle_from_map = drive.reference.at(drive.time_of(frame))->inverse();
     std::vector<GroundTie> ties;
     for (double v = 230.0; v < 350.0; v += 30.0) {
-      for (double u = 20.0; u < 640.0; u += 40.0) {
+      for (double u = 20.0; u < 640.0; u += 80.0) {
         const auto point = first.ground_at({u, v});
         if (!point) continue;
         const double height_m =
