@@ -17,8 +17,8 @@ constexpr double kScatterGain = 0.05;
 constexpr double kMostOfMean = 4.0;
 /// The mean of samples with the right sigma stays below 1 plus this.
 constexpr double kUsualExcess = 0.5;
-/// Once the factor exceeds the first limit, the sigma that the receiver states counts as wrong.
-/// Once the factor is below the second limit, the sigma counts as right again.
+/// If the factor exceeds kWrongFactor, the receiver's own sigma counts as wrong, until the factor
+/// falls below kFactorNoLongerWrong.
 constexpr double kWrongFactor = 2.0;
 constexpr double kFactorNoLongerWrong = 1.5;
 /// Samples with a longer pause between them are not compared.

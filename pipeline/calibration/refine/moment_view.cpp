@@ -17,7 +17,8 @@ Eigen::Vector3d on_ground(const Eigen::Vector2d& point) {
   return {point.x(), point.y(), 0.0};
 }
 
-/// d pixel / d(point in the camera), by central differences. Nothing beyond the lens.
+/// Returns the derivative of the pixel by the point in the camera frame, from central differences,
+/// or nothing if the lens does not see the point.
 std::optional<Eigen::Matrix<double, 2, 3>> lens_slope(const Intrinsics& lens,
                                                       const Eigen::Vector3d& point) {
   constexpr double kRelative = 1e-5;
@@ -53,26 +54,25 @@ std::optional<MomentView> MomentView::make(const CameraModel& camera,
   view.camera_ = adjusted(camera, change);
   view.camera_from_body_ = view.camera_.vehicle_from_camera.inverse();
   view.body_from_vehicle_ = body_from_vehicle(frame_error);
+  view.vehicle_from_camera_ = (view.camera_from_body_ * view.body_from_vehicle_).inverse();
   view.map_from_vehicle_ = *pose;
+  view.vehicle_from_map_ = pose->inverse();
   view.vehicle_from_map_before_ = before->inverse();
   view.vehicle_from_map_after_ = after->inverse();
   return view;
 }
 
 Eigen::Vector2d MomentView::eye() const {
-  const Se3 vehicle_from_camera = (camera_from_body_ * body_from_vehicle_).inverse();
-  return map_from_vehicle_ * Eigen::Vector2d(vehicle_from_camera.translation_m.head<2>());
+  return map_from_vehicle_ * Eigen::Vector2d(vehicle_from_camera_.translation_m.head<2>());
 }
 
 std::optional<Eigen::Vector2d> MomentView::project(const Eigen::Vector2d& map_point) const {
   return camera_.intrinsics.project(
-      camera_from_body_ *
-      (body_from_vehicle_ * on_ground(map_from_vehicle_.inverse() * map_point)));
+      camera_from_body_ * (body_from_vehicle_ * on_ground(vehicle_from_map_ * map_point)));
 }
 
 std::optional<PointView> MomentView::look_at(const Eigen::Vector2d& map_point) const {
-  const Eigen::Vector3d in_body =
-      body_from_vehicle_ * on_ground(map_from_vehicle_.inverse() * map_point);
+  const Eigen::Vector3d in_body = body_from_vehicle_ * on_ground(vehicle_from_map_ * map_point);
   const Eigen::Vector3d in_camera = camera_from_body_ * in_body;
   const auto pixel = camera_.intrinsics.project(in_camera);
   const auto slope = lens_slope(camera_.intrinsics, in_camera);
@@ -99,11 +99,10 @@ std::optional<PointView> MomentView::look_at(const Eigen::Vector2d& map_point) c
 
 std::optional<Eigen::Vector2d> MomentView::ground_at(const Eigen::Vector2d& pixel) const {
   constexpr double kLeastSlope = 0.02;
-  const Se3 vehicle_from_camera = (camera_from_body_ * body_from_vehicle_).inverse();
   const Eigen::Vector3d ray =
-      (vehicle_from_camera.rotation * camera_.intrinsics.ray(pixel)).normalized();
+      (vehicle_from_camera_.rotation * camera_.intrinsics.ray(pixel)).normalized();
   if (ray.z() > -kLeastSlope) return std::nullopt;
-  const Eigen::Vector3d& eye = vehicle_from_camera.translation_m;
+  const Eigen::Vector3d& eye = vehicle_from_camera_.translation_m;
   const Eigen::Vector3d at = eye - (eye.z() / ray.z()) * ray;
   return map_from_vehicle_ * Eigen::Vector2d(at.head<2>());
 }

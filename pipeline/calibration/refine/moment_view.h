@@ -27,8 +27,8 @@ Se3 body_from_vehicle(const FrameVector& frame_error);
 
 class MomentView {
  public:
-  /// The camera of the rig, changed, at a time by the picture's clock. Nothing where the reference
-  /// does not cover the time.
+  /// Views the road with `change` applied to the rig's camera. `picture_time` is by the picture's
+  /// clock. Returns nothing if the reference does not cover the time.
   static std::optional<MomentView> make(const CameraModel& camera, const CameraAdjustment& change,
                                         const FrameVector& frame_error,
                                         const ReferenceTrajectory& reference, Time picture_time);
@@ -37,13 +37,14 @@ class MomentView {
   /// The camera's place in the map frame.
   Eigen::Vector2d eye() const;
 
-  /// Nothing for a point that the lens does not see.
+  /// Returns nothing for a point that the lens does not see.
   std::optional<PointView> look_at(const Eigen::Vector2d& map_point) const;
 
-  /// Only the pixel.
+  /// Returns only the pixel that look_at() gives, which is faster.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector2d& map_point) const;
 
-  /// The point on the ground, in the map frame, that a pixel shows. Nothing above the horizon.
+  /// Returns the point on the ground, in the map frame, that a pixel shows, or nothing if the pixel
+  /// is above the horizon.
   std::optional<Eigen::Vector2d> ground_at(const Eigen::Vector2d& pixel) const;
 
  private:
@@ -52,7 +53,9 @@ class MomentView {
   CameraModel camera_;
   Se3 camera_from_body_;
   Se3 body_from_vehicle_;
+  Se3 vehicle_from_camera_;
   Se2 map_from_vehicle_;
+  Se2 vehicle_from_map_;
   Se2 vehicle_from_map_before_;  ///< kAround earlier
   Se2 vehicle_from_map_after_;
 };

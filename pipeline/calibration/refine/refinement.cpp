@@ -69,12 +69,7 @@ void RefinementProblem::add_ties(const Picture& first, const Picture& second,
 }
 
 std::optional<MomentView> RefinementProblem::expected_view(const Picture& picture) const {
-  const auto frame = static_cast<size_t>(picture.frame);
-  const FrameVector error = frame < estimate_.frames.size()
-                                ? expected_error(estimate_.frames[frame])
-                                : FrameVector::Zero().eval();
-  return MomentView::make(rig_.cameras[picture.camera], estimate_.changes[picture.camera], error,
-                          reference_, picture.time);
+  return view_of(picture, expected_error(picture.frame));
 }
 
 void RefinementProblem::restart_frames() {
@@ -82,8 +77,7 @@ void RefinementProblem::restart_frames() {
 }
 
 Se3 RefinementProblem::expected_body_from_vehicle(int frame) const {
-  if (frame >= static_cast<int>(estimate_.frames.size())) return {};
-  return body_from_vehicle(expected_error(estimate_.frames[static_cast<size_t>(frame)]));
+  return body_from_vehicle(expected_error(frame));
 }
 
 /// In the vehicle frame, from the reference positions; 0 where they are not known.
@@ -111,6 +105,12 @@ FrameVector RefinementProblem::expected_error(const Frame& frame) const {
   expected[0] += estimate_.tilt_per_acceleration[0] * frame.acceleration_mps2.y();
   expected[1] += estimate_.tilt_per_acceleration[1] * frame.acceleration_mps2.x();
   return expected;
+}
+
+FrameVector RefinementProblem::expected_error(int frame) const {
+  const auto k = static_cast<size_t>(frame);
+  return k < estimate_.frames.size() ? expected_error(estimate_.frames[k])
+                                     : FrameVector(FrameVector::Zero());
 }
 
 /// Prior information of each parameter: so large that the parameter stays, unless it is free.
@@ -264,8 +264,8 @@ void RefinementProblem::keep_unobservable(double gate_rad) {
   }
 }
 
-/// One Gauss-Newton step of a camera's observable parameters, and of the height of the ground that
-/// its ties show.
+/// Takes one Gauss-Newton step for a camera's observable parameters and for the height of the
+/// ground that its ties show.
 void RefinementProblem::step_alone(int camera, const RefinementSums& sums) {
   const Eigen::VectorXd prior = camera_prior();
   CameraAdjustment& change = estimate_.changes[camera];

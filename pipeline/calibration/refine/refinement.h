@@ -101,8 +101,9 @@ class RefinementProblem {
   /// Adds tie points of two pictures, of the same frameset or of two that follow each other.
   void add_ties(const Picture& first, const Picture& second, std::vector<GroundTie> ties);
 
-  /// A picture as it is expected from the estimate of its camera, with the error of its frameset
-  /// as expected from the mean of the drive and the acceleration.
+  /// Returns the view that the estimate of the camera predicts, with the error of the frameset that
+  /// the mean of the drive and the acceleration predict. Returns nothing if the reference does not
+  /// cover the time.
   std::optional<MomentView> expected_view(const Picture& picture) const;
 
   /// Improves the estimate with the sightings and ties that are at most `gate_rad` times the focal
@@ -133,6 +134,7 @@ class RefinementProblem {
   // Indices among the unknowns that do not belong to a single frameset.
   static constexpr int kFirstHeight = kCameraUnknowns + kFrameUnknowns + kTiltsPerAcceleration;
   static constexpr int kFirstElement = kFirstHeight + kCameraCount;
+
   struct Frame {
     FrameVector error = FrameVector::Zero();
     /// Of the vehicle, along x and y.
@@ -177,11 +179,11 @@ class RefinementProblem {
   /// Calls visitor(rows or null) for each tie. Null: its two places are too far from each other.
   using TieVisitor = std::function<void(const TieRows*)>;
   void visit(const Ties& ties, double gate_rad, const TieVisitor& visitor) const;
-  std::optional<MomentView> view_of(const Picture& picture) const;
+  std::optional<MomentView> view_of(const Picture& picture, const FrameVector& frame_error) const;
   std::optional<TieRows> linearize(const GroundTie& tie, const Ties& ties, const MomentView& first,
                                    const MomentView& second, double gate_rad) const;
-  /// Without the priors of the cameras.
   CameraAdjustment only_free(int camera, CameraAdjustment slope) const;
+  /// The sums lack the priors of the cameras.
   RefinementSums linearize(double gate_rad) const;
   void add_priors(RefinementSums& sums) const;
   void add_frame_prior(size_t k, RefinementSums& sums) const;
@@ -197,6 +199,8 @@ class RefinementProblem {
   Eigen::Vector2d acceleration_at(Time time) const;
   FrameVector frame_sigma() const;
   FrameVector expected_error(const Frame& frame) const;
+  /// 0 if the frameset was not added yet.
+  FrameVector expected_error(int frame) const;
 
   const Rig& rig_;
   const ReferenceTrajectory& reference_;

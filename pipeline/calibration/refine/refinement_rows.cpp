@@ -63,15 +63,16 @@ std::optional<GroundPoint> ground_point(const MomentView& view, const Eigen::Vec
 
 }  // namespace
 
-std::optional<MomentView> RefinementProblem::view_of(const Picture& picture) const {
+std::optional<MomentView> RefinementProblem::view_of(const Picture& picture,
+                                                     const FrameVector& frame_error) const {
   return MomentView::make(rig_.cameras[picture.camera], estimate_.changes[picture.camera],
-                          estimate_.frames[static_cast<size_t>(picture.frame)].error, reference_,
-                          picture.time);
+                          frame_error, reference_, picture.time);
 }
 
 /// Of several candidates the one nearest to the estimate counts.
 void RefinementProblem::visit(const View& view, double gate_rad, const Visitor& visitor) const {
-  const auto moment = view_of(view.picture);
+  const auto moment =
+      view_of(view.picture, estimate_.frames[static_cast<size_t>(view.picture.frame)].error);
   if (!moment) return;
   const double gate_px = gate_rad * moment->camera().intrinsics.fx_px;
   for (const PaintSighting& sighting : view.sightings) {
@@ -100,8 +101,10 @@ void RefinementProblem::visit(const View& view, double gate_rad, const Visitor& 
 }
 
 void RefinementProblem::visit(const Ties& ties, double gate_rad, const TieVisitor& visitor) const {
-  const auto first = view_of(ties.first);
-  const auto second = view_of(ties.second);
+  const auto first =
+      view_of(ties.first, estimate_.frames[static_cast<size_t>(ties.first.frame)].error);
+  const auto second =
+      view_of(ties.second, estimate_.frames[static_cast<size_t>(ties.second.frame)].error);
   if (!first || !second) return;
   for (const GroundTie& tie : ties.ties) {
     const auto rows = linearize(tie, ties, *first, *second, gate_rad);
@@ -160,8 +163,9 @@ CameraAdjustment RefinementProblem::only_free(int camera, CameraAdjustment slope
   return slope;
 }
 
-/// The error of a frameset, against the one expected from the mean and the acceleration. The errors
-/// of the reference pose (yaw, forward, left) drift: they follow those of the frameset before.
+/// Adds the prior of a frameset's error. Its mean is the error that the mean of the drive and the
+/// acceleration predict. The errors of the reference pose (yaw, forward, left) drift, so their
+/// prior also depends on the errors of the frameset before.
 void RefinementProblem::add_frame_prior(size_t k, RefinementSums& sums) const {
   const Frame& frame = estimate_.frames[k];
   FrameVector sigma = frame_sigma();
@@ -249,7 +253,8 @@ RefinementSums RefinementProblem::linearize(double gate_rad) const {
   return sums;
 }
 
-/// The information about the cameras, with everything else eliminated, without their priors.
+/// Returns the information about the cameras without their priors. All other unknowns are
+/// eliminated.
 Eigen::MatrixXd RefinementProblem::camera_information(double gate_rad) const {
   const Eigen::MatrixXd all = EliminatedFrames(linearize(gate_rad)).information();
   const Eigen::Index rest = all.rows() - kCameraUnknowns;

@@ -80,7 +80,7 @@ struct RefinementSums {
   double cost = 0.0;  ///< of the residuals, which the caller adds
 };
 
-/// The sums with the framesets' unknowns eliminated, one frameset after the other.
+/// Eliminates the unknowns of the framesets from the sums, one frameset after the other.
 class EliminatedFrames {
  public:
   explicit EliminatedFrames(const RefinementSums& sums);

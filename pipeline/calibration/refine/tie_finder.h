@@ -22,8 +22,9 @@ struct TieSearch {
   double farthest_m = 20.0;  ///< from the camera
 };
 
-/// Compares patches of the ground around a grid of places of the first picture. A tie needs texture
-/// that differs along both axes, and one place within the reach where both pictures agree.
+/// Searches the second picture for patches of the ground that lie on a grid in the first picture. A
+/// patch makes a tie if its texture differs along both axes, and if exactly one place within the
+/// reach agrees with it.
 std::vector<GroundTie> find_ties(const GreyImage& first, const MomentView& first_view,
                                  const GreyImage& second, const MomentView& second_view,
                                  const TieSearch& search);

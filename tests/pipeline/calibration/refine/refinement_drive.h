@@ -15,7 +15,7 @@ namespace bevloc {
 
 inline constexpr double kEverything_rad = 1.0;
 
-/// A drive at a changing speed, straight or along a winding road, with paint around it.
+/// The vehicle drives at a changing speed, straight or along a winding road.
 class Drive {
  public:
   Drive(bool winding, double speed_change) : winding_(winding), speed_change_(speed_change) {

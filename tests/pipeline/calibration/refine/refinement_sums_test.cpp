@@ -1,4 +1,4 @@
-// The framesets eliminated one after the other, against one solution for all unknowns.
+// Compares the elimination of the framesets with one solution for all unknowns.
 #include "pipeline/calibration/refine/refinement_sums.h"
 
 #include <random>

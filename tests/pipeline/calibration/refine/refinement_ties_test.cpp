@@ -82,7 +82,7 @@ CameraRefinement refined_by_ties(const Ground& ground) {
   return problem.result(0.014).cameras[kNoPaint];
 }
 
-/// The height of the camera above the ground does not show how high the ground is, so it is kept.
+/// Nothing tells how high the ground is, so the camera's height is not observable.
 void expect_found(const CameraRefinement& camera, double most_rad, double most_s) {
   const CameraAdjustment error = camera.change - error_of_camera();
   for (const int p : {kPitch, kYaw, kRoll}) {

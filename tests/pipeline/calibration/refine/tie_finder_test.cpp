@@ -58,7 +58,7 @@ ReferenceTrajectory straight_drive() {
   return ReferenceTrajectory(std::move(poses));
 }
 
-/// Two pictures of the front camera, 1.6 m apart. The true camera may be turned.
+/// The front camera takes two pictures at places 1.6 m apart. A test may turn the true camera.
 class TieFinderTest : public ::testing::Test {
  protected:
   static constexpr std::array kTimes_s{1.0, 1.2};
