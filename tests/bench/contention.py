@@ -121,11 +121,12 @@ def busy_core(cpu: int) -> Iterator[None]:
         process.wait()
 
 
-def drive(daemon: Path, config: Path, duration_s: float) -> Drive:
+def drive(daemon: Path, config: Path, duration_s: float, *further: str) -> Drive:
+    """Drives in real time; `further` are options of bevlocd."""
     with tempfile.TemporaryDirectory() as folder:
         result = Path(folder) / "result.json"
         command: list[str | Path] = [daemon, "--config", config, "--out", folder]
-        command += ["--duration", str(duration_s)]
+        command += ["--duration", str(duration_s), *further]
         process = subprocess.Popen([*command, "--json", result], stdout=subprocess.DEVNULL)
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)

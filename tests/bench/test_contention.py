@@ -5,10 +5,10 @@ import unittest
 from tests.bench.contention import Drive, exposures_of, p99_ratio, table_of
 
 
-def drive(p99_ms: float = 40.0, **frames: int) -> Drive:
+def drive(p99_ms: float = 40.0, p50_ms: float = 20.0, **frames: int) -> Drive:
     counts = dict.fromkeys(("used", "displaced", "mismatched", "skipped", "under_way", "missed"), 0)
     result = {
-        "latency_ms": {"p50": 20.0, "p99": p99_ms},
+        "latency_ms": {"p50": p50_ms, "p99": p99_ms},
         "frames": {"captured": 600, **counts, **frames},
         "realtime_refusals": 3,
     }
