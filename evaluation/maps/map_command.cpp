@@ -146,7 +146,9 @@ Status MapCommand::check() const {
   const std::vector<std::string> found = faults_of(imported->map);
   for (const std::string& fault : found) fmt::print("{}: {}\n", in_, fault);
   if (Status status = write_json({{"faults", found}}, json_); !status) return status;
-  if (!found.empty()) return fail("{}: found {} faults, wanted none", in_, found.size());
+  if (!found.empty())
+    return fail("{}: found {} fault{}, wanted none", in_, found.size(),
+                found.size() == 1 ? "" : "s");
   fmt::print("good: {}\n", contents_of(imported->map));
   return {};
 }

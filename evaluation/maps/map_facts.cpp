@@ -105,6 +105,12 @@ MapFacts facts_of(const HdMap& map) {
   return facts;
 }
 
+std::string text_of(const GeoOrigin& origin, int decimals) {
+  if (!is_known(origin)) return "unknown";
+  return fmt::format("{:.{}f}, {:.{}f}", origin.latitude_deg, decimals, origin.longitude_deg,
+                     decimals);
+}
+
 std::string text_of(const MapFacts& facts) {
   std::string text = fmt::format("{:<22} {:>8} {:>8} {:>11}\n", "", "elements", "points", "length");
   for (size_t c = 0; c < kClassCount; ++c) {
@@ -114,8 +120,7 @@ std::string text_of(const MapFacts& facts) {
   }
   text += fmt::format("{:<22} {:8} {:8} {:9.1f} m\n", "lane", facts.lanes, "", facts.lanes_m);
   text +=
-      fmt::format("origin {:.7f}, {:.7f}; {:.0f} m x {:.0f} m; checksum {:08x}\n",
-                  facts.origin.latitude_deg, facts.origin.longitude_deg,
+      fmt::format("origin {}; {:.0f} m x {:.0f} m; checksum {:08x}\n", text_of(facts.origin, 7),
                   facts.high.x() - facts.low.x(), facts.high.y() - facts.low.y(), facts.checksum);
   return text;
 }

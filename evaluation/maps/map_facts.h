@@ -30,6 +30,9 @@ struct MapFacts {
 };
 
 MapFacts facts_of(const HdMap& map);
+
+/// Latitude and longitude with that many decimals, or "unknown".
+std::string text_of(const GeoOrigin& origin, int decimals);
 std::string text_of(const MapFacts& facts);
 nlohmann::json json_of(const MapFacts& facts);
 

@@ -102,8 +102,7 @@ Status write_map_picture(const HdMap& map, int size_px, const std::string& path)
     const bool is_ring = element.element_class == ElementClass::kPedestrianCrossing;
     sheet.line(element.points, class_color(element.element_class), sheet.line_width_px(), is_ring);
   }
-  sheet.title(fmt::format("{} at {:.5f}, {:.5f}", map.name, map.origin.latitude_deg,
-                          map.origin.longitude_deg));
+  sheet.title(fmt::format("{}, origin {}", map.name, text_of(map.origin, 5)));
   for (size_t c = 0; c < kClassCount; ++c) {
     const auto element_class = static_cast<ElementClass>(c);
     sheet.legend(fmt::format("{}: {}, {:.0f} m", name_of(element_class), facts.classes[c].elements,

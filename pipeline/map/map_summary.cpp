@@ -28,7 +28,7 @@ std::vector<std::string> warnings_of(const HdMap& map) {
   if (!is_known(map.origin)) {
     warnings.push_back(
         "no place on earth: positions from GNSS, and the latitude and longitude on the CAN bus, "
-        "mean nothing; add lat and lon to nodes of the map");
+        "mean nothing; say where the map is: bevloc map import --origin LATITUDE,LONGITUDE");
   }
   if (count_of(map, ElementClass::kLaneDivider) == 0) {
     warnings.push_back("no lane divider: the pose across the road rests on boundaries alone");

@@ -99,6 +99,14 @@ class JsonWalker {
   size_t at_ = 0;
 };
 
+/// What the parser found wrong, without its own name and place before the first colon.
+std::string_view reason_of(const nlohmann::json::parse_error& error) {
+  constexpr size_t kMostLetters = 200;
+  const std::string_view text = error.what();
+  const size_t colon = text.find(": ");
+  return text.substr(colon == std::string_view::npos ? 0 : colon + 2, kMostLetters);
+}
+
 }  // namespace
 
 int line_of_byte(std::string_view text, size_t byte) {
@@ -116,7 +124,7 @@ Result<JsonText> JsonText::parse(std::string_view text, const std::string& file)
   } catch (const nlohmann::json::parse_error& error) {
     const size_t byte = error.byte > 0 ? error.byte - 1 : 0;
     return fail("{}:{}: byte {}: found text that is not JSON ({}), wanted a JSON map", file,
-                line_of_byte(text, byte), byte, std::string_view(error.what()).substr(0, 200));
+                line_of_byte(text, byte), byte, reason_of(error));
   } catch (const nlohmann::json::exception& error) {
     return fail("{}: found JSON that cannot be read ({}), wanted a JSON map", file, error.what());
   }

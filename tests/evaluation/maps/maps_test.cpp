@@ -49,6 +49,13 @@ TEST(MapFacts, CountsByClass) {
   EXPECT_EQ(facts.high, Eigen::Vector2d(50.0, 4.0));
 }
 
+TEST(MapFacts, NamesThePlaceOnEarth) {
+  HdMap map = road();
+  EXPECT_THAT(text_of(facts_of(map)), HasSubstr("origin 49.0000000, 8.4000000; 100 m x 8 m"));
+  map.origin = {};
+  EXPECT_THAT(text_of(facts_of(map)), HasSubstr("origin unknown; 100 m x 8 m"));
+}
+
 TEST(MapFacts, NamesFaults) {
   HdMap map = road();
   EXPECT_TRUE(faults_of(map).empty());

@@ -85,7 +85,7 @@ TEST(Argoverse2, TheNameOfTheFileGivesTheCity) {
 
 TEST(Argoverse2, RefusesBrokenFilesWithLineAndPath) {
   EXPECT_THAT(json_error(kArgoverse.substr(0, 900)),
-              HasSubstr("map.json:14: byte 900: found text that"));
+              HasSubstr("map.json:14: byte 900: found text that is not JSON (syntax error while"));
   EXPECT_EQ(
       json_error(replaced(kArgoverse, R"({"x": 50, "y": 4, "z": 1}],)",
                           R"({"x": "no", "y": 4, "z": 1}],)")),
