@@ -56,6 +56,12 @@ function(bevloc_library name)
   endif()
 endfunction()
 
+# Time limits of tests are multiplied by this. qemu needs some 20 times as long as a processor.
+set(BEVLOC_TEST_PATIENCE 1)
+if(CMAKE_CROSSCOMPILING)
+  set(BEVLOC_TEST_PATIENCE 20)
+endif()
+
 # bevloc_test(NAME SOURCES... [WHOLE] [LINK libs...]): a GoogleTest program; each of its suites is a
 # CTest test, or, with WHOLE, the program is one (its suites share an expensive set-up). With
 # sanitizers every program is one, because each start of a program takes long.
@@ -69,11 +75,14 @@ function(bevloc_test name)
   target_compile_definitions(${name} PRIVATE BEVLOC_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   if(ARG_WHOLE OR BEVLOC_SANITIZE)
     add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES TIMEOUT 900)
+    math(EXPR timeout_s "900 * ${BEVLOC_TEST_PATIENCE}")
+    set_tests_properties(${name} PROPERTIES TIMEOUT ${timeout_s})
   else()
     set(suites ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake)
+    math(EXPR timeout_s "600 * ${BEVLOC_TEST_PATIENCE}")
     file(GENERATE OUTPUT ${suites}
       CONTENT "set(name ${name})
+set(timeout_s ${timeout_s})
 set(command ${CMAKE_CROSSCOMPILING_EMULATOR} \"$<TARGET_FILE:${name}>\")
 include(\"${PROJECT_SOURCE_DIR}/cmake/Suites.cmake\")
 ")

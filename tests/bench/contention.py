@@ -19,7 +19,7 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -121,13 +121,21 @@ def busy_core(cpu: int) -> Iterator[None]:
         process.wait()
 
 
-def drive(daemon: Path, config: Path, duration_s: float, *further: str) -> Drive:
-    """Drives in real time; `further` are options of bevlocd."""
+def drive(
+    daemon: Path,
+    config: Path,
+    duration_s: float,
+    *further: str,
+    watch: Callable[[int], None] = lambda pid: None,
+) -> Drive:
+    """Drives in real time; `further` are options of bevlocd. `watch` is called with the process
+    id, and must return when the process has ended."""
     with tempfile.TemporaryDirectory() as folder:
         result = Path(folder) / "result.json"
         command: list[str | Path] = [daemon, "--config", config, "--out", folder]
         command += ["--duration", str(duration_s), *further]
         process = subprocess.Popen([*command, "--json", result], stdout=subprocess.DEVNULL)
+        watch(process.pid)
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode != 0:

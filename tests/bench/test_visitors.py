@@ -1,25 +1,37 @@
 """Tests the figures of tests/bench/visitors and its clients; nothing is driven or timed."""
 
 import socket
+import subprocess
+import sys
 import unittest
 
 from tests.bench import clients
 from tests.bench.test_contention import drive
-from tests.bench.visitors import CASES, ratios, table_of
+from tests.bench.visitors import CASES, PosePath, Run, ratios, table_of
+
+
+def run(busy_ms: float, **frames: int) -> Run:
+    return Run(drive(p50_ms=30.0, **frames), busy_ms, 1.5)
 
 
 class VisitorsTest(unittest.TestCase):
     def test_each_round_has_its_own_reference(self):
-        drives = [drive(p50_ms=22.0), drive(p50_ms=30.0)]
-        references = [drive(p50_ms=20.0), drive(p50_ms=40.0)]
-        self.assertEqual(ratios(drives, references), [1.1, 0.75])
+        self.assertEqual(ratios([run(22.0), run(30.0)], [run(20.0), run(40.0)]), [1.1, 0.75])
 
     def test_the_table_has_medians_and_sums(self):
-        quiet = [drive(p50_ms=20.0), drive(p50_ms=20.0), drive(p50_ms=20.0)]
-        busy = [drive(p50_ms=p50_ms, skipped=6, missed=2) for p50_ms in (20.0, 21.0, 24.0)]
-        table = table_of({"no page": quiet, "hostile clients": busy})
-        self.assertIn("| no page | 20.0 | 40.0 | 1.000 (1.000 to 1.000) | 0 | 0 |", table)
-        self.assertIn("| hostile clients | 21.0 | 40.0 | 1.050 (1.000 to 1.200) | 3 | 6 |", table)
+        busy = [run(busy_ms, skipped=6, missed=2) for busy_ms in (20.0, 21.0, 24.0)]
+        table = table_of({"no page": [run(20.0)] * 3, "hostile clients": busy})
+        self.assertIn("| no page | 20.00 | 1.000 (1.000 to 1.000) | 1.50 | 30.0 |", table)
+        self.assertIn("| 21.00 | 1.050 (1.000 to 1.200) | 1.50 | 30.0 | 40.0 | 3 | 6 |", table)
+
+    def test_the_times_are_those_of_the_pose_path(self):
+        code = "import threading; open('/proc/self/comm', 'w').write('vision'); sum(range(10**7))"
+        process = subprocess.Popen([sys.executable, "-c", code])
+        pose_path = PosePath()
+        pose_path.watch(process.pid)
+        self.assertEqual(process.wait(), 0)
+        of_drive = drive(used=6)
+        self.assertGreater(pose_path.run_of(of_drive).busy_ms, 1.0)
 
     def test_the_first_case_is_the_reference(self):
         self.assertFalse(CASES[0].served)

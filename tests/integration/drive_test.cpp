@@ -138,7 +138,7 @@ TEST(DriveVariantTest, AnotherSeedGivesAnotherLog) {
   EXPECT_NE(read_text(one / "can.log"), read_text(other / "can.log"));
 }
 
-TEST(DriveVariantTest, SigtermEndsADriveCleanly) {
+TEST(RealTimeDriveTest, SigtermEndsADriveCleanly) {
   const TemporaryFolder scratch;
   const ProcessResult result =
       run_bevlocd("--config " + kDemo + " --duration 3600 --out " + scratch.path().string(),
@@ -195,7 +195,7 @@ double longest_gap_s(const std::filesystem::path& log, const std::string& id) {
   return longest_s;
 }
 
-TEST(DriveVariantTest, FaultsAreSetAndClearedWhileTheDriveRuns) {
+TEST(RealTimeDriveTest, FaultsAreSetAndClearedWhileTheDriveRuns) {
   const TemporaryFolder scratch;
   write_file(scratch / "config.yaml",
              demo_config_with("  duration_s: 60\n", "  duration_s: 60\n  fault_socket: " +
