@@ -101,8 +101,14 @@ std::string name_from_image(const std::string& file) {
   return folder != std::string::npos ? file.substr(0, folder) : file.substr(0, file.rfind('.'));
 }
 
+/// A camera of cameras.txt.
+struct ColmapLens {
+  Intrinsics intrinsics;
+  std::string place;
+};
+
 ImportedCamera camera_of_image(const TextLine& line,
-                               const std::map<std::string, Intrinsics>& lenses) {
+                               const std::map<std::string, ColmapLens>& lenses) {
   constexpr size_t kWords = 10;
   if (line.words.size() != kWords) {
     refuse(line.place, fmt::format("{} words", line.words.size()),
@@ -117,8 +123,16 @@ ImportedCamera camera_of_image(const TextLine& line,
   const Se3 camera_from_world{
       rotation_from_wxyz({numbers.begin(), numbers.begin() + 4}, line.place),
       {numbers[4], numbers[5], numbers[6]}};
-  return {name_from_image(line.words[9]), line.place, lens->second,
-          Mounting{"world", camera_from_world.inverse()}};
+  return {name_from_image(line.words[9]), line.place, lens->second.intrinsics,
+          Mounting{"world", camera_from_world.inverse()}, lens->second.place};
+}
+
+/// Editors that remove empty lines remove those of images without points, and the next image would
+/// pass for points.
+void check_points(const TextLine& line) {
+  if (line.words.size() % 3 == 0) return;
+  refuse(line.place, fmt::format("{} words", line.words.size()),
+         "the points of the image in the line before: X Y POINT3D_ID of each, or an empty line");
 }
 
 }  // namespace
@@ -126,11 +140,11 @@ ImportedCamera camera_of_image(const TextLine& line,
 std::vector<ImportedCamera> read_colmap(const std::string& cameras, const std::string& cameras_name,
                                         const std::string& images, const std::string& images_name) {
   std::vector<ImportedCamera> result;
-  std::map<std::string, Intrinsics> lenses;
+  std::map<std::string, ColmapLens> lenses;
   for (const TextLine& line : lines_of(cameras, cameras_name)) {
     if (line.words.empty()) continue;
     const Intrinsics lens = intrinsics_from(line);
-    if (!lenses.emplace(line.words[0], lens).second) {
+    if (!lenses.emplace(line.words[0], ColmapLens{lens, line.place}).second) {
       refuse(line.place, fmt::format("camera {} again", line.words[0]), "each id once");
     }
     result.push_back({line.words[0], line.place, lens});
@@ -141,6 +155,7 @@ std::vector<ImportedCamera> read_colmap(const std::string& cameras, const std::s
   for (size_t i = 0; i < lines.size(); i += 2) {
     if (lines[i].words.empty()) continue;
     result.push_back(camera_of_image(lines[i], lenses));
+    if (i + 1 < lines.size()) check_points(lines[i + 1]);
   }
   return result;
 }

@@ -55,6 +55,8 @@ class Collector {
       if (!sensors_)
         refuse(calibrated_->place(), "calibrated_sensor.json alone", "sensor.json too");
       take(calibration_import::read_nuscenes(*calibrated_, *sensors_, options_.tokens));
+    } else if (!options_.tokens.empty()) {
+      refuse("--token", options_.tokens.front(), "it only with files of nuScenes");
     }
     if (colmap_images_ && !colmap_cameras_) {
       refuse(colmap_images_->name, "images.txt alone", "cameras.txt too");
@@ -105,6 +107,15 @@ class Collector {
   const ForeignFile* colmap_images_ = nullptr;
 };
 
+/// Some editors begin a file with a byte order mark.
+std::vector<ForeignFile> without_byte_order_marks(std::vector<ForeignFile> files) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  for (ForeignFile& file : files) {
+    if (file.text.starts_with(kMark)) file.text.erase(0, kMark.size());
+  }
+  return files;
+}
+
 /// A message of the check of rig files, about the camera's source instead of a rig file that does
 /// not exist yet.
 std::string with_source(const std::string& message,
@@ -125,9 +136,10 @@ std::string with_source(const std::string& message,
 
 Result<ImportedRig> import_rig(const std::vector<ForeignFile>& files,
                                const RigImportOptions& options) {
+  const std::vector<ForeignFile> unmarked = without_byte_order_marks(files);
   try {
     Collector collector(options);
-    for (const ForeignFile& file : files) collector.add(file);
+    for (const ForeignFile& file : unmarked) collector.add(file);
     auto cameras = collector.finish();
     if (cameras.empty()) {
       refuse(files.empty() ? "calib import" : files.front().name, "no camera",

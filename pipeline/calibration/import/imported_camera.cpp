@@ -1,10 +1,12 @@
 #include "pipeline/calibration/import/imported_camera.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pipeline/calibration/import/foreign_node.h"
 
@@ -12,20 +14,23 @@ namespace bevloc::calibration_import {
 
 void set_pinhole_distortion(const std::vector<double>& coefficients, const std::string& place,
                             Intrinsics& intrinsics) {
-  constexpr std::array<std::string_view, 8> kNames = {"k1", "k2", "p1", "p2",
-                                                      "k3", "k4", "k5", "k6"};
+  constexpr std::array<std::string_view, 14> kNames = {
+      "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4", "taux", "tauy"};
   constexpr size_t kExpressed = 4;
   const size_t count = coefficients.size();
-  if (count != 0 && count != 4 && count != 5 && count != 8) {
+  constexpr std::array<size_t, 6> kCounts = {0, 4, 5, 8, 12, 14};
+  if (std::ranges::find(kCounts, count) == kCounts.end()) {
     refuse(place, fmt::format("{} distortion coefficients", count),
-           "0, 4, 5 or 8: k1, k2, p1, p2, k3, k4, k5, k6 (no thin prism, no tilt)");
+           fmt::format("{} of them in OpenCV's order: {}", fmt::join(kCounts, ", "),
+                       fmt::join(kNames, ", ")));
   }
   for (size_t i = kExpressed; i < count; ++i) {
     if (coefficients[i] == 0.0) continue;
-    refuse(place, fmt::format("{} = {:g}", kNames[i], coefficients[i]),
-           fmt::format("{} = 0, because bevloc's pinhole has k1, k2, p1 and p2; calibrate again "
-                       "with {} fixed to 0 (OpenCV: CALIB_FIX_K3 without CALIB_RATIONAL_MODEL)",
-                       kNames[i], kNames[i]));
+    refuse(
+        place, fmt::format("{} = {:g}", kNames[i], coefficients[i]),
+        fmt::format("{} = 0, because bevloc's pinhole has k1, k2, p1 and p2; calibrate again "
+                    "with {} fixed to 0 (OpenCV: CALIB_FIX_K3 without models of more coefficients)",
+                    kNames[i], kNames[i]));
   }
   intrinsics.lens = Lens::kPinhole;
   if (count == 0) return;

@@ -1,4 +1,7 @@
-#include <algorithm>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -55,20 +58,62 @@ Intrinsics intrinsics_of(const ForeignNode& camera) {
   return lens;
 }
 
+/// The number N of Kalibr's key "camN".
+std::optional<int> number_in(std::string_view key) {
+  constexpr std::string_view kPrefix = "cam";
+  int number = 0;
+  const char* const end = key.data() + key.size();
+  if (!key.starts_with(kPrefix)) return std::nullopt;
+  const auto read = std::from_chars(key.data() + kPrefix.size(), end, number);
+  if (read.ec != std::errc{} || read.ptr != end) return std::nullopt;
+  return number;
+}
+
+/// The key of the camera to which T_cn_cnm1 of the camera `index` is relative: "cam2" for "cam3",
+/// wherever the file has it. Only the order in the file tells it for keys of another form.
+std::string key_before(const std::vector<std::pair<std::string, ForeignNode>>& entries,
+                       size_t index) {
+  const auto& [key, camera] = entries[index];
+  const std::optional<int> number = number_in(key);
+  if (number.value_or(static_cast<int>(index)) == 0) {
+    camera.at("T_cn_cnm1").reject("a first camera", "a camera before it");
+  }
+  if (!number) return entries[index - 1].first;
+  return fmt::format("cam{}", *number - 1);
+}
+
+/// Names by key. Two cameras under one topic would share a name, so the later one keeps its key.
+std::map<std::string, std::string> names_of(
+    const std::vector<std::pair<std::string, ForeignNode>>& entries) {
+  std::map<std::string, std::string> names;
+  std::set<std::string> taken;
+  for (const auto& [key, camera] : entries) {
+    const std::string name = name_from_topic(key, camera);
+    names[key] = taken.insert(name).second ? name : key;
+  }
+  return names;
+}
+
 }  // namespace
 
 std::vector<ImportedCamera> read_kalibr(const ForeignNode& document) {
+  const auto entries = document.entries();
+  const auto names = names_of(entries);
   std::vector<ImportedCamera> cameras;
-  for (const auto& [key, camera] : document.entries()) {
-    ImportedCamera imported{name_from_topic(key, camera), camera.place(), intrinsics_of(camera)};
-    // Two cameras under one topic would share a name.
-    const auto same = [&](const ImportedCamera& other) { return other.name == imported.name; };
-    if (std::ranges::any_of(cameras, same)) imported.name = key;
+  for (size_t i = 0; i < entries.size(); ++i) {
+    const auto& [key, camera] = entries[i];
+    ImportedCamera imported{names.at(key), camera.place(), intrinsics_of(camera)};
     if (camera.has("T_cam_imu")) {
       imported.mounting = {"imu", transform_at(camera, "T_cam_imu").inverse()};
     } else if (camera.has("T_cn_cnm1")) {
-      if (cameras.empty()) camera.at("T_cn_cnm1").reject("a first camera", "a camera before it");
-      imported.mounting = {cameras.back().name, transform_at(camera, "T_cn_cnm1").inverse(), true};
+      const std::string before = key_before(entries, i);
+      const auto parent = names.find(before);
+      if (parent == names.end()) {
+        camera.at("T_cn_cnm1")
+            .reject(fmt::format("no {} in the file", before),
+                    "the camera to which this transform is relative");
+      }
+      imported.mounting = {parent->second, transform_at(camera, "T_cn_cnm1").inverse(), true};
     }
     cameras.push_back(std::move(imported));
   }

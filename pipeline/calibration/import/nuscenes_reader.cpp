@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -50,11 +51,13 @@ std::vector<ImportedCamera> read_nuscenes(const ForeignNode& calibrated_sensors,
     channels[sensor.at("token").text()] = sensor.at("channel").text();
   }
   std::vector<ImportedCamera> cameras;
+  std::set<std::string> unknown_tokens(tokens.begin(), tokens.end());
   for (const ForeignNode& entry : calibrated_sensors.items()) {
     const auto channel = channels.find(entry.at("sensor_token").text());
     if (channel == channels.end()) continue;
     const std::string token = entry.at("token").text();
     if (!tokens.empty() && std::ranges::find(tokens, token) == tokens.end()) continue;
+    unknown_tokens.erase(token);
     ImportedCamera camera = camera_from(entry, channel->second);
     const auto same_name = [&](const auto& other) { return other.name == camera.name; };
     const auto earlier = std::ranges::find_if(cameras, same_name);
@@ -65,6 +68,9 @@ std::vector<ImportedCamera> read_nuscenes(const ForeignNode& calibrated_sensors,
           camera.place, fmt::format("another calibration of {}", camera.name),
           fmt::format("one; choose one for each camera with --token, such as --token {}", token));
     }
+  }
+  if (!unknown_tokens.empty()) {
+    refuse("--token", *unknown_tokens.begin(), "the token of a camera in calibrated_sensor.json");
   }
   return cameras;
 }

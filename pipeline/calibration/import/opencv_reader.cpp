@@ -29,7 +29,7 @@ std::vector<double> matrix_data(const ForeignNode& matrix, size_t count) {
 }
 
 void read_size(const ForeignNode& document, Intrinsics& lens) {
-  if (!document.has("image_width")) return;
+  if (!document.has("image_width") && !document.has("image_height")) return;
   lens.width_px = document.at("image_width").whole_number(1, kLargestImage_px);
   lens.height_px = document.at("image_height").whole_number(1, kLargestImage_px);
 }

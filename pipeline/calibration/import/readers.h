@@ -11,8 +11,8 @@ namespace bevloc::calibration_import {
 
 /// Kalibr's camchain: `cam0`, `cam1` and so on, named so or by their `rostopic` (first word of the
 /// topic). camera_model pinhole with distortion_model radtan, equidistant or none. T_cam_imu maps
-/// points of the IMU into the camera, T_cn_cnm1 those of the previous camera into this one.
-/// timeshift_cam_imu is not used.
+/// points of the IMU into the camera, T_cn_cnm1 those of the camera before (cam2 for cam3) into
+/// this one. timeshift_cam_imu is not used.
 std::vector<ImportedCamera> read_kalibr(const ForeignNode& document);
 
 /// A FileStorage file of OpenCV: camera_matrix (or K), distortion_coefficients (or distortion,

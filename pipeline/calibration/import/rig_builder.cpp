@@ -23,6 +23,7 @@ class RigBuilder {
   BuiltRig build() {
     check_names();
     check_places();
+    check_image_size();
     for (int i = 0; i < kCameraCount; ++i) built_.rig.cameras[i] = camera_named(i);
     return std::move(built_);
   }
@@ -75,6 +76,15 @@ class RigBuilder {
     }
   }
 
+  /// Refuses a size of images that every file states itself.
+  void check_image_size() const {
+    const auto lacks_size = [](const ImportedCamera& camera) {
+      return camera.intrinsics.width_px == 0;
+    };
+    if (!options_.image_size_px || std::ranges::any_of(cameras_, lacks_size)) return;
+    refuse("--image-size", "files that all state the size of their images", "no such option");
+  }
+
   std::string names() const {
     std::vector<std::string> found;
     for (const ImportedCamera& camera : cameras_) found.push_back(camera.name);
@@ -107,7 +117,7 @@ class RigBuilder {
       source = {"--base", "--base"};
       return options_.base->cameras[index];
     }
-    source = {found->place, found->place};
+    source = {found->place_of_lens(), found->place};
     CameraModel camera;
     camera.intrinsics = sized_intrinsics(*found);
     std::string origin = "the files";

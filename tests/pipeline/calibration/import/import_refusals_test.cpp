@@ -122,5 +122,70 @@ TEST(ImportRefusals, TheSourceOfAnImpossibleValueIsNamed) {
                  "--extrinsics: front.vehicle_from_camera.translation_m: found a camera 9 m above");
 }
 
+TEST(ImportRefusals, ATransformToACameraThatIsNotInTheChain) {
+  const std::string chain = kalibr_chain({}, {});
+  RigImportOptions options = with_base();
+  options.our_names = {{"side", "front_left"}};
+  options.vehicle_from = {{"front", options.base->cameras[1].vehicle_from_camera}};
+  expect_refused({{"a.yaml", replaced(chain, "cam1:", "cam2:")}}, options,
+                 "cam2.T_cn_cnm1: found no cam1 in the file, wanted the camera to which this");
+}
+
+TEST(ImportRefusals, TheOrderOfAChainInTheFileDoesNotMatter) {
+  const Rig base = base_rig();
+  const std::string chain = kalibr_chain(
+      {}, base.cameras[2].vehicle_from_camera.inverse() * base.cameras[1].vehicle_from_camera);
+  const size_t second = chain.find("cam1:");
+  RigImportOptions options = with_base();
+  options.our_names = {{"side", "front_right"}};
+  options.vehicle_from = {{"front", base.cameras[1].vehicle_from_camera}};
+  const auto imported =
+      import_rig({{"a.yaml", chain.substr(second) + chain.substr(0, second)}}, options);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_TRUE(imported->rig.cameras[2].vehicle_from_camera.translation_m.isApprox(
+      base.cameras[2].vehicle_from_camera.translation_m, 1e-6));
+}
+
+TEST(ImportRefusals, ImagesOfColmapWithoutTheirLinesOfPoints) {
+  const ForeignFile cameras{"cameras.txt",
+                            "1 PINHOLE 640 360 500 500 320 180\n2 PINHOLE 640 360 -7 7 320 180\n"};
+  const std::string front = "1 1 0 0 0 0 0 0 1 front/1.jpg\n";
+  const std::string back = "2 1 0 0 0 0 0 0 2 back/1.jpg\n";
+  expect_refused({cameras, {"images.txt", front + back}}, with_base(),
+                 "images.txt:2: found 10 words, wanted the points of the image in the line before");
+  expect_refused({cameras, {"images.txt", front + "7.5 8.5 -1\n" + back}}, with_base(),
+                 "cameras.txt:2: back.fx_px: found -7");
+}
+
+TEST(ImportRefusals, OptionsThatNothingNeeds) {
+  RigImportOptions options = with_nose_as_front();
+  options.image_size_px = {640, 360};
+  expect_refused({{"a.yaml", kNose}}, options, "--image-size: found files that all state the size");
+  options = with_nose_as_front();
+  options.tokens = {"abc"};
+  expect_refused({{"a.yaml", kNose}}, options, "--token: found abc, wanted it only with files of");
+  options.tokens = {};
+  options.image_size_px = {640, 360};
+  expect_refused({{"a.yaml", replaced(kNose, "image_width: 1280\n", "")}}, options,
+                 "found no image_width");
+}
+
+TEST(ImportRefusals, AByteOrderMarkIsNoMistake) {
+  const auto imported = import_rig({{"a.yaml", "\xEF\xBB\xBF" + kNose}}, with_nose_as_front());
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_EQ(imported->rig.cameras[1].intrinsics.fx_px, 900.5);
+}
+
+TEST(ImportRefusals, FurtherCoefficientsMayBeZero) {
+  const std::string more = replaced(kNose, "cols: 5\n  data: [-0.12, 0.03, 0.001, -0.002, 0]",
+                                    "cols: 14\n  data: [-0.12, 0.03, 0.001, -0.002, 0, 0, 0, 0, "
+                                    "0, 0, 0, 0, 0, 0]");
+  const auto imported = import_rig({{"a.yaml", more}}, with_nose_as_front());
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_EQ(imported->rig.cameras[1].intrinsics.p2, -0.002);
+  expect_refused({{"a.yaml", replaced(more, "0, 0]", "0.5, 0]")}}, with_nose_as_front(),
+                 "found taux = 0.5, wanted taux = 0");
+}
+
 }  // namespace
 }  // namespace bevloc

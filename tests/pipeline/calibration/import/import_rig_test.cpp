@@ -204,6 +204,9 @@ TEST(ImportRig, NuScenesHasThePoseOfTheCameraOnTheVehicle) {
   const std::string two =
       "[" + second + ",\n" + replaced(replaced(second, "c1", "c3"), "1.70079", "1.6") + "]";
   expect_refused({{"calibrated_sensor.json", two}, files[1]}, options, "--token c3");
+  options.tokens = {"c3", "zz"};
+  expect_refused({{"calibrated_sensor.json", two}, files[1]}, options,
+                 "--token: found zz, wanted the token of a camera in calibrated_sensor.json");
   options.tokens = {"c3"};
   const auto chosen = import_rig({{"calibrated_sensor.json", two}, files[1]}, options);
   ASSERT_TRUE(chosen) << chosen.error().message;
