@@ -76,13 +76,6 @@ void find_bare_lanes(const HdMap& map, std::vector<std::string>& faults) {
 
 }  // namespace
 
-double length_of(const MapElement& element) {
-  const double length_m = polyline_length(element.points);
-  const bool is_ring =
-      element.element_class == ElementClass::kPedestrianCrossing && element.points.size() > 2;
-  return is_ring ? length_m + (element.points.front() - element.points.back()).norm() : length_m;
-}
-
 MapFacts facts_of(const HdMap& map) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   MapFacts facts;

@@ -44,7 +44,4 @@ nlohmann::json json_of(const ImportedMap& imported);
 /// nothing can be matched.
 std::vector<std::string> faults_of(const HdMap& map);
 
-/// Length of a line; of a ring with its closing edge.
-double length_of(const MapElement& element);
-
 }  // namespace bevloc::evaluation

@@ -53,7 +53,7 @@ class CompactEncoder {
     bytes_ += value;
   }
   void byte(uint8_t value) { bytes_.push_back(static_cast<char>(value)); }
-  /// Points follow each other as differences; this one counts from (x, y).
+  /// Each point is stored as a difference from the one before. The next one counts from (x, y).
   void start_from(int64_t x, int64_t y) {
     last_[0] = x;
     last_[1] = y;

@@ -136,32 +136,41 @@ class Lanelet2Reader {
       map_.left_out.push_back(
           fmt::format("{}:{}: lanelet {}: found bounds without an area between, wanted a crossing",
                       document_.file, lanelet.relation->line, lanelet.relation->id));
-      return take(std::nullopt, "lanelet crosswalk", where, "left out, see below");
+      report_.note("lanelet crosswalk", std::nullopt, "left out, see below", 0.0, where);
+      return;
     }
     std::vector<const OsmWay*> ways = lanelet.left.ways;
     ways.insert(ways.end(), lanelet.right.ways.begin(), lanelet.right.ways.end());
     Heights heights_m = heights_at(crossing.points, ways, document_, nodes_);
-    take(std::move(crossing), "lanelet crosswalk", where, "", std::move(heights_m));
+    take(std::move(crossing), "lanelet crosswalk", where, std::move(heights_m));
   }
 
   /// Adds an element, unless the class table has another meaning for its kind.
-  void take(std::optional<MapElement> element, const std::string& kind, const std::string& where,
-            std::string_view why_not = "", Heights heights_m = {}) {
-    std::string_view why = element ? "" : why_not;
-    if (element && !element->points.empty()) {
-      if (const auto* rule = classes_.rule_for(kind)) {
-        why = "by the class table";
-        element->element_class = rule->becomes.value_or(Meaning()).element_class;
-        element->appearance = rule->becomes.value_or(Meaning()).appearance;
-        if (!rule->becomes) element.reset();
-      }
+  void take(MapElement element, const std::string& kind, const std::string& where,
+            Heights heights_m) {
+    std::optional<Meaning> meaning = Meaning{element.element_class, element.appearance};
+    const auto* rule = classes_.rule_for(kind);
+    if (rule != nullptr) meaning = rule->becomes;
+    if (meaning) {
+      element.element_class = meaning->element_class;
+      element.appearance = meaning->appearance;
     }
-    std::optional<Meaning> meaning;
-    if (element) meaning = Meaning{element->element_class, element->appearance};
-    report_.note(kind, meaning, why, element ? polyline_length(element->points) : 0.0, where);
-    if (!element) return;
-    map_.elements.push_back(std::move(*element));
+    const std::string_view why = rule != nullptr ? "by the class table" : "";
+    report_.note(kind, meaning, why, length_of(element), where);
+    if (!meaning) return;
+    map_.elements.push_back(std::move(element));
     heights_m_.push_back(std::move(heights_m));
+  }
+
+  static std::string name_of(const OsmWay& way) {
+    return fmt::format("way {} (line {})", way.id, way.line);
+  }
+
+  /// Reports a way that gives no line. A way whose nodes are missing has no length.
+  void drop(const OsmWay& way, std::string_view why) {
+    const Result<Polyline> points = points_of(way, document_, nodes_);
+    report_.note(way_kind(way.tags), std::nullopt, why, points ? polyline_length(*points) : 0.0,
+                 name_of(way));
   }
 
   void add_lanes(const Lanelet& lanelet) {
@@ -196,30 +205,29 @@ class Lanelet2Reader {
 
   void add_line(const OsmWay& way) {
     const std::string kind = way_kind(way.tags);
-    const std::string where = fmt::format("way {} (line {})", way.id, way.line);
     std::optional<MapElement> element = classify(way);
     const auto* rule = classes_.rule_for(kind);
     if (!element && rule != nullptr && rule->becomes) element = MapElement{};
-    if (!element) return take(std::nullopt, kind, where, "no line of the road");
+    if (!element) return drop(way, "no line of the road");
     Result<Polyline> points = points_of(way, document_, nodes_);
     if (!points) {
       map_.left_out.push_back(points.error().message);
-      return take(std::nullopt, kind, where, "left out, see below");
+      return drop(way, "left out, see below");
     }
-    if (points->size() < 2) return take(std::nullopt, kind, where, "too few points");
+    if (points->size() < 2) return drop(way, "too few points");
     if (polyline_length(*points) > kLongestPolylineM) {
       map_.left_out.push_back(fmt::format("{}:{}: way {}: found {:g} m, wanted at most {:g} m",
                                           document_.file, way.line, way.id,
                                           polyline_length(*points), kLongestPolylineM));
-      return take(std::nullopt, kind, where, "left out, see below");
+      return drop(way, "left out, see below");
     }
     element->points = std::move(*points);
     judge_by_neighbours(way, *element);
     if (is_second_of_a_pair(way, *element)) {
-      return take(std::nullopt, kind, where, "the neighbouring lanelet has the same line");
+      return drop(way, "the neighbouring lanelet has the same line");
     }
     Heights heights_m = heights_of(way, document_, nodes_, element->points.size());
-    take(std::move(element), kind, where, "", std::move(heights_m));
+    take(std::move(*element), kind, name_of(way), std::move(heights_m));
   }
 
   const BoundUse& use_of(const OsmWay& way) const {

@@ -150,6 +150,13 @@ double polyline_length(const Polyline& line) {
   return length_m;
 }
 
+double length_of(const MapElement& element) {
+  const double length_m = polyline_length(element.points);
+  const bool is_ring =
+      element.element_class == ElementClass::kPedestrianCrossing && element.points.size() > 2;
+  return is_ring ? length_m + (element.points.front() - element.points.back()).norm() : length_m;
+}
+
 double area_of_ring_m2(const Polyline& ring) {
   double twice_m2 = 0.0;
   for (size_t i = 0; i < ring.size(); ++i) {

@@ -30,6 +30,9 @@ Eigen::Vector2d median_point(const std::vector<Eigen::Vector2d>& points);
 /// In metres.
 double polyline_length(const Polyline& line);
 
+/// Length of a line; of a crossing with its closing edge.
+double length_of(const MapElement& element);
+
 /// The area of a ring without a repeated corner.
 double area_of_ring_m2(const Polyline& ring);
 

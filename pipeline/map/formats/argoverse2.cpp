@@ -40,16 +40,18 @@ std::optional<City> city_of(const std::filesystem::path& file) {
   return std::nullopt;
 }
 
-/// The meaning of a left_lane_mark_type. Nothing for NONE, and for types that nobody knows.
+/// The meaning of a left_lane_mark_type. Nothing for NONE, and for types that nobody knows. A solid
+/// line with a dashed one beside it (SOLID_DASH_WHITE, DASH_SOLID_WHITE) counts as solid.
 std::optional<Meaning> meaning_of_mark(std::string_view type) {
-  if (type == "NONE" || type == "UNKNOWN" || type.empty()) return std::nullopt;
   if (type.starts_with("DOUBLE_SOLID")) {
     return Meaning{ElementClass::kLaneDivider, Appearance::kDoubleSolid};
   }
   if (type.starts_with("DASHED") || type.starts_with("DOUBLE_DASH")) {
     return Meaning{ElementClass::kLaneDivider, Appearance::kDashed};
   }
-  if (type.starts_with("SOLID")) return Meaning{ElementClass::kLaneDivider, Appearance::kSolid};
+  if (type.starts_with("SOLID") || type.starts_with("DASH_SOLID")) {
+    return Meaning{ElementClass::kLaneDivider, Appearance::kSolid};
+  }
   return std::nullopt;
 }
 
@@ -139,7 +141,8 @@ class Argoverse2Reader {
     const std::string kind = "lane mark " + (type.empty() ? "NONE" : type);
     const auto normally = meaning_of_mark(type);
     if (!builder_.meaning_of(kind, normally) || length_of(line) > kLongestPolylineM) {
-      builder_.add(kind, where, normally, "not painted", line);
+      const bool is_none = type == "NONE" || type.empty();
+      builder_.add(kind, where, normally, is_none ? "not painted" : "no known mark", line);
       return;
     }
     const Polyline points = flat(line);

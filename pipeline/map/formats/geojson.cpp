@@ -61,54 +61,85 @@ class GeojsonReader {
   }
 
  private:
+  /// What all lines of a feature have in common.
+  struct Feature {
+    std::string kind;
+    std::string where;
+    const json& properties;
+  };
+
   Status read_feature(const json& feature, const JsonPath& path, size_t index) {
     const json& geometry = member(feature, "geometry");
     const json& properties = member(feature, "properties");
-    const std::string shape = text_member(geometry, "type");
-    const json& positions = member(geometry, "coordinates");
-    const JsonPath at = path / "geometry" / "coordinates";
     const std::string id = id_text(member(feature, "id"));
     const std::string where = "feature " + (id.empty() ? fmt::format("{}", index) : id);
     std::string kind = text_member(properties, "class");
     if (kind.empty()) kind = text_member(properties, "type");
     if (kind.empty()) kind = "no class";
-    if (kind == "lane" && shape == "LineString") return read_lane(positions, at, properties, path);
-    if (shape == "LineString") return add(kind, where, properties, positions, at);
-    if (shape == "MultiLineString" || shape == "Polygon") {
-      return add_each(kind, where, properties, positions, at);
+    const JsonPath at = path / "geometry";
+    if (kind == "lane" && text_member(geometry, "type") == "LineString") {
+      return read_lane(member(geometry, "coordinates"), at / "coordinates", properties, path);
     }
-    if (shape == "MultiPolygon" && positions.is_array()) {
-      for (size_t i = 0; i < positions.size(); ++i) {
-        Status status = add_each(kind, where, properties, positions[i], at / i);
-        if (!status) return status;
-      }
-      return {};
+    return add_geometry({kind, where, properties}, geometry, at);
+  }
+
+  Status add_geometry(const Feature& feature, const json& geometry, const JsonPath& path) {
+    const std::string shape = text_member(geometry, "type");
+    const json& positions = member(geometry, "coordinates");
+    const JsonPath at = path / "coordinates";
+    if (shape == "LineString") return add(feature, positions, at);
+    if (shape == "MultiLineString") return for_each(positions, at, &GeojsonReader::add, feature);
+    if (shape == "Polygon") return add_polygon(feature, positions, at);
+    if (shape == "MultiPolygon") {
+      return for_each(positions, at, &GeojsonReader::add_polygon, feature);
     }
-    builder_.drop(kind, where, "no line or polygon", 0.0);
+    if (shape == "GeometryCollection") {
+      return for_each(member(geometry, "geometries"), path / "geometries",
+                      &GeojsonReader::add_geometry, feature);
+    }
+    builder_.drop(feature.kind, feature.where, "no line or polygon", 0.0);
     return {};
   }
 
-  Status add_each(const std::string& kind, const std::string& where, const json& properties,
-                  const json& lines, const JsonPath& path) {
-    if (!lines.is_array()) return fail("{}: found no list, wanted lists", json_.place(path));
-    for (size_t i = 0; i < lines.size(); ++i) {
-      Status status = add(kind, where, properties, lines[i], path / i);
+  using AddPart = Status (GeojsonReader::*)(const Feature&, const json&, const JsonPath&);
+  Status for_each(const json& parts, const JsonPath& path, AddPart add_part,
+                  const Feature& feature) {
+    if (!parts.is_array()) return fail("{}: found no list, wanted lists", json_.place(path));
+    for (size_t i = 0; i < parts.size(); ++i) {
+      Status status = (this->*add_part)(feature, parts[i], path / i);
       if (!status) return status;
     }
     return {};
   }
 
-  Status add(const std::string& kind, const std::string& where, const json& properties,
-             const json& positions, const JsonPath& path) {
+  /// The first ring is the outline, the others are holes. A hole in a crossing is no crossing.
+  Status add_polygon(const Feature& feature, const json& rings, const JsonPath& path) {
+    const auto meaning = builder_.meaning_of(feature.kind, meaning_of(feature));
+    const bool is_crossing = meaning && meaning->element_class == ElementClass::kPedestrianCrossing;
+    if (!is_crossing || !rings.is_array() || rings.empty()) {
+      return for_each(rings, path, &GeojsonReader::add, feature);
+    }
+    for (size_t i = 1; i < rings.size(); ++i) {
+      const auto hole = line_at(rings[i], path / i);
+      if (!hole) return tl::unexpected(hole.error());
+      builder_.drop(feature.kind, feature.where, "a hole in a crossing", length_of(*hole));
+    }
+    return add(feature, rings[0], path / 0);
+  }
+
+  static std::optional<Meaning> meaning_of(const Feature& feature) {
+    const auto element_class = class_named(feature.kind);
+    if (!element_class) return std::nullopt;
+    const auto look = appearance_named(text_member(feature.properties, "appearance"));
+    return Meaning{*element_class,
+                   look && fits(*look, *element_class) ? *look : Appearance::kUnknown};
+  }
+
+  Status add(const Feature& feature, const json& positions, const JsonPath& path) {
     auto line = line_at(positions, path);
     if (!line) return tl::unexpected(line.error());
-    std::optional<Meaning> meaning;
-    if (const auto element_class = class_named(kind)) {
-      const auto look = appearance_named(text_member(properties, "appearance"));
-      meaning = Meaning{*element_class,
-                        look && fits(*look, *element_class) ? *look : Appearance::kUnknown};
-    }
-    builder_.add(kind, where, meaning, "no class of bevloc", std::move(*line));
+    builder_.add(feature.kind, feature.where, meaning_of(feature), "no class of bevloc",
+                 std::move(*line));
     return {};
   }
 
@@ -197,10 +228,13 @@ class GeojsonReader {
       if (!value.is_array()) return;
       for (const json& part : value) self(self, part);
     };
-    for (const json& feature : features) {
-      const json& geometry = member(feature, "geometry");
-      if (is_drawn(text_member(geometry, "type"))) add(add, member(geometry, "coordinates"));
-    }
+    const auto add_geometry = [&](const auto& self, const json& geometry) -> void {
+      const std::string shape = text_member(geometry, "type");
+      if (is_drawn(shape)) add(add, member(geometry, "coordinates"));
+      if (shape != "GeometryCollection") return;
+      for (const json& part : member(geometry, "geometries")) self(self, part);
+    };
+    for (const json& feature : features) add_geometry(add_geometry, member(feature, "geometry"));
     if (latitudes_deg.empty()) return {};
     return {median(latitudes_deg), median(longitudes_deg)};
   }

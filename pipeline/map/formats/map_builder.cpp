@@ -123,12 +123,13 @@ void MapBuilder::add(std::string_view kind, std::string_view where,
     return a.head<2>() == b.head<2>();
   };
   line.erase(std::unique(line.begin(), line.end(), is_same), line.end());
-  const double length_m = length_of(line);
   const bool by_rule = options_.classes != nullptr && options_.classes->rule_for(kind) != nullptr;
   std::optional<Meaning> meaning = meaning_of(kind, normally);
   std::string_view why = by_rule ? "by the class table" : meaning ? "" : why_not;
   const bool is_ring = meaning && meaning->element_class == ElementClass::kPedestrianCrossing;
   if (is_ring && line.size() > 1 && is_same(line.front(), line.back())) line.pop_back();
+  double length_m = length_of(line);
+  if (is_ring && line.size() > 2) length_m += (line.front() - line.back()).head<2>().norm();
   if (meaning && line.size() < (is_ring ? 3 : 2)) {
     meaning.reset();
     why = "too few points";

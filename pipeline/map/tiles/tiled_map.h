@@ -37,9 +37,10 @@ class TiledMap {
   const TiledMapFacts& facts() const { return directory_.facts(); }
 
   /// Replaces `found` with the segments whose bounding boxes intersect the given one, sorted by
-  /// element, then by point; those that miss the box itself may lack. The time depends on the
-  /// number of segments in the tiles under the box. Allocates only if `found` must grow. A tile is
-  /// compared with its checksum when it is first touched; a damaged one counts as empty.
+  /// element, then by point. Segments that do not touch the box themselves may be missing. The
+  /// time depends on the number of segments in the tiles under the box. Allocates only if `found`
+  /// must grow. A tile is compared with its checksum when it is first touched; a damaged one counts
+  /// as empty.
   void query(const Eigen::Vector2d& min_corner, const Eigen::Vector2d& max_corner,
              std::vector<Segment>& found) const;
 

@@ -9,7 +9,7 @@
 
 namespace bevloc::opendrive {
 
-/// Parses the roads of an OpenDRIVE file of version 1.4 to 1.8. Fails with file and line on text
+/// Parses the roads of an OpenDRIVE file of version 1.4 to 1.7. Fails with file and line on text
 /// that is not OpenDRIVE XML, on missing or bad numbers, on a road without geometry or lane
 /// section, on kinds of geometry that do not exist, and on lengths that no road has.
 Result<Document> parse_document(std::string_view text, std::string file);

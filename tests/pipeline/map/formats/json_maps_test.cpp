@@ -1,4 +1,5 @@
 // Argoverse 2, nuScenes and GeoJSON.
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -6,6 +7,7 @@
 
 #include "pipeline/map/formats/geojson.h"
 #include "pipeline/map/formats/map_format.h"
+#include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/map_checksum.h"
 #include "pipeline/map/map_loader.h"
 
@@ -81,6 +83,21 @@ TEST(Argoverse2, TheNameOfTheFileGivesTheCity) {
   ASSERT_TRUE(imported.has_value()) << imported.error().message;
   EXPECT_NEAR(imported->map.origin.latitude_deg, 40.4418, 1e-3);
   EXPECT_NEAR(imported->map.origin.longitude_deg, -80.0125, 1e-3);
+}
+
+TEST(Argoverse2, TakesEveryPaintedMark) {
+  // All values of LaneMarkType in the data set's API.
+  for (const std::string mark :
+       {"DASH_SOLID_YELLOW", "DASH_SOLID_WHITE", "DASHED_WHITE", "DASHED_YELLOW",
+        "DOUBLE_SOLID_YELLOW", "DOUBLE_SOLID_WHITE", "DOUBLE_DASH_YELLOW", "DOUBLE_DASH_WHITE",
+        "SOLID_YELLOW", "SOLID_WHITE", "SOLID_DASH_WHITE", "SOLID_DASH_YELLOW", "SOLID_BLUE"}) {
+    const auto imported =
+        parse_imported(replaced(kArgoverse, "DOUBLE_SOLID_YELLOW", mark), "map.json", {});
+    ASSERT_TRUE(imported.has_value()) << imported.error().message;
+    EXPECT_TRUE(std::ranges::any_of(imported->report.rows(), [&](const ImportRow& row) {
+      return row.kind == "lane mark " + mark && row.meaning.has_value();
+    })) << mark;
+  }
 }
 
 TEST(Argoverse2, RefusesBrokenFilesWithLineAndPath) {
@@ -194,6 +211,30 @@ TEST(Geojson, ReadsForeignFeaturesWithAClassTable) {
   ASSERT_EQ(imported->map.elements.size(), 2U);
   const auto& points = imported->map.elements[0].points;
   EXPECT_NEAR((points[1] - points[0]).norm(), 73.2, 0.1) << "0.001 degrees at latitude 49";
+}
+
+TEST(Geojson, ReadsCollectionsAndLeavesOutTheHolesOfCrossings) {
+  constexpr std::string_view kCollection = R"({"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"class": "boundary"}, "geometry":
+     {"type": "GeometryCollection", "geometries": [
+      {"type": "Point", "coordinates": [8.4, 49.0]},
+      {"type": "LineString", "coordinates": [[8.4, 49.0], [8.401, 49.0]]}]}},
+    {"type": "Feature", "properties": {"class": "crossing"}, "geometry": {"type": "Polygon",
+     "coordinates": [
+      [[8.4005, 49.0], [8.4006, 49.0], [8.4006, 49.0001], [8.4005, 49.0001], [8.4005, 49.0]],
+      [[8.40053, 49.00003], [8.40056, 49.00003], [8.40056, 49.00006], [8.40053, 49.00003]]]}}]})";
+  const auto imported = parse_imported(kCollection, "f.geojson", {});
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  ASSERT_EQ(imported->map.elements.size(), 2U);
+  EXPECT_NEAR(length_of(imported->map.elements[0]), 73.2, 0.1);
+  const auto rows = imported->report.rows();
+  const auto hole = std::ranges::find(rows, "a hole in a crossing", &ImportRow::why);
+  ASSERT_NE(hole, rows.end());
+  EXPECT_EQ(hole->kind, "crossing");
+  const auto crossing = std::ranges::find_if(
+      rows, [](const ImportRow& row) { return row.kind == "crossing" && row.meaning; });
+  ASSERT_NE(crossing, rows.end());
+  EXPECT_NEAR(crossing->length_m, 2 * (7.32 + 11.12), 0.1) << "with the closing edge";
 }
 
 TEST(Geojson, RefusesWhatIsNotOnEarth) {
