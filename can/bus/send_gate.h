@@ -16,8 +16,8 @@ namespace bevloc::can {
 /// while the bus acknowledges nothing, and none is sent when the bus recovers. A frame has left the
 /// kernel when its echo confirms that it was on the wire.
 ///
-/// Nobody can take a frame back from the kernel. So while the bus shows no sign of life, no frame
-/// at all enters: what is in the kernel then are the frames of the last 40 ms before the failure.
+/// Nobody can take a frame back from the kernel. So while the bus shows no sign of life, no further
+/// frame enters. The kernel then holds only frames of the last 40 ms before the failure.
 ///
 /// Threads: one thread calls enter() and leave(), another one confirm() and note_alive(). Both may
 /// call reset(). No locks.

@@ -64,6 +64,13 @@ std::vector<int64_t> DbcSignal::values_named(std::string_view value_name) const 
   return values;
 }
 
+bool DbcSignal::is_present_at(uint64_t multiplexor) const {
+  return multiplexed_at.empty() ||
+         std::ranges::any_of(multiplexed_at, [multiplexor](const DbcValueRange& range) {
+           return range.first <= multiplexor && multiplexor <= range.last;
+         });
+}
+
 const DbcSignal* DbcMessage::find(std::string_view signal_name) const {
   const auto found = std::ranges::find(signals, signal_name, &DbcSignal::name);
   return found == signals.end() ? nullptr : &*found;

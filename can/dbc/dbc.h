@@ -21,6 +21,14 @@ struct DbcValueName {
   std::string name;
 };
 
+/// Raw values from `first` to `last`, both included.
+struct DbcValueRange {
+  uint64_t first = 0;
+  uint64_t last = 0;
+
+  bool operator==(const DbcValueRange&) const = default;
+};
+
 struct DbcSignal {
   std::string name;
   int line = 0;
@@ -28,12 +36,16 @@ struct DbcSignal {
   double min = 0.0;  ///< physical; min == max: the file states no range
   double max = 0.0;
   std::string unit;
-  bool is_multiplexor = false;               ///< M: says which multiplexed signals a frame has
-  std::optional<uint64_t> multiplexed_at{};  ///< mN: only in frames whose multiplexor is N
+  bool is_multiplexor = false;  ///< M: says which multiplexed signals a frame has
+  /// Only in frames whose multiplexor has one of these values (mN, or SG_MUL_VAL_ in its place).
+  /// Empty: in all frames.
+  std::vector<DbcValueRange> multiplexed_at{};
   std::vector<DbcValueName> value_names{};
 
   /// The raw values that have this name.
   std::vector<int64_t> values_named(std::string_view value_name) const;
+  /// Whether a frame with this raw value of the multiplexor has the signal.
+  bool is_present_at(uint64_t multiplexor) const;
 };
 
 struct DbcMessage {
@@ -47,8 +59,8 @@ struct DbcMessage {
   /// Values of BA_ for this message, and the defaults of the file (BA_DEF_DEF_). Values of ENUM
   /// attributes are names.
   std::map<std::string, std::string, std::less<>> attributes{};
-  /// Multiplexors behind multiplexors (mNM, SG_MUL_VAL_): which multiplexed signals a frame has is
-  /// not known.
+  /// Several multiplexors (mNM, or SG_MUL_VAL_ with another one): which multiplexed signals a frame
+  /// has is not known.
   bool nested_multiplexing = false;
   /// The mistake for which the message is left out, as an error message. It then has no signals.
   std::string left_out{};

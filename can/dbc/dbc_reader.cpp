@@ -160,7 +160,7 @@ void DbcReader::read_statement() {
   if (keyword == "BA_DEF_DEF_") return read_attribute_default();
   if (keyword == "BA_") return read_attribute();
   if (keyword == "SIG_VALTYPE_") return read_value_type();
-  if (keyword == "SG_MUL_VAL_") return read_nested_multiplexing();
+  if (keyword == "SG_MUL_VAL_") return read_multiplexor_values();
   if (keyword == "SG_") refuse(token, "signals right after their message");
   if (keyword == "NS_" || keyword == "BU_" || keyword == "BS_" || keyword == "VERSION") {
     return skip_list(keyword);
@@ -260,7 +260,7 @@ void DbcReader::read_multiplexing(DbcSignal& signal, DbcMessage& message) {
   if (text[0] != 'm' || text.size() < 2 || error != std::errc() || end != end_of_text) {
     refuse(token, "':', or M or m with a number for multiplexing");
   }
-  signal.multiplexed_at = value;
+  signal.multiplexed_at = {{value, value}};
   if (signal.is_multiplexor) message.nested_multiplexing = true;
 }
 
@@ -357,7 +357,7 @@ void DbcReader::check_multiplexors(DbcMessage& message) const {
   if (message.nested_multiplexing) return;
   const auto multiplexors = std::ranges::count_if(message.signals, &DbcSignal::is_multiplexor);
   const bool is_multiplexed = std::ranges::any_of(
-      message.signals, [](const DbcSignal& signal) { return signal.multiplexed_at.has_value(); });
+      message.signals, [](const DbcSignal& signal) { return !signal.multiplexed_at.empty(); });
   if (multiplexors > 1 || (is_multiplexed && multiplexors == 0)) {
     leave_out(message, message.line,
               fmt::format("message {} with {} multiplexors", message.name, multiplexors),

@@ -25,6 +25,7 @@ class DbcReader {
 
   Dbc read() {
     while (tokens_.peek().kind != DbcToken::Kind::kEnd) read_statement();
+    if (!tokens_.peek().text.empty()) refuse(tokens_.peek(), "a statement");
     for (DbcMessage& message : dbc_.messages) complete(message);
     return std::move(dbc_);
   }
@@ -51,7 +52,8 @@ class DbcReader {
   void check_multiplexors(DbcMessage& message) const;
   void read_value_names();
   void read_value_type();
-  void read_nested_multiplexing();
+  void read_multiplexor_values();
+  DbcValueRange take_range();
   void read_attribute_definition();
   void read_attribute_default();
   void read_attribute();

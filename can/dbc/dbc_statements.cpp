@@ -1,4 +1,7 @@
 // The statements of DBC files about messages and signals that were read before.
+#include <algorithm>
+#include <charconv>
+
 #include "can/dbc/dbc_reader.h"
 
 namespace bevloc::can {
@@ -38,15 +41,37 @@ void DbcReader::read_value_type() {
   signal->layout.type = type == 1 ? RawType::kFloat : RawType::kDouble;
 }
 
-void DbcReader::read_nested_multiplexing() {
+/// SG_MUL_VAL_: the values of a multiplexor at which frames have a signal.
+void DbcReader::read_multiplexor_values() {
   DbcMessage* message = take_message();
-  take_signal_of(message);
-  if (message != nullptr) message->nested_multiplexing = true;
-  while (!tokens_.peek().is_sign(';')) {
-    if (tokens_.peek().kind == DbcToken::Kind::kEnd) refuse(tokens_.peek(), "';'");
+  DbcSignal* signal = take_signal_of(message);
+  const std::string multiplexor = take_word("the name of a multiplexor");
+  std::vector<DbcValueRange> values{take_range()};
+  while (tokens_.peek().is_sign(',')) {
     tokens_.take();
+    values.push_back(take_range());
   }
-  tokens_.take();
+  take_sign(';');
+  if (message == nullptr || signal == nullptr) return;
+  const auto multiplexors = std::ranges::count_if(message->signals, &DbcSignal::is_multiplexor);
+  const bool is_only_one = multiplexors == 1 && message->multiplexor()->name == multiplexor;
+  if (!is_only_one) message->nested_multiplexing = true;
+  signal->multiplexed_at = std::move(values);
+}
+
+/// "2-5". Some tools write spaces around the sign.
+DbcValueRange DbcReader::take_range() {
+  constexpr std::string_view kWanted = "a range of values, such as 2-5";
+  const DbcToken first = tokens_.peek();
+  std::string text;
+  while (tokens_.peek().kind == DbcToken::Kind::kWord) text += tokens_.take().text;
+  DbcValueRange range;
+  const char* const end = text.data() + text.size();
+  const auto low = std::from_chars(text.data(), end, range.first);
+  if (low.ec != std::errc() || low.ptr == end || *low.ptr != '-') refuse(first, kWanted);
+  const auto high = std::from_chars(low.ptr + 1, end, range.last);
+  if (high.ec != std::errc() || high.ptr != end || range.last < range.first) refuse(first, kWanted);
+  return range;
 }
 
 void DbcReader::read_attribute_definition() {

@@ -34,7 +34,8 @@ void DbcTokens::skip_space() {
   }
 }
 
-std::string DbcTokens::take_text() {
+/// Nothing if no quote closes the text.
+std::optional<std::string> DbcTokens::take_text() {
   std::string text;
   rest_.remove_prefix(1);
   while (!rest_.empty() && rest_[0] != '"') {
@@ -45,7 +46,8 @@ std::string DbcTokens::take_text() {
     text += rest_[0];
     rest_.remove_prefix(1);
   }
-  if (!rest_.empty()) rest_.remove_prefix(1);
+  if (rest_.empty()) return std::nullopt;
+  rest_.remove_prefix(1);
   return text;
 }
 
@@ -56,7 +58,12 @@ void DbcTokens::advance() {
   if (rest_.empty()) return;
   if (rest_[0] == '"') {
     next_.kind = DbcToken::Kind::kText;
-    next_.text = take_text();
+    if (auto text = take_text()) {
+      next_.text = std::move(*text);
+    } else {
+      next_.kind = DbcToken::Kind::kEnd;
+      next_.text = "\"";
+    }
     return;
   }
   size_t length = 1;
@@ -74,7 +81,9 @@ void DbcTokens::advance() {
 
 std::string describe(const DbcToken& token) {
   constexpr size_t kLongest = 40;
-  if (token.kind == DbcToken::Kind::kEnd) return "the end of the file";
+  if (token.kind == DbcToken::Kind::kEnd) {
+    return token.text.empty() ? "the end of the file" : "a quote that nothing closes";
+  }
   const std::string shown =
       token.text.size() <= kLongest ? token.text : token.text.substr(0, kLongest) + "...";
   return token.kind == DbcToken::Kind::kText ? fmt::format("\"{}\"", shown) : shown;

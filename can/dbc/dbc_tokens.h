@@ -1,6 +1,7 @@
 // Takes the text of a DBC file apart into words, texts in quotes, and signs.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,7 +12,8 @@ namespace bevloc::can {
 struct DbcToken {
   enum class Kind { kWord, kText, kSign, kEnd };
   Kind kind = Kind::kEnd;
-  std::string text;  ///< without quotes; empty at the end of the file
+  /// Without quotes. Of kEnd: empty, or a quote if the file ends in a text that begins here.
+  std::string text;
   int line = 1;
   bool starts_line = false;
 
@@ -19,20 +21,21 @@ struct DbcToken {
   bool is_sign(char sign) const { return kind == Kind::kSign && text[0] == sign; }
 };
 
-/// Reads one token after the other. Never fails: an unclosed text ends with the file. One thread.
+/// Reads one token after the other. Never fails: a text that no quote closes is the end of the
+/// file. One thread.
 class DbcTokens {
  public:
   /// `text` must outlive this.
   explicit DbcTokens(std::string_view text) : rest_(text) { advance(); }
 
-  /// The next token, which stays the next one.
+  /// Returns the next token without taking it.
   const DbcToken& peek() const { return next_; }
   DbcToken take();
 
  private:
   void advance();
   void skip_space();
-  std::string take_text();
+  std::optional<std::string> take_text();
 
   std::string_view rest_;
   int line_ = 1;

@@ -36,13 +36,13 @@ struct E2eFrame {
 /// MaxDeltaCounter, and resynchronisation after a wrong sequence, on top of which E2eStateMachine
 /// decides. AUTOSAR counts calls of a periodic task; here the time of arrival counts the cycles.
 ///
-/// Beyond the standard, a wrong sequence does not move the counter of a sender that is still there:
-/// frames that somebody else sends in between are refused, and the sender's own are used. One
-/// thread.
+/// Beyond the standard: while the sender is still there, a frame with a wrong sequence does not
+/// change the expected counter. So frames of another sender are refused, and the sender's own
+/// frames are used. One thread.
 class E2eMonitor {
  public:
-  /// Counters run from 0 to `highest_counter`. A frame with a higher one must not be passed in as
-  /// one with the right CRC.
+  /// Counters run from 0 to `highest_counter`. The caller sets `right_crc` to false for a frame
+  /// with a higher one.
   E2eMonitor(uint8_t highest_counter, const E2eReceiverParameters& parameters)
       : highest_counter_(highest_counter), parameters_(parameters), machine_(parameters.state) {}
 

@@ -1,6 +1,7 @@
 #include "can/listen/bus_listener.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -16,8 +17,10 @@ namespace {
 
 /// Bevloc's own messages as a DBC file.
 Dbc own_dbc(const BaseIds& base) {
+  assert(base.are_apart());
   auto dbc = parse_dbc(dbc_text(base), "bevloc");
-  return dbc ? std::move(*dbc) : Dbc();
+  assert(dbc);
+  return std::move(*dbc);
 }
 
 const Message* own_message(std::string_view name, uint32_t id, const BaseIds& base) {
@@ -29,11 +32,11 @@ const Message* own_message(std::string_view name, uint32_t id, const BaseIds& ba
 
 bool is_present(const DbcMessage& message, const DbcSignal& signal,
                 std::span<const uint8_t> bytes) {
-  if (!signal.multiplexed_at) return true;
+  if (signal.multiplexed_at.empty()) return true;
   if (message.nested_multiplexing) return false;
   const SignalLayout& multiplexor = message.multiplexor()->layout;
   return bytes_needed(multiplexor) <= bytes.size() &&
-         raw_bits_from(multiplexor, bytes) == *signal.multiplexed_at;
+         signal.is_present_at(raw_bits_from(multiplexor, bytes));
 }
 
 DecodedSignal decoded(const DbcSignal& signal, std::span<const uint8_t> bytes) {

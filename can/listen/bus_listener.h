@@ -43,11 +43,12 @@ class BusListener {
     uint64_t lost = 0;      ///< likewise: missing before a usable frame
   };
 
-  /// Knows bevloc's messages with these base ids, unless one of the files has their identifiers.
-  /// Messages that a file leaves out are unknown.
+  /// Knows bevloc's messages with these base ids (which are apart), unless one of the files has
+  /// their identifiers. Messages that a file leaves out are unknown.
   BusListener(std::vector<Dbc> files, const BaseIds& base);
 
-  /// Nothing for a message that no file describes. Valid until the next call.
+  /// Decodes a frame. Returns null if no file describes its message. The result is valid until the
+  /// next call.
   const DecodedFrame* decode(const Frame& frame);
 
   /// By name of the message.

@@ -55,7 +55,9 @@ constexpr Signal reason_flag(std::string_view name, int bit, std::string_view co
 
 /// In the order of the bits of enum Why.
 inline constexpr std::array<Signal, 6> kWhy{{
-    reason_flag("Why_GnssContradicts", 16, "GNSS contradicts match and odometry and is not used."),
+    reason_flag(
+        "Why_GnssContradicts", 16,
+        "GNSS contradicts match and odometry and is not used, or it scatters more than it states."),
     reason_flag("Why_OdometryContradicts", 17,
                 "Odometry contradicts match and GNSS. The pose is not predicted with it."),
     reason_flag("Why_MatchContradicts", 18,
@@ -84,6 +86,6 @@ inline constexpr Message kMessage{
     .signals = kSignals,
     .comment =
         "Protection levels of this epoch's pose along the vehicle's axes, and the reasons that "
-        "have no room in LOC_Status. The last message of an epoch."};
+        "have no room in LOC_Status. The last of the messages that every epoch has."};
 
 }  // namespace bevloc::can::loc_integrity

@@ -15,11 +15,19 @@ enum class Sender : uint8_t { kLocalizer, kVehicle };
 
 /// The first identifiers of the LOC_ and of the VEH_ messages. Each message adds its own offset.
 struct BaseIds {
+  /// Each family of messages has fewer identifiers than this.
+  static constexpr uint32_t kFamily = 0x40;
+  static constexpr uint32_t kFirst = 1;
   /// The largest one, because identifiers have 11 bits.
-  static constexpr uint32_t kLast = 0x7F0;
+  static constexpr uint32_t kLast = 0x800 - kFamily;
 
   uint32_t localizer = 0x500;
   uint32_t vehicle = 0x400;
+
+  /// Whether no message of one family has an identifier of the other.
+  constexpr bool are_apart() const {
+    return (localizer > vehicle ? localizer - vehicle : vehicle - localizer) >= kFamily;
+  }
 };
 
 struct Message {

@@ -25,8 +25,8 @@ struct GeodeticFix {
 /// Returns the fix in the map frame.
 GnssSample gnss_sample_of(const GeodeticFix& fix, GeoReference& geo, Time time);
 
-/// Shared by the implementations of VehicleDecoder. Does not allocate after construction. One
-/// thread.
+/// Makes samples of odometry and GNSS for the implementations of VehicleDecoder. Does not allocate
+/// after construction. One thread.
 class SampleMaker {
  public:
   SampleMaker(GeodeticPosition map_origin, const OdometryLimits& limits)

@@ -27,7 +27,7 @@ struct WheelDifferenceLimits {
   double change_share = 0.001;
   double change_per_mps2_s = 0.005;
   double mean_s = 0.3;
-  /// Besides, so many sigmas of what was learned.
+  /// In addition, this many standard deviations of the learned value are permitted.
   double sigmas = 3.0;
   /// Time of the mean that lean() gives.
   double lean_mean_s = 0.8;

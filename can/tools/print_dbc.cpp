@@ -11,7 +11,8 @@ int main(int argc, char** argv) {
   CLI::App app("Prints the DBC file of bevloc's CAN messages.");
   bevloc::can::BaseIds base;
   bool markdown = false;
-  const CLI::Range base_range(0u, uint32_t{bevloc::can::BaseIds::kLast});
+  const CLI::Range base_range(uint32_t{bevloc::can::BaseIds::kFirst},
+                              uint32_t{bevloc::can::BaseIds::kLast});
   app.add_option("--localizer-base", base.localizer, "first identifier of the LOC_ messages")
       ->check(base_range)
       ->capture_default_str();
@@ -24,6 +25,12 @@ int main(int argc, char** argv) {
   bool python = false;
   app.add_flag("--python", python, "print can/consumer/bevloc_messages.py instead");
   CLI11_PARSE(app, argc, argv);
+  if (!base.are_apart()) {
+    std::cerr
+        << "bevloc_dbc: --localizer-base: found less than 0x40 between it and "
+           "--vehicle-base, wanted at least 0x40, so that messages do not share identifiers\n";
+    return 2;
+  }
   std::cout << (markdown   ? bevloc::can::markdown_tables(base)
                 : c_header ? bevloc::can::consumer_header_text()
                 : python   ? bevloc::can::consumer_python_text()

@@ -148,11 +148,13 @@ std::optional<VehicleSample> DbcVehicleInput::odometry(Time now) {
     return std::nullopt;
   }
   double yaw_rate_radps = slots_[turning.signal].value;
-  if (turning.positive_right != *negative) yaw_rate_radps = -yaw_rate_radps;
+  // A signal may have a sign beside the condition. Both then say the same.
+  if (*negative) yaw_rate_radps = -std::abs(yaw_rate_radps);
+  if (turning.positive_right) yaw_rate_radps = -yaw_rate_radps;
   WheelFusion fusion(rear_track_m_, moving.wheelbase_m, yaw_rate_radps);
   for (const BoundWheels::Wheel& wheel : moving.wheels) {
     const double speed_mps = slots_[wheel.signal].value;
-    fusion.add(wheel.place, *backward ? -speed_mps : speed_mps);
+    fusion.add(wheel.place, *backward ? -std::abs(speed_mps) : speed_mps);
   }
   const auto speeds = fusion.speeds();
   if (!speeds) {

@@ -61,8 +61,12 @@ std::string_view unit_inside(Quantity quantity) {
 Bound<void> check_range(const DbcSignal& signal, Quantity quantity, double factor) {
   const Sanity sanity = sanity_of(quantity);
   const bool has_range = signal.min < signal.max;
-  const double low = has_range ? signal.min : lowest_physical(signal.layout);
-  const double high = has_range ? signal.max : highest_physical(signal.layout);
+  double low = lowest_physical(signal.layout);
+  double high = highest_physical(signal.layout);
+  if (has_range) {
+    low = std::max(low, signal.min);
+    high = std::min(high, signal.max);
+  }
   const double reaches = std::max(std::abs(low), std::abs(high)) * factor;
   const std::string_view inside = unit_inside(quantity);
   if (reaches < sanity.reaches) {
@@ -94,7 +98,8 @@ Bound<std::vector<int64_t>> raw_values_of(const std::string& text, const DbcSign
     if (!number) {
       return refusal(
           text + meant(text, names_in(signal.value_names)),
-          fmt::format("a raw value of signal {} or a name that VAL_ gives it", signal.name));
+          fmt::format("a raw value of signal {} or a name that VAL_ gives it", signal.name),
+          "values");
     }
     values.push_back(*number);
   }
@@ -104,8 +109,10 @@ Bound<std::vector<int64_t>> raw_values_of(const std::string& text, const DbcSign
   for (const int64_t raw : values) {
     const auto number = static_cast<double>(raw);
     if (number < lowest_physical(unscaled) || number > highest_physical(unscaled)) {
-      return refusal(text, fmt::format("a raw value that fits into the {} bits of {}",
-                                       signal.layout.length_bits, signal.name));
+      return refusal(text,
+                     fmt::format("a raw value that fits into the {} bits of {}",
+                                 signal.layout.length_bits, signal.name),
+                     "values");
     }
   }
   return values;
@@ -113,6 +120,28 @@ Bound<std::vector<int64_t>> raw_values_of(const std::string& text, const DbcSign
 
 bool fits(uint64_t value, const SignalLayout& layout) {
   return layout.length_bits == 64 || value >> layout.length_bits == 0;
+}
+
+/// Refuses a signal unless frames have it always, or at one value of the only multiplexor.
+Bound<void> check_multiplexing(const DbcSignal& signal, const DbcMessage& message) {
+  if (signal.multiplexed_at.empty()) return {};
+  if (message.nested_multiplexing) {
+    return refusal(fmt::format("{} behind several multiplexors", signal.name),
+                   "a signal with one multiplexor or none");
+  }
+  const DbcValueRange& values = signal.multiplexed_at.front();
+  const DbcSignal& multiplexor = *message.multiplexor();
+  if (signal.multiplexed_at.size() > 1 || values.first != values.last) {
+    return refusal(
+        fmt::format("{} at several values of {}", signal.name, multiplexor.name),
+        fmt::format("a signal that frames have at one value of {}, or always", multiplexor.name));
+  }
+  if (!fits(values.first, multiplexor.layout)) {
+    return refusal(fmt::format("{}, which is multiplexed at {}", signal.name, values.first),
+                   fmt::format("a value that fits into the {} bits of {}",
+                               multiplexor.layout.length_bits, multiplexor.name));
+  }
+  return {};
 }
 
 }  // namespace
@@ -156,16 +185,7 @@ Bound<const DbcSignal*> VehicleBinder::find(const std::string& signal,
         name + meant(name, names_in(message->signals)),
         fmt::format("the name of a signal of message {} of {}", message->name, dbc_.file));
   }
-  if (found->multiplexed_at && message->nested_multiplexing) {
-    return refusal(fmt::format("{} behind several multiplexors", name),
-                   "a signal with one multiplexor or none");
-  }
-  if (found->multiplexed_at && !fits(*found->multiplexed_at, message->multiplexor()->layout)) {
-    return refusal(
-        fmt::format("{}, which is multiplexed at {}", name, *found->multiplexed_at),
-        fmt::format("a value that fits into the {} bits of {}",
-                    message->multiplexor()->layout.length_bits, message->multiplexor()->name));
-  }
+  if (auto good = check_multiplexing(*found, *message); !good) return tl::unexpected(good.error());
   return found;
 }
 
@@ -203,8 +223,8 @@ size_t VehicleBinder::bind(const DbcMessage& message, const DbcSignal& signal) {
     bound.min -= half_step;
     bound.max += half_step;
   }
-  if (signal.multiplexed_at) {
-    bound.multiplexed = {message.multiplexor()->layout, *signal.multiplexed_at};
+  if (!signal.multiplexed_at.empty()) {
+    bound.multiplexed = {message.multiplexor()->layout, signal.multiplexed_at.front().first};
   }
   binding_.signals.push_back(std::move(bound));
   return binding_.signals.size() - 1;

@@ -1,4 +1,4 @@
-// Finds the signals of a configuration in a DBC file, and checks that they can be what they shall.
+// Finds the signals of a configuration in a DBC file, and checks that each can carry its quantity.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +20,14 @@ namespace bevloc::can {
 struct Refusal {
   std::string found;
   std::string wanted;
+  std::string key{};  ///< which of several keys has the value; empty: the first one
 };
 template <typename T>
 using Bound = tl::expected<T, Refusal>;
 
-inline tl::unexpected<Refusal> refusal(std::string found, std::string wanted) {
-  return tl::unexpected(Refusal{std::move(found), std::move(wanted)});
+inline tl::unexpected<Refusal> refusal(std::string found, std::string wanted,
+                                       std::string key = {}) {
+  return tl::unexpected(Refusal{std::move(found), std::move(wanted), std::move(key)});
 }
 
 /// Nothing unless all of the text is a whole number.
@@ -71,7 +73,7 @@ class VehicleBinder {
   VehicleBinding& binding() { return binding_; }
 
   /// To be called last: completes protection from the attributes of the DBC file, and checks
-  /// cycles, lengths, and that no value lies where counter or checksum are.
+  /// cycles, lengths, and that each value, counter and checksum has bits of its own.
   struct MessageRefusal {
     std::string message;
     Refusal refusal;
@@ -84,10 +86,12 @@ class VehicleBinder {
   size_t bind(const DbcMessage& message, const DbcSignal& signal);
   size_t bind_message(const DbcMessage& message);
   const ProtectionRequest* request_of(const std::string& message) const;
-  Bound<const DbcSignal*> protecting(const std::string& signal, const std::string& message) const;
+  Bound<const DbcSignal*> protecting(const std::string& signal, const std::string& message,
+                                     const std::string& key) const;
   Bound<void> set_counter(const ProtectionRequest& request, MessageProtection& protection) const;
   Bound<void> finish_message(BoundMessage& message);
   Bound<void> check_places(const BoundMessage& message) const;
+  Bound<void> check_values(const BoundMessage& message) const;
   Bound<void> protect_by_attributes(const DbcMessage& dbc, BoundMessage& message) const;
   void mark_odometry();
 

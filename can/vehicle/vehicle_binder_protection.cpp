@@ -23,7 +23,7 @@ Bound<size_t> checksum_byte_of(const DbcSignal& signal) {
   if (whole_byte) return static_cast<size_t>(layout.start_bit / 8);
   return refusal(fmt::format("checksum {} with {} bits from bit {}", signal.name,
                              layout.length_bits, layout.start_bit),
-                 "a whole byte");
+                 "a whole byte", "checksum");
 }
 
 /// "P02", "Profile 2", "E2E_P05": the last number of the text.
@@ -43,6 +43,7 @@ int highest_data_id(ChecksumKind kind) {
 
 Bound<void> check_data_ids(const ProtectionRequest& request) {
   const size_t ids = request.data_ids.size();
+  const std::string key = ids == 1 ? "data_id" : "data_ids";
   const ChecksumKind kind = request.kind.value_or(ChecksumKind::kNone);
   const bool is_p02 = kind == ChecksumKind::kE2eP02;
   const bool is_profile = is_p02 || kind == ChecksumKind::kE2eP05;
@@ -50,11 +51,11 @@ Bound<void> check_data_ids(const ProtectionRequest& request) {
     return refusal(fmt::format("{} data ids", ids), "data_id, or 16 data_ids for profile P02");
   }
   if (kind == ChecksumKind::kNone && ids > 0) {
-    return refusal("data ids without a checksum", "an algorithm beside them");
+    return refusal("data ids without a checksum", "an algorithm beside them", key);
   }
   for (const uint16_t id : request.data_ids) {
     if (id > highest_data_id(kind)) {
-      return refusal(fmt::format("data id {}", id), "at most 255; only e2e_p05 has 16 bits");
+      return refusal(fmt::format("data id {}", id), "at most 255; only e2e_p05 has 16 bits", key);
     }
   }
   return {};
@@ -110,17 +111,18 @@ const ProtectionRequest* VehicleBinder::request_of(const std::string& message) c
 
 /// Finds the signal of a counter or checksum. Every frame of the message must contain it.
 Bound<const DbcSignal*> VehicleBinder::protecting(const std::string& signal,
-                                                  const std::string& message) const {
+                                                  const std::string& message,
+                                                  const std::string& key) const {
   const DbcMessage* of = nullptr;
   const auto found = find(signal, message, of);
-  if (!found) return found;
+  if (!found) return refusal(found.error().found, found.error().wanted, key);
   if (of->name != message) {
     return refusal(fmt::format("{} of message {}", (*found)->name, of->name),
-                   fmt::format("a signal of message {}", message));
+                   fmt::format("a signal of message {}", message), key);
   }
-  if ((*found)->multiplexed_at) {
+  if (!(*found)->multiplexed_at.empty()) {
     return refusal(fmt::format("{}, which is multiplexed", (*found)->name),
-                   "a counter or checksum that is in every frame");
+                   "a counter or checksum that is in every frame", key);
   }
   return found;
 }
@@ -128,16 +130,18 @@ Bound<const DbcSignal*> VehicleBinder::protecting(const std::string& signal,
 Bound<void> VehicleBinder::set_counter(const ProtectionRequest& request,
                                        MessageProtection& protection) const {
   if (request.counter.empty()) return {};
-  const auto counter = protecting(request.counter, request.message);
+  const auto counter = protecting(request.counter, request.message, "counter");
   if (!counter) return tl::unexpected(counter.error());
   const int bits = (*counter)->layout.length_bits;
-  if (bits > 8) return refusal(fmt::format("a counter with {} bits", bits), "at most 8 bits");
+  if (bits > 8) {
+    return refusal(fmt::format("a counter with {} bits", bits), "at most 8 bits", "counter");
+  }
   protection.counter = (*counter)->layout;
   const uint32_t highest = (1U << bits) - 1;
   protection.highest_counter = static_cast<uint8_t>(request.highest_counter.value_or(highest));
   if (protection.highest_counter > highest) {
     return refusal(fmt::format("highest counter {}", protection.highest_counter),
-                   fmt::format("at most {}", highest));
+                   fmt::format("at most {}", highest), "highest_counter");
   }
   return {};
 }
@@ -159,7 +163,7 @@ Bound<void> VehicleBinder::protect(const ProtectionRequest& request) {
   protection.data_ids = request.data_ids;
   if (auto good = set_counter(request, protection); !good) return good;
   if (!request.checksum.empty()) {
-    const auto checksum = protecting(request.checksum, *name);
+    const auto checksum = protecting(request.checksum, *name, "checksum");
     if (!checksum) return tl::unexpected(checksum.error());
     const auto byte = checksum_byte_of(**checksum);
     if (!byte) return tl::unexpected(byte.error());
@@ -218,6 +222,31 @@ Bound<void> VehicleBinder::check_places(const BoundMessage& message) const {
   return {};
 }
 
+/// Two values that share bits are one value. Signals that different values of a multiplexor select
+/// may share bits.
+Bound<void> VehicleBinder::check_values(const BoundMessage& message) const {
+  std::vector<const BoundSignal*> values;
+  for (const auto& [index, quantity] : quantities_) {
+    const BoundSignal& signal = binding_.signals[index];
+    if (binding_.messages[signal.message].name == message.name) values.push_back(&signal);
+  }
+  const auto are_together = [](const BoundSignal& a, const BoundSignal& b) {
+    return !a.multiplexed || !b.multiplexed || a.multiplexed->value == b.multiplexed->value;
+  };
+  for (size_t i = 0; i < values.size(); ++i) {
+    FrameBits bits;
+    bits.add(values[i]->layout);
+    for (size_t j = 0; j < i; ++j) {
+      FrameBits others;
+      others.add(values[j]->layout);
+      if (!bits.overlaps(others) || !are_together(*values[i], *values[j])) continue;
+      return refusal(fmt::format("{} in the bits of {}", values[i]->name, values[j]->name),
+                     "each value by itself");
+    }
+  }
+  return {};
+}
+
 Bound<void> VehicleBinder::finish_message(BoundMessage& message) {
   if (!is_valid_length(FrameFormat::kFd, message.length)) {
     return refusal(fmt::format("{} bytes", message.length),
@@ -238,6 +267,7 @@ Bound<void> VehicleBinder::finish_message(BoundMessage& message) {
     message.protection.highest_counter = UINT8_MAX;
   }
   if (auto good = check_places(message); !good) return good;
+  if (auto good = check_values(message); !good) return good;
   const double cycle_ms = 1e3 * to_seconds(message.cycle);
   if (cycle_ms == 0.0) {
     return refusal("no cycle time (attribute GenMsgCycleTime)",

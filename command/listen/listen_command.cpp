@@ -21,10 +21,17 @@ void note_interrupt(int) {
   interrupted = 1;
 }
 
+/// Tells which parts of a file are not decoded.
 void print_left_out(const can::Dbc& dbc) {
   for (const can::DbcMessage& message : dbc.messages) {
-    if (message.left_out.empty()) continue;
-    fmt::print(stderr, "bevloc: {}; message {} is left out\n", message.left_out, message.name);
+    if (!message.left_out.empty()) {
+      fmt::print(stderr, "bevloc: {}; message {} is left out\n", message.left_out, message.name);
+    } else if (message.nested_multiplexing) {
+      fmt::print(stderr,
+                 "bevloc: {}:{}: found several multiplexors in message {}, wanted one; its "
+                 "multiplexed signals are left out\n",
+                 dbc.file, message.line, message.name);
+    }
   }
 }
 
@@ -49,10 +56,10 @@ void ListenCommand::declare(CLI::App& app) {
   app_->add_flag("--bad", only_bad_, "Print only frames that fail the end-to-end check");
   app_->add_flag("--quiet", quiet_, "Print the totals only");
   app_->add_flag("--json", json_, "Print one JSON object a frame");
-  app_->add_option("--count", count_, "End after so many printed frames");
+  app_->add_option("--count", count_, "End after so many printed frames")->check(whole_number());
   app_->add_option("--duration", duration_s_, "End after so many seconds")
       ->check(number_between(0.001, 1e9));
-  const CLI::Range base_range(0u, uint32_t{can::BaseIds::kLast});
+  const CLI::Range base_range(uint32_t{can::BaseIds::kFirst}, uint32_t{can::BaseIds::kLast});
   app_->add_option("--localizer-base", base_.localizer, "First identifier of the LOC_ messages")
       ->check(base_range);
   app_->add_option("--vehicle-base", base_.vehicle, "First identifier of the VEH_ messages")
@@ -60,6 +67,12 @@ void ListenCommand::declare(CLI::App& app) {
 }
 
 Result<can::BusListener> ListenCommand::make_listener() const {
+  if (!base_.are_apart()) {
+    return fail(
+        "--localizer-base: found {:#x} beside --vehicle-base {:#x}, wanted at least {:#x} between "
+        "them, so that messages do not share identifiers",
+        base_.localizer, base_.vehicle, can::BaseIds::kFamily);
+  }
   std::vector<can::Dbc> files;
   for (const std::string& file : dbc_files_) {
     auto dbc = can::read_dbc_file(file);

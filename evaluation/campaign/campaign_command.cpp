@@ -25,6 +25,7 @@ void CampaignCommand::declare(CLI::App& app) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   campaign->add_option("--first-seed", options_.first_seed, "The first seed")
+      ->check(whole_number())
       ->capture_default_str();
   campaign->add_option("--duration", options_.duration_s, "Length of each drive, seconds")
       ->check(number_between(5.0, 1e6))

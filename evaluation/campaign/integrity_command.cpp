@@ -26,6 +26,7 @@ void IntegrityCommand::declare(CLI::App& eval) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   integrity->add_option("--first-seed", options_.first_seed, "The first seed")
+      ->check(whole_number())
       ->capture_default_str();
   integrity->add_option("--duration", options_.duration_s, "Length of each drive, seconds")
       ->check(number_between(5.0, 1e6))

@@ -25,9 +25,9 @@ struct MatchedPlace {
 /// A vehicle that stands, or drives so slowly that it stays at one measured place, gets that
 /// place's match with the scatter that pictures of one place have.
 ///
-/// Of the matches of a place and its neighbours the one is taken whose prior was off most alike. So
-/// where the truth is near the border of the search range or beyond it, the answer is as
-/// confidently wrong as it was measured there. One thread.
+/// Among the matches of a place and its neighbours, the model takes the one whose prior had the
+/// most similar error. If the truth is near the border of the search range or beyond it, the model
+/// thus gives the same confident but wrong answer that was measured there. One thread.
 class MatchModel {
  public:
   /// `table` must outlive the model and have a match in both ranges.

@@ -23,6 +23,7 @@ void TuneMatchesCommand::declare(CLI::App& tune) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   matches->add_option("--first-seed", first_seed_, "Seed of the first drive")
+      ->check(whole_number())
       ->capture_default_str();
   matches->add_option("--duration", duration_s_, "Length of each drive, seconds")
       ->check(number_between(1.0, 3600.0))

@@ -134,14 +134,11 @@ CanConfig read_can(YamlMap yaml, CameraDriver camera_driver, const std::filesyst
   config.variant = yaml.optional_choice<can::FrameFormat>(
       "variant", config.variant,
       {{"classic", can::FrameFormat::kClassic}, {"fd", can::FrameFormat::kFd}});
-  // Each family of messages has fewer than 0x40 of the 11-bit identifiers.
-  constexpr uint32_t kFamily = 0x40;
-  const auto base_id = between(uint32_t{1}, 0x800 - kFamily);
+  const auto base_id = between(can::BaseIds::kFirst, can::BaseIds::kLast);
   can::BaseIds& base = config.base_ids;
   base.localizer = yaml.optional<uint32_t>("localizer_base_id", base.localizer, base_id);
   base.vehicle = yaml.optional<uint32_t>("vehicle_base_id", base.vehicle, base_id);
-  const auto [low, high] = std::minmax(base.localizer, base.vehicle);
-  if (high - low < kFamily) {
+  if (!base.are_apart()) {
     yaml.reject("localizer_base_id", "less than 0x40 apart from vehicle_base_id",
                 "at least 0x40, so that messages do not share identifiers");
   }

@@ -20,6 +20,11 @@ const Wanted<std::string>& some_name() {
   return wanted;
 }
 
+/// Rejects the key that the refusal names, or `first_key`.
+void reject(YamlMap& yaml, std::string_view first_key, const can::Refusal& refusal) {
+  yaml.reject(refusal.key.empty() ? first_key : refusal.key, refusal.found, refusal.wanted);
+}
+
 /// One group of signals (wheel_speed, yaw_rate or gnss) and the message that they are in. Without a
 /// binder, because there is no DBC file, the keys are read but nothing is bound.
 class SignalGroup {
@@ -57,7 +62,7 @@ class SignalGroup {
     if (message_.empty() || name.empty()) return can::BoundCondition{};
     auto bound = binder_->condition(name, message_, values);
     if (bound) return std::move(*bound);
-    yaml->reject("signal", bound.error().found, bound.error().wanted);
+    reject(*yaml, "signal", bound.error());
     return can::BoundCondition{};
   }
 
@@ -224,7 +229,7 @@ void read_protection(YamlMap& yaml, can::VehicleBinder* binder) {
     const can::ProtectionRequest request = read_protection_request(entry);
     if (request.message.empty() || binder == nullptr) continue;
     if (const auto good = binder->protect(request); !good) {
-      entry.reject("message", good.error().found, good.error().wanted);
+      reject(entry, "message", good.error());
     }
   }
 }

@@ -48,7 +48,7 @@ TEST(DbcReaderTest, ReadsMultiplexingFloatsAndAttributes) {
   const DbcMessage* motion = dbc->find("ESP_Motion");
   ASSERT_NE(motion, nullptr);
   EXPECT_EQ(motion->multiplexor()->name, "MO_Page");
-  EXPECT_EQ(motion->find("MO_YawRate")->multiplexed_at, 1U);
+  EXPECT_EQ(motion->find("MO_YawRate")->multiplexed_at, (std::vector<DbcValueRange>{{1, 1}}));
   EXPECT_EQ(motion->find("MO_YawRate")->layout.type, RawType::kFloat);
   EXPECT_EQ(motion->cycle_ms(), 10.0);
   EXPECT_EQ(dbc->find("ESP_WheelsFront")->attributes.at("E2EProfile"), "P02")
@@ -210,6 +210,29 @@ TEST(DbcReaderTest, ReadsTwoMultiplexorsWithTheirValues) {
   EXPECT_EQ(dbc->messages[0].signals.size(), 3U);
 }
 
+TEST(DbcReaderTest, ReadsTheValuesOfTheOnlyMultiplexor) {
+  const std::string message =
+      "BO_ 1 A: 8 X\n SG_ S M : 0|8@1+ (1,0) [0|0] \"\" Y\n"
+      " SG_ U m0 : 16|8@1+ (1,0) [0|0] \"\" Y\n";
+  const auto dbc = parse_dbc(message + "SG_MUL_VAL_ 1 U S 0-3, 7 - 9;\n", "x.dbc");
+  ASSERT_TRUE(dbc) << dbc.error().message;
+  EXPECT_FALSE(dbc->messages[0].nested_multiplexing);
+  const DbcSignal& signal = *dbc->messages[0].find("U");
+  EXPECT_EQ(signal.multiplexed_at, (std::vector<DbcValueRange>{{0, 3}, {7, 9}}));
+  EXPECT_TRUE(signal.is_present_at(2));
+  EXPECT_FALSE(signal.is_present_at(4));
+  EXPECT_TRUE(dbc->messages[0].find("S")->is_present_at(4));
+  for (const std::string bad : {"3-0", "3", "a-b", "0-3x", "-3"}) {
+    EXPECT_EQ(error_of(message + "SG_MUL_VAL_ 1 U S " + bad + ";\n"),
+              "x.dbc:4: found " + bad + ", wanted a range of values, such as 2-5");
+  }
+}
+
+TEST(DbcReaderTest, SaysWhereAQuoteBegins) {
+  EXPECT_EQ(error_of("BO_ 1 A: 8 X\nCM_ BO_ 1 \"never\nclosed;\nBO_ 2 B: 8 X\n"),
+            "x.dbc:2: found a quote that nothing closes, wanted ';'");
+}
+
 TEST(DbcReaderTest, SaysWhereAndWhatIsWrong) {
   const std::string message = "VERSION \"\"\nBO_ 1 A: 8 X\n";
   EXPECT_EQ(error_of(message + " SG_ S : 6|8@0+ (1,0) [0|0] \"\" Y\nBO_ 1 B: 8 X\n"),
@@ -224,7 +247,8 @@ TEST(DbcReaderTest, SaysWhereAndWhatIsWrong) {
             "x.dbc: found no message, wanted a DBC file with BO_ lines");
   EXPECT_EQ(error_of("<html>"),
             "x.dbc:1: found <html>, wanted a keyword of DBC files, such as BO_ or VAL_");
-  EXPECT_EQ(error_of(message + "CM_ \"no end"), "x.dbc:3: found the end of the file, wanted ';'");
+  EXPECT_EQ(error_of(message + "CM_ \"no end"),
+            "x.dbc:3: found a quote that nothing closes, wanted ';'");
   EXPECT_EQ(error_of("BO_ 4096 A: 8 X\n"),
             "x.dbc:1: found identifier 4096, wanted at most 2047, or 29 bits plus 2147483648");
 }

@@ -37,6 +37,14 @@ TEST(BusListenerTest, DecodesTheSignalsOfTheFrame) {
   EXPECT_EQ(listener.totals().at("A").frames, 3U);
 }
 
+TEST(BusListenerTest, DecodesSignalsAtSeveralValuesOfTheMultiplexor) {
+  BusListener listener = listener_of(kMultiplexed + "SG_MUL_VAL_ 16 One Page 1-1, 4-5;\n");
+  const DecodedFrame* frame = listener.decode({.id = 16, .length = 8, .data = {5, 5}});
+  EXPECT_EQ(text_of(*frame, 0.0), "0.000000 A Page=5 One=2.5m");
+  frame = listener.decode({.id = 16, .length = 8, .data = {2, 7}});
+  EXPECT_EQ(text_of(*frame, 0.0), "0.000000 A Page=2 Two=SEVEN");
+}
+
 TEST(BusListenerTest, DecodesWhatFitsIntoAShortFrame) {
   BusListener listener = listener_of(kMultiplexed);
   const DecodedFrame* frame = listener.decode({.id = 16, .length = 1, .data = {1}});

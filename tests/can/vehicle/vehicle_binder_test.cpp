@@ -167,6 +167,53 @@ TEST_F(VehicleBinderTest, RefusesSignalsThatCannotWork) {
             "scale), wanted a message without mistakes");
 }
 
+TEST_F(VehicleBinderTest, RefusesValuesThatShareBits) {
+  const auto finish_with = [](const std::string& other) {
+    const Dbc dbc = dbc_of(
+        "BO_ 16 A: 8 X\n"
+        " SG_ Page M : 0|4@1+ (1,0) [0|0] \"\" Y\n"
+        " SG_ Left : 16|16@1+ (0.01,0) [0|0] \"m/s\" Y\n"
+        " SG_ Near m1 : 40|16@1+ (0.01,0) [0|0] \"m/s\" Y\n"
+        " SG_ Other " +
+        other +
+        "@1+ (0.01,0) [0|0] \"m/s\" Y\n"
+        "BA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 100;\nBA_DEF_DEF_ \"GenMsgCycleTime\" 20;\n");
+    VehicleBinder binder(dbc);
+    for (const std::string name : {"Left", "Near", "Other"}) {
+      const auto signal = binder.quantity(name, "A", Quantity::kSpeed, "");
+      binder.binding().wheels.wheels.push_back({*signal, WheelPlace::kVehicle});
+    }
+    const auto binding = binder.finish();
+    return binding ? "" : error_of<void>(tl::unexpected(binding.error().refusal));
+  };
+  EXPECT_EQ(finish_with(": 24|16"), "A.Other in the bits of A.Left, wanted each value by itself");
+  EXPECT_EQ(finish_with("m1 : 48|16"),
+            "A.Other in the bits of A.Near, wanted each value by itself");
+  EXPECT_EQ(finish_with("m2 : 40|16"), "") << "on another page";
+}
+
+TEST_F(VehicleBinderTest, BelievesNoRangeThatTheBitsDoNotReach) {
+  const auto error_with = [](const std::string& range) {
+    const Dbc dbc = dbc_of("BO_ 16 A: 8 X\n SG_ S : 0|8@1+ (0.01,0) [" + range + "] \"m/s\" Y\n");
+    VehicleBinder binder(dbc);
+    return error_of(binder.quantity("S", "A", Quantity::kSpeed, ""));
+  };
+  const std::string refused =
+      "S, which reaches 2.55 m/s at most, wanted a signal that reaches 15 m/s; check its unit";
+  EXPECT_EQ(error_with("0|0"), refused);
+  EXPECT_EQ(error_with("0|655.33"), refused);
+}
+
+TEST_F(VehicleBinderTest, RefusesSignalsAtSeveralValuesOfAMultiplexor) {
+  const Dbc dbc = dbc_of(kBus + "SG_MUL_VAL_ 17 Near Page 1-2;\nSG_MUL_VAL_ 17 Far Page 3-3;\n");
+  VehicleBinder binder(dbc);
+  EXPECT_EQ(
+      error_of(binder.quantity("Near", "M", Quantity::kSpeed, "")),
+      "Near at several values of Page, wanted a signal that frames have at one value of Page, "
+      "or always");
+  EXPECT_EQ(error_of(binder.quantity("Far", "M", Quantity::kSpeed, "")), "");
+}
+
 TEST_F(VehicleBinderTest, RefusesLengthsThatNoFrameHas) {
   EXPECT_EQ(speed("Speed", "Nine"), "");
   EXPECT_EQ(finish(),

@@ -77,6 +77,21 @@ TEST_F(VehicleBusConfigTest, NamesWhatWasProbablyMeant) {
             std::string::npos);
 }
 
+TEST_F(VehicleBusConfigTest, NamesTheKeyThatIsWrong) {
+  EXPECT_NE(error_with("FIX_3D, RTK", "FIX_3").find("can.vehicle.gnss.valid.values: found FIX_3"),
+            std::string::npos);
+  EXPECT_NE(error_with("highest_counter: 14", "highest_counter: 200")
+                .find("protection[0].highest_counter: found highest counter 200, wanted at most"),
+            std::string::npos);
+  EXPECT_NE(error_with("checksum: WR_Checksum", "checksum: WR_Checksun")
+                .find("protection[0].checksum: found WR_Checksun (did you mean"),
+            std::string::npos);
+  EXPECT_NE(error_with("        algorithm: crc8_sae_j1850",
+                       "        algorithm: crc8_sae_j1850\n        data_id: 300")
+                .find("protection[0].data_id: found data id 300, wanted at most 255"),
+            std::string::npos);
+}
+
 TEST_F(VehicleBusConfigTest, RefusesWrongUnitsRangesAndCycles) {
   EXPECT_NE(error_with("signal: MO_YawRate ", "signal: MO_Accel ")
                 .find("found MO_Accel with unit \"m/s2\", wanted rad/s or deg/s"),
