@@ -8,7 +8,8 @@
 
 namespace bevloc {
 
-/// The value in the middle, of two the larger one. Reorders `values`, of which there must be one.
+/// Returns the value in the middle, or the larger one of two. Reorders `values`, which must not be
+/// empty.
 template <typename T>
 T median(std::vector<T>& values) {
   assert(!values.empty());

@@ -13,7 +13,7 @@
 
 namespace bevloc {
 
-/// A number from `low` to `high`, which nan and inf are not.
+/// Accepts a number from `low` to `high`, but not nan or inf.
 inline CLI::Validator number_between(double low, double high) {
   const auto check = [low, high](const std::string& text) -> std::string {
     double number = 0.0;

@@ -116,8 +116,9 @@ class YamlMap {
   std::optional<YamlMap> optional_map(std::string_view key);
   std::vector<YamlMap> require_map_list(std::string_view key);
 
+  /// Whether the mapping has the key, which is optional.
   bool has(std::string_view key) const;
-  /// The same for a key in whose place another one is read if it is not there.
+  /// Whether the mapping has the key. If not, the caller reads another key in its place.
   bool has_in_place_of(std::string_view key) const;
 
   /// Reports a mistake that only the caller can detect, at the line of `key` (which may have been

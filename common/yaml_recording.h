@@ -70,13 +70,13 @@ struct YamlRecording {
     return word;
   }
 
-  /// Records that a key is optional, and has it.
+  /// Records that the reader tests for a key, which is therefore optional. This pass has the key.
   bool test(const std::string& path) {
     tested.insert(path);
     return true;
   }
 
-  /// Decides whether this pass has the key.
+  /// Decides whether this pass has a key in whose place another one can be read.
   bool test_in_place_of(const std::string& path) {
     tested.insert(path);
     return decide(path, {kPresent, kAbsent}) == kPresent;

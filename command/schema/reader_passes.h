@@ -22,7 +22,7 @@ struct ReaderPass {
   std::set<std::string> rejected_words;        ///< not empty: the options exclude each other
 };
 
-/// The reader, seen from outside.
+/// Everything that the reader asks for in all its passes.
 struct ReaderPasses {
   std::vector<ReaderPass> passes;
   std::vector<std::string> paths;  ///< of all keys, in the order of reading

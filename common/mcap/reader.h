@@ -42,7 +42,7 @@ class Reader {
   const std::map<uint16_t, Schema>& schemas() const { return schemas_; }
   const std::map<uint16_t, Channel>& channels() const { return channels_; }
   const std::vector<ChunkPlace>& chunks() const { return chunks_; }
-  /// Those before the first chunk; what lies behind is not looked for.
+  /// The attachments before the first chunk. Later ones are not read.
   const std::vector<Attachment>& attachments() const { return attachments_; }
   const std::vector<Metadata>& metadata() const { return metadata_; }
 

@@ -15,8 +15,8 @@ namespace bevloc::drivers {
 
 /// How the time of a fix is found.
 enum class FixTiming : uint8_t {
-  /// A fix held `latency` before the fastest reports arrive. A report that comes later than the
-  /// fastest of the last minutes, measured by its UTC, held that much earlier.
+  /// The age of a fix at its arrival is `latency` plus the extra delay of its report: how much
+  /// longer it took than the fastest report of the last minutes, by the receiver's UTC.
   kArrival,
   /// The system clock is UTC, as the kernel confirms, so the age of a fix is known.
   kSystemClock,

@@ -12,11 +12,12 @@
 namespace bevloc::drivers {
 
 /// Thread-safe. Pictures are kept without loss, so a drive with a cache gives the same frames as
-/// one without. When the memory is used up, further pictures are not kept: drives that follow each
-/// other would always have dropped what comes next.
+/// one without. When the memory is used up, further pictures are not kept. It would not help to
+/// drop the oldest ones: each drive needs the pictures in the same order, so it would always need
+/// one that was just dropped.
 class PictureCache {
  public:
-  /// Room for one drive of 60 s at 10 Hz with six cameras of 640 x 360 pixels (2.6 GB).
+  /// Room for one drive of 60 s at 10 Hz with six cameras of 640 x 360 pixels (2.5 GB).
   static constexpr size_t kDefaultBytes = size_t{3} << 30U;
 
   explicit PictureCache(size_t max_bytes = kDefaultBytes) : max_bytes_(max_bytes) {}

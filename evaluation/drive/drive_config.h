@@ -20,7 +20,6 @@ namespace bevloc::evaluation {
 inline constexpr double kShortestDrive_s = 0.1;
 inline constexpr double kLongestDrive_s = 1e6;
 
-/// The drive that the mock cameras see: the section `simulation` and the map's `procedural_seed`.
 /// How the street of a drive differs from the simulator's own, as in training.
 struct StreetConfig {
   std::optional<uint64_t> seed;  ///< of the looks; empty: the drive's
@@ -29,6 +28,7 @@ struct StreetConfig {
   std::filesystem::path photos;  ///< folder of script/photos; empty: the simulator's own textures
 };
 
+/// The drive that the mock cameras see: the section `simulation` and the map's `procedural_seed`.
 struct SimulationConfig {
   uint64_t seed = 1;
   double duration_s = 60.0;

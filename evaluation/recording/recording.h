@@ -27,7 +27,7 @@ struct MessagePlace {
 };
 
 /// One or more files that one run of the daemon wrote. Keeps the places of all messages in memory,
-/// and of the messages themselves those of a few chunks. One thread.
+/// but only a few chunks of the messages themselves. One thread.
 class Recording {
  public:
   /// Fails if a file is no recording of bevloc, or if two files are of different runs. Reads a file

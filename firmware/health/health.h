@@ -70,9 +70,9 @@ struct HealthInputs {
   bool internal_error = false;     ///< the pose or its covariance is not finite
 };
 
-/// Transitions: INIT -> ACQUIRING -> TRACKING <-> DEGRADED; ACQUIRING, TRACKING or DEGRADED -> LOST
-/// -> ACQUIRING; any state -> FAULT, which only a restart ends. Pure logic without a clock: the
-/// inputs contain all ages. One thread.
+/// Transitions: INIT -> ACQUIRING -> TRACKING <-> DEGRADED; TRACKING or DEGRADED -> LOST ->
+/// ACQUIRING; any state -> FAULT, which only a restart ends. Pure logic without a clock: the inputs
+/// contain all ages. One thread.
 class Health {
  public:
   explicit Health(const HealthLimits& limits) : limits_(limits) {}

@@ -1,4 +1,4 @@
-// cpp-httplib's header without the macro that Eigen's headers cannot stand.
+// cpp-httplib's header without the macro that breaks Eigen's headers.
 #pragma once
 
 #include <httplib.h>

@@ -37,7 +37,7 @@ class CalibrationSaver {
   /// outlive its last step.
   void watch(VisionStage& vision, const drivers::Clock& clock);
 
-  /// Hands over what is worth keeping if it is time for it. Does not allocate.
+  /// Hands over the estimate for writing, once in kPeriod. Does not allocate.
   void note(Time now);
 
   /// Waits up to `timeout` for what is handed over, and returns whether it was written. Logs a
@@ -47,12 +47,12 @@ class CalibrationSaver {
   /// Wakes write_next(), which waits no longer from then on.
   void close() { handed_over_.close(); }
 
-  /// Writes what is worth keeping at the end.
+  /// Writes the last estimate.
   void finish();
 
  private:
   LearnedCalibration known() const;
-  /// What is known, or was known at the start.
+  /// The present estimate; that of the start while a camera is out of place.
   LearnedCalibration worth_keeping() const;
   bool write(const LearnedCalibration& learned);
 

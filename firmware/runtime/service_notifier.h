@@ -10,7 +10,7 @@ namespace bevloc::firmware {
 /// Without a service manager, all calls do nothing. One thread.
 class ServiceNotifier {
  public:
-  /// Also returns to the watchdog timeout of the unit.
+  /// Reports that the daemon is ready, and sets the watchdog timeout to that of the unit again.
   void ready();
   void stopping();
   /// Sets the line that `systemctl status` shows. Sent only when it changes.

@@ -57,7 +57,7 @@ class Supervisor {
   const Appliance& appliance_;
   const Realtime& realtime_;
   const Watchdog& watchdog_;
-  HeartbeatWatch watchdog_watch_;  ///< who watches the watchdog
+  HeartbeatWatch watchdog_watch_;  ///< of the watchdog's own thread
   Heartbeat heartbeat_;
   ServiceNotifier notifier_;
   ApplianceView view_;

@@ -38,8 +38,8 @@ class CaptureStage {
 
  private:
   static constexpr Duration kPauseAfterFailure = std::chrono::milliseconds(500);
-  /// A camera without frames for this long is silent. The slowest cameras have half a frame per
-  /// second.
+  /// The log says that a camera without frames for this long is silent. A camera that is slower
+  /// than half a frame per second is therefore named without being faulty.
   static constexpr Duration kSilence = std::chrono::seconds(2);
   /// To open or to close a device takes up to some seconds, while a kernel driver waits for it.
   static constexpr Duration kDeviceDeadline = std::chrono::seconds(10);

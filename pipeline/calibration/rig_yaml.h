@@ -21,9 +21,8 @@ namespace bevloc {
 ///         lens: pinhole                          # the default, or fisheye
 ///         distortion: [-0.06, 0.01, 0, 0]        # k1, k2, p1, p2 as OpenCV names them; of a
 ///                                                # fisheye k1, k2, k3, k4
-///         own_body_px: [0, 359, 320, 300, 639, 359]  # optional: corners of the part that shows
-///         the
-///                                                # own vehicle, column and row in turn
+///         own_body_px: [0, 359, 320, 300, 639, 359]  # optional: corners of the part that
+///                                                # shows the own vehicle, column and row in turn
 ///         vehicle_from_camera:
 ///           translation_m: [1.524, 0.495, 1.509] # position of the camera
 ///           rotation_wxyz: [0.66, -0.66, 0.25, -0.26]

@@ -10,10 +10,9 @@
 
 namespace bevloc {
 
-/// The features of one side, condensed: sums over all values, each value with a sign that depends
-/// on its position. A difference between two sets of features that is random in the signs' sense
-/// has sums whose mean square is the sum of its squares. So the sums tell the relative difference
-/// of the features.
+/// The features of one side in a few numbers: sums over all values, each value with a pseudo-random
+/// sign. For the difference of two sets of features, the mean square of these sums is about the sum
+/// of the squared differences. So the sums show the relative difference of the features.
 struct FeatureAnswer {
   static constexpr int kSums = 8;
 

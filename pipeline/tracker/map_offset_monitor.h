@@ -13,8 +13,8 @@ namespace bevloc {
 /// but a map that was surveyed in another datum, or moved, lies off by the same vector all the
 /// time. A Kalman filter splits the difference of GNSS and pose into this constant offset and the
 /// error of GNSS, a first-order Gauss-Markov process. A constant error of the receiver, such as of
-/// the place of its antenna, looks the same. It takes about three minutes to find 3 m, and 20
-/// minutes to find 1 m.
+/// the place of its antenna, looks the same. It takes about three minutes to find 3 m, and up to
+/// an hour to find 1 m.
 ///
 /// One thread; does not allocate.
 class MapOffsetMonitor {

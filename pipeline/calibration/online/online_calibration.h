@@ -35,7 +35,7 @@ struct CalibrationObservation {
 };
 
 /// Learns only while the vehicle drives and tracks, from clear matches near the prior, with all
-/// cameras. A pose that is wrong by a lane looks like camera errors that do not exist. These differ
+/// cameras. A pose in the wrong lane looks like errors of the cameras. Such apparent errors differ
 /// from place to place, so they average out; the bounds limit the rest.
 ///
 /// One thread; the constructor allocates all memory.

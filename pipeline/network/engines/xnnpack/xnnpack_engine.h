@@ -1,4 +1,4 @@
-// The engine that uses XNNPACK, a small library with precompiled kernels. The default on arm64.
+// The engine that uses XNNPACK, a small library with precompiled kernels.
 #pragma once
 
 #include "pipeline/network/engines/engine.h"
