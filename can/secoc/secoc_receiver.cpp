@@ -10,11 +10,11 @@ std::span<const ReceivedFrame> SecocReceiver::accept(const ReceivedFrame& receiv
     return message->id(base_) == frame.id && message->length == frame.length;
   };
   if (is(&veh_freshness::kMessage)) {
-    take_freshness(frame);
+    take_freshness(received);
     return {};
   }
   for (Group& group : groups_) {
-    if (is(group.authentication)) return release(group, frame);
+    if (is(group.authentication)) return release(group, received);
     for (size_t i = 0; i < group.members.size(); ++i) {
       if (group.members[i]->id(base_) != frame.id) continue;
       if (is(group.members[i])) hold(group, i, received);
@@ -33,19 +33,22 @@ void SecocReceiver::hold(Group& group, size_t member, const ReceivedFrame& recei
   group.present |= 1u << member;
 }
 
-std::span<const ReceivedFrame> SecocReceiver::release(Group& group, const Frame& authentication) {
+std::span<const ReceivedFrame> SecocReceiver::release(Group& group,
+                                                      const ReceivedFrame& authentication) {
   const bool complete = group.present == (1u << group.members.size()) - 1 &&
-                        extract_raw(authentication, kEpoch) == group.epoch;
+                        extract_raw(authentication.frame, kEpoch) == group.epoch;
   group.present = 0;
   if (!complete) {
     ++counters_.incomplete;
     return {};
   }
-  if (!announced_) {
+  const bool listens = authentication.received < listens_until_;
+  const bool authentic = is_authentic(group, authentication.frame);
+  if (listens) {
     ++counters_.no_freshness;
     return {};
   }
-  if (!is_authentic(group, authentication)) {
+  if (!authentic) {
     ++counters_.wrong_mac;
     return {};
   }
@@ -53,29 +56,48 @@ std::span<const ReceivedFrame> SecocReceiver::release(Group& group, const Frame&
   return std::span(group.frames).first(group.members.size());
 }
 
-/// Tries the lower bits with the announced upper bits and, as the announcement may be forged, with
-/// those of the latest authentic epoch, each also plus one. Only values above the latest one count.
+/// Tries the lower bits with all announced upper bits and, as these may be forged, with those of
+/// the latest authentic epoch, each also plus one.
 bool SecocReceiver::is_authentic(const Group& group, const Frame& authentication) {
-  std::array<Frame, kMaxMembers> frames;
-  std::ranges::transform(group.frames, frames.begin(), &ReceivedFrame::frame);
-  const std::span<const Frame> members = std::span(frames).first(group.members.size());
-  const auto low = static_cast<uint64_t>(extract_raw(authentication, secoc::kFreshnessLow));
-  const uint64_t latest_high = latest_ >> 16U;
-  for (const uint64_t high : {announced_high_, announced_high_ + 1, latest_high, latest_high + 1}) {
-    const uint64_t freshness = high << 16U | low;
-    if (freshness <= latest_) continue;
-    const auto mac = authenticator_.mac(*group.authentication, freshness, members);
-    if (!mac || *mac != static_cast<uint32_t>(extract_raw(authentication, secoc::kMac))) continue;
-    latest_ = freshness;
-    return true;
+  std::array<uint64_t, kMostAnnouncements + 1> highs{latest_ >> 16U};
+  size_t count = 1;
+  for (const Announcement& announcement : announcements_) {
+    if (announcement.received != Time::min()) highs[count++] = announcement.high;
   }
-  return false;
+  return std::ranges::any_of(std::span(highs).first(count), [&](uint64_t high) {
+    return has_freshness(group, authentication, high) ||
+           has_freshness(group, authentication, high + 1);
+  });
 }
 
-void SecocReceiver::take_freshness(const Frame& frame) {
-  if (!has_valid_crc(frame, veh_freshness::kMessage.protection())) return;
-  announced_high_ = static_cast<uint64_t>(extract_raw(frame, secoc::kFreshnessHigh));
-  announced_ = true;
+/// Whether the epoch is authentic with these upper bits. Only a value above the latest one counts,
+/// and becomes the latest one.
+bool SecocReceiver::has_freshness(const Group& group, const Frame& authentication, uint64_t high) {
+  const auto low = static_cast<uint64_t>(extract_raw(authentication, secoc::kFreshnessLow));
+  const uint64_t freshness = high << 16U | low;
+  if (freshness <= latest_) return false;
+  std::array<Frame, kMaxMembers> frames;
+  std::ranges::transform(group.frames, frames.begin(), &ReceivedFrame::frame);
+  const auto mac = authenticator_.mac(*group.authentication, freshness,
+                                      std::span(frames).first(group.members.size()));
+  if (!mac || *mac != static_cast<uint32_t>(extract_raw(authentication, secoc::kMac))) return false;
+  latest_ = freshness;
+  return true;
+}
+
+void SecocReceiver::take_freshness(const ReceivedFrame& received) {
+  if (!has_valid_crc(received.frame, veh_freshness::kMessage.protection())) return;
+  const auto high = static_cast<uint64_t>(extract_raw(received.frame, secoc::kFreshnessHigh));
+  const bool is_first = listens_until_ == Time::max();
+  auto place = std::ranges::find(announcements_, high, &Announcement::high);
+  if (place == announcements_.end()) {
+    place = std::ranges::min_element(announcements_, {}, &Announcement::received);
+    const bool is_in_use =
+        place->received != Time::min() && received.received - place->received < listening_;
+    if (is_in_use) listens_until_ = received.received + listening_;
+  }
+  *place = {high, received.received};
+  if (is_first) listens_until_ = received.received + listening_;
 }
 
 }  // namespace bevloc::can

@@ -9,6 +9,7 @@
 #include "can/messages/message_table.h"
 #include "can/messages/secoc_messages.h"
 #include "can/secoc/authenticator.h"
+#include "common/time.h"
 
 namespace bevloc::can {
 
@@ -16,15 +17,24 @@ struct SecocCounters {
   uint64_t authentic = 0;     ///< epochs that were let through
   uint64_t wrong_mac = 0;     ///< epochs that are forged, damaged or replayed
   uint64_t incomplete = 0;    ///< authentications without all frames of their epoch
-  uint64_t no_freshness = 0;  ///< epochs before the first VEH_Freshness
+  uint64_t no_freshness = 0;  ///< epochs before the freshness value of the sender is known
 };
 
 /// Holds the frames of an epoch back until their authentication has come. The freshness value must
 /// be higher than that of every authentic epoch before; so a replay is refused as soon as one later
-/// epoch was received. One thread.
+/// epoch was received.
+///
+/// Announcements (VEH_Freshness) have no authentication. So the receiver keeps the latest few
+/// different ones, which includes the sender's own, and first only listens for a while: it learns
+/// the highest authentic freshness value, and lets no frame through. It listens again when there
+/// are more announcements than it can keep, because then the sender's own may be lost. One thread.
 class SecocReceiver {
  public:
-  SecocReceiver(Cmac cmac, const BaseIds& base) : authenticator_(std::move(cmac)), base_(base) {}
+  /// Longer than a few cycles of VEH_Freshness.
+  static constexpr Duration kListening = std::chrono::milliseconds(500);
+
+  SecocReceiver(Cmac cmac, const BaseIds& base, Duration listening = kListening)
+      : authenticator_(std::move(cmac)), base_(base), listening_(listening) {}
 
   /// Returns the frames that may be used now: none, those of an authentic epoch, or the frame
   /// itself if it needs no authentication. They are valid until the next call.
@@ -47,19 +57,28 @@ class SecocReceiver {
   static constexpr const Message* kGnss[] = {
       &veh_gnss_latitude::kMessage, &veh_gnss_longitude::kMessage, &veh_gnss_heading::kMessage};
 
+  /// The upper bits of a freshness value, as somebody announced them.
+  struct Announcement {
+    uint64_t high = 0;
+    Time received = Time::min();  ///< for the last time; min(): none
+  };
+  static constexpr size_t kMostAnnouncements = 4;
+
   static void hold(Group& group, size_t member, const ReceivedFrame& received);
-  std::span<const ReceivedFrame> release(Group& group, const Frame& authentication);
+  std::span<const ReceivedFrame> release(Group& group, const ReceivedFrame& authentication);
   bool is_authentic(const Group& group, const Frame& authentication);
-  void take_freshness(const Frame& frame);
+  bool has_freshness(const Group& group, const Frame& authentication, uint64_t high);
+  void take_freshness(const ReceivedFrame& received);
 
   Authenticator authenticator_;
   BaseIds base_;
   std::array<Group, 2> groups_ = {Group{&veh_odometry_authentication::kMessage, kOdometry},
                                   Group{&veh_gnss_authentication::kMessage, kGnss}};
   ReceivedFrame passed_;
-  uint64_t announced_high_ = 0;  ///< of the latest VEH_Freshness; anybody can have sent it
-  bool announced_ = false;
-  uint64_t latest_ = 0;  ///< freshness of the latest authentic epoch
+  Duration listening_;
+  std::array<Announcement, kMostAnnouncements> announcements_{};
+  Time listens_until_ = Time::max();  ///< max() before the first announcement
+  uint64_t latest_ = 0;               ///< freshness of the latest authentic epoch
   SecocCounters counters_;
 };
 

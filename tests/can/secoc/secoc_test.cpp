@@ -66,15 +66,77 @@ class SecureVehicle {
 class SecocTest : public testing::Test {
  protected:
   /// Returns the number of frames that were let through.
-  size_t feed(const std::vector<Frame>& frames) {
+  size_t feed(const std::vector<Frame>& frames) { return feed(receiver_, frames, kNow); }
+  static size_t feed(SecocReceiver& receiver, const std::vector<Frame>& frames, Time now) {
     size_t passed = 0;
-    for (const Frame& frame : frames) passed += receiver_.accept({frame, kNow}).size();
+    for (const Frame& frame : frames) passed += receiver.accept({frame, now}).size();
     return passed;
   }
 
   SecureVehicle vehicle_{kKey, 1};
+  /// Does not listen first.
+  SecocReceiver receiver_{Cmac::create(kKey).value(), BaseIds{}, Duration::zero()};
+};
+
+/// A receiver that has just started, on a bus with the vehicle, which started for the second time,
+/// and somebody who replays its first start.
+class SecocStartTest : public SecocTest {
+ protected:
+  SecocStartTest() {
+    for (int i = 0; i < kCycles; ++i) recorded_.push_back(old_.odometry());
+  }
+
+  /// Runs for two seconds. `attack` sends what it wants after each announcement of the vehicle.
+  /// Returns the number of frames that were let through: of the vehicle, and replayed ones.
+  struct Passed {
+    size_t genuine = 0;
+    size_t replayed = 0;
+  };
+  template <typename Attack>
+  Passed run(const Attack& attack) {
+    Passed passed;
+    for (int cycle = 0; cycle < kCycles; ++cycle) {
+      const Time now = kNow + milliseconds(20 * cycle);
+      if (cycle % 5 == 0) {
+        feed(receiver_, {vehicle_.freshness()}, now);
+        attack(now);
+      }
+      passed.genuine += feed(receiver_, vehicle_.odometry(), now);
+      passed.replayed += feed(receiver_, recorded_[static_cast<size_t>(cycle)], now);
+    }
+    return passed;
+  }
+
+  static constexpr int kCycles = 100;
+  SecureVehicle old_{kKey, 1};
+  SecureVehicle vehicle_{kKey, 2};
+  std::vector<std::vector<Frame>> recorded_;
   SecocReceiver receiver_{Cmac::create(kKey).value(), BaseIds{}};
 };
+
+TEST_F(SecocStartTest, ListensForHalfASecond) {
+  const Passed passed = run([](Time) {});
+  EXPECT_EQ(passed.genuine, 2U * (kCycles - 25));
+  EXPECT_EQ(passed.replayed, 0U);
+  EXPECT_EQ(receiver_.counters().no_freshness, 2U * 25);
+}
+
+TEST_F(SecocStartTest, AnOldAnnouncementAfterEachGenuineOneDoesNotLetAReplayPass) {
+  const Frame old = old_.freshness();
+  const Passed passed = run([&](Time now) { feed(receiver_, {old}, now); });
+  EXPECT_EQ(passed.genuine, 2U * (kCycles - 25));
+  EXPECT_EQ(passed.replayed, 0U);
+}
+
+TEST_F(SecocStartTest, AFloodOfAnnouncementsLetsNothingPass) {
+  const Passed passed = run([&](Time now) {
+    for (uint32_t start = 10; start < 20; ++start) {
+      feed(receiver_, {SecureVehicle(kOtherKey, start).freshness()}, now);
+    }
+    feed(receiver_, {old_.freshness()}, now);
+  });
+  EXPECT_EQ(passed.replayed, 0U);
+}
 
 TEST_F(SecocTest, LetsAuthenticFramesThroughUnchanged) {
   feed({vehicle_.freshness()});
