@@ -103,7 +103,7 @@ void log_gnss(const GnssCounters& gnss) {
 void log_authentication(const can::SecocCounters& secoc) {
   spdlog::info(
       "vehicle: {} epochs authentic; refused: {} with a wrong code or replayed, {} incomplete, {} "
-      "before the first freshness value",
+      "before the freshness of the sender was known",
       secoc.authentic, secoc.wrong_mac, secoc.incomplete, secoc.no_freshness);
 }
 
