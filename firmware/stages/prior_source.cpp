@@ -12,20 +12,22 @@ void PriorSource::take_predictions() {
 }
 
 std::optional<Prior> PriorSource::at(const drivers::Frameset& frameset) {
-  const auto motion = motion_until(frameset.time);
+  const auto driven = step_until(frameset.time);
   const auto pose = trail_.at(frameset.time);
   const auto motions = motions_in(frameset);
   if (!pose || !motions) return std::nullopt;
   return Prior{*pose, *motions, trail_.speed_mps(frameset.time).value_or(0.0),
-               acquiring_ ? SearchRange::kAcquiring : SearchRange::kTracking, motion};
+               acquiring_ ? SearchRange::kAcquiring : SearchRange::kTracking, driven};
 }
 
-std::optional<Se2> PriorSource::motion_until(Time time) {
+std::optional<DrivenStep> PriorSource::step_until(Time time) {
   // PoseTrail takes the rates at the middle time, which suffices for two neighbouring framesets.
   constexpr Duration kFarthest = std::chrono::milliseconds(150);
   const std::optional<Time> from = std::exchange(previous_time_, time);
   if (!from || time < *from || time - *from > kFarthest) return std::nullopt;
-  return trail_.motion(*from, time);
+  const auto motion = trail_.motion(*from, time);
+  if (!motion) return std::nullopt;
+  return DrivenStep{*from, time, *motion};
 }
 
 std::optional<CameraMotions> PriorSource::motions_in(const drivers::Frameset& frameset) const {

@@ -18,7 +18,8 @@ struct Prior {
   CameraMotions reference_from_exposure{};
   double speed_mps = 0.0;  ///< negative when reversing
   SearchRange range = SearchRange::kAcquiring;
-  std::optional<Se2> motion{};  ///< since the frameset that was asked for before, where known
+  /// Since the frameset that was asked for before, where known.
+  std::optional<DrivenStep> driven{};
 };
 
 /// Keeps the latest predictions of the estimation stage. Thread-bound: called from the vision
@@ -37,7 +38,7 @@ class PriorSource {
   std::optional<Prior> at(const drivers::Frameset& frameset);
 
  private:
-  std::optional<Se2> motion_until(Time time);
+  std::optional<DrivenStep> step_until(Time time);
   std::optional<CameraMotions> motions_in(const drivers::Frameset& frameset) const;
 
   const bool compensates_;

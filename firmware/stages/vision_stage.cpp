@@ -97,7 +97,7 @@ void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
                         VisionReport& report) {
   const bool driving = std::abs(prior.speed_mps) > kDriving_mps;
   CameraImages images{{},      frameset.present, prior.reference_from_exposure,
-                      driving, frameset.time,    prior.motion};
+                      driving, frameset.time,    prior.driven};
   for (int camera = 0; camera < kCameraCount; ++camera) {
     if (frameset.present[camera]) images.images[camera] = frameset.frames[camera].image();
   }

@@ -94,7 +94,7 @@ void Localizer::learn(const CameraImages& images, CameraMask usable, SearchRange
                                                      .tracking = range == SearchRange::kTracking,
                                                      .driving = images.driving,
                                                      .map_from_vehicle = prior * result.correction,
-                                                     .motion = images.motion});
+                                                     .driven = images.driven});
   if (changed) apply_learned();
 }
 

@@ -43,8 +43,8 @@ struct CameraImages {
   CameraMotions reference_from_exposure{};  ///< reference time: that of the prior
   bool driving = false;  ///< a repeated image then counts as frozen, and a still one as dirty
   // For the online calibration:
-  Time time{};                  ///< of the frameset
-  std::optional<Se2> motion{};  ///< since the previous frameset, from odometry, where known
+  Time time{};                         ///< of the frameset
+  std::optional<DrivenStep> driven{};  ///< until `time`, from odometry, where known
 };
 
 enum class SearchRange : uint8_t { kTracking, kAcquiring };

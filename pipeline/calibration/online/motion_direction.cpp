@@ -20,11 +20,13 @@ constexpr double kHeading_rad = radians(0.2);
 }  // namespace
 
 std::optional<HeadingTurn> MotionDirection::add(const std::optional<Se2>& map_from_vehicle,
-                                                const std::optional<Se2>& motion) {
-  if (!motion || samples_.full()) begin();
-  if (motion) {
-    driven_ = driven_ * *motion;
-    length_m_ += motion->translation().norm();
+                                                const std::optional<DrivenStep>& step) {
+  if (!step || step->from != driven_until_ || samples_.full()) begin();
+  driven_until_.reset();
+  if (step) {
+    driven_ = driven_ * step->motion;
+    length_m_ += step->motion.translation().norm();
+    driven_until_ = step->to;
   }
   if (map_from_vehicle) samples_.push_back({*map_from_vehicle, driven_});
   if (length_m_ < kStretch_m) return std::nullopt;

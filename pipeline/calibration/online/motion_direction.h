@@ -5,7 +5,7 @@
 
 #include <boost/circular_buffer.hpp>
 
-#include "common/se2.h"
+#include "common/driven_step.h"
 
 namespace bevloc {
 
@@ -26,11 +26,12 @@ class MotionDirection {
   /// Length of a stretch of road that gives one comparison.
   static constexpr double kStretch_m = 60.0;
 
-  /// `map_from_vehicle`: the matched pose, if it is clear. `motion`: the vehicle's motion since the
-  /// previous call, from odometry; nothing if it is not known, which begins a new stretch. Returns
-  /// a comparison at the end of a stretch.
+  /// `map_from_vehicle`: the matched pose at the end of the step, if it is clear. `step`: what the
+  /// vehicle drove since the previous call. A new stretch begins if that is not known, or if the
+  /// step does not begin where the previous one ended. Returns a comparison at the end of a
+  /// stretch.
   std::optional<HeadingTurn> add(const std::optional<Se2>& map_from_vehicle,
-                                 const std::optional<Se2>& motion);
+                                 const std::optional<DrivenStep>& step);
 
  private:
   static constexpr size_t kMostPoses = 512;
@@ -48,6 +49,7 @@ class MotionDirection {
   boost::circular_buffer<Sample> samples_{kMostPoses};
   Se2 driven_;  ///< since the beginning of the stretch
   double length_m_ = 0.0;
+  std::optional<Time> driven_until_;
 };
 
 }  // namespace bevloc

@@ -77,12 +77,11 @@ double OnlineCalibration::limit_of(int error) const {
 }
 
 bool OnlineCalibration::observe(const CalibrationObservation& observation) {
-  if (!observation.driving || observation.match.evidence != Evidence::kGood ||
-      !observation.cameras.all()) {
-    return false;
-  }
-  const bool learns = observation.tracking && is_clear(observation);
+  const bool is_usable = observation.driving && observation.match.evidence == Evidence::kGood &&
+                         observation.cameras.all();
+  const bool learns = is_usable && observation.tracking && is_clear(observation);
   learn_heading(observation, learns);
+  if (!is_usable) return false;
   if (observed_ && observation.time - *observed_ < kPeriod) return false;
   const double step_s =
       observed_ ? std::min(to_seconds(observation.time - *observed_), kLongestStep_s) : 0.0;
@@ -112,7 +111,7 @@ void OnlineCalibration::learn_heading(const CalibrationObservation& observation,
     matched = observation.map_from_vehicle;
     matched->yaw_rad += filter_.turn_by(used_);  // as it would be without the used errors
   }
-  const auto turn = direction_.add(matched, observation.motion);
+  const auto turn = direction_.add(matched, observation.driven);
   if (turn) filter_.update_heading(*turn);
 }
 

@@ -30,8 +30,8 @@ struct CalibrationObservation {
   Time time;              ///< of the frameset
   bool tracking = false;  ///< the prior came from the tracker, which follows the map
   bool driving = false;
-  Se2 map_from_vehicle;         ///< as matched
-  std::optional<Se2> motion{};  ///< since the previous observation, from odometry, where known
+  Se2 map_from_vehicle;                ///< as matched
+  std::optional<DrivenStep> driven{};  ///< until `time`, from odometry, where known
 };
 
 /// Learns only while the vehicle drives and tracks, from clear matches near the prior, with all

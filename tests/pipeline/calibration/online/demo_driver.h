@@ -21,12 +21,12 @@ class DemoDriver {
   void drive(const ExtrinsicErrors& errors, int framesets, CameraMask blind = {}) {
     cells_.show(errors - calibration_.used_errors(), blind);
     for (int i = 0; i < framesets; ++i) {
-      time_ += std::chrono::milliseconds(100);
-      const Se2 motion{1.0, 0.0, 0.0};
-      path_ = path_ * motion;
+      const DrivenStep step{time_, time_ + std::chrono::milliseconds(100), {1.0, 0.0, 0.0}};
+      time_ = step.to;
+      path_ = path_ * step.motion;
       const Se2 matched{path_.x_m, path_.y_m, path_.yaw_rad + heading_against_motion_rad};
       if (calibration_.observe(
-              {cells_.match(), match, cameras, time_, tracking, driving, matched, motion})) {
+              {cells_.match(), match, cameras, time_, tracking, driving, matched, step})) {
         cells_.show(errors - calibration_.used_errors(), blind);
       }
     }

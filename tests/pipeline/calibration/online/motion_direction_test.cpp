@@ -1,13 +1,18 @@
 #include "pipeline/calibration/online/motion_direction.h"
 
+#include <functional>
+
 #include <gtest/gtest.h>
 
 namespace bevloc {
 namespace {
 
 /// Drives a bend with all cameras turned by `turn_rad`, odometry that measures `bias_radps` too
-/// much, and without odometry every `gap` framesets. Returns the comparisons.
-std::vector<double> drive(double turn_rad, double bias_radps, int gap = 1000) {
+/// much, without odometry every `gap` framesets, and without the framesets that `is_missing`.
+/// Returns the comparisons.
+std::vector<double> drive(
+    double turn_rad, double bias_radps, int gap = 1000,
+    const std::function<bool(int)>& is_missing = [](int) { return false; }) {
   MotionDirection direction;
   std::vector<double> turns;
   Se2 truth{120.0, -40.0, 2.9};
@@ -17,10 +22,14 @@ std::vector<double> drive(double turn_rad, double bias_radps, int gap = 1000) {
     const Se2 half{0.5, 0.0, 0.5 * kPeriod_s * yaw_rate_radps};
     truth = truth * half * half;
     const Se2 measured_half{0.5, 0.0, 0.5 * kPeriod_s * (yaw_rate_radps + bias_radps)};
-    std::optional<Se2> motion = measured_half * measured_half;
-    if (i % gap == 0) motion.reset();
+    if (is_missing(i)) continue;
+    const auto time_of = [](int frameset) {
+      return Time(std::chrono::milliseconds(100 * frameset));
+    };
+    std::optional<DrivenStep> step{{time_of(i - 1), time_of(i), measured_half * measured_half}};
+    if (i % gap == 0) step.reset();
     const Se2 matched{truth.x_m, truth.y_m, wrap_angle(truth.yaw_rad + turn_rad)};
-    if (const auto turn = direction.add(matched, motion)) turns.push_back(turn->turn_rad);
+    if (const auto turn = direction.add(matched, step)) turns.push_back(turn->turn_rad);
   }
   return turns;
 }
@@ -39,6 +48,14 @@ TEST(MotionDirection, BearsABiasOfTheYawRate) {
 
 TEST(MotionDirection, BeginsAgainWhereOdometryIsMissing) {
   EXPECT_TRUE(drive(radians(1.0), 0.0, 55).empty());
+}
+
+/// The stretch before the missing framesets must not be laid over the one behind them.
+TEST(MotionDirection, BeginsAgainWhereFramesetsAreMissing) {
+  const auto is_missing = [](int i) { return i % 100 >= 30 && i % 100 < 45; };
+  const std::vector<double> turns = drive(0.0, 0.0, 1000, is_missing);
+  EXPECT_GE(turns.size(), 5U);
+  for (const double turn : turns) EXPECT_NEAR(degrees(turn), 0.0, 0.01);
 }
 
 }  // namespace
