@@ -147,7 +147,12 @@ void Reader::define(Opcode opcode, std::string_view content) {
     const size_t covered = content.size() - reader.rest().size();
     const auto checksum = reader.number<uint32_t>();
     const bool intact = checksum == 0 || checksum == crc32(content.substr(0, covered));
-    if (reader.ok() && intact) attachments_.push_back(std::move(attachment));
+    if (!reader.ok()) return;
+    if (intact) {
+      attachments_.push_back(std::move(attachment));
+    } else {
+      damaged_attachments_.push_back(attachment.name);
+    }
   }
 }
 

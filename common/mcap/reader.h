@@ -44,6 +44,8 @@ class Reader {
   const std::vector<ChunkPlace>& chunks() const { return chunks_; }
   /// The attachments before the first chunk. Later ones are not read.
   const std::vector<Attachment>& attachments() const { return attachments_; }
+  /// Names of attachments whose checksum is wrong; these are left out.
+  const std::vector<std::string>& damaged_attachments() const { return damaged_attachments_; }
   const std::vector<Metadata>& metadata() const { return metadata_; }
 
   /// Fails if the chunk is damaged, or compressed with anything but zstd.
@@ -72,6 +74,7 @@ class Reader {
   std::map<uint16_t, Channel> channels_;
   std::vector<ChunkPlace> chunks_;
   std::vector<Attachment> attachments_;
+  std::vector<std::string> damaged_attachments_;
   std::vector<Metadata> metadata_;
 };
 

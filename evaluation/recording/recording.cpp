@@ -33,6 +33,7 @@ Result<Recording> Recording::open(const std::vector<std::filesystem::path>& file
     std::ranges::stable_sort(places, {}, &MessagePlace::log_time_ns);
   }
   recording.note_times();
+  recording.note_pauses();
   return recording;
 }
 
@@ -61,6 +62,10 @@ Status Recording::add(const std::filesystem::path& path) {
   const auto file = static_cast<uint32_t>(readers_.size());
   if (Status added = add_messages(*reader, file); !added) {
     damages_.push_back(added.error().message + "; the rest of the file is left out");
+  }
+  for (const std::string& name : reader->damaged_attachments()) {
+    damages_.push_back(
+        fmt::format("{}: found a damaged attachment {}, which is left out", path.string(), name));
   }
   if (!reader->complete()) cut_files_.push_back(path.string());
   readers_.push_back(std::move(*reader));
@@ -93,7 +98,27 @@ std::vector<std::string> Recording::gaps() const {
   for (const std::string& cut : cut_files_) {
     sentences.push_back(cut + ": has no end (crash, power cut or damage); reads what is there");
   }
+  for (const Pause& pause : pauses_) {
+    sentences.push_back(fmt::format(
+        "{}: nothing is recorded from {:.1f} to {:.1f} s after the beginning; a file of "
+        "the run is missing or damaged, or the daemon stood still",
+        name(), seconds_of(pause.begin_ns), seconds_of(pause.end_ns)));
+  }
   return sentences;
+}
+
+double Recording::seconds_of(uint64_t log_time_ns) const {
+  return static_cast<double>(static_cast<int64_t>(log_time_ns - begin_ns_)) / 1e9;
+}
+
+/// The daemon records a solution every 10 ms.
+void Recording::note_pauses() {
+  const auto& solutions = messages(firmware::kSolutionTopic);
+  for (size_t i = 1; i < solutions.size(); ++i) {
+    const uint64_t before_ns = solutions[i - 1].log_time_ns;
+    const uint64_t now_ns = solutions[i].log_time_ns;
+    if (now_ns - before_ns > kLongestCycle_ns) pauses_.push_back({before_ns, now_ns});
+  }
 }
 
 void Recording::note_times() {
@@ -120,6 +145,11 @@ std::string Recording::value(std::string_view key) const {
   const auto& values = readers_.front().metadata(firmware::kMetadataName)->values;
   const auto found = values.find(std::string(key));
   return found == values.end() ? "" : found->second;
+}
+
+std::optional<std::string> Recording::damaged_attachment() const {
+  const auto& damaged = readers_.front().damaged_attachments();
+  return damaged.empty() ? std::nullopt : std::optional(damaged.front());
 }
 
 const mcap::Attachment* Recording::attachment(std::string_view name) const {

@@ -69,6 +69,16 @@ class Recording {
   const std::vector<std::string>& cut_files() const { return cut_files_; }
   /// What is missing of the files, one sentence each, for stderr.
   std::vector<std::string> gaps() const;
+  /// A time without a solution.
+  struct Pause {
+    uint64_t begin_ns = 0;
+    uint64_t end_ns = 0;
+  };
+  /// Two solutions that are farther apart do not follow each other.
+  static constexpr uint64_t kLongestCycle_ns = 500'000'000;
+  const std::vector<Pause>& pauses() const { return pauses_; }
+  /// The name of an attachment that is damaged in the first file; nothing if none is.
+  std::optional<std::string> damaged_attachment() const;
   /// The name of the first file.
   const std::string& name() const { return names_.front(); }
 
@@ -76,12 +86,15 @@ class Recording {
   Status add(const std::filesystem::path& path);
   Status add_messages(const mcap::Reader& reader, uint32_t file);
   void note_times();
+  void note_pauses();
+  double seconds_of(uint64_t log_time_ns) const;
   Result<std::string_view> bytes_of(const MessagePlace& place);
 
   std::vector<mcap::Reader> readers_;
   std::vector<std::string> names_;
   std::vector<std::string> cut_files_;
   std::vector<std::string> damages_;
+  std::vector<Pause> pauses_;
   std::map<std::string, std::vector<MessagePlace>, std::less<>> topics_;
   std::map<std::string, std::string, std::less<>> schemas_;  ///< of each topic
   Duration offset_{};

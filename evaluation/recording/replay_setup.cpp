@@ -4,7 +4,9 @@
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "can/bus/candump.h"
@@ -36,6 +38,10 @@ Result<fs::path> file_with(const std::string& content, const fs::path& where, co
 }
 
 Result<firmware::Config> recorded_config(const Recording& recording, const ScratchFolder& scratch) {
+  if (const auto damaged = recording.damaged_attachment()) {
+    return fail("{}: found a damaged attachment {}, wanted a whole one; give --config",
+                recording.name(), *damaged);
+  }
   const mcap::Attachment* text = recording.attachment(firmware::kConfigAttachment);
   if (text == nullptr) {
     return fail("{}: found no configuration in the recording, wanted one; give --config",
@@ -159,6 +165,18 @@ Status check_times(const std::vector<can::CandumpEntry>& entries, const fs::path
   return {};
 }
 
+/// The interface of the vehicle's bus in a log: the configured one if the log has several. Fails if
+/// the log has several others.
+Result<std::string> interface_of(const std::vector<can::CandumpEntry>& entries,
+                                 const std::string& configured, const fs::path& log) {
+  std::set<std::string> interfaces;
+  for (const can::CandumpEntry& entry : entries) interfaces.insert(entry.interface);
+  if (interfaces.size() == 1) return *interfaces.begin();
+  if (interfaces.contains(configured)) return configured;
+  return fail("{}: found frames of {}, wanted those of can.interface ({}) or of one interface",
+              log.string(), fmt::join(interfaces, ", "), configured);
+}
+
 }  // namespace
 
 ScratchFolder::ScratchFolder() {
@@ -249,10 +267,12 @@ Result<ReplayInputs> inputs_of_candump(const fs::path& log, const fs::path& imag
   const auto entries = can::read_candump_file(log.string());
   if (!entries) return tl::unexpected(entries.error());
   if (Status status = check_times(*entries, log); !status) return tl::unexpected(status.error());
+  const auto interface = interface_of(*entries, setup.config.can.interface, log);
+  if (!interface) return tl::unexpected(interface.error());
   const auto accepted = firmware::appliance_options(setup.config.can).accepted_ids;
   ReplayInputs inputs;
   for (const can::CandumpEntry& entry : *entries) {
-    const bool wanted = entry.kind == can::CandumpKind::kData &&
+    const bool wanted = entry.kind == can::CandumpKind::kData && entry.interface == *interface &&
                         std::ranges::find(accepted, entry.frame.id) != accepted.end();
     if (wanted) inputs.bus.push_back({Time(entry.time), {entry.frame, Time(entry.time)}});
   }

@@ -32,8 +32,10 @@ void note_state(const bevloc::recording::Solution& solution, double time_s,
                 std::vector<StatePeriod>& periods) {
   const auto state = static_cast<HealthState>(std::min<uint32_t>(solution.state(), 5));
   const WhyMask why = WhyMask::from_bits(solution.why());
-  if (!periods.empty()) periods.back().end_s = time_s;
-  const bool same = !periods.empty() && periods.back().state == state && periods.back().why == why;
+  constexpr double kLongestCycle_s = static_cast<double>(Recording::kLongestCycle_ns) / kSecond_ns;
+  const bool follows = !periods.empty() && time_s - periods.back().end_s <= kLongestCycle_s;
+  if (follows) periods.back().end_s = time_s;
+  const bool same = follows && periods.back().state == state && periods.back().why == why;
   if (!same) periods.push_back({time_s, time_s, state, why});
 }
 
@@ -56,7 +58,8 @@ void note_cycle(const bevloc::recording::Solution& solution, Time time, double t
 }
 
 Status read_solutions(Recording& recording, ReportData& data) {
-  uint64_t capture_ns = 0;
+  // The frameset of the first solution may have been answered before the recording begins.
+  std::optional<uint64_t> capture_ns;
   for (const MessagePlace& place : recording.messages(firmware::kSolutionTopic)) {
     const auto solution = recording.read<bevloc::recording::Solution>(place);
     if (!solution) return tl::unexpected(solution.error());
@@ -64,7 +67,8 @@ Status read_solutions(Recording& recording, ReportData& data) {
     const Time time = recording.clock_time(place.log_time_ns);
     note_state(*solution, time_s, data.periods);
     note_cycle(*solution, time, time_s, data);
-    if (solution->capture_clock_ns() != capture_ns && solution->capture_clock_ns() != 0) {
+    const bool is_new = capture_ns && solution->capture_clock_ns() != *capture_ns;
+    if (is_new && solution->capture_clock_ns() != 0) {
       const Duration latency =
           time - Time(Duration(static_cast<int64_t>(solution->capture_clock_ns())));
       data.latency_ms.push_back({time_s, 1e3 * to_seconds(latency)});
@@ -229,9 +233,14 @@ void explain_inputs(const ReportData& data, double begin_s, double end_s,
   sentences.push_back("Images per camera: " + cameras + ".");
 }
 
+/// Whether nothing is missing between a period and the one before.
+bool follows(const std::vector<StatePeriod>& periods, size_t index) {
+  return index > 0 && periods[index - 1].end_s == periods[index].begin_s;
+}
+
 /// The first period of the state that holds at `index`.
 size_t begin_of_state(const std::vector<StatePeriod>& periods, size_t index) {
-  while (index > 0 && periods[index - 1].state == periods[index].state) --index;
+  while (follows(periods, index) && periods[index - 1].state == periods[index].state) --index;
   return index;
 }
 
@@ -247,6 +256,13 @@ std::vector<std::string> explain(const ReportData& data, double time_s) {
     return sentences;
   }
   const auto index = static_cast<size_t>(std::prev(behind) - periods.begin());
+  const bool is_last = behind == periods.end();
+  if (!is_last && time_s > periods[index].end_s && !follows(periods, index + 1)) {
+    sentences.push_back(fmt::format("Nothing is recorded from {} to {}.",
+                                    time_of_day(data, periods[index].end_s),
+                                    time_of_day(data, periods[index + 1].begin_s)));
+    return sentences;
+  }
   const size_t first = begin_of_state(periods, index);
   const StatePeriod& now = periods[index];
   const StatePeriod& began = periods[first];
@@ -260,7 +276,9 @@ std::vector<std::string> explain(const ReportData& data, double time_s) {
   if (first != index) {
     sentences.push_back(fmt::format("Reasons at its beginning: {}.", reasons(began.why)));
   }
-  if (first > 0) {
+  if (first > 0 && !follows(periods, first)) {
+    sentences.push_back("Nothing is recorded of the time before that.");
+  } else if (first > 0) {
     const StatePeriod& before = periods[first - 1];
     const double since_s = periods[begin_of_state(periods, first - 1)].begin_s;
     sentences.push_back(fmt::format("Before that it was {} for {:.1f} s. Reasons at its end: {}.",

@@ -230,10 +230,12 @@ std::vector<std::pair<std::string, std::string>> key_figures(const ReportData& d
   std::vector<double> latencies;
   for (const TimedValue& latency : data.latency_ms) latencies.push_back(latency.value);
   double valid_s = 0.0;
+  double recorded_s = 0.0;
   for (const StatePeriod& period : data.periods) {
+    recorded_s += period.end_s - period.begin_s;
     if (is_valid(period.state)) valid_s += period.end_s - period.begin_s;
   }
-  figures.emplace_back("valid poses", fmt::format("{:.1f} s of {:.1f} s", valid_s, data.length_s));
+  figures.emplace_back("valid poses", fmt::format("{:.1f} s of {:.1f} s", valid_s, recorded_s));
   if (!data.truth.empty()) {
     add_figures_of_errors(data, figures);
   } else {

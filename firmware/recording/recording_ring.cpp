@@ -43,6 +43,15 @@ std::optional<uint64_t> log_time_in(const std::string& file_name) {
   return static_cast<uint64_t>(seconds) * kLogSecond_ns;
 }
 
+/// Whether the daemon gave a file this name. A file that a user has renamed is not the ring's.
+bool is_of_the_ring(const std::string& name) {
+  if (!name.starts_with(kPrefix)) return false;
+  int number = -1;
+  int length = 0;
+  std::sscanf(name.c_str() + kPrefix.size(), "%*8[0-9]T%*6[0-9]Z-%d.mcap%n", &number, &length);
+  return number >= 0 && kPrefix.size() + static_cast<size_t>(length) == name.size();
+}
+
 struct Listed {
   fs::path path;
   uint64_t bytes = 0;
@@ -56,7 +65,7 @@ std::vector<Listed> list_recordings(const fs::path& newest) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(newest.parent_path(), error)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with(kPrefix) || entry.path().extension() != ".mcap") continue;
+    if (!is_of_the_ring(name)) continue;
     std::error_code gone;
     const Listed listed{entry.path(), entry.file_size(gone)};
     if (!gone) files.push_back(listed);
@@ -160,7 +169,8 @@ Result<fs::path> RecordingRing::keep(uint64_t log_time_ns) {
     if (&file != &recent_.back() && file.end_ns + covered < log_time_ns) continue;
     std::error_code error;
     fs::create_hard_link(file.path, folder / file.path.filename(), error);
-    if (error && error != std::errc::file_exists) {
+    // A ring that is shorter than the black box has deleted the oldest of these files.
+    if (error && error != std::errc::file_exists && error != std::errc::no_such_file_or_directory) {
       return fail("{}: cannot keep this file in {} ({}), wanted a file system with hard links",
                   file.path.string(), folder.string(), error.message());
     }

@@ -116,6 +116,50 @@ TEST_F(RecordedDriveTest, EveryFrameIsThereAndTheMapIsTheSame) {
   EXPECT_EQ(recording_->value(firmware::kLockstepKey), "yes");
 }
 
+TEST_F(RecordedDriveTest, ATimeThatIsNotRecordedIsNamedAndNotCounted) {
+  ASSERT_GE(files_.size(), 3U);
+  EXPECT_TRUE(recording_->pauses().empty());
+  auto recording = Recording::open({files_[0], files_[2]});
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_EQ(recording->pauses().size(), 1U);
+  EXPECT_NE(recording->gaps().front().find("nothing is recorded from"), std::string::npos);
+  const auto data = read_report_data(*recording);
+  ASSERT_TRUE(data) << data.error().message;
+  double recorded_s = 0.0;
+  for (const StatePeriod& period : data->periods) recorded_s += period.end_s - period.begin_s;
+  EXPECT_LT(recorded_s, data->length_s - 1.5);
+  const double missing_s =
+      1e-9 * static_cast<double>(recording->pauses()[0].begin_ns - recording->begin_ns()) + 1.0;
+  const auto sentences = explain(*data, missing_s);
+  ASSERT_EQ(sentences.size(), 1U);
+  EXPECT_TRUE(sentences[0].starts_with("Nothing is recorded from ")) << sentences[0];
+}
+
+TEST_F(RecordedDriveTest, EachLatencyOfALaterFileIsThatOfItsOwnFramesets) {
+  auto recording = Recording::open({files_[1]});
+  ASSERT_TRUE(recording) << recording.error().message;
+  const auto data = read_report_data(*recording);
+  ASSERT_TRUE(data) << data.error().message;
+  EXPECT_GT(data->latency_ms.size(), 5U);
+  for (const TimedValue& latency : data->latency_ms) EXPECT_LT(latency.value, 40.0);
+}
+
+TEST_F(RecordedDriveTest, ADamagedRigIsNotReplacedByAnother) {
+  std::string bytes = read_file(files_[0]).value();
+  const size_t translation = bytes.find("translation_m: [");
+  ASSERT_NE(translation, std::string::npos);
+  bytes[translation + 18] = static_cast<char>(bytes[translation + 18] ^ 1);
+  const fs::path damaged = *folder_ / "damaged.mcap";
+  ASSERT_TRUE(write_file(damaged, bytes));
+  auto recording = Recording::open({damaged});
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_FALSE(recording->gaps().empty());
+  EXPECT_NE(recording->gaps().front().find("found a damaged attachment rig"), std::string::npos);
+  const auto setup = setup_of(*recording, {}, ScratchFolder());
+  ASSERT_FALSE(setup);
+  EXPECT_NE(setup.error().message.find("found a damaged attachment rig"), std::string::npos);
+}
+
 TEST_F(RecordedDriveTest, ACutFileReplaysUpToItsCut) {
   const std::string whole = read_file(files_[0]).value();
   const fs::path cut = *folder_ / "cut.mcap";

@@ -213,6 +213,36 @@ TEST_F(RecorderTest, AFullRingDeletesFilesOfTheFutureFirst) {
   EXPECT_FALSE(fs::exists(future));
 }
 
+TEST_F(RecorderTest, AFileThatSomebodyRenamedIsNotDeleted) {
+  const fs::path renamed = leave("bevloc-accident.mcap", 60'000);
+  const fs::path copied = leave("bevloc-20400224T000000Z-0001-copy.mcap", 60'000);
+  const fs::path own = leave("bevloc-20400224T000000Z-0001.mcap", 60'000);
+  config_.max_bytes = 100'000;
+  open()->finish(Time{});
+  EXPECT_TRUE(fs::exists(renamed));
+  EXPECT_TRUE(fs::exists(copied));
+  open()->finish(Time{});
+  config_.max_bytes = 50'000;
+  open()->finish(Time{});
+  EXPECT_FALSE(fs::exists(own));
+}
+
+TEST_F(RecorderTest, LostKeepsWhatAShortRingStillHas) {
+  config_.file_length = std::chrono::seconds(1);
+  const auto recorder = open();
+  for (int second = 0; second < 10; ++second) {
+    const Time now{std::chrono::seconds(second)};
+    recorder->note_solution(report(HealthState::kTracking, now));
+    recorder->write_queued(now);
+  }
+  ASSERT_TRUE(fs::remove(first_in(config_.directory))) << "as a full ring does";
+  const Time lost{std::chrono::seconds(10)};
+  recorder->note_solution(report(HealthState::kLost, lost));
+  recorder->write_queued(lost);
+  EXPECT_EQ(recorder->counters().black_boxes, 1U);
+  EXPECT_EQ(files_in(config_.directory / "kept"), 9U) << "ten files, of which the first is gone";
+}
+
 TEST_F(RecorderTest, LostKeepsTheLastMinute) {
   config_.file_length = std::chrono::seconds(30);
   const auto recorder = open();
