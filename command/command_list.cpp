@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "common/output.h"
+
 namespace bevloc::command {
 
 int CommandList::run(CLI::App& app, int argc, char** argv) const {
@@ -14,9 +16,10 @@ int CommandList::run(CLI::App& app, int argc, char** argv) const {
   }
   const auto entry = std::ranges::find_if(entries_, [](const Entry& e) { return e.chosen(); });
   if (entry == entries_.end()) return kBadInput;
-  const Result<int> code = entry->run();
-  if (code) return *code;
-  fmt::print(stderr, "bevloc: {}\n", code.error().message);
+  const Result<int> code = run_without_throwing(entry->run);
+  const Status printed = code ? flush_output() : tl::unexpected(code.error());
+  if (printed) return *code;
+  std::fputs(fmt::format("bevloc: {}\n", printed.error().message).c_str(), stderr);
   return kBadInput;
 }
 

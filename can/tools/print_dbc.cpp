@@ -6,6 +6,7 @@
 #include "can/messages/consumer_writer.h"
 #include "can/messages/dbc_writer.h"
 #include "can/messages/markdown_writer.h"
+#include "common/output.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Prints the DBC file of bevloc's CAN messages.");
@@ -35,4 +36,7 @@ int main(int argc, char** argv) {
                 : c_header ? bevloc::can::consumer_header_text()
                 : python   ? bevloc::can::consumer_python_text()
                            : bevloc::can::dbc_text(base));
+  const bevloc::Status printed = bevloc::flush_output();
+  if (!printed) std::cerr << "bevloc_dbc: " << printed.error().message << '\n';
+  return printed ? 0 : 2;
 }

@@ -20,7 +20,9 @@ void show_progress_line(const firmware::ApplianceView& appliance, const JudgeVie
     line += fmt::format("  error {:.2f} m long. {:.2f} m lat. {:.2f} deg", std::abs(error.x_m),
                         std::abs(error.y_m), std::abs(degrees(error.yaw_rad)));
   }
-  fmt::print(stderr, "{}{}{}", is_terminal ? "\r\033[K" : "", line, last ? "\n" : "");
+  // A line that cannot be written must not end the drive.
+  std::fputs(fmt::format("{}{}{}", is_terminal ? "\r\033[K" : "", line, last ? "\n" : "").c_str(),
+             stderr);
   std::fflush(stderr);
 }
 

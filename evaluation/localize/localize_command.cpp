@@ -42,6 +42,9 @@ class PictureLocalizer {
     localization.prior = prior;
     localization.cameras = localizer_.localize(pictures_.images(), prior, range_, solution_);
     localization.match = solution_;
+    // The solver does not know that nothing was seen or mapped.
+    const bool shows_nothing = localization.cameras.none() || !localizer_.map_nearby();
+    if (shows_nothing) localization.match.evidence = Evidence::kNone;
     for (size_t i = 0; i < kCameraCount; ++i) {
       if (localization.cameras[i]) continue;
       localization.left_out.emplace(kCameraNames[i], reason_of(localizer_, pictures_, i));

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "common/option_checks.h"
+#include "common/output.h"
 #include "common/version.h"
 #include "firmware/recording/recording_ring.h"
 
@@ -117,7 +118,7 @@ int run_program(CLI::App& app, int argc, char** argv, const Run& run) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
   const LogWriter log;
-  const Status status = run(log);
+  const Status status = run_without_throwing([&] { return run(log); });
   if (status) return 0;
   write_with_patience(STDERR_FILENO, fmt::format("bevlocd: {}\n", status.error().message),
                       LogWriter::kFarewell);

@@ -60,6 +60,16 @@ class ProgramTest(unittest.TestCase):
             self.assertEqual(len(own), 1)
             self.assertEqual(taken.read_text(), "mine")
 
+    def test_output_that_does_not_arrive_is_an_error(self) -> None:
+        for words in (["schema"], ["completion", "bash"]):
+            with open("/dev/full", "w") as full:
+                ended = subprocess.run(
+                    [PROGRAM, *words], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+                )
+            self.assertEqual(ended.returncode, 2, words)
+            self.assertIn("bevloc: ", ended.stderr)
+            self.assertIn("No space left on device", ended.stderr)
+
     def test_doctor_prints_json(self) -> None:
         answer = run("doctor", "--json")
         report = json.loads(answer.stdout)

@@ -1,5 +1,7 @@
 #include "common/image_file.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <vector>
@@ -132,6 +134,38 @@ TEST_F(ImageFile, SaysWhatIsWrong) {
     EXPECT_THAT(error_of(name), AllOf(HasSubstr(name), HasSubstr("found a damaged"))) << name;
   }
   EXPECT_FALSE(write_png(image.view(), path("no/such/folder.png")));
+}
+
+/// Writes 16-bit samples as they are. libpng's simplified writer would convert them.
+void write_png_with_16_bits(const std::string& path, const std::vector<uint8_t>& rgb, int width,
+                            int height) {
+  FILE* const file = fopen(path.c_str(), "wb");
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_init_io(png, file);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 16,
+               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(png, info);
+  std::vector<uint8_t> row(static_cast<size_t>(6 * width));
+  for (int v = 0; v < height; ++v) {
+    for (size_t i = 0; i < row.size(); ++i) {
+      row[i] = rgb[static_cast<size_t>(3 * width * v) + i / 2];
+    }
+    png_write_row(png, row.data());
+  }
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  fclose(file);
+}
+
+TEST_F(ImageFile, SixteenBitsGiveThePictureOfEight) {
+  const std::vector<uint8_t> pixels = smooth_pixels(PNG_FORMAT_RGB);
+  write_png_with_16_bits(path("deep.png"), pixels, kWidth, kHeight);
+  RgbImage image(kWidth, kHeight);
+  const Status read = read_image(path("deep.png"), image);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_TRUE(std::ranges::equal(image.pixels, pixels));
 }
 
 }  // namespace
