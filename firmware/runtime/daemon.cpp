@@ -28,9 +28,9 @@ namespace bevloc::firmware {
 namespace {
 
 constexpr Duration kStandbyPeriod = std::chrono::milliseconds(100);
-/// The start of an appliance takes about a second. systemd/bevlocd.service allows as much at the
-/// start of the daemon.
-constexpr Duration kStartTimeout = std::chrono::seconds(30);
+/// The start of an appliance takes about a second, its end as long as the slowest device takes to
+/// close. systemd/bevlocd.service allows as much at the start of the daemon.
+constexpr Duration kChangeTimeout = std::chrono::seconds(30);
 
 /// The daemon's devices that live from its start to its end.
 struct Base {
@@ -63,7 +63,7 @@ bool wait_for_ignition(Base& base, const DaemonHost& host) {
     base.clock.sleep_until(base.clock.now() + kStandbyPeriod);
   }
   // Nobody can feed the watchdog while the appliance starts.
-  notifier.set_watchdog_timeout(kStartTimeout);
+  notifier.set_watchdog_timeout(kChangeTimeout);
   return true;
 }
 
@@ -96,6 +96,8 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
     if (base.live) base.live->publish({Phase::kRunning, now, counters, supervisor.view()});
     ignition = base.lines->step(is_lit(supervisor.view().state, now), now);
     const bool goes_on = ignition && !host.stop();
+    // Nobody can feed the watchdog while the devices close. At its own end, systemd waits longer.
+    if (!ignition) ServiceNotifier().set_watchdog_timeout(kChangeTimeout);
     if (!goes_on) watching.request_stop();  // the fault line becomes active
     return goes_on;
   });

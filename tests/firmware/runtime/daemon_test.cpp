@@ -58,6 +58,7 @@ class DaemonTest : public testing::Test {
 
 TEST_F(DaemonTest, WaitsInStandbyWhileTheIgnitionIsOffAndRunsAgain) {
   FakeManager manager;
+  setenv("WATCHDOG_USEC", "2000000", 1);
   std::string messages;
   const auto see = [&](const std::string& text) {
     messages += manager.all();
@@ -74,6 +75,8 @@ TEST_F(DaemonTest, WaitsInStandbyWhileTheIgnitionIsOffAndRunsAgain) {
       step = 1;
     } else if (step == 1 && see("STATUS=standby: ignition off") && see("WATCHDOG=1")) {
       fault_in_standby = fault();
+      EXPECT_LT(messages.find("WATCHDOG_USEC=30000000"), messages.find("STATUS=standby"))
+          << "nobody feeds the watchdog while the devices close";
       while (bus->receive()) {
       }
       EXPECT_EQ(messages.find("STOPPING"), std::string::npos);
@@ -85,6 +88,7 @@ TEST_F(DaemonTest, WaitsInStandbyWhileTheIgnitionIsOffAndRunsAgain) {
     }
     return step == 3 || ++calls == kMaxCalls;
   });
+  unsetenv("WATCHDOG_USEC");
   EXPECT_TRUE(status) << status.error().message;
   EXPECT_EQ(step, 3);
   EXPECT_TRUE(fault_in_standby);
