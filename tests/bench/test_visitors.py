@@ -25,13 +25,15 @@ class VisitorsTest(unittest.TestCase):
         self.assertIn("| 21.00 | 1.050 (1.000 to 1.200) | 1.50 | 30.0 | 40.0 | 3 | 6 |", table)
 
     def test_the_times_are_those_of_the_pose_path(self):
-        code = "import threading; open('/proc/self/comm', 'w').write('vision'); sum(range(10**7))"
-        process = subprocess.Popen([sys.executable, "-c", code])
-        pose_path = PosePath()
-        pose_path.watch(process.pid)
-        self.assertEqual(process.wait(), 0)
-        of_drive = drive(used=6)
-        self.assertGreater(pose_path.run_of(of_drive).busy_ms, 1.0)
+        code = "open('/proc/self/comm', 'w').write('vision'); sum(range(10**6)); print(); input()"
+        pipe = subprocess.PIPE
+        with subprocess.Popen([sys.executable, "-c", code], stdin=pipe, stdout=pipe) as process:
+            assert process.stdout
+            process.stdout.readline()
+            pose_path = PosePath()
+            pose_path.read(process.pid)
+            process.communicate(b"\n")
+        self.assertGreater(pose_path.run_of(drive(used=6)).busy_ms, 1.0)
 
     def test_the_first_case_is_the_reference(self):
         self.assertFalse(CASES[0].served)

@@ -49,13 +49,16 @@ class PosePath:
     def watch(self, pid: int) -> None:
         """The last times that are read miss less than 0.1 s of a drive."""
         while not os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT):
-            for thread in Path(f"/proc/{pid}/task").glob("*"):
-                with contextlib.suppress(OSError):
-                    name = (thread / "comm").read_text().strip()
-                    if name in _POSE_PATH:
-                        busy_ns, waiting_ns, _ = (thread / "schedstat").read_text().split()
-                        self._times_ns[name] = int(busy_ns), int(waiting_ns)
+            self.read(pid)
             time.sleep(0.1)
+
+    def read(self, pid: int) -> None:
+        for thread in Path(f"/proc/{pid}/task").glob("*"):
+            with contextlib.suppress(OSError):
+                name = (thread / "comm").read_text().strip()
+                if name in _POSE_PATH:
+                    busy_ns, waiting_ns, _ = (thread / "schedstat").read_text().split()
+                    self._times_ns[name] = int(busy_ns), int(waiting_ns)
 
     def run_of(self, of_drive: Drive) -> Run:
         framesets = of_drive.frames["used"] / 6

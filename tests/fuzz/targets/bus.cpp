@@ -127,7 +127,7 @@ void run_dbc(Bytes bytes) {
       const double value = can::physical_from(signal.layout, frame);
       expect(value == signal.layout.offset, "a signal of zeros that is not its offset");
       const bool has_multiplexor = message.nested_multiplexing || message.multiplexor() != nullptr;
-      expect(!signal.multiplexed_at || has_multiplexor, "a signal without its multiplexor");
+      expect(signal.multiplexed_at.empty() || has_multiplexor, "a signal without its multiplexor");
     }
   }
 }

@@ -32,7 +32,10 @@ class MapOffsetMonitorTest : public testing::Test {
   }
 
   Eigen::Vector2d drawn(double sigma_m) {
-    return sigma_m * Eigen::Vector2d(normal_(random_), normal_(random_));
+    // Compilers evaluate arguments in different orders.
+    const double north_m = sigma_m * normal_(random_);
+    const double east_m = sigma_m * normal_(random_);
+    return Eigen::Vector2d(east_m, north_m);
   }
 
   std::mt19937 random_;

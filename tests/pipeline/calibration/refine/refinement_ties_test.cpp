@@ -57,7 +57,10 @@ void add_ties(RefinementProblem& problem, const Rig& rig, const CameraAdjustment
           continue;
         }
         if (ground.every_wrong > 0 && ++count % ground.every_wrong == 0) second_px->x() += 16.0;
-        ties.push_back({*first_px, *second_px + Eigen::Vector2d(noise(random), noise(random))});
+        // Compilers evaluate arguments in different orders.
+        const double down_px = noise(random);
+        const double right_px = noise(random);
+        ties.push_back({*first_px, *second_px + Eigen::Vector2d(right_px, down_px)});
       }
     }
     problem.add_ties({frame, kNoPaint, drive.time_of(frame)},
