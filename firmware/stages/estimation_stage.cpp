@@ -62,7 +62,8 @@ void EstimationStage::tick(Time now) {
   watch_clock(now);
   take_samples();
   take_reports(now);
-  estimator_.judge(now, health_.pose_valid());
+  // After a gap the health still has the state of the discarded pose.
+  estimator_.judge(now, health_.pose_valid() && !clock_gap_);
   note_map_offset();
   const auto pose = estimator_.pose_at(now);
   if (pose) {

@@ -239,14 +239,14 @@ void Arbiter::note_gnss_error(Time time, const Eigen::Vector3d& gnss_error) {
   next_gnss_error_ = time + std::chrono::seconds(1);
   moved_gnss_axis_.reset();
   const size_t known = std::min(gnss_error_count_, kGnssErrors);
-  for (size_t age = 1; age <= known; ++age) {
-    const Eigen::Vector3d& before = gnss_errors_[(gnss_error_count_ - age) % kGnssErrors];
-    const double expected =
-        std::sqrt(2.0 * (1.0 - std::exp(-static_cast<double>(age) / gnss_correlation_s_)));
-    const Eigen::Vector3d change = (gnss_error - before).cwiseAbs();
+  for (size_t i = 0; i < known; ++i) {
+    const GnssError& before = gnss_errors_[i];
+    const double age_s = to_seconds(time - before.time);
+    const double expected = std::sqrt(2.0 * (1.0 - std::exp(-age_s / gnss_correlation_s_)));
+    const Eigen::Vector3d change = (gnss_error - before.error).cwiseAbs();
     if (change.maxCoeff() > kGnssMoveLimit * expected + 0.3) moved_gnss_axis_ = largest_of(change);
   }
-  gnss_errors_[gnss_error_count_++ % kGnssErrors] = gnss_error;
+  gnss_errors_[gnss_error_count_++ % kGnssErrors] = {time, gnss_error};
 }
 
 bool Arbiter::match_agrees(Time now) const {

@@ -157,7 +157,11 @@ class Arbiter {
   std::array<GnssRecord, kGnssRecords> gnss_records_{};
   size_t gnss_count_ = 0;
   /// GNSS errors of the last seconds, one per second.
-  std::array<Eigen::Vector3d, kGnssErrors> gnss_errors_{};
+  struct GnssError {
+    Time time;
+    Eigen::Vector3d error = Eigen::Vector3d::Zero();
+  };
+  std::array<GnssError, kGnssErrors> gnss_errors_{};
   size_t gnss_error_count_ = 0;
   Time next_gnss_error_ = Time::min();
   std::optional<size_t> moved_gnss_axis_;

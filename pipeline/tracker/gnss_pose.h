@@ -14,17 +14,25 @@ namespace bevloc {
 struct GnssPose {
   Se2 map_from_vehicle;           ///< the yaw is not wrapped
   double position_sigma_m = 0.0;  ///< for both axes: the larger sigma of the sample
-  double yaw_sigma_rad = 0.0;     ///< pi if the sample has no yaw
+  double yaw_sigma_rad = 0.0;     ///< pi if the yaw is unknown
   bool has_yaw = false;
 };
 
+/// A yaw with a larger sigma counts as unknown.
+inline constexpr double kLargestYawSigma_rad = 1.0;
+
+/// A sigma that is not finite stays, so that the tracker refuses the sample.
+inline bool is_known(const std::optional<GnssSample::Yaw>& yaw) {
+  return yaw && !(std::isfinite(yaw->sigma_rad) && yaw->sigma_rad >= kLargestYawSigma_rad);
+}
+
 inline GnssPose gnss_pose(const GnssSample& sample) {
-  const GnssSample::Yaw unknown{0.0, std::numbers::pi};
-  const GnssSample::Yaw yaw = sample.yaw.value_or(unknown);
+  const bool has_yaw = is_known(sample.yaw);
+  const GnssSample::Yaw yaw = has_yaw ? *sample.yaw : GnssSample::Yaw{0.0, std::numbers::pi};
   return {.map_from_vehicle = {sample.east_m, sample.north_m, yaw.yaw_rad},
           .position_sigma_m = std::max(sample.sigma_east_m, sample.sigma_north_m),
           .yaw_sigma_rad = yaw.sigma_rad,
-          .has_yaw = sample.yaw.has_value()};
+          .has_yaw = has_yaw};
 }
 
 /// Moves the position of an antenna to the middle of the rear axle. The vehicle's yaw is that of
@@ -36,10 +44,9 @@ inline GnssSample at_rear_axle(GnssSample sample, const std::optional<GnssSample
   sample.antenna.reset();
   std::optional<GnssSample::Yaw> yaw = sample.yaw;
   if (estimate && (!yaw || estimate->sigma_rad < yaw->sigma_rad)) yaw = estimate;
-  const bool is_known = yaw && yaw->sigma_rad < 1.0;
   const double distance_m = std::hypot(antenna.x_m, antenna.y_m);
-  const double sigma_m = is_known ? yaw->sigma_rad * distance_m : distance_m;
-  if (is_known) {
+  const double sigma_m = is_known(yaw) ? yaw->sigma_rad * distance_m : distance_m;
+  if (is_known(yaw)) {
     const double c = std::cos(yaw->yaw_rad);
     const double s = std::sin(yaw->yaw_rad);
     sample.east_m -= c * antenna.x_m - s * antenna.y_m;

@@ -71,7 +71,10 @@ TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
   if (update == TrackerUpdate::kAccepted && trusted) {
     const GnssPose gnss = gnss_pose(sample);
     gnss_passed_ = sample.time;
-    gnss_sigma_ << gnss.position_sigma_m, gnss.position_sigma_m, gnss.yaw_sigma_rad;
+    const MeasurementModel& model = tracker_.parameters().measurements;
+    gnss_sigma_.head<2>().setConstant(
+        std::max(gnss.position_sigma_m, model.gnss_min_position_sigma_m));
+    gnss_sigma_.z() = std::max(gnss.yaw_sigma_rad, model.gnss_min_yaw_sigma_rad);
   }
   if (!had_pose || !reached_the_gate(update)) return update;
   if (yaw) gnss_scatter_.add(at_axle, yaw->yaw_rad);
@@ -139,7 +142,9 @@ void PoseEstimator::weigh_start(const MatchResult& match, const MatchOutcome& ou
 
 void PoseEstimator::judge(Time now, bool pose_valid) {
   const bool is_lost = pose_valid_ && !pose_valid;
-  if (is_lost && is_contradicted()) start_confirmation_.reset();
+  // Without a pose nothing tells whether the vehicle is still where it was.
+  const bool is_gone = !tracker_.pose_at(now);
+  if (is_gone || (is_lost && is_contradicted())) start_confirmation_.reset();
   pose_valid_ = pose_valid;
   trusted_ = trusted_ || pose_valid;
   const bool odometry_was_wrong = verdict_.odometry_contradicts;

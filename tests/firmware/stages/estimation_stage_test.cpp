@@ -31,8 +31,8 @@ class EstimationStageTest : public testing::Test {
       }
       if (now_.time_since_epoch() % milliseconds(100) == Duration::zero()) {
         const Se2 truth = truth_at(now_);
-        samples_.push(GnssSample{now_, truth.x_m, truth.y_m + gnss_north_m_, 1.0, 1.0,
-                                 GnssSample::Yaw{0.0, 0.02}});
+        samples_.push(GnssSample{now_, truth.x_m, truth.y_m + gnss_north_m_, gnss_sigma_m_,
+                                 gnss_sigma_m_, GnssSample::Yaw{0.0, 0.02}});
         if (vision_) push_report(now_ - milliseconds(40));
       }
       stage_.tick(now_);
@@ -73,6 +73,7 @@ class EstimationStageTest : public testing::Test {
   Time now_{milliseconds(1000)};
   Se2 vision_error_;
   double gnss_north_m_ = 1.0;
+  double gnss_sigma_m_ = 1.0;
   bool odometry_ = true;
   bool vision_ = true;
   bool skipped_ = false;
@@ -105,6 +106,20 @@ TEST_F(EstimationStageTest, AClockGapMeansLostUntilThePoseIsFoundAgain) {
   run(milliseconds(5000));
   EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
   EXPECT_FALSE(WhyMask::from_bits(stage_.counters().why).has(Why::kClockGap));
+}
+
+/// Only GNSS supports a new pose, and its sigma may be too small.
+TEST_F(EstimationStageTest, ThePoseAfterAClockGapIsNew) {
+  run(milliseconds(5000));
+  now_ += std::chrono::seconds(10);
+  stage_.note_clock_gap(std::chrono::seconds(10));
+  vision_ = false;
+  gnss_sigma_m_ = 0.1;
+  run(milliseconds(300));
+  std::optional<Prediction> latest;
+  while (const auto prediction = predictions_.pop(Duration::zero())) latest = prediction;
+  ASSERT_TRUE(latest);
+  EXPECT_GT(latest->pose.covariance(1, 1), 0.5);
 }
 
 TEST_F(EstimationStageTest, TellsTheSourceOfTime) {

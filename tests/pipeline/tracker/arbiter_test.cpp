@@ -177,6 +177,22 @@ TEST_F(ArbiterTest, ReadmitsGnssWhoseErrorHasMovedOnce) {
   EXPECT_TRUE(arbiter_.trusts_gnss());
 }
 
+/// After a tunnel the error of GNSS is another one than before.
+TEST_F(ArbiterTest, GnssErrorsMayMoveAsFarAsTheTimeBetweenThemPermits) {
+  const auto add_gnss = [&](int samples, double error) {
+    for (int i = 0; i < samples; ++i) {
+      now_ += milliseconds(100);
+      arbiter_.add_match(now_, innovation(none_), true);
+      arbiter_.add_gnss(now_, innovation(none_), true, Eigen::Vector3d(error, 0.0, 0.0));
+      arbiter_.judge(now_, PoseStanding::kValid);
+    }
+  };
+  add_gnss(30, 0.0);
+  now_ += std::chrono::seconds(60);
+  add_gnss(10, 2.5);
+  EXPECT_TRUE(arbiter_.trusts_gnss());
+}
+
 TEST_F(ArbiterTest, AMatchWhoseNewErrorExplainsItIsNotFarOff) {
   run(20, none_, none_);
   PoseInnovation match = innovation({0.0, 1.4, 0.0});

@@ -48,5 +48,15 @@ TEST(AtRearAxle, LeavesAPositionOfTheRearAxleAlone) {
   EXPECT_EQ(at_rear_axle(sample, Yaw{1.0, 0.1}).east_m, 3.0);
 }
 
+TEST(GnssPose, AYawWithALargeSigmaIsUnknown) {
+  GnssSample sample = antenna_at(3.0, 4.0);
+  sample.yaw = Yaw{2.0, 0.9};
+  EXPECT_TRUE(gnss_pose(sample).has_yaw);
+  sample.yaw = Yaw{2.0, radians(360.0)};  // what a receiver may send for "unknown"
+  const GnssPose pose = gnss_pose(sample);
+  EXPECT_FALSE(pose.has_yaw);
+  EXPECT_DOUBLE_EQ(pose.yaw_sigma_rad, std::numbers::pi);
+}
+
 }  // namespace
 }  // namespace bevloc

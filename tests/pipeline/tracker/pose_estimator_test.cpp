@@ -176,6 +176,18 @@ TEST_F(PoseEstimatorStartTest, APoseThatIsLostWithoutAContradictionKeepsItsSuppo
   EXPECT_TRUE(estimator_.confirms_start());
 }
 
+/// The vehicle drives on unseen, and may be in another lane when odometry comes back.
+TEST_F(PoseEstimatorStartTest, APoseThatIsGoneLosesItsSupport) {
+  drive(10.0, 0.0, 0.33, 0.3);
+  estimator_.judge(at_s(time_s_), true);
+  time_s_ += 10.0;
+  ASSERT_FALSE(estimator_.pose_at(at_s(time_s_)));
+  estimator_.judge(at_s(time_s_), false);
+  drive(0.5, 0.0, 0.33, 0.3);
+  EXPECT_TRUE(estimator_.pose_at(at_s(time_s_)));
+  EXPECT_FALSE(estimator_.confirms_start());
+}
+
 TEST_F(PoseEstimatorStartTest, APoseThatIsLostBecauseOfImplausibleOdometryNeedsNewSupport) {
   drive(10.0, 0.0, 0.33, 0.3);
   estimator_.judge(at_s(time_s_), true);
