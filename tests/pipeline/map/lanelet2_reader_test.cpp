@@ -1,7 +1,5 @@
 #include "pipeline/map/lanelet2_reader.h"
 
-#include <algorithm>
-
 #include <GeographicLib/UTMUPS.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -152,24 +150,6 @@ TEST(Lanelet2Reader, LocalCoordinatesOfAnotherGridAreRotatedIntoTheTangentPlane)
   const auto& south = map->lanes[0].right;
   EXPECT_NEAR(south.front().y(), south.back().y(), 0.02);
   EXPECT_NEAR(std::abs(south.front().x() - south.back().x()), 146.3, 0.1);
-}
-
-TEST(Lanelet2Reader, ReportsTheLengthOfWhatIsDropped) {
-  const auto at = [](double x, double y) {
-    return fmt::format("lat='' lon=''><tag k='local_x' v='{}'/><tag k='local_y' v='{}'/>", x, y);
-  };
-  std::string text = lanelet_of({at(0, 0), at(20, 0), at(0, 4), at(20, 4)});
-  const std::string virtual_way =
-      "<way id='12'><nd ref='1'/><nd ref='3'/><tag k='type' v='virtual'/></way>\n"
-      "<way id='13'><nd ref='1'/><nd ref='9'/><tag k='type' v='virtual'/></way>\n";
-  text.insert(text.find("<relation"), virtual_way);
-  const auto imported = parse_lanelet2_with_report(text, "town.osm", {});
-  ASSERT_TRUE(imported) << imported.error().message;
-  const auto rows = imported->report.rows();
-  const auto dropped = std::ranges::find(rows, "way virtual", &ImportRow::kind);
-  ASSERT_NE(dropped, rows.end());
-  EXPECT_EQ(dropped->count, 2U);
-  EXPECT_DOUBLE_EQ(dropped->length_m, 4.0) << "node 9 is missing";
 }
 
 /// Without the refusal the map would lie at latitude and longitude 0 without a word.

@@ -1,4 +1,5 @@
 // Files that are unusual but not wrong, and files of which a part is wrong.
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -203,6 +204,24 @@ TEST(UnusualLanelet2, LocalCoordinatesFarFromZeroAreShifted) {
   EXPECT_LT(points[0].norm(), 200.0);
   EXPECT_DOUBLE_EQ((points[1] - points[0]).x(), 80.0);
   EXPECT_THAT(map.report.remarks(), Contains(HasSubstr("were shifted by")));
+}
+
+TEST(UnusualLanelet2, ReportsTheLengthOfWhatIsDropped) {
+  const ImportedMap map = imported(R"(<osm>
+<node id='1' lat='' lon=''><tag k='local_x' v='0'/><tag k='local_y' v='0'/></node>
+<node id='2' lat='' lon=''><tag k='local_x' v='20'/><tag k='local_y' v='0'/></node>
+<node id='3' lat='' lon=''><tag k='local_x' v='0'/><tag k='local_y' v='4'/></node>
+<way id='10'><nd ref='1'/><nd ref='2'/><tag k='type' v='road_border'/></way>
+<way id='12'><nd ref='1'/><nd ref='3'/><tag k='type' v='virtual'/></way>
+<way id='13'><nd ref='1'/><nd ref='9'/><tag k='type' v='virtual'/></way>
+</osm>
+)",
+                                   "town.osm");
+  const auto rows = map.report.rows();
+  const auto dropped = std::ranges::find(rows, "way virtual", &ImportRow::kind);
+  ASSERT_NE(dropped, rows.end());
+  EXPECT_EQ(dropped->count, 2U);
+  EXPECT_DOUBLE_EQ(dropped->length_m, 4.0) << "node 9 is missing";
 }
 
 }  // namespace
