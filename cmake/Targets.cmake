@@ -56,10 +56,10 @@ function(bevloc_library name)
   endif()
 endfunction()
 
-# Time limits of tests are multiplied by this. qemu needs some 20 times as long as a processor.
-set(BEVLOC_TEST_PATIENCE 1)
+# Time limits of tests are multiplied by this factor: qemu needs some 20 times as long as a processor.
+set(BEVLOC_TEST_TIME_FACTOR 1)
 if(CMAKE_CROSSCOMPILING)
-  set(BEVLOC_TEST_PATIENCE 20)
+  set(BEVLOC_TEST_TIME_FACTOR 20)
 endif()
 
 # bevloc_test(NAME SOURCES... [WHOLE] [LINK libs...]): a GoogleTest program; each of its suites is a
@@ -75,11 +75,11 @@ function(bevloc_test name)
   target_compile_definitions(${name} PRIVATE BEVLOC_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   if(ARG_WHOLE OR BEVLOC_SANITIZE)
     add_test(NAME ${name} COMMAND ${name})
-    math(EXPR timeout_s "900 * ${BEVLOC_TEST_PATIENCE}")
+    math(EXPR timeout_s "900 * ${BEVLOC_TEST_TIME_FACTOR}")
     set_tests_properties(${name} PROPERTIES TIMEOUT ${timeout_s})
   else()
     set(suites ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake)
-    math(EXPR timeout_s "600 * ${BEVLOC_TEST_PATIENCE}")
+    math(EXPR timeout_s "600 * ${BEVLOC_TEST_TIME_FACTOR}")
     file(GENERATE OUTPUT ${suites}
       CONTENT "set(name ${name})
 set(timeout_s ${timeout_s})

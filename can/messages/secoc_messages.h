@@ -40,15 +40,15 @@ inline constexpr const Signal* kFreshnessSignals[] = {&kFreshnessHigh};
 }  // namespace secoc
 
 namespace loc_authentication {
-inline constexpr Message kMessage{.name = "LOC_Authentication",
-                                  .id_offset = 12,
-                                  .cycle_ms = kSolutionCycleMs,
-                                  .data_id = 0x5C,
-                                  .signals = secoc::kAuthenticationSignals,
-                                  .comment =
-                                      "Only with can.secoc. Authenticates the other LOC_ frames of "
-                                      "the same EPOCH except LOC_Clock, "
-                                      "or the LOC_Solution before it."};
+inline constexpr Message kMessage{
+    .name = "LOC_Authentication",
+    .id_offset = 12,
+    .cycle_ms = kSolutionCycleMs,
+    .data_id = 0x5C,
+    .signals = secoc::kAuthenticationSignals,
+    .comment =
+        "Only with can.secoc. Authenticates the other LOC_ frames of the same EPOCH except "
+        "LOC_Clock, or the LOC_Solution before it."};
 }  // namespace loc_authentication
 
 namespace loc_freshness {

@@ -146,9 +146,10 @@ Status MapCommand::check() const {
   const std::vector<std::string> found = faults_of(imported->map);
   for (const std::string& fault : found) fmt::print("{}: {}\n", in_, fault);
   if (Status status = write_json({{"faults", found}}, json_); !status) return status;
-  if (!found.empty())
+  if (!found.empty()) {
     return fail("{}: found {} fault{}, wanted none", in_, found.size(),
                 found.size() == 1 ? "" : "s");
+  }
   fmt::print("good: {}\n", contents_of(imported->map));
   return {};
 }

@@ -71,7 +71,7 @@ struct HealthInputs {
 };
 
 /// Transitions: INIT -> ACQUIRING -> TRACKING <-> DEGRADED; TRACKING or DEGRADED -> LOST ->
-/// ACQUIRING; any state -> FAULT, which only a restart ends. Pure logic without a clock: the inputs
+/// ACQUIRING; any state -> FAULT, which only a restart ends. The class reads no clock: the inputs
 /// contain all ages. One thread.
 class Health {
  public:

@@ -127,8 +127,8 @@ ImportedCamera camera_of_image(const TextLine& line,
           Mounting{"world", camera_from_world.inverse()}, lens->second.place};
 }
 
-/// Editors that remove empty lines remove those of images without points, and the next image would
-/// pass for points.
+/// Refuses a line that is no list of points. An image without points has an empty line, and some
+/// editors remove empty lines. The line of the next image then stands in place of the points.
 void check_points(const TextLine& line) {
   if (line.words.size() % 3 == 0) return;
   refuse(line.place, fmt::format("{} words", line.words.size()),

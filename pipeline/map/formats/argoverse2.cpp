@@ -40,7 +40,7 @@ std::optional<City> city_of(const std::filesystem::path& file) {
   return std::nullopt;
 }
 
-/// The meaning of a left_lane_mark_type. Nothing for NONE, and for types that nobody knows. A solid
+/// Returns what a left_lane_mark_type means, or nothing for NONE and for unknown types. A solid
 /// line with a dashed one beside it (SOLID_DASH_WHITE, DASH_SOLID_WHITE) counts as solid.
 std::optional<Meaning> meaning_of_mark(std::string_view type) {
   if (type.starts_with("DOUBLE_SOLID")) {

@@ -221,7 +221,6 @@ TEST_F(RecorderTest, AFileThatSomebodyRenamedIsNotDeleted) {
   open()->finish(Time{});
   EXPECT_TRUE(fs::exists(renamed));
   EXPECT_TRUE(fs::exists(copied));
-  open()->finish(Time{});
   config_.max_bytes = 50'000;
   open()->finish(Time{});
   EXPECT_FALSE(fs::exists(own));

@@ -41,6 +41,16 @@ class ArbiterTest : public testing::Test {
     return verdict;
   }
 
+  /// Adds matches and GNSS samples without innovation, while the error of GNSS is `gnss_error`.
+  void run_with_gnss_error(int samples, double gnss_error) {
+    for (int i = 0; i < samples; ++i) {
+      now_ += milliseconds(100);
+      arbiter_.add_match(now_, innovation(none_), true);
+      arbiter_.add_gnss(now_, innovation(none_), true, Eigen::Vector3d(gnss_error, 0.0, 0.0));
+      arbiter_.judge(now_, PoseStanding::kValid);
+    }
+  }
+
   const Eigen::Vector3d none_ = Eigen::Vector3d::Zero();
   Arbiter arbiter_{40.0};
   Time now_{std::chrono::seconds(100)};
@@ -158,38 +168,22 @@ TEST_F(ArbiterTest, AVoterThatOnlyPassesTheGateStaysExcluded) {
 }
 
 TEST_F(ArbiterTest, ReadmitsGnssWhoseErrorHasMovedOnce) {
-  const auto add_gnss = [&](int samples, double error) {
-    for (int i = 0; i < samples; ++i) {
-      now_ += milliseconds(100);
-      arbiter_.add_match(now_, innovation(none_), true);
-      arbiter_.add_gnss(now_, innovation(none_), true, Eigen::Vector3d(error, 0.0, 0.0));
-      arbiter_.judge(now_, PoseStanding::kValid);
-    }
-  };
-  add_gnss(30, 0.0);
-  add_gnss(10, 2.5);
+  run_with_gnss_error(30, 0.0);
+  run_with_gnss_error(10, 2.5);
   ASSERT_FALSE(arbiter_.trusts_gnss());
-  add_gnss(10, 2.5);
+  run_with_gnss_error(10, 2.5);
   EXPECT_FALSE(arbiter_.trusts_gnss());
-  add_gnss(10, 2.5);
+  run_with_gnss_error(10, 2.5);
   EXPECT_TRUE(arbiter_.trusts_gnss());
-  add_gnss(50, 2.5);
+  run_with_gnss_error(50, 2.5);
   EXPECT_TRUE(arbiter_.trusts_gnss());
 }
 
 /// After a tunnel the error of GNSS is another one than before.
-TEST_F(ArbiterTest, GnssErrorsMayMoveAsFarAsTheTimeBetweenThemPermits) {
-  const auto add_gnss = [&](int samples, double error) {
-    for (int i = 0; i < samples; ++i) {
-      now_ += milliseconds(100);
-      arbiter_.add_match(now_, innovation(none_), true);
-      arbiter_.add_gnss(now_, innovation(none_), true, Eigen::Vector3d(error, 0.0, 0.0));
-      arbiter_.judge(now_, PoseStanding::kValid);
-    }
-  };
-  add_gnss(30, 0.0);
+TEST_F(ArbiterTest, GnssErrorsMayMoveFartherInALongerTime) {
+  run_with_gnss_error(30, 0.0);
   now_ += std::chrono::seconds(60);
-  add_gnss(10, 2.5);
+  run_with_gnss_error(10, 2.5);
   EXPECT_TRUE(arbiter_.trusts_gnss());
 }
 
