@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
@@ -19,6 +20,10 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPrefix = "bevloc-";
 constexpr uint64_t kLogSecond_ns = 1'000'000'000;
+/// The ring leaves this share of the disk free, but at most this many bytes: the appliance has more
+/// to write than recordings.
+constexpr uint64_t kFreeShare = 20;
+constexpr uint64_t kMostFree_bytes = 1'000'000'000;
 
 /// Such as bevloc-20261123T143205Z-0001.mcap: the order of the names is that of time.
 std::string file_name(uint64_t log_time_ns, int number) {
@@ -101,11 +106,11 @@ Status check_folder(const fs::path& directory) {
 }
 
 Result<RecordingRing> RecordingRing::open(const RecordConfig& config, RecordingHead head,
-                                          uint64_t log_time_ns) {
+                                          uint64_t log_time_ns, SpaceOf space_of) {
   std::error_code error;
   fs::create_directories(config.directory / kBlackBoxFolder, error);
   if (error) return refuse_folder(config.directory, error.message());
-  RecordingRing ring(config, std::move(head));
+  RecordingRing ring(config, std::move(head), space_of);
   if (Status begun = ring.begin_file(log_time_ns); !begun) return tl::unexpected(begun.error());
   return ring;
 }
@@ -116,20 +121,20 @@ Status RecordingRing::begin_file(uint64_t log_time_ns) {
   do {
     path = config_.directory / file_name(log_time_ns, ++number_);
   } while (fs::exists(path, ignored));
+  delete_old(path, log_time_ns);
+  if (Status room = make_room(path); !room) return room;
   auto file = RecordingFile::create(path, head_, log_time_ns);
   if (!file) return tl::unexpected(file.error());
   file_.emplace(std::move(*file));
   const auto covered = static_cast<uint64_t>(kBlackBox.count());
   std::erase_if(recent_, [&](const RecentFile& old) { return old.end_ns + covered < log_time_ns; });
   recent_.push_back({path, log_time_ns, 0});
-  delete_old(log_time_ns);
   return {};
 }
 
 /// Takes the age of a file from the time in its name, which is a log time. The time of its last
 /// change comes from the wall clock, which may be set during a drive.
-void RecordingRing::delete_old(uint64_t log_time_ns) const {
-  const fs::path& newest = recent_.back().path;
+void RecordingRing::delete_old(const fs::path& newest, uint64_t log_time_ns) const {
   const std::vector<Listed> files = list_recordings(newest);
   uint64_t total = 0;
   for (const Listed& file : files) total += file.bytes;
@@ -144,6 +149,28 @@ void RecordingRing::delete_old(uint64_t log_time_ns) const {
   }
 }
 
+uint64_t RecordingRing::missing_bytes() const {
+  std::error_code error;
+  const fs::space_info space = space_of_(config_.directory, error);
+  if (error) return 0;
+  const uint64_t wanted = std::min(space.capacity / kFreeShare, kMostFree_bytes);
+  return wanted - std::min(wanted, space.available);
+}
+
+Status RecordingRing::make_room(const fs::path& newest) const {
+  for (const fs::path& folder : {config_.directory, config_.directory / kBlackBoxFolder}) {
+    if (missing_bytes() == 0) return {};
+    for (const Listed& file : list_recordings(folder / newest.filename())) {
+      if (missing_bytes() == 0 || file.path.filename() == newest.filename()) break;
+      remove_file(file.path);
+    }
+  }
+  const uint64_t missing = missing_bytes();
+  if (missing == 0) return {};
+  return fail("{}: found a disk that is full without old recordings, wanted {:.0f} MB more",
+              config_.directory.string(), std::ceil(1e-6 * static_cast<double>(missing)));
+}
+
 Status RecordingRing::write(std::string_view topic, const google::protobuf::Message& message,
                             uint64_t log_time_ns, uint64_t publish_time_ns) {
   return file_->write(topic, message, log_time_ns, publish_time_ns);
@@ -154,7 +181,8 @@ Status RecordingRing::step(uint64_t log_time_ns) {
   const uint64_t share = config_.max_bytes / 4;  // so that the black box fits into the ring
   RecentFile& newest = recent_.back();
   if (log_time_ns < newest.begin_ns + length && file_->bytes_written() < share) {
-    return file_->flush();
+    const Status room = make_room(newest.path);
+    return room ? file_->flush() : room;
   }
   newest.end_ns = log_time_ns;
   if (Status finished = file_->finish(); !finished) return finished;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "firmware/config/record_config.h"
 #include "firmware/recording/recording_file.h"
@@ -17,15 +18,21 @@ Status check_folder(const std::filesystem::path& directory);
 
 /// Writes one file after the other into the folder, and deletes the oldest ones beyond the limits.
 /// keep() gives the files of the last minute a second name (a hard link) in the folder `kept`,
-/// which the ring does not delete; the file that is being written grows there too. One thread.
+/// which the ring does not delete; the file that is being written grows there too. If the disk is
+/// full, deletes the oldest files of the ring, and then those in `kept`. One thread.
 class RecordingRing {
  public:
   /// What a black box covers before its event.
   static constexpr Duration kBlackBox = std::chrono::seconds(60);
 
+  /// std::filesystem::space(), or a disk of a test.
+  using SpaceOf = std::filesystem::space_info (*)(const std::filesystem::path& path,
+                                                  std::error_code& error);
+
   /// Creates the folders and the first file. Times are log times: nanoseconds since 1970.
   static Result<RecordingRing> open(const RecordConfig& config, RecordingHead head,
-                                    uint64_t log_time_ns);
+                                    uint64_t log_time_ns,
+                                    SpaceOf space_of = std::filesystem::space);
 
   Status write(std::string_view topic, const google::protobuf::Message& message,
                uint64_t log_time_ns, uint64_t publish_time_ns);
@@ -46,13 +53,19 @@ class RecordingRing {
     uint64_t end_ns = 0;  ///< meaningless for the newest
   };
 
-  RecordingRing(const RecordConfig& config, RecordingHead head)
-      : config_(config), head_(std::move(head)) {}
+  RecordingRing(const RecordConfig& config, RecordingHead head, SpaceOf space_of)
+      : config_(config), head_(std::move(head)), space_of_(space_of) {}
   Status begin_file(uint64_t log_time_ns);
-  void delete_old(uint64_t log_time_ns) const;
+  /// Deletes what the limits of the configuration do not allow beside the file `newest`.
+  void delete_old(const std::filesystem::path& newest, uint64_t log_time_ns) const;
+  /// Deletes old files until enough of the disk is free. Fails if not enough can be deleted.
+  Status make_room(const std::filesystem::path& newest) const;
+  /// How much less of the disk is free than the ring leaves free.
+  uint64_t missing_bytes() const;
 
   RecordConfig config_;
   RecordingHead head_;
+  SpaceOf space_of_;
   std::optional<RecordingFile> file_;
   std::deque<RecentFile> recent_;  ///< the files that overlap the last minute, oldest first
   int number_ = 0;

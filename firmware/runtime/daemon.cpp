@@ -108,6 +108,14 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
   return !ignition;
 }
 
+/// Null without a recording. The vehicle needs its pose also while the disk is full or broken.
+std::unique_ptr<Recorder> recorder_for(const Config& config, const Rig& rig, const Base& base) {
+  auto recorder = open_recorder(config, rig, base.map, false, base.clock.now());
+  if (recorder) return std::move(*recorder);
+  spdlog::error("nothing is recorded: {}", recorder.error().message);
+  return nullptr;
+}
+
 /// Opens the remaining devices and runs an appliance on them; the result is run_appliance()'s.
 Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
                            const DaemonHost& host) {
@@ -123,15 +131,14 @@ Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
   if (!cameras) return tl::unexpected(cameras.error());
   Hardware hardware{std::move(*cameras), std::move(*bus), &base.clock,
                     trigger ? &trigger->trigger().pulses() : nullptr};
-  const auto recorder = open_recorder(config, rig, base.map, false, base.clock.now());
-  if (!recorder) return tl::unexpected(recorder.error());
-  if (*recorder) tap(hardware, **recorder);
+  const auto recorder = recorder_for(config, rig, base);
+  if (recorder) tap(hardware, *recorder);
   auto appliance = Appliance::create(config, rig, base.map, std::move(hardware));
   if (!appliance) return tl::unexpected(appliance.error());
   std::jthread recording;
-  if (*recorder) {
-    watch(**appliance, **recorder);
-    recording = start_recording(**recorder, base.clock);
+  if (recorder) {
+    watch(**appliance, *recorder);
+    recording = start_recording(*recorder, base.clock);
   }
   const auto saver = make_calibration_saver(config, rig, (*appliance)->localizer());
   std::jthread saving;

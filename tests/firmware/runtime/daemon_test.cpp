@@ -10,6 +10,7 @@
 #include "can/bus/mock_bus.h"
 #include "drivers/mock/mock_gpio.h"
 #include "pipeline/calibration/rig_yaml.h"
+#include "tests/firmware/log_capture.h"
 #include "tests/firmware/runtime/fake_manager.h"
 #include "tests/support/temporary_folder.h"
 
@@ -114,6 +115,16 @@ TEST_F(DaemonTest, RunsWhileTheIgnitionIsOn) {
   const Status status = run([&] { return ++calls == 5; });
   EXPECT_TRUE(status) << status.error().message;
   EXPECT_EQ(calls, 5);
+}
+
+TEST_F(DaemonTest, RunsWithoutARecordingIfTheDiskTakesNone) {
+  config_.record.emplace().directory = "/proc/no/such";
+  const LogCapture log;
+  int calls = 0;
+  const Status status = run([&] { return ++calls == 3; });
+  EXPECT_TRUE(status) << status.error().message;
+  EXPECT_EQ(calls, 3);
+  EXPECT_NE(log.text().find("nothing is recorded: /proc/no/such"), std::string::npos) << log.text();
 }
 
 bool has_thread(const std::string& wanted) {

@@ -1,0 +1,104 @@
+// The ring of recordings on a disk that is full.
+#include "firmware/recording/recording_ring.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace bevloc::firmware {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint64_t kCapacity = 1'000'000;
+constexpr uint64_t kLeftFree = kCapacity / 20;
+constexpr uint64_t kSecond_ns = 1'000'000'000;
+/// 2040-03-01.
+constexpr uint64_t kNow_ns = 2'214'172'800 * kSecond_ns;
+
+class FullDiskTest : public testing::Test {
+ protected:
+  FullDiskTest() {
+    config_.directory = folder_ / "ring";
+    fs::create_directories(config_.directory / "kept");
+    other_bytes = 0;
+  }
+
+  static fs::space_info space(const fs::path& folder, std::error_code& /*error*/) {
+    uint64_t used = other_bytes;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      if (entry.is_regular_file()) used += entry.file_size() / entry.hard_link_count();
+    }
+    return {kCapacity, kCapacity - used, kCapacity - used};
+  }
+  uint64_t free_bytes() const {
+    std::error_code error;
+    return space(config_.directory, error).available;
+  }
+
+  /// A file of an earlier day of February.
+  fs::path leave(const std::string& folder, int day, size_t bytes) const {
+    const std::string name = fmt::format("bevloc-204002{:02}T000000Z-0001.mcap", day);
+    const fs::path path = config_.directory / folder / name;
+    std::ofstream(path) << std::string(bytes, 'x');
+    return path;
+  }
+
+  Result<RecordingRing> open() { return RecordingRing::open(config_, {}, kNow_ns, space); }
+
+  static uint64_t other_bytes;
+  const test::TemporaryFolder folder_;
+  RecordConfig config_;
+};
+
+uint64_t FullDiskTest::other_bytes = 0;
+
+TEST_F(FullDiskTest, TheOldestFilesMakeRoomForANewRecording) {
+  std::vector<fs::path> files;
+  for (int day = 23; day < 29; ++day) files.push_back(leave("", day, 166'000));
+  ASSERT_LT(free_bytes(), 5'000U);
+  const auto ring = open();
+  ASSERT_TRUE(ring) << ring.error().message;
+  EXPECT_GE(free_bytes(), kLeftFree);
+  EXPECT_FALSE(fs::exists(files[0]));
+  for (size_t i = 1; i < files.size(); ++i) EXPECT_TRUE(fs::exists(files[i])) << files[i];
+}
+
+TEST_F(FullDiskTest, TheBlackBoxMakesRoomIfNothingElseCan) {
+  const fs::path in_ring = leave("", 28, 10'000);
+  const fs::path oldest = leave("kept", 1, 490'000);
+  const fs::path newest = leave("kept", 2, 490'000);
+  const auto ring = open();
+  ASSERT_TRUE(ring) << ring.error().message;
+  EXPECT_FALSE(fs::exists(in_ring));
+  EXPECT_FALSE(fs::exists(oldest));
+  EXPECT_TRUE(fs::exists(newest));
+}
+
+TEST_F(FullDiskTest, OtherFilesThatFillTheDiskAreNoReasonToFillItMore) {
+  other_bytes = 970'000;
+  const auto ring = open();
+  ASSERT_FALSE(ring);
+  EXPECT_TRUE(ring.error().message.ends_with(
+      ": found a disk that is full without old recordings, wanted 1 MB more"))
+      << ring.error().message;
+}
+
+TEST_F(FullDiskTest, ARecordingMakesRoomWhileItGrows) {
+  const fs::path old = leave("", 28, 100'000);
+  auto ring = open();
+  ASSERT_TRUE(ring) << ring.error().message;
+  EXPECT_TRUE(fs::exists(old));
+  other_bytes = 860'000;
+  EXPECT_TRUE(ring->step(kNow_ns + kSecond_ns));
+  EXPECT_FALSE(fs::exists(old));
+  EXPECT_TRUE(fs::exists(ring->file()));
+  other_bytes = 990'000;
+  EXPECT_FALSE(ring->step(kNow_ns + 2 * kSecond_ns)) << "it ends before the disk is full";
+  EXPECT_TRUE(fs::exists(ring->file()));
+}
+
+}  // namespace
+}  // namespace bevloc::firmware
