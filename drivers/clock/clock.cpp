@@ -25,6 +25,10 @@ Duration MonotonicClock::suspended() const {
   return read_clock(CLOCK_BOOTTIME) - read_clock(CLOCK_MONOTONIC);
 }
 
+Duration MonotonicClock::unsteered() const {
+  return read_clock(CLOCK_MONOTONIC_RAW);
+}
+
 void VirtualClock::advance(Duration duration) {
   assert(duration >= Duration::zero());
   now_ += duration;

@@ -16,6 +16,10 @@ class Clock {
 
   /// For how long the machine was suspended since its start. now() stood still meanwhile.
   virtual Duration suspended() const = 0;
+
+  /// As now(), from another zero, at the rate of the hardware. A time service steers the rate of
+  /// now() while it corrects the system clock.
+  virtual Duration unsteered() const = 0;
 };
 
 /// CLOCK_MONOTONIC, the clock of V4L2's frame timestamps. Thread-safe.
@@ -24,6 +28,7 @@ class MonotonicClock final : public Clock {
   Time now() const override;
   void sleep_until(Time time) override;
   Duration suspended() const override;
+  Duration unsteered() const override;
 };
 
 /// A clock that advances only by advance() and by sleep_until(). For lockstep drives and for tests.
@@ -36,6 +41,7 @@ class VirtualClock final : public Clock {
   void sleep_until(Time time) override { now_ = time > now_ ? time : now_; }
 
   Duration suspended() const override { return suspended_; }
+  Duration unsteered() const override { return now_.time_since_epoch(); }
 
   void advance(Duration duration);
   /// Simulates that the machine was suspended.

@@ -19,9 +19,8 @@ FixTime FixClock::judge(std::chrono::nanoseconds utc, const FixArrival& arrival)
     learned_ = 0;
   }
   latest_utc_ = utc;
-  return parameters_.timing == FixTiming::kArrival
-             ? by_arrival(arrival.time.time_since_epoch() - utc, arrival)
-             : by_system_clock(utc, arrival);
+  return parameters_.timing == FixTiming::kArrival ? by_arrival(arrival.unsteered - utc, arrival)
+                                                   : by_system_clock(utc, arrival);
 }
 
 FixTime FixClock::by_arrival(Duration delay, const FixArrival& arrival) {

@@ -29,9 +29,10 @@ struct FixClockParameters {
   Duration max_age = std::chrono::seconds(1);  ///< an older fix is stale
 };
 
-/// When a report arrived, on both clocks.
+/// When a report arrived, on three clocks.
 struct FixArrival {
   Time time{};
+  Duration unsteered{};  ///< Clock::unsteered()
   WallTime wall;
 };
 
@@ -68,7 +69,8 @@ class FixClock {
   Duration max_usable_age() const { return max_usable_age_; }
 
  private:
-  /// The fastest report of some seconds: the least of arrival minus UTC.
+  /// The fastest report of some seconds: the least of its arrival, on the unsteered clock, minus
+  /// UTC.
   struct Bucket {
     int64_t number = std::numeric_limits<int64_t>::min();
     Duration least{};

@@ -18,6 +18,8 @@ class JumpingClock final : public drivers::Clock {
     return machine_.suspended() + Duration(suspended_ns_.load());
   }
 
+  Duration unsteered() const override { return machine_.unsteered() + ahead(); }
+
   void advance(Duration duration) { ahead_ns_ += duration.count(); }
   /// Simulates that the machine was suspended.
   void suspend(Duration duration) { suspended_ns_ += duration.count(); }

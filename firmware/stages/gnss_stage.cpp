@@ -55,7 +55,7 @@ GnssStage::GnssStage(const GnssConfig& config, can::GeodeticPosition map_origin,
 
 void GnssStage::step(Duration timeout) {
   client_.wait(clock_.now(), timeout);
-  const drivers::FixArrival arrival{clock_.now(), read_wall_()};
+  const drivers::FixArrival arrival{clock_.now(), clock_.unsteered(), read_wall_()};
   while (const auto fix = client_.take_fix()) take(*fix, arrival);
   counters_.gpsd = client_.counters();
   counters_.connected = client_.is_connected();

@@ -15,7 +15,8 @@ constexpr Duration kUtcAtStart = seconds(1'795'472'584);
 /// A fix that held at `held` of the steady clock and arrives `delay` later.
 FixTime judge(FixClock& clock, Time held, Duration delay, const ClockDiscipline& discipline = {}) {
   const Duration utc = kUtcAtStart + held.time_since_epoch();
-  return clock.judge(utc, {held + delay, {utc + delay, discipline}});
+  const Time arrival = held + delay;
+  return clock.judge(utc, {arrival, arrival.time_since_epoch(), {utc + delay, discipline}});
 }
 
 /// A clock that has seen three reports with a delay of 80 ms.
@@ -48,6 +49,19 @@ TEST_F(ArrivalTest, ADelayedReportHeldEarlier) {
     EXPECT_EQ(fix.time, held - milliseconds(20)) << delay_ms;
   }
   EXPECT_EQ(clock_.max_usable_age(), milliseconds(420));
+}
+
+/// The kernel slews a system clock that was wrong by 500 ppm, and the steady clock with it.
+TEST_F(ArrivalTest, ATimeServiceThatSteersTheClockMakesNoReportOlder) {
+  const auto steered = [](Time time) { return time + time.time_since_epoch() / 2000; };
+  for (int i = 0; i < 1000; ++i) {
+    const Time held = next();
+    const Time arrival = held + milliseconds(80);
+    const FixTime fix = clock_.judge(kUtcAtStart + held.time_since_epoch(),
+                                     {steered(arrival), arrival.time_since_epoch(), {}});
+    ASSERT_EQ(fix.verdict, FixVerdict::kUsable);
+    ASSERT_EQ(fix.time, steered(arrival) - milliseconds(100)) << i;
+  }
 }
 
 TEST_F(ArrivalTest, RefusesAStaleReport) {

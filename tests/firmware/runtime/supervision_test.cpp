@@ -67,6 +67,7 @@ class GatedClock final : public drivers::Clock {
     clock_.sleep_until(time);
   }
   Duration suspended() const override { return clock_.suspended(); }
+  Duration unsteered() const override { return clock_.unsteered(); }
 
  private:
   Gate& gate_;
