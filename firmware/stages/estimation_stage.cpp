@@ -223,7 +223,7 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
   inputs.odometry_implausible =
       estimator_.odometry_implausible() || vehicle_input.has(Why::kOdometryImplausible);
   inputs.foreign_sender = vehicle_input.has(Why::kForeignSender);
-  inputs.start_confirmed = estimator_.confirms_start();
+  inputs.start_confirmed = estimator_.confirms_start(now);
   inputs.clock_gap = clock_gap_;
   if (pose) {
     add_uncertainty(*pose, inputs);

@@ -181,8 +181,8 @@ std::optional<TrackedPose> PoseEstimator::pose_at(Time time) const {
   return pose;
 }
 
-bool PoseEstimator::confirms_start() const {
-  return gnss_confirms() && start_confirmation_.confirms(tracker_.gnss_error(), gnss_sigma_.x());
+bool PoseEstimator::confirms_start(Time now) const {
+  return gnss_confirms(now) && start_confirmation_.confirms(tracker_.gnss_error(), gnss_sigma_.x());
 }
 
 bool PoseEstimator::is_contradicted() const {
@@ -190,8 +190,12 @@ bool PoseEstimator::is_contradicted() const {
          odometry_monitor_.implausible();
 }
 
-bool PoseEstimator::gnss_confirms() const {
-  if (!gnss_passed_ || gnss_refused_in_a_row_ > 0) return false;
+bool PoseEstimator::gnss_is_recent(Time now) const {
+  return gnss_passed_ && now - *gnss_passed_ <= kGnssLifetime;
+}
+
+bool PoseEstimator::gnss_confirms(Time now) const {
+  if (!gnss_is_recent(now) || gnss_refused_in_a_row_ > 0) return false;
   const Eigen::Vector3d error = tracker_.gnss_error().cwiseAbs();
   return error.x() <= kConfirmingAlong && error.y() <= kConfirmingAcross &&
          error.z() <= kConfirmingYaw;
@@ -206,7 +210,7 @@ Eigen::Vector3d PoseEstimator::protection_of(const TrackedPose& pose,
   const double gnss_correlation_s = tracker_.parameters().correlation.gnss_s;
   const double since_gnss_s = gnss_passed_ ? to_seconds(pose.time - *gnss_passed_) : 0.0;
   std::optional<GnssView> view;
-  if (gnss_passed_ && pose.time - *gnss_passed_ <= kGnssLifetime) {
+  if (gnss_is_recent(pose.time)) {
     view = GnssView{tracker_.gnss_error(), gnss_sigma_};
   }
   return protection_level(pose.covariance.diagonal().cwiseSqrt(), view,

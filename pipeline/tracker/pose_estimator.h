@@ -52,8 +52,9 @@ class PoseEstimator {
   const MapOffsetMonitor& map_offset() const { return map_offset_; }
   bool odometry_implausible() const { return odometry_monitor_.implausible(); }
 
-  /// Whether GNSS is near enough for a first trust in the pose, and the matches have shown enough.
-  bool confirms_start() const;
+  /// Whether GNSS of the last seconds is near enough for a first trust in the pose, and the matches
+  /// have shown enough.
+  bool confirms_start(Time now) const;
 
   /// The bounds of the error of `pose` at `parameters.integrity_risk`: (longitudinal m, lateral m,
   /// yaw rad).
@@ -72,7 +73,8 @@ class PoseEstimator {
   TrackerUpdate add_gnss(const GnssSample& received);
   std::optional<GnssSample::Yaw> yaw_at(Time time) const;
   void weigh_start(const MatchResult& match, const MatchOutcome& outcome);
-  bool gnss_confirms() const;
+  bool gnss_confirms(Time now) const;
+  bool gnss_is_recent(Time now) const;
   /// Whether a voter disagrees, so that the pose may be that of another place.
   bool is_contradicted() const;
   bool gnss_refutes() const;

@@ -107,7 +107,7 @@ class PoseEstimatorStartTest : public testing::Test {
       odometry.speed_mps *= speed_factor_;
       estimator_.add(odometry);
       if (i % 5 != 0) continue;
-      estimator_.add(gnss_beside(truth));
+      if (has_gnss_) estimator_.add(gnss_beside(truth));
       const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
       MatchResult match = vehicle_.correction_from(prior);
       match.correction = match.correction * Se2{0.0, beside_m, 0.0};
@@ -132,20 +132,21 @@ class PoseEstimatorStartTest : public testing::Test {
   PoseEstimator estimator_{TrackerParameters()};
   double gnss_error_m_ = 0.0;
   double gnss_sigma_m_ = 1.2;
+  bool has_gnss_ = true;
   double speed_factor_ = 1.0;  ///< of the wheels
   double time_s_ = 0.0;
 };
 
 TEST_F(PoseEstimatorStartTest, GoodMatchesNearGnssConfirmAStart) {
   drive(2.0, 0.0, 0.33, 0.3);
-  EXPECT_TRUE(estimator_.confirms_start());
+  EXPECT_TRUE(estimator_.confirms_start(at_s(time_s_)));
 }
 
 TEST_F(PoseEstimatorStartTest, AnotherLaneThatLooksAlikeAcrossTheRoadConfirmsNoStart) {
   gnss_error_m_ = 2.2;
   for (int second = 0; second < 30; ++second) {
     drive(1.0, 0.0, 0.25, 0.04);
-    EXPECT_FALSE(estimator_.confirms_start()) << second;
+    EXPECT_FALSE(estimator_.confirms_start(at_s(time_s_))) << second;
   }
 }
 
@@ -153,7 +154,7 @@ TEST_F(PoseEstimatorStartTest, MatchesOutweighGnssThatClaimsTooSmallASigma) {
   gnss_error_m_ = 2.0;
   gnss_sigma_m_ = 0.1;
   drive(20.0, 0.0, 0.36, 0.33);
-  EXPECT_TRUE(estimator_.confirms_start());
+  EXPECT_TRUE(estimator_.confirms_start(at_s(time_s_)));
   const Se2 truth = vehicle_.drive_to(time_s_);
   EXPECT_LT(error_of(*estimator_.pose_at(at_s(time_s_)), truth).head<2>().norm(), 0.3);
 }
@@ -173,7 +174,21 @@ TEST_F(PoseEstimatorStartTest, APoseThatIsLostWithoutAContradictionKeepsItsSuppo
   drive(10.0, 0.0, 0.33, 0.3);
   estimator_.judge(at_s(time_s_), true);
   estimator_.judge(at_s(time_s_), false);
-  EXPECT_TRUE(estimator_.confirms_start());
+  EXPECT_TRUE(estimator_.confirms_start(at_s(time_s_)));
+}
+
+/// A pose that is lost in a tunnel may come back in another lane.
+TEST_F(PoseEstimatorStartTest, GnssOfSecondsAgoDoesNotConfirmALostPose) {
+  drive(10.0, 0.0, 0.33, 0.3);
+  estimator_.judge(at_s(time_s_), true);
+  EXPECT_TRUE(estimator_.confirms_start(at_s(time_s_)));
+  has_gnss_ = false;
+  drive(3.0, 0.0, 0.33, 0.3);
+  EXPECT_TRUE(estimator_.pose_at(at_s(time_s_)));
+  EXPECT_FALSE(estimator_.confirms_start(at_s(time_s_)));
+  has_gnss_ = true;
+  drive(0.2, 0.0, 0.33, 0.3);
+  EXPECT_TRUE(estimator_.confirms_start(at_s(time_s_)));
 }
 
 /// The vehicle drives on unseen, and may be in another lane when odometry comes back.
@@ -185,7 +200,7 @@ TEST_F(PoseEstimatorStartTest, APoseThatIsGoneLosesItsSupport) {
   estimator_.judge(at_s(time_s_), false);
   drive(0.5, 0.0, 0.33, 0.3);
   EXPECT_TRUE(estimator_.pose_at(at_s(time_s_)));
-  EXPECT_FALSE(estimator_.confirms_start());
+  EXPECT_FALSE(estimator_.confirms_start(at_s(time_s_)));
 }
 
 TEST_F(PoseEstimatorStartTest, APoseThatIsLostBecauseOfImplausibleOdometryNeedsNewSupport) {
@@ -195,7 +210,7 @@ TEST_F(PoseEstimatorStartTest, APoseThatIsLostBecauseOfImplausibleOdometryNeedsN
   slipping.speed_mps *= 3.0;
   ASSERT_EQ(estimator_.add(slipping), TrackerUpdate::kImplausible);
   estimator_.judge(at_s(time_s_), false);
-  EXPECT_FALSE(estimator_.confirms_start());
+  EXPECT_FALSE(estimator_.confirms_start(at_s(time_s_)));
 }
 
 TEST_F(PoseEstimatorStartTest, ARefusedMatchTakesNothingFromAValidPose) {
@@ -207,14 +222,14 @@ TEST_F(PoseEstimatorStartTest, ARefusedMatchTakesNothingFromAValidPose) {
   match.score = 0.33;
   match.axis_score.setConstant(0.3);
   ASSERT_EQ(estimator_.add_match(at_s(time_s_), prior, match).update, TrackerUpdate::kGated);
-  EXPECT_TRUE(estimator_.confirms_start());
+  EXPECT_TRUE(estimator_.confirms_start(at_s(time_s_)));
 }
 
 TEST_F(PoseEstimatorStartTest, ARefusedMatchTakesTheSupportAway) {
   drive(10.0, 0.0, 0.33, 0.3);
-  ASSERT_TRUE(estimator_.confirms_start());
+  ASSERT_TRUE(estimator_.confirms_start(at_s(time_s_)));
   drive(0.1, 3.5, 0.33, 0.3);
-  EXPECT_FALSE(estimator_.confirms_start());
+  EXPECT_FALSE(estimator_.confirms_start(at_s(time_s_)));
 }
 
 /// The position of an antenna counts as that of the rear axle would.
