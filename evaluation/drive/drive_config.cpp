@@ -93,6 +93,14 @@ void read_simulation(YamlMap yaml, SimulationConfig& simulation) {
   }
 }
 
+template <typename Load>
+Result<DriveConfig> load_with_simulation(const Load& load) {
+  std::optional<SimulationConfig> simulation;
+  auto config = load(simulation_reader(simulation));
+  if (!config) return tl::unexpected(config.error());
+  return DriveConfig{std::move(*config), std::move(simulation)};
+}
+
 }  // namespace
 
 firmware::SimulationReader simulation_reader(std::optional<SimulationConfig>& simulation) {
@@ -105,11 +113,16 @@ firmware::SimulationReader simulation_reader(std::optional<SimulationConfig>& si
 }
 
 Result<DriveConfig> load_drive_config(const std::filesystem::path& file) {
-  std::optional<SimulationConfig> simulation;
-  const firmware::SimulationReader reader = simulation_reader(simulation);
-  auto config = firmware::load_config(file, &reader);
-  if (!config) return tl::unexpected(config.error());
-  return DriveConfig{std::move(*config), std::move(simulation)};
+  return load_with_simulation([&](const firmware::SimulationReader& reader) {
+    return firmware::load_config(file, &reader);
+  });
+}
+
+Result<DriveConfig> load_recorded_drive_config(const std::filesystem::path& file,
+                                               const firmware::ConfigFiles& files) {
+  return load_with_simulation([&](const firmware::SimulationReader& reader) {
+    return firmware::load_recorded_config(file, &reader, files);
+  });
 }
 
 }  // namespace bevloc::evaluation

@@ -25,6 +25,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A copy of the DBC file that the recording was made with, for load_recorded_config(). Recordings
+/// of old versions hold none.
+Result<fs::path> recorded_dbc(const Recording& recording, const ScratchFolder& scratch) {
+  const mcap::Attachment* dbc = recording.attachment(firmware::kDbcAttachment);
+  if (dbc == nullptr) return fs::path();
+  const fs::path copy = scratch.path() / "vehicle.dbc";
+  if (Status written = write_file(copy, dbc->data); !written) {
+    return tl::unexpected(written.error());
+  }
+  return copy;
+}
+
 /// The file where it was, if it still has this content; else a copy in the scratch folder.
 Result<fs::path> file_with(const std::string& content, const fs::path& where, const char* name,
                            const ScratchFolder& scratch) {
@@ -47,10 +59,13 @@ Result<firmware::Config> recorded_config(const Recording& recording, const Scrat
     return fail("{}: found no configuration in the recording, wanted one; give --config",
                 firmware::kConfigAttachment);
   }
-  const auto file =
-      file_with(text->data, recording.value(firmware::kConfigKey), "configuration.yaml", scratch);
+  const fs::path original = recording.value(firmware::kConfigKey);
+  const auto file = file_with(text->data, original, "configuration.yaml", scratch);
   if (!file) return tl::unexpected(file.error());
-  auto config = load_drive_config(*file);
+  const auto dbc = recorded_dbc(recording, scratch);
+  if (!dbc) return tl::unexpected(dbc.error());
+  auto config =
+      load_recorded_drive_config(*file, {.folder = original.parent_path(), .dbc_file = *dbc});
   if (!config) return tl::unexpected(config.error());
   const mcap::Attachment* rig = recording.attachment(firmware::kRigAttachment);
   if (rig != nullptr) {
@@ -128,6 +143,25 @@ uint64_t first_input_ns(const Recording& recording) {
   look_at(firmware::kBusOutTopic);
   for (int camera = 0; camera < kCameraCount; ++camera) look_at(firmware::image_topic(camera));
   return first;
+}
+
+/// The appliance would refuse each image whose size is not that of the rig.
+Status check_image_sizes(Recording& recording, const Rig& rig) {
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const auto& places = recording.messages(firmware::calibration_topic(camera));
+    if (places.empty()) continue;
+    const auto recorded = recording.read<foxglove::CameraCalibration>(places.front());
+    if (!recorded) return tl::unexpected(recorded.error());
+    const Intrinsics& lens = rig.cameras[camera].intrinsics;
+    if (static_cast<int>(recorded->width()) == lens.width_px &&
+        static_cast<int>(recorded->height()) == lens.height_px) {
+      continue;
+    }
+    return fail("{}: found images of {}x{} of the camera {}, wanted {}x{} as in the rig",
+                recording.name(), recorded->width(), recorded->height(), kCameraNames[camera],
+                lens.width_px, lens.height_px);
+  }
+  return {};
 }
 
 /// Where an entry of a log is. A log can have empty lines, which are no entries.
@@ -237,6 +271,7 @@ Result<ReplaySetup> setup_of(const ReplayOverrides& overrides) {
 }
 
 Result<ReplayInputs> inputs_of(Recording& recording, const Rig& rig) {
+  if (Status same = check_image_sizes(recording, rig); !same) return tl::unexpected(same.error());
   auto frames = played_frames(recording, firmware::kBusInTopic);
   if (!frames) return tl::unexpected(frames.error());
   const std::string text = recording.value(firmware::kStartKey);

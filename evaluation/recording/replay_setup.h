@@ -29,15 +29,16 @@ class ScratchFolder {
 };
 
 /// The configuration is the recorded one. Files that it names are taken from where they were if
-/// they are still the same, else from the recording. Authentication is left out, because a
-/// recording holds no key. Warns if the model is another one than recorded.
+/// they are still the same, else from the recording. Its manifest is not checked. Authentication is
+/// left out, because a recording holds no key. Warns if the model is another one than recorded.
 Result<ReplaySetup> setup_of(Recording& recording, const ReplayOverrides& overrides,
                              const ScratchFolder& scratch);
 
 /// A configuration and nothing recorded, for candump logs.
 Result<ReplaySetup> setup_of(const ReplayOverrides& overrides);
 
-/// The recorded frames and images.
+/// The recorded frames and images. Refuses a rig whose images have another size than the recorded
+/// ones.
 Result<ReplayInputs> inputs_of(Recording& recording, const Rig& rig);
 
 /// Frames of a candump log, and for each camera a folder of `images` with pictures and frames.txt.

@@ -118,7 +118,14 @@ bool is_real(CameraDriver driver) {
   return driver == CameraDriver::kV4l2 || driver == CameraDriver::kLibcamera;
 }
 
-CanConfig read_can(YamlMap yaml, CameraDriver camera_driver, const std::filesystem::path& folder) {
+/// Empty if the key is missing.
+std::filesystem::path read_dbc_file(YamlMap& vehicle, const ConfigFiles& files) {
+  const std::string name = read_dbc_name(vehicle);
+  if (name.empty()) return {};
+  return files.dbc_file.empty() ? files.folder / name : files.dbc_file;
+}
+
+CanConfig read_can(YamlMap yaml, CameraDriver camera_driver, const ConfigFiles& files) {
   CanConfig config;
   config.driver = yaml.require_choice<CanDriver>(
       "driver", {{"mock", CanDriver::kMock}, {"socketcan", CanDriver::kSocketCan}});
@@ -142,9 +149,10 @@ CanConfig read_can(YamlMap yaml, CameraDriver camera_driver, const std::filesyst
     yaml.reject("localizer_base_id", "less than 0x40 apart from vehicle_base_id",
                 "at least 0x40, so that messages do not share identifiers");
   }
-  config.secoc = read_secoc(yaml, config.driver, folder);
+  config.secoc = read_secoc(yaml, config.driver, files.folder);
   if (auto vehicle = yaml.optional_map("vehicle")) {
-    config.vehicle = read_vehicle_bus(*vehicle, config.base_ids, folder);
+    config.dbc_file = read_dbc_file(*vehicle, files);
+    config.vehicle = read_vehicle_bus(*vehicle, config.base_ids, config.dbc_file);
     if (config.secoc) {
       yaml.reject("vehicle", "the vehicle's own messages, which bevloc cannot authenticate",
                   "no section vehicle with can.secoc");
@@ -255,8 +263,8 @@ std::optional<GnssConfig> read_gnss_source(YamlMap& yaml, const Config& config) 
 
 }  // namespace
 
-Config read_config(YamlMap& yaml, const std::filesystem::path& folder,
-                   const SimulationReader* simulation) {
+Config read_config(YamlMap& yaml, const ConfigFiles& files, const SimulationReader* simulation) {
+  const std::filesystem::path& folder = files.folder;
   Config config;
   YamlMap cameras = yaml.require_map("cameras");
   config.cameras = read_cameras(cameras, folder);
@@ -272,7 +280,7 @@ Config read_config(YamlMap& yaml, const std::filesystem::path& folder,
   YamlMap model = yaml.require_map("model");
   config.model_file = path_of(model, "file", folder);
   config.solver = read_solver(yaml.optional_map("solver"));
-  config.can = read_can(yaml.require_map("can"), config.cameras.driver, folder);
+  config.can = read_can(yaml.require_map("can"), config.cameras.driver, files);
   config.gnss = read_gnss_source(yaml, config);
   config.tracker = read_tracker(yaml.optional_map("tracker"));
   config.health = read_health(yaml.optional_map("health"));
@@ -300,16 +308,24 @@ Config read_config(YamlMap& yaml, const std::filesystem::path& folder,
   return config;
 }
 
-Result<Config> load_config(const std::filesystem::path& file, const SimulationReader* simulation) {
+Result<Config> load_recorded_config(const std::filesystem::path& file,
+                                    const SimulationReader* simulation, const ConfigFiles& files) {
   Result<YamlMap> yaml = YamlMap::read_file(file);
   if (!yaml) return tl::unexpected(yaml.error());
-  Config config = read_config(*yaml, file.parent_path(), simulation);
+  Config config = read_config(*yaml, files, simulation);
   config.file = file;
   if (Status finished = yaml->finish(); !finished) return tl::unexpected(finished.error());
-  if (config.manifest_file.empty()) return config;
-  const std::array used{file, config.rig_file, config.model_file, config.map_file};
-  if (Status same = check_manifest(config.manifest_file, used); !same)
+  return config;
+}
+
+Result<Config> load_config(const std::filesystem::path& file, const SimulationReader* simulation) {
+  auto config =
+      load_recorded_config(file, simulation, {.folder = file.parent_path(), .dbc_file = {}});
+  if (!config || config->manifest_file.empty()) return config;
+  const std::array used{file, config->rig_file, config->model_file, config->map_file};
+  if (Status same = check_manifest(config->manifest_file, used); !same) {
     return tl::unexpected(same.error());
+  }
   return config;
 }
 

@@ -67,6 +67,7 @@ struct CanConfig {
   bool sends_clock = false;  ///< LOC_Clock, with the section `clock`
   /// The vehicle's own messages, read in place of bevloc's VEH_ messages.
   std::optional<can::VehicleBinding> vehicle;
+  std::filesystem::path dbc_file;  ///< of `vehicle`
 };
 
 /// Reads the parts of a configuration that only a program with the simulator supports. Used only
@@ -101,6 +102,12 @@ struct Config {
   std::optional<LiveConfig> live;  ///< empty: no server
 };
 
+/// Where a configuration finds the files that it names.
+struct ConfigFiles {
+  std::filesystem::path folder;    ///< relative paths begin here
+  std::filesystem::path dbc_file;  ///< used in place of `can.vehicle.dbc` if not empty
+};
+
 /// Reads a configuration file; docs/configuration.md describes each key. Every key must be known,
 /// present once, of the right type and in range; otherwise the error names file, line and key.
 /// Paths in the file are relative to its folder; paths in the result can be opened as they are.
@@ -109,10 +116,14 @@ struct Config {
 Result<Config> load_config(const std::filesystem::path& file,
                            const SimulationReader* simulation = nullptr);
 
+/// Like load_config(), for `file` with a copy of a configuration that was recorded. Does not check
+/// the manifest, because the files may have changed since then.
+Result<Config> load_recorded_config(const std::filesystem::path& file,
+                                    const SimulationReader* simulation, const ConfigFiles& files);
+
 /// Reads the keys of a configuration; load_config() finishes it. The schema of the configuration is
 /// made from this function (command/schema).
-Config read_config(YamlMap& yaml, const std::filesystem::path& folder,
-                   const SimulationReader* simulation);
+Config read_config(YamlMap& yaml, const ConfigFiles& files, const SimulationReader* simulation);
 
 /// Checks on this machine everything that the configuration names (`bevlocd --check-config`): reads
 /// rig, model, map and recordings, looks up the GPIO lines, opens the CAN interface, and starts the

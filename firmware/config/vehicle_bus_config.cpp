@@ -249,12 +249,15 @@ void check_identifiers(YamlMap& yaml, const can::Dbc& dbc, const can::BaseIds& b
 
 }  // namespace
 
+std::string read_dbc_name(YamlMap& yaml) {
+  return yaml.require<std::string>("dbc", some_name());
+}
+
 can::VehicleBinding read_vehicle_bus(YamlMap& yaml, const can::BaseIds& base,
-                                     const std::filesystem::path& folder) {
-  const auto file = yaml.require<std::string>("dbc", some_name());
-  const auto dbc = file.empty() ? Result<can::Dbc>() : can::read_dbc_file(folder / file);
+                                     const std::filesystem::path& dbc_file) {
+  const auto dbc = dbc_file.empty() ? Result<can::Dbc>() : can::read_dbc_file(dbc_file);
   if (!dbc) yaml.reject("dbc", dbc.error().message, "a DBC file that can be read");
-  const bool usable = !file.empty() && dbc;
+  const bool usable = !dbc_file.empty() && dbc;
   if (usable) check_identifiers(yaml, *dbc, base);
   const can::Dbc nothing;
   can::VehicleBinder binder(usable ? *dbc : nothing);

@@ -14,15 +14,18 @@
 namespace bevloc::firmware {
 namespace {
 
+constexpr const char* kYaml = "application/yaml";
+
 std::string absolute_name(const std::filesystem::path& path) {
   std::error_code ignored;
   return path.empty() ? "" : std::filesystem::absolute(path, ignored).lexically_normal().string();
 }
 
-void attach_file(std::string_view name, const std::filesystem::path& path, RecordingHead& head) {
+void attach_file(std::string_view name, const char* media_type, const std::filesystem::path& path,
+                 RecordingHead& head) {
   auto content = read_file(path);
   if (!content) return;
-  head.attachments.push_back({0, std::string(name), "application/yaml", std::move(*content)});
+  head.attachments.push_back({0, std::string(name), media_type, std::move(*content)});
 }
 
 std::map<std::string, std::string> metadata_of(const Config& config, const HdMap& map,
@@ -57,10 +60,11 @@ Result<std::unique_ptr<Recorder>> open_recorder(const Config& config, const Rig&
   const Duration offset = read_clock(CLOCK_REALTIME) - now.time_since_epoch();
   RecordingHead head;
   head.metadata = metadata_of(config, map, lockstep, now, offset);
-  attach_file(kConfigAttachment, config.file, head);
-  attach_file(kRigAttachment, config.rig_file, head);
+  attach_file(kConfigAttachment, kYaml, config.file, head);
+  attach_file(kRigAttachment, kYaml, config.rig_file, head);
+  if (config.can.vehicle) attach_file(kDbcAttachment, "text/plain", config.can.dbc_file, head);
   if (!config.learned_calibration_file.empty()) {
-    attach_file(kLearnedAttachment, config.learned_calibration_file, head);
+    attach_file(kLearnedAttachment, kYaml, config.learned_calibration_file, head);
   }
   add_message(std::string(kMapTopic), map_message(map), head);
   for (int camera = 0; camera < kCameraCount; ++camera) {

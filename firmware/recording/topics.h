@@ -44,6 +44,7 @@ inline constexpr std::string_view kModelChecksumKey = "model_sha256";
 /// The attachments.
 inline constexpr std::string_view kConfigAttachment = "configuration.yaml";
 inline constexpr std::string_view kRigAttachment = "rig.yaml";
+inline constexpr std::string_view kDbcAttachment = "vehicle.dbc";
 inline constexpr std::string_view kLearnedAttachment = "learned_calibration.yaml";
 
 }  // namespace bevloc::firmware

@@ -141,7 +141,8 @@ TEST(ConfigurationText, KeepsStrangeNames) {
                   .can = "can0"};
   auto yaml = YamlMap::parse(configuration_text(answers, "/folder"), "t.yaml");
   ASSERT_TRUE(yaml) << yaml.error().message;
-  const firmware::Config config = firmware::read_config(*yaml, "/folder", nullptr);
+  const firmware::Config config =
+      firmware::read_config(*yaml, {.folder = "/folder", .dbc_file = {}}, nullptr);
   ASSERT_TRUE(yaml->finish()) << yaml->finish().error().message;
   EXPECT_EQ(config.cameras.devices.ids, answers.ids);
   EXPECT_EQ(config.map_file, "/folder/below/town.osm");

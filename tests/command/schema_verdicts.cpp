@@ -17,7 +17,7 @@ std::string verdict_on_config(const std::string& text) {
   if (!yaml) return yaml.error().message;
   std::optional<bevloc::evaluation::SimulationConfig> simulation;
   const auto reader = bevloc::evaluation::simulation_reader(simulation);
-  bevloc::firmware::read_config(*yaml, "", &reader);
+  bevloc::firmware::read_config(*yaml, {}, &reader);
   const bevloc::Status status = yaml->finish();
   return status ? "" : status.error().message;
 }

@@ -224,6 +224,14 @@ TEST_F(RecordedDriveTest, AnotherModelIsUsedWhenItIsNamed) {
   EXPECT_FALSE(setup->config.record);
 }
 
+TEST_F(RecordedDriveTest, ARigWithImagesOfAnotherSizeIsRefused) {
+  Rig rig = setup_of(*recording_, {}, ScratchFolder()).value().rig;
+  rig.cameras[1].intrinsics.width_px /= 2;
+  const auto inputs = inputs_of(*recording_, rig);
+  ASSERT_FALSE(inputs);
+  EXPECT_NE(inputs.error().message.find(": found images of "), std::string::npos);
+}
+
 TEST_F(RecordedDriveTest, TheReportTellsErrorsStatesAndReasons) {
   const auto data = read_report_data(*recording_);
   ASSERT_TRUE(data) << data.error().message;
@@ -264,6 +272,40 @@ TEST_F(RecordedDriveTest, FilesOfTwoRunsAreRefused) {
   const auto both = Recording::open({files_[0], *folder_ / "other.mcap"});
   ASSERT_FALSE(both);
   EXPECT_NE(both.error().message.find("of another run"), std::string::npos);
+}
+
+/// On the desk, and not in the vehicle, whose files have changed since.
+TEST(MovedRecordingTest, HoldsTheDbcFileAndWhatItsConfigurationNames) {
+  const fs::path own = fs::path(BEVLOC_SOURCE_DIR) / "config";
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder / "config");
+  fs::create_directory_symlink(own.parent_path() / "models", folder / "models");
+  for (const char* name : {"demo_own_bus.yaml", "vehicle_demo.dbc", "rig_demo.yaml"}) {
+    fs::copy(own / name, folder / "config" / name);
+  }
+  auto config = load_drive_config(folder / "config/demo_own_bus.yaml");
+  ASSERT_TRUE(config) << config.error().message;
+  config->simulation->duration_s = 0.5;
+  config->record.emplace();
+  config->record->directory = folder / "recording";
+  SimulatedRunOptions options;
+  options.fast = true;
+  options.show_progress = false;
+  options.out = folder.path();
+  const auto report = run_simulation(*config, read_rig(config->rig_file).value(), options,
+                                     [](const firmware::ApplianceView&) { return false; });
+  ASSERT_TRUE(report) << report.error().message;
+
+  fs::remove(folder / "config/vehicle_demo.dbc");
+  fs::remove(folder / "config/rig_demo.yaml");
+  std::ofstream(folder / "config/demo_own_bus.yaml", std::ios::app) << "manifest: none\n";
+  auto recording = Recording::open(recordings_in(folder / "recording"));
+  ASSERT_TRUE(recording) << recording.error().message;
+  const auto setup = setup_of(*recording, {}, ScratchFolder());
+  ASSERT_TRUE(setup) << setup.error().message;
+  ASSERT_TRUE(setup->config.can.vehicle);
+  EXPECT_EQ(setup->config.can.vehicle->signals.size(), config->can.vehicle->signals.size());
+  EXPECT_EQ(setup->config.model_file, folder / "config/../models/nano.onnx");
 }
 
 }  // namespace
