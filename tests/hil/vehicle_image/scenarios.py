@@ -106,8 +106,9 @@ def update(parts: Parts, _: int, __: int) -> Outcome:
             if root != "b" or version != Repositories.GOOD_VERSION:
                 raise LabError(f"{seen[-1]}, wanted root b with {Repositories.GOOD_VERSION}")
             _mount_repositories(machine)
+            _refuse_unreadable(machine)
     return Outcome(
-        injected="an update, then one whose daemon does not run",
+        injected="an update, one that cannot be read, and one whose daemon does not run",
         seen="; ".join(seen),
         recovery_s=None,
         passed=True,
@@ -168,6 +169,16 @@ def _check(parts: Parts, before: Stored, settled: dict[str, int]) -> None:
 def _sizes(listing: str) -> dict[str, int]:
     lines = (line.split(maxsplit=1) for line in listing.splitlines())
     return {name: int(size) for size, name in lines}
+
+
+def _refuse_unreadable(machine: Machine) -> None:
+    """Without a repository an update must leave both versions as they are."""
+    entries = "ls /efi/loader/entries"
+    before = machine.agent.check(entries)
+    if machine.agent.run("bevloc-update file:/run/repositories/none").status == 0:
+        raise LabError("bevloc-update: accepted a folder that does not exist, wanted an error")
+    if (after := machine.agent.check(entries)) != before:
+        raise LabError(f"/efi/loader/entries: found {after} after a failure, wanted {before}")
 
 
 def _mount_repositories(machine: Machine) -> None:
