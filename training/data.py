@@ -166,18 +166,21 @@ class DriveStream(ProcessStream):
         """`part`: training or held-back. `first_sample` counts the samples of all processes and is
         a multiple of their number."""
         assert first_sample % share.count == 0
+        first_sample //= share.count
         options = [
             DriveOptions(
                 drives=drives,
                 first_seed=first_seed,
-                first_sample=first_sample + share.index + share.count * program,
+                # The first sample of this program that is not before `first_sample`.
+                first_sample=share.index
+                + share.count * (first_sample + (program - first_sample) % threads),
                 stride=share.count * threads,
                 part=part,
                 drop_camera_probability=drop_camera_probability,
             )
             for program in range(threads)
         ]
-        super().__init__(options, 0)
+        super().__init__(options, first_sample)
 
 
 class MixedStream:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 
-from training.config import TrainingConfig
+from training.config import FIRST_TRAINING_SEED, TrainingConfig
 from training.data import NUISANCES
 from training.model import check_fits_sampler
 from training.models.config import network_config
@@ -25,7 +25,9 @@ _CHOICES = {
 def parse_config(arguments: list[str], description: str, processes: int = 1) -> TrainingConfig:
     """Parses the options, one per field of TrainingConfig. Invalid options end the program with a
     message. `processes`: number of processes of the run."""
-    parser = argparse.ArgumentParser(prog="training.train", description=description)
+    parser = argparse.ArgumentParser(
+        prog="training.train", description=description, allow_abbrev=False
+    )
     for field in dataclasses.fields(TrainingConfig):
         option = _option_name(field.name)
         if isinstance(field.default, bool):
@@ -78,12 +80,18 @@ def _check(config: TrainingConfig, processes: int) -> None:
     _check_ranges(config)
     if config.recordings and config.nuscenes:
         raise ValueError("--recordings: found --nuscenes too, wanted one of them")
+    if config.validation_scenes and not config.scenes:
+        wanted = "wanted both, so that no scene is trained on and measured"
+        raise ValueError(f"--validation-scenes: found no --scenes, {wanted}")
     if bool(config.recordings) != bool(config.map):
         raise ValueError("--recordings and --map: found one of them, wanted both or none")
     check_fits_sampler(network_config(config.network, config.view))
 
 
 def _check_ranges(config: TrainingConfig) -> None:
+    if config.seed < FIRST_TRAINING_SEED:
+        wanted = f"wanted at least {FIRST_TRAINING_SEED}, because evaluation has the others"
+        raise ValueError(f"--seed: found {config.seed}, {wanted}")
     for field in ("checkpoint_minutes", "validation_minutes"):
         if (minutes := getattr(config, field)) <= 0:
             raise ValueError(f"{_option_name(field)}: found {minutes:g} minutes, wanted more")

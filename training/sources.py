@@ -9,8 +9,10 @@ from pathlib import Path
 from training.config import FIRST_VALIDATION_SEED, TrainingConfig
 from training.data import Batch, DriveStream, MixedStream, SamplerStream, Stream
 from training.distributed import WHOLE, Share
+from training.errors import TrainingError
 from training.nuscenes.dataset import NuscenesDataset
 from training.nuscenes.stream import NuscenesStream
+from training.nuscenes.tables import read_scene_names
 from training.options import drives_of
 from training.sampler_process import Drives, SamplerError
 
@@ -130,6 +132,16 @@ def drive_batches(drives: Drives, part: str, samples: int, threads: int) -> list
     return list(_batches(stream, min(samples, counts[part])))
 
 
+def _check_scenes(config: TrainingConfig) -> None:
+    """TrainingError if a scene is in both files."""
+    trained = set(read_scene_names(Path(config.scenes)))
+    for name in read_scene_names(Path(config.validation_scenes)):
+        if name in trained:
+            raise TrainingError(
+                f"{config.validation_scenes}: found {name}, wanted no scene of {config.scenes}"
+            )
+
+
 def validation_set(config: TrainingConfig) -> list[Batch]:
     """A fixed set that training does not see, with all cameras. For nuScenes the set is empty
     unless `validation_scenes` is given."""
@@ -141,5 +153,6 @@ def validation_set(config: TrainingConfig) -> list[Batch]:
         return simulator_batches(config.validation_samples, config.sampler_threads)
     if not config.validation_scenes:
         return []
+    _check_scenes(config)
     stream = _nuscenes(config, config.validation_scenes, FIRST_VALIDATION_SEED, 0, 0.0)
     return list(_batches(stream, config.validation_samples))

@@ -117,8 +117,8 @@ class Trainer:
             for statistic in running_statistics(module)
         ]
         config.run.mkdir(parents=True, exist_ok=True)
-        if config.resume and self.checkpoint_path.exists():
-            self._load()
+        if self.checkpoint_path.exists():
+            self._continue()
         self.validation = validation
         self._check_patience()
         self.stream = ReadAhead(make_stream(config, self.samples, processes.share), self.device)
@@ -126,6 +126,14 @@ class Trainer:
     @property
     def checkpoint_path(self) -> Path:
         return self.config.run / "checkpoint.pt"
+
+    def _continue(self) -> None:
+        if not self.config.resume:
+            raise TrainingError(
+                f"{self.checkpoint_path}: found a run, wanted --resume to continue it, or another "
+                "folder for --run"
+            )
+        self._load()
 
     def _parameter_groups(self) -> list[dict]:
         scales = list(self.net.solvers.parameters())

@@ -108,6 +108,8 @@ class DrivesTest(unittest.TestCase):
         # Two programs: a batch is grouped by program.
         taken = self.stream(threads=2).next(12).correction
         self.assertTrue(torch.equal(taken[:6], corrections[0::2]))
+        resumed = self.stream(first=3, threads=2).next(6).correction
+        self.assertTrue(torch.equal(resumed, torch.cat((corrections[4:9:2], corrections[3:9:2]))))
         # Two processes.
         parts = [self.stream(share=Share(rank, 2)).next(6).correction for rank in (0, 1)]
         self.assertTrue(torch.equal(torch.stack(parts, 1).flatten(0, 1), corrections))

@@ -13,6 +13,7 @@ from tests.training.nuscenes_tree import SAMPLES_PER_SCENE, write_tree
 from training.config import TrainingConfig
 from training.data import NUISANCES, Batch
 from training.distributed import WHOLE, Share
+from training.errors import TrainingError
 from training.nuscenes.errors import NuscenesError
 from training.sources import (
     nuscenes_batches,
@@ -70,6 +71,17 @@ class Sources(unittest.TestCase):
         self.assertEqual(validation_set(TrainingConfig(nuscenes=str(self.root))), [])
         simulated = validation_set(TrainingConfig(validation_samples=3))
         self.assertTrue(torch.equal(simulated[0].images, simulator_batches(3, 1)[0].images))
+
+    def test_a_scene_is_trained_on_or_measured(self):
+        (self.root / "train.txt").write_text("scene-0001\nscene-0002\n")
+        (self.root / "val.txt").write_text("scene-0002  # again\n")
+        config = TrainingConfig(
+            nuscenes=str(self.root),
+            scenes=str(self.root / "train.txt"),
+            validation_scenes=str(self.root / "val.txt"),
+        )
+        with self.assertRaisesRegex(TrainingError, "val.txt: found scene-0002, wanted no scene of"):
+            validation_set(config)
 
     def test_training_has_stronger_nuisances_than_validation(self):
         streams = {

@@ -85,6 +85,12 @@ class Resuming(TemporaryRuns):
         self.assertTrue(torch.equal(weights(resumed.net), weights(uninterrupted.net)))
         self.assertTrue(torch.equal(weights(resumed.average), weights(uninterrupted.average)))
 
+    def test_a_run_replaces_no_other_run(self):
+        run = self.folder()
+        trainer(run).save()
+        with self.assertRaisesRegex(TrainingError, "found a run, wanted --resume"):
+            trainer(run)
+
     def test_a_new_run_begins_with_the_averaged_weights_of_another(self):
         finished = trainer(self.folder(), samples=4)
         finished.run()
