@@ -1,40 +1,97 @@
 #include "command/udev/udev_rules_command.h"
 
+#include <algorithm>
+#include <fstream>
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "drivers/gpio/libgpiod_gpio.h"
 
 namespace bevloc::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where the kernel shows the chips, each as a link to a folder below its device.
+fs::path chip_folder(const fs::path& sysfs) {
+  return sysfs / "bus/gpio/devices";
+}
+
+/// The device that the chip belongs to; empty if the kernel shows none.
+std::string device_of(const fs::path& sysfs, const std::string& chip) {
+  std::error_code error;
+  const fs::path device = fs::canonical(chip_folder(sysfs) / chip, error).parent_path().filename();
+  return error ? "" : device.string();
+}
+
+/// The chips that KERNELS== matches: those of the device and of all devices below it.
+std::vector<std::string> chips_below(const fs::path& sysfs, const std::string& device) {
+  std::vector<std::string> chips;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(chip_folder(sysfs), error)) {
+    const fs::path place = fs::canonical(entry.path(), error);
+    if (std::ranges::find(place, fs::path(device)) != place.end()) {
+      chips.push_back(entry.path().filename().string());
+    }
+  }
+  return chips;
+}
+
+/// The chip's node in the device tree, of which a device with several chips has one for each. Empty
+/// on machines without a device tree.
+std::string tree_node_of(const fs::path& sysfs, const std::string& chip) {
+  constexpr std::string_view kKey = "OF_FULLNAME=";
+  std::ifstream events(chip_folder(sysfs) / chip / "uevent");
+  for (std::string line; std::getline(events, line);) {
+    if (line.starts_with(kKey)) return line.substr(kKey.size());
+  }
+  return "";
+}
+
+/// The rule for a chip. `named` has all chips of the configuration.
+std::string rule_for(const fs::path& sysfs, const std::string& chip, const std::string& device,
+                     const std::set<std::string>& named) {
+  std::vector<std::string> others = chips_below(sysfs, device);
+  std::erase_if(others, [&](const std::string& other) { return named.contains(other); });
+  const std::string node = others.empty() ? "" : tree_node_of(sysfs, chip);
+  std::string rule;
+  if (!others.empty() && node.empty()) {
+    rule = fmt::format("# Also gives the group {}: nothing tells them from {}.\n",
+                       fmt::join(others, ", "), chip);
+  }
+  return rule + fmt::format(
+                    "SUBSYSTEM==\"gpio\", KERNEL==\"gpiochip*\", KERNELS==\"{}\", {}"
+                    "GROUP=\"bevloc\", MODE=\"0660\"\n",
+                    device, node.empty() ? "" : fmt::format("ENV{{OF_FULLNAME}}==\"{}\", ", node));
+}
+
+}  // namespace
 
 Result<std::string> udev_rules(const std::vector<drivers::GpioChipInfo>& chips,
                                const std::vector<drivers::LineAddress>& lines,
-                               const std::filesystem::path& sysfs) {
-  std::set<std::string> devices;
+                               const fs::path& sysfs) {
+  std::set<std::string> named;
   for (const drivers::LineAddress& line : lines) {
     const auto place = drivers::find_line(chips, line);
     if (!place) return tl::unexpected(place.error());
-    const std::string& chip = chips[place->chip].name;
-    const auto node = sysfs / "bus/gpio/devices" / chip;
-    std::error_code error;
-    const auto device = std::filesystem::canonical(node, error).parent_path().filename();
-    if (error || device.empty()) {
-      return fail("{}: found no device of this chip, wanted one of the kernel", node.string());
+    named.insert(chips[place->chip].name);
+  }
+  std::set<std::string> rules;  // several chips of one device may have the same rule
+  for (const std::string& chip : named) {
+    const std::string device = device_of(sysfs, chip);
+    if (device.empty()) {
+      return fail("{}: found no device of this chip, wanted one of the kernel",
+                  (chip_folder(sysfs) / chip).string());
     }
-    devices.insert(device.string());
+    rules.insert(rule_for(sysfs, chip, device, named));
   }
-  std::string rules =
+  if (rules.empty()) rules.insert("# The configuration names no GPIO line.\n");
+  return fmt::format(
       "# /etc/udev/rules.d/60-bevloc.rules: the group bevloc may open the GPIO chips of bevlocd's\n"
-      "# configuration, and no other ones. Made by `bevloc udev-rules`.\n";
-  for (const std::string& device : devices) {
-    rules += fmt::format(
-        "SUBSYSTEM==\"gpio\", KERNEL==\"gpiochip*\", KERNELS==\"{}\", GROUP=\"bevloc\", "
-        "MODE=\"0660\"\n",
-        device);
-  }
-  if (devices.empty()) rules += "# The configuration names no GPIO line.\n";
-  return rules;
+      "# configuration, and no other ones. Made by `bevloc udev-rules`.\n{}",
+      fmt::join(rules, ""));
 }
 
 void UdevRulesCommand::declare(CLI::App& app) {

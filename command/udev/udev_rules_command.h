@@ -15,7 +15,8 @@
 namespace bevloc::command {
 
 /// The rules for the chips of these lines. `sysfs` is /sys, where the kernel tells the device that
-/// a chip belongs to. Fails if a line does not exist, or if its chip has no device there.
+/// a chip belongs to. Chips of one device are told apart by the device tree; where there is none, a
+/// comment names the other ones. Fails if a line does not exist, or its chip has no device there.
 Result<std::string> udev_rules(const std::vector<drivers::GpioChipInfo>& chips,
                                const std::vector<drivers::LineAddress>& lines,
                                const std::filesystem::path& sysfs);

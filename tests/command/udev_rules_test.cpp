@@ -1,3 +1,5 @@
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -48,6 +50,26 @@ TEST_F(UdevRulesTest, LeavesOutChipsThatNoLineIsOn) {
   const auto rules = udev_rules(chips_, {{"pca9555", "LED"}}, sysfs_);
   ASSERT_TRUE(rules);
   EXPECT_THAT(*rules, Not(HasSubstr("fe200000")));
+}
+
+/// The banks of a pin controller have one parent.
+TEST_F(UdevRulesTest, TellsChipsOfOneDeviceApartByTheDeviceTree) {
+  add("gpiochip3", "fe200000.gpio");
+  std::ofstream(sysfs_ / "bus/gpio/devices/gpiochip0/uevent")
+      << "MAJOR=254\nOF_FULLNAME=/soc/pinctrl@fe200000/gpio@0\n";
+  const std::vector<drivers::LineAddress> lines{{"pinctrl-bcm2711", "TRIGGER"}};
+  const auto rules = udev_rules(chips_, lines, sysfs_);
+  ASSERT_TRUE(rules) << rules.error().message;
+  EXPECT_THAT(*rules, HasSubstr(R"(KERNELS=="fe200000.gpio", )"
+                                R"(ENV{OF_FULLNAME}=="/soc/pinctrl@fe200000/gpio@0", GROUP=)"));
+}
+
+TEST_F(UdevRulesTest, NamesChipsThatCannotBeToldApart) {
+  add("gpiochip3", "fe200000.gpio/below");
+  const std::vector<drivers::LineAddress> lines{{"pinctrl-bcm2711", "TRIGGER"}};
+  const auto rules = udev_rules(chips_, lines, sysfs_);
+  ASSERT_TRUE(rules) << rules.error().message;
+  EXPECT_THAT(*rules, HasSubstr("# Also gives the group gpiochip3: nothing tells them from"));
 }
 
 TEST_F(UdevRulesTest, SaysThatThereIsNoLine) {
