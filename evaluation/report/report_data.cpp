@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
+#include <optional>
 
 #include <Eigen/Eigenvalues>
 
@@ -157,23 +159,45 @@ std::string time_of_day(const ReportData& data, double time_s) {
                      time_ns % 1'000'000'000U / 100'000'000U);
 }
 
-Result<double> parse_moment(const ReportData& data, const std::string& text) {
+namespace {
+
+struct DayTime {
+  double second_of_day = 0.0;
+  bool whole_minute = false;  ///< no second was named
+};
+
+/// Reads "14:32" or "14:32:05".
+std::optional<DayTime> parse_day_time(const std::string& text) {
   int hour = 0;
   int minute = 0;
   double second = 0.0;
+  int to_minute = 0;
+  int to_second = 0;
+  const int parts =
+      std::sscanf(text.c_str(), "%2d:%2d%n:%lf%n", &hour, &minute, &to_minute, &second, &to_second);
+  const int end = parts == 3 ? to_second : to_minute;
+  const bool complete = parts >= 2 && static_cast<size_t>(end) == text.size();
+  const bool in_day =
+      hour >= 0 && hour < 24 && minute >= 0 && minute < 60 && second >= 0.0 && second < 60.0;
+  if (!complete || !in_day) return std::nullopt;
+  return DayTime{3600.0 * hour + 60.0 * minute + second, parts == 2};
+}
+
+}  // namespace
+
+Result<double> parse_moment(const ReportData& data, const std::string& text) {
   char surplus = 0;
   const auto refuse = [&text] {
     return fail(
         "--at: found '{}', wanted a time of day such as 14:32 or 14:32:05, or seconds such as 12.5",
         text);
   };
-  const int parts = std::sscanf(text.c_str(), "%2d:%2d:%lf%c", &hour, &minute, &second, &surplus);
+  const auto day_time = parse_day_time(text);
+  const bool whole_minute = day_time && day_time->whole_minute;
   double moment_s = 0.0;
-  const bool whole_minute = parts == 2;
-  if (parts == 2 || parts == 3) {
+  if (day_time) {
     constexpr double kDay_s = 86400.0;
-    const double begin_s = second_of_day(data);
-    moment_s = 3600.0 * hour + 60.0 * minute + second - begin_s;
+    moment_s = day_time->second_of_day - second_of_day(data);
     // The last minute of the day before may be meant, or the recording passes midnight.
     if (moment_s < -60.0) moment_s += kDay_s;
   } else if (std::sscanf(text.c_str(), "%lf%c", &moment_s, &surplus) != 1) {

@@ -169,6 +169,7 @@ void add_drops(std::string& page, const ReportData& data) {
   if (!data.counters) return;
   const bevloc::recording::Counters& counters = *data.counters;
   const auto number = [](uint64_t value) { return std::to_string(value); };
+  page += "<p>Totals from the start of the appliance to the end of the recording:</p>";
   add_table(page, {{"camera frames captured", number(counters.frames_captured())},
                    {"used", number(counters.frames_used())},
                    {"lost before capture", number(counters.frames_missed())},

@@ -259,6 +259,8 @@ TEST_F(RecordedDriveTest, AMomentIsReadAsTimeOfDayOrSeconds) {
   EXPECT_NEAR(parse_moment(*data, time).value(), 2.0, 0.11);
   EXPECT_TRUE(parse_moment(*data, time.substr(0, 5)));
   EXPECT_FALSE(parse_moment(*data, "noon"));
+  EXPECT_FALSE(parse_moment(*data, time.substr(0, 5) + "pm"));
+  EXPECT_FALSE(parse_moment(*data, time.substr(0, 5) + ":99"));
   for (const char* text : {"1e9", "nan", "-nan", "inf", "14:32:nan"}) {
     EXPECT_FALSE(parse_moment(*data, text)) << text;
   }
