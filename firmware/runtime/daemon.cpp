@@ -116,6 +116,15 @@ std::unique_ptr<Recorder> recorder_for(const Config& config, const Rig& rig, con
   return nullptr;
 }
 
+/// Starts the live page if it is configured and does not run. The vehicle needs its pose also while
+/// another program has the port, or the network is not up.
+void serve_page(const Config& config, Base& base) {
+  if (!config.live || base.live) return;
+  auto live = LiveServer::start(*config.live);
+  if (!live) return spdlog::error("no live page: {}", live.error().message);
+  base.live = std::move(*live);
+}
+
 /// Opens the remaining devices and runs an appliance on them; the result is run_appliance()'s.
 Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
                            const DaemonHost& host) {
@@ -166,12 +175,9 @@ Status run_daemon(const Config& config, const Rig& rig, const DaemonHost& host) 
   spdlog::info("map: {}", contents_of(base.map));
   for (const std::string& warning : warnings_of(base.map)) spdlog::warn("map: {}", warning);
 
-  if (config.live) {
-    auto live = LiveServer::start(*config.live);
-    if (!live) return tl::unexpected(live.error());
-    base.live = std::move(*live);
-  }
+  serve_page(config, base);
   while (wait_for_ignition(base, host)) {
+    serve_page(config, base);
     const auto ignition_went_off = start_and_run(config, rig, base, host);
     if (!ignition_went_off) return tl::unexpected(ignition_went_off.error());
     if (!*ignition_went_off) break;

@@ -127,6 +127,18 @@ TEST_F(DaemonTest, RunsWithoutARecordingIfTheDiskTakesNone) {
   EXPECT_NE(log.text().find("nothing is recorded: /proc/no/such"), std::string::npos) << log.text();
 }
 
+TEST_F(DaemonTest, RunsWithoutALivePageIfItCannotBeServed) {
+  config_.live.emplace().address = "192.0.2.1";  // of another machine (RFC 5737)
+  const LogCapture log;
+  int calls = 0;
+  const Status status = run([&] { return ++calls == 3; });
+  EXPECT_TRUE(status) << status.error().message;
+  EXPECT_EQ(calls, 3);
+  EXPECT_NE(log.text().find("error: no live page: live: found no way to listen at 192.0.2.1"),
+            std::string::npos)
+      << log.text();
+}
+
 bool has_thread(const std::string& wanted) {
   for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
     std::string name;
