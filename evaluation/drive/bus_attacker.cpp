@@ -21,16 +21,19 @@ void BusAttacker::note(const can::Frame& frame, double elapsed_s) {
 void BusAttacker::act(const sim::FaultBoard& faults, double elapsed_s, can::Bus& bus, Time now) {
   for (const sim::Fault& fault : faults.active(sim::FaultInput::kBus, elapsed_s)) {
     const sim::FaultAmounts& by = fault.amounts;
-    if (fault.kind == sim::FaultKind::kBusFlooded) flood(by.rate_hz, bus, now);
+    if (fault.kind == sim::FaultKind::kBusFlooded) flood(by.rate_hz, elapsed_s, bus, now);
     if (fault.kind == sim::FaultKind::kBusForged) forge(by, bus, now);
     if (fault.kind == sim::FaultKind::kBusReplayed) replay(by.age_s, elapsed_s, bus, now);
   }
 }
 
 /// Frames with identifier 0 win every arbitration.
-void BusAttacker::flood(double rate_hz, can::Bus& bus, Time now) const {
+void BusAttacker::flood(double rate_hz, double elapsed_s, can::Bus& bus, Time now) const {
+  const auto sent_until = [rate_hz](double time_s) { return std::llround(rate_hz * time_s); };
   const can::Frame first{.id = 0, .length = can::kMaxClassicLength};
-  for (int i = 0; i < static_cast<int>(rate_hz * kActPeriod_s); ++i) bus.send(first, now);
+  for (auto i = sent_until(elapsed_s - kActPeriod_s); i < sent_until(elapsed_s); ++i) {
+    bus.send(first, now);
+  }
 }
 
 void BusAttacker::forge(const sim::FaultAmounts& by, can::Bus& bus, Time now) {

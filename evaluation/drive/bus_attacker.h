@@ -26,7 +26,7 @@ class BusAttacker {
     double elapsed_s;
   };
 
-  void flood(double rate_hz, can::Bus& bus, Time now) const;
+  void flood(double rate_hz, double elapsed_s, can::Bus& bus, Time now) const;
   void forge(const sim::FaultAmounts& by, can::Bus& bus, Time now);
   void replay(double age_s, double elapsed_s, can::Bus& bus, Time now) const;
 

@@ -84,7 +84,8 @@ void SimulatedVehicle::send_odometry(Time now) {
   const uint64_t index = reading_index(elapsed_s, clock_faults, sim::OdometrySimulator::kPeriod_s);
   if (index < odometry_.count() && !sim::is_in_clock_gap(elapsed_s, clock_faults)) {
     const auto reading = sim::reading_with_faults(
-        odometry_, index, kRearTrack_m, faults_->active(sim::FaultInput::kOdometry, elapsed_s));
+        odometry_, index, kRearTrack_m,
+        sim::in_drive_time(faults_->active(sim::FaultInput::kOdometry, elapsed_s), clock_faults));
     if (reading) {
       const can::WheelOdometry measured{reading->left_mps, reading->right_mps,
                                         reading->yaw_rate_radps};
@@ -149,7 +150,8 @@ SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,
           simulation.duration_s + kSpareDuration_s + sim::added_time_s(simulation.faults),
           simulation.stops)),
       faults_(std::make_shared<sim::FaultBoard>(simulation.faults)),
-      map_(sim::with_faults(world_->map, simulation.faults, *drive_)) {}
+      map_(sim::with_faults(world_->map, sim::in_drive_time(simulation.faults, simulation.faults),
+                            *drive_)) {}
 
 Se2 SimulatedDrive::truth_at(double elapsed_s) const {
   const auto clock_faults = faults_->all(sim::FaultInput::kClock);

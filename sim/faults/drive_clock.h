@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "sim/faults/fault.h"
 
@@ -13,6 +14,9 @@ double drive_time_s(double elapsed_s, std::span<const Fault> faults);
 
 /// Whether the appliance stood still at this time, while its clock went on.
 bool is_in_clock_gap(double elapsed_s, std::span<const Fault> faults);
+
+/// The faults with times of the drive in place of those that the appliance's clock shows.
+std::vector<Fault> in_drive_time(std::vector<Fault> faults, std::span<const Fault> clock_faults);
 
 /// How much longer than planned the drive may become.
 double added_time_s(std::span<const Fault> faults);

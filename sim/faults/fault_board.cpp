@@ -20,8 +20,15 @@ uint32_t FaultBoard::add(const Fault& fault) {
   return next_number_++;
 }
 
+void FaultBoard::note_past(const NumberedFault& listed) {
+  if (listed.fault.kind == FaultKind::kClockSuspend) past_.push_back(listed.fault);
+}
+
 bool FaultBoard::remove(uint32_t number) {
   const std::lock_guard lock(mutex_);
+  for (const NumberedFault& listed : faults_) {
+    if (listed.number == number) note_past(listed);
+  }
   return std::erase_if(faults_, [number](const NumberedFault& listed) {
            return listed.number == number;
          }) > 0;
@@ -29,6 +36,7 @@ bool FaultBoard::remove(uint32_t number) {
 
 void FaultBoard::clear() {
   const std::lock_guard lock(mutex_);
+  for (const NumberedFault& listed : faults_) note_past(listed);
   faults_.clear();
 }
 
@@ -56,6 +64,7 @@ std::vector<Fault> FaultBoard::active_on_camera(int camera, double time_s) const
 std::vector<Fault> FaultBoard::all(FaultInput input) const {
   const std::lock_guard lock(mutex_);
   std::vector<Fault> found;
+  if (input == FaultInput::kClock) found = past_;
   for (const NumberedFault& listed : faults_) {
     if (info_of(listed.fault.kind).input == input) found.push_back(listed.fault);
   }

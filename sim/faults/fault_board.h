@@ -34,7 +34,8 @@ class FaultBoard {
   std::vector<Fault> active(FaultInput input, double time_s) const;
   /// The faults of one camera.
   std::vector<Fault> active_on_camera(int camera, double time_s) const;
-  /// All faults of an input, whatever their time.
+  /// All faults of an input, whatever their time. Of the clock, also suspensions that were removed:
+  /// the drive does not go back.
   std::vector<Fault> all(FaultInput input) const;
 
   /// Blocks while a fault of this kind hangs the calling thread, in real time. `time_s` gives the
@@ -45,11 +46,14 @@ class FaultBoard {
 
  private:
   bool hangs(FaultKind kind, int camera, double time_s) const;
+  /// Keeps what cannot be undone when the fault is removed.
+  void note_past(const NumberedFault& listed);
 
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   bool released_ = false;              // guarded by mutex_
   std::vector<NumberedFault> faults_;  // guarded by mutex_
+  std::vector<Fault> past_;            // removed suspensions; guarded by mutex_
   uint32_t next_number_ = 1;           // guarded by mutex_
 };
 

@@ -74,7 +74,10 @@ Status take_times(Words& words, double now_s, Fault& fault) {
   if (Status read = take_number(words, "from_s", 0.0, kLongest_s, fault.from_s); !read) return read;
   double for_s = -1.0;
   if (Status read = take_number(words, "for_s", 0.0, kLongest_s, for_s); !read) return read;
-  if (for_s >= 0.0) fault.until_s = fault.from_s + for_s;
+  if (for_s >= 0.0) {
+    fault.until_s = fault.from_s + for_s;
+    return {};  // an until_s beside it is left over, and so it is refused
+  }
   return take_number(words, "until_s", fault.from_s, kLongest_s, fault.until_s);
 }
 

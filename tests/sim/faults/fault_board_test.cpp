@@ -58,5 +58,15 @@ TEST(FaultBoard, FaultsCanBeAddedRemovedAndCleared) {
   EXPECT_TRUE(board.list().empty());
 }
 
+TEST(FaultBoard, TheDriveDoesNotGoBackWhenASuspensionIsCleared) {
+  FaultBoard board;
+  board.add(make_fault(FaultKind::kClockSuspend, 1.0));
+  const uint32_t gap = board.add(make_fault(FaultKind::kClockGap, 1.0));
+  EXPECT_TRUE(board.remove(gap));
+  board.clear();
+  ASSERT_EQ(board.all(FaultInput::kClock).size(), 1U);
+  EXPECT_TRUE(board.active(FaultInput::kClock, 2.0).empty());
+}
+
 }  // namespace
 }  // namespace bevloc::sim

@@ -36,6 +36,7 @@ TEST(FaultText, NamesWhatIsWrong) {
   EXPECT_THAT(error_of("gnss_jump east_m=far"), HasSubstr("east_m: found far"));
   EXPECT_THAT(error_of("gnss_jump factor=2"), HasSubstr("found factor"));
   EXPECT_THAT(error_of("gnss_outage camera=back"), HasSubstr("found camera"));
+  EXPECT_THAT(error_of("gnss_outage for_s=5 until_s=100"), HasSubstr("found until_s"));
   EXPECT_THAT(error_of("odometry_scaled"), HasSubstr("found no factor"));
   EXPECT_THAT(error_of("camera_drop every=2.5"), HasSubstr("whole number"));
   EXPECT_THAT(error_of("camera_dark camera=left"), HasSubstr("found left"));

@@ -113,6 +113,35 @@ TEST_F(MapFaults, GrassGrowsOnTheRoadAndTheMapDoesNotKnow) {
   EXPECT_EQ(digest_of(generate_world(2003)), digest_of(world_));
 }
 
+TEST_F(MapFaults, ACutThatNoPlaceOfTheDriveMeetsLeavesTheMapAlone) {
+  Fault cut = make_fault(FaultKind::kMapCut, drive_.duration_s() + 1.0);
+  const HdMap same = with(cut);
+  ASSERT_EQ(same.elements.size(), world_.map.elements.size());
+  for (size_t i = 0; i < same.elements.size(); ++i) {
+    EXPECT_EQ(same.elements[i].points, world_.map.elements[i].points) << i;
+  }
+}
+
+TEST(DriveClock, AFaultOfNoLengthDoesNotHappen) {
+  Fault suspend = make_fault(FaultKind::kClockSuspend, 10.0, 10.0);
+  suspend.amounts.gap_s = 30.0;
+  Fault gap = make_fault(FaultKind::kClockGap, 20.0, 20.0);
+  gap.amounts.gap_s = 5.0;
+  const std::vector faults = {suspend, gap};
+  EXPECT_DOUBLE_EQ(drive_time_s(11.0, faults), 11.0);
+  EXPECT_FALSE(is_in_clock_gap(21.0, faults));
+  EXPECT_DOUBLE_EQ(added_time_s(faults), 0.0);
+}
+
+TEST(DriveClock, AFaultAfterASuspensionBeginsLaterInTheDrive) {
+  Fault suspend = make_fault(FaultKind::kClockSuspend, 1.0);
+  suspend.amounts.gap_s = 6.0;
+  const auto stuck =
+      in_drive_time({make_fault(FaultKind::kOdometryStuck, 3.0, 5.0)}, std::vector{suspend});
+  EXPECT_DOUBLE_EQ(stuck[0].from_s, 9.0);
+  EXPECT_DOUBLE_EQ(stuck[0].until_s, 11.0);
+}
+
 TEST(DriveClock, ASuspensionIsNotShownAndAGapIs) {
   Fault suspend = make_fault(FaultKind::kClockSuspend, 10.0);
   suspend.amounts.gap_s = 30.0;
