@@ -27,14 +27,34 @@ tl::unexpected<Error> refuse_short(const std::filesystem::path& path, uintmax_t 
 Result<Recording> Recording::open(const std::vector<std::filesystem::path>& files) {
   Recording recording;
   for (const auto& file : files) {
+    if (recording.has(file)) continue;
     if (Status added = recording.add(file); !added) return tl::unexpected(added.error());
   }
   for (auto& [topic, places] : recording.topics_) {
     std::ranges::stable_sort(places, {}, &MessagePlace::log_time_ns);
   }
+  if (Status once = recording.check_once(); !once) return tl::unexpected(once.error());
   recording.note_times();
   recording.note_pauses();
   return recording;
+}
+
+bool Recording::has(const std::filesystem::path& file) const {
+  return std::ranges::any_of(names_, [&](const std::string& name) {
+    std::error_code unreadable;
+    return std::filesystem::equivalent(name, file, unreadable);
+  });
+}
+
+Status Recording::check_once() const {
+  const std::vector<MessagePlace>& solutions = messages(firmware::kSolutionTopic);
+  const auto twice =
+      std::ranges::adjacent_find(solutions, [](const MessagePlace& a, const MessagePlace& b) {
+        return a.log_time_ns == b.log_time_ns && a.file != b.file;
+      });
+  if (twice == solutions.end()) return {};
+  return fail("{}: found the same messages as in {}, wanted each file of the run once",
+              names_[std::next(twice)->file], names_[twice->file]);
 }
 
 Status Recording::add(const std::filesystem::path& path) {

@@ -83,7 +83,11 @@ class Recording {
   const std::string& name() const { return names_.front(); }
 
  private:
+  /// Whether the file was added, perhaps by another name: the black box has links to files.
+  bool has(const std::filesystem::path& file) const;
   Status add(const std::filesystem::path& path);
+  /// Fails if a file is a copy of another one.
+  Status check_once() const;
   Status add_messages(const mcap::Reader& reader, uint32_t file);
   void note_times();
   void note_pauses();

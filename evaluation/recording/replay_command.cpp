@@ -95,6 +95,10 @@ Status ReplayCommand::run() const {
     return fail("replay: found {}, wanted the files of a recording or --from-candump",
                 candump ? "both" : "nothing to replay");
   }
+  if (!candump && !images_.empty()) {
+    return fail(
+        "--images: found no --from-candump, wanted both, or the files of a recording alone");
+  }
   if (candump && (overrides_.config.empty() || images_.empty())) {
     return fail("--from-candump: found no --config or no --images, wanted both");
   }

@@ -266,6 +266,27 @@ TEST_F(RecordedDriveTest, AMomentIsReadAsTimeOfDayOrSeconds) {
   }
 }
 
+TEST_F(RecordedDriveTest, AFileCountsOnceByWhicheverName) {
+  const fs::path kept = *folder_ / "kept.mcap";
+  fs::create_hard_link(files_[0], kept);
+  auto files = files_;
+  files.insert(files.begin(), {kept, files_[1]});
+  const auto recording = Recording::open(files);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->messages(firmware::kBusInTopic).size(),
+            recording_->messages(firmware::kBusInTopic).size());
+}
+
+TEST_F(RecordedDriveTest, ACopyOfAFileIsRefused) {
+  const fs::path copy = *folder_ / "copy.mcap";
+  fs::copy(files_[1], copy);
+  const auto recording = Recording::open({files_[0], files_[1], copy});
+  ASSERT_FALSE(recording);
+  EXPECT_EQ(recording.error().message, copy.string() + ": found the same messages as in " +
+                                           files_[1].string() +
+                                           ", wanted each file of the run once");
+}
+
 TEST_F(RecordedDriveTest, FilesOfTwoRunsAreRefused) {
   auto head = firmware::RecordingHead{{{"log_time_minus_clock_ns", "5"}}, {}, {}};
   auto other = firmware::RecordingFile::create(*folder_ / "other.mcap", head, 1);
