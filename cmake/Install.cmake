@@ -48,6 +48,8 @@ endif()
 install(TARGETS bevloc bevlocd DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/bevloc-sim
         COMPONENT bevloc-sim)
 install(FILES config/demo.yaml DESTINATION ${BEVLOC_DATA_DIR}/config COMPONENT bevloc-sim)
+install(FILES evaluation/campaign/matches.csv
+        DESTINATION ${BEVLOC_DATA_DIR}/evaluation/campaign COMPONENT bevloc-sim)
 
 install(TARGETS bevloc-compliance bevloc_convert_map COMPONENT bevloc-dev)
 install(FILES can/bevloc.dbc DESTINATION ${BEVLOC_DATA_DIR} COMPONENT bevloc-dev)

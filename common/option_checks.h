@@ -25,17 +25,16 @@ inline CLI::Validator number_between(double low, double high) {
   return {check, fmt::format("{} to {}", low, high), ""};
 }
 
-/// A seed: a whole number of 64 bits without a sign, also in hexadecimal (0x1F).
-inline CLI::Validator whole_number() {
-  const auto check = [](const std::string& text) -> std::string {
+/// A seed: a whole number from 0 to `highest`, also in hexadecimal (0x1F).
+inline CLI::Validator whole_number(uint64_t highest = std::numeric_limits<uint64_t>::max()) {
+  const auto check = [highest](const std::string& text) -> std::string {
     const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
     const std::string_view digits = std::string_view(text).substr(hexadecimal ? 2 : 0);
     uint64_t number = 0;
     const char* const end = digits.data() + digits.size();
     const auto [rest, error] = std::from_chars(digits.data(), end, number, hexadecimal ? 16 : 10);
-    if (error == std::errc() && rest == end) return "";
-    return fmt::format("found '{}', wanted a whole number from 0 to {}", text,
-                       std::numeric_limits<uint64_t>::max());
+    if (error == std::errc() && rest == end && number <= highest) return "";
+    return fmt::format("found '{}', wanted a whole number from 0 to {}", text, highest);
   };
   return {check, "", ""};
 }

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "common/files.h"
+#include "common/shipped_file.h"
 
 namespace bevloc::command {
 namespace {

@@ -52,15 +52,4 @@ std::vector<std::string> libcamera_ids_of_this_machine() {
 #endif
 }
 
-std::optional<std::filesystem::path> shipped_file(const std::filesystem::path& name) {
-  std::error_code error;
-  // build/PRESET/bin
-  const auto tree = folder_of_this_program().parent_path().parent_path().parent_path();
-  for (const std::filesystem::path& folder :
-       {std::filesystem::current_path(error), tree, std::filesystem::path("/usr/share/bevloc")}) {
-    if (std::filesystem::is_regular_file(folder / name, error)) return folder / name;
-  }
-  return std::nullopt;
-}
-
 }  // namespace bevloc::command

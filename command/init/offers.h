@@ -29,8 +29,4 @@ Offers offers_of(const Machine& machine, const std::vector<std::string>& libcame
 /// libcamera's cameras; none if this program was built without libcamera.
 std::vector<std::string> libcamera_ids_of_this_machine();
 
-/// A file that comes with bevloc, "models/nano.onnx": in the present folder, in the tree that this
-/// program was built in, or in /usr/share/bevloc. Nothing if it is in none of them.
-std::optional<std::filesystem::path> shipped_file(const std::filesystem::path& name);
-
 }  // namespace bevloc::command

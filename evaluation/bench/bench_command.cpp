@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "common/option_checks.h"
+#include "common/shipped_file.h"
 #include "evaluation/bench/bench_report.h"
 #include "evaluation/bench/stages.h"
 #include "evaluation/bench/sweeps.h"
@@ -52,7 +53,7 @@ void BenchCommand::declare(CLI::App& app) {
 }
 
 Status BenchCommand::run() const {
-  const auto config = evaluation::load_drive_config(config_file_);
+  const auto config = evaluation::load_drive_config(given_or_shipped(config_file_));
   if (!config) return tl::unexpected(config.error());
   return sweeps_.empty() ? measure(*config) : sweep(*config);
 }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "common/shipped_file.h"
 #include "evaluation/campaign/pictures_run.h"
 #include "pipeline/calibration/rig_yaml.h"
 
@@ -20,17 +21,21 @@ std::vector<sim::Fault> timed(std::vector<sim::Fault> faults, const FaultTime& t
 
 Result<Campaign> Campaign::create(const std::string& config_file, const std::string& table_file,
                                   const CampaignOptions& options) {
-  auto config = load_drive_config(config_file);
+  auto config = load_drive_config(given_or_shipped(config_file));
   if (!config) return tl::unexpected(config.error());
   if (!config->simulation) {
     return fail("{}: found cameras that are not mock, wanted mock ones", config_file);
+  }
+  if (!config->simulation->faults.empty()) {
+    return fail("{}: found simulation.faults, wanted none, because each mode has its own",
+                config_file);
   }
   auto rig = read_rig(config->rig_file);
   if (!rig) return tl::unexpected(rig.error());
   config->simulation->duration_s = options.duration_s;
   Campaign campaign(std::move(*config), std::move(*rig), options);
   if (options.level == Level::kStage) {
-    auto table = read_match_table(table_file);
+    auto table = read_match_table(given_or_shipped(table_file));
     if (!table) return tl::unexpected(table.error());
     campaign.table_ = std::move(*table);
   }
@@ -42,11 +47,9 @@ Status Campaign::drive(const Mode& mode, uint64_t seed, const std::string& map,
                        const std::shared_ptr<drivers::PictureCache>& pictures) const {
   DriveConfig config = config_;
   config.simulation->seed = seed;
-  config.simulation->town_seed = seed;
-  if (!map.empty()) {
-    config.simulation->town_seed.reset();
-    config.map_file = map;
-  }
+  if (!map.empty()) config.map_file = map;
+  config.simulation->town_seed.reset();
+  if (config.map_file.empty()) config.simulation->town_seed = seed;
   config.simulation->faults = timed(mode.faults, mode.time_in(options_.duration_s));
   return options_.level == Level::kStage ? run_stage(config, mode, table_, sink)
                                          : run_pictures(config, rig_, pictures, sink);

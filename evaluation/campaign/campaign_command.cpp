@@ -10,6 +10,7 @@
 #include "evaluation/campaign/campaign_report.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/command_output.h"
+#include "sim/world/world_generator.h"
 
 namespace bevloc::evaluation {
 
@@ -25,12 +26,13 @@ void CampaignCommand::declare(CLI::App& app) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   campaign->add_option("--first-seed", options_.first_seed, "The first seed")
-      ->check(whole_number())
+      ->check(whole_number(sim::kFirstTrainingSeed - 1))
       ->capture_default_str();
   campaign->add_option("--duration", options_.duration_s, "Length of each drive, seconds")
       ->check(number_between(5.0, 1e6))
       ->capture_default_str();
-  campaign->add_option("--map", options_.map, "Drive through this map instead of towns");
+  campaign->add_option("--map", options_.map, "Drive through this map instead of towns")
+      ->check(name_of("a map"));
   campaign->add_option("--config", config_, "Configuration with mock cameras")
       ->capture_default_str();
   campaign->add_option("--matches", table_, "Measured matches for --level stage")

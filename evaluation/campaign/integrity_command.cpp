@@ -7,6 +7,7 @@
 #include "evaluation/campaign/stanford_diagram.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/command_output.h"
+#include "sim/world/world_generator.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -26,13 +27,14 @@ void IntegrityCommand::declare(CLI::App& eval) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   integrity->add_option("--first-seed", options_.first_seed, "The first seed")
-      ->check(whole_number())
+      ->check(whole_number(sim::kFirstTrainingSeed - 1))
       ->capture_default_str();
   integrity->add_option("--duration", options_.duration_s, "Length of each drive, seconds")
       ->check(number_between(5.0, 1e6))
       ->capture_default_str();
   integrity->add_option("--modes", modes_, "Modes (`bevloc campaign --list`); without: all");
-  integrity->add_option("--map", maps_, "Every second seed drives through one of these, in turn");
+  integrity->add_option("--map", maps_, "Every second seed drives through one of these, in turn")
+      ->check(name_of("a map"));
   integrity->add_option("--config", config_, "Configuration with mock cameras")
       ->capture_default_str();
   integrity->add_option("--matches", table_, "Measured matches for --level stage")

@@ -106,7 +106,7 @@ void RunJudge::note_detection(const JudgedCycle& cycle) {
   if (outcome_.detection_s) return;
   why_before_ = WhyMask::from_bits(why_before_.bits() & cycle.why.bits());
   const auto named = WhyMask::from_bits(cycle.why.bits() & named_by_.bits() & ~why_before_.bits());
-  const bool lost = outcome_.first_fix_s >= 0.0 && !cycle.pose;
+  const bool lost = was_valid_ && !cycle.pose;
   if (named == WhyMask() && !lost) return;
   outcome_.detected_by = named == WhyMask() ? "not valid" : names_of(named);
   outcome_.detection_s = cycle.time_s - fault_.from_s;

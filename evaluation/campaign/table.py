@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from pathlib import Path
+from statistics import median
 from typing import Optional, TypedDict
 
 HEAD = (
@@ -34,7 +35,7 @@ def in_seconds(values: list[Optional[float]], runs: int) -> str:
     known = sorted(value for value in values if value is not None)
     if not known:
         return "-"
-    text = f"{known[len(known) // 2]:.2f}"
+    text = f"{median(known):.2f}"
     if len(known) > 1:
         text += f" to {known[-1]:.2f}"
     return text if len(known) == runs else f"{text} in {len(known)} of {runs}"

@@ -8,6 +8,7 @@
 
 #include "common/files.h"
 #include "common/option_checks.h"
+#include "common/shipped_file.h"
 #include "evaluation/campaign/match_recorder.h"
 #include "evaluation/command_output.h"
 #include "pipeline/calibration/rig_yaml.h"
@@ -38,7 +39,7 @@ void TuneMatchesCommand::declare(CLI::App& tune) {
 
 Status TuneMatchesCommand::run() const {
   spdlog::set_level(spdlog::level::warn);
-  auto config = load_drive_config(config_);
+  auto config = load_drive_config(given_or_shipped(config_));
   if (!config) return tl::unexpected(config.error());
   if (!config->simulation) {
     return fail("{}: found cameras that are not mock, wanted mock ones", config_);

@@ -10,6 +10,7 @@
 #include "firmware/runtime/daemon.h"
 #include "firmware/runtime/program.h"
 #include "pipeline/calibration/rig_yaml.h"
+#include "sim/world/world_generator.h"
 
 namespace {
 
@@ -70,6 +71,10 @@ Status apply(const DriveOptions& options, const std::string& config_file, DriveC
   if (!options.map_file.empty()) {
     config.simulation->town_seed.reset();
     config.map_file = options.map_file;
+  }
+  if (config.simulation->town_seed.value_or(0) >= sim::kFirstTrainingSeed) {
+    return fail("--seed: found {}, wanted less than {}, because networks train on other towns",
+                *config.simulation->town_seed, sim::kFirstTrainingSeed);
   }
   return {};
 }

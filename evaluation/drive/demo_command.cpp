@@ -2,6 +2,7 @@
 
 #include "command/init/offers.h"
 #include "common/replace_process.h"
+#include "common/shipped_file.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -25,7 +26,7 @@ void DemoCommand::declare(CLI::App& app) {
 }
 
 Status DemoCommand::run() const {
-  const auto config = command::shipped_file(kConfig);
+  const auto config = shipped_file(kConfig);
   if (!config) return fail("{}: found no such file of bevloc, wanted that of the demo", kConfig);
   std::vector<std::string> arguments{"--config", config->string()};
   arguments.insert(arguments.end(), rest_.begin(), rest_.end());

@@ -20,6 +20,10 @@ nlohmann::ordered_json pose_json(const PoseError& error, bool has_pose) {
           {"yaw_deg", axis_json(error.yaw_deg)}};
 }
 
+nlohmann::ordered_json latency_json(const LatencyReport& latency) {
+  return {{"p50", latency.p50_ms}, {"p99", latency.p99_ms}};
+}
+
 std::string axis_row(const char* name, const AxisError& prior, const AxisError& estimate) {
   return fmt::format("{:<18} {:>7.3f} {:>7.3f} {:>7.3f}   {:>7.3f} {:>7.3f} {:>7.3f}\n", name,
                      prior.mae, prior.rmse, prior.p95, estimate.mae, estimate.rmse, estimate.p95);
@@ -70,10 +74,10 @@ std::string to_json(const DriveReport& report) {
         {"skipped", report.frames.skipped},
         {"under_way", report.frames.under_way()},
         {"missed", report.frames.missed}}},
-      {"latency_ms", {{"p50", report.latency.p50_ms}, {"p99", report.latency.p99_ms}}},
+      {"latency_ms", has_pose ? latency_json(report.latency) : nullptr},
       {"realtime_refusals", report.realtime_refusals},
       {"can", {{"sent", report.can_sent}}},
-      {"first_fix_s", report.first_fix_s},
+      {"first_fix_s", has_pose ? nlohmann::ordered_json(report.first_fix_s) : nullptr},
       {"valid_share", report.valid_share},
       {"seed", report.seed},
       {"duration_s", report.duration_s},

@@ -1,6 +1,5 @@
 #include "evaluation/drive/error_statistics.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -30,15 +29,6 @@ void ErrorStatistics::add(const Se2& error) {
 
 PoseError ErrorStatistics::summary() const {
   return {summarize(longitudinal_m_), summarize(lateral_m_), summarize(yaw_deg_)};
-}
-
-double quantile_of(std::vector<double> values, double quantile) {
-  if (values.empty()) return 0.0;
-  const auto count = static_cast<double>(values.size());
-  const auto rank = static_cast<size_t>(std::max(1.0, std::ceil(quantile * count)));
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank - 1);
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
 }
 
 }  // namespace bevloc::evaluation

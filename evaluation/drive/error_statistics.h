@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/se2.h"
+#include "evaluation/quantile.h"
 
 namespace bevloc::evaluation {
 
@@ -38,9 +39,5 @@ class ErrorStatistics {
   std::vector<double> lateral_m_;
   std::vector<double> yaw_deg_;
 };
-
-/// The smallest value that a share `quantile` of the values does not exceed (nearest rank). The
-/// median of an even number is the lower of the middle two. 0 if there are no values.
-double quantile_of(std::vector<double> values, double quantile);
 
 }  // namespace bevloc::evaluation

@@ -10,6 +10,7 @@ namespace bevloc::evaluation {
 namespace {
 
 constexpr Duration kComparisonPeriod = std::chrono::milliseconds(100);
+constexpr double kCycle_s = 0.01;
 constexpr const char* kInterfaceInLog = "can0";
 
 }  // namespace
@@ -46,6 +47,7 @@ void Judge::step(Duration timeout) {
 void Judge::take(const can::ReceivedFrame& received) {
   log_ << can::candump_line(received.received - times_.log_start, kInterfaceInLog, received.frame)
        << '\n';
+  latest_s_ = to_seconds(received.received - times_.drive_start);
   if (const auto sample = prior_input_->accept(received)) {
     prior_tracker_.add(*sample);
     return;
@@ -75,8 +77,11 @@ void Judge::note_solution(const can::ReceivedFrame& received, bool valid) {
 }
 
 double Judge::valid_share() const {
-  if (solutions_since_fix_ == 0) return 0.0;
-  return static_cast<double>(view().valid_poses) / static_cast<double>(solutions_since_fix_);
+  if (first_fix_s_ < 0.0) return 0.0;
+  // The bus may be silent. The latest cycle may not be complete.
+  const auto cycles = static_cast<uint64_t>((latest_s_ - first_fix_s_) / kCycle_s);
+  return static_cast<double>(view().valid_poses) /
+         static_cast<double>(std::max({solutions_since_fix_, cycles, uint64_t{1}}));
 }
 
 void Judge::compare(const BusPose& pose) {

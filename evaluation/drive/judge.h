@@ -67,7 +67,7 @@ class Judge {
   PoseError estimate_error() const { return estimate_error_.summary(); }
   /// The time of the first valid pose since the start of the drive; negative if there was none.
   double first_fix_s() const { return first_fix_s_; }
-  /// The share of valid poses among those sent since the first fix.
+  /// The share of the cycles since the first fix that have sent a valid pose.
   double valid_share() const;
   /// Number of CAN frames that the localizer sent.
   uint64_t localizer_frames() const { return localizer_frames_; }
@@ -94,6 +94,7 @@ class Judge {
   ErrorStatistics estimate_error_;
   uint64_t localizer_frames_ = 0;
   uint64_t solutions_since_fix_ = 0;
+  double latest_s_ = 0.0;  ///< when a frame of any node was received
   double first_fix_s_ = -1.0;
   mutable std::mutex view_mutex_;
   JudgeView view_;

@@ -5,6 +5,7 @@
 
 #include "common/json_dump.h"
 #include "common/option_checks.h"
+#include "common/shipped_file.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/command_output.h"
 #include "evaluation/drive/sheet.h"
@@ -193,7 +194,7 @@ Status LocalizeCommand::run() const {
   LocalizerOptions options;
   options.solver = solver_;
   options.online_calibration.enabled = false;
-  auto localizer = Localizer::create(*rig, index, model_, options);
+  auto localizer = Localizer::create(*rig, index, given_or_shipped(model_), options);
   if (!localizer) return tl::unexpected(localizer.error());
 
   const SearchRange range = wide_ ? SearchRange::kAcquiring : SearchRange::kTracking;

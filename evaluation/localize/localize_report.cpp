@@ -81,7 +81,7 @@ nlohmann::json json_of(const Localization& localization) {
                       {"prior", in_units(localization.prior)},
                       {"evidence", match.evidence == Evidence::kGood},
                       {"perception", json_of(localization.perception)}};
-  for (const char* key : {"pose", "correction", "sigma", "evidence_share", "score"}) {
+  for (const char* key : {"pose", "correction", "sigma", "evidence_share", "axis_score", "score"}) {
     json[key] = nullptr;
   }
   if (match.evidence == Evidence::kNone) return json;
@@ -90,6 +90,7 @@ nlohmann::json json_of(const Localization& localization) {
   json["sigma"] = in_units(pose_sigma(match));
   json["evidence_share"] = {match.evidence_share.x(), match.evidence_share.y(),
                             match.evidence_share.z()};
+  json["axis_score"] = {match.axis_score.x(), match.axis_score.y(), match.axis_score.z()};
   json["score"] = match.score;
   return json;
 }

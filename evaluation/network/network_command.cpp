@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/option_checks.h"
+#include "common/shipped_file.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/command_output.h"
 #include "evaluation/network/network_evaluation.h"
@@ -47,11 +48,14 @@ void NetworkCommand::declare(CLI::App& eval) {
   network->add_option("--seed", seed_, "Seed of the samples")
       ->check(CLI::Range(uint64_t{0}, kSampleSeeds - 1))
       ->capture_default_str();
-  network->add_option("--map", map_file_,
-                      "Take the samples on this map instead of in procedural towns");
+  network
+      ->add_option("--map", map_file_,
+                   "Take the samples on this map instead of in procedural towns")
+      ->check(bevloc::name_of("a map"));
   network->add_option("--json", json_file_, "Write the rows as JSON to this file")
       ->check(output_file());
-  network->add_option("--csv", csv_file_, "Write the rows as CSV to this file");
+  network->add_option("--csv", csv_file_, "Write the rows as CSV to this file")
+      ->check(output_file());
   network->footer(
       "Examples:\n"
       "  bevloc eval network --frames 50\n"
@@ -77,7 +81,7 @@ Status NetworkCommand::run() const {
     if (!loaded) return tl::unexpected(loaded.error());
     map = std::move(*loaded);
   }
-  auto evaluation = NetworkEvaluation::create(model_, rows_);
+  auto evaluation = NetworkEvaluation::create(given_or_shipped(model_), rows_);
   if (!evaluation) return tl::unexpected(evaluation.error());
 
   const NetworkEvaluationSubject subject{evaluation->model_name(), map_file_, frames_, seed_};

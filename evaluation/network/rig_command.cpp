@@ -8,6 +8,7 @@
 
 #include "common/json_dump.h"
 #include "common/option_checks.h"
+#include "common/shipped_file.h"
 #include "evaluation/command_output.h"
 #include "evaluation/network/network_evaluation.h"
 #include "evaluation/summary_format.h"
@@ -37,7 +38,8 @@ PerAxis ratio_of(const PerAxis& a, const PerAxis& b) {
 void RigCommand::declare(CLI::App& eval) {
   auto* rig = eval.add_subcommand("rig", "Say what a rig costs against the simulator's own");
   auto* drawn =
-      rig->add_option("--random", drawn_seed_, "Draw a rig with this seed, instead of a file");
+      rig->add_option("--random", drawn_seed_, "Draw a rig with this seed, instead of a file")
+          ->check(whole_number());
   rig->add_option("file", rig_file_, "Calibration of the cameras")->excludes(drawn);
   rig->add_option("--write", drawn_file_, "Write the drawn rig to this file")
       ->check(output_file())
@@ -75,7 +77,7 @@ Result<RigCommand::NamedRig> RigCommand::chosen_rig() const {
 Status RigCommand::run() const {
   const auto rig = chosen_rig();
   if (!rig) return tl::unexpected(rig.error());
-  auto evaluation = NetworkEvaluation::create(model_);
+  auto evaluation = NetworkEvaluation::create(given_or_shipped(model_));
   if (!evaluation) return tl::unexpected(evaluation.error());
   if (const Status fits = check_rig_fits(evaluation->model_rig(), rig->rig); !fits) {
     fmt::print(stderr, "{}: bevlocd refuses it: {}\n", rig->name, fits.error().message);

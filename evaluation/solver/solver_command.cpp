@@ -42,7 +42,8 @@ void SolverCommand::declare_eval(CLI::App& eval) {
   declare_rows(*solver);
   solver->add_option("--json", json_file_, "Write the rows as JSON to this file")
       ->check(output_file());
-  solver->add_option("--csv", csv_file_, "Write the rows as CSV to this file");
+  solver->add_option("--csv", csv_file_, "Write the rows as CSV to this file")
+      ->check(output_file());
   solver->footer(
       "Examples:\n"
       "  bevloc eval solver --scenes 200\n"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "evaluation/quantile.h"
 #include "pipeline/tracker/measurements.h"
 
 namespace bevloc::evaluation {
@@ -31,14 +32,6 @@ PerAxis error_of(const Se2& estimate, const Se2& truth) {
 double is_within(double error, double limit) {
   if (std::isnan(limit)) return kNotGiven;
   return error <= limit ? 1.0 : 0.0;
-}
-
-/// The value below which a share of the values lies. Reorders the values.
-double quantile(std::vector<double>& values, double share) {
-  const auto nth =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, nth);
-  return *nth;
 }
 
 }  // namespace
@@ -97,11 +90,11 @@ Summary summarise(const std::vector<Outcome>& outcomes) {
       summary.coverage_3s[axis] += share * is_within(error, 3.0 * outcome.sigma[axis]);
     }
     summary.rmse[axis] = std::sqrt(square);
-    summary.median[axis] = quantile(values, 0.5);
-    summary.p95[axis] = quantile(values, 0.95);
+    summary.median[axis] = quantile_of(values, 0.5);
+    summary.p95[axis] = quantile_of(values, 0.95);
   }
   std::ranges::transform(outcomes, values.begin(), &Outcome::time_ms);
-  summary.time_ms = quantile(values, 0.5);
+  summary.time_ms = quantile_of(values, 0.5);
   return summary;
 }
 

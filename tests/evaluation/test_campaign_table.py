@@ -30,7 +30,7 @@ class TableTest(unittest.TestCase):
         text = table.markdown([row(1, 0.0, 1.0), row(2, 0.25, 3.0)])
         line = text.splitlines()[-1]
         self.assertIn("| 0.25 | 0.10 / 0.40 / 0.30 |", line)
-        self.assertIn("| GnssContradicts | 3.00 to 3.00 |", line)
+        self.assertIn("| GnssContradicts | 2.00 to 3.00 |", line)
         self.assertNotIn("fails", line)
 
     def test_says_which_mode_fails(self) -> None:

@@ -10,7 +10,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/files.h"
 #include "tests/evaluation/campaign/run_mode.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -53,6 +55,37 @@ TEST(ModeTableTest, HasDistinctNamesAndEnoughModes) {
     EXPECT_FALSE(mode.what.empty()) << mode.name;
   }
   EXPECT_GE(names.size(), 30);
+}
+
+/// A copy of the demo's configuration beside it, with this text in place of its seed of the town.
+Result<Campaign> campaign_with(const std::string& map, const std::string& simulation) {
+  const std::filesystem::path own = std::filesystem::path(BEVLOC_SOURCE_DIR) / "config";
+  std::string text = read_file(own / "demo.yaml").value();
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("procedural_seed: 7", map);
+  replace("rig: ", "rig: " + own.string() + "/");
+  replace("file: ../models", "file: " + own.string() + "/../models");
+  const test::TemporaryFolder folder;
+  EXPECT_TRUE(write_file(folder / "own.yaml", text + simulation));
+  return Campaign::create((folder / "own.yaml").string(),
+                          BEVLOC_SOURCE_DIR "/evaluation/campaign/matches.csv", short_drives());
+}
+
+TEST(CampaignTest, DrivesThroughTheMapOfItsConfiguration) {
+  const auto campaign = campaign_with("file: /no/such.osm", "");
+  ASSERT_TRUE(campaign) << campaign.error().message;
+  const auto modes = modes_named({"none"}, Level::kStage);
+  const Status driven = campaign->run(*modes, [](const CampaignRow&) {});
+  ASSERT_FALSE(driven);
+  EXPECT_THAT(driven.error().message, testing::HasSubstr("/no/such.osm"));
+}
+
+TEST(CampaignTest, RefusesFaultsOfItsConfiguration) {
+  const auto campaign = campaign_with("procedural_seed: 7", "  faults: [{kind: gnss_outage}]\n");
+  ASSERT_FALSE(campaign);
+  EXPECT_THAT(campaign.error().message, testing::HasSubstr("found simulation.faults"));
 }
 
 TEST(ModeTableTest, RefusesAnUnknownMode) {

@@ -74,6 +74,16 @@ TEST(RunJudgeTest, CountsOnlyAReasonThatNamesTheFaultAsDetection) {
   EXPECT_EQ(outcome.timeline.size(), 3);
 }
 
+TEST(RunJudgeTest, APoseThatWasLostBeforeTheFaultDetectsNothing) {
+  RunJudge judge(kFault, Why::kGnssContradicts);
+  feed(judge, 0.0, 9.0, kRight);
+  feed(judge, 9.0, 12.0, lost_cycle);
+  feed(judge, 12.0, 20.0, kRight);
+  EXPECT_FALSE(judge.outcome().detection_s);
+  EXPECT_EQ(judge.outcome().detected_by, "");
+  EXPECT_EQ(judge.outcome().false_lost, 1);
+}
+
 TEST(RunJudgeTest, DoesNotCountAReasonThatWasThereBeforeTheFault) {
   const auto degraded = [](double time_s) {
     JudgedCycle cycle = kRight(time_s);

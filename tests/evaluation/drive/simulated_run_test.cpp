@@ -64,6 +64,16 @@ TEST_F(SimulatedRunTest, PicturesFromTheCacheGiveTheSameLog) {
   EXPECT_EQ(options_.pictures->counters().found, first.kept);
 }
 
+TEST_F(SimulatedRunTest, ASilentBusIsNotValid) {
+  config_.simulation->duration_s = 6.0;
+  config_.simulation->faults = {make_fault(FaultKind::kBusOff, 4.0)};
+  const auto report = run();
+  ASSERT_TRUE(report) << report.error().message;
+  ASSERT_GT(report->first_fix_s, 0.0);
+  ASSERT_LT(report->first_fix_s, 4.0);
+  EXPECT_NEAR(report->valid_share, (4.0 - report->first_fix_s) / (6.0 - report->first_fix_s), 0.02);
+}
+
 TEST_F(SimulatedRunTest, AGapOfTheClockIsAGapOnTheBus) {
   sim::Fault gap = make_fault(FaultKind::kClockGap, 1.0);
   gap.amounts.gap_s = 1.5;
