@@ -54,7 +54,7 @@ Status MockCamera::draw(const Delivery& delivery, RgbImage& image) {
   const double time_s = to_seconds(true_time);
   // What happens to the optics belongs to the camera, wherever its cable is plugged in.
   const int source =
-      sim::source_camera(config_.camera, config_.faults->active_on_camera(config_.camera, time_s));
+      sim::source_camera(config_.camera, config_.faults->active(sim::FaultInput::kCamera, time_s));
   const std::vector<sim::Fault> active = config_.faults->active_on_camera(source, time_s);
   const CameraModel& camera = config_.true_rig.cameras[source];
   if (camera.intrinsics.width_px != image.width || camera.intrinsics.height_px != image.height) {

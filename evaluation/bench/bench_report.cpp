@@ -36,18 +36,29 @@ std::string row(const StageResult& stage, const MachinePeak& peak, bool counted)
       cell(100.0 * share_of_peak(stage, peak), 0), cell(ideal_ms, 3));
 }
 
+bool is_measured(const MachinePeak& peak) {
+  return peak.copy_bytes_per_s > 0.0;
+}
+
 std::string machine_lines(const BenchResult& result) {
   const MachinePeak& peak = result.peak;
   const std::string lines =
       fmt::format("{}, {} frames at {} places, threads: {}\n{}, {}\n", result.model, result.frames,
                   result.places, result.threads, result.processor, result.instruction_set);
-  if (peak.copy_bytes_per_s == 0.0) return lines + "the machine's peak was not measured\n\n";
+  if (!is_measured(peak)) return lines + "the machine's peak was not measured\n\n";
   return lines + fmt::format(
                      "peak of int8: {:.0f} GMAC/s (convolution {:.0f}, matrix product {:.0f}); "
                      "copy: {:.1f} "
                      "GB/s\n\n",
                      peak.macs_per_s() / kGiga, peak.convolution_macs_per_s / kGiga,
                      peak.matmul_macs_per_s / kGiga, peak.copy_bytes_per_s / kGiga);
+}
+
+/// Empty if the peak of the machine was not measured.
+std::string ideals_line(double ideals_ms, double whole_ms) {
+  if (ideals_ms <= 0.0) return "";
+  return fmt::format("{:16} {:>7.3f}   the whole frame takes {:.2f} times as long\n",
+                     "sum of ideals", ideals_ms, whole_ms / ideals_ms);
 }
 
 std::string frame_lines(const BenchResult& result) {
@@ -57,9 +68,9 @@ std::string frame_lines(const BenchResult& result) {
          fmt::format(
              "{:16} {:>7.3f}\n{:16} {:>7.3f}   (pose trail, queues, health, cache misses between "
              "stages)\n"
-             "{:16} {:>7.3f}   the whole frame takes {:.2f} times as long\n",
+             "{}",
              "sum of stages", result.sum_of_stages_ms(), "unattributed", result.outside_ms(),
-             "sum of ideals", ideals_ms, ideals_ms > 0.0 ? whole_ms / ideals_ms : 0.0);
+             ideals_line(ideals_ms, whole_ms));
 }
 
 std::string memory_lines(const MemoryResult& memory) {
@@ -80,8 +91,12 @@ nlohmann::json json_of(const StageResult& stage, const MachinePeak& peak, bool c
                       {"bytes", stage.work.bytes},
                       {"gmac", stage.work.macs / kGiga},
                       {"gmac_per_s", macs_per_s(stage) / kGiga},
-                      {"share_of_peak", share_of_peak(stage, peak)},
-                      {"ideal_ms", kMs_per_s * ideal_s(stage.work, peak)}};
+                      {"share_of_peak", nullptr},
+                      {"ideal_ms", nullptr}};
+  if (is_measured(peak)) {
+    json["share_of_peak"] = share_of_peak(stage, peak);
+    json["ideal_ms"] = kMs_per_s * ideal_s(stage.work, peak);
+  }
   json["allocations"] = counted ? nlohmann::json(stage.allocations) : nlohmann::json();
   return json;
 }
@@ -151,8 +166,12 @@ std::string to_json(const BenchResult& result) {
     }
     frame["sum_of_stages_ms"] = result.sum_of_stages_ms();
     frame["outside_ms"] = result.outside_ms();
-    frame["sum_of_ideals_ms"] = ideals_ms;
-    frame["times_ideal"] = result.whole_frame->time.p50_ms / ideals_ms;
+    frame["sum_of_ideals_ms"] = nullptr;
+    frame["times_ideal"] = nullptr;
+    if (is_measured(result.peak)) {
+      frame["sum_of_ideals_ms"] = ideals_ms;
+      frame["times_ideal"] = result.whole_frame->time.p50_ms / ideals_ms;
+    }
     json["frame"] = frame;
   }
   return dump_json(json, 2) + "\n";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ranges>
 
 #include <Eigen/Geometry>
 
@@ -82,10 +83,14 @@ Eigen::Matrix3d turned(const FaultAmounts& by) {
 }  // namespace
 
 int source_camera(int camera, std::span<const Fault> active) {
-  for (const Fault& fault : active) {
+  // From the computer along the cables, so the latest swap comes first.
+  for (const Fault& fault : active | std::views::reverse) {
     if (fault.kind != FaultKind::kCameraSwapped || !fault.camera || !fault.other_camera) continue;
-    if (*fault.camera == camera) return *fault.other_camera;
-    if (*fault.other_camera == camera) return *fault.camera;
+    if (*fault.camera == camera) {
+      camera = *fault.other_camera;
+    } else if (*fault.other_camera == camera) {
+      camera = *fault.camera;
+    }
   }
   return camera;
 }

@@ -88,6 +88,18 @@ TEST(PictureFaults, SwappedCamerasShowEachOthersView) {
   EXPECT_EQ(source_camera(2, active), 2);
 }
 
+TEST(PictureFaults, SwapsActOneAfterTheOther) {
+  Fault first = make_fault(FaultKind::kCameraSwapped);
+  first.camera = 1;
+  first.other_camera = 4;
+  Fault second = first;
+  second.other_camera = 0;
+  const std::vector active = {first, second};
+  EXPECT_EQ(source_camera(0, active), 4);
+  EXPECT_EQ(source_camera(1, active), 0);
+  EXPECT_EQ(source_camera(4, active), 1);
+}
+
 TEST(PictureFaults, ATurnedCameraLooksToTheLeftDownOrTiltsToTheRight) {
   const CameraModel front = nominal_rig().cameras[1];
   const auto axis_after = [&](double yaw_deg, double pitch_deg) -> Eigen::Vector3d {
