@@ -144,6 +144,8 @@ std::vector<Mode> match_modes() {
             contradicts);
   modes.add("match-locked-3m-later", "match 3 m to the side, later", kTwenty, locked(3.0),
             contradicts);
+  modes.add("match-locked-1.2m-later", "match 1.2 m to the side, later", kTwenty, locked(1.2),
+            contradicts);
   modes.add("match-biased-0.4m", "match 0.4 m to the side (kerb and map differ)", kToTheEnd,
             locked(0.4), {});
   modes.add("match-creeping", "match moves to the side at 0.05 m/s", kToTheEnd,

@@ -283,6 +283,9 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
   Verdict verdict;
   const bool valid = standing == PoseStanding::kValid;
   if (!valid) gnss_.excluded = false;
+  // The place of the match that was refused says nothing any more once the pose is lost. Compared
+  // with it, a right match would not count, and would never be trusted again.
+  if (!valid && match_.excluded) match_.refused_in_a_row = 0;
   if (match_is_disputed() && !match_.excluded) {
     decide_dispute(verdict, standing);
     if (verdict.odometry_contradicts) odometry_wrong_until_ = now + kOdometryMemory;

@@ -71,6 +71,23 @@ TEST_F(ArbiterTest, BlamesAMatchThatJumpsFartherThanAnyVehicle) {
   EXPECT_FALSE(arbiter_.open_dispute());
 }
 
+/// The pose grows uncertain while the match is excluded, so an offset of 1.5 m soon says nothing.
+TEST_F(ArbiterTest, TrustsARightMatchAgainAfterThePoseWasLost) {
+  run(20, none_, none_);
+  run(10, {0.0, 1.5, 0.0}, none_);
+  ASSERT_FALSE(arbiter_.trusts_match());
+  PoseInnovation uncertain = innovation(none_);
+  uncertain.covariance *= 100.0;
+  for (int i = 0; i < 100; ++i) {
+    now_ += milliseconds(100);
+    arbiter_.judge(now_, PoseStanding::kLost);
+    arbiter_.add_match(now_, uncertain, true);
+    arbiter_.add_gnss(now_, uncertain, true, Eigen::Vector3d::Zero());
+  }
+  EXPECT_TRUE(arbiter_.trusts_match());
+  EXPECT_FALSE(arbiter_.judge(now_, PoseStanding::kLost).match_contradicts);
+}
+
 TEST_F(ArbiterTest, LeavesASlowContradictionToGnss) {
   run(20, none_, none_);
   // The match departs in steps that wheels could explain, and GNSS stays with dead reckoning.
