@@ -143,7 +143,8 @@ void VisionStage::note_unused_images(CameraMask given, CameraMask used) {
   const CameraMask dark = localizer_.with(ViewFault::kDark);
   const CameraMask blinded = localizer_.with(ViewFault::kBlinded);
   const CameraMask dirty = localizer_.with(ViewFault::kDirty);
-  const CameraMask judged = localizer_.frozen() | dark | blinded | dirty;
+  const CameraMask judged =
+      localizer_.frozen() | dark | blinded | dirty | localizer_.out_of_place();
   const CameraMask unreadable = given & ~used & ~judged;
   for (int camera = 0; camera < kCameraCount; ++camera) {
     if (unreadable[camera]) ++counters_.unreadable[camera];

@@ -97,6 +97,9 @@ class Localizer {
     return online_calibration_ ? &*online_calibration_ : nullptr;
   }
 
+  /// The cameras that are not used because of where the online calibration found them.
+  CameraMask out_of_place() const;
+
   /// The raster of the latest localize(), kRasterSize bytes.
   std::span<const uint8_t> map_raster() const { return network_->raster_input(); }
 
@@ -123,8 +126,6 @@ class Localizer {
   void learn(const CameraImages& images, CameraMask usable, SearchRange range, const Se2& prior,
              const SolverResult& result);
   void apply_learned();
-  /// The cameras that must not be used because of where the online calibration found them.
-  CameraMask out_of_place() const;
 
   Rig calibrated_rig_;  ///< the network rig of the calibration
   Rig network_rig_;     ///< the same with the learned errors

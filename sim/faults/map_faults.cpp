@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 #include "sim/world/path.h"
 #include "sim/world/road_side.h"
@@ -63,9 +62,11 @@ void keep_far_pieces(const MapElement& element, const Polyline& places, double r
   // Long segments must not survive because both of their ends are far away.
   const Path path(element.points);
   const auto steps = static_cast<int>(std::ceil(path.length_m()));
-  const auto point_at = [&](int step) { return path.position(path.length_m() * step / steps); };
-  const auto all_steps = std::views::iota(0, steps + 1);
-  if (std::ranges::none_of(all_steps, [&](int step) { return is_near(point_at(step)); })) {
+  Polyline points;
+  for (int step = 0; step <= steps; ++step) {
+    points.push_back(path.position(path.length_m() * step / steps));
+  }
+  if (std::ranges::none_of(points, is_near)) {
     kept.push_back(element);
     return;
   }
@@ -74,8 +75,7 @@ void keep_far_pieces(const MapElement& element, const Polyline& places, double r
     if (piece.points.size() >= 2) kept.push_back(piece);
     piece.points.clear();
   };
-  for (const int step : all_steps) {
-    const Eigen::Vector2d point = point_at(step);
+  for (const Eigen::Vector2d& point : points) {
     if (is_near(point)) {
       finish_piece();
     } else {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ranges>
 
 #include <Eigen/Geometry>
 
@@ -84,7 +83,8 @@ Eigen::Matrix3d turned(const FaultAmounts& by) {
 
 int source_camera(int camera, std::span<const Fault> active) {
   // From the computer along the cables, so the latest swap comes first.
-  for (const Fault& fault : active | std::views::reverse) {
+  for (auto latest = active.rbegin(); latest != active.rend(); ++latest) {
+    const Fault& fault = *latest;
     if (fault.kind != FaultKind::kCameraSwapped || !fault.camera || !fault.other_camera) continue;
     if (*fault.camera == camera) {
       camera = *fault.other_camera;
