@@ -129,10 +129,8 @@ class Trainer:
 
     def _continue(self) -> None:
         if not self.config.resume:
-            raise TrainingError(
-                f"{self.checkpoint_path}: found a run, wanted --resume to continue it, or another "
-                "folder for --run"
-            )
+            wanted = "wanted --resume to continue it, or another folder for --run"
+            raise TrainingError(f"{self.checkpoint_path}: found a run, {wanted}")
         self._load()
 
     def _parameter_groups(self) -> list[dict]:
