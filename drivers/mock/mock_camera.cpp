@@ -47,8 +47,10 @@ Status MockCamera::draw(const Delivery& delivery, RgbImage& image) {
                  delivery.scene_time - config_.timing.drive_start, image);
     return {};
   }
-  config_.faults->hang(sim::FaultKind::kHangCapture, config_.camera,
-                       [this] { return to_seconds(clock_.now() - config_.timing.drive_start); });
+  const auto now_s = [this] { return to_seconds(clock_.now() - config_.timing.drive_start); };
+  if (config_.faults->hang(sim::FaultKind::kHangCapture, config_.camera, now_s)) {
+    return fail("camera {}: hung until the end of the drive", kCameraNames[config_.camera]);
+  }
   const Duration scene_time = drive_time(delivery.scene_time);
   const Duration true_time = schedule_.true_exposure_start(delivery) - config_.timing.drive_start;
   const double time_s = to_seconds(true_time);

@@ -78,9 +78,14 @@ bool FaultBoard::hangs(FaultKind kind, int camera, double time_s) const {
   });
 }
 
-void FaultBoard::hang(FaultKind kind, int camera, const std::function<double()>& time_s) const {
+bool FaultBoard::hang(FaultKind kind, int camera, const std::function<double()>& time_s) const {
   std::unique_lock lock(mutex_);
-  while (hangs(kind, camera, time_s())) changed_.wait_for(lock, kHangPoll);
+  bool hung = false;
+  while (hangs(kind, camera, time_s())) {
+    hung = true;
+    changed_.wait_for(lock, kHangPoll);
+  }
+  return hung && released_;
 }
 
 void FaultBoard::release() {

@@ -39,8 +39,8 @@ class FaultBoard {
   std::vector<Fault> all(FaultInput input) const;
 
   /// Blocks while a fault of this kind hangs the calling thread, in real time. `time_s` gives the
-  /// time of the drive. `camera` matters for kHangCapture only.
-  void hang(FaultKind kind, int camera, const std::function<double()>& time_s) const;
+  /// time of the drive. `camera` matters for kHangCapture only. Returns whether release() ended it.
+  bool hang(FaultKind kind, int camera, const std::function<double()>& time_s) const;
   /// Ends every hang() for good, so that the threads can end.
   void release();
 
