@@ -44,7 +44,7 @@ class Options(unittest.TestCase):
         self.assertIn("'tiny'", self.refusal(*budget, "--network", "tiny"))
         self.assertIn("'magic'", self.refusal(*budget, "--view", "magic"))
         self.assertIn("384 x 896", self.refusal(*budget, "--network", "paper-resnet50"))
-        self.assertIn("found 401, wanted at least 4294967296", self.refusal(*budget, "--seed", "401"))
+        self.assertIn("found 401, wanted at least 4294967296", self.refusal(*budget, "--seed=401"))
         self.assertIn("no --scenes", self.refusal(*budget, "--validation-scenes", "val.txt"))
         self.assertIn("unrecognized", self.refusal(*budget, "--record", "drives"))
         self.assertIn("0 minutes", self.refusal(*budget, "--validation-minutes", "0"))
