@@ -51,7 +51,7 @@ SimulatedRunOptions quiet_options(const test::TemporaryFolder& folder) {
   return options;
 }
 
-TEST(ThreadsTest, RunsUntilItHasLocalizedAndEndsEveryThread) {
+TEST(RealTimeThreadsTest, RunsUntilItHasLocalizedAndEndsEveryThread) {
   const test::TemporaryFolder folder;
   const DriveConfig config = endless_demo();
   const auto report =
@@ -89,7 +89,7 @@ int last_cpu() {
   return last;
 }
 
-TEST(ThreadsTest, AreNamedAndRunOnTheConfiguredCpus) {
+TEST(RealTimeThreadsTest, AreNamedAndRunOnTheConfiguredCpus) {
   const test::TemporaryFolder folder;
   DriveConfig config = endless_demo();
   config.realtime.vision.cpus = {last_cpu()};
@@ -115,7 +115,7 @@ TEST(ThreadsTest, AreNamedAndRunOnTheConfiguredCpus) {
   EXPECT_EQ(report->realtime_refusals, 1);
 }
 
-TEST(ThreadsTest, LockstepAppliesNoRealtimeSettings) {
+TEST(RealTimeThreadsTest, LockstepAppliesNoRealtimeSettings) {
   const test::TemporaryFolder folder;
   DriveConfig config = endless_demo();
   config.simulation->duration_s = 0.5;
@@ -138,7 +138,7 @@ int localizer_frames_in(const std::filesystem::path& log) {
   return count;
 }
 
-TEST(ThreadsTest, HangingThreadsStandStillAndEndWithTheRun) {
+TEST(RealTimeThreadsTest, HangingThreadsStandStillAndEndWithTheRun) {
   const test::TemporaryFolder folder;
   DriveConfig config = endless_demo();
   config.cameras.rate_hz = 10.0;
@@ -160,7 +160,7 @@ TEST(ThreadsTest, HangingThreadsStandStillAndEndWithTheRun) {
       << "the epoch that hung, and the sign-off; the daemon sends more than 1,000 in this time";
 }
 
-TEST(ThreadsTest, StopsWhenAsked) {
+TEST(RealTimeThreadsTest, StopsWhenAsked) {
   const test::TemporaryFolder folder;
   const DriveConfig config = endless_demo();
   int asked = 0;
