@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdlib>
 
-#include "common/replace_process.h"
 #include "drivers/camera/v4l2/device_finder.h"
 #ifdef BEVLOC_HAS_LIBCAMERA
 #include "drivers/camera/libcamera/libcamera_camera.h"

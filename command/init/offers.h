@@ -1,9 +1,6 @@
-// What a machine offers for a configuration: cameras, CAN interfaces and the files that come with
-// bevloc.
+// What a machine offers for a configuration: cameras and CAN interfaces.
 #pragma once
 
-#include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 

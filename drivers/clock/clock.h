@@ -17,8 +17,8 @@ class Clock {
   /// For how long the machine was suspended since its start. now() stood still meanwhile.
   virtual Duration suspended() const = 0;
 
-  /// As now(), from another zero, at the rate of the hardware. A time service steers the rate of
-  /// now() while it corrects the system clock.
+  /// The time since an arbitrary zero, at the rate of the hardware. The rate of now() changes while
+  /// a time service corrects the system clock.
   virtual Duration unsteered() const = 0;
 };
 

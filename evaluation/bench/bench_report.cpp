@@ -81,23 +81,24 @@ std::string memory_lines(const MemoryResult& memory) {
       memory.images_mib, memory.process.now_mib, memory.process.peak_mib);
 }
 
+nlohmann::json or_null(bool known, double value) {
+  return known ? nlohmann::json(value) : nlohmann::json();
+}
+
 nlohmann::json json_of(const StageResult& stage, const MachinePeak& peak, bool counted) {
-  nlohmann::json json{{"name", stage.name},
-                      {"in_frame", stage.in_frame},
-                      {"p50_ms", stage.time.p50_ms},
-                      {"p90_ms", stage.time.p90_ms},
-                      {"p99_ms", stage.time.p99_ms},
-                      {"max_ms", stage.time.max_ms},
-                      {"bytes", stage.work.bytes},
-                      {"gmac", stage.work.macs / kGiga},
-                      {"gmac_per_s", macs_per_s(stage) / kGiga},
-                      {"share_of_peak", nullptr},
-                      {"ideal_ms", nullptr}};
-  if (is_measured(peak)) {
-    json["share_of_peak"] = share_of_peak(stage, peak);
-    json["ideal_ms"] = kMs_per_s * ideal_s(stage.work, peak);
-  }
-  json["allocations"] = counted ? nlohmann::json(stage.allocations) : nlohmann::json();
+  nlohmann::json json{
+      {"name", stage.name},
+      {"in_frame", stage.in_frame},
+      {"p50_ms", stage.time.p50_ms},
+      {"p90_ms", stage.time.p90_ms},
+      {"p99_ms", stage.time.p99_ms},
+      {"max_ms", stage.time.max_ms},
+      {"bytes", stage.work.bytes},
+      {"gmac", stage.work.macs / kGiga},
+      {"gmac_per_s", macs_per_s(stage) / kGiga},
+      {"share_of_peak", or_null(is_measured(peak), share_of_peak(stage, peak))},
+      {"ideal_ms", or_null(is_measured(peak), kMs_per_s * ideal_s(stage.work, peak))},
+      {"allocations", or_null(counted, stage.allocations)}};
   return json;
 }
 
@@ -166,12 +167,9 @@ std::string to_json(const BenchResult& result) {
     }
     frame["sum_of_stages_ms"] = result.sum_of_stages_ms();
     frame["outside_ms"] = result.outside_ms();
-    frame["sum_of_ideals_ms"] = nullptr;
-    frame["times_ideal"] = nullptr;
-    if (is_measured(result.peak)) {
-      frame["sum_of_ideals_ms"] = ideals_ms;
-      frame["times_ideal"] = result.whole_frame->time.p50_ms / ideals_ms;
-    }
+    const bool measured = is_measured(result.peak);
+    frame["sum_of_ideals_ms"] = or_null(measured, ideals_ms);
+    frame["times_ideal"] = or_null(measured, result.whole_frame->time.p50_ms / ideals_ms);
     json["frame"] = frame;
   }
   return dump_json(json, 2) + "\n";

@@ -1,6 +1,5 @@
 #include "evaluation/drive/demo_command.h"
 
-#include "command/init/offers.h"
 #include "common/replace_process.h"
 #include "common/shipped_file.h"
 

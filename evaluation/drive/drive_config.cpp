@@ -121,7 +121,7 @@ Result<DriveConfig> load_drive_config(const std::filesystem::path& file) {
 Result<DriveConfig> load_recorded_drive_config(const std::filesystem::path& file,
                                                const firmware::ConfigFiles& files) {
   return load_with_simulation([&](const firmware::SimulationReader& reader) {
-    return firmware::load_recorded_config(file, &reader, files);
+    return firmware::load_config_without_manifest(file, &reader, files);
   });
 }
 

@@ -56,7 +56,7 @@ firmware::SimulationReader simulation_reader(std::optional<SimulationConfig>& si
 /// Like firmware::load_config(), but accepts mock cameras.
 Result<DriveConfig> load_drive_config(const std::filesystem::path& file);
 
-/// Like firmware::load_recorded_config(), but accepts mock cameras.
+/// Like firmware::load_config_without_manifest(), but accepts mock cameras.
 Result<DriveConfig> load_recorded_drive_config(const std::filesystem::path& file,
                                                const firmware::ConfigFiles& files);
 

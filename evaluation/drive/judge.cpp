@@ -10,7 +10,7 @@ namespace bevloc::evaluation {
 namespace {
 
 constexpr Duration kComparisonPeriod = std::chrono::milliseconds(100);
-constexpr double kCycle_s = 0.01;
+constexpr double kCycle_s = 1e-3 * can::kSolutionCycleMs;
 constexpr const char* kInterfaceInLog = "can0";
 
 }  // namespace

@@ -25,16 +25,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A copy of the DBC file that the recording was made with, for load_recorded_config(). Recordings
-/// of old versions hold none.
-Result<fs::path> recorded_dbc(const Recording& recording, const ScratchFolder& scratch) {
-  const mcap::Attachment* dbc = recording.attachment(firmware::kDbcAttachment);
-  if (dbc == nullptr) return fs::path();
-  const fs::path copy = scratch.path() / "vehicle.dbc";
-  if (Status written = write_file(copy, dbc->data); !written) {
+/// Writes the content to a file in the scratch folder.
+Result<fs::path> copy_of(const std::string& content, std::string_view name,
+                         const ScratchFolder& scratch) {
+  const fs::path copy = scratch.path() / name;
+  if (Status written = write_file(copy, content); !written) {
     return tl::unexpected(written.error());
   }
   return copy;
+}
+
+/// A copy of the DBC file. Empty if the recording holds none, as those of old versions.
+Result<fs::path> recorded_dbc(const Recording& recording, const ScratchFolder& scratch) {
+  const mcap::Attachment* dbc = recording.attachment(firmware::kDbcAttachment);
+  if (dbc == nullptr) return fs::path();
+  return copy_of(dbc->data, firmware::kDbcAttachment, scratch);
 }
 
 /// The file where it was, if it still has this content; else a copy in the scratch folder.
@@ -42,11 +47,7 @@ Result<fs::path> file_with(const std::string& content, const fs::path& where, co
                            const ScratchFolder& scratch) {
   const auto there = read_file(where);
   if (there && *there == content) return where;
-  const fs::path copy = scratch.path() / name;
-  if (Status written = write_file(copy, content); !written) {
-    return tl::unexpected(written.error());
-  }
-  return copy;
+  return copy_of(content, name, scratch);
 }
 
 Result<firmware::Config> recorded_config(const Recording& recording, const ScratchFolder& scratch) {

@@ -308,8 +308,9 @@ Config read_config(YamlMap& yaml, const ConfigFiles& files, const SimulationRead
   return config;
 }
 
-Result<Config> load_recorded_config(const std::filesystem::path& file,
-                                    const SimulationReader* simulation, const ConfigFiles& files) {
+Result<Config> load_config_without_manifest(const std::filesystem::path& file,
+                                            const SimulationReader* simulation,
+                                            const ConfigFiles& files) {
   Result<YamlMap> yaml = YamlMap::read_file(file);
   if (!yaml) return tl::unexpected(yaml.error());
   Config config = read_config(*yaml, files, simulation);
@@ -319,8 +320,8 @@ Result<Config> load_recorded_config(const std::filesystem::path& file,
 }
 
 Result<Config> load_config(const std::filesystem::path& file, const SimulationReader* simulation) {
-  auto config =
-      load_recorded_config(file, simulation, {.folder = file.parent_path(), .dbc_file = {}});
+  auto config = load_config_without_manifest(file, simulation,
+                                             {.folder = file.parent_path(), .dbc_file = {}});
   if (!config || config->manifest_file.empty()) return config;
   const std::array used{file, config->rig_file, config->model_file, config->map_file};
   if (Status same = check_manifest(config->manifest_file, used); !same) {

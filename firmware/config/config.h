@@ -116,10 +116,11 @@ struct ConfigFiles {
 Result<Config> load_config(const std::filesystem::path& file,
                            const SimulationReader* simulation = nullptr);
 
-/// Like load_config(), for `file` with a copy of a configuration that was recorded. Does not check
-/// the manifest, because the files may have changed since then.
-Result<Config> load_recorded_config(const std::filesystem::path& file,
-                                    const SimulationReader* simulation, const ConfigFiles& files);
+/// Like load_config(), but finds the files in `files` and does not check the manifest. For the
+/// configuration of a recording, whose files may have changed since then.
+Result<Config> load_config_without_manifest(const std::filesystem::path& file,
+                                            const SimulationReader* simulation,
+                                            const ConfigFiles& files);
 
 /// Reads the keys of a configuration; load_config() finishes it. The schema of the configuration is
 /// made from this function (command/schema).

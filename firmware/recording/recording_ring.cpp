@@ -20,9 +20,9 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPrefix = "bevloc-";
 constexpr uint64_t kLogSecond_ns = 1'000'000'000;
-/// The ring leaves this share of the disk free, but at most this many bytes: the appliance has more
-/// to write than recordings.
-constexpr uint64_t kFreeShare = 20;
+/// The ring leaves one part in this many of the disk free for other files of the appliance, but not
+/// more than kMostFree_bytes.
+constexpr uint64_t kPartsOfDisk = 20;
 constexpr uint64_t kMostFree_bytes = 1'000'000'000;
 
 /// Such as bevloc-20261123T143205Z-0001.mcap: the order of the names is that of time.
@@ -153,7 +153,7 @@ uint64_t RecordingRing::missing_bytes() const {
   std::error_code error;
   const fs::space_info space = space_of_(config_.directory, error);
   if (error) return 0;
-  const uint64_t wanted = std::min(space.capacity / kFreeShare, kMostFree_bytes);
+  const uint64_t wanted = std::min(space.capacity / kPartsOfDisk, kMostFree_bytes);
   return wanted - std::min(wanted, space.available);
 }
 
@@ -167,7 +167,7 @@ Status RecordingRing::make_room(const fs::path& newest) const {
   }
   const uint64_t missing = missing_bytes();
   if (missing == 0) return {};
-  return fail("{}: found a disk that is full without old recordings, wanted {:.0f} MB more",
+  return fail("{}: found a full disk after old recordings were deleted, wanted {:.0f} MB more",
               config_.directory.string(), std::ceil(1e-6 * static_cast<double>(missing)));
 }
 

@@ -52,7 +52,7 @@ TEST_F(ArrivalTest, ADelayedReportHeldEarlier) {
 }
 
 /// The kernel slews a system clock that was wrong by 500 ppm, and the steady clock with it.
-TEST_F(ArrivalTest, ATimeServiceThatSteersTheClockMakesNoReportOlder) {
+TEST_F(ArrivalTest, AReportIsNoOlderWhileATimeServiceSteersTheClock) {
   const auto steered = [](Time time) { return time + time.time_since_epoch() / 2000; };
   for (int i = 0; i < 1000; ++i) {
     const Time held = next();

@@ -77,12 +77,12 @@ TEST_F(FullDiskTest, TheBlackBoxMakesRoomIfNothingElseCan) {
   EXPECT_TRUE(fs::exists(newest));
 }
 
-TEST_F(FullDiskTest, OtherFilesThatFillTheDiskAreNoReasonToFillItMore) {
+TEST_F(FullDiskTest, ADiskThatOtherFilesFillIsRefused) {
   other_bytes = 970'000;
   const auto ring = open();
   ASSERT_FALSE(ring);
   EXPECT_TRUE(ring.error().message.ends_with(
-      ": found a disk that is full without old recordings, wanted 1 MB more"))
+      ": found a full disk after old recordings were deleted, wanted 1 MB more"))
       << ring.error().message;
 }
 

@@ -28,15 +28,18 @@ class ArbiterTest : public testing::Test {
  protected:
   static constexpr double kGate = 16.27;
 
+  Verdict step(const PoseInnovation& match, const PoseInnovation& gnss,
+               const Eigen::Vector3d& gnss_error, PoseStanding standing = PoseStanding::kValid) {
+    now_ += milliseconds(100);
+    arbiter_.add_match(now_, match, match.squared_distance < kGate);
+    arbiter_.add_gnss(now_, gnss, gnss.squared_distance < kGate, gnss_error);
+    return arbiter_.judge(now_, standing);
+  }
+
   Verdict run(int samples, const Eigen::Vector3d& match_error, const Eigen::Vector3d& gnss_offset) {
     Verdict verdict;
     for (int i = 0; i < samples; ++i) {
-      now_ += milliseconds(100);
-      const PoseInnovation match = innovation(match_error);
-      arbiter_.add_match(now_, match, match.squared_distance < kGate);
-      const PoseInnovation gnss = innovation(gnss_offset);
-      arbiter_.add_gnss(now_, gnss, gnss.squared_distance < kGate, Eigen::Vector3d::Zero());
-      verdict = arbiter_.judge(now_, PoseStanding::kValid);
+      verdict = step(innovation(match_error), innovation(gnss_offset), none_);
     }
     return verdict;
   }
@@ -44,10 +47,7 @@ class ArbiterTest : public testing::Test {
   /// Adds matches and GNSS samples without innovation, while the error of GNSS is `gnss_error`.
   void run_with_gnss_error(int samples, double gnss_error) {
     for (int i = 0; i < samples; ++i) {
-      now_ += milliseconds(100);
-      arbiter_.add_match(now_, innovation(none_), true);
-      arbiter_.add_gnss(now_, innovation(none_), true, Eigen::Vector3d(gnss_error, 0.0, 0.0));
-      arbiter_.judge(now_, PoseStanding::kValid);
+      step(innovation(none_), innovation(none_), {gnss_error, 0.0, 0.0});
     }
   }
 
@@ -71,19 +71,14 @@ TEST_F(ArbiterTest, BlamesAMatchThatJumpsFartherThanAnyVehicle) {
   EXPECT_FALSE(arbiter_.open_dispute());
 }
 
-/// The pose grows uncertain while the match is excluded, so an offset of 1.5 m soon says nothing.
+/// While the match is excluded, the pose becomes so uncertain that the gate accepts 1.5 m.
 TEST_F(ArbiterTest, TrustsARightMatchAgainAfterThePoseWasLost) {
   run(20, none_, none_);
   run(10, {0.0, 1.5, 0.0}, none_);
   ASSERT_FALSE(arbiter_.trusts_match());
   PoseInnovation uncertain = innovation(none_);
   uncertain.covariance *= 100.0;
-  for (int i = 0; i < 100; ++i) {
-    now_ += milliseconds(100);
-    arbiter_.judge(now_, PoseStanding::kLost);
-    arbiter_.add_match(now_, uncertain, true);
-    arbiter_.add_gnss(now_, uncertain, true, Eigen::Vector3d::Zero());
-  }
+  for (int i = 0; i < 100; ++i) step(uncertain, uncertain, none_, PoseStanding::kLost);
   EXPECT_TRUE(arbiter_.trusts_match());
   EXPECT_FALSE(arbiter_.judge(now_, PoseStanding::kLost).match_contradicts);
 }
@@ -127,11 +122,7 @@ class BlindMatchTest : public ArbiterTest {
     match.covariance(0, 0) = 100.0;
     Verdict verdict;
     for (int i = 0; i < samples; ++i) {
-      now_ += milliseconds(100);
-      arbiter_.add_match(now_, match, true);
-      const PoseInnovation gnss = innovation({gnss_along_m, 0.0, 0.0});
-      arbiter_.add_gnss(now_, gnss, gnss.squared_distance < kGate, none_);
-      verdict = arbiter_.judge(now_, PoseStanding::kValid);
+      verdict = step(match, innovation({gnss_along_m, 0.0, 0.0}), none_);
     }
     return verdict;
   }
