@@ -29,32 +29,6 @@ constexpr double kFastest_mps = 0.0004;
 /// An error is beyond its bound for certain if it is by this many sigmas.
 constexpr double kCertainSigmas = 0.5;
 
-// Agreement of a camera with the map: ZNCC over the cells that it sees, against the median camera.
-constexpr double kFade_s = 20.0;
-constexpr double kLeastSeen_s = 15.0;
-// The share of a swapped camera is mostly below 0.4. That of a camera at its own place is mostly
-// 0.6 or more.
-constexpr double kContradictingShare = 0.4;
-constexpr double kAgreeingShare = 0.5;
-/// A camera contradicts the map if its share stays below kContradictingShare for this long. In
-/// drives without a fault, the share of a single camera stayed below it for 1 s or less.
-constexpr double kLeastContradicted_s = 4.0;
-// In drives without a fault, the shares of both cameras of one side stayed below it for 23 s or
-// less. So a second counts as 0.1 s while the share of the other camera is below
-// kWellAgreeingShare.
-constexpr double kWellAgreeingShare = 0.7;
-constexpr double kHiddenSideRate = 0.1;
-/// Least agreement of the median camera. If it is lower, no camera is judged.
-constexpr double kLeastMedian = 0.1;
-
-/// The other camera that sees the same side of the road; -1 for the front and the back one.
-constexpr std::array<int, kCameraCount> kSameSide = {3, -1, 5, 0, -1, 2};
-
-double agreement(const SeenByCamera& seen) {
-  const double squares = seen.map_square * seen.bev_square;
-  return squares > 0.0 ? seen.product / std::sqrt(squares) : 0.0;
-}
-
 }  // namespace
 
 OnlineCalibration::OnlineCalibration(const Rig& rig, const BevGrid& grid, int channels,
@@ -77,9 +51,9 @@ double OnlineCalibration::limit_of(int error) const {
 }
 
 bool OnlineCalibration::observe(const CalibrationObservation& observation) {
-  const bool is_usable = observation.driving && observation.match.evidence == Evidence::kGood &&
-                         observation.cameras.all();
-  const bool learns = is_usable && observation.tracking && is_clear(observation);
+  const bool is_usable = observation.driving && observation.match.evidence == Evidence::kGood;
+  const bool learns =
+      is_usable && observation.cameras.all() && observation.tracking && is_clear(observation);
   learn_heading(observation, learns);
   if (!is_usable) return false;
   if (observed_ && observation.time - *observed_ < kPeriod) return false;
@@ -87,17 +61,9 @@ bool OnlineCalibration::observe(const CalibrationObservation& observation) {
       observed_ ? std::min(to_seconds(observation.time - *observed_), kLongestStep_s) : 0.0;
   observed_ = observation.time;
   sums_.compute(observation.cells, information_);
-  const double kept = std::exp(-step_s / kFade_s);
-  for (int camera = 0; camera < kCameraCount; ++camera) {
-    SeenByCamera& sum = seen_[camera];
-    const SeenByCamera& now = information_.seen[camera];
-    sum = {kept * sum.product + now.product, kept * sum.map_square + now.map_square,
-           kept * sum.bev_square + now.bev_square};
-  }
-  seen_s_ += step_s;
-  judge_agreement(step_s);
-  // Two cameras in each other's place would pull the estimates of all.
-  if (!learns || contradicting_.any()) return false;
+  agreement_.add(information_.seen, observation.cameras, step_s);
+  if (contradicting().any()) return use_again(start_);
+  if (!learns) return false;
   filter_.update(information_, used_, step_s);
   judge_bounds();
   if (beyond_bounds_.any()) return use_again(start_);
@@ -121,30 +87,6 @@ bool OnlineCalibration::is_clear(const CalibrationObservation& observation) cons
          std::abs(match.correction.yaw_rad) < kFarthestYaw_rad &&
          match.covariance(1, 1) < kLargestLateralSigma_m * kLargestLateralSigma_m &&
          match.covariance(2, 2) < kLargestYawSigma_rad * kLargestYawSigma_rad;
-}
-
-void OnlineCalibration::judge_agreement(double step_s) {
-  if (seen_s_ < kLeastSeen_s) return;
-  std::array<double, kCameraCount> shares{};
-  std::ranges::transform(seen_, shares.begin(), agreement);
-  std::array<double, kCameraCount> sorted = shares;
-  std::ranges::sort(sorted);
-  // The better of the two in the middle: two swapped cameras leave four good ones.
-  const double median = sorted[kCameraCount / 2];
-  if (median < kLeastMedian) return;
-  for (double& share : shares) share /= median;
-  for (int camera = 0; camera < kCameraCount; ++camera) {
-    const double limit = contradicting_[camera] ? kAgreeingShare : kContradictingShare;
-    if (shares[camera] >= limit) {
-      contradicted_s_[camera] = 0.0;
-      contradicting_[camera] = false;
-      continue;
-    }
-    const int other = kSameSide[camera];
-    const bool is_side_hidden = other >= 0 && shares[other] < kWellAgreeingShare;
-    contradicted_s_[camera] += is_side_hidden ? kHiddenSideRate * step_s : step_s;
-    contradicting_[camera] = contradicted_s_[camera] >= kLeastContradicted_s;
-  }
 }
 
 void OnlineCalibration::judge_bounds() {

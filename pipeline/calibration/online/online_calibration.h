@@ -2,11 +2,11 @@
 // camera is not where the calibration has it.
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include "common/cameras.h"
 #include "common/time.h"
+#include "pipeline/calibration/online/camera_agreement.h"
 #include "pipeline/calibration/online/extrinsic_filter.h"
 #include "pipeline/calibration/online/motion_direction.h"
 #include "pipeline/solver/solver_result.h"
@@ -35,8 +35,9 @@ struct CalibrationObservation {
 };
 
 /// Learns only while the vehicle drives and tracks, from clear matches near the prior, with all
-/// cameras. A pose in the wrong lane looks like errors of the cameras. Such apparent errors differ
-/// from place to place, so they average out; the bounds limit the rest.
+/// cameras. Whether a camera contradicts the map is judged without some of them too. A pose in the
+/// wrong lane looks like errors of the cameras. Such apparent errors differ from place to place, so
+/// they average out; the bounds limit the rest.
 ///
 /// One thread; the constructor allocates all memory.
 class OnlineCalibration {
@@ -54,21 +55,20 @@ class OnlineCalibration {
   bool observe(const CalibrationObservation& observation);
 
   /// The errors to be applied to the calibration. They follow the estimate in steps, because each
-  /// change computes the view table again. While a camera is beyond the bounds they are those of
-  /// the start, because it has pulled the estimates of the others.
+  /// change computes the view table again. While a camera is at fault they are those of the start,
+  /// because it has pulled the estimates of the others.
   const ExtrinsicErrors& used_errors() const { return used_; }
   const ExtrinsicFilter& filter() const { return filter_; }
 
   /// The cameras whose error is beyond the bounds for certain, or whose picture contradicts the map
   /// while those of others agree with it.
-  CameraMask faults() const { return beyond_bounds_ | contradicting_; }
+  CameraMask faults() const { return beyond_bounds_ | contradicting(); }
   CameraMask beyond_bounds() const { return beyond_bounds_; }
-  CameraMask contradicting() const { return contradicting_; }
+  CameraMask contradicting() const { return agreement_.contradicting(); }
 
  private:
   void learn_heading(const CalibrationObservation& observation, bool is_clear);
   bool is_clear(const CalibrationObservation& observation) const;
-  void judge_agreement(double step_s);
   void judge_bounds();
   /// Returns whether the used errors change.
   bool use_again(const ExtrinsicErrors& errors);
@@ -84,11 +84,8 @@ class OnlineCalibration {
   ExtrinsicErrors start_ = ExtrinsicErrors::Zero();  ///< as restored
   double unfollowed_s_ = 0.0;                        ///< learning time since used_ has changed
   std::optional<Time> observed_;  ///< the time of the latest observation that was computed
-  std::array<SeenByCamera, kCameraCount> seen_{};  ///< sums that fade over some seconds of driving
-  double seen_s_ = 0.0;                            ///< driving time in them
-  std::array<double, kCameraCount> contradicted_s_{};  ///< for so long, without a break
+  CameraAgreement agreement_;
   CameraMask beyond_bounds_;
-  CameraMask contradicting_;
 };
 
 }  // namespace bevloc

@@ -108,5 +108,48 @@ TEST(OnlineCalibration, NamesCamerasThatShowAnotherRoad) {
   EXPECT_TRUE(driver.calibration().faults().none());
 }
 
+TEST(OnlineCalibration, NamesACameraWhileAnotherIsMissing) {
+  DemoDriver driver;
+  driver.cameras.reset(1);
+  driver.drive(ExtrinsicErrors::Zero(), 250, CameraMask().set(4));
+  EXPECT_EQ(driver.calibration().contradicting(), CameraMask().set(4));
+}
+
+TEST(OnlineCalibration, JudgesACameraThatComesBackOnlyAfterSomeSeconds) {
+  const CameraMask back = CameraMask().set(4);
+  DemoDriver driver;
+  driver.cameras.reset(4);
+  driver.drive(ExtrinsicErrors::Zero(), 300);
+  driver.cameras.set(4);
+  driver.drive(ExtrinsicErrors::Zero(), 120, back);
+  EXPECT_TRUE(driver.calibration().faults().none());
+  driver.drive(ExtrinsicErrors::Zero(), 100, back);
+  EXPECT_EQ(driver.calibration().contradicting(), back);
+}
+
+TEST(OnlineCalibration, KeepsTheVerdictOfACameraThatIsLeftOut) {
+  DemoDriver driver;
+  driver.drive(ExtrinsicErrors::Zero(), 250, CameraMask().set(4));
+  driver.cameras.reset(4);
+  driver.drive(ExtrinsicErrors::Zero(), 600);
+  EXPECT_EQ(driver.calibration().contradicting(), CameraMask().set(4));
+}
+
+TEST(OnlineCalibration, JudgesNoCameraIfOnlyThreeAreUsed) {
+  DemoDriver driver;
+  driver.cameras = CameraMask().set(1).set(2).set(4);
+  driver.drive(ExtrinsicErrors::Zero(), 600, CameraMask().set(4));
+  EXPECT_TRUE(driver.calibration().faults().none());
+}
+
+TEST(OnlineCalibration, UsesTheCorrectionsOfTheStartOnceACameraContradictsTheMap) {
+  DemoDriver driver;
+  driver.drive(kSmallError, 500);
+  ASSERT_NE(driver.calibration().used_errors(), ExtrinsicErrors::Zero());
+  driver.drive(kSmallError, 300, CameraMask().set(4));
+  ASSERT_TRUE(driver.calibration().contradicting()[4]);
+  EXPECT_EQ(driver.calibration().used_errors(), ExtrinsicErrors::Zero());
+}
+
 }  // namespace
 }  // namespace bevloc
