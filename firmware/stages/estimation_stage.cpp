@@ -183,16 +183,12 @@ void EstimationStage::add_correction(const VisionReport& report) {
   wide_search_ = seen.at_border.any();
   ++counters_.corrections[index_of(outcome)];
   if (outcome == TrackerUpdate::kAccepted) {
-    ++counters_.accepted;
     refused_in_a_row_ = 0;
     accepted_frame_time_ = report.frame_time;
     unsent_correction_ = report.frame_time;
     if (seen.confirms()) confirmed_time_ = report.frame_time;
     accepted_in_a_row_ = seen.confirms_start() ? accepted_in_a_row_ + 1 : 0;
-  } else if (outcome == TrackerUpdate::kNoEvidence) {
-    ++counters_.without_evidence;
-  } else {
-    ++counters_.refused;
+  } else if (outcome != TrackerUpdate::kNoEvidence) {
     ++refused_in_a_row_;
     accepted_in_a_row_ = 0;
   }

@@ -22,11 +22,8 @@ using TrackerOutcomes = std::array<std::atomic<uint64_t>, kTrackerUpdates>;
 
 /// Totals since start and the current state; readable from any thread.
 struct EstimationCounters {
-  std::atomic<uint64_t> ticks{0};             ///< calls of tick(); the supervisor watches it
-  std::atomic<uint64_t> accepted{0};          ///< corrections that the tracker accepted
-  std::atomic<uint64_t> refused{0};           ///< corrections that the tracker refused
-  std::atomic<uint64_t> without_evidence{0};  ///< framesets in which the solver found no evidence
-  TrackerOutcomes odometry{};                 ///< by TrackerUpdate, as are the next two
+  std::atomic<uint64_t> ticks{0};  ///< calls of tick(); the supervisor watches it
+  TrackerOutcomes odometry{};      ///< by TrackerUpdate, as are the next two
   TrackerOutcomes gnss{};
   TrackerOutcomes corrections{};
   std::atomic<uint64_t> clock_gaps{0};

@@ -8,9 +8,9 @@
 
 namespace bevloc {
 
-/// Points of a map must be this close to its origin along both axes: further away, the tangent
-/// plane no longer fits the earth, and the CAN bus cannot express the position.
-inline constexpr double kFarthestFromOriginM = 100'000.0;
+/// Points of a map must be this close to its origin along both axes: further away, the CAN bus
+/// cannot express the position (LOC_PosLocal), and the tangent plane fits the earth badly.
+inline constexpr double kFarthestFromOriginM = 83'000.0;
 
 /// The longest polyline. A longer one is a mistake in its coordinates.
 inline constexpr double kLongestPolylineM = 50'000.0;

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "can/bus/mock_bus.h"
+#include "can/messages/localizer_messages.h"
 #include "evaluation/drive/pose_reader.h"
+#include "pipeline/map/map_check.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -58,6 +60,10 @@ class EstimationStageTest : public testing::Test {
         correction_between(report.prior, truth_at(frame_time)) * vision_error_;
     report.match.covariance = Eigen::Vector3d(0.01, 0.0025, 1e-5).asDiagonal().toDenseMatrix();
     reports_.push(report);
+  }
+
+  uint64_t corrections(TrackerUpdate outcome) const {
+    return stage_.counters().corrections[static_cast<size_t>(outcome)];
   }
 
   can::MockWire wire_;
@@ -156,11 +162,16 @@ TEST_F(EstimationStageTest, PredictsForVisionAndRequestsAWideSearchUntilTracking
   EXPECT_FALSE(prediction->acquiring);
 }
 
+TEST(EstimationStage, SendsTheFarthestPlacesOfAMap) {
+  EXPECT_LT(kFarthestFromOriginM, can::loc_pos_local::kEast.max);
+  EXPECT_LT(kFarthestFromOriginM, can::loc_pos_local::kNorth.max);
+}
+
 TEST_F(EstimationStageTest, RefusesAMatchThatContradictsOdometry) {
   run(milliseconds(5000));
   vision_error_ = {3.0, 2.0, 0.1};
   run(milliseconds(300));  // too short for LOST
-  EXPECT_GT(stage_.counters().refused, 0U);
+  EXPECT_GT(corrections(TrackerUpdate::kGated), 0U);
   EXPECT_EQ(stage_.counters().state, HealthState::kDegraded);
   const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
   EXPECT_NEAR(error.x_m, 0.0, 0.1);
@@ -170,7 +181,7 @@ TEST_F(EstimationStageTest, RefusesAMatchThatContradictsOdometry) {
 TEST_F(EstimationStageTest, RecoversFromAWrongMatchWhileAcquiring) {
   vision_error_ = {1.5, 1.2, 0.03};
   run(milliseconds(700));  // long enough to be accepted, too short for TRACKING
-  ASSERT_GT(stage_.counters().accepted, 0U);
+  ASSERT_GT(corrections(TrackerUpdate::kAccepted), 0U);
   ASSERT_EQ(stage_.counters().state, HealthState::kAcquiring);
   vision_error_ = {};
   run(milliseconds(4000));
@@ -184,7 +195,8 @@ TEST_F(EstimationStageTest, APoseThatStartedAgainNeedsNewMatches) {
   vision_error_ = {0.0, -2.5, 0.0};  // too far from GNSS for TRACKING
   run(milliseconds(3000));
   ASSERT_EQ(stage_.counters().state, HealthState::kAcquiring);
-  ASSERT_GT(stage_.counters().accepted, static_cast<uint64_t>(HealthLimits().corrections_to_track));
+  ASSERT_GT(corrections(TrackerUpdate::kAccepted),
+            static_cast<uint64_t>(HealthLimits().corrections_to_track));
   gnss_north_m_ = 8.0;  // refutes the pose
   vision_ = false;
   const auto has_started_again = [this] {

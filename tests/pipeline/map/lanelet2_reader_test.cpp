@@ -189,14 +189,14 @@ TEST(Lanelet2Reader, LeavesOutFarPlaces) {
   };
   EXPECT_THAT(left_out_at(2e5),
               Contains(HasSubstr(
-                  "node 2: found a place (200000, 0) m from the origin, wanted at most 100000")));
+                  "node 2: found a place (200000, 0) m from the origin, wanted at most 83000")));
   EXPECT_THAT(left_out_at(6e4),
               ElementsAre(HasSubstr("way 10: found 60000 m in this bound of lanelet 20, wanted at "
                                     "most 50000"),
                           HasSubstr("way 10: found 60000 m, wanted at most 50000")));
   EXPECT_THAT(read_error(lanelet_of({"lat='49' lon='8'>", "lat='52' lon='8'>",
                                      "lat='49' lon='8.1'>", "lat='52' lon='8.1'>"})),
-              HasSubstr("m from the origin, wanted at most 100000"));
+              HasSubstr("m from the origin, wanted at most 83000"));
 }
 
 TEST(Lanelet2Reader, LaneletsForOtherParticipantsAreNoLanes) {
