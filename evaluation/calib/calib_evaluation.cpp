@@ -14,6 +14,7 @@
 #include "evaluation/command_output.h"
 #include "evaluation/drive/error_statistics.h"
 #include "pipeline/calibration/refine/refine_rig.h"
+#include "sim/world/world_generator.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -78,6 +79,7 @@ void CalibEvaluation::declare(CLI::App& eval) {
   auto* calib = eval.add_subcommand(
       "calib", "Refine calibrations with known errors from simulated recordings");
   calib->add_option("--first-seed", options_.seed, "Seed of the first drive")
+      ->check(whole_number(sim::kFirstTrainingSeed - 1))
       ->capture_default_str();
   calib->add_option("--drives", drives_, "Number of drives, each with the next seed")
       ->check(CLI::Range(1, 1000))

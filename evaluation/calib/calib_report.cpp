@@ -1,6 +1,7 @@
 #include "evaluation/calib/calib_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@ constexpr int kLeastFound = 60;
 constexpr double kLeastOfBest = 0.35;
 constexpr double kOff_deg = 0.2;
 constexpr double kOffSigmas = 3.0;
+constexpr std::array<int, 3> kRotations{kPitch, kYaw, kRoll};
 
 double share_of(const CameraRefinement& camera) {
   return camera.looked_at > 0 ? static_cast<double>(camera.found) / camera.looked_at : 0.0;
@@ -27,6 +29,14 @@ double best_share_of(const RigRefinement& checked) {
 
 double in_unit(const CameraAdjustment& of, int parameter) {
   return of[parameter] / kCameraParameterInfos[static_cast<size_t>(parameter)].per_unit;
+}
+
+/// "+0.123 +- 0.012", or why there is no change.
+std::string text_of_change(const CameraRefinement& camera, int parameter, int digits) {
+  if (camera.kept[static_cast<size_t>(parameter)]) return "kept";
+  if (camera.unobservable[static_cast<size_t>(parameter)]) return "not observable";
+  return fmt::format("{:+.{}f} +- {:.{}f}", in_unit(camera.change, parameter), digits,
+                     in_unit(camera.sigma, parameter), digits);
 }
 
 std::string_view name_of(CameraVerdict verdict) {
@@ -63,7 +73,10 @@ CameraVerdict verdict_on(const CameraRefinement& camera, double best_share) {
   if (camera.looked_at < kLeastFound) return CameraVerdict::kTooLittle;
   if (share_of(camera) < kLeastOfBest * best_share) return CameraVerdict::kMismatch;
   if (camera.found < kLeastFound) return CameraVerdict::kTooLittle;
-  for (const int axis : {kPitch, kYaw, kRoll}) {
+  for (const int axis : kRotations) {
+    if (camera.unobservable[static_cast<size_t>(axis)]) return CameraVerdict::kTooLittle;
+  }
+  for (const int axis : kRotations) {
     const double off_deg = std::abs(in_unit(camera.change, axis));
     if (off_deg > kOff_deg && off_deg > kOffSigmas * in_unit(camera.sigma, axis)) {
       return CameraVerdict::kOff;
@@ -90,9 +103,8 @@ std::string text_of_check(const RigRefinement& checked) {
     const CameraVerdict verdict = verdict_on(camera, best);
     text += fmt::format("{:12} {:>13} {:>9.1f} ", kCameraNames[c],
                         fmt::format("{} of {}", camera.found, camera.looked_at), camera.before_px);
-    for (const int axis : {kPitch, kYaw, kRoll}) {
-      text += fmt::format(" {:>15}", fmt::format("{:+.2f} +- {:.2f}", in_unit(camera.change, axis),
-                                                 in_unit(camera.sigma, axis)));
+    for (const int axis : kRotations) {
+      text += fmt::format(" {:>15}", text_of_change(camera, axis, 2));
     }
     const std::string_view advice = advice_on(verdict);
     text += fmt::format("  {}{}{}\n", name_of(verdict), advice.empty() ? "" : ": ", advice);
@@ -107,11 +119,7 @@ std::string text_of_refinement(const RigRefinement& refinement) {
   for (int p = 0; p < kCameraParameters; ++p) {
     text += fmt::format("\n{:15}", kCameraParameterInfos[static_cast<size_t>(p)].key);
     for (const CameraRefinement& camera : refinement.cameras) {
-      const bool fixed = camera.unobservable[static_cast<size_t>(p)];
-      text +=
-          fmt::format(" {:>16}", fixed ? std::string("not observable")
-                                       : fmt::format("{:+.3f} +- {:.3f}", in_unit(camera.change, p),
-                                                     in_unit(camera.sigma, p)));
+      text += fmt::format(" {:>16}", text_of_change(camera, p, 3));
     }
   }
   text += fmt::format("\n{:15}", "paint found");
@@ -144,7 +152,9 @@ nlohmann::json json_of(const RigRefinement& refinement, bool with_verdicts) {
     if (with_verdicts) entry["verdict"] = name_of(verdict_on(camera, best));
     for (int p = 0; p < kCameraParameters; ++p) {
       const std::string key(kCameraParameterInfos[static_cast<size_t>(p)].key);
-      if (camera.unobservable[static_cast<size_t>(p)]) {
+      if (camera.kept[static_cast<size_t>(p)]) {
+        entry["kept"].push_back(key);
+      } else if (camera.unobservable[static_cast<size_t>(p)]) {
         entry["unobservable"].push_back(key);
       } else {
         entry["change"][key] = in_unit(camera.change, p);

@@ -158,6 +158,7 @@ void LocalizeCommand::declare(CLI::App& app) {
   truth->needs(priors);
   localize->add_option("--seed", seed_, "Seed of the random priors")
       ->check(whole_number())
+      ->needs(truth)
       ->capture_default_str();
   localize->add_option("--json", json_file_, "Write the answer to this file")->check(output_file());
   localize

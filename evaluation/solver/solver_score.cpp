@@ -13,6 +13,8 @@ namespace {
 /// Keeps the mean finite if a probability was rounded to zero.
 constexpr double kLeastProbability = 1e-6;
 
+constexpr PerAxis kNone{kNotGiven, kNotGiven, kNotGiven};
+
 double negative_log_likelihood(std::span<const float> probability, const HypothesisAxis& axis,
                                double truth) {
   const double position =
@@ -32,6 +34,19 @@ PerAxis error_of(const Se2& estimate, const Se2& truth) {
 double is_within(double error, double limit) {
   if (std::isnan(limit)) return kNotGiven;
   return error <= limit ? 1.0 : 0.0;
+}
+
+Summary nothing_given() {
+  return {.scenes = 0,
+          .mae = kNone,
+          .rmse = kNone,
+          .median = kNone,
+          .p95 = kNone,
+          .parabola_mae = kNone,
+          .nll = kNone,
+          .coverage_1s = kNone,
+          .coverage_3s = kNone,
+          .time_ms = kNotGiven};
 }
 
 }  // namespace
@@ -63,7 +78,6 @@ Outcome judge_pose(const SolverResult& result, const HypothesisGrid& hypotheses,
 }
 
 Outcome judge(const Se2& correction, const Se2& truth) {
-  constexpr PerAxis kNone{kNotGiven, kNotGiven, kNotGiven};
   Outcome outcome;
   outcome.error = error_of(correction, truth);
   outcome.parabola_error = outcome.sigma = outcome.nll = kNone;
@@ -73,7 +87,7 @@ Outcome judge(const Se2& correction, const Se2& truth) {
 Summary summarise(const std::vector<Outcome>& outcomes) {
   Summary summary;
   summary.scenes = outcomes.size();
-  if (outcomes.empty()) return summary;
+  if (outcomes.empty()) return nothing_given();
   const double share = 1.0 / static_cast<double>(outcomes.size());
   std::vector<double> values(outcomes.size());
   for (size_t axis = 0; axis < 3; ++axis) {

@@ -38,7 +38,7 @@ Outcome judge_pose(const SolverResult& result, const HypothesisGrid& hypotheses,
 /// For a method that reports a correction only.
 Outcome judge(const Se2& correction, const Se2& truth);
 
-/// A measure is kNotGiven if it is kNotGiven in any outcome.
+/// A measure is kNotGiven if it is kNotGiven in any outcome, or if there is no outcome.
 struct Summary {
   size_t scenes = 0;
   PerAxis mae{};

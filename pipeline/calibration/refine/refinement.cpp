@@ -329,6 +329,7 @@ RigRefinement RefinementProblem::result(double gate_rad) const {
     camera.ties = ties[c];
     camera.change = estimate_.changes[c];
     camera.unobservable = unobservable_[c];
+    camera.kept = ~options_.free;
     camera.sigma = variance.segment<kCameraParameters>(c * kCameraParameters).cwiseSqrt();
     camera.before_px = median_or_zero(before[c]);
     camera.after_px = median_or_zero(after[c]);

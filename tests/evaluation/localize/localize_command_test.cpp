@@ -116,6 +116,7 @@ TEST_F(LocalizeCommandTest, SaysWhatIsWrong) {
   EXPECT_THAT(run({"--prior", text_of(pose_), "--motion", file("none.yaml")}).error().message,
               HasSubstr("none.yaml"));
   EXPECT_THROW(run({"--prior", text_of(pose_), "--priors", "3"}), CLI::RequiresError);
+  EXPECT_THROW(run({"--prior", text_of(pose_), "--seed", "3"}), CLI::RequiresError);
 }
 
 }  // namespace

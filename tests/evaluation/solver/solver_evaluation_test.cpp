@@ -85,7 +85,14 @@ TEST(SolverScore, Summarises) {
   EXPECT_NEAR(summary.coverage_3s[1], 1.0, 1e-12);
   EXPECT_NEAR(summary.coverage_1s[2], 1.0, 1e-12);
   EXPECT_EQ(summary.median[0], 1.0);
-  EXPECT_EQ(summarise({}).scenes, 0U);
+}
+
+TEST(SolverScore, GivesNoMeasuresWithoutScenes) {
+  const Summary summary = summarise({});
+  EXPECT_EQ(summary.scenes, 0U);
+  EXPECT_EQ(three(summary.mae), "- - -");
+  EXPECT_EQ(percent(summary.coverage_3s), "  -   -   -");
+  EXPECT_TRUE(std::isnan(summary.time_ms));
 }
 
 TEST(SolverScore, MarksMeasuresThatAMethodLacks) {

@@ -1,0 +1,53 @@
+#include "evaluation/calib/calib_report.h"
+
+#include <gmock/gmock.h>
+
+namespace bevloc::evaluation {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// A refinement in which each camera found most of its paint.
+RigRefinement clear_refinement() {
+  RigRefinement refinement;
+  refinement.frames = 10;
+  for (CameraRefinement& camera : refinement.cameras) {
+    camera.looked_at = 200;
+    camera.found = 180;
+    camera.sigma.setConstant(1e-3);
+  }
+  return refinement;
+}
+
+TEST(CalibReport, SaysWhichParametersWereKept) {
+  RigRefinement refinement = clear_refinement();
+  for (CameraRefinement& camera : refinement.cameras) camera.kept.set(kFocal);
+  EXPECT_THAT(text_of_refinement(refinement), HasSubstr(" kept"));
+  const nlohmann::json json = json_of(refinement, false);
+  const std::string focal(kCameraParameterInfos[kFocal].key);
+  const nlohmann::json& front = json["cameras"]["front"];
+  EXPECT_EQ(front["kept"], nlohmann::json::array({focal}));
+  EXPECT_FALSE(front["change"].contains(focal));
+  EXPECT_THAT(text_of_check(refinement), Not(HasSubstr("kept")));
+}
+
+TEST(CalibReport, ACameraWhoseRotationIsNotObservableIsNotGood) {
+  RigRefinement checked = clear_refinement();
+  EXPECT_TRUE(all_good(checked));
+  checked.cameras[1].unobservable.set(kPitch);
+  EXPECT_FALSE(all_good(checked));
+  EXPECT_EQ(verdict_on(checked.cameras[1], 0.9), CameraVerdict::kTooLittle);
+  EXPECT_THAT(text_of_check(checked), HasSubstr("not observable"));
+}
+
+TEST(CalibReport, ACameraThatIsTurnedIsOff) {
+  RigRefinement checked = clear_refinement();
+  checked.cameras[4].change[kYaw] = 0.01;
+  EXPECT_EQ(verdict_on(checked.cameras[4], 0.9), CameraVerdict::kOff);
+  checked.cameras[4].found = 20;
+  EXPECT_EQ(verdict_on(checked.cameras[4], 0.9), CameraVerdict::kMismatch);
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation
