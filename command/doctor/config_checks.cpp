@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command/doctor/machine_checks.h"
+#include "command/shell_word.h"
 #include "common/files.h"
 #include "common/sha256.h"
 #include "drivers/camera/v4l2/device_finder.h"
@@ -23,7 +24,7 @@ Finding check_file(const std::string& part, const std::filesystem::path& file) {
   const Result<std::string> bytes = read_file(file);
   if (!bytes) {
     return {Level::kProblem, part, bytes.error().message, "a readable file",
-            fmt::format("ls -l {}", file.string())};
+            "ls -l " + shell_word(file.string())};
   }
   return ok(part, fmt::format("{}, SHA-256 {}", file.string(), sha256_hex(*bytes)));
 }
@@ -33,7 +34,7 @@ Finding check_rig_file(const Config& config) {
   const auto rig = read_rig(config.rig_file);
   if (finding.level != Level::kOk || rig) return finding;
   return {Level::kProblem, "rig", rig.error().message, "a rig file",
-          fmt::format("bevlocd --config {} --check-config", config.file.string())};
+          fmt::format("bevlocd --config {} --check-config", shell_word(config.file.string()))};
 }
 
 /// Whether this user may open a device.

@@ -4,6 +4,7 @@
 
 #include "command/doctor/config_checks.h"
 #include "command/doctor/machine_checks.h"
+#include "command/shell_word.h"
 
 namespace bevloc::command {
 namespace {
@@ -23,8 +24,9 @@ Findings examine(const Machine& machine, const std::filesystem::path& config_fil
     all.push_back({Level::kWarning, "configuration", "found none",
                    "one, so that devices and files can be looked at", "bevloc init"});
   } else if (const auto config = firmware::load_config(config_file, simulation); !config) {
-    all.push_back({Level::kProblem, "configuration", config.error().message, "one without mistakes",
-                   fmt::format("bevlocd --config {} --check-config", config_file.string())});
+    all.push_back(
+        {Level::kProblem, "configuration", config.error().message, "one without mistakes",
+         fmt::format("bevlocd --config {} --check-config", shell_word(config_file.string()))});
   } else {
     all.push_back(ok("configuration", config_file.string()));
     append(all, check_files(*config));

@@ -9,25 +9,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "command/shell_word.h"
 #include "common/files.h"
 
 namespace bevloc::command {
-namespace {
-
-/// One word for the shell, whatever it contains.
-std::string quoted(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) {
-    if (c == '\'') {
-      text += R"('\'')";
-    } else {
-      text += c;
-    }
-  }
-  return text + "'";
-}
-
-}  // namespace
 
 bool Machine::exists(const std::filesystem::path& path) const {
   std::error_code error;
@@ -84,7 +69,7 @@ bool LinuxMachine::may_use(const std::filesystem::path& path) const {
 
 Result<std::string> LinuxMachine::run(const std::vector<std::string>& words) const {
   std::string command;
-  for (const std::string& word : words) command += quoted(word) + ' ';
+  for (const std::string& word : words) command += shell_word(word) + ' ';
   FILE* pipe = popen((command + "2>/dev/null").c_str(), "re");
   if (pipe == nullptr) return fail("{}: cannot be started", command);
   std::string text;

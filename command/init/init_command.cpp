@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include "command/shell_word.h"
 #include "common/files.h"
 #include "common/shipped_file.h"
 
@@ -199,11 +200,11 @@ Result<Verdict> InitCommand::run(const Offers& offers, Dialog& dialog) const {
   const auto config = firmware::load_config(out_, simulation_);
   const Status checked = config ? check_config(*config) : Status(tl::unexpected(config.error()));
   if (checked) {
-    fmt::print("{}: written, good. Next: bevlocd --config {}\n", out_, out_);
+    fmt::print("{}: written, good. Next: bevlocd --config {}\n", out_, shell_word(out_));
     return Verdict::kGood;
   }
   fmt::print("{}: written, but the check found a mistake:\n  {}\n", out_, checked.error().message);
-  fmt::print("Mend it, then: bevlocd --config {} --check-config\n", out_);
+  fmt::print("Mend it, then: bevlocd --config {} --check-config\n", shell_word(out_));
   return Verdict::kBad;
 }
 
