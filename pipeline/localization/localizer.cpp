@@ -17,9 +17,6 @@ constexpr double kSameMotion_rad = radians(0.02);
 constexpr double kSolverTolerance_m = 0.2;
 constexpr double kSolverTolerance_rad = radians(0.5);
 
-/// If more cameras seem out of place, it is rather the map or the road that differs.
-constexpr size_t kMostOutOfPlace = 2;
-
 bool is_same(const Se2& a, const Se2& b) {
   return (a.translation() - b.translation()).norm() <= kSameMotion_m &&
          std::abs(wrap_angle(a.yaw_rad - b.yaw_rad)) <= kSameMotion_rad;
@@ -106,9 +103,7 @@ bool Localizer::restore_calibration(const ExtrinsicErrors& errors,
 }
 
 CameraMask Localizer::out_of_place() const {
-  if (!online_calibration_) return {};
-  const CameraMask faults = online_calibration_->faults();
-  return faults.count() <= kMostOutOfPlace ? faults : CameraMask();
+  return online_calibration_ ? online_calibration_->left_out() : CameraMask();
 }
 
 void Localizer::apply_learned() {

@@ -63,8 +63,7 @@ class Localizer {
   /// `prior` is T0, the predicted map_from_vehicle at the reference time; `result` corrects it.
   /// Returns the cameras that were used. A camera counts as missing if the size of its image
   /// differs from the calibration, if its JPEG is damaged, if it is frozen, if its view is dark,
-  /// blinded or dirty, or if the online calibration found it out of place. The online calibration
-  /// learns with all cameras only, so a camera that is out of place is left out until the end.
+  /// blinded or dirty, or if the online calibration leaves it out (OnlineCalibration::left_out()).
   ///
   /// Computes the view table again when the set of cameras changes, or when a camera's motion
   /// differs by more than 1 cm or 0.02 degrees (1 cm at 30 m) from the one that the table was

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double kFade_s = 20.0;
 constexpr double kLeastSeen_s = 15.0;
+/// A camera that was not used for longer than this is judged as if it were new, because what it
+/// showed before may have been dirt.
+constexpr double kLongestAbsence_s = 5.0;
 /// With fewer cameras, two wrong ones could make up the median.
 constexpr size_t kLeastCameras = 4;
 // The share of a swapped camera is mostly below 0.4. That of a camera at its own place is mostly
@@ -46,8 +49,13 @@ void CameraAgreement::add(const std::array<SeenByCamera, kCameraCount>& seen, Ca
   const double kept = std::exp(-step_s / kFade_s);
   CameraMask judged;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    if (!used[camera]) continue;
     Seen& summed = cameras_[camera];
+    if (!used[camera]) {
+      summed.absent_s += step_s;
+      if (summed.absent_s > kLongestAbsence_s) summed = {};
+      continue;
+    }
+    summed.absent_s = 0.0;
     summed.sums = faded(summed.sums, seen[camera], kept);
     summed.time_s += step_s;
     judged[camera] = summed.time_s >= kLeastSeen_s;

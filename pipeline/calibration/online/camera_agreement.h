@@ -25,7 +25,8 @@ class CameraAgreement {
   struct Seen {
     SeenByCamera sums;            ///< fade over some seconds of driving
     double time_s = 0.0;          ///< driving time in them
-    double contradicted_s = 0.0;  ///< for so long, without a break
+    double contradicted_s = 0.0;  ///< judged for so long, each time as contradicting
+    double absent_s = 0.0;        ///< not used for so long
   };
 
   /// Whether enough was seen to judge. If so, `shares` are relative to the median camera.

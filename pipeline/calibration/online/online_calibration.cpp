@@ -29,6 +29,9 @@ constexpr double kFastest_mps = 0.0004;
 /// An error is beyond its bound for certain if it is by this many sigmas.
 constexpr double kCertainSigmas = 0.5;
 
+/// If more cameras seem out of place, it is rather the map or the road that differs.
+constexpr size_t kMostLeftOut = 2;
+
 }  // namespace
 
 OnlineCalibration::OnlineCalibration(const Rig& rig, const BevGrid& grid, int channels,
@@ -52,8 +55,8 @@ double OnlineCalibration::limit_of(int error) const {
 
 bool OnlineCalibration::observe(const CalibrationObservation& observation) {
   const bool is_usable = observation.driving && observation.match.evidence == Evidence::kGood;
-  const bool learns =
-      is_usable && observation.cameras.all() && observation.tracking && is_clear(observation);
+  const bool learns = is_usable && observation.cameras.all() && observation.tracking &&
+                      contradicting().none() && is_clear(observation);
   learn_heading(observation, learns);
   if (!is_usable) return false;
   if (observed_ && observation.time - *observed_ < kPeriod) return false;
@@ -62,10 +65,12 @@ bool OnlineCalibration::observe(const CalibrationObservation& observation) {
   observed_ = observation.time;
   sums_.compute(observation.cells, information_);
   agreement_.add(information_.seen, observation.cameras, step_s);
+  leave_out_faults();
   if (contradicting().any()) return use_again(start_);
   if (!learns) return false;
   filter_.update(information_, used_, step_s);
   judge_bounds();
+  leave_out_faults();
   if (beyond_bounds_.any()) return use_again(start_);
   unfollowed_s_ += step_s;
   return follow_estimate();
@@ -100,6 +105,11 @@ void OnlineCalibration::judge_bounds() {
       }
     }
   }
+}
+
+void OnlineCalibration::leave_out_faults() {
+  const CameraMask wanted = left_out_ | faults();
+  if (wanted.count() <= kMostLeftOut) left_out_ = wanted;
 }
 
 bool OnlineCalibration::use_again(const ExtrinsicErrors& errors) {

@@ -66,10 +66,15 @@ class OnlineCalibration {
   CameraMask beyond_bounds() const { return beyond_bounds_; }
   CameraMask contradicting() const { return agreement_.contradicting(); }
 
+  /// The cameras that are to be left out of matches: the first one or two that were at fault. They
+  /// stay in this set. Cameras that would make it more than two stay in use.
+  CameraMask left_out() const { return left_out_; }
+
  private:
   void learn_heading(const CalibrationObservation& observation, bool is_clear);
   bool is_clear(const CalibrationObservation& observation) const;
   void judge_bounds();
+  void leave_out_faults();
   /// Returns whether the used errors change.
   bool use_again(const ExtrinsicErrors& errors);
   bool follow_estimate();
@@ -86,6 +91,7 @@ class OnlineCalibration {
   std::optional<Time> observed_;  ///< the time of the latest observation that was computed
   CameraAgreement agreement_;
   CameraMask beyond_bounds_;
+  CameraMask left_out_;
 };
 
 }  // namespace bevloc

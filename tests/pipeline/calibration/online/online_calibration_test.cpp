@@ -135,6 +135,40 @@ TEST(OnlineCalibration, KeepsTheVerdictOfACameraThatIsLeftOut) {
   EXPECT_EQ(driver.calibration().contradicting(), CameraMask().set(4));
 }
 
+TEST(OnlineCalibration, JudgesACameraThatComesBackByWhatItShowsThen) {
+  const CameraMask back = CameraMask().set(4);
+  DemoDriver driver;
+  driver.drive(ExtrinsicErrors::Zero(), 190, back);
+  ASSERT_TRUE(driver.calibration().faults().none()) << "soon it is named";
+  driver.cameras.reset(4);
+  driver.drive(ExtrinsicErrors::Zero(), 100);
+  driver.cameras.set(4);
+  driver.drive(ExtrinsicErrors::Zero(), 400);
+  EXPECT_TRUE(driver.calibration().faults().none());
+}
+
+TEST(OnlineCalibration, KeepsTheFirstTwoCamerasLeftOutWhenAThirdIsNamed) {
+  const CameraMask swapped = CameraMask().set(1).set(4);
+  DemoDriver driver;
+  driver.tracking = false;
+  driver.drive(ExtrinsicErrors::Zero(), 250, swapped);
+  ASSERT_EQ(driver.calibration().left_out(), swapped);
+  driver.cameras = ~swapped;
+  driver.drive(ExtrinsicErrors::Zero(), 900, CameraMask().set(0));
+  EXPECT_TRUE(driver.calibration().faults()[0]);
+  EXPECT_EQ(driver.calibration().left_out(), swapped);
+}
+
+TEST(OnlineCalibration, LearnsNoHeadingWhileACameraContradictsTheMap) {
+  DemoDriver driver;
+  driver.drive(ExtrinsicErrors::Zero(), 250, CameraMask().set(4));
+  ASSERT_TRUE(driver.calibration().contradicting()[4]);
+  const ExtrinsicErrors before = driver.calibration().filter().errors();
+  driver.heading_against_motion_rad = radians(0.5);
+  driver.drive(ExtrinsicErrors::Zero(), 150, CameraMask().set(4));
+  EXPECT_EQ(driver.calibration().filter().errors(), before);
+}
+
 TEST(OnlineCalibration, JudgesNoCameraIfOnlyThreeAreUsed) {
   DemoDriver driver;
   driver.cameras = CameraMask().set(1).set(2).set(4);
