@@ -78,7 +78,8 @@ void CalibCommand::declare_import(CLI::App& calib) {
       "import", "Make a rig file of calibrations from Kalibr, OpenCV, ROS, nuScenes or COLMAP");
   imports->add_option("FILE", files_, "Files of the other program")->required();
   imports->add_option("--out", out_, "Rig file to write; the one before is kept as .bak")
-      ->required();
+      ->required()
+      ->check(output_file());
   imports->add_option("--map-camera", camera_names_,
                       "THEIRS=OURS: what a camera of the files is called here, such as cam0=front");
   imports->add_option("--extrinsics", extrinsics_file_,
@@ -113,9 +114,11 @@ void CalibCommand::declare_inputs(CLI::App& command, CalibCommand& self) {
                   "One sigma of the reference headings, degrees")
       ->check(number_between(0.001, 10.0))
       ->capture_default_str();
-  command.add_option("--picture", self.picture_file_,
-                     "Draw the map over pictures to this PNG file");
-  command.add_option("--json", self.json_file_, "Write the result to this file");
+  command
+      .add_option("--picture", self.picture_file_, "Draw the map over pictures to this PNG file")
+      ->check(output_file());
+  command.add_option("--json", self.json_file_, "Write the result to this file")
+      ->check(output_file());
 }
 
 void CalibCommand::declare_check(CLI::App& calib) {
@@ -133,7 +136,8 @@ void CalibCommand::declare_refine(CLI::App& calib) {
       "refine", "Estimate the calibration of each camera from a recording and the map");
   declare_inputs(*refine, *this);
   refine->add_option("--keep", keep_, "What must not change: rotation, position, focal, time");
-  refine->add_option("--out", out_, "Rig file to write; the one before is kept as .bak");
+  refine->add_option("--out", out_, "Rig file to write; the one before is kept as .bak")
+      ->check(output_file());
   refine->footer(
       "Examples:\n"
       "  bevloc calib refine recording --rig rig.yaml --map town.osm --out refined.yaml");
@@ -202,10 +206,12 @@ Result<bool> CalibCommand::run_recording() const {
   });
   if (!refinement) return tl::unexpected(refinement.error());
   fmt::print("{}", check_ ? text_of_check(*refinement) : text_of_refinement(*refinement));
+  const Rig after = refined(*rig, *refinement);
+  if (refine_) print_time_offsets(*refinement);
+  if (Status s = write_refined(after); !s) return tl::unexpected(s.error());
   if (Status s = write_file(dump_json(json_of(*refinement, check_), 2) + "\n", json_file_); !s) {
     return tl::unexpected(s.error());
   }
-  const Rig after = refined(*rig, *refinement);
   if (!picture_file_.empty()) {
     std::vector<CalibrationView> views = {{"with " + rig_file_, *rig}};
     if (refine_) {
@@ -218,16 +224,17 @@ Result<bool> CalibCommand::run_recording() const {
                                                    index, picture_file_);
     if (!drawn) return tl::unexpected(drawn.error());
   }
-  if (check_) return all_good(*refinement);
-  print_time_offsets(*refinement);
-  if (out_.empty()) return true;
+  return refine_ || all_good(*refinement);
+}
+
+Status CalibCommand::write_refined(const Rig& refined) const {
+  if (out_.empty()) return {};
   // Read again, because a rig that cannot be that of a vehicle must not be written.
-  const std::string text = format_rig(after);
+  const std::string text = format_rig(refined);
   if (const auto sound = parse_rig(text, "refined rig"); !sound) {
     return tl::unexpected(sound.error());
   }
-  if (Status s = replace_file_with_backup(out_, text); !s) return tl::unexpected(s.error());
-  return true;
+  return replace_file_with_backup(out_, text);
 }
 
 }  // namespace bevloc::evaluation

@@ -8,6 +8,7 @@
 
 #include "command/command_list.h"
 #include "common/result.h"
+#include "pipeline/calibration/rig.h"
 
 namespace bevloc::evaluation {
 
@@ -25,6 +26,8 @@ class CalibCommand {
   static void declare_inputs(CLI::App& command, CalibCommand& self);
   Status run_import() const;
   Result<bool> run_recording() const;
+  /// Writes the refined rig, if --out names a file.
+  Status write_refined(const Rig& refined) const;
 
   bool import_ = false;
   bool check_ = false;

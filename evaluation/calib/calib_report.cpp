@@ -11,6 +11,8 @@ namespace {
 
 constexpr int kLeastFound = 60;
 constexpr double kLeastOfBest = 0.35;
+/// If less of the paint than this is found, map and picture do not belong together.
+constexpr double kLeastShare = 0.05;
 constexpr double kOff_deg = 0.2;
 constexpr double kOffSigmas = 3.0;
 constexpr std::array<int, 3> kRotations{kPitch, kYaw, kRoll};
@@ -29,6 +31,11 @@ double best_share_of(const RigRefinement& checked) {
 
 double in_unit(const CameraAdjustment& of, int parameter) {
   return of[parameter] / kCameraParameterInfos[static_cast<size_t>(parameter)].per_unit;
+}
+
+/// "-" if the distance was not measured.
+std::string text_of_distance(double distance_px, int digits) {
+  return std::isnan(distance_px) ? "-" : fmt::format("{:.{}f}", distance_px, digits);
 }
 
 /// "+0.123 +- 0.012", or why there is no change.
@@ -60,7 +67,8 @@ std::string_view advice_on(CameraVerdict verdict) {
     case CameraVerdict::kOff:
       return "refine it with `bevloc calib refine`";
     case CameraVerdict::kMismatch:
-      return "check cable, name, lens model and mounting of this camera, and the map";
+      return "check cable, name, lens model and mounting of this camera; if it is so for all of "
+             "them: the map, the reference poses and the clock";
     case CameraVerdict::kTooLittle:
       return "record a drive past more painted lines";
   }
@@ -71,7 +79,8 @@ std::string_view advice_on(CameraVerdict verdict) {
 
 CameraVerdict verdict_on(const CameraRefinement& camera, double best_share) {
   if (camera.looked_at < kLeastFound) return CameraVerdict::kTooLittle;
-  if (share_of(camera) < kLeastOfBest * best_share) return CameraVerdict::kMismatch;
+  if (share_of(camera) < std::max(kLeastShare, kLeastOfBest * best_share))
+    return CameraVerdict::kMismatch;
   if (camera.found < kLeastFound) return CameraVerdict::kTooLittle;
   for (const int axis : kRotations) {
     if (camera.unobservable[static_cast<size_t>(axis)]) return CameraVerdict::kTooLittle;
@@ -101,8 +110,9 @@ std::string text_of_check(const RigRefinement& checked) {
   for (int c = 0; c < kCameraCount; ++c) {
     const CameraRefinement& camera = checked.cameras[c];
     const CameraVerdict verdict = verdict_on(camera, best);
-    text += fmt::format("{:12} {:>13} {:>9.1f} ", kCameraNames[c],
-                        fmt::format("{} of {}", camera.found, camera.looked_at), camera.before_px);
+    text += fmt::format("{:12} {:>13} {:>9} ", kCameraNames[c],
+                        fmt::format("{} of {}", camera.found, camera.looked_at),
+                        text_of_distance(camera.before_px, 1));
     for (const int axis : kRotations) {
       text += fmt::format(" {:>15}", text_of_change(camera, axis, 2));
     }
@@ -132,8 +142,8 @@ std::string text_of_refinement(const RigRefinement& refinement) {
   }
   text += fmt::format("\n{:15}", "off, px");
   for (const CameraRefinement& camera : refinement.cameras) {
-    text +=
-        fmt::format(" {:>16}", fmt::format("{:.2f} -> {:.2f}", camera.before_px, camera.after_px));
+    text += fmt::format(" {:>16}", fmt::format("{} -> {}", text_of_distance(camera.before_px, 2),
+                                               text_of_distance(camera.after_px, 2)));
   }
   return text + "\n";
 }

@@ -36,9 +36,13 @@ FolderRecording::FolderRecording(const Rig& rig, ReferenceTrajectory reference, 
     : rig_(rig), reference_(std::move(reference)) {
   std::ranges::stable_sort(frames, {}, [](const CameraFrame& of) { return of.frame.time; });
   std::optional<Time> start;
+  CameraMask seen;  // in the frameset that began at `start`
   std::optional<Time> kept;
   for (CameraFrame& of : frames) {
-    const bool begins = !start || of.frame.time - *start > kWidestSpread;
+    const auto camera = static_cast<size_t>(of.camera);
+    const bool begins = !start || of.frame.time - *start > kWidestSpread || seen[camera];
+    if (begins) seen.reset();
+    seen.set(camera);
     if (begins) {
       start = of.frame.time;
       if (kept && *start - *kept < interval) continue;

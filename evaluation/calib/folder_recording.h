@@ -17,8 +17,8 @@ class FolderRecording final : public PictureRecording {
  public:
   /// Reads the indexes: for each camera CAMERA/frames.txt (drivers::load_recording), and
   /// reference.csv. A camera without a folder is missing. Frames within 50 ms of each other are one
-  /// frameset; framesets closer than `interval` to the one before are skipped. Fails if there is no
-  /// camera, or if an index is wrong.
+  /// frameset, with one frame of each camera; framesets closer than `interval` to the one before
+  /// are skipped. Fails if there is no camera, or if an index is wrong.
   static Result<std::unique_ptr<FolderRecording>> open(const std::filesystem::path& folder,
                                                        const Rig& rig, Duration interval);
 

@@ -74,11 +74,18 @@ Eigen::Vector3d fisheye_ray(const Intrinsics& camera, const Eigen::Vector2d& tar
   constexpr double kConverged = 1e-13;
   const double wanted = target.norm();
   if (wanted == 0.0) return Eigen::Vector3d::UnitZ();
-  double angle = std::min(wanted, Intrinsics::kWidestFisheye_rad);
+  double low = 0.0;
+  double high = Intrinsics::kWidestFisheye_rad;
+  double angle = std::min(wanted, high);
   for (int step = 0; step < kMaxSteps; ++step) {
     const DistortedAngle distorted = distort_angle(camera, angle);
-    const double change = (wanted - distorted.value) / std::max(distorted.slope, 1e-3);
-    const double next = std::clamp(angle + change, 0.0, Intrinsics::kWidestFisheye_rad);
+    const bool rises = distorted.slope > 0.0;
+    (rises && distorted.value <= wanted ? low : high) = angle;
+    // Newton's method, and bisection where the distorted angle falls again.
+    double next = angle + (wanted - distorted.value) / distorted.slope;
+    const bool leaves = next >= high && high < Intrinsics::kWidestFisheye_rad;
+    next = !rises || leaves ? 0.5 * (low + high)
+                            : std::clamp(next, low, Intrinsics::kWidestFisheye_rad);
     const bool converged = std::abs(next - angle) < kConverged;
     angle = next;
     if (converged) break;

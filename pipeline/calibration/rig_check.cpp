@@ -29,21 +29,32 @@ double turned_deg(double angle_deg) {
   return std::remainder(angle_deg, 360.0);
 }
 
+/// The distance from the principal point to the farthest corner, in focal lengths.
+double farthest_corner(const Intrinsics& camera) {
+  double farthest = 0.0;
+  for (const double x_px : {0.0, camera.width_px - 1.0}) {
+    for (const double y_px : {0.0, camera.height_px - 1.0}) {
+      farthest = std::max(farthest, std::hypot((x_px - camera.cx_px) / camera.fx_px,
+                                               (y_px - camera.cy_px) / camera.fy_px));
+    }
+  }
+  return farthest;
+}
+
 /// Whether the distance from the principal point grows with the angle up to the farthest corner or
-/// kWidestFisheye_rad.
+/// kWidestFisheye_rad, and no larger angle comes back into the image.
 bool grows_with_angle(const Intrinsics& fisheye) {
   constexpr int kSteps = 160;
-  const double least_focal_px = std::min(fisheye.fx_px, fisheye.fy_px);
-  const double farthest_px = std::hypot(fisheye.width_px, fisheye.height_px);
-  double before_px = 0.0;
+  const double farthest = farthest_corner(fisheye);
+  double before = 0.0;
   for (int i = 1; i <= kSteps; ++i) {
     const double angle = Intrinsics::kWidestFisheye_rad * i / kSteps;
     const auto pixel = fisheye.project({std::sin(angle), 0.0, std::cos(angle)});
-    const double distance_px =
-        pixel ? (pixel->x() - fisheye.cx_px) / fisheye.fx_px * least_focal_px : -1.0;
-    if (before_px >= farthest_px) return true;
-    if (!(distance_px > before_px)) return false;
-    before_px = distance_px;
+    const bool is_beyond_image = before >= farthest;
+    if (!pixel && is_beyond_image) continue;
+    const double distance = pixel ? (pixel->x() - fisheye.cx_px) / fisheye.fx_px : -1.0;
+    if (distance <= (is_beyond_image ? farthest : before)) return false;
+    before = std::max(before, distance);
   }
   return true;
 }

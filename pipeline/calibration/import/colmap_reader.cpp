@@ -149,13 +149,14 @@ std::vector<ImportedCamera> read_colmap(const std::string& cameras, const std::s
     }
     result.push_back({line.words[0], line.place, lens});
   }
-  if (images.empty()) return result;
+  if (images_name.empty()) return result;
   result.clear();
   const auto lines = lines_of(images, images_name);
-  for (size_t i = 0; i < lines.size(); i += 2) {
+  for (size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].words.empty()) continue;
     result.push_back(camera_of_image(lines[i], lenses));
-    if (i + 1 < lines.size()) check_points(lines[i + 1]);
+    // The next line has the points of this image, also if it is empty.
+    if (++i < lines.size()) check_points(lines[i]);
   }
   return result;
 }

@@ -23,6 +23,7 @@ struct ImportedCamera {
   Intrinsics intrinsics;  ///< width_px is 0 where the format lacks the size of the images
   std::optional<Mounting> mounting{};
   std::string lens_place{};  ///< of the intrinsics, if they come from another place
+  std::string lens_doubt{};  ///< for the user, if the file does not say which lens it means
 
   const std::string& place_of_lens() const { return lens_place.empty() ? place : lens_place; }
 };

@@ -77,8 +77,14 @@ ImportedCamera read_opencv(const ForeignNode& document, const std::string& name)
   const bool fisheye =
       document.has("fisheye_model") && document.at("fisheye_model").whole_number(0, 1) == 1;
   const auto set = fisheye ? set_fisheye_distortion : set_pinhole_distortion;
-  set(matrix_data(distortion, 0), distortion.at("data").place(), lens);
-  return {name_in(document, name), document.place(), lens};
+  const std::vector<double> coefficients = matrix_data(distortion, 0);
+  set(coefficients, distortion.at("data").place(), lens);
+  ImportedCamera camera{name_in(document, name), document.place(), lens};
+  // Both lenses of OpenCV have four coefficients, and only its own calibration tool writes which.
+  if (coefficients.size() == 4 && !document.has("fisheye_model")) {
+    camera.lens_doubt = "but if it is a fisheye of OpenCV, add `fisheye_model: 1` to the file";
+  }
+  return camera;
 }
 
 ImportedCamera read_camera_info(const ForeignNode& document, const std::string& name) {

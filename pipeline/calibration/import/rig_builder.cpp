@@ -120,6 +120,8 @@ class RigBuilder {
     source = {found->place_of_lens(), found->place};
     CameraModel camera;
     camera.intrinsics = sized_intrinsics(*found);
+    std::string body_note;
+    if (options_.base) body_note = take_own_body(options_.base->cameras[index], camera);
     std::string origin = "the files";
     std::set<std::string> visited;
     std::optional<Se3> placed = vehicle_from(*found, visited);
@@ -132,9 +134,25 @@ class RigBuilder {
     }
     if (!placed) refuse(found->place, lacks(*found), wanted_for(*found, name));
     camera.vehicle_from_camera = *placed;
-    built_.notes.push_back(
-        fmt::format("{}: {} ({}), extrinsics from {}", name, found->place, found->name, origin));
+    const std::string_view lens = camera.intrinsics.lens == Lens::kFisheye ? "fisheye" : "pinhole";
+    const std::string lens_note = found->lens_doubt.empty() ? "" : ", " + found->lens_doubt;
+    built_.notes.push_back(fmt::format("{}: {} ({}), {}{}, extrinsics from {}{}", name,
+                                       found->place, found->name, lens, lens_note, origin,
+                                       body_note));
     return camera;
+  }
+
+  /// Takes the outline of the own vehicle from the base, because no other program has one. Returns
+  /// the end of the camera's note.
+  static std::string take_own_body(const CameraModel& base, CameraModel& camera) {
+    if (base.own_body_px.empty()) return "";
+    const Intrinsics& lens = camera.intrinsics;
+    if (base.intrinsics.width_px != lens.width_px || base.intrinsics.height_px != lens.height_px) {
+      return ", without the base's own_body_px, which is for images of another size: measure it "
+             "again";
+    }
+    camera.own_body_px = base.own_body_px;
+    return ", own_body_px from the base";
   }
 
   Intrinsics sized_intrinsics(const ImportedCamera& camera) const {
@@ -193,12 +211,27 @@ class RigBuilder {
 
   std::optional<Se3> vehicle_from_parent(const Mounting& mounting,
                                          std::set<std::string>& visited) const {
-    if (!mounting.is_on_camera) {
-      return mounting.parent == "vehicle" ? Se3{} : given_place(mounting.parent);
-    }
+    if (!mounting.is_on_camera) return vehicle_from_frame(mounting.parent, visited);
     for (const ImportedCamera& other : cameras_) {
       if (other.name != mounting.parent) continue;
       if (const auto placed = vehicle_from(other, visited)) return placed;
+    }
+    return std::nullopt;
+  }
+
+  /// The place of the vehicle, of a given frame, or of a frame on which a camera with a known place
+  /// hangs.
+  std::optional<Se3> vehicle_from_frame(const std::string& frame,
+                                        std::set<std::string>& visited) const {
+    if (frame == "vehicle") return Se3{};
+    if (const auto given = given_place(frame)) return given;
+    for (const ImportedCamera& other : cameras_) {
+      if (!other.mounting || other.mounting->is_on_camera || other.mounting->parent != frame) {
+        continue;
+      }
+      if (const auto placed = vehicle_from(other, visited)) {
+        return *placed * other.mounting->parent_from_camera.inverse();
+      }
     }
     return std::nullopt;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <Eigen/Cholesky>
@@ -18,8 +19,8 @@ constexpr double kAgrees = 3.0;  // sigmas
 /// A camera with fewer sightings and ties that agree keeps its calibration.
 constexpr int kLeastSightings = 100;
 
-double median_or_zero(std::vector<double>& values) {
-  return values.empty() ? 0.0 : median(values);
+double median_if_any(std::vector<double>& values) {
+  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : median(values);
 }
 
 /// Whether a mount or a lens can change this much. A camera that may change more can also fit the
@@ -331,8 +332,8 @@ RigRefinement RefinementProblem::result(double gate_rad) const {
     camera.unobservable = unobservable_[c];
     camera.kept = ~options_.free;
     camera.sigma = variance.segment<kCameraParameters>(c * kCameraParameters).cwiseSqrt();
-    camera.before_px = median_or_zero(before[c]);
-    camera.after_px = median_or_zero(after[c]);
+    camera.before_px = median_if_any(before[c]);
+    camera.after_px = median_if_any(after[c]);
   }
   return result;
 }

@@ -50,11 +50,12 @@ struct CameraRefinement {
   CameraAdjustment sigma = CameraAdjustment::Zero();
   /// Parameters that the recording does not determine. Their change is 0.
   ParameterSet unobservable;
-  ParameterSet kept;       ///< by RefinementOptions::free. Their change is 0.
-  int looked_at = 0;       ///< places where the map has paint
-  int found = 0;           ///< of them with paint that agrees after the refinement
-  int ties = 0;            ///< tie points that agree after the refinement
-  double before_px = 0.0;  ///< median distance of paint from the map, of those found
+  ParameterSet kept;  ///< by RefinementOptions::free. Their change is 0.
+  int looked_at = 0;  ///< places where the map has paint
+  int found = 0;      ///< of them with paint that agrees after the refinement
+  int ties = 0;       ///< tie points that agree after the refinement
+  /// Median distance of paint from the map, of those found; NaN if none was found.
+  double before_px = 0.0;
   double after_px = 0.0;
 };
 

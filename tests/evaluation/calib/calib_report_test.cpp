@@ -1,6 +1,10 @@
 #include "evaluation/calib/calib_report.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
+
+#include "common/json_dump.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -46,7 +50,19 @@ TEST(CalibReport, ACameraThatIsTurnedIsOff) {
   checked.cameras[4].change[kYaw] = 0.01;
   EXPECT_EQ(verdict_on(checked.cameras[4], 0.9), CameraVerdict::kOff);
   checked.cameras[4].found = 20;
+  checked.cameras[4].change.setZero();
   EXPECT_EQ(verdict_on(checked.cameras[4], 0.9), CameraVerdict::kMismatch);
+}
+
+TEST(CalibReport, NothingFoundIsAMismatchAndNotADistanceOfZero) {
+  RigRefinement checked = clear_refinement();
+  for (CameraRefinement& camera : checked.cameras) {
+    camera.found = 0;
+    camera.before_px = camera.after_px = std::nan("");
+  }
+  EXPECT_EQ(verdict_on(checked.cameras[0], 0.0), CameraVerdict::kMismatch);
+  EXPECT_THAT(text_of_refinement(checked), HasSubstr("- -> -"));
+  EXPECT_EQ(dump_json(json_of(checked, true)["cameras"]["front"]["before_px"], 2), "null");
 }
 
 }  // namespace

@@ -84,6 +84,38 @@ TEST(CameraModel, ProjectsAFisheyeByTheOpenCvFormula) {
   EXPECT_EQ(*camera.project({0.0, 0.0, 1.0}), Eigen::Vector2d(640.3, 398.1));
 }
 
+/// Its distorted angle falls again beyond 72 degrees, a little outside of the image's corners.
+/// Right camera of the data set MVSEC.
+const Intrinsics kFoldingFisheye{.lens = Lens::kFisheye,
+                                 .width_px = 346,
+                                 .height_px = 260,
+                                 .fx_px = 226.018,
+                                 .fy_px = 225.787,
+                                 .cx_px = 174.543,
+                                 .cy_px = 124.216,
+                                 .k1 = -0.04847,
+                                 .k2 = 0.01009,
+                                 .k3 = -0.04293,
+                                 .k4 = 0.00519};
+
+TEST(CameraModel, TheRayOfAFisheyeThatFoldsOutsideOfTheImageIsTheInverseOfProject) {
+  for (int col = 0; col < kFoldingFisheye.width_px; ++col) {
+    for (const int row : {0, 124, 259}) {
+      const Eigen::Vector2d pixel(col, row);
+      const auto again = kFoldingFisheye.project(kFoldingFisheye.ray(pixel));
+      ASSERT_TRUE(again) << pixel.transpose();
+      EXPECT_LT((*again - pixel).norm(), 1e-6) << pixel.transpose();
+    }
+  }
+}
+
+TEST(CameraModel, APixelBeyondTheFoldOfAFisheyeGetsTheWidestRayThatComesBack) {
+  for (const double col : {420.0, 500.0, 2000.0}) {
+    const Eigen::Vector3d ray = kFoldingFisheye.ray({col, kFoldingFisheye.cy_px});
+    EXPECT_NEAR(std::atan(ray.x()), 72.0 * std::numbers::pi / 180.0, 0.02) << col;
+  }
+}
+
 TEST(CameraModel, TheRayOfAFisheyeIsTheInverseOfProjectUpToTheWidestAngle) {
   const Intrinsics camera = fisheye();
   int used = 0;

@@ -197,5 +197,27 @@ TEST(RigCheck, RefusesADistortionThatFoldsAnywhere) {
   EXPECT_FALSE(refused(-0.35, 0.12, 1e-3, -1e-3));
 }
 
+TEST(RigCheck, RefusesAFisheyeThatFoldsWithinTheImageOnly) {
+  const auto message = [](double cx_px, double k3) {
+    Rig rig = sim::nominal_rig();
+    rig.cameras[kFront].intrinsics = {.lens = Lens::kFisheye,
+                                      .width_px = 346,
+                                      .height_px = 260,
+                                      .fx_px = 226.018,
+                                      .fy_px = 225.787,
+                                      .cx_px = cx_px,
+                                      .cy_px = 124.216,
+                                      .k1 = -0.04847,
+                                      .k2 = 0.01009,
+                                      .k3 = k3,
+                                      .k4 = 0.00519};
+    return message_for(rig);
+  };
+  // It folds 231 pixels from the principal point; the farthest corner is at 221 pixels.
+  EXPECT_EQ(message(174.543, -0.04293), "");
+  EXPECT_THAT(message(174.543, -0.1), HasSubstr("cameras.front.distortion"));
+  EXPECT_THAT(message(-100.0, -0.04293), HasSubstr("cameras.front.distortion"));
+}
+
 }  // namespace
 }  // namespace bevloc

@@ -127,6 +127,29 @@ distortion_coefficients: !!opencv-matrix
   expect_refused({{"calib/left_camera.yml", text.substr(0, text.find("distortion"))}}, options,
                  "no distortion_coefficients");
   expect_refused({{"b.yml", replaced(text, "rows: 4", "rows: 3")}}, options, "b.yml:14");
+
+  const std::string doubt = "pinhole, but if it is a fisheye of OpenCV, add `fisheye_model: 1`";
+  EXPECT_NE(imported->notes[0].find(doubt), std::string::npos) << imported->notes[0];
+  const auto sure = import_rig({{"calib/left_camera.yml", text + "fisheye_model: 0\n"}}, options);
+  ASSERT_TRUE(sure) << sure.error().message;
+  EXPECT_EQ(sure->notes[0].find(doubt), std::string::npos) << sure->notes[0];
+}
+
+TEST(ImportRig, TheOwnBodyComesFromTheBase) {
+  RigImportOptions options = with_base();
+  CameraModel& base = options.base->cameras[kFront];
+  base.own_body_px = {{0, 700}, {1279, 700}, {640, 719}};
+  base.intrinsics.width_px = 1280;
+  base.intrinsics.height_px = 720;
+  const auto same_size = import_rig({{"front.yaml", kCameraInfo}}, options);
+  ASSERT_TRUE(same_size) << same_size.error().message;
+  EXPECT_EQ(same_size->rig.cameras[kFront].own_body_px, base.own_body_px);
+
+  base.intrinsics.height_px = 800;
+  const auto other_size = import_rig({{"front.yaml", kCameraInfo}}, options);
+  ASSERT_TRUE(other_size) << other_size.error().message;
+  EXPECT_TRUE(other_size->rig.cameras[kFront].own_body_px.empty());
+  EXPECT_NE(other_size->notes[kFront].find("measure it again"), std::string::npos);
 }
 
 TEST(ImportRig, TheChainOfKalibrEndsAtTheVehicle) {
@@ -236,6 +259,18 @@ TEST(ImportRig, ColmapCountsPixelsFromTheCornerAndMapsIntoTheCamera) {
                      -0.5);
   EXPECT_TRUE(front.vehicle_from_camera.translation_m.isApprox(
       base.cameras[1].vehicle_from_camera.translation_m, 1e-6));
+
+  // One camera's place is enough for the other. Empty lines may stand between images.
+  const std::string side = "4 1 0 0 0 0.5 0.1 0.2 3 side.png\n";
+  options.vehicle_from = {{"front", base.cameras[1].vehicle_from_camera}};
+  options.our_names = {{"side", "front_right"}};
+  const auto both = import_rig(
+      {cameras("PINHOLE 640 360 510 512 320.5 180.5"), {"images.txt", images + "\n\n" + side}},
+      options);
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_TRUE(both->rig.cameras[2].vehicle_from_camera.translation_m.isApprox(
+      Eigen::Vector3d(-0.5, -0.1, -0.2), 1e-6))
+      << both->rig.cameras[2].vehicle_from_camera.translation_m.transpose();
 
   options.our_names = {{"3", "front"}};
   options.vehicle_from.clear();
