@@ -31,7 +31,14 @@ Status store_answer(const std::string& model) {
   if (!bytes) return tl::unexpected(bytes.error());
   onnx::ModelProto proto;
   if (!proto.ParseFromString(*bytes)) return fail("{}: is not a complete ONNX file", model);
-  set_metadata(proto, kAnswerKey, to_text(answer_to_test_frame(**network)));
+  const std::string answer = to_text(answer_to_test_frame(**network));
+  if (!answer_from(answer)) {
+    return fail(
+        "{}: found features that are all zero or not finite for the test frame, wanted "
+        "those of a trained network; the file is not changed",
+        model);
+  }
+  set_metadata(proto, kAnswerKey, answer);
   const std::string written = model + ".new";
   if (Status status = bevloc::write_file(written, proto.SerializeAsString()); !status)
     return status;

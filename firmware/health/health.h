@@ -15,11 +15,12 @@ namespace bevloc::firmware {
 struct HealthLimits {
   Duration odometry_timeout = std::chrono::milliseconds(200);
   Duration gnss_timeout = std::chrono::milliseconds(1500);
-  /// Time without an accepted correction until DEGRADED.
+  /// Time without a correction that confirms the pose (Seen::confirms()) until DEGRADED.
   Duration correction_timeout = std::chrono::milliseconds(350);
-  /// Time without an accepted correction until LOST.
+  /// The same until LOST.
   Duration lost_timeout = std::chrono::seconds(6);
-  /// Accepted corrections in a row that change ACQUIRING to TRACKING.
+  /// How many accepted corrections in a row must speak for a start (Seen::confirms_start()) before
+  /// ACQUIRING can change to TRACKING.
   int corrections_to_track = 10;
   /// Refused corrections in a row that lead to LOST while nothing decides who is wrong.
   int refusals_to_lose = 15;

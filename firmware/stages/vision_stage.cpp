@@ -107,7 +107,7 @@ void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
     report.calibration_fault = learned->faults();
     counters_.calibration_fault = static_cast<unsigned>(learned->faults().to_ulong());
   }
-  note_unused_images(frameset.present, report.present);
+  note_unused_images(frameset.present);
   if (static_cast<int>(report.present.count()) < min_cameras_) {
     ++counters_.refused;
     return;
@@ -139,13 +139,11 @@ void VisionStage::check_network_again(const drivers::Frameset& frameset, const P
   (void)check_network();  // the supervisor logs a fault
 }
 
-void VisionStage::note_unused_images(CameraMask given, CameraMask used) {
+void VisionStage::note_unused_images(CameraMask given) {
   const CameraMask dark = localizer_.with(ViewFault::kDark);
   const CameraMask blinded = localizer_.with(ViewFault::kBlinded);
   const CameraMask dirty = localizer_.with(ViewFault::kDirty);
-  const CameraMask judged =
-      localizer_.frozen() | dark | blinded | dirty | localizer_.out_of_place();
-  const CameraMask unreadable = given & ~used & ~judged;
+  const CameraMask unreadable = given & ~localizer_.readable();
   for (int camera = 0; camera < kCameraCount; ++camera) {
     if (unreadable[camera]) ++counters_.unreadable[camera];
   }

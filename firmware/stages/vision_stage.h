@@ -88,7 +88,7 @@ class VisionStage {
   void match(const drivers::Frameset& frameset, const Prior& prior, VisionReport& report);
   Status check_network();
   void check_network_again(const drivers::Frameset& frameset, const Prior& prior);
-  void note_unused_images(CameraMask given, CameraMask used);
+  void note_unused_images(CameraMask given);
 
   Localizer& localizer_;
   const int min_cameras_;

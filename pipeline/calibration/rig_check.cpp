@@ -81,7 +81,21 @@ bool is_one_to_one(const Intrinsics& camera) {
   return true;
 }
 
+std::optional<RigMistake> find_in_image_size(int index, const Intrinsics& camera) {
+  constexpr int kMostColumnsPerRow = 40;
+  const auto [least_px, most_px] = std::minmax(camera.width_px, camera.height_px);
+  if (least_px >= kLeastImageSide_px && most_px <= kMostImageSide_px &&
+      camera.width_px <= kMostColumnsPerRow * camera.height_px) {
+    return std::nullopt;
+  }
+  return RigMistake{index, false, "image_size_px",
+                    fmt::format("images of {} x {} pixels", camera.width_px, camera.height_px),
+                    fmt::format("sides of {} to {} pixels, and at least one row for {} columns",
+                                kLeastImageSide_px, kMostImageSide_px, kMostColumnsPerRow)};
+}
+
 std::optional<RigMistake> find_in_intrinsics(int index, const Intrinsics& camera) {
+  if (auto mistake = find_in_image_size(index, camera)) return mistake;
   constexpr double kLeast = 0.05;
   constexpr double kMost = 6.0;
   for (const auto& [key, focal_px] :

@@ -16,7 +16,12 @@ struct RigMistake {
   std::string wanted;
 };
 
+// Sizes of images for which the network's image can be computed.
+inline constexpr int kLeastImageSide_px = 16;
+inline constexpr int kMostImageSide_px = 9920;
+
 /// The first mistake of the rig, or nothing. Each camera must have
+/// - images whose sides are 16 to 9920 pixels, with at least one row for 40 columns,
 /// - a focal length of 0.05 to 6 times the width of its image, alike along both axes to a factor 2,
 /// - a principal point outside of its image by at most half the image's size,
 /// - a distortion that gives every pixel its own ray (of a fisheye up to kWidestFisheye_rad),

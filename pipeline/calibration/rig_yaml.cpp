@@ -11,14 +11,14 @@
 namespace bevloc {
 namespace {
 
-constexpr int kMaxImageSizePx = 16384;
-constexpr double kMaxPixel = 2.0 * kMaxImageSizePx;
+constexpr double kMaxPixel = 2.0 * kMostImageSide_px;
 constexpr double kMaxDistortion = 10.0;
 constexpr double kMaxFromVehicleOriginM = 50.0;
 
 Intrinsics read_intrinsics(YamlMap& yaml) {
   Intrinsics camera;
-  const auto size = yaml.require_list<int>("image_size_px", 2, between(1, kMaxImageSizePx));
+  const auto size =
+      yaml.require_list<int>("image_size_px", 2, between(kLeastImageSide_px, kMostImageSide_px));
   camera.width_px = size[0];
   camera.height_px = size[1];
   camera.fx_px = yaml.require<double>("fx_px", more_than(0.0));

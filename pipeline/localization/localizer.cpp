@@ -57,7 +57,10 @@ Localizer::Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Networ
       options_(options),
       network_(std::move(network)),
       rasterizer_(map) {
-  for (const CameraModel& camera : rig.cameras) preprocessors_.emplace_back(camera);
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    preprocessors_.emplace_back(rig.cameras[camera]);
+    view_monitor_.set_shown(camera, preprocessors_.back().shown_pixels());
+  }
   if (options.online_calibration.enabled) {
     online_calibration_.emplace(calibrated_rig_, kFeatureGrid, network_->bev_features().channels,
                                 options.online_calibration);
@@ -116,13 +119,14 @@ CameraMask Localizer::load_images(const CameraImages& images) {
   const auto planes_of = [input = network_->image_input()](int camera) {
     return input.subspan(camera * kNetworkImageSize, kNetworkImageSize);
   };
-  std::array<bool, kCameraCount> readable{};
+  std::array<bool, kCameraCount> readable{};  // written by several threads
   network_->parallel_for(kCameraCount, [&](int camera) {
     readable[camera] =
         images.present[camera] &&
         preprocessors_[camera].run(images.images[camera], planes_of(camera)).has_value();
   });
   for (int camera = 0; camera < kCameraCount; ++camera) {
+    readable_[camera] = readable[camera];
     if (!readable[camera]) continue;
     frozen_[camera] = frozen_detector_.is_frozen(camera, planes_of(camera), images.driving);
     view_monitor_.add(camera, planes_of(camera), images.driving);

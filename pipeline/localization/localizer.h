@@ -41,7 +41,9 @@ struct CameraImages {
   std::array<ImageView, kCameraCount> images;  ///< only those in `present` are read
   CameraMask present;
   CameraMotions reference_from_exposure{};  ///< reference time: that of the prior
-  bool driving = false;  ///< a repeated image then counts as frozen, and a still one as dirty
+  /// If true, a camera that repeats its image counts as frozen, and one with parts that do not
+  /// move as dirty.
+  bool driving = false;
   // For the online calibration:
   Time time{};                         ///< of the frameset
   std::optional<DrivenStep> driven{};  ///< until `time`, from odometry, where known
@@ -80,6 +82,9 @@ class Localizer {
   /// Whether the model stores an answer to the test frame. Without one, check() cannot judge the
   /// network.
   bool model_has_answer() const { return stored_answer_.has_value(); }
+
+  /// The cameras whose image could be read in the latest localize().
+  CameraMask readable() const { return readable_; }
 
   /// The cameras that were frozen at their latest readable image.
   CameraMask frozen() const { return frozen_; }
@@ -135,6 +140,7 @@ class Localizer {
   SolverResult check_solution_;
   std::vector<ImagePreprocessor> preprocessors_;
   FrozenCameraDetector frozen_detector_;
+  CameraMask readable_;
   CameraMask frozen_;
   ViewMonitor view_monitor_;
   MapRasterizer rasterizer_;

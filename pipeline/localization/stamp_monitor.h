@@ -18,9 +18,9 @@ namespace bevloc {
 ///   change of (matched heading - integrated heading)
 ///       = bias of the yaw rate * kLag + scale error * change of heading - offset * change of rate,
 ///
-/// and fits bias, scale error and offset by least squares. Straight roads say nothing about the
-/// offset; one bend tells it to about 20 ms. It is that of all cameras together: a single camera
-/// with another stamp than the others is found by the synchronizer (Synchrony).
+/// and fits bias, scale error and offset by least squares. A straight road gives no evidence of
+/// the offset. One bend determines it to about 20 ms. The offset is common to all cameras; the
+/// synchronizer (Synchrony) finds a single camera whose stamps differ from those of the others.
 ///
 /// Allocates in the constructor only. Not thread safe.
 class StampMonitor {

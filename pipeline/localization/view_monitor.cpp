@@ -75,29 +75,49 @@ void ViewMonitor::sum_blocks(std::span<const int8_t> green, Blocks& blocks) {
   }
 }
 
-ViewFault ViewMonitor::light_fault(const Blocks& blocks) {
+void ViewMonitor::set_shown(int camera, std::span<const uint8_t> shown) {
+  constexpr int kTilePixels = kBlock * kBlocksPerTile;
+  assert(shown.size() == static_cast<size_t>(kNetworkHeightPx) * kNetworkWidthPx);
+  std::array<int, kRows * kCols> counts{};
+  for (int v = 0; v < kNetworkHeightPx; ++v) {
+    for (int u = 0; u < kNetworkWidthPx; ++u) {
+      counts[v / kTilePixels * kCols + u / kTilePixels] += shown[v * kNetworkWidthPx + u];
+    }
+  }
+  for (size_t tile = 0; tile < counts.size(); ++tile) {
+    cameras_[camera].shown[tile] = 2 * counts[tile] >= kTilePixels * kTilePixels;
+  }
+}
+
+ViewFault ViewMonitor::light_fault(const Blocks& blocks, const ShownTiles& shown) {
   constexpr int kPixels = kBlock * kBlock;
   constexpr int kWhiteSum = (kWhiteLevel - kLevelOffset) * kPixels;
   std::array<double, kRows * kCols> tiles{};
+  if (shown.none()) return ViewFault::kNone;
+  const auto shown_tiles = static_cast<double>(shown.count());
+  const double shown_blocks = shown_tiles * kBlocksPerTile * kBlocksPerTile;
   int white = 0;
   double sum = 0.0;
   for (int row = 0; row < kBlockRows; ++row) {
     for (int col = 0; col < kBlockCols; ++col) {
+      const int tile = row / kBlocksPerTile * kCols + col / kBlocksPerTile;
+      if (!shown[static_cast<size_t>(tile)]) continue;
       const int block = blocks[row * kBlockCols + col];
       white += block >= kWhiteSum ? 1 : 0;
       sum += block;
-      tiles[row / kBlocksPerTile * kCols + col / kBlocksPerTile] += block;
+      tiles[tile] += block;
     }
   }
-  if (white > kBlindedShare * static_cast<double>(blocks.size())) return ViewFault::kBlinded;
-  const double mean = sum / (static_cast<double>(blocks.size()) * kPixels) + kLevelOffset;
+  if (white > kBlindedShare * shown_blocks) return ViewFault::kBlinded;
+  const double mean = sum / (shown_blocks * kPixels) + kLevelOffset;
   if (mean >= kDarkMean) return ViewFault::kNone;
   double squares = 0.0;
-  for (const double tile : tiles) {
-    const double level = tile / (kBlocksPerTile * kBlocksPerTile * kPixels) + kLevelOffset;
+  for (size_t tile = 0; tile < tiles.size(); ++tile) {
+    if (!shown[tile]) continue;
+    const double level = tiles[tile] / (kBlocksPerTile * kBlocksPerTile * kPixels) + kLevelOffset;
     squares += (level - mean) * (level - mean);
   }
-  const double contrast = std::sqrt(squares / static_cast<double>(tiles.size()));
+  const double contrast = std::sqrt(squares / shown_tiles);
   return contrast < kDarkContrast ? ViewFault::kDark : ViewFault::kNone;
 }
 
@@ -143,7 +163,7 @@ void ViewMonitor::add(int camera, std::span<const int8_t> planes, bool driving) 
   view.latest = 1 - view.latest;
   sum_blocks(planes.subspan(kPlane, kPlane), view.blocks[view.latest]);
   view.images = std::min(view.images + 1, 2);
-  note_light(light_fault(view.blocks[view.latest]), view);
+  note_light(light_fault(view.blocks[view.latest], view.shown), view);
   if (driving && view.images == 2) note_movement(view);
 }
 
@@ -151,7 +171,9 @@ float ViewMonitor::typical(int row, Tiles Camera::*values) {
   auto end = scratch_.begin();
   for (const Camera& camera : cameras_) {
     if (camera.moved_images < kImages || camera.light != ViewFault::kNone) continue;
-    end = std::copy_n((camera.*values).begin() + row * kCols, kCols, end);
+    for (int tile = row * kCols; tile < (row + 1) * kCols; ++tile) {
+      if (camera.shown[static_cast<size_t>(tile)]) *end++ = (camera.*values)[tile];
+    }
   }
   if (end == scratch_.begin()) return 0.0F;
   const auto middle = scratch_.begin() + (end - scratch_.begin()) / 2;
@@ -165,10 +187,11 @@ int ViewMonitor::covered_tiles(const Camera& camera) const {
     bool own_vehicle = true;
     for (int row = kRows - 1; row > 0; --row) {
       const int tile = row * kCols + col;
-      const bool is_covered = typical_movement_[row] >= kLeastMovement &&
+      const bool is_shown = camera.shown[static_cast<size_t>(tile)];
+      const bool is_covered = is_shown && typical_movement_[row] >= kLeastMovement &&
                               camera.movement[tile] < kStillShare * typical_movement_[row] &&
                               camera.contrast[tile] < kBlurredShare * typical_contrast_[row];
-      own_vehicle = own_vehicle && is_covered && row >= kRows - kOwnVehicleRows;
+      own_vehicle = own_vehicle && (is_covered || !is_shown) && row >= kRows - kOwnVehicleRows;
       covered += is_covered && !own_vehicle ? 1 : 0;
     }
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <span>
 
@@ -34,6 +35,11 @@ class ViewMonitor {
   static constexpr int kRecovery = 10;
   static constexpr int kImages = 100;
 
+  /// Says which pixels of a camera's network image show anything of its view: 1, else 0. The others
+  /// are black: outside of the real image, or on the own vehicle. Tiles that are mostly black are
+  /// not judged. Without a call, all are.
+  void set_shown(int camera, std::span<const uint8_t> shown);
+
   /// Adds the network input of a new frame of `camera`. Counts as movement only while `driving`.
   void add(int camera, std::span<const int8_t> planes, bool driving);
 
@@ -54,8 +60,10 @@ class ViewMonitor {
 
   using Blocks = std::array<int16_t, kBlockRows * kBlockCols>;  ///< sums over a block's pixels
   using Tiles = std::array<float, kRows * kCols>;
+  using ShownTiles = std::bitset<kRows * kCols>;
 
   struct Camera {
+    ShownTiles shown = ShownTiles().set();
     std::array<Blocks, 2> blocks{};  ///< of the latest two images, in turn
     int latest = 0;                  ///< index of the latest
     int images = 0;                  ///< since the last fault of light, at most 2
@@ -68,7 +76,7 @@ class ViewMonitor {
   };
 
   static void sum_blocks(std::span<const int8_t> green, Blocks& blocks);
-  static ViewFault light_fault(const Blocks& blocks);
+  static ViewFault light_fault(const Blocks& blocks, const ShownTiles& shown);
   static void note_light(ViewFault seen, Camera& camera);
   static void note_movement(Camera& camera);
   /// The median of a row over the cameras that have driven long enough; 0 without any.

@@ -1,5 +1,6 @@
 #include "pipeline/preprocessing/image_remap.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -50,6 +51,16 @@ ImagePreprocessor::MjpegReader::MjpegReader(const CameraModel& camera)
 
 ImagePreprocessor::ImagePreprocessor(const CameraModel& camera)
     : camera_(camera), table_(make_remap_table(camera)) {}
+
+std::vector<uint8_t> ImagePreprocessor::shown_pixels() const {
+  const auto taps = static_cast<size_t>(table_.taps);
+  std::vector<uint8_t> shown;
+  for (size_t pixel = 0; pixel < kNetworkPixels; ++pixel) {
+    const auto columns = std::span(table_.weights).subspan(2 * taps * pixel, taps);
+    shown.push_back(std::ranges::any_of(columns, [](uint16_t weight) { return weight > 0; }));
+  }
+  return shown;
+}
 
 Status ImagePreprocessor::run(const ImageView& image, std::span<int8_t> planes) {
   assert(planes.size() == kNetworkImageSize);

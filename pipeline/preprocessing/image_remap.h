@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "common/image_view.h"
 #include "common/result.h"
@@ -33,6 +34,9 @@ class ImagePreprocessor {
   /// Writes planes[c][v][u] = value - 128 for R, G and B. `planes` must have kNetworkImageSize
   /// values. Fails if the size of the image differs from the calibration or if a JPEG is damaged.
   Status run(const ImageView& image, std::span<int8_t> planes);
+
+  /// For each network pixel, 1 if it shows a part of the camera image, 0 if it is always black.
+  std::vector<uint8_t> shown_pixels() const;
 
  private:
   /// Decodes MJPEG images, at a reduced size if the network needs no more, and reads the result.

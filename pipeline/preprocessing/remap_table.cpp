@@ -6,8 +6,13 @@
 #include <cmath>
 #include <span>
 
+#include "pipeline/calibration/rig_check.h"
+
 namespace bevloc {
 namespace {
+
+// A box is at most as wide as the ratio of the widths of both images, and one pixel more counts.
+static_assert(kMostImageSide_px <= (RemapTable::kMaxTaps - 1) * kNetworkWidthPx);
 
 /// Computes the weights of the pixels under a box of width `box` around `centre`, in a line of
 /// `length` pixels. The line continues with its end pixels. Returns the first pixel.

@@ -13,14 +13,16 @@
 
 namespace bevloc {
 
-/// Says which voters are wrong. The arbiter sets at most one of the first three fields.
-/// PoseEstimator also sets `gnss_contradicts` while GnssScatter::contradicts() returns true.
+/// Says which voters are wrong. The arbiter sets the first four fields. PoseEstimator sets
+/// `map_contradicts`; it also sets `gnss_contradicts` while GNSS scatters (GnssScatter),
+/// `undecided` when it starts again, and `odometry_contradicts` when the cause is that the wheels
+/// slip.
 struct Verdict {
   bool match_contradicts = false;     ///< GNSS and dead reckoning agree, the match does not
   bool gnss_contradicts = false;      ///< match and dead reckoning agree, GNSS does not
   bool odometry_contradicts = false;  ///< match and GNSS agree, dead reckoning does not
   bool undecided = false;             ///< two voters disagree, and the third does not decide
-  bool map_contradicts = false;       ///< the map lies beside GNSS for good (MapOffsetMonitor)
+  bool map_contradicts = false;       ///< a constant offset to GNSS (MapOffsetMonitor)
 };
 
 /// How far the pose is trusted.
@@ -59,16 +61,16 @@ class Arbiter {
   bool trusts_gnss() const { return !gnss_.excluded; }
 
   /// Whether dead reckoning drifts: the innovations of the match lean to one side, or at least two
-  /// of match, GNSS and wheels say that the yaw rate has a bias. Not if the match's heading leans
-  /// alone.
+  /// of match, GNSS and wheels say that the yaw rate has a bias. False if only the heading
+  /// of the match is wrong (match_leans_alone()).
   bool odometry_drifts() const;
   void forget_drift(Time now);
 
   int matches_refused_in_a_row() const { return match_.refused_in_a_row; }
 
-  /// While a refused match is unexplained, or refused GNSS along an axis that the match does not
-  /// see: its offset from the estimate in the vehicle frame (m, m, rad). The pose may be wrong by
-  /// as much.
+  /// The offset of a disputed voter from the estimate, in the vehicle frame (m, m, rad); the pose
+  /// may be wrong by as much. Returned while a match is disputed and not excluded, or while GNSS is
+  /// refused and the match cannot tell whether GNSS is right. Otherwise nothing.
   std::optional<Eigen::Vector3d> open_dispute() const;
 
   /// Forgets everything, after the filter has started again.
@@ -130,7 +132,8 @@ class Arbiter {
   bool answers_dispute(const PoseInnovation& innovation) const;
   /// `lean`, positive to the side to which the match's heading leans.
   double with_match(double lean) const;
-  /// Whether the heading of the match leans, and neither GNSS nor the wheels lean with it.
+  /// Whether GNSS leans to the other side than the match in heading: clearly, or by less if the
+  /// wheels do not lean with the match.
   bool match_leans_alone() const;
   bool yaw_rate_drifts() const;
   /// The lean of a bias that the filter has taken into account already.

@@ -17,8 +17,9 @@ struct EvidenceLimits {
   double max_rival_peak = 0.7;
   /// Mean score of the recent matches that confirms the place.
   double min_score = 0.18;
-  /// Below this score of an axis its answer often belongs to another place along the axis, and its
-  /// standard deviation grows in proportion.
+  /// If the score of an axis is below this, its answer often belongs to another place along the
+  /// axis. Its standard deviation is then multiplied by good_axis_score / score, at most by
+  /// max_growth.
   double good_axis_score = 0.12;
   double max_growth = 4.0;
 };

@@ -23,10 +23,12 @@ class MapOffsetMonitor {
   explicit MapOffsetMonitor(double correlation_s) : correlation_s_(correlation_s) {}
 
   /// `difference_m`: GNSS minus pose, along the axes of the map; `sigma_m`: of GNSS, per axis.
-  /// Takes one sample per second, and none that a jump of GNSS explains better.
+  /// Uses at most one sample per second. Ignores a sample that is too far from what the filter
+  /// expects, such as after a jump of GNSS.
   void add(Time time, const Eigen::Vector2d& difference_m, double sigma_m);
 
-  /// Whether there certainly is an offset that matters. Stays until there certainly is none.
+  /// True once the offset is certain and more than 0.75 m. Stays true until the estimated offset is
+  /// 0.5 m or less.
   bool contradicts() const { return contradicts_; }
 
   /// GNSS minus map.

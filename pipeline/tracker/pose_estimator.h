@@ -45,15 +45,16 @@ class PoseEstimator {
   /// whether the latest pose was sent as valid.
   void judge(Time now, bool pose_valid);
 
-  /// As Tracker::pose_at(). While a match disputes the pose, the covariance covers both.
+  /// As Tracker::pose_at(), with MeasurementModel::constant_error added to the covariance. While
+  /// Arbiter::open_dispute() returns an offset, the covariance also covers the pose at that offset.
   std::optional<TrackedPose> pose_at(Time time) const;
 
   const Verdict& verdict() const { return verdict_; }
   const MapOffsetMonitor& map_offset() const { return map_offset_; }
   bool odometry_implausible() const { return odometry_monitor_.implausible(); }
 
-  /// Whether GNSS of the last seconds is near enough for a first trust in the pose, and the matches
-  /// have shown enough.
+  /// Whether matches and GNSS together confirm a new pose: a GNSS sample of the last 2 s is near
+  /// enough, and the matches support it (StartConfirmation).
   bool confirms_start(Time now) const;
 
   /// The bounds of the error of `pose` at `parameters.integrity_risk`: (longitudinal m, lateral m,
@@ -89,7 +90,7 @@ class PoseEstimator {
   StartConfirmation start_confirmation_;
   Verdict verdict_;
   bool pose_valid_ = false;
-  bool trusted_ = false;  ///< the pose has been valid since the start or restart
+  bool trusted_ = false;  ///< the pose was valid at least once since the start or restart
   int gnss_refused_in_a_row_ = 0;
   std::optional<Time> match_passed_;  ///< latest match that passed the gate
   std::optional<Time> gnss_passed_;   ///< latest trusted GNSS sample that passed the gate

@@ -76,6 +76,9 @@ void lower_gather(LoweringState& state, const Node& node) {
   if (index == nullptr || index->is_weight || index->layout.shape().size() != 2) {
     refuse("{}: only a gather by '{}' with two axes is supported", node.label, kViewIndexPort);
   }
+  if (axis < -2 || axis > 1) {
+    refuse("{}: found the axis {} of the gather, wanted -2 to 1", node.label, axis);
+  }
   const bool channels_first = axis == 1 || axis == -1;
   if (!is_feature_table(features.layout, channels_first, dims)) {
     refuse("{}: the features along the gathered axis {} are not in the order camera, row, column",
@@ -114,7 +117,8 @@ void lower_reduce_sum(LoweringState& state, const Node& node) {
   Shape axes = state.constant_input(node, 1, "list of axes").integers();
   for (int64_t& axis : axes) axis += axis < 0 ? 3 : 0;
   const int64_t cells = cell_count(state);
-  if (axes != Shape{slot_axis(*view, cells)}) {
+  const int64_t slots = slot_axis(*view, cells);
+  if (slots < 0 || axes != Shape{slots}) {
     refuse("{}: sums over axes {}, wanted the {} slots", node.label, to_string(axes), kViewSlots);
   }
   const int64_t channels = state.value(view->features).dims[1];

@@ -197,6 +197,22 @@ TEST(RigCheck, RefusesADistortionThatFoldsAnywhere) {
   EXPECT_FALSE(refused(-0.35, 0.12, 1e-3, -1e-3));
 }
 
+TEST(RigCheck, RefusesImagesThatCannotBeScaled) {
+  const auto message = [](int width_px, int height_px) {
+    Rig rig = sim::nominal_rig();
+    Intrinsics& camera = rig.cameras[kBack].intrinsics;
+    camera = resized(camera, width_px, height_px);
+    return message_for(rig);
+  };
+  EXPECT_EQ(message(9920, 5580), "");
+  EXPECT_EQ(message(640, 360), "");
+  for (const auto& [width_px, height_px] :
+       {std::pair(640, 1), {1920, 6}, {12000, 60}, {12000, 6750}, {8, 8}, {1920, 40}}) {
+    EXPECT_THAT(message(width_px, height_px), HasSubstr("cameras.back.image_size_px"))
+        << width_px << " x " << height_px;
+  }
+}
+
 TEST(RigCheck, RefusesAFisheyeThatFoldsWithinTheImageOnly) {
   const auto message = [](double cx_px, double k3) {
     Rig rig = sim::nominal_rig();

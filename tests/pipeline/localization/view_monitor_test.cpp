@@ -178,6 +178,38 @@ TEST_F(ViewMonitorTest, TheOwnVehicleAtTheLowerEdgeIsNoDirt) {
   EXPECT_TRUE(monitor_.with(ViewFault::kNone).all());
 }
 
+TEST_F(ViewMonitorTest, WhatTheCameraCannotShowIsNoDirt) {
+  const Tiles flank{0, 17, 6, 3};
+  std::vector<uint8_t> shown(static_cast<size_t>(kNetworkHeightPx) * kNetworkWidthPx, 1);
+  for (int v = 0; v < kNetworkHeightPx; ++v) {
+    for (int u = flank.col * kTile; u < kNetworkWidthPx; ++u) shown[v * kNetworkWidthPx + u] = 0;
+  }
+  monitor_.set_shown(kDirty, shown);
+  const auto drive = [&](const std::vector<Tiles>& dirt) {
+    for (int i = 0; i <= 3 * ViewMonitor::kImages; ++i) {
+      moved_px_ += 3;
+      for (int camera = 0; camera < kCameraCount; ++camera) draw(camera, moved_px_);
+      for (const Tiles& tiles : dirt) fill(kDirty, tiles, 90);
+      fill(kDirty, flank, 0);
+      show(true);
+    }
+  };
+  drive({});
+  EXPECT_TRUE(monitor_.with(ViewFault::kNone).all());
+  drive({{2, 3, 2, 2}, {1, 11, 2, 2}});
+  expect_only(kDirty, ViewFault::kDirty);
+}
+
+TEST_F(ViewMonitorTest, AWhiteImageAboveTheOwnVehicleIsBlinded) {
+  std::vector<uint8_t> shown(static_cast<size_t>(kNetworkHeightPx) * kNetworkWidthPx, 1);
+  std::fill_n(shown.begin() + 3 * kTile * kNetworkWidthPx, 3 * kTile * kNetworkWidthPx, 0);
+  monitor_.set_shown(4, shown);
+  for (int camera = 0; camera < kCameraCount; ++camera) draw(camera, 0);
+  fill(4, {0, 0, 3, 20}, 250);
+  show(false);
+  expect_only(4, ViewFault::kBlinded);
+}
+
 TEST_F(ViewMonitorTest, AWallThatAllCamerasSeeIsNoDirt) {
   for (int i = 0; i < 2 * ViewMonitor::kImages; ++i) {
     for (int camera = 0; camera < kCameraCount; ++camera) fill(camera, kWhole, 100 + i % 3);

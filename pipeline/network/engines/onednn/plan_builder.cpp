@@ -1,7 +1,12 @@
 #include "pipeline/network/engines/onednn/plan_builder.h"
 
+#include <algorithm>
+#include <span>
+
 #include "pipeline/network/engines/onednn/direct_task.h"
+#include "pipeline/network/engines/onednn/isa.h"
 #include "pipeline/network/engines/onednn/plan_state.h"
+#include "pipeline/network/model/load_error.h"
 #include "pipeline/network/plan/schedule.h"
 
 namespace bevloc::nn::onednn {
@@ -137,10 +142,26 @@ void PlanBuilder::add_direct(const ConvStep& step) {
       {source, destination, added < 0 ? source : added});
 }
 
+/// Without VNNI, oneDNN adds the products of two 8-bit numbers in 16 bits, and sums beyond them are
+/// cut. Weights of up to kMostInexact never reach them.
+void check_products(const ConvStep& step) {
+  constexpr int kMostInexact = 64;
+  if (step.weights.type != ElementType::kInt8 || has_exact_int8_products()) return;
+  const std::span weights(reinterpret_cast<const int8_t*>(step.weights.bytes.data()),
+                          step.weights.bytes.size());
+  const auto [least, most] = std::ranges::minmax(weights);
+  if (least >= -kMostInexact && most <= kMostInexact) return;
+  refuse(
+      "found 8-bit weights from {} to {}, wanted at most {} on this processor, which has no "
+      "VNNI: quantize the model with 7-bit weights (docs/quantization.md)",
+      least, most, kMostInexact);
+}
+
 void PlanBuilder::add(const ConvStep& step) {
   if (kernels_ != nullptr && DirectConvolution::can_run(step, value(step.input), *kernels_)) {
     return add_direct(step);
   }
+  check_products(step);
   const Value* residual = residual_of(step);
   Convolution convolution =
       make_convolution(step, value(step.input), value(step.output), residual, state_.engine());

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/network/model/load_error.h"
 #include "pipeline/network/model/lowering.h"
 #include "pipeline/network/model/onnx_reader.h"
 #include "tests/pipeline/network/engines/engine_under_test.h"
@@ -249,6 +250,20 @@ TEST(EngineStep, ConvolutionRoundsToEitherType) {
         EXPECT_EQ(run_step(step, input, output), convolved(step, input, output));
       }
     }
+  }
+}
+
+TEST(EngineStep, EightBitWeightsAreExactOrRefused) {
+  ConvStep step = make_conv({7, 16, 3, 3});
+  for (std::byte& weight : step.weights.bytes) {
+    weight = static_cast<std::byte>(static_cast<int8_t>(weight) > 0 ? 127 : -127);
+  }
+  const Value input{{1, 16, 6, 5}, kU8, 0x1p-6F};
+  const Value output{{1, 7, 4, 3}};
+  try {
+    EXPECT_EQ(run_step(step, input, output), convolved(step, input, output));
+  } catch (const LoadError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("which has no VNNI"));
   }
 }
 

@@ -136,6 +136,37 @@ TEST_F(RefusedGraph, SumOverAnythingButTheSlots) {
   EXPECT_THAT(message_for(graph), HasSubstr("wanted the 8 slots"));
 }
 
+Tensor integers_of(const Shape& values) {
+  Tensor tensor{ElementType::kInt64, {static_cast<int64_t>(values.size())}, {}};
+  tensor.bytes.resize(values.size() * sizeof(int64_t));
+  std::memcpy(tensor.bytes.data(), values.data(), tensor.bytes.size());
+  return tensor;
+}
+
+TEST_F(RefusedGraph, SumOfEntriesInNeitherOrder) {
+  Graph graph = model("view_channels_last_int8");
+  graph.constants["other_shape"] = integers_of({21, 8});
+  node(graph, Operator::kGather).inputs[1] = "other_index";
+  graph.nodes.insert(
+      graph.nodes.begin(),
+      Node{Operator::kReshape, "reorder", {"view_index", "other_shape"}, "other_index", {}});
+  const auto weight =
+      std::ranges::find_if(graph.nodes, [](const Node& n) { return n.inputs[0] == "view_weight"; });
+  graph.constants.at(weight->inputs[1]) = integers_of({21, 8, 1});
+  for (const int64_t axis : {-4, -3, 0, 1}) {
+    graph.constants.at(node(graph, Operator::kReduceSum).inputs[1]) = integers_of({axis});
+    EXPECT_THAT(message_for(graph), HasSubstr("wanted the 8 slots")) << axis;
+  }
+}
+
+TEST_F(RefusedGraph, GatherAlongAnAxisThatIsNotThere) {
+  for (const int64_t axis : {-3, 2, 7}) {
+    Graph graph = model("view_channels_last_int8");
+    node(graph, Operator::kGather).attributes["axis"] = axis;
+    EXPECT_THAT(message_for(graph), HasSubstr("of the gather, wanted -2 to 1")) << axis;
+  }
+}
+
 TEST_F(RefusedGraph, ProductOutsideTheViewTransform) {
   Graph graph = model("conv_int8");
   Node& relu = node(graph, Operator::kRelu);
@@ -199,10 +230,7 @@ Graph reshaped_to(const Shape& shape) {
   Graph graph = model("view_channels_last_int8");
   for (Node& n : graph.nodes) {
     if (n.op != Operator::kReshape) continue;
-    Tensor tensor{ElementType::kInt64, {static_cast<int64_t>(shape.size())}, {}};
-    tensor.bytes.resize(shape.size() * sizeof(int64_t));
-    std::memcpy(tensor.bytes.data(), shape.data(), tensor.bytes.size());
-    graph.constants["other_shape"] = tensor;
+    graph.constants["other_shape"] = integers_of(shape);
     n.inputs[1] = "other_shape";
     break;
   }
