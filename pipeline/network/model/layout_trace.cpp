@@ -104,14 +104,14 @@ LayoutTrace space_to_depth(const LayoutTrace& input, const Node& node) {
 
 }  // namespace
 
-LayoutTrace::LayoutTrace(Shape shape, std::vector<int32_t> source)
-    : shape_(std::move(shape)), source_(std::move(source)) {
+LayoutTrace::LayoutTrace(Shape shape, std::vector<int32_t> source) : shape_(std::move(shape)) {
   int32_t next = 0;
-  if (std::ranges::all_of(source_, [&next](int32_t i) { return i == next++; })) source_.clear();
+  if (std::ranges::all_of(source, [&next](int32_t i) { return i == next++; })) return;
+  source_ = std::make_shared<const std::vector<int32_t>>(std::move(source));
 }
 
 std::vector<int32_t> LayoutTrace::sources() const {
-  if (!is_identity()) return source_;
+  if (!is_identity()) return *source_;
   std::vector<int32_t> identity(static_cast<size_t>(element_count(shape_)));
   std::iota(identity.begin(), identity.end(), 0);
   return identity;

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/network/model/graph.h"
@@ -21,11 +23,11 @@ class LayoutTrace {
 
   const Shape& shape() const { return shape_; }
   /// Whether the order of the elements is that of the activation.
-  bool is_identity() const { return source_.empty(); }
+  bool is_identity() const { return source_ == nullptr; }
 
   /// Index in the activation of the tensor's element i. Both indices are row-major.
   int32_t source(int64_t i) const {
-    return is_identity() ? static_cast<int32_t>(i) : source_[static_cast<size_t>(i)];
+    return is_identity() ? static_cast<int32_t>(i) : (*source_)[static_cast<size_t>(i)];
   }
   /// source(i) of all elements.
   std::vector<int32_t> sources() const;
@@ -36,8 +38,12 @@ class LayoutTrace {
   LayoutTrace transposed(const std::vector<int64_t>& permutation) const;
 
  private:
+  /// Shared, because a file may give one layout to many tensors.
+  using Source = std::shared_ptr<const std::vector<int32_t>>;
+  LayoutTrace(Shape shape, Source source) : shape_(std::move(shape)), source_(std::move(source)) {}
+
   Shape shape_;
-  std::vector<int32_t> source_;  ///< empty: same order as the activation
+  Source source_;  ///< null: same order as the activation
 };
 
 /// The layout of the node's output. `constants` holds the shapes for Reshape. A node of another
