@@ -75,7 +75,7 @@ void CameraAgreement::add(const std::array<SeenByCamera, kCameraCount>& seen, Ca
     const bool is_side_hidden =
         other >= 0 && (!judged[other] || shares[other] < kWellAgreeingShare);
     contradicted_s += is_side_hidden ? kHiddenSideRate * step_s : step_s;
-    contradicting_[camera] = contradicted_s >= kLeastContradicted_s;
+    if (contradicted_s >= kLeastContradicted_s) contradicting_.set(static_cast<size_t>(camera));
   }
 }
 
