@@ -147,6 +147,17 @@ TEST(OnlineCalibration, JudgesACameraThatComesBackByWhatItShowsThen) {
   EXPECT_TRUE(driver.calibration().faults().none());
 }
 
+TEST(OnlineCalibration, KeepsTheVerdictOfACameraThatComesBackAndStillContradicts) {
+  const CameraMask back = CameraMask().set(4);
+  DemoDriver driver;
+  driver.drive(ExtrinsicErrors::Zero(), 250, back);
+  driver.cameras.reset(4);
+  driver.drive(ExtrinsicErrors::Zero(), 100);
+  driver.cameras.set(4);
+  driver.drive(ExtrinsicErrors::Zero(), 170, back);
+  EXPECT_EQ(driver.calibration().contradicting(), back);
+}
+
 TEST(OnlineCalibration, KeepsTheFirstTwoCamerasLeftOutWhenAThirdIsNamed) {
   const CameraMask swapped = CameraMask().set(1).set(4);
   DemoDriver driver;
