@@ -24,17 +24,17 @@ constexpr std::array<std::pair<const char*, PerAxis Summary::*>, 8> kMeasures{{
 
 }  // namespace
 
+std::string number_or_dash(double value, int digits) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits);
+}
+
 std::string three(const PerAxis& values, int digits) {
-  const auto text = [digits](double value) {
-    return std::isnan(value) ? std::string("-") : fmt::format("{:.{}f}", value, digits);
-  };
-  return fmt::format("{} {} {}", text(values[0]), text(values[1]), text(values[2]));
+  return fmt::format("{} {} {}", number_or_dash(values[0], digits),
+                     number_or_dash(values[1], digits), number_or_dash(values[2], digits));
 }
 
 std::string percent(const PerAxis& shares) {
-  const auto text = [](double share) {
-    return std::isnan(share) ? std::string("-") : fmt::format("{:.0f}", 100.0 * share);
-  };
+  const auto text = [](double share) { return number_or_dash(100.0 * share, 0); };
   return fmt::format("{:>3} {:>3} {:>3}", text(shares[0]), text(shares[1]), text(shares[2]));
 }
 
@@ -42,6 +42,10 @@ nlohmann::json json_of(const Summary& summary) {
   nlohmann::json json{{"scenes", summary.scenes}};
   for (const auto& [name, values] : kMeasures) json[name] = summary.*values;
   return json;
+}
+
+std::string csv_value(double value) {
+  return std::isnan(value) ? "," : fmt::format(",{:.6g}", value);
 }
 
 std::string csv_columns() {
@@ -57,9 +61,7 @@ std::string csv_columns() {
 std::string csv_values(const Summary& summary) {
   std::string text;
   for (const auto& [name, values] : kMeasures) {
-    for (double value : summary.*values) {
-      text += std::isnan(value) ? "," : fmt::format(",{:.6g}", value);
-    }
+    for (const double value : summary.*values) text += csv_value(value);
   }
   return text;
 }

@@ -10,6 +10,9 @@
 
 namespace bevloc::evaluation {
 
+/// "0.115".
+std::string number_or_dash(double value, int digits);
+
 /// "0.115 0.042 0.148".
 std::string three(const PerAxis& values, int digits = 3);
 
@@ -18,6 +21,9 @@ std::string percent(const PerAxis& shares);
 
 /// {mae, rmse, median, p95, parabola_mae, nll, coverage_1s, coverage_3s: [x, y, yaw], scenes}.
 nlohmann::json json_of(const Summary& summary);
+
+/// One value of a CSV line, with a comma before it.
+std::string csv_value(double value);
 
 /// CSV columns for everything in json_of() but the number of scenes: the names, and the values.
 /// Each begins with a comma.

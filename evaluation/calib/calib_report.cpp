@@ -6,12 +6,14 @@
 
 #include <fmt/format.h>
 
+#include "evaluation/summary_format.h"
+
 namespace bevloc::evaluation {
 namespace {
 
 constexpr int kLeastFound = 60;
 constexpr double kLeastOfBest = 0.35;
-/// If less of the paint than this is found, map and picture do not belong together.
+/// If a camera finds less than this share of the mapped paint, its pictures do not fit the map.
 constexpr double kLeastShare = 0.05;
 constexpr double kOff_deg = 0.2;
 constexpr double kOffSigmas = 3.0;
@@ -31,11 +33,6 @@ double best_share_of(const RigRefinement& checked) {
 
 double in_unit(const CameraAdjustment& of, int parameter) {
   return of[parameter] / kCameraParameterInfos[static_cast<size_t>(parameter)].per_unit;
-}
-
-/// "-" if the distance was not measured.
-std::string text_of_distance(double distance_px, int digits) {
-  return std::isnan(distance_px) ? "-" : fmt::format("{:.{}f}", distance_px, digits);
 }
 
 /// "+0.123 +- 0.012", or why there is no change.
@@ -112,7 +109,7 @@ std::string text_of_check(const RigRefinement& checked) {
     const CameraVerdict verdict = verdict_on(camera, best);
     text += fmt::format("{:12} {:>13} {:>9} ", kCameraNames[c],
                         fmt::format("{} of {}", camera.found, camera.looked_at),
-                        text_of_distance(camera.before_px, 1));
+                        number_or_dash(camera.before_px, 1));
     for (const int axis : kRotations) {
       text += fmt::format(" {:>15}", text_of_change(camera, axis, 2));
     }
@@ -142,8 +139,8 @@ std::string text_of_refinement(const RigRefinement& refinement) {
   }
   text += fmt::format("\n{:15}", "off, px");
   for (const CameraRefinement& camera : refinement.cameras) {
-    text += fmt::format(" {:>16}", fmt::format("{} -> {}", text_of_distance(camera.before_px, 2),
-                                               text_of_distance(camera.after_px, 2)));
+    text += fmt::format(" {:>16}", fmt::format("{} -> {}", number_or_dash(camera.before_px, 2),
+                                               number_or_dash(camera.after_px, 2)));
   }
   return text + "\n";
 }

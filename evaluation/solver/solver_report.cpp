@@ -1,7 +1,6 @@
 #include "evaluation/solver/solver_report.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <optional>
 
@@ -60,12 +59,10 @@ std::string road_row(std::string_view road, const Summary& s) {
 }
 
 std::string csv_line(const CaseResult& result, std::string_view road, const Summary& summary) {
-  const std::string time_ms =
-      std::isnan(summary.time_ms) ? "" : fmt::format("{:.6g}", summary.time_ms);
-  return fmt::format("{},{},{},{},{},{}{},{},{}\n", name_of(result.solver_case.solver),
+  return fmt::format("{},{},{},{},{},{}{}{},{}\n", name_of(result.solver_case.solver),
                      size_name(result.solver_case.grid), result.solver_case.channels,
-                     result.solver_case.step_m, road, summary.scenes, csv_values(summary), time_ms,
-                     result.buffer_bytes);
+                     result.solver_case.step_m, road, summary.scenes, csv_values(summary),
+                     csv_value(summary.time_ms), result.buffer_bytes);
 }
 
 std::string paper_row(const PaperRow& row, const std::vector<CaseResult>& results) {

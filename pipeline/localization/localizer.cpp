@@ -105,10 +105,6 @@ bool Localizer::restore_calibration(const ExtrinsicErrors& errors,
   return true;
 }
 
-CameraMask Localizer::out_of_place() const {
-  return online_calibration_ ? online_calibration_->left_out() : CameraMask();
-}
-
 void Localizer::apply_learned() {
   network_rig_ = calibrated_rig_;
   apply_errors(online_calibration_->used_errors(), network_rig_);
@@ -132,7 +128,7 @@ CameraMask Localizer::load_images(const CameraImages& images) {
     view_monitor_.add(camera, planes_of(camera), images.driving);
   }
   view_monitor_.judge();
-  const CameraMask left_out = out_of_place();
+  const CameraMask left_out = online_calibration_ ? online_calibration_->left_out() : CameraMask();
   CameraMask usable;
   for (int camera = 0; camera < kCameraCount; ++camera) {
     usable[camera] = readable[camera] && !frozen_[camera] && !left_out[camera] &&

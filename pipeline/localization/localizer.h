@@ -101,9 +101,6 @@ class Localizer {
     return online_calibration_ ? &*online_calibration_ : nullptr;
   }
 
-  /// The cameras that are not used because of where the online calibration found them.
-  CameraMask out_of_place() const;
-
   /// The raster of the latest localize(), kRasterSize bytes.
   std::span<const uint8_t> map_raster() const { return network_->raster_input(); }
 

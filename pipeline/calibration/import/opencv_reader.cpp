@@ -80,7 +80,8 @@ ImportedCamera read_opencv(const ForeignNode& document, const std::string& name)
   const std::vector<double> coefficients = matrix_data(distortion, 0);
   set(coefficients, distortion.at("data").place(), lens);
   ImportedCamera camera{name_in(document, name), document.place(), lens};
-  // Both lenses of OpenCV have four coefficients, and only its own calibration tool writes which.
+  // A pinhole and a fisheye of OpenCV may both have four coefficients, and only OpenCV's own
+  // calibration tool writes which of them it is.
   if (coefficients.size() == 4 && !document.has("fisheye_model")) {
     camera.lens_doubt = "but if it is a fisheye of OpenCV, add `fisheye_model: 1` to the file";
   }

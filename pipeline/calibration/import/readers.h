@@ -31,7 +31,7 @@ std::vector<ImportedCamera> read_nuscenes(const ForeignNode& calibrated_sensors,
                                           const ForeignNode& sensors,
                                           const std::vector<std::string>& tokens);
 
-/// cameras.txt of COLMAP and, unless its name is empty, images.txt. COLMAP's principal point counts
+/// Reads cameras.txt of COLMAP, and images.txt if it has a name. COLMAP's principal point counts
 /// from the corner of the image, bevloc's from the centre of the first pixel. An image gives its
 /// camera a name: its first folder, or its stem if it has none; its pose (w, x, y, z and
 /// translation) maps points of COLMAP's world into the camera. Without images.txt the id is the

@@ -15,6 +15,12 @@ bool is_ours(std::string_view name) {
   return std::ranges::find(kCameraNames, name) != kCameraNames.end();
 }
 
+/// Whether the file places a camera relative to `parent`: another camera, or another frame.
+bool hangs_on(const ImportedCamera& camera, std::string_view parent, bool is_camera) {
+  return camera.mounting && camera.mounting->is_on_camera == is_camera &&
+         camera.mounting->parent == parent;
+}
+
 class RigBuilder {
  public:
   RigBuilder(std::vector<ImportedCamera> cameras, const RigImportOptions& options)
@@ -66,10 +72,10 @@ class RigBuilder {
                            "names them",
                            names()));
       }
-      const auto hangs_on = [&name = frame](const ImportedCamera& camera) {
-        return camera.mounting && !camera.mounting->is_on_camera && camera.mounting->parent == name;
+      const auto hangs_on_frame = [&name = frame](const ImportedCamera& camera) {
+        return hangs_on(camera, name, false);
       };
-      if (std::ranges::any_of(cameras_, hangs_on)) continue;
+      if (std::ranges::any_of(cameras_, hangs_on_frame)) continue;
       refuse("--extrinsics", frame,
              fmt::format("places that are needed only; the files place no camera relative to {}",
                          frame));
@@ -198,10 +204,14 @@ class RigBuilder {
       const auto placed = vehicle_from_parent(*camera.mounting, visited);
       if (placed) return *placed * camera.mounting->parent_from_camera;
     }
+    return vehicle_from_child_of(camera.name, true, visited);
+  }
+
+  /// The place of a camera or of another frame by that of a camera that hangs on it.
+  std::optional<Se3> vehicle_from_child_of(const std::string& parent, bool is_camera,
+                                           std::set<std::string>& visited) const {
     for (const ImportedCamera& child : cameras_) {
-      const bool is_child =
-          child.mounting && child.mounting->is_on_camera && child.mounting->parent == camera.name;
-      if (!is_child) continue;
+      if (!hangs_on(child, parent, is_camera)) continue;
       if (const auto placed = vehicle_from(child, visited)) {
         return *placed * child.mounting->parent_from_camera.inverse();
       }
@@ -211,27 +221,14 @@ class RigBuilder {
 
   std::optional<Se3> vehicle_from_parent(const Mounting& mounting,
                                          std::set<std::string>& visited) const {
-    if (!mounting.is_on_camera) return vehicle_from_frame(mounting.parent, visited);
+    if (!mounting.is_on_camera) {
+      if (mounting.parent == "vehicle") return Se3{};
+      if (const auto given = given_place(mounting.parent)) return given;
+      return vehicle_from_child_of(mounting.parent, false, visited);
+    }
     for (const ImportedCamera& other : cameras_) {
       if (other.name != mounting.parent) continue;
       if (const auto placed = vehicle_from(other, visited)) return placed;
-    }
-    return std::nullopt;
-  }
-
-  /// The place of the vehicle, of a given frame, or of a frame on which a camera with a known place
-  /// hangs.
-  std::optional<Se3> vehicle_from_frame(const std::string& frame,
-                                        std::set<std::string>& visited) const {
-    if (frame == "vehicle") return Se3{};
-    if (const auto given = given_place(frame)) return given;
-    for (const ImportedCamera& other : cameras_) {
-      if (!other.mounting || other.mounting->is_on_camera || other.mounting->parent != frame) {
-        continue;
-      }
-      if (const auto placed = vehicle_from(other, visited)) {
-        return *placed * other.mounting->parent_from_camera.inverse();
-      }
     }
     return std::nullopt;
   }

@@ -22,8 +22,8 @@ constexpr double kAgreeingShare = 0.5;
 /// drives without a fault, the share of a single camera stayed below it for 1 s or less.
 constexpr double kLeastContradicted_s = 4.0;
 // In drives without a fault, the shares of both cameras of one side stayed below it for 23 s or
-// less. So a second counts as 0.1 s while the share of the other camera is below
-// kWellAgreeingShare, or is not known.
+// less. Therefore one second counts as 0.1 s if the share of the other camera is not known or is
+// below kWellAgreeingShare.
 constexpr double kWellAgreeingShare = 0.7;
 constexpr double kHiddenSideRate = 0.1;
 /// Least agreement of the median camera. If it is lower, no camera is judged.

@@ -35,9 +35,9 @@ struct CalibrationObservation {
 };
 
 /// Learns only while the vehicle drives and tracks, from clear matches near the prior, with all
-/// cameras. Whether a camera contradicts the map is judged without some of them too. A pose in the
-/// wrong lane looks like errors of the cameras. Such apparent errors differ from place to place, so
-/// they average out; the bounds limit the rest.
+/// cameras. It judges whether a camera contradicts the map even while other cameras are missing. A
+/// pose in the wrong lane looks like errors of the cameras. Such apparent errors differ from place
+/// to place, so they average out; the bounds limit the rest.
 ///
 /// One thread; the constructor allocates all memory.
 class OnlineCalibration {

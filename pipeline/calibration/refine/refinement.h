@@ -50,7 +50,7 @@ struct CameraRefinement {
   CameraAdjustment sigma = CameraAdjustment::Zero();
   /// Parameters that the recording does not determine. Their change is 0.
   ParameterSet unobservable;
-  ParameterSet kept;  ///< by RefinementOptions::free. Their change is 0.
+  ParameterSet kept;  ///< not in RefinementOptions::free. Their change is 0.
   int looked_at = 0;  ///< places where the map has paint
   int found = 0;      ///< of them with paint that agrees after the refinement
   int ties = 0;       ///< tie points that agree after the refinement

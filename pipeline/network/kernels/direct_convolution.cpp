@@ -31,10 +31,6 @@ int as_int(int64_t number) {
   return static_cast<int>(number);
 }
 
-std::span<const int8_t> weights_of(const ConvStep& step) {
-  return {reinterpret_cast<const int8_t*>(step.weights.bytes.data()), step.weights.bytes.size()};
-}
-
 /// Real value of one unit of the channel's sum.
 float unit_of_sum(const ConvStep& step, const Value& input, int channel) {
   return step.weight_scale[static_cast<size_t>(channel)] * input.scale;
@@ -48,7 +44,7 @@ int32_t start_of(const ConvStep& step, const Value& input, int channel, int inpu
     const float bias = step.bias[static_cast<size_t>(channel)];
     start = static_cast<int32_t>(std::lround(bias / unit_of_sum(step, input, channel)));
   }
-  const std::span<const int8_t> weights = weights_of(step);
+  const std::span<const int8_t> weights = int8_weights(step);
   const auto count = weights.size() / static_cast<size_t>(step.weights.shape[0]);
   for (const int8_t weight : weights.subspan(static_cast<size_t>(channel) * count, count)) {
     start -= input_offset * weight;
@@ -166,7 +162,7 @@ bool DirectConvolution::can_run(const ConvStep& step, const Value& input,
   const bool is_plain = step.groups == 1 && step.dilations == std::array<int64_t, 2>{1, 1} &&
                         step.weights.shape[2] <= Lines::kMostRows;
   if (!is_plain || step.weights.type != ElementType::kInt8 || !is_8_bit(input.type)) return false;
-  return std::ranges::all_of(weights_of(step), [&kernels](int8_t weight) {
+  return std::ranges::all_of(int8_weights(step), [&kernels](int8_t weight) {
     return std::abs(weight) <= kernels.largest_weight;
   });
 }
@@ -226,7 +222,7 @@ DirectConvolution::Group DirectConvolution::make_group(const ConvStep& step,
                                                        const KernelSet& kernels, StripKernel kernel,
                                                        int first_channel, int lanes) const {
   assert(kernel != nullptr);
-  const std::span<const int8_t> from = weights_of(step);
+  const std::span<const int8_t> from = int8_weights(step);
   Group group{kernel, first_channel, lanes, {}};
   const int step_bytes = kernels.step_words * kWordBytes;
   const int steps = round_up(kernel_cols_ * line_channels_, step_bytes) / step_bytes;

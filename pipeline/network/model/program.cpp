@@ -33,6 +33,10 @@ uint64_t size_in_bytes(const Value& value) {
   return element_count(value) * size_in_bytes(value.type);
 }
 
+std::span<const int8_t> int8_weights(const ConvStep& step) {
+  return {reinterpret_cast<const int8_t*>(step.weights.bytes.data()), step.weights.bytes.size()};
+}
+
 std::vector<int> inputs_of(const Step& step) {
   return std::visit([](const auto& known) { return inputs_of_step(known); }, step);
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -37,6 +38,9 @@ struct ConvStep {
   std::array<int64_t, 2> dilations{1, 1};
   std::array<int64_t, 4> pads{};  ///< top, left, bottom, right
 };
+
+/// The weights of a convolution with int8 weights.
+std::span<const int8_t> int8_weights(const ConvStep& step);
 
 struct MaxPoolStep {
   int input = 0;

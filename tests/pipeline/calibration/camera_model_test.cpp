@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/pipeline/calibration/folding_fisheye.h"
 #include "tests/support/pose_matchers.h"
 
 namespace bevloc {
@@ -84,19 +85,7 @@ TEST(CameraModel, ProjectsAFisheyeByTheOpenCvFormula) {
   EXPECT_EQ(*camera.project({0.0, 0.0, 1.0}), Eigen::Vector2d(640.3, 398.1));
 }
 
-/// Its distorted angle falls again beyond 72 degrees, a little outside of the image's corners.
-/// Right camera of the data set MVSEC.
-const Intrinsics kFoldingFisheye{.lens = Lens::kFisheye,
-                                 .width_px = 346,
-                                 .height_px = 260,
-                                 .fx_px = 226.018,
-                                 .fy_px = 225.787,
-                                 .cx_px = 174.543,
-                                 .cy_px = 124.216,
-                                 .k1 = -0.04847,
-                                 .k2 = 0.01009,
-                                 .k3 = -0.04293,
-                                 .k4 = 0.00519};
+const Intrinsics kFoldingFisheye = test::folding_fisheye();
 
 TEST(CameraModel, TheRayOfAFisheyeThatFoldsOutsideOfTheImageIsTheInverseOfProject) {
   for (int col = 0; col < kFoldingFisheye.width_px; ++col) {

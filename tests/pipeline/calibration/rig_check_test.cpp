@@ -10,6 +10,7 @@
 
 #include "pipeline/calibration/rig_yaml.h"
 #include "sim/sim_rig.h"
+#include "tests/pipeline/calibration/folding_fisheye.h"
 
 namespace bevloc {
 namespace {
@@ -216,20 +217,12 @@ TEST(RigCheck, RefusesImagesThatCannotBeScaled) {
 TEST(RigCheck, RefusesAFisheyeThatFoldsWithinTheImageOnly) {
   const auto message = [](double cx_px, double k3) {
     Rig rig = sim::nominal_rig();
-    rig.cameras[kFront].intrinsics = {.lens = Lens::kFisheye,
-                                      .width_px = 346,
-                                      .height_px = 260,
-                                      .fx_px = 226.018,
-                                      .fy_px = 225.787,
-                                      .cx_px = cx_px,
-                                      .cy_px = 124.216,
-                                      .k1 = -0.04847,
-                                      .k2 = 0.01009,
-                                      .k3 = k3,
-                                      .k4 = 0.00519};
+    Intrinsics& camera = rig.cameras[kFront].intrinsics;
+    camera = test::folding_fisheye();
+    camera.cx_px = cx_px;
+    camera.k3 = k3;
     return message_for(rig);
   };
-  // It folds 231 pixels from the principal point; the farthest corner is at 221 pixels.
   EXPECT_EQ(message(174.543, -0.04293), "");
   EXPECT_THAT(message(174.543, -0.1), HasSubstr("cameras.front.distortion"));
   EXPECT_THAT(message(-100.0, -0.04293), HasSubstr("cameras.front.distortion"));

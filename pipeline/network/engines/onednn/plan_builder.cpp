@@ -1,7 +1,6 @@
 #include "pipeline/network/engines/onednn/plan_builder.h"
 
 #include <algorithm>
-#include <span>
 
 #include "pipeline/network/engines/onednn/direct_task.h"
 #include "pipeline/network/engines/onednn/isa.h"
@@ -147,9 +146,7 @@ void PlanBuilder::add_direct(const ConvStep& step) {
 void check_products(const ConvStep& step) {
   constexpr int kMostInexact = 64;
   if (step.weights.type != ElementType::kInt8 || has_exact_int8_products()) return;
-  const std::span weights(reinterpret_cast<const int8_t*>(step.weights.bytes.data()),
-                          step.weights.bytes.size());
-  const auto [least, most] = std::ranges::minmax(weights);
+  const auto [least, most] = std::ranges::minmax(int8_weights(step));
   if (least >= -kMostInexact && most <= kMostInexact) return;
   refuse(
       "found 8-bit weights from {} to {}, wanted at most {} on this processor, which has no "

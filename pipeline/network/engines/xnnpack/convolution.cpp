@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <span>
 
 #include "pipeline/network/model/load_error.h"
 
@@ -28,7 +28,7 @@ void check(xnn_status status, const Shape& weights) {
 
 /// Weights [out, in, rows, cols] in the order [out, rows, cols, in].
 template <typename Element>
-std::vector<Element> channel_last(const std::vector<Element>& weights, const Shape& shape) {
+std::vector<Element> channel_last(std::span<const Element> weights, const Shape& shape) {
   const int64_t in_channels = shape[1];
   const int64_t cells = shape[2] * shape[3];
   std::vector<Element> result(weights.size());
@@ -43,17 +43,15 @@ std::vector<Element> channel_last(const std::vector<Element>& weights, const Sha
   return result;
 }
 
-std::vector<int8_t> int8_weights(const ConvStep& step) {
-  std::vector<int8_t> weights(step.weights.bytes.size());
-  std::memcpy(weights.data(), step.weights.bytes.data(), weights.size());
-  return channel_last(weights, step.weights.shape);
+std::vector<int8_t> channel_last_int8(const ConvStep& step) {
+  return channel_last(int8_weights(step), step.weights.shape);
 }
 
 std::vector<float> float_weights(const ConvStep& step) {
   if (step.weights.type == ElementType::kFloat32) {
-    return channel_last(step.weights.floats(), step.weights.shape);
+    return channel_last<float>(step.weights.floats(), step.weights.shape);
   }
-  const std::vector<int8_t> weights = int8_weights(step);
+  const std::vector<int8_t> weights = channel_last_int8(step);
   return {weights.begin(), weights.end()};
 }
 
@@ -105,7 +103,7 @@ Operator make_quantized_operator(const ConvStep& step, const Value& input, const
   const Geometry g(step);
   const int zero = zero_point(output.type);
   const int lowest = step.relu ? zero : std::numeric_limits<int8_t>::min();
-  const std::vector<int8_t> weights = int8_weights(step);
+  const std::vector<int8_t> weights = channel_last_int8(step);
   const std::vector<int32_t> bias = whole_bias<int32_t>(step, input);
   xnn_operator_t made = nullptr;
   check(xnn_create_convolution2d_nhwc_qc8(
