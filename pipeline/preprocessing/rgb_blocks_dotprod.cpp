@@ -15,20 +15,30 @@ namespace {
 #include "pipeline/preprocessing/blocks_dotprod.h"
 #include "pipeline/preprocessing/boxes_dotprod.h"
 
-/// The first sample of a box.
-struct RgbPlace {
-  const uint8_t* first;
-  std::ptrdiff_t stride_bytes;
+/// The samples of the boxes of a part of a block.
+class RgbSamples {
+ public:
+  RgbSamples(const RgbView& image, const Corners& corners)
+      : image_(image),
+        offsets_(corners.rows, image.stride_bytes, vmulq_n_u16(corners.cols, kSampleBytes)) {}
 
-  RgbPlace(const RgbView& image, Corner corner)
-      : first(image.data + corner.row * image.stride_bytes + 3 * corner.col),
-        stride_bytes(image.stride_bytes) {}
+  template <int kTaps>
+  void prefetch() const {
+    prefetch_below<kTaps, kSampleBytes>(image_.data + offsets_[0], image_.stride_bytes);
+  }
 
   template <int kRow, int kGroup>
-  uint8x16_t samples() const {
+  uint8x16_t at(int pixel) const {
     static constexpr Shuffle kByChannel([](int i) { return i < 12 ? 3 * (i % 4) + i / 4 : kNone; });
-    return kByChannel(vld1q_u8(first + kRow * stride_bytes + 12 * kGroup));
+    const uint8_t* const line = image_.data + kRow * image_.stride_bytes;
+    return kByChannel(vld1q_u8(line + offsets_[pixel] + 4 * kSampleBytes * kGroup));
   }
+
+ private:
+  static constexpr int kSampleBytes = 3;
+
+  const RgbView& image_;
+  Offsets offsets_;
 };
 
 /// Writes the means, which are the third bytes of the sums.
@@ -54,12 +64,9 @@ void remap_blocks(const RgbView& image, const RemapBlocks& blocks, int8_t* plane
     for (Sums& sum : sums) sum = vdupq_n_u32(1U << (2 * RemapTable::kWeightBits - 1));
     for_each_part<kParts>(
         block, [&](size_t part) __attribute__((always_inline)) {
-          prefetch_below<kTaps, 3>(RgbPlace(image, Corner(blocks, part, 0)).first,
-                                   image.stride_bytes);
-          for (int pixel = 0; pixel < kPixels; ++pixel) {
-            const RgbPlace place(image, Corner(blocks, part, pixel));
-            sums[pixel] = box_sums<kTaps>(place, blocks, part, pixel, sums[pixel]);
-          }
+          const RgbSamples samples(image, Corners(blocks, part));
+          samples.prefetch<kTaps>();
+          add_boxes<kTaps>(samples, blocks, part, sums);
         });
     store_means(sums, planes + kPixels * blocks.index[block]);
   }

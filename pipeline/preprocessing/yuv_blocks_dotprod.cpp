@@ -18,117 +18,130 @@ namespace {
 #include "pipeline/preprocessing/blocks_dotprod.h"
 #include "pipeline/preprocessing/boxes_dotprod.h"
 
-/// A box in YUYV (kLuma = 0) or UYVY (kLuma = 1): eight pixels in sixteen bytes.
+/// The samples of boxes in YUYV (kLuma = 0) or UYVY (kLuma = 1): eight pixels in sixteen bytes.
 template <int kLuma>
-struct PackedPlace {
-  const uint8_t* first;
-  std::ptrdiff_t stride_bytes;
-
-  PackedPlace(const YuvLayout& image, Corner corner)
-      : first(image.y.data - kLuma + corner.row * image.y.stride_bytes + 2 * corner.col),
-        stride_bytes(image.y.stride_bytes) {}
+class PackedSamples {
+ public:
+  PackedSamples(const YuvLayout& image, const Corners& corners)
+      : first_(image.y.data - kLuma),
+        stride_bytes_(image.y.stride_bytes),
+        offsets_(corners.rows, stride_bytes_, vshlq_n_u16(corners.cols, 1)) {}
 
   template <int kTaps>
-  void prefetch(const YuvLayout&) const {
-    prefetch_below<kTaps, 2>(first, stride_bytes);
+  void prefetch() const {
+    prefetch_below<kTaps, 2>(first_ + offsets_[0], stride_bytes_);
   }
 
   template <int kRow, int kGroup>
-  uint8x16_t samples() const {
+  uint8x16_t at(int pixel) const {
     static constexpr Shuffle kByChannel([](int i) {
       const int chroma = 4 * (i % 4 / 2) + 1 - kLuma;
       const int from[] = {2 * (i % 4) + kLuma, chroma, chroma + 2, kNone};
       return from[i / 4] == kNone ? kNone : 8 * kGroup + from[i / 4];
     });
-    return kByChannel(vld1q_u8(first + kRow * stride_bytes));
+    return kByChannel(vld1q_u8(first_ + kRow * stride_bytes_ + offsets_[pixel]));
   }
+
+ private:
+  const uint8_t* first_;
+  std::ptrdiff_t stride_bytes_;
+  Offsets offsets_;
 };
 
-/// A box in a format with luma in a separate plane.
-template <bool kHalvedRows>
-class PlanarPlace {
+/// The samples of boxes in a format with luma in a separate plane. kColShift: 1 if a chroma plane
+/// has half as many columns of bytes as that of luma.
+template <bool kHalvedRows, int kColShift>
+class PlanarSamples {
  protected:
-  PlanarPlace(const YuvLayout& image, Corner corner)
-      : luma_(image.y.data + corner.row * image.y.stride_bytes + corner.col),
-        luma_stride_bytes_(image.y.stride_bytes),
-        chroma_stride_bytes_(image.u.stride_bytes) {
-    const int in_row = image.chroma_step == 2 ? corner.col : corner.col / 2;
-    const int first_row = kHalvedRows ? corner.row / 2 : corner.row;
-    const int second_row = kHalvedRows ? (corner.row + 1) / 2 : corner.row;
-    chroma_[0] = first_row * chroma_stride_bytes_ + in_row;
-    chroma_[1] = second_row * chroma_stride_bytes_ + in_row;
-  }
+  PlanarSamples(const YuvLayout& image, const Corners& corners)
+      : image_(image),
+        luma_(corners.rows, image.y.stride_bytes, corners.cols),
+        chroma_{chroma_offsets<0>(image, corners), chroma_offsets<1>(image, corners)} {}
 
   template <int kRow>
-  uint8x8_t luma() const {
-    return vld1_u8(luma_ + kRow * luma_stride_bytes_);
+  uint8x8_t luma(int pixel) const {
+    return vld1_u8(image_.y.data + kRow * image_.y.stride_bytes + luma_[pixel]);
   }
-  /// Offset of the first chroma sample of a row of the box.
+  /// The first chroma sample of a row of the box.
   template <int kRow>
-  std::ptrdiff_t chroma() const {
-    return chroma_[kRow % 2] + (kHalvedRows ? kRow / 2 : kRow) * chroma_stride_bytes_;
+  const uint8_t* chroma(const ImagePlane& plane, int pixel) const {
+    const int row = kHalvedRows ? kRow / 2 : kRow;
+    return plane.data + row * plane.stride_bytes + chroma_[kHalvedRows ? kRow % 2 : 0][pixel];
+  }
+  template <int kTaps>
+  void prefetch_luma() const {
+    prefetch_below<kTaps, 1>(image_.y.data + luma_[0], image_.y.stride_bytes);
   }
 
-  const uint8_t* luma_;
-  std::ptrdiff_t luma_stride_bytes_;
-  std::ptrdiff_t chroma_stride_bytes_;
-  std::ptrdiff_t chroma_[2];  ///< of rows 0, 2, ... and of rows 1, 3, ...
+  const YuvLayout& image_;
+
+ private:
+  /// Of row kFirstRow of the boxes.
+  template <int kFirstRow>
+  static Offsets chroma_offsets(const YuvLayout& image, const Corners& corners) {
+    uint16x8_t rows = corners.rows;
+    if constexpr (kHalvedRows) rows = vshrq_n_u16(vaddq_u16(rows, vdupq_n_u16(kFirstRow)), 1);
+    uint16x8_t cols = corners.cols;
+    if constexpr (kColShift == 1) cols = vshrq_n_u16(cols, 1);
+    return Offsets(rows, image.u.stride_bytes, cols);
+  }
+
+  Offsets luma_;
+  Offsets chroma_[2];  ///< of rows 0, 2, ... and of rows 1, 3, ...
 };
 
-/// A box in NV12.
-class SemiPlanarPlace : PlanarPlace<true> {
+/// The samples of boxes in NV12.
+class SemiPlanarSamples : PlanarSamples<true, 0> {
  public:
-  SemiPlanarPlace(const YuvLayout& image, Corner corner)
-      : PlanarPlace(image, corner), chroma_plane_(image.u.data) {}
+  SemiPlanarSamples(const YuvLayout& image, const Corners& corners)
+      : PlanarSamples(image, corners) {}
 
   template <int kTaps>
-  void prefetch(const YuvLayout& image) const {
-    prefetch_below<kTaps, 1>(luma_, image.y.stride_bytes);
-    prefetch_below<kTaps, 2, 1, 1>(chroma_plane_ + chroma_[0], image.u.stride_bytes);
+  void prefetch() const {
+    prefetch_luma<kTaps>();
+    prefetch_below<kTaps, 2, 1, 1>(chroma<0>(image_.u, 0), image_.u.stride_bytes);
   }
 
   template <int kRow, int kGroup>
-  uint8x16_t samples() const {
+  uint8x16_t at(int pixel) const {
     static constexpr Shuffle kByChannel([](int i) {
       const int chroma = 8 + 4 * kGroup + 2 * (i % 4 / 2);
       const int from[] = {4 * kGroup + i % 4, chroma, chroma + 1, kNone};
       return from[i / 4];
     });
-    return kByChannel(vcombine_u8(luma<kRow>(), vld1_u8(chroma_plane_ + chroma<kRow>())));
+    return kByChannel(vcombine_u8(luma<kRow>(pixel), vld1_u8(chroma<kRow>(image_.u, pixel))));
   }
-
- private:
-  const uint8_t* chroma_plane_;
 };
 
-/// A box in 4:2:0 or 4:2:2 in three planes.
+/// The samples of boxes in 4:2:0 or 4:2:2 in three planes.
 template <bool kHalvedRows>
-class ThreePlanesPlace : PlanarPlace<kHalvedRows> {
-  using Base = PlanarPlace<kHalvedRows>;
+class ThreePlanesSamples : PlanarSamples<kHalvedRows, 1> {
+  using Base = PlanarSamples<kHalvedRows, 1>;
+  using Base::image_;
 
  public:
-  ThreePlanesPlace(const YuvLayout& image, Corner corner)
-      : Base(image, corner), u_(image.u.data), v_(image.v.data) {}
+  ThreePlanesSamples(const YuvLayout& image, const Corners& corners) : Base(image, corners) {}
 
   template <int kTaps>
-  void prefetch(const YuvLayout& image) const {
+  void prefetch() const {
     constexpr int kRowShift = kHalvedRows ? 1 : 0;
-    prefetch_below<kTaps, 1>(this->luma_, image.y.stride_bytes);
-    for (const ImagePlane& plane : {image.u, image.v}) {
-      prefetch_below<kTaps, 1, kRowShift, 1>(plane.data + this->chroma_[0], plane.stride_bytes);
+    Base::template prefetch_luma<kTaps>();
+    for (const ImagePlane& plane : {image_.u, image_.v}) {
+      prefetch_below<kTaps, 1, kRowShift, 1>(Base::template chroma<0>(plane, 0),
+                                             plane.stride_bytes);
     }
   }
 
   template <int kRow, int kGroup>
-  uint8x16_t samples() const {
+  uint8x16_t at(int pixel) const {
     static constexpr Shuffle kByChannel([](int i) {
       const int chroma = 8 + 2 * kGroup + i % 4 / 2;
       const int from[] = {4 * kGroup + i % 4, chroma, chroma + 4, kNone};
       return from[i / 4];
     });
-    const std::ptrdiff_t chroma = Base::template chroma<kRow>();
-    const uint32x2_t both = {word(u_ + chroma), word(v_ + chroma)};
-    return kByChannel(vcombine_u8(Base::template luma<kRow>(), vreinterpret_u8_u32(both)));
+    const uint32x2_t both = {word(Base::template chroma<kRow>(image_.u, pixel)),
+                             word(Base::template chroma<kRow>(image_.v, pixel))};
+    return kByChannel(vcombine_u8(Base::template luma<kRow>(pixel), vreinterpret_u8_u32(both)));
   }
 
  private:
@@ -137,9 +150,6 @@ class ThreePlanesPlace : PlanarPlace<kHalvedRows> {
     std::memcpy(&bytes, from, sizeof(bytes));
     return bytes;
   }
-
-  const uint8_t* u_;
-  const uint8_t* v_;
 };
 
 /// Converts the sums of eight pixels to RGB, with the same bits as the plain code.
@@ -182,7 +192,7 @@ class ToRgb {
   RgbFromYuv colour_;
 };
 
-template <int kTaps, int kParts, typename Place>
+template <int kTaps, int kParts, typename Samples>
 void remap_blocks(const YuvLayout& image, const RemapBlocks& blocks, int8_t* planes) {
   const ToRgb to_rgb(rgb_from_yuv(image.encoding));
   for (size_t block = 0; block < blocks.index.size(); ++block) {
@@ -190,22 +200,20 @@ void remap_blocks(const YuvLayout& image, const RemapBlocks& blocks, int8_t* pla
     for (Sums& sum : sums) sum = vdupq_n_u32(0);
     for_each_part<kParts>(
         block, [&](size_t part) __attribute__((always_inline)) {
-          Place(image, Corner(blocks, part, 0)).template prefetch<kTaps>(image);
-          for (int pixel = 0; pixel < kPixels; ++pixel) {
-            const Place place(image, Corner(blocks, part, pixel));
-            sums[pixel] = box_sums<kTaps>(place, blocks, part, pixel, sums[pixel]);
-          }
+          const Samples samples(image, Corners(blocks, part));
+          samples.template prefetch<kTaps>();
+          add_boxes<kTaps>(samples, blocks, part, sums);
         });
     to_rgb.store(SumsByKind(sums), planes + kPixels * blocks.index[block]);
   }
 }
 
 struct Readers {
-  using Yuyv = PackedPlace<0>;
-  using Uyvy = PackedPlace<1>;
-  using Nv12 = SemiPlanarPlace;
-  using I420 = ThreePlanesPlace<true>;
-  using I422 = ThreePlanesPlace<false>;
+  using Yuyv = PackedSamples<0>;
+  using Uyvy = PackedSamples<1>;
+  using Nv12 = SemiPlanarSamples;
+  using I420 = ThreePlanesSamples<true>;
+  using I422 = ThreePlanesSamples<false>;
 };
 
 }  // namespace

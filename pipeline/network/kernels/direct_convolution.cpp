@@ -16,7 +16,8 @@ namespace {
 constexpr int kWordBytes = 4;
 static_assert(DirectConvolution::kMostPlanes == kWordBytes);
 
-/// The kernels read unsigned inputs, so this is added to int8 inputs.
+/// Kernels take unsigned or signed bytes. An XOR with 128 adds 128 to a signed byte, which makes it
+/// unsigned, and subtracts 128 from an unsigned one.
 constexpr int kSignOffset = 128;
 
 int round_up(int number, int unit) {
@@ -25,6 +26,10 @@ int round_up(int number, int unit) {
 
 size_t rounded_up_to_line(size_t bytes) {
   return (bytes + kCacheLineBytes - 1) / kCacheLineBytes * kCacheLineBytes;
+}
+
+bool is_signed(const Value& value) {
+  return value.type == ElementType::kInt8;
 }
 
 int as_int(int64_t number) {
@@ -83,6 +88,12 @@ BEVLOC_TARGET_CLONES void interleave(const uint8_t* const* planes, int cols, uin
   }
 }
 
+/// XORs each byte with `flip`.
+BEVLOC_TARGET_CLONES void flip_bytes(const uint8_t* from, int count, uint8_t flip, uint8_t* line) {
+#pragma GCC unroll 4
+  for (int i = 0; i < count; ++i) line[i] = from[i] ^ flip;
+}
+
 }  // namespace
 
 /// The input rows that an output row needs, padded with zeros ("lines"). Each line is written once
@@ -121,33 +132,41 @@ class DirectConvolution::Lines {
   }
 
   void write(int row, uint8_t* line) const {
-    // The byte that stands for 0. XOR with 128 adds 128 to an int8, as an unsigned byte.
-    const uint8_t zero = conv_.is_signed_ ? kSignOffset : 0;
-    std::memset(line, zero, conv_.line_bytes());
-    if (row < 0 || row >= conv_.in_rows_) return;
-    line += static_cast<std::ptrdiff_t>(conv_.pad_left_) * conv_.line_channels_;
-    if (conv_.order_ == ChannelOrder::kPlanes) return write_planes(row, zero, line);
-    const int channels = conv_.in_channels_;
-    const uint8_t* from = pixels(row);
-    if (!conv_.is_signed_ && channels == conv_.line_channels_) {
-      std::memcpy(line, from, static_cast<size_t>(conv_.in_cols_) * channels);
+    if (row < 0 || row >= conv_.in_rows_) {
+      std::memset(line, conv_.flip_, conv_.line_bytes());
       return;
     }
+    const auto before = static_cast<size_t>(conv_.pad_left_) * conv_.line_channels_;
+    const auto until = before + static_cast<size_t>(conv_.in_cols_) * conv_.line_channels_;
+    std::memset(line, conv_.flip_, before);
+    std::memset(line + until, conv_.flip_, conv_.line_bytes() - until);
+    line += before;
+    if (conv_.order_ == ChannelOrder::kPlanes) return write_planes(row, line);
+    write_pixels(row, line);
+  }
+
+  /// The bytes of channels beyond those of the input stay as they are, because their weights are 0.
+  void write_pixels(int row, uint8_t* line) const {
+    const int channels = conv_.in_channels_;
+    const uint8_t* from = pixels(row);
+    if (channels == conv_.line_channels_) {
+      return flip_bytes(from, conv_.in_cols_ * channels, conv_.flip_, line);
+    }
     for (int col = 0; col < conv_.in_cols_; ++col) {
-      for (int c = 0; c < channels; ++c) line[c] = static_cast<uint8_t>(from[c] ^ zero);
+      for (int c = 0; c < channels; ++c) line[c] = static_cast<uint8_t>(from[c] ^ conv_.flip_);
       line += conv_.line_channels_;
       from += channels;
     }
   }
 
   /// Repeats the last plane for missing channels, whose weights are 0.
-  void write_planes(int row, uint8_t flip, uint8_t* line) const {
+  void write_planes(int row, uint8_t* line) const {
     const uint8_t* planes[kWordBytes];
     for (int c = 0; c < kWordBytes; ++c) {
       const int plane = std::min(c, conv_.in_channels_ - 1);
       planes[c] = image_ + (static_cast<size_t>(plane) * conv_.in_rows_ + row) * conv_.in_cols_;
     }
-    interleave(planes, conv_.in_cols_, flip, line);
+    interleave(planes, conv_.in_cols_, conv_.flip_, line);
   }
 
   const DirectConvolution& conv_;
@@ -184,14 +203,14 @@ DirectConvolution::DirectConvolution(const ConvStep& step, const Value& input, c
       stride_cols_(as_int(step.strides[1])),
       pad_top_(as_int(step.pads[0])),
       pad_left_(as_int(step.pads[1])),
-      is_signed_(input.type == ElementType::kInt8),
+      flip_(is_signed(input) == kernels.takes_signed ? 0 : kSignOffset),
       requantizer_(make_requantizer(step, input, output, residual)),
       requantize_(requantize_for(requantizer_, residual != nullptr)) {
   assert(can_run(step, input, kernels));
   assert(order == ChannelOrder::kLast || in_channels_ <= kMostPlanes);
   make_groups(step, kernels);
   starts_.resize(static_cast<size_t>(sums_per_pixel_));
-  const int input_offset = (is_signed_ ? kSignOffset : 0) - kernels.input_offset;
+  const int input_offset = kSignOffset * (int{is_signed(input)} - int{kernels.takes_signed});
   for (int c = 0; c < requantizer_.channels; ++c) {
     starts_[static_cast<size_t>(c)] = start_of(step, input, c, input_offset);
   }
@@ -244,11 +263,11 @@ DirectConvolution::Group DirectConvolution::make_group(const ConvStep& step,
   return group;
 }
 
-/// Whether the kernels can read the input itself: it needs no padding, and its channels are
-/// unsigned and fill whole words.
+/// Whether the kernels can read the input itself: it needs no padding, and its channels have the
+/// sign that the kernels take and fill whole words.
 bool DirectConvolution::reads_in_place() const {
   return kernel_rows_ == 1 && kernel_cols_ == 1 && pad_top_ == 0 && pad_left_ == 0 &&
-         order_ == ChannelOrder::kLast && !is_signed_ && line_channels_ == in_channels_;
+         order_ == ChannelOrder::kLast && flip_ == 0 && line_channels_ == in_channels_;
 }
 
 size_t DirectConvolution::line_bytes() const {

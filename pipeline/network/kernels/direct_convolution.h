@@ -73,7 +73,7 @@ class DirectConvolution {
   int stride_cols_ = 0;
   int pad_top_ = 0;
   int pad_left_ = 0;
-  bool is_signed_ = false;
+  uint8_t flip_ = 0;  ///< XORed with each byte of input, to give the sign that the kernels take
   int sums_per_pixel_ = 0;
   CacheLineVector<int32_t> starts_;  ///< initial values of the sums, by channel
   std::vector<Group> groups_;

@@ -4,6 +4,7 @@
 #include "pipeline/network/kernels/strip_kernels_by_isa.h"
 
 #ifdef __aarch64__
+#include <algorithm>
 #include <cstring>
 
 #include <arm_neon.h>
@@ -15,9 +16,6 @@ namespace {
 
 #include "pipeline/network/kernels/strip_tiles_neon.h"
 
-/// The instruction takes signed bytes. An XOR with 128 subtracts 128 from an unsigned byte.
-constexpr int kOffset = 128;
-
 /// The sums of kPixels pixels and kRegisters * kRegisterLanes channels.
 template <int kRegisters, int kPixels>
 using TileSums = int32x4_t[kPixels][kRegisters];
@@ -25,26 +23,28 @@ using TileSums = int32x4_t[kPixels][kRegisters];
 /// Loads kWords words.
 template <int kWords>
 int8x16_t load_input(const uint8_t* line) {
-  uint8x16_t bytes;
   if constexpr (kWords == 4) {
-    bytes = vld1q_u8(line);
+    return vreinterpretq_s8_u8(vld1q_u8(line));
   } else {
-    bytes = vcombine_u8(load_half<kWords>(line), vdup_n_u8(0));
+    return vreinterpretq_s8_u8(vcombine_u8(load_half<kWords>(line), vdup_n_u8(0)));
   }
-  return vreinterpretq_s8_u8(veorq_u8(bytes, vdupq_n_u8(kOffset)));
 }
 
 /// Adds the products of the words [kWord, kWords) of the input.
 template <int kRegisters, int kPixels, int kWords, int kWord = 0>
 [[gnu::always_inline]] inline void add_words(const int8x16_t* inputs, const int8_t*& weights,
                                              TileSums<kRegisters, kPixels>& sums) {
-#pragma GCC unroll 4
-  for (int r = 0; r < kRegisters; r += 2) {
-    const int8x16x2_t factors = next_weights(weights);
+  constexpr int kLoaded = kRegisters == 6 ? 3 : 2;
+#pragma GCC unroll 2
+  for (int first = 0; first < kRegisters; first += kLoaded) {
+    const auto factors = next_weights<kLoaded>(weights);
 #pragma GCC unroll 16
     for (int p = 0; p < kPixels; ++p) {
-      sums[p][r] = vdotq_laneq_s32(sums[p][r], factors.val[0], inputs[p], kWord);
-      sums[p][r + 1] = vdotq_laneq_s32(sums[p][r + 1], factors.val[1], inputs[p], kWord);
+#pragma GCC unroll 3
+      for (int r = 0; r < kLoaded; ++r) {
+        int32x4_t& sum = sums[p][first + r];
+        sum = vdotq_laneq_s32(sum, factors.val[r], inputs[p], kWord);
+      }
     }
   }
   if constexpr (kWord + 1 < kWords) {
@@ -54,7 +54,8 @@ template <int kRegisters, int kPixels, int kWords, int kWord = 0>
 
 struct DotProduct {
   static constexpr int kStepWords = 1;
-  static constexpr int kInputOffset = kOffset;
+  static constexpr bool kTakesSigned = true;
+  static constexpr int kPixelsTogether = 1;  ///< pixels of an instruction
 
   template <int kRegisters, int kPixels>
   [[gnu::always_inline]] static void sum_tile(const KernelStrip& strip, int first) {
@@ -79,9 +80,11 @@ struct DotProduct {
     }
     int32_t* to = strip.sums + first * strip.sums_step;
 #pragma GCC unroll 16
-    for (int p = 0; p < kPixels; ++p, to += strip.sums_step) {
+    for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 8
       for (int r = 0; r < kRegisters; ++r) vst1q_s32(to + kRegisterLanes * r, sums[p][r]);
+      to += strip.sums_step;
+      asm("" : "+r"(to));  // otherwise the compiler computes all addresses before the first store
     }
   }
 };

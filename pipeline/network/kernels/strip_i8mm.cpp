@@ -49,7 +49,7 @@ template <int kRegisters, int kPixels, int kSteps, int kStep = 0>
                                              TileSums<kRegisters, kPixels>& sums) {
 #pragma GCC unroll 8
   for (int c = 0; c < 2 * kRegisters; c += 2) {
-    const int8x16x2_t factors = next_weights(weights);
+    const int8x16x2_t factors = next_weights<2>(weights);
 #pragma GCC unroll 8
     for (int pair = 0; pair < kPairs<kPixels>; ++pair) {
       const uint8x16_t input = inputs[pair].steps[kStep];
@@ -64,7 +64,8 @@ template <int kRegisters, int kPixels, int kSteps, int kStep = 0>
 
 struct MatrixProduct {
   static constexpr int kStepWords = kStepBytes / kBytesPerWord;
-  static constexpr int kInputOffset = 0;
+  static constexpr bool kTakesSigned = false;
+  static constexpr int kPixelsTogether = 2;  ///< pixels of an instruction
 
   template <int kRegisters, int kPixels>
   [[gnu::always_inline]] static void sum_tile(const KernelStrip& strip, int first) {

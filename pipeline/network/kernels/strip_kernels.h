@@ -12,7 +12,8 @@ namespace bevloc::nn {
 /// Input and output of a kernel: one output row of one group of output channels. A kernel computes
 ///   sums[p][lane] = start[lane]
 ///       + sum over rows r and bytes b of
-///         (lines[r][p * pixel_step + b] - KernelSet::input_offset) * weights[r][b][lane].
+///         lines[r][p * pixel_step + b] * weights[r][b][lane].
+/// The bytes of the lines are unsigned, or signed if KernelSet::takes_signed.
 /// A word is four bytes of input. A step is the one or two words that an instruction multiplies; it
 /// needs one weight for each byte of the step and each lane. So weights are stored as
 /// [rows][steps][lanes][bytes of a step]. If the words of a line do not fill its last step, the
@@ -43,9 +44,8 @@ struct KernelSet {
   StripKernel kernels[kMostVectors + 1][2] = {};
   /// The largest absolute weight with which no intermediate sum saturates.
   int largest_weight = 127;
-  int step_words = 1;  ///< words in a step: 1 or 2
-  /// Subtracted from each byte of input before the product. `start` must make up for it.
-  int input_offset = 0;
+  int step_words = 1;         ///< words in a step: 1 or 2
+  bool takes_signed = false;  ///< whether the bytes of the input are signed
 };
 
 /// All sets that this CPU supports, the fastest first. The last one is plain C++.

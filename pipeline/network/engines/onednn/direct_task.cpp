@@ -67,6 +67,7 @@ void ExportTask::run(dnnl_stream_t) {
       const int begin = block * kBlock;
       const int end = std::min(begin + kBlock, cells_);
       for (int c = 0; c < channels_; ++c) {
+#pragma GCC unroll 8
         for (int i = begin; i < end; ++i) target[c * cells_ + i] = source[i * channels_ + c];
       }
     });

@@ -241,6 +241,12 @@ INSTANTIATE_TEST_SUITE_P(
              .kernel = {5, 3},
              .pads = {2, 1, 2, 1}},
         Case{.what = "SignedInput", .input = {1, 8, 6, 9}, .channels = 16, .input_type = kS8},
+        Case{.what = "SignedOneByOne",
+             .input = {1, 8, 6, 9},
+             .channels = 16,
+             .kernel = {1, 1},
+             .pads = {},
+             .input_type = kS8},
         Case{.what = "Planes",
              .input = {2, 3, 8, 33},
              .channels = 12,
@@ -282,6 +288,18 @@ INSTANTIATE_TEST_SUITE_P(
              .residual = kF32,
              .relu = false}),
     [](const auto& layer) { return layer.param.what; });
+
+TEST(DirectConvolution, KernelSetsAgreeForEveryWidth) {
+  for (const int64_t channels : {8, 16, 24}) {
+    for (int64_t width = 1; width <= 25; ++width) {
+      const Layer layer({.what = "", .input = {1, 4, 2, width}, .channels = channels});
+      const auto plain = layer.run(*kernel_sets().back());
+      for (const KernelSet* kernels : kernel_sets()) {
+        EXPECT_EQ(layer.run(*kernels), plain) << kernels->name << ", width " << width;
+      }
+    }
+  }
+}
 
 TEST(DirectConvolution, ResidualMayBeTheOutputsOwnMemory) {
   const Case c{.what = "", .input = {1, 8, 6, 9}, .channels = 20, .residual = kU8};
