@@ -41,6 +41,7 @@ Result<FrameEvent> PacedCamera::next_frame(Duration timeout, Frame& frame) {
     if (!next_) return FrameEvent::kEnded;
     if (!next_->lost && next_->due <= give_up + kDrawAhead) {
       if (Status drawn = draw_next(); !drawn) {
+        counters_.damaged.fetch_add(1, std::memory_order_relaxed);
         advance();
         return tl::unexpected(drawn.error());
       }
@@ -77,7 +78,8 @@ bool PacedCamera::deliver(Frame& frame) {
 CameraCounters PacedCamera::counters() const {
   return {counters_.delivered.load(std::memory_order_relaxed),
           counters_.no_buffer.load(std::memory_order_relaxed),
-          counters_.overrun.load(std::memory_order_relaxed), 0, 0};
+          counters_.overrun.load(std::memory_order_relaxed), 0,
+          counters_.damaged.load(std::memory_order_relaxed)};
 }
 
 bool PacedCamera::is_overdue() const {

@@ -49,6 +49,7 @@ class PacedCamera : public Camera {
     std::atomic<uint64_t> delivered{0};
     std::atomic<uint64_t> no_buffer{0};
     std::atomic<uint64_t> overrun{0};
+    std::atomic<uint64_t> damaged{0};  ///< frames that could not be drawn
   };
 
   bool is_overdue() const;

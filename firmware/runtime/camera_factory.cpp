@@ -33,8 +33,9 @@ Result<Cameras> open_recording(const CameraConfig& config, const Rig& rig, drive
     replays.push_back(replay);
   }
   Cameras cameras;
+  const Duration shift = clock.now() + kReplayLead - first;
   for (drivers::ReplayCameraConfig& replay : replays) {
-    replay.shift = clock.now() + kReplayLead - first;
+    replay.shift = shift;
     cameras.push_back(std::make_unique<drivers::ReplayCamera>(replay, clock));
   }
   return cameras;

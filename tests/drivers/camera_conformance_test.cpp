@@ -196,6 +196,14 @@ TEST_P(CameraConformance, FramesHeldAcrossAStopDoNotChange) {
   EXPECT_EQ(copy_bytes(second), second_bytes);
 }
 
+TEST_P(CameraConformance, AFrameMayOutliveItsStartedCamera) {
+  start();
+  const Frame frame = capture();
+  make(kBuffers);
+  start();
+  capture_in_order(1);
+}
+
 TEST_P(CameraConformance, AllBuffersCanBeHeldAndReturned) {
   start();
   for (int round = 0; round < 3; ++round) {

@@ -47,8 +47,10 @@ TEST(LoadRecording, NamesTheBadLineOfTheIndex) {
       {"-1 1000 a.png\n", "frames.txt:1: found"},
       {"0 1000 a.png b.png\n", "frames.txt:1: found"},
       {"# comment\n0 1000 gone.png\n", "frames.txt:2: found no file"},
-      {"0 1000 a.png\n0 2000 a.png\n", "frames.txt:2: found a sequence number or time"},
-      {"0 1000 a.png\n1 1000 a.png\n", "frames.txt:2: found a sequence number or time"},
+      {"0 1000 a.png\n0 2000 a.png\n",
+       "frames.txt:2: found sequence 0 and time 2000 after 0 and 1000, wanted"},
+      {"0 1000 a.png\n1 1000 a.png\n",
+       "frames.txt:2: found sequence 1 and time 1000 after 0 and 1000, wanted"},
   };
   for (const Case& wrong : cases) {
     const Recording recording;
@@ -116,6 +118,7 @@ TEST(ReplayCamera, NamesTheFileThatItCannotRead) {
   EXPECT_THAT(wide.error().message, EndsWith("wide.png: found an image of 5x2 pixels, wanted 4x2"));
   ASSERT_EQ(camera.next_frame(milliseconds(900), frame), FrameEvent::kFrame);
   EXPECT_EQ(frame.sequence, 2U);
+  EXPECT_EQ(camera.counters().damaged, 2U);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,8 +10,13 @@
 namespace bevloc::drivers::libcam {
 namespace {
 
-/// Converts a number to the type of a control. Returns nothing if the type is not a number.
-std::optional<libcamera::ControlValue> control_value(libcamera::ControlType type, double value) {
+bool is_number(libcamera::ControlType type) {
+  return type == libcamera::ControlTypeBool || type == libcamera::ControlTypeInteger32 ||
+         type == libcamera::ControlTypeInteger64 || type == libcamera::ControlTypeFloat;
+}
+
+/// Converts a number, which is in the range of the control, to the control's type.
+libcamera::ControlValue control_value(libcamera::ControlType type, double value) {
   switch (type) {
     case libcamera::ControlTypeBool:
       return libcamera::ControlValue(value != 0.0);
@@ -20,10 +24,8 @@ std::optional<libcamera::ControlValue> control_value(libcamera::ControlType type
       return libcamera::ControlValue(static_cast<int32_t>(value));
     case libcamera::ControlTypeInteger64:
       return libcamera::ControlValue(static_cast<int64_t>(value));
-    case libcamera::ControlTypeFloat:
-      return libcamera::ControlValue(static_cast<float>(value));
     default:
-      return std::nullopt;
+      return libcamera::ControlValue(static_cast<float>(value));
   }
 }
 
@@ -49,13 +51,17 @@ Status set_control(const libcamera::Camera& camera, const ControlSetting& settin
   for (const auto& [id, info] : camera.controls()) {
     names.push_back(id->name());
     if (id->name() != setting.name) continue;
-    const auto value = control_value(id->type(), setting.value);
-    if (!value) return fail("control {} is not a number", setting.name);
-    if (setting.value < number_in(info.min()) || setting.value > number_in(info.max())) {
-      return fail("control {} is {}, wanted {} to {}", setting.name, setting.value,
+    if (!is_number(id->type())) return fail("control {} is not a number", setting.name);
+    const bool is_whole =
+        id->type() == libcamera::ControlTypeFloat || std::floor(setting.value) == setting.value;
+    const bool is_in_range =
+        setting.value >= number_in(info.min()) && setting.value <= number_in(info.max());
+    if (!is_whole || !is_in_range) {
+      return fail("control {} is {}, wanted {}, {} to {}", setting.name, setting.value,
+                  id->type() == libcamera::ControlTypeFloat ? "a number" : "a whole number",
                   info.min().toString(), info.max().toString());
     }
-    list.set(id->id(), *value);
+    list.set(id->id(), control_value(id->type(), setting.value));
     return {};
   }
   return fail("has no control {}; it has {}", setting.name,

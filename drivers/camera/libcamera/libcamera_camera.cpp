@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "common/cameras.h"
-#include "common/kernel_time.h"
 #include "drivers/camera/complete_image.h"
 #include "drivers/camera/libcamera/camera_ids.h"
 #include "drivers/camera/libcamera/capture_session.h"
@@ -14,23 +13,39 @@
 namespace bevloc::drivers {
 namespace {
 
-/// libcamera allows one manager per process, so all cameras share it. It ends with the last camera.
-Result<std::shared_ptr<libcamera::CameraManager>> shared_manager() {
-  static std::mutex mutex;
-  static std::weak_ptr<libcamera::CameraManager> shared;
-  const std::lock_guard lock(mutex);
-  if (auto manager = shared.lock()) return manager;
-  auto manager = std::make_shared<libcamera::CameraManager>();
-  if (const int error = manager->start()) {
-    return fail("libcamera cannot be started: {}", std::strerror(-error));
+/// libcamera allows one manager per process, so all cameras share it. It ends with its last user.
+class SharedManager {
+ public:
+  Result<std::shared_ptr<libcamera::CameraManager>> use() {
+    const std::lock_guard lock(mutex_);
+    if (users_ == 0) {
+      manager_ = std::make_unique<libcamera::CameraManager>();
+      if (const int error = manager_->start()) {
+        manager_.reset();
+        return fail("libcamera cannot be started: {}", std::strerror(-error));
+      }
+    }
+    ++users_;
+    return std::shared_ptr<libcamera::CameraManager>(
+        manager_.get(), [this](libcamera::CameraManager*) { release(); });
   }
-  shared = manager;
-  return manager;
-}
 
-/// How long this machine was suspended since it booted.
-Duration time_suspended() {
-  return read_clock(CLOCK_BOOTTIME) - read_clock(CLOCK_MONOTONIC);
+ private:
+  /// Ends the manager under the lock, because libcamera ends the process if another one begins
+  /// before that.
+  void release() {
+    const std::lock_guard lock(mutex_);
+    if (--users_ == 0) manager_.reset();
+  }
+
+  std::mutex mutex_;
+  int users_ = 0;
+  std::unique_ptr<libcamera::CameraManager> manager_;
+};
+
+Result<std::shared_ptr<libcamera::CameraManager>> shared_manager() {
+  static SharedManager shared;
+  return shared.use();
 }
 
 }  // namespace
@@ -93,7 +108,7 @@ bool LibcameraCamera::take(int slot, Frame& frame) {
     session_->requeue(slot);
     return false;
   }
-  const Time time = libcam::steady_time(*timestamp_ns, clock_.now(), time_suspended());
+  const Time time = libcam::steady_time(*timestamp_ns, clock_.now(), clock_.suspended());
   frame = Frame{config_.camera, time, sequence, config_.exposure, session_->lend(slot)};
   counter_.delivered(session_->lent() == session_->buffers());
   return true;

@@ -53,7 +53,9 @@ Result<std::vector<RecordedFrame>> load_recording(const std::filesystem::path& d
     if (!frame) return tl::unexpected(frame.error());
     if (!recording.empty() &&
         (frame->sequence <= recording.back().sequence || frame->time <= recording.back().time)) {
-      return fail("{}: found a sequence number or time that does not increase", place);
+      return fail("{}: found sequence {} and time {} after {} and {}, wanted both to increase",
+                  place, frame->sequence, frame->time.time_since_epoch().count(),
+                  recording.back().sequence, recording.back().time.time_since_epoch().count());
     }
     recording.push_back(std::move(*frame));
   }

@@ -27,6 +27,9 @@ class V4l2Camera final : public Camera {
  public:
   /// `clock` must be a MonotonicClock, because the kernel stamps frames with this clock.
   V4l2Camera(V4l2CameraConfig config, Clock& clock);
+  ~V4l2Camera() override { stop(); }
+  V4l2Camera(const V4l2Camera&) = delete;
+  V4l2Camera& operator=(const V4l2Camera&) = delete;
 
   Status start() override;
   void stop() override;
