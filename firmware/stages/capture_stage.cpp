@@ -1,5 +1,6 @@
 #include "firmware/stages/capture_stage.h"
 
+#include <algorithm>
 #include <string>
 #include <thread>
 #include <utility>
@@ -30,16 +31,25 @@ bool CaptureStage::step(Duration timeout) {
   if (*event == drivers::FrameEvent::kFrame) {
     note_frame(now, frame);
     frames_.push(std::move(frame));
-  } else if (now - waiting_since_ > kSilence) {
-    log_cause("is silent", "no frame for 2 s; check cable, power and trigger", now);
-    waiting_since_ = now;
+  } else if (*event == drivers::FrameEvent::kTimeout) {
+    note_silence(now);
   }
   return *event != drivers::FrameEvent::kEnded;
 }
 
+void CaptureStage::note_silence(Time now) {
+  if (now - waiting_since_ <= kSilence) return;
+  log_cause("is silent", "no frame for 2 s; check cable, power and trigger", now);
+  waiting_since_ = now;
+  if (now - silent_since_ < patience_) return;
+  note_failure(now);
+  patience_ = std::min(2 * patience_, kMostPatience);
+}
+
 void CaptureStage::note_frame(Time now, drivers::Frame& frame) {
   ++captured_;
-  waiting_since_ = now;
+  waiting_since_ = silent_since_ = now;
+  patience_ = kLeastPatience;
   frame.stamp_jumped = stamp_steps_.add(frame.time, now, frame.sequence);
   constexpr std::string_view kJumped = "its time stamps jumped, but its frames arrive as before";
   if (frame.stamp_jumped && causes_.is_new(kJumped, now)) {
@@ -68,7 +78,7 @@ bool CaptureStage::ensure_started(Time now) {
   heartbeat_.beat();
   running_ = true;
   stamp_steps_.reset();
-  waiting_since_ = now;
+  waiting_since_ = silent_since_ = now;
   return true;
 }
 

@@ -16,7 +16,8 @@ namespace bevloc::firmware {
 
 /// Stops a camera that fails and starts it again after a pause, without limit: a loose connector
 /// must not end localization. A camera that cannot start, that fails while it runs, or that
-/// delivers no frame for two seconds is logged with the driver's own sentence, once per cause.
+/// delivers no frame for two seconds is logged with the driver's own sentence, once per cause. A
+/// camera that stays silent is started again, too, because some drivers need that after a stall.
 /// Thread-bound: called from the camera's thread; counters are readable from any thread.
 class CaptureStage {
  public:
@@ -41,11 +42,16 @@ class CaptureStage {
   /// The log says that a camera without frames for this long is silent. A camera that is slower
   /// than half a frame per second is therefore named without being faulty.
   static constexpr Duration kSilence = std::chrono::seconds(2);
+  /// A silent camera is started again after the least time, then after twice that, and so on up to
+  /// the most: a camera without a trigger is silent without being faulty.
+  static constexpr Duration kLeastPatience = std::chrono::seconds(10);
+  static constexpr Duration kMostPatience = std::chrono::seconds(160);
   /// To open or to close a device takes up to some seconds, while a kernel driver waits for it.
   static constexpr Duration kDeviceDeadline = std::chrono::seconds(10);
 
   bool ensure_started(Time now);
   void note_failure(Time now);
+  void note_silence(Time now);
   void note_frame(Time now, drivers::Frame& frame);
   /// Logs `what` the camera does not do and why, once per cause.
   void log_cause(std::string_view what, std::string_view reason, Time now);
@@ -58,7 +64,9 @@ class CaptureStage {
   Time next_start_ = Time::min();
   CauseLog causes_;
   drivers::StampSteps stamp_steps_;
-  Time waiting_since_{};  ///< for the next frame
+  Time waiting_since_{};  ///< for the next frame, or since the silence was last logged
+  Time silent_since_{};   ///< the latest frame or start
+  Duration patience_ = kLeastPatience;
   bool failing_ = false;  ///< a cause was logged and no frame has come since
   std::atomic<uint64_t> captured_{0};
   std::atomic<uint64_t> failures_{0};

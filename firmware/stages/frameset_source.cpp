@@ -10,24 +10,30 @@ FramesetSource::FramesetSource(const drivers::SynchronizerConfig& config, bool c
     : synchronizer_(config), synchrony_(synchronizer_, compensates, pulses), frames_(frames) {}
 
 void FramesetSource::take_frames(const drivers::Clock& clock, Duration timeout) {
-  look_at_clock(clock.now());
+  look_at_clock(clock);
   // A frameset that waits for a dead camera must be emitted on time although no frame arrives.
   if (const auto deadline = synchronizer_.deadline()) {
     timeout = std::clamp(*deadline - clock.now(), Duration::zero(), timeout);
   }
   for (auto frame = frames_.pop(timeout); frame; frame = frames_.pop(Duration::zero())) {
-    const Time now = clock.now();
-    look_at_clock(now);
-    synchronizer_.add(std::move(*frame), now);
+    look_at_clock(clock);
+    synchronizer_.add(std::move(*frame), clock.now());
   }
 }
 
-void FramesetSource::look_at_clock(Time now) {
-  if (latest_look_ && now - *latest_look_ > kGap) {
-    ++counters_.clock_gaps;
-    synchronizer_.forget_until(*latest_look_);
+void FramesetSource::look_at_clock(const drivers::Clock& clock) {
+  const Time now = clock.now();
+  const Duration suspended = clock.suspended();
+  if (latest_look_) {
+    // While the machine is suspended, the clock stands still.
+    const bool was_suspended = suspended - suspended_ > kGap;
+    if (was_suspended || now - *latest_look_ > kGap) {
+      ++counters_.clock_gaps;
+      synchronizer_.forget_until(was_suspended ? now : *latest_look_);
+    }
   }
   latest_look_ = now;
+  suspended_ = suspended;
 }
 
 std::optional<NewestFrameset> FramesetSource::newest(Time now) {

@@ -31,8 +31,8 @@ struct NewestFrameset {
 /// frames_of() are readable from any thread.
 class FramesetSource {
  public:
-  /// After a longer time between two looks at the clock (the machine was suspended, or the thread
-  /// hung), the frames from before are forgotten: the vehicle may be elsewhere.
+  /// If the machine was suspended for longer, or the thread hung for longer between two looks at
+  /// the clock, the frames from before are forgotten: the vehicle may be elsewhere.
   static constexpr Duration kGap = std::chrono::seconds(1);
 
   /// `compensates`: whether the matching corrects for the motion between the frames of a frameset.
@@ -60,7 +60,7 @@ class FramesetSource {
   drivers::SynchronizerCounters frames_of(int camera) const { return frames_of_[camera].load(); }
 
  private:
-  void look_at_clock(Time now);
+  void look_at_clock(const drivers::Clock& clock);
   std::optional<NewestFrameset> poll(Time now);
 
   drivers::FramesetSynchronizer synchronizer_;
@@ -68,6 +68,7 @@ class FramesetSource {
   FrameQueue& frames_;
   FramesetCounters counters_;
   std::optional<Time> latest_look_;
+  Duration suspended_{};  ///< Clock::suspended() at that look
   std::array<Published<drivers::SynchronizerCounters>, kCameraCount> frames_of_;
 };
 

@@ -1,6 +1,8 @@
 #include "firmware/stages/vision_stage.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -17,12 +19,28 @@ constexpr double kDriving_mps = 1.0;
 constexpr Duration kSettledStanding = std::chrono::seconds(1);
 constexpr Duration kCheckPeriod = std::chrono::seconds(60);
 
-bool stamps_jumped(const drivers::Frameset& frameset) {
-  size_t jumped = 0;
+CameraMask with_jumped_stamps(const drivers::Frameset& frameset) {
+  CameraMask jumped;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    if (frameset.present[camera] && frameset.frames[camera].stamp_jumped) ++jumped;
+    jumped[camera] = frameset.present[camera] && frameset.frames[camera].stamp_jumped;
   }
-  return 2 * jumped > frameset.present.count();
+  return jumped;
+}
+
+/// Leaves out some frames. Frameset::time becomes that of the earliest frame that remains.
+void leave_out(CameraMask cameras, drivers::Frameset& frameset) {
+  if (cameras.none()) return;
+  frameset.present &= ~cameras;
+  Time earliest = Time::max();
+  Time latest = Time::min();
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (cameras[camera]) frameset.frames[camera] = {};
+    if (!frameset.present[camera]) continue;
+    earliest = std::min(earliest, frameset.frames[camera].time);
+    latest = std::max(latest, frameset.frames[camera].time);
+  }
+  frameset.time = earliest;
+  frameset.spread = latest - earliest;
 }
 
 VisionReport report_without_frameset(Time now) {
@@ -58,26 +76,31 @@ bool VisionStage::step(const drivers::Clock& clock, Duration timeout) {
   framesets_.take_frames(clock, timeout);
   priors_.take_predictions();
   const Time now = clock.now();
-  const auto newest = framesets_.newest(now);
-  if (newest) {
-    reports_.push(report_on(*newest));
+  auto newest = framesets_.newest(now);
+  const bool found = newest.has_value();
+  if (found) {
+    reports_.push(report_on(std::move(*newest)));
   } else if (framesets_.unsynchronized_without_framesets(now)) {
     reports_.push(report_without_frameset(now));
   }
-  return newest.has_value();
+  return found;
 }
 
-VisionReport VisionStage::report_on(const NewestFrameset& newest) {
-  const drivers::Frameset& frameset = newest.frameset;
+VisionReport VisionStage::report_on(NewestFrameset newest) {
+  drivers::Frameset& frameset = newest.frameset;
   ++counters_.framesets;
   counters_.frames_used += frameset.present.count();
 
   VisionReport report;
+  // A frame with a wrong stamp would be matched with the wrong pose. If most stamps have jumped,
+  // the tracker has to find out what they are worth.
+  const CameraMask jumped = with_jumped_stamps(frameset);
+  report.stamps_jumped = 2 * jumped.count() > frameset.present.count();
+  if (!report.stamps_jumped) leave_out(jumped, frameset);
   report.frame_time = frameset.time;
   report.present = frameset.present;
   report.skipped = newest.skipped;
   report.unsynchronized = newest.unsynchronized;
-  report.stamps_jumped = stamps_jumped(frameset);
   if (counters_.network_fault) {
     report.network_fault = true;
     return report;

@@ -83,7 +83,7 @@ class VisionStage {
   const FramesetSource& framesets() const { return framesets_; }
 
  private:
-  VisionReport report_on(const NewestFrameset& newest);
+  VisionReport report_on(NewestFrameset newest);
   /// Fills in what only the images tell.
   void match(const drivers::Frameset& frameset, const Prior& prior, VisionReport& report);
   Status check_network();

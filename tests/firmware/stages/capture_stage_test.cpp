@@ -109,6 +109,24 @@ TEST_F(CaptureStageTest, LogsASilentCameraOnce) {
   EXPECT_EQ(stage_.failures(), 0U);
 }
 
+TEST_F(CaptureStageTest, StartsASilentCameraAgainLessAndLessOften) {
+  camera_.is_silent = true;
+  run(std::chrono::seconds(15));
+  EXPECT_EQ(camera_.starts, 2);
+  run(std::chrono::seconds(30));
+  EXPECT_EQ(camera_.starts, 3);
+  run(std::chrono::seconds(3600));
+  EXPECT_GT(camera_.starts, 20);
+  EXPECT_LT(camera_.starts, 30);
+  camera_.is_silent = false;
+  run(milliseconds(3000));
+  EXPECT_GT(stage_.captured(), 0U);
+  camera_.is_silent = true;
+  const int starts = camera_.starts;
+  run(std::chrono::seconds(15));
+  EXPECT_EQ(camera_.starts, starts + 1);
+}
+
 TEST_F(CaptureStageTest, MarksFramesWhoseStampsHaveJumped) {
   run(milliseconds(1000));
   while (const auto frame = frames_.pop(Duration::zero())) EXPECT_FALSE(frame->stamp_jumped);

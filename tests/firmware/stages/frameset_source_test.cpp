@@ -16,6 +16,10 @@ class FramesetSourceTest : public testing::Test {
     source_.emplace(config, compensates, pulses, frames_);
   }
 
+  void push_all_but_one(Time time) {
+    for (int camera = 0; camera < kCameraCount - 1; ++camera) push_frame(camera, time);
+  }
+
   void push_frame(int camera, Time time) {
     drivers::Frame frame;
     frame.camera = camera;
@@ -57,11 +61,22 @@ TEST_F(FramesetSourceTest, SkipsAndCountsOlderFramesets) {
   EXPECT_FALSE(next());
 }
 
+TEST_F(FramesetSourceTest, ForgetsTheFramesFromBeforeASuspension) {
+  push_all_but_one(clock_.now() - milliseconds(20));
+  EXPECT_FALSE(next());
+  clock_.suspend(std::chrono::hours(8));
+  clock_.advance(milliseconds(50));  // longer than the frameset waits
+  EXPECT_FALSE(next());
+  EXPECT_EQ(source_->counters().clock_gaps, 1U);
+  push_frameset(clock_.now() + milliseconds(1));
+  clock_.advance(milliseconds(1));
+  EXPECT_TRUE(next());
+  EXPECT_EQ(source_->counters().clock_gaps, 1U);
+}
+
 TEST_F(FramesetSourceTest, AGapOfTheClockForgetsTheFramesFromBefore) {
-  // Five cameras of a frameset wait for the sixth when the machine is suspended.
-  for (int camera = 0; camera < kCameraCount - 1; ++camera) {
-    push_frame(camera, clock_.now() - milliseconds(20));
-  }
+  // Five cameras of a frameset wait for the sixth when the thread hangs.
+  push_all_but_one(clock_.now() - milliseconds(20));
   EXPECT_FALSE(next());
   push_frame(0, clock_.now() - milliseconds(10));  // still in the queue
   clock_.advance(std::chrono::seconds(5));

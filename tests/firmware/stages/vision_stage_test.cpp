@@ -58,6 +58,27 @@ TEST_F(VisionStageTest, ReportsUnsynchronizedCamerasWithoutAnyFrameset) {
   EXPECT_LE(reports, 10);
 }
 
+TEST_F(VisionStageTest, LeavesOutFramesWhoseStampsHaveJumped) {
+  VisionConfig config;
+  config.synchronizer.tolerance = milliseconds(50);
+  for (const int jumped : {1, 3, 4}) {
+    stage_.emplace(*localizer_, config, frames_, predictions_, reports_);
+    for (int camera = 0; camera < kCameraCount; ++camera) {
+      drivers::Frame frame;
+      frame.camera = camera;
+      frame.stamp_jumped = camera < jumped;
+      frame.time = Time(milliseconds(frame.stamp_jumped ? 852 : 900));
+      frames_.push(std::move(frame));
+    }
+    const auto report = step();
+    ASSERT_TRUE(report);
+    const bool most = jumped == 4;
+    EXPECT_EQ(report->stamps_jumped, most);
+    EXPECT_EQ(report->present, CameraMask(most ? 0b111111U : 0b111111U << jumped));
+    EXPECT_EQ(report->frame_time, Time(milliseconds(most ? 852 : 900)));
+  }
+}
+
 TEST_F(VisionStageTest, MatchesNothingWithoutAPrediction) {
   push_frameset(Time(milliseconds(900)));
   const auto report = step();
