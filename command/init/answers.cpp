@@ -33,8 +33,9 @@ std::string cameras_text(const Answers& answers) {
   std::string text = fmt::format(
       "# The ids stay the same when plugs change; `bevlocd --config FILE --check-config` lists "
       "them.\n"
-      "# Cameras without a trigger expose at different times: set tolerance_ms to one frame "
-      "period.\n"
+      "# Cameras without a trigger expose at different times: set tolerance_ms to a little less "
+      "than one frame\n"
+      "# period, at most 50.\n"
       "cameras:\n"
       "  driver: {}\n"
       "  ids:\n",

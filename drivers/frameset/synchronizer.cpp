@@ -31,7 +31,10 @@ FrameFate FramesetSynchronizer::add(Frame frame, Time now) {
   SynchronizerCounters& counters = camera.counters;
   ++counters.added;
   const FrameFate fate = judge(camera, frame.time, now);
-  if (fate == FrameFate::kAccepted || fate == FrameFate::kLate) camera.newest = frame.time;
+  if (fate == FrameFate::kAccepted || fate == FrameFate::kLate) {
+    camera.newest = frame.time;
+    camera.missed_in_a_row = 0;  // the camera is alive, so the next frameset waits for it
+  }
   switch (fate) {
     case FrameFate::kAccepted:
       rates_.add(frame.camera, frame.time);
@@ -50,8 +53,6 @@ FrameFate FramesetSynchronizer::add(Frame frame, Time now) {
       ++counters.future;
       break;
   }
-  // The camera is alive, also when its frame was refused, so the next frameset waits for it.
-  camera.missed_in_a_row = 0;
   return fate;
 }
 

@@ -55,7 +55,8 @@ struct SynchronizerCounters {
 /// The earliest waiting frame opens a frameset. The earliest frame of each camera belongs to it if
 /// it is within the tolerance. The frameset is emitted as soon as every camera has a frame in it or
 /// a later frame, or when the wait is over. A camera that was missing from kPatience framesets in a
-/// row is not waited for until it delivers a frame again.
+/// row is not waited for until it delivers a frame again. A frame counts that may belong to a
+/// frameset (kAccepted or kLate); a camera whose clock is wrong is not waited for.
 ///
 /// Framesets are emitted in the order of time, and no frame is emitted twice. Allocates in its
 /// constructor only. One thread.

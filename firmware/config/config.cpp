@@ -50,6 +50,12 @@ CameraConfig read_cameras(YamlMap yaml, const std::filesystem::path& folder) {
   if (synchronizer.wait < synchronizer.tolerance) {
     yaml.reject("wait_ms", "less than tolerance_ms", "at least tolerance_ms");
   }
+  const double rate_hz =
+      cameras.driver == CameraDriver::kMock ? cameras.rate_hz : cameras.devices.rate_hz;
+  if (to_seconds(synchronizer.tolerance) * rate_hz >= 1.0) {
+    yaml.reject("tolerance_ms", "a frame period or more, so each second frame would be too late",
+                "less than a frame period");
+  }
   return cameras;
 }
 

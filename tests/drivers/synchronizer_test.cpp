@@ -175,6 +175,18 @@ TEST_F(Synchronizer, ADeadCameraIsNotWaitedForUntilItRecovers) {
             static_cast<uint64_t>(FramesetSynchronizer::kPatience));
 }
 
+TEST_F(Synchronizer, ACameraWithAWrongClockIsNotWaitedFor) {
+  for (int64_t time_ms = 1000; time_ms < 2000; time_ms += 100) {
+    EXPECT_EQ(add(kBack, time_ms + 3'600'000, time_ms + 20), FrameFate::kFuture);
+    add_all_but(only(kBack), time_ms);
+    const bool is_patient = time_ms < 1000 + 100 * FramesetSynchronizer::kPatience;
+    EXPECT_EQ(poll(time_ms + 20).has_value(), !is_patient) << time_ms;
+    if (is_patient) {
+      EXPECT_TRUE(poll(time_ms + 60));
+    }
+  }
+}
+
 TEST_F(Synchronizer, AllCamerasBackAfterLongSilence) {
   add_all_but({}, 1000);
   ASSERT_TRUE(poll(1020));

@@ -223,6 +223,7 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
       {with(rate, "  rate_hz: .nan\n"), 3, "cameras.rate_hz"},
       {with(rate, rate + "  min_cameras: 7\n"), 4, "cameras.min_cameras: found 7"},
       {with(rate, rate + "  tolerance_ms: 20\n  wait_ms: 10\n"), 5, "cameras.wait_ms"},
+      {with(rate, "  rate_hz: 20\n  tolerance_ms: 50\n"), 4, "cameras.tolerance_ms"},
       {with("procedural_seed: 7", "procedural_seed: 4294967296"), 5, "map.procedural_seed"},
       {with("procedural_seed: 7", "procedural_seed: 7, file: a.osm"), 5, "map.file"},
       {with("{driver: mock}", "{driver: mock, localizer_base_id: 0x7F0}"), 7,
