@@ -30,4 +30,26 @@ inline Time steady_now() {
   return Time(read_clock(CLOCK_MONOTONIC));
 }
 
+/// A clock and CLOCK_MONOTONIC at one moment.
+struct ClockPair {
+  Duration clock{};
+  Time steady{};
+  Duration error{};  ///< the two readings are at most this far apart
+};
+
+/// Reads `clock` between two readings of CLOCK_MONOTONIC. If these are far apart, because another
+/// thread ran in between, it reads again, some times at most, and keeps the closest readings.
+inline ClockPair read_with_steady(clockid_t clock) {
+  constexpr Duration kClose = std::chrono::microseconds(5);
+  constexpr int kTries = 10;
+  ClockPair closest{.error = Duration::max()};
+  for (int i = 0; i < kTries && closest.error > kClose; ++i) {
+    const Time before = steady_now();
+    const Duration reading = read_clock(clock);
+    const Duration half = (steady_now() - before) / 2;
+    if (half < closest.error) closest = {reading, before + half, half};
+  }
+  return closest;
+}
+
 }  // namespace bevloc

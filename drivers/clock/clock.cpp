@@ -19,10 +19,10 @@ void MonotonicClock::sleep_until(Time time) {
   }
 }
 
-/// CLOCK_BOOTTIME goes on while the machine is suspended. Some hundred nanoseconds pass between the
-/// two readings.
+/// CLOCK_BOOTTIME goes on while the machine is suspended.
 Duration MonotonicClock::suspended() const {
-  return read_clock(CLOCK_BOOTTIME) - read_clock(CLOCK_MONOTONIC);
+  const ClockPair clocks = read_with_steady(CLOCK_BOOTTIME);
+  return clocks.clock - clocks.steady.time_since_epoch();
 }
 
 Duration MonotonicClock::unsteered() const {

@@ -24,7 +24,8 @@ FixTime FixClock::judge(std::chrono::nanoseconds utc, const FixArrival& arrival)
 }
 
 FixTime FixClock::by_arrival(Duration delay, const FixArrival& arrival) {
-  const Duration later_than_fastest = delay - least_delay(delay, arrival.time);
+  const Duration later_than_fastest =
+      std::max(delay - least_delay(delay, arrival.time), Duration::zero());
   learned_ = std::min(learned_ + 1, kLearned);
   const Duration age = parameters_.latency + later_than_fastest;
   if (age > parameters_.max_age) return {FixVerdict::kStale};
@@ -49,12 +50,17 @@ Duration FixClock::least_delay(Duration delay, Time arrival) {
   const int64_t number = arrival.time_since_epoch() / kBucket;
   const auto count = static_cast<int64_t>(buckets_.size());
   Bucket& own = buckets_[static_cast<size_t>(number % count)];
-  own = {number, own.number == number ? std::min(own.least, delay) : delay};
+  if (own.number != number) own = {.number = number};
+  own.second = std::min(own.second, std::max(own.least, delay));
+  own.least = std::min(own.least, delay);
   Duration least = delay;
+  Duration confirmed = Duration::max();
   for (const Bucket& bucket : buckets_) {
-    if (bucket.number > number - count) least = std::min(least, bucket.least);
+    if (bucket.number <= number - count) continue;
+    least = std::min(least, bucket.least);
+    confirmed = std::min(confirmed, bucket.second);
   }
-  return least;
+  return confirmed == Duration::max() ? least : confirmed;
 }
 
 FixTime FixClock::usable(Duration age, Duration sigma, Time arrival) {

@@ -16,7 +16,7 @@ namespace bevloc::drivers {
 /// How the time of a fix is found.
 enum class FixTiming : uint8_t {
   /// The age of a fix at its arrival is `latency` plus the extra delay of its report: how much
-  /// longer it took than the fastest report of the last minutes, by the receiver's UTC.
+  /// longer it took than the fast reports of the last minutes, by the receiver's UTC.
   kArrival,
   /// The system clock is UTC, as the kernel confirms, so the age of a fix is known.
   kSystemClock,
@@ -69,15 +69,18 @@ class FixClock {
   Duration max_usable_age() const { return max_usable_age_; }
 
  private:
-  /// The fastest report of some seconds: the least of its arrival, on the unsteered clock, minus
-  /// UTC.
+  /// The two fastest reports of some seconds: the least delays, which are arrival, on the unsteered
+  /// clock, minus UTC.
   struct Bucket {
     int64_t number = std::numeric_limits<int64_t>::min();
-    Duration least{};
+    Duration least = Duration::max();
+    Duration second = Duration::max();
   };
 
   FixTime by_arrival(Duration delay, const FixArrival& arrival);
   FixTime by_system_clock(std::chrono::nanoseconds utc, const FixArrival& arrival);
+  /// The least delay of the last minutes that a second report of the same seconds confirms: a
+  /// single report whose UTC is wrong does not shift all others. Without any, the least delay.
   Duration least_delay(Duration delay, Time arrival);
   FixTime usable(Duration age, Duration sigma, Time arrival);
 

@@ -62,6 +62,12 @@ std::optional<std::chrono::nanoseconds> read_time(const Json& report) {
   return has_time ? utc_of(time->get<std::string>()) : std::nullopt;
 }
 
+/// The device that the receiver is connected to; empty if the report does not name it.
+std::string receiver_of(const Json& report) {
+  const auto device = report.find("device");
+  return device != report.end() && device->is_string() ? device->get<std::string>() : "";
+}
+
 GpsdReport read_position(const Json& report) {
   const auto mode = number(report, "mode");
   const auto latitude_deg = number(report, "lat");
@@ -91,14 +97,16 @@ std::optional<std::chrono::nanoseconds> utc_of(std::string_view text) {
   unsigned hour = 0;
   unsigned minute = 0;
   double second = 0.0;
-  char zone = 0;
+  int length = 0;
   const std::string copy(text);
-  const int read = std::sscanf(copy.c_str(), "%4d-%2u-%2uT%2u:%2u:%lf%c", &year, &month, &day,
-                               &hour, &minute, &second, &zone);
+  const int read = std::sscanf(copy.c_str(), "%4d-%2u-%2uT%2u:%2u:%lfZ%n", &year, &month, &day,
+                               &hour, &minute, &second, &length);
+  const bool is_plain = copy.find_first_not_of("0123456789-T:.Z") == std::string::npos;
   const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month),
                                          std::chrono::day(day)};
-  const bool valid = read == 7 && zone == 'Z' && date.ok() && year >= 1970 && year < 2200 &&
-                     hour < 24 && minute < 60 && second >= 0.0 && second < 61.0;
+  const bool valid = read == 6 && is_plain && static_cast<size_t>(length) == copy.size() &&
+                     date.ok() && year >= 1970 && year < 2200 && hour < 24 && minute < 60 &&
+                     second >= 0.0 && second < 61.0;
   if (!valid) return std::nullopt;
   return std::chrono::sys_days(date).time_since_epoch() + std::chrono::hours(hour) +
          std::chrono::minutes(minute) +
@@ -115,11 +123,12 @@ GpsdReport GpsdReader::read(std::string_view line) {
     const auto north = number(report, "lat");
     const auto east = number(report, "lon");
     accuracy_.reset();
+    const std::string receiver = receiver_of(report);
     const auto is_sigma = [](const std::optional<double>& sigma_m) {
       return sigma_m && *sigma_m > 0.0 && *sigma_m < kMostSigma_m;
     };
     if (utc && is_sigma(north) && is_sigma(east)) {
-      accuracy_ = Accuracy{*utc, *north, *east};
+      accuracy_ = Accuracy{receiver, *utc, *north, *east};
     }
     return {GpsdLine::kAccuracy};
   }
@@ -127,6 +136,7 @@ GpsdReport GpsdReader::read(std::string_view line) {
   GpsdReport read = read_position(report);
   const Quality quality{number(report, "mode").value_or(0.0),
                         number(report, "status").value_or(0.0)};
+  if (accuracy_ && accuracy_->receiver != receiver_of(report)) accuracy_.reset();
   use_accuracy(quality, read.fix);
   return read;
 }

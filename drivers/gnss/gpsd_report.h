@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace bevloc::drivers {
@@ -42,17 +43,18 @@ struct GpsdReport {
 
 /// Reads the lines of one gpsd in their order.
 ///
-/// The sigma of a fix is that of the receiver's own statement (GST), if the latest one is at most
-/// 1.5 s older and mode and status have not changed since. Otherwise epx and epy, or eph, of the
-/// position report (TPV) are taken as one sigma. gpsd does not state their certainty; many
-/// receivers give 95 %, and without a statement of the receiver gpsd guesses from the dilution of
-/// precision, so this is cautious. One thread.
+/// The sigma of a fix is that of the receiver's own statement (GST), if the latest one is of the
+/// same receiver and at most 1.5 s older, and mode and status have not changed since. Otherwise epx
+/// and epy, or eph, of the position report (TPV) are taken as one sigma. gpsd does not state their
+/// certainty; many receivers give 95 %, and without a statement of the receiver gpsd guesses from
+/// the dilution of precision, so this is cautious. One thread.
 class GpsdReader {
  public:
   GpsdReport read(std::string_view line);
 
  private:
   struct Accuracy {
+    std::string receiver;
     std::chrono::nanoseconds utc{};
     double sigma_north_m = 0.0;
     double sigma_east_m = 0.0;

@@ -9,7 +9,10 @@
 namespace bevloc::firmware {
 
 ClockWatch::Reading ClockWatch::read_clocks() {
-  return {drivers::read_wall_time(), steady_now()};
+  const ClockPair clocks = read_with_steady(CLOCK_REALTIME);
+  Reading reading{{clocks.clock, drivers::read_clock_discipline()}, clocks.steady};
+  reading.wall.discipline.max_error += clocks.error;
+  return reading;
 }
 
 can::ClockReport ClockWatch::step() {
@@ -39,8 +42,10 @@ void ClockWatch::log_loss(const drivers::ClockDiscipline& discipline) const {
         1e3 * to_seconds(discipline.max_error), 1e3 * to_seconds(config_.max_error));
   } else {
     spdlog::warn(
-        "clock: found one that the kernel calls not synchronized, wanted clock.source; TimeSource "
-        "is FREE_RUNNING; check chrony or phc2sys, and that systemd/clock.conf is installed");
+        "clock: found a system clock that the kernel calls not synchronized, wanted one that a "
+        "time "
+        "service keeps (clock.source); TimeSource is FREE_RUNNING; check chrony or phc2sys, and "
+        "that systemd/clock.conf is installed");
   }
 }
 

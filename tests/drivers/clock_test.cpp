@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/kernel_time.h"
+
 namespace bevloc::drivers {
 namespace {
 
@@ -21,6 +23,14 @@ TEST(VirtualClock, SleepingAdvancesItAndNeverSetsItBack) {
   EXPECT_EQ(clock.now(), Time(milliseconds(20)));
   clock.sleep_until(Time(milliseconds(10)));
   EXPECT_EQ(clock.now(), Time(milliseconds(20)));
+}
+
+TEST(KernelTime, ReadsTwoClocksAtOneMoment) {
+  for (int i = 0; i < 1000; ++i) {
+    const ClockPair clocks = read_with_steady(CLOCK_MONOTONIC);
+    const Duration apart = clocks.clock - clocks.steady.time_since_epoch();
+    ASSERT_LE(std::chrono::abs(apart), clocks.error);
+  }
 }
 
 TEST(MonotonicClock, NeverGoesBack) {

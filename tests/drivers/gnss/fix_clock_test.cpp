@@ -83,6 +83,25 @@ TEST_F(ArrivalTest, DoesNotTakeALastingDelayForTheUsualOne) {
   }
 }
 
+TEST_F(ArrivalTest, ASingleReportWithAWrongUtcDoesNotShiftTheOthers) {
+  judge(clock_, next(), milliseconds(-70));
+  for (int i = 0; i < 5 * 60; ++i) {
+    const Time held = next();
+    const FixTime fix = judge(clock_, held, milliseconds(80));
+    ASSERT_EQ(fix.verdict, FixVerdict::kUsable);
+    ASSERT_EQ(fix.time, held - milliseconds(20)) << i;
+  }
+}
+
+TEST_F(ArrivalTest, KnowsOneReportInTenSeconds) {
+  for (int i = 0; i < 100; ++i) {
+    const Time held = held_ += seconds(10);
+    const FixTime fix = judge(clock_, held, milliseconds(80));
+    ASSERT_EQ(fix.verdict, FixVerdict::kUsable);
+    ASSERT_EQ(fix.time, held - milliseconds(20)) << i;
+  }
+}
+
 TEST_F(ArrivalTest, LearnsAnewOverMinutes) {
   // The clock of the machine is 50 ppm slow, which is 15 ms in five minutes.
   for (int i = 0; i < 20 * 60 * 5; ++i) {

@@ -84,6 +84,25 @@ TEST(GpsdReaderTest, ForgetsTheAccuracyWhenTheKindOfFixChanges) {
   EXPECT_GT(reader.read(single).fix.sigma_east_m, 9.0) << "until the next GST";
 }
 
+TEST(GpsdReaderTest, DoesNotGiveTheAccuracyOfOneReceiverToAnother) {
+  GpsdReader reader;
+  reader.read(kRtkFix);
+  reader.read(accuracy_at("31.200"));
+  std::string other = kRtkFix;
+  other.replace(other.find("/dev/pts/0"), 10, "/dev/pts/1");
+  EXPECT_GT(reader.read(other).fix.sigma_east_m, 9.0);
+}
+
+TEST(GpsdReaderTest, ReadsOnlyTimesOfTheFormThatItNames) {
+  EXPECT_EQ(utc_of("2026-11-23T22:23:04.125Z"), seconds(1795472584) + milliseconds(125));
+  EXPECT_EQ(utc_of("2026-11-23T22:23:04Z"), seconds(1795472584));
+  for (const char* text :
+       {"2026-11-23T22:23:04.125Zgarbage", "2026-11-23T22:23:0x4Z", "2026-11-23T22:23: 4Z",
+        "2026-11-23T22:23:4e0Z", "2026-11-23T22:23:04", "2026-11-01 00:00:00", ""}) {
+    EXPECT_EQ(utc_of(text), std::nullopt) << text;
+  }
+}
+
 TEST(GpsdReaderTest, SaysWhyALineIsNoFix) {
   EXPECT_EQ(line_of(R"({"class":"SKY","hdop":1.0})"), GpsdLine::kOther);
   EXPECT_EQ(line_of(R"({"class":"TPV","mode":1})"), GpsdLine::kNoFix);
@@ -104,7 +123,6 @@ TEST(GpsdReaderTest, SaysWhyALineIsNoFix) {
   EXPECT_EQ(line_of("$GPGGA,1,2"), GpsdLine::kNotReadable);
   EXPECT_EQ(line_of("[1]"), GpsdLine::kNotReadable);
   EXPECT_EQ(line_of(std::string(5000, '[')), GpsdLine::kNotReadable);
-  EXPECT_EQ(utc_of("2026-11-01 00:00:00"), std::nullopt);
 }
 
 /// What the test waits for comes over the loopback interface within this time.
