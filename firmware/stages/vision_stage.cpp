@@ -163,18 +163,19 @@ void VisionStage::check_network_again(const drivers::Frameset& frameset, const P
 }
 
 void VisionStage::note_unused_images(CameraMask given) {
-  const CameraMask dark = localizer_.with(ViewFault::kDark);
-  const CameraMask blinded = localizer_.with(ViewFault::kBlinded);
-  const CameraMask dirty = localizer_.with(ViewFault::kDirty);
-  const CameraMask unreadable = given & ~localizer_.readable();
+  // Nobody knows what a camera shows whose image cannot be read.
+  const CameraMask readable = localizer_.readable();
+  const CameraMask unreadable = given & ~readable;
   for (int camera = 0; camera < kCameraCount; ++camera) {
     if (unreadable[camera]) ++counters_.unreadable[camera];
   }
-  const auto bits = [](CameraMask mask) { return static_cast<unsigned>(mask.to_ulong()); };
-  counters_.frozen = bits(localizer_.frozen());
-  counters_.dark = bits(dark);
-  counters_.blinded = bits(blinded);
-  counters_.dirty = bits(dirty);
+  const auto shown = [&readable](CameraMask mask) {
+    return static_cast<unsigned>((mask & readable).to_ulong());
+  };
+  counters_.frozen = shown(localizer_.frozen());
+  counters_.dark = shown(localizer_.with(ViewFault::kDark));
+  counters_.blinded = shown(localizer_.with(ViewFault::kBlinded));
+  counters_.dirty = shown(localizer_.with(ViewFault::kDirty));
 }
 
 }  // namespace bevloc::firmware

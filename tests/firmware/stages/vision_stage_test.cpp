@@ -1,6 +1,7 @@
 #include "firmware/stages/vision_stage.h"
 
 #include <filesystem>
+#include <utility>
 
 #include "common/files.h"
 #include "tests/firmware/stages/vision_stage_fixture.h"
@@ -247,6 +248,13 @@ TEST_F(VisionStageFrozenTest, DoesNotUseADarkCamera) {
   EXPECT_EQ(drive_on(0.0, true), others_);
   EXPECT_EQ(stage_->counters().dark, 1U << kFrozenCamera);
   EXPECT_EQ(stage_->counters().unreadable[kFrozenCamera], 0U);
+  const ImageView dark = std::exchange(stuck_, damaged_);
+  EXPECT_EQ(drive_on(0.0, true), others_);
+  EXPECT_EQ(stage_->counters().dark, 0U) << "nobody knows";
+  EXPECT_EQ(stage_->counters().unreadable[kFrozenCamera], 1U);
+  stuck_ = dark;
+  EXPECT_EQ(drive_on(0.0, true), others_);
+  EXPECT_EQ(stage_->counters().dark, 1U << kFrozenCamera);
   for (int i = 1; i < ViewMonitor::kRecovery; ++i) EXPECT_EQ(drive_on(0.0, false), others_) << i;
   EXPECT_TRUE(drive_on(0.0, false).all());
   EXPECT_EQ(stage_->counters().dark, 0U);
