@@ -104,10 +104,12 @@ class HttpServer::Responder final : public httplib::Server {
   template <typename Server>
   static void answer_by(Server& server, httplib::Stream& stream) {
     bool closed = false;
-    if constexpr (requires { server.process_request(stream, true, closed, nullptr); }) {
-      server.process_request(stream, true, closed, nullptr);
+    // A request of 8 KiB can name thousands of ranges, and each would repeat the whole answer.
+    const auto forget_ranges = [](httplib::Request& request) { request.ranges.clear(); };
+    if constexpr (requires { server.process_request(stream, true, closed, forget_ranges); }) {
+      server.process_request(stream, true, closed, forget_ranges);
     } else {
-      server.process_request(stream, "", 0, "", 0, true, closed, nullptr);
+      server.process_request(stream, "", 0, "", 0, true, closed, forget_ranges);
     }
   }
 };

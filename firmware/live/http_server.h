@@ -33,7 +33,7 @@ struct HttpLimits {
 /// writes the response; this class accepts, waits, limits and closes, so that a slow or hostile
 /// client costs a bounded number of threads for a bounded time. A request whose Host header is a
 /// name other than "localhost" gets 403: a page of a foreign site cannot read the answers by
-/// letting its own name point here (DNS rebinding).
+/// letting its own name point here (DNS rebinding). A Range header is ignored.
 ///
 /// Threads: `workers` and one that accepts, all with the lowest priority of the normal scheduler.
 /// Every member is called from one thread; handlers run in the workers.

@@ -186,6 +186,18 @@ TEST_F(HttpServerTest, EndsHugeRequests) {
   expect_alive();
 }
 
+TEST_F(HttpServerTest, AnswersOnceHoweverManyRangesARequestNames) {
+  start();
+  for (const std::string range : {"0-", "1-3", "-"}) {
+    std::string request = "GET / HTTP/1.1\r\nHost: localhost\r\nRange: bytes=" + range;
+    while (request.size() < 8000) request += "," + range;
+    const std::string answer = answer_to(request + "\r\n\r\n");
+    EXPECT_LT(answer.size(), 1000u) << range;
+  }
+  EXPECT_THAT(answer_to("GET / HTTP/1.1\r\nHost: localhost\r\nRange: bytes=1-\r\n\r\n"),
+              testing::AllOf(StartsWith("HTTP/1.1 200"), HasSubstr("\r\n\r\nhello")));
+}
+
 TEST_F(HttpServerTest, ClosesConnectionsThatSayNothing) {
   HttpLimits limits;
   limits.idle = milliseconds(20);
