@@ -85,6 +85,7 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
   ViewLog log;
   ErrorLog errors;
   ClockWatch clock_watch(clock);
+  ShownState shown;
   bool ignition = true;
   if (base.live) base.live->attach(appliance, rig);
   run_threads(appliance, base.realtime, nullptr, [&](Time now) {
@@ -94,7 +95,8 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
     const Snapshot counters = snapshot();
     errors.note(counters, now);
     if (base.live) base.live->publish({Phase::kRunning, now, counters, supervisor.view()});
-    ignition = base.lines->step(is_lit(supervisor.view().state, now), now);
+    const ApplianceView& view = supervisor.view();
+    ignition = base.lines->step(is_lit(shown.of(view.state, view.lost, now), now), now);
     const bool goes_on = ignition && !host.stop();
     // Nobody can feed the watchdog while the devices close. At its own end, systemd waits longer.
     if (!ignition) ServiceNotifier().set_watchdog_timeout(kChangeTimeout);

@@ -1,8 +1,10 @@
 // Blink patterns of the status LED.
 #pragma once
 
+#include <cstdint>
+
+#include "common/health_state.h"
 #include "common/time.h"
-#include "firmware/health/health.h"
 
 namespace bevloc::firmware {
 
@@ -11,8 +13,22 @@ namespace bevloc::firmware {
 ///   ACQUIRING   #####-----  slow blinking
 ///   TRACKING    ##########  steady
 ///   DEGRADED    #########-  steady with one short gap per second
-///   LOST        #-#-------  two flashes per second (brief: ACQUIRING follows)
+///   LOST        #-#-------  two flashes per second
 ///   FAULT       ##--        fast blinking
 bool is_lit(HealthState state, Time now);
+
+/// The state that the LED shows: LOST for a second after a loss, because LOST itself lasts only one
+/// bus cycle before ACQUIRING follows. One thread.
+class ShownState {
+ public:
+  static constexpr Duration kLostShown = std::chrono::seconds(1);
+
+  /// `lost`: how often the pose was lost.
+  HealthState of(HealthState state, uint64_t lost, Time now);
+
+ private:
+  uint64_t lost_ = 0;
+  Time lost_shown_until_ = Time::min();
+};
 
 }  // namespace bevloc::firmware

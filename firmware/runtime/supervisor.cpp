@@ -16,6 +16,8 @@ void Supervisor::step(Time now) {
   const EstimationCounters& estimation = appliance_.estimation().counters();
   view_.state = estimation.state;
   view_.why = WhyMask::from_bits(estimation.why);
+  view_.lost = estimation.lost;
+  view_.lost_why = WhyMask::from_bits(estimation.lost_why);
   view_.cameras = static_cast<int>(std::bitset<kCameraCount>(estimation.cameras).count());
   view_.bus = appliance_.bus().condition();
   const auto& drifts = appliance_.vision().framesets().synchrony().drift_ppm;

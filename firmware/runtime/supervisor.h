@@ -15,7 +15,9 @@ namespace bevloc::firmware {
 struct ApplianceView {
   HealthState state = HealthState::kInit;
   WhyMask why;
-  int cameras = 0;  ///< used in the latest frameset
+  uint64_t lost = 0;  ///< how often the pose was lost
+  WhyMask lost_why;   ///< of the latest loss
+  int cameras = 0;    ///< used in the latest frameset
   can::BusCondition bus;
   double rate_hz = 0.0;       ///< framesets per second, averaged over about one second
   std::string hung;           ///< names of the threads that hang, separated by commas

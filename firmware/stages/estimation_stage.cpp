@@ -235,15 +235,24 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
   if (health_.update(inputs) && health_.state() == HealthState::kLost) {
     accepted_in_a_row_ = 0;
     refused_in_a_row_ = 0;
+    counters_.lost_why = health_.why().bits();
+    ++counters_.lost;
   }
-  if (!health_.pose_valid()) {
-    valid_since_.reset();
-  } else if (!valid_since_) {
-    valid_since_ = now;
-  }
+  note_validity(now);
   counters_.state = health_.state();
   counters_.why = health_.why().bits();
   counters_.cameras = static_cast<unsigned>(inputs.cameras_present.to_ulong());
+}
+
+void EstimationStage::note_validity(Time now) {
+  if (health_.pose_valid() == valid_since_.has_value()) return;
+  if (valid_since_) {
+    valid_since_.reset();
+    counters_.invalid_since = now;
+  } else {
+    valid_since_ = now;
+    counters_.invalid_since = Time::max();
+  }
 }
 
 void EstimationStage::note_pose(const std::optional<TrackedPose>& pose) {

@@ -29,6 +29,11 @@ struct EstimationCounters {
   std::atomic<uint64_t> clock_gaps{0};
   std::atomic<HealthState> state{HealthState::kInit};
   std::atomic<uint32_t> why{0};  ///< bits of a WhyMask
+  /// The state LOST lasts one bus cycle, so who reads more seldom looks at these.
+  std::atomic<uint64_t> lost{0};      ///< how often the pose was lost
+  std::atomic<uint32_t> lost_why{0};  ///< bits of a WhyMask, of the latest loss
+  /// Since when a pose that was valid is not; Time::max() while it is valid or never was.
+  std::atomic<Time> invalid_since{Time::max()};
   /// Offset of the camera stamps against odometry; 0 while it is tolerated (StampMonitor).
   std::atomic<int> stamp_offset_ms{0};
   /// GNSS minus map, east and north; 0 while they agree (MapOffsetMonitor).
@@ -90,6 +95,7 @@ class EstimationStage {
   void forget_matches();
   HealthInputs health_inputs(const std::optional<TrackedPose>& pose, Time now) const;
   void update_health(const std::optional<TrackedPose>& pose, Time now);
+  void note_validity(Time now);
   void note_pose(const std::optional<TrackedPose>& pose);
   void publish(const std::optional<TrackedPose>& pose, Time now);
   can::LocalizerStatus make_status() const;

@@ -73,6 +73,7 @@ void add_state(Families& families, const Telemetry& telemetry) {
     families.gauge("bevloc_why", "1 for each reason why the state is not better",
                    estimation.why.has(reason) ? 1 : 0, {{"reason", words_of(reason)}});
   }
+  families.count("bevloc_lost_total", "How often the pose was lost", estimation.lost);
   families.gauge("bevloc_standby", "1 while the ignition is off",
                  telemetry.phase == Phase::kStandby ? 1 : 0);
   families.gauge("bevloc_time_source",

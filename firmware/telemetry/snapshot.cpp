@@ -12,6 +12,9 @@ OutcomeCounts counts_of(const TrackerOutcomes& outcomes) {
 EstimationSnapshot estimation_of(const EstimationCounters& counters) {
   return {.state = counters.state,
           .why = WhyMask::from_bits(counters.why),
+          .lost = counters.lost,
+          .lost_why = WhyMask::from_bits(counters.lost_why),
+          .invalid_since = counters.invalid_since,
           .time_source = counters.time_source,
           .cameras = CameraMask(counters.cameras),
           .ticks = counters.ticks,

@@ -45,6 +45,9 @@ using OutcomeCounts = std::array<uint64_t, kTrackerUpdates>;
 struct EstimationSnapshot {
   HealthState state = HealthState::kInit;
   WhyMask why;
+  uint64_t lost = 0;                 ///< how often the pose was lost
+  WhyMask lost_why;                  ///< of the latest loss
+  Time invalid_since = Time::max();  ///< as in EstimationCounters
   can::TimeSource time_source = can::TimeSource::kFreeRunning;
   CameraMask cameras;  ///< used in the latest frameset
   uint64_t ticks = 0;

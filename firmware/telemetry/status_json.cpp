@@ -198,6 +198,7 @@ json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration
   status["time_s"] = to_seconds(telemetry.time.time_since_epoch());
   status["state"] = to_string(estimation.state);
   status["why"] = why_of(estimation.why);
+  status["lost"] = {{"count", estimation.lost}, {"why", to_string(estimation.lost_why)}};
   status["valid"] = estimation.pose.valid;
   status["pose"] = pose_of(estimation.pose);
   status["rate_hz"] = telemetry.view.rate_hz;
@@ -237,6 +238,10 @@ std::string status_page(const json& status) {
       status.value("valid", false) ? "valid" : "NOT valid", reasons_of(status));
   const std::string hung = text_at(status, "hung_threads");
   if (!hung.empty() && hung != "-") text += fmt::format("  hangs: {}\n", hung);
+  if (text_at(status, "lost.count") != "0" && status.contains("lost")) {
+    text += fmt::format("  lost {} times, the latest time because of: {}\n",
+                        text_at(status, "lost.count"), text_at(status, "lost.why"));
+  }
   text += fmt::format("\npose        x {} m, y {} m, yaw {} deg in the map; {} m/s\n",
                       text_at(status, "pose.x_m", "{:.2f}"), text_at(status, "pose.y_m", "{:.2f}"),
                       text_at(status, "pose.yaw_deg", "{:.2f}"),

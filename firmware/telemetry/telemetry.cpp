@@ -6,6 +6,9 @@ namespace {
 /// The supervisor hands over a new value every 100 ms.
 constexpr Duration kSilentSupervisor = std::chrono::seconds(2);
 
+/// A pose that is lost is mostly found again within this time.
+constexpr Duration kLostGrace = std::chrono::seconds(10);
+
 /// With one of these the daemon cannot become ready by itself: somebody has to act.
 constexpr WhyMask kNeedsHelp =
     Why::kCameraMissing | Why::kCamerasUnsynchronized | Why::kOdometryMissing | Why::kGnssMissing |
@@ -91,8 +94,14 @@ HealthCheck check_health(const Telemetry& telemetry, Duration age) {
     return {false, fmt::format("a thread hangs: {}. Restart the service.", view.hung)};
   }
   const std::string help = reasons_with_advice(view.why);
+  const Time invalid_since = telemetry.snapshot.estimation.invalid_since;
+  const bool stays_lost =
+      telemetry.time > invalid_since && telemetry.time - invalid_since > kLostGrace;
+  const std::string since = stays_lost ? fmt::format(", no valid pose for {:.0f} s",
+                                                     to_seconds(telemetry.time - invalid_since))
+                                       : "";
   const std::string text =
-      fmt::format("{}{}{}", to_string(view.state), help.empty() ? "" : ": ", help);
+      fmt::format("{}{}{}{}", to_string(view.state), since, help.empty() ? "" : ": ", help);
   switch (view.state) {
     case HealthState::kTracking:
     case HealthState::kDegraded:
@@ -104,7 +113,7 @@ HealthCheck check_health(const Telemetry& telemetry, Duration age) {
     case HealthState::kAcquiring:
       break;
   }
-  return {(view.why.bits() & kNeedsHelp.bits()) == 0, text};
+  return {!stays_lost && (view.why.bits() & kNeedsHelp.bits()) == 0, text};
 }
 
 }  // namespace bevloc::firmware

@@ -31,8 +31,9 @@ struct HealthCheck {
 };
 
 /// Good while the pose is valid, in standby, and in a start that lacks no input. Not good while a
-/// thread hangs, in LOST and FAULT, when an input is missing before the first valid pose, and when
-/// `age`, the time since the supervisor handed the value over, is longer than two seconds.
+/// thread hangs, in LOST and FAULT, when an input is missing before the pose is valid, when a pose
+/// that was valid has not been so for ten seconds, and when `age`, the time since the supervisor
+/// handed the value over, is longer than two seconds.
 HealthCheck check_health(const Telemetry& telemetry, Duration age);
 
 /// The reason in words ("camera missing"), and in one sentence what to do about it.

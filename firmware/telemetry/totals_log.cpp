@@ -116,6 +116,10 @@ void log_totals(const Snapshot& snapshot) {
   log_vehicle_input(snapshot.vehicle_input);
   if (snapshot.authentication) log_authentication(*snapshot.authentication);
   if (snapshot.gnss) log_gnss(*snapshot.gnss);
+  if (snapshot.estimation.lost > 0) {
+    spdlog::warn("pose: lost {} times, the latest time because of: {}", snapshot.estimation.lost,
+                 to_string(snapshot.estimation.lost_why));
+  }
   log_tracker("odometry", snapshot.estimation.odometry);
   log_tracker("GNSS", snapshot.estimation.gnss);
   log_tracker("corrections", snapshot.estimation.corrections);

@@ -5,6 +5,8 @@
 namespace bevloc::firmware {
 
 void ViewLog::note(const ApplianceView& view) {
+  // The state LOST lasts one bus cycle, and most views are taken before or after it.
+  if (view.lost != before_.lost) spdlog::warn("pose lost: {}", to_string(view.lost_why));
   if (view.state != before_.state) {
     const std::string why = to_string(view.why);
     spdlog::info("state {} -> {}{}{}", to_string(before_.state), to_string(view.state),

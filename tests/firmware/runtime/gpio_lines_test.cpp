@@ -193,5 +193,17 @@ TEST(StatusLed, ShowsEachStateDifferently) {
   EXPECT_TRUE(seen.contains("####################"));
 }
 
+TEST(StatusLed, ShowsALossForASecond) {
+  ShownState shown;
+  Time now(milliseconds(100));
+  EXPECT_EQ(shown.of(HealthState::kAcquiring, 0, now), HealthState::kAcquiring);
+  EXPECT_EQ(shown.of(HealthState::kTracking, 0, now), HealthState::kTracking);
+  for (int tenth = 0; tenth < 10; ++tenth, now += milliseconds(100)) {
+    EXPECT_EQ(shown.of(HealthState::kAcquiring, 1, now), HealthState::kLost) << tenth;
+    EXPECT_EQ(shown.of(HealthState::kFault, 1, now), HealthState::kFault) << tenth;
+  }
+  EXPECT_EQ(shown.of(HealthState::kAcquiring, 1, now), HealthState::kAcquiring);
+}
+
 }  // namespace
 }  // namespace bevloc::firmware

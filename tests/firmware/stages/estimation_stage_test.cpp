@@ -272,6 +272,26 @@ TEST_F(EstimationStageTest, StopsSendingPosesWithoutOdometry) {
   EXPECT_FALSE(latest_);
 }
 
+TEST_F(EstimationStageTest, CountsLossesAndKeepsTheReasonAndTheTime) {
+  const EstimationCounters& counters = stage_.counters();
+  run(milliseconds(5000));
+  EXPECT_EQ(counters.lost, 0U);
+  EXPECT_EQ(counters.invalid_since.load(), Time::max());
+  odometry_ = false;
+  const Time stopped = now_;
+  run(milliseconds(1000));
+  ASSERT_NE(counters.state, HealthState::kLost) << "LOST lasts one cycle";
+  EXPECT_EQ(counters.lost, 1U);
+  EXPECT_TRUE(WhyMask::from_bits(counters.lost_why).has(Why::kOdometryMissing));
+  EXPECT_GT(counters.invalid_since.load(), stopped + milliseconds(150));
+  EXPECT_LT(counters.invalid_since.load(), stopped + milliseconds(300));
+  odometry_ = true;
+  run(milliseconds(5000));
+  EXPECT_EQ(counters.state, HealthState::kTracking);
+  EXPECT_EQ(counters.lost, 1U);
+  EXPECT_EQ(counters.invalid_since.load(), Time::max());
+}
+
 TEST_F(EstimationStageTest, NanFromVisionChangesNothing) {
   run(milliseconds(5000));
   vision_error_ = {std::nan(""), 0.0, 0.0};

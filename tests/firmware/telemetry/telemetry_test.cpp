@@ -18,6 +18,7 @@ namespace bevloc::firmware {
 namespace {
 
 using std::chrono::milliseconds;
+using std::chrono::seconds;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -76,6 +77,17 @@ TEST(HealthCheck, AStartIsGoodUntilAnInputIsMissing) {
   EXPECT_FALSE(check_health(running(HealthState::kInit, Why::kOdometryMissing), Duration{}).good);
 }
 
+TEST(HealthCheck, IsBadWhileALostPoseIsNotFoundAgain) {
+  Telemetry telemetry = running(HealthState::kAcquiring, Why::kMatchUncertain);
+  telemetry.snapshot.estimation.invalid_since = Time(seconds(100));
+  telemetry.time = Time(seconds(110));
+  EXPECT_TRUE(check_health(telemetry, Duration{}).good);
+  telemetry.time = Time(seconds(112));
+  const HealthCheck health = check_health(telemetry, Duration{});
+  EXPECT_FALSE(health.good);
+  EXPECT_THAT(health.reason, HasSubstr("ACQUIRING, no valid pose for 12 s: match uncertain: "));
+}
+
 TEST(HealthCheck, StandbyIsGood) {
   Telemetry telemetry;
   telemetry.phase = Phase::kStandby;
@@ -89,7 +101,7 @@ TEST(HealthCheck, IsBadWhenAThreadHangs) {
   EXPECT_FALSE(health.good);
   EXPECT_THAT(health.reason, HasSubstr("vision"));
   telemetry.view.hung.clear();
-  EXPECT_FALSE(check_health(telemetry, std::chrono::seconds(3)).good);
+  EXPECT_FALSE(check_health(telemetry, seconds(3)).good);
 }
 
 TEST(HealthCheck, EveryReasonHasAnAdvice) {
@@ -254,6 +266,16 @@ TEST(StatusPage, FitsATerminal) {
   int count = 0;
   for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 100u) << line;
   EXPECT_LE(count, 24);
+}
+
+TEST(StatusPage, SaysHowOftenAndWhyThePoseWasLost) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  EXPECT_THAT(status_page(status_json(telemetry, {}, {})), Not(HasSubstr("lost 0 times")));
+  telemetry.snapshot.estimation.lost = 2;
+  telemetry.snapshot.estimation.lost_why = Why::kOdometryMissing;
+  EXPECT_THAT(status_page(status_json(telemetry, {}, {})),
+              HasSubstr("lost 2 times, the latest time because of: odometry missing\n"));
+  EXPECT_THAT(metrics(telemetry), HasSubstr("bevloc_lost_total 2\n"));
 }
 
 TEST(StatusPage, ShowsStandbyAndSurvivesOtherVersions) {
