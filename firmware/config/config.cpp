@@ -83,15 +83,39 @@ HypothesisAxis read_axis(YamlMap& yaml, std::string_view range_key, std::string_
   return axis;
 }
 
+/// `axis` and `max_range` are in the unit of the solver, of which the file's unit has `per_unit`.
+void check_axis(YamlMap& yaml, std::string_view step_key, const HypothesisAxis& axis,
+                double max_range, double per_unit) {
+  // What is wrong with one of the two alone was reported when it was read.
+  if (is_sound(axis, max_range) || axis.step > axis.range || axis.range > max_range) return;
+  yaml.reject(step_key,
+              fmt::format("{:.6g}, with which the last of {} steps is at {:.6g}",
+                          per_unit * axis.step, axis.half_count(), per_unit * axis.farthest()),
+              fmt::format("at most {} steps from zero, and none beyond {:.6g}", kMaxHalfCount,
+                          per_unit * max_range));
+}
+
+void check_hypotheses(YamlMap& yaml, const HypothesisGrid& grid, double max_range_m) {
+  check_axis(yaml, "x_step_m", grid.x_m, max_range_m, 1.0);
+  check_axis(yaml, "y_step_m", grid.y_m, max_range_m, 1.0);
+  check_axis(yaml, "yaw_step_deg", grid.yaw_rad, radians(kMaxYawRange_deg), degrees(1.0));
+  if (const double count = count_of(grid); count > kMaxHypotheses) {
+    yaml.reject("x_step_m", fmt::format("{:.0f} hypotheses of x, y and yaw in all", count),
+                fmt::format("at most {:.0f}: larger steps or smaller ranges", kMaxHypotheses));
+  }
+}
+
 HypothesisGrid read_hypotheses(std::optional<YamlMap> yaml, const HypothesisGrid& fallback) {
   if (!yaml) return fallback;
   const double max_range_m = max_shift_m(kFeatureGrid);
   const HypothesisAxis yaw_deg = read_axis(
       *yaml, "yaw_range_deg", "yaw_step_deg",
       {degrees(fallback.yaw_rad.range), degrees(fallback.yaw_rad.step)}, kMaxYawRange_deg);
-  return {read_axis(*yaml, "x_range_m", "x_step_m", fallback.x_m, max_range_m),
-          read_axis(*yaml, "y_range_m", "y_step_m", fallback.y_m, max_range_m),
-          {radians(yaw_deg.range), radians(yaw_deg.step)}};
+  const HypothesisGrid grid{read_axis(*yaml, "x_range_m", "x_step_m", fallback.x_m, max_range_m),
+                            read_axis(*yaml, "y_range_m", "y_step_m", fallback.y_m, max_range_m),
+                            {radians(yaw_deg.range), radians(yaw_deg.step)}};
+  check_hypotheses(*yaml, grid, max_range_m);
+  return grid;
 }
 
 SolverConfig read_solver(std::optional<YamlMap> yaml) {

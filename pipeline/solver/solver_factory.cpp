@@ -33,10 +33,8 @@ constexpr std::array<std::pair<std::string_view, SolverKind>, kSolverKinds> kNam
     {"block+refine", SolverKind::kBlockRefined},
 }};
 
-// Limits far beyond any use, so that a typing error is reported instead of exhausting the memory.
-constexpr int kMaxFeatures = 1 << 24;     ///< channels x rows x columns
-constexpr double kMaxHalfCount = 1000.0;  ///< steps from zero to the end of an axis
-constexpr double kMaxHypotheses = 1e6;
+/// Channels x rows x columns; far beyond any use, as are the limits of the hypotheses.
+constexpr int kMaxFeatures = 1 << 24;
 
 // Limits of the grids of matchers that set no limits of their own. The memory of block matching
 // grows with the area of the grid, and block sizes in cells must fit an int.
@@ -49,14 +47,11 @@ bool is_positive(double value) {
 }
 
 Status check_axis(std::string_view name, const HypothesisAxis& axis, double max_range) {
-  const bool sound = is_positive(axis.step) && is_positive(axis.range) && axis.step <= axis.range;
-  if (!sound || axis.range / axis.step > kMaxHalfCount || axis.farthest() > max_range) {
-    return fail(
-        "hypotheses of {}: found range {} and step {}, wanted 0 < step <= range <= {} and at most "
-        "{} steps",
-        name, axis.range, axis.step, max_range, kMaxHalfCount);
-  }
-  return {};
+  if (is_sound(axis, max_range)) return {};
+  return fail(
+      "hypotheses of {}: found range {} and step {}, wanted 0 < step <= range <= {} and at most {} "
+      "steps",
+      name, axis.range, axis.step, max_range, kMaxHalfCount);
 }
 
 Status check_parameters(SolverKind kind, const SolverParameters& parameters) {
@@ -125,9 +120,7 @@ Status check(SolverKind kind, const BevGrid& grid, int channels, const Hypothesi
   if (auto status = check_axis("yaw", hypotheses.yaw_rad, radians(kMaxYawRange_deg)); !status) {
     return status;
   }
-  const double count = static_cast<double>(hypotheses.x_m.count()) * hypotheses.y_m.count() *
-                       hypotheses.yaw_rad.count();
-  if (count > kMaxHypotheses) {
+  if (const double count = count_of(hypotheses); count > kMaxHypotheses) {
     return fail("hypotheses: found {} in all, wanted at most {}", count, kMaxHypotheses);
   }
   return {};
@@ -158,6 +151,16 @@ std::unique_ptr<Matcher> make_matcher(SolverKind kind, const BevGrid& grid, int 
 }
 
 }  // namespace
+
+bool is_sound(const HypothesisAxis& axis, double max_range) {
+  return is_positive(axis.step) && is_positive(axis.range) && axis.step <= axis.range &&
+         axis.range / axis.step <= kMaxHalfCount && axis.farthest() <= max_range;
+}
+
+double count_of(const HypothesisGrid& hypotheses) {
+  return static_cast<double>(hypotheses.x_m.count()) * hypotheses.y_m.count() *
+         hypotheses.yaw_rad.count();
+}
 
 Result<SolverKind> solver_kind_from(std::string_view name) {
   std::string known;

@@ -46,6 +46,15 @@ inline constexpr double kMaxYawRange_deg = 20.0;
 constexpr double max_shift_m(const BevGrid& grid) {
   return 0.25 * std::min(grid.rows, grid.cols) * grid.cell_m;
 }
+// Limits far beyond any use, so that a typing error is reported instead of exhausting the memory.
+inline constexpr double kMaxHalfCount = 1000.0;  ///< steps from zero to the end of an axis
+inline constexpr double kMaxHypotheses = 1e6;
+
+/// Whether the solvers take the axis: 0 < step <= range, at most kMaxHalfCount steps, and
+/// farthest() at most `max_range`.
+bool is_sound(const HypothesisAxis& axis, double max_range);
+/// How many hypotheses there are in all, which may be more than an int holds.
+double count_of(const HypothesisGrid& hypotheses);
 
 /// Makes a solver. Fails if
 /// - the matcher cannot work on `grid`,

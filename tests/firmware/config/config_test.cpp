@@ -241,6 +241,16 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
        "solver.tracking.x_step_m"},
       {kSmallest + "solver: {acquiring: {y_range_m: 7.6}}\n", 9,
        "solver.acquiring.y_range_m: found 7.6, wanted a number, 0.1 to 7.5"},
+      {kSmallest + "solver:\n  tracking:\n    x_range_m: 7.5\n    x_step_m: 0.2\n", 12,
+       "solver.tracking.x_step_m: found 0.2, with which the last of 38 steps is at 7.6, wanted at "
+       "most 1000 steps from zero, and none beyond 7.5"},
+      {kSmallest + "solver: {acquiring: {yaw_range_deg: 20, yaw_step_deg: 0.01}}\n", 9,
+       "solver.acquiring.yaw_step_deg: found 0.01, with which the last of 2000 steps is at 20, "},
+      {kSmallest + "solver: {tracking: {x_range_m: 7.5, x_step_m: 0.05, y_range_m: 7.5, y_step_m: "
+                   "0.05, yaw_range_deg: 20, yaw_step_deg: 0.1}}\n",
+       9,
+       "solver.tracking.x_step_m: found 36331001 hypotheses of x, y and yaw in all, wanted at most "
+       "1000000"},
       {kSmallest + "health: {degraded_after_ms: 500, lost_after_ms: 400}\n", 9,
        "health.lost_after_ms"},
       // limits that declare any pose valid
