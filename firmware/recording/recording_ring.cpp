@@ -181,8 +181,10 @@ Status RecordingRing::step(uint64_t log_time_ns) {
   const uint64_t share = config_.max_bytes / 4;  // so that the black box fits into the ring
   RecentFile& newest = recent_.back();
   if (log_time_ns < newest.begin_ns + length && file_->bytes_written() < share) {
-    const Status room = make_room(newest.path);
-    return room ? file_->flush() : room;
+    if (const Status room = make_room(newest.path); !room) return room;
+    const Status flushed = file_->flush();
+    delete_old(newest.path, log_time_ns);  // the file has grown
+    return flushed;
   }
   newest.end_ns = log_time_ns;
   if (Status finished = file_->finish(); !finished) return finished;
@@ -193,14 +195,19 @@ Status RecordingRing::step(uint64_t log_time_ns) {
 Result<fs::path> RecordingRing::keep(uint64_t log_time_ns) {
   const auto covered = static_cast<uint64_t>(kBlackBox.count());
   const fs::path folder = config_.directory / kBlackBoxFolder;
+  std::error_code error;
+  fs::create_directories(folder, error);  // somebody may have deleted it during the drive
+  if (error) return refuse_folder(config_.directory, error.message());
   for (const RecentFile& file : recent_) {
-    if (&file != &recent_.back() && file.end_ns + covered < log_time_ns) continue;
-    std::error_code error;
+    const bool is_newest = &file == &recent_.back();
+    if (!is_newest && file.end_ns + covered < log_time_ns) continue;
     fs::create_hard_link(file.path, folder / file.path.filename(), error);
     // A ring that is shorter than the black box has deleted the oldest of these files.
-    if (error && error != std::errc::file_exists && error != std::errc::no_such_file_or_directory) {
-      return fail("{}: cannot keep this file in {} ({}), wanted a file system with hard links",
-                  file.path.string(), folder.string(), error.message());
+    const bool was_deleted = error == std::errc::no_such_file_or_directory && !is_newest;
+    if (error && error != std::errc::file_exists && !was_deleted) {
+      return fail(
+          "{}: cannot keep this file in {} ({}), wanted it on a file system with hard links",
+          file.path.string(), folder.string(), error.message());
     }
   }
   fs::path newest = folder / recent_.back().path.filename();

@@ -56,7 +56,8 @@ class RecordingRing {
   RecordingRing(const RecordConfig& config, RecordingHead head, SpaceOf space_of)
       : config_(config), head_(std::move(head)), space_of_(space_of) {}
   Status begin_file(uint64_t log_time_ns);
-  /// Deletes what the limits of the configuration do not allow beside the file `newest`.
+  /// Deletes what the limits of the configuration do not allow beside the file `newest`, which
+  /// counts if it exists.
   void delete_old(const std::filesystem::path& newest, uint64_t log_time_ns) const;
   /// Deletes old files until enough of the disk is free. Fails if not enough can be deleted.
   Status make_room(const std::filesystem::path& newest) const;

@@ -100,5 +100,23 @@ TEST_F(FullDiskTest, ARecordingMakesRoomWhileItGrows) {
   EXPECT_TRUE(fs::exists(ring->file()));
 }
 
+TEST_F(FullDiskTest, KeepsTheBlackBoxAlsoIfItsFolderWasDeleted) {
+  auto ring = open();
+  ASSERT_TRUE(ring) << ring.error().message;
+  fs::remove_all(config_.directory / "kept");
+  const auto kept = ring->keep(kNow_ns + kSecond_ns);
+  ASSERT_TRUE(kept) << kept.error().message;
+  EXPECT_TRUE(fs::equivalent(*kept, ring->file()));
+}
+
+TEST_F(FullDiskTest, SaysThatTheBlackBoxIsNotKeptIfTheFileWasDeleted) {
+  auto ring = open();
+  ASSERT_TRUE(ring) << ring.error().message;
+  fs::remove(ring->file());
+  const auto kept = ring->keep(kNow_ns + kSecond_ns);
+  ASSERT_FALSE(kept);
+  EXPECT_NE(kept.error().message.find("cannot keep this file"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace bevloc::firmware
