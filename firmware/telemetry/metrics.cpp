@@ -83,9 +83,11 @@ void add_state(Families& families, const Telemetry& telemetry) {
                  "Suspensions and stops of the process that were noticed", estimation.clock_gaps);
 }
 
-void add_pose(Families& families, const EstimationSnapshot& estimation) {
+void add_pose(Families& families, const Telemetry& telemetry, Duration age) {
+  const EstimationSnapshot& estimation = telemetry.snapshot.estimation;
   const PoseSnapshot& pose = estimation.pose;
-  families.gauge("bevloc_pose_valid", "1 while consumers may use the pose", pose.valid ? 1 : 0);
+  families.gauge("bevloc_pose_valid", "1 while consumers may use the pose",
+                 pose_is_valid(telemetry, age) ? 1 : 0);
   families.latency("bevloc_latency_seconds",
                    "From the time of a frameset until the first valid pose with its correction",
                    estimation.latency);
@@ -312,7 +314,7 @@ std::string metrics_text(const Telemetry& telemetry, const ProcessUse& process, 
   families.gauge("bevloc_healthy", "1 while /healthz answers 200",
                  check_health(telemetry, age).good ? 1 : 0);
   add_state(families, telemetry);
-  add_pose(families, telemetry.snapshot.estimation);
+  add_pose(families, telemetry, age);
   for (int camera = 0; camera < kCameraCount; ++camera) add_camera(families, telemetry, camera);
   add_framesets(families, telemetry);
   add_tracker(families, "odometry", telemetry.snapshot.estimation.odometry);

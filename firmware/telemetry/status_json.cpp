@@ -148,6 +148,13 @@ std::string list_of(const json& items) {
   return text;
 }
 
+/// What /healthz says, unless state and reasons say it too.
+std::string health_of(const json& status) {
+  const std::string health = text_at(status, "health");
+  const bool said = health.starts_with(text_at(status, "state"));
+  return status.value("healthy", true) || said ? "" : fmt::format("  {}\n", health);
+}
+
 std::string reasons_of(const json& status) {
   std::string text;
   for (const json& why : status.value("why", json::array())) {
@@ -199,7 +206,7 @@ json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration
   status["state"] = to_string(estimation.state);
   status["why"] = why_of(estimation.why);
   status["lost"] = {{"count", estimation.lost}, {"why", to_string(estimation.lost_why)}};
-  status["valid"] = estimation.pose.valid;
+  status["valid"] = pose_is_valid(telemetry, age);
   status["pose"] = pose_of(estimation.pose);
   status["rate_hz"] = telemetry.view.rate_hz;
   status["latency_ms"] = {{"median", estimation.latency.quantile_ms(0.5)},
@@ -234,10 +241,9 @@ std::string status_page(const json& status) {
     return fmt::format("bevlocd {}: {}\n", text_at(status, "version"), text_at(status, "health"));
   }
   std::string text = fmt::format(
-      "bevlocd {}: {}, pose {}\n{}", text_at(status, "version"), text_at(status, "state"),
-      status.value("valid", false) ? "valid" : "NOT valid", reasons_of(status));
-  const std::string hung = text_at(status, "hung_threads");
-  if (!hung.empty() && hung != "-") text += fmt::format("  hangs: {}\n", hung);
+      "bevlocd {}: {}, pose {}{}\n{}{}", text_at(status, "version"), text_at(status, "state"),
+      status.value("valid", false) ? "valid" : "NOT valid",
+      status.value("healthy", true) ? "" : ", NOT healthy", health_of(status), reasons_of(status));
   if (text_at(status, "lost.count") != "0" && status.contains("lost")) {
     text += fmt::format("  lost {} times, the latest time because of: {}\n",
                         text_at(status, "lost.count"), text_at(status, "lost.why"));

@@ -5,6 +5,8 @@ namespace {
 
 /// The supervisor hands over a new value every 100 ms.
 constexpr Duration kSilentSupervisor = std::chrono::seconds(2);
+/// The pose is predicted to a new time every bus cycle.
+constexpr Duration kOldPose = std::chrono::seconds(2);
 
 /// A pose that is lost is mostly found again within this time.
 constexpr Duration kLostGrace = std::chrono::seconds(10);
@@ -80,6 +82,12 @@ const char* advice_for(Why why) {
       return "Find the node that sends with identifiers of this daemon or of the vehicle.";
   }
   return "";
+}
+
+bool pose_is_valid(const Telemetry& telemetry, Duration age) {
+  const PoseSnapshot& pose = telemetry.snapshot.estimation.pose;
+  return telemetry.phase == Phase::kRunning && pose.valid && age <= kSilentSupervisor &&
+         telemetry.time - pose.time + age <= kOldPose;
 }
 
 HealthCheck check_health(const Telemetry& telemetry, Duration age) {

@@ -36,6 +36,10 @@ struct HealthCheck {
 /// handed the value over, is longer than two seconds.
 HealthCheck check_health(const Telemetry& telemetry, Duration age);
 
+/// Whether consumers may use the pose. Not if it is older than two seconds because the supervisor
+/// (`age`, as above) or the thread that sends it hangs.
+bool pose_is_valid(const Telemetry& telemetry, Duration age);
+
 /// The reason in words ("camera missing"), and in one sentence what to do about it.
 std::string words_of(Why why);
 const char* advice_for(Why why);

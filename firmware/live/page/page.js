@@ -333,8 +333,9 @@ function showState(status) {
   document.title = (status.state || status.phase) + " · bevloc";
   const summary = status.phase !== "running" ? status.health :
     status.valid ? "The pose may be used." : "The pose must not be used.";
-  byId("summary").textContent = summary +
-    (status.hung_threads ? " Threads that hang: " + status.hung_threads + "." : "");
+  // Otherwise the badge and the reasons below say what /healthz says.
+  const more = status.phase === "running" && !status.healthy && !status.health.startsWith(status.state);
+  byId("summary").textContent = summary + (more ? " Not healthy: " + status.health : "");
   const why = byId("why");
   why.replaceChildren();
   for (const reason of status.why || []) {

@@ -104,6 +104,23 @@ TEST(HealthCheck, IsBadWhenAThreadHangs) {
   EXPECT_FALSE(check_health(telemetry, seconds(3)).good);
 }
 
+TEST(PoseIsValid, NotWhileNobodyUpdatesIt) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.time = Time(seconds(100));
+  telemetry.snapshot.estimation.pose.time = Time(seconds(100));
+  EXPECT_TRUE(pose_is_valid(telemetry, milliseconds(300)));
+  const Duration silent = seconds(3);
+  EXPECT_FALSE(pose_is_valid(telemetry, silent));
+  EXPECT_THAT(metrics_text(telemetry, {}, silent), HasSubstr("bevloc_pose_valid 0\n"));
+  const nlohmann::json status = status_json(telemetry, {}, silent);
+  EXPECT_EQ(status["valid"], false);
+  EXPECT_THAT(status_page(status),
+              HasSubstr("TRACKING, pose NOT valid, NOT healthy\n  the supervisor has said nothing "
+                        "for 3 s. Restart the service.\n"));
+  telemetry.time = Time(seconds(103));  // CAN out hangs
+  EXPECT_FALSE(pose_is_valid(telemetry, milliseconds(0)));
+}
+
 TEST(HealthCheck, EveryReasonHasAnAdvice) {
   std::set<std::string> advices;
   for (int bit = 0; bit < kWhyCount; ++bit) {
