@@ -14,7 +14,9 @@ const TRAIL_STEP_M = 0.5;
 const TRAIL_POINTS = 2000;
 const VIEW_M = 130;  // width of the map panel
 
-const shown = {pose: "corrected", status: null, match: null, map: null, trail: [], cameras: {}};
+const shown = {
+  pose: "corrected", status: null, match: null, matchAt_ms: 0, map: null, trail: [], cameras: {},
+};
 const earlier = [];  // statuses of the last seconds, for rates
 let lastEvent_ms = 0;
 
@@ -73,9 +75,11 @@ function makeCameras() {
     image.hidden = true;
     const canvas = element("canvas");
     canvas.setAttribute("aria-hidden", "true");
-    figure.append(image, canvas, element("figcaption", name.replace("_", " ")));
+    const title = name.replace("_", " ");
+    const caption = element("figcaption", title);
+    figure.append(image, canvas, caption);
     byId("pictures").append(figure);
-    shown.cameras[name] = {figure, image, canvas, data: null};
+    shown.cameras[name] = {figure, image, canvas, caption, title, data: null, at_ms: 0};
   }
 }
 
@@ -107,8 +111,8 @@ function drawCamera(camera) {
 function onCamera(data) {
   const camera = shown.cameras[data.camera];
   if (!camera) return;
+  camera.at_ms = performance.now();
   camera.figure.style.aspectRatio = data.width_px + " / " + data.height_px;
-  camera.figure.classList.toggle("unused", !data.used);
   camera.image.onload = () => {
     camera.image.hidden = false;
     camera.data = data;
@@ -391,6 +395,15 @@ function showPairs(status) {
   }));
 }
 
+/// What a daemon without an appliance does not know.
+function clearFacts() {
+  earlier.length = 0;
+  for (const id of ["rate", "latency", "speed", "can", "place"]) byId(id).textContent = "–";
+  for (const id of ["frames", "pairs"]) byId(id).replaceChildren();
+  for (const camera of Object.values(shown.cameras)) camera.figure.classList.remove("unused");
+  drawTrail();
+}
+
 function showPlace(pose) {
   byId("place").textContent = !pose ? "No pose yet." :
     `x ${pose.x_m.toFixed(2)} m, y ${pose.y_m.toFixed(2)} m, yaw ${pose.yaw_deg.toFixed(1)}° · sigma ` +
@@ -403,8 +416,11 @@ function onStatus(status) {
   byId("version").textContent = "bevloc " + status.version;
   showState(status);
   if (status.phase !== "running") {
-    earlier.length = 0;
+    clearFacts();
     return;
+  }
+  for (const camera of status.cameras) {
+    shown.cameras[camera.name].figure.classList.toggle("unused", !camera.used);
   }
   const first = earlier[0];
   if (first && first.time_s > status.time_s) earlier.length = 0;  // another daemon
@@ -425,6 +441,7 @@ function onStatus(status) {
 
 function onMatch(match) {
   shown.match = match;
+  shown.matchAt_ms = performance.now();
   drawBev();
   AXES.forEach(drawPlot);
 }
@@ -436,7 +453,20 @@ function drawAll() {
   drawTrail();
 }
 
+/// Greys pictures and matches that nothing newer has replaced.
+function noteAge() {
+  const isOld = (at_ms) => performance.now() - at_ms > STALE_MS;
+  for (const camera of Object.values(shown.cameras)) {
+    const old = camera.data !== null && isOld(camera.at_ms);
+    camera.figure.classList.toggle("old", old);
+    camera.caption.textContent = camera.title + (old ? ": no new picture" : "");
+  }
+  const oldMatch = shown.match !== null && isOld(shown.matchAt_ms);
+  for (const id of ["bev", "plots"]) byId(id).classList.toggle("old", oldMatch);
+}
+
 function noteSilence() {
+  noteAge();
   const silent = performance.now() - lastEvent_ms > STALE_MS;
   document.body.classList.toggle("stale", silent);
   if (!silent) return;
