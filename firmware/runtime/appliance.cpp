@@ -106,6 +106,12 @@ FrameCounts Appliance::frame_counts() const {
   return counts;
 }
 
+QueueDrops Appliance::queue_drops() const {
+  return {.samples = queues_.samples.dropped(),
+          .reports = queues_.reports.dropped(),
+          .predictions = queues_.predictions.dropped()};
+}
+
 can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map) {
   can::PosePublisherConfig publisher;
   publisher.base_ids = config.can.base_ids;

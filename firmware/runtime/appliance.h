@@ -48,6 +48,13 @@ struct FrameCounts {
   uint64_t under_way() const { return dropped() - displaced - mismatched - skipped; }
 };
 
+/// Entries that newer ones pushed out of the queues between the stages, beside frames.
+struct QueueDrops {
+  uint64_t samples = 0;      ///< odometry and GNSS that estimation did not read in time
+  uint64_t reports = 0;      ///< of vision, that estimation did not read in time
+  uint64_t predictions = 0;  ///< poses that vision did not need; many without framesets
+};
+
 /// Owns stages, queues and devices; runner.h runs it, with threads or in lockstep. Stages exchange
 /// data through bounded queues only. The constructor starts no thread. Each stage states its own
 /// thread rule; close() is thread-safe.
@@ -78,6 +85,8 @@ class Appliance {
 
   /// Exact after all threads have ended. Callable from any thread.
   FrameCounts frame_counts() const;
+  /// Callable from any thread.
+  QueueDrops queue_drops() const;
 
   /// Wakes every stage that waits for a queue, so that its thread can end.
   void close() { queues_.close(); }

@@ -24,6 +24,7 @@ void ErrorLog::note(const Snapshot& snapshot, Time now) {
   note_vehicle_input(snapshot.vehicle_input, now);
   if (snapshot.gnss) note_gnss(*snapshot.gnss, now);
   note_tracker(snapshot.estimation, now);
+  note_queues(snapshot.queue_drops, now);
   note_bus(snapshot.bus, now);
 }
 
@@ -111,6 +112,18 @@ void ErrorLog::note_tracker(const EstimationSnapshot& estimation, Time now) {
       if (total > 0) count(fmt::format("tracker: {} refused: {}", input, what_to_do), total, now);
     }
   }
+}
+
+/// Predictions are not among these: vision needs only the latest ones.
+void ErrorLog::note_queues(const QueueDrops& drops, Time now) {
+  count(
+      "samples of odometry or GNSS dropped because CAN out did not read them in time; check the "
+      "load of this machine",
+      drops.samples, now);
+  count(
+      "reports of vision dropped because CAN out did not read them in time; check the load of "
+      "this machine",
+      drops.reports, now);
 }
 
 void ErrorLog::note_bus(const can::BusCounters& bus, Time now) {

@@ -29,6 +29,7 @@ class ErrorLog {
   void note_vehicle_input(const can::VehicleInputCounters& input, Time now);
   void note_gnss(const GnssCounters& gnss, Time now);
   void note_tracker(const EstimationSnapshot& estimation, Time now);
+  void note_queues(const QueueDrops& drops, Time now);
   void note_bus(const can::BusCounters& bus, Time now);
 
   std::map<std::string, Count> counts_;  ///< by text

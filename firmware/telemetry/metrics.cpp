@@ -172,6 +172,17 @@ void add_framesets(Families& families, const Telemetry& telemetry) {
   families.gauge("bevloc_network_fault", "1 after a failed check", framesets.network_fault ? 1 : 0);
 }
 
+void add_queues(Families& families, const QueueDrops& drops) {
+  const auto dropped = [&](const char* queue, uint64_t value) {
+    families.count("bevloc_queue_dropped_total",
+                   "Entries that newer ones pushed out of a queue between the stages", value,
+                   {{"queue", queue}});
+  };
+  dropped("samples", drops.samples);
+  dropped("reports", drops.reports);
+  dropped("predictions", drops.predictions);
+}
+
 void add_tracker(Families& families, const char* input, const OutcomeCounts& outcomes) {
   for (size_t i = 0; i < outcomes.size(); ++i) {
     families.count(
@@ -317,6 +328,7 @@ std::string metrics_text(const Telemetry& telemetry, const ProcessUse& process, 
   add_pose(families, telemetry, age);
   for (int camera = 0; camera < kCameraCount; ++camera) add_camera(families, telemetry, camera);
   add_framesets(families, telemetry);
+  add_queues(families, telemetry.snapshot.queue_drops);
   add_tracker(families, "odometry", telemetry.snapshot.estimation.odometry);
   add_tracker(families, "gnss", telemetry.snapshot.estimation.gnss);
   add_tracker(families, "correction", telemetry.snapshot.estimation.corrections);

@@ -72,6 +72,7 @@ Snapshot take_snapshot(const Appliance& appliance, const drivers::Trigger* trigg
     snapshot.cameras[camera] = camera_of(appliance, camera);
   }
   snapshot.frames = appliance.frame_counts();
+  snapshot.queue_drops = appliance.queue_drops();
   snapshot.framesets = framesets_of(appliance.vision());
   snapshot.vehicle_input = appliance.vehicle_input().counters();
   snapshot.authentication = appliance.vehicle_input().secoc_counters();

@@ -69,6 +69,7 @@ struct TriggerSnapshot {
 struct Snapshot {
   std::array<CameraSnapshot, kCameraCount> cameras;
   FrameCounts frames;
+  QueueDrops queue_drops;
   FramesetsSnapshot framesets;
   can::VehicleInputCounters vehicle_input;
   std::optional<can::SecocCounters> authentication;  ///< empty without authentication

@@ -46,6 +46,12 @@ void log_framesets(const FramesetsSnapshot& framesets,
       framesets.off_pulse);
 }
 
+void log_queues(const QueueDrops& drops) {
+  if (drops.samples + drops.reports == 0) return;
+  spdlog::warn("queues: {} samples of odometry and GNSS and {} reports of vision dropped",
+               drops.samples, drops.reports);
+}
+
 void log_tracker(const char* input, const OutcomeCounts& outcomes) {
   std::string text;
   for (size_t i = 0; i < outcomes.size(); ++i) {
@@ -113,6 +119,7 @@ void log_totals(const Snapshot& snapshot) {
   log_frames(snapshot.frames);
   log_cameras(snapshot.cameras);
   log_framesets(snapshot.framesets, snapshot.trigger);
+  log_queues(snapshot.queue_drops);
   log_vehicle_input(snapshot.vehicle_input);
   if (snapshot.authentication) log_authentication(*snapshot.authentication);
   if (snapshot.gnss) log_gnss(*snapshot.gnss);

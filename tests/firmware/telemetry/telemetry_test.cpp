@@ -143,14 +143,18 @@ TEST(Metrics, ShowStateAndPose) {
   }
 }
 
-TEST(Metrics, ShowCountersOfEachCamera) {
+TEST(Metrics, ShowCountersOfCamerasAndQueues) {
   Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.snapshot.queue_drops = {.samples = 4, .reports = 5, .predictions = 6};
   telemetry.snapshot.cameras[1].captured = 7;
   telemetry.snapshot.cameras[1].driver.overrun = 3;
   telemetry.snapshot.cameras[1].dirty = true;
   const std::string text = metrics(telemetry);
   for (const char* line :
-       {"bevloc_camera_frames_captured_total{camera=\"front\"} 7\n",
+       {"bevloc_queue_dropped_total{queue=\"samples\"} 4\n",
+        "bevloc_queue_dropped_total{queue=\"reports\"} 5\n",
+        "bevloc_queue_dropped_total{queue=\"predictions\"} 6\n",
+        "bevloc_camera_frames_captured_total{camera=\"front\"} 7\n",
         "bevloc_camera_frames_lost_total{camera=\"front\",reason=\"overrun\"} 3\n",
         "bevloc_camera_view_fault{camera=\"front\",fault=\"dirty\"} 1\n",
         "bevloc_camera_frames_captured_total{camera=\"back\"} 0\n"}) {
