@@ -196,7 +196,8 @@ void SimulatedRun::run(const StopWhen& stop) {
     supervisor.step(now);
     if (live_) {
       live_->publish({firmware::Phase::kRunning, now,
-                      firmware::take_snapshot(*appliance_, nullptr, 0), supervisor.view()});
+                      firmware::take_snapshot(*appliance_, {.recorder = recording_.get()}),
+                      supervisor.view()});
     }
     const double time_s = to_seconds(now - drive_start_);
     if (fault_server_) fault_server_->step(time_s);

@@ -175,6 +175,16 @@ void Recorder::write_counters(Time now) {
   put(kCountersTopic, message, now, now);
 }
 
+RecordingSnapshot Recorder::totals() const {
+  return {.images = counters_.images,
+          .events = counters_.events,
+          .images_dropped = images_dropped(),
+          .events_dropped = events_dropped(),
+          .bytes = counters_.bytes,
+          .black_boxes = counters_.black_boxes,
+          .failed = counters_.failed};
+}
+
 void Recorder::watch_state(HealthState state, Time now) {
   const bool bad = state == HealthState::kLost || state == HealthState::kFault;
   const bool became_bad = bad && state != state_;

@@ -18,6 +18,7 @@
 
 namespace bevloc::firmware {
 
+struct RecordingSnapshot;
 struct Snapshot;
 
 /// Totals since start; readable from any thread.
@@ -53,7 +54,7 @@ class Recorder {
   void note_truth(const RecordedTruth& truth) { events_.push(truth); }
   void note_match(const VisionSnapshot& snapshot, Time now);
 
-  /// What write_queued() records once a second; called in its thread.
+  /// What write_queued() records twice a second; called in its thread.
   void count_with(std::function<Snapshot()> snapshot) { snapshot_ = std::move(snapshot); }
 
   /// Writes all queued events and a few images, and does what is due at `now`: chunks to the disk,
@@ -63,6 +64,8 @@ class Recorder {
   void finish(Time now);
 
   const RecorderCounters& counters() const { return counters_; }
+  /// The totals with what the queues dropped. Callable from any thread.
+  RecordingSnapshot totals() const;
   uint64_t images_dropped() const { return counters_.images_dropped + images_.dropped(); }
   uint64_t events_dropped() const {
     return events_.dropped() + matches_.dropped() + counters_.events_lost;

@@ -87,7 +87,7 @@ void watch(Appliance& appliance, Recorder& recorder) {
   });
   appliance.estimation().observe_reports(
       [&recorder](const can::PoseReport& report) { recorder.note_solution(report); });
-  recorder.count_with([&appliance] { return take_snapshot(appliance, nullptr, 0); });
+  recorder.count_with([&appliance] { return take_snapshot(appliance, {}); });
 }
 
 }  // namespace bevloc::firmware

@@ -68,8 +68,9 @@ bool wait_for_ignition(Base& base, const DaemonHost& host) {
 }
 
 /// Runs a complete appliance until the ignition goes off (true) or the daemon shall end (false).
-bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger, Base& base,
-                   const ClockConfig& clock, const DaemonHost& host) {
+bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
+                   const Recorder* recorder, Base& base, const ClockConfig& clock,
+                   const DaemonHost& host) {
   Watchdog watchdog(appliance.estimation().counters().state, base.fault.get());
   watchdog.watch_stages(appliance);
   Supervisor supervisor(appliance, base.realtime, watchdog);
@@ -79,8 +80,9 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
   std::jthread watching = start_watchdog(watchdog, *base.fault, base.clock);
 
   const auto snapshot = [&] {
-    return take_snapshot(appliance, trigger != nullptr ? &trigger->trigger() : nullptr,
-                         host.log != nullptr ? host.log->dropped() : 0);
+    return take_snapshot(appliance, {.trigger = trigger != nullptr ? &trigger->trigger() : nullptr,
+                                     .recorder = recorder,
+                                     .log_dropped = host.log != nullptr ? host.log->dropped() : 0});
   };
   ViewLog log;
   ErrorLog errors;
@@ -157,7 +159,7 @@ Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
     saver->watch((*appliance)->vision(), base.clock);
     saving = start_saving(*saver);
   }
-  return run_appliance(**appliance, rig, trigger.get(), base, config.clock, host);
+  return run_appliance(**appliance, rig, trigger.get(), recorder.get(), base, config.clock, host);
 }
 
 }  // namespace

@@ -281,6 +281,23 @@ void add_bus(Families& families, const Snapshot& snapshot) {
   dropped("ignored", bus.receive_ignored);
 }
 
+void add_recording(Families& families, const RecordingSnapshot& recording) {
+  const auto count = [&](const char* name, const char* help, const char* kind, uint64_t value) {
+    families.count(name, help, value, {{"kind", kind}});
+  };
+  const char* const written = "bevloc_recording_written_total";
+  const char* const dropped = "bevloc_recording_dropped_total";
+  count(written, "Entries in the recording", "image", recording.images);
+  count(written, "Entries in the recording", "event", recording.events);
+  count(dropped, "Entries that the recording lacks", "image", recording.images_dropped);
+  count(dropped, "Entries that the recording lacks", "event", recording.events_dropped);
+  families.count("bevloc_recording_bytes_total", "Bytes that the recording wrote", recording.bytes);
+  families.count("bevloc_recording_black_boxes_total", "How often the last minute was kept",
+                 recording.black_boxes);
+  families.gauge("bevloc_recording_failed", "1 after the disk refused to take more",
+                 recording.failed ? 1 : 0);
+}
+
 void add_process(Families& families, const Telemetry& telemetry, const ProcessUse& process) {
   const std::string& hung = telemetry.view.hung;
   const auto names = std::count(hung.begin(), hung.end(), ',') + (hung.empty() ? 0 : 1);
@@ -335,6 +352,7 @@ std::string metrics_text(const Telemetry& telemetry, const ProcessUse& process, 
   add_vehicle(families, telemetry.snapshot);
   if (telemetry.snapshot.gnss) add_gnss(families, *telemetry.snapshot.gnss);
   add_bus(families, telemetry.snapshot);
+  if (telemetry.snapshot.recording) add_recording(families, *telemetry.snapshot.recording);
   add_process(families, telemetry, process);
   return families.text();
 }

@@ -1,5 +1,7 @@
 #include "firmware/telemetry/snapshot.h"
 
+#include "firmware/recording/recorder.h"
+
 namespace bevloc::firmware {
 namespace {
 
@@ -65,8 +67,7 @@ TriggerSnapshot trigger_of(const drivers::Trigger& trigger) {
 
 }  // namespace
 
-Snapshot take_snapshot(const Appliance& appliance, const drivers::Trigger* trigger,
-                       uint64_t log_dropped) {
+Snapshot take_snapshot(const Appliance& appliance, const SnapshotSources& others) {
   Snapshot snapshot;
   for (int camera = 0; camera < kCameraCount; ++camera) {
     snapshot.cameras[camera] = camera_of(appliance, camera);
@@ -80,8 +81,9 @@ Snapshot take_snapshot(const Appliance& appliance, const drivers::Trigger* trigg
   snapshot.estimation = estimation_of(appliance.estimation().counters());
   snapshot.bus = appliance.bus().counters();
   snapshot.bus_condition = appliance.bus().condition();
-  if (trigger != nullptr) snapshot.trigger = trigger_of(*trigger);
-  snapshot.log_dropped = log_dropped;
+  if (others.trigger != nullptr) snapshot.trigger = trigger_of(*others.trigger);
+  if (others.recorder != nullptr) snapshot.recording = others.recorder->totals();
+  snapshot.log_dropped = others.log_dropped;
   return snapshot;
 }
 

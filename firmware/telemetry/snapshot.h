@@ -11,6 +11,8 @@
 
 namespace bevloc::firmware {
 
+class Recorder;
+
 /// What one camera delivered, and what became of it. Totals since start, as in the structs that
 /// they come from.
 struct CameraSnapshot {
@@ -66,6 +68,17 @@ struct TriggerSnapshot {
   Duration max_lateness{};
 };
 
+/// As in RecorderCounters; what was dropped includes the entries that the queues pushed out.
+struct RecordingSnapshot {
+  uint64_t images = 0;
+  uint64_t events = 0;
+  uint64_t images_dropped = 0;
+  uint64_t events_dropped = 0;
+  uint64_t bytes = 0;
+  uint64_t black_boxes = 0;
+  bool failed = false;
+};
+
 struct Snapshot {
   std::array<CameraSnapshot, kCameraCount> cameras;
   FrameCounts frames;
@@ -78,12 +91,19 @@ struct Snapshot {
   can::BusCounters bus;
   can::BusCondition bus_condition;
   std::optional<TriggerSnapshot> trigger;
-  uint64_t log_dropped = 0;  ///< lines of the log that were not written
+  std::optional<RecordingSnapshot> recording;  ///< empty without a recording
+  uint64_t log_dropped = 0;                    ///< lines of the log that were not written
+};
+
+/// Who counts beside the appliance.
+struct SnapshotSources {
+  const drivers::Trigger* trigger = nullptr;  ///< null without one
+  const Recorder* recorder = nullptr;         ///< null without a recording
+  uint64_t log_dropped = 0;
 };
 
 /// Reads all counters while the appliance runs. Waits for no thread, so values that change together
-/// may differ by one step. Callable from any thread. `trigger`: null without one.
-Snapshot take_snapshot(const Appliance& appliance, const drivers::Trigger* trigger,
-                       uint64_t log_dropped);
+/// may differ by one step. Callable from any thread.
+Snapshot take_snapshot(const Appliance& appliance, const SnapshotSources& others);
 
 }  // namespace bevloc::firmware

@@ -124,6 +124,16 @@ json gnss_of(const GnssCounters& gnss) {
           {"age_max_ms", 1e3 * to_seconds(gnss.max_age)}};
 }
 
+json recording_of(const RecordingSnapshot& recording) {
+  return {{"failed", recording.failed},
+          {"megabytes", static_cast<double>(recording.bytes) / 1e6},
+          {"images", recording.images},
+          {"events", recording.events},
+          {"images_dropped", recording.images_dropped},
+          {"events_dropped", recording.events_dropped},
+          {"black_boxes", recording.black_boxes}};
+}
+
 /// The value at a path such as "pose.sigma.lateral_m" as text.
 std::string text_at(const json& status, const std::string& path, const char* format = "{}") {
   const json* at = &status;
@@ -228,6 +238,7 @@ json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration
   status["vehicle"] = vehicle_of(snapshot.vehicle_input);
   if (snapshot.gnss) status["gnss"] = gnss_of(*snapshot.gnss);
   status["can"] = bus_of(snapshot);
+  if (snapshot.recording) status["recording"] = recording_of(*snapshot.recording);
   status["hung_threads"] = telemetry.view.hung;
   status["log_lines_dropped"] = snapshot.log_dropped;
   status["memory_mb"] = process.resident_bytes / 1e6;
@@ -275,6 +286,14 @@ std::string status_page(const json& status) {
                       text_at(status, "can.condition"), text_at(status, "can.sent"),
                       text_at(status, "can.received"), text_at(status, "can.send_dropped"),
                       text_at(status, "can.error_frames"));
+  if (status.contains("recording")) {
+    text += fmt::format(
+        "recording   {}{} MB; {} images and {} events dropped, {} black boxes kept\n",
+        status["recording"].value("failed", false) ? "FAILED after " : "",
+        text_at(status, "recording.megabytes", "{:.0f}"),
+        text_at(status, "recording.images_dropped"), text_at(status, "recording.events_dropped"),
+        text_at(status, "recording.black_boxes"));
+  }
   text += fmt::format("process     {} MB, {} s of CPU time\n",
                       text_at(status, "memory_mb", "{:.0f}"), text_at(status, "cpu_s", "{:.0f}"));
   return text;

@@ -159,6 +159,8 @@ TEST_F(RecorderTest, WhatIsNotOnTheDiskAfterAFailureCountsAsDropped) {
   EXPECT_TRUE(recorder->counters().failed);
   EXPECT_EQ(recorder->counters().images, 0U);
   EXPECT_EQ(recorder->images_dropped(), 3U);
+  EXPECT_TRUE(recorder->totals().failed);
+  EXPECT_EQ(recorder->totals().images_dropped, 3U);
   EXPECT_EQ(recorder->counters().events, 0U);
   EXPECT_EQ(recorder->events_dropped(), 3U);
   EXPECT_NE(log.text().find("3 images and 3 events dropped"), std::string::npos) << log.text();

@@ -184,6 +184,31 @@ TEST(Metrics, ShowWhatBecameOfTheReportsOfGpsd) {
   EXPECT_THAT(status_page(status), HasSubstr("gpsd        connected; 5 samples, 3 reports and 2"));
 }
 
+TEST(Metrics, ShowTheRecording) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  EXPECT_THAT(metrics(telemetry), Not(HasSubstr("bevloc_recording")));
+  telemetry.snapshot.recording = {.images = 1,
+                                  .events = 2,
+                                  .images_dropped = 3,
+                                  .events_dropped = 4,
+                                  .bytes = 5'000'000,
+                                  .black_boxes = 6,
+                                  .failed = true};
+  const std::string text = metrics(telemetry);
+  for (const char* line :
+       {"bevloc_recording_written_total{kind=\"image\"} 1\n",
+        "bevloc_recording_written_total{kind=\"event\"} 2\n",
+        "bevloc_recording_dropped_total{kind=\"image\"} 3\n",
+        "bevloc_recording_dropped_total{kind=\"event\"} 4\n",
+        "bevloc_recording_bytes_total 5000000\n", "bevloc_recording_black_boxes_total 6\n",
+        "bevloc_recording_failed 1\n"}) {
+    EXPECT_THAT(text, HasSubstr(line));
+  }
+  EXPECT_THAT(status_page(status_json(telemetry, {}, {})),
+              HasSubstr("recording   FAILED after 5 MB; 3 images and 4 events dropped, 6 black "
+                        "boxes kept\n"));
+}
+
 TEST(Metrics, LatencyBucketsAreCumulative) {
   Telemetry telemetry = running(HealthState::kTracking);
   telemetry.snapshot.estimation.latency.in_range[0] = 1;
@@ -200,6 +225,7 @@ TEST(Metrics, NoSeriesOccursTwice) {
   telemetry.snapshot.authentication.emplace();
   telemetry.snapshot.trigger.emplace();
   telemetry.snapshot.gnss.emplace();
+  telemetry.snapshot.recording.emplace();
   std::istringstream lines(metrics(telemetry));
   std::set<std::string> seen;
   for (std::string line; std::getline(lines, line);) {
@@ -230,6 +256,7 @@ std::set<std::string> existing_metrics() {
   telemetry.snapshot.authentication.emplace();
   telemetry.snapshot.trigger.emplace();
   telemetry.snapshot.gnss.emplace();
+  telemetry.snapshot.recording.emplace();
   return metric_names_in(metrics(telemetry));
 }
 
@@ -255,6 +282,7 @@ TEST(Metrics, ThePageListsEachOne) {
     telemetry.snapshot.authentication.emplace();
     telemetry.snapshot.trigger.emplace();
     telemetry.snapshot.gnss.emplace();
+    telemetry.snapshot.recording.emplace();
     return telemetry;
   }()));
   for (std::string word, name; lines >> word;) {
