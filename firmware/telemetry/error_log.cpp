@@ -15,6 +15,9 @@ constexpr std::array<std::pair<TrackerUpdate, const char*>, 4> kRefusals = {{
     {TrackerUpdate::kImplausible, "beyond its physical limit; check sensor and scaling"},
 }};
 
+/// So many epochs in about five seconds. At each start, those of the first second are refused.
+constexpr uint64_t kEpochsOfAStart = 300;
+
 }  // namespace
 
 void ErrorLog::note(const Snapshot& snapshot, Time now) {
@@ -22,6 +25,7 @@ void ErrorLog::note(const Snapshot& snapshot, Time now) {
     note_camera(camera, snapshot.cameras[camera], now);
   }
   note_vehicle_input(snapshot.vehicle_input, now);
+  if (snapshot.authentication) note_authentication(*snapshot.authentication, now);
   if (snapshot.gnss) note_gnss(*snapshot.gnss, now);
   note_tracker(snapshot.estimation, now);
   note_queues(snapshot.queue_drops, now);
@@ -70,6 +74,21 @@ void ErrorLog::note_vehicle_input(const can::VehicleInputCounters& input, Time n
         input.incomplete, now);
   count("CAN in: found a signal that is not available or out of range; check the sender",
         input.not_available, now);
+}
+
+void ErrorLog::note_authentication(const can::SecocCounters& secoc, Time now) {
+  count(
+      "CAN in: found an epoch with a wrong authentication code or a replayed one; compare the key "
+      "files of vehicle and localizer, and look for a foreign sender",
+      secoc.wrong_mac, now);
+  count(
+      "CAN in: found an authentication without all frames of its epoch; check bus load and sender",
+      secoc.incomplete, now);
+  if (secoc.authentic > 0 || secoc.no_freshness < kEpochsOfAStart) return;
+  count(
+      "CAN in: found epochs, but no freshness value of their sender; check that it sends "
+      "VEH_Freshness",
+      secoc.no_freshness, now);
 }
 
 void ErrorLog::note_gnss(const GnssCounters& gnss, Time now) {

@@ -27,6 +27,7 @@ class ErrorLog {
   void count(const std::string& text, uint64_t total, Time now);
   void note_camera(int camera, const CameraSnapshot& snapshot, Time now);
   void note_vehicle_input(const can::VehicleInputCounters& input, Time now);
+  void note_authentication(const can::SecocCounters& secoc, Time now);
   void note_gnss(const GnssCounters& gnss, Time now);
   void note_tracker(const EstimationSnapshot& estimation, Time now);
   void note_queues(const QueueDrops& drops, Time now);

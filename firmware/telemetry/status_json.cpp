@@ -107,6 +107,13 @@ json vehicle_of(const can::VehicleInputCounters& input) {
       {"odometry_refused", input.contradicting_wheels + input.odometry_jumps + input.sharp_turns}};
 }
 
+json authentication_of(const can::SecocCounters& secoc) {
+  return {{"authentic", secoc.authentic},
+          {"wrong_mac", secoc.wrong_mac},
+          {"incomplete", secoc.incomplete},
+          {"no_freshness", secoc.no_freshness}};
+}
+
 json gnss_of(const GnssCounters& gnss) {
   using drivers::GpsdLine;
   uint64_t refused = gnss.gpsd.too_long;
@@ -236,6 +243,8 @@ json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration
                        {"gnss", tracker_of(estimation.gnss)},
                        {"corrections", tracker_of(estimation.corrections)}};
   status["vehicle"] = vehicle_of(snapshot.vehicle_input);
+  if (snapshot.authentication)
+    status["authentication"] = authentication_of(*snapshot.authentication);
   if (snapshot.gnss) status["gnss"] = gnss_of(*snapshot.gnss);
   status["can"] = bus_of(snapshot);
   if (snapshot.recording) status["recording"] = recording_of(*snapshot.recording);
@@ -275,6 +284,13 @@ std::string status_page(const json& status) {
       "\nvehicle     {} odometry and {} GNSS samples; {} frames lost, {} refused by E2E\n",
       text_at(status, "vehicle.odometry_samples"), text_at(status, "vehicle.gnss_samples"),
       text_at(status, "vehicle.frames_lost"), text_at(status, "vehicle.e2e_refused"));
+  if (status.contains("authentication")) {
+    text += fmt::format(
+        "SecOC       {} epochs authentic; refused: {} wrong code, {} incomplete, {} no freshness\n",
+        text_at(status, "authentication.authentic"), text_at(status, "authentication.wrong_mac"),
+        text_at(status, "authentication.incomplete"),
+        text_at(status, "authentication.no_freshness"));
+  }
   if (status.contains("gnss")) {
     text += fmt::format(
         "gpsd        {}; {} samples, {} reports and {} fixes refused, at most {} ms old\n",

@@ -74,5 +74,20 @@ TEST_F(ErrorLogTest, LogsEachCauseOfItsOwn) {
   }
 }
 
+TEST_F(ErrorLogTest, TellsWhenAuthenticationFails) {
+  snapshot_.authentication.emplace();
+  snapshot_.authentication->no_freshness = 50;  // at each start, until the vehicle announces it
+  note();
+  EXPECT_EQ(log_.text(), "");
+  snapshot_.authentication->no_freshness = 400;
+  snapshot_.authentication->wrong_mac = 5;
+  snapshot_.authentication->incomplete = 2;
+  note();
+  EXPECT_EQ(lines(), 3);
+  EXPECT_THAT(log_.text(), HasSubstr("check that it sends VEH_Freshness"));
+  EXPECT_THAT(log_.text(), HasSubstr("compare the key files of vehicle and localizer"));
+  EXPECT_THAT(log_.text(), HasSubstr("an authentication without all frames of its epoch"));
+}
+
 }  // namespace
 }  // namespace bevloc::firmware

@@ -317,6 +317,16 @@ TEST(StatusPage, FitsATerminal) {
   EXPECT_LE(count, 24);
 }
 
+TEST(StatusPage, ShowsWhatTheAuthenticationRefused) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  EXPECT_FALSE(status_json(telemetry, {}, {}).contains("authentication"));
+  telemetry.snapshot.authentication = {
+      .authentic = 1, .wrong_mac = 2, .incomplete = 3, .no_freshness = 4};
+  EXPECT_THAT(status_page(status_json(telemetry, {}, {})),
+              HasSubstr("SecOC       1 epochs authentic; refused: 2 wrong code, 3 incomplete, 4 no "
+                        "freshness\n"));
+}
+
 TEST(StatusPage, SaysHowOftenAndWhyThePoseWasLost) {
   Telemetry telemetry = running(HealthState::kTracking);
   EXPECT_THAT(status_page(status_json(telemetry, {}, {})), Not(HasSubstr("lost 0 times")));
