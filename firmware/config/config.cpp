@@ -353,7 +353,8 @@ Result<Config> load_config(const std::filesystem::path& file, const SimulationRe
   auto config = load_config_without_manifest(file, simulation,
                                              {.folder = file.parent_path(), .dbc_file = {}});
   if (!config || config->manifest_file.empty()) return config;
-  const std::array used{file, config->rig_file, config->model_file, config->map_file};
+  const std::array used{file, config->rig_file, config->model_file, config->map_file,
+                        config->can.dbc_file};
   if (Status same = check_manifest(config->manifest_file, used); !same) {
     return tl::unexpected(same.error());
   }

@@ -68,8 +68,10 @@ Status check_manifest(const std::filesystem::path& manifest,
       return is_same_file(folder / entry.file, file);
     };
     if (file.empty() || std::ranges::any_of(*entries, is_listed)) continue;
-    return fail("{}: found no checksum of {}, wanted those of configuration, rig, model and map",
-                manifest.string(), file.string());
+    return fail(
+        "{}: found no checksum of {}, wanted those of configuration, rig, model, map and the "
+        "vehicle's DBC file",
+        manifest.string(), file.string());
   }
   return {};
 }

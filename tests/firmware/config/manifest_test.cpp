@@ -114,5 +114,30 @@ TEST_F(ManifestFiles, LoadConfigChecksTheManifest) {
               HasSubstr("none: found no readable file"));
 }
 
+/// A wrong DBC file would scale the vehicle's signals wrongly.
+TEST_F(ManifestFiles, MustListTheDbcFileOfTheVehicle) {
+  const fs::path source = BEVLOC_SOURCE_DIR;
+  std::string text = read_file(source / "config/demo_own_bus.yaml").value();
+  text.resize(text.find("simulation:"));
+  for (const auto& [from, to] :
+       {std::pair("driver: mock\n  rate_hz: 10", "driver: replay\n  recording: .."),
+        {"procedural_seed: 7", "file: maps/town.bvm"},
+        {"../models/nano.onnx", "config.yaml"},
+        {"rig_demo.yaml", "config.yaml"}}) {
+    text.replace(text.find(from), std::string_view(from).size(), to);
+  }
+  store("bus.yaml", text + "manifest: bevloc.manifest\n");
+  store("vehicle_demo.dbc", read_file(source / "config/vehicle_demo.dbc").value());
+  const std::string others = line("config.yaml") + line("maps/town.bvm") + line("bus.yaml");
+  store("bevloc.manifest", others);
+  const auto without = load_config(folder_ / "bus.yaml");
+  ASSERT_FALSE(without.has_value());
+  EXPECT_THAT(without.error().message, HasSubstr("vehicle_demo.dbc, wanted those of configuration, "
+                                                 "rig, model, map and the vehicle's DBC file"));
+  store("bevloc.manifest", others + line("vehicle_demo.dbc"));
+  const auto with = load_config(folder_ / "bus.yaml");
+  EXPECT_TRUE(with.has_value()) << with.error().message;
+}
+
 }  // namespace
 }  // namespace bevloc::firmware
