@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include "can/secoc/secoc_files.h"
+#include "common/writable_folder.h"
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "firmware/config/config.h"
 #include "firmware/runtime/camera_factory.h"
@@ -31,6 +32,17 @@ Status check_can(const CanConfig& can) {
   return {};
 }
 
+/// The daemon writes this file while it runs.
+Status check_written_file(const char* key, const std::filesystem::path& file) {
+  if (file.empty()) return {};
+  const std::error_code error = cannot_write_in(file.parent_path());
+  if (!error) return {};
+  return fail(
+      "{}: {}: cannot be written ({}), wanted a folder that bevlocd may write in, such as "
+      "/var/lib/bevloc",
+      key, file.string(), error.message());
+}
+
 }  // namespace
 
 Status check_config(const Config& config) {
@@ -51,7 +63,13 @@ Status check_config(const Config& config) {
   if (config.can.secoc) {
     const auto key = can::read_secoc_key(config.can.secoc->key_file);
     if (!key) return tl::unexpected(key.error());
+    const Status starts =
+        check_written_file("can.secoc.starts_file", config.can.secoc->starts_file);
+    if (!starts) return starts;
   }
+  const Status learned =
+      check_written_file("calibration.online.file", config.learned_calibration_file);
+  if (!learned) return learned;
   if (Status status = check_lines(config.gpio); !status) return status;
   if (Status status = check_can(config.can); !status) return status;
   return check_cameras(config.cameras, *rig);

@@ -1,16 +1,14 @@
 #include "firmware/recording/recording_ring.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <ctime>
 #include <vector>
 
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
+#include "common/writable_folder.h"
 #include "firmware/recording/topics.h"
 
 namespace bevloc::firmware {
@@ -95,14 +93,8 @@ tl::unexpected<Error> refuse_folder(const fs::path& directory, const std::string
 }  // namespace
 
 Status check_folder(const fs::path& directory) {
-  std::error_code error;
-  fs::path there = fs::absolute(directory, error).lexically_normal();
-  while (!fs::exists(fs::symlink_status(there, error)) && there.has_relative_path()) {
-    there = there.parent_path();
-  }
-  if (!fs::is_directory(there, error)) return refuse_folder(directory, std::strerror(ENOTDIR));
-  if (access(there.c_str(), W_OK | X_OK) == 0) return {};
-  return refuse_folder(directory, std::strerror(errno));
+  const std::error_code error = cannot_write_in(directory);
+  return error ? refuse_folder(directory, error.message()) : Status{};
 }
 
 Result<RecordingRing> RecordingRing::open(const RecordConfig& config, RecordingHead head,

@@ -76,6 +76,27 @@ TEST_F(ConfigCheckTest, ReadsTheRecordings) {
   EXPECT_TRUE(check_config(*config));
 }
 
+TEST_F(ConfigCheckTest, LooksForTheFoldersOfFilesThatTheDaemonWrites) {
+  auto config = load(with("{procedural_seed: 7}", "{file: town.osm}"));
+  ASSERT_TRUE(config) << config.error().message;
+  std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
+  std::filesystem::create_directory(folder_ / "sub");
+  put_model("sub/model.onnx");
+  put_map("town.osm");
+  write("secoc.key", "00112233445566778899aabbccddeeff\n");
+  std::filesystem::permissions(folder_ / "secoc.key", std::filesystem::perms::owner_read);
+  const std::filesystem::path in_a_file = folder_ / "town.osm" / "file";
+  config->can.secoc = SecocConfig{folder_ / "secoc.key", in_a_file};
+  EXPECT_THAT(check_config(*config).error().message,
+              StartsWith("can.secoc.starts_file: " + in_a_file.string() + ": cannot be written"));
+  config->can.secoc->starts_file = folder_ / "new" / "starts";
+  EXPECT_TRUE(check_config(*config));
+  config->learned_calibration_file = in_a_file;
+  EXPECT_THAT(check_config(*config).error().message,
+              StartsWith("calibration.online.file: " + in_a_file.string() + ": cannot be written"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "new")) << "a check writes nothing";
+}
+
 /// A configuration of real cameras, none of which is connected here.
 const std::string kVehicle =
     "cameras:\n"
