@@ -14,7 +14,7 @@ using namespace bevloc::firmware;
 Status run(const ProgramOptions& options, const LogWriter& log) {
   auto config = load_config(options.config_file);
   if (!config) return tl::unexpected(config.error());
-  override_config(options, *config);
+  if (Status status = override_config(options, *config); !status) return status;
   if (options.check_config) return check_and_print(options, *config);
   set_log_level(config->log_level);
   const auto rig = read_rig(config->rig_file);

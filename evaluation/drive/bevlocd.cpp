@@ -97,7 +97,7 @@ Status run(const firmware::ProgramOptions& program, const DriveOptions& drive,
   auto config = load_drive_config(program.config_file);
   if (!config) return tl::unexpected(config.error());
   if (Status status = apply(drive, program.config_file, *config); !status) return status;
-  firmware::override_config(program, *config);
+  if (Status status = firmware::override_config(program, *config); !status) return status;
   if (program.check_config) return firmware::check_and_print(program, *config);
   firmware::set_log_level(config->log_level);
   const auto rig = read_rig(config->rig_file);

@@ -71,15 +71,21 @@ void declare_options(CLI::App& app, ProgramOptions& options) {
                "Record the images without loss, so that a replay gives the same poses");
 }
 
-void override_config(const ProgramOptions& options, Config& config) {
+Status override_config(const ProgramOptions& options, Config& config) {
   if (!options.record.empty()) {
     if (!config.record) config.record.emplace();
     config.record->directory = options.record;
   }
-  if (config.record && options.record_raw) config.record->images = RecordedImages::kRaw;
-  if (!options.live) return;
+  if (options.record_raw) {
+    if (!config.record) {
+      return fail("--record-raw: found no recording, wanted --record DIR or the section record");
+    }
+    config.record->images = RecordedImages::kRaw;
+  }
+  if (!options.live) return {};
   if (!config.live) config.live.emplace();
   if (options.live_port) config.live->port = *options.live_port;
+  return {};
 }
 
 void handle_signals() {

@@ -16,7 +16,7 @@ std::optional<LiveConfig> live_after(std::vector<std::string> words) {
   std::reverse(words.begin(), words.end());
   app.parse(words);
   Config config;
-  override_config(options, config);
+  EXPECT_TRUE(override_config(options, config));
   return config.live;
 }
 

@@ -25,5 +25,18 @@ TEST(ProgramSignalsTest, AHangupIsLoggedAndATerminationStops) {
   for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGPIPE}) std::signal(signal, SIG_DFL);
 }
 
+TEST(ProgramOptionsTest, RecordRawNeedsARecording) {
+  ProgramOptions options;
+  options.record_raw = true;
+  Config config;
+  const Status refused = override_config(options, config);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message,
+            "--record-raw: found no recording, wanted --record DIR or the section record");
+  options.record = "folder";
+  ASSERT_TRUE(override_config(options, config));
+  EXPECT_EQ(config.record->images, RecordedImages::kRaw);
+}
+
 }  // namespace
 }  // namespace bevloc::firmware
