@@ -11,10 +11,15 @@ namespace bevloc::firmware {
 
 /// Remembers the causes of one source of errors, such as one camera or one GPIO line. A cause is
 /// new if it did not occur within the last minute; an error that lasts or comes and goes is thus
-/// logged once. One thread.
+/// logged once. An error that comes back within the minute and then lasts is new again once it has
+/// lasted for kLasting: otherwise the log of a camera that died would end with its recovery. One
+/// thread.
 class CauseLog {
  public:
   static constexpr Duration kQuiet = std::chrono::minutes(1);
+  /// An error that lasts occurs at least this often.
+  static constexpr Duration kPause = std::chrono::seconds(3);
+  static constexpr Duration kLasting = std::chrono::seconds(5);
   /// The cause that occurred least recently is forgotten for another one.
   static constexpr size_t kCauses = 8;
 
@@ -22,22 +27,33 @@ class CauseLog {
   bool is_new(std::string_view cause, Time now) {
     Entry* oldest = &entries_.front();
     for (Entry& entry : entries_) {
-      if (entry.cause == cause) {
-        const bool was_quiet = now - entry.time >= kQuiet;
-        entry.time = now;
-        return was_quiet;
-      }
+      if (entry.cause == cause) return note(entry, now);
       if (entry.time < oldest->time) oldest = &entry;
     }
-    *oldest = {std::string(cause), now};
+    *oldest = {std::string(cause), now, now, true};
     return true;
   }
 
  private:
   struct Entry {
     std::string cause;
-    Time time = Time::min();
+    Time time = Time::min();   ///< of the latest occurrence
+    Time since = Time::min();  ///< of the first occurrence without a pause after it
+    bool told = false;         ///< since then
   };
+
+  static bool note(Entry& entry, Time now) {
+    const Duration pause = now - entry.time;
+    entry.time = now;
+    if (pause > kPause) {
+      entry.since = now;
+      entry.told = false;
+    }
+    const bool is_new = !entry.told && (pause >= kQuiet || now - entry.since >= kLasting);
+    entry.told = entry.told || is_new;
+    return is_new;
+  }
+
   std::array<Entry, kCauses> entries_;
 };
 

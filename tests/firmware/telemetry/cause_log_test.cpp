@@ -16,6 +16,29 @@ TEST(CauseLogTest, ACauseIsNewOnceWhileItLasts) {
   EXPECT_TRUE(log.is_new("no such device", now += CauseLog::kQuiet));
 }
 
+TEST(CauseLogTest, ACauseThatComesBackAndLastsIsNewAgain) {
+  CauseLog log;
+  Time now(seconds(10));
+  EXPECT_TRUE(log.is_new("no such device", now));
+  now += seconds(20);  // it works again for a while
+  EXPECT_FALSE(log.is_new("no such device", now));
+  int logged = 0;
+  for (int k = 1; k < 3600; ++k) {
+    const bool is_new = log.is_new("no such device", now += std::chrono::milliseconds(500));
+    EXPECT_EQ(is_new, k == 10) << k;  // after five seconds
+    logged += is_new ? 1 : 0;
+  }
+  EXPECT_EQ(logged, 1);
+}
+
+TEST(CauseLogTest, ACauseThatComesAndGoesIsNewOnce) {
+  CauseLog log;
+  Time now(seconds(10));
+  int logged = 0;
+  for (int k = 0; k < 100; ++k) logged += log.is_new("busy", now += seconds(20)) ? 1 : 0;
+  EXPECT_EQ(logged, 1);
+}
+
 TEST(CauseLogTest, TwoCausesThatAlternateAreNewOnceEach) {
   CauseLog log;
   Time now(seconds(10));
