@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "command/doctor/machine_checks.h"
 #include "command/shell_word.h"
 #include "common/files.h"
 #include "common/sha256.h"
+#include "drivers/camera/replay/replay_camera.h"
 #include "drivers/camera/v4l2/device_finder.h"
 #include "pipeline/calibration/rig_yaml.h"
 
@@ -63,19 +64,69 @@ Findings check_v4l2_cameras(const Machine& machine, const Config& config) {
   return findings;
 }
 
-Findings check_gpio_chips(const Machine& machine) {
+Findings check_libcamera_cameras(const Machine& machine, const Config& config) {
+  Findings findings;
+  const auto known = machine.libcamera_ids();
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const std::string part = fmt::format("camera {}", kCameraNames[camera]);
+    const std::string& id = config.cameras.devices.ids[camera];
+    if (known && std::ranges::find(*known, id) != known->end()) {
+      findings.push_back(ok(part, id));
+      continue;
+    }
+    findings.push_back(
+        {Level::kProblem, part,
+         known ? fmt::format("found no camera \"{}\", only: {}", id, fmt::join(*known, ", "))
+               : known.error().message,
+         "the camera of cameras.ids", "cam -l"});
+  }
+  return findings;
+}
+
+Findings check_recordings(const Config& config) {
+  Findings findings;
+  for (const std::string_view camera : kCameraNames) {
+    const std::string part = fmt::format("camera {}", camera);
+    const std::filesystem::path folder = config.cameras.recording / camera;
+    const auto frames = drivers::load_recording(folder);
+    findings.push_back(
+        frames ? ok(part, fmt::format("{}, {} frames", folder.string(), frames->size()))
+               : Finding{Level::kProblem, part, frames.error().message,
+                         "a recording in cameras.recording", "ls " + shell_word(folder.string())});
+  }
+  return findings;
+}
+
+/// Whether this user may open any chip. A vehicle needs only some of them, which
+/// systemd/udev/60-bevloc.rules opens.
+Finding check_gpio_access(const Machine& machine) {
   Findings findings;
   for (const std::string& name : machine.names_in("/dev")) {
     if (!name.starts_with("gpiochip")) continue;
     const std::string node = "/dev/" + name;
     findings.push_back(check_access(machine, "gpio", machine.real(node), node, "bevloc"));
   }
-  // A vehicle needs only one of them, which systemd/udev/60-bevloc.rules opens.
   const auto usable = std::ranges::find(findings, Level::kOk, &Finding::level);
-  if (usable != findings.end()) return {*usable};
-  if (!findings.empty()) return {findings.front()};
-  return {{Level::kProblem, "gpio", "found no /dev/gpiochip*", "the chip of the section gpio",
-           "gpiodetect"}};
+  if (usable != findings.end()) return *usable;
+  if (!findings.empty()) return findings.front();
+  return {Level::kProblem, "gpio", "found no /dev/gpiochip*", "the chip of the section gpio",
+          "gpiodetect"};
+}
+
+Findings check_gpio_lines(const Machine& machine, const Config& config) {
+  if (const Finding access = check_gpio_access(machine); access.level != Level::kOk) {
+    return {access};
+  }
+  Findings findings;
+  const std::vector<drivers::GpioChipInfo> chips = machine.gpio_chips();
+  for (const drivers::LineAddress& line : lines_of(config.gpio)) {
+    const auto place = drivers::find_line(chips, line);
+    findings.push_back(
+        place ? ok("gpio", fmt::format("{} (/dev/{})", to_string(line), chips[place->chip].name))
+              : Finding{Level::kProblem, "gpio", place.error().message,
+                        "the line of the section gpio", "gpioinfo"});
+  }
+  return findings;
 }
 
 /// The part of `ip -details -json link show` that the doctor reads.
@@ -152,16 +203,25 @@ Findings check_files(const Config& config) {
 
 Findings check_devices(const Machine& machine, const Config& config) {
   Findings findings;
-  if (config.cameras.driver == CameraDriver::kV4l2) {
-    // Cameras that are no USB cameras have drivers of their own.
-    findings.push_back(check_module(machine, "uvcvideo", Level::kWarning));
-    const Findings cameras = check_v4l2_cameras(machine, config);
-    findings.insert(findings.end(), cameras.begin(), cameras.end());
+  const auto add = [&findings](const Findings& more) {
+    findings.insert(findings.end(), more.begin(), more.end());
+  };
+  switch (config.cameras.driver) {
+    case CameraDriver::kV4l2:
+      // Cameras that are no USB cameras have drivers of their own.
+      add({check_module(machine, "uvcvideo", Level::kWarning)});
+      add(check_v4l2_cameras(machine, config));
+      break;
+    case CameraDriver::kLibcamera:
+      add(check_libcamera_cameras(machine, config));
+      break;
+    case CameraDriver::kReplay:
+      add(check_recordings(config));
+      break;
+    case CameraDriver::kMock:
+      break;
   }
-  if (!lines_of(config.gpio).empty()) {
-    const Findings chips = check_gpio_chips(machine);
-    findings.insert(findings.end(), chips.begin(), chips.end());
-  }
+  if (!lines_of(config.gpio).empty()) add(check_gpio_lines(machine, config));
   return findings;
 }
 

@@ -9,7 +9,7 @@ namespace bevloc::command {
 
 /// Rig, model, map and key file: readable, with their SHA-256.
 Findings check_files(const firmware::Config& config);
-/// Cameras and GPIO chips: there, and this user may use them.
+/// The configured cameras, recordings and GPIO lines: there, and this user may use them.
 Findings check_devices(const Machine& machine, const firmware::Config& config);
 /// The limits that the section `realtime` needs.
 Findings check_realtime(const Machine& machine, const firmware::Config& config);

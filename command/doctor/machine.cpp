@@ -11,6 +11,10 @@
 
 #include "command/shell_word.h"
 #include "common/files.h"
+#include "drivers/gpio/libgpiod_gpio.h"
+#ifdef BEVLOC_HAS_LIBCAMERA
+#include "drivers/camera/libcamera/libcamera_camera.h"
+#endif
 
 namespace bevloc::command {
 
@@ -81,6 +85,18 @@ Result<std::string> LinuxMachine::run(const std::vector<std::string>& words) con
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return text;
   return fail("{}: found exit code {}, wanted 0", command,
               WIFEXITED(status) ? WEXITSTATUS(status) : -1);
+}
+
+std::vector<drivers::GpioChipInfo> LinuxMachine::gpio_chips() const {
+  return drivers::LibgpiodGpio::chips();
+}
+
+Result<std::vector<std::string>> LinuxMachine::libcamera_ids() const {
+#ifdef BEVLOC_HAS_LIBCAMERA
+  return drivers::libcamera_ids();
+#else
+  return fail("found a bevloc that was built without libcamera");
+#endif
 }
 
 }  // namespace bevloc::command

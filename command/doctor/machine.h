@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/result.h"
+#include "drivers/gpio/line_lookup.h"
 
 namespace bevloc::command {
 
@@ -34,6 +35,10 @@ class Machine {
   virtual bool may_use(const std::filesystem::path& path) const = 0;
   /// What a program prints to stdout. Fails if it is missing or ends with another exit code than 0.
   virtual Result<std::string> run(const std::vector<std::string>& words) const = 0;
+  /// The GPIO chips that this user may open.
+  virtual std::vector<drivers::GpioChipInfo> gpio_chips() const = 0;
+  /// The ids of the cameras that libcamera knows. Fails in a build without libcamera.
+  virtual Result<std::vector<std::string>> libcamera_ids() const = 0;
 
   std::filesystem::path real(const std::filesystem::path& path) const {
     return root() / path.relative_path();
@@ -56,6 +61,8 @@ class LinuxMachine final : public Machine {
   Result<int64_t> free_bytes(const std::filesystem::path& path) const override;
   bool may_use(const std::filesystem::path& path) const override;
   Result<std::string> run(const std::vector<std::string>& words) const override;
+  std::vector<drivers::GpioChipInfo> gpio_chips() const override;
+  Result<std::vector<std::string>> libcamera_ids() const override;
 };
 
 }  // namespace bevloc::command

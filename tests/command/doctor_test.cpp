@@ -32,6 +32,9 @@ class FakeMachine final : public Machine {
     return answer->second;
   }
 
+  std::vector<drivers::GpioChipInfo> gpio_chips() const override { return chips; }
+  Result<std::vector<std::string>> libcamera_ids() const override { return camera_ids; }
+
   void put(const std::string& file, const std::string& text) {
     std::filesystem::create_directories(real(file).parent_path());
     std::ofstream(real(file)) << text;
@@ -42,6 +45,8 @@ class FakeMachine final : public Machine {
   bool permitted = true;
   int64_t free = int64_t{10} << 30;
   std::map<std::string, std::string> programs;  ///< what they print
+  std::vector<drivers::GpioChipInfo> chips;
+  std::vector<std::string> camera_ids;
 
  private:
   test::TemporaryFolder folder_;
@@ -169,6 +174,49 @@ TEST_F(DoctorTest, LooksForEveryConfiguredCamera) {
   for (size_t i = 2; i < 7; ++i) EXPECT_EQ(findings[i].level, Level::kProblem);
   machine_.permitted = false;
   EXPECT_THAT(check_devices(machine_, config)[1].fix, StartsWith("sudo usermod -aG video"));
+}
+
+TEST_F(DoctorTest, LooksForTheCamerasOfLibcamera) {
+  firmware::Config config;
+  config.cameras.driver = firmware::CameraDriver::kLibcamera;
+  for (int i = 0; i < kCameraCount; ++i) {
+    config.cameras.devices.ids[i] = "/base/cam" + std::to_string(i);
+  }
+  machine_.camera_ids = {"/base/cam0"};
+  const Findings findings = check_devices(machine_, config);
+  ASSERT_EQ(findings.size(), 6U);
+  EXPECT_EQ(findings[0].level, Level::kOk);
+  EXPECT_EQ(findings[1].level, Level::kProblem);
+  EXPECT_THAT(findings[1].found, HasSubstr("/base/cam1"));
+}
+
+TEST_F(DoctorTest, ReadsTheRecordingsOfReplay) {
+  firmware::Config config;
+  config.cameras.driver = firmware::CameraDriver::kReplay;
+  config.cameras.recording = machine_.real("/drive");
+  machine_.put("/drive/front_left/frames.txt", "0 1000 0.png\n");
+  machine_.put("/drive/front_left/0.png", "an image");
+  const Findings findings = check_devices(machine_, config);
+  ASSERT_EQ(findings.size(), 6U);
+  EXPECT_EQ(findings[0].level, Level::kOk) << findings[0].found;
+  EXPECT_EQ(findings[1].level, Level::kProblem);
+  EXPECT_THAT(findings[1].found, HasSubstr("drive/front/frames.txt"));
+}
+
+TEST_F(DoctorTest, LooksForTheConfiguredGpioLines) {
+  firmware::Config config;
+  config.gpio.status_led = drivers::LineAddress{"soc", "LED"};
+  config.gpio.fault = drivers::LineAddress{"expander", "FAULT"};
+  EXPECT_THAT(check_devices(machine_, config).front().found, HasSubstr("no /dev/gpiochip*"));
+  machine_.put("/dev/gpiochip0", "");
+  machine_.chips = {{"gpiochip0", "soc", {{"LED", ""}, {"KL15", ""}}}};
+  const Findings findings = check_devices(machine_, config);
+  ASSERT_EQ(findings.size(), 2U);
+  EXPECT_EQ(findings[0].level, Level::kOk) << findings[0].found;
+  EXPECT_EQ(findings[1].level, Level::kProblem) << "a usable chip is not that of the fault line";
+  EXPECT_THAT(findings[1].found, HasSubstr("expander"));
+  machine_.permitted = false;
+  EXPECT_THAT(check_devices(machine_, config).front().fix, StartsWith("sudo usermod -aG bevloc"));
 }
 
 TEST_F(DoctorTest, JudgesMemoryDiskAndClock) {
