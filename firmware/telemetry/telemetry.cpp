@@ -43,9 +43,9 @@ const char* advice_for(Why why) {
     case Why::kOdometryMissing:
       return "Check that wheel speed and yaw rate arrive on the bus and pass the E2E check.";
     case Why::kGnssMissing:
-      return "Check the antenna, and that the GNSS messages arrive on the bus.";
+      return "Check the antenna, and that GNSS arrives (on the bus, or from gpsd: bevloc status).";
     case Why::kNoInitialPose:
-      return "Wait for odometry and GNSS; if it stays, check that both arrive on the bus.";
+      return "Wait for odometry and GNSS (on the bus, or from gpsd: bevloc status).";
     case Why::kOutsideMap:
       return "Check that the map covers this place and that its origin is right.";
     case Why::kMatchUncertain:
