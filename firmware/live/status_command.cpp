@@ -20,6 +20,13 @@ namespace {
 
 constexpr time_t kPatience_s = 3;
 
+/// The server answers no other names (is_local_host_header()).
+std::string check_address(const std::string& text) {
+  if (text == "localhost" || is_ip_address(text)) return "";
+  return fmt::format("found '{}', wanted an IP address in numbers, such as 127.0.0.1, or localhost",
+                     text);
+}
+
 /// Tries to connect, and returns why the system cannot. httplib does not say why.
 std::string connection_error(const std::string& address, int port) {
   addrinfo wanted{};
@@ -82,7 +89,9 @@ void StatusCommand::declare(CLI::App& app) {
       "status",
       "Print the status of a running bevlocd. Exit code 0: the pose is valid, 1: it is not, 2: no "
       "bevlocd answers");
-  command->add_option("--address", address_, "IP address of the daemon")->capture_default_str();
+  command->add_option("--address", address_, "IP address of the daemon")
+      ->check(CLI::Validator(check_address, "", ""))
+      ->capture_default_str();
   command->add_option("--port", port_, "Its port")
       ->check(CLI::Range(1, 65535))
       ->capture_default_str();

@@ -109,6 +109,18 @@ TEST_F(LiveServerTest, RefusesTooManyViewersAndTakesThemAgainLater) {
   /// One that reads events until it is told to end.
   struct Viewer {
     explicit Viewer(int port)
+TEST_F(LiveServerTest, BevlocStatusTakesNoNameThatTheServerRefuses) {
+  publish(HealthState::kTracking, {}, true);
+  EXPECT_EQ(status({"--address", "localhost"}), StatusCommand::kValid);
+  try {
+    status({"--address", "vehicle.example"});
+    FAIL() << "the name was accepted";
+  } catch (const CLI::ValidationError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("found 'vehicle.example', wanted an IP address in numbers, "
+                                        "such as 127.0.0.1, or localhost"));
+  }
+}
+
         : thread([this, port] {
             httplib::Client client("127.0.0.1", port);
             client.Get("/events", [this](const char*, size_t) {
