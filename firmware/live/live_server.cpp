@@ -91,8 +91,11 @@ class LiveServer::Impl {
 
  private:
   void add_routes();
-  void stream_events(httplib::Response& response);
-  void change_viewers(int by);
+  void stream_events(const httplib::Request& request, httplib::Response& response);
+  /// False, and none is added, if there are kViewers already.
+  bool add_viewer();
+  void remove_viewer();
+  void tell_feed();
 
   /// The latest telemetry, and the time since it was published.
   std::pair<Telemetry, Duration> telemetry() const {
@@ -162,26 +165,41 @@ void LiveServer::Impl::add_routes() {
     response.status = health.good ? 200 : 503;
     response.set_content(health.reason + "\n", "text/plain; charset=utf-8");
   });
-  http_->get("/events", [this](const httplib::Request&, httplib::Response& response) {
-    stream_events(response);
+  http_->get("/events", [this](const httplib::Request& request, httplib::Response& response) {
+    stream_events(request, response);
   });
 }
 
-void LiveServer::Impl::change_viewers(int by) {
-  const int viewers = viewers_ += by;
-  const std::lock_guard lock(scene_mutex_);
-  if (feed_) feed_->set_viewers(viewers);
+bool LiveServer::Impl::add_viewer() {
+  if (++viewers_ > kViewers) {
+    --viewers_;
+    return false;
+  }
+  tell_feed();
+  return true;
 }
 
-void LiveServer::Impl::stream_events(httplib::Response& response) {
-  if (viewers_.load() >= kViewers) {
+void LiveServer::Impl::remove_viewer() {
+  --viewers_;
+  tell_feed();
+}
+
+void LiveServer::Impl::tell_feed() {
+  const std::lock_guard lock(scene_mutex_);
+  if (feed_) feed_->set_viewers(viewers_);
+}
+
+/// A page that is refused asks with HEAD why, because a browser does not tell it.
+void LiveServer::Impl::stream_events(const httplib::Request& request, httplib::Response& response) {
+  const bool asks = request.method == "HEAD";
+  if (asks && viewers_ < kViewers) return;
+  if (asks || !add_viewer()) {
     response.status = 503;
     response.set_content(
         fmt::format("found {} viewers, wanted at most {}: close one\n", kViewers, kViewers),
         "text/plain");
     return;
   }
-  change_viewers(1);
   {
     const std::lock_guard lock(wake_mutex_);
     newcomer_ = true;
@@ -197,7 +215,7 @@ void LiveServer::Impl::stream_events(httplib::Response& response) {
     return sink.write(text.data(), text.size());
   };
   response.set_chunked_content_provider("text/event-stream", write,
-                                        [this](bool) { change_viewers(-1); });
+                                        [this](bool) { remove_viewer(); });
 }
 
 void LiveServer::Impl::draw_until(const std::stop_token& stop) {

@@ -13,12 +13,14 @@ const ENLARGED = 10;  // the ellipse on the map, which is smaller than the vehic
 const TRAIL_STEP_M = 0.5;
 const TRAIL_POINTS = 2000;
 const VIEW_M = 130;  // width of the map panel
+const NO_ANSWER = "bevlocd does not answer.";
 
 const shown = {
   pose: "corrected", status: null, match: null, matchAt_ms: 0, map: null, trail: [], cameras: {},
 };
 const earlier = [];  // statuses of the last seconds, for rates
 let lastEvent_ms = 0;
+let refusal = NO_ANSWER;  // why there are no events
 
 const byId = (id) => document.getElementById(id);
 
@@ -472,14 +474,23 @@ function noteSilence() {
   if (!silent) return;
   byId("state").textContent = "NO DATA";
   byId("state").className = "badge bad";
-  byId("summary").textContent = "bevlocd does not answer. The page tries again by itself.";
+  byId("summary").textContent = refusal + " The page tries again by itself.";
   byId("why").replaceChildren();
+}
+
+/// The browser does not tell with which status the events were refused.
+function noteRefusal() {
+  fetch("/events", {method: "HEAD"}).then((answer) => {
+    const full = answer.status === 503;
+    refusal = full ? "As many viewers as bevlocd allows look already: close one." : NO_ANSWER;
+  }, () => { refusal = NO_ANSWER; });
 }
 
 function connect() {
   const source = new EventSource("/events");
   const on = (name, handle) => source.addEventListener(name, (event) => {
     lastEvent_ms = performance.now();
+    refusal = NO_ANSWER;
     handle(JSON.parse(event.data));
   });
   on("status", onStatus);
@@ -489,6 +500,7 @@ function connect() {
   on("trail", (trail) => { shown.trail = trail; drawTrail(); });
   source.onerror = () => {
     if (source.readyState !== EventSource.CLOSED) return;  // the browser tries again
+    noteRefusal();
     setTimeout(connect, 2000);
   };
 }

@@ -33,6 +33,11 @@ class LiveServerTest : public testing::Test {
     return client.Get(path);
   }
 
+  httplib::Result head(const std::string& path) const {
+    httplib::Client client("127.0.0.1", server_->port());
+    return client.Head(path);
+  }
+
   void publish(HealthState state, WhyMask why = {}, bool valid = false) const {
     Telemetry telemetry;
     telemetry.phase = Phase::kRunning;
@@ -104,11 +109,6 @@ TEST_F(LiveServerTest, BevlocStatusSaysThatNobodyAnswers) {
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("found no bevlocd that answers"));
 }
 
-TEST_F(LiveServerTest, RefusesTooManyViewersAndTakesThemAgainLater) {
-  publish(HealthState::kTracking, {}, true);
-  /// One that reads events until it is told to end.
-  struct Viewer {
-    explicit Viewer(int port)
 TEST_F(LiveServerTest, BevlocStatusTakesNoNameThatTheServerRefuses) {
   publish(HealthState::kTracking, {}, true);
   EXPECT_EQ(status({"--address", "localhost"}), StatusCommand::kValid);
@@ -121,6 +121,11 @@ TEST_F(LiveServerTest, BevlocStatusTakesNoNameThatTheServerRefuses) {
   }
 }
 
+TEST_F(LiveServerTest, RefusesTooManyViewersAndTakesThemAgainLater) {
+  publish(HealthState::kTracking, {}, true);
+  /// One that reads events until it is told to end.
+  struct Viewer {
+    explicit Viewer(int port)
         : thread([this, port] {
             httplib::Client client("127.0.0.1", port);
             client.Get("/events", [this](const char*, size_t) {
@@ -134,12 +139,15 @@ TEST_F(LiveServerTest, BevlocStatusTakesNoNameThatTheServerRefuses) {
     std::atomic<bool> end{false};
     std::jthread thread;
   };
+  // Who only asks is no viewer.
+  for (int i = 0; i <= LiveServer::kViewers; ++i) EXPECT_EQ(head("/events")->status, 200);
   {
     std::deque<Viewer> viewers;
     for (int i = 0; i < LiveServer::kViewers; ++i) {
       viewers.emplace_back(server_->port()).reads.wait(false);
     }
     EXPECT_EQ(get("/events")->status, 503);
+    EXPECT_EQ(head("/events")->status, 503);
     EXPECT_EQ(get("/healthz")->status, 200);
   }
   // The server notices at its next event, so a newcomer may be refused until then.

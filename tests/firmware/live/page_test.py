@@ -21,7 +21,11 @@ PIXEL = base64.b64encode(
 
 
 class Files(http.server.SimpleHTTPRequestHandler):
-    """Serves the files of the page. There are no /events: the test tells the page what to show."""
+    """Serves the files of the page, but no /events. The test tells the page what to show."""
+
+    def do_HEAD(self) -> None:
+        self.send_response(503)
+        self.end_headers()
 
     def log_message(self, format: str, *arguments: Any) -> None:
         pass
@@ -158,6 +162,12 @@ class PageTest(unittest.TestCase):
         self.assertEqual(
             self.text("summary"), "The pose must not be used. Not healthy: " + silent
         )
+
+    def test_it_says_that_too_many_look(self) -> None:
+        self.page.evaluate(LATER)
+        self.page.wait_for("refusal !== NO_ANSWER")
+        self.page.evaluate("noteSilence()")
+        self.assertIn("As many viewers as bevlocd allows look already", self.text("summary"))
 
 
 if __name__ == "__main__":
