@@ -1,6 +1,7 @@
 #include "firmware/config/live_config.h"
 
 #include <array>
+#include <cstring>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -33,7 +34,8 @@ bool is_ip_address(const std::string& text) {
 bool is_loopback(const std::string& text) {
   const IpAddress address = ip_address_of(text);
   if (address.family == AF_INET) return address.bytes[0] == 127;
-  return address.family == AF_INET6 && text == "::1";
+  return address.family == AF_INET6 &&
+         std::memcmp(address.bytes.data(), &in6addr_loopback, sizeof in6addr_loopback) == 0;
 }
 
 std::optional<LiveConfig> read_live(std::optional<YamlMap> yaml) {

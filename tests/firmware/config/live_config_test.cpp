@@ -42,7 +42,7 @@ TEST(LiveConfig, RefusesOtherAddressesUnlessAKeySaysSo) {
 }
 
 TEST(LiveConfig, TakesEveryLoopbackAddress) {
-  for (const char* address : {"127.0.0.1", "127.8.9.10", "::1"}) {
+  for (const char* address : {"127.0.0.1", "127.8.9.10", "::1", "0:0:0:0:0:0:0:1"}) {
     EXPECT_EQ(read_live_section(std::string("{address: '") + address + "'}").second, "");
   }
 }
