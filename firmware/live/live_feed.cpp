@@ -58,42 +58,25 @@ void LiveFeed::copy(const VisionSnapshot& snapshot) {
   sample_.mask.assign(mask.begin(), mask.end());
 }
 
-bool LiveFeed::copy_plane(const ImagePlane& from, size_t row_bytes, int rows, size_t& used,
+bool LiveFeed::copy_plane(const ImagePlane& from, const PlaneSize& size, size_t& used,
                           ImagePlane& to) {
-  if (used + row_bytes * rows > sample_.bytes.size()) return false;
+  if (used + size.bytes() > sample_.bytes.size()) return false;
   uint8_t* const start = sample_.bytes.data() + used;
-  for (int row = 0; row < rows; ++row) {
-    std::memcpy(start + row_bytes * row, from.data + row * from.stride_bytes, row_bytes);
+  for (int row = 0; row < size.rows; ++row) {
+    std::memcpy(start + size.row_bytes * row, from.data + row * from.stride_bytes, size.row_bytes);
   }
-  used += row_bytes * rows;
-  to = {start, static_cast<std::ptrdiff_t>(row_bytes)};
+  used += size.bytes();
+  to = {start, static_cast<std::ptrdiff_t>(size.row_bytes)};
   return true;
 }
 
 void LiveFeed::copy_image(const ImageView& image) {
   sample_.image = image;
-  const auto width = static_cast<size_t>(image.width);
   size_t used = 0;
-  ImagePlane& plane = sample_.image.planes[0];
-  const ImagePlane& from = image.planes[0];
-  switch (image.format) {
-    case PixelFormat::kRgb24:
-      sample_.has_image = copy_plane(from, 3 * width, image.height, used, plane);
-      break;
-    case PixelFormat::kYuyv:
-    case PixelFormat::kUyvy:
-      sample_.has_image = copy_plane(from, 2 * width, image.height, used, plane);
-      break;
-    case PixelFormat::kNv12:
-      sample_.has_image =
-          copy_plane(from, width, image.height, used, plane) &&
-          copy_plane(image.planes[1], width, image.height / 2, used, sample_.image.planes[1]);
-      break;
-    case PixelFormat::kMjpeg:
-      sample_.has_image = copy_plane(from, image.bytes_used, 1, used, plane);
-      break;
-    default:  // Bayer
-      sample_.has_image = copy_plane(from, width, image.height, used, plane);
+  sample_.has_image = true;
+  for (size_t plane = 0; plane < image.planes.size() && sample_.has_image; ++plane) {
+    sample_.has_image = copy_plane(image.planes[plane], plane_size(image, plane), used,
+                                   sample_.image.planes[plane]);
   }
 }
 

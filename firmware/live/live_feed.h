@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "common/image_planes.h"
 #include "firmware/stages/vision_stage.h"
 #include "pipeline/calibration/rig.h"
 
@@ -53,7 +54,7 @@ class LiveFeed {
 
   void copy(const VisionSnapshot& snapshot);
   void copy_image(const ImageView& image);
-  bool copy_plane(const ImagePlane& from, size_t row_bytes, int rows, size_t& used, ImagePlane& to);
+  bool copy_plane(const ImagePlane& from, const PlaneSize& size, size_t& used, ImagePlane& to);
 
   std::atomic<int> viewers_{0};
   std::atomic<State> state_{State::kFree};

@@ -70,6 +70,25 @@ TEST_F(LiveFeedTest, AMissingCameraHasNoImage) {
   EXPECT_TRUE(has_mask_);
 }
 
+TEST(PlaneSize, RoundsSharedChromaUp) {
+  ImageView image;
+  image.width = 5;
+  image.height = 3;
+  const auto is = [&image](PixelFormat format, size_t plane, size_t row_bytes, int rows) {
+    image.format = format;
+    const PlaneSize size = plane_size(image, plane);
+    return size.row_bytes == row_bytes && size.rows == rows;
+  };
+  EXPECT_TRUE(is(PixelFormat::kRgb24, 0, 15, 3));
+  EXPECT_TRUE(is(PixelFormat::kRgb24, 1, 0, 0));
+  EXPECT_TRUE(is(PixelFormat::kYuyv, 0, 12, 3));
+  EXPECT_TRUE(is(PixelFormat::kNv12, 0, 5, 3));
+  EXPECT_TRUE(is(PixelFormat::kNv12, 1, 6, 2));
+  EXPECT_TRUE(is(PixelFormat::kBayerRggb, 0, 5, 3));
+  image.bytes_used = 77;
+  EXPECT_TRUE(is(PixelFormat::kMjpeg, 0, 77, 1));
+}
+
 TEST_F(LiveFeedTest, DoesNotWaitForTheDrawingThread) {
   feed_.set_viewers(1);
   made_.frameset.time = Time(milliseconds(1000));
