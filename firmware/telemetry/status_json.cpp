@@ -205,6 +205,49 @@ std::string cameras_of(const json& status) {
   return text;
 }
 
+std::string head_of(const json& status) {
+  std::string text = fmt::format(
+      "bevlocd {}: {}, pose {}{}\n{}{}", text_at(status, "version"), text_at(status, "state"),
+      status.value("valid", false) ? "valid" : "NOT valid",
+      status.value("healthy", true) ? "" : ", NOT healthy", health_of(status), reasons_of(status));
+  if (text_at(status, "lost.count") != "0" && status.contains("lost")) {
+    text += fmt::format("  lost {} times, the latest time because of: {}\n",
+                        text_at(status, "lost.count"), text_at(status, "lost.why"));
+  }
+  return text;
+}
+
+std::string inputs_of(const json& status) {
+  std::string text = fmt::format(
+      "\nvehicle     {} odometry and {} GNSS samples; {} frames lost, {} refused by E2E\n",
+      text_at(status, "vehicle.odometry_samples"), text_at(status, "vehicle.gnss_samples"),
+      text_at(status, "vehicle.frames_lost"), text_at(status, "vehicle.e2e_refused"));
+  if (status.contains("authentication")) {
+    text += fmt::format(
+        "SecOC       {} epochs authentic; refused: {} wrong code, {} incomplete, {} no freshness\n",
+        text_at(status, "authentication.authentic"), text_at(status, "authentication.wrong_mac"),
+        text_at(status, "authentication.incomplete"),
+        text_at(status, "authentication.no_freshness"));
+  }
+  if (status.contains("gnss")) {
+    text += fmt::format(
+        "gpsd        {}; {} samples, {} reports and {} fixes refused, at most {} ms old\n",
+        status["gnss"].value("connected", false) ? "connected" : "NOT connected",
+        text_at(status, "gnss.samples"), text_at(status, "gnss.reports_refused"),
+        text_at(status, "gnss.fixes_refused"), text_at(status, "gnss.age_max_ms", "{:.0f}"));
+  }
+  return text;
+}
+
+std::string recording_line(const json& status) {
+  if (!status.contains("recording")) return "";
+  return fmt::format(
+      "recording   {}{} MB; {} images and {} events dropped, {} black boxes kept\n",
+      status["recording"].value("failed", false) ? "FAILED after " : "",
+      text_at(status, "recording.megabytes", "{:.0f}"), text_at(status, "recording.images_dropped"),
+      text_at(status, "recording.events_dropped"), text_at(status, "recording.black_boxes"));
+}
+
 }  // namespace
 
 json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration age) {
@@ -260,14 +303,7 @@ std::string status_page(const json& status) {
   if (status.value("phase", "running") != "running") {
     return fmt::format("bevlocd {}: {}\n", text_at(status, "version"), text_at(status, "health"));
   }
-  std::string text = fmt::format(
-      "bevlocd {}: {}, pose {}{}\n{}{}", text_at(status, "version"), text_at(status, "state"),
-      status.value("valid", false) ? "valid" : "NOT valid",
-      status.value("healthy", true) ? "" : ", NOT healthy", health_of(status), reasons_of(status));
-  if (text_at(status, "lost.count") != "0" && status.contains("lost")) {
-    text += fmt::format("  lost {} times, the latest time because of: {}\n",
-                        text_at(status, "lost.count"), text_at(status, "lost.why"));
-  }
+  std::string text = head_of(status);
   text += fmt::format("\npose        x {} m, y {} m, yaw {} deg in the map; {} m/s\n",
                       text_at(status, "pose.x_m", "{:.2f}"), text_at(status, "pose.y_m", "{:.2f}"),
                       text_at(status, "pose.yaw_deg", "{:.2f}"),
@@ -280,36 +316,12 @@ std::string status_page(const json& status) {
   text += fmt::format("framesets   {} taken, {} skipped, {} without a prior\n\n{}",
                       text_at(status, "framesets.taken"), text_at(status, "framesets.skipped"),
                       text_at(status, "framesets.without_prior"), cameras_of(status));
-  text += fmt::format(
-      "\nvehicle     {} odometry and {} GNSS samples; {} frames lost, {} refused by E2E\n",
-      text_at(status, "vehicle.odometry_samples"), text_at(status, "vehicle.gnss_samples"),
-      text_at(status, "vehicle.frames_lost"), text_at(status, "vehicle.e2e_refused"));
-  if (status.contains("authentication")) {
-    text += fmt::format(
-        "SecOC       {} epochs authentic; refused: {} wrong code, {} incomplete, {} no freshness\n",
-        text_at(status, "authentication.authentic"), text_at(status, "authentication.wrong_mac"),
-        text_at(status, "authentication.incomplete"),
-        text_at(status, "authentication.no_freshness"));
-  }
-  if (status.contains("gnss")) {
-    text += fmt::format(
-        "gpsd        {}; {} samples, {} reports and {} fixes refused, at most {} ms old\n",
-        status["gnss"].value("connected", false) ? "connected" : "NOT connected",
-        text_at(status, "gnss.samples"), text_at(status, "gnss.reports_refused"),
-        text_at(status, "gnss.fixes_refused"), text_at(status, "gnss.age_max_ms", "{:.0f}"));
-  }
+  text += inputs_of(status);
   text += fmt::format("CAN         {}; {} sent, {} received, {} dropped, {} error frames\n",
                       text_at(status, "can.condition"), text_at(status, "can.sent"),
                       text_at(status, "can.received"), text_at(status, "can.send_dropped"),
                       text_at(status, "can.error_frames"));
-  if (status.contains("recording")) {
-    text += fmt::format(
-        "recording   {}{} MB; {} images and {} events dropped, {} black boxes kept\n",
-        status["recording"].value("failed", false) ? "FAILED after " : "",
-        text_at(status, "recording.megabytes", "{:.0f}"),
-        text_at(status, "recording.images_dropped"), text_at(status, "recording.events_dropped"),
-        text_at(status, "recording.black_boxes"));
-  }
+  text += recording_line(status);
   text += fmt::format("process     {} MB, {} s of CPU time\n",
                       text_at(status, "memory_mb", "{:.0f}"), text_at(status, "cpu_s", "{:.0f}"));
   return text;
