@@ -50,6 +50,25 @@ class RecorderTest : public testing::Test {
     return {0, time, sequence, std::chrono::milliseconds(8), std::move(buffer)};
   }
 
+  /// A frame whose compression leaves something.
+  drivers::Frame noisy_frame(uint64_t sequence, Time time, int seed) {
+    drivers::Frame noisy = frame(sequence, time);
+    uint8_t value = 1;
+    for (uint8_t& byte : pool_->image(noisy.buffer).pixels) {
+      value = static_cast<uint8_t>(value * 29 + 7 + seed);
+      byte = static_cast<uint8_t>(value ^ (value >> 3));
+    }
+    return noisy;
+  }
+
+  uintmax_t bytes_in_ring() const {
+    uintmax_t bytes = 0;
+    for (const auto& entry : fs::directory_iterator(config_.directory)) {
+      if (entry.is_regular_file()) bytes += entry.file_size();
+    }
+    return bytes;
+  }
+
   /// A file of an earlier run.
   fs::path leave(const std::string& name, size_t bytes) const {
     const fs::path path = config_.directory / name;
@@ -175,25 +194,35 @@ TEST_F(RecorderTest, TheRingDeletesItsOldestFiles) {
   for (int second = 0; second < 60; ++second) {
     const Time now{std::chrono::seconds(second)};
     for (uint64_t i = 0; i < 6; ++i) {
-      auto noisy = frame(i, now);
-      uint8_t value = 1;
-      for (uint8_t& byte : pool_->image(noisy.buffer).pixels) {
-        value = static_cast<uint8_t>(value * 29 + 7 + second);
-        byte = static_cast<uint8_t>(value ^ (value >> 3));
-      }
-      recorder->note_image(noisy, now);
+      recorder->note_image(noisy_frame(i, now, second), now);
     }
     recorder->write_queued(now);
-    uintmax_t bytes = 0;
-    for (const auto& entry : fs::directory_iterator(config_.directory)) {
-      if (entry.is_regular_file()) bytes += entry.file_size();
-    }
-    most_bytes = std::max(most_bytes, bytes);
+    most_bytes = std::max(most_bytes, bytes_in_ring());
   }
   recorder->finish(Time{std::chrono::seconds(60)});
   EXPECT_FALSE(fs::exists(first));
   EXPECT_LE(most_bytes, config_.max_bytes);
   EXPECT_GT(files_in(config_.directory), 5U);
+}
+
+TEST_F(RecorderTest, TheRingMakesRoomForAFileThatGrows) {
+  const fs::path oldest = leave("bevloc-20400224T000000Z-0001.mcap", 65'000);
+  const fs::path middle = leave("bevloc-20400225T000000Z-0001.mcap", 65'000);
+  const fs::path latest = leave("bevloc-20400226T000000Z-0001.mcap", 65'000);
+  config_.max_bytes = 200'000;
+  const auto recorder = open();
+  EXPECT_TRUE(fs::exists(oldest));
+  for (int step = 0; step < 12; ++step) {
+    const Time now{step * std::chrono::milliseconds(500)};
+    for (uint64_t i = 0; i < 6; ++i) recorder->note_image(noisy_frame(i, now, step), now);
+    recorder->write_queued(now);
+    EXPECT_LE(bytes_in_ring(), config_.max_bytes) << step;
+  }
+  recorder->finish(Time{std::chrono::seconds(6)});
+  EXPECT_GT(recorder->counters().bytes, 5'000U);
+  EXPECT_FALSE(fs::exists(oldest));
+  EXPECT_TRUE(fs::exists(middle));
+  EXPECT_TRUE(fs::exists(latest));
 }
 
 TEST_F(RecorderTest, AgeCountsFromTheTimeInTheName) {
