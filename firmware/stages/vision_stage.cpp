@@ -95,6 +95,7 @@ VisionReport VisionStage::report_on(NewestFrameset newest) {
   // A frame with a wrong stamp would be matched with the wrong pose. If most stamps have jumped,
   // the tracker has to find out what they are worth.
   const CameraMask jumped = with_jumped_stamps(frameset);
+  counters_.stamps_jumped = static_cast<unsigned>(jumped.to_ulong());
   report.stamps_jumped = 2 * jumped.count() > frameset.present.count();
   if (!report.stamps_jumped) leave_out(jumped, frameset);
   report.frame_time = frameset.time;

@@ -53,6 +53,8 @@ struct VisionCounters {
   std::atomic<unsigned> dark{0};
   std::atomic<unsigned> blinded{0};
   std::atomic<unsigned> dirty{0};
+  /// The cameras whose stamps have jumped, a CameraMask.
+  std::atomic<unsigned> stamps_jumped{0};
   std::atomic<uint64_t> checks{0};         ///< of network and solvers (Localizer::check())
   std::atomic<bool> network_fault{false};  ///< one of them failed; stays until the restart
   /// Cameras that are not where the calibration has them, a CameraMask.

@@ -120,7 +120,7 @@ void add_camera(Families& families, const Telemetry& telemetry, int index) {
                    value, {{"camera", name}, {"reason", reason}});
   };
   const auto fault = [&](const char* kind, bool present) {
-    families.gauge("bevloc_camera_view_fault", "1 for a fault of the camera's view",
+    families.gauge("bevloc_camera_view_fault", "1 for a fault of the camera's view or stamps",
                    present ? 1 : 0, {{"camera", name}, {"fault", kind}});
   };
   count("bevloc_camera_frames_captured_total", "Frames that the camera delivered", camera.captured);
@@ -147,6 +147,7 @@ void add_camera(Families& families, const Telemetry& telemetry, int index) {
   fault("dark", camera.dark);
   fault("blinded", camera.blinded);
   fault("dirty", camera.dirty);
+  fault("stamps_jumped", camera.stamps_jumped);
   fault("out_of_place", telemetry.view.calibration_fault[index]);
 }
 

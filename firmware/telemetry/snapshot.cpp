@@ -55,6 +55,7 @@ CameraSnapshot camera_of(const Appliance& appliance, int camera) {
           .dark = CameraMask(vision.dark)[camera],
           .blinded = CameraMask(vision.blinded)[camera],
           .dirty = CameraMask(vision.dirty)[camera],
+          .stamps_jumped = CameraMask(vision.stamps_jumped)[camera],
           .drift_ppm = appliance.vision().framesets().synchrony().drift_ppm[camera]};
 }
 

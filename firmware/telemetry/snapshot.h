@@ -21,10 +21,11 @@ struct CameraSnapshot {
   drivers::CameraCounters driver;
   drivers::SynchronizerCounters synchronizer;
   uint64_t unreadable = 0;  ///< images of a wrong size, or damaged
-  bool frozen = false;      ///< at the latest frameset, as are the next three
+  bool frozen = false;      ///< at the latest frameset, as are the next four
   bool dark = false;
   bool blinded = false;
   bool dirty = false;
+  bool stamps_jumped = false;
   double drift_ppm = 0.0;
 };
 

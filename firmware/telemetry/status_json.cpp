@@ -53,6 +53,7 @@ json camera_of(const Telemetry& telemetry, int index) {
   if (camera.dark) faults.push_back("dark");
   if (camera.blinded) faults.push_back("blinded");
   if (camera.dirty) faults.push_back("dirty");
+  if (camera.stamps_jumped) faults.push_back("time stamps jumped");
   if (telemetry.view.calibration_fault[index]) faults.push_back("out of place");
   const drivers::SynchronizerCounters& refused = camera.synchronizer;
   return {{"name", kCameraNames[index]},

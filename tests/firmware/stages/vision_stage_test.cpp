@@ -75,6 +75,7 @@ TEST_F(VisionStageTest, LeavesOutFramesWhoseStampsHaveJumped) {
     ASSERT_TRUE(report);
     const bool most = jumped == 4;
     EXPECT_EQ(report->stamps_jumped, most);
+    EXPECT_EQ(stage_->counters().stamps_jumped, 0b111111U >> (kCameraCount - jumped));
     EXPECT_EQ(report->present, CameraMask(most ? 0b111111U : 0b111111U << jumped));
     EXPECT_EQ(report->frame_time, Time(milliseconds(most ? 852 : 900)));
   }
