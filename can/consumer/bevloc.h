@@ -24,8 +24,9 @@
 enum bevloc_answer {
   BEVLOC_USABLE,
   BEVLOC_NO_POSE,       /* no complete pose was received yet */
-  BEVLOC_TIMEOUT,       /* none for three cycles, or no LOC_Status for three of its cycles, or
-                           `now_us` is more than a cycle before them: the clock was set back */
+  BEVLOC_TIMEOUT,       /* none for three cycles, or only one since then, or no LOC_Status for
+                           three of its cycles, or `now_us` is more than a cycle before them: the
+                           clock was set back */
   BEVLOC_NOT_VALID,     /* the state is neither TRACKING nor DEGRADED */
   BEVLOC_NOT_AVAILABLE, /* a value, a protection level or the integrity risk is not available */
   BEVLOC_BEYOND_LIMIT   /* a protection level is beyond its alert limit, or the risk too high */
@@ -74,6 +75,7 @@ struct bevloc_receiver {
   double utc_error_ms;    /* bound of its error */
   uint64_t clock_us;      /* when LOC_Clock arrived */
   struct bevloc_pose pose;
+  bool pose_follows_silence; /* it is the first one of all, or the first one after a timeout */
   /* inside */
   int last_counter[16]; /* by id_offset; -1: none */
   uint8_t frames[BEVLOC_PARTS][8];
@@ -232,6 +234,10 @@ static inline void bevloc_take_pose(struct bevloc_receiver* receiver, uint64_t n
   double risk = 0;
   double capture_us = 0;
   bool complete = true;
+  /* When the bus returns after a failure, the first pose may be an old one that waited in the
+     sender's controller. At most one can wait. */
+  receiver->pose_follows_silence =
+      !receiver->has_pose || !bevloc_is_in_time(now_us, pose->received_us, &BEVLOC_LOC_Time);
   memset(pose, 0, sizeof *pose);
   complete &= bevloc_decode(receiver->frames[0], &BEVLOC_LOC_Time_CaptureAge, &pose->age_ms);
   complete &= bevloc_decode(receiver->frames[0], &BEVLOC_LOC_Time_CaptureTime, &capture_us);
@@ -329,6 +335,7 @@ static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* rec
   const struct bevloc_pose* pose = &receiver->pose;
   const struct bevloc_alert_limits* limits = &receiver->limits;
   if (!receiver->has_pose || !receiver->has_status) return BEVLOC_NO_POSE;
+  if (receiver->pose_follows_silence) return BEVLOC_TIMEOUT;
   if (!bevloc_is_in_time(now_us, pose->received_us, &BEVLOC_LOC_Time)) return BEVLOC_TIMEOUT;
   if (!bevloc_is_in_time(now_us, receiver->status_us, &BEVLOC_LOC_Status)) return BEVLOC_TIMEOUT;
   if (receiver->state != BEVLOC_LOC_Status_State_TRACKING &&

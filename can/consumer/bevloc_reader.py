@@ -147,6 +147,7 @@ class Receiver:
     time_source: str | None = None
     pose: dict[str, float | None] | None = None
     pose_time_s: float = 0.0
+    pose_follows_silence: bool = True
     status_time_s: float = 0.0
     utc_offset_us: int | None = None
     utc_error_ms: float | None = None
@@ -179,7 +180,7 @@ class Receiver:
         """Whether the latest pose may be used now ("usable"), and else why not."""
         if self.pose is None or self.state is None:
             return "no_pose"
-        in_time = is_in_time(time_s, self.pose_time_s, "LOC_Time")
+        in_time = is_in_time(time_s, self.pose_time_s, "LOC_Time") and not self.pose_follows_silence
         if not in_time or not is_in_time(time_s, self.status_time_s, "LOC_Status"):
             return "timeout"
         if self.state not in ("TRACKING", "DEGRADED"):
@@ -272,6 +273,10 @@ class Receiver:
         return True
 
     def _take_pose(self, time_s: float) -> None:
+        # When the bus returns after a failure, the first pose may be an old one that waited in the
+        # sender's controller. At most one can wait.
+        in_time = is_in_time(time_s, self.pose_time_s, "LOC_Time")
+        self.pose_follows_silence = self.pose is None or not in_time
         self.pose = {
             value: decode(self._frames[name], MESSAGES[name].signals[signal])
             for value, (name, signal) in VALUES.items()

@@ -101,6 +101,18 @@ class ConsumersTest(unittest.TestCase):
         back = self.answers_to(lines + [shifted(lines[-1], -6 * 10**5)])
         self.assertEqual(back.splitlines()[-2], "-0.210 timeout")
 
+    def test_the_first_pose_after_a_silence_is_not_usable_because_it_may_be_old(self) -> None:
+        lines = self.golden_lines(5_340_000)
+        # One epoch with its LOC_Status that waited in the sender's controller for an hour.
+        waited = [shifted(line, 3_600_000_000) for line in lines if time_us(line) == 5_320_000]
+        before = [line for line in lines if time_us(line) < 5_320_000]
+        output = self.answers_to(before + waited).splitlines()
+        self.assertTrue(output[-2].endswith(" timeout"), output)
+        self.assertNotIn("usable", self.answers_to(waited))
+        new = [shifted(line, 3_600_000_000) for line in lines if time_us(line) == 5_330_000]
+        output = self.answers_to(before + waited + new).splitlines()
+        self.assertTrue(output[-2].startswith("3600.330 usable east "), output)
+
     def test_stamps_that_are_out_of_order_within_a_pose_do_not_matter(self) -> None:
         lines = self.golden_lines()
         jittered = [shifted(line, 700 - 300 * (i % 3)) for i, line in enumerate(lines)]
