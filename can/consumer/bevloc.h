@@ -18,7 +18,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "can/consumer/bevloc_messages.h"
+#include "bevloc_messages.h"
 
 /* Why the latest pose may or may not be used, in the order of the checks. */
 enum bevloc_answer {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 extern "C" {
-#include "can/consumer/bevloc.h"
+#include "bevloc.h"
 }
 
 namespace bevloc::consumer {

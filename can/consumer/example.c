@@ -13,8 +13,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "can/consumer/bevloc.h"
-#include "can/consumer/candump_line.h"
+#include "bevloc.h"
+#include "candump_line.h"
 
 static const struct bevloc_alert_limits kFreeway = {0.57, 1.40, 1.50, 5};
 

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <string>
 
-#include "can/consumer/bevloc.hpp"
-#include "can/consumer/candump_line.h"
+#include "bevloc.hpp"
+#include "candump_line.h"
 
 namespace {
 

@@ -53,6 +53,8 @@ class IncludesTest(unittest.TestCase):
             for name in listed
             for included in INCLUDE.findall((ROOT / name).read_text())
             if not (ROOT / included).exists()
+            # The receivers of the package bevloc-dev are compiled outside of this tree.
+            and not (name.startswith("can/consumer/") and (ROOT / name).with_name(included).exists())
         ]
         self.assertEqual(wrong, [])
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -169,5 +170,18 @@ class ConsumersTest(unittest.TestCase):
     def test_the_header_is_c99(self) -> None:
         source = f'#include "{CONSUMER}/bevloc.h"\nint main(void) {{ return 0; }}\n'
         subprocess.run(
-            ["cc", "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", f"-I{ROOT}",
+            ["cc", "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror",
              "-fsyntax-only", "-x", "c", "-"], input=source, text=True, check=True)
+
+    def test_the_receivers_need_no_other_folder(self) -> None:
+        # The package bevloc-dev installs only this folder.
+        with tempfile.TemporaryDirectory() as folder:
+            for source in CONSUMER.iterdir():
+                if source.suffix in (".h", ".hpp", ".c", ".cpp", ".py"):
+                    shutil.copy(source, folder)
+            for command in (["cc", "-fsyntax-only", "example.c"],
+                            ["c++", "-std=c++20", "-fsyntax-only", "example.cpp"],
+                            [sys.executable, "bevloc_reader.py", self.log]):
+                with self.subTest(command=command):
+                    done = subprocess.run(command, capture_output=True, text=True, cwd=folder)
+                    self.assertEqual((done.returncode, done.stderr), (0, ""))
