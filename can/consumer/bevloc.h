@@ -28,7 +28,8 @@ enum bevloc_answer {
                            three of its cycles, or `now_us` is more than a cycle before them: the
                            clock was set back */
   BEVLOC_NOT_VALID,     /* the state is neither TRACKING nor DEGRADED */
-  BEVLOC_NOT_AVAILABLE, /* a value, a protection level or the integrity risk is not available */
+  BEVLOC_NOT_AVAILABLE, /* a value, the integrity risk, or the protection level of an axis with
+                           an alert limit is not available */
   BEVLOC_BEYOND_LIMIT   /* a protection level is beyond its alert limit, or the risk too high */
 };
 
@@ -47,14 +48,16 @@ enum { BEVLOC_PARTS = 8 };
 struct bevloc_pose {
   uint64_t received_us; /* when its last frame arrived: it holds at the moment of sending */
   double age_ms;        /* of the newest images behind it */
+  bool has_capture;     /* there are images behind it */
   uint32_t capture_us;  /* when they were taken, on the localizer's clock, modulo 2^32 */
   double latitude_deg, longitude_deg;
   double east_m, north_m; /* in the map */
   double heading_deg;     /* clockwise from true north */
   double speed_mps;
-  double lateral_m, longitudinal_m, yaw_deg; /* protection levels */
+  double lateral_m, longitudinal_m, yaw_deg;   /* protection levels */
+  bool has_lateral, has_longitudinal, has_yaw; /* false: no protection level of this axis */
   int risk_exponent;
-  bool complete; /* no value is missing */
+  bool complete; /* no other value is missing */
 };
 
 struct bevloc_counters {
@@ -231,6 +234,7 @@ static inline void bevloc_take_clock(struct bevloc_receiver* receiver, const uin
 
 static inline void bevloc_take_pose(struct bevloc_receiver* receiver, uint64_t now_us) {
   struct bevloc_pose* pose = &receiver->pose;
+  uint8_t(*frames)[8] = receiver->frames;
   double risk = 0;
   double capture_us = 0;
   bool complete = true;
@@ -239,25 +243,22 @@ static inline void bevloc_take_pose(struct bevloc_receiver* receiver, uint64_t n
   receiver->pose_follows_silence =
       !receiver->has_pose || !bevloc_is_in_time(now_us, pose->received_us, &BEVLOC_LOC_Time);
   memset(pose, 0, sizeof *pose);
-  complete &= bevloc_decode(receiver->frames[0], &BEVLOC_LOC_Time_CaptureAge, &pose->age_ms);
-  complete &= bevloc_decode(receiver->frames[0], &BEVLOC_LOC_Time_CaptureTime, &capture_us);
+  pose->has_capture = bevloc_decode(frames[0], &BEVLOC_LOC_Time_CaptureAge, &pose->age_ms) &&
+                      bevloc_decode(frames[0], &BEVLOC_LOC_Time_CaptureTime, &capture_us);
+  complete &= pose->has_capture;
   pose->capture_us = (uint32_t)capture_us;
-  complete &=
-      bevloc_decode(receiver->frames[1], &BEVLOC_LOC_Latitude_Latitude, &pose->latitude_deg);
-  complete &=
-      bevloc_decode(receiver->frames[2], &BEVLOC_LOC_Longitude_Longitude, &pose->longitude_deg);
-  complete &= bevloc_decode(receiver->frames[3], &BEVLOC_LOC_PosLocal_LocalEast, &pose->east_m);
-  complete &= bevloc_decode(receiver->frames[3], &BEVLOC_LOC_PosLocal_LocalNorth, &pose->north_m);
-  complete &= bevloc_decode(receiver->frames[4], &BEVLOC_LOC_Attitude_Heading, &pose->heading_deg);
-  complete &= bevloc_decode(receiver->frames[5], &BEVLOC_LOC_Velocity_VelocityX, &pose->speed_mps);
-  complete &=
-      bevloc_decode(receiver->frames[7], &BEVLOC_LOC_Integrity_ProtectionLateral, &pose->lateral_m);
-  complete &= bevloc_decode(receiver->frames[7], &BEVLOC_LOC_Integrity_ProtectionLongitudinal,
-                            &pose->longitudinal_m);
-  complete &=
-      bevloc_decode(receiver->frames[7], &BEVLOC_LOC_Integrity_ProtectionYaw, &pose->yaw_deg);
-  complete &=
-      bevloc_decode(receiver->frames[7], &BEVLOC_LOC_Integrity_IntegrityRiskExponent, &risk);
+  complete &= bevloc_decode(frames[1], &BEVLOC_LOC_Latitude_Latitude, &pose->latitude_deg);
+  complete &= bevloc_decode(frames[2], &BEVLOC_LOC_Longitude_Longitude, &pose->longitude_deg);
+  complete &= bevloc_decode(frames[3], &BEVLOC_LOC_PosLocal_LocalEast, &pose->east_m);
+  complete &= bevloc_decode(frames[3], &BEVLOC_LOC_PosLocal_LocalNorth, &pose->north_m);
+  complete &= bevloc_decode(frames[4], &BEVLOC_LOC_Attitude_Heading, &pose->heading_deg);
+  complete &= bevloc_decode(frames[5], &BEVLOC_LOC_Velocity_VelocityX, &pose->speed_mps);
+  pose->has_lateral =
+      bevloc_decode(frames[7], &BEVLOC_LOC_Integrity_ProtectionLateral, &pose->lateral_m);
+  pose->has_longitudinal =
+      bevloc_decode(frames[7], &BEVLOC_LOC_Integrity_ProtectionLongitudinal, &pose->longitudinal_m);
+  pose->has_yaw = bevloc_decode(frames[7], &BEVLOC_LOC_Integrity_ProtectionYaw, &pose->yaw_deg);
+  complete &= bevloc_decode(frames[7], &BEVLOC_LOC_Integrity_IntegrityRiskExponent, &risk);
   pose->risk_exponent = (int)risk;
   pose->complete = complete;
   pose->received_us = now_us;
@@ -329,6 +330,16 @@ static inline bool bevloc_receive(struct bevloc_receiver* receiver, uint32_t id,
   return false;
 }
 
+/* Whether an axis has no protection level although it has a limit. */
+static inline bool bevloc_lacks_level(double limit, bool has_level) {
+  return limit != 0 && !has_level;
+}
+
+/* Any limit but 0 counts. No level is within a limit that is negative or not a number. */
+static inline bool bevloc_is_beyond(double limit, double level) {
+  return limit != 0 && !(level <= limit);
+}
+
 /* Whether the latest pose may be used now, and else why not. */
 static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* receiver,
                                                uint64_t now_us) {
@@ -342,21 +353,26 @@ static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* rec
       receiver->state != BEVLOC_LOC_Status_State_DEGRADED) {
     return BEVLOC_NOT_VALID;
   }
-  if (!pose->complete) return BEVLOC_NOT_AVAILABLE;
-  if ((limits->lateral_m > 0 && pose->lateral_m > limits->lateral_m) ||
-      (limits->longitudinal_m > 0 && pose->longitudinal_m > limits->longitudinal_m) ||
-      (limits->yaw_deg > 0 && pose->yaw_deg > limits->yaw_deg) ||
+  if (!pose->complete || bevloc_lacks_level(limits->lateral_m, pose->has_lateral) ||
+      bevloc_lacks_level(limits->longitudinal_m, pose->has_longitudinal) ||
+      bevloc_lacks_level(limits->yaw_deg, pose->has_yaw)) {
+    return BEVLOC_NOT_AVAILABLE;
+  }
+  if (bevloc_is_beyond(limits->lateral_m, pose->lateral_m) ||
+      bevloc_is_beyond(limits->longitudinal_m, pose->longitudinal_m) ||
+      bevloc_is_beyond(limits->yaw_deg, pose->yaw_deg) ||
       pose->risk_exponent < limits->risk_exponent) {
     return BEVLOC_BEYOND_LIMIT;
   }
   return BEVLOC_USABLE;
 }
 
-/* When the images behind the latest pose were taken: UTC modulo 2^32 us. False without a fresh
-   LOC_Clock, or while the localizer's computer does not know UTC. The pose holds age_ms later. */
+/* When the images behind the latest pose were taken: UTC modulo 2^32 us. False without images or a
+   fresh LOC_Clock, or while the localizer's computer does not know UTC. The pose holds age_ms
+   later. */
 static inline bool bevloc_capture_utc(const struct bevloc_receiver* receiver, uint64_t now_us,
                                       uint32_t* utc_us) {
-  if (!receiver->has_clock || !receiver->has_pose) return false;
+  if (!receiver->has_clock || !receiver->has_pose || !receiver->pose.has_capture) return false;
   if (!bevloc_is_in_time(now_us, receiver->clock_us, &BEVLOC_LOC_Clock)) return false;
   *utc_us = receiver->pose.capture_us + receiver->utc_offset_us;
   return true;

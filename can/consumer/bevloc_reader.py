@@ -20,13 +20,12 @@ so import this module from its own folder.
 from __future__ import annotations
 
 import argparse
-import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 from bevloc_messages import LOCALIZER_BASE, MESSAGES, VALUE_NAMES, Message, Signal
+from candump_log import Frame, LogError, frames_of_log
 
 PARTS = (
     "LOC_Time",
@@ -54,7 +53,10 @@ VALUES = {
     "yaw_deg": ("LOC_Integrity", "ProtectionYaw"),
     "risk_exponent": ("LOC_Integrity", "IntegrityRiskExponent"),
 }
-"""The values of a pose; lateral_m, longitudinal_m and yaw_deg are its protection levels."""
+"""The values of a pose."""
+
+LEVELS = ("lateral_m", "longitudinal_m", "yaw_deg")
+"""Those that are protection levels, and the alert limits of AlertLimits."""
 
 EPOCH_LIMIT_S = 0.039999
 CYCLES_TO_TIMEOUT = 3
@@ -185,25 +187,31 @@ class Receiver:
             return "timeout"
         if self.state not in ("TRACKING", "DEGRADED"):
             return "not_valid"
-        if None in self.pose.values():
+        if self._lacks_value():
             return "not_available"
         return "beyond_limit" if self._is_beyond_limit() else "usable"
 
     def capture_utc_us(self, time_s: float) -> int | None:
-        """When the images behind the latest pose were taken, UTC modulo 2^32 us. None without a
-        fresh LOC_Clock, or while the localizer's computer does not know UTC."""
+        """When the images behind the latest pose were taken, UTC modulo 2^32 us. None without
+        images or a fresh LOC_Clock, or while the localizer's computer does not know UTC."""
         if self.utc_error_ms is None or not is_in_time(time_s, self.clock_time_s, "LOC_Clock"):
             return None
-        capture_us = None if self.pose is None else self.pose["capture_us"]
-        if capture_us is None or self.utc_offset_us is None:
+        if self.pose is None or self.pose["age_ms"] is None or self.utc_offset_us is None:
             return None
-        return (int(capture_us) + self.utc_offset_us) % 2**32
+        return (int(self.pose["capture_us"] or 0) + self.utc_offset_us) % 2**32
+
+    def _lacks_value(self) -> bool:
+        """Whether a value is missing, except protection levels of axes without an alert limit."""
+        assert self.pose is not None
+        return any(value is None for name, value in self.pose.items()
+                   if name not in LEVELS or getattr(self.limits, name) != 0)
 
     def _is_beyond_limit(self) -> bool:
+        """Any limit but 0 counts. No level is within one that is negative or not a number."""
         assert self.pose is not None
-        for name in ("lateral_m", "longitudinal_m", "yaw_deg"):
+        for name in LEVELS:
             limit, level = getattr(self.limits, name), self.pose[name]
-            if limit > 0 and (level is None or level > limit):
+            if limit != 0 and not (level is not None and level <= limit):
                 return True
         exponent = self.pose["risk_exponent"]
         return exponent is None or exponent < self.limits.risk_exponent
@@ -321,44 +329,6 @@ class Printer:
         print(f"frames: {counters.ok} ok, {counters.lost} lost, {counters.repeated} repeated, "
               f"{counters.wrong_crc} wrong CRC, {counters.wrong_length} wrong length; "
               f"{counters.incomplete} incomplete poses")
-
-
-class Frame(NamedTuple):
-    """A data frame with an 11-bit identifier."""
-
-    identifier: int
-    data: bytes
-    time_s: float
-
-
-class LogError(Exception):
-    """What is wrong with a log, in one sentence."""
-
-
-LINE = re.compile(
-    r"\((?P<time>\d{1,13}\.\d{6})(?:\d{3})?\) [^ ]+ (?:"
-    r"(?P<id>[0-7][0-9A-Fa-f]{2})#(?:#[0-9A-Fa-f](?P<fd>(?:[0-9A-Fa-f]{2}){0,64})"
-    r"|(?P<classic>(?:[0-9A-Fa-f]{2}){0,8})(?:_[0-9A-Fa-f])?)(?: .*)?"
-    r"|[0-9A-Fa-f]{3}#R.*|[0-9A-Fa-f]{8}#.*)", re.ASCII)
-"""A data frame, whose raw length code such as "_F" is not used, or any other frame."""
-
-
-def frames_of_log(path: str) -> Iterator[Frame]:
-    """The frames of a candump log. Raises LogError where it is none."""
-    try:
-        with open(path, encoding="utf-8", errors="replace", newline="\n") as log:
-            for number, line in enumerate(log, start=1):
-                text = line.rstrip("\r\n")
-                found = LINE.fullmatch(text)
-                if text and not found:
-                    raise LogError(
-                        f"{path}:{number}: found something else, wanted a line of candump -l, "
-                        "such as '(1436509052.249713) can0 044#2A366C2BBA'")
-                if found and found["id"]:
-                    data = bytes.fromhex(found["fd"] or found["classic"] or "")
-                    yield Frame(int(found["id"], 16), data, float(found["time"]))
-    except OSError:
-        raise LogError(f"{path}: found no readable file, wanted a candump log") from None
 
 
 def frames_of_bus(interface: str, channel: str) -> Iterator[Frame]:

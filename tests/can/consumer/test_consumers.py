@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import os
 import shutil
 import subprocess
@@ -51,31 +50,6 @@ class ConsumersTest(unittest.TestCase):
     def test_python_reads_the_golden_log(self) -> None:
         reader = str(CONSUMER / "bevloc_reader.py")
         self.assertEqual(output_of(sys.executable, reader, self.log), self.expected)
-
-    def test_python_knows_the_capture_time_in_utc(self) -> None:
-        sys.path.insert(0, str(CONSUMER))
-        self.addCleanup(sys.path.remove, str(CONSUMER))
-        reader = importlib.import_module("bevloc_reader")
-        receiver = reader.Receiver()
-
-        def receive(name: str, counter: int, content: bytes, time_s: float) -> None:
-            message = reader.MESSAGES[name]
-            data = bytes([counter]) + content.ljust(message.length - 2, b"\0")
-            crc = reader.crc8_h2f(data + bytes([message.data_id]))
-            receiver.receive(reader.LOCALIZER_BASE + message.id_offset, bytes([crc]) + data, time_s)
-
-        for part in reader.PARTS:
-            capture_us = (2**32 - 5).to_bytes(4, "little") if part == "LOC_Time" else b""
-            receive(part, 0, capture_us, 1.0)
-        self.assertIsNone(receiver.capture_utc_us(1.0), "no LOC_Clock yet")
-        receive("LOC_Clock", 0, (7).to_bytes(4, "little") + (123).to_bytes(2, "little"), 1.0)
-        self.assertEqual(receiver.capture_utc_us(1.3), 2)
-        self.assertAlmostEqual(receiver.utc_error_ms, 1.23)
-        self.assertIsNone(receiver.capture_utc_us(1.301), "too old")
-        self.assertEqual(receiver.capture_utc_us(0.9), 2)
-        self.assertIsNone(receiver.capture_utc_us(0.899), "set back")
-        receive("LOC_Clock", 1, (7).to_bytes(4, "little") + b"\xff\xff", 1.2)
-        self.assertIsNone(receiver.capture_utc_us(1.2), "not synchronized")
 
     def answers_to(self, lines: list[str]) -> str:
         """What all three print for a log."""

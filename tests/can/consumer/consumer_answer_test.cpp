@@ -1,0 +1,102 @@
+// Asks a consumer whether it may use a pose (can/consumer/bevloc.hpp).
+#include <gtest/gtest.h>
+
+#include "can/bus/mock_bus.h"
+#include "can/consumer/bevloc.hpp"
+#include "can/messages/pose_publisher.h"
+#include "tests/can/messages/tracking_report.h"
+
+namespace bevloc::can {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+constexpr consumer::AlertLimits kWide = {5.0, 5.0, 5.0, 5};
+
+/// A localizer that publishes one report every 10 ms, and its consumer.
+class Link {
+ public:
+  explicit Link(const consumer::AlertLimits& limits, FrameFormat format = FrameFormat::kClassic)
+      : receiver_(limits),
+        publisher_(*sender_, {.map_origin = test::kOrigin, .format = format, .sends_clock = true}) {
+  }
+
+  /// The answer after `poses` complete poses.
+  consumer::Answer publish(PoseReport report, int poses) {
+    for (int i = 0; i < poses; ++i) {
+      now_ += milliseconds(10);
+      report.pose_time = time();
+      publisher_.publish(report, time());
+      while (const auto received = reader_->receive()) {
+        receiver_.receive(received->frame.id, received->frame.payload(), now_);
+      }
+    }
+    return receiver_.answer(now_);
+  }
+  consumer::Answer publish_after(Duration silence, const PoseReport& report) {
+    now_ += std::chrono::duration_cast<microseconds>(silence) - milliseconds(10);
+    return publish(report, 1);
+  }
+  std::optional<uint32_t> capture_utc_us() const { return receiver_.capture_utc_us(now_); }
+
+ private:
+  Time time() const { return test::kNow + now_; }
+
+  MockWire wire_;
+  std::unique_ptr<Bus> sender_ = wire_.connect();
+  std::unique_ptr<Bus> reader_ = wire_.connect();
+  consumer::Receiver receiver_;
+  PosePublisher publisher_;
+  microseconds now_{};
+};
+
+TEST(ConsumerAnswerTest, DoesNotUseTheFirstPoseAfterASilence) {
+  for (const FrameFormat format : {FrameFormat::kClassic, FrameFormat::kFd}) {
+    Link link(kWide, format);
+    const PoseReport report = test::tracking_report(test::kNow);
+    EXPECT_EQ(link.publish(report, 1), BEVLOC_TIMEOUT) << "may be an old one";
+    EXPECT_EQ(link.publish(report, 1), BEVLOC_USABLE);
+    EXPECT_EQ(link.publish_after(milliseconds(30), report), BEVLOC_USABLE);
+    EXPECT_EQ(link.publish_after(milliseconds(31), report), BEVLOC_TIMEOUT);
+    EXPECT_EQ(link.publish(report, 1), BEVLOC_USABLE);
+  }
+}
+
+TEST(ConsumerAnswerTest, AnAxisWithoutALimitNeedsNoProtectionLevel) {
+  PoseReport report = test::tracking_report(test::kNow);
+  report.protection_level.longitudinal_m = 50.0;  // beyond the range, so it is sent as SNA
+  EXPECT_EQ(Link({0.57, 0.0, 1.5, 5}).publish(report, 2), BEVLOC_USABLE);
+  EXPECT_EQ(Link({0.57, 1.4, 1.5, 5}).publish(report, 2), BEVLOC_NOT_AVAILABLE);
+  report.protection_level.lateral_m = ProtectionLevel::kUnknown;
+  report.protection_level.yaw_rad = ProtectionLevel::kUnknown;
+  EXPECT_EQ(Link({0.0, 0.0, 0.0, 5}).publish(report, 2), BEVLOC_USABLE);
+  EXPECT_EQ(Link({0.57, 0.0, 0.0, 5}).publish(report, 2), BEVLOC_NOT_AVAILABLE);
+  EXPECT_EQ(Link({0.0, 0.0, 1.5, 5}).publish(report, 2), BEVLOC_NOT_AVAILABLE);
+}
+
+TEST(ConsumerAnswerTest, NoLevelIsWithinALimitThatIsNegativeOrNotANumber) {
+  const PoseReport report = test::tracking_report(test::kNow);
+  for (const double limit : {-1.0, test::kNan}) {
+    EXPECT_EQ(Link({limit, 5.0, 5.0, 5}).publish(report, 2), BEVLOC_BEYOND_LIMIT);
+    EXPECT_EQ(Link({5.0, limit, 5.0, 5}).publish(report, 2), BEVLOC_BEYOND_LIMIT);
+    EXPECT_EQ(Link({5.0, 5.0, limit, 5}).publish(report, 2), BEVLOC_BEYOND_LIMIT);
+  }
+}
+
+TEST(ConsumerAnswerTest, KnowsNoCaptureTimeWithoutImages) {
+  Link link(kWide);
+  PoseReport report = test::tracking_report(test::kNow);
+  report.clock = {.source = TimeSource::kPtp, .utc_offset = std::chrono::hours(1)};
+  report.status.state = HealthState::kInit;
+  const auto capture = report.capture_time;
+  report.capture_time = std::nullopt;
+  link.publish(report, 2);
+  EXPECT_FALSE(link.capture_utc_us());
+  report.capture_time = capture;
+  link.publish(report, 1);
+  EXPECT_TRUE(link.capture_utc_us());
+}
+
+}  // namespace
+}  // namespace bevloc::can

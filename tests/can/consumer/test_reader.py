@@ -1,0 +1,76 @@
+"""Tests the receiver of can/consumer/bevloc_reader.py without a bus."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import unittest
+from pathlib import Path
+from typing import Any
+
+CONSUMER = Path(__file__).resolve().parents[3] / "can/consumer"
+LEVELS = ("ProtectionLateral", "ProtectionLongitudinal", "ProtectionYaw")
+
+
+class ReaderTest(unittest.TestCase):
+    def setUp(self) -> None:
+        sys.path.insert(0, str(CONSUMER))
+        self.addCleanup(sys.path.remove, str(CONSUMER))
+        self.reader = importlib.import_module("bevloc_reader")
+        self.counter = 0
+
+    def send(self, receiver: Any, name: str, content: int, time_s: float) -> None:
+        """`content`: the frame as a number, without its first two bytes."""
+        message = self.reader.MESSAGES[name]
+        data = bytes([self.counter]) + content.to_bytes(message.length - 2, "little")
+        crc = self.reader.crc8_h2f(data + bytes([message.data_id]))
+        receiver.receive(receiver.base_id + message.id_offset, bytes([crc]) + data, time_s)
+
+    def send_pose(self, receiver: Any, time_s: float, contents: dict[str, int]) -> None:
+        for part in self.reader.PARTS:
+            self.send(receiver, part, contents.get(part, 0), time_s)
+        self.counter = (self.counter + 1) % 16
+
+    def answer_to_levels(self, limits: dict[str, float], raw: dict[str, int]) -> str:
+        """The answer to a pose that is 0 but for the raw values of its protection levels."""
+        receiver = self.reader.Receiver(self.reader.AlertLimits(risk_exponent=0, **limits))
+        signals = self.reader.MESSAGES["LOC_Integrity"].signals
+        content = sum(raw.get(name, 0) << signals[name].start_bit - 16 for name in LEVELS)
+        self.send(receiver, "LOC_Status", 2, 1.0)
+        for _ in range(2):
+            self.send_pose(receiver, 1.0, {"LOC_Integrity": content})
+        return str(receiver.answer(1.0))
+
+    def test_knows_the_capture_time_in_utc(self) -> None:
+        receiver = self.reader.Receiver()
+        self.send_pose(receiver, 1.0, {"LOC_Time": 2**32 - 5})
+        self.assertIsNone(receiver.capture_utc_us(1.0), "no LOC_Clock yet")
+        self.send(receiver, "LOC_Clock", 7 + (123 << 32), 1.0)
+        self.assertEqual(receiver.capture_utc_us(1.3), 2)
+        self.assertAlmostEqual(receiver.utc_error_ms, 1.23)
+        self.assertIsNone(receiver.capture_utc_us(1.301), "too old")
+        self.assertEqual(receiver.capture_utc_us(0.9), 2)
+        self.assertIsNone(receiver.capture_utc_us(0.899), "set back")
+        self.send_pose(receiver, 1.1, {"LOC_Time": 0xFFFF << 32})
+        self.assertIsNone(receiver.capture_utc_us(1.1), "no images")
+        self.send_pose(receiver, 1.2, {"LOC_Time": 2**32 - 5})
+        self.assertEqual(receiver.capture_utc_us(1.2), 2)
+        self.send(receiver, "LOC_Clock", 7 + (0xFFFF << 32), 1.2)
+        self.assertIsNone(receiver.capture_utc_us(1.2), "not synchronized")
+
+    def test_an_axis_without_a_limit_needs_no_protection_level(self) -> None:
+        sna = {"ProtectionLongitudinal": 0xFFF}
+        limits = {"lateral_m": 0.5, "yaw_deg": 1.0}
+        self.assertEqual(self.answer_to_levels(limits, sna), "usable")
+        self.assertEqual(self.answer_to_levels({**limits, "longitudinal_m": 1.0}, sna),
+                         "not_available")
+        for axis, raw in {"lateral_m": {"ProtectionLateral": 0x7FF},
+                          "yaw_deg": {"ProtectionYaw": 0x7FF}}.items():
+            self.assertEqual(self.answer_to_levels({axis: 1.0}, raw), "not_available")
+            self.assertEqual(self.answer_to_levels({}, raw), "usable")
+
+    def test_no_level_is_within_a_limit_that_is_negative_or_not_a_number(self) -> None:
+        for axis in self.reader.LEVELS:
+            for limit in (-1.0, float("nan")):
+                with self.subTest(axis=axis, limit=limit):
+                    self.assertEqual(self.answer_to_levels({axis: limit}, {}), "beyond_limit")
