@@ -14,7 +14,7 @@ GnssSample gnss_sample_of(const GeodeticFix& fix, GeoReference& geo, Time time) 
   return sample;
 }
 
-std::optional<VehicleSample> SampleMaker::odometry(const OdometryCheck::Wheels& wheels) {
+std::optional<OdometrySample> SampleMaker::odometry(const OdometryCheck::Wheels& wheels) {
   const bool plausible = odometry_check_.judge(wheels) == OdometryVerdict::kPlausible;
   if (!plausible || odometry_check_.is_slow()) note_implausible();
   if (!plausible) return std::nullopt;
@@ -25,7 +25,7 @@ std::optional<VehicleSample> SampleMaker::odometry(const OdometryCheck::Wheels& 
                         .wheel_lean = odometry_check_.wheel_lean()};
 }
 
-VehicleSample SampleMaker::gnss(const GeodeticFix& fix, Time time) {
+GnssSample SampleMaker::gnss(const GeodeticFix& fix, Time time) {
   ++gnss_samples_;
   return gnss_sample_of(fix, geo_, time);
 }

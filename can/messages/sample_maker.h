@@ -38,8 +38,8 @@ class SampleMaker {
   void note_foreign_sender() { foreign_sender_ = latest_; }
 
   /// Nothing if the wheels are not plausible.
-  std::optional<VehicleSample> odometry(const OdometryCheck::Wheels& wheels);
-  VehicleSample gnss(const GeodeticFix& fix, Time time);
+  std::optional<OdometrySample> odometry(const OdometryCheck::Wheels& wheels);
+  GnssSample gnss(const GeodeticFix& fix, Time time);
 
   WhyMask why() const;
   /// Adds what was refused here.

@@ -39,6 +39,15 @@ struct VehicleInputCounters {
   }
 };
 
+/// What one frame completes.
+struct VehicleSamples {
+  std::optional<OdometrySample> odometry{};
+  std::optional<GnssSample> gnss{};
+
+  /// Whether there is a sample.
+  explicit operator bool() const { return odometry || gnss; }
+};
+
 /// Samples are always finite, and odometry is plausible (OdometryCheck). The caller has to detect
 /// time-outs from the time of the last sample. accept() does not allocate. One thread.
 class VehicleDecoder {
@@ -48,8 +57,8 @@ class VehicleDecoder {
 
   virtual ~VehicleDecoder() = default;
 
-  /// Returns a sample when this frame completes one.
-  virtual std::optional<VehicleSample> accept(const ReceivedFrame& received) = 0;
+  /// Returns the samples that this frame completes: none, one, or one of each kind.
+  virtual VehicleSamples accept(const ReceivedFrame& received) = 0;
 
   virtual VehicleInputCounters counters() const = 0;
 

@@ -45,7 +45,7 @@ VehicleInput::VehicleInput(const BaseIds& base, GeodeticPosition map_origin,
       odometry_group_(window_of(kOdometryCycleMs)),
       gnss_group_(window_of(kGnssCycleMs)) {}
 
-std::optional<VehicleSample> VehicleInput::accept(const ReceivedFrame& received) {
+VehicleSamples VehicleInput::accept(const ReceivedFrame& received) {
   maker_.note_frame(received.received);
   const auto input = std::ranges::find_if(
       kInputs, [&](const Message* message) { return message->id(base_) == received.frame.id; });
@@ -53,25 +53,25 @@ std::optional<VehicleSample> VehicleInput::accept(const ReceivedFrame& received)
     const bool own_id = is_localizer_id(received.frame.id, base_);
     ++(own_id ? counters_.own_ids : counters_.foreign);
     if (own_id) maker_.note_foreign_sender();
-    return std::nullopt;
+    return {};
   }
   const auto index = static_cast<size_t>(input - kInputs.begin());
   const bool accepted = receivers_[index].accept(received);
   if (receivers_[index].has_second_sender()) maker_.note_foreign_sender();
   const bool invalid = receivers_[index].state() == E2eState::kInvalid;
   if (invalid && index < kFirstGnss) maker_.note_implausible();
-  if (!accepted) return std::nullopt;
+  if (!accepted) return {};
 
   const auto epoch = static_cast<uint8_t>(extract_raw(received.frame, kEpoch));
   if (index < kFirstGnss) {
     const auto set = odometry_group_.add(index, epoch, received);
-    return set ? odometry_from(*set) : std::nullopt;
+    return {.odometry = set ? odometry_from(*set) : std::nullopt};
   }
   const auto set = gnss_group_.add(index - kFirstGnss, epoch, received);
-  return set ? gnss_from(*set) : std::nullopt;
+  return {.gnss = set ? gnss_from(*set) : std::nullopt};
 }
 
-std::optional<VehicleSample> VehicleInput::odometry_from(const EpochGroup<2>::Set& set) {
+std::optional<OdometrySample> VehicleInput::odometry_from(const EpochGroup<2>::Set& set) {
   const auto& [wheels, motion] = set.frames;
   const auto left_mps = decode(wheels, veh_wheel_speed::kRearLeft);
   const auto right_mps = decode(wheels, veh_wheel_speed::kRearRight);
@@ -88,7 +88,7 @@ std::optional<VehicleSample> VehicleInput::odometry_from(const EpochGroup<2>::Se
   return sample;
 }
 
-std::optional<VehicleSample> VehicleInput::gnss_from(const EpochGroup<3>::Set& set) {
+std::optional<GnssSample> VehicleInput::gnss_from(const EpochGroup<3>::Set& set) {
   const auto& [latitude, longitude, heading] = set.frames;
   const auto latitude_deg = decode(latitude, veh_gnss_latitude::kLatitude);
   const auto longitude_deg = decode(longitude, veh_gnss_longitude::kLongitude);

@@ -21,7 +21,7 @@ class VehicleInput final : public VehicleDecoder {
  public:
   VehicleInput(const BaseIds& base, GeodeticPosition map_origin, const OdometryLimits& limits = {});
 
-  std::optional<VehicleSample> accept(const ReceivedFrame& received) override;
+  VehicleSamples accept(const ReceivedFrame& received) override;
   VehicleInputCounters counters() const override;
   WhyMask why() const override { return maker_.why(); }
 
@@ -38,8 +38,8 @@ class VehicleInput final : public VehicleDecoder {
       &veh_gnss_longitude::kMessage, &veh_gnss_heading::kMessage};
   static constexpr size_t kFirstGnss = 2;
 
-  std::optional<VehicleSample> odometry_from(const EpochGroup<2>::Set& set);
-  std::optional<VehicleSample> gnss_from(const EpochGroup<3>::Set& set);
+  std::optional<OdometrySample> odometry_from(const EpochGroup<2>::Set& set);
+  std::optional<GnssSample> gnss_from(const EpochGroup<3>::Set& set);
 
   BaseIds base_;
   SampleMaker maker_;

@@ -56,14 +56,14 @@ DbcVehicleInput::DbcVehicleInput(VehicleBinding binding, const BaseIds& base,
   for (const auto& signal : {gnss.heading, gnss.sigma_heading}) add_if(gnss_signals_, signal);
 }
 
-std::optional<VehicleSample> DbcVehicleInput::accept(const ReceivedFrame& received) {
+VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
   maker_.note_frame(received.received);
   const auto message = std::ranges::find(binding_.messages, received.frame.id, &BoundMessage::id);
   if (message == binding_.messages.end()) {
     const bool own_id = is_localizer_id(received.frame.id, base_);
     ++(own_id ? counters_.own_ids : counters_.foreign);
     if (own_id) maker_.note_foreign_sender();
-    return std::nullopt;
+    return {};
   }
   const auto index = static_cast<size_t>(message - binding_.messages.begin());
   E2eMonitor& monitor = monitors_[index];
@@ -71,11 +71,12 @@ std::optional<VehicleSample> DbcVehicleInput::accept(const ReceivedFrame& receiv
       e2e_frame_of(received.frame, message->protection, message->length), received.received);
   if (monitor.has_second_sender()) maker_.note_foreign_sender();
   if (monitor.state() == E2eState::kInvalid && message->has_odometry) maker_.note_implausible();
-  if (!accepted) return std::nullopt;
+  if (!accepted) return {};
   store(index, received);
-  if (all_new(odometry_signals_)) return odometry(received.received);
-  if (!gnss_signals_.empty() && all_new(gnss_signals_)) return gnss(received.received);
-  return std::nullopt;
+  VehicleSamples samples;
+  if (all_new(odometry_signals_)) samples.odometry = odometry(received.received);
+  if (!gnss_signals_.empty() && all_new(gnss_signals_)) samples.gnss = gnss(received.received);
+  return samples;
 }
 
 void DbcVehicleInput::store(size_t message, const ReceivedFrame& received) {
@@ -134,7 +135,7 @@ std::optional<bool> DbcVehicleInput::holds(const std::optional<BoundCondition>& 
   return std::ranges::find(condition->values, slot.raw) != condition->values.end();
 }
 
-std::optional<VehicleSample> DbcVehicleInput::odometry(Time now) {
+std::optional<OdometrySample> DbcVehicleInput::odometry(Time now) {
   const auto time = take(odometry_signals_);
   if (!time) return std::nullopt;
   const BoundYawRate& turning = binding_.yaw_rate;
@@ -172,20 +173,25 @@ double DbcVehicleInput::sigma_m(const std::optional<size_t>& signal) const {
   return std::max(kLeastSigma_m, signal ? slots_[*signal].value : binding_.gnss->sigma_m);
 }
 
-/// Nothing while the receiver has a position without a heading.
-std::optional<GeodeticFix::Heading> DbcVehicleInput::heading(Time now) const {
+/// Nothing while the receiver has a position without a heading of the same `time`.
+std::optional<GeodeticFix::Heading> DbcVehicleInput::heading(Time now, Time time) const {
   const BoundGnss& gnss = *binding_.gnss;
   if (!gnss.heading || !holds(gnss.heading_valid, now).value_or(false)) return std::nullopt;
+  const auto is_usable = [&](size_t signal) {
+    const Slot& slot = slots_[signal];
+    const Duration cycle = binding_.messages[binding_.signals[signal].message].cycle;
+    return slot.available && std::chrono::abs(slot.received - time) <= kMostCycles * cycle;
+  };
   double sigma_deg = gnss.sigma_heading_deg;
   if (gnss.sigma_heading) {
-    if (!slots_[*gnss.sigma_heading].available) return std::nullopt;
+    if (!is_usable(*gnss.sigma_heading)) return std::nullopt;
     sigma_deg = slots_[*gnss.sigma_heading].value;
   }
-  if (!slots_[*gnss.heading].available) return std::nullopt;
+  if (!is_usable(*gnss.heading)) return std::nullopt;
   return GeodeticFix::Heading{slots_[*gnss.heading].value, std::max(kLeastSigma_deg, sigma_deg)};
 }
 
-std::optional<VehicleSample> DbcVehicleInput::gnss(Time now) {
+std::optional<GnssSample> DbcVehicleInput::gnss(Time now) {
   const BoundGnss& gnss = *binding_.gnss;
   const auto time = take(position_signals_);
   for (const size_t signal : gnss_signals_) slots_[signal].is_new = false;
@@ -203,7 +209,7 @@ std::optional<VehicleSample> DbcVehicleInput::gnss(Time now) {
     ++counters_.not_available;
     return std::nullopt;
   }
-  fix.heading = heading(now);
+  fix.heading = heading(now, *time);
   return maker_.gnss(fix, *time);
 }
 

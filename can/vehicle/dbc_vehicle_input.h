@@ -16,14 +16,15 @@ namespace bevloc::can {
 /// when all wheels and the yaw rate have new values, a GNSS sample when all its signals have some.
 /// The time of a sample is that of its earliest value. The values of one sample may be at most four
 /// cycles of their message apart, and a condition (valid, backward) may be at most four cycles of
-/// its message old. One thread; does not allocate after construction.
+/// its message old. A GNSS sample has no heading if the heading or its sigma is further from the
+/// sample's time. One thread; does not allocate after construction.
 class DbcVehicleInput final : public VehicleDecoder {
  public:
   /// `base` has the identifiers of the localizer's own messages.
   DbcVehicleInput(VehicleBinding binding, const BaseIds& base, GeodeticPosition map_origin,
                   const OdometryLimits& limits);
 
-  std::optional<VehicleSample> accept(const ReceivedFrame& received) override;
+  VehicleSamples accept(const ReceivedFrame& received) override;
   VehicleInputCounters counters() const override;
   WhyMask why() const override { return maker_.why(); }
 
@@ -43,9 +44,9 @@ class DbcVehicleInput final : public VehicleDecoder {
   /// or one is not available.
   std::optional<Time> take(const std::vector<size_t>& signals);
   std::optional<bool> holds(const std::optional<BoundCondition>& condition, Time now) const;
-  std::optional<VehicleSample> odometry(Time now);
-  std::optional<VehicleSample> gnss(Time now);
-  std::optional<GeodeticFix::Heading> heading(Time now) const;
+  std::optional<OdometrySample> odometry(Time now);
+  std::optional<GnssSample> gnss(Time now);
+  std::optional<GeodeticFix::Heading> heading(Time now, Time time) const;
   double sigma_m(const std::optional<size_t>& signal) const;
 
   VehicleBinding binding_;

@@ -48,8 +48,9 @@ void Judge::take(const can::ReceivedFrame& received) {
   log_ << can::candump_line(received.received - times_.log_start, kInterfaceInLog, received.frame)
        << '\n';
   latest_s_ = to_seconds(received.received - times_.drive_start);
-  if (const auto sample = prior_input_->accept(received)) {
-    prior_tracker_.add(*sample);
+  if (const auto samples = prior_input_->accept(received)) {
+    if (samples.odometry) prior_tracker_.add_odometry(*samples.odometry);
+    if (samples.gnss) prior_tracker_.add_gnss(*samples.gnss);
     return;
   }
   const auto pose = reader_.accept(received);

@@ -20,13 +20,13 @@ void VehicleInputStage::step(Duration timeout) {
 }
 
 void VehicleInputStage::take(const can::ReceivedFrame& received) {
-  const auto sample = decoder_->accept(received);
+  const can::VehicleSamples samples = decoder_->accept(received);
   WhyMask why = decoder_->why();
   const bool forged = forged_ && received.received - *forged_ <= can::VehicleDecoder::kWhyHold;
   if (forged) why |= Why::kForeignSender;
-  why_ = why.bits();  // before the sample, so that whoever reads the sample knows it
-  const bool wanted = sample && !(ignores_gnss_ && std::holds_alternative<GnssSample>(*sample));
-  if (wanted) samples_.push(*sample);
+  why_ = why.bits();  // before the samples, so that whoever reads a sample knows it
+  if (samples.odometry) samples_.push(*samples.odometry);
+  if (samples.gnss && !ignores_gnss_) samples_.push(*samples.gnss);
 }
 
 void VehicleInputStage::take_authentic(const can::ReceivedFrame& received) {

@@ -35,8 +35,7 @@ TEST(Allocation, NoneInOneSecondOfTheBus) {
     for (const Frame& frame : encoder.gnss({now, 3.0, 4.0, 1.0, 1.0, {}})) {
       vehicle->send(frame, now);
     }
-    while (const auto received = localizer->receive())
-      samples += input.accept(*received).has_value();
+    while (const auto received = localizer->receive()) samples += bool{input.accept(*received)};
     while (vehicle->receive()) {
     }
   }

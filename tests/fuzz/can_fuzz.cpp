@@ -66,13 +66,13 @@ canfd_frame draw_raw(Random& random, const can::Frame& frame) {
   return raw;
 }
 
-bool is_finite(const VehicleSample& sample) {
-  if (const auto* odometry = std::get_if<OdometrySample>(&sample)) {
-    return std::isfinite(odometry->speed_mps) && std::isfinite(odometry->yaw_rate_radps);
-  }
-  const auto& gnss = std::get<GnssSample>(sample);
-  return std::isfinite(gnss.east_m) && std::isfinite(gnss.north_m) && gnss.sigma_east_m > 0.0 &&
-         gnss.sigma_north_m > 0.0;
+bool is_finite(const can::VehicleSamples& samples) {
+  const auto& odometry = samples.odometry;
+  const auto& gnss = samples.gnss;
+  return (!odometry ||
+          (std::isfinite(odometry->speed_mps) && std::isfinite(odometry->yaw_rate_radps))) &&
+         (!gnss || (std::isfinite(gnss->east_m) && std::isfinite(gnss->north_m) &&
+                    gnss->sigma_east_m > 0.0 && gnss->sigma_north_m > 0.0));
 }
 
 Status check_read(Random& random, FrameSource& source, can::VehicleInput& input,
@@ -87,8 +87,7 @@ Status check_read(Random& random, FrameSource& source, can::VehicleInput& input,
   if (frame == nullptr) return {};
   if (!can::is_valid_length(frame->format, frame->length))
     return fail("found a frame of invalid length");
-  const auto sample = input.accept({*frame, now});
-  if (sample && !is_finite(*sample)) return fail("found a sample that is not finite");
+  if (!is_finite(input.accept({*frame, now}))) return fail("found a sample that is not finite");
   if (frame->length == can::loc_solution::kMessage.length) {
     for (size_t part = 0; part < can::loc_solution::kParts.size(); ++part) {
       can::part_of_solution(*frame, part, {});

@@ -28,7 +28,7 @@ class VehicleInputAttackTest : public testing::Test {
   /// Returns whether the frames gave a sample.
   bool feed(const Pair& frames, Time now) {
     bool sampled = false;
-    for (const Frame& frame : frames) sampled |= input_.accept({frame, now}).has_value();
+    for (const Frame& frame : frames) sampled |= bool{input_.accept({frame, now})};
     return sampled;
   }
 

@@ -20,16 +20,11 @@ using test::kOrigin;
 
 constexpr double kTrack_m = 1.6;
 
-template <typename Sample>
-bool holds(const std::optional<VehicleSample>& sample) {
-  return sample && std::holds_alternative<Sample>(*sample);
-}
-
 class VehicleInputTest : public testing::Test {
  protected:
   template <typename Frames>
-  std::optional<VehicleSample> feed(const Frames& frames, Time now) {
-    std::optional<VehicleSample> last;
+  VehicleSamples feed(const Frames& frames, Time now) {
+    VehicleSamples last;
     for (const Frame& frame : frames) last = input_.accept({frame, now});
     return last;
   }
@@ -50,12 +45,11 @@ class VehicleInputTest : public testing::Test {
 TEST_F(VehicleInputTest, OdometryRoundTrips) {
   const auto frames = encoder_.odometry(motion());
   EXPECT_FALSE(input_.accept({frames[0], kNow}));
-  const auto sample = input_.accept({frames[1], kNow + milliseconds(1)});
-  ASSERT_TRUE(holds<OdometrySample>(sample));
-  const auto& odometry = std::get<OdometrySample>(*sample);
-  EXPECT_NEAR(odometry.speed_mps, 12.3, 0.0013);
-  EXPECT_NEAR(odometry.yaw_rate_radps, 0.2, radians(0.0026));
-  EXPECT_EQ(odometry.time, kNow) << "the time of the first frame";
+  const auto odometry = input_.accept({frames[1], kNow + milliseconds(1)}).odometry;
+  ASSERT_TRUE(odometry);
+  EXPECT_NEAR(odometry->speed_mps, 12.3, 0.0013);
+  EXPECT_NEAR(odometry->yaw_rate_radps, 0.2, radians(0.0026));
+  EXPECT_EQ(odometry->time, kNow) << "the time of the first frame";
   EXPECT_EQ(input_.last_odometry(), kNow);
   EXPECT_FALSE(input_.last_gnss());
 }
@@ -68,9 +62,9 @@ TEST_F(VehicleInputTest, TheOuterWheelIsFasterInABend) {
 }
 
 TEST_F(VehicleInputTest, GnssRoundTrips) {
-  const auto sample = feed(encoder_.gnss(fix()), kNow);
-  ASSERT_TRUE(holds<GnssSample>(sample));
-  const auto& gnss = std::get<GnssSample>(*sample);
+  const auto sample = feed(encoder_.gnss(fix()), kNow).gnss;
+  ASSERT_TRUE(sample);
+  const GnssSample& gnss = *sample;
   EXPECT_NEAR(gnss.east_m, 321.0, 0.01);
   EXPECT_NEAR(gnss.north_m, -45.6, 0.01);
   EXPECT_NEAR(gnss.sigma_east_m, 1.24, 1e-9) << "rounded up";
@@ -84,18 +78,19 @@ TEST_F(VehicleInputTest, GnssRoundTrips) {
 TEST_F(VehicleInputTest, AGnssFixWithoutHeadingIsStillAFix) {
   GnssSample standing = fix();
   standing.yaw.reset();
-  const auto sample = feed(encoder_.gnss(standing), kNow);
-  ASSERT_TRUE(holds<GnssSample>(sample));
-  EXPECT_FALSE(std::get<GnssSample>(*sample).yaw);
+  const auto sample = feed(encoder_.gnss(standing), kNow).gnss;
+  ASSERT_TRUE(sample);
+  EXPECT_FALSE(sample->yaw);
 }
 
 TEST_F(VehicleInputTest, AZeroSigmaMeansOneStep) {
   GnssSample exact = fix();
   exact.sigma_east_m = exact.sigma_north_m = 0.0;
   exact.yaw->sigma_rad = 0.0;
-  const auto sample = feed(encoder_.gnss(exact), kNow);
-  EXPECT_DOUBLE_EQ(std::get<GnssSample>(*sample).sigma_east_m, 0.01);
-  EXPECT_DOUBLE_EQ(std::get<GnssSample>(*sample).yaw->sigma_rad, radians(0.01));
+  const auto sample = feed(encoder_.gnss(exact), kNow).gnss;
+  ASSERT_TRUE(sample);
+  EXPECT_DOUBLE_EQ(sample->sigma_east_m, 0.01);
+  EXPECT_DOUBLE_EQ(sample->yaw->sigma_rad, radians(0.01));
 }
 
 TEST_F(VehicleInputTest, SnaGivesNoSample) {
@@ -118,7 +113,7 @@ TEST_F(VehicleInputTest, FramesOfDifferentEpochsAreNotPaired) {
   const auto second = encoder_.odometry(motion());
   EXPECT_FALSE(input_.accept({first[0], kNow}));
   EXPECT_FALSE(input_.accept({second[1], kNow}));
-  EXPECT_TRUE(holds<OdometrySample>(input_.accept({second[0], kNow})));
+  EXPECT_TRUE(input_.accept({second[0], kNow}).odometry);
   EXPECT_EQ(input_.counters().incomplete, 1u);
 }
 
@@ -159,7 +154,7 @@ TEST_F(VehicleInputTest, BadFramesAreCountedAndIgnored) {
 TEST_F(VehicleInputTest, AfterALossTheNextSampleIsUsedAndTheLossCounted) {
   feed(encoder_.odometry(motion()), kNow);
   encoder_.odometry(motion());
-  EXPECT_TRUE(holds<OdometrySample>(feed(encoder_.odometry(motion()), kNow + milliseconds(20))));
+  EXPECT_TRUE(feed(encoder_.odometry(motion()), kNow + milliseconds(20)).odometry);
   EXPECT_EQ(input_.counters().lost, 2u) << "one frame of each message";
   EXPECT_EQ(input_.counters().odometry_samples, 2u);
 }
@@ -174,10 +169,11 @@ TEST_F(VehicleInputTest, UsesTheConfiguredBaseIds) {
             (std::vector<uint32_t>{0x210, 0x211, 0x212, 0x213, 0x214}));
 }
 
-void expect_finite(const VehicleSample& sample) {
-  if (const auto* odometry = std::get_if<OdometrySample>(&sample)) {
+void expect_finite(const VehicleSamples& samples) {
+  if (const auto& odometry = samples.odometry) {
     ASSERT_TRUE(std::isfinite(odometry->speed_mps) && std::isfinite(odometry->yaw_rate_radps));
-  } else if (const auto* gnss = std::get_if<GnssSample>(&sample)) {
+  }
+  if (const auto& gnss = samples.gnss) {
     ASSERT_TRUE(std::isfinite(gnss->east_m) && std::isfinite(gnss->north_m));
     ASSERT_TRUE(gnss->sigma_east_m > 0.0 && gnss->sigma_north_m > 0.0);
     ASSERT_TRUE(!gnss->yaw || (std::isfinite(gnss->yaw->yaw_rad) && gnss->yaw->sigma_rad > 0.0));
@@ -204,7 +200,7 @@ TEST_F(VehicleInputTest, RandomFramesNeverGiveASampleThatIsNotFinite) {
       frame.data[1] &= 0x1F;  // two epochs, so that they often match
       protect_p02(frame, static_cast<uint8_t>(message.data_id), ++counters[input] & 0x0F);
     }
-    if (const auto sample = input_.accept({frame, kNow + milliseconds(i)})) expect_finite(*sample);
+    expect_finite(input_.accept({frame, kNow + milliseconds(i)}));
     if (HasFatalFailure()) return;
   }
   const VehicleInputCounters counted = input_.counters();

@@ -1,7 +1,5 @@
 #include "can/vehicle/dbc_vehicle_input.h"
 
-#include <variant>
-
 #include <gtest/gtest.h>
 
 namespace bevloc::can {
@@ -38,12 +36,12 @@ OdometrySample sample_of(double speed_mps, bool reverse, double yaw_rate_radps, 
   insert_physical(kYawRate, yaw_rate_radps, bytes);
   insert_bits(kReverse, reverse ? 1 : 0, bytes);
   insert_bits(kRight, right ? 1 : 0, bytes);
-  std::optional<VehicleSample> sample;
+  std::optional<OdometrySample> sample;
   for (int cycle = 0; cycle < 20 && !sample; ++cycle) {
-    sample = input.accept({frame, Time(std::chrono::milliseconds(20 * (cycle + 1)))});
+    sample = input.accept({frame, Time(std::chrono::milliseconds(20 * (cycle + 1)))}).odometry;
   }
   EXPECT_TRUE(sample);
-  return sample ? std::get<OdometrySample>(*sample) : OdometrySample{};
+  return sample.value_or(OdometrySample{});
 }
 
 TEST(DbcVehicleInputTest, AConditionGivesTheSignOfAMagnitude) {
@@ -59,6 +57,101 @@ TEST(DbcVehicleInputTest, ASignalWithASignKeepsItBesideTheCondition) {
   const OdometrySample back = sample_of(-2.0, true, -0.1, true);
   EXPECT_NEAR(back.speed_mps, -2.0, 1e-9);
   EXPECT_NEAR(back.yaw_rate_radps, -0.1, 1e-9);
+}
+
+constexpr SignalLayout kLatitude{64, 32, ByteOrder::kIntel, RawType::kSigned, 1e-7, 0.0};
+constexpr SignalLayout kLongitude{96, 32, ByteOrder::kIntel, RawType::kSigned, 1e-7, 0.0};
+constexpr SignalLayout kHeading{0, 16, ByteOrder::kIntel, RawType::kUnsigned, 0.01, 0.0};
+constexpr SignalLayout kSigma{16, 16, ByteOrder::kIntel, RawType::kUnsigned, 0.01, 0.0};
+
+/// The message of binding() carries a position, too, and others the heading and its sigma.
+VehicleBinding binding_with_gnss() {
+  VehicleBinding all = binding();
+  all.messages[0].length = 16;
+  for (const uint32_t id : {17U, 18U}) {
+    all.messages.push_back({.name = "B",
+                            .id = id,
+                            .length = 4,
+                            .cycle = std::chrono::milliseconds(100),
+                            .protection = {}});
+  }
+  const auto add = [&](size_t message, const SignalLayout& layout) {
+    all.signals.push_back(
+        {.name = "S", .message = message, .layout = layout, .min = -500.0, .max = 500.0});
+    return all.signals.size() - 1;
+  };
+  all.gnss = {.latitude = add(0, kLatitude), .longitude = add(0, kLongitude), .sigma_m = 1.0};
+  all.gnss->heading = add(1, kHeading);
+  all.gnss->sigma_heading = add(2, kSigma);
+  return all;
+}
+
+/// The vehicle of binding_with_gnss().
+class GnssVehicle {
+ public:
+  explicit GnssVehicle(VehicleBinding binding) : input_(std::move(binding), {}, {49.0, 8.4}, {}) {}
+
+  VehicleSamples send_motion_and_position(Time now) {
+    Frame frame{.id = 16, .length = 16};
+    const std::span<uint8_t> bytes(frame.data.data(), frame.length);
+    insert_physical(kSpeed, 2.0, bytes);
+    insert_physical(kLatitude, 49.001, bytes);
+    insert_physical(kLongitude, 8.401, bytes);
+    return input_.accept({frame, now});
+  }
+  VehicleSamples send_heading(uint32_t id, Time now) {
+    return input_.accept({{.id = id, .length = 4}, now});
+  }
+  void send_headings(Time now) {
+    send_heading(17, now);
+    send_heading(18, now);
+  }
+
+ private:
+  DbcVehicleInput input_;
+};
+
+constexpr Duration kCycle = std::chrono::milliseconds(20);
+/// Long enough for a message to become valid.
+constexpr int kSettlingCycles = 100;
+
+TEST(DbcVehicleInputTest, OneMessageMayCarryOdometryAndGnss) {
+  VehicleBinding together = binding_with_gnss();
+  together.gnss->heading.reset();
+  together.gnss->sigma_heading.reset();
+  GnssVehicle vehicle(std::move(together));
+  VehicleSamples samples;
+  for (int cycle = 1; cycle <= kSettlingCycles; ++cycle) {
+    samples = vehicle.send_motion_and_position(Time(cycle * kCycle));
+  }
+  ASSERT_TRUE(samples.odometry);
+  EXPECT_NEAR(samples.odometry->speed_mps, 2.0, 1e-9);
+  ASSERT_TRUE(samples.gnss);
+  EXPECT_NEAR(samples.gnss->north_m, 111.2, 0.1);
+  EXPECT_FALSE(samples.gnss->yaw);
+}
+
+TEST(DbcVehicleInputTest, AnOldHeadingIsNotThatOfAFreshPosition) {
+  for (const uint32_t old : {17U, 18U}) {
+    for (const bool is_too_old : {false, true}) {
+      GnssVehicle vehicle(binding_with_gnss());
+      Time now{};
+      for (int cycle = 1; cycle <= kSettlingCycles; ++cycle) {
+        now = Time(cycle * kCycle);
+        vehicle.send_motion_and_position(now);
+        if (cycle % 5 == 0) vehicle.send_headings(now);
+      }
+      // Four of its cycles later the position comes with the other message, or a little later.
+      vehicle.send_heading(old, now);
+      const int later = is_too_old ? 21 : 20;
+      for (int cycle = 0; cycle < later; ++cycle) {
+        vehicle.send_motion_and_position(now += kCycle);
+      }
+      const VehicleSamples samples = vehicle.send_heading(old == 17 ? 18 : 17, now);
+      ASSERT_TRUE(samples.gnss) << old << ", " << is_too_old;
+      EXPECT_EQ(samples.gnss->yaw.has_value(), !is_too_old) << old;
+    }
+  }
 }
 
 }  // namespace

@@ -37,13 +37,13 @@ class Source {
   Bytes bytes_;
 };
 
-bool is_finite(const VehicleSample& sample) {
-  if (const auto* odometry = std::get_if<OdometrySample>(&sample)) {
-    return std::isfinite(odometry->speed_mps) && std::isfinite(odometry->yaw_rate_radps);
-  }
-  const auto& gnss = std::get<GnssSample>(sample);
-  return std::isfinite(gnss.east_m) && std::isfinite(gnss.north_m) && gnss.sigma_east_m > 0.0 &&
-         gnss.sigma_north_m > 0.0;
+bool is_finite(const can::VehicleSamples& samples) {
+  const auto& odometry = samples.odometry;
+  const auto& gnss = samples.gnss;
+  return (!odometry ||
+          (std::isfinite(odometry->speed_mps) && std::isfinite(odometry->yaw_rate_radps))) &&
+         (!gnss || (std::isfinite(gnss->east_m) && std::isfinite(gnss->north_m) &&
+                    gnss->sigma_east_m > 0.0 && gnss->sigma_north_m > 0.0));
 }
 
 /// Draws frames: raw ones, and ones of the project's messages with valid protection.
@@ -97,8 +97,7 @@ void run_can_frames(Bytes bytes) {
     const auto* frame = std::get_if<can::Frame>(&read);
     if (frame == nullptr) continue;
     expect(can::is_valid_length(frame->format, frame->length), "a frame of invalid length");
-    const auto sample = input.accept({*frame, now});
-    expect(!sample || is_finite(*sample), "a sample that is not finite");
+    expect(is_finite(input.accept({*frame, now})), "a sample that is not finite");
     if (frame->length == can::loc_solution::kMessage.length) {
       for (size_t part = 0; part < can::loc_solution::kParts.size(); ++part) {
         can::part_of_solution(*frame, part, {});
