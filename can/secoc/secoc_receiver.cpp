@@ -6,18 +6,24 @@ namespace bevloc::can {
 
 std::span<const ReceivedFrame> SecocReceiver::accept(const ReceivedFrame& received) {
   const Frame& frame = received.frame;
-  const auto is = [&](const Message* message) {
-    return message->id(base_) == frame.id && message->length == frame.length;
+  const auto is = [&](const Message* message) { return message->id(base_) == frame.id; };
+  const auto has_length = [&](const Message* message) {
+    if (frame.length == message->length) return true;
+    ++counters_.wrong_length;
+    return false;
   };
   if (is(&veh_freshness::kMessage)) {
-    take_freshness(received);
+    if (has_length(&veh_freshness::kMessage)) take_freshness(received);
     return {};
   }
   for (Group& group : groups_) {
-    if (is(group.authentication)) return release(group, received);
+    if (is(group.authentication)) {
+      if (!has_length(group.authentication)) return {};
+      return release(group, received);
+    }
     for (size_t i = 0; i < group.members.size(); ++i) {
-      if (group.members[i]->id(base_) != frame.id) continue;
-      if (is(group.members[i])) hold(group, i, received);
+      if (!is(group.members[i])) continue;
+      if (has_length(group.members[i])) hold(group, i, received);
       return {};
     }
   }
@@ -27,7 +33,10 @@ std::span<const ReceivedFrame> SecocReceiver::accept(const ReceivedFrame& receiv
 
 void SecocReceiver::hold(Group& group, size_t member, const ReceivedFrame& received) {
   const int64_t epoch = extract_raw(received.frame, kEpoch);
-  if (epoch != group.epoch) group.present = 0;
+  if (epoch != group.epoch) {
+    if (group.present != 0) ++counters_.incomplete;
+    group.present = 0;
+  }
   group.epoch = epoch;
   group.frames[member] = received;
   group.present |= 1u << member;
@@ -57,10 +66,10 @@ std::span<const ReceivedFrame> SecocReceiver::release(Group& group,
 }
 
 /// Tries the lower bits with all announced upper bits and, as these may be forged, with those of
-/// the latest authentic epoch, each also plus one.
-bool SecocReceiver::is_authentic(const Group& group, const Frame& authentication) {
-  std::array<uint64_t, kMostAnnouncements + 1> highs{latest_ >> 16U};
-  size_t count = 1;
+/// the latest authentic epochs, each also plus one.
+bool SecocReceiver::is_authentic(Group& group, const Frame& authentication) {
+  std::array<uint64_t, kMostAnnouncements + 2> highs{latest_ >> 16U, group.latest >> 16U};
+  size_t count = 2;
   for (const Announcement& announcement : announcements_) {
     if (announcement.received != Time::min()) highs[count++] = announcement.high;
   }
@@ -70,23 +79,27 @@ bool SecocReceiver::is_authentic(const Group& group, const Frame& authentication
   });
 }
 
-/// Whether the epoch is authentic with these upper bits. Only a value above the latest one counts,
-/// and becomes the latest one.
-bool SecocReceiver::has_freshness(const Group& group, const Frame& authentication, uint64_t high) {
+/// Whether the epoch is authentic with these upper bits. Only a value above the latest one of these
+/// messages counts, and becomes the latest one.
+bool SecocReceiver::has_freshness(Group& group, const Frame& authentication, uint64_t high) {
   const auto low = static_cast<uint64_t>(extract_raw(authentication, secoc::kFreshnessLow));
   const uint64_t freshness = high << 16U | low;
-  if (freshness <= latest_) return false;
+  if (freshness <= group.latest || freshness + kMostOvertaking < latest_) return false;
   std::array<Frame, kMaxMembers> frames;
   std::ranges::transform(group.frames, frames.begin(), &ReceivedFrame::frame);
   const auto mac = authenticator_.mac(*group.authentication, freshness,
                                       std::span(frames).first(group.members.size()));
   if (!mac || *mac != static_cast<uint32_t>(extract_raw(authentication, secoc::kMac))) return false;
-  latest_ = freshness;
+  group.latest = freshness;
+  latest_ = std::max(latest_, freshness);
   return true;
 }
 
 void SecocReceiver::take_freshness(const ReceivedFrame& received) {
-  if (!has_valid_crc(received.frame, veh_freshness::kMessage.protection())) return;
+  if (!has_valid_crc(received.frame, veh_freshness::kMessage.protection())) {
+    ++counters_.bad_announcements;
+    return;
+  }
   const auto high = static_cast<uint64_t>(extract_raw(received.frame, secoc::kFreshnessHigh));
   const bool is_first = listens_until_ == Time::max();
   auto place = std::ranges::find(announcements_, high, &Announcement::high);

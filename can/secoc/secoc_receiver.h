@@ -14,15 +14,18 @@
 namespace bevloc::can {
 
 struct SecocCounters {
-  uint64_t authentic = 0;     ///< epochs that were let through
-  uint64_t wrong_mac = 0;     ///< epochs that are forged, damaged or replayed
-  uint64_t incomplete = 0;    ///< authentications without all frames of their epoch
-  uint64_t no_freshness = 0;  ///< epochs before the freshness value of the sender is known
+  uint64_t authentic = 0;          ///< epochs that were let through
+  uint64_t wrong_mac = 0;          ///< epochs that are forged, damaged or replayed
+  uint64_t incomplete = 0;         ///< epochs without all frames, or without authentication
+  uint64_t no_freshness = 0;       ///< epochs before the freshness value of the sender is known
+  uint64_t wrong_length = 0;       ///< frames of the messages that take part in authentication
+  uint64_t bad_announcements = 0;  ///< announcements with a wrong CRC
 };
 
 /// Holds the frames of an epoch back until their authentication has come. The freshness value must
-/// be higher than that of every authentic epoch before; so a replay is refused as soon as one later
-/// epoch was received.
+/// be higher than that of every authentic epoch of the same messages before; so a replay is refused
+/// as soon as one later epoch was received. Odometry may overtake GNSS on the bus, because its
+/// identifiers are lower. So the freshness value may be a little lower than the highest of all.
 ///
 /// Announcements (VEH_Freshness) have no authentication. So the receiver keeps the latest few
 /// different ones, which includes the sender's own, and first only listens for a while: it learns
@@ -44,6 +47,8 @@ class SecocReceiver {
 
  private:
   static constexpr size_t kMaxMembers = 3;
+  /// How many later epochs of other messages may come before an epoch: those of 160 ms.
+  static constexpr uint64_t kMostOvertaking = 8;
   /// Messages that one message authenticates.
   struct Group {
     const Message* authentication;
@@ -51,6 +56,7 @@ class SecocReceiver {
     std::array<ReceivedFrame, kMaxMembers> frames{};
     unsigned present = 0;  ///< bit i: frames[i] is of the epoch `epoch`
     int64_t epoch = 0;
+    uint64_t latest = 0;  ///< freshness of the latest authentic epoch of this group
   };
   static constexpr const Message* kOdometry[] = {&veh_wheel_speed::kMessage,
                                                  &veh_yaw_rate::kMessage};
@@ -64,10 +70,10 @@ class SecocReceiver {
   };
   static constexpr size_t kMostAnnouncements = 4;
 
-  static void hold(Group& group, size_t member, const ReceivedFrame& received);
+  void hold(Group& group, size_t member, const ReceivedFrame& received);
   std::span<const ReceivedFrame> release(Group& group, const ReceivedFrame& authentication);
-  bool is_authentic(const Group& group, const Frame& authentication);
-  bool has_freshness(const Group& group, const Frame& authentication, uint64_t high);
+  bool is_authentic(Group& group, const Frame& authentication);
+  bool has_freshness(Group& group, const Frame& authentication, uint64_t high);
   void take_freshness(const ReceivedFrame& received);
 
   Authenticator authenticator_;
@@ -78,7 +84,7 @@ class SecocReceiver {
   Duration listening_;
   std::array<Announcement, kMostAnnouncements> announcements_{};
   Time listens_until_ = Time::max();  ///< max() before the first announcement
-  uint64_t latest_ = 0;               ///< freshness of the latest authentic epoch
+  uint64_t latest_ = 0;               ///< the highest freshness of an authentic epoch
   SecocCounters counters_;
 };
 

@@ -205,6 +205,7 @@ void add_vehicle(Families& families, const Snapshot& snapshot) {
   families.count("bevloc_vehicle_frames_lost_total", "Frames that the E2E counter shows missing",
                  input.lost);
   refused("own_ids", input.own_ids);
+  refused("foreign", input.foreign);
   refused("wrong_crc", input.wrong_crc);
   refused("wrong_length", input.wrong_length);
   refused("repeated", input.repeated);
@@ -221,6 +222,8 @@ void add_vehicle(Families& families, const Snapshot& snapshot) {
   refused("wrong_mac", snapshot.authentication->wrong_mac);
   refused("authentication_incomplete", snapshot.authentication->incomplete);
   refused("no_freshness", snapshot.authentication->no_freshness);
+  refused("authentication_wrong_length", snapshot.authentication->wrong_length);
+  refused("bad_announcement", snapshot.authentication->bad_announcements);
 }
 
 void add_gnss(Families& families, const GnssCounters& gnss) {

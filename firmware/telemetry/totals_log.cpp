@@ -82,11 +82,12 @@ void log_vehicle_input(const can::VehicleInputCounters& input) {
   spdlog::info(
       "vehicle: {} odometry and {} GNSS samples; frames: {} lost, {} with a wrong CRC or length, "
       "{} repeated, {} out of sequence, {} while not valid, {} incomplete, {} not available, {} "
-      "with "
-      "our identifiers; odometry refused: {} wheels against yaw rate, {} jumps, {} sharp turns",
+      "with our identifiers, {} of other messages; odometry refused: {} wheels against yaw rate, "
+      "{} jumps, {} sharp turns",
       input.odometry_samples, input.gnss_samples, input.lost, input.wrong_crc + input.wrong_length,
       input.repeated, input.wrong_sequence, input.not_valid, input.incomplete, input.not_available,
-      input.own_ids, input.contradicting_wheels, input.odometry_jumps, input.sharp_turns);
+      input.own_ids, input.foreign, input.contradicting_wheels, input.odometry_jumps,
+      input.sharp_turns);
 }
 
 void log_gnss(const GnssCounters& gnss) {
@@ -108,9 +109,11 @@ void log_gnss(const GnssCounters& gnss) {
 
 void log_authentication(const can::SecocCounters& secoc) {
   spdlog::info(
-      "vehicle: {} epochs authentic; refused: {} with a wrong code or replayed, {} incomplete, {} "
-      "before the freshness of the sender was known",
-      secoc.authentic, secoc.wrong_mac, secoc.incomplete, secoc.no_freshness);
+      "vehicle: {} epochs authentic; refused: {} with a wrong code or replayed, {} incomplete or "
+      "without authentication, {} before the freshness of the sender was known; frames refused: {} "
+      "with a wrong length, {} announcements with a wrong CRC",
+      secoc.authentic, secoc.wrong_mac, secoc.incomplete, secoc.no_freshness, secoc.wrong_length,
+      secoc.bad_announcements);
 }
 
 }  // namespace

@@ -221,9 +221,52 @@ TEST_F(SecocTest, FramesWithoutAuthenticationAreHeldBack) {
   frames = vehicle_.odometry();
   frames.erase(frames.begin());
   EXPECT_EQ(feed(frames), 0u);
-  EXPECT_EQ(receiver_.counters().incomplete, 1u);
+  EXPECT_EQ(receiver_.counters().incomplete, 2u);
   const Frame other = blank_frame(loc_status::kMessage, BaseIds{});
   EXPECT_EQ(feed({other}), 1u) << "what needs no authentication passes";
+}
+
+TEST_F(SecocTest, CountsFramesOfWrongLengthAndBadAnnouncements) {
+  for (std::vector<Frame> frames : {vehicle_.odometry(), vehicle_.gnss(), {vehicle_.freshness()}}) {
+    for (Frame& frame : frames) --frame.length;
+    EXPECT_EQ(feed(frames), 0u);
+  }
+  EXPECT_EQ(receiver_.counters().wrong_length, 3u + 4u + 1u);
+  Frame damaged = vehicle_.freshness();
+  damaged.data[4] ^= 1;
+  feed({damaged});
+  EXPECT_EQ(receiver_.counters().bad_announcements, 1u);
+  EXPECT_EQ(receiver_.counters().incomplete, 0u);
+}
+
+TEST_F(SecocTest, OdometryMayOvertakeGnss) {
+  feed({vehicle_.freshness()});
+  for (int i = 0; i < 70000; ++i) {  // the lower bits of the freshness value overflow
+    if (i % 50 == 0) feed({vehicle_.freshness()});
+    const auto gnss = vehicle_.gnss();
+    ASSERT_EQ(feed(vehicle_.odometry()), 2u) << i;
+    ASSERT_EQ(feed(gnss), 3u) << i;
+    ASSERT_EQ(feed(gnss), 0u) << "a replay, " << i;
+  }
+  EXPECT_EQ(receiver_.counters().wrong_mac, 70000u) << "the replays";
+}
+
+TEST_F(SecocTest, GnssThatWasHeldBackForLongIsRefused) {
+  feed({vehicle_.freshness()});
+  for (const int overtaking : {8, 9}) {
+    const auto gnss = vehicle_.gnss();
+    for (int i = 0; i < overtaking; ++i) EXPECT_EQ(feed(vehicle_.odometry()), 2u);
+    EXPECT_EQ(feed(gnss), overtaking == 8 ? 3u : 0u) << overtaking;
+  }
+}
+
+TEST_F(SecocTest, GnssOfAnEarlierStartIsRefusedThoughNoLaterOneCame) {
+  feed({vehicle_.freshness()});
+  const auto old = vehicle_.gnss();
+  SecureVehicle restarted(kKey, 2);
+  feed({restarted.freshness()});
+  EXPECT_EQ(feed(restarted.odometry()), 2u);
+  EXPECT_EQ(feed(old), 0u);
 }
 
 /// Checks an epoch of the localizer as a receiver does that has seen LOC_Freshness.
