@@ -7,35 +7,54 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
+/// What quantities with the same units have in common.
+enum class Dimension { kSpeed, kTurning, kAngle, kLength };
+
 struct Unit {
-  Quantity quantity;
+  Dimension dimension;
   std::string_view name;
   double factor;
 };
 
 constexpr Unit kUnits[] = {
-    {Quantity::kSpeed, "m/s", 1.0},
-    {Quantity::kSpeed, "mps", 1.0},
-    {Quantity::kSpeed, "km/h", 1.0 / 3.6},
-    {Quantity::kSpeed, "kmh", 1.0 / 3.6},
-    {Quantity::kSpeed, "kph", 1.0 / 3.6},
-    {Quantity::kSpeed, "mph", 0.44704},
-    {Quantity::kSpeed, "kn", 1852.0 / 3600.0},
-    {Quantity::kYawRate, "rad/s", 1.0},
-    {Quantity::kYawRate, "deg/s", kRadPerDeg},
-    {Quantity::kYawRate, "degree/s", kRadPerDeg},
-    {Quantity::kYawRate, "degrees/s", kRadPerDeg},
-    {Quantity::kYawRate, "°/s", kRadPerDeg},
-    {Quantity::kAngle, "deg", 1.0},
-    {Quantity::kAngle, "degree", 1.0},
-    {Quantity::kAngle, "degrees", 1.0},
-    {Quantity::kAngle, "°", 1.0},
-    {Quantity::kAngle, "rad", 1.0 / kRadPerDeg},
-    {Quantity::kAngle, "arcmin", 1.0 / 60.0},
-    {Quantity::kLength, "m", 1.0},
-    {Quantity::kLength, "cm", 0.01},
-    {Quantity::kLength, "mm", 0.001},
+    {Dimension::kSpeed, "m/s", 1.0},
+    {Dimension::kSpeed, "mps", 1.0},
+    {Dimension::kSpeed, "km/h", 1.0 / 3.6},
+    {Dimension::kSpeed, "kmh", 1.0 / 3.6},
+    {Dimension::kSpeed, "kph", 1.0 / 3.6},
+    {Dimension::kSpeed, "mph", 0.44704},
+    {Dimension::kSpeed, "kn", 1852.0 / 3600.0},
+    {Dimension::kTurning, "rad/s", 1.0},
+    {Dimension::kTurning, "deg/s", kRadPerDeg},
+    {Dimension::kTurning, "degree/s", kRadPerDeg},
+    {Dimension::kTurning, "degrees/s", kRadPerDeg},
+    {Dimension::kTurning, "°/s", kRadPerDeg},
+    {Dimension::kAngle, "deg", 1.0},
+    {Dimension::kAngle, "degree", 1.0},
+    {Dimension::kAngle, "degrees", 1.0},
+    {Dimension::kAngle, "°", 1.0},
+    {Dimension::kAngle, "rad", 1.0 / kRadPerDeg},
+    {Dimension::kAngle, "arcmin", 1.0 / 60.0},
+    {Dimension::kLength, "m", 1.0},
+    {Dimension::kLength, "cm", 0.01},
+    {Dimension::kLength, "mm", 0.001},
 };
+
+Dimension dimension_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::kSpeed:
+      return Dimension::kSpeed;
+    case Quantity::kYawRate:
+      return Dimension::kTurning;
+    case Quantity::kPosition:
+    case Quantity::kHeading:
+    case Quantity::kHeadingSigma:
+      return Dimension::kAngle;
+    case Quantity::kLength:
+      break;
+  }
+  return Dimension::kLength;
+}
 
 }  // namespace
 
@@ -46,20 +65,20 @@ std::optional<double> factor_of_unit(Quantity quantity, std::string_view unit) {
     plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   }
   for (const Unit& known : kUnits) {
-    if (known.quantity == quantity && known.name == plain) return known.factor;
+    if (known.dimension == dimension_of(quantity) && known.name == plain) return known.factor;
   }
   return std::nullopt;
 }
 
 std::string_view units_of(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::kSpeed:
+  switch (dimension_of(quantity)) {
+    case Dimension::kSpeed:
       return "m/s, km/h, mph or kn";
-    case Quantity::kYawRate:
+    case Dimension::kTurning:
       return "rad/s or deg/s";
-    case Quantity::kAngle:
+    case Dimension::kAngle:
       return "deg, rad or arcmin";
-    case Quantity::kLength:
+    case Dimension::kLength:
       return "m, cm or mm";
   }
   return "";

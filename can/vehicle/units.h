@@ -8,10 +8,12 @@
 namespace bevloc::can {
 
 enum class Quantity {
-  kSpeed,    ///< m/s
-  kYawRate,  ///< rad/s
-  kAngle,    ///< degrees: latitude, longitude, heading
-  kLength,   ///< m
+  kSpeed,         ///< m/s
+  kYawRate,       ///< rad/s
+  kPosition,      ///< degrees: latitude, longitude
+  kHeading,       ///< degrees
+  kHeadingSigma,  ///< degrees
+  kLength,        ///< m: the sigma of a position
 };
 
 /// The factor from this unit; nothing for an unknown one. Case and spaces do not matter.

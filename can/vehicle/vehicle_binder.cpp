@@ -24,7 +24,8 @@ std::vector<std::string> names_in(const std::vector<Named>& all) {
   return names;
 }
 
-/// What any signal of a quantity reaches, and its coarsest step, in the unit of the quantity.
+/// What any signal of a quantity reaches (0: that says nothing), and its coarsest step, in the unit
+/// of the quantity.
 struct Sanity {
   double reaches;
   double step;
@@ -35,10 +36,14 @@ Sanity sanity_of(Quantity quantity) {
       return {15.0, 0.3};
     case Quantity::kYawRate:
       return {0.3, 0.02};
-    case Quantity::kAngle:
+    case Quantity::kPosition:
+      return {1.0, 1e-5};
+    case Quantity::kHeading:
       return {1.0, 1.0};
+    case Quantity::kHeadingSigma:
+      return {0.0, 1.0};
     case Quantity::kLength:
-      return {0.5, 2.0};
+      return {0.0, 2.0};
   }
   return {0.0, 0.0};
 }
@@ -49,7 +54,9 @@ std::string_view unit_inside(Quantity quantity) {
       return "m/s";
     case Quantity::kYawRate:
       return "rad/s";
-    case Quantity::kAngle:
+    case Quantity::kPosition:
+    case Quantity::kHeading:
+    case Quantity::kHeadingSigma:
       return "deg";
     case Quantity::kLength:
       return "m";

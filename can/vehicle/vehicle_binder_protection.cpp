@@ -53,6 +53,9 @@ Bound<void> check_data_ids(const ProtectionRequest& request) {
   if (kind == ChecksumKind::kNone && ids > 0) {
     return refusal("data ids without a checksum", "an algorithm beside them", key);
   }
+  if (!is_profile && ids > 1 && request.counter.empty()) {
+    return refusal("data_ids without a counter", "a counter beside them, or one data_id", key);
+  }
   for (const uint16_t id : request.data_ids) {
     if (id > highest_data_id(kind)) {
       return refusal(fmt::format("data id {}", id), "at most 255; only e2e_p05 has 16 bits", key);

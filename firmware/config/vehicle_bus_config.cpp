@@ -153,9 +153,9 @@ void read_heading(SignalGroup& group, can::BoundGnss& gnss) {
   YamlMap& yaml = group.yaml();
   if (!yaml.has("heading")) return;
   const std::string unit = group.unit("heading_unit");
-  gnss.heading = group.signal("heading", Quantity::kAngle, unit);
+  gnss.heading = group.signal("heading", Quantity::kHeading, unit);
   gnss.heading_valid = group.condition("heading_valid");
-  gnss.sigma_heading = group.optional_signal("sigma_heading", Quantity::kAngle, unit);
+  gnss.sigma_heading = group.optional_signal("sigma_heading", Quantity::kHeadingSigma, unit);
   if (yaml.has("sigma_heading_deg")) {
     gnss.sigma_heading_deg = yaml.require<double>("sigma_heading_deg", between(0.01, 90.0));
   }
@@ -168,8 +168,8 @@ can::BoundGnss read_gnss_signals(YamlMap yaml, can::VehicleBinder* binder) {
   SignalGroup group(std::move(yaml), binder);
   can::BoundGnss gnss;
   const std::string unit = group.unit("position_unit");
-  gnss.latitude = group.signal("latitude", Quantity::kAngle, unit);
-  gnss.longitude = group.signal("longitude", Quantity::kAngle, unit);
+  gnss.latitude = group.signal("latitude", Quantity::kPosition, unit);
+  gnss.longitude = group.signal("longitude", Quantity::kPosition, unit);
   gnss.valid = group.condition("valid");
   read_position_sigma(group, gnss);
   read_heading(group, gnss);

@@ -145,7 +145,7 @@ TEST_F(VehicleBinderTest, RefusesASignalForTwoValues) {
   EXPECT_EQ(speed("Other"), "");
   EXPECT_TRUE(binder_.quantity("Sigma", "A", Quantity::kLength, "m"));
   EXPECT_TRUE(binder_.quantity("Sigma", "A", Quantity::kLength, "m")) << "north and east";
-  EXPECT_FALSE(binder_.quantity("Sigma", "A", Quantity::kAngle, "deg"));
+  EXPECT_FALSE(binder_.quantity("Sigma", "A", Quantity::kHeading, "deg"));
 }
 
 TEST_F(VehicleBinderTest, KeepsTheFactorOfASignalThatIsAConditionToo) {
@@ -202,6 +202,35 @@ TEST_F(VehicleBinderTest, BelievesNoRangeThatTheBitsDoNotReach) {
       "S, which reaches 2.55 m/s at most, wanted a signal that reaches 15 m/s; check its unit";
   EXPECT_EQ(error_with("0|0"), refused);
   EXPECT_EQ(error_with("0|655.33"), refused);
+}
+
+TEST_F(VehicleBinderTest, APositionNeedsFineStepsAndASigmaNeedsNoRange) {
+  const auto error_with = [](const std::string& signal, Quantity quantity) {
+    const Dbc dbc = dbc_of("BO_ 16 A: 8 X\n SG_ S : 0|" + signal + " Y\n");
+    VehicleBinder binder(dbc);
+    return error_of(binder.quantity("S", "A", quantity, ""));
+  };
+  EXPECT_EQ(error_with("8@1- (1,0) [-90|90] \"deg\"", Quantity::kPosition),
+            "S in steps of 1 deg, wanted steps of at most 1e-05 deg; check its unit");
+  EXPECT_EQ(error_with("32@1- (0.0001,0) [-90|90] \"deg\"", Quantity::kPosition),
+            "S in steps of 0.0001 deg, wanted steps of at most 1e-05 deg; check its unit");
+  EXPECT_EQ(error_with("32@1- (1E-005,0) [-90|90] \"deg\"", Quantity::kPosition), "");
+  EXPECT_EQ(error_with("32@1- (0.0001,0) [-5400|5400] \"arcmin\"", Quantity::kPosition), "");
+  EXPECT_EQ(error_with("16@1+ (1,0) [0|359] \"deg\"", Quantity::kHeading), "");
+  EXPECT_EQ(error_with("6@1+ (0.01,0) [0|0] \"deg\"", Quantity::kHeadingSigma), "");
+  EXPECT_EQ(error_with("8@1+ (1,0) [0|0] \"mm\"", Quantity::kLength), "");
+}
+
+TEST_F(VehicleBinderTest, RefusesDataIdsThatNoCounterChooses) {
+  EXPECT_EQ(speed("Speed"), "");
+  ProtectionRequest request{.message = "A",
+                            .checksum = "Crc",
+                            .kind = ChecksumKind::kCrc8H2f,
+                            .data_ids = std::vector<uint16_t>(16, 3)};
+  EXPECT_EQ(protect(request),
+            "data_ids without a counter, wanted a counter beside them, or one data_id");
+  request.counter = "Counter";
+  EXPECT_EQ(protect(request), "");
 }
 
 TEST_F(VehicleBinderTest, RefusesSignalsAtSeveralValuesOfAMultiplexor) {
