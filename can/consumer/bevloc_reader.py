@@ -20,12 +20,13 @@ so import this module from its own folder.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from bevloc_messages import LOCALIZER_BASE, MESSAGES, VALUE_NAMES, Message, Signal
-from candump_log import Frame, LogError, frames_of_log
+from frame_sources import BusError, Frame, LogError, frames_of_bus, frames_of_log
 
 PARTS = (
     "LOC_Time",
@@ -302,19 +303,19 @@ class Printer:
         self.next_s = 0.0
 
     def take(self, identifier: int, data: bytes, time_s: float) -> None:
+        if self.answer is not None:
+            self.look(time_s)
+        self.receiver.receive(identifier, data, time_s)
+        self.look(time_s)
+
+    def look(self, time_s: float) -> None:
         if self.first_s is None:
             self.first_s = time_s
-        if self.answer is not None:
-            self._look(time_s)
-        self.receiver.receive(identifier, data, time_s)
-        self._look(time_s)
-
-    def _look(self, time_s: float) -> None:
         answer = self.receiver.answer(time_s)
         is_due = answer == "usable" and time_s >= self.next_s - HALF_MICROSECOND_S
         if answer == self.answer and not is_due:
             return
-        line = f"{time_s - (self.first_s or 0.0):.3f} {answer}"
+        line = f"{time_s - self.first_s:.3f} {answer}"
         if answer == "usable" and self.receiver.pose is not None:
             pose = self.receiver.pose
             values = {name.rsplit("_", 1)[0]: pose[name] for name in (
@@ -331,12 +332,25 @@ class Printer:
               f"{counters.incomplete} incomplete poses")
 
 
-def frames_of_bus(interface: str, channel: str) -> Iterator[Frame]:
-    import can  # python3-can
-
-    for message in can.interface.Bus(interface=interface, channel=channel, fd=True):
-        if not (message.is_extended_id or message.is_remote_frame or message.is_error_frame):
-            yield Frame(message.arbitration_id, bytes(message.data), message.timestamp)
+def show(printer: Printer, frames: Iterator[Frame | float]) -> int:
+    """Prints until the frames end. Returns the exit status."""
+    try:
+        for frame in frames:
+            if isinstance(frame, float):
+                printer.look(frame)
+            else:
+                printer.take(*frame)
+    except KeyboardInterrupt:
+        pass
+    except BusError as error:
+        printer.print_counters()
+        print(error, file=sys.stderr)
+        return 2
+    except LogError as error:
+        print(error, file=sys.stderr)
+        return 1
+    printer.print_counters()
+    return 0
 
 
 def main() -> int:
@@ -347,19 +361,16 @@ def main() -> int:
     arguments = parser.parse_args()
     if (arguments.log is None) == (arguments.channel is None):
         parser.error("found no source or two, wanted a log or --channel")
+    sys.stdout.reconfigure(line_buffering=True)
     freeway = AlertLimits(lateral_m=0.57, longitudinal_m=1.40, yaw_deg=1.50)
-    printer = Printer(Receiver(freeway))
+    frames = (frames_of_log(arguments.log) if arguments.log is not None
+              else frames_of_bus(arguments.interface, arguments.channel))
     try:
-        frames = (frames_of_log(arguments.log) if arguments.log is not None
-                  else frames_of_bus(arguments.interface, arguments.channel))
-        for frame in frames:
-            printer.take(*frame)
-    except LogError as error:
-        sys.stdout.flush()
-        print(error, file=sys.stderr)
-        return 1
-    printer.print_counters()
-    return 0
+        return show(Printer(Receiver(freeway)), frames)
+    except BrokenPipeError:
+        print("standard output: found a closed pipe, wanted a reader", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for what is left
+        return 2
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
      consumer_c --interface vcan0
    The alert limits are those of a freeway (docs/can.md). */
 #define _POSIX_C_SOURCE 200809L
+#include <errno.h>
 #include <inttypes.h>
 #include <linux/can.h>
 #include <linux/can/raw.h>
@@ -10,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -42,6 +44,8 @@ static void print_line(struct printer* printer, uint64_t now_us, enum bevloc_ans
 
 static void look(struct printer* printer, uint64_t now_us) {
   const enum bevloc_answer answer = bevloc_answer(&printer->receiver, now_us);
+  if (!printer->has_first) printer->first_us = now_us;
+  printer->has_first = true;
   if ((int)answer == printer->answer && (answer != BEVLOC_USABLE || now_us < printer->next_us))
     return;
   print_line(printer, now_us, answer);
@@ -51,8 +55,6 @@ static void look(struct printer* printer, uint64_t now_us) {
 
 static void take(struct printer* printer, uint32_t id, const uint8_t* data, size_t length,
                  uint64_t now_us) {
-  if (!printer->has_first) printer->first_us = now_us;
-  printer->has_first = true;
   if (printer->answer >= 0) look(printer, now_us);
   bevloc_receive(&printer->receiver, id, data, length, now_us);
   look(printer, now_us);
@@ -95,31 +97,50 @@ static int read_log(struct printer* printer, const char* path) {
   return 0;
 }
 
-static int read_interface(struct printer* printer, const char* interface) {
-  struct canfd_frame frame;
+/* An open socket whose read() waits for 10 ms at most, or -1. */
+static int open_interface(const char* interface) {
   struct sockaddr_can address = {0};
+  const struct timeval patience = {0, 10000};
   const int on = 1;
   const int bus = socket(PF_CAN, SOCK_RAW, CAN_RAW);
+  if (bus < 0) return -1;
   address.can_family = AF_CAN;
   address.can_ifindex = (int)if_nametoindex(interface);
-  if (bus < 0 || address.can_ifindex == 0 ||
+  if (address.can_ifindex == 0 ||
       setsockopt(bus, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) != 0 ||
+      setsockopt(bus, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience) != 0 ||
       bind(bus, (struct sockaddr*)&address, sizeof address) != 0) {
-    fprintf(stderr, "%s: found no such CAN interface, wanted one that is up\n", interface);
-    return 2;
+    return -1;
   }
-  while (read(bus, &frame, sizeof frame) > 0) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    if ((frame.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_ERR_FLAG)) != 0) continue;
-    take(printer, frame.can_id, frame.data, frame.len,
-         (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u);
+  return bus;
+}
+
+/* Looks at the answer without frames, too: only then is a silence noticed. */
+static int read_interface(struct printer* printer, const char* interface) {
+  struct canfd_frame frame;
+  const int bus = open_interface(interface);
+  while (bus >= 0) {
+    struct timespec time;
+    uint64_t now_us;
+    const bool received = read(bus, &frame, sizeof frame) > 0;
+    if (!received && errno != EAGAIN && errno != EINTR) break;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    now_us = (uint64_t)time.tv_sec * 1000000u + (uint64_t)time.tv_nsec / 1000u;
+    if (received && (frame.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_ERR_FLAG)) == 0) {
+      take(printer, frame.can_id, frame.data, frame.len, now_us);
+    } else {
+      look(printer, now_us);
+    }
   }
+  fprintf(stderr, "%s: found no frames (%s), wanted a CAN interface that is up\n", interface,
+          strerror(errno));
+  if (bus >= 0) print_counters(&printer->receiver.counters);
   return 2;
 }
 
 int main(int argc, char** argv) {
   struct printer printer = {.answer = -1};
+  setvbuf(stdout, NULL, _IOLBF, 0);
   bevloc_init(&printer.receiver, BEVLOC_LOCALIZER_BASE, kFreeway);
   if (argc == 3 && strcmp(argv[1], "--interface") == 0) return read_interface(&printer, argv[2]);
   if (argc == 2) return read_log(&printer, argv[1]);

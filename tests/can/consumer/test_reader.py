@@ -1,9 +1,12 @@
-"""Tests the receiver of can/consumer/bevloc_reader.py without a bus."""
+"""Tests can/consumer/bevloc_reader.py without a bus."""
 
 from __future__ import annotations
 
 import importlib
+import os
+import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 from typing import Any
@@ -74,3 +77,80 @@ class ReaderTest(unittest.TestCase):
             for limit in (-1.0, float("nan")):
                 with self.subTest(axis=axis, limit=limit):
                     self.assertEqual(self.answer_to_levels({axis: limit}, {}), "beyond_limit")
+
+
+FAKE_PYTHON_CAN = """
+import sys
+import types
+
+class CanError(Exception):
+    pass
+
+class Bus:
+    def __init__(self, interface, channel, fd):
+        self.channel = channel
+        self.silence = 3
+        if channel == "none":
+            raise OSError(19, "No such device")
+    def __enter__(self):
+        return self
+    def __exit__(self, *error):
+        print("closed", file=sys.stderr)
+    def recv(self, timeout):
+        self.silence -= 1
+        if self.channel == "down" and self.silence < 0:
+            raise CanError("Network is down")
+        if self.silence < 0:
+            raise KeyboardInterrupt
+        return None
+
+interface = types.SimpleNamespace(Bus=Bus)
+"""
+
+
+class LiveTest(unittest.TestCase):
+    """Runs the program on a bus that a fake python3-can simulates."""
+
+    def read(self, channel: str, package: str = FAKE_PYTHON_CAN,
+             output: int = subprocess.PIPE) -> subprocess.CompletedProcess[str]:
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "can.py").write_text(package)
+            return subprocess.run(
+                [sys.executable, str(CONSUMER / "bevloc_reader.py"), "--channel", channel],
+                stdout=output, stderr=subprocess.PIPE, text=True, cwd=CONSUMER,
+                env={**os.environ, "PYTHONPATH": folder, "PYTHONDONTWRITEBYTECODE": "1"})
+
+    def test_looks_at_the_answer_without_frames_and_ends_with_the_counters(self) -> None:
+        done = self.read("vcan0")
+        self.assertEqual((done.returncode, done.stderr), (0, "closed\n"))
+        lines = done.stdout.splitlines()
+        self.assertEqual(lines[0], "0.000 no_pose")
+        self.assertTrue(lines[1].startswith("frames: 0 ok"), lines)
+
+    def test_says_in_one_line_why_there_are_no_frames(self) -> None:
+        done = self.read("none")
+        self.assertEqual((done.returncode, done.stderr), (
+            2, "none: found no frames ([Errno 19] No such device), wanted a bus that is up\n"))
+        done = self.read("down")
+        self.assertEqual((done.returncode, done.stderr), (
+            2, "closed\ndown: found no frames (Network is down), wanted a bus that is up\n"))
+        self.assertIn("frames: 0 ok", done.stdout)
+        done = self.read("vcan0", "raise ImportError('none')")
+        self.assertEqual((done.returncode, done.stderr), (
+            2, "found no python3-can (none), wanted it for a live bus: install it\n"))
+
+    def test_a_closed_pipe_is_one_line(self) -> None:
+        reading, writing = os.pipe()
+        os.close(reading)
+        done = self.read("vcan0", output=writing)
+        os.close(writing)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("standard output: found a closed pipe, wanted a reader\n", done.stderr)
+        self.assertNotIn("Traceback", done.stderr)
+
+    def test_the_c_example_says_why_there_are_no_frames(self) -> None:
+        done = subprocess.run([os.environ["CONSUMER_C"], "--interface", "no_such_bus"],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r"\Ano_such_bus: found no frames \(.+\), wanted a CAN "
+                                      r"interface that is up\n\Z")

@@ -1,9 +1,12 @@
-"""Reads candump logs, for bevloc_reader.py: "(1.000000) can0 500#0011" or, of CAN FD,
-"(1.000000) can0 509##1001122"."""
+"""Reads frames for bevloc_reader.py, from a candump log or from a bus with python3-can.
+
+A line of a log is "(1.000000) can0 500#0011" or, of CAN FD, "(1.000000) can0 509##1001122".
+"""
 
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -18,6 +21,10 @@ class Frame(NamedTuple):
 
 class LogError(Exception):
     """What is wrong with a log, in one sentence."""
+
+
+class BusError(Exception):
+    """Why a bus cannot be read, in one sentence."""
 
 
 LINE = re.compile(
@@ -44,3 +51,25 @@ def frames_of_log(path: str) -> Iterator[Frame]:
                     yield Frame(int(found["id"], 16), data, float(found["time"]))
     except OSError:
         raise LogError(f"{path}: found no readable file, wanted a candump log") from None
+
+
+def frames_of_bus(interface: str, channel: str) -> Iterator[Frame | float]:
+    """The frames with the time of their arrival, and the time alone after 10 ms without one: only
+    then is a silence noticed. Raises BusError."""
+    try:
+        import can  # python3-can
+    except ImportError as error:
+        raise BusError(
+            f"found no python3-can ({error}), wanted it for a live bus: install it") from None
+    try:
+        with can.interface.Bus(interface=interface, channel=channel, fd=True) as bus:
+            while True:
+                message = bus.recv(timeout=0.01)
+                time_s = time.monotonic()
+                if message is None or (message.is_extended_id or message.is_remote_frame
+                                       or message.is_error_frame):
+                    yield time_s
+                else:
+                    yield Frame(message.arbitration_id, bytes(message.data), time_s)
+    except (can.CanError, OSError) as error:
+        raise BusError(f"{channel}: found no frames ({error}), wanted a bus that is up") from None
