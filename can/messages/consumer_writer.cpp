@@ -105,10 +105,10 @@ bool has_names(const Signal& signal) {
 
 }  // namespace
 
-std::string consumer_header_text() {
+std::string consumer_header_text(const BaseIds& base) {
   std::string text(kHeaderBegin);
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "#define BEVLOC_LOCALIZER_BASE 0x{:03X}u\n", BaseIds().localizer);
+  fmt::format_to(out, "#define BEVLOC_LOCALIZER_BASE 0x{:03X}u\n", base.localizer);
   for_each_sent([&](const Message& message, bool with_signals) {
     fmt::format_to(out,
                    "\nstatic const struct bevloc_message BEVLOC_{} = {{\n"
@@ -135,11 +135,11 @@ std::string consumer_header_text() {
   return text;
 }
 
-std::string consumer_python_text() {
+std::string consumer_python_text(const BaseIds& base) {
   std::string text(kPythonBegin);
   const auto out = std::back_inserter(text);
   const auto truth = [](bool value) { return value ? "True" : "False"; };
-  fmt::format_to(out, "LOCALIZER_BASE = 0x{:03X}\n\nMESSAGES = {{\n", BaseIds().localizer);
+  fmt::format_to(out, "LOCALIZER_BASE = 0x{:03X}\n\nMESSAGES = {{\n", base.localizer);
   for_each_sent([&](const Message& message, bool with_signals) {
     fmt::format_to(out, "    \"{}\": Message({}, {}, {}, {}, 0x{:02X}, {}, {{\n", message.name,
                    message.id_offset, message.length, truth(message.format == FrameFormat::kFd),

@@ -3,12 +3,14 @@
 
 #include <string>
 
+#include "can/messages/message.h"
+
 namespace bevloc::can {
 
 /// A C99 header: length, cycle, data id and signals of each LOC_ message.
-std::string consumer_header_text();
+std::string consumer_header_text(const BaseIds& base = {});
 
 /// The same as a Python module.
-std::string consumer_python_text();
+std::string consumer_python_text(const BaseIds& base = {});
 
 }  // namespace bevloc::can

@@ -20,11 +20,15 @@ int main(int argc, char** argv) {
   app.add_option("--vehicle-base", base.vehicle, "first identifier of the VEH_ messages")
       ->check(base_range)
       ->capture_default_str();
-  app.add_flag("--markdown", markdown, "print the tables of docs/can.md instead");
+  auto* tables = app.add_flag("--markdown", markdown, "print the tables of docs/can.md instead");
   bool c_header = false;
-  app.add_flag("--c-header", c_header, "print can/consumer/bevloc_messages.h instead");
+  auto* header =
+      app.add_flag("--c-header", c_header, "print can/consumer/bevloc_messages.h instead")
+          ->excludes(tables);
   bool python = false;
-  app.add_flag("--python", python, "print can/consumer/bevloc_messages.py instead");
+  app.add_flag("--python", python, "print can/consumer/bevloc_messages.py instead")
+      ->excludes(tables)
+      ->excludes(header);
   CLI11_PARSE(app, argc, argv);
   if (!base.are_apart()) {
     std::cerr
@@ -33,8 +37,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::cout << (markdown   ? bevloc::can::markdown_tables(base)
-                : c_header ? bevloc::can::consumer_header_text()
-                : python   ? bevloc::can::consumer_python_text()
+                : c_header ? bevloc::can::consumer_header_text(base)
+                : python   ? bevloc::can::consumer_python_text(base)
                            : bevloc::can::dbc_text(base));
   const bevloc::Status printed = bevloc::flush_output();
   if (!printed) std::cerr << "bevloc_dbc: " << printed.error().message << '\n';

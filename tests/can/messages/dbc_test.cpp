@@ -8,6 +8,7 @@
 
 #include "can/bus/candump.h"
 #include "can/e2e/e2e.h"
+#include "can/messages/consumer_writer.h"
 #include "can/messages/dbc_writer.h"
 #include "can/messages/markdown_writer.h"
 #include "can/messages/message_table.h"
@@ -39,6 +40,13 @@ TEST(Dbc, CommittedFileMatchesTheMessageTable) {
 TEST(Dbc, DocumentedTablesMatchTheMessageTable) {
   EXPECT_NE(content_of(kSource + "/docs/can.md").find(markdown_tables()), std::string::npos)
       << "replace them by the output of: bevloc_dbc --markdown";
+}
+
+TEST(Dbc, ConstantsOfConsumersHaveTheGivenBase) {
+  const BaseIds base{.localizer = 0x620};
+  EXPECT_NE(consumer_header_text(base).find("#define BEVLOC_LOCALIZER_BASE 0x620u\n"),
+            std::string::npos);
+  EXPECT_NE(consumer_python_text(base).find("\nLOCALIZER_BASE = 0x620\n"), std::string::npos);
 }
 
 TEST(Dbc, DocumentedExampleFrameIsRight) {
