@@ -48,11 +48,14 @@ double sigma_along(const Eigen::Matrix3d& covariance, double direction_rad) {
   return sigma_of(axis.dot(covariance.topLeftCorner<2, 2>() * axis));
 }
 
+/// Leaves an age beyond the range of the signal SNA, because the largest value would be too small.
 void encode_time(Frame& frame, Time capture_time, Time now) {
   using std::chrono::microseconds;
+  const double age_ms = 1e3 * to_seconds(now - capture_time);
+  if (!is_in_range(loc_time::kCaptureAge, age_ms)) return;
   const auto capture_us = std::chrono::floor<microseconds>(capture_time.time_since_epoch()).count();
   insert_raw(frame, loc_time::kCaptureTime, capture_us & UINT32_MAX);
-  encode(frame, loc_time::kCaptureAge, 1e3 * to_seconds(now - capture_time));
+  encode(frame, loc_time::kCaptureAge, age_ms);
 }
 
 /// Encodes position, heading and their standard deviations.

@@ -354,6 +354,17 @@ TEST_F(PosePublisherTest, AStalePoseIsNeverValid) {
   EXPECT_TRUE(is_sna("LOC_Time", "CaptureAge"));
 }
 
+TEST_F(PosePublisherTest, AnAgeOfTheImagesBeyondTheRangeIsSna) {
+  PoseReport report = tracking_report(kNow);
+  report.capture_time = kNow - milliseconds(6553);
+  publish(report, kNow);
+  EXPECT_NEAR(value("LOC_Time", "CaptureAge"), 6553.0, 0.051);
+  const Time later = kNow + seconds(1);
+  report.capture_time = later - milliseconds(6554);
+  publish(report, later);
+  EXPECT_TRUE(is_sna("LOC_Time", "CaptureAge"));
+}
+
 TEST_F(PosePublisherTest, AnEmptyReportIsSnaEverywhere) {
   publish(PoseReport{}, kNow);
   expect_no_pose();
