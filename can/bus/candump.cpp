@@ -85,19 +85,25 @@ std::optional<ParsedFrame> parse_error(uint32_t id, std::string_view digits) {
   return parsed;
 }
 
-/// Reads what follows the R of a remote frame: nothing or a length digit.
+/// A raw length code, "_" and a digit from 9 to F, which candump appends to a length of eight bytes
+/// when the length code is larger than 8.
+bool is_length_code(std::string_view text) {
+  return text.size() == 2 && text[0] == '_' && is_hex(text.substr(1)) && text[1] >= '9';
+}
+
+/// Reads what follows the R of a remote frame: nothing, or a length digit and perhaps its code.
 std::optional<ParsedFrame> parse_remote(uint32_t id, std::string_view length) {
-  const bool valid = length.empty() || (length.size() == 1 && length[0] >= '0' && length[0] <= '8');
+  const bool is_digit = length.size() == 1 && length[0] >= '0' && length[0] <= '8';
+  const bool has_code = length.starts_with('8') && is_length_code(length.substr(1));
+  const bool valid = length.empty() || is_digit || has_code;
   if (!valid || id > kMaxExtendedId) return std::nullopt;
   return ParsedFrame{CandumpKind::kRemote, {}, {}};
 }
 
-/// Removes the raw length code: candump appends "_" and a digit from 9 to F to eight bytes of data
-/// when the length code is larger than 8.
+/// Removes the raw length code.
 std::string_view without_length_code(std::string_view data) {
   constexpr size_t kFullDigits = 2 * kMaxClassicLength;
-  const bool has_code = data.size() == kFullDigits + 2 && data[kFullDigits] == '_' &&
-                        is_hex(data.substr(kFullDigits + 1)) && data[kFullDigits + 1] >= '9';
+  const bool has_code = data.size() > kFullDigits && is_length_code(data.substr(kFullDigits));
   return has_code ? data.substr(0, kFullDigits) : data;
 }
 
@@ -185,6 +191,8 @@ Result<std::vector<CandumpEntry>> read_candump(std::istream& log, std::string_vi
     if (!entry) return tl::unexpected(entry.error());
     entries.push_back(std::move(*entry));
   }
+  // A folder opens, but cannot be read.
+  if (log.bad()) return fail("{}: found no readable file, wanted a candump log", name);
   return entries;
 }
 

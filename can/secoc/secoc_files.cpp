@@ -58,8 +58,10 @@ Result<uint32_t> next_start_number(const std::filesystem::path& file) {
     const char* end = text.data() + text.size();
     const auto read = std::from_chars(text.data(), end, number);
     if (read.ec != std::errc{} || read.ptr != end || number == UINT32_MAX) {
-      return fail("{}: found '{}', wanted the number of starts; never start again below it",
-                  file.string(), text);
+      return fail(
+          "{}: found '{}', wanted one whole number of starts; write a number larger than every "
+          "number before; a smaller one makes the vehicle refuse all messages",
+          file.string(), text);
     }
   }
   ++number;

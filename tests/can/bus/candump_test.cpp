@@ -91,6 +91,8 @@ TEST(Candump, RecognisesTheKindOfAFrame) {
   EXPECT_EQ(parsed("(1.000000) can0 00000123#01").kind, CandumpKind::kExtended);
   EXPECT_EQ(parsed("(1.000000) can0 123#R").kind, CandumpKind::kRemote);
   EXPECT_EQ(parsed("(1.000000) can0 123#R8").kind, CandumpKind::kRemote);
+  EXPECT_EQ(parsed("(1.000000) can0 7DF#R8_9").kind, CandumpKind::kRemote);
+  EXPECT_EQ(parsed("(1.000000) can0 7DF#R8_F").kind, CandumpKind::kRemote);
   EXPECT_EQ(parsed("(1.000000) can0 123##1AABBCC").frame.format, FrameFormat::kFd);
   EXPECT_EQ(parsed("(1.000000) can0 123##5AABBCC").frame.length, 3);
   EXPECT_EQ(parsed("(1.000000) can0 00000123##1AA").kind, CandumpKind::kExtended);
@@ -117,6 +119,10 @@ TEST(Candump, RefusesBadLines) {
            "(1.000000) can0 123#0G",
            "(1.000000) can0 123#001122334455667788",
            "(1.000000) can0 123#R9",
+           "(1.000000) can0 123#R8_8",
+           "(1.000000) can0 123#R7_9",
+           "(1.000000) can0 123#R8_G",
+           "(1.000000) can0 123#R8_",
            "(1.000000) can0 123##",
            "(1.000000) can0 123##1A",
            "(1.000000) can0 123##GAA",
@@ -148,6 +154,12 @@ TEST(Candump, AMissingFileIsAnError) {
   const auto entries = read_candump_file("/nonexistent/drive.log");
   ASSERT_FALSE(entries);
   EXPECT_THAT(entries.error().message, HasSubstr("/nonexistent/drive.log"));
+}
+
+TEST(Candump, AFolderIsAnErrorAndNoEmptyLog) {
+  const auto entries = read_candump_file("/tmp");
+  ASSERT_FALSE(entries);
+  EXPECT_EQ(entries.error().message, "/tmp: found no readable file, wanted a candump log");
 }
 
 }  // namespace

@@ -72,7 +72,10 @@ TEST_F(SecocFilesTest, EachStartHasAHigherNumber) {
 TEST_F(SecocFilesTest, AStartThatCannotBeCountedIsRefused) {
   for (const char* text : {"", "x", "-1", "4294967295", "12 13"}) {
     write(starts_, text);
-    EXPECT_FALSE(next_start_number(starts_)) << text;
+    const auto number = next_start_number(starts_);
+    ASSERT_FALSE(number) << text;
+    EXPECT_THAT(number.error().message,
+                HasSubstr("write a number larger than every number before"));
   }
 }
 
