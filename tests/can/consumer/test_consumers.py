@@ -65,6 +65,13 @@ class ConsumersTest(unittest.TestCase):
         lines = Path(self.log).read_text().splitlines()
         return [line for line in lines if time_us(line) < end_us]
 
+    def test_all_read_the_golden_log_of_can_fd(self) -> None:
+        expected = (CONSUMER / "golden_fd.txt").read_text()
+        self.assertIn("3 lost, 0 repeated, 1 wrong CRC, 1 wrong length", expected)
+        for program in programs():
+            with self.subTest(program=program):
+                self.assertEqual(output_of(*program, str(CONSUMER / "golden_fd.log")), expected)
+
     def test_a_clock_that_is_set_back_is_a_timeout(self) -> None:
         lines = self.golden_lines(5_400_000)
         statuses = [line for line in lines if " 500#" in line]
@@ -140,6 +147,14 @@ class ConsumersTest(unittest.TestCase):
             with self.subTest(name):
                 self.assertEqual(output_of(writer, option), (CONSUMER / name).read_text(),
                                  f"write it again: bevloc_dbc {option} > can/consumer/{name}")
+
+    def test_one_kind_of_text_at_a_time(self) -> None:
+        for options in (["--markdown", "--c-header"], ["--python", "--c-header"],
+                        ["--markdown", "--python"]):
+            done = subprocess.run([os.environ["BEVLOC_DBC"], *options], capture_output=True,
+                                  text=True)
+            self.assertNotEqual(done.returncode, 0, options)
+            self.assertIn("excludes", done.stderr)
 
     def test_the_header_is_c99(self) -> None:
         source = f'#include "{CONSUMER}/bevloc.h"\nint main(void) {{ return 0; }}\n'
