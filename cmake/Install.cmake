@@ -51,8 +51,8 @@ install(FILES config/demo.yaml DESTINATION ${BEVLOC_DATA_DIR}/config COMPONENT b
 install(FILES evaluation/campaign/matches.csv
         DESTINATION ${BEVLOC_DATA_DIR}/evaluation/campaign COMPONENT bevloc-sim)
 
-install(TARGETS bevloc-compliance bevloc_convert_map COMPONENT bevloc-dev)
+install(TARGETS bevloc-compliance bevloc_convert_map bevloc_dbc COMPONENT bevloc-dev)
 install(FILES can/bevloc.dbc DESTINATION ${BEVLOC_DATA_DIR} COMPONENT bevloc-dev)
 install(DIRECTORY can/consumer/ DESTINATION ${BEVLOC_DATA_DIR}/consumer COMPONENT bevloc-dev
         FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp" PATTERN "*.py" PATTERN "*.c" PATTERN "*.cpp"
-        PATTERN "golden.*" PATTERN "__pycache__" EXCLUDE)
+        PATTERN "golden*" PATTERN "__pycache__" EXCLUDE)
