@@ -7,9 +7,11 @@
 #include <iostream>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "can/bus/candump.h"
 #include "can/bus/socketcan_bus.h"
+#include "common/json_dump.h"
 #include "common/option_checks.h"
 
 namespace bevloc::command {
@@ -53,10 +55,14 @@ void ListenCommand::declare(CLI::App& app) {
       ->allow_extra_args(false);
   app_->add_option("--message", messages_, "Print this message only, may be repeated")
       ->allow_extra_args(false);
-  app_->add_flag("--bad", only_bad_, "Print only frames that fail the end-to-end check");
-  app_->add_flag("--quiet", quiet_, "Print the totals only");
-  app_->add_flag("--json", json_, "Print one JSON object a frame");
-  app_->add_option("--count", count_, "End after so many printed frames")->check(whole_number());
+  app_->add_flag("--bad", only_bad_,
+                 "Print only frames that fail the end-to-end check or follow lost ones");
+  auto* quiet = app_->add_flag("--quiet", quiet_, "Print the totals only");
+  app_->add_flag("--json", json_,
+                 "Print one JSON object a frame and no totals, or with --quiet one of the totals");
+  app_->add_option("--count", count_, "End after so many printed frames")
+      ->check(whole_number())
+      ->excludes(quiet);
   app_->add_option("--duration", duration_s_, "End after so many seconds")
       ->check(number_between(0.001, 1e9));
   const CLI::Range base_range(uint32_t{can::BaseIds::kFirst}, uint32_t{can::BaseIds::kLast});
@@ -119,6 +125,7 @@ Status ListenCommand::listen_to_log(std::istream& log, const std::string& name,
     if (duration_s_ > 0.0 && time_s - *first_s > duration_s_) break;
     if (!show(entry->frame, time_s, listener)) break;
   }
+  if (log.bad()) return fail("{}: found no readable file, wanted a candump log", name);
   return {};
 }
 
@@ -127,27 +134,64 @@ Status ListenCommand::listen_to_interface(can::BusListener& listener) {
   if (!bus) {
     return fail("{} (a log file of this name was not found either)", bus.error().message);
   }
-  std::optional<Time> first;
-  const auto started = std::chrono::steady_clock::now();
-  while (interrupted == 0) {
-    const auto elapsed = std::chrono::steady_clock::now() - started;
-    if (duration_s_ > 0.0 && std::chrono::duration<double>(elapsed).count() > duration_s_) break;
-    (*bus)->wait(std::chrono::milliseconds(100));
-    while (const auto received = (*bus)->receive()) {
-      if (!first) first = received->received;
-      if (!show(received->frame, to_seconds(received->received - *first), listener)) return {};
-    }
-    std::cout.flush();
-  }
+  listen_to_bus(**bus, listener);
   return {};
 }
 
+void ListenCommand::listen_to_bus(can::Bus& bus, can::BusListener& listener) {
+  std::optional<Time> first;
+  can::BusCondition condition;
+  bool wants_more = true;
+  const auto started = std::chrono::steady_clock::now();
+  while (interrupted == 0 && wants_more) {
+    const auto elapsed = std::chrono::steady_clock::now() - started;
+    if (duration_s_ > 0.0 && std::chrono::duration<double>(elapsed).count() > duration_s_) break;
+    bus.wait(std::chrono::milliseconds(100));
+    while (const auto received = wants_more ? bus.receive() : std::nullopt) {
+      if (!first) first = received->received;
+      wants_more = show(received->frame, to_seconds(received->received - *first), listener);
+    }
+    std::cout.flush();
+    if (bus.condition() == condition) continue;
+    condition = bus.condition();
+    fmt::print(stderr, "bevloc: {}: the bus is now {}\n", source_, can::to_string(condition));
+  }
+  bus_counters_ = bus.counters();
+}
+
+void ListenCommand::print_json_totals(const can::BusListener& listener) const {
+  nlohmann::ordered_json json;
+  auto& messages = json["messages"] = nlohmann::ordered_json::array();
+  for (const auto& [name, total] : listener.totals()) {
+    messages.push_back({{"message", name},
+                        {"frames", total.frames},
+                        {"unusable", total.unusable},
+                        {"lost", total.lost}});
+  }
+  json["other_frames"] = listener.unknown();
+  if (bus_counters_) {
+    json["dropped"] = bus_counters_->receive_dropped;
+    json["ignored"] = bus_counters_->receive_ignored;
+  }
+  std::cout << dump_json(json) << '\n';
+}
+
 void ListenCommand::print_totals(const can::BusListener& listener) const {
+  if (json_) {
+    if (quiet_) print_json_totals(listener);
+    return;
+  }
   fmt::print("\n{:<28} {:>10} {:>10} {:>8}\n", "message", "frames", "unusable", "lost");
   for (const auto& [name, total] : listener.totals()) {
     fmt::print("{:<28} {:>10} {:>10} {:>8}\n", name, total.frames, total.unusable, total.lost);
   }
-  fmt::print("{:<28} {:>10}\n", "frames of other messages", listener.unknown());
+  const auto print_count = [](std::string_view what, uint64_t count) {
+    fmt::print("{:<28} {:>10}\n", what, count);
+  };
+  print_count("frames of other messages", listener.unknown());
+  if (!bus_counters_) return;
+  print_count("frames dropped by the socket", bus_counters_->receive_dropped);
+  print_count("29-bit, remote or bad frames", bus_counters_->receive_ignored);
 }
 
 Status ListenCommand::run() {
@@ -155,9 +199,12 @@ Status ListenCommand::run() {
   if (!listener) return tl::unexpected(listener.error());
   std::signal(SIGINT, note_interrupt);
   Status status;
+  std::error_code error;  // such as a name that is too long for a file
   if (source_ == "-") {
     status = listen_to_log(std::cin, "standard input", *listener);
-  } else if (std::filesystem::is_regular_file(source_)) {
+  } else if (std::filesystem::is_directory(source_, error)) {
+    return fail("{}: found a folder, wanted a CAN interface, a candump log or -", source_);
+  } else if (std::filesystem::exists(source_, error)) {  // also a pipe
     std::ifstream log(source_);
     if (!log) return fail("{}: found no readable file, wanted a candump log", source_);
     status = listen_to_log(log, source_, *listener);
@@ -165,7 +212,7 @@ Status ListenCommand::run() {
     status = listen_to_interface(*listener);
   }
   std::cout.flush();
-  if (status && !json_) print_totals(*listener);
+  if (status) print_totals(*listener);
   return status;
 }
 

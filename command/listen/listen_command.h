@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "can/bus/bus.h"
 #include "can/listen/bus_listener.h"
 #include "common/result.h"
 
@@ -23,6 +24,12 @@ class ListenCommand {
   /// Fails if a file cannot be read or the interface cannot be opened.
   Status run();
 
+  /// Does what run() does with an interface. Each change of the bus condition is a line on standard
+  /// error.
+  void listen_to_bus(can::Bus& bus, can::BusListener& listener);
+  /// In the form that the command line asks for.
+  void print_totals(const can::BusListener& listener) const;
+
  private:
   Result<can::BusListener> make_listener() const;
   Status listen_to_log(std::istream& log, const std::string& name, can::BusListener& listener);
@@ -30,7 +37,7 @@ class ListenCommand {
   /// False when enough was printed.
   bool show(const can::Frame& frame, double time_s, can::BusListener& listener);
   bool is_wanted(const can::DecodedFrame& frame) const;
-  void print_totals(const can::BusListener& listener) const;
+  void print_json_totals(const can::BusListener& listener) const;
 
   CLI::App* app_ = nullptr;
   std::string source_;
@@ -43,6 +50,7 @@ class ListenCommand {
   double duration_s_ = 0.0;
   can::BaseIds base_;
   uint64_t printed_ = 0;
+  std::optional<can::BusCounters> bus_counters_;  ///< nothing for a log
 };
 
 }  // namespace bevloc::command
