@@ -220,6 +220,22 @@ TEST(Metrics, LatencyBucketsAreCumulative) {
   EXPECT_THAT(text, HasSubstr("bevloc_latency_seconds_count 7\n"));
 }
 
+TEST(Metrics, CountsEachLossOfAuthentication) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.snapshot.vehicle_input.foreign = 11;
+  telemetry.snapshot.authentication = {
+      .incomplete = 12, .wrong_length = 13, .bad_announcements = 14};
+  const std::string text = metrics(telemetry);
+  const auto refused = [](const std::string& reason, int count) {
+    return HasSubstr("bevloc_vehicle_refused_total{reason=\"" + reason + "\"} " +
+                     std::to_string(count) + "\n");
+  };
+  EXPECT_THAT(text, refused("foreign", 11));
+  EXPECT_THAT(text, refused("authentication_incomplete", 12));
+  EXPECT_THAT(text, refused("authentication_wrong_length", 13));
+  EXPECT_THAT(text, refused("bad_announcement", 14));
+}
+
 TEST(Metrics, NoSeriesOccursTwice) {
   Telemetry telemetry = running(HealthState::kTracking);
   telemetry.snapshot.authentication.emplace();
