@@ -54,7 +54,8 @@ class IncludesTest(unittest.TestCase):
             for included in INCLUDE.findall((ROOT / name).read_text())
             if not (ROOT / included).exists()
             # The receivers of the package bevloc-dev are compiled outside of this tree.
-            and not (name.startswith("can/consumer/") and (ROOT / name).with_name(included).exists())
+            and not (name.startswith("can/consumer/")
+                     and (ROOT / name).with_name(included).exists())
         ]
         self.assertEqual(wrong, [])
 
