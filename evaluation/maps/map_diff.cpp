@@ -23,9 +23,7 @@ std::vector<MapElement> moved_elements(const HdMap& map, const HdMap& other) {
   const GeographicLib::LocalCartesian to(other.origin.latitude_deg, other.origin.longitude_deg);
   for (MapElement& element : elements) {
     for (Eigen::Vector2d& point : element.points) {
-      const GeoOrigin place = place_of(from, point);
-      double height_m = 0.0;
-      to.Forward(place.latitude_deg, place.longitude_deg, 0.0, point.x(), point.y(), height_m);
+      point = point_of(to, place_of(from, point));
     }
   }
   return elements;

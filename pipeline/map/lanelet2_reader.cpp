@@ -371,9 +371,10 @@ Result<ImportedMap> parse_lanelet2_with_report(std::string_view text,
         "{}: found an origin for a map whose nodes have latitude and longitude, wanted none",
         file.string());
   }
-  if (options.origin) nodes->origin = *options.origin;
   std::optional<Eigen::Vector2d> shift;
   if (!is_known(nodes->origin)) shift = shift_to_zero(*nodes);
+  if (shift && options.origin) return far_from_origin(file.string(), -*shift);
+  if (options.origin) nodes->origin = *options.origin;
   const ClassTable none;
   const ClassTable& classes = options.classes != nullptr ? *options.classes : none;
   Result<ImportedMap> imported = Lanelet2Reader(*document, std::move(*nodes), classes).read();

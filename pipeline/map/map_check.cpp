@@ -25,6 +25,13 @@ Status check_polyline(const std::vector<Eigen::Vector2d>& points, std::string_vi
 
 }  // namespace
 
+tl::unexpected<Error> far_from_origin(const std::string& file, const Eigen::Vector2d& middle) {
+  return fail(
+      "{}: found coordinates ({:.0f}, {:.0f}) m from their zero, wanted at most {:g} km; --origin "
+      "is the place of the point (0, 0)",
+      file, middle.x(), middle.y(), kFarthestFromOriginM / 1000.0);
+}
+
 Status check_map(const HdMap& map, const std::string& file) {
   const bool has_line = std::ranges::any_of(
       map.elements, [](const MapElement& element) { return element.points.size() > 1; });

@@ -15,6 +15,7 @@
 #include "common/median.h"
 #include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/map_check.h"
+#include "pipeline/map/tangent_plane.h"
 
 namespace bevloc {
 namespace {
@@ -160,12 +161,12 @@ Result<NodePositions> locate_nodes(const OsmDocument& document) {
     const GeographicLib::LocalCartesian tangent_plane(middle->latitude_deg, middle->longitude_deg);
     for (const auto& [id, node] : document.nodes) {
       if (!has_angles(node)) continue;
-      double east_m = 0.0, north_m = 0.0, up_m = 0.0;
-      tangent_plane.Forward(*node.latitude_deg, *node.longitude_deg, 0.0, east_m, north_m, up_m);
-      positions.of_node[id] = {east_m, north_m};
+      const Eigen::Vector2d point =
+          point_of(tangent_plane, {*node.latitude_deg, *node.longitude_deg});
+      positions.of_node[id] = point;
       if (!has_local(node)) continue;
       local.emplace_back(*node.local_x_m, *node.local_y_m);
-      plane.emplace_back(east_m, north_m);
+      plane.emplace_back(point.x(), point.y());
     }
   }
   if (std::none_of(document.nodes.begin(), document.nodes.end(),

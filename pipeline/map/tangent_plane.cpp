@@ -15,4 +15,13 @@ GeoOrigin place_of(const GeographicLib::LocalCartesian& plane, const Eigen::Vect
   return place;
 }
 
+Eigen::Vector2d point_of(const GeographicLib::LocalCartesian& plane, const GeoOrigin& place) {
+  // The ground is this far below the plane at 160 km, which is farther than any map reaches.
+  constexpr double kHorizon_m = -2'000.0;
+  Eigen::Vector3d point;
+  plane.Forward(place.latitude_deg, place.longitude_deg, 0.0, point.x(), point.y(), point.z());
+  if (point.z() < kHorizon_m) return {point.norm(), 0.0};
+  return point.head<2>();
+}
+
 }  // namespace bevloc

@@ -14,4 +14,8 @@ namespace bevloc {
 /// height 0 above the plane is up to 2 m off at 55 km.
 GeoOrigin place_of(const GeographicLib::LocalCartesian& plane, const Eigen::Vector2d& point);
 
+/// The point of the plane (metres east and north) over a place at height 0. Beyond the horizon, the
+/// first coordinate is the distance through the earth, so that no place there looks near.
+Eigen::Vector2d point_of(const GeographicLib::LocalCartesian& plane, const GeoOrigin& place);
+
 }  // namespace bevloc

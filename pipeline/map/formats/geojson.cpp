@@ -156,12 +156,11 @@ class GeojsonReader {
         return fail("{}: found {:.60}, wanted longitude and latitude in degrees",
                     json_.place(path / i), dump_json(position));
       }
-      Eigen::Vector3d point;
-      plane_.Forward(place->latitude_deg, place->longitude_deg, 0.0, point.x(), point.y(),
-                     point.z());
+      const Eigen::Vector2d point = point_of(plane_, *place);
       const bool has_height = position.size() > 2 && position[2].is_number();
-      point.z() = has_height ? position[2].get<double>() : std::numeric_limits<double>::quiet_NaN();
-      line.push_back(point);
+      line.emplace_back(point.x(), point.y(),
+                        has_height ? position[2].get<double>()
+                                   : std::numeric_limits<double>::quiet_NaN());
     }
     return line;
   }

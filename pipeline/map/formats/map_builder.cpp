@@ -10,6 +10,7 @@
 #include "common/plane.h"
 #include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/map_check.h"
+#include "pipeline/map/tangent_plane.h"
 
 namespace bevloc {
 namespace {
@@ -170,10 +171,7 @@ void MapBuilder::place(const Projection* projection) {
     map_.origin = projection->geographic(middle);
     const GeographicLib::LocalCartesian plane(map_.origin.latitude_deg, map_.origin.longitude_deg);
     move_points(map_, [&](const Eigen::Vector2d& point) {
-      const GeoOrigin place = projection->geographic(point);
-      Eigen::Vector3d moved;
-      plane.Forward(place.latitude_deg, place.longitude_deg, 0.0, moved.x(), moved.y(), moved.z());
-      return Eigen::Vector2d(moved.head<2>());
+      return point_of(plane, projection->geographic(point));
     });
     return;
   }
@@ -215,7 +213,11 @@ void MapBuilder::drop_impossible() {
 }
 
 Result<ImportedMap> MapBuilder::finish(std::string name, std::unique_ptr<Projection> projection) {
-  if (options_.origin) projection = tangent_projection(*options_.origin);
+  if (options_.origin) {
+    const Eigen::Vector2d middle = middle_of_elements(map_);
+    if (middle.cwiseAbs().maxCoeff() > kFarthestFromOriginM) return far_from_origin(file_, middle);
+    projection = tangent_projection(*options_.origin);
+  }
   if (options_.classes != nullptr) {
     const Status status = check_rules(*options_.classes, report_, file_);
     if (!status) return tl::unexpected(status.error());

@@ -10,6 +10,8 @@
 #include <GeographicLib/TransverseMercator.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 
+#include "pipeline/map/tangent_plane.h"
+
 namespace bevloc {
 namespace {
 
@@ -53,10 +55,7 @@ class TangentPlane : public Projection {
       : plane_(origin.latitude_deg, origin.longitude_deg) {}
 
   GeoOrigin geographic(const Eigen::Vector2d& point) const override {
-    GeoOrigin place;
-    double height_m = 0.0;
-    plane_.Reverse(point.x(), point.y(), 0.0, place.latitude_deg, place.longitude_deg, height_m);
-    return place;
+    return place_of(plane_, point);
   }
 
  private:

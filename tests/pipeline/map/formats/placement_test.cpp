@@ -1,0 +1,114 @@
+// Where an imported map lies on earth.
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/map/formats/geojson.h"
+#include "pipeline/map/formats/map_format.h"
+#include "pipeline/map/tangent_plane.h"
+
+namespace bevloc {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+/// A straight road of 1000 m to the east, from a point of the file.
+std::string road_from(double x_m, double y_m, std::string_view reference = "") {
+  return fmt::format(
+      R"(<OpenDRIVE><header revMajor="1">{}</header><road id="1" length="1000" junction="-1">
+<planView><geometry s="0" x="{}" y="{}" hdg="0" length="1000"><line/></geometry></planView>
+<lanes><laneSection s="0"><center><lane id="0"><roadMark sOffset="0" type="solid"/></lane></center>
+<right><lane id="-1" type="driving"><width sOffset="0" a="4" b="0" c="0" d="0"/></lane></right>
+</laneSection></lanes></road></OpenDRIVE>)",
+      reference.empty() ? "" : fmt::format("<geoReference>{}</geoReference>", reference), x_m, y_m);
+}
+
+ImportOptions with_origin() {
+  ImportOptions options;
+  options.origin = GeoOrigin{49.0, 8.4};
+  return options;
+}
+
+std::string error_of(std::string_view text, const std::string& file,
+                     const ImportOptions& options = {}) {
+  const auto map = parse_imported(text, file, options);
+  return map ? "" : map.error().message;
+}
+
+TEST(Placement, AnOriginFarFromTheCoordinatesIsRefused) {
+  EXPECT_EQ(error_of(road_from(455'000, 5'428'000), "utm.xodr", with_origin()),
+            "utm.xodr: found coordinates (456000, 5428000) m from their zero, wanted at most 83 "
+            "km; --origin is the place of the point (0, 0)");
+  EXPECT_EQ(error_of(road_from(80'000, -80'000), "far.xodr", with_origin()), "");
+  EXPECT_THAT(error_of(R"(<osm>
+ <node id="1"><tag k="local_x" v="456000"/><tag k="local_y" v="5427000"/></node>
+ <node id="2"><tag k="local_x" v="456080"/><tag k="local_y" v="5427000"/></node>
+ <way id="11"><nd ref="1"/><nd ref="2"/><tag k="type" v="curbstone"/></way></osm>)",
+                       "local.osm", with_origin()),
+              testing::StartsWith("local.osm: found coordinates (456"));
+}
+
+TEST(Placement, TheOriginOfAFileIsExactFarFromIt) {
+  const GeographicLib::LocalCartesian plane(49.0, 8.4);
+  for (const double x_m : {0.0, 36'000.0, 70'000.0}) {
+    const auto imported = parse_imported(road_from(x_m, 0.0), "road.xodr", with_origin());
+    ASSERT_TRUE(imported.has_value()) << imported.error().message;
+    const GeographicLib::LocalCartesian own(imported->map.origin.latitude_deg,
+                                            imported->map.origin.longitude_deg);
+    const GeoOrigin start = place_of(own, imported->map.elements.back().points.front());
+    EXPECT_LT((point_of(plane, start) - Eigen::Vector2d(x_m, 0.0)).norm(), 0.001) << x_m;
+  }
+}
+
+TEST(Placement, GeojsonKeepsPlacesFarFromTheMiddle) {
+  // Most lines lie at longitude 8.4, one about 70 km to the east.
+  constexpr std::string_view kLine =
+      R"({{"type": "Feature", "properties": {{"class": "divider"}},
+          "geometry": {{"type": "LineString", "coordinates": [[{}, 49], [{}, 49.001]]}}}})";
+  std::string features;
+  for (const double longitude_deg : {8.4, 8.4, 8.4, 9.36}) {
+    features += fmt::format("{}{}", features.empty() ? "" : ",",
+                            fmt::format(fmt::runtime(kLine), longitude_deg, longitude_deg));
+  }
+  const auto imported =
+      parse_imported(fmt::format(R"({{"type": "FeatureCollection", "features": [{}]}})", features),
+                     "wide.geojson", {});
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  const GeographicLib::LocalCartesian plane(imported->map.origin.latitude_deg,
+                                            imported->map.origin.longitude_deg);
+  const GeoOrigin place = place_of(plane, imported->map.elements.back().points.front());
+  // 1e-8 degrees are 1 mm.
+  EXPECT_NEAR(place.longitude_deg, 9.36, 1e-8);
+  EXPECT_NEAR(place.latitude_deg, 49.0, 1e-8);
+  const auto text = to_geojson(*imported);
+  ASSERT_TRUE(text.has_value());
+  EXPECT_THAT(*text, HasSubstr("[9.36,49.0]"));
+}
+
+TEST(Placement, TheOtherSideOfTheEarthIsFarAway) {
+  constexpr std::string_view kTwoSides = R"({"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"class": "divider"}, "geometry": {"type": "LineString",
+     "coordinates": [[8.4, 49], [8.4001, 49], [8.4002, 49]]}},
+    {"type": "Feature", "properties": {"class": "divider"}, "geometry": {"type": "LineString",
+     "coordinates": [[-171.6, -49], [-171.599, -49]]}}]})";
+  const auto imported = parse_imported(kTwoSides, "sides.geojson", {});
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  EXPECT_EQ(imported->map.elements.size(), 1U);
+  EXPECT_THAT(imported->map.left_out, Contains(HasSubstr("too far from the middle")));
+
+  const auto lanelet = parse_imported(R"(<osm>
+ <node id="1" lat="49" lon="8.4"/><node id="2" lat="49" lon="8.401"/>
+ <node id="3" lat="49" lon="8.402"/>
+ <node id="4" lat="-49" lon="-171.6"/><node id="5" lat="-49" lon="-171.599"/>
+ <way id="11"><nd ref="1"/><nd ref="2"/><nd ref="3"/><tag k="type" v="curbstone"/></way>
+ <way id="12"><nd ref="4"/><nd ref="5"/><tag k="type" v="curbstone"/></way></osm>)",
+                                      "sides.osm", {});
+  ASSERT_TRUE(lanelet.has_value()) << lanelet.error().message;
+  EXPECT_EQ(lanelet->map.elements.size(), 1U);
+  EXPECT_THAT(lanelet->map.left_out, Contains(HasSubstr("node 4: found a place (1.27")));
+}
+
+}  // namespace
+}  // namespace bevloc
