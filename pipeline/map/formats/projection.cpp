@@ -1,5 +1,7 @@
 #include "pipeline/map/formats/projection.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -119,6 +121,25 @@ Status check_word(const ProjWords& words, std::string_view key, std::string_view
               same == wanted ? "" : fmt::format(" or {}", same));
 }
 
+/// Refuses words that are misspelt, or that would move the map and are not understood.
+Status check_known(const ProjWords& words) {
+  static constexpr std::array<std::string_view, 25> kKnown{
+      "proj",    "zone", "south",      "lat_0",   "lon_0", "k",         "k_0",
+      "x_0",     "y_0",  "datum",      "ellps",   "units", "to_meter",  "axis",
+      "no_defs", "type", "wktext",     "vunits",  "pm",    "vto_meter", "approx",
+      "towgs84", "over", "geoidgrids", "nadgrids"};
+  for (const auto& [key, value] : words) {
+    if (std::ranges::find(kKnown, key) != kKnown.end()) continue;
+    return fail("found +{}{}{}, wanted only words of PROJ that bevloc knows (docs/maps.md)", key,
+                value.empty() ? "" : "=", value);
+  }
+  const auto shift = words.find("towgs84");
+  if (shift == words.end() || shift->second.find_first_not_of("0.,-") == std::string::npos) {
+    return {};
+  }
+  return fail("found +towgs84={}, wanted a datum without a shift to WGS84", shift->second);
+}
+
 /// ETRS89 and GRS80 differ from WGS84 by less than a metre.
 Status check_datum(const ProjWords& words) {
   Status status = check_word(words, "datum", "WGS84", "ETRS89");
@@ -126,6 +147,8 @@ Status check_datum(const ProjWords& words) {
   if (status) status = check_word(words, "units", "m", "metre");
   if (status) status = check_word(words, "to_meter", "1", "1.0");
   if (status) status = check_word(words, "axis", "enu", "enu");
+  if (status) status = check_word(words, "pm", "greenwich", "0");
+  if (status) status = check_word(words, "nadgrids", "@null", "@null");
   return status;
 }
 
@@ -157,9 +180,14 @@ Result<std::unique_ptr<Projection>> projection_from_proj(std::string_view text) 
     return fail("found \"{:.60}\", wanted a PROJ string with +proj=", text);
   }
   if (kind->second == "longlat" || kind->second == "latlong") return nullptr;
-  if (Status status = check_datum(words); !status) return tl::unexpected(status.error());
-  if (kind->second == "tmerc") return transverse_mercator(words);
-  if (kind->second == "utm") {
+  const bool is_utm = kind->second == "utm";
+  if (!is_utm && kind->second != "tmerc") {
+    return fail("found +proj={}, wanted utm or tmerc", kind->second);
+  }
+  Status status = check_known(words);
+  if (status) status = check_datum(words);
+  if (!status) return tl::unexpected(status.error());
+  if (is_utm) {
     const Result<double> zone = proj_number(words, "zone", 0.0, 60.0);
     if (!zone) return tl::unexpected(zone.error());
     if (*zone < 1.0 || *zone != std::floor(*zone)) {
@@ -167,7 +195,7 @@ Result<std::unique_ptr<Projection>> projection_from_proj(std::string_view text) 
     }
     return utm_projection(static_cast<int>(*zone), !words.contains("south"), {0.0, 0.0});
   }
-  return fail("found +proj={}, wanted utm or tmerc", kind->second);
+  return transverse_mercator(words);
 }
 
 std::unique_ptr<Projection> utm_projection(int zone, bool north, const Eigen::Vector2d& offset) {

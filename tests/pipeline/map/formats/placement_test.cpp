@@ -50,6 +50,28 @@ TEST(Placement, AnOriginFarFromTheCoordinatesIsRefused) {
               testing::StartsWith("local.osm: found coordinates (456"));
 }
 
+TEST(Placement, WordsOfProjThatAreNotKnownAreRefused) {
+  const auto error_with = [](const std::string& words) {
+    return error_of(road_from(0, 0, "+proj=tmerc +lat_0=49 +lon_0=8 " + words), "proj.xodr");
+  };
+  for (const char* words :
+       {"+pm=paris", "+a=6377397.155", "+b=6356078.963", "+R=6371000", "+K_0=0.9996",
+        "+towgs84=598.1,73.7,418.2,0.202,0.045,-2.455,6.7", "+nadgrids=BETA2007.gsb"}) {
+    const std::string word(words, std::string_view(words).find('='));
+    EXPECT_THAT(error_with(words), HasSubstr("<geoReference>: found " + word)) << words;
+    EXPECT_THAT(error_with(words), HasSubstr("; --origin LATITUDE,LONGITUDE takes its place"));
+    EXPECT_THAT(
+        error_of(road_from(5e5, 5.4e6, std::string("+proj=utm +zone=32 ") + words), "u.xodr"),
+        HasSubstr("found " + word));
+  }
+  for (const char* words :
+       {"+k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m +geoidgrids=egm96_15.gtx +vunits=m +no_defs",
+        "+k_0=0.9996 +datum=WGS84 +type=crs +wktext +axis=enu +to_meter=1",
+        "+ellps=GRS80 +towgs84=0,0,0,0,0,0,0 +pm=greenwich +nadgrids=@null +over +approx"}) {
+    EXPECT_EQ(error_with(words), "");
+  }
+}
+
 TEST(Placement, TheOriginOfAFileIsExactFarFromIt) {
   const GeographicLib::LocalCartesian plane(49.0, 8.4);
   for (const double x_m : {0.0, 36'000.0, 70'000.0}) {
