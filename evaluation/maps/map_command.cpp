@@ -11,6 +11,8 @@
 #include "common/files.h"
 #include "common/json_dump.h"
 #include "common/option_checks.h"
+#include "common/output_check.h"
+#include "common/replace_file.h"
 #include "evaluation/maps/map_diff.h"
 #include "evaluation/maps/map_facts.h"
 #include "evaluation/maps/map_picture.h"
@@ -40,9 +42,9 @@ Status write_json(const nlohmann::json& json, const std::string& path) {
   return path.empty() ? Status() : bevloc::write_file(path, dump_json(json, 2) + "\n");
 }
 
-Status check_extension(const std::filesystem::path& path) {
+Status check_map_extension(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
-  if (extension == ".bvm" || extension == ".geojson" || extension == ".json") return {};
+  if (extension == ".bvm" || extension == ".geojson") return {};
   return fail("{}: found the extension \"{}\", wanted .bvm or .geojson", path.string(), extension);
 }
 
@@ -52,7 +54,7 @@ Status write_map(const ImportedMap& imported, const std::filesystem::path& path,
     return version_1 ? write_map_binary(imported.map, path) : write_tiled_map(imported.map, path);
   }
   const Result<std::string> text = to_geojson(imported);
-  return text ? bevloc::write_file(path, *text) : Status(tl::unexpected(text.error()));
+  return text ? replace_file(path, *text) : Status(tl::unexpected(text.error()));
 }
 
 void print_map(const ImportedMap& imported, const std::string& file) {
@@ -107,8 +109,21 @@ void MapCommand::declare(CLI::App& app) {
   diffs->footer("Examples:\n  bevloc map diff old.osm new.osm --picture changes.png");
 }
 
+Status MapCommand::run() const {
+  for (const std::string& out : {out_, json_, picture_}) {
+    if (Status status = check_output(out, {in_, other_, classes_}); !status) return status;
+  }
+  return (this->*action_)();
+}
+
+Status MapCommand::check_picture() const {
+  return picture_.empty() ? Status() : check_extension(picture_, ".png");
+}
+
 Status MapCommand::import() const {
-  if (Status status = check_extension(out_); !status) return status;
+  Status status = check_map_extension(out_);
+  if (status) status = check_picture();
+  if (!status) return status;
   ImportOptions options;
   ClassTable classes;
   if (!classes_.empty()) {
@@ -125,8 +140,9 @@ Status MapCommand::import() const {
   const auto imported = import_map(in_, options);
   if (!imported) return tl::unexpected(imported.error());
   fmt::print("{}", text_of(imported->report));
-  if (Status status = write_json(json_of(*imported), json_); !status) return status;
-  if (Status status = write_map(*imported, out_, version_1_); !status) return status;
+  status = write_json(json_of(*imported), json_);
+  if (status) status = write_map(*imported, out_, version_1_);
+  if (!status) return status;
   print_map(*imported, out_);
   return picture_.empty() ? Status() : write_map_picture(imported->map, size_px_, picture_);
 }
@@ -155,12 +171,14 @@ Status MapCommand::check() const {
 }
 
 Status MapCommand::render() const {
+  if (Status status = check_extension(out_, ".png"); !status) return status;
   const auto map = load_map(in_);
   if (!map) return tl::unexpected(map.error());
   return write_map_picture(*map, size_px_, out_);
 }
 
 Status MapCommand::diff() const {
+  if (Status status = check_picture(); !status) return status;
   const auto first = load_map(in_);
   if (!first) return tl::unexpected(first.error());
   auto second = load_map(other_);

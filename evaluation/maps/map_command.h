@@ -13,7 +13,8 @@ class MapCommand {
  public:
   void declare(CLI::App& app);
   bool chosen() const { return action_ != nullptr; }
-  Status run() const { return (this->*action_)(); }
+  /// Fails before it reads anything if a file to write is one to read.
+  Status run() const;
 
  private:
   Status import() const;
@@ -21,6 +22,7 @@ class MapCommand {
   Status check() const;
   Status render() const;
   Status diff() const;
+  Status check_picture() const;
 
   Status (MapCommand::*action_)() const = nullptr;
   std::string in_;

@@ -4,6 +4,7 @@
 
 #include "common/crc32.h"
 #include "common/files.h"
+#include "common/replace_file.h"
 #include "pipeline/map/compact_codec.h"
 #include "pipeline/map/map_check.h"
 #include "pipeline/map/tiles/tile_codec.h"
@@ -142,12 +143,12 @@ Result<HdMap> read_map_binary(const std::filesystem::path& path) {
 }
 
 Status write_map_binary(const HdMap& map, const std::filesystem::path& path) {
-  return write_file(path, encode_map(map));
+  return replace_file(path, encode_map(map));
 }
 
 Status write_tiled_map(const HdMap& map, const std::filesystem::path& path) {
   if (Status status = check_map(map, path.string()); !status) return status;
-  return write_file(path, encode_tiles(map));
+  return replace_file(path, encode_tiles(map));
 }
 
 }  // namespace bevloc

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/output_check.h"
 #include "pipeline/map/map_binary.h"
 #include "pipeline/map/map_loader.h"
 #include "pipeline/map/map_summary.h"
@@ -14,6 +15,9 @@ namespace {
 constexpr int kBadInput = 2;
 
 bevloc::Status convert(const std::filesystem::path& in, const std::filesystem::path& out) {
+  auto allowed = bevloc::check_extension(out, ".bvm");
+  if (allowed) allowed = bevloc::check_output(out, {in});
+  if (!allowed) return allowed;
   const auto map = bevloc::load_map(in);
   if (!map) return tl::unexpected(map.error());
   if (auto status = bevloc::write_tiled_map(*map, out); !status) return status;
@@ -32,7 +36,7 @@ int main(int argc, char** argv) {
   std::string in;
   std::string out;
   app.add_option("in", in, "Map to read")->required();
-  app.add_option("out", out, "Compact map to write")->required();
+  app.add_option("out", out, "Compact map (.bvm) to write")->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

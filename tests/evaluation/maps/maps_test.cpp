@@ -1,4 +1,6 @@
-#include <fstream>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -106,7 +108,55 @@ TEST_F(MapCommandTest, ImportsKeepTheMapThroughAllFormats) {
   EXPECT_THAT(*read_file(at("d.json")), HasSubstr("\"only_first_m\": 0.0"));
 }
 
+TEST_F(MapCommandTest, WritesOverNoFileThatItReads) {
+  std::filesystem::copy_file(kStreet, at("street.osm"));
+  std::filesystem::create_hard_link(at("street.osm"), at("street.png"));
+  ASSERT_TRUE(write_file(at("classes.yaml"), "rules: []\n"));
+  const std::vector<std::vector<std::string>> commands{
+      {"map", "render", at("street.osm"), at("street.png")},
+      {"map", "import", at("street.osm"), at("a.bvm"), "--picture", at("street.png")},
+      {"map", "import", at("street.osm"), at("a.bvm"), "--report", at("street.osm")},
+      {"map", "import", at("street.osm"), at("a.bvm"), "--classes", at("classes.yaml"), "--report",
+       at("classes.yaml")},
+      {"map", "info", at("street.osm"), "--json", at("street.osm")},
+      {"map", "diff", kStreet, at("street.osm"), "--json", at("street.osm")}};
+  for (const auto& words : commands) {
+    const Status status = run(words);
+    ASSERT_FALSE(status.has_value()) << words[1];
+    EXPECT_THAT(status.error().message, HasSubstr("found a file to write that is also read"));
+  }
+  EXPECT_EQ(*read_file(at("street.osm")), *read_file(kStreet));
+  EXPECT_FALSE(std::filesystem::exists(at("a.bvm")));
+}
+
+TEST_F(MapCommandTest, DrawsPngFilesOnly) {
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"map", "render", kStreet, at("q.txt")},
+           {"map", "import", kStreet, at("a.bvm"), "--picture", at("q.txt")},
+           {"map", "diff", kStreet, kStreet, "--picture", at("q.txt")}}) {
+    EXPECT_THAT(run(words).error().message, HasSubstr("wanted .png"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(at("q.txt")));
+}
+
+TEST_F(MapCommandTest, ReplacesMapsByRenaming) {
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"old.bvm"}, {"old.bvm", "--bvm-1"}, {"old.geojson"}}) {
+    const std::string out = at(more[0].c_str());
+    ASSERT_TRUE(write_file(out, "old"));
+    std::filesystem::remove(at("in_use"));
+    std::filesystem::create_hard_link(out, at("in_use"));
+    std::vector<std::string> words{"map", "import", kStreet, out};
+    words.insert(words.end(), more.begin() + 1, more.end());
+    ASSERT_TRUE(run(words));
+    EXPECT_EQ(*read_file(at("in_use")), "old") << "who has the file open keeps its bytes";
+    EXPECT_TRUE(load_map(out).has_value());
+  }
+}
+
 TEST_F(MapCommandTest, SaysWhatIsWrong) {
+  EXPECT_THAT(run({"map", "import", kStreet, at("a.json")}).error().message,
+              HasSubstr("wanted .bvm or .geojson"));
   EXPECT_THAT(run({"map", "import", kStreet, at("a.png")}).error().message,
               HasSubstr("wanted .bvm or .geojson"));
   EXPECT_THAT(run({"map", "import", kStreet, at("a.bvm"), "--origin", "49"}).error().message,

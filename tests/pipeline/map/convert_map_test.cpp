@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include "common/files.h"
 #include "pipeline/map/map_binary.h"
 #include "pipeline/map/map_checksum.h"
 #include "pipeline/map/map_loader.h"
@@ -55,6 +56,17 @@ TEST_F(ConvertMapTest, ExitsWithTwoAndWritesNothingOnBadInput) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.bvm"));
   EXPECT_EQ(convert(kStreet, folder_ / "no_folder/out.bvm"), 2);
   EXPECT_EQ(convert(kStreet, ""), 2);
+  EXPECT_EQ(convert(kStreet, folder_ / "out.osm"), 2) << "only .bvm";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.osm"));
+}
+
+TEST_F(ConvertMapTest, WritesOverNoFileThatItReads) {
+  ASSERT_EQ(convert(kStreet, folder_ / "street.bvm"), 0);
+  std::filesystem::create_hard_link(folder_ / "street.bvm", folder_ / "same.bvm");
+  EXPECT_EQ(convert(folder_ / "street.bvm", folder_ / "same.bvm"), 2);
+  std::filesystem::copy_file(kStreet, folder_ / "copy.bvm");
+  EXPECT_EQ(convert(folder_ / "copy.bvm", folder_ / "copy.bvm"), 2);
+  EXPECT_EQ(read_file(folder_ / "copy.bvm").value(), read_file(kStreet).value());
 }
 
 }  // namespace
