@@ -1,15 +1,18 @@
 #include "evaluation/maps/map_command.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "common/files.h"
 #include "common/json_dump.h"
+#include "common/number_text.h"
 #include "common/option_checks.h"
 #include "common/output_check.h"
 #include "common/replace_file.h"
@@ -25,17 +28,27 @@
 namespace bevloc::evaluation {
 namespace {
 
-Result<GeoOrigin> origin_from(const std::string& text) {
-  GeoOrigin origin;
+std::optional<double> degrees_from(std::string_view text, double limit_deg) {
+  text = trimmed_number(text);
+  double value_deg = 0.0;
   const char* end = text.data() + text.size();
-  const auto first = std::from_chars(text.data(), end, origin.latitude_deg);
-  const bool has_comma = first.ec == std::errc() && first.ptr != end && *first.ptr == ',';
-  const auto second = has_comma ? std::from_chars(first.ptr + 1, end, origin.longitude_deg) : first;
-  const bool is_good = has_comma && second.ec == std::errc() && second.ptr == end &&
-                       std::abs(origin.latitude_deg) <= 90.0 &&
-                       std::abs(origin.longitude_deg) <= 180.0;
-  if (is_good) return origin;
-  return fail("--origin: found \"{}\", wanted LATITUDE,LONGITUDE in degrees", text);
+  const auto parsed = std::from_chars(text.data(), end, value_deg);
+  const bool is_good =
+      parsed.ec == std::errc() && parsed.ptr == end && std::abs(value_deg) <= limit_deg;
+  return is_good ? std::optional(value_deg) : std::nullopt;
+}
+
+Result<GeoOrigin> origin_from(const std::string& text) {
+  const size_t comma = std::min(text.find(','), text.size());
+  const auto latitude_deg = degrees_from(std::string_view(text).substr(0, comma), 90.0);
+  const auto longitude_deg =
+      degrees_from(std::string_view(text).substr(std::min(comma + 1, text.size())), 180.0);
+  if (!latitude_deg || !longitude_deg) {
+    return fail("--origin: found \"{}\", wanted LATITUDE,LONGITUDE in degrees", text);
+  }
+  const GeoOrigin origin{*latitude_deg, *longitude_deg};
+  if (is_known(origin)) return origin;
+  return fail("--origin: found \"{}\", wanted a place: (0, 0) stands for an unknown one", text);
 }
 
 Status write_json(const nlohmann::json& json, const std::string& path) {

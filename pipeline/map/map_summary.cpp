@@ -28,7 +28,8 @@ std::vector<std::string> warnings_of(const HdMap& map) {
   if (!is_known(map.origin)) {
     warnings.push_back(
         "no place on earth: positions from GNSS, and the latitude and longitude on the CAN bus, "
-        "mean nothing; say where the map is: bevloc map import --origin LATITUDE,LONGITUDE");
+        "mean nothing; import the original file again and say where it is: bevloc map import "
+        "--origin LATITUDE,LONGITUDE");
   }
   if (count_of(map, ElementClass::kLaneDivider) == 0) {
     warnings.push_back("no lane divider: the pose across the road rests on boundaries alone");

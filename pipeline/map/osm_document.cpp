@@ -8,24 +8,15 @@
 
 #include <pugixml.hpp>
 
+#include "common/number_text.h"
 #include "pipeline/map/text_lines.h"
 
 namespace bevloc {
 namespace {
 
-/// Without white space around it, and without the "+" that std::from_chars does not know.
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kSpace = " \t\r\n";
-  const size_t first = text.find_first_not_of(kSpace);
-  if (first == std::string_view::npos) return {};
-  text = text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-  if (text.starts_with('+') && text.size() > 1 && text[1] != '-') text.remove_prefix(1);
-  return text;
-}
-
 template <typename T>
 std::optional<T> number_from(std::string_view text) {
-  text = trimmed(text);
+  text = trimmed_number(text);
   T value{};
   const char* end = text.data() + text.size();
   const auto result = std::from_chars(text.data(), end, value);
@@ -37,7 +28,7 @@ std::optional<T> number_from(std::string_view text) {
 /// heights serves as well.
 std::optional<double> height_from(std::string_view text) {
   constexpr double kHighest_m = 1e5;
-  text = trimmed(text);
+  text = trimmed_number(text);
   if (text.ends_with('m')) text.remove_suffix(1);
   const auto height_m = number_from<double>(text);
   return height_m && std::abs(*height_m) <= kHighest_m ? height_m : std::nullopt;

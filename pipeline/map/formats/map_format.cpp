@@ -50,10 +50,11 @@ bool is_xml_of(std::string_view bytes, std::string_view element) {
 
 Result<ImportedMap> read_compact(std::string_view bytes, const std::filesystem::path& file,
                                  const ImportOptions& options) {
+  // The import may have shifted the coordinates, so that their zero is not that of the original.
   if (options.classes != nullptr || options.origin) {
     return fail(
-        "{}: found a class table or an origin for a compact map, wanted neither: it has "
-        "classes and an origin of its own",
+        "{}: found a class table or an origin for a compact map, wanted neither; import the "
+        "original file again with them",
         file.string());
   }
   Result<HdMap> map = decode_map(bytes, file.string());

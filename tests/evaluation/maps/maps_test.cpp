@@ -154,6 +154,26 @@ TEST_F(MapCommandTest, ReplacesMapsByRenaming) {
   }
 }
 
+TEST_F(MapCommandTest, AnOriginIsAPlace) {
+  ASSERT_TRUE(write_file(at("local.osm"), R"(<osm>
+ <node id="1"><tag k="local_x" v="0"/><tag k="local_y" v="0"/></node>
+ <node id="2"><tag k="local_x" v="80"/><tag k="local_y" v="0"/></node>
+ <way id="11"><nd ref="1"/><nd ref="2"/><tag k="type" v="curbstone"/></way></osm>)"));
+  const auto with = [&](const std::string& origin) {
+    return run({"map", "import", at("local.osm"), at("local.bvm"), "--origin", origin});
+  };
+  EXPECT_THAT(with("0,0").error().message, HasSubstr("(0, 0) stands for an unknown one"));
+  for (const char* bad : {"49", "49,", ",8.4", "49,8.4,1", "91,0", "49,+-8"}) {
+    EXPECT_FALSE(with(bad).has_value()) << bad;
+  }
+  ASSERT_TRUE(with(" +49 , 8.4 "));
+  EXPECT_EQ(load_map(at("local.bvm"))->origin.latitude_deg, 49.0);
+  ASSERT_TRUE(run({"map", "import", at("local.osm"), at("nowhere.bvm")}));
+  EXPECT_THAT(
+      run({"map", "import", at("nowhere.bvm"), at("b.bvm"), "--origin", "49,8.4"}).error().message,
+      HasSubstr("import the original file again with them"));
+}
+
 TEST_F(MapCommandTest, SaysWhatIsWrong) {
   EXPECT_THAT(run({"map", "import", kStreet, at("a.json")}).error().message,
               HasSubstr("wanted .bvm or .geojson"));
