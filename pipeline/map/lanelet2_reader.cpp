@@ -181,6 +181,13 @@ class Lanelet2Reader {
     lane.centerline = centerline_between(lane.left, lane.right);
     const OsmTags& tags = lanelet.relation->tags;
     lane.speed_limit_mps = speed_mps(tag_value(tags, "speed_limit")).value_or(lane.speed_limit_mps);
+    if (!can_be_driven(lane.centerline)) {
+      map_.left_out.push_back(
+          fmt::format("{}:{}: lanelet {}: found a length of {:g} m, wanted {:g} m to {:g} m",
+                      document_.file, lanelet.relation->line, lanelet.relation->id,
+                      polyline_length(lane.centerline), kShortestLaneM, kLongestPolylineM));
+      return;
+    }
     map_.lanes.push_back(lane);
     if (is_no(tag_value(tags, "one_way"))) map_.lanes.push_back(reversed(lane));
   }

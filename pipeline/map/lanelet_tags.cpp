@@ -5,6 +5,8 @@
 #include <charconv>
 #include <utility>
 
+#include "common/number_text.h"
+
 namespace bevloc {
 namespace {
 
@@ -64,12 +66,13 @@ Appearance divider_appearance(std::string_view subtype) {
 }
 
 std::optional<double> speed_mps(std::string_view text) {
+  text = trimmed_number(text);
   double value = 0.0;
   const auto number = std::from_chars(text.data(), text.data() + text.size(), value);
   if (number.ec != std::errc() || !(value > 0.0 && value < 1000.0)) return std::nullopt;
   std::string_view unit = text.substr(static_cast<size_t>(number.ptr - text.data()));
   while (unit.starts_with(' ')) unit.remove_prefix(1);
-  if (unit.empty() || unit == "km/h" || unit == "kmh") return value / 3.6;
+  if (unit.empty() || unit == "km/h" || unit == "kmh" || unit == "kph") return value / 3.6;
   if (unit == "mph") return value * 0.44704;
   if (unit == "m/s") return value;
   return std::nullopt;

@@ -22,7 +22,7 @@ std::optional<Appearance> boundary_appearance(std::string_view type);
 /// kUnknown for an unknown subtype.
 Appearance divider_appearance(std::string_view subtype);
 
-/// Parses a speed tag with the unit km/h, mph or m/s; without a unit it is km/h.
+/// Parses a speed tag with the unit km/h (kmh, kph), mph or m/s; without a unit it is km/h.
 std::optional<double> speed_mps(std::string_view text);
 
 /// How a report calls a way: "way line_thin dashed".

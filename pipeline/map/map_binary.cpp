@@ -6,6 +6,7 @@
 #include "common/files.h"
 #include "common/replace_file.h"
 #include "pipeline/map/compact_codec.h"
+#include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/map_check.h"
 #include "pipeline/map/tiles/tile_codec.h"
 
@@ -41,6 +42,8 @@ Lane decode_lane(CompactDecoder& decoder, size_t lane_count) {
     successor =
         static_cast<uint32_t>(decoder.number_below(lane_count, "a successor beyond the last lane"));
   }
+  const bool has_bounds = lane.left.size() > 1 && lane.right.size() > 1;
+  if (!has_bounds || polyline_length(lane.centerline) == 0.0) decoder.reject("a lane of no length");
   return lane;
 }
 

@@ -65,7 +65,7 @@ std::vector<uint32_t> random_lane_route(const HdMap& map, double length_m, Rando
     }
     lane = best_next;
     route.push_back(lane);
-    left_m -= lane_m[lane];
+    left_m -= std::max(lane_m[lane], kLeastStep_m);
   }
   return route;
 }

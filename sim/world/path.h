@@ -61,6 +61,9 @@ class Path {
 
 double length_m(const Polyline& line);
 
+/// A route counts each lane as at least this long, so that one along lanes without length ends.
+inline constexpr double kLeastStep_m = 0.01;
+
 /// Drops the points that lie on the straight between their neighbours.
 Polyline without_collinear(const Polyline& line);
 

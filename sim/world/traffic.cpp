@@ -29,7 +29,7 @@ Polyline random_route(const HdMap& map, uint32_t lane, Random& random) {
   while (travelled_m < kRoute_m && !map.lanes[lane].successors.empty()) {
     const std::vector<uint32_t>& next = map.lanes[lane].successors;
     lane = next[random.index(next.size())];
-    travelled_m += length_m(map.lanes[lane].centerline);
+    travelled_m += std::max(length_m(map.lanes[lane].centerline), kLeastStep_m);
     append(route, map.lanes[lane].centerline);
   }
   return route;

@@ -50,11 +50,7 @@ class GeojsonReader {
         return tl::unexpected(status.error());
       }
     }
-    for (Lane& lane : builder_.lanes()) {
-      std::erase_if(lane.successors,
-                    [this](uint32_t next) { return next >= builder_.lanes().size(); });
-    }
-    if (builder_.lanes().size() != lanes_with_successors_) link_successors(builder_.lanes());
+    link_lanes();
     const std::string name = text_member(json_.root(), "name");
     if (stored) builder_.keep_plane_at(*stored);
     return builder_.finish(name.empty() ? file.stem().string() : name, tangent_projection(anchor));
@@ -158,9 +154,9 @@ class GeojsonReader {
       }
       const Eigen::Vector2d point = point_of(plane_, *place);
       const bool has_height = position.size() > 2 && position[2].is_number();
-      line.emplace_back(point.x(), point.y(),
-                        has_height ? position[2].get<double>()
-                                   : std::numeric_limits<double>::quiet_NaN());
+      line.emplace_back(
+          point.x(), point.y(),
+          has_height ? position[2].get<double>() : std::numeric_limits<double>::quiet_NaN());
     }
     return line;
   }
@@ -187,12 +183,26 @@ class GeojsonReader {
       lane.speed_limit_mps = speed.get<double>();
     }
     const json& successors = member(properties, "successors");
-    if (successors.is_array()) ++lanes_with_successors_;
+    states_successors_.push_back(successors.is_array());
     for (const json& next : successors) {
-      if (next.is_number_unsigned()) lane.successors.push_back(next.get<uint32_t>());
+      const bool is_index =
+          next.is_number_unsigned() && next.get<uint64_t>() <= std::numeric_limits<uint32_t>::max();
+      if (is_index) lane.successors.push_back(next.get<uint32_t>());
     }
     builder_.add_lane(std::move(lane));
     return {};
+  }
+
+  /// Finds the successors of the lanes that do not state them.
+  void link_lanes() {
+    std::vector<Lane>& lanes = builder_.lanes();
+    std::vector<Lane> linked = lanes;
+    for (Lane& lane : linked) lane.successors.clear();
+    link_successors(linked);
+    for (size_t i = 0; i < lanes.size(); ++i) {
+      if (!states_successors_[i]) lanes[i].successors = std::move(linked[i].successors);
+      std::erase_if(lanes[i].successors, [&lanes](uint32_t next) { return next >= lanes.size(); });
+    }
   }
 
   /// A file of to_geojson() says where its origin was, so that the map stays the same.
@@ -242,7 +252,7 @@ class GeojsonReader {
   const ImportOptions& options_;
   MapBuilder builder_;
   GeographicLib::LocalCartesian plane_;  ///< of the coordinates in the builder
-  size_t lanes_with_successors_ = 0;
+  std::vector<bool> states_successors_;  ///< of each lane
 };
 
 class GeojsonWriter {

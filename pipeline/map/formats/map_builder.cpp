@@ -52,8 +52,7 @@ void drop_impossible_lanes(std::vector<Lane>& lanes) {
   for (size_t i = 0; i < lanes.size(); ++i) {
     const Lane& lane = lanes[i];
     const bool good = is_possible(lane.left) && is_possible(lane.right) &&
-                      is_possible(lane.centerline) &&
-                      polyline_length(lane.centerline) <= kLongestPolylineM;
+                      is_possible(lane.centerline) && can_be_driven(lane.centerline);
     if (good) new_index[i] = kept++;
   }
   for (size_t i = 0; i < lanes.size(); ++i) {
@@ -65,6 +64,11 @@ void drop_impossible_lanes(std::vector<Lane>& lanes) {
 }
 
 }  // namespace
+
+bool can_be_driven(const Polyline& centerline) {
+  const double length_m = polyline_length(centerline);
+  return length_m >= kShortestLaneM && length_m <= kLongestPolylineM;
+}
 
 bool can_be_lane(const std::vector<Eigen::Vector2d>& left,
                  const std::vector<Eigen::Vector2d>& right) {
@@ -205,10 +209,10 @@ void MapBuilder::drop_impossible() {
   const size_t lanes = map_.lanes.size();
   drop_impossible_lanes(map_.lanes);
   if (const size_t gone = lanes - map_.lanes.size(); gone > 0) {
-    leave_out(
-        fmt::format("{}: found {} lanes that are too long or too far from the middle, wanted "
-                    "at most {:g} and {:g} km",
-                    file_, gone, kLongestPolylineM / 1000.0, kFarthestFromOriginM / 1000.0));
+    leave_out(fmt::format(
+        "{}: found {} lanes that are too short, too long or too far from the middle, "
+        "wanted {:g} m to {:g} km, and at most {:g} km",
+        file_, gone, kShortestLaneM, kLongestPolylineM / 1000.0, kFarthestFromOriginM / 1000.0));
   }
 }
 

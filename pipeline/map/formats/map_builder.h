@@ -42,6 +42,17 @@ using Line3 = std::vector<Eigen::Vector3d>;
 
 double length_of(const Line3& line);
 
+/// The line with its first point again at its end, for rings that come without it.
+Line3 closed(Line3 ring);
+
+/// Gives an element the shape of its class (hd_map.h): removes consecutive equal points, and of a
+/// crossing the repeated corner and the points on its sides. `heights_m` may be empty. Returns why
+/// it cannot be of its class, or "".
+std::string_view shape_element(MapElement& element, Heights& heights_m);
+
+/// Whether a centre line has a length that a lane can have.
+bool can_be_driven(const std::vector<Eigen::Vector2d>& centerline);
+
 /// Whether bounds have points, and lengths that a lane can have.
 bool can_be_lane(const std::vector<Eigen::Vector2d>& left,
                  const std::vector<Eigen::Vector2d>& right);

@@ -169,6 +169,15 @@ TEST(Route, AvoidsDeadEndsAndPrefersNewLanes) {
   }
 }
 
+TEST(Route, AlongLanesWithoutLengthEnds) {
+  HdMap map;
+  map.lanes.resize(1);
+  map.lanes[0].centerline = {{5.0, 2.0}, {5.0, 2.0}};
+  map.lanes[0].successors = {0};
+  Random random(1);
+  EXPECT_LE(random_lane_route(map, 100.0, random).size(), 10'001U);
+}
+
 TEST(Drive, WaitsAtStopsForTheGivenTime) {
   const World world = generate_world(7);
   int waits = 0;

@@ -31,6 +31,17 @@ TEST(Traffic, RestartsAtTheEndOfItsPath) {
   }
 }
 
+TEST(Traffic, AlongLanesWithoutLengthEnds) {
+  HdMap map;
+  map.lanes.resize(2);
+  map.lanes[0].centerline = {{0.0, 0.0}, {100.0, 0.0}};
+  map.lanes[0].successors = {1};
+  map.lanes[1].centerline = {{100.0, 0.0}, {100.0, 0.0}};
+  map.lanes[1].successors = {1};
+  Random random(1);
+  EXPECT_FALSE(random_traffic(map, 10.0, random).empty());
+}
+
 TEST(Traffic, FollowsLanes) {
   const World world = generate_world(5);
   ASSERT_FALSE(world.traffic.empty());
