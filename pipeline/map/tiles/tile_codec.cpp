@@ -97,19 +97,13 @@ Status decode_rest(const TileDirectory& directory, HdMap& map) {
   return {};
 }
 
-}  // namespace
-
-bool is_tiled(std::string_view bytes) {
-  return bytes.size() >= kValuesOffset && bytes.starts_with(kMapMagic) &&
-         fixed_at<uint16_t>(bytes, kMapMagic.size()) == kTiledVersion;
+/// Of the name and the entries.
+uint64_t directory_size(const TileHeader& header) {
+  return header.name_size + uint64_t{header.tiles} * kTileEntrySize;
 }
 
-int32_t tile_of(double coordinate_m) {
-  constexpr double kLimit = 1e8;
-  return static_cast<int32_t>(std::clamp(std::floor(coordinate_m / kTileSize_m), -kLimit, kLimit));
-}
-
-Result<TileDirectory> TileDirectory::open(std::string_view bytes, const std::string& file) {
+/// Checks the header, and that the parts it names lie within the file.
+Result<TileHeader> header_of(std::string_view bytes, const std::string& file) {
   if (!is_tiled(bytes) || bytes.size() < kTileHeaderSize) {
     return fail("{}: found {} bytes, wanted a compact map of version {} with at least {}", file,
                 bytes.size(), kTiledVersion, kTileHeaderSize);
@@ -129,52 +123,77 @@ Result<TileDirectory> TileDirectory::open(std::string_view bytes, const std::str
     return fail("{}: found {} bytes, wanted {} as its header states", file, bytes.size(),
                 header.file_size);
   }
-  const uint64_t directory_size = header.name_size + uint64_t{header.tiles} * kTileEntrySize;
-  const uint64_t tiles_begin = kTileHeaderSize + directory_size;
-  const bool fits = directory_size <= bytes.size() - kTileHeaderSize &&
-                    header.rest_offset >= tiles_begin && header.rest_offset <= bytes.size() &&
+  const bool fits = directory_size(header) <= bytes.size() - kTileHeaderSize &&
+                    header.rest_offset >= kTileHeaderSize + directory_size(header) &&
+                    header.rest_offset <= bytes.size() &&
                     header.rest_size == bytes.size() - header.rest_offset &&
                     header.tile_quanta == kTileQuanta;
   if (!fits) {
     return fail("{}: byte {}: found a header whose parts are not within the file", file,
                 kValuesOffset);
   }
-  const std::string_view named = bytes.substr(kTileHeaderSize, directory_size);
-  if (const uint32_t found = crc32(named); found != header.directory_crc) {
+  return header;
+}
+
+}  // namespace
+
+bool is_tiled(std::string_view bytes) {
+  return bytes.size() >= kValuesOffset && bytes.starts_with(kMapMagic) &&
+         fixed_at<uint16_t>(bytes, kMapMagic.size()) == kTiledVersion;
+}
+
+int32_t tile_of(double coordinate_m) {
+  constexpr double kLimit = 1e8;
+  return static_cast<int32_t>(std::clamp(std::floor(coordinate_m / kTileSize_m), -kLimit, kLimit));
+}
+
+Result<TileDirectory> TileDirectory::open(std::string_view bytes, const std::string& file) {
+  const Result<TileHeader> header = header_of(bytes, file);
+  if (!header) return tl::unexpected(header.error());
+  const std::string_view named = bytes.substr(kTileHeaderSize, directory_size(*header));
+  if (const uint32_t found = crc32(named); found != header->directory_crc) {
     return fail("{}: byte {}: found CRC-32 {:08x} of the directory, wanted {:08x}", file,
-                kTileHeaderSize, found, header.directory_crc);
+                kTileHeaderSize, found, header->directory_crc);
   }
   TileDirectory directory;
   directory.bytes_ = bytes;
-  directory.entries_ = named.substr(header.name_size);
-  directory.rest_ = bytes.substr(header.rest_offset);
-  directory.rest_crc_ = header.rest_crc;
+  directory.entries_ = named.substr(header->name_size);
+  directory.rest_ = bytes.substr(header->rest_offset);
+  directory.rest_crc_ = header->rest_crc;
   TiledMapFacts& facts = directory.facts_;
-  facts.name = named.substr(0, header.name_size);
-  facts.origin = {std::bit_cast<double>(header.latitude_bits),
-                  std::bit_cast<double>(header.longitude_bits)};
-  facts.checksum = header.checksum;
-  facts.elements = header.elements;
-  facts.lanes = header.lanes;
-  std::ranges::copy(header.of_class, facts.of_class);
-  facts.tiles = header.tiles;
+  facts.name = named.substr(0, header->name_size);
+  facts.origin = {std::bit_cast<double>(header->latitude_bits),
+                  std::bit_cast<double>(header->longitude_bits)};
+  facts.checksum = header->checksum;
+  facts.elements = header->elements;
+  facts.lanes = header->lanes;
+  std::ranges::copy(header->of_class, facts.of_class);
+  facts.tiles = header->tiles;
   if (!(std::abs(facts.origin.latitude_deg) <= 90.0 &&
         std::abs(facts.origin.longitude_deg) <= 180.0)) {
     return fail("{}: found an origin that is not on earth", file);
   }
-  for (size_t i = 0; i < directory.size(); ++i) {
-    const Entry entry = directory.entry(i);
-    const bool is_inside = entry.offset >= tiles_begin && entry.offset <= header.rest_offset &&
-                           entry.size <= header.rest_offset - entry.offset;
-    const Entry before = i > 0 ? directory.entry(i - 1) : entry;
+  if (Status status = directory.check_entries(*header, file); !status) {
+    return tl::unexpected(status.error());
+  }
+  return directory;
+}
+
+Status TileDirectory::check_entries(const TileHeader& header, const std::string& file) const {
+  const uint64_t tiles_begin = kTileHeaderSize + directory_size(header);
+  for (size_t i = 0; i < size(); ++i) {
+    const Entry at = entry(i);
+    const bool is_inside = at.offset >= tiles_begin && at.offset <= header.rest_offset &&
+                           at.size <= header.rest_offset - at.offset;
+    const Entry before = i > 0 ? entry(i - 1) : at;
     const bool is_sorted =
-        i == 0 || std::pair(before.row, before.column) < std::pair(entry.row, entry.column);
+        i == 0 || std::pair(before.row, before.column) < std::pair(at.row, at.column);
     if (is_inside && is_sorted) continue;
     return fail("{}: byte {}: found entry {} of the directory {}", file,
                 kTileHeaderSize + header.name_size + i * kTileEntrySize, i,
                 is_inside ? "out of order" : "beyond the tiles");
   }
-  return directory;
+  return {};
 }
 
 TileDirectory::Entry TileDirectory::entry(size_t index) const {

@@ -58,6 +58,8 @@ struct TiledMapFacts {
   uint32_t tiles = 0;
 };
 
+struct TileHeader;
+
 /// The header and the directory of a file, checked; the bytes must outlive it. Immutable.
 class TileDirectory {
  public:
@@ -86,6 +88,8 @@ class TileDirectory {
   uint32_t rest_crc() const { return rest_crc_; }
 
  private:
+  Status check_entries(const TileHeader& header, const std::string& file) const;
+
   std::string_view bytes_;
   std::string_view entries_;
   std::string_view rest_;
