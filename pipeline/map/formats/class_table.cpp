@@ -62,6 +62,14 @@ Status check_rules(const ClassTable& classes, const ImportReport& report, const 
     const bool is_used = std::ranges::any_of(
         rows, [&](const ImportRow& row) { return classes.rule_for(row.kind) == &rule; });
     if (is_used) continue;
+    const bool is_hidden = std::ranges::any_of(
+        rows, [&](const ImportRow& row) { return rule_fits(rule.kind, row.kind); });
+    if (is_hidden) {
+      return fail(
+          "class table: found a rule for \"{}\" after one that takes all its kinds, wanted "
+          "it before that one",
+          rule.kind);
+    }
     return fail("class table: found a rule for \"{}\", wanted a kind that is in {} ({} kinds)",
                 rule.kind, file, rows.size());
   }

@@ -41,7 +41,8 @@ class ClassTable {
   std::vector<Rule> rules_;
 };
 
-/// Fails if a rule fits no kind of the report, which is probably a slip of the pen.
+/// Fails if a rule fits no kind of the report, which is probably a slip of the pen, or only kinds
+/// that an earlier rule takes.
 Status check_rules(const ClassTable& classes, const ImportReport& report, const std::string& file);
 
 }  // namespace bevloc

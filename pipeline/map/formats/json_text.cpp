@@ -31,7 +31,10 @@ bool is_too_deep(std::string_view text) {
 /// Walks over text that is known to be JSON.
 class JsonWalker {
  public:
-  explicit JsonWalker(std::string_view text) : text_(text) {}
+  explicit JsonWalker(std::string_view text) : text_(text) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+  }
 
   size_t at() {
     skip_space();

@@ -59,7 +59,15 @@ TEST(ClassTable, ChangesLanelet2Maps) {
       ClassTable::parse("rules:\n  - kind: way wal\n    becomes: nothing\n", "classes.yaml");
   options.classes = &*unused;
   EXPECT_THAT(import_map(street, options).error().message,
-              HasSubstr("class table: found a rule for \"way wal\""));
+              HasSubstr("class table: found a rule for \"way wal\", wanted a kind that is in"));
+
+  const auto hidden = ClassTable::parse(
+      "rules:\n  - kind: way*\n    becomes: boundary\n  - kind: way line_thin*\n"
+      "    becomes: nothing\n",
+      "classes.yaml");
+  options.classes = &*hidden;
+  EXPECT_THAT(import_map(street, options).error().message,
+              HasSubstr("class table: found a rule for \"way line_thin*\" after one that takes"));
 }
 
 TEST(MapFormat, MapsWithoutAnglesTakeThemFromTheirMgrsSquare) {

@@ -122,6 +122,10 @@ TEST(UnusualText, OnlyTheOutermostElementSaysTheFormat) {
 TEST(UnusualText, AByteOrderMarkMayComeBeforeJson) {
   const std::string text = "\xEF\xBB\xBF" + collection("", divider("[[8.4, 49], [8.401, 49]]"));
   EXPECT_EQ(imported(text, "map.json").map.elements.size(), 1U);
+  const auto broken = parse_imported(
+      "\xEF\xBB\xBF\n" + collection("", "\n" + divider("[[8.4, 149]]")), "b.json", {});
+  ASSERT_FALSE(broken.has_value());
+  EXPECT_THAT(broken.error().message, HasSubstr("b.json:4: /features/0/geometry/coordinates/0"));
 }
 
 TEST(UnusualArgoverse2, AnOutlineThatIsTooLongIsLeftOut) {
