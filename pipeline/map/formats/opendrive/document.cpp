@@ -146,6 +146,7 @@ class DocumentReader {
     } else {
       reject(node, "none of them", "line, arc, spiral, poly3 or paramPoly3");
     }
+    place_knots(geometry);
     return geometry;
   }
 

@@ -21,17 +21,59 @@ constexpr double kSameStart_m = 1e-6;
 constexpr double kMostCopies = 1000.0;
 constexpr size_t kMostCorners = 100;
 
-/// Gauss-Legendre quadrature with three points of f from 0 to `end`.
+/// Gauss-Legendre quadrature with three points of f from `begin` to `end`, added to `sum`.
 template <typename Value, typename Function>
-Value integral(double end, Value sum, Function f) {
-  const double steps = std::clamp(std::ceil(std::abs(end) / kStep_m), 1.0, kMostSteps);
-  const double half = 0.5 * end / steps;
+Value integral(double begin, double end, Value sum, Function f) {
+  const double steps = std::clamp(std::ceil(std::abs(end - begin) / kStep_m), 1.0, kMostSteps);
+  const double half = 0.5 * (end - begin) / steps;
   const double reach = half * std::sqrt(0.6);
   for (double i = 0.0; i < steps; i += 1.0) {
-    const double middle = (2.0 * i + 1.0) * half;
+    const double middle = begin + (2.0 * i + 1.0) * half;
     sum += half / 9.0 * (5.0 * f(middle - reach) + 8.0 * f(middle) + 5.0 * f(middle + reach));
   }
   return sum;
+}
+
+/// The last knot at or before a place of a piece; its start if there is none.
+Geometry::Knot knot_before(const Geometry& geometry, double along_m) {
+  const auto next = std::ranges::upper_bound(geometry.knots, along_m, {}, &Geometry::Knot::along_m);
+  return next == geometry.knots.begin() ? Geometry::Knot() : *std::prev(next);
+}
+
+LinePose spiral_pose(const Geometry& geometry, double along_m) {
+  const double c0 = geometry.start_curvature;
+  const double rate =
+      geometry.length_m > 0.0 ? (geometry.end_curvature - c0) / geometry.length_m : 0.0;
+  const auto heading = [&](double at) { return at * (c0 + 0.5 * rate * at); };
+  const Geometry::Knot knot = knot_before(geometry, along_m);
+  const Eigen::Vector2d position = integral(knot.along_m, along_m, knot.position, [&](double at) {
+    return Eigen::Vector2d(std::cos(heading(at)), std::sin(heading(at)));
+  });
+  return {position, heading(along_m)};
+}
+
+double slope_of_poly3(const Geometry& geometry, double u) {
+  return geometry.v.b + u * (2.0 * geometry.v.c + u * 3.0 * geometry.v.d);
+}
+
+/// The length of the curve of a poly3 from the start of the piece to u, which follows the knot.
+double length_of_poly3(const Geometry& geometry, const Geometry::Knot& knot, double u) {
+  return integral(knot.position.x(), u, knot.along_m,
+                  [&](double at) { return std::hypot(1.0, slope_of_poly3(geometry, at)); });
+}
+
+LinePose poly3_pose(const Geometry& geometry, double along_m) {
+  constexpr double kExact_m = 1e-9;
+  const Geometry::Knot knot = knot_before(geometry, along_m);
+  // Newton's method: the length of the curve up to u is along_m.
+  double u = knot.position.x() + along_m - knot.along_m;
+  double step_m = 1.0;
+  for (int i = 0; i < 8 && std::abs(step_m) > kExact_m; ++i) {
+    step_m = (length_of_poly3(geometry, knot, u) - along_m) /
+             std::hypot(1.0, slope_of_poly3(geometry, u));
+    u -= step_m;
+  }
+  return {{u, geometry.v.at(u)}, std::atan(slope_of_poly3(geometry, u))};
 }
 
 /// The pose in the frame of the start of the piece.
@@ -45,28 +87,10 @@ LinePose local_pose(const Geometry& geometry, double along_m) {
       if (std::abs(c0) < 1e-12) return {{along_m, 0.0}, 0.0};
       return {{std::sin(angle) / c0, (1.0 - std::cos(angle)) / c0}, angle};
     }
-    case Geometry::Kind::kSpiral: {
-      const double rate =
-          geometry.length_m > 0.0 ? (geometry.end_curvature - c0) / geometry.length_m : 0.0;
-      const auto heading = [&](double at) { return at * (c0 + 0.5 * rate * at); };
-      const Eigen::Vector2d position = integral(along_m, Eigen::Vector2d(0.0, 0.0), [&](double at) {
-        return Eigen::Vector2d(std::cos(heading(at)), std::sin(heading(at)));
-      });
-      return {position, heading(along_m)};
-    }
-    case Geometry::Kind::kPoly3: {
-      const auto slope = [&](double u) {
-        return geometry.v.b + u * (2.0 * geometry.v.c + u * 3.0 * geometry.v.d);
-      };
-      // Newton's method: the length of the curve up to u is along_m.
-      double u = along_m;
-      for (int i = 0; i < 8; ++i) {
-        const double length =
-            integral(u, 0.0, [&](double at) { return std::hypot(1.0, slope(at)); });
-        u -= (length - along_m) / std::hypot(1.0, slope(u));
-      }
-      return {{u, geometry.v.at(u)}, std::atan(slope(u))};
-    }
+    case Geometry::Kind::kSpiral:
+      return spiral_pose(geometry, along_m);
+    case Geometry::Kind::kPoly3:
+      return poly3_pose(geometry, along_m);
     case Geometry::Kind::kParamPoly3: {
       const double scale =
           geometry.is_normalized && geometry.length_m > 0.0 ? 1.0 / geometry.length_m : 1.0;
@@ -117,6 +141,25 @@ void take_over(const LaneSection& before, LaneSection& section) {
 double value_at(const Cubics& cubics, double s_m, double fallback) {
   const auto next = std::ranges::upper_bound(cubics, s_m, {}, &Cubic::start_m);
   return next == cubics.begin() ? fallback : std::prev(next)->at(s_m);
+}
+
+void place_knots(Geometry& geometry) {
+  constexpr double kSpacing_m = 100.0;
+  geometry.knots.clear();
+  if (geometry.kind == Geometry::Kind::kSpiral) {
+    for (double at = kSpacing_m; at < geometry.length_m; at += kSpacing_m) {
+      geometry.knots.push_back({at, spiral_pose(geometry, at).position});
+    }
+  }
+  if (geometry.kind == Geometry::Kind::kPoly3) {
+    Geometry::Knot knot;
+    for (double u = kSpacing_m; u < geometry.length_m; u += kSpacing_m) {
+      const double along_m = length_of_poly3(geometry, knot, u);
+      if (!(along_m < geometry.length_m)) break;
+      knot = {along_m, {u, geometry.v.at(u)}};
+      geometry.knots.push_back(knot);
+    }
+  }
 }
 
 LinePose pose_along(const Geometry& geometry, double along_m) {

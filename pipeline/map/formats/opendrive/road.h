@@ -46,6 +46,13 @@ struct Geometry {
   Cubic u;  ///< of a parametric cubic
   Cubic v;
   bool is_normalized = false;  ///< the parameter of the cubics runs from 0 to 1
+
+  /// A point of a spiral or poly3, in the frame of the start of the piece.
+  struct Knot {
+    double along_m = 0.0;
+    Eigen::Vector2d position = Eigen::Vector2d::Zero();
+  };
+  std::vector<Knot> knots{};  ///< where integrals begin; none are needed
 };
 
 /// A place on the reference line.
@@ -60,6 +67,10 @@ struct Stretch {
   double end_m = 0.0;
   double jump_m = 0.0;  ///< from its end to the start of the next; 0 if no gap ends it
 };
+
+/// Places a knot about every 100 m, so that the time for all points of a long spiral or poly3 does
+/// not grow with the square of its length.
+void place_knots(Geometry& geometry);
 
 /// The pose at `along_m` (0 to the length) of a piece.
 LinePose pose_along(const Geometry& geometry, double along_m);
