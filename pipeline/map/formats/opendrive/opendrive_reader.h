@@ -13,8 +13,8 @@ namespace bevloc {
 ///   that is not (sidewalk, none, median and so on) or no lane, unless another road's paved lanes
 ///   continue there, as in junctions; and road marks of type curb, grass and edge.
 /// - Lane dividers: other road marks, by their type.
-/// - Pedestrian crossings: objects of type crosswalk and their copies, by their outlines, or by
-///   length and width.
+/// - Pedestrian crossings: objects of type crosswalk, or without a type and with a name that says
+///   so, and their copies, by their outlines, or by length and width.
 /// - Lanes: lanes on which vehicles drive, one for each lane section.
 ///
 /// Heights are those of the elevation profile; without one there are none. The place on earth comes

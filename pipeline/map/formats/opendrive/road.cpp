@@ -253,9 +253,12 @@ std::vector<std::string> faults_of(const Road& road, std::string_view file) {
 }
 
 bool is_crosswalk(const RoadObject& object) {
+  if (object.type == "crosswalk") return true;
+  const bool has_type = !object.type.empty() && object.type != "none" && object.type != "-1";
+  if (has_type) return false;
   std::string name = object.name;
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-  return object.type == "crosswalk" || name.find("crosswalk") != std::string::npos;
+  return name.find("crosswalk") != std::string::npos;
 }
 
 std::vector<RoadObject> copies_of(const RoadObject& object) {

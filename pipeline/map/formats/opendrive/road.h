@@ -131,7 +131,7 @@ struct RoadObject {
   std::vector<Repeat> repeats;  ///< of crosswalks only
 };
 
-/// Whether the type or the name says that an object is a crosswalk.
+/// Whether the type says that an object is a crosswalk, or the name of one without a type.
 bool is_crosswalk(const RoadObject& object);
 
 /// The object, or its copies if it is repeated; nothing if the repetition has no distance, has too
