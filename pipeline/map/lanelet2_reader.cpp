@@ -39,9 +39,6 @@ constexpr double kEdgeShare = 0.5;
 constexpr double kSameLine_m = 0.5;
 constexpr double kSameLineShare = 0.8;
 
-/// The smallest area of a crossing: one bound named twice has none.
-constexpr double kLeastCrossing_m2 = 0.5;
-
 /// Converts one document to a map.
 class Lanelet2Reader {
  public:
@@ -145,21 +142,38 @@ class Lanelet2Reader {
     take(std::move(crossing), "lanelet crosswalk", where, std::move(heights_m));
   }
 
-  /// Adds an element, unless the class table has another meaning for its kind.
+  /// Adds an element, unless the class table has another meaning for its kind, of which it may not
+  /// have the shape.
   void take(MapElement element, const std::string& kind, const std::string& where,
             Heights heights_m) {
     std::optional<Meaning> meaning = Meaning{element.element_class, element.appearance};
     const auto* rule = classes_.rule_for(kind);
     if (rule != nullptr) meaning = rule->becomes;
+    std::string_view why = rule != nullptr ? "by the class table" : "";
+    double length_m = length_of(element);
     if (meaning) {
+      const bool was_ring = element.element_class == ElementClass::kPedestrianCrossing;
       element.element_class = meaning->element_class;
       element.appearance = meaning->appearance;
+      if (was_ring) close(element.points, heights_m);
+      const std::string_view fault = shape_element(element, heights_m);
+      if (fault.empty()) {
+        length_m = length_of(element);
+      } else {
+        meaning.reset();
+        why = fault;
+      }
     }
-    const std::string_view why = rule != nullptr ? "by the class table" : "";
-    report_.note(kind, meaning, why, length_of(element), where);
+    report_.note(kind, meaning, why, length_m, where);
     if (!meaning) return;
     map_.elements.push_back(std::move(element));
     heights_m_.push_back(std::move(heights_m));
+  }
+
+  /// Repeats the first corner of a ring at its end.
+  static void close(Polyline& ring, Heights& heights_m) {
+    ring.push_back(ring.front());
+    if (!heights_m.empty()) heights_m.push_back(heights_m.front());
   }
 
   static std::string name_of(const OsmWay& way) {

@@ -47,31 +47,56 @@ Eigen::Vector2d middle_of(const Polyline& line) {
   return point_at(line, arc_lengths(line), 0.5);
 }
 
-/// Douglas-Peucker algorithm. Appends the remaining points of line[first, last).
-void append_simplified(const Polyline& line, size_t first, size_t last, double tolerance_m,
-                       Polyline& simplified) {
-  double worst = 0.0;
-  size_t split = first;
-  for (size_t i = first + 1; i < last; ++i) {
-    const double distance = distance_to_segment(line[i], line[first], line[last]);
-    if (distance > worst) {
-      worst = distance;
+/// Douglas-Peucker algorithm: marks the points between two kept ones that remain. `last` may be
+/// the size of the line, which stands for its first point.
+void mark_kept(const Polyline& line, size_t first, size_t last, double tolerance_m,
+               std::vector<bool>& kept) {
+  const auto at = [&line](size_t i) -> const Eigen::Vector2d& { return line[i % line.size()]; };
+  std::vector<std::pair<size_t, size_t>> open{{first, last}};
+  while (!open.empty()) {
+    const auto [from, to] = open.back();
+    open.pop_back();
+    double worst_m = tolerance_m;
+    size_t split = from;
+    for (size_t i = from + 1; i < to; ++i) {
+      const double distance_m = distance_to_segment(at(i), at(from), at(to));
+      if (distance_m <= worst_m) continue;
+      worst_m = distance_m;
       split = i;
     }
+    if (split == from) continue;
+    kept[split % line.size()] = true;
+    open.emplace_back(from, split);
+    open.emplace_back(split, to);
   }
-  if (worst <= tolerance_m) {
-    simplified.push_back(line[first]);
-    return;
-  }
-  append_simplified(line, first, split, tolerance_m, simplified);
-  append_simplified(line, split, last, tolerance_m, simplified);
 }
 
-Polyline simplify(const Polyline& line, double tolerance_m) {
-  Polyline simplified;
-  append_simplified(line, 0, line.size() - 1, tolerance_m, simplified);
-  simplified.push_back(line.back());
-  return simplified;
+size_t farthest_from(const Eigen::Vector2d& point, const Polyline& line) {
+  const auto farthest = std::ranges::max_element(
+      line, {}, [&point](const Eigen::Vector2d& other) { return (other - point).squaredNorm(); });
+  return static_cast<size_t>(farthest - line.begin());
+}
+
+std::vector<size_t> indices_of(const std::vector<bool>& marked) {
+  std::vector<size_t> indices;
+  for (size_t i = 0; i < marked.size(); ++i) {
+    if (marked[i]) indices.push_back(i);
+  }
+  return indices;
+}
+
+/// The points of a ring that lie more than 0.3 m beside the line between two others.
+std::vector<size_t> without_straight(const Polyline& ring) {
+  constexpr double kTolerance_m = 0.3;
+  std::vector<bool> kept(ring.size(), false);
+  // The point that is farthest from any other one is a corner, which the first point need not be.
+  size_t first = farthest_from(ring.front(), ring);
+  size_t second = farthest_from(ring[first], ring);
+  if (first > second) std::swap(first, second);
+  kept[first] = kept[second] = true;
+  mark_kept(ring, first, second, kTolerance_m, kept);
+  mark_kept(ring, second, first + ring.size(), kTolerance_m, kept);
+  return indices_of(kept);
 }
 
 /// Pieces of a line whose ends are closer belong together.
@@ -167,10 +192,35 @@ double area_of_ring_m2(const Polyline& ring) {
   return 0.5 * std::abs(twice_m2);
 }
 
+std::vector<size_t> kept_points(const Polyline& line, double tolerance_m) {
+  if (line.empty()) return {};
+  std::vector<bool> kept(line.size(), false);
+  kept.front() = kept.back() = true;
+  mark_kept(line, 0, line.size() - 1, tolerance_m, kept);
+  return indices_of(kept);
+}
+
+std::vector<size_t> corners_of_ring(const Polyline& ring) {
+  std::vector<size_t> corners(ring.size());
+  std::iota(corners.begin(), corners.end(), size_t{0});
+  Polyline rest = ring;
+  // Until nothing changes, so that a map that is written and read again stays the same.
+  while (rest.size() > 3) {
+    const std::vector<size_t> kept = without_straight(rest);
+    if (kept.size() < 3 || kept.size() == rest.size()) break;
+    for (size_t i = 0; i < kept.size(); ++i) {
+      corners[i] = corners[kept[i]];
+      rest[i] = rest[kept[i]];
+    }
+    corners.resize(kept.size());
+    rest.resize(kept.size());
+  }
+  return corners;
+}
+
 Polyline ring_between(const Polyline& left, const Polyline& right) {
-  constexpr double kToleranceM = 0.3;
-  Polyline ring = simplify(left, kToleranceM);
-  Polyline back = simplify(right, kToleranceM);
+  Polyline ring = left;
+  Polyline back = right;
   const double same_way =
       (left.front() - right.front()).norm() + (left.back() - right.back()).norm();
   const double opposite_way =
@@ -179,7 +229,9 @@ Polyline ring_between(const Polyline& left, const Polyline& right) {
   for (const Eigen::Vector2d& point : back) {
     if (point != ring.back() && point != ring.front()) ring.push_back(point);
   }
-  return ring;
+  Polyline corners;
+  for (const size_t i : corners_of_ring(ring)) corners.push_back(ring[i]);
+  return corners;
 }
 
 Lane reversed(const Lane& lane) {

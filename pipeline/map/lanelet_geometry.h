@@ -36,8 +36,19 @@ double length_of(const MapElement& element);
 /// The area of a ring without a repeated corner.
 double area_of_ring_m2(const Polyline& ring);
 
-/// The ring around the area between two bounds, which may run in either direction. Removes points
-/// within 0.3 m of a straight line, so that each long side of a crossing is a single edge.
+/// The smallest area of a crossing: one bound named twice has none.
+inline constexpr double kLeastCrossing_m2 = 0.5;
+
+/// The points of a line that remain, in its order, without those within `tolerance_m` of the line
+/// through their neighbours.
+std::vector<size_t> kept_points(const Polyline& line, double tolerance_m);
+
+/// The corners of a ring without a repeated corner, in its order: without the points within 0.3 m
+/// of a straight side, so that each long side of a crossing is a single edge.
+std::vector<size_t> corners_of_ring(const Polyline& ring);
+
+/// The ring around the area between two bounds, which may run in either direction; its corners
+/// only.
 Polyline ring_between(const Polyline& left, const Polyline& right);
 
 /// The lane in the other direction.

@@ -181,7 +181,7 @@ class Argoverse2Reader {
           ring->insert(ring->end(), back->begin(), back->end());
           builder_.add("pedestrian crossing", "crossing " + id,
                        Meaning{ElementClass::kPedestrianCrossing, Appearance::kUnknown}, "",
-                       std::move(*ring));
+                       closed(std::move(*ring)));
           return {};
         });
   }

@@ -85,32 +85,41 @@ double length_of(const Line3& line) {
 }
 
 Line3 simplified(const Line3& line, double tolerance_m) {
-  if (line.size() < 3) return line;
-  std::vector<bool> kept(line.size(), false);
-  kept.front() = kept.back() = true;
-  std::vector<std::pair<size_t, size_t>> open{{0, line.size() - 1}};
-  while (!open.empty()) {
-    const auto [first, last] = open.back();
-    open.pop_back();
-    double worst_m = tolerance_m;
-    size_t split = 0;
-    for (size_t i = first + 1; i < last; ++i) {
-      const double distance_m =
-          distance_to_segment(line[i].head<2>(), line[first].head<2>(), line[last].head<2>());
-      if (distance_m <= worst_m) continue;
-      worst_m = distance_m;
-      split = i;
-    }
-    if (split == 0) continue;
-    kept[split] = true;
-    open.emplace_back(first, split);
-    open.emplace_back(split, last);
-  }
+  Polyline flat;
+  for (const Eigen::Vector3d& point : line) flat.emplace_back(point.head<2>());
   Line3 rest;
-  for (size_t i = 0; i < line.size(); ++i) {
-    if (kept[i]) rest.push_back(line[i]);
-  }
+  for (const size_t i : kept_points(flat, tolerance_m)) rest.push_back(line[i]);
   return rest;
+}
+
+Line3 closed(Line3 ring) {
+  if (ring.size() > 2) ring.push_back(ring.front());
+  return ring;
+}
+
+std::string_view shape_element(MapElement& element, Heights& heights_m) {
+  Polyline& points = element.points;
+  const auto keep = [&](const std::vector<size_t>& indices) {
+    for (size_t i = 0; i < indices.size(); ++i) {
+      points[i] = points[indices[i]];
+      if (!heights_m.empty()) heights_m[i] = heights_m[indices[i]];
+    }
+    points.resize(indices.size());
+    heights_m.resize(std::min(heights_m.size(), indices.size()));
+  };
+  std::vector<size_t> distinct;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (i == 0 || points[i] != points[i - 1]) distinct.push_back(i);
+  }
+  const bool is_ring = element.element_class == ElementClass::kPedestrianCrossing;
+  if (is_ring && distinct.size() > 1 && points[distinct.back()] == points.front()) {
+    distinct.pop_back();
+  }
+  keep(distinct);
+  if (is_ring) keep(corners_of_ring(points));
+  if (points.size() < (is_ring ? 3 : 2)) return "too few points";
+  if (is_ring && area_of_ring_m2(points) < kLeastCrossing_m2) return "no area of a crossing";
+  return "";
 }
 
 MapBuilder::MapBuilder(std::string file, const ImportOptions& options)
@@ -124,35 +133,32 @@ std::optional<Meaning> MapBuilder::meaning_of(std::string_view kind,
 
 void MapBuilder::add(std::string_view kind, std::string_view where,
                      const std::optional<Meaning>& normally, std::string_view why_not, Line3 line) {
-  const auto is_same = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return a.head<2>() == b.head<2>();
-  };
-  line.erase(std::unique(line.begin(), line.end(), is_same), line.end());
   const bool by_rule = options_.classes != nullptr && options_.classes->rule_for(kind) != nullptr;
   std::optional<Meaning> meaning = meaning_of(kind, normally);
   std::string_view why = by_rule ? "by the class table" : meaning ? "" : why_not;
-  const bool is_ring = meaning && meaning->element_class == ElementClass::kPedestrianCrossing;
-  if (is_ring && line.size() > 1 && is_same(line.front(), line.back())) line.pop_back();
   double length_m = length_of(line);
-  if (is_ring && line.size() > 2) length_m += (line.front() - line.back()).head<2>().norm();
-  if (meaning && line.size() < (is_ring ? 3 : 2)) {
-    meaning.reset();
-    why = "too few points";
+  if (meaning) {
+    MapElement element{meaning->element_class, meaning->appearance, {}};
+    Heights heights_m;
+    const bool has_heights = std::ranges::all_of(
+        line, [](const Eigen::Vector3d& point) { return std::isfinite(point.z()); });
+    for (const Eigen::Vector3d& point : line) {
+      element.points.emplace_back(point.head<2>());
+      if (has_heights) heights_m.push_back(point.z());
+    }
+    const std::string_view fault = shape_element(element, heights_m);
+    if (fault.empty()) {
+      length_m = bevloc::length_of(element);
+      map_.elements.push_back(std::move(element));
+      heights_m_.push_back(std::move(heights_m));
+      kinds_.emplace_back(kind);
+      wheres_.emplace_back(where);
+    } else {
+      meaning.reset();
+      why = fault;
+    }
   }
   report_.note(kind, meaning, why, length_m, where);
-  if (!meaning) return;
-  MapElement element{meaning->element_class, meaning->appearance, {}};
-  Heights heights_m;
-  const bool has_heights = std::ranges::all_of(
-      line, [](const Eigen::Vector3d& point) { return std::isfinite(point.z()); });
-  for (const Eigen::Vector3d& point : line) {
-    element.points.emplace_back(point.head<2>());
-    if (has_heights) heights_m.push_back(point.z());
-  }
-  map_.elements.push_back(std::move(element));
-  heights_m_.push_back(std::move(heights_m));
-  kinds_.emplace_back(kind);
-  wheres_.emplace_back(where);
 }
 
 void MapBuilder::drop(std::string_view kind, std::string_view where, std::string_view why,

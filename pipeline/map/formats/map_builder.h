@@ -92,9 +92,9 @@ class MapBuilder {
 
   /// The map in the tangent plane at the middle of its points, if `projection` or the options say
   /// where that is; else in the coordinates of the file, which are shifted only if they are far
-  /// from zero. Drops what is too far away or too long. Fails if nothing was taken, if a rule of the
-  /// class table fits no line of the file, or if the middle is too far from zero for the origin of
-  /// the options. Call it once.
+  /// from zero. Drops what is too far away or too long. Fails if nothing was taken, if a rule of
+  /// the class table fits no line of the file, or if the middle is too far from zero for the origin
+  /// of the options. Call it once.
   Result<ImportedMap> finish(std::string name, std::unique_ptr<Projection> projection);
 
  private:

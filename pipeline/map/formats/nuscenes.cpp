@@ -212,9 +212,13 @@ class NuscenesReader {
     return for_each_record("ped_crossing", [&](const json& record, const JsonPath& path) -> Status {
       auto area = area_of(text_member(record, "polygon_token"), path);
       if (!area) return tl::unexpected(area.error());
-      builder_.add("ped_crossing", "ped_crossing " + text_member(record, "token"),
+      const std::string where = "ped_crossing " + text_member(record, "token");
+      builder_.add("ped_crossing", where,
                    Meaning{ElementClass::kPedestrianCrossing, Appearance::kUnknown}, "",
-                   std::move(area->outer));
+                   closed(std::move(area->outer)));
+      for (const Line3& hole : area->holes) {
+        builder_.drop("ped_crossing", where, "a hole in a crossing", length_of(closed(hole)));
+      }
       return {};
     });
   }

@@ -222,10 +222,9 @@ class DocumentReader {
     const pugi::xml_node parent = outlines.child("outline") ? outlines : node;
     for (const pugi::xml_node& outline : parent.children("outline")) {
       // An inner outline is a hole.
-      const bool is_hole = !outline.attribute("outer").as_bool(true);
-      if (is_hole && !object.outlines.empty()) continue;
-      object.outlines.push_back(read_outline(outline));
-      if (object.outlines.back().empty()) object.outlines.pop_back();
+      if (!outline.attribute("outer").as_bool(true)) continue;
+      object.outlines.push_back({read_corners(outline), outline.attribute("closed").as_bool(true)});
+      if (object.outlines.back().corners.empty()) object.outlines.pop_back();
     }
     for (const pugi::xml_node& repeat : node.children("repeat")) {
       if (is_crosswalk(object)) object.repeats.push_back(read_repeat(repeat, object));
@@ -233,20 +232,20 @@ class DocumentReader {
     return object;
   }
 
-  std::vector<Corner> read_outline(const pugi::xml_node& node) {
-    std::vector<Corner> outline;
+  std::vector<Corner> read_corners(const pugi::xml_node& node) {
+    std::vector<Corner> corners;
     for (const pugi::xml_node& corner : node.children()) {
       if (std::strcmp(corner.name(), "cornerLocal") == 0) {
-        outline.push_back(
+        corners.push_back(
             {true,
              {number(corner, "u"), number(corner, "v"), number(corner, "z", kLargestNumber, 0.0)}});
       } else if (std::strcmp(corner.name(), "cornerRoad") == 0) {
-        outline.push_back({false,
+        corners.push_back({false,
                            {number(corner, "s"), number(corner, "t"),
                             number(corner, "dz", kLargestNumber, 0.0)}});
       }
     }
-    return outline;
+    return corners;
   }
 
   Repeat read_repeat(const pugi::xml_node& node, const RoadObject& object) {

@@ -346,8 +346,8 @@ class OpendriveReader {
     }
     const std::string where = fmt::format("object {} (line {})", object.id, object.line);
     for (const od::RoadObject& copy : copies) {
-      for (const std::vector<od::Corner>& outline : od::outlines_of(copy)) {
-        if (is_crossing && !is_on_road(road, copy, outline)) continue;
+      for (const od::Outline& outline : od::outlines_of(copy)) {
+        if (is_crossing && !is_on_road(road, copy, outline.corners)) continue;
         builder_.add(kind, where, meaning, "not a line of the road",
                      od::points_of(road, copy, outline));
       }

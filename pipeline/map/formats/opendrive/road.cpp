@@ -266,9 +266,10 @@ std::vector<RoadObject> copies_of(const RoadObject& object) {
   RoadObject single = object;
   single.repeats.clear();
   size_t corners = 0;
-  for (const std::vector<Corner>& outline : object.outlines) {
-    corners += outline.size();
-    if (!std::ranges::all_of(outline, &Corner::is_local) || corners > kMostCorners) return {};
+  for (const Outline& outline : object.outlines) {
+    corners += outline.corners.size();
+    if (!std::ranges::all_of(outline.corners, &Corner::is_local) || corners > kMostCorners)
+      return {};
   }
   std::vector<RoadObject> copies;
   for (const Repeat& repeat : object.repeats) {

@@ -105,6 +105,11 @@ struct Corner {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
 };
 
+struct Outline {
+  std::vector<Corner> corners;
+  bool is_closed = true;  ///< around an area; else a line
+};
+
 /// Copies of an object along the road. Values at the first and at the last copy.
 struct Repeat {
   double start_m = 0.0;
@@ -127,7 +132,7 @@ struct RoadObject {
   double heading_rad = 0.0;  ///< relative to the road
   double length_m = 0.0;
   double width_m = 0.0;
-  std::vector<std::vector<Corner>> outlines;
+  std::vector<Outline> outlines;
   std::vector<Repeat> repeats;  ///< of crosswalks only
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace bevloc::opendrive {
 namespace {
@@ -57,21 +58,21 @@ Stretch part_of(const LaneSection& section, const Stretch& stretch) {
   return part;
 }
 
-std::vector<std::vector<Corner>> outlines_of(const RoadObject& object) {
+std::vector<Outline> outlines_of(const RoadObject& object) {
   if (!object.outlines.empty()) return object.outlines;
   const double u = 0.5 * object.length_m;
   const double v = 0.5 * object.width_m;
-  if (u <= 0.0 || v <= 0.0) return {{}};
-  return {{{true, {u, v, 0}}, {true, {-u, v, 0}}, {true, {-u, -v, 0}}, {true, {u, -v, 0}}}};
+  if (u <= 0.0 || v <= 0.0) return {Outline()};
+  return {{{{true, {u, v, 0}}, {true, {-u, v, 0}}, {true, {-u, -v, 0}}, {true, {u, -v, 0}}}}};
 }
 
-Line3 points_of(const Road& road, const RoadObject& object, const std::vector<Corner>& outline) {
+Line3 points_of(const Road& road, const RoadObject& object, const Outline& outline) {
   const Eigen::Vector3d origin = point_at(road, object.s_m, object.t_m);
   const double heading = road.pose_at(object.s_m).heading_rad + object.heading_rad;
   const double c = std::cos(heading);
   const double s = std::sin(heading);
   Line3 points;
-  for (const Corner& corner : outline) {
+  for (const Corner& corner : outline.corners) {
     if (corner.is_local) {
       points.emplace_back(origin.x() + c * corner.place.x() - s * corner.place.y(),
                           origin.y() + s * corner.place.x() + c * corner.place.y(),
@@ -81,7 +82,7 @@ Line3 points_of(const Road& road, const RoadObject& object, const std::vector<Co
       points.back().z() += corner.place.z();
     }
   }
-  return points;
+  return outline.is_closed ? closed(std::move(points)) : points;
 }
 
 Eigen::Vector3d point_at(const Road& road, double s_m, double t_m) {

@@ -28,10 +28,10 @@ Stretch part_of(const LaneSection& section, const Stretch& stretch);
 SectionLines lines_of(const Road& road, const LaneSection& section, const Stretch& part);
 
 /// The outlines of an object, or one from its length and width, or an empty one.
-std::vector<std::vector<Corner>> outlines_of(const RoadObject& object);
+std::vector<Outline> outlines_of(const RoadObject& object);
 
-/// The points of an outline of an object.
-Line3 points_of(const Road& road, const RoadObject& object, const std::vector<Corner>& outline);
+/// The points of an outline of an object, with the first one again at the end of a closed one.
+Line3 points_of(const Road& road, const RoadObject& object, const Outline& outline);
 
 /// The point of a road at (s, t), with its height, which is NaN without an elevation profile.
 Eigen::Vector3d point_at(const Road& road, double s_m, double t_m);
