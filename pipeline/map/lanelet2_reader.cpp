@@ -4,13 +4,12 @@
 #include <array>
 #include <optional>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include "common/files.h"
+#include "pipeline/map/bound_neighbours.h"
 #include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/lanelet_tags.h"
-#include "pipeline/map/line_neighbours.h"
 #include "pipeline/map/map_check.h"
 #include "pipeline/map/map_frame.h"
 #include "pipeline/map/osm_document.h"
@@ -30,14 +29,6 @@ struct Lanelet {
   Bound left;
   Bound right;
 };
-
-/// A line is the edge of the road if no other line is this close beside it ...
-constexpr double kBesideEdge_m = 2.5;
-/// ... along more than this share of it.
-constexpr double kEdgeShare = 0.5;
-/// Bounds of neighbouring lanelets that share no way are this close, along this share.
-constexpr double kSameLine_m = 0.5;
-constexpr double kSameLineShare = 0.8;
 
 /// Converts one document to a map.
 class Lanelet2Reader {
@@ -212,15 +203,15 @@ class Lanelet2Reader {
       std::vector<int64_t> own;
       for (const OsmWay* way : lanelet.left.ways) own.push_back(way->id);
       for (const OsmWay* way : lanelet.right.ways) own.push_back(way->id);
-      for (const int64_t id : own) {
-        own_lanelet_[id].insert(own_lanelet_[id].end(), own.begin(), own.end());
-      }
+      beside_.add_lanelet(own);
     }
     for (const OsmWay& way : document_.ways) {
       const bool is_boundary = boundary_appearance(tag_value(way.tags, "type")).has_value();
       if (!is_boundary && use_of(way).vehicle_lanelets == 0) continue;
       const Result<Polyline> points = points_of(way, document_, nodes_);
-      if (points && polyline_length(*points) <= kLongestPolylineM) beside_.add(way.id, *points);
+      if (points && polyline_length(*points) <= kLongestPolylineM) {
+        beside_.add_line(way.id, *points, is_boundary);
+      }
     }
   }
 
@@ -243,10 +234,8 @@ class Lanelet2Reader {
       return drop(way, "left out, see below");
     }
     element->points = std::move(*points);
-    judge_by_neighbours(way, *element);
-    if (is_second_of_a_pair(way, *element)) {
-      return drop(way, "the neighbouring lanelet has the same line");
-    }
+    const std::string_view why_not = judge_by_neighbours(way, *element);
+    if (!why_not.empty()) return drop(way, why_not);
     Heights heights_m = heights_of(way, document_, nodes_, element->points.size());
     take(std::move(*element), kind, name_of(way), std::move(heights_m));
   }
@@ -279,30 +268,23 @@ class Lanelet2Reader {
   }
 
   /// Corrects the class of lines that bound one lanelet for vehicles by what runs beside them.
-  void judge_by_neighbours(const OsmWay& way, MapElement& element) {
-    if (use_of(way).vehicle_lanelets != 1) return;
-    const std::vector<int64_t>& own = own_lanelet_[way.id];
-    const auto is_foreign = [&own](int64_t id) { return std::ranges::find(own, id) == own.end(); };
+  /// Returns why the line is none of the map, or "".
+  std::string_view judge_by_neighbours(const OsmWay& way, MapElement& element) {
+    if (use_of(way).vehicle_lanelets != 1) return "";
     const bool has_type = !tag_value(way.tags, "type").empty();
     if (has_type && element.element_class == ElementClass::kLaneDivider) {
-      const double beside = beside_.share_beside(element.points, kBesideEdge_m, is_foreign);
-      if (beside > kEdgeShare) return;
+      if (!beside_.is_edge_of_road(way.id, element.points)) return "";
       element.element_class = ElementClass::kRoadBoundary;
       element.appearance = Appearance::kRoadEdge;
     } else if (!has_type) {
-      const double same = beside_.share_beside(element.points, kSameLine_m, is_foreign);
-      if (same < kSameLineShare) return;
+      if (beside_.is_on_boundary(way.id, element.points)) return "a road boundary is the same line";
+      if (!beside_.is_on_bound(way.id, element.points)) return "";
       element.element_class = ElementClass::kLaneDivider;
-      drawn_by_pairs_.insert(way.id);
+      if (beside_.is_second_of_a_pair(way.id, element.points)) {
+        return "the neighbouring lanelet has the same line";
+      }
     }
-  }
-
-  /// Whether the other bound that runs on this one is in the map already.
-  bool is_second_of_a_pair(const OsmWay& way, const MapElement& element) const {
-    if (!drawn_by_pairs_.contains(way.id)) return false;
-    return beside_.share_beside(element.points, kSameLine_m, [&](int64_t id) {
-      return id != way.id && drawn_by_pairs_.contains(id);
-    }) >= kSameLineShare;
+    return "";
   }
 
   /// The ways with a role in a lanelet, as one line.
@@ -357,10 +339,7 @@ class Lanelet2Reader {
   std::unordered_map<int64_t, const OsmWay*> ways_;
   std::vector<Lanelet> lanelets_;
   std::unordered_map<int64_t, BoundUse> uses_;  ///< by way
-  /// By way: the ways of both bounds of its lanelets.
-  std::unordered_map<int64_t, std::vector<int64_t>> own_lanelet_;
-  LineNeighbours beside_;  ///< typed boundaries, and bounds of lanelets for vehicles
-  std::unordered_set<int64_t> drawn_by_pairs_;  ///< ways that run on a bound of another lanelet
+  BoundNeighbours beside_;
   HdMap map_;
   std::vector<Heights> heights_m_;  ///< of each element
   ImportReport report_;

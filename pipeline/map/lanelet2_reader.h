@@ -18,9 +18,9 @@ namespace bevloc {
 ///   bound two or more lanelets for vehicles, or run beside a bound of another one.
 /// - Pedestrian crossings: the area between the bounds of lanelets of subtype crosswalk.
 /// - Road boundaries: ways of type curbstone, road_border, guard_rail, jersey_barrier, wall, fence
-///   and hedge; other ways without a type that bound one lanelet for vehicles; ways of type
-///   line_thin and line_thick that bound one lanelet for vehicles and have no other line beside
-///   them, because then they are the edge of the road.
+///   and hedge; other ways without a type that bound one lanelet for vehicles, unless they run on
+///   one of the former; ways of type line_thin and line_thick that bound one lanelet for vehicles
+///   and have no other line beside them, because then they are the edge of the road.
 /// - Lanes: lanelets for vehicles, in both directions if one_way=no.
 ///
 /// A bound of a lanelet may be several ways that join; each keeps its own type. Ignores everything

@@ -174,5 +174,47 @@ TEST(Rings, OfNuscenesCloseAndTheirHolesAreReported) {
   EXPECT_DOUBLE_EQ(length_of(line.map.elements.at(0)), 100.0);
 }
 
+/// Two lanelets that share a line. The right bound of the first has no type; beside it lie the ways
+/// that the caller names.
+std::string lanelet_beside(std::string_view more) {
+  return fmt::format(R"(<osm>
+ <node id="1"><tag k="local_x" v="0"/><tag k="local_y" v="0"/></node>
+ <node id="2"><tag k="local_x" v="50"/><tag k="local_y" v="0"/></node>
+ <node id="3"><tag k="local_x" v="0"/><tag k="local_y" v="4"/></node>
+ <node id="4"><tag k="local_x" v="50"/><tag k="local_y" v="4"/></node>
+ <node id="5"><tag k="local_x" v="0"/><tag k="local_y" v="-0.3"/></node>
+ <node id="6"><tag k="local_x" v="50"/><tag k="local_y" v="-0.3"/></node>
+ <node id="7"><tag k="local_x" v="0"/><tag k="local_y" v="-4"/></node>
+ <node id="8"><tag k="local_x" v="50"/><tag k="local_y" v="-4"/></node>
+ <way id="11"><nd ref="1"/><nd ref="2"/></way>
+ <way id="12"><nd ref="3"/><nd ref="4"/><tag k="type" v="road_border"/></way>
+ <relation id="21"><member type="way" role="left" ref="12"/>
+  <member type="way" role="right" ref="11"/><tag k="type" v="lanelet"/></relation>{}</osm>)",
+                     more);
+}
+
+TEST(BoundNeighbours, AnUntypedBoundBesideAKerbIsTheKerb) {
+  const ImportedMap kerb =
+      map_of(lanelet_beside(
+                 R"(<way id="13"><nd ref="5"/><nd ref="6"/><tag k="type" v="curbstone"/></way>)"),
+             "kerb.osm");
+  EXPECT_TRUE(of(kerb, ElementClass::kLaneDivider).empty());
+  EXPECT_EQ(of(kerb, ElementClass::kRoadBoundary).size(), 2U);
+  EXPECT_THAT(reasons_of(kerb), Contains("way without type: a road boundary is the same line"));
+
+  const ImportedMap bound = map_of(lanelet_beside(R"(<way id="13"><nd ref="5"/><nd ref="6"/></way>
+ <way id="14"><nd ref="7"/><nd ref="8"/><tag k="type" v="road_border"/></way>
+ <relation id="22"><member type="way" role="left" ref="13"/>
+  <member type="way" role="right" ref="14"/><tag k="type" v="lanelet"/></relation>)"),
+                                   "bound.osm");
+  EXPECT_EQ(of(bound, ElementClass::kLaneDivider).size(), 1U) << "once, between the lanelets";
+
+  // The second lanelet lacks its right bound and is left out.
+  const ImportedMap lost = map_of(lanelet_beside(R"(<way id="13"><nd ref="7"/><nd ref="8"/></way>
+ <relation id="22"><member type="way" role="left" ref="13"/><tag k="type" v="lanelet"/></relation>)"),
+                                  "lost.osm");
+  EXPECT_TRUE(of(lost, ElementClass::kLaneDivider).empty()) << "a way is no neighbour of itself";
+}
+
 }  // namespace
 }  // namespace bevloc
