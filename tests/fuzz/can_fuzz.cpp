@@ -1,7 +1,6 @@
 // Feeds random and damaged CAN frames and log lines to the CAN code.
 // Usage: can_fuzz --cases N --seed S.
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <random>
@@ -20,6 +19,7 @@
 #include "can/messages/solution_fd.h"
 #include "can/messages/vehicle_input.h"
 #include "common/result.h"
+#include "tests/fuzz/finite_samples.h"
 
 namespace bevloc::fuzz {
 namespace {
@@ -64,15 +64,6 @@ canfd_frame draw_raw(Random& random, const can::Frame& frame) {
   if (random.one_in(16)) raw.len = random.byte();
   if (random.one_in(16)) raw.can_id ^= 1u << random.below(32);
   return raw;
-}
-
-bool is_finite(const can::VehicleSamples& samples) {
-  const auto& odometry = samples.odometry;
-  const auto& gnss = samples.gnss;
-  return (!odometry ||
-          (std::isfinite(odometry->speed_mps) && std::isfinite(odometry->yaw_rate_radps))) &&
-         (!gnss || (std::isfinite(gnss->east_m) && std::isfinite(gnss->north_m) &&
-                    gnss->sigma_east_m > 0.0 && gnss->sigma_north_m > 0.0));
 }
 
 Status check_read(Random& random, FrameSource& source, can::VehicleInput& input,

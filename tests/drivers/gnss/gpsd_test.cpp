@@ -33,12 +33,23 @@ GpsdLine line_of(const std::string& text) {
   return GpsdReader().read(text).line;
 }
 
-/// A report of a fix with `from` replaced by `to`.
-std::string fix_with(const std::string& from, const std::string& to) {
-  std::string text = kFix;
+/// The text with `from` replaced by `to`.
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const size_t position = text.find(from);
   EXPECT_NE(position, std::string::npos) << from;
   return text.replace(position, from.size(), to);
+}
+
+/// A report of a fix with `from` replaced by `to`.
+std::string fix_with(const std::string& from, const std::string& to) {
+  return replaced(kFix, from, to);
+}
+
+/// Reads a fix and the accuracy for it. Returns the sigma of a second fix.
+double sigma_after_accuracy(GpsdReader& reader, const std::string& second_fix) {
+  reader.read(kRtkFix);
+  reader.read(accuracy_at("31.200"));
+  return reader.read(second_fix).fix.sigma_east_m;
 }
 
 TEST(GpsdReaderTest, ReadsAFixWithItsErrorsAndTime) {
@@ -76,21 +87,14 @@ TEST(GpsdReaderTest, PrefersTheReceiversOwnAccuracy) {
 
 TEST(GpsdReaderTest, ForgetsTheAccuracyWhenTheKindOfFixChanges) {
   GpsdReader reader;
-  reader.read(kRtkFix);
-  reader.read(accuracy_at("31.200"));
-  std::string single = kRtkFix;
-  single.replace(single.find("\"status\":3"), 10, "\"status\":1");
-  EXPECT_GT(reader.read(single).fix.sigma_east_m, 9.0);
+  const std::string single = replaced(kRtkFix, "\"status\":3", "\"status\":1");
+  EXPECT_GT(sigma_after_accuracy(reader, single), 9.0);
   EXPECT_GT(reader.read(single).fix.sigma_east_m, 9.0) << "until the next GST";
 }
 
 TEST(GpsdReaderTest, DoesNotGiveTheAccuracyOfOneReceiverToAnother) {
   GpsdReader reader;
-  reader.read(kRtkFix);
-  reader.read(accuracy_at("31.200"));
-  std::string other = kRtkFix;
-  other.replace(other.find("/dev/pts/0"), 10, "/dev/pts/1");
-  EXPECT_GT(reader.read(other).fix.sigma_east_m, 9.0);
+  EXPECT_GT(sigma_after_accuracy(reader, replaced(kRtkFix, "/dev/pts/0", "/dev/pts/1")), 9.0);
 }
 
 TEST(GpsdReaderTest, ReadsOnlyTimesOfTheFormThatItNames) {

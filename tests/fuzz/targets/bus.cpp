@@ -1,6 +1,5 @@
 // The CAN bus: frames as a socket delivers them, and logs of frames.
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <sstream>
 #include <variant>
@@ -13,6 +12,7 @@
 #include "can/messages/message_table.h"
 #include "can/messages/solution_fd.h"
 #include "can/messages/vehicle_input.h"
+#include "tests/fuzz/finite_samples.h"
 #include "tests/fuzz/targets.h"
 
 namespace bevloc::fuzz {
@@ -36,15 +36,6 @@ class Source {
  private:
   Bytes bytes_;
 };
-
-bool is_finite(const can::VehicleSamples& samples) {
-  const auto& odometry = samples.odometry;
-  const auto& gnss = samples.gnss;
-  return (!odometry ||
-          (std::isfinite(odometry->speed_mps) && std::isfinite(odometry->yaw_rate_radps))) &&
-         (!gnss || (std::isfinite(gnss->east_m) && std::isfinite(gnss->north_m) &&
-                    gnss->sigma_east_m > 0.0 && gnss->sigma_north_m > 0.0));
-}
 
 /// Draws frames: raw ones, and ones of the project's messages with valid protection.
 class FrameReader {
