@@ -38,7 +38,7 @@ struct ClockPair {
 };
 
 /// Reads `clock` between two readings of CLOCK_MONOTONIC. If these are far apart, because another
-/// thread ran in between, it reads again, some times at most, and keeps the closest readings.
+/// thread ran in between, it reads again, at most kTries times in all, and keeps the closest ones.
 inline ClockPair read_with_steady(clockid_t clock) {
   constexpr Duration kClose = std::chrono::microseconds(5);
   constexpr int kTries = 10;

@@ -8,7 +8,7 @@
 
 namespace bevloc {
 
-/// Fails if `out` is one of the files `inputs`, also by another name. Empty names are no files.
+/// Fails if `out` is one of the files `inputs`, even under another name. Ignores empty names.
 inline Status check_output(const std::filesystem::path& out,
                            std::initializer_list<std::filesystem::path> inputs) {
   for (const std::filesystem::path& in : inputs) {

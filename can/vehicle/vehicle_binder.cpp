@@ -24,8 +24,8 @@ std::vector<std::string> names_in(const std::vector<Named>& all) {
   return names;
 }
 
-/// What any signal of a quantity reaches (0: that says nothing), and its coarsest step, in the unit
-/// of the quantity.
+/// Each plausible signal of a quantity can hold the value `reaches` (0: not checked) and has at
+/// most this step, both in the unit of the quantity.
 struct Sanity {
   double reaches;
   double step;

@@ -69,8 +69,8 @@ class FixClock {
   Duration max_usable_age() const { return max_usable_age_; }
 
  private:
-  /// The two fastest reports of some seconds: the least delays, which are arrival, on the unsteered
-  /// clock, minus UTC.
+  /// The delays of the two fastest reports of some seconds. A delay is the arrival, on the
+  /// unsteered clock, minus UTC.
   struct Bucket {
     int64_t number = std::numeric_limits<int64_t>::min();
     Duration least = Duration::max();
@@ -79,8 +79,8 @@ class FixClock {
 
   FixTime by_arrival(Duration delay, const FixArrival& arrival);
   FixTime by_system_clock(std::chrono::nanoseconds utc, const FixArrival& arrival);
-  /// The least delay of the last minutes that a second report of the same seconds confirms: a
-  /// single report whose UTC is wrong does not shift all others. Without any, the least delay.
+  /// The smallest Bucket::second of the last minutes, so that a single report with a wrong UTC does
+  /// not shift all others. If each bucket has one report only, the smallest delay.
   Duration least_delay(Duration delay, Time arrival);
   FixTime usable(Duration age, Duration sigma, Time arrival);
 

@@ -13,7 +13,7 @@ class MapCommand {
  public:
   void declare(CLI::App& app);
   bool chosen() const { return action_ != nullptr; }
-  /// Fails before it reads anything if a file to write is one to read.
+  /// Fails, before it reads anything, if an output file is also an input file.
   Status run() const;
 
  private:

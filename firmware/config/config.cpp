@@ -86,7 +86,7 @@ HypothesisAxis read_axis(YamlMap& yaml, std::string_view range_key, std::string_
 /// `axis` and `max_range` are in the unit of the solver, of which the file's unit has `per_unit`.
 void check_axis(YamlMap& yaml, std::string_view step_key, const HypothesisAxis& axis,
                 double max_range, double per_unit) {
-  // What is wrong with one of the two alone was reported when it was read.
+  // A range or a step that is wrong by itself was reported when it was read.
   if (is_sound(axis, max_range) || axis.step > axis.range || axis.range > max_range) return;
   yaml.reject(step_key,
               fmt::format("{:.6g}, with which the last of {} steps is at {:.6g}",

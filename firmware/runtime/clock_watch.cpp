@@ -43,9 +43,8 @@ void ClockWatch::log_loss(const drivers::ClockDiscipline& discipline) const {
   } else {
     spdlog::warn(
         "clock: found a system clock that the kernel calls not synchronized, wanted one that a "
-        "time "
-        "service keeps (clock.source); TimeSource is FREE_RUNNING; check chrony or phc2sys, and "
-        "that systemd/clock.conf is installed");
+        "time service keeps (clock.source); TimeSource is FREE_RUNNING; check chrony or phc2sys, "
+        "and that systemd/clock.conf is installed");
   }
 }
 

@@ -25,8 +25,8 @@ struct ProgramOptions {
 /// Adds the options of every bevlocd to `app`; parsing fills `options`, which must outlive it.
 void declare_options(CLI::App& app, ProgramOptions& options);
 
-/// Applies the options that override the configuration. Fails if an option needs what neither the
-/// other options nor the configuration ask for.
+/// Applies the options that override the configuration. Fails if --record-raw is given and there is
+/// no recording.
 Status override_config(const ProgramOptions& options, Config& config);
 
 /// SIGTERM and SIGINT set stop_requested(). SIGHUP is logged and ignored: it must not end the

@@ -29,7 +29,7 @@ struct EstimationCounters {
   std::atomic<uint64_t> clock_gaps{0};
   std::atomic<HealthState> state{HealthState::kInit};
   std::atomic<uint32_t> why{0};  ///< bits of a WhyMask
-  /// The state LOST lasts one bus cycle, so who reads more seldom looks at these.
+  /// The state LOST lasts one bus cycle. Threads that look less often see a loss in these.
   std::atomic<uint64_t> lost{0};      ///< how often the pose was lost
   std::atomic<uint32_t> lost_why{0};  ///< bits of a WhyMask, of the latest loss
   /// Since when a pose that was valid is not; Time::max() while it is valid or never was.

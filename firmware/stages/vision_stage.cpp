@@ -76,14 +76,14 @@ bool VisionStage::step(const drivers::Clock& clock, Duration timeout) {
   framesets_.take_frames(clock, timeout);
   priors_.take_predictions();
   const Time now = clock.now();
-  auto newest = framesets_.newest(now);
-  const bool found = newest.has_value();
-  if (found) {
+  if (auto newest = framesets_.newest(now)) {
     reports_.push(report_on(std::move(*newest)));
-  } else if (framesets_.unsynchronized_without_framesets(now)) {
+    return true;
+  }
+  if (framesets_.unsynchronized_without_framesets(now)) {
     reports_.push(report_without_frameset(now));
   }
-  return found;
+  return false;
 }
 
 VisionReport VisionStage::report_on(NewestFrameset newest) {

@@ -39,7 +39,7 @@ class CauseLog {
     std::string cause;
     Time time = Time::min();   ///< of the latest occurrence
     Time since = Time::min();  ///< of the first occurrence without a pause after it
-    bool told = false;         ///< since then
+    bool told = false;         ///< whether it was new since then
   };
 
   static bool note(Entry& entry, Time now) {

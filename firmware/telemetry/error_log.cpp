@@ -15,7 +15,7 @@ constexpr std::array<std::pair<TrackerUpdate, const char*>, 4> kRefusals = {{
     {TrackerUpdate::kImplausible, "beyond its physical limit; check sensor and scaling"},
 }};
 
-/// So many epochs in about five seconds. At each start, those of the first second are refused.
+/// The epochs of about five seconds. The receiver refuses those of the first second of each start.
 constexpr uint64_t kEpochsOfAStart = 300;
 
 }  // namespace

@@ -96,7 +96,7 @@ struct Snapshot {
   uint64_t log_dropped = 0;                    ///< lines of the log that were not written
 };
 
-/// Who counts beside the appliance.
+/// What has counters and is not a part of the appliance.
 struct SnapshotSources {
   const drivers::Trigger* trigger = nullptr;  ///< null without one
   const Recorder* recorder = nullptr;         ///< null without a recording

@@ -15,7 +15,7 @@ inline constexpr double kFarthestFromOriginM = 83'000.0;
 /// The longest polyline. A longer one is a mistake in its coordinates.
 inline constexpr double kLongestPolylineM = 50'000.0;
 
-/// The shortest centre line of a lane. Who drives along shorter ones does not come to an end.
+/// The shortest centre line of a lane. A simulated route along shorter lanes might never end.
 inline constexpr double kShortestLaneM = 0.01;
 
 /// Says that coordinates around `middle` are too far from (0, 0) for an origin given by the user.

@@ -97,7 +97,7 @@ Status decode_rest(const TileDirectory& directory, HdMap& map) {
   return {};
 }
 
-/// Of the name and the entries.
+/// The size in bytes of the name and the entries together.
 uint64_t directory_size(const TileHeader& header) {
   return header.name_size + uint64_t{header.tiles} * kTileEntrySize;
 }

@@ -174,8 +174,8 @@ TEST(Rings, OfNuscenesCloseAndTheirHolesAreReported) {
   EXPECT_DOUBLE_EQ(length_of(line.map.elements.at(0)), 100.0);
 }
 
-/// Two lanelets that share a line. The right bound of the first has no type; beside it lie the ways
-/// that the caller names.
+/// Two lanelets that share a line. The right bound of the first has no type, and `more` holds the
+/// ways beside it.
 std::string lanelet_beside(std::string_view more) {
   return fmt::format(R"(<osm>
  <node id="1"><tag k="local_x" v="0"/><tag k="local_y" v="0"/></node>
