@@ -109,8 +109,9 @@ class Browser:
                 return dict(answer["result"])
 
     def evaluate(self, expression: str) -> Any:
-        """The value of a JavaScript expression in the page."""
-        result = self.call("Runtime.evaluate", {"expression": expression, "returnByValue": True})
+        """The value of a JavaScript expression in the page; that of a promise once it is there."""
+        question = {"expression": expression, "returnByValue": True, "awaitPromise": True}
+        result = self.call("Runtime.evaluate", question)
         assert "exceptionDetails" not in result, result
         return result["result"].get("value")
 

@@ -32,6 +32,12 @@ constexpr double kMapRenewal_m = 60.0;
 constexpr double kTrailStep_m = 0.5;
 constexpr size_t kTrailPoints = 2000;
 
+/// The content type of a file of the page, from its name.
+const char* type_of(std::string_view path) {
+  if (path.ends_with(".html")) return "text/html; charset=utf-8";
+  return path.ends_with(".css") ? "text/css; charset=utf-8" : "text/javascript; charset=utf-8";
+}
+
 }  // namespace
 
 class LiveServer::Impl {
@@ -141,14 +147,12 @@ void LiveServer::Impl::add_routes() {
        {"Cross-Origin-Resource-Policy", "same-origin"},
        {"Referrer-Policy", "no-referrer"},
        {"Cache-Control", "no-store"}});
-  const auto file = [this](const char* path, std::string_view text, const char* type) {
-    http_->get(path, [text, type](const httplib::Request&, httplib::Response& response) {
-      response.set_content(text.data(), text.size(), type);
+  for (const PageFile& file : page_files()) {
+    const std::string path(file.path == "/page.html" ? "/" : file.path);
+    http_->get(path, [file](const httplib::Request&, httplib::Response& response) {
+      response.set_content(file.text.data(), file.text.size(), type_of(file.path));
     });
-  };
-  file("/", page_html(), "text/html; charset=utf-8");
-  file("/page.css", page_css(), "text/css; charset=utf-8");
-  file("/page.js", page_js(), "text/javascript; charset=utf-8");
+  }
   http_->get("/metrics", [this](const httplib::Request&, httplib::Response& response) {
     const auto [latest, age] = telemetry();
     response.set_content(metrics_text(latest, use_of_this_process(), age),

@@ -1,12 +1,16 @@
 // The files of the live page, which CMake puts into the program (firmware/live/page).
 #pragma once
 
+#include <span>
 #include <string_view>
 
 namespace bevloc::firmware {
 
-std::string_view page_html();
-std::string_view page_css();
-std::string_view page_js();
+struct PageFile {
+  std::string_view path;  ///< at the server, such as "/page.css"; "/page.html" is the page itself
+  std::string_view text;
+};
+
+std::span<const PageFile> page_files();
 
 }  // namespace bevloc::firmware

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
+#include <map>
+#include <string>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -67,10 +69,15 @@ class LiveServerTest : public testing::Test {
 };
 
 TEST_F(LiveServerTest, ServesThePageWithoutForeignAddresses) {
-  for (const char* path : {"/", "/page.css", "/page.js"}) {
+  const std::map<std::string, std::string> types{{"/", "text/html; charset=utf-8"},
+                                                 {"/page.css", "text/css; charset=utf-8"},
+                                                 {"/page.js", "text/javascript; charset=utf-8"},
+                                                 {"/match.js", "text/javascript; charset=utf-8"}};
+  for (const auto& [path, type] : types) {
     const auto answer = get(path);
     ASSERT_TRUE(answer) << path;
     EXPECT_EQ(answer->status, 200) << path;
+    EXPECT_EQ(answer->get_header_value("Content-Type"), type) << path;
     EXPECT_THAT(answer->body, testing::Not(testing::ContainsRegex("https?://"))) << path;
     EXPECT_THAT(answer->get_header_value("Content-Security-Policy"),
                 HasSubstr("default-src 'none'"));

@@ -86,6 +86,7 @@ MATCH = {
     "y": DISTRIBUTION,
     "yaw": DISTRIBUTION,
 }
+MODULES = {"Camera": "cameras", "Match": "match", "Status": "status"}
 LATER = "(now => { performance.now = () => now + 4000; })(performance.now())"
 
 
@@ -103,7 +104,11 @@ class PageTest(unittest.TestCase):
         self.page.wait_for("document.querySelectorAll('figure').length === 6")
 
     def tell(self, name: str, data: dict[str, Any]) -> None:
-        self.page.evaluate(f"void on{name}({json.dumps(data)})")
+        self.call(MODULES[name], f"on{name}", json.dumps(data))
+
+    def call(self, module: str, function: str, argument: str = "") -> None:
+        """Calls a function that one of the page's modules exports."""
+        self.page.evaluate(f"import('/{module}.js').then(m => void m.{function}({argument}))")
 
     def text(self, part: str) -> str:
         return str(self.page.evaluate(f"document.getElementById('{part}').textContent"))
@@ -125,17 +130,17 @@ class PageTest(unittest.TestCase):
     def test_it_greys_what_nothing_newer_replaced(self) -> None:
         self.tell("Camera", PICTURE)
         self.tell("Match", MATCH)
-        self.page.wait_for("shown.cameras.front.data !== null")
-        self.page.evaluate("noteSilence()")
+        self.page.wait_for("!document.querySelector('figure:nth-child(2) img').hidden")
+        self.call("page", "noteSilence")
         for part in ("figure:nth-child(2)", "#bev", "#plots"):
             self.assertFalse(self.has("old", part), part)
         self.page.evaluate(LATER)
-        self.page.evaluate("noteSilence()")
+        self.call("page", "noteSilence")
         for part in ("figure:nth-child(2)", "#bev", "#plots"):
             self.assertTrue(self.has("old", part), part)
         self.assertFalse(self.has("old", "figure:nth-child(1)"), "never had a picture")
         self.tell("Match", MATCH)
-        self.page.evaluate("noteSilence()")
+        self.call("page", "noteSilence")
         self.assertFalse(self.has("old", "#bev"))
 
     def test_it_clears_the_facts_in_standby(self) -> None:
@@ -165,9 +170,8 @@ class PageTest(unittest.TestCase):
 
     def test_it_says_that_too_many_look(self) -> None:
         self.page.evaluate(LATER)
-        self.page.wait_for("refusal !== NO_ANSWER")
-        self.page.evaluate("noteSilence()")
-        self.assertIn("As many viewers as bevlocd allows look already", self.text("summary"))
+        full = "As many viewers as bevlocd allows look already"
+        self.page.wait_for(f"document.getElementById('summary').textContent.includes('{full}')")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,5 @@
+// What the page shows now. Each module draws its part of it.
+
+export const shown = {
+  pose: "corrected", status: null, match: null, matchAt_ms: 0, map: null, trail: [], cameras: {},
+};
