@@ -2,7 +2,9 @@
 add_library(bevloc_options INTERFACE)
 target_compile_features(bevloc_options INTERFACE cxx_std_20)
 target_include_directories(bevloc_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_options(bevloc_options INTERFACE
+# Without fused multiplications and additions, which arm64 and newer x86-64 have and others do not,
+# all processors compute the same bits (docs/performance.md).
+target_compile_options(bevloc_options INTERFACE -ffp-contract=off
   -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
   $<$<BOOL:${BEVLOC_WARNINGS_AS_ERRORS}>:-Werror>)
 if(BEVLOC_SANITIZE)
@@ -31,10 +33,7 @@ function(bevloc_compile_together name)
 endfunction()
 
 # bevloc_library(NAME SOURCES... [SEPARATE] [LINK libs...])
-# SEPARATE compiles each source alone. Libraries with functions that are compiled for several
-# instruction sets need it: what a source inlines into them decides which of their multiplications
-# and additions are fused, and so the last bits of their results. They hold the inner loops, and are
-# compiled with -O3.
+# SEPARATE compiles each source alone and with -O3. Libraries with the inner loops need it.
 function(bevloc_library name)
   cmake_parse_arguments(ARG "SEPARATE" "" "LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
