@@ -43,31 +43,10 @@ foreach(module core imgproc)
 endforeach()
 set_property(TARGET opencv_imgproc PROPERTY INTERFACE_LINK_LIBRARIES opencv_core)
 
-# The network's engines: the chosen one is needed, the tests compare both where both are installed.
-# oneDNN's own CMake package asks for OpenCL headers that its CPU engine does not need.
-find_path(DNNL_INCLUDE_DIR dnnl.hpp)
-find_library(DNNL_LIBRARY dnnl)
-if(DNNL_LIBRARY)
-  # Version 2 in Debian 12, version 3 in Debian 13.
-  file(STRINGS ${DNNL_INCLUDE_DIR}/oneapi/dnnl/dnnl_version.h DNNL_VERSION_MAJOR
-       REGEX "define DNNL_VERSION_MAJOR")
-  string(REGEX MATCH "[0-9]+$" DNNL_VERSION_MAJOR "${DNNL_VERSION_MAJOR}")
-endif()
-find_path(XNNPACK_INCLUDE_DIR xnnpack.h)
-find_library(XNNPACK_LIBRARY XNNPACK)
-find_library(PTHREADPOOL_LIBRARY pthreadpool)
-if(XNNPACK_LIBRARY)
-  # Debian 13 has another interface, which the engine does not know.
-  file(STRINGS ${XNNPACK_INCLUDE_DIR}/xnnpack.h known REGEX "xnn_setup_convolution2d_nhwc_qc8")
-  if(NOT known)
-    message(STATUS "XNNPACK: its interface is too new, so its engine is left out")
-    set(XNNPACK_LIBRARY XNNPACK_LIBRARY-NOTFOUND)
-  endif()
-endif()
-if(BEVLOC_ENGINE STREQUAL "onednn" AND NOT DNNL_LIBRARY)
-  message(FATAL_ERROR "BEVLOC_ENGINE is onednn: wanted Debian's libdnnl-dev")
-elseif(BEVLOC_ENGINE STREQUAL "xnnpack" AND NOT (XNNPACK_LIBRARY AND PTHREADPOOL_LIBRARY))
-  message(FATAL_ERROR "BEVLOC_ENGINE is xnnpack: wanted libxnnpack-dev and libpthreadpool-dev")
-elseif(NOT BEVLOC_ENGINE MATCHES "^(onednn|xnnpack)$")
-  message(FATAL_ERROR "BEVLOC_ENGINE is '${BEVLOC_ENGINE}', wanted onednn or xnnpack")
-endif()
+# The network. oneDNN's own CMake package asks for OpenCL headers that its CPU engine does not need.
+find_path(DNNL_INCLUDE_DIR dnnl.hpp REQUIRED)
+find_library(DNNL_LIBRARY dnnl REQUIRED)
+# Version 2 in Debian 12, version 3 in Debian 13.
+file(STRINGS ${DNNL_INCLUDE_DIR}/oneapi/dnnl/dnnl_version.h DNNL_VERSION_MAJOR
+     REGEX "define DNNL_VERSION_MAJOR")
+string(REGEX MATCH "[0-9]+$" DNNL_VERSION_MAJOR "${DNNL_VERSION_MAJOR}")

@@ -6,7 +6,7 @@
 
 namespace bevloc::bench {
 
-/// Multiply-accumulates per second; 0 if there is no library to measure them with.
+/// Multiply-accumulates per second; 0 if they were not measured.
 struct Int8Peak {
   double convolution_macs_per_s = 0.0;
   double matmul_macs_per_s = 0.0;

@@ -153,19 +153,18 @@ struct Network::State {
         stored_answer(metadata_or_empty(graph, std::string(kAnswerKey))),
         solver_parameters(read_solver_parameters(graph)),
         rig(read_model_rig(graph)),
-        engine(options.engine(program,
-                              std::vector<nn::Branch>{{kBevFeatures}, {kMapFeatures}, {kBevMask}},
-                              kFeatureGrid.cells(), {options.threads, options.isa})) {}
+        engine(program, std::vector<nn::Branch>{{kBevFeatures}, {kMapFeatures}, {kBevMask}},
+               kFeatureGrid.cells(), {options.threads, options.isa, options.own_kernels}) {}
 
   FeatureView features(const char* output) const {
-    return {engine->output(output), kFeatureChannels, kFeatureGrid};
+    return {engine.output(output), kFeatureChannels, kFeatureGrid};
   }
 
   std::string name;
   std::string stored_answer;
   SolverParameters solver_parameters;
   ModelRig rig;
-  std::unique_ptr<nn::Engine> engine;
+  nn::Engine engine;
 };
 
 Network::Network(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -192,31 +191,31 @@ Result<std::unique_ptr<Network>> Network::load(const std::string& path,
 }
 
 void Network::set_view_table(const ViewTable& table) {
-  state_->engine->set_view_table(table);
+  state_->engine.set_view_table(table);
 }
 
 std::span<int8_t> Network::image_input() {
-  const std::span<std::byte> bytes = state_->engine->input(kImages);
+  const std::span<std::byte> bytes = state_->engine.input(kImages);
   return {reinterpret_cast<int8_t*>(bytes.data()), bytes.size()};
 }
 
 std::span<uint8_t> Network::raster_input() {
-  const std::span<std::byte> bytes = state_->engine->input(kRaster);
+  const std::span<std::byte> bytes = state_->engine.input(kRaster);
   return {reinterpret_cast<uint8_t*>(bytes.data()), bytes.size()};
 }
 
 void Network::run_image_branch() {
-  state_->engine->run(kImageBranch);
+  state_->engine.run(kImageBranch);
 }
 void Network::run_map_branch() {
-  state_->engine->run(kMapBranch);
+  state_->engine.run(kMapBranch);
 }
 void Network::run_mask_head() {
-  state_->engine->run(kMaskBranch);
+  state_->engine.run(kMaskBranch);
 }
 
 void Network::parallel_for(int count, LoopBody body) {
-  state_->engine->parallel_for(count, body);
+  state_->engine.parallel_for(count, body);
 }
 
 FeatureView Network::bev_features() const {
@@ -226,7 +225,7 @@ FeatureView Network::map_features() const {
   return state_->features(kMapFeatures);
 }
 std::span<const float> Network::mask_logits() const {
-  return state_->engine->output(kBevMask);
+  return state_->engine.output(kBevMask);
 }
 
 const SolverParameters& Network::solver_parameters() const {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "common/result.h"
-#include "pipeline/network/engines/engine.h"
-#include "pipeline/network/engines/parallel_for.h"
+#include "pipeline/network/engine/engine.h"
+#include "pipeline/network/engine/parallel_for.h"
 #include "pipeline/network/model/model_rig.h"
 #include "pipeline/network/view/view_table.h"
 #include "pipeline/solver/feature_view.h"
@@ -23,8 +23,8 @@ inline constexpr int kFeatureChannels = 16;
 struct NetworkOptions {
   int threads = 1;
   IsaCap isa = IsaCap::kBest;
-  /// Makes the engine that runs the network. The default is the engine of CMake's BEVLOC_ENGINE.
-  nn::MakeEngine* engine = nn::make_default_engine;
+  /// Whether our own kernels run where they are faster than oneDNN.
+  bool own_kernels = true;
 };
 
 /// A network, loaded from a standard ONNX file with these ports:
@@ -44,12 +44,11 @@ struct NetworkOptions {
 /// bevloc.test_frame_answer (test_frame.h).
 ///
 /// load() allocates all buffers. The other functions do not allocate, throw or lock, except for
-/// what make_onednn_engine() and make_xnnpack_engine() document about their libraries.
-/// Not thread safe.
+/// what nn::Engine documents about oneDNN. Not thread safe.
 class Network {
  public:
   /// Errors: the file is missing, damaged, not the network described above, or uses an operator
-  /// that the engines do not support (the message names it).
+  /// that the engine does not support (the message names it).
   static Result<std::unique_ptr<Network>> load(const std::string& path,
                                                const NetworkOptions& options);
   ~Network();

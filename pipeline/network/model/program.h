@@ -1,5 +1,5 @@
-// The program that an engine runs: the graph of a model, lowered to a few kinds of steps. Knows
-// neither memory layouts nor engines.
+// The program that the engine runs: the graph of a model, lowered to a few kinds of steps. Knows
+// neither memory layouts nor the engine.
 #pragma once
 
 #include <array>

@@ -1,11 +1,11 @@
-// The order in which an engine runs the steps of a program, branch by branch.
+// The order in which the engine runs the steps of a program, branch by branch.
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
-#include "pipeline/network/engines/engine.h"
+#include "pipeline/network/engine/engine.h"
 #include "pipeline/network/model/program.h"
 #include "pipeline/network/plan/storage_plan.h"
 
@@ -22,7 +22,7 @@ struct Schedule {
 /// Each output of the program must be in exactly one branch.
 Schedule make_schedule(const Program& program, std::span<const Branch> branches);
 
-/// Walks through the schedule as an engine runs it. In each branch, calls
+/// Walks through the schedule as the engine runs it. In each branch, calls
 /// add_step(step, position in the order) for its steps, then add_output(index) for its outputs.
 template <typename AddStep, typename AddOutput>
 void walk(const Program& program, const Schedule& schedule, size_t branches, StoragePlan& storages,

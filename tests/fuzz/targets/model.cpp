@@ -1,5 +1,5 @@
 // Models: reads and lowers them, and checks that no step reaches beyond the values that it reads
-// and writes, because the engines rely on it.
+// and writes, because the engine relies on it.
 #include <algorithm>
 #include <cmath>
 

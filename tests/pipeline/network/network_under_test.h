@@ -1,4 +1,4 @@
-// Loads and runs whole networks on the engine under test (engines/engine_under_test.h).
+// Loads and runs whole networks on the engine under test (engine/engine_under_test.h).
 #pragma once
 
 #include <cstdlib>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/network/network.h"
-#include "tests/pipeline/network/engines/engine_under_test.h"
+#include "tests/pipeline/network/engine/engine_under_test.h"
 #include "tests/pipeline/network/model_inputs.h"
 
 namespace bevloc::test {
@@ -17,7 +17,7 @@ inline constexpr const char* kShippedModel = BEVLOC_SOURCE_DIR "/models/nano.onn
 
 inline NetworkOptions network_options(int threads = 1) {
   const EngineUnderTest& tested = engine_under_test();
-  return {.threads = threads, .isa = tested.isa, .engine = tested.make};
+  return {.threads = threads, .isa = tested.isa, .own_kernels = tested.own_kernels};
 }
 
 /// Loads a network from the folder fixtures/ and sets its inputs. The expected outputs in that
