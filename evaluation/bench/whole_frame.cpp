@@ -53,8 +53,12 @@ bool WholeFrame::settle(const Place& place) {
   vision.synchronizer = config_.cameras.synchronizer;
   vision.compensate_motion = config_.cameras.compensate_motion;
   vision_.emplace(*localizer_, vision, queues_.frames, queues_.predictions, queues_.reports);
-  for (int i = 0; i < kMostFrames; ++i) {
-    if (run(place.framesets[static_cast<size_t>(i) % place.framesets.size()]).tracked) return true;
+  const size_t framesets = place.framesets.size();
+  size_t in_a_row = 0;
+  for (size_t i = 0; i < kMostFrames; ++i) {
+    const bool tracked = run(place.framesets[i % framesets]).tracked;
+    in_a_row = tracked ? in_a_row + 1 : 0;
+    if (in_a_row > framesets) return true;
   }
   return false;
 }

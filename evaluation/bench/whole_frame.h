@@ -30,9 +30,10 @@ class WholeFrame {
                                                     const HdMap& map, const MapIndex& index,
                                                     int threads);
 
-  /// Moves the vehicle to a place. Returns whether the pose is tracked there within kMostFrames.
+  /// Moves the vehicle to a place. Returns whether, within kMostFrames, the pose becomes tracked
+  /// there and stays so with each of the place's framesets.
   bool settle(const Place& place);
-  static constexpr int kMostFrames = 60;
+  static constexpr size_t kMostFrames = 60;
 
   /// Processes the next frameset: frames into the queue, localization, correction, CAN frames out.
   FrameRun run(const FramesetImages& images);

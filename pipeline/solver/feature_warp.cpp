@@ -12,8 +12,10 @@ BEVLOC_TARGET_CLONES void warp(const WarpLine& line, float* out) {
     const Taps& taps = groups.next();
     const int count = std::min(kLanes, line.cells - first);
     for (int i = 0; i < count; ++i) {
-      for (int k = 0; k < line.lanes; k += kLanes) line.read(taps, i, k, lanes(out + k));
-      out += line.lanes;
+      for (int k = 0; k < line.source.lanes; k += kLanes) {
+        line.source.read(taps, i, k, lanes(out + k));
+      }
+      out += line.source.lanes;
     }
   }
 }

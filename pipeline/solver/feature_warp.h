@@ -9,57 +9,96 @@
 
 namespace bevloc {
 
-/// Bilinear taps of kLanes positions between cells.
+/// Bilinear taps of kLanes positions between cells: where the first of the four cells around each
+/// lies (at the whole row and column at or before the position), and their weights.
 struct Taps {
-  LaneIntegers offset;  ///< of the cell at the whole row and column at or before the position
-  Lanes u;              ///< fraction of a row beyond that cell
-  Lanes v;              ///< fraction of a column beyond that cell
+  LaneIntegers offset;
+  Lanes first;      ///< of that cell
+  Lanes next_col;   ///< of the cell beside it
+  Lanes next_row;   ///< of the cell in the next row
+  Lanes next_both;  ///< of the cell beside that one
+};
+
+/// Splits positions into whole cells and fractions.
+inline void split(const Lanes& position, LaneIntegers& cells, Lanes& fraction) {
+  const LaneIntegers towards_zero = __builtin_convertvector(position, LaneIntegers);
+  cells = towards_zero + (position < __builtin_convertvector(towards_zero, Lanes));
+  fraction = position - __builtin_convertvector(cells, Lanes);
+}
+
+/// Where moved features are read. The taps of positions that are not wanted must not be read.
+struct WarpSource {
+  const float* origin;  ///< the features of cell (0, 0)
+  int row_stride;
+  int lanes;
+
+  /// Sets the taps of positions beyond cell (row, col).
+  void set_taps(const Lanes& rows_beyond, int row, const Lanes& cols_beyond, int col,
+                Taps& taps) const {
+    LaneIntegers row_cells;
+    LaneIntegers col_cells;
+    Lanes u;
+    Lanes v;
+    split(rows_beyond, row_cells, u);
+    split(cols_beyond, col_cells, v);
+    taps.offset = row_cells * row_stride + col_cells * lanes + (row * row_stride + col * lanes);
+    taps.next_both = u * v;
+    taps.next_row = u - taps.next_both;
+    taps.next_col = v - taps.next_both;
+    taps.first = 1.0F - u - taps.next_col;
+  }
+
+  /// Reads kLanes channels, from channel `k` on, at position i of `taps`.
+  void read(const Taps& taps, int i, int k, Lanes& value) const {
+    const float* upper = origin + taps.offset[i] + k;
+    const float* lower = upper + row_stride;
+    value =
+        (taps.first[i] * bevloc::lanes(upper) + taps.next_col[i] * bevloc::lanes(upper + lanes)) +
+        (taps.next_row[i] * bevloc::lanes(lower) +
+         taps.next_both[i] * bevloc::lanes(lower + lanes));
+  }
+};
+
+/// A number as a whole number and a fraction, so that floats hold precise fractions.
+struct SplitNumber {
+  explicit SplitNumber(double number)
+      : whole(static_cast<int>(std::floor(number))), fraction(static_cast<float>(number - whole)) {}
+  int whole;
+  float fraction;
 };
 
 /// Equally spaced positions on a straight line: position i lies at row u0 + i du and column
 /// v0 + i dv.
 struct WarpLine {
-  const float* origin;  ///< the features of cell (0, 0)
-  int row_stride;
-  int lanes;
+  WarpSource source;
   double u0;
   double v0;
   double du;
   double dv;
   int cells;
 
-  /// Finds the taps of the kLanes positions from `first` on. Taps beyond position cells - 1 must
-  /// not be read.
+  /// Finds the taps of the kLanes positions from `first` on.
   void find_taps(int first, Taps& taps) const {
-    LaneIntegers row;
-    LaneIntegers col;
-    split(u0 + first * du, du, row, taps.u);
-    split(v0 + first * dv, dv, col, taps.v);
-    taps.offset = row * row_stride + col * lanes;
-  }
-
-  /// Reads kLanes channels, from channel `k` on, at position i of `taps`.
-  void read(const Taps& taps, int i, int k, Lanes& value) const {
-    const float* first = origin + taps.offset[i] + k;
-    const float* second = first + row_stride;
-    const Lanes& near_upper = bevloc::lanes(first);
-    const Lanes& near_lower = bevloc::lanes(second);
-    const Lanes upper = near_upper + taps.v[i] * (bevloc::lanes(first + lanes) - near_upper);
-    const Lanes lower = near_lower + taps.v[i] * (bevloc::lanes(second + lanes) - near_lower);
-    value = upper + taps.u[i] * (lower - upper);
-  }
-
- private:
-  /// Splits the kLanes positions first, first + step, ... into whole cells and fractions.
-  static void split(double first, double step, LaneIntegers& cells, Lanes& fraction) {
     constexpr Lanes kNumbers{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const double whole = std::floor(first);  // subtracted, so that floats hold precise fractions
-    const Lanes position = static_cast<float>(first - whole) + kNumbers * static_cast<float>(step);
-    const LaneIntegers towards_zero = __builtin_convertvector(position, LaneIntegers);
-    const LaneIntegers below =
-        towards_zero + (position < __builtin_convertvector(towards_zero, Lanes));
-    fraction = position - __builtin_convertvector(below, Lanes);
-    cells = below + static_cast<int>(whole);
+    const SplitNumber u(u0 + first * du);
+    const SplitNumber v(v0 + first * dv);
+    source.set_taps(u.fraction + kNumbers * static_cast<float>(du), u.whole,
+                    v.fraction + kNumbers * static_cast<float>(dv), v.whole, taps);
+  }
+};
+
+/// Positions anywhere: a cell `row` rows and `col` columns away from the middle of the grid is read
+/// at row cos row + sin col + row_base and column cos col - sin row + col_base.
+struct WarpPlane {
+  WarpSource source;
+  float cos_yaw;
+  float sin_yaw;
+  SplitNumber row_base;
+  SplitNumber col_base;
+
+  void find_taps(const Lanes& row, const Lanes& col, Taps& taps) const {
+    source.set_taps(cos_yaw * row + sin_yaw * col + row_base.fraction, row_base.whole,
+                    cos_yaw * col - sin_yaw * row + col_base.fraction, col_base.whole, taps);
   }
 };
 
@@ -98,8 +137,16 @@ class FeatureWarp {
   /// Where the moved cells of `row` are read: `cells` cells, from column `col_begin` on in steps of
   /// `col_step`. The cells may lie outside the grid.
   WarpLine line(int row, int col_begin, int cells, int col_step = 1) const;
+  /// Where any moved cell is read.
+  WarpPlane plane() const;
 
  private:
+  WarpSource source() const {
+    return {.origin = features_.cell(0, 0),
+            .row_stride = static_cast<int>(features_.row_stride()),
+            .lanes = features_.lanes()};
+  }
+
   const CellFeatures& features_;
   double cos_yaw_;
   double sin_yaw_;
@@ -114,9 +161,7 @@ inline WarpLine FeatureWarp::line(int row, int col_begin, int cells, int col_ste
   const double center_col = 0.5 * (features_.grid().cols - 1);
   const double u = row - center_row + row_shift_;
   const double v = col_begin - center_col + col_shift_;
-  return {.origin = features_.cell(0, 0),
-          .row_stride = static_cast<int>(features_.row_stride()),
-          .lanes = features_.lanes(),
+  return {.source = source(),
           .u0 = cos_yaw_ * u + sin_yaw_ * v + center_row,
           .v0 = -sin_yaw_ * u + cos_yaw_ * v + center_col,
           .du = col_step * sin_yaw_,
@@ -124,7 +169,19 @@ inline WarpLine FeatureWarp::line(int row, int col_begin, int cells, int col_ste
           .cells = cells};
 }
 
-/// Writes the line.cells * line.lanes values of a line.
+inline WarpPlane FeatureWarp::plane() const {
+  const double center_row = 0.5 * (features_.grid().rows - 1);
+  const double center_col = 0.5 * (features_.grid().cols - 1);
+  return {
+      .source = source(),
+      .cos_yaw = static_cast<float>(cos_yaw_),
+      .sin_yaw = static_cast<float>(sin_yaw_),
+      .row_base = SplitNumber(cos_yaw_ * row_shift_ + sin_yaw_ * col_shift_ + center_row),
+      .col_base = SplitNumber(cos_yaw_ * col_shift_ - sin_yaw_ * row_shift_ + center_col),
+  };
+}
+
+/// Writes the values of a line: its cells, and for each the lanes of the features.
 void warp(const WarpLine& line, float* out);
 
 }  // namespace bevloc

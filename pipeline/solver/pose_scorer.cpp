@@ -8,63 +8,9 @@
 namespace bevloc {
 namespace {
 
-/// Cells that are summed in float before the sums go to double, to limit rounding errors.
-constexpr int kCellsPerFloatSum = 500;
-
-/// Rows begin ... end - 1.
-struct RowRange {
-  int begin;
-  int end;
-};
-
-/// Up to kLanes cells of one row: where the BEV features are read, and the first map cell.
-struct CellGroup {
-  Taps taps;
-  const float* map;
-  int cells;
-};
-
-/// Iterates over the cells of a lattice in groups, row by row.
-class CellGroups {
- public:
-  CellGroups(const FeatureWarp& moved, const CellFeatures& map, const CellLattice& lattice,
-             const RowRange& rows)
-      : moved_(moved), map_(map), lattice_(lattice), row_(rows.begin), row_end_(rows.end) {
-    begin_row();
-  }
-
-  /// Floats between the map features of neighbouring cells of a group.
-  int map_step() const { return lattice_.step * map_.lanes(); }
-  const WarpLine& line() const { return line_; }
-
-  /// Writes the next group. False after the last one.
-  bool next(CellGroup& group) {
-    if (first_ >= line_.cells) {
-      if (++row_ >= row_end_) return false;
-      begin_row();
-    }
-    line_.find_taps(first_, group.taps);
-    group.map = map_.cell(row_, lattice_.first_col(row_)) + first_ * map_step();
-    group.cells = std::min(kLanes, line_.cells - first_);
-    first_ += kLanes;
-    return true;
-  }
-
- private:
-  void begin_row() {
-    line_ = moved_.line(row_, lattice_.first_col(row_), lattice_.cells(row_, map_.grid().cols),
-                        lattice_.step);
-    first_ = 0;
-  }
-
-  const FeatureWarp& moved_;
-  const CellFeatures& map_;
-  const CellLattice& lattice_;
-  int row_;
-  int row_end_;
-  WarpLine line_;
-  int first_;
-};
+/// Groups of kLanes cells that are summed in float before the sums go to double, to limit rounding
+/// errors.
+constexpr int kGroupsPerFloatSum = 32;
 
 /// Separate sums for even and odd cells, to hide the latency of the additions.
 struct CellSums {
@@ -72,70 +18,93 @@ struct CellSums {
   LaneSums odd;
 };
 
-/// `lanes_per_cell` is map.lanes(). A constant lets the compiler unroll the inner loop.
-[[gnu::always_inline]] inline void add_cells(const CellGroup& group, WarpLine line, int map_step,
+/// Groups of kLanes cells: the first one, and the end.
+struct GroupRange {
+  int begin;
+  int end;
+};
+
+/// Adds `count` cells with the taps of their moved features. `lanes_per_cell` is map.lanes(). A
+/// constant lets the compiler unroll the inner loop.
+[[gnu::always_inline]] inline void add_cells(WarpSource source, const Taps& taps, const float* map,
+                                             const LaneIntegers& map_offsets, int count,
                                              int lanes_per_cell, CellSums& sums) {
-  line.lanes = lanes_per_cell;
-  const float* map = group.map;
+  source.lanes = lanes_per_cell;
   Lanes moved;
-  int i = 0;
-  for (; i + 1 < group.cells; i += 2, map += 2 * map_step) {
+  for (int i = 0; i < count; i += 2) {
     for (int k = 0; k < lanes_per_cell; k += kLanes) {
-      line.read(group.taps, i, k, moved);
-      sums.even.add(lanes(map + k), moved);
-      line.read(group.taps, i + 1, k, moved);
-      sums.odd.add(lanes(map + map_step + k), moved);
-    }
-  }
-  for (; i < group.cells; ++i, map += map_step) {
-    for (int k = 0; k < lanes_per_cell; k += kLanes) {
-      line.read(group.taps, i, k, moved);
-      sums.even.add(lanes(map + k), moved);
+      source.read(taps, i, k, moved);
+      sums.even.add(lanes(map + map_offsets[i] + k), moved);
+      if (i + 1 == count) continue;
+      source.read(taps, i + 1, k, moved);
+      sums.odd.add(lanes(map + map_offsets[i + 1] + k), moved);
     }
   }
 }
 
 /// Finds the taps of the next group before it adds the current one, so that the two overlap.
-[[gnu::always_inline]] inline MatchSums add_groups(CellGroups& groups, int lanes_per_cell) {
+[[gnu::always_inline]] inline MatchSums add_groups(const WarpPlane& moved, const CellFeatures& map,
+                                                   const LatticeCells& cells,
+                                                   const GroupRange& groups, int lanes_per_cell) {
   CellSums sums;
-  CellGroup two[2];
-  bool more = groups.next(two[0]);
-  for (int i = 0; more; i = 1 - i) {
-    more = groups.next(two[1 - i]);
-    add_cells(two[i], groups.line(), groups.map_step(), lanes_per_cell, sums);
+  Taps two[2];
+  const auto find_taps = [&](int group) {
+    moved.find_taps(cells.rows(group), cells.cols(group), two[group % 2]);
+  };
+  find_taps(groups.begin);
+  for (int group = groups.begin; group < groups.end; ++group) {
+    if (group + 1 < groups.end) find_taps(group + 1);
+    add_cells(moved.source, two[group % 2], map.cell(0, 0), cells.offsets(group),
+              cells.count(group), lanes_per_cell, sums);
   }
   return sum_of(sums.even, sums.odd);
 }
 
-BEVLOC_TARGET_CLONES MatchSums match_rows(const FeatureWarp& moved, const CellFeatures& map,
-                                          const CellLattice& lattice, const RowRange& rows) {
-  CellGroups groups(moved, map, lattice, rows);
-  return map.lanes() == kLanes ? add_groups(groups, kLanes) : add_groups(groups, map.lanes());
+BEVLOC_TARGET_CLONES MatchSums match_groups(const WarpPlane& moved, const CellFeatures& map,
+                                            const LatticeCells& cells, const GroupRange& groups) {
+  return map.lanes() == kLanes ? add_groups(moved, map, cells, groups, kLanes)
+                               : add_groups(moved, map, cells, groups, map.lanes());
 }
 
 }  // namespace
 
-MatchSums match_moved(const CellFeatures& bev, const CellFeatures& map, const Se2& correction,
-                      const CellLattice& lattice) {
+LatticeCells::LatticeCells(const CellFeatures& map, const CellLattice& lattice)
+    : lattice_(lattice) {
   const BevGrid& grid = map.grid();
-  const FeatureWarp moved(bev, correction);
-  const int rows_per_sum = std::max(1, kCellsPerFloatSum / lattice.cells(0, grid.cols));
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int col = lattice.first_col(row); col < grid.cols; col += lattice.step) {
+      rows_.push_back(static_cast<float>(row - 0.5 * (grid.rows - 1)));
+      cols_.push_back(static_cast<float>(col - 0.5 * (grid.cols - 1)));
+      offsets_.push_back(static_cast<int>(row * map.row_stride() + col * map.lanes()));
+    }
+  }
+  cells_ = static_cast<int>(rows_.size());
+  const auto whole_groups = static_cast<size_t>(round_up_to_lanes(cells_));
+  rows_.resize(whole_groups);
+  cols_.resize(whole_groups);
+  offsets_.resize(whole_groups);
+}
+
+MatchSums match_moved(const CellFeatures& bev, const CellFeatures& map, const Se2& correction,
+                      const LatticeCells& cells) {
+  const WarpPlane moved = FeatureWarp(bev, correction).plane();
   MatchSums sums;
-  for (int row = 0; row < grid.rows; row += rows_per_sum) {
-    sums += match_rows(moved, map, lattice, {row, std::min(row + rows_per_sum, grid.rows)});
+  for (int group = 0; group < cells.groups(); group += kGroupsPerFloatSum) {
+    const int end = std::min(group + kGroupsPerFloatSum, cells.groups());
+    sums += match_groups(moved, map, cells, {group, end});
   }
   return sums;
 }
 
-PoseScorer::PoseScorer(const CellFeatures& bev, const CellFeatures& map, const CellLattice& lattice)
+PoseScorer::PoseScorer(const CellFeatures& bev, const CellFeatures& map, const LatticeCells& cells)
     : bev_(bev),
       map_(map),
-      lattice_(lattice),
-      count_(static_cast<double>(lattice.cells(map.grid())) * map.channels()),
-      map_moments_(moments_of(map, lattice)) {}
+      cells_(cells),
+      count_(static_cast<double>(cells.count()) * map.channels()),
+      map_moments_(moments_of(map, cells.lattice())) {}
 
 double PoseScorer::score(const Se2& correction) const {
-  return zncc(match_moved(bev_, map_, correction, lattice_), map_moments_, count_);
+  return zncc(match_moved(bev_, map_, correction, cells_), map_moments_, count_);
 }
 
 }  // namespace bevloc

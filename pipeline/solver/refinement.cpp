@@ -18,8 +18,12 @@ Se2 correction_of(const Eigen::Vector3d& pose) {
 
 }  // namespace
 
-Refinement::Refinement(const HypothesisGrid& hypotheses, const SolverParameters& parameters)
-    : hypotheses_(hypotheses), parameters_(parameters) {
+Refinement::Refinement(const CellFeatures& map, const HypothesisGrid& hypotheses,
+                       const SolverParameters& parameters)
+    : hypotheses_(hypotheses),
+      parameters_(parameters),
+      coarse_cells_(map, kEveryTenthCell),
+      fine_cells_(map, kEverySecondCell) {
   const int longest =
       std::max({hypotheses.x_m.count(), hypotheses.y_m.count(), hypotheses.yaw_rad.count()});
   scored_.reserve(longest);
@@ -30,8 +34,8 @@ Refinement::Refinement(const HypothesisGrid& hypotheses, const SolverParameters&
 void Refinement::refine(const MatchSide& bev, const MatchSide& map, SolverResult& result) {
   const ScoreValley valley(map.cells, hypotheses_);
   Eigen::Vector3d pose(result.correction.x_m, result.correction.y_m, result.correction.yaw_rad);
-  const PoseScorer coarse(bev.cells, map.cells, kEveryTenthCell);
-  const PoseScorer fine(bev.cells, map.cells, kEverySecondCell);
+  const PoseScorer coarse(bev.cells, map.cells, coarse_cells_);
+  const PoseScorer fine(bev.cells, map.cells, fine_cells_);
   // The first round searches y and yaw at an x that it then corrects, so a second one follows.
   search_all_axes({coarse, kCoarseScale, 0.0F}, valley, pose, result);
   search_all_axes({coarse, kCoarseScale, kLeastLikely}, valley, pose, result);

@@ -25,7 +25,9 @@ namespace bevloc {
 /// likely; the others keep their probability.
 class Refinement {
  public:
-  Refinement(const HypothesisGrid& hypotheses, const SolverParameters& parameters);
+  /// `map` says where the cells of the map lie in memory.
+  Refinement(const CellFeatures& map, const HypothesisGrid& hypotheses,
+             const SolverParameters& parameters);
 
   /// Starts at `result.correction` and overwrites the correction and the distributions.
   void refine(const MatchSide& bev, const MatchSide& map, SolverResult& result);
@@ -49,6 +51,8 @@ class Refinement {
 
   HypothesisGrid hypotheses_;
   SolverParameters parameters_;
+  LatticeCells coarse_cells_;
+  LatticeCells fine_cells_;
   std::vector<int> scored_;  ///< indices of the hypotheses that search() scores
   std::vector<double> scores_;
   std::vector<float> scratch_;

@@ -51,7 +51,7 @@ Solver::Solver(const BevGrid& grid, int channels, const HypothesisGrid& hypothes
       map_cells_(grid, channels, hypotheses),
       matcher_(std::move(matcher)),
       match_covariance_(grid, channels, hypotheses) {
-  if (refine == Refine::kYes) refinement_.emplace(hypotheses, parameters);
+  if (refine == Refine::kYes) refinement_.emplace(map_cells_, hypotheses, parameters);
 }
 
 void Solver::solve(const FeatureView& bev, const FeatureView& map, SolverResult& result) {

@@ -16,7 +16,7 @@ struct LineSlope {
 };
 
 /// A line of cells of both sides. The map's cells are `map_step` floats apart. `grad_bev` is the
-/// counterpart of line.origin in the gradient.
+/// counterpart of line.source.origin in the gradient.
 struct GradientLine {
   WarpLine line;
   LineSlope slope;
@@ -27,25 +27,21 @@ struct GradientLine {
 };
 
 /// Adds `gradient`, weighted, to the four cells from which position `i` was interpolated.
-[[gnu::always_inline]] inline void scatter(const WarpLine& line, const Taps& taps, int i, int k,
+[[gnu::always_inline]] inline void scatter(const WarpSource& source, const Taps& taps, int i, int k,
                                            const Lanes& gradient, float* origin) {
-  float* first = origin + taps.offset[i] + k;
-  float* second = first + line.row_stride;
-  const Lanes lower = taps.u[i] * gradient;
-  const Lanes upper = gradient - lower;
-  const Lanes far_upper = taps.v[i] * upper;
-  const Lanes far_lower = taps.v[i] * lower;
-  lanes(first) += upper - far_upper;
-  lanes(first + line.lanes) += far_upper;
-  lanes(second) += lower - far_lower;
-  lanes(second + line.lanes) += far_lower;
+  float* upper = origin + taps.offset[i] + k;
+  float* lower = upper + source.row_stride;
+  lanes(upper) += taps.first[i] * gradient;
+  lanes(upper + source.lanes) += taps.next_col[i] * gradient;
+  lanes(lower) += taps.next_row[i] * gradient;
+  lanes(lower + source.lanes) += taps.next_both[i] * gradient;
 }
 
-/// Adds the gradients of one line. `lanes_per_cell` equals line.lanes; a constant argument lets the
-/// compiler specialise the loop.
+/// Adds the gradients of one line. `lanes_per_cell` equals source.lanes; a constant argument lets
+/// the compiler specialise the loop.
 [[gnu::always_inline]] inline void add_cells(GradientLine cells, int lanes_per_cell) {
   WarpLine& line = cells.line;
-  line.lanes = lanes_per_cell;
+  line.source.lanes = lanes_per_cell;
   const auto [product, value, twice_square] = cells.slope;
   Lanes moved;
   TapGroups groups(line);
@@ -54,10 +50,10 @@ struct GradientLine {
     const int count = std::min(kLanes, line.cells - first);
     for (int i = 0; i < count; ++i) {
       for (int k = 0; k < lanes_per_cell; k += kLanes) {
-        line.read(taps, i, k, moved);
+        line.source.read(taps, i, k, moved);
         lanes(cells.grad_map + k) += product * moved;
         const Lanes gradient = product * lanes(cells.map + k) + (value + twice_square * moved);
-        scatter(line, taps, i, k, gradient, cells.grad_bev);
+        scatter(line.source, taps, i, k, gradient, cells.grad_bev);
       }
       cells.map += cells.map_step;
       cells.grad_map += cells.map_step;
@@ -66,7 +62,8 @@ struct GradientLine {
 }
 
 BEVLOC_TARGET_CLONES void add_line(const GradientLine& cells) {
-  cells.line.lanes == kLanes ? add_cells(cells, kLanes) : add_cells(cells, cells.line.lanes);
+  const int lanes_per_cell = cells.line.source.lanes;
+  lanes_per_cell == kLanes ? add_cells(cells, kLanes) : add_cells(cells, lanes_per_cell);
 }
 
 }  // namespace

@@ -37,12 +37,12 @@ void bevloc_moved_sums(int count, int channels, int poses, int step, int skew, c
                        const float* map, const double* corrections, double* sums) {
   const size_t features = feature_count(channels);
   Sides sides(channels);
+  const bevloc::LatticeCells cells(sides.map, {step, skew});
   for (int i = 0; i < count; ++i) {
     sides.bev.assign({bev + i * features, features});
     sides.map.assign({map + i * features, features});
     for (int j = 0; j < poses; ++j, corrections += 3, sums += kSumCount) {
-      const MatchSums found =
-          match_moved(sides.bev, sides.map, correction_of(corrections), {step, skew});
+      const MatchSums found = match_moved(sides.bev, sides.map, correction_of(corrections), cells);
       sums[0] = found.product;
       sums[1] = found.value;
       sums[2] = found.square;

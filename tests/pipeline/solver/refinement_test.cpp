@@ -30,7 +30,7 @@ class RefinementTest : public testing::Test {
   }
 
   SolverResult refined(SolverResult result) {
-    Refinement refinement(kDefaultHypotheses, parameters_);
+    Refinement refinement(map_, kDefaultHypotheses, parameters_);
     refinement.refine({{}, bev_}, {{}, map_}, result);
     return result;
   }

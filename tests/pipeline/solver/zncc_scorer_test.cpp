@@ -93,7 +93,8 @@ TEST_P(ZnccScorerTest, TranslationScorerFollowsTheDefinition) {
 }
 
 TEST_P(ZnccScorerTest, PoseScorerFollowsTheDefinition) {
-  const PoseScorer scorer(bev_cells_, map_cells_);
+  const LatticeCells cells(map_cells_, kEveryCell);
+  const PoseScorer scorer(bev_cells_, map_cells_, cells);
   for (const Se2& correction : {Se2{-1.23, 0.71, 0.31}, Se2{}, Se2{1.5, -0.8, -0.4},
                                 Se2{0.5, 0.0, 0.0}, Se2{0.02, -0.33, 0.004}}) {
     EXPECT_NEAR(scorer.score(correction), literal_zncc(bev_, map_, correction), 1e-5);
@@ -102,7 +103,8 @@ TEST_P(ZnccScorerTest, PoseScorerFollowsTheDefinition) {
 
 TEST_P(ZnccScorerTest, PoseScorerUsesTheCellsOfItsLattice) {
   for (const CellLattice& lattice : {kEverySecondCell, kEveryTenthCell}) {
-    const PoseScorer scorer(bev_cells_, map_cells_, lattice);
+    const LatticeCells cells(map_cells_, lattice);
+    const PoseScorer scorer(bev_cells_, map_cells_, cells);
     for (const Se2& correction : {Se2{-1.23, 0.71, 0.31}, Se2{}, Se2{0.02, -0.33, 0.004}}) {
       EXPECT_NEAR(scorer.score(correction),
                   literal_zncc(bev_, map_, correction, lattice.step, lattice.skew), 1e-5)
