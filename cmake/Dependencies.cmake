@@ -50,3 +50,4 @@ find_library(DNNL_LIBRARY dnnl REQUIRED)
 file(STRINGS ${DNNL_INCLUDE_DIR}/oneapi/dnnl/dnnl_version.h DNNL_VERSION_MAJOR
      REGEX "define DNNL_VERSION_MAJOR")
 string(REGEX MATCH "[0-9]+$" DNNL_VERSION_MAJOR "${DNNL_VERSION_MAJOR}")
+find_package(OpenMP REQUIRED COMPONENTS CXX)  # oneDNN runs on its threads

@@ -154,7 +154,7 @@ struct Network::State {
         solver_parameters(read_solver_parameters(graph)),
         rig(read_model_rig(graph)),
         engine(program, std::vector<nn::Branch>{{kBevFeatures}, {kMapFeatures}, {kBevMask}},
-               kFeatureGrid.cells(), {options.threads, options.isa, options.own_kernels}) {}
+               kFeatureGrid.cells(), options) {}
 
   FeatureView features(const char* output) const {
     return {engine.output(output), kFeatureChannels, kFeatureGrid};

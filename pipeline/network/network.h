@@ -20,12 +20,7 @@ namespace bevloc {
 /// Number of channels of the features that the solver matches.
 inline constexpr int kFeatureChannels = 16;
 
-struct NetworkOptions {
-  int threads = 1;
-  IsaCap isa = IsaCap::kBest;
-  /// Whether our own kernels run where they are faster than oneDNN.
-  bool own_kernels = true;
-};
+using NetworkOptions = nn::EngineOptions;
 
 /// A network, loaded from a standard ONNX file with these ports:
 ///   images        int8 [6, 3, 96, 320]: RGB planes minus 128, in the order of kCameraNames

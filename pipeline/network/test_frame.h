@@ -33,9 +33,9 @@ inline constexpr std::string_view kAnswerKey = "bevloc.test_frame_answer";
 /// after the first call.
 NetworkAnswer answer_to_test_frame(Network& network);
 
-/// Fails if the features of one side differ by more than 3 % in the root mean square. Processors
-/// and instruction sets differ by less than 1 % (tests/pipeline/network/network_test.cpp), because
-/// a sum at a rounding boundary may round differently.
+/// Fails if the features of one side differ by more than 3 % in the root mean square. The answers
+/// of two instruction sets differ by less than 1 % (tests/pipeline/network/network_test.cpp),
+/// because a sum at a rounding boundary may round differently.
 Status check_answer(const NetworkAnswer& found, const NetworkAnswer& wanted);
 
 /// The numbers of an answer, separated by blanks.

@@ -9,14 +9,14 @@
 
 namespace bevloc {
 
-/// Bilinear taps of kLanes positions between cells: where the first of the four cells around each
-/// lies (at the whole row and column at or before the position), and their weights.
+/// How to interpolate at kLanes positions. Each lies between four cells; the first one is at the
+/// whole row and the whole column at or before the position.
 struct Taps {
-  LaneIntegers offset;
-  Lanes first;      ///< of that cell
-  Lanes next_col;   ///< of the cell beside it
-  Lanes next_row;   ///< of the cell in the next row
-  Lanes next_both;  ///< of the cell beside that one
+  LaneIntegers offset;  ///< of the first cell, in floats
+  Lanes first;          ///< weight of the first cell
+  Lanes next_col;       ///< weight of the cell in the next column
+  Lanes next_row;       ///< weight of the cell in the next row
+  Lanes next_both;      ///< weight of the cell in the next row and column
 };
 
 /// Splits positions into whole cells and fractions.

@@ -1,5 +1,5 @@
 // The whole network with a tiny model, compared with numpy, and what a run may allocate.
-// engine/under_test/ lists the forms of the engine that these test cases run on.
+// engine/under_test/ has a file for each form of the engine that these test cases run on.
 #include "pipeline/network/network.h"
 
 #include <array>

@@ -1,6 +1,6 @@
 // Tests each reason for which loading refuses a model file or an option, and that damaged files
 // never crash it.
-// engine/under_test/ lists the forms of the engine that these test cases run on.
+// engine/under_test/ has a file for each form of the engine that these test cases run on.
 #include <fstream>
 #include <random>
 #include <string>

@@ -1,5 +1,5 @@
 // The answer to the test frame: of the shipped model, of damaged weights, and as text.
-// engine/under_test/ lists the forms of the engine that these test cases run on.
+// engine/under_test/ has a file for each form of the engine that these test cases run on.
 #include "pipeline/network/test_frame.h"
 
 #include <cmath>

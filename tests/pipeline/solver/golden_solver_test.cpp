@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/solver/solver_factory.h"
-#include "tests/support/npy.h"
+#include "tests/pipeline/solver/golden_scenes.h"
 #include "tests/support/pose_matchers.h"
 
 namespace bevloc {
@@ -62,13 +62,6 @@ SolverParameters parameters_for(SolverKind kind) {
           .gem_omega = is_literal(kind) ? values.at(9) : 1.0F};
 }
 
-std::vector<float> distributions(const SolverResult& result) {
-  std::vector<float> all = result.x_probability;
-  all.insert(all.end(), result.y_probability.begin(), result.y_probability.end());
-  all.insert(all.end(), result.yaw_probability.begin(), result.yaw_probability.end());
-  return all;
-}
-
 /// Entry [kind, sample] of an array [kind, sample, ...].
 std::vector<float> entry(const test::NpyArray<float>& array, size_t kind, size_t sample) {
   const size_t size = array.shape.at(2);
@@ -95,13 +88,9 @@ TEST_P(GoldenSolver, AgreesWithTraining) {
   ASSERT_TRUE(solver) << solver.error().message;
   for (size_t i = 0; i < bev.shape.at(0); ++i) {
     SCOPED_TRACE("sample " + std::to_string(i));
-    const std::vector<float> bev_data = bev.entry(i);
-    const std::vector<float> map_data = map.entry(i);
-    SolverResult result;
-    (*solver)->solve({bev_data, channels, kFeatureGrid}, {map_data, channels, kFeatureGrid},
-                     result);
+    const SolverResult result = test::solve_sample(**solver, bev, map, i);
     ASSERT_EQ(result.evidence, Evidence::kGood);
-    EXPECT_THAT(distributions(result),
+    EXPECT_THAT(test::distributions(result),
                 Pointwise(FloatNear(kProbabilityTolerance), entry(expected, kind_index, i)));
     const std::vector<float> estimate = entry(estimates, kind_index, i);
     EXPECT_THAT(result.correction, test::PoseNear({estimate[0], estimate[1], estimate[2]},

@@ -1,6 +1,6 @@
 // Test cases that the engine must pass in every form: small models, one per combination of
 // operators, compared with the results of numpy, and programs that none of these models produces.
-// under_test/ lists the forms.
+// under_test/ has a file for each form: with our own kernels, without, and with a cap.
 #include "pipeline/network/engine/engine.h"
 
 #include <algorithm>

@@ -12,6 +12,7 @@
 #include "pipeline/network/network.h"
 #include "pipeline/solver/solver_factory.h"
 #include "tests/pipeline/network/golden_samples.h"
+#include "tests/pipeline/solver/golden_scenes.h"
 #include "tests/support/npy.h"
 
 namespace bevloc {
@@ -54,16 +55,12 @@ class GoldenNetwork : public ::testing::TestWithParam<GoldenModel> {
     network_->run_mask_head();
   }
 
-  /// The distributions along x, y and yaw, one after the other.
   std::vector<float> distributions(SolverKind kind) {
     auto solver = make_solver(kind, kFeatureGrid, kFeatureChannels, HypothesisGrid{},
                               network_->solver_parameters());
     SolverResult result;
     (*solver)->solve(network_->bev_features(), network_->map_features(), result);
-    std::vector<float> all = result.x_probability;
-    all.insert(all.end(), result.y_probability.begin(), result.y_probability.end());
-    all.insert(all.end(), result.yaw_probability.begin(), result.yaw_probability.end());
-    return all;
+    return test::distributions(result);
   }
 
   std::unique_ptr<Network> network_;
