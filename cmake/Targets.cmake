@@ -18,7 +18,7 @@ if(BEVLOC_FUZZ)
   target_compile_options(bevloc_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-# Compiling with -O3 takes 1.5 times as long as with -O2. Only the SEPARATE libraries below need it.
+# Compiling with -O3 takes 1.5 times as long as with -O2. Only the FAST libraries below need it.
 string(REPLACE "-O3" "-O2" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
 
 # Several sources of a target are compiled as one, because most of the time goes into headers: the
@@ -26,32 +26,29 @@ string(REPLACE "-O3" "-O2" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
 # therefore be unique within a target. An editor's single-file checks want -DBEVLOC_UNITY=OFF.
 option(BEVLOC_UNITY "Compile several sources of a target as one" ON)
 set(BEVLOC_UNITY_BATCH 40 CACHE STRING "How many sources are compiled as one")
-option(BEVLOC_LINT "Only for script/lint: treat SEPARATE libraries like the others" OFF)
 function(bevloc_compile_together name)
   set_target_properties(${name} PROPERTIES
     UNITY_BUILD ${BEVLOC_UNITY} UNITY_BUILD_BATCH_SIZE ${BEVLOC_UNITY_BATCH})
 endfunction()
 
-# bevloc_library(NAME SOURCES... [SEPARATE] [LINK libs...])
-# SEPARATE compiles each source alone and with -O3. Libraries with the inner loops need it.
+# bevloc_library(NAME SOURCES... [FAST] [LINK libs...])
+# FAST compiles with -O3. Libraries with the inner loops need it.
 function(bevloc_library name)
-  cmake_parse_arguments(ARG "SEPARATE" "" "LINK" ${ARGN})
+  cmake_parse_arguments(ARG "FAST" "" "LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PUBLIC bevloc_options ${ARG_LINK})
-  if(ARG_SEPARATE)
+  if(ARG_FAST)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O3>)
   endif()
-  if(BEVLOC_LINT OR BEVLOC_SANITIZE OR NOT ARG_SEPARATE)
-    bevloc_compile_together(${name})
-    # The sources for one instruction set use the same names, and two others only compile with GCC.
-    list(FILTER ARG_UNPARSED_ARGUMENTS INCLUDE REGEX
-      "_(avx2|avxvnni|avx512vnni|dotprod|i8mm|neon|plain)\\.cpp$|^(cell_features|kernels/strip_kernels)\\.cpp$")
-    set_source_files_properties(${ARG_UNPARSED_ARGUMENTS} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-    if(BEVLOC_FUZZ)
-      # clang ignores the pragmas that select their instruction set.
-      set_source_files_properties(${ARG_UNPARSED_ARGUMENTS} PROPERTIES COMPILE_OPTIONS
-        "-mavx2;-mfma;-mavx512f;-mavx512bw;-mavx512vl;-mavx512vnni;-mavxvnni;-include;${PROJECT_SOURCE_DIR}/tests/fuzz/gcc_builtins.h")
-    endif()
+  bevloc_compile_together(${name})
+  # The sources for one instruction set use the same names, and two others only compile with GCC.
+  list(FILTER ARG_UNPARSED_ARGUMENTS INCLUDE REGEX
+    "_(avx2|avxvnni|avx512vnni|dotprod|i8mm|neon|plain)\\.cpp$|^(cell_features|kernels/strip_kernels)\\.cpp$")
+  set_source_files_properties(${ARG_UNPARSED_ARGUMENTS} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  if(BEVLOC_FUZZ)
+    # clang ignores the pragmas that select their instruction set.
+    set_source_files_properties(${ARG_UNPARSED_ARGUMENTS} PROPERTIES COMPILE_OPTIONS
+      "-mavx2;-mfma;-mavx512f;-mavx512bw;-mavx512vl;-mavx512vnni;-mavxvnni;-include;${PROJECT_SOURCE_DIR}/tests/fuzz/gcc_builtins.h")
   endif()
 endfunction()
 
