@@ -49,22 +49,27 @@ Result<SecocKey> read_secoc_key(const std::filesystem::path& file) {
   return key;
 }
 
-Result<uint32_t> next_start_number(const std::filesystem::path& file) {
+Result<uint32_t> read_start_number(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return 0;
+  auto content = read_file(file);
+  if (!content) return tl::unexpected(content.error());
+  const std::string text = without_end_of_line(std::move(*content));
+  const char* end = text.data() + text.size();
   uint32_t number = 0;
-  if (std::filesystem::exists(file)) {
-    auto content = read_file(file);
-    if (!content) return tl::unexpected(content.error());
-    const std::string text = without_end_of_line(std::move(*content));
-    const char* end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, number);
-    if (read.ec != std::errc{} || read.ptr != end || number == UINT32_MAX) {
-      return fail(
-          "{}: found '{}', wanted one whole number of starts; write a number larger than every "
-          "number before; a smaller one makes the vehicle refuse all messages",
-          file.string(), text);
-    }
+  const auto read = std::from_chars(text.data(), end, number);
+  if (read.ec != std::errc{} || read.ptr != end || number == UINT32_MAX) {
+    return fail(
+        "{}: found '{}', wanted one whole number of starts; write a number larger than every "
+        "number before; a smaller one makes the vehicle refuse all messages",
+        file.string(), text);
   }
-  ++number;
+  return number;
+}
+
+Result<uint32_t> next_start_number(const std::filesystem::path& file) {
+  const Result<uint32_t> last = read_start_number(file);
+  if (!last) return last;
+  const uint32_t number = *last + 1;
   if (Status written = replace_file(file, fmt::format("{}\n", number)); !written) {
     return fail(
         "{}: the number of starts cannot be written ({}), wanted a folder that bevlocd may "

@@ -7,6 +7,7 @@
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "evaluation/drive/bus_factory.h"
 #include "evaluation/drive/simulated_run.h"
+#include "firmware/config/config_key.h"
 #include "firmware/runtime/daemon.h"
 #include "firmware/runtime/program.h"
 #include "pipeline/calibration/rig_yaml.h"
@@ -100,7 +101,7 @@ Status run(const firmware::ProgramOptions& program, const DriveOptions& drive,
   if (Status status = firmware::override_config(program, *config); !status) return status;
   if (program.check_config) return firmware::check_and_print(program, *config);
   firmware::set_log_level(config->log_level);
-  const auto rig = read_rig(config->rig_file);
+  const auto rig = firmware::at_key("calibration.rig", read_rig(config->rig_file));
   if (!rig) return tl::unexpected(rig.error());
   if (config->simulation) return simulate(drive, *config, *rig);
   BusFactory buses(config->can);

@@ -5,6 +5,7 @@
 #include "common/writable_folder.h"
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "firmware/config/config.h"
+#include "firmware/config/config_key.h"
 #include "firmware/runtime/camera_factory.h"
 #include "firmware/runtime/can_bus.h"
 #include "pipeline/calibration/rig_yaml.h"
@@ -17,9 +18,8 @@ namespace {
 
 Status check_lines(const GpioConfig& gpio) {
   for (const drivers::LineAddress& address : lines_of(gpio)) {
-    if (Status status = drivers::LibgpiodGpio().look_for(address); !status) {
-      return fail("gpio: {}", status.error().message);
-    }
+    const Status found = at_key("gpio", drivers::LibgpiodGpio().look_for(address));
+    if (!found) return found;
   }
   return {};
 }
@@ -27,9 +27,8 @@ Status check_lines(const GpioConfig& gpio) {
 /// Opens and closes the appliance's socket.
 Status check_can(const CanConfig& can) {
   if (can.driver == CanDriver::kMock) return {};
-  if (const auto bus = open_can_bus(can); !bus)
-    return fail("can.interface: {}", bus.error().message);
-  return {};
+  const auto bus = at_key("can.interface", open_can_bus(can));
+  return bus ? Status() : tl::unexpected(bus.error());
 }
 
 /// The daemon writes this file while it runs.
@@ -43,29 +42,42 @@ Status check_written_file(const char* key, const std::filesystem::path& file) {
       key, file.string(), error.message());
 }
 
+Status check_model(const std::filesystem::path& file, const Rig& rig) {
+  const auto model = Network::load(file, {});
+  if (!model) return tl::unexpected(model.error());
+  const Status fits = check_rig_fits((*model)->rig(), rig);
+  return fits ? fits : fail("{}: {}", file.string(), fits.error().message);
+}
+
+Status check_map(const std::filesystem::path& file) {
+  const auto map = load_map(file);
+  if (!map) return tl::unexpected(map.error());
+  for (const std::string& warning : warnings_of(*map))
+    spdlog::warn("{}: {}", file.string(), warning);
+  return {};
+}
+
+Status check_secoc(const SecocConfig& secoc) {
+  constexpr const char* kStartsKey = "can.secoc.starts_file";
+  const auto key = at_key("can.secoc.key_file", can::read_secoc_key(secoc.key_file));
+  if (!key) return tl::unexpected(key.error());
+  const auto starts = at_key(kStartsKey, can::read_start_number(secoc.starts_file));
+  if (!starts) return tl::unexpected(starts.error());
+  return check_written_file(kStartsKey, secoc.starts_file);
+}
+
 }  // namespace
 
 Status check_config(const Config& config) {
-  const auto rig = read_rig(config.rig_file);
+  const auto rig = at_key("calibration.rig", read_rig(config.rig_file));
   if (!rig) return tl::unexpected(rig.error());
-  const auto model = Network::load(config.model_file, {});
-  if (!model) return tl::unexpected(model.error());
-  if (const Status fits = check_rig_fits((*model)->rig(), *rig); !fits) {
-    return fail("{}: {}", config.model_file.string(), fits.error().message);
-  }
+  const Status model = at_key("model.file", check_model(config.model_file, *rig));
+  if (!model) return model;
   if (!config.map_file.empty()) {
-    const auto map = load_map(config.map_file);
-    if (!map) return tl::unexpected(map.error());
-    for (const std::string& warning : warnings_of(*map)) {
-      spdlog::warn("{}: {}", config.map_file.string(), warning);
-    }
+    if (Status map = at_key("map.file", check_map(config.map_file)); !map) return map;
   }
   if (config.can.secoc) {
-    const auto key = can::read_secoc_key(config.can.secoc->key_file);
-    if (!key) return tl::unexpected(key.error());
-    const Status starts =
-        check_written_file("can.secoc.starts_file", config.can.secoc->starts_file);
-    if (!starts) return starts;
+    if (Status secoc = check_secoc(*config.can.secoc); !secoc) return secoc;
   }
   const Status learned =
       check_written_file("calibration.online.file", config.learned_calibration_file);

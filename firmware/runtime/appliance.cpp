@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "can/secoc/secoc_files.h"
+#include "firmware/config/config_key.h"
 #include "firmware/runtime/can_bus.h"
 #include "firmware/runtime/identity.h"
 #include "pipeline/calibration/online/calibration_file.h"
@@ -30,8 +31,9 @@ void restore_calibration(const Config& config, const Rig& rig, Localizer& locali
 Result<std::unique_ptr<Appliance>> Appliance::create(const Config& config, const Rig& rig,
                                                      const HdMap& map, Hardware hardware) {
   auto map_index = std::make_unique<MapIndex>(map);
-  auto localizer =
-      Localizer::create(rig, *map_index, config.model_file.string(), localizer_options(config));
+  auto localizer = at_key(
+      "model.file",
+      Localizer::create(rig, *map_index, config.model_file.string(), localizer_options(config)));
   if (!localizer) return tl::unexpected(localizer.error());
   log_identity(identity_of(config, map), map, (*localizer)->model_name());
   restore_calibration(config, rig, **localizer);
@@ -78,12 +80,12 @@ Appliance::Appliance(const Config& config, const HdMap& map, Hardware hardware,
 }
 
 Status Appliance::authenticate(const SecocConfig& config, const can::BaseIds& base) {
-  const auto key = can::read_secoc_key(config.key_file);
+  const auto key = at_key("can.secoc.key_file", can::read_secoc_key(config.key_file));
   if (!key) return tl::unexpected(key.error());
   auto sending = can::Cmac::create(*key);
   auto receiving = can::Cmac::create(*key);
   if (!sending || !receiving) return tl::unexpected((sending ? receiving : sending).error());
-  const auto start = can::next_start_number(config.starts_file);
+  const auto start = at_key("can.secoc.starts_file", can::next_start_number(config.starts_file));
   if (!start) return tl::unexpected(start.error());
   publisher_.authenticate(can::SecocSender(std::move(*sending), *start));
   vehicle_input_.authenticate(can::SecocReceiver(std::move(*receiving), base));

@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "firmware/config/config_key.h"
 #include "firmware/live/live_server.h"
 #include "firmware/recording/recording_session.h"
 #include "firmware/runtime/calibration_saver.h"
@@ -173,7 +174,7 @@ Status run_daemon(const Config& config, const Rig& rig, const DaemonHost& host) 
   auto lines = GpioLines::open(config.gpio, host.gpio, base.clock.now());
   if (!lines) return tl::unexpected(lines.error());
   base.lines = std::move(*lines);
-  auto map = load_map(config.map_file);
+  auto map = at_key("map.file", load_map(config.map_file));
   if (!map) return tl::unexpected(map.error());
   base.map = std::move(*map);
   spdlog::info("map: {}", contents_of(base.map));

@@ -16,20 +16,21 @@ using ConfigCheckTest = ConfigTest;
 TEST_F(ConfigCheckTest, NamesTheFirstMissingFile) {
   const auto config = load(with("{procedural_seed: 7}", "{file: town.osm}"));
   ASSERT_TRUE(config) << config.error().message;
-  const auto names = [&](const std::string& name) {
+  const auto expect_refused = [&](const std::string& key, const std::string& name) {
     const Status checked = check_config(*config);
-    return !checked && checked.error().message.find((folder_ / name).string()) == 0;
+    ASSERT_FALSE(checked) << name;
+    EXPECT_THAT(checked.error().message, StartsWith(key + ": " + (folder_ / name).string()));
   };
-  EXPECT_TRUE(names("rig.yaml"));
+  expect_refused("calibration.rig", "rig.yaml");
   std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
-  EXPECT_TRUE(names("sub/model.onnx"));
+  expect_refused("model.file", "sub/model.onnx");
   std::filesystem::create_directory(folder_ / "sub");
   write("sub/model.onnx", "no model");
-  EXPECT_TRUE(names("sub/model.onnx"));
+  expect_refused("model.file", "sub/model.onnx");
   put_model("sub/model.onnx");
-  EXPECT_TRUE(names("town.osm"));
+  expect_refused("map.file", "town.osm");
   write("town.osm", "no map");
-  EXPECT_TRUE(names("town.osm"));
+  expect_refused("map.file", "town.osm");
   put_map("town.osm");
   EXPECT_TRUE(check_config(*config));
 }
@@ -47,7 +48,8 @@ TEST_F(ConfigCheckTest, ReportsABadRotationWithItsLine) {
   const Status checked = check_config(*config);
   ASSERT_FALSE(checked);
   EXPECT_THAT(checked.error().message,
-              StartsWith((folder_ / "rig.yaml").string() + ":" + std::to_string(line) + ": "));
+              StartsWith("calibration.rig: " + (folder_ / "rig.yaml").string() + ":" +
+                         std::to_string(line) + ": "));
   EXPECT_THAT(checked.error().message, HasSubstr("rotation_wxyz"));
 }
 
@@ -76,15 +78,36 @@ TEST_F(ConfigCheckTest, ReadsTheRecordings) {
   EXPECT_TRUE(check_config(*config));
 }
 
-TEST_F(ConfigCheckTest, LooksForTheFoldersOfFilesThatTheDaemonWrites) {
-  auto config = load(with("{procedural_seed: 7}", "{file: town.osm}"));
+class WrittenFilesTest : public ConfigCheckTest {
+ protected:
+  /// A configuration whose rig, model and map are good, and the file of a good key.
+  Result<evaluation::DriveConfig> load_good() {
+    std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
+    std::filesystem::create_directory(folder_ / "sub");
+    put_model("sub/model.onnx");
+    put_map("town.osm");
+    write("secoc.key", "00112233445566778899aabbccddeeff\n");
+    std::filesystem::permissions(folder_ / "secoc.key", std::filesystem::perms::owner_read);
+    return load(with("{procedural_seed: 7}", "{file: town.osm}"));
+  }
+};
+
+TEST_F(WrittenFilesTest, TheNumberOfStartsIsRead) {
+  auto config = load_good();
   ASSERT_TRUE(config) << config.error().message;
-  std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
-  std::filesystem::create_directory(folder_ / "sub");
-  put_model("sub/model.onnx");
-  put_map("town.osm");
-  write("secoc.key", "00112233445566778899aabbccddeeff\n");
-  std::filesystem::permissions(folder_ / "secoc.key", std::filesystem::perms::owner_read);
+  config->can.secoc = SecocConfig{folder_ / "secoc.key", folder_ / "starts"};
+  write("starts", "41\n");
+  EXPECT_TRUE(check_config(*config));
+  EXPECT_EQ(read_text(folder_ / "starts"), "41\n") << "a check counts no start";
+  write("starts", "forty-one\n");
+  EXPECT_THAT(check_config(*config).error().message,
+              StartsWith("can.secoc.starts_file: " + (folder_ / "starts").string() +
+                         ": found 'forty-one', wanted one whole number of starts"));
+}
+
+TEST_F(WrittenFilesTest, TheirFoldersAreLookedFor) {
+  auto config = load_good();
+  ASSERT_TRUE(config) << config.error().message;
   const std::filesystem::path in_a_file = folder_ / "town.osm" / "file";
   config->can.secoc = SecocConfig{folder_ / "secoc.key", in_a_file};
   EXPECT_THAT(check_config(*config).error().message,
