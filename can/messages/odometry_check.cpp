@@ -12,8 +12,10 @@ namespace {
 constexpr double kNominalInterval_s = 1e-3 * kOdometryCycleMs;
 constexpr double kSlowInterval_s = 0.045;
 constexpr double kTimelyInterval_s = 0.030;
-/// The mean follows the interval within about ten samples, so that one gap does not count as slow.
+/// The mean follows the interval within about ten samples.
 constexpr double kIntervalGain = 0.1;
+/// A longer interval counts as this one, so that one gap of any length does not count as slow.
+constexpr double kLongestInterval_s = 0.1;
 
 }  // namespace
 
@@ -117,7 +119,10 @@ OdometryVerdict OdometryCheck::jump(const Wheels& from, const Wheels& to) const 
 
 void OdometryCheck::watch_rate(Time time) {
   if (!latest_) mean_interval_s_ = kNominalInterval_s;
-  if (latest_) mean_interval_s_ += kIntervalGain * (to_seconds(time - *latest_) - mean_interval_s_);
+  if (latest_) {
+    const double interval_s = std::min(to_seconds(time - *latest_), kLongestInterval_s);
+    mean_interval_s_ += kIntervalGain * (interval_s - mean_interval_s_);
+  }
   latest_ = time;
   if (mean_interval_s_ > kSlowInterval_s) slow_ = true;
   if (mean_interval_s_ < kTimelyInterval_s) slow_ = false;

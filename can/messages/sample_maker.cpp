@@ -30,16 +30,6 @@ GnssSample SampleMaker::gnss(const GeodeticFix& fix, Time time) {
   return gnss_sample_of(fix, geo_, time);
 }
 
-WhyMask SampleMaker::why() const {
-  const auto is_recent = [&](const std::optional<Time>& cause) {
-    return cause && latest_ - *cause <= VehicleDecoder::kWhyHold;
-  };
-  WhyMask why;
-  if (is_recent(implausible_)) why |= Why::kOdometryImplausible;
-  if (is_recent(foreign_sender_)) why |= Why::kForeignSender;
-  return why;
-}
-
 void SampleMaker::add_to(VehicleInputCounters& counters) const {
   counters.contradicting_wheels += odometry_check_.count(OdometryVerdict::kWheelsContradictYawRate);
   counters.odometry_jumps += odometry_check_.count(OdometryVerdict::kSpeedJump) +

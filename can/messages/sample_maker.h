@@ -34,14 +34,14 @@ class SampleMaker {
 
   /// To be called first for each frame, with its time of arrival.
   void note_frame(Time received) { latest_ = received; }
-  void note_implausible() { implausible_ = latest_; }
-  void note_foreign_sender() { foreign_sender_ = latest_; }
+  void note_implausible() { fault_times_.implausible = latest_; }
+  void note_foreign_sender() { fault_times_.foreign_sender = latest_; }
 
   /// Nothing if the wheels are not plausible.
   std::optional<OdometrySample> odometry(const OdometryCheck::Wheels& wheels);
   GnssSample gnss(const GeodeticFix& fix, Time time);
 
-  WhyMask why() const;
+  const VehicleFaultTimes& fault_times() const { return fault_times_; }
   /// Adds what was refused here.
   void add_to(VehicleInputCounters& counters) const;
 
@@ -50,9 +50,8 @@ class SampleMaker {
   OdometryCheck odometry_check_;
   uint64_t odometry_samples_ = 0;
   uint64_t gnss_samples_ = 0;
-  Time latest_{};                       ///< when the latest frame arrived
-  std::optional<Time> implausible_;     ///< the latest refused odometry
-  std::optional<Time> foreign_sender_;  ///< the latest sign of another sender
+  Time latest_{};  ///< when the latest frame arrived
+  VehicleFaultTimes fault_times_;
 };
 
 }  // namespace bevloc::can

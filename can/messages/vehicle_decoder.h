@@ -48,13 +48,30 @@ struct VehicleSamples {
   explicit operator bool() const { return odometry || gnss; }
 };
 
+/// When the vehicle's messages were last wrong.
+struct VehicleFaultTimes {
+  /// How long why() tells a fault after it.
+  static constexpr Duration kHold = std::chrono::seconds(1);
+
+  std::optional<Time> implausible{};     ///< odometry was refused, INVALID or too slow
+  std::optional<Time> foreign_sender{};  ///< another node sent LOC_ messages, or two nodes the same
+
+  /// Returns kOdometryImplausible and kForeignSender, as far as `now` is within `kHold` of them.
+  WhyMask why(Time now) const {
+    const auto is_recent = [now](const std::optional<Time>& fault) {
+      return fault && now - *fault <= kHold;
+    };
+    WhyMask why;
+    if (is_recent(implausible)) why |= Why::kOdometryImplausible;
+    if (is_recent(foreign_sender)) why |= Why::kForeignSender;
+    return why;
+  }
+};
+
 /// Samples are always finite, and odometry is plausible (OdometryCheck). The caller has to detect
 /// time-outs from the time of the last sample. accept() does not allocate. One thread.
 class VehicleDecoder {
  public:
-  /// How long a cause is told by why().
-  static constexpr Duration kWhyHold = std::chrono::seconds(1);
-
   virtual ~VehicleDecoder() = default;
 
   /// Returns the samples that this frame completes: none, one, or one of each kind.
@@ -62,10 +79,7 @@ class VehicleDecoder {
 
   virtual VehicleInputCounters counters() const = 0;
 
-  /// kOdometryImplausible while odometry is refused, INVALID or too slow, kForeignSender while
-  /// another node sends LOC_ messages or two nodes send the same message. Each is kept for
-  /// `kWhyHold` after its cause.
-  virtual WhyMask why() const = 0;
+  virtual VehicleFaultTimes fault_times() const = 0;
 };
 
 }  // namespace bevloc::can

@@ -23,7 +23,7 @@ class VehicleInput final : public VehicleDecoder {
 
   VehicleSamples accept(const ReceivedFrame& received) override;
   VehicleInputCounters counters() const override;
-  WhyMask why() const override { return maker_.why(); }
+  VehicleFaultTimes fault_times() const override { return maker_.fault_times(); }
 
   std::optional<Time> last_odometry() const { return last_odometry_; }
   std::optional<Time> last_gnss() const { return last_gnss_; }

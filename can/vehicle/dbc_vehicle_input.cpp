@@ -52,8 +52,7 @@ DbcVehicleInput::DbcVehicleInput(VehicleBinding binding, const BaseIds& base,
   const BoundGnss& gnss = *binding_.gnss;
   position_signals_ = {gnss.latitude, gnss.longitude};
   for (const auto& signal : {gnss.sigma_north, gnss.sigma_east}) add_if(position_signals_, signal);
-  gnss_signals_ = position_signals_;
-  for (const auto& signal : {gnss.heading, gnss.sigma_heading}) add_if(gnss_signals_, signal);
+  for (const auto& signal : {gnss.heading, gnss.sigma_heading}) add_if(heading_signals_, signal);
 }
 
 VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
@@ -72,14 +71,36 @@ VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
   if (monitor.has_second_sender()) maker_.note_foreign_sender();
   if (monitor.state() == E2eState::kInvalid && message->has_odometry) maker_.note_implausible();
   if (!accepted) return {};
-  store(index, received);
+  const bool replaced_unused = store(index, received);
   VehicleSamples samples;
   if (all_new(odometry_signals_)) samples.odometry = odometry(received.received);
-  if (!gnss_signals_.empty() && all_new(gnss_signals_)) samples.gnss = gnss(received.received);
+  if (is_position_complete(received.received)) samples.gnss = gnss(received.received);
+  const bool waits_in_vain = waits_for_old(odometry_signals_, index, received.received) ||
+                             waits_for_old(position_signals_, index, received.received);
+  if (replaced_unused && waits_in_vain) ++counters_.incomplete;
   return samples;
 }
 
-void DbcVehicleInput::store(size_t message, const ReceivedFrame& received) {
+/// Whether a position is new and its heading needs no more waiting.
+bool DbcVehicleInput::is_position_complete(Time now) const {
+  const bool heading_came =
+      all_new(heading_signals_) ||
+      std::ranges::any_of(heading_signals_, [&](size_t signal) { return is_old(signal, now); });
+  return !position_signals_.empty() && all_new(position_signals_) && heading_came;
+}
+
+/// Whether `message` has one of these signals, and another one of them no longer comes.
+bool DbcVehicleInput::waits_for_old(const std::vector<size_t>& signals, size_t message,
+                                    Time now) const {
+  const auto is_of_message = [&](size_t signal) {
+    return binding_.signals[signal].message == message;
+  };
+  return std::ranges::any_of(signals, is_of_message) &&
+         std::ranges::any_of(signals, [&](size_t signal) { return is_old(signal, now); });
+}
+
+bool DbcVehicleInput::store(size_t message, const ReceivedFrame& received) {
+  bool replaced_unused = false;
   const std::span<const uint8_t> bytes = received.frame.payload();
   for (size_t i = 0; i < slots_.size(); ++i) {
     const BoundSignal& signal = binding_.signals[i];
@@ -89,6 +110,7 @@ void DbcVehicleInput::store(size_t message, const ReceivedFrame& received) {
     if (is_absent) continue;
     const double physical = physical_from(signal.layout, bytes);
     Slot& slot = slots_[i];
+    replaced_unused = replaced_unused || slot.is_new;
     slot.raw = raw_from(signal.layout, bytes);
     slot.value = physical * signal.factor;
     slot.received = received.received;
@@ -97,6 +119,7 @@ void DbcVehicleInput::store(size_t message, const ReceivedFrame& received) {
         std::isfinite(physical) && physical >= signal.min && physical <= signal.max &&
         std::ranges::find(signal.not_available, slot.raw) == signal.not_available.end();
   }
+  return replaced_unused;
 }
 
 bool DbcVehicleInput::all_new(const std::vector<size_t>& signals) const {
@@ -114,8 +137,7 @@ std::optional<Time> DbcVehicleInput::take(const std::vector<size_t>& signals) {
     first = std::min(first, slot.received);
     last = std::max(last, slot.received);
     available = available && slot.available;
-    window =
-        std::max(window, kMostCycles * binding_.messages[binding_.signals[index].message].cycle);
+    window = std::max(window, kMostCycles * cycle_of(index));
   }
   if (!available) ++counters_.not_available;
   const bool together = last - first <= window;
@@ -123,16 +145,24 @@ std::optional<Time> DbcVehicleInput::take(const std::vector<size_t>& signals) {
   return available && together ? std::optional(first) : std::nullopt;
 }
 
-/// Nothing if the signal of the condition is missing or too old. No condition always holds.
+Duration DbcVehicleInput::cycle_of(size_t signal) const {
+  return binding_.messages[binding_.signals[signal].message].cycle;
+}
+
+bool DbcVehicleInput::is_old(size_t signal, Time now) const {
+  const Time received = slots_[signal].received;
+  return received == Time::min() || now - received > kMostCycles * cycle_of(signal);
+}
+
+/// Nothing if the signal of the condition is missing, too old or not available. No condition always
+/// holds.
 std::optional<bool> DbcVehicleInput::holds(const std::optional<BoundCondition>& condition,
                                            Time now) const {
   if (!condition) return true;
+  if (is_old(condition->signal, now)) return std::nullopt;
   const Slot& slot = slots_[condition->signal];
-  const BoundMessage& message = binding_.messages[binding_.signals[condition->signal].message];
-  if (slot.received == Time::min() || now - slot.received > kMostCycles * message.cycle) {
-    return std::nullopt;
-  }
-  return std::ranges::find(condition->values, slot.raw) != condition->values.end();
+  if (std::ranges::find(condition->values, slot.raw) != condition->values.end()) return true;
+  return slot.available ? std::optional(false) : std::nullopt;
 }
 
 std::optional<OdometrySample> DbcVehicleInput::odometry(Time now) {
@@ -179,8 +209,8 @@ std::optional<GeodeticFix::Heading> DbcVehicleInput::heading(Time now, Time time
   if (!gnss.heading || !holds(gnss.heading_valid, now).value_or(false)) return std::nullopt;
   const auto is_usable = [&](size_t signal) {
     const Slot& slot = slots_[signal];
-    const Duration cycle = binding_.messages[binding_.signals[signal].message].cycle;
-    return slot.available && std::chrono::abs(slot.received - time) <= kMostCycles * cycle;
+    return slot.available &&
+           std::chrono::abs(slot.received - time) <= kMostCycles * cycle_of(signal);
   };
   double sigma_deg = gnss.sigma_heading_deg;
   if (gnss.sigma_heading) {
@@ -194,7 +224,7 @@ std::optional<GeodeticFix::Heading> DbcVehicleInput::heading(Time now, Time time
 std::optional<GnssSample> DbcVehicleInput::gnss(Time now) {
   const BoundGnss& gnss = *binding_.gnss;
   const auto time = take(position_signals_);
-  for (const size_t signal : gnss_signals_) slots_[signal].is_new = false;
+  for (const size_t signal : heading_signals_) slots_[signal].is_new = false;
   if (!time) return std::nullopt;
   if (!holds(gnss.valid, now).value_or(false)) {
     ++counters_.not_available;

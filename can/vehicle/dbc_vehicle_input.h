@@ -17,7 +17,8 @@ namespace bevloc::can {
 /// The time of a sample is that of its earliest value. The values of one sample may be at most four
 /// cycles of their message apart, and a condition (valid, backward) may be at most four cycles of
 /// its message old. A GNSS sample has no heading if the heading or its sigma is further from the
-/// sample's time. One thread; does not allocate after construction.
+/// sample's time, and does not wait for a heading that is more than four cycles old. One thread;
+/// does not allocate after construction.
 class DbcVehicleInput final : public VehicleDecoder {
  public:
   /// `base` has the identifiers of the localizer's own messages.
@@ -26,7 +27,7 @@ class DbcVehicleInput final : public VehicleDecoder {
 
   VehicleSamples accept(const ReceivedFrame& received) override;
   VehicleInputCounters counters() const override;
-  WhyMask why() const override { return maker_.why(); }
+  VehicleFaultTimes fault_times() const override { return maker_.fault_times(); }
 
  private:
   /// The latest value of a signal.
@@ -38,8 +39,14 @@ class DbcVehicleInput final : public VehicleDecoder {
     bool is_new = false;     ///< since the latest sample
   };
 
-  void store(size_t message, const ReceivedFrame& received);
+  /// Returns whether a value was replaced that no sample had used.
+  bool store(size_t message, const ReceivedFrame& received);
   bool all_new(const std::vector<size_t>& signals) const;
+  bool is_position_complete(Time now) const;
+  bool waits_for_old(const std::vector<size_t>& signals, size_t message, Time now) const;
+  Duration cycle_of(size_t signal) const;
+  /// Whether the latest value is more than four cycles old, or never came.
+  bool is_old(size_t signal, Time now) const;
   /// Marks the values as used, and returns the time of the first. Nothing if they are too far apart
   /// or one is not available.
   std::optional<Time> take(const std::vector<size_t>& signals);
@@ -57,7 +64,7 @@ class DbcVehicleInput final : public VehicleDecoder {
   std::vector<Slot> slots_;
   std::vector<size_t> odometry_signals_;
   std::vector<size_t> position_signals_;  ///< latitude, longitude and their sigmas
-  std::vector<size_t> gnss_signals_;      ///< these, the heading and its sigma
+  std::vector<size_t> heading_signals_;   ///< the heading and its sigma
   VehicleInputCounters counters_;
 };
 

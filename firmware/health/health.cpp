@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "can/messages/solution_frames.h"
+
 namespace bevloc::firmware {
 namespace {
 
@@ -14,6 +16,8 @@ constexpr Duration kTrustedDeadReckoning = std::chrono::seconds(3);
 /// bias of the yaw rate yet.
 constexpr Duration kNewPose = std::chrono::seconds(5);
 constexpr Duration kTrustedNewPose = std::chrono::seconds(2);
+/// The publisher sends no pose whose images are older, so state, log and bus agree.
+constexpr Duration kOldestMatch = can::ReportLimits().max_capture_age;
 
 }  // namespace
 
@@ -61,7 +65,7 @@ bool Health::is_lost(const HealthInputs& inputs) const {
   return contradicted || inputs.verdict.map_contradicts || inputs.stamps_contradict ||
          !inputs.initialized || inputs.odometry_implausible || inputs.clock_gap ||
          is_too_uncertain(inputs) || why_.has(Why::kOdometryMissing) ||
-         inputs.correction_age > limits_.lost_timeout;
+         inputs.correction_age > limits_.lost_timeout || inputs.match_age > kOldestMatch;
 }
 
 bool Health::is_too_uncertain(const HealthInputs& inputs) const {

@@ -47,6 +47,8 @@ struct HealthInputs {
   Duration gnss_age = Duration::max();
   /// Of the latest accepted correction that had evidence across the vehicle.
   Duration correction_age = Duration::max();
+  /// Of the latest accepted correction.
+  Duration match_age = Duration::max();
   CameraMask cameras_present;           ///< used in the latest frameset
   bool cameras_unsynchronized = false;  ///< in the latest frameset (Synchrony)
   bool map_nearby = true;               ///< the map has elements around the prior

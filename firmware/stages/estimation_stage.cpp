@@ -201,6 +201,7 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
   inputs.odometry_age = age(odometry_time_, now);
   inputs.gnss_age = age(gnss_time_, now);
   inputs.correction_age = age(confirmed_time_, now);
+  inputs.match_age = age(accepted_frame_time_, now);
   inputs.valid_age = age(valid_since_, now);
   if (latest_report_) {
     inputs.cameras_present = latest_report_->present;
@@ -215,7 +216,7 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
   inputs.accepted_in_a_row = accepted_in_a_row_;
   inputs.refused_in_a_row = refused_in_a_row_;
   inputs.verdict = estimator_.verdict();
-  const WhyMask vehicle_input = vehicle_input_ != nullptr ? vehicle_input_->why() : WhyMask();
+  const WhyMask vehicle_input = vehicle_input_ != nullptr ? vehicle_input_->why(now) : WhyMask();
   inputs.odometry_implausible =
       estimator_.odometry_implausible() || vehicle_input.has(Why::kOdometryImplausible);
   inputs.foreign_sender = vehicle_input.has(Why::kForeignSender);

@@ -1,5 +1,7 @@
 #include "firmware/stages/vehicle_input_stage.h"
 
+#include <algorithm>
+
 namespace bevloc::firmware {
 
 VehicleInputStage::VehicleInputStage(can::Bus& bus, std::unique_ptr<can::VehicleDecoder> decoder,
@@ -21,10 +23,7 @@ void VehicleInputStage::step(Duration timeout) {
 
 void VehicleInputStage::take(const can::ReceivedFrame& received) {
   const can::VehicleSamples samples = decoder_->accept(received);
-  WhyMask why = decoder_->why();
-  const bool forged = forged_ && received.received - *forged_ <= can::VehicleDecoder::kWhyHold;
-  if (forged) why |= Why::kForeignSender;
-  why_ = why.bits();  // before the samples, so that whoever reads a sample knows it
+  publish_faults();  // before the samples, so that whoever reads a sample knows them
   if (samples.odometry) samples_.push(*samples.odometry);
   if (samples.gnss && !ignores_gnss_) samples_.push(*samples.gnss);
 }
@@ -34,9 +33,15 @@ void VehicleInputStage::take_authentic(const can::ReceivedFrame& received) {
   const auto authentic = secoc_->accept(received);
   if (secoc_->counters().wrong_mac != wrong_before) {
     forged_ = received.received;
-    why_ |= WhyMask(Why::kForeignSender).bits();
+    publish_faults();
   }
   for (const can::ReceivedFrame& frame : authentic) take(frame);
+}
+
+void VehicleInputStage::publish_faults() {
+  can::VehicleFaultTimes times = decoder_->fault_times();
+  times.foreign_sender = std::max(times.foreign_sender, forged_);
+  fault_times_.store(times);
 }
 
 }  // namespace bevloc::firmware

@@ -1,7 +1,6 @@
 // The CAN-in stage: takes odometry and GNSS from the vehicle's CAN messages.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -32,9 +31,9 @@ class VehicleInputStage {
   /// Waits for CAN frames, at most `timeout`, and queues the samples that they complete.
   void step(Duration timeout);
 
-  /// What is wrong with the vehicle's messages now: a set of kOdometryImplausible and
-  /// kForeignSender (can::VehicleDecoder::why(), or frames that are not authentic).
-  WhyMask why() const { return WhyMask::from_bits(why_); }
+  /// What is wrong with the vehicle's messages at `now`: a set of kOdometryImplausible and
+  /// kForeignSender (can::VehicleFaultTimes, or frames that are not authentic).
+  WhyMask why(Time now) const { return fault_times_.load().why(now); }
 
   can::VehicleInputCounters counters() const { return counters_.load(); }
   /// Nothing without authentication.
@@ -45,6 +44,7 @@ class VehicleInputStage {
  private:
   void take(const can::ReceivedFrame& received);
   void take_authentic(const can::ReceivedFrame& received);
+  void publish_faults();
 
   can::Bus& bus_;
   const std::unique_ptr<can::VehicleDecoder> decoder_;
@@ -54,7 +54,7 @@ class VehicleInputStage {
   bool ignores_gnss_ = false;
   std::optional<can::SecocReceiver> secoc_;
   std::optional<Time> forged_;  ///< the latest frame that was not authentic
-  std::atomic<uint32_t> why_{0};
+  Published<can::VehicleFaultTimes> fault_times_;
 };
 
 }  // namespace bevloc::firmware

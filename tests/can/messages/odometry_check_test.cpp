@@ -167,10 +167,14 @@ TEST_F(OdometryCheckTest, ASlowRateIsNoticedWithHysteresis) {
 }
 
 TEST_F(OdometryCheckTest, AFewLostSamplesAreNotSlow) {
-  EXPECT_EQ(drive(10.0, 0.0, seconds(1)), 0);
-  now_ += milliseconds(120);
-  EXPECT_EQ(drive(10.0, 0.0, seconds(1)), 0);
-  EXPECT_FALSE(check_.is_slow());
+  for (const int lost_ms : {120, 300, 5000}) {
+    EXPECT_EQ(drive(10.0, 0.0, seconds(1)), 0);
+    now_ += milliseconds(lost_ms);
+    for (int i = 0; i < 50; ++i) {
+      EXPECT_EQ(drive(10.0, 0.0, milliseconds(20)), 0);
+      EXPECT_FALSE(check_.is_slow()) << lost_ms << " ms, sample " << i;
+    }
+  }
 }
 
 TEST_F(OdometryCheckTest, AYawRateWithTheWrongSignIsRefusedInABend) {

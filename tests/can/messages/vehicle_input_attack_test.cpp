@@ -41,6 +41,8 @@ class VehicleInputAttackTest : public testing::Test {
     return samples;
   }
 
+  WhyMask why() const { return input_.fault_times().why(now_); }
+
   VehicleEncoder encoder_{BaseIds{}, kOrigin, 1.6};
   VehicleInput input_{BaseIds{}, kOrigin};
   Time now_ = kNow;
@@ -162,16 +164,16 @@ TEST_F(VehicleInputAttackTest, OdometryThatComesFarTooSeldomIsNotUsed) {
 
 TEST_F(VehicleInputAttackTest, ASecondSenderIsNamed) {
   drive(50);
-  EXPECT_EQ(input_.why(), WhyMask());
+  EXPECT_EQ(why(), WhyMask());
   Forger forger(9, 5);
   for (int i = 0; i < 20; ++i) {
     feed(honest(), now_);
     feed(forger.next(), now_ + kOdometryCycle / 2);
     now_ += kOdometryCycle;
   }
-  EXPECT_TRUE(input_.why().has(Why::kForeignSender));
+  EXPECT_TRUE(why().has(Why::kForeignSender));
   drive(100);
-  EXPECT_EQ(input_.why(), WhyMask()) << "2 s later";
+  EXPECT_EQ(why(), WhyMask()) << "2 s later";
 }
 
 TEST_F(VehicleInputAttackTest, ARestartOfTheVehiclesSenderIsNoSecondSender) {
@@ -180,7 +182,7 @@ TEST_F(VehicleInputAttackTest, ARestartOfTheVehiclesSenderIsNoSecondSender) {
     encoder_ = VehicleEncoder(BaseIds{}, kOrigin, 1.6);
     for (int i = 0; i < 20; ++i) {
       drive(1);
-      EXPECT_FALSE(input_.why().has(Why::kForeignSender)) << restart << ", cycle " << i;
+      EXPECT_FALSE(why().has(Why::kForeignSender)) << restart << ", cycle " << i;
     }
   }
 }
@@ -188,13 +190,13 @@ TEST_F(VehicleInputAttackTest, ARestartOfTheVehiclesSenderIsNoSecondSender) {
 TEST_F(VehicleInputAttackTest, AFrameWithAnIdentifierOfTheLocalizerIsNamed) {
   drive(10);
   input_.accept({{.id = 0x7FF, .length = 8}, now_});
-  EXPECT_EQ(input_.why(), WhyMask()) << "somebody else's message";
+  EXPECT_EQ(why(), WhyMask()) << "somebody else's message";
   for (const Message* message : kMessages) {
     if (message->sender != Sender::kLocalizer) continue;
     input_.accept({blank_frame(*message, BaseIds{}), now_});
-    EXPECT_EQ(input_.why(), WhyMask(Why::kForeignSender)) << message->name;
+    EXPECT_EQ(why(), WhyMask(Why::kForeignSender)) << message->name;
     drive(60);
-    EXPECT_EQ(input_.why(), WhyMask()) << "1.2 s later";
+    EXPECT_EQ(why(), WhyMask()) << "1.2 s later";
   }
   EXPECT_EQ(input_.counters().foreign, 1u);
 }
@@ -204,21 +206,30 @@ TEST_F(VehicleInputAttackTest, ImplausibleOdometryIsRefusedCountedAndNamed) {
   const auto wheels = encoder_.odometry({.speed_mps = 10.0, .yaw_rate_radps = 2.8});
   EXPECT_FALSE(feed(wheels, now_));
   EXPECT_EQ(input_.counters().sharp_turns, 1u);
-  EXPECT_EQ(input_.why(), WhyMask(Why::kOdometryImplausible));
+  EXPECT_EQ(why(), WhyMask(Why::kOdometryImplausible));
   now_ += kOdometryCycle;
   EXPECT_EQ(drive(60), 60);
-  EXPECT_EQ(input_.why(), WhyMask());
+  EXPECT_EQ(why(), WhyMask());
+}
+
+TEST_F(VehicleInputAttackTest, AFaultIsNotToldAnyMoreWhenAllMessagesStop) {
+  drive(50);
+  feed(encoder_.odometry({.speed_mps = 10.0, .yaw_rate_radps = 2.8}), now_);
+  now_ += milliseconds(900);
+  EXPECT_EQ(why(), WhyMask(Why::kOdometryImplausible));
+  now_ += milliseconds(200);
+  EXPECT_EQ(why(), WhyMask());
 }
 
 TEST_F(VehicleInputAttackTest, SlowOdometryIsNamedWithoutAFlap) {
   for (const int interval_ms : {60, 100, 180, 220}) {
     drive(100);
-    EXPECT_EQ(input_.why(), WhyMask());
+    EXPECT_EQ(why(), WhyMask());
     for (int i = 0; i < 200; ++i) {
       feed(honest(), now_);
       now_ += milliseconds(interval_ms);
       if (i * interval_ms < 1000) continue;
-      EXPECT_EQ(input_.why(), WhyMask(Why::kOdometryImplausible)) << interval_ms << ", " << i;
+      EXPECT_EQ(why(), WhyMask(Why::kOdometryImplausible)) << interval_ms << ", " << i;
     }
     drive(100);
   }

@@ -59,6 +59,51 @@ TEST(DbcVehicleInputTest, ASignalWithASignKeepsItBesideTheCondition) {
   EXPECT_NEAR(back.yaw_rate_radps, -0.1, 1e-9);
 }
 
+TEST(DbcVehicleInputTest, ADirectionThatIsNotAvailableGivesNoSample) {
+  constexpr SignalLayout kGear{34, 4};
+  VehicleBinding with_gear = binding();
+  with_gear.signals[2] = {
+      .name = "Gear", .layout = kGear, .min = 0.0, .max = 5.0, .not_available = {15}};
+  VehicleBinding with_direction = with_gear;
+  with_direction.wheels.backward.reset();
+  with_direction.yaw_rate.negative = BoundCondition{2, {1}};
+  for (const VehicleBinding& bound : {with_gear, with_direction}) {
+    for (const auto& [gear, is_available] :
+         {std::pair(0, true), {1, true}, {9, false}, {15, false}}) {
+      DbcVehicleInput input(bound, {}, {49.0, 8.4}, {});
+      Frame frame{.id = 16, .length = 8};
+      insert_bits(kGear, static_cast<uint64_t>(gear), {frame.data.data(), frame.length});
+      for (int cycle = 1; cycle <= 50; ++cycle) {
+        input.accept({frame, Time(std::chrono::milliseconds(20 * cycle))});
+      }
+      EXPECT_EQ(input.counters().odometry_samples > 0, is_available) << gear;
+      EXPECT_EQ(input.counters().not_available > 0, !is_available) << gear;
+    }
+  }
+}
+
+TEST(DbcVehicleInputTest, OdometryWithoutOneOfItsMessagesIsCounted) {
+  VehicleBinding apart = binding();
+  apart.messages.push_back(apart.messages[0]);
+  apart.messages[1].id = 17;
+  apart.signals[1].message = 1;
+  DbcVehicleInput input(apart, {}, {49.0, 8.4}, {});
+  const auto send = [&](uint32_t id, int cycle) {
+    input.accept({{.id = id, .length = 8}, Time(std::chrono::milliseconds(20 * cycle))});
+  };
+  for (int cycle = 1; cycle <= 50; ++cycle) {
+    send(16, cycle);
+    send(17, cycle);
+  }
+  const uint64_t samples = input.counters().odometry_samples;
+  EXPECT_GT(samples, 40U);
+  EXPECT_EQ(input.counters().incomplete, 0U);
+  for (int cycle = 51; cycle <= 100; ++cycle) send(16, cycle);
+  EXPECT_EQ(input.counters().odometry_samples, samples);
+  // The first one waits, and four cycles pass before the other message counts as missing.
+  EXPECT_EQ(input.counters().incomplete, 46U);
+}
+
 constexpr SignalLayout kLatitude{64, 32, ByteOrder::kIntel, RawType::kSigned, 1e-7, 0.0};
 constexpr SignalLayout kLongitude{96, 32, ByteOrder::kIntel, RawType::kSigned, 1e-7, 0.0};
 constexpr SignalLayout kHeading{0, 16, ByteOrder::kIntel, RawType::kUnsigned, 0.01, 0.0};
@@ -141,17 +186,38 @@ TEST(DbcVehicleInputTest, AnOldHeadingIsNotThatOfAFreshPosition) {
         vehicle.send_motion_and_position(now);
         if (cycle % 5 == 0) vehicle.send_headings(now);
       }
-      // Four of its cycles later the position comes with the other message, or a little later.
+      // Four of its cycles later the position comes with the other message. A little later, the
+      // position no longer waits for it.
       vehicle.send_heading(old, now);
+      VehicleSamples samples;
       const int later = is_too_old ? 21 : 20;
       for (int cycle = 0; cycle < later; ++cycle) {
-        vehicle.send_motion_and_position(now += kCycle);
+        EXPECT_FALSE(samples.gnss);
+        samples = vehicle.send_motion_and_position(now += kCycle);
       }
-      const VehicleSamples samples = vehicle.send_heading(old == 17 ? 18 : 17, now);
+      if (!is_too_old) samples = vehicle.send_heading(old == 17 ? 18 : 17, now);
       ASSERT_TRUE(samples.gnss) << old << ", " << is_too_old;
       EXPECT_EQ(samples.gnss->yaw.has_value(), !is_too_old) << old;
     }
   }
+}
+
+TEST(DbcVehicleInputTest, PositionsDoNotNeedAHeadingThatStopped) {
+  GnssVehicle vehicle(binding_with_gnss());
+  Time now{};
+  for (int cycle = 1; cycle <= kSettlingCycles; ++cycle) {
+    now = Time(cycle * kCycle);
+    vehicle.send_motion_and_position(now);
+    if (cycle % 5 == 0) vehicle.send_headings(now);
+  }
+  int samples = 0;
+  for (int cycle = 0; cycle < 50; ++cycle) {
+    const auto sample = vehicle.send_motion_and_position(now += kCycle).gnss;
+    if (!sample) continue;
+    EXPECT_FALSE(sample->yaw);
+    ++samples;
+  }
+  EXPECT_EQ(samples, 30) << "the first 20 cycles wait for the heading";
 }
 
 }  // namespace

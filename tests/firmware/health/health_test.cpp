@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "can/messages/solution_frames.h"
+
 namespace bevloc::firmware {
 namespace {
 
@@ -15,6 +17,7 @@ HealthInputs healthy() {
   inputs.odometry_age = milliseconds(20);
   inputs.gnss_age = milliseconds(100);
   inputs.correction_age = milliseconds(100);
+  inputs.match_age = milliseconds(100);
   inputs.cameras_present.set();
   inputs.accepted_in_a_row = 100;
   inputs.longitudinal_sigma_m = 0.1;
@@ -194,6 +197,22 @@ TEST(HealthTest, MissingCorrectionsDegradeAndThenLose) {
   EXPECT_FALSE(health.pose_valid());
   health.update(inputs);
   EXPECT_EQ(health.state(), HealthState::kAcquiring);
+}
+
+TEST(HealthTest, APoseThatThePublisherHoldsTooOldIsLost) {
+  HealthLimits patient;
+  patient.lost_timeout = seconds(10);
+  Health health(patient);
+  health.update(healthy());
+  health.update(healthy());
+  HealthInputs inputs = healthy();
+  inputs.match_age = can::ReportLimits().max_capture_age;
+  inputs.correction_age = inputs.match_age;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kDegraded);
+  inputs.match_age += milliseconds(1);
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kLost);
 }
 
 TEST(HealthTest, RefusedCorrectionsInARowLose) {
