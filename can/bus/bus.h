@@ -53,7 +53,7 @@ class Bus {
   virtual std::optional<ReceivedFrame> receive() = 0;
 
   /// Waits until receive() has work to do (true) or the timeout has passed (false). The timeout is
-  /// real time, also on a mock bus. A thread that must end within t must not wait longer than t.
+  /// real time, also on a mock bus.
   virtual bool wait(Duration timeout) = 0;
 
   virtual BusCounters counters() const = 0;

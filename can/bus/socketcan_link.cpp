@@ -101,7 +101,9 @@ Result<std::unique_ptr<SocketCanLink>> SocketCanLink::open(const std::string& in
         interface, interface);
   }
   if (!set_options(descriptor, options)) {
-    return fail("{}: the kernel refused a CAN socket option ({})", interface, reason(errno));
+    return fail(
+        "{}: the kernel refused an option of CAN sockets ({}), wanted that of Debian 12 or newer",
+        interface, reason(errno));
   }
   if (!link->bind_by_name()) {
     return fail("{}: the socket cannot be bound to this interface ({}), wanted a CAN interface",

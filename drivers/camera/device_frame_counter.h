@@ -21,9 +21,13 @@ class DeviceFrameCounter {
 
   /// Takes the device's sequence number of a frame that arrived, which may wrap around. Frames
   /// missing before it count as no_buffer if the user held all buffers at some time since the
-  /// previous frame, and else as lost. Returns the sequence number of the frame since restart().
+  /// previous frame, and else as lost. A number that is lower than the previous one is that of a
+  /// device that began again, as after a suspension; nobody knows how many frames that cost, so
+  /// none counts. Returns the sequence number of the frame since restart().
   uint64_t arrived(uint32_t device_sequence) {
-    const uint32_t step = latest_ ? device_sequence - *latest_ : 0;
+    constexpr uint32_t kLargestStep = UINT32_MAX / 2;
+    uint32_t step = latest_ ? device_sequence - *latest_ : 0;
+    if (step > kLargestStep) step = 1;
     latest_ = device_sequence;
     sequence_ += step;
     if (step > 1) (was_starved_ ? no_buffer_ : lost_) += step - 1;

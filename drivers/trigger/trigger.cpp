@@ -15,13 +15,14 @@ Trigger::Trigger(std::unique_ptr<OutputLine> line, Clock& clock, const TriggerCo
   assert(config.pulse_width > Duration::zero() && 2 * config.pulse_width < config.period);
 }
 
-void Trigger::step(Duration timeout) {
+Status Trigger::step(Duration timeout) {
   const Time wait_end = clock_.now() + timeout;
   clock_.sleep_until(std::min(due_, wait_end));
   skip_pulses_before(clock_.now() - lateness_limit_);
-  if (clock_.now() < due_) return;
-  pulse();
+  if (clock_.now() < due_) return {};
+  Status given = pulse();
   due_ += config_.period;
+  return given;
 }
 
 void Trigger::skip_pulses_before(Time earliest) {
@@ -31,15 +32,16 @@ void Trigger::skip_pulses_before(Time earliest) {
   due_ += pulses * config_.period;
 }
 
-void Trigger::pulse() {
-  const bool risen = line_->set(true).has_value();
+Status Trigger::pulse() {
+  Status risen = line_->set(true);
   const Time rise = clock_.now();
   clock_.sleep_until(rise + config_.pulse_width);
-  const bool fallen = line_->set(false).has_value();
+  Status fallen = line_->set(false);
   if (!risen || !fallen) ++counters_.failed;
-  if (!risen) return;
+  if (!risen) return risen;
   counters_.max_lateness = std::max(counters_.max_lateness.load(), rise - due_);
   pulses_.add(rise);
+  return fallen;
 }
 
 }  // namespace bevloc::drivers

@@ -35,15 +35,16 @@ class Trigger {
   /// The first pulse is due one period from now. `clock` must outlive the trigger.
   Trigger(std::unique_ptr<OutputLine> line, Clock& clock, const TriggerConfig& config);
 
-  /// Waits up to `timeout` for the next due time and gives the pulse.
-  void step(Duration timeout);
+  /// Waits up to `timeout` for the next due time and gives the pulse. Fails if the line refuses it;
+  /// the next call goes on.
+  Status step(Duration timeout);
 
   const PulseLog& pulses() const { return pulses_; }
   const TriggerCounters& counters() const { return counters_; }
 
  private:
   void skip_pulses_before(Time earliest);
-  void pulse();
+  Status pulse();
 
   const TriggerConfig config_;
   const Duration lateness_limit_;

@@ -75,8 +75,10 @@ Status Recording::add(const std::filesystem::path& path) {
   const std::string& text = metadata->values.at(std::string(firmware::kClockOffsetKey));
   std::from_chars(text.data(), text.data() + text.size(), offset_ns);
   if (!readers_.empty() && Duration(offset_ns) != offset_) {
-    return fail("{}: found a file of another run than {}, wanted files of one run", path.string(),
-                names_.front());
+    return fail(
+        "{}: found a file of another run than {}, wanted files of one run, of which the first ends "
+        "in -0001.mcap",
+        path.string(), names_.front());
   }
   offset_ = Duration(offset_ns);
   const auto file = static_cast<uint32_t>(readers_.size());

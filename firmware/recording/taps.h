@@ -37,8 +37,9 @@ class RecordedCamera final : public drivers::Camera {
   const drivers::Clock& clock_;
 };
 
-/// Behaves as the bus endpoint that it owns, and tells the recorder of each frame that it sends and
-/// receives. Threads as Bus.
+/// Behaves as the bus endpoint that it owns, and tells the recorder of each frame that it receives
+/// and of each that is given to send(), even if the bus does not take it: the replay makes the same
+/// frames. Threads as Bus.
 class RecordedBus final : public can::Bus {
  public:
   /// `recorder` and `clock` must outlive the bus.

@@ -22,7 +22,8 @@ can::ClockReport ClockWatch::step() {
   const bool good = discipline.synchronized && discipline.max_error <= config_.max_error;
   const bool was_good = std::exchange(good_, good);
   if (!good) {
-    if (was_good || !std::exchange(loss_logged_, true)) log_loss(discipline);
+    const bool was_logged = std::exchange(loss_logged_, true);
+    if (was_good || !was_logged) log_loss(discipline);
     return {};
   }
   if (!was_good) {

@@ -1,5 +1,6 @@
 #include "firmware/runtime/runner.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <deque>
@@ -150,16 +151,27 @@ std::string wait_for_end(const Threads& threads, std::chrono::steady_clock::time
   return names;
 }
 
+/// Receives the confirmations of the last cycle. Without them the bus would hold back the sign-off.
+void receive_confirmations(Appliance& appliance) {
+  constexpr int kMostTries = 20;
+  const auto waits = [&] {
+    const can::BusCounters counters = appliance.bus().counters();
+    return counters.confirmed > 0 && counters.confirmed < counters.sent;
+  };
+  for (int tries = 0; tries == 0 || (waits() && tries < kMostTries); ++tries) {
+    appliance.vehicle_input().step(std::chrono::milliseconds(1));
+  }
+}
+
 /// Says LOST on the bus. The threads of the bus are waited for; another one may still hang.
 void sign_off(Appliance& appliance, const Threads& threads,
               std::chrono::steady_clock::time_point give_up) {
   const auto has_ended = [&](const char* name) {
     return wait_for_end(threads, give_up, [&](const auto& other) { return other == name; }).empty();
   };
-  // Receives the confirmations of the last cycle; without them the bus would hold back the
-  // sign-off.
-  if (has_ended("can-in")) appliance.vehicle_input().step(Duration::zero());
-  if (has_ended("can-out")) appliance.estimation().sign_off(appliance.clock().now());
+  if (!has_ended("can-out")) return;
+  if (has_ended("can-in")) receive_confirmations(appliance);
+  appliance.estimation().sign_off(appliance.clock().now());
 }
 
 /// The stages still use the appliance, which therefore cannot be destroyed.
@@ -182,7 +194,8 @@ void run_threads(Appliance& appliance, Realtime& realtime, const Companion* comp
   if (companion != nullptr) start_companion(clock, *companion, running, threads);
   Time next = clock.now();
   do {
-    next += kSupervisionPeriod;
+    // After a stall, continue from now instead of supervising in a burst.
+    next = std::max(next + kSupervisionPeriod, clock.now());
     clock.sleep_until(next);
   } while (supervise(clock.now()));
   running = false;

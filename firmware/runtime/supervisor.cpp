@@ -27,7 +27,6 @@ void Supervisor::step(Time now) {
   view_.dark = CameraMask(vision.dark);
   view_.blinded = CameraMask(vision.blinded);
   view_.dirty = CameraMask(vision.dirty);
-  view_.network_fault = vision.network_fault;
   view_.stamp_offset_ms = estimation.stamp_offset_ms;
   view_.map_offset_cm = {estimation.map_offset_cm[0], estimation.map_offset_cm[1]};
   view_.calibration_fault = CameraMask(vision.calibration_fault);

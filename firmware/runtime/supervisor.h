@@ -28,7 +28,6 @@ struct ApplianceView {
   CameraMask blinded;
   CameraMask dirty;
   CameraMask calibration_fault;
-  bool network_fault = false;
   int stamp_offset_ms = 0;  ///< as in EstimationCounters, as is the next
   std::array<int, 2> map_offset_cm{};
 };

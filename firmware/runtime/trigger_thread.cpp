@@ -1,5 +1,9 @@
 #include "firmware/runtime/trigger_thread.h"
 
+#include <spdlog/spdlog.h>
+
+#include "firmware/telemetry/cause_log.h"
+
 namespace bevloc::firmware {
 namespace {
 
@@ -21,14 +25,24 @@ Result<std::unique_ptr<TriggerThread>> TriggerThread::start(const TriggerLineCon
 TriggerThread::TriggerThread(std::unique_ptr<drivers::OutputLine> line,
                              const drivers::TriggerConfig& timing, drivers::Clock& clock,
                              Realtime& realtime)
-    : trigger_(std::move(line), clock, timing), thread_([this, &realtime](std::stop_token stop) {
+    : trigger_(std::move(line), clock, timing),
+      thread_([this, &clock, &realtime](std::stop_token stop) {
         realtime.begin_thread(ThreadRole::kCapture, "trigger");
-        while (!stop.stop_requested()) {
-          heartbeat_.beat();
-          trigger_.step(kTriggerPatience);
-        }
+        pulse_until(stop, clock);
         heartbeat_.end();
       }) {}
+
+void TriggerThread::pulse_until(const std::stop_token& stop, const drivers::Clock& clock) {
+  CauseLog errors;
+  while (!stop.stop_requested()) {
+    heartbeat_.beat();
+    const Status pulsed = trigger_.step(kTriggerPatience);
+    if (!pulsed && errors.is_new(pulsed.error().message, clock.now())) {
+      spdlog::error("gpio: trigger: {}; check the chip, then restart bevlocd",
+                    pulsed.error().message);
+    }
+  }
+}
 
 void TriggerThread::stop() {
   if (!thread_.joinable()) return;

@@ -29,6 +29,7 @@ class TriggerThread {
  private:
   TriggerThread(std::unique_ptr<drivers::OutputLine> line, const drivers::TriggerConfig& timing,
                 drivers::Clock& clock, Realtime& realtime);
+  void pulse_until(const std::stop_token& stop, const drivers::Clock& clock);
 
   drivers::Trigger trigger_;
   Heartbeat heartbeat_;

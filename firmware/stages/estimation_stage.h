@@ -22,7 +22,7 @@ using TrackerOutcomes = std::array<std::atomic<uint64_t>, kTrackerUpdates>;
 
 /// Totals since start and the current state; readable from any thread.
 struct EstimationCounters {
-  std::atomic<uint64_t> ticks{0};  ///< calls of tick(); the supervisor watches it
+  std::atomic<uint64_t> ticks{0};  ///< calls of tick()
   TrackerOutcomes odometry{};      ///< by TrackerUpdate, as are the next two
   TrackerOutcomes gnss{};
   TrackerOutcomes corrections{};
@@ -122,7 +122,8 @@ class EstimationStage {
   std::optional<Time> accepted_frame_time_;  ///< frameset of the latest accepted correction
   std::optional<Time> confirmed_time_;       ///< the same, of those with evidence across
   std::optional<Time> valid_since_;
-  std::optional<Time> unsent_correction_;  ///< the same, until a pose was published
+  /// Frameset of an accepted correction that no published pose contains yet.
+  std::optional<Time> unsent_correction_;
   std::optional<VisionReport> latest_report_;
   Time latest_report_arrival_;
   bool latest_stamps_jumped_ = false;

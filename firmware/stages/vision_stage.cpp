@@ -66,13 +66,10 @@ VisionStage::VisionStage(Localizer& localizer, const VisionConfig& config, Frame
         "run bevloc store-answer on its file",
         localizer_.model_name());
   }
-  if (const Status status = check_network(); !status) {
-    spdlog::critical("{}", status.error().message);
-  }
+  check_network();
 }
 
 bool VisionStage::step(const drivers::Clock& clock, Duration timeout) {
-  ++counters_.steps;
   framesets_.take_frames(clock, timeout);
   priors_.take_predictions();
   const Time now = clock.now();
@@ -143,11 +140,12 @@ void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
   }
 }
 
-Status VisionStage::check_network() {
+void VisionStage::check_network() {
   ++counters_.checks;
-  Status status = localizer_.check();
-  if (!status) counters_.network_fault = true;
-  return status;
+  const Status status = localizer_.check();
+  if (status) return;
+  counters_.network_fault = true;
+  spdlog::critical("{}", status.error().message);
 }
 
 void VisionStage::check_network_again(const drivers::Frameset& frameset, const Prior& prior) {
@@ -160,7 +158,7 @@ void VisionStage::check_network_again(const drivers::Frameset& frameset, const P
   if (!settled) return;
   if (latest_check_ != Time::min() && frameset.time - latest_check_ < kCheckPeriod) return;
   latest_check_ = frameset.time;
-  (void)check_network();  // the supervisor logs a fault
+  check_network();
 }
 
 void VisionStage::note_unused_images(CameraMask given) {

@@ -41,7 +41,6 @@ struct VisionConfig {
 
 /// Totals since start; readable from any thread.
 struct VisionCounters {
-  std::atomic<uint64_t> steps{0};        ///< calls of step(); the supervisor watches it
   std::atomic<uint64_t> framesets{0};    ///< framesets taken, matched or not
   std::atomic<uint64_t> frames_used{0};  ///< frames in those framesets
   std::atomic<uint64_t> no_prior{0};     ///< framesets whose time no prediction covered
@@ -88,7 +87,8 @@ class VisionStage {
   VisionReport report_on(NewestFrameset newest);
   /// Fills in what only the images tell.
   void match(const drivers::Frameset& frameset, const Prior& prior, VisionReport& report);
-  Status check_network();
+  /// Logs why a check failed.
+  void check_network();
   void check_network_again(const drivers::Frameset& frameset, const Prior& prior);
   void note_unused_images(CameraMask given);
 

@@ -47,11 +47,6 @@ void ViewLog::note(const ApplianceView& view) {
       before_.calibration_fault, view.calibration_fault,
       "out of place, it is not where the calibration has it",
       "check its mount and whether it is connected in another camera's place, then calibrate");
-  if (view.network_fault && !before_.network_fault) {
-    spdlog::critical(
-        "network: it computed another answer to the test frame than its model stores; replace the "
-        "model file, restart, and replace the computer if it happens again");
-  }
   before_ = view;
 }
 

@@ -41,6 +41,14 @@ TEST(DeviceFrameCounter, HandlesTheWrapAroundOfTheDevicesCount) {
   EXPECT_EQ(counter.counters().lost, 2U);
 }
 
+TEST(DeviceFrameCounter, ADeviceThatBeginsAgainLosesNothing) {
+  DeviceFrameCounter counter;
+  counter.arrived(500);
+  EXPECT_EQ(counter.arrived(0), 1U);
+  EXPECT_EQ(counter.arrived(2), 3U);
+  EXPECT_EQ(counter.counters().lost, 1U);
+}
+
 TEST(DeviceFrameCounter, CountsDamagedFramesSeparately) {
   DeviceFrameCounter counter;
   counter.arrived(0);

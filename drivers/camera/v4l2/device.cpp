@@ -13,7 +13,13 @@ namespace bevloc::drivers::v4l2 {
 Result<std::shared_ptr<Device>> Device::open(const std::filesystem::path& node) {
   // Non-blocking, because next_frame() waits in ppoll() with a timeout.
   const int fd = ::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) return fail("{}: cannot be opened: {}", node.string(), std::strerror(errno));
+  if (fd < 0) {
+    return fail(
+        "{}: cannot be opened ({}), wanted a camera that is connected, that the group video may "
+        "use, "
+        "and that no other program holds",
+        node.string(), std::strerror(errno));
+  }
   std::shared_ptr<Device> device(new Device(fd));
   v4l2_capability capability{};
   if (const int error = device->call(VIDIOC_QUERYCAP, &capability)) {

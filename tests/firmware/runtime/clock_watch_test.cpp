@@ -73,6 +73,17 @@ TEST(ClockWatchTest, LogsChanges) {
   EXPECT_EQ(lines_with(log, "found an error of up to 3.000 ms, wanted 2.000 ms"), 1) << log.text();
 }
 
+TEST(ClockWatchTest, LogsTheFirstLossOnce) {
+  const LogCapture log;
+  ClockWatch watch(kPtp, read_of_test);
+  say(true, milliseconds(1));
+  watch.step();
+  say(false, seconds(16));
+  watch.step();
+  watch.step();
+  EXPECT_EQ(lines_with(log, "not synchronized"), 1) << log.text();
+}
+
 TEST(ClockWatchTest, AsksTheKernel) {
   ClockWatch watch({.source = can::TimeSource::kNtp, .max_error = seconds(1)});
   const can::ClockReport report = watch.step();

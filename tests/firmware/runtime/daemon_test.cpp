@@ -102,6 +102,19 @@ TEST_F(DaemonTest, WaitsInStandbyWhileTheIgnitionIsOffAndRunsAgain) {
   EXPECT_TRUE(gpio_.open_output({MockGpio::kChip, "trigger"}, false));
 }
 
+TEST_F(DaemonTest, ATriggerThatFailsIsLoggedOnce) {
+  const LogCapture log;
+  int calls = 0;
+  EXPECT_TRUE(run([&] {
+    if (++calls == 3) gpio_.unplug();
+    return calls == 8;
+  }));
+  const std::string line = "gpio: trigger: ";
+  const size_t first = log.text().find(line);
+  ASSERT_NE(first, std::string::npos) << log.text();
+  EXPECT_EQ(log.text().find(line, first + 1), std::string::npos) << log.text();
+}
+
 TEST_F(DaemonTest, EndsInStandby) {
   gpio_.drive("ignition", false);
   int calls = 0;

@@ -1,4 +1,5 @@
 // Stops the appliance's threads one after the other, with cameras and a bus that can hang.
+#include <deque>
 #include <filesystem>
 #include <set>
 #include <thread>
@@ -8,6 +9,8 @@
 #include <pthread.h>
 
 #include "can/bus/mock_bus.h"
+#include "can/bus/send_gate.h"
+#include "can/messages/pose_publisher.h"
 #include "drivers/mock/mock_gpio.h"
 #include "evaluation/drive/pose_reader.h"
 #include "firmware/runtime/runner.h"
@@ -116,15 +119,76 @@ class GatedBus final : public can::Bus {
   evaluation::PoseReader reader_{{}, {}};
 };
 
+/// A bus like that of the kernel: one frame of each identifier at a time, and each is on the wire 1
+/// ms later. Only receive() frees the place.
+class SlowBus final : public can::Bus {
+ public:
+  SlowBus(std::span<const uint32_t> ids, const can::BaseIds& base,
+          std::atomic<HealthState>& state_on_wire)
+      : places_(ids), reader_(base, {}), state_on_wire_(state_on_wire) {}
+  can::SendResult send(const can::Frame& frame, Time now) override {
+    const std::lock_guard lock(mutex_);
+    if (!places_.enter(frame.id, now)) return can::SendResult::kWaiting;
+    ++counters_.sent;
+    on_the_way_.push_back({frame.id, clock_.now() + milliseconds(1)});
+    reader_.accept({frame, now});
+    state_on_wire_ = reader_.state();
+    return can::SendResult::kSent;
+  }
+  std::optional<can::ReceivedFrame> receive() override {
+    const std::lock_guard lock(mutex_);
+    for (; has_echo(); on_the_way_.pop_front()) {
+      places_.confirm(on_the_way_.front().id, clock_.now());
+      ++counters_.confirmed;
+    }
+    return std::nullopt;
+  }
+  bool wait(Duration timeout) override {
+    const Time end = clock_.now() + timeout;
+    for (; clock_.now() < end; std::this_thread::sleep_for(std::chrono::microseconds(200))) {
+      const std::lock_guard lock(mutex_);
+      if (has_echo()) return true;
+    }
+    return false;
+  }
+  can::BusCounters counters() const override {
+    const std::lock_guard lock(mutex_);
+    return counters_;
+  }
+  can::BusCondition condition() const override { return {}; }
+
+ private:
+  struct Echo {
+    uint32_t id = 0;
+    Time due{};
+  };
+
+  bool has_echo() const { return !on_the_way_.empty() && on_the_way_.front().due <= clock_.now(); }
+
+  mutable std::mutex mutex_;
+  drivers::MonotonicClock clock_;
+  can::SendGate places_;
+  std::deque<Echo> on_the_way_;
+  can::BusCounters counters_;
+  evaluation::PoseReader reader_;
+  std::atomic<HealthState>& state_on_wire_;
+};
+
 class SupervisionTest : public testing::Test {
  protected:
   SupervisionTest() {
     config_.model_file = kSources / "models/nano.onnx";
+    make_appliance(std::make_unique<GatedBus>(wire_.connect(), gate_));
+  }
+
+  void make_appliance(std::unique_ptr<can::Bus> bus) {
+    supervisor_.reset();
+    watchdog_.reset();
     Hardware hardware;
     for (int camera = 0; camera < kCameraCount; ++camera) {
       hardware.cameras.push_back(std::make_unique<SilentCamera>(camera, gate_));
     }
-    hardware.bus = std::make_unique<GatedBus>(wire_.connect(), gate_);
+    hardware.bus = std::move(bus);
     hardware.clock = &clock_;
     appliance_ = Appliance::create(config_, rig_, map_, std::move(hardware)).value();
     watchdog_.emplace(appliance_->estimation().counters().state);
@@ -207,6 +271,23 @@ TEST_F(SupervisionTest, TheSupervisorWatchesTheWatchdog) {
   watchdog_->step(now);
   supervisor_->step(now);
   EXPECT_EQ(supervisor_->view().hung, "");
+}
+
+/// A frame of the last cycle is still in the kernel when the threads have ended.
+TEST_F(SupervisionTest, TheLastMessageSaysLost) {
+  for (const can::FrameFormat format : {can::FrameFormat::kClassic, can::FrameFormat::kFd}) {
+    config_.can.variant = format;
+    std::atomic<HealthState> state_on_wire{HealthState::kFault};
+    const auto ids = can::PosePublisher::sent_ids(config_.can.base_ids, format, false, false);
+    make_appliance(std::make_unique<SlowBus>(ids, config_.can.base_ids, state_on_wire));
+    running_ = true;
+    std::jthread stopping([this] {
+      while (appliance_->bus().counters().confirmed < 100) std::this_thread::yield();
+      running_ = false;
+    });
+    run();
+    EXPECT_EQ(state_on_wire, HealthState::kLost);
+  }
 }
 
 using SupervisionDeathTest = SupervisionTest;
