@@ -129,6 +129,24 @@ def ignition_off(run: Run) -> Outcome:
     )
 
 
+def upgrade(run: Run) -> Outcome:
+    """An upgrade by apt must start a running daemon again, and a removal must stop it."""
+    pid = _start_settled(run)
+    run.agent.check("apt-get install -y -qq --reinstall /packages/bevloc_*.deb")
+    run.agent.check(f"sleep {SETTLE_S}")
+    started_again = run.show("ActiveState") == "active" and run.show("MainPID") != pid
+    run.agent.check("apt-get remove -y -qq bevloc")
+    stopped = run.show("ActiveState") != "active"
+    run.agent.check("apt-get install -y -qq /packages/*.deb")
+    return Outcome(
+        injected="the package installed again, then removed",
+        seen=f"{'another' if started_again else 'NO other'} daemon, then "
+        f"{'none' if stopped else 'STILL one'}",
+        recovery_s=None,
+        passed=started_again and stopped,
+    )
+
+
 @dataclasses.dataclass(frozen=True)
 class Scenario:
     play: Callable[[Run], Outcome]
@@ -151,4 +169,5 @@ SCENARIOS = {
     "kill": Scenario(kill, needs_usb=False),
     "clock-step": Scenario(clock_step, needs_usb=False),
     "ignition-off": Scenario(ignition_off, needs_usb=True),
+    "upgrade": Scenario(upgrade, needs_usb=True),
 }
