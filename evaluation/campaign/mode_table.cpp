@@ -92,6 +92,8 @@ std::vector<Mode> gnss_modes() {
             fault(FaultKind::kGnssNoise, {.factor = 5.0}), contradicts);
   modes.add("gnss-no-heading", "GNSS without heading", kToTheEnd, fault(FaultKind::kGnssNoHeading),
             {});
+  modes.add("gnss-no-heading-start", "GNSS without heading from the start", kAlways,
+            fault(FaultKind::kGnssNoHeading), {});
   modes.add("gnss-start-6m", "GNSS 6 m off from the start", kAlways,
             fault(FaultKind::kGnssJump, {.across_m = 6.0}), contradicts | Why::kMatchContradicts);
   return std::move(modes).all();

@@ -119,9 +119,11 @@ void EstimationStage::take_samples() {
     if (is_odometry) stamp_monitor_.add_rate(odometry->time, odometry->yaw_rate_radps);
     const TrackerUpdate outcome = estimator_.add(*sample);
     ++(is_odometry ? counters_.odometry : counters_.gnss)[index_of(outcome)];
-    // A GNSS sample that the gate refuses is there, but contradicts.
-    const bool arrived =
-        outcome == TrackerUpdate::kAccepted || (!is_odometry && outcome == TrackerUpdate::kGated);
+    // A GNSS sample that the gate refuses is there, but contradicts. One that waits for a heading
+    // is there, too.
+    const bool arrived = outcome == TrackerUpdate::kAccepted ||
+                         outcome == TrackerUpdate::kNoHeading ||
+                         (!is_odometry && outcome == TrackerUpdate::kGated);
     if (!arrived) continue;
     std::optional<Time>& latest = is_odometry ? odometry_time_ : gnss_time_;
     latest = std::visit([](const auto& taken) { return taken.time; }, *sample);

@@ -43,6 +43,19 @@ Eigen::Matrix<double, FilterState::kMatchError, 1> motion_variance(const Measure
   return variance;
 }
 
+/// An unmeasured yaw acceleration turns the vehicle during the step and so moves it to the side.
+/// Adds the part that motion_variance() lacks: the variance across and its covariance with the yaw.
+void add_sideways_motion(const MeasuredMotion& motion, double speed_mps, double duration_s,
+                         const MotionNoise& noise, FilterState& state) {
+  using S = FilterState;
+  if (stands(motion)) return;
+  const double turned_rad = 0.5 * noise.yaw_acceleration_radps2 * duration_s * duration_s;
+  const double sideways_m = speed_mps * turned_rad * duration_s / 3.0;
+  state.covariance(S::kY, S::kY) += square_of(sideways_m);
+  state.covariance(S::kY, S::kYaw) += sideways_m * turned_rad;
+  state.covariance(S::kYaw, S::kY) += sideways_m * turned_rad;
+}
+
 }  // namespace
 
 void FilterState::apply(const Vector& error) {
@@ -70,6 +83,7 @@ void predict(const MeasuredMotion& motion, double duration_s, const MotionNoise&
   state.covariance = 0.5 * (moved + moved.transpose());
   auto variance = state.covariance.diagonal();
   variance.head<S::kMatchError>() += motion_variance(motion, distance_m, duration_s, noise);
+  add_sideways_motion(motion, speed_mps, duration_s, noise, state);
   variance.segment<3>(S::kMatchError) += Eigen::Vector3d::Ones() - match_share.cwiseAbs2();
   variance.segment<3>(S::kGnssError).array() += 1.0 - square_of(gnss_share);
   state.match_error = state.match_error.cwiseProduct(match_share);

@@ -19,6 +19,9 @@ constexpr double kRefuting = 4.5;
 constexpr double kMostScaleSigmas = 5.0;
 /// Refused GNSS samples in a row, without a match, after which the pose starts again.
 constexpr int kRefusalsToRestart = 15;
+/// The pose starts again with a larger sigma of the heading, in which the filter is linear. Only a
+/// gap of odometry makes it so large.
+constexpr double kMostYawSigma_rad = radians(30.0);
 /// Refused matches in a row after which a pose that was never valid starts again.
 constexpr int kRefusalsToStartAgain = 5;
 constexpr Duration kMatchAbsence = std::chrono::seconds(1);
@@ -43,15 +46,16 @@ bool reached_the_gate(TrackerUpdate update) {
 TrackerUpdate PoseEstimator::add(const VehicleSample& sample) {
   if (const auto* gnss = std::get_if<GnssSample>(&sample)) return add_gnss(*gnss);
   const OdometrySample& odometry = std::get<OdometrySample>(sample);
+  // The monitors must not learn from a sample that nobody can use.
+  if (const auto refusal = tracker_.refusal_of(odometry)) return *refusal;
   if (!odometry_monitor_.accept(odometry)) {
     gnss_scatter_.forget_samples();
     return TrackerUpdate::kImplausible;
   }
   start_confirmation_.add(odometry);
   arbiter_.add_odometry(odometry.time, odometry.wheel_lean);
-  const TrackerUpdate update = tracker_.add_odometry(odometry);
-  if (update == TrackerUpdate::kAccepted) gnss_scatter_.add(odometry);
-  return update;
+  gnss_scatter_.add(odometry);
+  return tracker_.add_odometry(odometry);
 }
 
 std::optional<GnssSample::Yaw> PoseEstimator::yaw_at(Time time) const {
@@ -143,7 +147,8 @@ void PoseEstimator::weigh_start(const MatchResult& match, const MatchOutcome& ou
 void PoseEstimator::judge(Time now, bool pose_valid) {
   const bool is_lost = pose_valid_ && !pose_valid;
   // Without a pose nothing tells whether the vehicle is still where it was.
-  const bool is_gone = !tracker_.pose_at(now);
+  const std::optional<GnssSample::Yaw> yaw = yaw_at(now);
+  const bool is_gone = !yaw;
   if (is_gone || (is_lost && is_contradicted())) start_confirmation_.reset();
   pose_valid_ = pose_valid;
   trusted_ = trusted_ || pose_valid;
@@ -163,7 +168,8 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
       !trusted_ && arbiter_.matches_refused_in_a_row() >= kRefusalsToStartAgain;
   const bool wheels_slip = std::abs(tracker_.speed_scale_error()) >
                            kMostScaleSigmas * tracker_.parameters().initial_speed_scale_sigma;
-  if (gnss_refutes() || gnss_refused || start_failed || wheels_slip) {
+  const bool heading_lost = yaw && yaw->sigma_rad > kMostYawSigma_rad;
+  if (gnss_refutes() || gnss_refused || start_failed || wheels_slip || heading_lost) {
     restart();
     verdict_.undecided = true;
     verdict_.odometry_contradicts = verdict_.odometry_contradicts || wheels_slip;

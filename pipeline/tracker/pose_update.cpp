@@ -1,8 +1,5 @@
 #include "pipeline/tracker/pose_update.h"
 
-#include <algorithm>
-#include <numbers>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
@@ -76,9 +73,6 @@ FilterState state_from(const PoseMeasurement& measurement, double speed_scale_va
   state.covariance.topLeftCorner<3, 3>() = linearised.noise + scale * scale.transpose();
   state.covariance.block<3, 3>(0, correlated) = -scale;
   state.covariance.block<3, 3>(correlated, 0) = -scale.transpose();
-  // An unknown yaw is at most half a turn off.
-  state.covariance(S::kYaw, S::kYaw) =
-      std::min(state.covariance(S::kYaw, S::kYaw), square_of(std::numbers::pi));
   state.covariance(S::kSpeedScale, S::kSpeedScale) = speed_scale_variance;
   state.covariance(S::kYawRateBias, S::kYawRateBias) = yaw_rate_bias_variance;
   return state;

@@ -43,6 +43,8 @@ std::string_view name_of(TrackerUpdate update) {
       return "no odometry";
     case TrackerUpdate::kNotInitialised:
       return "not initialised";
+    case TrackerUpdate::kNoHeading:
+      return "no heading";
     case TrackerUpdate::kNotFinite:
       return "not finite";
     case TrackerUpdate::kImplausible:
@@ -52,7 +54,9 @@ std::string_view name_of(TrackerUpdate update) {
 }
 
 Tracker::Tracker(const TrackerParameters& parameters)
-    : parameters_(parameters), history_(parameters.history_capacity) {
+    : parameters_(parameters),
+      history_(parameters.history_capacity),
+      start_heading_(parameters.initial_yaw_rate_bias_sigma_radps) {
   assert(parameters.history_capacity > 1);
 }
 
@@ -61,7 +65,7 @@ TrackerUpdate Tracker::add(const VehicleSample& sample) {
   return add_gnss(std::get<GnssSample>(sample));
 }
 
-TrackerUpdate Tracker::add_odometry(const OdometrySample& sample) {
+std::optional<TrackerUpdate> Tracker::refusal_of(const OdometrySample& sample) const {
   if (!std::isfinite(sample.speed_mps) || !std::isfinite(sample.yaw_rate_radps)) {
     return TrackerUpdate::kNotFinite;
   }
@@ -70,7 +74,13 @@ TrackerUpdate Tracker::add_odometry(const OdometrySample& sample) {
     return TrackerUpdate::kImplausible;
   }
   if (last_odometry_ && sample.time <= last_odometry_->time) return TrackerUpdate::kOutOfOrder;
+  return std::nullopt;
+}
+
+TrackerUpdate Tracker::add_odometry(const OdometrySample& sample) {
+  if (const auto refusal = refusal_of(sample)) return *refusal;
   last_odometry_ = sample;
+  if (!is_initialised()) start_heading_.add(sample);
   if (!is_initialised() || sample.time < history_.front().time) return TrackerUpdate::kAccepted;
   insert(count_until(history_, sample.time), {.time = sample.time,
                                               .kind = TrackerEvent::Kind::kOdometry,
@@ -89,11 +99,12 @@ TrackerUpdate Tracker::add_gnss(const GnssSample& sample, Trust trust) {
     return TrackerUpdate::kImplausible;
   }
   if (!has_odometry_for(sample.time)) return TrackerUpdate::kNoOdometry;
-  const PoseMeasurement measurement =
-      measurement_from(gnss, parameters_.measurements, parameters_.correlation.gnss_s > 0.0);
-  if (is_initialised()) return add_pose(sample.time, measurement, trust);
-  initialise(sample.time, measurement);
-  return TrackerUpdate::kAccepted;
+  if (!is_initialised()) return initialise(sample.time, gnss);
+  return add_pose(sample.time, measurement_of(gnss), trust);
+}
+
+PoseMeasurement Tracker::measurement_of(const GnssPose& gnss) const {
+  return measurement_from(gnss, parameters_.measurements, parameters_.correlation.gnss_s > 0.0);
 }
 
 TrackerUpdate Tracker::add_correction(Time frame_time, const Se2& prior, const MatchResult& result,
@@ -160,6 +171,7 @@ void Tracker::restart() {
   refused_matches_ = 0;
   repetition_.forget();
   history_.clear();
+  start_heading_.reset();
 }
 
 void Tracker::reset() {
@@ -167,12 +179,20 @@ void Tracker::reset() {
   last_odometry_.reset();
 }
 
-void Tracker::initialise(Time time, const PoseMeasurement& measurement) {
+TrackerUpdate Tracker::initialise(Time time, GnssPose gnss) {
+  if (!gnss.has_yaw || gnss.yaw_sigma_rad > StartHeading::kLargestSigma_rad) {
+    const auto yaw =
+        start_heading_.add(time, gnss.map_from_vehicle.translation(), gnss.position_sigma_m);
+    if (!yaw) return TrackerUpdate::kNoHeading;
+    gnss.map_from_vehicle.yaw_rad = yaw->yaw_rad;
+    gnss.yaw_sigma_rad = yaw->sigma_rad;
+    gnss.has_yaw = true;
+  }
   TrackerEvent event{.time = time,
                      .kind = TrackerEvent::Kind::kPose,
                      .motion = {last_odometry_->speed_mps, last_odometry_->yaw_rate_radps},
-                     .measurement = measurement};
-  event.state = state_from(measurement, square_of(parameters_.initial_speed_scale_sigma),
+                     .measurement = measurement_of(gnss)};
+  event.state = state_from(event.measurement, square_of(parameters_.initial_speed_scale_sigma),
                            square_of(parameters_.initial_yaw_rate_bias_sigma_radps));
   history_.push_back(event);
   if (last_odometry_->time > time) {
@@ -180,6 +200,7 @@ void Tracker::initialise(Time time, const PoseMeasurement& measurement) {
                .kind = TrackerEvent::Kind::kOdometry,
                .motion = event.motion});
   }
+  return TrackerUpdate::kAccepted;
 }
 
 TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, Trust trust) {

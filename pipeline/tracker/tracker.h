@@ -14,6 +14,7 @@
 #include "pipeline/tracker/match_repetition.h"
 #include "pipeline/tracker/measurements.h"
 #include "pipeline/tracker/motion_model.h"
+#include "pipeline/tracker/start_heading.h"
 
 namespace bevloc {
 
@@ -66,12 +67,13 @@ enum class TrackerUpdate {
   kOutOfOrder,      ///< odometry that is not newer than the last odometry sample
   kNoOdometry,      ///< the last odometry sample is too old, or there is none
   kNotInitialised,  ///< no GNSS sample yet
+  kNoHeading,       ///< a GNSS position whose heading is not known yet, before the first pose
   kNotFinite,       ///< a value is NaN or infinite
   kImplausible,     ///< a value is beyond its physical limit
 };
 
 /// Number of values of TrackerUpdate.
-inline constexpr size_t kTrackerUpdates = 9;
+inline constexpr size_t kTrackerUpdates = 10;
 
 /// The name in words, for example "not finite".
 std::string_view name_of(TrackerUpdate update);
@@ -104,8 +106,12 @@ class Tracker {
 
   TrackerUpdate add_odometry(const OdometrySample& sample);
 
-  /// The first sample after odometry initialises the pose; later ones update it. Without a yaw the
-  /// heading counts as unknown, with a sigma of pi.
+  /// What add_odometry() would refuse about this sample; nothing if it would accept it.
+  std::optional<TrackerUpdate> refusal_of(const OdometrySample& sample) const;
+
+  /// The first sample after odometry initialises the pose; later ones update it. If its yaw is
+  /// unknown or uncertain, the pose waits until the way between two positions tells the heading
+  /// (StartHeading).
   TrackerUpdate add_gnss(const GnssSample& sample, Trust trust = Trust::kUse);
 
   /// Adds a result of the solver: at `frame_time` the vehicle was at prior * result.correction.
@@ -146,7 +152,8 @@ class Tracker {
   void reset();
 
  private:
-  void initialise(Time time, const PoseMeasurement& measurement);
+  PoseMeasurement measurement_of(const GnssPose& gnss) const;
+  TrackerUpdate initialise(Time time, GnssPose gnss);
   TrackerUpdate add_pose(Time time, PoseMeasurement measurement, Trust trust);
   /// Whether the gate accepts `measurement`. Sets latest_innovation(), and `has_new_error` of a
   /// match that is accepted without the expected match error.
@@ -165,6 +172,7 @@ class Tracker {
   PoseInnovation latest_innovation_;
   int refused_matches_ = 0;  ///< in a row, up to the latest match
   MatchRepetition repetition_;
+  StartHeading start_heading_;
 };
 
 }  // namespace bevloc

@@ -1,5 +1,8 @@
 #include "pipeline/tracker/pose_estimator.h"
 
+#include <cmath>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "tests/pipeline/tracker/simulated_vehicle.h"
@@ -86,6 +89,17 @@ TEST_F(PoseEstimatorTest, InvalidSamplesDoNotAffectTheNextOnes) {
   EXPECT_FALSE(estimator_.verdict().gnss_contradicts);
 }
 
+TEST_F(PoseEstimatorTest, ABadFirstSampleOfOdometryTeachesTheMonitorsNothing) {
+  for (const double speed_mps : {1e6, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    PoseEstimator fresh{TrackerParameters()};
+    EXPECT_NE(fresh.add(OdometrySample{at_s(0.0), speed_mps, 0.0}), TrackerUpdate::kAccepted);
+    for (int i = 1; i < 10; ++i) {
+      const OdometrySample good{at_s(0.02 * i), 10.0 + 0.01 * i, 0.0};
+      EXPECT_EQ(fresh.add(good), TrackerUpdate::kAccepted) << speed_mps << ", " << i;
+    }
+  }
+}
+
 TEST_F(PoseEstimatorTest, AMatchAtTheBorderContradictsAPoseOfAnotherPlace) {
   const Se2 border{0.0, 0.0, radians(2.0)};
   EXPECT_EQ(match_with(border, 1.0), TrackerUpdate::kGated);
@@ -159,6 +173,22 @@ TEST_F(PoseEstimatorStartTest, MatchesOutweighGnssThatClaimsTooSmallASigma) {
   EXPECT_LT(error_of(*estimator_.pose_at(at_s(time_s_)), truth).head<2>().norm(), 0.3);
 }
 
+/// A street can look alike after half a turn, and matches would confirm whatever heading the pose
+/// starts with.
+TEST_F(PoseEstimatorStartTest, AStandingVehicleWithoutAHeadingHasNoPose) {
+  for (int i = 0; i < 500; ++i) {
+    time_s_ += 0.02;
+    estimator_.add(OdometrySample{at_s(time_s_), 0.0, 0.0});
+    GnssSample gnss = gnss_beside(vehicle_.drive_to(0.0));
+    gnss.time = at_s(time_s_);
+    gnss.yaw.reset();
+    EXPECT_EQ(estimator_.add(gnss), TrackerUpdate::kNoHeading);
+    estimator_.judge(at_s(time_s_), false);
+    EXPECT_FALSE(estimator_.pose_at(at_s(time_s_)));
+    EXPECT_FALSE(estimator_.confirms_start(at_s(time_s_)));
+  }
+}
+
 TEST_F(PoseEstimatorStartTest, WheelsThatSlipMakeThePoseBeginAgain) {
   speed_factor_ = 1.15;
   bool contradicts = false;
@@ -198,9 +228,25 @@ TEST_F(PoseEstimatorStartTest, APoseThatIsGoneLosesItsSupport) {
   time_s_ += 10.0;
   ASSERT_FALSE(estimator_.pose_at(at_s(time_s_)));
   estimator_.judge(at_s(time_s_), false);
-  drive(0.5, 0.0, 0.33, 0.3);
+  drive(0.5, 0.0, 0.18, 0.14);
   EXPECT_TRUE(estimator_.pose_at(at_s(time_s_)));
-  EXPECT_FALSE(estimator_.confirms_start(at_s(time_s_)));
+  EXPECT_FALSE(estimator_.confirms_start(at_s(time_s_))) << "matches that say nothing";
+}
+
+/// After seconds without odometry nobody knows where the vehicle points.
+TEST_F(PoseEstimatorStartTest, AHeadingThatIsLostNeedsAHeadingOfGnss) {
+  drive(10.0, 0.0, 0.33, 0.3);
+  estimator_.judge(at_s(time_s_), true);
+  time_s_ += 3.0;
+  estimator_.judge(at_s(time_s_), true);
+  GnssSample gnss = gnss_beside(vehicle_.drive_to(time_s_));
+  estimator_.add(vehicle_.odometry(time_s_));
+  estimator_.judge(at_s(time_s_), false);
+  EXPECT_FALSE(estimator_.pose_at(at_s(time_s_)));
+  gnss.yaw.reset();
+  EXPECT_EQ(estimator_.add(gnss), TrackerUpdate::kNoHeading);
+  gnss.yaw = {0.0, radians(1.0)};
+  EXPECT_EQ(estimator_.add(gnss), TrackerUpdate::kAccepted);
 }
 
 TEST_F(PoseEstimatorStartTest, APoseThatIsLostBecauseOfImplausibleOdometryNeedsNewSupport) {
