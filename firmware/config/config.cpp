@@ -73,13 +73,19 @@ std::filesystem::path read_map(YamlMap yaml, CameraDriver camera_driver,
   return procedural ? std::filesystem::path() : path_of(yaml, "file", folder);
 }
 
+/// With fewer steps from zero to the end of an axis, a match hardly ever has evidence.
+constexpr double kLeastSteps = 4.0;
+
 /// Reads range and step of one axis, in the unit of the file.
 HypothesisAxis read_axis(YamlMap& yaml, std::string_view range_key, std::string_view step_key,
                          const HypothesisAxis& fallback, double max_range) {
   HypothesisAxis axis;
   axis.range = yaml.optional<double>(range_key, fallback.range, between(0.1, max_range));
   axis.step = yaml.optional<double>(step_key, fallback.step, between(0.01, 5.0));
-  if (axis.step > axis.range) yaml.reject(step_key, "more than the range", "at most the range");
+  if (kLeastSteps * axis.step > axis.range * (1.0 + 1e-9)) {
+    yaml.reject(step_key, "more than a quarter of the range",
+                "at most a quarter, because the best of few places always lies at the border");
+  }
   return axis;
 }
 

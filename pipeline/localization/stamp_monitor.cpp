@@ -21,7 +21,7 @@ constexpr double kCorrelatedRows = 20.0;
 /// Lower limit of the residual's standard deviation.
 constexpr double kLeastResidual_rad = radians(0.05);
 constexpr int kCertain = 3;  ///< sigmas
-/// Variances of bias and scale error before the fit, as information (1 / sigma^2 of the residual).
+/// Standard deviations of the bias and of the scale error that are assumed before the fit.
 constexpr double kBiasSigma_radps = radians(0.5);
 constexpr double kScaleSigma = 0.03;
 

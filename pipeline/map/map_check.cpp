@@ -11,8 +11,7 @@ namespace {
 Status check_polyline(const std::vector<Eigen::Vector2d>& points, std::string_view what,
                       size_t index, const std::string& file) {
   for (size_t i = 0; i < points.size(); ++i) {
-    // Not finite numbers fail this comparison, too.
-    if (!(points[i].cwiseAbs().maxCoeff() <= kFarthestFromOriginM)) {
+    if (!is_near_origin(points[i])) {
       return fail("{}: {} {}: found a point ({:g}, {:g}) m from the origin, wanted at most {:g} m",
                   file, what, index, points[i].x(), points[i].y(), kFarthestFromOriginM);
     }

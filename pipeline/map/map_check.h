@@ -12,6 +12,11 @@ namespace bevloc {
 /// cannot express the position (LOC_PosLocal), and the tangent plane fits the earth badly.
 inline constexpr double kFarthestFromOriginM = 83'000.0;
 
+/// Whether a point of a map is finite and near enough to the origin.
+inline bool is_near_origin(const Eigen::Vector2d& point) {
+  return point.allFinite() && point.cwiseAbs().maxCoeff() <= kFarthestFromOriginM;
+}
+
 /// The longest polyline. A longer one is a mistake in its coordinates.
 inline constexpr double kLongestPolylineM = 50'000.0;
 

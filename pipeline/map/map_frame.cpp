@@ -206,7 +206,7 @@ Result<std::vector<Eigen::Vector2d>> points_of(const OsmWay& way, const OsmDocum
           "local_y",
           document.file, node->second.line, id);
     }
-    if (!(position->second.cwiseAbs().maxCoeff() <= kFarthestFromOriginM)) {
+    if (!is_near_origin(position->second)) {
       return fail(
           "{}:{}: node {}: found a place ({:g}, {:g}) m from the origin, wanted at most "
           "{:g} m",
@@ -223,7 +223,7 @@ std::optional<Eigen::Vector2d> shift_to_zero(NodePositions& nodes) {
   std::vector<Eigen::Vector2d> points;
   for (const auto& [id, position] : nodes.of_node) points.push_back(position);
   const Eigen::Vector2d middle = median_point(points);
-  if (middle.cwiseAbs().maxCoeff() <= kFarthestFromOriginM) return std::nullopt;
+  if (is_near_origin(middle)) return std::nullopt;
   const Eigen::Vector2d shift = -middle.array().round().matrix();
   for (auto& [id, position] : nodes.of_node) position += shift;
   return shift;

@@ -26,8 +26,8 @@ constexpr double kStep_m = 0.005;
 constexpr double kFastest_radps = radians(0.005);
 constexpr double kFastest_mps = 0.0004;
 
-/// An error is beyond its bound for certain if it is by this many sigmas.
-constexpr double kCertainSigmas = 0.5;
+/// A camera is at fault if an error is beyond its bound by more than this many sigmas.
+constexpr double kSigmasBeyond = 0.5;
 
 /// If more cameras seem out of place, it is rather the map or the road that differs.
 constexpr size_t kMostLeftOut = 2;
@@ -100,7 +100,7 @@ void OnlineCalibration::judge_bounds() {
     for (int i = 0; i < kErrorsPerCamera; ++i) {
       const int error = camera * kErrorsPerCamera + i;
       const double sigma = std::sqrt(filter_.covariance()(error, error));
-      if (std::abs(filter_.errors()(error)) - kCertainSigmas * sigma > limit_of(error)) {
+      if (std::abs(filter_.errors()(error)) - kSigmasBeyond * sigma > limit_of(error)) {
         beyond_bounds_[camera] = true;
       }
     }

@@ -60,8 +60,8 @@ class OnlineCalibration {
   const ExtrinsicErrors& used_errors() const { return used_; }
   const ExtrinsicFilter& filter() const { return filter_; }
 
-  /// The cameras whose error is beyond the bounds for certain, or whose picture contradicts the map
-  /// while those of others agree with it.
+  /// The cameras with an error that is beyond its bound by more than half its sigma, or whose
+  /// picture contradicts the map while those of others agree with it.
   CameraMask faults() const { return beyond_bounds_ | contradicting(); }
   CameraMask beyond_bounds() const { return beyond_bounds_; }
   CameraMask contradicting() const { return agreement_.contradicting(); }

@@ -98,10 +98,11 @@ struct AreaCover::Tree {
   geometry::index::rtree<CoverEntry, geometry::index::quadratic<16>> boxes;
 };
 
-bool take_outline(const Line3& outline, std::string_view place, MapBuilder& builder) {
+bool take_outline(const Line3& outline, const std::function<std::string()>& place,
+                  MapBuilder& builder) {
   const double length_m = length_of(outline);
   if (length_m <= kLongestOutline_m) return true;
-  builder.leave_out(fmt::format("{}: found an outline of {:g} m, wanted at most {:g} m", place,
+  builder.leave_out(fmt::format("{}: found an outline of {:g} m, wanted at most {:g} m", place(),
                                 length_m, kLongestOutline_m));
   return false;
 }

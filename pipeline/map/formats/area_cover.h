@@ -1,8 +1,9 @@
 // The union of many areas, such as all asphalt of a map: what it covers, and where it ends.
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,8 +23,9 @@ struct Area {
 inline constexpr double kLongestOutline_m = 200'000.0;
 
 /// True if the outline is short enough to be sampled. If it is not, the builder reports that the
-/// area at `place` was left out.
-bool take_outline(const Line3& outline, std::string_view place, MapBuilder& builder);
+/// area at `place` was left out. Calls `place` only then, because it searches the text of the file.
+bool take_outline(const Line3& outline, const std::function<std::string()>& place,
+                  MapBuilder& builder);
 
 /// Immutable. Several threads may ask at the same time.
 class AreaCover {

@@ -15,6 +15,11 @@
 namespace bevloc {
 namespace {
 
+/// A point may lack its height.
+double distance_on_ground(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return (a - b).head<2>().norm();
+}
+
 using nlohmann::json;
 
 /// The origins of the coordinates of the cities, as the API of the data set states them.
@@ -174,9 +179,10 @@ class Argoverse2Reader {
           if (!ring) return tl::unexpected(ring.error());
           auto back = xyz_points(json_, member(crossing, "edge2"), path / "edge2", 2);
           if (!back) return tl::unexpected(back.error());
-          const bool same_way =
-              (ring->front() - back->front()).norm() + (ring->back() - back->back()).norm() <
-              (ring->front() - back->back()).norm() + (ring->back() - back->front()).norm();
+          const bool same_way = distance_on_ground(ring->front(), back->front()) +
+                                    distance_on_ground(ring->back(), back->back()) <
+                                distance_on_ground(ring->front(), back->back()) +
+                                    distance_on_ground(ring->back(), back->front());
           if (same_way) std::ranges::reverse(*back);
           ring->insert(ring->end(), back->begin(), back->end());
           builder_.add("pedestrian crossing", "crossing " + id,
@@ -194,7 +200,9 @@ class Argoverse2Reader {
         [&](const json& area, const JsonPath& path, const std::string& id) -> Status {
           auto ring = xyz_points(json_, member(area, "area_boundary"), path / "area_boundary", 3);
           if (!ring) return tl::unexpected(ring.error());
-          if (!take_outline(*ring, json_.place(path), builder_)) return {};
+          if (!take_outline(
+                  *ring, [&] { return json_.place(path); }, builder_))
+            return {};
           areas.push_back({std::move(*ring)});
           ids.push_back(id);
           return {};

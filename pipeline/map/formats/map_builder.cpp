@@ -39,9 +39,7 @@ void move_points(HdMap& map, const std::function<Eigen::Vector2d(const Eigen::Ve
 }
 
 bool is_possible(const std::vector<Eigen::Vector2d>& points) {
-  return std::ranges::all_of(points, [](const Eigen::Vector2d& point) {
-    return point.cwiseAbs().maxCoeff() <= kFarthestFromOriginM;
-  });
+  return std::ranges::all_of(points, is_near_origin);
 }
 
 /// Removes lanes that cannot be, and the successors that name them.
@@ -225,7 +223,7 @@ void MapBuilder::drop_impossible() {
 Result<ImportedMap> MapBuilder::finish(std::string name, std::unique_ptr<Projection> projection) {
   if (options_.origin) {
     const Eigen::Vector2d middle = middle_of_elements(map_);
-    if (middle.cwiseAbs().maxCoeff() > kFarthestFromOriginM) return far_from_origin(file_, middle);
+    if (!is_near_origin(middle)) return far_from_origin(file_, middle);
     projection = tangent_projection(*options_.origin);
   }
   if (options_.classes != nullptr) {

@@ -231,7 +231,7 @@ class NuscenesReader {
       for (size_t i = 0; tokens.is_array() && i < tokens.size(); ++i) {
         auto area = area_of(id_text(tokens[i]), path / "polygon_tokens" / i);
         if (!area) return tl::unexpected(area.error());
-        const std::string place = json_.place(path / "polygon_tokens" / i);
+        const auto place = [&] { return json_.place(path / "polygon_tokens" / i); };
         if (!take_outline(area->outer, place, builder_)) continue;
         areas.push_back(std::move(*area));
         names.push_back("drivable_area " + text_member(record, "token"));

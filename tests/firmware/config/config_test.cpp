@@ -239,6 +239,8 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
       {kSmallest + "solver: {kind: quick}\n", 9, "solver.kind: found quick, wanted one of full, "},
       {kSmallest + "solver: {tracking: {x_range_m: 1, x_step_m: 2}}\n", 9,
        "solver.tracking.x_step_m"},
+      {kSmallest + "solver: {tracking: {y_range_m: 0.8, y_step_m: 0.21}}\n", 9,
+       "solver.tracking.y_step_m: found more than a quarter of the range"},
       {kSmallest + "solver: {acquiring: {y_range_m: 7.6}}\n", 9,
        "solver.acquiring.y_range_m: found 7.6, wanted a number, 0.1 to 7.5"},
       {kSmallest + "solver:\n  tracking:\n    x_range_m: 7.5\n    x_step_m: 0.2\n", 12,

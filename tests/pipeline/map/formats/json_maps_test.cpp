@@ -58,6 +58,19 @@ long count_of(const HdMap& map, ElementClass element_class) {
   return std::ranges::count(map.elements, element_class, &MapElement::element_class);
 }
 
+TEST(Argoverse2, ACrossingNeedsNoHeight) {
+  std::string flat(kArgoverse);
+  const std::string height = ", \"z\": 1";
+  const size_t begin = flat.find("pedestrian_crossings");
+  const size_t end = flat.find("drivable_areas");
+  for (size_t at = flat.find(height, begin); at < end; at = flat.find(height, at)) {
+    flat.erase(at, height.size());
+  }
+  const auto imported = parse_imported(flat, "map.json", {});
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  ASSERT_EQ(count_of(imported->map, ElementClass::kPedestrianCrossing), 1);
+}
+
 TEST(Argoverse2, TakesEachMarkOnceAndTheOutlineOfAllAreas) {
   const auto imported = parse_imported(kArgoverse, "map.json", {});
   ASSERT_TRUE(imported.has_value()) << imported.error().message;
