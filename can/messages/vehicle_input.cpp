@@ -80,12 +80,10 @@ std::optional<OdometrySample> VehicleInput::odometry_from(const EpochGroup<2>::S
     ++counters_.not_available;
     return std::nullopt;
   }
-  const auto sample = maker_.odometry({.time = set.received,
-                                       .left_mps = *left_mps,
-                                       .right_mps = *right_mps,
-                                       .yaw_rate_radps = radians(*yaw_rate_degps)});
-  if (sample) last_odometry_ = set.received;
-  return sample;
+  return maker_.odometry({.time = set.received,
+                          .left_mps = *left_mps,
+                          .right_mps = *right_mps,
+                          .yaw_rate_radps = radians(*yaw_rate_degps)});
 }
 
 std::optional<GnssSample> VehicleInput::gnss_from(const EpochGroup<3>::Set& set) {
@@ -106,7 +104,6 @@ std::optional<GnssSample> VehicleInput::gnss_from(const EpochGroup<3>::Set& set)
   if (heading_deg && sigma_heading_deg) {
     fix.heading = {*heading_deg, at_least_one_step(*sigma_heading_deg, veh_gnss_heading::kStdDev)};
   }
-  last_gnss_ = set.received;
   return maker_.gnss(fix, set.received);
 }
 

@@ -25,9 +25,6 @@ class VehicleInput final : public VehicleDecoder {
   VehicleInputCounters counters() const override;
   VehicleFaultTimes fault_times() const override { return maker_.fault_times(); }
 
-  std::optional<Time> last_odometry() const { return last_odometry_; }
-  std::optional<Time> last_gnss() const { return last_gnss_; }
-
   /// Returns the identifiers that a filter of the bus has to let pass, with or without
   /// authentication.
   static std::vector<uint32_t> accepted_ids(const BaseIds& base, bool secoc = false);
@@ -47,8 +44,6 @@ class VehicleInput final : public VehicleDecoder {
   EpochGroup<2> odometry_group_;
   EpochGroup<3> gnss_group_;
   VehicleInputCounters counters_;
-  std::optional<Time> last_odometry_;
-  std::optional<Time> last_gnss_;
 };
 
 }  // namespace bevloc::can

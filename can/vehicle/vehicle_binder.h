@@ -72,12 +72,14 @@ class VehicleBinder {
 
   VehicleBinding& binding() { return binding_; }
 
-  /// To be called last: completes protection from the attributes of the DBC file, and checks
-  /// cycles, lengths, and that each value, counter and checksum has bits of its own.
+  /// What is wrong with a message.
   struct MessageRefusal {
     std::string message;
     Refusal refusal;
   };
+
+  /// To be called last: completes protection from the attributes of the DBC file, and checks
+  /// cycles, lengths, and that each value, counter and checksum has bits of its own.
   tl::expected<VehicleBinding, MessageRefusal> finish();
 
  private:

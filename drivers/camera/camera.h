@@ -20,21 +20,11 @@ enum class FrameEvent : uint8_t {
   kEnded,    ///< no frame will come any more: the recording is over
 };
 
-/// The source of a driver's timestamps. The driver converts them: Frame::time is always the start
-/// of exposure of the first row, on the steady clock.
-enum class TimestampOrigin : uint8_t {
-  kExposureStart,  ///< the device stamps the start of exposure
-  kFrameEnd,       ///< the device stamps the end of the frame; read-out and exposure are subtracted
-  kSimulated,
-  kRecorded,
-};
-
 struct CameraDescription {
   int camera = 0;  ///< index into kCameraNames
   int width_px = 0;
   int height_px = 0;
   int buffers = 0;  ///< number of frames that the user may hold at the same time
-  TimestampOrigin timestamp_origin = TimestampOrigin::kExposureStart;
 };
 
 /// Numbers of frames since the camera object was constructed.

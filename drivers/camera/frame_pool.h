@@ -1,4 +1,4 @@
-// A pool of RGB frame buffers for cameras without hardware.
+// A pool of frame buffers, for cameras without hardware and for the recorder.
 #pragma once
 
 #include <atomic>

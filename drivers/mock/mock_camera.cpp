@@ -12,8 +12,7 @@ namespace {
 
 CameraDescription description_of(const MockCameraConfig& config) {
   const Intrinsics& intrinsics = config.true_rig.cameras[config.camera].intrinsics;
-  return {config.camera, intrinsics.width_px, intrinsics.height_px, config.buffers,
-          TimestampOrigin::kSimulated};
+  return {config.camera, intrinsics.width_px, intrinsics.height_px, config.buffers};
 }
 
 }  // namespace

@@ -84,7 +84,6 @@ void RunJudge::note_pose(const JudgedCycle& cycle) {
   outcome_.worst = outcome_.worst.cwiseMax(pose.error.cwiseAbs());
   if (is_beyond(pose.error, kFreewayAlertLimits)) {
     ++outcome_.beyond_alert;
-    if (cycle.time_s >= fault_.from_s) ++outcome_.beyond_after;
   }
   for (int i = 0; i < 3; ++i) {
     const auto axis = static_cast<size_t>(i);

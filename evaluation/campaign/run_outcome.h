@@ -30,10 +30,9 @@ struct TimelineEntry {
 using PoseCounts = std::array<uint64_t, 3>;
 
 struct RunOutcome {
-  uint64_t cycles = 0;        ///< since the first valid pose
-  uint64_t valid = 0;         ///< cycles with a valid pose
-  uint64_t beyond_alert = 0;  ///< valid poses beyond an alert limit
-  uint64_t beyond_after = 0;  ///< of those, how many since the start of the fault
+  uint64_t cycles = 0;                              ///< since the first valid pose
+  uint64_t valid = 0;                               ///< cycles with a valid pose
+  uint64_t beyond_alert = 0;                        ///< valid poses beyond an alert limit
   Eigen::Vector3d worst = Eigen::Vector3d::Zero();  ///< largest absolute errors of valid poses
   std::array<PoseCounts, 3> within_sigma{};         ///< [k]: errors within k + 1 sigmas
   PoseCounts with_level{};                          ///< poses with a protection level

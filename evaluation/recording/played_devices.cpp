@@ -170,8 +170,7 @@ Result<drivers::FrameEvent> PlayedCamera::next_frame(Duration /*timeout*/, drive
 }
 
 drivers::CameraDescription PlayedCamera::description() const {
-  return {camera_, width_px_, height_px_, drivers::kDefaultFrameBuffers,
-          drivers::TimestampOrigin::kRecorded};
+  return {camera_, width_px_, height_px_, drivers::kDefaultFrameBuffers};
 }
 
 can::SendResult PlayedBus::send(const can::Frame& frame, Time now) {

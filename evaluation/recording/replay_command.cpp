@@ -130,8 +130,9 @@ Status ReplayCommand::replay_recording() const {
     return fail("{}: found no message of a drive, wanted a recording that holds some",
                 recording->name());
   }
-  const ScratchFolder scratch;
-  const auto setup = setup_of(*recording, overrides_, scratch);
+  const auto scratch = ScratchFolder::create();
+  if (!scratch) return tl::unexpected(scratch.error());
+  const auto setup = setup_of(*recording, overrides_, *scratch);
   if (!setup) return tl::unexpected(setup.error());
   const auto inputs = inputs_of(*recording, setup->rig);
   if (!inputs) return tl::unexpected(inputs.error());

@@ -214,14 +214,16 @@ Result<std::string> interface_of(const std::vector<can::CandumpEntry>& entries,
 
 }  // namespace
 
-ScratchFolder::ScratchFolder() {
+Result<ScratchFolder> ScratchFolder::create() {
   std::string name = (fs::temp_directory_path() / "bevloc-replay-XXXXXX").string();
-  path_ = mkdtemp(name.data()) != nullptr ? name : fs::temp_directory_path().string();
+  if (mkdtemp(name.data()) != nullptr) return ScratchFolder(name);
+  return fail("{}: cannot make a folder ({}), wanted one for what the recording attaches",
+              fs::temp_directory_path().string(), std::generic_category().message(errno));
 }
 
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
-  if (path_ != fs::temp_directory_path()) fs::remove_all(path_, ignored);
+  if (!path_.empty()) fs::remove_all(path_, ignored);
 }
 
 Result<ReplaySetup> setup_of(Recording& recording, const ReplayOverrides& overrides,

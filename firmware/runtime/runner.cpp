@@ -175,9 +175,11 @@ void sign_off(Appliance& appliance, const Threads& threads,
 }
 
 /// The stages still use the appliance, which therefore cannot be destroyed.
-[[noreturn]] void leave_behind(const std::string& names) {
-  spdlog::error("thread {} did not end within {} s: leaving without it", names,
-                to_seconds(kEndPatience));
+[[noreturn]] void exit_without(const std::string& names) {
+  spdlog::error(
+      "thread {} did not end within {} s; the process exits without it, and systemd starts it "
+      "again",
+      names, to_seconds(kEndPatience));
   std::this_thread::sleep_for(2 * kPatience);  // for the log
   std::_Exit(kHungExitCode);
 }
@@ -203,7 +205,7 @@ void run_threads(Appliance& appliance, Realtime& realtime, const Companion* comp
   const auto give_up = std::chrono::steady_clock::now() + kEndPatience;
   sign_off(appliance, threads, give_up);
   const std::string hung = wait_for_end(threads, give_up, [](const auto&) { return true; });
-  if (!hung.empty()) leave_behind(hung);
+  if (!hung.empty()) exit_without(hung);
 }
 
 void run_lockstep(Appliance& appliance, drivers::VirtualClock& clock, const Companion* companion,

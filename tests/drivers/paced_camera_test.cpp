@@ -18,9 +18,7 @@ constexpr Duration kReadout = milliseconds(20);
 class CountingCamera final : public PacedCamera {
  public:
   CountingCamera(int buffers, uint64_t last, VirtualClock& clock)
-      : PacedCamera({2, 4, 3, buffers, TimestampOrigin::kSimulated}, milliseconds(8), clock),
-        clock_(clock),
-        last_(last) {
+      : PacedCamera({2, 4, 3, buffers}, milliseconds(8), clock), clock_(clock), last_(last) {
     set_max_lateness(kFramePeriod);
   }
 

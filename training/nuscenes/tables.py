@@ -36,7 +36,6 @@ class Scene:
 @dataclass(frozen=True, slots=True)
 class Sample:
     scene_token: str
-    timestamp_us: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +172,7 @@ def _load_samples(tables: Tables, known_scenes: set[str], keep_strays: bool) -> 
             samples.append((scene_token, row.whole("timestamp"), row.text("token")))
     scene_rank = {token: rank for rank, token in enumerate(tables.scene)}
     samples.sort(key=lambda sample: (scene_rank.get(sample[0], len(scene_rank)), sample[1]))
-    tables.sample = {token: Sample(scene, time_us) for scene, time_us, token in samples}
+    tables.sample = {token: Sample(scene) for scene, _, token in samples}
 
 
 def _pose(row: Record) -> Pose:

@@ -115,8 +115,7 @@ bool LibcameraCamera::take(int slot, Frame& frame) {
 }
 
 CameraDescription LibcameraCamera::description() const {
-  return {config_.camera, config_.width_px, config_.height_px, buffers_,
-          TimestampOrigin::kExposureStart};
+  return {config_.camera, config_.width_px, config_.height_px, buffers_};
 }
 
 }  // namespace bevloc::drivers

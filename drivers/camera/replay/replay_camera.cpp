@@ -14,8 +14,7 @@ namespace {
 constexpr const char* kIndexName = "frames.txt";
 
 CameraDescription description_of(const ReplayCameraConfig& config) {
-  return {config.camera, config.width_px, config.height_px, config.buffers,
-          TimestampOrigin::kRecorded};
+  return {config.camera, config.width_px, config.height_px, config.buffers};
 }
 
 /// Parses one line of the index, without its comment. `place` is file and line for messages.

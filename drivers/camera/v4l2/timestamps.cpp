@@ -18,7 +18,7 @@ Result<StampRule> stamp_rule(uint32_t buffer_flags, Duration exposure,
         "frames are stamped at their end; set readout_ms, the time from the end of exposure of the "
         "first row to that of the last row");
   }
-  return StampRule{TimestampOrigin::kFrameEnd, exposure + *readout};
+  return StampRule{exposure + *readout};
 }
 
 Time exposure_start(const timeval& stamp, const StampRule& rule) {

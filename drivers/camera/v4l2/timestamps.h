@@ -12,9 +12,9 @@
 
 namespace bevloc::drivers::v4l2 {
 
-/// When a device stamps its buffers, and the time from the start of exposure to that moment.
+/// The time from the start of exposure until the device stamps a buffer. It is 0 for a device that
+/// stamps the start of exposure.
 struct StampRule {
-  TimestampOrigin origin = TimestampOrigin::kExposureStart;
   Duration exposure_to_stamp{0};
 };
 

@@ -29,7 +29,6 @@ Status V4l2Camera::start() {
   }
   stream_ = std::move(*stream);
   stamp_rule_ = *rule;
-  origin_ = rule->origin;
   buffers_ = stream_->buffers();
   counter_.restart();
   return {};
@@ -91,8 +90,7 @@ Result<FrameEvent> V4l2Camera::take(Frame& frame) {
 }
 
 CameraDescription V4l2Camera::description() const {
-  return {config_.device.camera, config_.device.width_px, config_.device.height_px, buffers_,
-          origin_};
+  return {config_.device.camera, config_.device.width_px, config_.device.height_px, buffers_};
 }
 
 }  // namespace bevloc::drivers

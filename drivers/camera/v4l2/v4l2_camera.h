@@ -34,7 +34,7 @@ class V4l2Camera final : public Camera {
   Status start() override;
   void stop() override;
   Result<FrameEvent> next_frame(Duration timeout, Frame& frame) override;
-  /// After start(), `buffers` and `timestamp_origin` are the values of the device.
+  /// After start(), `buffers` is the value of the device.
   CameraDescription description() const override;
   CameraCounters counters() const override { return counter_.counters(); }
 
@@ -52,7 +52,6 @@ class V4l2Camera final : public Camera {
   v4l2::StampRule stamp_rule_;
   DeviceFrameCounter counter_;
   std::atomic<int> buffers_;
-  std::atomic<TimestampOrigin> origin_{TimestampOrigin::kExposureStart};
 };
 
 }  // namespace bevloc::drivers

@@ -79,7 +79,7 @@ test::TemporaryFolder* RecordedDriveTest::folder_ = nullptr;
 uint64_t RecordedDriveTest::captured_ = 0;
 
 TEST_F(RecordedDriveTest, TheReplaySendsTheSameFramesByteForByte) {
-  const ScratchFolder scratch;
+  const ScratchFolder scratch = ScratchFolder::create().value();
   const auto setup = setup_of(*recording_, {}, scratch);
   ASSERT_TRUE(setup) << setup.error().message;
   const auto inputs = inputs_of(*recording_, setup->rig);
@@ -155,7 +155,7 @@ TEST_F(RecordedDriveTest, ADamagedRigIsNotReplacedByAnother) {
   ASSERT_TRUE(recording) << recording.error().message;
   ASSERT_FALSE(recording->gaps().empty());
   EXPECT_NE(recording->gaps().front().find("found a damaged attachment rig"), std::string::npos);
-  const auto setup = setup_of(*recording, {}, ScratchFolder());
+  const auto setup = setup_of(*recording, {}, ScratchFolder::create().value());
   ASSERT_FALSE(setup);
   EXPECT_NE(setup.error().message.find("found a damaged attachment rig"), std::string::npos);
 }
@@ -167,7 +167,7 @@ TEST_F(RecordedDriveTest, ACutFileReplaysUpToItsCut) {
   auto recording = Recording::open({cut});
   ASSERT_TRUE(recording) << recording.error().message;
   EXPECT_EQ(recording->cut_files().size(), 1U);
-  const ScratchFolder scratch;
+  const ScratchFolder scratch = ScratchFolder::create().value();
   const auto setup = setup_of(*recording, {}, scratch);
   ASSERT_TRUE(setup) << setup.error().message;
   const auto inputs = inputs_of(*recording, setup->rig);
@@ -216,7 +216,7 @@ TEST_F(RecordedDriveTest, OfADamagedFileTheBeginningIsRead) {
 }
 
 TEST_F(RecordedDriveTest, AnotherModelIsUsedWhenItIsNamed) {
-  const ScratchFolder scratch;
+  const ScratchFolder scratch = ScratchFolder::create().value();
   const fs::path model = std::string(BEVLOC_SOURCE_DIR) + "/models/nano_float.onnx";
   const auto setup = setup_of(*recording_, {{}, model, {}}, scratch);
   ASSERT_TRUE(setup) << setup.error().message;
@@ -225,7 +225,7 @@ TEST_F(RecordedDriveTest, AnotherModelIsUsedWhenItIsNamed) {
 }
 
 TEST_F(RecordedDriveTest, ARigWithImagesOfAnotherSizeIsRefused) {
-  Rig rig = setup_of(*recording_, {}, ScratchFolder()).value().rig;
+  Rig rig = setup_of(*recording_, {}, ScratchFolder::create().value()).value().rig;
   rig.cameras[1].intrinsics.width_px /= 2;
   const auto inputs = inputs_of(*recording_, rig);
   ASSERT_FALSE(inputs);
@@ -324,7 +324,7 @@ TEST(MovedRecordingTest, HoldsTheDbcFileAndWhatItsConfigurationNames) {
   std::ofstream(folder / "config/demo_own_bus.yaml", std::ios::app) << "manifest: none\n";
   auto recording = Recording::open(recordings_in(folder / "recording"));
   ASSERT_TRUE(recording) << recording.error().message;
-  const auto setup = setup_of(*recording, {}, ScratchFolder());
+  const auto setup = setup_of(*recording, {}, ScratchFolder::create().value());
   ASSERT_TRUE(setup) << setup.error().message;
   ASSERT_TRUE(setup->config.can.vehicle);
   EXPECT_EQ(setup->config.can.vehicle->signals.size(), config->can.vehicle->signals.size());

@@ -39,10 +39,12 @@ TEST(ServiceNotifierTest, SendsAStatusOnlyWhenItChanges) {
 }
 
 TEST(ServiceNotifierTest, DoesNothingWithoutAManager) {
+  FakeManager manager;
   unsetenv("NOTIFY_SOCKET");
   ServiceNotifier notifier;
   notifier.ready();
   notifier.feed_watchdog();
+  EXPECT_EQ(manager.all(), "");
 }
 
 }  // namespace

@@ -32,7 +32,9 @@ TEST(Path, DropsRepeatedPoints) {
 
 TEST(Path, ParallelOfAnArcIsAnArc) {
   const Path path(circle_arc(20.0, 0.0, 1.5, 40));
-  for (const Eigen::Vector2d& point : path.parallel(0.0, path.length_m(), 4.0)) {
+  const Polyline line = path.parallel(0.0, path.length_m(), 4.0);
+  ASSERT_GT(line.size(), 2U);
+  for (const Eigen::Vector2d& point : line) {
     EXPECT_NEAR(point.norm(), 24.0, 0.01);  // counter-clockwise, so the right side is outside
   }
 }

@@ -43,7 +43,9 @@ TEST(MotionDirection, FindsTheTurnOfAllCamerasInABend) {
 }
 
 TEST(MotionDirection, BearsABiasOfTheYawRate) {
-  for (const double turn : drive(0.0, radians(0.3))) EXPECT_NEAR(degrees(turn), 0.0, 0.05);
+  const std::vector<double> turns = drive(0.0, radians(0.3));
+  ASSERT_EQ(turns.size(), 9U);
+  for (const double turn : turns) EXPECT_NEAR(degrees(turn), 0.0, 0.05);
 }
 
 TEST(MotionDirection, BeginsAgainWhereOdometryIsMissing) {

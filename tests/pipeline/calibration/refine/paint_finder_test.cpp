@@ -94,9 +94,9 @@ TEST(FindPaint, MeasuresAStripeToAFractionOfAPixel) {
 TEST(FindPaint, FindsNothingOnBareAsphalt) {
   const CameraModel camera = front_camera();
   const GreyImage image = picture_of_paint(camera, 100.0, 100.0);
-  for (const PaintSighting& sighting : sightings_in(image, camera, street(false))) {
-    EXPECT_EQ(sighting.candidates, 0);
-  }
+  const auto sightings = sightings_in(image, camera, street(false));
+  ASSERT_FALSE(sightings.empty());
+  for (const PaintSighting& sighting : sightings) EXPECT_EQ(sighting.candidates, 0);
 }
 
 /// How many of the places on the line of street(false) have paint in the picture.

@@ -44,6 +44,7 @@ TEST(Lowering, WholeNetworkHasNoSeparateArithmetic) {
 
 TEST(Lowering, FloatGraphStaysFloat) {
   const Program program = lower(model("residual_float"));
+  EXPECT_GT(count<ConvStep>(program), 0);
   for (const Step& step : program.steps) {
     if (const auto* conv = std::get_if<ConvStep>(&step)) {
       EXPECT_EQ(conv->weights.type, ElementType::kFloat32);
