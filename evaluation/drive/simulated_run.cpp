@@ -50,6 +50,8 @@ class SimulatedRun {
                                                       const SimulatedRunOptions& options);
 
   void run(const StopWhen& stop);
+  /// Completes the bus log.
+  Status finish_log() { return judge_->finish(); }
   DriveReport report() const;
   /// Writes what the pictures of the drive lack to be a recording.
   Status finish_recording();
@@ -318,6 +320,7 @@ Result<DriveReport> run_simulation(const DriveConfig& config, const Rig& rig,
   auto run = SimulatedRun::create(config, rig, options);
   if (!run) return tl::unexpected(run.error());
   (*run)->run(stop);
+  if (Status status = (*run)->finish_log(); !status) return tl::unexpected(status.error());
   DriveReport report = (*run)->report();
   if (Status status = write_csv(report, (options.out / "poses.csv").string()); !status) {
     return tl::unexpected(status.error());
