@@ -51,8 +51,8 @@ class TrainingConfig:
     learning_rate: float = 2e-3
     scale_rate_factor: float = 5.0  # the softmax scales learn faster: they start far off
     final_rate: float = 0.01  # share of learning_rate
-    warm_up_steps: int = 100
-    anneal_from: float = 0.4  # share of the budget
+    warm_up_steps: int = 100  # 0: none
+    anneal_from: float = 0.4  # share of the budget; 1: never
     weight_decay: float = 0.01
     clip_norm: float = 5.0
     ema_decay: float = 0.998

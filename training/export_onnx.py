@@ -40,6 +40,7 @@ from training.model import (
 )
 from training.models.network import BevNetwork
 from training.onnx_graph import MASK_OUTPUT, FloatOnnxBackend, Int8OnnxBackend
+from training.option_types import positive
 from training.options import add_drive_options, drives_of
 from training.quantize import Quantization, input_scales, int8_inference, quantize
 from training.runtime import NativeNetwork, NativeSolver
@@ -183,8 +184,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("checkpoint", type=Path)
     parser.add_argument("models", type=Path, help="folder for the model files")
-    parser.add_argument("--calibration", type=int, default=384, help="number of samples")
-    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--calibration", type=positive, default=384, help="number of samples")
+    parser.add_argument("--threads", type=positive, default=1)
     add_drive_options(parser)
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest.mock import patch
 
 import torch
 
@@ -16,7 +20,7 @@ from training.errors import NotFiniteError
 from training.export_onnx import quantization_of
 from training.fake_quantization import FakeQuantized
 from training.graph import folded_convolutions
-from training.qat import fine_tune, fine_tuning_loss, save
+from training.qat import fine_tune, fine_tuning_loss, main, save
 from training.quantize import int8_inference, quantize
 
 
@@ -99,6 +103,20 @@ class QuantizationAwareTraining(unittest.TestCase):
         network.convolutions["bev_compress.3.second"].bias.data[0] = float("nan")
         with self.assertRaisesRegex(NotFiniteError, "step 0"):
             fine_tune(network, SameBatch(self.batch), steps=2, batch_size=1, rate=1e-3)
+
+
+class Program(unittest.TestCase):
+    def run_main(self, *arguments: str) -> None:
+        said = io.StringIO()
+        with patch.object(sys, "argv", ["qat", *arguments]), contextlib.redirect_stdout(said):
+            main()
+
+    def test_refuses_less_than_a_batch(self):
+        said = io.StringIO()
+        with self.assertRaises(SystemExit) as ended, contextlib.redirect_stderr(said):
+            self.run_main("none.pt", "--run", "none", "--samples=7")
+        self.assertEqual(ended.exception.code, 2)
+        self.assertIn("--samples: found 7, wanted at least one batch of 8", said.getvalue())
 
 
 if __name__ == "__main__":
