@@ -24,7 +24,7 @@ import yaml
 from onnx import TensorProto, helper
 
 from training.checkpoint import load_network, nuisances_of, read_checkpoint
-from training.config import FIRST_TRAINING_SEED
+from training.config import CALIBRATION_SEEDS, FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream
 from training.errors import run_program
 from training.fit_scales import ResultScales, fit_scales, fit_score_scale, fit_sigma_scale
@@ -58,8 +58,8 @@ RANDOM_RIGS = {
     "bevloc.rig.height_range_m": "0.6 2.6",
 }
 SHIPPED_SOLVER = "banded+refine"  # config/demo.yaml
-# Seeds of training scenes that no run reaches.
-CALIBRATION_SEED = FIRST_TRAINING_SEED + 2**27
+# Training scenes that no run reaches.
+CALIBRATION_SEED = FIRST_TRAINING_SEED + CALIBRATION_SEEDS
 
 
 def _info(name: str, kind: int, shape: list[int]) -> onnx.ValueInfoProto:

@@ -17,7 +17,7 @@ import torch
 from torch import Tensor, nn
 
 from training.checkpoint import load_network, nuisances_of, read_checkpoint, state_of_weights
-from training.config import FIRST_TRAINING_SEED
+from training.config import FIRST_TRAINING_SEED, QAT_SEEDS
 from training.data import Batch, SamplerStream, Stream
 from training.errors import NotFiniteError, run_program
 from training.export_onnx import calibration_batches
@@ -28,7 +28,7 @@ from training.option_types import above_zero, positive
 from training.quantize import quantize
 from training.solver import PoseSolvers, standardise
 
-SEED = FIRST_TRAINING_SEED + 2**26  # scenes that neither a normal run nor the calibration reaches
+SEED = FIRST_TRAINING_SEED + QAT_SEEDS  # scenes that neither a run nor the calibration reaches
 POSE_WEIGHT = 0.1  # as in training.train
 DROP_CAMERA_PROBABILITY = 0.15
 CLIP_NORM = 5.0
@@ -106,11 +106,10 @@ def main() -> None:
         parser.error(f"--samples: found {arguments.samples}, {wanted}")
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint)
-    batches = calibration_batches(
-        arguments.calibration, arguments.threads, nuisances_of(arguments.checkpoint)
-    )
+    threads, nuisances = arguments.threads, nuisances_of(arguments.checkpoint)
+    batches = calibration_batches(arguments.calibration, threads, nuisances)
     network = FakeQuantized(net, quantize(net, batches))
-    stream = SamplerStream(SEED, 0, arguments.threads, DROP_CAMERA_PROBABILITY)
+    stream = SamplerStream(SEED, 0, threads, DROP_CAMERA_PROBABILITY, nuisances=nuisances)
     fine_tune(network, stream, steps, arguments.batch, arguments.learning_rate)
     stream.close()
     out = arguments.run / "checkpoint.pt"
