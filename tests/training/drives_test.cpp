@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "common/files.h"
 #include "common/image_file.h"
@@ -167,6 +168,25 @@ TEST(DriveSet, ATrainingSampleShowsNoSquareThatIsHeldBack) {
       }
     }
   }
+}
+
+TEST(DriveSet, NamesAFolderThatCannotBeFollowed) {
+  const test::TemporaryFolder folder;
+  fs::create_directory_symlink("circle", folder / "circle");
+  const auto set = DriveSet::open({.folder = folder.path(), .reference = ReferenceKind::kFile});
+  ASSERT_FALSE(set);
+  EXPECT_THAT(set.error().message, HasSubstr("circle: found no file or folder behind this name"));
+}
+
+TEST(DriveSet, NamesAFolderThatCannotBeRead) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder / "closed");
+  fs::permissions(folder / "closed", fs::perms::none);
+  const auto set = DriveSet::open({.folder = folder.path(), .reference = ReferenceKind::kFile});
+  fs::permissions(folder / "closed", fs::perms::owner_all);  // so that it can be removed
+  ASSERT_FALSE(set);
+  EXPECT_THAT(set.error().message, HasSubstr("closed: found no way to list this folder"));
 }
 
 TEST(DriveSet, LeavesOutWhatHasNoReference) {
