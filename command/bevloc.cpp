@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
   if (!is_own && is_installed(simulator)) {
     const auto failed = bevloc::replace_process(simulator, {argv + 1, argv + argc});
     std::fprintf(stderr, "bevloc: %s\n", failed.error().message.c_str());
-    return bevloc::command::kBadInput;
+    return bevloc::kBadInput;
   }
   return commands.run(app, argc, argv);
 }

@@ -21,9 +21,6 @@ enum class Verdict : uint8_t {
   kBad = 1,  ///< what was judged is not good enough
 };
 
-/// Exit code of wrong use, and of an input or environment that a command cannot work with.
-inline constexpr int kBadInput = 2;
-
 /// Holds the commands and runs the one that the command line names. A command is a class with
 ///
 ///     void declare(CLI::App& parent);       // or more parents; options, help, examples

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "common/result.h"
 
@@ -37,6 +38,15 @@ inline Status write_file(const std::filesystem::path& path, std::string_view byt
                 std::strerror(errno));
   }
   return {};
+}
+
+/// Creates a folder with its parents. One that is there already is good.
+inline Status create_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error) return {};
+  return fail("{}: found no way to create this folder ({}), wanted one to write to",
+              folder.string(), error.message());
 }
 
 }  // namespace bevloc

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -11,7 +12,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/output_check.h"
+
 namespace bevloc {
+
+/// Exit code of wrong use, and of an input or environment that a program cannot work with.
+inline constexpr int kBadInput = 2;
 
 /// Accepts a number from `low` to `high`, but not nan or inf.
 inline CLI::Validator number_between(double low, double high) {
@@ -48,13 +54,36 @@ inline CLI::Validator name_of(const std::string& wanted) {
 }
 
 /// Requires the name of a file to write. Refuses "-", which means standard output, because the file
-/// would mix with what the command prints.
-inline CLI::Validator output_file() {
+/// would mix with what the command prints. The file may lie in a folder that the command creates;
+/// it calls check_writable() then.
+inline CLI::Validator output_name() {
   const auto check = [](const std::string& text) -> std::string {
     if (text.empty()) return "found an empty name, wanted a file to write";
     return text == "-" ? "found '-', wanted the name of a file, not standard output" : "";
   };
   return {check, "", ""};
+}
+
+/// Requires the name of a file that can be written, so that a long run does not end without its
+/// result.
+inline CLI::Validator output_file() {
+  const auto check = [](const std::string& text) -> std::string {
+    if (std::string refused = output_name()(text); !refused.empty()) return refused;
+    const Status writable = check_writable(text);
+    return writable ? "" : writable.error().message;
+  };
+  return {check, "", ""};
+}
+
+/// Parses the command line of a tool. Returns the exit code of a program that ends with that: 0
+/// after --help, 2 after wrong options; else nothing.
+inline std::optional<int> parse_options(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
+  return std::nullopt;
 }
 
 }  // namespace bevloc

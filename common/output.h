@@ -1,10 +1,15 @@
-// What a program printed, and whether it arrived.
+// What a program prints, and whether it arrived.
 #pragma once
 
 #include <cerrno>
 #include <cstdio>
 #include <iostream>
+#include <iterator>
+#include <string>
+#include <string_view>
 #include <system_error>
+
+#include <fmt/format.h>
 
 #include "common/result.h"
 
@@ -19,6 +24,21 @@ auto run_without_throwing(const Run& run) -> decltype(run()) {
   } catch (const std::system_error& error) {
     return fail("found an error of the system ({})", error.what());
   }
+}
+
+/// The text of a message with \x00 and so on for control characters other than newlines. They may
+/// come from a damaged file, and a terminal obeys them.
+inline std::string printable(std::string_view text) {
+  std::string shown;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n') || byte == 0x7F) {
+      fmt::format_to(std::back_inserter(shown), "\\x{:02X}", byte);
+    } else {
+      shown += c;
+    }
+  }
+  return shown;
 }
 
 /// Fails if something that was printed on standard output did not arrive.

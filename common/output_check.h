@@ -1,10 +1,17 @@
-// Keeps commands from writing over the files that they read.
+// Keeps commands from writing over the files that they read, and from running long before they find
+// out that they cannot write their result.
 #pragma once
 
 #include <filesystem>
 #include <initializer_list>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <unistd.h>
 
 #include "common/result.h"
+#include "common/writable_folder.h"
 
 namespace bevloc {
 
@@ -16,6 +23,28 @@ inline Status check_output(const std::filesystem::path& out,
     if (!std::filesystem::equivalent(in, out, missing)) continue;
     return fail("{}: found a file to write that is also read, wanted another name for the output",
                 out.string());
+  }
+  return {};
+}
+
+/// Fails if this user cannot create or replace the file `out`. Ignores an empty name.
+inline Status check_writable(const std::filesystem::path& out) {
+  namespace fs = std::filesystem;
+  if (out.empty()) return {};
+  std::error_code error;
+  if (fs::is_directory(out, error)) {
+    return fail("{}: found a folder, wanted the name of a file to write", out.string());
+  }
+  const fs::path folder = out.has_parent_path() ? out.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error)) {
+    return fail("{}: found no folder {}, wanted one for this file; create it first", out.string(),
+                folder.string());
+  }
+  // A file that is there may be replaced in a folder where none can be created: /dev/null.
+  if (fs::exists(out, error) && access(out.c_str(), W_OK) == 0) return {};
+  if (const std::error_code refused = cannot_write_in(folder)) {
+    return fail("{}: found no way to write in the folder {} ({}), wanted one that allows it",
+                out.string(), folder.string(), refused.message());
   }
   return {};
 }

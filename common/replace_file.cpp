@@ -21,10 +21,19 @@ Status flush_to_disk(const std::filesystem::path& path, int flags) {
   return fail("{}: cannot write this to disk ({})", path.string(), std::strerror(error));
 }
 
+/// Without this check the file would take the place of a device, such as /dev/stdout.
+Status check_replaceable(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status found = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(found) || std::filesystem::is_regular_file(found)) return {};
+  return fail("{}: found a folder or a device, wanted a file to replace, or none", path.string());
+}
+
 std::filesystem::path free_backup_of(const std::filesystem::path& path) {
   std::filesystem::path backup = path;
   backup += ".bak";
-  for (int number = 2; std::filesystem::exists(backup); ++number) {
+  std::error_code error;
+  for (int number = 2; std::filesystem::exists(backup, error); ++number) {
     backup = path;
     backup += fmt::format(".bak{}", number);
   }
@@ -34,6 +43,7 @@ std::filesystem::path free_backup_of(const std::filesystem::path& path) {
 }  // namespace
 
 Status replace_file(const std::filesystem::path& path, std::string_view bytes) {
+  if (Status status = check_replaceable(path); !status) return status;
   std::filesystem::path draft = path;
   draft += ".new";
   if (Status status = write_file(draft, bytes); !status) return status;
@@ -46,7 +56,9 @@ Status replace_file(const std::filesystem::path& path, std::string_view bytes) {
 }
 
 Status replace_file_with_backup(const std::filesystem::path& path, std::string_view bytes) {
-  if (std::filesystem::exists(path)) {
+  if (Status status = check_replaceable(path); !status) return status;
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) {
     const Result<std::string> earlier = read_file(path);
     if (!earlier) return tl::unexpected(earlier.error());
     if (Status status = replace_file(free_backup_of(path), *earlier); !status) return status;

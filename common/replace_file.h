@@ -8,7 +8,8 @@
 
 namespace bevloc {
 
-/// Writes a new file beside `path`, flushes it to the disk and renames it over `path`.
+/// Writes a new file beside `path`, flushes it to the disk and renames it over `path`. Fails if
+/// `path` is there and no file.
 Status replace_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// The same, and keeps what was there before as PATH.bak, PATH.bak2 and so on: the first of these

@@ -27,6 +27,7 @@ from torch import Tensor
 
 from training.losses import sample_1d
 from training.native import address, library
+from training.option_types import positive
 from training.solver import DEFINITION, Posterior, YawSignature, posterior_mean, yaw_scores
 from training.solvers.axis import lateral_scores, longitudinal_scores
 from training.solvers.definition import split_shift
@@ -290,11 +291,8 @@ def table_row(variant: Baseline, scenes: Scenes) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--scenes", type=int, default=200)
-    count = parser.parse_args().scenes
-    if count < 1:
-        parser.error(f"--scenes: found {count}, wanted at least 1")
-    scenes = first_scenes(count)
+    parser.add_argument("--scenes", type=positive, default=200)
+    scenes = first_scenes(parser.parse_args().scenes)
     print("| variant | x m | y m | yaw deg | NLL |\n|---|---:|---:|---:|---:|")
     variants: tuple[type[Baseline], ...] = (Baseline, *VARIANTS)
     for variant in variants:

@@ -6,6 +6,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 FIRST_TRAINING_SEED = 2**32  # evaluation seeds lie below it (sim/world/world_generator.h)
+# Each sampler of a run has 2^28 seeds (SEED_STRIDE in training/data.py). The first 2^26 of them are
+# for the run itself. The others begin this far behind the run's own, and each has 2^26 too:
+USUAL_SEEDS = 2**26  # samples with the usual nuisances of a run with usual_share
+CALIBRATION_SEEDS = 2**27  # ranges of int8 and scales of the solvers
+QAT_SEEDS = 3 * 2**26  # quantization-aware training
 FIRST_VALIDATION_SEED = 1_000_000
 FIRST_GOLDEN_SEED = 2_000_000
 
@@ -51,8 +56,8 @@ class TrainingConfig:
     learning_rate: float = 2e-3
     scale_rate_factor: float = 5.0  # the softmax scales learn faster: they start far off
     final_rate: float = 0.01  # share of learning_rate
-    warm_up_steps: int = 100
-    anneal_from: float = 0.4  # share of the budget
+    warm_up_steps: int = 100  # 0: none
+    anneal_from: float = 0.4  # share of the budget; 1: never
     weight_decay: float = 0.01
     clip_norm: float = 5.0
     ema_decay: float = 0.998

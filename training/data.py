@@ -75,6 +75,7 @@ class ProcessStream:
     def __init__(self, options: list[SamplerOptions] | list[DriveOptions], position: int) -> None:
         """`position`: the number of this process's first sample; sample i comes from program
         i % len(options). SamplerError if a program refuses its options."""
+        assert options
         self._position = position
         self._samplers: list[SamplerProcess] = []
         atexit.register(self.close)  # the programs must not outlive the interpreter

@@ -16,6 +16,7 @@ from pathlib import Path
 from training.errors import run_program
 from training.evaluate import AXES, CLASSES, evaluate_model_file
 from training.export_onnx import SHIPPED_SOLVER
+from training.option_types import positive, writable
 from training.options import add_drive_options, drives_of
 from training.sampler_process import Drives
 from training.sources import drive_batches
@@ -79,9 +80,9 @@ def main() -> None:
     parser.add_argument("before", type=Path)
     parser.add_argument("after", type=Path)
     add_drive_options(parser)
-    parser.add_argument("--samples", type=int, default=512)
-    parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--samples", type=positive, default=512)
+    parser.add_argument("--threads", type=positive, default=1)
+    parser.add_argument("--out", type=writable, required=True)
     options = parser.parse_args()
     drives = drives_of(options)
     text = report(options.before, options.after, drives, options.samples, options.threads)

@@ -26,6 +26,7 @@ from training.errors import run_program
 from training.losses import intersection_over_union, pose_losses
 from training.model import real_images, real_raster
 from training.models.network import BevNetwork
+from training.option_types import above_zero, positive
 from training.report import Results, write_results
 from training.runtime import NativeNetwork, NativeSolver
 from training.solver import PoseSolvers, Solution, standardise
@@ -152,14 +153,19 @@ def evaluate_model_file(model: Path, batches: list[Batch], threads: int) -> dict
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("checkpoint", type=Path)
-    parser.add_argument("--samples", type=int, default=512)
-    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--samples", type=positive, default=512)
+    parser.add_argument("--threads", type=positive, default=1)
     parser.add_argument("--raw", action="store_true", help="use the last weights, not the average")
     parser.add_argument("--write", type=Path, help="folder of the model file and its card")
     parser.add_argument("--nuscenes", help="folder of the data set that replaces the simulator")
     parser.add_argument("--scenes", default="", help="file with scene names; default: all scenes")
-    parser.add_argument("--line-width-cells", type=float, default=5.0)
+    parser.add_argument("--line-width-cells", type=above_zero, default=5.0)
     arguments = parser.parse_args()
+    if arguments.nuscenes and arguments.write:
+        wanted = "wanted the simulator's scenes, which the model card is about"
+        parser.error(f"--write: found --nuscenes too, {wanted}")
+    if arguments.scenes and not arguments.nuscenes:
+        parser.error("--scenes: found no --nuscenes, wanted the folder of the data set")
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint, averaged=not arguments.raw)
     solvers = torch_solvers(net.solvers)

@@ -24,7 +24,7 @@ import yaml
 from onnx import TensorProto, helper
 
 from training.checkpoint import load_network, nuisances_of, read_checkpoint
-from training.config import FIRST_TRAINING_SEED
+from training.config import CALIBRATION_SEEDS, FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream
 from training.errors import run_program
 from training.fit_scales import ResultScales, fit_scales, fit_score_scale, fit_sigma_scale
@@ -40,6 +40,7 @@ from training.model import (
 )
 from training.models.network import BevNetwork
 from training.onnx_graph import MASK_OUTPUT, FloatOnnxBackend, Int8OnnxBackend
+from training.option_types import positive
 from training.options import add_drive_options, drives_of
 from training.quantize import Quantization, input_scales, int8_inference, quantize
 from training.runtime import NativeNetwork, NativeSolver
@@ -57,8 +58,8 @@ RANDOM_RIGS = {
     "bevloc.rig.height_range_m": "0.6 2.6",
 }
 SHIPPED_SOLVER = "banded+refine"  # config/demo.yaml
-# Seeds of training scenes that no run reaches.
-CALIBRATION_SEED = FIRST_TRAINING_SEED + 2**27
+# Training scenes that no run reaches.
+CALIBRATION_SEED = FIRST_TRAINING_SEED + CALIBRATION_SEEDS
 
 
 def _info(name: str, kind: int, shape: list[int]) -> onnx.ValueInfoProto:
@@ -183,8 +184,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("checkpoint", type=Path)
     parser.add_argument("models", type=Path, help="folder for the model files")
-    parser.add_argument("--calibration", type=int, default=384, help="number of samples")
-    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--calibration", type=positive, default=384, help="number of samples")
+    parser.add_argument("--threads", type=positive, default=1)
     add_drive_options(parser)
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import math
+from collections.abc import Callable
 
 from training.config import FIRST_TRAINING_SEED, TrainingConfig
 from training.data import NUISANCES
@@ -20,6 +22,45 @@ _CHOICES = {
     "on_error": ON_ERROR,
     "reference": REFERENCES,
 }
+
+# Options that mean nothing without another one.
+_NEEDED = {"scenes": "nuscenes", "nuscenes_version": "nuscenes", "rig": "recordings"}
+# The numbers that an option may have, never nan or inf, and the fields with this range.
+_RANGES: tuple[tuple[str, Callable[[float], bool], tuple[str, ...]], ...] = (
+    ("1 to 1024", lambda value: 1 <= value <= 1024, ("threads", "sampler_threads")),
+    ("at least 1", lambda value: 1 <= value < math.inf, ("batch", "log_steps")),
+    ("less than 2^63", lambda value: value < 2**63, ("seed",)),
+    (
+        "at least 0",
+        lambda value: 0 <= value < math.inf,
+        (
+            *("minutes", "samples", "stop_after_minutes", "validation_samples", "patience"),
+            *("scale_rate_factor", "warm_up_steps", "weight_decay"),
+            *("joint_weight", "decoupled_weight", "refined_weight"),
+        ),
+    ),
+    (
+        "more than 0",
+        lambda value: 0 < value < math.inf,
+        (
+            *("learning_rate", "clip_norm", "line_width_cells"),
+            *("checkpoint_minutes", "validation_minutes"),
+        ),
+    ),
+    (
+        "0 to 1",
+        lambda value: 0 <= value <= 1,
+        (
+            *("drop_camera_probability", "final_rate", "anneal_from", "ema_decay"),
+            "semantic_stage",
+        ),
+    ),
+    (
+        "at least 0 and less than 1",
+        lambda value: 0 <= value < 1,
+        ("simulated_share", "usual_share"),
+    ),
+)
 
 
 def parse_config(arguments: list[str], description: str, processes: int = 1) -> TrainingConfig:
@@ -67,6 +108,7 @@ def _option_name(field: str) -> str:
 
 def _check(config: TrainingConfig, processes: int) -> None:
     """ValueError if the options contradict each other or have invalid values."""
+    _check_ranges(config)
     if (config.minutes > 0) == (config.samples > 0):
         found = "both" if config.minutes > 0 else "none"
         raise ValueError(f"budget: found {found}, wanted either --minutes or --samples")
@@ -74,15 +116,17 @@ def _check(config: TrainingConfig, processes: int) -> None:
         if (found := getattr(config, field)) not in choices:
             wanted = f"wanted one of {', '.join(choices)}"
             raise ValueError(f"{_option_name(field)}: found '{found}', {wanted}")
-    if config.batch < 1 or config.batch % processes:
+    if config.batch % processes:
         wanted = f"wanted a positive multiple of {processes} processes"
         raise ValueError(f"--batch: found {config.batch}, {wanted}")
-    _check_ranges(config)
     if config.recordings and config.nuscenes:
         raise ValueError("--recordings: found --nuscenes too, wanted one of them")
     if config.validation_scenes and not config.scenes:
         wanted = "wanted both, so that no scene is trained on and measured"
         raise ValueError(f"--validation-scenes: found no --scenes, {wanted}")
+    for field, needed in _NEEDED.items():
+        if getattr(config, field) and not getattr(config, needed):
+            raise ValueError(f"{_option_name(field)}: found no --{needed}, wanted it too")
     if bool(config.recordings) != bool(config.map):
         raise ValueError("--recordings and --map: found one of them, wanted both or none")
     check_fits_sampler(network_config(config.network, config.view))
@@ -92,10 +136,7 @@ def _check_ranges(config: TrainingConfig) -> None:
     if config.seed < FIRST_TRAINING_SEED:
         wanted = f"wanted at least {FIRST_TRAINING_SEED}, because evaluation has the others"
         raise ValueError(f"--seed: found {config.seed}, {wanted}")
-    for field in ("checkpoint_minutes", "validation_minutes"):
-        if (minutes := getattr(config, field)) <= 0:
-            raise ValueError(f"{_option_name(field)}: found {minutes:g} minutes, wanted more")
-    for field in ("simulated_share", "usual_share"):
-        if not 0.0 <= (share := getattr(config, field)) < 1.0:
-            wanted = "wanted at least 0 and less than 1"
-            raise ValueError(f"{_option_name(field)}: found {share:g}, {wanted}")
+    for wanted, accepts, fields in _RANGES:
+        for field in fields:
+            if not accepts(value := getattr(config, field)):
+                raise ValueError(f"{_option_name(field)}: found {value}, wanted {wanted}")

@@ -18,6 +18,7 @@ from PIL import Image
 
 from training.data import SamplerStream
 from training.model import IMAGE_COLS, IMAGE_ROWS
+from training.option_types import positive
 
 SEED = 1_700_000
 HORIZON_ROW = 14.0  # pipeline/preprocessing/network_camera.h
@@ -93,11 +94,13 @@ def real(folder: Path, rig: Path) -> np.ndarray:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--samples", type=int, default=64, help="of each kind")
+    parser.add_argument("--samples", type=positive, default=64, help="of each kind")
     parser.add_argument("--photos", default="", help="folder of script/photos")
     parser.add_argument("--real", type=Path, help="folder with one picture of each camera")
     parser.add_argument("--rig", type=Path, help="rig file of --real")
     options = parser.parse_args()
+    if bool(options.real) != bool(options.rig):
+        parser.error("--real and --rig: found one of them, wanted both or none")
     names = [field.name.replace("_", " ") for field in fields(Statistics)]
     print("| pictures | " + " | ".join(names) + " |")
     print("|---|" + "---:|" * len(names))

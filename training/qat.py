@@ -17,17 +17,18 @@ import torch
 from torch import Tensor, nn
 
 from training.checkpoint import load_network, nuisances_of, read_checkpoint, state_of_weights
-from training.config import FIRST_TRAINING_SEED
+from training.config import FIRST_TRAINING_SEED, QAT_SEEDS
 from training.data import Batch, SamplerStream, Stream
 from training.errors import NotFiniteError, run_program
 from training.export_onnx import calibration_batches
 from training.fake_quantization import FakeQuantized
 from training.losses import pose_losses, semantic_loss
 from training.model import real_raster
+from training.option_types import above_zero, positive
 from training.quantize import quantize
 from training.solver import PoseSolvers, standardise
 
-SEED = FIRST_TRAINING_SEED + 2**26  # scenes that neither a normal run nor the calibration reaches
+SEED = FIRST_TRAINING_SEED + QAT_SEEDS  # scenes that neither a run nor the calibration reaches
 POSE_WEIGHT = 0.1  # as in training.train
 DROP_CAMERA_PROBABILITY = 0.15
 CLIP_NORM = 5.0
@@ -91,22 +92,24 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("checkpoint", type=Path)
     parser.add_argument("--run", type=Path, required=True, help="folder for checkpoint.pt")
-    parser.add_argument("--samples", type=int, default=2000, help="number of training samples")
-    parser.add_argument("--batch", type=int, default=8)
-    parser.add_argument("--learning-rate", type=float, default=3e-5)
+    parser.add_argument("--samples", type=positive, default=2000, help="number of training samples")
+    parser.add_argument("--batch", type=positive, default=8)
+    parser.add_argument("--learning-rate", type=above_zero, default=3e-5)
     parser.add_argument(
-        "--calibration", type=int, default=384, help="number of calibration samples"
+        "--calibration", type=positive, default=384, help="number of calibration samples"
     )
-    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--threads", type=positive, default=1)
     arguments = parser.parse_args()
+    steps = arguments.samples // arguments.batch
+    if steps == 0:
+        wanted = f"wanted at least one batch of {arguments.batch}"
+        parser.error(f"--samples: found {arguments.samples}, {wanted}")
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint)
-    batches = calibration_batches(
-        arguments.calibration, arguments.threads, nuisances_of(arguments.checkpoint)
-    )
+    threads, nuisances = arguments.threads, nuisances_of(arguments.checkpoint)
+    batches = calibration_batches(arguments.calibration, threads, nuisances)
     network = FakeQuantized(net, quantize(net, batches))
-    stream = SamplerStream(SEED, 0, arguments.threads, DROP_CAMERA_PROBABILITY)
-    steps = arguments.samples // arguments.batch
+    stream = SamplerStream(SEED, 0, threads, DROP_CAMERA_PROBABILITY, nuisances=nuisances)
     fine_tune(network, stream, steps, arguments.batch, arguments.learning_rate)
     stream.close()
     out = arguments.run / "checkpoint.pt"

@@ -24,6 +24,7 @@ from training.export_onnx import calibration_batches, quantization_of
 from training.layer_errors import LayerError, layer_errors
 from training.marks import write_between_marks
 from training.models.network import BevNetwork
+from training.option_types import positive
 from training.quantize import FloatBackend, Quantization, int8_inference, run
 from training.solver import PoseSolvers
 from training.sources import BATCH, simulator_batches
@@ -121,12 +122,14 @@ def report(
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("checkpoint", type=Path)
-    parser.add_argument("--samples", type=int, default=256, help="scenes for the pose errors")
-    parser.add_argument("--layer-samples", type=int, default=16, help="scenes for the layer errors")
+    parser.add_argument("--samples", type=positive, default=256, help="scenes for the pose errors")
     parser.add_argument(
-        "--calibration", type=int, default=384, help="number of calibration samples"
+        "--layer-samples", type=positive, default=16, help="scenes for the layer errors"
     )
-    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument(
+        "--calibration", type=positive, default=384, help="number of calibration samples"
+    )
+    parser.add_argument("--threads", type=positive, default=1)
     parser.add_argument("--write", type=Path, help="document whose tables are updated")
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)

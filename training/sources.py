@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from functools import lru_cache
 from pathlib import Path
 
-from training.config import FIRST_VALIDATION_SEED, TrainingConfig
+from training.config import FIRST_VALIDATION_SEED, USUAL_SEEDS, TrainingConfig
 from training.data import Batch, DriveStream, MixedStream, SamplerStream, Stream
 from training.distributed import WHOLE, Share
 from training.errors import TrainingError
@@ -17,8 +17,6 @@ from training.options import drives_of
 from training.sampler_process import Drives, SamplerError
 
 BATCH = 8
-# The distance between a run's seeds and the seeds of its samples with the usual nuisances.
-_USUAL_SEEDS = 2**26
 
 
 @lru_cache(maxsize=2)
@@ -80,7 +78,7 @@ def _simulator(config: TrainingConfig, first: int, share: Share) -> Stream:
 
     return _mixed(
         lambda first: stream(config.seed, first, config.nuisances),
-        lambda first: stream(config.seed + _USUAL_SEEDS, first, "usual"),
+        lambda first: stream(config.seed + USUAL_SEEDS, first, "usual"),
         config.usual_share,
         first,
         share,

@@ -200,8 +200,8 @@ class Trainer:
 
     def _learning_rate(self, spent: float) -> float:
         c = self.config
-        warm = min(1.0, (self.step + 1) / c.warm_up_steps)
-        annealed = max(0.0, (spent - c.anneal_from) / (1.0 - c.anneal_from))
+        warm = min(1.0, (self.step + 1) / max(1, c.warm_up_steps))
+        annealed = max(0.0, spent - c.anneal_from) / max(1e-9, 1.0 - c.anneal_from)
         cosine = c.final_rate + (1 - c.final_rate) * 0.5 * (1 + math.cos(math.pi * annealed))
         return c.learning_rate * warm * cosine
 

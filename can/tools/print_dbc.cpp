@@ -6,6 +6,7 @@
 #include "can/messages/consumer_writer.h"
 #include "can/messages/dbc_writer.h"
 #include "can/messages/markdown_writer.h"
+#include "common/option_checks.h"
 #include "common/output.h"
 
 int main(int argc, char** argv) {
@@ -29,12 +30,12 @@ int main(int argc, char** argv) {
   app.add_flag("--python", python, "print can/consumer/bevloc_messages.py instead")
       ->excludes(tables)
       ->excludes(header);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto ended = bevloc::parse_options(app, argc, argv)) return *ended;
   if (!base.are_apart()) {
     std::cerr
         << "bevloc_dbc: --localizer-base: found less than 0x40 between it and "
            "--vehicle-base, wanted at least 0x40, so that messages do not share identifiers\n";
-    return 2;
+    return bevloc::kBadInput;
   }
   std::cout << (markdown   ? bevloc::can::markdown_tables(base)
                 : c_header ? bevloc::can::consumer_header_text(base)
@@ -42,5 +43,5 @@ int main(int argc, char** argv) {
                            : bevloc::can::dbc_text(base));
   const bevloc::Status printed = bevloc::flush_output();
   if (!printed) std::cerr << "bevloc_dbc: " << printed.error().message << '\n';
-  return printed ? 0 : 2;
+  return printed ? 0 : bevloc::kBadInput;
 }

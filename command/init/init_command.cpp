@@ -8,7 +8,8 @@
 #include <unistd.h>
 
 #include "command/shell_word.h"
-#include "common/files.h"
+#include "common/option_checks.h"
+#include "common/replace_file.h"
 #include "common/shipped_file.h"
 
 namespace bevloc::command {
@@ -59,8 +60,10 @@ std::string id_from(const std::vector<OfferedCamera>& cameras, const std::string
 void InitCommand::declare(CLI::App& app) {
   auto* init = app.add_subcommand(
       "init", "Write a configuration for this machine, and check it; asks for what is not given");
-  init->add_option("--out", out_, "The configuration to write")->capture_default_str();
-  init->add_flag("--force", force_, "Replace a file that exists");
+  init->add_option("--out", out_, "The configuration to write")
+      ->check(output_file())
+      ->capture_default_str();
+  init->add_flag("--force", force_, "Replace a file that exists; the one before is kept as .bak");
   init->add_flag("--yes", yes_, "Ask nothing: take what is proposed");
   std::vector<std::string> drivers{kV4l2Cameras, kLibcameraCameras};
   if (simulation_ != nullptr) drivers.insert(drivers.begin(), kMockCameras);
@@ -194,7 +197,8 @@ Result<Verdict> InitCommand::run(const Offers& offers, Dialog& dialog) const {
   const auto known = answers(offers, dialog);
   if (!known) return tl::unexpected(known.error());
   const std::filesystem::path folder = std::filesystem::absolute(out_).parent_path();
-  if (Status written = write_file(out_, configuration_text(*known, folder)); !written) {
+  const std::string text = configuration_text(*known, folder);
+  if (Status written = replace_file_with_backup(out_, text); !written) {
     return tl::unexpected(written.error());
   }
   const auto config = firmware::load_config(out_, simulation_);

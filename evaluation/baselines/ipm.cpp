@@ -62,7 +62,7 @@ Se2 InversePerspectiveMapping::correct(const BaselineInput& input) {
   LinePoints painted = map[static_cast<size_t>(ElementClass::kLaneDivider)];
   const LinePoints& crossings = map[static_cast<size_t>(ElementClass::kPedestrianCrossing)];
   painted.insert(painted.end(), crossings.begin(), crossings.end());
-  const LinePoints seen = paint_lines(ground_view_.project(input.images, input.cameras));
+  const LinePoints seen = paint_lines(GroundView(input.rig).project(input.images, input.cameras));
   const std::array<PointsOnField, 1> pair{
       PointsOnField{inside_for_all(seen, ranges_), DistanceField(painted)}};
   return align(pair, ranges_);

@@ -17,14 +17,11 @@ LinePoints paint_lines(const GroundImage& ground);
 /// mask, and it assumes that all cameras expose at the same time.
 class InversePerspectiveMapping : public Baseline {
  public:
-  /// `network_rig`: the cameras of the network's input images.
-  InversePerspectiveMapping(const Rig& network_rig, const HypothesisGrid& ranges)
-      : ground_view_(network_rig), ranges_(ranges) {}
+  explicit InversePerspectiveMapping(const HypothesisGrid& ranges) : ranges_(ranges) {}
 
   Se2 correct(const BaselineInput& input) override;
 
  private:
-  GroundView ground_view_;
   HypothesisGrid ranges_;
 };
 

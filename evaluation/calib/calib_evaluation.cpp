@@ -13,8 +13,8 @@
 #include "evaluation/calib/calib_report.h"
 #include "evaluation/command_output.h"
 #include "evaluation/drive/error_statistics.h"
+#include "evaluation/town_seeds.h"
 #include "pipeline/calibration/refine/refine_rig.h"
-#include "sim/world/world_generator.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -79,7 +79,7 @@ void CalibEvaluation::declare(CLI::App& eval) {
   auto* calib = eval.add_subcommand(
       "calib", "Refine calibrations with known errors from simulated recordings");
   calib->add_option("--first-seed", options_.seed, "Seed of the first drive")
-      ->check(whole_number(sim::kFirstTrainingSeed - 1))
+      ->check(whole_number())
       ->capture_default_str();
   calib->add_option("--drives", drives_, "Number of drives, each with the next seed")
       ->check(CLI::Range(1, 1000))
@@ -98,6 +98,7 @@ void CalibEvaluation::declare(CLI::App& eval) {
 }
 
 Status CalibEvaluation::run() const {
+  if (Status towns = check_town_seeds("--first-seed", options_.seed, drives_); !towns) return towns;
   std::array<ErrorSums, kCameraParameters> sums;
   nlohmann::json json;
   for (int i = 0; i < drives_; ++i) {

@@ -10,7 +10,7 @@
 #include "evaluation/campaign/campaign_report.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/command_output.h"
-#include "sim/world/world_generator.h"
+#include "evaluation/town_seeds.h"
 
 namespace bevloc::evaluation {
 
@@ -26,7 +26,7 @@ void CampaignCommand::declare(CLI::App& app) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   campaign->add_option("--first-seed", options_.first_seed, "The first seed")
-      ->check(whole_number(sim::kFirstTrainingSeed - 1))
+      ->check(whole_number())
       ->capture_default_str();
   campaign->add_option("--duration", options_.duration_s, "Length of each drive, seconds")
       ->check(number_between(5.0, 1e6))
@@ -59,6 +59,10 @@ Status CampaignCommand::list() const {
 
 Status CampaignCommand::run() const {
   if (list_) return list();
+  if (Status towns = check_town_seeds("--first-seed", options_.first_seed, options_.seeds);
+      !towns) {
+    return towns;
+  }
   spdlog::set_level(spdlog::level::err);
   const auto modes = modes_named(modes_, options_.level);
   if (!modes) return tl::unexpected(modes.error());

@@ -7,7 +7,7 @@
 #include "evaluation/campaign/stanford_diagram.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/command_output.h"
-#include "sim/world/world_generator.h"
+#include "evaluation/town_seeds.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -27,7 +27,7 @@ void IntegrityCommand::declare(CLI::App& eval) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   integrity->add_option("--first-seed", options_.first_seed, "The first seed")
-      ->check(whole_number(sim::kFirstTrainingSeed - 1))
+      ->check(whole_number())
       ->capture_default_str();
   integrity->add_option("--duration", options_.duration_s, "Length of each drive, seconds")
       ->check(number_between(5.0, 1e6))
@@ -49,6 +49,10 @@ void IntegrityCommand::declare(CLI::App& eval) {
 }
 
 Status IntegrityCommand::run() const {
+  if (Status towns = check_town_seeds("--first-seed", options_.first_seed, options_.seeds);
+      !towns) {
+    return towns;
+  }
   spdlog::set_level(spdlog::level::err);
   const auto modes = modes_named(modes_, options_.level);
   if (!modes) return tl::unexpected(modes.error());

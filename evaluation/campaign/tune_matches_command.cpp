@@ -11,6 +11,7 @@
 #include "common/shipped_file.h"
 #include "evaluation/campaign/match_recorder.h"
 #include "evaluation/command_output.h"
+#include "evaluation/town_seeds.h"
 #include "pipeline/calibration/rig_yaml.h"
 
 namespace bevloc::evaluation {
@@ -30,7 +31,7 @@ void TuneMatchesCommand::declare(CLI::App& tune) {
       ->check(number_between(1.0, 3600.0))
       ->capture_default_str();
   matches->add_option("--map", maps_, "Every second drive goes through one of these maps, in turn");
-  matches->add_option("--csv", csv_file_, "File to write")->required();
+  matches->add_option("--csv", csv_file_, "File to write")->required()->check(output_file());
   matches->footer(
       "Examples:\n"
       "  bevloc tune matches --drives 10 --first-seed 2000 --csv matches.csv");
@@ -38,6 +39,7 @@ void TuneMatchesCommand::declare(CLI::App& tune) {
 }
 
 Status TuneMatchesCommand::run() const {
+  if (Status towns = check_town_seeds("--first-seed", first_seed_, drives_); !towns) return towns;
   spdlog::set_level(spdlog::level::warn);
   auto config = load_drive_config(given_or_shipped(config_));
   if (!config) return tl::unexpected(config.error());

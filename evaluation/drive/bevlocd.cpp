@@ -7,11 +7,11 @@
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "evaluation/drive/bus_factory.h"
 #include "evaluation/drive/simulated_run.h"
+#include "evaluation/town_seeds.h"
 #include "firmware/config/config_key.h"
 #include "firmware/runtime/daemon.h"
 #include "firmware/runtime/program.h"
 #include "pipeline/calibration/rig_yaml.h"
-#include "sim/world/world_generator.h"
 
 namespace {
 
@@ -23,13 +23,13 @@ struct DriveOptions {
   std::optional<uint64_t> seed;
   std::optional<double> duration_s;
   std::string map_file;
-  std::string out = "out";
+  std::string out;
   std::string pictures_folder;
   std::string json_file;
   bool fast = false;
 
   bool any() const {
-    return seed || duration_s || !map_file.empty() || !json_file.empty() ||
+    return seed || duration_s || !map_file.empty() || !out.empty() || !json_file.empty() ||
            !pictures_folder.empty() || fast;
   }
 };
@@ -44,14 +44,16 @@ void declare_options(CLI::App& app, DriveOptions& options) {
       ->add_option("--map", options.map_file,
                    "Drive through this HD map of any format (docs/maps.md)")
       ->check(name_of("a map"));
-  drive->add_option("--out", options.out, "Folder for can.log, poses.csv and sheet.png")
+  drive
+      ->add_option("--out", options.out,
+                   "Folder for can.log, poses.csv and sheet.png (default: out)")
       ->check(name_of("a folder"));
   drive
       ->add_option("--save-pictures", options.pictures_folder,
                    "Write pictures and reference poses to this folder, for `bevloc calib`")
       ->check(name_of("a folder"));
   drive->add_option("--json", options.json_file, "Write the result as JSON to this file")
-      ->check(output_file());
+      ->check(output_name());
   drive->add_flag("--fast", options.fast,
                   "Virtual clock: runs as fast as the machine can, with repeatable results");
 }
@@ -61,7 +63,7 @@ Status apply(const DriveOptions& options, const std::string& config_file, DriveC
     if (!options.any()) return {};
     return fail(
         "{}: found cameras that are not mock, wanted mock ones for --seed, --duration, "
-        "--map, --json, --save-pictures and --fast",
+        "--map, --out, --json, --save-pictures and --fast",
         config_file);
   }
   if (options.seed) {
@@ -73,18 +75,16 @@ Status apply(const DriveOptions& options, const std::string& config_file, DriveC
     config.simulation->town_seed.reset();
     config.map_file = options.map_file;
   }
-  if (config.simulation->town_seed.value_or(0) >= sim::kFirstTrainingSeed) {
-    return fail("--seed: found {}, wanted less than {}, because networks train on other towns",
-                *config.simulation->town_seed, sim::kFirstTrainingSeed);
-  }
-  return {};
+  return check_town_seeds("--seed", config.simulation->town_seed.value_or(0));
 }
 
 Status simulate(const DriveOptions& options, const DriveConfig& config, const Rig& rig) {
   SimulatedRunOptions run;
   run.fast = options.fast;
-  run.out = options.out;
+  run.out = options.out.empty() ? "out" : options.out;
   run.pictures_folder = options.pictures_folder;
+  if (Status made = create_folder(run.out); !made) return made;
+  if (Status writable = check_writable(options.json_file); !writable) return writable;
   const auto report = run_simulation(
       config, rig, run, [](const firmware::ApplianceView&) { return firmware::stop_requested(); });
   if (!report) return tl::unexpected(report.error());

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "can/bus/candump.h"
 #include "firmware/runtime/can_bus.h"
 
 namespace bevloc::evaluation {
@@ -11,7 +10,6 @@ namespace {
 
 constexpr Duration kComparisonPeriod = std::chrono::milliseconds(100);
 constexpr double kCycle_s = 1e-3 * can::kSolutionCycleMs;
-constexpr const char* kInterfaceInLog = "can0";
 
 }  // namespace
 
@@ -19,20 +17,19 @@ Result<std::unique_ptr<Judge>> Judge::create(std::unique_ptr<can::Bus> bus,
                                              const firmware::CanConfig& can,
                                              const GeoOrigin& origin, TruthAt truth,
                                              JudgeTimes times, const std::string& log_path) {
-  auto judge =
-      std::unique_ptr<Judge>(new Judge(std::move(bus), can, origin, std::move(truth), times));
-  judge->log_.open(log_path);
-  if (!judge->log_)
-    return fail("{}: found no way to write the bus log, wanted to create it", log_path);
-  return judge;
+  auto log = BusLog::create(log_path);
+  if (!log) return tl::unexpected(log.error());
+  return std::unique_ptr<Judge>(
+      new Judge(std::move(bus), can, origin, std::move(truth), times, std::move(*log)));
 }
 
 Judge::Judge(std::unique_ptr<can::Bus> bus, const firmware::CanConfig& can, const GeoOrigin& origin,
-             TruthAt truth, JudgeTimes times)
+             TruthAt truth, JudgeTimes times, BusLog log)
     : bus_(std::move(bus)),
       base_(can.base_ids),
       truth_(std::move(truth)),
       times_(times),
+      log_(std::move(log)),
       reader_(can.base_ids, {origin.latitude_deg, origin.longitude_deg}),
       prior_input_(
           firmware::make_vehicle_decoder(can, {origin.latitude_deg, origin.longitude_deg})),
@@ -45,8 +42,7 @@ void Judge::step(Duration timeout) {
 }
 
 void Judge::take(const can::ReceivedFrame& received) {
-  log_ << can::candump_line(received.received - times_.log_start, kInterfaceInLog, received.frame)
-       << '\n';
+  log_.add(received.received - times_.log_start, received.frame);
   latest_s_ = to_seconds(received.received - times_.drive_start);
   if (const auto samples = prior_input_->accept(received)) {
     if (samples.odometry) prior_tracker_.add_odometry(*samples.odometry);

@@ -1,7 +1,6 @@
 // Compares the poses on the bus with the truth, which only the simulator knows.
 #pragma once
 
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -12,6 +11,7 @@
 #include "can/bus/bus.h"
 #include "can/messages/vehicle_decoder.h"
 #include "common/result.h"
+#include "evaluation/drive/bus_log.h"
 #include "evaluation/drive/error_statistics.h"
 #include "evaluation/drive/pose_reader.h"
 #include "firmware/config/config.h"
@@ -60,6 +60,9 @@ class Judge {
   /// Reads all received frames. Waits at most `timeout` for the first one.
   void step(Duration timeout);
 
+  /// Completes the log. Call it after the last step(). Fails if the log lacks a frame.
+  Status finish() { return log_.finish(); }
+
   JudgeView view() const;
 
   const std::vector<JudgedPose>& poses() const { return poses_; }
@@ -74,7 +77,7 @@ class Judge {
 
  private:
   Judge(std::unique_ptr<can::Bus> bus, const firmware::CanConfig& can, const GeoOrigin& origin,
-        TruthAt truth, JudgeTimes times);
+        TruthAt truth, JudgeTimes times, BusLog log);
 
   void take(const can::ReceivedFrame& received);
   void note_solution(const can::ReceivedFrame& received, bool valid);
@@ -84,7 +87,7 @@ class Judge {
   can::BaseIds base_;
   TruthAt truth_;
   JudgeTimes times_;
-  std::ofstream log_;
+  BusLog log_;
   PoseReader reader_;
   std::unique_ptr<can::VehicleDecoder> prior_input_;
   Tracker prior_tracker_;

@@ -15,11 +15,7 @@ Status PictureRecorder::write_pictures(const drivers::Frameset& frameset) {
     if (!frameset.present[camera]) continue;
     const drivers::Frame& frame = frameset.frames[camera];
     const std::filesystem::path directory = folder_ / kCameraNames[camera];
-    std::error_code error;
-    std::filesystem::create_directories(directory, error);
-    if (error) {
-      return fail("{}: cannot create this folder ({})", directory.string(), error.message());
-    }
+    if (Status made = create_folder(directory); !made) return made;
     const std::string name = fmt::format("{:06}.png", count_);
     if (Status s = write_png(frame.pixels(), (directory / name).string()); !s) return s;
     indexes_[camera] +=

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/files.h"
 #include "evaluation/drive/bus_factory.h"
 #include "evaluation/drive/clock_faults.h"
 #include "evaluation/drive/fault_socket.h"
@@ -50,6 +51,8 @@ class SimulatedRun {
                                                       const SimulatedRunOptions& options);
 
   void run(const StopWhen& stop);
+  /// Completes the bus log.
+  Status finish_log() { return judge_->finish(); }
   DriveReport report() const;
   /// Writes what the pictures of the drive lack to be a recording.
   Status finish_recording();
@@ -309,15 +312,16 @@ Status SimulatedRun::write_sheet_if_any() {
 
 Result<DriveReport> run_simulation(const DriveConfig& config, const Rig& rig,
                                    const SimulatedRunOptions& options, const StopWhen& stop) {
-  std::error_code error;
-  std::filesystem::create_directories(options.out, error);
-  if (error) {
-    return fail("{}: found no way to create this folder ({}), wanted one to write to",
-                options.out.string(), error.message());
+  if (Status made = create_folder(options.out); !made) return tl::unexpected(made.error());
+  if (!options.pictures_folder.empty()) {
+    if (Status made = create_folder(options.pictures_folder); !made) {
+      return tl::unexpected(made.error());
+    }
   }
   auto run = SimulatedRun::create(config, rig, options);
   if (!run) return tl::unexpected(run.error());
   (*run)->run(stop);
+  if (Status status = (*run)->finish_log(); !status) return tl::unexpected(status.error());
   DriveReport report = (*run)->report();
   if (Status status = write_csv(report, (options.out / "poses.csv").string()); !status) {
     return tl::unexpected(status.error());

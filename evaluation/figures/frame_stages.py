@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TypedDict
+from typing import Any, TypedDict
 
 from matplotlib.lines import Line2D
 
 from evaluation.figures import style
+from evaluation.figures.source import SourceError
 
 FILE = "frame_stages.png"
 WIDTH_PX = 1000
@@ -42,6 +43,19 @@ class Bench(TypedDict):
     threads: int
     stages: list[Stage]
     frame: WholeFrame
+
+
+def data_of(document: Any, file: Path) -> Bench:
+    """The data of the file with this JSON. SourceError if it lacks what the figure shows."""
+    wanted = "wanted the output of `bevloc bench --json`"
+    if not isinstance(document, dict) or "stages" not in document:
+        raise SourceError(f"{file}: found no stages, {wanted}")
+    if "frame" not in document:
+        raise SourceError(f"{file}: found no whole frame, {wanted} without --stage")
+    if document["frame"]["sum_of_ideals_ms"] is None:
+        raise SourceError(f"{file}: found no ideal times, {wanted} without --no-peak")
+    data: Bench = document
+    return data
 
 
 def rows(data: Bench) -> list[Stage]:

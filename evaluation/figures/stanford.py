@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 
 from evaluation.figures import style
+from evaluation.figures.source import SourceError
 
 FILE = "stanford.png"
 PANEL = 270
@@ -39,6 +40,20 @@ class Diagram(TypedDict):
     axes: list[Axis]
 
 
+def data_of(document: Any, file: Path) -> list[Diagram]:
+    """The diagrams with poses of the file with this JSON. SourceError if it has none."""
+    if not isinstance(document, list) or not all(
+        isinstance(part, dict) and "valid_poses" in part for part in document
+    ):
+        raise SourceError(
+            f"{file}: found no diagrams, wanted the output of `bevloc eval integrity --json`"
+        )
+    drawn: list[Diagram] = [diagram for diagram in document if diagram["valid_poses"] > 0]
+    if not drawn:
+        raise SourceError(f"{file}: found no valid pose in any diagram, wanted some to draw")
+    return drawn
+
+
 def draw_axis(axes: Axes, data: Axis) -> None:
     """Counts over the error (to the right) and the protection level (upwards)."""
     end = data["bin"] * data["bins"]
@@ -66,11 +81,10 @@ def draw_axis(axes: Axes, data: Axis) -> None:
 def draw(data: list[Diagram], path: Path) -> None:
     """A row of three panels per diagram. Below the diagonal the error is beyond the protection
     level; red: and beyond the alert limit too."""
-    drawn = [diagram for diagram in data if diagram["valid_poses"] > 0]
     row = TOP + PANEL + BOTTOM
     width = LEFT + 3 * PANEL + 2 * GAP + RIGHT
-    figure = style.new_figure(width, row * len(drawn))
-    for number, diagram in enumerate(drawn):
+    figure = style.new_figure(width, row * len(data))
+    for number, diagram in enumerate(data):
         top = number * row
         style.add_text(
             figure, 12, top + 28, f"{diagram['name']}: {diagram['valid_poses']} valid poses", 12

@@ -93,20 +93,23 @@ void MapCommand::declare(CLI::App& app) {
   };
   auto* imports =
       add("import", "Convert a map, and say what was taken, dropped and why", &MapCommand::import);
-  imports->add_option("out", out_, "Map to write: .bvm or .geojson")->required();
+  imports->add_option("out", out_, "Map to write: .bvm or .geojson")
+      ->required()
+      ->check(output_file());
   imports->add_option("--classes", classes_, "YAML file: what kinds of lines become");
   imports->add_option("--origin", origin_,
                       "LATITUDE,LONGITUDE of the zero of the file's coordinates");
   imports->add_flag("--bvm-1", version_1_,
                     "Write a .bvm of version 1, for releases that know no tiles");
-  imports->add_option("--report", json_, "Write the report to this JSON file");
-  imports->add_option("--picture", picture_, "Draw the map to this PNG file");
+  imports->add_option("--report", json_, "Write the report to this JSON file")
+      ->check(output_file());
+  imports->add_option("--picture", picture_, "Draw the map to this PNG file")->check(output_file());
   auto* infos = add("info", "Say what a map contains", &MapCommand::info);
   infos->add_option("--json", json_, "Write it to this JSON file, too")->check(output_file());
   auto* checks = add("check", "Look for what is wrong with a map", &MapCommand::check);
   checks->add_option("--json", json_, "Write it to this JSON file, too")->check(output_file());
   auto* renders = add("render", "Draw a map with legend and scale", &MapCommand::render);
-  renders->add_option("out", out_, "PNG file to write")->required();
+  renders->add_option("out", out_, "PNG file to write")->required()->check(output_file());
   renders->add_option("--pixels", size_px_, "Width and height")
       ->capture_default_str()
       ->check(CLI::Range(800, 8000));
@@ -114,7 +117,8 @@ void MapCommand::declare(CLI::App& app) {
   diffs->add_option("other", other_, "Map to compare with")->required();
   diffs->add_option("--json", json_, "Write the result to this JSON file, too")
       ->check(output_file());
-  diffs->add_option("--picture", picture_, "Draw the differences to this PNG file");
+  diffs->add_option("--picture", picture_, "Draw the differences to this PNG file")
+      ->check(output_file());
   imports->footer("Examples:\n  bevloc map import town.xodr town.bvm --picture town.png");
   infos->footer("Examples:\n  bevloc map info town.osm");
   checks->footer("Examples:\n  bevloc map check town.osm --json check.json");
@@ -137,6 +141,9 @@ Status MapCommand::import() const {
   Status status = check_map_extension(out_);
   if (status) status = check_picture();
   if (!status) return status;
+  if (version_1_ && std::filesystem::path(out_).extension() != ".bvm") {
+    return fail("--bvm-1: found {} as the map to write, wanted a .bvm", out_);
+  }
   ImportOptions options;
   ClassTable classes;
   if (!classes_.empty()) {

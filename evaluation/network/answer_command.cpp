@@ -1,12 +1,12 @@
 #include "evaluation/network/answer_command.h"
 
-#include <filesystem>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <onnx/onnx_pb.h>
 
 #include "common/files.h"
+#include "common/replace_file.h"
 #include "pipeline/network/test_frame.h"
 
 namespace bevloc::evaluation {
@@ -39,13 +39,7 @@ Status store_answer(const std::string& model) {
         model);
   }
   set_metadata(proto, kAnswerKey, answer);
-  const std::string written = model + ".new";
-  if (Status status = bevloc::write_file(written, proto.SerializeAsString()); !status)
-    return status;
-  std::error_code error;
-  std::filesystem::rename(written, model, error);
-  if (error) return fail("{}: cannot replace this file ({})", model, error.message());
-  return {};
+  return replace_file(model, proto.SerializeAsString());
 }
 
 void AnswerCommand::declare(CLI::App& app) {

@@ -82,8 +82,7 @@ void NetworkEvaluation::add_baselines() {
   baselines_.push_back({"icp", std::make_unique<IterativeClosestPoints>(kBaselineHypotheses)});
   baselines_.push_back(
       {"distance-transform", std::make_unique<DistanceTransformAlignment>(kBaselineHypotheses)});
-  baselines_.push_back({"ipm", std::make_unique<InversePerspectiveMapping>(
-                                   sim::nominal_network_rig(), kBaselineHypotheses)});
+  baselines_.push_back({"ipm", std::make_unique<InversePerspectiveMapping>(kBaselineHypotheses)});
 }
 
 std::vector<TuningSample> NetworkEvaluation::make_tuning_samples(
@@ -189,6 +188,7 @@ void NetworkEvaluation::judge_solvers(const Se2& correction, std::span<ReadOut> 
 void NetworkEvaluation::judge_baselines(const sim::Sample& sample, std::span<ReadOut> read_outs) {
   const BaselineInput input{.images = sample.images,
                             .cameras = sample.cameras,
+                            .rig = sample.rig,
                             .perceived = perceived_,
                             .raster = sample.raster_prior};
   for (size_t i = 0; i < baselines_.size(); ++i) {

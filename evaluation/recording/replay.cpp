@@ -1,9 +1,8 @@
 #include "evaluation/recording/replay.h"
 
-#include <fstream>
-
 #include "can/bus/candump.h"
 #include "common/image_view.h"
+#include "evaluation/drive/bus_log.h"
 #include "firmware/runtime/runner.h"
 
 namespace bevloc::evaluation {
@@ -25,12 +24,12 @@ bool same(const PlayedFrame& a, const PlayedFrame& b) {
 
 Result<ReplayOutcome> replay(const ReplaySetup& setup, const ReplayInputs& inputs,
                              const std::filesystem::path& can_log) {
-  std::ofstream log(can_log);
-  if (!log) return fail("{}: cannot write this file, wanted a place for the log", can_log.string());
+  auto log = BusLog::create(can_log);
+  if (!log) return tl::unexpected(log.error());
   drivers::VirtualClock clock(inputs.begin);
   ReplayOutcome outcome;
   const auto seen = [&](const can::Frame& frame, Time time, bool sent) {
-    log << can::candump_line(time - inputs.begin, kInterface, frame) << '\n';
+    log->add(time - inputs.begin, frame);
     if (sent) outcome.sent.push_back({time, {frame, time}});
   };
   firmware::Hardware hardware{inputs.cameras(clock),
@@ -47,7 +46,7 @@ Result<ReplayOutcome> replay(const ReplaySetup& setup, const ReplayInputs& input
   firmware::run_lockstep(**appliance, clock, nullptr,
                          [&](Time now) { return now + kBusCycle < inputs.end; });
   outcome.framesets = (*appliance)->vision().counters().framesets;
-  if (!log.flush()) return fail("{}: cannot write this file", can_log.string());
+  if (Status status = log->finish(); !status) return tl::unexpected(status.error());
   return outcome;
 }
 

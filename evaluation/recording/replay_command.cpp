@@ -81,7 +81,7 @@ void ReplayCommand::declare(CLI::App& app) {
       ->check(name_of("a folder"))
       ->capture_default_str();
   replay->add_option("--json", json_file_, "Write the result as JSON to this file")
-      ->check(output_file());
+      ->check(output_name());
   replay->footer(
       "Examples:\n"
       "  bevloc replay recording/*.mcap --out replay\n"
@@ -102,12 +102,8 @@ Status ReplayCommand::run() const {
   if (candump && (overrides_.config.empty() || images_.empty())) {
     return fail("--from-candump: found no --config or no --images, wanted both");
   }
-  std::error_code error;
-  std::filesystem::create_directories(out_, error);
-  if (error) {
-    return fail("{}: cannot create this folder ({}), wanted one to write to", out_.string(),
-                error.message());
-  }
+  if (Status made = create_folder(out_); !made) return made;
+  if (Status writable = check_writable(json_file_); !writable) return writable;
   return candump ? replay_candump() : replay_recording();
 }
 

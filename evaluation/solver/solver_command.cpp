@@ -14,9 +14,13 @@
 namespace bevloc::evaluation {
 namespace {
 
-/// Town seeds reserved for each seed of the command line: as many as 200,000 scenes need.
+/// Town seeds reserved for each seed of the command line.
 constexpr uint64_t kTownsPerSeed = 1ULL << 20U;
 constexpr uint64_t kSceneSeeds = sim::kSceneSeedCount / kTownsPerSeed;
+constexpr uint64_t kMostScenes = sim::scenes_of(kTownsPerSeed);
+/// Tuning has all its town seeds for one run.
+constexpr uint64_t kMostTuningScenes = 100'000;
+static_assert(kMostTuningScenes <= sim::scenes_of(sim::kSceneSeedCount));
 
 }  // namespace
 
@@ -28,7 +32,7 @@ void SolverCommand::declare(CLI::App& eval, CLI::App& tune) {
 void SolverCommand::declare_eval(CLI::App& eval) {
   auto* solver = eval.add_subcommand("solver", "Compare all solvers on synthetic scenes");
   solver->add_option("--scenes", scenes_, "Number of scenes")
-      ->check(CLI::Range(1, 100'000))
+      ->check(CLI::Range(uint64_t{1}, kMostScenes))
       ->capture_default_str();
   solver->add_option("--seed", seed_, "Seed of the scenes")
       ->check(CLI::Range(uint64_t{0}, kSceneSeeds - 1))
@@ -64,7 +68,7 @@ void SolverCommand::declare_tune(CLI::App& tune) {
   auto* solver = tune.add_subcommand(
       "solver", "Find the softmax scales for hand-made features (`bevloc eval solver` uses them)");
   solver->add_option("--scenes", scenes_, "Number of tuning scenes")
-      ->check(CLI::Range(1, 100'000))
+      ->check(CLI::Range(uint64_t{1}, kMostTuningScenes))
       ->capture_default_str();
   declare_rows(*solver);
   solver->footer(

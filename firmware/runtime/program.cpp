@@ -17,8 +17,6 @@
 namespace bevloc::firmware {
 namespace {
 
-constexpr int kBadInput = 2;
-
 std::atomic<bool> g_stop_requested{false};
 std::atomic<bool> g_hangup{false};
 
@@ -118,15 +116,12 @@ int run_program(CLI::App& app, int argc, char** argv, const Run& run) {
   mallopt(M_ARENA_MAX, 1);
   open_closed_standard_files();
   handle_signals();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
-  }
+  if (const auto ended = parse_options(app, argc, argv)) return *ended;
   const LogWriter log;
   const Status status = run_without_throwing([&] { return run(log); });
   if (status) return 0;
-  write_with_patience(STDERR_FILENO, fmt::format("bevlocd: {}\n", status.error().message),
+  write_with_patience(STDERR_FILENO,
+                      fmt::format("bevlocd: {}\n", printable(status.error().message)),
                       LogWriter::kFarewell);
   return kBadInput;
 }

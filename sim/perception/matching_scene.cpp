@@ -12,11 +12,9 @@
 namespace bevloc::sim {
 namespace {
 
-// A group of scenes shares its towns.
-constexpr uint64_t kPlacesPerKind = 4;  ///< per kind of road and kind of map
-constexpr uint64_t kScenesPerGroup = 2 * kPlacesPerKind * kRoadKinds;
+constexpr uint64_t kPlacesPerKind = 4;  ///< of a group, per kind of road and kind of map
+static_assert(kScenesPerGroup == 2 * kPlacesPerKind * kRoadKinds);
 constexpr size_t kPlacesPerTown = 2;  ///< of one kind of road, at most
-constexpr uint64_t kMostTownsPerGroup = 1024;
 constexpr int kCandidatesPerTown = 200;
 
 /// Every other town has a surveyed map.
@@ -51,13 +49,13 @@ SceneSampler::~SceneSampler() = default;
 
 /// Loads towns until there are enough places for every kind of road on both kinds of map.
 void SceneSampler::load_group(uint64_t group) {
-  assert((group + 1) * kMostTownsPerGroup <= kSceneSeedCount);
+  assert((group + 1) * kTownsPerGroup <= kSceneSeedCount);
   group_ = group;
   towns_.clear();
   places_ = {};
-  const uint64_t first_seed = seed_base_ + group * kMostTownsPerGroup;
+  const uint64_t first_seed = seed_base_ + group * kTownsPerGroup;
   for (uint64_t town = 0; !is_full(places_[0]) || !is_full(places_[1]); ++town) {
-    assert(town < kMostTownsPerGroup);
+    assert(town < kTownsPerGroup);
     const uint64_t seed = first_seed + town;
     PlacesByKind& places = places_[is_surveyed(seed) ? 1 : 0];
     if (is_full(places)) continue;

@@ -24,6 +24,15 @@ inline constexpr uint64_t kEvaluationSeedBase = 3 * kSceneSeedCount;
 static_assert(kTuningSeedBase + kSceneSeedCount <= kEvaluationSeedBase);
 static_assert(kEvaluationSeedBase + kSceneSeedCount <= kFirstTrainingSeed);
 
+/// Scenes come in groups that share their towns. So many scenes and town seeds are a group's.
+inline constexpr uint64_t kScenesPerGroup = 40;
+inline constexpr uint64_t kTownsPerGroup = 1024;
+
+/// The number of scenes that this many town seeds suffice for.
+constexpr uint64_t scenes_of(uint64_t town_seeds) {
+  return town_seeds / kTownsPerGroup * kScenesPerGroup;
+}
+
 struct MatchingScene {
   RoadKind kind = RoadKind::kStraightSolid;
   bool surveyed = false;              ///< the map has one element per dash (surveyed_map.h)
@@ -37,7 +46,7 @@ struct MatchingScene {
 /// An endless stream of scenes. Scene i depends on the seed base, the deviations and i alone. Scene
 /// i shows a road of kind i % kRoadKinds. In turn, kRoadKinds scenes have maps with continuous
 /// dashed dividers and kRoadKinds scenes have surveyed maps with one element per dash. Fastest if
-/// scenes are made in order, because 40 consecutive scenes share their towns. Not thread safe.
+/// scenes are made in order, because groups of them share their towns. Not thread safe.
 class SceneSampler {
  public:
   /// `seed_base`: kEvaluationSeedBase or kTuningSeedBase. Corrections are uniform within the ranges

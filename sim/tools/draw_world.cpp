@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "common/option_checks.h"
 #include "common/picture_file.h"
 #include "pipeline/map/map_loader.h"
 #include "sim/world/path.h"
@@ -176,12 +177,7 @@ Square square_around(const HdMap& map) {
   return {0.5 * (low + high), (high - low).maxCoeff() + 2.0 * kMargin_m};
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  CLI::App app(
-      "Draws a simulated world from above (roads, paint, walls, vehicles) with its HD map on top: "
-      "dividers orange, crossings blue, boundaries red, lanes teal.");
+struct Options {
   uint64_t seed = 1;
   std::string map_file;
   std::string output = "world.png";
@@ -191,36 +187,63 @@ int main(int argc, char** argv) {
   double seconds = 0.0;
   int image_size = 1600;
   bool without_map = false;
-  app.add_option("seed", seed, "Seed of the town")->capture_default_str();
-  app.add_option("output", output, "PNG to write")->capture_default_str();
-  app.add_option("--map", map_file, "Draw a world dressed on this map instead of a generated town");
-  app.add_option("--east", east_m, "Centre of the image, metres east of the map's origin");
-  app.add_option("--north", north_m, "Centre of the image, metres north of the map's origin");
-  app.add_option("--size", size_m, "Width of the image in metres (default: the whole map)");
-  app.add_option("--pixels", image_size, "Width of the image in pixels")->capture_default_str();
-  app.add_option("--time", seconds, "Time of the simulated traffic in seconds");
-  app.add_flag("--no-map", without_map, "Do not draw the map");
-  CLI11_PARSE(app, argc, argv);
+};
 
+void add_options(CLI::App& app, Options& options) {
+  constexpr double kFarthest_m = 1e6;
+  app.add_option("seed", options.seed, "Seed of the town")
+      ->check(whole_number())
+      ->capture_default_str();
+  app.add_option("output", options.output, "PNG to write")
+      ->check(output_file())
+      ->capture_default_str();
+  app.add_option("--map", options.map_file,
+                 "Draw a world dressed on this map instead of a generated town")
+      ->check(name_of("a map"));
+  app.add_option("--east", options.east_m, "Centre of the image, metres east of the map's origin")
+      ->check(number_between(-kFarthest_m, kFarthest_m));
+  app.add_option("--north", options.north_m,
+                 "Centre of the image, metres north of the map's origin")
+      ->check(number_between(-kFarthest_m, kFarthest_m));
+  app.add_option("--size", options.size_m, "Width of the image in metres (default: the whole map)")
+      ->check(number_between(1.0, kFarthest_m));
+  app.add_option("--pixels", options.image_size, "Width of the image in pixels")
+      ->check(CLI::Range(16, 16'384))
+      ->capture_default_str();
+  app.add_option("--time", options.seconds, "Time of the simulated traffic in seconds")
+      ->check(number_between(0.0, 1e6));
+  app.add_flag("--no-map", options.without_map, "Do not draw the map");
+}
+
+Status draw(const Options& options) {
   World world;
-  if (map_file.empty()) {
-    world = generate_world(seed);
+  if (options.map_file.empty()) {
+    world = generate_world(options.seed);
   } else {
-    const Result<HdMap> map = load_map(map_file);
-    if (!map) {
-      std::fprintf(stderr, "%s\n", map.error().message.c_str());
-      return 1;
-    }
-    world = world_from_map(*map, seed);
+    const Result<HdMap> map = load_map(options.map_file);
+    if (!map) return tl::unexpected(map.error());
+    world = world_from_map(*map, options.seed);
   }
   const Square whole = square_around(world.map);
-  const Eigen::Vector2d centre(east_m.value_or(whole.centre.x()),
-                               north_m.value_or(whole.centre.y()));
-  Drawing drawing(centre, size_m.value_or(whole.size_m), image_size);
-  drawing.draw(world, seconds, !without_map);
-  if (Status saved = drawing.save(output); !saved) {
-    std::fprintf(stderr, "%s\n", saved.error().message.c_str());
-    return 1;
+  const Eigen::Vector2d centre(options.east_m.value_or(whole.centre.x()),
+                               options.north_m.value_or(whole.centre.y()));
+  Drawing drawing(centre, options.size_m.value_or(whole.size_m), options.image_size);
+  drawing.draw(world, options.seconds, !options.without_map);
+  return drawing.save(options.output);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Draws a simulated world from above (roads, paint, walls, vehicles) with its HD map on top: "
+      "dividers orange, crossings blue, boundaries red, lanes teal.");
+  Options options;
+  add_options(app, options);
+  if (const auto ended = parse_options(app, argc, argv)) return *ended;
+  if (const Status drawn = draw(options); !drawn) {
+    std::fprintf(stderr, "%s\n", drawn.error().message.c_str());
+    return kBadInput;
   }
   return 0;
 }

@@ -10,6 +10,7 @@
 
 #include "common/files.h"
 #include "common/image_file.h"
+#include "common/option_checks.h"
 #include "common/picture_file.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_binary.h"
@@ -37,45 +38,52 @@ struct Options {
   bool network_size = false;
   bool random_conditions = false;
   bool night = false;
+  double sun_elevation_deg = 40.0;
   Conditions conditions;
 };
 
-Options read_options(int argc, char** argv) {
-  Options options;
-  double sun_elevation_deg = 40.0;
-  CLI::App app("Renders the six cameras of the simulated rig into one image");
-  app.add_option("--seed", options.seed, "Seed of the town");
-  app.add_option("--out", options.out, "PNG to write");
+void add_options(CLI::App& app, Options& options) {
+  using bevloc::name_of;
+  using bevloc::number_between;
+  using bevloc::whole_number;
+  app.add_option("--seed", options.seed, "Seed of the town")->check(whole_number());
+  app.add_option("--out", options.out, "PNG to write")->check(bevloc::output_name());
   app.add_option(
          "--pose", options.pose,
          "Pose of the vehicle as x y yaw, in metres and degrees (default: a random pose on a road)")
+      ->check(number_between(-1e6, 1e6))
       ->expected(3);
-  app.add_option("--pose-seed", options.pose_seed, "Seed of the random pose");
+  app.add_option("--pose-seed", options.pose_seed, "Seed of the random pose")
+      ->check(whole_number());
   app.add_option("--ground", options.ground,
                  "Curvature of the ground along the vehicle, across it, and its twist, per metre")
+      ->check(number_between(-0.1, 0.1))
       ->expected(3);
   app.add_option("--pictures", options.pictures,
-                 "Folder to which the six pictures, rig.yaml and map.bvm are written, too");
-  app.add_option("--photos", options.photos, "Folder of script/photos, to cover surfaces with");
-  app.add_option("--time", options.time_s, "Time of the simulated traffic in seconds");
-  app.add_option("--sun-elevation", sun_elevation_deg, "Elevation of the sun in degrees");
-  app.add_option("--overcast", options.conditions.overcast, "Cloud cover, 0 to 1");
-  app.add_option("--rain", options.conditions.rain, "Strength of the rain, 0 to 1");
+                 "Folder to which the six pictures, rig.yaml and map.bvm are written, too")
+      ->check(name_of("a folder"));
+  app.add_option("--photos", options.photos, "Folder of script/photos, to cover surfaces with")
+      ->check(name_of("a folder"));
+  app.add_option("--time", options.time_s, "Time of the simulated traffic in seconds")
+      ->check(number_between(0.0, 1e6));
+  app.add_option("--sun-elevation", options.sun_elevation_deg, "Elevation of the sun in degrees")
+      ->check(number_between(-90.0, 90.0));
+  app.add_option("--overcast", options.conditions.overcast, "Cloud cover, 0 to 1")
+      ->check(number_between(0.0, 1.0));
+  app.add_option("--rain", options.conditions.rain, "Strength of the rain, 0 to 1")
+      ->check(number_between(0.0, 1.0));
   app.add_flag("--night", options.night, "Set the sun 30 degrees below the horizon");
   app.add_flag("--random-conditions", options.random_conditions,
                "Draw light and weather from the pose seed");
   app.add_flag("--network-size", options.network_size,
                "Render the network's input images instead of the camera images");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    std::exit(app.exit(error));
-  }
-  options.conditions.sun_elevation_rad = bevloc::radians(options.night ? -30.0 : sun_elevation_deg);
-  if (options.random_conditions) {
-    options.conditions = bevloc::sim::random_conditions(options.pose_seed);
-  }
-  return options;
+}
+
+Conditions conditions_of(const Options& options) {
+  if (options.random_conditions) return bevloc::sim::random_conditions(options.pose_seed);
+  Conditions conditions = options.conditions;
+  conditions.sun_elevation_rad = bevloc::radians(options.night ? -30.0 : options.sun_elevation_deg);
+  return conditions;
 }
 
 /// Arranges the images in two rows of three, in the order of kCameraNames.
@@ -97,9 +105,7 @@ cv::Mat image_grid(const std::vector<bevloc::RgbImage>& images) {
 bevloc::Status write_pictures(const std::filesystem::path& folder, const bevloc::Rig& rig,
                               const bevloc::HdMap& map,
                               const std::vector<bevloc::RgbImage>& images) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return bevloc::fail("{}: {}", folder.string(), error.message());
+  if (auto made = bevloc::create_folder(folder); !made) return made;
   for (size_t i = 0; i < images.size(); ++i) {
     const std::filesystem::path file = folder / (std::string(bevloc::kCameraNames[i]) + ".png");
     if (auto status = bevloc::write_png(images[i].view(), file.string()); !status) return status;
@@ -110,18 +116,12 @@ bevloc::Status write_pictures(const std::filesystem::path& folder, const bevloc:
   return bevloc::write_file(folder / "map.bvm", bevloc::encode_map(map));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const Options options = read_options(argc, argv);
+bevloc::Status render(const Options& options) {
   bevloc::sim::World world = bevloc::sim::generate_world(options.seed);
   std::optional<bevloc::sim::PhotoLibrary> photos;
   if (!options.photos.empty()) {
     auto loaded = bevloc::sim::PhotoLibrary::load(options.photos);
-    if (!loaded) {
-      fmt::print(stderr, "{}\n", loaded.error().message);
-      return 1;
-    }
+    if (!loaded) return tl::unexpected(loaded.error());
     photos = std::move(*loaded);
     world.photos = &*photos;
   }
@@ -137,20 +137,31 @@ int main(int argc, char** argv) {
   std::vector<bevloc::RgbImage> images(bevloc::kCameraCount);
   const bevloc::sim::Stance stance{
       .ground = {options.ground[0], options.ground[1], options.ground[2]}};
+  const Conditions conditions = conditions_of(options);
   for (size_t i = 0; i < images.size(); ++i) {
-    renderer.render(rig.cameras[i], pose, stance, options.time_s, options.conditions, i, images[i]);
+    renderer.render(rig.cameras[i], pose, stance, options.time_s, conditions, i, images[i]);
   }
   if (!options.pictures.empty()) {
     if (auto status = write_pictures(options.pictures, rig, world.map, images); !status) {
-      fmt::print(stderr, "{}\n", status.error().message);
-      return 1;
+      return status;
     }
   }
-  if (auto status = bevloc::write_picture(image_grid(images), options.out); !status) {
-    fmt::print(stderr, "{}\n", status.error().message);
-    return 1;
-  }
+  if (auto status = bevloc::write_picture(image_grid(images), options.out); !status) return status;
   fmt::print("{}: world {}, pose x {:.2f} m, y {:.2f} m, yaw {:.1f} deg\n", options.out,
              options.seed, pose.x_m, pose.y_m, bevloc::degrees(pose.yaw_rad));
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Renders the six cameras of the simulated rig into one image");
+  Options options;
+  add_options(app, options);
+  if (const auto ended = bevloc::parse_options(app, argc, argv)) return *ended;
+  if (const auto rendered = render(options); !rendered) {
+    fmt::print(stderr, "{}\n", rendered.error().message);
+    return bevloc::kBadInput;
+  }
   return 0;
 }

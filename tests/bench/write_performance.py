@@ -7,12 +7,11 @@ tests/bench/peers/run --write makes the table of other runtimes.
 
 from __future__ import annotations
 
-import json
 import subprocess
 import tempfile
 from pathlib import Path
 
-from evaluation.figures import frame_stages
+from evaluation.figures import frame_stages, source
 from evaluation.figures.program import bevloc_program
 from tests.bench.document import ROOT, write_table
 from training.errors import run_program
@@ -47,11 +46,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         result = Path(folder) / "bench.json"
         printed = run_bench("--frames", str(_FRAMES), "--json", result)
-        frame_stages.draw(json.loads(result.read_text()), FIGURE)
+        frame_stages.draw(frame_stages.data_of(source.read(result), result), FIGURE)
         figure = f"![Where the time of a frame goes](images/{FIGURE.name})"
         write_table("stages", f"```\n{printed}```\n\n{figure}\n")
         run_bench("--frames", str(_SWEEP_FRAMES), "--json", result, "--sweep", *SWEEPS)
-        for name, rows in json.loads(result.read_text())["sweeps"].items():
+        for name, rows in source.read(result)["sweeps"].items():
             write_table(name, sweep_table(rows, columns_of(rows)))
 
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "command/init/init_command.h"
+#include "common/files.h"
 #include "evaluation/drive/drive_config.h"
 #include "tests/support/temporary_folder.h"
 
@@ -80,6 +81,15 @@ TEST_F(InitTest, ReplacesAFileOnlyWithForce) {
   std::filesystem::current_path(kTree);
   ASSERT_TRUE(init({"--yes", "--force"}));
   EXPECT_NE(written(), "mine");
+  EXPECT_EQ(*read_file(file_.string() + ".bak"), "mine");
+}
+
+TEST_F(InitTest, KeepsTheOldFileWhereItCannotWrite) {
+  std::ofstream(file_) << "mine";
+  std::filesystem::create_directory(file_.string() + ".new");  // where the draft would be
+  std::filesystem::current_path(kTree);
+  ASSERT_FALSE(init({"--yes", "--force"}));
+  EXPECT_EQ(written(), "mine");
 }
 
 TEST_F(InitTest, WritesRealCamerasAndSaysThatTheyAreNotThere) {

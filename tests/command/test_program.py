@@ -70,6 +70,15 @@ class ProgramTest(unittest.TestCase):
             self.assertIn("bevloc: ", ended.stderr)
             self.assertIn("No space left on device", ended.stderr)
 
+    def test_a_message_shows_the_bytes_of_a_damaged_file(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            log = Path(folder) / "can.log"
+            log.write_bytes(b"(1.0) can0 \0\x1b[2J#00\n")
+            ended = run("listen", str(log))
+        self.assertEqual(ended.returncode, 2)
+        self.assertIn(r"found '(1.0) can0 \x00\x1B[2J#00', wanted", ended.stderr)
+        self.assertEqual(re.findall(r"[\x00-\x09\x0b-\x1f]", ended.stderr), [])
+
     def test_doctor_prints_json(self) -> None:
         answer = run("doctor", "--json")
         report = json.loads(answer.stdout)

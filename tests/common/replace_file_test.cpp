@@ -32,5 +32,17 @@ TEST(ReplaceFile, LeavesTheOldFileWhereItCannotWrite) {
   EXPECT_NE(status.error().message.find("rig.yaml.new"), std::string::npos);
 }
 
+TEST(ReplaceFile, KeepsDevicesAndFolders) {
+  const test::TemporaryFolder folder;
+  for (const std::filesystem::path& path : {std::filesystem::path("/dev/full"), folder.path()}) {
+    for (const Status& status :
+         {replace_file(path, "text"), replace_file_with_backup(path, "text")}) {
+      ASSERT_FALSE(status) << path;
+      EXPECT_EQ(status.error().message,
+                path.string() + ": found a folder or a device, wanted a file to replace, or none");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bevloc

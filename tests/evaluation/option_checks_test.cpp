@@ -2,10 +2,15 @@
 #include "common/option_checks.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc {
 namespace {
@@ -51,9 +56,38 @@ TEST(OptionChecks, ANameIsNotEmpty) {
 }
 
 TEST(OptionChecks, AnOutputFileIsNotStandardOutput) {
-  EXPECT_EQ(message_of(output_file(), "a.json"), "");
-  EXPECT_THAT(message_of(output_file(), ""), HasSubstr("found an empty name"));
-  EXPECT_THAT(message_of(output_file(), "-"), HasSubstr("found '-'"));
+  for (const CLI::Validator& check : {output_file(), output_name()}) {
+    EXPECT_EQ(message_of(check, "a.json"), "");
+    EXPECT_THAT(message_of(check, ""), HasSubstr("found an empty name"));
+    EXPECT_THAT(message_of(check, "-"), HasSubstr("found '-'"));
+  }
+}
+
+TEST(OptionChecks, AnOutputFileCanBeWritten) {
+  const test::TemporaryFolder folder;
+  const std::string there = folder / "there.json";
+  const std::string missing = folder / "no/a.json";
+  std::ofstream(there) << "{}";
+  for (const std::string& good : {there, std::string(folder / "new.json"), std::string("/dev/null")}) {
+    EXPECT_EQ(message_of(output_file(), good), "");
+  }
+  EXPECT_EQ(message_of(output_file(), folder.path()),
+            fmt::format("--option: {}: found a folder, wanted the name of a file to write",
+                        folder.path().string()));
+  EXPECT_EQ(message_of(output_file(), missing),
+            fmt::format("--option: {}: found no folder {}, wanted one for this file; create it first",
+                        missing, (folder / "no").string()));
+  EXPECT_THAT(message_of(output_file(), there + "/a.json"), HasSubstr("found no folder"));
+  EXPECT_EQ(message_of(output_name(), missing), "") << "the command may create the folder";
+}
+
+TEST(OptionChecks, AnOutputFileNeedsAFolderThatMayBeWritten) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+  const test::TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read |
+                                                  std::filesystem::perms::owner_exec);
+  EXPECT_THAT(message_of(output_file(), folder / "a.json"),
+              HasSubstr("found no way to write in the folder"));
 }
 
 }  // namespace

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import tempfile
 import unittest
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image
 
-from evaluation.figures import axis_features, distributions, frame_stages, spectra, stanford, style
+from evaluation.figures import axis_features, distributions, frame_stages, source
+from evaluation.figures import spectra, stanford, style
 
 RANDOM = np.random.default_rng(1)
 
@@ -149,10 +152,50 @@ class FiguresTest(unittest.TestCase):
         self.check((frame_stages.WIDTH_PX, frame_stages.height_px(3)), [style.BLUE, style.GREEN])
 
     def test_stanford_leaves_out_a_diagram_without_poses(self) -> None:
-        stanford.draw(stanford_data(), self.file)
+        data = stanford.data_of(stanford_data(), self.file)
+        stanford.draw(data, self.file)
         width = stanford.LEFT + 3 * stanford.PANEL + 2 * stanford.GAP + stanford.RIGHT
         height = stanford.TOP + stanford.PANEL + stanford.BOTTOM
         self.check((width, height), [style.INK, style.ORANGE])
+
+
+class SourceTest(unittest.TestCase):
+    def refusal(self, read: Callable[[Any, Path], object], document: object) -> str:
+        with self.assertRaises(source.SourceError) as refused:
+            read(document, Path("x.json"))
+        return str(refused.exception)
+
+    def test_a_bench_without_the_frame_or_its_ideals_is_named(self) -> None:
+        whole: dict[str, Any] = {**bench_data()}
+        self.assertEqual(frame_stages.data_of(whole, Path("x.json")), whole)
+        stage = {key: value for key, value in whole.items() if key != "frame"}
+        no_peak = {**whole, "frame": {**whole["frame"], "sum_of_ideals_ms": None}}
+        for document, found, wanted in (
+            ({"sweeps": {}}, "no stages", "bench --json`"),
+            ([], "no stages", "bench --json`"),
+            (stage, "no whole frame", "without --stage"),
+            (no_peak, "no ideal times", "without --no-peak"),
+        ):
+            said = self.refusal(frame_stages.data_of, document)
+            self.assertRegex(said, f"^x.json: found {found}, .*{wanted}$")
+
+    def test_diagrams_without_poses_are_named(self) -> None:
+        for document, found in (
+            (bench_data(), "no diagrams"),
+            ([{}], "no diagrams"),
+            ([1], "no diagrams"),
+            (stanford_data()[1:], "no valid pose"),
+        ):
+            self.assertRegex(self.refusal(stanford.data_of, document), f"^x.json: found {found}")
+
+    def test_a_file_without_json_is_named(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "x.json"
+            for content in (None, b"", b"\xff"):
+                if content is not None:
+                    file.write_bytes(content)
+                with self.assertRaisesRegex(source.SourceError, f"^{file}: found no JSON"):
+                    source.read(file)
 
 
 class BevImageTest(unittest.TestCase):

@@ -1,5 +1,6 @@
 // bevlocd ends with exit code 2 and one line on stderr when an input is wrong.
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,29 @@ TEST_F(BadInputTest, OutputFolderThatCannotBeMade) {
                      "/config/demo.yaml --fast --duration 1 --out " +
                      (scratch_ / "file/out").string(),
                  {"file/out"});
+}
+
+TEST_F(BadInputTest, AResultThatCannotBeWritten) {
+  const std::string result = (scratch_ / "no/result.json").string();
+  expect_refused("--config " + std::string(BEVLOC_SOURCE_DIR) +
+                     "/config/demo.yaml --fast --duration 1 --out " + (scratch_ / "out").string() +
+                     " --json " + result,
+                 {result + ": found no folder"});
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "out/can.log")) << "nothing was driven";
+}
+
+TEST_F(BadInputTest, OptionsOfASimulatedDriveWithRealCameras) {
+  const std::filesystem::path root = BEVLOC_SOURCE_DIR;
+  const std::string config = (scratch_ / "config.yaml").string();
+  write_file(config, "cameras: {driver: replay, recording: .}\ncalibration: {rig: " +
+                         (root / "config/rig_demo.yaml").string() + "}\nmap: {file: " +
+                         (root / "tests/pipeline/map/fixtures/street.osm").string() +
+                         "}\nmodel: {file: " + (root / "models/nano.onnx").string() +
+                         "}\ncan: {driver: mock}\n");
+  for (const std::string& option : {std::string("--fast"), "--out " + scratch_.path().string()}) {
+    expect_refused("--config " + config + " " + option,
+                   {"found cameras that are not mock, wanted mock ones for", " --out,"});
+  }
 }
 
 TEST_F(BadInputTest, OptionsWithoutSense) {

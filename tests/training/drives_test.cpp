@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "common/files.h"
 #include "common/image_file.h"
@@ -62,10 +64,12 @@ class PictureDrive {
     write_reference(0.0, 0.1 * framesets);
   }
 
-  void write_reference(double from_s, double to_s) {
+  void write_reference(double from_s, double to_s, double heading_rad = 0.0) {
+    const Eigen::Vector2d velocity(10.0 * std::cos(heading_rad), 10.0 * std::sin(heading_rad));
     std::vector<ReferenceTrajectory::Pose> poses;
     for (double time_s = from_s - 0.1; time_s <= to_s + 0.2; time_s += 0.1) {
-      poses.push_back({kStart + from_seconds(time_s), {10.0 * time_s, 0.0, 0.0}});
+      const Eigen::Vector2d place = time_s * velocity;
+      poses.push_back({kStart + from_seconds(time_s), {place.x(), place.y(), heading_rad}});
     }
     EXPECT_TRUE(write_file(folder_ / kReferenceFile, ReferenceTrajectory(poses).to_csv()));
   }
@@ -109,16 +113,80 @@ TEST(DriveSet, TakesAFramesetEveryMetreAndHoldsSquaresBack) {
   const auto& held_back = set->places(DrivePart::kHeldBack);
   const auto& training = set->places(DrivePart::kTraining);
   EXPECT_NEAR(static_cast<double>(held_back.size()), 200, 2) << "the fourth and the eighth square";
-  EXPECT_NEAR(static_cast<double>(set->left_out().beside_held_back), 4 * 30, 4);
+  EXPECT_NEAR(static_cast<double>(set->left_out().beside_held_back), 4 * 36, 4);
   EXPECT_EQ(held_back.size() + training.size() + set->left_out().beside_held_back +
                 set->left_out().too_close + set->left_out().without_pose,
             1000U);
   const auto x_of = [](const SamplePlace& place) { return static_cast<double>(place.frameset); };
   for (const SamplePlace& one : held_back) {
     for (const SamplePlace& other : training) {
-      ASSERT_GE(std::abs(x_of(one) - x_of(other)), 29.0);
+      ASSERT_GE(std::abs(x_of(one) - x_of(other)), 35.0);
     }
   }
+}
+
+std::pair<double, double> square_of(const Eigen::Vector2d& place) {
+  return {std::floor(place.x() / DriveSet::kSquare_m), std::floor(place.y() / DriveSet::kSquare_m)};
+}
+
+/// The corners of the rasters of a sample, with the priors that are furthest off.
+std::vector<Eigen::Vector2d> corners_of_rasters(const Se2& truth) {
+  std::vector<Eigen::Vector2d> corners;
+  for (const double right : {-1.0, 1.0}) {
+    for (const double back : {-1.0, 1.0}) {
+      const Se2 correction{2.0 * back, 1.0 * right, radians(2.0)};
+      for (const Se2& pose : {truth, truth * correction.inverse()}) {
+        for (const double x_m : {-30.0, 30.0}) {
+          for (const double y_m : {-15.0, 15.0})
+            corners.push_back(pose * Eigen::Vector2d(x_m, y_m));
+        }
+      }
+    }
+  }
+  return corners;
+}
+
+TEST(DriveSet, ATrainingSampleShowsNoSquareThatIsHeldBack) {
+  for (const double heading_rad : {0.0, std::atan2(15.0, 30.0), radians(45.0), radians(-63.0)}) {
+    PictureDrive drive(1000);
+    drive.write_reference(0.0, 100.0, heading_rad);
+    auto set = drive.open();
+    ASSERT_TRUE(set) << set.error().message;
+    const auto pose_of = [&set](const SamplePlace& place) {
+      const DriveIndex& index = set->drive(place.drive).index();
+      return index.reference.at(index.framesets[place.frameset].time).value();
+    };
+    std::set<std::pair<double, double>> held_back;
+    for (const SamplePlace& place : set->places(DrivePart::kHeldBack)) {
+      held_back.insert(square_of(pose_of(place).translation()));
+    }
+    ASSERT_FALSE(held_back.empty());
+    for (const SamplePlace& place : set->places(DrivePart::kTraining)) {
+      for (const Eigen::Vector2d& corner : corners_of_rasters(pose_of(place))) {
+        ASSERT_FALSE(held_back.contains(square_of(corner)))
+            << "heading " << degrees(heading_rad) << ", frameset " << place.frameset;
+      }
+    }
+  }
+}
+
+TEST(DriveSet, NamesAFolderThatCannotBeFollowed) {
+  const test::TemporaryFolder folder;
+  fs::create_directory_symlink("circle", folder / "circle");
+  const auto set = DriveSet::open({.folder = folder.path(), .reference = ReferenceKind::kFile});
+  ASSERT_FALSE(set);
+  EXPECT_THAT(set.error().message, HasSubstr("circle: found no file or folder behind this name"));
+}
+
+TEST(DriveSet, NamesAFolderThatCannotBeRead) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder / "closed");
+  fs::permissions(folder / "closed", fs::perms::none);
+  const auto set = DriveSet::open({.folder = folder.path(), .reference = ReferenceKind::kFile});
+  fs::permissions(folder / "closed", fs::perms::owner_all);  // so that it can be removed
+  ASSERT_FALSE(set);
+  EXPECT_THAT(set.error().message, HasSubstr("closed: found no way to list this folder"));
 }
 
 TEST(DriveSet, LeavesOutWhatHasNoReference) {

@@ -92,8 +92,8 @@ class DrivesTest(unittest.TestCase):
     def test_every_fourth_square_is_held_back(self) -> None:
         training, held_back = self.drives.counts()
         self.assertEqual(held_back, 100 // SPACING_M)
-        # Of 500 m, 100 are held back, and 30 on both sides of these are left out.
-        self.assertAlmostEqual(training, (LENGTH_M - 100 - 2 * 30) // SPACING_M, delta=2)
+        # Of 500 m, 100 are held back, and 36 on both sides of these are left out.
+        self.assertAlmostEqual(training, (LENGTH_M - 100 - 2 * 36) // SPACING_M, delta=2)
         self.assertEqual(sum(map(len, drive_batches(self.drives, "held-back", 999, 1))), held_back)
 
     def test_an_epoch_has_each_sample_once(self) -> None:
@@ -124,7 +124,7 @@ class DrivesTest(unittest.TestCase):
         with self.assertRaisesRegex(SamplerError, "bevloc_drive_sampler: ended with status 1"):
             self.stream().next(60)
         good = {bytes(row.numpy()) for row in self.stream_that_skips().next(60).raster_truth}
-        self.assertLess(len(good), 40)  # of 68 samples, more than half are bad
+        self.assertLess(len(good), 40)  # of 65 samples, more than half are bad
 
     def test_refuses_a_missing_map(self) -> None:
         drives = Drives(self.drives.recordings, str(self.root / "no.osm"), str(RIG))

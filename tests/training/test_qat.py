@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest.mock import patch
 
 import torch
 
 from tests.training.synthetic import SyntheticStream, gradient_of
 from tests.training.untrained import untrained_network
-from training.checkpoint import load_network
-from training.data import Batch
+from training.checkpoint import load_network, state_of_weights
+from training.config import CALIBRATION_SEEDS, FIRST_TRAINING_SEED, QAT_SEEDS, USUAL_SEEDS
+from training.data import Batch, SamplerStream
 from training.errors import NotFiniteError
 from training.export_onnx import quantization_of
 from training.fake_quantization import FakeQuantized
 from training.graph import folded_convolutions
-from training.qat import fine_tune, fine_tuning_loss, save
+from training.qat import SEED, fine_tune, fine_tuning_loss, main, save
 from training.quantize import int8_inference, quantize
 
 
@@ -99,6 +104,37 @@ class QuantizationAwareTraining(unittest.TestCase):
         network.convolutions["bev_compress.3.second"].bias.data[0] = float("nan")
         with self.assertRaisesRegex(NotFiniteError, "step 0"):
             fine_tune(network, SameBatch(self.batch), steps=2, batch_size=1, rate=1e-3)
+
+
+class Program(unittest.TestCase):
+    def run_main(self, *arguments: str) -> None:
+        said = io.StringIO()
+        with patch.object(sys, "argv", ["qat", *arguments]), contextlib.redirect_stdout(said):
+            main()
+
+    def test_has_seeds_of_its_own(self):
+        parts = sorted((0, USUAL_SEEDS, CALIBRATION_SEEDS, QAT_SEEDS, SamplerStream.SEED_STRIDE))
+        self.assertGreaterEqual(min(b - a for a, b in zip(parts, parts[1:])), 2**26)
+        self.assertEqual(SEED, FIRST_TRAINING_SEED + QAT_SEEDS)
+
+    def test_trains_with_the_nuisances_of_the_checkpoint(self):
+        batch = SyntheticStream(3).next(1)
+        weights = untrained_network().state_dict()
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "checkpoint.pt"
+            torch.save(state_of_weights(weights, {"nuisances": "strong"}), path)
+            with patch("training.qat.calibration_batches", return_value=[batch]) as calibration, \
+                    patch("training.qat.SamplerStream", return_value=SameBatch(batch)) as stream:
+                self.run_main(str(path), "--run", folder, "--samples=1", "--batch=1")
+        self.assertEqual(calibration.call_args.args[2], "strong")
+        self.assertEqual(stream.call_args.kwargs["nuisances"], "strong")
+
+    def test_refuses_less_than_a_batch(self):
+        said = io.StringIO()
+        with self.assertRaises(SystemExit) as ended, contextlib.redirect_stderr(said):
+            self.run_main("none.pt", "--run", "none", "--samples=7")
+        self.assertEqual(ended.exception.code, 2)
+        self.assertIn("--samples: found 7, wanted at least one batch of 8", said.getvalue())
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Tests the parts of a run: options, precision, patience, checkpoints and progress."""
 
 import contextlib
+import dataclasses
 import io
 import tempfile
 import unittest
@@ -10,6 +11,7 @@ from pathlib import Path
 import torch
 
 from training.checkpoint import load_network, network_of, read_checkpoint
+from training.config import TrainingConfig
 from training.early_stop import Patience
 from training.errors import CheckpointError, TrainingError
 from training.models import PRESETS, BevNetwork
@@ -46,8 +48,23 @@ class Options(unittest.TestCase):
         self.assertIn("384 x 896", self.refusal(*budget, "--network", "paper-resnet50"))
         self.assertIn("found 401, wanted at least 4294967296", self.refusal(*budget, "--seed=401"))
         self.assertIn("no --scenes", self.refusal(*budget, "--validation-scenes", "val.txt"))
+        self.assertIn("found no --nuscenes", self.refusal(*budget, "--scenes", "train.txt"))
+        self.assertIn("found no --recordings", self.refusal(*budget, "--rig", "rig.yaml"))
         self.assertIn("unrecognized", self.refusal(*budget, "--record", "drives"))
-        self.assertIn("0 minutes", self.refusal(*budget, "--validation-minutes", "0"))
+        self.assertIn("found 0.0, wanted more", self.refusal(*budget, "--validation-minutes", "0"))
+        self.assertIn("found 0, wanted 1 to 1024", self.refusal(*budget, "--sampler-threads", "0"))
+        self.assertIn("found 0, wanted at least 1", self.refusal(*budget, "--log-steps", "0"))
+        self.assertIn("wanted less than 2^63", self.refusal(*budget, "--seed", str(2**64)))
+
+    def test_each_number_has_a_range(self):
+        for field in dataclasses.fields(TrainingConfig):
+            kind = type(field.default)
+            if kind not in (int, float):
+                continue
+            budget = "--minutes=1" if field.name == "samples" else "--samples=8"
+            for wrong in ("-1",) if kind is int else ("-1", "nan", "inf"):
+                option = f"--{field.name.replace('_', '-')}"
+                self.assertIn(f"error: {option}: found", self.refusal(budget, f"{option}={wrong}"))
 
 
 class Precisions(unittest.TestCase):

@@ -114,6 +114,19 @@ class Resuming(TemporaryRuns):
             trainer(self.folder(), init=str(checkpoint))
 
 
+class LearningRate(TemporaryRuns):
+    def test_falls_from_a_share_of_the_budget_on(self):
+        run = trainer(self.folder(), anneal_from=0.5, warm_up_steps=0)
+        start, end = (run.config.learning_rate * factor for factor in (1.0, run.config.final_rate))
+        for spent, wanted in ((0.0, start), (0.5, start), (0.75, (start + end) / 2), (1.0, end)):
+            self.assertAlmostEqual(run._learning_rate(spent), wanted)
+
+    def test_need_not_fall_nor_warm_up(self):
+        run = trainer(self.folder(), anneal_from=1.0, warm_up_steps=0)
+        for spent in (0.0, 0.5, 1.0):
+            self.assertEqual(run._learning_rate(spent), run.config.learning_rate)
+
+
 class Networks(TemporaryRuns):
     def test_another_network_trains_and_its_checkpoint_remembers_it(self):
         run = self.folder()

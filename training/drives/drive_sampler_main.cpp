@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/option_checks.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/map_loader.h"
@@ -30,7 +31,6 @@ using bevloc::drives::SamplePlace;
 
 constexpr const char* kProgram = "bevloc_drive_sampler";
 constexpr int kExitBadSamples = 1;
-constexpr int kExitWrongInput = 2;
 
 struct Options {
   std::string recordings;
@@ -63,13 +63,15 @@ void add_options(CLI::App& app, Options& options) {
       ->transform(CLI::CheckedTransformer(references));
   app.add_option("--part", options.part, "Places: training or held-back")
       ->transform(CLI::CheckedTransformer(parts));
-  app.add_option("--first-seed", options.first_seed, "Seed of order, priors and missing cameras");
-  app.add_option("--first-sample", options.first_sample, "Number of the first sample to write");
+  app.add_option("--first-seed", options.first_seed, "Seed of order, priors and missing cameras")
+      ->check(bevloc::whole_number());
+  app.add_option("--first-sample", options.first_sample, "Number of the first sample to write")
+      ->check(bevloc::whole_number());
   app.add_option("--stride", options.stride, "Write every so many samples")
       ->check(CLI::Range(1, 1024));
   app.add_option("--drop-camera-probability", options.drop_camera_probability,
                  "Probability that a sample lacks one or two cameras")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(bevloc::number_between(0.0, 1.0));
   app.add_flag("--skip-bad", options.skip, "The next good sample replaces a bad one");
   app.add_flag("--count", options.count, "Print the numbers of samples of both parts, and end");
   app.add_flag("--check", options.check, "Read every sample once, name the bad ones, and end");
@@ -113,7 +115,7 @@ int write_samples(const Options& options, DriveSet& set, DriveSampleMaker& maker
                "{}: found no sample of this part, wanted some; the drives need reference poses and "
                "at least {} squares of {:g} m\n",
                options.recordings, DriveSet::kHeldBackEvery, DriveSet::kSquare_m);
-    return kExitWrongInput;
+    return bevloc::kBadInput;
   }
   if (!bevloc::write_output(bevloc::sample_stream_header(), kProgram)) return kExitBadSamples;
   std::vector<SamplePlace> order;
@@ -142,7 +144,7 @@ int write_samples(const Options& options, DriveSet& set, DriveSampleMaker& maker
 int run(const Options& options) {
   const auto refuse = [](const bevloc::Error& error) {
     fmt::print(stderr, "{}\n", error.message);
-    return kExitWrongInput;
+    return bevloc::kBadInput;
   };
   bevloc::drives::DriveSetOptions chosen{options.recordings, options.reference, std::nullopt};
   if (!options.rig.empty()) {
@@ -162,7 +164,7 @@ int run(const Options& options) {
   const bevloc::MapIndex index(*map);
   DriveSampleMaker maker(*set, index);
   if (options.check) return check(*set, maker);
-  if (!bevloc::output_is_pipe(kProgram)) return kExitWrongInput;
+  if (!bevloc::output_is_pipe(kProgram)) return bevloc::kBadInput;
   return write_samples(options, *set, maker);
 }
 
@@ -172,10 +174,6 @@ int main(int argc, char** argv) {
   CLI::App app{"Writes samples of recorded drives to standard output (training/README.md)."};
   Options options;
   add_options(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitWrongInput;
-  }
+  if (const auto ended = bevloc::parse_options(app, argc, argv)) return *ended;
   return run(options);
 }

@@ -30,29 +30,71 @@ double distance_to(const Square& square, const Eigen::Vector2d& place) {
 
 bool is_drive_of_pictures(const fs::path& folder) {
   return std::ranges::any_of(kCameraNames, [&](std::string_view camera) {
-    return fs::exists(folder / camera / "frames.txt");
+    std::error_code unreadable;  // entries_of() names the folder
+    return fs::exists(folder / camera / "frames.txt", unreadable);
   });
+}
+
+/// The paths in a folder, sorted.
+Result<std::vector<fs::path>> entries_of(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> entries;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    entries.push_back(entry->path());
+  }
+  if (error) {
+    return fail("{}: found no way to list this folder ({}), wanted a readable one", folder.string(),
+                error.message());
+  }
+  std::ranges::sort(entries);
+  return entries;
+}
+
+/// Fails for a link that leads nowhere or in a circle.
+Result<bool> is_folder(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status found = fs::status(path, error);
+  if (fs::exists(found)) return fs::is_directory(found);
+  return fail("{}: found no file or folder behind this name ({}), wanted one", path.string(),
+              error.message());
 }
 
 /// The MCAP files of a folder, those of each run together.
 Result<std::vector<std::vector<fs::path>>> runs_in(const fs::path& folder) {
+  const auto entries = entries_of(folder);
+  if (!entries) return tl::unexpected(entries.error());
   std::map<std::string, std::vector<fs::path>> by_run;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() != ".mcap") continue;
-    const auto reader = mcap::Reader::open(entry.path());
+  for (const fs::path& entry : *entries) {
+    if (entry.extension() != ".mcap") continue;
+    const auto reader = mcap::Reader::open(entry);
     if (!reader) return tl::unexpected(reader.error());
     const mcap::Metadata* metadata = reader->metadata(firmware::kMetadataName);
     const std::string key(firmware::kClockOffsetKey);
     const bool known = metadata != nullptr && metadata->values.contains(key);
-    by_run[known ? metadata->values.at(key) : ""].push_back(entry.path());
+    by_run[known ? metadata->values.at(key) : ""].push_back(entry);
   }
   std::vector<std::vector<fs::path>> runs;
-  for (auto& [key, files] : by_run) {
-    std::ranges::sort(files);
-    runs.push_back(std::move(files));
-  }
+  for (auto& [key, files] : by_run) runs.push_back(std::move(files));
   std::ranges::sort(runs);
   return runs;
+}
+
+/// The folder itself, and the folders in it that may have drives of their own.
+Result<std::vector<fs::path>> folders_of_drives(const fs::path& folder) {
+  std::vector<fs::path> folders{folder};
+  // The folders in it are those of its cameras.
+  if (is_drive_of_pictures(folder)) return folders;
+  const auto entries = entries_of(folder);
+  if (!entries) return tl::unexpected(entries.error());
+  for (const fs::path& entry : *entries) {
+    // The black box has second names of files that are drives already.
+    if (entry.filename() == firmware::kBlackBoxFolder) continue;
+    const auto found = is_folder(entry);
+    if (!found) return tl::unexpected(found.error());
+    if (*found) folders.push_back(entry);
+  }
+  return folders;
 }
 
 /// Appends the drives of a folder, without those in folders in it.
@@ -109,20 +151,13 @@ Result<DriveSet> DriveSet::open(const DriveSetOptions& options) {
   if (!fs::is_directory(options.folder, error)) {
     return fail("{}: found no folder, wanted one with recordings", options.folder.string());
   }
-  std::vector<fs::path> folders{options.folder};
-  for (const auto& entry : fs::directory_iterator(options.folder)) {
-    // The black box has second names of files that are drives already.
-    const bool black_box = entry.path().filename() == firmware::kBlackBoxFolder;
-    if (entry.is_directory() && !black_box) folders.push_back(entry.path());
-  }
-  std::sort(folders.begin() + 1, folders.end());
+  const auto folders = folders_of_drives(options.folder);
+  if (!folders) return tl::unexpected(folders.error());
   DriveSet set;
-  for (const fs::path& folder : folders) {
+  for (const fs::path& folder : *folders) {
     if (Status added = add_drives(folder, options, set.drives_); !added) {
       return tl::unexpected(added.error());
     }
-    // The folders in it are those of its cameras.
-    if (&folder == &folders.front() && is_drive_of_pictures(folder)) break;
   }
   if (set.drives_.empty()) {
     return fail("{}: found no drive, wanted MCAP files of bevloc, or {}/frames.txt",

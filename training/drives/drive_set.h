@@ -47,8 +47,9 @@ class DriveSet {
   static constexpr double kLeastTurn_rad = radians(5.0);
   static constexpr double kSquare_m = 100.0;
   static constexpr int kHeldBackEvery = 4;
-  /// A sample shows 30 m to the front and to the back (kRasterGrid).
-  static constexpr double kSeen_m = 30.0;
+  /// How far from its reference pose a sample shows the map, at any heading: 30 m along and 15 m
+  /// across (kRasterGrid) from a prior that is up to 2 m and 1 m off (sim::random_correction()).
+  static constexpr double kSeen_m = 36.0;
 
   /// Fails if there is no drive, or if a drive cannot be opened.
   static Result<DriveSet> open(const DriveSetOptions& options);

@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/option_checks.h"
 #include "sim/render/photo_library.h"
 #include "sim/samples/sample_maker.h"
 #include "sim/samples/training_nuisances.h"
@@ -26,7 +27,6 @@ using bevloc::sim::SampleStream;
 using bevloc::sim::TrainingNuisances;
 
 constexpr const char* kProgram = "bevloc_sampler";
-constexpr int kExitWrongInput = 2;
 
 struct Options {
   uint64_t first_seed = 0;
@@ -46,13 +46,15 @@ const std::map<std::string, TrainingNuisances (*)()>& nuisances_by_name() {
 }
 
 void add_options(CLI::App& app, Options& options) {
-  app.add_option("--first-seed", options.first_seed, "Seed of the stream's first world");
-  app.add_option("--first-sample", options.first_sample, "Number of the first sample to write");
+  app.add_option("--first-seed", options.first_seed, "Seed of the stream's first world")
+      ->check(bevloc::whole_number());
+  app.add_option("--first-sample", options.first_sample, "Number of the first sample to write")
+      ->check(bevloc::whole_number());
   app.add_option("--threads", options.threads, "Threads that render ahead")
       ->check(CLI::Range(1, 1024));
   app.add_option("--drop-camera-probability", options.drop_camera_probability,
                  "Probability that a sample lacks one or two cameras")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(bevloc::number_between(0.0, 1.0));
   app.add_option("--nuisances", options.nuisances, "Disturbances of the samples")
       ->check(CLI::IsMember(nuisances_by_name()));
   app.add_option("--photos", options.photos,
@@ -66,7 +68,7 @@ int write_samples(const Options& options) {
     auto loaded = PhotoLibrary::load(options.photos);
     if (!loaded) {
       std::fprintf(stderr, "%s\n", loaded.error().message.c_str());
-      return kExitWrongInput;
+      return bevloc::kBadInput;
     }
     photos = std::make_unique<PhotoLibrary>(std::move(*loaded));
   }
@@ -88,11 +90,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Writes simulated samples for training to standard output (training/README.md)."};
   Options options;
   add_options(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitWrongInput;
-  }
-  if (!bevloc::output_is_pipe(kProgram)) return kExitWrongInput;
+  if (const auto ended = bevloc::parse_options(app, argc, argv)) return *ended;
+  if (!bevloc::output_is_pipe(kProgram)) return bevloc::kBadInput;
   return write_samples(options);
 }

@@ -22,6 +22,7 @@ from training.nuscenes.dataset import NuscenesDataset, View
 from training.nuscenes.errors import NuscenesError
 from training.nuscenes.geometry import inverse_se3
 from training.nuscenes.problems import Problems
+from training.option_types import whole_number
 
 EXIT_BAD_SAMPLES = 1
 EXIT_BAD_TREE = 2
@@ -91,7 +92,7 @@ def main() -> None:
     )
     parser.add_argument("--version", default="", help="v1.0-*, if there are several")
     parser.add_argument(
-        "--draw", type=int, default=0, help="number of sheets, spread over all samples"
+        "--draw", type=whole_number(0), default=0, help="number of sheets, spread over all samples"
     )
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for the sheets")
     options = parser.parse_args()

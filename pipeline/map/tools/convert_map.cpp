@@ -5,14 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/option_checks.h"
 #include "common/output_check.h"
 #include "pipeline/map/map_binary.h"
 #include "pipeline/map/map_loader.h"
 #include "pipeline/map/map_summary.h"
 
 namespace {
-
-constexpr int kBadInput = 2;
 
 bevloc::Status convert(const std::filesystem::path& in, const std::filesystem::path& out) {
   auto allowed = bevloc::check_extension(out, ".bvm");
@@ -37,14 +36,10 @@ int main(int argc, char** argv) {
   std::string out;
   app.add_option("in", in, "Map to read")->required();
   app.add_option("out", out, "Compact map (.bvm) to write")->required();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
-  }
+  if (const auto ended = bevloc::parse_options(app, argc, argv)) return *ended;
   if (const auto status = convert(in, out); !status) {
     fmt::print(stderr, "bevloc_convert_map: {}\n", status.error().message);
-    return kBadInput;
+    return bevloc::kBadInput;
   }
   return 0;
 }

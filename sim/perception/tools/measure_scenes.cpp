@@ -2,13 +2,14 @@
 // each corruption level and the time per scene; writes images of the first scenes on request.
 #include <array>
 #include <chrono>
-#include <filesystem>
 #include <string>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <opencv2/core.hpp>
 
+#include "common/files.h"
+#include "common/option_checks.h"
 #include "common/picture_file.h"
 #include "pipeline/map/rasterizer.h"
 #include "sim/perception/mask_features.h"
@@ -101,7 +102,8 @@ cv::Mat3b image_of(const std::vector<Value>& planes, double scale) {
 /// Writes one image per scene: the map at the true pose, the perceived masks from mild to hard, and
 /// the map at the prior.
 Status write_images(const Options& options, uint64_t seed_base) {
-  std::filesystem::create_directories(options.out);
+  if (options.images == 0) return {};
+  if (Status made = create_folder(options.out); !made) return made;
   SceneSampler sampler(seed_base);
   MatchingScene scene;
   for (int i = 0; i < options.images; ++i) {
@@ -129,15 +131,17 @@ Status write_images(const Options& options, uint64_t seed_base) {
 }  // namespace bevloc::sim
 
 int main(int argc, char** argv) {
+  constexpr int kMostScenes = 100'000;
+  static_assert(kMostScenes <= bevloc::sim::scenes_of(bevloc::sim::kSceneSeedCount));
   bevloc::sim::Options options;
   CLI::App app("Measures the scenes on which pose solvers are evaluated");
   app.add_flag("--tuning", options.tuning, "Use the tuning seeds instead of the evaluation seeds");
   app.add_option("--scenes", options.scenes, "Number of scenes to measure")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, kMostScenes));
   app.add_option("--pictures", options.images, "Number of scenes to draw as images")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--out", options.out, "Folder for the images");
-  CLI11_PARSE(app, argc, argv);
+      ->check(CLI::Range(0, kMostScenes));
+  app.add_option("--out", options.out, "Folder for the images")->check(bevloc::name_of("a folder"));
+  if (const auto ended = bevloc::parse_options(app, argc, argv)) return *ended;
   const uint64_t seed_base =
       options.tuning ? bevloc::sim::kTuningSeedBase : bevloc::sim::kEvaluationSeedBase;
   if (options.scenes > 0) {
@@ -146,5 +150,5 @@ int main(int argc, char** argv) {
   }
   const bevloc::Status written = bevloc::sim::write_images(options, seed_base);
   if (!written) fmt::print(stderr, "{}\n", written.error().message);
-  return written ? 0 : 1;
+  return written ? 0 : bevloc::kBadInput;
 }

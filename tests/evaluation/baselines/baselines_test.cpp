@@ -96,8 +96,8 @@ TEST(IterativeClosestPointsTest, ConvergesToTheWrongEdgeOfACrossing) {
   EXPECT_GT(std::abs(found.x_m - kLargeCorrection.x_m), 1.0);
 }
 
-/// Images of the street from cameras without calibration error: asphalt, with paint 0.24 m wide on
-/// the dividers and on the edges of the crossing.
+/// Images of the street from the scene's cameras, without calibration error: asphalt, with paint
+/// 0.24 m wide on the dividers and on the edges of the crossing.
 std::vector<uint8_t> painted_images(const StreetScene& scene) {
   constexpr uint8_t kAsphalt = 70;
   constexpr uint8_t kPaint = 200;
@@ -107,7 +107,7 @@ std::vector<uint8_t> painted_images(const StreetScene& scene) {
   const NearestLine nearest(lines[0]);
   std::vector<uint8_t> images(kCameraCount * kNetworkImageSize, kAsphalt);
   for (size_t i = 0; i < kCameraCount; ++i) {
-    const CameraModel& camera = sim::nominal_network_rig().cameras[i];
+    const CameraModel& camera = scene.rig.cameras[i];
     for (int pixel = 0; pixel < kNetworkWidthPx * kNetworkHeightPx; ++pixel) {
       const Eigen::Vector3d ray =
           camera.vehicle_from_camera.rotation *
@@ -139,7 +139,7 @@ class InversePerspectiveMappingTest : public testing::Test {
     return baseline_.correct(input);
   }
 
-  InversePerspectiveMapping baseline_{sim::nominal_network_rig(), HypothesisGrid{}};
+  InversePerspectiveMapping baseline_{HypothesisGrid{}};
 };
 
 TEST_F(InversePerspectiveMappingTest, RecoversAKnownOffset) {
@@ -148,6 +148,15 @@ TEST_F(InversePerspectiveMappingTest, RecoversAKnownOffset) {
     EXPECT_THAT(correct(scene, painted_images(scene)),
                 test::PoseNear(correction, 0.12, radians(0.3)));
   }
+}
+
+TEST_F(InversePerspectiveMappingTest, ProjectsWithTheRigOfTheSample) {
+  StreetScene scene(kCorrections[1]);
+  for (CameraModel& camera : scene.rig.cameras) {
+    camera.vehicle_from_camera.translation_m += Eigen::Vector3d(0.5, 0.2, 0.3);
+  }
+  EXPECT_THAT(correct(scene, painted_images(scene)),
+              test::PoseNear(kCorrections[1], 0.12, radians(0.3)));
 }
 
 TEST_F(InversePerspectiveMappingTest, KeepsThePriorIfThereIsNoPaint) {

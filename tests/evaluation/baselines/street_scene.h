@@ -9,6 +9,7 @@
 #include "pipeline/map/hd_map.h"
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/rasterizer.h"
+#include "sim/samples/sample_maker.h"
 
 namespace bevloc::evaluation {
 
@@ -47,9 +48,10 @@ struct StreetScene {
   }
 
   BaselineInput input() const {
-    return {.images = {}, .cameras = {}, .perceived = perceived, .raster = raster};
+    return {.images = {}, .cameras = {}, .rig = rig, .perceived = perceived, .raster = raster};
   }
 
+  Rig rig = sim::nominal_network_rig();
   Se2 map_from_vehicle{0.4, -0.3, radians(3.0)};
   std::vector<float> perceived;
   std::vector<uint8_t> raster;

@@ -93,6 +93,15 @@ TEST_F(SimulatedRunTest, AGapOfTheClockIsAGapOnTheBus) {
   EXPECT_NEAR(last_s, 3.5, 0.1);
 }
 
+TEST_F(SimulatedRunTest, AFullDiskIsNamed) {
+  std::filesystem::create_symlink("/dev/full", options_.out / "can.log");
+  config_.simulation->duration_s = 1.0;
+  const auto report = run();
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("can.log: found no room"), std::string::npos)
+      << report.error().message;
+}
+
 TEST_F(SimulatedRunTest, AThreadCannotHangInLockstep) {
   config_.simulation->faults = {make_fault(FaultKind::kHangVision, 1.0)};
   const auto report = run();

@@ -179,6 +179,9 @@ TEST_F(MapCommandTest, SaysWhatIsWrong) {
               HasSubstr("wanted .bvm or .geojson"));
   EXPECT_THAT(run({"map", "import", kStreet, at("a.png")}).error().message,
               HasSubstr("wanted .bvm or .geojson"));
+  EXPECT_THAT(run({"map", "import", kStreet, at("a.geojson"), "--bvm-1"}).error().message,
+              HasSubstr("--bvm-1: found " + at("a.geojson") + " as the map to write"));
+  EXPECT_FALSE(std::filesystem::exists(at("a.geojson")));
   EXPECT_THAT(run({"map", "import", kStreet, at("a.bvm"), "--origin", "49"}).error().message,
               HasSubstr("--origin: found \"49\", wanted LATITUDE,LONGITUDE"));
   ASSERT_TRUE(write_file(at("text.txt"), "hello").has_value());
