@@ -31,10 +31,11 @@ if(NOT BEVLOC_SIMULATION)
   install(FILES systemd/bevlocd.service DESTINATION lib/systemd/system COMPONENT bevloc)
   install(FILES systemd/sysusers.d/bevloc.conf DESTINATION lib/sysusers.d COMPONENT bevloc)
   install(FILES systemd/network/80-bevloc-can.link systemd/network/80-bevloc-can.network
-                systemd/live.conf systemd/udev/60-bevloc.rules
+                systemd/udev/60-bevloc.rules systemd/live.conf systemd/gnss.conf systemd/clock.conf
           DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT bevloc)
   install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT bevloc
-          FILES_MATCHING PATTERN "*.md" PATTERN "images" EXCLUDE PATTERN "decisions" EXCLUDE)
+          FILES_MATCHING PATTERN "*.md" PATTERN "*.json" PATTERN "images" EXCLUDE)
+  install(FILES SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT bevloc)
   install(DIRECTORY config/ DESTINATION ${BEVLOC_DATA_DIR}/config COMPONENT bevloc
           FILES_MATCHING PATTERN "rig_*.yaml")
   install(FILES models/nano.onnx models/small-lut.onnx

@@ -65,8 +65,14 @@ std::string option_text(const OptionEntry& option) {
   return text + "\n";
 }
 
+/// With a full stop, unless the text ends a sentence itself.
+std::string sentence(const std::string& text) {
+  const bool ends = !text.empty() && std::string(".?!").find(text.back()) != std::string::npos;
+  return roff(text) + (ends ? "\n" : ".\n");
+}
+
 std::string command_text(const CommandEntry& command) {
-  std::string text = roff(command.description) + ".\n";
+  std::string text = sentence(command.description);
   for (const OptionEntry& option : command.options) text += option_text(option);
   if (!command.footer.empty()) text += fmt::format(".PP\n.nf\n{}\n.fi\n", roff(command.footer));
   return text;
@@ -103,6 +109,33 @@ std::string values_of(const Json& schema) {
   return text;
 }
 
+bool requires_key(const Json& schema, const std::string& name) {
+  const Json keys = schema.value("required", Json::array());
+  return std::ranges::find(keys, Json(name)) != keys.end();
+}
+
+/// " Required with driver: mock." for a condition on one key of the same mapping.
+std::string condition_text(const Json& condition) {
+  const Json properties = condition.value("properties", Json::object());
+  if (properties.size() != 1) return "";
+  const Json& words = properties.front();
+  if (!words.contains("const") && !words.contains("enum")) return "";
+  const std::string values =
+      words.contains("const") ? words["const"].get<std::string>() : values_of(words);
+  return fmt::format(" Required with {}: {}.", properties.begin().key(), values);
+}
+
+/// Whether a mapping needs a key, always or with some words of another key.
+std::string required_text(const Json& mapping, const std::string& name) {
+  if (requires_key(mapping, name)) return " Required.";
+  for (const Json& rule : mapping.value("allOf", Json::array())) {
+    if (rule.contains("then") && requires_key(rule["then"], name)) {
+      return condition_text(rule["if"]);
+    }
+  }
+  return "";
+}
+
 /// All keys of a mapping, those of mappings inside it too.
 std::string keys_text(const Json& mapping, const std::string& prefix) {
   std::string text;
@@ -117,11 +150,13 @@ std::string keys_text(const Json& mapping, const std::string& prefix) {
       text += fmt::format(".TP\n\\fB{}\\fR\n", roff(path));
       text += fmt::format(
           "{}.", roff(is_map ? (is_list ? "list of mappings" : "mapping") : values_of(schema)));
+      text += roff(required_text(mapping, name));
       if (schema.contains("default"))
         text += fmt::format(" Default: {}.", roff(schema["default"].dump()));
       text += "\n";
     }
     const std::string description = schema.value("description", "");
+    if (prefix.empty() && is_map && requires_key(mapping, name)) text += "Required.\n";
     if (!description.empty()) {
       text += prefix.empty() && is_map ? roff(description) + "\n" : roff(description) + "\n";
     }

@@ -28,52 +28,96 @@ std::vector<std::string> cells_of(const std::string& row) {
   return cells;
 }
 
-/// The last word of each name in code marks: "fx_px", "translation_m" of
-/// "vehicle_from_camera.translation_m".
-std::vector<std::string> keys_of_cell(const std::string& cell) {
-  std::vector<std::string> keys;
-  const std::regex key("`(?:\\w+\\.)*(\\w+)`");
-  for (std::sregex_iterator match(cell.begin(), cell.end(), key), end; match != end; ++match) {
-    keys.push_back((*match)[1].str());
+/// The names in code marks: "fx_px" and "vehicle_from_camera.translation_m".
+std::vector<std::string> names_in(const std::string& text) {
+  std::vector<std::string> names;
+  const std::regex name("`(\\w+(?:\\.\\w+)*)`");
+  for (std::sregex_iterator match(text.begin(), text.end(), name), end; match != end; ++match) {
+    names.push_back((*match)[1].str());
   }
-  return keys;
+  return names;
+}
+
+/// Whose keys a table describes.
+struct Place {
+  std::vector<std::string> mappings;
+  bool any_depth = false;
+};
+
+/// `section`: without code marks; empty if its heading has none. `lead`: the line before the table.
+Place place_of(const std::string& section, const std::string& lead) {
+  Place place{{section}, section.empty()};
+  if (!lead.ends_with(":")) return place;
+  place.any_depth |= lead.starts_with("Keys of ");
+  const std::vector<std::string> names = names_in(lead);
+  if (names.empty()) return place;
+  place.mappings.clear();
+  for (const std::string& name : names) {
+    const bool is_whole = section.empty() || name.starts_with(section + ".");
+    place.mappings.push_back(is_whole ? name : section + "." + name);
+  }
+  return place;
+}
+
+std::string without_lists(const std::string& path) {
+  return std::regex_replace(path, std::regex("\\[\\]"), "");
 }
 
 }  // namespace
 
 PageTexts::PageTexts(std::string_view page) {
   std::istringstream lines{std::string(page)};
+  std::string heading;
   std::string section;
+  std::string lead;
+  Place place;
   bool has_meanings = false;
   bool in_table = false;
   bool introduces = false;
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("## ")) {
-      section = plain(line.substr(3));
+      heading = plain(line.substr(3));
+      const std::vector<std::string> names = names_in(line);
+      section = names.empty() ? "" : names.front();
       introduces = true;
+      lead.clear();
     } else if (line.starts_with("|")) {
+      introduces = false;
       const std::vector<std::string> cells = cells_of(line);
-      if (!in_table) has_meanings = cells.size() > 1 && cells.back() == "meaning";
-      if (in_table && has_meanings) {
-        for (const std::string& key : keys_of_cell(cells.front())) {
-          meanings_.try_emplace({section, key}, plain(cells.back()));
+      if (!in_table) {
+        has_meanings = cells.size() > 1 && cells.back() == "meaning";
+        place = place_of(section, lead);
+        lead.clear();
+      } else if (has_meanings) {
+        for (const std::string& key : names_in(cells.front())) {
+          for (const std::string& mapping : place.mappings) {
+            rows_.push_back({mapping, place.any_depth, key, plain(cells.back())});
+          }
         }
       }
-    } else if (introduces && !line.empty()) {
-      std::string& text = introductions_[section];
-      text += (text.empty() ? "" : " ") + plain(line);
-    } else if (introduces && !introductions_[section].empty()) {
+    } else if (!line.empty()) {
+      lead = line;
+      if (introduces) {
+        std::string& text = introductions_[heading];
+        text += (text.empty() ? "" : " ") + plain(line);
+      }
+    } else if (introduces && !introductions_[heading].empty()) {
       introduces = false;
     }
     in_table = line.starts_with("|");
   }
 }
 
-std::string PageTexts::meaning(const std::string& section, const std::string& key) const {
-  for (const auto& [place, text] : meanings_) {
-    if ((section.empty() || place.first == section) && place.second == key) return text;
+std::string PageTexts::meaning(const std::string& path) const {
+  const std::string whole = without_lists(path);
+  const Row* best = nullptr;
+  for (const Row& row : rows_) {
+    const std::string start = row.mapping.empty() ? "" : row.mapping + ".";
+    if (whole == start + row.key) return row.text;
+    if (!row.any_depth || !whole.starts_with(start) || !whole.ends_with("." + row.key)) continue;
+    if (best == nullptr || row.key.size() > best->key.size()) best = &row;
   }
-  return "";
+  return best == nullptr ? "" : best->text;
 }
 
 std::string PageTexts::introduction(const std::string& section) const {

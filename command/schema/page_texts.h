@@ -4,25 +4,36 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <vector>
 
 namespace bevloc::command {
 
 /// Reads every table of a page whose last column is called "meaning" and whose first column names
 /// keys, and the first paragraph of every section. Immutable.
+///
+/// A table describes the keys of the section above it ("## `cameras`"), or those of the mappings
+/// that the line before it names in code marks ("Each entry of `controls`:"). After a line "Keys of
+/// ...:", and in a section without code marks, its keys may lie at any depth.
 class PageTexts {
  public:
   explicit PageTexts(std::string_view page);
 
-  /// The meaning of a key in a section ("## `cameras`"). Of an empty section: of the first key of
-  /// this name. Empty if the page has none.
-  std::string meaning(const std::string& section, const std::string& key) const;
+  /// The meaning of the key with this whole path ("simulation.faults[].kind"). Empty if the page
+  /// has none.
+  std::string meaning(const std::string& path) const;
 
-  /// The first paragraph of a section, without a leading "Optional."; empty if there is none.
+  /// The first paragraph of a section, without a leading "Optional."; empty if a table comes first.
   std::string introduction(const std::string& section) const;
 
  private:
-  std::map<std::pair<std::string, std::string>, std::string> meanings_;
+  struct Row {
+    std::string mapping;  ///< "can.vehicle"; empty: the whole file
+    bool any_depth = false;
+    std::string key;  ///< "signal", "signals.vehicle"
+    std::string text;
+  };
+
+  std::vector<Row> rows_;  ///< in the order of the page
   std::map<std::string, std::string> introductions_;
 };
 

@@ -12,7 +12,7 @@ nlohmann::ordered_json configuration_schema(const firmware::SimulationReader* si
   const PageTexts page(configuration_page());
   const auto describe = [&page](const std::string& path) {
     if (parent_of(path).empty()) return page.introduction(path);
-    return page.meaning(path.substr(0, path.find_first_of(".[")), name_of_key(path));
+    return page.meaning(path);
   };
   const auto read = [simulation](YamlMap& yaml) { firmware::read_config(yaml, {}, simulation); };
   return schema_of(read, {"Configuration of bevlocd", describe});
@@ -20,9 +20,7 @@ nlohmann::ordered_json configuration_schema(const firmware::SimulationReader* si
 
 nlohmann::ordered_json rig_schema() {
   const PageTexts page(bring_your_own_page());
-  const auto describe = [&page](const std::string& path) {
-    return page.meaning("", name_of_key(path));
-  };
+  const auto describe = [&page](const std::string& path) { return page.meaning(path); };
   const auto read = [](YamlMap& yaml) {
     RigKeys keys;
     read_rig_keys(yaml, keys);

@@ -257,11 +257,11 @@ std::vector<Mode> bus_modes() {
   return std::move(modes).all();
 }
 
-/// Faults of the clocks of the whole appliance. A step of the wall clock has nothing to name,
+/// Faults of the clocks of the whole appliance. A step of the system clock has nothing to name,
 /// because nothing may come of it.
 std::vector<Mode> clock_modes() {
   ModeList modes(Mode{.on_stage = false});
-  modes.add("wall-clock-step", "the wall clock is set 0.9 s ahead", kToTheEnd,
+  modes.add("wall-clock-step", "the system clock is set 0.9 s ahead", kToTheEnd,
             fault(FaultKind::kWallClockStep, {.step_s = 0.9}), {});
   modes.add("process-stopped", "the appliance stands still for 3 s", {3.0},
             fault(FaultKind::kClockGap, {.gap_s = 3.0}), Why::kClockGap);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -249,9 +250,10 @@ HealthLimits read_health(std::optional<YamlMap> yaml) {
                              between(0.01, kFreewayAlertLimits.x()));
   limits.lateral_sigma_m = yaml->optional<double>("max_lateral_sigma_m", limits.lateral_sigma_m,
                                                   between(0.01, kFreewayAlertLimits.y()));
-  limits.yaw_sigma_rad =
-      radians(yaml->optional<double>("max_yaw_sigma_deg", degrees(limits.yaw_sigma_rad),
-                                     between(0.01, degrees(kFreewayAlertLimits.z()))));
+  // Rounded, because the limit in degrees is 1.5000000000000002.
+  const double most_yaw_sigma_deg = std::round(degrees(kFreewayAlertLimits.z()) * 1e9) / 1e9;
+  limits.yaw_sigma_rad = radians(yaml->optional<double>(
+      "max_yaw_sigma_deg", degrees(limits.yaw_sigma_rad), between(0.01, most_yaw_sigma_deg)));
   if (limits.lost_timeout <= limits.correction_timeout) {
     yaml->reject("lost_after_ms", "not more than degraded_after_ms", "more than degraded_after_ms");
   }

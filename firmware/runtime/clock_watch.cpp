@@ -45,7 +45,7 @@ void ClockWatch::log_loss(const drivers::ClockDiscipline& discipline) const {
     spdlog::warn(
         "clock: found a system clock that the kernel calls not synchronized, wanted one that a "
         "time service keeps (clock.source); TimeSource is FREE_RUNNING; check chrony or phc2sys, "
-        "and that systemd/clock.conf is installed");
+        "and that the drop-in clock.conf is installed");
   }
 }
 

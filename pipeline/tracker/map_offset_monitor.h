@@ -1,4 +1,4 @@
-// Finds a map that lies beside GNSS for good.
+// Finds a constant offset between map and GNSS.
 #pragma once
 
 #include <optional>

@@ -102,6 +102,13 @@ TEST_F(ManualTest, ThePageOfAProgramDescribesEveryOption) {
   EXPECT_THAT(page, HasSubstr("other(1)"));
 }
 
+TEST_F(ManualTest, AQuestionGetsNoFullStop) {
+  app_.add_subcommand("ask", "Is the wall wet?");
+  const std::string page = man_page_of_program({.name = "tool", .what = "x"}, table_of(app_));
+  EXPECT_THAT(page, HasSubstr("Is the wall wet?\n"));
+  EXPECT_THAT(page, HasSubstr("Paint a wall.\n"));
+}
+
 TEST_F(ManualTest, TextIsNeverARequestOfRoff) {
   const CommandEntry table{.name = "tool",
                            .path = "",
@@ -111,6 +118,19 @@ TEST_F(ManualTest, TextIsNeverARequestOfRoff) {
                            .commands = {}};
   const std::string page = man_page_of_program({.name = "tool", .what = "x"}, table);
   EXPECT_THAT(page, HasSubstr("\\&.dot first\n\\&'quote and \\eback"));
+}
+
+TEST(ManPageOfSchema, SaysWhatIsRequired) {
+  const auto schema = nlohmann::ordered_json::parse(R"({"type": "object", "properties": {
+    "wall": {"type": "object", "required": ["by"], "properties": {
+      "by": {"enum": ["hand", "robot"]}, "name": {"type": "string"}, "tool": {"type": "string"}},
+      "allOf": [{"if": {"required": ["by"], "properties": {"by": {"const": "robot"}}},
+                 "then": {"required": ["name"]}}]}}})");
+  const std::string page =
+      man_page_of_schema({.name = "wall.yaml", .section = 5, .what = "a wall"}, schema);
+  EXPECT_THAT(page, HasSubstr("hand, robot. Required.\n"));
+  EXPECT_THAT(page, HasSubstr("\\fBwall.name\\fR\nstring. Required with by: robot.\n"));
+  EXPECT_THAT(page, HasSubstr("\\fBwall.tool\\fR\nstring.\n"));
 }
 
 TEST(ManPageOfSchema, ShowsValuesDefaultsAndMeaning) {

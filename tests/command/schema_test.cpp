@@ -66,12 +66,27 @@ TEST(PageTexts, TakesMeaningsFromTables) {
       "| key | values | meaning |\n|---|---|---|\n| `fur` | a | Its `fur`. |\n\n"
       "| key | default |\n|---|---|\n| `age` | 3 |\n\n## dogs\n\n"
       "| key | meaning |\n|---|---|\n| `ear`, `eye` | both |\n| `tail.tip` | the end |\n");
-  EXPECT_EQ(page.meaning("cat", "fur"), "Its fur.");
+  EXPECT_EQ(page.meaning("cat.fur"), "Its fur.");
   EXPECT_EQ(page.introduction("cat"), "A cat of some kind.");
-  EXPECT_EQ(page.meaning("cat", "age"), "");
-  EXPECT_EQ(page.meaning("", "eye"), "both");
-  EXPECT_EQ(page.meaning("dogs", "tip"), "the end");
-  EXPECT_EQ(page.meaning("dogs", "fur"), "");
+  EXPECT_EQ(page.meaning("cat.age"), "");
+  EXPECT_EQ(page.meaning("dog[].eye"), "both");
+  EXPECT_EQ(page.meaning("dog[].tail.tip"), "the end");
+  EXPECT_EQ(page.meaning("dog[].tip"), "");
+}
+
+TEST(PageTexts, FindsAKeyByItsWholePath) {
+  const PageTexts page(
+      "## `cat`\n\n| key | meaning |\n|---|---|\n| `name` | of the cat |\n| `toys` | list |\n\n"
+      "Each entry of `toys`:\n\n| key | meaning |\n|---|---|\n| `name` | of a toy |\n\n"
+      "Keys of the parts of `cat.body`:\n\n| key | meaning |\n|---|---|\n"
+      "| `name` | of a part |\n| `paw.name` | of a paw |\n\n## `dog`\n\nText.\n");
+  EXPECT_EQ(page.meaning("cat.name"), "of the cat");
+  EXPECT_EQ(page.meaning("cat.toys[].name"), "of a toy");
+  EXPECT_EQ(page.meaning("cat.body.tail.name"), "of a part");
+  EXPECT_EQ(page.meaning("cat.body.leg.paw.name"), "of a paw");
+  EXPECT_EQ(page.meaning("cat.owner.name"), "");
+  EXPECT_EQ(page.meaning("dog.name"), "");
+  EXPECT_EQ(page.introduction("cat"), "");
 }
 
 /// The last names of all keys of a schema.
@@ -103,10 +118,55 @@ TEST(ConfigurationSchema, HasEveryKeyOfThePage) {
     const bool section = line.starts_with("## `");
     if (!row && !section) continue;
     const size_t first = line.find('`') + 1;
-    const std::string key = line.substr(first, line.find('`', first) - first);
+    std::string key = line.substr(first, line.find('`', first) - first);
+    key = key.substr(key.rfind('.') + 1);
     if (!keys.contains(key)) unknown.insert(key);
   }
   EXPECT_THAT(unknown, IsEmpty());
+}
+
+/// The schema of a key by its path, "simulation.street.seed".
+const nlohmann::ordered_json& schema_at(const nlohmann::ordered_json& schema,
+                                        const std::string& path) {
+  const nlohmann::ordered_json* found = &schema;
+  std::istringstream steps(path);
+  for (std::string step; std::getline(steps, step, '.');) {
+    if (found->contains("items")) found = &found->at("items");
+    found = &found->at("properties").at(step);
+  }
+  return *found;
+}
+
+TEST(ConfigurationSchema, DescribesEachKeyAndNotAnotherOneOfItsName) {
+  std::optional<evaluation::SimulationConfig> simulation;
+  const auto reader = evaluation::simulation_reader(simulation);
+  const auto schema = configuration_schema(&reader);
+  const auto text = [&schema](const std::string& path) {
+    return schema_at(schema, path).value("description", "");
+  };
+  EXPECT_EQ(text("can.vehicle.wheel_speed.signals.vehicle"),
+            "Speed of the vehicle, in place of the rear wheels.");
+  EXPECT_THAT(text("can.vehicle"), HasSubstr("in place of the VEH_ messages"));
+  EXPECT_EQ(text("can.vehicle.yaw_rate.negative.signal"),
+            "The yaw rate, or the signal of a condition.");
+  EXPECT_THAT(text("can.secoc.key_file"), HasSubstr("32 hexadecimal digits"));
+  EXPECT_THAT(text("simulation.seed"), HasSubstr("the drive, the traffic"));
+  EXPECT_THAT(text("simulation.street.seed"), HasSubstr("Determines the looks"));
+  EXPECT_EQ(text("simulation.faults.seed"), "");
+  EXPECT_THAT(text("calibration"), HasSubstr("of the six cameras"));
+  EXPECT_THAT(text("calibration.online.file"), HasSubstr("across restarts"));
+  EXPECT_TRUE(text("manifest").ends_with(".")) << text("manifest");
+  EXPECT_THAT(text("gpio.trigger.chip"), HasSubstr("Label"));
+  EXPECT_THAT(text("realtime.vision.cpus"), HasSubstr("may run"));
+  EXPECT_THAT(text("cameras.controls.name"), HasSubstr("The control."));
+  EXPECT_EQ(schema_at(schema, "health.max_yaw_sigma_deg").at("maximum").dump(), "1.5");
+}
+
+TEST(RigSchema, DescribesEveryKeyOfACamera) {
+  const auto camera = schema_at(rig_schema(), "cameras.front");
+  EXPECT_THAT(schema_at(camera, "fy_px").value("description", ""), HasSubstr("pinhole model"));
+  EXPECT_THAT(schema_at(camera, "vehicle_from_camera.rotation_wxyz").value("description", ""),
+              HasSubstr("unit quaternion"));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 // starts it.
 #include <cstdint>
 #include <cstdio>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "common/option_checks.h"
+#include "evaluation/choice_option.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/map_loader.h"
@@ -48,21 +48,20 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& options) {
-  const std::map<std::string, ReferenceKind> references{{"file", ReferenceKind::kFile},
-                                                        {"own", ReferenceKind::kOwn},
-                                                        {"truth", ReferenceKind::kTruth}};
-  const std::map<std::string, DrivePart> parts{{"training", DrivePart::kTraining},
-                                               {"held-back", DrivePart::kHeldBack}};
   app.add_option("--recordings", options.recordings, "Folder of recorded drives")->required();
   app.add_option("--map", options.map, "HD map of all drives")->required();
   app.add_option("--rig", options.rig, "Calibration of all drives, instead of the recorded one");
-  app.add_option(
-         "--reference", options.reference,
-         "Reference poses: file (reference.csv), own (where bevloc was sure) or truth (of a "
-         "simulated drive)")
-      ->transform(CLI::CheckedTransformer(references));
-  app.add_option("--part", options.part, "Places: training or held-back")
-      ->transform(CLI::CheckedTransformer(parts));
+  bevloc::evaluation::add_choice(
+      app, "--reference", options.reference,
+      {{"file", ReferenceKind::kFile},
+       {"own", ReferenceKind::kOwn},
+       {"truth", ReferenceKind::kTruth}},
+      "Reference poses: file (reference.csv), own (where bevloc was sure) or truth (of a "
+      "simulated drive)");
+  bevloc::evaluation::add_choice(
+      app, "--part", options.part,
+      {{"training", DrivePart::kTraining}, {"held-back", DrivePart::kHeldBack}},
+      "Places: training or held-back");
   app.add_option("--first-seed", options.first_seed, "Seed of order, priors and missing cameras")
       ->check(bevloc::whole_number());
   app.add_option("--first-sample", options.first_sample, "Number of the first sample to write")
@@ -171,7 +170,7 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Writes samples of recorded drives to standard output (training/README.md)."};
+  CLI::App app{"Writes samples of recorded drives to standard output (docs/own-drives.md)."};
   Options options;
   add_options(app, options);
   if (const auto ended = bevloc::parse_options(app, argc, argv)) return *ended;

@@ -36,8 +36,8 @@ RunOutcome run_mode(const std::string& name) {
   return run_mode(name, short_drives());
 }
 
-/// Modes that do not keep their limit yet, with the seconds beyond the alert limits that they must
-/// not exceed. docs/integrity.md shows them as failing.
+/// Modes that do not keep their limit with the seed of this test yet, with the seconds beyond the
+/// alert limits that they must not exceed.
 const std::map<std::string, double>& known_failures() {
   static const std::map<std::string, double> kSeconds = {
       {"match-creeping", 11.0},

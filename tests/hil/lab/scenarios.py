@@ -91,7 +91,7 @@ def can_flood(run: Run) -> Outcome:
 
 
 def clock_step(run: Run) -> Outcome:
-    """The wall clock jumps one hour ahead. The daemon must not notice."""
+    """The system clock jumps one hour ahead. The daemon must not notice."""
     pid, step_s = _start_settled(run), 3600
     before_s = run.wall_s()
     run.agent.check(f"date -s '+{step_s} seconds'; sleep {SETTLE_S}; date -s '-{step_s} seconds'")
@@ -100,7 +100,7 @@ def clock_step(run: Run) -> Outcome:
     log = run.finish_log()
     stepped = [f for f in log.named("LOC_Status") if f.time_s > before_s + step_s - 1.0]
     return Outcome(
-        injected="wall clock one hour ahead, and back",
+        injected="system clock one hour ahead, and back",
         seen=f"{len(stepped)} status frames in that hour, "
         f"{'same' if same_daemon else 'new'} daemon",
         recovery_s=None,
