@@ -313,8 +313,8 @@ TEST_F(ConfigTest, NamesFileLineAndKeyOfEachMistake) {
 
 TEST_F(ConfigTest, TheSolverSupportsTheLargestRangesOfTheConfiguration) {
   const auto config = load(kSmallest +
-                           "solver: {tracking: {x_range_m: 7.5, x_step_m: 2.5, y_range_m: 7.5, "
-                           "y_step_m: 2.5, yaw_range_deg: 20, yaw_step_deg: 5}}\n");
+                           "solver: {tracking: {x_range_m: 7.5, x_step_m: 1.5, y_range_m: 7.5, "
+                           "y_step_m: 1.5, yaw_range_deg: 20, yaw_step_deg: 5}}\n");
   ASSERT_TRUE(config) << config.error().message;
   const auto solver = make_solver(config->solver.kind, kFeatureGrid, 1, config->solver.tracking,
                                   SolverParameters());
