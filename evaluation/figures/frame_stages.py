@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import Any, TypedDict, cast
 
 from matplotlib.lines import Line2D
 
@@ -54,8 +54,7 @@ def data_of(document: Any, file: Path) -> Bench:
         raise SourceError(f"{file}: found no whole frame, {wanted} without --stage")
     if document["frame"]["sum_of_ideals_ms"] is None:
         raise SourceError(f"{file}: found no ideal times, {wanted} without --no-peak")
-    data: Bench = document
-    return data
+    return cast(Bench, document)
 
 
 def rows(data: Bench) -> list[Stage]:

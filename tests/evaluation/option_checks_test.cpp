@@ -68,15 +68,17 @@ TEST(OptionChecks, AnOutputFileCanBeWritten) {
   const std::string there = folder / "there.json";
   const std::string missing = folder / "no/a.json";
   std::ofstream(there) << "{}";
-  for (const std::string& good : {there, std::string(folder / "new.json"), std::string("/dev/null")}) {
+  for (const std::string& good :
+       {there, std::string(folder / "new.json"), std::string("/dev/null")}) {
     EXPECT_EQ(message_of(output_file(), good), "");
   }
   EXPECT_EQ(message_of(output_file(), folder.path()),
             fmt::format("--option: {}: found a folder, wanted the name of a file to write",
                         folder.path().string()));
-  EXPECT_EQ(message_of(output_file(), missing),
-            fmt::format("--option: {}: found no folder {}, wanted one for this file; create it first",
-                        missing, (folder / "no").string()));
+  EXPECT_EQ(
+      message_of(output_file(), missing),
+      fmt::format("--option: {}: found no folder {}, wanted one for this file; create it first",
+                  missing, (folder / "no").string()));
   EXPECT_THAT(message_of(output_file(), there + "/a.json"), HasSubstr("found no folder"));
   EXPECT_EQ(message_of(output_name(), missing), "") << "the command may create the folder";
 }
@@ -84,8 +86,8 @@ TEST(OptionChecks, AnOutputFileCanBeWritten) {
 TEST(OptionChecks, AnOutputFileNeedsAFolderThatMayBeWritten) {
   if (geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
   const test::TemporaryFolder folder;
-  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read |
-                                                  std::filesystem::perms::owner_exec);
+  std::filesystem::permissions(
+      folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   EXPECT_THAT(message_of(output_file(), folder / "a.json"),
               HasSubstr("found no way to write in the folder"));
 }
