@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "command/vehicle_commands.h"
+#include "common/option_checks.h"
 #include "common/replace_process.h"
 
 namespace {
