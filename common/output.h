@@ -26,8 +26,8 @@ auto run_without_throwing(const Run& run) -> decltype(run()) {
   }
 }
 
-/// The text of a message with \x00 and so on for control characters other than newlines. They may
-/// come from a damaged file, and a terminal obeys them.
+/// The text of a message, with hexadecimal numbers in place of control characters other than
+/// newlines. They may come from a damaged file, and a terminal obeys them.
 inline std::string printable(std::string_view text) {
   std::string shown;
   for (const char c : text) {
