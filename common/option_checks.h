@@ -16,7 +16,7 @@
 
 namespace bevloc {
 
-/// Exit code of wrong use, and of an input or environment that a program cannot work with.
+/// The exit code of a program that was used wrongly, or that cannot work with its input or machine.
 inline constexpr int kBadInput = 2;
 
 /// Accepts a number from `low` to `high`, but not nan or inf.

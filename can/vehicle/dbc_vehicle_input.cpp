@@ -75,9 +75,10 @@ VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
   VehicleSamples samples;
   if (all_new(odometry_signals_)) samples.odometry = odometry(received.received);
   if (is_position_complete(received.received)) samples.gnss = gnss(received.received);
-  const bool waits_in_vain = waits_for_old(odometry_signals_, index, received.received) ||
-                             waits_for_old(position_signals_, index, received.received);
-  if (replaced_unused && waits_in_vain) ++counters_.incomplete;
+  if (replaced_unused && (waits_for_old(odometry_signals_, index, received.received) ||
+                          waits_for_old(position_signals_, index, received.received))) {
+    ++counters_.incomplete;
+  }
   return samples;
 }
 

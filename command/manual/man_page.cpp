@@ -65,7 +65,7 @@ std::string option_text(const OptionEntry& option) {
   return text + "\n";
 }
 
-/// With a full stop, unless the text ends a sentence itself.
+/// Returns the text as a line, and adds a full stop unless it ends a sentence itself.
 std::string sentence(const std::string& text) {
   const bool ends = !text.empty() && std::string(".?!").find(text.back()) != std::string::npos;
   return roff(text) + (ends ? "\n" : ".\n");
@@ -114,7 +114,8 @@ bool requires_key(const Json& schema, const std::string& name) {
   return std::ranges::find(keys, Json(name)) != keys.end();
 }
 
-/// " Required with driver: mock." for a condition on one key of the same mapping.
+/// Returns " Required with driver: mock." for a condition on one key of the same mapping. Returns
+/// nothing for other conditions.
 std::string condition_text(const Json& condition) {
   const Json properties = condition.value("properties", Json::object());
   if (properties.size() != 1) return "";
@@ -157,9 +158,7 @@ std::string keys_text(const Json& mapping, const std::string& prefix) {
     }
     const std::string description = schema.value("description", "");
     if (prefix.empty() && is_map && requires_key(mapping, name)) text += "Required.\n";
-    if (!description.empty()) {
-      text += prefix.empty() && is_map ? roff(description) + "\n" : roff(description) + "\n";
-    }
+    if (!description.empty()) text += roff(description) + "\n";
     if (is_map) text += keys_text(inner, path + (is_list ? "[]" : ""));
   }
   return text;

@@ -1,7 +1,5 @@
 #include "firmware/runtime/fault_line.h"
 
-#include <spdlog/spdlog.h>
-
 namespace bevloc::firmware {
 
 Result<std::unique_ptr<FaultLine>> FaultLine::open(
@@ -22,10 +20,7 @@ FaultLine::~FaultLine() {
 
 void FaultLine::set(bool fault, Time now) {
   if (!line_) return;
-  if (Status status = line_->set(fault); !status && errors_.is_new(status.error().message, now)) {
-    spdlog::error("gpio: fault line: {}; check the chip, then restart bevlocd",
-                  status.error().message);
-  }
+  if (Status status = line_->set(fault); !status) errors_.note(status.error(), now);
 }
 
 }  // namespace bevloc::firmware

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "drivers/gpio/gpio.h"
-#include "firmware/telemetry/cause_log.h"
+#include "firmware/runtime/line_error_log.h"
 
 namespace bevloc::firmware {
 
@@ -29,7 +29,7 @@ class FaultLine {
   explicit FaultLine(std::unique_ptr<drivers::OutputLine> line) : line_(std::move(line)) {}
 
   std::unique_ptr<drivers::OutputLine> line_;  ///< null without an address
-  CauseLog errors_;
+  LineErrorLog errors_{"fault line", spdlog::level::err};
 };
 
 }  // namespace bevloc::firmware

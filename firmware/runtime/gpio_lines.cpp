@@ -1,19 +1,6 @@
 #include "firmware/runtime/gpio_lines.h"
 
-#include <string_view>
-
-#include <spdlog/spdlog.h>
-
 namespace bevloc::firmware {
-namespace {
-
-void report(std::string_view line, const Error& error, CauseLog& log, Time now) {
-  if (!log.is_new(error.message, now)) return;
-  spdlog::warn("gpio: {}: {}; check the chip, then restart bevlocd", line, error.message);
-}
-
-}  // namespace
-
 Result<std::unique_ptr<GpioLines>> GpioLines::open(const GpioConfig& config, drivers::Gpio& gpio,
                                                    Time now) {
   std::unique_ptr<GpioLines> lines(new GpioLines());
@@ -48,11 +35,11 @@ GpioLines::~GpioLines() {
 bool GpioLines::step(bool lit, Time now) {
   if (status_led_) {
     if (Status status = status_led_->set(lit); !status) {
-      report("status LED", status.error(), led_errors_, now);
+      led_errors_.note(status.error(), now);
     }
   }
   const auto on = ignition_on(now);
-  if (!on) report("ignition", on.error(), ignition_errors_, now);
+  if (!on) ignition_errors_.note(on.error(), now);
   return on.value_or(true);
 }
 

@@ -5,7 +5,7 @@
 
 #include "drivers/gpio/debouncer.h"
 #include "firmware/config/gpio_config.h"
-#include "firmware/telemetry/cause_log.h"
+#include "firmware/runtime/line_error_log.h"
 
 namespace bevloc::firmware {
 
@@ -35,8 +35,8 @@ class GpioLines {
   std::unique_ptr<drivers::OutputLine> status_led_;
   std::unique_ptr<drivers::InputLine> ignition_;
   std::optional<drivers::Debouncer> ignition_level_;
-  CauseLog led_errors_;
-  CauseLog ignition_errors_;
+  LineErrorLog led_errors_{"status LED", spdlog::level::warn};
+  LineErrorLog ignition_errors_{"ignition", spdlog::level::warn};
 };
 
 }  // namespace bevloc::firmware

@@ -1,8 +1,6 @@
 #include "firmware/runtime/trigger_thread.h"
 
-#include <spdlog/spdlog.h>
-
-#include "firmware/telemetry/cause_log.h"
+#include "firmware/runtime/line_error_log.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -33,14 +31,11 @@ TriggerThread::TriggerThread(std::unique_ptr<drivers::OutputLine> line,
       }) {}
 
 void TriggerThread::pulse_until(const std::stop_token& stop, const drivers::Clock& clock) {
-  CauseLog errors;
+  LineErrorLog errors("trigger", spdlog::level::err);
   while (!stop.stop_requested()) {
     heartbeat_.beat();
     const Status pulsed = trigger_.step(kTriggerPatience);
-    if (!pulsed && errors.is_new(pulsed.error().message, clock.now())) {
-      spdlog::error("gpio: trigger: {}; check the chip, then restart bevlocd",
-                    pulsed.error().message);
-    }
+    if (!pulsed) errors.note(pulsed.error(), clock.now());
   }
 }
 

@@ -131,6 +131,10 @@ VehicleBinding binding_with_gnss() {
   return all;
 }
 
+constexpr Duration kCycle = std::chrono::milliseconds(20);
+/// Long enough for a message to become valid.
+constexpr int kSettlingCycles = 100;
+
 /// The vehicle of binding_with_gnss().
 class GnssVehicle {
  public:
@@ -151,14 +155,18 @@ class GnssVehicle {
     send_heading(17, now);
     send_heading(18, now);
   }
+  /// Sends all messages on their cycles until they are valid. Returns the time of the latest ones.
+  Time settle() {
+    for (int cycle = 1; cycle <= kSettlingCycles; ++cycle) {
+      send_motion_and_position(Time(cycle * kCycle));
+      if (cycle % 5 == 0) send_headings(Time(cycle * kCycle));
+    }
+    return Time(kSettlingCycles * kCycle);
+  }
 
  private:
   DbcVehicleInput input_;
 };
-
-constexpr Duration kCycle = std::chrono::milliseconds(20);
-/// Long enough for a message to become valid.
-constexpr int kSettlingCycles = 100;
 
 TEST(DbcVehicleInputTest, OneMessageMayCarryOdometryAndGnss) {
   VehicleBinding together = binding_with_gnss();
@@ -180,12 +188,7 @@ TEST(DbcVehicleInputTest, AnOldHeadingIsNotThatOfAFreshPosition) {
   for (const uint32_t old : {17U, 18U}) {
     for (const bool is_too_old : {false, true}) {
       GnssVehicle vehicle(binding_with_gnss());
-      Time now{};
-      for (int cycle = 1; cycle <= kSettlingCycles; ++cycle) {
-        now = Time(cycle * kCycle);
-        vehicle.send_motion_and_position(now);
-        if (cycle % 5 == 0) vehicle.send_headings(now);
-      }
+      Time now = vehicle.settle();
       // Four of its cycles later the position comes with the other message. A little later, the
       // position no longer waits for it.
       vehicle.send_heading(old, now);
@@ -204,12 +207,7 @@ TEST(DbcVehicleInputTest, AnOldHeadingIsNotThatOfAFreshPosition) {
 
 TEST(DbcVehicleInputTest, PositionsDoNotNeedAHeadingThatStopped) {
   GnssVehicle vehicle(binding_with_gnss());
-  Time now{};
-  for (int cycle = 1; cycle <= kSettlingCycles; ++cycle) {
-    now = Time(cycle * kCycle);
-    vehicle.send_motion_and_position(now);
-    if (cycle % 5 == 0) vehicle.send_headings(now);
-  }
+  Time now = vehicle.settle();
   int samples = 0;
   for (int cycle = 0; cycle < 50; ++cycle) {
     const auto sample = vehicle.send_motion_and_position(now += kCycle).gnss;
