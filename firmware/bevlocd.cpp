@@ -2,9 +2,9 @@
 // with the simulator is evaluation/drive/bevlocd.cpp.
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "firmware/config/config_key.h"
-#include "firmware/runtime/can_bus.h"
-#include "firmware/runtime/daemon.h"
-#include "firmware/runtime/program.h"
+#include "firmware/daemon/daemon.h"
+#include "firmware/daemon/program.h"
+#include "firmware/devices/can_bus.h"
 #include "pipeline/calibration/rig_yaml.h"
 
 namespace {

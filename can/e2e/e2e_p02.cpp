@@ -1,26 +1,15 @@
 #include "can/e2e/e2e_p02.h"
 
-#include <array>
 #include <cassert>
+
+#include "can/e2e/crc8.h"
 
 namespace bevloc::can {
 namespace {
 
-constexpr uint8_t kCrc8Polynomial = 0x2F;
 constexpr uint8_t kCrc8Start = 0xFF;
 constexpr uint8_t kCrc8FinalXor = 0xFF;
-
-constexpr std::array<uint8_t, 256> kCrc8Table = [] {
-  std::array<uint8_t, 256> table{};
-  for (unsigned byte = 0; byte < table.size(); ++byte) {
-    unsigned remainder = byte;
-    for (int bit = 0; bit < 8; ++bit) {
-      remainder = (remainder << 1) ^ ((remainder & 0x80) != 0 ? kCrc8Polynomial : 0u);
-    }
-    table[byte] = static_cast<uint8_t>(remainder);
-  }
-  return table;
-}();
+constexpr auto kCrc8Table = crc8_table(0x2F);
 
 uint8_t crc8_remainder(std::span<const uint8_t> bytes) {
   uint8_t remainder = kCrc8Start;

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "can/e2e/crc8.h"
 #include "can/e2e/e2e_p02.h"
 #include "can/e2e/e2e_p05.h"
 #include "can/e2e/e2e_receiver.h"
@@ -9,18 +10,7 @@
 namespace bevloc::can {
 namespace {
 
-constexpr std::array<uint8_t, 256> kSaeTable = [] {
-  constexpr unsigned kPolynomial = 0x1D;
-  std::array<uint8_t, 256> table{};
-  for (unsigned byte = 0; byte < table.size(); ++byte) {
-    unsigned remainder = byte;
-    for (int bit = 0; bit < 8; ++bit) {
-      remainder = (remainder << 1) ^ ((remainder & 0x80) != 0 ? kPolynomial : 0U);
-    }
-    table[byte] = static_cast<uint8_t>(remainder);
-  }
-  return table;
-}();
+constexpr auto kSaeTable = crc8_table(0x1D);
 
 /// The bytes that a checksum covers.
 struct Covered {

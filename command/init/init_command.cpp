@@ -11,6 +11,7 @@
 #include "common/option_checks.h"
 #include "common/replace_file.h"
 #include "common/shipped_file.h"
+#include "firmware/devices/config_check.h"
 
 namespace bevloc::command {
 namespace {

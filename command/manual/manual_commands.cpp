@@ -7,7 +7,7 @@
 #include "command/manual/option_table.h"
 #include "command/schema/schema_command.h"
 #include "common/files.h"
-#include "firmware/runtime/program.h"
+#include "firmware/daemon/program.h"
 
 namespace bevloc::command {
 namespace {

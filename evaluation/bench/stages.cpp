@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "can/bus/mock_bus.h"
-#include "can/messages/pose_publisher.h"
+#include "can/publisher/pose_publisher.h"
 #include "drivers/frameset/synchronizer.h"
 #include "evaluation/bench/camera_formats.h"
 #include "evaluation/bench/stage_work.h"

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "can/bus/mock_bus.h"
-#include "can/messages/pose_publisher.h"
+#include "can/publisher/pose_publisher.h"
 #include "drivers/clock/clock.h"
 #include "evaluation/bench/scene.h"
 #include "evaluation/bench/standing_vehicle.h"

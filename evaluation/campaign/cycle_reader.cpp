@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "can/messages/message_table.h"
-#include "can/messages/solution_fd.h"
+#include "can/publisher/solution_fd.h"
 #include "evaluation/drive/error_statistics.h"
 
 namespace bevloc::evaluation {

@@ -3,12 +3,12 @@
 #include <utility>
 
 #include "can/bus/mock_bus.h"
-#include "can/messages/pose_publisher.h"
+#include "can/publisher/pose_publisher.h"
 #include "evaluation/campaign/modelled_vision.h"
 #include "evaluation/drive/faulty_bus.h"
 #include "evaluation/drive/simulated_drive.h"
+#include "firmware/devices/can_bus.h"
 #include "firmware/runtime/appliance.h"
-#include "firmware/runtime/can_bus.h"
 #include "firmware/runtime/identity.h"
 #include "sim/random.h"
 

@@ -9,8 +9,8 @@
 #include "evaluation/drive/simulated_run.h"
 #include "evaluation/town_seeds.h"
 #include "firmware/config/config_key.h"
-#include "firmware/runtime/daemon.h"
-#include "firmware/runtime/program.h"
+#include "firmware/daemon/daemon.h"
+#include "firmware/daemon/program.h"
 #include "pipeline/calibration/rig_yaml.h"
 
 namespace {

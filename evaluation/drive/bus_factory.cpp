@@ -1,7 +1,7 @@
 #include "evaluation/drive/bus_factory.h"
 
 #include "can/bus/socketcan_bus.h"
-#include "firmware/runtime/can_bus.h"
+#include "firmware/devices/can_bus.h"
 
 namespace bevloc::evaluation {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "firmware/runtime/can_bus.h"
+#include "firmware/devices/can_bus.h"
 
 namespace bevloc::evaluation {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "can/messages/solution_fd.h"
+#include "can/publisher/solution_fd.h"
 
 namespace bevloc::evaluation {
 namespace {

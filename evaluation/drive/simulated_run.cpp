@@ -15,9 +15,9 @@
 #include "evaluation/drive/simulated_drive.h"
 #include "evaluation/drive/snapshot_keeper.h"
 #include "firmware/live/live_server.h"
+#include "firmware/recording/recorder_thread.h"
 #include "firmware/recording/recording_session.h"
 #include "firmware/runtime/calibration_saver.h"
-#include "firmware/runtime/recorder_thread.h"
 #include "firmware/runtime/runner.h"
 #include "firmware/runtime/supervisor.h"
 #include "sim/random.h"
@@ -199,7 +199,8 @@ void SimulatedRun::run(const StopWhen& stop) {
     supervisor.step(now);
     if (live_) {
       live_->publish({firmware::Phase::kRunning, now,
-                      firmware::take_snapshot(*appliance_, {.recorder = recording_.get()}),
+                      firmware::take_snapshot(*appliance_,
+                                              {.recording = firmware::totals_of(recording_.get())}),
                       supervisor.view()});
     }
     const double time_s = to_seconds(now - drive_start_);

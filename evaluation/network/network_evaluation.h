@@ -12,7 +12,7 @@
 
 #include "common/result.h"
 #include "evaluation/baselines/baseline.h"
-#include "evaluation/network/mask_input.h"
+#include "evaluation/solver/mask_input.h"
 #include "evaluation/solver/mask_scales.h"
 #include "evaluation/solver/read_out_case.h"
 #include "evaluation/solver/solver_score.h"

@@ -8,7 +8,7 @@
 
 #include "common/result.h"
 #include "common/se2.h"
-#include "evaluation/network/mask_input.h"
+#include "evaluation/solver/mask_input.h"
 #include "evaluation/solver/solver_score.h"
 
 namespace bevloc::evaluation {

@@ -5,7 +5,7 @@
 
 #include "common/heap_use.h"
 #include "common/kernel_time.h"
-#include "evaluation/network/mask_input.h"
+#include "evaluation/solver/mask_input.h"
 #include "sim/perception/matching_scene.h"
 
 namespace bevloc::evaluation {

@@ -126,9 +126,4 @@ Result<Config> load_config_without_manifest(const std::filesystem::path& file,
 /// made from this function (command/schema).
 Config read_config(YamlMap& yaml, const ConfigFiles& files, const SimulationReader* simulation);
 
-/// Checks on this machine everything that the configuration names (`bevlocd --check-config`): reads
-/// rig, model, map and recordings, looks up the GPIO lines, opens the CAN interface, and starts the
-/// cameras. Returns the first error.
-Status check_config(const Config& config);
-
 }  // namespace bevloc::firmware

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "can/messages/solution_frames.h"
+#include "can/publisher/solution_frames.h"
 
 namespace bevloc::firmware {
 namespace {

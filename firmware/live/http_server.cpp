@@ -19,7 +19,7 @@
 
 #include "firmware/config/live_config.h"
 #include "firmware/live/socket_stream.h"
-#include "firmware/runtime/realtime.h"
+#include "firmware/threads/realtime.h"
 
 namespace bevloc::firmware {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "firmware/live/live_feed.h"
 #include "firmware/live/picture.h"
-#include "firmware/telemetry/status_json.h"
+#include "firmware/status/status_json.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/map/map_index.h"
 

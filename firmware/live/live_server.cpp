@@ -16,8 +16,8 @@
 #include "firmware/live/httplib_header.h"
 #include "firmware/live/live_events.h"
 #include "firmware/live/page_files.h"
-#include "firmware/runtime/realtime.h"
-#include "firmware/telemetry/metrics.h"
+#include "firmware/status/metrics.h"
+#include "firmware/threads/realtime.h"
 
 namespace bevloc::firmware {
 namespace {

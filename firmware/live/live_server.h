@@ -5,7 +5,7 @@
 
 #include "firmware/config/live_config.h"
 #include "firmware/runtime/appliance.h"
-#include "firmware/telemetry/telemetry.h"
+#include "firmware/status/telemetry.h"
 
 namespace bevloc::firmware {
 

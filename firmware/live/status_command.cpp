@@ -13,7 +13,7 @@
 
 #include "firmware/config/live_config.h"
 #include "firmware/live/httplib_header.h"
-#include "firmware/telemetry/status_json.h"
+#include "firmware/status/status_json.h"
 
 namespace bevloc::firmware {
 namespace {

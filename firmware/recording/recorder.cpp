@@ -6,7 +6,7 @@
 
 #include "firmware/recording/messages.h"
 #include "firmware/recording/topics.h"
-#include "firmware/telemetry/snapshot.h"
+#include "firmware/status/snapshot.h"
 
 namespace bevloc::firmware {
 namespace {

@@ -8,7 +8,6 @@
 #include "firmware/recording/recording_file.h"
 #include "firmware/recording/taps.h"
 #include "firmware/recording/topics.h"
-#include "firmware/telemetry/snapshot.h"
 #include "pipeline/map/map_checksum.h"
 
 namespace bevloc::firmware {
@@ -88,6 +87,11 @@ void watch(Appliance& appliance, Recorder& recorder) {
   appliance.estimation().observe_reports(
       [&recorder](const can::PoseReport& report) { recorder.note_solution(report); });
   recorder.count_with([&appliance] { return take_snapshot(appliance, {}); });
+}
+
+std::optional<RecordingSnapshot> totals_of(const Recorder* recorder) {
+  if (recorder == nullptr) return std::nullopt;
+  return recorder->totals();
 }
 
 }  // namespace bevloc::firmware

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "firmware/recording/recorder.h"
 #include "firmware/runtime/appliance.h"
+#include "firmware/status/snapshot.h"
 
 namespace bevloc::firmware {
 
@@ -20,5 +22,8 @@ void tap(Hardware& hardware, Recorder& recorder);
 /// Records matches, solutions and counters. Before the first step of the appliance; `recorder` must
 /// outlive the appliance's last step.
 void watch(Appliance& appliance, Recorder& recorder);
+
+/// The recorder's totals; empty if it is null.
+std::optional<RecordingSnapshot> totals_of(const Recorder* recorder);
 
 }  // namespace bevloc::firmware

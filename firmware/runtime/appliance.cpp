@@ -4,9 +4,9 @@
 
 #include "can/secoc/secoc_files.h"
 #include "firmware/config/config_key.h"
-#include "firmware/runtime/can_bus.h"
+#include "firmware/devices/can_bus.h"
 #include "firmware/runtime/identity.h"
-#include "pipeline/calibration/online/calibration_file.h"
+#include "pipeline/online_calibration/calibration_file.h"
 
 namespace bevloc::firmware {
 namespace {

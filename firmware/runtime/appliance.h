@@ -10,12 +10,12 @@
 #include "drivers/camera/camera.h"
 #include "drivers/clock/clock.h"
 #include "firmware/config/config.h"
-#include "firmware/runtime/heartbeat.h"
 #include "firmware/stages/capture_stage.h"
 #include "firmware/stages/estimation_stage.h"
 #include "firmware/stages/gnss_stage.h"
 #include "firmware/stages/vehicle_input_stage.h"
 #include "firmware/stages/vision_stage.h"
+#include "firmware/threads/heartbeat.h"
 
 namespace bevloc::firmware {
 

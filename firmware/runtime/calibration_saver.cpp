@@ -2,7 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "firmware/runtime/realtime.h"
+#include "firmware/threads/realtime.h"
 
 namespace bevloc::firmware {
 

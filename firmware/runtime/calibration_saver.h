@@ -11,7 +11,7 @@
 #include "drivers/clock/clock.h"
 #include "firmware/config/config.h"
 #include "firmware/stages/vision_stage.h"
-#include "pipeline/calibration/online/calibration_file.h"
+#include "pipeline/online_calibration/calibration_file.h"
 
 namespace bevloc::firmware {
 

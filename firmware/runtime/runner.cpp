@@ -10,7 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "can/messages/localizer_messages.h"
-#include "firmware/runtime/clock_gap.h"
+#include "firmware/threads/clock_gap.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -29,7 +29,7 @@ constexpr Duration kEndPatience = std::chrono::seconds(4);
 
 /// Forgets the pose when the clock had a gap, then publishes.
 void publish(Appliance& appliance, ClockGapDetector& gaps) {
-  if (const auto gap = gaps.look(appliance.clock())) appliance.estimation().note_clock_gap(*gap);
+  if (gaps.look(appliance.clock())) appliance.estimation().note_clock_gap();
   appliance.estimation().tick(appliance.clock().now());
   appliance.heartbeats().can_out.beat();
 }

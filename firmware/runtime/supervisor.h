@@ -5,9 +5,9 @@
 #include <string>
 
 #include "firmware/runtime/appliance.h"
-#include "firmware/runtime/realtime.h"
 #include "firmware/runtime/service_notifier.h"
 #include "firmware/runtime/watchdog.h"
+#include "firmware/threads/realtime.h"
 
 namespace bevloc::firmware {
 

@@ -1,6 +1,6 @@
 #include "firmware/runtime/trigger_thread.h"
 
-#include "firmware/runtime/line_error_log.h"
+#include "firmware/devices/line_error_log.h"
 
 namespace bevloc::firmware {
 namespace {

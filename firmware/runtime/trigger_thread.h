@@ -6,8 +6,8 @@
 
 #include "drivers/trigger/trigger.h"
 #include "firmware/config/gpio_config.h"
-#include "firmware/runtime/heartbeat.h"
-#include "firmware/runtime/realtime.h"
+#include "firmware/threads/heartbeat.h"
+#include "firmware/threads/realtime.h"
 
 namespace bevloc::firmware {
 

@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "firmware/runtime/appliance.h"
-#include "firmware/runtime/realtime.h"
+#include "firmware/threads/realtime.h"
 
 namespace bevloc::firmware {
 

@@ -10,9 +10,9 @@
 
 #include "common/health_state.h"
 #include "drivers/clock/clock.h"
-#include "firmware/runtime/fault_line.h"
-#include "firmware/runtime/heartbeat.h"
+#include "firmware/devices/fault_line.h"
 #include "firmware/runtime/service_notifier.h"
+#include "firmware/threads/heartbeat.h"
 
 namespace bevloc::firmware {
 

@@ -8,9 +8,9 @@
 #include "drivers/camera/camera.h"
 #include "drivers/camera/stamp_steps.h"
 #include "drivers/clock/clock.h"
-#include "firmware/runtime/heartbeat.h"
 #include "firmware/stages/messages.h"
 #include "firmware/telemetry/cause_log.h"
+#include "firmware/threads/heartbeat.h"
 
 namespace bevloc::firmware {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "firmware/runtime/clock_gap.h"
+#include "firmware/threads/clock_gap.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -79,7 +79,7 @@ void EstimationStage::tick(Time now) {
   ++counters_.ticks;
 }
 
-void EstimationStage::note_clock_gap(Duration) {
+void EstimationStage::note_clock_gap() {
   ++counters_.clock_gaps;
   clock_gap_ = true;
   while (samples_.pop(Duration::zero())) {
@@ -140,7 +140,7 @@ void EstimationStage::note_map_offset() {
 }
 
 void EstimationStage::watch_clock(Time now) {
-  if (last_tick_ && now - *last_tick_ > ClockGapDetector::kGap) note_clock_gap(now - *last_tick_);
+  if (last_tick_ && now - *last_tick_ > ClockGapDetector::kGap) note_clock_gap();
   last_tick_ = now;
 }
 

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <functional>
 
-#include "can/messages/pose_publisher.h"
+#include "can/publisher/pose_publisher.h"
 #include "common/published.h"
 #include "firmware/health/health.h"
 #include "firmware/stages/messages.h"
@@ -76,7 +76,7 @@ class EstimationStage {
 
   /// Forgets the pose and what is queued, because the vehicle may have been moved while the machine
   /// was suspended. The next tick() reports LOST with Why::kClockGap.
-  void note_clock_gap(Duration gap);
+  void note_clock_gap();
 
   /// Publishes the state LOST without a pose, so that consumers need not wait for a timeout. To be
   /// called after the last tick().

@@ -10,7 +10,7 @@
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
-#include "firmware/runtime/realtime.h"
+#include "firmware/threads/realtime.h"
 
 namespace bevloc::firmware {
 namespace {

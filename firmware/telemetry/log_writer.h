@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "common/bounded_queue.h"
-#include "firmware/runtime/heartbeat.h"
+#include "firmware/threads/heartbeat.h"
 
 namespace spdlog {
 class logger;

@@ -12,7 +12,6 @@
 #include "common/image_view.h"
 #include "common/result.h"
 #include "common/se2.h"
-#include "pipeline/calibration/online/online_calibration.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/localization/frozen_camera_detector.h"
 #include "pipeline/localization/view_monitor.h"
@@ -21,6 +20,7 @@
 #include "pipeline/network/network.h"
 #include "pipeline/network/test_frame.h"
 #include "pipeline/network/view/view_table.h"
+#include "pipeline/online_calibration/online_calibration.h"
 #include "pipeline/preprocessing/image_remap.h"
 #include "pipeline/solver/solver_factory.h"
 

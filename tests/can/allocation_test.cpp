@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "can/bus/mock_bus.h"
-#include "can/messages/pose_publisher.h"
 #include "can/messages/vehicle_encoder.h"
 #include "can/messages/vehicle_input.h"
+#include "can/publisher/pose_publisher.h"
 #include "evaluation/bench/allocation_count.h"
 
 namespace bevloc::can {

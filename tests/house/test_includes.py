@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unittest
+from collections import defaultdict
 
 from tests.house.test_documents import ROOT, tracked
 
@@ -31,6 +32,29 @@ def cxx_files() -> list[str]:
     return [str(path.relative_to(ROOT)) for path in tracked("*.h", "*.cpp")]
 
 
+def uses_between_neighbours(listed: list[str]) -> dict[str, set[str]]:
+    """For each folder, the folders beside it whose files its own files include, at any depth."""
+    uses: dict[str, set[str]] = defaultdict(set)
+    for name in listed:
+        for included in INCLUDE.findall((ROOT / name).read_text()):
+            ours, theirs = name.split("/")[:-1], included.split("/")[:-1]
+            shared = 0
+            while shared < min(len(ours), len(theirs)) and ours[shared] == theirs[shared]:
+                shared += 1
+            if shared < min(len(ours), len(theirs)):
+                uses["/".join(ours[: shared + 1])].add("/".join(theirs[: shared + 1]))
+    return uses
+
+
+def cycles(uses: dict[str, set[str]]) -> list[str]:
+    """Removes again and again what uses nothing that is left. What stays is in or above a cycle."""
+    left = {folder: set(used) for folder, used in uses.items()}
+    while bottom := [folder for folder, used in left.items() if not used & left.keys()]:
+        for folder in bottom:
+            del left[folder]
+    return [f"{folder} -> {', '.join(sorted(used & left.keys()))}" for folder, used in left.items()]
+
+
 class IncludesTest(unittest.TestCase):
     def test_follow_the_table_of_the_architecture(self) -> None:
         allowed = rules()
@@ -45,6 +69,15 @@ class IncludesTest(unittest.TestCase):
                 if target is not None and target not in allowed[str(room)]:
                     wrong.append(f"{name} includes {included}")
         self.assertEqual(wrong, [], "docs/architecture.md allows none of these")
+
+    def test_form_no_cycle_between_neighbouring_folders(self) -> None:
+        production = [name for name in cxx_files() if not name.startswith("tests/")]
+        self.assertEqual(cycles(uses_between_neighbours(production)), [])
+
+    def test_finds_a_cycle(self) -> None:
+        uses = {"a/x": {"a/y"}, "a/y": {"a/z"}, "a/z": {"a/y"}, "a/w": {"a/x"}, "b": {"c"}}
+        self.assertEqual(sorted(cycles(uses)), ["a/w -> a/x", "a/x -> a/y", "a/y -> a/z",
+                                                "a/z -> a/y"])
 
     def test_write_every_path_from_the_root(self) -> None:
         listed = cxx_files()

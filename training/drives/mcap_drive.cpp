@@ -5,8 +5,8 @@
 #include "evaluation/recording/played_devices.h"
 #include "evaluation/recording/track.h"
 #include "firmware/recording/topics.h"
-#include "pipeline/calibration/online/calibration_file.h"
 #include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/online_calibration/calibration_file.h"
 #include "training/drives/own_track.h"
 
 namespace bevloc::drives {

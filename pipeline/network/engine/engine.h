@@ -8,21 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/network/engine/cpu_isa.h"
 #include "pipeline/network/engine/parallel_for.h"
+#include "pipeline/network/kernels/cpu_isa.h"
+#include "pipeline/network/kernels/view_transform.h"
 #include "pipeline/network/model/program.h"
+#include "pipeline/network/plan/branch.h"
 #include "pipeline/network/plan/memory_plan.h"
 #include "pipeline/network/view/view_table.h"
-#include "pipeline/network/view/view_transform.h"
 
 namespace bevloc::nn {
 
 namespace onednn {
 struct ExecutionPlan;
 }
-
-/// Names of the outputs that one branch computes. A branch may read results of earlier branches.
-using Branch = std::vector<std::string>;
 
 struct EngineOptions {
   int threads = 1;

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "pipeline/network/engine/cpu_isa.h"
+#include "pipeline/network/kernels/cpu_isa.h"
 
 namespace bevloc::nn::onednn {
 

@@ -10,8 +10,8 @@
 #include <dnnl.hpp>
 
 #include "pipeline/network/engine/primitives.h"
+#include "pipeline/network/kernels/view_transform.h"
 #include "pipeline/network/model/program.h"
-#include "pipeline/network/view/view_transform.h"
 
 namespace bevloc::nn::onednn {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "pipeline/network/engine/cpu_isa.h"
+#include "pipeline/network/kernels/cpu_isa.h"
 
 namespace bevloc::nn {
 

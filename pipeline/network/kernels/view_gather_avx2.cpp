@@ -1,7 +1,7 @@
 // The view transform with AVX2.
 #include "common/cpu_features.h"
 #include "pipeline/network/kernels/view_gather.h"
-#include "pipeline/network/view/view_transform.h"
+#include "pipeline/network/kernels/view_transform.h"
 
 #ifdef __x86_64__
 #include <cstring>

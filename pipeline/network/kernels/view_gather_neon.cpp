@@ -1,6 +1,6 @@
 // The view transform with NEON, which every arm64 processor has.
 #include "pipeline/network/kernels/view_gather.h"
-#include "pipeline/network/view/view_transform.h"
+#include "pipeline/network/kernels/view_transform.h"
 
 #ifdef __aarch64__
 #include <algorithm>

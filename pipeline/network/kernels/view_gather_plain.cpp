@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "pipeline/network/kernels/view_gather.h"
-#include "pipeline/network/view/view_transform.h"
+#include "pipeline/network/kernels/view_transform.h"
 
 namespace bevloc::nn {
 namespace {

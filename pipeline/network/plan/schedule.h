@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/network/engine/engine.h"
 #include "pipeline/network/model/program.h"
+#include "pipeline/network/plan/branch.h"
 #include "pipeline/network/plan/storage_plan.h"
 
 namespace bevloc::nn {

@@ -3,7 +3,7 @@
 
 #include "can/bus/mock_bus.h"
 #include "can/consumer/bevloc.hpp"
-#include "can/messages/pose_publisher.h"
+#include "can/publisher/pose_publisher.h"
 #include "tests/can/messages/tracking_report.h"
 
 namespace bevloc::can {

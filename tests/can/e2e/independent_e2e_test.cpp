@@ -10,8 +10,8 @@
 
 #include "can/bus/candump.h"
 #include "can/bus/mock_bus.h"
-#include "can/messages/pose_publisher.h"
 #include "can/messages/vehicle_encoder.h"
+#include "can/publisher/pose_publisher.h"
 
 namespace bevloc {
 namespace {

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "can/bus/mock_bus.h"
-#include "can/messages/pose_publisher.h"
 #include "can/messages/vehicle_encoder.h"
+#include "can/publisher/pose_publisher.h"
 #include "can/secoc/secoc_receiver.h"
 #include "can/secoc/secoc_sender.h"
 #include "tests/can/messages/tracking_report.h"

@@ -9,7 +9,7 @@
 #include "evaluation/bench/allocation_count.h"
 #include "evaluation/campaign/stage_run.h"
 #include "evaluation/drive/simulated_drive.h"
-#include "firmware/runtime/can_bus.h"
+#include "firmware/devices/can_bus.h"
 
 namespace bevloc::evaluation {
 namespace {

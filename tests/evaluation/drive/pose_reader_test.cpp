@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "can/bus/mock_bus.h"
-#include "can/messages/pose_publisher.h"
+#include "can/publisher/pose_publisher.h"
 #include "tests/support/pose_matchers.h"
 
 namespace bevloc::evaluation {

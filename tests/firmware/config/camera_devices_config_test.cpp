@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/runtime/camera_factory.h"
+#include "firmware/devices/camera_factory.h"
 
 namespace bevloc::firmware {
 namespace {

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "firmware/runtime/can_bus.h"
+#include "firmware/devices/can_bus.h"
 #include "tests/firmware/config/config_fixture.h"
 
 namespace bevloc::firmware {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/runtime/can_bus.h"
+#include "firmware/devices/can_bus.h"
 #include "tests/firmware/config/config_fixture.h"
 
 namespace bevloc::firmware {

@@ -10,7 +10,7 @@
 #include "common/mcap/reader.h"
 #include "firmware/recording/messages.h"
 #include "firmware/recording/topics.h"
-#include "firmware/telemetry/snapshot.h"
+#include "firmware/status/snapshot.h"
 #include "tests/firmware/log_capture.h"
 #include "tests/support/temporary_folder.h"
 

@@ -9,7 +9,7 @@
 #include "evaluation/bench/allocation_count.h"
 #include "tests/firmware/log_capture.h"
 #include "tests/firmware/stages/vision_stage_fixture.h"
-#include "tests/pipeline/calibration/online/demo_driver.h"
+#include "tests/pipeline/online_calibration/demo_driver.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::firmware {

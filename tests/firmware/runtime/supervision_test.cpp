@@ -10,7 +10,7 @@
 
 #include "can/bus/mock_bus.h"
 #include "can/bus/send_gate.h"
-#include "can/messages/pose_publisher.h"
+#include "can/publisher/pose_publisher.h"
 #include "drivers/mock/mock_gpio.h"
 #include "evaluation/drive/pose_reader.h"
 #include "firmware/runtime/runner.h"

@@ -10,8 +10,8 @@
 #include "can/dbc/dbc.h"
 #include "can/e2e/e2e.h"
 #include "can/messages/message_table.h"
-#include "can/messages/solution_fd.h"
 #include "can/messages/vehicle_input.h"
+#include "can/publisher/solution_fd.h"
 #include "tests/fuzz/finite_samples.h"
 #include "tests/fuzz/targets.h"
 

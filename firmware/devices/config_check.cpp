@@ -1,0 +1,90 @@
+#include "firmware/devices/config_check.h"
+
+#include <spdlog/spdlog.h>
+
+#include "can/secoc/secoc_files.h"
+#include "common/writable_folder.h"
+#include "drivers/gpio/libgpiod_gpio.h"
+#include "firmware/config/config_key.h"
+#include "firmware/devices/camera_factory.h"
+#include "firmware/devices/can_bus.h"
+#include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/map/map_loader.h"
+#include "pipeline/map/map_summary.h"
+#include "pipeline/network/network.h"
+
+namespace bevloc::firmware {
+namespace {
+
+Status check_lines(const GpioConfig& gpio) {
+  for (const drivers::LineAddress& address : lines_of(gpio)) {
+    const Status found = at_key("gpio", drivers::LibgpiodGpio().look_for(address));
+    if (!found) return found;
+  }
+  return {};
+}
+
+/// Opens and closes the appliance's socket.
+Status check_can(const CanConfig& can) {
+  if (can.driver == CanDriver::kMock) return {};
+  const auto bus = at_key("can.interface", open_can_bus(can));
+  return bus ? Status() : tl::unexpected(bus.error());
+}
+
+/// The daemon writes this file while it runs.
+Status check_written_file(const char* key, const std::filesystem::path& file) {
+  if (file.empty()) return {};
+  const std::error_code error = cannot_write_in(file.parent_path());
+  if (!error) return {};
+  return fail(
+      "{}: {}: cannot be written ({}), wanted a folder that bevlocd may write in, such as "
+      "/var/lib/bevloc",
+      key, file.string(), error.message());
+}
+
+Status check_model(const std::filesystem::path& file, const Rig& rig) {
+  const auto model = Network::load(file, {});
+  if (!model) return tl::unexpected(model.error());
+  const Status fits = check_rig_fits((*model)->rig(), rig);
+  return fits ? fits : fail("{}: {}", file.string(), fits.error().message);
+}
+
+Status check_map(const std::filesystem::path& file) {
+  const auto map = load_map(file);
+  if (!map) return tl::unexpected(map.error());
+  for (const std::string& warning : warnings_of(*map))
+    spdlog::warn("{}: {}", file.string(), warning);
+  return {};
+}
+
+Status check_secoc(const SecocConfig& secoc) {
+  constexpr const char* kStartsKey = "can.secoc.starts_file";
+  const auto key = at_key("can.secoc.key_file", can::read_secoc_key(secoc.key_file));
+  if (!key) return tl::unexpected(key.error());
+  const auto starts = at_key(kStartsKey, can::read_start_number(secoc.starts_file));
+  if (!starts) return tl::unexpected(starts.error());
+  return check_written_file(kStartsKey, secoc.starts_file);
+}
+
+}  // namespace
+
+Status check_config(const Config& config) {
+  const auto rig = at_key("calibration.rig", read_rig(config.rig_file));
+  if (!rig) return tl::unexpected(rig.error());
+  const Status model = at_key("model.file", check_model(config.model_file, *rig));
+  if (!model) return model;
+  if (!config.map_file.empty()) {
+    if (Status map = at_key("map.file", check_map(config.map_file)); !map) return map;
+  }
+  if (config.can.secoc) {
+    if (Status secoc = check_secoc(*config.can.secoc); !secoc) return secoc;
+  }
+  const Status learned =
+      check_written_file("calibration.online.file", config.learned_calibration_file);
+  if (!learned) return learned;
+  if (Status status = check_lines(config.gpio); !status) return status;
+  if (Status status = check_can(config.can); !status) return status;
+  return check_cameras(config.cameras, *rig);
+}
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,13 @@
+// Looks up on this machine what a configuration names.
+#pragma once
+
+#include "firmware/config/config.h"
+
+namespace bevloc::firmware {
+
+/// Checks on this machine everything that the configuration names (`bevlocd --check-config`): reads
+/// rig, model, map and recordings, looks up the GPIO lines, opens the CAN interface, and starts the
+/// cameras. Returns the first error.
+Status check_config(const Config& config);
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,20 @@
+// The daemon's status as JSON, and as one page of text.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "firmware/status/metrics.h"
+#include "firmware/status/telemetry.h"
+
+namespace bevloc::firmware {
+
+/// /status.json. Angles are in degrees, because people read them; docs/live.md lists the keys.
+nlohmann::json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration age);
+
+/// The page that `bevloc status` prints, from status_json(). A key that is missing shows as "-",
+/// because the daemon may have another version.
+std::string status_page(const nlohmann::json& status);
+
+}  // namespace bevloc::firmware

@@ -1,0 +1,97 @@
+// Online calibration: learns the errors of the cameras' extrinsics while driving, and says when a
+// camera is not where the calibration has it.
+#pragma once
+
+#include <optional>
+
+#include "common/cameras.h"
+#include "common/time.h"
+#include "pipeline/online_calibration/camera_agreement.h"
+#include "pipeline/online_calibration/extrinsic_filter.h"
+#include "pipeline/online_calibration/motion_direction.h"
+#include "pipeline/solver/solver_result.h"
+
+namespace bevloc {
+
+struct OnlineCalibrationOptions {
+  bool enabled = true;
+  /// Errors beyond these are a fault of the calibration. What is used stays within them.
+  double max_rotation_rad = radians(0.65);
+  double max_translation_m = 0.1;
+
+  bool operator==(const OnlineCalibrationOptions&) const = default;
+};
+
+/// One match, and the condition under which it was made.
+struct CalibrationObservation {
+  MatchedCells cells;
+  const MatchResult& match;
+  CameraMask cameras;     ///< used in the match
+  Time time;              ///< of the frameset
+  bool tracking = false;  ///< the prior came from the tracker, which follows the map
+  bool driving = false;
+  Se2 map_from_vehicle;                ///< as matched
+  std::optional<DrivenStep> driven{};  ///< until `time`, from odometry, where known
+};
+
+/// Learns only while the vehicle drives and tracks, from clear matches near the prior, with all
+/// cameras. It judges whether a camera contradicts the map even while other cameras are missing. A
+/// pose in the wrong lane looks like errors of the cameras. Such apparent errors differ from place
+/// to place, so they average out; the bounds limit the rest.
+///
+/// One thread; the constructor allocates all memory.
+class OnlineCalibration {
+ public:
+  /// `rig`: the network rig of the calibration.
+  OnlineCalibration(const Rig& rig, const BevGrid& grid, int channels,
+                    const OnlineCalibrationOptions& options);
+
+  /// Starts with an estimate of an earlier drive. Returns false, and changes nothing, if it is
+  /// beyond the bounds, not finite, or its covariance is not positive definite.
+  bool restore(const ExtrinsicErrors& errors, const ExtrinsicCovariance& covariance);
+
+  /// Learns from a match; a few times per second, more often does nothing. Returns whether
+  /// used_errors() changed.
+  bool observe(const CalibrationObservation& observation);
+
+  /// The errors to be applied to the calibration. They follow the estimate in steps, because each
+  /// change computes the view table again. While a camera is at fault they are those of the start,
+  /// because it has pulled the estimates of the others.
+  const ExtrinsicErrors& used_errors() const { return used_; }
+  const ExtrinsicFilter& filter() const { return filter_; }
+
+  /// The cameras with an error that is beyond its bound by more than half its sigma, or whose
+  /// picture contradicts the map while those of others agree with it.
+  CameraMask faults() const { return beyond_bounds_ | contradicting(); }
+  CameraMask beyond_bounds() const { return beyond_bounds_; }
+  CameraMask contradicting() const { return agreement_.contradicting(); }
+
+  /// The cameras that are to be left out of matches: the first one or two that were at fault. They
+  /// stay in this set. Cameras that would make it more than two stay in use.
+  CameraMask left_out() const { return left_out_; }
+
+ private:
+  void learn_heading(const CalibrationObservation& observation, bool is_clear);
+  bool is_clear(const CalibrationObservation& observation) const;
+  void judge_bounds();
+  void leave_out_faults();
+  /// Returns whether the used errors change.
+  bool use_again(const ExtrinsicErrors& errors);
+  bool follow_estimate();
+  double limit_of(int error) const;
+
+  OnlineCalibrationOptions options_;
+  ExtrinsicSums sums_;
+  ExtrinsicFilter filter_;
+  MotionDirection direction_;
+  ExtrinsicInformation information_;
+  ExtrinsicErrors used_ = ExtrinsicErrors::Zero();
+  ExtrinsicErrors start_ = ExtrinsicErrors::Zero();  ///< as restored
+  double unfollowed_s_ = 0.0;                        ///< learning time since used_ has changed
+  std::optional<Time> observed_;  ///< the time of the latest observation that was computed
+  CameraAgreement agreement_;
+  CameraMask beyond_bounds_;
+  CameraMask left_out_;
+};
+
+}  // namespace bevloc

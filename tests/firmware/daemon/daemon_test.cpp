@@ -1,0 +1,188 @@
+// Tests the daemon with replay cameras whose images cannot be read, and with mock GPIO lines.
+#include "firmware/daemon/daemon.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "can/bus/mock_bus.h"
+#include "drivers/mock/mock_gpio.h"
+#include "pipeline/calibration/rig_yaml.h"
+#include "tests/firmware/log_capture.h"
+#include "tests/firmware/runtime/fake_manager.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using drivers::MockGpio;
+using std::chrono::milliseconds;
+
+const std::filesystem::path kSourceFolder = BEVLOC_SOURCE_DIR;
+/// The daemon calls `stop` ten times per second. After this many calls the test fails.
+constexpr int kMaxCalls = 300;
+
+class DaemonTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    for (const std::string_view camera : kCameraNames) {
+      std::filesystem::create_directories(folder_ / camera);
+      std::ofstream(folder_ / camera / "frames.txt") << "0 0 none.png\n";
+      std::ofstream(folder_ / camera / "none.png") << "";
+    }
+    config_.cameras.driver = CameraDriver::kReplay;
+    config_.cameras.recording = folder_.path();
+    config_.map_file = kSourceFolder / "tests/pipeline/map/fixtures/street.osm";
+    config_.model_file = kSourceFolder / "models/nano.onnx";
+    config_.gpio.fault = drivers::LineAddress{MockGpio::kChip, "fault", true};
+    config_.gpio.ignition = IgnitionConfig{{MockGpio::kChip, "ignition"}, milliseconds(50)};
+    config_.gpio.trigger = TriggerLineConfig{{MockGpio::kChip, "trigger"}, {}};
+    gpio_.drive("ignition", true);
+  }
+
+  Status run(const std::function<bool()>& stop) {
+    const auto rig = read_rig(kSourceFolder / "config/rig_demo.yaml");
+    EXPECT_TRUE(rig) << rig.error().message;
+    return run_daemon(config_, *rig, {gpio_, [this] { return wire_.connect(); }, stop, nullptr});
+  }
+
+  bool fault() const { return !gpio_.high("fault"); }  // active low
+
+  const test::TemporaryFolder folder_;
+  Config config_;
+  drivers::MonotonicClock clock_;
+  MockGpio gpio_{{"trigger", "fault", "ignition"}, clock_};
+  can::MockWire wire_{4096};
+};
+
+TEST_F(DaemonTest, WaitsInStandbyWhileTheIgnitionIsOffAndRunsAgain) {
+  FakeManager manager;
+  setenv("WATCHDOG_USEC", "2000000", 1);
+  std::string messages;
+  const auto see = [&](const std::string& text) {
+    messages += manager.all();
+    return messages.find(text) != std::string::npos;
+  };
+  int calls = 0;
+  int step = 0;
+  bool fault_in_standby = false;
+  const auto bus = wire_.connect();
+  const Status status = run([&] {
+    if (step == 0 && see("READY=1") && !fault()) {
+      gpio_.drive("ignition", false);
+      messages.clear();
+      step = 1;
+    } else if (step == 1 && see("STATUS=standby: ignition off") && see("WATCHDOG=1")) {
+      fault_in_standby = fault();
+      EXPECT_LT(messages.find("WATCHDOG_USEC=30000000"), messages.find("STATUS=standby"))
+          << "nobody feeds the watchdog while the devices close";
+      while (bus->receive()) {
+      }
+      EXPECT_EQ(messages.find("STOPPING"), std::string::npos);
+      messages.clear();
+      gpio_.drive("ignition", true);
+      step = 2;
+    } else if (step == 2 && see("READY=1") && !fault() && bus->receive()) {
+      step = 3;
+    }
+    return step == 3 || ++calls == kMaxCalls;
+  });
+  unsetenv("WATCHDOG_USEC");
+  EXPECT_TRUE(status) << status.error().message;
+  EXPECT_EQ(step, 3);
+  EXPECT_TRUE(fault_in_standby);
+  EXPECT_TRUE(see("STOPPING=1"));
+  EXPECT_TRUE(fault());
+  EXPECT_FALSE(gpio_.high("trigger"));
+  EXPECT_GE(gpio_.changes("trigger").size(), 2U);
+  // All lines were released.
+  EXPECT_TRUE(gpio_.open_input({MockGpio::kChip, "ignition"}));
+  EXPECT_TRUE(gpio_.open_output({MockGpio::kChip, "trigger"}, false));
+}
+
+TEST_F(DaemonTest, ATriggerThatFailsIsLoggedOnce) {
+  const LogCapture log;
+  int calls = 0;
+  EXPECT_TRUE(run([&] {
+    if (++calls == 3) gpio_.unplug();
+    return calls == 8;
+  }));
+  const std::string line = "gpio: trigger: ";
+  const size_t first = log.text().find(line);
+  ASSERT_NE(first, std::string::npos) << log.text();
+  EXPECT_EQ(log.text().find(line, first + 1), std::string::npos) << log.text();
+}
+
+TEST_F(DaemonTest, EndsInStandby) {
+  gpio_.drive("ignition", false);
+  int calls = 0;
+  EXPECT_TRUE(run([&] { return ++calls == 3; }));
+  EXPECT_EQ(calls, 3);
+  EXPECT_TRUE(gpio_.changes("trigger").empty());
+}
+
+TEST_F(DaemonTest, RunsWhileTheIgnitionIsOn) {
+  int calls = 0;
+  const Status status = run([&] { return ++calls == 5; });
+  EXPECT_TRUE(status) << status.error().message;
+  EXPECT_EQ(calls, 5);
+}
+
+TEST_F(DaemonTest, RunsWithoutARecordingIfTheDiskTakesNone) {
+  config_.record.emplace().directory = "/proc/no/such";
+  const LogCapture log;
+  int calls = 0;
+  const Status status = run([&] { return ++calls == 3; });
+  EXPECT_TRUE(status) << status.error().message;
+  EXPECT_EQ(calls, 3);
+  EXPECT_NE(log.text().find("nothing is recorded: /proc/no/such"), std::string::npos) << log.text();
+}
+
+TEST_F(DaemonTest, RunsWithoutALivePageIfItCannotBeServed) {
+  config_.live.emplace().address = "192.0.2.1";  // of another machine (RFC 5737)
+  const LogCapture log;
+  int calls = 0;
+  const Status status = run([&] { return ++calls == 3; });
+  EXPECT_TRUE(status) << status.error().message;
+  EXPECT_EQ(calls, 3);
+  EXPECT_NE(log.text().find("error: no live page: live: found no way to listen at 192.0.2.1"),
+            std::string::npos)
+      << log.text();
+}
+
+bool has_thread(const std::string& wanted) {
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::string name;
+    std::getline(std::ifstream(thread.path() / "comm"), name);
+    if (name == wanted) return true;
+  }
+  return false;
+}
+
+TEST_F(DaemonTest, KeepsWhatItLearnsInAThreadOfItsOwn) {
+  for (const bool with_file : {false, true}) {
+    if (with_file) config_.learned_calibration_file = folder_ / "calibration.yaml";
+    int calls = 0;
+    bool seen = false;
+    const Status status = run([&] {
+      seen |= has_thread("calibration");
+      return ++calls == (with_file ? kMaxCalls : 5) || seen;
+    });
+    EXPECT_TRUE(status) << status.error().message;
+    EXPECT_EQ(seen, with_file);
+  }
+  EXPECT_FALSE(has_thread("calibration"));
+  EXPECT_FALSE(std::filesystem::exists(config_.learned_calibration_file)) << "nothing was learned";
+}
+
+TEST_F(DaemonTest, DoesNotStartWithoutAConfiguredLine) {
+  config_.gpio.ignition->address.line = "key";
+  const Status status = run([] { return true; });
+  ASSERT_FALSE(status);
+  EXPECT_THAT(status.error().message, testing::StartsWith("gpio: mock key: "));
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

@@ -1,0 +1,158 @@
+// Tests check_config(), which looks up everything that a configuration names.
+#include "firmware/devices/config_check.h"
+
+#include <algorithm>
+#include <regex>
+
+#include <gmock/gmock.h>
+
+#include "tests/firmware/config/config_fixture.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+using ConfigCheckTest = ConfigTest;
+
+TEST_F(ConfigCheckTest, NamesTheFirstMissingFile) {
+  const auto config = load(with("{procedural_seed: 7}", "{file: town.osm}"));
+  ASSERT_TRUE(config) << config.error().message;
+  const auto expect_refused = [&](const std::string& key, const std::string& name) {
+    const Status checked = check_config(*config);
+    ASSERT_FALSE(checked) << name;
+    EXPECT_THAT(checked.error().message, StartsWith(key + ": " + (folder_ / name).string()));
+  };
+  expect_refused("calibration.rig", "rig.yaml");
+  std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
+  expect_refused("model.file", "sub/model.onnx");
+  std::filesystem::create_directory(folder_ / "sub");
+  write("sub/model.onnx", "no model");
+  expect_refused("model.file", "sub/model.onnx");
+  put_model("sub/model.onnx");
+  expect_refused("map.file", "town.osm");
+  write("town.osm", "no map");
+  expect_refused("map.file", "town.osm");
+  put_map("town.osm");
+  EXPECT_TRUE(check_config(*config));
+}
+
+TEST_F(ConfigCheckTest, ReportsABadRotationWithItsLine) {
+  const auto config = load(kSmallest);
+  ASSERT_TRUE(config) << config.error().message;
+  std::string rig = read_text(kSource / "config/rig_demo.yaml");
+  const std::regex rotation(R"(rotation_wxyz: *\[[^\]]*\])");
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(rig, match, rotation));
+  const auto line = 1 + std::count(rig.begin(), rig.begin() + match.position(), '\n');
+  rig.replace(match.position(), match.length(), "rotation_wxyz: [1, 1, 0, 0]");
+  write("rig.yaml", rig);
+  const Status checked = check_config(*config);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message,
+              StartsWith("calibration.rig: " + (folder_ / "rig.yaml").string() + ":" +
+                         std::to_string(line) + ": "));
+  EXPECT_THAT(checked.error().message, HasSubstr("rotation_wxyz"));
+}
+
+TEST_F(ConfigCheckTest, ReadsTheRecordings) {
+  const auto config = load(
+      "cameras: {driver: replay, recording: drive}\n"
+      "calibration: {rig: rig.yaml}\n"
+      "map: {file: town.osm}\n"
+      "model: {file: model.onnx}\n"
+      "can: {driver: mock}\n");
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_FALSE(config->simulation);
+  std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
+  put_model("model.onnx");
+  put_map("town.osm");
+  const Status checked = check_config(*config);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message,
+              StartsWith((folder_ / "drive/front_left/frames.txt").string()));
+  for (const std::string_view camera : kCameraNames) {
+    const std::filesystem::path recording = folder_ / "drive" / camera;
+    std::filesystem::create_directories(recording);
+    std::ofstream(recording / "frames.txt") << "0 1000 0.png\n";
+    std::ofstream(recording / "0.png") << "an image";
+  }
+  EXPECT_TRUE(check_config(*config));
+}
+
+class WrittenFilesTest : public ConfigCheckTest {
+ protected:
+  /// A configuration whose rig, model and map are good, and the file of a good key.
+  Result<evaluation::DriveConfig> load_good() {
+    std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
+    std::filesystem::create_directory(folder_ / "sub");
+    put_model("sub/model.onnx");
+    put_map("town.osm");
+    write("secoc.key", "00112233445566778899aabbccddeeff\n");
+    std::filesystem::permissions(folder_ / "secoc.key", std::filesystem::perms::owner_read);
+    return load(with("{procedural_seed: 7}", "{file: town.osm}"));
+  }
+};
+
+TEST_F(WrittenFilesTest, TheNumberOfStartsIsRead) {
+  auto config = load_good();
+  ASSERT_TRUE(config) << config.error().message;
+  config->can.secoc = SecocConfig{folder_ / "secoc.key", folder_ / "starts"};
+  write("starts", "41\n");
+  EXPECT_TRUE(check_config(*config));
+  EXPECT_EQ(read_text(folder_ / "starts"), "41\n") << "a check counts no start";
+  write("starts", "forty-one\n");
+  EXPECT_THAT(check_config(*config).error().message,
+              StartsWith("can.secoc.starts_file: " + (folder_ / "starts").string() +
+                         ": found 'forty-one', wanted one whole number of starts"));
+}
+
+TEST_F(WrittenFilesTest, TheirFoldersAreLookedFor) {
+  auto config = load_good();
+  ASSERT_TRUE(config) << config.error().message;
+  const std::filesystem::path in_a_file = folder_ / "town.osm" / "file";
+  config->can.secoc = SecocConfig{folder_ / "secoc.key", in_a_file};
+  EXPECT_THAT(check_config(*config).error().message,
+              StartsWith("can.secoc.starts_file: " + in_a_file.string() + ": cannot be written"));
+  config->can.secoc->starts_file = folder_ / "new" / "starts";
+  EXPECT_TRUE(check_config(*config));
+  config->learned_calibration_file = in_a_file;
+  EXPECT_THAT(check_config(*config).error().message,
+              StartsWith("calibration.online.file: " + in_a_file.string() + ": cannot be written"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "new")) << "a check writes nothing";
+}
+
+/// A configuration of real cameras, none of which is connected here.
+const std::string kVehicle =
+    "cameras:\n"
+    "  driver: v4l2\n"
+    "  ids: {front_left: c0, front: c1, front_right: c2, back_left: c3, back: c4, back_right: c5}\n"
+    "calibration: {rig: rig.yaml}\n"
+    "map: {file: town.osm}\n"
+    "model: {file: model.onnx}\n";
+
+TEST_F(ConfigCheckTest, RefusesAMockBusBesideRealCameras) {
+  EXPECT_EQ(error_of(kVehicle + "can: {driver: mock}\n"),
+            place(7) +
+                "can.driver: found mock beside real cameras, wanted socketcan, so that "
+                "poses reach the vehicle");
+  EXPECT_EQ(error_of(kVehicle + "can: {driver: socketcan, interface: nowhere0}\n"), "");
+}
+
+TEST_F(ConfigCheckTest, OpensTheInterfaceAndLooksForTheCameras) {
+  auto config = load(kVehicle + "can: {driver: socketcan, interface: nowhere0}\n");
+  ASSERT_TRUE(config) << config.error().message;
+  std::filesystem::copy_file(kSource / "config/rig_demo.yaml", folder_ / "rig.yaml");
+  put_model("model.onnx");
+  put_map("town.osm");
+  Status checked = check_config(*config);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message, StartsWith("can.interface: nowhere0: "));
+  config->can.driver = CanDriver::kMock;
+  checked = check_config(*config);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message, StartsWith("camera front_left: "));
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

@@ -1,0 +1,93 @@
+#include "firmware/status/error_log.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/firmware/log_capture.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+class ErrorLogTest : public testing::Test {
+ protected:
+  void note(Duration after = seconds(1)) { errors_.note(snapshot_, now_ += after); }
+  std::ptrdiff_t lines() const {
+    const std::string text = log_.text();
+    return std::count(text.begin(), text.end(), '\n');
+  }
+
+  LogCapture log_;
+  Snapshot snapshot_;
+  ErrorLog errors_;
+  Time now_{seconds(10)};
+};
+
+TEST_F(ErrorLogTest, IsSilentWithoutErrors) {
+  snapshot_.cameras[0].captured = 100;
+  snapshot_.vehicle_input.odometry_samples = 100;
+  snapshot_.estimation.odometry[static_cast<size_t>(TrackerUpdate::kAccepted)] = 100;
+  snapshot_.estimation.gnss[static_cast<size_t>(TrackerUpdate::kGated)] = 3;
+  for (int k = 0; k < 10; ++k) note();
+  EXPECT_EQ(log_.text(), "");
+}
+
+TEST_F(ErrorLogTest, LogsAnErrorOnceWhileItLastsAndAgainAfterAQuietMinute) {
+  for (int k = 0; k < 300; ++k) {
+    ++snapshot_.vehicle_input.wrong_crc;
+    note();
+  }
+  EXPECT_EQ(lines(), 1);
+  EXPECT_THAT(log_.text(), HasSubstr("warning: CAN in: found a wrong CRC"));
+  note(seconds(61));
+  EXPECT_EQ(lines(), 1);
+  ++snapshot_.vehicle_input.wrong_crc;
+  note();
+  EXPECT_EQ(lines(), 2);
+  EXPECT_THAT(log_.text(), HasSubstr("counted 301 times"));
+}
+
+TEST_F(ErrorLogTest, LogsEachCauseOfItsOwn) {
+  snapshot_.cameras[1].unreadable = 1;
+  snapshot_.cameras[2].unreadable = 1;
+  snapshot_.cameras[2].driver.damaged = 1;
+  snapshot_.cameras[3].synchronizer.late = 1;
+  snapshot_.vehicle_input.repeated = 1;
+  snapshot_.estimation.odometry[static_cast<size_t>(TrackerUpdate::kImplausible)] = 1;
+  snapshot_.estimation.gnss[static_cast<size_t>(TrackerUpdate::kNotFinite)] = 1;
+  snapshot_.bus.receive_dropped = 1;
+  snapshot_.queue_drops = {.samples = 1, .reports = 1, .predictions = 1};
+  note();
+  note();
+  EXPECT_EQ(lines(), 10);
+  for (const char* text :
+       {"camera front: unreadable image", "camera front_right: unreadable image",
+        "camera front_right: damaged frame", "camera back_left: frame came after its frameset",
+        "CAN in: found a repeated counter", "tracker: odometry refused: beyond",
+        "tracker: GNSS refused: not a number", "CAN in: frames lost",
+        "samples of odometry or GNSS dropped", "reports of vision dropped"}) {
+    EXPECT_THAT(log_.text(), HasSubstr(text));
+  }
+}
+
+TEST_F(ErrorLogTest, TellsWhenAuthenticationFails) {
+  snapshot_.authentication.emplace();
+  snapshot_.authentication->no_freshness = 50;  // at each start, until the vehicle announces it
+  note();
+  EXPECT_EQ(log_.text(), "");
+  snapshot_.authentication->no_freshness = 400;
+  snapshot_.authentication->wrong_mac = 5;
+  snapshot_.authentication->incomplete = 2;
+  note();
+  EXPECT_EQ(lines(), 3);
+  EXPECT_THAT(log_.text(), HasSubstr("check that it sends VEH_Freshness"));
+  EXPECT_THAT(log_.text(), HasSubstr("compare the key files of vehicle and localizer"));
+  EXPECT_THAT(log_.text(), HasSubstr("an authentication without all frames of its epoch"));
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

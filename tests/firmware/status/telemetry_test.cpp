@@ -1,0 +1,365 @@
+// Tests health check, metrics, status and latency histogram.
+#include "firmware/status/telemetry.h"
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "firmware/status/metrics.h"
+#include "firmware/status/status_json.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::HasSubstr;
+using testing::Not;
+
+Telemetry running(HealthState state, WhyMask why = {}) {
+  Telemetry telemetry;
+  telemetry.phase = Phase::kRunning;
+  telemetry.view.state = state;
+  telemetry.view.why = why;
+  EstimationSnapshot& estimation = telemetry.snapshot.estimation;
+  estimation.state = state;
+  estimation.why = why;
+  estimation.pose.known = true;
+  estimation.pose.valid = state == HealthState::kTracking || state == HealthState::kDegraded;
+  estimation.pose.sigma = {0.25, 0.5, radians(1.0)};
+  estimation.pose.protection_level = {1.25, 1.5, radians(2.0)};
+  return telemetry;
+}
+
+std::string metrics(const Telemetry& telemetry) {
+  return metrics_text(telemetry, {1e6, 2.5}, {});
+}
+
+TEST(LatencyHistogram, CountsInRanges) {
+  LatencyHistogram histogram;
+  EXPECT_EQ(histogram.counts().quantile_ms(0.5), 0.0);
+  for (const int latency_ms : {5, 10, 25, 25, 2000}) histogram.add(milliseconds(latency_ms));
+  const LatencyCounts counts = histogram.counts();
+  EXPECT_EQ(counts.total(), 5u);
+  EXPECT_EQ(counts.in_range[0], 2u);  // a limit belongs to the range below it
+  EXPECT_EQ(counts.in_range[2], 2u);
+  EXPECT_EQ(counts.in_range.back(), 1u);
+  EXPECT_EQ(counts.sum, milliseconds(2065));
+  EXPECT_EQ(counts.quantile_ms(0.4), 10.0);
+  EXPECT_EQ(counts.quantile_ms(0.6), 25.0);
+  EXPECT_EQ(counts.quantile_ms(1.0), LatencyCounts::kUpper_ms.back());
+}
+
+TEST(HealthCheck, IsGoodWithAValidPose) {
+  EXPECT_TRUE(check_health(running(HealthState::kTracking), Duration{}).good);
+  const HealthCheck degraded =
+      check_health(running(HealthState::kDegraded, Why::kGnssMissing), Duration{});
+  EXPECT_TRUE(degraded.good);
+  EXPECT_THAT(degraded.reason, HasSubstr("DEGRADED: GNSS missing: Check the antenna"));
+}
+
+TEST(HealthCheck, IsBadWhenLostAndInFault) {
+  EXPECT_FALSE(check_health(running(HealthState::kLost, Why::kPoseStale), Duration{}).good);
+  EXPECT_FALSE(check_health(running(HealthState::kFault, Why::kNetworkFault), Duration{}).good);
+}
+
+TEST(HealthCheck, AStartIsGoodUntilAnInputIsMissing) {
+  EXPECT_TRUE(check_health(Telemetry{}, Duration{}).good);
+  EXPECT_TRUE(check_health(running(HealthState::kInit, Why::kNoInitialPose), Duration{}).good);
+  EXPECT_TRUE(
+      check_health(running(HealthState::kAcquiring, Why::kMatchUncertain), Duration{}).good);
+  EXPECT_FALSE(check_health(running(HealthState::kInit, Why::kOdometryMissing), Duration{}).good);
+}
+
+TEST(HealthCheck, IsBadWhileALostPoseIsNotFoundAgain) {
+  Telemetry telemetry = running(HealthState::kAcquiring, Why::kMatchUncertain);
+  telemetry.snapshot.estimation.invalid_since = Time(seconds(100));
+  telemetry.time = Time(seconds(110));
+  EXPECT_TRUE(check_health(telemetry, Duration{}).good);
+  telemetry.time = Time(seconds(112));
+  const HealthCheck health = check_health(telemetry, Duration{});
+  EXPECT_FALSE(health.good);
+  EXPECT_THAT(health.reason, HasSubstr("ACQUIRING, no valid pose for 12 s: match uncertain: "));
+}
+
+TEST(HealthCheck, StandbyIsGood) {
+  Telemetry telemetry;
+  telemetry.phase = Phase::kStandby;
+  EXPECT_TRUE(check_health(telemetry, std::chrono::hours(1)).good);
+}
+
+TEST(HealthCheck, IsBadWhenAThreadHangs) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.view.hung = "vision";
+  const HealthCheck health = check_health(telemetry, Duration{});
+  EXPECT_FALSE(health.good);
+  EXPECT_THAT(health.reason, HasSubstr("vision"));
+  telemetry.view.hung.clear();
+  EXPECT_FALSE(check_health(telemetry, seconds(3)).good);
+}
+
+TEST(PoseIsValid, NotWhileNobodyUpdatesIt) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.time = Time(seconds(100));
+  telemetry.snapshot.estimation.pose.time = Time(seconds(100));
+  EXPECT_TRUE(pose_is_valid(telemetry, milliseconds(300)));
+  const Duration silent = seconds(3);
+  EXPECT_FALSE(pose_is_valid(telemetry, silent));
+  EXPECT_THAT(metrics_text(telemetry, {}, silent), HasSubstr("bevloc_pose_valid 0\n"));
+  const nlohmann::json status = status_json(telemetry, {}, silent);
+  EXPECT_EQ(status["valid"], false);
+  EXPECT_THAT(status_page(status),
+              HasSubstr("TRACKING, pose NOT valid, NOT healthy\n  the supervisor has said nothing "
+                        "for 3 s. Restart the service.\n"));
+  telemetry.time = Time(seconds(103));  // CAN out hangs
+  EXPECT_FALSE(pose_is_valid(telemetry, milliseconds(0)));
+}
+
+TEST(HealthCheck, EveryReasonHasAnAdvice) {
+  std::set<std::string> advices;
+  for (int bit = 0; bit < kWhyCount; ++bit) {
+    const auto reason = static_cast<Why>(1u << bit);
+    EXPECT_STRNE(advice_for(reason), "") << words_of(reason);
+    EXPECT_NE(words_of(reason), "");
+  }
+}
+
+TEST(Metrics, ShowStateAndPose) {
+  const std::string text = metrics(running(HealthState::kDegraded, Why::kGnssMissing));
+  for (const char* line :
+       {"bevloc_state{state=\"DEGRADED\"} 1\n", "bevloc_state{state=\"TRACKING\"} 0\n",
+        "bevloc_why{reason=\"GNSS missing\"} 1\n", "bevloc_why{reason=\"overload\"} 0\n",
+        "bevloc_pose_valid 1\n", "bevloc_sigma_meters{axis=\"lateral\"} 0.5\n",
+        "bevloc_protection_level_meters{axis=\"longitudinal\"} 1.25\n",
+        "process_resident_memory_bytes 1000000\n", "process_cpu_seconds_total 2.5\n",
+        "# TYPE bevloc_latency_seconds histogram\n"}) {
+    EXPECT_THAT(text, HasSubstr(line));
+  }
+}
+
+TEST(Metrics, ShowCountersOfCamerasAndQueues) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.snapshot.queue_drops = {.samples = 4, .reports = 5, .predictions = 6};
+  telemetry.snapshot.cameras[1].captured = 7;
+  telemetry.snapshot.cameras[1].driver.overrun = 3;
+  telemetry.snapshot.cameras[1].dirty = true;
+  const std::string text = metrics(telemetry);
+  for (const char* line :
+       {"bevloc_queue_dropped_total{queue=\"samples\"} 4\n",
+        "bevloc_queue_dropped_total{queue=\"reports\"} 5\n",
+        "bevloc_queue_dropped_total{queue=\"predictions\"} 6\n",
+        "bevloc_camera_frames_captured_total{camera=\"front\"} 7\n",
+        "bevloc_camera_frames_lost_total{camera=\"front\",reason=\"overrun\"} 3\n",
+        "bevloc_camera_view_fault{camera=\"front\",fault=\"dirty\"} 1\n",
+        "bevloc_camera_frames_captured_total{camera=\"back\"} 0\n"}) {
+    EXPECT_THAT(text, HasSubstr(line));
+  }
+}
+
+TEST(Metrics, ShowWhatBecameOfTheReportsOfGpsd) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  EXPECT_THAT(metrics(telemetry), Not(HasSubstr("bevloc_gnss_connected")));
+  GnssCounters& gnss = telemetry.snapshot.gnss.emplace();
+  gnss.connected = true;
+  gnss.samples = 5;
+  gnss.gpsd.lines[static_cast<size_t>(drivers::GpsdLine::kNoFix)] = 3;
+  gnss.fixes[static_cast<size_t>(drivers::FixVerdict::kStale)] = 2;
+  gnss.fixes[static_cast<size_t>(drivers::FixVerdict::kUsable)] = 5;
+  gnss.max_age = milliseconds(250);
+  const std::string text = metrics(telemetry);
+  for (const char* line :
+       {"bevloc_gnss_connected 1\n", "bevloc_gnss_samples_total 5\n",
+        "bevloc_gnss_refused_total{reason=\"no_fix\"} 3\n",
+        "bevloc_gnss_refused_total{reason=\"stale\"} 2\n", "bevloc_gnss_age_max_seconds 0.25\n"}) {
+    EXPECT_THAT(text, HasSubstr(line));
+  }
+  const nlohmann::json status = status_json(telemetry, {}, Duration{});
+  EXPECT_EQ(status["gnss"]["fixes_refused"], 2);
+  EXPECT_THAT(status_page(status), HasSubstr("gpsd        connected; 5 samples, 3 reports and 2"));
+}
+
+TEST(Metrics, ShowTheRecording) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  EXPECT_THAT(metrics(telemetry), Not(HasSubstr("bevloc_recording")));
+  telemetry.snapshot.recording = {.images = 1,
+                                  .events = 2,
+                                  .images_dropped = 3,
+                                  .events_dropped = 4,
+                                  .bytes = 5'000'000,
+                                  .black_boxes = 6,
+                                  .failed = true};
+  const std::string text = metrics(telemetry);
+  for (const char* line :
+       {"bevloc_recording_written_total{kind=\"image\"} 1\n",
+        "bevloc_recording_written_total{kind=\"event\"} 2\n",
+        "bevloc_recording_dropped_total{kind=\"image\"} 3\n",
+        "bevloc_recording_dropped_total{kind=\"event\"} 4\n",
+        "bevloc_recording_bytes_total 5000000\n", "bevloc_recording_black_boxes_total 6\n",
+        "bevloc_recording_failed 1\n"}) {
+    EXPECT_THAT(text, HasSubstr(line));
+  }
+  EXPECT_THAT(status_page(status_json(telemetry, {}, {})),
+              HasSubstr("recording   FAILED after 5 MB; 3 images and 4 events dropped, 6 black "
+                        "boxes kept\n"));
+}
+
+TEST(Metrics, LatencyBucketsAreCumulative) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.snapshot.estimation.latency.in_range[0] = 1;
+  telemetry.snapshot.estimation.latency.in_range[1] = 2;
+  telemetry.snapshot.estimation.latency.in_range.back() = 4;
+  const std::string text = metrics(telemetry);
+  EXPECT_THAT(text, HasSubstr("bevloc_latency_seconds_bucket{le=\"0.02\"} 3\n"));
+  EXPECT_THAT(text, HasSubstr("bevloc_latency_seconds_bucket{le=\"+Inf\"} 7\n"));
+  EXPECT_THAT(text, HasSubstr("bevloc_latency_seconds_count 7\n"));
+}
+
+TEST(Metrics, CountsEachLossOfAuthentication) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.snapshot.vehicle_input.foreign = 11;
+  telemetry.snapshot.authentication = {
+      .incomplete = 12, .wrong_length = 13, .bad_announcements = 14};
+  const std::string text = metrics(telemetry);
+  const auto refused = [](const std::string& reason, int count) {
+    return HasSubstr("bevloc_vehicle_refused_total{reason=\"" + reason + "\"} " +
+                     std::to_string(count) + "\n");
+  };
+  EXPECT_THAT(text, refused("foreign", 11));
+  EXPECT_THAT(text, refused("authentication_incomplete", 12));
+  EXPECT_THAT(text, refused("authentication_wrong_length", 13));
+  EXPECT_THAT(text, refused("bad_announcement", 14));
+}
+
+TEST(Metrics, NoSeriesOccursTwice) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.snapshot.authentication.emplace();
+  telemetry.snapshot.trigger.emplace();
+  telemetry.snapshot.gnss.emplace();
+  telemetry.snapshot.recording.emplace();
+  std::istringstream lines(metrics(telemetry));
+  std::set<std::string> seen;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_TRUE(seen.insert(line.substr(0, line.rfind(' '))).second || line.starts_with('#'))
+        << line;
+  }
+  EXPECT_GT(seen.size(), 150u);
+}
+
+/// The names of metrics in a text.
+std::set<std::string> metric_names_in(const std::string& text) {
+  const std::regex name("\\b(bevloc|process)_[a-z0-9_]+");
+  std::set<std::string> names;
+  for (std::sregex_iterator match(text.begin(), text.end(), name), end; match != end; ++match) {
+    names.insert(match->str());
+  }
+  return names;
+}
+
+std::string text_of_file(const std::string& name) {
+  std::ifstream file(std::filesystem::path(BEVLOC_SOURCE_DIR) / name);
+  EXPECT_TRUE(file) << name;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::set<std::string> existing_metrics() {
+  Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.snapshot.authentication.emplace();
+  telemetry.snapshot.trigger.emplace();
+  telemetry.snapshot.gnss.emplace();
+  telemetry.snapshot.recording.emplace();
+  return metric_names_in(metrics(telemetry));
+}
+
+TEST(Metrics, TheDashboardNamesOnlyExistingOnes) {
+  const auto dashboard = nlohmann::json::parse(text_of_file("docs/grafana/bevloc.json"));
+  const std::set<std::string> existing = existing_metrics();
+  size_t queries = 0;
+  for (const auto& panel : dashboard["panels"]) {
+    for (const auto& target : panel.value("targets", nlohmann::json::array())) {
+      ++queries;
+      const std::set<std::string> used = metric_names_in(target["expr"].get<std::string>());
+      EXPECT_FALSE(used.empty()) << target["expr"];
+      for (const std::string& name : used) EXPECT_TRUE(existing.contains(name)) << name;
+    }
+  }
+  EXPECT_GE(queries, 10u);
+}
+
+TEST(Metrics, ThePageListsEachOne) {
+  const std::set<std::string> listed = metric_names_in(text_of_file("docs/live.md"));
+  std::istringstream lines(metrics([] {
+    Telemetry telemetry = running(HealthState::kTracking);
+    telemetry.snapshot.authentication.emplace();
+    telemetry.snapshot.trigger.emplace();
+    telemetry.snapshot.gnss.emplace();
+    telemetry.snapshot.recording.emplace();
+    return telemetry;
+  }()));
+  for (std::string word, name; lines >> word;) {
+    if (word != "TYPE") continue;
+    lines >> name;
+    EXPECT_TRUE(listed.contains(name)) << name;
+  }
+}
+
+TEST(StatusJson, ShowsReasonsWithAdvice) {
+  const nlohmann::json status =
+      status_json(running(HealthState::kLost, Why::kOdometryMissing), {2e6, 1.0}, Duration{});
+  EXPECT_EQ(status["state"], "LOST");
+  EXPECT_EQ(status["valid"], false);
+  EXPECT_EQ(status["healthy"], false);
+  EXPECT_EQ(status["why"][0]["reason"], "odometry missing");
+  EXPECT_EQ(status["why"][0]["do"], advice_for(Why::kOdometryMissing));
+  EXPECT_DOUBLE_EQ(status["pose"]["sigma"]["lateral_m"].get<double>(), 0.5);
+  EXPECT_EQ(status["cameras"].size(), 6u);
+  EXPECT_DOUBLE_EQ(status["memory_mb"].get<double>(), 2.0);
+}
+
+TEST(StatusPage, FitsATerminal) {
+  const std::string page =
+      status_page(status_json(running(HealthState::kDegraded, Why::kGnssMissing), {2e6, 1.0}, {}));
+  EXPECT_THAT(page, HasSubstr("DEGRADED, pose valid\n  GNSS missing: Check the antenna"));
+  EXPECT_THAT(page, HasSubstr("protection        1.25 m      1.50 m    2.00 deg\n"));
+  EXPECT_THAT(page, HasSubstr("front_left  "));
+  std::istringstream lines(page);
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 100u) << line;
+  EXPECT_LE(count, 24);
+}
+
+TEST(StatusPage, ShowsWhatTheAuthenticationRefused) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  EXPECT_FALSE(status_json(telemetry, {}, {}).contains("authentication"));
+  telemetry.snapshot.authentication = {
+      .authentic = 1, .wrong_mac = 2, .incomplete = 3, .no_freshness = 4};
+  EXPECT_THAT(status_page(status_json(telemetry, {}, {})),
+              HasSubstr("SecOC       1 epochs authentic; refused: 2 wrong code, 3 incomplete, 4 no "
+                        "freshness\n"));
+}
+
+TEST(StatusPage, SaysHowOftenAndWhyThePoseWasLost) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  EXPECT_THAT(status_page(status_json(telemetry, {}, {})), Not(HasSubstr("lost 0 times")));
+  telemetry.snapshot.estimation.lost = 2;
+  telemetry.snapshot.estimation.lost_why = Why::kOdometryMissing;
+  EXPECT_THAT(status_page(status_json(telemetry, {}, {})),
+              HasSubstr("lost 2 times, the latest time because of: odometry missing\n"));
+  EXPECT_THAT(metrics(telemetry), HasSubstr("bevloc_lost_total 2\n"));
+}
+
+TEST(StatusPage, ShowsStandbyAndSurvivesOtherVersions) {
+  Telemetry standby;
+  standby.phase = Phase::kStandby;
+  EXPECT_THAT(status_page(status_json(standby, {}, {})), HasSubstr("standby: ignition off"));
+  EXPECT_THAT(status_page({{"phase", "running"}}), HasSubstr("NOT valid"));
+  EXPECT_THAT(status_page(nlohmann::json::array()), HasSubstr("no status"));
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

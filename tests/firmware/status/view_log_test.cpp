@@ -1,0 +1,32 @@
+// Tests what is logged about changes of the appliance's state.
+#include "firmware/status/view_log.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/firmware/log_capture.h"
+
+namespace bevloc::firmware {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(ViewLogTest, NamesALossThatNoViewShows) {
+  const LogCapture capture;
+  ViewLog log;
+  ApplianceView view;
+  view.state = HealthState::kTracking;
+  log.note(view);
+  view.state = HealthState::kAcquiring;
+  view.why = Why::kMatchUncertain;
+  view.lost = 1;
+  view.lost_why = Why::kOdometryMissing;
+  log.note(view);
+  log.note(view);
+  EXPECT_THAT(capture.text(), HasSubstr("warning: pose lost: odometry missing\n"
+                                        "info: state TRACKING -> ACQUIRING: match uncertain\n"));
+  EXPECT_EQ(capture.text().find("pose lost"), capture.text().rfind("pose lost"));
+}
+
+}  // namespace
+}  // namespace bevloc::firmware

@@ -1,0 +1,94 @@
+// Features of a made-up road as six cameras with wrong extrinsics see it.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/online_calibration/online_calibration.h"
+#include "pipeline/preprocessing/network_camera.h"
+#include "pipeline/solver/standardise.h"
+
+namespace bevloc {
+
+inline Rig demo_network_rig() {
+  return network_rig(*read_rig(std::string(BEVLOC_SOURCE_DIR) + "/config/rig_demo.yaml"));
+}
+
+/// The errors of one camera, all others without.
+inline ExtrinsicErrors error_of(int camera, int axis, double value) {
+  ExtrinsicErrors errors = ExtrinsicErrors::Zero();
+  errors(camera * kErrorsPerCamera + axis) = value;
+  return errors;
+}
+
+/// Smooth map features, and BEV features that show them where cameras with errors put them.
+class DemoCells {
+ public:
+  static constexpr int kChannels = 16;
+
+  DemoCells()
+      : rig_(demo_network_rig()),
+        view_(make_view_table(rig_, CameraMask().set(), kFeatureGrid)),
+        bev_(kFeatureGrid, kChannels, HypothesisGrid()),
+        map_(kFeatureGrid, kChannels, HypothesisGrid()) {
+    show(ExtrinsicErrors::Zero());
+  }
+
+  const Rig& rig() const { return rig_; }
+
+  /// Sees the map with true extrinsics that differ from the rig's by `errors`. Features fade to
+  /// half at 20 m, as those of a network do. The cells of the cameras in `blind` show another road.
+  void show(const ExtrinsicErrors& errors, CameraMask blind = {}) {
+    std::vector<float> map(kChannels * static_cast<size_t>(kFeatureGrid.cells()));
+    std::vector<float> bev(map.size());
+    for (int cell = 0; cell < kFeatureGrid.cells(); ++cell) {
+      const Eigen::Vector2d point(kFeatureGrid.x_of_row(cell / kFeatureGrid.cols),
+                                  kFeatureGrid.y_of_col(cell % kFeatureGrid.cols));
+      Eigen::Vector2d shown = point;
+      bool other_road = false;
+      for (size_t slot = 0; slot < kViewSlots; ++slot) {
+        const size_t entry = slot * static_cast<size_t>(kFeatureGrid.cells()) + cell;
+        const int camera = view_.index[entry] / kImageFeatureCells;
+        if (view_.weight[entry] <= 0.0F) continue;
+        shown += static_cast<double>(view_.weight[entry]) *
+                 (ground_shift(rig_.cameras[camera].vehicle_from_camera, point.x(), point.y()) *
+                  errors.segment<kErrorsPerCamera>(camera * kErrorsPerCamera));
+        other_road |= blind[camera];
+      }
+      const double fade = 1.0 / (1.0 + point.squaredNorm() / 400.0);
+      for (int channel = 0; channel < kChannels; ++channel) {
+        const size_t i = static_cast<size_t>(channel) * kFeatureGrid.cells() + cell;
+        map[i] = static_cast<float>(road(channel, point));
+        bev[i] = static_cast<float>(fade * road(other_road ? channel + 100 : channel, shown));
+      }
+    }
+    map_.assign(map);
+    bev_.assign(bev);
+    standardise(map_);
+    standardise(bev_);
+  }
+
+  MatchedCells match() const { return {bev_, map_, view_, rig_, Se2()}; }
+
+ private:
+  /// A sum of waves of 6 to 12 m, different in each channel.
+  static double road(int channel, const Eigen::Vector2d& point) {
+    double sum = 0.0;
+    for (int wave = 0; wave < 4; ++wave) {
+      const double angle_rad = 1.7 * channel + 0.9 * wave;
+      const double length_m = 6.0 + (channel * 5 + wave * 3) % 7;
+      const Eigen::Vector2d direction(std::cos(angle_rad), std::sin(angle_rad));
+      sum += std::sin(2.0 * kPi / length_m * direction.dot(point) + channel + 2.0 * wave);
+    }
+    return sum;
+  }
+
+  static constexpr double kPi = 3.14159265358979323846;
+  Rig rig_;
+  ViewTable view_;
+  CellFeatures bev_;
+  CellFeatures map_;
+};
+
+}  // namespace bevloc

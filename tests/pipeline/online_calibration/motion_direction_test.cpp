@@ -1,0 +1,64 @@
+#include "pipeline/online_calibration/motion_direction.h"
+
+#include <functional>
+
+#include <gtest/gtest.h>
+
+namespace bevloc {
+namespace {
+
+/// Drives a bend with all cameras turned by `turn_rad`, odometry that measures `bias_radps` too
+/// much, without odometry every `gap` framesets, and without the framesets that `is_missing`.
+/// Returns the comparisons.
+std::vector<double> drive(
+    double turn_rad, double bias_radps, int gap = 1000,
+    const std::function<bool(int)>& is_missing = [](int) { return false; }) {
+  MotionDirection direction;
+  std::vector<double> turns;
+  Se2 truth{120.0, -40.0, 2.9};
+  constexpr double kPeriod_s = 0.1;
+  for (int i = 1; i <= 600; ++i) {
+    const double yaw_rate_radps = 0.15;
+    const Se2 half{0.5, 0.0, 0.5 * kPeriod_s * yaw_rate_radps};
+    truth = truth * half * half;
+    const Se2 measured_half{0.5, 0.0, 0.5 * kPeriod_s * (yaw_rate_radps + bias_radps)};
+    if (is_missing(i)) continue;
+    const auto time_of = [](int frameset) {
+      return Time(std::chrono::milliseconds(100 * frameset));
+    };
+    std::optional<DrivenStep> step{{time_of(i - 1), time_of(i), measured_half * measured_half}};
+    if (i % gap == 0) step.reset();
+    const Se2 matched{truth.x_m, truth.y_m, wrap_angle(truth.yaw_rad + turn_rad)};
+    if (const auto turn = direction.add(matched, step)) turns.push_back(turn->turn_rad);
+  }
+  return turns;
+}
+
+TEST(MotionDirection, FindsTheTurnOfAllCamerasInABend) {
+  for (const double turn_deg : {-1.0, 0.0, 1.0}) {
+    const std::vector<double> turns = drive(radians(turn_deg), 0.0);
+    ASSERT_EQ(turns.size(), 9U);
+    for (const double turn : turns) EXPECT_NEAR(degrees(turn), turn_deg, 0.01);
+  }
+}
+
+TEST(MotionDirection, BearsABiasOfTheYawRate) {
+  const std::vector<double> turns = drive(0.0, radians(0.3));
+  ASSERT_EQ(turns.size(), 9U);
+  for (const double turn : turns) EXPECT_NEAR(degrees(turn), 0.0, 0.05);
+}
+
+TEST(MotionDirection, BeginsAgainWhereOdometryIsMissing) {
+  EXPECT_TRUE(drive(radians(1.0), 0.0, 55).empty());
+}
+
+/// The stretch before the missing framesets must not be laid over the one behind them.
+TEST(MotionDirection, BeginsAgainWhereFramesetsAreMissing) {
+  const auto is_missing = [](int i) { return i % 100 >= 30 && i % 100 < 45; };
+  const std::vector<double> turns = drive(0.0, 0.0, 1000, is_missing);
+  EXPECT_GE(turns.size(), 5U);
+  for (const double turn : turns) EXPECT_NEAR(degrees(turn), 0.0, 0.01);
+}
+
+}  // namespace
+}  // namespace bevloc

@@ -1,0 +1,200 @@
+#include "pipeline/online_calibration/online_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/pipeline/online_calibration/demo_driver.h"
+
+namespace bevloc {
+namespace {
+
+const ExtrinsicErrors kSmallError = error_of(1, 0, radians(0.3));
+
+TEST(OnlineCalibration, UsesWhatItLearned) {
+  DemoDriver driver;
+  driver.drive(kSmallError, 900);
+  EXPECT_NEAR(degrees(driver.calibration().used_errors()(kErrorsPerCamera)), 0.3, 0.1);
+  EXPECT_TRUE(driver.calibration().faults().none());
+}
+
+TEST(OnlineCalibration, FollowsWhatItLearnedSlowly) {
+  DemoDriver driver;
+  driver.drive(kSmallError, 200);
+  EXPECT_GT(degrees(driver.calibration().filter().errors()(kErrorsPerCamera)), 0.2);
+  EXPECT_LE(degrees(driver.calibration().used_errors()(kErrorsPerCamera)), 0.1) << "in 20 s";
+}
+
+TEST(OnlineCalibration, LearnsOnlyFromClearMatchesWhileItDrivesAndTracks) {
+  const auto learned_with = [](auto change) {
+    DemoDriver driver;
+    change(driver);
+    driver.drive(kSmallError, 40);
+    return driver.calibration().filter().errors() != ExtrinsicErrors::Zero();
+  };
+  EXPECT_TRUE(learned_with([](DemoDriver&) {}));
+  EXPECT_FALSE(learned_with([](DemoDriver& driver) { driver.tracking = false; }));
+  EXPECT_FALSE(learned_with([](DemoDriver& driver) { driver.driving = false; }));
+  EXPECT_FALSE(learned_with([](DemoDriver& driver) { driver.cameras.reset(3); }));
+  EXPECT_FALSE(learned_with([](DemoDriver& driver) { driver.match.evidence = Evidence::kNone; }));
+  EXPECT_FALSE(learned_with([](DemoDriver& driver) { driver.match.correction.y_m = 0.9; }));
+  EXPECT_FALSE(learned_with([](DemoDriver& driver) { driver.match.covariance(1, 1) = 0.25; }));
+}
+
+TEST(OnlineCalibration, NamesTheCameraThatIsTurnedBeyondTheBounds) {
+  DemoDriver driver;
+  driver.drive(error_of(4, 0, radians(1.2)), 600);
+  EXPECT_EQ(driver.calibration().beyond_bounds(), CameraMask().set(4));
+  EXPECT_EQ(driver.calibration().used_errors(), ExtrinsicErrors::Zero())
+      << "the camera has pulled the estimates of the others";
+}
+
+TEST(OnlineCalibration, LearnsTheTurnOfAllCamerasFromTheDirectionOfMotion) {
+  DemoDriver driver;
+  driver.heading_against_motion_rad = radians(0.5);
+  driver.drive(ExtrinsicErrors::Zero(), 100);
+  // Nothing corrects the turn here, so it is learned again and again: only the sign counts.
+  double turn_rad = 0.0;
+  const Rig rig = demo_network_rig();
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const Eigen::Vector3d errors =
+        driver.calibration().filter().errors().segment<3>(camera * kErrorsPerCamera);
+    turn_rad += (rig.cameras[camera].vehicle_from_camera.rotation * errors).z() / kCameraCount;
+  }
+  EXPECT_GT(degrees(turn_rad), 0.1);
+}
+
+TEST(OnlineCalibration, RestoresWhatIsWithinTheBounds) {
+  OnlineCalibration calibration(demo_network_rig(), kFeatureGrid, DemoCells::kChannels, {});
+  const ExtrinsicCovariance covariance = 1e-6 * ExtrinsicCovariance::Identity();
+  EXPECT_FALSE(calibration.restore(error_of(1, 0, radians(0.7)), covariance));
+  EXPECT_EQ(calibration.used_errors(), ExtrinsicErrors::Zero());
+  EXPECT_TRUE(calibration.restore(kSmallError, covariance));
+  EXPECT_EQ(calibration.used_errors(), kSmallError);
+}
+
+TEST(OnlineCalibration, NamesACameraOnlyAfterItHasContradictedTheMapForSomeSeconds) {
+  DemoDriver driver;
+  driver.drive(ExtrinsicErrors::Zero(), 150);
+  const auto named_after_s = [&driver] {
+    for (int after_s = 1; after_s <= 60; ++after_s) {
+      driver.drive(ExtrinsicErrors::Zero(), 10, CameraMask().set(0));
+      if (driver.calibration().contradicting().any()) return after_s;
+    }
+    return 0;
+  };
+  const int crossed_s = 11;  // its agreement falls below the limit
+  EXPECT_GE(named_after_s(), crossed_s + 3);
+}
+
+TEST(OnlineCalibration, NamesTwoCamerasOfOneSideLater) {
+  const CameraMask left = CameraMask().set(0).set(3);
+  DemoDriver driver;
+  driver.tracking = false;
+  driver.drive(ExtrinsicErrors::Zero(), 450, left);
+  EXPECT_TRUE(driver.calibration().faults().none())
+      << "the road may differ from the map on that side";
+  driver.drive(ExtrinsicErrors::Zero(), 150, left);
+  EXPECT_EQ(driver.calibration().contradicting(), left);
+}
+
+TEST(OnlineCalibration, NamesCamerasThatShowAnotherRoad) {
+  DemoDriver driver;
+  driver.tracking = false;
+  driver.drive(ExtrinsicErrors::Zero(), 100, CameraMask().set(1).set(4));
+  EXPECT_TRUE(driver.calibration().contradicting().none()) << "too early to say";
+  driver.drive(ExtrinsicErrors::Zero(), 120, CameraMask().set(1).set(4));
+  EXPECT_TRUE(driver.calibration().contradicting()[1]);
+  EXPECT_TRUE(driver.calibration().contradicting()[4]);
+  driver.drive(ExtrinsicErrors::Zero(), 1000);
+  EXPECT_TRUE(driver.calibration().faults().none());
+}
+
+TEST(OnlineCalibration, NamesACameraWhileAnotherIsMissing) {
+  DemoDriver driver;
+  driver.cameras.reset(1);
+  driver.drive(ExtrinsicErrors::Zero(), 250, CameraMask().set(4));
+  EXPECT_EQ(driver.calibration().contradicting(), CameraMask().set(4));
+}
+
+TEST(OnlineCalibration, JudgesACameraThatComesBackOnlyAfterSomeSeconds) {
+  const CameraMask back = CameraMask().set(4);
+  DemoDriver driver;
+  driver.cameras.reset(4);
+  driver.drive(ExtrinsicErrors::Zero(), 300);
+  driver.cameras.set(4);
+  driver.drive(ExtrinsicErrors::Zero(), 120, back);
+  EXPECT_TRUE(driver.calibration().faults().none());
+  driver.drive(ExtrinsicErrors::Zero(), 100, back);
+  EXPECT_EQ(driver.calibration().contradicting(), back);
+}
+
+TEST(OnlineCalibration, KeepsTheVerdictOfACameraThatIsLeftOut) {
+  DemoDriver driver;
+  driver.drive(ExtrinsicErrors::Zero(), 250, CameraMask().set(4));
+  driver.cameras.reset(4);
+  driver.drive(ExtrinsicErrors::Zero(), 600);
+  EXPECT_EQ(driver.calibration().contradicting(), CameraMask().set(4));
+}
+
+TEST(OnlineCalibration, JudgesACameraThatComesBackByWhatItShowsThen) {
+  const CameraMask back = CameraMask().set(4);
+  DemoDriver driver;
+  driver.drive(ExtrinsicErrors::Zero(), 190, back);
+  ASSERT_TRUE(driver.calibration().faults().none()) << "soon it is named";
+  driver.cameras.reset(4);
+  driver.drive(ExtrinsicErrors::Zero(), 100);
+  driver.cameras.set(4);
+  driver.drive(ExtrinsicErrors::Zero(), 400);
+  EXPECT_TRUE(driver.calibration().faults().none());
+}
+
+TEST(OnlineCalibration, KeepsTheVerdictOfACameraThatComesBackAndStillContradicts) {
+  const CameraMask back = CameraMask().set(4);
+  DemoDriver driver;
+  driver.drive(ExtrinsicErrors::Zero(), 250, back);
+  driver.cameras.reset(4);
+  driver.drive(ExtrinsicErrors::Zero(), 100);
+  driver.cameras.set(4);
+  driver.drive(ExtrinsicErrors::Zero(), 170, back);
+  EXPECT_EQ(driver.calibration().contradicting(), back);
+}
+
+TEST(OnlineCalibration, KeepsTheFirstTwoCamerasLeftOutWhenAThirdIsNamed) {
+  const CameraMask swapped = CameraMask().set(1).set(4);
+  DemoDriver driver;
+  driver.tracking = false;
+  driver.drive(ExtrinsicErrors::Zero(), 250, swapped);
+  ASSERT_EQ(driver.calibration().left_out(), swapped);
+  driver.cameras = ~swapped;
+  driver.drive(ExtrinsicErrors::Zero(), 900, CameraMask().set(0));
+  EXPECT_TRUE(driver.calibration().faults()[0]);
+  EXPECT_EQ(driver.calibration().left_out(), swapped);
+}
+
+TEST(OnlineCalibration, LearnsNoHeadingWhileACameraContradictsTheMap) {
+  DemoDriver driver;
+  driver.drive(ExtrinsicErrors::Zero(), 250, CameraMask().set(4));
+  ASSERT_TRUE(driver.calibration().contradicting()[4]);
+  const ExtrinsicErrors before = driver.calibration().filter().errors();
+  driver.heading_against_motion_rad = radians(0.5);
+  driver.drive(ExtrinsicErrors::Zero(), 150, CameraMask().set(4));
+  EXPECT_EQ(driver.calibration().filter().errors(), before);
+}
+
+TEST(OnlineCalibration, JudgesNoCameraIfOnlyThreeAreUsed) {
+  DemoDriver driver;
+  driver.cameras = CameraMask().set(1).set(2).set(4);
+  driver.drive(ExtrinsicErrors::Zero(), 600, CameraMask().set(4));
+  EXPECT_TRUE(driver.calibration().faults().none());
+}
+
+TEST(OnlineCalibration, UsesTheCorrectionsOfTheStartOnceACameraContradictsTheMap) {
+  DemoDriver driver;
+  driver.drive(kSmallError, 500);
+  ASSERT_NE(driver.calibration().used_errors(), ExtrinsicErrors::Zero());
+  driver.drive(kSmallError, 300, CameraMask().set(4));
+  ASSERT_TRUE(driver.calibration().contradicting()[4]);
+  EXPECT_EQ(driver.calibration().used_errors(), ExtrinsicErrors::Zero());
+}
+
+}  // namespace
+}  // namespace bevloc
