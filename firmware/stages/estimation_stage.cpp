@@ -20,9 +20,6 @@ constexpr size_t index_of(TrackerUpdate outcome) {
   return static_cast<size_t>(outcome);
 }
 
-/// Headings with a smaller share of evidence are not compared with the yaw rate.
-constexpr double kLeastYawEvidence = 0.8;
-
 Duration age(const std::optional<Time>& time, Time now) {
   return time ? now - *time : Duration::max();
 }
@@ -70,11 +67,11 @@ void EstimationStage::tick(Time now) {
     protection_ = estimator_.protection_of(*pose, protection_parameters_);
   } else {
     // Matches say nothing about the pose with which the estimator will start again.
-    forget_matches();
+    matches_.forget();
   }
   update_health(pose, now);
   note_pose(pose);
-  if (pose) predictions_.push({*pose, !health_.pose_valid() || wide_search_});
+  if (pose) predictions_.push({*pose, !health_.pose_valid() || matches_.wide_search()});
   publish(pose, now);
   ++counters_.ticks;
 }
@@ -87,21 +84,12 @@ void EstimationStage::note_clock_gap() {
   while (reports_.pop(Duration::zero())) {
   }
   estimator_.reset();
-  stamp_monitor_.reset();
-  stamps_jumped_ = latest_stamps_jumped_ = false;
+  stamps_.reset();
   last_tick_.reset();
   odometry_time_.reset();
   gnss_time_.reset();
   latest_report_.reset();
-  forget_matches();
-}
-
-void EstimationStage::forget_matches() {
-  accepted_frame_time_.reset();
-  confirmed_time_.reset();
-  unsent_correction_.reset();
-  accepted_in_a_row_ = 0;
-  refused_in_a_row_ = 0;
+  matches_.forget();
 }
 
 void EstimationStage::sign_off(Time now) {
@@ -116,11 +104,11 @@ void EstimationStage::take_samples() {
   while (const auto sample = samples_.pop(Duration::zero())) {
     const auto* odometry = std::get_if<OdometrySample>(&*sample);
     const bool is_odometry = odometry != nullptr;
-    if (is_odometry) stamp_monitor_.add_rate(odometry->time, odometry->yaw_rate_radps);
+    if (is_odometry) stamps_.add_rate(odometry->time, odometry->yaw_rate_radps);
     const TrackerUpdate outcome = estimator_.add(*sample);
     ++(is_odometry ? counters_.odometry : counters_.gnss)[index_of(outcome)];
-    // A GNSS sample that the gate refuses is there, but contradicts. One that waits for a heading
-    // is there, too.
+    // A GNSS sample that the gate refuses has arrived, although it contradicts. A sample that waits
+    // for a heading has arrived, too.
     const bool arrived = outcome == TrackerUpdate::kAccepted ||
                          outcome == TrackerUpdate::kNoHeading ||
                          (!is_odometry && outcome == TrackerUpdate::kGated);
@@ -150,50 +138,17 @@ void EstimationStage::take_reports(Time now) {
     latest_report_arrival_ = now;
     network_fault_ = network_fault_ || report->network_fault;
     if (report->had_prior) add_correction(*report);
-    note_stamps(report->stamps_jumped);
-    compare_heading(*report);
+    stamps_.add_report(*report);
+    counters_.stamp_offset_ms = stamps_.offset_ms();
   }
-  // If all cameras stop, there are no more reports that say so.
+  // If all cameras stop, no report comes that would say so.
   if (now - latest_report_arrival_ > report_lifetime_) latest_report_.reset();
 }
 
-/// After a jump, what was learned about the earlier stamps no longer holds.
-void EstimationStage::note_stamps(bool jumped) {
-  if (jumped != latest_stamps_jumped_) stamp_monitor_.reset();
-  stamps_jumped_ = jumped && (stamps_jumped_ || !latest_stamps_jumped_);
-  latest_stamps_jumped_ = jumped;
-  if (stamp_monitor_.agrees()) stamps_jumped_ = false;
-}
-
-void EstimationStage::compare_heading(const VisionReport& report) {
-  constexpr int kYaw = 2;
-  if (!report.had_prior || report.match.evidence != Evidence::kGood ||
-      report.match.evidence_share(kYaw) < kLeastYawEvidence) {
-    return;
-  }
-  stamp_monitor_.add_heading(report.frame_time, (report.prior * report.match.correction).yaw_rad);
-  const auto& estimate = stamp_monitor_.estimate();
-  const bool contradicts = stamp_monitor_.contradicts() && estimate;
-  using std::chrono::duration_cast;
-  using std::chrono::milliseconds;
-  counters_.stamp_offset_ms =
-      contradicts ? static_cast<int>(duration_cast<milliseconds>(estimate->offset).count()) : 0;
-}
-
 void EstimationStage::add_correction(const VisionReport& report) {
-  const auto [outcome, seen] = estimator_.add_match(report.frame_time, report.prior, report.match);
-  wide_search_ = seen.at_border.any();
-  ++counters_.corrections[index_of(outcome)];
-  if (outcome == TrackerUpdate::kAccepted) {
-    refused_in_a_row_ = 0;
-    accepted_frame_time_ = report.frame_time;
-    unsent_correction_ = report.frame_time;
-    if (seen.confirms()) confirmed_time_ = report.frame_time;
-    accepted_in_a_row_ = seen.confirms_start() ? accepted_in_a_row_ + 1 : 0;
-  } else if (outcome != TrackerUpdate::kNoEvidence) {
-    ++refused_in_a_row_;
-    accepted_in_a_row_ = 0;
-  }
+  const auto outcome = estimator_.add_match(report.frame_time, report.prior, report.match);
+  matches_.add(report.frame_time, outcome);
+  ++counters_.corrections[index_of(outcome.update)];
 }
 
 HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& pose,
@@ -202,8 +157,8 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
   inputs.initialized = pose.has_value();
   inputs.odometry_age = age(odometry_time_, now);
   inputs.gnss_age = age(gnss_time_, now);
-  inputs.correction_age = age(confirmed_time_, now);
-  inputs.match_age = age(accepted_frame_time_, now);
+  inputs.correction_age = age(matches_.confirmed_time(), now);
+  inputs.match_age = age(matches_.accepted_time(), now);
   inputs.valid_age = age(valid_since_, now);
   if (latest_report_) {
     inputs.cameras_present = latest_report_->present;
@@ -212,11 +167,11 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
     inputs.overloaded = latest_report_->skipped;
     inputs.calibration_fault = latest_report_->calibration_fault.any();
   }
-  inputs.stamps_contradict = stamp_monitor_.contradicts() || stamps_jumped_;
+  inputs.stamps_contradict = stamps_.contradicts();
   inputs.network_fault = network_fault_;
-  inputs.latest_correction_refused = refused_in_a_row_ > 0;
-  inputs.accepted_in_a_row = accepted_in_a_row_;
-  inputs.refused_in_a_row = refused_in_a_row_;
+  inputs.latest_correction_refused = matches_.refused_in_a_row() > 0;
+  inputs.accepted_in_a_row = matches_.accepted_in_a_row();
+  inputs.refused_in_a_row = matches_.refused_in_a_row();
   inputs.verdict = estimator_.verdict();
   const WhyMask vehicle_input = vehicle_input_ != nullptr ? vehicle_input_->why(now) : WhyMask();
   inputs.odometry_implausible =
@@ -236,8 +191,7 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
   // The reason stays until the pose is found again, so that a reader of LOC_Status sees it.
   if (pose && inputs.accepted_in_a_row > 0) clock_gap_ = false;
   if (health_.update(inputs) && health_.state() == HealthState::kLost) {
-    accepted_in_a_row_ = 0;
-    refused_in_a_row_ = 0;
+    matches_.restart_counts();
     counters_.lost_why = health_.why().bits();
     ++counters_.lost;
   }
@@ -288,7 +242,7 @@ can::PoseReport EstimationStage::begin_report() const {
 void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) {
   can::PoseReport report = begin_report();
   counters_.time_source = report.clock.source;
-  report.capture_time = accepted_frame_time_;
+  report.capture_time = matches_.accepted_time();
   report.pose_time = now;
   if (pose) {
     report.map_from_vehicle = pose->map_from_vehicle;
@@ -303,11 +257,11 @@ void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) 
   }
   publisher_.publish(report, now);
   if (report_observer_) report_observer_(report);
-  if (health_.pose_valid() && unsent_correction_) {
-    counters_.latency.add(now - *unsent_correction_);
-    if (correction_observer_) correction_observer_(*unsent_correction_);
+  const auto frame_time = matches_.take_unsent();
+  if (health_.pose_valid() && frame_time) {
+    counters_.latency.add(now - *frame_time);
+    if (correction_observer_) correction_observer_(*frame_time);
   }
-  unsent_correction_.reset();
 }
 
 can::LocalizerStatus EstimationStage::make_status() const {

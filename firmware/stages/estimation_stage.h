@@ -8,51 +8,55 @@
 #include "can/publisher/pose_publisher.h"
 #include "common/published.h"
 #include "firmware/health/health.h"
+#include "firmware/stages/match_history.h"
 #include "firmware/stages/messages.h"
+#include "firmware/stages/stamp_watch.h"
 #include "firmware/stages/vehicle_input_stage.h"
 #include "firmware/telemetry/latency_histogram.h"
 #include "firmware/telemetry/pose_snapshot.h"
-#include "pipeline/localization/stamp_monitor.h"
 #include "pipeline/tracker/pose_estimator.h"
 
 namespace bevloc::firmware {
 
-/// How often the tracker answered with each TrackerUpdate.
+/// Number of times that the tracker answered with each TrackerUpdate.
 using TrackerOutcomes = std::array<std::atomic<uint64_t>, kTrackerUpdates>;
 
-/// Totals since start and the current state; readable from any thread.
+/// Totals since start and the current state, readable from any thread.
 struct EstimationCounters {
   std::atomic<uint64_t> ticks{0};  ///< calls of tick()
-  TrackerOutcomes odometry{};      ///< by TrackerUpdate, as are the next two
+  TrackerOutcomes odometry{};      ///< by TrackerUpdate, like the next two
   TrackerOutcomes gnss{};
   TrackerOutcomes corrections{};
   std::atomic<uint64_t> clock_gaps{0};
   std::atomic<HealthState> state{HealthState::kInit};
   std::atomic<uint32_t> why{0};  ///< bits of a WhyMask
-  /// The state LOST lasts one bus cycle. Threads that look less often see a loss in these.
+  /// The state LOST lasts one bus cycle. Threads that look less often see a loss in the next two.
   std::atomic<uint64_t> lost{0};      ///< how often the pose was lost
-  std::atomic<uint32_t> lost_why{0};  ///< bits of a WhyMask, of the latest loss
-  /// Since when a pose that was valid is not; Time::max() while it is valid or never was.
+  std::atomic<uint32_t> lost_why{0};  ///< reasons of the latest loss: bits of a WhyMask
+  /// The time since when a pose that was valid is not valid. It is Time::max() while the pose is
+  /// valid or never was.
   std::atomic<Time> invalid_since{Time::max()};
-  /// Offset of the camera stamps against odometry; 0 while it is tolerated (StampMonitor).
+  /// Offset of the cameras' time stamps against odometry, or 0 while it is tolerated
+  /// (StampMonitor).
   std::atomic<int> stamp_offset_ms{0};
-  /// GNSS minus map, east and north; 0 while they agree (MapOffsetMonitor).
+  /// GNSS minus map, east and north, or 0 while they agree (MapOffsetMonitor).
   std::array<std::atomic<int>, 2> map_offset_cm{};
-  std::atomic<unsigned> cameras{0};  ///< cameras used in the latest frameset, a CameraMask
-  Published<PoseSnapshot> pose;      ///< of the latest tick()
+  /// The cameras that the latest frameset used, a CameraMask.
+  std::atomic<unsigned> cameras{0};
+  Published<PoseSnapshot> pose;  ///< the pose of the latest tick()
   std::atomic<can::TimeSource> time_source{can::TimeSource::kFreeRunning};
-  /// From the time of a frameset until the first valid pose with its correction is sent.
+  /// Time from a frameset until the first valid pose with its correction is sent.
   LatencyHistogram latency;
 };
 
-/// Called after a valid pose was sent that contains a new correction. `frame_time` is the time of
-/// the frameset that the correction came from.
+/// A function that is called after a valid pose with a new correction was sent. `frame_time` is the
+/// time of the frameset that the correction came from.
 using CorrectionObserver = std::function<void(Time frame_time)>;
 
-/// Called with each report that goes to the bus, except the sign-off.
+/// A function that is called with each report that goes to the bus, except the sign-off.
 using ReportObserver = std::function<void(const can::PoseReport& report)>;
 
-/// Thread-bound: called from the CAN-out thread, but for note_clock(); counters() is readable from
+/// Thread-bound: called from the CAN-out thread, except note_clock(). counters() is readable from
 /// any thread.
 class EstimationStage {
  public:
@@ -64,22 +68,24 @@ class EstimationStage {
   void observe_corrections(CorrectionObserver observer);
   void observe_reports(ReportObserver observer);
 
-  /// Reports what is wrong with the vehicle's messages. `input` must outlive the stage.
+  /// Makes the stage report what is wrong with the vehicle's messages. `input` must outlive the
+  /// stage.
   void watch(const VehicleInputStage& input) { vehicle_input_ = &input; }
 
-  /// What the status tells about the clock from now on. Callable from one other thread.
+  /// Sets what the status tells about the clock from now on. Thread-bound: called from the
+  /// supervising thread.
   void note_clock(const can::ClockReport& clock) { clock_.store(clock); }
 
-  /// Takes all queued samples and reports, then publishes the pose predicted to `now`. To be called
-  /// once per bus cycle.
+  /// Takes all queued samples and reports, then publishes the pose predicted to `now`. Call it once
+  /// per bus cycle.
   void tick(Time now);
 
   /// Forgets the pose and what is queued, because the vehicle may have been moved while the machine
   /// was suspended. The next tick() reports LOST with Why::kClockGap.
   void note_clock_gap();
 
-  /// Publishes the state LOST without a pose, so that consumers need not wait for a timeout. To be
-  /// called after the last tick().
+  /// Publishes the state LOST without a pose, so that consumers need not wait for a timeout. Call
+  /// it after the last tick().
   void sign_off(Time now);
 
   const EstimationCounters& counters() const { return counters_; }
@@ -88,22 +94,20 @@ class EstimationStage {
   void take_samples();
   void take_reports(Time now);
   void add_correction(const VisionReport& report);
-  void note_stamps(bool jumped);
-  void compare_heading(const VisionReport& report);
   void note_map_offset();
   void watch_clock(Time now);
-  void forget_matches();
   HealthInputs health_inputs(const std::optional<TrackedPose>& pose, Time now) const;
   void update_health(const std::optional<TrackedPose>& pose, Time now);
   void note_validity(Time now);
   void note_pose(const std::optional<TrackedPose>& pose);
   void publish(const std::optional<TrackedPose>& pose, Time now);
   can::LocalizerStatus make_status() const;
-  /// A report with what does not depend on the pose.
+  /// Returns a report that is complete except for the pose.
   can::PoseReport begin_report() const;
 
   PoseEstimator estimator_;
   Health health_;
+  MatchHistory matches_;
   can::PosePublisher& publisher_;
   VehicleQueue& samples_;
   VisionQueue& reports_;
@@ -113,28 +117,20 @@ class EstimationStage {
   const VehicleInputStage* vehicle_input_ = nullptr;
 
   ProtectionParameters protection_parameters_;
-  Eigen::Vector3d protection_ = Eigen::Vector3d::Zero();  ///< of the latest pose: (m, m, rad)
-  bool wide_search_ = false;  ///< the latest match may lie outside the tracking range
+  /// Protection level of the latest pose: (longitudinal m, lateral m, yaw rad).
+  Eigen::Vector3d protection_ = Eigen::Vector3d::Zero();
   Duration report_lifetime_;  ///< without a newer report, the latest one expires after this
   uint16_t map_id_;
   std::optional<Time> odometry_time_;
   std::optional<Time> gnss_time_;
-  std::optional<Time> accepted_frame_time_;  ///< frameset of the latest accepted correction
-  std::optional<Time> confirmed_time_;       ///< the same, of those with evidence across
   std::optional<Time> valid_since_;
-  /// Frameset of an accepted correction that no published pose contains yet.
-  std::optional<Time> unsent_correction_;
   std::optional<VisionReport> latest_report_;
   Time latest_report_arrival_;
-  bool latest_stamps_jumped_ = false;
-  bool stamps_jumped_ = false;  ///< the stamps jumped, and no bend has confirmed them since
   bool network_fault_ = false;
   Published<can::ClockReport> clock_;
-  StampMonitor stamp_monitor_;
+  StampWatch stamps_;
   std::optional<Time> last_tick_;
-  int accepted_in_a_row_ = 0;  ///< that confirm a start
-  int refused_in_a_row_ = 0;
-  bool clock_gap_ = false;  ///< since the latest gap no correction was accepted
+  bool clock_gap_ = false;  ///< no correction was accepted since the latest gap
   EstimationCounters counters_;
 };
 

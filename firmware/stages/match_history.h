@@ -1,0 +1,57 @@
+// What the matches said about the pose so far.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "common/time.h"
+#include "pipeline/tracker/pose_estimator.h"
+
+namespace bevloc::firmware {
+
+/// Counts what the estimator accepts and refuses. One thread.
+class MatchHistory {
+ public:
+  /// Adds what became of the match of a frameset.
+  void add(Time frame_time, const PoseEstimator::MatchOutcome& outcome) {
+    const Seen& seen = outcome.seen;
+    wide_search_ = seen.at_border.any();
+    if (outcome.update == TrackerUpdate::kAccepted) {
+      accepted_time_ = unsent_time_ = frame_time;
+      if (seen.confirms()) confirmed_time_ = frame_time;
+      accepted_in_a_row_ = seen.confirms_start() ? accepted_in_a_row_ + 1 : 0;
+      refused_in_a_row_ = 0;
+    } else if (outcome.update != TrackerUpdate::kNoEvidence) {
+      accepted_in_a_row_ = 0;
+      ++refused_in_a_row_;
+    }
+  }
+
+  /// Forgets everything, because the matches say nothing about the next pose.
+  void forget() { *this = {}; }
+
+  /// Counts anew, because the pose is lost.
+  void restart_counts() { accepted_in_a_row_ = refused_in_a_row_ = 0; }
+
+  /// Frameset of the latest accepted match.
+  const std::optional<Time>& accepted_time() const { return accepted_time_; }
+  /// The same, of those that confirm the pose (Seen::confirms()).
+  const std::optional<Time>& confirmed_time() const { return confirmed_time_; }
+  int accepted_in_a_row() const { return accepted_in_a_row_; }  ///< that confirm a start
+  int refused_in_a_row() const { return refused_in_a_row_; }
+  /// Whether the pose may lie outside the tracking range of the latest match.
+  bool wide_search() const { return wide_search_; }
+
+  /// Frameset of an accepted match that no published pose contains yet. Forgets it.
+  std::optional<Time> take_unsent() { return std::exchange(unsent_time_, std::nullopt); }
+
+ private:
+  std::optional<Time> accepted_time_;
+  std::optional<Time> confirmed_time_;
+  std::optional<Time> unsent_time_;
+  int accepted_in_a_row_ = 0;
+  int refused_in_a_row_ = 0;
+  bool wide_search_ = false;
+};
+
+}  // namespace bevloc::firmware

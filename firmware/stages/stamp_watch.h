@@ -1,0 +1,38 @@
+// Watches whether the time stamps of the cameras fit the motion of the vehicle.
+#pragma once
+
+#include "common/time.h"
+#include "firmware/stages/messages.h"
+#include "pipeline/localization/stamp_monitor.h"
+
+namespace bevloc::firmware {
+
+/// Joins two witnesses: vision sees that the stamps jumped, and StampMonitor compares the headings
+/// of matches with the yaw rate. Allocates in the constructor only. One thread.
+class StampWatch {
+ public:
+  /// Adds the vehicle's yaw rate.
+  void add_rate(Time time, double yaw_rate_radps) { monitor_.add_rate(time, yaw_rate_radps); }
+
+  /// Adds what vision reports about a frameset.
+  void add_report(const VisionReport& report);
+
+  /// Whether the stamps are wrong, or jumped and no bend has confirmed them since.
+  bool contradicts() const { return monitor_.contradicts() || jumped_; }
+
+  /// Offset of the stamps against odometry; 0 while it is tolerated.
+  int offset_ms() const;
+
+  /// Returns to the state after construction.
+  void reset();
+
+ private:
+  void note_jump(bool jumped);
+  void compare_heading(const VisionReport& report);
+
+  StampMonitor monitor_;
+  bool latest_jumped_ = false;  ///< what the latest report says
+  bool jumped_ = false;         ///< the stamps jumped, and no bend has confirmed them since
+};
+
+}  // namespace bevloc::firmware
