@@ -34,10 +34,10 @@ class CameraConformance : public testing::TestWithParam<CameraUnderTest> {
     return virtual_clock_;
   }
 
-  /// Far longer than any camera needs for one frame.
+  /// A time in which any camera delivers many frames.
   Duration timeout() const { return std::chrono::seconds(GetParam().is_device ? 20 : 2); }
 
-  /// Longer than several frame periods.
+  /// A time of several frame periods.
   Duration several_frames() const {
     return std::chrono::milliseconds(GetParam().is_device ? 2500 : 500);
   }
@@ -199,9 +199,11 @@ TEST_P(CameraConformance, FramesHeldAcrossAStopDoNotChange) {
 TEST_P(CameraConformance, AFrameMayOutliveItsStartedCamera) {
   start();
   const Frame frame = capture();
+  const auto bytes = copy_bytes(frame);
   make(kBuffers);
   start();
   capture_in_order(1);
+  EXPECT_EQ(copy_bytes(frame), bytes);
 }
 
 TEST_P(CameraConformance, AllBuffersCanBeHeldAndReturned) {

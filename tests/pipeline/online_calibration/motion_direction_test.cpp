@@ -7,9 +7,9 @@
 namespace bevloc {
 namespace {
 
-/// Drives a bend with all cameras turned by `turn_rad`, odometry that measures `bias_radps` too
-/// much, without odometry every `gap` framesets, and without the framesets that `is_missing`.
-/// Returns the comparisons.
+/// Drives a bend with all cameras turned by `turn_rad`. Odometry measures `bias_radps` too much,
+/// and is missing in every `gap`-th frameset. Framesets for which `is_missing` is true are missing.
+/// Returns the turns that were found.
 std::vector<double> drive(
     double turn_rad, double bias_radps, int gap = 1000,
     const std::function<bool(int)>& is_missing = [](int) { return false; }) {
@@ -49,10 +49,13 @@ TEST(MotionDirection, BearsABiasOfTheYawRate) {
 }
 
 TEST(MotionDirection, BeginsAgainWhereOdometryIsMissing) {
-  EXPECT_TRUE(drive(radians(1.0), 0.0, 55).empty());
+  EXPECT_TRUE(drive(radians(1.0), 0.0, 55).empty()) << "no stretch is long enough";
+  const std::vector<double> turns = drive(radians(1.0), 0.0, 100);
+  ASSERT_GE(turns.size(), 5U);
+  for (const double turn : turns) EXPECT_NEAR(degrees(turn), 1.0, 0.01);
 }
 
-/// The stretch before the missing framesets must not be laid over the one behind them.
+/// The stretches before and after missing framesets must not count as one stretch.
 TEST(MotionDirection, BeginsAgainWhereFramesetsAreMissing) {
   const auto is_missing = [](int i) { return i % 100 >= 30 && i % 100 < 45; };
   const std::vector<double> turns = drive(0.0, 0.0, 1000, is_missing);

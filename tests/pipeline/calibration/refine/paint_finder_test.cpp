@@ -71,7 +71,7 @@ TEST(FindPaintPoints, TakesDividersAndTheLongSidesOfCrossings) {
   for (const PaintPoint& point : points) {
     EXPECT_EQ(point.kind, PaintKind::kStep);
     EXPECT_NEAR(std::abs(point.point_m.x() - 11.5), 1.5, 1e-9);
-    // Towards the bars.
+    // The direction is towards the bars.
     EXPECT_GT(point.across.x() * (11.5 - point.point_m.x()), 0.0);
   }
 }
@@ -87,6 +87,7 @@ TEST(FindPaint, MeasuresAStripeToAFractionOfAPixel) {
     ++found;
     EXPECT_NEAR(std::abs(sighting.offset_px[0]), 0.1 * sighting.pixels_per_m,
                 0.3 + 0.02 * sighting.pixels_per_m);
+    EXPECT_LT(sighting.offset_px[0] * sighting.normal_px.x(), 0.0) << "left in the image, too";
   }
   EXPECT_GT(found, static_cast<int>(sightings.size()) * 3 / 4);
 }
