@@ -40,8 +40,13 @@ inline Status check_writable(const std::filesystem::path& out) {
     return fail("{}: found no folder {}, wanted one for this file; create it first", out.string(),
                 folder.string());
   }
-  // A file that is there may be replaced in a folder where none can be created: /dev/null.
-  if (fs::exists(out, error) && access(out.c_str(), W_OK) == 0) return {};
+  // A file that exists is written in place. It may be writable although none can be created in its
+  // folder, such as /dev/null.
+  if (fs::exists(out, error)) {
+    if (access(out.c_str(), W_OK) == 0) return {};
+    return fail("{}: found a file that this user may not write, wanted another name, or `chmod +w`",
+                out.string());
+  }
   if (const std::error_code refused = cannot_write_in(folder)) {
     return fail("{}: found no way to write in the folder {} ({}), wanted one that allows it",
                 out.string(), folder.string(), refused.message());
@@ -49,7 +54,7 @@ inline Status check_writable(const std::filesystem::path& out) {
   return {};
 }
 
-/// Fails if a file to write has another extension (".png").
+/// Fails if the name of a file to write does not end in the extension `wanted`, such as ".png".
 inline Status check_extension(const std::filesystem::path& out, std::string_view wanted) {
   const std::string found = out.extension().string();
   if (found == wanted) return {};

@@ -1,4 +1,5 @@
-// Reads YAML scalars strictly, and describes nodes and wishes for messages. Only for YamlMap.
+// Reads YAML scalars strictly, and describes for messages what was found and what was wanted. Only
+// YamlMap uses it.
 #pragma once
 
 #include <charconv>
@@ -63,6 +64,7 @@ std::optional<T> number_from(std::string_view text) {
     if (!std::isfinite(value)) return std::nullopt;
   } else {
     const bool is_hex = text.starts_with("0x");
+    if (text.starts_with("0x-")) return std::nullopt;
     result = std::from_chars(text.data() + (is_hex ? 2 : 0), end, value, is_hex ? 16 : 10);
   }
   if (result.ec != std::errc() || result.ptr != end) return std::nullopt;

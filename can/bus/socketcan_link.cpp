@@ -40,7 +40,7 @@ std::vector<can_filter> filters_of(const SocketCanOptions& options) {
   return filters;
 }
 
-/// Without CAN_ERR_BUSERROR, because these reports flood the socket when a cable is bad.
+/// CAN_ERR_BUSERROR is not among them, because these reports flood the socket when a cable is bad.
 constexpr can_err_mask_t kReportedErrors = CAN_ERR_TX_TIMEOUT | CAN_ERR_CRTL | CAN_ERR_TRX |
                                            CAN_ERR_ACK | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
 
@@ -70,6 +70,10 @@ bool set_options(int descriptor, const SocketCanOptions& options) {
          (options.confirmed_ids.empty() ||
           set_option(descriptor, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, on)) &&
          request_stamps(descriptor) && set_option(descriptor, SOL_SOCKET, SO_RXQ_OVFL, on);
+}
+
+bool is_gone(int error) {
+  return error == ENODEV || error == ENXIO;
 }
 
 bool carries_fd(int descriptor, const std::string& interface) {
@@ -117,13 +121,16 @@ SocketCanLink::~SocketCanLink() {
 }
 
 void SocketCanLink::note(int error) {
-  const bool gone = error == ENODEV || error == ENXIO;
-  if (gone) lost_ = true;
-  down_ = error != 0;
+  if (is_gone(error)) lost_ = true;
+  error_ = error;
 }
 
 bool SocketCanLink::repair() {
-  if (!lost_ || interface_.empty() || repairing_.test_and_set()) return false;
+  if (interface_.empty()) return false;
+  // An endpoint that only listens has no other way to notice it.
+  const int error = error_;
+  if (!lost_ && (error == ENETDOWN || is_gone(error)) && is_up()) error_ = 0;
+  if (!lost_ || repairing_.test_and_set()) return false;
   bool repaired = false;
   const Time now = steady_now();
   if (lost_ && back_off_.is_due(now)) {
@@ -137,6 +144,12 @@ bool SocketCanLink::repair() {
   }
   repairing_.clear();
   return repaired;
+}
+
+bool SocketCanLink::is_up() const {
+  ifreq request{};
+  interface_.copy(request.ifr_name, sizeof(request.ifr_name) - 1);
+  return ioctl(descriptor_, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
 }
 
 /// Sets the filters too, because the kernel discards them when the interface disappears.

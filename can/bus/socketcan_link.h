@@ -15,19 +15,22 @@
 namespace bevloc::can {
 
 struct SocketCanOptions {
-  /// Standard identifiers that the kernel passes to this socket. Empty: all.
+  /// Standard identifiers that the kernel passes to this socket. If this is empty, it passes all.
   std::vector<uint32_t> accepted_ids{};
-  /// Identifiers whose frames this endpoint sends and confirms by their echo (SendGate). Empty: no
-  /// confirmation. Frames of other nodes with these identifiers also pass the filter.
+  /// Identifiers of the frames that this endpoint sends and confirms by their echo (SendGate). If
+  /// this is empty, nothing is confirmed. Frames of other nodes with these identifiers also pass
+  /// the filter.
   std::vector<uint32_t> confirmed_ids{};
-  /// Refuse a classic interface, so that FD frames can be sent. FD frames are always received.
+  /// Whether open() refuses a classic interface, because FD frames are to be sent. FD frames are
+  /// always received.
   bool fd = false;
-  /// A frame that waits longer for room is dropped. The default is two cycles of the solution.
+  /// A frame that waits for room longer than this is dropped. The default is two cycles of the
+  /// solution.
   Duration max_send_age = std::chrono::milliseconds(20);
 };
 
 /// An interface that was down is used again as soon as it is up. An interface that disappeared (an
-/// unplugged adapter) is searched by its name, and the same socket is bound to it again.
+/// unplugged adapter) is looked for by its name, and the same socket is bound to it again.
 /// Thread-safe after open().
 class SocketCanLink {
  public:
@@ -47,19 +50,20 @@ class SocketCanLink {
 
   /// Records the result of a system call on the socket: 0 or an errno.
   void note(int error);
-  bool is_down() const { return down_; }
+  bool is_down() const { return error_ != 0; }
 
-  /// Searches a lost interface if the next attempt is due (BackOff). Returns true when the
-  /// interface was found and bound.
+  /// Looks for a lost interface if the next attempt is due (BackOff). Returns true when the
+  /// interface was found and bound. Notices that an interface that was down is up again.
   bool repair();
 
  private:
   bool bind_by_name();
+  bool is_up() const;
 
   const int descriptor_;
   std::string interface_;
   std::vector<can_filter> filters_;
-  std::atomic<bool> down_{false};
+  std::atomic<int> error_{0};  ///< what note() recorded
   std::atomic<bool> lost_{false};
   std::atomic_flag repairing_;
   BackOff back_off_{std::chrono::milliseconds(20), std::chrono::milliseconds(320)};

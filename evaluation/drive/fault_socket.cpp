@@ -115,7 +115,7 @@ std::string FaultServer::answer(const std::string& command, double now_s) {
   const std::string rest = space == std::string::npos ? "" : command.substr(space + 1);
   if (verb == "set") return set(rest, now_s);
   if (verb == "list") return to_list(*faults_);
-  if (verb == "clear") return clear(rest);
+  if (verb == "clear") return clear(rest, now_s);
   return fmt::format("{}found '{}', wanted set, list or clear", kError, verb);
 }
 
@@ -133,16 +133,16 @@ std::string FaultServer::set(const std::string& text, double now_s) {
   return fmt::format("{}: {}\n", faults_->add(*fault), sim::to_text(*fault));
 }
 
-std::string FaultServer::clear(const std::string& number) {
+std::string FaultServer::clear(const std::string& number, double now_s) {
   if (number.empty()) {
-    faults_->clear();
+    faults_->clear(now_s);
     return "";
   }
   uint32_t wanted = 0;
   const char* end = number.data() + number.size();
   const auto [stop, error] = std::from_chars(number.data(), end, wanted);
   const bool is_number = error == std::errc() && stop == end;
-  if (is_number && faults_->remove(wanted)) return "";
+  if (is_number && faults_->remove(wanted, now_s)) return "";
   return fmt::format("{}found {}, wanted the number of a fault (list shows them)", kError, number);
 }
 

@@ -15,8 +15,8 @@ namespace bevloc::evaluation {
 /// command was refused. One thread.
 class FaultServer {
  public:
-  /// Fails if there is no way to make the socket. A socket that an earlier run left is replaced.
-  /// `lockstep`: the drive has one thread, so none may hang.
+  /// Fails if the socket cannot be made. A socket that an earlier run left is replaced. `lockstep`:
+  /// the drive has one thread, so faults that let a thread hang are refused.
   static Result<std::unique_ptr<FaultServer>> open(const std::filesystem::path& path,
                                                    std::shared_ptr<sim::FaultBoard> faults,
                                                    bool lockstep);
@@ -32,7 +32,7 @@ class FaultServer {
               bool lockstep);
   std::string answer(const std::string& command, double now_s);
   std::string set(const std::string& text, double now_s);
-  std::string clear(const std::string& number);
+  std::string clear(const std::string& number, double now_s);
 
   const int descriptor_;
   const std::filesystem::path path_;

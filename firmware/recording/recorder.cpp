@@ -11,7 +11,7 @@
 namespace bevloc::firmware {
 namespace {
 
-/// How often chunks go to the disk and counters are recorded.
+/// The period in which chunks go to the disk and counters are recorded.
 constexpr Duration kStep = std::chrono::milliseconds(500);
 
 void copy_distribution(const std::vector<float>& from, RecordedDistribution& to) {
@@ -92,7 +92,7 @@ void Recorder::count_event() {
 }
 
 void Recorder::write_queued(Time now) {
-  // Events first: they are small, and on a busy machine the images take long.
+  // Events come first, because they are small, and on a busy machine the images take long.
   write_events();
   for (int i = 0; i < kCameraCount; ++i) {
     const auto image = images_.pop(Duration::zero());
@@ -112,24 +112,31 @@ void Recorder::write_queued(Time now) {
 }
 
 void Recorder::write_image(const RecordedImage& image) {
-  if (!counters_.failed) put_image(image);
-  ++(counters_.failed ? counters_.images_dropped : counters_.images);
+  const Status made = counters_.failed ? Status() : put_image(image);
+  if (!made && causes_.is_new(made.error().message, image.time)) {
+    spdlog::warn("recording: an image of camera {} is left out: {}", kCameraNames[image.camera],
+                 made.error().message);
+  }
+  ++(counters_.failed || !made ? counters_.images_dropped : counters_.images);
 }
 
-void Recorder::put_image(const RecordedImage& image) {
+Status Recorder::put_image(const RecordedImage& image) {
   const std::string topic = image_topic(image.camera);
   const uint64_t start_ns = log_time(image.exposure_start);
   if (image.image.format == PixelFormat::kMjpeg) {
     const std::string_view file(reinterpret_cast<const char*>(image.image.planes[0].data),
                                 image.image.bytes_used);
-    return put(topic, compressed_image(image, file, start_ns), image.time, image.exposure_start);
+    put(topic, compressed_image(image, file, start_ns), image.time, image.exposure_start);
+    return {};
   }
   if (config_.images == RecordedImages::kJpeg && can_encode_jpeg(image.image.format)) {
     const auto jpeg = jpeg_.encode(image.image, config_.jpeg_quality);
-    if (!jpeg) return note_failure(tl::unexpected(jpeg.error()));
-    return put(topic, compressed_image(image, *jpeg, start_ns), image.time, image.exposure_start);
+    if (!jpeg) return tl::unexpected(jpeg.error());
+    put(topic, compressed_image(image, *jpeg, start_ns), image.time, image.exposure_start);
+    return {};
   }
   put(topic, raw_image(image, start_ns), image.time, image.exposure_start);
+  return {};
 }
 
 void Recorder::write_event(const RecordedBusFrame& frame) {

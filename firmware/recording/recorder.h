@@ -15,6 +15,7 @@
 #include "firmware/recording/recorded_events.h"
 #include "firmware/recording/recording_ring.h"
 #include "firmware/stages/vision_stage.h"
+#include "firmware/telemetry/cause_log.h"
 
 namespace bevloc::firmware {
 
@@ -23,29 +24,31 @@ struct Snapshot;
 
 /// Totals since start; readable from any thread.
 struct RecorderCounters {
-  std::atomic<uint64_t> images{0};          ///< written
-  std::atomic<uint64_t> events{0};          ///< written: bus frames, solutions, matches
-  std::atomic<uint64_t> images_dropped{0};  ///< no memory was free, or writing failed
-  std::atomic<uint64_t> events_lost{0};     ///< writing failed
+  std::atomic<uint64_t> images{0};  ///< images that were written
+  std::atomic<uint64_t> events{0};  ///< events that were written: bus frames, solutions, matches
+  /// Images that were dropped because no memory was free, or writing failed.
+  std::atomic<uint64_t> images_dropped{0};
+  std::atomic<uint64_t> events_lost{0};  ///< lost because writing failed
   std::atomic<uint64_t> bytes{0};
   std::atomic<uint64_t> black_boxes{0};
-  std::atomic<bool> failed{false};  ///< the disk refused to take more; nothing is recorded since
+  std::atomic<bool> failed{false};  ///< writing has failed, and nothing is recorded since then
 };
 
-/// The stages hand over what is to be recorded; they copy it into memory that was allocated at the
-/// start, and never wait. write_queued() writes it. When the disk is too slow the oldest entries
-/// are dropped and counted. When it fails, recording ends and the appliance goes on.
+/// The stages copy what is to be recorded into memory that was allocated at the start, and never
+/// wait. write_queued() writes it. When the disk is too slow, the oldest entries are dropped and
+/// counted. When the disk fails, recording ends and the appliance goes on.
 ///
-/// Threads: note_image() of a camera from its own thread, note_match() from the vision thread, the
-/// other note functions from any thread; open(), write_queued() and finish() from one thread.
+/// Thread-bound: note_image() is called from the camera's own thread, note_match() from the vision
+/// thread, write_queued() and finish() from the recorder's thread. The other note functions are
+/// thread-safe. counters() and totals() are readable from any thread.
 class Recorder {
  public:
-  /// `log_time_minus_clock`: added to the appliance's clock it is the time since 1970.
-  /// Fails if the folder or its first file cannot be created.
+  /// `log_time_minus_clock` plus the time of the appliance's clock is the time since 1970. Fails if
+  /// the folder or its first file cannot be created.
   static Result<std::unique_ptr<Recorder>> open(const RecordConfig& config, RecordingHead head,
                                                 Duration log_time_minus_clock, Time now);
 
-  /// Allocates the memory for the images of one camera. Before the first note_image().
+  /// Allocates the memory for the images of one camera. Call it before the first note_image().
   void expect_images(int camera, int width_px, int height_px);
 
   void note_image(const drivers::Frame& frame, Time now);
@@ -54,7 +57,8 @@ class Recorder {
   void note_truth(const RecordedTruth& truth) { events_.push(truth); }
   void note_match(const VisionSnapshot& snapshot, Time now);
 
-  /// What write_queued() records twice a second; called in its thread.
+  /// Sets the source of the counters that write_queued() records twice a second. It is called in
+  /// the thread of write_queued().
   void count_with(std::function<Snapshot()> snapshot) { snapshot_ = std::move(snapshot); }
 
   /// Writes all queued events and a few images, and does what is due at `now`: chunks to the disk,
@@ -64,7 +68,7 @@ class Recorder {
   void finish(Time now);
 
   const RecorderCounters& counters() const { return counters_; }
-  /// The totals with what the queues dropped. Callable from any thread.
+  /// Returns the totals, which include what the queues dropped.
   RecordingSnapshot totals() const;
   uint64_t images_dropped() const { return counters_.images_dropped + images_.dropped(); }
   uint64_t events_dropped() const {
@@ -82,7 +86,7 @@ class Recorder {
            Time made_at);
   void write_events();
   void write_image(const RecordedImage& image);
-  void put_image(const RecordedImage& image);
+  Status put_image(const RecordedImage& image);
   void write_event(const RecordedBusFrame& frame);
   void write_event(const RecordedSolution& solution);
   void write_event(const RecordedTruth& truth);
@@ -98,16 +102,17 @@ class Recorder {
   RecordingRing ring_;
   std::array<std::unique_ptr<ImageMemory>, kCameraCount> memory_;
   BoundedQueue<RecordedImage> images_{kImagesPerCamera * kCameraCount};
-  /// Two seconds of a busy bus.
+  /// The events of two seconds of a busy bus.
   BoundedQueue<RecordedEvent> events_{8192};
   BoundedQueue<RecordedMatch> matches_{64};
   std::function<Snapshot()> snapshot_;
   JpegEncoder jpeg_;
-  uint64_t images_on_disk_ = 0;  ///< of those that are counted as written
+  uint64_t images_on_disk_ = 0;  ///< the images counted as written that are on the disk
   uint64_t events_on_disk_ = 0;
   Time next_step_ = Time::min();
   HealthState state_ = HealthState::kInit;
   bool drops_logged_ = false;
+  CauseLog causes_;  ///< of images that cannot be encoded
   RecorderCounters counters_;
 };
 

@@ -78,7 +78,8 @@ bool CaptureStage::ensure_started(Time now) {
   heartbeat_.beat();
   running_ = true;
   stamp_steps_.reset();
-  waiting_since_ = silent_since_ = now;
+  // A start may take some seconds.
+  waiting_since_ = silent_since_ = clock_.now();
   return true;
 }
 

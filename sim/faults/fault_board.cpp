@@ -20,23 +20,24 @@ uint32_t FaultBoard::add(const Fault& fault) {
   return next_number_++;
 }
 
-void FaultBoard::note_past(const NumberedFault& listed) {
-  if (listed.fault.kind == FaultKind::kClockSuspend) past_.push_back(listed.fault);
+void FaultBoard::note_past(const NumberedFault& listed, double now_s) {
+  const bool has_begun = listed.fault.from_s <= now_s;
+  if (listed.fault.kind == FaultKind::kClockSuspend && has_begun) past_.push_back(listed.fault);
 }
 
-bool FaultBoard::remove(uint32_t number) {
+bool FaultBoard::remove(uint32_t number, double now_s) {
   const std::lock_guard lock(mutex_);
   for (const NumberedFault& listed : faults_) {
-    if (listed.number == number) note_past(listed);
+    if (listed.number == number) note_past(listed, now_s);
   }
   return std::erase_if(faults_, [number](const NumberedFault& listed) {
            return listed.number == number;
          }) > 0;
 }
 
-void FaultBoard::clear() {
+void FaultBoard::clear(double now_s) {
   const std::lock_guard lock(mutex_);
-  for (const NumberedFault& listed : faults_) note_past(listed);
+  for (const NumberedFault& listed : faults_) note_past(listed, now_s);
   faults_.clear();
 }
 

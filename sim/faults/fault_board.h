@@ -25,17 +25,17 @@ class FaultBoard {
 
   /// Returns the number by which the fault can be removed.
   uint32_t add(const Fault& fault);
-  /// Returns false if there is no fault of this number.
-  bool remove(uint32_t number);
-  void clear();
+  /// Removes a fault at a time of the drive. Returns false if there is no fault of this number.
+  bool remove(uint32_t number, double now_s);
+  void clear(double now_s);
   std::vector<NumberedFault> list() const;
 
   /// The faults of an input at a time of the drive, in the order in which they were added.
   std::vector<Fault> active(FaultInput input, double time_s) const;
   /// The faults of one camera.
   std::vector<Fault> active_on_camera(int camera, double time_s) const;
-  /// All faults of an input, whatever their time. Of the clock, also suspensions that were removed:
-  /// the drive does not go back.
+  /// All faults of an input, whatever their time. For the clock, these include removed suspensions
+  /// that had begun, because the drive does not go back.
   std::vector<Fault> all(FaultInput input) const;
 
   /// Blocks while a fault of this kind hangs the calling thread, in real time. `time_s` gives the
@@ -47,7 +47,7 @@ class FaultBoard {
  private:
   bool hangs(FaultKind kind, int camera, double time_s) const;
   /// Keeps what cannot be undone when the fault is removed.
-  void note_past(const NumberedFault& listed);
+  void note_past(const NumberedFault& listed, double now_s);
 
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;

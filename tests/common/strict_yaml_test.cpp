@@ -73,6 +73,7 @@ TEST(StrictYaml, NamesFileLineKeyFoundAndWanted) {
 }
 
 TEST(StrictYaml, RefusesValuesOfAnotherType) {
+  EXPECT_EQ(require_error<int>("key: 0x-5"), "t.yaml:1: key: found 0x-5, wanted a whole number");
   EXPECT_THAT(require_error<double>("key: fast"), HasSubstr("found fast, wanted a number"));
   EXPECT_THAT(require_error<double>("key: .nan"), HasSubstr("found .nan"));
   EXPECT_THAT(require_error<double>("key: nan"), HasSubstr("found nan"));
@@ -183,7 +184,7 @@ TEST(StrictYaml, CallersCanRejectWhatTheyRead) {
   EXPECT_EQ(finish_error(yaml), "t.yaml:2: to: found 1, wanted at least from, which is 3");
 }
 
-/// Parsing such a text did not end, and filled the memory.
+/// Without a check, yaml-cpp would parse such a text without end and fill the memory.
 TEST(StrictYaml, RefusesTextThatNeverEnds) {
   for (const char* const text :
        {",", " ,\n", "# comment\n, a: 1\n", ",]", "--- ,", "a: 1\n---\n,\n"}) {

@@ -110,8 +110,26 @@ TEST_F(SocketCanKernel, StampsFramesByTheKernel) {
   EXPECT_EQ(counters.software_stamped + counters.hardware_stamped, 1u);
 }
 
+constexpr const char* kAddInterface = "ip link add bevloc0 type vcan && ip link set bevloc0 up";
+
+TEST(SocketCanInterface, AListenerNoticesThatItIsUpAgain) {
+  if (std::system((kAddInterface + std::string(" 2> /dev/null")).c_str()) != 0) {
+    GTEST_SKIP() << "SocketCan: needs ip, vcan and CAP_NET_ADMIN";
+  }
+  const auto listener = SocketCanBus::open("bevloc0");
+  ASSERT_TRUE(listener);
+  ASSERT_EQ(std::system("ip link set bevloc0 down"), 0);
+  (*listener)->wait(milliseconds(0));
+  (*listener)->receive();
+  EXPECT_EQ((*listener)->condition().state, BusState::kDown);
+  ASSERT_EQ(std::system("ip link set bevloc0 up"), 0);
+  (*listener)->wait(milliseconds(0));
+  EXPECT_EQ((*listener)->condition().state, BusState::kActive);
+  EXPECT_EQ(std::system("ip link del bevloc0"), 0);
+}
+
 TEST(SocketCanInterface, IsFoundAgainByItsNameAfterALoss) {
-  const std::string add = "ip link add bevloc0 type vcan && ip link set bevloc0 up";
+  const std::string add = kAddInterface;
   if (std::system((add + " 2> /dev/null").c_str()) != 0) {
     GTEST_SKIP() << "SocketCan: needs ip, vcan and CAP_NET_ADMIN";
   }

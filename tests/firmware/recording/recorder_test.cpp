@@ -50,7 +50,7 @@ class RecorderTest : public testing::Test {
     return {0, time, sequence, std::chrono::milliseconds(8), std::move(buffer)};
   }
 
-  /// A frame whose compression leaves something.
+  /// A frame that compression does not make tiny.
   drivers::Frame noisy_frame(uint64_t sequence, Time time, int seed) {
     drivers::Frame noisy = frame(sequence, time);
     uint8_t value = 1;
@@ -123,6 +123,23 @@ TEST_F(RecorderTest, ImagesKeepTheirPixelsAndTimes) {
 TEST_F(RecorderTest, NamesAFileByTheTimeInUtcAlsoAfter2038) {
   open()->finish(Time{});
   EXPECT_EQ(first_in(config_.directory).filename(), "bevloc-20400301T000000Z-0001.mcap");
+}
+
+/// A JPEG is at most 65500 pixels wide.
+TEST_F(RecorderTest, AnImageThatCannotBeEncodedIsLeftOut) {
+  config_.images = RecordedImages::kJpeg;
+  pool_ = drivers::FramePool::create(2, 70'000, 2);
+  const LogCapture log;
+  const auto recorder = open();
+  recorder->expect_images(0, 70'000, 2);
+  recorder->note_image(frame(1, Time{}), Time{});
+  recorder->note_solution(report(HealthState::kTracking, Time{}));
+  recorder->finish(Time{});
+  EXPECT_EQ(recorder->totals().images_dropped, 1U);
+  EXPECT_EQ(recorder->counters().images, 0U);
+  EXPECT_EQ(recorder->counters().events, 1U);
+  EXPECT_FALSE(recorder->counters().failed);
+  EXPECT_NE(log.text().find("an image of camera front_left is left out"), std::string::npos);
 }
 
 TEST_F(RecorderTest, ImagesThatFindNoMemoryAreDroppedAndCounted) {

@@ -14,6 +14,7 @@ class BrokenCamera final : public drivers::Camera {
  public:
   Status start() override {
     ++starts;
+    if (clock != nullptr) clock->advance(start_duration);
     if (!start_error.empty()) return fail("{}", start_error);
     return {};
   }
@@ -30,6 +31,8 @@ class BrokenCamera final : public drivers::Camera {
   std::string start_error;
   bool is_unplugged = false;
   bool is_silent = false;
+  drivers::VirtualClock* clock = nullptr;  ///< on which a start takes `start_duration`
+  Duration start_duration{0};
   int starts = 0;
   uint64_t sequence = 10;
   Duration stamp_error{0};
@@ -141,6 +144,15 @@ TEST_F(CaptureStageTest, MarksFramesWhoseStampsHaveJumped) {
 TEST_F(CaptureStageTest, LogsNothingWhileTheCameraWorks) {
   run(milliseconds(1000));
   EXPECT_EQ(stage_.captured(), 10U);
+  EXPECT_EQ(stage_.failures(), 0U);
+  EXPECT_EQ(log_.text(), "");
+}
+
+TEST_F(CaptureStageTest, ACameraIsNotSilentWhileItStarts) {
+  camera_.clock = &clock_;
+  camera_.start_duration = std::chrono::seconds(12);
+  camera_.is_silent = true;
+  EXPECT_TRUE(stage_.step(Duration::zero()));
   EXPECT_EQ(stage_.failures(), 0U);
   EXPECT_EQ(log_.text(), "");
 }

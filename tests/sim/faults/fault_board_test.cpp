@@ -50,11 +50,11 @@ TEST(FaultBoard, FaultsCanBeAddedRemovedAndCleared) {
   const uint32_t first = board.add(make_fault(FaultKind::kGnssOutage));
   const uint32_t second = board.add(make_fault(FaultKind::kOdometryStuck));
   EXPECT_NE(first, second);
-  EXPECT_TRUE(board.remove(first));
-  EXPECT_FALSE(board.remove(first));
+  EXPECT_TRUE(board.remove(first, 0.0));
+  EXPECT_FALSE(board.remove(first, 0.0));
   ASSERT_EQ(board.list().size(), 1U);
   EXPECT_EQ(board.list()[0].number, second);
-  board.clear();
+  board.clear(0.0);
   EXPECT_TRUE(board.list().empty());
 }
 
@@ -62,10 +62,17 @@ TEST(FaultBoard, TheDriveDoesNotGoBackWhenASuspensionIsCleared) {
   FaultBoard board;
   board.add(make_fault(FaultKind::kClockSuspend, 1.0));
   const uint32_t gap = board.add(make_fault(FaultKind::kClockGap, 1.0));
-  EXPECT_TRUE(board.remove(gap));
-  board.clear();
+  EXPECT_TRUE(board.remove(gap, 2.0));
+  board.clear(2.0);
   ASSERT_EQ(board.all(FaultInput::kClock).size(), 1U);
   EXPECT_TRUE(board.active(FaultInput::kClock, 2.0).empty());
+}
+
+TEST(FaultBoard, ASuspensionThatHasNotBegunIsForgotten) {
+  FaultBoard board;
+  const uint32_t suspension = board.add(make_fault(FaultKind::kClockSuspend, 3.0));
+  EXPECT_TRUE(board.remove(suspension, 2.0));
+  EXPECT_TRUE(board.all(FaultInput::kClock).empty());
 }
 
 }  // namespace
