@@ -33,9 +33,12 @@ if(NOT BEVLOC_SIMULATION)
   install(FILES systemd/network/80-bevloc-can.link systemd/network/80-bevloc-can.network
                 systemd/udev/60-bevloc.rules systemd/live.conf systemd/gnss.conf systemd/clock.conf
           DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT bevloc)
-  install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT bevloc
+  # The pages link to each other, so they lie in the folders of the source tree.
+  install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT bevloc
           FILES_MATCHING PATTERN "*.md" PATTERN "*.json" PATTERN "images" EXCLUDE)
-  install(FILES SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT bevloc)
+  install(FILES README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md
+          DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT bevloc)
+  install(FILES models/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/models COMPONENT bevloc)
   install(DIRECTORY config/ DESTINATION ${BEVLOC_DATA_DIR}/config COMPONENT bevloc
           FILES_MATCHING PATTERN "rig_*.yaml")
   install(FILES models/nano.onnx models/small-lut.onnx
@@ -55,5 +58,6 @@ install(FILES evaluation/campaign/matches.csv
 install(TARGETS bevloc-compliance bevloc_convert_map bevloc_dbc COMPONENT bevloc-dev)
 install(FILES can/bevloc.dbc DESTINATION ${BEVLOC_DATA_DIR} COMPONENT bevloc-dev)
 install(DIRECTORY can/consumer/ DESTINATION ${BEVLOC_DATA_DIR}/consumer COMPONENT bevloc-dev
+        USE_SOURCE_PERMISSIONS
         FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp" PATTERN "*.py" PATTERN "*.c" PATTERN "*.cpp"
         PATTERN "golden*" PATTERN "__pycache__" EXCLUDE)

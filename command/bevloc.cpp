@@ -1,6 +1,6 @@
-// The command bevloc of a vehicle. It contains no simulator; the program with the simulator is
-// evaluation/bevloc.cpp. Where that one is installed too (package bevloc-sim), it gets the commands
-// that this one does not have.
+// The command bevloc of a vehicle. It contains no simulator. The program with the simulator is
+// evaluation/bevloc.cpp. If that one is installed, too (package bevloc-sim), this one passes on the
+// commands that it does not have.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -38,5 +38,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "bevloc: %s\n", failed.error().message.c_str());
     return bevloc::kBadInput;
   }
+  if (!is_own) std::fputs("bevloc: further commands are in the package bevloc-sim\n", stderr);
   return commands.run(app, argc, argv);
 }

@@ -1,15 +1,35 @@
 #include "command/command_list.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/option_checks.h"
 #include "common/output.h"
 
 namespace bevloc::command {
 
+namespace {
+
+/// Returns the message for a first word that is neither a command nor an option.
+std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return std::nullopt;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::ranges::find(names, argv[1]) != names.end()) return std::nullopt;
+  return fmt::format("bevloc: found the command \"{}\", wanted one of: {}\n", printable(argv[1]),
+                     fmt::join(names, ", "));
+}
+
+}  // namespace
+
 int CommandList::run(CLI::App& app, int argc, char** argv) const {
+  if (const auto message = unknown_command(app, argc, argv)) {
+    std::fputs(message->c_str(), stderr);
+    return kBadInput;
+  }
   if (const auto ended = parse_options(app, argc, argv)) return *ended;
   const auto entry = std::ranges::find_if(entries_, [](const Entry& e) { return e.chosen(); });
   if (entry == entries_.end()) return kBadInput;

@@ -1,4 +1,4 @@
-// The table of the commands of `bevloc`: one line registers a command.
+// The table of the commands of `bevloc`, in which one line registers a command.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@
 
 namespace bevloc::command {
 
-/// What a command found, where it judges something. Its value is the exit code.
+/// The result of a command that judges something. Its value is the exit code.
 enum class Verdict : uint8_t {
   kGood = 0,
-  kBad = 1,  ///< what was judged is not good enough
+  kBad = 1,  ///< the judged thing is not good enough
 };
 
 /// Holds the commands and runs the one that the command line names. A command is a class with
@@ -30,8 +30,8 @@ enum class Verdict : uint8_t {
 /// One thread.
 class CommandList {
  public:
-  /// Makes a command and declares it under `parents`: add<FaultCommand>(app). What its constructor
-  /// wants stands in `with`: add_with<SchemaCommand>(std::tuple{reader}, app).
+  /// Makes a command and declares it under `parents`, as in add<FaultCommand>(app). add_with() also
+  /// passes an argument to the constructor, as in add_with<SchemaCommand>(reader, app).
   template <typename Command, typename... Parents>
   void add(Parents&... parents) {
     keep(std::make_shared<Command>(), parents...);
@@ -41,8 +41,8 @@ class CommandList {
     keep(std::make_shared<Command>(std::forward<Argument>(argument)), parents...);
   }
 
-  /// Parses the command line and runs the command that it names. Returns the exit code: 0 good, 1
-  /// judged bad, 2 wrong use or input with one line on stderr.
+  /// Parses the command line and runs the command that it names. Returns the exit code: 0 for good,
+  /// 1 for judged bad, and 2 with one line on stderr for wrong use or input.
   int run(CLI::App& app, int argc, char** argv) const;
 
  private:

@@ -9,8 +9,8 @@
 namespace bevloc::command {
 
 /// Adds --version and the commands that need no simulator. `simulation` reads the parts of a
-/// configuration that only a program with the simulator supports; null without one. It must outlive
-/// `commands`.
+/// configuration that only a program with the simulator supports. It is null in a program without
+/// the simulator, and must outlive `commands`.
 void add_vehicle_commands(CLI::App& app, CommandList& commands,
                           const firmware::SimulationReader* simulation);
 

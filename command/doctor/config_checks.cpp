@@ -38,14 +38,25 @@ Finding check_rig_file(const Config& config) {
           fmt::format("bevlocd --config {} --check-config", shell_word(config.file.string()))};
 }
 
-/// Whether this user may open a device.
+/// How a user gets access to a device.
+struct Access {
+  const char* group;
+  const char* fix;
+};
+
+constexpr Access kCameraAccess{"video", "sudo usermod -aG video $USER   # then log in again"};
+constexpr Access kGpioAccess{
+    "bevloc",
+    "bevloc udev-rules --config FILE | sudo tee /etc/udev/rules.d/60-bevloc.rules && sudo udevadm "
+    "control --reload && sudo udevadm trigger --subsystem-match=gpio"};
+
+/// Checks whether this user may open a device.
 Finding check_access(const Machine& machine, const std::string& part,
                      const std::filesystem::path& node, const std::string& found,
-                     const std::string& group) {
+                     const Access& access) {
   if (machine.may_use(node)) return ok(part, found);
   return {Level::kProblem, part, fmt::format("found {}, which this user may not open", found),
-          fmt::format("read and write access, by the group {}", group),
-          fmt::format("sudo usermod -aG {} $USER   # then log in again", group)};
+          fmt::format("read and write access, by the group {}", access.group), access.fix};
 }
 
 Findings check_v4l2_cameras(const Machine& machine, const Config& config) {
@@ -57,7 +68,7 @@ Findings check_v4l2_cameras(const Machine& machine, const Config& config) {
     const auto node = drivers::v4l2::find_video_node(id, tree);
     findings.push_back(node ? check_access(machine, part, *node,
                                            fmt::format("{} ({})", id, node->filename().string()),
-                                           "video")
+                                           kCameraAccess)
                             : Finding{Level::kProblem, part, node.error().message,
                                       "the device of cameras.ids", "ls -l /dev/v4l/by-id"});
   }
@@ -97,14 +108,14 @@ Findings check_recordings(const Config& config) {
   return findings;
 }
 
-/// Whether this user may open any chip. A vehicle needs only some of them, which
+/// Checks whether this user may open any chip. A vehicle needs only some of them, which
 /// systemd/udev/60-bevloc.rules opens.
 Finding check_gpio_access(const Machine& machine) {
   Findings findings;
   for (const std::string& name : machine.names_in("/dev")) {
     if (!name.starts_with("gpiochip")) continue;
     const std::string node = "/dev/" + name;
-    findings.push_back(check_access(machine, "gpio", machine.real(node), node, "bevloc"));
+    findings.push_back(check_access(machine, "gpio", machine.real(node), node, kGpioAccess));
   }
   const auto usable = std::ranges::find(findings, Level::kOk, &Finding::level);
   if (usable != findings.end()) return *usable;
@@ -208,7 +219,8 @@ Findings check_devices(const Machine& machine, const Config& config) {
   };
   switch (config.cameras.driver) {
     case CameraDriver::kV4l2:
-      // Cameras that are no USB cameras have drivers of their own.
+      // A missing module is only a warning, because cameras other than USB cameras have drivers of
+      // their own.
       add({check_module(machine, "uvcvideo", Level::kWarning)});
       add(check_v4l2_cameras(machine, config));
       break;

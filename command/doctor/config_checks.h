@@ -1,4 +1,4 @@
-// Looks at what a configuration names: files, devices, interface, limits.
+// Checks what a configuration names: files, devices, interface, limits.
 #pragma once
 
 #include "command/doctor/finding.h"
@@ -7,13 +7,14 @@
 
 namespace bevloc::command {
 
-/// Rig, model, map and key file: readable, with their SHA-256.
+/// Checks that rig, model, map and key file are readable, and shows their SHA-256.
 Findings check_files(const firmware::Config& config);
-/// The configured cameras, recordings and GPIO lines: there, and this user may use them.
+/// Checks that the configured cameras, recordings and GPIO lines exist, and that this user may use
+/// them.
 Findings check_devices(const Machine& machine, const firmware::Config& config);
-/// The limits that the section `realtime` needs.
+/// Checks the limits that the section `realtime` needs.
 Findings check_realtime(const Machine& machine, const firmware::Config& config);
-/// The CAN interface: its modules, state, bit rate and errors.
+/// Checks the CAN interface: its modules, state, bit rate and errors.
 Findings check_can_interface(const Machine& machine, const firmware::Config& config);
 
 }  // namespace bevloc::command

@@ -1,4 +1,4 @@
-// `bevloc doctor`: what is wrong with this machine, and how to mend it.
+// `bevloc doctor`: says what is wrong with this machine, and how to mend it.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace bevloc::command {
 
-/// All findings about a machine. Without a configuration (empty path) only those that need none.
-/// `simulation` may be null (firmware::load_config()).
+/// Returns all findings about a machine. If there is no configuration (empty path), returns only
+/// those that need none. `simulation` may be null (firmware::load_config()).
 Findings examine(const Machine& machine, const std::filesystem::path& config_file,
                  const firmware::SimulationReader* simulation);
 
@@ -24,7 +24,7 @@ class DoctorCommand {
   void declare(CLI::App& app);
   bool chosen() const { return chosen_; }
 
-  /// Returns the exit code: 0 all ok, 1 warnings, 2 problems.
+  /// Returns the exit code: 0 if all is ok, 1 for warnings, 2 for problems.
   Result<int> run() const;
 
  private:

@@ -1,4 +1,4 @@
-// What the doctor says about one thing.
+// What `bevloc doctor` says about one thing.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace bevloc::command {
 
 enum class Level : uint8_t { kOk, kWarning, kProblem };
 
-/// One thing that was looked at. Only warnings and problems have `wanted` and `fix`.
+/// The finding about one thing. Only warnings and problems have `wanted` and `fix`.
 struct Finding {
   Level level = Level::kOk;
   std::string part;    ///< "cpu", "can0"
@@ -24,13 +24,13 @@ inline Finding ok(std::string part, std::string found) {
   return {Level::kOk, std::move(part), std::move(found), "", ""};
 }
 
-/// The worst level of all.
+/// Returns the worst level of all findings.
 Level worst_of(const Findings& findings);
 
-/// One line for each finding, and its fix in a second one.
+/// Returns one line for each finding, and its fix in a second line.
 std::string to_text(const Findings& findings);
 
-/// {"worst": "warning", "findings": [{level, part, found, wanted, fix}, ...]}.
+/// Returns {"worst": "warning", "findings": [{level, part, found, wanted, fix}, ...]}.
 std::string to_json(const Findings& findings);
 
 }  // namespace bevloc::command

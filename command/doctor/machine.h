@@ -1,4 +1,4 @@
-// What the doctor and `bevloc init` ask of the operating system.
+// What `bevloc doctor` and `bevloc init` ask the operating system.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@ namespace bevloc::command {
 /// The hard limits of this process.
 struct ProcessLimits {
   int64_t realtime_priority = 0;               ///< RLIMIT_RTPRIO
-  std::optional<int64_t> locked_memory_bytes;  ///< RLIMIT_MEMLOCK; nothing: unlimited
+  std::optional<int64_t> locked_memory_bytes;  ///< RLIMIT_MEMLOCK; nothing if unlimited
 };
 
-/// This machine, or a folder that stands for one in a test. Paths are those of the machine,
+/// This machine, or a folder that stands for one in a test. Paths are those of the machine, such as
 /// "/proc/cpuinfo". One thread.
 class Machine {
  public:
   virtual ~Machine() = default;
 
-  /// The folder that is "/".
+  /// Returns the folder that stands for "/".
   virtual std::filesystem::path root() const = 0;
   virtual ProcessLimits limits() const = 0;
   /// Whether the kernel's clock is kept synchronous by NTP, PTP or GNSS.
@@ -33,7 +33,8 @@ class Machine {
   virtual Result<int64_t> free_bytes(const std::filesystem::path& path) const = 0;
   /// Whether this user may read and write the file.
   virtual bool may_use(const std::filesystem::path& path) const = 0;
-  /// What a program prints to stdout. Fails if it is missing or ends with another exit code than 0.
+  /// Returns what a program prints to stdout. Fails if it is missing or ends with another exit code
+  /// than 0.
   virtual Result<std::string> run(const std::vector<std::string>& words) const = 0;
   /// The GPIO chips that this user may open.
   virtual std::vector<drivers::GpioChipInfo> gpio_chips() const = 0;
@@ -44,11 +45,11 @@ class Machine {
     return root() / path.relative_path();
   }
   bool exists(const std::filesystem::path& path) const;
-  /// The first line of a file; empty if it cannot be read.
+  /// Returns the first line of a file, or an empty text if it cannot be read.
   std::string line_of(const std::filesystem::path& path) const;
-  /// The whole file; empty if it cannot be read.
+  /// Returns the whole file, or an empty text if it cannot be read.
   std::string text_of(const std::filesystem::path& path) const;
-  /// The names in a folder, sorted; none if it cannot be read.
+  /// Returns the names in a folder, sorted, or none if it cannot be read.
   std::vector<std::string> names_in(const std::filesystem::path& folder) const;
 };
 

@@ -10,7 +10,7 @@
 namespace bevloc::command {
 namespace {
 
-/// The words of the first line that starts with "flags" (x86) or "Features" (Arm).
+/// Returns the words of the first line that starts with "flags" (x86) or "Features" (Arm).
 std::set<std::string> cpu_flags(const Machine& machine) {
   std::istringstream lines(machine.text_of("/proc/cpuinfo"));
   for (std::string line; std::getline(lines, line);) {
@@ -44,7 +44,7 @@ Finding check_instructions(const std::set<std::string>& flags) {
           "AVX-VNNI or AVX512-VNNI for the int8 network; measure with bevloc bench", "lscpu"};
 }
 
-/// "Name: 123 kB" of /proc/meminfo in bytes; 0 if there is none.
+/// Returns a value of /proc/meminfo, such as "Name: 123 kB", in bytes, or 0 if there is none.
 int64_t memory_bytes(const std::string& text, const std::string& name) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {

@@ -1,4 +1,4 @@
-// Looks at what the machine offers, whatever the configuration says.
+// Checks what the machine offers, whatever the configuration says.
 #pragma once
 
 #include "command/doctor/finding.h"
@@ -6,15 +6,15 @@
 
 namespace bevloc::command {
 
-/// Vector instructions of the CPU, and its frequency governor.
+/// Checks the vector instructions of the CPU, and its frequency governor.
 Findings check_cpu(const Machine& machine);
-/// Free memory, and free space of the disk.
+/// Checks the free memory, and the free space of the disk.
 Findings check_room(const Machine& machine);
 Findings check_clock(const Machine& machine);
-/// The state of bevlocd.service.
+/// Checks the state of bevlocd.service.
 Findings check_unit(const Machine& machine);
 
-/// A kernel module, loaded or built in.
+/// Checks that a kernel module is loaded or built in.
 Finding check_module(const Machine& machine, const std::string& module, Level if_missing);
 
 }  // namespace bevloc::command

@@ -5,7 +5,7 @@
 namespace bevloc::command {
 namespace {
 
-/// A text in double quotes for YAML.
+/// Returns the text in double quotes, for YAML.
 std::string quoted_text(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {

@@ -10,10 +10,10 @@
 
 namespace bevloc::command {
 
-/// Says whether an answer is good; the error says what is wrong.
+/// A function that says whether an answer is good. Its error says what is wrong.
 using AnswerCheck = std::function<Status(const std::string& answer)>;
 
-/// Asks one question after the other. Without `asks`, every answer is the proposal. One thread.
+/// Asks one question after the other. If `asks` is false, every answer is the proposal. One thread.
 class Dialog {
  public:
   Dialog(std::istream& in, std::ostream& out, bool asks) : in_(in), out_(out), asks_(asks) {}
@@ -22,7 +22,7 @@ class Dialog {
   void say(const std::string& text);
 
   /// Repeats the question until the check accepts the answer. An empty answer is the proposal.
-  /// Fails if the check refuses the proposal and nobody can be asked, and when the input ends.
+  /// Fails if the check refuses the proposal and nobody can be asked, or when the input ends.
   Result<std::string> ask(const std::string& question, const std::string& proposal,
                           const AnswerCheck& check);
 

@@ -48,7 +48,7 @@ std::string list_of_cameras(const std::vector<OfferedCamera>& cameras) {
   return text;
 }
 
-/// The id of a camera that was named by its number in the list or by its id.
+/// Returns the id of a camera that was named by its number in the list or by its id.
 std::string id_from(const std::vector<OfferedCamera>& cameras, const std::string& answer) {
   const bool is_number =
       !answer.empty() && answer.size() < 3 && std::ranges::all_of(answer, isdigit);

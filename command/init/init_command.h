@@ -23,10 +23,11 @@ class InitCommand {
   void declare(CLI::App& app);
   bool chosen() const { return chosen_; }
 
-  /// Bad if the configuration was written but --check-config would refuse it.
+  /// Runs the command. The verdict is bad if the configuration was written but --check-config would
+  /// refuse it.
   Result<Verdict> run() const;
 
-  /// The same with other devices and another terminal.
+  /// Does the same with other devices and another terminal.
   Result<Verdict> run(const Offers& offers, Dialog& dialog) const;
 
  private:

@@ -11,7 +11,8 @@
 namespace bevloc::command {
 namespace {
 
-/// The name of a node that changes neither with the order of the plugs nor with a restart.
+/// Returns a name of a node that changes neither with the order in which cameras are plugged in nor
+/// with a restart.
 std::string stable_id(const drivers::v4l2::VideoNode& node) {
   if (!node.links.empty()) return node.links.front();
   for (const std::string* id : {&node.serial, &node.port, &node.card}) {
@@ -31,7 +32,7 @@ Offers offers_of(const Machine& machine, const std::vector<std::string>& libcame
     if (node.index == 0 && !id.empty()) offers.v4l2.push_back({id, node.card});
   }
   for (const std::string& id : libcamera_ids) offers.libcamera.push_back({id, "libcamera"});
-  // ARPHRD_CAN of linux/if_arp.h
+  // ARPHRD_CAN of linux/if_arp.h as text.
   constexpr const char* kCanDevice = "280";
   for (const std::string& name : machine.names_in("/sys/class/net")) {
     if (machine.line_of("/sys/class/net/" + name + "/type") == kCanDevice) {
@@ -43,7 +44,7 @@ Offers offers_of(const Machine& machine, const std::vector<std::string>& libcame
 
 std::vector<std::string> libcamera_ids_of_this_machine() {
 #ifdef BEVLOC_HAS_LIBCAMERA
-  // libcamera logs to stderr, where only what the user must know stands.
+  // libcamera logs to stderr, which shows only what the user must know.
   setenv("LIBCAMERA_LOG_LEVELS", "*:ERROR", 0);
   return drivers::libcamera_ids();
 #else

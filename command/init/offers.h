@@ -1,4 +1,4 @@
-// What a machine offers for a configuration: cameras and CAN interfaces.
+// The cameras and CAN interfaces that a machine offers for a configuration.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace bevloc::command {
 
-/// A camera that is there.
+/// A camera that is connected.
 struct OfferedCamera {
-  std::string id;    ///< as cameras.ids takes it
+  std::string id;    ///< the id for cameras.ids
   std::string name;  ///< such as "HD USB Camera"
 };
 
@@ -20,10 +20,11 @@ struct Offers {
   std::vector<std::string> can_interfaces;
 };
 
-/// Looks for devices. `libcamera_ids` are those that libcamera lists, which needs no machine.
+/// Looks for devices. `libcamera_ids` are the ids that libcamera lists, for which no `machine` is
+/// needed.
 Offers offers_of(const Machine& machine, const std::vector<std::string>& libcamera_ids);
 
-/// libcamera's cameras; none if this program was built without libcamera.
+/// Returns the ids of libcamera's cameras, or none if this program was built without libcamera.
 std::vector<std::string> libcamera_ids_of_this_machine();
 
 }  // namespace bevloc::command

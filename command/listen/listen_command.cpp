@@ -23,7 +23,7 @@ void note_interrupt(int) {
   interrupted = 1;
 }
 
-/// Tells which parts of a file are not decoded.
+/// Prints which parts of a file are not decoded.
 void print_left_out(const can::Dbc& dbc) {
   for (const can::DbcMessage& message : dbc.messages) {
     if (!message.left_out.empty()) {
@@ -49,7 +49,7 @@ void ListenCommand::declare(CLI::App& app) {
       "  candump -L can0 | bevloc listen -");
   app_->add_option("SOURCE", source_, "CAN interface, candump log, or - for standard input")
       ->required();
-  // One value for each: a further one is the SOURCE.
+  // Each --dbc takes one value, because a further one is the SOURCE.
   app_->add_option("--dbc", dbc_files_,
                    "DBC file, may be repeated; bevloc's own messages are known without one")
       ->allow_extra_args(false);

@@ -14,7 +14,7 @@
 
 namespace bevloc::command {
 
-/// Declare the command, parse the command line, then run the command if it was chosen.
+/// The command. Call declare(), parse the command line, then call run() if the command was chosen.
 class ListenCommand {
  public:
   void declare(CLI::App& app);
@@ -27,14 +27,14 @@ class ListenCommand {
   /// Does what run() does with an interface. Each change of the bus condition is a line on standard
   /// error.
   void listen_to_bus(can::Bus& bus, can::BusListener& listener);
-  /// In the form that the command line asks for.
+  /// Prints the totals in the form that the command line asks for.
   void print_totals(const can::BusListener& listener) const;
 
  private:
   Result<can::BusListener> make_listener() const;
   Status listen_to_log(std::istream& log, const std::string& name, can::BusListener& listener);
   Status listen_to_interface(can::BusListener& listener);
-  /// False when enough was printed.
+  /// Prints a frame. Returns false when enough was printed.
   bool show(const can::Frame& frame, double time_s, can::BusListener& listener);
   bool is_wanted(const can::DecodedFrame& frame) const;
   void print_json_totals(const can::BusListener& listener) const;
@@ -46,7 +46,7 @@ class ListenCommand {
   bool json_ = false;
   bool only_bad_ = false;
   bool quiet_ = false;
-  uint64_t count_ = 0;  ///< 0: no limit
+  uint64_t count_ = 0;  ///< 0 for no limit
   double duration_s_ = 0.0;
   can::BaseIds base_;
   uint64_t printed_ = 0;

@@ -6,12 +6,13 @@
 namespace bevloc::command {
 namespace {
 
-/// The pattern of a case that matches the command's path, with a space before each word.
+/// Returns the pattern of a case that matches the command's path, with a space before each word.
 std::string place_of(const CommandEntry& command) {
   return command.path.empty() ? "" : " " + command.path;
 }
 
-/// Loop that finds the command that the line names so far. `words` are those before the cursor.
+/// Returns the loop that finds the command that the line names so far. `words` are those before the
+/// cursor.
 std::string place_loop(const CommandEntry& table, const std::string& words) {
   std::string places;
   for (const CommandEntry* command : all_commands(table)) {
@@ -29,8 +30,8 @@ std::string place_loop(const CommandEntry& table, const std::string& words) {
       words, places);
 }
 
-/// The cases "place:--option" of all options with a value. `words` and `files` say how the shell
-/// offers words and files.
+/// Returns the cases "place:--option" of all options with a value. `words` and `files` say how the
+/// shell offers words and files.
 template <typename Words, typename Files>
 std::string value_cases(const CommandEntry& table, Words words, Files files) {
   std::string cases;
@@ -50,7 +51,7 @@ std::string value_cases(const CommandEntry& table, Words words, Files files) {
   return cases;
 }
 
-/// A text in single quotes of a shell.
+/// Returns the text in single quotes of a shell.
 std::string in_quotes(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);

@@ -7,7 +7,7 @@
 
 namespace bevloc::command {
 
-/// A script that completes subcommands, options, words, files and folders of `program`.
+/// Return a script that completes subcommands, options, words, files and folders of `program`.
 std::string bash_completion(const std::string& program, const CommandEntry& table);
 std::string zsh_completion(const std::string& program, const CommandEntry& table);
 

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Text that roff shows as it is.
+/// Returns the text in a form that roff shows as it is.
 std::string roff(const std::string& text) {
   std::string escaped;
   bool line_begins = true;
@@ -78,7 +78,7 @@ std::string command_text(const CommandEntry& command) {
   return text;
 }
 
-/// "enum": "a, b", a range of numbers, a type.
+/// Returns the values that a key may have: the words of "enum", a range of numbers, or a type.
 std::string values_of(const Json& schema) {
   if (schema.contains("enum")) {
     std::vector<std::string> words;
@@ -126,7 +126,7 @@ std::string condition_text(const Json& condition) {
   return fmt::format(" Required with {}: {}.", properties.begin().key(), values);
 }
 
-/// Whether a mapping needs a key, always or with some words of another key.
+/// Says whether a mapping requires a key, always or with some words of another key.
 std::string required_text(const Json& mapping, const std::string& name) {
   if (requires_key(mapping, name)) return " Required.";
   for (const Json& rule : mapping.value("allOf", Json::array())) {
@@ -137,7 +137,7 @@ std::string required_text(const Json& mapping, const std::string& name) {
   return "";
 }
 
-/// All keys of a mapping, those of mappings inside it too.
+/// Returns all keys of a mapping, and those of mappings inside it.
 std::string keys_text(const Json& mapping, const std::string& prefix) {
   std::string text;
   for (const auto& [name, schema] : mapping.at("properties").items()) {

@@ -12,7 +12,7 @@
 namespace bevloc::command {
 namespace {
 
-/// The options that every bevlocd has.
+/// Returns the options that every bevlocd has.
 CommandEntry daemon_table() {
   CLI::App app("Localizes a vehicle in its HD map");
   firmware::ProgramOptions options;

@@ -5,7 +5,8 @@
 namespace bevloc::command {
 namespace {
 
-/// "TEXT:{mock,v4l2}" and "TEXT:FILE" say behind the colon what is allowed.
+/// Reads a type such as "TEXT:{mock,v4l2}" or "TEXT:FILE", which says behind the colon what is
+/// allowed.
 void read_type(const std::string& type, OptionEntry& entry) {
   const size_t colon = type.find(':');
   entry.value = type.substr(0, colon);

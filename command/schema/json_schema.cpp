@@ -39,7 +39,7 @@ Json schema_of_value(const YamlKey& key) {
       return schema;
     }
     case YamlType::kText: {
-      // An unquoted number is a text where the reader wants a text.
+      // Where the reader wants a text, it accepts an unquoted number as one.
       Json schema = {{"type", {"string", "number", "boolean"}}};
       if (limits.low) schema["minLength"] = static_cast<int64_t>(*limits.low);
       if (limits.high) schema["maxLength"] = static_cast<int64_t>(*limits.high);
@@ -69,7 +69,7 @@ std::vector<std::string> steps_of(const std::string& path) {
   return steps;
 }
 
-/// The innermost mapping around all of these keys, which is where a condition can see them.
+/// Returns the innermost mapping around all of these keys, which is where a condition can see them.
 std::string common_parent(const std::vector<std::string>& paths) {
   std::string common = parent_of(paths.front());
   for (const std::string& path : paths) {
@@ -96,7 +96,7 @@ Json seen_from(const std::string& outer, const std::string& inner, Json content,
   return content;
 }
 
-/// The condition that one of these options is taken.
+/// Returns the condition that one of these options is taken.
 Json taken(const std::string& outer, const std::string& decision,
            const std::vector<std::string>& options) {
   const std::string key = name_of_key(decision);
@@ -147,7 +147,7 @@ class SchemaWriter {
       schema = forms.front().is_list ? Json{{"type", "array"}, {"items", mapping(key.path + "[]")}}
                                      : mapping(key.path);
     } else if (forms.size() > 1) {
-      // The conditions give the limits of each form.
+      // The conditional rules give the limits of each form.
       schema = Json::object();
       if (std::ranges::all_of(forms, [&](const YamlKey& f) { return f.type == forms[0].type; })) {
         schema = {{"type", schema_of_value({.path = "", .type = forms.front().type}).at("type")}};
@@ -177,7 +177,7 @@ class SchemaWriter {
     }
   }
 
-  /// What one state demands of the mapping around the key.
+  /// Returns what one state demands of the mapping around the key.
   static Json demand(const KeyConditions& key, const KeyState& state) {
     const std::string name = name_of_key(key.path);
     if (!state) return {{"properties", {{name, false}}}};
@@ -208,7 +208,7 @@ class SchemaWriter {
     }
   }
 
-  /// One rule for each state, and one for all options that do not allow the key.
+  /// Adds one rule for each state, and one for all options that do not allow the key.
   void add_simple(const KeyConditions& key, const std::string& outer) {
     std::vector<std::pair<Json, std::vector<std::string>>> demands;
     std::vector<std::string> allowed;
@@ -254,7 +254,7 @@ class SchemaWriter {
     }
   }
 
-  /// Rules with the same condition become one.
+  /// Adds a rule. Rules with the same condition become one.
   void add_rule(const std::string& outer, const Json& condition, const char* branch,
                 const KeyConditions& key, const Json& wanted) {
     const Json content = seen_from(outer, parent_of(key.path), wanted, false);
@@ -267,7 +267,7 @@ class SchemaWriter {
     rules.push_back({{"if", condition}, {branch, content}});
   }
 
-  /// Adds the demands of `more`; lists of required keys are joined.
+  /// Adds the demands of `more`. Lists of required keys are joined.
   static void merge(Json& all, const Json& more) {
     for (const auto& [key, value] : more.items()) {
       Json& place = all[key];
@@ -287,7 +287,7 @@ class SchemaWriter {
   std::vector<KeyConditions> keys_;
   const SchemaTexts& texts_;
   std::map<std::string, Json> rules_;         ///< by the path of the mapping that they hold for
-  std::vector<std::string> always_excluded_;  ///< "path=word"
+  std::vector<std::string> always_excluded_;  ///< such as "path=word"
 };
 
 }  // namespace

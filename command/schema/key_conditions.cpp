@@ -7,7 +7,7 @@
 namespace bevloc::command {
 namespace {
 
-/// Nothing: the pass says nothing about the key, because the mapping around it is not there.
+/// What a pass says about a key, or nothing if the mapping around the key is missing in this pass.
 using Observation = std::optional<KeyState>;
 
 /// Two passes that differ in the option of one decision.
@@ -17,7 +17,8 @@ struct Pair {
   std::string decision;
 };
 
-/// The only decision with different options in both; empty if there is none or another one.
+/// Returns the only decision with different options in both passes, or an empty text if there is
+/// none or more than one.
 std::string only_difference(const ReaderPass& a, const ReaderPass& b) {
   std::string decision;
   for (const auto& [path, option] : a.options) {
@@ -40,7 +41,7 @@ std::vector<Pair> pairs_of(const ReaderPasses& reader) {
   return pairs;
 }
 
-/// The states of one key, or whatever `observe` says, under the options that matter for it.
+/// Returns the states of one key, which `observe` gives, under the options that matter for it.
 KeyConditions conditions_from(const ReaderPasses& reader, const std::vector<Pair>& pairs,
                               std::string path,
                               const std::function<Observation(const ReaderPass&)>& observe) {
@@ -100,7 +101,7 @@ std::vector<KeyConditions> conditions_of(const ReaderPasses& reader) {
   for (const std::string& path : reader.paths) {
     KeyConditions conditions = conditions_from(
         reader, pairs, path, [&path](const ReaderPass& pass) { return observe_key(pass, path); });
-    // A key that is never allowed is none.
+    // A key that is never allowed is left out.
     if (!conditions.forms().empty()) all.push_back(std::move(conditions));
   }
   return all;

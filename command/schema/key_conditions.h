@@ -10,26 +10,27 @@
 
 namespace bevloc::command {
 
-/// What a key is under some options; nothing: not allowed.
+/// What a key is under some options, or nothing if it is not allowed.
 using KeyState = std::optional<YamlKey>;
 
 /// One key under all options.
 struct KeyConditions {
   std::string path;
-  std::vector<std::string> decisions;  ///< those that matter for this key; empty: none does
-  /// For each combination of their options, in the order of `decisions`. "" stands for a decision
-  /// that these options do not reach.
+  std::vector<std::string> decisions;  ///< the decisions that matter for this key
+  /// The state for each combination of their options, in the order of `decisions`. "" stands for a
+  /// decision that these options do not reach.
   std::map<std::vector<std::string>, KeyState> states;
 
-  /// The states in which the key may stand, each once, whether it is required or not.
+  /// Returns the states in which the key is allowed, each once. States that differ only in
+  /// `required` count as one.
   std::vector<YamlKey> forms() const;
 };
 
-/// The conditions of all keys, in the order of reading.
+/// Returns the conditions of all keys, in the order of reading.
 std::vector<KeyConditions> conditions_of(const ReaderPasses& reader);
 
-/// The conditions under which a word is not allowed: KeyConditions::path is the path of its key, a
-/// state without a value excludes it.
+/// The conditions under which a word is not allowed. KeyConditions::path is the path of its key,
+/// and a state without a value excludes the word.
 struct WordConditions {
   std::string word;
   KeyConditions conditions;

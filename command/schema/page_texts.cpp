@@ -7,7 +7,7 @@
 namespace bevloc::command {
 namespace {
 
-/// Without links, code marks and emphasis.
+/// Returns the text without links, code marks and emphasis.
 std::string plain(const std::string& markdown) {
   std::string text = std::regex_replace(markdown, std::regex(R"re(\[([^\]]*)\]\([^)]*\))re"), "$1");
   std::erase(text, '`');
@@ -28,7 +28,7 @@ std::vector<std::string> cells_of(const std::string& row) {
   return cells;
 }
 
-/// The names in code marks: "fx_px" and "vehicle_from_camera.translation_m".
+/// Returns the names in code marks, such as "fx_px" and "vehicle_from_camera.translation_m".
 std::vector<std::string> names_in(const std::string& text) {
   std::vector<std::string> names;
   const std::regex name("`(\\w+(?:\\.\\w+)*)`");
@@ -38,13 +38,14 @@ std::vector<std::string> names_in(const std::string& text) {
   return names;
 }
 
-/// Whose keys a table describes.
+/// The mappings whose keys a table describes.
 struct Place {
   std::vector<std::string> mappings;
   bool any_depth = false;
 };
 
-/// `section`: without code marks; empty if its heading has none. `lead`: the line before the table.
+/// Returns the place of a table. `section` has no code marks, and is empty if its heading has none.
+/// `lead` is the line before the table.
 Place place_of(const std::string& section, const std::string& lead) {
   Place place{{section}, section.empty()};
   if (!lead.ends_with(":")) return place;

@@ -9,7 +9,7 @@
 namespace bevloc::command {
 
 /// Reads every table of a page whose last column is called "meaning" and whose first column names
-/// keys, and the first paragraph of every section. Immutable.
+/// keys, and the first paragraph of every section. Thread-safe, because it is immutable.
 ///
 /// A table describes the keys of the section above it ("## `cameras`"), or those of the mappings
 /// that the line before it names in code marks ("Each entry of `controls`:"). After a line "Keys of
@@ -18,18 +18,19 @@ class PageTexts {
  public:
   explicit PageTexts(std::string_view page);
 
-  /// The meaning of the key with this whole path ("simulation.faults[].kind"). Empty if the page
-  /// has none.
+  /// Returns the meaning of the key with this whole path ("simulation.faults[].kind"), or an empty
+  /// text if the page has none.
   std::string meaning(const std::string& path) const;
 
-  /// The first paragraph of a section, without a leading "Optional."; empty if a table comes first.
+  /// Returns the first paragraph of a section, without a leading "Optional.", or an empty text if a
+  /// table comes first.
   std::string introduction(const std::string& section) const;
 
  private:
   struct Row {
-    std::string mapping;  ///< "can.vehicle"; empty: the whole file
+    std::string mapping;  ///< such as "can.vehicle"; empty for the whole file
     bool any_depth = false;
-    std::string key;  ///< "signal", "signals.vehicle"
+    std::string key;  ///< such as "signal" or "signals.vehicle"
     std::string text;
   };
 

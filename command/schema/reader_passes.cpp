@@ -43,8 +43,8 @@ bool changes_others(const YamlRecording& a, const YamlRecording& b, const std::s
   return keys_a != keys_b;
 }
 
-/// The decisions that matter. Each option of each decision is taken once, with the first options of
-/// all others.
+/// Returns the decisions that matter. To find them, takes each option of each decision once, with
+/// the first options of all others.
 std::map<std::string, std::vector<std::string>> find_decisions(const KeyReader& reader) {
   std::map<std::string, std::vector<std::string>> found;
   std::set<std::string> seen;

@@ -9,7 +9,8 @@
 
 namespace bevloc::command {
 
-/// `simulation` may be null: mock cameras are then no word of the schema.
+/// Returns the schema of the configuration. If `simulation` is null, the schema does not have the
+/// word for mock cameras.
 nlohmann::ordered_json configuration_schema(const firmware::SimulationReader* simulation);
 nlohmann::ordered_json rig_schema();
 

@@ -14,19 +14,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the kernel shows the chips, each as a link to a folder below its device.
+/// Returns the folder where the kernel shows the chips, each as a link to a folder below its
+/// device.
 fs::path chip_folder(const fs::path& sysfs) {
   return sysfs / "bus/gpio/devices";
 }
 
-/// The device that the chip belongs to; empty if the kernel shows none.
+/// Returns the device to which the chip belongs, or an empty path if the kernel shows none.
 std::string device_of(const fs::path& sysfs, const std::string& chip) {
   std::error_code error;
   const fs::path device = fs::canonical(chip_folder(sysfs) / chip, error).parent_path().filename();
   return error ? "" : device.string();
 }
 
-/// The chips that KERNELS== matches: those of the device and of all devices below it.
+/// Returns the chips that KERNELS== matches: those of the device and of all devices below it.
 std::vector<std::string> chips_below(const fs::path& sysfs, const std::string& device) {
   std::vector<std::string> chips;
   std::error_code error;
@@ -39,8 +40,8 @@ std::vector<std::string> chips_below(const fs::path& sysfs, const std::string& d
   return chips;
 }
 
-/// The chip's node in the device tree, of which a device with several chips has one for each. Empty
-/// on machines without a device tree.
+/// Returns the chip's node in the device tree. A device with several chips has a node for each. The
+/// result is empty on machines without a device tree.
 std::string tree_node_of(const fs::path& sysfs, const std::string& chip) {
   constexpr std::string_view kKey = "OF_FULLNAME=";
   std::ifstream events(chip_folder(sysfs) / chip / "uevent");
@@ -50,7 +51,7 @@ std::string tree_node_of(const fs::path& sysfs, const std::string& chip) {
   return "";
 }
 
-/// The rule for a chip. `named` has all chips of the configuration.
+/// Returns the rule for a chip. `named` has all chips of the configuration.
 std::string rule_for(const fs::path& sysfs, const std::string& chip, const std::string& device,
                      const std::set<std::string>& named) {
   std::vector<std::string> others = chips_below(sysfs, device);

@@ -1,4 +1,4 @@
-// `bevloc udev-rules`: the rules that give bevlocd the GPIO chips of its configuration, and no
+// `bevloc udev-rules`: prints rules that give bevlocd the GPIO chips of its configuration, and no
 // other ones.
 #pragma once
 
@@ -14,9 +14,10 @@
 
 namespace bevloc::command {
 
-/// The rules for the chips of these lines. `sysfs` is /sys, where the kernel tells the device that
-/// a chip belongs to. Chips of one device are told apart by the device tree; where there is none, a
-/// comment names the other ones. Fails if a line does not exist, or its chip has no device there.
+/// Returns the rules for the chips of these lines. `sysfs` is /sys, where the kernel tells the
+/// device to which a chip belongs. The device tree tells the chips of one device apart. Where there
+/// is none, a comment names the other chips. Fails if a line does not exist, or its chip has no
+/// device there.
 Result<std::string> udev_rules(const std::vector<drivers::GpioChipInfo>& chips,
                                const std::vector<drivers::LineAddress>& lines,
                                const std::filesystem::path& sysfs);

@@ -96,8 +96,7 @@ void CalibCommand::declare_import(CLI::App& calib) {
 }
 
 void CalibCommand::declare_inputs(CLI::App& command, CalibCommand& self) {
-  command.add_option("RECORDING", self.recording_, "Folder with pictures and reference poses")
-      ->required();
+  command.add_option("FOLDER", self.folder_, "Picture folder with reference.csv")->required();
   command.add_option("--rig", self.rig_file_, "Calibration of the cameras")->required();
   command.add_option("--map", self.map_file_, "HD map")->required();
   command
@@ -123,30 +122,31 @@ void CalibCommand::declare_inputs(CLI::App& command, CalibCommand& self) {
 
 void CalibCommand::declare_check(CLI::App& calib) {
   auto* check = calib.add_subcommand(
-      "check", "Compare a recording with the map and judge each camera; exit code 1: not good");
+      "check",
+      "Compare a picture folder with the map and judge each camera; exit code 1: not good");
   declare_inputs(*check, *this);
   check->footer(
       "Examples:\n"
-      "  bevloc calib check recording --rig rig.yaml --map town.osm --picture check.png");
+      "  bevloc calib check pictures --rig rig.yaml --map town.osm --picture check.png");
   check->callback([this] { check_ = true; });
 }
 
 void CalibCommand::declare_refine(CLI::App& calib) {
   auto* refine = calib.add_subcommand(
-      "refine", "Estimate the calibration of each camera from a recording and the map");
+      "refine", "Estimate the calibration of each camera from a picture folder and the map");
   declare_inputs(*refine, *this);
   refine->add_option("--keep", keep_, "What must not change: rotation, position, focal, time");
   refine->add_option("--out", out_, "Rig file to write; the one before is kept as .bak")
       ->check(output_file());
   refine->footer(
       "Examples:\n"
-      "  bevloc calib refine recording --rig rig.yaml --map town.osm --out refined.yaml");
+      "  bevloc calib refine pictures --rig rig.yaml --map town.osm --out refined.yaml");
   refine->callback([this] { refine_ = true; });
 }
 
 Result<command::Verdict> CalibCommand::run() const {
   if (import_) return run_import().map([] { return command::Verdict::kGood; });
-  return run_recording().map(
+  return run_on_pictures().map(
       [](bool good) { return good ? command::Verdict::kGood : command::Verdict::kBad; });
 }
 
@@ -185,13 +185,13 @@ Status CalibCommand::run_import() const {
   return replace_file_with_backup(out_, format_rig(imported->rig));
 }
 
-Result<bool> CalibCommand::run_recording() const {
+Result<bool> CalibCommand::run_on_pictures() const {
   const auto rig = read_rig(rig_file_);
   if (!rig) return tl::unexpected(rig.error());
   const auto map = load_map(map_file_);
   if (!map) return tl::unexpected(map.error());
   const MapIndex index(*map);
-  auto recording = FolderRecording::open(recording_, *rig, from_seconds(interval_s_));
+  auto recording = FolderRecording::open(folder_, *rig, from_seconds(interval_s_));
   if (!recording) return tl::unexpected(recording.error());
   RefinementOptions options;
   options.reference_position_m = reference_position_m_;
@@ -229,7 +229,7 @@ Result<bool> CalibCommand::run_recording() const {
 
 Status CalibCommand::write_refined(const Rig& refined) const {
   if (out_.empty()) return {};
-  // Read again, because a rig that cannot be that of a vehicle must not be written.
+  // The text is read again, so that a rig that no vehicle can have is not written.
   const std::string text = format_rig(refined);
   if (const auto sound = parse_rig(text, "refined rig"); !sound) {
     return tl::unexpected(sound.error());

@@ -16,7 +16,7 @@ class CalibCommand {
  public:
   void declare(CLI::App& app);
   bool chosen() const { return import_ || check_ || refine_; }
-  /// Whether all that was asked is good. A check of a rig that is not good gives false.
+  /// Does what the parsed command line asks for. False if a check finds a camera that is not good.
   Result<command::Verdict> run() const;
 
  private:
@@ -25,7 +25,7 @@ class CalibCommand {
   void declare_refine(CLI::App& calib);
   static void declare_inputs(CLI::App& command, CalibCommand& self);
   Status run_import() const;
-  Result<bool> run_recording() const;
+  Result<bool> run_on_pictures() const;
   /// Writes the refined rig, if --out names a file.
   Status write_refined(const Rig& refined) const;
 
@@ -40,7 +40,7 @@ class CalibCommand {
   std::vector<std::string> tokens_;
   std::string rig_file_;
   std::string map_file_;
-  std::string recording_;
+  std::string folder_;
   double interval_s_ = 0.5;
   double reference_position_m_ = 0.03;
   double reference_yaw_deg_ = 0.1;

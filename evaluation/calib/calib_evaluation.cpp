@@ -19,11 +19,12 @@
 namespace bevloc::evaluation {
 namespace {
 
-/// One parameter over all cameras and drives.
+/// The errors of one parameter over all cameras and drives. Cameras of which the parameter is not
+/// observable count in `cameras` only.
 struct ErrorSums {
   int cameras = 0;
-  double before = 0.0;         ///< sum of squares of the errors of the observable ones
-  std::vector<double> errors;  ///< absolute, of the observable ones
+  double before = 0.0;         ///< sum of the squared errors before the refinement
+  std::vector<double> errors;  ///< absolute errors after the refinement
   int within_sigma = 0;        ///< errors within one sigma
   int within_three = 0;
 };

@@ -10,7 +10,7 @@
 
 namespace bevloc::evaluation {
 
-/// One way to see the pictures.
+/// A calibration with which the map is drawn over the pictures.
 struct CalibrationView {
   std::string title;
   Rig rig;

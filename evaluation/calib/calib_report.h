@@ -11,7 +11,7 @@ namespace bevloc::evaluation {
 
 enum class CameraVerdict : uint8_t {
   kGood,      ///< paint lies where the map says
-  kOff,       ///< it would if the camera were turned a little
+  kOff,       ///< paint would lie there if the camera were turned a little
   kMismatch,  ///< the paint found does not fit the map: another camera, map or mounting
   kTooLittle  ///< too little paint to tell
 };
@@ -25,7 +25,7 @@ bool all_good(const RigRefinement& checked);
 
 std::string text_of_check(const RigRefinement& checked);
 std::string text_of_refinement(const RigRefinement& refinement);
-/// `with_verdicts`: of a check.
+/// `with_verdicts`: whether to add a verdict on each camera, as for a check.
 nlohmann::json json_of(const RigRefinement& refinement, bool with_verdicts);
 
 }  // namespace bevloc::evaluation

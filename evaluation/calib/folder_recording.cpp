@@ -9,10 +9,21 @@ namespace {
 
 constexpr Duration kWidestSpread = std::chrono::milliseconds(50);
 
+bool holds_recordings(const std::filesystem::path& folder) {
+  std::error_code none;
+  const std::filesystem::directory_iterator entries(folder, none);
+  return std::any_of(begin(entries), end(entries),
+                     [](const auto& entry) { return entry.path().extension() == ".mcap"; });
+}
+
 }  // namespace
 
 Result<std::unique_ptr<FolderRecording>> FolderRecording::open(const std::filesystem::path& folder,
                                                                const Rig& rig, Duration interval) {
+  if (holds_recordings(folder)) {
+    return fail("{}: found recordings (.mcap), wanted a picture folder, as --save-pictures makes",
+                folder.string());
+  }
   auto reference = ReferenceTrajectory::read(folder / kReferenceFile);
   if (!reference) return tl::unexpected(reference.error());
   const auto recorded = drivers::load_recordings(folder);

@@ -6,7 +6,7 @@
 
 namespace bevloc::evaluation {
 
-/// Passes a recording on. The recording and the map must outlive it.
+/// Passes the pictures of a recording on. The recording and the map must outlive this object.
 class KeepingRecording final : public PictureRecording {
  public:
   KeepingRecording(PictureRecording& recording, const MapIndex& map)

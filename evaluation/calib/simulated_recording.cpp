@@ -12,7 +12,7 @@
 namespace bevloc::evaluation {
 namespace {
 
-/// The adjustment that makes `to` of `from`.
+/// The adjustment that turns `from` into `to`.
 CameraAdjustment adjustment_between(const CameraModel& from, const CameraModel& to) {
   CameraAdjustment by = CameraAdjustment::Zero();
   const Eigen::AngleAxisd turn(Eigen::Matrix3d(from.vehicle_from_camera.rotation.transpose() *

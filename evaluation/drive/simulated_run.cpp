@@ -54,7 +54,7 @@ class SimulatedRun {
   /// Completes the bus log.
   Status finish_log() { return judge_->finish(); }
   DriveReport report() const;
-  /// Writes what the pictures of the drive lack to be a recording.
+  /// Writes the indexes, the reference and the map, with which the pictures become a recording.
   Status finish_recording();
   /// Frees the appliance first, so it must be the last call.
   Status write_sheet_if_any();
@@ -80,7 +80,7 @@ class SimulatedRun {
   BusFactory buses_;
   firmware::Realtime realtime_;
   SnapshotKeeper keeper_;
-  std::optional<PictureRecorder> recorder_;  ///< with SimulatedRunOptions::pictures_folder
+  std::optional<PictureRecorder> recorder_;  ///< set if there is a pictures_folder
   LatencyRecorder latencies_;
   std::unique_ptr<firmware::Recorder> recording_;  ///< null without a recording
   std::unique_ptr<firmware::Appliance> appliance_;
@@ -199,8 +199,8 @@ void SimulatedRun::run(const StopWhen& stop) {
     supervisor.step(now);
     if (live_) {
       live_->publish({firmware::Phase::kRunning, now,
-                      firmware::take_snapshot(*appliance_,
-                                              {.recording = firmware::totals_of(recording_.get())}),
+                      firmware::take_snapshot(*appliance_, {.recording = firmware::totals_of(
+                                                                config_, recording_.get())}),
                       supervisor.view()});
     }
     const double time_s = to_seconds(now - drive_start_);
@@ -229,7 +229,7 @@ void SimulatedRun::run(const StopWhen& stop) {
   if (saver) saver->finish();
 }
 
-/// The vehicle drove on while the machine was suspended.
+/// Simulates that the machine was suspended while the vehicle drove on.
 void SimulatedRun::suspend_if_due(Time now) {
   const Duration length = clock_faults_.suspension_due(to_seconds(now - drive_start_));
   if (length == Duration::zero()) return;
@@ -240,14 +240,14 @@ void SimulatedRun::suspend_if_due(Time now) {
   }
 }
 
-/// Ten times a second.
+/// Records the true pose ten times a second.
 void SimulatedRun::record_truth(Time now) {
   if (!recording_ || now < next_truth_ || now < drive_start_) return;
   next_truth_ = now + std::chrono::milliseconds(100);
   recording_->note_truth({now, drive_.truth_at(to_seconds(now - drive_start_))});
 }
 
-/// The gap of a clock fault that has begun: time passes, but the appliance does not run.
+/// Moves the clock by the gap of a clock fault: time passes, but the appliance does not run.
 void SimulatedRun::jump_if_due(double time_s) {
   const Duration gap = clock_faults_.gap_due(time_s);
   if (options_.fast) {
@@ -300,8 +300,8 @@ Status SimulatedRun::write_sheet_if_any() {
   SheetContent& content = kept->content;
   const double time_s = to_seconds(kept->frame_time - drive_start_);
   const JudgedPose& nearest = judged_nearest(time_s);
-  // The judge compares at other times than the frameset's, so the errors of its nearest comparison
-  // are applied.
+  // The judge does not compare at the time of the frameset, so the sheet uses the errors of its
+  // nearest comparison.
   const Se2 truth = drive_.truth_at(time_s);
   content.truth = truth;
   content.prior = truth * pose_error(nearest.truth, nearest.prior);

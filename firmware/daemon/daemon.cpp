@@ -29,8 +29,9 @@ namespace bevloc::firmware {
 namespace {
 
 constexpr Duration kStandbyPeriod = std::chrono::milliseconds(100);
-/// The start of an appliance takes about a second, its end as long as the slowest device takes to
-/// close. systemd/bevlocd.service allows as much at the start of the daemon.
+/// The longest time for the start or the end of an appliance. Its start takes about a second, and
+/// its end as long as the slowest device takes to close. systemd/bevlocd.service allows the daemon
+/// the same time to start.
 constexpr Duration kChangeTimeout = std::chrono::seconds(30);
 
 /// The daemon's devices that live from its start to its end.
@@ -45,8 +46,8 @@ struct Base {
   std::unique_ptr<LiveServer> live;  ///< null without one
 };
 
-/// Waits until the ignition is on. False if the daemon shall end. This thread is the only one, so
-/// it feeds the watchdog itself.
+/// Waits until the ignition is on. Returns false if the daemon shall end. No thread of the
+/// appliance runs meanwhile, so this thread feeds the watchdog itself.
 bool wait_for_ignition(Base& base, const DaemonHost& host) {
   ServiceNotifier notifier;
   for (bool first = true; !base.lines->step(false, base.clock.now()); first = false) {
@@ -70,7 +71,7 @@ bool wait_for_ignition(Base& base, const DaemonHost& host) {
 
 /// Runs a complete appliance until the ignition goes off (true) or the daemon shall end (false).
 bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
-                   const Recorder* recorder, Base& base, const ClockConfig& clock,
+                   const Recorder* recorder, Base& base, const Config& config,
                    const DaemonHost& host) {
   Watchdog watchdog(appliance.estimation().counters().state, base.fault.get());
   watchdog.watch_stages(appliance);
@@ -82,12 +83,12 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
 
   const auto snapshot = [&] {
     return take_snapshot(appliance, {.trigger = trigger != nullptr ? &trigger->trigger() : nullptr,
-                                     .recording = totals_of(recorder),
+                                     .recording = totals_of(config, recorder),
                                      .log_dropped = host.log != nullptr ? host.log->dropped() : 0});
   };
   ViewLog log;
   ErrorLog errors;
-  ClockWatch clock_watch(clock);
+  ClockWatch clock_watch(config.clock);
   ShownState shown;
   bool ignition = true;
   if (base.live) base.live->attach(appliance, rig);
@@ -101,7 +102,8 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
     const ApplianceView& view = supervisor.view();
     ignition = base.lines->step(is_lit(shown.of(view.state, view.lost, now), now), now);
     const bool goes_on = ignition && !host.stop();
-    // Nobody can feed the watchdog while the devices close. At its own end, systemd waits longer.
+    // Nobody can feed the watchdog while the devices close. When the daemon itself ends, systemd
+    // waits longer anyway.
     if (!ignition) ServiceNotifier().set_watchdog_timeout(kChangeTimeout);
     if (!goes_on) watching.request_stop();  // the fault line becomes active
     return goes_on;
@@ -113,7 +115,8 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
   return !ignition;
 }
 
-/// Null without a recording. The vehicle needs its pose also while the disk is full or broken.
+/// Opens the recorder. Returns null if nothing is recorded. A failure is only logged, because the
+/// vehicle needs its pose even when the disk is full or broken.
 std::unique_ptr<Recorder> recorder_for(const Config& config, const Rig& rig, const Base& base) {
   auto recorder = open_recorder(config, rig, base.map, false, base.clock.now());
   if (recorder) return std::move(*recorder);
@@ -121,8 +124,8 @@ std::unique_ptr<Recorder> recorder_for(const Config& config, const Rig& rig, con
   return nullptr;
 }
 
-/// Starts the live page if it is configured and does not run. The vehicle needs its pose also while
-/// another program has the port, or the network is not up.
+/// Starts the live page if it is configured and does not run yet. A failure is only logged, because
+/// the vehicle needs its pose even when another program has the port, or the network is not up.
 void serve_page(const Config& config, Base& base) {
   if (!config.live || base.live) return;
   auto live = LiveServer::start(*config.live);
@@ -130,7 +133,7 @@ void serve_page(const Config& config, Base& base) {
   base.live = std::move(*live);
 }
 
-/// Opens the remaining devices and runs an appliance on them; the result is run_appliance()'s.
+/// Opens the remaining devices and runs an appliance on them. Returns what run_appliance() returns.
 Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
                            const DaemonHost& host) {
   std::unique_ptr<TriggerThread> trigger;
@@ -160,7 +163,7 @@ Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
     saver->watch((*appliance)->vision(), base.clock);
     saving = start_saving(*saver);
   }
-  return run_appliance(**appliance, rig, trigger.get(), recorder.get(), base, config.clock, host);
+  return run_appliance(**appliance, rig, trigger.get(), recorder.get(), base, config, host);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Runs the appliance on the devices of a vehicle: what bevlocd does without a simulated drive.
+// Runs the appliance on the devices of a vehicle. bevlocd does this unless it runs a simulated
+// drive.
 #pragma once
 
 #include <functional>
@@ -19,13 +20,13 @@ struct DaemonHost {
   drivers::Gpio& gpio;
   OpenBus open_bus;            ///< called at each start of the appliance
   std::function<bool()> stop;  ///< called about ten times per second; true ends the daemon
-  const LogWriter* log;        ///< whose thread is watched; null without one
+  const LogWriter* log;        ///< the log whose thread is watched; null without one
 };
 
 /// Runs until `stop` returns true. While the ignition is off, the appliance is not running: the
 /// daemon waits in standby and starts it when the ignition returns. Fails if the map, the model,
 /// the bus or a GPIO line cannot be opened. A camera that fails is no error: CaptureStage restarts
-/// it. If the disk takes no recording, or the live page cannot be served, logs an error and runs
+/// it. If the disk takes no recording, or the live page cannot be served, logs an error and goes
 /// on.
 Status run_daemon(const Config& config, const Rig& rig, const DaemonHost& host);
 

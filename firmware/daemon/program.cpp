@@ -29,15 +29,15 @@ void note_hangup(int) {
   g_hangup = true;
 }
 
-/// A file that is opened later must not get the number of stdout or stderr: the log would be
-/// written into a camera.
+/// Opens standard files that are closed. Otherwise a file that is opened later could get the number
+/// of stdout or stderr, and the log would be written into a camera.
 void open_closed_standard_files() {
   for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(file, F_GETFD) == -1) open("/dev/null", O_RDWR);
   }
 }
 
-/// Without a port CLI11 gives "true".
+/// Takes the value of --live. If it has no port, CLI11 gives "true".
 void take_live_option(const std::string& port, ProgramOptions& options) {
   options.live = true;
   if (port.empty() || port == "true") return;
@@ -91,7 +91,7 @@ void handle_signals() {
   std::signal(SIGTERM, request_stop);
   std::signal(SIGINT, request_stop);
   std::signal(SIGHUP, note_hangup);
-  // A write into a closed pipe then fails instead of ending the process.
+  // Ignored, so that a write into a closed pipe fails instead of ending the process.
   std::signal(SIGPIPE, SIG_IGN);
 }
 
@@ -112,7 +112,7 @@ Status check_and_print(const ProgramOptions& options, const Config& config) {
 }
 
 int run_program(CLI::App& app, int argc, char** argv, const Run& run) {
-  // One heap arena for all threads. Threads allocate at their start and hardly ever later, so
+  // All threads share one heap arena. They allocate at their start and hardly ever later, so
   // separate arenas would only keep unused memory.
   mallopt(M_ARENA_MAX, 1);
   open_closed_standard_files();

@@ -16,24 +16,24 @@ namespace bevloc::firmware {
 struct ProgramOptions {
   std::string config_file;
   bool check_config = false;
-  std::string record;  ///< folder of the recording; empty: as the configuration says
+  std::string record;  ///< folder of the recording; empty to record as configured
   bool record_raw = false;
   bool live = false;  ///< --live: serve the live page at this machine alone
   std::optional<int> live_port;
 };
 
-/// Adds the options of every bevlocd to `app`; parsing fills `options`, which must outlive it.
+/// Adds the options of every bevlocd to `app`. Parsing fills `options`, which must outlive it.
 void declare_options(CLI::App& app, ProgramOptions& options);
 
 /// Applies the options that override the configuration. Fails if --record-raw is given and there is
 /// no recording.
 Status override_config(const ProgramOptions& options, Config& config);
 
-/// SIGTERM and SIGINT set stop_requested(). SIGHUP is logged and ignored: it must not end the
-/// localization without a last LOST.
+/// Installs the signal handlers. SIGTERM and SIGINT set stop_requested(). SIGHUP is logged and
+/// ignored, because it must not end the localization before LOST is sent.
 void handle_signals();
 
-/// True after SIGTERM or SIGINT. Logs a SIGHUP. Thread-safe.
+/// Returns true after SIGTERM or SIGINT. Logs a SIGHUP. Thread-safe.
 bool stop_requested();
 
 /// Checks the configuration and everything that it names, and prints "FILE: good" if nothing is
@@ -44,7 +44,7 @@ Status check_and_print(const ProgramOptions& options, const Config& config);
 using Run = std::function<Status(const LogWriter& log)>;
 
 /// Handles signals, parses the command line, starts the log and calls `run`. Returns the exit code:
-/// 0 on success; 2 with one line on stderr if the command line or an input is wrong.
+/// 0 on success, and 2 with one line on stderr if the command line or an input is wrong.
 int run_program(CLI::App& app, int argc, char** argv, const Run& run);
 
 }  // namespace bevloc::firmware

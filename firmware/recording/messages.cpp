@@ -14,7 +14,7 @@ uint64_t clock_ns(Time time) {
   return static_cast<uint64_t>(time.time_since_epoch().count());
 }
 
-/// Names as viewers know them where they have one.
+/// Returns the name that viewers know, where they have one for the format.
 std::string_view encoding_of(PixelFormat format) {
   switch (format) {
     case PixelFormat::kRgb24:

@@ -16,18 +16,18 @@ namespace bevloc::firmware {
 
 void set_time(uint64_t time_ns, google::protobuf::Timestamp& timestamp);
 
-/// The image without loss, in its own format.
+/// Returns the image without loss, in its own format.
 foxglove::RawImage raw_image(const RecordedImage& image, uint64_t exposure_start_ns);
 /// `jpeg` is the image in this format.
 foxglove::CompressedImage compressed_image(const RecordedImage& image, std::string_view jpeg,
                                            uint64_t exposure_start_ns);
-/// "map" and the pose of the vehicle on the ground.
+/// Returns the pose of the vehicle on the ground, in the frame "map".
 foxglove::PoseInFrame pose_message(const Se2& map_from_vehicle, uint64_t time_ns);
 Se2 pose_of(const foxglove::PoseInFrame& message);
 foxglove::CameraCalibration calibration_message(const CameraModel& camera, int index);
 
 recording::CanFrame bus_message(const RecordedBusFrame& frame);
-/// Nothing for a message that is no frame: too long, or a wrong identifier.
+/// Fails for a message that is no frame, because it is too long or has a wrong identifier.
 Result<can::ReceivedFrame> bus_frame_of(const recording::CanFrame& message);
 recording::Solution solution_message(const can::PoseReport& report);
 recording::Match match_message(const RecordedMatch& match);
@@ -35,7 +35,7 @@ recording::Match match_message(const RecordedMatch& match);
 /// A map with more than this many points is left out.
 inline constexpr size_t kMostMapPoints = 300'000;
 recording::Map map_message(const HdMap& map);
-/// Without lanes. Nothing if the map was left out.
+/// Returns the map without its lanes, or nothing if it was left out.
 std::optional<HdMap> map_of(const recording::Map& message);
 
 Se2 se2_of(const recording::Pose2& pose);

@@ -34,7 +34,8 @@ struct RecordedTruth {
 
 using RecordedEvent = std::variant<RecordedBusFrame, RecordedSolution, RecordedTruth>;
 
-/// One distribution of a match. More hypotheses than fit are not recorded: `count` is 0 then.
+/// One distribution of a match. If it has more hypotheses than fit, it is not recorded and `count`
+/// is 0.
 struct RecordedDistribution {
   static constexpr size_t kMost = 256;
   std::array<float, kMost> probability{};
@@ -43,7 +44,7 @@ struct RecordedDistribution {
 
 struct RecordedMatch {
   Time time;        ///< when the match was finished
-  Time frame_time;  ///< of the frameset
+  Time frame_time;  ///< time of the frameset
   unsigned cameras = 0;
   bool acquiring = false;
   Se2 prior;
@@ -60,7 +61,7 @@ struct RecordedImage {
   Duration exposure{};
   uint64_t sequence = 0;
   drivers::FrameBuffer memory;
-  ImageView image;  ///< of `memory`
+  ImageView image;  ///< the image in `memory`
 };
 
 }  // namespace bevloc::firmware

@@ -8,8 +8,9 @@
 
 namespace bevloc::firmware {
 
-/// Writes what the recorder has queued, 50 times a second, with the lowest priority of the machine,
-/// and ends the file when it is asked to stop. Nothing waits for this thread. Both must outlive it.
+/// Starts the thread. It writes what the recorder has queued, 50 times a second, with the lowest
+/// priority of the normal scheduler. It ends the file when it is asked to stop. Nothing waits for
+/// this thread. `recorder` and `clock` must outlive it.
 std::jthread start_recording(Recorder& recorder, drivers::Clock& clock);
 
 }  // namespace bevloc::firmware

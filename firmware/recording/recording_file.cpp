@@ -13,7 +13,7 @@ namespace {
 
 namespace pb = google::protobuf;
 
-/// Appends the file and before it all files that it imports, each once.
+/// Appends the file, and before it all files that it imports. Each file is appended once.
 void add_file(const pb::FileDescriptor& file, std::set<std::string>& known,
               pb::FileDescriptorSet& files) {
   if (!known.insert(file.name()).second) return;

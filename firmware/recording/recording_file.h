@@ -22,14 +22,14 @@ struct HeadMessage {
   std::shared_ptr<const google::protobuf::Message> message;
 };
 
-/// What each file of a recording begins with, so that each can be read on its own.
+/// The data that each file of a recording begins with, so that each can be read on its own.
 struct RecordingHead {
   std::map<std::string, std::string> metadata;
   std::vector<mcap::Attachment> attachments;
   std::vector<HeadMessage> messages;
 };
 
-/// Makes the channel of a topic when its first message comes. One thread.
+/// A file, which makes the channel of a topic when its first message comes. One thread.
 class RecordingFile {
  public:
   /// Creates the file and writes the head.
@@ -53,7 +53,7 @@ class RecordingFile {
   Result<Topic*> topic_of(std::string_view name, const google::protobuf::Message& message);
 
   std::unique_ptr<mcap::Writer> writer_;
-  std::map<std::string, uint16_t> schemas_;  ///< by full name of the message
+  std::map<std::string, uint16_t> schemas_;  ///< ids of the schemas by full name of the message
   std::map<std::string, Topic, std::less<>> topics_;
   std::string bytes_;
 };

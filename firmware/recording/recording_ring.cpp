@@ -18,12 +18,13 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPrefix = "bevloc-";
 constexpr uint64_t kLogSecond_ns = 1'000'000'000;
-/// The ring leaves one part in this many of the disk free for other files of the appliance, but not
-/// more than kMostFree_bytes.
+/// The ring leaves 1/kPartsOfDisk of the disk free for other files of the appliance, but not more
+/// than kMostFree_bytes.
 constexpr uint64_t kPartsOfDisk = 20;
 constexpr uint64_t kMostFree_bytes = 1'000'000'000;
 
-/// Such as bevloc-20261123T143205Z-0001.mcap: the order of the names is that of time.
+/// Returns a name such as bevloc-20261123T143205Z-0001.mcap. The order of the names is the order of
+/// time.
 std::string file_name(uint64_t log_time_ns, int number) {
   const auto seconds = static_cast<time_t>(log_time_ns / kLogSecond_ns);
   std::tm utc{};
@@ -170,7 +171,7 @@ Status RecordingRing::write(std::string_view topic, const google::protobuf::Mess
 
 Status RecordingRing::step(uint64_t log_time_ns) {
   const auto length = static_cast<uint64_t>(config_.file_length.count());
-  const uint64_t share = config_.max_bytes / 4;  // so that the black box fits into the ring
+  const uint64_t share = config_.max_bytes / 4;  // makes the black box fit into the ring
   RecentFile& newest = recent_.back();
   if (log_time_ns < newest.begin_ns + length && file_->bytes_written() < share) {
     if (const Status room = make_room(newest.path); !room) return room;

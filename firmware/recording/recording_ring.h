@@ -13,19 +13,19 @@
 
 namespace bevloc::firmware {
 
-/// Whether open() could create its folders here. Changes nothing.
+/// Checks whether open() could create its folders here. Changes nothing.
 Status check_folder(const std::filesystem::path& directory);
 
 /// Writes one file after the other into the folder, and deletes the oldest ones beyond the limits.
 /// keep() gives the files of the last minute a second name (a hard link) in the folder `kept`,
-/// which the ring does not delete; the file that is being written grows there too. If the disk is
+/// which the ring does not delete. The file that is being written grows there, too. If the disk is
 /// full, deletes the oldest files of the ring, and then those in `kept`. One thread.
 class RecordingRing {
  public:
-  /// What a black box covers before its event.
+  /// The time before an event that the black box covers.
   static constexpr Duration kBlackBox = std::chrono::seconds(60);
 
-  /// std::filesystem::space(), or a disk of a test.
+  /// The function std::filesystem::space(), or that of a test.
   using SpaceOf = std::filesystem::space_info (*)(const std::filesystem::path& path,
                                                   std::error_code& error);
 
@@ -36,7 +36,7 @@ class RecordingRing {
 
   Status write(std::string_view topic, const google::protobuf::Message& message,
                uint64_t log_time_ns, uint64_t publish_time_ns);
-  /// Begins the next file when it is time, otherwise puts what is written on the disk.
+  /// Begins the next file when it is time. Otherwise puts what is written on the disk.
   Status step(uint64_t log_time_ns);
   Status finish() { return file_->finish(); }
 
@@ -50,18 +50,18 @@ class RecordingRing {
   struct RecentFile {
     std::filesystem::path path;
     uint64_t begin_ns = 0;
-    uint64_t end_ns = 0;  ///< meaningless for the newest
+    uint64_t end_ns = 0;  ///< meaningless for the newest file
   };
 
   RecordingRing(const RecordConfig& config, RecordingHead head, SpaceOf space_of)
       : config_(config), head_(std::move(head)), space_of_(space_of) {}
   Status begin_file(uint64_t log_time_ns);
-  /// Deletes what the limits of the configuration do not allow beside the file `newest`, which
-  /// counts if it exists.
+  /// Deletes the oldest files until the limits of the configuration are met. `newest` is never
+  /// deleted, but counts if it exists.
   void delete_old(const std::filesystem::path& newest, uint64_t log_time_ns) const;
   /// Deletes old files until enough of the disk is free. Fails if not enough can be deleted.
   Status make_room(const std::filesystem::path& newest) const;
-  /// How much less of the disk is free than the ring leaves free.
+  /// Returns how many bytes are missing of those that the ring leaves free on the disk.
   uint64_t missing_bytes() const;
 
   RecordConfig config_;

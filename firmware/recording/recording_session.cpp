@@ -89,9 +89,9 @@ void watch(Appliance& appliance, Recorder& recorder) {
   recorder.count_with([&appliance] { return take_snapshot(appliance, {}); });
 }
 
-std::optional<RecordingSnapshot> totals_of(const Recorder* recorder) {
-  if (recorder == nullptr) return std::nullopt;
-  return recorder->totals();
+std::optional<RecordingSnapshot> totals_of(const Config& config, const Recorder* recorder) {
+  if (!config.record) return std::nullopt;
+  return recorder != nullptr ? recorder->totals() : RecordingSnapshot{.failed = true};
 }
 
 }  // namespace bevloc::firmware

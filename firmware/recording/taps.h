@@ -10,7 +10,8 @@
 
 namespace bevloc::firmware {
 
-/// Behaves as the camera that it owns, and copies each frame for the recorder. Threads as Camera.
+/// Behaves as the camera that it owns, and copies each frame for the recorder. The thread rule is
+/// that of Camera.
 class RecordedCamera final : public drivers::Camera {
  public:
   /// `recorder` and `clock` must outlive the camera.
@@ -37,9 +38,9 @@ class RecordedCamera final : public drivers::Camera {
   const drivers::Clock& clock_;
 };
 
-/// Behaves as the bus endpoint that it owns, and tells the recorder of each frame that it receives
-/// and of each that is given to send(), even if the bus does not take it: the replay makes the same
-/// frames. Threads as Bus.
+/// Behaves as the bus endpoint that it owns. Tells the recorder of each frame that it receives, and
+/// of each frame that is given to send(). The latter are recorded even if the bus does not take
+/// them, because a replay makes the same frames. The thread rule is that of Bus.
 class RecordedBus final : public can::Bus {
  public:
   /// `recorder` and `clock` must outlive the bus.

@@ -1,4 +1,4 @@
-// The topics of a recording: what writer and readers of recordings must agree on.
+// The topics of a recording, and the other names that its writer and readers share.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace bevloc::firmware {
 
-/// Names of topics, and in the comment the schema of their messages.
+/// The names of the topics. Each comment names the schema of the messages.
 inline constexpr std::string_view kBusInTopic = "/can/in";       ///< bevloc.recording.CanFrame
 inline constexpr std::string_view kBusOutTopic = "/can/out";     ///< bevloc.recording.CanFrame
 inline constexpr std::string_view kSolutionTopic = "/solution";  ///< bevloc.recording.Solution
@@ -18,16 +18,16 @@ inline constexpr std::string_view kMatchTopic = "/match";        ///< bevloc.rec
 inline constexpr std::string_view kMapTopic = "/map";            ///< bevloc.recording.Map
 inline constexpr std::string_view kCountersTopic = "/counters";  ///< bevloc.recording.Counters
 
-/// foxglove.RawImage or foxglove.CompressedImage.
+/// The topic of a camera's images: foxglove.RawImage or foxglove.CompressedImage.
 inline std::string image_topic(int camera) {
   return "/camera/" + std::string(kCameraNames[camera]);
 }
-/// foxglove.CameraCalibration.
+/// The topic of a camera's calibration: foxglove.CameraCalibration.
 inline std::string calibration_topic(int camera) {
   return image_topic(camera) + "/calibration";
 }
 
-/// The folder of the black box, in that of a recording.
+/// The folder of the black box, in the folder of the recording.
 inline constexpr const char* kBlackBoxFolder = "kept";
 
 /// The metadata record of a recording, and its keys.
@@ -41,7 +41,7 @@ inline constexpr std::string_view kModelFileKey = "model_file";
 inline constexpr std::string_view kMapChecksumKey = "map_crc32";
 inline constexpr std::string_view kModelChecksumKey = "model_sha256";
 
-/// The attachments.
+/// The names of the attachments.
 inline constexpr std::string_view kConfigAttachment = "configuration.yaml";
 inline constexpr std::string_view kRigAttachment = "rig.yaml";
 inline constexpr std::string_view kDbcAttachment = "vehicle.dbc";

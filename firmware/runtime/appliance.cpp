@@ -11,8 +11,8 @@
 namespace bevloc::firmware {
 namespace {
 
-/// Starts with what an earlier drive learned. Without it the drive learns it again, so nothing that
-/// is wrong with the file keeps the daemon from starting.
+/// Makes the localizer start with what an earlier drive learned. Without it this drive learns it
+/// again, so a fault of the file does not keep the daemon from starting.
 void restore_calibration(const Config& config, const Rig& rig, Localizer& localizer) {
   const std::filesystem::path& file = config.learned_calibration_file;
   std::error_code ignored;
@@ -87,6 +87,12 @@ Status Appliance::authenticate(const SecocConfig& config, const can::BaseIds& ba
   if (!sending || !receiving) return tl::unexpected((sending ? receiving : sending).error());
   const auto start = at_key("can.secoc.starts_file", can::next_start_number(config.starts_file));
   if (!start) return tl::unexpected(start.error());
+  if (*start == 1) {
+    spdlog::warn(
+        "can.secoc: {}: there was no number of earlier starts, so this is start 1; a vehicle that "
+        "knows a later start refuses all messages: then write a larger number, or change the key",
+        config.starts_file.string());
+  }
   publisher_.authenticate(can::SecocSender(std::move(*sending), *start));
   vehicle_input_.authenticate(can::SecocReceiver(std::move(*receiving), base));
   return {};
