@@ -1,4 +1,4 @@
-// What odometry says about a short time.
+// The motion that odometry measured in a short interval.
 #pragma once
 
 #include "common/se2.h"

@@ -40,7 +40,7 @@ inline Status write_file(const std::filesystem::path& path, std::string_view byt
   return {};
 }
 
-/// Creates a folder with its parents. One that is there already is good.
+/// Creates a folder with its parents. A folder that exists already is no error.
 inline Status create_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -3,7 +3,7 @@
 namespace bevloc {
 namespace {
 
-/// No default: the compiler warns when a reason has no text.
+/// The switch has no default, so that the compiler warns when a reason has no text.
 const char* text_of(Why why) {
   switch (why) {
     case Why::kCameraMissing:

@@ -76,8 +76,8 @@ constexpr WhyMask operator|(Why a, Why b) {
 
 const char* to_string(HealthState state);
 
-/// Returns the reasons separated by commas, such as "camera missing, match rejected". Empty when no
-/// bit is set.
+/// Returns the reasons separated by commas, such as "camera missing, match rejected". The text is
+/// empty when no bit is set.
 std::string to_string(WhyMask why);
 
 }  // namespace bevloc

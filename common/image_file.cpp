@@ -43,7 +43,7 @@ Status read_png(const std::string& path, const std::string& bytes, RgbImage& ima
       check_size(path, static_cast<int>(png->width), static_cast<int>(png->height), image);
   if (!size) return size;
   png->format = PNG_FORMAT_RGB;
-  // Otherwise libpng takes 16-bit samples without a gamma for linear light.
+  // Without this flag libpng takes 16-bit samples without a gamma for linear light.
   png->flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
   constexpr png_color kBlack{0, 0, 0};
   if (png_image_finish_read(png.get(), &kBlack, image.pixels.data(), 0, nullptr) == 0) {

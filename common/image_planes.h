@@ -1,4 +1,4 @@
-// The sizes of the planes of an image, without what lies between their rows.
+// The sizes of the planes of an image, without the padding between their rows.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ struct PlaneSize {
   size_t bytes() const { return row_bytes * static_cast<size_t>(rows); }
 };
 
-/// The size of planes[0] or planes[1]; no rows if the format lacks the plane. Chroma that columns
-/// or rows share is rounded up. An MJPEG image is one row.
+/// The size of planes[0] or planes[1]. A plane that the format lacks has no rows. If two columns or
+/// rows share their chroma, their number is rounded up to an even one. An MJPEG image is one row.
 constexpr PlaneSize plane_size(const ImageView& image, size_t plane) {
   const auto width = static_cast<size_t>(image.width);
   const size_t even_width = (width + 1) & ~size_t{1};

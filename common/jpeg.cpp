@@ -31,7 +31,7 @@ uint8_t clamped(double value) {
   return static_cast<uint8_t>(std::clamp(value + 0.5, 0.0, 255.0));
 }
 
-/// ITU-R BT.601-7 and BT.709-6.
+/// Converts one pixel as ITU-R BT.601-7 or BT.709-6 demands.
 void store_rgb(const Yuv& pixel, const YuvEncoding& encoding, uint8_t* rgb) {
   const bool bt709 = encoding.matrix == YuvMatrix::kBt709;
   const double kr = bt709 ? 0.2126 : 0.299;

@@ -11,7 +11,7 @@
 
 namespace bevloc {
 
-/// Keeps its memory between calls. One thread.
+/// An encoder that keeps its memory between calls. One thread.
 class JpegEncoder {
  public:
   JpegEncoder();

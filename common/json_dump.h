@@ -1,4 +1,4 @@
-// Writes JSON with text from outside.
+// Writes JSON that may contain text from outside.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 namespace bevloc {
 
 /// A value of nlohmann's JSON as text. Bytes that are not UTF-8, such as names from a file in
-/// Latin-1, become U+FFFD; the library's own dump() throws there.
+/// Latin-1, become U+FFFD. The library's own dump() would throw.
 template <typename Json>
 std::string dump_json(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);

@@ -5,7 +5,8 @@
 
 namespace bevloc {
 
-/// Without white space around it, and without the "+" that std::from_chars does not know.
+/// Returns the text without white space around it, and without the "+" that std::from_chars does
+/// not know.
 inline std::string_view trimmed_number(std::string_view text) {
   constexpr std::string_view kSpace = " \t\r\n";
   const size_t first = text.find_first_not_of(kSpace);

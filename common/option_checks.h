@@ -31,7 +31,7 @@ inline CLI::Validator number_between(double low, double high) {
   return {check, fmt::format("{} to {}", low, high), ""};
 }
 
-/// A seed: a whole number from 0 to `highest`, also in hexadecimal (0x1F).
+/// Accepts a seed: a whole number from 0 to `highest`, also in hexadecimal (0x1F).
 inline CLI::Validator whole_number(uint64_t highest = std::numeric_limits<uint64_t>::max()) {
   const auto check = [highest](const std::string& text) -> std::string {
     const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
@@ -45,7 +45,8 @@ inline CLI::Validator whole_number(uint64_t highest = std::numeric_limits<uint64
   return {check, "", ""};
 }
 
-/// Refuses an empty name, which an unset variable of a script gives. `wanted`: "a folder".
+/// Refuses an empty name, which an unset variable of a script gives. `wanted` says what has the
+/// name, such as "a folder".
 inline CLI::Validator name_of(const std::string& wanted) {
   const auto check = [wanted](const std::string& text) -> std::string {
     return text.empty() ? fmt::format("found an empty name, wanted {}", wanted) : "";
@@ -54,8 +55,8 @@ inline CLI::Validator name_of(const std::string& wanted) {
 }
 
 /// Requires the name of a file to write. Refuses "-", which means standard output, because the file
-/// would mix with what the command prints. The file may lie in a folder that the command creates;
-/// it calls check_writable() then.
+/// would mix with what the command prints. The file may lie in a folder that the command creates.
+/// Then the command calls check_writable() itself.
 inline CLI::Validator output_name() {
   const auto check = [](const std::string& text) -> std::string {
     if (text.empty()) return "found an empty name, wanted a file to write";
@@ -75,8 +76,8 @@ inline CLI::Validator output_file() {
   return {check, "", ""};
 }
 
-/// Parses the command line of a tool. Returns the exit code of a program that ends with that: 0
-/// after --help, 2 after wrong options; else nothing.
+/// Parses the command line of a tool. If the program has to end, returns its exit code: 0 after
+/// --help, 2 after wrong options. Otherwise returns nothing.
 inline std::optional<int> parse_options(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);

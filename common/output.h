@@ -15,8 +15,8 @@
 
 namespace bevloc {
 
-/// Runs `run`, which returns a Result. The C++ library throws where a disk is full, a pipe is
-/// closed or a folder is missing; here that becomes an error.
+/// Runs `run`, which returns a Result. The C++ library throws when a disk is full, a pipe is closed
+/// or a folder is missing. This function returns an error instead.
 template <typename Run>
 auto run_without_throwing(const Run& run) -> decltype(run()) {
   try {
@@ -26,8 +26,8 @@ auto run_without_throwing(const Run& run) -> decltype(run()) {
   }
 }
 
-/// The text of a message, with hexadecimal numbers in place of control characters other than
-/// newlines. They may come from a damaged file, and a terminal obeys them.
+/// Returns the text of a message, with hexadecimal numbers in place of control characters other
+/// than newlines. Such characters may come from a damaged file, and a terminal would obey them.
 inline std::string printable(std::string_view text) {
   std::string shown;
   for (const char c : text) {

@@ -9,9 +9,9 @@
 
 namespace bevloc {
 
-/// Holds the latest value that was stored (a sequence lock). One thread stores, and never waits.
-/// Any thread loads; it tries again while a store is under way. Both copy sizeof(T) bytes. Does not
-/// allocate.
+/// Holds the latest value that was stored (a sequence lock). store() is called from one thread and
+/// never waits. The value is readable from any thread: load() tries again while a store is under
+/// way. Both copy sizeof(T) bytes. Does not allocate.
 template <typename T>
 class Published {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -22,7 +22,8 @@ class Published {
   void store(const T& value) {
     std::array<uint64_t, kWords> copy{};
     std::memcpy(copy.data(), &value, sizeof(T));
-    // Odd while the words change. A reader that sees a new word also sees the odd number.
+    // The sequence is odd while the words change. A reader that sees a new word also sees the odd
+    // number.
     const uint64_t sequence = sequence_.load(std::memory_order_relaxed);
     sequence_.store(sequence + 1, std::memory_order_relaxed);
     for (size_t i = 0; i < kWords; ++i) words_[i].store(copy[i], std::memory_order_release);

@@ -9,11 +9,11 @@
 namespace bevloc {
 
 /// Writes a new file beside `path`, flushes it to the disk and renames it over `path`. Fails if
-/// `path` is there and no file.
+/// `path` exists and is not a file.
 Status replace_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// The same, and keeps what was there before as PATH.bak, PATH.bak2 and so on: the first of these
-/// names that is free. Without an earlier file there is no backup.
+/// Like replace_file(), but first keeps the earlier file under the first free name of PATH.bak,
+/// PATH.bak2 and so on. If there is no earlier file, it makes no backup.
 Status replace_file_with_backup(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace bevloc

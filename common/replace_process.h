@@ -25,7 +25,7 @@ inline Status replace_process(const std::filesystem::path& program,
               program.string(), std::strerror(errno));
 }
 
-/// The folder of the running program; empty if the kernel does not tell.
+/// Returns the folder of the running program, or an empty path if the kernel does not tell it.
 inline std::filesystem::path folder_of_this_program() {
   std::error_code error;
   return std::filesystem::read_symlink("/proc/self/exe", error).parent_path();

@@ -8,7 +8,7 @@ namespace bevloc {
 
 std::optional<std::filesystem::path> shipped_file(const std::filesystem::path& name) {
   std::error_code error;
-  // build/PRESET/bin
+  // The program lies in build/PRESET/bin of the tree.
   const auto tree = folder_of_this_program().parent_path().parent_path().parent_path();
   for (const std::filesystem::path& folder :
        {std::filesystem::current_path(error), tree, std::filesystem::path("/usr/share/bevloc")}) {

@@ -7,12 +7,13 @@
 
 namespace bevloc {
 
-/// A file that comes with bevloc, "models/nano.onnx": in the present folder, in the tree that this
-/// program was built in, or in /usr/share/bevloc. Nothing if it is in none of them.
+/// Finds a file that comes with bevloc, such as "models/nano.onnx". Looks in the current folder,
+/// then in the tree that this program was built in, then in /usr/share/bevloc. Returns nothing if
+/// the file is in none of them.
 std::optional<std::filesystem::path> shipped_file(const std::filesystem::path& name);
 
-/// The file if it is there, else the shipped one of this name. The name itself if there is none, so
-/// that an error can say it.
+/// Returns `name` if this file exists, and otherwise the path of the shipped file of this name. If
+/// there is neither, returns `name`, so that an error message can show it.
 std::string given_or_shipped(const std::string& name);
 
 }  // namespace bevloc

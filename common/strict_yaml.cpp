@@ -44,7 +44,7 @@ struct YamlMap::Document {
   std::deque<Mapping> mappings;  ///< in the order of opening; their addresses do not change
   std::optional<std::string> mistake;
   const Mapping* lacking = nullptr;    ///< the mapping that lacks a key, if that is the mistake
-  YamlRecording* recording = nullptr;  ///< set: there is no file, and the keys are recorded
+  YamlRecording* recording = nullptr;  ///< if set, there is no file, and the keys are recorded
 
   void report(int line, std::string_view place, std::string_view found, std::string_view wanted) {
     if (mistake) return;
@@ -72,7 +72,7 @@ constexpr YamlType yaml_type() {
   }
 }
 
-/// As JSON; empty if JSON cannot say it.
+/// Returns the default as JSON, or an empty text if JSON cannot express it.
 template <typename T>
 std::string default_text(const T& value) {
   if constexpr (std::is_same_v<T, std::string>) {

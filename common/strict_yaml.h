@@ -24,7 +24,7 @@ template <typename T>
 struct Wanted {
   std::string description;
   std::function<bool(const T&)> accepts;
-  YamlLimits limits{};  ///< the same condition for the schema, as far as it can be said there
+  YamlLimits limits{};  ///< the same condition for the schema, as far as a schema can express it
 };
 
 template <typename T>
@@ -41,7 +41,7 @@ Wanted<T> at_least(T limit) {
           {.low = static_cast<double>(limit)}};
 }
 
-/// The limits themselves are allowed.
+/// Accepts the limits themselves, too.
 template <typename T>
 Wanted<T> between(T low, T high) {
   return {fmt::format("{} to {}", low, high),
@@ -49,11 +49,11 @@ Wanted<T> between(T low, T high) {
           {.low = static_cast<double>(low), .high = static_cast<double>(high)}};
 }
 
-/// A text of 1 to `longest` bytes.
+/// Accepts a text of 1 to `longest` bytes.
 Wanted<std::string> not_empty(std::string description,
                               size_t longest = std::numeric_limits<size_t>::max());
 
-/// One of these words.
+/// Accepts one of these words.
 Wanted<std::string> one_of(std::vector<std::string> words);
 
 /// One mapping of a YAML file. Callers read all keys and check for errors once, at the end:
@@ -73,7 +73,7 @@ class YamlMap {
  public:
   /// Fails if the file cannot be read, is not YAML, or is not one mapping.
   static Result<YamlMap> read_file(const std::filesystem::path& path);
-  /// The same for text in memory. Messages show `name` as the file.
+  /// Like read_file(), but for text in memory. Messages show `name` as the file.
   static Result<YamlMap> parse(const std::string& text, const std::string& name);
   /// A mapping that has every key which the reader asks for, with a value that the reader accepts
   /// (yaml_recording.h). It records the keys, and finish() finds no mistake. `recording` must
@@ -84,7 +84,7 @@ class YamlMap {
   template <typename T>
   T require(std::string_view key, const Wanted<T>& wanted = {});
 
-  /// Reads an optional value; `fallback` when the key is missing.
+  /// Reads an optional value. Returns `fallback` when the key is missing.
   template <typename T>
   T optional(std::string_view key, T fallback, const Wanted<T>& wanted = {});
 
@@ -124,10 +124,10 @@ class YamlMap {
   /// Reports a mistake that only the caller can detect, at the line of `key` (which may have been
   /// read before): reject("rotation_wxyz", "a quaternion of norm 1.2", "norm 1").
   void reject(std::string_view key, std::string_view found, std::string_view wanted);
-  /// The same for a key that is not allowed here, whatever its value is: the words that were read
+  /// Reports a key that is not allowed here, whatever its value is, because words that were read
   /// before exclude it. Does nothing if the mapping lacks the key.
   void reject_key(std::string_view key, std::string_view found, std::string_view wanted);
-  /// The same for a word that other words exclude.
+  /// Reports a word that other words exclude.
   void reject_word(std::string_view key, std::string_view found, std::string_view wanted);
 
   /// Returns the first mistake of the whole file, or the first key that was not read. Call it once,

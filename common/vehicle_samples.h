@@ -14,7 +14,8 @@ struct OdometrySample {
   double speed_mps = 0.0;       ///< along x, negative when reversing
   double yaw_rate_radps = 0.0;  ///< positive counter-clockwise
   /// How much faster than `yaw_rate_radps` the vehicle turns according to its wheels: mean of about
-  /// the last second, in standard deviations. Empty while a bias of 1 degree/s would not show.
+  /// the last second, in standard deviations. It is empty while a bias of 1 degree/s would not be
+  /// noticeable.
   std::optional<double> wheel_lean{};
 };
 
@@ -32,13 +33,14 @@ struct GnssSample {
     double y_m = 0.0;
   };
 
-  Time time{};  ///< when the position held; of a sample from the bus, when it arrived
+  Time time{};  ///< when the vehicle was there; for a sample from the bus, when it arrived
   double east_m = 0.0;
   double north_m = 0.0;
   double sigma_east_m = 0.0;
   double sigma_north_m = 0.0;
-  std::optional<Yaw> yaw{};          ///< empty when the receiver has no heading
-  std::optional<Antenna> antenna{};  ///< whose position it is; empty: of the rear axle
+  std::optional<Yaw> yaw{};  ///< empty when the receiver has no heading
+  /// The antenna whose position this is. It is empty if this is the position of the rear axle.
+  std::optional<Antenna> antenna{};
 };
 
 using VehicleSample = std::variant<OdometrySample, GnssSample>;

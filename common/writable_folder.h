@@ -1,4 +1,4 @@
-// Looks whether files can be created in a folder, without creating any.
+// Checks whether files can be created in a folder, without creating any.
 #pragma once
 
 #include <cerrno>
@@ -9,8 +9,8 @@
 
 namespace bevloc {
 
-/// Why this user cannot create files in `folder`; no error if it can. A folder that is missing
-/// counts as one that can be created where its parents allow it.
+/// Returns why this user cannot create files in `folder`, or no error if it can. If the folder is
+/// missing, checks its nearest parent that exists instead.
 inline std::error_code cannot_write_in(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   std::error_code error;

@@ -14,12 +14,12 @@ namespace bevloc {
 
 enum class YamlType : uint8_t { kFlag, kWholeNumber, kCount, kNumber, kText, kMap };
 
-/// A condition on a value: of a number its limits, of a text the limits of its length.
+/// A condition on a value: the limits of a number, or the limits of the length of a text.
 struct YamlLimits {
   std::optional<double> low{};
   std::optional<double> high{};
   bool excludes_low = false;
-  std::vector<std::string> words{};  ///< not empty: the text is one of these
+  std::vector<std::string> words{};  ///< if not empty, the text must be one of these
 
   bool operator==(const YamlLimits&) const = default;
 };
@@ -29,16 +29,16 @@ struct YamlKey {
   std::string path;  ///< "cameras.driver", "simulation.faults[].kind"
   YamlType type = YamlType::kMap;
   bool is_list = false;
-  size_t count = 0;  ///< of the items of a list; 0: any
+  size_t count = 0;  ///< the number of items of a list; 0 if any number is allowed
   YamlLimits limits{};
   bool required = true;
-  std::string default_text{};  ///< as JSON; empty: none, or one that no text can say
+  std::string default_text{};  ///< as JSON; empty if there is none, or JSON cannot express it
 
   bool operator==(const YamlKey&) const = default;
 };
 
-/// A place where the reader goes different ways: a key with words, or a key that stands in place of
-/// another one (its options are kPresent and kAbsent).
+/// A key that decides which other keys the reader asks for. It is a key with words, or a key that
+/// stands in place of another one. The options of the latter are kPresent and kAbsent.
 struct YamlDecision {
   std::string path;
   std::vector<std::string> options;
@@ -51,16 +51,17 @@ struct YamlRecording {
   static constexpr const char* kPresent = "?present";
   static constexpr const char* kAbsent = "?absent";
 
-  /// By path: the option that this pass takes. Without an entry it takes the first.
+  /// The option that this pass takes for each path. Without an entry it takes the first option.
   std::map<std::string, std::string> options;
 
   std::vector<YamlKey> keys;             ///< in the order of reading
   std::vector<YamlDecision> decisions;   ///< in the order of reading
-  std::set<std::string> rejected_keys;   ///< not allowed in this pass
+  std::set<std::string> rejected_keys;   ///< keys that are not allowed in this pass
   std::set<std::string> rejected_words;  ///< paths of keys whose words this pass excludes
   std::set<std::string> tested;          ///< keys that the reader looked for: they are optional
 
-  /// Records a key. Returns the word that this pass takes; empty for a key without words.
+  /// Records a key. Returns the word that this pass takes, or an empty text for a key without
+  /// words.
   std::string add(YamlKey key) {
     key.required = !tested.contains(key.path);
     std::string word;

@@ -13,7 +13,7 @@ class PlaceHandler : public YAML::EventHandler {
  public:
   /// Position of the document in the text, in characters.
   int start() const { return start_; }
-  /// From 1; nothing for an empty document.
+  /// The line of the content, counted from 1, or nothing for an empty document.
   std::optional<int> content_line() const { return content_line_; }
 
  private:
@@ -43,7 +43,7 @@ class PlaceHandler : public YAML::EventHandler {
   std::optional<int> content_line_;
 };
 
-/// Fails unless the text holds one document; empty ones may follow.
+/// Fails unless the text holds one document. Empty documents may follow.
 Status check_documents(const std::string& text, const std::string& name) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);

@@ -23,7 +23,7 @@ constexpr uint64_t seed_for(uint64_t seed, std::string_view purpose) {
   return seed;
 }
 
-/// A random number generator on SplitMix64. Not thread safe.
+/// A random number generator on SplitMix64. One thread.
 ///
 /// If a call needs two random numbers, store each in a variable first. GCC evaluates the arguments
 /// of a call in another order on arm64 than on amd64.

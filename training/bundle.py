@@ -34,7 +34,7 @@ from training.start_weights import start_with
 from training.train import measuring_batches
 
 LIMIT_BYTES = 60 * 2**20
-CHECKPOINT_BYTES = 16 * 2**20  # what other machines return
+CHECKPOINT_BYTES = 16 * 2**20  # the largest file that other machines return
 _BYTES_PER_WEIGHT = 16  # of a checkpoint: weights, average, two moments of the gradient
 PACKAGES = ("training", "training/models", "training/solvers", "training/nuscenes")
 ARCHIVE = ".tar.gz"
@@ -99,7 +99,8 @@ def libraries_of(program: Path) -> dict[str, Path]:
 
 
 def copy_sampler(out: Path) -> None:
-    """The sampler, stripped, with all that it loads: nothing of the other machine is used."""
+    """Copies the stripped sampler with all libraries that it loads, so that it uses none of the
+    other machine."""
     program = sampler_program()
     out.mkdir()
     subprocess.run(["strip", "-o", str(out / PROGRAM), str(program)], check=True)
@@ -109,7 +110,8 @@ def copy_sampler(out: Path) -> None:
 
 
 def write_start_weights(config: TrainingConfig, out: Path) -> None:
-    """The weights of --init as a checkpoint: a model file needs packages that the bundle lacks."""
+    """Writes the weights of --init as a checkpoint, because a model file needs packages that the
+    bundle lacks."""
     net = BevNetwork(network_config(config.network, config.view))
     start_with(net, Path(config.init), lambda: measuring_batches(config, training_stream))
     torch.save(state_of_weights(net.state_dict(), config.as_dict()), out)
@@ -130,8 +132,8 @@ def options_of_run(run: Path) -> list[str]:
 
 
 def checked(options: list[str], arguments: argparse.Namespace) -> TrainingConfig:
-    """The configuration of the bundle's run. Wrong options end the program. Those without a budget
-    are right: `train` may get one."""
+    """The configuration of the bundle's run. Wrong options end the program. Options without a
+    budget are accepted, because `train` may get one."""
     given = [*options, "--init", str(arguments.init or ""), "--photos", str(arguments.photos or "")]
     if not any(option.split("=")[0] in BUDGETS for option in options):
         given += ["--samples", "8"]

@@ -42,14 +42,15 @@ def read_checkpoint(path: Path, device: str | torch.device = "cpu") -> dict[str,
 def state_of_weights(
     weights: dict[str, Any], config: dict[str, Any], samples: int = 0
 ) -> dict[str, Any]:
-    """The state of a checkpoint with finished weights, whose average they are. `config`: what
-    TrainingConfig.as_dict() gives; an export measures ranges and scales on such samples."""
+    """The state of a checkpoint with finished weights, which are also its averaged weights.
+    `config`: what TrainingConfig.as_dict() gives; an export measures ranges and scales on samples
+    with these options."""
     return {"model": weights, "ema": weights, "samples": samples, "config": config}
 
 
 def nuisances_of(path: Path) -> str:
-    """The nuisances of a checkpoint's training samples (TrainingConfig.nuisances). Runs from before
-    the option had the usual ones."""
+    """The nuisances of a checkpoint's training samples (TrainingConfig.nuisances). Runs that are
+    older than this option had the usual ones."""
     return str(read_checkpoint(path)["config"].get("nuisances", "usual"))
 
 

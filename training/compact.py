@@ -1,10 +1,10 @@
 """Compact checkpoints: five bytes for a weight in place of sixteen, for machines that return small
 files only.
 
-Vectors, which are few (biases, batch normalisation, scales), stay as they are. Of a matrix or a
+Vectors, which are few (biases, batch normalisation, scales), stay as they are. For a matrix or a
 kernel, the weights and their average are kept in float16 relative to the largest one (to 0.05 %),
-Adam's mean squared gradient in quarters of an octave (to 9 %), and its mean gradient not at all:
-some ten steps after the resumption it is there again.
+and Adam's mean squared gradient in quarters of an octave (to 9 %). Its mean gradient is dropped,
+because a resumed run has it again after some ten steps.
 """
 
 from __future__ import annotations

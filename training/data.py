@@ -188,8 +188,8 @@ class MixedStream:
     """Takes `second_share` of the samples from the second stream and the others from the first."""
 
     def __init__(self, first: Stream, second: Stream, second_share: float, position: int) -> None:
-        """`position`: the number of this process's samples before the first one. Both streams must
-        start behind their parts of them (taken())."""
+        """`position`: the number of this process's samples before the first one. Each stream must
+        start after its own part of these samples (taken())."""
         self._streams = (first, second)
         self._share = second_share
         self._position = position

@@ -32,8 +32,8 @@ WHOLE = Share()
 class Processes:
     """This process (`rank`) of `count` processes. With one process, nothing is communicated.
 
-    A context manager that leaves the group at its end, also after an error: the interpreter that
-    ends while Gloo's threads still run can be aborted by the C++ library.
+    This context manager leaves the group at its end, also after an error. Otherwise the C++ library
+    can abort the interpreter, because Gloo's threads still run when it ends.
     """
 
     rank: int = 0

@@ -23,7 +23,7 @@ from training.sources import drive_batches
 
 UNITS = ("m", "m", "degrees")
 NAMES = ("longitudinal", "lateral", "yaw")
-# Fewer samples give no figures that one may compare.
+# The figures of fewer samples are not exact enough to be compared.
 FEWEST_SAMPLES = 24
 
 

@@ -51,8 +51,9 @@ QUANTIZATION_FILE = "quantization.pt"
 SOLVERS_FILE = "solvers.pt"
 # The simulator's cameras vary around this rig.
 TRAINED_RIG = Path(__file__).parent.parent / "config/rig_demo.yaml"
-# Of the random rigs of --nuisances street (sim/samples/random_rig.cpp): 50 to 120 degrees of view,
-# of which a network image shows 90 (pipeline/preprocessing/network_camera.h).
+# What a model states about the random rigs of --nuisances street (sim/samples/random_rig.cpp). They
+# have 50 to 120 degrees of view, of which a network image shows at most 90
+# (pipeline/preprocessing/network_camera.h).
 RANDOM_RIGS = {
     "bevloc.rig.focal_range_px": "160 343",
     "bevloc.rig.height_range_m": "0.6 2.6",
@@ -206,7 +207,7 @@ def main() -> None:
     write_model(net, quantization, ResultScales(), nuisances, arguments.models)
     network = NativeNetwork(shipped, arguments.threads)
     solver = NativeSolver(network, SHIPPED_SOLVER)
-    # Samples with rare nuisances have lower scores, and most of a drive has none.
+    # Samples with rare nuisances have lower scores, and most of a drive has no such nuisance.
     usual = batches
     if not arguments.recordings and nuisances != "usual":
         usual = calibration_batches(samples, threads)

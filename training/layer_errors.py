@@ -1,4 +1,4 @@
-"""Measures the quantization error of every layer: when it alone is quantized, and when all are."""
+"""Measures the quantization error of every layer: with only it quantized, and with all layers."""
 
 from __future__ import annotations
 

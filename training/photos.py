@@ -59,7 +59,7 @@ def read_list(text: str, folder: Path) -> list[Photo]:
 
 
 def without_seam(pixels: np.ndarray, axis: int) -> np.ndarray:
-    """The picture, shorter by SEAM_SHARE, whose end continues in its start along an axis."""
+    """The picture, shorter by SEAM_SHARE along an axis, whose end fits its start without a seam."""
     pixels = np.moveaxis(pixels, axis, 0)
     seam = int(len(pixels) * SEAM_SHARE)
     weight = np.linspace(0.0, 1.0, seam).reshape(-1, *[1] * (pixels.ndim - 1))
@@ -68,8 +68,8 @@ def without_seam(pixels: np.ndarray, axis: int) -> np.ndarray:
 
 
 def square(photo: Photo, picture: Image.Image) -> Image.Image:
-    """The part of a picture that is used, in the size that the simulator reads. Black is a hole, so
-    that no other pixel is black."""
+    """The part of a picture that is used, in the size that the simulator reads. The simulator
+    takes black for a hole, so no other pixel is black."""
     width, height = picture.size
     left, top, right, bottom = photo.part
     part = picture.crop(

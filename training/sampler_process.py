@@ -1,7 +1,7 @@
 """Runs the programs that make samples, and reads their records: bevloc_sampler renders those of the
 simulator, bevloc_drive_sampler reads those of recorded drives.
 
-A process of its own needs no library of this Python's machine: in a training bundle
+A program, unlike a library, needs nothing of the machine that runs Python: in a training bundle
 (training/bundle.py) it runs with the libraries and the loader that lie beside it.
 """
 
@@ -148,8 +148,8 @@ def _own_environment() -> dict[str, str]:
 
 
 def sampler_command(program: Path) -> list[str]:
-    """The command that starts the program: with the loader and the libraries that lie beside it, if
-    they do."""
+    """The command that starts the program. It uses the loader and the libraries beside the program,
+    if there are any."""
     folder = program.resolve().parent
     if not (folder / LOADER).exists():
         return [str(program)]

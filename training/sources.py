@@ -70,7 +70,7 @@ def _mixed(
 
 
 def _simulator(config: TrainingConfig, first: int, share: Share) -> Stream:
-    """Simulated samples. Those with the usual nuisances show other worlds."""
+    """Simulated samples. Samples with the usual nuisances show other worlds than the others."""
 
     def stream(seed: int, first: int, nuisances: str) -> Stream:
         threads, drop = config.sampler_threads, config.drop_camera_probability

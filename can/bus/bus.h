@@ -11,8 +11,8 @@
 namespace bevloc::can {
 
 enum class SendResult : uint8_t {
-  kSent,     ///< handed to the controller's queue
-  kWaiting,  ///< no room yet: kept until it is sent, replaced by a newer frame, or expired
+  kSent,     ///< the frame was handed to the controller's queue
+  kWaiting,  ///< there is no room yet: the frame is kept until it is sent, replaced or expired
   kBusDown,  ///< the interface is down or gone; the frame is not kept
 };
 
@@ -32,15 +32,15 @@ struct BusCounters {
   uint64_t software_stamped = 0;  ///< received frames with a time from the kernel
   uint64_t error_frames = 0;      ///< error reports of the controller
   uint64_t bus_off = 0;           ///< error reports that say that the controller went bus-off
-  uint64_t reopened = 0;          ///< how often a lost interface was found again
+  uint64_t reopened = 0;          ///< number of times that a lost interface was found again
   Duration confirmation_total{};  ///< time from send() to the wire, summed over confirmed frames
   Duration confirmation_max{};    ///< longest time from send() to the wire
 };
 
-/// One endpoint on a CAN bus. Only wait() blocks. Nothing allocates.
-/// Threads: one thread may send while another one waits and receives. counters() and condition()
-/// are readable from any thread. An endpoint that sends must also receive, because confirmations
-/// and the end of a fault are detected in receive().
+/// One endpoint on a CAN bus. Only wait() blocks. Nothing allocates. An endpoint that sends must
+/// also receive, because receive() detects confirmations and the end of a fault.
+/// Thread-bound: send() is called from the sending thread, wait() and receive() from the receiving
+/// thread, which may be the same one. counters() and condition() are readable from any thread.
 class Bus {
  public:
   virtual ~Bus() = default;

@@ -1,4 +1,4 @@
-// The counters of a bus endpoint as atomics: its threads write them, any thread reads them.
+// The counters of a bus endpoint as atomics, which are readable from any thread.
 #pragma once
 
 #include <atomic>
@@ -26,7 +26,7 @@ struct AtomicBusCounters {
   std::atomic<Duration> confirmation_total{Duration::zero()};
   std::atomic<Duration> confirmation_max{Duration::zero()};
 
-  /// Only one thread may call it, because the update of the two durations is not atomic.
+  /// Call it from one thread only, because the update of the two durations is not atomic.
   void count_confirmation(Duration latency) {
     ++confirmed;
     confirmation_total = confirmation_total.load() + latency;

@@ -17,7 +17,7 @@ using std::chrono::nanoseconds;
 constexpr uint32_t kErrorFlag = 0x20000000;
 constexpr uint32_t kMaxExtendedId = 0x1FFFFFFF;
 
-/// Reads the whole text as an unsigned number; nothing if it is not one.
+/// Reads the whole text as an unsigned number. Returns nothing if it is not one.
 template <typename T>
 std::optional<T> number(std::string_view text, int base) {
   T value{};
@@ -85,8 +85,8 @@ std::optional<ParsedFrame> parse_error(uint32_t id, std::string_view digits) {
   return parsed;
 }
 
-/// A raw length code, "_" and a digit from 9 to F, which candump appends to a length of eight bytes
-/// when the length code is larger than 8.
+/// Whether the text is a raw length code: "_" and a digit from 9 to F. candump appends it to eight
+/// bytes of data if the length code of the frame is larger than 8.
 bool is_length_code(std::string_view text) {
   return text.size() == 2 && text[0] == '_' && is_hex(text.substr(1)) && text[1] >= '9';
 }

@@ -8,17 +8,18 @@
 
 namespace bevloc::can {
 
-/// One thread calls take() and note_traffic(). Any thread may call reset() and condition().
+/// Thread-bound: take() and note_traffic() are called from the receiving thread of the bus. reset()
+/// and condition() are thread-safe.
 class ControllerMonitor {
  public:
   void take(const ErrorFrame& error);
 
-  /// To be called when any node has sent a frame: there is another node, and our controller is not
-  /// bus-off. Clears the faults, but not a warning or passive state, as the error counters may
-  /// still be high.
+  /// Call it when a frame of any node arrived. It shows that our controller is not bus-off, and
+  /// clears the faults. A warning or passive state stays, because the error counters may still be
+  /// high.
   void note_traffic();
 
-  /// To be called when the interface is down: its controller restarts without an error report.
+  /// Call it when the interface is down: its controller restarts without an error report.
   void reset() { condition_ = BusCondition{}; }
 
   BusCondition condition() const { return condition_; }

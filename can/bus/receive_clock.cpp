@@ -10,8 +10,8 @@ using std::chrono::nanoseconds;
 /// A frame does not wait longer than this in the socket.
 constexpr nanoseconds kMaxAge = std::chrono::seconds(10);
 
-/// A larger jump between the clocks shows that the controller has restarted; a late interrupt is
-/// shorter.
+/// A larger jump between the clocks shows that the controller has restarted, because no interrupt
+/// is that late.
 constexpr Duration kMaxJump = std::chrono::seconds(1);
 
 /// A larger change of the difference of the clocks from one frame to the next is a step: somebody

@@ -1,4 +1,4 @@
-// Converts timestamps of the kernel and of the CAN controller to the steady clock.
+// Converts time stamps of the kernel and of the CAN controller to the steady clock.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace bevloc::can {
 
-/// The timestamps of one frame, each as the time since the epoch of its own clock.
+/// The time stamps of one frame, each as the time since the epoch of its own clock.
 struct KernelStamps {
   /// CLOCK_REALTIME, read in the driver's interrupt.
   std::optional<std::chrono::nanoseconds> software{};
@@ -22,7 +22,7 @@ enum class StampSource : uint8_t { kHardware, kSoftware, kArrival };
 /// One thread.
 class ReceiveClock {
  public:
-  /// Both clocks, read at the same moment, after the frame was read.
+  /// The times of both clocks at one moment after the frame was read.
   struct Now {
     Time steady{};
     std::chrono::nanoseconds realtime{};
@@ -38,15 +38,15 @@ class ReceiveClock {
   Stamped to_steady(const KernelStamps& stamps, const Now& now);
 
  private:
-  /// Returns the age of a software stamp, if it is possible.
+  /// Returns the age of a software stamp, or nothing if no frame can have this age.
   std::optional<Duration> age_of(std::chrono::nanoseconds software, const Now& now) const;
   void watch_realtime(const Now& now);
   Time from_hardware(std::chrono::nanoseconds hardware, Time by_kernel);
 
-  std::optional<Duration> realtime_minus_steady_;  ///< at the previous frame
-  Time watched_{};                                 ///< when that was
-  Duration latest_step_{};                         ///< of CLOCK_REALTIME
-  std::optional<Time> stepped_;                    ///< when the step was noticed
+  std::optional<Duration> realtime_minus_steady_;  ///< the difference at the previous frame
+  Time watched_{};                                 ///< when the previous frame came
+  Duration latest_step_{};                         ///< the latest step of CLOCK_REALTIME
+  std::optional<Time> stepped_;                    ///< when the latest step was noticed
 
   std::optional<Duration> steady_minus_hardware_;
   std::chrono::nanoseconds last_hardware_{};

@@ -13,30 +13,31 @@
 namespace bevloc::can {
 
 /// Lets one frame of each identifier into the kernel at a time. So no queue of old frames builds up
-/// while the bus acknowledges nothing, and none is sent when the bus recovers. A frame has left the
-/// kernel when its echo confirms that it was on the wire.
+/// while the bus acknowledges nothing, and no old frames are sent when the bus recovers. A frame
+/// has left the kernel when its echo confirms that it was on the wire.
 ///
 /// Nobody can take a frame back from the kernel. So while the bus shows no sign of life, no further
 /// frame enters. The kernel then holds only frames of the last 40 ms before the failure.
 ///
-/// Threads: one thread calls enter() and leave(), another one confirm() and note_alive(). Both may
-/// call reset(). No locks.
+/// Thread-bound: enter() and leave() are called from the sending thread of the bus, confirm() and
+/// note_alive() from its receiving thread, and reset() from both. There are no locks.
 class SendGate {
  public:
   static constexpr size_t kMaxIds = 16;
-  /// A frame without an echo counts as lost in the controller (one-shot mode, restart) when the bus
-  /// was alive so long after it, and the next frame may enter. Time alone proves nothing: without
-  /// an acknowledgement the controller repeats a frame for hours.
+  /// If the bus was alive this long after a frame, and the frame has no echo, the controller has
+  /// lost it (one-shot mode, restart), and the next frame may enter. Time alone proves nothing,
+  /// because a controller without an acknowledgement repeats a frame for hours.
   static constexpr Duration kGiveUp = std::chrono::seconds(1);
-  /// A frame without an echo for this time, while nothing else was on the bus, stalls all sending.
+  /// If a frame has no echo for this time, and nothing else was on the bus, all sending stalls.
   static constexpr Duration kStall = std::chrono::milliseconds(40);
 
-  /// Frames with other identifiers always pass. Pass no identifiers when there are no echoes.
+  /// Frames with identifiers that are not in `ids` always pass. `ids` must be empty if the bus
+  /// gives no echoes.
   explicit SendGate(std::span<const uint32_t> ids);
 
-  /// Occupies the place of `id`; false when another frame of this identifier is still in the
-  /// kernel, or the bus is stalled. Call it before the frame goes to the kernel, as the echo can
-  /// arrive before that call returns.
+  /// Occupies the place of `id`. Returns false when another frame of this identifier is still in
+  /// the kernel, or the bus is stalled. Call it before the frame goes to the kernel, because the
+  /// echo can arrive before the kernel's call returns.
   bool enter(uint32_t id, Time now);
   /// Frees the place of `id` when the kernel did not take the frame.
   void leave(uint32_t id);
@@ -45,12 +46,12 @@ class SendGate {
   /// no frame of this identifier was in the kernel.
   std::optional<Duration> confirm(uint32_t id, Time echoed);
 
-  /// The bus is alive: a frame of another node arrived.
+  /// Notes that the bus is alive, because a frame of another node arrived.
   void note_alive(Time now);
   bool is_stalled(Time now) const;
 
-  /// Frees all places. To be called when the kernel's queue is empty: the interface went down, or
-  /// the controller restarted.
+  /// Frees all places. Call it when the kernel's queue is empty: the interface went down, or the
+  /// controller restarted.
   void reset();
 
  private:

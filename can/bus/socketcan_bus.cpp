@@ -13,7 +13,7 @@
 namespace bevloc::can {
 namespace {
 
-/// Far more than the number of identifiers that one program sends.
+/// No program sends as many identifiers.
 constexpr size_t kSendQueueCapacity = 32;
 
 bool is_no_room(int error) {

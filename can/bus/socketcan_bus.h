@@ -26,7 +26,7 @@ class SocketCanBus final : public Bus {
                                                     const SocketCanOptions& options = {});
 
   /// Takes ownership of an open datagram descriptor that carries frames in the kernel's format,
-  /// such as a socket pair on a kernel without CAN. It delivers no timestamps, so frames carry the
+  /// such as a socket pair on a kernel without CAN. It delivers no time stamps, so frames carry the
   /// time of receive().
   static std::unique_ptr<SocketCanBus> from_descriptor(int descriptor);
 
@@ -47,9 +47,9 @@ class SocketCanBus final : public Bus {
 
   const std::unique_ptr<SocketCanLink> link_;
   const Duration max_send_age_;
-  SendQueue queue_;  // only for the sending thread
+  SendQueue queue_;  // used by the sending thread only
   SendGate gate_;
-  ReceiveClock clock_;  // only for the receiving thread
+  ReceiveClock clock_;  // used by the receiving thread only
   ControllerMonitor monitor_;
   AtomicBusCounters counters_;
 };

@@ -24,7 +24,8 @@ bool read_content(const cmsghdr& entry, T& content) {
   return true;
 }
 
-/// Same layout as `struct scm_timestamping`: software stamp, an unused one, hardware stamp.
+/// This struct has the layout of `struct scm_timestamping`: the software stamp, an unused stamp and
+/// the hardware stamp.
 struct ThreeStamps {
   timespec stamps[3];
 };

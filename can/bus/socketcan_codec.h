@@ -23,7 +23,8 @@ struct RawFrame {
 };
 RawFrame raw_from(const Frame& frame);
 
-/// A data frame or an error report. std::monostate: an extended, remote or malformed frame.
+/// A data frame or an error report. std::monostate stands for an extended, remote or malformed
+/// frame.
 using ReadFrame = std::variant<std::monostate, Frame, ErrorFrame>;
 ReadFrame frame_from(const canfd_frame& content, size_t size);
 

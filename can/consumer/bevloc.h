@@ -1,8 +1,8 @@
 /* Reads bevloc's pose from the CAN bus and says whether a function may use it. C99, one header, no
    allocation, no global state. docs/vehicle-bus.md shows its use; docs/can.md is the reference.
 
-   Checks every frame (AUTOSAR E2E profile P02, or P05 for CAN FD), puts the frames of one EPOCH
-   together, watches the time, and compares the protection levels with your alert limits:
+   This header checks every frame (AUTOSAR E2E profile P02, or P05 for CAN FD), puts the frames of
+   one EPOCH together, watches the time, and compares the protection levels with your alert limits:
 
      struct bevloc_receiver receiver;
      bevloc_init(&receiver, BEVLOC_LOCALIZER_BASE, alert_limits);
@@ -11,7 +11,7 @@
      // whenever the function needs the pose:
      if (bevloc_answer(&receiver, now_us) == BEVLOC_USABLE) use(receiver.pose);
 
-   One thread per receiver. */
+   One thread (not thread-safe). Different receivers are independent. */
 #ifndef BEVLOC_H
 #define BEVLOC_H
 
@@ -24,17 +24,17 @@
 enum bevloc_answer {
   BEVLOC_USABLE,
   BEVLOC_NO_POSE,       /* no complete pose was received yet */
-  BEVLOC_TIMEOUT,       /* none for three cycles, or only one since then, or no LOC_Status for
-                           three of its cycles, or `now_us` is more than a cycle before them: the
-                           clock was set back */
+  BEVLOC_TIMEOUT,       /* no pose for three cycles, or only one pose since such a pause, or no
+                           LOC_Status for three of its cycles, or the clock was set back: `now_us`
+                           is more than a cycle before one of them */
   BEVLOC_NOT_VALID,     /* the state is neither TRACKING nor DEGRADED */
   BEVLOC_NOT_AVAILABLE, /* a value, the integrity risk, or the protection level of an axis with
                            an alert limit is not available */
-  BEVLOC_BEYOND_LIMIT   /* a protection level is beyond its alert limit, or the risk too high */
+  BEVLOC_BEYOND_LIMIT   /* a protection level is beyond its alert limit, or the risk is too high */
 };
 
-/* The largest errors with which the function is still safe. 0: the function does not need this
-   axis. */
+/* The largest errors with which the function is still safe. A limit of 0 means that the function
+   does not need this axis. */
 struct bevloc_alert_limits {
   double lateral_m;
   double longitudinal_m;
@@ -46,9 +46,9 @@ struct bevloc_alert_limits {
 enum { BEVLOC_PARTS = 8 };
 
 struct bevloc_pose {
-  uint64_t received_us; /* when its last frame arrived: it holds at the moment of sending */
-  double age_ms;        /* of the newest images behind it */
-  bool has_capture;     /* there are images behind it */
+  uint64_t received_us; /* when its last frame arrived; the pose is that of the moment of sending */
+  double age_ms;        /* age of the newest images that the pose comes from */
+  bool has_capture;     /* whether the pose comes from images */
   uint32_t capture_us;  /* when they were taken, on the localizer's clock, modulo 2^32 */
   double latitude_deg, longitude_deg;
   double east_m, north_m; /* in the map */
@@ -75,12 +75,12 @@ struct bevloc_receiver {
   uint64_t status_us; /* when LOC_Status arrived */
   bool has_clock;
   uint32_t utc_offset_us; /* UTC minus the localizer's clock, modulo 2^32 */
-  double utc_error_ms;    /* bound of its error */
+  double utc_error_ms;    /* bound of the error of utc_offset_us */
   uint64_t clock_us;      /* when LOC_Clock arrived */
   struct bevloc_pose pose;
-  bool pose_follows_silence; /* it is the first one of all, or the first one after a timeout */
-  /* inside */
-  int last_counter[16]; /* by id_offset; -1: none */
+  bool pose_follows_silence; /* the pose is the first one of all, or the first after a timeout */
+  /* The members below are internal. */
+  int last_counter[16]; /* by id_offset; -1 if there is none */
   uint8_t frames[BEVLOC_PARTS][8];
   unsigned present;
   int epoch;
@@ -110,7 +110,7 @@ static inline void bevloc_init(struct bevloc_receiver* receiver, uint32_t base_i
   for (i = 0; i < 16; ++i) receiver->last_counter[i] = -1;
 }
 
-/* CRC-8H2F over bytes 1 to the last, then the data id. */
+/* Returns the CRC-8H2F over bytes 1 to the last, then the data id. */
 static inline uint8_t bevloc_crc8(const uint8_t* data, size_t length, uint8_t data_id) {
   uint8_t crc = 0xFF;
   size_t i;
@@ -124,7 +124,7 @@ static inline uint8_t bevloc_crc8(const uint8_t* data, size_t length, uint8_t da
   return (uint8_t)(crc ^ 0xFF);
 }
 
-/* CRC-16/CCITT-FALSE over bytes 2 to the last, then the data id, low byte first. */
+/* Returns the CRC-16/CCITT-FALSE over bytes 2 to the last, then the data id, low byte first. */
 static inline uint16_t bevloc_crc16(const uint8_t* data, size_t length, uint16_t data_id) {
   uint16_t crc = 0xFFFF;
   size_t i;
@@ -139,7 +139,7 @@ static inline uint16_t bevloc_crc16(const uint8_t* data, size_t length, uint16_t
   return crc;
 }
 
-/* False if the signal is not available. */
+/* Decodes a signal. Returns false if it is not available. */
 static inline bool bevloc_decode(const uint8_t* data, const struct bevloc_signal* signal,
                                  double* value) {
   uint64_t raw = 0;
@@ -163,7 +163,7 @@ static inline bool bevloc_decode(const uint8_t* data, const struct bevloc_signal
   return *value >= signal->min - 0.5 * signal->scale && *value <= signal->max + 0.5 * signal->scale;
 }
 
-/* Length, checksum and counter of one frame. */
+/* Checks length, checksum and counter of one frame. */
 static inline bool bevloc_check(struct bevloc_receiver* receiver,
                                 const struct bevloc_message* message, const uint8_t* data,
                                 size_t length) {
@@ -197,15 +197,16 @@ static inline bool bevloc_check(struct bevloc_receiver* receiver,
   return true;
 }
 
-/* Whether at most `limit_us` passed since a stamp. Stamps may be out of order by one cycle of their
-   message. Further back the clock was set, and the true age is not known. */
+/* Whether at most `limit_us` passed since a time stamp. Time stamps may be out of order by one
+   cycle of their message. If one is further in the future, the clock was set back, and its age is
+   not known. */
 static inline bool bevloc_is_fresh(uint64_t now_us, uint64_t stamp_us, uint32_t limit_us,
                                    const struct bevloc_message* message) {
   const int64_t age_us = (int64_t)(now_us - stamp_us);
   return age_us <= (int64_t)limit_us && age_us >= -1000 * (int64_t)message->cycle_ms;
 }
 
-/* The same for a limit of three cycles. */
+/* Whether at most three cycles of the message passed since a time stamp. */
 static inline bool bevloc_is_in_time(uint64_t now_us, uint64_t stamp_us,
                                      const struct bevloc_message* message) {
   return bevloc_is_fresh(now_us, stamp_us, 3000u * message->cycle_ms, message);
@@ -265,7 +266,7 @@ static inline void bevloc_take_pose(struct bevloc_receiver* receiver, uint64_t n
   receiver->has_pose = true;
 }
 
-/* Adds one checked frame of a pose. True when the pose is complete. */
+/* Adds one checked frame of a pose. Returns true when the pose is complete. */
 static inline bool bevloc_take_part(struct bevloc_receiver* receiver, int part, int epoch,
                                     const uint8_t* data, size_t length, uint64_t now_us) {
   const bool continues = epoch == receiver->epoch && (receiver->present >> part & 1) == 0 &&
@@ -299,8 +300,8 @@ static inline bool bevloc_take_solution(struct bevloc_receiver* receiver, const 
   return true;
 }
 
-/* Takes any frame of the bus; `now_us` is the time of arrival on your clock. True when it completes
-   a pose. */
+/* Takes any frame of the bus. `now_us` is the time of arrival on your clock. Returns true when the
+   frame completes a pose. */
 static inline bool bevloc_receive(struct bevloc_receiver* receiver, uint32_t id,
                                   const uint8_t* data, size_t length, uint64_t now_us) {
   int part;
@@ -335,12 +336,13 @@ static inline bool bevloc_lacks_level(double limit, bool has_level) {
   return limit != 0 && !has_level;
 }
 
-/* Any limit but 0 counts. No level is within a limit that is negative or not a number. */
+/* Whether a level is beyond its limit. A limit of 0 does not count. No level is within a limit that
+   is negative or not a number. */
 static inline bool bevloc_is_beyond(double limit, double level) {
   return limit != 0 && !(level <= limit);
 }
 
-/* Whether the latest pose may be used now, and else why not. */
+/* Says whether the latest pose may be used now, and if not, why. */
 static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* receiver,
                                                uint64_t now_us) {
   const struct bevloc_pose* pose = &receiver->pose;
@@ -367,9 +369,9 @@ static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* rec
   return BEVLOC_USABLE;
 }
 
-/* When the images behind the latest pose were taken: UTC modulo 2^32 us. False without images or a
-   fresh LOC_Clock, or while the localizer's computer does not know UTC. The pose holds age_ms
-   later. */
+/* Computes when the images that the latest pose comes from were taken, in UTC modulo 2^32 us. The
+   pose is that of the moment age_ms later. Returns false without images or a fresh LOC_Clock, or
+   while the localizer's computer does not know UTC. */
 static inline bool bevloc_capture_utc(const struct bevloc_receiver* receiver, uint64_t now_us,
                                       uint32_t* utc_us) {
   if (!receiver->has_clock || !receiver->has_pose || !receiver->pose.has_capture) return false;

@@ -30,7 +30,8 @@ static inline size_t candump_digits(const char* text, bool hexadecimal) {
   return strspn(text, hexadecimal ? "0123456789ABCDEFabcdef" : "0123456789");
 }
 
-/* Reads "(1.000000) can0 ", with 6 or 9 digits after the point. The rest of the line, or NULL. */
+/* Reads "(1.000000) can0 ", with 6 or 9 digits after the point. Returns the rest of the line, or
+   NULL if the line does not begin so. */
 static inline const char* candump_parse_time(const char* text, uint64_t* time_us) {
   size_t whole, parts;
   if (*text++ != '(') return NULL;
@@ -62,7 +63,7 @@ static inline bool candump_parse_data(const char* digits, bool fd, struct candum
   return true;
 }
 
-/* Takes a line with its line end, so that an empty text can only come of a file with zero bytes. */
+/* Parses a line with its line end. So an empty text can only come from a file with zero bytes. */
 static inline enum candump_kind candump_parse(const char* text, struct candump_line* line) {
   size_t count;
   bool fd;

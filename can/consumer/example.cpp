@@ -54,7 +54,7 @@ class Printer {
   microseconds next_{};
 };
 
-/// 0, or 1 after saying why the log cannot be read.
+/// Returns 0, or prints why the log cannot be read and returns 1.
 int read_log(const char* path) {
   std::ifstream log(path);
   // A folder opens, but has no first character.

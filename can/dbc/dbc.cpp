@@ -10,7 +10,8 @@
 namespace bevloc::can {
 namespace {
 
-/// The bytes of the character at the start of the text; 0 if it is not UTF-8 (RFC 3629).
+/// Returns the number of bytes of the first character of the text, or 0 if it is not UTF-8 (RFC
+/// 3629).
 size_t utf8_length(std::string_view text) {
   constexpr uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
   const auto first = static_cast<uint8_t>(text[0]);

@@ -33,12 +33,12 @@ struct DbcSignal {
   std::string name;
   int line = 0;
   SignalLayout layout;
-  double min = 0.0;  ///< physical; min == max: the file states no range
+  double min = 0.0;  ///< physical; if min == max, the file states no range
   double max = 0.0;
   std::string unit;
-  bool is_multiplexor = false;  ///< M: says which multiplexed signals a frame has
-  /// Only in frames whose multiplexor has one of these values (mN, or SG_MUL_VAL_ in its place).
-  /// Empty: in all frames.
+  bool is_multiplexor = false;  ///< the signal (M) says which multiplexed signals a frame has
+  /// The signal is only in frames whose multiplexor has one of these values (mN, or SG_MUL_VAL_ in
+  /// its place). If this is empty, it is in all frames.
   std::vector<DbcValueRange> multiplexed_at{};
   std::vector<DbcValueName> value_names{};
 
@@ -53,22 +53,22 @@ struct DbcMessage {
   int line = 0;
   uint32_t id = 0;
   bool is_extended = false;  ///< an identifier of 29 bits
-  uint8_t length = 0;        ///< bytes; more than 8 on CAN FD only
+  uint8_t length = 0;        ///< in bytes; more than 8 on CAN FD only
   std::string sender;
   std::vector<DbcSignal> signals{};
   /// Values of BA_ for this message, and the defaults of the file (BA_DEF_DEF_). Values of ENUM
   /// attributes are names.
   std::map<std::string, std::string, std::less<>> attributes{};
-  /// Several multiplexors (mNM, or SG_MUL_VAL_ with another one): which multiplexed signals a frame
-  /// has is not known.
+  /// Whether the message has several multiplexors (mNM, or SG_MUL_VAL_ with another one). Then it
+  /// is not known which multiplexed signals a frame has.
   bool nested_multiplexing = false;
-  /// The mistake for which the message is left out, as an error message. It then has no signals.
+  /// The error message that says why the message is left out. Such a message has no signals.
   std::string left_out{};
 
-  /// Null if there is none.
+  /// Returns null if there is none.
   const DbcSignal* find(std::string_view signal_name) const;
   const DbcSignal* multiplexor() const;
-  /// GenMsgCycleTime; nothing if the file does not state it.
+  /// The attribute GenMsgCycleTime, or nothing if the file does not state it.
   std::optional<double> cycle_ms() const;
 };
 
@@ -79,7 +79,7 @@ struct Dbc {
   /// environment variables and so on).
   std::map<std::string, size_t> skipped;
 
-  /// Null if there is none.
+  /// Returns null if there is none.
   const DbcMessage* find(std::string_view message_name) const;
   const DbcMessage* find(uint32_t id, bool is_extended) const;
 };

@@ -54,7 +54,7 @@ bool is_keyword(const DbcToken& token) {
          std::ranges::find(kKeywords, token.text) != std::end(kKeywords);
 }
 
-/// Letters, digits and '_', as keywords have.
+/// Whether the word consists of letters, digits and '_', as keywords do.
 bool is_name(const DbcToken& token) {
   return token.kind == DbcToken::Kind::kWord && std::ranges::all_of(token.text, [](char c) {
            return c == '_' || (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
@@ -104,7 +104,7 @@ uint64_t DbcReader::take_unsigned(std::string_view wanted) {
   return unsigned_of(tokens_.take(), wanted);
 }
 
-/// A raw value from -2^63 to 2^64 - 1.
+/// Takes a raw value from -2^63 to 2^64 - 1.
 int64_t DbcReader::take_raw() {
   if (!tokens_.peek().text.starts_with('-')) {
     return static_cast<int64_t>(take_unsigned("a raw value"));
@@ -122,7 +122,7 @@ bool DbcReader::next_is_number() const {
   return token.kind == DbcToken::Kind::kWord && token.text[0] >= '0' && token.text[0] <= '9';
 }
 
-/// The message that the next word names by its identifier; null for the pseudo message.
+/// Takes the identifier of a message and returns the message, or null for the pseudo message.
 DbcMessage* DbcReader::take_message() {
   const DbcToken token = tokens_.take();
   const uint64_t raw = unsigned_of(token, "the identifier of a message");
@@ -193,7 +193,7 @@ void DbcReader::skip_unknown(const DbcToken& first) {
 }
 
 /// Skips a statement without a semicolon. The list of NS_ holds keywords itself; it ends where one
-/// of the sections BS_ or BU_ begins. In BU_, a node may be named like a keyword.
+/// of the sections BS_ or BU_ begins. In BU_, a node may have the name of a keyword.
 void DbcReader::skip_list(const std::string& keyword) {
   ++dbc_.skipped[keyword];
   while (tokens_.peek().kind != DbcToken::Kind::kEnd) {
@@ -301,8 +301,8 @@ void DbcReader::read_signal(DbcMessage& message) {
   message.signals.push_back(std::move(signal));
 }
 
-/// Names with commas between them. A file without receivers, or with blanks instead of commas, is
-/// read, too.
+/// Skips names with commas between them. Accepts a file that has no receivers here, or blanks in
+/// place of commas.
 void DbcReader::skip_receivers() {
   const auto ends = [this] {
     const DbcToken& next = tokens_.peek();

@@ -13,12 +13,12 @@
 
 namespace bevloc::can {
 
-/// Unwinds the reader; caught in parse_dbc().
+/// The exception that unwinds the reader. parse_dbc() catches it.
 struct DbcMistake {
   Error error;
 };
 
-/// Reads one file.
+/// Reads one file. One thread.
 class DbcReader {
  public:
   DbcReader(std::string_view text, const std::string& name) : tokens_(text) { dbc_.file = name; }

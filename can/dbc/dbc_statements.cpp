@@ -41,7 +41,7 @@ void DbcReader::read_value_type() {
   signal->layout.type = type == 1 ? RawType::kFloat : RawType::kDouble;
 }
 
-/// SG_MUL_VAL_: the values of a multiplexor at which frames have a signal.
+/// Reads SG_MUL_VAL_: the values of a multiplexor at which frames have a signal.
 void DbcReader::read_multiplexor_values() {
   DbcMessage* message = take_message();
   DbcSignal* signal = take_signal_of(message);
@@ -59,7 +59,7 @@ void DbcReader::read_multiplexor_values() {
   signal->multiplexed_at = std::move(values);
 }
 
-/// "2-5". Some tools write spaces around the sign.
+/// Takes a range such as "2-5". Some tools write spaces around the sign.
 DbcValueRange DbcReader::take_range() {
   constexpr std::string_view kWanted = "a range of values, such as 2-5";
   const DbcToken first = tokens_.peek();
@@ -89,7 +89,7 @@ void DbcReader::read_attribute_definition() {
   tokens_.take();
 }
 
-/// The value of an attribute; that of an ENUM may be a name or its number.
+/// Takes the value of an attribute. The value of an ENUM may be a name or its number.
 std::string DbcReader::attribute_value(const std::string& name) {
   const DbcToken value = tokens_.take();
   if (value.kind != DbcToken::Kind::kText && value.kind != DbcToken::Kind::kWord) {

@@ -34,7 +34,7 @@ void DbcTokens::skip_space() {
   }
 }
 
-/// Nothing if no quote closes the text.
+/// Returns nothing if no quote closes the text.
 std::optional<std::string> DbcTokens::take_text() {
   std::string text;
   rest_.remove_prefix(1);

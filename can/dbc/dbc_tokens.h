@@ -12,7 +12,8 @@ namespace bevloc::can {
 struct DbcToken {
   enum class Kind { kWord, kText, kSign, kEnd };
   Kind kind = Kind::kEnd;
-  /// Without quotes. Of kEnd: empty, or a quote if the file ends in a text that begins here.
+  /// The text without its quotes. For kEnd it is empty, or a quote if the file ends in a text that
+  /// begins here.
   std::string text;
   int line = 1;
   bool starts_line = false;
@@ -21,8 +22,8 @@ struct DbcToken {
   bool is_sign(char sign) const { return kind == Kind::kSign && text[0] == sign; }
 };
 
-/// Reads one token after the other. Never fails: a text that no quote closes is the end of the
-/// file. One thread.
+/// Reads one token after the other. Never fails, because a text that no quote closes counts as the
+/// end of the file. One thread.
 class DbcTokens {
  public:
   /// `text` must outlive this.

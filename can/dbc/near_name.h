@@ -8,8 +8,8 @@
 
 namespace bevloc::can {
 
-/// The candidate with the fewest letters to insert, remove or replace, without regard to case.
-/// Nothing if more than a third of the letters differ.
+/// Returns the candidate with the fewest letters to insert, remove or replace, without regard to
+/// case. Returns nothing if more than a third of the letters differ.
 std::optional<std::string> near_name(std::string_view name,
                                      std::span<const std::string> candidates);
 

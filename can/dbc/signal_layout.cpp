@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kByteBits = 8;
 
-/// The number of the next lower bit of a Motorola signal: bit 0 of a byte is followed by bit 7 of
-/// the next byte.
+/// Returns the number of the next lower bit of a Motorola signal. Bit 7 of the next byte follows on
+/// bit 0 of a byte.
 int below(int bit) {
   return bit % kByteBits == 0 ? bit + 2 * kByteBits - 1 : bit - 1;
 }

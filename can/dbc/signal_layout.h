@@ -31,20 +31,20 @@ bool is_integer(const SignalLayout& layout);
 /// Number of bytes that a frame must have for this signal.
 size_t bytes_needed(const SignalLayout& layout);
 
-/// The functions below want a frame of at least bytes_needed().
+/// The functions below need a frame of at least bytes_needed().
 
 uint64_t raw_bits_from(const SignalLayout& layout, std::span<const uint8_t> bytes);
-/// The raw value as a whole number, with its sign. An unsigned value of 64 bits wraps to negative;
-/// of kFloat and kDouble these are the bits.
+/// The raw value as a whole number, with its sign. An unsigned value of 64 bits may become
+/// negative. For kFloat and kDouble this is the number that the bits form.
 int64_t raw_from(const SignalLayout& layout, std::span<const uint8_t> bytes);
-/// Not finite if a float of the frame is not.
+/// The result is not finite if a float in the frame is not.
 double physical_from(const SignalLayout& layout, std::span<const uint8_t> bytes);
 
 void insert_bits(const SignalLayout& layout, uint64_t raw, std::span<uint8_t> bytes);
 /// Writes the nearest value, limited to what the bits can hold. `physical` must be finite.
 void insert_physical(const SignalLayout& layout, double physical, std::span<uint8_t> bytes);
 
-/// The lowest and highest physical values that the bits can hold. Infinite for floats.
+/// The lowest and highest physical values that the bits can hold. They are infinite for floats.
 double lowest_physical(const SignalLayout& layout);
 double highest_physical(const SignalLayout& layout);
 

@@ -1,4 +1,4 @@
-// The table of a CRC of eight bits that takes its bytes from the highest bit down.
+// The table of a CRC of eight bits that takes the highest bit of each byte first.
 #pragma once
 
 #include <array>

@@ -42,7 +42,7 @@ class E2eSender {
 
 enum class E2eResult : uint8_t {
   kOk,
-  kSomeLost,     ///< usable, but frames before it were lost
+  kSomeLost,     ///< usable, although frames before it were lost
   kRepeated,     ///< not usable: it has the counter of the previous frame
   kWrongCrc,     ///< not usable: damaged, or a frame of another message
   kWrongLength,  ///< not usable
@@ -57,9 +57,10 @@ struct E2eCounters {
   uint64_t repeated = 0;
   uint64_t wrong_crc = 0;
   uint64_t wrong_length = 0;
-  uint64_t lost = 0;  ///< frames missing between usable ones; each gap modulo the counter's range
+  uint64_t lost = 0;  ///< frames missing between usable ones, counted modulo the counter's range
   uint64_t wrong_sequence = 0;  ///< E2eReceiver only: a counter that does not continue the sequence
-  uint64_t not_valid = 0;       ///< E2eReceiver only: good frames while the state was not VALID
+  /// E2eReceiver only: good frames that came while the state was not VALID.
+  uint64_t not_valid = 0;
 };
 
 /// Checks each frame of one message by itself, in the order of arrival. The caller has to detect

@@ -36,7 +36,7 @@ E2eCheck E2eMonitor::check_counter(uint8_t counter, Time received) {
   const bool silent = silence >= parameters_.silent_cycles * parameters_.cycle;
   const bool continues =
       steps > 0 && steps <= parameters_.max_delta_counter + silence / parameters_.cycle;
-  // The allowed step grows with time. Without this condition every counter would pass some time
+  // The allowed step grows with time. Without this condition, any counter would pass some time
   // after the sender of the sequence has gone.
   const bool undisputed = !silent || !other_counter_;
   if (continues && undisputed) {

@@ -19,26 +19,28 @@ struct E2eReceiverParameters {
   int sync_frames = 3;
   /// A sender that was silent for this many cycles may be replaced by another one.
   int silent_cycles = 4;
-  /// So many repeated or wrong counters in the window show a second sender.
+  /// This number of repeated or wrong counters in the window shows a second sender.
   int second_sender = 5;
   E2eStateParameters state{};
 };
 
-/// What the protection of one frame says, whatever the profile.
+/// The result of checking the protection of one frame, in any profile.
 struct E2eFrame {
   bool right_length = false;
   bool right_crc = false;
-  /// Nothing if the message has no counter: then neither repeated nor lost frames are noticed.
+  /// The counter, or nothing if the message has none. Then neither repeated nor lost frames are
+  /// noticed.
   std::optional<uint8_t> counter{};
 };
 
-/// The receiving side of the E2E profiles (AUTOSAR_PRS_E2EProtocol): CRC, length, repeated counter,
-/// MaxDeltaCounter, and resynchronisation after a wrong sequence, on top of which E2eStateMachine
-/// decides. AUTOSAR counts calls of a periodic task; here the time of arrival counts the cycles.
+/// The receiving side of the E2E profiles (AUTOSAR_PRS_E2EProtocol). It checks CRC, length,
+/// repeated counter and MaxDeltaCounter, and synchronizes again after a wrong sequence. From these
+/// checks E2eStateMachine decides. AUTOSAR counts the calls of a periodic task, while this class
+/// computes the number of cycles from the time of arrival.
 ///
-/// Beyond the standard: while the sender is still there, a frame with a wrong sequence does not
-/// change the expected counter. So frames of another sender are refused, and the sender's own
-/// frames are used. One thread.
+/// This class goes beyond the standard: while the sender is still there, a frame with a wrong
+/// sequence does not change the expected counter. So frames of another sender are refused, and the
+/// sender's own frames are used. One thread.
 class E2eMonitor {
  public:
   /// Counters run from 0 to `highest_counter`. The caller sets `right_crc` to false for a frame
@@ -67,11 +69,11 @@ class E2eMonitor {
   uint8_t highest_counter_;
   E2eReceiverParameters parameters_;
   E2eStateMachine machine_;
-  std::optional<Time> arrival_;  ///< of the latest frame, usable or not
+  std::optional<Time> arrival_;  ///< when the latest frame arrived, usable or not
 
-  std::optional<uint8_t> counter_;        ///< of the latest frame in sequence
-  Time in_sequence_{};                    ///< when it arrived
-  std::optional<uint8_t> other_counter_;  ///< of a sequence that may replace it
+  std::optional<uint8_t> counter_;        ///< counter of the latest frame in sequence
+  Time in_sequence_{};                    ///< when that frame arrived
+  std::optional<uint8_t> other_counter_;  ///< counter of a sequence that may replace it
   int other_run_ = 0;
   E2eCounters counters_;
 };

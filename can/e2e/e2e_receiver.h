@@ -5,7 +5,7 @@
 
 namespace bevloc::can {
 
-/// E2eMonitor for the profiles P02 and P05. One thread.
+/// An E2eMonitor for the profiles P02 and P05. One thread.
 class E2eReceiver {
  public:
   E2eReceiver(const E2eProtection& protection, uint8_t length,
@@ -24,7 +24,7 @@ class E2eReceiver {
   E2eMonitor monitor_;
 };
 
-/// What a profile says about a frame of a message of `length` bytes.
+/// Checks the protection of a frame, whose message has `length` bytes.
 E2eFrame e2e_frame_of(const Frame& frame, const E2eProtection& protection, uint8_t length);
 
 }  // namespace bevloc::can

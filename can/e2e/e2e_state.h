@@ -5,7 +5,7 @@
 
 namespace bevloc::can {
 
-/// What one check says to the state machine (E2E_PCheckStatusType).
+/// The result of one check, for the state machine (E2E_PCheckStatusType).
 enum class E2eCheck : uint8_t {
   kOk,             ///< a usable frame
   kError,          ///< wrong CRC or length
@@ -18,18 +18,18 @@ enum class E2eState : uint8_t { kNoData, kInit, kValid, kInvalid };
 
 /// The numbers of E2E_SMConfigType (AUTOSAR_PRS_E2EProtocol, "E2E state machine").
 struct E2eStateParameters {
-  int window = 10;      ///< checks that count, at most 32
-  int min_ok_init = 1;  ///< INIT to VALID
+  int window = 10;      ///< number of checks that count, at most 32
+  int min_ok_init = 1;  ///< usable frames for the change from INIT to VALID
   int max_error_init = 0;
-  int min_ok_valid = 1;  ///< with fewer, VALID becomes INVALID
+  int min_ok_valid = 1;  ///< with fewer usable frames, VALID becomes INVALID
   int max_error_valid = 3;
-  int min_ok_invalid = 5;  ///< INVALID to VALID
+  int min_ok_invalid = 5;  ///< usable frames for the change from INVALID to VALID
   int max_error_invalid = 1;
 };
 
-/// E2E_SMCheck of AUTOSAR, with two deviations to the safe side: a repeated frame counts as an
-/// error, because two senders of one message repeat each other's counters, and INIT does not become
-/// INVALID, because nothing is used before VALID in either. One thread.
+/// E2E_SMCheck of AUTOSAR, with two deviations to the safe side. A repeated frame counts as an
+/// error, because two senders of one message repeat each other's counters. INIT does not become
+/// INVALID, because no frame is used in either state. One thread.
 class E2eStateMachine {
  public:
   explicit E2eStateMachine(const E2eStateParameters& parameters) : parameters_(parameters) {}
@@ -37,7 +37,8 @@ class E2eStateMachine {
   E2eState add(E2eCheck check);
   E2eState state() const { return state_; }
 
-  /// Number of checks in the window that show a second sender: repeated or wrong sequence.
+  /// Number of checks in the window that show a second sender: repeated counters and wrong
+  /// sequences.
   int contradictions() const;
 
   /// Forgets the checks in the window and keeps the state.

@@ -49,7 +49,7 @@ DecodedSignal decoded(const DbcSignal& signal, std::span<const uint8_t> bytes) {
   return result;
 }
 
-/// Whether the raw value is the value, which a double may not hold.
+/// Whether the value of the signal is its raw value, which a double may not hold exactly.
 bool is_raw(const SignalLayout& layout) {
   return is_integer(layout) && layout.scale == 1.0 && layout.offset == 0.0;
 }
@@ -65,7 +65,7 @@ std::string number_text(const DecodedSignal& decoded) {
   const double value = decoded.value;
   const bool is_whole = std::abs(value) < kExact && value == std::trunc(value);
   if (is_whole && std::abs(value) >= kLarge) return fmt::format("{:.0f}", value);
-  // More digits of a small value may be those of rounding.
+  // Further digits of a small value may come from rounding only.
   return fmt::format("{:.{}g}", value, std::abs(value) < kLarge ? 10 : 15);
 }
 

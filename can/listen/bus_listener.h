@@ -21,16 +21,16 @@ namespace bevloc::can {
 struct DecodedSignal {
   const DbcSignal* signal = nullptr;
   double value = 0.0;
-  int64_t raw = 0;                ///< from raw_from()
-  bool is_available = true;       ///< not the value that VAL_ names SNA
-  std::string_view value_name{};  ///< of VAL_; empty without one
+  int64_t raw = 0;           ///< the result of raw_from()
+  bool is_available = true;  ///< false if VAL_ names the raw value SNA, or the value is not finite
+  std::string_view value_name{};  ///< the name that VAL_ gives; empty if it gives none
 };
 
 /// One frame of a message that a DBC file describes.
 struct DecodedFrame {
   const DbcMessage* message = nullptr;
-  std::optional<E2eResult> e2e{};  ///< of bevloc's own messages
-  bool is_short = false;           ///< fewer bytes than the message has; only what fits is decoded
+  std::optional<E2eResult> e2e{};  ///< the check of bevloc's own messages
+  bool is_short = false;  ///< the frame is shorter than the message; only what fits is decoded
   std::vector<DecodedSignal> signals{};
 };
 
@@ -39,19 +39,20 @@ class BusListener {
  public:
   struct Total {
     uint64_t frames = 0;
-    uint64_t unusable = 0;  ///< of bevloc's own messages: repeated, wrong CRC or wrong length
-    uint64_t lost = 0;      ///< likewise: missing before a usable frame
+    uint64_t unusable = 0;  ///< bevloc's own frames that are repeated or have a wrong CRC or length
+    uint64_t lost = 0;      ///< bevloc's own frames that are missing before a usable one
   };
 
-  /// Knows bevloc's messages with these base ids (which are apart), unless one of the files has
-  /// their identifiers. Messages that a file leaves out are unknown.
+  /// Decodes the messages of `files`, and bevloc's own messages with these base ids, which must be
+  /// apart. A message of a file replaces bevloc's message with the same identifier. Messages that a
+  /// file leaves out are unknown.
   BusListener(std::vector<Dbc> files, const BaseIds& base);
 
   /// Decodes a frame. Returns null if no file describes its message. The result is valid until the
   /// next call.
   const DecodedFrame* decode(const Frame& frame);
 
-  /// By name of the message.
+  /// The totals by name of the message.
   const std::map<std::string, Total>& totals() const { return totals_; }
   uint64_t unknown() const { return unknown_; }
   /// Whether some file has a message of this name and does not leave it out.
@@ -59,14 +60,14 @@ class BusListener {
 
  private:
   struct Known {
-    const DbcMessage* message = nullptr;  ///< may be left out
+    const DbcMessage* message = nullptr;  ///< a message that may be left out
     std::optional<E2eChecker> checker{};
   };
 
   void add_signals(const DbcMessage& message, std::span<const uint8_t> bytes);
 
   std::vector<Dbc> files_;
-  std::map<uint32_t, Known> known_;  ///< by identifier
+  std::map<uint32_t, Known> known_;  ///< the messages by identifier
   std::map<std::string, Total> totals_;
   uint64_t unknown_ = 0;
   DecodedFrame decoded_;
@@ -77,7 +78,7 @@ std::string_view name_of(E2eResult result);
 /// "0.520000 LOC_PosLocal ok LocalEast=1.23m LocalNorth=-4.50m".
 std::string text_of(const DecodedFrame& frame, double time_s);
 /// One line of JSON with time_s, id, message, e2e and signals. The value of a signal that is not
-/// available is null, that of a signal without scale and offset a whole number.
+/// available is null. The value of a signal without scale and offset is a whole number.
 std::string json_of(const DecodedFrame& frame, double time_s);
 
 }  // namespace bevloc::can

@@ -82,7 +82,8 @@ class Message(NamedTuple):
 
 )";
 
-/// The first byte of a message's content in LOC_Solution; 0 for a message that is not in it.
+/// Returns the first byte of a message's content in LOC_Solution, or 0 for a message that is not in
+/// it.
 size_t first_byte_in_solution(const Message& message) {
   const auto part = std::ranges::find(loc_solution::kParts, &message);
   if (part == loc_solution::kParts.end()) return 0;
@@ -98,7 +99,7 @@ void for_each_sent(Visit&& visit) {
   }
 }
 
-/// Names that say more than yes or no.
+/// Whether the signal has names that say more than yes or no.
 bool has_names(const Signal& signal) {
   return !signal.value_names.empty() && signal.max > 1.0;
 }

@@ -7,10 +7,10 @@
 
 namespace bevloc::can {
 
-/// A C99 header: length, cycle, data id and signals of each LOC_ message.
+/// Returns a C99 header with length, cycle, data id and signals of each LOC_ message.
 std::string consumer_header_text(const BaseIds& base = {});
 
-/// The same as a Python module.
+/// Returns the same constants as a Python module.
 std::string consumer_python_text(const BaseIds& base = {});
 
 }  // namespace bevloc::can

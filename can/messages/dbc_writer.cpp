@@ -11,7 +11,7 @@
 namespace bevloc::can {
 namespace {
 
-// Follows VERSION.
+// The lines that follow VERSION.
 constexpr std::string_view kHeader = R"(
 
 NS_ :

@@ -22,7 +22,7 @@ inline void encode_sigma(Frame& frame, const Signal& signal, double sigma) {
 }
 
 /// Encodes an upper bound of a magnitude. It is rounded up. A bound beyond the range of the signal
-/// becomes SNA and not the largest value, which would promise too much.
+/// becomes SNA, because the largest value would promise too much.
 inline void encode_bound(Frame& frame, const Signal& signal, double bound) {
   const bool in_range = bound >= 0.0 && bound <= signal.max;
   if (in_range)

@@ -48,7 +48,7 @@ class EpochGroup {
   Duration window_;
   Set set_;
   uint8_t epoch_ = 0;
-  unsigned present_ = 0;  ///< bit i: the frame of message i is in set_
+  unsigned present_ = 0;  ///< bit i is set if the frame of message i is in set_
   uint64_t incomplete_ = 0;
 };
 

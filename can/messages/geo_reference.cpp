@@ -19,7 +19,7 @@ GeodeticPose GeoReference::geodetic_from_map(const Se2& map_from_vehicle) {
                    height_m, map_from_local_);
     up_m -= height_m;
   }
-  // Up to a factor, the inverse of the conversion of the direction in map_from_geodetic().
+  // This is, up to a factor, the inverse of the conversion of the direction in map_from_geodetic().
   const auto& r = map_from_local_;
   const double x = std::cos(map_from_vehicle.yaw_rad);
   const double y = std::sin(map_from_vehicle.yaw_rad);

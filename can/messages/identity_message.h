@@ -9,13 +9,13 @@
 
 namespace bevloc::can {
 
-/// CRC-32 of everything that decides what the localizer sends.
+/// The CRC-32 of each item that decides what the localizer sends.
 struct Identity {
-  uint32_t program = 0;        ///< of the text that `bevlocd --version` prints
-  uint32_t configuration = 0;  ///< of the file
-  uint32_t model = 0;          ///< of the file
-  uint32_t rig = 0;            ///< of the file
-  uint32_t map = 0;            ///< of the content, whatever the file format (map_checksum())
+  uint32_t program = 0;        ///< CRC of the text that `bevlocd --version` prints
+  uint32_t configuration = 0;  ///< CRC of the file
+  uint32_t model = 0;          ///< CRC of the file
+  uint32_t rig = 0;            ///< CRC of the file
+  uint32_t map = 0;            ///< CRC of the content, whatever the file format (map_checksum())
 };
 
 namespace loc_identity {

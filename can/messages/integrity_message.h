@@ -53,7 +53,7 @@ constexpr Signal reason_flag(std::string_view name, int bit, std::string_view co
           .comment = comment};
 }
 
-/// In the order of the bits of enum Why.
+/// The reasons, in the order of the bits of enum Why.
 inline constexpr std::array<Signal, 6> kWhy{{
     reason_flag(
         "Why_GnssContradicts", 16,

@@ -67,7 +67,7 @@ inline constexpr std::array<Signal, 6> kCameraOk{{
 inline constexpr Signal kOdometryOk =
     ok_flag("OdometryOk", 30, "Valid wheel speed and yaw rate arrive in time.");
 inline constexpr Signal kGnssOk = ok_flag("GnssOk", 31, "Valid GNSS positions arrive in time.");
-/// In the order of the bits of enum Why.
+/// The reasons, in the order of the bits of enum Why.
 inline constexpr std::array<Signal, 16> kWhy{{
     reason_flag("Why_CameraMissing", 0, "At least one camera delivers no usable frames in time."),
     reason_flag("Why_CamerasUnsynchronized", 1, "The cameras do not expose at the same time."),

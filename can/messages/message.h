@@ -18,7 +18,7 @@ struct BaseIds {
   /// Each family of messages has fewer identifiers than this.
   static constexpr uint32_t kFamily = 0x40;
   static constexpr uint32_t kFirst = 1;
-  /// The largest one, because identifiers have 11 bits.
+  /// The largest base identifier, because identifiers have 11 bits.
   static constexpr uint32_t kLast = 0x800 - kFamily;
 
   uint32_t localizer = 0x500;
@@ -37,7 +37,7 @@ struct Message {
   uint8_t length = kMaxClassicLength;
   FrameFormat format = FrameFormat::kClassic;
   int cycle_ms = 0;
-  uint16_t data_id = 0;  ///< for the E2E protection; the same for all counter values
+  uint16_t data_id = 0;  ///< for the E2E protection, the same for all counter values
   std::span<const Signal* const> signals{};  ///< without the E2E header
   std::string_view comment{};
 

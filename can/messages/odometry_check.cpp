@@ -14,7 +14,7 @@ constexpr double kSlowInterval_s = 0.045;
 constexpr double kTimelyInterval_s = 0.030;
 /// The mean follows the interval within about ten samples.
 constexpr double kIntervalGain = 0.1;
-/// A longer interval counts as this one, so that one gap of any length does not count as slow.
+/// A longer interval counts as this long, so that one gap of any length does not count as slow.
 constexpr double kLongestInterval_s = 0.2;
 
 }  // namespace

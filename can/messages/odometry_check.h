@@ -12,22 +12,23 @@
 namespace bevloc::can {
 
 /// What a road vehicle can do, with a margin for noise. The limits are wide, because they refuse
-/// only what no vehicle does; the tracker weighs everything else.
+/// only what no vehicle does. The tracker weighs everything else.
 struct OdometryLimits {
   double rear_track_m = 1.6;  ///< distance between the rear wheels
 
-  /// The wheel speeds may differ from yaw rate times track by this, by this share of the speed
-  /// (tyres of different wear differ by up to 3 % in radius), and by this length times the yaw rate
-  /// (error of the track, slip in bends).
+  /// The difference of the wheel speeds may deviate from yaw rate times track by the sum of three
+  /// parts: this speed, this share of the vehicle's speed (tyres of different wear differ by up to
+  /// 3 % in radius), and this length times the yaw rate (error of the track, slip in bends).
   double wheel_difference_mps = 0.8;
   double wheel_difference_share = 0.03;
   double wheel_difference_m = 0.3;
   /// The mean of some samples is compared with what was learned from the samples before.
   WheelDifferenceLimits learned_wheel_difference;
 
-  /// Along the vehicle tyres hold about 1.2 g when braking; no series car gains more than 1 g. The
-  /// step is for noise and a late time stamp. Each sample is compared with those of the last 100
-  /// ms, because spinning wheels gain their speed within several samples.
+  /// Along the vehicle, tyres hold about 1.2 g when braking, and no series car gains speed with
+  /// more than 1 g. The step allows for noise and a late time stamp. Each sample is compared with
+  /// those of the last 100 ms, at most eight, because spinning wheels gain their speed within
+  /// several samples.
   double braking_mps2 = 12.0;
   double gaining_mps2 = 10.0;
   double speed_step_mps = 0.3;
@@ -35,14 +36,15 @@ struct OdometryLimits {
   double yaw_rate_step_radps = 0.05;
   Duration compared_with = std::chrono::milliseconds(100);
 
-  /// Across: 1.2 g. The turning radius of the rear axle of a small car is about 3 m.
+  /// Across the vehicle, tyres hold about 1.2 g. The turning radius of the rear axle of a small car
+  /// is about 3 m.
   double lateral_acceleration_mps2 = 12.0;
   double turning_radius_m = 2.0;
   double yaw_rate_at_standstill_radps = 0.2;
 
   /// After a jump, only values near the one before the jump are used, because spinning or locked
-  /// wheels end with a second jump back. A level that has lasted for `settled_after` is
-  /// used again: spin and lock control end a slip sooner.
+  /// wheels end with a second jump back. A level that has lasted for `settled_after` is used again,
+  /// because spin and lock control end a slip sooner.
   double disputed_acceleration_mps2 = 0.5;
   Duration settled_after = std::chrono::milliseconds(2500);
 };
@@ -73,8 +75,8 @@ class OdometryCheck {
 
   OdometryVerdict judge(const Wheels& sample);
 
-  /// Whether the samples come much less often than every `kOdometryCycleMs`. Samples every 45 ms or
-  /// more on average set it, less than 30 ms clear it.
+  /// Whether the samples come much less often than every `kOdometryCycleMs`. This becomes true when
+  /// their mean interval exceeds 45 ms, and false when it is below 30 ms.
   bool is_slow() const { return slow_; }
 
   /// OdometrySample::wheel_lean of the latest sample.

@@ -20,7 +20,7 @@ enum class TimeSource : uint8_t { kFreeRunning = 0, kPtp = 1, kGnss = 2, kNtp = 
 struct ClockReport {
   TimeSource source = TimeSource::kFreeRunning;
   Duration utc_offset{};  ///< UTC since 1970 minus the localizer's clock
-  Duration utc_error{};   ///< bound of its error; meaningless while free running, as is the offset
+  Duration utc_error{};   ///< bound of its error; both are meaningless while free running
 };
 
 /// The content of LOC_Status.
@@ -54,7 +54,7 @@ struct PoseReport {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
   LocalizerStatus status;
-  ClockReport clock;                 ///< of LOC_Clock; the status has its own source
+  ClockReport clock;                 ///< content of LOC_Clock; the status has its own source
   std::optional<Time> capture_time;  ///< time of the newest frames that contributed to the pose
   Time pose_time{};                  ///< the moment to which pose and velocity are predicted
   Se2 map_from_vehicle{kUnknown, kUnknown, kUnknown};

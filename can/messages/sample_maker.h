@@ -32,17 +32,17 @@ class SampleMaker {
   SampleMaker(GeodeticPosition map_origin, const OdometryLimits& limits)
       : geo_(map_origin), odometry_check_(limits) {}
 
-  /// To be called first for each frame, with its time of arrival.
+  /// Call it first for each frame, with its time of arrival.
   void note_frame(Time received) { latest_ = received; }
   void note_implausible() { fault_times_.implausible = latest_; }
   void note_foreign_sender() { fault_times_.foreign_sender = latest_; }
 
-  /// Nothing if the wheels are not plausible.
+  /// Returns nothing if the wheels are not plausible.
   std::optional<OdometrySample> odometry(const OdometryCheck::Wheels& wheels);
   GnssSample gnss(const GeodeticFix& fix, Time time);
 
   const VehicleFaultTimes& fault_times() const { return fault_times_; }
-  /// Adds what was refused here.
+  /// Adds the numbers of samples that this class made or refused.
   void add_to(VehicleInputCounters& counters) const;
 
  private:

@@ -39,7 +39,7 @@ struct VehicleInputCounters {
   }
 };
 
-/// What one frame completes.
+/// The samples that one frame completes.
 struct VehicleSamples {
   std::optional<OdometrySample> odometry{};
   std::optional<GnssSample> gnss{};
@@ -50,13 +50,15 @@ struct VehicleSamples {
 
 /// When the vehicle's messages were last wrong.
 struct VehicleFaultTimes {
-  /// How long why() tells a fault after it.
+  /// How long why() reports a fault after it occurred.
   static constexpr Duration kHold = std::chrono::seconds(1);
 
-  std::optional<Time> implausible{};     ///< odometry was refused, INVALID or too slow
-  std::optional<Time> foreign_sender{};  ///< another node sent LOC_ messages, or two nodes the same
+  std::optional<Time> implausible{};  ///< when odometry was refused, INVALID or too slow
+  /// When another node sent LOC_ messages, or two nodes sent the same message.
+  std::optional<Time> foreign_sender{};
 
-  /// Returns kOdometryImplausible and kForeignSender, as far as `now` is within `kHold` of them.
+  /// Returns kOdometryImplausible, kForeignSender, both or none: the faults that are at most
+  /// `kHold` old at `now`.
   WhyMask why(Time now) const {
     const auto is_recent = [now](const std::optional<Time>& fault) {
       return fault && now - *fault <= kHold;

@@ -13,7 +13,7 @@ namespace bevloc::can {
 
 /// Odometry as the sensors measure it.
 struct WheelOdometry {
-  double left_mps = 0.0;  ///< rear wheels
+  double left_mps = 0.0;  ///< speeds of the rear wheels
   double right_mps = 0.0;
   double yaw_rate_radps = 0.0;
 };

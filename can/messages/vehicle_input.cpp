@@ -6,14 +6,15 @@
 namespace bevloc::can {
 namespace {
 
-/// Long enough for a busy bus, and short compared with the 16 cycles after which an epoch repeats.
+/// The window is long enough for a busy bus, and short compared with the 16 cycles after which an
+/// epoch repeats.
 constexpr Duration window_of(int cycle_ms) {
   return std::chrono::milliseconds(4 * cycle_ms);
 }
 
-/// Odometry is tolerated down to one frame in 10 cycles (200 ms), which is the default of
-/// `health.odometry_timeout_ms`, and then has to be on time again: every second frame. GNSS has 20
-/// cycles (2 s), so that a receiver with 1 Hz can be used.
+/// Odometry stays VALID down to one frame in 10 cycles (200 ms), which is the default of
+/// `health.odometry_timeout_ms`. Once INVALID, it needs every second frame to become VALID again.
+/// GNSS has 20 cycles (2 s), so that a receiver with 1 Hz can be used.
 E2eReceiverParameters parameters_of(const Message& message) {
   E2eReceiverParameters parameters{.cycle = std::chrono::milliseconds(message.cycle_ms)};
   if (message.cycle_ms > kOdometryCycleMs) {

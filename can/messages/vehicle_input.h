@@ -14,9 +14,9 @@
 
 namespace bevloc::can {
 
-/// Uses only the frames that E2eReceiver accepts. Wheel speed and yaw rate
-/// of one epoch make an odometry sample. Latitude, longitude and heading of one epoch make a GNSS
-/// sample, which has no yaw when the heading is not available. One thread.
+/// Uses only the frames that E2eReceiver accepts. Wheel speed and yaw rate of one epoch make an
+/// odometry sample. Latitude, longitude and heading of one epoch make a GNSS sample, which has no
+/// yaw if the heading is not available. One thread.
 class VehicleInput final : public VehicleDecoder {
  public:
   VehicleInput(const BaseIds& base, GeodeticPosition map_origin, const OdometryLimits& limits = {});

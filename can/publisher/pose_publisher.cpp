@@ -14,7 +14,8 @@ std::array<E2eSender, sizeof...(I)> solution_senders(std::index_sequence<I...>) 
   return {E2eSender(kSolutionMessages[I]->protection())...};
 }
 
-/// Calls are a little early or late. The slack selects the call that is nearest to the cycle's end.
+/// Calls come a little early or late. The slack selects the call that is nearest to the end of the
+/// cycle.
 bool is_due(Time sent, int cycle_ms, Time now) {
   constexpr Duration kSlack = std::chrono::milliseconds(kSolutionCycleMs) / 2;
   return now - sent >= std::chrono::milliseconds(cycle_ms) - kSlack;
@@ -110,7 +111,7 @@ void PosePublisher::send_authentication(Time now) {
   epoch_frame_count_ = 0;
 }
 
-/// Not part of what LOC_Authentication covers, so that a receiver need not know it.
+/// LOC_Authentication does not cover this frame, so that a receiver need not know it.
 void PosePublisher::send_clock_if_due(const ClockReport& clock, Time now) {
   if (clock_sent_at_ && !is_due(*clock_sent_at_, loc_clock::kCycleMs, now)) return;
   clock_sent_at_ = now;

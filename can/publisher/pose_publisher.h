@@ -23,15 +23,15 @@ struct PosePublisherConfig {
   ReportLimits limits{};
   FrameFormat format = FrameFormat::kClassic;
   Identity identity{};
-  bool sends_clock = false;  ///< LOC_Clock
+  bool sends_clock = false;  ///< whether to send LOC_Clock
 };
 
 /// Sends each report as one epoch of protected frames, or on CAN FD as one frame. The caller calls
 /// publish() once per cycle (kSolutionCycleMs). LOC_Status is sent on every change and every
-/// kStatusCycleMs, LOC_Identity every loc_identity::kItemCycleMs, LOC_Clock every
-/// loc_clock::kCycleMs. A status frame that found no room
-/// on the bus is sent again in the next cycle. A pose that must not be used is sent as SNA, with
-/// the reason in the status (status_to_send()).
+/// kStatusCycleMs, LOC_Identity every loc_identity::kItemCycleMs, and LOC_Clock every
+/// loc_clock::kCycleMs. A status frame that found no room on the bus is sent again in the next
+/// cycle. A pose that must not be used is sent as SNA, with the reason in the status
+/// (status_to_send()).
 ///
 /// Does not allocate. One thread.
 class PosePublisher {
@@ -57,7 +57,7 @@ class PosePublisher {
   void send_identity_if_due(Time now);
   void send_authentication(Time now);
   void send_clock_if_due(const ClockReport& clock, Time now);
-  /// Goes on to the next item of the identity when it is due. Returns whether it was.
+  /// Goes on to the next item of the identity if it is due. Returns whether it was due.
   bool advance_identity(Time now);
 
   Bus& bus_;

@@ -48,7 +48,7 @@ double sigma_along(const Eigen::Matrix3d& covariance, double direction_rad) {
   return sigma_of(axis.dot(covariance.topLeftCorner<2, 2>() * axis));
 }
 
-/// Leaves an age beyond the range of the signal SNA, because the largest value would be too small.
+/// An age beyond the range of the signal stays SNA, because the largest value would be too small.
 void encode_time(Frame& frame, Time capture_time, Time now) {
   using std::chrono::microseconds;
   const double age_ms = 1e3 * to_seconds(now - capture_time);
@@ -90,7 +90,7 @@ void encode_correction(Frame& frame, const Se2& correction) {
   encode(frame, loc_correction::kYaw, degrees(correction.yaw_rad));
 }
 
-/// The exponent n of a risk of at most 10^-n.
+/// Returns the largest whole exponent n for which the risk is at most 10^-n.
 double risk_exponent(double risk) {
   constexpr double kLogarithmError = 1e-9;  // a whole exponent must not become one less
   return std::floor(-std::log10(risk) + kLogarithmError);

@@ -22,13 +22,13 @@ struct ReportLimits {
 bool claims_pose(HealthState state);
 
 /// Returns the status to send. It is the status of the report, unless that claims a pose which must
-/// not be sent: not finite, out of range or with an invalid covariance (kPoseInvalid), or too old
-/// (kPoseStale). Then the state is LOST, with these reasons.
+/// not be sent. Such a pose is not finite, is out of range or has an invalid covariance
+/// (kPoseInvalid), or is too old (kPoseStale). Then the state is LOST, with these reasons.
 LocalizerStatus status_to_send(const PoseReport& report, const ReportLimits& limits, Time now);
 
 Frame status_frame(const LocalizerStatus& status, const BaseIds& base);
 
-/// LOC_Clock. Without a source of time the error is SNA.
+/// Returns the frame LOC_Clock. Its error is SNA if there is no source of time.
 Frame clock_frame(const ClockReport& clock, const BaseIds& base);
 
 /// `item` is a raw value of loc_identity::kItem.

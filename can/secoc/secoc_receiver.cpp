@@ -65,8 +65,8 @@ std::span<const ReceivedFrame> SecocReceiver::release(Group& group,
   return std::span(group.frames).first(group.members.size());
 }
 
-/// Tries the lower bits with all announced upper bits and, as these may be forged, with those of
-/// the latest authentic epochs, each also plus one.
+/// Tries the lower bits with all announced upper bits. Because these may be forged, also tries the
+/// upper bits of the latest authentic epochs. Tries each of them plus one, too.
 bool SecocReceiver::is_authentic(Group& group, const Frame& authentication) {
   std::array<uint64_t, kMostAnnouncements + 2> highs{latest_ >> 16U, group.latest >> 16U};
   size_t count = 2;

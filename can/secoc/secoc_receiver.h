@@ -14,8 +14,8 @@
 namespace bevloc::can {
 
 struct SecocCounters {
-  uint64_t authentic = 0;          ///< epochs that were let through
-  uint64_t wrong_mac = 0;          ///< epochs that are forged, damaged or replayed
+  uint64_t authentic = 0;          ///< epochs that passed
+  uint64_t wrong_mac = 0;          ///< epochs that were forged, damaged or replayed
   uint64_t incomplete = 0;         ///< epochs without all frames, or without authentication
   uint64_t no_freshness = 0;       ///< epochs before the freshness value of the sender is known
   uint64_t wrong_length = 0;       ///< frames of the messages that take part in authentication
@@ -23,17 +23,18 @@ struct SecocCounters {
 };
 
 /// Holds the frames of an epoch back until their authentication has come. The freshness value must
-/// be higher than that of every authentic epoch of the same messages before; so a replay is refused
-/// as soon as one later epoch was received. Odometry may overtake GNSS on the bus, because its
-/// identifiers are lower. So the freshness value may be a little lower than the highest of all.
+/// be higher than that of every earlier authentic epoch of the same messages. So a replay is
+/// refused as soon as one later epoch was received. Odometry may overtake GNSS on the bus, because
+/// its identifiers are lower. So the freshness value may be a little lower than the highest one of
+/// all messages.
 ///
 /// Announcements (VEH_Freshness) have no authentication. So the receiver keeps the latest few
-/// different ones, which includes the sender's own, and first only listens for a while: it learns
-/// the highest authentic freshness value, and lets no frame through. It listens again when there
-/// are more announcements than it can keep, because then the sender's own may be lost. One thread.
+/// different ones, among them the sender's own. At first it only listens for a while: it learns the
+/// highest authentic freshness value, and lets no frame through. It listens again when there are
+/// more announcements than it can keep, because then the sender's own may be lost. One thread.
 class SecocReceiver {
  public:
-  /// Longer than a few cycles of VEH_Freshness.
+  /// The time for which the receiver only listens, which is a few cycles of VEH_Freshness.
   static constexpr Duration kListening = std::chrono::milliseconds(500);
 
   SecocReceiver(Cmac cmac, const BaseIds& base, Duration listening = kListening)
@@ -47,14 +48,14 @@ class SecocReceiver {
 
  private:
   static constexpr size_t kMaxMembers = 3;
-  /// How many later epochs of other messages may come before an epoch: those of 160 ms.
+  /// How many later epochs of other messages may overtake an epoch: those of 160 ms.
   static constexpr uint64_t kMostOvertaking = 8;
   /// Messages that one message authenticates.
   struct Group {
     const Message* authentication;
     std::span<const Message* const> members;
     std::array<ReceivedFrame, kMaxMembers> frames{};
-    unsigned present = 0;  ///< bit i: frames[i] is of the epoch `epoch`
+    unsigned present = 0;  ///< bit i is set if frames[i] belongs to `epoch`
     int64_t epoch = 0;
     uint64_t latest = 0;  ///< freshness of the latest authentic epoch of this group
   };
@@ -63,10 +64,10 @@ class SecocReceiver {
   static constexpr const Message* kGnss[] = {
       &veh_gnss_latitude::kMessage, &veh_gnss_longitude::kMessage, &veh_gnss_heading::kMessage};
 
-  /// The upper bits of a freshness value, as somebody announced them.
+  /// The upper bits of a freshness value, as some node announced them.
   struct Announcement {
     uint64_t high = 0;
-    Time received = Time::min();  ///< for the last time; min(): none
+    Time received = Time::min();  ///< when it came last; min() if the place is free
   };
   static constexpr size_t kMostAnnouncements = 4;
 
@@ -83,7 +84,7 @@ class SecocReceiver {
   ReceivedFrame passed_;
   Duration listening_;
   std::array<Announcement, kMostAnnouncements> announcements_{};
-  Time listens_until_ = Time::max();  ///< max() before the first announcement
+  Time listens_until_ = Time::max();  ///< max() until the first announcement comes
   uint64_t latest_ = 0;               ///< the highest freshness of an authentic epoch
   SecocCounters counters_;
 };

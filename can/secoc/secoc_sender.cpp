@@ -9,7 +9,7 @@ Frame SecocSender::authenticate(const Message& message, std::span<const Frame> f
   ++freshness_;
   Frame frame = blank_frame(message, base);
   insert_raw(frame, secoc::kFreshnessLow, static_cast<int64_t>(freshness_ & 0xFFFF));
-  // Without a code the receiver refuses the epoch, as it must.
+  // If OpenSSL fails, the code is 0 and the receiver refuses the epoch, as it must.
   const uint32_t mac = authenticator_.mac(message, freshness_, frames).value_or(0);
   insert_raw(frame, secoc::kMac, mac);
   return frame;

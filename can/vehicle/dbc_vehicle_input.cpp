@@ -11,14 +11,14 @@ namespace bevloc::can {
 namespace {
 
 constexpr int kMostCycles = 4;
-/// No measurement is exact.
+/// The smallest sigmas, because no measurement is exact.
 constexpr double kLeastSigma_m = 0.01;
 constexpr double kLeastSigma_deg = 0.01;
 
 E2eReceiverParameters parameters_of(const BoundMessage& message) {
   E2eReceiverParameters parameters{.cycle = message.cycle};
   if (!message.has_odometry) {
-    // As VehicleInput: a receiver of GNSS may be slow.
+    // A GNSS receiver may be slow, so the parameters are those of VehicleInput.
     parameters.state.window = 20;
     parameters.state.min_ok_invalid = 2;
   }
@@ -82,7 +82,7 @@ VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
   return samples;
 }
 
-/// Whether a position is new and its heading needs no more waiting.
+/// Whether a position is new, and there is no heading to wait for.
 bool DbcVehicleInput::is_position_complete(Time now) const {
   const bool heading_came =
       all_new(heading_signals_) ||
@@ -90,7 +90,7 @@ bool DbcVehicleInput::is_position_complete(Time now) const {
   return !position_signals_.empty() && all_new(position_signals_) && heading_came;
 }
 
-/// Whether `message` has one of these signals, and another one of them no longer comes.
+/// Whether `message` has one of these signals, while another one of them no longer comes.
 bool DbcVehicleInput::waits_for_old(const std::vector<size_t>& signals, size_t message,
                                     Time now) const {
   const auto is_of_message = [&](size_t signal) {
@@ -155,8 +155,8 @@ bool DbcVehicleInput::is_old(size_t signal, Time now) const {
   return received == Time::min() || now - received > kMostCycles * cycle_of(signal);
 }
 
-/// Nothing if the signal of the condition is missing, too old or not available. No condition always
-/// holds.
+/// Returns nothing if the signal of the condition is missing, too old or not available. An empty
+/// condition always holds.
 std::optional<bool> DbcVehicleInput::holds(const std::optional<BoundCondition>& condition,
                                            Time now) const {
   if (!condition) return true;
@@ -180,7 +180,7 @@ std::optional<OdometrySample> DbcVehicleInput::odometry(Time now) {
     return std::nullopt;
   }
   double yaw_rate_radps = slots_[turning.signal].value;
-  // A signal may have a sign beside the condition. Both then say the same.
+  // A signal may have a sign although there is a condition. Then both say the same.
   if (*negative) yaw_rate_radps = -std::abs(yaw_rate_radps);
   if (turning.positive_right) yaw_rate_radps = -yaw_rate_radps;
   WheelFusion fusion(rear_track_m_, moving.wheelbase_m, yaw_rate_radps);
@@ -204,7 +204,7 @@ double DbcVehicleInput::sigma_m(const std::optional<size_t>& signal) const {
   return std::max(kLeastSigma_m, signal ? slots_[*signal].value : binding_.gnss->sigma_m);
 }
 
-/// Nothing while the receiver has a position without a heading of the same `time`.
+/// Returns nothing if there is no valid heading within four cycles of `time`.
 std::optional<GeodeticFix::Heading> DbcVehicleInput::heading(Time now, Time time) const {
   const BoundGnss& gnss = *binding_.gnss;
   if (!gnss.heading || !holds(gnss.heading_valid, now).value_or(false)) return std::nullopt;

@@ -13,12 +13,12 @@ namespace bevloc::can {
 
 /// Makes samples from the signals of a VehicleBinding, as VehicleInput does from bevloc's own
 /// messages. Frames must pass counter and checksum (E2eMonitor). An odometry sample is complete
-/// when all wheels and the yaw rate have new values, a GNSS sample when all its signals have some.
-/// The time of a sample is that of its earliest value. The values of one sample may be at most four
-/// cycles of their message apart, and a condition (valid, backward) may be at most four cycles of
-/// its message old. A GNSS sample has no heading if the heading or its sigma is further from the
-/// sample's time, and does not wait for a heading that is more than four cycles old. One thread;
-/// does not allocate after construction.
+/// when all wheels and the yaw rate have new values. A GNSS sample is complete when all its signals
+/// have new values. The time of a sample is that of its earliest value. The values of one sample
+/// may be at most four cycles of their message apart, and a condition (valid, backward) may be at
+/// most four cycles of its message old. A GNSS sample has no heading if the heading or its sigma is
+/// further from the sample's time, and does not wait for a heading that is more than four cycles
+/// old. One thread. Does not allocate after construction.
 class DbcVehicleInput final : public VehicleDecoder {
  public:
   /// `base` has the identifiers of the localizer's own messages.
@@ -36,7 +36,7 @@ class DbcVehicleInput final : public VehicleDecoder {
     int64_t raw = 0;
     Time received = Time::min();
     bool available = false;  ///< in range and not SNA
-    bool is_new = false;     ///< since the latest sample
+    bool is_new = false;     ///< no sample has used the value yet
   };
 
   /// Returns whether a value was replaced that no sample had used.
@@ -45,10 +45,10 @@ class DbcVehicleInput final : public VehicleDecoder {
   bool is_position_complete(Time now) const;
   bool waits_for_old(const std::vector<size_t>& signals, size_t message, Time now) const;
   Duration cycle_of(size_t signal) const;
-  /// Whether the latest value is more than four cycles old, or never came.
+  /// Whether the latest value is more than four cycles old, or none has come yet.
   bool is_old(size_t signal, Time now) const;
-  /// Marks the values as used, and returns the time of the first. Nothing if they are too far apart
-  /// or one is not available.
+  /// Marks the values as used, and returns the time of the first one. Returns nothing if they are
+  /// too far apart or one is not available.
   std::optional<Time> take(const std::vector<size_t>& signals);
   std::optional<bool> holds(const std::optional<BoundCondition>& condition, Time now) const;
   std::optional<OdometrySample> odometry(Time now);

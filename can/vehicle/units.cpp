@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// What quantities with the same units have in common.
+/// The dimension, which quantities with the same units share.
 enum class Dimension { kSpeed, kTurning, kAngle, kLength };
 
 struct Unit {

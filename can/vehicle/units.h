@@ -1,4 +1,4 @@
-// The units of signals in DBC files, and what they are in the units that bevloc computes with.
+// The units of signals in DBC files, and their factors to the units that bevloc computes with.
 #pragma once
 
 #include <optional>
@@ -16,10 +16,11 @@ enum class Quantity {
   kLength,        ///< m: the sigma of a position
 };
 
-/// The factor from this unit; nothing for an unknown one. Case and spaces do not matter.
+/// Returns the factor from this unit to that of the quantity, or nothing for an unknown unit. Case
+/// and spaces do not matter.
 std::optional<double> factor_of_unit(Quantity quantity, std::string_view unit);
 
-/// "m/s, km/h, mph or kn".
+/// Returns the known units of a quantity, such as "m/s, km/h, mph or kn".
 std::string_view units_of(Quantity quantity);
 
 }  // namespace bevloc::can

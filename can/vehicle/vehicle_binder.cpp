@@ -24,8 +24,8 @@ std::vector<std::string> names_in(const std::vector<Named>& all) {
   return names;
 }
 
-/// Each plausible signal of a quantity can hold the value `reaches` (0: not checked) and has at
-/// most this step, both in the unit of the quantity.
+/// A plausible signal of a quantity can hold the value `reaches` (not checked if 0), and its step
+/// is at most `step`. Both are in the unit of the quantity.
 struct Sanity {
   double reaches;
   double step;
@@ -97,7 +97,7 @@ std::vector<int64_t> not_available_values(const DbcSignal& signal) {
   return values;
 }
 
-/// The raw values that a value of a condition means.
+/// Returns the raw values that a value of a condition means.
 Bound<std::vector<int64_t>> raw_values_of(const std::string& text, const DbcSignal& signal) {
   std::vector<int64_t> values = signal.values_named(text);
   if (values.empty()) {
@@ -129,7 +129,8 @@ bool fits(uint64_t value, const SignalLayout& layout) {
   return layout.length_bits == 64 || value >> layout.length_bits == 0;
 }
 
-/// Refuses a signal unless frames have it always, or at one value of the only multiplexor.
+/// Refuses a signal unless all frames have it, or all frames with one value of the only
+/// multiplexor.
 Bound<void> check_multiplexing(const DbcSignal& signal, const DbcMessage& message) {
   if (signal.multiplexed_at.empty()) return {};
   if (message.nested_multiplexing) {
@@ -225,7 +226,7 @@ size_t VehicleBinder::bind(const DbcMessage& message, const DbcSignal& signal) {
     bound.min = -std::numeric_limits<double>::infinity();
     bound.max = std::numeric_limits<double>::infinity();
   } else {
-    // Limits that are written with few digits must not refuse the value beside them.
+    // A limit that is written with few digits must not refuse the raw value that is nearest to it.
     const double half_step = 0.5 * std::abs(signal.layout.scale);
     bound.min -= half_step;
     bound.max += half_step;

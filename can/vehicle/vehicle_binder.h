@@ -20,7 +20,7 @@ namespace bevloc::can {
 struct Refusal {
   std::string found;
   std::string wanted;
-  std::string key{};  ///< which of several keys has the value; empty: the first one
+  std::string key{};  ///< which of several keys has the value; empty if it is the first one
 };
 template <typename T>
 using Bound = tl::expected<T, Refusal>;
@@ -30,20 +30,20 @@ inline tl::unexpected<Refusal> refusal(std::string found, std::string wanted,
   return tl::unexpected(Refusal{std::move(found), std::move(wanted), std::move(key)});
 }
 
-/// Nothing unless all of the text is a whole number.
+/// Returns the whole number that the text is, or nothing if it is none.
 std::optional<int64_t> whole_number(const std::string& text);
 
 /// What the configuration says about the protection of a message.
 struct ProtectionRequest {
   std::string message;
   std::optional<double> cycle_ms{};
-  std::string counter{};                      ///< a signal; empty: none
-  std::optional<uint32_t> highest_counter{};  ///< default: all bits of the counter set
-  std::string checksum{};                     ///< a signal; empty: none
+  std::string counter{};                      ///< name of the signal; empty if there is none
+  std::optional<uint32_t> highest_counter{};  ///< by default, all bits of the counter are set
+  std::string checksum{};                     ///< name of the signal; empty if there is none
   std::optional<ChecksumKind> kind{};
   std::vector<uint16_t> data_ids{};
 
-  /// True if this says how the message is protected. If it does not, the attributes of the DBC file
+  /// Whether this says how the message is protected. If it does not, the attributes of the DBC file
   /// do.
   bool replaces_attributes() const { return kind || !counter.empty(); }
 };
@@ -57,9 +57,10 @@ class VehicleBinder {
 
   Bound<std::string> message_name(const std::string& name) const;
 
-  /// The index of a signal in the binding that carries this quantity. `unit` replaces the unit of
-  /// the DBC file unless it is empty. Refuses units that are not known, ranges and steps that no
-  /// signal of this quantity has, and a second value from one signal, except for lengths.
+  /// Binds a signal that carries this quantity, and returns its index in the binding. `unit`
+  /// replaces the unit of the DBC file unless it is empty. Refuses units that are not known, and
+  /// ranges and steps that no signal of this quantity has. Refuses a second value from one signal,
+  /// except for lengths.
   Bound<size_t> quantity(const std::string& signal, const std::string& default_message,
                          Quantity quantity, const std::string& unit);
 
@@ -72,14 +73,14 @@ class VehicleBinder {
 
   VehicleBinding& binding() { return binding_; }
 
-  /// What is wrong with a message.
+  /// Says what is wrong with a message.
   struct MessageRefusal {
     std::string message;
     Refusal refusal;
   };
 
-  /// To be called last: completes protection from the attributes of the DBC file, and checks
-  /// cycles, lengths, and that each value, counter and checksum has bits of its own.
+  /// Call it last: completes protection from the attributes of the DBC file, and checks cycles,
+  /// lengths, and that each value, counter and checksum has bits of its own.
   tl::expected<VehicleBinding, MessageRefusal> finish();
 
  private:
@@ -99,7 +100,7 @@ class VehicleBinder {
 
   const Dbc& dbc_;
   VehicleBinding binding_;
-  std::map<size_t, Quantity> quantities_;  ///< of the signals that carry a value
+  std::map<size_t, Quantity> quantities_;  ///< quantities of the signals that carry a value
   std::vector<ProtectionRequest> requests_;
 };
 

@@ -1,5 +1,4 @@
-// Binds the counters and checksums of messages, and checks the messages at the
-// end.
+// Binds the counters and checksums of messages, and checks the messages at the end.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -26,7 +25,7 @@ Bound<size_t> checksum_byte_of(const DbcSignal& signal) {
                  "a whole byte", "checksum");
 }
 
-/// "P02", "Profile 2", "E2E_P05": the last number of the text.
+/// Returns the last number of a text such as "P02", "Profile 2" or "E2E_P05".
 int profile_number(const std::string& text) {
   const size_t end = text.find_last_of("0123456789");
   if (end == std::string::npos) return 0;
@@ -64,7 +63,7 @@ Bound<void> check_data_ids(const ProtectionRequest& request) {
   return {};
 }
 
-/// Bits of a frame.
+/// A set of bits of a frame.
 class FrameBits {
  public:
   void add(const SignalLayout& layout) { insert_bits(layout, UINT64_MAX, bits_); }
@@ -97,7 +96,7 @@ FrameBits counter_bits(const MessageProtection& protection) {
   return bits;
 }
 
-/// The bits of the value and of its multiplexor.
+/// Returns the bits of the value and of its multiplexor.
 FrameBits bits_of(const BoundSignal& signal) {
   FrameBits bits;
   bits.add(signal.layout);
@@ -206,7 +205,7 @@ void VehicleBinder::mark_odometry() {
   mark(binding_.yaw_rate.signal);
 }
 
-/// No value may lie where the counter or the checksum is.
+/// Refuses a value that shares bits with the counter or the checksum.
 Bound<void> VehicleBinder::check_places(const BoundMessage& message) const {
   const FrameBits checksum = checksum_bits(message.protection);
   const FrameBits counter = counter_bits(message.protection);
@@ -225,8 +224,8 @@ Bound<void> VehicleBinder::check_places(const BoundMessage& message) const {
   return {};
 }
 
-/// Two values that share bits are one value. Signals that different values of a multiplexor select
-/// may share bits.
+/// Refuses two values that share bits, because they would be one value. Signals that different
+/// values of a multiplexor select may share bits.
 Bound<void> VehicleBinder::check_values(const BoundMessage& message) const {
   std::vector<const BoundSignal*> values;
   for (const auto& [index, quantity] : quantities_) {

@@ -23,23 +23,23 @@ struct BoundMessage {
 };
 
 struct BoundSignal {
-  /// Signals that only some frames of the message have.
+  /// The multiplexor of a signal that only some frames of the message have.
   struct Multiplexed {
     SignalLayout multiplexor;
     uint64_t value = 0;
   };
 
   std::string name;    ///< "Message.Signal"
-  size_t message = 0;  ///< in VehicleBinding::messages
+  size_t message = 0;  ///< index into VehicleBinding::messages
   SignalLayout layout;
   std::optional<Multiplexed> multiplexed{};
-  double min = 0.0;  ///< physical, in the unit of the DBC file; values outside are not available
+  double min = 0.0;  ///< in the unit of the DBC file; values beyond min and max are not available
   double max = 0.0;
   std::vector<int64_t> not_available{};  ///< raw values that VAL_ names SNA
   double factor = 1.0;                   ///< from the unit of the DBC file to that of Quantity
 };
 
-/// Holds while the raw value of a signal is one of some values.
+/// A condition that holds while the raw value of a signal is one of `values`.
 struct BoundCondition {
   size_t signal = 0;
   std::vector<int64_t> values;
@@ -59,7 +59,7 @@ struct BoundWheels {
     WheelPlace place = WheelPlace::kVehicle;
   };
   std::vector<Wheel> wheels;
-  double wheelbase_m = 0.0;  ///< with front wheels
+  double wheelbase_m = 0.0;  ///< needed for front wheels only
   std::optional<BoundCondition> valid{};
   std::optional<BoundCondition> backward{};  ///< the vehicle reverses: speeds are negative
 };
@@ -68,14 +68,14 @@ struct BoundYawRate {
   size_t signal = 0;
   bool positive_right = false;  ///< positive clockwise
   std::optional<BoundCondition> valid{};
-  std::optional<BoundCondition> negative{};  ///< the signal is a magnitude, and this its sign
+  std::optional<BoundCondition> negative{};  ///< the signal is a magnitude, and this is its sign
 };
 
 struct BoundGnss {
   size_t latitude = 0;
   size_t longitude = 0;
   std::optional<BoundCondition> valid{};
-  double sigma_m = 0.0;                 ///< used without the signals
+  double sigma_m = 0.0;                 ///< used if there are no signals of the sigmas
   std::optional<size_t> sigma_north{};  ///< may be the same signal as sigma_east
   std::optional<size_t> sigma_east{};
   std::optional<size_t> heading{};
@@ -84,14 +84,14 @@ struct BoundGnss {
   std::optional<size_t> sigma_heading{};
 };
 
-/// What DbcVehicleInput reads.
+/// All that DbcVehicleInput reads.
 struct VehicleBinding {
   std::string dbc_file;
   std::vector<BoundMessage> messages;
   std::vector<BoundSignal> signals;
   BoundWheels wheels;
   BoundYawRate yaw_rate;
-  std::optional<BoundGnss> gnss{};  ///< empty: GNSS comes from elsewhere
+  std::optional<BoundGnss> gnss{};  ///< empty if GNSS comes from elsewhere
 };
 
 /// Identifiers that a filter of the bus has to let pass.

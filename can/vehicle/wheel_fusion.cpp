@@ -45,7 +45,8 @@ void WheelFusion::add(WheelPlace place, double speed_mps) {
   const int side = side_of(place);
   double along_mps = speed_mps;
   if (is_front(place)) {
-    // A front wheel rolls along its own path: its speed is that along and across the vehicle.
+    // A front wheel rolls along its own path, so its speed has a part along and a part across the
+    // vehicle.
     const double across_mps = wheelbase_m_ * yaw_rate_radps_;
     const double squared = speed_mps * speed_mps - across_mps * across_mps;
     along_mps = std::copysign(std::sqrt(std::max(0.0, squared)), speed_mps);

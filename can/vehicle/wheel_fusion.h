@@ -1,4 +1,4 @@
-// One speed for each side of the rear axle from all wheels that the vehicle measures.
+// Computes one speed for each side of the rear axle from all wheels that the vehicle measures.
 #pragma once
 
 #include <array>
@@ -15,10 +15,11 @@ struct RearSpeeds {
   double right_mps = 0.0;
 };
 
-/// Collects the wheels of one moment. Each gives the speed of the middle of the rear axle: a rear
-/// wheel differs from it by yaw rate times half the track; a front wheel moves also across, by yaw
-/// rate times wheelbase. With three wheels or more, those that differ from the median by more than
-/// `kSlip_mps` plus `kSlipShare` of it slip or block and are left out. One thread.
+/// Collects the wheels of one moment. Each wheel gives the speed of the middle of the rear axle. A
+/// rear wheel differs from it by yaw rate times half the track. A front wheel also moves across the
+/// vehicle, by yaw rate times wheelbase. If there are three wheels or more, those that differ from
+/// the median by more than `kSlip_mps` plus `kSlipShare` of it slip or block, and are left out. One
+/// thread.
 class WheelFusion {
  public:
   static constexpr double kSlip_mps = 0.5;
@@ -29,20 +30,22 @@ class WheelFusion {
         wheelbase_m_(wheelbase_m),
         yaw_rate_radps_(yaw_rate_radps) {}
 
-  /// At most five wheels.
+  /// Adds a wheel. There may be at most five.
   void add(WheelPlace place, double speed_mps);
 
-  /// Nothing without a wheel, or if more than half of the wheels contradict the median. The speed
-  /// of a side without a good wheel comes from the others, with the yaw rate.
+  /// Returns nothing if there is no wheel, or if more than half of the wheels contradict the
+  /// median. The speed of a side without a good wheel is computed from the other wheels and the yaw
+  /// rate.
   std::optional<RearSpeeds> speeds() const;
 
-  /// What a wheel measures when the middle of the rear axle moves like this: the inverse of add().
+  /// Returns what a wheel measures when the middle of the rear axle moves at `speed_mps`: the
+  /// inverse of add().
   double wheel_speed(WheelPlace place, double speed_mps) const;
 
  private:
   struct Estimate {
-    double speed_mps = 0.0;  ///< of the middle of the rear axle
-    int side = 0;            ///< 1: left, -1: right, 0: the middle
+    double speed_mps = 0.0;  ///< speed of the middle of the rear axle
+    int side = 0;            ///< 1 is left, -1 right, 0 the middle
   };
 
   double median() const;

@@ -9,7 +9,7 @@
 
 namespace bevloc::mcap {
 
-/// Appends to a string.
+/// Appends numbers and texts to a string.
 class ByteWriter {
  public:
   /// `bytes` must outlive this.

@@ -11,7 +11,8 @@ namespace bevloc::mcap {
 /// The first and the last bytes of a file.
 inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
 
-/// What a record is. Each record is one byte of this, eight bytes of length, and the content.
+/// The kind of a record. A record consists of one byte for its kind, eight bytes for its length,
+/// and its content.
 enum class Opcode : uint8_t {
   kHeader = 0x01,
   kFooter = 0x02,
@@ -31,7 +32,7 @@ enum class Opcode : uint8_t {
 };
 
 inline constexpr size_t kRecordHeadBytes = 9;
-/// Head and content of the last record: two offsets and a checksum.
+/// The size of the last record: its head, two offsets and a checksum.
 inline constexpr size_t kFooterBytes = kRecordHeadBytes + 8 + 8 + 4;
 
 /// Describes the messages of a channel.
@@ -39,7 +40,7 @@ struct Schema {
   uint16_t id = 0;       ///< 0 stands for no schema
   std::string name;      ///< such as "foxglove.RawImage"
   std::string encoding;  ///< such as "protobuf"
-  std::string data;      ///< for protobuf a FileDescriptorSet
+  std::string data;      ///< a FileDescriptorSet for protobuf
 };
 
 /// A stream of messages of one schema.
@@ -51,7 +52,7 @@ struct Channel {
   std::map<std::string, std::string> metadata;
 };
 
-/// One message. `data` borrows.
+/// One message. It borrows its data.
 struct Message {
   uint16_t channel_id = 0;
   uint32_t sequence = 0;

@@ -17,7 +17,7 @@
 namespace bevloc::mcap {
 namespace {
 
-/// A chunk holds at most this; more is a damaged size.
+/// The most bytes that a chunk may hold. A larger size is a damaged one.
 constexpr uint64_t kMostChunkBytes = uint64_t{256} << 20U;
 
 struct Record {
@@ -26,7 +26,7 @@ struct Record {
   size_t end = 0;  ///< offset of the next record
 };
 
-/// The record at `offset`; nothing if it is not whole.
+/// Returns the record at `offset`, or nothing if it is not whole.
 std::optional<Record> record_at(std::string_view bytes, uint64_t offset) {
   if (offset > bytes.size()) return std::nullopt;
   ByteReader reader(bytes.substr(offset));
@@ -106,7 +106,7 @@ Status Reader::read() {
   return {};
 }
 
-/// What lies before the first chunk.
+/// Reads the records before the first chunk.
 void Reader::read_beginning() {
   for (auto record = record_at(bytes_, kMagic.size()); record;
        record = record_at(bytes_, record->end)) {
@@ -156,7 +156,7 @@ void Reader::define(Opcode opcode, std::string_view content) {
   }
 }
 
-/// False without a whole and undamaged summary; then nothing was taken from it.
+/// Returns false if the summary is missing or damaged. Nothing was taken from it then.
 bool Reader::read_summary() {
   if (bytes_.size() < kMagic.size() + kFooterBytes || !bytes_.ends_with(kMagic)) return false;
   const size_t footer = bytes_.size() - kMagic.size() - kFooterBytes;

@@ -15,7 +15,7 @@ namespace bevloc::mcap {
 
 /// Where a chunk lies in the file, and the times of its messages.
 struct ChunkPlace {
-  uint64_t offset = 0;  ///< of its record
+  uint64_t offset = 0;  ///< where its record begins
   uint64_t first_ns = 0;
   uint64_t last_ns = 0;
 };
@@ -26,15 +26,17 @@ struct Chunk {
   std::vector<Message> messages;
 };
 
-/// A file whose messages lie in chunks without compression or with zstd. Reads the chunks from the
-/// summary; without one, or with a damaged one, it scans the file up to the first record that is
-/// not whole. Immutable after open(), so any thread may read.
+/// A file whose messages lie in chunks that are not compressed, or compressed with zstd. The
+/// summary of the file says where the chunks are. If the summary is missing or damaged, the reader
+/// scans the file up to the first record that is not whole, or the first damaged chunk.
+/// Thread-safe, because nothing changes after open().
 class Reader {
  public:
   /// Maps the file into memory. Fails if it is no MCAP file. The file may grow meanwhile, but must
-  /// not be cut.
+  /// not become shorter.
   static Result<Reader> open(const std::filesystem::path& path);
-  /// The same for bytes in memory, which must outlive the reader. Messages show `name`.
+  /// Like open(), but reads bytes in memory, which must outlive the reader. Error messages show
+  /// `name`.
   static Result<Reader> parse(std::string_view bytes, const std::string& name);
 
   /// Whether the file has its end. Without it the last second may be missing.
@@ -44,14 +46,14 @@ class Reader {
   const std::vector<ChunkPlace>& chunks() const { return chunks_; }
   /// The attachments before the first chunk. Later ones are not read.
   const std::vector<Attachment>& attachments() const { return attachments_; }
-  /// Names of attachments whose checksum is wrong; these are left out.
+  /// Names of the attachments that were left out because their checksum is wrong.
   const std::vector<std::string>& damaged_attachments() const { return damaged_attachments_; }
   const std::vector<Metadata>& metadata() const { return metadata_; }
 
   /// Fails if the chunk is damaged, or compressed with anything but zstd.
   Result<Chunk> read_chunk(size_t index) const;
 
-  /// The first attachment or metadata of this name; null without one.
+  /// Return the first attachment or metadata of this name, or null if there is none.
   const Attachment* attachment(std::string_view name) const;
   const Metadata* metadata(std::string_view name) const;
 

@@ -249,7 +249,7 @@ void Writer::append_indices(std::string& summary) const {
   }
 }
 
-/// The records of the summary, then the places of its groups, then the footer.
+/// Returns the records of the summary, then the places of its groups, then the footer.
 std::string Writer::summary() {
   std::string bytes;
   std::string offsets;

@@ -17,16 +17,16 @@ struct ZSTD_CCtx_s;
 namespace bevloc::mcap {
 
 struct WriterOptions {
-  /// A chunk is written when its messages span this time or its size exceeds `chunk_bytes`. What is
-  /// not written yet is lost with the process.
+  /// A chunk is written when its messages span this time or its size exceeds `chunk_bytes`.
+  /// Messages that are not written yet are lost if the process dies.
   Duration chunk_span = std::chrono::milliseconds(500);
   size_t chunk_bytes = size_t{4} << 20U;
   int zstd_level = 1;
 };
 
 /// Schemas, channels, metadata and attachments go to the file at once, messages in chunks
-/// compressed with zstd. A file without its end is complete but for the last chunk, and Reader
-/// reads it. After an error every call fails with the same error. One thread.
+/// compressed with zstd. A file without its end lacks at most the last chunk, and Reader reads it.
+/// After an error every call fails with the same error. One thread.
 class Writer {
  public:
   /// Creates the file, which must not exist.
@@ -43,7 +43,7 @@ class Writer {
   Status add_metadata(const Metadata& metadata);
   Status add_attachment(const Attachment& attachment);
 
-  /// `message.channel_id` must be of add_channel().
+  /// `message.channel_id` must be an id that add_channel() returned.
   Status write(const Message& message);
   /// Writes the open chunk, and waits until the file is on the disk.
   Status flush();
@@ -80,13 +80,13 @@ class Writer {
   ZSTD_CCtx_s* const compressor_;
   Status state_;
   uint64_t offset_ = 0;
-  std::vector<std::string> schemas_;   ///< contents of the records, again for the summary
-  std::vector<std::string> channels_;  ///< the same
+  std::vector<std::string> schemas_;   ///< contents of the records, repeated in the summary
+  std::vector<std::string> channels_;  ///< contents of the records, repeated in the summary
   std::vector<std::string> attachment_indices_;
   std::vector<std::string> metadata_indices_;
   std::vector<ChunkIndex> chunks_;
   std::map<uint16_t, uint64_t> message_counts_;
-  uint64_t first_ns_ = 0, last_ns_ = 0;  ///< of all messages
+  uint64_t first_ns_ = 0, last_ns_ = 0;  ///< times of all messages
   // The open chunk.
   std::string records_;
   std::map<uint16_t, std::vector<IndexEntry>> entries_;

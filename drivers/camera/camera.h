@@ -10,7 +10,7 @@
 
 namespace bevloc::drivers {
 
-/// Frame buffers per camera, unless they are configured.
+/// Number of frame buffers per camera, unless the configuration gives another one.
 inline constexpr int kDefaultFrameBuffers = 4;
 
 /// The result of next_frame() when there is no error.
@@ -30,21 +30,23 @@ struct CameraDescription {
 /// Numbers of frames since the camera object was constructed.
 struct CameraCounters {
   uint64_t delivered = 0;
-  /// Lost because the user held all buffers.
+  /// Frames that were lost because the user held all buffers.
   uint64_t no_buffer = 0;
-  /// Lost because they were not fetched before the next frame was due.
+  /// Frames that were lost because they were not fetched before the next frame was due.
   uint64_t overrun = 0;
-  /// Lost before they reached the driver: gaps in the device's sequence while a buffer was free.
+  /// Frames that were lost before they reached the driver: gaps in the device's sequence while a
+  /// buffer was free.
   uint64_t lost = 0;
-  /// Dropped because the device marked them as bad, or because they were incomplete.
+  /// Frames that were dropped because the device marked them as bad, or because they were
+  /// incomplete.
   uint64_t damaged = 0;
 };
 
 /// One camera. Every implementation passes tests/drivers/camera_conformance_test.cpp.
 ///
-/// Threads: start(), next_frame() and stop() are called from the camera's own thread. counters()
-/// and description() are readable from any thread. Any thread may drop a frame at any time, also
-/// after stop() and after the camera is destroyed.
+/// Thread-bound: start(), next_frame() and stop() are called from the camera's own thread.
+/// counters() and description() are readable from any thread. Any thread may drop a frame at any
+/// time, also after stop() and after the camera is destroyed.
 ///
 /// Memory: buffers are allocated by start() or before. Delivering a frame does not allocate.
 ///
@@ -67,7 +69,7 @@ class Camera {
   /// started.
   virtual void stop() = 0;
 
-  /// Waits up to `timeout` for the next frame; with a timeout of zero it does not wait. A mock
+  /// Waits up to `timeout` for the next frame. With a timeout of zero it does not wait. A mock
   /// camera may take longer, by the time that it needs to draw the image. On kFrame, `frame` is
   /// replaced.
   virtual Result<FrameEvent> next_frame(Duration timeout, Frame& frame) = 0;

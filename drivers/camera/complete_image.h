@@ -19,7 +19,8 @@ inline bool is_complete_jpeg(std::span<const uint8_t> file) {
          file[file.size() - 2] == kMarker && file.back() == kEndOfImage;
 }
 
-/// Smallest number of bytes of a complete image with this stride and height; 0 for MJPEG.
+/// Returns the smallest number of bytes of a complete image with this stride and height, or 0 for
+/// MJPEG.
 inline size_t min_image_bytes(const ImageView& image) {
   if (image.format == PixelFormat::kMjpeg) return 0;
   const auto plane =
@@ -27,7 +28,7 @@ inline size_t min_image_bytes(const ImageView& image) {
   return image.format == PixelFormat::kNv12 ? plane + plane / 2 : plane;
 }
 
-/// Whether the device wrote enough bytes, or for MJPEG whether the file has both its markers.
+/// Whether the device wrote enough bytes. For MJPEG, whether the file has both its markers.
 inline bool is_complete(const ImageView& image) {
   if (image.format == PixelFormat::kMjpeg) {
     return is_complete_jpeg({image.planes[0].data, image.bytes_used});

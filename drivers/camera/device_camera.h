@@ -24,7 +24,7 @@ struct DeviceCameraConfig {
   int width_px = 0;
   int height_px = 0;
   std::vector<PixelFormat> formats;  ///< in order of preference; the device must have one of them
-  double rate_hz = 0.0;              ///< 0: do not set a rate, for example with an external trigger
+  double rate_hz = 0.0;              ///< 0 to set no rate, for example with an external trigger
   int buffers = kDefaultFrameBuffers;
   std::vector<ControlSetting> controls;
   Duration exposure{0};

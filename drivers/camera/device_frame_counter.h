@@ -9,10 +9,10 @@
 
 namespace bevloc::drivers {
 
-/// counters() is readable from any thread. The rest is called from the camera's own thread.
+/// Thread-bound: called from the camera's own thread. counters() is readable from any thread.
 class DeviceFrameCounter {
  public:
-  /// To be called by start(), because the device restarts its sequence.
+  /// start() calls it, because the device begins its sequence again.
   void restart() {
     latest_.reset();
     sequence_ = 0;
@@ -21,9 +21,9 @@ class DeviceFrameCounter {
 
   /// Takes the device's sequence number of a frame that arrived, which may wrap around. Frames
   /// missing before it count as no_buffer if the user held all buffers at some time since the
-  /// previous frame, and else as lost. A number that is lower than the previous one is that of a
-  /// device that began again, as after a suspension; nobody knows how many frames that cost, so
-  /// none counts. Returns the sequence number of the frame since restart().
+  /// previous frame, and else as lost. A number that is lower than the previous one shows that the
+  /// device began again, for example after the machine was suspended. Nobody knows how many frames
+  /// were lost then, so none is counted. Returns the sequence number of the frame since restart().
   uint64_t arrived(uint32_t device_sequence) {
     constexpr uint32_t kLargestStep = UINT32_MAX / 2;
     uint32_t step = latest_ ? device_sequence - *latest_ : 0;
@@ -35,7 +35,7 @@ class DeviceFrameCounter {
     return sequence_;
   }
 
-  /// `is_last_buffer`: the user now holds all buffers.
+  /// Counts a delivered frame. `is_last_buffer` says that the user now holds all buffers.
   void delivered(bool is_last_buffer) {
     ++delivered_;
     was_starved_ = is_last_buffer;

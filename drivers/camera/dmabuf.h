@@ -1,4 +1,4 @@
-// Brackets for reading dmabuf memory, which the kernel demands for cache coherence.
+// The calls before and after reading dmabuf memory, which the kernel demands for cache coherence.
 #pragma once
 
 #include <cerrno>
@@ -16,11 +16,11 @@ inline void sync_dmabuf_read(int dmabuf, uint64_t phase) noexcept {
   }
 }
 
-/// To be called before the first read of a new image.
+/// Call it before the first read of a new image.
 inline void begin_dmabuf_read(int dmabuf) noexcept {
   sync_dmabuf_read(dmabuf, DMA_BUF_SYNC_START);
 }
-/// To be called after the last read.
+/// Call it after the last read.
 inline void end_dmabuf_read(int dmabuf) noexcept {
   sync_dmabuf_read(dmabuf, DMA_BUF_SYNC_END);
 }

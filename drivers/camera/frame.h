@@ -16,7 +16,8 @@ struct Frame {
   uint64_t sequence = 0;
   Duration exposure{0};
   FrameBuffer buffer;
-  /// The stamps of this camera have jumped (StampSteps), so `time` is wrong. Set by CaptureStage.
+  /// Whether the time stamps of this camera have jumped (StampSteps), so that `time` is wrong.
+  /// CaptureStage sets it.
   bool stamp_jumped = false;
 
   /// The image in the format that the camera delivered.

@@ -21,7 +21,7 @@ class FrameLender {
 
 /// A buffer on loan. Dropping it gives the memory back to the lender. Any thread may do that, also
 /// after the camera that filled the buffer was stopped or destroyed, because the buffer keeps its
-/// lender alive. Empty when default-constructed or moved from.
+/// lender alive. A buffer that is default-constructed or moved from is empty.
 class FrameBuffer {
  public:
   FrameBuffer() = default;

@@ -30,7 +30,7 @@ FrameBuffer FramePool::borrow() {
 }
 
 void FramePool::give_back(int slot) noexcept {
-  // Release order: the next borrower writes only after the last reader has finished.
+  // The release order makes the next borrower write only after the last reader has finished.
   free_.fetch_or(uint64_t{1} << slot, std::memory_order_release);
 }
 

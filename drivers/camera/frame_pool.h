@@ -24,7 +24,7 @@ class FramePool final : public FrameLender, public std::enable_shared_from_this<
   /// Lends a buffer, whose pixels are undefined. Returns an empty buffer when all are lent.
   FrameBuffer borrow();
 
-  /// Write access to a borrowed buffer, as long as no other thread reads it.
+  /// Gives write access to a borrowed buffer, as long as no other thread reads it.
   RgbImage& image(const FrameBuffer& buffer) { return images_[buffer.slot()]; }
 
   int buffers() const { return static_cast<int>(images_.size()); }
@@ -35,7 +35,7 @@ class FramePool final : public FrameLender, public std::enable_shared_from_this<
   void give_back(int slot) noexcept override;
 
   std::vector<RgbImage> images_;
-  std::atomic<uint64_t> free_;  ///< bit i: buffer i is not lent
+  std::atomic<uint64_t> free_;  ///< bit i is set if buffer i is not lent
 };
 
 }  // namespace bevloc::drivers

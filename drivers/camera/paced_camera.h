@@ -14,16 +14,17 @@ namespace bevloc::drivers {
 struct Delivery {
   uint64_t sequence = 0;
   Time exposure_start;
-  Time scene_time;    ///< the moment that the image shows; before exposure_start when it is frozen
+  /// The moment that the image shows. It is before exposure_start if the image is frozen.
+  Time scene_time;
   Time due;           ///< when the frame arrives
-  bool lost = false;  ///< it does not arrive: its time passes in silence
+  bool lost = false;  ///< the frame does not arrive
 };
 
 /// Draws each frame as soon as the previous one was fetched, and delivers it when it is due, as a
 /// sensor would. So the drawing time adds no latency. With a virtual clock the same code runs in
 /// lockstep. A frame that is late by `max_lateness` or more when it is fetched, or when its drawing
-/// is finished, is lost and counted as overrun. So on a machine that is too slow frames are
-/// missing, but never stale.
+/// is finished, is lost and counted as overrun. So on a machine that is too slow, frames are
+/// missing, but none is stale.
 class PacedCamera : public Camera {
  public:
   Status start() final;
@@ -38,7 +39,8 @@ class PacedCamera : public Camera {
 
   /// Prepares the deliveries that are due from `now` on.
   virtual Status open(Time now) = 0;
-  /// Returns the deliveries in order of `due`, and nothing after the last one. Called after open().
+  /// Returns the deliveries in order of `due`, and nothing after the last one. It is called after
+  /// open().
   virtual std::optional<Delivery> next_delivery() = 0;
   virtual Status draw(const Delivery& delivery, RgbImage& image) = 0;
 
@@ -64,7 +66,7 @@ class PacedCamera : public Camera {
   Duration max_lateness_ = Duration::max();
   std::shared_ptr<FramePool> pool_;
   std::optional<Delivery> next_;
-  FrameBuffer drawn_;  ///< the image of next_, once it is drawn
+  FrameBuffer drawn_;  ///< the image of next_, if it is drawn already
   bool running_ = false;
   AtomicCounters counters_;
 };

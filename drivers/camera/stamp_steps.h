@@ -26,7 +26,7 @@ class StampSteps {
 
   Duration offset() const { return offset_; }
 
-  /// Forgets everything: the camera starts again.
+  /// Forgets everything, because the camera starts again.
   void reset() { *this = StampSteps(); }
 
  private:

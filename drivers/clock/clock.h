@@ -1,4 +1,4 @@
-// The source of time: the machine's steady clock, or a virtual clock.
+// The source of time: the machine's steady clock or a virtual clock.
 #pragma once
 
 #include "common/time.h"
@@ -17,12 +17,12 @@ class Clock {
   /// For how long the machine was suspended since its start. now() stood still meanwhile.
   virtual Duration suspended() const = 0;
 
-  /// The time since an arbitrary zero, at the rate of the hardware. The rate of now() changes while
-  /// a time service corrects the system clock.
+  /// The time since an arbitrary zero, at the rate of the hardware. The rate of now(), in contrast,
+  /// changes while a time service corrects the system clock.
   virtual Duration unsteered() const = 0;
 };
 
-/// CLOCK_MONOTONIC, the clock of V4L2's frame timestamps. Thread-safe.
+/// CLOCK_MONOTONIC, which is also the clock of V4L2's time stamps. Thread-safe.
 class MonotonicClock final : public Clock {
  public:
   Time now() const override;
@@ -31,8 +31,8 @@ class MonotonicClock final : public Clock {
   Duration unsteered() const override;
 };
 
-/// A clock that advances only by advance() and by sleep_until(). For lockstep drives and for tests.
-/// One thread.
+/// A clock for lockstep drives and tests, which only advance() and sleep_until() advance. One
+/// thread.
 class VirtualClock final : public Clock {
  public:
   explicit VirtualClock(Time start = Time{}) : now_(start) {}

@@ -18,7 +18,7 @@ ClockDiscipline discipline_of(int answer, const timex& state) {
 }
 
 ClockDiscipline read_clock_discipline() {
-  timex state{};  // no mode: it changes nothing
+  timex state{};  // no mode is set, so the call changes nothing
   const int answer = adjtimex(&state);
   return discipline_of(answer, state);
 }

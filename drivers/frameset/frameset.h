@@ -10,10 +10,11 @@
 namespace bevloc::drivers {
 
 struct Frameset {
-  Time time;                               ///< time of its earliest frame
-  CameraMask present;                      ///< the cameras whose frames are in the set
-  std::array<Frame, kCameraCount> frames;  ///< by camera; empty if the camera is not in `present`
-  Duration spread{0};                      ///< time from its earliest to its latest frame
+  Time time;           ///< time of its earliest frame
+  CameraMask present;  ///< the cameras whose frames are in the set
+  /// One frame for each camera. It is empty if the camera is not in `present`.
+  std::array<Frame, kCameraCount> frames;
+  Duration spread{0};  ///< time from its earliest to its latest frame
 };
 
 }  // namespace bevloc::drivers

@@ -8,10 +8,10 @@ namespace bevloc::drivers {
 namespace {
 
 constexpr int kFramesBetweenFits = 32;
-/// In periods. After a longer pause the number of missed frames is uncertain.
+/// The longest pause, in periods. After a longer one the number of missed frames is uncertain.
 constexpr int kLongestPausePeriods = 10;
 constexpr double kSigmas = 3.0;
-/// Lower bound of the jitter: no timestamp is more accurate.
+/// The lower bound of the jitter, because no time stamp is more accurate.
 constexpr double kLeastJitter_s = 1e-6;
 
 }  // namespace
@@ -65,7 +65,8 @@ std::optional<RateMonitor::Period> RateMonitor::fit(const Track& track) {
   const double t_spread = sum_tt - sum_t * sum_t / n;
   const double slope = k_with_t / k_spread;
   const double jitter_s = std::sqrt(std::max(0.0, (t_spread - slope * k_with_t) / (n - 2.0)));
-  // With more jitter the frames have no steady rate, or some intervals were counted wrongly.
+  // If there is more jitter, the frames have no steady rate, or some intervals were counted
+  // wrongly.
   if (!(slope > 0.0) || 4.0 * jitter_s > slope) return std::nullopt;
   return Period{slope, std::max(jitter_s, kLeastJitter_s) / std::sqrt(k_spread)};
 }

@@ -13,7 +13,7 @@ namespace bevloc::drivers {
 
 /// The frame rate of a camera, relative to the median camera.
 struct CameraDrift {
-  double ppm = 0.0;  ///< positive: the camera delivers more frames per second
+  double ppm = 0.0;  ///< positive if the camera delivers more frames per second
   double sigma_ppm = 0.0;
   /// Whether the drift exceeds the limit by more than its uncertainty (3 sigma).
   bool certain() const;
@@ -21,22 +21,24 @@ struct CameraDrift {
 
 /// Fits a straight line through the times of the latest frames of each camera. Its slope is the
 /// period. Missing frames do no harm, because each interval counts as the nearest whole number of
-/// periods. Uses no clock. Allocates in its constructor only. Takes about five microseconds per 32
-/// frames of a camera. One thread.
+/// periods. Uses no clock. Allocates in its constructor only. The computation takes about five
+/// microseconds per 32 frames of a camera. One thread.
 class RateMonitor {
  public:
-  /// Quartz crystals of the same kind differ by less. 25 ppm are 1.5 ms per minute.
+  /// The limit of the drift. Quartz crystals of the same kind differ by less. 25 ppm are 1.5 ms per
+  /// minute.
   static constexpr double kLimit_ppm = 25.0;
   /// Number of frames of each camera that are kept, and the minimum for an estimate.
   static constexpr int kWindow = 256;
   static constexpr int kFewest = 64;
-  /// With fewer cameras it is unknown which of them drifts.
+  /// The minimum number of cameras, because with fewer it is unknown which of them drifts.
   static constexpr int kFewestCameras = 3;
 
-  /// The times of one camera must increase.
+  /// Adds the time of a frame. The times of one camera must increase.
   void add(int camera, Time time);
 
-  /// Empty while the drift is unknown: too few frames, no steady rate, or too few cameras.
+  /// Returns the drift. It is empty while there are too few frames, no steady rate, or too few
+  /// cameras.
   const std::optional<CameraDrift>& drift(int camera) const { return drifts_[camera]; }
 
  private:

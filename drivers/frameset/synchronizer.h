@@ -18,7 +18,7 @@ struct SynchronizerConfig {
   Duration tolerance = std::chrono::milliseconds(2);
   /// How long a frameset waits for missing cameras, from the start of its earliest exposure.
   Duration wait = std::chrono::milliseconds(60);
-  /// A frameset with fewer cameras is dropped.
+  /// A frameset with fewer cameras than this is dropped.
   int min_cameras = 3;
 
   bool operator==(const SynchronizerConfig&) const = default;
@@ -42,10 +42,10 @@ struct SynchronizerCounters {
   uint64_t out_of_order = 0;
   uint64_t late = 0;
   uint64_t future = 0;
-  uint64_t overflow = 0;    ///< dropped because the queue was full: poll() was not called
+  uint64_t overflow = 0;    ///< dropped because the queue was full, as poll() was not called
   uint64_t unmatched = 0;   ///< dropped with a frameset that had too few cameras
   uint64_t missing = 0;     ///< framesets that were emitted without this camera
-  uint64_t waited_for = 0;  ///< missing framesets that waited for this camera until the end
+  uint64_t waited_for = 0;  ///< those of `missing` that waited for this camera until the end
 };
 
 /// Merges frames by time, driven by add() and poll(). It has no clock and no threads, so the same
@@ -55,8 +55,9 @@ struct SynchronizerCounters {
 /// The earliest waiting frame opens a frameset. The earliest frame of each camera belongs to it if
 /// it is within the tolerance. The frameset is emitted as soon as every camera has a frame in it or
 /// a later frame, or when the wait is over. A camera that was missing from kPatience framesets in a
-/// row is not waited for until it delivers a frame again. A frame counts that may belong to a
-/// frameset (kAccepted or kLate); a camera whose clock is wrong is not waited for.
+/// row is not waited for until it delivers a frame again. Only frames that may belong to a frameset
+/// (kAccepted or kLate) count as delivered, so that no frameset waits for a camera whose clock is
+/// wrong.
 ///
 /// Framesets are emitted in the order of time, and no frame is emitted twice. Allocates in its
 /// constructor only. One thread.
@@ -76,13 +77,14 @@ class FramesetSynchronizer {
   /// it returns nothing, after each add() or after adding all frames that have arrived.
   std::optional<Frameset> poll(Time now);
 
-  /// Drops all waiting frames up to `time`, counted as unmatched. Those that still arrive are late.
+  /// Drops all waiting frames up to `time` and counts them as unmatched. Frames up to `time` that
+  /// arrive later are late.
   void forget_until(Time time);
 
-  /// The time at which the open frameset stops waiting. Nothing if no frame waits.
+  /// Returns the time at which the open frameset stops waiting, or nothing if no frame waits.
   std::optional<Time> deadline() const;
 
-  /// The cameras for which the open frameset waits. None if no frame waits.
+  /// Returns the cameras for which the open frameset waits, or none if no frame waits.
   CameraMask blockers() const;
 
   const SynchronizerCounters& counters(int camera) const { return cameras_[camera].counters; }

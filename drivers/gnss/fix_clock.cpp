@@ -6,7 +6,7 @@ namespace bevloc::drivers {
 namespace {
 
 constexpr Duration kBucket = std::chrono::seconds(5);
-/// A UTC that goes back by more is a new start of the receiver's time.
+/// If UTC goes back by more than this, the receiver's time has started anew.
 constexpr Duration kRestart = std::chrono::seconds(1);
 constexpr Duration kLeastSigma = std::chrono::milliseconds(1);
 

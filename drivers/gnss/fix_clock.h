@@ -1,4 +1,4 @@
-// Finds out when a GNSS position held, on the steady clock.
+// Finds out for which moment, on the steady clock, a GNSS position holds.
 #pragma once
 
 #include <array>
@@ -15,8 +15,9 @@ namespace bevloc::drivers {
 
 /// How the time of a fix is found.
 enum class FixTiming : uint8_t {
-  /// The age of a fix at its arrival is `latency` plus the extra delay of its report: how much
-  /// longer it took than the fast reports of the last minutes, by the receiver's UTC.
+  /// The age of a fix at its arrival is `latency` plus the extra delay of its report. The extra
+  /// delay is how much longer the report took, by the receiver's UTC, than the fast reports of the
+  /// last minutes.
   kArrival,
   /// The system clock is UTC, as the kernel confirms, so the age of a fix is known.
   kSystemClock,
@@ -24,7 +25,7 @@ enum class FixTiming : uint8_t {
 
 struct FixClockParameters {
   FixTiming timing = FixTiming::kArrival;
-  Duration latency{};  ///< like latency_sigma only for kArrival
+  Duration latency{};  ///< used for kArrival only, like latency_sigma
   Duration latency_sigma = std::chrono::milliseconds(50);
   Duration max_age = std::chrono::seconds(1);  ///< an older fix is stale
 };
@@ -38,7 +39,7 @@ struct FixArrival {
 
 enum class FixVerdict : uint8_t {
   kUsable,
-  kLearning,        ///< kArrival: too few reports to know how fast they can be
+  kLearning,        ///< kArrival: there were too few reports to know how fast they can be
   kRepeated,        ///< not newer than the fix before it
   kStale,           ///< older than max_age
   kFuture,          ///< kSystemClock: newer than the system clock permits
@@ -48,21 +49,22 @@ inline constexpr size_t kFixVerdicts = 6;
 
 struct FixTime {
   FixVerdict verdict = FixVerdict::kLearning;
-  Time time{};       ///< when the fix held; like sigma only of kUsable
+  Time time{};       ///< the moment of the fix; valid for kUsable only, like sigma
   Duration sigma{};  ///< one standard deviation of `time`
 };
 
 /// Does not allocate. One thread.
 class FixClock {
  public:
-  /// With kArrival, the first fix that is used is the one of this number.
+  /// With kArrival, the fix of this number is the first one that is used.
   static constexpr int kLearned = 3;
   /// With kSystemClock the kernel's bound of the clock's error may be this large.
   static constexpr Duration kMaxClockError = std::chrono::milliseconds(100);
 
   explicit FixClock(const FixClockParameters& parameters) : parameters_(parameters) {}
 
-  /// `utc` is what the receiver says about the fix. Fixes in the order of their arrival.
+  /// `utc` is the time that the receiver gives for the fix. Fixes must come in the order of their
+  /// arrival.
   FixTime judge(std::chrono::nanoseconds utc, const FixArrival& arrival);
 
   /// The largest age of a fix that was usable, by kSystemClock or as far as kArrival can tell.
@@ -79,14 +81,14 @@ class FixClock {
 
   FixTime by_arrival(Duration delay, const FixArrival& arrival);
   FixTime by_system_clock(std::chrono::nanoseconds utc, const FixArrival& arrival);
-  /// The smallest Bucket::second of the last minutes, so that a single report with a wrong UTC does
-  /// not shift all others. If each bucket has one report only, the smallest delay.
+  /// Returns the smallest Bucket::second of the last minutes, so that a single report with a wrong
+  /// UTC does not shift all others. If each bucket has one report only, returns the smallest delay.
   Duration least_delay(Duration delay, Time arrival);
   FixTime usable(Duration age, Duration sigma, Time arrival);
 
   FixClockParameters parameters_;
   std::optional<std::chrono::nanoseconds> latest_utc_;
-  std::array<Bucket, 64> buckets_{};  ///< five minutes
+  std::array<Bucket, 64> buckets_{};  ///< for five minutes
   int learned_ = 0;
   Duration max_usable_age_{};
 };

@@ -21,7 +21,7 @@ bool becomes_ready(int socket, short events, Duration timeout) {
   return poll(&ready, socket < 0 ? 0 : 1, static_cast<int>(wait.count())) == 1;
 }
 
-/// A socket that is being connected; negative if not even that is possible.
+/// Returns a socket that is being connected, or a negative number if that is impossible.
 int connecting_socket(const GpsdAddress& address) {
   sockaddr_storage target{};
   socklen_t size = 0;

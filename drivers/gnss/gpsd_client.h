@@ -13,16 +13,16 @@
 namespace bevloc::drivers {
 
 struct GpsdAddress {
-  std::string address = "127.0.0.1";  ///< in numbers, IPv4 or IPv6
+  std::string address = "127.0.0.1";  ///< an IPv4 or IPv6 address in numbers
   uint16_t port = 2947;
-  std::string device;  ///< as gpsd calls it; empty: all receivers of this gpsd
+  std::string device;  ///< gpsd's name of the receiver; empty for all receivers of this gpsd
 };
 
 /// Totals since start.
 struct GpsdCounters {
-  std::array<uint64_t, kGpsdLines> lines{};  ///< by GpsdLine
+  std::array<uint64_t, kGpsdLines> lines{};  ///< number of lines for each GpsdLine
   uint64_t too_long = 0;                     ///< lines that are longer than any report
-  uint64_t connected = 0;                    ///< how often a connection was made
+  uint64_t connected = 0;                    ///< number of connections that were made
   uint64_t failed = 0;                       ///< attempts without a connection
   uint64_t silent = 0;                       ///< connections that were closed after a silence
 
@@ -43,11 +43,11 @@ class GpsdClient {
   GpsdClient(const GpsdClient&) = delete;
   GpsdClient& operator=(const GpsdClient&) = delete;
 
-  /// Waits for bytes, at most `timeout` of real time, and takes what is there. Connects where need
-  /// be; `now` decides when.
+  /// Waits for bytes, at most `timeout` of real time, and takes those that are there. Connects if
+  /// there is no connection and the next attempt is due at `now`.
   void wait(Time now, Duration timeout);
 
-  /// The next fix of what wait() took; nothing if there is none any more.
+  /// Returns the next fix from the bytes that wait() took, or nothing if there is no further one.
   std::optional<GnssFix> take_fix();
 
   bool is_connected() const { return state_ == State::kConnected; }
@@ -68,12 +68,12 @@ class GpsdClient {
   Time since_{};  ///< when the attempt began, or the latest bytes came
   Duration pause_;
   std::string received_;
-  bool skips_line_ = false;  ///< the rest of a line that is too long
+  bool skips_line_ = false;  ///< whether the rest of a line that is too long is skipped
   GpsdReader reader_;
   GpsdCounters counters_;
 };
 
-/// What the client sends to gpsd first.
+/// Returns what the client sends to gpsd first.
 std::string watch_command(const GpsdAddress& address);
 
 }  // namespace bevloc::drivers

@@ -15,11 +15,11 @@ using Json = nlohmann::json;
 constexpr double kMostSigma_m = 1000.0;
 constexpr double kMostSpeed_mps = 150.0;
 constexpr std::chrono::milliseconds kAccuracyLifetime{1500};
-/// Of `status` (gps.h of gpsd 3.22).
+/// Values of `status` (gps.h of gpsd 3.22).
 constexpr double kDeadReckoning = 5.0;
 constexpr double kSimulated = 8.0;
 
-/// A number of the report; nothing if it has none of this name.
+/// Returns a number of the report, or nothing if it has none of this name.
 std::optional<double> number(const Json& report, const char* name) {
   const auto found = report.find(name);
   if (found == report.end() || !found->is_number()) return std::nullopt;
@@ -27,7 +27,7 @@ std::optional<double> number(const Json& report, const char* name) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// False without an accuracy.
+/// Returns false if the report has no accuracy.
 bool read_sigma(const Json& report, GnssFix& fix) {
   const auto east = number(report, "epx");
   const auto north = number(report, "epy");
@@ -62,7 +62,8 @@ std::optional<std::chrono::nanoseconds> read_time(const Json& report) {
   return has_time ? utc_of(time->get<std::string>()) : std::nullopt;
 }
 
-/// The device that the receiver is connected to; empty if the report does not name it.
+/// Returns the device that the receiver is connected to, or an empty text if the report does not
+/// name it.
 std::string receiver_of(const Json& report) {
   const auto device = report.find("device");
   return device != report.end() && device->is_string() ? device->get<std::string>() : "";

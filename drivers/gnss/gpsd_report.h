@@ -19,18 +19,18 @@ struct GnssFix {
   std::optional<double> speed_mps{};   ///< over ground
   std::optional<double> course_deg{};  ///< over ground, clockwise from true north, in [0, 360)
   double sigma_course_deg = 0.0;       ///< 0 if the receiver does not say
-  std::chrono::nanoseconds utc{};      ///< when the position held, since 1970
+  std::chrono::nanoseconds utc{};      ///< the moment of the position, as the time since 1970
 };
 
-/// What one line is.
+/// The kind of one line.
 enum class GpsdLine : uint8_t {
   kFix,
   kAccuracy,       ///< standard deviations of the next fixes (GST)
   kOther,          ///< a report of another kind, such as SKY or VERSION
   kNoFix,          ///< a position report without a position (mode below 2)
-  kNoAccuracy,     ///< without epx and epy or eph: nobody knows how good it is
-  kNoTime,         ///< without a time: nobody knows how old it is
-  kNotSatellites,  ///< dead reckoning or a simulation of the receiver
+  kNoAccuracy,     ///< a position without epx and epy or eph, so nobody knows how good it is
+  kNoTime,         ///< a position without a time, so nobody knows how old it is
+  kNotSatellites,  ///< dead reckoning or a simulation by the receiver
   kOutOfRange,     ///< a value that no receiver can have
   kNotReadable,    ///< not a JSON object with a class
 };
@@ -38,16 +38,16 @@ inline constexpr size_t kGpsdLines = 9;
 
 struct GpsdReport {
   GpsdLine line = GpsdLine::kOther;
-  GnssFix fix{};  ///< only of kFix
+  GnssFix fix{};  ///< valid for kFix only
 };
 
 /// Reads the lines of one gpsd in their order.
 ///
-/// The sigma of a fix is that of the receiver's own statement (GST), if the latest one is of the
-/// same receiver and at most 1.5 s older, and mode and status have not changed since. Otherwise epx
-/// and epy, or eph, of the position report (TPV) are taken as one sigma. gpsd does not state their
-/// certainty; many receivers give 95 %, and without a statement of the receiver gpsd guesses from
-/// the dilution of precision, so this is cautious. One thread.
+/// The sigma of a fix is that of the receiver's own statement (GST), if the latest one comes from
+/// the same receiver and is at most 1.5 s older, and mode and status have not changed since.
+/// Otherwise epx and epy, or eph, of the position report (TPV) are taken as one sigma. This is
+/// cautious: gpsd does not state their certainty, but many receivers give 95 %. If the receiver
+/// states nothing, gpsd guesses from the dilution of precision. One thread.
 class GpsdReader {
  public:
   GpsdReport read(std::string_view line);
@@ -68,10 +68,11 @@ class GpsdReader {
   void use_accuracy(const Quality& quality, GnssFix& fix);
 
   std::optional<Accuracy> accuracy_;
-  Quality quality_;  ///< of the latest position report
+  Quality quality_;  ///< quality of the latest position report
 };
 
-/// "2026-11-23T22:23:04.125Z" as the time since 1970; nothing for anything else.
+/// Returns a text such as "2026-11-23T22:23:04.125Z" as the time since 1970, or nothing for any
+/// other text.
 std::optional<std::chrono::nanoseconds> utc_of(std::string_view text);
 
 }  // namespace bevloc::drivers

@@ -5,7 +5,7 @@
 
 namespace bevloc::drivers {
 
-/// A new level counts after it has held for the hold time. Levels must come in the order of time.
+/// A new level counts after it has lasted for the hold time. Levels must come in the order of time.
 /// One thread.
 class Debouncer {
  public:

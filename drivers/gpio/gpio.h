@@ -61,7 +61,7 @@ class Gpio {
  public:
   virtual ~Gpio() = default;
 
-  /// The line has the level `active` from the beginning, without a glitch.
+  /// Opens an output, which has the level `active` from the beginning, without a glitch.
   virtual Result<std::unique_ptr<OutputLine>> open_output(const LineAddress& address,
                                                           bool active) = 0;
   virtual Result<std::unique_ptr<InputLine>> open_input(const LineAddress& address) = 0;

@@ -1,5 +1,5 @@
-// The calls to libgpiod that differ between its versions. libgpiod_1.cpp or libgpiod_2.cpp is
-// built.
+// The calls to libgpiod that differ between its versions. Either libgpiod_1.cpp or libgpiod_2.cpp
+// is built.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ struct GpioChipCloser {
 };
 using GpioChipHandle = std::unique_ptr<gpiod_chip, GpioChipCloser>;
 
-/// libgpiod returns null for a missing name.
+/// Returns an empty text for null, which libgpiod returns for a missing name.
 inline std::string text_or_empty(const char* text) {
   return text == nullptr ? "" : text;
 }

@@ -32,7 +32,7 @@ Status MockCamera::open(Time now) {
   return {};
 }
 
-/// The time of the drive that a picture of this time shows.
+/// Returns the time of the drive that a picture of this time shows.
 Duration MockCamera::drive_time(Time time) const {
   const Duration elapsed = time - config_.timing.drive_start;
   const auto faults = config_.faults->all(sim::FaultInput::kClock);

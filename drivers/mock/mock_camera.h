@@ -20,7 +20,7 @@ struct MockCameraConfig {
   Rig true_rig;
   CameraTiming timing;
   int buffers = kDefaultFrameBuffers;
-  std::shared_ptr<const sim::FaultBoard> faults;  ///< null without any
+  std::shared_ptr<const sim::FaultBoard> faults;  ///< null without faults
 };
 
 /// With a real clock, images are drawn ahead of time in the thread that calls next_frame().
@@ -40,7 +40,7 @@ class MockCamera final : public PacedCamera {
   Clock& clock_;
   MockSchedule schedule_;
   std::optional<sim::LensDirt> dirt_;
-  int dirty_camera_ = -1;  ///< whose pattern dirt_ is
+  int dirty_camera_ = -1;  ///< the camera to which the pattern in dirt_ belongs
 };
 
 }  // namespace bevloc::drivers

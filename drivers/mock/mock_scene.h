@@ -22,9 +22,9 @@ namespace bevloc::drivers {
 /// How the street and the cameras differ from the simulator's own. By default they do not.
 struct MockStreet {
   std::array<sim::PictureLook, kCameraCount> looks{};
-  bool changes_pictures = false;  ///< whether `looks` counts
-  sim::GroundShape slopes{};      ///< of sim::Drive::ground_at()
-  uint64_t digest = 0;            ///< of all that makes the street another one
+  bool changes_pictures = false;  ///< whether `looks` changes the pictures
+  sim::GroundShape slopes{};      ///< for sim::Drive::ground_at()
+  uint64_t digest = 0;            ///< digest of all that makes the street differ
 };
 
 /// Thread-safe. There are two renderers, and three cameras share each of them. So two images are
@@ -32,7 +32,7 @@ struct MockStreet {
 /// and kept once.
 class MockScene {
  public:
-  /// `pictures`: keeps the pictures for other scenes too; null without.
+  /// `pictures` keeps the pictures for other scenes, too. It is null if no pictures are kept.
   MockScene(std::shared_ptr<const sim::World> world, std::shared_ptr<const sim::Drive> drive,
             const sim::Conditions& conditions, uint64_t noise_seed,
             std::shared_ptr<PictureCache> pictures = nullptr, const MockStreet& street = {});
@@ -65,7 +65,7 @@ class MockScene {
   const uint64_t noise_seed_;
   const MockStreet street_;
   const std::shared_ptr<PictureCache> pictures_;
-  const uint64_t digest_;  ///< of what all pictures depend on
+  const uint64_t digest_;  ///< digest of what all pictures depend on
   std::array<RendererSlot, 2> renderers_;
 };
 

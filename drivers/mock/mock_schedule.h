@@ -19,10 +19,10 @@ struct CameraTiming {
   Duration readout{0};  ///< from start of exposure to arrival
 };
 
-/// Has no clock: the same calls and faults give the same deliveries. One thread.
+/// Has no clock, so the same calls and faults give the same deliveries. One thread.
 class MockSchedule {
  public:
-  /// `faults`: null without any.
+  /// `faults` is null if there are none.
   MockSchedule(const CameraTiming& timing, int camera,
                std::shared_ptr<const sim::FaultBoard> faults);
 
@@ -32,7 +32,7 @@ class MockSchedule {
   /// Returns the next delivery in the order of arrival.
   Delivery next();
 
-  /// The true start of a delivery's exposure; its timestamp may be wrong.
+  /// Returns the true start of a delivery's exposure, while its time stamp may be wrong.
   Time true_exposure_start(const Delivery& delivery) const {
     return exposure_start(delivery.sequence + first_index_);
   }
@@ -51,7 +51,8 @@ class MockSchedule {
   uint64_t first_index_ = 0;
   uint64_t index_ = 0;
   Time latest_due_ = Time::min();
-  std::optional<Delivery> held_back_;  ///< arrives next: a duplicate or a swapped frame
+  /// The frame that arrives next: a duplicate or a swapped one.
+  std::optional<Delivery> held_back_;
 };
 
 }  // namespace bevloc::drivers

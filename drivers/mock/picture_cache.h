@@ -22,8 +22,8 @@ class PictureCache {
 
   explicit PictureCache(size_t max_bytes = kDefaultBytes) : max_bytes_(max_bytes) {}
 
-  /// Copies the picture of this key into `image`, which must have its size. Returns false if it is
-  /// not known. A key must name all that the picture depends on.
+  /// Copies the picture of this key into `image`, which must have its size. Returns false if there
+  /// is none. A key must depend on all that the picture depends on.
   bool find(uint64_t key, RgbImage& image);
 
   /// Keeps a copy of the picture if there is room.
@@ -36,7 +36,7 @@ class PictureCache {
     uint64_t found = 0;
     uint64_t kept = 0;
     uint64_t no_room = 0;
-    size_t bytes = 0;  ///< of the pictures that are kept now
+    size_t bytes = 0;  ///< size of the pictures that are kept now
   };
   Counters counters() const;
 

@@ -11,7 +11,7 @@ namespace bevloc::drivers {
 struct CalibrationError {
   double rotation_rad = 0.0;    ///< about each axis of the camera
   double translation_m = 0.0;   ///< along each axis of the vehicle
-  double relative_focal = 0.0;  ///< of the focal length
+  double relative_focal = 0.0;  ///< share of the focal length
 };
 
 /// Adds to each camera of `nominal` an error that is drawn with `seed`.

@@ -10,8 +10,9 @@
 
 namespace bevloc::drivers {
 
-/// Keeps the newest kCapacity pulses. One thread writes, any thread reads, without a lock.
-/// Therefore it is an array of atomics, as boost::circular_buffer is not thread-safe.
+/// Keeps the newest kCapacity pulses. Thread-bound: add() is called from the trigger thread. The
+/// rest is readable from any thread, without a lock. So this is an array of atomics, because
+/// boost::circular_buffer is not thread-safe.
 class PulseLog {
  public:
   static constexpr int kCapacity = 64;

@@ -13,11 +13,11 @@ namespace bevloc::drivers {
 
 struct TriggerConfig {
   Duration period = std::chrono::milliseconds(100);
-  /// How long the line is active; less than half a period.
+  /// How long the line is active, which is less than half a period.
   Duration pulse_width = std::chrono::milliseconds(1);
 };
 
-/// Totals since construction. Readable from any thread.
+/// Totals since construction, readable from any thread.
 struct TriggerCounters {
   std::atomic<uint64_t> skipped{0};      ///< pulses that were omitted because they were too late
   std::atomic<uint64_t> failed{0};       ///< pulses that the line refused
@@ -28,15 +28,14 @@ struct TriggerCounters {
 /// would be more than a tenth of a period late is omitted. So two pulses are never closer than nine
 /// tenths of a period: cameras that still read out the previous frame would miss the second pulse.
 ///
-/// Threads: step() is called from one thread, preferably a dedicated one. The rest is readable from
-/// any thread.
+/// Thread-bound: step() is called from the trigger thread. The rest is readable from any thread.
 class Trigger {
  public:
   /// The first pulse is due one period from now. `clock` must outlive the trigger.
   Trigger(std::unique_ptr<OutputLine> line, Clock& clock, const TriggerConfig& config);
 
-  /// Waits up to `timeout` for the next due time and gives the pulse. Fails if the line refuses it;
-  /// the next call goes on.
+  /// Waits up to `timeout` for the next due time and gives the pulse. Fails if the line refuses the
+  /// pulse. The next call goes on.
   Status step(Duration timeout);
 
   const PulseLog& pulses() const { return pulses_; }

@@ -13,12 +13,12 @@ namespace bevloc::evaluation {
 struct BaselineInput {
   std::span<const uint8_t> images;   ///< network input, [camera, colour, row, column]
   CameraMask cameras;                ///< the cameras that are present
-  const Rig& rig;                    ///< of these images, as calibrated
+  const Rig& rig;                    ///< the calibration of the cameras
   std::span<const float> perceived;  ///< the network's mask, kRasterSize probabilities
   std::span<const uint8_t> raster;   ///< the map at the prior pose T0, kRasterSize bytes
 };
 
-/// Finds the correction of a prior pose. Not thread safe.
+/// Finds the correction of a prior pose. One thread.
 class Baseline {
  public:
   virtual ~Baseline() = default;

@@ -28,7 +28,7 @@ constexpr double kLeastDifference = 6.0;
 constexpr int kBorderCells = cells_of(0.45);
 
 constexpr double kPaintSigma_m = 0.2;
-/// See line_points(); for a line whose contrast equals the threshold.
+/// The least bend (see line_points()) of a line whose contrast equals the threshold.
 constexpr double kLeastBend = 0.05;
 
 /// Mean brightness of the visible ground around each cell.

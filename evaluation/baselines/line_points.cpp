@@ -12,7 +12,7 @@
 namespace bevloc::evaluation {
 namespace {
 
-/// For lines as MapRasterizer draws them: kRasterLineWidthCells wide, with value 1.
+/// Suits lines as MapRasterizer draws them: kRasterLineWidthCells wide, with value 1.
 constexpr double kMaskSigma_m = 2.0 * kRasterGrid.cell_m;
 constexpr double kMaskLeastBend = 0.02;
 
@@ -20,8 +20,8 @@ constexpr double kMaskLeastBend = 0.02;
 /// unknown.
 constexpr int kEdgeCells = 2;
 
-/// The centre line lies in a cell if it is this close to the cell's centre along both axes.
-/// Slightly more than 0.5, so that rounding loses no point between two cells.
+/// The centre line lies in a cell if it is this close to the cell's centre along both axes. The
+/// value is slightly more than 0.5, so that rounding loses no point between two cells.
 constexpr double kInCell = 0.55;
 
 /// First and second derivatives of a blurred plane, per cell; u counts columns, v rows.

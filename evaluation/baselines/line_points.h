@@ -22,7 +22,7 @@ struct LinePoint {
 };
 
 using LinePoints = std::vector<LinePoint>;
-/// By ElementClass.
+/// The line points of each ElementClass.
 using ClassLines = std::array<LinePoints, kRasterChannels>;
 
 /// Finds the centre lines of the bright lines in `plane` (on kRasterGrid) with subcell accuracy: at

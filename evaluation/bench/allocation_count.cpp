@@ -79,7 +79,7 @@ int posix_memalign(void** memory, size_t alignment, size_t size) noexcept {
 
 namespace {
 
-/// Memory for operator new. The call is counted once: by malloc if that is counted, else here.
+/// Memory for operator new. malloc counts the call if malloc is counted; else this function does.
 void* allocate(size_t size, size_t alignment, void* caller) noexcept {
   if (BEVLOC_COUNTS_MALLOC == 0) count();
   if (recording) {
@@ -99,7 +99,7 @@ void* or_throw(void* memory) {
 
 }  // namespace
 
-// All forms, because a sanitizer provides its own for those that are missing.
+// All forms are replaced, because a sanitizer would provide its own for those that are missing.
 void* operator new(size_t size) {
   return or_throw(allocate(size, 0, __builtin_return_address(0)));
 }

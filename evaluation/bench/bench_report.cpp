@@ -20,7 +20,7 @@ double share_of_peak(const StageResult& stage, const MachinePeak& peak) {
   return peak.macs_per_s() > 0.0 ? macs_per_s(stage) / peak.macs_per_s() : 0.0;
 }
 
-/// Empty for 0, which stands for an unknown value.
+/// The text of a value. It is empty for 0, which stands for an unknown value.
 std::string cell(double value, int decimals) {
   return value == 0.0 ? "" : fmt::format("{:.{}f}", value, decimals);
 }
@@ -54,7 +54,7 @@ std::string machine_lines(const BenchResult& result) {
                      peak.matmul_macs_per_s / kGiga, peak.copy_bytes_per_s / kGiga);
 }
 
-/// Empty if the peak of the machine was not measured.
+/// The line with the sum of the ideal times; empty if the peak of the machine was not measured.
 std::string ideals_line(double ideals_ms, double whole_ms) {
   if (ideals_ms <= 0.0) return "";
   return fmt::format("{:16} {:>7.3f}   the whole frame takes {:.2f} times as long\n",

@@ -9,11 +9,11 @@
 
 namespace bevloc::bench {
 
-/// For a terminal: at most 100 columns wide.
+/// A table for a terminal, at most 100 columns wide.
 std::string table_of(const BenchResult& result);
 std::string table_of(const SweepResult& sweep);
 
-/// docs/performance.md describes the keys.
+/// The results as JSON. docs/performance.md describes the keys.
 std::string to_json(const BenchResult& result);
 std::string to_json(const std::vector<SweepResult>& sweeps);
 

@@ -18,7 +18,7 @@ uint8_t to_byte(double value) {
   return static_cast<uint8_t>(std::clamp(value + 0.5, 0.0, 255.0));
 }
 
-/// BT.601 with limited range.
+/// Converts a pixel by BT.601 with limited range.
 Yuv yuv_of(const uint8_t* rgb) {
   const double red = rgb[0];
   const double green = rgb[1];

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kRepeats = 9;
 
-/// The stages' times are medians too.
+/// The median time of several runs. The times of the stages are medians too.
 double median_s(const std::function<void()>& run) {
   return time_of(run, kRepeats).p50_ms / kMs_per_s;
 }

@@ -197,7 +197,8 @@ Status Bench::run(const std::function<void(int, int)>& progress) {
   return {};
 }
 
-/// Measured after each place, so that a machine that slows down slows stages and peak alike.
+/// Measures the peak after each place, so that a machine that becomes slower affects stages and
+/// peak alike.
 void Bench::measure_peak() {
   if (peaks_.empty()) memory_ = resident_memory();
   if (options_.measures_peak) peaks_.push_back(measure_machine(options_.threads));

@@ -89,7 +89,7 @@ void Stages::Parts::take_images(PixelFormat format) {
   network->parallel_for(kCameraCount, [&](int camera) {
     const ImageView view =
         others != nullptr ? (*others)[camera].view : ImageView((*images)[camera].view());
-    // Cannot fail: the images have the rig's size.
+    // This cannot fail, because the images have the rig's size.
     (void)preprocessors[camera].run(view,
                                     input.subspan(camera * kNetworkImageSize, kNetworkImageSize));
   });

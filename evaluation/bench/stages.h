@@ -31,7 +31,7 @@ struct Stage {
 };
 
 /// The stages, built from the pipeline's classes with their own buffers. The stages of a frame, run
-/// in order, do the daemon's work for one frameset. Not thread safe.
+/// in order, do the daemon's work for one frameset. One thread.
 class Stages {
  public:
   /// `config`, `scene` and `index` must outlive the stages. Fails as Network::load() and
@@ -40,7 +40,7 @@ class Stages {
                                                 const MapIndex& index, int threads);
   ~Stages();
 
-  /// In the order of kStageNames.
+  /// All stages in the order of kStageNames.
   const std::vector<Stage>& all() const { return stages_; }
 
   /// Moves the vehicle to a place and restarts tracker and synchronizer.

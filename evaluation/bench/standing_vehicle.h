@@ -8,10 +8,10 @@ namespace bevloc::bench {
 
 inline constexpr Duration kFramePeriod = std::chrono::milliseconds(100);  ///< between framesets
 inline constexpr Duration kBusCycle = std::chrono::milliseconds(10);
-/// From exposure to decoded images.
+/// The time from exposure to decoded images.
 inline constexpr Duration kImageDelay = std::chrono::milliseconds(50);
 
-/// Its GNSS has a small error, so that there is something to correct.
+/// A vehicle that stands still. Its GNSS has a small error, so that there is something to correct.
 struct StandingVehicle {
   Se2 map_from_vehicle;
 

@@ -49,7 +49,7 @@ Result<SweepResult> sweep_cameras(const evaluation::DriveConfig& config,
     SolverResult result;
     const TimeSummary time = time_of(
         [&] {
-          // Cannot fail: the images have the rig's size.
+          // This cannot fail, because the images have the rig's size.
           (void)(*localizer)
               ->localize(seen, scene->places[0].map_from_vehicle, SearchRange::kTracking, result);
         },

@@ -10,8 +10,9 @@ namespace bevloc::bench {
 /// Length of road in kilometres: half the length of the road boundaries.
 double road_km(const HdMap& map);
 
-/// A map with about `wanted_km` of road and no lanes. If `map` is long enough, its elements nearest
-/// to `place`; otherwise copies of `map` side by side, the first at its original position.
+/// A map with about `wanted_km` of road and no lanes. If `map` is long enough, the result has its
+/// elements nearest to `place`. Otherwise it has copies of `map` side by side, the first one at its
+/// original position.
 HdMap tiled_map(const HdMap& map, const Eigen::Vector2d& place, double wanted_km);
 
 }  // namespace bevloc::bench

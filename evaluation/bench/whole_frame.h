@@ -22,7 +22,7 @@ struct FrameRun {
 };
 
 /// The vision and the estimation stage with the queues between them, in lockstep on a virtual
-/// clock. Timing starts when the images are in memory. Not thread safe.
+/// clock. Timing starts when the images are in memory. One thread.
 class WholeFrame {
  public:
   /// `map` and `index` must outlive this object. Fails as Localizer::create() does.

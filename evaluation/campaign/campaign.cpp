@@ -59,7 +59,7 @@ Status Campaign::run(const std::vector<const Mode*>& modes,
                      const std::function<void(const CampaignRow&)>& done) const {
   for (int k = 0; k < options_.seeds; ++k) {
     const uint64_t seed = options_.first_seed + static_cast<uint64_t>(k);
-    // Most modes see the world as a drive without a fault does.
+    // The modes share pictures, because most faults do not change what the cameras see.
     std::shared_ptr<drivers::PictureCache> pictures;
     if (modes.size() > 1) pictures = std::make_shared<drivers::PictureCache>();
     for (const Mode* mode : modes) {

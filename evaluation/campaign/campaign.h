@@ -28,7 +28,7 @@ struct CampaignOptions {
 struct CampaignRow {
   const Mode* mode = nullptr;
   uint64_t seed = 0;
-  bool fault_ends = false;  ///< within the drive
+  bool fault_ends = false;  ///< whether the fault ends within the drive
   RunOutcome outcome;
 };
 
@@ -41,7 +41,7 @@ class Campaign {
                                  const CampaignOptions& options);
 
   /// One run, through a procedural town, or through `map` if it is not empty. Every cycle goes to
-  /// `sink`. `pictures`: shared by runs of the same seed and map; null without.
+  /// `sink`. `pictures`: the cache that runs of the same seed and map share; null without a cache.
   Status drive(const Mode& mode, uint64_t seed, const std::string& map, const CycleSink& sink,
                const std::shared_ptr<drivers::PictureCache>& pictures = nullptr) const;
 

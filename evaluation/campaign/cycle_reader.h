@@ -28,8 +28,8 @@ struct JudgedCycle {
   std::optional<JudgedError> pose;  ///< empty if no valid pose was sent
 };
 
-/// A passive node on the bus. Unlike Judge, it takes every pose (100 per second), and looks at
-/// nothing else. One thread.
+/// A passive node on the bus. Unlike Judge, it takes every pose (100 per second), and does nothing
+/// else. One thread.
 class CycleReader {
  public:
   using TruthAt = std::function<Se2(double time_s)>;
@@ -37,7 +37,7 @@ class CycleReader {
   CycleReader(std::unique_ptr<can::Bus> bus, const can::BaseIds& base, const GeoOrigin& origin,
               TruthAt truth, Time drive_start);
 
-  /// Takes all received frames. To be called after each cycle of the localizer.
+  /// Takes all received frames. Call it after each cycle of the localizer.
   JudgedCycle step(Time now);
 
  private:

@@ -13,11 +13,11 @@ enum class MatchFaultKind : uint8_t {
   kCreeping,    ///< finds a place that moves away from the true one by `offset` per second
   kLanesAlike,  ///< finds the lane nearest to the prior; lanes are `offset` apart and look alike
   kNoEvidence,  ///< Evidence::kNone
-  kSawNothing,  ///< stays near the prior, as wide as the search range: dark cameras
+  kSawNothing,  ///< gives zero, as uncertain as the search range, as with dark cameras
   kOldStamps,   ///< framesets carry a time that is `delay_s` too early
 };
 
-/// Active while the mode's fault is.
+/// A fault of the matcher, which is active while the fault of its mode is.
 struct MatchFault {
   MatchFaultKind kind = MatchFaultKind::kLocked;
   Se2 offset{};  ///< in the frame of the true vehicle

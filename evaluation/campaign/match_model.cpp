@@ -13,24 +13,25 @@ namespace {
 
 constexpr double kShortestBlock_m = 30.0;
 constexpr double kLongestBlock_m = 90.0;
-/// A vehicle on a tighter arc than 50 m turns.
+/// A vehicle counts as turning if the radius of its arc is less than 50 m.
 constexpr double kTurning_radpm = 0.02;
-/// Places this close count as one: a standing vehicle.
+/// Places this close count as one place of a standing vehicle.
 constexpr double kSamePlace_m = 0.02;
-/// In how many framesets before and after the place a match with a similar prior is looked for.
+/// The model looks for a match with a similar prior in this many framesets before and after the
+/// place.
 constexpr size_t kNeighbourhood = 12;
-/// What a frameset of distance costs against one search range of difference of the priors.
+/// The cost of a match that is one frameset away. A prior that differs by one search range costs 1.
 constexpr double kCostPerFrameset = 0.02;
-/// A measured match whose prior was off by up to this part of the range differently still found the
-/// same place of the map.
+/// Two priors whose errors differ by less than this part of the search range lead to the same place
+/// of the map.
 constexpr double kSamePeak = 0.5;
-/// Errors of matches that differ by this much are one unit unlike, and what a frameset of distance
-/// costs against it.
+/// The cost of a match whose error differs by this much is 1, and so is the cost of a match that is
+/// 1 / kCostPerFramesetBeside framesets away.
 constexpr double kAlikeAlong_m = 0.5;
 constexpr double kAlikeAcross_m = 0.15;
 constexpr double kAlikeYaw_rad = radians(1.0);
 constexpr double kCostPerFramesetBeside = 0.01;
-/// A correction this close to the end of the range, in parts of it, was stopped by the border.
+/// A correction of more than this part of the search range was stopped by the border of the range.
 constexpr double kAtBorder = 0.9;
 
 std::array<double, 3> values_of(const Se2& pose) {
@@ -111,7 +112,8 @@ void MatchModel::collect_scatter() {
     if (a.drive != b.drive || std::abs(b.station_m - a.station_m) > kSamePlace_m) continue;
     const Se2 first = error_near_truth(a);
     const Se2 second = error_near_truth(b);
-    // The difference of two independent errors is wider than one by the square root of two.
+    // The difference of two independent errors has sqrt(2) times the standard deviation of one
+    // error.
     scatter_.push_back({(second.x_m - first.x_m) * std::numbers::sqrt2 / 2.0,
                         (second.y_m - first.y_m) * std::numbers::sqrt2 / 2.0,
                         wrap_angle(second.yaw_rad - first.yaw_rad) * std::numbers::sqrt2 / 2.0});
@@ -155,7 +157,7 @@ MatchResult MatchModel::match_beside(const MatchedPlace& place, SearchRange rang
   return result;
 }
 
-/// The measured match whose error is most like `offset`, near the present place if there is one.
+/// The measured match whose error is most like `offset`. Matches near the present place come first.
 const MeasuredMatch& MatchModel::beside(const Se2& offset) const {
   const MeasuredMatch* best = nullptr;
   double least = std::numeric_limits<double>::max();
@@ -207,7 +209,7 @@ const MeasuredMatch& MatchModel::most_alike(SearchRange range, const Se2& truth)
   const auto wanted = values_of(truth);
   const MeasuredMatch* best = nullptr;
   double least = std::numeric_limits<double>::max();
-  // Where the neighbourhood has no match of this range, as between two drives, it grows.
+  // The neighbourhood grows until it has a match of this range.
   for (size_t reach = kNeighbourhood; best == nullptr; reach *= 2) {
     assert(reach < 4 * table_.places.size() + 4 * kNeighbourhood);
     const size_t first = at_ > reach ? at_ - reach : 0;

@@ -19,11 +19,11 @@ struct MatchedPlace {
   double curvature_radpm = 0.0;
 };
 
-/// Replays measured matches in blocks of 30 to 90 m of driving, so that they stay as biased and as
-/// correlated over distance as they are, and as blind along the road where the road shows nothing.
-/// A block begins where the measured vehicle turned, or drove straight, as the simulated one does.
-/// A vehicle that stands, or drives so slowly that it stays at one measured place, gets that
-/// place's match with the scatter that pictures of one place have.
+/// Replays measured matches in blocks of 30 to 90 m of driving. A block keeps the bias of the
+/// matches, their correlation over distance, and stretches where they see nothing along the road. A
+/// turning vehicle gets a block that begins where the measured vehicle turned; the same holds for a
+/// vehicle that drives straight. A vehicle that stands, or drives so slowly that it stays at one
+/// measured place, gets that place's match with the scatter that pictures of one place have.
 ///
 /// Among the matches of a place and its neighbours, the model takes the one whose prior had the
 /// most similar error. If the truth is near the border of the search range or beyond it, the model
@@ -61,7 +61,7 @@ class MatchModel {
   std::vector<Se2> scatter_;                   ///< of matches at one place
   std::array<std::vector<size_t>, 2> starts_;  ///< places of straight and of turning vehicles
   size_t at_ = 0;                              ///< the measured place of the latest frameset
-  double offset_m_ = 0.0;      ///< its station minus the distance of the simulated vehicle
+  double offset_m_ = 0.0;      ///< the station of the place minus the distance of the vehicle
   double block_end_m_ = -1.0;  ///< distance of the simulated vehicle
   bool repeated_ = false;      ///< the latest two framesets have the same measured place
 };

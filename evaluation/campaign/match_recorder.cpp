@@ -18,11 +18,11 @@ namespace {
 constexpr double kFramePeriod_s = 0.1;
 /// How far off a tracked pose may be, one sigma.
 constexpr Se2 kTrackedSigma{0.25, 0.10, radians(0.2)};
-/// In ranges: where "near the border" begins, and how far beyond it the truth may lie.
+/// In search ranges: where "near the border" begins, and how far from the prior the truth may lie.
 constexpr double kNearBorder = 0.6;
 constexpr double kFarTracking = 3.5;
 constexpr double kFarAcquiring = 2.0;
-/// Share of the acquiring range in which the other priors of that range lie.
+/// The truth lies within this share of the acquiring range from a prior that is not beyond it.
 constexpr double kInsideAcquiring = 0.8;
 /// Below this speed the curvature of the path means nothing.
 constexpr double kRecordedDriving_mps = 1.0;
@@ -47,7 +47,7 @@ class RecordedDrive {
   const HdMap& map() const { return world_->map; }
   sim::Drive::State at(double time_s) const { return drive_->at(time_s); }
 
-  /// Valid until the next call.
+  /// The images at a time of the drive; valid until the next call.
   CameraImages images_at(double time_s) {
     CameraImages input;
     input.present.set();

@@ -12,10 +12,12 @@ namespace bevloc::evaluation {
 
 /// Drives through the world of `config.simulation` (which must be set) and matches every frameset
 /// from several priors around the true pose, with the configuration's model and solver:
-/// - always one prior in the tracking range, as far off as a tracked pose may be;
-/// - always one in the tracking range, for which the truth lies near the border of the search range
-///   or beyond it, by up to 3.5 ranges, along one axis (x, y and yaw in turn);
-/// - in every second frameset one in the acquiring range; in every fourth of those beyond it.
+/// - always one prior with the tracking range, as far off as a tracked pose may be;
+/// - always one with the tracking range, for which the truth lies near the border of that range or
+///   beyond it, up to 3.5 ranges away, along one axis (x, y and yaw in turn);
+/// - in every second frameset one with the acquiring range, within that range;
+/// - in every fourth frameset one with the acquiring range, near the border of that range or beyond
+///   it, up to 2 ranges away.
 /// No tracker is involved: a recorded error belongs to a place and a prior. `drive` is the number
 /// that the places get. Fails if the model, the rig or the map cannot be used.
 Result<std::vector<MeasuredPlace>> record_matches(const DriveConfig& config, const Rig& rig,

@@ -21,7 +21,7 @@ struct MeasuredMatch {
   Se2 found;  ///< the correction that the solver returned
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();        ///< of x m, y m, yaw rad
   Eigen::Vector3d correlation = Eigen::Vector3d::Zero();  ///< x-y, x-yaw, y-yaw
-  // As in MatchResult, per axis where they are vectors.
+  // The following values are those of MatchResult. A vector has one value per axis.
   Eigen::Vector3d rival_peak = Eigen::Vector3d::Zero();
   Eigen::Vector3d edge_mass = Eigen::Vector3d::Zero();
   double score = 0.0;
@@ -29,7 +29,7 @@ struct MeasuredMatch {
 
   /// The matched pose in the frame of the true vehicle.
   Se2 error() const { return truth.inverse() * found; }
-  /// In the frame of the prior, like MatchResult::covariance.
+  /// The covariance in the frame of the prior, like MatchResult::covariance.
   Eigen::Matrix3d covariance() const;
 };
 
@@ -42,7 +42,7 @@ struct MeasuredPlace {
   std::vector<MeasuredMatch> matches;
 };
 
-/// In the order of driving; the places of one drive follow each other.
+/// All measured places in the order of driving. The places of one drive follow each other.
 struct MatchTable {
   std::vector<MeasuredPlace> places;
 };

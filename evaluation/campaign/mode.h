@@ -28,7 +28,7 @@ struct Mode {
   std::string_view name{};
   std::string_view what{};  ///< what goes wrong, for the table
   FaultLength length{};
-  /// For FaultTime {0, infinity}: the campaign sets the times.
+  /// Their times are not used, because the campaign sets them.
   std::vector<sim::Fault> faults{};
   std::vector<MatchFault> match_faults{};  ///< on the stage level
   double suspended_s = 0.0;                ///< the appliance sleeps this long; its clock goes on

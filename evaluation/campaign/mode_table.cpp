@@ -33,7 +33,7 @@ MatchFault locked(double across_m) {
   return {.kind = MatchFaultKind::kLocked, .offset = {0.0, across_m, 0.0}};
 }
 
-/// The same of one camera, or of two that change places.
+/// A fault of one camera, or of two cameras that change places.
 Fault fault(FaultKind kind, const FaultAmounts& amounts, int camera,
             std::optional<int> other = std::nullopt) {
   return {.kind = kind, .camera = camera, .other_camera = other, .amounts = amounts};
@@ -207,11 +207,12 @@ std::vector<Mode> camera_modes() {
   return std::move(modes).all();
 }
 
-/// The map and the world differ. Only pictures can show it, and it is so from the start, except for
-/// the hole in the map.
+/// Differences between the map and the world. Only pictures can show them. They exist from the
+/// start, except for the hole in the map.
 std::vector<Mode> map_modes() {
   ModeList modes(Mode{.on_stage = false});
-  // To the north-east, so that the road is left whichever way it leads.
+  // The map is shifted to the north-east, so that the vehicle is off the mapped road in any
+  // direction.
   const auto shifted = [](double distance_m) {
     const double part_m = distance_m * std::numbers::sqrt2 / 2.0;
     return fault(FaultKind::kMapShifted, {.east_m = part_m, .north_m = part_m});
@@ -257,8 +258,8 @@ std::vector<Mode> bus_modes() {
   return std::move(modes).all();
 }
 
-/// Faults of the clocks of the whole appliance. A step of the system clock has nothing to name,
-/// because nothing may come of it.
+/// Faults of the clocks of the whole appliance. No why bit names a step of the system clock,
+/// because it must have no effect.
 std::vector<Mode> clock_modes() {
   ModeList modes(Mode{.on_stage = false});
   modes.add("wall-clock-step", "the system clock is set 0.9 s ahead", kToTheEnd,

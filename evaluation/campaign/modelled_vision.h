@@ -13,8 +13,8 @@
 
 namespace bevloc::evaluation {
 
-/// Ten framesets per second. Each takes its prior from the estimation stage's predictions, as the
-/// vision stage does, and is reported 30 ms after its exposure, as in lockstep. One thread.
+/// Makes ten framesets per second. Each takes its prior from the estimation stage's predictions, as
+/// the vision stage does, and is reported 30 ms after its exposure, as in lockstep. One thread.
 class ModelledVision {
  public:
   struct Faults {
@@ -22,12 +22,12 @@ class ModelledVision {
     std::vector<MatchFault> faults;
   };
 
-  /// The queues must outlive this.
+  /// The queues must outlive this object.
   ModelledVision(MatchModel model, std::shared_ptr<const sim::Drive> drive, Time drive_start,
                  Faults faults, firmware::PredictionQueue& predictions,
                  firmware::VisionQueue& reports);
 
-  /// To be called once per bus cycle.
+  /// Call it once per bus cycle.
   void step(Time now);
 
  private:

@@ -13,7 +13,7 @@ namespace {
 
 /// Time for the cameras to render their first images before the drive begins.
 constexpr Duration kPicturesLead = std::chrono::milliseconds(500);
-/// As many frames as 100 ms of bus can hold.
+/// The number of frames that the bus can carry in 100 ms.
 constexpr size_t kWireCapacity = 4096;
 
 }  // namespace

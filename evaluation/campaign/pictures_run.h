@@ -13,7 +13,7 @@ namespace bevloc::evaluation {
 
 /// Drives through the world of `config.simulation` (which must be set) with its faults, and calls
 /// `sink` after each bus cycle. `pictures`: shares the drawn pictures with other runs, which may
-/// have other faults; null without. Fails if the world or the appliance cannot be made.
+/// have other faults; null without a cache. Fails if the world or the appliance cannot be made.
 Status run_pictures(const DriveConfig& config, const Rig& rig,
                     const std::shared_ptr<drivers::PictureCache>& pictures, const CycleSink& sink);
 

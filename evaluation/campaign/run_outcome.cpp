@@ -56,7 +56,8 @@ void RunJudge::add(const JudgedCycle& cycle) {
   note_state(cycle);
   if (cycle.pose) note_pose(cycle);
   const bool before_fault = cycle.time_s < fault_.from_s;
-  // A fault from the start must not be taken for detected by what is set while nothing has arrived.
+  // Why bits that are set because nothing has arrived yet are no detection of a fault from the
+  // start.
   if (before_fault || !has_cycle_) why_before_ = cycle.why;
   has_cycle_ = true;
   if (!before_fault) note_detection(cycle);

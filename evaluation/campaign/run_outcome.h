@@ -1,4 +1,5 @@
-// What one run of the campaign shows: detection, poses beyond the alert limits, honesty, recovery.
+// What one run of the campaign shows: detection, poses beyond the alert limits, how often errors
+// are within the sigmas, and recovery.
 #pragma once
 
 #include <array>
@@ -60,7 +61,7 @@ class RunJudge {
 
   void add(const JudgedCycle& cycle);
 
-  /// To be called after the last cycle.
+  /// The outcome of the run. Call it after the last cycle.
   RunOutcome outcome() const;
 
  private:
@@ -72,7 +73,7 @@ class RunJudge {
   FaultTime fault_;
   WhyMask named_by_;
   RunOutcome outcome_;
-  WhyMask why_before_;  ///< set since before the fault without a break
+  WhyMask why_before_;  ///< why bits that have been set since before the fault
   bool has_cycle_ = false;
   bool was_valid_ = false;
   std::optional<double> good_since_s_;  ///< since when, after the fault, the pose has been right

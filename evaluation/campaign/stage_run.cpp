@@ -16,7 +16,7 @@ namespace bevloc::evaluation {
 namespace {
 
 constexpr Duration kCycle = std::chrono::milliseconds(can::kSolutionCycleMs);
-/// No time is zero, as on a machine that was started some time ago.
+/// The drive does not start at time zero, because a real machine was started some time before.
 constexpr Time kDriveStart{std::chrono::seconds(10)};
 
 /// The stages of an appliance without cameras, and the nodes around them.

@@ -15,7 +15,7 @@ HEAD = (
 
 
 class Row(TypedDict):
-    """One run (evaluation/campaign/campaign_report.cpp); only what the table shows."""
+    """What the table shows of one run (evaluation/campaign/campaign_report.cpp)."""
 
     mode: str
     what: str
@@ -31,7 +31,7 @@ class Row(TypedDict):
 
 
 def in_seconds(values: list[Optional[float]], runs: int) -> str:
-    """The median and the largest; and in how many of the runs there is none."""
+    """The median and the largest value; if some runs have none, also how many runs have one."""
     known = sorted(value for value in values if value is not None)
     if not known:
         return "-"

@@ -16,12 +16,12 @@ class ClockFaults {
   explicit ClockFaults(std::shared_ptr<const sim::FaultBoard> faults)
       : faults_(std::move(faults)) {}
 
-  /// How far the clock must go on at once, because the appliance stands still. To be called again
-  /// and again, `elapsed_s` after the drive's start.
+  /// How far the clock must jump ahead now, because the appliance stands still. Call it repeatedly.
+  /// `elapsed_s`: the time since the drive's start.
   Duration gap_due(double elapsed_s);
 
-  /// For how long the machine was suspended since the previous call. To be called before the
-  /// vehicle sends.
+  /// For how long the machine was suspended since the previous call. Call it before the vehicle
+  /// sends.
   Duration suspension_due(double elapsed_s);
 
  private:

@@ -10,7 +10,7 @@
 namespace bevloc::evaluation {
 namespace {
 
-/// A raw value of which a condition does not hold.
+/// A raw value that is none of `values`.
 int64_t other_value(const std::vector<int64_t>& values) {
   int64_t other = 0;
   while (std::ranges::find(values, other) != values.end()) ++other;

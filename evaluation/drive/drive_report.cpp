@@ -12,7 +12,7 @@ nlohmann::ordered_json axis_json(const AxisError& error) {
   return {{"mae", error.mae}, {"rmse", error.rmse}, {"p95", error.p95}};
 }
 
-/// Null without a valid pose: zeros would look like a perfect drive.
+/// The errors as JSON. Null without a valid pose, because zeros would look like a perfect drive.
 nlohmann::ordered_json pose_json(const PoseError& error, bool has_pose) {
   if (!has_pose) return nullptr;
   return {{"longitudinal_m", axis_json(error.longitudinal_m)},
@@ -43,7 +43,7 @@ std::string error_table(const DriveReport& report) {
   return table;
 }
 
-/// Without a valid pose no image has reached the bus.
+/// The latencies, or "none": without a valid pose no image has led to a pose on the bus.
 std::string latency_text(const DriveReport& report) {
   if (report.poses.empty()) return "none";
   return fmt::format("p50 {:.1f} ms, p99 {:.1f} ms", report.latency.p50_ms, report.latency.p99_ms);

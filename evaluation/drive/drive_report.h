@@ -20,8 +20,8 @@ struct DriveReport {
   PoseError prior;
   PoseError estimate;
   firmware::FrameCounts frames;
-  /// From the start of exposure to the first CAN frame of a pose that uses the frameset. On a
-  /// virtual clock computing takes no time, so only sensor and bus cycle contribute.
+  /// The time from the start of exposure to the first CAN frame of a pose that uses the frameset.
+  /// On a virtual clock, computing takes no time, so only sensor and bus cycle contribute.
   LatencyReport latency;
   int realtime_refusals = 0;  ///< firmware::Realtime::refusals()
   uint64_t can_sent = 0;

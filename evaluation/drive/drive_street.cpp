@@ -9,7 +9,8 @@
 namespace bevloc::evaluation {
 namespace {
 
-/// Without what hides a part of the picture: the rig file states that (own_body_px).
+/// Looks that hide no part of the picture, because the rig file states what is hidden
+/// (own_body_px).
 sim::CameraLooks visible_looks(double factor) {
   sim::CameraLooks looks = sim::scaled(sim::street_looks(), factor);
   looks.body_share = 0.0;
@@ -17,8 +18,8 @@ sim::CameraLooks visible_looks(double factor) {
   return looks;
 }
 
-/// The set draws its curvatures between plus and minus a limit; half of the limit as sigma reaches
-/// about as far.
+/// The curvatures of the street. The set draws its own evenly between plus and minus a limit; with
+/// half of the limit as sigma, a normal distribution reaches about as far.
 sim::GroundShape slopes_of(double factor) {
   const sim::Slopes largest = sim::nuisances_of(sim::NuisanceSet::kSlopes).slopes;
   const double half = 0.5 * factor;

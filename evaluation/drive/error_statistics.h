@@ -28,7 +28,7 @@ inline Se2 pose_error(const Se2& truth, const Se2& estimate) {
   return correction_between(truth, estimate);
 }
 
-/// Collects the errors of poses. Not thread safe.
+/// Collects the errors of poses. One thread.
 class ErrorStatistics {
  public:
   void add(const Se2& error);

@@ -75,7 +75,7 @@ void Judge::note_solution(const can::ReceivedFrame& received, bool valid) {
 
 double Judge::valid_share() const {
   if (first_fix_s_ < 0.0) return 0.0;
-  // The bus may be silent. The latest cycle may not be complete.
+  // The time counts the cycles of a silent bus too. Its last cycle may not be complete.
   const auto cycles = static_cast<uint64_t>((latest_s_ - first_fix_s_) / kCycle_s);
   return static_cast<double>(view().valid_poses) /
          static_cast<double>(std::max({solutions_since_fix_, cycles, uint64_t{1}}));

@@ -18,7 +18,8 @@ class PictureRecorder {
  public:
   explicit PictureRecorder(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Writes the pictures of a frameset. After a failure it does nothing; finish() returns it.
+  /// Writes the pictures of a frameset. After a failure it does nothing, and finish() returns the
+  /// error.
   void record(const drivers::Frameset& frameset);
 
   /// Writes the indexes, the reference and the map.

@@ -15,7 +15,7 @@ namespace bevloc::evaluation {
 struct BusPose {
   Time received;  ///< the pose is predicted to the time of sending
   Se2 map_from_vehicle;
-  can::ProtectionLevel protection_level;  ///< what was sent as SNA is unknown
+  can::ProtectionLevel protection_level;  ///< a value that was sent as SNA is unknown
 };
 
 /// Decodes both variants: separate frames, and one CAN FD frame. Frames that fail the E2E check are

@@ -27,7 +27,7 @@ Time at(Time drive_start, double time_s) {
   return drive_start + from_seconds(time_s);
 }
 
-/// The reading that is due at this time.
+/// The number of the reading that is due at this time.
 uint64_t reading_index(double elapsed_s, const std::vector<sim::Fault>& clock_faults,
                        double period_s) {
   return static_cast<uint64_t>(std::llround(sim::drive_time_s(elapsed_s, clock_faults) / period_s));

@@ -72,7 +72,7 @@ class SimulatedVehicle {
   sim::OdometrySimulator odometry_;
   sim::GnssSimulator gnss_;
   can::VehicleEncoder encoder_;
-  std::optional<DbcVehicleEncoder> own_encoder_;  ///< with can.vehicle
+  std::optional<DbcVehicleEncoder> own_encoder_;  ///< set if there is can.vehicle
   BusAttacker attacker_;
   std::unique_ptr<can::Bus> bus_;
   Time drive_start_;

@@ -18,7 +18,8 @@ struct SimulatedRunOptions {
   std::filesystem::path out;  ///< folder for can.log, poses.csv and sheet.png
   /// Folder for the pictures and the reference poses (PictureRecorder); empty: none are written.
   std::filesystem::path pictures_folder{};
-  /// Shares the drawn pictures with other runs, which may have other faults; null without.
+  /// Shares the drawn pictures with other runs, which may have other faults; null without a
+  /// cache.
   std::shared_ptr<drivers::PictureCache> pictures;
 };
 

@@ -39,7 +39,7 @@ class PerceivedSide(Side):
 
 
 class AxisFeatures(TypedDict):
-    """evaluation/solver/axis_figure.h"""
+    """The data that evaluation/solver/axis_figure.h describes."""
 
     channels: list[str]
     shift_m: float
@@ -69,7 +69,7 @@ def _prepare_profile(axes: Axes) -> None:
 
 
 def _draw_profiles(figure: Figure, left: float, data: AxisFeatures, side: Side) -> None:
-    """Along x on the right of the features, along y below them, on the same scale of positions."""
+    """Draws the profiles along x on the right of the features, and those along y below them."""
     right = left + IMAGE[0] + GAP
     below = TOP + IMAGE[1] + GAP
     for k, channel in enumerate(data["channels"]):
@@ -122,7 +122,7 @@ def _draw_scores(figure: Figure, left: float, data: AxisFeatures, side: Perceive
 
 
 def draw(data: AxisFeatures, path: Path) -> None:
-    """The map, then the perceived lines in place and moved, with profiles and scores."""
+    """Draws the map, and the perceived lines in place and moved, with profiles and scores."""
     figure = style.new_figure(*SIZE_PX)
     axes = _draw_features(figure, MARGIN, "map, at the true pose", data["map"]["features"])
     axes.set_xticks([15, 0, -15])

@@ -47,7 +47,7 @@ class Scene(TypedDict):
 
 
 class Distributions(TypedDict):
-    """evaluation/solver/distribution_figure.h"""
+    """The data that evaluation/solver/distribution_figure.h describes."""
 
     solvers: list[str]
     scenes: list[Scene]
@@ -90,7 +90,7 @@ def _draw_scene(figure: Figure, top: float, scene: Scene) -> None:
 
 
 def draw(data: Distributions, path: Path) -> None:
-    """One row per scene: what was perceived, then P(x), P(y) and P(yaw)."""
+    """Draws one row per scene: what was perceived, then P(x), P(y) and P(yaw)."""
     height = height_px(len(data["scenes"]))
     figure = style.new_figure(WIDTH_PX, height)
     style.add_text(figure, MARGIN, 34, HEADING, 12)

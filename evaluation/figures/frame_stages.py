@@ -72,7 +72,8 @@ def height_px(bars: int) -> int:
 
 
 def draw(data: Bench, path: Path) -> None:
-    """Median as a bar with its number, a line to the 99th percentile, a mark at the ideal time."""
+    """Draws each median as a bar with its number, with a line to the 99th percentile and a mark at
+    the ideal time."""
     bars = rows(data)
     height = height_px(len(bars))
     figure = style.new_figure(WIDTH_PX, height)

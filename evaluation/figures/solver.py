@@ -14,7 +14,7 @@ from evaluation.figures.program import bevloc_program
 
 
 class SolverFigures(TypedDict):
-    """evaluation/solver/solver_figures.h"""
+    """The data that evaluation/solver/solver_figures.h describes."""
 
     scene: int
     spectra: spectra.Spectra

@@ -23,7 +23,7 @@ SCORE_GAP = 90
 VIEW_COLOURS = (style.INK, style.BLUE, style.ORANGE)
 BAND = "#962896"
 OTHER_BANDS = "#78c8be"
-# Weaker amplitudes than this share of the largest have no direction: white.
+# Amplitudes below this share of the largest are white, because they show no direction.
 WHITE_SHARE = 0.33
 
 
@@ -35,7 +35,7 @@ class View(TypedDict):
 
 
 class Spectra(TypedDict):
-    """evaluation/solver/spectra_figure.h"""
+    """The data that evaluation/solver/spectra_figure.h describes."""
 
     turn_deg: float
     shift_m: float
@@ -122,7 +122,7 @@ def _draw_scores(figure: Figure, data: Spectra) -> None:
 
 
 def draw(data: Spectra, path: Path) -> None:
-    """Three views of a map with their spectra; below, the signatures and the scores."""
+    """Draws three views of a map with their spectra; below, the signatures and the scores."""
     figure = style.new_figure(*SIZE_PX)
     left = MARGIN
     for caption, view in zip(_captions(data), data["views"]):

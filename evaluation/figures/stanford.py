@@ -55,7 +55,7 @@ def data_of(document: Any, file: Path) -> list[Diagram]:
 
 
 def draw_axis(axes: Axes, data: Axis) -> None:
-    """Counts over the error (to the right) and the protection level (upwards)."""
+    """Draws the counts over the error (to the right) and the protection level (upwards)."""
     end = data["bin"] * data["bins"]
     counts = np.array(data["counts"], dtype=float).reshape(data["bins"], data["bins"])
     shown = np.ma.masked_equal(counts, 0)
@@ -79,8 +79,8 @@ def draw_axis(axes: Axes, data: Axis) -> None:
 
 
 def draw(data: list[Diagram], path: Path) -> None:
-    """A row of three panels per diagram. Below the diagonal the error is beyond the protection
-    level; red: and beyond the alert limit too."""
+    """Draws a row of three panels per diagram. Below the diagonal the error is beyond the
+    protection level. In the red part it is beyond the alert limit too."""
     row = TOP + PANEL + BOTTOM
     width = LEFT + 3 * PANEL + 2 * GAP + RIGHT
     figure = style.new_figure(width, row * len(data))

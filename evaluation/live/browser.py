@@ -109,7 +109,7 @@ class Browser:
                 return dict(answer["result"])
 
     def evaluate(self, expression: str) -> Any:
-        """The value of a JavaScript expression in the page; that of a promise once it is there."""
+        """The value of a JavaScript expression in the page. It waits for the value of a promise."""
         question = {"expression": expression, "returnByValue": True, "awaitPromise": True}
         result = self.call("Runtime.evaluate", question)
         assert "exceptionDetails" not in result, result

@@ -59,7 +59,7 @@ class Drive:
         shutil.rmtree(self._out, ignore_errors=True)
 
     def get(self, path: str) -> tuple[int, str]:
-        """Status and text of an answer; status 0 without one."""
+        """The status and the text of the answer; the status is 0 if there is no answer."""
         try:
             with urllib.request.urlopen(self.address + path, timeout=10) as answer:
                 return answer.status, answer.read().decode()

@@ -12,7 +12,7 @@
 namespace bevloc::evaluation {
 namespace {
 
-/// In the order of ElementClass.
+/// The names of the classes in the order of ElementClass.
 constexpr std::array<const char*, kRasterChannels> kClassNames = {"dividers", "crossings",
                                                                   "boundaries"};
 

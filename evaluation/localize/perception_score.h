@@ -18,7 +18,7 @@ struct ClassScore {
 
 inline constexpr double kPerceivedWithin_m = 0.45;
 
-/// In the order of ElementClass.
+/// The scores of the classes in the order of ElementClass.
 using PerceptionScore = std::array<ClassScore, kRasterChannels>;
 
 /// `logits`: the network's mask [3, 400, 200]. `raster`: the map at the same pose, as MapRasterizer

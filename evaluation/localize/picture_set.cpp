@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 3> kExtensions = {".png", ".jpg", ".jpeg"
 constexpr double kFarthest_m = 10.0;
 constexpr double kMostTurned_deg = 30.0;
 
-/// What has the name of a picture, in the order of the names.
+/// The files with the extension of a picture, in the order of their names.
 std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code unreadable;
@@ -31,7 +31,7 @@ std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& fold
   return files;
 }
 
-/// Takes the camera's file out of `files`. Nothing if it has none.
+/// Takes the camera's file out of `files`. Returns nothing if there is none.
 Result<std::optional<std::filesystem::path>> take_file_of(
     std::string_view camera, std::vector<std::filesystem::path>& files) {
   const auto is_of_camera = [camera](const std::filesystem::path& file) {

@@ -12,7 +12,7 @@ namespace bevloc::evaluation {
 namespace {
 
 constexpr double kAround_m = 1000.0;
-// Beyond these a number is a mistake.
+// A larger number is a mistake.
 constexpr double kFarthest = 1e7;
 constexpr double kFullTurn_deg = 360.0;
 

@@ -29,7 +29,7 @@ std::vector<MapElement> moved_elements(const HdMap& map, const HdMap& other) {
   return elements;
 }
 
-/// Calls visit(from, to) for pieces of an element, a ring with its closing edge.
+/// Calls visit(from, to) for all pieces of an element. The last edge of a ring closes it.
 template <typename Visit>
 void for_each_piece(const MapElement& element, Visit visit) {
   std::vector<Eigen::Vector2d> points = element.points;

@@ -22,10 +22,10 @@ constexpr double kSameShare = 0.95;
 constexpr double kShortLine_m = 0.1;
 /// A BEV reaches this far to the side.
 constexpr double kReach_m = 15.0;
-/// Lanes may lack lines beside them along this share.
+/// This share of the lanes may have no lines beside them.
 constexpr double kMostBare = 0.02;
 
-/// Numbers of elements, the first few of many.
+/// A list of numbers of elements. Of many numbers it has only the first ones.
 std::string list_of(const std::vector<size_t>& numbers) {
   constexpr size_t kMost = 5;
   std::string text;

@@ -51,7 +51,7 @@ class MapSheet {
     cv::polylines(image_, pixels, closed, color, width_px, cv::LINE_AA, kSubpixelBits);
   }
 
-  /// Lines would cover each other on a map of kilometres.
+  /// Lines are thin on a map of kilometres, where wide lines would cover each other.
   int line_width_px() const { return px_per_m_ < 1.0 ? 1 : 2; }
 
   void title(const std::string& text) { write_text(image_, text, {kMargin_px, 26}, 0.6); }

@@ -53,7 +53,7 @@ struct SetResult {
   std::array<double, kRasterChannels> iou{};
 };
 
-/// A model with its solvers, and the baselines. Not thread safe.
+/// A model with its solvers, and the baselines. One thread.
 class NetworkEvaluation {
  public:
   /// Fails as Network::load() does. If `rows` contains solvers on masks, their scales are tuned
@@ -72,7 +72,8 @@ class NetworkEvaluation {
   const ModelRig& model_rig() const { return network_->rig(); }
 
  private:
-  /// Numbers of cells by class: in the perceived mask and in the map; in at least one of them.
+  /// Numbers of cells by class: cells in both the perceived mask and the map, and cells in at least
+  /// one of them.
   struct Overlap {
     std::array<uint64_t, kRasterChannels> both{};
     std::array<uint64_t, kRasterChannels> either{};
@@ -92,7 +93,7 @@ class NetworkEvaluation {
   explicit NetworkEvaluation(std::unique_ptr<Network> network) : network_(std::move(network)) {}
   Status add_solvers(const std::vector<ReadOutCase>& cases, int tuning_samples);
   void add_baselines();
-  /// With the masks that the cases match. Empty if they match no masks.
+  /// Makes samples with the masks that the cases match; none if the cases match no masks.
   std::vector<TuningSample> make_tuning_samples(const std::vector<ReadOutCase>& cases, int samples);
   std::vector<ReadOut> empty_read_outs() const;
   void perceive(const sim::Sample& sample);

@@ -1,4 +1,4 @@
-// `bevloc eval rig`: what a rig will cost before anything is mounted.
+// `bevloc eval rig`: the accuracy that a rig will have, before anything is mounted.
 #pragma once
 
 #include <cstdint>

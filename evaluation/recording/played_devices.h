@@ -12,9 +12,9 @@
 
 namespace bevloc::evaluation {
 
-/// Delivers each frame when the appliance got it, with its times and its image. Does not wait, so
-/// it is for a virtual clock. A frame that cannot be read is an error once; the next call goes on
-/// with the following frame. One thread.
+/// Delivers each frame at the time when the appliance got it, with its times and its image. Does
+/// not wait, so it is for a virtual clock. A frame that cannot be read is an error once; the next
+/// call goes on with the following frame. One thread.
 class PlayedCamera final : public drivers::Camera {
  public:
   /// `recording` and `clock` must outlive the camera.
@@ -46,14 +46,14 @@ struct PlayedFrame {
   can::ReceivedFrame frame;
 };
 
-/// Delivers the frames when the appliance got them, and tells of the frames that it sends. Does not
-/// wait. One thread.
+/// Delivers each frame at the time when the appliance got it, and reports the frames that the
+/// appliance sends. Does not wait. One thread.
 class PlayedBus final : public can::Bus {
  public:
   using Seen = std::function<void(const can::Frame& frame, Time time, bool sent)>;
 
-  /// `frames` in the order of time. `clock` must outlive the bus. `seen` is called for each frame
-  /// on the bus, in the order of the bus.
+  /// `frames` must be in the order of time. `clock` must outlive the bus. `seen` is called for each
+  /// frame on the bus, in the order of the bus.
   PlayedBus(std::vector<PlayedFrame> frames, const drivers::Clock& clock, Seen seen)
       : frames_(std::move(frames)), clock_(clock), seen_(std::move(seen)) {}
 

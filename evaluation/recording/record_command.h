@@ -11,8 +11,8 @@
 
 namespace bevloc::evaluation {
 
-/// Becomes the bevlocd that lies beside this program, with --record. What follows `--` goes to
-/// bevlocd.
+/// Replaces this program by the bevlocd that lies beside it, with --record. What follows `--` goes
+/// to bevlocd.
 class RecordCommand {
  public:
   void declare(CLI::App& app);

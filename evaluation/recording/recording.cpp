@@ -133,7 +133,7 @@ double Recording::seconds_of(uint64_t log_time_ns) const {
   return static_cast<double>(static_cast<int64_t>(log_time_ns - begin_ns_)) / 1e9;
 }
 
-/// The daemon records a solution every 10 ms.
+/// Notes the times without solutions. The daemon records a solution every 10 ms.
 void Recording::note_pauses() {
   const auto& solutions = messages(firmware::kSolutionTopic);
   for (size_t i = 1; i < solutions.size(); ++i) {

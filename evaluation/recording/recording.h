@@ -52,10 +52,10 @@ class Recording {
 
   /// An entry of the metadata; empty if it is missing.
   std::string value(std::string_view key) const;
-  /// Null without it.
+  /// The attachment with this name; null if there is none.
   const mcap::Attachment* attachment(std::string_view name) const;
 
-  /// The time of the appliance's clock.
+  /// The time on the appliance's clock at this log time.
   Time clock_time(uint64_t log_time_ns) const {
     return Time(Duration(static_cast<int64_t>(log_time_ns)) - offset_);
   }
@@ -67,14 +67,14 @@ class Recording {
   uint64_t end_ns() const { return end_ns_; }
   /// The files without their end: the process was ended or the power was cut.
   const std::vector<std::string>& cut_files() const { return cut_files_; }
-  /// What is missing of the files, one sentence each, for stderr.
+  /// What is missing from the files, one sentence each, for stderr.
   std::vector<std::string> gaps() const;
   /// A time without a solution.
   struct Pause {
     uint64_t begin_ns = 0;
     uint64_t end_ns = 0;
   };
-  /// Two solutions that are farther apart do not follow each other.
+  /// If two solutions are farther apart, there is a pause between them.
   static constexpr uint64_t kLongestCycle_ns = 500'000'000;
   const std::vector<Pause>& pauses() const { return pauses_; }
   /// The name of an attachment that is damaged in the first file; nothing if none is.

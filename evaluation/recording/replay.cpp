@@ -42,7 +42,7 @@ Result<ReplayOutcome> replay(const ReplaySetup& setup, const ReplayInputs& input
     if (report.map_from_vehicle.is_finite()) pose.map_from_vehicle = report.map_from_vehicle;
     outcome.poses.push_back(pose);
   });
-  // The live run ends one cycle before its sign-off, which is the last frame.
+  // The recorded run ended one cycle before its last frame, which says LOST.
   firmware::run_lockstep(**appliance, clock, nullptr,
                          [&](Time now) { return now + kBusCycle < inputs.end; });
   outcome.framesets = (*appliance)->vision().counters().framesets;

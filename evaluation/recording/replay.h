@@ -15,7 +15,7 @@
 
 namespace bevloc::evaluation {
 
-/// What a replay needs beside the frames.
+/// What a replay needs besides its inputs.
 struct ReplaySetup {
   firmware::Config config;
   Rig rig;

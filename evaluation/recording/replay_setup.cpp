@@ -81,8 +81,8 @@ Result<firmware::Config> recorded_config(const Recording& recording, const Scrat
   return *config;
 }
 
-/// The learned calibration of the time of the recording, in a file of its own: a replay changes
-/// nothing that the daemon uses.
+/// Writes the learned calibration of the recording into a file of its own, so that the replay
+/// changes no file that the daemon uses.
 Status restore_learned(const Recording& recording, const ScratchFolder& scratch,
                        firmware::Config& config) {
   config.learned_calibration_file.clear();
@@ -133,7 +133,7 @@ void warn_of_another_model(const Recording& recording, const firmware::Config& c
                config.model_file.string());
 }
 
-/// The first input of the run, and not the head of the file.
+/// The log time of the first bus frame or image of the run. The head of the file does not count.
 uint64_t first_input_ns(const Recording& recording) {
   uint64_t first = recording.end_ns();
   const auto look_at = [&](std::string_view topic) {
@@ -165,7 +165,7 @@ Status check_image_sizes(Recording& recording, const Rig& rig) {
   return {};
 }
 
-/// Where an entry of a log is. A log can have empty lines, which are no entries.
+/// The line of an entry in a log. A log can have empty lines, which are no entries.
 std::string place_of_entry(const fs::path& log, size_t entry) {
   std::ifstream lines(log);
   std::string line;

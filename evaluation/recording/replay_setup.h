@@ -37,7 +37,7 @@ class ScratchFolder {
 Result<ReplaySetup> setup_of(Recording& recording, const ReplayOverrides& overrides,
                              const ScratchFolder& scratch);
 
-/// A configuration and nothing recorded, for candump logs.
+/// The setup for a candump log: a configuration and nothing recorded.
 Result<ReplaySetup> setup_of(const ReplayOverrides& overrides);
 
 /// The recorded frames and images. Refuses a rig whose images have another size than the recorded

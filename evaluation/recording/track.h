@@ -15,7 +15,7 @@ struct TrackPoint {
   Se2 map_from_vehicle;
 };
 
-/// In the order of time.
+/// Poses in the order of time.
 using Track = std::vector<TrackPoint>;
 
 /// The pose at this time between two points that are at most 0.3 s apart; nothing elsewhere.

@@ -198,7 +198,7 @@ Result<double> parse_moment(const ReportData& data, const std::string& text) {
   if (day_time) {
     constexpr double kDay_s = 86400.0;
     moment_s = day_time->second_of_day - second_of_day(data);
-    // The last minute of the day before may be meant, or the recording passes midnight.
+    // A minute that began before the recording may be meant. An earlier time is one after midnight.
     if (moment_s < -60.0) moment_s += kDay_s;
   } else if (std::sscanf(text.c_str(), "%lf%c", &moment_s, &surplus) != 1) {
     return refuse();

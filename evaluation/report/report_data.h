@@ -65,8 +65,9 @@ Result<ReportData> read_report_data(Recording& recording);
 /// Local time of day, such as 14:32:05.3.
 std::string time_of_day(const ReportData& data, double time_s);
 
-/// Reads "14:32", "14:32:05" (local time of day) or "12.5" (seconds since the beginning). For a
-/// minute it is the first LOST or FAULT in it, or its begin. Fails outside of the recording.
+/// Reads "14:32", "14:32:05" (local time of day) or "12.5" (seconds since the beginning). A time
+/// without seconds means the first LOST or FAULT in that minute, or else the start of the minute.
+/// Fails for a time outside of the recording.
 Result<double> parse_moment(const ReportData& data, const std::string& text);
 
 /// What the recording tells of the state at this moment, one sentence each: the state, its reasons,

@@ -25,7 +25,7 @@ struct Answer {
   std::vector<std::string> sentences;
 };
 
-/// `names`: of the files. `facts`: more lines for the head of the page, name and text.
+/// `names`: the names of the files. `facts`: more lines for the head of the page, name and text.
 std::string report_page(const ReportData& data, const std::vector<std::string>& names,
                         const std::vector<std::pair<std::string, std::string>>& facts,
                         const std::vector<ShownFrame>& frames, const std::vector<Answer>& answers);

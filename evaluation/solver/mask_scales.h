@@ -21,12 +21,12 @@ struct TuningSample {
   Se2 correction;                ///< dT = T0^-1 T
 };
 
-/// Tunes each solver once, on the same samples. Not thread safe.
+/// Tunes each solver once, on the same samples. One thread.
 class MaskScales {
  public:
   using Mask = std::vector<float> TuningSample::*;
 
-  /// For solvers that match `mask`. `samples` must outlive this object.
+  /// Tunes solvers that match `mask` of each sample. `samples` must outlive this object.
   MaskScales(const std::vector<TuningSample>& samples, Mask mask)
       : samples_(samples), mask_(mask) {}
 

@@ -21,8 +21,8 @@ std::vector<float> candidate_scales() {
   return scales;
 }
 
-/// `start` with every scale that a solver of this kind uses replaced. A refined solver keeps the
-/// scales of the solver that it refines.
+/// `start`, in which every scale that a solver of this kind uses is replaced. A refined solver
+/// keeps the scales of the solver that it refines.
 SolverParameters with_all_scales(SolverKind kind, const SolverParameters& start, float scale) {
   SolverParameters parameters = start;
   if (is_refined(kind)) {

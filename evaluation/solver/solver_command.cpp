@@ -18,7 +18,7 @@ namespace {
 constexpr uint64_t kTownsPerSeed = 1ULL << 20U;
 constexpr uint64_t kSceneSeeds = sim::kSceneSeedCount / kTownsPerSeed;
 constexpr uint64_t kMostScenes = sim::scenes_of(kTownsPerSeed);
-/// Tuning has all its town seeds for one run.
+/// One run of tuning may use all town seeds that are reserved for tuning.
 constexpr uint64_t kMostTuningScenes = 100'000;
 static_assert(kMostTuningScenes <= sim::scenes_of(sim::kSceneSeedCount));
 

@@ -9,7 +9,7 @@
 
 namespace bevloc::evaluation {
 
-/// Far fewer than the evaluation has of each kind of road.
+/// The number of scenes to choose from. The evaluation has far more of each kind of road.
 inline constexpr uint64_t kMostFigureScenes = 100'000;
 
 /// Writes one JSON file with the data of the paper's Fig. 3, 4 and 5d:

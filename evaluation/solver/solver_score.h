@@ -27,7 +27,7 @@ struct Outcome {
   double time_ms = 0.0;      ///< processor time of one run with warm caches
 };
 
-/// (m, m, rad) -> (m, m, degrees).
+/// Converts (m, m, rad) to (m, m, degrees).
 PerAxis in_units(const Eigen::Vector3d& pose);
 PerAxis in_units(const Se2& pose);
 
@@ -35,7 +35,7 @@ Outcome judge(const SolverResult& result, const HypothesisGrid& hypotheses, cons
 /// The same, but `sigma` is that of the pose (pose_sigma()): it includes the errors of map and
 /// calibration, which no match sees.
 Outcome judge_pose(const SolverResult& result, const HypothesisGrid& hypotheses, const Se2& truth);
-/// For a method that reports a correction only.
+/// The outcome of a method that reports a correction only.
 Outcome judge(const Se2& correction, const Se2& truth);
 
 /// A measure is kNotGiven if it is kNotGiven in any outcome, or if there is no outcome.

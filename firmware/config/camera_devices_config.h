@@ -22,17 +22,18 @@ enum class CameraMemory : uint8_t { kMmap, kDmabuf };
 struct CameraDevicesConfig {
   std::array<std::string, kCameraCount> ids;  ///< in the order of kCameraNames
   std::vector<PixelFormat> formats;           ///< in order of preference
-  double rate_hz = 0.0;                       ///< 0: the rate of the device or of its trigger
+  double rate_hz = 0.0;                       ///< 0 for the rate of the device or of its trigger
   CameraMemory memory = CameraMemory::kMmap;
   std::vector<drivers::ControlSetting> controls;  ///< set in this order at each start
   Duration exposure{0};                           ///< the exposure time that `controls` sets
-  std::optional<Duration> readout;  ///< from the first row's end of exposure to the last row's
+  /// Time from the end of exposure of the first row to that of the last row.
+  std::optional<Duration> readout;
 };
 
-/// YamlMap::finish() reports mistakes.
+/// Reads the keys. YamlMap::finish() reports mistakes.
 CameraDevicesConfig read_camera_devices(YamlMap& cameras);
 
-/// The driver's configuration of one camera.
+/// Returns the driver's configuration of one camera.
 drivers::DeviceCameraConfig device_camera(const CameraDevicesConfig& config, int buffers,
                                           const Rig& rig, int camera);
 

@@ -60,7 +60,7 @@ CameraConfig read_cameras(YamlMap yaml, const std::filesystem::path& folder) {
   return cameras;
 }
 
-/// Reads the path of the map file; empty for a procedural town.
+/// Reads the path of the map file, which is empty for a procedural town.
 std::filesystem::path read_map(YamlMap yaml, CameraDriver camera_driver,
                                const std::filesystem::path& folder,
                                const SimulationReader* simulation) {
@@ -74,7 +74,8 @@ std::filesystem::path read_map(YamlMap yaml, CameraDriver camera_driver,
   return procedural ? std::filesystem::path() : path_of(yaml, "file", folder);
 }
 
-/// With fewer steps from zero to the end of an axis, a match hardly ever has evidence.
+/// The minimum number of steps from zero to the end of an axis. With fewer, a match hardly ever has
+/// evidence.
 constexpr double kLeastSteps = 4.0;
 
 /// Reads range and step of one axis, in the unit of the file.
@@ -90,7 +91,8 @@ HypothesisAxis read_axis(YamlMap& yaml, std::string_view range_key, std::string_
   return axis;
 }
 
-/// `axis` and `max_range` are in the unit of the solver, of which the file's unit has `per_unit`.
+/// Checks the step of an axis. `axis` and `max_range` are in the unit of the solver. One unit of
+/// the file is `per_unit` of them.
 void check_axis(YamlMap& yaml, std::string_view step_key, const HypothesisAxis& axis,
                 double max_range, double per_unit) {
   // A range or a step that is wrong by itself was reported when it was read.
@@ -150,12 +152,13 @@ std::optional<SecocConfig> read_secoc(YamlMap& can, CanDriver driver,
                      .starts_file = path_of(*yaml, "starts_file", folder)};
 }
 
-/// On a vehicle, poses on a mock bus reach nobody, and the status would say that CAN is well.
+/// Whether the driver is one for vehicles. There, poses on a mock bus would reach nobody, while the
+/// status would say that CAN is well.
 bool is_real(CameraDriver driver) {
   return driver == CameraDriver::kV4l2 || driver == CameraDriver::kLibcamera;
 }
 
-/// Empty if the key is missing.
+/// Reads the path of the DBC file, which is empty if the key is missing.
 std::filesystem::path read_dbc_file(YamlMap& vehicle, const ConfigFiles& files) {
   const std::string name = read_dbc_name(vehicle);
   if (name.empty()) return {};
@@ -231,7 +234,7 @@ TrackerParameters read_tracker(std::optional<YamlMap> yaml) {
 HealthLimits read_health(std::optional<YamlMap> yaml) {
   HealthLimits limits;
   if (!yaml) return limits;
-  // The bounds exclude limits that declare any pose valid.
+  // The bounds exclude limits with which any pose would be valid.
   const auto timeout = between(10.0, 10'000.0);
   limits.odometry_timeout = optional_milliseconds(*yaml, "odometry_timeout_ms",
                                                   limits.odometry_timeout, between(10.0, 1000.0));
@@ -250,7 +253,7 @@ HealthLimits read_health(std::optional<YamlMap> yaml) {
                              between(0.01, kFreewayAlertLimits.x()));
   limits.lateral_sigma_m = yaml->optional<double>("max_lateral_sigma_m", limits.lateral_sigma_m,
                                                   between(0.01, kFreewayAlertLimits.y()));
-  // Rounded, because the limit in degrees is 1.5000000000000002.
+  // The limit is rounded, because in degrees it is 1.5000000000000002.
   const double most_yaw_sigma_deg = std::round(degrees(kFreewayAlertLimits.z()) * 1e9) / 1e9;
   limits.yaw_sigma_rad = radians(yaml->optional<double>(
       "max_yaw_sigma_deg", degrees(limits.yaw_sigma_rad), between(0.01, most_yaw_sigma_deg)));
@@ -280,7 +283,7 @@ void read_online_calibration(std::optional<YamlMap> yaml, const std::filesystem:
   if (yaml->has("file")) config.learned_calibration_file = path_of(*yaml, "file", folder);
 }
 
-/// GNSS from elsewhere excludes GNSS of the vehicle's own bus.
+/// Reads the section `gnss`, which excludes GNSS of the vehicle's own bus.
 std::optional<GnssConfig> read_gnss_source(YamlMap& yaml, const Config& config) {
   auto section = yaml.optional_map("gnss");
   if (!section) return std::nullopt;

@@ -37,10 +37,11 @@ struct CameraConfig {
   CameraDriver driver = CameraDriver::kMock;
   int buffers = 6;  ///< per camera
   drivers::SynchronizerConfig synchronizer;
-  bool compensate_motion = true;    ///< between the exposures of one frameset
-  double rate_hz = 10.0;            ///< mock cameras only
-  std::filesystem::path recording;  ///< replay only: contains one folder for each of kCameraNames
-  CameraDevicesConfig devices;      ///< V4L2 and libcamera only
+  /// Whether to compensate motion between the exposures of one frameset.
+  bool compensate_motion = true;
+  double rate_hz = 10.0;            ///< for mock cameras only
+  std::filesystem::path recording;  ///< for replay only: has one folder for each of kCameraNames
+  CameraDevicesConfig devices;      ///< for V4L2 and libcamera only
 };
 
 struct SolverConfig {
@@ -59,19 +60,19 @@ struct SecocConfig {
 
 struct CanConfig {
   CanDriver driver = CanDriver::kMock;
-  std::string interface;                                  ///< SocketCAN only
+  std::string interface;                                  ///< for SocketCAN only
   can::FrameFormat variant = can::FrameFormat::kClassic;  ///< format of the messages that are sent
   can::BaseIds base_ids;
-  can::OdometryLimits odometry;  ///< what the vehicle's odometry is checked with
+  can::OdometryLimits odometry;  ///< limits of the vehicle's odometry
   std::optional<SecocConfig> secoc;
-  bool sends_clock = false;  ///< LOC_Clock, with the section `clock`
+  bool sends_clock = false;  ///< whether to send LOC_Clock (section `clock`)
   /// The vehicle's own messages, read in place of bevloc's VEH_ messages.
   std::optional<can::VehicleBinding> vehicle;
-  std::filesystem::path dbc_file;  ///< of `vehicle`
+  std::filesystem::path dbc_file;  ///< the DBC file of `vehicle`
 };
 
-/// Reads the parts of a configuration that only a program with the simulator supports. Used only
-/// with `cameras.driver: mock`.
+/// Reads the parts of a configuration that only a program with the simulator supports. It is used
+/// only with `cameras.driver: mock`.
 struct SimulationReader {
   /// Reads `procedural_seed` from the section `map`. Returns false if the section has no such key;
   /// load_config() then reads the map file.
@@ -85,39 +86,39 @@ struct Config {
   CameraConfig cameras;
   std::filesystem::path rig_file;
   OnlineCalibrationOptions online_calibration;
-  std::filesystem::path learned_calibration_file;  ///< empty: nothing is kept across restarts
+  std::filesystem::path learned_calibration_file;  ///< empty if nothing is kept across restarts
   std::filesystem::path map_file;                  ///< empty for a procedural town
   std::filesystem::path model_file;
-  std::filesystem::path manifest_file;  ///< empty: no checksums are compared
+  std::filesystem::path manifest_file;  ///< empty if no checksums are compared
   SolverConfig solver;
   CanConfig can;
-  std::optional<GnssConfig> gnss;  ///< empty: GNSS comes on the CAN bus
+  std::optional<GnssConfig> gnss;  ///< empty if GNSS comes on the CAN bus
   TrackerParameters tracker;
   HealthLimits health;
   GpioConfig gpio;
   RealtimeConfig realtime;
-  std::optional<RecordConfig> record;  ///< empty: nothing is recorded
+  std::optional<RecordConfig> record;  ///< empty if nothing is recorded
   ClockConfig clock;
   LogLevel log_level = LogLevel::kInfo;
-  std::optional<LiveConfig> live;  ///< empty: no server
+  std::optional<LiveConfig> live;  ///< empty if there is no server
 };
 
 /// Where a configuration finds the files that it names.
 struct ConfigFiles {
-  std::filesystem::path folder;    ///< relative paths begin here
+  std::filesystem::path folder;    ///< the folder where relative paths begin
   std::filesystem::path dbc_file;  ///< used in place of `can.vehicle.dbc` if not empty
 };
 
 /// Reads a configuration file; docs/configuration.md describes each key. Every key must be known,
-/// present once, of the right type and in range; otherwise the error names file, line and key.
-/// Paths in the file are relative to its folder; paths in the result can be opened as they are.
+/// present once, of the right type and in range. Otherwise the error names file, line and key.
+/// Paths in the file are relative to its folder, and paths in the result can be opened as they are.
 /// Refuses mock cameras if `simulation` is null. If the file names a manifest, checks it
-/// (manifest.h): the result names only files with the right checksums.
+/// (manifest.h), so that the result names only files with the right checksums.
 Result<Config> load_config(const std::filesystem::path& file,
                            const SimulationReader* simulation = nullptr);
 
-/// Like load_config(), but finds the files in `files` and does not check the manifest. For the
-/// configuration of a recording, whose files may have changed since then.
+/// Like load_config(), but finds the files in `files` and does not check the manifest. This is for
+/// the configuration of a recording, whose files may have changed since it was made.
 Result<Config> load_config_without_manifest(const std::filesystem::path& file,
                                             const SimulationReader* simulation,
                                             const ConfigFiles& files);

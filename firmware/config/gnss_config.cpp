@@ -9,7 +9,7 @@
 namespace bevloc::firmware {
 namespace {
 
-/// Goes into a JSON text, so it must not end a string.
+/// Whether the name of a device is allowed. It goes into a JSON text, so it must not end a string.
 bool is_device(const std::string& name) {
   return !name.empty() && name.size() <= 100 && std::ranges::all_of(name, [](unsigned char c) {
     return std::isprint(c) != 0 && c != '"' && c != '\\' && c != ' ';

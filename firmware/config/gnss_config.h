@@ -17,7 +17,7 @@ struct GnssConfig {
   double min_sigma_m = 0.5;
 };
 
-/// YamlMap::finish() reports mistakes.
+/// Reads the section. YamlMap::finish() reports mistakes.
 GnssConfig read_gnss(YamlMap& yaml);
 
 }  // namespace bevloc::firmware

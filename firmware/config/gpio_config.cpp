@@ -20,7 +20,7 @@ LineAddress read_address(YamlMap& yaml) {
 TriggerLineConfig read_trigger(YamlMap& yaml) {
   TriggerLineConfig trigger;
   trigger.address = read_address(yaml);
-  // 0 if the key is missing or wrong, which finish() reports.
+  // The rate is 0 if the key is missing or wrong, which finish() reports.
   const double rate_hz = yaml.require<double>("rate_hz", between(1.0, 60.0));
   if (rate_hz > 0.0) trigger.timing.period = from_seconds(1.0 / rate_hz);
   trigger.timing.pulse_width =

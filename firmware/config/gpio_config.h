@@ -16,12 +16,13 @@ struct TriggerLineConfig {
 };
 
 struct IgnitionConfig {
-  drivers::LineAddress address;  ///< active: the ignition is on
-  /// Shorter interruptions are ignored: contact bounce, or a voltage dip while the engine starts.
+  drivers::LineAddress address;  ///< active while the ignition is on
+  /// Shorter interruptions are ignored, such as contact bounce, or a voltage dip while the engine
+  /// starts.
   Duration debounce = std::chrono::milliseconds(200);
 };
 
-/// Every line is optional.
+/// The lines, each of which is optional.
 struct GpioConfig {
   std::optional<TriggerLineConfig> trigger;
   std::optional<drivers::LineAddress> status_led;
@@ -29,10 +30,10 @@ struct GpioConfig {
   std::optional<IgnitionConfig> ignition;
 };
 
-/// The addresses of all configured lines.
+/// Returns the addresses of all configured lines.
 std::vector<drivers::LineAddress> lines_of(const GpioConfig& gpio);
 
-/// YamlMap::finish() reports mistakes.
+/// Reads the section. YamlMap::finish() reports mistakes.
 GpioConfig read_gpio(YamlMap yaml);
 
 }  // namespace bevloc::firmware

@@ -11,7 +11,7 @@
 namespace bevloc::firmware {
 
 struct LiveConfig {
-  std::string address = "127.0.0.1";  ///< IPv4 or IPv6, in numbers
+  std::string address = "127.0.0.1";  ///< an IPv4 or IPv6 address in numbers
   int port = 8080;
   bool open_to_network = false;  ///< allows an address beyond this machine
 };
@@ -22,12 +22,12 @@ bool is_loopback(const std::string& text);
 /// Whether `text` is an IPv4 or IPv6 address in numbers.
 bool is_ip_address(const std::string& text);
 
-/// Refuses an address beyond this machine unless `open_to_network` is set, because the server asks
-/// nobody for a password. YamlMap::finish() reports mistakes. Nothing without
-/// the section.
+/// Reads the section. Returns nothing if there is none. Refuses an address beyond this machine
+/// unless `open_to_network` is set, because the server asks nobody for a password.
+/// YamlMap::finish() reports mistakes.
 std::optional<LiveConfig> read_live(std::optional<YamlMap> yaml);
 
-/// The text after `http://` for this server.
+/// Returns the text after `http://` for this server.
 std::string authority_of(const LiveConfig& config);
 
 }  // namespace bevloc::firmware

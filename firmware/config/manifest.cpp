@@ -15,7 +15,7 @@ bool is_checksum(std::string_view text) {
   return text.size() == kDigits && text.find_first_not_of("0123456789abcdef") == text.npos;
 }
 
-/// The next line of the text, which loses it.
+/// Removes the first line from the text and returns it.
 std::string_view take_line(std::string_view& text) {
   const size_t end = std::min(text.find('\n'), text.size());
   std::string_view line = text.substr(0, end);

@@ -7,7 +7,7 @@
 namespace bevloc::firmware {
 namespace {
 
-/// Includes offline CPUs, which may come online later.
+/// Counts offline CPUs, too, because they may come online later.
 int cpu_count() {
   return static_cast<int>(sysconf(_SC_NPROCESSORS_CONF));
 }

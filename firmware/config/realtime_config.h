@@ -8,14 +8,14 @@
 
 namespace bevloc::firmware {
 
-/// The kernel's interrupt threads have priority 50 and must not wait for bevloc.
-/// systemd/bevlocd.service permits priorities up to this one.
+/// The highest priority of bevloc, which systemd/bevlocd.service permits. The kernel's interrupt
+/// threads have priority 50 and must not wait for bevloc.
 inline constexpr int kMaxFifoPriority = 49;
 
 /// Scheduling of the threads of one role.
 struct ThreadSettings {
-  std::optional<int> fifo_priority;  ///< of SCHED_FIFO; nothing: the normal scheduler
-  std::vector<int> cpus;             ///< sorted; empty: all CPUs
+  std::optional<int> fifo_priority;  ///< priority of SCHED_FIFO; nothing for the normal scheduler
+  std::vector<int> cpus;             ///< sorted; empty for all CPUs
 };
 
 /// By default nothing is requested, so that bevloc runs anywhere and as any user.
@@ -26,7 +26,7 @@ struct RealtimeConfig {
   ThreadSettings can;  ///< the threads CAN in and CAN out
 };
 
-/// The CPUs must exist on this machine. YamlMap::finish() reports mistakes.
+/// Reads the section. The CPUs must exist on this machine. YamlMap::finish() reports mistakes.
 RealtimeConfig read_realtime(std::optional<YamlMap> yaml);
 
 }  // namespace bevloc::firmware

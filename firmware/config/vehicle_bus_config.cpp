@@ -25,8 +25,8 @@ void reject(YamlMap& yaml, std::string_view first_key, const can::Refusal& refus
   yaml.reject(refusal.key.empty() ? first_key : refusal.key, refusal.found, refusal.wanted);
 }
 
-/// One group of signals (wheel_speed, yaw_rate or gnss) and the message that they are in. Without a
-/// binder, because there is no DBC file, the keys are read but nothing is bound.
+/// One group of signals (wheel_speed, yaw_rate or gnss) and the message that they are in. If there
+/// is no DBC file, there is no binder. Then the keys are read, but nothing is bound.
 class SignalGroup {
  public:
   SignalGroup(YamlMap yaml, can::VehicleBinder* binder) : yaml_(std::move(yaml)), binder_(binder) {
@@ -37,7 +37,8 @@ class SignalGroup {
     if (!known) refuse("message", known.error());
   }
 
-  /// The signal that `key` of `yaml` names, or an index that is not used after a mistake.
+  /// Returns the index of the signal that `key` of `yaml` names. After a mistake the index is not
+  /// used.
   size_t signal(YamlMap& yaml, std::string_view key, Quantity quantity, const std::string& unit) {
     const auto name = yaml.require<std::string>(key, some_name());
     if (message_.empty() || name.empty()) return 0;
@@ -234,7 +235,8 @@ void read_protection(YamlMap& yaml, can::VehicleBinder* binder) {
   }
 }
 
-/// The localizer's frames must not look like those of another message of this bus.
+/// Refuses a DBC file with identifiers of the localizer's messages, so that nobody confuses the
+/// frames.
 void check_identifiers(YamlMap& yaml, const can::Dbc& dbc, const can::BaseIds& base) {
   for (const can::Message* own : can::kMessages) {
     if (own->sender != can::Sender::kLocalizer) continue;

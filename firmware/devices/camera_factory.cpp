@@ -14,7 +14,7 @@ namespace {
 
 using Cameras = std::vector<std::unique_ptr<drivers::Camera>>;
 
-/// Time from now to the first frame of a recording, so that every camera is ready for it.
+/// The time from now to the first frame of a recording, for which every camera must be ready.
 constexpr Duration kReplayLead = std::chrono::seconds(1);
 
 Result<Cameras> open_recording(const CameraConfig& config, const Rig& rig, drivers::Clock& clock) {
@@ -103,7 +103,8 @@ Status check_libcamera(const CameraConfig&) {
 }
 #endif
 
-/// All run at the same time, because they share buses and memory.
+/// Starts all cameras, so that they run at the same time, because they share buses and memory. Then
+/// stops them.
 Status start_and_stop(const CameraConfig& config, const Rig& rig) {
   drivers::MonotonicClock clock;
   auto cameras = make_cameras(config, rig, clock);

@@ -15,7 +15,7 @@ namespace bevloc::firmware {
 /// and the confirmations of sent frames, so nothing else wakes the CAN-in thread.
 can::SocketCanOptions appliance_options(const CanConfig& config);
 
-/// Makes what decodes the vehicle's messages: those of `can.vehicle`, or else bevloc's own.
+/// Makes the decoder of the vehicle's messages: those of `can.vehicle`, or else bevloc's own.
 std::unique_ptr<can::VehicleDecoder> make_vehicle_decoder(const CanConfig& config,
                                                           can::GeodeticPosition map_origin);
 

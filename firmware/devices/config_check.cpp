@@ -31,7 +31,7 @@ Status check_can(const CanConfig& can) {
   return bus ? Status() : tl::unexpected(bus.error());
 }
 
-/// The daemon writes this file while it runs.
+/// Checks that the daemon can write this file while it runs.
 Status check_written_file(const char* key, const std::filesystem::path& file) {
   if (file.empty()) return {};
   const std::error_code error = cannot_write_in(file.parent_path());

@@ -14,7 +14,7 @@ Result<std::unique_ptr<FaultLine>> FaultLine::open(
 }
 
 FaultLine::~FaultLine() {
-  // Without a log: a process that ends cannot do more.
+  // A failure is not logged, because a process that ends cannot do more.
   if (line_) std::ignore = line_->set(true);
 }
 

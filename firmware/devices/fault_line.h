@@ -11,18 +11,18 @@ namespace bevloc::firmware {
 
 /// Tells the vehicle that the localizer must not be relied on. The line is active from open() until
 /// set(false), and again from the destructor on. It depends on no other line. If the process is
-/// killed, most chips keep the last level (docs/drivers.md). One thread at a time.
+/// killed, most chips keep the last level (docs/drivers.md). One thread.
 class FaultLine {
  public:
-  /// Without an address nothing is driven. Fails if the line cannot be opened. `gpio` must outlive
-  /// the result.
+  /// Opens the line. If there is no address, nothing is driven. Fails if the line cannot be opened.
+  /// `gpio` must outlive the result.
   static Result<std::unique_ptr<FaultLine>> open(const std::optional<drivers::LineAddress>& address,
                                                  drivers::Gpio& gpio);
   ~FaultLine();
   FaultLine(const FaultLine&) = delete;
   FaultLine& operator=(const FaultLine&) = delete;
 
-  /// A line that fails is logged once per cause and tried again at each call.
+  /// Sets the line. A failure is logged once per cause, and the line is tried again at each call.
   void set(bool fault, Time now);
 
  private:

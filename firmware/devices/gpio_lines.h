@@ -10,7 +10,7 @@
 namespace bevloc::firmware {
 
 /// Holds the lines from open() to the destructor, which switches the LED off. A line that fails
-/// later is logged once per line and cause: GPIO must not end localization. The fault line and the
+/// later is logged once per cause, because GPIO must not end localization. The fault line and the
 /// trigger have their own files, so that no line waits for another one.
 ///
 /// Thread-bound: called from the supervising thread.
@@ -24,7 +24,7 @@ class GpioLines {
   GpioLines& operator=(const GpioLines&) = delete;
 
   /// Sets the status LED, and returns whether the ignition is on: true without an ignition line and
-  /// while it cannot be read. To be called about ten times per second.
+  /// while it cannot be read. Call it about ten times per second.
   bool step(bool lit, Time now);
 
  private:

@@ -10,10 +10,10 @@
 
 namespace bevloc::firmware {
 
-/// One thread.
+/// Logs the errors of one line. One thread.
 class LineErrorLog {
  public:
-  /// `line`: the name of the line in the log; must outlive this object.
+  /// `line` is the name of the line in the log. It must outlive this object.
   LineErrorLog(std::string_view line, spdlog::level::level_enum level)
       : line_(line), level_(level) {}
 

@@ -8,7 +8,7 @@
 
 namespace bevloc::firmware {
 
-/// Whether the LED is lit at `now`. Patterns repeat; each character is a tenth of a second:
+/// Whether the LED is lit at `now`. The patterns repeat, and each character is a tenth of a second:
 ///   INIT        #---------  one flash per second
 ///   ACQUIRING   #####-----  slow blinking
 ///   TRACKING    ##########  steady
@@ -17,13 +17,13 @@ namespace bevloc::firmware {
 ///   FAULT       ##--        fast blinking
 bool is_lit(HealthState state, Time now);
 
-/// The state that the LED shows: LOST for a second after a loss, because LOST itself lasts only one
-/// bus cycle before ACQUIRING follows. One thread.
+/// Decides which state the LED shows. It shows LOST for a second after a loss, because LOST itself
+/// lasts only one bus cycle before ACQUIRING follows. One thread.
 class ShownState {
  public:
   static constexpr Duration kLostShown = std::chrono::seconds(1);
 
-  /// `lost`: how often the pose was lost.
+  /// Returns the state to show. `lost` says how often the pose was lost.
   HealthState of(HealthState state, uint64_t lost, Time now);
 
  private:

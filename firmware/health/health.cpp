@@ -74,7 +74,8 @@ bool Health::is_too_uncertain(const HealthInputs& inputs) const {
          inputs.yaw_sigma_rad > limits_.yaw_sigma_rad;
 }
 
-/// Dead reckoning alone may be wrong by its whole protection level.
+/// Whether the pose comes from dead reckoning for too long and may be wrong by more than the alert
+/// limits.
 bool Health::is_unprotected(const HealthInputs& inputs) const {
   const bool disputed = inputs.verdict.match_contradicts || inputs.verdict.gnss_contradicts;
   const bool is_new = inputs.valid_age < kNewPose;

@@ -17,65 +17,66 @@ struct HealthLimits {
   Duration gnss_timeout = std::chrono::milliseconds(1500);
   /// Time without a correction that confirms the pose (Seen::confirms()) until DEGRADED.
   Duration correction_timeout = std::chrono::milliseconds(350);
-  /// The same until LOST.
+  /// Time without a correction that confirms the pose until LOST.
   Duration lost_timeout = std::chrono::seconds(6);
-  /// How many accepted corrections in a row must speak for a start (Seen::confirms_start()) before
-  /// ACQUIRING can change to TRACKING.
+  /// Number of accepted corrections in a row that must confirm a start (Seen::confirms_start())
+  /// before ACQUIRING can change to TRACKING.
   int corrections_to_track = 10;
-  /// Refused corrections in a row that lead to LOST while nothing decides who is wrong.
+  /// Number of refused corrections in a row that lead to LOST while the arbiter has not decided
+  /// which voter is wrong.
   int refusals_to_lose = 15;
   /// Largest sigmas of a valid pose.
   double longitudinal_sigma_m = 0.70;
   double lateral_sigma_m = 0.30;
   double yaw_sigma_rad = radians(0.75);
   /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert
-  /// limits of a freeway. A new pose becomes valid only if its error is well within them. A pose
-  /// is lost if its lateral or heading protection level exceeds them and the latest match is older
-  /// than 3 s. Instead of 3 s, it is 2 s in the first 5 s of a pose, and `correction_timeout` while
-  /// match or GNSS is excluded.
+  /// limits of a freeway. A new pose becomes valid only if its error is well within them. A pose is
+  /// lost if its lateral or heading protection level exceeds them and the latest confirming
+  /// correction is older than 3 s. The age is compared with 2 s in the first 5 s of a pose, and
+  /// with `correction_timeout` while match or GNSS is excluded.
   Eigen::Vector3d alert_limit = kFreewayAlertLimits;
-  /// For the protection levels that are sent with the pose.
+  /// The parameters of the protection levels that are sent with the pose.
   ProtectionParameters protection;
 
   bool operator==(const HealthLimits&) const = default;
 };
 
-/// Condition of the inputs and of the pose at one moment.
+/// The condition of the inputs and of the pose at one moment.
 struct HealthInputs {
   bool initialized = false;  ///< the tracker has a pose from GNSS and odometry
   Duration odometry_age = Duration::max();
   Duration gnss_age = Duration::max();
-  /// Of the latest accepted correction that had evidence across the vehicle.
+  /// Age of the latest accepted correction that had evidence across the vehicle.
   Duration correction_age = Duration::max();
-  /// Of the latest accepted correction.
+  /// Age of the latest accepted correction.
   Duration match_age = Duration::max();
-  CameraMask cameras_present;           ///< used in the latest frameset
-  bool cameras_unsynchronized = false;  ///< in the latest frameset (Synchrony)
+  CameraMask cameras_present;           ///< cameras that were used in the latest frameset
+  bool cameras_unsynchronized = false;  ///< as Synchrony judged the latest frameset
   bool map_nearby = true;               ///< the map has elements around the prior
   bool latest_correction_refused = false;
-  Duration valid_age = Duration::max();  ///< since the pose became valid, while it is
+  Duration valid_age = Duration::max();  ///< time since the pose became valid, while it is valid
   int accepted_in_a_row = 0;
   int refused_in_a_row = 0;
-  Verdict verdict;                    ///< of the arbiter
+  Verdict verdict;                    ///< verdict of the arbiter
   bool odometry_implausible = false;  ///< the latest odometry sample was refused (OdometryMonitor)
-  bool foreign_sender = false;        ///< somebody else sends our messages or the vehicle's
-  bool start_confirmed = true;        ///< matches and GNSS say enough to trust a new pose
+  bool foreign_sender = false;        ///< a foreign sender was noticed (can::VehicleFaultTimes)
+  bool start_confirmed = true;        ///< matches and GNSS suffice to trust a new pose
   bool clock_gap = false;             ///< time has jumped
   bool calibration_fault = false;     ///< a camera is not where the calibration has it
   bool overloaded = false;            ///< framesets were skipped for the latest one
   double longitudinal_sigma_m = 0.0;
   double lateral_sigma_m = 0.0;
   double yaw_sigma_rad = 0.0;
-  /// Of the pose: (longitudinal m, lateral m, yaw rad).
+  /// Protection level of the pose: (longitudinal m, lateral m, yaw rad).
   Eigen::Vector3d protection_level = Eigen::Vector3d::Zero();
   bool stamps_contradict = false;  ///< camera stamps and yaw rate disagree (StampMonitor)
   bool network_fault = false;      ///< the network failed its check (VisionStage)
   bool internal_error = false;     ///< the pose or its covariance is not finite
 };
 
-/// Transitions: INIT -> ACQUIRING -> TRACKING <-> DEGRADED; TRACKING or DEGRADED -> LOST ->
-/// ACQUIRING; any state -> FAULT, which only a restart ends. The class reads no clock: the inputs
-/// contain all ages. One thread.
+/// The transitions are INIT -> ACQUIRING -> TRACKING <-> DEGRADED, TRACKING or DEGRADED -> LOST ->
+/// ACQUIRING, and any state -> FAULT, which only a restart ends. The class reads no clock, because
+/// the inputs contain all ages. One thread.
 class Health {
  public:
   explicit Health(const HealthLimits& limits) : limits_(limits) {}
@@ -96,7 +97,7 @@ class Health {
   bool is_lost(const HealthInputs& inputs) const;
   bool is_too_uncertain(const HealthInputs& inputs) const;
   bool is_unprotected(const HealthInputs& inputs) const;
-  // What a new pose needs to become valid.
+  // The conditions that a new pose must meet to become valid.
   bool has_enough_matches(const HealthInputs& inputs) const;
   bool is_within_alert_limits(const HealthInputs& inputs) const;
   bool is_confirmed(const HealthInputs& inputs) const;

@@ -13,8 +13,8 @@
 
 namespace bevloc::firmware {
 
-/// Keeps the latest events. Each viewer reads them at its own pace; one that lags behind by more
-/// than kKept continues with the newest. Thread-safe.
+/// Keeps the latest events. Each viewer reads them at its own pace. A viewer that is more than
+/// kKept events behind continues with the newest one. Thread-safe.
 class EventQueue {
  public:
   static constexpr size_t kKept = 32;
@@ -30,13 +30,14 @@ class EventQueue {
     filled_.notify_all();
   }
 
-  /// The number of events until now, where a new viewer starts.
+  /// Returns the number of events until now, with which a new viewer starts.
   uint64_t end() const {
     const std::lock_guard lock(mutex_);
     return pushed_;
   }
 
-  /// The event `next` or a newer one; advances `next`. Null after `timeout` or close().
+  /// Waits for the event number `next`. Returns it, or a newer one, and advances `next`. Returns
+  /// null after `timeout` or close().
   Event wait_for(uint64_t& next, Duration timeout) {
     std::unique_lock lock(mutex_);
     filled_.wait_for(lock, timeout, [&] { return closed_ || pushed_ > next; });
@@ -46,7 +47,7 @@ class EventQueue {
     return events_[next++ - oldest];
   }
 
-  /// Wakes every viewer; there are no more events for them.
+  /// Wakes every viewer. They get no more events.
   void close() {
     {
       const std::lock_guard lock(mutex_);

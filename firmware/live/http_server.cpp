@@ -91,16 +91,16 @@ bool is_local_host_header(const std::string& host) {
   return name == "localhost" || is_ip_address(name);
 }
 
-/// cpp-httplib's parser, routes and responses, without its sockets and threads.
+/// Uses cpp-httplib's parser, routes and responses, but not its sockets and threads.
 class HttpServer::Responder final : public httplib::Server {
  public:
-  /// Without a socket cpp-httplib would take itself for shut down and end every stream.
+  /// Sets a socket. Without one, cpp-httplib would behave as after its end, and end every stream.
   Responder() { svr_sock_ = 0; }
 
   void answer(httplib::Stream& stream) { answer_by(*this, stream); }
 
  private:
-  /// cpp-httplib of Debian 13 wants both addresses too, which no handler of ours reads.
+  /// cpp-httplib of Debian 13 also takes both addresses, which none of our handlers reads.
   template <typename Server>
   static void answer_by(Server& server, httplib::Stream& stream) {
     bool closed = false;
@@ -164,7 +164,7 @@ class HttpServer::Impl {
     for (const Waiting& connection : waiting_) {
       polled.push_back({connection.socket.get(), POLLIN, 0});
     }
-    constexpr int kPatience_ms = 1000;  // for connections that have waited too long
+    constexpr int kPatience_ms = 1000;  // so that connections that waited too long are closed
     if (poll(polled.data(), polled.size(), kPatience_ms) < 0) return;
     const SteadyTime now = std::chrono::steady_clock::now();
     size_t index = 2;
@@ -221,11 +221,11 @@ class HttpServer::Impl {
   Socket listener_;
   Socket wake_;
   const int port_;
-  std::list<Waiting> waiting_;  ///< the oldest first; of the accepting thread
-  std::mutex mutex_;            ///< for the next three
+  std::list<Waiting> waiting_;  ///< oldest first; used by the accepting thread only
+  std::mutex mutex_;            ///< guards the next three
   std::condition_variable queue_filled_;
   std::deque<Socket> queue_;
-  std::vector<int> answering_;  ///< sockets of the workers
+  std::vector<int> answering_;  ///< sockets that the workers answer
   std::atomic<bool> stopping_{false};
   std::vector<std::jthread> threads_;
 };

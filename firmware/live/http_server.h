@@ -18,25 +18,26 @@ struct Response;
 
 namespace bevloc::firmware {
 
-/// What a client can use up. A connection beyond a limit is closed.
+/// How much a client can use up. A connection beyond a limit is closed.
 struct HttpLimits {
-  size_t waiting = 64;  ///< connections without a complete first byte; the oldest one goes
-  size_t workers = 8;   ///< threads, and so requests at the same time
+  size_t waiting = 64;  ///< connections that have not sent a byte yet; the oldest one is closed
+  size_t workers = 8;   ///< threads, which is the number of requests at the same time
   size_t queued = 32;   ///< requests that wait for a thread
-  Duration idle = std::chrono::seconds(10);    ///< until the first byte of a request
-  Duration request = std::chrono::seconds(3);  ///< from there until its last byte
-  Duration write = std::chrono::seconds(3);    ///< until the client accepts the next bytes
-  size_t request_bytes = 16384;                ///< request line and headers
+  Duration idle = std::chrono::seconds(10);    ///< time until the first byte of a request
+  Duration request = std::chrono::seconds(3);  ///< time from there until its last byte
+  Duration write = std::chrono::seconds(3);    ///< time until the client accepts the next bytes
+  size_t request_bytes = 16384;                ///< size of request line and headers
 };
 
-/// Answers GET and HEAD; each connection carries one request. cpp-httplib parses the request and
-/// writes the response; this class accepts, waits, limits and closes, so that a slow or hostile
-/// client costs a bounded number of threads for a bounded time. A request whose Host header is a
-/// name other than "localhost" gets 403: a page of a foreign site cannot read the answers by
-/// letting its own name point here (DNS rebinding). A Range header is ignored.
+/// Answers GET and HEAD. Each connection carries one request. cpp-httplib parses the request and
+/// writes the response. This class accepts connections, waits for them, limits them and closes
+/// them, so that a slow or hostile client costs a bounded number of threads for a bounded time. A
+/// request whose Host header is a name other than "localhost" gets 403. So a page of a foreign site
+/// cannot read the answers by letting its own name point here (DNS rebinding). A Range header is
+/// ignored.
 ///
-/// Threads: `workers` and one that accepts, all with the lowest priority of the normal scheduler.
-/// Every member is called from one thread; handlers run in the workers.
+/// Starts `workers` threads that answer and one thread that accepts, all with the lowest priority
+/// of the normal scheduler. One thread. The handlers run in the threads that answer.
 class HttpServer {
  public:
   using Handler = std::function<void(const httplib::Request&, httplib::Response&)>;
@@ -48,9 +49,9 @@ class HttpServer {
   /// Closes all connections and ends all threads.
   ~HttpServer();
 
-  /// Adds a route. To be called before start().
+  /// Adds a route. Call it before start().
   void get(const std::string& path, Handler handler);
-  /// Headers of every response. To be called before start().
+  /// Sets headers of every response. Call it before start().
   void set_headers(const std::vector<std::pair<std::string, std::string>>& headers);
   void start();
   /// Closes all connections and ends all threads. Handlers that wait must have been told to end.

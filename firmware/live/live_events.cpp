@@ -30,7 +30,7 @@ double rounded(double value, double steps_per_unit) {
   return std::round(value * steps_per_unit) / steps_per_unit;
 }
 
-/// Each line as [class, x, y, x, y, ...].
+/// Returns each line as [class, x, y, x, y, ...].
 json lines_of(std::span<const ProjectedLine> lines, double steps_per_unit) {
   json list = json::array();
   for (const ProjectedLine& line : lines) {

@@ -19,26 +19,26 @@ struct TrailPoint {
   bool valid = false;
 };
 
-/// "event: NAME\ndata: JSON\n\n".
+/// Returns "event: NAME\ndata: JSON\n\n".
 std::string server_sent_event(const char* name, const nlohmann::json& data);
 
-// The events; docs/live.md describes their keys.
+// The functions below return the events, whose keys docs/live.md describes.
 
 std::string status_event(const Telemetry& telemetry, const ProcessUse& process, Duration age);
 std::string trail_event(const std::deque<TrailPoint>& trail);
-/// The map's lines around a place, in metres in the map frame.
+/// The event with the map's lines around a place, in metres in the map frame.
 std::string map_event(const MapIndex& map, const Eigen::Vector2d& centre_m, double reach_m);
-/// What the network perceives, the map's lines at the prior and at the corrected pose, and the
+/// The event with the mask, the map's lines at the prior and at the corrected pose, and the
 /// distributions. `sample` must have a mask.
 std::string match_event(const MapIndex& map, const LiveSample& sample);
-/// One camera image, and where the map's lines lie in it at the prior and at the corrected pose.
-/// `sample` must have an image. Empty if the image is damaged.
+/// The event with one camera image, and with the places of the map's lines in it at the prior and
+/// at the corrected pose. `sample` must have an image. The result is empty if the image is damaged.
 std::string camera_event(const MapIndex& map, const Rig& rig, const LiveSample& sample,
                          PictureMaker& pictures);
 
-/// The perceived mask as text: one character for each 2 x 2 cells, row by row from the front left.
-/// The character '0' + v has for class c the level (v >> 2 c) & 3 of its probability: 0 below 1/4,
-/// 1 below 1/2, 2 below 3/4, 3.
+/// Returns the perceived mask as text: one character for each 2 x 2 cells, row by row from the
+/// front left. In the character '0' + v, the level of class c is (v >> 2 c) & 3. Level 0 is a
+/// probability below 1/4, 1 below 1/2, 2 below 3/4, and 3 is a higher one.
 std::string mask_text(std::span<const float> logits);
 
 }  // namespace bevloc::firmware

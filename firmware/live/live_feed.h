@@ -16,7 +16,7 @@ namespace bevloc::firmware {
 struct LiveSample {
   Time frame_time{};
   CameraMask present;
-  int camera = 0;  ///< whose image this is
+  int camera = 0;  ///< the camera of the image
   bool has_image = false;
   ImageView image;  ///< its planes lie in `bytes`
   Pixels bytes;
@@ -28,11 +28,12 @@ struct LiveSample {
   std::vector<float> mask;  ///< logits, [3, 400, 200]
 };
 
-/// One slot. The vision thread copies into it only while somebody looks, the slot is free and the
-/// previous copy is old enough: one image of one camera at a time, so that no frameset pays for
-/// six. The vision thread never waits and allocates nothing.
+/// Holds one sample. The vision thread copies a localization into it only while somebody looks, the
+/// sample is free and the previous copy is old enough. It copies the image of one camera at a time,
+/// so that no frameset takes the time for six. The vision thread never waits and allocates nothing.
 ///
-/// Threads: offer() from the vision thread, take() from the drawing thread, set_viewers() from any.
+/// Thread-bound: offer() is called from the vision thread, take() from the drawing thread.
+/// set_viewers() is thread-safe.
 class LiveFeed {
  public:
   static constexpr Duration kPicturePeriod = std::chrono::milliseconds(95);
@@ -60,7 +61,7 @@ class LiveFeed {
   std::atomic<State> state_{State::kFree};
   LiveSample sample_;
   int next_camera_ = 0;
-  Time latest_{};  ///< of the latest copy
+  Time latest_{};  ///< time of the latest copy
   Time latest_mask_{};
 };
 

@@ -24,10 +24,11 @@ namespace {
 
 constexpr Duration kDrawPeriod = std::chrono::milliseconds(40);
 constexpr Duration kStatusPeriod = std::chrono::milliseconds(200);
-/// A viewer who gets no event for so long gets a comment, so that a closed connection is noticed.
+/// A viewer that gets no event for this long gets a comment, so that a closed connection is
+/// noticed.
 constexpr Duration kEventSilence = std::chrono::seconds(1);
 constexpr double kMapReach_m = 150.0;
-/// The map is sent again when the vehicle is this far from the place where it was sent.
+/// The map is sent again when the vehicle is this far from the place around which it was sent.
 constexpr double kMapRenewal_m = 60.0;
 constexpr double kTrailStep_m = 0.5;
 constexpr size_t kTrailPoints = 2000;
@@ -98,7 +99,7 @@ class LiveServer::Impl {
  private:
   void add_routes();
   void stream_events(const httplib::Request& request, httplib::Response& response);
-  /// False, and none is added, if there are kViewers already.
+  /// Adds a viewer. Returns false and adds none if there are kViewers already.
   bool add_viewer();
   void remove_viewer();
   void tell_feed();
@@ -115,20 +116,20 @@ class LiveServer::Impl {
 
   EventQueue events_;
   std::atomic<int> viewers_{0};
-  std::atomic<bool> newcomer_{false};  ///< a viewer lacks map and trail
+  std::atomic<bool> newcomer_{false};  ///< whether a viewer lacks map and trail
 
-  mutable std::mutex telemetry_mutex_;  ///< for the next three
+  mutable std::mutex telemetry_mutex_;  ///< guards the next three
   Telemetry telemetry_;
   std::chrono::steady_clock::time_point published_{};
   std::deque<TrailPoint> trail_;
 
-  std::mutex scene_mutex_;  ///< for the next four; held while something is drawn
+  std::mutex scene_mutex_;  ///< guards the next four; held while something is drawn
   std::shared_ptr<LiveFeed> feed_;
   Rig rig_;
   const MapIndex* map_ = nullptr;
   std::optional<Eigen::Vector2d> map_centre_;
 
-  // Of the drawing thread.
+  // Only the drawing thread uses the next two.
   PictureMaker pictures_;
   std::chrono::steady_clock::time_point status_due_{};
 
@@ -193,7 +194,8 @@ void LiveServer::Impl::tell_feed() {
   if (feed_) feed_->set_viewers(viewers_);
 }
 
-/// A page that is refused asks with HEAD why, because a browser does not tell it.
+/// Answers /events. A page that is refused asks with HEAD for the reason, because a browser does
+/// not tell it.
 void LiveServer::Impl::stream_events(const httplib::Request& request, httplib::Response& response) {
   const bool asks = request.method == "HEAD";
   if (asks && viewers_ < kViewers) return;

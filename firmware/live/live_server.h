@@ -10,8 +10,8 @@
 namespace bevloc::firmware {
 
 /// Lives as long as the daemon, also in standby. Draws the live page in a thread of its own with
-/// the lowest priority, and only while somebody looks; at most kViewers may. The pose path gives it
-/// copies (live_feed.h) and never waits for it.
+/// the lowest priority, and only while somebody looks. There may be kViewers viewers. The vision
+/// thread gives it copies (live_feed.h) and never waits for it.
 ///
 /// Thread-bound: called from the supervising thread.
 class LiveServer {
@@ -22,13 +22,13 @@ class LiveServer {
   static Result<std::unique_ptr<LiveServer>> start(const LiveConfig& config);
   ~LiveServer();
 
-  /// Shows this appliance until detach(). To be called before the appliance's threads start.
+  /// Shows this appliance until detach(). Call it before the appliance's threads start.
   void attach(Appliance& appliance, const Rig& rig);
-  /// To be called after the appliance's threads have ended and before it is destroyed. Waits until
+  /// Call it after the appliance's threads have ended and before it is destroyed. Waits until
   /// nothing is drawn any more.
   void detach();
 
-  /// What all answers show from now on. To be called about ten times per second.
+  /// Sets what all answers show from now on. Call it about ten times per second.
   void publish(const Telemetry& telemetry);
 
   int port() const;

@@ -30,7 +30,7 @@ Rgb rgb_of_yuv(int y, int u, int v, const RgbFromYuv& colour) {
           channel(luma + colour.blue_u * u)};
 }
 
-/// The colour of the 2 x 2 pixels around (col, row), which show each colour.
+/// Returns the colour of the 2 x 2 pixels at (col, row), which together have all colours.
 Rgb rgb_of_bayer(const ImageView& image, int col, int row) {
   const RedPixel red = red_of(image.format);
   const int left = std::min(col, image.width - 2) & ~1;
@@ -68,7 +68,7 @@ Rgb pixel_of(const ImageView& image, int col, int row, const RgbFromYuv& colour)
 struct PictureMaker::Codec {
   tjhandle compressor = tjInitCompress();
   tjhandle decompressor = tjInitDecompress();
-  unsigned char* file = nullptr;  ///< grown by the library
+  unsigned char* file = nullptr;  ///< the library enlarges it
   unsigned long bytes = 0;        // NOLINT(google-runtime-int): the type of the library
 
   ~Codec() {

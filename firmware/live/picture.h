@@ -10,7 +10,7 @@
 
 namespace bevloc::firmware {
 
-/// One thread.
+/// Makes the pictures. One thread.
 class PictureMaker {
  public:
   /// No picture is wider than this.
@@ -19,8 +19,8 @@ class PictureMaker {
   PictureMaker();
   ~PictureMaker();
 
-  /// A JPEG file with every n-th pixel, for the smallest n that makes the picture narrow enough.
-  /// Fails for a damaged or empty image.
+  /// Returns a JPEG file with every n-th pixel, for the smallest n that makes the picture narrow
+  /// enough. Fails for a damaged or empty image.
   Result<std::string> jpeg_of(const ImageView& image);
 
  private:

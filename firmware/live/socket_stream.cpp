@@ -14,7 +14,7 @@ constexpr size_t kReceiveBytes = 4096;
 
 using SteadyClock = std::chrono::steady_clock;
 
-/// Waits until the socket is ready for `event`. False after `until`.
+/// Waits until the socket is ready for `event`. Returns false if it is not ready at `until`.
 bool wait_for(int socket, short event, SteadyClock::time_point until) {
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - SteadyClock::now());
   if (left.count() <= 0) return false;
@@ -61,7 +61,7 @@ ssize_t SocketStream::read(char* text, size_t size) {
   return static_cast<ssize_t>(taken);
 }
 
-/// Writes a part, as write(2) does.
+/// Writes a part of the text, as write(2) does.
 ssize_t SocketStream::write(const char* text, size_t size) {
   while (true) {
     const ssize_t sent = send(socket_.get(), text, size, MSG_NOSIGNAL);

@@ -9,7 +9,7 @@
 
 namespace bevloc::firmware {
 
-/// Closes its socket.
+/// Owns a socket, and closes it at its end.
 class Socket {
  public:
   explicit Socket(int file = -1) : file_(file) {}
@@ -26,11 +26,12 @@ class Socket {
   int file_;
 };
 
-/// What cpp-httplib reads a request from and writes the response to. Reading fails when the request
-/// is not complete in time or too long; writing fails when the client does not read. One thread.
+/// cpp-httplib reads a request from this stream and writes the response to it. Reading fails when
+/// the request is not complete in time, or too long. Writing fails when the client does not read.
+/// One thread.
 class SocketStream final : public httplib::Stream {
  public:
-  /// `socket` does not block and must outlive this.
+  /// `socket` must be non-blocking and outlive this.
   SocketStream(const Socket& socket, const HttpLimits& limits);
 
   bool is_readable() const override { return true; }
@@ -48,7 +49,7 @@ class SocketStream final : public httplib::Stream {
   const HttpLimits& limits_;
   const std::chrono::steady_clock::time_point read_until_;
   size_t read_bytes_ = 0;
-  std::vector<char> buffer_;  ///< received, from next_ on not yet read
+  std::vector<char> buffer_;  ///< bytes that were received; those from next_ on are not read yet
   size_t next_ = 0;
 };
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr time_t kPatience_s = 3;
 
-/// The server answers no other names (is_local_host_header()).
+/// Accepts the addresses that the server answers to (is_local_host_header()).
 std::string check_address(const std::string& text) {
   if (text == "localhost" || is_ip_address(text)) return "";
   return fmt::format("found '{}', wanted an IP address in numbers, such as 127.0.0.1, or localhost",
@@ -53,7 +53,7 @@ std::string reason_of(httplib::Error error, const std::string& address, int port
   return error == httplib::Error::Read ? "no answer" : httplib::to_string(error);
 }
 
-/// The status that the daemon sends, parsed, and as text.
+/// The status that the daemon sends, as text and parsed.
 struct Answer {
   std::string text;
   nlohmann::json status;
@@ -109,7 +109,7 @@ int StatusCommand::run() const {
     fmt::print(stderr, "bevloc: {}\n", answer.error().message);
     return kNotReachable;
   }
-  try {  // another version may use another type for a key
+  try {  // another version of bevlocd may use another type for a key
     const bool valid = answer->status.value("valid", false);
     fmt::print("{}", json_ ? answer->text : status_page(answer->status));
     return valid ? kValid : kNotValid;

@@ -24,40 +24,41 @@ struct Hardware {
   std::vector<std::unique_ptr<drivers::Camera>> cameras;  ///< in the order of kCameraNames
   std::unique_ptr<can::Bus> bus;
   drivers::Clock* clock = nullptr;            ///< must outlive the appliance
-  const drivers::PulseLog* pulses = nullptr;  ///< of the trigger; null without one
+  const drivers::PulseLog* pulses = nullptr;  ///< pulses of the trigger; null without one
 };
 
-/// The signs of life of the threads that have one stage each; a capture stage has its own.
+/// The heartbeats of the threads that run one stage each. A capture stage has its own.
 struct StageHeartbeats {
   Heartbeat vision;
   Heartbeat can_in;
   Heartbeat can_out;
-  Heartbeat gnss;  ///< only with a GNSS stage
+  Heartbeat gnss;  ///< used only with a GNSS stage
 };
 
 /// Where the frames of all cameras went.
 struct FrameCounts {
   uint64_t missed = 0;      ///< lost before capture, as the camera drivers counted
   uint64_t captured = 0;    ///< delivered by the cameras
-  uint64_t used = 0;        ///< in a frameset that vision took
+  uint64_t used = 0;        ///< frames in a frameset that vision took
   uint64_t displaced = 0;   ///< dropped from the full queue by newer frames
-  uint64_t mismatched = 0;  ///< refused by the synchronizer, or in a frameset of too few cameras
+  uint64_t mismatched = 0;  ///< refused by the synchronizer, or in a frameset with too few cameras
   uint64_t skipped = 0;     ///< in a frameset that was skipped for a newer one
   uint64_t dropped() const { return captured - used; }
   /// Frames that still wait for their frameset.
   uint64_t under_way() const { return dropped() - displaced - mismatched - skipped; }
 };
 
-/// Entries that newer ones pushed out of the queues between the stages, beside frames.
+/// Entries other than frames that newer ones displaced from the queues between the stages.
 struct QueueDrops {
-  uint64_t samples = 0;      ///< odometry and GNSS that estimation did not read in time
-  uint64_t reports = 0;      ///< of vision, that estimation did not read in time
-  uint64_t predictions = 0;  ///< poses that vision did not need; many without framesets
+  uint64_t samples = 0;  ///< odometry and GNSS samples that estimation did not read in time
+  uint64_t reports = 0;  ///< reports of vision that estimation did not read in time
+  /// Predicted poses that vision did not need. There are many if no framesets come.
+  uint64_t predictions = 0;
 };
 
-/// Owns stages, queues and devices; runner.h runs it, with threads or in lockstep. Stages exchange
-/// data through bounded queues only. The constructor starts no thread. Each stage states its own
-/// thread rule; close() is thread-safe.
+/// Owns stages, queues and devices. The functions of runner.h run it, with threads or in lockstep.
+/// Stages exchange data through bounded queues only. The constructor starts no thread. Each stage
+/// states its own thread rule. close() is thread-safe, and the counts are readable from any thread.
 class Appliance {
  public:
   /// Fails when the model cannot be loaded or the solver does not support the hypotheses. `map`
@@ -72,7 +73,7 @@ class Appliance {
   const StageHeartbeats& heartbeats() const { return heartbeats_; }
   VehicleInputStage& vehicle_input() { return vehicle_input_; }
   const VehicleInputStage& vehicle_input() const { return vehicle_input_; }
-  /// Null if GNSS comes on the bus.
+  /// The GNSS stage, or null if GNSS comes on the bus.
   GnssStage* gnss() { return gnss_ ? &*gnss_ : nullptr; }
   const GnssStage* gnss() const { return gnss_ ? &*gnss_ : nullptr; }
   VisionStage& vision() { return vision_; }
@@ -83,9 +84,9 @@ class Appliance {
   const MapIndex& map_index() const { return *map_index_; }
   const can::Bus& bus() const { return *hardware_.bus; }
 
-  /// Exact after all threads have ended. Callable from any thread.
+  /// Returns the counts, which are exact only after all threads have ended.
   FrameCounts frame_counts() const;
-  /// Callable from any thread.
+  /// Returns the numbers of entries that the queues dropped.
   QueueDrops queue_drops() const;
 
   /// Wakes every stage that waits for a queue, so that its thread can end.

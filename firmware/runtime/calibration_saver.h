@@ -1,4 +1,4 @@
-// Keeps what the online calibration learns: while the appliance runs, and at its end.
+// Saves what the online calibration learns, while the appliance runs and at its end.
 #pragma once
 
 #include <filesystem>
@@ -20,31 +20,32 @@ namespace bevloc::firmware {
 /// file keeps what was known at the start: that camera changed the estimates of the other cameras
 /// before it was found.
 ///
-/// Threads: note() from the vision thread, write_next() from one other thread, close() from any
-/// thread, finish() after the vision thread has ended and write_next() is no longer called.
+/// Thread-bound: note() is called from the vision thread, write_next() from the saving thread.
+/// finish() is called after the vision thread has ended and write_next() is no longer called.
+/// close() is thread-safe.
 class CalibrationSaver {
  public:
-  /// A vehicle that cuts the power without a warning loses what it learned in one minute, in which
-  /// the estimate moves little. A file of 17 kB a minute, 25 MB in 24 hours of driving, does not
-  /// wear a flash memory out.
+  /// A vehicle that cuts the power without a warning loses what was learned in one minute, in which
+  /// the estimate changes little. One file of 17 kB per minute, which is 25 MB in 24 hours of
+  /// driving, does not wear a flash memory out.
   static constexpr Duration kPeriod = std::chrono::minutes(1);
 
-  /// What `online` knows now counts as written. It must outlive the saver. `rig_crc32`: of the rig
-  /// that the errors belong to.
+  /// What `online` knows now counts as written. `online` must outlive the saver. `rig_crc32` is
+  /// that of the rig to which the errors belong.
   CalibrationSaver(const OnlineCalibration& online, uint32_t rig_crc32, std::filesystem::path file);
 
-  /// Calls note() after each match. Before the first step of the stage; saver and clock must
-  /// outlive its last step.
+  /// Makes the stage call note() after each match. Call it before the first step of the stage.
+  /// Saver and clock must outlive its last step.
   void watch(VisionStage& vision, const drivers::Clock& clock);
 
   /// Hands over the estimate for writing, once in kPeriod. Does not allocate.
   void note(Time now);
 
-  /// Waits up to `timeout` for what is handed over, and returns whether it was written. Logs a
-  /// failure, once per cause.
+  /// Waits up to `timeout` for an estimate, and writes it if it is new. Returns whether one was
+  /// written. Logs a failure once per cause.
   bool write_next(Duration timeout);
 
-  /// Wakes write_next(), which waits no longer from then on.
+  /// Wakes write_next(), which does not wait from then on.
   void close() { handed_over_.close(); }
 
   /// Writes the last estimate.
@@ -52,7 +53,7 @@ class CalibrationSaver {
 
  private:
   LearnedCalibration known() const;
-  /// The present estimate; that of the start while a camera is out of place.
+  /// Returns the present estimate, or that of the start while a camera is out of place.
   LearnedCalibration worth_keeping() const;
   bool write(const LearnedCalibration& learned);
 
@@ -60,20 +61,21 @@ class CalibrationSaver {
   const uint32_t rig_crc32_;
   const std::filesystem::path file_;
   const LearnedCalibration start_;
-  std::optional<Time> due_;  ///< of the vision thread
+  std::optional<Time> due_;  ///< when note() hands over next; used by the vision thread only
   BoundedQueue<LearnedCalibration> handed_over_{1};
   LearnedCalibration written_;
   std::string failure_;  ///< why the latest write failed; empty if it did not
 };
 
-/// Null if nothing is kept: without calibration.online.file, or without online calibration. Before
-/// the first step of the vision stage. The localizer must outlive the saver.
+/// Makes a saver. Returns null if nothing is kept, because there is no calibration.online.file or
+/// no online calibration. Call it before the first step of the vision stage. The localizer must
+/// outlive the saver.
 std::unique_ptr<CalibrationSaver> make_calibration_saver(const Config& config, const Rig& rig,
                                                          const Localizer& localizer);
 
-/// Writes what is handed over, with the lowest priority of the machine, and finishes when it is
-/// asked to stop: after the vision thread has ended. Nothing waits for this thread before. `saver`
-/// must outlive it.
+/// Starts the saving thread. It writes what is handed over, with the lowest priority of the normal
+/// scheduler, and finishes when it is asked to stop. Ask it only after the vision thread has ended.
+/// Nothing waits for this thread before. `saver` must outlive it.
 std::jthread start_saving(CalibrationSaver& saver);
 
 }  // namespace bevloc::firmware

@@ -1,4 +1,4 @@
-// Decides what the bus tells about the clock: the configured source, while the kernel agrees.
+// Decides what the bus tells about the clock.
 #pragma once
 
 #include "can/messages/pose_report.h"
@@ -7,12 +7,12 @@
 
 namespace bevloc::firmware {
 
-/// The configured source, while the kernel says that a service keeps the system clock and that its
-/// error is within the configured bound. Otherwise free running. Thread-bound: called from the
-/// supervising thread.
+/// Reports the configured source while the kernel says that a service keeps the system clock and
+/// that its error is within the configured bound. Otherwise reports a free-running clock.
+/// Thread-bound: called from the supervising thread.
 class ClockWatch {
  public:
-  /// Both clocks at one moment.
+  /// The times of both clocks at one moment.
   struct Reading {
     drivers::WallTime wall;
     Time steady{};
@@ -22,7 +22,7 @@ class ClockWatch {
   explicit ClockWatch(const ClockConfig& config, Read read = read_clocks)
       : config_(config), read_(read) {}
 
-  /// Asks the kernel, and logs a change with what to do.
+  /// Asks the kernel. Logs each change, and what to do.
   can::ClockReport step();
 
  private:

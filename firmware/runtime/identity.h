@@ -10,10 +10,11 @@
 
 namespace bevloc::firmware {
 
-/// A file that cannot be read, or that the configuration does not name, has the checksum 0.
+/// Computes the checksums. A file that cannot be read, or that the configuration does not name, has
+/// the checksum 0.
 can::Identity identity_of(const Config& config, const HdMap& map);
 
-/// LOC_Status.MapId: map_checksum(), folded to 16 bits.
+/// Returns LOC_Status.MapId: map_checksum(), folded to 16 bits.
 uint16_t map_id_of(const HdMap& map);
 
 /// Logs the identity with the names of model and map.

@@ -19,8 +19,9 @@ namespace {
 constexpr Duration kPatience = std::chrono::milliseconds(50);
 constexpr Duration kBusCycle = std::chrono::milliseconds(can::kSolutionCycleMs);
 constexpr Duration kSupervisionPeriod = std::chrono::milliseconds(100);
-/// Every thread ends after kPatience and one step. systemd kills the daemon after 5 s
-/// (TimeoutStopSec=). The thread sanitizer makes a step of vision some hundred times slower.
+/// The longest wait for the end of all threads. Each ends after kPatience and one step. systemd
+/// kills the daemon after 5 s (TimeoutStopSec=). The thread sanitizer makes a step of vision some
+/// hundred times slower.
 #ifdef __SANITIZE_THREAD__
 constexpr Duration kEndPatience = std::chrono::seconds(60);
 #else
@@ -55,7 +56,7 @@ void act_when_due(drivers::Clock& clock, const Companion& companion,
   }
 }
 
-/// A thread that says when it has ended, because a join cannot give up.
+/// A thread that says when it has ended, because a join has no timeout.
 class EndingThread {
  public:
   template <typename Work>
@@ -74,7 +75,7 @@ class EndingThread {
   std::jthread thread_;
 };
 
-/// A deque, because a thread cannot be moved.
+/// The threads are in a deque, because a thread cannot be moved.
 using Threads = std::deque<EndingThread>;
 
 void capture(CaptureStage& stage, const std::atomic<bool>& running) {
@@ -135,8 +136,8 @@ void start_companion(drivers::Clock& clock, const Companion& companion,
   });
 }
 
-/// Waits until the threads for which `wanted` is true have ended, until `give_up`. Returns the
-/// names of those that have not.
+/// Waits until the threads for which `wanted` is true have ended, but not longer than until
+/// `give_up`. Returns the names of those that have not ended.
 template <typename Wanted>
 std::string wait_for_end(const Threads& threads, std::chrono::steady_clock::time_point give_up,
                          Wanted wanted) {
@@ -163,7 +164,7 @@ void receive_confirmations(Appliance& appliance) {
   }
 }
 
-/// Says LOST on the bus. The threads of the bus are waited for; another one may still hang.
+/// Sends LOST on the bus. Waits for the threads of the bus only, because another one may hang.
 void sign_off(Appliance& appliance, const Threads& threads,
               std::chrono::steady_clock::time_point give_up) {
   const auto has_ended = [&](const char* name) {
@@ -174,13 +175,13 @@ void sign_off(Appliance& appliance, const Threads& threads,
   appliance.estimation().sign_off(appliance.clock().now());
 }
 
-/// The stages still use the appliance, which therefore cannot be destroyed.
+/// Exits the process without destroying the appliance, which the threads still use.
 [[noreturn]] void exit_without(const std::string& names) {
   spdlog::error(
       "thread {} did not end within {} s; the process exits without it, and systemd starts it "
       "again",
       names, to_seconds(kEndPatience));
-  std::this_thread::sleep_for(2 * kPatience);  // for the log
+  std::this_thread::sleep_for(2 * kPatience);  // gives the log time to be written
   std::_Exit(kHungExitCode);
 }
 

@@ -7,17 +7,17 @@
 
 namespace bevloc::firmware {
 
-/// Without a service manager, all calls do nothing. One thread.
+/// Reports to the service manager. All calls do nothing if there is none. One thread.
 class ServiceNotifier {
  public:
   /// Reports that the daemon is ready, and sets the watchdog timeout to that of the unit again.
   void ready();
   void stopping();
-  /// Sets the line that `systemctl status` shows. Sent only when it changes.
+  /// Sets the line that `systemctl status` shows. It is sent only when it changes.
   void status(const std::string& text);
-  /// To be called only while every thread makes progress.
+  /// Call it only while every thread makes progress.
   void feed_watchdog();
-  /// Changes the watchdog timeout until ready(), if the unit has a watchdog.
+  /// Changes the watchdog timeout until ready() is called, if the unit has a watchdog.
   void set_watchdog_timeout(Duration timeout);
 
  private:

@@ -11,38 +11,38 @@
 
 namespace bevloc::firmware {
 
-/// State of the appliance, for log, LED, service status and progress line.
+/// The state of the appliance, for log, LED, service status and progress line.
 struct ApplianceView {
   HealthState state = HealthState::kInit;
   WhyMask why;
   uint64_t lost = 0;  ///< how often the pose was lost
-  WhyMask lost_why;   ///< of the latest loss
-  int cameras = 0;    ///< used in the latest frameset
+  WhyMask lost_why;   ///< reasons of the latest loss
+  int cameras = 0;    ///< number of cameras that the latest frameset used
   can::BusCondition bus;
   double rate_hz = 0.0;       ///< framesets per second, averaged over about one second
   std::string hung;           ///< names of the threads that hang, separated by commas
   int realtime_refusals = 0;  ///< settings of the section `realtime` that the kernel refused
   std::array<double, kCameraCount> drift_ppm{};  ///< as in SynchronyCounters
-  CameraMask frozen;                             ///< as in VisionCounters, also the next four
+  CameraMask frozen;                             ///< as in VisionCounters, like the next four
   CameraMask dark;
   CameraMask blinded;
   CameraMask dirty;
   CameraMask calibration_fault;
-  int stamp_offset_ms = 0;  ///< as in EstimationCounters, as is the next
+  int stamp_offset_ms = 0;  ///< as in EstimationCounters, like the next one
   std::array<int, 2> map_offset_cm{};
 };
 
 /// Thread-bound: called from the supervising thread; heartbeat() is readable from any thread.
 class Supervisor {
  public:
-  /// All must outlive the supervisor.
+  /// All arguments must outlive the supervisor.
   Supervisor(const Appliance& appliance, const Realtime& realtime, const Watchdog& watchdog)
       : appliance_(appliance),
         realtime_(realtime),
         watchdog_(watchdog),
         watchdog_watch_(watchdog.heartbeat()) {}
 
-  /// Updates the view. To be called about ten times per second.
+  /// Updates the view. Call it about ten times per second.
   void step(Time now);
   /// Reports to the service manager that the appliance stops.
   void finish() { notifier_.stopping(); }
@@ -58,7 +58,7 @@ class Supervisor {
   const Appliance& appliance_;
   const Realtime& realtime_;
   const Watchdog& watchdog_;
-  HeartbeatWatch watchdog_watch_;  ///< of the watchdog's own thread
+  HeartbeatWatch watchdog_watch_;  ///< watches the watchdog's own thread
   Heartbeat heartbeat_;
   ServiceNotifier notifier_;
   ApplianceView view_;

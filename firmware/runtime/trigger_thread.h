@@ -14,13 +14,13 @@ namespace bevloc::firmware {
 /// Pulses the line from start() to stop() or the destructor. One thread.
 class TriggerThread {
  public:
-  /// Fails if the line cannot be opened. `realtime` applies to the thread. `clock` must be
-  /// thread-safe. All three must outlive the result.
+  /// Starts the thread. Fails if the line cannot be opened. `realtime` applies to the thread.
+  /// `clock` must be thread-safe. `gpio`, `clock` and `realtime` must outlive the result.
   static Result<std::unique_ptr<TriggerThread>> start(const TriggerLineConfig& config,
                                                       drivers::Gpio& gpio, drivers::Clock& clock,
                                                       Realtime& realtime);
 
-  /// Ends the thread; its counters are final then. To be called after capture has ended.
+  /// Ends the thread, after which its counters are final. Call it after capture has ended.
   void stop();
 
   const drivers::Trigger& trigger() const { return trigger_; }

@@ -14,19 +14,21 @@
 
 namespace bevloc::firmware {
 
-/// Stops a camera that fails and starts it again after a pause, without limit: a loose connector
-/// must not end localization. A camera that cannot start, that fails while it runs, or that
-/// delivers no frame for two seconds is logged with the driver's own sentence, once per cause. A
-/// camera that stays silent is started again, too, because some drivers need that after a stall.
-/// Thread-bound: called from the camera's thread; counters are readable from any thread.
+/// Stops a camera that fails and starts it again after a pause, without limit, because a loose
+/// connector must not end localization. If a camera cannot start or fails while it runs, the
+/// driver's own message is logged, once per cause. A camera that delivers no frame for two seconds
+/// is logged, too. A camera that stays silent is started again, because some drivers need that
+/// after a stall.
+/// Thread-bound: called from the camera's own thread. The counters are readable from any thread.
 class CaptureStage {
  public:
-  /// Everything passed in must outlive the stage.
+  /// All arguments must outlive the stage.
   CaptureStage(drivers::Camera& camera, const drivers::Clock& clock, FrameQueue& frames);
 
-  /// Waits for a frame, at most `timeout`, and queues it. False once no frame will ever come.
+  /// Waits for a frame, at most `timeout`, and queues it. Returns false when no frame will come any
+  /// more.
   bool step(Duration timeout);
-  /// Stops the camera; the next step() starts it again.
+  /// Stops the camera. The next step() starts it again.
   void stop();
 
   /// Beats at each step. While the camera starts or stops, its deadline is longer.
@@ -39,14 +41,15 @@ class CaptureStage {
 
  private:
   static constexpr Duration kPauseAfterFailure = std::chrono::milliseconds(500);
-  /// The log says that a camera without frames for this long is silent. A camera that is slower
-  /// than half a frame per second is therefore named without being faulty.
+  /// A camera without frames for this long is logged as silent. So a camera that is slower than
+  /// half a frame per second is logged although it is not faulty.
   static constexpr Duration kSilence = std::chrono::seconds(2);
-  /// A silent camera is started again after the least time, then after twice that, and so on up to
-  /// the most: a camera without a trigger is silent without being faulty.
+  /// A silent camera is started again after the least time, then after twice that time, and so on
+  /// up to the most. The time grows because a camera without a trigger is silent although it is not
+  /// faulty.
   static constexpr Duration kLeastPatience = std::chrono::seconds(10);
   static constexpr Duration kMostPatience = std::chrono::seconds(160);
-  /// To open or to close a device takes up to some seconds, while a kernel driver waits for it.
+  /// The deadline while a device is opened or closed, which takes up to some seconds.
   static constexpr Duration kDeviceDeadline = std::chrono::seconds(10);
 
   bool ensure_started(Time now);
@@ -64,8 +67,8 @@ class CaptureStage {
   Time next_start_ = Time::min();
   CauseLog causes_;
   drivers::StampSteps stamp_steps_;
-  Time waiting_since_{};  ///< for the next frame, or since the silence was last logged
-  Time silent_since_{};   ///< the latest frame or start
+  Time waiting_since_{};  ///< the latest frame, start or log line about the silence
+  Time silent_since_{};   ///< time of the latest frame or start
   Duration patience_ = kLeastPatience;
   bool failing_ = false;  ///< a cause was logged and no frame has come since
   std::atomic<uint64_t> captured_{0};

@@ -13,7 +13,7 @@
 
 namespace bevloc::firmware {
 
-/// Totals since start; readable from any thread.
+/// Totals since start, readable from any thread.
 struct FramesetCounters {
   std::atomic<uint64_t> skipped{0};         ///< framesets dropped because a newer one was ready
   std::atomic<uint64_t> frames_skipped{0};  ///< frames in those framesets
@@ -27,16 +27,17 @@ struct NewestFrameset {
   bool unsynchronized = false;  ///< the cameras do not expose together (Synchrony)
 };
 
-/// Owns the synchronizer. Thread-bound: called from the vision thread; counters(), synchrony() and
+/// Owns the synchronizer. Thread-bound: called from the vision thread. counters(), synchrony() and
 /// frames_of() are readable from any thread.
 class FramesetSource {
  public:
-  /// If the machine was suspended for longer, or the thread hung for longer between two looks at
-  /// the clock, the frames from before are forgotten: the vehicle may be elsewhere.
+  /// If the machine was suspended for longer than this, or the thread hung for longer between two
+  /// looks at the clock, the earlier frames are forgotten, because the vehicle may be elsewhere.
   static constexpr Duration kGap = std::chrono::seconds(1);
 
-  /// `compensates`: whether the matching corrects for the motion between the frames of a frameset.
-  /// `pulses`: of the trigger; null without one. `frames` and `pulses` must outlive this.
+  /// `compensates` says whether the matching corrects for the motion between the frames of a
+  /// frameset. `pulses` are those of the trigger, or null without one. `frames` and `pulses` must
+  /// outlive this.
   FramesetSource(const drivers::SynchronizerConfig& config, bool compensates,
                  const drivers::PulseLog* pulses, FrameQueue& frames);
   FramesetSource(const FramesetSource&) = delete;
@@ -46,17 +47,19 @@ class FramesetSource {
   /// frameset has waited long enough for its missing cameras.
   void take_frames(const drivers::Clock& clock, Duration timeout);
 
-  /// The newest frameset that is ready at `now`; nothing without one. Skips and counts older ones.
+  /// Returns the newest frameset that is ready at `now`, or nothing if there is none. Skips and
+  /// counts older ones.
   std::optional<NewestFrameset> newest(Time now);
 
-  /// True, at most every 200 ms, while unsynchronized cameras keep any frameset from being emitted.
+  /// Returns true, at most every 200 ms, while unsynchronized cameras keep any frameset from being
+  /// emitted.
   bool unsynchronized_without_framesets(Time now) {
     return synchrony_.unsynchronized_without_framesets(now);
   }
 
   const FramesetCounters& counters() const { return counters_; }
   const SynchronyCounters& synchrony() const { return synchrony_.counters(); }
-  /// What became of the frames of one camera.
+  /// Returns what became of the frames of one camera.
   drivers::SynchronizerCounters frames_of(int camera) const { return frames_of_[camera].load(); }
 
  private:
@@ -68,7 +71,7 @@ class FramesetSource {
   FrameQueue& frames_;
   FramesetCounters counters_;
   std::optional<Time> latest_look_;
-  Duration suspended_{};  ///< Clock::suspended() at that look
+  Duration suspended_{};  ///< Clock::suspended() at the latest look
   std::array<Published<drivers::SynchronizerCounters>, kCameraCount> frames_of_;
 };
 

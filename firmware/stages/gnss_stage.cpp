@@ -6,14 +6,15 @@
 namespace bevloc::firmware {
 namespace {
 
-/// Assumed where the receiver does not tell its speed.
+/// The speed that is assumed if the receiver does not tell it.
 constexpr double kUnknownSpeed_mps = 40.0;
 constexpr double kCourseIsHeading_mps = 5.0;
 constexpr double kCourseSigma_deg = 3.0;
-/// Common acceleration across: it turns the course of an antenna in front of the rear axle.
+/// A common lateral acceleration. It turns the course of an antenna in front of the rear axle.
 constexpr double kAcross_mps2 = 2.0;
 
-/// The heading that a course means, which is that of the antenna and not of the rear axle.
+/// Returns the heading that follows from a course. The course is that of the antenna and not that
+/// of the rear axle.
 std::optional<can::GeodeticFix::Heading> heading_of(const drivers::GnssFix& fix,
                                                     const GnssSample::Antenna& antenna) {
   if (!fix.course_deg || !fix.speed_mps || *fix.speed_mps < kCourseIsHeading_mps) {

@@ -18,16 +18,16 @@ namespace bevloc::firmware {
 /// Totals since start, and the latest state.
 struct GnssCounters {
   drivers::GpsdCounters gpsd;
-  std::array<uint64_t, drivers::kFixVerdicts> fixes{};  ///< by FixVerdict
+  std::array<uint64_t, drivers::kFixVerdicts> fixes{};  ///< number of fixes for each FixVerdict
   uint64_t samples = 0;
   bool connected = false;
-  Duration max_age{};  ///< of a fix that was used
+  Duration max_age{};  ///< largest age of a fix that was used
 
   uint64_t of(drivers::GpsdLine line) const { return gpsd.of(line); }
   uint64_t of(drivers::FixVerdict verdict) const { return fixes[static_cast<size_t>(verdict)]; }
 };
 
-/// Thread-bound: called from the GNSS thread; counters() is readable from any thread.
+/// Thread-bound: called from the GNSS thread. counters() is readable from any thread.
 class GnssStage {
  public:
   using ReadWall = drivers::WallTime (*)();
@@ -36,7 +36,7 @@ class GnssStage {
   GnssStage(const GnssConfig& config, can::GeodeticPosition map_origin, const drivers::Clock& clock,
             VehicleQueue& samples, ReadWall read_wall = drivers::read_wall_time);
 
-  /// Waits for reports of gpsd, at most `timeout` of real time, and queues the samples they make.
+  /// Waits for reports of gpsd, at most `timeout` of real time, and queues their samples.
   void step(Duration timeout);
 
   GnssCounters counters() const { return published_.load(); }
@@ -55,9 +55,9 @@ class GnssStage {
   Published<GnssCounters> published_;
 };
 
-/// The sample of a fix that held at `time`. The uncertainty of the time counts as one of the
-/// position, by the speed. The course counts as the heading from 5 m/s on, because no vehicle
-/// reverses so fast.
+/// Returns the sample of a fix with the time `time`. The uncertainty of the time, multiplied by the
+/// speed, adds to that of the position. From 5 m/s on, the course counts as the heading, because no
+/// vehicle reverses so fast.
 GnssSample gnss_sample_of(const drivers::GnssFix& fix, const drivers::FixTime& time,
                           const GnssConfig& config, can::GeoReference& geo);
 

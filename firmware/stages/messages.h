@@ -14,23 +14,26 @@ namespace bevloc::firmware {
 
 /// Vision to estimation: the result of one frameset.
 struct VisionReport {
-  Time frame_time;          ///< time of the frameset
-  CameraMask present;       ///< cameras whose image was used; without a prior: all in the frameset
-  bool skipped = false;     ///< older framesets were skipped for this one
-  bool had_prior = false;   ///< false: no pose was known at frame_time, so nothing was matched
-  bool map_nearby = false;  ///< the map has elements around the prior
+  Time frame_time;  ///< time of the frameset
+  /// The cameras whose image was used. Without a prior, these are all cameras in the frameset.
+  CameraMask present;
+  bool skipped = false;  ///< older framesets were skipped for this one
+  /// Whether a pose was known at frame_time. If not, nothing was matched.
+  bool had_prior = false;
+  bool map_nearby = false;       ///< the map has elements around the prior
   CameraMask calibration_fault;  ///< cameras that are not where the calibration has them
   bool unsynchronized = false;   ///< the cameras do not expose together (Synchrony)
-  bool stamps_jumped = false;    ///< the time stamps of most cameras have (drivers::StampSteps)
-  bool network_fault = false;    ///< the network failed its check, so nothing was matched
-  Se2 prior;                     ///< T0: map_from_vehicle at frame_time
+  /// Whether the time stamps of most cameras have jumped (drivers::StampSteps).
+  bool stamps_jumped = false;
+  bool network_fault = false;  ///< the network failed its check, so nothing was matched
+  Se2 prior;                   ///< T0: map_from_vehicle at frame_time
   MatchResult match;
 };
 
 /// Estimation to vision: the predicted pose, and how far to search around it.
 struct Prediction {
   TrackedPose pose;
-  bool acquiring = true;  ///< search the wide range (SearchRange::kAcquiring)
+  bool acquiring = true;  ///< whether to search the wide range (SearchRange::kAcquiring)
 };
 
 using FrameQueue = BoundedQueue<drivers::Frame>;
@@ -40,11 +43,12 @@ using VisionQueue = BoundedQueue<VisionReport>;
 
 /// All queues between the stages of one appliance. Thread-safe.
 struct StageQueues {
-  /// Two framesets: older frames would be skipped anyway.
+  /// The frames of two framesets. Older frames would be skipped anyway.
   static constexpr size_t kFrames = 2 * kCameraCount;
 
   FrameQueue frames{kFrames};
-  /// Written every bus cycle, read at every frameset, which may be a second apart.
+  /// The predictions are written every bus cycle and read at every frameset, which may be a second
+  /// apart.
   PredictionQueue predictions{128};
   /// Samples and reports are read every bus cycle; these capacities last for many cycles.
   VehicleQueue samples{256};

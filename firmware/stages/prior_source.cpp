@@ -21,7 +21,7 @@ std::optional<Prior> PriorSource::at(const drivers::Frameset& frameset) {
 }
 
 std::optional<DrivenStep> PriorSource::step_until(Time time) {
-  // PoseTrail takes the rates at the middle time, which suffices for two neighbouring framesets.
+  // PoseTrail uses the rates at the middle time, which suffices for two neighbouring framesets.
   constexpr Duration kFarthest = std::chrono::milliseconds(150);
   const std::optional<Time> from = std::exchange(previous_time_, time);
   if (!from || time < *from || time - *from > kFarthest) return std::nullopt;

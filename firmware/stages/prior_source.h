@@ -13,12 +13,12 @@ namespace bevloc::firmware {
 /// The prior of one frameset, and the vehicle's motion around its time.
 struct Prior {
   Se2 map_from_vehicle;  ///< T0, at the frameset's time
-  /// Vehicle pose at each exposure, in the vehicle frame at the frameset's time; identity if motion
-  /// is not compensated.
+  /// The vehicle's pose at each exposure, in the vehicle frame at the frameset's time. Identity if
+  /// motion is not compensated.
   CameraMotions reference_from_exposure{};
   double speed_mps = 0.0;  ///< negative when reversing
   SearchRange range = SearchRange::kAcquiring;
-  /// Since the frameset that was asked for before, where known.
+  /// The motion since the frameset that was asked for before, where it is known.
   std::optional<DrivenStep> driven{};
 };
 
@@ -26,7 +26,7 @@ struct Prior {
 /// thread.
 class PriorSource {
  public:
-  /// `compensates`: whether to compute the motion between the exposures of a frameset.
+  /// `compensates` says whether to compute the motion between the exposures of a frameset.
   /// `predictions` must outlive this.
   PriorSource(bool compensates, PredictionQueue& predictions)
       : compensates_(compensates), predictions_(predictions) {}
@@ -34,7 +34,8 @@ class PriorSource {
   /// Takes all queued predictions. Does not wait.
   void take_predictions();
 
-  /// Nothing when no prediction covers the frameset's time, or the motion to one of its exposures.
+  /// Returns the prior, or nothing when no prediction covers the frameset's time, or the motion to
+  /// one of its exposures.
   std::optional<Prior> at(const drivers::Frameset& frameset);
 
  private:
@@ -45,7 +46,7 @@ class PriorSource {
   PredictionQueue& predictions_;
   PoseTrail trail_;
   bool acquiring_ = true;
-  std::optional<Time> previous_time_;  ///< of the frameset that was asked for before
+  std::optional<Time> previous_time_;  ///< time of the frameset that was asked for before
 };
 
 }  // namespace bevloc::firmware

@@ -9,35 +9,35 @@
 
 namespace bevloc::firmware {
 
-/// Readable from any thread.
+/// What Synchrony found out, readable from any thread.
 struct SynchronyCounters {
-  std::atomic<Duration> spread{};      ///< of the latest frameset
-  std::atomic<Duration> spread_max{};  ///< largest since start
+  std::atomic<Duration> spread{};      ///< spread of the latest frameset
+  std::atomic<Duration> spread_max{};  ///< largest spread since start
   std::atomic<uint64_t> off_pulse{0};  ///< framesets without a trigger pulse at their time
-  /// Drift of each camera against the median camera; 0 while none is certain.
+  /// Drift of each camera against the median camera, or 0 while none is certain.
   std::array<std::atomic<double>, kCameraCount> drift_ppm{};
 };
 
-/// Watches the framesets that a synchronizer emits. Thread-bound: called from the vision thread;
+/// Watches the framesets that a synchronizer emits. Thread-bound: called from the vision thread.
 /// counters() is readable from any thread.
 class Synchrony {
  public:
-  /// Largest spread of cameras in step: in 5 ms a vehicle at 20 m/s moves 10 cm. Also the largest
-  /// time from a trigger pulse to the frameset that it caused.
+  /// The largest spread of synchronized cameras: in 5 ms a vehicle at 20 m/s moves 10 cm. This is
+  /// also the largest time from a trigger pulse to the frameset that it caused.
   static constexpr Duration kSynchronous = std::chrono::milliseconds(5);
 
-  /// `compensates`: whether the matching corrects for the motion between the frames of a frameset.
-  /// `pulses`: null without a trigger. `synchronizer` and `pulses` must outlive this.
+  /// `compensates` says whether the matching corrects for the motion between the frames of a
+  /// frameset. `pulses` is null without a trigger. `synchronizer` and `pulses` must outlive this.
   Synchrony(const drivers::FramesetSynchronizer& synchronizer, bool compensates,
             const drivers::PulseLog* pulses)
       : synchronizer_(synchronizer), compensates_(compensates), pulses_(pulses) {}
 
-  /// Counts an emitted frameset. True when the cameras are out of step, or when the frameset's
-  /// spread exceeds kSynchronous and motion is not compensated.
+  /// Counts an emitted frameset. Returns true when the cameras do not expose together, or when the
+  /// frameset's spread exceeds kSynchronous and motion is not compensated.
   bool unsynchronized(const drivers::Frameset& frameset, Time now);
 
-  /// True, at most every 200 ms, while unsynchronized cameras keep any frameset from being emitted,
-  /// because each frameset has fewer cameras than the minimum.
+  /// Returns true, at most every 200 ms, while unsynchronized cameras keep any frameset from being
+  /// emitted, because each frameset has fewer cameras than the minimum.
   bool unsynchronized_without_framesets(Time now);
 
   const SynchronyCounters& counters() const { return counters_; }
@@ -52,7 +52,8 @@ class Synchrony {
   const bool compensates_;
   const drivers::PulseLog* pulses_;
   Time last_judgement_ = Time::min();
-  uint64_t framesets_at_last_judgement_ = 0;  ///< formed by then, emitted or not
+  /// Framesets that were formed by then, emitted or not.
+  uint64_t framesets_at_last_judgement_ = 0;
   SynchronyCounters counters_;
 };
 

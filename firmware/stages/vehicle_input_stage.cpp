@@ -23,7 +23,7 @@ void VehicleInputStage::step(Duration timeout) {
 
 void VehicleInputStage::take(const can::ReceivedFrame& received) {
   const can::VehicleSamples samples = decoder_->accept(received);
-  publish_faults();  // before the samples, so that whoever reads a sample knows them
+  publish_faults();  // before the samples, so that a reader of a sample sees them
   if (samples.odometry) samples_.push(*samples.odometry);
   if (samples.gnss && !ignores_gnss_) samples_.push(*samples.gnss);
 }

@@ -14,7 +14,7 @@
 
 namespace bevloc::firmware {
 
-/// Thread-bound: called from the CAN-in thread; why(), counters() and secoc_counters() are readable
+/// Thread-bound: called from the CAN-in thread. why(), counters() and secoc_counters() are readable
 /// from any thread.
 class VehicleInputStage {
  public:
@@ -25,18 +25,19 @@ class VehicleInputStage {
   /// From now on, uses only frames that are authentic.
   void authenticate(can::SecocReceiver receiver) { secoc_.emplace(std::move(receiver)); }
 
-  /// From now on, drops the positions of the bus: GNSS comes from elsewhere.
+  /// From now on, drops the positions of the bus, because GNSS comes from elsewhere.
   void ignore_gnss() { ignores_gnss_ = true; }
 
   /// Waits for CAN frames, at most `timeout`, and queues the samples that they complete.
   void step(Duration timeout);
 
-  /// What is wrong with the vehicle's messages at `now`: a set of kOdometryImplausible and
-  /// kForeignSender (can::VehicleFaultTimes, or frames that are not authentic).
+  /// Returns what is wrong with the vehicle's messages at `now`: kOdometryImplausible,
+  /// kForeignSender, both or none. Frames that are not authentic count as those of a foreign
+  /// sender.
   WhyMask why(Time now) const { return fault_times_.load().why(now); }
 
   can::VehicleInputCounters counters() const { return counters_.load(); }
-  /// Nothing without authentication.
+  /// Returns nothing without authentication.
   std::optional<can::SecocCounters> secoc_counters() const {
     return secoc_ ? std::optional(secoc_counters_.load()) : std::nullopt;
   }
@@ -53,7 +54,7 @@ class VehicleInputStage {
   Published<can::SecocCounters> secoc_counters_;
   bool ignores_gnss_ = false;
   std::optional<can::SecocReceiver> secoc_;
-  std::optional<Time> forged_;  ///< the latest frame that was not authentic
+  std::optional<Time> forged_;  ///< when the latest frame came that was not authentic
   Published<can::VehicleFaultTimes> fault_times_;
 };
 

@@ -11,11 +11,12 @@
 namespace bevloc::firmware {
 namespace {
 
-/// Above this speed no two images of a camera are the same. Odometry of a standing vehicle stays
-/// far below.
+/// Above this speed no two images of a camera are the same. The odometry of a standing vehicle
+/// stays far below it.
 constexpr double kDriving_mps = 1.0;
 
-/// The network is checked while the vehicle stands: after this time, and not more often than this.
+/// The network is checked when the vehicle has stood for the first of these times, and not more
+/// often than the second one.
 constexpr Duration kSettledStanding = std::chrono::seconds(1);
 constexpr Duration kCheckPeriod = std::chrono::seconds(60);
 
@@ -89,8 +90,8 @@ VisionReport VisionStage::report_on(NewestFrameset newest) {
   counters_.frames_used += frameset.present.count();
 
   VisionReport report;
-  // A frame with a wrong stamp would be matched with the wrong pose. If most stamps have jumped,
-  // the tracker has to find out what they are worth.
+  // A frame with a wrong stamp would be matched with the wrong pose. If most time stamps have
+  // jumped, the frames are matched, and the tracker has to find out whether the stamps are right.
   const CameraMask jumped = with_jumped_stamps(frameset);
   counters_.stamps_jumped = static_cast<unsigned>(jumped.to_ulong());
   report.stamps_jumped = 2 * jumped.count() > frameset.present.count();
@@ -162,7 +163,7 @@ void VisionStage::check_network_again(const drivers::Frameset& frameset, const P
 }
 
 void VisionStage::note_unused_images(CameraMask given) {
-  // Nobody knows what a camera shows whose image cannot be read.
+  // If the image of a camera cannot be read, nobody knows what the camera shows.
   const CameraMask readable = localizer_.readable();
   const CameraMask unreadable = given & ~readable;
   for (int camera = 0; camera < kCameraCount; ++camera) {

@@ -16,16 +16,16 @@
 
 namespace bevloc::firmware {
 
-/// One localization, for observers such as a recording. Valid during the call only.
+/// One localization, for observers such as a recording. It is valid during the call only.
 struct VisionSnapshot {
   const drivers::Frameset& frameset;
   const VisionReport& report;
   const SolverResult& solution;
   SearchRange range;
-  const HypothesisGrid& hypotheses;     ///< of that range
+  const HypothesisGrid& hypotheses;     ///< the hypotheses of that range
   std::span<const uint8_t> map_raster;  ///< the map around the prior, kRasterSize bytes
-  /// Computes the mask as logits, [3, 400, 200]. Runs the mask branch, which matching does not
-  /// need.
+  /// Computes the mask as logits, [3, 400, 200]. To do so, runs the mask branch, which matching
+  /// does not need.
   const std::function<std::span<const float>()>& perceived_mask;
 };
 
@@ -33,37 +33,38 @@ using VisionObserver = std::function<void(const VisionSnapshot&)>;
 
 struct VisionConfig {
   drivers::SynchronizerConfig synchronizer;
-  /// Whether each image is matched from where the vehicle was at its exposure.
+  /// Whether each image is matched from the place where the vehicle was at its exposure.
   bool compensate_motion = true;
-  /// Pulses of the trigger; null without one. Must outlive the stage.
+  /// Pulses of the trigger, or null without one. They must outlive the stage.
   const drivers::PulseLog* pulses = nullptr;
 };
 
-/// Totals since start; readable from any thread.
+/// Totals since start, readable from any thread.
 struct VisionCounters {
   std::atomic<uint64_t> framesets{0};    ///< framesets taken, matched or not
   std::atomic<uint64_t> frames_used{0};  ///< frames in those framesets
   std::atomic<uint64_t> no_prior{0};     ///< framesets whose time no prediction covered
-  std::atomic<uint64_t> refused{0};      ///< framesets with fewer readable images than min_cameras
-  /// Unreadable images per camera: wrong size or damaged JPEG. Their frames count as used.
+  std::atomic<uint64_t> refused{0};      ///< framesets with fewer usable images than min_cameras
+  /// Unreadable images of each camera, because of a wrong size or a damaged JPEG. Their frames
+  /// count as used.
   std::array<std::atomic<uint64_t>, kCameraCount> unreadable{};
   /// The cameras whose images are not used, each a CameraMask (FrozenCameraDetector, ViewMonitor).
   std::atomic<unsigned> frozen{0};
   std::atomic<unsigned> dark{0};
   std::atomic<unsigned> blinded{0};
   std::atomic<unsigned> dirty{0};
-  /// The cameras whose stamps have jumped, a CameraMask.
+  /// The cameras whose time stamps have jumped, a CameraMask.
   std::atomic<unsigned> stamps_jumped{0};
-  std::atomic<uint64_t> checks{0};         ///< of network and solvers (Localizer::check())
-  std::atomic<bool> network_fault{false};  ///< one of them failed; stays until the restart
+  std::atomic<uint64_t> checks{0};         ///< checks of network and solvers (Localizer::check())
+  std::atomic<bool> network_fault{false};  ///< one of them failed; stays true until the restart
   /// Cameras that are not where the calibration has them, a CameraMask.
   std::atomic<unsigned> calibration_fault{0};
 };
 
-/// Checks network and solvers at construction, and again, at most once a minute, while the vehicle
-/// stands. After a failed check it matches nothing any more and every report says so.
+/// Checks network and solvers at construction, and again while the vehicle stands, at most once a
+/// minute. After a failed check it matches nothing any more, and every report says so.
 ///
-/// Thread-bound: called from the vision thread; counters() and framesets().counters() are readable
+/// Thread-bound: called from the vision thread. counters() and framesets().counters() are readable
 /// from any thread.
 class VisionStage {
  public:
@@ -73,7 +74,7 @@ class VisionStage {
               PredictionQueue& predictions, VisionQueue& reports);
 
   /// Adds an observer, which is called in the vision thread after each match, before its report is
-  /// queued. To be called before the first step().
+  /// queued. Call it before the first step().
   void observe(VisionObserver observer) { observers_.push_back(std::move(observer)); }
 
   /// Waits for a frame, at most `timeout`, takes all queued frames and predictions, and matches the
@@ -85,9 +86,9 @@ class VisionStage {
 
  private:
   VisionReport report_on(NewestFrameset newest);
-  /// Fills in what only the images tell.
+  /// Matches the frameset, and fills in the parts of the report that depend on the images.
   void match(const drivers::Frameset& frameset, const Prior& prior, VisionReport& report);
-  /// Logs why a check failed.
+  /// Checks network and solvers. Logs why a check failed.
   void check_network();
   void check_network_again(const drivers::Frameset& frameset, const Prior& prior);
   void note_unused_images(CameraMask given);

@@ -7,7 +7,7 @@
 namespace bevloc::firmware {
 namespace {
 
-/// Answers that mean a defect of the input. The others are part of normal operation.
+/// Answers of the tracker that mean a defect of the input. The others are part of normal operation.
 constexpr std::array<std::pair<TrackerUpdate, const char*>, 4> kRefusals = {{
     {TrackerUpdate::kTooOld, "too old; check its time stamps and the load of this machine"},
     {TrackerUpdate::kOutOfOrder, "out of order; check its time stamps"},
@@ -15,7 +15,8 @@ constexpr std::array<std::pair<TrackerUpdate, const char*>, 4> kRefusals = {{
     {TrackerUpdate::kImplausible, "beyond its physical limit; check sensor and scaling"},
 }};
 
-/// The epochs of about five seconds. The receiver refuses those of the first second of each start.
+/// The number of epochs in about five seconds. The receiver refuses those of the first second of
+/// each start.
 constexpr uint64_t kEpochsOfAStart = 300;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Logs errors that the stages only count: once per cause.
+// Logs, once per cause, errors that the stages only count.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ class ErrorLog {
   void note_queues(const QueueDrops& drops, Time now);
   void note_bus(const can::BusCounters& bus, Time now);
 
-  std::map<std::string, Count> counts_;  ///< by text
+  std::map<std::string, Count> counts_;  ///< the counts by text
 };
 
 }  // namespace bevloc::firmware

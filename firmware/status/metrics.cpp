@@ -16,7 +16,7 @@ namespace {
 
 using Labels = std::vector<prometheus::ClientMetric::Label>;
 
-/// Collects samples; samples of one name form a family.
+/// Collects samples. The samples of one name form a family.
 class Families {
  public:
   void count(const char* name, const char* help, uint64_t value, Labels labels = {}) {

@@ -13,10 +13,10 @@ struct ProcessUse {
   double cpu_s = 0.0;
 };
 
-/// Zero where the kernel does not say.
+/// Asks the kernel. A value that it does not tell is zero.
 ProcessUse use_of_this_process();
 
-/// The text of /metrics; `age` as in check_health(). docs/live.md lists the metrics.
+/// Returns the text of /metrics. `age` is that of check_health(). docs/live.md lists the metrics.
 std::string metrics_text(const Telemetry& telemetry, const ProcessUse& process, Duration age);
 
 }  // namespace bevloc::firmware

@@ -19,7 +19,7 @@ struct CameraSnapshot {
   drivers::CameraCounters driver;
   drivers::SynchronizerCounters synchronizer;
   uint64_t unreadable = 0;  ///< images of a wrong size, or damaged
-  bool frozen = false;      ///< at the latest frameset, as are the next four
+  bool frozen = false;      ///< at the latest frameset, like the next four
   bool dark = false;
   bool blinded = false;
   bool dirty = false;
@@ -29,14 +29,14 @@ struct CameraSnapshot {
 
 struct FramesetsSnapshot {
   uint64_t taken = 0;       ///< framesets that vision took, matched or not
-  uint64_t skipped = 0;     ///< for a newer one
+  uint64_t skipped = 0;     ///< skipped for a newer one
   uint64_t no_prior = 0;    ///< no prediction covered their time
-  uint64_t refused = 0;     ///< too few readable images
+  uint64_t refused = 0;     ///< too few usable images
   uint64_t clock_gaps = 0;  ///< FramesetSource::kGap
   uint64_t off_pulse = 0;
   uint64_t network_checks = 0;
   bool network_fault = false;
-  Duration spread{};  ///< of the latest one
+  Duration spread{};  ///< spread of the latest one
   Duration spread_max{};
 };
 
@@ -47,10 +47,10 @@ struct EstimationSnapshot {
   HealthState state = HealthState::kInit;
   WhyMask why;
   uint64_t lost = 0;                 ///< how often the pose was lost
-  WhyMask lost_why;                  ///< of the latest loss
+  WhyMask lost_why;                  ///< reasons of the latest loss
   Time invalid_since = Time::max();  ///< as in EstimationCounters
   can::TimeSource time_source = can::TimeSource::kFreeRunning;
-  CameraMask cameras;  ///< used in the latest frameset
+  CameraMask cameras;  ///< cameras that the latest frameset used
   uint64_t ticks = 0;
   uint64_t clock_gaps = 0;
   OutcomeCounts odometry{};
@@ -67,7 +67,7 @@ struct TriggerSnapshot {
   Duration max_lateness{};
 };
 
-/// As in RecorderCounters; what was dropped includes the entries that the queues pushed out.
+/// The counters of RecorderCounters. What was dropped includes the entries that the queues dropped.
 struct RecordingSnapshot {
   uint64_t images = 0;
   uint64_t events = 0;
@@ -94,7 +94,7 @@ struct Snapshot {
   uint64_t log_dropped = 0;                    ///< lines of the log that were not written
 };
 
-/// What has counters and is not a part of the appliance.
+/// The sources of counters that are not a part of the appliance.
 struct SnapshotSources {
   const drivers::Trigger* trigger = nullptr;     ///< null without one
   std::optional<RecordingSnapshot> recording{};  ///< empty without a recording
@@ -102,7 +102,7 @@ struct SnapshotSources {
 };
 
 /// Reads all counters while the appliance runs. Waits for no thread, so values that change together
-/// may differ by one step. Callable from any thread.
+/// may differ by one step. Thread-safe.
 Snapshot take_snapshot(const Appliance& appliance, const SnapshotSources& others);
 
 }  // namespace bevloc::firmware

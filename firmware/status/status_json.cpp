@@ -142,7 +142,7 @@ json recording_of(const RecordingSnapshot& recording) {
           {"black_boxes", recording.black_boxes}};
 }
 
-/// The value at a path such as "pose.sigma.lateral_m" as text.
+/// Returns the value at a path such as "pose.sigma.lateral_m" as text.
 std::string text_at(const json& status, const std::string& path, const char* format = "{}") {
   const json* at = &status;
   for (size_t start = 0; start <= path.size();) {
@@ -166,7 +166,7 @@ std::string list_of(const json& items) {
   return text;
 }
 
-/// What /healthz says, unless state and reasons say it too.
+/// Returns what /healthz says, unless state and reasons say the same.
 std::string health_of(const json& status) {
   const std::string health = text_at(status, "health");
   const bool said = health.starts_with(text_at(status, "state"));

@@ -10,10 +10,11 @@
 
 namespace bevloc::firmware {
 
-/// /status.json. Angles are in degrees, because people read them; docs/live.md lists the keys.
+/// Returns /status.json, whose keys docs/live.md lists. Angles are in degrees, because people read
+/// them.
 nlohmann::json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration age);
 
-/// The page that `bevloc status` prints, from status_json(). A key that is missing shows as "-",
+/// Makes the page that `bevloc status` prints from status_json(). A missing key is shown as "-",
 /// because the daemon may have another version.
 std::string status_page(const nlohmann::json& status);
 

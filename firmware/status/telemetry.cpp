@@ -3,15 +3,16 @@
 namespace bevloc::firmware {
 namespace {
 
-/// The supervisor hands over a new value every 100 ms.
+/// A supervisor that is silent for longer hangs, because it hands over a new value every 100 ms.
 constexpr Duration kSilentSupervisor = std::chrono::seconds(2);
-/// The pose is predicted to a new time every bus cycle.
+/// A pose that is older shows that its thread hangs, because it is predicted to a new time every
+/// bus cycle.
 constexpr Duration kOldPose = std::chrono::seconds(2);
 
 /// A pose that is lost is mostly found again within this time.
 constexpr Duration kLostGrace = std::chrono::seconds(10);
 
-/// With one of these the daemon cannot become ready by itself: somebody has to act.
+/// With one of these reasons the daemon cannot become ready by itself, so somebody has to act.
 constexpr WhyMask kNeedsHelp =
     Why::kCameraMissing | Why::kCamerasUnsynchronized | Why::kOdometryMissing | Why::kGnssMissing |
     Why::kOutsideMap | Why::kMapFault | Why::kCalibrationFault | Why::kNetworkFault |
@@ -33,7 +34,7 @@ std::string words_of(Why why) {
   return to_string(WhyMask(why));
 }
 
-/// No default: the compiler warns when a reason has no advice.
+/// The switch has no default, so that the compiler warns when a reason has no advice.
 const char* advice_for(Why why) {
   switch (why) {
     case Why::kCameraMissing:

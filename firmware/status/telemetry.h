@@ -1,5 +1,5 @@
-// What the daemon tells about itself: the one value behind /metrics, /healthz, /status.json, the
-// live page and `bevloc status`.
+// What the daemon tells about itself. /metrics, /healthz, /status.json, the live page and `bevloc
+// status` show this value.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ enum class Phase : uint8_t {
   kStandby,  ///< the ignition is off
 };
 
-/// All counters and the supervisor's view at one moment. A plain value.
+/// All counters and the supervisor's view at one moment, as a plain value.
 struct Telemetry {
   Phase phase = Phase::kStarting;
   Time time{};  ///< when it was taken, by the appliance's clock
@@ -27,20 +27,20 @@ struct Telemetry {
 /// Whether the daemon does what it is configured to do.
 struct HealthCheck {
   bool good = false;
-  std::string reason;  ///< one line: the state, what is wrong and what to do
+  std::string reason;  ///< one line with the state, what is wrong and what to do
 };
 
-/// Good while the pose is valid, in standby, and in a start that lacks no input. Not good while a
-/// thread hangs, in LOST and FAULT, when an input is missing before the pose is valid, when a pose
-/// that was valid has not been so for ten seconds, and when `age`, the time since the supervisor
-/// handed the value over, is longer than two seconds.
+/// The check is good while the pose is valid, in standby, and in a start that lacks no input. It is
+/// not good while a thread hangs, in LOST and FAULT, when an input is missing before the pose is
+/// valid, and when a pose that was valid has not been so for ten seconds. It is also not good when
+/// `age`, the time since the supervisor handed the value over, is longer than two seconds.
 HealthCheck check_health(const Telemetry& telemetry, Duration age);
 
-/// Whether consumers may use the pose. Not if it is older than two seconds because the supervisor
-/// (`age`, as above) or the thread that sends it hangs.
+/// Whether consumers may use the pose. They may not use it if it is older than two seconds, because
+/// the supervisor (`age`, as above) or the thread that sends it hangs.
 bool pose_is_valid(const Telemetry& telemetry, Duration age);
 
-/// The reason in words ("camera missing"), and in one sentence what to do about it.
+/// Return the reason in words ("camera missing"), and one sentence that says what to do about it.
 std::string words_of(Why why);
 const char* advice_for(Why why);
 

@@ -10,20 +10,20 @@
 namespace bevloc::firmware {
 
 /// Remembers the causes of one source of errors, such as one camera or one GPIO line. A cause is
-/// new if it did not occur within the last minute; an error that lasts or comes and goes is thus
-/// logged once. An error that comes back within the minute and then lasts is new again once it has
-/// lasted for kLasting: otherwise the log of a camera that died would end with its recovery. One
-/// thread.
+/// new if it did not occur within the last minute. So an error that lasts, or comes and goes, is
+/// logged once. An error that comes back within the minute is new again when it has lasted for
+/// kLasting. Otherwise the log of a camera that died would end with its recovery. One thread.
 class CauseLog {
  public:
   static constexpr Duration kQuiet = std::chrono::minutes(1);
   /// An error that lasts occurs at least this often.
   static constexpr Duration kPause = std::chrono::seconds(3);
   static constexpr Duration kLasting = std::chrono::seconds(5);
-  /// The cause that occurred least recently is forgotten for another one.
+  /// The number of causes that are remembered. A further one replaces the cause that occurred least
+  /// recently.
   static constexpr size_t kCauses = 8;
 
-  /// Notes that `cause`, which is not empty, occurred at `now`. True if it is new.
+  /// Notes that `cause`, which is not empty, occurred at `now`. Returns true if it is new.
   bool is_new(std::string_view cause, Time now) {
     Entry* oldest = &entries_.front();
     for (Entry& entry : entries_) {
@@ -37,9 +37,9 @@ class CauseLog {
  private:
   struct Entry {
     std::string cause;
-    Time time = Time::min();   ///< of the latest occurrence
-    Time since = Time::min();  ///< of the first occurrence without a pause after it
-    bool told = false;         ///< whether it was new since then
+    Time time = Time::min();   ///< time of the latest occurrence
+    Time since = Time::min();  ///< time of the first occurrence without a pause after it
+    bool told = false;         ///< whether it was reported as new since then
   };
 
   static bool note(Entry& entry, Time now) {

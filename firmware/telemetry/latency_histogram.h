@@ -11,7 +11,7 @@ namespace bevloc::firmware {
 
 /// The counts of one LatencyHistogram at one moment.
 struct LatencyCounts {
-  /// Upper ends of the ranges; the last range has no end.
+  /// Upper ends of the ranges. The last range has no end.
   static constexpr std::array kUpper_ms = {10.0,  20.0,  30.0,  40.0,  50.0,  60.0,  80.0,
                                            100.0, 120.0, 150.0, 200.0, 300.0, 500.0, 1000.0};
   static constexpr size_t kRanges = kUpper_ms.size() + 1;
@@ -25,8 +25,9 @@ struct LatencyCounts {
     return total;
   }
 
-  /// The latency that the share `quantile` (0 to 1) does not exceed, linear within a range. The
-  /// start of the last range for what lies in it. 0 without a latency.
+  /// Returns the latency that the share `quantile` (0 to 1) does not exceed. It is interpolated
+  /// within a range. If it lies in the last range, returns the start of that range. Returns 0 if
+  /// there is no latency.
   double quantile_ms(double quantile) const {
     const double wanted = quantile * static_cast<double>(total());
     double below = 0.0;
@@ -42,7 +43,8 @@ struct LatencyCounts {
   }
 };
 
-/// One thread adds; counts() is readable from any thread. Does not allocate or wait.
+/// Thread-bound: add() is called from one thread. counts() is readable from any thread. Does not
+/// allocate or wait.
 class LatencyHistogram {
  public:
   void add(Duration latency) {

@@ -33,7 +33,7 @@ Written write_part(int file, std::string_view& text, Duration patience) {
   return text.empty() ? Written::kAll : Written::kLater;
 }
 
-/// A write into a closed pipe then fails instead of ending the process.
+/// Blocks SIGPIPE, so that a write into a closed pipe fails instead of ending the process.
 void block_sigpipe() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -91,7 +91,8 @@ void LogWriter::run() {
   heartbeat_.end();
 }
 
-/// Waits for the reader without limit: the queue drops what exceeds its capacity meanwhile.
+/// Writes a line. Waits for the reader without limit, while the queue drops what exceeds its
+/// capacity.
 void LogWriter::write(const Line& line) {
   report_drops();
   std::string_view text = line.view();

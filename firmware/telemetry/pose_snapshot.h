@@ -10,11 +10,13 @@ namespace bevloc::firmware {
 
 /// The pose of one bus cycle. It can be copied as bytes (Published).
 struct PoseSnapshot {
-  bool known = false;  ///< the tracker has a pose; the fields below are zero without one
+  /// Whether the tracker has a pose. The fields below are zero without one.
+  bool known = false;
   bool valid = false;  ///< a consumer may use it
   Time time{};         ///< the moment to which the pose is predicted
   Se2 map_from_vehicle;
-  /// Along the vehicle's axes: (longitudinal m, lateral m, yaw rad), as is the next.
+  /// Sigmas along the vehicle's axes: (longitudinal m, lateral m, yaw rad). The protection levels
+  /// have the same order.
   std::array<double, 3> sigma{};
   std::array<double, 3> protection_level{};
   double longitudinal_lateral_covariance_m2 = 0.0;

@@ -5,15 +5,15 @@
 
 namespace bevloc::firmware {
 
-/// A gap: the machine was suspended, during which the steady clock stands still and the vehicle may
-/// have been moved; or much time passed between two looks, because the process was stopped. One
-/// thread.
+/// Detects two kinds of gap. Either the machine was suspended, while the steady clock stood still
+/// and the vehicle may have been moved. Or much time passed between two looks, because the process
+/// was stopped. One thread.
 class ClockGapDetector {
  public:
-  /// Odometry bridges shorter gaps. Thirty bus cycles.
+  /// The shortest gap, which is thirty bus cycles. Odometry bridges shorter ones.
   static constexpr Duration kGap = std::chrono::milliseconds(300);
 
-  /// To be called once per bus cycle. Returns whether there was a gap since the previous call.
+  /// Call it once per bus cycle. Returns whether there was a gap since the previous call.
   bool look(const drivers::Clock& clock) {
     const Time now = clock.now();
     const Duration suspended = clock.suspended();

@@ -9,12 +9,12 @@
 namespace bevloc::firmware {
 
 /// A counter that a thread increments at each turn of its loop. The watchdog (watchdog.h) compares
-/// it with an earlier value, so that a beat needs no clock. One thread beats; any thread may read.
-/// Never blocks.
+/// it with an earlier value, so that a beat needs no clock. Never blocks. Thread-bound: beat() and
+/// end() are called from the thread that beats. The rest is readable from any thread.
 class Heartbeat {
  public:
-  /// Every loop turns faster than this. Together with the period of the watchdog it stays below one
-  /// second.
+  /// The usual deadline, which every loop meets. Together with the period of the watchdog it is
+  /// below one second.
   static constexpr Duration kDeadline = std::chrono::milliseconds(800);
 
   /// The next beat follows within `deadline`.

@@ -17,9 +17,9 @@ namespace {
 
 constexpr int kLowestPriority = 19;
 
-/// Under a finite limit, locking could succeed now and a later allocation fail. So the soft limit
-/// is set to unlimited if the hard limit allows it, else to 0: with limit 0, mlockall() succeeds
-/// only with CAP_IPC_LOCK.
+/// Locks all memory. Under a finite limit, locking could succeed now and a later allocation fail.
+/// So the soft limit is set to unlimited if the hard limit allows it, and otherwise to 0. With the
+/// limit 0, mlockall() succeeds only with CAP_IPC_LOCK.
 Status lock_all_memory() {
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);
@@ -105,7 +105,8 @@ void name_this_thread(const std::string& name) {
 
 void begin_low_thread(const std::string& name) {
   name_this_thread(name);
-  (void)setpriority(PRIO_PROCESS, 0, kLowestPriority);  // of this thread alone, on Linux
+  // On Linux this changes the priority of the calling thread only.
+  (void)setpriority(PRIO_PROCESS, 0, kLowestPriority);
 }
 
 }  // namespace bevloc::firmware

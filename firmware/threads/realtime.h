@@ -13,8 +13,8 @@ namespace bevloc::firmware {
 
 enum class ThreadRole : uint8_t { kCapture, kVision, kCan };
 
-/// The appliance also runs without a setting that the kernel refuses. Each refusal is logged once
-/// as a warning that names the missing permission, and counted. Thread-safe.
+/// Applies the settings. If the kernel refuses one, the appliance runs without it. Each refusal is
+/// counted, and logged once as a warning that names the missing permission. Thread-safe.
 class Realtime {
  public:
   explicit Realtime(RealtimeConfig config) : config_(std::move(config)) {}
@@ -35,7 +35,7 @@ class Realtime {
 
   const RealtimeConfig config_;
   mutable std::mutex mutex_;
-  std::set<std::string> refusals_;  ///< messages
+  std::set<std::string> refusals_;  ///< messages of the refusals
 };
 
 /// Sets the calling thread's name, which `top -H` shows: at most 15 characters.

@@ -29,7 +29,8 @@ struct Se3 {
 /// with the angle t from the optical axis as t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8).
 enum class Lens : uint8_t { kPinhole, kFisheye };
 
-/// (0, 0) is the centre of the top left pixel.
+/// The intrinsics of a camera. Pixel (0, 0) is the top left one, and its centre has these
+/// coordinates.
 struct Intrinsics {
   /// A fisheye is used up to this angle from its axis.
   static constexpr double kWidestFisheye_rad = 80.0 * std::numbers::pi / 180.0;
@@ -43,9 +44,9 @@ struct Intrinsics {
   double cy_px = 0.0;
   double k1 = 0.0;
   double k2 = 0.0;
-  double p1 = 0.0;  ///< of a pinhole
+  double p1 = 0.0;  ///< used by a pinhole only, like p2
   double p2 = 0.0;
-  double k3 = 0.0;  ///< of a fisheye
+  double k3 = 0.0;  ///< used by a fisheye only, like k4
   double k4 = 0.0;
 
   bool operator==(const Intrinsics&) const = default;
@@ -55,9 +56,9 @@ struct Intrinsics {
     return lens == Lens::kPinhole && k1 == 0.0 && k2 == 0.0 && p1 == 0.0 && p2 == 0.0;
   }
 
-  /// Pixel of a point in the camera frame (x right, y down, z forward). Nothing for a point with
-  /// z <= 0, at an angle where the distorted radius no longer increases with the angle, or beyond
-  /// kWidestFisheye_rad.
+  /// Returns the pixel of a point in the camera frame (x right, y down, z forward). Returns nothing
+  /// for a point with z <= 0, at an angle where the distorted radius no longer increases with the
+  /// angle, or beyond kWidestFisheye_rad.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& point_camera) const;
 
   /// Ray through a pixel in the camera frame, scaled to z = 1: the inverse of project(). A pixel
@@ -71,8 +72,8 @@ Intrinsics resized(const Intrinsics& lens, int width_px, int height_px);
 struct CameraModel {
   Intrinsics intrinsics;
   Se3 vehicle_from_camera;
-  /// Corners of the part of the image that shows the own vehicle, in pixels; empty: none. It is
-  /// black for the network.
+  /// Corners of the part of the image that shows the own vehicle, in pixels; empty if no part does.
+  /// The network sees this part as black.
   std::vector<Eigen::Vector2d> own_body_px{};
 
   bool shows_own_body(const Eigen::Vector2d& pixel) const;

@@ -15,7 +15,7 @@ namespace bevloc {
 /// The file of reference poses in the folder of a recording.
 inline constexpr const char* kReferenceFile = "reference.csv";
 
-/// Poses in the order of time. Immutable.
+/// Poses in the order of time. Immutable, and so thread-safe.
 class ReferenceTrajectory {
  public:
   struct Pose {
@@ -34,7 +34,7 @@ class ReferenceTrajectory {
   /// `poses` must be in the order of time.
   explicit ReferenceTrajectory(std::vector<Pose> poses) : poses_(std::move(poses)) {}
 
-  /// Interpolated between two poses at most 0.5 s apart; nothing elsewhere.
+  /// Interpolates between two poses that are at most 0.5 s apart. Returns nothing elsewhere.
   std::optional<Se2> at(Time time) const;
 
   const std::vector<Pose>& poses() const { return poses_; }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kRotationKey = "rotation_wxyz";
 
-/// The direction of each camera's name, to the left of the vehicle's x axis.
+/// The direction that each camera's name states, counted to the left from the vehicle's x axis.
 constexpr std::array<double, kCameraCount> kNamedAzimuthDeg = {60, 0, -60, 120, 180, -120};
 /// The cameras from right to left: back_right, front_right, front, front_left, back_left, back.
 constexpr std::array<int, kCameraCount> kRightToLeft = {5, 2, 1, 0, 3, 4};
@@ -24,7 +24,7 @@ double azimuth_deg(const CameraModel& camera) {
   return degrees(std::atan2(axis.y(), axis.x()));
 }
 
-/// The angle of least magnitude that differs by full turns.
+/// The equivalent angle with the least magnitude.
 double turned_deg(double angle_deg) {
   return std::remainder(angle_deg, 360.0);
 }
@@ -143,7 +143,7 @@ std::optional<RigMistake> find_in_mounting(int index, const Se3& vehicle_from_ca
                       fmt::format("an optical axis {:.1f} degrees above the horizon", up_deg),
                       fmt::format("{:g} to {:g} degrees", -kMostDown_deg, kMostUp_deg)};
   }
-  // 0 if the camera's x axis is level and its y axis points down.
+  // The roll is 0 if the camera's x axis is level and its y axis points down.
   const double roll_deg = degrees(std::atan2(rotation(2, 0), -rotation(2, 1)));
   if (!(std::abs(roll_deg) <= kMostRoll_deg)) {
     return RigMistake{

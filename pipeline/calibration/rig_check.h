@@ -1,4 +1,4 @@
-// Whether a rig can be that of a vehicle: finds mistakes that each number alone does not show.
+// Checks whether a rig can be that of a vehicle: finds mistakes that no number shows by itself.
 #pragma once
 
 #include <optional>

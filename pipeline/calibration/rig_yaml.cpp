@@ -37,7 +37,7 @@ Intrinsics read_intrinsics(YamlMap& yaml) {
   return camera;
 }
 
-/// Corners as columns and rows in turn.
+/// Reads the corners, which are given as columns and rows in turn.
 std::vector<Eigen::Vector2d> read_own_body(YamlMap& yaml) {
   constexpr size_t kLeast = 6;
   std::vector<Eigen::Vector2d> corners;
@@ -69,7 +69,7 @@ Se3 read_vehicle_from_camera(YamlMap& yaml) {
   return transform;
 }
 
-/// At most nine decimals, without trailing zeros and without "-0".
+/// Writes at most nine decimals, without trailing zeros and without "-0".
 std::string format_number(double value) {
   constexpr double kUnit = 1e9;
   return fmt::format("{:.15g}", std::round(value * kUnit) / kUnit + 0.0);

@@ -37,7 +37,7 @@ namespace bevloc {
 /// rig that cannot be that of a vehicle (rig_check.h).
 Result<Rig> read_rig(const std::filesystem::path& path);
 
-/// The same for text in memory. Error messages show `name` as the file.
+/// Does the same for a text in memory. Error messages show `name` as the file.
 Result<Rig> parse_rig(const std::string& text, const std::string& name);
 
 /// The text of a rig file, with nine decimals per number.

@@ -11,14 +11,15 @@ namespace {
 using Words = uint32_t __attribute__((vector_size(16)));
 constexpr int kVectors = sizeof(ImageChecksum) / sizeof(Words);
 
-/// A bijection of `sums` for given words, so that a difference between two sums is never lost.
+/// For given words this is a bijection of `sums`, so that a difference between two sums is never
+/// lost.
 inline void add(const int8_t* from, Words& sums) {
   Words words;
   std::memcpy(&words, from, sizeof words);
   sums = ((sums << 5) | (sums >> 27)) + words;
 }
 
-/// Steele, Lea and Flood: "Fast Splittable Pseudorandom Number Generators", the finaliser.
+/// The finaliser of Steele, Lea and Flood: "Fast Splittable Pseudorandom Number Generators".
 uint64_t mix(uint64_t value) {
   value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9U;
   value = (value ^ (value >> 27)) * 0x94d049bb133111ebU;

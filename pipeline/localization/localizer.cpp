@@ -151,7 +151,8 @@ Status Localizer::check() {
 Status Localizer::check_solver(SearchRange range) {
   const FeatureView map = network_->map_features();
   const BevGrid& grid = map.grid;
-  // The map as seen from one cell further ahead and to the left, or less in a narrow range.
+  // The features of the map as seen from one cell further ahead and to the left. Along an axis with
+  // a narrow range they are not moved.
   const HypothesisGrid& searched = hypotheses(range);
   const int rows = searched.x_m.farthest() > 1.3 * grid.cell_m ? 1 : 0;
   const int cols = searched.y_m.farthest() > 1.3 * grid.cell_m ? 1 : 0;

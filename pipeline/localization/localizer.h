@@ -44,20 +44,20 @@ struct CameraImages {
   /// If true, a camera that repeats its image counts as frozen, and one with parts that do not
   /// move as dirty.
   bool driving = false;
-  // For the online calibration:
-  Time time{};                         ///< of the frameset
-  std::optional<DrivenStep> driven{};  ///< until `time`, from odometry, where known
+  // The online calibration needs these:
+  Time time{};                         ///< time of the frameset
+  std::optional<DrivenStep> driven{};  ///< motion until `time` from odometry, if known
 };
 
 enum class SearchRange : uint8_t { kTracking, kAcquiring };
 
 /// The paper's network and its solver (Fig. 2), for one rig and one map. Owns all buffers: after a
-/// warm-up localize() allocates nothing, for any set of cameras and exposure times. Not thread
-/// safe. The map index must outlive it.
+/// warm-up localize() allocates nothing, for any set of cameras and exposure times. One thread. The
+/// map index must outlive it.
 class Localizer {
  public:
-  /// Fails if the model cannot be loaded, its stored answer is damaged, or the solver does not
-  /// support the hypotheses.
+  /// Fails if the model cannot be loaded, its stored answer is damaged, the rig differs too much
+  /// from that of the training (check_rig_fits()), or the solver does not support the hypotheses.
   static Result<std::unique_ptr<Localizer>> create(const Rig& rig, const MapIndex& map,
                                                    const std::string& model_path,
                                                    const LocalizerOptions& options);
@@ -75,8 +75,8 @@ class Localizer {
 
   /// Checks that network and solvers still compute what they should: the network's answer to a test
   /// frame is the one that its model stores, and the solvers find a known correction. Takes as long
-  /// as some matches. Fails with the reason. perceived_mask() is not valid until the next
-  /// localize().
+  /// as a few matches. Fails with the reason. map_raster(), map_nearby() and perceived_mask() show
+  /// the test frame until the next localize().
   Status check();
 
   /// Whether the model stores an answer to the test frame. Without one, check() cannot judge the
@@ -96,7 +96,7 @@ class Localizer {
   /// impossible (OnlineCalibration::restore()) or the online calibration is switched off.
   bool restore_calibration(const ExtrinsicErrors& errors, const ExtrinsicCovariance& covariance);
 
-  /// What was learned about the calibration; null if it is switched off.
+  /// What was learned about the calibration; null if the online calibration is switched off.
   const OnlineCalibration* online_calibration() const {
     return online_calibration_ ? &*online_calibration_ : nullptr;
   }
@@ -141,7 +141,7 @@ class Localizer {
   CameraMask frozen_;
   ViewMonitor view_monitor_;
   MapRasterizer rasterizer_;
-  std::array<std::unique_ptr<Solver>, 2> solvers_;  ///< by SearchRange
+  std::array<std::unique_ptr<Solver>, 2> solvers_;  ///< solvers by SearchRange
   ViewTable view_table_;                            ///< computed for the next two members
   std::optional<CameraMask> table_cameras_;
   CameraMotions table_motions_{};

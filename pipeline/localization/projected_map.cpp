@@ -12,7 +12,7 @@ constexpr double kPieceLength_m = 0.5;
 constexpr double kNearest_m = 0.3;
 constexpr double kMargin_px = 200.0;
 
-/// The pixel of a point on the ground. Nothing if it is not in or near the image.
+/// The pixel of a point on the ground. Returns nothing if it is not in or near the image.
 std::optional<Eigen::Vector2d> pixel_of(const CameraModel& camera, const Se3& camera_from_vehicle,
                                         const Eigen::Vector2d& point_vehicle) {
   const Eigen::Vector3d point =

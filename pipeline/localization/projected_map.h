@@ -20,10 +20,10 @@ struct ProjectedLine {
 };
 
 /// The map's lines within a square of `reach_m` around a pose, in metres in the vehicle frame.
-/// Consecutive segments of one element are one line. One thread; the map must outlive it.
+/// Consecutive segments of one element are one line. One thread. The map must outlive it.
 class ProjectedMap {
  public:
-  /// What a camera sees of the ground beyond this is a few pixels.
+  /// The ground beyond this distance takes only a few pixels of a camera image.
   static constexpr double kCameraReach_m = 40.0;
 
   explicit ProjectedMap(const MapIndex& map) : map_(map) {}
@@ -32,8 +32,8 @@ class ProjectedMap {
   std::span<const ProjectedLine> around(const Se2& map_from_vehicle, double reach_m);
 
   /// The lines as a camera, with its distortion, sees them on flat ground, in pixels of its
-  /// full-size image. Up to 200 pixels beyond the image; what is behind the camera is left out. The
-  /// result is valid until the next call of any member.
+  /// full-size image. They reach up to 200 pixels beyond the image. Parts behind the camera are
+  /// left out. The result is valid until the next call of any member.
   std::span<const ProjectedLine> in_image(const Se2& map_from_vehicle, const CameraModel& camera);
 
  private:

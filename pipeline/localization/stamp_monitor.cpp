@@ -77,7 +77,7 @@ void StampMonitor::add_heading(Time time, double heading_rad) {
   while (!headings_.empty() && time - headings_.front().time > kLag) {
     const Heading before = headings_.front();
     headings_.pop_front();
-    // The latest of those that are old enough is used.
+    // Of the headings that are old enough, only the latest one is used.
     if (headings_.empty() || time - headings_.front().time <= kLag) fit(before, now);
   }
   headings_.push_back(now);

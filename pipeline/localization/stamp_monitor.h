@@ -22,11 +22,11 @@ namespace bevloc {
 /// the offset. One bend determines it to about 20 ms. The offset is common to all cameras; the
 /// synchronizer (Synchrony) finds a single camera whose stamps differ from those of the others.
 ///
-/// Allocates in the constructor only. Not thread safe.
+/// Allocates in the constructor only. One thread.
 class StampMonitor {
  public:
   struct Estimate {
-    Duration offset{0};  ///< positive: the stamps are later than the exposures
+    Duration offset{0};  ///< positive if the stamps are later than the exposures
     Duration sigma{0};
   };
 
@@ -39,13 +39,14 @@ class StampMonitor {
   /// Adds a matched heading in the map, at the time of a frameset within the latest rates.
   void add_heading(Time time, double heading_rad);
 
-  /// Nothing before the vehicle has turned enough.
+  /// The estimate, or nothing before the vehicle has turned enough.
   const std::optional<Estimate>& estimate() const { return estimate_; }
 
   /// Returns to the state after construction. Does not allocate.
   void reset();
 
-  /// Whether the offset is certainly larger than kTolerated. Stays until it is certainly not.
+  /// Whether the offset is certainly larger than kTolerated. The answer stays true until agrees()
+  /// holds.
   bool contradicts() const { return contradicts_; }
 
   /// Whether the offset is certainly smaller than kTolerated.
@@ -55,7 +56,7 @@ class StampMonitor {
   static constexpr size_t kRates = 128;
   static constexpr Duration kGap = std::chrono::milliseconds(100);
   static constexpr Duration kLag = std::chrono::seconds(2);
-  /// Headings that a lag may contain, at up to 30 framesets per second.
+  /// The number of headings within a lag, at up to 30 framesets per second.
   static constexpr size_t kHeadings = 64;
 
   struct Rate {

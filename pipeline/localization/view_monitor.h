@@ -13,37 +13,39 @@ namespace bevloc {
 
 enum class ViewFault : uint8_t {
   kNone,
-  kDark,     ///< nearly black and without contrast: covered, or without light
+  kDark,     ///< the view is nearly black and without contrast: covered, or without light
   kBlinded,  ///< a large part is nearly white
   kDirty,    ///< parts of the view do not move while the vehicle drives
 };
 
-/// Judges the network input of all cameras, in its green plane. The limits were found on simulated
+/// Judges the green plane of the network input of each camera. The limits were found on simulated
 /// drives by day, at night and in rain (docs/tracker-and-health.md).
 ///
-/// - Dark and blinded: by one image. Such an image must not be matched at all, so the camera is
-///   unusable at once, and usable again after kRecovery good images in a row.
-/// - Dirty: by kImages images of a driving vehicle. The image is divided into tiles. Dirt on a lens
-///   is out of focus and stays in its place, so behind it the pattern inside a tile hardly moves
-///   and has hardly any contrast, compared with the tiles of all cameras in the same row. What
-///   counts is the pattern: the brightness of dirt changes with the scene. Tiles that reach up from
-///   the lower edge show the own vehicle, and the uppermost row shows mostly sky; neither counts.
+/// - Dark and blinded are judged by one image. Such an image must not be matched at all, so the
+///   camera is unusable at once, and usable again after kRecovery good images in a row.
+/// - Dirty is judged by kImages images of a driving vehicle. The image is divided into tiles. Dirt
+///   on a lens is out of focus and stays in its place, so behind it the pattern inside a tile
+///   hardly moves and has hardly any contrast, compared with the tiles of all cameras in the same
+///   row. Only the pattern counts, because the brightness of dirt changes with the scene. Up to two
+///   covered tiles at the lower edge of each column show the own vehicle, and the uppermost row
+///   shows mostly sky. Neither counts.
 ///
-/// Six cameras take about 40 us. Allocates nothing. Not thread safe.
+/// Six cameras take about 40 us. Allocates nothing. One thread.
 class ViewMonitor {
  public:
   static constexpr int kRecovery = 10;
   static constexpr int kImages = 100;
 
-  /// Says which pixels of a camera's network image show anything of its view: 1, else 0. The others
-  /// are black: outside of the real image, or on the own vehicle. Tiles that are mostly black are
-  /// not judged. Without a call, all are.
+  /// `shown` is 1 for each pixel of a camera's network image that shows a part of its view, else 0.
+  /// The other pixels are black, because they lie outside of the real image or on the own vehicle.
+  /// Tiles that are mostly black are not judged. Without a call, all tiles are judged.
   void set_shown(int camera, std::span<const uint8_t> shown);
 
-  /// Adds the network input of a new frame of `camera`. Counts as movement only while `driving`.
+  /// Adds the network input of a new frame of `camera`. The frame counts for movement only while
+  /// `driving`.
   void add(int camera, std::span<const int8_t> planes, bool driving);
 
-  /// Compares the cameras. To be called once per frameset, after add().
+  /// Compares the cameras. Call it once per frameset, after add().
   void judge();
 
   ViewFault fault(int camera) const;
@@ -64,12 +66,12 @@ class ViewMonitor {
 
   struct Camera {
     ShownTiles shown = ShownTiles().set();
-    std::array<Blocks, 2> blocks{};  ///< of the latest two images, in turn
+    std::array<Blocks, 2> blocks{};  ///< blocks of the latest two images, in turn
     int latest = 0;                  ///< index of the latest
-    int images = 0;                  ///< since the last fault of light, at most 2
+    int images = 0;                  ///< number since the last fault of light, at most 2
     Tiles movement{};                ///< mean change of the pattern inside a tile
     Tiles contrast{};                ///< mean strength of that pattern
-    int moved_images = 0;            ///< that the two means contain, at most kImages
+    int moved_images = 0;            ///< images that the two means contain, at most kImages
     ViewFault light = ViewFault::kNone;
     int good_images = 0;  ///< in a row since `light` was seen
     bool dirty = false;
@@ -79,7 +81,7 @@ class ViewMonitor {
   static ViewFault light_fault(const Blocks& blocks, const ShownTiles& shown);
   static void note_light(ViewFault seen, Camera& camera);
   static void note_movement(Camera& camera);
-  /// The median of a row over the cameras that have driven long enough; 0 without any.
+  /// The median of a row over the cameras that have driven long enough, or 0 if there are none.
   float typical(int row, Tiles Camera::*values);
   int covered_tiles(const Camera& camera) const;
 

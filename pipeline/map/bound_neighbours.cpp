@@ -5,9 +5,9 @@
 namespace bevloc {
 namespace {
 
-/// A line is the edge of the road if no other line is this close beside it ...
+/// Another line runs beside a line if it is at most this far from it.
 constexpr double kBesideEdge_m = 2.5;
-/// ... along more than this share of it.
+/// A line is the edge of the road if other lines run beside at most this share of it.
 constexpr double kEdgeShare = 0.5;
 /// Bounds of neighbouring lanelets that share no way are this close, along this share.
 constexpr double kSameLine_m = 0.5;

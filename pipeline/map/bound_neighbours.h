@@ -14,10 +14,10 @@ namespace bevloc {
 /// Add all lanelets and lines before the first question. One thread.
 class BoundNeighbours {
  public:
-  /// The ways of both bounds of one lanelet, which are no neighbours of each other.
+  /// Adds the ways of both bounds of one lanelet. They do not count as neighbours of each other.
   void add_lanelet(const std::vector<int64_t>& ways);
 
-  /// A way whose type says that it is a road boundary, or a bound of a lanelet for vehicles.
+  /// Adds a way whose type says that it is a road boundary, or that bounds a lanelet for vehicles.
   void add_line(int64_t way, const Polyline& points, bool is_typed_boundary);
 
   /// Whether a divider is the edge of the road, because no other line runs beside it.
@@ -33,12 +33,12 @@ class BoundNeighbours {
   bool is_second_of_a_pair(int64_t way, const Polyline& points);
 
  private:
-  /// Whether a line is neither the way itself nor of a lanelet that it bounds.
+  /// Whether a line is neither the way itself nor a bound of a lanelet that the way bounds.
   bool is_foreign(int64_t way, int64_t other) const;
 
   LineNeighbours lines_;
   std::unordered_set<int64_t> typed_boundaries_;
-  /// By way: the ways of both bounds of its lanelets.
+  /// For each way, the ways of both bounds of its lanelets.
   std::unordered_map<int64_t, std::vector<int64_t>> own_;
   std::unordered_set<int64_t> drawn_by_pairs_;
 };

@@ -19,7 +19,7 @@ constexpr std::array kClassNames{
     ClassName{ElementClass::kRoadBoundary, "road boundary", "boundary"},
 };
 
-/// In the order of the enumerators.
+/// The names in the order of the enumerators.
 constexpr std::array<std::string_view, 13> kAppearanceNames{
     "unknown",   "solid",   "dashed",     "double solid", "zebra", "ladder", "kerb",
     "road edge", "barrier", "guard rail", "wall",         "fence", "hedge"};

@@ -98,13 +98,13 @@ class CompactDecoder {
     return reject("a number of more than 64 bits");
   }
 
-  /// A number below a limit.
+  /// Reads a number below a limit.
   uint64_t number_below(uint64_t limit, std::string_view what) {
     const uint64_t value = number();
     return value < limit ? value : reject(what);
   }
 
-  /// Number of the following items, each of which takes at least `bytes_each` bytes.
+  /// Reads the number of the following items, each of which takes at least `bytes_each` bytes.
   size_t count(size_t bytes_each) {
     const uint64_t value = number();
     const bool fits = value <= (bytes_.size() - at_) / bytes_each;
@@ -139,13 +139,13 @@ class CompactDecoder {
     return points;
   }
 
-  /// As CompactEncoder::start_from().
+  /// The next point counts from (x, y), as in CompactEncoder::start_from().
   void start_from(int64_t x, int64_t y) {
     last_[0] = x;
     last_[1] = y;
   }
 
-  /// The next coordinate, in quanta.
+  /// Reads the next coordinate, in quanta.
   int64_t coordinate(int axis) {
     const uint64_t zigzag = number();
     const auto step = static_cast<int64_t>(zigzag >> 1U) ^ -static_cast<int64_t>(zigzag & 1U);

@@ -133,8 +133,8 @@ class Lanelet2Reader {
     take(std::move(crossing), "lanelet crosswalk", where, std::move(heights_m));
   }
 
-  /// Adds an element, unless the class table has another meaning for its kind, of which it may not
-  /// have the shape.
+  /// Adds an element with the meaning that the class table gives its kind. Drops it if the table
+  /// says so, or if it does not have the shape that this meaning needs.
   void take(MapElement element, const std::string& kind, const std::string& where,
             Heights heights_m) {
     std::optional<Meaning> meaning = Meaning{element.element_class, element.appearance};
@@ -246,8 +246,8 @@ class Lanelet2Reader {
     return found == uses_.end() ? kUnused : found->second;
   }
 
-  /// Class and appearance of a way by its tags and use, without its points. Nothing if the map does
-  /// not use the way.
+  /// Class and appearance of a way by its tags and use, without its points. Returns nothing if the
+  /// map does not use the way.
   std::optional<MapElement> classify(const OsmWay& way) const {
     const std::string_view type = tag_value(way.tags, "type");
     if (const auto appearance = boundary_appearance(type)) {
@@ -268,7 +268,7 @@ class Lanelet2Reader {
   }
 
   /// Corrects the class of lines that bound one lanelet for vehicles by what runs beside them.
-  /// Returns why the line is none of the map, or "".
+  /// Returns why the line does not belong to the map, or "".
   std::string_view judge_by_neighbours(const OsmWay& way, MapElement& element) {
     if (use_of(way).vehicle_lanelets != 1) return "";
     const bool has_type = !tag_value(way.tags, "type").empty();
@@ -324,7 +324,7 @@ class Lanelet2Reader {
       return fail("{}:{}: way {}: found {} points in this bound of lanelet {}, wanted at least 2",
                   document_.file, way.line, way.id, points->size(), relation.id);
     }
-    // Centerlines get a point every 2 m, so that a wrong coordinate would fill the memory.
+    // Centerlines get a point every 2 m, so a wrong coordinate would fill the memory.
     if (points && polyline_length(*points) > kLongestPolylineM) {
       return fail("{}:{}: way {}: found {:g} m in this bound of lanelet {}, wanted at most {:g} m",
                   document_.file, way.line, way.id, polyline_length(*points), relation.id,
@@ -338,10 +338,10 @@ class Lanelet2Reader {
   const ClassTable& classes_;
   std::unordered_map<int64_t, const OsmWay*> ways_;
   std::vector<Lanelet> lanelets_;
-  std::unordered_map<int64_t, BoundUse> uses_;  ///< by way
+  std::unordered_map<int64_t, BoundUse> uses_;  ///< uses of each way
   BoundNeighbours beside_;
   HdMap map_;
-  std::vector<Heights> heights_m_;  ///< of each element
+  std::vector<Heights> heights_m_;  ///< one for each element
   ImportReport report_;
 };
 

@@ -34,12 +34,13 @@ namespace bevloc {
 /// without any part listed above that can be used.
 Result<HdMap> read_lanelet2(const std::filesystem::path& path);
 
-/// The same for text in memory. Error messages show `file`; its stem becomes the name of the map.
+/// Does the same for a text in memory. Error messages show `file`; its stem becomes the name of the
+/// map.
 Result<HdMap> parse_lanelet2(std::string_view text, const std::filesystem::path& file);
 
-/// The same with a report by kind of way ("way line_thin dashed") and with a class table, which may
-/// also take ways that are otherwise ignored. An origin of the options is for files that have local
-/// coordinates only; others are refused with it.
+/// Does the same with a report by kind of way ("way line_thin dashed") and with a class table,
+/// which may also take ways that are otherwise ignored. The options may give an origin only for a
+/// file that has nothing but local coordinates; with an origin, any other file is refused.
 Result<ImportedMap> parse_lanelet2_with_report(std::string_view text,
                                                const std::filesystem::path& file,
                                                const ImportOptions& options);

@@ -99,7 +99,7 @@ std::vector<size_t> without_straight(const Polyline& ring) {
   return indices_of(kept);
 }
 
-/// Pieces of a line whose ends are closer belong together.
+/// Pieces of a line whose ends are closer than this belong together.
 constexpr double kJoint_m = 0.2;
 
 /// Adds a piece to the chain, at the end of the chain that it meets. Returns false if it meets
@@ -204,7 +204,8 @@ std::vector<size_t> corners_of_ring(const Polyline& ring) {
   std::vector<size_t> corners(ring.size());
   std::iota(corners.begin(), corners.end(), size_t{0});
   Polyline rest = ring;
-  // Until nothing changes, so that a map that is written and read again stays the same.
+  // Repeats this until nothing changes, so that a map that is written and read again stays the
+  // same.
   while (rest.size() > 3) {
     const std::vector<size_t> kept = without_straight(rest);
     if (kept.size() < 3 || kept.size() == rest.size()) break;

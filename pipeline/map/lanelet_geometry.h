@@ -27,27 +27,27 @@ Polyline centerline_between(const Polyline& left, const Polyline& right);
 /// `points` must not be empty.
 Eigen::Vector2d median_point(const std::vector<Eigen::Vector2d>& points);
 
-/// In metres.
+/// The length of a line in metres.
 double polyline_length(const Polyline& line);
 
-/// Length of a line; of a crossing with its closing edge.
+/// The length of an element in metres. A crossing counts with its closing edge.
 double length_of(const MapElement& element);
 
 /// The area of a ring without a repeated corner.
 double area_of_ring_m2(const Polyline& ring);
 
-/// The smallest area of a crossing: one bound named twice has none.
+/// The smallest area of a crossing. A crossing whose two bounds are the same way has no area.
 inline constexpr double kLeastCrossing_m2 = 0.5;
 
-/// The points of a line that remain, in its order, without those within `tolerance_m` of the line
-/// through their neighbours.
+/// The indices of the points of a line, in its order, without those within `tolerance_m` of the
+/// line through their neighbours.
 std::vector<size_t> kept_points(const Polyline& line, double tolerance_m);
 
-/// The corners of a ring without a repeated corner, in its order: without the points within 0.3 m
-/// of a straight side, so that each long side of a crossing is a single edge.
+/// The indices of the corners of a ring without a repeated corner, in its order. Points within 0.3
+/// m of a straight side are left out, so that each long side of a crossing is a single edge.
 std::vector<size_t> corners_of_ring(const Polyline& ring);
 
-/// The ring around the area between two bounds, which may run in either direction; its corners
+/// The ring around the area between two bounds, which may run in either direction. It has corners
 /// only.
 Polyline ring_between(const Polyline& left, const Polyline& right);
 

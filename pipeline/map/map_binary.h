@@ -16,8 +16,8 @@ inline constexpr double kMapQuantumM = 0.001;
 /// The first bytes of every compact map file.
 inline constexpr std::string_view kMapMagic = "BVMP";
 
-/// Encodes a map as version 1 of the format, which every release reads, as a whole. Version 2, in
-/// tiles, is described in tiles/tile_codec.h. File layout, all numbers little-endian:
+/// Encodes a whole map as version 1 of the format, which every release reads. Version 2, in tiles,
+/// is described in tiles/tile_codec.h. File layout, all numbers little-endian:
 ///
 ///     magic "BVMP" | version u16 | size of the body in bytes u32 | body | CRC-32 u32
 ///

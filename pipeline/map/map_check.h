@@ -1,4 +1,4 @@
-// Whether a vehicle can be localized in a map at all.
+// Checks whether a vehicle can be localized in a map at all.
 #pragma once
 
 #include <string>

@@ -31,8 +31,8 @@ bool has_angles(const OsmNode& node) {
   return !has_local(node) || *node.latitude_deg != 0.0 || *node.longitude_deg != 0.0;
 }
 
-/// The middle of the values; their median if they lie farther apart than any map, so that a few
-/// wrong ones do not move it.
+/// The middle of the values. It is their median if they lie farther apart than any map, so that a
+/// few wrong values do not move it.
 double middle_of(std::vector<double>& values_deg) {
   constexpr double kWidestMap_deg = 1.0;
   const auto [least, most] = std::ranges::minmax(values_deg);
@@ -108,7 +108,8 @@ Result<Similarity> plane_from_local(const std::vector<std::complex<double>>& loc
 
 constexpr double kMgrsSquare_m = 100'000.0;
 
-/// The place on earth of local coordinates in an MGRS square. Nothing if there is no such square.
+/// The place on earth of local coordinates in an MGRS square. Returns nothing if there is no such
+/// square.
 std::optional<GeoOrigin> place_in_square(const OsmNode& node) {
   try {
     int zone = 0, precision = 0;
@@ -129,8 +130,8 @@ std::optional<GeoOrigin> place_in_square(const OsmNode& node) {
 }
 
 /// Autoware's maps without latitude and longitude say in which MGRS square their local coordinates
-/// are. The document with the latitude and longitude of each node, or nothing if not all nodes with
-/// local coordinates have a square.
+/// are. Returns the document with the latitude and longitude of each node, or nothing if not all
+/// nodes with local coordinates have a square.
 std::optional<OsmDocument> with_angles_of_squares(const OsmDocument& document) {
   OsmDocument located = document;
   bool any = false;

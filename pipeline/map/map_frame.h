@@ -38,7 +38,7 @@ Result<std::vector<Eigen::Vector2d>> points_of(const OsmWay& way, const OsmDocum
                                                const NodePositions& nodes);
 
 /// Shifts coordinates that no map can have (kFarthestFromOriginM), such as those of UTM, to zero.
-/// Returns by how much.
+/// Returns the shift, or nothing if none is needed.
 std::optional<Eigen::Vector2d> shift_to_zero(NodePositions& nodes);
 
 /// The heights of points that are nodes of these ways, or none if one of them has no height.

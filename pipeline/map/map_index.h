@@ -11,8 +11,7 @@
 
 namespace bevloc {
 
-/// Spatial index over the line segments of a map. The map must outlive it. Several threads may
-/// query it at the same time.
+/// Spatial index over the line segments of a map. The map must outlive it. Thread-safe.
 class MapIndex {
  public:
   /// The segment of an element from point `first` to the next; the last segment of a ring closes

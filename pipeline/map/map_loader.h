@@ -13,7 +13,8 @@ namespace bevloc {
 /// import. Fails on a map in which nothing can be localized, too (map_check.h).
 Result<HdMap> load_map(const std::filesystem::path& path);
 
-/// The same for the bytes of a file in memory. `path` gives the extension and the name in messages.
+/// Does the same for the bytes of a file in memory. `path` gives the extension and the name in
+/// messages.
 Result<HdMap> parse_map(std::string_view bytes, const std::filesystem::path& path);
 
 }  // namespace bevloc

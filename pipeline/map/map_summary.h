@@ -8,7 +8,7 @@
 
 namespace bevloc {
 
-/// Such as "12 dividers, 3 crossings, 40 boundaries, 18 lanes".
+/// Returns a text such as "12 dividers, 3 crossings, 40 boundaries, 18 lanes".
 std::string contents_of(const HdMap& map);
 
 /// What a user of the map should know, one sentence each, most important first: that it lacks an

@@ -24,8 +24,8 @@ std::optional<T> number_from(std::string_view text) {
   return value;
 }
 
-/// The tag `ele`: metres, also with their unit. Nothing for anything else, because a map without
-/// heights serves as well.
+/// Reads the tag `ele` in metres, with or without the unit. Returns nothing for anything else,
+/// because a map without heights serves as well.
 std::optional<double> height_from(std::string_view text) {
   constexpr double kHighest_m = 1e5;
   text = trimmed_number(text);

@@ -20,7 +20,7 @@ inline constexpr size_t kRasterSize =
 
 /// Draws rasters with anti-aliasing: 0 is empty, 255 is covered. The centre of mass of a drawn line
 /// is accurate to a tenth of a cell. Of a crossing only the two longest edges are drawn, as in
-/// BeMapNet. Not thread safe. Allocates nothing after a warm-up. The index must outlive it.
+/// BeMapNet. One thread. Allocates nothing after a warm-up. The index must outlive it.
 class MapRasterizer {
  public:
   explicit MapRasterizer(const MapIndex& index);

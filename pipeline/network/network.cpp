@@ -75,7 +75,7 @@ void check_ports(const std::vector<nn::Port>& ports, const std::vector<Contract>
   }
 }
 
-/// Bounds of the solver's parameters; trained ones are far inside.
+/// Bounds of the solver's parameters. Trained parameters lie far inside.
 constexpr float kSmallestParameter = 0.01F;
 constexpr float kLargestParameter = 1e6F;
 

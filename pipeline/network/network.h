@@ -33,17 +33,17 @@ using NetworkOptions = nn::EngineOptions;
 ///
 /// Computes in int8 where the file has QuantizeLinear and DequantizeLinear (with zero points 0 and
 /// weight scales per channel), and in float elsewhere. The metadata must contain
-/// bevloc.solver.{joint_scale, x_scale, y_scale, yaw_scale, gem_omega}. Optional are
-/// bevloc.solver.{refine,banded}_..._scale (default: joint_scale) and
+/// bevloc.solver.{joint_scale, x_scale, y_scale, yaw_scale, gem_omega}. These are optional:
+/// bevloc.solver.{refine,banded}_..._scale (default: joint_scale),
 /// bevloc.solver.{sigma,score}_scale (default: 1), bevloc.rig.* (model_rig.h) and
 /// bevloc.test_frame_answer (test_frame.h).
 ///
 /// load() allocates all buffers. The other functions do not allocate, throw or lock, except for
-/// what nn::Engine documents about oneDNN. Not thread safe.
+/// what nn::Engine documents about oneDNN. One thread.
 class Network {
  public:
-  /// Errors: the file is missing, damaged, not the network described above, or uses an operator
-  /// that the engine does not support (the message names it).
+  /// Fails if the file is missing, damaged or not the network described above, or if it uses an
+  /// operator that the engine does not support (the message names it).
   static Result<std::unique_ptr<Network>> load(const std::string& path,
                                                const NetworkOptions& options);
   ~Network();
@@ -51,7 +51,7 @@ class Network {
   /// Copies the table. Before the first call, the network sees nothing in the images.
   void set_view_table(const ViewTable& table);
 
-  /// Inputs. Write them before a run; they keep their content.
+  /// The inputs. Write them before a run; they keep their content.
   std::span<int8_t> image_input();
   std::span<uint8_t> raster_input();
 

@@ -13,14 +13,14 @@ namespace {
 
 constexpr double kTolerance = 0.03;
 
-/// Steele, Lea and Flood: "Fast Splittable Pseudorandom Number Generators", the finaliser.
+/// The finaliser of Steele, Lea and Flood: "Fast Splittable Pseudorandom Number Generators".
 uint64_t mix(uint64_t value) {
   value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9U;
   value = (value ^ (value >> 27)) * 0x94d049bb133111ebU;
   return value ^ (value >> 31);
 }
 
-/// Stripes of several widths and directions, other ones in each plane.
+/// Draws stripes of several widths and directions, with other ones in each plane.
 void draw_images(std::span<int8_t> images) {
   size_t i = 0;
   for (int plane = 0; plane < 3 * kCameraCount; ++plane) {
@@ -34,7 +34,7 @@ void draw_images(std::span<int8_t> images) {
   }
 }
 
-/// Lines along and across the vehicle and one oblique line, in every class.
+/// Draws lines along and across the vehicle and one oblique line in every class.
 void draw_raster(std::span<uint8_t> raster) {
   size_t i = 0;
   for (int channel = 0; channel < kRasterChannels; ++channel) {
@@ -85,7 +85,7 @@ Status check_side(std::string_view side, const FeatureAnswer& found, const Featu
   }
   const double difference = std::sqrt(squares / FeatureAnswer::kSums) / wanted.norm;
   const double growth = std::abs(found.norm / wanted.norm - 1.0);
-  if (difference <= kTolerance && growth <= kTolerance) return {};  // false for NaN
+  if (difference <= kTolerance && growth <= kTolerance) return {};  // this is false for NaN
   return fail(
       "network: found {} features of the test frame that differ from the model's stored answer by "
       "{:.1f} %, wanted at most {:.0f} %: memory, processor or model file is damaged; replace the "

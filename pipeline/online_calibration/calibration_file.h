@@ -12,7 +12,7 @@ namespace bevloc {
 
 /// An estimate, and the rig that it belongs to.
 struct LearnedCalibration {
-  uint32_t rig_crc32 = 0;  ///< of the rig as format_rig() writes it
+  uint32_t rig_crc32 = 0;  ///< CRC-32 of the rig as format_rig() writes it
   ExtrinsicErrors errors = ExtrinsicErrors::Zero();
   ExtrinsicCovariance covariance = ExtrinsicCovariance::Zero();
 
@@ -22,14 +22,14 @@ struct LearnedCalibration {
 /// Identifies a rig: another calibration has other errors.
 uint32_t rig_crc32(const Rig& rig);
 
-/// The text of a file: a YAML mapping, and last a CRC-32 of all before it.
+/// The text of a file: a YAML mapping, which ends with a CRC-32 of all text before it.
 std::string format_learned(const LearnedCalibration& learned);
 
 /// Fails with file and key on a damaged or cut text, an unknown key, or a number that is not
 /// finite.
 Result<LearnedCalibration> parse_learned(const std::string& text, const std::string& name);
 
-/// Replaces the file in one step: after a power failure it has the old or the new content.
+/// Replaces the file in one step. After a power failure it has the old or the new content.
 Status save_learned(const LearnedCalibration& learned, const std::filesystem::path& path);
 
 /// Fails as parse_learned() does, and if the file belongs to another rig.

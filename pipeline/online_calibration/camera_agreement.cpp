@@ -88,7 +88,8 @@ bool CameraAgreement::shares_of(CameraMask judged, std::array<double, kCameraCou
   }
   if (judged.count() < kLeastCameras) return false;
   std::ranges::sort(sorted);
-  // The better of the two in the middle: two swapped cameras leave more good ones.
+  // Of the two in the middle, this takes the better one, because two swapped cameras leave more
+  // good ones.
   const double median = sorted[judged.count() / 2];
   if (median < kLeastMedian) return false;
   for (double& share : shares) share /= median;

@@ -1,4 +1,5 @@
-// Which cameras contradict the map: their pictures show another road than the other cameras.
+// Finds the cameras that contradict the map, because their pictures show another road than those of
+// the other cameras.
 #pragma once
 
 #include <array>
@@ -12,21 +13,21 @@ namespace bevloc {
 /// the map if its agreement (ZNCC) is far below that of the median camera. This finds cameras whose
 /// cables are swapped, and a camera that is turned far.
 ///
-/// One thread, no allocation.
+/// One thread. Does not allocate.
 class CameraAgreement {
  public:
-  /// Adds the sums of one match. Only the cameras in `used` are judged: the others keep their
-  /// verdict, and if fewer than four are used, all do.
+  /// Adds the sums of one match. Only the cameras in `used` are judged, and the others keep their
+  /// verdict. If fewer than four cameras can be judged, all keep their verdict.
   void add(const std::array<SeenByCamera, kCameraCount>& seen, CameraMask used, double step_s);
 
   CameraMask contradicting() const { return contradicting_; }
 
  private:
   struct Seen {
-    SeenByCamera sums;            ///< fade over some seconds of driving
-    double time_s = 0.0;          ///< driving time in them
-    double contradicted_s = 0.0;  ///< judged for so long, each time as contradicting
-    double absent_s = 0.0;        ///< not used for so long
+    SeenByCamera sums;            ///< sums that fade over some seconds of driving
+    double time_s = 0.0;          ///< driving time that the sums contain
+    double contradicted_s = 0.0;  ///< time with too low a share; a hidden side counts less
+    double absent_s = 0.0;        ///< time since the camera was last used
   };
 
   /// Whether enough was seen to judge. If so, `shares` are relative to the median camera.

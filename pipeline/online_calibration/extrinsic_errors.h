@@ -14,8 +14,8 @@ namespace bevloc {
 inline constexpr int kErrorsPerCamera = 6;
 inline constexpr int kExtrinsicErrors = kErrorsPerCamera * kCameraCount;
 
-/// Camera c has the elements from c * kErrorsPerCamera on. True extrinsics = those of the rig with
-/// these errors applied (with_errors()).
+/// Camera c has the elements from c * kErrorsPerCamera on. The true extrinsics are those of the rig
+/// with these errors applied (with_errors()).
 using ExtrinsicErrors = Eigen::Matrix<double, kExtrinsicErrors, 1>;
 using ExtrinsicCovariance = Eigen::Matrix<double, kExtrinsicErrors, kExtrinsicErrors>;
 

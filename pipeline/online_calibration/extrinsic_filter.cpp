@@ -7,8 +7,8 @@ namespace bevloc {
 namespace {
 
 /// Divides the information of one match. Errors of the match are alike from cell to cell and from
-/// frameset to frameset, so it counts much less than its sums say; found on drives of the
-/// development seeds, so that the errors of the estimates agree with their sigmas.
+/// frameset to frameset, so it counts much less than its sums say. The value was found on drives of
+/// the development seeds: with it, the errors of the estimates agree with their sigmas.
 constexpr double kNoise = 200.0;
 constexpr double kSecondsPerHour = 3600.0;
 

@@ -8,17 +8,19 @@ namespace bevloc {
 
 /// How large errors are and how fast they change, one sigma.
 struct ExtrinsicModel {
-  double rotation_rad = radians(0.3);  ///< of one camera, about each of its axes
-  double translation_m = 0.02;         ///< of one camera, along each of the vehicle's axes
-  /// Of all cameras together, about the vehicle's axes: the load turns the body about x and y.
+  double rotation_rad = radians(0.3);  ///< rotation of one camera about each of its axes
+  double translation_m = 0.02;         ///< shift of one camera along each of the vehicle's axes
+  /// Rotation of all cameras together about the vehicle's axes. The load turns the body about x and
+  /// y.
   Eigen::Vector3d body_rotation_rad{radians(0.2), radians(0.2), radians(0.1)};
   /// Growth after one hour of driving, of each angle and of each length.
   double rotation_per_sqrt_hour_rad = radians(0.2);
   double translation_per_sqrt_hour_m = 0.005;
 };
 
-/// A Kalman filter whose state are all errors together: cameras that share cells are correlated,
-/// and so are all of them through the pose. One thread; does not allocate.
+/// A Kalman filter whose state contains the errors of all cameras. The errors of cameras that share
+/// cells are correlated, and the pose correlates those of all cameras. One thread. Does not
+/// allocate.
 class ExtrinsicFilter {
  public:
   /// `rig` gives the axes along which the body's rotation turns each camera.
@@ -37,7 +39,7 @@ class ExtrinsicFilter {
   /// common. A match alone cannot show this rotation.
   void update_heading(const HeadingTurn& turn);
 
-  /// By how much these errors turn the matched heading.
+  /// The angle in radians by which these errors turn the matched heading.
   double turn_by(const ExtrinsicErrors& errors) const { return heading_.dot(errors); }
 
   const ExtrinsicErrors& errors() const { return errors_; }

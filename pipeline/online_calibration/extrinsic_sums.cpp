@@ -30,7 +30,7 @@ constexpr double kReachAcross_m = 40.0;
 /// shift that an error causes: by these shares of it, along and across the ray of sight.
 constexpr double kResponseAlong = 0.4;
 constexpr double kResponseAcross = 0.9;
-/// Least ratio of perceived to mapped features; below, there is nothing to learn from.
+/// Least ratio of perceived to mapped features. Below it there is nothing to learn from.
 constexpr double kLeastStrength = 0.05;
 
 /// Sums over the cells of a block and all channels.
@@ -40,7 +40,7 @@ struct BlockSums {
   float yy = 0.0F;
   float slope_x = 0.0F;
   float slope_y = 0.0F;
-  float product = 0.0F;  ///< of both sides
+  float product = 0.0F;  ///< products of both sides
   float map_square = 0.0F;
   float moved_square = 0.0F;
 };

@@ -10,7 +10,7 @@ namespace bevloc {
 
 /// Sums over the cells that one camera sees, weighted with its share.
 struct SeenByCamera {
-  double product = 0.0;  ///< of the features of both sides
+  double product = 0.0;  ///< product of the features of both sides
   double map_square = 0.0;
   double bev_square = 0.0;
 };
@@ -29,7 +29,7 @@ struct MatchedCells {
   const CellFeatures& map;  ///< standardised
   const ViewTable& view;    ///< the table that `bev` was computed with
   const Rig& rig;           ///< the network rig that `view` was computed with
-  Se2 correction;           ///< that aligns `bev` with `map`
+  Se2 correction;           ///< correction that aligns `bev` with `map`
 };
 
 /// Compares the positions of the lines that each camera sees with their positions in the map.
@@ -50,7 +50,8 @@ class ExtrinsicSums {
  public:
   ExtrinsicSums(const BevGrid& grid, int channels);
 
-  /// Nothing is learned (all zero) if the features do not determine the correction.
+  /// The result is all zero, so that nothing is learned, if the features do not determine the
+  /// correction.
   void compute(const MatchedCells& match, ExtrinsicInformation& result);
 
  private:
@@ -65,7 +66,7 @@ class ExtrinsicSums {
 
   /// How cameras see a block of cells.
   struct BlockView {
-    /// Of what the block shows, per unit of the pose and of the errors of its cameras.
+    /// Shift of what the block shows, per unit of the pose and of the errors of its cameras.
     Eigen::Matrix<double, 2, kMostOfBlock> shift = Eigen::Matrix<double, 2, kMostOfBlock>::Zero();
     std::array<int, kMostCameras> seen_by{};
     std::array<double, kMostCameras> shares{};
@@ -74,7 +75,7 @@ class ExtrinsicSums {
     Eigen::Matrix2d weight_root = Eigen::Matrix2d::Zero();
     /// Square root of the network's response to errors, along the same axes.
     Eigen::Matrix2d response_root = Eigen::Matrix2d::Zero();
-    double near_weight = 0.0;  ///< of the agreement with the map
+    double near_weight = 0.0;  ///< weight in the agreement with the map
   };
 
   BlockView view_block(const MatchedCells& match, int first_row, int first_col) const;

@@ -20,34 +20,34 @@ struct HeadingTurn {
 /// the positions show the direction of motion: the path that odometry measured is laid over the
 /// matched positions, and its headings are compared with the matched ones.
 ///
-/// One thread; allocates in the constructor only.
+/// One thread. Allocates in the constructor only.
 class MotionDirection {
  public:
   /// Length of a stretch of road that gives one comparison.
   static constexpr double kStretch_m = 60.0;
 
-  /// `map_from_vehicle`: the matched pose at the end of the step, if it is clear. `step`: what the
-  /// vehicle drove since the previous call. A new stretch begins if that is not known, or if the
-  /// step does not begin where the previous one ended. Returns a comparison at the end of a
-  /// stretch.
+  /// `map_from_vehicle` is the matched pose at the end of the step, if the match is clear. `step`
+  /// is what the vehicle drove since the previous call. A new stretch begins if that is not known,
+  /// or if the step does not begin where the previous one ended. Returns a comparison at the end of
+  /// a stretch.
   std::optional<HeadingTurn> add(const std::optional<Se2>& map_from_vehicle,
                                  const std::optional<DrivenStep>& step);
 
  private:
   static constexpr size_t kMostPoses = 512;
-  /// A stretch with fewer clear matches says nothing.
+  /// A stretch with fewer clear matches gives no comparison.
   static constexpr size_t kLeastPoses = 20;
 
   struct Sample {
     Se2 matched;
-    Se2 driven;  ///< from odometry, since the beginning of the stretch
+    Se2 driven;  ///< motion by odometry since the beginning of the stretch
   };
 
   void begin();
   HeadingTurn turn() const;
 
   boost::circular_buffer<Sample> samples_{kMostPoses};
-  Se2 driven_;  ///< since the beginning of the stretch
+  Se2 driven_;  ///< motion since the beginning of the stretch
   double length_m_ = 0.0;
   std::optional<Time> driven_until_;
 };

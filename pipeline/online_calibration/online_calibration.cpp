@@ -6,7 +6,7 @@
 namespace bevloc {
 namespace {
 
-/// Between two observations. Matches of the next frameset see the same road.
+/// The least time between two observations, because matches of the next frameset see the same road.
 constexpr Duration kPeriod = std::chrono::milliseconds(380);
 /// An observation counts for at most this long, also after a pause.
 constexpr double kLongestStep_s = 1.0;
@@ -29,7 +29,7 @@ constexpr double kFastest_mps = 0.0004;
 /// A camera is at fault if an error is beyond its bound by more than this many sigmas.
 constexpr double kSigmasBeyond = 0.5;
 
-/// If more cameras seem out of place, it is rather the map or the road that differs.
+/// If more cameras than this seem out of place, the map or the road is more likely to differ.
 constexpr size_t kMostLeftOut = 2;
 
 }  // namespace
@@ -80,7 +80,7 @@ void OnlineCalibration::learn_heading(const CalibrationObservation& observation,
   std::optional<Se2> matched;
   if (is_clear) {
     matched = observation.map_from_vehicle;
-    matched->yaw_rad += filter_.turn_by(used_);  // as it would be without the used errors
+    matched->yaw_rad += filter_.turn_by(used_);  // the heading without the used errors
   }
   const auto turn = direction_.add(matched, observation.driven);
   if (turn) filter_.update_heading(*turn);

@@ -15,7 +15,8 @@ namespace bevloc {
 
 struct OnlineCalibrationOptions {
   bool enabled = true;
-  /// Errors beyond these are a fault of the calibration. What is used stays within them.
+  /// Errors beyond these bounds are a fault of the calibration. The errors that are used stay
+  /// within them.
   double max_rotation_rad = radians(0.65);
   double max_translation_m = 0.1;
 
@@ -27,11 +28,11 @@ struct CalibrationObservation {
   MatchedCells cells;
   const MatchResult& match;
   CameraMask cameras;     ///< used in the match
-  Time time;              ///< of the frameset
+  Time time;              ///< time of the frameset
   bool tracking = false;  ///< the prior came from the tracker, which follows the map
   bool driving = false;
-  Se2 map_from_vehicle;                ///< as matched
-  std::optional<DrivenStep> driven{};  ///< until `time`, from odometry, where known
+  Se2 map_from_vehicle;                ///< the matched pose
+  std::optional<DrivenStep> driven{};  ///< motion until `time` from odometry, if known
 };
 
 /// Learns only while the vehicle drives and tracks, from clear matches near the prior, with all
@@ -39,10 +40,10 @@ struct CalibrationObservation {
 /// pose in the wrong lane looks like errors of the cameras. Such apparent errors differ from place
 /// to place, so they average out; the bounds limit the rest.
 ///
-/// One thread; the constructor allocates all memory.
+/// One thread. The constructor allocates all memory.
 class OnlineCalibration {
  public:
-  /// `rig`: the network rig of the calibration.
+  /// `rig` is the network rig of the calibration.
   OnlineCalibration(const Rig& rig, const BevGrid& grid, int channels,
                     const OnlineCalibrationOptions& options);
 
@@ -50,13 +51,13 @@ class OnlineCalibration {
   /// beyond the bounds, not finite, or its covariance is not positive definite.
   bool restore(const ExtrinsicErrors& errors, const ExtrinsicCovariance& covariance);
 
-  /// Learns from a match; a few times per second, more often does nothing. Returns whether
-  /// used_errors() changed.
+  /// Learns from a match, but at most a few times per second. Returns whether used_errors()
+  /// changed.
   bool observe(const CalibrationObservation& observation);
 
   /// The errors to be applied to the calibration. They follow the estimate in steps, because each
-  /// change computes the view table again. While a camera is at fault they are those of the start,
-  /// because it has pulled the estimates of the others.
+  /// change computes the view table again. While a camera is at fault, they are the errors of the
+  /// start, because the faulty camera has pulled the estimates of the others.
   const ExtrinsicErrors& used_errors() const { return used_; }
   const ExtrinsicFilter& filter() const { return filter_; }
 
@@ -67,7 +68,7 @@ class OnlineCalibration {
   CameraMask contradicting() const { return agreement_.contradicting(); }
 
   /// The cameras that are to be left out of matches: the first one or two that were at fault. They
-  /// stay in this set. Cameras that would make it more than two stay in use.
+  /// stay in this set. Further cameras stay in use.
   CameraMask left_out() const { return left_out_; }
 
  private:
@@ -86,7 +87,7 @@ class OnlineCalibration {
   MotionDirection direction_;
   ExtrinsicInformation information_;
   ExtrinsicErrors used_ = ExtrinsicErrors::Zero();
-  ExtrinsicErrors start_ = ExtrinsicErrors::Zero();  ///< as restored
+  ExtrinsicErrors start_ = ExtrinsicErrors::Zero();  ///< the restored errors, or 0
   double unfollowed_s_ = 0.0;                        ///< learning time since used_ has changed
   std::optional<Time> observed_;  ///< the time of the latest observation that was computed
   CameraAgreement agreement_;

@@ -145,7 +145,7 @@ void remap_blocks(const ImageView& image, const RemapBlocks& blocks, int8_t* pla
                 _mm256_add_epi32(sums[pair], lattice_sums<kTaps>(plane, place, blocks, part, pair));
           }
         });
-    // The rows of all parts are even or odd alike.
+    // The first rows of all parts have the same parity.
     const __m256i first_rows = load_positions(blocks.first_row, kParts * block);
     store_block(colours_of(SumsByKind(sums), first_rows, red),
                 planes + kPixels * blocks.index[block]);

@@ -157,7 +157,7 @@ void remap_blocks(const ImageView& image, const RemapBlocks& blocks, int8_t* pla
                 sums[pixel], lattice_sums<kTaps>(plane, Corner(blocks, part, pixel), weights));
           }
         });
-    // The rows of all parts are even or odd alike.
+    // The first rows of all parts have the same parity.
     const uint16_t* const first_rows = blocks.first_row.data() + kPixels * kParts * block;
     Colours(SumsByKind(sums), first_rows, red).store(planes + kPixels * blocks.index[block]);
   }

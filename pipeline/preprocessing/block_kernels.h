@@ -17,8 +17,8 @@ using BlockKernel = void(const Image& image, const RemapBlocks& blocks, int8_t* 
 /// Whether this CPU has the instructions of the kernels: AVX2, or on arm64 FEAT_DotProd.
 bool can_run_block_kernels();
 
-// The kernel for this CPU; null if there is none for `taps` or for the layout, or if the CPU cannot
-// run it.
+// The kernel for this CPU, or null if there is none for `taps` or for the layout, or if the CPU
+// cannot run it.
 
 BlockKernel<RgbView>* rgb_kernel_for(int taps);
 BlockKernel<YuvLayout>* yuv_kernel_for(const YuvLayout& layout, int taps);

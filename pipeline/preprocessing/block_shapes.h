@@ -34,8 +34,8 @@ struct PartShape {
   static constexpr int parts = kParts;
 };
 
-/// The kernel for boxes of `taps` pixels: calls `choose` with a PartShape. Null if there is no
-/// kernel for this width.
+/// The kernel for boxes of `taps` pixels: calls `choose` with a PartShape. Returns null if there is
+/// no kernel for this width.
 template <typename Choose>
 auto kernel_of_taps(int taps, const Choose& choose) -> decltype(choose(PartShape<2, 1>())) {
   switch (taps) {
@@ -67,7 +67,7 @@ auto kernel_of_taps(int taps, const Choose& choose) -> decltype(choose(PartShape
 }
 
 /// Calls `choose` with the reader of a YUV layout that has a kernel: Readers::Yuyv, Uyvy, Nv12,
-/// I420 or I422. Null if no kernel reads the layout.
+/// I420 or I422. Returns null if no kernel reads the layout.
 template <typename Readers, typename Choose>
 BlockKernel<YuvLayout>* kernel_of_layout(const YuvLayout& layout, const Choose& choose) {
   if (layout.chroma_shift_x == 0) return nullptr;

@@ -1,8 +1,9 @@
 // Parts of the AVX2 kernels. Include it inside a namespace, after "#pragma GCC target("avx2")" and
 // block_shapes.h.
 //
-// A register contains a pair of pixels, i and i + 4 of a block, one in each 128-bit half. Within a
-// half come the channels: four bytes, four words or one 32-bit sum for each.
+// A register contains a pair of pixels, i and i + 4 of a block, one in each 128-bit half. A half
+// contains the channels one after the other: four bytes, four words or one 32-bit sum for each
+// channel.
 
 constexpr int kPairs = kPixels / 2;
 constexpr int kNone = -1;

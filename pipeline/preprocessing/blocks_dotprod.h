@@ -39,7 +39,7 @@ uint8x16_t load_weights(const RemapBlocks& blocks, size_t block, int pixel) {
 /// Four sums of a pixel, one for each kind of sample.
 using Sums = uint32x4_t;
 
-/// sums + line * rows[kRow]
+/// Computes sums + line * rows[kRow].
 template <int kRow>
 [[gnu::always_inline]] inline Sums add_line(Sums sums, Sums line, const uint32x4_t* rows) {
   return vmlaq_laneq_u32(sums, line, rows[kRow / 4], kRow % 4);

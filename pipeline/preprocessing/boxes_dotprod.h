@@ -48,7 +48,7 @@ struct BoxWeights {
   }
 
  private:
-  /// kCols and kRows: positions in bytes.
+  /// kCols and kRows are positions in bytes.
   template <int kCols, int kRows>
   static BoxWeights of_register(uint8x16_t weights) {
     constexpr int kMore = RemapBlocks::slots(kTaps) - 4;

@@ -25,8 +25,8 @@ inline constexpr int8_t kNetworkBlack = -128;
 /// from the driver's memory; only MJPEG is decoded first. Each network pixel is the mean of the
 /// camera pixels in a box whose width is the scale (one pixel if the image is enlarged, which is
 /// bilinear interpolation). Pixels outside the camera image are black. Allocates in the constructor
-/// only, except for the first MJPEG image and the memory that libjpeg-turbo uses per image. Not
-/// thread safe.
+/// only, except for the first MJPEG image and the memory that libjpeg-turbo uses per image. One
+/// thread.
 class ImagePreprocessor {
  public:
   explicit ImagePreprocessor(const CameraModel& camera);

@@ -50,7 +50,7 @@ Result<YuvLayout> MjpegDecoder::decode(const ImageView& jpeg) {
                 width_px_, height_px_);
   }
   YuvLayout layout;
-  layout.encoding.full_range = true;  // JFIF
+  layout.encoding.full_range = true;  // as JFIF defines
   layout.chroma_shift_x = subsampling == TJSAMP_422 || subsampling == TJSAMP_420 ? 1 : 0;
   layout.chroma_shift_y = subsampling == TJSAMP_420 || subsampling == TJSAMP_440 ? 1 : 0;
   const bool is_known =

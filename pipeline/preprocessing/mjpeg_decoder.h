@@ -14,7 +14,7 @@ namespace bevloc {
 /// the first frame. A reduction makes the images smaller while they are decoded, which saves most
 /// of the inverse transform: a pixel is then the mean of reduction x reduction pixels. remap_yuv()
 /// converts the colours and upsamples the chroma. libjpeg-turbo allocates and frees a little memory
-/// for each image. Not thread safe.
+/// for each image. One thread.
 class MjpegDecoder {
  public:
   /// The size is that of the JPEG images; `reduction` is 1, 2, 4 or 8.

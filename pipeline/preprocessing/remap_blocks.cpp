@@ -112,7 +112,7 @@ class BlockMaker {
   int width_px_;
   int height_px_;
   RemapBlocks::Division division_;
-  int extent_;  ///< of all parts together, along each axis
+  int extent_;  ///< taps of all parts together along each axis
   size_t slots_;
   RemapBlocks blocks_;
 };

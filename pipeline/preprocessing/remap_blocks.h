@@ -36,8 +36,8 @@ struct RemapBlocks {
   /// How a box along one axis is divided.
   struct Division {
     int parts = 1;   ///< 1 or 2
-    int taps = 0;    ///< of each part
-    int offset = 0;  ///< of the second part; even, so that both see the same chroma and colours
+    int taps = 0;    ///< taps of each part
+    int offset = 0;  ///< start of the second part; even, so that chroma and colours agree
   };
   static constexpr Division division(int taps) {
     if (taps <= kMaxPartTaps) return {1, taps, 0};
@@ -53,9 +53,9 @@ struct RemapBlocks {
   std::vector<uint16_t> first_col;  ///< per pixel of a part, rounded down to an even number
   std::vector<uint16_t> first_row;
   /// Column weights, then row weights, per pixel. The pixels of a part come in the order 0, 4, 1,
-  /// 5, 2, 6, 3, 7. Weights of pixels for the plain code are 0.
+  /// 5, 2, 6, 3, 7. The weights of pixels that the plain code computes are 0.
   std::vector<uint8_t> weights;
-  std::vector<PixelRange> others;  ///< for the plain code
+  std::vector<PixelRange> others;  ///< pixels for the plain code
 };
 
 /// If the table has more than kMaxTaps taps, all pixels are in `others`.

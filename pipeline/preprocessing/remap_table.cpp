@@ -11,7 +11,8 @@
 namespace bevloc {
 namespace {
 
-// A box is at most as wide as the ratio of the widths of both images, and one pixel more counts.
+// A box is at most as wide as the ratio of the widths of both images, and it may touch one pixel
+// more.
 static_assert(kMostImageSide_px <= (RemapTable::kMaxTaps - 1) * kNetworkWidthPx);
 
 /// Computes the weights of the pixels under a box of width `box` around `centre`, in a line of

@@ -53,7 +53,7 @@ class PackedSource {
 /// Positions of the samples of a block, for formats with luma in a separate plane.
 struct PlanarPlace {
   Distances luma;
-  Distances chroma[2];  ///< for rows 0, 2, ... and rows 1, 3, ... of the block
+  Distances chroma[2];  ///< distances for rows 0, 2, ... and for rows 1, 3, ... of the block
 };
 
 template <bool kHalvedRows>

@@ -48,7 +48,7 @@ class PackedSamples {
   Offsets offsets_;
 };
 
-/// The samples of boxes in a format with luma in a separate plane. kColShift: 1 if a chroma plane
+/// The samples of boxes in a format with luma in a separate plane. kColShift is 1 if a chroma plane
 /// has half as many columns of bytes as that of luma.
 template <bool kHalvedRows, int kColShift>
 class PlanarSamples {
@@ -76,7 +76,7 @@ class PlanarSamples {
   const YuvLayout& image_;
 
  private:
-  /// Of row kFirstRow of the boxes.
+  /// The offsets of the chroma of row kFirstRow of the boxes.
   template <int kFirstRow>
   static Offsets chroma_offsets(const YuvLayout& image, const Corners& corners) {
     uint16x8_t rows = corners.rows;
@@ -87,7 +87,7 @@ class PlanarSamples {
   }
 
   Offsets luma_;
-  Offsets chroma_[2];  ///< of rows 0, 2, ... and of rows 1, 3, ...
+  Offsets chroma_[2];  ///< offsets for rows 0, 2, ... and for rows 1, 3, ...
 };
 
 /// The samples of boxes in NV12.

@@ -4,7 +4,7 @@
 
 namespace bevloc {
 
-/// The inverse of ITU-R BT.601-7, 2.5, and BT.709-6, 3.
+/// The inverse of the conversions of ITU-R BT.601-7 (2.5) and BT.709-6 (3).
 RgbFromYuv rgb_from_yuv(const YuvEncoding& encoding) {
   const bool is_601 = encoding.matrix == YuvMatrix::kBt601;
   const double red = is_601 ? 0.299 : 0.2126;

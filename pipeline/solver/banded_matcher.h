@@ -25,7 +25,7 @@ namespace bevloc {
 ///
 /// Given a, x and y are independent, so the marginals are exact and need only two small tables. The
 /// cost is linear in the number of hypotheses of each axis. The correction is the mean of the
-/// marginals. Not in the paper.
+/// marginals. This matcher is not in the paper.
 class BandedMatcher final : public Matcher {
  public:
   BandedMatcher(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses,

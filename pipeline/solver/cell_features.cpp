@@ -58,7 +58,7 @@ BEVLOC_TARGET_CLONES void interleave(const float* row, std::ptrdiff_t channel_st
   }
 }
 
-/// The same for fewer than kLanes channels.
+/// Does the same for fewer than kLanes channels.
 void interleave_few(const float* row, std::ptrdiff_t channel_step, int channels, int cells,
                     int lane_count, float* out) {
   for (int i = 0; i < cells; ++i) {

@@ -16,7 +16,7 @@ namespace bevloc {
 class CellFeatures {
  public:
   CellFeatures(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses);
-  /// Without a margin, for features that no hypothesis moves.
+  /// Makes features without a margin, which no hypothesis moves.
   CellFeatures(const BevGrid& grid, int channels);
 
   /// Copies features [channels, rows, cols] in.

@@ -24,6 +24,6 @@ struct CellLattice {
 
 inline constexpr CellLattice kEveryCell{1, 0};
 inline constexpr CellLattice kEverySecondCell{2, 1};  ///< one colour of a chessboard
-inline constexpr CellLattice kEveryTenthCell{10, 3};  ///< nearest: one row and three columns away
+inline constexpr CellLattice kEveryTenthCell{10, 3};  ///< nearest: one row, three columns away
 
 }  // namespace bevloc

@@ -12,7 +12,7 @@ namespace bevloc {
 /// How to interpolate at kLanes positions. Each lies between four cells; the first one is at the
 /// whole row and the whole column at or before the position.
 struct Taps {
-  LaneIntegers offset;  ///< of the first cell, in floats
+  LaneIntegers offset;  ///< offset of the first cell in floats
   Lanes first;          ///< weight of the first cell
   Lanes next_col;       ///< weight of the cell in the next column
   Lanes next_row;       ///< weight of the cell in the next row
@@ -32,7 +32,7 @@ struct WarpSource {
   int row_stride;
   int lanes;
 
-  /// Sets the taps of positions beyond cell (row, col).
+  /// Sets the taps of positions that are counted from cell (row, col).
   void set_taps(const Lanes& rows_beyond, int row, const Lanes& cols_beyond, int col,
                 Taps& taps) const {
     LaneIntegers row_cells;

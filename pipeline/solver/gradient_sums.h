@@ -16,8 +16,8 @@ struct GradientRow {
   int lanes;
   int cells;
   double cell_m;
-  double x_m;        ///< of the row, relative to the centre of rotation
-  double first_y_m;  ///< of the first cell, likewise
+  double x_m;        ///< x of the row, relative to the centre of rotation
+  double first_y_m;  ///< y of the first cell, likewise
 };
 
 /// Sums over the cells of a row and all channels. J_M and J_B are the gradients of the map features

@@ -14,8 +14,8 @@ namespace bevloc {
 namespace {
 
 constexpr double kBlock_m = 6.0;
-/// Keeps S regular. In squared gradients of standardised features per cell (1/m^2), far below the
-/// gradient of any structure.
+/// Keeps S regular. It is a squared gradient of standardised features per cell (1/m^2), far below
+/// the gradient of any structure.
 constexpr double kSlopeFloor = 1e-6;
 /// Limit of the match's information relative to the prior's, along any direction. It corresponds to
 /// 0.001 of the prior's standard deviation, far below a step. More information along one direction

@@ -22,7 +22,7 @@ namespace bevloc {
 /// - U holds the variances of uniform hypotheses. Along a direction without structure, H vanishes
 ///   and U remains. A normalised score cannot detect this; its peak there is sharp and wrong.
 ///
-/// The constructor allocates all memory. Not thread safe.
+/// The constructor allocates all memory. One thread.
 class MatchCovariance {
  public:
   MatchCovariance(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses);

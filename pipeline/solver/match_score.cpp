@@ -52,8 +52,8 @@ struct CellRow {
   std::ptrdiff_t moved_row_stride;
   int lanes;
   int cells;
-  float x_m;        ///< of the row, relative to the centre of rotation
-  float first_y_m;  ///< of the first cell, likewise
+  float x_m;        ///< x of the row, relative to the centre of rotation
+  float first_y_m;  ///< y of the first cell, likewise
   float cell_m;
 };
 

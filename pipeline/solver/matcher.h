@@ -10,12 +10,12 @@ namespace bevloc {
 
 /// The features of one side (BEV or map), in both forms. Owns nothing.
 struct MatchSide {
-  std::span<const float> raw;  ///< from the network, [channels, rows, cols]
+  std::span<const float> raw;  ///< features from the network, [channels, rows, cols]
   const CellFeatures& cells;   ///< standardised (standardise.h)
 };
 
 /// Scores hypotheses. A matcher allocates its scratch memory in the constructor; match() allocates
-/// nothing. Not thread safe.
+/// nothing. One thread.
 class Matcher {
  public:
   virtual ~Matcher() = default;

@@ -11,8 +11,8 @@
 
 namespace bevloc {
 
-/// The cells of a lattice, in groups of kLanes, the last one filled up with zeros. Computed once,
-/// because they are the same for every pose.
+/// The cells of a lattice, in groups of kLanes, the last one filled up with zeros. They are
+/// computed once, because they are the same for every pose.
 class LatticeCells {
  public:
   /// `map` says where its cells lie in memory; features of the same size may be scored.
@@ -24,7 +24,7 @@ class LatticeCells {
 
   /// Number of cells in a group.
   int count(int group) const { return std::min(kLanes, cells_ - group * kLanes); }
-  /// Rows and columns from the middle of the grid.
+  /// Rows and columns, counted from the middle of the grid.
   const Lanes& rows(int group) const { return lanes(&rows_[group * kLanes]); }
   const Lanes& cols(int group) const { return lanes(&cols_[group * kLanes]); }
   /// Floats from the features of cell (0, 0) to those of each cell.

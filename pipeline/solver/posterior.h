@@ -24,10 +24,11 @@ double posterior_mean(std::span<const float> probability, const HypothesisAxis& 
 double posterior_variance(std::span<const float> probability, const HypothesisAxis& axis);
 
 /// The vertex of the parabola through the logarithms of the highest probability and its two
-/// neighbours. If the highest is the first or the last hypothesis, the value of that hypothesis.
+/// neighbours. If the highest is the first or the last hypothesis, it is the value of that
+/// hypothesis.
 double parabola_vertex(std::span<const float> probability, const HypothesisAxis& axis);
 
-/// The second highest local maximum divided by the highest; 0 if there is only one.
+/// The second highest local maximum divided by the highest, or 0 if there is only one.
 double rival_peak(std::span<const float> probability);
 
 /// The probability of the hypotheses that are at the border of the axis or one step away from it.

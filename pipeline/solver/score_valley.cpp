@@ -13,7 +13,7 @@ namespace {
 /// Share of H's trace that is added to its diagonal (both in units of the hypotheses' standard
 /// deviations), so that an axis without structure in the map does not move.
 constexpr double kRidge = 1e-3;
-/// Lower limit of the trace, below that of any real map; keeps H regular.
+/// Lower limit of the trace, which keeps H regular. It is below the trace of any real map.
 constexpr double kLeastTrace = 1e-12;
 
 }  // namespace

@@ -13,7 +13,8 @@
 namespace bevloc {
 namespace {
 
-// How the two standard deviations are combined; found on tuning scenes (docs/solver.md).
+// These values combine the two standard deviations. They were found on tuning scenes
+// (docs/solver.md).
 /// Weight of the distribution's sigma in the geometric mean.
 constexpr double kDistributionWeight = 0.4;
 /// Along an unobservable axis the error is uniform, and an interval that covers 2/3 is wider than
@@ -30,7 +31,8 @@ double distribution_weight(bool distribution_is_wider, double rival_peak) {
              : kDistributionWeight;
 }
 
-/// Copies the features into `cells` and standardises them. False if there is nothing to match.
+/// Copies the features into `cells` and standardises them. Returns false if there is nothing to
+/// match.
 bool load(const FeatureView& features, CellFeatures& cells) {
   if (features.data.size() != static_cast<size_t>(cells.channels()) * cells.grid().cells()) {
     return false;

@@ -29,7 +29,7 @@ enum class Refine { kNo, kYes };
 /// (docs/solver.md).
 ///
 /// The constructor allocates all scratch memory. solve() allocates nothing if an earlier call has
-/// already filled `result`. Not thread safe.
+/// already filled `result`. One thread.
 class Solver {
  public:
   Solver(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses,

@@ -33,7 +33,8 @@ constexpr std::array<std::pair<std::string_view, SolverKind>, kSolverKinds> kNam
     {"block+refine", SolverKind::kBlockRefined},
 }};
 
-/// Channels x rows x columns; far beyond any use, as are the limits of the hypotheses.
+/// The most channels x rows x columns. It is far beyond any use, as are the limits of the
+/// hypotheses.
 constexpr int kMaxFeatures = 1 << 24;
 
 // Limits of the grids of matchers that set no limits of their own. The memory of block matching

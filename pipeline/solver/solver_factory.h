@@ -53,7 +53,7 @@ inline constexpr double kMaxHypotheses = 1e6;
 /// Whether the solvers take the axis: 0 < step <= range, at most kMaxHalfCount steps, and
 /// farthest() at most `max_range`.
 bool is_sound(const HypothesisAxis& axis, double max_range);
-/// How many hypotheses there are in all, which may be more than an int holds.
+/// The number of all hypotheses, which may be more than an int holds.
 double count_of(const HypothesisGrid& hypotheses);
 
 /// Makes a solver. Fails if

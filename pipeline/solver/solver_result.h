@@ -33,18 +33,18 @@ struct MatchResult {
   /// most 1.
   Eigen::Vector3d axis_score = Eigen::Vector3d::Zero();
   /// Per axis: the probability of the hypotheses at the border of the search range or one step away
-  /// from it. With much of it the true correction may lie outside the range.
+  /// from it. If it is large, the true correction may lie outside the range.
   Eigen::Vector3d edge_mass = Eigen::Vector3d::Zero();
-  /// Per axis: the second highest peak of the distribution divided by the highest. 0: a single
-  /// peak; 1: two equally likely peaks.
+  /// Per axis: the second highest peak of the distribution divided by the highest. It is 0 for a
+  /// single peak and 1 for two equally likely peaks.
   Eigen::Vector3d rival_peak = Eigen::Vector3d::Zero();
 };
 
 /// A MatchResult with the distributions that it was computed from. `correction` is their means,
 /// except for the literal solvers without refinement (reference/literal_matcher.h).
 struct SolverResult : MatchResult {
-  /// An alternative estimate. Per axis: the vertex of the parabola through the logarithms of the
-  /// most likely hypothesis and its two neighbours. Zero without evidence.
+  /// An alternative estimate. Per axis, it is the vertex of the parabola through the logarithms of
+  /// the most likely hypothesis and its two neighbours. It is zero without evidence.
   Se2 parabola;
   /// Probability of each hypothesis of the axis; each distribution sums to 1.
   std::vector<float> x_probability;

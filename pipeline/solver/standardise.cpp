@@ -9,7 +9,8 @@ namespace bevloc {
 namespace {
 
 constexpr double kCellStdEpsilon = 0.01;
-/// A channel with a smaller standard deviation counts as constant: it varies by rounding alone.
+/// A channel with a smaller standard deviation counts as constant, because it varies by rounding
+/// alone.
 constexpr double kLeastStd = 1e-4;
 
 /// Moments of kLanes neighbouring channels.

@@ -6,8 +6,8 @@
 namespace bevloc {
 
 /// Replaces each channel by (f - mean) / (std + 0.01), with the population moments over all cells.
-/// False if there is nothing to match, because a value is not finite or every channel is constant.
-/// The features must not be used then.
+/// Returns false if there is nothing to match, because a value is not finite or every channel is
+/// constant. The features must not be used then.
 bool standardise(CellFeatures& features);
 
 }  // namespace bevloc

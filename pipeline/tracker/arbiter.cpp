@@ -10,10 +10,10 @@ namespace {
 
 /// A match counts as agreeing for this long after it has passed the gate.
 constexpr Duration kMatchLifetime = std::chrono::milliseconds(500);
-/// GNSS samples after the start of a dispute that decide it.
+/// The number of GNSS samples after the start of a dispute that decide it.
 constexpr size_t kDecidingSamples = 3;
 /// GNSS confirms a pose up to this mean squared distance (three degrees of freedom): the 90 %
-/// quantile of single samples. The other pose must be farther away by the second figure: its
+/// quantile of single samples. The other pose must be farther away by kDecides, so that its
 /// likelihood is 90 times smaller.
 constexpr double kConfirms = 6.25;
 constexpr double kDecides = 9.0;
@@ -283,8 +283,8 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
   Verdict verdict;
   const bool valid = standing == PoseStanding::kValid;
   if (!valid) gnss_.excluded = false;
-  // The place of the match that was refused says nothing any more once the pose is lost. Compared
-  // with it, a right match would not count, and would never be trusted again.
+  // Once the pose is lost, the place of the refused match says nothing any more. A right match that
+  // is compared with this place would not count, and would never be trusted again.
   if (!valid && match_.excluded) match_.refused_in_a_row = 0;
   if (match_is_disputed() && !match_.excluded) {
     decide_dispute(verdict, standing);

@@ -27,8 +27,8 @@ struct Verdict {
 
 /// How far the pose is trusted.
 enum class PoseStanding : uint8_t {
-  kNew,    ///< not valid yet since the filter started: a refused match does not say who is wrong
-  kLost,   ///< was valid, and is not now
+  kNew,    ///< not valid since the filter started; a refused match does not say who is wrong
+  kLost,   ///< the pose was valid, and is not now
   kValid,  ///< only in this state can GNSS be outvoted, because a lost pose needs GNSS
 };
 
@@ -40,20 +40,20 @@ enum class PoseStanding : uint8_t {
 /// Allocates nothing. One thread.
 class Arbiter {
  public:
-  /// `gnss_correlation_s`: time constant of GNSS errors.
+  /// `gnss_correlation_s` is the time constant of GNSS errors.
   explicit Arbiter(double gnss_correlation_s) : gnss_correlation_s_(gnss_correlation_s) {}
 
   /// Adds a match that reached the gate; `time` is its frame time.
   void add_match(Time time, const PoseInnovation& innovation, bool passes_gate);
-  /// Adds a GNSS sample that reached the gate. `gnss_error`: Tracker::gnss_error(), or nothing
+  /// Adds a GNSS sample that reached the gate. `gnss_error` is Tracker::gnss_error(), or nothing
   /// while the pose is not valid and the error therefore not known.
   void add_gnss(Time time, const PoseInnovation& innovation, bool passes_gate,
                 const std::optional<Eigen::Vector3d>& gnss_error);
 
-  /// `wheel_lean`: OdometrySample::wheel_lean of a plausible sample.
+  /// `wheel_lean` is OdometrySample::wheel_lean of a plausible sample.
   void add_odometry(Time time, const std::optional<double>& wheel_lean);
 
-  /// To be called after the measurements of one cycle.
+  /// Judges the voters. Call it after the measurements of one cycle.
   Verdict judge(Time now, PoseStanding standing);
 
   /// Whether the filter may use a measurement of this voter.
@@ -61,16 +61,17 @@ class Arbiter {
   bool trusts_gnss() const { return !gnss_.excluded; }
 
   /// Whether dead reckoning drifts: the innovations of the match lean to one side, or at least two
-  /// of match, GNSS and wheels say that the yaw rate has a bias. False if only the heading
+  /// of match, GNSS and wheels say that the yaw rate has a bias. Returns false if only the heading
   /// of the match is wrong (match_leans_alone()).
   bool odometry_drifts() const;
   void forget_drift(Time now);
 
   int matches_refused_in_a_row() const { return match_.refused_in_a_row; }
 
-  /// The offset of a disputed voter from the estimate, in the vehicle frame (m, m, rad); the pose
-  /// may be wrong by as much. Returned while a match is disputed and not excluded, or while GNSS is
-  /// refused and the match cannot tell whether GNSS is right. Otherwise nothing.
+  /// The offset of a disputed voter from the estimate, in the vehicle frame (m, m, rad). The pose
+  /// may be wrong by as much. Returns an offset while a match is disputed and not excluded, or
+  /// while GNSS is refused without a jump and the match cannot tell whether GNSS is right.
+  /// Otherwise it returns nothing.
   std::optional<Eigen::Vector3d> open_dispute() const;
 
   /// Forgets everything, after the filter has started again.
@@ -85,15 +86,16 @@ class Arbiter {
     Eigen::Vector3d last_passed_error = Eigen::Vector3d::Zero();
     bool excluded = false;
     bool far_off = false;  ///< the latest innovation is larger than any scatter
-    /// Moving average of the innovations in their standard deviations, per axis. Near zero unless
-    /// the voter drifts against the filter.
+    /// Moving average of the innovations in their standard deviations, per axis. It is near zero
+    /// unless the voter drifts against the filter.
     Eigen::Vector3d drift = Eigen::Vector3d::Zero();
 
     void add(Time time, const PoseInnovation& innovation, bool passes_gate);
     bool jumped = false;  ///< the refusals began with a jump that no vehicle can make
-    Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< of the latest refused measurement
-    size_t refused_axis = 0;  ///< on which that measurement is farthest off in standard deviations
-    /// When a measurement that passed last saw each axis well enough to judge another voter.
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< offset of the latest refused measurement
+    size_t refused_axis = 0;  ///< axis on which it is farthest off in standard deviations
+    /// The latest time at which a measurement that passed saw the axis well enough to judge another
+    /// voter.
     std::array<std::optional<Time>, 3> seen_at;
 
     /// Whether `innovation` differs from the last one that passed by more than undetected errors of
@@ -130,7 +132,7 @@ class Arbiter {
   bool match_denies_drift(size_t axis, Time now) const;
   bool gnss_moved(Time now) const;
   bool answers_dispute(const PoseInnovation& innovation) const;
-  /// `lean`, positive to the side to which the match's heading leans.
+  /// Returns `lean`, positive if the match's heading leans to the same side, otherwise negative.
   double with_match(double lean) const;
   /// Whether GNSS leans to the other side than the match in heading: clearly, or by less if the
   /// wheels do not lean with the match.
@@ -152,7 +154,7 @@ class Arbiter {
   Voter match_;
   Voter gnss_;
   std::optional<double> wheel_lean_;  ///< OdometrySample::wheel_lean minus what is known of it
-  double known_wheel_lean_ = 0.0;     ///< at `wheel_lean_known_at_`
+  double known_wheel_lean_ = 0.0;     ///< value at `wheel_lean_known_at_`
   Time wheel_lean_known_at_{};
   Time dispute_since_;
   bool explained_ = false;      ///< the open dispute of the match has a verdict

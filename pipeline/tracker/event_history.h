@@ -16,14 +16,14 @@ struct TrackerEvent {
     kOdometry,  ///< `motion` is a sample
     kPose,      ///< `measurement` was accepted
     kWiden,     ///< the covariance of the pose was increased
-    kLoosen,    ///< the covariance of the odometry errors was increased
+    kLoosen,    ///< the covariance of the odometry errors and the yaw was increased
   };
 
   Time time;
   Kind kind = Kind::kOdometry;
-  MeasuredMotion motion = {};        ///< at `time`; interpolated if the event is no odometry sample
-  PoseMeasurement measurement = {};  ///< only if `kind` is kPose
-  FilterState state = {};            ///< after the event
+  MeasuredMotion motion = {};        ///< motion at `time`, perhaps interpolated between samples
+  PoseMeasurement measurement = {};  ///< used only if `kind` is kPose
+  FilterState state = {};            ///< state after the event
 };
 
 /// Events, sorted by time. The buffer allocates in its constructor only.

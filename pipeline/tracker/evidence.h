@@ -8,7 +8,7 @@ namespace bevloc {
 /// These limits decide what counts as seen. They fit every network, because its file has a factor
 /// on its scores (SolverParameters::score_scale).
 struct EvidenceLimits {
-  /// Largest probability near the border of the search range. With more of it the truth may lie
+  /// Largest probability near the border of the search range. If it is larger, the truth may lie
   /// outside, and the answer on this axis is worth nothing.
   double max_edge_mass = 0.25;
   /// The match must have removed this share of the variance of the search range.
@@ -33,10 +33,11 @@ struct Seen {
   /// Axes on which the best place is at the border of the search range: the truth may lie outside.
   Eigen::Array<bool, 3, 1> at_border{false, false, false};
 
-  /// Confirms a pose that is already trusted. Along the road and of the heading there is often
-  /// nothing to see for seconds; dead reckoning then carries the pose, and its sigma grows.
+  /// Whether the match confirms a pose that is already trusted. Often nothing shows the place along
+  /// the road or the heading for seconds. Dead reckoning then carries the pose, and its sigma
+  /// grows.
   bool confirms() const { return across && place; }
-  /// Speaks for a new pose (StartConfirmation).
+  /// Whether the match supports a new pose (StartConfirmation).
   bool confirms_start() const { return confirms() && heading && unique; }
 };
 
@@ -48,7 +49,7 @@ class EvidenceMonitor {
   /// Judges a match, and widens each axis of `match` that has a low score.
   Seen judge(MatchResult& match);
 
-  /// By how much the standard deviation of an axis grows because of its score.
+  /// The factor by which the standard deviation of an axis grows because of its score.
   double growth_of(double axis_score) const;
 
   double mean_score() const { return mean_score_; }
@@ -59,7 +60,7 @@ class EvidenceMonitor {
   double mean_score_ = 0.0;
 };
 
-/// Takes the evidence from the axes of `match` on which the best place is at the border.
+/// Removes the evidence of the axes of `match` on which the best place is at the border.
 void forget_border(const Seen& seen, MatchResult& match);
 
 }  // namespace bevloc

@@ -13,7 +13,7 @@ namespace bevloc {
 
 struct GnssPose {
   Se2 map_from_vehicle;           ///< the yaw is not wrapped
-  double position_sigma_m = 0.0;  ///< for both axes: the larger sigma of the sample
+  double position_sigma_m = 0.0;  ///< the larger sigma of the sample, for both axes
   double yaw_sigma_rad = 0.0;     ///< pi if the yaw is unknown
   bool has_yaw = false;
 };
@@ -21,7 +21,8 @@ struct GnssPose {
 /// A yaw with a larger sigma counts as unknown.
 inline constexpr double kLargestYawSigma_rad = 1.0;
 
-/// A sigma that is not finite stays, so that the tracker refuses the sample.
+/// Whether the yaw is known. A yaw whose sigma is not finite counts as known, so that the tracker
+/// refuses the sample.
 inline bool is_known(const std::optional<GnssSample::Yaw>& yaw) {
   return yaw && !(std::isfinite(yaw->sigma_rad) && yaw->sigma_rad >= kLargestYawSigma_rad);
 }
@@ -37,7 +38,7 @@ inline GnssPose gnss_pose(const GnssSample& sample) {
 
 /// Moves the position of an antenna to the middle of the rear axle. The vehicle's yaw is that of
 /// `estimate` or of the sample, whichever is more certain. The sigmas grow by the uncertainty of
-/// the yaw times the distance; without any yaw, by the distance.
+/// the yaw times the distance, or by the distance if the yaw is not known.
 inline GnssSample at_rear_axle(GnssSample sample, const std::optional<GnssSample::Yaw>& estimate) {
   if (!sample.antenna) return sample;
   const GnssSample::Antenna antenna = *sample.antenna;

@@ -100,7 +100,7 @@ void GnssScatter::compare_middle() {
            weights.of_correlated * square_of(claimed.correlated_sigma(axis)) +
            square_of(motion_sigma);
   };
-  // Where the middle sample should lie, seen from one of its neighbours.
+  // The place where the middle sample should lie according to one of its neighbours.
   const auto position_from = [&middle](const Record& from) -> Eigen::Vector2d {
     const Se2 motion = correction_between(from.start_from_vehicle, middle.start_from_vehicle);
     const double yaw_rad = middle.yaw_rad - motion.yaw_rad;

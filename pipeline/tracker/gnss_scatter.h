@@ -17,24 +17,24 @@ namespace bevloc {
 /// error of GNSS, a drift and a wrong scale of the wheels cancel out, so only the noise of GNSS is
 /// left. Where the noise is larger than the sigma says, the sigma is too small, and the receiver's
 /// other errors are probably larger as well. (Innovation-based adaptive estimation: Mehra, "On the
-/// identification of variances and adaptive Kalman filtering", 1970. Here without the filter, so
-/// that a wrong pose does not look like noise.)
+/// identification of variances and adaptive Kalman filtering", 1970. This class does it without the
+/// filter, so that a wrong pose does not look like noise.)
 ///
 /// Allocates nothing. One thread.
 class GnssScatter {
  public:
-  /// `correlation_s`: time constant of GNSS errors.
+  /// `correlation_s` is the time constant of GNSS errors.
   GnssScatter(const MeasurementModel& model, double correlation_s)
       : model_(model), correlation_s_(correlation_s) {}
 
   /// Adds finite, plausible odometry.
   void add(const OdometrySample& sample);
 
-  /// Adds a finite sample of the position of the rear axle. `yaw_rad`: the vehicle's yaw.
+  /// Adds a finite sample of the position of the rear axle. `yaw_rad` is the vehicle's yaw.
   void add(const GnssSample& sample, double yaw_rad);
 
   /// `sample` with the sigmas that the scatter of the latest samples shows. A sigma that is not
-  /// positive stays.
+  /// positive stays as it is.
   GnssSample with_seen_sigma(GnssSample sample) const;
 
   /// Whether the sigma is too small by a factor of two or more.
@@ -47,10 +47,10 @@ class GnssScatter {
   struct Record {
     GnssSample sample;
     Se2 start_from_vehicle;  ///< dead reckoning
-    double yaw_rad = 0.0;    ///< of the vehicle in the map
+    double yaw_rad = 0.0;    ///< yaw of the vehicle in the map
   };
 
-  /// Squared deviation of the noise in units of its expected variance: a moving average.
+  /// A moving average of the squared deviation of the noise in units of its expected variance.
   class Ratio {
    public:
     void add(double squared);
@@ -66,7 +66,7 @@ class GnssScatter {
   MeasurementModel model_;
   double correlation_s_;
   std::optional<OdometrySample> odometry_;
-  Se2 start_from_vehicle_;           ///< at the time of odometry_
+  Se2 start_from_vehicle_;           ///< pose at the time of odometry_
   std::array<Record, 3> records_{};  ///< the oldest first
   size_t known_ = 0;
   Ratio position_;

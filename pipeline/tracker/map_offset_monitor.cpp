@@ -8,18 +8,19 @@ namespace bevloc {
 namespace {
 
 constexpr Duration kPeriod = std::chrono::seconds(1);
-/// Of an offset before anything is known, per axis.
+/// Sigma of the offset before anything is known, per axis.
 constexpr double kPriorSigma_m = 5.0;
-/// Growth of the offset: from one road to the next, maps lie off by something else.
+/// Growth of the offset, because a map has another offset from one road to the next.
 constexpr double kGrowth_m_per_sqrt_s = 0.003;
-/// Of the pose, and of what differs from one GNSS sample to the next.
+/// Sigma of the pose together with what differs from one GNSS sample to the next.
 constexpr double kScatter_m = 0.4;
 /// Squared distance of a sample that is not used.
 constexpr double kOutlier = 16.0;
-/// An offset matters from the first figure on and no longer below the second.
+/// An offset matters above kMatters_m, and from then on until it is below kHarmless_m.
 constexpr double kMatters_m = 0.75;
 constexpr double kHarmless_m = 0.5;
-/// Squared offset in its variance, for two axes: by chance once in 20,000 independent estimates.
+/// Squared offset in units of its variance, for two axes. By chance, one in 20,000 independent
+/// estimates exceeds it.
 constexpr double kCertain = 20.0;
 
 }  // namespace

@@ -16,19 +16,19 @@ namespace bevloc {
 /// the place of its antenna, looks the same. It takes about three minutes to find 3 m, and up to
 /// an hour to find 1 m.
 ///
-/// One thread; does not allocate.
+/// One thread. Does not allocate.
 class MapOffsetMonitor {
  public:
-  /// `correlation_s`: time constant of GNSS errors.
+  /// `correlation_s` is the time constant of GNSS errors.
   explicit MapOffsetMonitor(double correlation_s) : correlation_s_(correlation_s) {}
 
-  /// `difference_m`: GNSS minus pose, along the axes of the map; `sigma_m`: of GNSS, per axis.
-  /// Uses at most one sample per second. Ignores a sample that is too far from what the filter
-  /// expects, such as after a jump of GNSS.
+  /// `difference_m` is GNSS minus pose along the axes of the map. `sigma_m` is the sigma of GNSS
+  /// per axis. Uses at most one sample per second. Ignores a sample that is too far from what the
+  /// filter expects, such as after a jump of GNSS.
   void add(Time time, const Eigen::Vector2d& difference_m, double sigma_m);
 
-  /// True once the offset is certain and more than 0.75 m. Stays true until the estimated offset is
-  /// 0.5 m or less.
+  /// Becomes true when the offset is certain and more than 0.75 m. Stays true until the estimated
+  /// offset is 0.5 m or less.
   bool contradicts() const { return contradicts_; }
 
   /// GNSS minus map.
@@ -41,8 +41,8 @@ class MapOffsetMonitor {
   double correlation_s_;
   std::optional<Time> latest_;
   Eigen::Vector2d offset_m_ = Eigen::Vector2d::Zero();
-  Eigen::Vector2d error_m_ = Eigen::Vector2d::Zero();  ///< of GNSS
-  // Covariance of offset and error, the same for both axes of the map.
+  Eigen::Vector2d error_m_ = Eigen::Vector2d::Zero();  ///< error of GNSS
+  // The covariance of offset and error, which is the same for both axes of the map.
   double offset_variance_ = 0.0;
   double error_variance_ = 0.0;
   double common_variance_ = 0.0;

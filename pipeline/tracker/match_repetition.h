@@ -25,12 +25,12 @@ class MatchRepetition {
   void discount(Time time, const MeasuredMotion& motion, const ErrorCorrelation& correlation,
                 PoseMeasurement& match);
 
-  /// The next match repeats nothing: the pose is new, or its covariance was raised.
+  /// Makes the next match repeat nothing, because the pose is new or its covariance was raised.
   void forget() { *this = {}; }
 
  private:
-  int standing_matches_ = 0;    ///< since the vehicle stands
-  std::optional<Time> latest_;  ///< of the latest match that the filter has used
+  int standing_matches_ = 0;    ///< number since the vehicle stands
+  std::optional<Time> latest_;  ///< time of the latest match that the filter has used
 };
 
 }  // namespace bevloc

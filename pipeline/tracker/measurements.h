@@ -32,8 +32,8 @@ struct MeasurementModel {
   bool operator==(const MeasurementModel&) const = default;
 };
 
-/// A sample without yaw gets a standard deviation of yaw that changes no estimate. `correlated`:
-/// whether consecutive errors of GNSS are correlated at all.
+/// A sample without yaw gets a standard deviation of yaw that changes no estimate. `correlated`
+/// says whether consecutive errors of GNSS are correlated at all.
 PoseMeasurement measurement_from(const GnssPose& gnss, const MeasurementModel& model,
                                  bool correlated);
 
@@ -42,8 +42,9 @@ PoseMeasurement measurement_from(const GnssPose& gnss, const MeasurementModel& m
 /// of map and calibration.
 Eigen::Vector3d pose_sigma(const MatchResult& result, const MeasurementModel& model = {});
 
-/// The pose prior * result.correction. `correlated`: as above, per axis. An axis without
-/// evidence gets a standard deviation that is 100 times as large.
+/// The pose prior * result.correction. `correlated` says for each axis whether consecutive errors
+/// of matches are correlated at all. An axis without evidence gets a standard deviation that is 100
+/// times as large.
 PoseMeasurement measurement_from(const Se2& prior, const MatchResult& result,
                                  const MeasurementModel& model,
                                  const Eigen::Array<bool, 3, 1>& correlated);

@@ -55,8 +55,9 @@ struct FilterState {
   double yaw_rate_bias_radps = 0.0;  ///< true yaw rate = measured yaw rate - bias
   Eigen::Vector3d match_error = Eigen::Vector3d::Zero();
   Eigen::Vector3d gnss_error = Eigen::Vector3d::Zero();
-  /// Of the error in the order of Index (m, m, rad, 1, rad/s, then normalised). The pose error is
-  /// in the vehicle frame: true pose = map_from_vehicle * error. Symmetric positive definite.
+  /// Covariance of the error in the order of Index (m, m, rad, 1, rad/s, then normalised). The pose
+  /// error is in the vehicle frame: true pose = map_from_vehicle * error. Symmetric positive
+  /// definite.
   Covariance covariance = Covariance::Identity();
 
   double speed_mps(const MeasuredMotion& motion) const {
@@ -70,8 +71,8 @@ struct FilterState {
   void apply(const Vector& error);
 };
 
-/// Process noise as standard deviations. "per_sqrt": white noise, whose sigma grows with the square
-/// root of the distance or time.
+/// Process noise as standard deviations. The word "per_sqrt" marks white noise, whose sigma grows
+/// with the square root of the distance or time.
 struct MotionNoise {
   double longitudinal_m_per_sqrt_m = 0.02;    ///< wheel speed noise: 0.2 m after 100 m
   double lateral_m_per_sqrt_m = 0.01;         ///< side slip
@@ -88,11 +89,12 @@ struct MotionNoise {
   bool operator==(const MotionNoise&) const = default;
 };
 
-/// How long the correlated errors last: they decay by a factor of e over this distance or time. 0:
-/// the errors are independent. The distances were measured on simulated drives with the shipped
-/// network. In these drives about half of the variance of a match was correlated. This part has
-/// fallen to a third after 5 m (along), 10 m (across) and 8 m (heading). One sixth of the variance
-/// across the vehicle lasts for more than 40 m. MeasurementModel::constant_error covers that sixth.
+/// How long the correlated errors last: they decay by a factor of e over this distance or time.
+/// With 0 the errors are independent. The distances were measured on simulated drives with the
+/// shipped network. In these drives about half of the variance of a match was correlated. This part
+/// has fallen to a third after 5 m (along), 10 m (across) and 8 m (heading). One sixth of the
+/// variance across the vehicle lasts for more than 40 m. MeasurementModel::constant_error covers
+/// that sixth.
 struct ErrorCorrelation {
   Eigen::Vector3d match_m{5.0, 10.0, 10.0};  ///< along, across, heading
   double gnss_s = 40.0;

@@ -7,7 +7,7 @@
 namespace bevloc {
 namespace {
 
-/// The noise of speed and yaw rate changes their last digits from sample to sample. So many exact
+/// The noise of speed and yaw rate changes their last digits from sample to sample. This many exact
 /// repetitions of both while driving mean that they are no longer measured.
 constexpr int kStuckRepetitions = 12;
 constexpr double kDriving_mps = 0.5;

@@ -7,7 +7,7 @@ namespace bevloc {
 namespace {
 
 /// Largest GNSS errors (along, across, yaw), in standard deviations, with which the pose may become
-/// valid. Across is the smallest, because lanes look alike.
+/// valid. The limit across is the smallest, because lanes look alike.
 constexpr double kConfirmingAlong = 3.0;
 constexpr double kConfirmingAcross = 2.5;
 constexpr double kConfirmingYaw = 3.0;
@@ -181,7 +181,7 @@ std::optional<TrackedPose> PoseEstimator::pose_at(Time time) const {
   if (!pose) return pose;
   pose->covariance.diagonal() += tracker_.parameters().measurements.constant_error.cwiseAbs2();
   if (const auto dispute = arbiter_.open_dispute()) {
-    // Two places are equally likely: the variance of their mixture.
+    // Adds the variance of a mixture of two equally likely places.
     pose->covariance.diagonal() += 0.25 * dispute->cwiseAbs2();
   }
   return pose;

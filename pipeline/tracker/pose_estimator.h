@@ -31,22 +31,23 @@ class PoseEstimator {
   /// Adds a sample of the vehicle. A sample of an excluded voter changes nothing.
   TrackerUpdate add(const VehicleSample& sample);
 
-  /// What became of a match.
+  /// The outcome of a match.
   struct MatchOutcome {
     TrackerUpdate update = TrackerUpdate::kNoEvidence;
     Seen seen;
   };
 
-  /// Adds a result of the solver, as Tracker::add_correction(). kGated also while matches are
-  /// excluded; kNoEvidence also where the score says that this is another place.
+  /// Adds a result of the solver, as Tracker::add_correction() does. Returns kGated also while
+  /// matches are excluded, and kNoEvidence also if the mean score says that this is another place.
   MatchOutcome add_match(Time frame_time, const Se2& prior, const MatchResult& match);
 
-  /// Judges the voters. To be called once per cycle, after all samples and matches. `pose_valid`:
+  /// Judges the voters. Call it once per cycle, after all samples and matches. `pose_valid` says
   /// whether the latest pose was sent as valid.
   void judge(Time now, bool pose_valid);
 
-  /// As Tracker::pose_at(), with MeasurementModel::constant_error added to the covariance. While
-  /// Arbiter::open_dispute() returns an offset, the covariance also covers the pose at that offset.
+  /// Like Tracker::pose_at(), but with MeasurementModel::constant_error added to the covariance.
+  /// While Arbiter::open_dispute() returns an offset, the covariance also covers the pose at that
+  /// offset.
   std::optional<TrackedPose> pose_at(Time time) const;
 
   const Verdict& verdict() const { return verdict_; }
@@ -94,7 +95,7 @@ class PoseEstimator {
   int gnss_refused_in_a_row_ = 0;
   std::optional<Time> match_passed_;  ///< latest match that passed the gate
   std::optional<Time> gnss_passed_;   ///< latest trusted GNSS sample that passed the gate
-  Eigen::Vector3d gnss_sigma_ = Eigen::Vector3d::Ones();  ///< of that sample: (m, m, rad)
+  Eigen::Vector3d gnss_sigma_ = Eigen::Vector3d::Ones();  ///< sigma of that sample: (m, m, rad)
 };
 
 }  // namespace bevloc

@@ -10,8 +10,8 @@
 namespace bevloc {
 
 /// The latest 128 predictions of the tracker. The vision stage keeps its own trail, so that it can
-/// look up T0 without asking the thread of the tracker. Allocates in the constructor only. Not
-/// thread safe.
+/// look up T0 without asking the thread of the tracker. Allocates in the constructor only. One
+/// thread.
 class PoseTrail {
  public:
   /// How far past the newest pose the trail extrapolates.
@@ -25,17 +25,17 @@ class PoseTrail {
   /// than `pose`. Then appends `pose`.
   void add(const TrackedPose& pose);
 
-  /// map_from_vehicle at `time`: interpolated between two poses; past the newest pose extrapolated
-  /// with its speed and yaw rate. Nothing before the oldest pose or more than kReach past the
-  /// newest.
+  /// Returns map_from_vehicle at `time`: interpolated between two poses, or extrapolated past the
+  /// newest pose with its speed and yaw rate. Returns nothing before the oldest pose or more than
+  /// kReach past the newest one.
   std::optional<Se2> at(Time time) const;
 
   /// Speed along the vehicle at `time`, in the same range as at().
   std::optional<double> speed_mps(Time time) const;
 
   /// The vehicle's motion: its pose at `to` in the vehicle frame at `from`. The two times should
-  /// lie at most 0.1 s apart and may come in either order. Computed from speed and yaw rate at the
-  /// middle time rather than from the poses, because corrections make the poses jump.
+  /// lie at most 0.1 s apart and may come in either order. It is computed from speed and yaw rate
+  /// at the middle time rather than from the poses, because corrections make the poses jump.
   std::optional<Se2> motion(Time from, Time to) const;
 
  private:

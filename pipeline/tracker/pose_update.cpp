@@ -65,7 +65,7 @@ FilterState state_from(const PoseMeasurement& measurement, double speed_scale_va
   using S = FilterState;
   FilterState state;
   state.map_from_vehicle = measurement.map_from_vehicle;
-  // The pose is wrong by what the measurement is wrong, noise and correlated part.
+  // The error of the pose is that of the measurement: noise and correlated part.
   const Linearised linearised = linearise(state, measurement);
   const bool is_match = measurement.source == PoseSource::kMatch;
   const int correlated = is_match ? S::kMatchError : S::kGnssError;

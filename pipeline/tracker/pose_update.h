@@ -17,7 +17,7 @@ struct PoseMeasurement {
   /// Direction of the x axis of all errors below, in the map frame. It is 0 for GNSS. For a match
   /// it is the yaw of the prior, because the solver searches along and across the prior.
   double axes_yaw_rad = 0.0;
-  /// Of the independent noise: (x m, y m, yaw rad).
+  /// Covariance of the independent noise: (x m, y m, yaw rad).
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   /// Standard deviations of the correlated part.
   Eigen::Vector3d correlated_sigma = Eigen::Vector3d::Zero();
@@ -36,10 +36,11 @@ struct PoseMeasurement {
 /// (x m, y m, yaw rad).
 struct PoseInnovation {
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
-  /// Expected covariance of `error`: of the estimate, the noise and the correlated part.
+  /// Expected covariance of `error`: the sum of those of the estimate, the noise and the correlated
+  /// part.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  /// Squared Mahalanobis distance. Chi-square with three degrees of freedom if the covariances are
-  /// correct.
+  /// Squared Mahalanobis distance. It has a chi-square distribution with three degrees of freedom
+  /// if the covariances are correct.
   double squared_distance = 0.0;
   /// Squared distance after renew_match_error(), but at most `squared_distance`. For GNSS it equals
   /// `squared_distance`.
@@ -56,8 +57,8 @@ PoseInnovation innovation_of(const FilterState& state, const PoseMeasurement& me
 FilterState state_from(const PoseMeasurement& measurement, double speed_scale_variance,
                        double yaw_rate_bias_variance);
 
-/// Forgets what is known about the match error. To be called when the next match has another error.
-/// The pose and its uncertainty stay as they are.
+/// Forgets what is known about the match error. Call it when the next match has another error. The
+/// pose and its uncertainty stay as they are.
 void renew_match_error(FilterState& state);
 
 /// Kalman update in Joseph form, which keeps the covariance symmetric and positive definite.

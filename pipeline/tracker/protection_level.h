@@ -26,7 +26,7 @@ struct GnssView {
   Eigen::Vector3d sigma = Eigen::Vector3d::Ones();
 };
 
-/// Per axis, in the vehicle frame: (longitudinal m, lateral m, yaw rad).
+/// The protection level of each axis in the vehicle frame: (longitudinal m, lateral m, yaw rad).
 ///
 /// There are two cases. If the match shows the right place, the error is as large as the estimate's
 /// covariance says. If it shows a wrong place, the pose is as wrong as GNSS says. Bayes' rule gives

@@ -9,8 +9,8 @@ namespace {
 /// A match with this score tells nothing about the place. The right place mostly has a higher
 /// score, and a wrong place has a lower one.
 constexpr double kNeutralScore = 0.18;
-/// The same for the score along the road. Where nothing crosses the road, the right place may have
-/// a score as low as that of a wrong place.
+/// The neutral score along the road. Where nothing crosses the road, the right place may have a
+/// score as low as that of a wrong place.
 constexpr double kNeutralAlongScore = 0.14;
 /// Weight of the square of a score beyond the neutral one. Wrong places hardly ever have scores far
 /// beyond it.
@@ -19,7 +19,7 @@ constexpr double kSquareWeight = 20.0;
 /// standard deviation of the GNSS error.
 constexpr double kNeeded = 0.5;
 constexpr double kNeededPerSquaredSigma = 4.0;
-/// What was seen this many matches ago counts a third: a wrong lane has good scores for a while.
+/// A match this many matches ago counts a third, because a wrong lane has good scores for a while.
 constexpr double kMemory_matches = 100.0;
 /// Matches that may count for each metre driven.
 constexpr double kMatchesPerMetre = 1.0;

@@ -11,8 +11,8 @@ namespace bevloc {
 
 /// A match of a pose that is not trusted yet.
 struct StartMatch {
-  double score = 0.0;         ///< of the whole match
-  double along_score = 0.0;   ///< along the road
+  double score = 0.0;         ///< score of the whole match
+  double along_score = 0.0;   ///< score along the road
   double along_growth = 1.0;  ///< EvidenceMonitor::growth_of() that score
   bool sees = false;          ///< Seen::confirms_start()
 };
@@ -25,7 +25,8 @@ struct StartMatch {
 /// Allocates nothing. One thread.
 class StartConfirmation {
  public:
-  /// More exact GNSS tells lanes apart by itself: its errors count in units of this.
+  /// GNSS with a smaller sigma tells lanes apart by itself, so its errors count in units of this
+  /// value.
   static constexpr double kLeastGnssSigma_m = 1.0;
 
   /// A standing vehicle sees the same in every match, so only the first ones count.
@@ -34,11 +35,11 @@ class StartConfirmation {
   /// Adds a match that the tracker has not refused. A low score takes support away.
   void add(const StartMatch& match);
 
-  /// Forgets what was seen: a match was refused, or the pose begins again.
+  /// Forgets what was seen, because a match was refused or the pose begins again.
   void reset();
 
-  /// Whether the support suffices. `gnss_error`: Tracker::gnss_error(). `gnss_sigma_m`: standard
-  /// deviation of the position.
+  /// Whether the support suffices. `gnss_error` is Tracker::gnss_error(). `gnss_sigma_m` is the
+  /// standard deviation of the position.
   bool confirms(const Eigen::Vector3d& gnss_error, double gnss_sigma_m) const;
 
  private:

@@ -42,7 +42,7 @@ std::optional<GnssSample::Yaw> StartHeading::add(Time time, const Eigen::Vector2
   if (!odometry_) return std::nullopt;
   const double rest_s = to_seconds(time - odometry_->time);
   if (std::abs(rest_s) > kLongestGap_s) return std::nullopt;
-  // Motion until the position, backwards if it is older than the latest sample.
+  // The motion until the position. It is backwards if the position is older than the latest sample.
   const Se2 rest = arc_motion(odometry_->speed_mps, odometry_->yaw_rate_radps, rest_s);
   const Se2 begin_from_now = begin_from_odometry_ * rest;
   const Eigen::Vector2d driven_m = begin_from_now.translation();
@@ -76,7 +76,7 @@ void StartHeading::reset() {
 
 void StartHeading::begin(const Begin& begin) {
   begin_ = begin;
-  // The latest sample, as seen from this position.
+  // The pose at the latest sample, as seen from this position.
   begin_from_odometry_ = arc_motion(odometry_->speed_mps, odometry_->yaw_rate_radps,
                                     to_seconds(odometry_->time - begin.time));
 }

@@ -22,7 +22,7 @@ class StartHeading {
   /// A heading with a larger sigma is too uncertain for a start.
   static constexpr double kLargestSigma_rad = 0.15;
 
-  /// `yaw_rate_bias_sigma_radps`: standard deviation of the unknown bias of the yaw rate.
+  /// `yaw_rate_bias_sigma_radps` is the standard deviation of the unknown bias of the yaw rate.
   explicit StartHeading(double yaw_rate_bias_sigma_radps)
       : yaw_rate_bias_sigma_radps_(yaw_rate_bias_sigma_radps) {}
 

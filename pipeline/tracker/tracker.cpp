@@ -260,7 +260,7 @@ FilterState Tracker::state_at(Time time, size_t events_until) const {
 
 void Tracker::insert(size_t position, const TrackerEvent& event) {
   if (history_.full()) {
-    if (position == 1) return;  // older than all events but the one that would have to go
+    if (position == 1) return;  // the event is older than all but the one that would be dropped
     history_.pop_front();
     --position;
   }
@@ -269,8 +269,8 @@ void Tracker::insert(size_t position, const TrackerEvent& event) {
   drop_old_events();
 }
 
-/// Computes the states from `position` on again. Does not apply the gate again: it decided when
-/// each measurement arrived.
+/// Computes the states from `position` on again. Does not apply the gate again, because it decided
+/// when each measurement arrived.
 void Tracker::replay_from(size_t position) {
   for (size_t i = position; i < history_.size(); ++i) {
     const TrackerEvent& before = history_[i - 1];

@@ -21,7 +21,8 @@ namespace bevloc {
 struct TrackedPose {
   Time time;
   Se2 map_from_vehicle;
-  /// In the vehicle frame: (longitudinal m, lateral m, yaw rad). Symmetric positive definite.
+  /// Covariance in the vehicle frame: (longitudinal m, lateral m, yaw rad). Symmetric positive
+  /// definite.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   double speed_mps = 0.0;       ///< corrected for the estimated scale error of the wheels
   double yaw_rate_radps = 0.0;  ///< corrected for the estimated bias of the yaw rate sensor
@@ -43,8 +44,9 @@ struct TrackerParameters {
   double widened_position_sigma_m = 3.0;  ///< added by widen(), per axis
   double widened_yaw_sigma_rad = radians(5.0);
 
-  /// Added by loosen_odometry(). The yaw's is smaller than HealthLimits::yaw_sigma_rad, so that a
-  /// pose with a heading sigma below 0.45 degrees stays valid.
+  /// Standard deviations that loosen_odometry() adds. That of the yaw is smaller than
+  /// HealthLimits::yaw_sigma_rad, so that a pose with a heading sigma below 0.45 degrees stays
+  /// valid.
   double loosened_yaw_rate_bias_sigma_radps = radians(1.0);
   double loosened_yaw_sigma_rad = radians(0.6);
 
@@ -96,7 +98,7 @@ enum class Trust : uint8_t {
 ///
 /// Matches that repeat what earlier ones said count less: see MatchRepetition.
 ///
-/// Allocates in the constructor only. Not thread safe.
+/// Allocates in the constructor only. One thread.
 class Tracker {
  public:
   explicit Tracker(const TrackerParameters& parameters = {});
@@ -106,7 +108,8 @@ class Tracker {
 
   TrackerUpdate add_odometry(const OdometrySample& sample);
 
-  /// What add_odometry() would refuse about this sample; nothing if it would accept it.
+  /// The reason for which add_odometry() would refuse this sample, or nothing if it would accept
+  /// it.
   std::optional<TrackerUpdate> refusal_of(const OdometrySample& sample) const;
 
   /// The first sample after odometry initialises the pose; later ones update it. If its yaw is
@@ -119,21 +122,22 @@ class Tracker {
                                Trust trust = Trust::kUse);
 
   /// The pose at any time within the history, or predicted up to `max_prediction_s` past the last
-  /// odometry sample. Nothing outside that range or before the first GNSS sample.
+  /// odometry sample. Returns nothing outside that range or before the first GNSS sample.
   std::optional<TrackedPose> pose_at(Time time) const;
 
   const TrackerParameters& parameters() const { return parameters_; }
   bool is_initialised() const { return !history_.empty(); }
 
-  /// Of the latest GNSS sample or correction that reached the gate, refused or not.
+  /// The innovation of the latest GNSS sample or correction that reached the gate, refused or not.
   const PoseInnovation& latest_innovation() const { return latest_innovation_; }
 
   /// The correlated error of GNSS in its own standard deviations: (along, across, yaw) of the
-  /// vehicle's pose at the latest event. A large value means that GNSS contradicts the pose. Zero
-  /// before the first GNSS sample.
+  /// vehicle's pose at the latest event. A large value means that GNSS contradicts the pose. It is
+  /// zero before the first GNSS sample.
   Eigen::Vector3d gnss_error() const;
 
-  /// The latest estimates of the scale error and of the bias; zero before the first GNSS sample.
+  /// The latest estimates of the scale error and of the bias. They are zero before the first GNSS
+  /// sample.
   double speed_scale_error() const;
   double yaw_rate_bias_radps() const;
 
@@ -170,7 +174,7 @@ class Tracker {
   EventHistory history_;
   std::optional<OdometrySample> last_odometry_;
   PoseInnovation latest_innovation_;
-  int refused_matches_ = 0;  ///< in a row, up to the latest match
+  int refused_matches_ = 0;  ///< number in a row, up to the latest match
   MatchRepetition repetition_;
   StartHeading start_heading_;
 };

@@ -18,7 +18,7 @@ bool is_in_clock_gap(double elapsed_s, std::span<const Fault> faults);
 /// The faults with times of the drive in place of those that the appliance's clock shows.
 std::vector<Fault> in_drive_time(std::vector<Fault> faults, std::span<const Fault> clock_faults);
 
-/// How much longer than planned the drive may become.
+/// The time by which the drive may become longer than planned.
 double added_time_s(std::span<const Fault> faults);
 
 }  // namespace bevloc::sim

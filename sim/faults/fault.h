@@ -105,12 +105,12 @@ struct FaultAmounts {
   double age_s = 0.0;
 };
 
-/// Active during [from_s, until_s) of the drive.
+/// A fault that is active during [from_s, until_s) of the drive.
 struct Fault {
   FaultKind kind = FaultKind::kGnssOutage;
   double from_s = 0.0;
   double until_s = std::numeric_limits<double>::infinity();
-  std::optional<int> camera{};        ///< index into kCameraNames; empty: all cameras
+  std::optional<int> camera{};        ///< index into kCameraNames; empty for all cameras
   std::optional<int> other_camera{};  ///< the second camera of kCameraSwapped
   FaultAmounts amounts{};
 

@@ -25,7 +25,7 @@ struct AmountInfo {
   double FaultAmounts::*member;
   double low;
   double high;
-  std::optional<double> fallback{};  ///< empty: the amount is required
+  std::optional<double> fallback{};  ///< empty if the amount is required
   bool whole = false;                ///< a whole number
 };
 
@@ -40,7 +40,7 @@ struct FaultKindInfo {
 std::span<const FaultKindInfo> fault_kinds();
 const FaultKindInfo& info_of(FaultKind kind);
 
-/// Whether the fault has a time. The others are there from the start of the drive.
+/// Whether the fault has a time. A fault without one is there from the start of the drive.
 bool has_time(FaultKind kind);
 
 /// A fault of this kind with the fallback amounts.

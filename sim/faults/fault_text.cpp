@@ -33,7 +33,7 @@ class Words {
     return value;
   }
 
-  /// The key of a word that was not taken; empty without one.
+  /// The key of a word that was not taken, or "" if there is none.
   std::string left_over() const { return words_.empty() ? "" : words_.front().key; }
 
  private:
@@ -76,7 +76,7 @@ Status take_times(Words& words, double now_s, Fault& fault) {
   if (Status read = take_number(words, "for_s", 0.0, kLongest_s, for_s); !read) return read;
   if (for_s >= 0.0) {
     fault.until_s = fault.from_s + for_s;
-    return {};  // an until_s beside it is left over, and so it is refused
+    return {};  // an until_s beside it is left over, so it is refused
   }
   return take_number(words, "until_s", fault.from_s, kLongest_s, fault.until_s);
 }

@@ -9,8 +9,8 @@
 
 namespace bevloc::sim {
 
-/// Reads a kind and, after it, words KEY=VALUE in any order: from_s (`now_s` without), until_s or
-/// for_s (for ever without), camera, with, and the amounts of the kind.
+/// Reads a kind and, after it, words KEY=VALUE in any order: from_s (default: `now_s`), until_s or
+/// for_s (default: for ever), camera, with, and the amounts of the kind.
 Result<Fault> parse_fault(std::string_view text, double now_s);
 
 /// The text from which parse_fault() makes this fault.

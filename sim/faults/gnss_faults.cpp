@@ -13,7 +13,7 @@ Eigen::Vector2d in_map(const Eigen::Vector2d& east_north, const Eigen::Vector2d&
   return east_north + map_from_vehicle_directions * along_across;
 }
 
-/// The share of the offset that a spoofer has reached: from 0 to 1 without a jolt.
+/// The share of the offset that a spoofer has reached. It rises smoothly from 0 to 1.
 double pulled_share(double elapsed_s, double pull_s) {
   if (elapsed_s >= pull_s) return 1.0;
   const double part = elapsed_s / pull_s;

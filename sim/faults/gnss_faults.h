@@ -10,9 +10,9 @@
 
 namespace bevloc::sim {
 
-/// The reading that the receiver sends under the `active` faults; nothing in an outage. `elapsed_s`
-/// is the time in which faults are measured (drive_clock.h), and `drive` gives the truth that some
-/// faults refer to. Faults of other inputs are ignored.
+/// The reading that the receiver sends under the `active` faults, or nothing in an outage.
+/// `elapsed_s` is the time in which faults are measured (drive_clock.h), and `drive` gives the
+/// truth that some faults refer to. Faults of other inputs are ignored.
 std::optional<GnssReading> with_faults(GnssReading reading, double elapsed_s,
                                        std::span<const Fault> active, const Drive& drive);
 

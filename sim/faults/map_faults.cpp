@@ -46,7 +46,8 @@ Polyline places_of(const Fault& fault, const Drive& drive) {
   return places;
 }
 
-/// The pieces of an element that are not near the places. A crossing goes as a whole.
+/// Keeps the pieces of an element that are not near the places. A crossing near them is removed as
+/// a whole.
 void keep_far_pieces(const MapElement& element, const Polyline& places, double radius_m,
                      std::vector<MapElement>& kept) {
   const auto is_near = [&](const Eigen::Vector2d& point) {
@@ -59,7 +60,7 @@ void keep_far_pieces(const MapElement& element, const Polyline& places, double r
     return;
   }
   if (element.points.size() < 2 || length_m(element.points) <= 0.0) return;
-  // Long segments must not survive because both of their ends are far away.
+  // The line is sampled, because a long segment may be near although both of its ends are far away.
   const Path path(element.points);
   const auto steps = static_cast<int>(std::ceil(path.length_m()));
   Polyline points;

@@ -11,12 +11,12 @@ namespace bevloc::sim {
 
 /// What the vehicle's odometry sends.
 struct WheelReading {
-  double left_mps = 0.0;  ///< rear wheels
+  double left_mps = 0.0;  ///< speed of the left rear wheel
   double right_mps = 0.0;
   double yaw_rate_radps = 0.0;
 };
 
-/// The reading `index` under the `active` faults; nothing if none is sent. `rear_track_m` is the
+/// The reading `index` under the `active` faults, or nothing if none is sent. `rear_track_m` is the
 /// distance between the rear wheels. A fault of the yaw rate leaves the wheels as they are. Faults
 /// of other inputs are ignored.
 std::optional<WheelReading> reading_with_faults(const OdometrySimulator& odometry, size_t index,

@@ -82,7 +82,7 @@ Eigen::Matrix3d turned(const FaultAmounts& by) {
 }  // namespace
 
 int source_camera(int camera, std::span<const Fault> active) {
-  // From the computer along the cables, so the latest swap comes first.
+  // Follows the cables from the computer to the cameras, so the latest swap comes first.
   for (auto latest = active.rbegin(); latest != active.rend(); ++latest) {
     const Fault& fault = *latest;
     if (fault.kind != FaultKind::kCameraSwapped || !fault.camera || !fault.other_camera) continue;

@@ -10,7 +10,8 @@
 
 namespace bevloc::sim {
 
-/// The camera whose picture arrives in the place of `camera`: another one if cables are swapped.
+/// The camera whose picture arrives in the place of `camera`. It is another one if cables are
+/// swapped.
 int source_camera(int camera, std::span<const Fault> active);
 
 /// The camera after it was turned or moved. A turn is about the vehicle's axes, at the camera's

@@ -8,7 +8,7 @@
 namespace bevloc::sim {
 
 /// Standard normal values along a line. They are similar within `correlation_m` and independent
-/// beyond twice that distance. Immutable.
+/// beyond twice that distance. Immutable, and so thread-safe.
 class CorrelatedNoise {
  public:
   CorrelatedNoise(uint64_t seed, double correlation_m)

@@ -34,13 +34,13 @@ struct Spread {
 /// The error model of one corruption level. Confidences are log-odds.
 struct Perception {
   std::array<double, kRasterChannels> confidence;  ///< per class, at range 0
-  double confidence_loss;                          ///< from range 0 to kFarRange_m
-  double confidence_sigma;                         ///< of the variation along a line
+  double confidence_loss;                          ///< loss from range 0 to kFarRange_m
+  double confidence_sigma;                         ///< sigma of the variation along a line
   double occlusion_loss;                           ///< behind an obstacle
   double overlooked;                               ///< chance that an element is missed completely
   Spread along_ray;                                ///< sigma of the displacement in range
   Spread across_ray;                               ///< sigma of the displacement across the ray
-  double width_sigma;                              ///< of the logarithm of the line width
+  double width_sigma;                              ///< sigma of the logarithm of the line width
   Spread softness;                                 ///< blur of a line's edges
   double false_per_line;                           ///< false lines per real line
   double noise;                                    ///< sigma of a smooth field over the mask
@@ -103,7 +103,7 @@ std::vector<Obstacle> random_obstacles(uint64_t seed) {
   return obstacles;
 }
 
-/// 0: in plain view, 1: behind an obstacle.
+/// How far a point is hidden: 0 in plain view, 1 behind an obstacle.
 double hidden(const std::vector<Obstacle>& obstacles, const Eigen::Vector2d& point) {
   constexpr double kEdge_rad = radians(2.0);
   constexpr double kDepth_m = 2.0;
@@ -150,7 +150,7 @@ class LineObserver {
   LineObserver(const Perception& perception, std::vector<Obstacle> obstacles)
       : perception_(perception), obstacles_(std::move(obstacles)) {}
 
-  /// `confidence`: log-odds that a point at range 0 in plain view is seen.
+  /// `confidence` is the log-odds that a point at range 0 in plain view is seen.
   std::vector<StrokePoint> observe(const std::vector<Eigen::Vector2d>& line, double confidence,
                                    uint64_t seed) const {
     const CorrelatedNoise confidence_noise(seed_for(seed, "confidence"), kConfidenceLength_m);

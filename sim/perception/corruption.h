@@ -28,8 +28,8 @@ inline constexpr double kPerceptionMargin_m = 3.0;
 /// equals the map's raster. One seed gives the same obstacles, false lines and error shapes at
 /// every level.
 ///
-/// lines: visible_lines() with a margin of kPerceptionMargin_m.
-/// mask: [ElementClass][row][column] of kRasterGrid, kRasterSize values; overwritten completely.
+/// `lines` are visible_lines() with a margin of kPerceptionMargin_m. `mask` has kRasterSize values,
+/// [ElementClass][row][column] of kRasterGrid. It is overwritten completely.
 void draw_perceived(const std::vector<VisibleLine>& lines, CorruptionLevel level, uint64_t seed,
                     std::span<float> mask);
 

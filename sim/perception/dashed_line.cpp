@@ -7,7 +7,7 @@ namespace bevloc::sim {
 DashedLine dashed_line(const std::vector<Eigen::Vector2d>& line, std::span<const Dash> dashes) {
   DashedLine result{{line.front()}, {}};
   auto dash = dashes.begin();
-  double begin_m = 0.0;  // of the segment
+  double begin_m = 0.0;  // station where the segment begins
   for (size_t i = 1; i < line.size(); ++i) {
     const Eigen::Vector2d segment = line[i] - line[i - 1];
     const double end_m = begin_m + segment.norm();

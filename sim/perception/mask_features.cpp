@@ -23,7 +23,7 @@ cv::Mat blurred(const cv::Mat& plane, double sigma_m) {
   return result;
 }
 
-enum class Axis { kX, kY };  ///< kX: across rows, kY: across columns
+enum class Axis { kX, kY };  ///< kX is across rows, kY across columns
 
 /// The derivative per metre. Callers do not use its sign.
 cv::Mat slope(const cv::Mat& plane, Axis axis) {
@@ -39,7 +39,7 @@ cv::Mat slope(const cv::Mat& plane, Axis axis) {
   return result;
 }
 
-/// Metres to the nearest cell above 0.5; a large value if there is none.
+/// The distance in metres to the nearest cell above 0.5, or a large value if there is none.
 cv::Mat distance_m(const cv::Mat& mask) {
   const cv::Mat away = mask <= 0.5;
   cv::Mat distance;

@@ -19,15 +19,16 @@ namespace bevloc::sim {
 ///       directions, exp(-distance / length) for three lengths; and the union blurred by 0.3 m
 ///
 /// Distances are to the nearest cell above 0.5. Everything is computed on kRasterGrid and then
-/// averaged over the cells of the feature grid. Not thread safe.
+/// averaged over the cells of the feature grid. One thread.
 class MaskFeatures {
  public:
   /// `channels` is 3, 4, 16 or 64; `grid` is kFeatureGrid or kRasterGrid.
   MaskFeatures(int channels, const BevGrid& grid);
 
-  /// mask: kRasterSize probabilities. features: [channels, rows, cols], overwritten completely.
+  /// `mask` has kRasterSize probabilities. `features`, [channels, rows, cols], is overwritten
+  /// completely.
   void compute(std::span<const float> mask, std::span<float> features);
-  /// raster: kRasterSize bytes as drawn by MapRasterizer.
+  /// `raster` has kRasterSize bytes, as MapRasterizer draws them.
   void compute(std::span<const uint8_t> raster, std::span<float> features);
 
  private:

@@ -12,9 +12,9 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr uint64_t kPlacesPerKind = 4;  ///< of a group, per kind of road and kind of map
+constexpr uint64_t kPlacesPerKind = 4;  ///< places of a group, per kind of road and kind of map
 static_assert(kScenesPerGroup == 2 * kPlacesPerKind * kRoadKinds);
-constexpr size_t kPlacesPerTown = 2;  ///< of one kind of road, at most
+constexpr size_t kPlacesPerTown = 2;  ///< most places of one kind of road
 constexpr int kCandidatesPerTown = 200;
 
 /// Every other town has a surveyed map.
@@ -37,9 +37,9 @@ struct SceneSampler::Town {
   bool surveyed;
   World world;
   MapDashes dashes;
-  HdMap map;                  ///< with one element per dash if surveyed
-  MapIndex continuous_index;  ///< of the world's map, where dashed dividers are continuous
-  MapIndex index;             ///< of `map`
+  HdMap map;                  ///< map, with one element per dash if surveyed
+  MapIndex continuous_index;  ///< index of the world's map, where dashed dividers are continuous
+  MapIndex index;             ///< index of `map`
 };
 
 SceneSampler::SceneSampler(uint64_t seed_base, const HypothesisGrid& deviations)

@@ -24,7 +24,7 @@ inline constexpr uint64_t kEvaluationSeedBase = 3 * kSceneSeedCount;
 static_assert(kTuningSeedBase + kSceneSeedCount <= kEvaluationSeedBase);
 static_assert(kEvaluationSeedBase + kSceneSeedCount <= kFirstTrainingSeed);
 
-/// Scenes come in groups that share their towns. So many scenes and town seeds are a group's.
+/// Scenes come in groups that share their towns. A group has this many scenes and town seeds.
 inline constexpr uint64_t kScenesPerGroup = 40;
 inline constexpr uint64_t kTownsPerGroup = 1024;
 
@@ -45,12 +45,12 @@ struct MatchingScene {
 
 /// An endless stream of scenes. Scene i depends on the seed base, the deviations and i alone. Scene
 /// i shows a road of kind i % kRoadKinds. In turn, kRoadKinds scenes have maps with continuous
-/// dashed dividers and kRoadKinds scenes have surveyed maps with one element per dash. Fastest if
-/// scenes are made in order, because groups of them share their towns. Not thread safe.
+/// dashed dividers and kRoadKinds scenes have surveyed maps with one element per dash. This is
+/// fastest if scenes are made in order, because groups of them share their towns. One thread.
 class SceneSampler {
  public:
-  /// `seed_base`: kEvaluationSeedBase or kTuningSeedBase. Corrections are uniform within the ranges
-  /// of `deviations`; its steps are ignored.
+  /// `seed_base` is kEvaluationSeedBase or kTuningSeedBase. Corrections are uniform within the
+  /// ranges of `deviations`; its steps are ignored.
   explicit SceneSampler(uint64_t seed_base, const HypothesisGrid& deviations = {});
   ~SceneSampler();
 

@@ -14,7 +14,7 @@ namespace {
 /// The box at the prior exceeds the box at the true pose by at most this.
 constexpr double kRim_m = 3.0;
 
-// With less line than this there is nothing to match.
+// If the lines are shorter than this in all, there is nothing to match.
 constexpr double kLeastLine_m = 40.0;
 constexpr double kLongLine_m = 20.0;
 constexpr double kStraightRoad_m = 35.0;

@@ -11,7 +11,8 @@ namespace bevloc::sim {
 
 using Box = Eigen::AlignedBox2d;
 
-/// Stores items by number and bounding box in a grid of square cells. Reads are thread safe.
+/// Stores items by number and bounding box in a grid of square cells. Immutable, and so
+/// thread-safe.
 class CellIndex {
  public:
   CellIndex() = default;

@@ -10,11 +10,11 @@ namespace bevloc::sim {
 /// Light, weather and camera quality, constant over one drive.
 struct Conditions {
   double sun_azimuth_rad = 0.8;    ///< direction towards the sun, in map axes
-  double sun_elevation_rad = 0.7;  ///< below 0: night, the lamps are on
-  double overcast = 0.3;           ///< 0: hard shadows, 1: no shadows
-  double rain = 0.0;               ///< 0: dry, 1: the wet road mirrors the sky, low contrast
+  double sun_elevation_rad = 0.7;  ///< below 0 it is night, and the lamps are on
+  double overcast = 0.3;           ///< 0 for hard shadows, 1 for no shadows
+  double rain = 0.0;               ///< 0 if dry; at 1 the wet road mirrors the sky, at low contrast
   double exposure = 1.0;           ///< factor on the camera's gain
-  double noise_sigma = 2.0;        ///< of one pixel, in 8-bit steps
+  double noise_sigma = 2.0;        ///< noise of one pixel, in 8-bit steps
 };
 
 /// Draws conditions with their usual frequencies: mostly day, some dusk, night and rain.

@@ -10,8 +10,8 @@ namespace bevloc::sim {
 
 /// Collects polygons and then returns, row by row, the covered share of each cell: the sum of the
 /// covered areas, at most 1. Cell (i, j) is the unit square around the point (i, j). As in font
-/// rasterizers, the buffer stores the difference between each cell and its left neighbour. Not
-/// thread safe.
+/// rasterizers, the buffer stores the difference between each cell and its left neighbour. One
+/// thread.
 class CoverageMask {
  public:
   CoverageMask(int width, int height);
@@ -30,7 +30,7 @@ class CoverageMask {
   struct RowState {
     float offset = 0.0F;  ///< coverage from edges left of the grid
     int first = 0;        ///< first cell with an edge
-    int last = -1;        ///< one past the last cell with an edge; < first: no edges
+    int last = -1;        ///< one past the last cell with an edge; below `first` without edges
     bool has_edges() const { return first <= last; }
   };
   void add_edge(Eigen::Vector2f from, Eigen::Vector2f to, float sign);

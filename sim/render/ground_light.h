@@ -13,7 +13,7 @@
 namespace bevloc::sim {
 
 /// A square grid of cells around the vehicle. The bytes of a cell, from the lowest: visible share
-/// of the sun, visible share of the sky, lamp light. Not thread safe.
+/// of the sun, visible share of the sky, lamp light. One thread.
 class GroundLight {
  public:
   static constexpr int kSide = 256;

@@ -14,7 +14,7 @@
 
 namespace bevloc::sim {
 
-/// The world must outlive the painter. Not thread safe, because it owns its canvas.
+/// The world must outlive the painter. One thread, because it owns its canvas.
 class GroundPainter {
  public:
   explicit GroundPainter(const World& world);

@@ -13,7 +13,7 @@ namespace {
 constexpr int kMostTaps = 12;
 static_assert(kRun <= GroundTiles::kMostHeld, "all tiles of a run fit into the window at once");
 constexpr float kFarthestM = 900.0F;
-/// What is behind curved ground by more than this share of its distance is hidden.
+/// Curved ground hides an object if its distance is below this share of the object's distance.
 constexpr float kBehindGround = 0.97F;
 /// The tile directory reaches this far at the finest level.
 constexpr float kReachOfFinestM =
@@ -36,14 +36,14 @@ struct GroundRun {
   alignas(64) float rx[kRun], ry[kRun];            ///< rays in the camera frame
   alignas(64) float dx[kRun], dy[kRun], dz[kRun];  ///< rays in map axes
   alignas(64) float x[kRun], y[kRun], range[kRun], steepness[kRun];
-  alignas(64) float step_x[kRun], step_y[kRun];  ///< from tap to tap
+  alignas(64) float step_x[kRun], step_y[kRun];  ///< step from tap to tap
   alignas(64) float texels_per_m[kRun];
   alignas(64) float blend_x[kRun], blend_y[kRun];
   alignas(64) int32_t level[kRun], tile_x[kRun], tile_y[kRun], inside[kRun], texel[kRun];
   alignas(64) float red[kRun], green[kRun], blue[kRun], gloss[kRun];
   alignas(64) float sky_red[kRun], sky_green[kRun], sky_blue[kRun];
-  alignas(64) int32_t is_ground[kRun];  ///< 1: ground, 0: sky
-  alignas(64) float nearness[kRun];     ///< of curved ground: 1 / t
+  alignas(64) int32_t is_ground[kRun];  ///< 1 for ground, 0 for sky
+  alignas(64) float nearness[kRun];     ///< 1 / t for curved ground
 };
 
 /// Rotates a ray into the map.
@@ -72,14 +72,14 @@ inline float place_footprint(const ImageConstants& f, int i, float t, float down
   return length / std::max(width, static_cast<float>(kFinestTexelM));
 }
 
-/// The number of taps for the longest footprint of a run; 0 if it has none.
+/// The number of taps for the longest footprint of a run, or 0 if it has none.
 inline int taps_of(float most_ratio) {
   if (most_ratio == 0.0F) return 0;
   return std::clamp(static_cast<int>(0.75F * most_ratio + 0.999F), 1, kMostTaps);
 }
 
 /// Rotates the rays into the map and intersects them with flat ground. Returns the number of taps
-/// that the run needs; 0 if all pixels are sky.
+/// that the run needs, or 0 if all pixels are sky.
 BEVLOC_TARGET_CLONES
 int trace_rays(const ImageConstants& constants, int count, GroundRun& run) {
   const ImageConstants& f = constants;
@@ -97,8 +97,8 @@ int trace_rays(const ImageConstants& constants, int count, GroundRun& run) {
   return taps_of(most_ratio);
 }
 
-/// The same with curved ground. Along a ray, at the distance u from the vehicle, the ground has the
-/// height g u + k u^2 / 2, and beyond kCurvedReach_m it goes on straight.
+/// Does the same with curved ground. Along a ray, at the distance u from the vehicle, the ground
+/// has the height g u + k u^2 / 2, and beyond kCurvedReach_m it goes on straight.
 BEVLOC_TARGET_CLONES
 int trace_rays_to_curved_ground(const ImageConstants& constants, int count, GroundRun& run) {
   const ImageConstants& f = constants;
@@ -121,11 +121,11 @@ int trace_rays_to_curved_ground(const ImageConstants& constants, int count, Grou
     const float bend = f.along * x * x + f.across * y * y + 2.0F * f.twist * x * y;
     const float rise = f.along * at_x * x + f.across * at_y * y + f.twist * (at_x * y + at_y * x);
     const float fall = rise - run.dz[i] / horizontal;  // towards the ground, per metre
-    // above = fall u + bend u^2 / 2, within reach.
+    // Within the reach, above = fall u + bend u^2 / 2.
     const float root2 = fall * fall + 2.0F * bend * above;
     const float sum = fall + std::sqrt(std::max(root2, 0.0F));
     const float curved = root2 >= 0.0F && sum > 1e-6F ? 2.0F * above / sum : kFarthestM;
-    // above = fall u + bend reach u - bend reach^2 / 2, beyond.
+    // Beyond the reach, above = fall u + bend reach u - bend reach^2 / 2.
     const float fall_beyond = fall + bend * kReach;
     const float straight =
         fall_beyond > 1e-5F ? (above + 0.5F * bend * kReach * kReach) / fall_beyond : kFarthestM;

@@ -10,8 +10,8 @@
 
 namespace bevloc::sim {
 
-/// Overwrites the colour of every pixel, and its nearness: flat ground hides nothing, and what is
-/// behind a crest is hidden. Ground tiles that are not painted yet are painted.
+/// Overwrites the colour of every pixel, and its nearness. Flat ground hides nothing, but a crest
+/// hides what is behind it. Ground tiles that are not painted yet are painted.
 void draw_ground_and_sky(const View& view, const Lighting& lighting, const GroundLight& light,
                          const Sky& sky, GroundWindow& ground, LinearImage& image);
 

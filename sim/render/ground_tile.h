@@ -31,8 +31,8 @@ struct TileKey {
   bool operator==(const TileKey&) const = default;
 };
 
-/// Four bytes, from the lowest: square roots of the red, green and blue albedo, then gloss (0:
-/// earth, 1: sealed road).
+/// Four bytes, from the lowest: square roots of the red, green and blue albedo, then gloss (0 on
+/// earth, 1 on a sealed road).
 using GroundTexel = uint32_t;
 
 }  // namespace bevloc::sim

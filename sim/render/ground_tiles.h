@@ -12,7 +12,7 @@
 namespace bevloc::sim {
 
 /// A least-recently-used cache with a fixed number of tiles. Renderers borrow tiles; a borrowed
-/// tile does not change. The texels of a tile depend on the world and its key alone. Thread safe.
+/// tile does not change. The texels of a tile depend on the world and its key alone. Thread-safe.
 class GroundTiles {
  public:
   /// The six cameras together see about 290 tiles at one moment, one camera at most 100.

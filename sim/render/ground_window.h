@@ -13,8 +13,8 @@
 namespace bevloc::sim {
 
 /// Borrows tiles while an image is rendered. The pixel loops find tiles in a small directory with
-/// wrap-around, which has room for all tiles within kReachTiles of the centre at every level. Not
-/// thread safe, but several windows may share one GroundTiles.
+/// wrap-around, which has room for all tiles within kReachTiles of the centre at every level. One
+/// thread, but several windows may share one GroundTiles.
 class GroundWindow {
  public:
   static constexpr int kDirectorySide = 32;
@@ -59,7 +59,7 @@ class GroundWindow {
   std::array<int32_t, kDirectorySize> directory_{};
   std::vector<int32_t> held_;  ///< directory indices; a ring buffer once kMostHeld is reached
   size_t oldest_ = 0;
-  int64_t origin_ix_ = 0;  ///< of local_origin(), in tiles of the coarsest level
+  int64_t origin_ix_ = 0;  ///< index of local_origin(), in tiles of the coarsest level
   int64_t origin_iy_ = 0;
 };
 

@@ -10,7 +10,8 @@ struct LinearImage {
   int width = 0;
   int height = 0;
   std::vector<float> red, green, blue;
-  /// 1 / z in the camera frame (1/m) of the nearest panel; 0 for ground and sky.
+  /// 1 / z in the camera frame (1/m) of the nearest panel or curved ground; 0 for flat ground and
+  /// sky.
   std::vector<float> nearness;
   std::vector<float> scratch;  ///< a few rows of intermediate values
 

@@ -10,12 +10,13 @@
 namespace bevloc::sim {
 
 /// A square field that repeats seamlessly, with zero mean and a standard deviation of about 1. Rows
-/// are stored beyond the period, so that a row of a tile is always contiguous. Immutable.
+/// are stored beyond the period, so that a row of a tile is always contiguous. Immutable, and so
+/// thread-safe.
 class NoiseField {
  public:
   static constexpr int kRowLength = 2 * kTileNodes + 2;
 
-  /// values: period x period, row by row; `period` is a power of two.
+  /// `values` are period x period numbers, row by row. `period` is a power of two.
   NoiseField(int period, std::vector<float> values);
 
   /// At least kRowLength contiguous values from node (ix, iy) on; any integers are allowed.
@@ -34,7 +35,7 @@ class NoiseField {
 /// patches() varies over metres and repeats every 409.6 m.
 class GroundNoise {
  public:
-  /// Made at the first call. Thread safe.
+  /// The noise is made at the first call. Thread-safe.
   static const GroundNoise& shared();
 
   const NoiseField& grain(int level) const { return grain_[static_cast<size_t>(level)]; }
@@ -48,7 +49,8 @@ class GroundNoise {
   NoiseField patches_;
 };
 
-/// A table of standard normal numbers, read from pseudo-random offsets. Immutable.
+/// A table of standard normal numbers, read from pseudo-random offsets. Immutable, and so
+/// thread-safe.
 class GaussianTable {
  public:
   static constexpr int kSize = 1 << 16;

@@ -8,7 +8,7 @@ namespace bevloc::sim {
 /// Paint is gone where a noise field is below a threshold that rises with wear.
 class PaintWear {
  public:
-  /// wear: 0 is fresh, 1 is gone.
+  /// A `wear` of 0 is fresh, and 1 is gone.
   explicit PaintWear(float wear) : threshold_(1.3F * wear - 0.4F), fade_(1.0F - 0.25F * wear) {}
 
   /// Remaining share of the paint at a place with this ground noise, 0 to 1.

@@ -29,12 +29,12 @@ struct Panel {
   float v_per_m = 0.0F;
   float u_start = 0.0F;
   Rgb tint;
-  /// 0: hard surface, 1: foliage, which has no side in complete shadow.
+  /// 0 for a hard surface, 1 for foliage, which has no side in complete shadow.
   float softness = 0.0F;
   bool glows = false;  ///< bright untinted colours emit light at night
 };
 
-/// Makes the panels of everything that stands around the vehicle. Not thread safe.
+/// Makes the panels of everything that stands around the vehicle. One thread.
 class PanelBuilder {
  public:
   /// Returns the panels that a camera at `camera` (map frame) may see, sorted from far to near.
@@ -47,7 +47,7 @@ class PanelBuilder {
   void add_post(const Post& post);
   void add_vehicle(const VehicleBody& body, bool lights_on);
   void add_vehicle_sides(const VehicleBody& body, const Se2& map_from_body);
-  /// `height_m` above the ground at `foot`.
+  /// The place from the camera of a point that is `height_m` above the ground at `foot`.
   Eigen::Vector3f from_camera(const Eigen::Vector2d& position, double height_m,
                               const Eigen::Vector2d& foot) const {
     const double above_plane_m = height_m + ground_.height_m(foot);

@@ -13,8 +13,8 @@ struct PixelBox {
   int left, top, right, bottom;
 };
 
-/// A pixel box around the visible part of a panel; nothing if no part is visible.
-/// `corners_camera`: the four corners in order, in the camera frame.
+/// A pixel box around the visible part of a panel, or nothing if no part is visible.
+/// `corners_camera` are the four corners in order, in the camera frame.
 std::optional<PixelBox> pixels_of(const std::array<Eigen::Vector3f, 4>& corners_camera,
                                   const CameraRays& rays);
 

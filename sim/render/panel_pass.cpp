@@ -24,7 +24,7 @@ struct PanelInView {
   float length_m, height_m;
   float pixel_angle;
   float facing;  ///< distance d of the plane from the camera: cos(incidence) = nearness * d / |r|
-  float lean;    ///< 0: upright panel, 1: horizontal panel (foreshortened upwards)
+  float lean;    ///< 0 for an upright panel, 1 for a horizontal one (foreshortened upwards)
   float u_per_m, v_per_m, u_start;
   float lowest_v, highest_v;  ///< limits of v; -kNoLimit, kNoLimit if the texture repeats upwards
   const uint32_t* texels;

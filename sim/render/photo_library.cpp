@@ -114,7 +114,7 @@ GroundPhoto::GroundPhoto(int side_px, std::vector<Rgb> finest) : side_px_(side_p
 void GroundPhoto::copy_row(int level, int64_t ix, int64_t iy, int count, float* red, float* green,
                            float* blue) const {
   const int64_t side = side_px_ >> level;
-  // The side is a power of two, so this is the remainder for negative indices, too.
+  // The side is a power of two, so this is the right remainder for negative indices, too.
   const Rgb* row =
       &levels_[static_cast<size_t>(level)][static_cast<size_t>((iy & (side - 1)) * side)];
   for (int i = 0; i < count; ++i) {

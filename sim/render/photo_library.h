@@ -28,18 +28,18 @@ class GroundPhoto {
   std::array<std::vector<Rgb>, kGroundLevels> levels_;
 };
 
-/// Immutable after load(), and so thread safe.
+/// Immutable after load(), and so thread-safe.
 class PhotoLibrary {
  public:
   /// Reads `folder`/photos.txt, which `script/photos` writes: one line for each photograph with its
   /// use, PNG file, side in pixels and side in metres. Fails with place, found and wanted.
   static Result<PhotoLibrary> load(const std::filesystem::path& folder);
 
-  /// A photograph for the ground of a world. Null: the library has none, or the seed chose the
-  /// simulator's own.
+  /// A photograph for the ground of a world. Returns null if the library has none, or if the seed
+  /// chose the simulator's own texture.
   const GroundPhoto* ground(GroundMaterial material, uint64_t world_seed) const;
 
-  /// A photograph for a wall or a tree's crown, as above.
+  /// A photograph for a wall or a tree's crown, chosen in the same way.
   const Texture* wall(WallTexture kind, uint64_t wall_seed) const;
   const Texture* crown(uint64_t tree_seed) const;
 
@@ -50,7 +50,7 @@ class PhotoLibrary {
   Status add(std::string_view use, const std::filesystem::path& file, int side_px, double side_m);
 
   std::array<std::vector<GroundPhoto>, kGroundMaterials> ground_;
-  std::array<std::vector<Texture>, kPatternCount> panels_;  ///< of walls and crowns
+  std::array<std::vector<Texture>, kPatternCount> panels_;  ///< photographs of walls and crowns
 };
 
 }  // namespace bevloc::sim

@@ -8,7 +8,7 @@ namespace bevloc::sim {
 namespace {
 
 constexpr float kMediumGrey = 110.0F;
-/// The reflection on the bodywork is this much compressed.
+/// The reflection on the bodywork is compressed by this factor.
 constexpr float kReflectedRows = 3.0F;
 
 uint8_t to_step(float value) {

@@ -20,13 +20,13 @@ struct Bodywork {
 
 /// By default a picture does not change.
 struct PictureLook {
-  std::array<float, 3> gain{1.0F, 1.0F, 1.0F};  ///< of red, green and blue
-  float saturation = 1.0F;                      ///< 0: grey
+  std::array<float, 3> gain{1.0F, 1.0F, 1.0F};  ///< factors on red, green and blue
+  float saturation = 1.0F;                      ///< 0 is grey
   float contrast = 1.0F;                        ///< around a medium grey
   float gamma = 1.0F;                           ///< below 1 brightens the shadows
-  float sharpening = 0.0F;                      ///< weight of the difference from the neighbours
+  float sharpening = 0.0F;                      ///< weight of sharpening; below 0 it blurs
   int smear_px = 0;                             ///< motion blur along the rows, to either side
-  int black_rows = 0;                           ///< at the lower edge
+  int black_rows = 0;                           ///< number at the lower edge
   Bodywork bodywork{};
 };
 

@@ -15,7 +15,7 @@ namespace bevloc::sim {
 
 class GroundTiles;
 
-/// Not thread safe. Renderers in different threads may share one world and its GroundTiles.
+/// One thread. Renderers in different threads may share one world and its GroundTiles.
 class Renderer {
  public:
   /// Makes its own ground tiles. The world must outlive the renderer.

@@ -8,7 +8,7 @@
 
 namespace bevloc::sim {
 
-/// The skyline of one world. Immutable.
+/// The skyline of one world. Immutable, and so thread-safe.
 class Sky {
  public:
   static constexpr int kSkylineSize = 2048;

@@ -74,8 +74,8 @@ inline float band_coverage(float distance, float half) {
 struct Dashes {
   float half_dash;
   float period;
-  float to_centre;  ///< from the start of the segment back to the centre of a dash
-  float solid;      ///< 1: a line without gaps, 0: dashes
+  float to_centre;  ///< distance from the start of the segment back to the centre of a dash
+  float solid;      ///< 1 for a line without gaps, 0 for dashes
 
   float coverage(float along) const {
     const float turns = (along + to_centre) / period;

@@ -27,7 +27,7 @@ struct Surroundings {
 };
 
 /// A spatial index of the walls, posts and vehicles of a world. The world must outlive the index.
-/// Not thread safe.
+/// One thread.
 class SceneIndex {
  public:
   explicit SceneIndex(const World& world);

@@ -10,7 +10,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// Codes of a texel, see Texture.
+/// The codes of a texel (Texture).
 constexpr float kHole = 0.0F;
 constexpr float kTinted = 0.5F;
 constexpr float kOwnColour = 1.0F;
@@ -155,7 +155,7 @@ Paint crown(const Spot& s) {
 
 struct Wheels {
   float rear_x, front_x;
-  float radius_x, radius_z;  ///< as shares of length and height
+  float radius_x, radius_z;  ///< radii as shares of length and height
 };
 
 /// Side windows within [x_from, x_to] x [z_from, z_to], divided into `panes` panes.
@@ -237,7 +237,7 @@ struct Recipe {
   float period_v_m;
 };
 
-/// In the order of Pattern.
+/// The recipes in the order of Pattern.
 constexpr std::array<Recipe, kPatternCount> kRecipes = {{
     {kerb_plain, 4.0F, 0.0F},    {kerb_striped, 2.0F, 0.0F},
     {kerb_painted, 6.0F, 0.0F},  {concrete_barrier, 6.0F, 0.0F},

@@ -68,7 +68,7 @@ inline constexpr float kTextureRange = 2.0F;
 /// is the lower edge of the panel.
 struct Texture {
   std::vector<uint32_t> texels;
-  /// Size of one period in metres; 0: stretched over the panel.
+  /// Size of one period in metres; 0 if the texture is stretched over the panel.
   float period_u_m = 0.0F;
   float period_v_m = 0.0F;
 };
@@ -77,7 +77,7 @@ struct Texture {
 /// panel's tint and 0 is a hole. Crowns are stretched, everything else repeats every `period_m`.
 Texture texture_from(const std::vector<Rgb>& relative_colours, Pattern pattern, float period_m);
 
-/// The textures are made at the first call. Thread safe.
+/// The textures are made at the first call. Thread-safe.
 const Texture& texture_of(Pattern pattern);
 
 }  // namespace bevloc::sim

@@ -16,7 +16,7 @@ struct Material {
   float grain;    ///< contrast of the fine noise
   float patches;  ///< contrast over metres
   Rgb patch_hue;  ///< added where the patch noise is 1
-  double slab_m;  ///< distance between joints; 0: none
+  double slab_m;  ///< distance between joints; 0 without joints
 };
 
 const Material& material_of(GroundMaterial material) {

@@ -10,7 +10,7 @@
 
 namespace bevloc::sim {
 
-/// Albedo planes of one tile, with the ground noise at its place in the map. Not thread safe.
+/// Albedo planes of one tile, with the ground noise at its place in the map. One thread.
 struct TileCanvas {
   using Plane = std::vector<float>;
 
@@ -34,7 +34,7 @@ struct TileCanvas {
   TileKey key;
   Plane red, green, blue, gloss;
   Plane patches;  ///< GroundNoise::patches() at every node
-  /// Photographs of the materials; null: noise alone.
+  /// Photographs of the materials; null where a material has noise alone.
   std::array<const GroundPhoto*, kGroundMaterials> photos{};
 
  private:
@@ -56,7 +56,7 @@ struct CanvasRow {
 /// Row j from column i on.
 CanvasRow canvas_row(TileCanvas& canvas, int j, int i);
 
-/// Covers row j with a material. `coverage`: kTileNodes values, or null for full coverage.
+/// Covers row j with a material. `coverage` has kTileNodes values, or is null for full coverage.
 void cover_with_material(TileCanvas& canvas, int j, GroundMaterial material, float brightness,
                          const float* coverage);
 

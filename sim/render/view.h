@@ -13,8 +13,8 @@
 
 namespace bevloc::sim {
 
-/// The rays of all pixels, (x, y, 1) in the camera frame, row by row. Stored with 16 bits per
-/// coordinate, which is accurate to 0.01 pixel. Immutable.
+/// The rays of all pixels, (x, y, 1) in the camera frame, row by row. They are stored with 16 bits
+/// per coordinate, which is accurate to 0.01 pixel. Immutable, and so thread-safe.
 class CameraRays {
  public:
   explicit CameraRays(const Intrinsics& intrinsics);
@@ -32,13 +32,13 @@ class CameraRays {
   Eigen::Vector2f low_ = Eigen::Vector2f::Zero();
   Eigen::Vector2f high_ = Eigen::Vector2f::Zero();
   Eigen::Vector2f step_ = Eigen::Vector2f::Zero();
-  /// In steps of step_ from low_.
+  /// Coordinates of the rays in steps of step_ from low_.
   std::vector<uint16_t> x_;
   std::vector<uint16_t> y_;
 };
 
 /// Caches the ray tables of recent cameras, because each camera of a rig recurs in every frameset.
-/// Not thread safe.
+/// One thread.
 class RayCache {
  public:
   /// The result is valid until kCapacity other cameras have been requested.
@@ -54,7 +54,7 @@ class RayCache {
 /// the vehicle stands.
 struct View {
   const CameraRays* rays = nullptr;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the camera in the map
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< place of the camera in the map
   Eigen::Matrix3f map_from_camera = Eigen::Matrix3f::Identity();
   /// Position and heading of the vehicle on the ground, for its headlights.
   Eigen::Vector2d vehicle = Eigen::Vector2d::Zero();

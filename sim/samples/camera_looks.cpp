@@ -8,14 +8,14 @@
 namespace bevloc::sim {
 namespace {
 
-/// How much the cameras of one vehicle differ, against the range of all vehicles.
+/// How much the cameras of one vehicle differ, as a share of the range of all vehicles.
 constexpr double kOwnShare = 0.15;
 constexpr double kBodyInPicture = 0.6;  ///< the share of a vehicle's cameras that see its body
-constexpr double kHighestBody = 0.22;   ///< of the picture's height
+constexpr double kHighestBody = 0.22;   ///< share of the picture's height
 constexpr int kMostBlackRows = 5;
 constexpr int kMostSmear_px = 2;
 
-/// Uniform in the logarithm, from 1 / (1 + most) to 1 + most.
+/// Draws a factor from 1 / (1 + most) to 1 + most. Its logarithm is uniform.
 float random_factor(double most, Random& random) {
   const double limit = std::log1p(most);
   return static_cast<float>(std::exp(random.uniform(-limit, limit)));

@@ -12,7 +12,7 @@ namespace {
 /// Shorter pieces of a line are left out.
 constexpr double kShortestPiece_m = 3.0;
 
-/// A habit's length or distance is drawn from a range.
+/// The range from which the length or the distance of a habit is drawn.
 struct Extent {
   double least_m;
   double most_m;

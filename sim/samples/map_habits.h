@@ -9,12 +9,12 @@ namespace bevloc::sim {
 
 /// Shares of lines that have a habit of published maps. All are independent; 0 changes nothing.
 struct MapHabits {
-  double short_divider = 0.0;    ///< of divider ends: 5 to 30 m before the end of the paint
-  double long_divider = 0.0;     ///< of divider ends: 5 to 20 m beyond it, through the junction
-  double broken_divider = 0.0;   ///< of dividers: 10 to 40 m are missing, as at a side road
-  double inner_boundary = 0.0;   ///< of boundaries: up to 0.7 m inside, as an outline of lanes
-  double closed_mouth = 0.0;     ///< of boundary ends: 5 to 20 m straight on, across a mouth
-  double double_boundary = 0.0;  ///< of boundaries: a second one 0.5 to 4 m outside, as a wall
+  double short_divider = 0.0;    ///< divider ends that lie 5 to 30 m before the end of the paint
+  double long_divider = 0.0;     ///< divider ends that lie 5 to 20 m beyond it, in the junction
+  double broken_divider = 0.0;   ///< dividers that lack 10 to 40 m, as at a side road
+  double inner_boundary = 0.0;   ///< boundaries up to 0.7 m inside, like an outline of lanes
+  double closed_mouth = 0.0;     ///< boundary ends 5 to 20 m straight on, across a mouth
+  double double_boundary = 0.0;  ///< boundaries with another one 0.5 to 4 m outside, like a wall
 
   bool operator==(const MapHabits&) const = default;
 };

@@ -23,7 +23,7 @@ struct CalibrationSigma {
 
 /// Tilt and lift of the body over its wheels, one sigma.
 struct BodySigma {
-  double tilt_rad = radians(0.35);  ///< of pitch and roll each
+  double tilt_rad = radians(0.35);  ///< sigma of pitch and of roll
   double lift_m = 0.025;
 };
 
@@ -34,23 +34,23 @@ struct Slopes {
   double twist_per_m = 0.0;
 };
 
-/// kUsual: random_conditions(). kNight and kRain: the same, but always at night or always with
-/// rain. kClearNoon: high sun, no clouds or rain, exact exposure, little noise.
+/// kUsual is random_conditions(). kNight and kRain are the same, but always at night or always with
+/// rain. kClearNoon has a high sun, no clouds or rain, exact exposure and little noise.
 enum class Weather : uint8_t { kUsual, kClearNoon, kNight, kRain };
 
 /// Errors of the localizer's map against the world's own map.
 struct MapErrors {
   double omission = 0.0;       ///< share of elements that are missing
   double ghost = 0.0;          ///< share of elements with an unpainted copy beside them
-  double shift_sigma_m = 0.0;  ///< of the shift per axis, which changes over tens of metres
+  double shift_sigma_m = 0.0;  ///< sigma of the shift per axis, which varies over tens of metres
 
   bool operator==(const MapErrors&) const = default;
 };
 
 /// Missing cameras. Their images are black and their bits in the camera mask are clear.
 struct MissingCameras {
-  double probability = 0.0;  ///< that cameras are missing
-  int most = 2;              ///< draws 1 to this many cameras, with replacement
+  double probability = 0.0;  ///< probability that cameras are missing
+  int most = 2;              ///< 1 to this many cameras are drawn, with replacement
 };
 
 /// Each camera exposes within `spread_s` before or after the time of the pose, while the vehicle
@@ -62,17 +62,17 @@ struct Desynchronisation {
 
 /// All nuisances of a sample. The defaults are the usual strengths.
 struct Nuisances {
-  double rig_variety = 0.0;  ///< random_rig(); 0: the simulator's own rig
+  double rig_variety = 0.0;  ///< variety of random_rig(); 0 for the simulator's own rig
   CalibrationSigma calibration;
   BodySigma body;
   Slopes slopes;
   Weather weather = Weather::kUsual;
   double paint_wear_factor = 1.0;  ///< multiplies the wear of all paint
-  int extra_vehicles = 0;          ///< standing on the lanes around the vehicle
+  int extra_vehicles = 0;          ///< vehicles that stand on the lanes around the vehicle
   MapErrors map_errors;
   MapHabits map_habits;
   StreetClutter clutter;
-  double verge_share = 0.0;  ///< of the road's edges: overgrown by grass or dirt, up to 1.5 m
+  double verge_share = 0.0;  ///< share of road edges that grass or dirt overgrows, up to 1.5 m
   CameraLooks looks;
   double noise_factor = 1.0;  ///< multiplies the noise of the pixels
   MissingCameras missing_cameras;

@@ -10,7 +10,7 @@
 namespace bevloc::sim {
 
 /// The vehicle passes the pose of a sample with constant speed and yaw rate, drawn from the seed.
-/// Not thread safe.
+/// One thread.
 class Passage {
  public:
   Passage(const Desynchronisation& desynchronisation, uint64_t seed);
@@ -21,7 +21,7 @@ class Passage {
   /// The vehicle's true pose at that time, in the vehicle frame of the sample's pose.
   Se2 true_motion(double offset_s) const;
 
-  /// The same from the vehicle's odometry; the identity if the motion is not compensated.
+  /// The same motion from the vehicle's odometry, or the identity if the motion is not compensated.
   Se2 known_motion(double offset_s) const;
 
  private:

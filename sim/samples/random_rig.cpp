@@ -22,7 +22,7 @@ constexpr double kAside_rad = radians(8.0);
 constexpr double kOwnPitch_rad = radians(2.0);
 constexpr double kOwnHeight_m = 0.15;
 constexpr double kOwnView = 0.06;
-constexpr double kForward_m = 1.5;  ///< towards the bumper, away from the middle of the roof
+constexpr double kForward_m = 1.5;  ///< range from the middle of the roof towards the bumper
 constexpr double kOutward_m = 0.4;
 
 /// What the cameras of a vehicle have in common.
@@ -30,7 +30,7 @@ struct Common {
   double height_m;
   double down_rad;
   double view_rad;
-  double reach;  ///< 0: on the middle of the roof, 1: at the outline of the vehicle
+  double reach;  ///< 0 at the middle of the roof, 1 at the outline of the vehicle
 };
 
 double view_of(const Intrinsics& intrinsics) {
@@ -46,7 +46,8 @@ void move_camera(const Common& common, double variety, Random& random, CameraMod
   place.y() += variety * kOutward_m * outwards * camera.vehicle_from_camera.rotation(1, 2);
   place.z() = std::lerp(place.z(), common.height_m, variety) + own(kOwnHeight_m);
 
-  // Turns about the camera's own axes: x is to its right, so a positive turn raises its view.
+  // The camera turns about its own axes. Its x axis points to its right, so a positive turn raises
+  // its view.
   const double up_rad = -variety * common.down_rad + own(kOwnPitch_rad);
   const Eigen::Matrix3d aside =
       Eigen::AngleAxisd(own(kAside_rad), Eigen::Vector3d::UnitZ()).toRotationMatrix();

@@ -157,7 +157,7 @@ void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisance
 struct WorldViews {
   Renderer renderer;
   MapRasterizer true_map;
-  MapRasterizer localizer_map;  ///< with map errors
+  MapRasterizer localizer_map;  ///< rasterizer of the map with map errors
 };
 
 Sample make_sample(const Nuisances& nuisances, const Rig& usual_rig, uint64_t seed,

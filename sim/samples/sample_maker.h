@@ -49,10 +49,11 @@ struct SampleStream {
   /// If set, every world is this map, dressed anew; it must have lanes. If null, worlds are
   /// generated towns.
   const HdMap* map = nullptr;
-  /// If set, the vehicle's cameras instead of the simulator's own. Their lenses do not count,
-  /// because the network's images are rendered directly; what shows the own vehicle is black.
+  /// If set, the vehicle has these cameras instead of the simulator's own, except in samples with a
+  /// Nuisances::rig_variety. Their lenses do not count, because the network's images are rendered
+  /// directly. Pixels that show the own vehicle are black.
   const Rig* rig = nullptr;
-  /// If set, they cover surfaces of every world. Must outlive the stream.
+  /// If set, they cover surfaces of every world. They must outlive the stream.
   const PhotoLibrary* photos = nullptr;
   /// Stronger nuisances in a share of the samples, on top of `nuisances`.
   TrainingNuisances training{};

@@ -82,7 +82,7 @@ class BoundaryClutter {
                             .seed = static_cast<uint32_t>(random_.integer(0, 1 << 20))});
   }
 
-  /// A person on the pavement or on the road, or a cyclist, whose lower half is broader.
+  /// Adds a person on the pavement or on the road, or a cyclist, whose lower half is broader.
   void set_person() {
     const double station_m = random_.uniform(0.0, path_.length_m());
     const Eigen::Vector2d foot = path_.beside(station_m, outside_ * random_.uniform(-2.0, 4.0));
@@ -118,7 +118,7 @@ void clutter_boundaries(const StreetClutter& clutter, Random& random, World& wor
   }
 }
 
-/// Raised dots in groups that take the place of the dashes.
+/// Replaces the dashes of some lines by raised dots.
 void replace_dashes(double share, Random& random, World& world) {
   for (PaintLine& line : world.paint_lines) {
     if (line.dash_m <= 0.0 || !random.chance(share)) continue;
@@ -128,7 +128,7 @@ void replace_dashes(double share, Random& random, World& world) {
   }
 }
 
-/// Lines along the two longest edges of crossings.
+/// Adds lines along the two longest edges of some crossings.
 void edge_crossings(double share, Random& random, World& world) {
   for (const MapElement& element : world.map.elements) {
     if (element.element_class != ElementClass::kPedestrianCrossing) continue;
@@ -153,7 +153,7 @@ struct Stretch {
   double to_m;
 };
 
-/// A box with diagonals in one or both directions.
+/// Paints a box with diagonals in one or both directions.
 void paint_box(const Stretch& stretch, Random& random, World& world) {
   const Rgb albedo = random.chance(0.6) ? kClutterYellow : kWhite;
   const double spacing_m = random.uniform(0.8, 2.0);
@@ -176,7 +176,7 @@ void paint_box(const Stretch& stretch, Random& random, World& world) {
   }
 }
 
-/// Cones beside a lane's middle, and a board across the start.
+/// Adds cones beside a lane's middle, and a board across the start.
 void set_works(const Stretch& stretch, Random& random, World& world) {
   const double side = random.chance(0.5) ? 1.0 : -1.0;
   const double right_m = side * random.uniform(0.3, 1.0) * kHalfLane_m;
@@ -194,7 +194,8 @@ void set_works(const Stretch& stretch, Random& random, World& world) {
                          .albedo = random.chance(0.5) ? kRed : kWhite});
 }
 
-/// A band across the road, at any angle, as of a house or a bridge; or patches as of a tree.
+/// Adds the shadow of a house or a bridge, which is a band across the road at any angle, or the
+/// patches of a tree's shadow.
 void cast_shadow(const Stretch& stretch, Random& random, World& world) {
   constexpr double kReach_m = 25.0;
   const auto light = static_cast<float>(random.uniform(0.2, 0.7));

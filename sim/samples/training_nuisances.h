@@ -14,9 +14,9 @@ struct Strengthening {
   double strongest = 0.0;
 };
 
-/// By default all shares are zero, and then no bit of a sample changes.
+/// By default all shares are zero, so that no bit of a sample changes.
 struct TrainingNuisances {
-  // Drawn for each sample.
+  // These are drawn for each sample.
   Strengthening rig_variety;         ///< Nuisances::rig_variety
   Strengthening camera_spread_s;     ///< Desynchronisation::spread_s, with compensation
   Strengthening calibration_factor;  ///< multiplies all of CalibrationSigma
@@ -25,7 +25,7 @@ struct TrainingNuisances {
   Strengthening noise_factor;        ///< Nuisances::noise_factor
   Strengthening slopes;              ///< factor on the slopes of NuisanceSet::kSlopes
 
-  // Drawn for each world, because they change the world.
+  // These are drawn for each world, because they change the world.
   Strengthening extra_vehicles;     ///< Nuisances::extra_vehicles, rounded
   Strengthening paint_wear_factor;  ///< Nuisances::paint_wear_factor
   Strengthening map_errors;         ///< factor on the errors of NuisanceSet::kMapErrors

@@ -12,7 +12,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// The same limit as in WorldBuilder.
+/// The most wear, which is the same limit as in WorldBuilder.
 constexpr double kMostWear = 0.95;
 
 // Standing vehicles.

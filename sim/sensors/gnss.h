@@ -12,7 +12,7 @@ namespace bevloc::sim {
 
 struct GnssReading {
   double time_s = 0.0;
-  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< of the vehicle's origin, map frame
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< the vehicle's origin in the map frame
   double heading_rad = 0.0;
   double position_sigma_m = 0.0;  ///< per axis, as reported by the receiver
   double heading_sigma_rad = 0.0;
@@ -21,7 +21,7 @@ struct GnssReading {
 
 /// Readings at 10 Hz. The errors are a first-order Gauss-Markov process (sigma 1.0 m per axis, time
 /// constant 40 s; sigma 1.0 degree, time constant 20 s) plus white noise (0.25 m, 0.3 degrees).
-/// Immutable.
+/// Immutable, and so thread-safe.
 class GnssSimulator {
  public:
   static constexpr double kPeriod_s = 0.1;

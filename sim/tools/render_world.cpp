@@ -29,7 +29,7 @@ using bevloc::sim::Conditions;
 struct Options {
   uint64_t seed = 1;
   std::string out = "world.png";
-  std::vector<double> pose;  ///< x, y (metres), yaw (degrees); empty: a random pose on a road
+  std::vector<double> pose;  ///< x, y (metres), yaw (degrees); empty for a random pose on a road
   uint64_t pose_seed = 1;
   std::vector<double> ground{0.0, 0.0, 0.0};  ///< curvature along, across and twist, per metre
   std::string photos;

@@ -5,9 +5,9 @@ namespace bevloc::sim {
 
 /// Motion of the body on its springs, relative to the pose on the flat ground.
 struct BodyMotion {
-  double pitch_rad = 0.0;  ///< positive: nose down
-  double roll_rad = 0.0;   ///< positive: right side down
-  double lift_m = 0.0;     ///< positive: up
+  double pitch_rad = 0.0;  ///< positive if the nose is down
+  double roll_rad = 0.0;   ///< positive if the right side is down
+  double lift_m = 0.0;     ///< positive upwards
 };
 
 }  // namespace bevloc::sim

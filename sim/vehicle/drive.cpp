@@ -13,7 +13,7 @@ namespace bevloc::sim {
 namespace {
 
 constexpr double kStep_m = 0.5;
-// Below the limits promised in drive.h, to leave a margin.
+// These are below the limits promised in drive.h, to leave a margin.
 constexpr double kLateralLimit_mps2 = 2.2;
 constexpr double kAcceleration_mps2 = 1.6;
 constexpr double kBraking_mps2 = 2.3;

@@ -12,7 +12,7 @@
 
 namespace bevloc::sim {
 
-/// How long a vehicle waits where it stops, uniform between the two.
+/// The range of the time that a vehicle waits where it stops. The time is uniform.
 struct StopTimes {
   double shortest_s = 2.0;
   double longest_s = 7.0;
@@ -21,7 +21,7 @@ struct StopTimes {
 /// Drives a random route along the lanes like a calm driver: lateral acceleration up to 2.5 m/s^2,
 /// longitudinal acceleration from -3 to 2 m/s^2, slower in bends, occasional stops at junctions, a
 /// small lateral wander within the lane. World, seed, duration and stops determine the whole drive.
-/// Immutable: safe to read from several threads.
+/// Immutable, and so thread-safe.
 class Drive {
  public:
   /// The world's map must have lanes. If the route ends before the duration, the vehicle stops
@@ -29,7 +29,7 @@ class Drive {
   Drive(const World& world, uint64_t seed, double duration_s, const StopTimes& stops = {});
 
   struct State {
-    Se2 map_from_vehicle;  ///< of the middle of the rear axle, on the ground
+    Se2 map_from_vehicle;  ///< pose of the middle of the rear axle on the ground
     double speed_mps = 0.0;
     double yaw_rate_radps = 0.0;
     double acceleration_mps2 = 0.0;  ///< along the vehicle's x axis
@@ -49,7 +49,7 @@ class Drive {
 
  private:
   struct Stop {
-    size_t sample;  ///< of the path
+    size_t sample;  ///< index of the sample of the path
     double wait_s;
   };
 
@@ -64,7 +64,7 @@ class Drive {
   /// The vehicle's place between two samples of its path.
   struct Progress {
     size_t sample = 0;
-    double fraction = 0.0;  ///< of the way from `sample` to the next one
+    double fraction = 0.0;  ///< share of the way from `sample` to the next one
     double speed_mps = 0.0;
     double acceleration_mps2 = 0.0;
   };
@@ -73,14 +73,14 @@ class Drive {
 
   uint64_t seed_;
   double duration_s_;
-  SmoothNoise pitch_noise_;  ///< as a function of the distance driven, like roll and lift
+  SmoothNoise pitch_noise_;  ///< noise over the distance driven, like roll and lift
   SmoothNoise roll_noise_;
   SmoothNoise lift_noise_;
-  SmoothNoise crest_noise_;  ///< of the ground's curvatures, with standard deviation 1
+  SmoothNoise crest_noise_;  ///< noise of the ground's curvatures, with standard deviation 1
   SmoothNoise camber_noise_;
   SmoothNoise twist_noise_;
 
-  double lane_step_m_ = 0.0;  ///< between two samples, measured along the lanes' centre lines
+  double lane_step_m_ = 0.0;  ///< distance of two samples along the lanes' centre lines
   // Samples along the path.
   Polyline points_;
   std::vector<double> station_m_;

@@ -10,7 +10,7 @@
 namespace bevloc::sim {
 
 /// A sum of sines with random wavelengths and phases: zero mean and a given standard deviation.
-/// Immutable.
+/// Immutable, and so thread-safe.
 class SmoothNoise {
  public:
   /// The wavelengths lie between `shortest` and `longest`, in the unit of the argument of at().

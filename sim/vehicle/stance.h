@@ -14,9 +14,9 @@ namespace bevloc::sim {
 /// The curvature of the ground in the vehicle frame: half of it times the squared distance is the
 /// height above the plane on which the vehicle stands. A constant grade is no curvature.
 struct GroundShape {
-  double along_per_m = 0.0;   ///< of the road ahead; positive: a sag, negative: a crest
-  double across_per_m = 0.0;  ///< positive: the ground rises to both sides
-  double twist_per_m = 0.0;   ///< of the bank; positive: ahead, the left side rises
+  double along_per_m = 0.0;   ///< along the road ahead; positive for a sag, negative for a crest
+  double across_per_m = 0.0;  ///< positive if the ground rises to both sides
+  double twist_per_m = 0.0;   ///< change of the bank; positive if the left side rises ahead
 
   bool is_flat() const { return along_per_m == 0.0 && across_per_m == 0.0 && twist_per_m == 0.0; }
 };
@@ -33,7 +33,7 @@ class CurvedGround {
 
   const GroundShape& shape() const { return shape_; }
 
-  /// Above the plane on which the vehicle stands, at a place in the map.
+  /// The height of the ground at a place in the map, above the plane on which the vehicle stands.
   double height_m(const Eigen::Vector2d& place) const {
     if (shape_.is_flat()) return 0.0;
     const Eigen::Vector2d point = vehicle_from_map_ * place;

@@ -15,9 +15,9 @@ class GroundMask {
   /// The raster covers the paved rings and a margin of 40 m around them.
   explicit GroundMask(const std::vector<const Ring*>& paved);
 
-  /// Distance to the nearest pavement, to about 2 m; 0 on pavement and outside the raster.
+  /// Distance to the nearest paved ground, to about 2 m; 0 on paved ground and outside the raster.
   double distance_to_paved_m(const Eigen::Vector2d& point) const;
-  /// Whether the closed line touches neither pavement nor occupied ground and stays in the raster.
+  /// Whether the closed line touches neither paved nor occupied ground and stays in the raster.
   bool is_free(const Ring& ring) const;
   /// Marks an area as occupied.
   void occupy(const Ring& ring);
@@ -31,8 +31,8 @@ class GroundMask {
   std::vector<cv::Point> fixed_point(const Polyline& line) const;
 
   Eigen::Vector2d min_corner_;
-  cv::Mat occupied_;  ///< uint8; 255: paved or built on
-  cv::Mat distance_;  ///< float, in its own (coarser) cells: distance to pavement
+  cv::Mat occupied_;  ///< uint8; 255 if paved or built on
+  cv::Mat distance_;  ///< float, in its own (coarser) cells: distance to paved ground
 };
 
 }  // namespace bevloc::sim

@@ -19,7 +19,7 @@ inline Eigen::Vector2d unit_vector(double angle_rad) {
 }
 
 /// A polyline parametrised by station (arc length in metres). The direction is interpolated between
-/// the vertices, so that headings and parallel lines are smooth. Immutable.
+/// the vertices, so that headings and parallel lines are smooth. Immutable, and so thread-safe.
 class Path {
  public:
   Path() = default;
@@ -48,15 +48,15 @@ class Path {
  private:
   struct Place {
     size_t segment;
-    double fraction;  ///< of the segment; below 0 or above 1 beyond the ends
+    double fraction;  ///< share of the segment; below 0 or above 1 beyond the ends
   };
   Place place_at(double station_m) const;
   Eigen::Vector2d position(const Place& place) const;
   Eigen::Vector2d direction(const Place& place) const;
 
   Polyline points_;
-  std::vector<Eigen::Vector2d> directions_;  ///< at the points
-  std::vector<double> stations_;             ///< of the points
+  std::vector<Eigen::Vector2d> directions_;  ///< directions at the points
+  std::vector<double> stations_;             ///< stations of the points
 };
 
 double length_m(const Polyline& line);

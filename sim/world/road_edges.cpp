@@ -15,7 +15,7 @@ Ring band(const Carriageway& side, double from_m, double to_m,
 }
 
 void add_carriageway_surface(const Road& road, WorldBuilder& builder) {
-  constexpr double kOverlap_m = 0.3;  // with the surfaces of the junctions
+  constexpr double kOverlap_m = 0.3;  // overlap with the surfaces of the junctions
   const Carriageway& forward = road.sides[0];
   const Carriageway& backward = road.sides[1];
   Ring ring = forward.path.parallel(forward.begin_m - kOverlap_m, forward.end_m + kOverlap_m,

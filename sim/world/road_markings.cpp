@@ -122,7 +122,7 @@ void RoadPainter::paint_centre() {
   }
 }
 
-/// Slanted bars between the two lines of a painted median.
+/// Paints slanted bars between the two lines of a painted median.
 void RoadPainter::paint_median_area(double from_m, double to_m) {
   const double spacing_m = random_.uniform(1.5, 4.0);
   const double half = 0.5 * style_.median_width_m - 0.15;
@@ -166,7 +166,7 @@ void RoadPainter::paint_edge_lines(const Carriageway& side) {
   }
 }
 
-/// A stop line or give-way teeth before a junction or crossing.
+/// Paints a stop line or give-way teeth before a junction or crossing.
 void RoadPainter::paint_stop(const Carriageway& side, double station_m) {
   const double left_m = side.inner_m + 0.1;
   const double right_m = side.lanes_edge(station_m) - 0.1;
@@ -205,7 +205,7 @@ void RoadPainter::paint_arrows(const Carriageway& side) {
   }
 }
 
-/// Strokes that look like painted letters (BUS, SLOW) or a speed limit.
+/// Paints strokes that look like letters (BUS, SLOW) or a speed limit.
 void RoadPainter::paint_word(const Carriageway& side) {
   const bool wanted = random_.chance(0.12);
   const double station_m = random_.uniform(side.paint_begin_m + 5.0, side.paint_end_m - 15.0);

@@ -10,7 +10,7 @@
 namespace bevloc::sim {
 namespace {
 
-constexpr double kShortestRoad_m = 22.0;  ///< from throat to throat
+constexpr double kShortestRoad_m = 22.0;  ///< length from throat to throat
 
 /// A carriageway with a constant number of lanes.
 Carriageway plain_carriageway(const Path& path, const RoadStyle& style, int lanes, double inner_m) {

@@ -26,7 +26,7 @@ struct Carriageway {
   int lanes_at_end = 0;  ///< differs from the start by at most one; the outer lane tapers
   double taper_begin_m = 0.0;
   double taper_end_m = 0.0;
-  double parking_m = 0.0;  ///< width of the parking bays; 0: none
+  double parking_m = 0.0;  ///< width of the parking bays; 0 without bays
   double parking_begin_m = 0.0;
   double parking_end_m = 0.0;
   double bay_m = 5.8;          ///< length of a bay along the road; short bays are crosswise
@@ -64,17 +64,17 @@ struct Arm {
   size_t road = 0;
   size_t outward_side = 0;   ///< index of the carriageway that leaves the junction
   double heading_rad = 0.0;  ///< direction away from the junction
-  double throat_m = 0.0;     ///< from the road's end to where the junction begins
-  double crossing_m = 0.0;   ///< width of the pedestrian crossing; 0: none
-  double mouth_m = 0.0;      ///< from the road's end to the stop line
+  double throat_m = 0.0;     ///< distance from the road's end to where the junction begins
+  double crossing_m = 0.0;   ///< width of the pedestrian crossing; 0 without one
+  double mouth_m = 0.0;      ///< distance from the road's end to the stop line
 };
 
 struct Junction {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   std::vector<Arm> arms;  ///< counter-clockwise
   bool roundabout = false;
-  double island_radius_m = 0.0;  ///< of a roundabout's island
-  double outer_radius_m = 0.0;   ///< of a roundabout's ring
+  double island_radius_m = 0.0;  ///< radius of a roundabout's island
+  double outer_radius_m = 0.0;   ///< outer radius of a roundabout's ring
 };
 
 struct RoadNetwork {

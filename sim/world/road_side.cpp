@@ -8,7 +8,7 @@ namespace bevloc::sim {
 namespace {
 
 constexpr double kVoteStep_m = 1.0;
-/// A lane farther away does not belong to the boundary. Also the size of a cell.
+/// A lane farther away than this does not belong to the boundary. This is also the size of a cell.
 constexpr double kFarthestLane_m = 8.0;
 
 uint64_t cell_key(int64_t east, int64_t north) {

@@ -10,7 +10,7 @@
 
 namespace bevloc::sim {
 
-/// Immutable.
+/// Immutable, and so thread-safe.
 class RoadSide {
  public:
   /// Keeps no reference to the map.
@@ -20,7 +20,7 @@ class RoadSide {
     bool is_right = false;    ///< the road is on the right of the line
     double distance_m = 0.0;  ///< least distance to the centre line of a lane
   };
-  /// Nothing if no lane is near.
+  /// Returns nothing if no lane is near.
   std::optional<Side> of(const Path& boundary) const;
 
  private:

@@ -20,7 +20,7 @@ struct StreetGrid {
   std::vector<Street> streets;
 };
 
-/// Draws a random plan: connected, without dead ends.
+/// Draws a random plan that is connected and has no dead ends.
 StreetGrid make_street_grid(Random& random);
 
 }  // namespace bevloc::sim

@@ -9,7 +9,7 @@
 namespace bevloc::sim {
 namespace {
 
-using LaneIds = std::vector<uint32_t>;  ///< from the inner to the outer lane
+using LaneIds = std::vector<uint32_t>;  ///< ids from the inner to the outer lane
 
 /// The lanes at the beginning and at the end of a carriageway.
 struct CarriagewayLanes {
@@ -176,8 +176,8 @@ void LaneLayer::add_roundabout(const Junction& junction) {
     }
     return add_lane(line, width, kTurnSpeed_mps);
   };
-  LaneIds between;  // from arm i to arm i + 1
-  LaneIds past;     // past arm i + 1
+  LaneIds between;  // lanes from arm i to arm i + 1
+  LaneIds past;     // lanes past arm i + 1
   for (size_t i = 0; i < arms; ++i) {
     const RingSector sector = ring_sector(network_, junction, i);
     const RingSector next = ring_sector(network_, junction, (i + 1) % arms);

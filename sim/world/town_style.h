@@ -21,7 +21,7 @@ struct EdgeStyle {
   WallTexture kerb = WallTexture::kKerbPlain;
   double kerb_height_m = 0.12;
   double verge_m = 0.0;     ///< width of the grass between kerb and sidewalk
-  double sidewalk_m = 2.0;  ///< width; 0: none
+  double sidewalk_m = 2.0;  ///< width; 0 without a sidewalk
   double driveways_per_100m = 0.0;
 };
 
@@ -30,14 +30,14 @@ enum class MedianKind : uint8_t { kNone, kPainted, kIsland, kBarrier };
 struct RoadStyle {
   double lane_width_m = 3.2;
   int lanes_forward = 1;
-  int lanes_backward = 1;  ///< 0: one-way
+  int lanes_backward = 1;  ///< 0 on a one-way road
   MedianKind median = MedianKind::kNone;
   double median_width_m = 0.0;
   DividerPaint centre;
   DividerPaint divider;
   bool edge_lines = true;
   double edge_line_width_m = 0.12;
-  double gutter_m = 0.3;  ///< from the edge of the outer lane to the edge of the road
+  double gutter_m = 0.3;  ///< distance from the outer lane to the edge of the road
   GroundMaterial material = GroundMaterial::kAsphalt;
   float brightness = 1.0F;
   float wear = 0.2F;
@@ -48,7 +48,7 @@ struct RoadStyle {
 struct TownStyle {
   bool left_hand_traffic = false;
   bool yellow_centre_lines = false;
-  double urbanity = 0.5;  ///< 0: open country, 1: inner city
+  double urbanity = 0.5;  ///< 0 in open country, 1 in the inner city
   double lane_width_m = 3.2;
   double dash_m = 3.0;
   double gap_m = 6.0;

@@ -35,7 +35,8 @@ Polyline random_route(const HdMap& map, uint32_t lane, Random& random) {
   return route;
 }
 
-/// Finds positions along a polyline for increasing stations. Beyond the end: the last point.
+/// Finds positions along a polyline for increasing stations. Beyond the end, the position is the
+/// last point.
 class Walker {
  public:
   explicit Walker(const Polyline& line) : line_(line) {}

@@ -8,7 +8,7 @@
 namespace bevloc::sim {
 
 struct Verge {
-  double width_m = 0.0;  ///< how far it reaches into the road; 0: none
+  double width_m = 0.0;  ///< how far it reaches into the road; 0 without a verge
   GroundMaterial material = GroundMaterial::kGrass;
 };
 

@@ -39,7 +39,7 @@ struct PaintLine {
   double gap_m = 0.0;
   double phase_m = 0.0;  ///< place in the dash pattern where the line begins
   Rgb albedo{0.8F, 0.8F, 0.8F};
-  float wear = 0.0F;  ///< 0: fresh, 1: gone
+  float wear = 0.0F;  ///< 0 if fresh, 1 if gone
 };
 
 /// A painted area: a zebra bar, stop line, arrow or symbol.
@@ -90,7 +90,7 @@ struct VehicleBody {
   VehicleKind kind = VehicleKind::kCar;
   Rgb albedo{0.5F, 0.5F, 0.5F};
 
-  /// x forward, y left, origin at the centre.
+  /// The body frame has x forward, y to the left and its origin at the centre.
   Se2 map_from_body() const { return {centre.x(), centre.y(), yaw_rad}; }
 };
 
@@ -134,8 +134,8 @@ struct World {
   std::vector<VehicleBody> parked;
   std::vector<TrafficVehicle> traffic;
   std::vector<Post> posts;
-  /// Photographs of surfaces (sim/render/photo_library.h), which must outlive the world. Null: all
-  /// textures are the simulator's own.
+  /// Photographs of surfaces (sim/render/photo_library.h), which must outlive the world. If null,
+  /// all textures are the simulator's own.
   const PhotoLibrary* photos = nullptr;
 };
 

@@ -18,7 +18,7 @@ inline constexpr Rgb kWhitePaint{0.78F, 0.78F, 0.76F};
 inline constexpr Rgb kHedgeGreen{0.12F, 0.25F, 0.08F};
 
 /// Builds a World. With the chances and errors of the TownStyle, a map element may be missing, lie
-/// beside its paint, or have no paint at all. Not thread safe.
+/// beside its paint, or have no paint at all. One thread.
 class WorldBuilder {
  public:
   /// `town` and `random` must outlive the builder.
@@ -42,7 +42,7 @@ class WorldBuilder {
   /// Adds a road boundary to the map alone, without a wall.
   void add_map_boundary(const Polyline& line, Appearance appearance);
 
-  // The visible parts alone, without map elements. They serve to dress an imported map.
+  // These add the visible parts alone, without map elements. They serve to dress an imported map.
   void paint_divider(const Polyline& line, const DividerPaint& paint, float wear);
   void paint_crossing(const Ring& ring, Appearance appearance, float wear);
   void build_boundary(const Polyline& line, const EdgeStyle& edge);

@@ -50,7 +50,7 @@ def _ask(port: int, request: bytes) -> None:
 
 
 def view(port: int) -> None:
-    """Reads the events of the page, as a browser does that shows it."""
+    """Reads the events of the page, as a browser that shows the page does."""
     while True:
         _ask(port, _EVENTS)
 
@@ -67,7 +67,7 @@ def _send_malformed(port: int) -> None:
 
 
 def _send_slowly(port: int) -> None:
-    """One byte every 0.1 s."""
+    """Sends one byte every 0.1 s."""
     request = b"GET / HTTP/1.1\r\nHost: localhost\r\nX: " + b"a" * 100_000
     while True:
         with contextlib.suppress(OSError), _connect(port) as client:
@@ -94,7 +94,7 @@ def _stay_silent(port: int) -> None:
 
 
 def attack(port: int) -> None:
-    """Every kind of hostile client at once."""
+    """Runs every kind of hostile client at once."""
     kinds: list[Callable[[int], None]] = [_send_huge, _send_malformed, _stay_silent]
     kinds += [_send_slowly] * _SLOW + [_ask_without_reading] * _UNREAD
     for kind in kinds:

@@ -77,14 +77,14 @@ def exposures_of(config: str, duration_s: float) -> float:
 
 
 def p99_ratio(alone: Drive, busy: Drive) -> float:
-    """Infinite if a drive localized nothing."""
+    """The ratio of the 99th percentiles. It is infinite if a drive localized nothing."""
     if busy.p99_ms == 0.0 or alone.p99_ms == 0.0:
         return float("inf")
     return busy.p99_ms / alone.p99_ms
 
 
 def table_of(alone: Drive, busy: Drive) -> str:
-    """Both side by side."""
+    """A table with both drives side by side."""
     rows = [
         ("exposure to CAN, p50, ms", f"{alone.p50_ms:.1f}", f"{busy.p50_ms:.1f}"),
         ("exposure to CAN, p99, ms", f"{alone.p99_ms:.1f}", f"{busy.p99_ms:.1f}"),

@@ -57,7 +57,7 @@ void BM_TrainingFrameset(benchmark::State& state) {
 }
 BENCHMARK(BM_TrainingFrameset)->Arg(0)->Arg(1)->Iterations(96)->Unit(benchmark::kMillisecond);
 
-/// The same with all the ground painted already.
+/// The same places with all the ground painted already.
 void BM_TrainingFramesetWarm(benchmark::State& state) {
   const World world = generate_world(kFirstTrainingSeed + 1);
   const Rig rig = network_rig(nominal_rig());

@@ -105,7 +105,7 @@ void register_all() {
 
 int main(int argc, char** argv) {
   benchmark::SetDefaultTimeUnit(benchmark::kMillisecond);
-  // Interleaved, so that what disturbs the machine for a while disturbs all alike.
+  // The repeats are interleaved, so that a disturbance of the machine affects all solvers alike.
   std::string interleave = "--benchmark_enable_random_interleaving=true";
   std::vector<char*> arguments(argv, argv + argc);
   arguments.insert(arguments.begin() + 1, interleave.data());

@@ -17,7 +17,8 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// A reader with a word that decides, a key in place of another one, and a word that is excluded.
+/// A reader in which a word decides which keys exist, a key replaces another one, and a word is
+/// excluded.
 void read_shop(YamlMap& yaml) {
   const bool sells = yaml.require_choice<bool>("what", {{"sells", true}, {"rents", false}});
   if (sells) yaml.require<double>("price", more_than(0.0));

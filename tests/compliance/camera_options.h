@@ -14,7 +14,7 @@ class CameraOptions {
  public:
   explicit CameraOptions(CLI::App& app);
 
-  /// Passes the cameras to the suite. To be called after the command line was parsed.
+  /// Passes the cameras to the suite. Call it after the command line was parsed.
   void apply();
 
  private:

@@ -162,7 +162,8 @@ TEST_F(Synchronizer, ADeadCameraIsNotWaitedForUntilItRecovers) {
   add_all_but(only(kBack), time_ms);
   EXPECT_TRUE(synchronizer_.blockers().none());
   EXPECT_TRUE(poll(time_ms + 20));
-  // The frameset of its first frame was emitted already. From then on it is waited for again.
+  // The frameset of its first frame was emitted already. After this frame the synchronizer waits
+  // for the camera again.
   EXPECT_EQ(add(kBack, time_ms, time_ms + 21), FrameFate::kLate);
   time_ms += 100;
   add_all_but(only(kBack), time_ms);

@@ -13,7 +13,7 @@
 namespace bevloc::fuzz {
 namespace {
 
-/// For sums of float probabilities, and for values at the end of an axis.
+/// The tolerance for sums of float probabilities, and for values at the end of an axis.
 constexpr double kSumTolerance = 1e-4;
 
 struct AxisResult {

@@ -47,7 +47,8 @@ def uses_between_neighbours(listed: list[str]) -> dict[str, set[str]]:
 
 
 def cycles(uses: dict[str, set[str]]) -> list[str]:
-    """Removes again and again what uses nothing that is left. What stays is in or above a cycle."""
+    """Removes folders that use no remaining folder until there are none. The rest is in a cycle or
+    uses one."""
     left = {folder: set(used) for folder, used in uses.items()}
     while bottom := [folder for folder, used in left.items() if not used & left.keys()]:
         for folder in bottom:

@@ -208,7 +208,7 @@ TEST(RealTimeDriveTest, FaultsAreSetAndClearedWhileTheDriveRuns) {
             std::string::npos);
   EXPECT_NE(fault_command(scratch, "set gnss_outage from_s=1").find("2: gnss_outage"),
             std::string::npos);
-  // The drive passes 1 s meanwhile.
+  // The drive passes second 1, when the fault begins, during these two seconds.
   const auto began = std::chrono::steady_clock::now();
   while (std::chrono::steady_clock::now() - began < std::chrono::seconds(2)) {
     EXPECT_NE(fault_command(scratch, "list").find("2: gnss_outage"), std::string::npos);
@@ -236,7 +236,8 @@ nlohmann::json unsynchronized_drive(bool compensate_motion) {
   nlohmann::json result =
       drive(scratch, (scratch / "config.yaml").string(), "--seed 901 --duration 10");
   const std::string csv = read_text(scratch / "poses.csv");
-  // One refused match is one frame of DEGRADED. Cameras that are not synchronized are all of them.
+  // A refused match makes one pose DEGRADED. Cameras that are not synchronized make all poses
+  // DEGRADED.
   const size_t tracking = count_of(csv, "TRACKING");
   const size_t degraded = count_of(csv, "DEGRADED");
   if (compensate_motion) {

@@ -1,4 +1,4 @@
-"""Tries the tools of the simulator with options without sense."""
+"""Tries the tools of the simulator with options that make no sense."""
 
 from __future__ import annotations
 

@@ -261,7 +261,7 @@ class Refinement(unittest.TestCase):
         values = torch.arange(-3, 4).double() * 0.5
         peak = torch.tensor([[0.0, 0, 0, 1, 0, 0, 0]]).double()
         followed = torch.tensor([[0.25, 0.5, 0.25]]).double()
-        # Between two hypotheses, no displacement, beyond the end.
+        # The displacements are between two hypotheses, zero, and beyond the end.
         offset = torch.tensor([[-0.75, 0.0, 4.0]]).double()
         found = convolve_along(peak, values, followed, offset)
         expected = torch.tensor([[0.0, 0.125, 0.125, 0.5, 0, 0, 0.25]]).double()

@@ -9,7 +9,7 @@
 namespace bevloc::drives {
 namespace {
 
-/// "FILE, 12.3 s": a frameset in messages.
+/// The name of a frameset in messages: "FILE, 12.3 s".
 std::string name_of(const DriveIndex& drive, const SamplePlace& place) {
   const Time time = drive.framesets[place.frameset].time;
   return fmt::format("{}, {:.2f} s after its first frameset", drive.name,

@@ -26,7 +26,7 @@ struct DriveSample {
   }
 };
 
-/// How a sample is varied.
+/// How a training sample differs from its recorded frameset.
 struct SampleChoice {
   Se2 correction;      ///< dT = T0^-1 T
   CameraMask cameras;  ///< others are black, as missing ones
@@ -36,7 +36,7 @@ struct SampleChoice {
 /// with this probability one or two missing cameras, as the simulator does.
 SampleChoice random_choice(uint64_t seed, uint64_t sample, double drop_camera_probability);
 
-/// One thread. Set and map must outlive it.
+/// Makes samples from framesets of a set. One thread. Set and map must outlive this object.
 class DriveSampleMaker {
  public:
   DriveSampleMaker(DriveSet& set, const MapIndex& map);

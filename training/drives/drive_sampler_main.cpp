@@ -106,7 +106,7 @@ std::vector<SamplePlace> shuffled(std::vector<SamplePlace> places, uint64_t seed
   return places;
 }
 
-/// Returns only if a sample is bad or writing fails.
+/// Writes samples without end. Returns only if a sample is bad or writing fails.
 int write_samples(const Options& options, DriveSet& set, DriveSampleMaker& maker) {
   const std::vector<SamplePlace>& places = set.places(options.part);
   if (places.empty()) {

@@ -83,12 +83,12 @@ Result<std::vector<std::vector<fs::path>>> runs_in(const fs::path& folder) {
 /// The folder itself, and the folders in it that may have drives of their own.
 Result<std::vector<fs::path>> folders_of_drives(const fs::path& folder) {
   std::vector<fs::path> folders{folder};
-  // The folders in it are those of its cameras.
+  // All folders in a folder of pictures belong to its cameras.
   if (is_drive_of_pictures(folder)) return folders;
   const auto entries = entries_of(folder);
   if (!entries) return tl::unexpected(entries.error());
   for (const fs::path& entry : *entries) {
-    // The black box has second names of files that are drives already.
+    // The black box has links to files that belong to other drives already.
     if (entry.filename() == firmware::kBlackBoxFolder) continue;
     const auto found = is_folder(entry);
     if (!found) return tl::unexpected(found.error());
@@ -97,7 +97,7 @@ Result<std::vector<fs::path>> folders_of_drives(const fs::path& folder) {
   return folders;
 }
 
-/// Appends the drives of a folder, without those in folders in it.
+/// Appends the drives of a folder, but not those of the folders in it.
 Status add_drives(const fs::path& folder, const DriveSetOptions& options,
                   std::vector<std::unique_ptr<RecordedDrive>>& drives) {
   if (is_drive_of_pictures(folder)) {

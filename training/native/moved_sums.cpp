@@ -8,7 +8,7 @@
 namespace bevloc {
 namespace {
 
-/// The derivatives of the loss by the sums of one correction (by the square: doubled).
+/// The derivatives of the loss by the sums of one correction. That by the squares is doubled.
 struct LineSlope {
   float product;
   float value;

@@ -7,7 +7,8 @@
 
 namespace bevloc {
 
-/// False if standard output is a terminal; then a message of `program` is on standard error.
+/// Returns false if standard output is a terminal, and then prints a message of `program` to
+/// standard error.
 bool output_is_pipe(const std::string& program);
 
 /// Writes all bytes to standard output. Returns false if the reader has gone or the write fails,

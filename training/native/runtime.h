@@ -24,7 +24,8 @@ void bevloc_network_run(bevloc_network* network, const uint8_t* images, const in
 
 /// Makes the solver named `kind` (pipeline/solver/solver_factory.h) with the parameters of the
 /// network's model, for the paper's hypotheses; bevloc_solver_destroy() frees it. It does not refer
-/// to the network afterwards. On failure as above.
+/// to the network afterwards. On failure it returns null and the reason, as
+/// bevloc_network_create() does.
 bevloc_solver* bevloc_solver_create(const bevloc_network* network, const char* kind, char* error,
                                     int error_size);
 void bevloc_solver_destroy(bevloc_solver* solver);

@@ -15,7 +15,7 @@ inline std::vector<std::string> ids_of(const libcamera::CameraManager& manager) 
   return ids;
 }
 
-/// The error message for an id that is not in `ids`.
+/// Returns the error message for an id that is not in `ids`.
 inline std::string no_camera_called(const std::string& id, const std::vector<std::string>& ids) {
   return fmt::format("no camera is called \"{}\"; available: {}", id,
                      ids.empty() ? "none" : fmt::format("\"{}\"", fmt::join(ids, "\", \"")));

@@ -113,7 +113,7 @@ void CaptureSession::stop() {
   if (!is_acquired_) return;
   is_acquired_ = false;
   running_ = false;
-  // Completes the queued requests as cancelled before it returns.
+  // libcamera completes the queued requests as cancelled before this call returns.
   camera_->stop();
   camera_->requestCompleted.disconnect(this);
   camera_->disconnected.disconnect(this);

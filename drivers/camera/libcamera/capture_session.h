@@ -18,8 +18,8 @@
 namespace bevloc::drivers::libcam {
 
 /// A frame that is held keeps the memory of the session alive. stop() releases the camera itself.
-/// open(), wait(), lend() and stop() are called from the camera's own thread. libcamera completes
-/// requests on its own thread.
+/// libcamera completes requests in its own thread.
+/// Thread-bound: called from the camera's own thread. A frame may be dropped by any thread.
 class CaptureSession final : public FrameLender,
                              public std::enable_shared_from_this<CaptureSession> {
  public:
@@ -34,9 +34,9 @@ class CaptureSession final : public FrameLender,
   Event wait(Duration timeout, int& slot);
 
   const libcamera::FrameMetadata& frame_metadata(int slot) const;
-  /// Start of exposure of the first row, if libcamera reports it.
+  /// Returns the start of exposure of the first row, if libcamera reports it.
   std::optional<int64_t> sensor_timestamp_ns(int slot) const;
-  /// The image in a completed request, with bytes_used.
+  /// Returns the image in a completed request, with its bytes_used.
   ImageView view(int slot) const;
 
   FrameBuffer lend(int slot);
@@ -64,7 +64,8 @@ class CaptureSession final : public FrameLender,
   void on_disconnected();
   void give_back(int slot) noexcept override;
 
-  // Order of destruction: requests refer to buffers, and both refer to the camera.
+  // The order of destruction matters, because requests refer to buffers, and both refer to the
+  // camera.
   const std::shared_ptr<libcamera::CameraManager> manager_;
   const std::shared_ptr<libcamera::Camera> camera_;
   bool is_acquired_ = false;

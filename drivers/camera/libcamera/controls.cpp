@@ -29,7 +29,7 @@ libcamera::ControlValue control_value(libcamera::ControlType type, double value)
   }
 }
 
-/// The value of a numeric control as a double; NaN for other types.
+/// Returns the value of a numeric control, or NaN for other types.
 double number_in(const libcamera::ControlValue& value) {
   switch (value.type()) {
     case libcamera::ControlTypeBool:

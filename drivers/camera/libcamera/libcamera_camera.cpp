@@ -13,7 +13,8 @@
 namespace bevloc::drivers {
 namespace {
 
-/// libcamera allows one manager per process, so all cameras share it. It ends with its last user.
+/// All cameras share one manager, because libcamera allows only one per process. The last user ends
+/// it.
 class SharedManager {
  public:
   Result<std::shared_ptr<libcamera::CameraManager>> use() {
@@ -31,8 +32,8 @@ class SharedManager {
   }
 
  private:
-  /// Ends the manager under the lock, because libcamera ends the process if another one begins
-  /// before that.
+  /// Ends the manager while it holds the lock, because libcamera ends the process if another
+  /// manager begins before this one has ended.
   void release() {
     const std::lock_guard lock(mutex_);
     if (--users_ == 0) manager_.reset();

@@ -20,12 +20,12 @@ class CaptureSession;
 std::vector<std::string> libcamera_ids();
 
 /// Frames refer to libcamera's dmabufs, which are mapped once. Dropping a frame queues its request
-/// again. Each start() searches the camera by `id`, as `cam -l` shows it. Controls have libcamera's
-/// names (AeEnable, ExposureTime in microseconds, AnalogueGain). The rate is set if the camera has
-/// the control FrameDurationLimits. USB cameras do not have it and keep their own rate.
+/// again. Each start() looks for the camera by its `id`, as `cam -l` shows it. Controls have
+/// libcamera's names (AeEnable, ExposureTime in microseconds, AnalogueGain). The rate is set if the
+/// camera has the control FrameDurationLimits. USB cameras do not have it and keep their own rate.
 class LibcameraCamera final : public Camera {
  public:
-  /// `clock` must be a MonotonicClock, because libcamera's timestamps are compared with it.
+  /// `clock` must be a MonotonicClock, because libcamera's time stamps are compared with it.
   LibcameraCamera(DeviceCameraConfig config, Clock& clock);
   ~LibcameraCamera() override;
 
@@ -37,7 +37,7 @@ class LibcameraCamera final : public Camera {
   CameraCounters counters() const override { return counter_.counters(); }
 
  private:
-  /// Fills `frame`. Returns false for an image that is incomplete or has no timestamp.
+  /// Fills `frame`. Returns false for an image that is incomplete or has no time stamp.
   bool take(int slot, Frame& frame);
 
   const DeviceCameraConfig config_;

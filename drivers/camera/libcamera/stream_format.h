@@ -20,10 +20,10 @@ struct StreamLayout {
   YuvEncoding yuv;
 };
 
-/// libcamera uses DRM's names, whose BGR888 has the byte order of our rgb24.
+/// libcamera uses the names of DRM, in which BGR888 has the byte order of our rgb24.
 libcamera::PixelFormat libcamera_format(PixelFormat format);
 
-/// BT.601 with limited range if libcamera does not know the colour space.
+/// Returns BT.601 with limited range if libcamera does not know the colour space.
 YuvEncoding yuv_encoding(const libcamera::StreamConfiguration& stream);
 
 /// Puts the first of config.formats that the camera supports at this size, and the number of

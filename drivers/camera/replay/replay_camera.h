@@ -12,12 +12,13 @@ namespace bevloc::drivers {
 
 struct ReplayCameraConfig {
   int camera = 0;  ///< index into kCameraNames
-  /// Holds PNG or JPEG files and the index `frames.txt`: one line `sequence time_ns file` per
-  /// image. Sequence and time must increase. `#` starts a comment.
+  /// The folder with PNG or JPEG files and the index `frames.txt`, which has one line `sequence
+  /// time_ns file` per image. Sequence and time must increase. `#` starts a comment.
   std::filesystem::path directory;
   int width_px = 0;
   int height_px = 0;
-  /// Added to every recorded time. It must be the same for all cameras of a recording.
+  /// The time that is added to every recorded time. It must be the same for all cameras of a
+  /// recording.
   Duration shift{0};
   Duration exposure{0};
   Duration readout{0};  ///< from start of exposure to arrival
@@ -34,8 +35,7 @@ struct RecordedFrame {
 /// Reads `directory`/frames.txt and checks that each file exists. An error names file and line.
 Result<std::vector<RecordedFrame>> load_recording(const std::filesystem::path& directory);
 
-/// The frames of all cameras of a recording: those of each `directory`/CAMERA. None of a camera
-/// without a folder.
+/// The frames of all cameras of a recording. A camera without a folder has none.
 using RecordedFrames = std::array<std::vector<RecordedFrame>, kCameraCount>;
 Result<RecordedFrames> load_recordings(const std::filesystem::path& directory);
 

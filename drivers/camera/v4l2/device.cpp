@@ -11,7 +11,7 @@
 namespace bevloc::drivers::v4l2 {
 
 Result<std::shared_ptr<Device>> Device::open(const std::filesystem::path& node) {
-  // Non-blocking, because next_frame() waits in ppoll() with a timeout.
+  // The device is opened non-blocking, because next_frame() waits in ppoll() with a timeout.
   const int fd = ::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) {
     return fail(

@@ -9,7 +9,7 @@
 
 namespace bevloc::drivers::v4l2 {
 
-/// The destructor closes the device. Thread-safe, because the kernel's calls are.
+/// The destructor closes the device. Thread-safe, because the calls of the kernel are.
 class Device {
  public:
   /// Fails for a device that cannot capture single-plane video by streaming.

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kNodePrefix = "video";
 
-/// Returns the first line of a sysfs file, or nothing if there is no such file.
+/// Returns the first line of a sysfs file, or an empty text if there is no such file.
 std::string attribute(const fs::path& file) {
   std::ifstream stream(file);
   std::string line;
@@ -26,8 +26,8 @@ int number_in(std::string_view text) {
   return number;
 }
 
-/// Returns the nearest ancestor of a device that is a USB device. Empty for a device on another
-/// bus.
+/// Returns the nearest ancestor of a device that is a USB device, or an empty path for a device on
+/// another bus.
 fs::path usb_device_of(fs::path device, const fs::path& sysfs) {
   std::error_code ignored;
   while (device.has_relative_path() && device != sysfs && device != device.parent_path()) {

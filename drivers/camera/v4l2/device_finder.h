@@ -19,7 +19,8 @@ struct DeviceTree {
 /// One video node and its names.
 struct VideoNode {
   std::filesystem::path node;
-  int index = 0;  ///< among the nodes of one device; node 0 of a USB camera delivers the images
+  /// Number among the nodes of one device. Node 0 of a USB camera delivers the images.
+  int index = 0;
   std::string device;  ///< sysfs path of the node's device
   std::string card;    ///< such as "HD USB Camera"
   std::string serial;  ///< serial number of a USB device; empty if it has none
@@ -32,8 +33,8 @@ std::vector<VideoNode> list_video_nodes(const DeviceTree& tree = {});
 
 /// Returns the node whose by-id or by-path name, USB serial number, USB port or card name is `id`.
 /// If several nodes of one device match, returns the first one. Fails when no device or more than
-/// one matches, and lists the devices. Also fails for a /dev/video number, as it changes with each
-/// boot.
+/// one matches, and lists the devices. Also fails for a /dev/video number, because it changes with
+/// each boot.
 Result<std::filesystem::path> find_video_node(std::string_view id, const DeviceTree& tree = {});
 
 }  // namespace bevloc::drivers::v4l2

@@ -7,7 +7,7 @@
 namespace bevloc::drivers::v4l2 {
 namespace {
 
-/// Relative. 30 Hz and 29.97 Hz count as the same rate.
+/// The largest relative difference of rates that count as the same, such as 30 Hz and 29.97 Hz.
 constexpr double kRateTolerance = 0.01;
 
 bool has_format(const Device& device, uint32_t fourcc) {

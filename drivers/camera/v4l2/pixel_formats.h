@@ -10,7 +10,7 @@
 
 namespace bevloc::drivers::v4l2 {
 
-/// Returns up to four characters, without trailing spaces.
+/// Returns the name of a format: up to four characters, without trailing spaces.
 std::string fourcc_name(uint32_t fourcc);
 
 uint32_t fourcc_of(PixelFormat format);

@@ -15,12 +15,12 @@
 namespace bevloc::drivers::v4l2 {
 
 /// How buffers are mapped: directly from the device, or exported as dmabuf and mapped from there.
-/// An accelerator could read a dmabuf too.
+/// An accelerator could read a dmabuf, too.
 enum class MemoryAccess : uint8_t { kMapped, kDmabuf };
 
 /// A frame that is held keeps the memory and the file descriptor of the stream alive. stop()
-/// releases the device, so that a new stream can start. open(), dequeue(), lend() and stop() are
-/// called from the camera's own thread.
+/// releases the device, so that a new stream can start.
+/// Thread-bound: called from the camera's own thread. A frame may be dropped by any thread.
 class Stream final : public FrameLender, public std::enable_shared_from_this<Stream> {
  public:
   /// Allocates, maps and queues the buffers and starts streaming. The driver may allocate fewer or
@@ -40,7 +40,7 @@ class Stream final : public FrameLender, public std::enable_shared_from_this<Str
   /// Queues a dequeued buffer again. Thread-safe.
   void requeue(uint32_t slot) const noexcept;
 
-  /// The image in a dequeued buffer.
+  /// Returns the image in a dequeued buffer.
   ImageView view(const v4l2_buffer& buffer) const;
   int buffers() const { return static_cast<int>(mappings_.size()); }
   int lent() const { return lent_.load(std::memory_order_relaxed); }

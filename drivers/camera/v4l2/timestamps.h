@@ -1,4 +1,4 @@
-// Converts the timestamp of a V4L2 buffer to the start of exposure.
+// Converts the time stamp of a V4L2 buffer to the start of exposure.
 #pragma once
 
 #include <cstdint>

@@ -63,7 +63,7 @@ Result<FrameEvent> V4l2Camera::next_frame(Duration timeout, Frame& frame) {
   return FrameEvent::kTimeout;
 }
 
-/// poll() reports an error as readiness too. dequeue() then returns the error.
+/// ppoll() reports an error as readiness, too. dequeue() then returns the error.
 V4l2Camera::Wait V4l2Camera::wait_until(Time time) const {
   const timespec limit = timespec_of(std::max(time - clock_.now(), Duration::zero()));
   pollfd entry{stream_->device().fd(), POLLIN, 0};

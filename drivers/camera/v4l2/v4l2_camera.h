@@ -20,9 +20,10 @@ struct V4l2CameraConfig {
 };
 
 /// Frames refer to the driver's memory, without a copy. Dropping a frame queues its buffer again.
-/// Each start() searches the device, so a camera is also found at another port. Damaged frames
-/// (marked by the driver, or incomplete) are counted and dropped. `overrun` stays 0: the kernel
-/// keeps frames that are not fetched until it has no free buffer, and then the sequence has a gap.
+/// Each start() looks for the device, so a camera is also found at another port. Damaged frames
+/// (marked by the driver, or incomplete) are counted and dropped. `overrun` stays 0, because the
+/// kernel keeps frames that are not fetched until it has no free buffer. Then the sequence has a
+/// gap.
 class V4l2Camera final : public Camera {
  public:
   /// `clock` must be a MonotonicClock, because the kernel stamps frames with this clock.

@@ -38,7 +38,8 @@ double number_from(const std::string& text, std::string_view place) {
 
 ForeignNode ForeignNode::parse(const std::string& text, const std::string& name) {
   std::string yaml = text;
-  // OpenCV's header lacks the space that YAML demands. The line stays, so that numbers fit.
+  // OpenCV's header lacks the space that YAML demands. The line stays as a comment, so that line
+  // numbers are right.
   if (yaml.starts_with("%YAML:")) yaml[0] = '#';
   Result<YAML::Node> node = parse_document(yaml, name);
   if (!node) throw ImportError{std::move(node.error().message)};

@@ -13,7 +13,7 @@
 
 namespace bevloc::calibration_import {
 
-/// Thrown inside this folder only; import_rig() returns it as an error.
+/// Only this folder throws it; import_rig() returns it as an error.
 struct ImportError {
   std::string message;
 };
@@ -21,7 +21,7 @@ struct ImportError {
 /// Throws "place: found X, wanted Y".
 [[noreturn]] void refuse(std::string_view place, std::string_view found, std::string_view wanted);
 
-/// The number that the whole text spells. Throws unless there is a finite one.
+/// The number that the whole text spells. Throws unless it is a finite number.
 double number_from(const std::string& text, std::string_view place);
 
 /// One node of a document, with the keys that lead to it. All members throw ImportError.
@@ -43,7 +43,7 @@ class ForeignNode {
   /// A flat list of numbers. A `count` other than 0 is the required length.
   std::vector<double> numbers(size_t count = 0) const;
 
-  /// "file:line: key.of.maps".
+  /// The place of the node in messages: "file:line: key.of.maps".
   std::string place() const;
   [[noreturn]] void reject(std::string_view found, std::string_view wanted) const;
 
@@ -58,7 +58,8 @@ class ForeignNode {
 /// A rotation from a quaternion (w, x, y, z) whose norm is within 0.001 of 1.
 Eigen::Matrix3d rotation_from_wxyz(const std::vector<double>& wxyz, std::string_view place);
 
-/// A rigid transform from 16 numbers row by row. Throws unless it is one to 0.001.
+/// A rigid transform from 16 numbers row by row. Throws unless the numbers form a rigid transform
+/// to within 0.001.
 Se3 rigid_from_rows(const std::vector<double>& rows, std::string_view place);
 
 }  // namespace bevloc::calibration_import

@@ -32,7 +32,7 @@ bool is_list_with(const ForeignNode& document, std::string_view key) {
   return !items.empty() && items.front().has(key);
 }
 
-/// Formats that take several files are read when all have been seen.
+/// Collects the files. A format with several files is read after all files have been seen.
 class Collector {
  public:
   explicit Collector(const RigImportOptions& options) : options_(options) {}
@@ -107,7 +107,7 @@ class Collector {
   const ForeignFile* colmap_images_ = nullptr;
 };
 
-/// Some editors begin a file with a byte order mark.
+/// Removes the byte order mark with which some editors begin a file.
 std::vector<ForeignFile> without_byte_order_marks(std::vector<ForeignFile> files) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   for (ForeignFile& file : files) {
@@ -116,8 +116,8 @@ std::vector<ForeignFile> without_byte_order_marks(std::vector<ForeignFile> files
   return files;
 }
 
-/// A message of the check of rig files, about the camera's source instead of a rig file that does
-/// not exist yet.
+/// Makes a message about a rig file name the source of the camera, because there is no rig file
+/// yet.
 std::string with_source(const std::string& message,
                         const std::array<CameraSource, kCameraCount>& sources) {
   constexpr std::string_view kKey = ": cameras.";
@@ -146,7 +146,7 @@ Result<ImportedRig> import_rig(const std::vector<ForeignFile>& files,
              options.tokens.empty() ? "at least one" : "one with the token of --token");
     }
     auto built = calibration_import::build_rig(std::move(cameras), options);
-    // What a rig file would refuse is refused here.
+    // This refuses what a rig file would refuse.
     const auto rig = parse_rig(format_rig(built.rig), "imported rig");
     if (!rig) return tl::unexpected(Error{with_source(rig.error().message, built.sources)});
     return ImportedRig{*rig, std::move(built.notes)};

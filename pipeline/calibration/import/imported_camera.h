@@ -18,17 +18,17 @@ struct Mounting {
 };
 
 struct ImportedCamera {
-  std::string name;       ///< in the file that it comes from
+  std::string name;       ///< name in the file that it comes from
   std::string place;      ///< "file:line: key"
   Intrinsics intrinsics;  ///< width_px is 0 where the format lacks the size of the images
   std::optional<Mounting> mounting{};
-  std::string lens_place{};  ///< of the intrinsics, if they come from another place
-  std::string lens_doubt{};  ///< for the user, if the file does not say which lens it means
+  std::string lens_place{};  ///< place of the intrinsics, if they come from another place
+  std::string lens_doubt{};  ///< remark for the user, if the file does not say which lens it means
 
   const std::string& place_of_lens() const { return lens_place.empty() ? place : lens_place; }
 };
 
-/// Sets the distortion k1, k2, p1 and p2 of coefficients in OpenCV's order. Refuses further ones
+/// Sets the distortion k1, k2, p1 and p2 from coefficients in OpenCV's order. Refuses further ones
 /// (k3 to k6, thin prism, tilt) other than 0, which bevloc's camera model does not have, and a
 /// number of coefficients that OpenCV does not write.
 void set_pinhole_distortion(const std::vector<double>& coefficients, const std::string& place,

@@ -70,7 +70,7 @@ std::optional<int> number_in(std::string_view key) {
 }
 
 /// The key of the camera to which T_cn_cnm1 of the camera `index` is relative: "cam2" for "cam3",
-/// wherever the file has it. Only the order in the file tells it for keys of another form.
+/// wherever the file has it. For keys of another form, it is the camera before in the file.
 std::string key_before(const std::vector<std::pair<std::string, ForeignNode>>& entries,
                        size_t index) {
   const auto& [key, camera] = entries[index];
@@ -82,7 +82,8 @@ std::string key_before(const std::vector<std::pair<std::string, ForeignNode>>& e
   return fmt::format("cam{}", *number - 1);
 }
 
-/// Names by key. Two cameras under one topic would share a name, so the later one keeps its key.
+/// Maps keys to names. Two cameras under one topic would share a name, so the later one keeps its
+/// key.
 std::map<std::string, std::string> names_of(
     const std::vector<std::pair<std::string, ForeignNode>>& entries) {
   std::map<std::string, std::string> names;

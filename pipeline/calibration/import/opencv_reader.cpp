@@ -7,7 +7,8 @@
 namespace bevloc::calibration_import {
 namespace {
 
-/// The first of the keys that the document has; the first of all if it has none.
+/// Returns the value of the first of these keys that the document has. If it has none, the error
+/// names the first key.
 ForeignNode first_of(const ForeignNode& document, std::initializer_list<std::string_view> keys) {
   for (const std::string_view key : keys) {
     if (document.has(key)) return document.at(key);
@@ -15,7 +16,7 @@ ForeignNode first_of(const ForeignNode& document, std::initializer_list<std::str
   return document.at(*keys.begin());
 }
 
-/// The numbers of a matrix with rows, cols and data. `count` 0: any.
+/// The numbers of a matrix with rows, cols and data. A `count` of 0 allows any number of them.
 std::vector<double> matrix_data(const ForeignNode& matrix, size_t count) {
   const int rows = matrix.at("rows").whole_number(0, 100);
   const int cols = matrix.at("cols").whole_number(0, 100);
@@ -38,8 +39,8 @@ std::string name_in(const ForeignNode& document, const std::string& name) {
   return document.has("camera_name") ? document.at("camera_name").text() : name;
 }
 
-/// ROS means the camera matrix for the full image, also where the driver delivers a part of it or
-/// fewer pixels. How pixels are put together is not said, so the matrix cannot be converted.
+/// In ROS, the camera matrix belongs to the full image, even if the driver delivers a part of it or
+/// fewer pixels. The file does not say how pixels are combined, so the matrix cannot be converted.
 void refuse_other_pictures(const ForeignNode& document, const Intrinsics& lens) {
   constexpr std::string_view kWanted =
       ", because the camera matrix is that of the full image; calibrate with the pictures as the "

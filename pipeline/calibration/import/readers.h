@@ -9,24 +9,25 @@
 
 namespace bevloc::calibration_import {
 
-/// Kalibr's camchain: `cam0`, `cam1` and so on, named so or by their `rostopic` (first word of the
-/// topic). camera_model pinhole with distortion_model radtan, equidistant or none. T_cam_imu maps
-/// points of the IMU into the camera, T_cn_cnm1 those of the camera before (cam2 for cam3) into
-/// this one. timeshift_cam_imu is not used.
+/// Reads Kalibr's camchain: `cam0`, `cam1` and so on. A camera gets its name from the first word of
+/// its `rostopic`, or else from its key. The camera_model must be pinhole, and the distortion_model
+/// radtan, equidistant or none. T_cam_imu maps points of the IMU into the camera. T_cn_cnm1 maps
+/// points of the camera before (cam2 for cam3) into this one. timeshift_cam_imu is not used.
 std::vector<ImportedCamera> read_kalibr(const ForeignNode& document);
 
-/// A FileStorage file of OpenCV: camera_matrix (or K), distortion_coefficients (or distortion,
-/// dist_coeffs, D), image_width and image_height where it has them. The lens is a fisheye where
-/// fisheye_model is 1. The camera has the name `name` unless the file has camera_name.
+/// Reads a FileStorage file of OpenCV: camera_matrix (or K), distortion_coefficients (or
+/// distortion, dist_coeffs, D), and image_width and image_height if it has them. The lens is a
+/// fisheye if fisheye_model is 1. The camera has the name `name` unless the file has camera_name.
 ImportedCamera read_opencv(const ForeignNode& document, const std::string& name);
 
-/// A camera_info file of ROS with distortion_model plumb_bob, rational_polynomial or equidistant,
-/// and without binning and region of interest.
+/// Reads a camera_info file of ROS with distortion_model plumb_bob, rational_polynomial or
+/// equidistant, and without binning and region of interest.
 ImportedCamera read_camera_info(const ForeignNode& document, const std::string& name);
 
-/// calibrated_sensor.json with sensor.json of nuScenes. A camera has the name of its channel
+/// Reads calibrated_sensor.json and sensor.json of nuScenes. A camera has the name of its channel
 /// (CAM_FRONT). Its rotation (w, x, y, z) and translation map camera points into the ego vehicle.
-/// Where a channel has several different calibrations, `tokens` must choose one.
+/// If a channel has several different calibrations, `tokens` must choose one. If there are tokens,
+/// only the cameras that they name are read.
 std::vector<ImportedCamera> read_nuscenes(const ForeignNode& calibrated_sensors,
                                           const ForeignNode& sensors,
                                           const std::vector<std::string>& tokens);

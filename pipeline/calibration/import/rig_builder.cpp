@@ -82,7 +82,7 @@ class RigBuilder {
     }
   }
 
-  /// Refuses a size of images that every file states itself.
+  /// Refuses the option for the size of images if every file states the size itself.
   void check_image_size() const {
     const auto lacks_size = [](const ImportedCamera& camera) {
       return camera.intrinsics.width_px == 0;
@@ -193,7 +193,7 @@ class RigBuilder {
   }
 
   /// Follows the chain of parents in both directions: a camera whose child has a known place has
-  /// one, too. `visited` holds the files' names.
+  /// one, too. `visited` holds the names that the files use.
   std::optional<Se3> vehicle_from(const ImportedCamera& camera,
                                   std::set<std::string>& visited) const {
     if (!visited.insert(camera.name).second) return std::nullopt;
@@ -207,7 +207,7 @@ class RigBuilder {
     return vehicle_from_child_of(camera.name, true, visited);
   }
 
-  /// The place of a camera or of another frame by that of a camera that hangs on it.
+  /// The place of a camera or of another frame, computed from that of a camera that hangs on it.
   std::optional<Se3> vehicle_from_child_of(const std::string& parent, bool is_camera,
                                            std::set<std::string>& visited) const {
     for (const ImportedCamera& child : cameras_) {

@@ -1,4 +1,4 @@
-// Makes our rig of imported cameras: their names, and their places on the vehicle.
+// Makes our rig from imported cameras: finds their names and their places on the vehicle.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace bevloc::calibration_import {
 
-/// Where a camera's values come from, as the place in messages.
+/// Where a camera's values come from, as messages name the place.
 struct CameraSource {
   std::string intrinsics;
   std::string extrinsics;
@@ -22,7 +22,7 @@ struct BuiltRig {
   std::array<CameraSource, kCameraCount> sources;
 };
 
-/// Throws ImportError if a camera or its place is missing, or if nothing needs one of the options.
+/// Throws ImportError if a camera or its place is missing, or if one of the options is not needed.
 BuiltRig build_rig(std::vector<ImportedCamera> cameras, const RigImportOptions& options);
 
 }  // namespace bevloc::calibration_import

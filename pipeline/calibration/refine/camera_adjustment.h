@@ -11,8 +11,8 @@
 namespace bevloc {
 
 /// Rotation vector about the camera's axes (pitch about x, yaw about y, roll about z), translation
-/// along the vehicle's axes, relative change of both focal lengths, and the time offset: a picture
-/// was taken so much later than its timestamp says.
+/// along the vehicle's axes, relative change of both focal lengths, and the time offset, by which a
+/// picture was taken later than its time stamp says.
 enum CameraParameter : int {
   kPitch = 0,
   kYaw = 1,
@@ -28,8 +28,8 @@ inline constexpr int kCameraParameters = 8;
 struct CameraParameterInfo {
   std::string_view name;
   std::string_view key;   ///< in JSON, with the unit
-  double per_unit;        ///< radians, metres, 1 or seconds in the unit that people read
-  double expected_error;  ///< 1 sigma before a recording, in radians, metres, 1 or seconds
+  double per_unit;        ///< SI units (rad, m, 1, s) in one unit that people read
+  double expected_error;  ///< one sigma before a recording, in SI units
 };
 inline constexpr double kPerDegree = 3.14159265358979323846 / 180.0;
 inline constexpr std::array<CameraParameterInfo, kCameraParameters> kCameraParameterInfos{{

@@ -18,7 +18,8 @@ struct GreyImage {
     return u >= 0.0 && v >= 0.0 && u <= width - 1.0 && v <= height - 1.0;
   }
 
-  /// Bilinear. The place must be inside (contains()); (0, 0) is the centre of the first pixel.
+  /// Returns the bilinear interpolation. The place must be inside (contains()); (0, 0) is the
+  /// centre of the first pixel.
   float at(double u, double v) const {
     const int left = std::min(static_cast<int>(u), width - 2);
     const int top = std::min(static_cast<int>(v), height - 2);
@@ -30,7 +31,8 @@ struct GreyImage {
   }
 };
 
-/// Luma as ITU-R BT.601 weighs it, rounded to 1/256. At least 2 x 2 pixels.
+/// The luma of ITU-R BT.601, with weights rounded to 1/256. The image must have at least 2 x 2
+/// pixels.
 inline GreyImage grey_from(const RgbView& rgb) {
   GreyImage grey{rgb.width, rgb.height, {}};
   grey.pixels.reserve(static_cast<size_t>(rgb.width) * rgb.height);

@@ -18,17 +18,17 @@ struct PointView {
   Eigen::Vector2d pixel;
   Eigen::Matrix<double, 2, kCameraParameters> of_camera;
   Eigen::Matrix<double, 2, kFrameUnknowns> of_frame;
-  /// By the point, along the axes of the map and up.
+  /// Derivative by the point, along the axes of the map and up.
   Eigen::Matrix<double, 2, 3> of_point;
 };
 
-/// From the vehicle frame of the reference pose to that of the body.
+/// The transform from the vehicle frame of the reference pose to the frame of the body.
 Se3 body_from_vehicle(const FrameVector& frame_error);
 
 class MomentView {
  public:
-  /// Views the road with `change` applied to the rig's camera. `picture_time` is by the picture's
-  /// clock. Returns nothing if the reference does not cover the time.
+  /// Views the road with `change` applied to the rig's camera. `picture_time` is the time stamp of
+  /// the picture. Returns nothing if the reference does not cover the time and 20 ms around it.
   static std::optional<MomentView> make(const CameraModel& camera, const CameraAdjustment& change,
                                         const FrameVector& frame_error,
                                         const ReferenceTrajectory& reference, Time picture_time);
@@ -56,7 +56,7 @@ class MomentView {
   Se3 vehicle_from_camera_;
   Se2 map_from_vehicle_;
   Se2 vehicle_from_map_;
-  Se2 vehicle_from_map_before_;  ///< kAround earlier
+  Se2 vehicle_from_map_before_;  ///< at a time kAround earlier
   Se2 vehicle_from_map_after_;
 };
 

@@ -15,13 +15,13 @@ constexpr double kThinnest_px = 1.0;
 constexpr double kPaint_m = 0.12;
 constexpr double kNarrowest_m = 0.06;
 constexpr double kWidest_m = 0.30;
-constexpr double kBlur_px = 1.5;  // of the edges of a stripe
+constexpr double kBlur_px = 1.5;  // blur of the edges of a stripe
 /// The two sides of a stripe differ at most by this share of its contrast. The road is equally dark
 /// on both sides of a line. A bright kerb has the road on one side only.
 constexpr double kSidesDiffer = 0.4;
 constexpr float kLeastSlope = 2.5F;  // grey levels per pixel
 constexpr float kOverNoise = 4.0F;
-constexpr float kWeakest = 0.5F;  // of the strongest candidate
+constexpr float kWeakest = 0.5F;  // share of the strongest candidate
 
 struct Edge {
   double offset_px;
@@ -41,7 +41,7 @@ class GroundView {
     return camera_.intrinsics.project(camera_from_vehicle_ * Eigen::Vector3d(at.x(), at.y(), 0.0));
   }
 
-  /// Nothing where the camera does not see the line wide enough.
+  /// Returns nothing if the camera does not see the line wide enough.
   std::optional<PaintSighting> look_at(const PaintPoint& point) const {
     constexpr double kApart_m = 0.05;
     const auto here = project(point.point_m);
@@ -74,7 +74,7 @@ class ProfileReader {
  public:
   ProfileReader(const GreyImage& image, double reach_px) : image_(image), reach_px_(reach_px) {}
 
-  /// False if the profile leaves the image.
+  /// Returns false if the profile leaves the image.
   bool read(const PaintSighting& sighting) {
     constexpr int kAlong = 2;           // neighbours to either side, 1 px apart
     constexpr double kAround_px = 6.0;  // asphalt beyond the paint, to tell paint from noise
@@ -171,7 +171,7 @@ bool sides_are_alike(const ProfileReader& profile, double rise_px, double fall_p
   return std::abs(left - right) <= kSidesDiffer * contrast;
 }
 
-/// The middles of a rising and the next falling edge.
+/// Finds the middles between a rising edge and the next falling edge.
 void find_stripes(const ProfileReader& profile, double reach_px, PaintSighting& sighting) {
   std::vector<Edge> found;
   const std::vector<Edge>& edges = profile.edges();

@@ -18,8 +18,8 @@ struct PaintSighting {
   static constexpr int kMostCandidates = 3;
 
   Eigen::Vector2d point_m;       ///< in the map frame, on the ground
-  uint32_t element = 0;          ///< of the map
-  Eigen::Vector2d predicted_px;  ///< the point by the calibration that was searched with
+  uint32_t element = 0;          ///< index of the element in the map
+  Eigen::Vector2d predicted_px;  ///< the point as the calibration of the search projects it
   Eigen::Vector2d normal_px;     ///< unit, across the line in the image
   double pixels_per_m = 0.0;     ///< along the normal, per metre across the line on the ground
   int candidates = 0;

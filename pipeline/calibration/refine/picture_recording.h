@@ -12,7 +12,7 @@ namespace bevloc {
 
 struct RecordedPicture {
   int camera = 0;  ///< index into kCameraNames
-  Time time;       ///< as the recording has it
+  Time time;       ///< time stamp in the recording
   GreyImage image;
 };
 
@@ -25,8 +25,8 @@ class PictureRecording {
   virtual const ReferenceTrajectory& reference() const = 0;
   virtual int framesets() const = 0;
   virtual void rewind() = 0;
-  /// Replaces `pictures` by those of the next frameset, at most one of each camera; by none at the
-  /// end. Times of pictures are on the same clock as the reference's.
+  /// Replaces `pictures` by those of the next frameset, at most one of each camera. At the end
+  /// there are none. The times of pictures and reference are on the same clock.
   virtual Status next(std::vector<RecordedPicture>& pictures) = 0;
 };
 

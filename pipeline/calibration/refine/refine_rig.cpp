@@ -10,7 +10,8 @@ constexpr int kLeastFramesets = 20;
 
 struct Round {
   double search_rad;  ///< largest distance between where paint and ties are expected and found
-  /// Of where they are found (RefinementProblem::solve), halved from the first to the last.
+  /// Factor on the sigma of where they are found (RefinementProblem::solve). Each solution halves
+  /// it, from the first value to the last.
   double first_sigma_scale;
   double last_sigma_scale;
   bool uses_paint = true;
@@ -21,7 +22,7 @@ struct Round {
 /// need no map. With a large sigma, wrong lines change the estimate less. The body tilts by more
 /// than a narrow search reaches, so the last rounds expect its tilt. They also start again with
 /// each frameset, from a large sigma, because a frameset that has fitted a kerb beside a line would
-/// stay there. The rounds before do neither, because they do not yet tell the tilt from errors of
+/// stay there. The earlier rounds do neither, because they cannot yet tell the tilt from errors of
 /// the cameras.
 constexpr Round kTiesOnly{
     .search_rad = 0.04, .first_sigma_scale = 8.0, .last_sigma_scale = 1.0, .uses_paint = false};

@@ -9,7 +9,8 @@
 
 namespace bevloc {
 
-/// Called after each frameset with how many of all have been read, over all rounds.
+/// Called after each frameset with the number of framesets read so far and the number to be read,
+/// over all rounds.
 using RefinementProgress = std::function<void(int done, int all)>;
 
 /// Reads the recording seven times. It first uses the given rig and a wide search, and later the

@@ -81,7 +81,8 @@ Se3 RefinementProblem::expected_body_from_vehicle(int frame) const {
   return body_from_vehicle(expected_error(frame));
 }
 
-/// In the vehicle frame, from the reference positions; 0 where they are not known.
+/// The acceleration in the vehicle frame, from the reference positions. It is 0 if they are not
+/// known.
 Eigen::Vector2d RefinementProblem::acceleration_at(Time time) const {
   constexpr Duration kAround = std::chrono::milliseconds(500);
   const auto pose = reference_.at(time);
@@ -114,7 +115,8 @@ FrameVector RefinementProblem::expected_error(int frame) const {
                                      : FrameVector(FrameVector::Zero());
 }
 
-/// Prior information of each parameter: so large that the parameter stays, unless it is free.
+/// Prior information of each parameter. It is so large that a parameter that is not free stays as
+/// it is.
 Eigen::VectorXd RefinementProblem::camera_prior() const {
   constexpr double kFixed = 1e12;
   Eigen::VectorXd prior(kCameraUnknowns);
@@ -127,7 +129,7 @@ Eigen::VectorXd RefinementProblem::camera_prior() const {
   return prior;
 }
 
-/// Moves all unknowns; the framesets' follow from the others.
+/// Moves all unknowns. Those of the framesets follow from the others.
 void RefinementProblem::move(const EliminatedFrames& eliminated, const Eigen::VectorXd& by) {
   for (int c = 0; c < kCameraCount; ++c) {
     estimate_.changes[c] += by.segment<kCameraParameters>(c * kCameraParameters);
@@ -146,7 +148,7 @@ void RefinementProblem::move(const EliminatedFrames& eliminated, const Eigen::Ve
 /// One step of Levenberg-Marquardt. Returns whether another one may still improve the estimate.
 bool RefinementProblem::step(double gate_rad, double& damping) {
   constexpr double kMostDamping = 1e4;
-  constexpr double kConverged = 1e-3;  // of the expected errors
+  constexpr double kConverged = 1e-3;  // share of the expected errors
   const Eigen::VectorXd prior = camera_prior();
   const auto cost_of = [&](const RefinementSums& sums) {
     double cost = sums.cost;
@@ -203,8 +205,8 @@ std::array<int, kCameraCount> RefinementProblem::agreeing_ties(double gate_rad) 
   return count;
 }
 
-/// Leaves out cameras that see too little or would change too much. Returns whether there are new
-/// ones.
+/// Leaves out cameras that see too little or would change too much. Returns whether it has left out
+/// further cameras.
 bool RefinementProblem::leave_out_doubtful(double gate_rad) {
   std::array<int, kCameraCount> seen = agreeing_ties(gate_rad);
   for (const View& view : views_) {
@@ -225,7 +227,8 @@ bool RefinementProblem::leave_out_doubtful(double gate_rad) {
 }
 
 void RefinementProblem::find_unobservable(double gate_rad) {
-  // In units of the expected error: the recording's own sigma is at most half of it.
+  // With this information, in units of the expected error, the recording's own sigma is half that
+  // error.
   constexpr double kLeastInformation = 4.0;
   const Eigen::VectorXd scale = camera_prior().cwiseInverse().cwiseSqrt();
   const Eigen::MatrixXd information =

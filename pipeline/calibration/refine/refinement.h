@@ -50,11 +50,11 @@ struct CameraRefinement {
   CameraAdjustment sigma = CameraAdjustment::Zero();
   /// Parameters that the recording does not determine. Their change is 0.
   ParameterSet unobservable;
-  ParameterSet kept;  ///< not in RefinementOptions::free. Their change is 0.
+  ParameterSet kept;  ///< parameters not in RefinementOptions::free; their change is 0
   int looked_at = 0;  ///< places where the map has paint
-  int found = 0;      ///< of them with paint that agrees after the refinement
+  int found = 0;      ///< places of these whose paint agrees after the refinement
   int ties = 0;       ///< tie points that agree after the refinement
-  /// Median distance of paint from the map, of those found; NaN if none was found.
+  /// Median distance of the found paint from the map; NaN if none was found.
   double before_px = 0.0;
   double after_px = 0.0;
 };
@@ -87,13 +87,13 @@ class RefinementProblem {
   RefinementProblem(const Rig& rig, const ReferenceTrajectory& reference,
                     const RefinementOptions& options);
 
-  /// Forgets all sightings and ties, not what was estimated.
+  /// Forgets all sightings and ties, but keeps the estimate.
   void clear_sightings();
 
   /// Adds what one camera saw. `frame` counts framesets from 0. The reference must cover `time`.
   void add(int frame, int camera, Time time, std::vector<PaintSighting> sightings);
 
-  /// One picture: of a frameset, counted from 0, by a camera, at a time by its own clock.
+  /// One picture: its frameset (counted from 0), its camera and its time stamp.
   struct Picture {
     int frame;
     int camera;
@@ -123,9 +123,9 @@ class RefinementProblem {
 
   const CameraAdjustment& change(int camera) const { return estimate_.changes[camera]; }
 
-  /// From the vehicle frame of a frameset's reference pose to that of its tilted body, as expected
-  /// from the mean of the drive and from the acceleration. The identity if the frameset was not
-  /// added yet.
+  /// The transform from the vehicle frame of a frameset's reference pose to that of its tilted
+  /// body, as expected from the mean of the drive and from the acceleration. It is the identity if
+  /// the frameset was not added yet.
   Se3 expected_body_from_vehicle(int frame) const;
 
   RigRefinement result(double gate_rad) const;
@@ -139,7 +139,7 @@ class RefinementProblem {
 
   struct Frame {
     FrameVector error = FrameVector::Zero();
-    /// Of the vehicle, along x and y.
+    /// Acceleration of the vehicle along x and y.
     Eigen::Vector2d acceleration_mps2 = Eigen::Vector2d::Zero();
     Time time;
     double reference_yaw_rad = 0.0;
@@ -148,11 +148,11 @@ class RefinementProblem {
     std::array<CameraAdjustment, kCameraCount> changes;
     std::vector<Frame> frames;
     FrameVector mean = FrameVector::Zero();
-    /// Roll by the acceleration along y, pitch by that along x.
+    /// Roll per acceleration along y, and pitch per acceleration along x.
     Eigen::Vector2d tilt_per_acceleration = Eigen::Vector2d::Zero();
-    /// Of the ground that a camera's ties show, above the road.
+    /// Height above the road of the ground that a camera's ties show.
     std::array<double, kCameraCount> heights_m{};
-    std::vector<Eigen::Vector2d> shifts;  ///< of the map's elements
+    std::vector<Eigen::Vector2d> shifts;  ///< shifts of the map's elements
   };
   struct View {
     Picture picture;
@@ -178,14 +178,15 @@ class RefinementProblem {
   /// Calls visitor(sighting, line or null, distance in pixels) for each sighting of a view.
   using Visitor = std::function<void(const PaintSighting&, const Line*, double)>;
   void visit(const View& view, double gate_rad, const Visitor& visitor) const;
-  /// Calls visitor(rows or null) for each tie. Null: its two places are too far from each other.
+  /// Calls visitor(rows or null) for each tie. Null means that its two places are too far from each
+  /// other.
   using TieVisitor = std::function<void(const TieRows*)>;
   void visit(const Ties& ties, double gate_rad, const TieVisitor& visitor) const;
   std::optional<MomentView> view_of(const Picture& picture, const FrameVector& frame_error) const;
   std::optional<TieRows> linearize(const GroundTie& tie, const Ties& ties, const MomentView& first,
                                    const MomentView& second, double gate_rad) const;
   CameraAdjustment only_free(int camera, CameraAdjustment slope) const;
-  /// The sums lack the priors of the cameras.
+  /// Returns the sums without the priors of the cameras.
   RefinementSums linearize(double gate_rad) const;
   void add_priors(RefinementSums& sums) const;
   void add_frame_prior(size_t k, RefinementSums& sums) const;
@@ -201,19 +202,19 @@ class RefinementProblem {
   Eigen::Vector2d acceleration_at(Time time) const;
   FrameVector frame_sigma() const;
   FrameVector expected_error(const Frame& frame) const;
-  /// 0 if the frameset was not added yet.
+  /// Returns 0 if the frameset was not added yet.
   FrameVector expected_error(int frame) const;
 
   const Rig& rig_;
   const ReferenceTrajectory& reference_;
   const RefinementOptions options_;
-  std::array<ParameterSet, kCameraCount> free_;  ///< none: the camera is left out
+  std::array<ParameterSet, kCameraCount> free_;  ///< none if the camera is left out
   std::array<ParameterSet, kCameraCount> unobservable_;
   Estimate estimate_;
-  std::map<uint32_t, int> elements_;  ///< from the map's index to ours
+  std::map<uint32_t, int> elements_;  ///< our index by the map's index
   std::vector<View> views_;
   std::vector<Ties> ties_;
-  double sigma_scale_ = 1.0;  ///< of the latest solve()
+  double sigma_scale_ = 1.0;  ///< sigma_scale of the latest solve()
 };
 
 }  // namespace bevloc

@@ -69,7 +69,7 @@ std::optional<MomentView> RefinementProblem::view_of(const Picture& picture,
                           frame_error, reference_, picture.time);
 }
 
-/// Of several candidates the one nearest to the estimate counts.
+/// If there are several candidates, the one nearest to the estimate counts.
 void RefinementProblem::visit(const View& view, double gate_rad, const Visitor& visitor) const {
   const auto moment =
       view_of(view.picture, estimate_.frames[static_cast<size_t>(view.picture.frame)].error);
@@ -170,7 +170,7 @@ void RefinementProblem::add_frame_prior(size_t k, RefinementSums& sums) const {
   const Frame& frame = estimate_.frames[k];
   FrameVector sigma = frame_sigma();
   FrameVector off = frame.error - expected_error(frame);
-  FrameMatrix kept = FrameMatrix::Zero();  // of the frameset before
+  FrameMatrix kept = FrameMatrix::Zero();  // share kept from the frameset before
   if (k > 0) {
     const Frame& before = estimate_.frames[k - 1];
     const double share =

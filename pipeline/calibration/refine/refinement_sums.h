@@ -67,17 +67,17 @@ struct RefinementSums {
     FrameMatrix information = FrameMatrix::Zero();
     FrameMatrix with_next = FrameMatrix::Zero();  ///< rows: this frameset, columns: the next
     FrameVector gradient = FrameVector::Zero();
-    Eigen::MatrixXd shared;  ///< with the shared unknowns, one row for each
+    Eigen::MatrixXd shared;  ///< information with the shared unknowns, one row for each
   };
 
   RefinementSums(Eigen::Index shared_unknowns, size_t frame_count);
 
   void add(const RefinementRow& row);
 
-  Eigen::MatrixXd information;  ///< of the shared unknowns
+  Eigen::MatrixXd information;  ///< information about the shared unknowns
   Eigen::VectorXd gradient;
   std::vector<Frame> frames;
-  double cost = 0.0;  ///< of the residuals, which the caller adds
+  double cost = 0.0;  ///< cost of the residuals, which the caller adds
 };
 
 /// Eliminates the unknowns of the framesets from the sums, one frameset after the other.
@@ -85,7 +85,7 @@ class EliminatedFrames {
  public:
   explicit EliminatedFrames(const RefinementSums& sums);
 
-  /// What is left for the shared unknowns.
+  /// The normal equations that remain for the shared unknowns.
   const Eigen::MatrixXd& information() const { return information_; }
   const Eigen::VectorXd& gradient() const { return gradient_; }
 

@@ -9,7 +9,7 @@
 namespace bevloc {
 namespace {
 
-constexpr int kHalf = 6;  // of a patch
+constexpr int kHalf = 6;  // pixels from the centre of a patch to its edge
 constexpr int kSide = 2 * kHalf + 1;
 constexpr int kPixels = kSide * kSide;
 using Patch = std::array<float, kPixels>;
@@ -20,7 +20,7 @@ bool is_inside(const GreyImage& image, const Eigen::Vector2d& px, double margin_
 }
 
 /// The patch around `centre`, whose pixels are `image_from_patch` in the image. Each is the mean of
-/// a square of one pixel of the patch. Nothing if it leaves the image.
+/// a square of one pixel of the patch. Returns nothing if the patch leaves the image.
 std::optional<Patch> read_patch(const GreyImage& image, const Eigen::Vector2d& centre,
                                 const Eigen::Matrix2d& image_from_patch) {
   constexpr double kThird = 1.0 / 3.0;
@@ -49,8 +49,9 @@ std::optional<Patch> read_patch(const GreyImage& image, const Eigen::Vector2d& c
   return patch;
 }
 
-/// Subtracts the mean and divides by the root of the sum of squares. False without texture along
-/// both axes: more than one place would agree with it, so this saves the search.
+/// Subtracts the mean and divides by the root of the sum of squares. Returns false if the patch
+/// lacks texture along one of the axes. More than one place would agree with such a patch, so the
+/// search would be in vain.
 bool normalize(Patch& patch) {
   constexpr float kLeastContrast = 2.5F;  // grey levels, one sigma
   constexpr float kLeastTexture = 0.6F;   // grey levels per pixel along the axis of least texture
@@ -181,7 +182,7 @@ std::optional<Candidate> candidate_at(const Eigen::Vector2d& first_px, const Mom
   return candidate;
 }
 
-/// Searches, in the picture that shows the place coarser, what the other one shows.
+/// Searches the picture that shows the place in less detail for what the other picture shows.
 std::optional<GroundTie> tie_at(const Candidate& candidate, const GreyImage& first,
                                 const GreyImage& second, int reach_px) {
   constexpr double kMostScale = 4.0;

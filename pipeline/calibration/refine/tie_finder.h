@@ -17,9 +17,9 @@ struct GroundTie {
 };
 
 struct TieSearch {
-  double reach_px = 6.0;  ///< to each side of where the views have the place
+  double reach_px = 6.0;  ///< distance to each side of where the views have the place
   double spacing_px = 32.0;
-  double farthest_m = 20.0;  ///< from the camera
+  double farthest_m = 20.0;  ///< distance from the camera
 };
 
 /// Searches the second picture for patches of the ground that lie on a grid in the first picture. A

@@ -20,7 +20,7 @@ using CoverBox = geometry::model::box<CoverPoint>;
 using CoverEntry = std::pair<CoverBox, size_t>;
 
 constexpr double kPiece_m = 0.5;
-/// A longer edge is cut into no more pieces than that.
+/// An edge is cut into at most this many pieces.
 constexpr int kMostPieces = 10'000;
 
 CoverBox box_of_ring(const Line3& ring) {
@@ -33,7 +33,7 @@ CoverBox box_of_ring(const Line3& ring) {
   return {{low.x(), low.y()}, {high.x(), high.y()}};
 }
 
-/// Even-odd rule: whether a ray to the east crosses the ring an odd number of times.
+/// Whether a ray to the east crosses the ring an odd number of times (even-odd rule).
 bool is_in_ring(const Eigen::Vector2d& point, const Line3& ring) {
   bool inside = false;
   for (size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
@@ -77,7 +77,8 @@ class PieceJoiner {
   }
   void interrupt() { open_ = false; }
 
-  /// The last line continues in the first one if the ring was free where it starts and ends.
+  /// Returns the lines. If the ring is free where it starts and ends, the last line and the first
+  /// one are joined.
   std::vector<Line3> take() {
     if (lines_.size() > 1 && open_ && lines_.front().front() == lines_.back().back()) {
       lines_.back().insert(lines_.back().end(), lines_.front().begin() + 1, lines_.front().end());

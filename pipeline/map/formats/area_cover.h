@@ -22,12 +22,13 @@ struct Area {
 /// take minutes.
 inline constexpr double kLongestOutline_m = 200'000.0;
 
-/// True if the outline is short enough to be sampled. If it is not, the builder reports that the
-/// area at `place` was left out. Calls `place` only then, because it searches the text of the file.
+/// Returns true if the outline is short enough to be sampled. If it is not, the builder reports
+/// that the area at `place` was left out. Calls `place` only then, because it searches the text of
+/// the file.
 bool take_outline(const Line3& outline, const std::function<std::string()>& place,
                   MapBuilder& builder);
 
-/// Immutable. Several threads may ask at the same time.
+/// Immutable, and so thread-safe.
 class AreaCover {
  public:
   explicit AreaCover(std::vector<Area> areas);
@@ -50,7 +51,7 @@ class AreaCover {
   std::unique_ptr<const Tree> tree_;
 };
 
-/// How far beside an edge one looks for another area, m.
+/// The distance beside an edge, in metres, at which another area is looked for.
 inline constexpr double kBesideArea_m = 0.25;
 
 }  // namespace bevloc

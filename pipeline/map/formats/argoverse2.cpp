@@ -15,7 +15,7 @@
 namespace bevloc {
 namespace {
 
-/// A point may lack its height.
+/// The distance without the heights, which a point may lack.
 double distance_on_ground(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a - b).head<2>().norm();
 }
@@ -242,8 +242,8 @@ class Argoverse2Reader {
   const JsonText& json_;
   MapBuilder builder_;
   std::unordered_map<std::string, uint32_t> lane_of_;
-  LineNeighbours marks_;    ///< taken so far
-  LineNeighbours centers_;  ///< of lanes for vehicles
+  LineNeighbours marks_;    ///< marks taken so far
+  LineNeighbours centers_;  ///< centre lines of lanes for vehicles
   int64_t mark_count_ = 0;
 };
 

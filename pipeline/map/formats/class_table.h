@@ -12,7 +12,7 @@
 
 namespace bevloc {
 
-/// Read from a YAML file such as
+/// The table is read from a YAML file such as
 ///
 ///     rules:
 ///       - kind: road mark curb      # a kind as the report of an import shows it
@@ -24,16 +24,16 @@ class ClassTable {
  public:
   struct Rule {
     std::string kind;
-    std::optional<Meaning> becomes;  ///< nothing: lines of this kind are dropped
+    std::optional<Meaning> becomes;  ///< nothing if lines of this kind are dropped
   };
 
   ClassTable() = default;
 
   static Result<ClassTable> read_file(const std::filesystem::path& path);
-  /// The same for text in memory; messages show `name` as the file.
+  /// Does the same for a text in memory. Messages show `name` as the file.
   static Result<ClassTable> parse(const std::string& text, const std::string& name);
 
-  /// Null if no rule fits.
+  /// Returns null if no rule fits.
   const Rule* rule_for(std::string_view kind) const;
   const std::vector<Rule>& rules() const { return rules_; }
 
@@ -41,7 +41,7 @@ class ClassTable {
   std::vector<Rule> rules_;
 };
 
-/// Fails if a rule fits no kind of the report, which is probably a slip of the pen, or only kinds
+/// Fails if a rule fits no kind of the report, which is probably a typing mistake, or only kinds
 /// that an earlier rule takes.
 Status check_rules(const ClassTable& classes, const ImportReport& report, const std::string& file);
 

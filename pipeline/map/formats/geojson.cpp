@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-/// 1e-9 degrees are 0.1 mm.
+/// Rounds to 1e-9 degrees, which are 0.1 mm.
 double rounded_deg(double degrees) {
   return std::round(degrees * 1e9) / 1e9;
 }
@@ -210,7 +210,7 @@ class GeojsonReader {
     return position_at(member(json_.root(), "bevloc_origin"));
   }
 
-  /// Longitude and latitude in degrees. Nothing for any other value.
+  /// Reads longitude and latitude in degrees. Returns nothing for any other value.
   static std::optional<GeoOrigin> position_at(const json& value) {
     const bool is_position = value.is_array() && value.size() >= 2 && value[0].is_number() &&
                              value[1].is_number() && std::abs(value[0].get<double>()) <= 180.0 &&
@@ -224,8 +224,8 @@ class GeojsonReader {
            shape == "MultiPolygon";
   }
 
-  /// The median of the latitudes and longitudes of all lines and polygons: a few wrong ones do not
-  /// move it. Bounding boxes, points and other members may lie anywhere.
+  /// The median of the latitudes and longitudes of all lines and polygons, which a few wrong ones
+  /// hardly move. Bounding boxes, points and other members may lie anywhere.
   static GeoOrigin middle_of_lines(const json& features) {
     std::vector<double> latitudes_deg, longitudes_deg;
     const auto add = [&](const auto& self, const json& value) -> void {
@@ -251,8 +251,8 @@ class GeojsonReader {
   const JsonText& json_;
   const ImportOptions& options_;
   MapBuilder builder_;
-  GeographicLib::LocalCartesian plane_;  ///< of the coordinates in the builder
-  std::vector<bool> states_successors_;  ///< of each lane
+  GeographicLib::LocalCartesian plane_;  ///< tangent plane of the coordinates in the builder
+  std::vector<bool> states_successors_;  ///< for each lane, whether it states its successors
 };
 
 class GeojsonWriter {

@@ -20,10 +20,10 @@ struct Meaning {
   friend bool operator==(const Meaning&, const Meaning&) = default;
 };
 
-/// Such as "lane divider, dashed".
+/// Returns a text such as "lane divider, dashed".
 std::string text_of(const Meaning& meaning);
 
-/// All lines of one kind that had the same fate.
+/// All lines of one kind that became the same, or were dropped for the same reason.
 struct ImportRow {
   std::string kind;                ///< in the words of the file, such as "road mark solid"
   std::optional<Meaning> meaning;  ///< nothing if they were dropped
@@ -45,7 +45,7 @@ class ImportReport {
 
   void remark_shift(const Eigen::Vector2d& shift);
 
-  /// What was taken comes first; within each part by kind.
+  /// The rows of lines that were taken come first. Both parts are sorted by kind.
   std::vector<ImportRow> rows() const;
   const std::vector<std::string>& remarks() const { return remarks_; }
 

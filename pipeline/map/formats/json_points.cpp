@@ -8,7 +8,7 @@
 namespace bevloc {
 namespace {
 
-/// Coordinates of a map are below this, also in UTM.
+/// The coordinates of a map are below this limit, also in UTM.
 constexpr double kLargestCoordinate_m = 1e8;
 
 Result<double> coordinate_at(const JsonText& document, const nlohmann::json& point,

@@ -12,10 +12,10 @@ namespace bevloc {
 
 using JsonPath = nlohmann::json::json_pointer;
 
-/// An id of a map: a number or a text. "" for anything else.
+/// An id of a map, which is a number or a text. Returns "" for anything else.
 std::string id_text(const nlohmann::json& value);
 
-/// The member of an object; a null value if there is none.
+/// The member of an object, or a null value if there is none.
 const nlohmann::json& member(const nlohmann::json& object, std::string_view key);
 
 /// The text of a member, or "" if it is missing or no text.

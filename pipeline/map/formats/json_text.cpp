@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kDeepest = 64;
 
-/// The deepest nesting of brackets outside strings, up to the first that is too deep.
+/// Whether the brackets outside strings are nested deeper than kDeepest.
 bool is_too_deep(std::string_view text) {
   int depth = 0;
   bool in_string = false;
@@ -41,7 +41,7 @@ class JsonWalker {
     return at_;
   }
 
-  /// Moves to the value of a key, or to an item of an array. False if there is none.
+  /// Moves to the value of a key, or to an item of an array. Returns false if there is none.
   bool enter(std::string_view token) {
     const bool is_object = text_[at()] == '{';
     if (!is_object && text_[at_] != '[') return false;
@@ -55,7 +55,7 @@ class JsonWalker {
         skip_value();
         is_here = text_.substr(key, at_ - 1 - key) == token;
         skip_space();
-        ++at_;  // colon
+        ++at_;  // skips the colon
       }
       if (is_here) return true;
       skip_value();

@@ -11,7 +11,7 @@
 
 namespace bevloc {
 
-/// A parsed JSON file. The text must outlive it. Immutable.
+/// A parsed JSON file. The text must outlive it. Immutable, and so thread-safe.
 class JsonText {
  public:
   /// Fails with file, line and column on text that is not JSON, or is nested deeper than maps are.
@@ -20,7 +20,8 @@ class JsonText {
   const nlohmann::json& root() const { return root_; }
   const std::string& file() const { return file_; }
 
-  /// "file:line: /path" of a value, for the start of a message. Searches the text: for errors only.
+  /// "file:line: /path" of a value, for the start of a message. It searches the text, so use it for
+  /// errors only.
   std::string place(const nlohmann::json::json_pointer& path) const;
 
  private:

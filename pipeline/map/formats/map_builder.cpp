@@ -15,10 +15,10 @@
 namespace bevloc {
 namespace {
 
-/// Coordinates of a file that are further from zero are shifted.
+/// Coordinates of a file that are further than this from zero are shifted.
 constexpr double kFarFromZero_m = 20'000.0;
 
-/// The median of all points; (0, 0) if there are none.
+/// The median of all points, or (0, 0) if there are none.
 Eigen::Vector2d middle_of_elements(const HdMap& map) {
   std::vector<Eigen::Vector2d> points;
   for (const MapElement& element : map.elements) {
@@ -42,7 +42,7 @@ bool is_possible(const std::vector<Eigen::Vector2d>& points) {
   return std::ranges::all_of(points, is_near_origin);
 }
 
-/// Removes lanes that cannot be, and the successors that name them.
+/// Removes impossible lanes, and the successors that name them.
 void drop_impossible_lanes(std::vector<Lane>& lanes) {
   constexpr uint32_t kGone = ~0U;
   std::vector<uint32_t> new_index(lanes.size(), kGone);

@@ -19,7 +19,7 @@
 namespace bevloc {
 
 struct ImportOptions {
-  /// Overrides what lines become. Null: the defaults of each format.
+  /// Overrides what lines become. If null, the defaults of each format hold.
   const ClassTable* classes = nullptr;
   /// Where the origin of the file's coordinates lies on earth. Takes precedence over what the file
   /// says.
@@ -32,8 +32,8 @@ using Heights = std::vector<double>;
 struct ImportedMap {
   HdMap map;
   ImportReport report;
-  /// For each element of the map, or empty if the format has none. The localizer does not use
-  /// heights; the export does.
+  /// The heights of each element of the map, or empty if the format has none. The localizer does
+  /// not use heights; the export does.
   std::vector<Heights> heights_m{};
 };
 
@@ -45,7 +45,7 @@ double length_of(const Line3& line);
 /// The line with its first point again at its end, for rings that come without it.
 Line3 closed(Line3 ring);
 
-/// Gives an element the shape of its class (hd_map.h): removes consecutive equal points, and of a
+/// Gives an element the shape of its class (hd_map.h): removes consecutive equal points, and from a
 /// crossing the repeated corner and the points on its sides. `heights_m` may be empty. Returns why
 /// it cannot be of its class, or "".
 std::string_view shape_element(MapElement& element, Heights& heights_m);
@@ -53,7 +53,7 @@ std::string_view shape_element(MapElement& element, Heights& heights_m);
 /// Whether a centre line has a length that a lane can have.
 bool can_be_driven(const std::vector<Eigen::Vector2d>& centerline);
 
-/// Whether bounds have points, and lengths that a lane can have.
+/// Whether both bounds have points, and lengths that a lane can have.
 bool can_be_lane(const std::vector<Eigen::Vector2d>& left,
                  const std::vector<Eigen::Vector2d>& right);
 
@@ -65,7 +65,8 @@ class MapBuilder {
  public:
   MapBuilder(std::string file, const ImportOptions& options);
 
-  /// What a line of this kind becomes; `normally` unless the class table has a rule for it.
+  /// What a line of this kind becomes, which is `normally` unless the class table has a rule for
+  /// it.
   std::optional<Meaning> meaning_of(std::string_view kind,
                                     const std::optional<Meaning>& normally) const;
 
@@ -90,11 +91,11 @@ class MapBuilder {
   void remark(std::string text) { report_.remark(std::move(text)); }
   const std::string& file() const { return file_; }
 
-  /// The map in the tangent plane at the middle of its points, if `projection` or the options say
-  /// where that is; else in the coordinates of the file, which are shifted only if they are far
-  /// from zero. Drops what is too far away or too long. Fails if nothing was taken, if a rule of
-  /// the class table fits no line of the file, or if the middle is too far from zero for the origin
-  /// of the options. Call it once.
+  /// Returns the map in the tangent plane at the middle of its points, if `projection` or the
+  /// options say where that is. Otherwise it returns the map in the coordinates of the file, which
+  /// are shifted only if they are far from zero. Drops elements and lanes that are too far away or
+  /// too long. Fails if nothing was taken, if a rule of the class table fits no line of the file,
+  /// or if the middle is too far from zero for the origin of the options. Call it once.
   Result<ImportedMap> finish(std::string name, std::unique_ptr<Projection> projection);
 
  private:
@@ -105,9 +106,9 @@ class MapBuilder {
   ImportOptions options_;
   std::optional<GeoOrigin> plane_at_;
   HdMap map_;
-  std::vector<Heights> heights_m_;   ///< of each element
-  std::vector<std::string> kinds_;   ///< of each element
-  std::vector<std::string> wheres_;  ///< of each element
+  std::vector<Heights> heights_m_;   ///< one for each element
+  std::vector<std::string> kinds_;   ///< one for each element
+  std::vector<std::string> wheres_;  ///< one for each element
   ImportReport report_;
 };
 

@@ -22,7 +22,7 @@ bool has(std::string_view bytes, std::string_view part) {
   return bytes.find(part) != std::string_view::npos;
 }
 
-/// The text without a byte order mark and white space before it.
+/// The text without the byte order mark and the white space at its beginning.
 std::string_view without_lead(std::string_view bytes) {
   if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   const size_t first = bytes.find_first_not_of(" \t\r\n");

@@ -29,7 +29,7 @@ Result<const MapFormat*> find_map_format(std::string_view bytes, const std::file
 /// (map_check.h).
 Result<ImportedMap> import_map(const std::filesystem::path& file, const ImportOptions& options);
 
-/// The same for the bytes of a file in memory.
+/// Does the same for the bytes of a file in memory.
 Result<ImportedMap> parse_imported(std::string_view bytes, const std::filesystem::path& file,
                                    const ImportOptions& options);
 

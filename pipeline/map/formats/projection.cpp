@@ -17,7 +17,7 @@
 namespace bevloc {
 namespace {
 
-/// Beyond this the series of the projections mean nothing.
+/// Beyond this distance the series of the projections mean nothing.
 constexpr double kFarthest_m = 2e7;
 
 /// A transverse Mercator plane (EPSG method 9807).
@@ -112,7 +112,7 @@ Result<double> proj_number(const ProjWords& words, std::string_view key, double 
   return fail("found +{}={}, wanted a number from {:g} to {:g}", key, text, -limit, limit);
 }
 
-/// Refuses a value of a word that is neither of two, which may be the same.
+/// Refuses a word whose value is neither `wanted` nor `same`.
 Status check_word(const ProjWords& words, std::string_view key, std::string_view wanted,
                   std::string_view same) {
   const auto word = words.find(key);

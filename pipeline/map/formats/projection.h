@@ -12,7 +12,8 @@
 
 namespace bevloc {
 
-/// The plane of a map file. Shapes: x to the east, y to the north, metres. Immutable.
+/// The plane of a map file: x points to the east, y to the north, in metres. Immutable, and so
+/// thread-safe.
 class Projection {
  public:
   virtual ~Projection() = default;
@@ -21,9 +22,9 @@ class Projection {
 };
 
 /// Reads a PROJ string. Understands +proj=utm (+zone, +south) and +proj=tmerc (+lat_0, +lon_0, +k
-/// or +k_0, +x_0, +y_0), on WGS84 or GRS80 in metres. Refuses words that it does not know. Null for
-/// +proj=longlat or latlong, which do not say where a plane in metres lies. The error says what is
-/// not understood, without a file name.
+/// or +k_0, +x_0, +y_0), on WGS84 or GRS80 in metres. Refuses words that it does not know. Returns
+/// null for +proj=longlat or latlong, which do not say where a plane in metres lies. The error says
+/// what is not understood, without a file name.
 Result<std::unique_ptr<Projection>> projection_from_proj(std::string_view text);
 
 /// UTM north or south of the equator, with `offset` added to the coordinates of the file.

@@ -28,7 +28,7 @@ class ElementJoiner {
     if (piece.count >= 2) parts_.push_back(part);
   }
 
-  /// Puts the parts of each element together. Fails, with what was found, if they do not fit.
+  /// Puts the parts of each element together. Fails, and names what was found, if they do not fit.
   Result<std::vector<MapElement>> join() {
     std::vector<MapElement> elements(count_);
     std::ranges::sort(parts_, [](const Part& a, const Part& b) {

@@ -3,7 +3,7 @@
 //
 // All numbers are little-endian; varints and differences as in map_binary.h. The file:
 //
-//     header, kTileHeaderSize bytes (tile_codec.cpp: TileHeader)
+//     header, kTileHeaderSize bytes (tile_header.h)
 //     name
 //     directory: one entry per tile, sorted by row, then by column: column i32, row i32, offset in
 //                the file u64, size u32, CRC-32 of the tile u32
@@ -11,10 +11,10 @@
 //     rest: elements with fewer than two points, then the lanes as in version 1
 //
 // Tile (c, r) covers x from c to c + 1 times kTileSize_m, and y likewise from r. It contains every
-// segment that touches it, so a query reads only the tiles under its box. A piece: number of the
-// element, as difference from the piece before; number of its first point; class + 4 * appearance
-// (one byte); count of points; points as differences in millimetres, the first from the tile's
-// corner. Crossings are always whole.
+// segment that touches it, so a query reads only the tiles under its box. A piece consists of the
+// number of the element, as a difference from the piece before; the number of its first point;
+// class + 4 * appearance (one byte); the count of points; and the points as differences in
+// millimetres, of which the first counts from the tile's corner. Crossings are always whole.
 //
 // The header has checksums of itself, of name and directory, and of the rest; each tile has its
 // own.
@@ -47,7 +47,7 @@ bool is_tiled(std::string_view bytes);
 /// wrote the bytes.
 Result<HdMap> decode_tiles(std::string_view bytes, const std::string& file);
 
-/// What a file says about its map without its tiles.
+/// The facts about a map that its file states outside of the tiles.
 struct TiledMapFacts {
   std::string name;
   GeoOrigin origin;
@@ -60,7 +60,8 @@ struct TiledMapFacts {
 
 struct TileHeader;
 
-/// The header and the directory of a file, checked; the bytes must outlive it. Immutable.
+/// The checked header and directory of a file. The bytes must outlive it. Immutable, and so
+/// thread-safe.
 class TileDirectory {
  public:
   struct Entry {
@@ -78,12 +79,13 @@ class TileDirectory {
   const TiledMapFacts& facts() const { return facts_; }
   size_t size() const { return facts_.tiles; }
   Entry entry(size_t index) const;
-  /// The index of a tile. Nothing if the map is empty there.
+  /// The index of a tile, or nothing if the map is empty there.
   std::optional<size_t> find(int32_t column, int32_t row) const;
   std::string_view tile(const Entry& entry) const {
     return bytes_.substr(entry.offset, entry.size);
   }
-  /// Elements without segments, and lanes. The caller compares with rest_crc().
+  /// The elements without segments, and the lanes. The caller compares their CRC-32 with
+  /// rest_crc().
   std::string_view rest() const { return rest_; }
   uint32_t rest_crc() const { return rest_crc_; }
 

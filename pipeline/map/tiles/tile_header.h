@@ -26,7 +26,7 @@ struct TileHeader {
   uint64_t rest_offset = 0;
   uint64_t rest_size = 0;
   uint32_t rest_crc = 0;
-  uint32_t directory_crc = 0;  ///< of name and directory
+  uint32_t directory_crc = 0;  ///< CRC-32 of name and directory
 
   /// Calls visit(value) for each value, in the order of the file.
   template <typename Header, typename Visit>
@@ -48,7 +48,8 @@ struct TileHeader {
   }
 };
 
-/// Magic and version precede the values; the checksum of the header ends it.
+/// Magic, version and two unused bytes precede the values. The checksum of the header is at its
+/// end.
 inline constexpr size_t kValuesOffset = kMapMagic.size() + sizeof(uint16_t) + sizeof(uint16_t);
 inline constexpr size_t kHeaderCrcOffset = kTileHeaderSize - sizeof(uint32_t);
 

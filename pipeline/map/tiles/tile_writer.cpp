@@ -67,7 +67,7 @@ struct Run {
   uint32_t first;
   uint32_t last;
 };
-using Runs = std::map<std::pair<int32_t, int32_t>, std::vector<Run>>;  ///< by row and column
+using Runs = std::map<std::pair<int32_t, int32_t>, std::vector<Run>>;  ///< runs by row and column
 
 Runs runs_of(const HdMap& map, const std::vector<std::vector<QuantisedPoint>>& elements) {
   Runs runs;

@@ -14,8 +14,7 @@
 namespace bevloc {
 
 /// Maps a file of version 2 into memory. Opening reads the header and the directory only. The file
-/// must not change while it is open: replace it by renaming another one to its name. Several
-/// threads may query at the same time.
+/// must not change while it is open: replace it by renaming another one to its name. Thread-safe.
 class TiledMap {
  public:
   /// A segment of an element, from point `first` to the next; the last one of a ring closes it.
@@ -44,7 +43,7 @@ class TiledMap {
   void query(const Eigen::Vector2d& min_corner, const Eigen::Vector2d& max_corner,
              std::vector<Segment>& found) const;
 
-  /// Damaged tiles that were touched so far.
+  /// The number of damaged tiles that were touched so far.
   size_t damaged_tiles() const { return damaged_tiles_.load(std::memory_order_relaxed); }
 
  private:

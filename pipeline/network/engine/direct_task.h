@@ -9,7 +9,8 @@ namespace bevloc::nn::onednn {
 
 class DirectConvolutionTask : public OwnTask {
  public:
-  /// `residual`: a buffer, or -1 for none. The number of threads is that of OpenMP at construction.
+  /// `residual` is a buffer, or -1 for none. The number of threads is that of OpenMP at
+  /// construction.
   DirectConvolutionTask(DirectConvolution convolution, int input, int residual, int output);
 
   void bind(std::span<const PlacedBuffer> buffers, const dnnl::memory& scratchpad) override;

@@ -32,21 +32,21 @@ struct EngineOptions {
 
 /// Chooses all memory, layouts and kernels when it is constructed. Our code does not allocate in
 /// run(), but oneDNN 2.6 allocates a small table of arguments for each primitive that it executes.
-/// A branch uses `threads` OpenMP threads. Not thread safe. Two engines share no memory.
+/// One thread, although a branch runs on `threads` OpenMP threads. Two engines share no memory.
 class Engine {
  public:
-  /// `view_cells`: number of BEV cells in the view table, 0 if the program has no view transform.
-  /// Each output of the program must be in exactly one branch. Throws LoadError.
+  /// `view_cells` is the number of BEV cells in the view table, or 0 if the program has no view
+  /// transform. Each output of the program must be in exactly one branch. Throws LoadError.
   Engine(const Program& program, std::span<const Branch> branches, int view_cells,
          const EngineOptions& options);
   ~Engine();
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Memory of an input: dense, with the shape and element type that the model declares. The engine
-  /// keeps the content until the caller overwrites it.
+  /// The memory of an input. It is dense and has the shape and element type that the model
+  /// declares. The engine keeps the content until the caller overwrites it.
   std::span<std::byte> input(const std::string& name);
-  /// Real values of an output, dense. Valid until the branch of the output runs again.
+  /// The real values of an output, dense. They are valid until the branch of the output runs again.
   std::span<const float> output(const std::string& name) const;
 
   /// Copies the table; does not allocate. Before the first call, all BEV features are 0.
@@ -71,7 +71,7 @@ class Engine {
   struct AlignedFree {
     void operator()(std::byte* memory) const;
   };
-  struct Execution;  ///< what oneDNN knows
+  struct Execution;  ///< the objects of oneDNN
 
   /// Allocates the arena, filled with zeros, and returns the address of each storage in it.
   std::vector<std::byte*> allocate(std::span<const Lifetime> storages);

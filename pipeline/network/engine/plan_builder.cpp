@@ -65,10 +65,10 @@ class PlanBuilder {
   bool may_overwrite(int residual);
 
   const ViewEntries& entries_;
-  const KernelSet* kernels_;  ///< for convolutions that oneDNN need not compute; may be null
+  const KernelSet* kernels_;  ///< our own kernels for convolutions; may be null
   const Schedule schedule_;
   PlanState state_;
-  size_t position_ = 0;  ///< of the current step, in the order of the schedule
+  size_t position_ = 0;  ///< position of the current step in the order of the schedule
 };
 
 ExecutionPlan PlanBuilder::build() {

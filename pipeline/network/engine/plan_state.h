@@ -38,16 +38,16 @@ class PlanState {
 
   /// The buffer that the producer of the value wrote.
   int buffer_of(int id) const { return buffer_of_value_[static_cast<size_t>(id)]; }
-  /// Sets it. Returns `buffer`.
+  /// Sets the buffer of the value. Returns `buffer`.
   int set_buffer_of(int id, int buffer) {
     return buffer_of_value_[static_cast<size_t>(id)] = buffer;
   }
-  /// The buffer of the value in another layout: a copy, made once per branch.
+  /// The buffer of the value in another layout. It is a copy, which is made once per branch.
   int buffer_in(int id, const MemoryDesc& wanted);
   /// A copy of the value with `offset` added to its elements, which makes them unsigned.
   int offset_copy(int id, const MemoryDesc& wanted, int offset);
 
-  /// Adds a task to the current branch. `used`: the buffers that it reads or writes.
+  /// Adds a task to the current branch. `used` are the buffers that it reads or writes.
   void push(std::unique_ptr<Task> task, std::initializer_list<int> used);
   void push_primitive(Primitive primitive, std::vector<PrimitiveTask::BufferArgument> arguments);
   void push_copy(int from, const MemoryDesc& from_desc, int to, const MemoryDesc& to_desc,
@@ -57,7 +57,7 @@ class PlanState {
   const Program& program_;
   const dnnl::engine& engine_;
   std::vector<int> buffer_of_value_;
-  std::map<std::pair<int, size_t>, std::vector<int>> copies_;  ///< by value and branch
+  std::map<std::pair<int, size_t>, std::vector<int>> copies_;  ///< copies by value and branch
   ExecutionPlan plan_;
   StoragePlan storages_;
 };

@@ -21,8 +21,8 @@ dnnl::memory::dims weight_dims(const ConvStep& step) {
   return dims;
 }
 
-/// Version 3.7.2 (Debian 13) packs weights wrongly into its blocks if the input has more than 16
-/// channels and their number is no multiple of 16. So it gets a layout without blocks.
+/// Version 3.7.2 of oneDNN (Debian 13) packs weights wrongly into its blocks if the input has more
+/// than 16 channels and their number is no multiple of 16. So it gets a layout without blocks.
 Tag weight_layout([[maybe_unused]] int64_t groups) {
 #if DNNL_VERSION_MAJOR >= 3
   return groups > 1 ? Tag::hwigo : Tag::hwio;

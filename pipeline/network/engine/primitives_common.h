@@ -30,11 +30,11 @@ struct ConvolutionLayouts {
   ConvolutionLayouts(const ConvStep& step, const Value& input, const Value& output);
 };
 
-/// Whether the convolution must cut negative values: rounding to uint8 already removes them.
+/// Whether the convolution must cut negative values. Rounding to uint8 already removes them.
 bool cuts_negative_values(const ConvStep& step, const Value& output);
 
-/// Real value of one unit of the accumulator in units of the output, by output channel. Empty for
-/// float weights.
+/// The real value of one unit of the accumulator in units of the output, by output channel. It is
+/// empty for float weights.
 std::vector<float> output_scales(const ConvStep& step, const Value& input, const Value& output);
 
 /// The bias in units of `scale`, by output channel.

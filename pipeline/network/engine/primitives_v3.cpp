@@ -14,7 +14,7 @@ class Attributes {
  public:
   explicit Attributes(const dnnl::engine& engine) : engine_(engine) {}
 
-  /// Multiplies an argument. Bit i of `mask`: the scale differs along axis i.
+  /// Multiplies an argument. Bit i of `mask` says that the scale differs along axis i.
   void scale(int argument, int mask, const std::vector<float>& scales) {
     attributes_.set_scales_mask(argument, mask);
     constants_.emplace_back(DNNL_ARG_ATTR_SCALES | argument, constant(scales, Type::f32, engine_));

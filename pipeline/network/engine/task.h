@@ -40,7 +40,7 @@ class PrimitiveTask : public Task {
     MemoryDesc desc;
   };
 
-  /// `constants`: further arguments, by argument index.
+  /// `constants` are further arguments, by argument index.
   PrimitiveTask(dnnl::primitive primitive, std::vector<BufferArgument> buffers,
                 Constants constants);
 

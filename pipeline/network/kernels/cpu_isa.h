@@ -3,8 +3,8 @@
 
 namespace bevloc {
 
-/// The newest instruction set that the network may use. kBest: no cap, use what the CPU supports.
-/// There are caps on x86-64 only.
+/// The newest instruction set that the network may use. kBest sets no cap, so the network uses what
+/// the CPU supports. There are caps on x86-64 only.
 enum class IsaCap { kBest, kAvx512Vnni, kAvx512, kAvx2Vnni, kAvx2 };
 
 }  // namespace bevloc

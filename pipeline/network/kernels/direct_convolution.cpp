@@ -105,7 +105,7 @@ class DirectConvolution::Lines {
         image_(reinterpret_cast<const uint8_t*>(image)),
         scratch_(reinterpret_cast<uint8_t*>(scratch)) {}
 
-  /// The lines of one output row, from top to bottom. Call for ascending rows.
+  /// The lines of one output row, from top to bottom. Call it for ascending rows.
   const uint8_t* const* of(int out_row) {
     const int top = out_row * conv_.stride_rows_ - conv_.pad_top_;
     for (int k = 0; k < conv_.kernel_rows_; ++k) lines_[k] = line(top + k);

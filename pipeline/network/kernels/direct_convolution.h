@@ -15,7 +15,7 @@ namespace bevloc::nn {
 /// Memory layout of the input: [n, h, w, c], or [n, c, h, w] (with at most kMostPlanes channels).
 enum class ChannelOrder { kLast, kPlanes };
 
-/// The constructor packs the weights; run() does not allocate. run() is thread safe if concurrent
+/// The constructor packs the weights; run() does not allocate. run() is thread-safe if concurrent
 /// calls compute different rows and have separate scratchpads.
 ///
 /// Residual and output are dense [n, h, w, c]. The residual may be the memory of the output if

@@ -1,8 +1,8 @@
 // Eight floats or integers in AVX2 registers. Include it inside an anonymous namespace, after
 // `#pragma GCC target` has selected AVX2.
 
-/// Loads fill the lanes from `count` on with 0, and stores leave their memory unchanged. Stores to
-/// 8-bit elements round to nearest even and saturate.
+/// Loads fill the lanes from `count` on with 0, and stores leave the memory of these lanes
+/// unchanged. Stores to 8-bit elements round to nearest even and saturate.
 struct Lanes {
   static constexpr int kLanes = 8;
 

@@ -1,7 +1,7 @@
 // Eight floats or integers in NEON registers. Include it inside an anonymous namespace.
 
-/// Loads fill the lanes from `count` on with 0, and stores leave their memory unchanged. Stores to
-/// 8-bit elements round to nearest even and saturate.
+/// Loads fill the lanes from `count` on with 0, and stores leave the memory of these lanes
+/// unchanged. Stores to 8-bit elements round to nearest even and saturate.
 struct Lanes {
   static constexpr int kLanes = 8;
   struct Floats {

@@ -1,8 +1,8 @@
 // The same operations as lanes_avx2.h in plain C++: eight floats or integers in arrays. Include it
 // inside an anonymous namespace.
 
-/// Loads fill the lanes from `count` on with 0, and stores leave their memory unchanged. Stores to
-/// 8-bit elements round to nearest even and saturate.
+/// Loads fill the lanes from `count` on with 0, and stores leave the memory of these lanes
+/// unchanged. Stores to 8-bit elements round to nearest even and saturate.
 struct Lanes {
   static constexpr int kLanes = 8;
   template <typename Element>

@@ -27,7 +27,7 @@ struct RequantizedRow {
   const int32_t* sums = nullptr;
   std::ptrdiff_t sums_step = 0;
   int pixels = 0;
-  const std::byte* residual = nullptr;  ///< null: no residual
+  const std::byte* residual = nullptr;  ///< null without a residual
   std::byte* output = nullptr;
 };
 

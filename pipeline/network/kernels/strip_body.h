@@ -6,7 +6,7 @@
 // input is broadcast once and used for all channels. Each vector of weights is loaded once and used
 // for all pixels.
 
-/// Computes the tile of kPixels pixels from pixel `first` on. kHalf: a vector of half the lanes
+/// Computes the tile of kPixels pixels from pixel `first` on. If kHalf, a vector of half the lanes
 /// follows the kVectors whole ones.
 template <typename Isa, int kVectors, bool kHalf, int kPixels>
 inline void sum_tile(const KernelStrip& strip, int first) {

@@ -39,8 +39,8 @@ struct KernelSet {
 
   const char* name = "";
   int lanes = 0;  ///< channels per vector
-  /// kernels[n][0] computes n whole vectors, kernels[n][1] also a vector of half the lanes. Null
-  /// where there is no such kernel.
+  /// kernels[n][0] computes n whole vectors, kernels[n][1] also a vector of half the lanes. It is
+  /// null where there is no such kernel.
   StripKernel kernels[kMostVectors + 1][2] = {};
   /// The largest absolute weight with which no intermediate sum saturates.
   int largest_weight = 127;

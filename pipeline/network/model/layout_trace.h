@@ -38,12 +38,12 @@ class LayoutTrace {
   LayoutTrace transposed(const std::vector<int64_t>& permutation) const;
 
  private:
-  /// Shared, because a file may give one layout to many tensors.
+  /// The source is shared, because a file may give one layout to many tensors.
   using Source = std::shared_ptr<const std::vector<int32_t>>;
   LayoutTrace(Shape shape, Source source) : shape_(std::move(shape)), source_(std::move(source)) {}
 
   Shape shape_;
-  Source source_;  ///< null: same order as the activation
+  Source source_;  ///< null if the order is that of the activation
 };
 
 /// The layout of the node's output. `constants` holds the shapes for Reshape. A node of another

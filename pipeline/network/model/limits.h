@@ -1,5 +1,5 @@
-// Bounds of what a model may ask for. A damaged file is refused by them before anything is computed
-// or allocated from its numbers. The shipped network stays far below each.
+// Bounds of what a model may ask for. The loader refuses a damaged file by them before it computes
+// or allocates anything from its numbers. The shipped network stays far below each bound.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ inline constexpr int64_t kMostElementsTogether = int64_t{1} << 27U;
 inline constexpr int64_t kLargestStep = 64;
 /// The largest window of a pooling along one axis.
 inline constexpr int64_t kLargestWindow = 64;
-/// Products in one sum of an int8 convolution: their sum stays below 2^30.
+/// The most products in one sum of an int8 convolution. Their sum stays below 2^30.
 inline constexpr int64_t kMostProducts = 32768;
 /// Bounds of quantization scales. The product of two, divided by a third, fits into a float.
 inline constexpr float kSmallestScale = 1e-15F;

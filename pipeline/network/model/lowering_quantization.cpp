@@ -6,7 +6,7 @@
 namespace bevloc::nn {
 namespace {
 
-/// The scales of a (De)QuantizeLinear node. Requires that they are positive and all zero points 0.
+/// The scales of a (De)QuantizeLinear node. They must be positive, and all zero points must be 0.
 std::vector<float> checked_scales(const LoweringState& state, const Node& node) {
   const std::vector<float> scales = state.constant_input(node, 1, "scale").floats();
   for (const float scale : scales) {

@@ -69,12 +69,12 @@ class LoweringState {
   /// output counts as a read of the input.
   void define_alias(const Node& node, Symbol symbol);
 
-  /// The symbol or the constant of a name; null if there is none.
+  /// The symbol or the constant of a name, or null if there is none.
   const Symbol* find(const std::string& name) const;
   const Tensor* constant(const std::string& name) const;
 
-  /// The node's input i. Each throws LoadError if the input is of another kind; `what` names the
-  /// input in the message.
+  /// The node's input i. Each function throws LoadError if the input is of another kind; `what`
+  /// names the input in the message.
   const Symbol& symbol(const Node& node, size_t i) const;
   const Tensor& constant_input(const Node& node, size_t i, const char* what) const;
   const Activation& real_activation(const Node& node, size_t i) const;
@@ -87,9 +87,10 @@ class LoweringState {
   int as_float(int value);
 
   /// The step that computes the activation, if another operation can be folded into it: nothing
-  /// else reads the activation, it is not rounded and its layout is unchanged. Otherwise null.
+  /// else reads the activation, it is not rounded and its layout is unchanged. Otherwise it returns
+  /// null.
   Step* foldable_step(const std::string& name, const Activation& activation);
-  /// The step that computes the value; null for a model input.
+  /// The step that computes the value, or null for a model input.
   Step* producer_of(int value);
   /// Moves the step to the end of the program, so that it can read every value computed so far.
   Step* move_to_end(Step* step);

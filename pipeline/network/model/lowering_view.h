@@ -6,7 +6,7 @@
 
 namespace bevloc::nn {
 
-/// Each throws LoadError if the node is not part of a view transform.
+/// Each function throws LoadError if the node is not part of a view transform.
 void lower_gather(LoweringState& state, const Node& node);
 void lower_mul(LoweringState& state, const Node& node);
 void lower_reduce_sum(LoweringState& state, const Node& node);

@@ -100,7 +100,7 @@ void choose_precision(LoweringState& state, ConvStep& conv) {
   conv.weight_scale.clear();
 }
 
-/// An int8 convolution sums in int32: refuses sums that do not fit.
+/// Refuses an int8 convolution whose sums do not fit into an int32.
 void check_sums(LoweringState& state, const Node& node, const ConvStep& conv) {
   if (conv.weights.type != ElementType::kInt8) return;
   const Shape& weights = conv.weights.shape;

@@ -5,7 +5,7 @@
 
 namespace bevloc::nn {
 
-/// Each throws LoadError if the node uses the operator in a way that is not supported.
+/// Each function throws LoadError if the node uses the operator in a way that is not supported.
 void lower_conv(LoweringState& state, const Node& node);
 void lower_max_pool(LoweringState& state, const Node& node);
 

@@ -22,9 +22,9 @@ struct TrainedRange {
 
 /// Statements that the model does not make are empty.
 struct ModelRig {
-  std::optional<PerCamera> focal_px;  ///< of the network cameras (network_camera.h)
-  std::optional<PerCamera> height_m;  ///< of the cameras above the ground
-  // Of the rigs of all samples, if they differed.
+  std::optional<PerCamera> focal_px;  ///< focal lengths of the network cameras (network_camera.h)
+  std::optional<PerCamera> height_m;  ///< heights of the cameras above the ground
+  // The ranges over the rigs of all samples, if the rigs differed.
   std::optional<TrainedRange> focal_range_px;
   std::optional<TrainedRange> height_range_m;
 };

@@ -26,7 +26,7 @@ struct NetworkCost {
   BranchCost mask;
 };
 
-/// Errors: those of Network::load() that concern the file.
+/// Fails as Network::load() does if the file is wrong.
 Result<NetworkCost> network_cost(const std::string& path);
 
 namespace nn {

@@ -12,7 +12,7 @@ namespace bevloc::nn {
 /// an element type that is not supported (the message names it).
 Graph read_onnx(const std::string& path);
 
-/// The same for a file in memory.
+/// Does the same for a file in memory.
 Graph parse_onnx(std::string_view bytes);
 
 }  // namespace bevloc::nn

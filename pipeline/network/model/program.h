@@ -1,4 +1,4 @@
-// The program that the engine runs: the graph of a model, lowered to a few kinds of steps. Knows
+// The program that the engine runs: the graph of a model, lowered to a few kinds of steps. It knows
 // neither memory layouts nor the engine.
 #pragma once
 
@@ -27,12 +27,12 @@ uint64_t size_in_bytes(const Value& value);
 struct ConvStep {
   int input = 0;
   int output = 0;
-  int residual = -1;  ///< -1: none
+  int residual = -1;  ///< -1 if there is none
   bool relu = false;
   /// [out, in / groups, rows, cols]: int8 with a scale per output channel, or float without scales.
   Tensor weights;
   std::vector<float> weight_scale;
-  std::vector<float> bias;  ///< real values; empty: no bias
+  std::vector<float> bias;  ///< real values; empty without a bias
   int64_t groups = 1;
   std::array<int64_t, 2> strides{1, 1};
   std::array<int64_t, 2> dilations{1, 1};
@@ -117,11 +117,11 @@ struct ProgramPort {
 struct Program {
   std::vector<Value> values;
   std::vector<Step> steps;           ///< each step comes after those that compute its inputs
-  std::vector<ProgramPort> inputs;   ///< without the view table
+  std::vector<ProgramPort> inputs;   ///< inputs without the view table
   std::vector<ProgramPort> outputs;  ///< real values
 };
 
-/// For each value, whether `output` depends on it. All false if there is no such output.
+/// For each value, whether `output` depends on it. If there is no such output, all are false.
 std::vector<bool> needed_values(const Program& program, const std::string& output);
 
 }  // namespace bevloc::nn

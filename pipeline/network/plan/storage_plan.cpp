@@ -6,7 +6,7 @@
 namespace bevloc::nn {
 namespace {
 
-/// `last` of a storage that must survive its branch.
+/// The value of `last` for a storage that must survive its branch.
 constexpr int kForever = std::numeric_limits<int>::max();
 
 }  // namespace

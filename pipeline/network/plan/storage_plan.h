@@ -19,9 +19,9 @@ class StoragePlan {
   size_t add(size_t bytes);
   /// Makes the storage at least `bytes` large.
   void grow(size_t storage, size_t bytes);
-  /// The current task reads or writes the storage.
+  /// Notes that the current task reads or writes the storage.
   void use(size_t storage);
-  /// The content of the storage must survive until its branch runs again.
+  /// Notes that the content of the storage must survive until its branch runs again.
   void keep(size_t storage);
 
   void begin_branch(size_t branch) { branch_ = branch; }

@@ -32,9 +32,9 @@ struct ViewTable {
 /// and keeps the two cameras that see it best. A camera's share of a cell falls to zero towards the
 /// border of its image, so the table is continuous where cameras overlap.
 ///
-/// `rig`: the network rig (network_rig()), whose cameras have no distortion.
-/// `reference_from_exposure`: the vehicle's pose at each camera's exposure, in the vehicle frame at
-/// the reference time. The cells lie in that frame.
+/// `rig` is the network rig (network_rig()), whose cameras have no distortion.
+/// `reference_from_exposure` is the vehicle's pose at each camera's exposure, in the vehicle frame
+/// at the reference time. The cells lie in that frame.
 ViewTable make_view_table(const Rig& rig, CameraMask available, const BevGrid& grid,
                           const CameraMotions& reference_from_exposure = {});
 

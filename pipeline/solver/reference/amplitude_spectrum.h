@@ -14,8 +14,8 @@ enum class Window { kNone, kHann };
 
 /// Computes |FFT2| per channel, not normalised. The features are multiplied by a separable
 /// symmetric window and padded with zeros to rows x cols. Two sides share one complex transform:
-/// one is its real part, the other its imaginary part. The constructor allocates all memory. Not
-/// thread safe.
+/// one is its real part, the other its imaginary part. The constructor allocates all memory. One
+/// thread.
 class AmplitudeSpectrum {
  public:
   /// `rows` and `cols` must be supported by LanesFft and no smaller than the grid's. Amplitudes
@@ -25,7 +25,7 @@ class AmplitudeSpectrum {
 
   void compute(const CellFeatures& first, const CellFeatures& second);
 
-  /// Amplitudes [row frequency, column frequency, lanes] of the last `first` (side 0) or `second`
+  /// Amplitudes [row frequency, column frequency, lanes] of the latest `first` (side 0) or `second`
   /// (side 1). Column frequencies are 0 ... cols / 2; the others are their point reflections.
   std::span<const float> amplitude(size_t side) const { return amplitude_[side]; }
   /// Offset in amplitude() of the first lane of a frequency. The row frequency may be negative.

@@ -11,7 +11,7 @@ namespace bevloc {
 /// Axis features are the means of the features across one axis. Cells within the largest shift of
 /// the border are left out. The mean is arithmetic (GeM with omega = 1, eq. 12), because the
 /// features are signed and other exponents need positive ones. It commutes with the shift, so each
-/// side is averaged once for all hypotheses. The constructor allocates all memory. Not thread safe.
+/// side is averaged once for all hypotheses. The constructor allocates all memory. One thread.
 class AxisMatching {
  public:
   /// Means along both axes, each with one cell of padding at the end.

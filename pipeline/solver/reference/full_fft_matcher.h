@@ -1,4 +1,4 @@
-// Scores every hypothesis by cross-correlation; the fair baseline for speed.
+// Scores every hypothesis by cross-correlation. It is the baseline for comparisons of speed.
 #pragma once
 
 #include <vector>

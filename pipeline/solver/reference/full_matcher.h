@@ -1,4 +1,4 @@
-// Scores every hypothesis by warping; the reference for accuracy.
+// Scores every hypothesis by warping. It is the reference for accuracy.
 #pragma once
 
 #include <vector>

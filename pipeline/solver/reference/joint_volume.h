@@ -62,7 +62,7 @@ struct Lookup {
 /// would put every peak on a whole cell. The layout of the volume is [yaw, x, y], hypotheses
 /// increasing.
 ///
-/// The constructor allocates all memory; the other functions allocate nothing. Not thread safe.
+/// The constructor allocates all memory; the other functions allocate nothing. One thread.
 class JointVolume {
  public:
   JointVolume(const HypothesisGrid& hypotheses, const BevGrid& grid, int channels,

@@ -17,8 +17,8 @@ struct FftTile {
 };
 
 /// X[k] = sum over n of x[n] exp(-2 pi i k n / length), by Stockham's algorithm, which needs no bit
-/// reversal. It uses radix 4 while it divides, then 2 and 5. The constructor allocates all memory.
-/// Not thread safe.
+/// reversal. It uses radix 4 while 4 divides the length, then 2 and 5. The constructor allocates
+/// all memory. One thread.
 class LanesFft {
  public:
   /// Whether the length has the form 2^a 5^b.
@@ -31,15 +31,16 @@ class LanesFft {
 
   int length() const { return length_; }
 
-  /// In place. The tile must have this length.
+  /// Transforms a tile in place. The tile must have this length.
   void transform(FftTile& tile);
 
-  /// The same for a tile whose second half is zero; that half is not read. Only if can_halve().
+  /// Does the same for a tile whose second half is zero, and does not read that half. Call it only
+  /// if can_halve().
   void transform_half(FftTile& tile);
   bool can_halve() const { return length_ % 4 == 0; }
 
-  /// The same, but writes sample k of all lanes to re and im + k * sample_stride. `tile` is
-  /// overwritten. Only for lengths above 1.
+  /// Does the same as transform(), but writes sample k of all lanes to re and im + k *
+  /// sample_stride. `tile` is overwritten. The length must be above 1.
   void transform_to(FftTile& tile, float* re, float* im, std::ptrdiff_t sample_stride);
 
  private:

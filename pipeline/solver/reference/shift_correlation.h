@@ -15,8 +15,8 @@ namespace bevloc {
 ///
 /// Two real channels a and b form one complex signal a + ib. The real part of the correlation of
 /// two such signals is the sum of the correlations of both channels, so they need not be separated.
-/// Only the few shifts in the range are transformed back. The constructor allocates all memory. Not
-/// thread safe.
+/// Only the few shifts in the range are transformed back. The constructor allocates all memory. One
+/// thread.
 class ShiftCorrelation {
  public:
   ShiftCorrelation(const BevGrid& grid, int channels, const ShiftRange& shifts);
@@ -35,7 +35,7 @@ class ShiftCorrelation {
                  std::span<double> correlation) const;
 
   ShiftRange shifts_;
-  int rows_;  ///< of a frame with border
+  int rows_;  ///< rows of a frame with its border
   int cols_;
   int lanes_;
   LanesFft column_fft_;

@@ -1,4 +1,4 @@
-// Sums of shifted features and their squares over the map's window; ZNCC needs them.
+// Sums of shifted features and their squares over the map's window, which ZNCC needs.
 #pragma once
 
 #include <span>
@@ -24,7 +24,7 @@ struct WindowSums {
 };
 
 /// Computes the sums of shifted features B over the cells of the map, at every shift in the range,
-/// whole or fractional. The constructor allocates all memory. Not thread safe.
+/// whole or fractional. The constructor allocates all memory. One thread.
 class ShiftEnergy {
  public:
   ShiftEnergy(const BevGrid& grid, int channels, const ShiftRange& shifts);
@@ -45,7 +45,7 @@ class ShiftEnergy {
   BevGrid grid_;
   ShiftRange shifts_;
   int lanes_;
-  std::vector<WindowSums> windows_;  ///< by ShiftRange::index()
+  std::vector<WindowSums> windows_;  ///< sums by ShiftRange::index()
   std::vector<WindowSums> row_;      ///< sums over one row of the frame, by column shift
 };
 

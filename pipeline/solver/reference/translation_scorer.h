@@ -36,7 +36,7 @@ class ShiftPlan {
 
 /// Scores corrections by ZNCC over all cells and channels (paper, eq. 5). The moved BEV features
 /// are zero outside their grid. Each warped row is matched while it is in the cache, and then
-/// overwritten. The constructor allocates all memory. Not thread safe.
+/// overwritten. The constructor allocates all memory. One thread.
 class TranslationScorer {
  public:
   TranslationScorer(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses);

@@ -27,12 +27,12 @@ struct YawTap {
 /// The bands end below the highest frequency of cells of 0.6 m. Features on finer cells are
 /// averaged to such cells first. On slightly coarser cells, the highest frequencies alias.
 ///
-/// The constructor allocates all memory. Not thread safe.
+/// The constructor allocates all memory. One thread.
 class YawSpectrum {
  public:
   static constexpr int kBands = 8;
   static constexpr int kRadiiPerBand = 4;
-  static constexpr int kAngles = 360;            ///< over half a turn; the spectrum is even
+  static constexpr int kAngles = 360;            ///< number over half a turn; the spectrum is even
   static constexpr double kMinFrequency = 0.05;  ///< cycles per metre
   static constexpr double kMaxFrequency = 0.8;
   static constexpr double kCell_m = 0.6;
@@ -69,13 +69,13 @@ class YawSpectrum {
   int channels_;
   int reach_;                     ///< most angles by which a hypothesis shifts a signature
   int margin_;                    ///< reach_, and the further angles that dot_group() reads
-  std::optional<Pooled> pooled_;  ///< for cells finer than kCell_m
+  std::optional<Pooled> pooled_;  ///< features for grids with cells finer than kCell_m
   AmplitudeSpectrum spectrum_;
   std::vector<YawTap> taps_;  ///< [band, angle, radius, 4]: bilinear interpolation
   /// [band, margin + angle + margin, lanes]; the angle is periodic, so the margins repeat the ends.
   LaneBuffer bev_signature_;
   LaneBuffer map_signature_;
-  std::vector<double> correlations_;  ///< by shift, from -reach_ on
+  std::vector<double> correlations_;  ///< correlations by shift, from -reach_ on
 };
 
 }  // namespace bevloc

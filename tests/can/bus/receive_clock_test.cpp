@@ -38,8 +38,8 @@ TEST(ReceiveClock, ConvertsTheKernelsStamp) {
 TEST(ReceiveClock, SettingTheRealtimeClockGivesNoImpossibleTime) {
   ReceiveClock clock;
   EXPECT_EQ(clock.to_steady({.software = kRealtime}, now_after(milliseconds(1))).time, kSteady);
-  // Set back by an hour, forward by an hour, and forward by little: the result always lies between
-  // the previous frame and now.
+  // The clock is set back by an hour, forward by an hour, and forward by little. The result always
+  // lies between the previous frame and now.
   for (const Duration step :
        {-Duration(seconds(3600)), Duration(seconds(3600)), Duration(seconds(3))}) {
     auto now = now_after(milliseconds(10));
@@ -61,7 +61,7 @@ TEST(ReceiveClock, HardwareStampsRemoveTheJitterOfTheInterrupt) {
         clock.to_steady({.software = kRealtime + noticed, .hardware = controller + sent},
                         now_after(noticed + milliseconds(1)));
     EXPECT_EQ(stamped.source, StampSource::kHardware);
-    // At most the smallest latency so far plus the largest drift since then.
+    // The error is at most the smallest latency so far plus the largest drift since then.
     EXPECT_GE(stamped.time, kSteady + sent);
     EXPECT_LE(stamped.time, kSteady + sent + microseconds(35));
   }
@@ -100,7 +100,7 @@ TEST(ReceiveClock, FramesThatWaitedDuringAStepKeepTheirTimes) {
   clock.to_steady({.software = kRealtime}, now_after(milliseconds(1)));
   auto now = now_after(milliseconds(120));
   now.realtime += milliseconds(900);
-  for (const int sent_ms : {20, 40, 60}) {  // from before the step, read after it
+  for (const int sent_ms : {20, 40, 60}) {  // stamped before the step, read after it
     const auto stamped = clock.to_steady({.software = kRealtime + milliseconds(sent_ms)}, now);
     EXPECT_EQ(stamped.time, kSteady + milliseconds(sent_ms));
   }
@@ -113,7 +113,7 @@ TEST(ReceiveClock, FollowsADriftingController) {
   Time last{};
   for (int i = 0; i < 1000; ++i) {
     const Duration passed = milliseconds(100 * i);
-    // 50 ppm slow: 5 ms behind after 100 s.
+    // The controller is 50 ppm slow, so it is 5 ms behind after 100 s.
     const nanoseconds hardware = seconds(7) + passed - passed / 20'000;
     last =
         clock.to_steady({.software = kRealtime + passed, .hardware = hardware}, now_after(passed))

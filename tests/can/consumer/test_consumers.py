@@ -15,7 +15,7 @@ CONSUMER = ROOT / "can/consumer"
 
 
 def output_of(*command: str) -> str:
-    # From the folder of the consumer, because ROOT/can would hide the package can of python3-can.
+    # It runs in the folder of the consumer, because ROOT/can would hide the package can.
     done = subprocess.run(command, check=True, capture_output=True, text=True, cwd=CONSUMER)
     return done.stdout
 
@@ -75,7 +75,7 @@ class ConsumersTest(unittest.TestCase):
     def test_a_clock_that_is_set_back_is_a_timeout(self) -> None:
         lines = self.golden_lines(5_400_000)
         statuses = [line for line in lines if " 500#" in line]
-        # No message of the pose after the step.
+        # After the step the log has only LOC_Status, so no pose is complete.
         late = [shifted(line, -300_000) for line in self.golden_lines() if " 500#" in line
                 and line not in statuses]
         output = self.answers_to(lines + late)
@@ -85,7 +85,7 @@ class ConsumersTest(unittest.TestCase):
 
     def test_the_first_pose_after_a_silence_is_not_usable_because_it_may_be_old(self) -> None:
         lines = self.golden_lines(5_340_000)
-        # One epoch with its LOC_Status that waited in the sender's controller for an hour.
+        # One whole epoch waited in the sender's controller for an hour.
         waited = [shifted(line, 3_600_000_000) for line in lines if time_us(line) == 5_320_000]
         before = [line for line in lines if time_us(line) < 5_320_000]
         output = self.answers_to(before + waited).splitlines()

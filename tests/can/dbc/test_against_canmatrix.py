@@ -25,7 +25,7 @@ def bits_of(start: int, length: int, motorola: bool) -> list[int]:
 
 
 def random_signal(source: random.Random, name: str, taken: set[int], mark: str) -> str | None:
-    """A line of SG_ in bits that are free, which are then taken."""
+    """A line of SG_ in free bits, which it adds to `taken`."""
     length, motorola = source.randint(1, 40), source.random() < 0.5
     kind = source.choice("++--")
     bits = bits_of(source.randrange(64), length, motorola)

@@ -74,7 +74,7 @@ class SecocTest : public testing::Test {
   }
 
   SecureVehicle vehicle_{kKey, 1};
-  /// Does not listen first.
+  /// A receiver that does not listen before it accepts frames.
   SecocReceiver receiver_{Cmac::create(kKey).value(), BaseIds{}, Duration::zero()};
 };
 
@@ -86,7 +86,7 @@ class SecocStartTest : public SecocTest {
     for (int i = 0; i < kCycles; ++i) recorded_.push_back(old_.odometry());
   }
 
-  /// Runs for two seconds. `attack` sends what it wants after each announcement of the vehicle.
+  /// Runs for two seconds. `attack` may send frames after each announcement of the vehicle.
   /// Returns the number of frames that were let through: of the vehicle, and replayed ones.
   struct Passed {
     size_t genuine = 0;
@@ -269,7 +269,7 @@ TEST_F(SecocTest, GnssOfAnEarlierStartIsRefusedThoughNoLaterOneCame) {
   EXPECT_EQ(feed(old), 0u);
 }
 
-/// Checks an epoch of the localizer as a receiver does that has seen LOC_Freshness.
+/// Checks an epoch of the localizer as a receiver that has seen LOC_Freshness does.
 bool is_authentic(const std::map<uint32_t, Frame>& frames) {
   std::vector<Frame> members;
   std::optional<Frame> authentication;

@@ -100,7 +100,7 @@ TEST(DbcVehicleInputTest, OdometryWithoutOneOfItsMessagesIsCounted) {
   EXPECT_EQ(input.counters().incomplete, 0U);
   for (int cycle = 51; cycle <= 100; ++cycle) send(16, cycle);
   EXPECT_EQ(input.counters().odometry_samples, samples);
-  // The first one waits, and four cycles pass before the other message counts as missing.
+  // The first message waits, and four cycles pass before the other message counts as missing.
   EXPECT_EQ(input.counters().incomplete, 46U);
 }
 
@@ -109,7 +109,8 @@ constexpr SignalLayout kLongitude{96, 32, ByteOrder::kIntel, RawType::kSigned, 1
 constexpr SignalLayout kHeading{0, 16, ByteOrder::kIntel, RawType::kUnsigned, 0.01, 0.0};
 constexpr SignalLayout kSigma{16, 16, ByteOrder::kIntel, RawType::kUnsigned, 0.01, 0.0};
 
-/// The message of binding() carries a position, too, and others the heading and its sigma.
+/// The message of binding() carries a position too. Two other messages carry the heading and its
+/// sigma.
 VehicleBinding binding_with_gnss() {
   VehicleBinding all = binding();
   all.messages[0].length = 16;
@@ -189,8 +190,8 @@ TEST(DbcVehicleInputTest, AnOldHeadingIsNotThatOfAFreshPosition) {
     for (const bool is_too_old : {false, true}) {
       GnssVehicle vehicle(binding_with_gnss());
       Time now = vehicle.settle();
-      // Four of its cycles later the position comes with the other message. A little later, the
-      // position no longer waits for it.
+      // The positions wait for the other message during four of its cycles, which are 20 of their
+      // own. One cycle later they no longer wait for it.
       vehicle.send_heading(old, now);
       VehicleSamples samples;
       const int later = is_too_old ? 21 : 20;

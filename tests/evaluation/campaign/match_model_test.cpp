@@ -96,7 +96,7 @@ TEST(MatchModelTest, APeakAtTheBorderHasItsMassThere) {
     return model.match({0.0, 0.0}, SearchRange::kAcquiring, truth).edge_mass;
   };
   EXPECT_LT(edge_mass({0.0, 2.0, 0.0}).maxCoeff(), 1e-6);
-  // Between the second and the third hypothesis from the border.
+  // This correction lies between the second and the third hypothesis from the border.
   EXPECT_NEAR(edge_mass({0.0, -2.7, 0.0}).y(), 0.5, 1e-6);
   EXPECT_GT(edge_mass({0.0, 2.95, 0.0}).y(), 0.99);
   EXPECT_GT(edge_mass({3.95, 0.0, 0.0}).x(), 0.99);

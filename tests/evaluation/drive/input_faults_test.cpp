@@ -182,7 +182,7 @@ TEST(InputFaults, AfterASuspensionTheVehicleIsElsewhere) {
       drive_with({with(make_fault(FaultKind::kClockSuspend, 5.0), &sim::FaultAmounts::gap_s, 5.0)});
   ASSERT_EQ(suspended.gnss.size(), healthy().gnss.size());
   EXPECT_NEAR(suspended.gnss[49].east_m, healthy().gnss[49].east_m, 0.02);
-  // The drive is planned longer, which changes the last bits of its poses: one step of the signal.
+  // The simulator plans a longer drive, which changes its poses by up to one step of the signal.
   for (size_t i = 50; i < 70; ++i) {
     EXPECT_NEAR(suspended.gnss[i].north_m, healthy().gnss[i + 50].north_m, 0.02);
     EXPECT_NEAR(suspended.gnss[i].east_m, healthy().gnss[i + 50].east_m, 0.02);

@@ -80,7 +80,7 @@ TEST_F(SimulatedRunTest, AGapOfTheClockIsAGapOnTheBus) {
   config_.simulation->faults = {gap};
   const auto report = run();
   ASSERT_TRUE(report) << report.error().message;
-  // The lines of the log begin with "(seconds)". The drive begins at 0.5 s.
+  // Each line of the log begins with "(seconds)". The drive begins at 0.5 s.
   std::istringstream lines(log());
   double last_s = 0.0;
   double largest_gap_s = 0.0;

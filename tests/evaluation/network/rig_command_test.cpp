@@ -45,7 +45,7 @@ TEST_F(RigCommandTest, TheSimulatorsOwnRigCostsNothing) {
   ASSERT_TRUE(write_file(file("rig.yaml"), format_rig(sim::nominal_rig())));
   const Status status = run({file("rig.yaml")});
   ASSERT_TRUE(status) << status.error().message;
-  // The file keeps nine decimals, so that a few pixels are rounded the other way.
+  // The file keeps nine decimals, so a few pixels are rounded the other way.
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(answer()["own"]["mae"][axis], answer()["given"]["mae"][axis], 0.05);
   }
@@ -58,7 +58,7 @@ TEST_F(RigCommandTest, AnotherRigAndItsOwnBodyChangeTheErrors) {
   ASSERT_TRUE(write_file(file("rig.yaml"), format_rig(rig)));
   const Status status = run({file("rig.yaml")});
   ASSERT_TRUE(status) << status.error().message;
-  // Whoever sees only the own vehicle keeps the error of the prior.
+  // A rig that sees only its own vehicle keeps the error of the prior.
   EXPECT_GT(answer()["given"]["mae"][1], 3.0 * answer()["own"]["mae"][1].get<double>());
 }
 

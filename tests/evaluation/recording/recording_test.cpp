@@ -297,7 +297,7 @@ TEST_F(RecordedDriveTest, FilesOfTwoRunsAreRefused) {
   EXPECT_NE(both.error().message.find("of another run"), std::string::npos);
 }
 
-/// On the desk, and not in the vehicle, whose files have changed since.
+/// A recording is replayed although the files that were used for it have changed or are gone.
 TEST(MovedRecordingTest, HoldsTheDbcFileAndWhatItsConfigurationNames) {
   const fs::path own = fs::path(BEVLOC_SOURCE_DIR) / "config";
   const test::TemporaryFolder folder;

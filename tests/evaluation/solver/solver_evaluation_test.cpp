@@ -179,7 +179,7 @@ TEST(MaskScalesTest, AreTunedOncePerSolverAndSize) {
   EXPECT_FALSE(scales.parameters_for({.solver = SolverKind::kBanded, .grid = {7, 3, 0.15}}));
 }
 
-/// False under a sanitizer.
+/// Whether the memory of the heap is counted, which it is not under a sanitizer.
 bool heap_is_counted() {
   return heap_in_use_bytes() > 0;
 }

@@ -238,7 +238,7 @@ TEST_F(HttpServerTest, EndsAClientThatDoesNotRead) {
   server_->get("/", [](const httplib::Request&, httplib::Response& response) {
     response.set_content("hello", "text/plain");
   });
-  // More than the buffers of both sockets hold.
+  // The answer is larger than the buffers of both sockets.
   server_->get("/big", [](const httplib::Request&, httplib::Response& response) {
     response.set_content(std::string(16 << 20, 'a'), "text/plain");
   });

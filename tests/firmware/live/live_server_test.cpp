@@ -130,7 +130,7 @@ TEST_F(LiveServerTest, BevlocStatusTakesNoNameThatTheServerRefuses) {
 
 TEST_F(LiveServerTest, RefusesTooManyViewersAndTakesThemAgainLater) {
   publish(HealthState::kTracking, {}, true);
-  /// One that reads events until it is told to end.
+  /// A viewer that reads events until it is told to end.
   struct Viewer {
     explicit Viewer(int port)
         : thread([this, port] {
@@ -146,7 +146,7 @@ TEST_F(LiveServerTest, RefusesTooManyViewersAndTakesThemAgainLater) {
     std::atomic<bool> end{false};
     std::jthread thread;
   };
-  // Who only asks is no viewer.
+  // A client that asks without reading events is no viewer.
   for (int i = 0; i <= LiveServer::kViewers; ++i) EXPECT_EQ(head("/events")->status, 200);
   {
     std::deque<Viewer> viewers;
@@ -157,7 +157,8 @@ TEST_F(LiveServerTest, RefusesTooManyViewersAndTakesThemAgainLater) {
     EXPECT_EQ(head("/events")->status, 503);
     EXPECT_EQ(get("/healthz")->status, 200);
   }
-  // The server notices at its next event, so a newcomer may be refused until then.
+  // The server notices with its next event that viewers have left. Until then it may refuse a new
+  // one.
   int answer = 503;
   while (answer == 503) {
     httplib::Client client("127.0.0.1", server_->port());

@@ -67,7 +67,7 @@ def channels(sockets: pathlib.Path, cameras: Cameras) -> list[str]:
     command += ["-chardev", agent, "-device", "virtserialport,chardev=agent,name=bevloc.agent"]
     command += ["-chardev", f"socket,id=beat,path={cameras.control_path}"]
     command += ["-device", "virtserialport,chardev=beat,name=bevloc.beat"]
-    # A fixed slot, because it is part of libcamera's ids of USB cameras.
+    # The slot is fixed, because it is part of libcamera's ids of USB cameras.
     command += ["-device", "qemu-xhci,id=usb,p2=8,p3=8,addr=0x10"]
     for camera in range(len(NAMES)):
         path = f"{cameras.sockets}{camera}"

@@ -8,7 +8,7 @@ from tests.hil.lab import bring_up, conformance, devices, drives, tools
 from tests.hil.lab.bench import IGNITION_PULL, Run
 from tests.hil.lab.outcome import Outcome
 
-# Requirement: time from a hang to the next READY. A crash saves the unit's WatchdogSec.
+# Requirement: time from a hang to the next READY. After a crash it is shorter by WatchdogSec.
 READY_AFTER_HANG_S = 5.0
 READY_AFTER_CRASH_S = 3.0
 # Requirement: time until a running daemon sends again after the bus has returned.

@@ -109,7 +109,7 @@ TEST_F(FrozenCameraDetectorTest, EachCameraHasItsOwnHistory) {
   }
 }
 
-/// Such as the image of a covered lens.
+/// The image of a covered lens is uniform.
 TEST_F(FrozenCameraDetectorTest, AUniformImageCanFreezeToo) {
   const std::vector<int8_t> black(kNetworkImageSize, kNetworkBlack);
   EXPECT_FALSE(show(black, true, FrozenCameraDetector::kRepetitions));

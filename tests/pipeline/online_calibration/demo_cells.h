@@ -15,7 +15,7 @@ inline Rig demo_network_rig() {
   return network_rig(*read_rig(std::string(BEVLOC_SOURCE_DIR) + "/config/rig_demo.yaml"));
 }
 
-/// The errors of one camera, all others without.
+/// Errors of one camera. All other cameras have none.
 inline ExtrinsicErrors error_of(int camera, int axis, double value) {
   ExtrinsicErrors errors = ExtrinsicErrors::Zero();
   errors(camera * kErrorsPerCamera + axis) = value;

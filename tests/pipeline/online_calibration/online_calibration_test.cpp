@@ -51,7 +51,7 @@ TEST(OnlineCalibration, LearnsTheTurnOfAllCamerasFromTheDirectionOfMotion) {
   DemoDriver driver;
   driver.heading_against_motion_rad = radians(0.5);
   driver.drive(ExtrinsicErrors::Zero(), 100);
-  // Nothing corrects the turn here, so it is learned again and again: only the sign counts.
+  // Nothing corrects the turn here, so it is learned again and again. Only the sign counts.
   double turn_rad = 0.0;
   const Rig rig = demo_network_rig();
   for (int camera = 0; camera < kCameraCount; ++camera) {

@@ -17,7 +17,7 @@ constexpr int kFewChannels = 4;
 
 struct LeastDeviation {
   SolverKind kind;
-  double share = 0.5;  ///< sigma divided by that of uniform hypotheses must not be smaller
+  double share = 0.5;  ///< the least allowed sigma, divided by that of uniform hypotheses
 };
 
 class NoStructure : public testing::TestWithParam<LeastDeviation> {

@@ -22,7 +22,8 @@ struct Recordings {
       : grid(grid_in), channels(channels_in) {
     const SyntheticScene scene = SyntheticScene::structured(channels, 1);
     map = scene.seen_from({}, grid);
-    // At least one step away from the ends: the parabola needs a hypothesis on both sides.
+    // They are at least one step away from the ends, because the parabola needs a hypothesis on
+    // both sides.
     std::mt19937 random(2026);
     std::uniform_real_distribution<double> x_m(-1.8, 1.8);
     std::uniform_real_distribution<double> y_m(-0.8, 0.8);

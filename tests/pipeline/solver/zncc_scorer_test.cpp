@@ -12,7 +12,7 @@ namespace bevloc {
 namespace {
 
 constexpr BevGrid kCoarseGrid{24, 13, 0.5};
-/// Several phases per cell, and a yaw that moves features out of the grid.
+/// Hypotheses at several positions within a cell, with yaws that move features out of the grid.
 constexpr HypothesisGrid kCoarseHypotheses{{1.5, 0.3}, {0.8, 0.4}, {0.4, 0.1}};
 
 /// The moved feature at a cell: bilinear, zero outside.
@@ -113,7 +113,7 @@ TEST_P(ZnccScorerTest, PoseScorerUsesTheCellsOfItsLattice) {
   }
 }
 
-// Less than one vector, one vector, and more than one.
+// The channels fill a part of one vector, one vector, and more than one vector.
 INSTANTIATE_TEST_SUITE_P(Channels, ZnccScorerTest, testing::Values(3, 16, 19));
 
 TEST(ShiftPlanTest, GroupsShiftsThatDifferByWholeCells) {

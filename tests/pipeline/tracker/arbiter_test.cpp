@@ -187,7 +187,7 @@ TEST_F(ArbiterTest, ReadmitsGnssWhoseErrorHasMovedOnce) {
   EXPECT_TRUE(arbiter_.trusts_gnss());
 }
 
-/// After a tunnel the error of GNSS is another one than before.
+/// After a tunnel, GNSS may have another error than before.
 TEST_F(ArbiterTest, GnssErrorsMayMoveFartherInALongerTime) {
   run_with_gnss_error(30, 0.0);
   now_ += std::chrono::seconds(60);
@@ -248,7 +248,7 @@ TEST_F(ArbiterTest, AThirdVoterThatLeansALittleMakesDrift) {
   EXPECT_TRUE(arbiter_.odometry_drifts());
 }
 
-/// The wheels lean until they have learned the bias. One notice is enough for the filter.
+/// The wheels lean until they have learned the bias. Until then they report the drift only once.
 TEST_F(ArbiterTest, WheelsMeanDriftOnceUntilTheyHaveLearnedIt) {
   const Eigen::Vector3d turned(0.0, 0.0, 0.5 * kYawSigma_rad);
   run(25, none_, turned);

@@ -32,7 +32,8 @@ class MapOffsetMonitorTest : public testing::Test {
   }
 
   Eigen::Vector2d drawn(double sigma_m) {
-    // Compilers evaluate arguments in different orders.
+    // Two draws among the arguments of one call would come in an order that depends on the
+    // compiler.
     const double north_m = sigma_m * normal_(random_);
     const double east_m = sigma_m * normal_(random_);
     return Eigen::Vector2d(east_m, north_m);

@@ -50,11 +50,11 @@ TEST_F(MatchRepetitionTest, AnAxisWithIndependentErrorsRepeatsNothing) {
 TEST_F(MatchRepetitionTest, AStandingVehicleLearnsLittleFromTheSecondMatch) {
   const Eigen::Vector3d first = added(1.0, kStanding);
   EXPECT_GT(added(1.1, kStanding).y(), 10.0 * first.y());
-  // All noise is alike there, also that of an axis without correlation.
+  // At one place each match has the same noise, also on an axis without correlation.
   EXPECT_DOUBLE_EQ(added(1.2, kStanding).z(), first.z() + 4.0 * 0.01);
 }
 
-/// At the origin, with a sample of odometry and one of GNSS.
+/// A tracker that starts at the origin, with a sample of odometry and one of GNSS.
 Tracker started_tracker(double speed_mps) {
   Tracker tracker;
   tracker.add_odometry({at_s(0.0), speed_mps, 0.0});
@@ -74,7 +74,7 @@ SolverResult match_with(const Se2& error, const Eigen::Vector3d& sigma) {
 
 TEST(RepeatedMatches, MatchesOfAStandingVehicleDoNotAddUp) {
   Tracker tracker = started_tracker(0.0);
-  // The same error each time.
+  // Every match has the same error.
   const SolverResult match = match_with({0.5, 0.3, radians(0.6)}, {0.3, 0.2, radians(0.4)});
   const auto sigmas_after = [&](int from, int to) {
     for (int i = from; i < to; ++i) {
@@ -90,7 +90,7 @@ TEST(RepeatedMatches, MatchesOfAStandingVehicleDoNotAddUp) {
   EXPECT_GT((many.array() / few.array()).minCoeff(), 0.9) << few.transpose();
 }
 
-// All marks are far away: for 3 s, uncertain matches have the same error of two sigmas.
+// Far from all marks, uncertain matches have the same error of two sigmas for 3 s.
 TEST(RepeatedMatches, UncertainMatchesOfOnePlaceDoNotAddUp) {
   constexpr double kSpeed_mps = 5.0;
   const Eigen::Vector3d sigma(0.3, 0.4, radians(0.8));

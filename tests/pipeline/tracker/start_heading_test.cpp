@@ -93,7 +93,7 @@ TEST(TrackerStart, WithoutAHeadingThePoseWaitsForTheWay) {
     for (const bool has_yaw : {false, true}) {
       std::mt19937 random(static_cast<unsigned>(yaw_deg));
       std::normal_distribution<double> normal;
-      // As the simulator has it.
+      // The error of GNSS is as in the simulator.
       CorrelatedError east(0.97, 40.0);
       CorrelatedError north(0.97, 40.0);
       Tracker tracker;

@@ -170,7 +170,7 @@ TEST(Renderer, DoesNotDependOnWhatItDrewBefore) {
   const RgbImage fresh = draw(world, front_camera(), {}, conditions, 5);
   Renderer renderer(world);
   RgbImage image;
-  // Enough ground to drop the first tiles from the cache.
+  // The views need so much ground that the cache drops the first tiles.
   for (int i = 0; i < 60; ++i) {
     const Se2 pose{-250.0 + 9.0 * i, 100.0 * std::sin(i), 0.7 * i};
     renderer.render(front_camera(), pose, {}, i, {}, 1, image);

@@ -20,7 +20,7 @@ double view_deg(const CameraModel& camera) {
   return degrees(2.0 * std::atan(0.5 * intrinsics.width_px / intrinsics.fx_px));
 }
 
-/// Downwards, against the horizontal plane.
+/// The angle of the camera below the horizontal plane.
 double down_deg(const CameraModel& camera) {
   return degrees(std::asin(-camera.vehicle_from_camera.rotation(2, 2)));
 }

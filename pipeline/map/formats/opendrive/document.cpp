@@ -17,11 +17,11 @@ namespace bevloc::opendrive {
 namespace {
 
 constexpr double kLargestNumber = 1e9;
-/// 1/m: the radius is 0.1 m.
+/// In 1/m, which is a radius of 0.1 m.
 constexpr double kMostCurvature = 10.0;
-/// A length that is less than this below 0 is 0.
+/// A negative length counts as 0 if it is above minus this value.
 constexpr double kRounding_m = 1e-6;
-/// More lanes than any file has on the other side of single-sided lane sections.
+/// This is more lanes than any file has on the other side of single-sided lane sections.
 constexpr size_t kMostOtherLanes = 1'000'000;
 
 double mps_from(std::string_view unit) {
@@ -30,7 +30,7 @@ double mps_from(std::string_view unit) {
   return 1.0;
 }
 
-/// A number beyond the range of double: 0 if it is too small, infinite if it is too large.
+/// A number beyond the range of double, as 0 if it is too small and as infinity if it is too large.
 double wide_number(std::string_view text) {
   long double value = std::numeric_limits<long double>::infinity();
   std::from_chars(text.data(), text.data() + text.size(), value);
@@ -65,7 +65,7 @@ class DocumentReader {
                                node.name(), found, wanted)};
   }
 
-  /// A number of an attribute; `fallback` where it is missing, if there is one.
+  /// The number of an attribute, or `fallback`, if there is one, where the attribute is missing.
   double number(const pugi::xml_node& node, const char* name, double limit = kLargestNumber,
                 std::optional<double> fallback = std::nullopt) {
     std::string_view text = node.attribute(name).value();
@@ -190,7 +190,7 @@ class DocumentReader {
       return std::ranges::count(section.lanes, id, &LaneSpec::id) == 1;
     };
     for (const LaneSpec& lane : section.lanes) {
-      // Between a lane and the centre none is missing.
+      // No lane between a lane and the centre may be missing.
       if (!has(lane.id) || (lane.id != 0 && !has(lane.id > 0 ? lane.id - 1 : lane.id + 1))) {
         reject(node, fmt::format("lane {} without its inner neighbour, or twice", lane.id),
                "lanes with consecutive ids from 0");

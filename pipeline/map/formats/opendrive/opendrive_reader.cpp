@@ -18,17 +18,17 @@ namespace {
 
 namespace od = opendrive;
 
-/// A lane that is narrower is not there.
+/// A lane that is narrower than this does not exist.
 constexpr double kNoWidth_m = 0.05;
-/// Vehicles do not drive on lanes that are narrower everywhere.
+/// Vehicles do not drive on lanes that are narrower than this everywhere.
 constexpr double kNarrowLane_m = 1.5;
 /// Points this close to a line are left out of it.
 constexpr double kTolerance_m = 0.01;
-/// Gaps between the roads of a junction are narrower.
+/// Gaps between the roads of a junction are narrower than this.
 constexpr double kJunctionGap_m = 3.0;
-/// More points than any map has (200 bytes each).
+/// This is more points than any map has (200 bytes each).
 constexpr size_t kMostPoints = 10'000'000;
-/// More crossings than any map has by repetition.
+/// This is more repeated crossings than any map has.
 constexpr size_t kMostCopiesInAll = 100'000;
 
 std::optional<Meaning> meaning_of_mark_type(std::string_view type) {
@@ -93,7 +93,8 @@ class BorderRun {
   }
 
  private:
-  /// The roads of a junction repeat the lines of each other.
+  /// Adds a line unless another road has the same one. The roads of a junction repeat each other's
+  /// lines.
   void add_line(const Line3& line) {
     const auto meaning = builder_.meaning_of(kind_, meaning_);
     // finish() drops longer lines.
@@ -129,7 +130,8 @@ struct CutSection {
     return std::max(lines.lateral_m[lane + 1][piece] - lines.lateral_m[lane][piece],
                     lines.lateral_m[lane + 1][piece + 1] - lines.lateral_m[lane][piece + 1]);
   }
-  /// The type of the first lane with a width, from `lane` on in a direction; "none" beyond.
+  /// The type of the first lane with a width, from `lane` on in one direction, or "none" if there
+  /// is no such lane.
   std::string type_from(std::ptrdiff_t lane, int step, size_t piece) const {
     for (; lane >= 0 && lane < std::ssize(section->lanes); lane += step) {
       const od::LaneSpec& spec = section->lanes[lane];
@@ -354,7 +356,8 @@ class OpendriveReader {
     }
   }
 
-  /// Names corners of a crossing that lie where the road has no line; false if all do.
+  /// Reports the corners of a crossing that lie where the road has no reference line. Returns false
+  /// if all corners lie there.
   bool is_on_road(const od::Road& road, const od::RoadObject& object,
                   const std::vector<od::Corner>& outline) {
     double first_m = 0.0;

@@ -1,4 +1,4 @@
-// Makes a map of an OpenDRIVE file.
+// Makes a map from an OpenDRIVE file.
 #pragma once
 
 #include <filesystem>
@@ -17,9 +17,9 @@ namespace bevloc {
 ///   so, and their copies, by their outlines, or by length and width.
 /// - Lanes: lanes on which vehicles drive, one for each lane section.
 ///
-/// Heights are those of the elevation profile; without one there are none. The place on earth comes
-/// from the header's geoReference (projection.h) with its offset. HdMap::left_out names parts that
-/// are lost because a road contradicts itself, such as gaps in its reference line. Fails as
+/// Heights are those of the elevation profile; without a profile there are none. The place on earth
+/// comes from the header's geoReference (projection.h) with its offset. HdMap::left_out names parts
+/// that are lost because a road contradicts itself, such as gaps in its reference line. Fails as
 /// parse_document() does, and with file and line on a geoReference that cannot be read, unless the
 /// options give an origin.
 Result<ImportedMap> parse_opendrive(std::string_view text, const std::filesystem::path& file,

@@ -13,11 +13,11 @@ namespace {
 /// Integrates along a spiral and along the length of a cubic in pieces this long.
 constexpr double kStep_m = 2.0;
 constexpr double kMostSteps = 10'000.0;
-/// Gaps in a road that are not larger are rounding.
+/// Gaps in a road that are not larger than this are rounding errors.
 constexpr double kGap_m = 0.1;
-/// Sections that start closer start together.
+/// Sections whose starts are closer than this start together.
 constexpr double kSameStart_m = 1e-6;
-/// More copies of an object, and more corners of each, than any road has.
+/// These are more copies of an object, and more corners of each, than any road has.
 constexpr double kMostCopies = 1000.0;
 constexpr size_t kMostCorners = 100;
 
@@ -34,7 +34,7 @@ Value integral(double begin, double end, Value sum, Function f) {
   return sum;
 }
 
-/// The last knot at or before a place of a piece; its start if there is none.
+/// The last knot at or before a place of a piece, or the start of the piece if there is none.
 Geometry::Knot knot_before(const Geometry& geometry, double along_m) {
   const auto next = std::ranges::upper_bound(geometry.knots, along_m, {}, &Geometry::Knot::along_m);
   return next == geometry.knots.begin() ? Geometry::Knot() : *std::prev(next);
@@ -65,7 +65,7 @@ double length_of_poly3(const Geometry& geometry, const Geometry::Knot& knot, dou
 LinePose poly3_pose(const Geometry& geometry, double along_m) {
   constexpr double kExact_m = 1e-9;
   const Geometry::Knot knot = knot_before(geometry, along_m);
-  // Newton's method: the length of the curve up to u is along_m.
+  // Newton's method finds the u up to which the curve has the length along_m.
   double u = knot.position.x() + along_m - knot.along_m;
   double step_m = 1.0;
   for (int i = 0; i < 8 && std::abs(step_m) > kExact_m; ++i) {
@@ -110,7 +110,7 @@ bool has_paint(const LaneSpec& lane) {
       lane.marks, [](const RoadMark& mark) { return !mark.type.empty() && mark.type != "none"; });
 }
 
-/// The lane with its places from another start of its section.
+/// The lane with its places counted from another start of its section.
 LaneSpec moved(LaneSpec lane, double shift_m) {
   for (Cubics* cubics : {&lane.widths, &lane.borders}) {
     for (Cubic& cubic : *cubics) cubic.start_m += shift_m;
@@ -119,7 +119,8 @@ LaneSpec moved(LaneSpec lane, double shift_m) {
   return lane;
 }
 
-/// Gives a single-sided section what it does not say itself.
+/// Gives a single-sided section the lanes and marks of the section before that it does not state
+/// itself.
 void take_over(const LaneSection& before, LaneSection& section) {
   const double shift_m = before.start_m - section.start_m;
   const bool has_right = section.lanes.front().id < 0;

@@ -12,7 +12,7 @@
 
 namespace bevloc::opendrive {
 
-/// a + b x + c x^2 + d x^3 with x = s - start.
+/// The polynomial a + b x + c x^2 + d x^3 with x = s - start.
 struct Cubic {
   double start_m = 0.0;
   double a = 0.0;
@@ -29,10 +29,10 @@ struct Cubic {
 /// Cubics in the order of their starts; each is valid up to the next.
 using Cubics = std::vector<Cubic>;
 
-/// The value at s; before the first cubic, and without any, `fallback`.
+/// The value at s, or `fallback` if no cubic begins at or before s.
 double value_at(const Cubics& cubics, double s_m, double fallback = 0.0);
 
-/// One piece of the reference line. Lengths in m, angles in rad, curvatures in 1/m.
+/// One piece of the reference line. Lengths are in m, angles in rad, and curvatures in 1/m.
 struct Geometry {
   enum class Kind : uint8_t { kLine, kArc, kSpiral, kPoly3, kParamPoly3 };
 
@@ -41,9 +41,9 @@ struct Geometry {
   double length_m = 0.0;
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();
   double heading_rad = 0.0;
-  double start_curvature = 0.0;  ///< of an arc everywhere
+  double start_curvature = 0.0;  ///< for an arc, the curvature everywhere
   double end_curvature = 0.0;
-  Cubic u;  ///< of a parametric cubic
+  Cubic u;  ///< for a parametric cubic, like v
   Cubic v;
   bool is_normalized = false;  ///< the parameter of the cubics runs from 0 to 1
 
@@ -52,7 +52,7 @@ struct Geometry {
     double along_m = 0.0;
     Eigen::Vector2d position = Eigen::Vector2d::Zero();
   };
-  std::vector<Knot> knots{};  ///< where integrals begin; none are needed
+  std::vector<Knot> knots{};  ///< places from which an integral may begin; may be empty
 };
 
 /// A place on the reference line.
@@ -65,7 +65,7 @@ struct LinePose {
 struct Stretch {
   double start_m = 0.0;
   double end_m = 0.0;
-  double jump_m = 0.0;  ///< from its end to the start of the next; 0 if no gap ends it
+  double jump_m = 0.0;  ///< distance from its end to the start of the next; 0 if no gap ends it
 };
 
 /// Places a knot about every 100 m, so that the time for all points of a long spiral or poly3 does
@@ -76,7 +76,7 @@ void place_knots(Geometry& geometry);
 LinePose pose_along(const Geometry& geometry, double along_m);
 
 struct RoadMark {
-  double start_m = 0.0;  ///< from the start of the lane section
+  double start_m = 0.0;  ///< counted from the start of the lane section
   std::string type;
 };
 
@@ -84,8 +84,8 @@ struct LaneSpec {
   int id = 0;
   int line = 0;  ///< in the file
   std::string type;
-  Cubics widths;   ///< from the start of the lane section
-  Cubics borders;  ///< the same; used where there are no widths
+  Cubics widths;   ///< counted from the start of the lane section
+  Cubics borders;  ///< the same for borders, which are used where there are no widths
   std::vector<RoadMark> marks;
   std::optional<double> speed_mps;
 };
@@ -94,7 +94,7 @@ struct LaneSection {
   double start_m = 0.0;
   double end_m = 0.0;
   int line = 0;                 ///< in the file
-  bool is_single_side = false;  ///< the other side goes on with the section before
+  bool is_single_side = false;  ///< the other side continues that of the section before
   /// From the rightmost (smallest id) to the leftmost. Contains the centre, whose id is 0.
   std::vector<LaneSpec> lanes;
 };
@@ -107,10 +107,11 @@ struct Corner {
 
 struct Outline {
   std::vector<Corner> corners;
-  bool is_closed = true;  ///< around an area; else a line
+  bool is_closed = true;  ///< whether it surrounds an area; otherwise it is a line
 };
 
-/// Copies of an object along the road. Values at the first and at the last copy.
+/// Copies of an object along the road. The arrays contain the values at the first and at the last
+/// copy.
 struct Repeat {
   double start_m = 0.0;
   double length_m = 0.0;
@@ -133,14 +134,14 @@ struct RoadObject {
   double length_m = 0.0;
   double width_m = 0.0;
   std::vector<Outline> outlines;
-  std::vector<Repeat> repeats;  ///< of crosswalks only
+  std::vector<Repeat> repeats;  ///< repetitions, read for crosswalks only
 };
 
-/// Whether the type says that an object is a crosswalk, or the name of one without a type.
+/// Whether the type of an object says that it is a crosswalk. If it has no type, its name counts.
 bool is_crosswalk(const RoadObject& object);
 
-/// The object, or its copies if it is repeated; nothing if the repetition has no distance, has too
-/// many copies, or has corners in the frame of the road.
+/// The object, or its copies if it is repeated. Returns nothing if the repetition has no distance,
+/// has too many copies, or has corners in the frame of the road.
 std::vector<RoadObject> copies_of(const RoadObject& object);
 
 struct Road {
@@ -157,7 +158,7 @@ struct Road {
   std::vector<LaneSection> sections;
   std::vector<RoadObject> objects;
 
-  /// The pose at s. Where two pieces meet, that of the later one unless `from_before`.
+  /// The pose at s. Where two pieces meet, it is the pose of the later one, unless `from_before`.
   LinePose pose_at(double s_m, bool from_before = false) const;
   bool has_line_at(double s_m) const;
 };
@@ -168,12 +169,13 @@ std::vector<Stretch> stretches_of(const Road& road);
 /// Gives single-sided sections, which are in the order of their starts, the other side.
 void complete_sides(std::vector<LaneSection>& sections);
 
-/// What of a road is lost because it is wrong there: sentences with file, line, road and s.
+/// The parts of a road that are lost because the file is wrong there, as sentences with file, line,
+/// road and s.
 std::vector<std::string> faults_of(const Road& road, std::string_view file);
 
 struct Document {
   std::string file;
-  std::string georeference;  ///< the PROJ string, "" without one
+  std::string georeference;  ///< the PROJ string, or "" if there is none
   int georeference_line = 0;
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();
   double offset_heading_rad = 0.0;

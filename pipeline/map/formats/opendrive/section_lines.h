@@ -17,11 +17,12 @@ struct SectionLines {
   std::vector<double> along_m;
   std::vector<Line3> borders;  ///< one more than lanes; each with one point per value of along_m
 
-  /// The lateral position (t) of each border, as the points.
+  /// The lateral position (t) of each border, with one value per value of along_m.
   std::vector<std::vector<double>> lateral_m;
 };
 
-/// The part of a section on a stretch. Its end is before its start if they do not meet.
+/// The part of a section on a stretch. Its end is before its start if section and stretch do not
+/// meet.
 Stretch part_of(const LaneSection& section, const Stretch& stretch);
 
 /// Cuts a part of a section at all places where a formula changes, and about every 0.5 m.

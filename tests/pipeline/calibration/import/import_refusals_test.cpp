@@ -1,4 +1,4 @@
-// What the import must not ignore, and whose place it names.
+// Tests what the import refuses or must not confuse, and the file and line that its messages name.
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/calibration/import/import_fixture.h"

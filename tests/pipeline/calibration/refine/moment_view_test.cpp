@@ -74,7 +74,7 @@ TEST_F(MomentViewTest, NeedsTheReferenceAroundTheTime) {
 TEST_F(MomentViewTest, DerivativesByTheCamera) {
   const PointView seen = *view(change_, error_).look_at(point());
   for (int p = 0; p < kCameraParameters; ++p) {
-    // The position of the reference is linear between two poses, so a time takes a longer step.
+    // The reference is linear between two poses, so the step of the time offset is longer.
     const double step = p == kTimeOffset ? 2e-3 : kSmall;
     if (p <= kRoll) continue;  // see DerivativesByTheRotation
     CameraAdjustment more = change_;
@@ -89,7 +89,7 @@ TEST_F(MomentViewTest, DerivativesByTheCamera) {
   }
 }
 
-/// A rotation is turned further from where it is, about the axes that it has now.
+/// A rotation is changed by a further turn about the axes of the turned camera.
 TEST_F(MomentViewTest, DerivativesByTheRotation) {
   change_.head<3>().setZero();
   error_.head<3>().setZero();
@@ -120,7 +120,7 @@ TEST_F(MomentViewTest, DerivativesByPlaceAndPoint) {
     const Eigen::Vector2d slope = (*view(change_, error_).project(there) - seen.pixel) / kSmall;
     EXPECT_TRUE(seen.of_point.col(axis).isApprox(slope, 1e-3)) << axis;
   }
-  // A higher ground looks as the same ground below a lower camera.
+  // Ground that is higher looks like the same ground below a lower camera.
   error_.head<3>().setZero();
   const PointView level = *view(change_, error_).look_at(point());
   EXPECT_TRUE(level.of_point.col(2).isApprox(-level.of_camera.col(kUp), 1e-9));

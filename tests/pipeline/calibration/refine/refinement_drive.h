@@ -31,7 +31,7 @@ class Drive {
 
   Time time_of(int frame) const { return Time{} + from_seconds(1.0 + 0.5 * frame); }
 
-  /// Positive to the left.
+  /// The lateral acceleration, positive to the left.
   double lateral_mps2(int frame) const {
     const double time_s = to_seconds(time_of(frame) - Time{});
     return speed_mps(time_s) * rate_radps(time_s);
@@ -57,17 +57,17 @@ inline std::optional<Eigen::Vector2d> seen(const CameraModel& camera, const Se2&
                                    Eigen::Vector3d(at.x(), at.y(), 0.0));
 }
 
-/// What is simulated beside the true cameras.
+/// What is simulated besides the true cameras.
 struct Sight {
   double time_offset_s = 0.0;
   bool crossing = true;  ///< lines across the vehicle's path too
   double noise_px = 0.2;
-  int nearly_blind = -1;  ///< the camera that sees little; none with -1
+  int nearly_blind = -1;  ///< the camera that sees little; -1: none
   int seen_of_blind = 0;  ///< how many sightings it has during the drive
 };
 
-/// What one true camera sees of lines along and across the vehicle's path, looked for where
-/// `camera` and `assumed` have them.
+/// What one true camera sees of lines along and across the vehicle's path. `camera` and `assumed`
+/// say where the lines are expected.
 inline std::vector<PaintSighting> look(const CameraModel& camera, const Se2& assumed,
                                        const CameraModel& truth, const Se2& exposed,
                                        const Sight& sight, std::mt19937_64& random) {

@@ -40,13 +40,14 @@ TEST(Refinement, RecoversAllParametersOfAWindingDrive) {
   for (int c = 0; c < kCameraCount; ++c) truth.cameras[c] = adjusted(rig.cameras[c], errors[c]);
   const Drive drive(true, 4.0);
   RefinementOptions options;
-  // Exact poses: what the cameras have in common counts for the cameras.
+  // The reference is exact, so errors that all cameras share count as errors of the cameras.
   options.reference_position_m = 1e-3;
   options.reference_yaw_rad = 1e-4;
   options.body_tilt_rad = 1e-4;
   options.body_lift_m = 1e-3;
   RefinementProblem problem(rig, drive.reference, options);
-  // Again where the estimate before has them, and with a smaller sigma, as refine_rig() does.
+  // Each round looks for lines where the last estimate expects them, with a smaller sigma, as
+  // refine_rig() does.
   for (const double sigma_scale : {8.0, 4.0, 1.0}) {
     problem.clear_sightings();
     add_sightings(problem, rig, [&truth](int) { return truth; }, drive,
@@ -72,7 +73,7 @@ TEST(Refinement, RecoversAllParametersOfAWindingDrive) {
       }
     }
   }
-  // Two cameras start so far off that their paint does not agree afterwards; they stay as they
+  // Two cameras start so far off that their paint does not agree afterwards, so they stay as they
   // were.
   EXPECT_GE(observable, 32);
 }
@@ -140,13 +141,13 @@ TEST(Refinement, RefusesWhatAStraightRoadCannotShow) {
   problem.finish(kEverything_rad);
   const RigRefinement result = problem.result(kEverything_rad);
   for (const CameraRefinement& camera : result.cameras) {
-    // Lines along the road look the same wherever along it the camera is.
+    // Lines along the road look the same from every place along the road.
     EXPECT_TRUE(camera.unobservable[kForward]);
     EXPECT_TRUE(camera.unobservable[kTimeOffset]);
     EXPECT_EQ(camera.change[kForward], 0.0);
     EXPECT_EQ(camera.change[kTimeOffset], 0.0);
   }
-  // Lines that run away from a camera show where it points, those that pass beside it less.
+  // Lines that run away from the front and back cameras show where these cameras point.
   for (const int c : {1, 4}) EXPECT_FALSE(result.cameras[c].unobservable[kYaw]) << c;
 }
 
@@ -199,7 +200,7 @@ TEST(Refinement, IgnoresPaintThatIsNotInTheMap) {
   const Drive drive(true, 4.0);
   RefinementProblem problem(rig, drive.reference, {});
   add_sightings(problem, rig, [&rig](int) { return rig; }, drive, {});
-  // A second line beside each fifth point, as a strong outlier of all cameras to one side.
+  // In each frameset, one camera sees a line that the map lacks, five times and always on one side.
   for (int frame = 0; frame < Drive::kFrames; ++frame) {
     PaintSighting wrong;
     wrong.point_m = *drive.reference.at(drive.time_of(frame)) * Eigen::Vector2d(8.0, 1.75);

@@ -11,13 +11,13 @@ namespace {
 
 constexpr int kNoPaint = 2;  // front_right
 
-/// What is simulated beside the true camera.
+/// What is simulated besides the true camera.
 struct Ground {
   double pavement_m = 0.0;  ///< height of the ground that is more than 4 m beside the path
-  int every_wrong = 0;      ///< each so-many-th tie is 16 px off; none with 0
+  int every_wrong = 0;      ///< one tie in this many is 16 px off; 0: none
 };
 
-/// Where a view has a point above the ground, to first order.
+/// The pixel of a point above the ground, to first order.
 std::optional<Eigen::Vector2d> raised(const MomentView& view, const Eigen::Vector2d& point,
                                       double height_m) {
   const auto seen = view.look_at(point);
@@ -57,7 +57,8 @@ void add_ties(RefinementProblem& problem, const Rig& rig, const CameraAdjustment
           continue;
         }
         if (ground.every_wrong > 0 && ++count % ground.every_wrong == 0) second_px->x() += 16.0;
-        // Compilers evaluate arguments in different orders.
+        // Two draws among the arguments of one call would come in an order that depends on the
+        // compiler.
         const double down_px = noise(random);
         const double right_px = noise(random);
         ties.push_back({*first_px, *second_px + Eigen::Vector2d(right_px, down_px)});
@@ -74,7 +75,7 @@ CameraAdjustment error_of_camera() {
   return error;
 }
 
-/// What is found of the camera.
+/// What the refinement finds for the camera.
 CameraRefinement refined_by_ties(const Ground& ground) {
   const Rig rig = demo_rig();
   const Drive drive(true, 4.0);

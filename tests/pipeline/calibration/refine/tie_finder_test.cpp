@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kForwards = 1;
 
-/// Between 0 and 1, the same for the same corner of a grid.
+/// A number from 0 to 1 that is always the same for a corner of the grid.
 double random_at(int64_t i, int64_t j) {
   uint64_t bits = static_cast<uint64_t>(i) * 0x9e3779b97f4a7c15U + static_cast<uint64_t>(j);
   for (int k = 0; k < 2; ++k) bits = (bits ^ (bits >> 31U)) * 0xbf58476d1ce4e5b9U;
@@ -45,7 +45,7 @@ double grey_of_stripes(double, double y_m) {
   return 100.0 + 60.0 * std::sin(3.0 * y_m) * std::sin(1.1 * y_m);
 }
 
-/// Tiles of 0.4 m.
+/// A repeating pattern like tiles of 0.4 m.
 double grey_of_tiles(double x_m, double y_m) {
   return 100.0 + 40.0 * std::sin(15.7 * x_m) + 40.0 * std::sin(15.7 * y_m);
 }

@@ -226,7 +226,7 @@ TEST_F(RefusedGraph, BlockSizeOutOfBounds) {
   }
 }
 
-/// The shape that the first Reshape reads, replaced.
+/// A graph whose first Reshape reads this shape.
 Graph reshaped_to(const Shape& shape) {
   Graph graph = model("view_channels_last_int8");
   for (Node& n : graph.nodes) {
