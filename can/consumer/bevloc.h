@@ -23,14 +23,15 @@
 /* Why the latest pose may or may not be used, in the order of the checks. */
 enum bevloc_answer {
   BEVLOC_USABLE,
-  BEVLOC_NO_POSE,       /* no complete pose was received yet */
-  BEVLOC_TIMEOUT,       /* no pose for three cycles, or only one pose since such a pause, or no
-                           LOC_Status for three of its cycles, or the clock was set back: `now_us`
-                           is more than a cycle before one of them */
-  BEVLOC_NOT_VALID,     /* the state is neither TRACKING nor DEGRADED */
-  BEVLOC_NOT_AVAILABLE, /* a value, the integrity risk, or the protection level of an axis with
-                           an alert limit is not available */
-  BEVLOC_BEYOND_LIMIT   /* a protection level is beyond its alert limit, or the risk is too high */
+  BEVLOC_NO_POSE,        /* no complete pose was received yet */
+  BEVLOC_TIMEOUT,        /* no pose for three cycles, or only one pose since such a pause, or no
+                            LOC_Status for three of its cycles, or the clock was set back: `now_us`
+                            is more than a cycle before one of them */
+  BEVLOC_NOT_VALID,      /* the state is neither TRACKING nor DEGRADED */
+  BEVLOC_FOREIGN_SENDER, /* somebody else sends the vehicle's messages (Why_ForeignSender) */
+  BEVLOC_NOT_AVAILABLE,  /* a value, the integrity risk, or the protection level of an axis with
+                            an alert limit is not available */
+  BEVLOC_BEYOND_LIMIT    /* a protection level is beyond its alert limit, or the risk is too high */
 };
 
 /* The largest errors with which the function is still safe. A limit of 0 means that the function
@@ -57,7 +58,8 @@ struct bevloc_pose {
   double lateral_m, longitudinal_m, yaw_deg;   /* protection levels */
   bool has_lateral, has_longitudinal, has_yaw; /* false: no protection level of this axis */
   int risk_exponent;
-  bool complete; /* no other value is missing */
+  bool foreign_sender; /* Why_ForeignSender */
+  bool complete;       /* no other value is missing */
 };
 
 struct bevloc_counters {
@@ -72,6 +74,7 @@ struct bevloc_receiver {
   bool has_status, has_pose;
   int state;          /* BEVLOC_LOC_Status_State_... */
   int time_source;    /* BEVLOC_LOC_Status_TimeSource_... */
+  int map_id;         /* MapId of LOC_Status; compare it with that of your map */
   uint64_t status_us; /* when LOC_Status arrived */
   bool has_clock;
   uint32_t utc_offset_us; /* UTC minus the localizer's clock, modulo 2^32 */
@@ -218,6 +221,7 @@ static inline void bevloc_take_status(struct bevloc_receiver* receiver, const ui
   if (bevloc_decode(data, &BEVLOC_LOC_Status_TimeSource, &value)) {
     receiver->time_source = (int)value;
   }
+  if (bevloc_decode(data, &BEVLOC_LOC_Status_MapId, &value)) receiver->map_id = (int)value;
   if (!bevloc_decode(data, &BEVLOC_LOC_Status_State, &value)) value = BEVLOC_LOC_Status_State_FAULT;
   receiver->state = (int)value;
   receiver->has_status = true;
@@ -237,6 +241,7 @@ static inline void bevloc_take_pose(struct bevloc_receiver* receiver, uint64_t n
   struct bevloc_pose* pose = &receiver->pose;
   uint8_t(*frames)[8] = receiver->frames;
   double risk = 0;
+  double foreign_sender = 0;
   double capture_us = 0;
   bool complete = true;
   /* When the bus returns after a failure, the first pose may be an old one that waited in the
@@ -261,6 +266,8 @@ static inline void bevloc_take_pose(struct bevloc_receiver* receiver, uint64_t n
   pose->has_yaw = bevloc_decode(frames[7], &BEVLOC_LOC_Integrity_ProtectionYaw, &pose->yaw_deg);
   complete &= bevloc_decode(frames[7], &BEVLOC_LOC_Integrity_IntegrityRiskExponent, &risk);
   pose->risk_exponent = (int)risk;
+  complete &= bevloc_decode(frames[7], &BEVLOC_LOC_Integrity_Why_ForeignSender, &foreign_sender);
+  pose->foreign_sender = foreign_sender != 0;
   pose->complete = complete;
   pose->received_us = now_us;
   receiver->has_pose = true;
@@ -355,6 +362,7 @@ static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* rec
       receiver->state != BEVLOC_LOC_Status_State_DEGRADED) {
     return BEVLOC_NOT_VALID;
   }
+  if (pose->foreign_sender) return BEVLOC_FOREIGN_SENDER;
   if (!pose->complete || bevloc_lacks_level(limits->lateral_m, pose->has_lateral) ||
       bevloc_lacks_level(limits->longitudinal_m, pose->has_longitudinal) ||
       bevloc_lacks_level(limits->yaw_deg, pose->has_yaw)) {
@@ -390,6 +398,8 @@ static inline const char* bevloc_answer_name(enum bevloc_answer answer) {
       return "timeout";
     case BEVLOC_NOT_VALID:
       return "not_valid";
+    case BEVLOC_FOREIGN_SENDER:
+      return "foreign_sender";
     case BEVLOC_NOT_AVAILABLE:
       return "not_available";
     case BEVLOC_BEYOND_LIMIT:

@@ -48,6 +48,7 @@ class Receiver {
   }
 
   int state() const { return receiver_.state; }
+  int map_id() const { return receiver_.map_id; }
   const Pose& latest() const { return receiver_.pose; }
   const ::bevloc_counters& counters() const { return receiver_.counters; }
 

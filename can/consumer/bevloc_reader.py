@@ -53,6 +53,7 @@ VALUES = {
     "longitudinal_m": ("LOC_Integrity", "ProtectionLongitudinal"),
     "yaw_deg": ("LOC_Integrity", "ProtectionYaw"),
     "risk_exponent": ("LOC_Integrity", "IntegrityRiskExponent"),
+    "foreign_sender": ("LOC_Integrity", "Why_ForeignSender"),
 }
 """The values of a pose."""
 
@@ -148,6 +149,7 @@ class Receiver:
     counters: Counters = field(default_factory=Counters)
     state: str | None = None
     time_source: str | None = None
+    map_id: int | None = None
     pose: dict[str, float | None] | None = None
     pose_time_s: float = 0.0
     pose_follows_silence: bool = True
@@ -188,6 +190,8 @@ class Receiver:
             return "timeout"
         if self.state not in ("TRACKING", "DEGRADED"):
             return "not_valid"
+        if self.pose["foreign_sender"]:
+            return "foreign_sender"
         if self._lacks_value():
             return "not_available"
         return "beyond_limit" if self._is_beyond_limit() else "usable"
@@ -244,6 +248,8 @@ class Receiver:
 
         self.state = name_of("State", "FAULT")
         self.time_source = name_of("TimeSource", "FREE_RUNNING")
+        map_id = decode(data, MESSAGES["LOC_Status"].signals["MapId"])
+        self.map_id = None if map_id is None else int(map_id)
         self.status_time_s = time_s
 
     def _take_clock(self, data: bytes, time_s: float) -> None:

@@ -38,6 +38,7 @@ class Link {
     now_ += std::chrono::duration_cast<microseconds>(silence) - milliseconds(10);
     return publish(report, 1);
   }
+  int map_id() const { return receiver_.map_id(); }
   std::optional<uint32_t> capture_utc_us() const { return receiver_.capture_utc_us(now_); }
 
  private:
@@ -60,6 +61,26 @@ TEST(ConsumerAnswerTest, DoesNotUseTheFirstPoseAfterASilence) {
     EXPECT_EQ(link.publish_after(milliseconds(30), report), BEVLOC_USABLE);
     EXPECT_EQ(link.publish_after(milliseconds(31), report), BEVLOC_TIMEOUT);
     EXPECT_EQ(link.publish(report, 1), BEVLOC_USABLE);
+  }
+}
+
+TEST(ConsumerAnswerTest, UsesNoPoseWhileSomebodyElseSendsTheVehiclesMessages) {
+  for (const FrameFormat format : {FrameFormat::kClassic, FrameFormat::kFd}) {
+    Link link(kWide, format);
+    PoseReport report = test::tracking_report(test::kNow);
+    EXPECT_EQ(link.publish(report, 2), BEVLOC_USABLE);
+    report.status.why |= Why::kForeignSender;
+    EXPECT_EQ(link.publish(report, 1), BEVLOC_FOREIGN_SENDER);
+  }
+}
+
+TEST(ConsumerAnswerTest, TellsTheMap) {
+  for (const FrameFormat format : {FrameFormat::kClassic, FrameFormat::kFd}) {
+    Link link(kWide, format);
+    PoseReport report = test::tracking_report(test::kNow);
+    report.status.map_id = 0xBEE5;
+    link.publish(report, 10);
+    EXPECT_EQ(link.map_id(), 0xBEE5);
   }
 }
 

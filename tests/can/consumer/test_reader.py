@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 CONSUMER = Path(__file__).resolve().parents[3] / "can/consumer"
-LEVELS = ("ProtectionLateral", "ProtectionLongitudinal", "ProtectionYaw")
 
 
 class ReaderTest(unittest.TestCase):
@@ -35,10 +34,10 @@ class ReaderTest(unittest.TestCase):
         self.counter = (self.counter + 1) % 16
 
     def answer_to_levels(self, limits: dict[str, float], raw: dict[str, int]) -> str:
-        """The answer to a pose that is 0 but for the raw values of its protection levels."""
+        """The answer to a pose that is 0 but for these raw values of LOC_Integrity."""
         receiver = self.reader.Receiver(self.reader.AlertLimits(risk_exponent=0, **limits))
         signals = self.reader.MESSAGES["LOC_Integrity"].signals
-        content = sum(raw.get(name, 0) << signals[name].start_bit - 16 for name in LEVELS)
+        content = sum(value << signals[name].start_bit - 16 for name, value in raw.items())
         self.send(receiver, "LOC_Status", 2, 1.0)
         for _ in range(2):
             self.send_pose(receiver, 1.0, {"LOC_Integrity": content})
@@ -71,6 +70,9 @@ class ReaderTest(unittest.TestCase):
                           "yaw_deg": {"ProtectionYaw": 0x7FF}}.items():
             self.assertEqual(self.answer_to_levels({axis: 1.0}, raw), "not_available")
             self.assertEqual(self.answer_to_levels({}, raw), "usable")
+
+    def test_a_foreign_sender_makes_the_pose_unusable(self) -> None:
+        self.assertEqual(self.answer_to_levels({}, {"Why_ForeignSender": 1}), "foreign_sender")
 
     def test_no_level_is_within_a_limit_that_is_negative_or_not_a_number(self) -> None:
         for axis in self.reader.LEVELS:
