@@ -37,7 +37,9 @@ void StampSteps::judge(const Seen& frame) {
   const Duration expected = *period_ * count;
   const Duration jump = stamped - expected;
   const bool timely = std::chrono::abs(arrived - expected) <= kAgreement;
-  if (timely && std::chrono::abs(jump) > kAgreement) offset_ += jump;
+  // A large jump counts although the frame arrived late, because what makes a stamp jump often
+  // delays the frame, too.
+  if (std::chrono::abs(jump) > (timely ? kAgreement : kTolerated)) offset_ += jump;
 }
 
 }  // namespace bevloc::drivers

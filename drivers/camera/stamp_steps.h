@@ -9,9 +9,9 @@
 namespace bevloc::drivers {
 
 /// The stamp, the arrival and the sequence number of a frame each say how much time has passed
-/// since the frame before. If stamp and arrival disagree, the sequence number decides. If the frame
-/// arrived late, its stamp is right. If the frame arrived on time, its stamp is wrong: the stamps
-/// have jumped. The sum of all jumps is the offset of the stamps.
+/// since the frame before. If stamp and arrival disagree, the sequence number decides. A stamp
+/// that says another time is wrong: the stamps have jumped. If the frame also arrived late, only a
+/// jump of more than kTolerated counts. The sum of all jumps is the offset of the stamps.
 ///
 /// This class cannot find stamps that were wrong from the start. StampMonitor finds them when the
 /// vehicle drives through a bend.

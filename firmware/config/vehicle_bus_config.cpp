@@ -1,9 +1,11 @@
 #include "firmware/config/vehicle_bus_config.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "can/dbc/signal_layout.h"
 #include "can/messages/message_table.h"
 #include "can/vehicle/vehicle_binder.h"
 
@@ -51,6 +53,12 @@ class SignalGroup {
                                         const std::string& unit) {
     if (!yaml_.has(key)) return std::nullopt;
     return signal(key, quantity, unit);
+  }
+
+  /// Whether a bound signal has negative values. True for one that is not bound.
+  bool has_sign(size_t signal) const {
+    if (message_.empty() || signal >= binder_->binding().signals.size()) return true;
+    return can::lowest_physical(binder_->binding().signals[signal].layout) < 0.0;
   }
 
   /// Reads `{signal: NAME, values: [A, B]}`.
@@ -114,6 +122,12 @@ can::BoundWheels read_wheels(YamlMap yaml, can::VehicleBinder* binder) {
   }
   wheels.valid = group.condition("valid");
   wheels.backward = group.condition("backward");
+  const bool have_signs = std::ranges::all_of(
+      wheels.wheels, [&group](const auto& wheel) { return group.has_sign(wheel.signal); });
+  if (!wheels.backward && !have_signs) {
+    group.yaml().reject("signals", "speeds that are never negative",
+                        "backward, which says when the vehicle reverses");
+  }
   return wheels;
 }
 
@@ -125,6 +139,10 @@ can::BoundYawRate read_yaw_rate(YamlMap yaml, can::VehicleBinder* binder) {
       group.yaml().optional_choice<bool>("positive", false, {{"left", false}, {"right", true}});
   yaw_rate.valid = group.condition("valid");
   yaw_rate.negative = group.condition("negative");
+  if (!yaw_rate.negative && !group.has_sign(yaw_rate.signal)) {
+    group.yaml().reject("signal", "a yaw rate that is never negative",
+                        "negative, which says when the vehicle turns to the negative side");
+  }
   return yaw_rate;
 }
 

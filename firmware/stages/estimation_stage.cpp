@@ -1,5 +1,6 @@
 #include "firmware/stages/estimation_stage.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "firmware/threads/clock_gap.h"
@@ -19,6 +20,9 @@ Eigen::Matrix3d map_covariance(const TrackedPose& pose) {
 constexpr size_t index_of(TrackerUpdate outcome) {
   return static_cast<size_t>(outcome);
 }
+
+/// Framesets that come more slowly are taken for missing.
+constexpr Duration kSlowFramesets = std::chrono::milliseconds(500);
 
 Duration age(const std::optional<Time>& time, Time now) {
   return time ? now - *time : Duration::max();
@@ -84,7 +88,7 @@ void EstimationStage::note_clock_gap() {
   while (reports_.pop(Duration::zero())) {
   }
   estimator_.reset();
-  stamps_.reset();
+  stamps_.note_gap();
   last_tick_.reset();
   odometry_time_.reset();
   gnss_time_.reset();
@@ -107,11 +111,12 @@ void EstimationStage::take_samples() {
     if (is_odometry) stamps_.add_rate(odometry->time, odometry->yaw_rate_radps);
     const TrackerUpdate outcome = estimator_.add(*sample);
     ++(is_odometry ? counters_.odometry : counters_.gnss)[index_of(outcome)];
-    // A GNSS sample that the gate refuses has arrived, although it contradicts. A sample that waits
-    // for a heading has arrived, too.
-    const bool arrived = outcome == TrackerUpdate::kAccepted ||
-                         outcome == TrackerUpdate::kNoHeading ||
-                         (!is_odometry && outcome == TrackerUpdate::kGated);
+    // A GNSS sample that the gate refuses has arrived, although it contradicts. So has one that
+    // waits for a heading or for odometry.
+    const bool gnss_is_there = outcome == TrackerUpdate::kNoHeading ||
+                               outcome == TrackerUpdate::kNoOdometry ||
+                               outcome == TrackerUpdate::kGated;
+    const bool arrived = outcome == TrackerUpdate::kAccepted || (!is_odometry && gnss_is_there);
     if (!arrived) continue;
     std::optional<Time>& latest = is_odometry ? odometry_time_ : gnss_time_;
     latest = std::visit([](const auto& taken) { return taken.time; }, *sample);
@@ -134,6 +139,7 @@ void EstimationStage::watch_clock(Time now) {
 
 void EstimationStage::take_reports(Time now) {
   while (const auto report = reports_.pop(Duration::zero())) {
+    report_interval_ = std::min(now - latest_report_arrival_, kSlowFramesets);
     latest_report_ = *report;
     latest_report_arrival_ = now;
     network_fault_ = network_fault_ || report->network_fault;
@@ -142,7 +148,8 @@ void EstimationStage::take_reports(Time now) {
     counters_.stamp_offset_ms = stamps_.offset_ms();
   }
   // If all cameras stop, no report comes that would say so.
-  if (now - latest_report_arrival_ > report_lifetime_) latest_report_.reset();
+  const Duration lifetime = std::max(report_lifetime_, 2 * report_interval_);
+  if (now - latest_report_arrival_ > lifetime) latest_report_.reset();
 }
 
 void EstimationStage::add_correction(const VisionReport& report) {

@@ -126,6 +126,7 @@ class EstimationStage {
   std::optional<Time> valid_since_;
   std::optional<VisionReport> latest_report_;
   Time latest_report_arrival_;
+  Duration report_interval_{0};  ///< between the latest two reports, at most kSlowFramesets
   bool network_fault_ = false;
   Published<can::ClockReport> clock_;
   StampWatch stamps_;

@@ -12,9 +12,13 @@ namespace bevloc::firmware {
 /// Counts what the estimator accepts and refuses. One thread.
 class MatchHistory {
  public:
+  /// Matches with a longer pause between them are not in a row.
+  static constexpr Duration kLongestPause = std::chrono::seconds(2);
+
   /// Adds what became of the match of a frameset.
   void add(Time frame_time, const PoseEstimator::MatchOutcome& outcome) {
     const Seen& seen = outcome.seen;
+    if (accepted_time_ && frame_time - *accepted_time_ > kLongestPause) accepted_in_a_row_ = 0;
     wide_search_ = seen.at_border.any();
     if (outcome.update == TrackerUpdate::kAccepted) {
       accepted_time_ = unsent_time_ = frame_time;
@@ -35,7 +39,7 @@ class MatchHistory {
 
   /// Frameset of the latest accepted match.
   const std::optional<Time>& accepted_time() const { return accepted_time_; }
-  /// The same, of those that confirm the pose (Seen::confirms()).
+  /// Frameset of the latest accepted match that confirms the pose (Seen::confirms()).
   const std::optional<Time>& confirmed_time() const { return confirmed_time_; }
   int accepted_in_a_row() const { return accepted_in_a_row_; }  ///< that confirm a start
   int refused_in_a_row() const { return refused_in_a_row_; }

@@ -38,8 +38,8 @@ int StampWatch::offset_ms() const {
   return static_cast<int>(duration_cast<milliseconds>(estimate->offset).count());
 }
 
-void StampWatch::reset() {
-  monitor_.reset();
+void StampWatch::note_gap() {
+  monitor_.note_gap();
   latest_jumped_ = jumped_ = false;
 }
 

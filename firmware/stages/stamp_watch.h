@@ -23,8 +23,8 @@ class StampWatch {
   /// Offset of the stamps against odometry; 0 while it is tolerated.
   int offset_ms() const;
 
-  /// Returns to the state after construction.
-  void reset();
+  /// Begins a new history after a gap in time. Wrong stamps stay wrong.
+  void note_gap();
 
  private:
   void note_jump(bool jumped);

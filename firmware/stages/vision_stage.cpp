@@ -44,13 +44,6 @@ void leave_out(CameraMask cameras, drivers::Frameset& frameset) {
   frameset.spread = latest - earliest;
 }
 
-VisionReport report_without_frameset(Time now) {
-  VisionReport report;
-  report.frame_time = now;
-  report.unsynchronized = true;
-  return report;
-}
-
 }  // namespace
 
 VisionStage::VisionStage(Localizer& localizer, const VisionConfig& config, FrameQueue& frames,
@@ -78,8 +71,15 @@ bool VisionStage::step(const drivers::Clock& clock, Duration timeout) {
     reports_.push(report_on(std::move(*newest)));
     return true;
   }
-  if (framesets_.unsynchronized_without_framesets(now)) {
-    reports_.push(report_without_frameset(now));
+  const bool is_unsynchronized = framesets_.unsynchronized_without_framesets(now);
+  // A fault that the check at the start has found must be known before the first frameset comes.
+  const bool is_faulty_start = counters_.network_fault && counters_.framesets == 0;
+  if (is_unsynchronized || is_faulty_start) {
+    VisionReport report;
+    report.frame_time = now;
+    report.unsynchronized = is_unsynchronized;
+    report.network_fault = counters_.network_fault;
+    reports_.push(report);
   }
   return false;
 }

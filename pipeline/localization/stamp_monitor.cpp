@@ -35,6 +35,12 @@ void StampMonitor::reset() {
   contradicts_ = false;
 }
 
+void StampMonitor::note_gap() {
+  if (!contradicts_) return reset();
+  rates_.clear();
+  headings_.clear();
+}
+
 void StampMonitor::add_rate(Time time, double yaw_rate_radps) {
   if (rates_.empty()) {
     rates_.push_back({time, yaw_rate_radps, 0.0});

@@ -45,6 +45,10 @@ class StampMonitor {
   /// Returns to the state after construction. Does not allocate.
   void reset();
 
+  /// Begins a new history after a gap in time. An offset that contradicts stays known, because a
+  /// gap does not set the clocks of the cameras right.
+  void note_gap();
+
   /// Whether the offset is certainly larger than kTolerated. The answer stays true until agrees()
   /// holds.
   bool contradicts() const { return contradicts_; }

@@ -25,11 +25,14 @@ constexpr double kMostYawSigma_rad = radians(30.0);
 /// Refused matches in a row after which a pose that was never valid starts again.
 constexpr int kRefusalsToStartAgain = 5;
 constexpr Duration kMatchAbsence = std::chrono::seconds(1);
+/// What matches said about the place of a pose that is not valid counts for this long after the
+/// latest match. The vehicle may then be in another lane.
+constexpr Duration kSupportLifetime = std::chrono::seconds(5);
 /// A GNSS sample older than this says nothing about the pose.
 constexpr Duration kGnssLifetime = std::chrono::seconds(2);
 
-/// Only GNSS supports a new pose, and a receiver may claim to be more exact than it is. With this
-/// sigma, right matches outweigh GNSS.
+/// Only GNSS supports a new or lost pose, and a receiver may claim to be more exact than it is.
+/// With this sigma, right matches outweigh GNSS.
 GnssSample with_start_sigma(GnssSample sample) {
   for (double* sigma_m : {&sample.sigma_east_m, &sample.sigma_north_m}) {
     if (*sigma_m > 0.0) *sigma_m = std::max(*sigma_m, StartConfirmation::kLeastGnssSigma_m);
@@ -68,7 +71,7 @@ TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
   const auto yaw = yaw_at(received.time);
   const GnssSample at_axle = received.antenna ? at_rear_axle(received, yaw) : received;
   GnssSample sample = gnss_scatter_.with_seen_sigma(at_axle);
-  if (!trusted_) sample = with_start_sigma(sample);
+  if (!pose_valid_) sample = with_start_sigma(sample);
   const bool had_pose = tracker_.is_initialised();
   const bool trusted = arbiter_.trusts_gnss();
   const TrackerUpdate update = tracker_.add_gnss(sample, trusted ? Trust::kUse : Trust::kExamine);
@@ -79,6 +82,7 @@ TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
     gnss_sigma_.head<2>().setConstant(
         std::max(gnss.position_sigma_m, model.gnss_min_position_sigma_m));
     gnss_sigma_.z() = std::max(gnss.yaw_sigma_rad, model.gnss_min_yaw_sigma_rad);
+    gnss_has_yaw_ = sample.yaw.has_value();
   }
   if (!had_pose || !reached_the_gate(update)) return update;
   if (yaw) gnss_scatter_.add(at_axle, yaw->yaw_rad);
@@ -140,7 +144,7 @@ void PoseEstimator::weigh_start(const MatchResult& match, const MatchOutcome& ou
   }
   start_confirmation_.add({.score = match.score,
                            .along_score = match.axis_score.x(),
-                           .along_growth = evidence_.growth_of(match.axis_score.x()),
+                           .along_growth = EvidenceMonitor::growth_of(match.axis_score.x()),
                            .sees = outcome.seen.confirms_start()});
 }
 
@@ -149,7 +153,8 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   // Without a pose nothing tells whether the vehicle is still where it was.
   const std::optional<GnssSample::Yaw> yaw = yaw_at(now);
   const bool is_gone = !yaw;
-  if (is_gone || (is_lost && is_contradicted())) start_confirmation_.reset();
+  const bool is_unseen = !pose_valid && match_passed_ && now - *match_passed_ > kSupportLifetime;
+  if (is_gone || is_unseen || (is_lost && is_contradicted())) start_confirmation_.reset();
   pose_valid_ = pose_valid;
   trusted_ = trusted_ || pose_valid;
   const bool odometry_was_wrong = verdict_.odometry_contradicts;
@@ -217,7 +222,7 @@ Eigen::Vector3d PoseEstimator::protection_of(const TrackedPose& pose,
   const double since_gnss_s = gnss_passed_ ? to_seconds(pose.time - *gnss_passed_) : 0.0;
   std::optional<GnssView> view;
   if (gnss_is_recent(pose.time)) {
-    view = GnssView{tracker_.gnss_error(), gnss_sigma_};
+    view = GnssView{tracker_.gnss_error(), gnss_sigma_, gnss_has_yaw_};
   }
   return protection_level(pose.covariance.diagonal().cwiseSqrt(), view,
                           gnss_correlation_s + since_gnss_s, parameters);
@@ -239,7 +244,6 @@ void PoseEstimator::reset() {
   tracker_.reset();
   odometry_monitor_.reset();
   const TrackerParameters& parameters = tracker_.parameters();
-  map_offset_ = MapOffsetMonitor(parameters.correlation.gnss_s);
   gnss_scatter_ = GnssScatter(parameters.measurements, parameters.correlation.gnss_s);
 }
 

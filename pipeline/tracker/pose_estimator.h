@@ -66,7 +66,8 @@ class PoseEstimator {
   /// Forgets the pose and all verdicts; the next GNSS sample sets the pose.
   void restart();
 
-  /// Returns to the state after construction.
+  /// Forgets everything but the offset between map and GNSS, because a gap in time changes neither
+  /// the map nor the antenna.
   void reset();
 
   const Tracker& tracker() const { return tracker_; }
@@ -96,6 +97,7 @@ class PoseEstimator {
   std::optional<Time> match_passed_;  ///< latest match that passed the gate
   std::optional<Time> gnss_passed_;   ///< latest trusted GNSS sample that passed the gate
   Eigen::Vector3d gnss_sigma_ = Eigen::Vector3d::Ones();  ///< sigma of that sample: (m, m, rad)
+  bool gnss_has_yaw_ = false;                             ///< whether that sample has a heading
 };
 
 }  // namespace bevloc

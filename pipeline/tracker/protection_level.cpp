@@ -12,6 +12,8 @@ namespace {
 
 /// A wrong place lies anywhere within this distance: (m, m, rad).
 const Eigen::Vector3d kWrongWithin{10.0, 10.0, radians(10.0)};
+/// How often the match settles on a wrong place without any other sign.
+constexpr double kWrongPlaceRate_per_s = 1e-9;
 constexpr int kBisections = 30;
 
 /// How much better a wrong place explains the normalised GNSS error of one axis than the right one.
@@ -21,12 +23,12 @@ double likelihood_ratio(double error, double sigma, double wrong_within) {
   return density_wrong / std::max(density_right, 1e-300);
 }
 
-double probability_of_wrong_place(const std::optional<GnssView>& gnss, double exposure_s,
-                                  const ProtectionParameters& parameters) {
-  double odds = parameters.wrong_place_rate_per_s * exposure_s;
+double probability_of_wrong_place(const std::optional<GnssView>& gnss, double exposure_s) {
+  double odds = kWrongPlaceRate_per_s * exposure_s;
   if (gnss) {
     double best = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
+      if (!gnss->sees(axis)) continue;
       best = std::max(best,
                       likelihood_ratio(gnss->error(axis), gnss->sigma(axis), kWrongWithin(axis)));
     }
@@ -69,14 +71,14 @@ double quantile(const AxisMixture& mixture, double risk) {
 
 Eigen::Vector3d protection_level(const Eigen::Vector3d& sigma, const std::optional<GnssView>& gnss,
                                  double exposure_s, const ProtectionParameters& parameters) {
-  const double wrong = probability_of_wrong_place(gnss, exposure_s, parameters);
+  const double wrong = probability_of_wrong_place(gnss, exposure_s);
   Eigen::Vector3d level;
   for (int axis = 0; axis < 3; ++axis) {
     AxisMixture mixture;
     mixture.sigma = parameters.tail_factor * sigma(axis);
     mixture.wrong = wrong;
     mixture.wrong_within = kWrongWithin(axis);
-    if (gnss) {
+    if (gnss && gnss->sees(axis)) {
       mixture.bounded = true;
       mixture.wrong_mean = gnss->error(axis) * gnss->sigma(axis);
       mixture.wrong_sigma = gnss->sigma(axis);

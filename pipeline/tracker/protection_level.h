@@ -12,8 +12,6 @@ struct ProtectionParameters {
   double integrity_risk = 1e-5;
   /// Factor on sigma: the tails of real errors are wider than those of a normal distribution.
   double tail_factor = 1.1;
-  /// How often the match settles on a wrong place without any other sign.
-  double wrong_place_rate_per_s = 1e-9;
 
   bool operator==(const ProtectionParameters&) const = default;
 };
@@ -24,6 +22,8 @@ struct GnssView {
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
   /// The standard deviations: (m, m, rad).
   Eigen::Vector3d sigma = Eigen::Vector3d::Ones();
+  bool has_yaw = true;  ///< otherwise GNSS says nothing about the third axis
+  bool sees(int axis) const { return axis < 2 || has_yaw; }
 };
 
 /// The protection level of each axis in the vehicle frame: (longitudinal m, lateral m, yaw rad).

@@ -46,6 +46,12 @@ TEST_F(StampStepsTest, FramesThatArriveLateHaveRightStamps) {
   EXPECT_FALSE(frame());
 }
 
+TEST_F(StampStepsTest, AJumpOfAFrameThatArrivesLateIsFound) {
+  EXPECT_TRUE(frame(milliseconds(-100), milliseconds(30)));
+  EXPECT_TRUE(frame(milliseconds(-100)));
+  EXPECT_EQ(steps_.offset(), milliseconds(-100));
+}
+
 TEST_F(StampStepsTest, LostFramesAreNoJump) {
   lose_frames(1);
   EXPECT_FALSE(frame());

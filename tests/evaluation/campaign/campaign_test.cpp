@@ -121,6 +121,17 @@ TEST_P(CampaignModeTest, SendsNoDangerousPoseForLong) {
   const auto known = known_failures().find(GetParam());
   EXPECT_LE(outcome.beyond_alert_s(),
             known == known_failures().end() ? mode->limit_s : known->second);
+  const FaultTime fault = mode->time_in(short_drives().duration_s);
+  if (fault.from_s > 0.0) {
+    EXPECT_GE(outcome.first_fix_s, 0.0) << "without a valid pose before, the fault shows nothing";
+    EXPECT_LT(outcome.first_fix_s, fault.from_s);
+  }
+  if (mode->named_by.bits() != 0) {
+    EXPECT_TRUE(outcome.detection_s);
+  }
+  if (fault.until_s < short_drives().duration_s) {
+    EXPECT_TRUE(outcome.recovery_s);
+  }
 }
 
 std::string test_name(const testing::TestParamInfo<std::string>& mode) {

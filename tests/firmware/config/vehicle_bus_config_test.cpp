@@ -63,6 +63,25 @@ TEST_F(VehicleBusConfigTest, LongMessagesNeedAnFdInterface) {
   EXPECT_TRUE(appliance_options(config->can).fd);
 }
 
+/// Otherwise a vehicle that reverses would seem to drive forward.
+TEST_F(VehicleBusConfigTest, SpeedsAndYawRatesNeedASign) {
+  EXPECT_NE(error_with("      backward: {signal: TCU_Gear.GE_Position, values: [R]}\n", "")
+                .find("can.vehicle.wheel_speed.signals: found speeds that are never negative, "
+                      "wanted backward, which says when the vehicle reverses"),
+            std::string::npos);
+  std::string dbc = read_text(folder_ / "vehicle_demo.dbc");
+  const auto replace = [&dbc](const std::string& from, const std::string& to) {
+    ASSERT_NE(dbc.find(from), std::string::npos) << from;
+    dbc.replace(dbc.find(from), from.size(), to);
+  };
+  replace("16|32@1- (1,0) [0|0]", "16|32@1+ (1E-006,0) [0|0]");
+  replace("SIG_VALTYPE_ 290 MO_YawRate : 1;\n", "");
+  write("vehicle_demo.dbc", dbc);
+  EXPECT_NE(error_with("mock", "mock")
+                .find("can.vehicle.yaw_rate.signal: found a yaw rate that is never negative"),
+            std::string::npos);
+}
+
 TEST_F(VehicleBusConfigTest, NamesWhatWasProbablyMeant) {
   EXPECT_EQ(error_with("message: ESP_Motion", "message: ESP_Motoin"),
             place(22) +

@@ -35,7 +35,8 @@ class EstimationStageTest : public testing::Test {
         const Se2 truth = truth_at(now_);
         samples_.push(GnssSample{now_, truth.x_m, truth.y_m + gnss_north_m_, gnss_sigma_m_,
                                  gnss_sigma_m_, GnssSample::Yaw{0.0, 0.02}});
-        if (vision_) push_report(now_ - milliseconds(40));
+        const bool is_due = now_.time_since_epoch() % report_period_ == Duration::zero();
+        if (vision_ && is_due) push_report(now_ - milliseconds(40));
       }
       stage_.tick(now_);
       while (const auto received = listener_->receive()) {
@@ -69,7 +70,7 @@ class EstimationStageTest : public testing::Test {
   can::MockWire wire_;
   std::unique_ptr<can::Bus> bus_ = wire_.connect();
   std::unique_ptr<can::Bus> listener_ = wire_.connect();
-  can::PosePublisher publisher_{*bus_, {{}, kOrigin, {}}};
+  can::PosePublisher publisher_{*bus_, {.map_origin = kOrigin}};
   VehicleQueue samples_{256};
   VisionQueue reports_{16};
   PredictionQueue predictions_{128};
@@ -82,6 +83,7 @@ class EstimationStageTest : public testing::Test {
   double gnss_sigma_m_ = 1.0;
   bool odometry_ = true;
   bool vision_ = true;
+  Duration report_period_ = milliseconds(100);
   bool skipped_ = false;
   bool stamps_jumped_ = false;
   std::optional<evaluation::BusPose> latest_;
@@ -248,6 +250,22 @@ TEST_F(EstimationStageTest, StampsAreStillWrongAfterAClockGap) {
   EXPECT_TRUE(WhyMask::from_bits(stage_.counters().why).has(Why::kCalibrationFault));
 }
 
+TEST_F(EstimationStageTest, AMapThatLiesOffGnssDoesSoAfterAClockGap) {
+  const auto why = [this] { return WhyMask::from_bits(stage_.counters().why); };
+  run(milliseconds(5000));
+  gnss_north_m_ = 3.0;
+  for (int second = 0; second < 600 && !why().has(Why::kMapFault); ++second) {
+    run(milliseconds(1000));
+  }
+  ASSERT_TRUE(why().has(Why::kMapFault));
+  now_ += std::chrono::seconds(10);
+  stage_.note_clock_gap();
+  latest_.reset();
+  run(milliseconds(10'000));
+  EXPECT_FALSE(latest_) << "no valid pose";
+  EXPECT_TRUE(why().has(Why::kMapFault));
+}
+
 TEST_F(EstimationStageTest, ReportsAllCamerasMissingWithoutFramesets) {
   run(milliseconds(5000));
   EXPECT_EQ(stage_.counters().cameras, 0b111111U);
@@ -262,6 +280,16 @@ TEST_F(EstimationStageTest, ReportsAllCamerasMissingWithoutFramesets) {
   EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
 }
 
+/// The cameras deliver, but vision is slow.
+TEST_F(EstimationStageTest, SlowFramesetsAreNotMissingCameras) {
+  run(milliseconds(5000));
+  report_period_ = milliseconds(400);
+  for (int i = 0; i < 500; ++i) {
+    run(milliseconds(10));
+    ASSERT_EQ(stage_.counters().cameras, 0b111111U) << i;
+  }
+}
+
 TEST_F(EstimationStageTest, StopsSendingPosesWithoutOdometry) {
   run(milliseconds(5000));
   odometry_ = false;
@@ -270,6 +298,30 @@ TEST_F(EstimationStageTest, StopsSendingPosesWithoutOdometry) {
   latest_.reset();
   run(milliseconds(500));
   EXPECT_FALSE(latest_);
+}
+
+TEST_F(EstimationStageTest, GnssIsThereWhileOdometryIsMissing) {
+  run(milliseconds(5000));
+  odometry_ = false;
+  run(milliseconds(3000));
+  const auto why = WhyMask::from_bits(stage_.counters().why);
+  EXPECT_TRUE(why.has(Why::kOdometryMissing));
+  EXPECT_FALSE(why.has(Why::kGnssMissing));
+}
+
+/// Nine good matches, a time without any, and one more do not make ten.
+TEST_F(EstimationStageTest, MatchesBeforeAPauseDoNotConfirmAStart) {
+  run(milliseconds(1000));
+  ASSERT_EQ(stage_.counters().state, HealthState::kAcquiring);
+  ASSERT_LT(corrections(TrackerUpdate::kAccepted),
+            static_cast<uint64_t>(HealthLimits().corrections_to_track));
+  vision_ = false;
+  run(milliseconds(4000));
+  vision_ = true;
+  run(milliseconds(300));
+  EXPECT_EQ(stage_.counters().state, HealthState::kAcquiring);
+  run(milliseconds(2000));
+  EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
 }
 
 TEST_F(EstimationStageTest, CountsLossesAndKeepsTheReasonAndTheTime) {

@@ -67,6 +67,16 @@ TEST(StampMonitorTest, FindsTheOffsetOfTheStampsInBends) {
   }
 }
 
+TEST(StampMonitorTest, AGapKeepsAWrongOffsetAndForgetsARightOne) {
+  StampMonitor wrong = after({.offset_s = 0.1});
+  wrong.note_gap();
+  EXPECT_TRUE(wrong.contradicts());
+  StampMonitor right = after({});
+  ASSERT_TRUE(right.agrees());
+  right.note_gap();
+  EXPECT_FALSE(right.agrees());
+}
+
 TEST(StampMonitorTest, AcceptsRightStampsWithUsualErrorsOfTheSensors) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     for (const double bias_degps : {-0.3, 0.3}) {

@@ -62,6 +62,21 @@ TEST_F(MapOffsetMonitorTest, AnOffsetOfAMetreIsFoundWithinAnHour) {
   EXPECT_TRUE(monitor_.contradicts());
 }
 
+/// What the filter has learned on a right map makes it slow. docs/tracker-and-health.md states it.
+class MapOffsetAfterAnHour : public MapOffsetMonitorTest,
+                             public testing::WithParamInterface<unsigned> {
+ protected:
+  MapOffsetAfterAnHour() : MapOffsetMonitorTest(GetParam()) {}
+};
+
+TEST_P(MapOffsetAfterAnHour, AnOffsetOf3MetresIsFoundWithin20Minutes) {
+  EXPECT_EQ(drive(Eigen::Vector2d::Zero(), minutes(60)), Duration::zero());
+  drive({3.0, 0.0}, minutes(20));
+  EXPECT_TRUE(monitor_.contradicts());
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, MapOffsetAfterAnHour, testing::Range(1U, 11U));
+
 TEST_F(MapOffsetMonitorTest, AJumpOfGnssIsNoOffset) {
   drive(Eigen::Vector2d::Zero(), minutes(5));
   EXPECT_EQ(drive({50.0, 0.0}, seconds(10)), Duration::zero());

@@ -122,14 +122,18 @@ class PoseEstimatorStartTest : public testing::Test {
       estimator_.add(odometry);
       if (i % 5 != 0) continue;
       if (has_gnss_) estimator_.add(gnss_beside(truth));
-      const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
-      MatchResult match = vehicle_.correction_from(prior);
-      match.correction = match.correction * Se2{0.0, beside_m, 0.0};
-      match.score = score;
-      match.axis_score = {along_score, 0.35, 0.35};
-      estimator_.add_match(at_s(time_s_), prior, match);
+      if (has_matches_) match_beside(beside_m, score, along_score);
       estimator_.judge(at_s(time_s_), false);
     }
+  }
+
+  void match_beside(double beside_m, double score, double along_score) {
+    const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
+    MatchResult match = vehicle_.correction_from(prior);
+    match.correction = match.correction * Se2{0.0, beside_m, 0.0};
+    match.score = score;
+    match.axis_score = {along_score, 0.35, 0.35};
+    estimator_.add_match(at_s(time_s_), prior, match);
   }
 
   GnssSample gnss_beside(const Se2& truth) {
@@ -147,6 +151,7 @@ class PoseEstimatorStartTest : public testing::Test {
   double gnss_error_m_ = 0.0;
   double gnss_sigma_m_ = 1.2;
   bool has_gnss_ = true;
+  bool has_matches_ = true;
   double speed_factor_ = 1.0;  ///< of the wheels
   double time_s_ = 0.0;
 };
@@ -219,6 +224,36 @@ TEST_F(PoseEstimatorStartTest, GnssOfSecondsAgoDoesNotConfirmALostPose) {
   has_gnss_ = true;
   drive(0.2, 0.0, 0.33, 0.3);
   EXPECT_TRUE(estimator_.confirms_start(at_s(time_s_)));
+}
+
+/// The vehicle may have changed to a lane that looks alike.
+TEST_F(PoseEstimatorStartTest, APoseThatNoMatchSawForSecondsNeedsNewSupport) {
+  drive(10.0, 0.0, 0.33, 0.3);
+  estimator_.judge(at_s(time_s_), true);
+  has_matches_ = false;
+  drive(3.0, 0.0, 0.33, 0.3);
+  EXPECT_TRUE(estimator_.confirms_start(at_s(time_s_))) << "a short loss";
+  drive(4.0, 0.0, 0.33, 0.3);
+  EXPECT_FALSE(estimator_.confirms_start(at_s(time_s_)));
+  has_matches_ = true;
+  drive(1.0, 0.0, 0.18, 0.14);
+  EXPECT_FALSE(estimator_.confirms_start(at_s(time_s_))) << "matches that say nothing";
+  drive(5.0, 0.0, 0.33, 0.3);
+  EXPECT_TRUE(estimator_.confirms_start(at_s(time_s_)));
+}
+
+TEST_F(PoseEstimatorStartTest, MatchesOutweighGnssThatDrewALostPose) {
+  drive(20.0, 0.0, 0.36, 0.33);
+  estimator_.judge(at_s(time_s_), true);
+  gnss_error_m_ = 2.0;
+  gnss_sigma_m_ = 0.1;
+  has_matches_ = false;
+  drive(30.0, 0.0, 0.36, 0.33);
+  has_matches_ = true;
+  drive(20.0, 0.0, 0.36, 0.33);
+  EXPECT_FALSE(estimator_.verdict().match_contradicts);
+  const Se2 truth = vehicle_.drive_to(time_s_);
+  EXPECT_LT(error_of(*estimator_.pose_at(at_s(time_s_)), truth).head<2>().norm(), 0.3);
 }
 
 /// The vehicle drives on unseen, and may be in another lane when odometry comes back.

@@ -29,6 +29,17 @@ TEST(ProtectionLevelTest, GrowsWhereGnssPointsElsewhere) {
   EXPECT_GT(level_at(4.4), 3.0) << "GNSS says 4.4 m to the side";
 }
 
+/// The error of the heading is then that of the start, and says nothing about this moment.
+TEST(ProtectionLevelTest, GnssWithoutAHeadingSaysNothingAboutTheHeading) {
+  const Eigen::Vector3d sigma{1.0, 1.0, M_PI};
+  const GnssView without{{0.0, 0.0, 2.9}, sigma, false};
+  const Eigen::Vector3d level = protection_level(kSigma, without, 40.0, {});
+  const Eigen::Vector3d agreeing =
+      protection_level(kSigma, GnssView{Eigen::Vector3d::Zero(), kGnssSigma}, 40.0, {});
+  EXPECT_NEAR(level.y(), agreeing.y(), 0.01);
+  EXPECT_LT(level.z(), radians(2.0));
+}
+
 TEST(ProtectionLevelTest, GrowsWithTheTimeWithoutGnss) {
   const double soon = protection_level(kSigma, std::nullopt, 60.0, {}).y();
   const double late = protection_level(kSigma, std::nullopt, 1e5, {}).y();
