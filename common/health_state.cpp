@@ -76,12 +76,10 @@ const char* to_string(HealthState state) {
 
 std::string to_string(WhyMask why) {
   std::string text;
-  for (int bit = 0; bit < kWhyCount; ++bit) {
-    const auto reason = static_cast<Why>(1u << bit);
-    if (!why.has(reason)) continue;
+  for_each_reason(why, [&](Why reason) {
     if (!text.empty()) text += ", ";
     text += text_of(reason);
-  }
+  });
   return text;
 }
 

@@ -18,6 +18,11 @@ enum class HealthState : uint8_t {
   kFault = 5,
 };
 
+/// Whether the state means that the pose is valid: TRACKING and DEGRADED.
+constexpr bool claims_pose(HealthState state) {
+  return state == HealthState::kTracking || state == HealthState::kDegraded;
+}
+
 /// One reason why the state is not better. Bits 0 to 15 are those of the signals LOC_Status.Why_*,
 /// the bits from 16 on those of LOC_Integrity.Why_*.
 enum class Why : uint32_t {
@@ -72,6 +77,15 @@ class WhyMask {
 };
 constexpr WhyMask operator|(Why a, Why b) {
   return WhyMask(a) | WhyMask(b);
+}
+
+/// Calls `visit(Why)` for each reason of the set, in the order of the bits.
+template <typename Visit>
+constexpr void for_each_reason(WhyMask why, Visit visit) {
+  for (int bit = 0; bit < kWhyCount; ++bit) {
+    const auto reason = static_cast<Why>(1u << bit);
+    if (why.has(reason)) visit(reason);
+  }
 }
 
 const char* to_string(HealthState state);

@@ -34,8 +34,7 @@ enum bevloc_answer {
   BEVLOC_BEYOND_LIMIT    /* a protection level is beyond its alert limit, or the risk is too high */
 };
 
-/* The largest errors with which the function is still safe. A limit of 0 means that the function
-   does not need this axis. */
+/* The largest errors with which the function is safe; 0 where it does not need the axis. */
 struct bevloc_alert_limits {
   double lateral_m;
   double longitudinal_m;
@@ -91,15 +90,9 @@ struct bevloc_receiver {
 };
 
 static inline const struct bevloc_message* bevloc_part(int part) {
-  const struct bevloc_message* parts[BEVLOC_PARTS];
-  parts[0] = &BEVLOC_LOC_Time;
-  parts[1] = &BEVLOC_LOC_Latitude;
-  parts[2] = &BEVLOC_LOC_Longitude;
-  parts[3] = &BEVLOC_LOC_PosLocal;
-  parts[4] = &BEVLOC_LOC_Attitude;
-  parts[5] = &BEVLOC_LOC_Velocity;
-  parts[6] = &BEVLOC_LOC_StdDev;
-  parts[7] = &BEVLOC_LOC_Integrity;
+  static const struct bevloc_message* const parts[BEVLOC_PARTS] = {
+      &BEVLOC_LOC_Time,     &BEVLOC_LOC_Latitude, &BEVLOC_LOC_Longitude, &BEVLOC_LOC_PosLocal,
+      &BEVLOC_LOC_Attitude, &BEVLOC_LOC_Velocity, &BEVLOC_LOC_StdDev,    &BEVLOC_LOC_Integrity};
   return parts[part];
 }
 
@@ -200,9 +193,8 @@ static inline bool bevloc_check(struct bevloc_receiver* receiver,
   return true;
 }
 
-/* Whether at most `limit_us` passed since a time stamp. Time stamps may be out of order by one
-   cycle of their message. If one is further in the future, the clock was set back, and its age is
-   not known. */
+/* Whether at most `limit_us` passed since a time stamp. Stamps may be out of order by one cycle of
+   their message. If one is later than that, the clock was set back, and its age is not known. */
 static inline bool bevloc_is_fresh(uint64_t now_us, uint64_t stamp_us, uint32_t limit_us,
                                    const struct bevloc_message* message) {
   const int64_t age_us = (int64_t)(now_us - stamp_us);
@@ -307,8 +299,7 @@ static inline bool bevloc_take_solution(struct bevloc_receiver* receiver, const 
   return true;
 }
 
-/* Takes any frame of the bus. `now_us` is the time of arrival on your clock. Returns true when the
-   frame completes a pose. */
+/* Takes any frame, which arrived at `now_us` on your clock. Returns whether it completes a pose. */
 static inline bool bevloc_receive(struct bevloc_receiver* receiver, uint32_t id,
                                   const uint8_t* data, size_t length, uint64_t now_us) {
   int part;
@@ -343,8 +334,7 @@ static inline bool bevloc_lacks_level(double limit, bool has_level) {
   return limit != 0 && !has_level;
 }
 
-/* Whether a level is beyond its limit. A limit of 0 does not count. No level is within a limit that
-   is negative or not a number. */
+/* A limit of 0 does not count. No level is within a limit that is negative or not a number. */
 static inline bool bevloc_is_beyond(double limit, double level) {
   return limit != 0 && !(level <= limit);
 }
@@ -377,9 +367,8 @@ static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* rec
   return BEVLOC_USABLE;
 }
 
-/* Computes when the images that the latest pose comes from were taken, in UTC modulo 2^32 us. The
-   pose is that of the moment age_ms later. Returns false without images or a fresh LOC_Clock, or
-   while the localizer's computer does not know UTC. */
+/* Computes when the images of the latest pose were taken (age_ms before it), in UTC modulo 2^32 us.
+   Returns false without images or a fresh LOC_Clock, or if the localizer does not know UTC. */
 static inline bool bevloc_capture_utc(const struct bevloc_receiver* receiver, uint64_t now_us,
                                       uint32_t* utc_us) {
   if (!receiver->has_clock || !receiver->has_pose || !receiver->pose.has_capture) return false;

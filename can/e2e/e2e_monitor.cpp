@@ -4,6 +4,10 @@
 
 namespace bevloc::can {
 
+E2eReceiverParameters gnss_receiver_parameters(Duration cycle) {
+  return {.cycle = cycle, .state = {.window = 20, .min_ok_invalid = 2}};
+}
+
 bool E2eMonitor::accept(const E2eFrame& frame, Time received) {
   add_missing_cycles(received);
   const E2eCheck result = check(frame, received);
@@ -33,9 +37,8 @@ E2eCheck E2eMonitor::check_counter(uint8_t counter, Time received) {
   const int steps = counter_ ? delta(counter, *counter_) : 1;
   if (steps == 0 && !other_counter_) return E2eCheck::kRepeated;
   const Duration silence = counter_ ? received - in_sequence_ : Duration::zero();
-  const bool silent = silence >= parameters_.silent_cycles * parameters_.cycle;
-  const bool continues =
-      steps > 0 && steps <= parameters_.max_delta_counter + silence / parameters_.cycle;
+  const bool silent = silence >= kSilentCycles * parameters_.cycle;
+  const bool continues = steps > 0 && steps <= kMaxDeltaCounter + silence / parameters_.cycle;
   // The allowed step grows with time. Without this condition, any counter would pass some time
   // after the sender of the sequence has gone.
   const bool undisputed = !silent || !other_counter_;
@@ -56,7 +59,7 @@ bool E2eMonitor::follow(uint8_t counter) {
   const bool next = other_counter_ && delta(counter, *other_counter_) == 1;
   other_run_ = next ? other_run_ + 1 : 1;
   other_counter_ = counter;
-  return other_run_ >= parameters_.sync_frames;
+  return other_run_ >= kSyncFrames;
 }
 
 void E2eMonitor::add_missing_cycles(Time received) {

@@ -12,17 +12,12 @@ namespace bevloc::can {
 
 struct E2eReceiverParameters {
   Duration cycle{};
-  /// MaxDeltaCounterInit: by how much the counter may rise within one cycle. Each further cycle
-  /// without a used frame allows one step more.
-  int max_delta_counter = 1;
-  /// SyncCounterInit: frames in sequence that prove a new sender after a wrong sequence.
-  int sync_frames = 3;
-  /// A sender that was silent for this many cycles may be replaced by another one.
-  int silent_cycles = 4;
-  /// This number of repeated or wrong counters in the window shows a second sender.
-  int second_sender = 5;
   E2eStateParameters state{};
 };
+
+/// The parameters for a message of a GNSS receiver. The window has 20 cycles (2 s with a cycle of
+/// 100 ms), and two frames in it suffice, so that a receiver with 1 Hz can be used.
+E2eReceiverParameters gnss_receiver_parameters(Duration cycle);
 
 /// The result of checking the protection of one frame, in any profile.
 struct E2eFrame {
@@ -52,10 +47,20 @@ class E2eMonitor {
   bool accept(const E2eFrame& frame, Time received);
 
   E2eState state() const { return machine_.state(); }
-  bool has_second_sender() const { return machine_.contradictions() >= parameters_.second_sender; }
+  bool has_second_sender() const { return machine_.contradictions() >= kSecondSender; }
   const E2eCounters& counters() const { return counters_; }
 
  private:
+  /// MaxDeltaCounterInit: by how much the counter may rise within one cycle. Each further cycle
+  /// without a used frame allows one step more.
+  static constexpr int kMaxDeltaCounter = 1;
+  /// SyncCounterInit: frames in sequence that prove a new sender after a wrong sequence.
+  static constexpr int kSyncFrames = 3;
+  /// A sender that was silent for this many cycles may be replaced by another one.
+  static constexpr int kSilentCycles = 4;
+  /// This number of repeated or wrong counters in the window shows a second sender.
+  static constexpr int kSecondSender = 5;
+
   E2eCheck check(const E2eFrame& frame, Time received);
   E2eCheck check_counter(uint8_t counter, Time received);
   /// Follows a sequence that is not the used one. Returns true when it has proven itself.

@@ -9,6 +9,35 @@
 namespace bevloc::can {
 namespace {
 
+// The difference of the wheel speeds may deviate from yaw rate times track by the sum of three
+// parts: this speed, this share of the vehicle's speed (tyres of different wear differ by up to 3 %
+// in radius), and this length times the yaw rate (error of the track, slip in bends).
+constexpr double kWheelDifference_mps = 0.8;
+constexpr double kWheelDifferenceShare = 0.03;
+constexpr double kWheelDifference_m = 0.3;
+
+// Along the vehicle, tyres hold about 1.2 g when braking, and no series car gains speed with more
+// than 1 g. The step allows for noise and a late time stamp. Each sample is compared with those of
+// the last 100 ms, at most eight, because spinning wheels gain their speed within several samples.
+constexpr double kBraking_mps2 = 12.0;
+constexpr double kGaining_mps2 = 10.0;
+constexpr double kSpeedStep_mps = 0.3;
+constexpr double kYawAcceleration_radps2 = 5.0;
+constexpr double kYawRateStep_radps = 0.05;
+constexpr Duration kComparedWith = std::chrono::milliseconds(100);
+
+// Across the vehicle, tyres hold about 1.2 g. The turning radius of the rear axle of a small car is
+// about 3 m.
+constexpr double kLateralAcceleration_mps2 = 12.0;
+constexpr double kTurningRadius_m = 2.0;
+constexpr double kYawRateAtStandstill_radps = 0.2;
+
+// After a jump, only values near the one before the jump are used, because spinning or locked
+// wheels end with a second jump back. A level that has lasted for kSettledAfter is used again,
+// because spin and lock control end a slip sooner.
+constexpr double kDisputedAcceleration_mps2 = 0.5;
+constexpr Duration kSettledAfter = std::chrono::milliseconds(2500);
+
 constexpr double kNominalInterval_s = 1e-3 * kOdometryCycleMs;
 constexpr double kSlowInterval_s = 0.045;
 constexpr double kTimelyInterval_s = 0.030;
@@ -33,7 +62,7 @@ OdometryVerdict OdometryCheck::verdict_of(const Wheels& sample) {
     const bool same_level = jump(*disputed_, sample) == OdometryVerdict::kPlausible;
     if (!same_level) disputed_level_since_ = sample.time;
     disputed_ = sample;
-    const bool settled = sample.time - disputed_level_since_ >= limits_.settled_after;
+    const bool settled = sample.time - disputed_level_since_ >= kSettledAfter;
     if (!is_back(sample) && !settled) {
       const OdometryVerdict verdict = jump(before_jump_, sample);
       return verdict == OdometryVerdict::kPlausible ? OdometryVerdict::kSpeedJump : verdict;
@@ -62,8 +91,7 @@ OdometryVerdict OdometryCheck::jump_from_recent(const Wheels& sample) {
 
 bool OdometryCheck::is_back(const Wheels& sample) const {
   const double elapsed_s = to_seconds(sample.time - before_jump_.time);
-  const double allowed_mps =
-      limits_.speed_step_mps + limits_.disputed_acceleration_mps2 * elapsed_s;
+  const double allowed_mps = kSpeedStep_mps + kDisputedAcceleration_mps2 * elapsed_s;
   return std::abs(sample.speed_mps() - before_jump_.speed_mps()) <= allowed_mps &&
          !yaw_rate_jumps(before_jump_, sample);
 }
@@ -72,7 +100,7 @@ bool OdometryCheck::is_back(const Wheels& sample) const {
 void OdometryCheck::keep(const Wheels& sample) {
   const auto end = recent_.begin() + static_cast<std::ptrdiff_t>(recent_count_);
   auto first = std::find_if(recent_.begin(), end, [&](const Wheels& kept) {
-    return sample.time - kept.time <= limits_.compared_with;
+    return sample.time - kept.time <= kComparedWith;
   });
   if (first == recent_.begin() && recent_count_ == kRecent) ++first;
   recent_count_ = static_cast<size_t>(std::move(first, end, recent_.begin()) - recent_.begin());
@@ -82,17 +110,16 @@ void OdometryCheck::keep(const Wheels& sample) {
 bool OdometryCheck::is_too_sharp(const Wheels& sample) const {
   const double speed_mps = std::abs(sample.speed_mps());
   const double yaw_rate_radps = std::abs(sample.yaw_rate_radps);
-  return speed_mps * yaw_rate_radps > limits_.lateral_acceleration_mps2 ||
-         yaw_rate_radps >
-             limits_.yaw_rate_at_standstill_radps + speed_mps / limits_.turning_radius_m;
+  return speed_mps * yaw_rate_radps > kLateralAcceleration_mps2 ||
+         yaw_rate_radps > kYawRateAtStandstill_radps + speed_mps / kTurningRadius_m;
 }
 
 bool OdometryCheck::wheels_contradict(const Wheels& sample) {
-  const double expected_mps = sample.yaw_rate_radps * limits_.rear_track_m;
+  const double expected_mps = sample.yaw_rate_radps * rear_track_m_;
   const double excess_mps = sample.right_mps - sample.left_mps - expected_mps;
-  const double allowed_mps = limits_.wheel_difference_mps +
-                             limits_.wheel_difference_share * std::abs(sample.speed_mps()) +
-                             limits_.wheel_difference_m * std::abs(sample.yaw_rate_radps);
+  const double allowed_mps = kWheelDifference_mps +
+                             kWheelDifferenceShare * std::abs(sample.speed_mps()) +
+                             kWheelDifference_m * std::abs(sample.yaw_rate_radps);
   return std::abs(excess_mps) > allowed_mps ||
          learned_difference_.contradicts(
              {sample.time, excess_mps, sample.speed_mps(), sample.yaw_rate_radps});
@@ -101,15 +128,15 @@ bool OdometryCheck::wheels_contradict(const Wheels& sample) {
 bool OdometryCheck::speed_jumps(const Wheels& from, const Wheels& to) const {
   const double elapsed_s = std::max(0.0, to_seconds(to.time - from.time));
   const bool gains = std::abs(to.speed_mps()) > std::abs(from.speed_mps());
-  const double acceleration_mps2 = gains ? limits_.gaining_mps2 : limits_.braking_mps2;
+  const double acceleration_mps2 = gains ? kGaining_mps2 : kBraking_mps2;
   return std::abs(to.speed_mps() - from.speed_mps()) >
-         limits_.speed_step_mps + acceleration_mps2 * elapsed_s;
+         kSpeedStep_mps + acceleration_mps2 * elapsed_s;
 }
 
 bool OdometryCheck::yaw_rate_jumps(const Wheels& from, const Wheels& to) const {
   const double elapsed_s = std::max(0.0, to_seconds(to.time - from.time));
   return std::abs(to.yaw_rate_radps - from.yaw_rate_radps) >
-         limits_.yaw_rate_step_radps + limits_.yaw_acceleration_radps2 * elapsed_s;
+         kYawRateStep_radps + kYawAcceleration_radps2 * elapsed_s;
 }
 
 OdometryVerdict OdometryCheck::jump(const Wheels& from, const Wheels& to) const {

@@ -16,6 +16,7 @@ GnssSample gnss_sample_of(const GeodeticFix& fix, GeoReference& geo, Time time) 
 
 std::optional<OdometrySample> SampleMaker::odometry(const OdometryCheck::Wheels& wheels) {
   const bool plausible = odometry_check_.judge(wheels) == OdometryVerdict::kPlausible;
+  if (odometry_check_.is_slow()) ++slow_samples_;
   if (!plausible || odometry_check_.is_slow()) note_implausible();
   if (!plausible) return std::nullopt;
   ++odometry_samples_;
@@ -35,6 +36,7 @@ void SampleMaker::add_to(VehicleInputCounters& counters) const {
   counters.odometry_jumps += odometry_check_.count(OdometryVerdict::kSpeedJump) +
                              odometry_check_.count(OdometryVerdict::kYawRateJump);
   counters.sharp_turns += odometry_check_.count(OdometryVerdict::kTooSharp);
+  counters.slow_odometry += slow_samples_;
   counters.odometry_samples += odometry_samples_;
   counters.gnss_samples += gnss_samples_;
 }

@@ -29,8 +29,9 @@ GnssSample gnss_sample_of(const GeodeticFix& fix, GeoReference& geo, Time time);
 /// after construction. One thread.
 class SampleMaker {
  public:
-  SampleMaker(GeodeticPosition map_origin, const OdometryLimits& limits)
-      : geo_(map_origin), odometry_check_(limits) {}
+  /// `rear_track_m` is the distance between the rear wheels.
+  SampleMaker(GeodeticPosition map_origin, double rear_track_m)
+      : geo_(map_origin), odometry_check_(rear_track_m) {}
 
   /// Call it first for each frame, with its time of arrival.
   void note_frame(Time received) { latest_ = received; }
@@ -49,6 +50,7 @@ class SampleMaker {
   GeoReference geo_;
   OdometryCheck odometry_check_;
   uint64_t odometry_samples_ = 0;
+  uint64_t slow_samples_ = 0;
   uint64_t gnss_samples_ = 0;
   Time latest_{};  ///< when the latest frame arrived
   VehicleFaultTimes fault_times_;

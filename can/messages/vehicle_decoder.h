@@ -25,6 +25,7 @@ struct VehicleInputCounters {
   uint64_t contradicting_wheels = 0;  ///< odometry refused: the wheels contradict the yaw rate
   uint64_t odometry_jumps = 0;        ///< odometry refused: faster changes than a vehicle can make
   uint64_t sharp_turns = 0;           ///< odometry refused: sharper turns than a vehicle can make
+  uint64_t slow_odometry = 0;         ///< odometry samples that came too rarely
   uint64_t odometry_samples = 0;
   uint64_t gnss_samples = 0;
 

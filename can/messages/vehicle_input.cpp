@@ -14,14 +14,10 @@ constexpr Duration window_of(int cycle_ms) {
 
 /// Odometry stays VALID down to one frame in 10 cycles (200 ms), which is the default of
 /// `health.odometry_timeout_ms`. Once INVALID, it needs every second frame to become VALID again.
-/// GNSS has 20 cycles (2 s), so that a receiver with 1 Hz can be used.
 E2eReceiverParameters parameters_of(const Message& message) {
-  E2eReceiverParameters parameters{.cycle = std::chrono::milliseconds(message.cycle_ms)};
-  if (message.cycle_ms > kOdometryCycleMs) {
-    parameters.state.window = 20;
-    parameters.state.min_ok_invalid = 2;
-  }
-  return parameters;
+  const Duration cycle = std::chrono::milliseconds(message.cycle_ms);
+  if (message.cycle_ms > kOdometryCycleMs) return gnss_receiver_parameters(cycle);
+  return {.cycle = cycle};
 }
 
 template <size_t... I>
@@ -38,10 +34,9 @@ double at_least_one_step(double sigma, const Signal& signal) {
 
 }  // namespace
 
-VehicleInput::VehicleInput(const BaseIds& base, GeodeticPosition map_origin,
-                           const OdometryLimits& limits)
+VehicleInput::VehicleInput(const BaseIds& base, GeodeticPosition map_origin, double rear_track_m)
     : base_(base),
-      maker_(map_origin, limits),
+      maker_(map_origin, rear_track_m),
       receivers_(receivers_of(kInputs, std::make_index_sequence<kInputs.size()>())),
       odometry_group_(window_of(kOdometryCycleMs)),
       gnss_group_(window_of(kGnssCycleMs)) {}

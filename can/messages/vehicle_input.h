@@ -19,7 +19,8 @@ namespace bevloc::can {
 /// yaw if the heading is not available. One thread.
 class VehicleInput final : public VehicleDecoder {
  public:
-  VehicleInput(const BaseIds& base, GeodeticPosition map_origin, const OdometryLimits& limits = {});
+  /// `rear_track_m` is the distance between the rear wheels.
+  VehicleInput(const BaseIds& base, GeodeticPosition map_origin, double rear_track_m);
 
   VehicleSamples accept(const ReceivedFrame& received) override;
   VehicleInputCounters counters() const override;
@@ -27,7 +28,7 @@ class VehicleInput final : public VehicleDecoder {
 
   /// Returns the identifiers that a filter of the bus has to let pass, with or without
   /// authentication.
-  static std::vector<uint32_t> accepted_ids(const BaseIds& base, bool secoc = false);
+  static std::vector<uint32_t> accepted_ids(const BaseIds& base, bool secoc);
 
  private:
   static constexpr std::array<const Message*, 5> kInputs = {

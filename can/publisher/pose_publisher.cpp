@@ -36,9 +36,8 @@ PosePublisher::PosePublisher(Bus& bus, const PosePublisherConfig& config)
       freshness_sender_(loc_freshness::kMessage.protection()) {}
 
 void PosePublisher::publish(const PoseReport& report, Time now) {
-  const LocalizerStatus status = status_to_send(report, config_.limits, now);
-  const SolutionFrames frames =
-      solution_frames(report, status, config_.limits, geo_, config_.base_ids, now);
+  const LocalizerStatus status = status_to_send(report, now);
+  const SolutionFrames frames = solution_frames(report, status, geo_, config_.base_ids, now);
   if (config_.format == FrameFormat::kFd) {
     publish_fd(frames, status, now);
   } else {

@@ -20,7 +20,6 @@ namespace bevloc::can {
 struct PosePublisherConfig {
   BaseIds base_ids{};
   GeodeticPosition map_origin{};
-  ReportLimits limits{};
   FrameFormat format = FrameFormat::kClassic;
   Identity identity{};
   bool sends_clock = false;  ///< whether to send LOC_Clock
@@ -46,8 +45,8 @@ class PosePublisher {
 
   /// Returns the identifiers that a publisher of this format sends, with or without authentication
   /// and LOC_Clock.
-  static std::vector<uint32_t> sent_ids(const BaseIds& base, FrameFormat format, bool secoc = false,
-                                        bool clock = false);
+  static std::vector<uint32_t> sent_ids(const BaseIds& base, FrameFormat format, bool secoc,
+                                        bool clock);
 
  private:
   void publish_classic(const SolutionFrames& frames, const LocalizerStatus& status, Time now);

@@ -30,13 +30,13 @@ bool is_sendable(const PoseReport& report) {
          is_in_range(loc_pos_local::kNorth, report.map_from_vehicle.y_m);
 }
 
-bool is_fresh(const PoseReport& report, const ReportLimits& limits, Time now) {
-  return now - report.pose_time <= limits.max_pose_age;
+bool is_fresh(const PoseReport& report, Time now) {
+  return now - report.pose_time <= kMaxPoseAge;
 }
 
-bool has_fresh_images(const PoseReport& report, const ReportLimits& limits, Time now) {
+bool has_fresh_images(const PoseReport& report, Time now) {
   return report.capture_time && *report.capture_time <= now &&
-         now - *report.capture_time <= limits.max_capture_age;
+         now - *report.capture_time <= kMaxCaptureAge;
 }
 
 double sigma_of(double variance) {
@@ -111,18 +111,12 @@ void insert_reasons(Frame& frame, std::span<const Signal> flags, WhyMask why, in
 
 }  // namespace
 
-bool claims_pose(HealthState state) {
-  return state == HealthState::kTracking || state == HealthState::kDegraded;
-}
-
-LocalizerStatus status_to_send(const PoseReport& report, const ReportLimits& limits, Time now) {
+LocalizerStatus status_to_send(const PoseReport& report, Time now) {
   LocalizerStatus status = report.status;
   if (!claims_pose(status.state)) return status;
   WhyMask reasons;
   if (!is_sendable(report)) reasons |= Why::kPoseInvalid;
-  if (!is_fresh(report, limits, now) || !has_fresh_images(report, limits, now)) {
-    reasons |= Why::kPoseStale;
-  }
+  if (!is_fresh(report, now) || !has_fresh_images(report, now)) reasons |= Why::kPoseStale;
   if (reasons != WhyMask()) {
     status.state = HealthState::kLost;
     status.why |= reasons;
@@ -164,8 +158,7 @@ Frame identity_frame(const Identity& identity, int item, const BaseIds& base) {
 }
 
 SolutionFrames solution_frames(const PoseReport& report, const LocalizerStatus& status,
-                               const ReportLimits& limits, GeoReference& geo, const BaseIds& base,
-                               Time now) {
+                               GeoReference& geo, const BaseIds& base, Time now) {
   SolutionFrames frames;
   std::ranges::transform(kSolutionMessages, frames.begin(),
                          [&](const Message* message) { return blank_frame(*message, base); });
@@ -179,7 +172,7 @@ SolutionFrames solution_frames(const PoseReport& report, const LocalizerStatus& 
     encode_protection(integrity, report.protection_level);
   }
   insert_reasons(integrity, loc_integrity::kWhy, status.why, loc_integrity::kFirstWhy);
-  if (is_fresh(report, limits, now)) {
+  if (is_fresh(report, now)) {
     encode_velocity(velocity, report);
     if (report.correction) encode_correction(correction, *report.correction);
   }

@@ -7,24 +7,21 @@
 #include "can/messages/geo_reference.h"
 #include "can/messages/message_table.h"
 #include "can/messages/pose_report.h"
+#include "common/time.h"
 
 namespace bevloc::can {
 
-/// The maximum age of a pose that is sent as valid.
-struct ReportLimits {
-  /// Maximum age of PoseReport::pose_time. An older report shows that its producer hangs.
-  Duration max_pose_age = std::chrono::milliseconds(50);
-  /// Maximum age of PoseReport::capture_time, whatever the state of the tracker.
-  Duration max_capture_age = std::chrono::seconds(5);
-};
-
-/// Whether the state means that the pose is valid: TRACKING and DEGRADED.
-bool claims_pose(HealthState state);
+/// The maximum age of PoseReport::pose_time in a report whose pose is sent as valid. An older
+/// report shows that its producer hangs.
+inline constexpr Duration kMaxPoseAge = std::chrono::milliseconds(50);
+/// The maximum age of PoseReport::capture_time of a pose that is sent as valid, whatever the state
+/// of the tracker.
+inline constexpr Duration kMaxCaptureAge = std::chrono::seconds(5);
 
 /// Returns the status to send. It is the status of the report, unless that claims a pose which must
 /// not be sent. Such a pose is not finite, is out of range or has an invalid covariance
 /// (kPoseInvalid), or is too old (kPoseStale). Then the state is LOST, with these reasons.
-LocalizerStatus status_to_send(const PoseReport& report, const ReportLimits& limits, Time now);
+LocalizerStatus status_to_send(const PoseReport& report, Time now);
 
 Frame status_frame(const LocalizerStatus& status, const BaseIds& base);
 
@@ -44,7 +41,6 @@ using SolutionFrames = std::array<Frame, kSolutionMessages.size()>;
 /// Returns the frames of `report` for sending at `now`, without epoch and protection. `status`
 /// comes from status_to_send(). Values that are not valid under this status or not finite are SNA.
 SolutionFrames solution_frames(const PoseReport& report, const LocalizerStatus& status,
-                               const ReportLimits& limits, GeoReference& geo, const BaseIds& base,
-                               Time now);
+                               GeoReference& geo, const BaseIds& base, Time now);
 
 }  // namespace bevloc::can

@@ -16,13 +16,8 @@ constexpr double kLeastSigma_m = 0.01;
 constexpr double kLeastSigma_deg = 0.01;
 
 E2eReceiverParameters parameters_of(const BoundMessage& message) {
-  E2eReceiverParameters parameters{.cycle = message.cycle};
-  if (!message.has_odometry) {
-    // A GNSS receiver may be slow, so the parameters are those of VehicleInput.
-    parameters.state.window = 20;
-    parameters.state.min_ok_invalid = 2;
-  }
-  return parameters;
+  if (!message.has_odometry) return gnss_receiver_parameters(message.cycle);
+  return {.cycle = message.cycle};
 }
 
 void add_if(std::vector<size_t>& signals, const std::optional<size_t>& signal) {
@@ -32,11 +27,11 @@ void add_if(std::vector<size_t>& signals, const std::optional<size_t>& signal) {
 }  // namespace
 
 DbcVehicleInput::DbcVehicleInput(VehicleBinding binding, const BaseIds& base,
-                                 GeodeticPosition map_origin, const OdometryLimits& limits)
+                                 GeodeticPosition map_origin, double rear_track_m)
     : binding_(std::move(binding)),
       base_(base),
-      rear_track_m_(limits.rear_track_m),
-      maker_(map_origin, limits),
+      rear_track_m_(rear_track_m),
+      maker_(map_origin, rear_track_m),
       slots_(binding_.signals.size()) {
   for (const BoundMessage& message : binding_.messages) {
     const MessageProtection& protection = message.protection;

@@ -21,9 +21,10 @@ namespace bevloc::can {
 /// old. One thread. Does not allocate after construction.
 class DbcVehicleInput final : public VehicleDecoder {
  public:
-  /// `base` has the identifiers of the localizer's own messages.
+  /// `base` has the identifiers of the localizer's own messages. `rear_track_m` is the distance
+  /// between the rear wheels.
   DbcVehicleInput(VehicleBinding binding, const BaseIds& base, GeodeticPosition map_origin,
-                  const OdometryLimits& limits);
+                  double rear_track_m);
 
   VehicleSamples accept(const ReceivedFrame& received) override;
   VehicleInputCounters counters() const override;

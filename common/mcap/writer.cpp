@@ -10,10 +10,17 @@
 
 #include "common/crc32.h"
 #include "common/mcap/bytes.h"
+#include "common/time.h"
 #include "common/version.h"
 
 namespace bevloc::mcap {
 namespace {
+
+// A chunk is written when its messages span this time or have this size. Messages that are not
+// written yet are lost if the process dies.
+constexpr Duration kChunkSpan = std::chrono::milliseconds(500);
+constexpr size_t kChunk_bytes = size_t{4} << 20U;
+constexpr int kZstdLevel = 1;
 
 void append_record(std::string& bytes, Opcode opcode, std::string_view content) {
   ByteWriter(bytes)
@@ -24,14 +31,13 @@ void append_record(std::string& bytes, Opcode opcode, std::string_view content) 
 
 }  // namespace
 
-Result<std::unique_ptr<Writer>> Writer::create(const std::filesystem::path& path,
-                                               const WriterOptions& options) {
+Result<std::unique_ptr<Writer>> Writer::create(const std::filesystem::path& path) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (file < 0) {
     return fail("{}: cannot create this file ({}), wanted a new recording", path.string(),
                 std::strerror(errno));
   }
-  auto writer = std::unique_ptr<Writer>(new Writer(file, path, options));
+  auto writer = std::unique_ptr<Writer>(new Writer(file, path));
   std::string header;
   ByteWriter(header).text("").text(fmt::format("bevloc {}", version()));
   if (Status status = writer->put_bytes(kMagic); !status) return tl::unexpected(status.error());
@@ -41,9 +47,9 @@ Result<std::unique_ptr<Writer>> Writer::create(const std::filesystem::path& path
   return writer;
 }
 
-Writer::Writer(int file, std::filesystem::path path, const WriterOptions& options)
-    : file_(file), path_(std::move(path)), options_(options), compressor_(ZSTD_createCCtx()) {
-  records_.reserve(options.chunk_bytes + options.chunk_bytes / 4);
+Writer::Writer(int file, std::filesystem::path path)
+    : file_(file), path_(std::move(path)), compressor_(ZSTD_createCCtx()) {
+  records_.reserve(kChunk_bytes + kChunk_bytes / 4);
 }
 
 Writer::~Writer() {
@@ -142,7 +148,7 @@ Status Writer::write(const Message& message) {
       .number(message.publish_time_ns)
       .raw(message.data);
   const Duration span(chunk_last_ns_ - chunk_first_ns_);
-  if (span < options_.chunk_span && records_.size() < options_.chunk_bytes) return state_;
+  if (span < kChunkSpan && records_.size() < kChunk_bytes) return state_;
   return close_chunk();
 }
 
@@ -150,7 +156,7 @@ Status Writer::close_chunk() {
   if (records_.empty()) return state_;
   compressed_.resize(ZSTD_compressBound(records_.size()));
   const size_t bytes = ZSTD_compressCCtx(compressor_, compressed_.data(), compressed_.size(),
-                                         records_.data(), records_.size(), options_.zstd_level);
+                                         records_.data(), records_.size(), kZstdLevel);
   if (ZSTD_isError(bytes) != 0U) {
     return state_ =
                fail("{}: cannot compress a chunk ({})", path_.string(), ZSTD_getErrorName(bytes));

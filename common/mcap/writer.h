@@ -10,19 +10,10 @@
 
 #include "common/mcap/format.h"
 #include "common/result.h"
-#include "common/time.h"
 
 struct ZSTD_CCtx_s;
 
 namespace bevloc::mcap {
-
-struct WriterOptions {
-  /// A chunk is written when its messages span this time or its size exceeds `chunk_bytes`.
-  /// Messages that are not written yet are lost if the process dies.
-  Duration chunk_span = std::chrono::milliseconds(500);
-  size_t chunk_bytes = size_t{4} << 20U;
-  int zstd_level = 1;
-};
 
 /// Schemas, channels, metadata and attachments go to the file at once, messages in chunks
 /// compressed with zstd. A file without its end lacks at most the last chunk, and Reader reads it.
@@ -30,8 +21,7 @@ struct WriterOptions {
 class Writer {
  public:
   /// Creates the file, which must not exist.
-  static Result<std::unique_ptr<Writer>> create(const std::filesystem::path& path,
-                                                const WriterOptions& options = {});
+  static Result<std::unique_ptr<Writer>> create(const std::filesystem::path& path);
   ~Writer();
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
@@ -65,7 +55,7 @@ class Writer {
     uint64_t offset = 0;
   };
 
-  Writer(int file, std::filesystem::path path, const WriterOptions& options);
+  Writer(int file, std::filesystem::path path);
   Status put(Opcode opcode, std::string_view content);
   Status put_bytes(std::string_view bytes);
   Status close_chunk();
@@ -76,7 +66,6 @@ class Writer {
 
   const int file_;
   const std::filesystem::path path_;
-  const WriterOptions options_;
   ZSTD_CCtx_s* const compressor_;
   Status state_;
   uint64_t offset_ = 0;

@@ -1,7 +1,5 @@
 #include "drivers/mock/true_rig.h"
 
-#include <Eigen/Geometry>
-
 #include "sim/random.h"
 
 namespace bevloc::drivers {
@@ -22,11 +20,7 @@ Rig true_rig(const Rig& nominal, const CalibrationError& sigma, uint64_t seed) {
     sim::Random random(sim::seed_for(seed, kCameraNames[i]));
     CameraModel& camera = rig.cameras[i];
     const Eigen::Vector3d rotation = normal_vector(random, sigma.rotation_rad);
-    const double angle_rad = rotation.norm();
-    if (angle_rad > 0.0) {
-      camera.vehicle_from_camera.rotation *=
-          Eigen::AngleAxisd(angle_rad, rotation / angle_rad).toRotationMatrix();
-    }
+    if (rotation.norm() > 0.0) camera.vehicle_from_camera.rotation *= rotation_by(rotation);
     camera.vehicle_from_camera.translation_m += normal_vector(random, sigma.translation_m);
     const double focal_scale = 1.0 + random.normal(0.0, sigma.relative_focal);
     camera.intrinsics.fx_px *= focal_scale;

@@ -194,6 +194,7 @@ std::vector<double> map_row(const HdMap& town, const Se2& place, double wanted_k
 }
 
 Result<SweepResult> sweep_map(const evaluation::DriveConfig& config, const SweepOptions& options) {
+  constexpr double kLongestMap_km = 10'000.0;
   const auto scene = make_scene(config);
   if (!scene) return tl::unexpected(scene.error());
   SweepResult sweep{
@@ -203,7 +204,7 @@ Result<SweepResult> sweep_map(const evaluation::DriveConfig& config, const Sweep
       "index.",
       {"road_km", "elements", "crop_ms", "raster_ms", "raster_p99_ms", "index_s", "map_mib"},
       {}};
-  for (double km = 1.0; km <= options.longest_map_km; km *= 10.0) {
+  for (double km = 1.0; km <= kLongestMap_km; km *= 10.0) {
     sweep.rows.push_back(
         map_row(scene->map, scene->places[0].map_from_vehicle, km, options.frames));
   }

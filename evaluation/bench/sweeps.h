@@ -21,7 +21,6 @@ struct SweepResult {
 struct SweepOptions {
   int frames = 50;  ///< runs timed per row
   int threads = 1;
-  double longest_map_km = 10'000.0;
 };
 
 inline constexpr std::array<std::string_view, 5> kSweepNames{"cameras", "image", "bev",

@@ -12,6 +12,12 @@
 namespace bevloc::evaluation {
 namespace {
 
+/// One sigma of the errors of the calibration that the refinement starts with.
+constexpr drivers::CalibrationError kCalibrationSigma{
+    .rotation_rad = 0.5 * kPerDegree, .translation_m = 0.05, .relative_focal = 0.005};
+/// The offset of the time stamps of each camera, of either sign.
+constexpr double kTimeStampOffset_s = 0.02;
+
 /// The adjustment that turns `from` into `to`.
 CameraAdjustment adjustment_between(const CameraModel& from, const CameraModel& to) {
   CameraAdjustment by = CameraAdjustment::Zero();
@@ -34,12 +40,11 @@ SimulatedRecording::SimulatedRecording(const SimulatedRecordingOptions& options)
       *world, sim::seed_for(options.seed, "drive"), options.duration_s + 2.0 * kSpare_s);
   map_ = world->map;
   const Rig true_rig =
-      drivers::true_rig(rig_, {options.rotation_rad, options.position_m, options.relative_focal},
-                        sim::seed_for(options.seed, "calibration"));
+      drivers::true_rig(rig_, kCalibrationSigma, sim::seed_for(options.seed, "calibration"));
   sim::Random random(sim::seed_for(options.seed, "time offsets"));
   for (int c = 0; c < kCameraCount; ++c) {
     truth_[c] = adjustment_between(rig_.cameras[c], true_rig.cameras[c]);
-    truth_[c][kTimeOffset] = (random.chance(0.5) ? 1.0 : -1.0) * options.time_offset_s;
+    truth_[c][kTimeOffset] = (random.chance(0.5) ? 1.0 : -1.0) * kTimeStampOffset_s;
   }
   reference_ = receive_reference(*drive, sim::seed_for(options.seed, "reference"), Time{});
   drivers::MockScene scene(world, drive, {}, sim::seed_for(options.seed, "pixel noise"));

@@ -16,11 +16,6 @@ struct SimulatedRecordingOptions {
   uint64_t seed = 301;  ///< of town, drive and all errors
   double duration_s = 60.0;
   double interval_s = 0.5;
-  // One sigma of the errors of the calibration that the refinement starts with.
-  double rotation_rad = 0.5 * kPerDegree;  ///< about each axis
-  double position_m = 0.05;                ///< along each axis
-  double relative_focal = 0.005;
-  double time_offset_s = 0.02;  ///< of either sign, the same size for each camera
 };
 
 /// Draws all pictures when it is made, which takes a minute or so.

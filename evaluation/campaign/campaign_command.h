@@ -2,6 +2,7 @@
 //
 // evaluation/campaign, from the command down:
 //   campaign_command  options of `bevloc campaign`; script/campaign runs it in parallel
+//   campaign_inputs   what it shares with `bevloc eval integrity`
 //   campaign          modes x seeds
 //   mode, mode_table  the failure modes: one table
 //   stage_run         one run of the estimation stage with the modelled matcher (--level stage)
@@ -12,12 +13,11 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "common/result.h"
-#include "evaluation/campaign/campaign.h"
+#include "evaluation/campaign/campaign_inputs.h"
 
 namespace bevloc::evaluation {
 
@@ -37,10 +37,7 @@ class CampaignCommand {
   bool chosen_ = false;
   bool list_ = false;
   bool timeline_ = false;
-  std::string config_ = "config/demo.yaml";
-  std::string table_ = "evaluation/campaign/matches.csv";
-  std::vector<std::string> modes_;
-  CampaignOptions options_;
+  CampaignInputs inputs_;
   std::string json_file_;
 };
 

@@ -65,14 +65,10 @@ std::string seconds(const std::optional<double>& value) {
 
 }  // namespace
 
-std::string to_json_line(const CampaignRow& row, Level level) {
-  return dump_json(json_of(row, level));
-}
-
 std::string to_json(const std::vector<CampaignRow>& rows, Level level) {
   std::string text = "[\n";
   for (size_t i = 0; i < rows.size(); ++i) {
-    text += to_json_line(rows[i], level) + (i + 1 < rows.size() ? ",\n" : "\n");
+    text += dump_json(json_of(rows[i], level)) + (i + 1 < rows.size() ? ",\n" : "\n");
   }
   return text + "]\n";
 }

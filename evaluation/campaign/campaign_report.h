@@ -8,10 +8,7 @@
 
 namespace bevloc::evaluation {
 
-/// One JSON object on one line.
-std::string to_json_line(const CampaignRow& row, Level level);
-
-/// A JSON array of all rows.
+/// A JSON array of all rows, each on its own line.
 std::string to_json(const std::vector<CampaignRow>& rows, Level level);
 
 /// One line for a person: mode, seed, and what matters.

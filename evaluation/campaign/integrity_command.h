@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/result.h"
-#include "evaluation/campaign/campaign.h"
+#include "evaluation/campaign/campaign_inputs.h"
 
 namespace bevloc::evaluation {
 
@@ -23,11 +23,8 @@ class IntegrityCommand {
 
  private:
   bool chosen_ = false;
-  std::string config_ = "config/demo.yaml";
-  std::string table_ = "evaluation/campaign/matches.csv";
-  std::vector<std::string> modes_;
+  CampaignInputs inputs_;
   std::vector<std::string> maps_;
-  CampaignOptions options_;
   std::string json_file_;
 };
 

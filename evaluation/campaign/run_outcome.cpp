@@ -1,5 +1,6 @@
 #include "evaluation/campaign/run_outcome.h"
 
+#include <bit>
 #include <cmath>
 
 #include "can/messages/message_table.h"
@@ -13,23 +14,22 @@ constexpr double kCycle_s = 1e-3 * can::kSolutionCycleMs;
 constexpr double kRecovered_s = 1.0;
 constexpr std::string_view kPrefix = "Why_";
 
-std::string name_of_bit(int bit) {
-  constexpr auto kInStatus = static_cast<int>(can::loc_status::kWhy.size());
-  const can::Signal& signal = bit < kInStatus
-                                  ? can::loc_status::kWhy[static_cast<size_t>(bit)]
-                                  : can::loc_integrity::kWhy[static_cast<size_t>(bit - kInStatus)];
-  return std::string(signal.name.substr(kPrefix.size()));
+std::string_view name_of_reason(Why reason) {
+  constexpr size_t kInStatus = can::loc_status::kWhy.size();
+  const auto bit = static_cast<size_t>(std::countr_zero(static_cast<uint32_t>(reason)));
+  const can::Signal& signal =
+      bit < kInStatus ? can::loc_status::kWhy[bit] : can::loc_integrity::kWhy[bit - kInStatus];
+  return signal.name.substr(kPrefix.size());
 }
 
 }  // namespace
 
 std::string names_of(WhyMask why) {
   std::string names;
-  for (int bit = 0; bit < kWhyCount; ++bit) {
-    if ((why.bits() >> static_cast<unsigned>(bit) & 1u) == 0) continue;
+  for_each_reason(why, [&](Why reason) {
     if (!names.empty()) names += '+';
-    names += name_of_bit(bit);
-  }
+    names += name_of_reason(reason);
+  });
   return names;
 }
 

@@ -70,7 +70,7 @@ std::string text_of(const Localization& localization) {
                         sigma[at], match.evidence_share(axis), match.axis_score(axis));
   }
   text += fmt::format("score of the whole match: {:.2f} (bevlocd tracks from {:.2f})\n",
-                      match.score, EvidenceLimits().min_score);
+                      match.score, EvidenceMonitor::kMinScore);
   return text + lines_of(localization.perception);
 }
 

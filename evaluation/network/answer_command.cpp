@@ -22,8 +22,9 @@ void set_metadata(onnx::ModelProto& model, std::string_view key, const std::stri
   entry->set_value(value);
 }
 
-}  // namespace
-
+/// Runs the model on the test frame (pipeline/network/test_frame.h) and writes the answer into the
+/// metadata of its ONNX file. The appliance compares its own answer with it. Fails if the file
+/// cannot be read, run or written; the file is then unchanged.
 Status store_answer(const std::string& model) {
   const auto network = Network::load(model, {});
   if (!network) return tl::unexpected(network.error());
@@ -41,6 +42,8 @@ Status store_answer(const std::string& model) {
   set_metadata(proto, kAnswerKey, answer);
   return replace_file(model, proto.SerializeAsString());
 }
+
+}  // namespace
 
 void AnswerCommand::declare(CLI::App& app) {
   auto* answer = app.add_subcommand(

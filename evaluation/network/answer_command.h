@@ -9,11 +9,6 @@
 
 namespace bevloc::evaluation {
 
-/// Runs the model on the test frame (pipeline/network/test_frame.h) and writes the answer into the
-/// metadata of its ONNX file. The appliance compares its own answer with it. Fails if the file
-/// cannot be read, run or written; the file is then unchanged.
-Status store_answer(const std::string& model);
-
 class AnswerCommand {
  public:
   void declare(CLI::App& app);

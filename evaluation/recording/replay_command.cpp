@@ -24,9 +24,8 @@ struct Distances {
 Distances distances(const std::vector<ReplayedPose>& poses, const Track& track) {
   Distances result;
   for (const ReplayedPose& pose : poses) {
-    const bool valid = pose.state == HealthState::kTracking || pose.state == HealthState::kDegraded;
     const auto other = pose_at(track, pose.time);
-    if (!valid || !pose.map_from_vehicle || !other) continue;
+    if (!claims_pose(pose.state) || !pose.map_from_vehicle || !other) continue;
     const double distance_m = (pose.map_from_vehicle->translation() - other->translation()).norm();
     ++result.count;
     result.mean_m += distance_m;

@@ -54,15 +54,11 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-bool is_valid(HealthState state) {
-  return state == HealthState::kTracking || state == HealthState::kDegraded;
-}
-
 Series series_of(const ReportData& data, std::string name, std::string_view color,
                  double (*value)(const PosedCycle&)) {
   Series series{std::move(name), color, {}};
   for (const PosedCycle& cycle : data.cycles) {
-    if (is_valid(cycle.state)) series.points.push_back({cycle.time_s, value(cycle)});
+    if (claims_pose(cycle.state)) series.points.push_back({cycle.time_s, value(cycle)});
   }
   return series;
 }
@@ -71,7 +67,7 @@ Series errors_of(const ReportData& data, std::string name, std::string_view colo
                  double (*value)(const Se2&)) {
   Series series{std::move(name), color, {}};
   for (const PosedCycle& cycle : data.cycles) {
-    if (!is_valid(cycle.state) || !cycle.error) continue;
+    if (!claims_pose(cycle.state) || !cycle.error) continue;
     series.points.push_back({cycle.time_s, value(*cycle.error)});
   }
   return series;
@@ -214,7 +210,7 @@ void add_figures_of_errors(const ReportData& data,
                            std::vector<std::pair<std::string, std::string>>& figures) {
   std::array<std::vector<double>, 3> errors;
   for (const PosedCycle& cycle : data.cycles) {
-    if (!is_valid(cycle.state) || !cycle.error) continue;
+    if (!claims_pose(cycle.state) || !cycle.error) continue;
     errors[0].push_back(cycle.error->x_m);
     errors[1].push_back(cycle.error->y_m);
     errors[2].push_back(degrees(cycle.error->yaw_rad));
@@ -234,7 +230,7 @@ std::vector<std::pair<std::string, std::string>> key_figures(const ReportData& d
   double recorded_s = 0.0;
   for (const StatePeriod& period : data.periods) {
     recorded_s += period.end_s - period.begin_s;
-    if (is_valid(period.state)) valid_s += period.end_s - period.begin_s;
+    if (claims_pose(period.state)) valid_s += period.end_s - period.begin_s;
   }
   figures.emplace_back("valid poses", fmt::format("{:.1f} s of {:.1f} s", valid_s, recorded_s));
   if (!data.truth.empty()) {
@@ -257,7 +253,7 @@ std::vector<ShownFrame> choose_frames(const ReportData& data) {
   };
   std::vector<Candidate> candidates;
   for (const PosedCycle& cycle : data.cycles) {
-    if (!is_valid(cycle.state) || !cycle.error) continue;
+    if (!claims_pose(cycle.state) || !cycle.error) continue;
     const double error_m = cycle.error->translation().norm();
     candidates.push_back(
         {error_m, {cycle.time_s, fmt::format("The error was {:.2f} m.", error_m), {}}});

@@ -112,9 +112,4 @@ Summary summarise(const std::vector<Outcome>& outcomes) {
   return summary;
 }
 
-PerAxis uniform_nll(const HypothesisGrid& hypotheses) {
-  return {std::log(hypotheses.x_m.count()), std::log(hypotheses.y_m.count()),
-          std::log(hypotheses.yaw_rad.count())};
-}
-
 }  // namespace bevloc::evaluation

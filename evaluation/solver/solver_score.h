@@ -54,7 +54,4 @@ struct Summary {
 
 Summary summarise(const std::vector<Outcome>& outcomes);
 
-/// The negative log-likelihood of a method without evidence: uniform over the hypotheses.
-PerAxis uniform_nll(const HypothesisGrid& hypotheses);
-
 }  // namespace bevloc::evaluation

@@ -198,8 +198,8 @@ CanConfig read_can(YamlMap yaml, CameraDriver camera_driver, const ConfigFiles& 
                   "no section vehicle with can.secoc");
     }
   }
-  config.odometry.rear_track_m =
-      yaml.optional<double>("rear_track_m", config.odometry.rear_track_m, between(0.8, 3.0));
+  config.rear_track_m =
+      yaml.optional<double>("rear_track_m", config.rear_track_m, between(0.8, 3.0));
   return config;
 }
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "can/messages/message.h"
-#include "can/messages/odometry_check.h"
 #include "can/vehicle/vehicle_binding.h"
 #include "common/result.h"
 #include "common/strict_yaml.h"
@@ -63,7 +62,7 @@ struct CanConfig {
   std::string interface;                                  ///< for SocketCAN only
   can::FrameFormat variant = can::FrameFormat::kClassic;  ///< format of the messages that are sent
   can::BaseIds base_ids;
-  can::OdometryLimits odometry;  ///< limits of the vehicle's odometry
+  double rear_track_m = 1.6;  ///< distance between the rear wheels
   std::optional<SecocConfig> secoc;
   bool sends_clock = false;  ///< whether to send LOC_Clock (section `clock`)
   /// The vehicle's own messages, read in place of bevloc's VEH_ messages.

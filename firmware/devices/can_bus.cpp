@@ -23,9 +23,9 @@ std::unique_ptr<can::VehicleDecoder> make_vehicle_decoder(const CanConfig& confi
                                                           can::GeodeticPosition map_origin) {
   if (config.vehicle) {
     return std::make_unique<can::DbcVehicleInput>(*config.vehicle, config.base_ids, map_origin,
-                                                  config.odometry);
+                                                  config.rear_track_m);
   }
-  return std::make_unique<can::VehicleInput>(config.base_ids, map_origin, config.odometry);
+  return std::make_unique<can::VehicleInput>(config.base_ids, map_origin, config.rear_track_m);
 }
 
 Result<std::unique_ptr<can::Bus>> open_can_bus(const CanConfig& config) {

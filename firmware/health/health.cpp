@@ -17,7 +17,7 @@ constexpr Duration kTrustedDeadReckoning = std::chrono::seconds(3);
 constexpr Duration kNewPose = std::chrono::seconds(5);
 constexpr Duration kTrustedNewPose = std::chrono::seconds(2);
 /// The publisher sends no pose whose images are older, so state, log and bus agree.
-constexpr Duration kOldestMatch = can::ReportLimits().max_capture_age;
+constexpr Duration kOldestMatch = can::kMaxCaptureAge;
 
 }  // namespace
 

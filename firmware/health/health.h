@@ -87,9 +87,7 @@ class Health {
   HealthState state() const { return state_; }
   WhyMask why() const { return why_; }
   /// Whether consumers may use the pose.
-  bool pose_valid() const {
-    return state_ == HealthState::kTracking || state_ == HealthState::kDegraded;
-  }
+  bool pose_valid() const { return claims_pose(state_); }
 
  private:
   WhyMask find_reasons(const HealthInputs& inputs) const;

@@ -34,6 +34,17 @@ httplib::Server::HandlerResponse refuse(httplib::Response& response, int status,
   return httplib::Server::HandlerResponse::Handled;
 }
 
+/// Whether a Host header names this machine by address or as "localhost".
+bool is_local_host_header(const std::string& host) {
+  std::string name = host.substr(0, host.find(':'));
+  if (host.starts_with('[')) {
+    const size_t end = host.find(']');
+    if (end == std::string::npos) return false;
+    name = host.substr(1, end - 1);
+  }
+  return name == "localhost" || is_ip_address(name);
+}
+
 httplib::Server::HandlerResponse look_at_request(const httplib::Request& request,
                                                  httplib::Response& response) {
   if (request.method != "GET" && request.method != "HEAD") {
@@ -80,16 +91,6 @@ int port_of(const Socket& socket) {
 }
 
 }  // namespace
-
-bool is_local_host_header(const std::string& host) {
-  std::string name = host.substr(0, host.find(':'));
-  if (host.starts_with('[')) {
-    const size_t end = host.find(']');
-    if (end == std::string::npos) return false;
-    name = host.substr(1, end - 1);
-  }
-  return name == "localhost" || is_ip_address(name);
-}
 
 /// Uses cpp-httplib's parser, routes and responses, but not its sockets and threads.
 class HttpServer::Responder final : public httplib::Server {

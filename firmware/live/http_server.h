@@ -67,7 +67,4 @@ class HttpServer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Whether a Host header names this machine by address or as "localhost".
-bool is_local_host_header(const std::string& host);
-
 }  // namespace bevloc::firmware

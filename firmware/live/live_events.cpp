@@ -55,11 +55,12 @@ json distribution_of(const HypothesisAxis& axis, const std::vector<float>& proba
   return {{"step", axis.step * unit}, {"probability", std::move(list)}};
 }
 
-}  // namespace
-
+/// Returns "event: NAME\ndata: JSON\n\n".
 std::string server_sent_event(const char* name, const json& data) {
   return fmt::format("event: {}\ndata: {}\n\n", name, dump_json(data));
 }
+
+}  // namespace
 
 std::string status_event(const Telemetry& telemetry, const ProcessUse& process, Duration age) {
   return server_sent_event("status", status_json(telemetry, process, age));

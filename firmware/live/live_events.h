@@ -19,10 +19,7 @@ struct TrailPoint {
   bool valid = false;
 };
 
-/// Returns "event: NAME\ndata: JSON\n\n".
-std::string server_sent_event(const char* name, const nlohmann::json& data);
-
-// The functions below return the events, whose keys docs/live.md describes.
+// These functions return the events, whose keys docs/live.md describes.
 
 std::string status_event(const Telemetry& telemetry, const ProcessUse& process, Duration age);
 std::string trail_event(const std::deque<TrailPoint>& trail);

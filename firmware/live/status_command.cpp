@@ -20,7 +20,7 @@ namespace {
 
 constexpr time_t kPatience_s = 3;
 
-/// Accepts the addresses that the server answers to (is_local_host_header()).
+/// Accepts the addresses that the server answers to (is_local_host_header() in http_server.cpp).
 std::string check_address(const std::string& text) {
   if (text == "localhost" || is_ip_address(text)) return "";
   return fmt::format("found '{}', wanted an IP address in numbers, such as 127.0.0.1, or localhost",

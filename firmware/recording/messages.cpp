@@ -36,6 +36,11 @@ std::string_view encoding_of(PixelFormat format) {
   }
 }
 
+void set_time(uint64_t time_ns, google::protobuf::Timestamp& timestamp) {
+  timestamp.set_seconds(static_cast<int64_t>(time_ns) / kSecond_ns);
+  timestamp.set_nanos(static_cast<int32_t>(static_cast<int64_t>(time_ns) % kSecond_ns));
+}
+
 void set_pose(const Se2& pose, recording::Pose2& message) {
   message.set_x_m(pose.x_m);
   message.set_y_m(pose.y_m);
@@ -50,11 +55,6 @@ void add_covariance(const Matrix& covariance, Message& message) {
 }
 
 }  // namespace
-
-void set_time(uint64_t time_ns, google::protobuf::Timestamp& timestamp) {
-  timestamp.set_seconds(static_cast<int64_t>(time_ns) / kSecond_ns);
-  timestamp.set_nanos(static_cast<int32_t>(static_cast<int64_t>(time_ns) % kSecond_ns));
-}
 
 foxglove::RawImage raw_image(const RecordedImage& image, uint64_t exposure_start_ns) {
   foxglove::RawImage message;

@@ -14,8 +14,6 @@
 
 namespace bevloc::firmware {
 
-void set_time(uint64_t time_ns, google::protobuf::Timestamp& timestamp);
-
 /// Returns the image without loss, in its own format.
 foxglove::RawImage raw_image(const RecordedImage& image, uint64_t exposure_start_ns);
 /// `jpeg` is the image in this format.

@@ -12,7 +12,8 @@ constexpr std::array<std::pair<TrackerUpdate, const char*>, 4> kRefusals = {{
     {TrackerUpdate::kTooOld, "too old; check its time stamps and the load of this machine"},
     {TrackerUpdate::kOutOfOrder, "out of order; check its time stamps"},
     {TrackerUpdate::kNotFinite, "not a number; send the journal"},
-    {TrackerUpdate::kImplausible, "beyond its physical limit; check sensor and scaling"},
+    {TrackerUpdate::kImplausible,
+     "beyond a physical limit, stuck, or of the wrong sign; check sensor and scaling"},
 }};
 
 /// The number of epochs in about five seconds. The receiver refuses those of the first second of
@@ -75,6 +76,13 @@ void ErrorLog::note_vehicle_input(const can::VehicleInputCounters& input, Time n
         input.incomplete, now);
   count("CAN in: found a signal that is not available or out of range; check the sender",
         input.not_available, now);
+  count(
+      "CAN in: found odometry less often than every 45 ms, wanted it every 20 ms; check the sender",
+      input.slow_odometry, now);
+  count("CAN in: found wheel speeds that contradict the yaw rate; check both sensors",
+        input.contradicting_wheels, now);
+  count("CAN in: found a change of odometry that no vehicle can make; check the sensors",
+        input.odometry_jumps + input.sharp_turns, now);
 }
 
 void ErrorLog::note_authentication(const can::SecocCounters& secoc, Time now) {

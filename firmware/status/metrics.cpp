@@ -158,8 +158,10 @@ void add_framesets(Families& families, const Telemetry& telemetry) {
                  framesets.skipped);
   families.count("bevloc_framesets_without_prior_total", "Framesets without a predicted pose",
                  framesets.no_prior);
-  families.count("bevloc_framesets_refused_total", "Framesets with too few readable images",
+  families.count("bevloc_framesets_refused_total", "Framesets with too few usable images",
                  framesets.refused);
+  families.count("bevloc_framesets_off_pulse_total", "Framesets without a pulse of the trigger",
+                 framesets.off_pulse);
   families.gauge("bevloc_frameset_rate_hertz", "Framesets per second", telemetry.view.rate_hz);
   families.gauge("bevloc_frameset_spread_seconds", "Spread of the latest frameset",
                  to_seconds(framesets.spread));
@@ -202,6 +204,8 @@ void add_vehicle(Families& families, const Snapshot& snapshot) {
                  input.odometry_samples, {{"input", "odometry"}});
   families.count("bevloc_vehicle_samples_total", "Samples that the vehicle's messages gave",
                  input.gnss_samples, {{"input", "gnss"}});
+  families.count("bevloc_vehicle_slow_odometry_total", "Odometry samples that came too rarely",
+                 input.slow_odometry);
   families.count("bevloc_vehicle_frames_lost_total", "Frames that the E2E counter shows missing",
                  input.lost);
   refused("own_ids", input.own_ids);

@@ -23,10 +23,9 @@ const char* name_of(Phase phase) {
 
 json why_of(WhyMask why) {
   json list = json::array();
-  for (int bit = 0; bit < kWhyCount; ++bit) {
-    const auto reason = static_cast<Why>(1u << bit);
-    if (why.has(reason)) list.push_back({{"reason", words_of(reason)}, {"do", advice_for(reason)}});
-  }
+  for_each_reason(why, [&](Why reason) {
+    list.push_back({{"reason", words_of(reason)}, {"do", advice_for(reason)}});
+  });
   return list;
 }
 
@@ -105,6 +104,7 @@ json vehicle_of(const can::VehicleInputCounters& input) {
       {"incomplete", input.incomplete},
       {"not_available", input.not_available},
       {"own_ids", input.own_ids},
+      {"slow_odometry", input.slow_odometry},
       {"odometry_refused", input.contradicting_wheels + input.odometry_jumps + input.sharp_turns}};
 }
 
@@ -282,6 +282,7 @@ json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration
                          {"skipped", snapshot.framesets.skipped},
                          {"without_prior", snapshot.framesets.no_prior},
                          {"refused", snapshot.framesets.refused},
+                         {"off_pulse", snapshot.framesets.off_pulse},
                          {"spread_ms", 1e3 * to_seconds(snapshot.framesets.spread)}};
   status["tracker"] = {{"odometry", tracker_of(estimation.odometry)},
                        {"gnss", tracker_of(estimation.gnss)},

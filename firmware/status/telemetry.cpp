@@ -20,11 +20,9 @@ constexpr WhyMask kNeedsHelp =
 
 std::string reasons_with_advice(WhyMask why) {
   std::string text;
-  for (int bit = 0; bit < kWhyCount; ++bit) {
-    const auto reason = static_cast<Why>(1u << bit);
-    if (!why.has(reason)) continue;
+  for_each_reason(why, [&](Why reason) {
     text += fmt::format("{}{}: {}", text.empty() ? "" : " ", words_of(reason), advice_for(reason));
-  }
+  });
   return text;
 }
 
@@ -46,7 +44,8 @@ const char* advice_for(Why why) {
     case Why::kGnssMissing:
       return "Check the antenna, and that GNSS arrives (on the bus, or from gpsd: bevloc status).";
     case Why::kNoInitialPose:
-      return "Wait for odometry and GNSS (on the bus, or from gpsd: bevloc status).";
+      return "Wait for odometry and GNSS (on the bus, or from gpsd: bevloc status); without a GNSS "
+             "heading, drive some 10 m.";
     case Why::kOutsideMap:
       return "Check that the map covers this place and that its origin is right.";
     case Why::kMatchUncertain:
@@ -64,7 +63,8 @@ const char* advice_for(Why why) {
     case Why::kMapFault:
       return "GNSS and map lie apart: check the map's origin and its age.";
     case Why::kCalibrationFault:
-      return "A camera is not where the calibration has it: check its mount, calibrate again.";
+      return "A camera is not where the calibration has it, or the time stamps are wrong; the log "
+             "says which: check its mount or the clocks.";
     case Why::kNetworkFault:
       return "The network computes wrong results: restart; if it returns, replace the computer.";
     case Why::kInternalFault:

@@ -83,11 +83,11 @@ void log_vehicle_input(const can::VehicleInputCounters& input) {
       "vehicle: {} odometry and {} GNSS samples; frames: {} lost, {} with a wrong CRC or length, "
       "{} repeated, {} out of sequence, {} while not valid, {} incomplete, {} not available, {} "
       "with our identifiers, {} of other messages; odometry refused: {} wheels against yaw rate, "
-      "{} jumps, {} sharp turns",
+      "{} jumps, {} sharp turns; {} samples came too rarely",
       input.odometry_samples, input.gnss_samples, input.lost, input.wrong_crc + input.wrong_length,
       input.repeated, input.wrong_sequence, input.not_valid, input.incomplete, input.not_available,
       input.own_ids, input.foreign, input.contradicting_wheels, input.odometry_jumps,
-      input.sharp_turns);
+      input.sharp_turns, input.slow_odometry);
 }
 
 void log_gnss(const GnssCounters& gnss) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace bevloc {
@@ -95,6 +96,12 @@ Eigen::Vector3d fisheye_ray(const Intrinsics& camera, const Eigen::Vector2d& tar
 }
 
 }  // namespace
+
+Eigen::Matrix3d rotation_by(const Eigen::Vector3d& vector) {
+  const double angle_rad = vector.norm();
+  if (angle_rad == 0.0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle_rad, vector / angle_rad).toRotationMatrix();
+}
 
 std::optional<Eigen::Vector2d> Intrinsics::project(const Eigen::Vector3d& point_camera) const {
   if (!(point_camera.z() > 0.0)) return std::nullopt;

@@ -24,6 +24,9 @@ struct Se3 {
   Se3 inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation_m)}; }
 };
 
+/// The rotation by a vector of angle times axis.
+Eigen::Matrix3d rotation_by(const Eigen::Vector3d& vector);
+
 /// kPinhole is OpenCV's "plumb bob" model: u = fx * x_d + cx, where x_d is the distorted normalised
 /// coordinate. kFisheye is the model of cv::fisheye: the distance from the principal point grows
 /// with the angle t from the optical axis as t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8).

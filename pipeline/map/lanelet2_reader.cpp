@@ -6,7 +6,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "common/files.h"
 #include "pipeline/map/bound_neighbours.h"
 #include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/lanelet_tags.h"
@@ -347,21 +346,8 @@ class Lanelet2Reader {
 
 }  // namespace
 
-Result<HdMap> read_lanelet2(const std::filesystem::path& path) {
-  const Result<std::string> text = read_file(path);
-  if (!text) return tl::unexpected(text.error());
-  return parse_lanelet2(*text, path);
-}
-
-Result<HdMap> parse_lanelet2(std::string_view text, const std::filesystem::path& file) {
-  Result<ImportedMap> imported = parse_lanelet2_with_report(text, file, {});
-  if (!imported) return tl::unexpected(imported.error());
-  return std::move(imported->map);
-}
-
-Result<ImportedMap> parse_lanelet2_with_report(std::string_view text,
-                                               const std::filesystem::path& file,
-                                               const ImportOptions& options) {
+Result<ImportedMap> parse_lanelet2(std::string_view text, const std::filesystem::path& file,
+                                   const ImportOptions& options) {
   const Result<OsmDocument> document = parse_osm(text, file.string());
   if (!document) return tl::unexpected(document.error());
   Result<NodePositions> nodes = locate_nodes(*document);

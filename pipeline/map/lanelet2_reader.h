@@ -2,17 +2,15 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <string_view>
 
 #include "common/result.h"
 #include "pipeline/map/formats/map_builder.h"
-#include "pipeline/map/hd_map.h"
 
 namespace bevloc {
 
-/// Reads a Lanelet2 map. Uses these parts (tags as documented in Lanelet2's LinestringTagging.md
-/// and LaneletAndAreaTagging.md):
+/// Reads the text of a Lanelet2 map. Uses these parts (tags as documented in Lanelet2's
+/// LinestringTagging.md and LaneletAndAreaTagging.md):
 /// - Lane dividers: ways of type line_thin and line_thick, unless they bound a crosswalk, or only
 ///   lanelets for others than vehicles, or are road boundaries (below); ways without a type that
 ///   bound two or more lanelets for vehicles, or run beside a bound of another one.
@@ -32,17 +30,12 @@ namespace bevloc {
 ///
 /// Fails with file, line and element on text that is not OSM XML, on bad coordinates, and on a file
 /// without any part listed above that can be used.
-Result<HdMap> read_lanelet2(const std::filesystem::path& path);
-
-/// Does the same for a text in memory. Error messages show `file`; its stem becomes the name of the
-/// map.
-Result<HdMap> parse_lanelet2(std::string_view text, const std::filesystem::path& file);
-
-/// Does the same with a report by kind of way ("way line_thin dashed") and with a class table,
-/// which may also take ways that are otherwise ignored. The options may give an origin only for a
-/// file that has nothing but local coordinates; with an origin, any other file is refused.
-Result<ImportedMap> parse_lanelet2_with_report(std::string_view text,
-                                               const std::filesystem::path& file,
-                                               const ImportOptions& options);
+///
+/// Error messages show `file`; its stem becomes the name of the map. The report is by kind of way
+/// ("way line_thin dashed"). A class table may also take ways that are otherwise ignored. The
+/// options may give an origin only for a file that has nothing but local coordinates; with an
+/// origin, any other file is refused.
+Result<ImportedMap> parse_lanelet2(std::string_view text, const std::filesystem::path& file,
+                                   const ImportOptions& options);
 
 }  // namespace bevloc

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "common/median.h"
-#include "common/plane.h"
 
 namespace bevloc {
 namespace {
@@ -167,12 +166,6 @@ Eigen::Vector2d median_point(const std::vector<Eigen::Vector2d>& points) {
     middle[axis] = median(values);
   }
   return middle;
-}
-
-double polyline_length(const Polyline& line) {
-  double length_m = 0.0;
-  for (size_t i = 1; i < line.size(); ++i) length_m += (line[i] - line[i - 1]).norm();
-  return length_m;
 }
 
 double length_of(const MapElement& element) {

@@ -6,11 +6,10 @@
 
 #include <Eigen/Core>
 
+#include "common/plane.h"
 #include "pipeline/map/hd_map.h"
 
 namespace bevloc {
-
-using Polyline = std::vector<Eigen::Vector2d>;
 
 /// Joins pieces in any order and direction whose ends are at most 0.2 m apart. Returns nothing if
 /// they do not form one line. There must be at least one piece, each with two points or more.
@@ -26,9 +25,6 @@ Polyline centerline_between(const Polyline& left, const Polyline& right);
 /// The median of the x and the median of the y coordinates. A few wrong points hardly change it.
 /// `points` must not be empty.
 Eigen::Vector2d median_point(const std::vector<Eigen::Vector2d>& points);
-
-/// The length of a line in metres.
-double polyline_length(const Polyline& line);
 
 /// The length of an element in metres. A crossing counts with its closing edge.
 double length_of(const MapElement& element);

@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "common/crc32.h"
-#include "common/files.h"
 #include "common/replace_file.h"
 #include "pipeline/map/compact_codec.h"
 #include "pipeline/map/lanelet_geometry.h"
@@ -137,12 +136,6 @@ Result<HdMap> decode_map(std::string_view bytes, const std::string& file) {
     return fail("{}: {}, wanted a valid compact map", file, *decoder.error());
   }
   return map;
-}
-
-Result<HdMap> read_map_binary(const std::filesystem::path& path) {
-  const Result<std::string> bytes = read_file(path);
-  if (!bytes) return tl::unexpected(bytes.error());
-  return decode_map(*bytes, path.string());
 }
 
 Status write_map_binary(const HdMap& map, const std::filesystem::path& path) {

@@ -41,7 +41,6 @@ std::string encode_map(const HdMap& map);
 /// encode_tiles() wrote the bytes.
 Result<HdMap> decode_map(std::string_view bytes, const std::string& file);
 
-Result<HdMap> read_map_binary(const std::filesystem::path& path);
 /// Writes version 1.
 Status write_map_binary(const HdMap& map, const std::filesystem::path& path);
 /// Writes version 2. Fails if check_map() does not hold.

@@ -8,10 +8,7 @@ Se3 with_errors(const Se3& vehicle_from_camera,
                 const Eigen::Matrix<double, kErrorsPerCamera, 1>& errors) {
   Se3 result = vehicle_from_camera;
   const Eigen::Vector3d rotation = errors.head<3>();
-  const double angle_rad = rotation.norm();
-  if (angle_rad > 0.0) {
-    result.rotation *= Eigen::AngleAxisd(angle_rad, rotation / angle_rad).toRotationMatrix();
-  }
+  if (rotation.norm() > 0.0) result.rotation *= rotation_by(rotation);
   result.translation_m += errors.tail<3>();
   return result;
 }

@@ -12,22 +12,33 @@ namespace {
 constexpr double kNoise = 200.0;
 constexpr double kSecondsPerHour = 3600.0;
 
+// How large errors are and how fast they change, one sigma.
+/// Rotation of one camera about each of its axes.
+constexpr double kCameraRotation_rad = radians(0.3);
+/// Shift of one camera along each of the vehicle's axes.
+constexpr double kCameraShift_m = 0.02;
+/// Rotation of all cameras together about the vehicle's axes. The load turns the body about x and
+/// y.
+const Eigen::Vector3d kBodyRotation_rad{radians(0.2), radians(0.2), radians(0.1)};
+/// Growth after one hour of driving, of each angle and of each length.
+constexpr double kGrowth_rad_per_sqrt_hour = radians(0.2);
+constexpr double kGrowth_m_per_sqrt_hour = 0.005;
+
 }  // namespace
 
-ExtrinsicFilter::ExtrinsicFilter(const Rig& rig, const ExtrinsicModel& model) : model_(model) {
+ExtrinsicFilter::ExtrinsicFilter(const Rig& rig) {
   covariance_.setZero();
   Eigen::Matrix<double, kExtrinsicErrors, 3> body;
   body.setZero();
   for (int camera = 0; camera < kCameraCount; ++camera) {
     const int first = camera * kErrorsPerCamera;
-    covariance_.diagonal().segment<3>(first).setConstant(model.rotation_rad * model.rotation_rad);
-    covariance_.diagonal().segment<3>(first + 3).setConstant(model.translation_m *
-                                                             model.translation_m);
+    covariance_.diagonal().segment<3>(first).setConstant(kCameraRotation_rad * kCameraRotation_rad);
+    covariance_.diagonal().segment<3>(first + 3).setConstant(kCameraShift_m * kCameraShift_m);
     heading_.segment<3>(first) =
         rig.cameras[camera].vehicle_from_camera.rotation.row(2).transpose() / kCameraCount;
     body.middleRows<3>(first) = rig.cameras[camera].vehicle_from_camera.rotation.transpose();
   }
-  covariance_ += body * model.body_rotation_rad.cwiseAbs2().asDiagonal() * body.transpose();
+  covariance_ += body * kBodyRotation_rad.cwiseAbs2().asDiagonal() * body.transpose();
 }
 
 bool ExtrinsicFilter::restore(const ExtrinsicErrors& errors,
@@ -46,9 +57,9 @@ void ExtrinsicFilter::update(const ExtrinsicInformation& match, const ExtrinsicE
   for (int camera = 0; camera < kCameraCount; ++camera) {
     const int first = camera * kErrorsPerCamera;
     covariance_.diagonal().segment<3>(first).array() +=
-        hours * model_.rotation_per_sqrt_hour_rad * model_.rotation_per_sqrt_hour_rad;
+        hours * kGrowth_rad_per_sqrt_hour * kGrowth_rad_per_sqrt_hour;
     covariance_.diagonal().segment<3>(first + 3).array() +=
-        hours * model_.translation_per_sqrt_hour_m * model_.translation_per_sqrt_hour_m;
+        hours * kGrowth_m_per_sqrt_hour * kGrowth_m_per_sqrt_hour;
   }
   // P' = (P^-1 + A)^-1 = (I + P A)^-1 P, e' = e + P' (slope - A (e - used)).
   const ExtrinsicCovariance information = match.information / kNoise;

@@ -36,7 +36,7 @@ constexpr size_t kMostLeftOut = 2;
 
 OnlineCalibration::OnlineCalibration(const Rig& rig, const BevGrid& grid, int channels,
                                      const OnlineCalibrationOptions& options)
-    : options_(options), sums_(grid, channels), filter_(rig, {}) {}
+    : options_(options), sums_(grid, channels), filter_(rig) {}
 
 bool OnlineCalibration::restore(const ExtrinsicErrors& errors,
                                 const ExtrinsicCovariance& covariance) {

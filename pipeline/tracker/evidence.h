@@ -5,25 +5,6 @@
 
 namespace bevloc {
 
-/// These limits decide what counts as seen. They fit every network, because its file has a factor
-/// on its scores (SolverParameters::score_scale).
-struct EvidenceLimits {
-  /// Largest probability near the border of the search range. If it is larger, the truth may lie
-  /// outside, and the answer on this axis is worth nothing.
-  double max_edge_mass = 0.25;
-  /// The match must have removed this share of the variance of the search range.
-  double min_share = 0.5;
-  /// A second peak this high means two places that look alike.
-  double max_rival_peak = 0.7;
-  /// Mean score of the recent matches that confirms the place.
-  double min_score = 0.18;
-  /// If the score of an axis is below this, its answer often belongs to another place along the
-  /// axis. Its standard deviation is then multiplied by good_axis_score / score, at most by
-  /// max_growth.
-  double good_axis_score = 0.12;
-  double max_growth = 4.0;
-};
-
 /// What one match confirms.
 struct Seen {
   bool across = false;
@@ -41,22 +22,26 @@ struct Seen {
   bool confirms_start() const { return confirms() && heading && unique; }
 };
 
-/// Keeps the mean score of the recent matches. Allocates nothing. One thread.
+/// Keeps the mean score of the recent matches. Its limits fit every network, because the file of
+/// a network has a factor on its scores (SolverParameters::score_scale). Allocates nothing. One
+/// thread.
 class EvidenceMonitor {
  public:
-  explicit EvidenceMonitor(const EvidenceLimits& limits = {}) : limits_(limits) {}
+  /// Mean score of the recent matches that confirms the place.
+  static constexpr double kMinScore = 0.18;
+  /// The largest growth_of() a score.
+  static constexpr double kMaxGrowth = 4.0;
 
   /// Judges a match, and widens each axis of `match` that has a low score.
   Seen judge(MatchResult& match);
 
   /// The factor by which the standard deviation of an axis grows because of its score.
-  double growth_of(double axis_score) const;
+  static double growth_of(double axis_score);
 
   double mean_score() const { return mean_score_; }
   void reset() { mean_score_ = 0.0; }
 
  private:
-  EvidenceLimits limits_;
   double mean_score_ = 0.0;
 };
 

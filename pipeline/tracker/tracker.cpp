@@ -152,19 +152,18 @@ double Tracker::yaw_rate_bias_radps() const {
 }
 
 void Tracker::widen() {
-  repetition_.forget();
-  if (!is_initialised()) return;
-  const TrackerEvent& latest = history_.back();
-  insert(history_.size(),
-         {.time = latest.time, .kind = TrackerEvent::Kind::kWiden, .motion = latest.motion});
+  append_now(TrackerEvent::Kind::kWiden);
 }
 
 void Tracker::loosen_odometry() {
+  append_now(TrackerEvent::Kind::kLoosen);
+}
+
+void Tracker::append_now(TrackerEvent::Kind kind) {
   repetition_.forget();
   if (!is_initialised()) return;
   const TrackerEvent& latest = history_.back();
-  insert(history_.size(),
-         {.time = latest.time, .kind = TrackerEvent::Kind::kLoosen, .motion = latest.motion});
+  insert(history_.size(), {.time = latest.time, .kind = kind, .motion = latest.motion});
 }
 
 void Tracker::restart() {

@@ -167,6 +167,9 @@ class Tracker {
   FilterState state_at(Time time, size_t events_until) const;
   /// Inserts `event` before the event at `position` and updates the states from there.
   void insert(size_t position, const TrackerEvent& event);
+  /// Appends an event of this kind at the time of the latest one, if there is a pose. The next
+  /// match then counts in full.
+  void append_now(TrackerEvent::Kind kind);
   void replay_from(size_t position);
   void drop_old_events();
 

@@ -59,7 +59,7 @@ void keep_far_pieces(const MapElement& element, const Polyline& places, double r
     if (std::ranges::none_of(element.points, is_near)) kept.push_back(element);
     return;
   }
-  if (element.points.size() < 2 || length_m(element.points) <= 0.0) return;
+  if (element.points.size() < 2 || polyline_length(element.points) <= 0.0) return;
   // The line is sampled, because a long segment may be near although both of its ends are far away.
   const Path path(element.points);
   const auto steps = static_cast<int>(std::ceil(path.length_m()));
@@ -113,7 +113,7 @@ void displace_borders(HdMap& map, double outwards_m) {
   const RoadSide road(map);
   for (MapElement& element : map.elements) {
     if (element.element_class != ElementClass::kRoadBoundary) continue;
-    if (element.points.size() < 2 || length_m(element.points) <= 0.0) continue;
+    if (element.points.size() < 2 || polyline_length(element.points) <= 0.0) continue;
     const Path path(element.points);
     const auto side = road.of(path);
     if (!side) continue;

@@ -262,7 +262,7 @@ void draw_false_lines(const std::vector<VisibleLine>& lines, const Perception& p
   for (size_t i = 0; i < lines.size(); ++i) {
     Random random(mix_seed(seed_for(seed, "false line") + i));
     if (!random.chance(perception.false_per_line)) continue;
-    const bool parallel = random.chance(0.7) && length_m(lines[i].points) > 3.0;
+    const bool parallel = random.chance(0.7) && polyline_length(lines[i].points) > 3.0;
     const FalseLine line = parallel ? beside(lines[i], random) : anywhere(random);
     const double confidence = random.uniform(0.5, 3.0);
     draw_painted(observer.observe(line.points, confidence, random.bits()), line.painted,

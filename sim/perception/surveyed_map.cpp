@@ -29,7 +29,7 @@ bool is_whole(const std::vector<Dash>& dashes) {
 }
 
 std::vector<Dash> dashes_of(const PaintLine& paint) {
-  const double end_m = length_m(paint.points);
+  const double end_m = polyline_length(paint.points);
   const double period_m = paint.dash_m + paint.gap_m;
   std::vector<Dash> dashes;
   for (double start_m = -std::fmod(paint.phase_m, period_m); start_m < end_m; start_m += period_m) {

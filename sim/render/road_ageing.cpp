@@ -86,7 +86,7 @@ void age_lane(const Lane& lane, uint64_t seed, RoadAgeing& ageing) {
     append_segments(shifted(lane.centerline, side * kTrackWidthM),
                     static_cast<int>(ageing.soilings.size()) - 1, ageing.tracks);
   }
-  const double lane_m = length_m(lane.centerline);
+  const double lane_m = polyline_length(lane.centerline);
   for (double at_m = random.uniform(0.0, kMetresPerFlaw); at_m < lane_m;
        at_m += random.uniform(0.2, 1.8) * kMetresPerFlaw) {
     if (random.chance(0.3)) {

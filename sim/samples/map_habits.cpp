@@ -49,7 +49,7 @@ class Surveyor {
     for (const MapElement& element : elements) {
       const bool is_line = element.element_class != ElementClass::kPedestrianCrossing &&
                            element.points.size() >= 2 &&
-                           length_m(element.points) >= kShortestPiece_m;
+                           polyline_length(element.points) >= kShortestPiece_m;
       if (!is_line) {
         redrawn_.push_back(element);
       } else if (element.element_class == ElementClass::kLaneDivider) {

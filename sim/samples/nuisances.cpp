@@ -43,6 +43,28 @@ const Entry& entry_of(NuisanceSet set) {
   return kEntries[static_cast<size_t>(set)];
 }
 
+// What sets with several values change.
+constexpr MapErrors kWrongMap{.omission = 0.1, .ghost = 0.1, .shift_sigma_m = 0.15};
+constexpr MapHabits kHabitualMap{.short_divider = 0.4,
+                                 .long_divider = 0.1,
+                                 .broken_divider = 0.2,
+                                 .inner_boundary = 0.4,
+                                 .closed_mouth = 0.2,
+                                 .double_boundary = 0.3};
+constexpr CameraLooks kColourful{
+    .cast = 0.25, .least_saturation = 0.0, .most_saturation = 1.5, .grey_share = 0.25};
+constexpr StreetClutter kCluttered{.kerb_line = 0.3,
+                                   .studs = 0.25,
+                                   .crossing_edges = 0.5,
+                                   .box = 0.08,
+                                   .works = 0.05,
+                                   .bollards = 0.15,
+                                   .railing = 0.15,
+                                   .shadow = 0.3,
+                                   .people_per_100m = 2.0};
+constexpr Slopes kSloping{
+    .along_per_m = 1.0 / 300.0, .across_per_m = 1.0 / 200.0, .twist_per_m = 1.0 / 1000.0};
+
 Nuisances clean() {
   Nuisances nuisances;
   nuisances.calibration = {0.0, 0.0, 0.0};
@@ -83,30 +105,16 @@ Nuisances nuisances_of(NuisanceSet set) {
       nuisances.paint_wear_factor = 2.0;
       break;
     case NuisanceSet::kMapErrors:
-      nuisances.map_errors = {.omission = 0.1, .ghost = 0.1, .shift_sigma_m = 0.15};
+      nuisances.map_errors = kWrongMap;
       break;
     case NuisanceSet::kMapHabits:
-      nuisances.map_habits = {.short_divider = 0.4,
-                              .long_divider = 0.1,
-                              .broken_divider = 0.2,
-                              .inner_boundary = 0.4,
-                              .closed_mouth = 0.2,
-                              .double_boundary = 0.3};
+      nuisances.map_habits = kHabitualMap;
       break;
     case NuisanceSet::kColour:
-      nuisances.looks = {
-          .cast = 0.25, .least_saturation = 0.0, .most_saturation = 1.5, .grey_share = 0.25};
+      nuisances.looks = kColourful;
       break;
     case NuisanceSet::kClutter:
-      nuisances.clutter = {.kerb_line = 0.3,
-                           .studs = 0.25,
-                           .crossing_edges = 0.5,
-                           .box = 0.08,
-                           .works = 0.05,
-                           .bollards = 0.15,
-                           .railing = 0.15,
-                           .shadow = 0.3,
-                           .people_per_100m = 2.0};
+      nuisances.clutter = kCluttered;
       break;
     case NuisanceSet::kCalibration:
       nuisances.calibration.rotation_rad = radians(0.2);
@@ -116,8 +124,7 @@ Nuisances nuisances_of(NuisanceSet set) {
       nuisances.body.tilt_rad = radians(1.0);
       break;
     case NuisanceSet::kSlopes:
-      nuisances.slopes = {
-          .along_per_m = 1.0 / 300.0, .across_per_m = 1.0 / 200.0, .twist_per_m = 1.0 / 1000.0};
+      nuisances.slopes = kSloping;
       break;
     case NuisanceSet::kRigs:
       nuisances.rig_variety = 0.5;

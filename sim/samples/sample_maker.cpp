@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/rasterizer.h"
 #include "sim/render/conditions.h"
@@ -62,10 +60,7 @@ Eigen::Vector3d random_vector(double sigma, Random& random) {
 CameraModel true_camera(const CameraModel& calibrated, const CalibrationSigma& sigma,
                         Random& random) {
   CameraModel camera = calibrated;
-  const Eigen::Vector3d rotation = random_vector(sigma.rotation_rad, random);
-  const double angle = rotation.norm();
-  camera.vehicle_from_camera.rotation *=
-      Eigen::AngleAxisd(angle, rotation / std::max(angle, 1e-12)).toRotationMatrix();
+  camera.vehicle_from_camera.rotation *= rotation_by(random_vector(sigma.rotation_rad, random));
   camera.vehicle_from_camera.translation_m += random_vector(sigma.position_m, random);
   const double focal_factor = random.normal(1.0, sigma.relative_focal);
   camera.intrinsics.fx_px *= focal_factor;

@@ -111,7 +111,7 @@ void clutter_boundaries(const StreetClutter& clutter, Random& random, World& wor
   const RoadSide road_side(world.map);
   for (const MapElement& element : world.map.elements) {
     if (element.element_class != ElementClass::kRoadBoundary) continue;
-    if (length_m(element.points) < kShortest_m) continue;
+    if (polyline_length(element.points) < kShortest_m) continue;
     const Path path(element.points);
     const auto side = road_side.of(path);
     if (side) BoundaryClutter(path, side->is_right ? -1.0 : 1.0, random, world).add(clutter);
@@ -229,7 +229,7 @@ void clutter_lanes(const StreetClutter& clutter, Random& random, World& world) {
     const bool box = random.chance(clutter.box);
     const bool works = random.chance(clutter.works);
     const bool shadow = random.chance(clutter.shadow);
-    if (length_m(lane.centerline) < kShortest_m) continue;
+    if (polyline_length(lane.centerline) < kShortest_m) continue;
     const Path path(lane.centerline);
     const double from_m = random.uniform(0.0, path.length_m() - 0.5 * kShortest_m);
     const double to_m = std::min(path.length_m(), from_m + random.uniform(4.0, 25.0));

@@ -53,7 +53,7 @@ bool are_clear(const VehicleBody& a, const VehicleBody& b) {
 std::vector<Se2> spots_around(const Eigen::Vector2d& place, const HdMap& map) {
   std::vector<Se2> spots;
   for (const Lane& lane : map.lanes) {
-    if (length_m(lane.centerline) < kShortestLane_m) continue;
+    if (polyline_length(lane.centerline) < kShortestLane_m) continue;
     const Path path(lane.centerline);
     for (double s = 0.0; s < path.length_m(); s += kSpotStep_m) {
       const Eigen::Vector2d point = path.position(s);

@@ -109,7 +109,7 @@ void Drive::lay_path(const HdMap& map, const std::vector<uint32_t>& route) {
   for (const uint32_t lane : route) append(line, map.lanes[lane].centerline);
   const SmoothNoise wander(seed_for(seed_, "wander"), kWander_m, 50.0, 250.0);
   const Polyline samples = smoothed(resampled(line));
-  lane_step_m_ = length_m(line) / static_cast<double>(samples.size() - 1);
+  lane_step_m_ = polyline_length(line) / static_cast<double>(samples.size() - 1);
   const Path centre(samples);
   Polyline wandering(samples.size());
   double station_m = 0.0;
@@ -155,7 +155,7 @@ std::vector<Drive::Stop> Drive::choose_stops(const HdMap& map, const std::vector
   std::vector<Stop> stops;
   double end_m = 0.0;
   for (const uint32_t lane : route) {
-    const double lane_m = length_m(map.lanes[lane].centerline);
+    const double lane_m = polyline_length(map.lanes[lane].centerline);
     end_m += lane_m;
     const bool stops_here = random.chance(0.25);
     const double wait_s = random.uniform(times.shortest_s, times.longest_s);
@@ -172,10 +172,10 @@ void Drive::plan_speed(const HdMap& map, const std::vector<uint32_t>& route,
   const double haste = Random(seed_for(seed_, "haste")).uniform(0.7, 1.0);
   speed_mps_.assign(count, 0.0);
   size_t on_route = 0;
-  double lane_end_m = length_m(map.lanes[route[0]].centerline);
+  double lane_end_m = polyline_length(map.lanes[route[0]].centerline);
   for (size_t i = 0; i < count; ++i) {
     while (static_cast<double>(i) * lane_step_m_ > lane_end_m && on_route + 1 < route.size()) {
-      lane_end_m += length_m(map.lanes[route[++on_route]].centerline);
+      lane_end_m += polyline_length(map.lanes[route[++on_route]].centerline);
     }
     const double limit = std::min(kTopSpeed_mps, map.lanes[route[on_route]].speed_limit_mps);
     const double bend = std::max(1e-4, std::abs(curvature_radpm_[i]));

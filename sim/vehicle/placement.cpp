@@ -37,10 +37,10 @@ bool has_surroundings(const HdMap& map, const Eigen::Vector2d& point) {
 /// across junctions.
 const Lane& random_lane(const HdMap& map, Random& random) {
   double total = 0.0;
-  for (const Lane& lane : map.lanes) total += std::sqrt(length_m(lane.centerline));
+  for (const Lane& lane : map.lanes) total += std::sqrt(polyline_length(lane.centerline));
   double draw = random.uniform(0.0, total);
   for (const Lane& lane : map.lanes) {
-    draw -= std::sqrt(length_m(lane.centerline));
+    draw -= std::sqrt(polyline_length(lane.centerline));
     if (draw <= 0.0) return lane;
   }
   return map.lanes.back();

@@ -35,7 +35,7 @@ std::vector<uint32_t> random_lane_route(const HdMap& map, double length_m, Rando
   std::vector<double> lane_m;
   double longest_m = 0.0;
   for (const Lane& lane : map.lanes) {
-    lane_m.push_back(sim::length_m(lane.centerline));
+    lane_m.push_back(polyline_length(lane.centerline));
     longest_m = std::max(longest_m, lane_m.back());
   }
   const std::vector<double> reach = reach_of_lanes(map, lane_m, length_m + longest_m);

@@ -101,12 +101,6 @@ Polyline Path::parallel(double from_m, double to_m, double right_m) const {
   return parallel(from_m, to_m, [right_m](double) { return right_m; });
 }
 
-double length_m(const Polyline& line) {
-  double sum = 0.0;
-  for (size_t i = 1; i < line.size(); ++i) sum += (line[i] - line[i - 1]).norm();
-  return sum;
-}
-
 Polyline without_collinear(const Polyline& line) {
   if (line.size() < 3) return line;
   constexpr double kStraight_rad = 2e-4;

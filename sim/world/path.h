@@ -59,8 +59,6 @@ class Path {
   std::vector<double> stations_;             ///< stations of the points
 };
 
-double length_m(const Polyline& line);
-
 /// A route counts each lane as at least this long, so that one along lanes without length ends.
 inline constexpr double kLeastStep_m = 0.01;
 

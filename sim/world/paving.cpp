@@ -151,7 +151,8 @@ std::vector<Ring> paved_rings(const HdMap& map) {
   std::vector<Ring> rings;
   for (size_t index = 0; index < map.lanes.size(); ++index) {
     const Lane& lane = map.lanes[index];
-    if (length_m(lane.left) < kShortestPavedLane_m || length_m(lane.right) < kShortestPavedLane_m)
+    if (polyline_length(lane.left) < kShortestPavedLane_m ||
+        polyline_length(lane.right) < kShortestPavedLane_m)
       continue;
     Ring surface = lane.left;
     append(surface, reversed(lane.right));

@@ -23,7 +23,7 @@ int64_t cell_of(double coordinate_m) {
 
 RoadSide::RoadSide(const HdMap& map) {
   for (const Lane& lane : map.lanes) {
-    if (lane.centerline.size() < 2 || length_m(lane.centerline) <= 0.0) continue;
+    if (lane.centerline.size() < 2 || polyline_length(lane.centerline) <= 0.0) continue;
     const Path path(lane.centerline);
     const auto steps = static_cast<int>(std::ceil(path.length_m() / kVoteStep_m));
     for (int step = 0; step <= steps; ++step) {

@@ -25,11 +25,11 @@ Rgb vehicle_colour(Random& random) {
 /// Joins lane centre lines along random successors until the route is kRoute_m long.
 Polyline random_route(const HdMap& map, uint32_t lane, Random& random) {
   Polyline route = map.lanes[lane].centerline;
-  double travelled_m = length_m(route);
+  double travelled_m = polyline_length(route);
   while (travelled_m < kRoute_m && !map.lanes[lane].successors.empty()) {
     const std::vector<uint32_t>& next = map.lanes[lane].successors;
     lane = next[random.index(next.size())];
-    travelled_m += std::max(length_m(map.lanes[lane].centerline), kLeastStep_m);
+    travelled_m += std::max(polyline_length(map.lanes[lane].centerline), kLeastStep_m);
     append(route, map.lanes[lane].centerline);
   }
   return route;
@@ -64,7 +64,7 @@ class Walker {
 VehicleBody placed_on_path(const TrafficVehicle& vehicle, double seconds) {
   constexpr double kHalfWheelbase_m = 1.4;
   VehicleBody body = vehicle.body;
-  const double route_m = length_m(vehicle.path);
+  const double route_m = polyline_length(vehicle.path);
   const double usable_m = std::max(1e-3, route_m - 2.0 * kHalfWheelbase_m);
   const double driven_m = std::fmod(vehicle.start_m + vehicle.speed_mps * seconds, usable_m);
   Walker walker(vehicle.path);
@@ -109,14 +109,14 @@ VehicleBody random_vehicle(Random& random) {
 std::vector<TrafficVehicle> random_traffic(const HdMap& map, double density, Random& random) {
   std::vector<TrafficVehicle> traffic;
   double lanes_m = 0.0;
-  for (const Lane& lane : map.lanes) lanes_m += length_m(lane.centerline);
+  for (const Lane& lane : map.lanes) lanes_m += polyline_length(lane.centerline);
   const int count = map.lanes.empty() ? 0 : static_cast<int>(0.01 * density * lanes_m);
   for (int i = 0; i < count; ++i) {
     const auto lane = static_cast<uint32_t>(random.index(map.lanes.size()));
     TrafficVehicle vehicle;
     vehicle.body = random_vehicle(random);
     vehicle.path = random_route(map, lane, random);
-    vehicle.start_m = random.uniform() * length_m(vehicle.path);
+    vehicle.start_m = random.uniform() * polyline_length(vehicle.path);
     const bool queues = random.chance(0.15);
     vehicle.speed_mps = queues ? 0.0 : random.uniform(4.0, map.lanes[lane].speed_limit_mps);
     if (vehicle.path.size() >= 2) traffic.push_back(std::move(vehicle));

@@ -17,7 +17,7 @@ void grow_verges(World& world, const std::function<Verge()>& verge_of) {
   const RoadSide road(world.map);
   for (const MapElement& element : world.map.elements) {
     if (element.element_class != ElementClass::kRoadBoundary) continue;
-    if (element.points.size() < 2 || length_m(element.points) <= 0.0) continue;
+    if (element.points.size() < 2 || polyline_length(element.points) <= 0.0) continue;
     const Path path(element.points);
     const auto side = road.of(path);
     if (!side) continue;

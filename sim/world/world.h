@@ -6,12 +6,12 @@
 
 #include <Eigen/Core>
 
+#include "common/plane.h"
 #include "common/se2.h"
 #include "pipeline/map/hd_map.h"
 
 namespace bevloc::sim {
 
-using Polyline = std::vector<Eigen::Vector2d>;
 using Ring = std::vector<Eigen::Vector2d>;
 
 /// A colour: linear reflectance or radiance.

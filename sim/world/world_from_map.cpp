@@ -69,7 +69,7 @@ void MapDresser::lay_asphalt() {
   for (const MapElement& element : map_.elements) {
     if (element.element_class == ElementClass::kPedestrianCrossing) lay(element.points);
     if (element.element_class != ElementClass::kLaneDivider) continue;
-    if (length_m(element.points) < kShortestLine_m) continue;
+    if (polyline_length(element.points) < kShortestLine_m) continue;
     lay(area_beside(Path(element.points), town_.lane_width_m));
   }
 }
@@ -81,7 +81,7 @@ void MapDresser::show(const MapElement& element) {
                             static_cast<float>(town_.wear));
     return;
   }
-  if (length_m(element.points) < kShortestLine_m) return;
+  if (polyline_length(element.points) < kShortestLine_m) return;
   if (element.element_class == ElementClass::kLaneDivider) {
     show_divider(element);
   } else {
@@ -116,7 +116,7 @@ std::vector<Roadside> MapDresser::find_roadsides() {
   std::vector<Roadside> roadsides;
   for (const MapElement& element : map_.elements) {
     if (element.element_class != ElementClass::kRoadBoundary) continue;
-    if (length_m(element.points) < 3.0) continue;
+    if (polyline_length(element.points) < 3.0) continue;
     Path edge(element.points);
     const double middle_m = 0.5 * edge.length_m();
     const double right_m = mask.distance_to_paved_m(edge.beside(middle_m, kProbe_m));

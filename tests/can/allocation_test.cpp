@@ -19,7 +19,7 @@ TEST(Allocation, NoneInOneSecondOfTheBus) {
   const auto vehicle = wire.connect();
   PosePublisher publisher(*localizer, {.map_origin = kOrigin});
   VehicleEncoder encoder(BaseIds{}, kOrigin, 1.6);
-  VehicleInput input(BaseIds{}, kOrigin);
+  VehicleInput input(BaseIds{}, kOrigin, 1.6);
   PoseReport report;
   report.status.state = HealthState::kTracking;
   report.map_from_vehicle = {1.0, 2.0, 3.0};

@@ -115,7 +115,7 @@ Status check_damaged_line(Random& random, FrameSource& source) {
 Status run(uint64_t seed, int64_t cases) {
   Random random(seed);
   FrameSource source;
-  can::VehicleInput input({}, {49.0, 8.4});
+  can::VehicleInput input({}, {49.0, 8.4}, 1.6);
   can::ControllerMonitor monitor;
   for (int64_t i = 0; i < cases; ++i) {
     const Time now{std::chrono::milliseconds(i)};

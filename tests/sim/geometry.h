@@ -33,19 +33,6 @@ inline bool lines_cross(const Polyline& a, const Polyline& b, Eigen::Vector2d* p
   return false;
 }
 
-/// Whether a ring contains a point (even-odd rule).
-inline bool contains(const Ring& ring, const Eigen::Vector2d& point) {
-  bool inside = false;
-  for (size_t i = 0, k = ring.size() - 1; i < ring.size(); k = i++) {
-    const Eigen::Vector2d& a = ring[i];
-    const Eigen::Vector2d& b = ring[k];
-    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
-    const double x = a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-    if (point.x() < x) inside = !inside;
-  }
-  return inside;
-}
-
 inline double distance_to_line(const Eigen::Vector2d& point, const Polyline& line) {
   double nearest = std::numeric_limits<double>::max();
   for (size_t i = 1; i < line.size(); ++i) {

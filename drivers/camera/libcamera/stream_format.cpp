@@ -22,8 +22,7 @@ std::string offered_formats(const libcamera::StreamFormats& formats) {
   return fmt::format("{}", fmt::join(offers, "; "));
 }
 
-}  // namespace
-
+/// libcamera uses the names of DRM, in which BGR888 has the byte order of our rgb24.
 libcamera::PixelFormat libcamera_format(PixelFormat format) {
   switch (format) {
     case PixelFormat::kRgb24:
@@ -48,6 +47,8 @@ libcamera::PixelFormat libcamera_format(PixelFormat format) {
   assert(false);
   return {};
 }
+
+}  // namespace
 
 YuvEncoding yuv_encoding(const libcamera::StreamConfiguration& stream) {
   if (!stream.colorSpace) return {};

@@ -20,9 +20,6 @@ struct StreamLayout {
   YuvEncoding yuv;
 };
 
-/// libcamera uses the names of DRM, in which BGR888 has the byte order of our rgb24.
-libcamera::PixelFormat libcamera_format(PixelFormat format);
-
 /// Returns BT.601 with limited range if libcamera does not know the colour space.
 YuvEncoding yuv_encoding(const libcamera::StreamConfiguration& stream);
 

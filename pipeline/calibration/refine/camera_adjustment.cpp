@@ -1,14 +1,6 @@
 #include "pipeline/calibration/refine/camera_adjustment.h"
 
-#include <Eigen/Geometry>
-
 namespace bevloc {
-
-Eigen::Matrix3d rotation_by(const Eigen::Vector3d& vector) {
-  const double angle = vector.norm();
-  if (angle == 0.0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
-}
 
 CameraModel adjusted(const CameraModel& camera, const CameraAdjustment& by) {
   CameraModel result = camera;

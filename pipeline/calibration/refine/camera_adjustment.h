@@ -45,9 +45,6 @@ inline constexpr std::array<CameraParameterInfo, kCameraParameters> kCameraParam
 
 using CameraAdjustment = Eigen::Matrix<double, kCameraParameters, 1>;
 
-/// The rotation by a vector of angle times axis.
-Eigen::Matrix3d rotation_by(const Eigen::Vector3d& vector);
-
 /// The camera with rotation, translation and focal length changed.
 CameraModel adjusted(const CameraModel& camera, const CameraAdjustment& by);
 

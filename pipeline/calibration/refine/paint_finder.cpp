@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kStep_px = 0.5;  // between two samples of a profile
 constexpr double kThinnest_px = 1.0;
+constexpr double kSightingSpacing_px = 6.0;  // least distance of two sightings of one element
+constexpr size_t kMostSightings = 120;       // per image; more are thinned out evenly
 constexpr double kPaint_m = 0.12;
 constexpr double kNarrowest_m = 0.06;
 constexpr double kWidest_m = 0.30;
@@ -199,10 +201,9 @@ void find_steps(const std::vector<Edge>& edges, double reach_px, PaintSighting& 
 
 std::vector<PaintSighting> find_paint(const GreyImage& image, const CameraModel& camera,
                                       const Se2& vehicle_from_map,
-                                      std::span<const PaintPoint> points,
-                                      const PaintSearch& search) {
+                                      std::span<const PaintPoint> points, double reach_px) {
   const GroundView view(camera, vehicle_from_map);
-  ProfileReader reader(image, search.reach_px);
+  ProfileReader reader(image, reach_px);
   std::vector<PaintSighting> sightings;
   std::vector<PaintKind> kinds;
   uint32_t last_element = std::numeric_limits<uint32_t>::max();
@@ -213,20 +214,20 @@ std::vector<PaintSighting> find_paint(const GreyImage& image, const CameraModel&
     }
     const bool near_last =
         last_element == point.element && !sightings.empty() &&
-        (sighting->predicted_px - sightings.back().predicted_px).norm() < search.spacing_px;
+        (sighting->predicted_px - sightings.back().predicted_px).norm() < kSightingSpacing_px;
     if (near_last) continue;
     last_element = point.element;
     sightings.push_back(*sighting);
     kinds.push_back(point.kind);
   }
-  const size_t every = 1 + sightings.size() / static_cast<size_t>(search.most_sightings);
+  const size_t every = 1 + sightings.size() / kMostSightings;
   std::vector<PaintSighting> result;
   for (size_t i = 0; i < sightings.size(); i += every) {
     if (!reader.read(sightings[i])) continue;
     if (kinds[i] == PaintKind::kStripe) {
-      find_stripes(reader, search.reach_px, sightings[i]);
+      find_stripes(reader, reach_px, sightings[i]);
     } else {
-      find_steps(reader.edges(), search.reach_px, sightings[i]);
+      find_steps(reader.edges(), reach_px, sightings[i]);
     }
     result.push_back(sightings[i]);
   }

@@ -129,11 +129,10 @@ class RigRefiner {
       if (!exposed) continue;
       CameraModel camera = adjusted(rig_.cameras[picture.camera], change);
       camera.vehicle_from_camera = vehicle_from_body * camera.vehicle_from_camera;
-      PaintSearch search;
-      search.reach_px = round.search_rad * camera.intrinsics.fx_px;
+      const double reach_px = round.search_rad * camera.intrinsics.fx_px;
       problem_.add(framesets_, picture.camera, picture.time,
                    round.uses_paint
-                       ? find_paint(picture.image, camera, exposed->inverse(), points_, search)
+                       ? find_paint(picture.image, camera, exposed->inverse(), points_, reach_px)
                        : std::vector<PaintSighting>{});
     }
   }

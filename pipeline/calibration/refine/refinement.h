@@ -29,20 +29,10 @@ struct RefinementOptions {
   // One sigma of the reference poses, and of the body against them.
   double reference_position_m = 0.03;
   double reference_yaw_rad = 0.1 * kPerDegree;
-  /// The errors of the reference poses are correlated over this time.
-  double reference_drift_s = 10.0;
   double body_tilt_rad = 0.4 * kPerDegree;
   double body_lift_m = 0.02;
-  // One sigma of where paint is found: in the image, and on the ground against its line.
-  double image_px = 0.4;
-  double paint_m = 0.01;
   /// One sigma of the place of a whole element of the map, along each axis.
   double map_m = 0.04;
-  // One sigma of tie points: of their pixels, of the height of the ground (of all that a camera
-  // sees, and of each against them), and along the ground.
-  double tie_px = 0.4;
-  double tie_height_m = 0.08;
-  double tie_m = 0.01;
 };
 
 struct CameraRefinement {
@@ -65,7 +55,7 @@ struct RigRefinement {
 };
 
 /// Robust least squares (Levenberg-Marquardt with the weights of Geman and McClure). The unknowns,
-/// each with a Gaussian prior (RefinementOptions, kCameraParameterInfos):
+/// each with a Gaussian prior (RefinementOptions, kCameraParameterInfos, refinement_rows.cpp):
 /// - eight parameters of each camera;
 /// - six of each frameset, which all cameras share: an error of its reference pose, and tilt and
 ///   lift of the body. The error of the reference pose drifts from one frameset to the next (a
@@ -110,15 +100,15 @@ class RefinementProblem {
 
   /// Improves the estimate with the sightings and ties that are at most `gate_rad` times the focal
   /// length from where the estimate has them. The sigma of where they are found is `sigma_scale`
-  /// times that of the options: a large one for a rig that may be far off.
+  /// times the usual one: a large one for a rig that may be far off.
   void solve(double gate_rad, double sigma_scale = 1.0);
 
   /// Sets the error of each frameset's pose and body to the one expected from the mean of the drive
   /// and from the acceleration. A frameset that fitted wrong paint can then leave it.
   void restart_frames();
 
-  /// Solves with the sigma of the options, leaves out doubtful cameras, and sets the change of
-  /// unobservable parameters to 0.
+  /// Solves with the usual sigma, leaves out doubtful cameras, and sets the change of unobservable
+  /// parameters to 0.
   void finish(double gate_rad);
 
   const CameraAdjustment& change(int camera) const { return estimate_.changes[camera]; }

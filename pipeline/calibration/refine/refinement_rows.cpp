@@ -16,6 +16,16 @@ constexpr double kFar = 3.0;
 constexpr double kMeanOfSigma = 0.3;
 /// One sigma of the body's tilt per acceleration, in radians per m/s^2.
 constexpr double kTiltPerAcceleration = 0.01;
+/// The errors of the reference poses are correlated over this time.
+constexpr double kReferenceDrift_s = 10.0;
+// One sigma of where paint is found: in the image, and on the ground against its line.
+constexpr double kPaintSigma_px = 0.4;
+constexpr double kPaintSigma_m = 0.01;
+// One sigma of tie points: of their pixels, of the height of the ground (of all that a camera sees,
+// and of each against them), and along the ground.
+constexpr double kTieSigma_px = 0.4;
+constexpr double kTieHeightSigma_m = 0.08;
+constexpr double kTieSigma_m = 0.01;
 
 /// The root of a sighting's weight by Geman and McClure: 1 on the line, nearly 0 far from it.
 double nearness_of(double residual) {
@@ -93,8 +103,7 @@ void RefinementProblem::visit(const View& view, double gate_rad, const Visitor& 
       continue;
     }
     const double per_px =
-        1.0 /
-        (sigma_scale_ * std::hypot(options_.image_px, options_.paint_m * sighting.pixels_per_m));
+        1.0 / (sigma_scale_ * std::hypot(kPaintSigma_px, kPaintSigma_m * sighting.pixels_per_m));
     const Line line{nearest_px * per_px, per_px, *point};
     visitor(sighting, &line, nearest_px);
   }
@@ -124,9 +133,9 @@ std::optional<RefinementProblem::TieRows> RefinementProblem::linearize(
                                 second_height_m * second->of_height;
   const Eigen::Vector2d apart_px = second->of_pixel.inverse() * apart;
   if (!(apart_px.norm() <= gate_rad * second_view.camera().intrinsics.fx_px)) return std::nullopt;
-  const double px = sigma_scale_ * options_.tie_px;
-  const double floor_m = sigma_scale_ * options_.tie_m;
-  const Eigen::Vector2d of_height = options_.tie_height_m * (first->of_height - second->of_height);
+  const double px = sigma_scale_ * kTieSigma_px;
+  const double floor_m = sigma_scale_ * kTieSigma_m;
+  const Eigen::Vector2d of_height = kTieHeightSigma_m * (first->of_height - second->of_height);
   const Eigen::Matrix2d covariance = px * px *
                                          (first->of_pixel * first->of_pixel.transpose() +
                                           second->of_pixel * second->of_pixel.transpose()) +
@@ -173,8 +182,7 @@ void RefinementProblem::add_frame_prior(size_t k, RefinementSums& sums) const {
   FrameMatrix kept = FrameMatrix::Zero();  // share kept from the frameset before
   if (k > 0) {
     const Frame& before = estimate_.frames[k - 1];
-    const double share =
-        std::exp(-to_seconds(frame.time - before.time) / options_.reference_drift_s);
+    const double share = std::exp(-to_seconds(frame.time - before.time) / kReferenceDrift_s);
     kept(kYawError, kYawError) = share;
     kept.block<2, 2>(kForwardError, kForwardError) =
         share * Eigen::Rotation2Dd(before.reference_yaw_rad - frame.reference_yaw_rad).matrix();
@@ -212,7 +220,7 @@ void RefinementProblem::add_priors(RefinementSums& sums) const {
                kTiltPerAcceleration);
   }
   for (int c = 0; c < kCameraCount; ++c) {
-    add_shared(kFirstHeight + c, estimate_.heights_m[c], options_.tie_height_m);
+    add_shared(kFirstHeight + c, estimate_.heights_m[c], kTieHeightSigma_m);
   }
   for (size_t i = 0; i < estimate_.shifts.size(); ++i) {
     for (int axis = 0; axis < 2; ++axis) {

@@ -33,19 +33,6 @@ CoverBox box_of_ring(const Line3& ring) {
   return {{low.x(), low.y()}, {high.x(), high.y()}};
 }
 
-/// Whether a ray to the east crosses the ring an odd number of times (even-odd rule).
-bool is_in_ring(const Eigen::Vector2d& point, const Line3& ring) {
-  bool inside = false;
-  for (size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-    const Eigen::Vector3d& a = ring[i];
-    const Eigen::Vector3d& b = ring[j];
-    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
-    const double x = a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-    if (point.x() < x) inside = !inside;
-  }
-  return inside;
-}
-
 bool is_in_area(const Eigen::Vector2d& point, const Area& area) {
   return is_in_ring(point, area.outer) &&
          std::ranges::none_of(area.holes,

@@ -110,12 +110,13 @@ std::string_view reason_of(const nlohmann::json::parse_error& error) {
   return text.substr(colon == std::string_view::npos ? 0 : colon + 2, kMostLetters);
 }
 
-}  // namespace
-
+/// The line (from 1) of a byte of a text.
 int line_of_byte(std::string_view text, size_t byte) {
   const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(byte, text.size()));
   return static_cast<int>(std::count(text.begin(), end, '\n')) + 1;
 }
+
+}  // namespace
 
 Result<JsonText> JsonText::parse(std::string_view text, const std::string& file) {
   if (is_too_deep(text)) {

@@ -32,7 +32,4 @@ class JsonText {
   nlohmann::json root_;
 };
 
-/// The line (from 1) of a byte of a text.
-int line_of_byte(std::string_view text, size_t byte);
-
 }  // namespace bevloc

@@ -66,7 +66,7 @@ constexpr std::array kFormats{
     MapFormat{"compact", ".bvm",
               [](std::string_view bytes) { return bytes.starts_with(kMapMagic); }, read_compact},
     MapFormat{"Lanelet2", ".osm", [](std::string_view bytes) { return is_xml_of(bytes, "osm"); },
-              parse_lanelet2_with_report},
+              parse_lanelet2},
     MapFormat{"OpenDRIVE", ".xodr",
               [](std::string_view bytes) { return is_xml_of(bytes, "OpenDRIVE"); },
               parse_opendrive},
@@ -87,10 +87,6 @@ constexpr std::array kFormats{
 };
 
 }  // namespace
-
-std::span<const MapFormat> map_formats() {
-  return kFormats;
-}
 
 Result<const MapFormat*> find_map_format(std::string_view bytes,
                                          const std::filesystem::path& file) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <string_view>
 
 #include "common/result.h"
@@ -19,8 +18,6 @@ struct MapFormat {
   Result<ImportedMap> (*read)(std::string_view bytes, const std::filesystem::path& file,
                               const ImportOptions& options);
 };
-
-std::span<const MapFormat> map_formats();
 
 /// Fails on bytes and an extension that no format knows, and names all formats.
 Result<const MapFormat*> find_map_format(std::string_view bytes, const std::filesystem::path& file);

@@ -38,7 +38,7 @@ class OdometryCheckTest : public testing::Test {
     return refused;
   }
 
-  OdometryCheck check_{OdometryLimits{}};
+  OdometryCheck check_{kWheelTrack_m};
   Time now_{seconds(100)};
 };
 
@@ -50,8 +50,7 @@ TEST_F(OdometryCheckTest, WheelsThatContradictTheYawRateAreRefused) {
                         {now_, 0.0, 20 * kmh, 0.0},
                         {now_, 1.3 * 15.0, 15.0, 0.0}};
   for (const Wheels& sample : bad) {
-    EXPECT_EQ(OdometryCheck(OdometryLimits{}).judge(sample),
-              OdometryVerdict::kWheelsContradictYawRate)
+    EXPECT_EQ(OdometryCheck(kWheelTrack_m).judge(sample), OdometryVerdict::kWheelsContradictYawRate)
         << sample.left_mps << " and " << sample.right_mps;
   }
 }
@@ -94,7 +93,7 @@ TEST_F(OdometryCheckTest, WornTyresAndAnotherTrackArePlausible) {
       const double yaw_rate_radps =
           std::min(0.5, 8.0 / std::max(speed_mps, 1.0)) * std::min(1.0, speed_mps / 5.0);
       const double half_mps = 0.5 * track_m * yaw_rate_radps;
-      EXPECT_EQ(OdometryCheck(OdometryLimits{})
+      EXPECT_EQ(OdometryCheck(kWheelTrack_m)
                     .judge({now_, 1.01 * (speed_mps - half_mps), 0.99 * (speed_mps + half_mps),
                             yaw_rate_radps}),
                 OdometryVerdict::kPlausible)
@@ -113,7 +112,7 @@ TEST_F(OdometryCheckTest, BothWheelsSpinningAreRefusedUntilTheyGrip) {
 TEST_F(OdometryCheckTest, WheelsThatGainSpeedWithinATenthOfASecondAreRefused) {
   for (const double speed_mps : {5.0, 10.0, 25.0}) {
     for (const double factor : {1.3, 0.3}) {
-      check_ = OdometryCheck(OdometryLimits{});
+      check_ = OdometryCheck(kWheelTrack_m);
       EXPECT_EQ(drive(speed_mps, 0.0, seconds(2)), 0);
       for (int i = 1; i <= 5; ++i) judge(at(speed_mps * std::lerp(1.0, factor, 0.2 * i), 0.0));
       EXPECT_EQ(drive(factor * speed_mps, 0.0, milliseconds(1500)), 75) << speed_mps;
@@ -144,7 +143,7 @@ TEST_F(OdometryCheckTest, OneWildSampleIsRefusedAlone) {
 
 TEST_F(OdometryCheckTest, ASlowRateIsNoticedWithHysteresis) {
   for (const int interval_ms : {60, 100, 180}) {
-    OdometryCheck check{OdometryLimits{}};
+    OdometryCheck check{kWheelTrack_m};
     const auto run = [&](int every_ms, int samples) {
       int changes = 0;
       bool slow = check.is_slow();

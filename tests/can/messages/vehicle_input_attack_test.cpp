@@ -44,7 +44,7 @@ class VehicleInputAttackTest : public testing::Test {
   WhyMask why() const { return input_.fault_times().why(now_); }
 
   VehicleEncoder encoder_{BaseIds{}, kOrigin, 1.6};
-  VehicleInput input_{BaseIds{}, kOrigin};
+  VehicleInput input_{BaseIds{}, kOrigin, 1.6};
   Time now_ = kNow;
 };
 

@@ -39,7 +39,7 @@ class VehicleInputTest : public testing::Test {
   }
 
   VehicleEncoder encoder_{BaseIds{}, kOrigin, kTrack_m};
-  VehicleInput input_{BaseIds{}, kOrigin};
+  VehicleInput input_{BaseIds{}, kOrigin, kTrack_m};
 };
 
 TEST_F(VehicleInputTest, OdometryRoundTrips) {
@@ -159,10 +159,10 @@ TEST_F(VehicleInputTest, AfterALossTheNextSampleIsUsedAndTheLossCounted) {
 TEST_F(VehicleInputTest, UsesTheConfiguredBaseIds) {
   const BaseIds base{.localizer = 0x600, .vehicle = 0x210};
   VehicleEncoder encoder(base, kOrigin, kTrack_m);
-  VehicleInput input(base, kOrigin);
+  VehicleInput input(base, kOrigin, kTrack_m);
   for (const Frame& frame : encoder.odometry(motion())) input.accept({frame, kNow});
   EXPECT_EQ(input.counters().odometry_samples, 1u);
-  EXPECT_EQ(VehicleInput::accepted_ids(base),
+  EXPECT_EQ(VehicleInput::accepted_ids(base, false),
             (std::vector<uint32_t>{0x210, 0x211, 0x212, 0x213, 0x214}));
 }
 

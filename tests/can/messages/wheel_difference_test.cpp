@@ -31,7 +31,7 @@ class WheelDifferenceTest : public testing::Test {
     return contradicting;
   }
 
-  WheelDifference difference_{WheelDifferenceLimits{}};
+  WheelDifference difference_;
   Time now_{seconds(100)};
   double true_track_m_ = kNominalTrack_m;
   double radius_share_ = 0.0;

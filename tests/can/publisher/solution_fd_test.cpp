@@ -71,9 +71,9 @@ TEST(SolutionFd, SplittingReturnsTheJoinedFrames) {
   const BaseIds base;
   PoseReport report = report_with_reason();
   GeoReference geo({49.0, 8.4});
-  const LocalizerStatus status = status_to_send(report, {}, kNow);
+  const LocalizerStatus status = status_to_send(report, kNow);
   const Frame first = status_frame(status, base);
-  const SolutionFrames frames = solution_frames(report, status, {}, geo, base, kNow);
+  const SolutionFrames frames = solution_frames(report, status, geo, base, kNow);
   const Frame identity = identity_frame({.model = 0xDEADBEEF}, 2, base);
   const Frame joined = joined_solution(first, frames, identity, base);
   EXPECT_EQ(part_of_solution(joined, 0, base), first);
@@ -85,7 +85,7 @@ TEST(SolutionFd, SplittingReturnsTheJoinedFrames) {
 
 TEST(SolutionFd, APublisherListsTheIdentifiersThatItSends) {
   for (const FrameFormat format : {FrameFormat::kClassic, FrameFormat::kFd}) {
-    const auto ids = PosePublisher::sent_ids(BaseIds{}, format);
+    const auto ids = PosePublisher::sent_ids(BaseIds{}, format, false, false);
     const auto frames = published(format, report_with_reason());
     EXPECT_EQ(ids.size(), frames.size());
     for (const uint32_t id : ids) EXPECT_TRUE(frames.contains(id)) << id;

@@ -29,7 +29,7 @@ VehicleBinding binding() {
 }
 
 OdometrySample sample_of(double speed_mps, bool reverse, double yaw_rate_radps, bool right) {
-  DbcVehicleInput input(binding(), {}, {49.0, 8.4}, {});
+  DbcVehicleInput input(binding(), {}, {49.0, 8.4}, 1.6);
   Frame frame{.id = 16, .length = 8};
   const std::span<uint8_t> bytes(frame.data.data(), frame.length);
   insert_physical(kSpeed, speed_mps, bytes);
@@ -70,7 +70,7 @@ TEST(DbcVehicleInputTest, ADirectionThatIsNotAvailableGivesNoSample) {
   for (const VehicleBinding& bound : {with_gear, with_direction}) {
     for (const auto& [gear, is_available] :
          {std::pair(0, true), {1, true}, {9, false}, {15, false}}) {
-      DbcVehicleInput input(bound, {}, {49.0, 8.4}, {});
+      DbcVehicleInput input(bound, {}, {49.0, 8.4}, 1.6);
       Frame frame{.id = 16, .length = 8};
       insert_bits(kGear, static_cast<uint64_t>(gear), {frame.data.data(), frame.length});
       for (int cycle = 1; cycle <= 50; ++cycle) {
@@ -87,7 +87,7 @@ TEST(DbcVehicleInputTest, OdometryWithoutOneOfItsMessagesIsCounted) {
   apart.messages.push_back(apart.messages[0]);
   apart.messages[1].id = 17;
   apart.signals[1].message = 1;
-  DbcVehicleInput input(apart, {}, {49.0, 8.4}, {});
+  DbcVehicleInput input(apart, {}, {49.0, 8.4}, 1.6);
   const auto send = [&](uint32_t id, int cycle) {
     input.accept({{.id = id, .length = 8}, Time(std::chrono::milliseconds(20 * cycle))});
   };
@@ -139,7 +139,7 @@ constexpr int kSettlingCycles = 100;
 /// The vehicle of binding_with_gnss().
 class GnssVehicle {
  public:
-  explicit GnssVehicle(VehicleBinding binding) : input_(std::move(binding), {}, {49.0, 8.4}, {}) {}
+  explicit GnssVehicle(VehicleBinding binding) : input_(std::move(binding), {}, {49.0, 8.4}, 1.6) {}
 
   VehicleSamples send_motion_and_position(Time now) {
     Frame frame{.id = 16, .length = 16};

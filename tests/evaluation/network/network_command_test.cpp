@@ -2,6 +2,7 @@
 #include "evaluation/network/network_command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -188,10 +189,12 @@ TEST_F(NetworkEvaluationTest, ThePriorErrorIsTheCorrectionWithAUniformDistributi
   const SetResult result = evaluate(sim::NuisanceSet::kClean, 2);
   const ReadOut& prior = result.read_outs.front();
   ASSERT_EQ(prior.name, "prior");
+  // There are 21 x 11 x 21 hypotheses.
+  const PerAxis uniform_nll{std::log(21.0), std::log(11.0), std::log(21.0)};
   for (size_t i = 0; i < errors.size(); ++i) {
     for (size_t axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(prior.outcomes[i].error[axis], errors[i][axis], 1e-9);
-      EXPECT_NEAR(prior.outcomes[i].nll[axis], uniform_nll({})[axis], 1e-6);
+      EXPECT_NEAR(prior.outcomes[i].nll[axis], uniform_nll[axis], 1e-6);
     }
   }
 }

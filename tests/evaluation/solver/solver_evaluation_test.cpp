@@ -108,12 +108,6 @@ TEST(SolverScore, MarksMeasuresThatAMethodLacks) {
   EXPECT_TRUE(nlohmann::json::parse(json_of(summary).dump())["nll"][2].is_null());
 }
 
-TEST(SolverScore, HasTheLikelihoodOfAUniformDistribution) {
-  EXPECT_THAT(uniform_nll({}),
-              ElementsAre(DoubleNear(std::log(21.0), 1e-12), DoubleNear(std::log(11.0), 1e-12),
-                          DoubleNear(std::log(21.0), 1e-12)));
-}
-
 TEST(SolverCases, ContainThePapersRows) {
   EXPECT_EQ(variant_cases().size(), static_cast<size_t>(kSolverKinds));
   std::vector<SolverCase> all = variant_cases();

@@ -125,7 +125,7 @@ TEST_F(ConfigTest, EverySectionIsRead) {
   EXPECT_EQ(config->can.variant, can::FrameFormat::kFd);
   EXPECT_EQ(config->can.base_ids.localizer, 0x600U);
   EXPECT_EQ(config->can.base_ids.vehicle, 0x300U);
-  EXPECT_DOUBLE_EQ(config->can.odometry.rear_track_m, 1.75);
+  EXPECT_DOUBLE_EQ(config->can.rear_track_m, 1.75);
   ASSERT_TRUE(config->can.secoc);
   EXPECT_EQ(config->can.secoc->key_file.filename(), "secoc.key");
   EXPECT_EQ(config->can.secoc->starts_file, "/var/lib/bevloc/starts");

@@ -206,7 +206,7 @@ TEST(HealthTest, APoseThatThePublisherHoldsTooOldIsLost) {
   health.update(healthy());
   health.update(healthy());
   HealthInputs inputs = healthy();
-  inputs.match_age = can::ReportLimits().max_capture_age;
+  inputs.match_age = can::kMaxCaptureAge;
   inputs.correction_age = inputs.match_age;
   health.update(inputs);
   EXPECT_EQ(health.state(), HealthState::kDegraded);

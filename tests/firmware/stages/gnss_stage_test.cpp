@@ -147,7 +147,7 @@ TEST(VehicleInputStageTest, DropsPositionsOfTheBusWithGpsd) {
     const auto localizer = wire.connect();
     VehicleQueue samples(8);
     VehicleInputStage stage(
-        *localizer, std::make_unique<can::VehicleInput>(can::BaseIds{}, kMapOrigin), samples);
+        *localizer, std::make_unique<can::VehicleInput>(can::BaseIds{}, kMapOrigin, 1.6), samples);
     if (with_gpsd) stage.ignore_gnss();
     can::VehicleEncoder encoder(can::BaseIds{}, kMapOrigin, 1.6);
     for (int i = 1; i <= 5; ++i) {

@@ -57,19 +57,24 @@ TEST_F(ErrorLogTest, LogsEachCauseOfItsOwn) {
   snapshot_.cameras[2].driver.damaged = 1;
   snapshot_.cameras[3].synchronizer.late = 1;
   snapshot_.vehicle_input.repeated = 1;
+  snapshot_.vehicle_input.slow_odometry = 1;
+  snapshot_.vehicle_input.contradicting_wheels = 1;
+  snapshot_.vehicle_input.sharp_turns = 1;
   snapshot_.estimation.odometry[static_cast<size_t>(TrackerUpdate::kImplausible)] = 1;
   snapshot_.estimation.gnss[static_cast<size_t>(TrackerUpdate::kNotFinite)] = 1;
   snapshot_.bus.receive_dropped = 1;
   snapshot_.queue_drops = {.samples = 1, .reports = 1, .predictions = 1};
   note();
   note();
-  EXPECT_EQ(lines(), 10);
+  EXPECT_EQ(lines(), 13);
   for (const char* text :
        {"camera front: unreadable image", "camera front_right: unreadable image",
         "camera front_right: damaged frame", "camera back_left: frame came after its frameset",
         "CAN in: found a repeated counter", "tracker: odometry refused: beyond",
         "tracker: GNSS refused: not a number", "CAN in: frames lost",
-        "samples of odometry or GNSS dropped", "reports of vision dropped"}) {
+        "CAN in: found odometry less often", "CAN in: found wheel speeds that contradict",
+        "CAN in: found a change of odometry", "samples of odometry or GNSS dropped",
+        "reports of vision dropped"}) {
     EXPECT_THAT(log_.text(), HasSubstr(text));
   }
 }

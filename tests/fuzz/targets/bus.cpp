@@ -76,7 +76,7 @@ void check_round_trip(const can::CandumpEntry& entry) {
 }  // namespace
 
 void run_can_frames(Bytes bytes) {
-  can::VehicleInput input({}, {49.0, 8.4});
+  can::VehicleInput input({}, {49.0, 8.4}, 1.6);
   can::ControllerMonitor monitor;
   FrameReader reader;
   Source source(bytes);

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "common/crc32.h"
+#include "pipeline/map/formats/map_format.h"
 #include "pipeline/map/map_binary.h"
 #include "pipeline/map/map_check.h"
-#include "pipeline/map/map_loader.h"
 #include "pipeline/map/rasterizer.h"
 #include "pipeline/map/tiles/tile_codec.h"
 #include "tests/fuzz/targets.h"
@@ -47,27 +47,28 @@ void use(const HdMap& map) {
   expect(encode_map(*tiled) == encode_map(*again), "another map when stored in tiles");
 }
 
+void use_parsed(std::string_view bytes, const char* file) {
+  const auto imported = parse_imported(bytes, file, {});
+  if (imported) use(imported->map);
+}
+
 }  // namespace
 
 void run_bvm(Bytes bytes) {
   const std::string_view text = text_of(bytes);
-  const auto map = parse_map(text.starts_with(kMapMagic) ? text : framed(text), "fuzz.bvm");
-  if (map) use(*map);
+  use_parsed(text.starts_with(kMapMagic) ? text : framed(text), "fuzz.bvm");
 }
 
 void run_osm(Bytes bytes) {
-  const auto map = parse_map(text_of(bytes), "fuzz.osm");
-  if (map) use(*map);
+  use_parsed(text_of(bytes), "fuzz.osm");
 }
 
 void run_xodr(Bytes bytes) {
-  const auto map = parse_map(text_of(bytes), "fuzz.xodr");
-  if (map) use(*map);
+  use_parsed(text_of(bytes), "fuzz.xodr");
 }
 
 void run_map_json(Bytes bytes) {
-  const auto map = parse_map(text_of(bytes), "fuzz.geojson");
-  if (map) use(*map);
+  use_parsed(text_of(bytes), "fuzz.geojson");
 }
 
 }  // namespace bevloc::fuzz

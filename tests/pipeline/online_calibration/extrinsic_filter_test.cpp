@@ -18,7 +18,7 @@ struct Learned {
 Learned learn(const ExtrinsicErrors& errors, int matches = 25) {
   DemoCells cells;
   ExtrinsicSums sums(kFeatureGrid, DemoCells::kChannels);
-  ExtrinsicFilter filter(cells.rig(), {});
+  ExtrinsicFilter filter(cells.rig());
   ExtrinsicInformation information;
   for (int i = 0; i < matches; ++i) {
     const ExtrinsicErrors used = filter.errors();
@@ -52,7 +52,7 @@ TEST(ExtrinsicFilter, FindsNothingWhereNothingIsWrong) {
 TEST(ExtrinsicFilter, SigmasFallWithEachMatchAndGrowWithTime) {
   EXPECT_LT(learn(ExtrinsicErrors::Zero(), 20).sigmas(0),
             learn(ExtrinsicErrors::Zero(), 5).sigmas(0));
-  ExtrinsicFilter filter(demo_network_rig(), {});
+  ExtrinsicFilter filter(demo_network_rig());
   const double before = filter.covariance()(0, 0);
   filter.update({}, ExtrinsicErrors::Zero(), 3600.0);
   EXPECT_GT(filter.covariance()(0, 0), before);
@@ -60,7 +60,7 @@ TEST(ExtrinsicFilter, SigmasFallWithEachMatchAndGrowWithTime) {
 
 TEST(ExtrinsicFilter, RestoresWhatIsPossibleOnly) {
   const Learned learned = learn(error_of(1, 0, radians(0.4)));
-  ExtrinsicFilter filter(demo_network_rig(), {});
+  ExtrinsicFilter filter(demo_network_rig());
   const ExtrinsicCovariance covariance = ExtrinsicCovariance::Identity() * 1e-6;
   ExtrinsicErrors broken = learned.errors;
   broken(3) = std::numeric_limits<double>::quiet_NaN();

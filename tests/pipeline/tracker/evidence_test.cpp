@@ -76,11 +76,10 @@ TEST(EvidenceTest, WidensAnAxisWithALowScore) {
 }
 
 TEST(EvidenceTest, TheGrowthFollowsTheScoreUpToALimit) {
-  const EvidenceMonitor monitor;
-  EXPECT_EQ(monitor.growth_of(0.3), 1.0);
-  EXPECT_NEAR(monitor.growth_of(0.06), 2.0, 1e-12);
-  EXPECT_EQ(monitor.growth_of(0.0), EvidenceLimits().max_growth);
-  EXPECT_EQ(monitor.growth_of(-0.2), EvidenceLimits().max_growth);
+  EXPECT_EQ(EvidenceMonitor::growth_of(0.3), 1.0);
+  EXPECT_NEAR(EvidenceMonitor::growth_of(0.06), 2.0, 1e-12);
+  EXPECT_EQ(EvidenceMonitor::growth_of(0.0), EvidenceMonitor::kMaxGrowth);
+  EXPECT_EQ(EvidenceMonitor::growth_of(-0.2), EvidenceMonitor::kMaxGrowth);
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ TEST(SurveyedMap, ShowsTheDashesOfATown) {
       ++unpainted;
       continue;
     }
-    dashed_m += length_m(element.points);
+    dashed_m += polyline_length(element.points);
     for (const Dash& dash : dashes[i]) painted_m += dash.to_m - dash.from_m;
   }
   ASSERT_GT(dividers, 5);

@@ -58,7 +58,7 @@ TEST(MapHabits, DividersHaveAGap) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     const auto lines = dividers({.broken_divider = 1.0}, seed);
     double drawn_m = 0.0;
-    for (const Polyline& line : lines) drawn_m += length_m(line);
+    for (const Polyline& line : lines) drawn_m += polyline_length(line);
     EXPECT_LE(drawn_m, kLength_m - 4.9) << "half of the shortest gap, at an end";
     EXPECT_GE(drawn_m, kLength_m - 43.0);
   }

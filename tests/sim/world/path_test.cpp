@@ -43,7 +43,7 @@ TEST(Path, ParallelOfAStraightHasTwoPoints) {
   const Path path({{0.0, 0.0}, {3.0, 4.0}, {30.0, 40.0}});
   const Polyline line = path.parallel(5.0, 45.0, -2.0);
   ASSERT_EQ(line.size(), 2U);
-  EXPECT_NEAR(length_m(line), 40.0, 1e-9);
+  EXPECT_NEAR(polyline_length(line), 40.0, 1e-9);
 }
 
 TEST(SmoothTurn, RoundsACornerWithACircle) {

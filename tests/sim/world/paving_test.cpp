@@ -31,7 +31,7 @@ HdMap with_boundary(double y) {
 
 bool is_paved(const HdMap& map, const Eigen::Vector2d& point) {
   for (const Ring& ring : paved_rings(map)) {
-    if (contains(ring, point)) return true;
+    if (is_in_ring(point, ring)) return true;
   }
   return false;
 }

@@ -162,7 +162,7 @@ TEST(WorldGenerator, SeedsMakeDifferentTowns) {
   std::set<double> sizes;
   for (const uint64_t base : {uint64_t{0}, kFirstTrainingSeed}) {
     for (uint64_t seed = base; seed < base + 10; ++seed) {
-      sizes.insert(length_m(generate_world(seed).map.elements.front().points));
+      sizes.insert(polyline_length(generate_world(seed).map.elements.front().points));
     }
   }
   EXPECT_GT(sizes.size(), 18U);

@@ -139,9 +139,9 @@ void take_over(const LaneSection& before, LaneSection& section) {
 
 }  // namespace
 
-double value_at(const Cubics& cubics, double s_m, double fallback) {
+double value_at(const Cubics& cubics, double s_m) {
   const auto next = std::ranges::upper_bound(cubics, s_m, {}, &Cubic::start_m);
-  return next == cubics.begin() ? fallback : std::prev(next)->at(s_m);
+  return next == cubics.begin() ? 0.0 : std::prev(next)->at(s_m);
 }
 
 void place_knots(Geometry& geometry) {

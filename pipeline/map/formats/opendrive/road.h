@@ -29,8 +29,8 @@ struct Cubic {
 /// Cubics in the order of their starts; each is valid up to the next.
 using Cubics = std::vector<Cubic>;
 
-/// The value at s, or `fallback` if no cubic begins at or before s.
-double value_at(const Cubics& cubics, double s_m, double fallback = 0.0);
+/// The value at s, or 0 if no cubic begins at or before s.
+double value_at(const Cubics& cubics, double s_m);
 
 /// One piece of the reference line. Lengths are in m, angles in rad, and curvatures in 1/m.
 struct Geometry {

@@ -54,9 +54,10 @@ CameraModel front_camera() {
 
 std::vector<PaintSighting> sightings_in(const GreyImage& image, const CameraModel& camera,
                                         const HdMap& map) {
+  constexpr double kReach_px = 16.0;
   std::vector<PaintPoint> points;
   find_paint_points(MapIndex(map), {}, 25.0, points);
-  return find_paint(image, camera, {}, points, {});
+  return find_paint(image, camera, {}, points, kReach_px);
 }
 
 TEST(FindPaintPoints, TakesDividersAndTheLongSidesOfCrossings) {

@@ -1,0 +1,41 @@
+#include "evaluation/campaign/campaign_inputs.h"
+
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "common/option_checks.h"
+#include "evaluation/choice_option.h"
+#include "evaluation/town_seeds.h"
+
+namespace bevloc::evaluation {
+
+void CampaignInputs::declare(CLI::App& command) {
+  add_choice(command, "--level", options.level,
+             {{"stage", Level::kStage}, {"pictures", Level::kPictures}},
+             "stage: the estimation stage with a matcher whose errors were measured; pictures: the "
+             "whole appliance");
+  command.add_option("--first-seed", options.first_seed, "The first seed")
+      ->check(whole_number())
+      ->capture_default_str();
+  command.add_option("--duration", options.duration_s, "Length of each drive, seconds")
+      ->check(number_between(5.0, 1e6))
+      ->capture_default_str();
+  command.add_option("--config", config, "Configuration with mock cameras")->capture_default_str();
+  command.add_option("--matches", table, "Measured matches for --level stage")
+      ->capture_default_str();
+}
+
+Result<LoadedCampaign> CampaignInputs::load() const {
+  if (Status towns = check_town_seeds("--first-seed", options.first_seed, options.seeds); !towns) {
+    return tl::unexpected(towns.error());
+  }
+  spdlog::set_level(spdlog::level::err);
+  auto chosen = modes_named(modes, options.level);
+  if (!chosen) return tl::unexpected(chosen.error());
+  auto campaign = Campaign::create(config, table, options);
+  if (!campaign) return tl::unexpected(campaign.error());
+  return LoadedCampaign{std::move(*campaign), std::move(*chosen)};
+}
+
+}  // namespace bevloc::evaluation
