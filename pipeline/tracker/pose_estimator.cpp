@@ -233,6 +233,7 @@ void PoseEstimator::restart() {
   arbiter_.reset();
   evidence_.reset();
   start_confirmation_.reset();
+  pose_valid_ = false;
   trusted_ = false;
   gnss_refused_in_a_row_ = 0;
   match_passed_.reset();

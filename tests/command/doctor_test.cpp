@@ -216,7 +216,8 @@ TEST_F(DoctorTest, LooksForTheConfiguredGpioLines) {
   EXPECT_EQ(findings[1].level, Level::kProblem) << "a usable chip is not that of the fault line";
   EXPECT_THAT(findings[1].found, HasSubstr("expander"));
   machine_.permitted = false;
-  EXPECT_THAT(check_devices(machine_, config).front().fix, StartsWith("bevloc udev-rules --config"));
+  EXPECT_THAT(check_devices(machine_, config).front().fix,
+              StartsWith("bevloc udev-rules --config"));
 }
 
 TEST_F(DoctorTest, JudgesMemoryDiskAndClock) {

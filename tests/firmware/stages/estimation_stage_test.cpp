@@ -284,6 +284,7 @@ TEST_F(EstimationStageTest, ReportsAllCamerasMissingWithoutFramesets) {
 TEST_F(EstimationStageTest, SlowFramesetsAreNotMissingCameras) {
   run(milliseconds(5000));
   report_period_ = milliseconds(400);
+  run(milliseconds(1000));
   for (int i = 0; i < 500; ++i) {
     run(milliseconds(10));
     ASSERT_EQ(stage_.counters().cameras, 0b111111U) << i;
