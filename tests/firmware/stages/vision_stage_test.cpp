@@ -236,6 +236,9 @@ TEST_F(VisionStageFrozenTest, MatchesNothingWithADamagedNetwork) {
   ASSERT_TRUE(write_file(path, bytes));
   localizer_ = Localizer::create(sim::nominal_rig(), map_index_, path.string(), {}).value();
   stage_.emplace(*localizer_, VisionConfig{}, frames_, predictions_, reports_);
+  const auto early = step();
+  ASSERT_TRUE(early) << "before the first frameset, too";
+  EXPECT_TRUE(early->network_fault);
   push_frameset(Time(milliseconds(900)));
   const auto report = step();
   ASSERT_TRUE(report);
