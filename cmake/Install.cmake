@@ -58,6 +58,5 @@ install(FILES evaluation/campaign/matches.csv
 install(TARGETS bevloc-compliance bevloc_convert_map bevloc_dbc COMPONENT bevloc-dev)
 install(FILES can/bevloc.dbc DESTINATION ${BEVLOC_DATA_DIR} COMPONENT bevloc-dev)
 install(DIRECTORY can/consumer/ DESTINATION ${BEVLOC_DATA_DIR}/consumer COMPONENT bevloc-dev
-        USE_SOURCE_PERMISSIONS
         FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp" PATTERN "*.py" PATTERN "*.c" PATTERN "*.cpp"
         PATTERN "golden*" PATTERN "__pycache__" EXCLUDE)
