@@ -19,12 +19,6 @@ bool is_installed(const std::filesystem::path& program) {
   return access(program.c_str(), X_OK) == 0;
 }
 
-bool has_command(const CLI::App& app, const std::string& word) {
-  return !app.get_subcommands(
-                 [&word](const CLI::App* command) { return command->check_name(word); })
-              .empty();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -32,12 +26,14 @@ int main(int argc, char** argv) {
   bevloc::command::CommandList commands;
   bevloc::command::add_vehicle_commands(app, commands, nullptr);
   const auto simulator = bevloc::folder_of_this_program() / kSimulatorProgram;
-  const bool is_own = argc < 2 || (argv[1][0] != '-' && has_command(app, argv[1]));
+  const bool names_command = argc >= 2 && argv[1][0] != '-';
+  const bool is_own = argc < 2 || (names_command && bevloc::command::has_command(app, argv[1]));
   if (!is_own && is_installed(simulator)) {
     const auto failed = bevloc::replace_process(simulator, {argv + 1, argv + argc});
     std::fprintf(stderr, "bevloc: %s\n", failed.error().message.c_str());
     return bevloc::kBadInput;
   }
-  if (!is_own) std::fputs("bevloc: further commands are in the package bevloc-sim\n", stderr);
+  if (names_command && !is_own)
+    std::fputs("bevloc: further commands are in the package bevloc-sim\n", stderr);
   return commands.run(app, argc, argv);
 }

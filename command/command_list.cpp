@@ -15,15 +15,20 @@ namespace {
 
 /// Returns the message for a first word that is neither a command nor an option.
 std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return std::nullopt;
+  if (argc < 2 || argv[1][0] == '-' || has_command(app, argv[1])) return std::nullopt;
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  if (std::ranges::find(names, argv[1]) != names.end()) return std::nullopt;
   return fmt::format("bevloc: found the command \"{}\", wanted one of: {}\n", printable(argv[1]),
                      fmt::join(names, ", "));
 }
 
 }  // namespace
+
+bool has_command(const CLI::App& app, const std::string& word) {
+  return !app.get_subcommands(
+                 [&word](const CLI::App* command) { return command->check_name(word); })
+              .empty();
+}
 
 int CommandList::run(CLI::App& app, int argc, char** argv) const {
   if (const auto message = unknown_command(app, argc, argv)) {

@@ -21,6 +21,9 @@ enum class Verdict : uint8_t {
   kBad = 1,  ///< the judged thing is not good enough
 };
 
+/// Whether the program has a command of this name.
+bool has_command(const CLI::App& app, const std::string& word);
+
 /// Holds the commands and runs the one that the command line names. A command is a class with
 ///
 ///     void declare(CLI::App& parent);       // or more parents; options, help, examples

@@ -76,9 +76,14 @@ bool is_gone(int error) {
   return error == ENODEV || error == ENXIO;
 }
 
-bool carries_fd(int descriptor, const std::string& interface) {
+ifreq request_for(const std::string& interface) {
   ifreq request{};
   interface.copy(request.ifr_name, sizeof(request.ifr_name) - 1);
+  return request;
+}
+
+bool carries_fd(int descriptor, const std::string& interface) {
+  ifreq request = request_for(interface);
   return ioctl(descriptor, SIOCGIFMTU, &request) == 0 && request.ifr_mtu >= int{CANFD_MTU};
 }
 
@@ -147,8 +152,7 @@ bool SocketCanLink::repair() {
 }
 
 bool SocketCanLink::is_up() const {
-  ifreq request{};
-  interface_.copy(request.ifr_name, sizeof(request.ifr_name) - 1);
+  ifreq request = request_for(interface_);
   return ioctl(descriptor_, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
 }
 
