@@ -10,7 +10,7 @@
 #include "common/result.h"
 #include "drivers/mock/picture_cache.h"
 #include "evaluation/campaign/match_table.h"
-#include "evaluation/campaign/mode.h"
+#include "evaluation/campaign/modes/mode.h"
 #include "evaluation/campaign/run_outcome.h"
 #include "evaluation/campaign/stage_run.h"
 #include "pipeline/calibration/rig.h"

@@ -4,9 +4,9 @@
 //   campaign_command  options of `bevloc campaign`; script/campaign runs it in parallel
 //   campaign_inputs   what it shares with `bevloc eval integrity`
 //   campaign          modes x seeds
-//   mode, mode_table  the failure modes: one table
+//   modes             the failure modes, in lists by the input that fails
 //   stage_run         one run of the estimation stage with the modelled matcher (--level stage)
-//   modelled_vision   in place of cameras and network; match_fault.h: its faults
+//   modelled_vision   in place of cameras and network; modes/match_fault.h: its faults
 //   match_model       replays measured matches; match_table, match_recorder: how they are measured
 //   cycle_reader      reads every pose from the bus and compares it with the truth
 //   run_outcome       what a run shows

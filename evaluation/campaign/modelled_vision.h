@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "drivers/camera/stamp_steps.h"
-#include "evaluation/campaign/match_fault.h"
 #include "evaluation/campaign/match_model.h"
+#include "evaluation/campaign/modes/fault_time.h"
+#include "evaluation/campaign/modes/match_fault.h"
 #include "firmware/stages/messages.h"
 #include "firmware/stages/prior_source.h"
 #include "sim/vehicle/drive.h"

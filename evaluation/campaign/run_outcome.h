@@ -11,14 +11,9 @@
 #include <Eigen/Core>
 
 #include "evaluation/campaign/cycle_reader.h"
+#include "evaluation/campaign/modes/fault_time.h"
 
 namespace bevloc::evaluation {
-
-/// When the fault of a run is present, in seconds of the drive.
-struct FaultTime {
-  double from_s = 0.0;
-  double until_s = 0.0;  ///< may lie beyond the end of the drive
-};
 
 /// A change of the state or of the reasons.
 struct TimelineEntry {

@@ -7,7 +7,7 @@
 #include "common/result.h"
 #include "evaluation/campaign/cycle_reader.h"
 #include "evaluation/campaign/match_table.h"
-#include "evaluation/campaign/mode.h"
+#include "evaluation/campaign/modes/mode.h"
 #include "evaluation/drive/drive_config.h"
 
 namespace bevloc::evaluation {

@@ -107,9 +107,10 @@ void SimulatedVehicle::send_gnss(Time now) {
   const auto clock_faults = faults_->all(sim::FaultInput::kClock);
   const uint64_t index = reading_index(elapsed_s, clock_faults, sim::GnssSimulator::kPeriod_s);
   if (index < gnss_.count() && !sim::is_in_clock_gap(elapsed_s, clock_faults)) {
-    const auto reading =
-        sim::with_faults(gnss_.reading(index), elapsed_s,
-                         faults_->active(sim::FaultInput::kGnss, elapsed_s), *drive_);
+    const auto reading = sim::reading_with_faults(
+        gnss_, index,
+        sim::in_drive_time(faults_->active(sim::FaultInput::kGnss, elapsed_s), clock_faults),
+        *drive_);
     if (reading) {
       const GnssSample sample = sample_of(*reading, now);
       if (own_encoder_) {

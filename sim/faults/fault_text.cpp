@@ -1,12 +1,12 @@
 #include "sim/faults/fault_text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 #include <vector>
 
 #include "common/cameras.h"
+#include "common/number_text.h"
 #include "sim/faults/fault_table.h"
 
 namespace bevloc::sim {
@@ -47,13 +47,11 @@ class Words {
 Status take_number(Words& words, std::string_view key, double low, double high, double& number) {
   const auto text = words.take(key);
   if (!text) return {};
-  double read = 0.0;
-  const char* end = text->data() + text->size();
-  const auto [stop, error] = std::from_chars(text->data(), end, read);
-  if (error != std::errc() || stop != end || !(read >= low && read <= high)) {
+  const auto read = parse_number<double>(*text);
+  if (!(read >= low && read <= high)) {
     return fail("{}: found {}, wanted a number, {} to {}", key, *text, low, high);
   }
-  number = read;
+  number = *read;
   return {};
 }
 

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/faults/old_readings.h"
+
 namespace bevloc::sim {
 namespace {
+
+constexpr OldReadingKinds kOldGnss{FaultKind::kGnssStuck, FaultKind::kGnssLate};
 
 /// An offset with parts in the map's directions and in the vehicle's.
 Eigen::Vector2d in_map(const Eigen::Vector2d& east_north, const Eigen::Vector2d& along_across,
@@ -41,11 +45,13 @@ Eigen::Vector2d offset_of(const Fault& fault, double since_s, double time_s, con
 
 }  // namespace
 
-std::optional<GnssReading> with_faults(GnssReading reading, double elapsed_s,
-                                       std::span<const Fault> active, const Drive& drive) {
+std::optional<GnssReading> reading_with_faults(const GnssSimulator& gnss, size_t index,
+                                               std::span<const Fault> active, const Drive& drive) {
+  const double time_s = static_cast<double>(index) * GnssSimulator::kPeriod_s;
+  GnssReading reading = gnss.reading(sent_index(index, GnssSimulator::kPeriod_s, kOldGnss, active));
   const Se2 truth = drive.at(reading.time_s).map_from_vehicle;
   for (const Fault& fault : active) {
-    reading.position_m += offset_of(fault, elapsed_s - fault.from_s, reading.time_s, drive);
+    reading.position_m += offset_of(fault, time_s - fault.from_s, time_s, drive);
     switch (fault.kind) {
       case FaultKind::kGnssOutage:
         return std::nullopt;

@@ -10,10 +10,10 @@
 
 namespace bevloc::sim {
 
-/// The reading that the receiver sends under the `active` faults, or nothing in an outage.
-/// `elapsed_s` is the time in which faults are measured (drive_clock.h), and `drive` gives the
-/// truth that some faults refer to. Faults of other inputs are ignored.
-std::optional<GnssReading> with_faults(GnssReading reading, double elapsed_s,
-                                       std::span<const Fault> active, const Drive& drive);
+/// The reading `index` under the `active` faults, or nothing in an outage. The times of the faults
+/// are those of the drive, and `drive` gives the truth that some faults refer to. Faults of other
+/// inputs are ignored.
+std::optional<GnssReading> reading_with_faults(const GnssSimulator& gnss, size_t index,
+                                               std::span<const Fault> active, const Drive& drive);
 
 }  // namespace bevloc::sim

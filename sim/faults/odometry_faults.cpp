@@ -4,22 +4,14 @@
 #include <cmath>
 
 #include "common/se2.h"
+#include "sim/faults/old_readings.h"
 
 namespace bevloc::sim {
 namespace {
 
 /// Wheels spin up or lock within this time.
 constexpr double kOnset_s = 0.1;
-
-/// The reading that a stuck sensor repeats: the last one before the fault.
-size_t stuck_index(size_t index, std::span<const Fault> active) {
-  for (const Fault& fault : active) {
-    if (fault.kind != FaultKind::kOdometryStuck) continue;
-    const double last = std::floor(fault.from_s / OdometrySimulator::kPeriod_s);
-    index = std::min(index, static_cast<size_t>(std::max(0.0, last)));
-  }
-  return index;
-}
+constexpr OldReadingKinds kOldOdometry{FaultKind::kOdometryStuck, FaultKind::kOdometryLate};
 
 /// Whether a sender with a longer period sends at this index.
 bool is_due(size_t index, double period_ms) {
@@ -78,7 +70,8 @@ void disturb(WheelReading& reading, const Fault& fault, double time_s) {
 std::optional<WheelReading> reading_with_faults(const OdometrySimulator& odometry, size_t index,
                                                 double rear_track_m,
                                                 std::span<const Fault> active) {
-  const OdometryReading sensed = odometry.reading(stuck_index(index, active));
+  const OdometryReading sensed =
+      odometry.reading(sent_index(index, OdometrySimulator::kPeriod_s, kOldOdometry, active));
   const double half_difference_mps =
       0.5 * (rear_track_m * sensed.path_yaw_rate_radps + sensed.wheel_excess_mps);
   WheelReading reading{sensed.speed_mps - half_difference_mps,

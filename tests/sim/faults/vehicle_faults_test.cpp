@@ -20,12 +20,16 @@ class VehicleFaults : public testing::Test {
   const GnssSimulator gnss_{drive_, 5};
   const OdometrySimulator odometry_{drive_, 5};
 
+  GnssReading gnss(const Fault& fault, size_t index) const {
+    const auto reading = reading_with_faults(gnss_, index, std::vector{fault}, drive_);
+    EXPECT_TRUE(reading);
+    return reading.value_or(GnssReading());
+  }
+
   /// The GNSS error in directions of the map, with minus without the fault, at 10 s.
   Eigen::Vector2d gnss_offset(const Fault& fault, double time_s = 10.0) const {
-    const GnssReading good = gnss_.reading(static_cast<size_t>(std::lround(10.0 * time_s)));
-    const auto bad = with_faults(good, good.time_s, std::vector{fault}, drive_);
-    EXPECT_TRUE(bad);
-    return bad->position_m - good.position_m;
+    const auto index = static_cast<size_t>(std::lround(10.0 * time_s));
+    return gnss(fault, index).position_m - gnss_.reading(index).position_m;
   }
 
   /// An index while the vehicle drives.
@@ -52,7 +56,7 @@ class VehicleFaults : public testing::Test {
 
 TEST_F(VehicleFaults, WithoutAFaultNothingChanges) {
   const GnssReading good = gnss_.reading(17);
-  const auto same = with_faults(good, good.time_s, {}, drive_);
+  const auto same = reading_with_faults(gnss_, 17, {}, drive_);
   ASSERT_TRUE(same);
   EXPECT_EQ(same->position_m, good.position_m);
   EXPECT_EQ(same->heading_rad, good.heading_rad);
@@ -102,21 +106,34 @@ TEST_F(VehicleFaults, GnssSigmaNoiseHeadingAndOutage) {
   const Se2 truth = drive_.at(good.time_s).map_from_vehicle;
   Fault sigma = make_fault(FaultKind::kGnssWrongSigma);
   sigma.amounts.factor = 0.1;
-  const auto sure = with_faults(good, good.time_s, std::vector{sigma}, drive_);
-  EXPECT_DOUBLE_EQ(sure->position_sigma_m, 0.1 * good.position_sigma_m);
-  EXPECT_DOUBLE_EQ(sure->heading_sigma_rad, 0.1 * good.heading_sigma_rad);
-  EXPECT_EQ(sure->position_m, good.position_m);
+  const GnssReading sure = gnss(sigma, 100);
+  EXPECT_DOUBLE_EQ(sure.position_sigma_m, 0.1 * good.position_sigma_m);
+  EXPECT_DOUBLE_EQ(sure.heading_sigma_rad, 0.1 * good.heading_sigma_rad);
+  EXPECT_EQ(sure.position_m, good.position_m);
   Fault noise = make_fault(FaultKind::kGnssNoise);
   noise.amounts.factor = 3.0;
-  const auto noisy = with_faults(good, good.time_s, std::vector{noise}, drive_);
-  EXPECT_NEAR((noisy->position_m - truth.translation()).norm(),
+  const GnssReading noisy = gnss(noise, 100);
+  EXPECT_NEAR((noisy.position_m - truth.translation()).norm(),
               3.0 * (good.position_m - truth.translation()).norm(), 1e-9);
-  EXPECT_EQ(noisy->position_sigma_m, good.position_sigma_m);
+  EXPECT_EQ(noisy.position_sigma_m, good.position_sigma_m);
+  EXPECT_FALSE(gnss(make_fault(FaultKind::kGnssNoHeading), 100).has_heading);
   EXPECT_FALSE(
-      with_faults(good, good.time_s, std::vector{make_fault(FaultKind::kGnssNoHeading)}, drive_)
-          ->has_heading);
-  EXPECT_FALSE(
-      with_faults(good, good.time_s, std::vector{make_fault(FaultKind::kGnssOutage)}, drive_));
+      reading_with_faults(gnss_, 100, std::vector{make_fault(FaultKind::kGnssOutage)}, drive_));
+}
+
+TEST_F(VehicleFaults, StuckGnssRepeatsTheFixOfItsFirstMoment) {
+  const Fault stuck = make_fault(FaultKind::kGnssStuck, 10.05);
+  for (const size_t later : {101, 200}) {
+    EXPECT_EQ(gnss(stuck, later).position_m, gnss_.reading(100).position_m);
+    EXPECT_EQ(gnss(stuck, later).heading_rad, gnss_.reading(100).heading_rad);
+  }
+}
+
+TEST_F(VehicleFaults, LateGnssSendsTheFixesOfSomeTimeAgo) {
+  Fault late = make_fault(FaultKind::kGnssLate);
+  late.amounts.delay_ms = 500.0;
+  EXPECT_EQ(gnss(late, 200).position_m, gnss_.reading(195).position_m);
+  EXPECT_EQ(gnss(late, 2).position_m, gnss_.reading(0).position_m) << "nothing older is there";
 }
 
 TEST_F(VehicleFaults, StuckOdometryRepeatsTheValuesOfItsFirstMoment) {
@@ -128,6 +145,15 @@ TEST_F(VehicleFaults, StuckOdometryRepeatsTheValuesOfItsFirstMoment) {
     EXPECT_EQ(odometry(stuck, later).yaw_rate_radps, healthy(index).yaw_rate_radps);
   }
   EXPECT_NE(healthy(index + 100).left_mps, healthy(index).left_mps);
+}
+
+TEST_F(VehicleFaults, LateOdometrySendsTheValuesOfSomeTimeAgo) {
+  const size_t index = driving_index() + 50;
+  Fault late = make_fault(FaultKind::kOdometryLate);
+  late.amounts.delay_ms = 200.0;
+  EXPECT_EQ(odometry(late, index).left_mps, healthy(index - 10).left_mps);
+  EXPECT_EQ(odometry(late, index).yaw_rate_radps, healthy(index - 10).yaw_rate_radps);
+  EXPECT_NE(healthy(index).yaw_rate_radps, healthy(index - 10).yaw_rate_radps);
 }
 
 TEST_F(VehicleFaults, WheelsSlipLockScaleAndReverse) {

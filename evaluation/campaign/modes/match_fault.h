@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "common/se2.h"
-#include "evaluation/campaign/run_outcome.h"
 
 namespace bevloc::evaluation {
 

@@ -1,4 +1,4 @@
-#include "evaluation/campaign/mode.h"
+#include "evaluation/campaign/modes/mode.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-// The failure modes of the campaign: one table.
+// The failure modes of the campaign.
 #pragma once
 
 #include <string_view>
@@ -6,7 +6,8 @@
 
 #include "common/health_state.h"
 #include "common/result.h"
-#include "evaluation/campaign/match_fault.h"
+#include "evaluation/campaign/modes/fault_time.h"
+#include "evaluation/campaign/modes/match_fault.h"
 #include "sim/faults/fault.h"
 
 namespace bevloc::evaluation {
