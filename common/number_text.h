@@ -1,12 +1,33 @@
-// Prepares the text of a number for std::from_chars.
+// Reads numbers from text.
 #pragma once
 
+#include <charconv>
+#include <optional>
 #include <string_view>
+#include <system_error>
+#include <type_traits>
 
 namespace bevloc {
 
-/// Returns the text without white space around it, and without the "+" that std::from_chars does
-/// not know.
+/// The number that the whole text is, as std::from_chars() reads it: without white space and
+/// without
+/// "+". A floating point number may be infinite or NaN. `base` is used for integers only.
+template <typename T>
+std::optional<T> parse_number(std::string_view text, int base = 10) {
+  T value{};
+  const char* const end = text.data() + text.size();
+  std::from_chars_result result{};
+  if constexpr (std::is_integral_v<T>) {
+    result = std::from_chars(text.data(), end, value, base);
+  } else {
+    result = std::from_chars(text.data(), end, value);
+  }
+  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  return value;
+}
+
+/// Returns the text without white space around it, and without the "+" that parse_number() does not
+/// know.
 inline std::string_view trimmed_number(std::string_view text) {
   constexpr std::string_view kSpace = " \t\r\n";
   const size_t first = text.find_first_not_of(kSpace);

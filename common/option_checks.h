@@ -1,17 +1,16 @@
 // Checks of command line options. Their messages say what was found and what was wanted.
 #pragma once
 
-#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/number_text.h"
 #include "common/output_check.h"
 
 namespace bevloc {
@@ -22,10 +21,8 @@ inline constexpr int kBadInput = 2;
 /// Accepts a number from `low` to `high`, but not nan or inf.
 inline CLI::Validator number_between(double low, double high) {
   const auto check = [low, high](const std::string& text) -> std::string {
-    double number = 0.0;
-    const char* const end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, number);
-    if (error == std::errc() && rest == end && number >= low && number <= high) return "";
+    const auto number = parse_number<double>(text);
+    if (number >= low && number <= high) return "";
     return fmt::format("found '{}', wanted a number from {} to {}", text, low, high);
   };
   return {check, fmt::format("{} to {}", low, high), ""};
@@ -36,10 +33,8 @@ inline CLI::Validator whole_number(uint64_t highest = std::numeric_limits<uint64
   const auto check = [highest](const std::string& text) -> std::string {
     const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
     const std::string_view digits = std::string_view(text).substr(hexadecimal ? 2 : 0);
-    uint64_t number = 0;
-    const char* const end = digits.data() + digits.size();
-    const auto [rest, error] = std::from_chars(digits.data(), end, number, hexadecimal ? 16 : 10);
-    if (error == std::errc() && rest == end && number <= highest) return "";
+    const auto number = parse_number<uint64_t>(digits, hexadecimal ? 16 : 10);
+    if (number && *number <= highest) return "";
     return fmt::format("found '{}', wanted a whole number from 0 to {}", text, highest);
   };
   return {check, "", ""};

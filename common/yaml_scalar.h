@@ -2,7 +2,6 @@
 // YamlMap uses it.
 #pragma once
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "common/number_text.h"
 #include "common/strict_yaml.h"
 
 namespace bevloc {
@@ -56,19 +56,13 @@ std::string describe_wanted(const Wanted<T>& wanted) {
 
 template <typename T>
 std::optional<T> number_from(std::string_view text) {
-  T value{};
-  std::from_chars_result result{};
-  const char* end = text.data() + text.size();
   if constexpr (std::is_floating_point_v<T>) {
-    result = std::from_chars(text.data(), end, value);
-    if (!std::isfinite(value)) return std::nullopt;
+    const auto value = parse_number<T>(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
   } else {
-    const bool is_hex = text.starts_with("0x");
     if (text.starts_with("0x-")) return std::nullopt;
-    result = std::from_chars(text.data() + (is_hex ? 2 : 0), end, value, is_hex ? 16 : 10);
+    return text.starts_with("0x") ? parse_number<T>(text.substr(2), 16) : parse_number<T>(text);
   }
-  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
-  return value;
 }
 
 template <typename T>

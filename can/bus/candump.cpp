@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <fstream>
 #include <istream>
 #include <iterator>
 #include <optional>
 #include <span>
+
+#include "common/number_text.h"
 
 namespace bevloc::can {
 namespace {
@@ -20,13 +21,8 @@ constexpr uint32_t kMaxExtendedId = 0x1FFFFFFF;
 /// Reads the whole text as an unsigned number. Returns nothing if it is not one.
 template <typename T>
 std::optional<T> number(std::string_view text, int base) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
-  if (text.empty() || text.front() == '-' || error != std::errc() ||
-      end != text.data() + text.size()) {
-    return std::nullopt;
-  }
-  return value;
+  if (text.starts_with('-')) return std::nullopt;
+  return parse_number<T>(text, base);
 }
 
 bool is_hex(std::string_view text) {

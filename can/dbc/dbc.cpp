@@ -1,11 +1,11 @@
 #include "can/dbc/dbc.h"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include "can/dbc/dbc_reader.h"
 #include "common/files.h"
+#include "common/number_text.h"
 
 namespace bevloc::can {
 namespace {
@@ -85,11 +85,8 @@ const DbcSignal* DbcMessage::multiplexor() const {
 std::optional<double> DbcMessage::cycle_ms() const {
   const auto found = attributes.find("GenMsgCycleTime");
   if (found == attributes.end()) return std::nullopt;
-  double value = 0.0;
-  const std::string& text = found->second;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool good = error == std::errc() && end == text.data() + text.size() && value > 0.0;
-  return good ? std::optional(value) : std::nullopt;
+  const auto value = parse_number<double>(found->second);
+  return value > 0.0 ? value : std::nullopt;
 }
 
 const DbcMessage* Dbc::find(std::string_view message_name) const {

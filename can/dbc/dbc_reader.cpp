@@ -1,11 +1,11 @@
 #include "can/dbc/dbc_reader.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 
 #include "can/bus/frame.h"
+#include "common/number_text.h"
 
 namespace bevloc::can {
 namespace {
@@ -82,22 +82,16 @@ double DbcReader::take_number(std::string_view wanted) {
   const DbcToken token = tokens_.take();
   std::string_view text = token.text;
   if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool good = token.kind == DbcToken::Kind::kWord && error == std::errc() &&
-                    end == text.data() + text.size() && std::isfinite(value);
+  const auto value = parse_number<double>(text);
+  const bool good = token.kind == DbcToken::Kind::kWord && value && std::isfinite(*value);
   if (!good) refuse(token, wanted);
-  return value;
+  return *value;
 }
 
 uint64_t DbcReader::unsigned_of(const DbcToken& token, std::string_view wanted) const {
-  uint64_t value = 0;
-  const char* end_of_text = token.text.data() + token.text.size();
-  const auto [end, error] = std::from_chars(token.text.data(), end_of_text, value);
-  const bool good =
-      token.kind == DbcToken::Kind::kWord && error == std::errc() && end == end_of_text;
-  if (!good) refuse(token, wanted);
-  return value;
+  const auto value = parse_number<uint64_t>(token.text);
+  if (token.kind != DbcToken::Kind::kWord || !value) refuse(token, wanted);
+  return *value;
 }
 
 uint64_t DbcReader::take_unsigned(std::string_view wanted) {
@@ -110,11 +104,9 @@ int64_t DbcReader::take_raw() {
     return static_cast<int64_t>(take_unsigned("a raw value"));
   }
   const DbcToken token = tokens_.take();
-  int64_t value = 0;
-  const char* end_of_text = token.text.data() + token.text.size();
-  const auto [end, error] = std::from_chars(token.text.data(), end_of_text, value);
-  if (error != std::errc() || end != end_of_text) refuse(token, "a raw value");
-  return value;
+  const auto value = parse_number<int64_t>(token.text);
+  if (!value) refuse(token, "a raw value");
+  return *value;
 }
 
 bool DbcReader::next_is_number() const {
@@ -254,13 +246,9 @@ void DbcReader::read_multiplexing(DbcSignal& signal, DbcMessage& message) {
     text.remove_suffix(1);
   }
   if (text.empty()) return;
-  uint64_t value = 0;
-  const char* end_of_text = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data() + 1, end_of_text, value);
-  if (text[0] != 'm' || text.size() < 2 || error != std::errc() || end != end_of_text) {
-    refuse(token, "':', or M or m with a number for multiplexing");
-  }
-  signal.multiplexed_at = {{value, value}};
+  const auto value = parse_number<uint64_t>(std::string_view(text).substr(1));
+  if (text[0] != 'm' || !value) refuse(token, "':', or M or m with a number for multiplexing");
+  signal.multiplexed_at = {{*value, *value}};
   if (signal.is_multiplexor) message.nested_multiplexing = true;
 }
 

@@ -3,11 +3,11 @@
 #include <cerrno>
 #include <charconv>
 #include <string>
-#include <system_error>
 
 #include <sys/stat.h>
 
 #include "common/files.h"
+#include "common/number_text.h"
 #include "common/replace_file.h"
 
 namespace bevloc::can {
@@ -54,16 +54,14 @@ Result<uint32_t> read_start_number(const std::filesystem::path& file) {
   auto content = read_file(file);
   if (!content) return tl::unexpected(content.error());
   const std::string text = without_end_of_line(std::move(*content));
-  const char* end = text.data() + text.size();
-  uint32_t number = 0;
-  const auto read = std::from_chars(text.data(), end, number);
-  if (read.ec != std::errc{} || read.ptr != end || number == UINT32_MAX) {
+  const auto number = parse_number<uint32_t>(text);
+  if (!number || *number == UINT32_MAX) {
     return fail(
         "{}: found '{}', wanted one whole number of starts; write a number larger than every "
         "number before; a smaller one makes the vehicle refuse all messages",
         file.string(), text);
   }
-  return number;
+  return *number;
 }
 
 Result<uint32_t> next_start_number(const std::filesystem::path& file) {

@@ -1,8 +1,9 @@
 #include "drivers/gpio/line_lookup.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
+
+#include "common/number_text.h"
 
 namespace bevloc::drivers {
 namespace {
@@ -31,14 +32,6 @@ Result<size_t> find_chip(const std::vector<GpioChipInfo>& chips, const LineAddre
   return static_cast<size_t>(chip - chips.begin());
 }
 
-std::optional<unsigned> number_in(const std::string& text) {
-  unsigned number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc{} || rest != end) return std::nullopt;
-  return number;
-}
-
 Result<unsigned> find_line_on(const GpioChipInfo& chip, const LineAddress& address) {
   const auto named = std::ranges::find(chip.lines, address.line, &GpioLineInfo::name);
   if (named != chip.lines.end()) {
@@ -48,7 +41,7 @@ Result<unsigned> find_line_on(const GpioChipInfo& chip, const LineAddress& addre
     }
     return static_cast<unsigned>(named - chip.lines.begin());
   }
-  const auto number = number_in(address.line);
+  const auto number = parse_number<unsigned>(address.line);
   if (!number || *number >= chip.lines.size()) {
     return fail("{}: found no such line on {}, wanted a line's name or 0 to {}", to_string(address),
                 chip.name, static_cast<int>(chip.lines.size()) - 1);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <string_view>
 #include <utility>
@@ -13,6 +12,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "common/number_text.h"
 #include "sim/faults/fault_text.h"
 
 namespace bevloc::evaluation {
@@ -138,11 +138,8 @@ std::string FaultServer::clear(const std::string& number, double now_s) {
     faults_->clear(now_s);
     return "";
   }
-  uint32_t wanted = 0;
-  const char* end = number.data() + number.size();
-  const auto [stop, error] = std::from_chars(number.data(), end, wanted);
-  const bool is_number = error == std::errc() && stop == end;
-  if (is_number && faults_->remove(wanted, now_s)) return "";
+  const auto wanted = parse_number<uint32_t>(number);
+  if (wanted && faults_->remove(*wanted, now_s)) return "";
   return fmt::format("{}found {}, wanted the number of a fault (list shows them)", kError, number);
 }
 

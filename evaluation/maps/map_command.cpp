@@ -1,7 +1,6 @@
 #include "evaluation/maps/map_command.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -29,13 +28,8 @@ namespace bevloc::evaluation {
 namespace {
 
 std::optional<double> degrees_from(std::string_view text, double limit_deg) {
-  text = trimmed_number(text);
-  double value_deg = 0.0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, value_deg);
-  const bool is_good =
-      parsed.ec == std::errc() && parsed.ptr == end && std::abs(value_deg) <= limit_deg;
-  return is_good ? std::optional(value_deg) : std::nullopt;
+  const auto value_deg = parse_number<double>(trimmed_number(text));
+  return value_deg && std::abs(*value_deg) <= limit_deg ? value_deg : std::nullopt;
 }
 
 Result<GeoOrigin> origin_from(const std::string& text) {

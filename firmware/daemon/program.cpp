@@ -1,7 +1,6 @@
 #include "firmware/daemon/program.h"
 
 #include <atomic>
-#include <charconv>
 #include <csignal>
 
 #include <fcntl.h>
@@ -9,6 +8,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "common/number_text.h"
 #include "common/option_checks.h"
 #include "common/output.h"
 #include "common/version.h"
@@ -41,12 +41,11 @@ void open_closed_standard_files() {
 void take_live_option(const std::string& port, ProgramOptions& options) {
   options.live = true;
   if (port.empty() || port == "true") return;
-  int number = 0;
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
-  if (error != std::errc() || end != port.data() + port.size() || number < 1 || number > 65535) {
+  const auto number = parse_number<int>(port);
+  if (!number || *number < 1 || *number > 65535) {
     throw CLI::ValidationError("--live", fmt::format("found {}, wanted a port, 1 to 65535", port));
   }
-  options.live_port = number;
+  options.live_port = *number;
 }
 
 }  // namespace

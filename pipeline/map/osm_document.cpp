@@ -1,7 +1,6 @@
 #include "pipeline/map/osm_document.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <unordered_set>
@@ -16,12 +15,7 @@ namespace {
 
 template <typename T>
 std::optional<T> number_from(std::string_view text) {
-  text = trimmed_number(text);
-  T value{};
-  const char* end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
-  return value;
+  return parse_number<T>(trimmed_number(text));
 }
 
 /// Reads the tag `ele` in metres, with or without the unit. Returns nothing for anything else,

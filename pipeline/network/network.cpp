@@ -1,8 +1,8 @@
 #include "pipeline/network/network.h"
 
 #include <algorithm>
-#include <charconv>
 
+#include "common/number_text.h"
 #include "pipeline/network/model/load_error.h"
 #include "pipeline/network/model/lowering.h"
 #include "pipeline/network/model/onnx_reader.h"
@@ -83,14 +83,12 @@ float parameter(const nn::Graph& graph, const std::string& key) {
   const auto entry = graph.metadata.find(key);
   if (entry == graph.metadata.end()) nn::refuse("metadata '{}' is missing", key);
   const std::string& text = entry->second;
-  float number = 0.0F;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  if (!whole || !(number >= kSmallestParameter && number <= kLargestParameter)) {
+  const auto number = parse_number<float>(text);
+  if (!(number >= kSmallestParameter && number <= kLargestParameter)) {
     nn::refuse("metadata '{}' is '{}', wanted a number of {} to {}", key, text, kSmallestParameter,
                kLargestParameter);
   }
-  return number;
+  return *number;
 }
 
 std::string metadata_or_empty(const nn::Graph& graph, const std::string& key) {

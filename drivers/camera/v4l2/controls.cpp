@@ -2,12 +2,13 @@
 
 #include <cctype>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <optional>
 #include <vector>
 
 #include <linux/videodev2.h>
+
+#include "common/number_text.h"
 
 namespace bevloc::drivers::v4l2 {
 namespace {
@@ -29,11 +30,7 @@ std::vector<v4l2_query_ext_ctrl> controls_of(const Device& device) {
 std::optional<uint32_t> id_in(std::string_view name) {
   constexpr int kHexadecimal = 16;
   if (!name.starts_with("0x")) return std::nullopt;
-  uint32_t id = 0;
-  const auto [end, error] =
-      std::from_chars(name.data() + 2, name.data() + name.size(), id, kHexadecimal);
-  if (error != std::errc{} || end != name.data() + name.size()) return std::nullopt;
-  return id;
+  return parse_number<uint32_t>(name.substr(2), kHexadecimal);
 }
 
 const v4l2_query_ext_ctrl* find(const std::vector<v4l2_query_ext_ctrl>& controls,

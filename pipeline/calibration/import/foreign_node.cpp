@@ -1,6 +1,5 @@
 #include "pipeline/calibration/import/foreign_node.h"
 
-#include <charconv>
 #include <cmath>
 #include <set>
 
@@ -8,6 +7,7 @@
 #include <Eigen/LU>
 #include <fmt/format.h>
 
+#include "common/number_text.h"
 #include "common/yaml_text.h"
 
 namespace bevloc::calibration_import {
@@ -26,14 +26,12 @@ void refuse(std::string_view place, std::string_view found, std::string_view wan
 }
 
 double number_from(const std::string& text, std::string_view place) {
-  double value = 0.0;
-  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const char* end = text.data() + text.size();
-  const auto result = std::from_chars(begin, end, value);
-  if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value)) {
+  const auto value =
+      parse_number<double>(std::string_view(text).substr(text.starts_with('+') ? 1 : 0));
+  if (!value || !std::isfinite(*value)) {
     refuse(place, fmt::format("\"{}\"", text.substr(0, 60)), "a number");
   }
-  return value;
+  return *value;
 }
 
 ForeignNode ForeignNode::parse(const std::string& text, const std::string& name) {

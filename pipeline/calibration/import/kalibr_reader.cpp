@@ -1,10 +1,10 @@
-#include <charconv>
 #include <map>
 #include <optional>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "common/number_text.h"
 #include "pipeline/calibration/import/readers.h"
 
 namespace bevloc::calibration_import {
@@ -61,12 +61,8 @@ Intrinsics intrinsics_of(const ForeignNode& camera) {
 /// The number N of Kalibr's key "camN".
 std::optional<int> number_in(std::string_view key) {
   constexpr std::string_view kPrefix = "cam";
-  int number = 0;
-  const char* const end = key.data() + key.size();
   if (!key.starts_with(kPrefix)) return std::nullopt;
-  const auto read = std::from_chars(key.data() + kPrefix.size(), end, number);
-  if (read.ec != std::errc{} || read.ptr != end) return std::nullopt;
-  return number;
+  return parse_number<int>(key.substr(kPrefix.size()));
 }
 
 /// The key of the camera to which T_cn_cnm1 of the camera `index` is relative: "cam2" for "cam3",

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <GeographicLib/TransverseMercator.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 
+#include "common/number_text.h"
 #include "pipeline/map/tangent_plane.h"
 
 namespace bevloc {
@@ -105,10 +105,8 @@ Result<double> proj_number(const ProjWords& words, std::string_view key, double 
   const auto word = words.find(key);
   if (word == words.end()) return fallback;
   const std::string& text = word->second;
-  double value = 0.0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_number = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
-  if (is_number && std::abs(value) <= limit) return value;
+  const auto value = parse_number<double>(text);
+  if (value && std::abs(*value) <= limit) return *value;
   return fail("found +{}={}, wanted a number from {:g} to {:g}", key, text, -limit, limit);
 }
 

@@ -1,7 +1,6 @@
 #include "pipeline/network/model/model_rig.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "common/number_text.h"
 #include "pipeline/network/model/load_error.h"
 #include "pipeline/preprocessing/network_camera.h"
 
@@ -24,11 +24,8 @@ void check_statement(const nn::Graph& graph, const std::string& key, const std::
 }
 
 std::optional<double> positive_number(std::string_view word) {
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  const bool is_whole = error == std::errc() && end == word.data() + word.size();
-  if (!is_whole || !std::isfinite(number) || number <= 0.0) return std::nullopt;
-  return number;
+  const auto number = parse_number<double>(word);
+  return number && std::isfinite(*number) && *number > 0.0 ? number : std::nullopt;
 }
 
 template <size_t kCount>
