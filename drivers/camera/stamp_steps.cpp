@@ -1,5 +1,7 @@
 #include "drivers/camera/stamp_steps.h"
 
+#include <algorithm>
+
 namespace bevloc::drivers {
 namespace {
 
@@ -10,12 +12,18 @@ constexpr Duration kAgreement = std::chrono::milliseconds(20);
 constexpr uint64_t kMostFrames = 5;
 /// A tolerated offset shrinks by 1/kForgetting with each frame.
 constexpr int kForgetting = 16;
+/// The usual lag may grow by this much with each frame, because a camera can stay slower than
+/// before.
+constexpr Duration kLagGrowth = std::chrono::milliseconds(1);
+/// A jump that so many frames did not disprove counts for good.
+constexpr int kDoubtedFrames = 50;
 
 }  // namespace
 
 bool StampSteps::add(Time stamp, Time arrival, uint64_t sequence) {
   const Seen frame{stamp, arrival, sequence};
   if (latest_) judge(frame);
+  add_lag(arrival - stamp);
   latest_ = frame;
   return std::chrono::abs(offset_) > kTolerated;
 }
@@ -39,7 +47,40 @@ void StampSteps::judge(const Seen& frame) {
   const bool timely = std::chrono::abs(arrived - expected) <= kAgreement;
   // A large jump counts although the frame arrived late, because what makes a stamp jump often
   // delays the frame, too.
-  if (std::chrono::abs(jump) > (timely ? kAgreement : kTolerated)) offset_ += jump;
+  if (std::chrono::abs(jump) > (timely ? kAgreement : kTolerated)) add_jump(jump);
+}
+
+/// A jump during a doubt is compared with the lag before that doubt, because only this lag is known
+/// to belong to an offset.
+void StampSteps::add_jump(Duration jump) {
+  if (!doubt_ && std::chrono::abs(jump) <= kTolerated) {
+    offset_ += jump;
+    return;
+  }
+  if (!doubt_) doubt_ = Doubt{.usual_lag = usual_lag_, .offset_before = offset_};
+  doubt_->offset_after = offset_ + jump;
+  doubt_->least_lag = Duration::max();
+  doubt_->frames = 0;
+}
+
+void StampSteps::add_lag(Duration lag) {
+  if (!doubt_) {
+    usual_lag_ = latest_ ? std::min(lag, usual_lag_ + kLagGrowth) : lag;
+    return;
+  }
+  doubt_->least_lag = std::min(doubt_->least_lag, lag);
+  offset_ = doubt_->is_disproved() ? doubt_->offset_before : doubt_->offset_after;
+  if (++doubt_->frames < kDoubtedFrames) return;
+  usual_lag_ = doubt_->least_lag;
+  doubt_.reset();
+}
+
+bool StampSteps::Doubt::is_disproved() const {
+  const Duration jump = offset_after - offset_before;
+  // After a jump to later stamps, a frame has the usual lag only if it is late by the whole jump.
+  if (jump > Duration::zero()) return std::chrono::abs(least_lag - usual_lag) <= kAgreement;
+  // After a jump to earlier stamps, each frame lags by the whole jump.
+  return least_lag < usual_lag - jump - kAgreement;
 }
 
 }  // namespace bevloc::drivers

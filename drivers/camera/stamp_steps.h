@@ -13,6 +13,10 @@ namespace bevloc::drivers {
 /// that says another time is wrong: the stamps have jumped. If the frame also arrived late, only a
 /// jump of more than kTolerated counts. The sum of all jumps is the offset of the stamps.
 ///
+/// A trigger that omits a pulse makes the sequence number wrong: more time has passed than it says.
+/// So the frames of the next seconds may disprove a large jump. What they tell is the lag, which is
+/// how much later than its stamp a frame arrives: a frame may come late, but never early.
+///
 /// This class cannot find stamps that were wrong from the start. StampMonitor finds them when the
 /// vehicle drives through a bend.
 /// Allocates nothing. One thread.
@@ -35,11 +39,25 @@ class StampSteps {
     Time arrival;
     uint64_t sequence = 0;
   };
+  /// A jump that the following frames may disprove.
+  struct Doubt {
+    Duration usual_lag{};  ///< before the jump
+    Duration offset_before{};
+    Duration offset_after{};  ///< if the stamps have jumped
+    Duration least_lag{};     ///< since the jump
+    int frames = 0;           ///< since the jump
+
+    bool is_disproved() const;
+  };
 
   void judge(const Seen& frame);
+  void add_jump(Duration jump);
+  void add_lag(Duration lag);
 
   std::optional<Seen> latest_;
   std::optional<Duration> period_;  ///< from one frame to the next
+  Duration usual_lag_{0};           ///< the least lag of the latest frames
+  std::optional<Doubt> doubt_;
   Duration offset_{0};
 };
 

@@ -8,19 +8,41 @@ namespace {
 constexpr Duration kBucket = std::chrono::seconds(5);
 /// If UTC goes back by more than this, the receiver's time has started anew.
 constexpr Duration kRestart = std::chrono::seconds(1);
+/// If UTC is set back by a leap second, the next report seems to be slower by a second. The delays
+/// of reports differ by less than the rest of the second.
+constexpr Duration kSetBack = std::chrono::milliseconds(700);
+/// All reports of this time must say that UTC is set back, so that a few old ones do not.
+constexpr Duration kSetBackTime = std::chrono::seconds(1);
 constexpr Duration kLeastSigma = std::chrono::milliseconds(1);
 
 }  // namespace
 
 FixTime FixClock::judge(std::chrono::nanoseconds utc, const FixArrival& arrival) {
-  if (latest_utc_ && utc <= *latest_utc_) {
-    if (*latest_utc_ - utc <= kRestart) return {FixVerdict::kRepeated};
-    buckets_ = {};
-    learned_ = 0;
+  const Report report{.utc = utc, .delay = arrival.unsteered - utc};
+  if (latest_) {
+    if (latest_->utc - utc > kRestart || is_set_back(report, arrival.time)) {
+      buckets_ = {};
+      learned_ = 0;
+      set_back_since_.reset();
+    } else if (utc <= latest_->utc) {
+      return {FixVerdict::kRepeated};
+    } else if (set_back_since_) {
+      return {FixVerdict::kLearning};
+    }
   }
-  latest_utc_ = utc;
-  return parameters_.timing == FixTiming::kArrival ? by_arrival(arrival.unsteered - utc, arrival)
+  latest_ = report;
+  return parameters_.timing == FixTiming::kArrival ? by_arrival(report.delay, arrival)
                                                    : by_system_clock(utc, arrival);
+}
+
+bool FixClock::is_set_back(const Report& report, Time arrival) {
+  if (parameters_.timing != FixTiming::kArrival) return false;
+  if (report.delay - latest_->delay < kSetBack) {
+    set_back_since_.reset();
+    return false;
+  }
+  if (!set_back_since_ && report.utc < latest_->utc) set_back_since_ = arrival;
+  return set_back_since_ && arrival - *set_back_since_ >= kSetBackTime;
 }
 
 FixTime FixClock::by_arrival(Duration delay, const FixArrival& arrival) {

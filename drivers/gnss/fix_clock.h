@@ -39,7 +39,8 @@ struct FixArrival {
 
 enum class FixVerdict : uint8_t {
   kUsable,
-  kLearning,        ///< kArrival: there were too few reports to know how fast they can be
+  kLearning,        ///< kArrival: there were too few reports to know how fast they can be, or UTC
+                    ///< may just have been set back
   kRepeated,        ///< not newer than the fix before it
   kStale,           ///< older than max_age
   kFuture,          ///< kSystemClock: newer than the system clock permits
@@ -79,6 +80,14 @@ class FixClock {
     Duration second = Duration::max();
   };
 
+  struct Report {
+    std::chrono::nanoseconds utc{};
+    Duration delay{};
+  };
+
+  /// Returns whether the receiver has set back its UTC for good, by about a leap second. A network
+  /// or a gpsd that delays all reports never makes UTC go back, so its delay is not forgotten.
+  bool is_set_back(const Report& report, Time arrival);
   FixTime by_arrival(Duration delay, const FixArrival& arrival);
   FixTime by_system_clock(std::chrono::nanoseconds utc, const FixArrival& arrival);
   /// Returns the smallest Bucket::second of the last minutes, so that a single report with a wrong
@@ -87,8 +96,9 @@ class FixClock {
   FixTime usable(Duration age, Duration sigma, Time arrival);
 
   FixClockParameters parameters_;
-  std::optional<std::chrono::nanoseconds> latest_utc_;
-  std::array<Bucket, 64> buckets_{};  ///< for five minutes
+  std::optional<Report> latest_;        ///< the newest one
+  std::optional<Time> set_back_since_;  ///< since this arrival UTC may be set back
+  std::array<Bucket, 64> buckets_{};    ///< for five minutes
   int learned_ = 0;
   Duration max_usable_age_{};
 };

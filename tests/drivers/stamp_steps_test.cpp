@@ -23,6 +23,8 @@ class StampStepsTest : public testing::Test {
     exposed_ += count * milliseconds(100);
     sequence_ += static_cast<uint64_t>(count);
   }
+  /// Without a pulse no frame is exposed, so none is counted.
+  void omit_pulse() { exposed_ += milliseconds(100); }
 
   StampSteps steps_;
   Time exposed_{milliseconds(1000)};
@@ -79,6 +81,55 @@ TEST_F(StampStepsTest, SmallErrorsOfSingleStampsDoNotAddUp) {
     EXPECT_FALSE(frame({}, milliseconds(60))) << "the jump back hides behind a late frame";
     for (int k = 0; k < 50; ++k) EXPECT_FALSE(frame());
   }
+}
+
+TEST_F(StampStepsTest, APulseThatIsOmittedBehindALateFrameIsNoJump) {
+  EXPECT_FALSE(frame({}, milliseconds(31)));
+  omit_pulse();
+  for (int i = 0; i < 60; ++i) EXPECT_FALSE(frame()) << i;
+}
+
+TEST_F(StampStepsTest, APulseThatIsOmittedBeforeALateFrameIsNoJump) {
+  omit_pulse();
+  EXPECT_FALSE(frame());
+  EXPECT_FALSE(frame({}, milliseconds(31)));
+  for (int i = 0; i < 60; ++i) EXPECT_FALSE(frame()) << i;
+}
+
+TEST_F(StampStepsTest, ATimelyFrameDisprovesTheJumpThatALateFrameShowed) {
+  omit_pulse();
+  EXPECT_TRUE(frame({}, milliseconds(31))) << "as if its stamp were 100 ms late";
+  EXPECT_FALSE(frame());
+  omit_pulse();
+  EXPECT_FALSE(frame());
+  EXPECT_TRUE(frame({}, milliseconds(100))) << "as if its stamp were 100 ms early";
+  for (int i = 0; i < 60; ++i) EXPECT_FALSE(frame()) << i;
+}
+
+TEST_F(StampStepsTest, AJumpStaysAlthoughFramesAreLate) {
+  for (const Duration error : {milliseconds(100), milliseconds(-100)}) {
+    for (int i = 0; i < 100; ++i) {
+      EXPECT_TRUE(frame(error, milliseconds(45 * (i % 3)))) << i;
+      EXPECT_EQ(steps_.offset(), error);
+    }
+    EXPECT_FALSE(frame());
+  }
+}
+
+TEST_F(StampStepsTest, AnOmittedPulseDoesNotExcuseEarlyStamps) {
+  constexpr Duration kEarly = milliseconds(-100);
+  for (int i = 0; i < 60; ++i) EXPECT_TRUE(frame(kEarly));
+  EXPECT_TRUE(frame(kEarly, milliseconds(31)));
+  omit_pulse();
+  for (int i = 0; i < 60; ++i) EXPECT_TRUE(frame(kEarly)) << i;
+}
+
+TEST_F(StampStepsTest, AnOmittedPulseIsNoJumpOfACameraThatHasBecomeSlower) {
+  const Duration slower = milliseconds(60);
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(frame({}, slower));
+  EXPECT_FALSE(frame({}, slower + milliseconds(31)));
+  omit_pulse();
+  for (int i = 0; i < 60; ++i) EXPECT_FALSE(frame({}, slower)) << i;
 }
 
 TEST_F(StampStepsTest, ANewStartForgetsTheOffset) {

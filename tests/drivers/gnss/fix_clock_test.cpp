@@ -130,6 +130,54 @@ TEST_F(ArrivalTest, LearnsAnewWhenUtcGoesBack) {
   EXPECT_EQ(fix.time, held_ + seconds(18) - milliseconds(20));
 }
 
+/// A receiver that starts with a wrong number of leap seconds corrects it later.
+TEST_F(ArrivalTest, LearnsAnewWhenUtcIsSetBackByALeapSecond) {
+  for (int i = 0; i < 100; ++i) judge(clock_, held_ += milliseconds(100), milliseconds(80));
+  FixTime fix;
+  int reports = 0;
+  while (fix.verdict != FixVerdict::kUsable && reports < 100) {
+    held_ += milliseconds(100);
+    fix = judge(clock_, held_ - seconds(1), seconds(1) + milliseconds(80));
+    ++reports;
+  }
+  EXPECT_EQ(reports, 13) << "1.3 s";
+  ASSERT_EQ(fix.verdict, FixVerdict::kUsable);
+  EXPECT_EQ(fix.time, held_ - milliseconds(20));
+}
+
+/// A fix that is not older than max_age would be used, although it seems to be a second too old.
+TEST_F(ArrivalTest, UsesNoFixWhileUtcMayBeSetBack) {
+  clock_ = FixClock({.latency = milliseconds(100), .max_age = milliseconds(1900)});
+  for (int i = 0; i < 10; ++i) judge(clock_, next(), milliseconds(80));
+  int usable = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Duration delay = milliseconds(i == 0 ? 150 : 80);
+    const FixTime fix = judge(clock_, next() - seconds(1), seconds(1) + delay);
+    if (fix.verdict != FixVerdict::kUsable) continue;
+    ++usable;
+    EXPECT_EQ(fix.time, held_ - milliseconds(20)) << i;
+  }
+  EXPECT_EQ(usable, 12);
+}
+
+TEST_F(ArrivalTest, OldFixesAmongLateOnesDoNotExcuseTheDelay) {
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_EQ(judge(clock_, next(), milliseconds(1500)).verdict, FixVerdict::kStale) << i;
+    ASSERT_EQ(judge(clock_, held_ - milliseconds(100), milliseconds(1600)).verdict,
+              FixVerdict::kRepeated);
+  }
+}
+
+TEST_F(ArrivalTest, AFewFixesOfASecondAgoDoNotSetUtcBack) {
+  for (int i = 0; i < 10; ++i) {
+    for (int k = 0; k < 5; ++k) {
+      EXPECT_EQ(judge(clock_, next(), milliseconds(80)).verdict, FixVerdict::kUsable) << i;
+    }
+    EXPECT_EQ(judge(clock_, held_ - milliseconds(900), milliseconds(1000)).verdict,
+              FixVerdict::kRepeated);
+  }
+}
+
 class SystemClockTest : public testing::Test {
  protected:
   FixTime judged(Duration delay) { return judge(clock_, held_ += seconds(1), delay, discipline_); }
