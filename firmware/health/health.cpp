@@ -40,7 +40,7 @@ WhyMask Health::find_reasons(const HealthInputs& inputs) const {
   set_if(Why::kOutsideMap, !inputs.map_nearby);
   set_if(Why::kMatchUncertain,
          inputs.verdict.undecided || (!pose_valid() && !has_enough_matches(inputs)));
-  set_if(Why::kGnssContradicts, inputs.verdict.gnss_contradicts);
+  set_if(Why::kGnssContradicts, inputs.verdict.gnss_contradicts || inputs.gnss_lags);
   set_if(Why::kOdometryContradicts, inputs.verdict.odometry_contradicts);
   set_if(Why::kMatchContradicts, inputs.verdict.match_contradicts);
   set_if(Why::kMapFault, inputs.verdict.map_contradicts);
@@ -63,8 +63,8 @@ bool Health::is_lost(const HealthInputs& inputs) const {
       inputs.verdict.odometry_contradicts ||
       (inputs.verdict.undecided && inputs.refused_in_a_row >= limits_.refusals_to_lose);
   return contradicted || inputs.verdict.map_contradicts || inputs.stamps_contradict ||
-         !inputs.initialized || inputs.odometry_implausible || inputs.clock_gap ||
-         is_too_uncertain(inputs) || why_.has(Why::kOdometryMissing) ||
+         inputs.gnss_lags || !inputs.initialized || inputs.odometry_implausible ||
+         inputs.clock_gap || is_too_uncertain(inputs) || why_.has(Why::kOdometryMissing) ||
          inputs.correction_age > limits_.lost_timeout || inputs.match_age > kOldestMatch;
 }
 

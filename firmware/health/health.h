@@ -69,7 +69,8 @@ struct HealthInputs {
   double yaw_sigma_rad = 0.0;
   /// Protection level of the pose: (longitudinal m, lateral m, yaw rad).
   Eigen::Vector3d protection_level = Eigen::Vector3d::Zero();
-  bool stamps_contradict = false;  ///< camera stamps and yaw rate disagree (StampMonitor)
+  bool stamps_contradict = false;  ///< camera stamps and yaw rate disagree (StampWatch)
+  bool gnss_lags = false;          ///< GNSS that is not excluded is too old (GnssLagWatch)
   bool network_fault = false;      ///< the network failed its check (VisionStage)
   bool internal_error = false;     ///< the pose or its covariance is not finite
 };

@@ -28,6 +28,7 @@ void Supervisor::step(Time now) {
   view_.blinded = CameraMask(vision.blinded);
   view_.dirty = CameraMask(vision.dirty);
   view_.stamp_offset_ms = estimation.stamp_offset_ms;
+  view_.gnss_lag_ms = estimation.gnss_lag_ms;
   view_.map_offset_cm = {estimation.map_offset_cm[0], estimation.map_offset_cm[1]};
   view_.calibration_fault = CameraMask(vision.calibration_fault);
   view_.realtime_refusals = realtime_.refusals();

@@ -28,7 +28,8 @@ struct ApplianceView {
   CameraMask blinded;
   CameraMask dirty;
   CameraMask calibration_fault;
-  int stamp_offset_ms = 0;  ///< as in EstimationCounters, like the next one
+  int stamp_offset_ms = 0;  ///< as in EstimationCounters, like the next two
+  int gnss_lag_ms = 0;
   std::array<int, 2> map_offset_cm{};
 };
 

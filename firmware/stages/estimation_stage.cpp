@@ -66,6 +66,7 @@ void EstimationStage::tick(Time now) {
   // After a gap the health still has the state of the discarded pose.
   estimator_.judge(now, health_.pose_valid() && !clock_gap_);
   note_map_offset();
+  watch_gnss_lag();
   const auto pose = estimator_.pose_at(now);
   if (pose) {
     protection_ = estimator_.protection_of(*pose, protection_parameters_);
@@ -89,6 +90,7 @@ void EstimationStage::note_clock_gap() {
   }
   estimator_.reset();
   stamps_.note_gap();
+  gnss_lag_.reset();
   last_tick_.reset();
   odometry_time_.reset();
   gnss_time_.reset();
@@ -108,7 +110,12 @@ void EstimationStage::take_samples() {
   while (const auto sample = samples_.pop(Duration::zero())) {
     const auto* odometry = std::get_if<OdometrySample>(&*sample);
     const bool is_odometry = odometry != nullptr;
-    if (is_odometry) stamps_.add_rate(odometry->time, odometry->yaw_rate_radps);
+    if (is_odometry) {
+      stamps_.add_rate(odometry->time, odometry->yaw_rate_radps);
+      gnss_lag_.add_rate(odometry->time, odometry->yaw_rate_radps);
+    } else {
+      gnss_lag_.add(std::get<GnssSample>(*sample));
+    }
     const TrackerUpdate outcome = estimator_.add(*sample);
     ++(is_odometry ? counters_.odometry : counters_.gnss)[index_of(outcome)];
     // A GNSS sample that the gate refuses has arrived, although it contradicts. So has one that
@@ -121,6 +128,12 @@ void EstimationStage::take_samples() {
     std::optional<Time>& latest = is_odometry ? odometry_time_ : gnss_time_;
     latest = std::visit([](const auto& taken) { return taken.time; }, *sample);
   }
+}
+
+/// GNSS that is excluded already does no harm, and its headings may be wrong for another reason.
+void EstimationStage::watch_gnss_lag() {
+  if (estimator_.verdict().gnss_contradicts) gnss_lag_.reset();
+  counters_.gnss_lag_ms = gnss_lag_.lag_ms();
 }
 
 void EstimationStage::note_map_offset() {
@@ -175,6 +188,7 @@ HealthInputs EstimationStage::health_inputs(const std::optional<TrackedPose>& po
     inputs.calibration_fault = latest_report_->calibration_fault.any();
   }
   inputs.stamps_contradict = stamps_.contradicts();
+  inputs.gnss_lags = gnss_lag_.contradicts();
   inputs.network_fault = network_fault_;
   inputs.latest_correction_refused = matches_.refused_in_a_row() > 0;
   inputs.accepted_in_a_row = matches_.accepted_in_a_row();

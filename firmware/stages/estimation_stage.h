@@ -8,6 +8,7 @@
 #include "can/publisher/pose_publisher.h"
 #include "common/published.h"
 #include "firmware/health/health.h"
+#include "firmware/stages/gnss_lag_watch.h"
 #include "firmware/stages/match_history.h"
 #include "firmware/stages/messages.h"
 #include "firmware/stages/stamp_watch.h"
@@ -39,6 +40,7 @@ struct EstimationCounters {
   /// Offset of the cameras' time stamps against odometry, or 0 while it is tolerated
   /// (StampMonitor).
   std::atomic<int> stamp_offset_ms{0};
+  std::atomic<int> gnss_lag_ms{0};  ///< age of GNSS, or 0 while it is tolerated (GnssLagWatch)
   /// GNSS minus map, east and north, or 0 while they agree (MapOffsetMonitor).
   std::array<std::atomic<int>, 2> map_offset_cm{};
   /// The cameras that the latest frameset used, a CameraMask.
@@ -96,6 +98,7 @@ class EstimationStage {
   void add_correction(const VisionReport& report);
   void note_map_offset();
   void watch_clock(Time now);
+  void watch_gnss_lag();
   HealthInputs health_inputs(const std::optional<TrackedPose>& pose, Time now) const;
   void update_health(const std::optional<TrackedPose>& pose, Time now);
   void note_validity(Time now);
@@ -130,6 +133,7 @@ class EstimationStage {
   bool network_fault_ = false;
   Published<can::ClockReport> clock_;
   StampWatch stamps_;
+  GnssLagWatch gnss_lag_;
   std::optional<Time> last_tick_;
   bool clock_gap_ = false;  ///< no correction was accepted since the latest gap
   EstimationCounters counters_;

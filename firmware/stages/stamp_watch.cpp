@@ -30,14 +30,6 @@ void StampWatch::compare_heading(const VisionReport& report) {
   monitor_.add_heading(report.frame_time, (report.prior * report.match.correction).yaw_rad);
 }
 
-int StampWatch::offset_ms() const {
-  using std::chrono::duration_cast;
-  using std::chrono::milliseconds;
-  const auto& estimate = monitor_.estimate();
-  if (!monitor_.contradicts() || !estimate) return 0;
-  return static_cast<int>(duration_cast<milliseconds>(estimate->offset).count());
-}
-
 void StampWatch::note_gap() {
   monitor_.note_gap();
   latest_jumped_ = jumped_ = false;

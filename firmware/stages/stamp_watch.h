@@ -21,7 +21,7 @@ class StampWatch {
   bool contradicts() const { return monitor_.contradicts() || jumped_; }
 
   /// Offset of the stamps against odometry; 0 while it is tolerated.
-  int offset_ms() const;
+  int offset_ms() const { return monitor_.contradicting_ms(); }
 
   /// Begins a new history after a gap in time. Wrong stamps stay wrong.
   void note_gap();
@@ -30,7 +30,8 @@ class StampWatch {
   void note_jump(bool jumped);
   void compare_heading(const VisionReport& report);
 
-  StampMonitor monitor_;
+  /// A yaw-rate sensor delays by some 10 ms itself.
+  StampMonitor monitor_{std::chrono::milliseconds(30)};
   bool latest_jumped_ = false;  ///< what the latest report says
   bool jumped_ = false;         ///< the stamps jumped, and no bend has confirmed them since
 };

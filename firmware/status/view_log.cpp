@@ -31,17 +31,8 @@ void ViewLog::note(const ApplianceView& view) {
                "check its exposure if no bright light explains this");
   note_cameras(before_.dirty, view.dirty, "dirty, parts of its image do not move while driving",
                "clean the lens");
-  if ((view.stamp_offset_ms != 0) != (before_.stamp_offset_ms != 0)) {
-    if (view.stamp_offset_ms != 0) {
-      spdlog::warn(
-          "cameras: their time stamps are {:+} ms off odometry, as the headings in bends show; "
-          "check "
-          "the clock of the cameras and the delay of the yaw rate",
-          view.stamp_offset_ms);
-    } else {
-      spdlog::info("cameras: their time stamps agree with odometry again");
-    }
-  }
+  note_stamps(view.stamp_offset_ms);
+  note_gnss_lag(view.gnss_lag_ms);
   note_map_offset(view.map_offset_cm);
   note_cameras(
       before_.calibration_fault, view.calibration_fault,
@@ -62,6 +53,30 @@ void ViewLog::note_drifts(const ApplianceView& view) {
     } else if (ppm == 0.0 && before_ppm != 0.0) {
       spdlog::info("camera {}: no drift any more", kCameraNames[camera]);
     }
+  }
+}
+
+void ViewLog::note_stamps(int offset_ms) const {
+  if ((offset_ms != 0) == (before_.stamp_offset_ms != 0)) return;
+  if (offset_ms != 0) {
+    spdlog::warn(
+        "cameras: their time stamps are {:+} ms off odometry, as the headings in bends show; check "
+        "the clock of the cameras and the delay of the yaw rate",
+        offset_ms);
+  } else {
+    spdlog::info("cameras: their time stamps agree with odometry again");
+  }
+}
+
+void ViewLog::note_gnss_lag(int lag_ms) const {
+  if ((lag_ms != 0) == (before_.gnss_lag_ms != 0)) return;
+  if (lag_ms != 0) {
+    spdlog::error(
+        "GNSS: its headings are {} ms older than odometry, as bends show; check the delay of its "
+        "messages and of the yaw rate",
+        lag_ms);
+  } else {
+    spdlog::info("GNSS: its headings agree with odometry again, or it is not used");
   }
 }
 

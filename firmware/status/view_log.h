@@ -16,6 +16,8 @@ class ViewLog {
 
  private:
   void note_drifts(const ApplianceView& view);
+  void note_stamps(int offset_ms) const;
+  void note_gnss_lag(int lag_ms) const;
   void note_map_offset(const std::array<int, 2>& offset_cm) const;
   static void note_cameras(CameraMask before, CameraMask now, std::string_view what,
                            std::string_view advice);

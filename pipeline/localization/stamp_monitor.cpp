@@ -122,17 +122,25 @@ std::optional<StampMonitor::Estimate> StampMonitor::solve() const {
 }
 
 void StampMonitor::judge() {
-  estimate_ = solve();
-  if (!estimate_) return;
-  if (std::chrono::abs(estimate_->offset) - kCertain * estimate_->sigma > kTolerated) {
-    contradicts_ = true;
-  }
-  if (agrees()) contradicts_ = false;
+  const auto solved = solve();
+  if (!solved) return;
+  estimate_ = solved;
+  const bool wrong = std::chrono::abs(solved->offset) - kCertain * solved->sigma > tolerated_;
+  // Only what comes after a contradiction says whether the stamps are right again.
+  if (wrong) sums_ = {};
+  contradicts_ = wrong || (contradicts_ && !agrees());
 }
 
 bool StampMonitor::agrees() const {
   return estimate_ &&
-         std::chrono::abs(estimate_->offset) + kCertain * estimate_->sigma < kTolerated;
+         std::chrono::abs(estimate_->offset) + kCertain * estimate_->sigma < tolerated_;
+}
+
+int StampMonitor::contradicting_ms() const {
+  using std::chrono::duration_cast;
+  using std::chrono::milliseconds;
+  if (!contradicts_ || !estimate_) return 0;
+  return static_cast<int>(duration_cast<milliseconds>(estimate_->offset).count());
 }
 
 }  // namespace bevloc

@@ -1,4 +1,4 @@
-// Compares the headings of matches with the yaw rate of odometry, to find wrong camera time stamps.
+// Compares headings with the yaw rate of odometry, to find wrong time stamps.
 #pragma once
 
 #include <optional>
@@ -10,33 +10,33 @@
 
 namespace bevloc {
 
-/// A match says where the vehicle heads at the time of its frameset. If the time stamps of all
-/// cameras are late by `offset`, the heading is that of `offset` earlier: it lags by the yaw rate
-/// times `offset` behind the integrated yaw rate. A constant difference of the two says nothing, so
-/// the monitor compares changes over kLag, where the yaw rate has changed:
+/// A match says where the vehicle heads at the time of its frameset, and GNSS at the time of its
+/// sample. If these time stamps are late by `offset`, the heading is that of `offset` earlier: it
+/// lags by the yaw rate times `offset` behind the integrated yaw rate. A constant difference of the
+/// two says nothing, so the monitor compares changes over kLag, where the yaw rate has changed:
 ///
-///   change of (matched heading - integrated heading)
+///   change of (heading - integrated heading)
 ///       = bias of the yaw rate * kLag + scale error * change of heading - offset * change of rate,
 ///
 /// and fits bias, scale error and offset by least squares. A straight road gives no evidence of
-/// the offset. One bend determines it to about 20 ms. The offset is common to all cameras; the
+/// the offset. One bend determines that of matches to about 20 ms. It is common to all cameras; the
 /// synchronizer (Synchrony) finds a single camera whose stamps differ from those of the others.
 ///
 /// Allocates in the constructor only. One thread.
 class StampMonitor {
  public:
   struct Estimate {
-    Duration offset{0};  ///< positive if the stamps are later than the exposures
+    Duration offset{0};  ///< positive if the stamps are later than the headings
     Duration sigma{0};
   };
 
-  /// The largest offset that is no fault. A yaw-rate sensor delays by some 10 ms itself.
-  static constexpr Duration kTolerated = std::chrono::milliseconds(30);
+  /// `tolerated` is the largest offset that is no fault.
+  explicit StampMonitor(Duration tolerated) : tolerated_(tolerated) {}
 
   /// Adds the vehicle's yaw rate. Times must increase; after a gap the history begins anew.
   void add_rate(Time time, double yaw_rate_radps);
 
-  /// Adds a matched heading in the map, at the time of a frameset within the latest rates.
+  /// Adds a heading in the map whose time stamp lies within the latest rates.
   void add_heading(Time time, double heading_rad);
 
   /// The estimate, or nothing before the vehicle has turned enough.
@@ -49,12 +49,15 @@ class StampMonitor {
   /// gap does not set the clocks of the cameras right.
   void note_gap();
 
-  /// Whether the offset is certainly larger than kTolerated. The answer stays true until agrees()
-  /// holds.
+  /// Whether the offset is certainly larger than tolerated. The answer stays true until agrees()
+  /// holds for what was added since the latest contradiction.
   bool contradicts() const { return contradicts_; }
 
-  /// Whether the offset is certainly smaller than kTolerated.
+  /// Whether the offset is certainly smaller than tolerated.
   bool agrees() const;
+
+  /// The offset in milliseconds while it contradicts; otherwise 0.
+  int contradicting_ms() const;
 
  private:
   static constexpr size_t kRates = 128;
@@ -80,6 +83,7 @@ class StampMonitor {
   std::optional<Estimate> solve() const;
   void judge();
 
+  Duration tolerated_;
   boost::circular_buffer<Rate> rates_{kRates};
   boost::circular_buffer<Heading> headings_{kHeadings};
   /// Sums of the least-squares fit with exponential forgetting.

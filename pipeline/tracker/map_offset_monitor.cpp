@@ -16,6 +16,8 @@ constexpr double kGrowth_m_per_sqrt_s = 0.003;
 constexpr double kScatter_m = 0.4;
 /// Squared distance of a sample that is not used.
 constexpr double kOutlier = 16.0;
+/// Outliers in a row for this many correlation times are no error of GNSS.
+constexpr double kLongestErrors = 5.0;
 /// An offset matters above kMatters_m, and from then on until it is below kHarmless_m.
 constexpr double kMatters_m = 0.75;
 constexpr double kHarmless_m = 0.5;
@@ -48,13 +50,21 @@ void MapOffsetMonitor::add(Time time, const Eigen::Vector2d& difference_m, doubl
   const double with_offset = offset_variance_ + common_variance_;
   const double with_error = error_variance_ + common_variance_;
   const double variance = with_offset + with_error + square_of(kScatter_m);
-  if (innovation_m.squaredNorm() > kOutlier * variance) return;
+  if (innovation_m.squaredNorm() > kOutlier * variance) return note_outlier();
+  outliers_in_a_row_ = 0;
   offset_m_ += innovation_m * (with_offset / variance);
   error_m_ += innovation_m * (with_error / variance);
   offset_variance_ -= square_of(with_offset) / variance;
   error_variance_ -= square_of(with_error) / variance;
   common_variance_ -= with_offset * with_error / variance;
   judge();
+}
+
+/// No error of GNSS lasts as long as kLongestErrors, so the offset itself has become another one.
+void MapOffsetMonitor::note_outlier() {
+  if (++outliers_in_a_row_ * to_seconds(kPeriod) < kLongestErrors * correlation_s_) return;
+  offset_variance_ = square_of(kPriorSigma_m);
+  outliers_in_a_row_ = 0;
 }
 
 void MapOffsetMonitor::judge() {

@@ -25,7 +25,7 @@ class MapOffsetMonitor {
 
   /// `difference_m` is GNSS minus pose along the axes of the map. `sigma_m` is the sigma of GNSS
   /// per axis. Uses at most one sample per second. Ignores a sample that is too far from what the
-  /// filter expects, such as after a jump of GNSS.
+  /// filter expects, such as after a jump of GNSS, unless all samples of several minutes are.
   void add(Time time, const Eigen::Vector2d& difference_m, double sigma_m);
 
   /// Becomes true when the offset is certain and more than 0.75 m. Stays true until the estimated
@@ -37,10 +37,12 @@ class MapOffsetMonitor {
 
  private:
   void predict(double elapsed_s, double sigma_m);
+  void note_outlier();
   void judge();
 
   double correlation_s_;
   std::optional<Time> latest_;
+  int outliers_in_a_row_ = 0;
   Eigen::Vector2d offset_m_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d error_m_ = Eigen::Vector2d::Zero();  ///< error of GNSS
   // The covariance of offset and error, which is the same for both axes of the map.

@@ -386,5 +386,14 @@ TEST(HealthTest, WrongTimeStampsLoseThePoseAndAreNamed) {
   EXPECT_TRUE(health.why().has(Why::kCalibrationFault));
 }
 
+TEST(HealthTest, GnssThatLagsLosesThePoseAndIsNamed) {
+  Health health = tracking();
+  HealthInputs inputs = healthy();
+  inputs.gnss_lags = true;
+  health.update(inputs);
+  EXPECT_EQ(health.state(), HealthState::kLost);
+  EXPECT_TRUE(health.why().has(Why::kGnssContradicts));
+}
+
 }  // namespace
 }  // namespace bevloc::firmware

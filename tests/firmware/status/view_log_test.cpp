@@ -28,5 +28,18 @@ TEST(ViewLogTest, NamesALossThatNoViewShows) {
   EXPECT_EQ(capture.text().find("pose lost"), capture.text().rfind("pose lost"));
 }
 
+TEST(ViewLogTest, TellsOnceByHowMuchGnssLags) {
+  const LogCapture capture;
+  ViewLog log;
+  ApplianceView view;
+  for (const int lag_ms : {0, 480, 460, 0}) {
+    view.gnss_lag_ms = lag_ms;
+    log.note(view);
+  }
+  EXPECT_THAT(capture.text(), HasSubstr("GNSS: its headings are 480 ms older than odometry"));
+  EXPECT_EQ(capture.text().find("460"), std::string::npos);
+  EXPECT_THAT(capture.text(), HasSubstr("GNSS: its headings agree with odometry again"));
+}
+
 }  // namespace
 }  // namespace bevloc::firmware

@@ -1,6 +1,7 @@
 #include "pipeline/localization/stamp_monitor.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -14,6 +15,7 @@ namespace {
 struct Ride {
   double bend_radps = 0.3;  ///< largest yaw rate; 0: a straight road
   double offset_s = 0.0;    ///< of the camera stamps
+  double right_after_s = std::numeric_limits<double>::infinity();  ///< then the offset is 0
   double bias_radps = radians(0.1);
   double scale = 1.01;
   double heading_noise_rad = radians(0.12);
@@ -31,7 +33,7 @@ double yaw_rate_at(const Ride& ride, double time_s) {
 StampMonitor after(const Ride& ride, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
-  StampMonitor monitor;
+  StampMonitor monitor(std::chrono::milliseconds(30));
   double heading_rad = 3.0;  // crosses 180 degrees
   double correlated_rad = 0.0;
   std::vector<double> headings;  // every millisecond
@@ -49,7 +51,8 @@ StampMonitor after(const Ride& ride, unsigned seed = 1) {
     if (ms % 100 == 80 && ms > 1000) {
       correlated_rad = 0.9 * correlated_rad + 0.44 * ride.heading_noise_rad * normal(random);
       const int stamp_ms = ms - 180;
-      const int exposed_ms = stamp_ms - static_cast<int>(1e3 * ride.offset_s);
+      const double offset_s = time_s < ride.right_after_s ? ride.offset_s : 0.0;
+      const int exposed_ms = stamp_ms - static_cast<int>(1e3 * offset_s);
       monitor.add_heading(Time(std::chrono::milliseconds(stamp_ms)),
                           wrap_angle(headings[exposed_ms] + correlated_rad));
     }
@@ -77,6 +80,21 @@ TEST(StampMonitorTest, AGapKeepsAWrongOffsetAndForgetsARightOne) {
   EXPECT_FALSE(right.agrees());
 }
 
+TEST(StampMonitorTest, StampsThatAreRightAgainAfterTenMinutesAgreeWithinTwo) {
+  const StampMonitor monitor =
+      after({.offset_s = 0.1, .right_after_s = 600.0, .duration_s = 720.0});
+  EXPECT_FALSE(monitor.contradicts());
+}
+
+TEST(StampMonitorTest, TellsTheOffsetOfTheContradictionUntilItEnds) {
+  for (double duration_s = 30.0; duration_s < 60.0; duration_s += 1.0) {
+    const StampMonitor monitor = after({.offset_s = 0.1, .duration_s = duration_s});
+    if (!monitor.contradicts()) continue;
+    ASSERT_TRUE(monitor.estimate()) << duration_s;
+    EXPECT_NEAR(to_seconds(monitor.estimate()->offset), 0.1, 0.04) << duration_s;
+  }
+}
+
 TEST(StampMonitorTest, AcceptsRightStampsWithUsualErrorsOfTheSensors) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     for (const double bias_degps : {-0.3, 0.3}) {
@@ -96,7 +114,7 @@ TEST(StampMonitorTest, AStraightRoadSaysNothing) {
 }
 
 TEST(StampMonitorTest, AGapOfTheRatesBeginsAnew) {
-  StampMonitor monitor;
+  StampMonitor monitor(std::chrono::milliseconds(30));
   for (int ms = 0; ms < 3000; ms += 20) {
     monitor.add_rate(Time(std::chrono::milliseconds(ms)), 0.2);
   }

@@ -77,6 +77,13 @@ TEST_P(MapOffsetAfterAnHour, AnOffsetOf3MetresIsFoundWithin20Minutes) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, MapOffsetAfterAnHour, testing::Range(1U, 11U));
 
+TEST_F(MapOffsetMonitorTest, ALargeOffsetThatHasEndedIsForgotten) {
+  for (; now_ < Time(minutes(30)); now_ += seconds(1)) monitor_.add(now_, {7.0, 0.0}, 3.0);
+  ASSERT_TRUE(monitor_.contradicts());
+  for (; now_ < Time(minutes(120)); now_ += seconds(1)) monitor_.add(now_, {0.0, 0.0}, 1.0);
+  EXPECT_FALSE(monitor_.contradicts());
+}
+
 TEST_F(MapOffsetMonitorTest, AJumpOfGnssIsNoOffset) {
   drive(Eigen::Vector2d::Zero(), minutes(5));
   EXPECT_EQ(drive({50.0, 0.0}, seconds(10)), Duration::zero());
