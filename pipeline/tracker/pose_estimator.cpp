@@ -19,6 +19,9 @@ constexpr double kRefuting = 4.5;
 constexpr double kMostScaleSigmas = 5.0;
 /// Refused GNSS samples in a row, without a match, after which the pose starts again.
 constexpr int kRefusalsToRestart = 15;
+/// Refused GNSS samples in a row after which a pose that is not valid starts again although matches
+/// pass: GNSS must confirm it, and cannot.
+constexpr int kRefusalsToRestartMatched = 50;
 /// The pose starts again with a larger sigma of the heading, in which the filter is linear. Only a
 /// gap of odometry makes it so large.
 constexpr double kMostYawSigma_rad = radians(30.0);
@@ -85,12 +88,14 @@ TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
     gnss_has_yaw_ = sample.yaw.has_value();
   }
   if (!had_pose || !reached_the_gate(update)) return update;
+  gnss_judged_ = sample.time;
   if (yaw) gnss_scatter_.add(at_axle, yaw->yaw_rad);
   const bool passes = update == TrackerUpdate::kAccepted;
   std::optional<Eigen::Vector3d> error;
   if (pose_valid_) error = tracker_.gnss_error();
   arbiter_.add_gnss(sample.time, tracker_.latest_innovation(), passes, error);
   gnss_refused_in_a_row_ = passes ? 0 : gnss_refused_in_a_row_ + 1;
+  gnss_refused_while_not_valid_ = passes || pose_valid_ ? 0 : gnss_refused_while_not_valid_ + 1;
   if (passes && trusted) compare_map(sample);
   return update;
 }
@@ -161,14 +166,18 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   const PoseStanding lost_or_new = trusted_ ? PoseStanding::kLost : PoseStanding::kNew;
   verdict_ = arbiter_.judge(now, pose_valid ? PoseStanding::kValid : lost_or_new);
   verdict_.map_contradicts = map_offset_.contradicts();
-  verdict_.gnss_contradicts = verdict_.gnss_contradicts || gnss_scatter_.contradicts();
+  // GNSS that sends nothing contradicts nothing.
+  const bool gnss_speaks = gnss_judged_ && now - *gnss_judged_ <= kGnssLifetime;
+  verdict_.gnss_contradicts =
+      gnss_speaks && (verdict_.gnss_contradicts || gnss_scatter_.contradicts());
   if (verdict_.odometry_contradicts && !odometry_was_wrong) tracker_.widen();
   if (arbiter_.odometry_drifts()) {
     tracker_.loosen_odometry();
     arbiter_.forget_drift(now);
   }
   const bool matched = match_passed_ && now - *match_passed_ <= kMatchAbsence;
-  const bool gnss_refused = gnss_refused_in_a_row_ >= kRefusalsToRestart && !matched;
+  const bool gnss_refused = (gnss_refused_in_a_row_ >= kRefusalsToRestart && !matched) ||
+                            gnss_refused_while_not_valid_ >= kRefusalsToRestartMatched;
   const bool start_failed =
       !trusted_ && arbiter_.matches_refused_in_a_row() >= kRefusalsToStartAgain;
   const bool wheels_slip = std::abs(tracker_.speed_scale_error()) >
@@ -236,8 +245,10 @@ void PoseEstimator::restart() {
   pose_valid_ = false;
   trusted_ = false;
   gnss_refused_in_a_row_ = 0;
+  gnss_refused_while_not_valid_ = 0;
   match_passed_.reset();
   gnss_passed_.reset();
+  gnss_judged_.reset();
 }
 
 void PoseEstimator::reset() {

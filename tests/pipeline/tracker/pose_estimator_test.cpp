@@ -17,14 +17,20 @@ class PoseEstimatorTest : public testing::Test {
     for (int i = 0; i < 500; ++i) step();
   }
 
-  void step() {
+  void step(double gnss_beside_m = 0.0, bool pose_valid = true) {
     time_s_ += 0.02;
     vehicle_.drive_to(time_s_);
     estimator_.add(vehicle_.odometry(time_s_));
     if (++steps_ % 5 != 0) return;
-    estimator_.add(vehicle_.gnss());
+    GnssSample gnss = vehicle_.gnss();
+    gnss.north_m += gnss_beside_m;
+    if (has_gnss_) estimator_.add(gnss);
     match_with({});
-    estimator_.judge(at_s(time_s_), true);
+    estimator_.judge(at_s(time_s_), pose_valid);
+  }
+  double north_error_m() {
+    const Se2 truth = vehicle_.drive_to(time_s_);
+    return estimator_.pose_at(at_s(time_s_))->map_from_vehicle.y_m - truth.y_m;
   }
 
   /// A match at the true pose but for `offset`, in the vehicle frame.
@@ -52,6 +58,7 @@ class PoseEstimatorTest : public testing::Test {
   PoseEstimator estimator_{TrackerParameters()};
   double time_s_ = 0.0;
   int steps_ = 0;
+  bool has_gnss_ = true;
 };
 
 TEST_F(PoseEstimatorTest, AMatchAtTheBorderDoesNotCorrectThePose) {
@@ -68,6 +75,24 @@ TEST_F(PoseEstimatorTest, ALowScoreMakesTheGateAcceptAMatchAtTheSearchBorder) {
   EXPECT_EQ(estimator_.add_match(at_s(time_s_), prior, match).update, TrackerUpdate::kGated);
   match.axis_score.z() = 0.0;
   EXPECT_EQ(estimator_.add_match(at_s(time_s_), prior, match).update, TrackerUpdate::kAccepted);
+}
+
+TEST_F(PoseEstimatorTest, MatchesThatPassOutvoteGnssOnlyWhileThePoseIsValid) {
+  for (int i = 0; i < 300; ++i) step(20.0);
+  EXPECT_NEAR(north_error_m(), 0.0, 1.0);
+  for (int i = 0; i < 300; ++i) step(20.0, false);
+  EXPECT_NEAR(north_error_m(), 20.0, 5.0) << "the pose starts again where GNSS has it";
+}
+
+TEST_F(PoseEstimatorTest, GnssThatSendsNothingNoLongerContradicts) {
+  for (int i = 0; i < 100; ++i) step(20.0);
+  EXPECT_TRUE(estimator_.verdict().gnss_contradicts);
+  has_gnss_ = false;
+  for (int i = 0; i < 150; ++i) step();
+  EXPECT_FALSE(estimator_.verdict().gnss_contradicts);
+  has_gnss_ = true;
+  for (int i = 0; i < 10; ++i) step(20.0);
+  EXPECT_TRUE(estimator_.verdict().gnss_contradicts) << "it is still excluded";
 }
 
 TEST_F(PoseEstimatorTest, InvalidSamplesDoNotAffectTheNextOnes) {
