@@ -106,9 +106,10 @@ def update(parts: Parts, _: int, __: int) -> Outcome:
             if root != "b" or version != Repositories.GOOD_VERSION:
                 raise LabError(f"{seen[-1]}, wanted root b with {Repositories.GOOD_VERSION}")
             _mount_repositories(machine)
-            _refuse_unreadable(machine)
+            for useless in ("none", Repositories.GOOD):
+                _refuse(machine, useless)
     return Outcome(
-        injected="an update, one that cannot be read, and one whose daemon does not run",
+        injected="updates: a good one, it again, an unreadable one, one whose daemon does not run",
         seen="; ".join(seen),
         recovery_s=None,
         passed=True,
@@ -171,12 +172,12 @@ def _sizes(listing: str) -> dict[str, int]:
     return {name: int(size) for size, name in lines}
 
 
-def _refuse_unreadable(machine: Machine) -> None:
-    """Without a repository an update must leave both versions as they are."""
+def _refuse(machine: Machine, repository: str) -> None:
+    """An update without a repository, or to the installed version, must leave all as it is."""
     entries = "ls /efi/loader/entries"
     before = machine.agent.check(entries)
-    if machine.agent.run("bevloc-update file:/run/repositories/none").status == 0:
-        raise LabError("bevloc-update: accepted a folder that does not exist, wanted an error")
+    if machine.agent.run(f"bevloc-update file:/run/repositories/{repository}").status == 0:
+        raise LabError(f"bevloc-update: accepted {repository}, wanted an error")
     if (after := machine.agent.check(entries)) != before:
         raise LabError(f"/efi/loader/entries: found {after} after a failure, wanted {before}")
 
