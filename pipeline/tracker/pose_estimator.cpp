@@ -19,9 +19,6 @@ constexpr double kRefuting = 4.5;
 constexpr double kMostScaleSigmas = 5.0;
 /// Refused GNSS samples in a row, without a match, after which the pose starts again.
 constexpr int kRefusalsToRestart = 15;
-/// Refused GNSS samples in a row after which a pose that is not valid starts again although matches
-/// pass: GNSS must confirm it, and cannot.
-constexpr int kRefusalsToRestartMatched = 50;
 /// The pose starts again with a larger sigma of the heading, in which the filter is linear. Only a
 /// gap of odometry makes it so large.
 constexpr double kMostYawSigma_rad = radians(30.0);
@@ -95,7 +92,6 @@ TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
   if (pose_valid_) error = tracker_.gnss_error();
   arbiter_.add_gnss(sample.time, tracker_.latest_innovation(), passes, error);
   gnss_refused_in_a_row_ = passes ? 0 : gnss_refused_in_a_row_ + 1;
-  gnss_refused_while_not_valid_ = passes || pose_valid_ ? 0 : gnss_refused_while_not_valid_ + 1;
   if (passes && trusted) compare_map(sample);
   return update;
 }
@@ -176,8 +172,7 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
     arbiter_.forget_drift(now);
   }
   const bool matched = match_passed_ && now - *match_passed_ <= kMatchAbsence;
-  const bool gnss_refused = (gnss_refused_in_a_row_ >= kRefusalsToRestart && !matched) ||
-                            gnss_refused_while_not_valid_ >= kRefusalsToRestartMatched;
+  const bool gnss_refused = gnss_refused_in_a_row_ >= kRefusalsToRestart && !matched;
   const bool start_failed =
       !trusted_ && arbiter_.matches_refused_in_a_row() >= kRefusalsToStartAgain;
   const bool wheels_slip = std::abs(tracker_.speed_scale_error()) >
@@ -245,7 +240,6 @@ void PoseEstimator::restart() {
   pose_valid_ = false;
   trusted_ = false;
   gnss_refused_in_a_row_ = 0;
-  gnss_refused_while_not_valid_ = 0;
   match_passed_.reset();
   gnss_passed_.reset();
   gnss_judged_.reset();
