@@ -40,7 +40,7 @@ struct EstimationCounters {
   /// Offset of the cameras' time stamps against odometry, or 0 while it is tolerated
   /// (StampMonitor).
   std::atomic<int> stamp_offset_ms{0};
-  std::atomic<int> gnss_lag_ms{0};  ///< age of GNSS, or 0 while it is tolerated (GnssLagWatch)
+  std::atomic<int> gnss_lag_ms{0};  ///< age of GNSS; 0 while it is tolerated (GnssLagWatch)
   /// GNSS minus map, east and north, or 0 while they agree (MapOffsetMonitor).
   std::array<std::atomic<int>, 2> map_offset_cm{};
   /// The cameras that the latest frameset used, a CameraMask.

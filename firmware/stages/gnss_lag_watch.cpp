@@ -10,7 +10,8 @@ void GnssLagWatch::add_rate(Time time, double yaw_rate_radps) {
 }
 
 void GnssLagWatch::add(const GnssSample& sample) {
-  if (sample.yaw) waiting_ = Heading{sample.time, sample.yaw->yaw_rad};
+  if (!sample.yaw || sample.yaw->sigma_rad > kMostSigma_rad) return;
+  waiting_ = Heading{sample.time, sample.yaw->yaw_rad};
 }
 
 void GnssLagWatch::reset() {

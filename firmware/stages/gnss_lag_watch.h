@@ -1,8 +1,10 @@
 // Watches whether GNSS says where the vehicle is now, or where it was some time ago.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
+#include "common/se2.h"
 #include "common/time.h"
 #include "common/vehicle_samples.h"
 #include "pipeline/localization/stamp_monitor.h"
@@ -10,12 +12,15 @@
 namespace bevloc::firmware {
 
 /// GNSS that lags puts the vehicle too far back along the road, and matches often cannot tell. Its
-/// heading lags as well, and bends show by how much. A receiver without heading, or a straight
-/// road, gives no evidence. Allocates in the constructor only. One thread.
+/// heading lags as well, and bends show by how much. A straight road gives no evidence, and neither
+/// does a heading that is a course over ground: it is that of the antenna, and the receiver filters
+/// it. Allocates in the constructor only. One thread.
 class GnssLagWatch {
  public:
   /// A sample may be as old as one cycle of GNSS.
   static constexpr Duration kTolerated = std::chrono::milliseconds(100);
+  /// Headings of receivers with two antennas have a smaller sigma, courses over ground a larger.
+  static constexpr double kMostSigma_rad = radians(2.0);
 
   /// Adds the vehicle's yaw rate.
   void add_rate(Time time, double yaw_rate_radps);
@@ -23,11 +28,12 @@ class GnssLagWatch {
   /// Adds a sample of GNSS.
   void add(const GnssSample& sample);
 
-  /// Whether the heading is certainly older than its time stamp, or newer, by more than kTolerated.
-  bool contradicts() const { return monitor_.contradicts(); }
+  /// Whether the heading is certainly older than its time stamp by more than kTolerated.
+  bool contradicts() const { return lag_ms() > 0; }
 
-  /// How much older the heading is than its time stamp; 0 while it is tolerated.
-  int lag_ms() const { return monitor_.contradicting_ms(); }
+  /// How much older the heading is than its time stamp; 0 while it is tolerated. A heading that
+  /// seems newer is none of a GNSS that lags: the yaw rate is late then.
+  int lag_ms() const { return std::max(monitor_.contradicting_ms(), 0); }
 
   /// Forgets everything, after a gap in time or because GNSS is excluded for another reason.
   void reset();

@@ -72,8 +72,9 @@ void ViewLog::note_gnss_lag(int lag_ms) const {
   if ((lag_ms != 0) == (before_.gnss_lag_ms != 0)) return;
   if (lag_ms != 0) {
     spdlog::error(
-        "GNSS: its headings are {} ms older than odometry, as bends show; check the delay of its "
-        "messages and of the yaw rate",
+        "GNSS: its headings are {} ms older than the yaw rate, as bends show; check the delay of "
+        "its "
+        "messages",
         lag_ms);
   } else {
     spdlog::info("GNSS: its headings agree with odometry again, or it is not used");

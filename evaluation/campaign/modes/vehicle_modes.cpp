@@ -79,7 +79,7 @@ std::vector<Mode> odometry_modes() {
             fault(FaultKind::kYawRateWrong, {.yaw_rate_degps = 160.0}), contradicts);
   modes.add("odometry-late", "odometry is 200 ms old", kTwenty,
             fault(FaultKind::kOdometryLate, {.delay_ms = 200.0}),
-            contradicts | Why::kCalibrationFault | Why::kGnssContradicts);
+            contradicts | Why::kCalibrationFault);
   return std::move(modes).all();
 }
 

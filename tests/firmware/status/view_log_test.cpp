@@ -36,7 +36,7 @@ TEST(ViewLogTest, TellsOnceByHowMuchGnssLags) {
     view.gnss_lag_ms = lag_ms;
     log.note(view);
   }
-  EXPECT_THAT(capture.text(), HasSubstr("GNSS: its headings are 480 ms older than odometry"));
+  EXPECT_THAT(capture.text(), HasSubstr("GNSS: its headings are 480 ms older than the yaw rate"));
   EXPECT_EQ(capture.text().find("460"), std::string::npos);
   EXPECT_THAT(capture.text(), HasSubstr("GNSS: its headings agree with odometry again"));
 }
