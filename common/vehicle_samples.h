@@ -17,6 +17,9 @@ struct OdometrySample {
   /// the last second, in standard deviations. It is empty while a bias of 1 degree/s would not be
   /// noticeable.
   std::optional<double> wheel_lean{};
+  /// Whether noise changes speed or yaw rate from sample to sample while the vehicle drives. It
+  /// does not if their steps are coarse.
+  bool has_fine_steps = true;
 };
 
 /// Position in the map frame, of the middle of the rear axle or of an antenna. Each sigma is one

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "can/messages/vehicle_messages.h"
-
 namespace bevloc::can {
 namespace {
 
@@ -18,13 +16,15 @@ constexpr double kWheelDifference_m = 0.3;
 
 // Along the vehicle, tyres hold about 1.2 g when braking, and no series car gains speed with more
 // than 1 g. The step allows for noise and a late time stamp. Each sample is compared with those of
-// the last 100 ms, at most eight, because spinning wheels gain their speed within several samples.
+// the last 100 ms, because spinning wheels gain their speed within several samples. Of samples that
+// come faster than every 12.5 ms, some are left out, so that the others cover this time.
 constexpr double kBraking_mps2 = 12.0;
 constexpr double kGaining_mps2 = 10.0;
 constexpr double kSpeedStep_mps = 0.3;
 constexpr double kYawAcceleration_radps2 = 5.0;
 constexpr double kYawRateStep_radps = 0.05;
 constexpr Duration kComparedWith = std::chrono::milliseconds(100);
+constexpr Duration kKeptApart = kComparedWith / 8;
 
 // Across the vehicle, tyres hold about 1.2 g. The turning radius of the rear axle of a small car is
 // about 3 m.
@@ -38,13 +38,13 @@ constexpr double kYawRateAtStandstill_radps = 0.2;
 constexpr double kDisputedAcceleration_mps2 = 0.5;
 constexpr Duration kSettledAfter = std::chrono::milliseconds(2500);
 
-constexpr double kNominalInterval_s = 1e-3 * kOdometryCycleMs;
-constexpr double kSlowInterval_s = 0.045;
-constexpr double kTimelyInterval_s = 0.030;
+// Limits of the mean interval, as multiples of the interval at which samples should come.
+constexpr double kSlowFactor = 2.25;
+constexpr double kTimelyFactor = 1.5;
+/// No interval counts as a larger multiple, so that one gap of any length does not count as slow.
+constexpr double kLongestFactor = 10.0;
 /// The mean follows the interval within about ten samples.
 constexpr double kIntervalGain = 0.1;
-/// A longer interval counts as this long, so that one gap of any length does not count as slow.
-constexpr double kLongestInterval_s = 0.2;
 
 }  // namespace
 
@@ -96,8 +96,12 @@ bool OdometryCheck::is_back(const Wheels& sample) const {
          !yaw_rate_jumps(before_jump_, sample);
 }
 
-/// Keeps the samples of the compared time, and at least the latest one.
+/// Keeps samples of the compared time, and at least the latest one.
 void OdometryCheck::keep(const Wheels& sample) {
+  const bool near_the_one_before =
+      recent_count_ >= 2 &&
+      recent_[recent_count_ - 1].time - recent_[recent_count_ - 2].time < kKeptApart;
+  if (near_the_one_before) --recent_count_;
   const auto end = recent_.begin() + static_cast<std::ptrdiff_t>(recent_count_);
   auto first = std::find_if(recent_.begin(), end, [&](const Wheels& kept) {
     return sample.time - kept.time <= kComparedWith;
@@ -115,14 +119,18 @@ bool OdometryCheck::is_too_sharp(const Wheels& sample) const {
 }
 
 bool OdometryCheck::wheels_contradict(const Wheels& sample) {
+  wheel_lean_.reset();
   const double expected_mps = sample.yaw_rate_radps * rear_track_m_;
   const double excess_mps = sample.right_mps - sample.left_mps - expected_mps;
   const double allowed_mps = kWheelDifference_mps +
                              kWheelDifferenceShare * std::abs(sample.speed_mps()) +
                              kWheelDifference_m * std::abs(sample.yaw_rate_radps);
-  return std::abs(excess_mps) > allowed_mps ||
-         learned_difference_.contradicts(
-             {sample.time, excess_mps, sample.speed_mps(), sample.yaw_rate_radps});
+  if (std::abs(excess_mps) > allowed_mps) return true;
+  if (!sample.both_sides) return false;
+  const bool contradict = learned_difference_.contradicts(
+      {sample.time, excess_mps, sample.speed_mps(), sample.yaw_rate_radps});
+  wheel_lean_ = learned_difference_.lean();
+  return contradict;
 }
 
 bool OdometryCheck::speed_jumps(const Wheels& from, const Wheels& to) const {
@@ -145,14 +153,15 @@ OdometryVerdict OdometryCheck::jump(const Wheels& from, const Wheels& to) const 
 }
 
 void OdometryCheck::watch_rate(Time time) {
-  if (!latest_) mean_interval_s_ = kNominalInterval_s;
+  if (!latest_) mean_interval_s_ = interval_s_;
   if (latest_) {
-    const double interval_s = std::min(to_seconds(time - *latest_), kLongestInterval_s);
+    const double longest_s = kLongestFactor * interval_s_;
+    const double interval_s = std::min(to_seconds(time - *latest_), longest_s);
     mean_interval_s_ += kIntervalGain * (interval_s - mean_interval_s_);
   }
   latest_ = time;
-  if (mean_interval_s_ > kSlowInterval_s) slow_ = true;
-  if (mean_interval_s_ < kTimelyInterval_s) slow_ = false;
+  if (mean_interval_s_ > kSlowFactor * interval_s_) slow_ = true;
+  if (mean_interval_s_ < kTimelyFactor * interval_s_) slow_ = false;
 }
 
 }  // namespace bevloc::can

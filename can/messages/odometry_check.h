@@ -30,21 +30,25 @@ class OdometryCheck {
     double left_mps = 0.0;
     double right_mps = 0.0;
     double yaw_rate_radps = 0.0;
+    /// Whether each side was measured. Otherwise the wheels cannot contradict the yaw rate.
+    bool both_sides = true;
 
     double speed_mps() const { return 0.5 * (left_mps + right_mps); }
   };
 
-  /// `rear_track_m` is the distance between the rear wheels.
-  explicit OdometryCheck(double rear_track_m) : rear_track_m_(rear_track_m) {}
+  /// `rear_track_m` is the distance between the rear wheels. Samples come every `interval`.
+  OdometryCheck(double rear_track_m, Duration interval)
+      : rear_track_m_(rear_track_m), interval_s_(to_seconds(interval)) {}
 
   OdometryVerdict judge(const Wheels& sample);
 
-  /// Whether the samples come much less often than every `kOdometryCycleMs`. This becomes true when
-  /// their mean interval exceeds 45 ms, and false when it is below 30 ms.
+  /// Whether the samples come much less often than they should. This becomes true when their mean
+  /// interval exceeds the right one by a factor of 2.25, and false when it is below 1.5 times that
+  /// interval: 45 ms and 30 ms for samples that should come every 20 ms.
   bool is_slow() const { return slow_; }
 
   /// OdometrySample::wheel_lean of the latest sample.
-  std::optional<double> wheel_lean() const { return learned_difference_.lean(); }
+  const std::optional<double>& wheel_lean() const { return wheel_lean_; }
 
   /// Number of samples with this verdict.
   uint64_t count(OdometryVerdict verdict) const { return counts_[static_cast<size_t>(verdict)]; }
@@ -62,10 +66,13 @@ class OdometryCheck {
   void watch_rate(Time time);
 
   double rear_track_m_;
+  double interval_s_;
   /// Compares the mean of some samples with what was learned from the samples before.
   WheelDifference learned_difference_;
-  static constexpr size_t kRecent = 8;
-  std::array<Wheels, kRecent> recent_{};  ///< plausible samples, oldest first
+  std::optional<double> wheel_lean_;
+  static constexpr size_t kRecent = 10;
+  /// Plausible samples, oldest first. The last one is the latest.
+  std::array<Wheels, kRecent> recent_{};
   size_t recent_count_ = 0;
   Wheels before_jump_{};
   std::optional<Wheels> disputed_;  ///< the latest sample since a jump

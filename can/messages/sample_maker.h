@@ -29,9 +29,10 @@ GnssSample gnss_sample_of(const GeodeticFix& fix, GeoReference& geo, Time time);
 /// after construction. One thread.
 class SampleMaker {
  public:
-  /// `rear_track_m` is the distance between the rear wheels.
-  SampleMaker(GeodeticPosition map_origin, double rear_track_m)
-      : geo_(map_origin), odometry_check_(rear_track_m) {}
+  /// `rear_track_m` is the distance between the rear wheels. Odometry comes every
+  /// `odometry_interval`.
+  SampleMaker(GeodeticPosition map_origin, double rear_track_m, Duration odometry_interval)
+      : geo_(map_origin), odometry_check_(rear_track_m, odometry_interval) {}
 
   /// Call it first for each frame, with its time of arrival.
   void note_frame(Time received) { latest_ = received; }

@@ -36,7 +36,7 @@ double at_least_one_step(double sigma, const Signal& signal) {
 
 VehicleInput::VehicleInput(const BaseIds& base, GeodeticPosition map_origin, double rear_track_m)
     : base_(base),
-      maker_(map_origin, rear_track_m),
+      maker_(map_origin, rear_track_m, std::chrono::milliseconds(kOdometryCycleMs)),
       receivers_(receivers_of(kInputs, std::make_index_sequence<kInputs.size()>())),
       odometry_group_(window_of(kOdometryCycleMs)),
       gnss_group_(window_of(kGnssCycleMs)) {}

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "can/messages/message_table.h"
@@ -11,6 +12,10 @@ namespace bevloc::can {
 namespace {
 
 constexpr int kMostCycles = 4;
+/// Several frames that come at the same interval leave a gap between two of them that is at least
+/// as long as the interval divided by their number. A sample begins after such a gap. Frames do not
+/// come exactly on time, so this share of the gap suffices.
+constexpr double kGapShare = 0.8;
 /// The smallest sigmas, because no measurement is exact.
 constexpr double kLeastSigma_m = 0.01;
 constexpr double kLeastSigma_deg = 0.01;
@@ -24,6 +29,18 @@ void add_if(std::vector<size_t>& signals, const std::optional<size_t>& signal) {
   if (signal && std::ranges::find(signals, *signal) == signals.end()) signals.push_back(*signal);
 }
 
+/// Returns the number of frames that bring these signals.
+int frames_of(const VehicleBinding& binding, const std::vector<size_t>& signals) {
+  std::set<std::pair<size_t, std::optional<uint64_t>>> frames;
+  for (const size_t index : signals) {
+    const BoundSignal& signal = binding.signals[index];
+    std::optional<uint64_t> page;
+    if (signal.multiplexed) page = signal.multiplexed->value;
+    frames.emplace(signal.message, page);
+  }
+  return static_cast<int>(frames.size());
+}
+
 }  // namespace
 
 DbcVehicleInput::DbcVehicleInput(VehicleBinding binding, const BaseIds& base,
@@ -31,7 +48,8 @@ DbcVehicleInput::DbcVehicleInput(VehicleBinding binding, const BaseIds& base,
     : binding_(std::move(binding)),
       base_(base),
       rear_track_m_(rear_track_m),
-      maker_(map_origin, rear_track_m),
+      has_fine_steps_(has_fine_steps(binding_)),
+      maker_(map_origin, rear_track_m, odometry_interval(binding_)),
       slots_(binding_.signals.size()) {
   for (const BoundMessage& message : binding_.messages) {
     const MessageProtection& protection = message.protection;
@@ -43,11 +61,15 @@ DbcVehicleInput::DbcVehicleInput(VehicleBinding binding, const BaseIds& base,
     odometry_signals_.push_back(wheel.signal);
   }
   odometry_signals_.push_back(binding_.yaw_rate.signal);
+  odometry_frames_ = frames_of(binding_, odometry_signals_);
   if (!binding_.gnss) return;
   const BoundGnss& gnss = *binding_.gnss;
   position_signals_ = {gnss.latitude, gnss.longitude};
   for (const auto& signal : {gnss.sigma_north, gnss.sigma_east}) add_if(position_signals_, signal);
   for (const auto& signal : {gnss.heading, gnss.sigma_heading}) add_if(heading_signals_, signal);
+  gnss_signals_ = position_signals_;
+  gnss_signals_.insert(gnss_signals_.end(), heading_signals_.begin(), heading_signals_.end());
+  gnss_frames_ = frames_of(binding_, gnss_signals_);
 }
 
 VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
@@ -68,8 +90,10 @@ VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
   if (!accepted) return {};
   const bool replaced_unused = store(index, received);
   VehicleSamples samples;
-  if (all_new(odometry_signals_)) samples.odometry = odometry(received.received);
-  if (is_position_complete(received.received)) samples.gnss = gnss(received.received);
+  const bool has_odometry = all_new(odometry_signals_) &&
+                            !drop_stale(odometry_signals_, odometry_frames_, received.received);
+  if (has_odometry) samples.odometry = odometry(received.received);
+  if (is_fix_complete(received.received)) samples.gnss = gnss(received.received);
   if (replaced_unused && (waits_for_old(odometry_signals_, index, received.received) ||
                           waits_for_old(position_signals_, index, received.received))) {
     ++counters_.incomplete;
@@ -78,11 +102,12 @@ VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
 }
 
 /// Whether a position is new, and there is no heading to wait for.
-bool DbcVehicleInput::is_position_complete(Time now) const {
-  const bool heading_came =
-      all_new(heading_signals_) ||
+bool DbcVehicleInput::is_fix_complete(Time now) {
+  if (position_signals_.empty() || !all_new(position_signals_)) return false;
+  const bool heading_stopped =
       std::ranges::any_of(heading_signals_, [&](size_t signal) { return is_old(signal, now); });
-  return !position_signals_.empty() && all_new(position_signals_) && heading_came;
+  if (heading_stopped) return !drop_stale(position_signals_, gnss_frames_, now);
+  return all_new(heading_signals_) && !drop_stale(gnss_signals_, gnss_frames_, now);
 }
 
 /// Whether `message` has one of these signals, while another one of them no longer comes.
@@ -107,6 +132,11 @@ bool DbcVehicleInput::store(size_t message, const ReceivedFrame& received) {
     const double physical = physical_from(signal.layout, bytes);
     Slot& slot = slots_[i];
     replaced_unused = replaced_unused || slot.is_new;
+    if (slot.received != Time::min()) {
+      const Duration interval = received.received - slot.received;
+      slot.interval = std::min(interval, slot.latest_interval);
+      slot.latest_interval = interval;
+    }
     slot.raw = raw_from(signal.layout, bytes);
     slot.value = physical * signal.factor;
     slot.received = received.received;
@@ -122,27 +152,45 @@ bool DbcVehicleInput::all_new(const std::vector<size_t>& signals) const {
   return std::ranges::all_of(signals, [this](size_t signal) { return slots_[signal].is_new; });
 }
 
-std::optional<Time> DbcVehicleInput::take(const std::vector<size_t>& signals) {
-  Time first = Time::max();
-  Time last = Time::min();
-  Duration window{};
+/// Drops the values that will soon be replaced, so that the sample waits for the next ones. Returns
+/// whether there were any.
+bool DbcVehicleInput::drop_stale(const std::vector<size_t>& signals, int frames, Time now) {
+  Duration longest{};
+  for (const size_t signal : signals) longest = std::max(longest, interval_of(signal));
+  const double fresh_share = 1.0 - kGapShare / frames;
+  bool dropped = false;
+  bool sample_is_lost = false;
+  for (const size_t signal : signals) {
+    const Duration interval = interval_of(signal);
+    const Duration fresh = from_seconds(fresh_share * to_seconds(interval));
+    const Duration most_age = std::min(fresh, kMostCycles * cycle_of(signal));
+    if (now - slots_[signal].received <= most_age) continue;
+    slots_[signal].is_new = false;
+    dropped = true;
+    // A message that comes more often than the others brings the next value for the same sample.
+    sample_is_lost = sample_is_lost || 2 * interval > longest;
+  }
+  if (sample_is_lost) ++counters_.incomplete;
+  return dropped;
+}
+
+bool DbcVehicleInput::take(const std::vector<size_t>& signals) {
   bool available = true;
-  for (const size_t index : signals) {
-    Slot& slot = slots_[index];
-    slot.is_new = false;
-    first = std::min(first, slot.received);
-    last = std::max(last, slot.received);
-    available = available && slot.available;
-    window = std::max(window, kMostCycles * cycle_of(index));
+  for (const size_t signal : signals) {
+    slots_[signal].is_new = false;
+    available = available && slots_[signal].available;
   }
   if (!available) ++counters_.not_available;
-  const bool together = last - first <= window;
-  if (!together) ++counters_.incomplete;
-  return available && together ? std::optional(first) : std::nullopt;
+  return available;
 }
 
 Duration DbcVehicleInput::cycle_of(size_t signal) const {
   return binding_.messages[binding_.signals[signal].message].cycle;
+}
+
+/// How often the signal comes. A multiplexed one comes more rarely than its message.
+Duration DbcVehicleInput::interval_of(size_t signal) const {
+  return std::max(cycle_of(signal), slots_[signal].interval);
 }
 
 bool DbcVehicleInput::is_old(size_t signal, Time now) const {
@@ -162,8 +210,7 @@ std::optional<bool> DbcVehicleInput::holds(const std::optional<BoundCondition>& 
 }
 
 std::optional<OdometrySample> DbcVehicleInput::odometry(Time now) {
-  const auto time = take(odometry_signals_);
-  if (!time) return std::nullopt;
+  if (!take(odometry_signals_)) return std::nullopt;
   const BoundYawRate& turning = binding_.yaw_rate;
   const BoundWheels& moving = binding_.wheels;
   const auto negative = turning.negative ? holds(turning.negative, now) : std::optional(false);
@@ -189,10 +236,15 @@ std::optional<OdometrySample> DbcVehicleInput::odometry(Time now) {
     maker_.note_implausible();
     return std::nullopt;
   }
-  return maker_.odometry({.time = *time,
-                          .left_mps = speeds->left_mps,
-                          .right_mps = speeds->right_mps,
-                          .yaw_rate_radps = yaw_rate_radps});
+  Time first = now;
+  for (const size_t signal : odometry_signals_) first = std::min(first, slots_[signal].received);
+  auto sample = maker_.odometry({.time = first,
+                                 .left_mps = speeds->left_mps,
+                                 .right_mps = speeds->right_mps,
+                                 .yaw_rate_radps = yaw_rate_radps,
+                                 .both_sides = speeds->both_sides});
+  if (sample) sample->has_fine_steps = has_fine_steps_;
+  return sample;
 }
 
 double DbcVehicleInput::sigma_m(const std::optional<size_t>& signal) const {
@@ -219,9 +271,9 @@ std::optional<GeodeticFix::Heading> DbcVehicleInput::heading(Time now, Time time
 
 std::optional<GnssSample> DbcVehicleInput::gnss(Time now) {
   const BoundGnss& gnss = *binding_.gnss;
-  const auto time = take(position_signals_);
+  const bool available = take(position_signals_);
   for (const size_t signal : heading_signals_) slots_[signal].is_new = false;
-  if (!time) return std::nullopt;
+  if (!available) return std::nullopt;
   if (!holds(gnss.valid, now).value_or(false)) {
     ++counters_.not_available;
     return std::nullopt;
@@ -235,8 +287,9 @@ std::optional<GnssSample> DbcVehicleInput::gnss(Time now) {
     ++counters_.not_available;
     return std::nullopt;
   }
-  fix.heading = heading(now, *time);
-  return maker_.gnss(fix, *time);
+  const Time time = std::min(slots_[gnss.latitude].received, slots_[gnss.longitude].received);
+  fix.heading = heading(now, time);
+  return maker_.gnss(fix, time);
 }
 
 VehicleInputCounters DbcVehicleInput::counters() const {

@@ -14,11 +14,13 @@ namespace bevloc::can {
 /// Makes samples from the signals of a VehicleBinding, as VehicleInput does from bevloc's own
 /// messages. Frames must pass counter and checksum (E2eMonitor). An odometry sample is complete
 /// when all wheels and the yaw rate have new values. A GNSS sample is complete when all its signals
-/// have new values. The time of a sample is that of its earliest value. The values of one sample
-/// may be at most four cycles of their message apart, and a condition (valid, backward) may be at
-/// most four cycles of its message old. A GNSS sample has no heading if the heading or its sigma is
-/// further from the sample's time, and does not wait for a heading that is more than four cycles
-/// old. One thread. Does not allocate after construction.
+/// have new values. The time of a sample is that of its earliest value, for GNSS that of the
+/// earliest value of the position. A value that the next one will soon replace is not combined with
+/// the new value of another message: it is dropped, and the sample waits for the next one.
+/// Otherwise one lost frame would shift the values of two messages against each other for good. A
+/// condition (valid, backward) may be at most four cycles of its message old. A GNSS sample does
+/// not wait for a heading that is more than four cycles old, and then has none. One thread. Does
+/// not allocate after construction.
 class DbcVehicleInput final : public VehicleDecoder {
  public:
   /// `base` has the identifiers of the localizer's own messages. `rear_track_m` is the distance
@@ -36,6 +38,9 @@ class DbcVehicleInput final : public VehicleDecoder {
     double value = 0.0;  ///< in the unit of Quantity
     int64_t raw = 0;
     Time received = Time::min();
+    Duration latest_interval{};  ///< between the latest two values
+    /// The shorter one of the latest two intervals, because one lost frame makes one of them long.
+    Duration interval{};
     bool available = false;  ///< in range and not SNA
     bool is_new = false;     ///< no sample has used the value yet
   };
@@ -43,14 +48,15 @@ class DbcVehicleInput final : public VehicleDecoder {
   /// Returns whether a value was replaced that no sample had used.
   bool store(size_t message, const ReceivedFrame& received);
   bool all_new(const std::vector<size_t>& signals) const;
-  bool is_position_complete(Time now) const;
+  bool drop_stale(const std::vector<size_t>& signals, int frames, Time now);
+  bool is_fix_complete(Time now);
   bool waits_for_old(const std::vector<size_t>& signals, size_t message, Time now) const;
   Duration cycle_of(size_t signal) const;
+  Duration interval_of(size_t signal) const;
   /// Whether the latest value is more than four cycles old, or none has come yet.
   bool is_old(size_t signal, Time now) const;
-  /// Marks the values as used, and returns the time of the first one. Returns nothing if they are
-  /// too far apart or one is not available.
-  std::optional<Time> take(const std::vector<size_t>& signals);
+  /// Marks the values as used. Returns whether all are available.
+  bool take(const std::vector<size_t>& signals);
   std::optional<bool> holds(const std::optional<BoundCondition>& condition, Time now) const;
   std::optional<OdometrySample> odometry(Time now);
   std::optional<GnssSample> gnss(Time now);
@@ -60,12 +66,16 @@ class DbcVehicleInput final : public VehicleDecoder {
   VehicleBinding binding_;
   BaseIds base_;
   double rear_track_m_;
+  bool has_fine_steps_;
   SampleMaker maker_;
   std::vector<E2eMonitor> monitors_;
   std::vector<Slot> slots_;
   std::vector<size_t> odometry_signals_;
   std::vector<size_t> position_signals_;  ///< latitude, longitude and their sigmas
   std::vector<size_t> heading_signals_;   ///< the heading and its sigma
+  std::vector<size_t> gnss_signals_;      ///< all of these
+  int odometry_frames_ = 0;               ///< number of frames that bring a sample of odometry
+  int gnss_frames_ = 0;
   VehicleInputCounters counters_;
 };
 

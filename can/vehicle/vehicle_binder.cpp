@@ -1,13 +1,13 @@
 #include "can/vehicle/vehicle_binder.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "can/dbc/near_name.h"
+#include "common/number_text.h"
 
 namespace bevloc::can {
 namespace {
@@ -155,10 +155,7 @@ Bound<void> check_multiplexing(const DbcSignal& signal, const DbcMessage& messag
 }  // namespace
 
 std::optional<int64_t> whole_number(const std::string& text) {
-  int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  return parse_number<int64_t>(text);
 }
 
 Bound<std::string> VehicleBinder::message_name(const std::string& name) const {

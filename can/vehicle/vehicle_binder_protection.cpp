@@ -11,7 +11,6 @@
 namespace bevloc::can {
 namespace {
 
-constexpr double kSlowestOdometry_ms = 40.0;
 constexpr double kSlowestGnss_ms = 2000.0;
 constexpr double kFastest_ms = 1.0;
 

@@ -84,6 +84,9 @@ struct BoundGnss {
   std::optional<size_t> sigma_heading{};
 };
 
+/// The longest cycle that a message of odometry may have.
+constexpr double kSlowestOdometry_ms = 40.0;
+
 /// All that DbcVehicleInput reads.
 struct VehicleBinding {
   std::string dbc_file;
@@ -100,7 +103,17 @@ std::vector<uint32_t> ids_of(const VehicleBinding& binding);
 /// Whether a message has more bytes than a classic frame.
 bool needs_fd(const VehicleBinding& binding);
 
-/// Messages without counter or checksum, of which a receiver cannot notice every fault.
+/// The time from one sample of odometry to the next, as the slowest message brings them: 20 to 40
+/// ms. It is 40 ms if a signal is multiplexed, because the sender decides how often such a signal
+/// comes.
+Duration odometry_interval(const VehicleBinding& binding);
+
+/// Whether the steps of a wheel or of the yaw rate are so fine that noise changes the value from
+/// sample to sample while the vehicle drives. Otherwise repeated values are no sign of a fault.
+bool has_fine_steps(const VehicleBinding& binding);
+
+/// The faults that a receiver cannot notice: of messages without counter or checksum, and of
+/// odometry with coarse steps.
 std::vector<std::string> warnings_of(const VehicleBinding& binding);
 
 }  // namespace bevloc::can

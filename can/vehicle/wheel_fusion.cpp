@@ -86,8 +86,9 @@ std::optional<RearSpeeds> WheelFusion::speeds() const {
   }
   if (2 * all.count < static_cast<int>(count_)) return std::nullopt;
   const double difference_mps = half_track_m_ * yaw_rate_radps_;
-  return RearSpeeds{(left.count > 0 ? left : all).value() - difference_mps,
-                    (right.count > 0 ? right : all).value() + difference_mps};
+  return RearSpeeds{.left_mps = (left.count > 0 ? left : all).value() - difference_mps,
+                    .right_mps = (right.count > 0 ? right : all).value() + difference_mps,
+                    .both_sides = left.count > 0 && right.count > 0};
 }
 
 }  // namespace bevloc::can

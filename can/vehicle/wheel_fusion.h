@@ -13,6 +13,8 @@ namespace bevloc::can {
 struct RearSpeeds {
   double left_mps = 0.0;
   double right_mps = 0.0;
+  /// Whether each side was measured. Otherwise one was computed from the other and the yaw rate.
+  bool both_sides = true;
 };
 
 /// Collects the wheels of one moment. Each wheel gives the speed of the middle of the rear axle. A

@@ -7,8 +7,9 @@
 namespace bevloc {
 namespace {
 
-/// The noise of speed and yaw rate changes their last digits from sample to sample. This many exact
-/// repetitions of both while driving mean that they are no longer measured.
+/// The noise of speed and yaw rate changes their last digits from sample to sample if their steps
+/// are fine. This many exact repetitions of both while driving then mean that they are no longer
+/// measured.
 constexpr int kStuckRepetitions = 12;
 constexpr double kDriving_mps = 0.5;
 
@@ -32,7 +33,7 @@ bool OdometryMonitor::accept(const OdometrySample& sample) {
 }
 
 bool OdometryMonitor::is_stuck(const OdometrySample& sample) {
-  const bool repeats = latest_ && latest_->speed_mps == sample.speed_mps &&
+  const bool repeats = sample.has_fine_steps && latest_ && latest_->speed_mps == sample.speed_mps &&
                        latest_->yaw_rate_radps == sample.yaw_rate_radps &&
                        std::abs(sample.speed_mps) > kDriving_mps;
   repetitions_ = repeats ? repetitions_ + 1 : 0;

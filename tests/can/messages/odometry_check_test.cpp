@@ -13,6 +13,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr double kWheelTrack_m = 1.6;
+constexpr milliseconds kUsualInterval(20);
 
 class OdometryCheckTest : public testing::Test {
  protected:
@@ -25,7 +26,7 @@ class OdometryCheckTest : public testing::Test {
 
   OdometryVerdict judge(const Wheels& sample) {
     const OdometryVerdict verdict = check_.judge(sample);
-    now_ += milliseconds(20);
+    now_ += interval_;
     return verdict;
   }
 
@@ -38,7 +39,8 @@ class OdometryCheckTest : public testing::Test {
     return refused;
   }
 
-  OdometryCheck check_{kWheelTrack_m};
+  OdometryCheck check_{kWheelTrack_m, kUsualInterval};
+  Duration interval_ = kUsualInterval;
   Time now_{seconds(100)};
 };
 
@@ -50,7 +52,8 @@ TEST_F(OdometryCheckTest, WheelsThatContradictTheYawRateAreRefused) {
                         {now_, 0.0, 20 * kmh, 0.0},
                         {now_, 1.3 * 15.0, 15.0, 0.0}};
   for (const Wheels& sample : bad) {
-    EXPECT_EQ(OdometryCheck(kWheelTrack_m).judge(sample), OdometryVerdict::kWheelsContradictYawRate)
+    EXPECT_EQ(OdometryCheck(kWheelTrack_m, kUsualInterval).judge(sample),
+              OdometryVerdict::kWheelsContradictYawRate)
         << sample.left_mps << " and " << sample.right_mps;
   }
 }
@@ -93,7 +96,7 @@ TEST_F(OdometryCheckTest, WornTyresAndAnotherTrackArePlausible) {
       const double yaw_rate_radps =
           std::min(0.5, 8.0 / std::max(speed_mps, 1.0)) * std::min(1.0, speed_mps / 5.0);
       const double half_mps = 0.5 * track_m * yaw_rate_radps;
-      EXPECT_EQ(OdometryCheck(kWheelTrack_m)
+      EXPECT_EQ(OdometryCheck(kWheelTrack_m, kUsualInterval)
                     .judge({now_, 1.01 * (speed_mps - half_mps), 0.99 * (speed_mps + half_mps),
                             yaw_rate_radps}),
                 OdometryVerdict::kPlausible)
@@ -110,13 +113,20 @@ TEST_F(OdometryCheckTest, BothWheelsSpinningAreRefusedUntilTheyGrip) {
 }
 
 TEST_F(OdometryCheckTest, WheelsThatGainSpeedWithinATenthOfASecondAreRefused) {
-  for (const double speed_mps : {5.0, 10.0, 25.0}) {
-    for (const double factor : {1.3, 0.3}) {
-      check_ = OdometryCheck(kWheelTrack_m);
-      EXPECT_EQ(drive(speed_mps, 0.0, seconds(2)), 0);
-      for (int i = 1; i <= 5; ++i) judge(at(speed_mps * std::lerp(1.0, factor, 0.2 * i), 0.0));
-      EXPECT_EQ(drive(factor * speed_mps, 0.0, milliseconds(1500)), 75) << speed_mps;
-      EXPECT_EQ(drive(speed_mps, 0.0, seconds(1)), 0) << speed_mps;
+  for (const int interval_ms : {2, 5, 10, 20}) {
+    interval_ = milliseconds(interval_ms);
+    const int steps = 100 / interval_ms;
+    for (const double speed_mps : {5.0, 10.0, 25.0}) {
+      for (const double factor : {1.3, 0.3}) {
+        check_ = OdometryCheck(kWheelTrack_m, kUsualInterval);
+        EXPECT_EQ(drive(speed_mps, 0.0, seconds(2)), 0);
+        for (int i = 1; i <= steps; ++i) {
+          judge(at(speed_mps * std::lerp(1.0, factor, 1.0 * i / steps), 0.0));
+        }
+        EXPECT_EQ(drive(factor * speed_mps, 0.0, milliseconds(1500)), 1500 / interval_ms)
+            << speed_mps << " m/s every " << interval_ms << " ms";
+        EXPECT_EQ(drive(speed_mps, 0.0, seconds(1)), 0) << speed_mps;
+      }
     }
   }
 }
@@ -143,7 +153,7 @@ TEST_F(OdometryCheckTest, OneWildSampleIsRefusedAlone) {
 
 TEST_F(OdometryCheckTest, ASlowRateIsNoticedWithHysteresis) {
   for (const int interval_ms : {60, 100, 180}) {
-    OdometryCheck check{kWheelTrack_m};
+    OdometryCheck check{kWheelTrack_m, kUsualInterval};
     const auto run = [&](int every_ms, int samples) {
       int changes = 0;
       bool slow = check.is_slow();
@@ -174,6 +184,30 @@ TEST_F(OdometryCheckTest, AFewLostSamplesAreNotSlow) {
       EXPECT_FALSE(check_.is_slow()) << lost_ms << " ms, sample " << i;
     }
   }
+}
+
+TEST_F(OdometryCheckTest, ASlowRateIsJudgedByTheRightInterval) {
+  interval_ = milliseconds(40);
+  check_ = OdometryCheck(kWheelTrack_m, interval_);
+  EXPECT_EQ(drive(10.0, 0.0, seconds(2)), 0);
+  now_ += 2 * interval_;
+  drive(10.0, 0.0, interval_);
+  EXPECT_FALSE(check_.is_slow()) << "two samples are lost";
+  interval_ = milliseconds(120);
+  drive(10.0, 0.0, seconds(3));
+  EXPECT_TRUE(check_.is_slow());
+  interval_ = milliseconds(40);
+  drive(10.0, 0.0, seconds(2));
+  EXPECT_FALSE(check_.is_slow());
+}
+
+TEST_F(OdometryCheckTest, OnlyWheelsOnBothSidesLean) {
+  EXPECT_EQ(drive(14.0, 0.1, seconds(30)), 0);
+  EXPECT_TRUE(check_.wheel_lean());
+  Wheels one_side = at(14.0, 0.1);
+  one_side.both_sides = false;
+  EXPECT_EQ(judge(one_side), OdometryVerdict::kPlausible);
+  EXPECT_FALSE(check_.wheel_lean());
 }
 
 TEST_F(OdometryCheckTest, AYawRateWithTheWrongSignIsRefusedInABend) {

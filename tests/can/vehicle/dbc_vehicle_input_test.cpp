@@ -1,32 +1,25 @@
 #include "can/vehicle/dbc_vehicle_input.h"
 
+#include <cmath>
+#include <random>
+
 #include <gtest/gtest.h>
+
+#include "pipeline/tracker/odometry_monitor.h"
+#include "tests/can/vehicle/bound_vehicle.h"
 
 namespace bevloc::can {
 namespace {
 
-constexpr SignalLayout kSpeed{0, 16, ByteOrder::kIntel, RawType::kSigned, 0.01, 0.0};
-constexpr SignalLayout kYawRate{16, 16, ByteOrder::kIntel, RawType::kSigned, 0.001, 0.0};
-constexpr SignalLayout kReverse{32, 1};
-constexpr SignalLayout kRight{33, 1};
-
-/// A message with a speed and a yaw rate that have signs, and beside them a gear and a direction.
-VehicleBinding binding() {
-  VehicleBinding binding;
-  binding.messages = {{.name = "A",
-                       .id = 16,
-                       .length = 8,
-                       .cycle = std::chrono::milliseconds(20),
-                       .protection = {},
-                       .has_odometry = true}};
-  for (const SignalLayout& layout : {kSpeed, kYawRate, kReverse, kRight}) {
-    binding.signals.push_back({.name = "S", .layout = layout, .min = -500.0, .max = 500.0});
-  }
-  binding.wheels.wheels = {{0, WheelPlace::kVehicle}};
-  binding.wheels.backward = BoundCondition{2, {1}};
-  binding.yaw_rate = {.signal = 1, .negative = BoundCondition{3, {1}}};
-  return binding;
-}
+using test::binding;
+using test::binding_of_two_messages;
+using test::frame_with;
+using test::kCycle;
+using test::kPage;
+using test::kReverse;
+using test::kRight;
+using test::kSpeed;
+using test::kYawRate;
 
 OdometrySample sample_of(double speed_mps, bool reverse, double yaw_rate_radps, bool right) {
   DbcVehicleInput input(binding(), {}, {49.0, 8.4}, 1.6);
@@ -83,11 +76,7 @@ TEST(DbcVehicleInputTest, ADirectionThatIsNotAvailableGivesNoSample) {
 }
 
 TEST(DbcVehicleInputTest, OdometryWithoutOneOfItsMessagesIsCounted) {
-  VehicleBinding apart = binding();
-  apart.messages.push_back(apart.messages[0]);
-  apart.messages[1].id = 17;
-  apart.signals[1].message = 1;
-  DbcVehicleInput input(apart, {}, {49.0, 8.4}, 1.6);
+  DbcVehicleInput input(binding_of_two_messages(), {}, {49.0, 8.4}, 1.6);
   const auto send = [&](uint32_t id, int cycle) {
     input.accept({{.id = id, .length = 8}, Time(std::chrono::milliseconds(20 * cycle))});
   };
@@ -102,6 +91,79 @@ TEST(DbcVehicleInputTest, OdometryWithoutOneOfItsMessagesIsCounted) {
   EXPECT_EQ(input.counters().odometry_samples, samples);
   // The first message waits, and four cycles pass before the other message counts as missing.
   EXPECT_EQ(input.counters().incomplete, 46U);
+}
+
+TEST(DbcVehicleInputTest, TheSpeedOfTheVehicleAloneSaysNothingAboutTheYawRate) {
+  DbcVehicleInput input(binding(), {}, {49.0, 8.4}, 1.6);
+  Frame frame = frame_with(16, kSpeed, 14.0);
+  insert_physical(kYawRate, 0.1, {frame.data.data(), frame.length});
+  for (int cycle = 1; cycle <= 1500; ++cycle) {
+    const auto sample = input.accept({frame, Time(cycle * kCycle)}).odometry;
+    ASSERT_TRUE(sample);
+    ASSERT_FALSE(sample->wheel_lean) << cycle;
+  }
+}
+
+/// A sample comes every 40 ms: as often as the message, or with every second frame.
+TEST(DbcVehicleInputTest, TwoLostFramesOfSlowOdometryAreNoFault) {
+  VehicleBinding slow = binding();
+  slow.messages[0].cycle = 2 * kCycle;
+  VehicleBinding paged = binding();
+  paged.signals[1].multiplexed = BoundSignal::Multiplexed{kPage, 1};
+  Frame frame = frame_with(16, kSpeed, 2.0);
+  insert_bits(kPage, 1, {frame.data.data(), frame.length});
+  for (const VehicleBinding& bound : {slow, paged}) {
+    DbcVehicleInput input(bound, {}, {49.0, 8.4}, 1.6);
+    for (int sample = 1; sample <= 100; ++sample) {
+      if (sample != 50 && sample != 51) input.accept({frame, Time(sample * 2 * kCycle)});
+    }
+    EXPECT_EQ(input.counters().odometry_samples, 98U);
+    EXPECT_FALSE(input.fault_times().implausible);
+  }
+}
+
+VehicleBinding binding_with_steps(double speed_mps, double yaw_rate_radps) {
+  VehicleBinding with_steps = binding();
+  with_steps.signals[0].layout.scale = speed_mps;
+  with_steps.signals[1].layout.scale = yaw_rate_radps;
+  return with_steps;
+}
+
+/// Returns how many samples of a minute OdometryMonitor refuses. Sensors that stick do so after
+/// half of the time.
+int refused_in_a_minute(const VehicleBinding& bound, bool sensors_stick) {
+  DbcVehicleInput input(bound, {}, {49.0, 8.4}, 1.6);
+  OdometryMonitor monitor;
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise;
+  Frame frame;
+  int refused = 0;
+  for (int cycle = 1; cycle <= 3000; ++cycle) {
+    const double time_s = to_seconds(cycle * kCycle);
+    if (cycle <= 1500 || !sensors_stick) {
+      const double speed_mps = 14.0 + 2.0 * std::sin(0.2 * time_s) + 0.04 * noise(random);
+      const double yaw_rate_radps = 0.1 * std::sin(0.3 * time_s) + 0.002 * noise(random);
+      frame = frame_with(16, bound.signals[0].layout, speed_mps);
+      insert_physical(bound.signals[1].layout, yaw_rate_radps, {frame.data.data(), frame.length});
+    }
+    const auto sample = input.accept({frame, Time(cycle * kCycle)}).odometry;
+    refused += sample && monitor.accept(*sample) ? 0 : 1;
+  }
+  return refused;
+}
+
+TEST(DbcVehicleInputTest, ValuesWithCoarseStepsMayRepeat) {
+  const VehicleBinding coarse = binding_with_steps(0.28, 0.02);
+  EXPECT_EQ(refused_in_a_minute(coarse, false), 0);
+  EXPECT_EQ(refused_in_a_minute(binding(), false), 0);
+  const size_t other_warnings = warnings_of(binding()).size();
+  EXPECT_EQ(warnings_of(coarse).size(), other_warnings + 1);
+  // The fine steps of one value suffice to notice that the sensors are stuck.
+  for (const VehicleBinding& fine :
+       {binding(), binding_with_steps(0.28, 0.0005), binding_with_steps(0.01, 0.02)}) {
+    EXPECT_GT(refused_in_a_minute(fine, true), 1400);
+    EXPECT_EQ(warnings_of(fine).size(), other_warnings);
+  }
 }
 
 constexpr SignalLayout kLatitude{64, 32, ByteOrder::kIntel, RawType::kSigned, 1e-7, 0.0};
@@ -132,7 +194,6 @@ VehicleBinding binding_with_gnss() {
   return all;
 }
 
-constexpr Duration kCycle = std::chrono::milliseconds(20);
 /// Long enough for a message to become valid.
 constexpr int kSettlingCycles = 100;
 
@@ -187,21 +248,20 @@ TEST(DbcVehicleInputTest, OneMessageMayCarryOdometryAndGnss) {
 
 TEST(DbcVehicleInputTest, AnOldHeadingIsNotThatOfAFreshPosition) {
   for (const uint32_t old : {17U, 18U}) {
-    for (const bool is_too_old : {false, true}) {
+    for (const bool comes_again : {false, true}) {
       GnssVehicle vehicle(binding_with_gnss());
       Time now = vehicle.settle();
       // The positions wait for the other message during four of its cycles, which are 20 of their
       // own. One cycle later they no longer wait for it.
       vehicle.send_heading(old, now);
-      VehicleSamples samples;
-      const int later = is_too_old ? 21 : 20;
-      for (int cycle = 0; cycle < later; ++cycle) {
-        EXPECT_FALSE(samples.gnss);
-        samples = vehicle.send_motion_and_position(now += kCycle);
+      for (int cycle = 0; cycle < 20; ++cycle) {
+        EXPECT_FALSE(vehicle.send_motion_and_position(now += kCycle).gnss);
       }
-      if (!is_too_old) samples = vehicle.send_heading(old == 17 ? 18 : 17, now);
-      ASSERT_TRUE(samples.gnss) << old << ", " << is_too_old;
-      EXPECT_EQ(samples.gnss->yaw.has_value(), !is_too_old) << old;
+      EXPECT_FALSE(vehicle.send_heading(old == 17 ? 18 : 17, now).gnss) << "beside the old one";
+      const VehicleSamples samples = comes_again ? vehicle.send_heading(old, now)
+                                                 : vehicle.send_motion_and_position(now += kCycle);
+      ASSERT_TRUE(samples.gnss) << old << ", " << comes_again;
+      EXPECT_EQ(samples.gnss->yaw.has_value(), comes_again) << old;
     }
   }
 }

@@ -19,6 +19,7 @@ TEST(WheelFusionTest, TakesTwoRearWheelsAsTheyAre) {
   ASSERT_TRUE(speeds);
   EXPECT_NEAR(speeds->left_mps, 9.5, 1e-12);
   EXPECT_NEAR(speeds->right_mps, 10.5, 1e-12);
+  EXPECT_TRUE(speeds->both_sides);
 }
 
 TEST(WheelFusionTest, TranslatesFrontWheelsToTheRearAxle) {
@@ -47,6 +48,17 @@ TEST(WheelFusionTest, LeavesOutASlippingWheel) {
   }
 }
 
+TEST(WheelFusionTest, SaysThatTheOnlyWheelOfASideSlips) {
+  WheelFusion fusion(kTrack_m, kWheelbase_m, 0.0);
+  fusion.add(WheelPlace::kRearLeft, 8.0);
+  fusion.add(WheelPlace::kFrontLeft, 8.0);
+  fusion.add(WheelPlace::kRearRight, 14.0);
+  const auto speeds = fusion.speeds();
+  ASSERT_TRUE(speeds);
+  EXPECT_NEAR(speeds->right_mps, 8.0, 1e-12);
+  EXPECT_FALSE(speeds->both_sides);
+}
+
 TEST(WheelFusionTest, RefusesWheelsThatAllContradict) {
   WheelFusion fusion(kTrack_m, kWheelbase_m, 0.0);
   fusion.add(WheelPlace::kRearLeft, 0.0);
@@ -64,6 +76,7 @@ TEST(WheelFusionTest, TakesTheSpeedOfTheVehicle) {
   ASSERT_TRUE(speeds);
   EXPECT_NEAR(0.5 * (speeds->left_mps + speeds->right_mps), 5.0, 1e-12);
   EXPECT_NEAR(speeds->right_mps - speeds->left_mps, kTrack_m * kTurning_radps, 1e-12);
+  EXPECT_FALSE(speeds->both_sides);
 }
 
 }  // namespace

@@ -44,6 +44,17 @@ TEST(OdometryMonitorTest, RefusesRepeatedValuesWithinAQuarterSecond) {
   EXPECT_TRUE(monitor.accept(sample_at(1'000)));
 }
 
+TEST(OdometryMonitorTest, AcceptsRepeatedValuesWithCoarseSteps) {
+  OdometryMonitor monitor;
+  for (int ms = 0; ms < 60'000; ms += 20) {
+    OdometrySample sample = sample_at(ms);
+    sample.speed_mps = 0.28 * std::round(sample.speed_mps / 0.28);
+    sample.yaw_rate_radps = 0.02 * std::round(sample.yaw_rate_radps / 0.02);
+    sample.has_fine_steps = false;
+    EXPECT_TRUE(monitor.accept(sample)) << ms;
+  }
+}
+
 TEST(OdometryMonitorTest, RefusesSpinningAndLockedWheels) {
   for (const double factor : {1.3, 0.3, -1.0}) {
     OdometryMonitor monitor;
