@@ -55,9 +55,9 @@ constexpr Signal reason_flag(std::string_view name, int bit, std::string_view co
 
 /// The reasons, in the order of the bits of enum Why.
 inline constexpr std::array<Signal, 6> kWhy{{
-    reason_flag(
-        "Why_GnssContradicts", 16,
-        "GNSS contradicts match and odometry and is not used, or it scatters more than it states."),
+    reason_flag("Why_GnssContradicts", 16,
+                "GNSS contradicts match and odometry and is not used, or it scatters more than it "
+                "states, or it is too old."),
     reason_flag("Why_OdometryContradicts", 17,
                 "Odometry contradicts match and GNSS. The pose is not predicted with it."),
     reason_flag("Why_MatchContradicts", 18,
@@ -66,7 +66,8 @@ inline constexpr std::array<Signal, 6> kWhy{{
                 "The clock jumped, for example after a suspend. The old pose is discarded."),
     reason_flag("Why_OdometryImplausible", 20,
                 "Wheel speeds and yaw rate contradict each other, change faster than a vehicle "
-                "can, or come too seldom."),
+                "can, come too seldom, or repeat while driving; or too many of their frames are "
+                "damaged."),
     reason_flag("Why_ForeignSender", 21,
                 "Another node sends with the localizer's identifiers, or the vehicle's messages "
                 "come from two senders or are not authentic."),

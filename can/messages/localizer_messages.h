@@ -46,8 +46,8 @@ inline constexpr Signal kState{
     .max = 5,
     .value_names = kStateNames,
     .comment =
-        "The pose is valid in TRACKING, valid with a grown standard deviation in DEGRADED, "
-        "and not available in every other state. FAULT requires service."};
+        "The pose is valid in TRACKING, also valid in DEGRADED, where an input is missing or in "
+        "doubt (Why_*), and not available in every other state. FAULT requires service."};
 inline constexpr Signal kTimeSource{.name = "TimeSource",
                                     .start_bit = 20,
                                     .length_bits = 3,
@@ -80,7 +80,8 @@ inline constexpr std::array<Signal, 16> kWhy{{
         "Match, GNSS and odometry disagree, or a new pose lacks matches or GNSS that confirm it."),
     reason_flag("Why_MatchRejected", 7, "The match contradicts odometry and was not used."),
     reason_flag("Why_PoseUncertain", 8,
-                "The standard deviation is beyond its limit, or too large for a new pose."),
+                "The standard deviation is beyond its limit, or too large for a new pose; or "
+                "without matches, the protection level is beyond the alert limit."),
     reason_flag("Why_PoseStale", 9,
                 "No match has confirmed the pose for too long, or it is too old to be sent."),
     reason_flag("Why_PoseInvalid", 10, "The pose is not a number or out of range."),
@@ -89,8 +90,8 @@ inline constexpr std::array<Signal, 16> kWhy{{
                 "GNSS and map lie apart by a constant offset. The pose is not valid."),
     reason_flag(
         "Why_CalibrationFault", 13,
-        "A camera is not where the calibration has it, or the cameras' time stamps contradict "
-        "the yaw rate."),
+        "A camera is not where the calibration has it, and is not used; or the cameras' time "
+        "stamps contradict the yaw rate, and the pose is not valid."),
     reason_flag("Why_NetworkFault", 14, "The network computed another answer than it should."),
     reason_flag("Why_InternalFault", 15, "Any other fault inside the localizer."),
 }};

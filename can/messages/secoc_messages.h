@@ -48,7 +48,7 @@ inline constexpr Message kMessage{
     .signals = secoc::kAuthenticationSignals,
     .comment =
         "Only with can.secoc. Authenticates the other LOC_ frames of the same EPOCH except "
-        "LOC_Clock, or the LOC_Solution before it."};
+        "LOC_Clock and LOC_Freshness, or the LOC_Solution before it."};
 }  // namespace loc_authentication
 
 namespace loc_freshness {
