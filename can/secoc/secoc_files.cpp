@@ -1,7 +1,6 @@
 #include "can/secoc/secoc_files.h"
 
 #include <cerrno>
-#include <charconv>
 #include <string>
 
 #include <sys/stat.h>
@@ -39,12 +38,14 @@ Result<SecocKey> read_secoc_key(const std::filesystem::path& file) {
   const std::string digits = without_end_of_line(std::move(*content));
   SecocKey key{};
   for (size_t i = 0; i < key.size(); ++i) {
-    const char* begin = digits.data() + 2 * i;
     const bool long_enough = digits.size() == 2 * key.size();
-    if (!long_enough || std::from_chars(begin, begin + 2, key[i], 16).ptr != begin + 2) {
+    const auto byte =
+        long_enough ? parse_number<uint8_t>({digits.data() + 2 * i, 2}, 16) : std::nullopt;
+    if (!byte) {
       return fail("{}: found {} characters or others than hexadecimal digits, wanted 32 digits",
                   file.string(), digits.size());
     }
+    key[i] = *byte;
   }
   return key;
 }

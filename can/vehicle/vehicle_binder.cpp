@@ -101,7 +101,7 @@ std::vector<int64_t> not_available_values(const DbcSignal& signal) {
 Bound<std::vector<int64_t>> raw_values_of(const std::string& text, const DbcSignal& signal) {
   std::vector<int64_t> values = signal.values_named(text);
   if (values.empty()) {
-    const auto number = whole_number(text);
+    const auto number = parse_number<int64_t>(text);
     if (!number) {
       return refusal(
           text + meant(text, names_in(signal.value_names)),
@@ -153,10 +153,6 @@ Bound<void> check_multiplexing(const DbcSignal& signal, const DbcMessage& messag
 }
 
 }  // namespace
-
-std::optional<int64_t> whole_number(const std::string& text) {
-  return parse_number<int64_t>(text);
-}
 
 Bound<std::string> VehicleBinder::message_name(const std::string& name) const {
   const DbcMessage* message = dbc_.find(name);

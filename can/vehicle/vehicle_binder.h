@@ -30,9 +30,6 @@ inline tl::unexpected<Refusal> refusal(std::string found, std::string wanted,
   return tl::unexpected(Refusal{std::move(found), std::move(wanted), std::move(key)});
 }
 
-/// Returns the whole number that the text is, or nothing if it is none.
-std::optional<int64_t> whole_number(const std::string& text);
-
 /// What the configuration says about the protection of a message.
 struct ProtectionRequest {
   std::string message;

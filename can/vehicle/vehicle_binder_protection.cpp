@@ -7,6 +7,7 @@
 
 #include "can/bus/frame.h"
 #include "can/vehicle/vehicle_binder.h"
+#include "common/number_text.h"
 
 namespace bevloc::can {
 namespace {
@@ -186,7 +187,7 @@ Bound<void> VehicleBinder::protect_by_attributes(const DbcMessage& dbc,
                    "P02 or P05, or an entry for this message in protection");
   }
   const ChecksumKind kind = number == 2 ? ChecksumKind::kE2eP02 : ChecksumKind::kE2eP05;
-  const auto id = whole_number(data_id->second);
+  const auto id = parse_number<int64_t>(data_id->second);
   if (!id || *id < 0 || *id > highest_data_id(kind)) {
     return refusal(fmt::format("E2EDataId {}", data_id->second),
                    fmt::format("0 to {} for profile P0{}", highest_data_id(kind), number));
