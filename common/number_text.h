@@ -9,9 +9,9 @@
 
 namespace bevloc {
 
-/// The number that the whole text is, as std::from_chars() reads it: without white space and
-/// without
-/// "+". A floating point number may be infinite or NaN. `base` is used for integers only.
+/// Parses the whole text as one number, as std::from_chars() does. Returns nothing if the text has
+/// anything else, also white space or "+". A floating point number may be infinite or NaN. `base`
+/// is used for integers only.
 template <typename T>
 std::optional<T> parse_number(std::string_view text, int base = 10) {
   T value{};

@@ -152,8 +152,8 @@ bool DbcVehicleInput::all_new(const std::vector<size_t>& signals) const {
   return std::ranges::all_of(signals, [this](size_t signal) { return slots_[signal].is_new; });
 }
 
-/// Drops the values that will soon be replaced, so that the sample waits for the next ones. Returns
-/// whether there were any.
+/// Drops values that are so old that the next ones come soon. The sample then waits for these.
+/// Returns whether a value was dropped.
 bool DbcVehicleInput::drop_stale(const std::vector<size_t>& signals, int frames, Time now) {
   Duration longest{};
   for (const size_t signal : signals) longest = std::max(longest, interval_of(signal));

@@ -15,10 +15,10 @@ namespace bevloc::can {
 /// messages. Frames must pass counter and checksum (E2eMonitor). An odometry sample is complete
 /// when all wheels and the yaw rate have new values. A GNSS sample is complete when all its signals
 /// have new values. The time of a sample is that of its earliest value, for GNSS that of the
-/// earliest value of the position. A value that the next one will soon replace is not combined with
-/// the new value of another message: it is dropped, and the sample waits for the next one.
-/// Otherwise one lost frame would shift the values of two messages against each other for good. A
-/// condition (valid, backward) may be at most four cycles of its message old. A GNSS sample does
+/// earliest value of the position. The next value will soon replace an old one. So an old value is
+/// not combined with the new value of another message: it is dropped, and the sample waits for the
+/// next one. Otherwise, after one lost frame, all later samples would combine values of two cycles.
+/// A condition (valid, backward) may be at most four cycles of its message old. A GNSS sample does
 /// not wait for a heading that is more than four cycles old, and then has none. One thread. Does
 /// not allocate after construction.
 class DbcVehicleInput final : public VehicleDecoder {

@@ -103,17 +103,18 @@ std::vector<uint32_t> ids_of(const VehicleBinding& binding);
 /// Whether a message has more bytes than a classic frame.
 bool needs_fd(const VehicleBinding& binding);
 
-/// The time from one sample of odometry to the next, as the slowest message brings them: 20 to 40
-/// ms. It is 40 ms if a signal is multiplexed, because the sender decides how often such a signal
-/// comes.
+/// The time from one sample of odometry to the next: the cycle of the slowest message, from 20 to
+/// 40 ms. It is 40 ms if a signal is multiplexed, because the sender decides how often such a
+/// signal comes.
 Duration odometry_interval(const VehicleBinding& binding);
 
 /// Whether the steps of a wheel or of the yaw rate are so fine that noise changes the value from
-/// sample to sample while the vehicle drives. Otherwise repeated values are no sign of a fault.
+/// sample to sample while the vehicle drives. If they are coarse, a sensor without a fault repeats
+/// its values.
 bool has_fine_steps(const VehicleBinding& binding);
 
-/// The faults that a receiver cannot notice: of messages without counter or checksum, and of
-/// odometry with coarse steps.
+/// Names the faults that a receiver cannot notice: those of messages without counter or checksum,
+/// and those of odometry with coarse steps.
 std::vector<std::string> warnings_of(const VehicleBinding& binding);
 
 }  // namespace bevloc::can

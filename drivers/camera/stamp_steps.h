@@ -14,8 +14,8 @@ namespace bevloc::drivers {
 /// jump of more than kTolerated counts. The sum of all jumps is the offset of the stamps.
 ///
 /// A trigger that omits a pulse makes the sequence number wrong: more time has passed than it says.
-/// So the frames of the next seconds may disprove a large jump. What they tell is the lag, which is
-/// how much later than its stamp a frame arrives: a frame may come late, but never early.
+/// So the frames of the next seconds may disprove a large jump by their lag. The lag of a frame is
+/// the time from its stamp to its arrival. A frame can arrive late, but not early.
 ///
 /// This class cannot find stamps that were wrong from the start. StampMonitor finds them when the
 /// vehicle drives through a bend.

@@ -11,10 +11,10 @@
 
 namespace bevloc::firmware {
 
-/// GNSS that lags puts the vehicle too far back along the road, and matches often cannot tell. Its
-/// heading lags as well, and bends show by how much. A straight road gives no evidence, and neither
-/// does a heading that is a course over ground: it is that of the antenna, and the receiver filters
-/// it. Allocates in the constructor only. One thread.
+/// If GNSS is late, it puts the vehicle too far back along the road. Matches often do not show
+/// this. The heading of GNSS is late as well, and bends show by how much. A straight road gives no
+/// evidence. A course over ground gives none either, because it is that of the antenna and the
+/// receiver filters it. Allocates in the constructor only. One thread.
 class GnssLagWatch {
  public:
   /// A sample may be as old as one cycle of GNSS.
@@ -31,8 +31,8 @@ class GnssLagWatch {
   /// Whether the heading is certainly older than its time stamp by more than kTolerated.
   bool contradicts() const { return lag_ms() > 0; }
 
-  /// How much older the heading is than its time stamp; 0 while it is tolerated. A heading that
-  /// seems newer is none of a GNSS that lags: the yaw rate is late then.
+  /// How much older the heading is than its time stamp; 0 while it is tolerated. It is also
+  /// 0 if the heading seems newer, because then the yaw rate is late.
   int lag_ms() const { return std::max(monitor_.contradicting_ms(), 0); }
 
   /// Forgets everything, after a gap in time or because GNSS is excluded for another reason.

@@ -19,7 +19,7 @@ namespace bevloc {
 ///       = bias of the yaw rate * kLag + scale error * change of heading - offset * change of rate,
 ///
 /// and fits bias, scale error and offset by least squares. A straight road gives no evidence of
-/// the offset. One bend determines that of matches to about 20 ms. It is common to all cameras; the
+/// the offset. One bend determines the offset of matches to about 20 ms. All cameras share it; the
 /// synchronizer (Synchrony) finds a single camera whose stamps differ from those of the others.
 ///
 /// Allocates in the constructor only. One thread.

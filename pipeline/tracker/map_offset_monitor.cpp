@@ -16,7 +16,7 @@ constexpr double kGrowth_m_per_sqrt_s = 0.003;
 constexpr double kScatter_m = 0.4;
 /// Squared distance of a sample that is not used.
 constexpr double kOutlier = 16.0;
-/// Outliers in a row for this many correlation times are no error of GNSS.
+/// If all samples are outliers for this many correlation times, the cause is not an error of GNSS.
 constexpr double kLongestErrors = 5.0;
 /// An offset matters above kMatters_m, and from then on until it is below kHarmless_m.
 constexpr double kMatters_m = 0.75;
@@ -60,7 +60,7 @@ void MapOffsetMonitor::add(Time time, const Eigen::Vector2d& difference_m, doubl
   judge();
 }
 
-/// No error of GNSS lasts as long as kLongestErrors, so the offset itself has become another one.
+/// An error of GNSS does not last as long as kLongestErrors, so the offset itself has changed.
 void MapOffsetMonitor::note_outlier() {
   if (++outliers_in_a_row_ * to_seconds(kPeriod) < kLongestErrors * correlation_s_) return;
   offset_variance_ = square_of(kPriorSigma_m);

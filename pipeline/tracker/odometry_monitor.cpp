@@ -7,9 +7,8 @@
 namespace bevloc {
 namespace {
 
-/// The noise of speed and yaw rate changes their last digits from sample to sample if their steps
-/// are fine. This many exact repetitions of both while driving then mean that they are no longer
-/// measured.
+/// If the steps of speed and yaw rate are fine, their noise changes the last digits from sample to
+/// sample. If both then repeat exactly so many times while driving, they are no longer measured.
 constexpr int kStuckRepetitions = 12;
 constexpr double kDriving_mps = 0.5;
 

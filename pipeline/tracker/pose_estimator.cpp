@@ -162,7 +162,7 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   const PoseStanding lost_or_new = trusted_ ? PoseStanding::kLost : PoseStanding::kNew;
   verdict_ = arbiter_.judge(now, pose_valid ? PoseStanding::kValid : lost_or_new);
   verdict_.map_contradicts = map_offset_.contradicts();
-  // GNSS that sends nothing contradicts nothing.
+  // GNSS does not contradict the pose while no samples come.
   const bool gnss_speaks = gnss_judged_ && now - *gnss_judged_ <= kGnssLifetime;
   verdict_.gnss_contradicts =
       gnss_speaks && (verdict_.gnss_contradicts || gnss_scatter_.contradicts());

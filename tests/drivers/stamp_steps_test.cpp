@@ -96,7 +96,7 @@ TEST_F(StampStepsTest, APulseThatIsOmittedBeforeALateFrameIsNoJump) {
   for (int i = 0; i < 60; ++i) EXPECT_FALSE(frame()) << i;
 }
 
-TEST_F(StampStepsTest, ATimelyFrameDisprovesTheJumpThatALateFrameShowed) {
+TEST_F(StampStepsTest, ATimelyFrameDisprovesAJump) {
   omit_pulse();
   EXPECT_TRUE(frame({}, milliseconds(31))) << "as if its stamp were 100 ms late";
   EXPECT_FALSE(frame());

@@ -104,7 +104,7 @@ TEST(DbcVehicleInputTest, TheSpeedOfTheVehicleAloneSaysNothingAboutTheYawRate) {
   }
 }
 
-/// A sample comes every 40 ms: as often as the message, or with every second frame.
+/// A sample comes every 40 ms: the message has this cycle, or every second frame has its page.
 TEST(DbcVehicleInputTest, TwoLostFramesOfSlowOdometryAreNoFault) {
   VehicleBinding slow = binding();
   slow.messages[0].cycle = 2 * kCycle;

@@ -75,7 +75,7 @@ TEST_F(GnssLagWatchTest, ForgetsWhatWasBeforeAReset) {
   EXPECT_FALSE(watch_.contradicts());
 }
 
-TEST_F(GnssLagWatchTest, AHeadingThatSeemsNewerIsNotThatOfGnssThatLags) {
+TEST_F(GnssLagWatchTest, AHeadingThatSeemsNewerIsNoLag) {
   drive(60.0, -0.3);
   EXPECT_FALSE(watch_.contradicts());
   EXPECT_EQ(watch_.lag_ms(), 0);
