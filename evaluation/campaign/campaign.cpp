@@ -17,6 +17,12 @@ std::vector<sim::Fault> timed(std::vector<sim::Fault> faults, const FaultTime& t
   return faults;
 }
 
+/// The pace of a mode whose times begin at `from_s`.
+sim::Pace later(std::vector<sim::PacePoint> points, double from_s) {
+  for (sim::PacePoint& point : points) point.at_s += from_s;
+  return sim::Pace(std::move(points));
+}
+
 }  // namespace
 
 Result<Campaign> Campaign::create(const std::string& config_file, const std::string& table_file,
@@ -50,7 +56,9 @@ Status Campaign::drive(const Mode& mode, uint64_t seed, const std::string& map,
   if (!map.empty()) config.map_file = map;
   config.simulation->town_seed.reset();
   if (config.map_file.empty()) config.simulation->town_seed = seed;
-  config.simulation->faults = timed(mode.faults, mode.time_in(options_.duration_s));
+  const FaultTime time = mode.time_in(options_.duration_s);
+  config.simulation->faults = timed(mode.faults, time);
+  if (!mode.pace.empty()) config.simulation->pace = later(mode.pace, time.from_s);
   return options_.level == Level::kStage ? run_stage(config, mode, table_, sink)
                                          : run_pictures(config, rig_, pictures, sink);
 }

@@ -75,11 +75,27 @@ sim::StopTimes read_stops(YamlMap& yaml) {
   return {times[0], times[1]};
 }
 
+sim::Pace read_pace(YamlMap& yaml) {
+  if (!yaml.has("pace")) return {};
+  std::vector<sim::PacePoint> points;
+  for (YamlMap& point : yaml.require_map_list("pace")) {
+    const auto at_s = point.require<double>("at_s", between(0.0, kLongestDrive_s));
+    const auto pace = point.require<double>("pace", between(-1.0, 1.0));
+    if (!points.empty() && at_s <= points.back().at_s) {
+      point.reject("at_s", fmt::format("{}", at_s), "a time after that of the point before");
+      return {};
+    }
+    points.push_back({at_s, pace});
+  }
+  return sim::Pace(std::move(points));
+}
+
 void read_simulation(YamlMap yaml, SimulationConfig& simulation) {
   simulation.seed = yaml.require<uint64_t>("seed");
   simulation.duration_s =
       yaml.require<double>("duration_s", between(kShortestDrive_s, kLongestDrive_s));
   simulation.stops = read_stops(yaml);
+  simulation.pace = read_pace(yaml);
   simulation.conditions = read_conditions(yaml.optional_map("conditions"));
   simulation.calibration_error = read_calibration_error(yaml.optional_map("calibration_error"));
   simulation.street = read_street(yaml.optional_map("street"));

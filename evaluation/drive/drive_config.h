@@ -33,6 +33,7 @@ struct SimulationConfig {
   uint64_t seed = 1;
   double duration_s = 60.0;
   sim::StopTimes stops;
+  sim::Pace pace;
   std::optional<uint64_t> town_seed;  ///< of a procedural town; empty if the map is a file
   sim::Conditions conditions;
   drivers::CalibrationError calibration_error;  ///< 1 sigma

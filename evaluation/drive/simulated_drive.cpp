@@ -149,7 +149,7 @@ SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,
       drive_(std::make_shared<sim::Drive>(
           *world_, sim::seed_for(simulation.seed, "drive"),
           simulation.duration_s + kSpareDuration_s + sim::added_time_s(simulation.faults),
-          simulation.stops)),
+          simulation.stops, simulation.pace)),
       faults_(std::make_shared<sim::FaultBoard>(simulation.faults)),
       map_(sim::with_faults(world_->map, sim::in_drive_time(simulation.faults, simulation.faults),
                             *drive_)) {}

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "sim/vehicle/route.h"
 #include "sim/world/path.h"
@@ -84,9 +85,12 @@ constexpr double kLongestSlope_m = 400.0;
 
 }  // namespace
 
-Drive::Drive(const World& world, uint64_t seed, double duration_s, const StopTimes& times)
+Drive::Drive(const World& world, uint64_t seed, double duration_s, const StopTimes& times,
+             Pace pace)
     : seed_(seed),
       duration_s_(duration_s),
+      pace_(std::move(pace)),
+      planned_start_s_(-pace_.earliest_planned_s(duration_s)),
       pitch_noise_(seed_for(seed, "pitch"), radians(0.27), 4.0, 40.0),
       roll_noise_(seed_for(seed, "roll"), radians(0.2), 4.0, 40.0),
       lift_noise_(seed_for(seed, "lift"), 0.012, 4.0, 40.0),
@@ -207,25 +211,33 @@ void Drive::plan_time(const std::vector<Stop>& stops) {
   }
 }
 
-Drive::Progress Drive::progress_at(double time_s) const {
-  const double time = std::clamp(time_s, 0.0, duration_s_);
+Drive::Progress Drive::planned_at(double planned_s) const {
   // Index i is the last sample that the vehicle has reached.
-  const auto after = std::upper_bound(arrival_s_.begin(), arrival_s_.end(), time);
+  const auto after = std::upper_bound(arrival_s_.begin(), arrival_s_.end(), planned_s);
   const size_t i = static_cast<size_t>(after - arrival_s_.begin()) - 1;
   Progress progress{.sample = i};
-  if (time < departure_s_[i]) return progress;  // the vehicle waits
-  if (i + 1 == points_.size()) {                // the end of the route
+  if (planned_s < departure_s_[i]) return progress;  // the vehicle waits
+  if (i + 1 == points_.size()) {                     // the end of the route
     progress.sample = i - 1;
     progress.fraction = 1.0;
     return progress;
   }
   const double step_m = station_m_[i + 1] - station_m_[i];
-  const double elapsed = time - departure_s_[i];
+  const double elapsed = planned_s - departure_s_[i];
   progress.acceleration_mps2 =
       (speed_mps_[i + 1] - speed_mps_[i]) / (arrival_s_[i + 1] - departure_s_[i]);
   progress.speed_mps = speed_mps_[i] + progress.acceleration_mps2 * elapsed;
   progress.fraction =
       (speed_mps_[i] * elapsed + 0.5 * progress.acceleration_mps2 * elapsed * elapsed) / step_m;
+  return progress;
+}
+
+Drive::Progress Drive::progress_at(double time_s) const {
+  const Pace::Moment moment = pace_.at(std::clamp(time_s, 0.0, duration_s_));
+  Progress progress = planned_at(std::max(0.0, planned_start_s_ + moment.planned_s));
+  progress.acceleration_mps2 = moment.pace * moment.pace * progress.acceleration_mps2 +
+                               moment.change_per_s * progress.speed_mps;
+  progress.speed_mps *= moment.pace;
   return progress;
 }
 

@@ -6,6 +6,7 @@
 
 #include "common/se2.h"
 #include "sim/vehicle/body_motion.h"
+#include "sim/vehicle/pace.h"
 #include "sim/vehicle/smooth_noise.h"
 #include "sim/vehicle/stance.h"
 #include "sim/world/world.h"
@@ -20,17 +21,19 @@ struct StopTimes {
 
 /// Drives a random route along the lanes like a calm driver: lateral acceleration up to 2.5 m/s^2,
 /// longitudinal acceleration from -3 to 2 m/s^2, slower in bends, occasional stops at junctions, a
-/// small lateral wander within the lane. World, seed, duration and stops determine the whole drive.
-/// Immutable, and so thread-safe.
+/// small lateral wander within the lane. A pace can make the vehicle stand or reverse along its
+/// path; its changes add to the accelerations. World, seed, duration, stops and pace determine the
+/// whole drive. Immutable, and so thread-safe.
 class Drive {
  public:
   /// The world's map must have lanes. If the route ends before the duration, the vehicle stops
   /// there and stays. Keeps no reference to the world.
-  Drive(const World& world, uint64_t seed, double duration_s, const StopTimes& stops = {});
+  Drive(const World& world, uint64_t seed, double duration_s, const StopTimes& stops = {},
+        Pace pace = {});
 
   struct State {
-    Se2 map_from_vehicle;  ///< pose of the middle of the rear axle on the ground
-    double speed_mps = 0.0;
+    Se2 map_from_vehicle;    ///< pose of the middle of the rear axle on the ground
+    double speed_mps = 0.0;  ///< negative if the vehicle reverses
     double yaw_rate_radps = 0.0;
     double acceleration_mps2 = 0.0;  ///< along the vehicle's x axis
   };
@@ -61,18 +64,21 @@ class Drive {
                   const std::vector<Stop>& stops);
   void plan_time(const std::vector<Stop>& stops);
 
-  /// The vehicle's place between two samples of its path.
+  /// The vehicle's place between two samples of its path, and its motion along it.
   struct Progress {
     size_t sample = 0;
     double fraction = 0.0;  ///< share of the way from `sample` to the next one
     double speed_mps = 0.0;
     double acceleration_mps2 = 0.0;
   };
+  Progress planned_at(double planned_s) const;
   Progress progress_at(double time_s) const;
   double distance_at(double time_s) const;
 
   uint64_t seed_;
   double duration_s_;
+  Pace pace_;
+  double planned_start_s_;   ///< leaves as much of the route behind the vehicle as it reverses
   SmoothNoise pitch_noise_;  ///< noise over the distance driven, like roll and lift
   SmoothNoise roll_noise_;
   SmoothNoise lift_noise_;

@@ -75,6 +75,7 @@ simulation:
   seed: 1
   duration_s: 60
   stops_s: [2, 7]
+  pace: [{at_s: 0, pace: 0}, {at_s: 10, pace: -0.5}]
   conditions: {sun_azimuth_deg: 10, overcast: 0.5, exposure: 1}
   exposure_offsets_ms: [0, 1, 2, 3, 4, 5]
   faults:

@@ -9,6 +9,7 @@
 #include "evaluation/campaign/modes/fault_time.h"
 #include "evaluation/campaign/modes/match_fault.h"
 #include "sim/faults/fault.h"
+#include "sim/vehicle/pace.h"
 
 namespace bevloc::evaluation {
 
@@ -32,6 +33,7 @@ struct Mode {
   /// Their times are not used, because the campaign sets them.
   std::vector<sim::Fault> faults{};
   std::vector<MatchFault> match_faults{};  ///< on the stage level
+  std::vector<sim::PacePoint> pace{};      ///< over the time since the fault begins
   double suspended_s = 0.0;                ///< the appliance sleeps this long; its clock goes on
   WhyMask named_by{};                      ///< the why bits that name the fault
   /// How long poses beyond the freeway alert limits may be valid, in the worst seed.

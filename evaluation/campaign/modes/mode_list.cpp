@@ -41,6 +41,12 @@ void ModeList::add(std::string_view name, std::string_view what, FaultLength len
   add(name, what, length, {}, {what_fails}, named_by);
 }
 
+void ModeList::add(std::string_view name, std::string_view what, FaultLength length,
+                   std::vector<sim::PacePoint> pace, std::vector<sim::Fault> faults) {
+  add(name, what, length, std::move(faults), {}, WhyMask{});
+  modes_.back().pace = std::move(pace);
+}
+
 std::vector<Mode> ModeList::all() && {
   return std::move(modes_);
 }

@@ -34,6 +34,9 @@ class ModeList {
            const sim::Fault& what_fails, WhyMask named_by);
   void add(std::string_view name, std::string_view what, FaultLength length,
            const MatchFault& what_fails, WhyMask named_by);
+  /// A mode in which the vehicle does not keep to its planned speed.
+  void add(std::string_view name, std::string_view what, FaultLength length,
+           std::vector<sim::PacePoint> pace, std::vector<sim::Fault> faults);
 
   std::vector<Mode> all() &&;
 
@@ -65,6 +68,8 @@ std::vector<Mode> map_modes();
 std::vector<Mode> line_modes();
 /// Faults of the bus between the vehicle and the appliance.
 std::vector<Mode> bus_modes();
+/// The vehicle itself does what is rare. Nothing fails.
+std::vector<Mode> manoeuvre_modes();
 /// Faults of the clocks of the whole appliance. No why bit names a step of the system clock,
 /// because it must have no effect.
 std::vector<Mode> clock_modes();

@@ -12,10 +12,11 @@ const std::vector<Mode>& all_modes() {
                      .length = {},
                      .faults = {},
                      .match_faults = {},
+                     .pace = {},
                      .limit_s = 0.0});
-    for (auto* make :
-         {gnss_modes, odometry_modes, match_modes, modes_without_gnss, modes_without_match,
-          lane_modes, sleep_modes, camera_modes, map_modes, line_modes, bus_modes, clock_modes}) {
+    for (auto* make : {gnss_modes, odometry_modes, match_modes, modes_without_gnss,
+                       modes_without_match, lane_modes, sleep_modes, camera_modes, map_modes,
+                       line_modes, bus_modes, clock_modes, manoeuvre_modes}) {
       for (Mode& mode : make()) modes.push_back(std::move(mode));
     }
     return modes;

@@ -9,6 +9,21 @@
 namespace bevloc::sim {
 namespace {
 
+void expect_poses_match_speed_and_yaw_rate(const Drive& drive) {
+  constexpr double kStep_s = 0.02;
+  for (double t = 0.0; t + kStep_s < drive.duration_s(); t += 0.11) {
+    const Drive::State a = drive.at(t);
+    const Drive::State b = drive.at(t + kStep_s);
+    const Se2 motion = correction_between(a.map_from_vehicle, b.map_from_vehicle);
+    const double mean_speed = 0.5 * (a.speed_mps + b.speed_mps);
+    EXPECT_NEAR(motion.x_m, mean_speed * kStep_s, 0.02 * std::abs(mean_speed) * kStep_s + 0.002)
+        << t;
+    EXPECT_NEAR(motion.y_m, 0.0, 0.01 + 0.01 * std::abs(mean_speed) * kStep_s) << t;
+    const double mean_rate = 0.5 * (a.yaw_rate_radps + b.yaw_rate_radps);
+    EXPECT_NEAR(motion.yaw_rad, mean_rate * kStep_s, 0.002) << t;
+  }
+}
+
 class DriveThroughTown : public testing::TestWithParam<uint64_t> {
  protected:
   static constexpr double kDuration_s = 120.0;
@@ -41,17 +56,12 @@ TEST_P(DriveThroughTown, StaysInItsLanes) {
 }
 
 TEST_P(DriveThroughTown, PosesMatchSpeedAndYawRate) {
-  constexpr double kStep_s = 0.02;
-  for (double t = 0.0; t + kStep_s < kDuration_s; t += 0.11) {
-    const Drive::State a = drive_.at(t);
-    const Drive::State b = drive_.at(t + kStep_s);
-    const Se2 motion = correction_between(a.map_from_vehicle, b.map_from_vehicle);
-    const double mean_speed = 0.5 * (a.speed_mps + b.speed_mps);
-    EXPECT_NEAR(motion.x_m, mean_speed * kStep_s, 0.02 * mean_speed * kStep_s + 0.002) << t;
-    EXPECT_NEAR(motion.y_m, 0.0, 0.01 + 0.01 * mean_speed * kStep_s) << t;
-    const double mean_rate = 0.5 * (a.yaw_rate_radps + b.yaw_rate_radps);
-    EXPECT_NEAR(motion.yaw_rad, mean_rate * kStep_s, 0.002) << t;
-  }
+  expect_poses_match_speed_and_yaw_rate(drive_);
+}
+
+TEST_P(DriveThroughTown, PosesMatchSpeedAndYawRateWhereTheVehicleReverses) {
+  const Pace pace({{30.0, 1.0}, {36.0, 0.0}, {38.0, -0.3}, {44.0, -0.3}, {46.0, 0.0}, {52.0, 1.0}});
+  expect_poses_match_speed_and_yaw_rate({world_, GetParam() + 1, kDuration_s, {}, pace});
 }
 
 TEST_P(DriveThroughTown, DrivesAtLeast300Metres) {
@@ -91,6 +101,32 @@ TEST(Drive, TheYawRateMatchesTheHeadingWhereAMapBendsSharplyAtTheEndsOfARoute) {
     before = now;
   }
   EXPECT_EQ(before.speed_mps, 0.0) << "the route has ended";
+}
+
+TEST(Drive, ReversesAlongTheRouteBeforeItsPlannedStart) {
+  constexpr double kDuration_s = 40.0;
+  const World world = generate_world(4);
+  const Drive planned(world, 9, kDuration_s);
+  const Drive leaving(world, 9, kDuration_s, {},
+                      Pace({{0.0, 0.0}, {2.0, 0.0}, {4.0, -0.5}, {10.0, -0.5}, {12.0, 0.0}}));
+  EXPECT_EQ(leaving.at(1.0).speed_mps, 0.0);
+  EXPECT_LT(leaving.at(7.0).speed_mps, -1.0);
+  EXPECT_EQ(leaving.at(13.0).speed_mps, 0.0);
+  const auto start = planned.at(0.0).map_from_vehicle;
+  const auto farthest_back = leaving.at(13.0).map_from_vehicle;
+  EXPECT_NEAR((start.translation() - farthest_back.translation()).norm(), 0.0, 1e-6);
+  EXPECT_NEAR(farthest_back.yaw_rad, start.yaw_rad, 1e-9);
+}
+
+TEST(Drive, StandsUntilItsPaceLetsItGo) {
+  const World world = generate_world(4);
+  const Drive drive(world, 9, 40.0, {}, Pace({{10.0, 0.0}, {15.0, 1.0}}));
+  const Se2 start = drive.at(0.0).map_from_vehicle;
+  for (double t = 0.0; t <= 10.0; t += 0.5) {
+    EXPECT_EQ(drive.at(t).map_from_vehicle.x_m, start.x_m) << t;
+    EXPECT_EQ(drive.at(t).speed_mps, 0.0) << t;
+  }
+  EXPECT_GT(drive.at(14.0).speed_mps, 1.0);
 }
 
 TEST(Drive, IsDeterminedByItsSeed) {

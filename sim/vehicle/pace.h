@@ -1,0 +1,44 @@
+// How a vehicle keeps to its planned drive: it may stand, reverse, and drive on.
+#pragma once
+
+#include <vector>
+
+namespace bevloc::sim {
+
+/// The vehicle's speed at a time, as a share of the planned speed at the same place: 1 as planned,
+/// 0 if it stands, negative if it reverses.
+struct PacePoint {
+  double at_s = 0.0;
+  double pace = 1.0;
+};
+
+/// The pace over the time of a drive: linear between the points, constant before the first and
+/// after the last one. Immutable, and so thread-safe.
+class Pace {
+ public:
+  /// As planned all the time.
+  Pace() = default;
+  /// The times of the points must increase.
+  explicit Pace(std::vector<PacePoint> points);
+
+  struct Moment {
+    double planned_s = 0.0;  ///< when the plan has the vehicle where it is now
+    double pace = 1.0;
+    double change_per_s = 0.0;
+  };
+  /// At time 0 the vehicle is where the plan has it at time 0. Where it reverses from there, the
+  /// planned time is negative.
+  Moment at(double time_s) const;
+
+  /// The planned time where the vehicle is farthest back, until a time; at most 0.
+  double earliest_planned_s(double until_s) const;
+
+ private:
+  struct Piece {
+    double from_s;
+    Moment start;
+  };
+  std::vector<Piece> pieces_;  ///< the first one starts at time 0
+};
+
+}  // namespace bevloc::sim
