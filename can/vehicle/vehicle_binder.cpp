@@ -64,17 +64,28 @@ std::string_view unit_inside(Quantity quantity) {
   return "";
 }
 
+/// A signal without a range has two equal limits.
+bool has_range(const DbcSignal& signal) {
+  return signal.min != signal.max;
+}
+
+// The lowest and the highest value that the layout and the range of a signal allow.
+
+double lowest_of(const DbcSignal& signal) {
+  const double lowest = lowest_physical(signal.layout);
+  return has_range(signal) ? std::max(lowest, signal.min) : lowest;
+}
+
+double highest_of(const DbcSignal& signal) {
+  const double highest = highest_physical(signal.layout);
+  return has_range(signal) ? std::min(highest, signal.max) : highest;
+}
+
 /// Refuses what is probably a wrong unit or a wrong signal.
 Bound<void> check_range(const DbcSignal& signal, Quantity quantity, double factor) {
   const Sanity sanity = sanity_of(quantity);
-  const bool has_range = signal.min < signal.max;
-  double low = lowest_physical(signal.layout);
-  double high = highest_physical(signal.layout);
-  if (has_range) {
-    low = std::max(low, signal.min);
-    high = std::min(high, signal.max);
-  }
-  const double reaches = std::max(std::abs(low), std::abs(high)) * factor;
+  const double reaches =
+      std::max(std::abs(lowest_of(signal)), std::abs(highest_of(signal))) * factor;
   const std::string_view inside = unit_inside(quantity);
   if (reaches < sanity.reaches) {
     return refusal(
@@ -210,15 +221,16 @@ size_t VehicleBinder::bind(const DbcMessage& message, const DbcSignal& signal) {
                     .multiplexed = {},
                     .min = signal.min,
                     .max = signal.max,
+                    .has_sign = lowest_of(signal) < 0.0,
                     .not_available = not_available_values(signal)};
   const auto known = std::ranges::find(binding_.signals, bound.name, &BoundSignal::name);
   if (known != binding_.signals.end()) {
     return static_cast<size_t>(known - binding_.signals.begin());
   }
-  if (signal.min == signal.max) {
+  if (!has_range(signal)) {
     bound.min = -std::numeric_limits<double>::infinity();
     bound.max = std::numeric_limits<double>::infinity();
-  } else {
+  } else if (is_integer(signal.layout)) {
     // A limit that is written with few digits must not refuse the raw value that is nearest to it.
     const double half_step = 0.5 * std::abs(signal.layout.scale);
     bound.min -= half_step;

@@ -35,6 +35,7 @@ struct BoundSignal {
   std::optional<Multiplexed> multiplexed{};
   double min = 0.0;  ///< in the unit of the DBC file; values beyond min and max are not available
   double max = 0.0;
+  bool has_sign = false;                 ///< has negative values within the range of the DBC file
   std::vector<int64_t> not_available{};  ///< raw values that VAL_ names SNA
   double factor = 1.0;                   ///< from the unit of the DBC file to that of Quantity
 };

@@ -58,7 +58,7 @@ class SignalGroup {
   /// Whether a bound signal has negative values. True for one that is not bound.
   bool has_sign(size_t signal) const {
     if (message_.empty() || signal >= binder_->binding().signals.size()) return true;
-    return can::lowest_physical(binder_->binding().signals[signal].layout) < 0.0;
+    return binder_->binding().signals[signal].has_sign;
   }
 
   /// Reads `{signal: NAME, values: [A, B]}`.

@@ -1,5 +1,6 @@
 #include "firmware/config/vehicle_bus_config.h"
 
+#include <regex>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -61,6 +62,18 @@ TEST_F(VehicleBusConfigTest, LongMessagesNeedAnFdInterface) {
   EXPECT_FALSE(appliance_options(config->can).fd);
   config->can.vehicle->messages[2].length = 12;
   EXPECT_TRUE(appliance_options(config->can).fd);
+}
+
+/// As in a DBC file whose speeds have an offset, but are magnitudes.
+TEST_F(VehicleBusConfigTest, SpeedsWhoseRangeBeginsAtZeroHaveNoSign) {
+  std::string dbc = read_text(folder_ / "vehicle_demo.dbc");
+  dbc = std::regex_replace(dbc, std::regex(R"((SG_ W[RF]_(?:Left|Right) .*,)0\) \[.*\])"),
+                           "$1-60) [0|250]");
+  ASSERT_NE(dbc.find("-60) [0|250]"), std::string::npos);
+  write("vehicle_demo.dbc", dbc);
+  EXPECT_NE(error_with("      backward: {signal: TCU_Gear.GE_Position, values: [R]}\n", "")
+                .find("found speeds that are never negative"),
+            std::string::npos);
 }
 
 /// Otherwise a vehicle that reverses would seem to drive forward.
