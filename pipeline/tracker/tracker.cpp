@@ -82,9 +82,11 @@ TrackerUpdate Tracker::add_odometry(const OdometrySample& sample) {
   last_odometry_ = sample;
   if (!is_initialised()) start_heading_.add(sample);
   if (!is_initialised() || sample.time < history_.front().time) return TrackerUpdate::kAccepted;
-  insert(count_until(history_, sample.time), {.time = sample.time,
-                                              .kind = TrackerEvent::Kind::kOdometry,
-                                              .motion = {sample.speed_mps, sample.yaw_rate_radps}});
+  const size_t position = position_of(sample.time);
+  if (position == 0) return TrackerUpdate::kTooOld;
+  insert(position, {.time = sample.time,
+                    .kind = TrackerEvent::Kind::kOdometry,
+                    .motion = {sample.speed_mps, sample.yaw_rate_radps}});
   return TrackerUpdate::kAccepted;
 }
 
@@ -203,7 +205,7 @@ TrackerUpdate Tracker::initialise(Time time, GnssPose gnss) {
 }
 
 TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, Trust trust) {
-  const size_t events_until = count_until(history_, time);
+  const size_t events_until = position_of(time);
   if (events_until == 0) return TrackerUpdate::kTooOld;
   if (!passes_gate(state_at(time, events_until), trust, measurement)) return TrackerUpdate::kGated;
   if (trust == Trust::kExamine) return TrackerUpdate::kAccepted;
@@ -257,9 +259,16 @@ FilterState Tracker::state_at(Time time, size_t events_until) const {
   return state;
 }
 
+size_t Tracker::position_of(Time time) const {
+  const size_t events_until = count_until(history_, time);
+  // The first event makes room in a full history, but the new one would have to follow it.
+  return history_.full() && events_until == 1 ? 0 : events_until;
+}
+
 void Tracker::insert(size_t position, const TrackerEvent& event) {
+  assert(position > 0 && position <= history_.size());
   if (history_.full()) {
-    if (position == 1) return;  // the event is older than all but the one that would be dropped
+    assert(position > 1);
     history_.pop_front();
     --position;
   }

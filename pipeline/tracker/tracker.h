@@ -165,7 +165,10 @@ class Tracker {
   bool has_odometry_for(Time time) const;
   MeasuredMotion motion_at(Time time, size_t events_until) const;
   FilterState state_at(Time time, size_t events_until) const;
-  /// Inserts `event` before the event at `position` and updates the states from there.
+  /// Where an event of this time belongs in the history; 0 if it is too old for it.
+  size_t position_of(Time time) const;
+  /// Inserts `event` before the event at `position` and updates the states from there. The position
+  /// must be one of position_of().
   void insert(size_t position, const TrackerEvent& event);
   /// Appends an event of this kind at the time of the latest one, if there is a pose. The next
   /// match then counts in full.

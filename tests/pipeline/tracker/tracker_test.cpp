@@ -306,6 +306,21 @@ TEST(TrackerTest, HasPosesWithinItsHistoryOnly) {
             TrackerUpdate::kNoOdometry);
 }
 
+TEST(TrackerTest, RefusesWhatAFullHistoryHasNoRoomFor) {
+  TrackerParameters small;
+  small.history_capacity = 3;
+  Tracker tracker(small);
+  GnssSample gnss{.time = at_s(0.0), .sigma_east_m = 0.5, .sigma_north_m = 0.5};
+  gnss.yaw = {0.2, radians(0.5)};
+  tracker.add_odometry({at_s(0.0), 5.0, 0.0});
+  ASSERT_EQ(tracker.add_gnss(gnss), TrackerUpdate::kAccepted);
+  for (const double time_s : {0.02, 0.04}) tracker.add_odometry({at_s(time_s), 5.0, 0.0});
+  gnss.time = at_s(0.01);
+  EXPECT_EQ(tracker.add_gnss(gnss), TrackerUpdate::kTooOld);
+  gnss.time = at_s(0.03);
+  EXPECT_EQ(tracker.add_gnss(gnss), TrackerUpdate::kAccepted);
+}
+
 TEST(TrackerTest, CovarianceGrowsWithThePrediction) {
   Tracker tracker;
   SimulatedVehicle vehicle(typical_errors(), 12);
