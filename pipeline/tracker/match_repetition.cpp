@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bevloc {
 namespace {
@@ -13,6 +14,10 @@ const Eigen::Vector3d kExcess{2.3, 5.7, 3.3};
 /// The approximate correlation between the errors of two such matches that are less than 1.5 m
 /// apart. The measured values are 0.10, 0.14 and 0.06.
 const Eigen::Vector3d kCorrelation{0.1, 0.15, 0.06};
+/// The noise of a match decays by a factor of e over about this distance. Of eight drives at a
+/// twentieth of the usual speed, matches 0.05, 0.2 and 0.5 m apart shared 52, 33 and 17 % of the
+/// noise in their headings (`bevloc tune matches`, docs/integrity.md).
+constexpr double kNoiseLength_m = 0.2;
 constexpr int kMostRepeats = 1000;
 
 /// If an error decays by a factor of e over `length_m` (a first-order Gauss-Markov process), the
@@ -29,20 +34,21 @@ double repeats_after(double distance_m, double length_m) {
 
 void MatchRepetition::discount(Time time, const MeasuredMotion& motion,
                                const ErrorCorrelation& correlation, PoseMeasurement& match) {
-  Eigen::Vector3d repeats = Eigen::Vector3d::Zero();
-  if (latest_) {
-    const double distance_m = std::abs(motion.speed_mps * to_seconds(time - *latest_));
-    repeats = correlation.match_m.unaryExpr(
-        [distance_m](double length_m) { return repeats_after(distance_m, length_m); });
-  }
+  const double distance_m = latest_ ? std::abs(motion.speed_mps * to_seconds(time - *latest_))
+                                    : std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d repeats = correlation.match_m.unaryExpr(
+      [distance_m](double length_m) { return repeats_after(distance_m, length_m); });
   const Eigen::Vector3d factor =
       kExcess.cwiseProduct(Eigen::Vector3d::Ones() + kCorrelation.cwiseProduct(repeats));
   match.repeated_variance = match.uncommon_variance.cwiseProduct(factor - Eigen::Vector3d::Ones());
+  match.repeated_variance += repeats_of_noise(distance_m, motion) * match.covariance.diagonal();
   latest_ = time;
+}
 
+double MatchRepetition::repeats_of_noise(double distance_m, const MeasuredMotion& motion) {
   standing_matches_ = stands(motion) ? std::min(standing_matches_ + 1, kMostRepeats) : 0;
-  const double standing_repeats = square_of(std::max(0, standing_matches_ - 1));
-  match.repeated_variance += standing_repeats * match.covariance.diagonal();
+  if (standing_matches_ > 1) return square_of(standing_matches_ - 1);
+  return repeats_after(distance_m, kNoiseLength_m);
 }
 
 }  // namespace bevloc

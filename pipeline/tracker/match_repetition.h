@@ -15,6 +15,8 @@ namespace bevloc {
 /// This class raises the variance of matches for what that state does not cover:
 /// - An uncertain match has a larger error than its sigma says. Uncertain matches near each other
 ///   have similar errors.
+/// - Matches a few centimetres apart see nearly the same picture, so that even their noise is
+///   alike. A slow vehicle makes many of them.
 /// - All matches of a standing vehicle see the same picture, so the k-th of them counts with
 ///   1 + (k - 1)^2 times its noise. All of them say little more than the first.
 ///
@@ -29,6 +31,9 @@ class MatchRepetition {
   void forget() { *this = {}; }
 
  private:
+  /// By how many times the noise of the match at `time` is raised.
+  double repeats_of_noise(double distance_m, const MeasuredMotion& motion);
+
   int standing_matches_ = 0;    ///< number since the vehicle stands
   std::optional<Time> latest_;  ///< time of the latest match that the filter has used
 };

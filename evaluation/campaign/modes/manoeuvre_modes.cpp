@@ -16,6 +16,8 @@ std::vector<Mode> manoeuvre_modes() {
   const sim::Fault no_heading = fault(FaultKind::kGnssNoHeading);
   const sim::Fault outage = fault(FaultKind::kGnssOutage);
   ModeList modes;
+  modes.add("crawl", "the vehicle drives at a tenth of its speed", kToTheEnd,
+            {{0.0, 1.0}, {4.0, 0.1}}, {});
   modes.add("standing-start", "the vehicle stands for the first 20 s", kAlways, standing, {});
   modes.add("standing-start-no-heading", "the same, with GNSS without heading", kAlways, standing,
             {no_heading});

@@ -44,7 +44,22 @@ TEST_F(MatchRepetitionTest, AMatchCountsMoreTheFartherItIsFromTheLast) {
 
 TEST_F(MatchRepetitionTest, AnAxisWithIndependentErrorsRepeatsNothing) {
   const double first = added(1.0, kDriving).z();
-  EXPECT_EQ(added(1.1, kDriving).z(), first);
+  EXPECT_EQ(added(2.0, kDriving).z(), first);
+}
+
+TEST_F(MatchRepetitionTest, TheNoiseOfASlowVehicleIsThatOfTheMatchBefore) {
+  const double noise = 0.01;
+  const double first = added(1.0, kDriving).z();
+  const double after_1_m = added(1.1, kDriving).z() - first;
+  const double after_5_cm = added(1.2, {0.5, 0.0}).z() - first;
+  EXPECT_LT(after_1_m, 0.02 * noise);
+  EXPECT_GT(after_5_cm, 6.0 * noise);
+  EXPECT_DOUBLE_EQ(added(1.3, {-0.5, 0.0}).z() - first, after_5_cm) << "also backwards";
+}
+
+TEST_F(MatchRepetitionTest, TheFirstMatchOfAStopIsNearTheOneBefore) {
+  const double first = added(1.0, {0.5, 0.0}).z();
+  EXPECT_GT(added(1.1, kStanding).z() - first, 10.0 * 0.01);
 }
 
 TEST_F(MatchRepetitionTest, AStandingVehicleLearnsLittleFromTheSecondMatch) {
