@@ -19,14 +19,16 @@ std::vector<Mode> manoeuvre_modes() {
   modes.add("crawl", "the vehicle drives at a tenth of its speed", kToTheEnd,
             {{0.0, 1.0}, {4.0, 0.1}}, {});
   modes.add("standing-start", "the vehicle stands for the first 20 s", kAlways, standing, {});
-  modes.add("standing-start-no-heading", "the same, with GNSS without heading", kAlways, standing,
+  modes.add("standing-start-no-heading",
+            "the vehicle stands for the first 20 s, and GNSS has no heading", kAlways, standing,
             {no_heading});
   modes.add("reverse-start", "the vehicle leaves its place backwards", kAlways, leaving, {});
-  modes.add("reverse-start-no-heading", "the same, with GNSS without heading", kAlways, leaving,
+  modes.add("reverse-start-no-heading",
+            "the vehicle leaves its place backwards, and GNSS has no heading", kAlways, leaving,
             {no_heading});
   modes.add("reverse", "the vehicle stops, reverses and drives on", kToTheEnd, reversing, {});
-  modes.add("reverse-without-gnss", "the same while GNSS is missing", kToTheEnd, reversing,
-            {outage});
+  modes.add("reverse-without-gnss", "the vehicle stops and reverses while GNSS is missing",
+            kToTheEnd, reversing, {outage});
   return std::move(modes).all();
 }
 
