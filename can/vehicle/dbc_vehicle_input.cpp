@@ -152,8 +152,8 @@ bool DbcVehicleInput::all_new(const std::vector<size_t>& signals) const {
   return std::ranges::all_of(signals, [this](size_t signal) { return slots_[signal].is_new; });
 }
 
-/// Drops values that are so old that the next ones come soon. The sample then waits for these.
-/// Returns whether a value was dropped.
+/// Drops each value that is so old that its message comes again soon. The sample then waits for
+/// that message. Returns whether a value was dropped.
 bool DbcVehicleInput::drop_stale(const std::vector<size_t>& signals, int frames, Time now) {
   Duration longest{};
   for (const size_t signal : signals) longest = std::max(longest, interval_of(signal));

@@ -36,9 +36,7 @@ class RecordedDrive {
  public:
   RecordedDrive(const DriveConfig& config, const Rig& rig, sim::World world)
       : world_(std::make_shared<const sim::World>(std::move(world))),
-        drive_(std::make_shared<const sim::Drive>(
-            *world_, sim::seed_for(config.simulation->seed, "drive"), config.simulation->duration_s,
-            config.simulation->stops, config.simulation->pace)),
+        drive_(make_configured_drive(*world_, *config.simulation)),
         true_rig_(drivers::true_rig(rig, config.simulation->calibration_error,
                                     sim::seed_for(config.simulation->seed, "calibration"))),
         scene_(world_, drive_, config.simulation->conditions,

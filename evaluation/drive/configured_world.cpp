@@ -1,6 +1,7 @@
 #include "evaluation/drive/configured_world.h"
 
 #include "pipeline/map/map_loader.h"
+#include "sim/random.h"
 #include "sim/world/world_generator.h"
 
 namespace bevloc::evaluation {
@@ -14,6 +15,14 @@ Result<sim::World> make_configured_world(const DriveConfig& config) {
     return fail("{}: found no lanes, wanted some to drive on", config.map_file.string());
   }
   return sim::world_from_map(*map, simulation.seed);
+}
+
+std::shared_ptr<const sim::Drive> make_configured_drive(const sim::World& world,
+                                                        const SimulationConfig& simulation,
+                                                        double added_s) {
+  return std::make_shared<const sim::Drive>(world, sim::seed_for(simulation.seed, "drive"),
+                                            simulation.duration_s + added_s, simulation.stops,
+                                            simulation.pace);
 }
 
 }  // namespace bevloc::evaluation

@@ -146,10 +146,8 @@ Result<SimulatedDrive> SimulatedDrive::create(const DriveConfig& config) {
 SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,
                                const SimulationConfig& simulation)
     : world_(std::move(world)),
-      drive_(std::make_shared<sim::Drive>(
-          *world_, sim::seed_for(simulation.seed, "drive"),
-          simulation.duration_s + kSpareDuration_s + sim::added_time_s(simulation.faults),
-          simulation.stops, simulation.pace)),
+      drive_(make_configured_drive(*world_, simulation,
+                                   kSpareDuration_s + sim::added_time_s(simulation.faults))),
       faults_(std::make_shared<sim::FaultBoard>(simulation.faults)),
       map_(sim::with_faults(world_->map, sim::in_drive_time(simulation.faults, simulation.faults),
                             *drive_)) {}

@@ -73,8 +73,7 @@ void ViewLog::note_gnss_lag(int lag_ms) const {
   if (lag_ms != 0) {
     spdlog::error(
         "GNSS: its headings are {} ms older than the yaw rate, as bends show; check the delay of "
-        "its "
-        "messages",
+        "its messages",
         lag_ms);
   } else {
     spdlog::info("GNSS: its headings agree with odometry again, or it is not used");

@@ -31,7 +31,8 @@ class MatchRepetition {
   void forget() { *this = {}; }
 
  private:
-  /// By how many times the noise of the match at `time` is raised.
+  /// How many times its own noise is added to a match that is `distance_m` from the latest one.
+  /// Counts the matches of a standing vehicle.
   double repeats_of_noise(double distance_m, const MeasuredMotion& motion);
 
   int standing_matches_ = 0;    ///< number since the vehicle stands

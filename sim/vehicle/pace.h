@@ -5,8 +5,8 @@
 
 namespace bevloc::sim {
 
-/// The vehicle's speed at a time, as a share of the planned speed at the same place: 1 as planned,
-/// 0 if it stands, negative if it reverses.
+/// From which time on the vehicle has which share of the planned speed: at 1 it drives as planned,
+/// at 0 it stands, and with a negative share it reverses.
 struct PacePoint {
   double at_s = 0.0;
   double pace = 1.0;

@@ -1,4 +1,4 @@
-// Modes in which the vehicle itself does what is rare on a drive.
+// Modes in which the vehicle crawls, stands or reverses.
 #include <utility>
 
 #include "evaluation/campaign/modes/mode_list.h"

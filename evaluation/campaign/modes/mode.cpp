@@ -15,8 +15,9 @@ constexpr double kStartShare = 1.0 / 3.0;
 
 FaultTime Mode::time_in(double duration_s) const {
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  const bool has_fault = !faults.empty() || !match_faults.empty() || suspended_s > 0.0;
-  if (!has_fault && pace.empty()) return {kNever, kNever};
+  const bool is_plain_drive =
+      faults.empty() && match_faults.empty() && pace.empty() && suspended_s <= 0.0;
+  if (is_plain_drive) return {kNever, kNever};
   const double from_s = length.from_start ? 0.0 : kStartShare * duration_s;
   return {from_s, length.seconds > 0.0 ? from_s + length.seconds : kNever};
 }

@@ -68,7 +68,7 @@ std::vector<Mode> map_modes();
 std::vector<Mode> line_modes();
 /// Faults of the bus between the vehicle and the appliance.
 std::vector<Mode> bus_modes();
-/// The vehicle itself does what is rare. Nothing fails.
+/// The vehicle crawls, stands or reverses. In some modes GNSS fails, too.
 std::vector<Mode> manoeuvre_modes();
 /// Faults of the clocks of the whole appliance. No why bit names a step of the system clock,
 /// because it must have no effect.

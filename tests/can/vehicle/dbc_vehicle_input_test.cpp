@@ -104,7 +104,8 @@ TEST(DbcVehicleInputTest, TheSpeedOfTheVehicleAloneSaysNothingAboutTheYawRate) {
   }
 }
 
-/// A sample comes every 40 ms: the message has this cycle, or every second frame has its page.
+/// A sample comes every 40 ms: the message has this cycle, or only every second frame carries the
+/// yaw rate.
 TEST(DbcVehicleInputTest, TwoLostFramesOfSlowOdometryAreNoFault) {
   VehicleBinding slow = binding();
   slow.messages[0].cycle = 2 * kCycle;
@@ -129,8 +130,8 @@ VehicleBinding binding_with_steps(double speed_mps, double yaw_rate_radps) {
   return with_steps;
 }
 
-/// Returns how many samples of a minute OdometryMonitor refuses. Sensors that stick do so after
-/// half of the time.
+/// Returns how many samples of a minute OdometryMonitor refuses. If the sensors stick, both values
+/// stay the same from the middle of the minute on.
 int refused_in_a_minute(const VehicleBinding& bound, bool sensors_stick) {
   DbcVehicleInput input(bound, {}, {49.0, 8.4}, 1.6);
   OdometryMonitor monitor;
