@@ -40,8 +40,7 @@ void BenchCommand::declare(CLI::App& app) {
   bench->add_option("--sweep", sweeps_, "Instead of a frame, measure how the time grows with this")
       ->check(CLI::IsMember(names(kSweepNames)))
       ->excludes(stages);
-  bench->add_flag("!--no-peak", options_.measures_peak,
-                  "Do not measure the peak of the machine, which an emulator takes hours for");
+  bench->add_flag("!--no-peak", options_.measures_peak, "Do not measure the peak of the machine");
   bench->add_option("--json", json_file_, "Write the results as JSON to this file")
       ->check(output_file());
   bench->footer(

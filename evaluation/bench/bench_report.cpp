@@ -46,12 +46,14 @@ std::string machine_lines(const BenchResult& result) {
       fmt::format("{}, {} frames at {} places, threads: {}\n{}, {}\n", result.model, result.frames,
                   result.places, result.threads, result.processor, result.instruction_set);
   if (!is_measured(peak)) return lines + "the machine's peak was not measured\n\n";
-  return lines + fmt::format(
-                     "peak of int8: {:.0f} GMAC/s (convolution {:.0f}, matrix product {:.0f}); "
-                     "copy: {:.1f} "
-                     "GB/s\n\n",
-                     peak.macs_per_s() / kGiga, peak.convolution_macs_per_s / kGiga,
-                     peak.matmul_macs_per_s / kGiga, peak.copy_bytes_per_s / kGiga);
+  const std::string matmul =
+      peak.matmul_macs_per_s > 0.0
+          ? fmt::format(", matrix product {:.0f}", peak.matmul_macs_per_s / kGiga)
+          : "";
+  return lines +
+         fmt::format("peak of int8: {:.0f} GMAC/s (convolution {:.0f}{}); copy: {:.1f} GB/s\n\n",
+                     peak.macs_per_s() / kGiga, peak.convolution_macs_per_s / kGiga, matmul,
+                     peak.copy_bytes_per_s / kGiga);
 }
 
 /// The line with the sum of the ideal times; empty if the peak of the machine was not measured.

@@ -6,12 +6,20 @@
 #include <dnnl.hpp>
 #include <omp.h>
 
+#include "evaluation/bench/strip_peak.h"
 #include "pipeline/network/engine/isa.h"
+#include "pipeline/network/kernels/strip_kernels.h"
 
 namespace bevloc::bench {
 namespace {
 
 using dnnl::memory;
+
+#ifdef __aarch64__
+constexpr bool kOneDnnIsFast = false;
+#else
+constexpr bool kOneDnnIsFast = true;
+#endif
 
 /// Memory filled with ones.
 memory filled(const memory::desc& desc, const dnnl::engine& engine) {
@@ -88,16 +96,14 @@ double matmul_macs_per_s(const dnnl::engine& engine, const TimeOfRun& time_s) {
   return static_cast<double>(kSize * kSize * kSize) / seconds;
 }
 
-}  // namespace
-
-Int8Peak measure_int8_peak(int threads, const TimeOfRun& time_s) {
+Int8Peak measure_onednn(int threads, const TimeOfRun& time_s) {
   nn::onednn::cap_cpu_isa(IsaCap::kBest);
   omp_set_num_threads(threads);  // oneDNN makes its kernels for this number
   const dnnl::engine engine(dnnl::engine::kind::cpu, 0);
   return {convolution_macs_per_s(engine, time_s), matmul_macs_per_s(engine, time_s)};
 }
 
-std::string instruction_set() {
+std::string onednn_instruction_set() {
   switch (dnnl::get_effective_cpu_isa()) {
     case dnnl::cpu_isa::avx2:
       return "avx2";
@@ -114,6 +120,20 @@ std::string instruction_set() {
     default:
       return "other";
   }
+}
+
+}  // namespace
+
+Int8Peak measure_int8_peak(int threads, const TimeOfRun& time_s) {
+  if constexpr (kOneDnnIsFast) {
+    return measure_onednn(threads, time_s);
+  } else {
+    return {strip_macs_per_s(threads, time_s), 0.0};
+  }
+}
+
+std::string instruction_set() {
+  return kOneDnnIsFast ? onednn_instruction_set() : nn::kernel_sets().front()->name;
 }
 
 }  // namespace bevloc::bench

@@ -1,8 +1,9 @@
 // Measures how fast this machine multiplies int8.
 #pragma once
 
-#include <functional>
 #include <string>
+
+#include "evaluation/bench/timing.h"
 
 namespace bevloc::bench {
 
@@ -12,14 +13,14 @@ struct Int8Peak {
   double matmul_macs_per_s = 0.0;
 };
 
-/// Calls `run` several times and returns the time of one run, in seconds.
-using TimeOfRun = std::function<double(const std::function<void()>& run)>;
-
-/// Measures with oneDNN: a 3 x 3 convolution of 256 to 256 channels on 6 x 32 x 56, and a product
-/// of two 1024 x 1024 matrices. The process must not limit its instruction set.
+/// On x86-64, measures with oneDNN: a 3 x 3 convolution of 256 to 256 channels on 6 x 32 x 56, and
+/// a product of two 1024 x 1024 matrices. The process must not limit its instruction set. On arm64,
+/// measures the network's own kernels (strip_peak.h) and no product of matrices, because Debian's
+/// oneDNN has no fast int8 code for arm64.
 Int8Peak measure_int8_peak(int threads, const TimeOfRun& time_s);
 
-/// The instruction set that oneDNN uses in this process, by oneDNN's name.
+/// The instruction set that the network uses in this process: on x86-64 by oneDNN's name, on arm64
+/// by that of the network's own kernels.
 std::string instruction_set();
 
 }  // namespace bevloc::bench

@@ -50,6 +50,8 @@ std::string processor_name() {
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with("model name")) return line.substr(line.find(": ") + 2);
   }
+  std::ifstream board("/proc/device-tree/model");
+  if (std::string name; std::getline(board, name, '\0') && !name.empty()) return name;
   return "unknown";
 }
 

@@ -12,7 +12,8 @@ namespace bevloc::bench {
 /// instruction set.
 MachinePeak measure_machine(int threads);
 
-/// The name in /proc/cpuinfo, or "unknown".
+/// The processor's name in /proc/cpuinfo; where it has none, as on arm64, the board's name in the
+/// device tree; else "unknown".
 std::string processor_name();
 
 }  // namespace bevloc::bench

@@ -9,7 +9,7 @@
 
 #include "common/result.h"
 #include "pipeline/network/engine/engine.h"
-#include "pipeline/network/engine/parallel_for.h"
+#include "pipeline/network/engine/loop_body.h"
 #include "pipeline/network/model/model_rig.h"
 #include "pipeline/network/view/view_table.h"
 #include "pipeline/solver/feature_view.h"

@@ -4,7 +4,7 @@
 
 #include <omp.h>
 
-#include "pipeline/network/engine/parallel.h"
+#include "pipeline/network/engine/parallel_for.h"
 #include "pipeline/network/kernels/nearest_upsample.h"
 
 namespace bevloc::nn::onednn {

@@ -9,7 +9,7 @@
 #include <omp.h>
 
 #include "pipeline/network/engine/isa.h"
-#include "pipeline/network/engine/parallel.h"
+#include "pipeline/network/engine/parallel_for.h"
 #include "pipeline/network/engine/plan_builder.h"
 #include "pipeline/network/model/load_error.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/network/engine/parallel_for.h"
+#include "pipeline/network/engine/loop_body.h"
 #include "pipeline/network/kernels/cpu_isa.h"
 #include "pipeline/network/kernels/view_transform.h"
 #include "pipeline/network/model/program.h"

@@ -1,23 +1,20 @@
-// The loop body that Engine::parallel_for() runs on the network's threads.
+// A parallel loop on OpenMP threads.
 #pragma once
 
-namespace bevloc {
+#include <omp.h>
 
-/// Reference to a function `void(int index)`. The function must outlive it. Unlike std::function,
-/// it never allocates.
-class LoopBody {
- public:
-  template <typename Function>
-  LoopBody(const Function& function)
-      : function_(&function), call_([](const void* called, int index) {
-          (*static_cast<const Function*>(called))(index);
-        }) {}
+namespace bevloc::nn::onednn {
 
-  void operator()(int index) const { call_(function_, index); }
+/// Calls body(i) for each i in [0, count), in any order. With one thread, the calls happen in the
+/// caller's thread without OpenMP, which would allocate a team of threads for each loop.
+template <typename Body>
+void parallel_for(int count, const Body& body) {
+  if (omp_get_max_threads() == 1) {
+    for (int i = 0; i < count; ++i) body(i);
+    return;
+  }
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < count; ++i) body(i);
+}
 
- private:
-  const void* function_;
-  void (*call_)(const void* function, int index);
-};
-
-}  // namespace bevloc
+}  // namespace bevloc::nn::onednn

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "pipeline/network/engine/parallel.h"
+#include "pipeline/network/engine/parallel_for.h"
 #include "pipeline/network/kernels/rearrange.h"
 
 namespace bevloc::nn::onednn {
