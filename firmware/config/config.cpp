@@ -220,7 +220,7 @@ TrackerParameters read_tracker(std::optional<YamlMap> yaml) {
       "yaw_rate_bias_sigma_degps", degrees(tracker.initial_yaw_rate_bias_sigma_radps), noise));
   ErrorCorrelation& correlation = tracker.correlation;
   correlation.gnss_s =
-      yaml->optional<double>("gnss_correlation_s", correlation.gnss_s, between(0.0, 600.0));
+      yaml->optional<double>("gnss_correlation_s", correlation.gnss_s, between(1.0, 600.0));
   if (yaml->has("correction_correlation_m")) {
     const auto lengths_m =
         yaml->require_list<double>("correction_correlation_m", 3, between(0.0, 1000.0));

@@ -77,7 +77,7 @@ bool Health::is_too_uncertain(const HealthInputs& inputs) const {
 /// Whether the pose comes from dead reckoning for too long and may be wrong by more than the alert
 /// limits.
 bool Health::is_unprotected(const HealthInputs& inputs) const {
-  const bool disputed = inputs.verdict.match_contradicts || inputs.verdict.gnss_contradicts;
+  const bool disputed = inputs.verdict.match_contradicts || inputs.verdict.gnss_excluded;
   const bool is_new = inputs.valid_age < kNewPose;
   const Duration undisputed = is_new ? kTrustedNewPose : kTrustedDeadReckoning;
   const Duration trusted = disputed ? limits_.correction_timeout : undisputed;

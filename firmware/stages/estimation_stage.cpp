@@ -132,7 +132,7 @@ void EstimationStage::take_samples() {
 
 /// GNSS that is excluded already does no harm, and its headings may be wrong for another reason.
 void EstimationStage::watch_gnss_lag() {
-  if (estimator_.verdict().gnss_contradicts) gnss_lag_.reset();
+  if (estimator_.verdict().gnss_excluded) gnss_lag_.reset();
   counters_.gnss_lag_ms = gnss_lag_.lag_ms();
 }
 

@@ -31,7 +31,8 @@ struct EstimationCounters {
   std::atomic<uint64_t> clock_gaps{0};
   std::atomic<HealthState> state{HealthState::kInit};
   std::atomic<uint32_t> why{0};  ///< bits of a WhyMask
-  /// The state LOST lasts one bus cycle. Threads that look less often see a loss in the next two.
+  /// The state LOST lasts one bus cycle. Threads that look less often learn of a loss from the
+  /// next two members.
   std::atomic<uint64_t> lost{0};      ///< how often the pose was lost
   std::atomic<uint32_t> lost_why{0};  ///< reasons of the latest loss: bits of a WhyMask
   /// The time since when a pose that was valid is not valid. It is Time::max() while the pose is

@@ -28,14 +28,17 @@ CameraMask with_jumped_stamps(const drivers::Frameset& frameset) {
   return jumped;
 }
 
-/// Leaves out some frames. Frameset::time becomes that of the earliest frame that remains.
+/// Leaves out some frames. Frameset::time becomes that of the earliest frame that remains, and
+/// stays as it is if none remains.
 void leave_out(CameraMask cameras, drivers::Frameset& frameset) {
-  if (cameras.none()) return;
   frameset.present &= ~cameras;
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (cameras[camera]) frameset.frames[camera] = {};
+  }
+  if (cameras.none() || frameset.present.none()) return;
   Time earliest = Time::max();
   Time latest = Time::min();
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    if (cameras[camera]) frameset.frames[camera] = {};
     if (!frameset.present[camera]) continue;
     earliest = std::min(earliest, frameset.frames[camera].time);
     latest = std::max(latest, frameset.frames[camera].time);
@@ -92,16 +95,18 @@ VisionReport VisionStage::report_on(NewestFrameset newest) {
   VisionReport report;
   // A frame with a wrong stamp would be matched with the wrong pose. If most time stamps have
   // jumped, the frames are matched, and the tracker has to find out whether the stamps are right.
-  const CameraMask jumped = with_jumped_stamps(frameset);
-  counters_.stamps_jumped = static_cast<unsigned>(jumped.to_ulong());
-  report.stamps_jumped = 2 * jumped.count() > frameset.present.count();
-  if (!report.stamps_jumped) leave_out(jumped, frameset);
+  report.stamps_jumped = most_stamps_jumped(frameset);
+  if (!report.stamps_jumped) leave_out(jumped_, frameset);
   report.frame_time = frameset.time;
   report.present = frameset.present;
   report.skipped = newest.skipped;
   report.unsynchronized = newest.unsynchronized;
   if (counters_.network_fault) {
     report.network_fault = true;
+    return report;
+  }
+  if (frameset.present.none()) {
+    ++counters_.refused;
     return report;
   }
   if (const auto prior = priors_.at(frameset)) {
@@ -113,6 +118,15 @@ VisionReport VisionStage::report_on(NewestFrameset newest) {
     ++counters_.no_prior;
   }
   return report;
+}
+
+bool VisionStage::most_stamps_jumped(const drivers::Frameset& frameset) {
+  const CameraMask delivering = frameset.present | latest_present_;
+  jumped_ &= delivering & ~frameset.present;
+  jumped_ |= with_jumped_stamps(frameset);
+  latest_present_ = frameset.present;
+  counters_.stamps_jumped = static_cast<unsigned>(jumped_.to_ulong());
+  return 2 * jumped_.count() > delivering.count();
 }
 
 void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,

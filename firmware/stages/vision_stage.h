@@ -86,6 +86,10 @@ class VisionStage {
 
  private:
   VisionReport report_on(NewestFrameset newest);
+  /// Says which cameras deliver frames whose time stamps have jumped, and returns whether these are
+  /// most. Two groups of cameras that expose at different times come in turn, each in a frameset of
+  /// its own. So the cameras of the frameset before count, too.
+  bool most_stamps_jumped(const drivers::Frameset& frameset);
   /// Matches the frameset, and fills in the parts of the report that depend on the images.
   void match(const drivers::Frameset& frameset, const Prior& prior, VisionReport& report);
   /// Checks network and solvers. Logs why a check failed.
@@ -102,6 +106,8 @@ class VisionStage {
   std::vector<VisionObserver> observers_;
   const std::function<std::span<const float>()> perceived_mask_;
   VisionCounters counters_;
+  CameraMask jumped_;          ///< cameras of the latest two framesets whose time stamps jumped
+  CameraMask latest_present_;  ///< cameras of the latest frameset
   Time latest_check_ = Time::min();
   std::optional<Time> standing_since_;
 };

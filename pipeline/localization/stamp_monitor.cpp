@@ -73,6 +73,7 @@ std::optional<StampMonitor::Rate> StampMonitor::rate_at(Time time) const {
 }
 
 void StampMonitor::add_heading(Time time, double heading_rad) {
+  if (!headings_.empty() && time - headings_.back().time < kSpacing) return;
   const auto rate = rate_at(time);
   if (!rate) return;
   Heading now{time, heading_rad - rate->heading_rad, rate->heading_rad, rate->yaw_rate_radps};

@@ -63,8 +63,10 @@ class StampMonitor {
   static constexpr size_t kRates = 128;
   static constexpr Duration kGap = std::chrono::milliseconds(100);
   static constexpr Duration kLag = std::chrono::seconds(2);
-  /// The number of headings within a lag, at up to 30 framesets per second.
-  static constexpr size_t kHeadings = 64;
+  /// Headings that follow the latest one sooner are not used. The others of one lag fit into
+  /// `headings_`.
+  static constexpr Duration kSpacing = std::chrono::milliseconds(32);
+  static constexpr size_t kHeadings = kLag / kSpacing + 2;
 
   struct Rate {
     Time time;

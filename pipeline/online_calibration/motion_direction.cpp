@@ -9,8 +9,8 @@ namespace bevloc {
 namespace {
 
 constexpr int kFitSteps = 3;
-/// Errors of matched positions, one sigma. They are alike for some seconds, so that many samples
-/// count as one.
+/// Errors of matched positions, one sigma. They stay alike for some seconds. Therefore
+/// kAlikeSamples samples count as one.
 constexpr double kAcross_m = 0.08;
 constexpr double kAlong_m = 0.3;
 constexpr double kAlikeSamples = 15.0;
@@ -29,9 +29,8 @@ std::optional<HeadingTurn> MotionDirection::add(const std::optional<Se2>& map_fr
     driven_until_ = step->to;
   }
   if (map_from_vehicle) samples_.push_back({*map_from_vehicle, driven_});
-  if (length_m_ < kStretch_m) return std::nullopt;
-  std::optional<HeadingTurn> result;
-  if (samples_.size() >= kLeastPoses) result = turn();
+  if (length_m_ < kStretch_m || samples_.size() < kLeastPoses) return std::nullopt;
+  const HeadingTurn result = turn();
   begin();
   return result;
 }

@@ -23,7 +23,7 @@ struct HeadingTurn {
 /// One thread. Allocates in the constructor only.
 class MotionDirection {
  public:
-  /// Length of a stretch of road that gives one comparison.
+  /// Least length of a stretch of road that gives one comparison.
   static constexpr double kStretch_m = 60.0;
 
   /// `map_from_vehicle` is the matched pose at the end of the step, if the match is clear. `step`
@@ -35,7 +35,7 @@ class MotionDirection {
 
  private:
   static constexpr size_t kMostPoses = 512;
-  /// A stretch with fewer clear matches gives no comparison.
+  /// A stretch goes on until it has as many clear matches.
   static constexpr size_t kLeastPoses = 20;
 
   struct Sample {

@@ -42,9 +42,10 @@ constexpr double kDriftLimit = 4.0;
 constexpr double kSharedLean = 2.0;
 constexpr double kLeanOfThree = 1.0;
 constexpr double kSharedLimit = 3.5;
-/// The match leans alone in heading, so dead reckoning does not drift, if GNSS leans to the other
-/// side by more than kOpposingLean. A smaller lean of GNSS to that side suffices if the lean of the
-/// wheels is known and is below kSupportingLean (positive to the side of the match).
+/// If the heading of GNSS leans to the other side than that of the match by more than
+/// kOpposingLean, the match leans alone and dead reckoning does not drift. If the wheels are known
+/// to lean with the match by less than kSupportingLean, any lean of GNSS to the other side
+/// suffices.
 constexpr double kOpposingLean = 1.5;
 constexpr double kSupportingLean = 1.0;
 /// The wheels lean until WheelDifference has learned a bias, so the part of their lean that is
@@ -103,7 +104,9 @@ void Arbiter::Voter::add(Time time, const PoseInnovation& innovation, bool passe
       innovation.error.cwiseQuotient(sigma).cwiseMax(-kMaxDriftStep).cwiseMin(kMaxDriftStep);
   // A measurement that does not see an axis says nothing about its drift.
   const Eigen::Array<bool, 3, 1> seen = sigma.array() <= kPlausibleOffset.array();
-  drift.array() += kDriftGain * seen.cast<double>() * (in_sigmas - drift).array();
+  if (!innovation.repeats) {
+    drift.array() += kDriftGain * seen.cast<double>() * (in_sigmas - drift).array();
+  }
   if (passes_gate) {
     last_passed = time;
     last_passed_error = innovation.error;
@@ -120,6 +123,7 @@ void Arbiter::Voter::add(Time time, const PoseInnovation& innovation, bool passe
 }
 
 Eigen::Vector3d Arbiter::Voter::lean() const {
+  if (excluded) return Eigen::Vector3d::Zero();
   static const double sigma = std::sqrt(kDriftGain / (2.0 - kDriftGain));
   return drift / sigma;
 }
@@ -215,7 +219,7 @@ bool Arbiter::answers_dispute(const PoseInnovation& innovation) const {
 }
 
 void Arbiter::add_gnss(Time time, const PoseInnovation& innovation, bool passes_gate,
-                       const std::optional<Eigen::Vector3d>& gnss_error) {
+                       const std::optional<GnssError>& gnss_error) {
   gnss_.add(time, innovation, passes_gate);
   gnss_records_[gnss_count_++ % kGnssRecords] = {
       time, innovation.squared_distance,
@@ -234,19 +238,22 @@ void Arbiter::forget_gnss_errors() {
   gnss_.drift.setZero();
 }
 
-void Arbiter::note_gnss_error(Time time, const Eigen::Vector3d& gnss_error) {
+void Arbiter::note_gnss_error(Time time, const GnssError& gnss_error) {
   if (time < next_gnss_error_) return;
   next_gnss_error_ = time + std::chrono::seconds(1);
   moved_gnss_axis_.reset();
   const size_t known = std::min(gnss_error_count_, kGnssErrors);
   for (size_t i = 0; i < known; ++i) {
-    const GnssError& before = gnss_errors_[i];
+    const TimedGnssError& before = gnss_errors_[i];
     const double age_s = to_seconds(time - before.time);
     const double expected = std::sqrt(2.0 * (1.0 - std::exp(-age_s / gnss_correlation_s_)));
-    const Eigen::Vector3d change = (gnss_error - before.error).cwiseAbs();
-    if (change.maxCoeff() > kGnssMoveLimit * expected + 0.3) moved_gnss_axis_ = largest_of(change);
+    const Eigen::Vector3d change =
+        GnssError{gnss_error.in_map - before.in_map, gnss_error.vehicle_yaw_rad}.in_vehicle();
+    if (change.cwiseAbs().maxCoeff() > kGnssMoveLimit * expected + 0.3) {
+      moved_gnss_axis_ = largest_of(change);
+    }
   }
-  gnss_errors_[gnss_error_count_++ % kGnssErrors] = {time, gnss_error};
+  gnss_errors_[gnss_error_count_++ % kGnssErrors] = {time, gnss_error.in_map};
 }
 
 bool Arbiter::match_agrees(Time now) const {
@@ -300,7 +307,7 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
   if (gnss_disputed_) verdict.undecided = true;
   if (odometry_wrong_until_ && now < *odometry_wrong_until_) verdict.odometry_contradicts = true;
   if (match_.excluded) verdict.match_contradicts = true;
-  if (gnss_.excluded) verdict.gnss_contradicts = true;
+  if (gnss_.excluded) verdict.gnss_contradicts = verdict.gnss_excluded = true;
   return verdict;
 }
 

@@ -13,13 +13,14 @@
 
 namespace bevloc {
 
-/// Says which voters are wrong. The arbiter sets the first four fields. PoseEstimator sets
+/// Says which voters are wrong. The arbiter sets the first five fields. PoseEstimator sets
 /// `map_contradicts`; it also sets `gnss_contradicts` while GNSS scatters (GnssScatter),
 /// `undecided` when it starts again, and `odometry_contradicts` when the cause is that the wheels
 /// slip.
 struct Verdict {
   bool match_contradicts = false;     ///< GNSS and dead reckoning agree, the match does not
   bool gnss_contradicts = false;      ///< match and dead reckoning agree, GNSS does not
+  bool gnss_excluded = false;         ///< GNSS contradicts, and the filter does not use it
   bool odometry_contradicts = false;  ///< match and GNSS agree, dead reckoning does not
   bool undecided = false;             ///< two voters disagree, and the third does not decide
   bool map_contradicts = false;       ///< a constant offset to GNSS (MapOffsetMonitor)
@@ -48,7 +49,7 @@ class Arbiter {
   /// Adds a GNSS sample that reached the gate. `gnss_error` is Tracker::gnss_error(), or nothing
   /// while the pose is not valid and the error therefore not known.
   void add_gnss(Time time, const PoseInnovation& innovation, bool passes_gate,
-                const std::optional<Eigen::Vector3d>& gnss_error);
+                const std::optional<GnssError>& gnss_error);
 
   /// `wheel_lean` is OdometrySample::wheel_lean of a plausible sample.
   void add_odometry(Time time, const std::optional<double>& wheel_lean);
@@ -145,7 +146,7 @@ class Arbiter {
   void decide_dispute(Verdict& verdict, PoseStanding standing);
   void ask_gnss(Verdict& verdict);
   void forget_gnss_errors();
-  void note_gnss_error(Time time, const Eigen::Vector3d& gnss_error);
+  void note_gnss_error(Time time, const GnssError& gnss_error);
 
   static constexpr size_t kGnssRecords = 8;
   static constexpr size_t kGnssErrors = 20;
@@ -162,11 +163,11 @@ class Arbiter {
   std::array<GnssRecord, kGnssRecords> gnss_records_{};
   size_t gnss_count_ = 0;
   /// GNSS errors of the last seconds, one per second.
-  struct GnssError {
+  struct TimedGnssError {
     Time time;
-    Eigen::Vector3d error = Eigen::Vector3d::Zero();
+    Eigen::Vector3d in_map = Eigen::Vector3d::Zero();
   };
-  std::array<GnssError, kGnssErrors> gnss_errors_{};
+  std::array<TimedGnssError, kGnssErrors> gnss_errors_{};
   size_t gnss_error_count_ = 0;
   Time next_gnss_error_ = Time::min();
   std::optional<size_t> moved_gnss_axis_;

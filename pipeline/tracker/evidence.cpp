@@ -22,12 +22,16 @@ constexpr double kGoodAxisScore = 0.12;
 }  // namespace
 
 Seen EvidenceMonitor::judge(MatchResult& match) {
-  if (match.evidence != Evidence::kGood) {
-    mean_score_ -= kGain * mean_score_;
-    return {};
-  }
-  mean_score_ += kGain * (match.score - mean_score_);
+  const bool has_evidence = match.evidence == Evidence::kGood;
+  mean_score_ += kGain * ((has_evidence ? match.score : 0.0) - mean_score_);
+  Seen seen = judge_alone(match);
+  seen.place = has_evidence && mean_score_ >= kMinScore;
+  return seen;
+}
+
+Seen EvidenceMonitor::judge_alone(MatchResult& match) {
   Seen seen;
+  if (match.evidence != Evidence::kGood) return seen;
   for (int axis = 0; axis < 3; ++axis) {
     const double growth = growth_of(match.axis_score(axis));
     match.covariance.row(axis) *= growth;
@@ -40,7 +44,7 @@ Seen EvidenceMonitor::judge(MatchResult& match) {
   seen.across = is_seen(1);
   seen.heading = is_seen(2);
   seen.unique = match.rival_peak.y() <= kMaxRivalPeak;
-  seen.place = mean_score_ >= kMinScore;
+  seen.place = match.score >= kMinScore;
   return seen;
 }
 

@@ -10,7 +10,7 @@ struct Seen {
   bool across = false;
   bool heading = false;
   bool unique = false;  ///< no other place in the search range looks alike across the road
-  bool place = false;   ///< perceived and mapped lines lie on each other (mean score)
+  bool place = false;   ///< perceived and mapped lines lie on each other
   /// Axes on which the best place is at the border of the search range: the truth may lie outside.
   Eigen::Array<bool, 3, 1> at_border{false, false, false};
 
@@ -27,13 +27,17 @@ struct Seen {
 /// thread.
 class EvidenceMonitor {
  public:
-  /// Mean score of the recent matches that confirms the place.
+  /// The mean score of the recent matches that confirms the place.
   static constexpr double kMinScore = 0.18;
   /// The largest growth_of() a score.
   static constexpr double kMaxGrowth = 4.0;
 
-  /// Judges a match, and widens each axis of `match` that has a low score.
+  /// Judges a match, and widens each axis of `match` that has a low score. The mean score confirms
+  /// the place.
   Seen judge(MatchResult& match);
+
+  /// The same for a match that has none before it: its own score confirms the place.
+  static Seen judge_alone(MatchResult& match);
 
   /// The factor by which the standard deviation of an axis grows because of its score.
   static double growth_of(double axis_score);

@@ -16,7 +16,8 @@ constexpr double kDriving_mps = 0.5;
 /// changes its speed faster.
 constexpr double kMaxAcceleration_mps2 = 13.0;
 constexpr double kSpeedNoise_mps = 0.6;
-/// A vehicle that turns round stands for a moment. Samples further apart than this may miss it.
+/// A vehicle stands for a moment before it changes its direction. Two samples that are more than
+/// kGap_s apart may miss this standstill.
 constexpr double kStandstill_mps = 1.0;
 constexpr double kGap_s = 0.5;
 constexpr double kMaxYawAcceleration_radps2 = radians(150.0);

@@ -19,8 +19,8 @@ constexpr double kRefuting = 4.5;
 constexpr double kMostScaleSigmas = 5.0;
 /// Refused GNSS samples in a row, without a match, after which the pose starts again.
 constexpr int kRefusalsToRestart = 15;
-/// The pose starts again with a larger sigma of the heading, in which the filter is linear. Only a
-/// gap of odometry makes it so large.
+/// If the sigma of the heading exceeds this, the pose starts again, because the filter is linear in
+/// the heading. Only a gap in the odometry makes the sigma so large.
 constexpr double kMostYawSigma_rad = radians(30.0);
 /// Refused matches in a row after which a pose that was never valid starts again.
 constexpr int kRefusalsToStartAgain = 5;
@@ -88,7 +88,7 @@ TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
   gnss_judged_ = sample.time;
   if (yaw) gnss_scatter_.add(at_axle, yaw->yaw_rad);
   const bool passes = update == TrackerUpdate::kAccepted;
-  std::optional<Eigen::Vector3d> error;
+  std::optional<GnssError> error;
   if (pose_valid_) error = tracker_.gnss_error();
   arbiter_.add_gnss(sample.time, tracker_.latest_innovation(), passes, error);
   gnss_refused_in_a_row_ = passes ? 0 : gnss_refused_in_a_row_ + 1;
@@ -166,6 +166,7 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   const bool gnss_speaks = gnss_judged_ && now - *gnss_judged_ <= kGnssLifetime;
   verdict_.gnss_contradicts =
       gnss_speaks && (verdict_.gnss_contradicts || gnss_scatter_.contradicts());
+  verdict_.gnss_excluded = gnss_speaks && verdict_.gnss_excluded;
   if (verdict_.odometry_contradicts && !odometry_was_wrong) tracker_.widen();
   if (arbiter_.odometry_drifts()) {
     tracker_.loosen_odometry();
@@ -197,7 +198,8 @@ std::optional<TrackedPose> PoseEstimator::pose_at(Time time) const {
 }
 
 bool PoseEstimator::confirms_start(Time now) const {
-  return gnss_confirms(now) && start_confirmation_.confirms(tracker_.gnss_error(), gnss_sigma_.x());
+  return gnss_confirms(now) &&
+         start_confirmation_.confirms(tracker_.gnss_error().in_vehicle(), gnss_sigma_.x());
 }
 
 bool PoseEstimator::is_contradicted() const {
@@ -211,13 +213,14 @@ bool PoseEstimator::gnss_is_recent(Time now) const {
 
 bool PoseEstimator::gnss_confirms(Time now) const {
   if (!gnss_is_recent(now) || gnss_refused_in_a_row_ > 0) return false;
-  const Eigen::Vector3d error = tracker_.gnss_error().cwiseAbs();
+  const Eigen::Vector3d error = tracker_.gnss_error().in_vehicle().cwiseAbs();
   return error.x() <= kConfirmingAlong && error.y() <= kConfirmingAcross &&
          error.z() <= kConfirmingYaw;
 }
 
 bool PoseEstimator::gnss_refutes() const {
-  return arbiter_.trusts_gnss() && tracker_.gnss_error().cwiseAbs().maxCoeff() > kRefuting;
+  return arbiter_.trusts_gnss() &&
+         tracker_.gnss_error().in_vehicle().cwiseAbs().maxCoeff() > kRefuting;
 }
 
 Eigen::Vector3d PoseEstimator::protection_of(const TrackedPose& pose,
@@ -226,7 +229,7 @@ Eigen::Vector3d PoseEstimator::protection_of(const TrackedPose& pose,
   const double since_gnss_s = gnss_passed_ ? to_seconds(pose.time - *gnss_passed_) : 0.0;
   std::optional<GnssView> view;
   if (gnss_is_recent(pose.time)) {
-    view = GnssView{tracker_.gnss_error(), gnss_sigma_, gnss_has_yaw_};
+    view = GnssView{tracker_.gnss_error().in_vehicle(), gnss_sigma_, gnss_has_yaw_};
   }
   return protection_level(pose.covariance.diagonal().cwiseSqrt(), view,
                           gnss_correlation_s + since_gnss_s, parameters);

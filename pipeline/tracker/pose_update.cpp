@@ -46,6 +46,10 @@ Eigen::Matrix3d expected_covariance(const FilterState& state, const Linearised& 
 
 }  // namespace
 
+Eigen::Vector3d GnssError::in_vehicle() const {
+  return turn_by(-vehicle_yaw_rad) * in_map;
+}
+
 double squared_distance(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
   return error.dot(covariance.ldlt().solve(error));
 }

@@ -42,9 +42,20 @@ struct PoseInnovation {
   /// Squared Mahalanobis distance. It has a chi-square distribution with three degrees of freedom
   /// if the covariances are correct.
   double squared_distance = 0.0;
+  /// Whether it is of a match of a standing vehicle, which says what the match before said.
+  bool repeats = false;
   /// Squared distance after renew_match_error(), but at most `squared_distance`. For GNSS it equals
   /// `squared_distance`.
   double unexplained = 0.0;
+};
+
+/// The filter's estimate of the correlated error of GNSS, in its standard deviations.
+struct GnssError {
+  Eigen::Vector3d in_map = Eigen::Vector3d::Zero();  ///< (east, north, yaw)
+  double vehicle_yaw_rad = 0.0;                      ///< heading of the vehicle in the map
+
+  /// (along, across, yaw) of the vehicle.
+  Eigen::Vector3d in_vehicle() const;
 };
 
 /// Squared Mahalanobis distance.

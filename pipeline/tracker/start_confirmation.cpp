@@ -19,7 +19,8 @@ constexpr double kSquareWeight = 20.0;
 /// standard deviation of the GNSS error.
 constexpr double kNeeded = 0.5;
 constexpr double kNeededPerSquaredSigma = 4.0;
-/// A match this many matches ago counts a third, because a wrong lane has good scores for a while.
+/// After this many further matches, the support of a match has fallen to about a third. A wrong
+/// lane has good scores for a while, and they should not count for long.
 constexpr double kMemory_matches = 100.0;
 /// Matches that may count for each metre driven.
 constexpr double kMatchesPerMetre = 1.0;

@@ -38,7 +38,7 @@ class StartConfirmation {
   /// Forgets what was seen, because a match was refused or the pose begins again.
   void reset();
 
-  /// Whether the support suffices. `gnss_error` is Tracker::gnss_error(). `gnss_sigma_m` is the
+  /// Whether the support suffices. `gnss_error` is GnssError::in_vehicle(). `gnss_sigma_m` is the
   /// standard deviation of the position.
   bool confirms(const Eigen::Vector3d& gnss_error, double gnss_sigma_m) const;
 

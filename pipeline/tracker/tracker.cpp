@@ -137,12 +137,10 @@ std::optional<TrackedPose> Tracker::pose_at(Time time) const {
                      .yaw_rate_radps = state.yaw_rate_radps(motion)};
 }
 
-Eigen::Vector3d Tracker::gnss_error() const {
-  if (!is_initialised()) return Eigen::Vector3d::Zero();
+GnssError Tracker::gnss_error() const {
+  if (!is_initialised()) return {};
   const FilterState& state = history_.back().state;
-  Eigen::Vector3d error = state.gnss_error;
-  error.head<2>() = Eigen::Rotation2Dd(-state.map_from_vehicle.yaw_rad) * error.head<2>();
-  return error;
+  return {state.gnss_error, state.map_from_vehicle.yaw_rad};
 }
 
 double Tracker::speed_scale_error() const {
@@ -207,10 +205,13 @@ TrackerUpdate Tracker::initialise(Time time, GnssPose gnss) {
 TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, Trust trust) {
   const size_t events_until = position_of(time);
   if (events_until == 0) return TrackerUpdate::kTooOld;
-  if (!passes_gate(state_at(time, events_until), trust, measurement)) return TrackerUpdate::kGated;
-  if (trust == Trust::kExamine) return TrackerUpdate::kAccepted;
   const MeasuredMotion motion = motion_at(time, events_until);
-  if (measurement.source == PoseSource::kMatch) {
+  const bool is_match = measurement.source == PoseSource::kMatch;
+  const bool passes = passes_gate(state_at(time, events_until), trust, measurement);
+  latest_innovation_.repeats = is_match && stands(motion);
+  if (!passes) return TrackerUpdate::kGated;
+  if (trust == Trust::kExamine) return TrackerUpdate::kAccepted;
+  if (is_match) {
     repetition_.discount(time, motion, parameters_.correlation, measurement);
   }
   insert(events_until, {.time = time,

@@ -131,10 +131,9 @@ class Tracker {
   /// The innovation of the latest GNSS sample or correction that reached the gate, refused or not.
   const PoseInnovation& latest_innovation() const { return latest_innovation_; }
 
-  /// The correlated error of GNSS in its own standard deviations: (along, across, yaw) of the
-  /// vehicle's pose at the latest event. A large value means that GNSS contradicts the pose. It is
-  /// zero before the first GNSS sample.
-  Eigen::Vector3d gnss_error() const;
+  /// The correlated error of GNSS at the latest event. A large value means that GNSS contradicts
+  /// the pose. It is zero before the first GNSS sample.
+  GnssError gnss_error() const;
 
   /// The latest estimates of the scale error and of the bias. They are zero before the first GNSS
   /// sample.

@@ -56,16 +56,17 @@ TEST(HealthTest, LosesAPoseSoonerThatOnlyOdometrySupports) {
   const HealthLimits limits;
   const Duration soon = limits.correction_timeout + milliseconds(1);
   HealthInputs inputs = unmatched(soon, limits.alert_limit.y() + 0.01, 0.0);
-  Health trusting = tracking();
-  trusting.update(inputs);
-  EXPECT_EQ(trusting.state(), HealthState::kDegraded);
-  for (bool Verdict::*excluded : {&Verdict::match_contradicts, &Verdict::gnss_contradicts}) {
+  const auto state_with = [&inputs](bool Verdict::*verdict, bool value) {
     inputs.verdict = {};
-    inputs.verdict.*excluded = true;
+    inputs.verdict.*verdict = value;
     Health health = tracking();
     health.update(inputs);
-    EXPECT_EQ(health.state(), HealthState::kLost);
-  }
+    return health.state();
+  };
+  EXPECT_EQ(state_with(&Verdict::gnss_excluded, false), HealthState::kDegraded);
+  EXPECT_EQ(state_with(&Verdict::gnss_contradicts, true), HealthState::kDegraded) << "scatters";
+  EXPECT_EQ(state_with(&Verdict::gnss_excluded, true), HealthState::kLost);
+  EXPECT_EQ(state_with(&Verdict::match_contradicts, true), HealthState::kLost);
 }
 
 TEST(HealthTest, LosesANewPoseSooner) {

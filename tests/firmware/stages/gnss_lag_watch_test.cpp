@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A vehicle on a winding road, with a yaw rate every 20 ms and GNSS every 100 ms.
+/// A vehicle on a winding road, with a yaw rate every 20 ms and GNSS every 100 ms by default.
 class GnssLagWatchTest : public testing::Test {
  protected:
   void drive(double duration_s, double lag_s) {
@@ -21,7 +21,7 @@ class GnssLagWatchTest : public testing::Test {
       const auto step = std::lround(100.0 * time_s_);
       const Time now = Time(milliseconds(10 * step));
       // GNSS comes between two samples of odometry.
-      if (step % 10 == 1) watch_.add(gnss_at(now, lag_s));
+      if (step % gnss_steps_ == 1) watch_.add(gnss_at(now, lag_s));
       if (step % 2 == 0) watch_.add_rate(now, rate_radps(time_s_) + 0.002 * normal_(random_));
     }
   }
@@ -44,6 +44,7 @@ class GnssLagWatchTest : public testing::Test {
   double error_rad_ = 0.0;
   double heading_sigma_rad_ = radians(1.0);
   double time_s_ = 0.0;
+  int gnss_steps_ = 10;  ///< GNSS comes every so many steps of 10 ms
   GnssLagWatch watch_;
 };
 
@@ -59,6 +60,12 @@ TEST_F(GnssLagWatchTest, FindsHeadingsThatAreHalfASecondOld) {
   drive(30.0, 0.5);
   EXPECT_TRUE(watch_.contradicts());
   EXPECT_NEAR(watch_.lag_ms(), 500, 100);
+}
+
+TEST_F(GnssLagWatchTest, FindsOldHeadingsThatComeOften) {
+  gnss_steps_ = 2;
+  drive(30.0, 0.5);
+  EXPECT_TRUE(watch_.contradicts());
 }
 
 TEST_F(GnssLagWatchTest, GnssThatIsInTimeAgainAgrees) {

@@ -81,6 +81,39 @@ TEST_F(VisionStageTest, LeavesOutFramesWhoseStampsHaveJumped) {
   }
 }
 
+/// The stamps of three cameras jump by more than the synchronizer tolerates, so these cameras and
+/// the others form framesets in turn.
+TEST_F(VisionStageTest, HalfOfTheCamerasAreNotMost) {
+  VisionConfig config;
+  config.synchronizer.min_cameras = 3;
+  stage_.emplace(*localizer_, config, frames_, predictions_, reports_);
+  push_frameset(Time(milliseconds(900)));
+  step();
+  const auto report_on = [this](int first_camera, bool jumped, Time time) {
+    for (int camera = first_camera; camera < first_camera + 3; ++camera) {
+      drivers::Frame frame;
+      frame.camera = camera;
+      frame.stamp_jumped = jumped;
+      frame.time = time;
+      frames_.push(std::move(frame));
+    }
+    clock_.sleep_until(time + milliseconds(100));
+    return step();
+  };
+  for (int i = 0; i < 4; ++i) {
+    const Time time(milliseconds(1000 + 200 * i));
+    const auto jumped = report_on(0, true, time);
+    ASSERT_TRUE(jumped);
+    EXPECT_FALSE(jumped->stamps_jumped);
+    EXPECT_TRUE(jumped->present.none());
+    const auto right = report_on(3, false, time + milliseconds(60));
+    ASSERT_TRUE(right);
+    EXPECT_FALSE(right->stamps_jumped);
+    EXPECT_EQ(right->present, CameraMask(0b111000U));
+    EXPECT_EQ(stage_->counters().stamps_jumped, 0b000111U);
+  }
+}
+
 TEST_F(VisionStageTest, MatchesNothingWithoutAPrediction) {
   push_frameset(Time(milliseconds(900)));
   const auto report = step();

@@ -7,21 +7,25 @@
 namespace bevloc {
 namespace {
 
-/// Drives a bend with all cameras turned by `turn_rad`. Odometry measures `bias_radps` too much,
-/// and is missing in every `gap`-th frameset. Framesets for which `is_missing` is true are missing.
-/// Returns the turns that were found.
-std::vector<double> drive(
-    double turn_rad, double bias_radps, int gap = 1000,
-    const std::function<bool(int)>& is_missing = [](int) { return false; }) {
+bool none_is_missing(int) {
+  return false;
+}
+
+/// Drives a bend with all cameras turned by `turn_rad`, and a frameset every `step_m`. Odometry
+/// measures `bias_radps` too much, and is missing in every `gap`-th frameset. Framesets for which
+/// `is_missing` is true are missing. Returns the turns that were found.
+std::vector<double> drive(double turn_rad, double bias_radps, int gap = 1000,
+                          const std::function<bool(int)>& is_missing = none_is_missing,
+                          double step_m = 1.0) {
   MotionDirection direction;
   std::vector<double> turns;
   Se2 truth{120.0, -40.0, 2.9};
   constexpr double kPeriod_s = 0.1;
   for (int i = 1; i <= 600; ++i) {
     const double yaw_rate_radps = 0.15;
-    const Se2 half{0.5, 0.0, 0.5 * kPeriod_s * yaw_rate_radps};
+    const Se2 half{0.5 * step_m, 0.0, 0.5 * kPeriod_s * yaw_rate_radps};
     truth = truth * half * half;
-    const Se2 measured_half{0.5, 0.0, 0.5 * kPeriod_s * (yaw_rate_radps + bias_radps)};
+    const Se2 measured_half{0.5 * step_m, 0.0, 0.5 * kPeriod_s * (yaw_rate_radps + bias_radps)};
     if (is_missing(i)) continue;
     const auto time_of = [](int frameset) {
       return Time(std::chrono::milliseconds(100 * frameset));
@@ -61,6 +65,13 @@ TEST(MotionDirection, BeginsAgainWhereFramesetsAreMissing) {
   const std::vector<double> turns = drive(0.0, 0.0, 1000, is_missing);
   EXPECT_GE(turns.size(), 5U);
   for (const double turn : turns) EXPECT_NEAR(degrees(turn), 0.0, 0.01);
+}
+
+/// At 40 m/s and ten framesets a second, 60 m have only 15 framesets.
+TEST(MotionDirection, AFastVehicleNeedsALongerStretch) {
+  const std::vector<double> turns = drive(radians(1.0), 0.0, 1000, none_is_missing, 4.0);
+  EXPECT_GE(turns.size(), 25U);
+  for (const double turn : turns) EXPECT_NEAR(degrees(turn), 1.0, 0.01);
 }
 
 }  // namespace

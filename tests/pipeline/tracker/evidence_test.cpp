@@ -75,6 +75,22 @@ TEST(EvidenceTest, WidensAnAxisWithALowScore) {
   EXPECT_EQ(match.covariance(1, 1), good_match().covariance(1, 1));
 }
 
+TEST(EvidenceTest, ASingleMatchIsJudgedByItsOwnScore) {
+  MatchResult match = good_match();
+  EXPECT_TRUE(EvidenceMonitor::judge_alone(match).confirms_start());
+  match.score = 0.99 * EvidenceMonitor::kMinScore;
+  EXPECT_FALSE(EvidenceMonitor::judge_alone(match).place);
+  match = good_match();
+  match.axis_score.z() = 0.06;
+  match.edge_mass.y() = 0.9;
+  const Seen seen = EvidenceMonitor::judge_alone(match);
+  EXPECT_TRUE(seen.at_border.y());
+  EXPECT_FALSE(seen.across);
+  EXPECT_NEAR(match.covariance(2, 2), 4.0 * good_match().covariance(2, 2), 1e-12);
+  MatchResult none;
+  EXPECT_FALSE(EvidenceMonitor::judge_alone(none).confirms());
+}
+
 TEST(EvidenceTest, TheGrowthFollowsTheScoreUpToALimit) {
   EXPECT_EQ(EvidenceMonitor::growth_of(0.3), 1.0);
   EXPECT_NEAR(EvidenceMonitor::growth_of(0.06), 2.0, 1e-12);
