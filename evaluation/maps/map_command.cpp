@@ -92,7 +92,7 @@ void MapCommand::declare(CLI::App& app) {
       ->check(output_file());
   imports->add_option("--classes", classes_, "YAML file: what kinds of lines become");
   imports->add_option("--origin", origin_,
-                      "LATITUDE,LONGITUDE of the zero of the file's coordinates");
+                      "LATITUDE,LONGITUDE of the file's point (0, 0), where x points to true east");
   imports->add_flag("--bvm-1", version_1_,
                     "Write a .bvm of version 1, for releases that know no tiles");
   imports->add_option("--report", json_, "Write the report to this JSON file")
@@ -175,7 +175,8 @@ Status MapCommand::check() const {
   if (!imported) return tl::unexpected(imported.error());
   const std::vector<std::string> found = faults_of(imported->map);
   for (const std::string& fault : found) fmt::print("{}: {}\n", in_, fault);
-  if (Status status = write_json({{"faults", found}}, json_); !status) return status;
+  const nlohmann::json json{{"faults", found}, {"left_out", imported->map.left_out}};
+  if (Status status = write_json(json, json_); !status) return status;
   if (!found.empty()) {
     return fail("{}: found {} fault{}, wanted none", in_, found.size(),
                 found.size() == 1 ? "" : "s");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -35,28 +36,42 @@ std::string list_of(const std::vector<size_t>& numbers) {
   return text + (numbers.size() > kMost ? " and more" : "");
 }
 
-void find_double_lines(const HdMap& map, std::vector<std::string>& faults) {
-  std::vector<size_t> doubled;
-  for (size_t c = 0; c < kClassCount; ++c) {
-    LineNeighbours before;
-    for (size_t i = 0; i < map.elements.size(); ++i) {
-      const MapElement& element = map.elements[i];
-      if (static_cast<size_t>(element.element_class) != c || element.points.size() < 2) continue;
-      const auto any = [](int64_t) { return true; };
-      if (before.share_beside(element.points, kSameLine_m, any) >= kSameShare) doubled.push_back(i);
-      before.add(static_cast<int64_t>(i), element.points);
-    }
-  }
-  if (doubled.empty()) return;
-  faults.push_back(fmt::format("{} elements lie on another one of their class: {}", doubled.size(),
-                               list_of(doubled)));
+/// "1 element TEXT_OF_ONE: 4" or "2 elements TEXT_OF_MANY: 4, 7".
+std::string fault_of(const std::vector<size_t>& elements, std::string_view text_of_one,
+                     std::string_view text_of_many) {
+  const bool is_one = elements.size() == 1;
+  return fmt::format("{} element{} {}: {}", elements.size(), is_one ? "" : "s",
+                     is_one ? text_of_one : text_of_many, list_of(elements));
 }
 
-void find_bare_lanes(const HdMap& map, std::vector<std::string>& faults) {
-  LineNeighbours lines;
-  for (size_t i = 0; i < map.elements.size(); ++i) {
-    lines.add(static_cast<int64_t>(i), map.elements[i].points);
+/// Finds elements that lie on others of their class. Of two that lie on each other, it names the
+/// shorter one. `lines` are all elements of the map.
+void find_double_lines(const HdMap& map, const LineNeighbours& lines,
+                       std::vector<std::string>& faults) {
+  std::vector<size_t> shortest_first(map.elements.size());
+  std::iota(shortest_first.rbegin(), shortest_first.rend(), size_t{0});
+  std::ranges::stable_sort(shortest_first, {},
+                           [&](size_t i) { return polyline_length(map.elements[i].points); });
+  std::vector<bool> is_doubled(map.elements.size(), false);
+  for (const size_t i : shortest_first) {
+    const auto counts = [&](int64_t id) {
+      const auto other = static_cast<size_t>(id);
+      return other != i && !is_doubled[other] &&
+             map.elements[other].element_class == map.elements[i].element_class;
+    };
+    is_doubled[i] = lines.share_beside(map.elements[i].points, kSameLine_m, counts) >= kSameShare;
   }
+  std::vector<size_t> doubled;
+  for (size_t i = 0; i < is_doubled.size(); ++i) {
+    if (is_doubled[i]) doubled.push_back(i);
+  }
+  if (doubled.empty()) return;
+  faults.push_back(
+      fault_of(doubled, "lies on another one of its class", "lie on another one of their class"));
+}
+
+void find_bare_lanes(const HdMap& map, const LineNeighbours& lines,
+                     std::vector<std::string>& faults) {
   double bare_m = 0.0, all_m = 0.0;
   std::vector<size_t> worst;
   for (size_t i = 0; i < map.lanes.size(); ++i) {
@@ -161,11 +176,15 @@ std::vector<std::string> faults_of(const HdMap& map) {
     if (length_of(map.elements[i]) < kShortLine_m) short_ones.push_back(i);
   }
   if (!short_ones.empty()) {
-    faults.push_back(fmt::format("{} elements are shorter than {:g} m: {}", short_ones.size(),
-                                 kShortLine_m, list_of(short_ones)));
+    const std::string shorter = fmt::format("shorter than {:g} m", kShortLine_m);
+    faults.push_back(fault_of(short_ones, "is " + shorter, "are " + shorter));
   }
-  find_double_lines(map, faults);
-  find_bare_lanes(map, faults);
+  LineNeighbours lines;
+  for (size_t i = 0; i < map.elements.size(); ++i) {
+    lines.add(static_cast<int64_t>(i), map.elements[i].points);
+  }
+  find_double_lines(map, lines, faults);
+  find_bare_lanes(map, lines, faults);
   return faults;
 }
 

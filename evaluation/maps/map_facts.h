@@ -39,9 +39,8 @@ nlohmann::json json_of(const MapFacts& facts);
 /// The report of an import and the figures of its map.
 nlohmann::json json_of(const ImportedMap& imported);
 
-/// What makes a map worse than it looks, one sentence each: the warnings of map_summary.h, lines
-/// that lie on each other, lines that are too short to be any, and parts of lanes beside which
-/// nothing can be matched.
+/// The faults of a map, one sentence each: the warnings of map_summary.h, lines that lie on each
+/// other, lines shorter than 0.1 m, and lanes that have no line nearby to match.
 std::vector<std::string> faults_of(const HdMap& map);
 
 }  // namespace bevloc::evaluation

@@ -29,7 +29,8 @@ class BoundNeighbours {
   /// Whether a bound without a type runs on one of a neighbouring lanelet.
   bool is_on_bound(int64_t way, const Polyline& points) const;
 
-  /// Whether a way for which is_on_bound() holds runs on one that was asked for before.
+  /// Whether this way runs on a way that an earlier call had. Call it only for ways for which
+  /// is_on_bound() is true.
   bool is_second_of_a_pair(int64_t way, const Polyline& points);
 
  private:

@@ -32,8 +32,12 @@ struct Lanelet {
 /// Converts one document to a map.
 class Lanelet2Reader {
  public:
-  Lanelet2Reader(const OsmDocument& document, NodePositions nodes, const ClassTable& classes)
-      : document_(document), nodes_(std::move(nodes)), classes_(classes) {
+  Lanelet2Reader(const OsmDocument& document, NodePositions nodes, const ClassTable& classes,
+                 ImportReport report)
+      : document_(document),
+        nodes_(std::move(nodes)),
+        classes_(classes),
+        report_(std::move(report)) {
     for (const OsmWay& way : document_.ways) ways_[way.id] = &way;
   }
 
@@ -344,6 +348,27 @@ class Lanelet2Reader {
   ImportReport report_;
 };
 
+/// Gives a map without a place on earth the origin of the options, if there is one. Moves the frame
+/// of a map that is far from zero.
+Status place_on_earth(NodePositions& nodes, const ImportOptions& options, const std::string& file,
+                      ImportReport& report) {
+  if (is_known(nodes.origin)) {
+    if (!options.origin) return {};
+    return fail(
+        "{}: found an origin for a map whose nodes have latitude and longitude, wanted none", file);
+  }
+  if (!options.origin) {
+    if (const auto shift = move_to_middle(nodes)) report.remark_shift(*shift);
+    return {};
+  }
+  const Eigen::Vector2d middle = middle_of(nodes);
+  if (!is_near_origin(middle)) return far_from_origin(file, middle);
+  report.remark_far_origin(middle);
+  nodes.origin = *options.origin;
+  move_to_middle(nodes);
+  return {};
+}
+
 }  // namespace
 
 Result<ImportedMap> parse_lanelet2(std::string_view text, const std::filesystem::path& file,
@@ -352,20 +377,15 @@ Result<ImportedMap> parse_lanelet2(std::string_view text, const std::filesystem:
   if (!document) return tl::unexpected(document.error());
   Result<NodePositions> nodes = locate_nodes(*document);
   if (!nodes) return tl::unexpected(nodes.error());
-  if (options.origin && is_known(nodes->origin)) {
-    return fail(
-        "{}: found an origin for a map whose nodes have latitude and longitude, wanted none",
-        file.string());
+  ImportReport report;
+  if (Status status = place_on_earth(*nodes, options, file.string(), report); !status) {
+    return tl::unexpected(status.error());
   }
-  std::optional<Eigen::Vector2d> shift;
-  if (!is_known(nodes->origin)) shift = shift_to_zero(*nodes);
-  if (shift && options.origin) return far_from_origin(file.string(), -*shift);
-  if (options.origin) nodes->origin = *options.origin;
   const ClassTable none;
   const ClassTable& classes = options.classes != nullptr ? *options.classes : none;
-  Result<ImportedMap> imported = Lanelet2Reader(*document, std::move(*nodes), classes).read();
+  Result<ImportedMap> imported =
+      Lanelet2Reader(*document, std::move(*nodes), classes, std::move(report)).read();
   if (!imported) return imported;
-  if (shift) imported->report.remark_shift(*shift);
   if (Status status = check_rules(classes, imported->report, file.string()); !status) {
     return tl::unexpected(status.error());
   }

@@ -26,8 +26,8 @@ Status check_polyline(const std::vector<Eigen::Vector2d>& points, std::string_vi
 
 tl::unexpected<Error> far_from_origin(const std::string& file, const Eigen::Vector2d& middle) {
   return fail(
-      "{}: found coordinates ({:.0f}, {:.0f}) m from their zero, wanted at most {:g} km; --origin "
-      "is the place of the point (0, 0)",
+      "{}: found a map whose middle is at ({:.0f}, {:.0f}) m, wanted it within {:g} km of (0, 0), "
+      "because --origin gives the place of (0, 0)",
       file, middle.x(), middle.y(), kFarthestFromOriginM / 1000.0);
 }
 

@@ -17,13 +17,16 @@ inline bool is_near_origin(const Eigen::Vector2d& point) {
   return point.allFinite() && point.cwiseAbs().maxCoeff() <= kFarthestFromOriginM;
 }
 
+/// A map without a place on earth is moved to zero if its middle is farther than this from zero.
+inline constexpr double kFarFromZeroM = 20'000.0;
+
 /// The longest polyline. A longer one is a mistake in its coordinates.
 inline constexpr double kLongestPolylineM = 50'000.0;
 
 /// The shortest centre line of a lane. A simulated route along shorter lanes might never end.
 inline constexpr double kShortestLaneM = 0.01;
 
-/// Says that coordinates around `middle` are too far from (0, 0) for an origin given by the user.
+/// Says that a map around `middle` is too far from (0, 0) for an origin given by the user.
 tl::unexpected<Error> far_from_origin(const std::string& file, const Eigen::Vector2d& middle);
 
 /// Fails, with `file` in the message, if no element of the map has a line, or if an element or lane

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <complex>
 #include <exception>
-#include <numeric>
 #include <optional>
+#include <string>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include <GeographicLib/LocalCartesian.hpp>
@@ -20,15 +22,44 @@
 namespace bevloc {
 namespace {
 
-bool has_local(const OsmNode& node) {
-  return node.local_x_m && node.local_y_m;
+/// A node of a way, with those of its coordinates that count.
+struct UsedNode {
+  int64_t id = 0;
+  int line = 0;
+  std::optional<GeoOrigin> place{};
+  std::optional<std::complex<double>> local_m{};
+  std::string mgrs_square{};
+};
+
+bool has_local(const UsedNode& node) {
+  return node.local_m.has_value();
 }
 
-/// Whether a node has latitude and longitude. Autoware's tools write "0" for both if a node has
-/// local coordinates only.
-bool has_angles(const OsmNode& node) {
-  if (!node.latitude_deg || !node.longitude_deg) return false;
-  return !has_local(node) || *node.latitude_deg != 0.0 || *node.longitude_deg != 0.0;
+/// The nodes of all ways, each once. Nodes that no way uses do not count, whatever they say.
+std::vector<UsedNode> used_nodes(const OsmDocument& document) {
+  std::vector<UsedNode> used;
+  std::unordered_set<int64_t> seen;
+  for (const OsmWay& way : document.ways) {
+    for (const int64_t id : way.nodes) {
+      const auto found = document.nodes.find(id);
+      if (found == document.nodes.end() || !seen.insert(id).second) continue;
+      const OsmNode& node = found->second;
+      UsedNode& own = used.emplace_back();
+      own.id = id;
+      own.line = node.line;
+      own.mgrs_square = node.mgrs_square;
+      if (node.local_x_m && node.local_y_m) own.local_m = {*node.local_x_m, *node.local_y_m};
+      if (node.latitude_deg && node.longitude_deg) {
+        own.place = GeoOrigin{*node.latitude_deg, *node.longitude_deg};
+      }
+    }
+  }
+  if (std::ranges::none_of(used, has_local)) return used;
+  // Autoware's tools write "0" for the latitude and longitude that they do not know.
+  for (UsedNode& node : used) {
+    if (node.place && !is_known(*node.place)) node.place.reset();
+  }
+  return used;
 }
 
 /// The middle of the values. It is their median if they lie farther apart than any map, so that a
@@ -40,16 +71,13 @@ double middle_of(std::vector<double>& values_deg) {
   return median(values_deg);
 }
 
-/// The middle of the nodes of all ways, as far as they have latitude and longitude.
-std::optional<GeoOrigin> middle_of(const OsmDocument& document) {
+/// The middle of the nodes that have a place on earth, if there are any.
+std::optional<GeoOrigin> middle_of(const std::vector<UsedNode>& nodes) {
   std::vector<double> latitudes_deg, longitudes_deg;
-  for (const OsmWay& way : document.ways) {
-    for (const int64_t id : way.nodes) {
-      const auto node = document.nodes.find(id);
-      if (node == document.nodes.end() || !has_angles(node->second)) continue;
-      latitudes_deg.push_back(*node->second.latitude_deg);
-      longitudes_deg.push_back(*node->second.longitude_deg);
-    }
+  for (const UsedNode& node : nodes) {
+    if (!node.place) continue;
+    latitudes_deg.push_back(node.place->latitude_deg);
+    longitudes_deg.push_back(node.place->longitude_deg);
   }
   if (latitudes_deg.empty()) return std::nullopt;
   return GeoOrigin{middle_of(latitudes_deg), middle_of(longitudes_deg)};
@@ -72,56 +100,103 @@ tl::unexpected<Error> too_few(size_t places, const std::string& file) {
       file, places);
 }
 
-/// The least-squares similarity from local coordinates to the tangent plane. Fails if there are
-/// fewer than two points or the fit is poor.
-Result<Similarity> plane_from_local(const std::vector<std::complex<double>>& local,
-                                    const std::vector<std::complex<double>>& plane,
-                                    const std::string& file) {
+/// A node that has both kinds of coordinates.
+struct LocatedNode {
+  const UsedNode* node = nullptr;
+  std::complex<double> local;
+  std::complex<double> plane;
+};
+
+/// The least-squares similarity from local coordinates to the tangent plane.
+struct Fit {
+  Similarity plane_from_local;
+  std::complex<double> local_mean;
+  double variance = 0.0;  ///< the sum of the squared distances from the mean, m2
+
+  double error_m(const LocatedNode& node) const {
+    return std::abs(plane_from_local * node.local - node.plane);
+  }
+};
+
+/// The node without which the sum of the squared errors shrinks most. Its own error may be small,
+/// because a node far from the others pulls the fit to itself.
+const UsedNode& worst_node(const Fit& fit, const std::vector<LocatedNode>& nodes) {
+  constexpr double kLeastShare = 1e-15;
+  const auto gain_m2 = [&](const LocatedNode& node) {
+    const double leverage = 1.0 / static_cast<double>(nodes.size()) +
+                            std::norm(node.local - fit.local_mean) / fit.variance;
+    return std::pow(fit.error_m(node), 2) / std::max(1.0 - leverage, kLeastShare);
+  };
+  return *std::ranges::max_element(nodes, {}, gain_m2)->node;
+}
+
+/// Refuses local coordinates that do not fit the others.
+Status check_fit(const Fit& fit, const std::vector<LocatedNode>& nodes, const std::string& file) {
   constexpr double kMaxScaleError = 0.01;
   constexpr double kMaxDisagreementM = 1.0;
-  if (local.size() < 2) return too_few(local.size(), file);
-  const auto count = static_cast<double>(local.size());
-  const auto local_mean = std::accumulate(local.begin(), local.end(), std::complex(0.0)) / count;
-  const auto plane_mean = std::accumulate(plane.begin(), plane.end(), std::complex(0.0)) / count;
-  std::complex<double> covariance = 0.0;
-  double variance = 0.0;
-  for (size_t i = 0; i < local.size(); ++i) {
-    covariance += std::conj(local[i] - local_mean) * (plane[i] - plane_mean);
-    variance += std::norm(local[i] - local_mean);
-  }
-  if (variance == 0.0) return too_few(1, file);
-  const std::complex<double> factor = covariance / variance;
-  const Similarity transform{factor, plane_mean - factor * local_mean};
-  double worst_m = 0.0;
-  for (size_t i = 0; i < local.size(); ++i) {
-    worst_m = std::max(worst_m, std::abs(transform * local[i] - plane[i]));
-  }
-  const bool agrees =
-      std::abs(std::abs(factor) - 1.0) <= kMaxScaleError && worst_m <= kMaxDisagreementM;
-  if (agrees) return transform;
+  double most_m = 0.0;
+  for (const LocatedNode& node : nodes) most_m = std::max(most_m, fit.error_m(node));
+  const double scale = std::abs(fit.plane_from_local.factor);
+  if (std::abs(scale - 1.0) <= kMaxScaleError && most_m <= kMaxDisagreementM) return {};
+  const UsedNode& worst = worst_node(fit, nodes);
   return fail(
-      "{}: found local_x and local_y that differ from lat and lon by a scale of {:g} and up to "
-      "{:g} "
-      "m, wanted at most {:g} and {:g} m; remove the wrong ones",
-      file, std::abs(factor), worst_m, 1.0 + kMaxScaleError, kMaxDisagreementM);
+      "{}:{}: node {}: found local_x and local_y that differ from lat and lon by a scale of {:g} "
+      "and up to {:g} m in the whole file, wanted at most {:g} and {:g} m; correct this node, "
+      "which fits worst, or remove local_x and local_y from all nodes: a map over the border of an "
+      "MGRS square needs lat and lon alone",
+      file, worst.line, worst.id, scale, most_m, 1.0 + kMaxScaleError, kMaxDisagreementM);
+}
+
+/// Fails if there are fewer than two places or the fit is poor.
+Result<Similarity> fit_plane_from_local(const std::vector<LocatedNode>& nodes,
+                                        const std::string& file) {
+  if (nodes.size() < 2) return too_few(nodes.size(), file);
+  const auto count = static_cast<double>(nodes.size());
+  Fit fit;
+  std::complex<double> plane_mean = 0.0;
+  for (const LocatedNode& node : nodes) {
+    fit.local_mean += node.local;
+    plane_mean += node.plane;
+  }
+  fit.local_mean /= count;
+  plane_mean /= count;
+  std::complex<double> covariance = 0.0;
+  for (const LocatedNode& node : nodes) {
+    covariance += std::conj(node.local - fit.local_mean) * (node.plane - plane_mean);
+    fit.variance += std::norm(node.local - fit.local_mean);
+  }
+  if (fit.variance == 0.0) return too_few(1, file);
+  const std::complex<double> factor = covariance / fit.variance;
+  fit.plane_from_local = {factor, plane_mean - factor * fit.local_mean};
+  const Status status = check_fit(fit, nodes, file);
+  if (!status) return tl::unexpected(status.error());
+  return fit.plane_from_local;
 }
 
 constexpr double kMgrsSquare_m = 100'000.0;
 
-/// The place on earth of local coordinates in an MGRS square. Returns nothing if there is no such
-/// square.
-std::optional<GeoOrigin> place_in_square(const OsmNode& node) {
+/// Local coordinates as metres from the south-western corner of their square. The coordinates of a
+/// map in one square may go on beyond the border of the square. All other values are those of the
+/// UTM zone, or of several squares.
+std::complex<double> within_square(std::complex<double> local_m, bool is_one_square) {
+  const auto may_go_on = [](double value_m) {
+    return value_m >= -0.5 * kMgrsSquare_m && value_m <= 1.5 * kMgrsSquare_m;
+  };
+  if (is_one_square && may_go_on(local_m.real()) && may_go_on(local_m.imag())) return local_m;
+  return {std::fmod(local_m.real(), kMgrsSquare_m), std::fmod(local_m.imag(), kMgrsSquare_m)};
+}
+
+/// The place on earth of a point in an MGRS square. Returns nothing if there is no such square.
+std::optional<GeoOrigin> place_in_square(const std::string& square, std::complex<double> point_m) {
   try {
     int zone = 0, precision = 0;
     bool north = true;
     double east_m = 0.0, north_m = 0.0;
     constexpr bool kCenter = false;
-    GeographicLib::MGRS::Reverse(node.mgrs_square, zone, north, east_m, north_m, precision,
-                                 kCenter);
+    GeographicLib::MGRS::Reverse(square, zone, north, east_m, north_m, precision, kCenter);
     if (precision != 0) return std::nullopt;
     GeoOrigin place;
-    GeographicLib::UTMUPS::Reverse(zone, north, east_m + std::fmod(*node.local_x_m, kMgrsSquare_m),
-                                   north_m + std::fmod(*node.local_y_m, kMgrsSquare_m),
+    GeographicLib::UTMUPS::Reverse(zone, north, east_m + point_m.real(), north_m + point_m.imag(),
                                    place.latitude_deg, place.longitude_deg);
     return place;
   } catch (const std::exception&) {
@@ -130,61 +205,53 @@ std::optional<GeoOrigin> place_in_square(const OsmNode& node) {
 }
 
 /// Autoware's maps without latitude and longitude say in which MGRS square their local coordinates
-/// are. Returns the document with the latitude and longitude of each node, or nothing if not all
-/// nodes with local coordinates have a square.
-std::optional<OsmDocument> with_angles_of_squares(const OsmDocument& document) {
-  OsmDocument located = document;
-  bool any = false;
-  for (auto& [id, node] : located.nodes) {
-    if (has_angles(node)) return std::nullopt;
-    if (!has_local(node)) continue;
-    const auto place = place_in_square(node);
-    if (!place) return std::nullopt;
-    node.latitude_deg = place->latitude_deg;
-    node.longitude_deg = place->longitude_deg;
-    node.local_x_m.reset();
-    node.local_y_m.reset();
-    any = true;
+/// are. Replaces the local coordinates by places, unless a node has a place already, or a node with
+/// local coordinates names no square.
+void place_in_squares(std::vector<UsedNode>& nodes) {
+  std::vector<UsedNode> placed = nodes;
+  const auto first = std::ranges::find_if(placed, has_local);
+  if (first == placed.end()) return;
+  const bool is_one_square = std::ranges::all_of(placed, [&](const UsedNode& node) {
+    return !node.local_m || node.mgrs_square == first->mgrs_square;
+  });
+  for (UsedNode& node : placed) {
+    if (node.place) return;
+    if (!node.local_m) continue;
+    node.place = place_in_square(node.mgrs_square, within_square(*node.local_m, is_one_square));
+    if (!node.place) return;
   }
-  if (!any) return std::nullopt;
-  return located;
+  for (UsedNode& node : placed) node.local_m.reset();
+  nodes = std::move(placed);
 }
 
 }  // namespace
 
 Result<NodePositions> locate_nodes(const OsmDocument& document) {
-  if (const auto located = with_angles_of_squares(document)) return locate_nodes(*located);
+  std::vector<UsedNode> nodes = used_nodes(document);
+  place_in_squares(nodes);
   NodePositions positions;
-  std::vector<std::complex<double>> local;
-  std::vector<std::complex<double>> plane;
-  if (const auto middle = middle_of(document)) {
+  std::vector<LocatedNode> with_both;
+  if (const auto middle = middle_of(nodes)) {
     positions.origin = *middle;
     const GeographicLib::LocalCartesian tangent_plane(middle->latitude_deg, middle->longitude_deg);
-    for (const auto& [id, node] : document.nodes) {
-      if (!has_angles(node)) continue;
-      const Eigen::Vector2d point =
-          point_of(tangent_plane, {*node.latitude_deg, *node.longitude_deg});
-      positions.of_node[id] = point;
-      if (!has_local(node)) continue;
-      local.emplace_back(*node.local_x_m, *node.local_y_m);
-      plane.emplace_back(point.x(), point.y());
+    for (const UsedNode& node : nodes) {
+      if (!node.place) continue;
+      const Eigen::Vector2d point = point_of(tangent_plane, *node.place);
+      positions.of_node[node.id] = point;
+      if (node.local_m) with_both.push_back({&node, *node.local_m, {point.x(), point.y()}});
     }
   }
-  if (std::none_of(document.nodes.begin(), document.nodes.end(),
-                   [](const auto& entry) { return has_local(entry.second); })) {
-    return positions;
-  }
-  std::optional<Similarity> transform;
+  if (std::ranges::none_of(nodes, has_local)) return positions;
+  Similarity plane_from_local{1.0, 0.0};
   if (!positions.of_node.empty()) {
-    Result<Similarity> fitted = plane_from_local(local, plane, document.file);
+    const Result<Similarity> fitted = fit_plane_from_local(with_both, document.file);
     if (!fitted) return tl::unexpected(fitted.error());
-    transform = *fitted;
+    plane_from_local = *fitted;
   }
-  for (const auto& [id, node] : document.nodes) {
-    if (!has_local(node)) continue;
-    const std::complex<double> own(*node.local_x_m, *node.local_y_m);
-    const std::complex<double> position = transform ? *transform * own : own;
-    positions.of_node[id] = {position.real(), position.imag()};
+  for (const UsedNode& node : nodes) {
+    if (!node.local_m) continue;
+    const std::complex<double> position = plane_from_local * *node.local_m;
+    positions.of_node[node.id] = {position.real(), position.imag()};
   }
   return positions;
 }
@@ -219,14 +286,31 @@ Result<std::vector<Eigen::Vector2d>> points_of(const OsmWay& way, const OsmDocum
   return points;
 }
 
-std::optional<Eigen::Vector2d> shift_to_zero(NodePositions& nodes) {
-  if (nodes.of_node.empty()) return std::nullopt;
+Eigen::Vector2d middle_of(const NodePositions& nodes) {
   std::vector<Eigen::Vector2d> points;
   for (const auto& [id, position] : nodes.of_node) points.push_back(position);
-  const Eigen::Vector2d middle = median_point(points);
-  if (is_near_origin(middle)) return std::nullopt;
-  const Eigen::Vector2d shift = -middle.array().round().matrix();
-  for (auto& [id, position] : nodes.of_node) position += shift;
+  return points.empty() ? Eigen::Vector2d(0.0, 0.0) : median_point(points);
+}
+
+std::optional<Eigen::Vector2d> move_to_middle(NodePositions& nodes) {
+  const Eigen::Vector2d shift = -middle_of(nodes).array().round().matrix();
+  const auto comes_near = [&](const auto& node) {
+    return !is_near_origin(node.second) && is_near_origin(node.second + shift);
+  };
+  if (shift.norm() <= kFarFromZeroM && std::ranges::none_of(nodes.of_node, comes_near)) {
+    return std::nullopt;
+  }
+  if (!is_known(nodes.origin)) {
+    for (auto& [id, position] : nodes.of_node) position += shift;
+    return shift;
+  }
+  const GeographicLib::LocalCartesian old_plane(nodes.origin.latitude_deg,
+                                                nodes.origin.longitude_deg);
+  nodes.origin = place_of(old_plane, -shift);
+  const GeographicLib::LocalCartesian plane(nodes.origin.latitude_deg, nodes.origin.longitude_deg);
+  for (auto& [id, position] : nodes.of_node) {
+    position = point_of(plane, place_of(old_plane, position));
+  }
   return shift;
 }
 

@@ -40,7 +40,8 @@ std::vector<std::string> warnings_of(const HdMap& map) {
   const size_t shown = std::min(map.left_out.size(), kMostShown);
   for (size_t i = 0; i < shown; ++i) warnings.push_back("left out: " + map.left_out[i]);
   if (map.left_out.size() > shown) {
-    warnings.push_back(fmt::format("left out: {} more parts", map.left_out.size() - shown));
+    const size_t more = map.left_out.size() - shown;
+    warnings.push_back(fmt::format("left out: {} more part{}", more, more == 1 ? "" : "s"));
   }
   return warnings;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include <boost/geometry.hpp>
@@ -37,6 +38,30 @@ bool is_in_area(const Eigen::Vector2d& point, const Area& area) {
   return is_in_ring(point, area.outer) &&
          std::ranges::none_of(area.holes,
                               [&point](const Line3& hole) { return is_in_ring(point, hole); });
+}
+
+/// The height of a ring where it is nearest to a point on the ground.
+double height_of_ring(const Line3& ring, const Eigen::Vector2d& point) {
+  double nearest_m2 = std::numeric_limits<double>::infinity();
+  double height_m = std::numeric_limits<double>::quiet_NaN();
+  for (size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+    const Eigen::Vector3d edge = ring[i] - ring[j];
+    const double length_m2 = edge.head<2>().squaredNorm();
+    const double share =
+        length_m2 > 0.0 ? (point - ring[j].head<2>()).dot(edge.head<2>()) / length_m2 : 0.0;
+    const Eigen::Vector3d nearest = ring[j] + std::clamp(share, 0.0, 1.0) * edge;
+    const double distance_m2 = (nearest.head<2>() - point).squaredNorm();
+    if (distance_m2 >= nearest_m2) continue;
+    nearest_m2 = distance_m2;
+    height_m = nearest.z();
+  }
+  return height_m;
+}
+
+bool is_on_level(const Eigen::Vector3d& point, const Area& area) {
+  if (!std::isfinite(point.z())) return true;
+  const double apart_m = height_of_ring(area.outer, point.head<2>()) - point.z();
+  return !std::isfinite(apart_m) || std::abs(apart_m) <= kSameLevel_m;
 }
 
 double doubled_area(const Line3& ring) {
@@ -108,10 +133,13 @@ AreaCover::AreaCover(AreaCover&&) noexcept = default;
 AreaCover& AreaCover::operator=(AreaCover&&) noexcept = default;
 AreaCover::~AreaCover() = default;
 
-bool AreaCover::covers(const Eigen::Vector2d& point) const {
+bool AreaCover::covers(const Eigen::Vector3d& point, std::optional<size_t> ignored_owner) const {
   const CoverBox at({point.x(), point.y()}, {point.x(), point.y()});
-  const auto is_here = geometry::index::satisfies(
-      [&](const CoverEntry& entry) { return is_in_area(point, areas_[entry.second]); });
+  const auto is_here = geometry::index::satisfies([&](const CoverEntry& entry) {
+    const Area& area = areas_[entry.second];
+    return ignored_owner != area.owner && is_in_area(point.head<2>(), area) &&
+           is_on_level(point, area);
+  });
   return tree_->boxes.qbegin(geometry::index::intersects(at) && is_here) != tree_->boxes.qend();
 }
 
@@ -134,8 +162,9 @@ std::vector<Line3> AreaCover::outline_of(size_t index) const {
         const auto at = [&](double along) {
           return along == pieces ? ring[i + 1] : Eigen::Vector3d(ring[i] + along / pieces * edge);
         };
-        const Eigen::Vector2d middle = at(piece + 0.5).head<2>();
-        if (covers(middle + kBesideArea_m * outwards)) {
+        Eigen::Vector3d beside = at(piece + 0.5);
+        beside.head<2>() += kBesideArea_m * outwards;
+        if (covers(beside)) {
           joiner.interrupt();
         } else {
           joiner.add(at(piece), at(piece + 1));

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,12 @@ namespace bevloc {
 struct Area {
   Line3 outer;
   std::vector<Line3> holes{};
+  size_t owner = 0;  ///< the number of what it belongs to, such as its road
 };
+
+/// Areas whose heights differ by more than this, in metres, are above each other, as a bridge is
+/// above a road.
+inline constexpr double kSameLevel_m = 3.0;
 
 /// The longest outline of an area. Outlines are sampled every 0.5 m, so a wrong coordinate would
 /// take minutes.
@@ -36,10 +42,14 @@ class AreaCover {
   AreaCover& operator=(AreaCover&&) noexcept;
   ~AreaCover();
 
-  /// Whether a point lies in at least one area.
-  bool covers(const Eigen::Vector2d& point) const;
+  /// Whether a point lies in at least one area of its height (kSameLevel_m). The height of an area
+  /// is that of its outline where the point is nearest to it. Heights that are not finite are not
+  /// compared. The areas of `ignored_owner` do not count.
+  bool covers(const Eigen::Vector3d& point,
+              std::optional<size_t> ignored_owner = std::nullopt) const;
 
-  /// The parts of the outlines of area `index` where no area lies beside them, cut to about 0.5 m.
+  /// The parts of the outlines of area `index` where no area of the same height lies beside them,
+  /// cut to about 0.5 m.
   std::vector<Line3> outline_of(size_t index) const;
 
   const std::vector<Area>& areas() const { return areas_; }

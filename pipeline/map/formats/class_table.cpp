@@ -45,7 +45,11 @@ Result<ClassTable> ClassTable::parse(const std::string& text, const std::string&
   auto yaml = YamlMap::parse(text, name);
   if (!yaml) return tl::unexpected(yaml.error());
   ClassTable table;
-  for (YamlMap& rule : yaml->require_map_list("rules")) table.rules_.push_back(read_rule(rule));
+  for (YamlMap& rule : yaml->require_map_list("rules")) {
+    const size_t index = table.rules_.size();
+    table.rules_.push_back(read_rule(rule));
+    table.rules_.back().place = fmt::format("{}: rules[{}]", name, index);
+  }
   if (Status status = yaml->finish(); !status) return tl::unexpected(status.error());
   return table;
 }
@@ -66,11 +70,12 @@ Status check_rules(const ClassTable& classes, const ImportReport& report, const 
         rows, [&](const ImportRow& row) { return rule_fits(rule.kind, row.kind); });
     if (is_hidden) {
       return fail(
-          "class table: found a rule for \"{}\" after one that takes all its kinds, wanted "
-          "it before that one",
-          rule.kind);
+          "{}: an earlier rule already takes every kind that the rule for \"{}\" fits; move the "
+          "rule "
+          "for \"{}\" before it",
+          rule.place, rule.kind, rule.kind);
     }
-    return fail("class table: found a rule for \"{}\", wanted a kind that is in {} ({} kinds)",
+    return fail("{}: found a rule for \"{}\", wanted a kind that is in {} ({} kinds)", rule.place,
                 rule.kind, file, rows.size());
   }
   return {};

@@ -25,6 +25,7 @@ class ClassTable {
   struct Rule {
     std::string kind;
     std::optional<Meaning> becomes;  ///< nothing if lines of this kind are dropped
+    std::string place{};             ///< "classes.yaml: rules[0]", for messages
   };
 
   ClassTable() = default;
@@ -41,8 +42,8 @@ class ClassTable {
   std::vector<Rule> rules_;
 };
 
-/// Fails if a rule fits no kind of the report, which is probably a typing mistake, or only kinds
-/// that an earlier rule takes.
+/// Fails, with the file of the table and the number of the rule, if a rule fits no kind of the
+/// report, which is probably a typing mistake, or only kinds that an earlier rule takes.
 Status check_rules(const ClassTable& classes, const ImportReport& report, const std::string& file);
 
 }  // namespace bevloc

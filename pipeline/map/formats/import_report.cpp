@@ -13,6 +13,9 @@ namespace {
 
 constexpr size_t kMostExamples = 3;
 
+/// At this distance a grid that is turned by 2 degrees is 100 m off.
+constexpr double kFarFromOrigin_m = 3'000.0;
+
 }  // namespace
 
 std::string text_of(const Meaning& meaning) {
@@ -38,6 +41,16 @@ void ImportReport::note(std::string_view kind, const std::optional<Meaning>& mea
 
 void ImportReport::remark_shift(const Eigen::Vector2d& shift) {
   remark(fmt::format("all coordinates were shifted by ({:.0f}, {:.0f}) m", shift.x(), shift.y()));
+}
+
+void ImportReport::remark_far_origin(const Eigen::Vector2d& middle) {
+  if (middle.norm() <= kFarFromOrigin_m) return;
+  remark(fmt::format(
+      "--origin: the middle of the map is {:.1f} km from (0, 0), so x must point to true east at "
+      "(0, 0), which it does not in MGRS and UTM grids; if a Lanelet2 map has MGRS coordinates, "
+      "add "
+      "the tag mgrs_code to its nodes and leave --origin out",
+      middle.norm() / 1000.0));
 }
 
 std::vector<ImportRow> ImportReport::rows() const {

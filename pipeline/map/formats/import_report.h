@@ -45,6 +45,10 @@ class ImportReport {
 
   void remark_shift(const Eigen::Vector2d& shift);
 
+  /// Warns of a wrong direction of x if the middle of the map (m, in the coordinates of the file)
+  /// is far from (0, 0), whose place on earth the user gave.
+  void remark_far_origin(const Eigen::Vector2d& middle);
+
   /// The rows of lines that were taken come first. Both parts are sorted by kind.
   std::vector<ImportRow> rows() const;
   const std::vector<std::string>& remarks() const { return remarks_; }

@@ -14,7 +14,8 @@ namespace bevloc {
 /// A parsed JSON file. The text must outlive it. Immutable, and so thread-safe.
 class JsonText {
  public:
-  /// Fails with file, line and column on text that is not JSON, or is nested deeper than maps are.
+  /// Fails on text that is not JSON, with file, line and byte. Fails on text that is nested more
+  /// deeply than any map, or has a number beyond the range of double, with the file only.
   static Result<JsonText> parse(std::string_view text, const std::string& file);
 
   const nlohmann::json& root() const { return root_; }

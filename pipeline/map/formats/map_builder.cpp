@@ -15,18 +15,6 @@
 namespace bevloc {
 namespace {
 
-/// Coordinates of a file that are further than this from zero are shifted.
-constexpr double kFarFromZero_m = 20'000.0;
-
-/// The median of all points, or (0, 0) if there are none.
-Eigen::Vector2d middle_of_elements(const HdMap& map) {
-  std::vector<Eigen::Vector2d> points;
-  for (const MapElement& element : map.elements) {
-    points.insert(points.end(), element.points.begin(), element.points.end());
-  }
-  return points.empty() ? Eigen::Vector2d(0.0, 0.0) : median_point(points);
-}
-
 void move_points(HdMap& map, const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& moved) {
   for (MapElement& element : map.elements) {
     for (Eigen::Vector2d& point : element.points) point = moved(point);
@@ -37,6 +25,8 @@ void move_points(HdMap& map, const std::function<Eigen::Vector2d(const Eigen::Ve
     }
   }
 }
+
+constexpr std::string_view kByRule = "by the class table";
 
 bool is_possible(const std::vector<Eigen::Vector2d>& points) {
   return std::ranges::all_of(points, is_near_origin);
@@ -132,9 +122,8 @@ std::optional<Meaning> MapBuilder::meaning_of(std::string_view kind,
 void MapBuilder::add(std::string_view kind, std::string_view where,
                      const std::optional<Meaning>& normally, std::string_view why_not, Line3 line) {
   const bool by_rule = options_.classes != nullptr && options_.classes->rule_for(kind) != nullptr;
-  std::optional<Meaning> meaning = meaning_of(kind, normally);
-  std::string_view why = by_rule ? "by the class table" : meaning ? "" : why_not;
-  double length_m = length_of(line);
+  const std::optional<Meaning> meaning = meaning_of(kind, normally);
+  std::string_view why = by_rule ? kByRule : why_not;
   if (meaning) {
     MapElement element{meaning->element_class, meaning->appearance, {}};
     Heights heights_m;
@@ -146,22 +135,28 @@ void MapBuilder::add(std::string_view kind, std::string_view where,
     }
     const std::string_view fault = shape_element(element, heights_m);
     if (fault.empty()) {
-      length_m = bevloc::length_of(element);
+      sources_.push_back(
+          {std::string(kind), std::string(where), *meaning, by_rule, bevloc::length_of(element)});
       map_.elements.push_back(std::move(element));
       heights_m_.push_back(std::move(heights_m));
-      kinds_.emplace_back(kind);
-      wheres_.emplace_back(where);
-    } else {
-      meaning.reset();
-      why = fault;
+      return;
     }
+    why = fault;
   }
-  report_.note(kind, meaning, why, length_m, where);
+  report_.note(kind, std::nullopt, why, length_of(line), where);
 }
 
 void MapBuilder::drop(std::string_view kind, std::string_view where, std::string_view why,
                       double length_m) {
   report_.note(kind, std::nullopt, why, length_m, where);
+}
+
+Eigen::Vector2d MapBuilder::middle() const {
+  std::vector<Eigen::Vector2d> points;
+  for (const MapElement& element : map_.elements) {
+    points.insert(points.end(), element.points.begin(), element.points.end());
+  }
+  return points.empty() ? Eigen::Vector2d(0.0, 0.0) : median_point(points);
 }
 
 uint32_t MapBuilder::add_lane(Lane lane) {
@@ -174,9 +169,9 @@ void MapBuilder::place(const Projection* projection) {
     map_.origin = *plane_at_;
     return;
   }
-  const Eigen::Vector2d middle = middle_of_elements(map_);
+  const Eigen::Vector2d center = middle();
   if (projection != nullptr) {
-    map_.origin = projection->geographic(middle);
+    map_.origin = projection->geographic(center);
     const GeographicLib::LocalCartesian plane(map_.origin.latitude_deg, map_.origin.longitude_deg);
     move_points(map_, [&](const Eigen::Vector2d& point) {
       return point_of(plane, projection->geographic(point));
@@ -184,8 +179,8 @@ void MapBuilder::place(const Projection* projection) {
     return;
   }
   remark("the file does not say where on earth it is: --origin LATITUDE,LONGITUDE does");
-  if (middle.norm() <= kFarFromZero_m) return;
-  const Eigen::Vector2d shift = -middle.array().round().matrix();
+  if (center.norm() <= kFarFromZeroM) return;
+  const Eigen::Vector2d shift = -center.array().round().matrix();
   report_.remark_shift(shift);
   move_points(map_,
               [&shift](const Eigen::Vector2d& point) { return Eigen::Vector2d(point + shift); });
@@ -195,8 +190,11 @@ void MapBuilder::drop_impossible() {
   size_t kept = 0;
   for (size_t i = 0; i < map_.elements.size(); ++i) {
     MapElement& element = map_.elements[i];
+    const Source& source = sources_[i];
     const bool near = is_possible(element.points);
     if (near && polyline_length(element.points) <= kLongestPolylineM) {
+      report_.note(source.kind, source.meaning, source.is_by_rule ? kByRule : "", source.length_m,
+                   source.where);
       if (kept != i) {
         map_.elements[kept] = std::move(element);
         heights_m_[kept] = std::move(heights_m_[i]);
@@ -204,8 +202,10 @@ void MapBuilder::drop_impossible() {
       ++kept;
       continue;
     }
-    leave_out(fmt::format("{}: {}: found a {} {}, wanted at most {:g} km", file_, wheres_[i],
-                          kinds_[i], near ? "that is too long" : "too far from the middle",
+    report_.note(source.kind, std::nullopt, near ? "too long" : "too far from the middle",
+                 source.length_m, source.where);
+    leave_out(fmt::format("{}: {}: found a {} {}, wanted at most {:g} km", file_, source.where,
+                          source.kind, near ? "that is too long" : "too far from the middle",
                           (near ? kLongestPolylineM : kFarthestFromOriginM) / 1000.0));
   }
   map_.elements.resize(kept);
@@ -222,16 +222,17 @@ void MapBuilder::drop_impossible() {
 
 Result<ImportedMap> MapBuilder::finish(std::string name, std::unique_ptr<Projection> projection) {
   if (options_.origin) {
-    const Eigen::Vector2d middle = middle_of_elements(map_);
-    if (!is_near_origin(middle)) return far_from_origin(file_, middle);
+    const Eigen::Vector2d center = middle();
+    if (!is_near_origin(center)) return far_from_origin(file_, center);
+    report_.remark_far_origin(center);
     projection = tangent_projection(*options_.origin);
   }
+  place(projection.get());
+  drop_impossible();
   if (options_.classes != nullptr) {
     const Status status = check_rules(*options_.classes, report_, file_);
     if (!status) return tl::unexpected(status.error());
   }
-  place(projection.get());
-  drop_impossible();
   if (map_.elements.empty()) {
     const std::string first = map_.left_out.empty() ? "" : "; " + map_.left_out.front();
     return fail(

@@ -70,8 +70,9 @@ class MapBuilder {
   std::optional<Meaning> meaning_of(std::string_view kind,
                                     const std::optional<Meaning>& normally) const;
 
-  /// Adds a line, or the ring of a crossing, if it becomes something, and reports it. `where` names
-  /// it ("way 12"); `why_not` says why it is dropped if `normally` is nothing.
+  /// Adds a line, or the ring of a crossing, if it becomes something, and reports it if it does not
+  /// (finish() reports the others). `where` names it ("way 12"); `why_not` says why it is dropped
+  /// if `normally` is nothing.
   void add(std::string_view kind, std::string_view where, const std::optional<Meaning>& normally,
            std::string_view why_not, Line3 line);
 
@@ -80,6 +81,10 @@ class MapBuilder {
 
   /// Names a part that was lost because the file is wrong there. See HdMap::left_out.
   void leave_out(std::string sentence) { map_.left_out.push_back(std::move(sentence)); }
+
+  /// The median of all points that were added, in the coordinates of the file, or (0, 0) without
+  /// any.
+  Eigen::Vector2d middle() const;
 
   /// Returns the index of the lane. The bounds are in the coordinates of the file.
   uint32_t add_lane(Lane lane);
@@ -102,13 +107,21 @@ class MapBuilder {
   void place(const Projection* projection);
   void drop_impossible();
 
+  /// What an element was in the file.
+  struct Source {
+    std::string kind;
+    std::string where;
+    Meaning meaning;
+    bool is_by_rule = false;
+    double length_m = 0.0;
+  };
+
   std::string file_;
   ImportOptions options_;
   std::optional<GeoOrigin> plane_at_;
   HdMap map_;
-  std::vector<Heights> heights_m_;   ///< one for each element
-  std::vector<std::string> kinds_;   ///< one for each element
-  std::vector<std::string> wheres_;  ///< one for each element
+  std::vector<Heights> heights_m_;  ///< one for each element
+  std::vector<Source> sources_;     ///< one for each element
   ImportReport report_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <utility>
@@ -10,6 +11,7 @@
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/TransverseMercator.hpp>
 #include <GeographicLib/UTMUPS.hpp>
+#include <fmt/ranges.h>
 
 #include "common/number_text.h"
 #include "pipeline/map/tangent_plane.h"
@@ -110,13 +112,12 @@ Result<double> proj_number(const ProjWords& words, std::string_view key, double 
   return fail("found +{}={}, wanted a number from {:g} to {:g}", key, text, -limit, limit);
 }
 
-/// Refuses a word whose value is neither `wanted` nor `same`.
-Status check_word(const ProjWords& words, std::string_view key, std::string_view wanted,
-                  std::string_view same) {
+/// Refuses a word whose value is none of `wanted`.
+Status check_word(const ProjWords& words, std::string_view key,
+                  std::initializer_list<std::string_view> wanted) {
   const auto word = words.find(key);
-  if (word == words.end() || word->second == wanted || word->second == same) return {};
-  return fail("found +{}={}, wanted {}{}", key, word->second, wanted,
-              same == wanted ? "" : fmt::format(" or {}", same));
+  if (word == words.end() || std::ranges::find(wanted, word->second) != wanted.end()) return {};
+  return fail("found +{}={}, wanted {}", key, word->second, fmt::join(wanted, " or "));
 }
 
 /// Refuses words that are misspelt, or that would move the map and are not understood.
@@ -138,16 +139,59 @@ Status check_known(const ProjWords& words) {
   return fail("found +towgs84={}, wanted a datum without a shift to WGS84", shift->second);
 }
 
-/// ETRS89 and GRS80 differ from WGS84 by less than a metre.
+/// ETRS89 differs from WGS84 by less than a metre, and NAD83 by 1 m to 2 m.
 Status check_datum(const ProjWords& words) {
-  Status status = check_word(words, "datum", "WGS84", "ETRS89");
-  if (status) status = check_word(words, "ellps", "WGS84", "GRS80");
-  if (status) status = check_word(words, "units", "m", "metre");
-  if (status) status = check_word(words, "to_meter", "1", "1.0");
-  if (status) status = check_word(words, "axis", "enu", "enu");
-  if (status) status = check_word(words, "pm", "greenwich", "0");
-  if (status) status = check_word(words, "nadgrids", "@null", "@null");
+  Status status = check_word(words, "datum", {"WGS84", "ETRS89", "NAD83"});
+  if (status) status = check_word(words, "ellps", {"WGS84", "GRS80"});
+  if (status) status = check_word(words, "units", {"m", "metre"});
+  if (status) status = check_word(words, "to_meter", {"1", "1.0"});
+  if (status) status = check_word(words, "axis", {"enu"});
+  if (status) status = check_word(words, "pm", {"greenwich", "0"});
+  if (status) status = check_word(words, "nadgrids", {"@null"});
   return status;
+}
+
+/// Replaces +init=epsg:NUMBER of a UTM zone by +proj=utm, +zone and +south. Leaves it where +proj
+/// says something else.
+Status resolve_epsg(ProjWords& words) {
+  struct Zones {
+    int first_code;
+    int first_zone;
+    int count;
+    bool is_south;
+  };
+  // WGS 84 north and south, and ETRS89
+  static constexpr std::array kZones{Zones{32601, 1, 60, false}, Zones{32701, 1, 60, true},
+                                     Zones{25828, 28, 11, false}};
+  const auto init = words.find("init");
+  if (init == words.end() || words.contains("proj")) return {};
+  std::string_view text = init->second;
+  const bool is_epsg = text.starts_with("epsg:") || text.starts_with("EPSG:");
+  const auto code = is_epsg ? parse_number<int>(text.substr(5)) : std::nullopt;
+  const auto zones = std::ranges::find_if(kZones, [&](const Zones& some) {
+    return code && *code >= some.first_code && *code < some.first_code + some.count;
+  });
+  if (zones == kZones.end()) {
+    return fail(
+        "found +init={}, wanted the EPSG code of a UTM zone (326xx, 327xx or 258xx), or +proj=utm "
+        "or tmerc",
+        text);
+  }
+  words.emplace("proj", "utm");
+  words.emplace("zone", fmt::format("{}", zones->first_zone + *code - zones->first_code));
+  if (zones->is_south) words.emplace("south", "");
+  words.erase(init);
+  return {};
+}
+
+Result<std::unique_ptr<Projection>> utm_plane(const ProjWords& words) {
+  if (!words.contains("zone")) return fail("found no +zone, wanted 1 to 60");
+  const Result<double> zone = proj_number(words, "zone", 0.0, 60.0);
+  if (!zone) return tl::unexpected(zone.error());
+  if (*zone < 1.0 || *zone != std::floor(*zone)) {
+    return fail("found +zone={:g}, wanted 1 to 60", *zone);
+  }
+  return utm_projection(static_cast<int>(*zone), !words.contains("south"), {0.0, 0.0});
 }
 
 Result<std::unique_ptr<Projection>> transverse_mercator(const ProjWords& words) {
@@ -172,7 +216,9 @@ Result<std::unique_ptr<Projection>> transverse_mercator(const ProjWords& words) 
 }  // namespace
 
 Result<std::unique_ptr<Projection>> projection_from_proj(std::string_view text) {
-  const ProjWords words = words_of(text);
+  ProjWords words = words_of(text);
+  Status status = resolve_epsg(words);
+  if (!status) return tl::unexpected(status.error());
   const auto kind = words.find("proj");
   if (kind == words.end()) {
     return fail("found \"{:.60}\", wanted a PROJ string with +proj=", text);
@@ -182,18 +228,10 @@ Result<std::unique_ptr<Projection>> projection_from_proj(std::string_view text) 
   if (!is_utm && kind->second != "tmerc") {
     return fail("found +proj={}, wanted utm or tmerc", kind->second);
   }
-  Status status = check_known(words);
+  status = check_known(words);
   if (status) status = check_datum(words);
   if (!status) return tl::unexpected(status.error());
-  if (is_utm) {
-    const Result<double> zone = proj_number(words, "zone", 0.0, 60.0);
-    if (!zone) return tl::unexpected(zone.error());
-    if (*zone < 1.0 || *zone != std::floor(*zone)) {
-      return fail("found +zone={:g}, wanted 1 to 60", *zone);
-    }
-    return utm_projection(static_cast<int>(*zone), !words.contains("south"), {0.0, 0.0});
-  }
-  return transverse_mercator(words);
+  return is_utm ? utm_plane(words) : transverse_mercator(words);
 }
 
 std::unique_ptr<Projection> utm_projection(int zone, bool north, const Eigen::Vector2d& offset) {

@@ -21,10 +21,11 @@ class Projection {
   virtual GeoOrigin geographic(const Eigen::Vector2d& point) const = 0;
 };
 
-/// Reads a PROJ string. Understands +proj=utm (+zone, +south) and +proj=tmerc (+lat_0, +lon_0, +k
-/// or +k_0, +x_0, +y_0), on WGS84 or GRS80 in metres. Refuses words that it does not know. Returns
-/// null for +proj=longlat or latlong, which do not say where a plane in metres lies. The error says
-/// what is not understood, without a file name.
+/// Reads a PROJ string. Understands +proj=utm (+zone, +south), +proj=tmerc (+lat_0, +lon_0, +k or
+/// +k_0, +x_0, +y_0) and the EPSG codes of UTM zones (+init=epsg:326xx, 327xx and 258xx), on WGS84
+/// or GRS80 in metres. Takes ETRS89 and NAD83 as WGS84. Refuses words that it does not know.
+/// Returns null for +proj=longlat or latlong, which do not say where a plane in metres lies. The
+/// error says what is not understood, without a file name.
 Result<std::unique_ptr<Projection>> projection_from_proj(std::string_view text);
 
 /// UTM north or south of the equator, with `offset` added to the coordinates of the file.

@@ -16,6 +16,8 @@
 namespace bevloc::evaluation {
 namespace {
 
+using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 const std::string kStreet =
@@ -66,9 +68,21 @@ TEST(MapFacts, NamesFaults) {
   map.lanes.push_back({{{0, 90}, {99, 90}}, {{0, 86}, {99, 86}}, {{0, 88}, {99, 88}}, {}, 13.9});
   const auto faults = faults_of(map);
   ASSERT_EQ(faults.size(), 3U);
-  EXPECT_THAT(faults[0], HasSubstr("shorter than 0.1 m: 4"));
-  EXPECT_THAT(faults[1], HasSubstr("lie on another one of their class: 3"));
+  EXPECT_EQ(faults[0], "1 element is shorter than 0.1 m: 4");
+  EXPECT_EQ(faults[1], "1 element lies on another one of its class: 3");
   EXPECT_THAT(faults[2], HasSubstr("99 of 199 m of lanes have no line within 15 m: lanes 1"));
+}
+
+TEST(MapFacts, NamesTheShorterOfTwoLinesInAnyOrder) {
+  const MapElement part{ElementClass::kRoadBoundary, Appearance::kKerb, {{-20, 4}, {20, 4}}};
+  HdMap map = road();
+  map.elements.push_back(part);
+  EXPECT_THAT(faults_of(map), ElementsAre("1 element lies on another one of its class: 3"));
+  map = road();
+  map.elements.insert(map.elements.begin(), part);
+  EXPECT_THAT(faults_of(map), ElementsAre("1 element lies on another one of its class: 0"));
+  map.elements.insert(map.elements.begin(), part);
+  EXPECT_THAT(faults_of(map), ElementsAre("2 elements lie on another one of their class: 0, 1"));
 }
 
 TEST(MapDiff, FindsWhatOnlyOneMapHasInAnotherFrame) {
@@ -152,6 +166,23 @@ TEST_F(MapCommandTest, ReplacesMapsByRenaming) {
     EXPECT_EQ(*read_file(at("in_use")), "old") << "who has the file open keeps its bytes";
     EXPECT_TRUE(load_map(out).has_value());
   }
+}
+
+TEST_F(MapCommandTest, ACheckWritesAllThatWasLeftOut) {
+  std::string street = *read_file(kStreet);
+  for (int id = 9001; id <= 9007; ++id) {
+    street.insert(street.find("</osm>"),
+                  fmt::format(R"(<way id="{0}"><nd ref="1"/><nd ref="{0}"/><tag k="type" v="fence"/>
+                              </way>)",
+                              id));
+  }
+  ASSERT_TRUE(write_file(at("broken.osm"), street));
+  EXPECT_FALSE(run({"map", "check", at("broken.osm"), "--json", at("check.json")}).has_value());
+  const auto json = nlohmann::json::parse(*read_file(at("check.json")));
+  ASSERT_EQ(json.at("left_out").size(), 7U);
+  EXPECT_THAT(json.at("left_out").back().get<std::string>(), HasSubstr("way 9007: found"));
+  EXPECT_THAT(json.at("faults").get<std::vector<std::string>>(),
+              Contains("left out: 2 more parts"));
 }
 
 TEST_F(MapCommandTest, AnOriginIsAPlace) {

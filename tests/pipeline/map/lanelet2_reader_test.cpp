@@ -118,7 +118,7 @@ TEST(Lanelet2Reader, LanesFollowEachOtherWhereBothBoundsMeet) {
 TEST(Lanelet2Reader, AutowareLocalCoordinatesReplaceMissingAngles) {
   const HdMap map = read_fixture("autoware.osm");
   ASSERT_EQ(map.lanes.size(), 1U);
-  EXPECT_EQ(map.lanes[0].right.front(), Eigen::Vector2d(81500.0, 50100.0));
+  EXPECT_EQ(map.lanes[0].right.front(), Eigen::Vector2d(-20.0, -4.0)) << "from the middle";
   EXPECT_NEAR(map.lanes[0].speed_limit_mps, 50.0 / 3.6, 1e-9);
   EXPECT_EQ(of_class(map, ElementClass::kRoadBoundary).size(), 2U) << "the edges of the road";
   EXPECT_EQ(map.origin.latitude_deg, 0.0);
@@ -170,9 +170,9 @@ TEST(Lanelet2Reader, RefusesLocalCoordinatesThatContradictTheAngles) {
   }
   EXPECT_THAT(
       read_error(lanelet_of(nodes)),
-      AllOf(StartsWith("town.osm: found local_x and local_y that differ from lat and lon by "
-                       "a scale of "),
-            HasSubstr("wanted at most 1.01 and 1 m")));
+      AllOf(StartsWith("town.osm:"),
+            HasSubstr(": found local_x and local_y that differ from lat and lon by a scale of "),
+            HasSubstr("wanted at most 1.01 and 1 m; correct this node")));
 }
 
 TEST(Lanelet2Reader, RefusesTwoKindsOfCoordinatesThatNothingRelates) {

@@ -44,6 +44,8 @@ TEST(MapSummary, ShowsTheFirstPartsThatWereLeftOut) {
   ASSERT_EQ(warnings.size(), 6U);
   EXPECT_EQ(warnings.front(), "left out: town.osm:0");
   EXPECT_EQ(warnings.back(), "left out: 2 more parts");
+  map.left_out.pop_back();
+  EXPECT_EQ(warnings_of(map).back(), "left out: 1 more part");
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ constexpr double kLargestNumber = 1e9;
 constexpr double kMostCurvature = 10.0;
 /// A negative length counts as 0 if it is above minus this value.
 constexpr double kRounding_m = 1e-6;
-/// This is more lanes than any file has on the other side of single-sided lane sections.
+/// This is more lanes than any file has on the other side of single-sided lane sections. They are
+/// made, so they would fill the memory.
 constexpr size_t kMostOtherLanes = 1'000'000;
 
 double mps_from(std::string_view unit) {
@@ -303,7 +304,11 @@ class DocumentReader {
       if (section.is_single_side) other_lanes_ += most;
     }
     if (other_lanes_ > kMostOtherLanes) {
-      reject(lanes, "too many lane sections with singleSide", "less");
+      reject(
+          lanes, fmt::format("{} lanes beside sections with singleSide", other_lanes_),
+          fmt::format("at most {} in the file; write both sides into one section, or cut the map "
+                      "into several files",
+                      kMostOtherLanes));
       return;
     }
     complete_sides(road.sections);

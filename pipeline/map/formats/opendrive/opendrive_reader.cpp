@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/map/formats/area_cover.h"
+#include "pipeline/map/formats/opendrive/asphalt.h"
 #include "pipeline/map/formats/opendrive/document.h"
 #include "pipeline/map/formats/opendrive/section_lines.h"
 #include "pipeline/map/lanelet_geometry.h"
@@ -18,14 +18,10 @@ namespace {
 
 namespace od = opendrive;
 
-/// A lane that is narrower than this does not exist.
-constexpr double kNoWidth_m = 0.05;
 /// Vehicles do not drive on lanes that are narrower than this everywhere.
 constexpr double kNarrowLane_m = 1.5;
 /// Points this close to a line are left out of it.
 constexpr double kTolerance_m = 0.01;
-/// Gaps between the roads of a junction are narrower than this.
-constexpr double kJunctionGap_m = 3.0;
 /// This is more points than any map has (200 bytes each).
 constexpr size_t kMostPoints = 10'000'000;
 /// This is more repeated crossings than any map has.
@@ -121,26 +117,6 @@ class BorderRun {
   Line3 line_;
 };
 
-struct CutSection {
-  const od::Road* road;
-  const od::LaneSection* section;
-  od::SectionLines lines;
-
-  double width_m(size_t lane, size_t piece) const {
-    return std::max(lines.lateral_m[lane + 1][piece] - lines.lateral_m[lane][piece],
-                    lines.lateral_m[lane + 1][piece + 1] - lines.lateral_m[lane][piece + 1]);
-  }
-  /// The type of the first lane with a width, from `lane` on in one direction, or "none" if there
-  /// is no such lane.
-  std::string type_from(std::ptrdiff_t lane, int step, size_t piece) const {
-    for (; lane >= 0 && lane < std::ssize(section->lanes); lane += step) {
-      const od::LaneSpec& spec = section->lanes[lane];
-      if (spec.id != 0 && width_m(lane, piece) > kNoWidth_m) return spec.type;
-    }
-    return "none";
-  }
-};
-
 class OpendriveReader {
  public:
   OpendriveReader(const od::Document& document, const ImportOptions& options)
@@ -148,7 +124,8 @@ class OpendriveReader {
 
   Status read() {
     size_t points = 0;
-    for (const od::Road& road : document_.roads) {
+    for (size_t r = 0; r < document_.roads.size(); ++r) {
+      const od::Road& road = document_.roads[r];
       for (std::string& fault : od::faults_of(road, document_.file)) {
         builder_.leave_out(std::move(fault));
       }
@@ -156,18 +133,20 @@ class OpendriveReader {
         const double length_m = section.end_m - section.start_m;
         points += static_cast<size_t>(std::max(2.0, 2.0 * length_m)) * section.lanes.size();
         if (points > kMostPoints) {
-          return fail("{}:{}: road {}: found roads of more than {} points in all, wanted less",
-                      document_.file, road.line, road.id, kMostPoints);
+          return fail(
+              "{}:{}: road {}: found {} points of lanes up to this road, wanted at most {}; cut "
+              "the map into several files",
+              document_.file, road.line, road.id, points, kMostPoints);
         }
         for (const od::Stretch& stretch : road.stretches) {
           const od::Stretch part = od::part_of(section, stretch);
           if (part.end_m - part.start_m < kTolerance_m) continue;
-          sections_.push_back({&road, &section, od::lines_of(road, section, part)});
+          sections_.push_back({&road, r, &section, od::lines_of(road, section, part)});
         }
       }
     }
-    pave();
-    for (const CutSection& cut : sections_) {
+    asphalt_.emplace(sections_);
+    for (const od::CutSection& cut : sections_) {
       add_borders(cut);
       add_lanes(cut);
     }
@@ -185,8 +164,13 @@ class OpendriveReader {
     if (has_reference && !options.origin) {
       auto read = projection_from_proj(document_.georeference);
       if (!read) {
-        return fail("{}:{}: <geoReference>: {}; --origin LATITUDE,LONGITUDE takes its place",
-                    document_.file, document_.georeference_line, read.error().message);
+        // bevloc refuses an origin for coordinates that are far from (0, 0).
+        const bool may_have_origin = is_near_origin(builder_.middle());
+        return fail(
+            "{}:{}: <geoReference>: {}; {}delete the geoReference, and the map has no place on "
+            "earth",
+            document_.file, document_.georeference_line, read.error().message,
+            may_have_origin ? "--origin LATITUDE,LONGITUDE takes its place; or " : "");
       }
       if (*read) {
         projection =
@@ -199,34 +183,7 @@ class OpendriveReader {
   }
 
  private:
-  /// The asphalt of all roads, as one quadrangle for each piece of neighbouring paved lanes.
-  void pave() {
-    std::vector<Area> areas;
-    for (const CutSection& cut : sections_) {
-      const auto& lanes = cut.section->lanes;
-      for (size_t first = 0; first < lanes.size();) {
-        if (!od::is_paved(lanes[first].type) && lanes[first].id != 0) {
-          ++first;
-          continue;
-        }
-        size_t end = first + 1;
-        while (end < lanes.size() && (od::is_paved(lanes[end].type) || lanes[end].id == 0)) ++end;
-        pave_between(cut.lines.borders[first], cut.lines.borders[end], areas);
-        first = end;
-      }
-    }
-    asphalt_.emplace(std::move(areas));
-  }
-
-  static void pave_between(const Line3& right, const Line3& left, std::vector<Area>& areas) {
-    for (size_t i = 0; i + 1 < right.size(); ++i) {
-      const bool has_width = (left[i] - right[i]).head<2>().norm() > kNoWidth_m ||
-                             (left[i + 1] - right[i + 1]).head<2>().norm() > kNoWidth_m;
-      if (has_width) areas.push_back({{right[i], right[i + 1], left[i + 1], left[i]}});
-    }
-  }
-
-  void add_borders(const CutSection& cut) {
+  void add_borders(const od::CutSection& cut) {
     const auto& lanes = cut.section->lanes;
     for (size_t border = 0; border <= lanes.size(); ++border) {
       // The centre has two borders at the same place; its left one stands for both.
@@ -237,7 +194,7 @@ class OpendriveReader {
                     fmt::format("road {} lane {} (line {})", cut.road->id, owner.id, owner.line));
       for (size_t piece = 0; piece + 1 < cut.lines.along_m.size(); ++piece) {
         const size_t own = is_right ? border : border - 1;
-        if (owner.id != 0 && cut.width_m(own, piece) <= kNoWidth_m) {
+        if (owner.id != 0 && cut.width_m(own, piece) <= od::kNoWidth_m) {
           run.flush();
           continue;
         }
@@ -246,7 +203,7 @@ class OpendriveReader {
     }
   }
 
-  void add_piece(const CutSection& cut, size_t border, const od::LaneSpec& owner, size_t piece,
+  void add_piece(const od::CutSection& cut, size_t border, const od::LaneSpec& owner, size_t piece,
                  BorderRun& run) {
     const Eigen::Vector3d& from = cut.lines.borders[border][piece];
     const Eigen::Vector3d& to = cut.lines.borders[border][piece + 1];
@@ -262,7 +219,7 @@ class OpendriveReader {
       const std::string& inside = left_paved ? left : right;
       const std::string& beside = left_paved ? right : left;
       const std::string kind = fmt::format("edge of {} beside {}", inside, beside);
-      if (!continues_beside(from, to, left_paved, cut.road->is_in_junction)) {
+      if (!asphalt_->continues_beside(cut, from, to, left_paved)) {
         const bool has_kerb = beside == "sidewalk" || beside == "walking" || beside == "curb";
         run.add(kind,
                 Meaning{ElementClass::kRoadBoundary,
@@ -283,24 +240,7 @@ class OpendriveReader {
     run.add("road mark " + (mark.empty() ? "none" : mark), of_mark, "not painted", from, to);
   }
 
-  /// Whether there is asphalt on the side of a piece where its own road has none. The roads of a
-  /// junction leave small gaps between each other that are asphalt in truth.
-  bool continues_beside(const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool left_paved,
-                        bool in_junction) const {
-    const Eigen::Vector2d along = (to - from).head<2>();
-    const double length_m = along.norm();
-    if (length_m == 0.0) return false;
-    const Eigen::Vector2d left(-along.y() / length_m, along.x() / length_m);
-    const Eigen::Vector2d middle = 0.5 * (from + to).head<2>();
-    const Eigen::Vector2d outwards = left_paved ? -left : left;
-    if (asphalt_->covers(middle + kBesideArea_m * outwards)) return true;
-    for (double reach_m = 0.5; in_junction && reach_m <= kJunctionGap_m; reach_m += 0.5) {
-      if (asphalt_->covers(middle + reach_m * outwards)) return true;
-    }
-    return false;
-  }
-
-  void add_lanes(const CutSection& cut) {
+  void add_lanes(const od::CutSection& cut) {
     for (size_t i = 0; i < cut.section->lanes.size(); ++i) {
       const od::LaneSpec& spec = cut.section->lanes[i];
       if (spec.id == 0 || !od::is_driven(spec.type)) continue;
@@ -381,8 +321,8 @@ class OpendriveReader {
   const od::Document& document_;
   MapBuilder builder_;
   TakenLines taken_;
-  std::vector<CutSection> sections_;
-  std::optional<AreaCover> asphalt_;
+  std::vector<od::CutSection> sections_;
+  std::optional<od::Asphalt> asphalt_;
   size_t copies_ = 0;
 };
 

@@ -49,6 +49,19 @@ double height_at(const Road& road, double s_m) {
 
 }  // namespace
 
+double CutSection::width_m(size_t lane, size_t piece) const {
+  return std::max(lines.lateral_m[lane + 1][piece] - lines.lateral_m[lane][piece],
+                  lines.lateral_m[lane + 1][piece + 1] - lines.lateral_m[lane][piece + 1]);
+}
+
+std::string CutSection::type_from(std::ptrdiff_t lane, int step, size_t piece) const {
+  for (; lane >= 0 && lane < std::ssize(section->lanes); lane += step) {
+    const LaneSpec& spec = section->lanes[lane];
+    if (spec.id != 0 && width_m(lane, piece) > kNoWidth_m) return spec.type;
+  }
+  return "none";
+}
+
 Stretch part_of(const LaneSection& section, const Stretch& stretch) {
   Stretch part{std::max(section.start_m, stretch.start_m), section.end_m};
   if (stretch.end_m <= section.end_m) {

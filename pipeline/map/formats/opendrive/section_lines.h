@@ -1,6 +1,7 @@
 // The borders of the lanes of an OpenDRIVE lane section, and the outlines of objects, as points.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,24 @@ struct SectionLines {
 
   /// The lateral position (t) of each border, with one value per value of along_m.
   std::vector<std::vector<double>> lateral_m;
+};
+
+/// A lane that is narrower than this does not exist.
+inline constexpr double kNoWidth_m = 0.05;
+
+/// A part of a lane section, cut into pieces. Refers to its document.
+struct CutSection {
+  const Road* road = nullptr;
+  size_t road_index = 0;  ///< in the document
+  const LaneSection* section = nullptr;
+  SectionLines lines;
+
+  /// The width of a lane at the wider end of a piece, or a negative one if its borders cross.
+  double width_m(size_t lane, size_t piece) const;
+
+  /// The type of the first lane with a width, from `lane` on in one direction (`step` 1 or -1), or
+  /// "none" if there is no such lane.
+  std::string type_from(std::ptrdiff_t lane, int step, size_t piece) const;
 };
 
 /// The part of a section on a stretch. Its end is before its start if section and stretch do not

@@ -59,15 +59,17 @@ TEST(ClassTable, ChangesLanelet2Maps) {
       ClassTable::parse("rules:\n  - kind: way wal\n    becomes: nothing\n", "classes.yaml");
   options.classes = &*unused;
   EXPECT_THAT(import_map(street, options).error().message,
-              HasSubstr("class table: found a rule for \"way wal\", wanted a kind that is in"));
+              HasSubstr("classes.yaml: rules[0]: found a rule for \"way wal\", wanted a kind that "
+                        "is in"));
 
   const auto hidden = ClassTable::parse(
       "rules:\n  - kind: way*\n    becomes: boundary\n  - kind: way line_thin*\n"
       "    becomes: nothing\n",
       "classes.yaml");
   options.classes = &*hidden;
-  EXPECT_THAT(import_map(street, options).error().message,
-              HasSubstr("class table: found a rule for \"way line_thin*\" after one that takes"));
+  EXPECT_EQ(import_map(street, options).error().message,
+            "classes.yaml: rules[1]: an earlier rule already takes every kind that the rule for "
+            "\"way line_thin*\" fits; move the rule for \"way line_thin*\" before it");
 }
 
 TEST(MapFormat, MapsWithoutAnglesTakeThemFromTheirMgrsSquare) {

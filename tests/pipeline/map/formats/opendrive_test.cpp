@@ -225,10 +225,11 @@ TEST(Opendrive, TheGeoreferenceGivesThePlaceOnEarth) {
 TEST(Opendrive, AGeoreferenceThatCannotBeReadIsRefusedWithItsLine) {
   const std::string text =
       file_with(road_with(kStraight, kLanes), "\n<geoReference>+proj=aea +lat_1=29</geoReference>");
-  EXPECT_EQ(road_error(text),
-            "town.xodr:4: <geoReference>: found +proj=aea, wanted utm or tmerc; --origin "
-            "LATITUDE,LONGITUDE "
-            "takes its place");
+  EXPECT_EQ(
+      road_error(text),
+      "town.xodr:4: <geoReference>: found +proj=aea, wanted utm or tmerc; --origin "
+      "LATITUDE,LONGITUDE takes its place; or delete the geoReference, and the map has no place "
+      "on earth");
   ImportOptions options;
   options.origin = GeoOrigin{49.0, 8.0};
   const auto imported = read(text, options);

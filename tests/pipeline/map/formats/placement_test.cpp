@@ -1,5 +1,8 @@
 // Where an imported map lies on earth.
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,15 +42,15 @@ std::string error_of(std::string_view text, const std::string& file,
 
 TEST(Placement, AnOriginFarFromTheCoordinatesIsRefused) {
   EXPECT_EQ(error_of(road_from(455'000, 5'428'000), "utm.xodr", with_origin()),
-            "utm.xodr: found coordinates (456000, 5428000) m from their zero, wanted at most 83 "
-            "km; --origin is the place of the point (0, 0)");
+            "utm.xodr: found a map whose middle is at (456000, 5428000) m, wanted it within 83 km "
+            "of (0, 0), because --origin gives the place of (0, 0)");
   EXPECT_EQ(error_of(road_from(80'000, -80'000), "far.xodr", with_origin()), "");
   EXPECT_THAT(error_of(R"(<osm>
  <node id="1"><tag k="local_x" v="456000"/><tag k="local_y" v="5427000"/></node>
  <node id="2"><tag k="local_x" v="456080"/><tag k="local_y" v="5427000"/></node>
  <way id="11"><nd ref="1"/><nd ref="2"/><tag k="type" v="curbstone"/></way></osm>)",
                        "local.osm", with_origin()),
-              testing::StartsWith("local.osm: found coordinates (456"));
+              testing::StartsWith("local.osm: found a map whose middle is at (456"));
 }
 
 TEST(Placement, WordsOfProjThatAreNotKnownAreRefused) {
@@ -67,9 +70,60 @@ TEST(Placement, WordsOfProjThatAreNotKnownAreRefused) {
   for (const char* words :
        {"+k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m +geoidgrids=egm96_15.gtx +vunits=m +no_defs",
         "+k_0=0.9996 +datum=WGS84 +type=crs +wktext +axis=enu +to_meter=1",
-        "+ellps=GRS80 +towgs84=0,0,0,0,0,0,0 +pm=greenwich +nadgrids=@null +over +approx"}) {
+        "+ellps=GRS80 +towgs84=0,0,0,0,0,0,0 +pm=greenwich +nadgrids=@null +over +approx",
+        "+datum=NAD83 +no_defs"}) {
     EXPECT_EQ(error_with(words), "");
   }
+}
+
+TEST(Placement, OnlyAMapNearZeroIsToldOfTheOrigin) {
+  constexpr std::string_view kDelete = "delete the geoReference, and the map has no place on earth";
+  const std::string start = "map.xodr:1: <geoReference>: found +proj=aea, wanted utm or tmerc; ";
+  EXPECT_EQ(error_of(road_from(4'468'000, 5'333'000, "+proj=aea"), "map.xodr"),
+            fmt::format("{}{}", start, kDelete));
+  EXPECT_EQ(error_of(road_from(0, 0, "+proj=aea"), "map.xodr"),
+            fmt::format("{}--origin LATITUDE,LONGITUDE takes its place; or {}", start, kDelete));
+}
+
+TEST(Placement, EpsgCodesOfUtmZonesAreRead) {
+  const auto origin_with = [](const std::string& reference) {
+    const auto map = parse_imported(road_from(455'000, 5'428'000, reference), "epsg.xodr", {});
+    EXPECT_TRUE(map.has_value()) << map.error().message;
+    return map ? map->map.origin : GeoOrigin{};
+  };
+  for (const auto& [code, words] : std::vector<std::pair<std::string, std::string>>{
+           {"+init=epsg:32632 +no_defs", "+proj=utm +zone=32"},
+           {"+init=EPSG:32760", "+proj=utm +zone=60 +south"},
+           {"+init=epsg:25832", "+proj=utm +zone=32 +ellps=GRS80"}}) {
+    const GeoOrigin found = origin_with(code);
+    const GeoOrigin wanted = origin_with(words);
+    EXPECT_DOUBLE_EQ(found.latitude_deg, wanted.latitude_deg) << code;
+    EXPECT_DOUBLE_EQ(found.longitude_deg, wanted.longitude_deg) << code;
+    EXPECT_TRUE(is_known(found)) << code;
+  }
+  for (const std::string code : {"epsg:31467", "epsg:32661", "epsg:25839", "esri:32632"}) {
+    EXPECT_THAT(error_of(road_from(0, 0, "+init=" + code), "epsg.xodr"),
+                HasSubstr("found +init=" + code + ", wanted the EPSG code of a UTM zone"));
+  }
+}
+
+TEST(Placement, UtmNeedsItsZone) {
+  EXPECT_THAT(error_of(road_from(0, 0, "+proj=utm +ellps=WGS84"), "utm.xodr"),
+              HasSubstr("found no +zone, wanted 1 to 60"));
+  EXPECT_THAT(error_of(road_from(0, 0, "+proj=utm +zone=61"), "utm.xodr"),
+              HasSubstr("found +zone=61, wanted"));
+}
+
+TEST(Placement, AnOriginFarFromTheMapNeedsXToTheEast) {
+  const auto remarks_from = [](double x_m) {
+    const auto map = parse_imported(road_from(x_m, 0.0), "road.xodr", with_origin());
+    EXPECT_TRUE(map.has_value()) << map.error().message;
+    return map ? map->report.remarks() : std::vector<std::string>{};
+  };
+  EXPECT_THAT(remarks_from(0.0), testing::IsEmpty());
+  EXPECT_THAT(remarks_from(36'000.0),
+              testing::ElementsAre(testing::AllOf(HasSubstr("km from (0, 0), so x must point to"),
+                                                  HasSubstr("add the tag mgrs_code"))));
 }
 
 TEST(Placement, TheOriginOfAFileIsExactFarFromIt) {
@@ -119,6 +173,14 @@ TEST(Placement, TheOtherSideOfTheEarthIsFarAway) {
   ASSERT_TRUE(imported.has_value()) << imported.error().message;
   EXPECT_EQ(imported->map.elements.size(), 1U);
   EXPECT_THAT(imported->map.left_out, Contains(HasSubstr("too far from the middle")));
+  size_t taken = 0;
+  size_t far = 0;
+  for (const ImportRow& row : imported->report.rows()) {
+    taken += row.meaning ? row.count : 0;
+    far += row.why == "too far from the middle" ? row.count : 0;
+  }
+  EXPECT_EQ(taken, 1U) << "the report counts what the map has";
+  EXPECT_EQ(far, 1U);
 
   const auto lanelet = parse_imported(R"(<osm>
  <node id="1" lat="49" lon="8.4"/><node id="2" lat="49" lon="8.401"/>
