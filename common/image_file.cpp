@@ -5,6 +5,7 @@
 #include <png.h>
 #include <turbojpeg.h>
 
+#include "common/exif_orientation.h"
 #include "common/files.h"
 
 namespace bevloc {
@@ -28,31 +29,39 @@ class PngImage {
   png_image image_{};
 };
 
-Status check_size(const std::string& path, int width, int height, const RgbImage& wanted) {
+/// A file and what its messages say.
+struct ImageSource {
+  const std::string& path;
+  std::string_view size_from = "";  ///< where the wanted size comes from
+};
+
+Status check_size(const ImageSource& source, int width, int height, const RgbImage& wanted) {
   if (width == wanted.width && height == wanted.height) return {};
-  return fail("{}: found an image of {}x{} pixels, wanted {}x{}", path, width, height, wanted.width,
-              wanted.height);
+  return fail("{}: found an image of {}x{} pixels, wanted {}x{}{}", source.path, width, height,
+              wanted.width, wanted.height, source.size_from);
 }
 
-Status read_png(const std::string& path, const std::string& bytes, RgbImage& image) {
+Status read_png(const ImageSource& source, const std::string& bytes, RgbImage& image) {
   PngImage png;
   if (png_image_begin_read_from_memory(png.get(), bytes.data(), bytes.size()) == 0) {
-    return fail("{}: found a damaged PNG file ({}), wanted a complete one", path, png->message);
+    return fail("{}: found a damaged PNG file ({}), wanted a complete one", source.path,
+                png->message);
   }
   const Status size =
-      check_size(path, static_cast<int>(png->width), static_cast<int>(png->height), image);
+      check_size(source, static_cast<int>(png->width), static_cast<int>(png->height), image);
   if (!size) return size;
   png->format = PNG_FORMAT_RGB;
   // Without this flag libpng takes 16-bit samples without a gamma for linear light.
   png->flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
   constexpr png_color kBlack{0, 0, 0};
   if (png_image_finish_read(png.get(), &kBlack, image.pixels.data(), 0, nullptr) == 0) {
-    return fail("{}: found a damaged PNG file ({}), wanted a complete one", path, png->message);
+    return fail("{}: found a damaged PNG file ({}), wanted a complete one", source.path,
+                png->message);
   }
   return {};
 }
 
-Status read_jpeg(const std::string& path, const std::string& bytes, RgbImage& image) {
+Status read_jpeg(const ImageSource& source, const std::string& bytes, RgbImage& image) {
   const std::unique_ptr<void, int (*)(tjhandle)> decompressor(tjInitDecompress(), tjDestroy);
   const auto* const data = reinterpret_cast<const uint8_t*>(bytes.data());
   int width = 0;
@@ -61,17 +70,23 @@ Status read_jpeg(const std::string& path, const std::string& bytes, RgbImage& im
   int colours = 0;
   if (tjDecompressHeader3(decompressor.get(), data, bytes.size(), &width, &height, &subsampling,
                           &colours) != 0) {
-    return fail("{}: found a damaged JPEG file ({}), wanted a complete one", path,
+    return fail("{}: found a damaged JPEG file ({}), wanted a complete one", source.path,
                 tjGetErrorStr2(decompressor.get()));
   }
-  if (const Status size = check_size(path, width, height, image); !size) return size;
+  if (const Status size = check_size(source, width, height, image); !size) return size;
   // A warning counts as an error: it means that data is corrupt or cut off and the rest is grey.
   if (tjDecompress2(decompressor.get(), data, bytes.size(), image.pixels.data(), width, 0, height,
                     TJPF_RGB, 0) != 0) {
-    return fail("{}: found a damaged JPEG file ({}), wanted a complete one", path,
+    return fail("{}: found a damaged JPEG file ({}), wanted a complete one", source.path,
                 tjGetErrorStr2(decompressor.get()));
   }
   return {};
+}
+
+Status read_bytes(const ImageSource& source, const std::string& bytes, RgbImage& image) {
+  if (bytes.starts_with(kPngSignature)) return read_png(source, bytes, image);
+  if (bytes.starts_with(kJpegSignature)) return read_jpeg(source, bytes, image);
+  return fail("{}: found a file that is neither PNG nor JPEG, wanted an image", source.path);
 }
 
 }  // namespace
@@ -79,9 +94,23 @@ Status read_jpeg(const std::string& path, const std::string& bytes, RgbImage& im
 Status read_image(const std::string& path, RgbImage& image) {
   const Result<std::string> bytes = read_file(path);
   if (!bytes) return tl::unexpected(bytes.error());
-  if (bytes->starts_with(kPngSignature)) return read_png(path, *bytes, image);
-  if (bytes->starts_with(kJpegSignature)) return read_jpeg(path, *bytes, image);
-  return fail("{}: found a file that is neither PNG nor JPEG, wanted an image", path);
+  return read_bytes({path}, *bytes, image);
+}
+
+Status read_camera_picture(const std::string& path, RgbImage& image) {
+  constexpr int kUpright = 1;
+  const Result<std::string> bytes = read_file(path);
+  if (!bytes) return tl::unexpected(bytes.error());
+  const int orientation = exif_orientation(*bytes).value_or(kUpright);
+  if (orientation != kUpright) {
+    return fail(
+        "{}: found EXIF orientation {}, wanted {}: store the picture turned, or remove the tag if "
+        "the calibration is of the stored pixels",
+        path, orientation, kUpright);
+  }
+  return read_bytes(
+      {path, " as image_size_px in the rig; pictures of another size need another calibration"},
+      *bytes, image);
 }
 
 Status write_png(const RgbView& image, const std::string& path) {

@@ -339,6 +339,10 @@ void YamlMap::reject(std::string_view key, std::string_view found, std::string_v
                     wanted);
 }
 
+void YamlMap::reject_file(const Error& error) {
+  if (!document_->mistake) document_->mistake = error.message;
+}
+
 Status YamlMap::finish() const {
   if (document_->mistake) {
     // A misspelt key shows up as one missing key and one unknown key, so the message names both.

@@ -80,14 +80,19 @@ void CalibCommand::declare_import(CLI::App& calib) {
   imports->add_option("--out", out_, "Rig file to write; the one before is kept as .bak")
       ->required()
       ->check(output_file());
-  imports->add_option("--map-camera", camera_names_,
-                      "THEIRS=OURS: what a camera of the files is called here, such as cam0=front");
+  // Each takes one value, because a further one is a FILE.
+  imports
+      ->add_option("--map-camera", camera_names_,
+                   "THEIRS=OURS: what a camera of the files is called here, such as cam0=front; "
+                   "may be repeated")
+      ->allow_extra_args(false);
   imports->add_option("--extrinsics", extrinsics_file_,
                       "File with places on the vehicle, for formats without (docs/calibration.md)");
-  imports->add_option("--base", base_file_, "Rig file from which all comes that the files lack");
+  imports->add_option("--base", base_file_, "Rig file that supplies what the files lack");
   imports->add_option("--image-size", image_size_,
                       "WIDTHxHEIGHT in pixels, for formats without (nuScenes: 1600x900)");
-  imports->add_option("--token", tokens_, "Calibrated sensor of nuScenes to use");
+  imports->add_option("--token", tokens_, "Calibrated sensor of nuScenes to use; may be repeated")
+      ->allow_extra_args(false);
   imports->footer(
       "Examples:\n"
       "  bevloc calib import camchain.yaml --map-camera cam0=front --base rig.yaml --out new.yaml\n"
@@ -135,7 +140,10 @@ void CalibCommand::declare_refine(CLI::App& calib) {
   auto* refine = calib.add_subcommand(
       "refine", "Estimate the calibration of each camera from a picture folder and the map");
   declare_inputs(*refine, *this);
-  refine->add_option("--keep", keep_, "What must not change: rotation, position, focal, time");
+  refine
+      ->add_option("--keep", keep_,
+                   "What must not change: rotation, position, focal or time; may be repeated")
+      ->allow_extra_args(false);
   refine->add_option("--out", out_, "Rig file to write; the one before is kept as .bak")
       ->check(output_file());
   refine->footer(
@@ -205,11 +213,13 @@ Result<bool> CalibCommand::run_on_pictures() const {
     show_progress(done, all, "framesets");
   });
   if (!refinement) return tl::unexpected(refinement.error());
-  fmt::print("{}", check_ ? text_of_check(*refinement) : text_of_refinement(*refinement));
+  const CalibrationCheck check{*refinement, folder_, (*recording)->cameras()};
+  fmt::print("{}", check_ ? text_of(check) : text_of(*refinement));
   const Rig after = refined(*rig, *refinement);
   if (refine_) print_time_offsets(*refinement);
   if (Status s = write_refined(after); !s) return tl::unexpected(s.error());
-  if (Status s = write_file(dump_json(json_of(*refinement, check_), 2) + "\n", json_file_); !s) {
+  const nlohmann::json json = check_ ? json_of(check) : json_of(*refinement);
+  if (Status s = write_file(dump_json(json, 2) + "\n", json_file_); !s) {
     return tl::unexpected(s.error());
   }
   if (!picture_file_.empty()) {
@@ -224,7 +234,7 @@ Result<bool> CalibCommand::run_on_pictures() const {
                                                    index, picture_file_);
     if (!drawn) return tl::unexpected(drawn.error());
   }
-  return refine_ || all_good(*refinement);
+  return refine_ || all_good(check);
 }
 
 Status CalibCommand::write_refined(const Rig& refined) const {

@@ -109,7 +109,7 @@ Status CalibEvaluation::run() const {
     const MapIndex index(recording.map());
     const auto refinement = refine_rig(recording.rig(), index, recording, {});
     if (!refinement) return tl::unexpected(refinement.error());
-    nlohmann::json drive = json_of(*refinement, false);
+    nlohmann::json drive = json_of(*refinement);
     drive["seed"] = options.seed;
     for (int c = 0; c < kCameraCount; ++c) {
       const CameraAdjustment& truth = recording.truth()[c];

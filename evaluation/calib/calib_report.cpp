@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -53,11 +54,13 @@ std::string_view name_of(CameraVerdict verdict) {
       return "mismatch";
     case CameraVerdict::kTooLittle:
       return "too little paint";
+    case CameraVerdict::kNoPictures:
+      return "no pictures";
   }
   return "";
 }
 
-std::string_view advice_on(CameraVerdict verdict) {
+std::string advice_on(CameraVerdict verdict, size_t camera, const std::string& folder) {
   switch (verdict) {
     case CameraVerdict::kGood:
       return "";
@@ -68,8 +71,21 @@ std::string_view advice_on(CameraVerdict verdict) {
              "them: the map, the reference poses and the clock";
     case CameraVerdict::kTooLittle:
       return "record a drive past more painted lines";
+    case CameraVerdict::kNoPictures:
+      return fmt::format("the folder {} is missing",
+                         (std::filesystem::path(folder) / kCameraNames[camera]).string());
   }
   return "";
+}
+
+std::array<CameraVerdict, kCameraCount> verdicts_of(const CalibrationCheck& check) {
+  std::array<CameraVerdict, kCameraCount> verdicts{};
+  const double best = best_share_of(check.refinement);
+  for (size_t c = 0; c < kCameraCount; ++c) {
+    verdicts[c] = check.recorded[c] ? verdict_on(check.refinement.cameras[c], best)
+                                    : CameraVerdict::kNoPictures;
+  }
+  return verdicts;
 }
 
 }  // namespace
@@ -91,35 +107,36 @@ CameraVerdict verdict_on(const CameraRefinement& camera, double best_share) {
   return CameraVerdict::kGood;
 }
 
-bool all_good(const RigRefinement& checked) {
-  const double best = best_share_of(checked);
-  return std::ranges::all_of(checked.cameras, [best](const CameraRefinement& camera) {
-    return verdict_on(camera, best) == CameraVerdict::kGood;
-  });
+bool all_good(const CalibrationCheck& check) {
+  const auto verdicts = verdicts_of(check);
+  return check.recorded.any() && std::ranges::all_of(verdicts, [](CameraVerdict verdict) {
+           return verdict == CameraVerdict::kGood || verdict == CameraVerdict::kNoPictures;
+         });
 }
 
-std::string text_of_check(const RigRefinement& checked) {
+std::string text_of(const CalibrationCheck& check) {
   std::string text = fmt::format(
-      "{} framesets. Turned by: what would lay the map on the paint, with one sigma.\n"
+      "{} framesets. The angles say how the camera must be turned so that the map's lines lie on "
+      "the paint, with one sigma.\n"
       "{:12} {:>13} {:>9}  {:>15} {:>15} {:>15}  verdict\n",
-      checked.frames, "camera", "paint found", "off, px", "pitch, deg", "yaw, deg", "roll, deg");
-  const double best = best_share_of(checked);
-  for (int c = 0; c < kCameraCount; ++c) {
-    const CameraRefinement& camera = checked.cameras[c];
-    const CameraVerdict verdict = verdict_on(camera, best);
+      check.refinement.frames, "camera", "paint found", "off, px", "pitch, deg", "yaw, deg",
+      "roll, deg");
+  const auto verdicts = verdicts_of(check);
+  for (size_t c = 0; c < kCameraCount; ++c) {
+    const CameraRefinement& camera = check.refinement.cameras[c];
     text += fmt::format("{:12} {:>13} {:>9} ", kCameraNames[c],
                         fmt::format("{} of {}", camera.found, camera.looked_at),
                         number_or_dash(camera.before_px, 1));
     for (const int axis : kRotations) {
       text += fmt::format(" {:>15}", text_of_change(camera, axis, 2));
     }
-    const std::string_view advice = advice_on(verdict);
-    text += fmt::format("  {}{}{}\n", name_of(verdict), advice.empty() ? "" : ": ", advice);
+    const std::string advice = advice_on(verdicts[c], c, check.folder);
+    text += fmt::format("  {}{}{}\n", name_of(verdicts[c]), advice.empty() ? "" : ": ", advice);
   }
   return text;
 }
 
-std::string text_of_refinement(const RigRefinement& refinement) {
+std::string text_of(const RigRefinement& refinement) {
   std::string text = fmt::format("{} framesets. Change of each parameter, with one sigma.\n{:15}",
                                  refinement.frames, "");
   for (const std::string_view name : kCameraNames) text += fmt::format(" {:>16}", name);
@@ -145,9 +162,8 @@ std::string text_of_refinement(const RigRefinement& refinement) {
   return text + "\n";
 }
 
-nlohmann::json json_of(const RigRefinement& refinement, bool with_verdicts) {
+nlohmann::json json_of(const RigRefinement& refinement) {
   nlohmann::json json{{"framesets", refinement.frames}};
-  const double best = best_share_of(refinement);
   for (int c = 0; c < kCameraCount; ++c) {
     const CameraRefinement& camera = refinement.cameras[c];
     nlohmann::json& entry = json["cameras"][std::string(kCameraNames[c])];
@@ -156,7 +172,6 @@ nlohmann::json json_of(const RigRefinement& refinement, bool with_verdicts) {
              {"ties", camera.ties},
              {"before_px", camera.before_px},
              {"after_px", camera.after_px}};
-    if (with_verdicts) entry["verdict"] = name_of(verdict_on(camera, best));
     for (int p = 0; p < kCameraParameters; ++p) {
       const std::string key(kCameraParameterInfos[static_cast<size_t>(p)].key);
       if (camera.kept[static_cast<size_t>(p)]) {
@@ -168,6 +183,15 @@ nlohmann::json json_of(const RigRefinement& refinement, bool with_verdicts) {
         entry["sigma"][key] = in_unit(camera.sigma, p);
       }
     }
+  }
+  return json;
+}
+
+nlohmann::json json_of(const CalibrationCheck& check) {
+  nlohmann::json json = json_of(check.refinement);
+  const auto verdicts = verdicts_of(check);
+  for (size_t c = 0; c < kCameraCount; ++c) {
+    json["cameras"][std::string(kCameraNames[c])]["verdict"] = name_of(verdicts[c]);
   }
   return json;
 }

@@ -51,6 +51,7 @@ FolderRecording::FolderRecording(const Rig& rig, ReferenceTrajectory reference, 
   std::optional<Time> kept;
   for (CameraFrame& of : frames) {
     const auto camera = static_cast<size_t>(of.camera);
+    cameras_.set(camera);
     const bool begins = !start || of.frame.time - *start > kWidestSpread || seen[camera];
     if (begins) seen.reset();
     seen.set(camera);
@@ -73,7 +74,7 @@ Status FolderRecording::next(std::vector<RecordedPicture>& pictures) {
     if (image.width != lens.width_px || image.height != lens.height_px) {
       image = RgbImage(lens.width_px, lens.height_px);
     }
-    if (Status read = read_image(frame.file.string(), image); !read) return read;
+    if (Status read = read_camera_picture(frame.file.string(), image); !read) return read;
     pictures.push_back({camera, frame.time, grey_from(image.view())});
   }
   return {};

@@ -22,6 +22,9 @@ class FolderRecording final : public PictureRecording {
   static Result<std::unique_ptr<FolderRecording>> open(const std::filesystem::path& folder,
                                                        const Rig& rig, Duration interval);
 
+  /// The cameras that have pictures in the folder.
+  CameraMask cameras() const { return cameras_; }
+
   const ReferenceTrajectory& reference() const override { return reference_; }
   int framesets() const override { return static_cast<int>(framesets_.size()); }
   void rewind() override { next_ = 0; }
@@ -38,6 +41,7 @@ class FolderRecording final : public PictureRecording {
 
   const Rig rig_;
   const ReferenceTrajectory reference_;
+  CameraMask cameras_;
   std::vector<Frames> framesets_;
   size_t next_ = 0;
 };

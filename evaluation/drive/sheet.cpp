@@ -47,7 +47,8 @@ void draw_images(cv::Mat& sheet, cv::Point corner, const SheetContent& content, 
     cv::Mat shown;
     cv::cvtColor(cv::Mat(image.height, image.width, CV_8UC3, const_cast<uint8_t*>(image.row(0))),
                  shown, cv::COLOR_RGB2BGR);
-    draw_map_over_image(map, pose, rig.cameras[camera], shown);
+    const Se2 at_exposure = pose * content.reference_from_exposure[camera];
+    draw_map_over_image(map, at_exposure, rig.cameras[camera], shown);
     cv::resize(shown, sheet(place), place.size(), 0, 0, cv::INTER_AREA);
     write_text(sheet, std::string(kCameraNames[camera]), place.tl() + cv::Point(8, 18), 0.45);
   }

@@ -20,6 +20,8 @@ namespace bevloc::evaluation {
 struct SheetContent {
   std::array<RgbImage, kCameraCount> images;
   CameraMask present;
+  /// The vehicle's pose at each camera's exposure, in the vehicle frame at the time of the poses.
+  CameraMotions reference_from_exposure{};
   Se2 prior;                       ///< GNSS and odometry alone
   Se2 corrected;                   ///< bevloc's pose at the same moment
   std::optional<Se2> truth;        ///< if it is known

@@ -26,7 +26,7 @@ std::string reason_of(const Localizer& localizer, const PictureSet& pictures, si
   if (!pictures.present[camera]) return "it has no picture";
   if (localizer.with(ViewFault::kDark)[camera]) return "its picture is dark";
   if (localizer.with(ViewFault::kBlinded)[camera]) return "its picture is blinded by light";
-  if (localizer.with(ViewFault::kDirty)[camera]) return "its picture is dirty";
+  // Dirt cannot be judged from one picture.
   return "its picture cannot be used";
 }
 
@@ -42,10 +42,12 @@ class PictureLocalizer {
     Localization localization;
     localization.prior = prior;
     localization.cameras = localizer_.localize(pictures_.images(), prior, range_, solution_);
-    localization.match = solution_;
+    localization.is_wide = range_ == SearchRange::kAcquiring;
     // The solver does not know that nothing was seen or mapped.
     const bool shows_nothing = localization.cameras.none() || !localizer_.map_nearby();
-    if (shows_nothing) localization.match.evidence = Evidence::kNone;
+    if (shows_nothing) solution_.evidence = Evidence::kNone;
+    localization.seen = judge_single(solution_);
+    localization.match = solution_;
     for (size_t i = 0; i < kCameraCount; ++i) {
       if (localization.cameras[i]) continue;
       localization.left_out.emplace(kCameraNames[i], reason_of(localizer_, pictures_, i));
@@ -109,6 +111,7 @@ SheetContent sheet_of(const PictureSet& pictures, const Localization& localizati
   SheetContent sheet;
   sheet.images = pictures.pictures;
   sheet.present = pictures.present;
+  sheet.reference_from_exposure = pictures.reference_from_exposure;
   sheet.prior = localization.prior;
   sheet.corrected = localization.pose();
   const std::span<const float> mask = localizer.perceived_mask();
@@ -138,7 +141,8 @@ void LocalizeCommand::declare(CLI::App& app) {
   add_choice(
       *localize, "--frame", frame_,
       {{"guess", PoseFrame::kGuess}, {"map", PoseFrame::kMap}, {"geodetic", PoseFrame::kGeodetic}},
-      "What the numbers of --prior are; guess: what lies on the map");
+      "How to read the three numbers of --prior. guess: as latitude, longitude and heading if that "
+      "place lies on the map, otherwise as metres and degrees");
   localize
       ->add_option("--motion", motion_file_,
                    "YAML file: how the vehicle moved between the pictures (docs/localize.md)")
@@ -200,7 +204,8 @@ Status LocalizeCommand::run() const {
 
   const SearchRange range = wide_ ? SearchRange::kAcquiring : SearchRange::kTracking;
   PictureLocalizer pictured(**localizer, index, *pictures, range);
-  Localization localization = pictured.localize(*prior);
+  fmt::print("{}", text_of(*prior));
+  Localization localization = pictured.localize(prior->pose);
   print_left_out(localization);
   localization.perception = pictured.perception_at(localization.pose());
   nlohmann::json json = json_of(localization);
@@ -210,7 +215,7 @@ Status LocalizeCommand::run() const {
     if (Status drawn = write_sheet(sheet, *rig, index, sheet_file_); !drawn) return drawn;
   }
   if (truth_) {
-    const PriorScores scores = score_priors(pictured, *prior, priors_, seed_);
+    const PriorScores scores = score_priors(pictured, prior->pose, priors_, seed_);
     json["priors"] = json_of(scores);
     fmt::print("\n{}", text_of(scores));
   }

@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include "evaluation/summary_format.h"
-#include "pipeline/tracker/evidence.h"
 #include "pipeline/tracker/measurements.h"
 
 namespace bevloc::evaluation {
@@ -48,7 +47,58 @@ nlohmann::json json_of(const PerceptionScore& perception) {
   return json;
 }
 
+constexpr std::array<const char*, 3> kAxes = {"along", "across", "yaw"};
+constexpr std::array<const char*, 3> kUnits = {"m", "m", "degrees"};
+
+/// The sigma of the pose; kNotGiven on an axis at the border of the search.
+PerAxis sigma_of(const Localization& localization) {
+  PerAxis sigma = in_units(pose_sigma(localization.match));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (localization.seen.at_border(axis)) sigma[static_cast<size_t>(axis)] = kNotGiven;
+  }
+  return sigma;
+}
+
+template <typename Vector>
+std::array<typename Vector::Scalar, 3> listed(const Vector& values) {
+  return {values(0), values(1), values(2)};
+}
+
+std::string border_lines_of(const Localization& localization) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!localization.seen.at_border(axis)) continue;
+    text += fmt::format(
+        "{}: the best place is at the border of the search, so the truth may lie outside of it; "
+        "give a better prior{}\n",
+        kAxes[static_cast<size_t>(axis)], localization.is_wide ? "" : " or use --wide");
+  }
+  return text;
+}
+
+std::string trust_line_of(const Localization& localization) {
+  if (localization.is_trusted()) return "trusted: yes\n";
+  const Seen& seen = localization.seen;
+  std::vector<std::string_view> reasons;
+  if (!seen.place) reasons.emplace_back("the score is too low");
+  if (seen.at_border.any()) reasons.emplace_back("the best place is at the border");
+  if (!seen.across && !seen.at_border.y()) {
+    reasons.emplace_back("the lines do not show the place across");
+  }
+  if (!seen.heading && !seen.at_border.z()) {
+    reasons.emplace_back("the lines do not show the yaw");
+  }
+  if (!seen.unique) reasons.emplace_back("two places across look alike");
+  return fmt::format("trusted: no, because {}\n", fmt::join(reasons, ", "));
+}
+
 }  // namespace
+
+Seen judge_single(MatchResult& match) {
+  const Seen seen = EvidenceMonitor::judge_alone(match);
+  forget_border(seen, match);
+  return seen;
+}
 
 std::string text_of(const Localization& localization) {
   const MatchResult& match = localization.match;
@@ -59,18 +109,20 @@ std::string text_of(const Localization& localization) {
   }
   const PerAxis pose = in_units(localization.pose());
   const PerAxis correction = in_units(match.correction);
-  const PerAxis sigma = in_units(pose_sigma(match));
+  const PerAxis sigma = sigma_of(localization);
   text += fmt::format("pose: x {:.3f} m, y {:.3f} m, yaw {:.3f} degrees in the map\n", pose[0],
                       pose[1], pose[2]);
   text += "axis            correction     sigma  evidence     score\n";
-  constexpr std::array<const char*, 3> kAxes = {"along, m", "across, m", "yaw, degrees"};
   for (int axis = 0; axis < 3; ++axis) {
     const auto at = static_cast<size_t>(axis);
-    text += fmt::format("{:14} {:+11.3f} {:9.3f} {:9.2f} {:9.2f}\n", kAxes[at], correction[at],
-                        sigma[at], match.evidence_share(axis), match.axis_score(axis));
+    text += fmt::format("{:14} {:+11.3f} {:>9} {:9.2f} {:9.2f}\n",
+                        fmt::format("{}, {}", kAxes[at], kUnits[at]), correction[at],
+                        number_or_dash(sigma[at], 3), match.evidence_share(axis),
+                        match.axis_score(axis));
   }
   text += fmt::format("score of the whole match: {:.2f} (bevlocd tracks from {:.2f})\n",
                       match.score, EvidenceMonitor::kMinScore);
+  text += border_lines_of(localization) + trust_line_of(localization);
   return text + lines_of(localization.perception);
 }
 
@@ -80,17 +132,20 @@ nlohmann::json json_of(const Localization& localization) {
                       {"cameras_left_out", localization.left_out},
                       {"prior", in_units(localization.prior)},
                       {"evidence", match.evidence == Evidence::kGood},
+                      {"trusted", localization.is_trusted()},
                       {"perception", json_of(localization.perception)}};
-  for (const char* key : {"pose", "correction", "sigma", "evidence_share", "axis_score", "score"}) {
+  for (const char* key : {"pose", "correction", "sigma", "evidence_share", "axis_score", "score",
+                          "at_border", "rival_peak"}) {
     json[key] = nullptr;
   }
   if (match.evidence == Evidence::kNone) return json;
   json["pose"] = in_units(localization.pose());
   json["correction"] = in_units(match.correction);
-  json["sigma"] = in_units(pose_sigma(match));
-  json["evidence_share"] = {match.evidence_share.x(), match.evidence_share.y(),
-                            match.evidence_share.z()};
-  json["axis_score"] = {match.axis_score.x(), match.axis_score.y(), match.axis_score.z()};
+  json["sigma"] = sigma_of(localization);
+  json["evidence_share"] = listed(match.evidence_share);
+  json["axis_score"] = listed(match.axis_score);
+  json["rival_peak"] = listed(match.rival_peak);
+  json["at_border"] = listed(localization.seen.at_border);
   json["score"] = match.score;
   return json;
 }

@@ -11,19 +11,29 @@
 #include "evaluation/solver/solver_score.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/solver/solver_result.h"
+#include "pipeline/tracker/evidence.h"
 
 namespace bevloc::evaluation {
 
 /// One localization.
 struct Localization {
   Se2 prior;
-  MatchResult match;
+  MatchResult match;                            ///< as judge_single() leaves it
+  Seen seen;                                    ///< what the match shows
+  bool is_wide = false;                         ///< whether the search was that of --wide
   CameraMask cameras;                           ///< that were used
   std::map<std::string, std::string> left_out;  ///< why each other camera was not
   PerceptionScore perception{};
 
   Se2 pose() const { return prior * match.correction; }
+  /// Whether bevlocd would take a new pose from matches like this one, and no axis is at the border
+  /// of the search.
+  bool is_trusted() const { return seen.confirms_start() && !seen.at_border.any(); }
 };
+
+/// Judges a match as bevlocd judges one that has none before it. The sigma of an axis with a low
+/// score grows, and an axis at the border of the search loses its evidence.
+Seen judge_single(MatchResult& match);
 
 /// Localizations from many priors around a known pose.
 struct PriorScores {

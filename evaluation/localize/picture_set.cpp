@@ -17,10 +17,15 @@ constexpr double kFarthest_m = 10.0;
 constexpr double kMostTurned_deg = 30.0;
 
 /// The files with the extension of a picture, in the order of their names.
-std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder) {
+Result<std::vector<std::filesystem::path>> pictures_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code unreadable;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
+  const std::filesystem::directory_iterator entries(folder, unreadable);
+  if (unreadable) {
+    return fail("{}: found no folder that can be read ({}), wanted one with the cameras' pictures",
+                folder.string(), unreadable.message());
+  }
+  for (const auto& entry : entries) {
     std::string extension = entry.path().extension();
     for (char& letter : extension) letter = static_cast<char>(std::tolower(letter));
     if (std::ranges::find(kExtensions, extension) != kExtensions.end()) {
@@ -62,15 +67,17 @@ CameraImages PictureSet::images() const {
 }
 
 Result<PictureSet> read_pictures(const std::filesystem::path& folder, const Rig& rig) {
+  auto files = pictures_in(folder);
+  if (!files) return tl::unexpected(files.error());
   PictureSet set;
-  set.strays = pictures_in(folder);
+  set.strays = std::move(*files);
   for (size_t i = 0; i < kCameraCount; ++i) {
     const auto file = take_file_of(kCameraNames[i], set.strays);
     if (!file) return tl::unexpected(file.error());
     if (!*file) continue;
     const Intrinsics& intrinsics = rig.cameras[i].intrinsics;
     set.pictures[i] = RgbImage(intrinsics.width_px, intrinsics.height_px);
-    if (Status read = read_image((*file)->string(), set.pictures[i]); !read) {
+    if (Status read = read_camera_picture((*file)->string(), set.pictures[i]); !read) {
       return tl::unexpected(read.error());
     }
     set.present.set(i);

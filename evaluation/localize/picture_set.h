@@ -25,8 +25,9 @@ struct PictureSet {
 
 /// Reads the pictures of a folder: for each camera a file CAMERA.png, CAMERA.jpg or CAMERA.jpeg,
 /// such as front_left.jpg, of the size that the rig states. The case of the extension does not
-/// matter. A camera without a file is missing. Fails if all are missing, if a camera has several
-/// files, or if one cannot be read.
+/// matter. A camera without a file is missing. Fails if the folder cannot be read, if all cameras
+/// are missing, if a camera has several files, if one cannot be read, or if a viewer would turn one
+/// (read_camera_picture()).
 Result<PictureSet> read_pictures(const std::filesystem::path& folder, const Rig& rig);
 
 /// Reads a file of motions: for each camera the vehicle's pose at its exposure, in the vehicle

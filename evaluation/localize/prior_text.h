@@ -11,13 +11,24 @@ namespace bevloc::evaluation {
 
 /// Which frame the three numbers of a pose are in.
 enum class PoseFrame {
-  kGuess,     ///< the one in which the pose lies on the map
+  kGuess,     ///< kGeodetic if that place is on the map, otherwise kMap
   kMap,       ///< x and y in metres in the map frame, yaw in degrees counter-clockwise from east
   kGeodetic,  ///< latitude and longitude in degrees (WGS84), heading in degrees from north
 };
 
-/// Reads "X,Y,YAW" or "LAT,LON,HEADING". Fails if the text is not three numbers, if the pose lies
-/// more than 1 km outside of the map, or if kGuess finds that it lies on the map in both frames.
-Result<Se2> pose_from(const std::string& text, PoseFrame frame, const HdMap& map);
+/// A pose in the map frame, and how its numbers were read.
+struct GivenPose {
+  Se2 pose;
+  PoseFrame frame = PoseFrame::kMap;  ///< kMap or kGeodetic
+};
+
+/// Reads "X,Y,YAW" or "LAT,LON,HEADING". Fails if the text is not three numbers, or if the pose
+/// lies more than 1 km outside of the map. kGuess also fails if the pose lies on the map as metres
+/// only, but within 100 km of it as latitude and longitude, because then it is probably a wrong
+/// latitude or longitude.
+Result<GivenPose> pose_from(const std::string& text, PoseFrame frame, const HdMap& map);
+
+/// One line: the pose, and how it was read.
+std::string text_of(const GivenPose& given);
 
 }  // namespace bevloc::evaluation

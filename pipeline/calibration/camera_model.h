@@ -32,8 +32,7 @@ Eigen::Matrix3d rotation_by(const Eigen::Vector3d& vector);
 /// with the angle t from the optical axis as t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8).
 enum class Lens : uint8_t { kPinhole, kFisheye };
 
-/// The intrinsics of a camera. Pixel (0, 0) is the top left one, and its centre has these
-/// coordinates.
+/// The intrinsics of a camera. The centre of the top left pixel has the coordinates (0, 0).
 struct Intrinsics {
   /// A fisheye is used up to this angle from its axis.
   static constexpr double kWidestFisheye_rad = 80.0 * std::numbers::pi / 180.0;

@@ -136,6 +136,38 @@ TEST_F(ImageFile, SaysWhatIsWrong) {
   EXPECT_FALSE(write_png(image.view(), path("no/such/folder.png")));
 }
 
+TEST_F(ImageFile, ThePictureOfACameraIsNotTurned) {
+  // A segment with a TIFF file of one entry, whose last number but two is the orientation.
+  const auto turned = [&](char orientation) {
+    std::string jpeg = read_file(smooth_jpeg("turned.jpg")).value();
+    std::string exif(
+        "\xFF\xE1\0\x22"
+        "Exif\0\0"
+        "MM\0*\0\0\0\x08"
+        "\0\1"
+        "\x01\x12\0\3\0\0\0\1\0?\0\0"
+        "\0\0\0\0",
+        36);
+    exif[exif.find('?')] = orientation;
+    EXPECT_TRUE(write_file(path("turned.jpg"), jpeg.insert(2, exif)));
+    return path("turned.jpg");
+  };
+  RgbImage image(kWidth, kHeight);
+  EXPECT_THAT(read_camera_picture(turned(3), image).error().message,
+              EndsWith("turned.jpg: found EXIF orientation 3, wanted 1: store the picture turned, "
+                       "or remove the tag if the calibration is of the stored pixels"));
+  EXPECT_TRUE(read_image(turned(3), image)) << "only cameras have a calibration";
+  for (const std::string& file : {turned(1), smooth_jpeg("plain.jpg"), smooth_png("plain.png")}) {
+    const Status read = read_camera_picture(file, image);
+    ASSERT_TRUE(read) << read.error().message;
+    expect_smooth_image(image, 8);
+  }
+  RgbImage wide(kWidth + 1, kHeight);
+  EXPECT_THAT(read_camera_picture(path("plain.png"), wide).error().message,
+              EndsWith("found an image of 24x16 pixels, wanted 25x16 as image_size_px in the rig; "
+                       "pictures of another size need another calibration"));
+}
+
 /// Writes 16-bit samples as they are. libpng's simplified writer would convert them.
 void write_png_with_16_bits(const std::string& path, const std::vector<uint8_t>& rgb, int width,
                             int height) {

@@ -130,6 +130,14 @@ TEST(StrictYaml, TheFirstMistakeWins) {
   EXPECT_THAT(finish_error(yaml), StartsWith("t.yaml:1: a:"));
 }
 
+TEST(StrictYaml, PassesTheErrorOfAnotherFileOn) {
+  YamlMap yaml = parsed("a: x.dbc\n");
+  yaml.require<std::string>("a");
+  yaml.reject_file(Error{"x.dbc:3: found X, wanted Y"});
+  yaml.reject("a", "something", "else");
+  EXPECT_EQ(finish_error(yaml), "x.dbc:3: found X, wanted Y");
+}
+
 TEST(StrictYaml, ChecksListsItemByItem) {
   YamlMap yaml = parsed("list:\n  - 1\n  - 2\n  - x\n");
   EXPECT_EQ(yaml.require_list<int>("list").size(), 3U);

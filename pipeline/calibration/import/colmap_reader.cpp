@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <map>
 #include <sstream>
 
@@ -96,9 +97,10 @@ Intrinsics intrinsics_from(const TextLine& line) {
   return lens;
 }
 
-std::string name_from_image(const std::string& file) {
+/// The first folder of an image, or its stem if it has none.
+std::string name_from_image(const std::string& file, const std::string& stem) {
   const size_t folder = file.find('/');
-  return folder != std::string::npos ? file.substr(0, folder) : file.substr(0, file.rfind('.'));
+  return folder != std::string::npos ? file.substr(0, folder) : stem;
 }
 
 /// A camera of cameras.txt.
@@ -123,8 +125,11 @@ ImportedCamera camera_of_image(const TextLine& line,
   const Se3 camera_from_world{
       rotation_from_wxyz({numbers.begin(), numbers.begin() + 4}, line.place),
       {numbers[4], numbers[5], numbers[6]}};
-  return {name_from_image(line.words[9]), line.place, lens->second.intrinsics,
-          Mounting{"world", camera_from_world.inverse()}, lens->second.place};
+  const std::string& file = line.words[9];
+  const std::string stem = std::filesystem::path(file).stem().string();
+  return {name_from_image(file, stem), line.place,
+          lens->second.intrinsics,     Mounting{"world", camera_from_world.inverse()},
+          lens->second.place,          stem};
 }
 
 /// Refuses a line that is no list of points. An image without points has an empty line, and some

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/calibration/import/camera_names.h"
 #include "pipeline/calibration/import/readers.h"
 #include "pipeline/calibration/import/rig_builder.h"
 #include "pipeline/calibration/rig_yaml.h"
@@ -145,6 +146,7 @@ Result<ImportedRig> import_rig(const std::vector<ForeignFile>& files,
       refuse(files.empty() ? "calib import" : files.front().name, "no camera",
              options.tokens.empty() ? "at least one" : "one with the token of --token");
     }
+    calibration_import::name_after_files(options.our_names, cameras);
     auto built = calibration_import::build_rig(std::move(cameras), options);
     // This refuses what a rig file would refuse.
     const auto rig = parse_rig(format_rig(built.rig), "imported rig");
@@ -180,8 +182,7 @@ Result<std::map<std::string, Se3>> parse_extrinsics(const std::string& text,
   try {
     std::map<std::string, Se3> result;
     for (const auto& [frame, entry] : ForeignNode::parse(text, name).entries()) {
-      const bool known = frame == "imu" || frame == "world" ||
-                         std::ranges::find(kCameraNames, frame) != kCameraNames.end();
+      const bool known = frame == "imu" || frame == "world" || calibration_import::is_ours(frame);
       if (!known) entry.reject(frame, "imu, world or one of our cameras");
       for (const auto& [key, value] : entry.entries()) {
         if (key == "translation_m" || key == "rotation_wxyz") continue;

@@ -34,7 +34,8 @@ struct RigImportOptions {
 
 struct ImportedRig {
   Rig rig;
-  /// One sentence per camera, which says where its values came from.
+  /// One sentence per camera of the rig, which says where its values came from. Then one per camera
+  /// of the files that is left out, which says why.
   std::vector<std::string> notes;
 };
 

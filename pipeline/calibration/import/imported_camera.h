@@ -23,6 +23,9 @@ struct ImportedCamera {
   Intrinsics intrinsics;  ///< width_px is 0 where the format lacks the size of the images
   std::optional<Mounting> mounting{};
   std::string lens_place{};  ///< place of the intrinsics, if they come from another place
+  /// The stem of the file or of the picture that the camera comes from. Empty if it says nothing
+  /// about the camera's name.
+  std::string file_stem{};
   std::string lens_doubt{};  ///< remark for the user, if the file does not say which lens it means
 
   const std::string& place_of_lens() const { return lens_place.empty() ? place : lens_place; }

@@ -1,6 +1,6 @@
 #include <map>
 #include <optional>
-#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -78,24 +78,41 @@ std::string key_before(const std::vector<std::pair<std::string, ForeignNode>>& e
   return fmt::format("cam{}", *number - 1);
 }
 
-/// Maps keys to names. Two cameras under one topic would share a name, so the later one keeps its
-/// key.
-std::map<std::string, std::string> names_of(
-    const std::vector<std::pair<std::string, ForeignNode>>& entries) {
-  std::map<std::string, std::string> names;
-  std::set<std::string> taken;
-  for (const auto& [key, camera] : entries) {
-    const std::string name = name_from_topic(key, camera);
-    names[key] = taken.insert(name).second ? name : key;
+/// Gives each camera of a chain a name that no other one has: the word of its topic, or its key if
+/// it has no topic or if an earlier camera has that name. If the topic of another camera is called
+/// as this key, the other camera gets its own key, too.
+class ChainNames {
+ public:
+  explicit ChainNames(const std::vector<std::pair<std::string, ForeignNode>>& entries) {
+    for (const auto& [key, camera] : entries) {
+      const bool is_free = keys_.emplace(name_from_topic(key, camera), key).second;
+      if (!is_free) use_key(key);
+    }
   }
-  return names;
-}
+
+  /// The names by key.
+  std::map<std::string, std::string> by_key() const {
+    std::map<std::string, std::string> names;
+    for (const auto& [name, key] : keys_) names.emplace(key, name);
+    return names;
+  }
+
+ private:
+  void use_key(const std::string& key) {
+    const auto [held, is_free] = keys_.emplace(key, key);
+    if (is_free) return;
+    const std::string holder = std::exchange(held->second, key);
+    use_key(holder);
+  }
+
+  std::map<std::string, std::string> keys_;  ///< by name
+};
 
 }  // namespace
 
 std::vector<ImportedCamera> read_kalibr(const ForeignNode& document) {
   const auto entries = document.entries();
-  const auto names = names_of(entries);
+  const auto names = ChainNames(entries).by_key();
   std::vector<ImportedCamera> cameras;
   for (size_t i = 0; i < entries.size(); ++i) {
     const auto& [key, camera] = entries[i];

@@ -35,8 +35,13 @@ void read_size(const ForeignNode& document, Intrinsics& lens) {
   lens.height_px = document.at("image_height").whole_number(1, kLargestImage_px);
 }
 
-std::string name_in(const ForeignNode& document, const std::string& name) {
-  return document.has("camera_name") ? document.at("camera_name").text() : name;
+ImportedCamera camera_of(const ForeignNode& document, const std::string& stem,
+                         const Intrinsics& lens) {
+  const bool is_named = document.has("camera_name");
+  ImportedCamera camera{is_named ? document.at("camera_name").text() : stem, document.place(),
+                        lens};
+  camera.file_stem = stem;
+  return camera;
 }
 
 /// In ROS, the camera matrix belongs to the full image, even if the driver delivers a part of it or
@@ -68,7 +73,7 @@ void refuse_other_pictures(const ForeignNode& document, const Intrinsics& lens) 
 
 }  // namespace
 
-ImportedCamera read_opencv(const ForeignNode& document, const std::string& name) {
+ImportedCamera read_opencv(const ForeignNode& document, const std::string& stem) {
   Intrinsics lens;
   read_size(document, lens);
   const ForeignNode matrix = first_of(document, {"camera_matrix", "K"});
@@ -80,7 +85,7 @@ ImportedCamera read_opencv(const ForeignNode& document, const std::string& name)
   const auto set = fisheye ? set_fisheye_distortion : set_pinhole_distortion;
   const std::vector<double> coefficients = matrix_data(distortion, 0);
   set(coefficients, distortion.at("data").place(), lens);
-  ImportedCamera camera{name_in(document, name), document.place(), lens};
+  ImportedCamera camera = camera_of(document, stem, lens);
   // A pinhole and a fisheye of OpenCV may both have four coefficients, and only OpenCV's own
   // calibration tool writes which of them it is.
   if (coefficients.size() == 4 && !document.has("fisheye_model")) {
@@ -89,7 +94,7 @@ ImportedCamera read_opencv(const ForeignNode& document, const std::string& name)
   return camera;
 }
 
-ImportedCamera read_camera_info(const ForeignNode& document, const std::string& name) {
+ImportedCamera read_camera_info(const ForeignNode& document, const std::string& stem) {
   Intrinsics lens;
   read_size(document, lens);
   refuse_other_pictures(document, lens);
@@ -105,7 +110,7 @@ ImportedCamera read_camera_info(const ForeignNode& document, const std::string& 
   } else {
     model.reject(kind, "plumb_bob, rational_polynomial or equidistant");
   }
-  return {name_in(document, name), document.place(), lens};
+  return camera_of(document, stem, lens);
 }
 
 }  // namespace bevloc::calibration_import

@@ -6,14 +6,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pipeline/calibration/import/camera_names.h"
 #include "pipeline/calibration/import/foreign_node.h"
 
 namespace bevloc::calibration_import {
 namespace {
-
-bool is_ours(std::string_view name) {
-  return std::ranges::find(kCameraNames, name) != kCameraNames.end();
-}
 
 /// Whether the file places a camera relative to `parent`: another camera, or another frame.
 bool hangs_on(const ImportedCamera& camera, std::string_view parent, bool is_camera) {
@@ -31,6 +28,7 @@ class RigBuilder {
     check_places();
     check_image_size();
     for (int i = 0; i < kCameraCount; ++i) built_.rig.cameras[i] = camera_named(i);
+    note_left_out();
     return std::move(built_);
   }
 
@@ -103,7 +101,7 @@ class RigBuilder {
       if (our_name(camera) != ours) continue;
       if (found) {
         refuse(camera.place, fmt::format("a second camera {} (first at {})", ours, found->place),
-               "one of each name");
+               "one of each name; leave one out, or give it another name in its file");
       }
       found = &camera;
     }
@@ -146,6 +144,16 @@ class RigBuilder {
                                        found->place, found->name, lens, lens_note, origin,
                                        body_note));
     return camera;
+  }
+
+  void note_left_out() {
+    for (const ImportedCamera& camera : cameras_) {
+      if (is_ours(our_name(camera))) continue;
+      built_.notes.push_back(fmt::format(
+          "{}: {} is left out, because it has none of bevloc's names; --map-camera {}=OURS gives "
+          "it one",
+          camera.place, camera.name, camera.name));
+    }
   }
 
   /// Takes the outline of the own vehicle from the base, because no other program has one. Returns

@@ -18,7 +18,8 @@ struct CameraSource {
 
 struct BuiltRig {
   Rig rig;
-  std::vector<std::string> notes;  ///< one sentence per camera
+  /// One sentence per camera of the rig, then one per camera that is left out.
+  std::vector<std::string> notes;
   std::array<CameraSource, kCameraCount> sources;
 };
 

@@ -20,10 +20,10 @@ struct Round {
 };
 /// A wide search also finds the paint of wrong lines. So the first round uses the ties only, which
 /// need no map. With a large sigma, wrong lines change the estimate less. The body tilts by more
-/// than a narrow search reaches, so the last rounds expect its tilt. They also start again with
-/// each frameset, from a large sigma, because a frameset that has fitted a kerb beside a line would
-/// stay there. The earlier rounds do neither, because they cannot yet tell the tilt from errors of
-/// the cameras.
+/// than a narrow search reaches, so the last rounds expect its tilt. They also reset the estimate
+/// of each frameset and begin with a large sigma. Otherwise a frameset whose estimate was fitted to
+/// a kerb would keep it. The earlier rounds do neither, because they cannot yet tell the tilt from
+/// errors of the cameras.
 constexpr Round kTiesOnly{
     .search_rad = 0.04, .first_sigma_scale = 8.0, .last_sigma_scale = 1.0, .uses_paint = false};
 constexpr Round kLast{

@@ -12,6 +12,10 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
+CalibrationCheck check_of(const RigRefinement& refinement) {
+  return {refinement, "pictures", CameraMask().set()};
+}
+
 /// A refinement in which each camera found most of its paint.
 RigRefinement clear_refinement() {
   RigRefinement refinement;
@@ -27,22 +31,38 @@ RigRefinement clear_refinement() {
 TEST(CalibReport, SaysWhichParametersWereKept) {
   RigRefinement refinement = clear_refinement();
   for (CameraRefinement& camera : refinement.cameras) camera.kept.set(kFocal);
-  EXPECT_THAT(text_of_refinement(refinement), HasSubstr(" kept"));
-  const nlohmann::json json = json_of(refinement, false);
+  EXPECT_THAT(text_of(refinement), HasSubstr(" kept"));
+  const nlohmann::json json = json_of(refinement);
   const std::string focal(kCameraParameterInfos[kFocal].key);
   const nlohmann::json& front = json["cameras"]["front"];
   EXPECT_EQ(front["kept"], nlohmann::json::array({focal}));
   EXPECT_FALSE(front["change"].contains(focal));
-  EXPECT_THAT(text_of_check(refinement), Not(HasSubstr("kept")));
+  EXPECT_THAT(text_of(check_of(refinement)), Not(HasSubstr("kept")));
 }
 
 TEST(CalibReport, ACameraWhoseRotationIsNotObservableIsNotGood) {
   RigRefinement checked = clear_refinement();
-  EXPECT_TRUE(all_good(checked));
+  EXPECT_TRUE(all_good(check_of(checked)));
   checked.cameras[1].unobservable.set(kPitch);
-  EXPECT_FALSE(all_good(checked));
+  EXPECT_FALSE(all_good(check_of(checked)));
   EXPECT_EQ(verdict_on(checked.cameras[1], 0.9), CameraVerdict::kTooLittle);
-  EXPECT_THAT(text_of_check(checked), HasSubstr("not observable"));
+  EXPECT_THAT(text_of(check_of(checked)), HasSubstr("not observable"));
+}
+
+TEST(CalibReport, ACameraWithoutPicturesDoesNotCount) {
+  CalibrationCheck check = check_of(clear_refinement());
+  CameraRefinement& back = check.refinement.cameras[4];
+  back.looked_at = back.found = 0;
+  EXPECT_FALSE(all_good(check)) << "it has pictures, but they show nothing";
+  check.recorded.reset(4);
+  EXPECT_TRUE(all_good(check));
+  EXPECT_THAT(text_of(check), HasSubstr("no pictures: the folder pictures/back is missing\n"));
+  EXPECT_EQ(json_of(check)["cameras"]["back"]["verdict"], "no pictures");
+  check.refinement.cameras[1].change[kYaw] = 0.01;
+  EXPECT_FALSE(all_good(check)) << "another camera is off";
+  check = check_of(clear_refinement());
+  check.recorded.reset();
+  EXPECT_FALSE(all_good(check));
 }
 
 TEST(CalibReport, ACameraThatIsTurnedIsOff) {
@@ -61,8 +81,8 @@ TEST(CalibReport, NothingFoundIsAMismatchAndNotADistanceOfZero) {
     camera.before_px = camera.after_px = std::nan("");
   }
   EXPECT_EQ(verdict_on(checked.cameras[0], 0.0), CameraVerdict::kMismatch);
-  EXPECT_THAT(text_of_refinement(checked), HasSubstr("- -> -"));
-  EXPECT_EQ(dump_json(json_of(checked, true)["cameras"]["front"]["before_px"], 2), "null");
+  EXPECT_THAT(text_of(checked), HasSubstr("- -> -"));
+  EXPECT_EQ(dump_json(json_of(check_of(checked))["cameras"]["front"]["before_px"], 2), "null");
 }
 
 }  // namespace

@@ -11,10 +11,9 @@
 namespace bevloc::evaluation {
 namespace {
 
-/// The number of framesets of one second in which two cameras send `rate_hz` frames each, the
-/// second camera 4 ms later.
-int framesets_at(int rate_hz, Duration interval) {
-  test::TemporaryFolder folder;
+/// Writes a folder of one second in which front and back send `rate_hz` frames each, the back
+/// camera 4 ms later.
+void write_folder(const test::TemporaryFolder& folder, int rate_hz) {
   for (const auto& [camera, offset_ms] : {std::pair("front", 0), std::pair("back", 4)}) {
     const std::filesystem::path path = std::filesystem::path(folder.path()) / camera;
     std::filesystem::create_directory(path);
@@ -27,6 +26,11 @@ int framesets_at(int rate_hz, Duration interval) {
   }
   std::ofstream(folder / "reference.csv") << "time_ns,x_m,y_m,yaw_deg\n0,0,0,0\n"
                                              "100000000,1,0,0\n2000000000,20,0,0\n";
+}
+
+int framesets_at(int rate_hz, Duration interval) {
+  const test::TemporaryFolder folder;
+  write_folder(folder, rate_hz);
   const auto recording = FolderRecording::open(folder.path(), sim::nominal_rig(), interval);
   EXPECT_TRUE(recording) << recording.error().message;
   return recording ? (*recording)->framesets() : 0;
@@ -36,6 +40,17 @@ TEST(FolderRecording, AFramesetHasOneFrameOfEachCamera) {
   EXPECT_EQ(framesets_at(10, Duration::zero()), 10);
   EXPECT_EQ(framesets_at(30, Duration::zero()), 30);
   EXPECT_EQ(framesets_at(60, Duration::zero()), 60);
+}
+
+TEST(FolderRecording, KnowsWhichCamerasHavePictures) {
+  const test::TemporaryFolder folder;
+  write_folder(folder, 10);
+  const auto recording = FolderRecording::open(folder.path(), sim::nominal_rig(), Duration::zero());
+  ASSERT_TRUE(recording) << recording.error().message;
+  for (size_t i = 0; i < kCameraCount; ++i) {
+    const bool is_written = kCameraNames[i] == "front" || kCameraNames[i] == "back";
+    EXPECT_EQ((*recording)->cameras()[i], is_written) << kCameraNames[i];
+  }
 }
 
 TEST(FolderRecording, SkipsFramesetsWithinTheInterval) {

@@ -82,6 +82,21 @@ TEST_F(LocalizeCommandTest, FindsThePoseFromAPriorBesideIt) {
   EXPECT_NEAR(json["pose"][2], degrees(pose_.yaw_rad), 0.6);
   EXPECT_GT(json["perception"]["boundaries"]["recall"], 0.4);
   EXPECT_TRUE(std::filesystem::file_size(file("a.png")) > 100'000);
+  EXPECT_TRUE(json["trusted"]);
+  EXPECT_FALSE(json["at_border"][1]);
+}
+
+TEST_F(LocalizeCommandTest, SaysThatThePriorIsTooFarAway) {
+  // The search reaches 1 m across.
+  const Se2 prior = pose_ * Se2{0.0, 1.4, 0.0};
+  testing::internal::CaptureStdout();
+  const Status status = run({"--prior", text_of(prior), "--json", file("answer.json")});
+  const std::string said = testing::internal::GetCapturedStdout();
+  ASSERT_TRUE(status) << status.error().message;
+  EXPECT_THAT(said, HasSubstr("in the map, read as metres"));
+  EXPECT_THAT(said, HasSubstr("across: the best place is at the border of the search"));
+  EXPECT_TRUE(answer()["at_border"][1]);
+  EXPECT_FALSE(answer()["trusted"]);
 }
 
 TEST_F(LocalizeCommandTest, ScoresManyPriorsAroundAKnownPose) {

@@ -13,7 +13,10 @@
 namespace bevloc::evaluation {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
 
 HdMap map_at(const GeoOrigin& origin) {
   HdMap map;
@@ -25,43 +28,80 @@ HdMap map_at(const GeoOrigin& origin) {
 const HdMap kKarlsruhe = map_at({49.01, 8.41});
 
 TEST(PriorText, MetresAndDegreesInTheMapFrame) {
-  const auto pose = pose_from("12.5,-3,90", PoseFrame::kGuess, kKarlsruhe);
-  ASSERT_TRUE(pose) << pose.error().message;
-  EXPECT_DOUBLE_EQ(pose->x_m, 12.5);
-  EXPECT_DOUBLE_EQ(pose->y_m, -3.0);
-  EXPECT_NEAR(pose->yaw_rad, radians(90.0), 1e-12);
+  const auto given = pose_from("12.5,-3,90", PoseFrame::kGuess, kKarlsruhe);
+  ASSERT_TRUE(given) << given.error().message;
+  EXPECT_DOUBLE_EQ(given->pose.x_m, 12.5);
+  EXPECT_DOUBLE_EQ(given->pose.y_m, -3.0);
+  EXPECT_NEAR(given->pose.yaw_rad, radians(90.0), 1e-12);
+  EXPECT_EQ(text_of(*given),
+            "prior: x 12.500 m, y -3.000 m, yaw 90.000 degrees in the map, read as metres and "
+            "degrees of its frame\n");
 }
 
 TEST(PriorText, LatitudeLongitudeAndHeadingWhereTheyLieOnTheMap) {
-  const auto pose = pose_from("49.0101,8.4101,45", PoseFrame::kGeodetic, kKarlsruhe);
-  ASSERT_TRUE(pose) << pose.error().message;
-  EXPECT_NEAR(pose->x_m, 7.3, 0.1);
-  EXPECT_NEAR(pose->y_m, 11.1, 0.1);
-  EXPECT_NEAR(degrees(pose->yaw_rad), 45.0, 1e-3);
+  for (const PoseFrame frame : {PoseFrame::kGeodetic, PoseFrame::kGuess}) {
+    const auto given = pose_from("49.0101,8.4101,45", frame, kKarlsruhe);
+    ASSERT_TRUE(given) << given.error().message;
+    EXPECT_NEAR(given->pose.x_m, 7.3, 0.1);
+    EXPECT_NEAR(given->pose.y_m, 11.1, 0.1);
+    EXPECT_NEAR(degrees(given->pose.yaw_rad), 45.0, 1e-3);
+    EXPECT_THAT(text_of(*given), HasSubstr("read as latitude, longitude and heading"));
+  }
 }
 
-TEST(PriorText, ANumberTripleThatFitsBothFramesMustBeNamed) {
-  const auto pose = pose_from("49.0101,8.4101,45", PoseFrame::kGuess, kKarlsruhe);
-  ASSERT_FALSE(pose);
-  EXPECT_THAT(pose.error().message, HasSubstr("--frame map or --frame geodetic"));
-  EXPECT_TRUE(pose_from("49.0101,8.4101,45", PoseFrame::kMap, kKarlsruhe));
+TEST(PriorText, MetresThatLookLikeAPlaceOnTheMapNeedTheOption) {
+  const auto given = pose_from("49.0101,8.4101,45", PoseFrame::kMap, kKarlsruhe);
+  ASSERT_TRUE(given) << given.error().message;
+  EXPECT_DOUBLE_EQ(given->pose.x_m, 49.0101);
+  EXPECT_THAT(text_of(*given), HasSubstr("read as metres"));
   EXPECT_TRUE(pose_from("0,0,0", PoseFrame::kGuess, map_at({0.0, 0.0})));
+}
+
+TEST(PriorText, ALatitudeAndLongitudeBesideTheMapAreNotTakenForMetres) {
+  // 5.6 km south of the map, which has no place there.
+  const auto beside = pose_from("48.96,8.41,90", PoseFrame::kGuess, kKarlsruhe);
+  ASSERT_FALSE(beside);
+  EXPECT_THAT(beside.error().message,
+              AllOf(StartsWith("--prior: found '48.96,8.41,90', which is 5.6 km outside of the map "
+                               "as latitude and longitude"),
+                    HasSubstr("--frame map")));
+  EXPECT_TRUE(pose_from("48.96,8.41,90", PoseFrame::kMap, kKarlsruhe));
+  const auto far = pose_from("10,20,90", PoseFrame::kGuess, kKarlsruhe);
+  ASSERT_TRUE(far) << far.error().message;
+  EXPECT_EQ(far->frame, PoseFrame::kMap);
+}
+
+TEST(PriorText, SaysWhyAPlaceOnEarthCannotBeUsed) {
+  const auto message = [](const char* text, const GeoOrigin& origin) {
+    return pose_from(text, PoseFrame::kGeodetic, map_at(origin)).error().message;
+  };
+  EXPECT_EQ(message("98.41,49.01,90", kKarlsruhe.origin),
+            "--prior: found 98.41 as latitude, wanted -90 to 90");
+  EXPECT_EQ(message("49.01,188.41,90", kKarlsruhe.origin),
+            "--prior: found 188.41 as longitude, wanted -180 to 180");
+  EXPECT_THAT(message("49.01,8.41,90", {0.0, 0.0}),
+              AllOf(StartsWith("--prior: found a map whose place on earth is unknown"),
+                    HasSubstr("--frame map")));
 }
 
 TEST(PriorText, RefusesOtherTextAndPlacesFarAway) {
   for (const char* text : {"", "1,2", "1,2,3,4", "1;2;3", "a,b,c", "1,2,3x"}) {
-    const auto pose = pose_from(text, PoseFrame::kGuess, kKarlsruhe);
-    ASSERT_FALSE(pose) << text;
-    EXPECT_THAT(pose.error().message, HasSubstr("wanted three numbers"));
+    const auto given = pose_from(text, PoseFrame::kGuess, kKarlsruhe);
+    ASSERT_FALSE(given) << text;
+    EXPECT_THAT(given.error().message,
+                AllOf(StartsWith("--prior: "), HasSubstr("wanted three numbers")));
   }
   for (const char* text : {"1e300,0,0", "0,-1e8,0", "0,0,99999"}) {
     EXPECT_EQ(pose_from(text, PoseFrame::kMap, kKarlsruhe).error().message,
-              fmt::format("pose: found '{}', wanted at most 10000000 m and 360 degrees", text));
+              fmt::format("--prior: found '{}', wanted at most 10000000 m and 360 degrees", text));
   }
   const auto far = pose_from("5000,0,0", PoseFrame::kGuess, kKarlsruhe);
   ASSERT_FALSE(far);
   EXPECT_THAT(far.error().message, HasSubstr("x 5000 m"));
   EXPECT_THAT(far.error().message, HasSubstr("x -100 m"));
+  const auto nowhere = pose_from("5000,0,0", PoseFrame::kGuess, map_at({0.0, 0.0}));
+  ASSERT_FALSE(nowhere);
+  EXPECT_THAT(nowhere.error().message, Not(HasSubstr("around")));
 }
 
 class PictureSetTest : public testing::Test {
@@ -87,8 +127,10 @@ TEST_F(PictureSetTest, ReadsTheCamerasThatHaveAFile) {
 TEST_F(PictureSetTest, RefusesAFolderWithoutPicturesOtherSizesAndTwoPicturesOfACamera) {
   const auto message = [this] { return read_pictures(folder_.path(), rig_).error().message; };
   EXPECT_THAT(message(), HasSubstr("wanted files such as front_left.jpg"));
+  EXPECT_THAT(read_pictures(folder_ / "gone", rig_).error().message,
+              HasSubstr("gone: found no folder that can be read"));
   add_picture("back.png", 64);
-  EXPECT_THAT(message(), HasSubstr("back.png"));
+  EXPECT_THAT(message(), AllOf(HasSubstr("back.png"), HasSubstr("image_size_px in the rig")));
   add_picture("back.jpg");
   EXPECT_THAT(message(), HasSubstr("found back.jpg and back.png"));
 }

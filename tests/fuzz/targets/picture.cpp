@@ -42,7 +42,7 @@ void decode(MjpegDecoder& decoder, Bytes bytes, int reduction) {
 
 void run_image_file(Bytes bytes) {
   RgbImage image(kWidthPx, kHeightPx);
-  const Status status = read_image(path_of_file_with(bytes), image);
+  const Status status = read_camera_picture(path_of_file_with(bytes), image);
   if (!status) expect(!status.error().message.empty(), "an error without a message");
 }
 
