@@ -4,7 +4,7 @@
 #include <deque>
 
 #include "can/bus/bus.h"
-#include "can/messages/vehicle_encoder.h"
+#include "evaluation/drive/vehicle_bus_encoder.h"
 #include "sim/faults/fault_board.h"
 
 namespace bevloc::evaluation {
@@ -12,7 +12,8 @@ namespace bevloc::evaluation {
 /// One thread.
 class BusAttacker {
  public:
-  explicit BusAttacker(const can::VehicleEncoder& encoder) : encoder_(encoder) {}
+  /// Forges odometry in the messages of `encoder`.
+  explicit BusAttacker(const VehicleBusEncoder& encoder) : encoder_(encoder) {}
 
   /// Records a frame that the vehicle sent `elapsed_s` after the drive's start.
   void note(const can::Frame& frame, double elapsed_s);
@@ -30,8 +31,8 @@ class BusAttacker {
   void forge(const sim::FaultAmounts& by, can::Bus& bus, Time now);
   void replay(double age_s, double elapsed_s, can::Bus& bus, Time now) const;
 
-  can::VehicleEncoder encoder_;  ///< with counters of its own
-  std::deque<Noted> noted_;      ///< the frames of the last minute
+  VehicleBusEncoder encoder_;  ///< with counters of its own
+  std::deque<Noted> noted_;    ///< the frames of the last minute
 };
 
 }  // namespace bevloc::evaluation

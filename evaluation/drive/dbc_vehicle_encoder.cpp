@@ -69,6 +69,13 @@ std::span<const can::Frame> DbcVehicleEncoder::odometry(const can::WheelOdometry
   return frames();
 }
 
+std::span<const can::Frame> DbcVehicleEncoder::odometry(const OdometrySample& sample) {
+  const can::WheelFusion axle(rear_track_m_, binding_.wheels.wheelbase_m, sample.yaw_rate_radps);
+  return odometry(can::WheelOdometry{
+      axle.wheel_speed(can::WheelPlace::kRearLeft, sample.speed_mps),
+      axle.wheel_speed(can::WheelPlace::kRearRight, sample.speed_mps), sample.yaw_rate_radps});
+}
+
 std::span<const can::Frame> DbcVehicleEncoder::gnss(const GnssSample& sample) {
   values_.clear();
   frames_.clear();

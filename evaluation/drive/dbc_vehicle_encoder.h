@@ -23,6 +23,7 @@ class DbcVehicleEncoder {
 
   /// The frames are valid until the next call.
   std::span<const can::Frame> odometry(const can::WheelOdometry& measured);
+  std::span<const can::Frame> odometry(const OdometrySample& sample);
   /// The frames of a GNSS sample; none if the binding has no GNSS.
   std::span<const can::Frame> gnss(const GnssSample& sample);
 

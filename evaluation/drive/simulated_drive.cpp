@@ -1,6 +1,7 @@
 #include "evaluation/drive/simulated_drive.h"
 
 #include <cmath>
+#include <optional>
 
 #include "drivers/mock/true_rig.h"
 #include "evaluation/drive/configured_world.h"
@@ -53,18 +54,13 @@ SimulatedVehicle::SimulatedVehicle(const SimulatedDrive& drive, uint64_t seed,
       faults_(drive.faults()),
       odometry_(*drive_, sim::seed_for(seed, "odometry")),
       gnss_(*drive_, sim::seed_for(seed, "gnss")),
-      encoder_(can.base_ids, {drive.map().origin.latitude_deg, drive.map().origin.longitude_deg},
+      encoder_(can, {drive.map().origin.latitude_deg, drive.map().origin.longitude_deg},
                kRearTrack_m),
       attacker_(encoder_),
       bus_(std::move(bus)),
       drive_start_(drive_start),
       next_odometry_(drive_start),
-      next_gnss_(drive_start) {
-  if (!can.vehicle) return;
-  const GeoOrigin& origin = drive.map().origin;
-  own_encoder_.emplace(
-      *can.vehicle, can::GeodeticPosition{origin.latitude_deg, origin.longitude_deg}, kRearTrack_m);
-}
+      next_gnss_(drive_start) {}
 
 void SimulatedVehicle::send_due(Time now) {
   while (next_odometry_ <= now) send_odometry(now);
@@ -89,11 +85,7 @@ void SimulatedVehicle::send_odometry(Time now) {
     if (reading) {
       const can::WheelOdometry measured{reading->left_mps, reading->right_mps,
                                         reading->yaw_rate_radps};
-      if (own_encoder_) {
-        send(own_encoder_->odometry(measured), elapsed_s, now);
-      } else {
-        send(encoder_.odometry(measured), elapsed_s, now);
-      }
+      send(encoder_.odometry(measured), elapsed_s, now);
     }
     attacker_.act(*faults_, elapsed_s, *bus_, now);
   }
@@ -111,14 +103,7 @@ void SimulatedVehicle::send_gnss(Time now) {
         gnss_, index,
         sim::in_drive_time(faults_->active(sim::FaultInput::kGnss, elapsed_s), clock_faults),
         *drive_);
-    if (reading) {
-      const GnssSample sample = sample_of(*reading, now);
-      if (own_encoder_) {
-        send(own_encoder_->gnss(sample), elapsed_s, now);
-      } else {
-        send(encoder_.gnss(sample), elapsed_s, now);
-      }
-    }
+    if (reading) send(encoder_.gnss(sample_of(*reading, now)), elapsed_s, now);
   }
   ++gnss_count_;
   next_gnss_ = at(drive_start_, static_cast<double>(gnss_count_) * sim::GnssSimulator::kPeriod_s);

@@ -3,16 +3,14 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "can/bus/mock_bus.h"
-#include "can/messages/vehicle_encoder.h"
 #include "drivers/mock/mock_camera.h"
 #include "evaluation/drive/bus_attacker.h"
-#include "evaluation/drive/dbc_vehicle_encoder.h"
 #include "evaluation/drive/drive_config.h"
+#include "evaluation/drive/vehicle_bus_encoder.h"
 #include "sim/faults/fault_board.h"
 #include "sim/sensors/gnss.h"
 #include "sim/sensors/odometry.h"
@@ -71,8 +69,7 @@ class SimulatedVehicle {
   std::shared_ptr<const sim::FaultBoard> faults_;
   sim::OdometrySimulator odometry_;
   sim::GnssSimulator gnss_;
-  can::VehicleEncoder encoder_;
-  std::optional<DbcVehicleEncoder> own_encoder_;  ///< set if there is can.vehicle
+  VehicleBusEncoder encoder_;
   BusAttacker attacker_;
   std::unique_ptr<can::Bus> bus_;
   Time drive_start_;

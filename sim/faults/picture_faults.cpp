@@ -72,11 +72,14 @@ void blind(RgbImage& image, double strength, SensorNoise& noise) {
   }
 }
 
-Eigen::Matrix3d turned(const FaultAmounts& by) {
-  return (Eigen::AngleAxisd(radians(by.yaw_deg), Eigen::Vector3d::UnitZ()) *
-          Eigen::AngleAxisd(radians(by.pitch_deg), Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(radians(by.roll_deg), Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
+/// Turns a camera, whose axes are right (x), down (y) and forward (z).
+Eigen::Matrix3d turned(const Eigen::Matrix3d& vehicle_from_camera, const FaultAmounts& by) {
+  const Eigen::Quaterniond to_left(
+      Eigen::AngleAxisd(radians(by.yaw_deg), Eigen::Vector3d::UnitZ()));
+  const Eigen::Quaterniond down_and_tilted =
+      Eigen::AngleAxisd(radians(-by.pitch_deg), Eigen::Vector3d::UnitX()) *
+      Eigen::AngleAxisd(radians(by.roll_deg), Eigen::Vector3d::UnitZ());
+  return to_left.toRotationMatrix() * vehicle_from_camera * down_and_tilted.toRotationMatrix();
 }
 
 }  // namespace
@@ -99,7 +102,7 @@ CameraModel disturbed(CameraModel camera, std::span<const Fault> active) {
   for (const Fault& fault : active) {
     Se3& pose = camera.vehicle_from_camera;
     const FaultAmounts& by = fault.amounts;
-    if (fault.kind == FaultKind::kCameraTurned) pose.rotation = turned(by) * pose.rotation;
+    if (fault.kind == FaultKind::kCameraTurned) pose.rotation = turned(pose.rotation, by);
     if (fault.kind == FaultKind::kCameraMoved) {
       pose.translation_m += Eigen::Vector3d(by.x_m, by.y_m, by.z_m);
     }

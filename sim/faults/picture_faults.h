@@ -14,8 +14,9 @@ namespace bevloc::sim {
 /// swapped.
 int source_camera(int camera, std::span<const Fault> active);
 
-/// The camera after it was turned or moved. A turn is about the vehicle's axes, at the camera's
-/// place: yaw to the left, pitch downwards, roll to the right.
+/// The camera after it was turned or moved. It turns in its place: yaw is about the vehicle's
+/// vertical axis, to the camera's left. Pitch (downwards) and roll (tilted to the right) are about
+/// the camera's own axes.
 CameraModel disturbed(CameraModel camera, std::span<const Fault> active);
 
 /// Changes the pixels of a dark or blinded camera. `noise_seed` determines the sensor's noise,

@@ -1,6 +1,7 @@
 // Drives on a vehicle with a bus of its own: poses and samples are those of the standard messages.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include "evaluation/campaign/stage_run.h"
 #include "evaluation/drive/simulated_drive.h"
 #include "firmware/devices/can_bus.h"
+#include "sim/faults/fault_table.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -121,6 +123,61 @@ TEST(OwnBusTest, GivesTheSamplesOfTheStandardMessagesWithoutAllocation) {
     if (gnss.yaw) {
       EXPECT_NEAR(gnss.yaw->yaw_rad, other.yaw->yaw_rad, radians(0.011));
     }
+  }
+}
+
+/// What the appliance reads during the first 8 seconds.
+struct Read {
+  std::vector<OdometrySample> odometry;
+  std::optional<Time> second_sender;  ///< when it noticed one for the first time
+};
+
+Read read_with(DriveConfig config, const std::vector<sim::Fault>& faults) {
+  config.simulation->faults = faults;
+  const auto drive = SimulatedDrive::create(config);
+  EXPECT_TRUE(drive) << drive.error().message;
+  can::MockWire wire;
+  const auto bus = wire.connect();
+  SimulatedVehicle vehicle(*drive, 1, config.can, wire.connect(), kStart);
+  const auto decoder = firmware::make_vehicle_decoder(
+      config.can, {drive->map().origin.latitude_deg, drive->map().origin.longitude_deg});
+  Read read;
+  for (Time now = kStart; now < kStart + std::chrono::seconds(8); now = vehicle.next_due()) {
+    vehicle.send_due(now);
+    while (const auto frame = bus->receive()) {
+      if (const auto sample = decoder->accept(*frame).odometry) read.odometry.push_back(*sample);
+    }
+    if (!read.second_sender) read.second_sender = decoder->fault_times().foreign_sender;
+  }
+  return read;
+}
+
+sim::Fault forged_from(double from_s) {
+  sim::Fault forged = sim::make_fault(sim::FaultKind::kBusForged, from_s);
+  forged.amounts.speed_mps = 10.0;
+  forged.amounts.yaw_rate_degps = 5.0;
+  return forged;
+}
+
+TEST(OwnBusTest, ForgedOdometryIsNoticedAsOnTheStandardBus) {
+  for (const char* name : {"demo.yaml", "demo_own_bus.yaml"}) {
+    SCOPED_TRACE(name);
+    const Read read = read_with(config_of(name), {forged_from(6.0)});
+    ASSERT_TRUE(read.second_sender);
+    EXPECT_GE(*read.second_sender, kStart + std::chrono::seconds(6));
+    EXPECT_LT(*read.second_sender, kStart + std::chrono::milliseconds(6200));
+  }
+}
+
+TEST(OwnBusTest, TheForgerSendsItsValuesInTheVehiclesOwnMessages) {
+  sim::Fault forged = forged_from(0.0);
+  forged.amounts.counter_step = 1.0;
+  const Read read = read_with(config_of("demo_own_bus.yaml"),
+                              {sim::make_fault(sim::FaultKind::kOdometryMissing), forged});
+  EXPECT_GT(read.odometry.size(), 380U);
+  for (const OdometrySample& sample : read.odometry) {
+    EXPECT_NEAR(sample.speed_mps, 10.0, 0.005);
+    EXPECT_NEAR(sample.yaw_rate_radps, radians(5.0), radians(0.005));
   }
 }
 

@@ -1,11 +1,13 @@
 #include "sim/faults/picture_faults.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "common/se2.h"
 #include "sim/faults/fault_table.h"
 #include "sim/faults/lens_dirt.h"
 #include "sim/sim_rig.h"
@@ -100,21 +102,47 @@ TEST(PictureFaults, SwapsActOneAfterTheOther) {
   EXPECT_EQ(source_camera(4, active), 1);
 }
 
-TEST(PictureFaults, ATurnedCameraLooksToTheLeftDownOrTiltsToTheRight) {
-  const CameraModel front = nominal_rig().cameras[1];
-  const auto axis_after = [&](double yaw_deg, double pitch_deg) -> Eigen::Vector3d {
-    Fault turned = make_fault(FaultKind::kCameraTurned);
-    turned.amounts.yaw_deg = yaw_deg;
-    turned.amounts.pitch_deg = pitch_deg;
-    const CameraModel camera = disturbed(front, std::vector{turned});
-    EXPECT_EQ(camera.vehicle_from_camera.translation_m, front.vehicle_from_camera.translation_m);
-    return camera.vehicle_from_camera.rotation.col(2);
-  };
-  const Eigen::Vector3d axis = axis_after(0.0, 0.0);
-  const Eigen::Vector3d left = axis_after(10.0, 0.0);
-  EXPECT_NEAR(std::acos(axis.dot(left)), radians(10.0), 1e-3);
-  EXPECT_GT(left.y(), axis.y());
-  EXPECT_LT(axis_after(0.0, 10.0).z(), axis.z());
+constexpr double kTurn_deg = 10.0;
+
+CameraModel turned(const CameraModel& camera, double FaultAmounts::*angle) {
+  Fault fault = make_fault(FaultKind::kCameraTurned);
+  fault.amounts.*angle = kTurn_deg;
+  return disturbed(camera, std::vector{fault});
+}
+
+/// The camera's right (column 0), down (1) or forward (2) axis in the vehicle frame.
+Eigen::Vector3d axis_of(const CameraModel& camera, int column) {
+  return camera.vehicle_from_camera.rotation.col(column);
+}
+
+double azimuth_rad(const CameraModel& camera) {
+  const Eigen::Vector3d forward = axis_of(camera, 2);
+  return std::atan2(forward.y(), forward.x());
+}
+
+double elevation_rad(const CameraModel& camera) {
+  return std::asin(axis_of(camera, 2).z());
+}
+
+// The cameras of the nominal rig are not tilted.
+TEST(PictureFaults, EveryTurnedCameraLooksToItsLeftDownOrTiltsToItsRight) {
+  const double turn_rad = radians(kTurn_deg);
+  const Rig rig = nominal_rig();
+  for (size_t i = 0; i < rig.cameras.size(); ++i) {
+    SCOPED_TRACE(kCameraNames[i]);
+    const CameraModel& camera = rig.cameras[i];
+    const CameraModel to_left = turned(camera, &FaultAmounts::yaw_deg);
+    EXPECT_NEAR(wrap_angle(azimuth_rad(to_left) - azimuth_rad(camera)), turn_rad, 1e-9);
+    EXPECT_NEAR(elevation_rad(to_left), elevation_rad(camera), 1e-9);
+    const CameraModel down = turned(camera, &FaultAmounts::pitch_deg);
+    EXPECT_NEAR(wrap_angle(azimuth_rad(down) - azimuth_rad(camera)), 0.0, 1e-9);
+    EXPECT_NEAR(elevation_rad(down), elevation_rad(camera) - turn_rad, 1e-9);
+    const CameraModel tilted = turned(camera, &FaultAmounts::roll_deg);
+    EXPECT_NEAR((axis_of(tilted, 2) - axis_of(camera, 2)).norm(), 0.0, 1e-9);
+    EXPECT_NEAR(axis_of(tilted, 0).dot(axis_of(camera, 1)), std::sin(turn_rad), 1e-9)
+        << "its right side is lower";
+    EXPECT_EQ(tilted.vehicle_from_camera.translation_m, camera.vehicle_from_camera.translation_m);
+  }
 }
 
 TEST(PictureFaults, AMovedCameraKeepsItsDirection) {
