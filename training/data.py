@@ -164,8 +164,8 @@ class DriveStream(ProcessStream):
         drop_camera_probability: float,
         share: Share = WHOLE,
     ) -> None:
-        """`part`: training or held-back. `first_sample` counts the samples of all processes and is
-        a multiple of their number."""
+        """`part`: training, calibration or held-back. `first_sample` counts the samples of all
+        processes and is a multiple of their number."""
         assert first_sample % share.count == 0
         first_sample //= share.count
         options = [

@@ -48,7 +48,7 @@ def report(
     before: Path, after: Path, drives: Drives, samples: int, threads: int
 ) -> str:
     """The text of the report."""
-    counts = drives.counts()
+    counts = drives.facts().samples
     batches = drive_batches(drives, "held-back", samples, threads)
     metrics = [evaluate_model_file(model, batches, threads) for model in (before, after)]
     used = sum(len(batch) for batch in batches)
@@ -57,7 +57,8 @@ def report(
         "",
         f"- Drives: `{drives.recordings}` with the map `{drives.map}`",
         f"- Reference poses: {drives.reference}",
-        f"- Samples: {counts[0]} for training, {counts[1]} held back, {used} of them used here.",
+        f"- Samples: {counts['training']} for training, {counts['calibration']} for calibration, "
+        f"{counts['held-back']} held back, {used} of them used here.",
         f"- Before: `{before}`; after: `{after}`; int8, {SHIPPED_SOLVER}. Each sample has a random"
         " prior of up to 2 m, 1 m and 2 degrees.",
         "",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from training.config import FIRST_VALIDATION_SEED
 from training.errors import TrainingError
 
 _LESS_IS_BETTER = ("_mae", "_median", "_rmse", "_p90", "_nll")
@@ -19,6 +20,7 @@ class Patience:
         self.best: float | None = None
         self.best_samples = 0
         self.waited = 0
+        self.scenes = FIRST_VALIDATION_SEED  # of all figures so far
 
     def check(self, solvers: Iterable[str], axes: Iterable[str], classes: Iterable[str]) -> None:
         """TrainingError if no validation measures the figure or it has no direction of improvement
@@ -58,6 +60,6 @@ class Patience:
         return {key: value for key, value in vars(self).items() if key != "limit"}
 
     def resume(self, state: dict[str, float | int | str | None]) -> None:
-        """Continues a saved count if it was of the same figure."""
-        if state["figure"] == self.figure:
+        """Continues a saved count if it was of the same figure on the same scenes."""
+        if state["figure"] == self.figure and state.get("scenes") == self.scenes:
             vars(self).update(state)

@@ -158,21 +158,29 @@ def main() -> None:
     parser.add_argument("--raw", action="store_true", help="use the last weights, not the average")
     parser.add_argument("--write", type=Path, help="folder of the model file and its card")
     parser.add_argument("--nuscenes", help="folder of the data set that replaces the simulator")
+    parser.add_argument("--nuscenes-version", default="", help="v1.0-*, if there are several")
     parser.add_argument("--scenes", default="", help="file with scene names; default: all scenes")
     parser.add_argument("--line-width-cells", type=above_zero, default=5.0)
     arguments = parser.parse_args()
     if arguments.nuscenes and arguments.write:
         wanted = "wanted the simulator's scenes, which the model card is about"
         parser.error(f"--write: found --nuscenes too, {wanted}")
-    if arguments.scenes and not arguments.nuscenes:
-        parser.error("--scenes: found no --nuscenes, wanted the folder of the data set")
+    for option in ("scenes", "nuscenes_version"):
+        if getattr(arguments, option) and not arguments.nuscenes:
+            name = "--" + option.replace("_", "-")
+            parser.error(f"{name}: found no --nuscenes, wanted the folder of the data set")
     torch.set_num_threads(arguments.threads)
     net = load_network(arguments.checkpoint, averaged=not arguments.raw)
     solvers = torch_solvers(net.solvers)
     device = torch.device("cpu")
     if arguments.nuscenes:
-        folder, scenes = arguments.nuscenes, arguments.scenes
-        every = nuscenes_batches(folder, scenes, arguments.line_width_cells, arguments.threads)
+        every = nuscenes_batches(
+            arguments.nuscenes,
+            arguments.scenes,
+            arguments.line_width_cells,
+            arguments.threads,
+            arguments.nuscenes_version,
+        )
         print(summary(evaluate(float_inference(net), solvers, every, device)))
         return
     batches = simulator_batches(arguments.samples, arguments.threads)

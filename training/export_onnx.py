@@ -2,10 +2,10 @@
 
     /usr/bin/python3 -m training.export_onnx training/runs/nano/checkpoint.pt models
 
-Writes NETWORK.onnx (int8, QDQ) and NETWORK_float.onnx into the folder. The ranges of int8 are those
-of simulated samples, or with `--recordings DIR --map FILE` of recorded drives. Writes
-quantization.pt and solvers.pt (the solvers with the scales of the model files) next to the
-checkpoint.
+Writes NETWORK.onnx (int8, QDQ) and NETWORK_float.onnx into the folder. The ranges of int8 and the
+scales of the solvers are those of simulated samples, or with `--recordings DIR --map FILE` of the
+calibration part of recorded drives. Writes quantization.pt and solvers.pt (the solvers with the
+scales of the model files) next to the checkpoint.
 
 Inputs of the model: images int8 [6, 3, 96, 320] (RGB - 128), raster uint8 [1, 3, 400, 200],
 view_index int32 [8, 5000] and view_weight float [8, 5000] (pipeline/network/view/view_table.h).
@@ -16,7 +16,10 @@ Outputs, in float: bev_features and map_features [1, 16, 100, 50], bev_mask (log
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import onnx
 import torch
@@ -26,7 +29,7 @@ from onnx import TensorProto, helper
 from training.checkpoint import load_network, nuisances_of, read_checkpoint
 from training.config import CALIBRATION_SEEDS, FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream
-from training.errors import run_program
+from training.errors import TrainingError, run_program
 from training.fit_scales import ResultScales, fit_scales, fit_score_scale, fit_sigma_scale
 from training.graph import FoldedConv, Walk, check_exportable, folded_convolutions
 from training.model import (
@@ -44,6 +47,7 @@ from training.option_types import positive
 from training.options import add_drive_options, drives_of
 from training.quantize import Quantization, input_scales, int8_inference, quantize
 from training.runtime import NativeNetwork, NativeSolver
+from training.sampler_process import DriveFacts, Drives
 from training.sources import drive_batches
 
 OPSET, IR_VERSION = 13, 8
@@ -51,16 +55,32 @@ QUANTIZATION_FILE = "quantization.pt"
 SOLVERS_FILE = "solvers.pt"
 # The simulator's cameras vary around this rig.
 TRAINED_RIG = Path(__file__).parent.parent / "config/rig_demo.yaml"
-# What a model states about the random rigs of --nuisances street (sim/samples/random_rig.cpp). They
-# have 50 to 120 degrees of view, of which a network image shows at most 90
-# (pipeline/preprocessing/network_camera.h).
-RANDOM_RIGS = {
-    "bevloc.rig.focal_range_px": "160 343",
-    "bevloc.rig.height_range_m": "0.6 2.6",
-}
+# The appliance corrects the calibration that it records, so the rig that it is given differs a
+# little from that of its recordings.
+RECORDED_MARGIN = 1.05
 SHIPPED_SOLVER = "banded+refine"  # config/demo.yaml
 # Training scenes that no run reaches.
 CALIBRATION_SEED = FIRST_TRAINING_SEED + CALIBRATION_SEEDS
+
+
+@dataclass(frozen=True)
+class RigRanges:
+    """The least and the largest value of all cameras."""
+
+    focal_px: tuple[float, float]
+    height_m: tuple[float, float]
+
+    @staticmethod
+    def of_drives(facts: DriveFacts) -> RigRanges:
+        def widened(found: tuple[float, float]) -> tuple[float, float]:
+            return found[0] / RECORDED_MARGIN, found[1] * RECORDED_MARGIN
+
+        return RigRanges(widened(facts.focal_range_px), widened(facts.height_range_m))
+
+
+# The random rigs of --nuisances street (sim/samples/random_rig.cpp). They have 50 to 120 degrees of
+# view, of which a network image shows at most 90 (pipeline/preprocessing/network_camera.h).
+RANDOM_RIGS = RigRanges((160, 343), (0.6, 2.6))
 
 
 def _info(name: str, kind: int, shape: list[int]) -> onnx.ValueInfoProto:
@@ -103,14 +123,31 @@ def metadata(net: BevNetwork, result: ResultScales) -> dict[str, str]:
     }
 
 
-def rig_statements(nuisances: str = "usual", rig_file: Path = TRAINED_RIG) -> dict[str, str]:
+def _range_statements(rigs: list[RigRanges]) -> dict[str, str]:
+    """What the model states about rigs that differed; nothing if there is none."""
+    if not rigs:
+        return {}
+    values = {
+        "bevloc.rig.focal_range_px": [value for rig in rigs for value in rig.focal_px],
+        "bevloc.rig.height_range_m": [value for rig in rigs for value in rig.height_m],
+    }
+    return {name: f"{min(found):.4g} {max(found):.4g}" for name, found in values.items()}
+
+
+def rig_statements(
+    nuisances: str = "usual", facts: DriveFacts | None = None, rig_file: Path = TRAINED_RIG
+) -> dict[str, str]:
     """What the model states about the cameras that it was trained with, so that bevlocd can refuse
-    a rig of very different ones (pipeline/network/model/model_rig.h). `nuisances`: of training."""
+    a rig of very different ones (pipeline/network/model/model_rig.h). `nuisances`: of training.
+    `facts`: those of the drives of training, if any."""
     cameras = yaml.safe_load(rig_file.read_text())["cameras"]
     focal_px = [c["fx_px"] * IMAGE_COLS / c["image_size_px"][0] for c in cameras.values()]
     height_m = [c["vehicle_from_camera"]["translation_m"][2] for c in cameras.values()]
-    ranges = RANDOM_RIGS if nuisances == "street" else {}
-    return ranges | {
+    ranges = [RANDOM_RIGS] if nuisances == "street" else []
+    if facts is not None:
+        own = RigRanges((min(focal_px), max(focal_px)), (min(height_m), max(height_m)))
+        ranges += [own, RigRanges.of_drives(facts)]
+    return _range_statements(ranges) | {
         "bevloc.rig.cameras": " ".join(cameras),
         "bevloc.rig.image_size_px": f"{IMAGE_COLS} {IMAGE_ROWS}",
         "bevloc.rig.focal_px": " ".join(f"{value:.4g}" for value in focal_px),
@@ -123,9 +160,10 @@ def build_model(
     convolutions: dict[str, FoldedConv],
     backend: FloatOnnxBackend,
     result: ResultScales = ResultScales(),
-    nuisances: str = "usual",
+    rig: Mapping[str, str] | None = None,
 ) -> onnx.ModelProto:
-    """The whole network as one ONNX model, written by `backend`. `nuisances`: of training."""
+    """The whole network as one ONNX model, written by `backend`. `rig`: rig_statements(); None:
+    those of a network that was trained on one rig."""
     inputs = input_scales()
     walk = Walk(net, convolutions, backend)
     bev, _ = walk.run_images(backend.dequantize("images", inputs["images"]))
@@ -141,7 +179,8 @@ def build_model(
         opset_imports=[helper.make_opsetid("", OPSET)],
         ir_version=IR_VERSION,
     )
-    helper.set_model_props(model, metadata(net, result) | rig_statements(nuisances))
+    stated = rig_statements() if rig is None else dict(rig)
+    helper.set_model_props(model, metadata(net, result) | stated)
     onnx.checker.check_model(model, full_check=True)
     return model
 
@@ -156,6 +195,33 @@ def calibration_batches(
     return batches
 
 
+def check_source(config: Mapping[str, Any], checkpoint: Path, drives: Drives | None) -> None:
+    """TrainingError if a run had other samples than those of this export. `config`: of the run."""
+    if folder := config.get("nuscenes"):
+        raise TrainingError(
+            f"{checkpoint}: found a run on nuScenes ({folder}), which cannot be exported; give a "
+            "run on the simulator, or one on recorded drives with --recordings and --map"
+        )
+    if (folder := config.get("recordings")) and drives is None:
+        raise TrainingError(
+            f"{checkpoint}: found a run on recorded drives, wanted these drives for the ranges of "
+            f"int8; give --recordings {folder} --map {config.get('map')}"
+        )
+
+
+def fitting_batches(
+    drives: Drives | None, nuisances: str, samples: int, threads: int
+) -> tuple[list[Batch], list[Batch]]:
+    """Samples for the ranges of int8 and for sigma, and those for the score. Training used none of
+    them."""
+    if drives is not None:
+        batches = drive_batches(drives, "calibration", samples, threads)
+        return batches, batches
+    batches = calibration_batches(samples, threads, nuisances)
+    # Samples with rare nuisances have lower scores, and most of a drive has no such nuisance.
+    return batches, batches if nuisances == "usual" else calibration_batches(samples, threads)
+
+
 def quantization_of(net: BevNetwork, checkpoint: Path, calibration: list[Batch]) -> Quantization:
     """The checkpoint's own quantization if it has one (training.qat), else a new one from
     `calibration`."""
@@ -167,17 +233,15 @@ def write_model(
     net: BevNetwork,
     quantization: Quantization,
     result: ResultScales,
-    nuisances: str,
+    rig: Mapping[str, str],
     folder: Path,
 ) -> None:
-    """Writes both model files."""
+    """Writes both model files. `rig`: rig_statements()."""
     name = net.config.name
     int8_backend = Int8OnnxBackend(quantization)
-    int8_model = build_model(net, quantization.convolutions, int8_backend, result, nuisances)
+    int8_model = build_model(net, quantization.convolutions, int8_backend, result, rig)
     onnx.save(int8_model, str(folder / f"{name}.onnx"))
-    float_model = build_model(
-        net, folded_convolutions(net), FloatOnnxBackend(), result, nuisances
-    )
+    float_model = build_model(net, folded_convolutions(net), FloatOnnxBackend(), result, rig)
     onnx.save(float_model, str(folder / f"{name}_float.onnx"))
 
 
@@ -193,28 +257,23 @@ def main() -> None:
     net = load_network(arguments.checkpoint)
     check_exportable(net.config)
     nuisances = nuisances_of(arguments.checkpoint)
-    samples, threads = arguments.calibration, arguments.threads
-    if arguments.recordings:
-        batches = drive_batches(drives_of(arguments), "training", samples, threads)
-    else:
-        batches = calibration_batches(samples, threads, nuisances)
+    drives = drives_of(arguments) if arguments.recordings else None
+    check_source(read_checkpoint(arguments.checkpoint)["config"], arguments.checkpoint, drives)
+    rig = rig_statements(nuisances, drives.facts() if drives else None)
+    batches, usual = fitting_batches(drives, nuisances, arguments.calibration, arguments.threads)
     quantization = quantization_of(net, arguments.checkpoint, batches)
     quantization.save(arguments.checkpoint.with_name(QUANTIZATION_FILE))
     fit_scales(net.solvers, int8_inference(net, quantization), batches)
     torch.save(net.solvers.state_dict(), arguments.checkpoint.with_name(SOLVERS_FILE))
     arguments.models.mkdir(parents=True, exist_ok=True)
     shipped = arguments.models / f"{net.config.name}.onnx"
-    write_model(net, quantization, ResultScales(), nuisances, arguments.models)
+    write_model(net, quantization, ResultScales(), rig, arguments.models)
     network = NativeNetwork(shipped, arguments.threads)
     solver = NativeSolver(network, SHIPPED_SOLVER)
-    # Samples with rare nuisances have lower scores, and most of a drive has no such nuisance.
-    usual = batches
-    if not arguments.recordings and nuisances != "usual":
-        usual = calibration_batches(samples, threads)
     result = ResultScales(
         fit_sigma_scale(network, solver, batches), fit_score_scale(network, solver, usual)
     )
-    write_model(net, quantization, result, nuisances, arguments.models)
+    write_model(net, quantization, result, rig, arguments.models)
     for path in (shipped, shipped.with_name(f"{net.config.name}_float.onnx")):
         print(f"{path}: {path.stat().st_size / 1e6:.2f} MB", flush=True)
 

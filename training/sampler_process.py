@@ -78,10 +78,20 @@ class SamplerOptions:
 
 
 @dataclass(frozen=True)
+class DriveFacts:
+    """What is known of drives before an image is read. The ranges are those of all cameras: focal
+    lengths in the network's images and heights above the ground."""
+
+    samples: dict[str, int]  # by part: training, calibration, held-back
+    focal_range_px: tuple[float, float]
+    height_range_m: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class Drives:
     """Recorded drives (training/drives/drive_set.h). `rig`: a calibration instead of the recorded
-    ones. `reference`: file, own or truth. `skip_bad`: whether the next good sample replaces a
-    bad one; else a bad one ends the program."""
+    ones. `reference`: file, own or truth. `skip_bad`: whether the next good place replaces that of
+    a bad sample; else a bad one ends the program."""
 
     recordings: str
     map: str
@@ -89,8 +99,8 @@ class Drives:
     reference: str = "file"
     skip_bad: bool = False
 
-    def counts(self) -> tuple[int, int]:
-        """How many samples they have for training, and how many are held back."""
+    def facts(self) -> DriveFacts:
+        """SamplerError if the drives cannot be read."""
         options = DriveOptions(self, first_seed=0)
         command = [*sampler_command(sampler_program(DRIVE_PROGRAM)), *arguments_of(options)]
         done = subprocess.run(
@@ -98,14 +108,17 @@ class Drives:
         )
         if done.returncode != 0:
             raise SamplerError(done.stderr.strip())
-        training, held_back = done.stdout.split()
-        return int(training), int(held_back)
+        lines = [line.split() for line in done.stdout.splitlines()]
+        ranges = {name: (float(v[0]), float(v[1])) for name, *v in lines if len(v) == 2}
+        samples = {name: int(v[0]) for name, *v in lines if len(v) == 1}
+        return DriveFacts(samples, ranges["focal_px"], ranges["height_m"])
 
 
 @dataclass(frozen=True)
 class DriveOptions:
-    """Which samples of recorded drives are read: those of `part` (training or held-back) with the
-    numbers first_sample, first_sample + stride, and so on, in an order that the seed gives."""
+    """Which samples of recorded drives are read: those of `part` (training, calibration or
+    held-back) with the numbers first_sample, first_sample + stride, and so on, in an order that the
+    seed gives."""
 
     program: ClassVar[str] = DRIVE_PROGRAM
     drives: Drives

@@ -6,7 +6,12 @@ from collections.abc import Callable, Iterator
 from functools import lru_cache
 from pathlib import Path
 
-from training.config import FIRST_VALIDATION_SEED, USUAL_SEEDS, TrainingConfig
+from training.config import (
+    FIRST_EVALUATION_SEED,
+    FIRST_VALIDATION_SEED,
+    USUAL_SEEDS,
+    TrainingConfig,
+)
 from training.data import Batch, DriveStream, MixedStream, SamplerStream, Stream
 from training.distributed import WHOLE, Share
 from training.errors import TrainingError
@@ -107,27 +112,33 @@ def _batches(stream: Stream, samples: int) -> Iterator[Batch]:
     stream.close()
 
 
-def simulator_batches(samples: int, threads: int) -> list[Batch]:
-    """A fixed set of evaluation scenes with all cameras."""
-    return list(_batches(SamplerStream(FIRST_VALIDATION_SEED, 0, threads, 0.0), samples))
+def simulator_batches(
+    samples: int, threads: int, first_seed: int = FIRST_EVALUATION_SEED
+) -> list[Batch]:
+    """A fixed set of scenes with all cameras: by default those of the model card."""
+    return list(_batches(SamplerStream(first_seed, 0, threads, 0.0), samples))
 
 
 def nuscenes_batches(
-    root: str, scenes: str, line_width_cells: float, threads: int
+    root: str, scenes: str, line_width_cells: float, threads: int, version: str = ""
 ) -> Iterator[Batch]:
-    """Every sample of the scenes once, with all cameras."""
+    """Every sample of the scenes once, with all cameras. `version`: v1.0-*, needed if there are
+    several."""
     config = TrainingConfig(
-        nuscenes=root, line_width_cells=line_width_cells, sampler_threads=threads
+        nuscenes=root,
+        nuscenes_version=version,
+        line_width_cells=line_width_cells,
+        sampler_threads=threads,
     )
-    stream = _nuscenes(config, scenes, FIRST_VALIDATION_SEED, 0, 0.0)
-    return _batches(stream, len(_dataset(root, scenes, "", line_width_cells)))
+    stream = _nuscenes(config, scenes, FIRST_EVALUATION_SEED, 0, 0.0)
+    return _batches(stream, len(_dataset(root, scenes, version, line_width_cells)))
 
 
 def drive_batches(drives: Drives, part: str, samples: int, threads: int) -> list[Batch]:
     """The first samples of a part in a fixed order, with all cameras; each at most once."""
-    counts = dict(zip(("training", "held-back"), drives.counts()))
-    stream = DriveStream(drives, part, FIRST_VALIDATION_SEED, 0, threads, 0.0)
-    return list(_batches(stream, min(samples, counts[part])))
+    existing = drives.facts().samples[part]
+    stream = DriveStream(drives, part, FIRST_EVALUATION_SEED, 0, threads, 0.0)
+    return list(_batches(stream, min(samples, existing)))
 
 
 def _check_scenes(config: TrainingConfig) -> None:
@@ -141,16 +152,15 @@ def _check_scenes(config: TrainingConfig) -> None:
 
 
 def validation_set(config: TrainingConfig) -> list[Batch]:
-    """A fixed set that training does not see, with all cameras. For nuScenes the set is empty
-    unless `validation_scenes` is given."""
+    """A fixed set with all cameras that neither training nor the figures of a finished network
+    see. For nuScenes the set is empty unless `validation_scenes` is given."""
+    samples, threads = config.validation_samples, config.sampler_threads
     if config.recordings:
-        return drive_batches(
-            drives_of(config), "held-back", config.validation_samples, config.sampler_threads
-        )
+        return drive_batches(drives_of(config), "calibration", samples, threads)
     if not config.nuscenes:
-        return simulator_batches(config.validation_samples, config.sampler_threads)
+        return simulator_batches(samples, threads, FIRST_VALIDATION_SEED)
     if not config.validation_scenes:
         return []
     _check_scenes(config)
     stream = _nuscenes(config, config.validation_scenes, FIRST_VALIDATION_SEED, 0, 0.0)
-    return list(_batches(stream, config.validation_samples))
+    return list(_batches(stream, samples))

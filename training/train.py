@@ -41,7 +41,7 @@ from training.model import real_images, real_raster
 from training.models.config import network_config
 from training.models.layers import channels_last, running_statistics
 from training.models.network import BevNetwork
-from training.nuscenes.errors import NuscenesError
+from training.optimiser import learning_rate, make_optimiser
 from training.options import parse_config
 from training.precision import choose_precision, cpu_flags
 from training.progress import Progress
@@ -79,6 +79,12 @@ def measuring_batches(config: TrainingConfig, make_stream: MakeStream) -> list[B
     return batches
 
 
+def noise_seed(config: TrainingConfig, step: int, rank: int) -> int:
+    """The seed of a step's noise in one process. It differs between steps and processes in its
+    lower 32 bits, because PyTorch's generator on the CPU ignores the others."""
+    return (config.seed ^ (step * 0x9E3779B9) ^ (rank * 0x85EBCA6B)) & (2**63 - 1)
+
+
 class Trainer:
     """One run: network, optimiser, averaged weights and progress. With several processes, each has
     its own Trainer, and all have the same weights after every step."""
@@ -103,9 +109,7 @@ class Trainer:
         self.net = channels_last(net.to(self.device))
         self.average = channels_last(BevNetwork(network).to(self.device))
         self.average.load_state_dict(self.net.state_dict())
-        self.optimiser = torch.optim.AdamW(
-            self._parameter_groups(), lr=config.learning_rate, betas=(0.9, 0.98)
-        )
+        self.optimiser = make_optimiser(self.net, config)
         self.step = 0
         self.samples = 0
         self.elapsed_s = 0.0
@@ -120,6 +124,7 @@ class Trainer:
         if self.checkpoint_path.exists():
             self._continue()
         self.validation = validation
+        self._validated_step = self.step
         self._check_patience()
         self.stream = ReadAhead(make_stream(config, self.samples, processes.share), self.device)
 
@@ -133,16 +138,6 @@ class Trainer:
             raise TrainingError(f"{self.checkpoint_path}: found a run, {wanted}")
         self._load()
 
-    def _parameter_groups(self) -> list[dict]:
-        scales = list(self.net.solvers.parameters())
-        rest = [p for p in self.net.parameters() if not any(p is scale for scale in scales)]
-        decay = self.config.weight_decay
-        return [
-            {"params": [p for p in rest if p.ndim > 1], "weight_decay": decay, "factor": 1.0},
-            {"params": [p for p in rest if p.ndim <= 1], "weight_decay": 0.0, "factor": 1.0},
-            {"params": scales, "weight_decay": 0.0, "factor": self.config.scale_rate_factor},
-        ]
-
     def _check_patience(self) -> None:
         if self.config.patience == 0 or not self.processes.first:
             return
@@ -152,13 +147,16 @@ class Trainer:
             )
         self.patience.check(torch_solvers(self.net.solvers), AXES, CLASSES)
 
+    def _check_weights(self) -> None:
+        for name, value in self.net.state_dict().items():
+            if not torch.isfinite(value).all():
+                raise NotFiniteError(f"step {self.step}: {name} is not finite; {self._last_good()}")
+
     def save(self) -> None:
         """Replaces the checkpoint. NotFiniteError, and no change, if a weight is not finite."""
         if not self.processes.first:
             return
-        for name, value in self.net.state_dict().items():
-            if not torch.isfinite(value).all():
-                raise NotFiniteError(f"step {self.step}: {name} is not finite; {self._last_good()}")
+        self._check_weights()
         partial = self.checkpoint_path.with_suffix(".partial")
         state = {
             "model": self.net.state_dict(),
@@ -198,13 +196,6 @@ class Trainer:
             return f"{self.checkpoint_path} holds the last good state"
         return "there is no checkpoint yet"
 
-    def _learning_rate(self, spent: float) -> float:
-        c = self.config
-        warm = min(1.0, (self.step + 1) / max(1, c.warm_up_steps))
-        annealed = max(0.0, spent - c.anneal_from) / max(1e-9, 1.0 - c.anneal_from)
-        cosine = c.final_rate + (1 - c.final_rate) * 0.5 * (1 + math.cos(math.pi * annealed))
-        return c.learning_rate * warm * cosine
-
     def losses(self, batch: Batch, generator: torch.Generator, with_pose: bool) -> Tensor:
         """The losses in the order of LOSSES. Without `with_pose` (stage 1) the pose losses are
         zero."""
@@ -233,8 +224,9 @@ class Trainer:
     def train_step(self, spent: float) -> tuple[Tensor, float]:
         """Trains on one batch. Returns its losses and the norm of the gradient."""
         c = self.config
-        noise_seed = c.seed ^ (self.step * 0x9E3779B9) ^ (self.processes.rank << 40)
-        generator = torch.Generator().manual_seed(noise_seed & (2**63 - 1))
+        seed = noise_seed(c, self.step, self.processes.rank)
+        generator = torch.Generator().manual_seed(seed)
+        torch.manual_seed(seed ^ 0xFFFFFFFF)  # of dropout
         batch = self._next_batch()
         self.net.train()
         losses = self.losses(batch, generator, with_pose=spent >= c.semantic_stage)
@@ -248,7 +240,7 @@ class Trainer:
         norm = nn.utils.clip_grad_norm_(self.net.parameters(), c.clip_norm)
         self._refuse_not_finite(losses, norm)
         for group in self.optimiser.param_groups:
-            group["lr"] = group["factor"] * self._learning_rate(spent)
+            group["lr"] = group["factor"] * learning_rate(c, self.step, spent)
         self.optimiser.step()
         self._update_average()
         self.step += 1
@@ -290,9 +282,15 @@ class Trainer:
                 mean.copy_(value)
 
     def validate(self) -> None:
-        """Measures the averaged weights, in the first process only."""
-        if not self.validation:
-            return
+        """Measures the averaged weights in the first process, whose patience is that of all.
+        NotFiniteError if a weight is not finite."""
+        self._validated_step = self.step
+        if self.validation:
+            self._check_weights()
+            self._measure()
+        self.patience.waited = int(self.processes.from_first(self.patience.waited))
+
+    def _measure(self) -> None:
         solvers = torch_solvers(self.average.solvers)
         metrics = evaluate(float_inference(self.average), solvers, self.validation, self.device)
         self._append("validation.csv", {"samples": self.samples, **metrics})
@@ -340,13 +338,14 @@ class Trainer:
                 if self.processes.first:
                     self._log(progress, norm, spent)
                 progress = Progress()
-            if self._passed(c.checkpoint_minutes, before_s):
-                self.save()
             if self._passed(c.validation_minutes, before_s):
                 self.validate()
-                self.patience.waited = int(self.processes.from_first(self.patience.waited))
+            if self._passed(c.checkpoint_minutes, before_s):
+                self.save()
             if 0 < 60 * c.stop_after_minutes < self.elapsed_s - started_s:
                 break
+        if self._validated_step != self.step:
+            self.validate()
         self.save()
         self.stream.close()
         return self.finished
@@ -369,7 +368,6 @@ def train(config: TrainingConfig, processes: Processes) -> bool:
         ending = f"stopped early: {trainer.patience}"
     else:
         ending = "finished" if finished else "stopped; continue with --resume"
-        trainer.validate()
     if processes.first:
         print(ending, flush=True)
     return finished
@@ -391,8 +389,6 @@ def main() -> None:
         sys.exit(EXIT_NOT_FINITE)
     except TrainingError as error:
         sys.exit(str(error))
-    except NuscenesError as error:
-        sys.exit(f"nuScenes: {error}")
     sys.exit(0 if finished else EXIT_STOPPED)
 
 

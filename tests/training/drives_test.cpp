@@ -1,36 +1,22 @@
-// Samples of recorded drives: which framesets are chosen, what is held back, and what a sample
-// contains.
+// What a sample of a recorded drive contains, and the track of what the appliance sent itself.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include "common/files.h"
-#include "common/image_file.h"
-#include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_index.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/training/picture_drive.h"
 #include "training/drives/drive_sample.h"
-#include "training/drives/drive_set.h"
 #include "training/drives/own_track.h"
 
 namespace bevloc::drives {
 namespace {
 
 namespace fs = std::filesystem;
+using test::demo_rig;
+using test::PictureDrive;
 using testing::HasSubstr;
-
-constexpr Duration kSecond = std::chrono::seconds(1);
-
-Rig demo_rig() {
-  const auto rig = read_rig(std::string(BEVLOC_SOURCE_DIR) + "/config/rig_demo.yaml");
-  EXPECT_TRUE(rig) << rig.error().message;
-  return *rig;
-}
 
 /// A straight line to the east on both sides of the drive.
 HdMap map_along(double length_m) {
@@ -40,178 +26,6 @@ HdMap map_along(double length_m) {
         {.element_class = ElementClass::kLaneDivider, .points = {{-100.0, y_m}, {length_m, y_m}}});
   }
   return map;
-}
-
-/// A drive to the east at 10 m/s with a picture of each camera every 0.1 s, of which only the
-/// indexes are real unless `with_pictures`.
-class PictureDrive {
- public:
-  explicit PictureDrive(int framesets, bool with_pictures = false) {
-    const Rig rig = demo_rig();
-    for (int camera = 0; camera < kCameraCount; ++camera) {
-      const fs::path directory = folder_ / std::string(kCameraNames[camera]);
-      fs::create_directories(directory);
-      const Intrinsics& lens = rig.cameras[camera].intrinsics;
-      RgbImage image(lens.width_px, lens.height_px);
-      std::ranges::fill(image.pixels, static_cast<uint8_t>(40 + camera));
-      EXPECT_TRUE(with_pictures ? write_png(image.view(), (directory / "0.png").string())
-                                : write_file(directory / "0.png", "no picture"));
-      std::ofstream index(directory / "frames.txt");
-      for (int i = 0; i < framesets; ++i) {
-        index << i << ' ' << time_of(i, camera).time_since_epoch().count() << " 0.png\n";
-      }
-    }
-    write_reference(0.0, 0.1 * framesets);
-  }
-
-  void write_reference(double from_s, double to_s, double heading_rad = 0.0) {
-    const Eigen::Vector2d velocity(10.0 * std::cos(heading_rad), 10.0 * std::sin(heading_rad));
-    std::vector<ReferenceTrajectory::Pose> poses;
-    for (double time_s = from_s - 0.1; time_s <= to_s + 0.2; time_s += 0.1) {
-      const Eigen::Vector2d place = time_s * velocity;
-      poses.push_back({kStart + from_seconds(time_s), {place.x(), place.y(), heading_rad}});
-    }
-    EXPECT_TRUE(write_file(folder_ / kReferenceFile, ReferenceTrajectory(poses).to_csv()));
-  }
-
-  /// Camera c exposes 5 ms after camera c - 1.
-  static Time time_of(int frameset, int camera) {
-    return kStart + frameset * std::chrono::milliseconds(100) +
-           camera * std::chrono::milliseconds(5);
-  }
-  const fs::path& folder() const { return folder_.path(); }
-  Result<DriveSet> open() const {
-    return DriveSet::open(
-        {.folder = folder(), .reference = ReferenceKind::kFile, .rig = demo_rig()});
-  }
-
-  static constexpr Time kStart{100 * kSecond};
-
- private:
-  test::TemporaryFolder folder_;
-};
-
-TEST(Framesets, JoinFramesOfTheSameMoment) {
-  std::array<std::vector<Time>, kCameraCount> times;
-  const auto at = [](int ms) { return Time(std::chrono::milliseconds(ms)); };
-  times[0] = {at(0), at(100), at(200)};
-  times[1] = {at(30), at(151)};
-  const auto framesets = framesets_of(times);
-  ASSERT_EQ(framesets.size(), 3U);
-  EXPECT_EQ(framesets[0].present.count(), 2U);
-  EXPECT_EQ(framesets[1].present.to_ulong(), 1U);
-  EXPECT_EQ(framesets[2].present.count(), 2U) << "49 ms apart";
-  EXPECT_EQ(framesets[2].time, at(151));
-  EXPECT_EQ(framesets[2].frame[0], 2U);
-  EXPECT_EQ(framesets[2].frame[1], 1U);
-}
-
-TEST(DriveSet, TakesAFramesetEveryMetreAndHoldsSquaresBack) {
-  const PictureDrive drive(1000);  // 1,000 m in ten squares
-  const auto set = drive.open();
-  ASSERT_TRUE(set) << set.error().message;
-  const auto& held_back = set->places(DrivePart::kHeldBack);
-  const auto& training = set->places(DrivePart::kTraining);
-  EXPECT_NEAR(static_cast<double>(held_back.size()), 200, 2) << "the fourth and the eighth square";
-  EXPECT_NEAR(static_cast<double>(set->left_out().beside_held_back), 4 * 36, 4);
-  EXPECT_EQ(held_back.size() + training.size() + set->left_out().beside_held_back +
-                set->left_out().too_close + set->left_out().without_pose,
-            1000U);
-  const auto x_of = [](const SamplePlace& place) { return static_cast<double>(place.frameset); };
-  for (const SamplePlace& one : held_back) {
-    for (const SamplePlace& other : training) {
-      ASSERT_GE(std::abs(x_of(one) - x_of(other)), 35.0);
-    }
-  }
-}
-
-std::pair<double, double> square_of(const Eigen::Vector2d& place) {
-  return {std::floor(place.x() / DriveSet::kSquare_m), std::floor(place.y() / DriveSet::kSquare_m)};
-}
-
-/// The corners of the rasters of a sample, with the priors that are furthest off.
-std::vector<Eigen::Vector2d> corners_of_rasters(const Se2& truth) {
-  std::vector<Eigen::Vector2d> corners;
-  for (const double right : {-1.0, 1.0}) {
-    for (const double back : {-1.0, 1.0}) {
-      const Se2 correction{2.0 * back, 1.0 * right, radians(2.0)};
-      for (const Se2& pose : {truth, truth * correction.inverse()}) {
-        for (const double x_m : {-30.0, 30.0}) {
-          for (const double y_m : {-15.0, 15.0})
-            corners.push_back(pose * Eigen::Vector2d(x_m, y_m));
-        }
-      }
-    }
-  }
-  return corners;
-}
-
-TEST(DriveSet, ATrainingSampleShowsNoSquareThatIsHeldBack) {
-  for (const double heading_rad : {0.0, std::atan2(15.0, 30.0), radians(45.0), radians(-63.0)}) {
-    PictureDrive drive(1000);
-    drive.write_reference(0.0, 100.0, heading_rad);
-    auto set = drive.open();
-    ASSERT_TRUE(set) << set.error().message;
-    const auto pose_of = [&set](const SamplePlace& place) {
-      const DriveIndex& index = set->drive(place.drive).index();
-      return index.reference.at(index.framesets[place.frameset].time).value();
-    };
-    std::set<std::pair<double, double>> held_back;
-    for (const SamplePlace& place : set->places(DrivePart::kHeldBack)) {
-      held_back.insert(square_of(pose_of(place).translation()));
-    }
-    ASSERT_FALSE(held_back.empty());
-    for (const SamplePlace& place : set->places(DrivePart::kTraining)) {
-      for (const Eigen::Vector2d& corner : corners_of_rasters(pose_of(place))) {
-        ASSERT_FALSE(held_back.contains(square_of(corner)))
-            << "heading " << degrees(heading_rad) << ", frameset " << place.frameset;
-      }
-    }
-  }
-}
-
-TEST(DriveSet, NamesAFolderThatCannotBeFollowed) {
-  const test::TemporaryFolder folder;
-  fs::create_directory_symlink("circle", folder / "circle");
-  const auto set = DriveSet::open({.folder = folder.path(), .reference = ReferenceKind::kFile});
-  ASSERT_FALSE(set);
-  EXPECT_THAT(set.error().message, HasSubstr("circle: found no file or folder behind this name"));
-}
-
-TEST(DriveSet, NamesAFolderThatCannotBeRead) {
-  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
-  const test::TemporaryFolder folder;
-  fs::create_directory(folder / "closed");
-  fs::permissions(folder / "closed", fs::perms::none);
-  const auto set = DriveSet::open({.folder = folder.path(), .reference = ReferenceKind::kFile});
-  fs::permissions(folder / "closed", fs::perms::owner_all);  // so that it can be removed
-  ASSERT_FALSE(set);
-  EXPECT_THAT(set.error().message, HasSubstr("closed: found no way to list this folder"));
-}
-
-TEST(DriveSet, LeavesOutWhatHasNoReference) {
-  PictureDrive drive(500);
-  drive.write_reference(20.0, 40.0);
-  const auto set = drive.open();
-  ASSERT_TRUE(set) << set.error().message;
-  EXPECT_NEAR(static_cast<double>(set->left_out().without_pose), 300, 4);
-}
-
-TEST(DriveSet, RefusesAFolderWithoutDrives) {
-  const test::TemporaryFolder folder;
-  const auto set = DriveSet::open({.folder = folder.path(), .reference = ReferenceKind::kFile});
-  ASSERT_FALSE(set);
-  EXPECT_THAT(set.error().message, HasSubstr("found no drive, wanted MCAP files"));
-  const auto missing = DriveSet::open({.folder = "/nowhere", .reference = ReferenceKind::kFile});
-  ASSERT_FALSE(missing);
-  EXPECT_THAT(missing.error().message, HasSubstr("/nowhere: found no folder"));
-}
-
-TEST(DriveSet, RefusesPicturesWithoutARig) {
-  const PictureDrive drive(10);
-  const auto set = DriveSet::open({.folder = drive.folder(), .reference = ReferenceKind::kFile});
-  ASSERT_FALSE(set);
-  EXPECT_THAT(set.error().message, HasSubstr("give --rig"));
 }
 
 class DriveSampleTest : public testing::Test {
@@ -238,6 +52,23 @@ TEST_F(DriveSampleTest, HasTheImagesOfItsCameras) {
     EXPECT_EQ(sample_.images[middle], camera == 4 ? 0 : 40 + camera);
   }
   EXPECT_EQ(sample_.cameras, choice_.cameras);
+}
+
+TEST(DriveSample, KeepsTheCamerasOfAFramesetThatHasNoneOfTheWantedOnes) {
+  const PictureDrive drive(20, true);
+  for (const std::string_view camera : kCameraNames) {
+    if (camera != "back") fs::remove_all(drive.folder() / camera);
+  }
+  auto set = drive.open();
+  ASSERT_TRUE(set) << set.error().message;
+  const HdMap map = map_along(500.0);
+  const MapIndex index(map);
+  DriveSampleMaker maker(*set, index);
+  DriveSample sample;
+  const SampleChoice choice{{1.2, -0.6, 0.02}, CameraMask(0b101111)};
+  const Status made = maker.make(set->places(DrivePart::kTraining).front(), choice, sample);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(sample.cameras, CameraMask(0b010000));
 }
 
 TEST_F(DriveSampleTest, PutsThePriorBesideTheReferenceByTheCorrection) {

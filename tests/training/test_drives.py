@@ -8,8 +8,10 @@ import io
 import tempfile
 import unittest
 from pathlib import Path
+from unittest.mock import patch
 
 import torch
+import yaml
 from PIL import Image
 
 from training.config import TrainingConfig
@@ -24,14 +26,14 @@ from training.sources import drive_batches, training_stream, validation_set
 ROOT = Path(__file__).parent.parent.parent
 RIG = ROOT / "config/rig_demo.yaml"
 CAMERAS = ("front_left", "front", "front_right", "back_left", "back", "back_right")
-LENGTH_M, SPACING_M = 500, 5
+LENGTH_M, SPACING_M = 1000, 10
 STEP_NS = 200_000_000
 
 
-def write_drive(folder: Path) -> None:
+def write_drive(folder: Path, length_m: int = LENGTH_M) -> None:
     """A drive to the east with one picture per camera that every frame shows, and a map."""
     size = (640, 360)
-    frames = LENGTH_M // SPACING_M
+    frames = length_m // SPACING_M
     for number, camera in enumerate(CAMERAS):
         (folder / camera).mkdir(parents=True)
         Image.new("RGB", size, (40 + number, 90, 90)).save(folder / camera / "0.png")
@@ -83,21 +85,50 @@ class DrivesTest(unittest.TestCase):
         self.addCleanup(stream.close)
         return stream
 
-    def stream_that_skips(self) -> DriveStream:
+    def stream_that_skips(self, first: int = 0) -> DriveStream:
         drives = dataclasses.replace(self.drives, skip_bad=True)
-        stream = DriveStream(drives, "training", 5, 0, 1, 0.0)
+        stream = DriveStream(drives, "training", 5, first, 1, 0.0)
         self.addCleanup(stream.close)
         return stream
 
-    def test_every_fourth_square_is_held_back(self) -> None:
-        training, held_back = self.drives.counts()
-        self.assertEqual(held_back, 100 // SPACING_M)
-        # Of 500 m, 100 are held back, and 36 on both sides of these are left out.
-        self.assertAlmostEqual(training, (LENGTH_M - 100 - 2 * 36) // SPACING_M, delta=2)
-        self.assertEqual(sum(map(len, drive_batches(self.drives, "held-back", 999, 1))), held_back)
+    def spoil(self, camera: str, frames: int) -> None:
+        """Damages the first pictures of a camera."""
+        index = self.root / "drive" / camera / "frames.txt"
+        lines = index.read_text().splitlines()
+        lines[:frames] = [line.replace("0.png", "bad.png") for line in lines[:frames]]
+        index.write_text("\n".join(lines) + "\n")
+        (self.root / "drive" / camera / "bad.png").write_bytes(b"no picture")
+
+    def test_every_fourth_square_is_set_aside(self) -> None:
+        samples = self.drives.facts().samples
+        self.assertEqual(list(samples), ["training", "calibration", "held-back"])
+        # Of 1,000 m, 100 are held back and 100 for calibration; 36 on both sides are left out.
+        self.assertAlmostEqual(
+            samples["training"], (LENGTH_M - 200 - 4 * 36) // SPACING_M, delta=2
+        )
+        for part in ("calibration", "held-back"):
+            self.assertEqual(samples[part], 100 // SPACING_M)
+            self.assertEqual(
+                sum(map(len, drive_batches(self.drives, part, 999, 1))), samples[part]
+            )
+
+    def test_drives_through_too_few_squares_are_refused_before_training(self) -> None:
+        write_drive(self.root / "short", 500)
+        config = dataclasses.replace(self.config(0.0), recordings=str(self.root / "short"))
+        with self.assertRaisesRegex(SamplerError, "ended with status 2"):
+            validation_set(config)
+
+    def test_the_facts_have_the_ranges_of_the_cameras(self) -> None:
+        cameras = yaml.safe_load(RIG.read_text())["cameras"].values()
+        focal_px = [c["fx_px"] * 320 / c["image_size_px"][0] for c in cameras]
+        height_m = [c["vehicle_from_camera"]["translation_m"][2] for c in cameras]
+        facts = self.drives.facts()
+        for found, values in ((facts.focal_range_px, focal_px), (facts.height_range_m, height_m)):
+            self.assertAlmostEqual(found[0], min(values), places=3)
+            self.assertAlmostEqual(found[1], max(values), places=3)
 
     def test_an_epoch_has_each_sample_once(self) -> None:
-        training, _ = self.drives.counts()
+        training = self.drives.facts().samples["training"]
         rasters = self.stream().next(2 * training).raster_truth.flatten(1)
         first = {bytes(row.numpy()) for row in rasters[:training]}
         self.assertEqual(first, {bytes(row.numpy()) for row in rasters[training:]})
@@ -115,16 +146,24 @@ class DrivesTest(unittest.TestCase):
         self.assertTrue(torch.equal(torch.stack(parts, 1).flatten(0, 1), corrections))
 
     def test_a_bad_sample_ends_the_run_or_is_replaced(self) -> None:
-        index = self.root / "drive/back/frames.txt"
-        lines = index.read_text().splitlines()
-        for i in range(0, 60):
-            lines[i] = lines[i].replace("0.png", "bad.png")
-        index.write_text("\n".join(lines) + "\n")
-        (self.root / "drive/back/bad.png").write_bytes(b"no picture")
+        self.spoil("back", 70)
         with self.assertRaisesRegex(SamplerError, "bevloc_drive_sampler: ended with status 1"):
             self.stream().next(60)
         good = {bytes(row.numpy()) for row in self.stream_that_skips().next(60).raster_truth}
-        self.assertLess(len(good), 40)  # of 65 samples, more than half are bad
+        self.assertLess(len(good), 20)  # of 66 samples, 49 are bad
+
+    def test_a_run_that_skips_bad_samples_can_be_resumed(self) -> None:
+        clean = self.stream().next(12)
+        self.spoil("front_left", 70)
+        whole, resumed = self.stream_that_skips().next(12), self.stream_that_skips(4).next(8)
+        self.assertTrue(torch.equal(whole.correction, clean.correction))
+        for name, tensor in vars(resumed).items():
+            self.assertTrue(torch.equal(tensor, getattr(whole, name)[4:]), name)
+
+    def test_drives_without_a_good_sample_end_the_run(self) -> None:
+        self.spoil("front_left", LENGTH_M // SPACING_M)
+        with self.assertRaisesRegex(SamplerError, "ended with status 1"):
+            self.stream_that_skips().next(1)
 
     def test_refuses_a_missing_map(self) -> None:
         drives = Drives(self.drives.recordings, str(self.root / "no.osm"), str(RIG))
@@ -162,6 +201,10 @@ class DrivesTest(unittest.TestCase):
     def test_validates_where_nothing_is_trained(self) -> None:
         batches = validation_set(self.config(0.0))
         self.assertEqual(sum(map(len, batches)), 3)
+        with patch("training.sources.drive_batches", return_value=[]) as read:
+            validation_set(self.config(0.0))
+        # The report has the places that are held back.
+        self.assertEqual(read.call_args.args[1], "calibration")
 
     def test_options_need_each_other(self) -> None:
         for wrong in (
@@ -178,7 +221,7 @@ class DrivesTest(unittest.TestCase):
     def test_reports_both_models(self) -> None:
         model = ROOT / "models/nano.onnx"
         text = report(model, model, self.drives, 4, 1)
-        self.assertIn("4 of them used here", text)
+        self.assertIn("10 for calibration, 10 held back, 4 of them used here", text)
         self.assertIn("do not trust these figures", text)
         rows = [line.split("|")[2:4] for line in text.splitlines() if line.startswith("| IoU")]
         self.assertEqual(len(rows), len(CLASSES))

@@ -1,10 +1,13 @@
 """Tests quantization and the ONNX files, on an untrained network."""
 
+import contextlib
 import copy
+import io
 import math
 import tempfile
 import unittest
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import onnx
@@ -13,10 +16,12 @@ from onnx import numpy_helper
 
 from tests.training.synthetic import SyntheticStream
 from tests.training.untrained import untrained_network
+from training import exported_network
+from training.config import TrainingConfig
 from training.data import Batch, view_table
 from training.errors import TrainingError
 from training.evaluate import float_inference
-from training.export_onnx import build_model, rig_statements
+from training.export_onnx import build_model, check_source, fitting_batches, rig_statements
 from training.graph import Walk, check_exportable, folded_convolutions
 from training.models import PRESETS, BevNetwork
 from training.models.config import network_config
@@ -36,6 +41,7 @@ from training.quantize import (
     run,
 )
 from training.runtime import NativeNetwork
+from training.sampler_process import DriveFacts, Drives
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -224,6 +230,67 @@ class Export(unittest.TestCase):
         widest, narrowest = math.radians(90 / 2), math.radians(50 / 2)
         self.assertAlmostEqual(least, 160 / math.tan(widest), delta=0.1)
         self.assertAlmostEqual(most, 160 / math.tan(narrowest), delta=0.2)
+
+    def test_a_model_trained_on_drives_states_their_rigs_too(self):
+        facts = DriveFacts({}, (200.0, 600.0), (1.2, 3.1))
+        for nuisances, lowest_m in (("usual", 1.2), ("street", 0.6)):
+            statements = rig_statements(nuisances, facts)
+            least, most = map(float, statements["bevloc.rig.focal_range_px"].split(" "))
+            # The least one is that of the demo rig's back camera, or of the random rigs.
+            self.assertLess(least, 162)
+            self.assertGreaterEqual(most, 600)
+            self.assertLess(most, 640)
+            least, most = map(float, statements["bevloc.rig.height_range_m"].split(" "))
+            self.assertLessEqual(least, lowest_m)
+            self.assertGreater(least, 0.9 * lowest_m)
+            self.assertGreaterEqual(most, 3.1)
+
+
+class Sources(unittest.TestCase):
+    """Which runs are exported, and with which samples."""
+
+    drives = Drives("drives", "town.osm")
+    path = Path("run/checkpoint.pt")
+
+    def refusal(self, config: TrainingConfig) -> str:
+        with self.assertRaises(TrainingError) as caught:
+            check_source(config.as_dict(), self.path, None)
+        return str(caught.exception)
+
+    def test_a_run_on_real_data_is_not_exported_as_one_on_the_simulator(self):
+        said = self.refusal(TrainingConfig(nuscenes="/data/nuscenes"))
+        self.assertIn("run/checkpoint.pt: found a run on nuScenes (/data/nuscenes)", said)
+        said = self.refusal(TrainingConfig(recordings="mine", map="town.osm"))
+        self.assertIn("found a run on recorded drives", said)
+        self.assertIn("give --recordings mine --map town.osm", said)
+
+    def test_other_runs_are_exported(self):
+        check_source(TrainingConfig().as_dict(), self.path, None)
+        check_source({}, self.path, None)  # an old checkpoint
+        check_source(TrainingConfig(recordings="mine", map="m").as_dict(), self.path, self.drives)
+
+    def test_ranges_and_scales_are_fitted_on_samples_that_training_does_not_use(self):
+        with patch("training.export_onnx.drive_batches", return_value=[]) as read:
+            fitting_batches(self.drives, "street", 8, 2)
+        read.assert_called_once_with(self.drives, "calibration", 8, 2)
+
+    def test_the_score_is_fitted_on_usual_samples(self):
+        with patch("training.export_onnx.calibration_batches", side_effect=[["a"], ["b"]]) as read:
+            self.assertEqual(fitting_batches(None, "street", 8, 2), (["a"], ["b"]))
+        self.assertEqual([call.args for call in read.call_args_list], [(8, 2, "street"), (8, 2)])
+
+    def test_a_network_without_export_is_refused_before_training(self):
+        def name_of(*options: str) -> str:
+            said = io.StringIO()
+            arguments = ["program", "--samples", "8", *options]
+            with patch("sys.argv", arguments), contextlib.redirect_stdout(said):
+                exported_network.main()
+            return said.getvalue().strip()
+
+        self.assertEqual(name_of(), "nano")
+        self.assertEqual(name_of("--network", "small", "--view", "lut"), "small-lut")
+        with self.assertRaisesRegex(TrainingError, "'small' cannot be exported"):
+            name_of("--network", "small")
 
 
 if __name__ == "__main__":

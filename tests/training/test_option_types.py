@@ -52,6 +52,9 @@ class Programs(unittest.TestCase):
         self.assertIn("--write: found --nuscenes too", self.refusal(evaluate.main, *both))
         alone = ("checkpoint.pt", "--scenes", "val.txt")
         self.assertIn("--scenes: found no --nuscenes", self.refusal(evaluate.main, *alone))
+        alone = ("checkpoint.pt", "--nuscenes-version", "v1.0-mini")
+        said = self.refusal(evaluate.main, *alone)
+        self.assertIn("--nuscenes-version: found no --nuscenes", said)
 
     def test_a_real_frame_needs_its_rig(self):
         said = self.refusal(picture_statistics.main, "--real", "pictures")

@@ -119,6 +119,13 @@ class Patiences(unittest.TestCase):
         patience.resume(self.watched("joint_x_mae", [0.1, 0.2]).state())
         self.assertEqual((patience.best, patience.waited), (None, 0))
 
+    def test_the_count_restarts_after_other_scenes(self):
+        state = self.watched("joint_x_mae", [0.1, 0.2]).state()
+        del state["scenes"]  # as in a checkpoint of older code
+        patience = Patience("joint_x_mae", 2)
+        patience.resume(state)
+        self.assertEqual((patience.best, patience.waited), (None, 0))
+
     def test_a_bias_is_refused_as_the_figure(self):
         with self.assertRaisesRegex(TrainingError, "'joint_x_bias', wanted one of"):
             Patience("joint_x_bias", 1).check(["joint"], ["x"], ["divider"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import tempfile
 import unittest
 from dataclasses import replace
@@ -9,11 +10,11 @@ from pathlib import Path
 
 import torch
 
-from tests.training.nuscenes_tree import SAMPLES_PER_SCENE, write_tree
-from training.config import TrainingConfig
+from tests.training.nuscenes_tree import SAMPLES_PER_SCENE, VERSION, write_tree
+from training.config import FIRST_VALIDATION_SEED, TrainingConfig
 from training.data import NUISANCES, Batch
 from training.distributed import WHOLE, Share
-from training.errors import TrainingError
+from training.errors import TrainingError, run_program
 from training.nuscenes.errors import NuscenesError
 from training.sources import (
     nuscenes_batches,
@@ -67,10 +68,33 @@ class Sources(unittest.TestCase):
         rasters = torch.cat([batch.raster_truth for batch in batches]).flatten(1)
         self.assertEqual(len(rasters.unique(dim=0)), SCENES * SAMPLES_PER_SCENE)
 
+    def test_evaluation_reads_the_named_version(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write_tree(Path(folder))
+            shutil.copytree(Path(folder) / VERSION, Path(folder) / "v1.0-other")
+            with self.assertRaisesRegex(NuscenesError, "v1.0-other, wanted one folder"):
+                nuscenes_batches(folder, "", 5.0, 1)
+            batches = list(nuscenes_batches(folder, "", 5.0, 1, "v1.0-other"))
+        self.assertEqual(sum(map(len, batches)), SCENES * SAMPLES_PER_SCENE)
+
+    def test_a_bad_data_set_ends_a_program_with_one_line(self):
+        def main() -> None:
+            nuscenes_batches(str(self.root / "nowhere"), "", 5.0, 1)
+
+        with self.assertRaisesRegex(SystemExit, "nowhere: found nothing, wanted one folder"):
+            run_program(main)
+
     def test_validation_does_not_read_training_scenes_by_default(self):
         self.assertEqual(validation_set(TrainingConfig(nuscenes=str(self.root))), [])
-        simulated = validation_set(TrainingConfig(validation_samples=3))
-        self.assertTrue(torch.equal(simulated[0].images, simulator_batches(3, 1)[0].images))
+        simulated = validation_set(TrainingConfig(validation_samples=3))[0].images
+        expected = simulator_batches(3, 1, FIRST_VALIDATION_SEED)[0].images
+        self.assertTrue(torch.equal(simulated, expected))
+
+    def test_validation_does_not_read_the_scenes_of_the_model_card(self):
+        simulated = validation_set(TrainingConfig(validation_samples=3))[0].images
+        card = simulator_batches(3, 1)[0].images
+        for mine in simulated:
+            self.assertFalse(any(torch.equal(mine, other) for other in card))
 
     def test_a_scene_is_trained_on_or_measured(self):
         (self.root / "train.txt").write_text("scene-0001\nscene-0002\n")

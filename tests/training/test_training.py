@@ -20,7 +20,8 @@ from training.model import real_images, real_raster
 from training.models import PRESETS, BevNetwork
 from training.models.layers import bias_of
 from training.models.view_lut import gather_views
-from training.train import Trainer
+from training.optimiser import learning_rate
+from training.train import Trainer, noise_seed
 
 
 def setUpModule():
@@ -85,6 +86,26 @@ class Resuming(TemporaryRuns):
         self.assertTrue(torch.equal(weights(resumed.net), weights(uninterrupted.net)))
         self.assertTrue(torch.equal(weights(resumed.average), weights(uninterrupted.average)))
 
+    def dropout(self, folder: str, **options: Any) -> list[float]:
+        """What each step of a run draws where the network drops values."""
+        run = trainer(folder, samples=4, **options)
+        drawn: list[float] = []
+        run.net.register_forward_pre_hook(lambda *_: drawn.append(torch.rand(1).item()))
+        run.run()
+        return drawn
+
+    def test_a_resumed_run_drops_the_values_of_an_uninterrupted_one(self):
+        uninterrupted = self.dropout(self.folder())
+        self.assertEqual(len(set(uninterrupted)), 2)
+        parts = self.folder()
+        drawn = self.dropout(parts, stop_after_minutes=1e-9) + self.dropout(parts, resume=True)
+        self.assertEqual(drawn, uninterrupted)
+
+    def test_steps_and_processes_have_their_own_noise(self):
+        config = TrainingConfig()
+        seeds = {noise_seed(config, step, rank) % 2**32 for step in range(100) for rank in range(8)}
+        self.assertEqual(len(seeds), 800)
+
     def test_a_run_replaces_no_other_run(self):
         run = self.folder()
         trainer(run).save()
@@ -119,12 +140,13 @@ class LearningRate(TemporaryRuns):
         run = trainer(self.folder(), anneal_from=0.5, warm_up_steps=0)
         start, end = (run.config.learning_rate * factor for factor in (1.0, run.config.final_rate))
         for spent, wanted in ((0.0, start), (0.5, start), (0.75, (start + end) / 2), (1.0, end)):
-            self.assertAlmostEqual(run._learning_rate(spent), wanted)
+            self.assertAlmostEqual(learning_rate(run.config, run.step, spent), wanted)
 
     def test_need_not_fall_nor_warm_up(self):
         run = trainer(self.folder(), anneal_from=1.0, warm_up_steps=0)
         for spent in (0.0, 0.5, 1.0):
-            self.assertEqual(run._learning_rate(spent), run.config.learning_rate)
+            found = learning_rate(run.config, run.step, spent)
+            self.assertEqual(found, run.config.learning_rate)
 
 
 class Networks(TemporaryRuns):
@@ -173,6 +195,12 @@ class NotFinite(TemporaryRuns):
             run.save()
         self.assertFalse(run.checkpoint_path.exists())
 
+    def test_a_nan_weight_is_not_measured(self):
+        run = trainer(self.folder(), [SyntheticStream(0).next(1)])
+        nn.init.constant_(bias_of(run.net.head.second), math.nan)
+        with self.assertRaisesRegex(NotFiniteError, "head.second.bias is not finite"):
+            run.validate()
+
 
 class EarlyStop(TemporaryRuns):
     def run_with(self, folder: str, figures: list[float], **options: Any) -> Trainer:
@@ -195,6 +223,24 @@ class EarlyStop(TemporaryRuns):
         self.assertEqual(resumed.step, 4)
         patient = self.run_with(folder, [0.5], resume=True, patience=3)
         self.assertEqual(patient.step, 5)
+
+    def test_a_run_in_parts_counts_the_last_validation_of_each(self):
+        folder, validation = self.folder(), [SyntheticStream(0).next(1)]
+        # Each part trains one step and validates only at its end.
+        options: dict[str, Any] = {"validation_minutes": 1e9, "stop_after_minutes": 1e-9}
+        for step, (figure, finished) in enumerate(((0.5, False), (0.6, False), (0.6, True)), 1):
+            run = trainer(folder, validation, patience=2, samples=20, resume=True, **options)
+            with patch("training.train.evaluate", return_value={"joint_x_mae": figure}), patch(
+                "training.train.summary", return_value=""
+            ), redirect_stdout(io.StringIO()):
+                self.assertEqual(run.run(), finished)
+            self.assertEqual(run.step, step)
+
+    def test_a_finished_run_measures_its_last_weights_once(self):
+        run = trainer(self.folder(), [SyntheticStream(0).next(1)], samples=4)
+        with patch.object(run, "_measure") as measure:
+            self.assertTrue(run.run())
+        measure.assert_called_once()
 
     def test_a_figure_that_is_not_measured_is_refused(self):
         validation = [SyntheticStream(0).next(1)]

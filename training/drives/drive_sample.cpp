@@ -84,10 +84,8 @@ Status DriveSampleMaker::read_images(const SamplePlace& place, const CameraMask&
   RecordedDrive& drive = set_.drive(place.drive);
   const FramesetPlace& frameset = drive.index().framesets[place.frameset];
   sample.cameras = frameset.present & wanted;
+  if (sample.cameras.none()) sample.cameras = frameset.present;
   sample.images.assign(kCameraCount * kNetworkImageSize, 0);
-  if (sample.cameras.none()) {
-    return fail("{}: found no frame of a wanted camera, wanted one", name_of(drive.index(), place));
-  }
   for (int camera = 0; camera < kCameraCount; ++camera) {
     if (!sample.cameras[camera]) continue;
     const auto time =

@@ -28,8 +28,9 @@ struct DriveSample {
 
 /// How a training sample differs from its recorded frameset.
 struct SampleChoice {
-  Se2 correction;      ///< dT = T0^-1 T
-  CameraMask cameras;  ///< others are black, as missing ones
+  Se2 correction;  ///< dT = T0^-1 T
+  /// Others are black, as missing ones. A frameset that has none of these keeps all that it has.
+  CameraMask cameras;
 };
 
 /// Draws the choice number `sample` of a seed: a correction of up to 2 m, 1 m and 2 degrees, and
@@ -41,7 +42,7 @@ class DriveSampleMaker {
  public:
   DriveSampleMaker(DriveSet& set, const MapIndex& map);
 
-  /// Fails if an image that the choice wants is missing or damaged, if a camera exposed more than
+  /// Fails if an image that the sample needs is missing or damaged, if a camera exposed more than
   /// kWidestSpread from the others, if the reference has no pose there, or if the map has nothing
   /// there. The reference time is the earliest exposure.
   Status make(const SamplePlace& place, const SampleChoice& choice, DriveSample& sample);

@@ -26,6 +26,7 @@ using bevloc::drives::DrivePart;
 using bevloc::drives::DriveSample;
 using bevloc::drives::DriveSampleMaker;
 using bevloc::drives::DriveSet;
+using bevloc::drives::kDriveParts;
 using bevloc::drives::ReferenceKind;
 using bevloc::drives::SamplePlace;
 
@@ -58,10 +59,9 @@ void add_options(CLI::App& app, Options& options) {
        {"truth", ReferenceKind::kTruth}},
       "Reference poses: file (reference.csv), own (where bevloc was sure) or truth (of a "
       "simulated drive)");
-  bevloc::evaluation::add_choice(
-      app, "--part", options.part,
-      {{"training", DrivePart::kTraining}, {"held-back", DrivePart::kHeldBack}},
-      "Places: training or held-back");
+  bevloc::evaluation::add_choice(app, "--part", options.part,
+                                 {kDriveParts.begin(), kDriveParts.end()},
+                                 "Places: training, calibration or held-back");
   app.add_option("--first-seed", options.first_seed, "Seed of order, priors and missing cameras")
       ->check(bevloc::whole_number());
   app.add_option("--first-sample", options.first_sample, "Number of the first sample to write")
@@ -71,16 +71,25 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--drop-camera-probability", options.drop_camera_probability,
                  "Probability that a sample lacks one or two cameras")
       ->check(bevloc::number_between(0.0, 1.0));
-  app.add_flag("--skip-bad", options.skip, "The next good sample replaces a bad one");
-  app.add_flag("--count", options.count, "Print the numbers of samples of both parts, and end");
+  app.add_flag("--skip-bad", options.skip, "The next good place replaces that of a bad sample");
+  app.add_flag("--count", options.count,
+               "Print the number of samples of each part, and the ranges of the network cameras' "
+               "focal lengths and heights, and end");
   app.add_flag("--check", options.check, "Read every sample once, name the bad ones, and end");
 }
 
-/// Reads every sample of both parts once.
+void print_counts(const DriveSet& set) {
+  for (const auto& [name, part] : kDriveParts) fmt::print("{} {}\n", name, set.places(part).size());
+  const auto ranges = set.camera_ranges();
+  fmt::print("focal_px {:.6g} {:.6g}\n", ranges.least_focal_px, ranges.most_focal_px);
+  fmt::print("height_m {:.6g} {:.6g}\n", ranges.least_height_m, ranges.most_height_m);
+}
+
+/// Reads every sample of all parts once.
 int check(DriveSet& set, DriveSampleMaker& maker) {
   size_t bad = 0;
   DriveSample sample;
-  for (const DrivePart part : {DrivePart::kTraining, DrivePart::kHeldBack}) {
+  for (const auto& [name, part] : kDriveParts) {
     for (const SamplePlace& place : set.places(part)) {
       const auto made = maker.make(place, bevloc::drives::random_choice(0, 0, 0.0), sample);
       if (made) continue;
@@ -90,20 +99,57 @@ int check(DriveSet& set, DriveSampleMaker& maker) {
   }
   const auto& left_out = set.left_out();
   fmt::print(
-      "{} drives: {} samples for training, {} held back, {} of them bad\n"
+      "{} drives: {} samples for training, {} for calibration, {} held back, {} of them bad\n"
       "left out: {} framesets without a reference pose, {} close to the one before, {} beside a "
-      "place that is held back\n",
+      "place of another part\n",
       set.drives(), set.places(DrivePart::kTraining).size(),
-      set.places(DrivePart::kHeldBack).size(), bad, left_out.without_pose, left_out.too_close,
-      left_out.beside_held_back);
+      set.places(DrivePart::kCalibration).size(), set.places(DrivePart::kHeldBack).size(), bad,
+      left_out.without_pose, left_out.too_close, left_out.beside_other_part);
   return bad == 0 ? 0 : kExitBadSamples;
 }
 
-/// The places of one epoch in a random order.
-std::vector<SamplePlace> shuffled(std::vector<SamplePlace> places, uint64_t seed, uint64_t epoch) {
-  bevloc::sim::Random random(bevloc::sim::seed_for(seed, "order") + epoch);
-  for (size_t i = places.size(); i > 1; --i) std::swap(places[i - 1], places[random.index(i)]);
-  return places;
+/// An endless order of places: each place once in every epoch, in another random order.
+class EndlessOrder {
+ public:
+  EndlessOrder(const std::vector<SamplePlace>& places, uint64_t seed)
+      : places_(places), seed_(seed) {}
+
+  const SamplePlace& at(uint64_t number) {
+    const uint64_t epoch = number / places_.size();
+    if (epoch != epoch_) {
+      epoch_ = epoch;
+      shuffle(epoch);
+    }
+    return shuffled_[number % places_.size()];
+  }
+
+ private:
+  void shuffle(uint64_t epoch) {
+    shuffled_ = places_;
+    bevloc::sim::Random random(bevloc::sim::seed_for(seed_, "order") + epoch);
+    for (size_t i = places_.size(); i > 1; --i) {
+      std::swap(shuffled_[i - 1], shuffled_[random.index(i)]);
+    }
+  }
+
+  const std::vector<SamplePlace>& places_;
+  const uint64_t seed_;
+  std::optional<uint64_t> epoch_;
+  std::vector<SamplePlace> shuffled_;
+};
+
+/// Makes a sample that depends on its number alone. With --skip-bad, the next good place in the
+/// order replaces that of a bad sample. Returns whether there was a good one.
+bool make_sample(const Options& options, uint64_t number, EndlessOrder& order,
+                 DriveSampleMaker& maker, uint64_t most_places, DriveSample& sample) {
+  const auto choice =
+      bevloc::drives::random_choice(options.first_seed, number, options.drop_camera_probability);
+  for (uint64_t ahead = 0; ahead < most_places; ++ahead) {
+    const auto made = maker.make(order.at(number + ahead), choice, sample);
+    if (made) return true;
+    fmt::print(stderr, "bad sample: {}\n", made.error().message);
+  }
+  return false;
 }
 
 /// Writes samples without end. Returns only if a sample is bad or writing fails.
@@ -113,28 +159,17 @@ int write_samples(const Options& options, DriveSet& set, DriveSampleMaker& maker
     fmt::print(stderr,
                "{}: found no sample of this part, wanted some; the drives need reference poses and "
                "at least {} squares of {:g} m\n",
-               options.recordings, DriveSet::kHeldBackEvery, DriveSet::kSquare_m);
+               options.recordings, DriveSet::kFewestSquares, DriveSet::kSquare_m);
     return bevloc::kBadInput;
   }
   if (!bevloc::write_output(bevloc::sample_stream_header(), kProgram)) return kExitBadSamples;
-  std::vector<SamplePlace> order;
+  EndlessOrder order(places, options.first_seed);
+  // Two lengths of the part contain at least one whole epoch.
+  const uint64_t most_places = options.skip ? 2 * places.size() : 1;
   std::vector<uint8_t> record;
   DriveSample sample;
-  size_t bad_in_a_row = 0;
-  std::optional<uint64_t> epoch;
   for (uint64_t i = options.first_sample;; i += options.stride) {
-    if (epoch != i / places.size()) {
-      epoch = i / places.size();
-      order = shuffled(places, options.first_seed, *epoch);
-    }
-    const auto choice =
-        bevloc::drives::random_choice(options.first_seed, i, options.drop_camera_probability);
-    if (const auto made = maker.make(order[i % places.size()], choice, sample); !made) {
-      fmt::print(stderr, "bad sample: {}\n", made.error().message);
-      if (!options.skip || ++bad_in_a_row == places.size()) return kExitBadSamples;
-      continue;
-    }
-    bad_in_a_row = 0;
+    if (!make_sample(options, i, order, maker, most_places, sample)) return kExitBadSamples;
     bevloc::write_sample_record(sample.content(), record);
     if (!bevloc::write_output(record, kProgram)) return kExitBadSamples;
   }
@@ -154,8 +189,7 @@ int run(const Options& options) {
   auto set = DriveSet::open(chosen);
   if (!set) return refuse(set.error());
   if (options.count) {
-    fmt::print("{} {}\n", set->places(DrivePart::kTraining).size(),
-               set->places(DrivePart::kHeldBack).size());
+    print_counts(*set);
     return 0;
   }
   const auto map = bevloc::load_map(options.map);

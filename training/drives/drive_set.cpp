@@ -8,6 +8,7 @@
 
 #include "common/mcap/reader.h"
 #include "firmware/recording/topics.h"
+#include "pipeline/preprocessing/network_camera.h"
 #include "training/drives/folder_drive.h"
 
 namespace bevloc::drives {
@@ -15,6 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Square = std::pair<long, long>;
+/// The squares that are not for training.
+using SetAside = std::map<Square, DrivePart>;
 
 Square square_at(const Eigen::Vector2d& place) {
   return {std::lround(std::floor(place.x() / DriveSet::kSquare_m)),
@@ -144,6 +147,16 @@ std::vector<std::pair<size_t, Se2>> spaced_framesets(const DriveIndex& drive, Le
   return chosen;
 }
 
+/// The part of a place; none if its sample would show a place of a later part.
+std::optional<DrivePart> part_at(const Eigen::Vector2d& place, const SetAside& set_aside) {
+  const auto own = set_aside.find(square_at(place));
+  const DrivePart part = own == set_aside.end() ? DrivePart::kTraining : own->second;
+  for (const auto& [square, other] : set_aside) {
+    if (other > part && distance_to(square, place) < DriveSet::kSeen_m) return std::nullopt;
+  }
+  return part;
+}
+
 }  // namespace
 
 Result<DriveSet> DriveSet::open(const DriveSetOptions& options) {
@@ -170,31 +183,40 @@ Result<DriveSet> DriveSet::open(const DriveSetOptions& options) {
 void DriveSet::choose_samples() {
   std::vector<std::vector<std::pair<size_t, Se2>>> chosen;
   std::set<Square> visited;
-  std::set<Square> held_back;
+  SetAside set_aside;
   for (const auto& drive : drives_) {
     chosen.push_back(spaced_framesets(drive->index(), left_out_));
     for (const auto& [frameset, pose] : chosen.back()) {
       const Square square = square_at(pose.translation());
       if (!visited.insert(square).second) continue;
-      if (visited.size() % kHeldBackEvery == 0) held_back.insert(square);
+      if (visited.size() % kSetAsideEvery != 0) continue;
+      const bool holds_back = set_aside.size() % 2 == 0;
+      set_aside.emplace(square, holds_back ? DrivePart::kHeldBack : DrivePart::kCalibration);
     }
   }
   for (size_t drive = 0; drive < chosen.size(); ++drive) {
     for (const auto& [frameset, pose] : chosen[drive]) {
-      const Eigen::Vector2d place = pose.translation();
-      if (held_back.contains(square_at(place))) {
-        held_back_.push_back({drive, frameset});
-        continue;
-      }
-      const bool shows_held_back = std::ranges::any_of(
-          held_back, [&](const Square& square) { return distance_to(square, place) < kSeen_m; });
-      if (shows_held_back) {
-        ++left_out_.beside_held_back;
+      if (const auto part = part_at(pose.translation(), set_aside)) {
+        places_[static_cast<size_t>(*part)].push_back({drive, frameset});
       } else {
-        training_.push_back({drive, frameset});
+        ++left_out_.beside_other_part;
       }
     }
   }
+}
+
+CameraRanges DriveSet::camera_ranges() const {
+  std::vector<double> focal_px;
+  std::vector<double> height_m;
+  for (const auto& drive : drives_) {
+    for (const CameraModel& camera : network_rig(drive->index().rig).cameras) {
+      focal_px.push_back(camera.intrinsics.fx_px);
+      height_m.push_back(camera.vehicle_from_camera.translation_m.z());
+    }
+  }
+  const auto [least_px, most_px] = std::ranges::minmax(focal_px);
+  const auto [least_m, most_m] = std::ranges::minmax(height_m);
+  return {least_px, most_px, least_m, most_m};
 }
 
 }  // namespace bevloc::drives

@@ -27,7 +27,7 @@ Result<Time> FolderDrive::read(const FramesetPlace& frameset, int camera,
   if (image_.width != lens.width_px || image_.height != lens.height_px) {
     image_ = RgbImage(lens.width_px, lens.height_px);
   }
-  if (Status status = read_image(frame.file.string(), image_); !status) {
+  if (Status status = read_camera_picture(frame.file.string(), image_); !status) {
     return tl::unexpected(status.error());
   }
   if (Status status = preprocessor.run(ImageView(image_.view()), planes); !status) {

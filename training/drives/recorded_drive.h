@@ -21,7 +21,7 @@ inline constexpr Duration kWidestSpread = std::chrono::milliseconds(50);
 /// Where the frames of a frameset are in their drive.
 struct FramesetPlace {
   Time time;                                 ///< when its earliest exposure started
-  CameraMask present{};                      ///< the cameras that have a frame
+  CameraMask present{};                      ///< the cameras that have a frame: at least one
   std::array<size_t, kCameraCount> frame{};  ///< its number among the camera's frames
 };
 

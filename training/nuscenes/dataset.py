@@ -69,11 +69,11 @@ class NuscenesDataset:
         line_width_cells: float = raster.DEFAULT_LINE_WIDTH_CELLS,
     ) -> None:
         """scenes: file with scene names, None: all. version: v1.0-*, needed if there are several.
-        Unreadable tables raise NuscenesError here; a defect of a sample raises it when that sample
-        is read. ValueError for an impossible line width."""
+        Unreadable tables and an impossible line width raise NuscenesError here; a defect of a
+        sample raises it when that sample is read."""
         if not 0 < line_width_cells <= raster.WIDEST_LINE_CELLS:
             wanted = f"more than 0 and at most {raster.WIDEST_LINE_CELLS} cells"
-            raise ValueError(f"line width: found {line_width_cells}, wanted {wanted}")
+            raise NuscenesError(f"line width: found {line_width_cells}, wanted {wanted}")
         names = read_scene_names(scenes) if scenes else None
         self._root = root
         self._line_width_cells = line_width_cells

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from training.errors import TrainingError
 
-class NuscenesError(ValueError):
+
+class NuscenesError(TrainingError, ValueError):
     """The message is one sentence: the place, what was found, what was wanted."""
 
     kind = "error"

@@ -41,7 +41,7 @@ class NuscenesStream:
         if on_error not in ON_ERROR:
             raise ValueError(f"on_error: found '{on_error}', wanted one of {', '.join(ON_ERROR)}")
         if len(dataset) == 0:
-            raise ValueError("found no sample in the scenes, wanted at least one")
+            raise NuscenesError("found no sample in the scenes, wanted at least one")
         self._dataset = dataset
         self._seed = seed
         self._drop_camera_probability = drop_camera_probability

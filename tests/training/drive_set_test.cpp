@@ -1,0 +1,187 @@
+// Which framesets of recorded drives become samples, and in which part they are.
+#include "training/drives/drive_set.h"
+
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/training/picture_drive.h"
+
+namespace bevloc::drives {
+namespace {
+
+namespace fs = std::filesystem;
+using test::demo_rig;
+using test::PictureDrive;
+using testing::HasSubstr;
+
+TEST(Framesets, JoinFramesOfTheSameMoment) {
+  std::array<std::vector<Time>, kCameraCount> times;
+  const auto at = [](int ms) { return Time(std::chrono::milliseconds(ms)); };
+  times[0] = {at(0), at(100), at(200)};
+  times[1] = {at(30), at(151)};
+  const auto framesets = framesets_of(times);
+  ASSERT_EQ(framesets.size(), 3U);
+  EXPECT_EQ(framesets[0].present.count(), 2U);
+  EXPECT_EQ(framesets[1].present.to_ulong(), 1U);
+  EXPECT_EQ(framesets[2].present.count(), 2U) << "49 ms apart";
+  EXPECT_EQ(framesets[2].time, at(151));
+  EXPECT_EQ(framesets[2].frame[0], 2U);
+  EXPECT_EQ(framesets[2].frame[1], 1U);
+}
+
+TEST(DriveSet, TakesAFramesetEveryMetreAndHoldsSquaresBack) {
+  const PictureDrive drive(1000);  // 1,000 m in ten squares
+  const auto set = drive.open();
+  ASSERT_TRUE(set) << set.error().message;
+  const auto& held_back = set->places(DrivePart::kHeldBack);
+  const auto& calibration = set->places(DrivePart::kCalibration);
+  const auto& training = set->places(DrivePart::kTraining);
+  EXPECT_NEAR(static_cast<double>(held_back.size()), 100, 1) << "the fourth square";
+  EXPECT_NEAR(static_cast<double>(calibration.size()), 100, 1) << "the eighth square";
+  EXPECT_NEAR(static_cast<double>(set->left_out().beside_other_part), 4 * 36, 4);
+  EXPECT_EQ(held_back.size() + calibration.size() + training.size() +
+                set->left_out().beside_other_part + set->left_out().too_close +
+                set->left_out().without_pose,
+            1000U);
+  const auto x_of = [](const SamplePlace& place) { return static_cast<double>(place.frameset); };
+  for (const auto* others : {&held_back, &calibration}) {
+    for (const SamplePlace& one : *others) {
+      for (const SamplePlace& other : training) {
+        ASSERT_GE(std::abs(x_of(one) - x_of(other)), 35.0);
+      }
+    }
+  }
+}
+
+std::pair<double, double> square_of(const Eigen::Vector2d& place) {
+  return {std::floor(place.x() / DriveSet::kSquare_m), std::floor(place.y() / DriveSet::kSquare_m)};
+}
+
+/// The corners of the rasters of a sample, with the priors that are furthest off.
+std::vector<Eigen::Vector2d> corners_of_rasters(const Se2& truth) {
+  std::vector<Eigen::Vector2d> corners;
+  for (const double right : {-1.0, 1.0}) {
+    for (const double back : {-1.0, 1.0}) {
+      const Se2 correction{2.0 * back, 1.0 * right, radians(2.0)};
+      for (const Se2& pose : {truth, truth * correction.inverse()}) {
+        for (const double x_m : {-30.0, 30.0}) {
+          for (const double y_m : {-15.0, 15.0})
+            corners.push_back(pose * Eigen::Vector2d(x_m, y_m));
+        }
+      }
+    }
+  }
+  return corners;
+}
+
+TEST(DriveSet, ASampleShowsNoSquareOfALaterPart) {
+  for (const double heading_rad : {0.0, std::atan2(15.0, 30.0), radians(45.0), radians(-63.0)}) {
+    PictureDrive drive(1000);
+    drive.write_reference(0.0, 100.0, heading_rad);
+    auto set = drive.open();
+    ASSERT_TRUE(set) << set.error().message;
+    const auto pose_of = [&set](const SamplePlace& place) {
+      const DriveIndex& index = set->drive(place.drive).index();
+      return index.reference.at(index.framesets[place.frameset].time).value();
+    };
+    std::set<std::pair<double, double>> later;
+    for (const DrivePart part :
+         {DrivePart::kHeldBack, DrivePart::kCalibration, DrivePart::kTraining}) {
+      ASSERT_FALSE(set->places(part).empty());
+      for (const SamplePlace& place : set->places(part)) {
+        for (const Eigen::Vector2d& corner : corners_of_rasters(pose_of(place))) {
+          ASSERT_FALSE(later.contains(square_of(corner)))
+              << "heading " << degrees(heading_rad) << ", frameset " << place.frameset;
+        }
+      }
+      for (const SamplePlace& place : set->places(part)) {
+        later.insert(square_of(pose_of(place).translation()));
+      }
+    }
+  }
+}
+
+TEST(DriveSet, LeavesOutCalibrationBesideAPlaceThatIsHeldBack) {
+  // East through five squares, and back through three squares of the row above.
+  PictureDrive drive(750);
+  std::vector<ReferenceTrajectory::Pose> poses;
+  for (int i = -1; i < 753; ++i) {
+    const Se2 pose = i < 450 ? Se2{1.0 * i, 95.0, 0.0} : Se2{900.0 - i, 105.0, 0.0};
+    poses.push_back({PictureDrive::kStart + i * std::chrono::milliseconds(100), pose});
+  }
+  drive.write_reference(poses);
+  const auto set = drive.open();
+  ASSERT_TRUE(set) << set.error().message;
+  EXPECT_NEAR(static_cast<double>(set->places(DrivePart::kHeldBack).size()), 100, 1);
+  // The eighth square touches the fourth at a corner. Of its samples, those at least 36 m away
+  // count.
+  EXPECT_NEAR(static_cast<double>(set->places(DrivePart::kCalibration).size()), 64, 2);
+}
+
+TEST(DriveSet, StatesTheRangesOfItsCameras) {
+  const PictureDrive drive(10);
+  Rig rig = demo_rig();
+  rig.cameras[1].intrinsics.fx_px = 1000.0;  // of 640 columns
+  rig.cameras[4].vehicle_from_camera.translation_m.z() = 3.1;
+  const auto set = drive.open(rig);
+  ASSERT_TRUE(set) << set.error().message;
+  const CameraRanges ranges = set->camera_ranges();
+  EXPECT_DOUBLE_EQ(ranges.most_focal_px, 500.0);
+  EXPECT_DOUBLE_EQ(ranges.least_focal_px, 0.5 * rig.cameras[4].intrinsics.fx_px);
+  EXPECT_DOUBLE_EQ(ranges.most_height_m, 3.1);
+  EXPECT_DOUBLE_EQ(ranges.least_height_m, rig.cameras[2].vehicle_from_camera.translation_m.z());
+}
+
+TEST(DriveSet, NamesAFolderThatCannotBeFollowed) {
+  const test::TemporaryFolder folder;
+  fs::create_directory_symlink("circle", folder / "circle");
+  const auto set = DriveSet::open({.folder = folder.path(), .reference = ReferenceKind::kFile});
+  ASSERT_FALSE(set);
+  EXPECT_THAT(set.error().message, HasSubstr("circle: found no file or folder behind this name"));
+}
+
+TEST(DriveSet, NamesAFolderThatCannotBeRead) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder / "closed");
+  fs::permissions(folder / "closed", fs::perms::none);
+  const auto set = DriveSet::open({.folder = folder.path(), .reference = ReferenceKind::kFile});
+  fs::permissions(folder / "closed", fs::perms::owner_all);  // so that it can be removed
+  ASSERT_FALSE(set);
+  EXPECT_THAT(set.error().message, HasSubstr("closed: found no way to list this folder"));
+}
+
+TEST(DriveSet, LeavesOutWhatHasNoReference) {
+  PictureDrive drive(500);
+  drive.write_reference(20.0, 40.0);
+  const auto set = drive.open();
+  ASSERT_TRUE(set) << set.error().message;
+  EXPECT_NEAR(static_cast<double>(set->left_out().without_pose), 300, 4);
+}
+
+TEST(DriveSet, RefusesAFolderWithoutDrives) {
+  const test::TemporaryFolder folder;
+  const auto set = DriveSet::open({.folder = folder.path(), .reference = ReferenceKind::kFile});
+  ASSERT_FALSE(set);
+  EXPECT_THAT(set.error().message, HasSubstr("found no drive, wanted MCAP files"));
+  const auto missing = DriveSet::open({.folder = "/nowhere", .reference = ReferenceKind::kFile});
+  ASSERT_FALSE(missing);
+  EXPECT_THAT(missing.error().message, HasSubstr("/nowhere: found no folder"));
+}
+
+TEST(DriveSet, RefusesPicturesWithoutARig) {
+  const PictureDrive drive(10);
+  const auto set = DriveSet::open({.folder = drive.folder(), .reference = ReferenceKind::kFile});
+  ASSERT_FALSE(set);
+  EXPECT_THAT(set.error().message, HasSubstr("give --rig"));
+}
+
+}  // namespace
+}  // namespace bevloc::drives
