@@ -36,6 +36,7 @@ Result<Recording> Recording::open(const std::vector<std::filesystem::path>& file
   if (Status once = recording.check_once(); !once) return tl::unexpected(once.error());
   recording.note_times();
   recording.note_pauses();
+  recording.note_drops();
   return recording;
 }
 
@@ -126,6 +127,11 @@ std::vector<std::string> Recording::gaps() const {
         "the run is missing or damaged, or the daemon stood still",
         name(), seconds_of(pause.begin_ns), seconds_of(pause.end_ns)));
   }
+  if (images_not_recorded_ + events_not_recorded_ > 0) {
+    sentences.push_back(
+        fmt::format("{}: {} images and {} events were not recorded; the replay differs", name(),
+                    images_not_recorded_, events_not_recorded_));
+  }
   return sentences;
 }
 
@@ -141,6 +147,16 @@ void Recording::note_pauses() {
     const uint64_t now_ns = solutions[i].log_time_ns;
     if (now_ns - before_ns > kLongestCycle_ns) pauses_.push_back({before_ns, now_ns});
   }
+}
+
+/// Notes what the recorder could not record until its last count.
+void Recording::note_drops() {
+  const auto& counts = messages(firmware::kCountersTopic);
+  if (counts.empty()) return;
+  const auto last = read<bevloc::recording::Counters>(counts.back());
+  if (!last) return damages_.push_back(last.error().message);
+  images_not_recorded_ = last->images_not_recorded();
+  events_not_recorded_ = last->events_not_recorded();
 }
 
 void Recording::note_times() {

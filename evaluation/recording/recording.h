@@ -79,6 +79,8 @@ class Recording {
   const std::vector<Pause>& pauses() const { return pauses_; }
   /// The name of an attachment that is damaged in the first file; nothing if none is.
   std::optional<std::string> damaged_attachment() const;
+  /// The name of the file that has the message at this place.
+  const std::string& file_of(const MessagePlace& place) const { return names_[place.file]; }
   /// The name of the first file.
   const std::string& name() const { return names_.front(); }
 
@@ -91,6 +93,7 @@ class Recording {
   Status add_messages(const mcap::Reader& reader, uint32_t file);
   void note_times();
   void note_pauses();
+  void note_drops();
   double seconds_of(uint64_t log_time_ns) const;
   Result<std::string_view> bytes_of(const MessagePlace& place);
 
@@ -99,6 +102,8 @@ class Recording {
   std::vector<std::string> cut_files_;
   std::vector<std::string> damages_;
   std::vector<Pause> pauses_;
+  uint64_t images_not_recorded_ = 0;  ///< because the recorder was too slow, or refused them
+  uint64_t events_not_recorded_ = 0;
   std::map<std::string, std::vector<MessagePlace>, std::less<>> topics_;
   std::map<std::string, std::string, std::less<>> schemas_;  ///< of each topic
   Duration offset_{};

@@ -92,13 +92,21 @@ Status restore_learned(const Recording& recording, const ScratchFolder& scratch,
   return write_file(config.learned_calibration_file, learned->data);
 }
 
-void prepare(const ReplayOverrides& overrides, firmware::Config& config) {
+/// Fails if the positions come from a source that no recording holds.
+Status prepare(const ReplayOverrides& overrides, firmware::Config& config) {
+  if (config.gnss) {
+    return fail(
+        "replay: found the section gnss, wanted GNSS on the bus; a recording holds no positions of "
+        "gpsd, so no pose would be found; if the bus has positions too, give --config with a "
+        "configuration without this section");
+  }
   config.record.reset();
   if (!overrides.model.empty()) config.model_file = overrides.model;
   if (config.can.secoc) {
     spdlog::warn("replay: leaves out the authentication, because a recording holds no key");
     config.can.secoc.reset();
   }
+  return {};
 }
 
 Result<HdMap> map_for(Recording& recording, const ReplayOverrides& overrides,
@@ -241,7 +249,9 @@ Result<ReplaySetup> setup_of(Recording& recording, const ReplayOverrides& overri
   if (Status status = restore_learned(recording, scratch, setup.config); !status) {
     return tl::unexpected(status.error());
   }
-  prepare(overrides, setup.config);
+  if (Status prepared = prepare(overrides, setup.config); !prepared) {
+    return tl::unexpected(prepared.error());
+  }
   warn_of_another_model(recording, setup.config);
   auto rig = read_rig(setup.config.rig_file);
   if (!rig) return tl::unexpected(rig.error());
@@ -258,7 +268,9 @@ Result<ReplaySetup> setup_of(const ReplayOverrides& overrides) {
   ReplaySetup setup;
   setup.config = *config;
   setup.config.learned_calibration_file.clear();
-  prepare(overrides, setup.config);
+  if (Status prepared = prepare(overrides, setup.config); !prepared) {
+    return tl::unexpected(prepared.error());
+  }
   auto rig = read_rig(setup.config.rig_file);
   if (!rig) return tl::unexpected(rig.error());
   setup.rig = *rig;

@@ -33,11 +33,13 @@ class ScratchFolder {
 
 /// The configuration is the recorded one. Files that it names are taken from where they were if
 /// they are still the same, else from the recording. Its manifest is not checked. Authentication is
-/// left out, because a recording holds no key. Warns if the model is another one than recorded.
+/// left out, because a recording holds no key. Fails if the configuration takes GNSS from gpsd,
+/// because a recording holds no positions of gpsd. Warns if the model is another one than recorded.
 Result<ReplaySetup> setup_of(Recording& recording, const ReplayOverrides& overrides,
                              const ScratchFolder& scratch);
 
-/// The setup for a candump log: a configuration and nothing recorded.
+/// The setup for a candump log: a configuration and nothing recorded. Fails if the configuration
+/// takes GNSS from gpsd.
 Result<ReplaySetup> setup_of(const ReplayOverrides& overrides);
 
 /// The recorded frames and images. Refuses a rig whose images have another size than the recorded

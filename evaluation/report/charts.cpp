@@ -16,6 +16,8 @@ constexpr double kTop = 26.0;
 constexpr double kPlotHeight = 150.0;
 constexpr double kBottom = 22.0;
 constexpr double kPlotWidth = kWidth - kLeft - kRight;
+/// Points that are farther apart in time are not joined.
+constexpr double kGap_s = 0.6;
 
 template <typename... T>
 void add(std::string& svg, fmt::format_string<T...> format, T&&... values) {
@@ -74,7 +76,6 @@ void add_value_axis(std::string& svg, const Range& range) {
 
 /// A gap in time breaks the line.
 void add_line(std::string& svg, const Series& series, const Range& range, double length_s) {
-  constexpr double kGap_s = 0.6;
   std::string path;
   double previous_s = -1e9;
   for (const TimedValue& point : series.points) {
@@ -122,6 +123,7 @@ void add_element(std::string& svg, const MapElement& element, const MapScale& sc
 
 void add_track(std::string& svg, const std::vector<PosedCycle>& cycles, const MapScale& scale) {
   for (size_t i = 1; i < cycles.size(); ++i) {
+    if (cycles[i].time_s - cycles[i - 1].time_s > kGap_s) continue;
     const Se2& a = cycles[i - 1].map_from_vehicle;
     const Se2& b = cycles[i].map_from_vehicle;
     add(svg, "<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' stroke='{}' stroke-width='3'/>",
@@ -131,10 +133,11 @@ void add_track(std::string& svg, const std::vector<PosedCycle>& cycles, const Ma
 
 void add_truth(std::string& svg, const Track& truth, const MapScale& scale) {
   if (truth.empty()) return;
-  svg += "<polyline class='truth' points='";
-  for (const TrackPoint& point : truth) {
-    add(svg, "{:.1f},{:.1f} ", scale.x(point.map_from_vehicle.x_m),
-        scale.y(point.map_from_vehicle.y_m));
+  svg += "<path class='truth' d='";
+  for (size_t i = 0; i < truth.size(); ++i) {
+    const bool joined = i > 0 && to_seconds(truth[i].time - truth[i - 1].time) <= kGap_s;
+    const Se2& pose = truth[i].map_from_vehicle;
+    add(svg, "{}{:.1f} {:.1f}", joined ? "L" : "M", scale.x(pose.x_m), scale.y(pose.y_m));
   }
   svg += "'/>";
 }
@@ -189,8 +192,10 @@ std::string line_chart(std::string_view title, std::string_view unit,
                        const std::vector<Series>& series, double length_s) {
   const Range range = range_of(series);
   std::string svg;
-  add(svg, "<svg viewBox='0 0 {} {}' role='img'><text x='{}' y='16' class='title'>{} ({})</text>",
-      kWidth, kTop + kPlotHeight + kBottom, kLeft, escaped(title), escaped(unit));
+  add(svg,
+      "<svg viewBox='0 0 {} {}' role='img' aria-label='{} over time'><text x='{}' y='16' "
+      "class='title'>{} ({})</text>",
+      kWidth, kTop + kPlotHeight + kBottom, escaped(title), kLeft, escaped(title), escaped(unit));
   add_value_axis(svg, range);
   add_time_axis(svg, length_s, kTop, kTop + kPlotHeight);
   double legend = kWidth - kRight;
@@ -206,7 +211,8 @@ std::string line_chart(std::string_view title, std::string_view unit,
 std::string state_bar(const std::vector<StatePeriod>& periods, double length_s) {
   constexpr double kHeight = 34.0;
   std::string svg;
-  add(svg, "<svg viewBox='0 0 {} {}' role='img'>", kWidth, kHeight + kBottom);
+  add(svg, "<svg viewBox='0 0 {} {}' role='img' aria-label='States over time'>", kWidth,
+      kHeight + kBottom);
   for (const StatePeriod& period : periods) {
     const double begin = kPlotWidth * period.begin_s / std::max(length_s, 0.1);
     const double end = kPlotWidth * period.end_s / std::max(length_s, 0.1);
@@ -233,8 +239,8 @@ std::string track_map(const ReportData& data) {
   const MapScale scale{box.low.x(), box.high.y(),
                        std::min(kWidth / size.x(), kMostHeight / size.y())};
   std::string svg;
-  add(svg, "<svg class='map' viewBox='0 0 {:.0f} {:.0f}' role='img'>", size.x() * scale.px_per_m,
-      size.y() * scale.px_per_m);
+  add(svg, "<svg class='map' viewBox='0 0 {:.0f} {:.0f}' role='img' aria-label='Track on the map'>",
+      size.x() * scale.px_per_m, size.y() * scale.px_per_m);
   if (data.map) {
     for (const MapElement& element : data.map->elements) add_element(svg, element, scale, box);
   }

@@ -22,7 +22,8 @@ std::string line_chart(std::string_view title, std::string_view unit,
 /// The states over time as a bar.
 std::string state_bar(const std::vector<StatePeriod>& periods, double length_s);
 
-/// The track in the colours of its states, the truth, and the map around them. North is up.
+/// The track in the colours of its states, the truth, and the map around them. Both lines are
+/// interrupted where nothing is recorded. North is up.
 std::string track_map(const ReportData& data);
 
 std::string_view color_of(HealthState state);

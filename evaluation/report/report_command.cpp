@@ -29,21 +29,34 @@ Result<std::string> small_jpeg(const RgbImage& image, JpegEncoder& encoder) {
   return std::string(*jpeg);
 }
 
-/// The pictures that were exposed last before the moment.
-Status add_pictures(Recording& recording, const ReportData& data, ShownFrame& frame) {
+Result<std::string> small_picture(Recording& recording, int camera, const MessagePlace& place,
+                                  JpegEncoder& encoder) {
+  const auto image = picture_at(recording, camera, place);
+  if (!image) return tl::unexpected(image.error());
+  return small_jpeg(*image, encoder);
+}
+
+/// Adds the pictures that were exposed last before the moment. Says on stderr which ones cannot be
+/// read.
+void add_pictures(Recording& recording, const ReportData& data, ShownFrame& frame) {
   JpegEncoder encoder;
   const auto moment_ns = data.begin_ns + static_cast<uint64_t>(frame.time_s * 1e9);
   for (int camera = 0; camera < kCameraCount; ++camera) {
     const auto& places = recording.messages(firmware::image_topic(camera));
     const auto behind = std::ranges::upper_bound(places, moment_ns, {}, &MessagePlace::log_time_ns);
     if (behind == places.begin()) continue;
-    const auto image = picture_at(recording, camera, *std::prev(behind));
-    if (!image) return tl::unexpected(image.error());
-    auto jpeg = small_jpeg(*image, encoder);
-    if (!jpeg) return tl::unexpected(jpeg.error());
-    frame.pictures[camera] = std::move(*jpeg);
+    const MessagePlace& place = *std::prev(behind);
+    auto jpeg = small_picture(recording, camera, place, encoder);
+    if (jpeg) {
+      frame.pictures[camera] = std::move(*jpeg);
+      continue;
+    }
+    frame.unreadable[camera] = true;
+    const double time_s = 1e-9 * static_cast<double>(place.log_time_ns - data.begin_ns);
+    fmt::print(stderr, "{}: left out the picture of camera {} at {} ({:.1f} s): {}\n",
+               recording.file_of(place), kCameraNames[camera], time_of_day(data, time_s), time_s,
+               jpeg.error().message);
   }
-  return {};
 }
 
 std::vector<std::pair<std::string, std::string>> facts_of(const Recording& recording) {
@@ -90,9 +103,7 @@ Status ReportCommand::run() const {
     for (const std::string& sentence : answers.back().sentences) fmt::print("{}\n", sentence);
   }
   std::vector<ShownFrame> frames = choose_frames(*data);
-  for (ShownFrame& frame : frames) {
-    if (Status added = add_pictures(*recording, *data, frame); !added) return added;
-  }
+  for (ShownFrame& frame : frames) add_pictures(*recording, *data, frame);
   std::vector<std::string> names;
   for (const auto& file : files_) names.push_back(file.string());
   const std::string page = report_page(*data, names, facts_of(*recording), frames, answers);

@@ -190,6 +190,8 @@ void add_frames(std::string& page, const ReportData& data, const std::vector<Sho
       if (!frame.pictures[camera].empty()) {
         append(page, "<img alt='{}' src='data:image/jpeg;base64,{}'>", kCameraNames[camera],
                base64(frame.pictures[camera]));
+      } else if (frame.unreadable[camera]) {
+        page += "<p>no readable picture</p>";
       }
       page += "</div>";
     }

@@ -13,6 +13,7 @@ struct ShownFrame {
   double time_s = 0.0;
   std::string why;                                 ///< why it is shown
   std::array<std::string, kCameraCount> pictures;  ///< JPEG files; empty without a picture
+  std::array<bool, kCameraCount> unreadable{};     ///< whether a picture cannot be read
 };
 
 /// The moments with the largest errors; without truth those with the worst matches. At most three,

@@ -36,8 +36,9 @@ class EventQueue {
     return pushed_;
   }
 
-  /// Waits for the event number `next`. Returns it, or a newer one, and advances `next`. Returns
-  /// null after `timeout` or close().
+  /// Waits for the event number `next`. Returns it, or a newer one, and sets `next` to the number
+  /// after it: `next` grows by more than one if events were skipped. Returns null after `timeout`
+  /// or close().
   Event wait_for(uint64_t& next, Duration timeout) {
     std::unique_lock lock(mutex_);
     filled_.wait_for(lock, timeout, [&] { return closed_ || pushed_ > next; });

@@ -95,7 +95,8 @@ int port_of(const Socket& socket) {
 /// Uses cpp-httplib's parser, routes and responses, but not its sockets and threads.
 class HttpServer::Responder final : public httplib::Server {
  public:
-  /// Sets a socket. Without one, cpp-httplib would behave as after its end, and end every stream.
+  /// Sets a dummy socket. Without one, cpp-httplib believes that the server has stopped, and ends
+  /// every stream.
   Responder() { svr_sock_ = 0; }
 
   void answer(httplib::Stream& stream) { answer_by(*this, stream); }

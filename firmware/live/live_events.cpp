@@ -69,7 +69,8 @@ std::string status_event(const Telemetry& telemetry, const ProcessUse& process, 
 std::string trail_event(const std::deque<TrailPoint>& trail) {
   json points = json::array();
   for (const TrailPoint& point : trail) {
-    points.push_back({rounded(point.x_m, 100), rounded(point.y_m, 100), point.valid ? 1 : 0});
+    points.push_back({rounded(point.x_m, 100), rounded(point.y_m, 100), point.valid ? 1 : 0,
+                      point.begins ? 1 : 0});
   }
   return server_sent_event("trail", points);
 }

@@ -17,11 +17,13 @@ struct TrailPoint {
   double x_m = 0.0;
   double y_m = 0.0;
   bool valid = false;
+  bool begins = false;  ///< there was no pose between this place and the one before
 };
 
 // These functions return the events, whose keys docs/live.md describes.
 
 std::string status_event(const Telemetry& telemetry, const ProcessUse& process, Duration age);
+/// Each point is [x, y, valid, begins], the latter two 0 or 1.
 std::string trail_event(const std::deque<TrailPoint>& trail);
 /// The event with the map's lines around a place, in metres in the map frame.
 std::string map_event(const MapIndex& map, const Eigen::Vector2d& centre_m, double reach_m);

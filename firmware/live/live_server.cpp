@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
@@ -16,6 +17,7 @@
 #include "firmware/live/httplib_header.h"
 #include "firmware/live/live_events.h"
 #include "firmware/live/page_files.h"
+#include "firmware/live/viewer_needs.h"
 #include "firmware/status/metrics.h"
 #include "firmware/threads/realtime.h"
 
@@ -28,8 +30,6 @@ constexpr Duration kStatusPeriod = std::chrono::milliseconds(200);
 /// noticed.
 constexpr Duration kEventSilence = std::chrono::seconds(1);
 constexpr double kMapReach_m = 150.0;
-/// The map is sent again when the vehicle is this far from the place around which it was sent.
-constexpr double kMapRenewal_m = 60.0;
 constexpr double kTrailStep_m = 0.5;
 constexpr size_t kTrailPoints = 2000;
 
@@ -70,7 +70,7 @@ class LiveServer::Impl {
     feed_->set_viewers(viewers_);
     rig_ = rig;
     map_ = &appliance.map_index();
-    map_centre_.reset();
+    needs_.forget_place();
   }
 
   void detach() {
@@ -84,13 +84,16 @@ class LiveServer::Impl {
     telemetry_ = telemetry;
     published_ = std::chrono::steady_clock::now();
     const PoseSnapshot& pose = telemetry.snapshot.estimation.pose;
-    if (!pose.known) return;
+    if (!pose.known) {
+      trail_interrupted_ = true;
+      return;
+    }
     const Eigen::Vector2d place = pose.map_from_vehicle.translation();
     if (!trail_.empty()) {
       const TrailPoint& last = trail_.back();
       if ((place - Eigen::Vector2d(last.x_m, last.y_m)).norm() < kTrailStep_m) return;
     }
-    trail_.push_back({place.x(), place.y(), pose.valid});
+    trail_.push_back({place.x(), place.y(), pose.valid, std::exchange(trail_interrupted_, false)});
     if (trail_.size() > kTrailPoints) trail_.pop_front();
   }
 
@@ -112,22 +115,24 @@ class LiveServer::Impl {
 
   void draw_until(const std::stop_token& stop);
   void draw();
-  void send_map(const MapIndex& map, const PoseSnapshot& pose);
+  /// Sends trail and map to viewers that need them.
+  void send_scene(const MapIndex& map, const PoseSnapshot& pose);
 
   EventQueue events_;
   std::atomic<int> viewers_{0};
-  std::atomic<bool> newcomer_{false};  ///< whether a viewer lacks map and trail
+  ViewerNeeds needs_;
 
-  mutable std::mutex telemetry_mutex_;  ///< guards the next three
+  mutable std::mutex telemetry_mutex_;  ///< guards the next four
   Telemetry telemetry_;
   std::chrono::steady_clock::time_point published_{};
   std::deque<TrailPoint> trail_;
+  bool trail_interrupted_ = false;  ///< whether there was no pose since the last point
 
-  std::mutex scene_mutex_;  ///< guards the next four; held while something is drawn
+  /// Guards the next three, and needs_ except its set(). Held while something is drawn.
+  std::mutex scene_mutex_;
   std::shared_ptr<LiveFeed> feed_;
   Rig rig_;
   const MapIndex* map_ = nullptr;
-  std::optional<Eigen::Vector2d> map_centre_;
 
   // Only the drawing thread uses the next two.
   PictureMaker pictures_;
@@ -206,13 +211,16 @@ void LiveServer::Impl::stream_events(const httplib::Request& request, httplib::R
         "text/plain");
     return;
   }
+  const uint64_t first = events_.end();
   {
     const std::lock_guard lock(wake_mutex_);
-    newcomer_ = true;
+    needs_.set();
   }
   wake_.notify_all();
-  const auto write = [this, next = events_.end()](size_t, httplib::DataSink& sink) mutable {
+  const auto write = [this, next = first](size_t, httplib::DataSink& sink) mutable {
+    const uint64_t wanted = next;
     const auto event = events_.wait_for(next, kEventSilence);
+    if (next > wanted + 1) needs_.set();  // it has missed events
     if (events_.closed()) {
       sink.done();
       return true;
@@ -238,9 +246,8 @@ void LiveServer::Impl::draw_until(const std::stop_token& stop) {
   }
 }
 
-void LiveServer::Impl::send_map(const MapIndex& map, const PoseSnapshot& pose) {
-  const bool newcomer = newcomer_.exchange(false);
-  if (newcomer) {
+void LiveServer::Impl::send_scene(const MapIndex& map, const PoseSnapshot& pose) {
+  if (needs_.take_trail()) {
     std::deque<TrailPoint> trail;
     {
       const std::lock_guard lock(telemetry_mutex_);
@@ -248,11 +255,9 @@ void LiveServer::Impl::send_map(const MapIndex& map, const PoseSnapshot& pose) {
     }
     events_.push(trail_event(trail));
   }
-  if (!pose.known) return;
-  const Eigen::Vector2d place = pose.map_from_vehicle.translation();
-  const bool moved = !map_centre_ || (place - *map_centre_).norm() > kMapRenewal_m;
-  if (moved) map_centre_ = place;
-  if (moved || newcomer) events_.push(map_event(map, *map_centre_, kMapReach_m));
+  if (const auto centre_m = needs_.take_map(pose)) {
+    events_.push(map_event(map, *centre_m, kMapReach_m));
+  }
 }
 
 void LiveServer::Impl::draw() {
@@ -262,7 +267,7 @@ void LiveServer::Impl::draw() {
   if (time >= status_due_) {
     status_due_ = time + kStatusPeriod;
     events_.push(status_event(latest, use_of_this_process(), age));
-    if (map_ != nullptr) send_map(*map_, latest.snapshot.estimation.pose);
+    if (map_ != nullptr) send_scene(*map_, latest.snapshot.estimation.pose);
   }
   if (map_ == nullptr) return;
   feed_->take([this](const LiveSample& sample) {

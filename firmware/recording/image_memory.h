@@ -13,15 +13,33 @@ namespace bevloc::firmware {
 /// Any thread may drop the copies.
 class ImageMemory {
  public:
-  ImageMemory(int images, int width_px, int height_px)
-      : pool_(drivers::FramePool::create(images, width_px, height_px)),
-        bytes_(3 * static_cast<size_t>(width_px) * static_cast<size_t>(height_px)) {}
+  static constexpr int kMostImages = 6;
+  /// One image is written while the camera delivers the next one.
+  static constexpr int kLeastImages = 2;
+  /// For all cameras together, unless kLeastImages need more. With this and the images that the
+  /// writer works on, the daemon stays below the limit of its unit, 512 MiB
+  /// (systemd/bevlocd.service), with a map of 3,000 km.
+  static constexpr size_t kMost_bytes = size_t{128} << 20U;
 
-  /// Copies a frame. Returns nothing when all memory is in use or the image needs more than three
-  /// bytes per pixel.
+  ImageMemory(int width_px, int height_px)
+      : pool_(drivers::FramePool::create(images_for(width_px, height_px), width_px, height_px)),
+        bytes_(bytes_of(width_px, height_px)) {}
+
+  /// The number of images of this size that there is memory for.
+  static int images_for(int width_px, int height_px);
+
+  /// Whether the image needs no more than three bytes for each pixel of the size that was given to
+  /// the constructor.
+  bool fits(const ImageView& image) const;
+
+  /// Copies a frame. Returns nothing when all memory is in use or the image does not fit.
   std::optional<RecordedImage> copy(const drivers::Frame& frame, Time now);
 
  private:
+  static size_t bytes_of(int width_px, int height_px) {
+    return 3 * static_cast<size_t>(width_px) * static_cast<size_t>(height_px);
+  }
+
   std::shared_ptr<drivers::FramePool> pool_;
   size_t bytes_;
 };

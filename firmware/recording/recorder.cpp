@@ -1,6 +1,7 @@
 #include "firmware/recording/recorder.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -31,11 +32,14 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const RecordConfig& config, Rec
 }
 
 void Recorder::expect_images(int camera, int width_px, int height_px) {
-  memory_[camera] = std::make_unique<ImageMemory>(kImagesPerCamera, width_px, height_px);
+  memory_[camera] = std::make_unique<ImageMemory>(width_px, height_px);
 }
 
 void Recorder::note_image(const drivers::Frame& frame, Time now) {
-  if (auto copy = memory_[frame.camera]->copy(frame, now)) {
+  ImageMemory& memory = *memory_[frame.camera];
+  if (!memory.fits(frame.image())) {
+    ++counters_.images_too_large;
+  } else if (auto copy = memory.copy(frame, now)) {
     images_.push(std::move(*copy));
   } else {
     ++counters_.images_dropped;
@@ -69,8 +73,7 @@ void Recorder::put(std::string_view topic, const google::protobuf::Message& mess
 
 void Recorder::note_failure(const Status& status) {
   if (status || counters_.failed.exchange(true)) return;
-  counters_.images_dropped += counters_.images.exchange(images_on_disk_) - images_on_disk_;
-  counters_.events_lost += counters_.events.exchange(events_on_disk_) - events_on_disk_;
+  settle();
   spdlog::error("recording ends: {}", status.error().message);
 }
 
@@ -88,7 +91,18 @@ void Recorder::write_events() {
 }
 
 void Recorder::count_event() {
-  ++(counters_.failed ? counters_.events_lost : counters_.events);
+  if (counters_.failed) {
+    ++counters_.events_lost;
+  } else {
+    ++events_written_;
+  }
+}
+
+void Recorder::settle() {
+  (counters_.failed ? counters_.images_lost : counters_.images) +=
+      std::exchange(images_written_, 0);
+  (counters_.failed ? counters_.events_lost : counters_.events) +=
+      std::exchange(events_written_, 0);
 }
 
 void Recorder::write_queued(Time now) {
@@ -103,10 +117,7 @@ void Recorder::write_queued(Time now) {
   next_step_ = now + kStep;
   write_counters(now);
   note_failure(ring_.step(log_time(now)));
-  if (!counters_.failed) {
-    images_on_disk_ = counters_.images;
-    events_on_disk_ = counters_.events;
-  }
+  settle();
   counters_.bytes = ring_.bytes_written();
   log_drops();
 }
@@ -117,7 +128,13 @@ void Recorder::write_image(const RecordedImage& image) {
     spdlog::warn("recording: an image of camera {} is left out: {}", kCameraNames[image.camera],
                  made.error().message);
   }
-  ++(counters_.failed || !made ? counters_.images_dropped : counters_.images);
+  if (!made) {
+    ++counters_.images_not_encoded;
+  } else if (counters_.failed) {
+    ++counters_.images_lost;
+  } else {
+    ++images_written_;
+  }
 }
 
 Status Recorder::put_image(const RecordedImage& image) {
@@ -204,19 +221,27 @@ void Recorder::watch_state(HealthState state, Time now) {
 }
 
 void Recorder::log_drops() {
-  const uint64_t images = images_dropped();
-  if (drops_logged_ || images + events_dropped() == 0) return;
-  drops_logged_ = true;
-  spdlog::warn(
-      "recording: {} images and {} events were dropped because encoder or disk is too slow; "
-      "record JPEG, or use a faster disk",
-      images, events_dropped());
+  if (!drops_logged_ && slow_images() + slow_events() > 0) {
+    drops_logged_ = true;
+    spdlog::warn(
+        "recording: {} images and {} events were dropped because encoder or disk is too slow; "
+        "record JPEG, or use a faster disk",
+        slow_images(), slow_events());
+  }
+  if (!too_large_logged_ && counters_.images_too_large > 0) {
+    too_large_logged_ = true;
+    spdlog::warn(
+        "recording: {} images are left out because they are larger than three bytes for each pixel "
+        "of the rig; check the cameras' format and size",
+        counters_.images_too_large.load());
+  }
 }
 
 void Recorder::finish(Time now) {
   while (const auto image = images_.pop(Duration::zero())) write_image(*image);
   write_queued(now);
   if (!counters_.failed) note_failure(ring_.finish());
+  settle();
   counters_.bytes = ring_.bytes_written();
   spdlog::info("recording: {} images and {} events in {:.1f} MB, {} images and {} events dropped",
                counters_.images.load(), counters_.events.load(),

@@ -22,13 +22,15 @@ namespace bevloc::firmware {
 struct RecordingSnapshot;
 struct Snapshot;
 
-/// Totals since start; readable from any thread.
+/// Totals since start; readable from any thread. Each image and each event counts once.
 struct RecorderCounters {
-  std::atomic<uint64_t> images{0};  ///< images that were written
-  std::atomic<uint64_t> events{0};  ///< events that were written: bus frames, solutions, matches
-  /// Images that were dropped because no memory was free, or writing failed.
-  std::atomic<uint64_t> images_dropped{0};
-  std::atomic<uint64_t> events_lost{0};  ///< lost because writing failed
+  std::atomic<uint64_t> images{0};          ///< images that are on the disk
+  std::atomic<uint64_t> events{0};          ///< events on the disk: bus frames, solutions, matches
+  std::atomic<uint64_t> images_dropped{0};  ///< no memory was free
+  std::atomic<uint64_t> images_too_large{0};    ///< do not fit into the memory of their camera
+  std::atomic<uint64_t> images_not_encoded{0};  ///< cannot be encoded
+  std::atomic<uint64_t> images_lost{0};         ///< lost because writing failed
+  std::atomic<uint64_t> events_lost{0};         ///< lost because writing failed
   std::atomic<uint64_t> bytes{0};
   std::atomic<uint64_t> black_boxes{0};
   std::atomic<bool> failed{false};  ///< writing has failed, and nothing is recorded since then
@@ -62,7 +64,7 @@ class Recorder {
   void count_with(std::function<Snapshot()> snapshot) { snapshot_ = std::move(snapshot); }
 
   /// Writes all queued events and a few images, and does what is due at `now`: chunks to the disk,
-  /// the next file, the black box. Logs the first failure and the first drop.
+  /// the next file, the black box. Logs the first failure, and once each reason for a drop.
   void write_queued(Time now);
   /// Writes the rest and ends the file. Logs the totals.
   void finish(Time now);
@@ -70,17 +72,19 @@ class Recorder {
   const RecorderCounters& counters() const { return counters_; }
   /// Returns the totals, which include what the queues dropped.
   RecordingSnapshot totals() const;
-  uint64_t images_dropped() const { return counters_.images_dropped + images_.dropped(); }
-  uint64_t events_dropped() const {
-    return events_.dropped() + matches_.dropped() + counters_.events_lost;
+  uint64_t images_dropped() const {
+    return slow_images() + counters_.images_too_large + counters_.images_not_encoded +
+           counters_.images_lost;
   }
+  uint64_t events_dropped() const { return slow_events() + counters_.events_lost; }
 
  private:
-  static constexpr int kImagesPerCamera = 6;
-
   Recorder(const RecordConfig& config, RecordingRing ring, Duration log_time_minus_clock)
       : config_(config), offset_(log_time_minus_clock), ring_(std::move(ring)) {}
 
+  /// What was dropped because this thread or the disk was too slow.
+  uint64_t slow_images() const { return counters_.images_dropped + images_.dropped(); }
+  uint64_t slow_events() const { return events_.dropped() + matches_.dropped(); }
   uint64_t log_time(Time time) const;
   void put(std::string_view topic, const google::protobuf::Message& message, Time time,
            Time made_at);
@@ -92,6 +96,8 @@ class Recorder {
   void write_event(const RecordedTruth& truth);
   void write_match(const RecordedMatch& match);
   void count_event();
+  /// Counts what was written since the latest call: it is on the disk, or lost if writing failed.
+  void settle();
   void write_counters(Time now);
   void watch_state(HealthState state, Time now);
   void note_failure(const Status& status);
@@ -101,17 +107,18 @@ class Recorder {
   const Duration offset_;
   RecordingRing ring_;
   std::array<std::unique_ptr<ImageMemory>, kCameraCount> memory_;
-  BoundedQueue<RecordedImage> images_{kImagesPerCamera * kCameraCount};
+  BoundedQueue<RecordedImage> images_{ImageMemory::kMostImages * kCameraCount};
   /// The events of two seconds of a busy bus.
   BoundedQueue<RecordedEvent> events_{8192};
   BoundedQueue<RecordedMatch> matches_{64};
   std::function<Snapshot()> snapshot_;
   JpegEncoder jpeg_;
-  uint64_t images_on_disk_ = 0;  ///< the images counted as written that are on the disk
-  uint64_t events_on_disk_ = 0;
+  uint64_t images_written_ = 0;  ///< since the latest settle()
+  uint64_t events_written_ = 0;
   Time next_step_ = Time::min();
   HealthState state_ = HealthState::kInit;
   bool drops_logged_ = false;
+  bool too_large_logged_ = false;
   CauseLog causes_;  ///< of images that cannot be encoded
   RecorderCounters counters_;
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 
 #include "common/writable_folder.h"
 #include "firmware/recording/topics.h"
@@ -22,6 +23,10 @@ constexpr uint64_t kLogSecond_ns = 1'000'000'000;
 /// than kMostFree_bytes.
 constexpr uint64_t kPartsOfDisk = 20;
 constexpr uint64_t kMostFree_bytes = 1'000'000'000;
+/// If all files of earlier runs have exceeded their age by more than this, the clock is probably
+/// wrong. No vehicle stands this long in its normal use, and the date of a GNSS receiver is often
+/// wrong by a multiple of 1024 weeks.
+constexpr uint64_t kImplausibleAge_ns = 365 * uint64_t{86'400} * kLogSecond_ns;
 
 /// Returns a name such as bevloc-20261123T143205Z-0001.mcap. The order of the names is the order of
 /// time.
@@ -33,9 +38,9 @@ std::string file_name(uint64_t log_time_ns, int number) {
                      utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, number);
 }
 
-/// Reads the log time from such a name, which must begin with kPrefix. Returns nothing if no time
+/// Reads the log time from such a name, which must begin with kPrefix. Returns 0 if no time
 /// follows.
-std::optional<uint64_t> log_time_in(const std::string& file_name) {
+uint64_t log_time_in(const std::string& file_name) {
   std::tm utc{};
   int length = 0;
   std::sscanf(file_name.c_str() + kPrefix.size(), "%4d%2d%2dT%2d%2d%2dZ-%n", &utc.tm_year,
@@ -43,7 +48,7 @@ std::optional<uint64_t> log_time_in(const std::string& file_name) {
   utc.tm_year -= 1900;
   utc.tm_mon -= 1;
   const time_t seconds = timegm(&utc);
-  if (length == 0 || seconds < 0) return std::nullopt;
+  if (length == 0 || seconds < 0) return 0;
   return static_cast<uint64_t>(seconds) * kLogSecond_ns;
 }
 
@@ -59,7 +64,19 @@ bool is_of_the_ring(const std::string& name) {
 struct Listed {
   fs::path path;
   uint64_t bytes = 0;
+  uint64_t begin_ns = 0;   ///< log time in the name
+  uint64_t latest_ns = 0;  ///< this time, or the time of the last change if that is later
 };
+
+/// Returns nothing for what is no file, or is gone.
+std::optional<Listed> listed(const fs::path& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  const uint64_t begin_ns = log_time_in(path.filename().string());
+  const auto changed_s = static_cast<uint64_t>(std::max<time_t>(0, status.st_mtim.tv_sec));
+  return Listed{path, static_cast<uint64_t>(status.st_size), begin_ns,
+                std::max(begin_ns, changed_s * kLogSecond_ns)};
+}
 
 /// Lists the recordings in the folder of `newest` in the order of deletion. Files with a later time
 /// come first, because the clock was wrong when they were written. The others follow, oldest first,
@@ -68,11 +85,8 @@ std::vector<Listed> list_recordings(const fs::path& newest) {
   std::vector<Listed> files;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(newest.parent_path(), error)) {
-    const std::string name = entry.path().filename().string();
-    if (!is_of_the_ring(name)) continue;
-    std::error_code gone;
-    const Listed listed{entry.path(), entry.file_size(gone)};
-    if (!gone) files.push_back(listed);
+    if (!is_of_the_ring(entry.path().filename().string())) continue;
+    if (auto file = listed(entry.path())) files.push_back(std::move(*file));
   }
   std::ranges::sort(files, {}, &Listed::path);
   const auto later = std::ranges::upper_bound(files, newest, {}, &Listed::path);
@@ -80,10 +94,12 @@ std::vector<Listed> list_recordings(const fs::path& newest) {
   return files;
 }
 
-void remove_file(const fs::path& path) {
+/// Returns whether the file is gone.
+bool remove_file(const fs::path& path) {
   std::error_code error;
   fs::remove(path, error);
   if (error) spdlog::warn("recording: cannot delete {} ({})", path.string(), error.message());
+  return !error;
 }
 
 tl::unexpected<Error> refuse_folder(const fs::path& directory, const std::string& reason) {
@@ -103,7 +119,7 @@ Result<RecordingRing> RecordingRing::open(const RecordConfig& config, RecordingH
   std::error_code error;
   fs::create_directories(config.directory / kBlackBoxFolder, error);
   if (error) return refuse_folder(config.directory, error.message());
-  RecordingRing ring(config, std::move(head), space_of);
+  RecordingRing ring(config, std::move(head), log_time_ns, space_of);
   if (Status begun = ring.begin_file(log_time_ns); !begun) return tl::unexpected(begun.error());
   return ring;
 }
@@ -118,6 +134,7 @@ Status RecordingRing::begin_file(uint64_t log_time_ns) {
   if (Status room = make_room(path); !room) return room;
   auto file = RecordingFile::create(path, head_, log_time_ns);
   if (!file) return tl::unexpected(file.error());
+  if (file_) bytes_of_closed_ += file_->bytes_written();
   file_.emplace(std::move(*file));
   const auto covered = static_cast<uint64_t>(kBlackBox.count());
   std::erase_if(recent_, [&](const RecentFile& old) { return old.end_ns + covered < log_time_ns; });
@@ -125,21 +142,42 @@ Status RecordingRing::begin_file(uint64_t log_time_ns) {
   return {};
 }
 
-/// Takes the age of a file from the time in its name, which is a log time. The time of its last
-/// change comes from the wall clock, which may be set during a drive.
-void RecordingRing::delete_old(const fs::path& newest, uint64_t log_time_ns) const {
+/// Takes the age of a file from the time in its name, which is a log time, or from the time of its
+/// last change if that is later. The latter comes from the wall clock. So a file is not too old
+/// only because the clock was set after it was begun.
+void RecordingRing::delete_old(const fs::path& newest, uint64_t log_time_ns) {
   const std::vector<Listed> files = list_recordings(newest);
   uint64_t total = 0;
-  for (const Listed& file : files) total += file.bytes;
+  uint64_t latest_ns = 0;  // of earlier runs
+  for (const Listed& file : files) {
+    total += file.bytes;
+    const bool of_earlier_run = file.begin_ns + kLogSecond_ns <= begin_ns_;
+    if (of_earlier_run) latest_ns = std::max(latest_ns, file.latest_ns);
+  }
   const auto longest = static_cast<uint64_t>(config_.max_age.count());
+  const bool implausible = latest_ns > 0 && latest_ns + longest + kImplausibleAge_ns < log_time_ns;
+  if (implausible) warn_of_the_clock();
+  size_t deleted = 0;
   for (const Listed& file : files) {
     if (file.path == newest) break;
-    const auto begin_ns = log_time_in(file.path.filename().string());
-    const bool is_old = begin_ns && *begin_ns + longest < log_time_ns;
+    const bool is_old = !implausible && file.latest_ns + longest < log_time_ns;
     if (total <= config_.max_bytes && !is_old) continue;
-    remove_file(file.path);
+    const bool gone = remove_file(file.path);
     total -= file.bytes;
+    if (is_old && gone) ++deleted;
   }
+  if (deleted == 0) return;
+  spdlog::info("recording: deleted {} files in {} that were older than record.max_age_h, {:g} h",
+               deleted, config_.directory.string(), to_seconds(config_.max_age) / 3600.0);
+}
+
+void RecordingRing::warn_of_the_clock() {
+  if (clock_warned_) return;
+  clock_warned_ = true;
+  spdlog::warn(
+      "recording: the clock is probably wrong, because all earlier recordings in {} would be too "
+      "old by more than a year; keeps them until the folder exceeds record.max_mb; check the clock",
+      config_.directory.string());
 }
 
 uint64_t RecordingRing::missing_bytes() const {
@@ -181,7 +219,6 @@ Status RecordingRing::step(uint64_t log_time_ns) {
   }
   newest.end_ns = log_time_ns;
   if (Status finished = file_->finish(); !finished) return finished;
-  bytes_of_closed_ += file_->bytes_written();
   return begin_file(log_time_ns);
 }
 

@@ -17,9 +17,11 @@ namespace bevloc::firmware {
 Status check_folder(const std::filesystem::path& directory);
 
 /// Writes one file after the other into the folder, and deletes the oldest ones beyond the limits.
-/// keep() gives the files of the last minute a second name (a hard link) in the folder `kept`,
-/// which the ring does not delete. The file that is being written grows there, too. If the disk is
-/// full, deletes the oldest files of the ring, and then those in `kept`. One thread.
+/// If the clock seems to be wrong, because all files of earlier runs would be too old by more than
+/// a year, deletes none for its age. keep() gives the files of the last minute a second name (a
+/// hard link) in the folder `kept`, which the ring does not delete. The file that is being written
+/// can be kept too: it grows under both names. If the disk is full, deletes the oldest files of the
+/// ring, and then those in `kept`. One thread.
 class RecordingRing {
  public:
   /// The time before an event that the black box covers.
@@ -53,12 +55,14 @@ class RecordingRing {
     uint64_t end_ns = 0;  ///< meaningless for the newest file
   };
 
-  RecordingRing(const RecordConfig& config, RecordingHead head, SpaceOf space_of)
-      : config_(config), head_(std::move(head)), space_of_(space_of) {}
+  RecordingRing(const RecordConfig& config, RecordingHead head, uint64_t log_time_ns,
+                SpaceOf space_of)
+      : config_(config), head_(std::move(head)), space_of_(space_of), begin_ns_(log_time_ns) {}
   Status begin_file(uint64_t log_time_ns);
   /// Deletes the oldest files until the limits of the configuration are met. `newest` is never
   /// deleted, but counts if it exists.
-  void delete_old(const std::filesystem::path& newest, uint64_t log_time_ns) const;
+  void delete_old(const std::filesystem::path& newest, uint64_t log_time_ns);
+  void warn_of_the_clock();
   /// Deletes old files until enough of the disk is free. Fails if not enough can be deleted.
   Status make_room(const std::filesystem::path& newest) const;
   /// Returns how many bytes are missing of those that the ring leaves free on the disk.
@@ -67,10 +71,12 @@ class RecordingRing {
   RecordConfig config_;
   RecordingHead head_;
   SpaceOf space_of_;
+  uint64_t begin_ns_;  ///< log time of the beginning of the run
   std::optional<RecordingFile> file_;
   std::deque<RecentFile> recent_;  ///< the files that overlap the last minute, oldest first
   int number_ = 0;
-  uint64_t bytes_of_closed_ = 0;
+  uint64_t bytes_of_closed_ = 0;  ///< of the files before file_
+  bool clock_warned_ = false;
 };
 
 }  // namespace bevloc::firmware

@@ -257,12 +257,14 @@ void add_gnss(Families& families, const GnssCounters& gnss) {
   refused("clock_unsynchronized", gnss.of(FixVerdict::kUnsynchronized));
 }
 
-void add_bus(Families& families, const Snapshot& snapshot) {
+void add_bus(Families& families, const Telemetry& telemetry) {
+  const Snapshot& snapshot = telemetry.snapshot;
   const can::BusCounters& bus = snapshot.bus;
+  const bool running = telemetry.phase == Phase::kRunning;
   for (int i = 0; i <= static_cast<int>(can::BusState::kDown); ++i) {
     const can::BusCondition condition{static_cast<can::BusState>(i), 0};
     families.gauge("bevloc_can_state", "1 for the state of the controller that holds",
-                   snapshot.bus_condition.state == condition.state ? 1 : 0,
+                   running && snapshot.bus_condition.state == condition.state ? 1 : 0,
                    {{"state", can::to_string(condition)}});
   }
   const auto dropped = [&](const char* reason, uint64_t value) {
@@ -286,6 +288,7 @@ void add_bus(Families& families, const Snapshot& snapshot) {
   dropped("expired", bus.send_expired);
   dropped("bus_down", bus.send_bus_down);
   dropped("not_read", bus.receive_dropped);
+  dropped("overrun", bus.receive_overrun);
   dropped("ignored", bus.receive_ignored);
 }
 
@@ -359,7 +362,7 @@ std::string metrics_text(const Telemetry& telemetry, const ProcessUse& process, 
   add_tracker(families, "correction", telemetry.snapshot.estimation.corrections);
   add_vehicle(families, telemetry.snapshot);
   if (telemetry.snapshot.gnss) add_gnss(families, *telemetry.snapshot.gnss);
-  add_bus(families, telemetry.snapshot);
+  add_bus(families, telemetry);
   if (telemetry.snapshot.recording) add_recording(families, *telemetry.snapshot.recording);
   add_process(families, telemetry, process);
   return families.text();

@@ -88,6 +88,7 @@ json bus_of(const Snapshot& snapshot) {
           {"waiting", bus.send_waiting},
           {"send_dropped", bus.send_replaced + bus.send_expired + bus.send_bus_down},
           {"receive_dropped", bus.receive_dropped},
+          {"receive_overruns", bus.receive_overrun},
           {"error_frames", bus.error_frames},
           {"bus_off", bus.bus_off},
           {"confirmation_mean_ms", 1e3 * mean_s},
@@ -195,12 +196,14 @@ std::string accuracy_of(const json& status) {
 }
 
 std::string cameras_of(const json& status) {
-  std::string text = "camera      used  captured      lost   dropped  faults\n";
+  std::string text =
+      "camera      used  captured      lost   dropped  unreadable  failures  faults\n";
   for (const json& camera : status.value("cameras", json::array())) {
     if (!camera.is_object()) continue;
-    text += fmt::format("{:12}{:4} {:>9} {:>9} {:>9}  {}\n", text_at(camera, "name"),
+    text += fmt::format("{:12}{:4} {:>9} {:>9} {:>9} {:>11} {:>9}  {}\n", text_at(camera, "name"),
                         camera.value("used", false) ? "yes" : "NO", text_at(camera, "captured"),
                         text_at(camera, "lost"), text_at(camera, "dropped"),
+                        text_at(camera, "unreadable"), text_at(camera, "failures"),
                         list_of(camera.value("faults", json::array())));
   }
   return text;
@@ -319,10 +322,13 @@ std::string status_page(const json& status) {
                       text_at(status, "framesets.taken"), text_at(status, "framesets.skipped"),
                       text_at(status, "framesets.without_prior"), cameras_of(status));
   text += inputs_of(status);
-  text += fmt::format("CAN         {}; {} sent, {} received, {} dropped, {} error frames\n",
-                      text_at(status, "can.condition"), text_at(status, "can.sent"),
-                      text_at(status, "can.received"), text_at(status, "can.send_dropped"),
-                      text_at(status, "can.error_frames"));
+  text += fmt::format(
+      "CAN         {}; {} sent and {} dropped, {} received and {} lost, {} overruns, {} error "
+      "frames\n",
+      text_at(status, "can.condition"), text_at(status, "can.sent"),
+      text_at(status, "can.send_dropped"), text_at(status, "can.received"),
+      text_at(status, "can.receive_dropped"), text_at(status, "can.receive_overruns"),
+      text_at(status, "can.error_frames"));
   text += recording_line(status);
   text += fmt::format("process     {} MB, {} s of CPU time\n",
                       text_at(status, "memory_mb", "{:.0f}"), text_at(status, "cpu_s", "{:.0f}"));

@@ -72,10 +72,12 @@ void log_bus(const can::BusCounters& bus) {
       bus.sent, bus.confirmed, mean_ms, milliseconds(bus.confirmation_max), bus.send_replaced,
       bus.send_expired, bus.send_bus_down);
   spdlog::info(
-      "CAN: {} received ({} timestamped by the controller, {} by the kernel), {} lost, {} ignored; "
-      "{} error frames, {} times bus-off, interface lost and reopened {} times",
+      "CAN: {} received ({} timestamped by the controller, {} by the kernel), {} lost, {} overruns "
+      "of "
+      "the controller, {} ignored; {} error frames, {} times bus-off, interface lost and reopened "
+      "{} times",
       bus.received, bus.hardware_stamped, bus.software_stamped, bus.receive_dropped,
-      bus.receive_ignored, bus.error_frames, bus.bus_off, bus.reopened);
+      bus.receive_overrun, bus.receive_ignored, bus.error_frames, bus.bus_off, bus.reopened);
 }
 
 void log_vehicle_input(const can::VehicleInputCounters& input) {

@@ -11,8 +11,9 @@ namespace bevloc::firmware {
 
 /// Remembers the causes of one source of errors, such as one camera or one GPIO line. A cause is
 /// new if it did not occur within the last minute. So an error that lasts, or comes and goes, is
-/// logged once. An error that comes back within the minute is new again when it has lasted for
-/// kLasting. Otherwise the log of a camera that died would end with its recovery. One thread.
+/// logged once. An error that comes back within the minute is logged again after it has lasted for
+/// kLasting. Without this, a camera that recovers and then dies for good would leave "recovered" as
+/// its last line. One thread.
 class CauseLog {
  public:
   static constexpr Duration kQuiet = std::chrono::minutes(1);

@@ -17,6 +17,27 @@ export function element(name, text, className) {
   return made;
 }
 
+/// Writes a text only if it differs, so that a selection stays and a screen reader does not repeat it.
+export function setText(node, text) {
+  const wanted = String(text);
+  if (node.textContent !== wanted) node.textContent = wanted;
+}
+
+/// Gives `parent` these children. A child that looks like the one in its place is not written.
+export function setChildren(parent, children) {
+  children.forEach((child, index) => {
+    const present = parent.children[index];
+    if (!present) parent.append(child);
+    else if (!present.isEqualNode(child)) present.replaceWith(child);
+  });
+  while (parent.children.length > children.length) parent.lastElementChild.remove();
+}
+
+export function setTitle(state) {
+  const wanted = state + " · bevloc";
+  if (document.title !== wanted) document.title = wanted;
+}
+
 /// A drawing context in CSS pixels, and the size of the canvas in them.
 export function prepare(canvas) {
   const ratio = window.devicePixelRatio || 1;

@@ -1,6 +1,6 @@
 // The live page: draws what the server sends at /events. docs/live.md describes the events.
 import {drawCameras, makeCameras, onCamera} from "./cameras.js";
-import {byId} from "./drawing.js";
+import {byId, setChildren, setText, setTitle} from "./drawing.js";
 import {drawMatch, makePlots, onMatch} from "./match.js";
 import {shown} from "./state.js";
 import {onStatus} from "./status.js";
@@ -23,7 +23,7 @@ function noteAge() {
   for (const camera of Object.values(shown.cameras)) {
     const old = camera.data !== null && isOld(camera.at_ms);
     camera.figure.classList.toggle("old", old);
-    camera.caption.textContent = camera.title + (old ? ": no new picture" : "");
+    setText(camera.caption, camera.title + (old ? ": no new picture" : ""));
   }
   const oldMatch = shown.match !== null && isOld(shown.matchAt_ms);
   for (const id of ["bev", "plots"]) byId(id).classList.toggle("old", oldMatch);
@@ -34,10 +34,11 @@ export function noteSilence() {
   const silent = performance.now() - lastEvent_ms > STALE_MS;
   document.body.classList.toggle("stale", silent);
   if (!silent) return;
-  byId("state").textContent = "NO DATA";
+  setTitle("NO DATA");
+  setText(byId("state"), "NO DATA");
   byId("state").className = "badge bad";
-  byId("summary").textContent = refusal + " The page tries again by itself.";
-  byId("why").replaceChildren();
+  setText(byId("summary"), refusal + " The page tries again by itself.");
+  setChildren(byId("why"), []);
 }
 
 /// The browser does not tell with which status the events were refused.

@@ -1,5 +1,5 @@
 // The state with its reasons, the facts beside it and the tables.
-import {byId, element} from "./drawing.js";
+import {byId, element, setChildren, setText, setTitle} from "./drawing.js";
 import {shown} from "./state.js";
 import {drawTrail, noteTrail} from "./trail.js";
 
@@ -8,22 +8,20 @@ const earlier = [];  // statuses of these seconds
 
 function showState(status) {
   const badge = byId("state");
-  badge.textContent = status.state || status.phase.toUpperCase();
+  setText(badge, status.state || status.phase.toUpperCase());
   const kind = !status.healthy ? "bad" : status.valid && !status.why.length ? "good" : "warn";
   badge.className = "badge " + (status.phase === "running" ? kind : "");
-  document.title = (status.state || status.phase) + " · bevloc";
+  setTitle(status.state || status.phase);
   const summary = status.phase !== "running" ? status.health :
     status.valid ? "The pose may be used." : "The pose must not be used.";
   // Otherwise the badge and the reasons below say what /healthz says.
   const more = status.phase === "running" && !status.healthy && !status.health.startsWith(status.state);
-  byId("summary").textContent = summary + (more ? " Not healthy: " + status.health : "");
-  const why = byId("why");
-  why.replaceChildren();
-  for (const reason of status.why || []) {
+  setText(byId("summary"), summary + (more ? " Not healthy: " + status.health : ""));
+  setChildren(byId("why"), (status.why || []).map((reason) => {
     const item = element("li");
     item.append(element("b", reason.reason + ": "), reason.do);
-    why.append(item);
-  }
+    return item;
+  }));
 }
 
 /// How much a counter grew per second over the statuses of the last seconds.
@@ -33,6 +31,11 @@ function perSecond(status, read) {
   return Math.max(0, (read(status) - read(first)) / (status.time_s - first.time_s));
 }
 
+/// A cell with a count that should be zero.
+function lossCell(count) {
+  return element("td", count, count ? "bad" : "");
+}
+
 function showFrames(status) {
   const rows = status.cameras.map((camera, index) => {
     const row = element("tr");
@@ -40,12 +43,12 @@ function showFrames(status) {
     row.append(element("td", camera.name.replace("_", " ")),
       element("td", camera.used ? "yes" : "no", camera.used ? "" : "bad"),
       element("td", perSecond(status, (of) => of.cameras[index].captured).toFixed(1)),
-      element("td", camera.lost, camera.lost ? "bad" : ""),
-      element("td", camera.dropped, camera.dropped ? "bad" : ""),
+      lossCell(camera.lost), lossCell(camera.dropped), lossCell(camera.unreadable),
+      lossCell(camera.failures),
       element("td", faults || "none", faults ? "bad" : ""));
     return row;
   });
-  byId("frames").replaceChildren(...rows);
+  setChildren(byId("frames"), rows);
 }
 
 function showPairs(status) {
@@ -61,11 +64,12 @@ function showPairs(status) {
     ["CAN sent", sent.toFixed(0) + " per s"],
     ["CAN received", received.toFixed(0) + " per s"],
     ["CAN dropped", status.can.send_dropped + status.can.receive_dropped],
+    ["CAN overruns", status.can.receive_overruns],
     ["CAN error frames", status.can.error_frames],
     ["memory", status.memory_mb.toFixed(0) + " MB"],
     ["CPU", (100 * perSecond(status, (of) => of.cpu_s)).toFixed(0) + " %"],
   ];
-  byId("pairs").replaceChildren(...pairs.map(([name, value]) => {
+  setChildren(byId("pairs"), pairs.map(([name, value]) => {
     const pair = element("div");
     pair.append(element("dt", name), element("dd", value));
     return pair;
@@ -75,23 +79,24 @@ function showPairs(status) {
 /// What a daemon without an appliance does not know.
 function clearFacts() {
   earlier.length = 0;
-  for (const id of ["rate", "latency", "speed", "can", "place"]) byId(id).textContent = "–";
-  for (const id of ["frames", "pairs"]) byId(id).replaceChildren();
+  for (const id of ["rate", "latency", "speed", "can", "place"]) setText(byId(id), "–");
+  for (const id of ["frames", "pairs"]) setChildren(byId(id), []);
   for (const camera of Object.values(shown.cameras)) camera.figure.classList.remove("unused");
   drawTrail();
 }
 
 function showPlace(pose) {
-  byId("place").textContent = !pose ? "No pose yet." :
+  setText(byId("place"), !pose ? "No pose yet." :
     `x ${pose.x_m.toFixed(2)} m, y ${pose.y_m.toFixed(2)} m, yaw ${pose.yaw_deg.toFixed(1)}° · sigma ` +
     `${pose.sigma.longitudinal_m.toFixed(2)} m along, ${pose.sigma.lateral_m.toFixed(2)} m across, ` +
-    `${pose.sigma.yaw_deg.toFixed(2)}°`;
+    `${pose.sigma.yaw_deg.toFixed(2)}°`);
 }
 
 export function onStatus(status) {
   shown.status = status;
-  byId("version").textContent = "bevloc " + status.version;
+  setText(byId("version"), "bevloc " + status.version);
   showState(status);
+  noteTrail(status);
   if (status.phase !== "running") {
     clearFacts();
     return;
@@ -104,12 +109,11 @@ export function onStatus(status) {
   earlier.push(status);
   while (earlier.length > 1 && status.time_s - earlier[0].time_s > RATES_S) earlier.shift();
   const pose = status.pose;
-  byId("rate").textContent = status.rate_hz.toFixed(1) + " Hz";
-  byId("latency").textContent = status.latency_ms.count ?
-    `${status.latency_ms.median.toFixed(0)} ms, 99 %: ${status.latency_ms.p99.toFixed(0)}` : "–";
-  byId("speed").textContent = pose ? (3.6 * pose.speed_mps).toFixed(0) + " km/h" : "–";
-  byId("can").textContent = status.can.condition;
-  noteTrail(status);
+  setText(byId("rate"), status.rate_hz.toFixed(1) + " Hz");
+  setText(byId("latency"), status.latency_ms.count ?
+    `${status.latency_ms.median.toFixed(0)} ms, 99 %: ${status.latency_ms.p99.toFixed(0)}` : "–");
+  setText(byId("speed"), pose ? (3.6 * pose.speed_mps).toFixed(0) + " km/h" : "–");
+  setText(byId("can"), status.can.condition);
   showFrames(status);
   showPairs(status);
   showPlace(pose);

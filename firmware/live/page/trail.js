@@ -6,6 +6,7 @@ const ENLARGED = 10;  // the ellipse on the map, which is smaller than the vehic
 const STEP_M = 0.5;  // between the points of the trail
 const POINTS = 2000;
 const VIEW_M = 130;  // width of the panel
+let interrupted = false;  // whether there was no pose since the last point
 
 function drawEllipse(context, pose, x, y, scale) {
   // The covariance along the vehicle's axes, as the two half axes of an ellipse of three sigma.
@@ -58,7 +59,9 @@ export function drawTrail() {
   context.lineWidth = 3;
   context.lineCap = "round";
   for (let i = 1; i < shown.trail.length; i++) {
-    context.strokeStyle = shown.trail[i][2] ? colour("good") : colour("bad");
+    const [, , valid, begins] = shown.trail[i];
+    if (begins) continue;
+    context.strokeStyle = valid ? colour("good") : colour("bad");
     context.beginPath();
     context.moveTo(...place(shown.trail[i - 1][0], shown.trail[i - 1][1]));
     context.lineTo(...place(shown.trail[i][0], shown.trail[i][1]));
@@ -74,9 +77,13 @@ export function drawTrail() {
 
 export function noteTrail(status) {
   const pose = status.pose;
-  if (!pose) return;
+  if (!pose) {
+    interrupted = true;
+    return;
+  }
   const last = shown.trail[shown.trail.length - 1];
   if (last && Math.hypot(pose.x_m - last[0], pose.y_m - last[1]) < STEP_M) return;
-  shown.trail.push([pose.x_m, pose.y_m, status.valid ? 1 : 0]);
+  shown.trail.push([pose.x_m, pose.y_m, status.valid ? 1 : 0, interrupted ? 1 : 0]);
+  interrupted = false;
   if (shown.trail.length > POINTS) shown.trail.shift();
 }

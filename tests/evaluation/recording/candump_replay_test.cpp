@@ -1,4 +1,4 @@
-// Which candump logs are refused for their times.
+// Which candump logs are refused for their times, and which configurations.
 #include <gtest/gtest.h>
 
 #include "common/files.h"
@@ -34,6 +34,28 @@ TEST(CandumpReplay, AcceptsPausesAndFineDisorder) {
   EXPECT_EQ(message_for({"1.000000", "61.000000", "60.000000", "61.100000"})
                 .find(": found none of the vehicle's messages"),
             0U);
+}
+
+/// A replay has no gpsd. Without positions it would find no pose.
+TEST(CandumpReplay, RefusesAConfigurationWithGpsd) {
+  const std::string source = BEVLOC_SOURCE_DIR;
+  const std::string text =
+      "cameras: {driver: replay, recording: pictures}\ncalibration: {rig: " + source +
+      "/config/rig_demo.yaml}\nmap: {file: " + source +
+      "/tests/pipeline/map/fixtures/street.osm}\nmodel: {file: " + source +
+      "/models/nano.onnx}\ncan: {driver: mock}\n";
+  const test::TemporaryFolder folder;
+  ReplayOverrides overrides;
+  overrides.config = folder / "config.yaml";
+  ASSERT_TRUE(write_file(overrides.config, text));
+  const auto without = setup_of(overrides);
+  ASSERT_TRUE(without) << without.error().message;
+  ASSERT_TRUE(write_file(overrides.config,
+                         text + "gnss: {driver: gpsd, antenna_m: [0, 0], latency_ms: 90}\n"));
+  const auto with = setup_of(overrides);
+  ASSERT_FALSE(with);
+  EXPECT_EQ(with.error().message.find("replay: found the section gnss, wanted GNSS on the bus"), 0U)
+      << with.error().message;
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ TEST(EventQueue, AViewerWhoLagsContinuesWithTheNewest) {
   uint64_t next = queue.end();
   for (size_t i = 0; i <= EventQueue::kKept; ++i) queue.push(std::to_string(i));
   EXPECT_EQ(event_after(queue, next), std::to_string(EventQueue::kKept));
+  EXPECT_EQ(next, EventQueue::kKept + 1) << "so the viewer can tell that it missed events";
   EXPECT_EQ(event_after(queue, next), "");
 }
 

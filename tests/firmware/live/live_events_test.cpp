@@ -92,6 +92,11 @@ TEST_F(LiveEventsTest, ADamagedImageGivesNoEvent) {
   EXPECT_EQ(camera_event(index, made_.rig, sample_, pictures), "");
 }
 
+TEST_F(LiveEventsTest, TheTrailSaysWhereItWasInterrupted) {
+  EXPECT_EQ(trail_event({{1.234, 2.0, true, false}, {5.0, 6.0, false, true}}),
+            "event: trail\ndata: [[1.23,2.0,1,0],[5.0,6.0,0,1]]\n\n");
+}
+
 TEST_F(LiveEventsTest, TheMapIsRelativeToItsCentre) {
   map_.name = "a \"street\"";
   const MapIndex index(map_);

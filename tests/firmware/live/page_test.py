@@ -6,6 +6,7 @@ import base64
 import functools
 import http.server
 import json
+import re
 import threading
 import unittest
 from pathlib import Path
@@ -32,7 +33,15 @@ class Files(http.server.SimpleHTTPRequestHandler):
 
 
 def status(**changes: Any) -> dict[str, Any]:
-    camera = {"used": True, "captured": 1, "lost": 0, "dropped": 0, "faults": []}
+    camera = {
+        "used": True,
+        "captured": 1,
+        "lost": 0,
+        "dropped": 0,
+        "unreadable": 0,
+        "failures": 0,
+        "faults": [],
+    }
     return {
         "version": "1",
         "phase": "running",
@@ -55,6 +64,7 @@ def status(**changes: Any) -> dict[str, Any]:
             "received": 1,
             "send_dropped": 0,
             "receive_dropped": 0,
+            "receive_overruns": 0,
             "error_frames": 0,
         },
         "memory_mb": 100.0,
@@ -87,7 +97,37 @@ MATCH = {
     "yaw": DISTRIBUTION,
 }
 MODULES = {"Camera": "cameras", "Match": "match", "Status": "status"}
+POSE: dict[str, Any] = {
+    "x_m": 0.0,
+    "y_m": 0.0,
+    "yaw_deg": 0.0,
+    "speed_mps": 1.0,
+    "sigma": {"longitudinal_m": 0.1, "lateral_m": 0.1, "yaw_deg": 0.1},
+    "protection_level": {"longitudinal_m": 1.0, "lateral_m": 1.0, "yaw_deg": 1.0},
+    "longitudinal_lateral_covariance_m2": 0.0,
+}
+# The parts of the page that the browser has written since watch().
+WATCH = """window.written = new Set(); new MutationObserver((changes) => {
+  for (const change of changes) {
+    const place = change.target.parentElement.closest('[id]') || change.target;
+    written.add(change.target.id || place.id || place.nodeName);
+  }
+}).observe(document, {subtree: true, childList: true, characterData: true})"""
+# No time passes until LATER, so that the page does not notice that the test sends no events.
+STILL = "performance.now = () => 0"
 LATER = "(now => { performance.now = () => now + 4000; })(performance.now())"
+
+
+def luminance(colour: str) -> float:
+    """The relative luminance of a colour such as "rgb(1, 2, 3)", as WCAG defines it."""
+    parts = [int(part) / 255 for part in re.findall(r"\d+", colour)[:3]]
+    linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one: str, other: str) -> float:
+    dark, light = sorted((luminance(one), luminance(other)))
+    return (light + 0.05) / (dark + 0.05)
 
 
 @unittest.skipUnless(browser.program(), "no Chromium here (script/packages-web.txt)")
@@ -102,6 +142,7 @@ class PageTest(unittest.TestCase):
         self.addCleanup(self.page.__exit__, None, None, None)
         self.page.open(f"http://127.0.0.1:{server.server_port}/page.html")
         self.page.wait_for("document.querySelectorAll('figure').length === 6")
+        self.page.evaluate(STILL)
 
     def tell(self, name: str, data: dict[str, Any]) -> None:
         self.call(MODULES[name], f"on{name}", json.dumps(data))
@@ -167,6 +208,56 @@ class PageTest(unittest.TestCase):
         self.assertEqual(
             self.text("summary"), "The pose must not be used. Not healthy: " + silent
         )
+
+    def test_without_data_neither_title_nor_facts_look_current(self) -> None:
+        self.tell("Status", status())
+        self.assertEqual(self.page.evaluate("document.title"), "TRACKING · bevloc")
+        opacity = "getComputedStyle(document.querySelector('.facts')).opacity"
+        self.page.evaluate(LATER)
+        self.call("page", "noteSilence")
+        self.assertEqual(self.page.evaluate("document.title"), "NO DATA · bevloc")
+        self.assertLess(float(self.page.evaluate(opacity)), 1.0)
+
+    def test_it_shows_images_that_are_unreadable_and_cameras_that_failed(self) -> None:
+        bad = status()
+        bad["cameras"][1].update(unreadable=23, failures=45)
+        self.tell("Status", bad)
+        row = "[...document.querySelectorAll('#frames tr:nth-child(2) td')].map(c => c.textContent)"
+        self.assertEqual(
+            self.page.evaluate(row), ["front", "yes", "0.0", "0", "0", "23", "45", "none"]
+        )
+
+    def test_it_writes_only_what_differs(self) -> None:
+        why = [{"reason": "GNSS missing", "do": "Check the antenna."}]
+        self.tell("Status", status(why=why, pose=POSE))
+        self.page.evaluate(WATCH)
+        self.tell("Status", status(why=why, pose=POSE))
+        self.tell("Status", status(why=why, pose=POSE, rate_hz=11.0))
+        self.assertEqual(self.text("rate"), "11.0 Hz")
+        self.assertEqual(self.page.evaluate("[...written]"), ["rate"])
+
+    def test_the_trail_is_interrupted_where_there_was_no_pose(self) -> None:
+        for x_m in (0.0, 1.0, None, 9.0, 10.0):
+            pose = None if x_m is None else {**POSE, "x_m": x_m}
+            self.tell("Status", status(pose=pose))
+        trail = "import('/state.js').then(m => m.shown.trail.map(p => [p[0], p[3]]))"
+        self.assertEqual(self.page.evaluate(trail), [[0, 0], [1, 0], [9, 1], [10, 0]])
+
+    def test_the_badge_is_readable(self) -> None:
+        for dark in (False, True):
+            self.page.resize(1280, 800, dark)
+            for kind in ("", "good", "warn", "bad"):
+                with self.subTest(dark=dark, kind=kind):
+                    self.page.evaluate(
+                        f"document.getElementById('state').className = 'badge {kind}'"
+                    )
+                    colours = [
+                        self.page.evaluate(
+                            f"getComputedStyle(document.getElementById('state')).{name}"
+                        )
+                        for name in ("color", "backgroundColor")
+                    ]
+                    self.assertGreaterEqual(contrast(*colours), 4.5)
 
     def test_it_says_that_too_many_look(self) -> None:
         self.page.evaluate(LATER)

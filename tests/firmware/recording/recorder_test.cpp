@@ -1,100 +1,21 @@
-// The recorder: bounded queues and files, the black box, and a disk that refuses.
+// The recorder: files and their order, the black box, and its messages.
 #include "firmware/recording/recorder.h"
 
-#include <csignal>
 #include <fstream>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include "common/mcap/reader.h"
 #include "firmware/recording/messages.h"
 #include "firmware/recording/topics.h"
-#include "firmware/status/snapshot.h"
-#include "tests/firmware/log_capture.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/firmware/recording/recorder_fixture.h"
 
 namespace bevloc::firmware {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The log time when the clock is zero. It lies after 2038, when 32 bits of seconds overflow.
-constexpr Duration kOffset =
-    std::chrono::sys_days(std::chrono::year(2040) / 3 / 1).time_since_epoch();
-
-class RecorderTest : public testing::Test {
- protected:
-  RecorderTest() {
-    config_.directory = folder_ / "ring";
-    config_.images = RecordedImages::kRaw;
-  }
-
-  std::unique_ptr<Recorder> open() {
-    auto recorder = Recorder::open(config_, {}, kOffset, Time{});
-    EXPECT_TRUE(recorder) << recorder.error().message;
-    (*recorder)->expect_images(0, 16, 8);
-    return std::move(*recorder);
-  }
-
-  static can::PoseReport report(HealthState state, Time time) {
-    can::PoseReport report;
-    report.status.state = state;
-    report.pose_time = time;
-    return report;
-  }
-
-  drivers::Frame frame(uint64_t sequence, Time time) {
-    drivers::FrameBuffer buffer = pool_->borrow();
-    std::ranges::fill(pool_->image(buffer).pixels, static_cast<uint8_t>(sequence));
-    return {0, time, sequence, std::chrono::milliseconds(8), std::move(buffer)};
-  }
-
-  /// A frame that compression does not make tiny.
-  drivers::Frame noisy_frame(uint64_t sequence, Time time, int seed) {
-    drivers::Frame noisy = frame(sequence, time);
-    uint8_t value = 1;
-    for (uint8_t& byte : pool_->image(noisy.buffer).pixels) {
-      value = static_cast<uint8_t>(value * 29 + 7 + seed);
-      byte = static_cast<uint8_t>(value ^ (value >> 3));
-    }
-    return noisy;
-  }
-
-  uintmax_t bytes_in_ring() const {
-    uintmax_t bytes = 0;
-    for (const auto& entry : fs::directory_iterator(config_.directory)) {
-      if (entry.is_regular_file()) bytes += entry.file_size();
-    }
-    return bytes;
-  }
-
-  /// A file of an earlier run.
-  fs::path leave(const std::string& name, size_t bytes) const {
-    const fs::path path = config_.directory / name;
-    fs::create_directories(path.parent_path());
-    std::ofstream(path) << std::string(bytes, 'x');
-    return path;
-  }
-
-  static size_t files_in(const fs::path& folder) {
-    size_t count = 0;
-    for (const auto& entry : fs::directory_iterator(folder)) count += entry.is_regular_file();
-    return count;
-  }
-
-  static fs::path first_in(const fs::path& folder) {
-    fs::path first;
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      if (entry.is_regular_file() && (first.empty() || entry.path() < first)) first = entry.path();
-    }
-    return first;
-  }
-
-  const test::TemporaryFolder folder_;
-  RecordConfig config_;
-  std::shared_ptr<drivers::FramePool> pool_ = drivers::FramePool::create(32, 16, 8);
-};
+class RecorderTest : public test::RecorderFixture {};
 
 TEST_F(RecorderTest, ImagesKeepTheirPixelsAndTimes) {
   const auto recorder = open();
@@ -111,7 +32,7 @@ TEST_F(RecorderTest, ImagesKeepTheirPixelsAndTimes) {
   const mcap::Message& message = chunk->messages[0];
   EXPECT_EQ(reader->channels().at(message.channel_id).topic, "/camera/front_left");
   EXPECT_EQ(message.log_time_ns,
-            static_cast<uint64_t>((kOffset + std::chrono::milliseconds(98)).count()));
+            static_cast<uint64_t>((test::kRecorderOffset + std::chrono::milliseconds(98)).count()));
   foxglove::RawImage image;
   ASSERT_TRUE(image.ParseFromArray(message.data.data(), static_cast<int>(message.data.size())));
   EXPECT_EQ(image.encoding(), "rgb8");
@@ -123,31 +44,6 @@ TEST_F(RecorderTest, ImagesKeepTheirPixelsAndTimes) {
 TEST_F(RecorderTest, NamesAFileByTheTimeInUtcAlsoAfter2038) {
   open()->finish(Time{});
   EXPECT_EQ(first_in(config_.directory).filename(), "bevloc-20400301T000000Z-0001.mcap");
-}
-
-/// A JPEG is at most 65500 pixels wide.
-TEST_F(RecorderTest, AnImageThatCannotBeEncodedIsLeftOut) {
-  config_.images = RecordedImages::kJpeg;
-  pool_ = drivers::FramePool::create(2, 70'000, 2);
-  const LogCapture log;
-  const auto recorder = open();
-  recorder->expect_images(0, 70'000, 2);
-  recorder->note_image(frame(1, Time{}), Time{});
-  recorder->note_solution(report(HealthState::kTracking, Time{}));
-  recorder->finish(Time{});
-  EXPECT_EQ(recorder->totals().images_dropped, 1U);
-  EXPECT_EQ(recorder->counters().images, 0U);
-  EXPECT_EQ(recorder->counters().events, 1U);
-  EXPECT_FALSE(recorder->counters().failed);
-  EXPECT_NE(log.text().find("an image of camera front_left is left out"), std::string::npos);
-}
-
-TEST_F(RecorderTest, ImagesThatFindNoMemoryAreDroppedAndCounted) {
-  const auto recorder = open();
-  for (uint64_t i = 0; i < 20; ++i) recorder->note_image(frame(i, Time{}), Time{});
-  EXPECT_GT(recorder->counters().images_dropped, 0U);
-  recorder->finish(Time{std::chrono::seconds(1)});
-  EXPECT_EQ(recorder->counters().images + recorder->counters().images_dropped, 20U);
 }
 
 TEST_F(RecorderTest, EventsDoNotWaitForManyImages) {
@@ -165,41 +61,6 @@ TEST_F(RecorderTest, EventsDoNotWaitForManyImages) {
   EXPECT_EQ(recorder->counters().images, 6U);
   recorder->finish(Time{std::chrono::seconds(1)});
   EXPECT_EQ(recorder->counters().images, 12U);
-}
-
-TEST_F(RecorderTest, EventsBeyondTheQueueAreDroppedAndCounted) {
-  const auto recorder = open();
-  for (int i = 0; i < 10'000; ++i) recorder->note_truth({Time{}, {}});
-  EXPECT_EQ(recorder->events_dropped(), 10'000U - 8192U);
-  recorder->finish(Time{std::chrono::seconds(1)});
-  EXPECT_EQ(recorder->counters().events, 8192U);
-}
-
-TEST_F(RecorderTest, WhatIsNotOnTheDiskAfterAFailureCountsAsDropped) {
-  const LogCapture log;
-  const auto recorder = open();
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const rlimit small{1, before.rlim_max};
-  std::signal(SIGXFSZ, SIG_IGN);
-  setrlimit(RLIMIT_FSIZE, &small);
-  for (int i = 0; i < 3; ++i) {
-    const Time now{std::chrono::seconds(i)};
-    recorder->note_image(frame(7, now), now);
-    recorder->note_truth({now, {}});
-    recorder->write_queued(now);
-  }
-  recorder->finish(Time{std::chrono::seconds(3)});
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, SIG_DFL);
-  EXPECT_TRUE(recorder->counters().failed);
-  EXPECT_EQ(recorder->counters().images, 0U);
-  EXPECT_EQ(recorder->images_dropped(), 3U);
-  EXPECT_TRUE(recorder->totals().failed);
-  EXPECT_EQ(recorder->totals().images_dropped, 3U);
-  EXPECT_EQ(recorder->counters().events, 0U);
-  EXPECT_EQ(recorder->events_dropped(), 3U);
-  EXPECT_NE(log.text().find("3 images and 3 events dropped"), std::string::npos) << log.text();
 }
 
 TEST_F(RecorderTest, TheRingDeletesItsOldestFiles) {
@@ -240,18 +101,6 @@ TEST_F(RecorderTest, TheRingMakesRoomForAFileThatGrows) {
   EXPECT_FALSE(fs::exists(oldest));
   EXPECT_TRUE(fs::exists(middle));
   EXPECT_TRUE(fs::exists(latest));
-}
-
-TEST_F(RecorderTest, AgeCountsFromTheTimeInTheName) {
-  config_.max_age = std::chrono::hours(24 * 7);
-  for (const char* date : {"20400222", "20400224", "20500101", "garbage!"}) {
-    leave("bevloc-" + std::string(date) + "T000000Z-0001.mcap", 10);
-  }
-  open()->finish(Time{});
-  EXPECT_FALSE(fs::exists(config_.directory / "bevloc-20400222T000000Z-0001.mcap")) << "8 days";
-  EXPECT_TRUE(fs::exists(config_.directory / "bevloc-20400224T000000Z-0001.mcap")) << "6 days";
-  EXPECT_TRUE(fs::exists(config_.directory / "bevloc-20500101T000000Z-0001.mcap"));
-  EXPECT_TRUE(fs::exists(config_.directory / "bevloc-garbage!T000000Z-0001.mcap"));
 }
 
 TEST_F(RecorderTest, AFullRingDeletesFilesOfTheFutureFirst) {
@@ -330,7 +179,7 @@ TEST_F(RecorderTest, AFullBlackBoxDeletesFilesOfTheFutureFirst) {
 
 TEST_F(RecorderTest, AFolderThatCannotBeMadeIsRefused) {
   config_.directory = "/proc/no/such";
-  const auto recorder = Recorder::open(config_, {}, kOffset, Time{});
+  const auto recorder = Recorder::open(config_, {}, test::kRecorderOffset, Time{});
   ASSERT_FALSE(recorder);
   EXPECT_NE(recorder.error().message.find("/proc/no/such"), std::string::npos);
 }

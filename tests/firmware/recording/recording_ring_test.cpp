@@ -100,6 +100,17 @@ TEST_F(FullDiskTest, ARecordingMakesRoomWhileItGrows) {
   EXPECT_TRUE(fs::exists(ring->file()));
 }
 
+TEST_F(FullDiskTest, CountsBytesOnceIfTheNextFileCannotBegin) {
+  auto ring = open();
+  ASSERT_TRUE(ring) << ring.error().message;
+  // The ring deletes the closed file to make room for the next one. The link keeps its size known.
+  const fs::path link = config_.directory / "link";
+  fs::create_hard_link(ring->file(), link);
+  other_bytes = 990'000;
+  EXPECT_FALSE(ring->step(kNow_ns + 61 * kSecond_ns));
+  EXPECT_EQ(ring->bytes_written(), fs::file_size(link));
+}
+
 TEST_F(FullDiskTest, KeepsTheBlackBoxAlsoIfItsFolderWasDeleted) {
   auto ring = open();
   ASSERT_TRUE(ring) << ring.error().message;

@@ -209,6 +209,16 @@ TEST(Metrics, ShowTheRecording) {
                         "boxes kept\n"));
 }
 
+TEST(Metrics, NoStateHoldsInStandby) {
+  Telemetry standby;
+  standby.phase = Phase::kStandby;
+  const std::string text = metrics(standby);
+  EXPECT_THAT(text, HasSubstr("bevloc_can_state{state=\"ok\"} 0\n"));
+  EXPECT_THAT(text, Not(testing::ContainsRegex("bevloc_(can_)?state\\{[^}]*\\} 1")));
+  EXPECT_THAT(metrics(running(HealthState::kTracking)),
+              HasSubstr("bevloc_can_state{state=\"ok\"} 1\n"));
+}
+
 TEST(Metrics, LatencyBucketsAreCumulative) {
   Telemetry telemetry = running(HealthState::kTracking);
   telemetry.snapshot.estimation.latency.in_range[0] = 1;
@@ -328,6 +338,19 @@ TEST(StatusPage, FitsATerminal) {
   int count = 0;
   for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 100u) << line;
   EXPECT_LE(count, 24);
+}
+
+TEST(StatusPage, ShowsWhatCamerasAndBusLost) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.snapshot.cameras[1].unreadable = 23;
+  telemetry.snapshot.cameras[1].failures = 45;
+  telemetry.snapshot.bus.send_expired = 67;
+  telemetry.snapshot.bus.receive_dropped = 89;
+  telemetry.snapshot.bus.receive_overrun = 12;
+  const std::string page = status_page(status_json(telemetry, {}, {}));
+  EXPECT_THAT(page, HasSubstr("unreadable  failures  faults\n"));
+  EXPECT_THAT(page, testing::ContainsRegex("front +NO +0 +0 +0 +23 +45  \n"));
+  EXPECT_THAT(page, HasSubstr("0 sent and 67 dropped, 0 received and 89 lost, 12 overruns"));
 }
 
 TEST(StatusPage, ShowsWhatTheAuthenticationRefused) {
