@@ -6,7 +6,7 @@
 
      struct bevloc_receiver receiver;
      bevloc_init(&receiver, BEVLOC_LOCALIZER_BASE, alert_limits);
-     // for every frame, with the time of your own clock:
+     // for every frame, with the time of its arrival on your own clock:
      bevloc_receive(&receiver, id, data, length, now_us);
      // whenever the function needs the pose:
      if (bevloc_answer(&receiver, now_us) == BEVLOC_USABLE) use(receiver.pose);
@@ -15,15 +15,20 @@
 #ifndef BEVLOC_H
 #define BEVLOC_H
 
+#include <float.h>
 #include <stddef.h>
 #include <string.h>
 
 #include "bevloc_messages.h"
 
+#if DBL_MANT_DIG < 53
+#error "bevloc.h needs a double of 64 bits, because positions have more digits than a float"
+#endif
+
 /* Why the latest pose may or may not be used, in the order of the checks. */
 enum bevloc_answer {
   BEVLOC_USABLE,
-  BEVLOC_NO_POSE,        /* no complete pose was received yet */
+  BEVLOC_NO_POSE,        /* no complete pose or no LOC_Status yet */
   BEVLOC_TIMEOUT,        /* no pose for three cycles, or only one pose since such a pause, or no
                             LOC_Status for three of its cycles, or the clock was set back: `now_us`
                             is more than a cycle before one of them */
@@ -71,9 +76,10 @@ struct bevloc_receiver {
   struct bevloc_alert_limits limits;
   struct bevloc_counters counters;
   bool has_status, has_pose;
+  uint32_t why;       /* the reasons why the state is not better, as bits: BEVLOC_WHY() */
   int state;          /* BEVLOC_LOC_Status_State_... */
   int time_source;    /* BEVLOC_LOC_Status_TimeSource_... */
-  int map_id;         /* MapId of LOC_Status; compare it with that of your map */
+  uint16_t map_id;    /* MapId of LOC_Status; compare it with that of your map */
   uint64_t status_us; /* when LOC_Status arrived */
   bool has_clock;
   uint32_t utc_offset_us; /* UTC minus the localizer's clock, modulo 2^32 */
@@ -127,7 +133,7 @@ static inline uint16_t bevloc_crc16(const uint8_t* data, size_t length, uint16_t
   int bit;
   for (i = 2; i < length + 2; ++i) {
     const uint8_t byte = i < length ? data[i] : (uint8_t)(data_id >> (i == length ? 0 : 8));
-    crc = (uint16_t)(crc ^ (uint16_t)(byte << 8));
+    crc = (uint16_t)(crc ^ (uint16_t)((uint32_t)byte << 8));
     for (bit = 0; bit < 8; ++bit) {
       crc = (uint16_t)((crc & 0x8000) != 0 ? (crc << 1) ^ 0x1021 : crc << 1);
     }
@@ -171,11 +177,9 @@ static inline bool bevloc_check(struct bevloc_receiver* receiver,
     ++receiver->counters.wrong_length;
     return false;
   }
-  if (message->is_fd) {
-    good = bevloc_crc16(data, length, message->data_id) == (uint16_t)(data[0] | data[1] << 8);
-  } else {
-    good = bevloc_crc8(data, length, (uint8_t)message->data_id) == data[0];
-  }
+  good = message->is_fd
+             ? bevloc_crc16(data, length, message->data_id) == (data[0] | (uint32_t)data[1] << 8)
+             : bevloc_crc8(data, length, (uint8_t)message->data_id) == data[0];
   if (!good) {
     ++receiver->counters.wrong_crc;
     return false;
@@ -204,37 +208,54 @@ static inline bool bevloc_is_fresh(uint64_t now_us, uint64_t stamp_us, uint32_t 
 /* Whether at most three cycles of the message passed since a time stamp. */
 static inline bool bevloc_is_in_time(uint64_t now_us, uint64_t stamp_us,
                                      const struct bevloc_message* message) {
-  return bevloc_is_fresh(now_us, stamp_us, 3000u * message->cycle_ms, message);
+  return bevloc_is_fresh(now_us, stamp_us, (uint32_t)3000 * message->cycle_ms, message);
 }
 
-static inline void bevloc_take_status(struct bevloc_receiver* receiver, const uint8_t* data,
+/* The bit of a reason: receiver.why & BEVLOC_WHY(BEVLOC_LOC_Status_Why_GnssMissing). */
+#define BEVLOC_WHY(signal) (UINT32_C(1) << ((signal).start_bit - 32))
+
+/* Takes the reasons of a frame, from the first to the last one. */
+static inline void bevloc_take_why(struct bevloc_receiver* receiver, const uint8_t* data,
+                                   const struct bevloc_signal* first,
+                                   const struct bevloc_signal* last) {
+  const uint32_t mask = 2 * BEVLOC_WHY(*last) - BEVLOC_WHY(*first);
+  const uint32_t low = data[4] | (uint32_t)data[5] << 8;
+  const uint32_t high = data[6] | (uint32_t)data[7] << 8;
+  receiver->why = (receiver->why & ~mask) | ((low | high << 16) & mask);
+}
+
+/* Returns false, because LOC_Status completes no pose. LOC_Clock does not either. */
+static inline bool bevloc_take_status(struct bevloc_receiver* receiver, const uint8_t* data,
                                       uint64_t now_us) {
   double value = 0;
-  if (bevloc_decode(data, &BEVLOC_LOC_Status_TimeSource, &value)) {
-    receiver->time_source = (int)value;
+  if (!bevloc_decode(data, &BEVLOC_LOC_Status_TimeSource, &value)) {
+    value = BEVLOC_LOC_Status_TimeSource_FREE_RUNNING;
   }
-  if (bevloc_decode(data, &BEVLOC_LOC_Status_MapId, &value)) receiver->map_id = (int)value;
+  receiver->time_source = (int)value;
+  if (bevloc_decode(data, &BEVLOC_LOC_Status_MapId, &value)) receiver->map_id = (uint16_t)value;
   if (!bevloc_decode(data, &BEVLOC_LOC_Status_State, &value)) value = BEVLOC_LOC_Status_State_FAULT;
   receiver->state = (int)value;
+  bevloc_take_why(receiver, data, &BEVLOC_LOC_Status_Why_CameraMissing,
+                  &BEVLOC_LOC_Status_Why_InternalFault);
   receiver->has_status = true;
   receiver->status_us = now_us;
+  return false;
 }
 
-static inline void bevloc_take_clock(struct bevloc_receiver* receiver, const uint8_t* data,
+static inline bool bevloc_take_clock(struct bevloc_receiver* receiver, const uint8_t* data,
                                      uint64_t now_us) {
   double offset_us = 0;
   receiver->has_clock = bevloc_decode(data, &BEVLOC_LOC_Clock_UtcOffset, &offset_us) &&
                         bevloc_decode(data, &BEVLOC_LOC_Clock_UtcError, &receiver->utc_error_ms);
   receiver->utc_offset_us = (uint32_t)offset_us;
   receiver->clock_us = now_us;
+  return false;
 }
 
 static inline void bevloc_take_pose(struct bevloc_receiver* receiver, uint64_t now_us) {
   struct bevloc_pose* pose = &receiver->pose;
   uint8_t(*frames)[8] = receiver->frames;
-  double risk = 0;
-  double foreign_sender = 0;
-  double capture_us = 0;
+  double risk = 0, capture_us = 0;
   bool complete = true;
   /* When the bus returns after a failure, the first pose may be an old one that waited in the
      sender's controller. At most one can wait. */
@@ -258,8 +279,9 @@ static inline void bevloc_take_pose(struct bevloc_receiver* receiver, uint64_t n
   pose->has_yaw = bevloc_decode(frames[7], &BEVLOC_LOC_Integrity_ProtectionYaw, &pose->yaw_deg);
   complete &= bevloc_decode(frames[7], &BEVLOC_LOC_Integrity_IntegrityRiskExponent, &risk);
   pose->risk_exponent = (int)risk;
-  complete &= bevloc_decode(frames[7], &BEVLOC_LOC_Integrity_Why_ForeignSender, &foreign_sender);
-  pose->foreign_sender = foreign_sender != 0;
+  bevloc_take_why(receiver, frames[7], &BEVLOC_LOC_Integrity_Why_GnssContradicts,
+                  &BEVLOC_LOC_Integrity_Why_ForeignSender);
+  pose->foreign_sender = (receiver->why & BEVLOC_WHY(BEVLOC_LOC_Integrity_Why_ForeignSender)) != 0;
   pose->complete = complete;
   pose->received_us = now_us;
   receiver->has_pose = true;
@@ -299,22 +321,19 @@ static inline bool bevloc_take_solution(struct bevloc_receiver* receiver, const 
   return true;
 }
 
-/* Takes any frame, which arrived at `now_us` on your clock. Returns whether it completes a pose. */
+/* Takes any frame. `now_us` is the time of arrival, not of reading, on your clock. Returns whether
+   the frame completes a pose. */
 static inline bool bevloc_receive(struct bevloc_receiver* receiver, uint32_t id,
                                   const uint8_t* data, size_t length, uint64_t now_us) {
   int part;
   const uint32_t offset = id - receiver->base_id;
   if (offset == BEVLOC_LOC_Status.id_offset) {
-    if (bevloc_check(receiver, &BEVLOC_LOC_Status, data, length)) {
-      bevloc_take_status(receiver, data, now_us);
-    }
-    return false;
+    return bevloc_check(receiver, &BEVLOC_LOC_Status, data, length) &&
+           bevloc_take_status(receiver, data, now_us);
   }
   if (offset == BEVLOC_LOC_Clock.id_offset) {
-    if (bevloc_check(receiver, &BEVLOC_LOC_Clock, data, length)) {
-      bevloc_take_clock(receiver, data, now_us);
-    }
-    return false;
+    return bevloc_check(receiver, &BEVLOC_LOC_Clock, data, length) &&
+           bevloc_take_clock(receiver, data, now_us);
   }
   if (offset == BEVLOC_LOC_Solution.id_offset) {
     return bevloc_check(receiver, &BEVLOC_LOC_Solution, data, length) &&
@@ -327,11 +346,6 @@ static inline bool bevloc_receive(struct bevloc_receiver* receiver, uint32_t id,
            bevloc_take_part(receiver, part, data[1] >> 4, data, length, now_us);
   }
   return false;
-}
-
-/* Whether an axis has no protection level although it has a limit. */
-static inline bool bevloc_lacks_level(double limit, bool has_level) {
-  return limit != 0 && !has_level;
 }
 
 /* A limit of 0 does not count. No level is within a limit that is negative or not a number. */
@@ -353,9 +367,9 @@ static inline enum bevloc_answer bevloc_answer(const struct bevloc_receiver* rec
     return BEVLOC_NOT_VALID;
   }
   if (pose->foreign_sender) return BEVLOC_FOREIGN_SENDER;
-  if (!pose->complete || bevloc_lacks_level(limits->lateral_m, pose->has_lateral) ||
-      bevloc_lacks_level(limits->longitudinal_m, pose->has_longitudinal) ||
-      bevloc_lacks_level(limits->yaw_deg, pose->has_yaw)) {
+  if (!pose->complete || (limits->lateral_m != 0 && !pose->has_lateral) ||
+      (limits->longitudinal_m != 0 && !pose->has_longitudinal) ||
+      (limits->yaw_deg != 0 && !pose->has_yaw)) {
     return BEVLOC_NOT_AVAILABLE;
   }
   if (bevloc_is_beyond(limits->lateral_m, pose->lateral_m) ||
@@ -378,23 +392,9 @@ static inline bool bevloc_capture_utc(const struct bevloc_receiver* receiver, ui
 }
 
 static inline const char* bevloc_answer_name(enum bevloc_answer answer) {
-  switch (answer) {
-    case BEVLOC_USABLE:
-      return "usable";
-    case BEVLOC_NO_POSE:
-      return "no_pose";
-    case BEVLOC_TIMEOUT:
-      return "timeout";
-    case BEVLOC_NOT_VALID:
-      return "not_valid";
-    case BEVLOC_FOREIGN_SENDER:
-      return "foreign_sender";
-    case BEVLOC_NOT_AVAILABLE:
-      return "not_available";
-    case BEVLOC_BEYOND_LIMIT:
-      return "beyond_limit";
-  }
-  return "";
+  static const char* const names[] = {"usable",         "no_pose",       "timeout",     "not_valid",
+                                      "foreign_sender", "not_available", "beyond_limit"};
+  return (unsigned)answer < sizeof names / sizeof *names ? names[answer] : "";
 }
 
 #endif

@@ -25,7 +25,8 @@ class Receiver {
     bevloc_init(&receiver_, base_id, limits);
   }
 
-  /// Takes any frame of the bus. True when it completes a pose.
+  /// Takes any frame of the bus. `now` is the time of its arrival, not of reading. True when it
+  /// completes a pose.
   bool receive(uint32_t id, std::span<const uint8_t> data, std::chrono::microseconds now) {
     return bevloc_receive(&receiver_, id, data.data(), data.size(), count(now));
   }
@@ -48,7 +49,10 @@ class Receiver {
   }
 
   int state() const { return receiver_.state; }
-  int map_id() const { return receiver_.map_id; }
+  /// Why the state is not better, as bits: why() & BEVLOC_WHY(BEVLOC_LOC_Status_Why_GnssMissing).
+  uint32_t why() const { return receiver_.why; }
+  int time_source() const { return receiver_.time_source; }
+  uint16_t map_id() const { return receiver_.map_id; }
   const Pose& latest() const { return receiver_.pose; }
   const ::bevloc_counters& counters() const { return receiver_.counters; }
 

@@ -14,8 +14,10 @@ struct bevloc_message {
   uint8_t length; /* bytes */
   bool is_fd;     /* E2E profile P05, otherwise P02 */
   uint16_t cycle_ms;
-  uint16_t data_id;      /* of the E2E protection */
-  uint8_t fd_first_byte; /* of the message's content in LOC_Solution; 0: not in it */
+  uint16_t data_id; /* of the E2E protection */
+  /* Where the content of the message, its bytes from 2 on, begins in LOC_Solution; 0: not in it.
+     There, add 8 * (fd_first_byte - 2) to the start bits of its signals. */
+  uint8_t fd_first_byte;
 };
 
 /* Intel byte order; physical = raw * scale + offset. With has_sna, all bits set (or the most

@@ -27,7 +27,9 @@ class Message(NamedTuple):
     is_fd: bool  # E2E profile P05, otherwise P02
     cycle_ms: int
     data_id: int
-    fd_first_byte: int  # of the content in LOC_Solution; 0: not in it
+    # Where the content of the message, its bytes from 2 on, begins in LOC_Solution; 0: not in it.
+    # There, add 8 * (fd_first_byte - 2) to the start bits of its signals.
+    fd_first_byte: int
     signals: dict[str, Signal]
 
 

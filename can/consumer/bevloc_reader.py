@@ -4,7 +4,7 @@
 As a module, with any source of frames:
 
     receiver = Receiver(AlertLimits(lateral_m=0.57, longitudinal_m=1.40, yaw_deg=1.50))
-    receiver.receive(identifier, data, time_s)
+    receiver.receive(identifier, data, arrival_s)
     if receiver.answer(time_s) == "usable":
         use(receiver.pose)
 
@@ -130,7 +130,8 @@ def decode(data: bytes, signal: Signal) -> float | None:
 
 def is_fresh(time_s: float, stamp_s: float, limit_s: float, name: str) -> bool:
     """Whether at most limit_s passed since a stamp. Stamps may be out of order by one cycle of
-    their message. Further back the clock was set, and the true age is not known."""
+    their message. If a stamp lies further ahead, the clock was set back, and its age is not
+    known."""
     cycle_s = 1e-3 * MESSAGES[name].cycle_ms
     return -cycle_s - HALF_MICROSECOND_S <= time_s - stamp_s <= limit_s + HALF_MICROSECOND_S
 
@@ -138,6 +139,12 @@ def is_fresh(time_s: float, stamp_s: float, limit_s: float, name: str) -> bool:
 def is_in_time(time_s: float, stamp_s: float, name: str) -> bool:
     """The same for a limit of three cycles."""
     return is_fresh(time_s, stamp_s, 1e-3 * CYCLES_TO_TIMEOUT * MESSAGES[name].cycle_ms, name)
+
+
+def reasons_in(name: str, data: bytes) -> set[str]:
+    """The reasons in a frame, such as "GnssMissing" for Why_GnssMissing."""
+    return {signal.removeprefix("Why_") for signal, layout in MESSAGES[name].signals.items()
+            if signal.startswith("Why_") and decode(data, layout)}
 
 
 @dataclass
@@ -153,6 +160,8 @@ class Receiver:
     pose: dict[str, float | None] | None = None
     pose_time_s: float = 0.0
     pose_follows_silence: bool = True
+    pose_reasons: set[str] = field(default_factory=set)
+    status_reasons: set[str] = field(default_factory=set)
     status_time_s: float = 0.0
     utc_offset_us: int | None = None
     utc_error_ms: float | None = None
@@ -166,7 +175,8 @@ class Receiver:
         self._frames: dict[str, bytes] = {}
 
     def receive(self, identifier: int, data: bytes, time_s: float) -> bool:
-        """Takes any frame of the bus. True when it completes a pose."""
+        """Takes any frame of the bus. `time_s` is the time of arrival, not of reading. True when it
+        completes a pose."""
         name = self._names.get(identifier - self.base_id)
         known = ("LOC_Status", "LOC_Clock", "LOC_Solution", *PARTS)
         if name not in known or not self._check(name, data):
@@ -182,7 +192,8 @@ class Receiver:
         return self._take_part(name, data, time_s)
 
     def answer(self, time_s: float) -> str:
-        """Whether the latest pose may be used now ("usable"), and else why not."""
+        """Whether the latest pose may be used now ("usable"), and else why not. "no_pose" means
+        that there is no complete pose or no LOC_Status yet."""
         if self.pose is None or self.state is None:
             return "no_pose"
         in_time = is_in_time(time_s, self.pose_time_s, "LOC_Time") and not self.pose_follows_silence
@@ -195,6 +206,10 @@ class Receiver:
         if self._lacks_value():
             return "not_available"
         return "beyond_limit" if self._is_beyond_limit() else "usable"
+
+    def why(self) -> set[str]:
+        """The reasons why the state is not better, such as "GnssMissing"."""
+        return self.status_reasons | self.pose_reasons
 
     def capture_utc_us(self, time_s: float) -> int | None:
         """When the images behind the latest pose were taken, UTC modulo 2^32 us. None without
@@ -250,6 +265,7 @@ class Receiver:
         self.time_source = name_of("TimeSource", "FREE_RUNNING")
         map_id = decode(data, MESSAGES["LOC_Status"].signals["MapId"])
         self.map_id = None if map_id is None else int(map_id)
+        self.status_reasons = reasons_in("LOC_Status", data)
         self.status_time_s = time_s
 
     def _take_clock(self, data: bytes, time_s: float) -> None:
@@ -296,6 +312,7 @@ class Receiver:
             value: decode(self._frames[name], MESSAGES[name].signals[signal])
             for value, (name, signal) in VALUES.items()
         }
+        self.pose_reasons = reasons_in("LOC_Integrity", self._frames["LOC_Integrity"])
         self.pose_time_s = time_s
 
 
@@ -308,11 +325,11 @@ class Printer:
         self.answer: str | None = None
         self.next_s = 0.0
 
-    def take(self, identifier: int, data: bytes, time_s: float) -> None:
+    def take(self, frame: Frame) -> None:
         if self.answer is not None:
-            self.look(time_s)
-        self.receiver.receive(identifier, data, time_s)
-        self.look(time_s)
+            self.look(frame.now_s)
+        self.receiver.receive(frame.identifier, frame.data, frame.arrival_s)
+        self.look(frame.now_s)
 
     def look(self, time_s: float) -> None:
         if self.first_s is None:
@@ -345,7 +362,7 @@ def show(printer: Printer, frames: Iterator[Frame | float]) -> int:
             if isinstance(frame, float):
                 printer.look(frame)
             else:
-                printer.take(*frame)
+                printer.take(frame)
     except KeyboardInterrupt:
         pass
     except BusError as error:

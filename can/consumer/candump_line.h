@@ -63,7 +63,7 @@ static inline bool candump_parse_data(const char* digits, bool fd, struct candum
   return true;
 }
 
-/* Parses a line with its line end. So an empty text can only come from a file with zero bytes. */
+/* `text` includes the line end. It is empty only if the line begins with a zero byte. */
 static inline enum candump_kind candump_parse(const char* text, struct candump_line* line) {
   size_t count;
   bool fd;

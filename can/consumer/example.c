@@ -2,7 +2,7 @@
      consumer_c can.log
      consumer_c --interface vcan0
    The alert limits are those of a freeway (docs/can.md). */
-#define _POSIX_C_SOURCE 200809L
+#define _DEFAULT_SOURCE
 #include <errno.h>
 #include <inttypes.h>
 #include <linux/can.h>
@@ -53,10 +53,11 @@ static void look(struct printer* printer, uint64_t now_us) {
   printer->next_us = now_us + 1000000;
 }
 
+/* A frame that arrived at `arrival_us` is read at `now_us`. */
 static void take(struct printer* printer, uint32_t id, const uint8_t* data, size_t length,
-                 uint64_t now_us) {
+                 uint64_t arrival_us, uint64_t now_us) {
   if (printer->answer >= 0) look(printer, now_us);
-  bevloc_receive(&printer->receiver, id, data, length, now_us);
+  bevloc_receive(&printer->receiver, id, data, length, arrival_us);
   look(printer, now_us);
 }
 
@@ -83,7 +84,8 @@ static int read_log(struct printer* printer, const char* path) {
   while (kind != CANDUMP_BAD && fgets(text, sizeof text, log) != NULL) {
     ++number;
     kind = candump_parse(text, &frame);
-    if (kind == CANDUMP_DATA) take(printer, frame.id, frame.data, frame.length, frame.time_us);
+    if (kind != CANDUMP_DATA) continue;
+    take(printer, frame.id, frame.data, frame.length, frame.time_us, frame.time_us);
   }
   readable = ferror(log) == 0; /* a folder opens, but cannot be read */
   fclose(log);
@@ -97,7 +99,7 @@ static int read_log(struct printer* printer, const char* path) {
   return 0;
 }
 
-/* An open socket whose read() waits for 10 ms at most, or -1. */
+/* An open socket that waits for 10 ms at most and stamps the frames that arrive, or -1. */
 static int open_interface(const char* interface) {
   struct sockaddr_can address = {0};
   const struct timeval patience = {0, 10000};
@@ -109,10 +111,47 @@ static int open_interface(const char* interface) {
   if (address.can_ifindex == 0 ||
       setsockopt(bus, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) != 0 ||
       setsockopt(bus, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience) != 0 ||
+      setsockopt(bus, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on) != 0 ||
       bind(bus, (struct sockaddr*)&address, sizeof address) != 0) {
     return -1;
   }
   return bus;
+}
+
+static uint64_t microseconds(const struct timespec* time) {
+  return (uint64_t)time->tv_sec * 1000000u + (uint64_t)time->tv_nsec / 1000u;
+}
+
+static uint64_t time_of(clockid_t clock) {
+  struct timespec time;
+  clock_gettime(clock, &time);
+  return microseconds(&time);
+}
+
+/* Reads a frame, and says how long ago it arrived. A program that was held up reads old frames. The
+   kernel stamps them by CLOCK_REALTIME, which may be set; so use only the age. */
+static bool receive(int bus, struct canfd_frame* frame, uint64_t* age_us) {
+  union {
+    struct cmsghdr header; /* for its alignment */
+    char bytes[CMSG_SPACE(sizeof(struct timespec))];
+  } control;
+  struct iovec content = {frame, sizeof *frame};
+  struct msghdr message = {0};
+  struct cmsghdr* part;
+  message.msg_iov = &content;
+  message.msg_iovlen = 1;
+  message.msg_control = &control;
+  message.msg_controllen = sizeof control;
+  *age_us = 0;
+  if (recvmsg(bus, &message, 0) <= 0) return false;
+  for (part = CMSG_FIRSTHDR(&message); part != NULL; part = CMSG_NXTHDR(&message, part)) {
+    struct timespec stamp;
+    if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SO_TIMESTAMPNS) continue;
+    memcpy(&stamp, CMSG_DATA(part), sizeof stamp);
+    *age_us = time_of(CLOCK_REALTIME) - microseconds(&stamp);
+    if ((int64_t)*age_us < 0) *age_us = 0; /* the clock was set back */
+  }
+  return true;
 }
 
 /* Looks at the answer without frames, too: only then is a silence noticed. */
@@ -120,14 +159,12 @@ static int read_interface(struct printer* printer, const char* interface) {
   struct canfd_frame frame;
   const int bus = open_interface(interface);
   while (bus >= 0) {
-    struct timespec time;
-    uint64_t now_us;
-    const bool received = read(bus, &frame, sizeof frame) > 0;
+    uint64_t age_us, now_us;
+    const bool received = receive(bus, &frame, &age_us);
     if (!received && errno != EAGAIN && errno != EINTR) break;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    now_us = (uint64_t)time.tv_sec * 1000000u + (uint64_t)time.tv_nsec / 1000u;
+    now_us = time_of(CLOCK_MONOTONIC);
     if (received && (frame.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_ERR_FLAG)) == 0) {
-      take(printer, frame.can_id, frame.data, frame.len, now_us);
+      take(printer, frame.can_id, frame.data, frame.len, now_us - age_us, now_us);
     } else {
       look(printer, now_us);
     }

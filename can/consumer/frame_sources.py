@@ -16,7 +16,8 @@ class Frame(NamedTuple):
 
     identifier: int
     data: bytes
-    time_s: float
+    arrival_s: float
+    now_s: float  # the time of reading
 
 
 class LogError(Exception):
@@ -48,14 +49,17 @@ def frames_of_log(path: str) -> Iterator[Frame]:
                         "such as '(1436509052.249713) can0 044#2A366C2BBA'")
                 if found and found["id"]:
                     data = bytes.fromhex(found["fd"] or found["classic"] or "")
-                    yield Frame(int(found["id"], 16), data, float(found["time"]))
+                    time_s = float(found["time"])
+                    yield Frame(int(found["id"], 16), data, time_s, time_s)
     except OSError:
         raise LogError(f"{path}: found no readable file, wanted a candump log") from None
 
 
 def frames_of_bus(interface: str, channel: str) -> Iterator[Frame | float]:
     """The frames with the time of their arrival, and the time alone after 10 ms without one: only
-    then is a silence noticed. Raises BusError."""
+    then is a silence noticed. A program that was held up reads old frames. SocketCAN stamps them by
+    the clock of time.time(), which may be set; so only their age is used. Other interfaces have
+    clocks of their own: there the time of reading counts as arrival. Raises BusError."""
     try:
         import can  # python3-can
     except ImportError as error:
@@ -70,6 +74,8 @@ def frames_of_bus(interface: str, channel: str) -> Iterator[Frame | float]:
                                        or message.is_error_frame):
                     yield time_s
                 else:
-                    yield Frame(message.arbitration_id, bytes(message.data), time_s)
+                    age_s = time.time() - message.timestamp if interface == "socketcan" else 0.0
+                    yield Frame(message.arbitration_id, bytes(message.data),
+                                time_s - max(age_s, 0.0), time_s)
     except (can.CanError, OSError) as error:
         raise BusError(f"{channel}: found no frames ({error}), wanted a bus that is up") from None

@@ -1,6 +1,7 @@
 #include "can/dbc/dbc.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "can/dbc/dbc_reader.h"
@@ -57,6 +58,10 @@ std::string utf8_from_latin1(std::string_view text) {
 
 }  // namespace
 
+bool means_not_available(std::string_view value_name) {
+  return value_name == "SNA" || value_name == "sna";
+}
+
 std::vector<int64_t> DbcSignal::values_named(std::string_view value_name) const {
   std::vector<int64_t> values;
   for (const DbcValueName& value : value_names) {
@@ -70,6 +75,19 @@ bool DbcSignal::is_present_at(uint64_t multiplexor) const {
          std::ranges::any_of(multiplexed_at, [multiplexor](const DbcValueRange& range) {
            return range.first <= multiplexor && multiplexor <= range.last;
          });
+}
+
+AvailableValues DbcSignal::available_values() const {
+  AvailableValues available;
+  if (has_range()) {
+    const double half_step = is_integer(layout) ? 0.5 * std::abs(layout.scale) : 0.0;
+    available.min = min - half_step;
+    available.max = max + half_step;
+  }
+  for (const DbcValueName& value : value_names) {
+    if (means_not_available(value.name)) available.not_available.push_back(value.raw);
+  }
+  return available;
 }
 
 const DbcSignal* DbcMessage::find(std::string_view signal_name) const {

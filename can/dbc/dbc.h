@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "can/dbc/available_values.h"
 #include "can/dbc/signal_layout.h"
 #include "common/result.h"
 
@@ -20,6 +21,9 @@ struct DbcValueName {
   int64_t raw = 0;
   std::string name;
 };
+
+/// Whether a name of VAL_ means that the signal is not available: SNA or sna.
+bool means_not_available(std::string_view value_name);
 
 /// Raw values from `first` to `last`, both included.
 struct DbcValueRange {
@@ -33,7 +37,7 @@ struct DbcSignal {
   std::string name;
   int line = 0;
   SignalLayout layout;
-  double min = 0.0;  ///< physical; if min == max, the file states no range
+  double min = 0.0;  ///< physical; see has_range()
   double max = 0.0;
   std::string unit;
   bool is_multiplexor = false;  ///< the signal (M) says which multiplexed signals a frame has
@@ -46,6 +50,11 @@ struct DbcSignal {
   std::vector<int64_t> values_named(std::string_view value_name) const;
   /// Whether a frame with this raw value of the multiplexor has the signal.
   bool is_present_at(uint64_t multiplexor) const;
+  /// Whether the file states a range: two limits that differ.
+  bool has_range() const { return min != max; }
+  /// The range has half a step more for whole numbers. So a limit that is written with few digits
+  /// does not refuse the raw value that is nearest to it.
+  AvailableValues available_values() const;
 };
 
 struct DbcMessage {

@@ -39,13 +39,14 @@ bool is_present(const DbcMessage& message, const DbcSignal& signal,
          signal.is_present_at(raw_bits_from(multiplexor, bytes));
 }
 
-DecodedSignal decoded(const DbcSignal& signal, std::span<const uint8_t> bytes) {
+DecodedSignal decoded(const DbcSignal& signal, const AvailableValues& available,
+                      std::span<const uint8_t> bytes) {
   DecodedSignal result{.signal = &signal,
                        .value = physical_from(signal.layout, bytes),
                        .raw = raw_from(signal.layout, bytes)};
   const auto named = std::ranges::find(signal.value_names, result.raw, &DbcValueName::raw);
   if (named != signal.value_names.end()) result.value_name = named->name;
-  result.is_available = result.value_name != "SNA" && std::isfinite(result.value);
+  result.is_available = available.has(result.raw, result.value);
   return result;
 }
 
@@ -85,6 +86,9 @@ BusListener::BusListener(std::vector<Dbc> files, const BaseIds& base) : files_(s
     for (const DbcMessage& message : file.messages) {
       if (message.is_extended) continue;
       Known known{.message = &message};
+      for (const DbcSignal& signal : message.signals) {
+        known.available.push_back(signal.available_values());
+      }
       const Message* own = own_message(message.name, message.id, base);
       if (own != nullptr) known.checker.emplace(own->protection(), own->length);
       known_.emplace(message.id, known);
@@ -99,11 +103,12 @@ bool BusListener::knows(std::string_view message) const {
   });
 }
 
-void BusListener::add_signals(const DbcMessage& message, std::span<const uint8_t> bytes) {
-  for (const DbcSignal& signal : message.signals) {
+void BusListener::add_signals(const Known& known, std::span<const uint8_t> bytes) {
+  for (size_t i = 0; i < known.available.size(); ++i) {
+    const DbcSignal& signal = known.message->signals[i];
     const bool fits = bytes_needed(signal.layout) <= bytes.size();
-    if (fits && is_present(message, signal, bytes)) {
-      decoded_.signals.push_back(decoded(signal, bytes));
+    if (fits && is_present(*known.message, signal, bytes)) {
+      decoded_.signals.push_back(decoded(signal, known.available[i], bytes));
     }
   }
 }
@@ -123,7 +128,7 @@ const DecodedFrame* BusListener::decode(const Frame& frame) {
     if (!is_usable(*decoded_.e2e)) ++total.unusable;
     total.lost = checker->counters().lost;
   }
-  add_signals(message, frame.payload());
+  add_signals(known->second, frame.payload());
   return &decoded_;
 }
 
@@ -154,6 +159,7 @@ std::string text_of(const DecodedFrame& frame, double time_s) {
     } else {
       text += number_text(signal) + signal.signal->unit;
     }
+    if (!signal.is_available && !means_not_available(signal.value_name)) text += "(not_available)";
   }
   return text;
 }

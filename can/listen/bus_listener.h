@@ -21,8 +21,8 @@ namespace bevloc::can {
 struct DecodedSignal {
   const DbcSignal* signal = nullptr;
   double value = 0.0;
-  int64_t raw = 0;           ///< the result of raw_from()
-  bool is_available = true;  ///< false if VAL_ names the raw value SNA, or the value is not finite
+  int64_t raw = 0;                ///< the result of raw_from()
+  bool is_available = true;       ///< one of DbcSignal::available_values()
   std::string_view value_name{};  ///< the name that VAL_ gives; empty if it gives none
 };
 
@@ -60,11 +60,12 @@ class BusListener {
 
  private:
   struct Known {
-    const DbcMessage* message = nullptr;  ///< a message that may be left out
+    const DbcMessage* message = nullptr;       ///< a message that may be left out
+    std::vector<AvailableValues> available{};  ///< those of each of its signals
     std::optional<E2eChecker> checker{};
   };
 
-  void add_signals(const DbcMessage& message, std::span<const uint8_t> bytes);
+  void add_signals(const Known& known, std::span<const uint8_t> bytes);
 
   std::vector<Dbc> files_;
   std::map<uint32_t, Known> known_;  ///< the messages by identifier
@@ -75,7 +76,8 @@ class BusListener {
 
 std::string_view name_of(E2eResult result);
 
-/// "0.520000 LOC_PosLocal ok LocalEast=1.23m LocalNorth=-4.50m".
+/// "0.520000 LOC_PosLocal ok LocalEast=1.23m LocalNorth=-4.50m". A value that is not available has
+/// the name SNA, or "(not_available)" follows it.
 std::string text_of(const DecodedFrame& frame, double time_s);
 /// One line of JSON with time_s, id, message, e2e and signals. The value of a signal that is not
 /// available is null. The value of a signal without scale and offset is a whole number.

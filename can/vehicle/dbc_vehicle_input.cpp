@@ -16,7 +16,8 @@ constexpr int kMostCycles = 4;
 /// as long as the interval divided by their number. A sample begins after such a gap. Frames do not
 /// come exactly on time, so this share of the gap suffices.
 constexpr double kGapShare = 0.8;
-/// The smallest sigmas, because no measurement is exact.
+/// The smallest sigmas, because no measurement is exact. A signal with coarse steps shows a sigma
+/// of less than one step as 0.
 constexpr double kLeastSigma_m = 0.01;
 constexpr double kLeastSigma_deg = 0.01;
 
@@ -141,9 +142,7 @@ bool DbcVehicleInput::store(size_t message, const ReceivedFrame& received) {
     slot.value = physical * signal.factor;
     slot.received = received.received;
     slot.is_new = true;
-    slot.available =
-        std::isfinite(physical) && physical >= signal.min && physical <= signal.max &&
-        std::ranges::find(signal.not_available, slot.raw) == signal.not_available.end();
+    slot.available = signal.available.has(slot.raw, physical);
   }
   return replaced_unused;
 }
@@ -247,8 +246,14 @@ std::optional<OdometrySample> DbcVehicleInput::odometry(Time now) {
   return sample;
 }
 
-double DbcVehicleInput::sigma_m(const std::optional<size_t>& signal) const {
-  return std::max(kLeastSigma_m, signal ? slots_[*signal].value : binding_.gnss->sigma_m);
+/// Returns the value of the signal, or `stated` if there is no signal. It is at least `least` and
+/// one step of the signal. Returns nothing if it is negative, because then it is no sigma.
+std::optional<double> DbcVehicleInput::sigma(const std::optional<size_t>& signal, double stated,
+                                             double least) const {
+  if (!signal) return std::max(least, stated);
+  const double value = slots_[*signal].value;
+  if (value < 0.0) return std::nullopt;
+  return std::max({least, step_of(binding_.signals[*signal]), value});
 }
 
 /// Returns nothing if there is no valid heading within four cycles of `time`.
@@ -260,13 +265,10 @@ std::optional<GeodeticFix::Heading> DbcVehicleInput::heading(Time now, Time time
     return slot.available &&
            std::chrono::abs(slot.received - time) <= kMostCycles * cycle_of(signal);
   };
-  double sigma_deg = gnss.sigma_heading_deg;
-  if (gnss.sigma_heading) {
-    if (!is_usable(*gnss.sigma_heading)) return std::nullopt;
-    sigma_deg = slots_[*gnss.sigma_heading].value;
-  }
-  if (!is_usable(*gnss.heading)) return std::nullopt;
-  return GeodeticFix::Heading{slots_[*gnss.heading].value, std::max(kLeastSigma_deg, sigma_deg)};
+  if (gnss.sigma_heading && !is_usable(*gnss.sigma_heading)) return std::nullopt;
+  const auto sigma_deg = sigma(gnss.sigma_heading, gnss.sigma_heading_deg, kLeastSigma_deg);
+  if (!sigma_deg || !is_usable(*gnss.heading)) return std::nullopt;
+  return GeodeticFix::Heading{slots_[*gnss.heading].value, *sigma_deg};
 }
 
 std::optional<GnssSample> DbcVehicleInput::gnss(Time now) {
@@ -278,15 +280,17 @@ std::optional<GnssSample> DbcVehicleInput::gnss(Time now) {
     ++counters_.not_available;
     return std::nullopt;
   }
-  GeodeticFix fix{.position = {slots_[gnss.latitude].value, slots_[gnss.longitude].value},
-                  .sigma_north_m = sigma_m(gnss.sigma_north),
-                  .sigma_east_m = sigma_m(gnss.sigma_east)};
+  const GeodeticPosition position = {slots_[gnss.latitude].value, slots_[gnss.longitude].value};
   const bool on_earth =
-      std::abs(fix.position.latitude_deg) <= 90.0 && std::abs(fix.position.longitude_deg) <= 180.0;
-  if (!on_earth) {
+      std::abs(position.latitude_deg) <= 90.0 && std::abs(position.longitude_deg) <= 180.0;
+  const auto sigma_north_m = sigma(gnss.sigma_north, gnss.sigma_m, kLeastSigma_m);
+  const auto sigma_east_m = sigma(gnss.sigma_east, gnss.sigma_m, kLeastSigma_m);
+  if (!on_earth || !sigma_north_m || !sigma_east_m) {
     ++counters_.not_available;
     return std::nullopt;
   }
+  GeodeticFix fix{
+      .position = position, .sigma_north_m = *sigma_north_m, .sigma_east_m = *sigma_east_m};
   const Time time = std::min(slots_[gnss.latitude].received, slots_[gnss.longitude].received);
   fix.heading = heading(now, time);
   return maker_.gnss(fix, time);

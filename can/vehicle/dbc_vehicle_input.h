@@ -41,7 +41,7 @@ class DbcVehicleInput final : public VehicleDecoder {
     Duration latest_interval{};  ///< between the latest two values
     /// The shorter one of the latest two intervals, because one lost frame makes one of them long.
     Duration interval{};
-    bool available = false;  ///< in range and not SNA
+    bool available = false;  ///< one of BoundSignal::available
     bool is_new = false;     ///< no sample has used the value yet
   };
 
@@ -61,7 +61,8 @@ class DbcVehicleInput final : public VehicleDecoder {
   std::optional<OdometrySample> odometry(Time now);
   std::optional<GnssSample> gnss(Time now);
   std::optional<GeodeticFix::Heading> heading(Time now, Time time) const;
-  double sigma_m(const std::optional<size_t>& signal) const;
+  std::optional<double> sigma(const std::optional<size_t>& signal, double stated,
+                              double least) const;
 
   VehicleBinding binding_;
   BaseIds base_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -24,18 +23,18 @@ std::vector<std::string> names_in(const std::vector<Named>& all) {
   return names;
 }
 
-/// A plausible signal of a quantity can hold the value `reaches` (not checked if 0), and its step
-/// is at most `step`. Both are in the unit of the quantity.
+/// What a plausible signal of a quantity can hold, in the unit of the quantity.
 struct Sanity {
-  double reaches;
-  double step;
+  double reaches;         ///< a value that the signal reaches; not checked if 0
+  double step;            ///< the largest step
+  double negative = 0.0;  ///< a signal that reaches this has a sign; 0: either sign may be missing
 };
 Sanity sanity_of(Quantity quantity) {
   switch (quantity) {
     case Quantity::kSpeed:
-      return {15.0, 0.3};
+      return {15.0, 0.3, kSignedSpeed_mps};
     case Quantity::kYawRate:
-      return {0.3, 0.02};
+      return {0.3, 0.02, kSignedYawRate_radps};
     case Quantity::kPosition:
       return {1.0, 1e-5};
     case Quantity::kHeading:
@@ -64,28 +63,32 @@ std::string_view unit_inside(Quantity quantity) {
   return "";
 }
 
-/// A signal without a range has two equal limits.
-bool has_range(const DbcSignal& signal) {
-  return signal.min != signal.max;
-}
-
 // The lowest and the highest value that the layout and the range of a signal allow.
 
 double lowest_of(const DbcSignal& signal) {
   const double lowest = lowest_physical(signal.layout);
-  return has_range(signal) ? std::max(lowest, signal.min) : lowest;
+  return signal.has_range() ? std::max(lowest, signal.min) : lowest;
 }
 
 double highest_of(const DbcSignal& signal) {
   const double highest = highest_physical(signal.layout);
-  return has_range(signal) ? std::min(highest, signal.max) : highest;
+  return signal.has_range() ? std::min(highest, signal.max) : highest;
 }
 
-/// Refuses what is probably a wrong unit or a wrong signal.
+/// Whether a signal of this quantity has a sign.
+bool has_sign(const DbcSignal& signal, Quantity quantity, double factor) {
+  const double negative = sanity_of(quantity).negative;
+  return negative < 0.0 && lowest_of(signal) * factor <= negative;
+}
+
+/// Refuses what is probably a wrong unit or a wrong signal. A quantity whose sign matters must
+/// reach the positive value, because a magnitude has no other ones.
 Bound<void> check_range(const DbcSignal& signal, Quantity quantity, double factor) {
   const Sanity sanity = sanity_of(quantity);
-  const double reaches =
-      std::max(std::abs(lowest_of(signal)), std::abs(highest_of(signal))) * factor;
+  const double highest = highest_of(signal);
+  const double farthest =
+      sanity.negative < 0.0 ? highest : std::max(std::abs(lowest_of(signal)), std::abs(highest));
+  const double reaches = farthest * factor;
   const std::string_view inside = unit_inside(quantity);
   if (reaches < sanity.reaches) {
     return refusal(
@@ -98,14 +101,6 @@ Bound<void> check_range(const DbcSignal& signal, Quantity quantity, double facto
                    fmt::format("steps of at most {} {}; check its unit", sanity.step, inside));
   }
   return {};
-}
-
-std::vector<int64_t> not_available_values(const DbcSignal& signal) {
-  std::vector<int64_t> values;
-  for (const DbcValueName& value : signal.value_names) {
-    if (value.name == "SNA" || value.name == "sna") values.push_back(value.raw);
-  }
-  return values;
 }
 
 /// Returns the raw values that a value of a condition means.
@@ -219,22 +214,10 @@ size_t VehicleBinder::bind(const DbcMessage& message, const DbcSignal& signal) {
                     .message = bind_message(message),
                     .layout = signal.layout,
                     .multiplexed = {},
-                    .min = signal.min,
-                    .max = signal.max,
-                    .has_sign = lowest_of(signal) < 0.0,
-                    .not_available = not_available_values(signal)};
+                    .available = signal.available_values()};
   const auto known = std::ranges::find(binding_.signals, bound.name, &BoundSignal::name);
   if (known != binding_.signals.end()) {
     return static_cast<size_t>(known - binding_.signals.begin());
-  }
-  if (!has_range(signal)) {
-    bound.min = -std::numeric_limits<double>::infinity();
-    bound.max = std::numeric_limits<double>::infinity();
-  } else if (is_integer(signal.layout)) {
-    // A limit that is written with few digits must not refuse the raw value that is nearest to it.
-    const double half_step = 0.5 * std::abs(signal.layout.scale);
-    bound.min -= half_step;
-    bound.max += half_step;
   }
   if (!signal.multiplexed_at.empty()) {
     bound.multiplexed = {message.multiplexor()->layout, signal.multiplexed_at.front().first};
@@ -267,6 +250,7 @@ Bound<size_t> VehicleBinder::quantity(const std::string& signal, const std::stri
   }
   quantities_.emplace(index, quantity);
   binding_.signals[index].factor = *factor;
+  binding_.signals[index].has_sign = has_sign(**found, quantity, *factor);
   return index;
 }
 

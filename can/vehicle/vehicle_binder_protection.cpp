@@ -131,7 +131,10 @@ Bound<const DbcSignal*> VehicleBinder::protecting(const std::string& signal,
 
 Bound<void> VehicleBinder::set_counter(const ProtectionRequest& request,
                                        MessageProtection& protection) const {
-  if (request.counter.empty()) return {};
+  if (request.counter.empty()) {
+    if (!request.highest_counter) return {};
+    return refusal("highest_counter without a counter", "a counter beside it", "highest_counter");
+  }
   const auto counter = protecting(request.counter, request.message, "counter");
   if (!counter) return tl::unexpected(counter.error());
   const int bits = (*counter)->layout.length_bits;

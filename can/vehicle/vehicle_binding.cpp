@@ -17,12 +17,11 @@ namespace {
 constexpr double kFineSpeed_mps = 0.02;
 constexpr double kFineYawRate_radps = radians(0.05);
 
-/// The step of a signal in the unit of its quantity. It is 0 for floats.
+}  // namespace
+
 double step_of(const BoundSignal& signal) {
   return is_integer(signal.layout) ? std::abs(signal.layout.scale) * signal.factor : 0.0;
 }
-
-}  // namespace
 
 std::vector<uint32_t> ids_of(const VehicleBinding& binding) {
   std::vector<uint32_t> ids;

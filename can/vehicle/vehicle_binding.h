@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "can/dbc/available_values.h"
 #include "can/dbc/signal_layout.h"
 #include "can/vehicle/message_protection.h"
 #include "common/time.h"
@@ -33,12 +34,20 @@ struct BoundSignal {
   size_t message = 0;  ///< index into VehicleBinding::messages
   SignalLayout layout;
   std::optional<Multiplexed> multiplexed{};
-  double min = 0.0;  ///< in the unit of the DBC file; values beyond min and max are not available
-  double max = 0.0;
-  bool has_sign = false;                 ///< has negative values within the range of the DBC file
-  std::vector<int64_t> not_available{};  ///< raw values that VAL_ names SNA
-  double factor = 1.0;                   ///< from the unit of the DBC file to that of Quantity
+  AvailableValues available{};  ///< in the unit of the DBC file
+  /// Whether a speed or a yaw rate reaches negative values (kSignedSpeed_mps,
+  /// kSignedYawRate_radps).
+  bool has_sign = false;
+  double factor = 1.0;  ///< from the unit of the DBC file to that of Quantity
 };
+
+/// The step of a signal in the unit of its quantity. It is 0 for floats.
+double step_of(const BoundSignal& signal);
+
+// A signal has a sign only if layout and range let it reach this value. A lowest value just below 0
+// is the rounding of a magnitude.
+constexpr double kSignedSpeed_mps = -1.0;
+constexpr double kSignedYawRate_radps = -0.3;
 
 /// A condition that holds while the raw value of a signal is one of `values`.
 struct BoundCondition {

@@ -55,7 +55,7 @@ class SignalGroup {
     return signal(key, quantity, unit);
   }
 
-  /// Whether a bound signal has negative values. True for one that is not bound.
+  /// Whether a bound signal has a sign. True for one that is not bound.
   bool has_sign(size_t signal) const {
     if (message_.empty() || signal >= binder_->binding().signals.size()) return true;
     return binder_->binding().signals[signal].has_sign;
@@ -125,7 +125,8 @@ can::BoundWheels read_wheels(YamlMap yaml, can::VehicleBinder* binder) {
   const bool have_signs = std::ranges::all_of(
       wheels.wheels, [&group](const auto& wheel) { return group.has_sign(wheel.signal); });
   if (!wheels.backward && !have_signs) {
-    group.yaml().reject("signals", "speeds that are never negative",
+    group.yaml().reject("signals",
+                        fmt::format("speeds that do not reach {} m/s", can::kSignedSpeed_mps),
                         "backward, which says when the vehicle reverses");
   }
   return wheels;
@@ -140,8 +141,9 @@ can::BoundYawRate read_yaw_rate(YamlMap yaml, can::VehicleBinder* binder) {
   yaw_rate.valid = group.condition("valid");
   yaw_rate.negative = group.condition("negative");
   if (!yaw_rate.negative && !group.has_sign(yaw_rate.signal)) {
-    group.yaml().reject("signal", "a yaw rate that is never negative",
-                        "negative, which says when the vehicle turns to the negative side");
+    group.yaml().reject(
+        "signal", fmt::format("a yaw rate that does not reach {} rad/s", can::kSignedYawRate_radps),
+        "negative, which says when the vehicle turns to the negative side");
   }
   return yaw_rate;
 }
@@ -224,7 +226,7 @@ can::ProtectionRequest read_protection_request(YamlMap& yaml) {
   if (yaml.has("algorithm")) request.kind = kind;
   const bool is_profile = kind == can::ChecksumKind::kE2eP02 || kind == can::ChecksumKind::kE2eP05;
   const bool has_checksum = kind != can::ChecksumKind::kNone && !is_profile;
-  if (yaml.has("counter")) request.counter = yaml.require<std::string>("counter");
+  if (yaml.has("counter")) request.counter = yaml.require<std::string>("counter", some_name());
   if (yaml.has("checksum")) request.checksum = yaml.require<std::string>("checksum", some_name());
   if (yaml.has("highest_counter")) {
     request.highest_counter =
@@ -276,7 +278,7 @@ std::string read_dbc_name(YamlMap& yaml) {
 can::VehicleBinding read_vehicle_bus(YamlMap& yaml, const can::BaseIds& base,
                                      const std::filesystem::path& dbc_file) {
   const auto dbc = dbc_file.empty() ? Result<can::Dbc>() : can::read_dbc_file(dbc_file);
-  if (!dbc) yaml.reject("dbc", dbc.error().message, "a DBC file that can be read");
+  if (!dbc) yaml.reject_file(dbc.error());
   const bool usable = !dbc_file.empty() && dbc;
   if (usable) check_identifiers(yaml, *dbc, base);
   const can::Dbc nothing;

@@ -14,9 +14,9 @@ namespace bevloc::firmware {
 std::string read_dbc_name(YamlMap& yaml);
 
 /// Reads the DBC file and finds all signals in it. yaml.finish() reports mistakes, with the key and
-/// the names that were probably meant. The result is not complete then. `base` has the identifiers
-/// that the DBC file must not use for other messages. `dbc_file` is empty if read_dbc_name() has
-/// found none.
+/// the names that were probably meant; those of the DBC file with its own line. The result is not
+/// complete then. `base` has the identifiers that the DBC file must not use for other messages.
+/// `dbc_file` is empty if read_dbc_name() has found none.
 can::VehicleBinding read_vehicle_bus(YamlMap& yaml, const can::BaseIds& base,
                                      const std::filesystem::path& dbc_file);
 

@@ -1,6 +1,7 @@
 // bevloc-compliance --can can0 runs the conformance suites on the interfaces of this machine. It
 // also accepts GoogleTest's options, such as --gtest_filter. It skips and names what is not
-// available.
+// available, and fails if that is what the user named.
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -32,5 +33,12 @@ int main(int argc, char** argv) {
   arguments.push_back(nullptr);
   int count = static_cast<int>(rest.size());
   testing::InitGoogleTest(&count, arguments.data());
+  if (count > 1) {
+    std::fprintf(stderr,
+                 "bevloc-compliance: found %s, wanted an option that --help lists, or one "
+                 "of GoogleTest (--gtest_...)\n",
+                 arguments[1]);
+    return 2;
+  }
   return RUN_ALL_TESTS();
 }

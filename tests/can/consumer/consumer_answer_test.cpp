@@ -1,4 +1,7 @@
 // Asks a consumer whether it may use a pose (can/consumer/bevloc.hpp).
+#include <array>
+#include <bit>
+
 #include <gtest/gtest.h>
 
 #include "can/bus/mock_bus.h"
@@ -39,6 +42,7 @@ class Link {
     return publish(report, 1);
   }
   int map_id() const { return receiver_.map_id(); }
+  uint32_t why() const { return receiver_.why(); }
   std::optional<uint32_t> capture_utc_us() const { return receiver_.capture_utc_us(now_); }
 
  private:
@@ -81,6 +85,51 @@ TEST(ConsumerAnswerTest, TellsTheMap) {
     report.status.map_id = 0xBEE5;
     link.publish(report, 10);
     EXPECT_EQ(link.map_id(), 0xBEE5);
+  }
+}
+
+TEST(ConsumerAnswerTest, TellsEveryReason) {
+  for (const FrameFormat format : {FrameFormat::kClassic, FrameFormat::kFd}) {
+    Link link(kWide, format);
+    PoseReport report = test::tracking_report(test::kNow);
+    const auto bits_of = [&](WhyMask why) {
+      report.status.why = why;
+      link.publish(report, 10);
+      return link.why();
+    };
+    uint32_t all = 0;
+    for (int i = 0; i < kWhyCount; ++i) {
+      const uint32_t bits = bits_of(WhyMask::from_bits(1u << i));
+      EXPECT_EQ(std::popcount(bits), 1) << i;
+      all |= bits;
+    }
+    EXPECT_EQ(std::popcount(all), kWhyCount) << "a bit of its own for each";
+    EXPECT_EQ(bits_of(Why::kGnssMissing), BEVLOC_WHY(BEVLOC_LOC_Status_Why_GnssMissing));
+    EXPECT_EQ(bits_of(Why::kClockGap), BEVLOC_WHY(BEVLOC_LOC_Integrity_Why_ClockGap));
+    EXPECT_EQ(bits_of({}), 0u);
+  }
+}
+
+/// A LOC_Status in TRACKING with this raw value of TimeSource.
+std::array<uint8_t, 8> status_with(unsigned time_source, unsigned counter) {
+  std::array<uint8_t, 8> bytes{};
+  bytes[1] = static_cast<uint8_t>(counter % 16);
+  bytes[2] = static_cast<uint8_t>(time_source << 4 | BEVLOC_LOC_Status_State_TRACKING);
+  bytes[0] =
+      bevloc_crc8(bytes.data(), bytes.size(), static_cast<uint8_t>(BEVLOC_LOC_Status.data_id));
+  return bytes;
+}
+
+TEST(ConsumerAnswerTest, AnUnknownTimeSourceIsFreeRunning) {
+  consumer::Receiver receiver(kWide);
+  unsigned counter = 0;
+  const auto source_after = [&](unsigned time_source) {
+    receiver.receive(BEVLOC_LOCALIZER_BASE, status_with(time_source, counter++), microseconds(1));
+    return receiver.time_source();
+  };
+  for (unsigned unknown = 4; unknown < 8; ++unknown) {
+    EXPECT_EQ(source_after(BEVLOC_LOC_Status_TimeSource_PTP), BEVLOC_LOC_Status_TimeSource_PTP);
+    EXPECT_EQ(source_after(unknown), BEVLOC_LOC_Status_TimeSource_FREE_RUNNING) << unknown;
   }
 }
 

@@ -162,6 +162,41 @@ class ConsumersTest(unittest.TestCase):
             ["cc", "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror",
              "-fsyntax-only", "-x", "c", "-"], input=source, text=True, check=True)
 
+    def test_the_header_refuses_a_double_that_is_too_short(self) -> None:
+        done = subprocess.run(
+            ["cc", "-U__DBL_MANT_DIG__", "-D__DBL_MANT_DIG__=24", "-fsyntax-only", "-x", "c", "-"],
+            input=f'#include "{CONSUMER}/bevloc.h"\n', capture_output=True, text=True)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("bevloc.h needs a double of 64 bits", done.stderr)
+
+    def test_the_c_example_knows_the_age_of_a_frame_that_it_reads_late(self) -> None:
+        source = """
+            #define main example_main
+            #include "example.c"
+            #undef main
+            int main(void) {
+              int ends[2];
+              const int on = 1;
+              const struct timespec late = {0, 50000000};
+              struct canfd_frame frame = {0};
+              uint64_t age_us;
+              if (socketpair(AF_UNIX, SOCK_DGRAM, 0, ends) != 0 ||
+                  setsockopt(ends[0], SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on) != 0 ||
+                  write(ends[1], &frame, sizeof frame) < 0) {
+                return 2;
+              }
+              nanosleep(&late, NULL);
+              if (!receive(ends[0], &frame, &age_us)) return 3;
+              printf("%llu\\n", (unsigned long long)age_us);
+              return 0;
+            }
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            program = str(Path(folder) / "late")
+            subprocess.run(["cc", "-std=c99", f"-I{CONSUMER}", "-o", program, "-x", "c", "-"],
+                           input=source, text=True, check=True)
+            self.assertGreaterEqual(int(output_of(program)), 50_000)
+
     def test_the_receivers_need_no_other_folder(self) -> None:
         # The package bevloc-dev installs only this folder.
         with tempfile.TemporaryDirectory() as folder:

@@ -74,6 +74,27 @@ class ReaderTest(unittest.TestCase):
     def test_a_foreign_sender_makes_the_pose_unusable(self) -> None:
         self.assertEqual(self.answer_to_levels({}, {"Why_ForeignSender": 1}), "foreign_sender")
 
+    def test_tells_every_reason(self) -> None:
+        all_reasons: set[str] = set()
+        for name in ("LOC_Status", "LOC_Integrity"):
+            signals = self.reader.MESSAGES[name].signals
+            for signal in [signal for signal in signals if signal.startswith("Why_")]:
+                receiver = self.reader.Receiver()
+                content = 1 << signals[signal].start_bit - 16
+                self.send(receiver, "LOC_Status", content if name == "LOC_Status" else 2, 1.0)
+                self.send_pose(receiver, 1.0, {} if name == "LOC_Status" else {name: content})
+                self.assertEqual(receiver.why(), {signal.removeprefix("Why_")})
+                all_reasons |= receiver.why()
+        self.assertLess({"GnssMissing", "ForeignSender"}, all_reasons)
+
+    def test_an_unknown_time_source_is_free_running(self) -> None:
+        receiver = self.reader.Receiver()
+        start = self.reader.MESSAGES["LOC_Status"].signals["TimeSource"].start_bit - 16
+        for source in (1, 5):
+            self.send(receiver, "LOC_Status", 2 | source << start, 1.0)
+            self.counter += 1
+            self.assertEqual(receiver.time_source, {1: "PTP", 5: "FREE_RUNNING"}[source])
+
     def test_no_level_is_within_a_limit_that_is_negative_or_not_a_number(self) -> None:
         for axis in self.reader.LEVELS:
             for limit in (-1.0, float("nan")):
@@ -82,7 +103,9 @@ class ReaderTest(unittest.TestCase):
 
 
 FAKE_PYTHON_CAN = """
+import re
 import sys
+import time
 import types
 
 class CanError(Exception):
@@ -92,6 +115,7 @@ class Bus:
     def __init__(self, interface, channel, fd):
         self.channel = channel
         self.silence = 3
+        self.log = open("golden.log") if channel.startswith("golden") else []
         if channel == "none":
             raise OSError(19, "No such device")
     def __enter__(self):
@@ -99,6 +123,13 @@ class Bus:
     def __exit__(self, *error):
         print("closed", file=sys.stderr)
     def recv(self, timeout):
+        for line in self.log:
+            identifier, data = re.search(" ([0-9A-F]{3})#([0-9A-F]*)", line).groups()
+            age_s = 10.0 if self.channel == "golden_late" else 0.0
+            return types.SimpleNamespace(
+                arbitration_id=int(identifier, 16), data=bytes.fromhex(data),
+                timestamp=time.time() - age_s, is_extended_id=False, is_remote_frame=False,
+                is_error_frame=False)
         self.silence -= 1
         if self.channel == "down" and self.silence < 0:
             raise CanError("Network is down")
@@ -113,12 +144,13 @@ interface = types.SimpleNamespace(Bus=Bus)
 class LiveTest(unittest.TestCase):
     """Runs the program on a bus that a fake python3-can simulates."""
 
-    def read(self, channel: str, package: str = FAKE_PYTHON_CAN,
-             output: int = subprocess.PIPE) -> subprocess.CompletedProcess[str]:
+    def read(self, channel: str, package: str = FAKE_PYTHON_CAN, output: int = subprocess.PIPE,
+             interface: str = "socketcan") -> subprocess.CompletedProcess[str]:
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "can.py").write_text(package)
             return subprocess.run(
-                [sys.executable, str(CONSUMER / "bevloc_reader.py"), "--channel", channel],
+                [sys.executable, str(CONSUMER / "bevloc_reader.py"), "--channel", channel,
+                 "--interface", interface],
                 stdout=output, stderr=subprocess.PIPE, text=True, cwd=CONSUMER,
                 env={**os.environ, "PYTHONPATH": folder, "PYTHONDONTWRITEBYTECODE": "1"})
 
@@ -128,6 +160,14 @@ class LiveTest(unittest.TestCase):
         lines = done.stdout.splitlines()
         self.assertEqual(lines[0], "0.000 no_pose")
         self.assertTrue(lines[1].startswith("frames: 0 ok"), lines)
+
+    def test_a_pose_that_is_read_late_is_not_usable(self) -> None:
+        self.assertIn(" usable ", self.read("golden").stdout)
+        late = self.read("golden_late").stdout
+        self.assertIn(" timeout", late)
+        self.assertNotIn(" usable ", late)
+        # The stamps of other interfaces are not of this clock.
+        self.assertIn(" usable ", self.read("golden_late", interface="other").stdout)
 
     def test_says_in_one_line_why_there_are_no_frames(self) -> None:
         done = self.read("none")

@@ -37,6 +37,24 @@ TEST(BusListenerTest, DecodesTheSignalsOfTheFrame) {
   EXPECT_EQ(listener.totals().at("A").frames, 3U);
 }
 
+TEST(BusListenerTest, ShowsNoValueThatBevlocdWouldNotUse) {
+  BusListener listener = listener_of(
+      "BO_ 16 A: 8 X\n SG_ V : 0|8@1+ (0.5,0) [0|50.2] \"m\" Y\n"
+      " SG_ L : 8|8@1+ (1,0) [0|100] \"\" Y\n"
+      "VAL_ 16 L 7 \"sna\" 101 \"ERROR\" ;\n");
+  const auto shown = [&](uint8_t value, uint8_t level) {
+    const DecodedFrame* frame = listener.decode({.id = 16, .length = 8, .data = {value, level}});
+    const auto json = nlohmann::json::parse(json_of(*frame, 0.0))["signals"];
+    EXPECT_EQ(json["V"].is_null(), !frame->signals[0].is_available);
+    EXPECT_EQ(json["L"].is_null(), !frame->signals[1].is_available);
+    return text_of(*frame, 0.0);
+  };
+  EXPECT_EQ(shown(100, 100), "0.000000 A V=50m L=100");
+  EXPECT_EQ(shown(101, 7), "0.000000 A V=50.5m(not_available) L=sna");
+  EXPECT_EQ(shown(255, 101), "0.000000 A V=127.5m(not_available) L=ERROR(not_available)");
+  EXPECT_EQ(shown(0, 102), "0.000000 A V=0m L=102(not_available)");
+}
+
 TEST(BusListenerTest, DecodesSignalsAtSeveralValuesOfTheMultiplexor) {
   BusListener listener = listener_of(kMultiplexed + "SG_MUL_VAL_ 16 One Page 1-1, 4-5;\n");
   const DecodedFrame* frame = listener.decode({.id = 16, .length = 8, .data = {5, 5}});

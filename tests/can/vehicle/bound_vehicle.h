@@ -25,7 +25,7 @@ inline VehicleBinding binding() {
                        .protection = {},
                        .has_odometry = true}};
   for (const SignalLayout& layout : {kSpeed, kYawRate, kReverse, kRight}) {
-    binding.signals.push_back({.name = "S", .layout = layout, .min = -500.0, .max = 500.0});
+    binding.signals.push_back({.name = "S", .layout = layout, .available = {-500.0, 500.0}});
   }
   binding.wheels.wheels = {{0, WheelPlace::kVehicle}};
   binding.wheels.backward = BoundCondition{2, {1}};

@@ -74,8 +74,7 @@ VehicleBinding binding_with_slow_sigma() {
     all.signals.push_back({.name = "S",
                            .message = all.messages.size() - 1,
                            .layout = layout,
-                           .min = -500.0,
-                           .max = 500.0});
+                           .available = {-500.0, 500.0}});
   }
   all.gnss = {.latitude = 4, .longitude = 5, .sigma_north = 6, .sigma_east = 6};
   return all;
@@ -112,8 +111,7 @@ TEST(DbcSamplePairingTest, PagesOfOneMessageGiveAPosition) {
                              .message = 1,
                              .layout = kFineValue,
                              .multiplexed = BoundSignal::Multiplexed{kPage, page},
-                             .min = -500.0,
-                             .max = 500.0});
+                             .available = {-500.0, 500.0}});
   }
   paged.gnss = {.latitude = 4, .longitude = 5, .sigma_m = 1.0};
   DbcVehicleInput input(paged, {}, {49.0, 8.4}, 1.6);

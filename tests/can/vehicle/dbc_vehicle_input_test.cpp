@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/se2.h"
 #include "pipeline/tracker/odometry_monitor.h"
 #include "tests/can/vehicle/bound_vehicle.h"
 
@@ -55,8 +56,7 @@ TEST(DbcVehicleInputTest, ASignalWithASignKeepsItBesideTheCondition) {
 TEST(DbcVehicleInputTest, ADirectionThatIsNotAvailableGivesNoSample) {
   constexpr SignalLayout kGear{34, 4};
   VehicleBinding with_gear = binding();
-  with_gear.signals[2] = {
-      .name = "Gear", .layout = kGear, .min = 0.0, .max = 5.0, .not_available = {15}};
+  with_gear.signals[2] = {.name = "Gear", .layout = kGear, .available = {0.0, 5.0, {15}}};
   VehicleBinding with_direction = with_gear;
   with_direction.wheels.backward.reset();
   with_direction.yaw_rate.negative = BoundCondition{2, {1}};
@@ -186,7 +186,7 @@ VehicleBinding binding_with_gnss() {
   }
   const auto add = [&](size_t message, const SignalLayout& layout) {
     all.signals.push_back(
-        {.name = "S", .message = message, .layout = layout, .min = -500.0, .max = 500.0});
+        {.name = "S", .message = message, .layout = layout, .available = {-500.0, 500.0}});
     return all.signals.size() - 1;
   };
   all.gnss = {.latitude = add(0, kLatitude), .longitude = add(0, kLongitude), .sigma_m = 1.0};
@@ -278,6 +278,56 @@ TEST(DbcVehicleInputTest, PositionsDoNotNeedAHeadingThatStopped) {
     ++samples;
   }
   EXPECT_EQ(samples, 30) << "the first 20 cycles wait for the heading";
+}
+
+/// The sample of a message that carries odometry, a position, a heading and their sigmas in these
+/// steps, if it gives one.
+std::optional<GnssSample> sample_with_sigmas(double sigma_m, double sigma_deg, double step) {
+  const SignalLayout position{128, 16, ByteOrder::kIntel, RawType::kSigned, step, 0.0};
+  const SignalLayout heading{144, 16, ByteOrder::kIntel, RawType::kSigned, step, 0.0};
+  VehicleBinding all = binding_with_gnss();
+  all.messages[0].length = 24;
+  for (const SignalLayout& layout : {position, heading}) {
+    all.signals.push_back({.name = "S", .layout = layout});
+  }
+  all.gnss->sigma_north = all.gnss->sigma_east = all.signals.size() - 2;
+  all.gnss->sigma_heading = all.signals.size() - 1;
+  all.signals[*all.gnss->heading].message = 0;
+  DbcVehicleInput input(all, {}, {49.0, 8.4}, 1.6);
+  Frame frame{.id = 16, .length = 24};
+  const std::span<uint8_t> bytes(frame.data.data(), frame.length);
+  insert_physical(kLatitude, 49.001, bytes);
+  insert_physical(kLongitude, 8.401, bytes);
+  insert_physical(position, sigma_m, bytes);
+  insert_physical(heading, sigma_deg, bytes);
+  std::optional<GnssSample> sample;
+  for (int cycle = 1; cycle <= kSettlingCycles; ++cycle) {
+    sample = input.accept({frame, Time(cycle * kCycle)}).gnss;
+  }
+  return sample;
+}
+
+TEST(DbcVehicleInputTest, ASigmaIsAtLeastOneStepOfItsSignal) {
+  const auto coarse = sample_with_sigmas(0.0, 0.0, 0.5);
+  ASSERT_TRUE(coarse && coarse->yaw);
+  EXPECT_DOUBLE_EQ(coarse->sigma_north_m, 0.5);
+  EXPECT_DOUBLE_EQ(coarse->sigma_east_m, 0.5);
+  EXPECT_NEAR(degrees(coarse->yaw->sigma_rad), 0.5, 1e-9);
+  const auto fine = sample_with_sigmas(0.0, 0.0, 0.001);
+  ASSERT_TRUE(fine && fine->yaw);
+  EXPECT_DOUBLE_EQ(fine->sigma_north_m, 0.01) << "no measurement is exact";
+  EXPECT_NEAR(degrees(fine->yaw->sigma_rad), 0.01, 1e-9);
+  const auto larger = sample_with_sigmas(3.0, 2.0, 0.5);
+  ASSERT_TRUE(larger && larger->yaw);
+  EXPECT_DOUBLE_EQ(larger->sigma_north_m, 3.0);
+  EXPECT_NEAR(degrees(larger->yaw->sigma_rad), 2.0, 1e-9);
+}
+
+TEST(DbcVehicleInputTest, ANegativeSigmaIsNotAvailable) {
+  EXPECT_FALSE(sample_with_sigmas(-0.5, 1.0, 0.5));
+  const auto without_heading = sample_with_sigmas(1.0, -0.5, 0.5);
+  ASSERT_TRUE(without_heading);
+  EXPECT_FALSE(without_heading->yaw);
 }
 
 }  // namespace

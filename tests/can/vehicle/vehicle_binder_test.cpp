@@ -204,6 +204,37 @@ TEST_F(VehicleBinderTest, BelievesNoRangeThatTheBitsDoNotReach) {
   EXPECT_EQ(error_with("0|655.33"), refused);
 }
 
+TEST_F(VehicleBinderTest, SpeedsAndYawRatesMustReachTheirValueOnThePositiveSide) {
+  const auto error_with = [](const std::string& signal, Quantity quantity) {
+    const Dbc dbc = dbc_of("BO_ 16 A: 8 X\n SG_ S : 0|32@1- " + signal + " Y\n");
+    VehicleBinder binder(dbc);
+    return error_of(binder.quantity("S", "A", quantity, ""));
+  };
+  EXPECT_EQ(error_with("(0.01,0) [-60|10] \"m/s\"", Quantity::kSpeed),
+            "S, which reaches 10 m/s at most, wanted a signal that reaches 15 m/s; check its unit");
+  EXPECT_EQ(error_with("(0.01,0) [-60|15] \"m/s\"", Quantity::kSpeed), "");
+  EXPECT_EQ(
+      error_with("(0.001,0) [-5|0.2] \"rad/s\"", Quantity::kYawRate),
+      "S, which reaches 0.2 rad/s at most, wanted a signal that reaches 0.3 rad/s; check its unit");
+  EXPECT_EQ(error_with("(1E-007,0) [-180|0] \"deg\"", Quantity::kPosition), "") << "in the west";
+}
+
+TEST_F(VehicleBinderTest, ALowestValueJustBelowZeroIsNoSign) {
+  const auto has_sign = [](const std::string& signal, Quantity quantity) {
+    const Dbc dbc = dbc_of("BO_ 16 A: 8 X\n SG_ S : 0|16@1- " + signal + " Y\n");
+    VehicleBinder binder(dbc);
+    const auto bound = binder.quantity("S", "A", quantity, "");
+    EXPECT_TRUE(bound) << signal << error_of(bound);
+    return bound && binder.binding().signals[*bound].has_sign;
+  };
+  EXPECT_FALSE(has_sign("(0.01,0) [-0.5|100] \"m/s\"", Quantity::kSpeed));
+  EXPECT_TRUE(has_sign("(0.01,0) [-2|100] \"m/s\"", Quantity::kSpeed));
+  EXPECT_FALSE(has_sign("(0.01,0) [-3|250] \"km/h\"", Quantity::kSpeed));
+  EXPECT_TRUE(has_sign("(0.01,0) [-4|250] \"km/h\"", Quantity::kSpeed));
+  EXPECT_FALSE(has_sign("(0.001,0) [-0.1|5] \"rad/s\"", Quantity::kYawRate));
+  EXPECT_TRUE(has_sign("(0.001,0) [-0.5|5] \"rad/s\"", Quantity::kYawRate));
+}
+
 TEST_F(VehicleBinderTest, APositionNeedsFineStepsAndASigmaNeedsNoRange) {
   const auto error_with = [](const std::string& signal, Quantity quantity) {
     const Dbc dbc = dbc_of("BO_ 16 A: 8 X\n SG_ S : 0|" + signal + " Y\n");
@@ -229,6 +260,14 @@ TEST_F(VehicleBinderTest, RefusesDataIdsThatNoCounterChooses) {
                             .data_ids = std::vector<uint16_t>(16, 3)};
   EXPECT_EQ(protect(request),
             "data_ids without a counter, wanted a counter beside them, or one data_id");
+  request.counter = "Counter";
+  EXPECT_EQ(protect(request), "");
+}
+
+TEST_F(VehicleBinderTest, RefusesAHighestCounterWithoutACounter) {
+  EXPECT_EQ(speed("Speed"), "");
+  ProtectionRequest request{.message = "A", .highest_counter = 14};
+  EXPECT_EQ(protect(request), "highest_counter without a counter, wanted a counter beside it");
   request.counter = "Counter";
   EXPECT_EQ(protect(request), "");
 }
