@@ -27,6 +27,7 @@ struct BusCounters {
   uint64_t confirmed = 0;         ///< own frames that were on the wire, if the bus reports that
   uint64_t received = 0;          ///< frames that receive() returned
   uint64_t receive_dropped = 0;   ///< lost because receive() was not called in time
+  uint64_t receive_overrun = 0;   ///< reports of the controller that it had lost received frames
   uint64_t receive_ignored = 0;   ///< extended, remote or malformed frames
   uint64_t hardware_stamped = 0;  ///< received frames with a time from the controller
   uint64_t software_stamped = 0;  ///< received frames with a time from the kernel

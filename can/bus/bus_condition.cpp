@@ -26,6 +26,7 @@ constexpr std::pair<BusFault, std::string_view> kFaultNames[] = {
     {BusFault::kNoAcknowledge, "no acknowledgement"},
     {BusFault::kTransmitTimeout, "transmit timeout"},
     {BusFault::kTransceiver, "transceiver fault"},
+    {BusFault::kNoFd, "interface without CAN FD"},
 };
 
 }  // namespace

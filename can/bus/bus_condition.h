@@ -15,11 +15,12 @@ enum class BusState : uint8_t {
   kDown,     ///< the interface is down or gone
 };
 
-/// A cause that the controller reports. A fault can be set in every state.
+/// A cause that the controller or the kernel reports. A fault can be set in every state.
 enum class BusFault : uint8_t {
   kNoAcknowledge = 1u << 0,    ///< no other node on the bus, or the bit rates differ
   kTransmitTimeout = 1u << 1,  ///< the driver gave up sending a frame
   kTransceiver = 1u << 2,      ///< a wire is broken or shorted
+  kNoFd = 1u << 3,             ///< CAN FD is needed and the interface is not set up for it
 };
 
 struct BusCondition {
@@ -27,6 +28,9 @@ struct BusCondition {
   uint8_t faults = 0;  ///< a set of BusFault bits
 
   constexpr bool has(BusFault fault) const { return (faults & static_cast<uint8_t>(fault)) != 0; }
+  constexpr void add(BusFault fault) {
+    faults = static_cast<uint8_t>(faults | static_cast<uint8_t>(fault));
+  }
   bool operator==(const BusCondition&) const = default;
 };
 

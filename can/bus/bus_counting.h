@@ -17,6 +17,7 @@ struct AtomicBusCounters {
   std::atomic<uint64_t> confirmed{0};
   std::atomic<uint64_t> received{0};
   std::atomic<uint64_t> receive_dropped{0};
+  std::atomic<uint64_t> receive_overrun{0};
   std::atomic<uint64_t> receive_ignored{0};
   std::atomic<uint64_t> hardware_stamped{0};
   std::atomic<uint64_t> software_stamped{0};
@@ -42,6 +43,7 @@ struct AtomicBusCounters {
             .confirmed = confirmed,
             .received = received,
             .receive_dropped = receive_dropped,
+            .receive_overrun = receive_overrun,
             .receive_ignored = receive_ignored,
             .hardware_stamped = hardware_stamped,
             .software_stamped = software_stamped,

@@ -5,10 +5,6 @@
 namespace bevloc::can {
 namespace {
 
-void add(BusCondition& condition, BusFault fault) {
-  condition.faults = static_cast<uint8_t>(condition.faults | static_cast<uint8_t>(fault));
-}
-
 /// Returns the state in a report of class CAN_ERR_CRTL, or `before` if the report names no state.
 BusState state_from(uint8_t controller_status, BusState before) {
   if ((controller_status & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE)) != 0) {
@@ -22,6 +18,10 @@ BusState state_from(uint8_t controller_status, BusState before) {
 
 }  // namespace
 
+bool says_frames_lost(const ErrorFrame& error) {
+  return (error.classes & CAN_ERR_CRTL) != 0 && (error.data[1] & CAN_ERR_CRTL_RX_OVERFLOW) != 0;
+}
+
 void ControllerMonitor::take(const ErrorFrame& error) {
   BusCondition condition = condition_;
   if ((error.classes & CAN_ERR_RESTARTED) != 0) condition = BusCondition{};
@@ -29,9 +29,9 @@ void ControllerMonitor::take(const ErrorFrame& error) {
     condition.state = state_from(error.data[1], condition.state);
   }
   if ((error.classes & CAN_ERR_BUSOFF) != 0) condition.state = BusState::kOff;
-  if ((error.classes & CAN_ERR_ACK) != 0) add(condition, BusFault::kNoAcknowledge);
-  if ((error.classes & CAN_ERR_TX_TIMEOUT) != 0) add(condition, BusFault::kTransmitTimeout);
-  if ((error.classes & CAN_ERR_TRX) != 0) add(condition, BusFault::kTransceiver);
+  if ((error.classes & CAN_ERR_ACK) != 0) condition.add(BusFault::kNoAcknowledge);
+  if ((error.classes & CAN_ERR_TX_TIMEOUT) != 0) condition.add(BusFault::kTransmitTimeout);
+  if ((error.classes & CAN_ERR_TRX) != 0) condition.add(BusFault::kTransceiver);
   condition_ = condition;
 }
 

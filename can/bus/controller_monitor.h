@@ -8,6 +8,10 @@
 
 namespace bevloc::can {
 
+/// Whether the controller reports that received frames were lost because the driver did not fetch
+/// them in time.
+bool says_frames_lost(const ErrorFrame& error);
+
 /// Thread-bound: take() and note_traffic() are called from the receiving thread of the bus. reset()
 /// and condition() are thread-safe.
 class ControllerMonitor {

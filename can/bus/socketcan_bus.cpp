@@ -13,7 +13,7 @@
 namespace bevloc::can {
 namespace {
 
-/// No program sends as many identifiers.
+/// More than the number of identifiers that any program sends.
 constexpr size_t kSendQueueCapacity = 32;
 
 bool is_no_room(int error) {
@@ -119,6 +119,7 @@ ReceivedFrame SocketCanBus::stamped(const Frame& frame, const Ancillary& ancilla
 void SocketCanBus::take_error(const ErrorFrame& error) {
   ++counters_.error_frames;
   if ((error.classes & CAN_ERR_BUSOFF) != 0) ++counters_.bus_off;
+  if (says_frames_lost(error)) ++counters_.receive_overrun;
   monitor_.take(error);
   // The controller has discarded the frames that it had to send, so no echo of them will come.
   constexpr uint32_t kDiscarded = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED | CAN_ERR_TX_TIMEOUT;
@@ -143,6 +144,7 @@ void SocketCanBus::repair() {
 BusCondition SocketCanBus::condition() const {
   BusCondition condition = monitor_.condition();
   if (link_->is_down()) condition.state = BusState::kDown;
+  if (link_->lacks_fd()) condition.add(BusFault::kNoFd);
   return condition;
 }
 

@@ -82,9 +82,10 @@ ifreq request_for(const std::string& interface) {
   return request;
 }
 
-bool carries_fd(int descriptor, const std::string& interface) {
+/// Whether the interface exists and carries no CAN FD.
+bool is_classic(int descriptor, const std::string& interface) {
   ifreq request = request_for(interface);
-  return ioctl(descriptor, SIOCGIFMTU, &request) == 0 && request.ifr_mtu >= int{CANFD_MTU};
+  return ioctl(descriptor, SIOCGIFMTU, &request) == 0 && request.ifr_mtu < int{CANFD_MTU};
 }
 
 }  // namespace
@@ -99,11 +100,12 @@ Result<std::unique_ptr<SocketCanLink>> SocketCanLink::open(const std::string& in
   auto link = std::make_unique<SocketCanLink>(descriptor);
   link->interface_ = interface;
   link->filters_ = filters_of(options);
+  link->wants_fd_ = options.fd;
   if (if_nametoindex(interface.c_str()) == 0) {
     return fail("{}: found no such interface ({}), wanted a CAN interface that `ip link` lists",
                 interface, reason(errno));
   }
-  if (options.fd && !carries_fd(descriptor, interface)) {
+  if (options.fd && is_classic(descriptor, interface)) {
     return fail(
         "{}: found a classic CAN interface, wanted one set up for CAN FD (`ip link set {} type can "
         "... fd on`)",
@@ -132,8 +134,10 @@ void SocketCanLink::note(int error) {
 
 bool SocketCanLink::repair() {
   if (interface_.empty()) return false;
-  // An endpoint that only listens has no other way to notice it.
   const int error = error_;
+  if (!lost_ && error != 0) look_at_fd();
+  // Without this check, an endpoint that only listens would never notice that the interface is up
+  // again.
   if (!lost_ && (error == ENETDOWN || is_gone(error)) && is_up()) error_ = 0;
   if (!lost_ || repairing_.test_and_set()) return false;
   bool repaired = false;
@@ -143,12 +147,19 @@ bool SocketCanLink::repair() {
     if (repaired) {
       back_off_.reset();
       lost_ = false;
+      look_at_fd();
     } else {
       back_off_.note_failure(now);
     }
   }
   repairing_.clear();
   return repaired;
+}
+
+/// An interface can change between classic CAN and CAN FD only while it is down or gone. Frames
+/// that are too long for it are refused with EINVAL or EMSGSIZE.
+void SocketCanLink::look_at_fd() {
+  lacks_fd_ = wants_fd_ && is_classic(descriptor_, interface_);
 }
 
 bool SocketCanLink::is_up() const {

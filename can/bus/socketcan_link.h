@@ -52,6 +52,9 @@ class SocketCanLink {
   void note(int error);
   bool is_down() const { return error_ != 0; }
 
+  /// Whether CAN FD is wanted, and the interface came back as a classic one.
+  bool lacks_fd() const { return lacks_fd_ && !lost_; }
+
   /// Looks for a lost interface if the next attempt is due (BackOff). Returns true when the
   /// interface was found and bound. Notices that an interface that was down is up again.
   bool repair();
@@ -59,12 +62,15 @@ class SocketCanLink {
  private:
   bool bind_by_name();
   bool is_up() const;
+  void look_at_fd();
 
   const int descriptor_;
   std::string interface_;
   std::vector<can_filter> filters_;
+  bool wants_fd_ = false;
   std::atomic<int> error_{0};  ///< what note() recorded
   std::atomic<bool> lost_{false};
+  std::atomic<bool> lacks_fd_{false};
   std::atomic_flag repairing_;
   BackOff back_off_{std::chrono::milliseconds(20), std::chrono::milliseconds(320)};
 };

@@ -25,6 +25,9 @@ struct CameraDescription {
   int width_px = 0;
   int height_px = 0;
   int buffers = 0;  ///< number of frames that the user may hold at the same time
+  /// Whether a readout time was configured that is not used, because the device's driver says that
+  /// it stamps the start of exposure. V4L2 cameras know it after start().
+  bool ignores_readout = false;
 };
 
 /// Numbers of frames since the camera object was constructed.

@@ -29,7 +29,7 @@ struct DeviceCameraConfig {
   std::vector<ControlSetting> controls;
   Duration exposure{0};
   /// Time from the end of exposure of the first row to that of the last row. Required for a device
-  /// that stamps the end of the frame.
+  /// that stamps the end of the frame, and not used otherwise.
   std::optional<Duration> readout;
 };
 

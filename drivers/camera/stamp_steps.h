@@ -13,9 +13,10 @@ namespace bevloc::drivers {
 /// that says another time is wrong: the stamps have jumped. If the frame also arrived late, only a
 /// jump of more than kTolerated counts. The sum of all jumps is the offset of the stamps.
 ///
-/// A trigger that omits a pulse makes the sequence number wrong: more time has passed than it says.
-/// So the frames of the next seconds may disprove a large jump by their lag. The lag of a frame is
-/// the time from its stamp to its arrival. A frame can arrive late, but not early.
+/// If the trigger omits a pulse, more time passes than the sequence numbers show, and the stamps
+/// seem to jump. So a large jump is taken back if the lags of the next frames do not fit it. The
+/// lag of a frame is the time from its stamp to its arrival. A frame can arrive late, but not
+/// early.
 ///
 /// This class cannot find stamps that were wrong from the start. StampMonitor finds them when the
 /// vehicle drives through a bend.

@@ -21,7 +21,7 @@ bool becomes_ready(int socket, short events, Duration timeout) {
   return poll(&ready, socket < 0 ? 0 : 1, static_cast<int>(wait.count())) == 1;
 }
 
-/// Returns a socket that is being connected, or a negative number if that is impossible.
+/// Returns a socket that is being connected, or -errno if that is impossible.
 int connecting_socket(const GpsdAddress& address) {
   sockaddr_storage target{};
   socklen_t size = 0;
@@ -36,14 +36,26 @@ int connecting_socket(const GpsdAddress& address) {
     six.sin6_port = htons(address.port);
     size = sizeof(six);
   } else {
-    return -1;
+    return -EINVAL;
   }
   const int made = socket(target.ss_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (made < 0) return -1;
+  if (made < 0) return -errno;
   if (::connect(made, reinterpret_cast<const sockaddr*>(&target), size) == 0) return made;
-  if (errno == EINPROGRESS) return made;
+  const int error = errno;
+  if (error == EINPROGRESS) return made;
   close(made);
-  return -1;
+  return -error;
+}
+
+/// Asks for reports on a socket that is connected. Returns 0 or an errno.
+int ask_for_reports(int socket, const std::string& watch) {
+  int error = 0;
+  socklen_t size = sizeof(error);
+  if (getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) != 0) return errno;
+  if (error != 0) return error;
+  const ssize_t sent = send(socket, watch.data(), watch.size(), MSG_NOSIGNAL);
+  if (sent < 0) return errno;
+  return sent == static_cast<ssize_t>(watch.size()) ? 0 : EMSGSIZE;
 }
 
 }  // namespace
@@ -80,27 +92,26 @@ void GpsdClient::begin_connecting(Time now) {
   if (socket_ >= 0) {
     state_ = State::kConnecting;
   } else {
-    ++counters_.failed;
-    close_socket(now);
+    note_failure(now, -socket_);
   }
+}
+
+void GpsdClient::note_failure(Time now, int error) {
+  ++counters_.failed;
+  counters_.failure = error;
+  close_socket(now);
 }
 
 void GpsdClient::finish_connecting(Time now, Duration timeout) {
   const bool ready = becomes_ready(socket_, POLLOUT, timeout);
   if (!ready && now - since_ < kConnectPatience) return;
-  int error = 0;
-  socklen_t size = sizeof(error);
-  const std::string watch = watch_command(address_);
-  const bool made =
-      ready && getsockopt(socket_, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0 &&
-      send(socket_, watch.data(), watch.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(watch.size());
-  if (made) {
+  const int error = ready ? ask_for_reports(socket_, watch_command(address_)) : ETIMEDOUT;
+  if (error == 0) {
     state_ = State::kConnected;
     since_ = now;
     ++counters_.connected;
   } else {
-    ++counters_.failed;
-    close_socket(now);
+    note_failure(now, error);
   }
 }
 

@@ -24,6 +24,7 @@ struct GpsdCounters {
   uint64_t too_long = 0;                     ///< lines that are longer than any report
   uint64_t connected = 0;                    ///< number of connections that were made
   uint64_t failed = 0;                       ///< attempts without a connection
+  int failure = 0;                           ///< errno of the latest of them
   uint64_t silent = 0;                       ///< connections that were closed after a silence
 
   uint64_t of(GpsdLine line) const { return lines[static_cast<size_t>(line)]; }
@@ -57,6 +58,7 @@ class GpsdClient {
   enum class State : uint8_t { kClosed, kConnecting, kConnected };
 
   void begin_connecting(Time now);
+  void note_failure(Time now, int error);
   void finish_connecting(Time now, Duration timeout);
   void receive(Time now, Duration timeout);
   void close_socket(Time now);

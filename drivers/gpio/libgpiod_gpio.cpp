@@ -1,12 +1,11 @@
 #include "drivers/gpio/libgpiod_gpio.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 
 #include <gpiod.h>
 
+#include "drivers/gpio/chip_devices.h"
 #include "drivers/gpio/libgpiod_calls.h"
 
 namespace bevloc::drivers {
@@ -29,22 +28,9 @@ GpioChipHandle open_chip(const std::string& device) {
   return GpioChipHandle(gpiod_chip_open(device.c_str()));
 }
 
-/// Returns /dev/gpiochip0, /dev/gpiochip1 and so on, sorted.
-std::vector<std::string> chip_devices() {
-  std::vector<std::string> devices;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator("/dev", ignored)) {
-    if (entry.path().filename().string().starts_with("gpiochip")) {
-      devices.push_back(entry.path().string());
-    }
-  }
-  std::ranges::sort(devices);
-  return devices;
-}
-
 Chips open_chips() {
   Chips chips;
-  for (const std::string& device : chip_devices()) {
+  for (const std::string& device : gpio_chip_devices()) {
     GpioChipHandle chip = open_chip(device);
     if (!chip) {
       chips.errors += fmt::format("; {} cannot be opened: {}", device, std::strerror(errno));

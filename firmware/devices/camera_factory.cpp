@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
 #include "drivers/camera/replay/replay_camera.h"
 #include "drivers/camera/v4l2/v4l2_camera.h"
 #ifdef BEVLOC_HAS_LIBCAMERA
@@ -110,9 +113,13 @@ Status start_and_stop(const CameraConfig& config, const Rig& rig) {
   auto cameras = make_cameras(config, rig, clock);
   if (!cameras) return tl::unexpected(cameras.error());
   Status result;
+  std::vector<drivers::CameraDescription> started;
   for (const auto& camera : *cameras) {
     if (result) result = camera->start();
+    if (result) started.push_back(camera->description());
   }
+  const std::string warning = readout_warning(started);
+  if (!warning.empty()) spdlog::warn("{}", warning);
   for (const auto& camera : *cameras) camera->stop();
   return result;
 }
@@ -139,6 +146,18 @@ Result<Cameras> make_cameras(const CameraConfig& config, const Rig& rig, drivers
       break;
   }
   return fail("cameras.driver: found mock, wanted v4l2, libcamera or replay");
+}
+
+std::string readout_warning(std::span<const drivers::CameraDescription> cameras) {
+  std::vector<std::string_view> names;
+  for (const drivers::CameraDescription& camera : cameras) {
+    if (camera.ignores_readout) names.push_back(kCameraNames[camera.camera]);
+  }
+  if (names.empty()) return {};
+  return fmt::format(
+      "cameras.readout_ms: found a value that is not used for {}, because their driver says that "
+      "it stamps the start of exposure; remove the key, and see docs/drivers.md for uvcvideo",
+      fmt::join(names, ", "));
 }
 
 Status check_cameras(const CameraConfig& config, const Rig& rig) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "drivers/camera/camera.h"
@@ -20,8 +22,12 @@ Result<std::vector<std::unique_ptr<drivers::Camera>>> make_cameras(const CameraC
 
 /// Looks up every camera, then starts all of them together and stops them again. So each camera
 /// sets its format, rate and controls, and allocates its buffers. The error names the first camera
-/// that is missing (and lists the devices that exist) or that cannot do what is configured. If
-/// recordings are configured, reads their indices instead.
+/// that is missing (and lists the devices that exist) or that cannot do what is configured. Logs
+/// readout_warning(). If recordings are configured, reads their indices instead.
 Status check_cameras(const CameraConfig& config, const Rig& rig);
+
+/// Returns a warning that names the cameras whose `readout_ms` is not used. It is empty if there is
+/// none. Call it while the cameras run.
+std::string readout_warning(std::span<const drivers::CameraDescription> cameras);
 
 }  // namespace bevloc::firmware

@@ -1,5 +1,6 @@
 #include "firmware/status/error_log.h"
 
+#include <system_error>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -103,8 +104,13 @@ void ErrorLog::note_authentication(const can::SecocCounters& secoc, Time now) {
 void ErrorLog::note_gnss(const GnssCounters& gnss, Time now) {
   using drivers::FixVerdict;
   using drivers::GpsdLine;
-  count("gpsd: cannot be reached; check that it runs, gnss.address and gnss.port", gnss.gpsd.failed,
-        now);
+  if (gnss.gpsd.failed > 0) {
+    count(
+        fmt::format("gpsd: cannot be reached ({}); check that it runs, gnss.address and gnss.port, "
+                    "and that the drop-in gnss.conf is installed",
+                    std::generic_category().message(gnss.gpsd.failure)),
+        gnss.gpsd.failed, now);
+  }
   count("gpsd: found no report for 10 s, wanted one a second; check the receiver and gnss.device",
         gnss.gpsd.silent, now);
   count("gpsd: found a line that is not JSON or too long; check that gnss.port is that of gpsd",
@@ -122,8 +128,8 @@ void ErrorLog::note_gnss(const GnssCounters& gnss, Time now) {
   count("gpsd: found a fix from the future; check that the system clock is UTC",
         gnss.of(FixVerdict::kFuture), now);
   count(
-      "gpsd: found a system clock that is not synchronized; check chrony or linuxptp, or choose "
-      "gnss.timing: arrival",
+      "gpsd: found a system clock that is not synchronized; check chrony or linuxptp, and that the "
+      "drop-in clock.conf is installed, or choose gnss.timing: arrival",
       gnss.of(FixVerdict::kUnsynchronized), now);
   count("gpsd: found the same fix twice; choose one receiver with gnss.device",
         gnss.of(FixVerdict::kRepeated), now);
@@ -157,8 +163,15 @@ void ErrorLog::note_queues(const QueueDrops& drops, Time now) {
 void ErrorLog::note_bus(const can::BusCounters& bus, Time now) {
   count("CAN in: frames lost because they were not read in time; check the load of this machine",
         bus.receive_dropped, now);
+  count(
+      "CAN in: the controller lost frames; check its driver, the interrupt load and the SPI clock",
+      bus.receive_overrun, now);
   count("CAN out: frames dropped because they were too old; check bus load and acknowledgement",
         bus.send_expired, now);
+  count(
+      "CAN out: frames replaced by newer ones because the bus had no room; check bus load and "
+      "txqueuelen",
+      bus.send_replaced, now);
 }
 
 }  // namespace bevloc::firmware

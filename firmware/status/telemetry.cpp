@@ -36,7 +36,7 @@ std::string words_of(Why why) {
 const char* advice_for(Why why) {
   switch (why) {
     case Why::kCameraMissing:
-      return "Look for the camera without frames; check its cable and its power.";
+      return "Look for the camera without usable frames; check its cable and its power.";
     case Why::kCamerasUnsynchronized:
       return "Check the trigger line and that every camera is in trigger mode.";
     case Why::kOdometryMissing:

@@ -22,6 +22,7 @@ class GpioConformance : public testing::TestWithParam<GpioImplementation> {
  protected:
   void SetUp() override {
     bench_ = GetParam().make();
+    if (!bench_.refusal.empty()) FAIL() << bench_.refusal;
     if (!bench_.gpio) GTEST_SKIP() << GetParam().name << ": not available on this machine";
   }
 

@@ -37,10 +37,19 @@ std::filesystem::path wire_of(const std::filesystem::path& wires, const std::str
   return wires / ("sim_gpio" + std::to_string(number));
 }
 
+GpioBench refused(const std::string& chip) {
+  const Status found = LibgpiodGpio().look_for({chip, kGpioLines[0]});
+  GpioBench bench;
+  bench.refusal = found ? chip + ": found a chip of the machine, wanted one of gpio-sim"
+                        : found.error().message;
+  return bench;
+}
+
 GpioBench kernel_bench() {
   const char* const chip = std::getenv("BEVLOC_TEST_GPIO");
-  const std::filesystem::path wires = simulated_wires(chip == nullptr ? "" : chip);
-  if (chip == nullptr || wires.empty()) return {};
+  if (chip == nullptr) return {};
+  const std::filesystem::path wires = simulated_wires(chip);
+  if (wires.empty()) return refused(chip);
   return {std::make_unique<LibgpiodGpio>(), chip,
           [wires](const std::string& line, bool high) {
             std::ofstream(wire_of(wires, line) / "pull") << (high ? "pull-up" : "pull-down");

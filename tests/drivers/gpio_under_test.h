@@ -16,6 +16,9 @@ struct GpioBench {
   std::string chip;
   std::function<void(const std::string& line, bool high)> drive;  ///< sets the voltage of an input
   std::function<bool(const std::string& line)> high;              ///< reads the voltage
+  /// Why the chip that BEVLOC_TEST_GPIO names cannot be tested. Empty if it can, or if nobody named
+  /// a chip.
+  std::string refusal{};
 };
 
 inline const std::vector<std::string> kGpioLines{"trigger", "status", "fault", "ignition"};

@@ -19,6 +19,18 @@ TEST(V4l2Formats, EveryFormatHasAFourccOfItsOwn) {
   EXPECT_EQ(fourcc_name(fourcc_of(PixelFormat::kNv12)), "NV12");
 }
 
+TEST(V4l2Formats, InterlacedImagesAreNotProgressive) {
+  EXPECT_TRUE(is_progressive(V4L2_FIELD_NONE));
+  EXPECT_TRUE(is_progressive(V4L2_FIELD_ANY)) << "a driver that knows no field orders";
+  for (const uint32_t field : {V4L2_FIELD_TOP, V4L2_FIELD_BOTTOM, V4L2_FIELD_INTERLACED,
+                               V4L2_FIELD_SEQ_TB, V4L2_FIELD_SEQ_BT, V4L2_FIELD_ALTERNATE,
+                               V4L2_FIELD_INTERLACED_TB, V4L2_FIELD_INTERLACED_BT}) {
+    EXPECT_FALSE(is_progressive(field)) << field_name(field);
+    EXPECT_NE(field_name(field), field_name(V4L2_FIELD_NONE));
+    EXPECT_NE(field_name(field), "unknown");
+  }
+}
+
 TEST(V4l2Formats, ReadsTheColourEncodingOfTheDevice) {
   v4l2_pix_format pixels{};
   pixels.pixelformat = V4L2_PIX_FMT_YUYV;

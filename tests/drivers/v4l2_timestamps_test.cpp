@@ -20,6 +20,12 @@ TEST(V4l2Timestamps, AStampAtStartOfExposureIsNotChanged) {
   EXPECT_EQ(exposure_start(kStamp, *rule), kStampTime);
 }
 
+TEST(V4l2Timestamps, AReadoutThatIsNotUsedIsTold) {
+  EXPECT_TRUE(stamp_rule(kStartOfExposure, milliseconds(8), milliseconds(20))->ignores_readout);
+  EXPECT_FALSE(stamp_rule(kStartOfExposure, milliseconds(8), std::nullopt)->ignores_readout);
+  EXPECT_FALSE(stamp_rule(kEndOfFrame, milliseconds(8), milliseconds(20))->ignores_readout);
+}
+
 TEST(V4l2Timestamps, ReadoutAndExposureAreSubtractedFromAStampAtTheEnd) {
   const auto rule = stamp_rule(kEndOfFrame, milliseconds(8), milliseconds(20));
   ASSERT_TRUE(rule);

@@ -66,9 +66,12 @@ LibcameraCamera::~LibcameraCamera() {
 Status LibcameraCamera::start() {
   const std::string_view name = kCameraNames[config_.camera];
   if (session_) return fail("camera {}: already started", name);
-  auto manager = shared_manager();
-  if (!manager) return fail("camera {}: {}", name, manager.error().message);
-  auto session = libcam::CaptureSession::open(std::move(*manager), config_);
+  if (!manager_) {
+    auto manager = shared_manager();
+    if (!manager) return fail("camera {}: {}", name, manager.error().message);
+    manager_ = std::move(*manager);
+  }
+  auto session = libcam::CaptureSession::open(manager_, config_);
   if (!session) return fail("camera {}: {}", name, session.error().message);
   session_ = std::move(*session);
   buffers_ = session_->buffers();
@@ -116,7 +119,8 @@ bool LibcameraCamera::take(int slot, Frame& frame) {
 }
 
 CameraDescription LibcameraCamera::description() const {
-  return {config_.camera, config_.width_px, config_.height_px, buffers_};
+  const bool ignores_readout = config_.readout.has_value();
+  return {config_.camera, config_.width_px, config_.height_px, buffers_, ignores_readout};
 }
 
 }  // namespace bevloc::drivers

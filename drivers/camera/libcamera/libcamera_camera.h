@@ -10,6 +10,10 @@
 #include "drivers/camera/device_frame_counter.h"
 #include "drivers/clock/clock.h"
 
+namespace libcamera {
+class CameraManager;
+}
+
 namespace bevloc::drivers {
 
 namespace libcam {
@@ -23,6 +27,8 @@ std::vector<std::string> libcamera_ids();
 /// again. Each start() looks for the camera by its `id`, as `cam -l` shows it. Controls have
 /// libcamera's names (AeEnable, ExposureTime in microseconds, AnalogueGain). The rate is set if the
 /// camera has the control FrameDurationLimits. USB cameras do not have it and keep their own rate.
+/// From the first start() on, libcamera runs until all cameras are destroyed. It notices by udev
+/// which cameras are plugged in.
 class LibcameraCamera final : public Camera {
  public:
   /// `clock` must be a MonotonicClock, because libcamera's time stamps are compared with it.
@@ -42,6 +48,7 @@ class LibcameraCamera final : public Camera {
 
   const DeviceCameraConfig config_;
   Clock& clock_;
+  std::shared_ptr<libcamera::CameraManager> manager_;
   std::shared_ptr<libcam::CaptureSession> session_;
   DeviceFrameCounter counter_;
   std::atomic<int> buffers_;

@@ -10,16 +10,22 @@
 
 namespace bevloc::drivers::v4l2 {
 
+std::string open_error(const std::filesystem::path& node, int error) {
+  // The file's mode gives EACCES, and the device filter of a systemd unit gives EPERM.
+  const char* const wanted =
+      error == EPERM
+          ? "a camera that DeviceAllow= of the systemd unit permits; restart the service, because "
+            "systemd looks up DeviceAllow= only when it starts a unit"
+          : "a camera that is connected, that the group video may use, and that no other program "
+            "holds";
+  return fmt::format("{}: cannot be opened ({}), wanted {}", node.string(), std::strerror(error),
+                     wanted);
+}
+
 Result<std::shared_ptr<Device>> Device::open(const std::filesystem::path& node) {
   // The device is opened non-blocking, because next_frame() waits in ppoll() with a timeout.
   const int fd = ::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) {
-    return fail(
-        "{}: cannot be opened ({}), wanted a camera that is connected, that the group video may "
-        "use, "
-        "and that no other program holds",
-        node.string(), std::strerror(errno));
-  }
+  if (fd < 0) return fail("{}", open_error(node, errno));
   std::shared_ptr<Device> device(new Device(fd));
   v4l2_capability capability{};
   if (const int error = device->call(VIDIOC_QUERYCAP, &capability)) {

@@ -9,6 +9,9 @@
 
 namespace bevloc::drivers::v4l2 {
 
+/// Returns the message for a device that open() refused with this errno.
+std::string open_error(const std::filesystem::path& node, int error);
+
 /// The destructor closes the device. Thread-safe, because the calls of the kernel are.
 class Device {
  public:

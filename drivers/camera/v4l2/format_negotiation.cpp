@@ -71,6 +71,7 @@ bool set_rate(const Device& device, double rate_hz) {
 
 Result<StreamFormat> negotiate_format(const Device& device, const DeviceCameraConfig& config) {
   std::string wanted;
+  std::string fields;
   for (const PixelFormat format : config.formats) {
     wanted += fmt::format("{}{}", wanted.empty() ? "" : " or ", to_string(format));
     const uint32_t fourcc = fourcc_of(format);
@@ -86,13 +87,18 @@ Result<StreamFormat> negotiate_format(const Device& device, const DeviceCameraCo
       if (error == EBUSY) return fail("{}: another program uses it", device.name());
       return fail("{}: the format cannot be set: {}", device.name(), std::strerror(error));
     }
+    if (!is_progressive(pixels.field)) {
+      fields = fmt::format(", with the field order \"{}\"", field_name(pixels.field));
+      continue;
+    }
     const bool is_agreed = pixels.pixelformat == fourcc &&
                            pixels.width == static_cast<uint32_t>(config.width_px) &&
                            pixels.height == static_cast<uint32_t>(config.height_px);
     if (is_agreed && set_rate(device, config.rate_hz)) return StreamFormat{format, pixels};
   }
-  return fail("{}: offers {}; wanted {} {}x{}{}", device.name(), offered_formats(device), wanted,
-              config.width_px, config.height_px,
+  return fail("{}: offers {}{}; wanted {}{} {}x{}{}", device.name(), offered_formats(device),
+              fields, fields.empty() ? "" : "progressive ", wanted, config.width_px,
+              config.height_px,
               config.rate_hz > 0.0 ? fmt::format(" at {:.4g} Hz", config.rate_hz) : "");
 }
 

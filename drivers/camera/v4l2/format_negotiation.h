@@ -13,8 +13,8 @@ struct StreamFormat {
 };
 
 /// Sets the first of config.formats that the device supports at the configured size and rate. The
-/// rate is not set on a device without rates, such as one with an external trigger. The error lists
-/// what the device offers.
+/// rate is not set on a device without rates, such as one with an external trigger. Refuses
+/// interlaced video. The error lists what the device offers.
 Result<StreamFormat> negotiate_format(const Device& device, const DeviceCameraConfig& config);
 
 /// Lists all formats of the device: "YUYV 640x360 at 5, 10 Hz; MJPG 1280x720 at 30 Hz".

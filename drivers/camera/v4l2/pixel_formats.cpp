@@ -38,6 +38,34 @@ uint32_t fourcc_of(PixelFormat format) {
   return 0;
 }
 
+bool is_progressive(uint32_t field) {
+  return field == V4L2_FIELD_NONE || field == V4L2_FIELD_ANY;
+}
+
+std::string_view field_name(uint32_t field) {
+  switch (field) {
+    case V4L2_FIELD_ANY:
+      return "any";
+    case V4L2_FIELD_NONE:
+      return "progressive";
+    case V4L2_FIELD_TOP:
+      return "top fields only";
+    case V4L2_FIELD_BOTTOM:
+      return "bottom fields only";
+    case V4L2_FIELD_INTERLACED:
+    case V4L2_FIELD_INTERLACED_TB:
+    case V4L2_FIELD_INTERLACED_BT:
+      return "interlaced";
+    case V4L2_FIELD_SEQ_TB:
+    case V4L2_FIELD_SEQ_BT:
+      return "one field after the other";
+    case V4L2_FIELD_ALTERNATE:
+      return "alternating fields";
+    default:
+      return "unknown";
+  }
+}
+
 YuvEncoding yuv_encoding(const v4l2_pix_format& pixels) {
   uint32_t encoding = pixels.ycbcr_enc;
   if (encoding == V4L2_YCBCR_ENC_DEFAULT) {

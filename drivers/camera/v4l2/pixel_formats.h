@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <linux/videodev2.h>
 
@@ -14,6 +15,14 @@ namespace bevloc::drivers::v4l2 {
 std::string fourcc_name(uint32_t fourcc);
 
 uint32_t fourcc_of(PixelFormat format);
+
+/// Returns whether an image of this field order (V4L2_FIELD_*) is no half image and has no rows of
+/// another time. The kernel's documentation forbids drivers to answer V4L2_FIELD_ANY. A driver that
+/// does it knows no field orders, so its images count as progressive.
+bool is_progressive(uint32_t field);
+
+/// Returns the name of a field order for messages, such as "interlaced".
+std::string_view field_name(uint32_t field);
 
 /// Returns how a device encodes YUV. Uses the defaults of videodev2.h for unspecified values.
 YuvEncoding yuv_encoding(const v4l2_pix_format& pixels);

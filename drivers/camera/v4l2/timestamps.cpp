@@ -11,14 +11,14 @@ Result<StampRule> stamp_rule(uint32_t buffer_flags, Duration exposure,
                 buffer_flags);
   }
   if ((buffer_flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE) {
-    return StampRule{};
+    return StampRule{.exposure_to_stamp = Duration::zero(), .ignores_readout = readout.has_value()};
   }
   if (!readout) {
     return fail(
         "frames are stamped at their end; set readout_ms, the time from the end of exposure of the "
         "first row to that of the last row");
   }
-  return StampRule{exposure + *readout};
+  return StampRule{.exposure_to_stamp = exposure + *readout, .ignores_readout = false};
 }
 
 Time exposure_start(const timeval& stamp, const StampRule& rule) {

@@ -30,6 +30,7 @@ Status V4l2Camera::start() {
   stream_ = std::move(*stream);
   stamp_rule_ = *rule;
   buffers_ = stream_->buffers();
+  ignores_readout_ = rule->ignores_readout;
   counter_.restart();
   return {};
 }
@@ -90,7 +91,8 @@ Result<FrameEvent> V4l2Camera::take(Frame& frame) {
 }
 
 CameraDescription V4l2Camera::description() const {
-  return {config_.device.camera, config_.device.width_px, config_.device.height_px, buffers_};
+  return {config_.device.camera, config_.device.width_px, config_.device.height_px, buffers_,
+          ignores_readout_};
 }
 
 }  // namespace bevloc::drivers

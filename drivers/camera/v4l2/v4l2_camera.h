@@ -53,6 +53,7 @@ class V4l2Camera final : public Camera {
   v4l2::StampRule stamp_rule_;
   DeviceFrameCounter counter_;
   std::atomic<int> buffers_;
+  std::atomic<bool> ignores_readout_{false};
 };
 
 }  // namespace bevloc::drivers

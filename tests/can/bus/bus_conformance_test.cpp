@@ -21,6 +21,7 @@ class BusConformance : public testing::TestWithParam<BusImplementation> {
  protected:
   void SetUp() override {
     pair_ = GetParam().connect();
+    if (!pair_.refusal.empty()) FAIL() << pair_.refusal;
     if (!pair_.a) GTEST_SKIP() << GetParam().name << ": not available on this machine";
   }
 

@@ -46,8 +46,14 @@ bool set_interface_up(const std::string& name, bool up) {
   return done;
 }
 
+/// The name of the interface that the user wants to test, or null.
+const char* chosen_interface() {
+  return std::getenv("BEVLOC_TEST_CAN");
+}
+
 BusPair connect_kernel() {
   const std::string interface = kernel_interface();
+  BusPair none;
   for (const bool fd : {true, false}) {
     const SocketCanOptions options{.fd = fd};
     auto a = SocketCanBus::open(interface, options);
@@ -56,15 +62,15 @@ BusPair connect_kernel() {
       return {std::move(*a), std::move(*b), fd,
               [interface](bool up) { return set_interface_up(interface, up); }};
     }
+    if (chosen_interface() != nullptr) none.refusal = (a ? b : a).error().message;
   }
-  return {};
+  return none;
 }
 
 }  // namespace
 
 std::string kernel_interface() {
-  const char* chosen = std::getenv("BEVLOC_TEST_CAN");
-  return chosen != nullptr ? chosen : "vcan0";
+  return chosen_interface() != nullptr ? chosen_interface() : "vcan0";
 }
 
 std::vector<BusImplementation> buses_under_test() {

@@ -18,6 +18,9 @@ struct BusPair {
   /// Takes the bus down or up; false when the process lacks the permission. Empty if the bus cannot
   /// be taken down.
   std::function<bool(bool up)> set_up;
+  /// Why the interface that BEVLOC_TEST_CAN names cannot be tested. Empty if there is a pair, or if
+  /// nobody named an interface.
+  std::string refusal{};
 };
 
 struct BusImplementation {

@@ -32,6 +32,15 @@ TEST(ControllerMonitor, AnOverflowDoesNotChangeTheState) {
   EXPECT_EQ(monitor.condition().state, BusState::kPassive);
 }
 
+TEST(ControllerMonitor, FindsReportsOfLostFrames) {
+  EXPECT_TRUE(says_frames_lost(report(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW)));
+  EXPECT_TRUE(
+      says_frames_lost(report(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW | CAN_ERR_CRTL_RX_WARNING)));
+  EXPECT_FALSE(says_frames_lost(report(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_OVERFLOW)));
+  EXPECT_FALSE(says_frames_lost(report(CAN_ERR_ACK, CAN_ERR_CRTL_RX_OVERFLOW)))
+      << "the byte belongs to the class CAN_ERR_CRTL";
+}
+
 TEST(ControllerMonitor, NamesEveryFault) {
   ControllerMonitor monitor;
   monitor.take(report(CAN_ERR_ACK));

@@ -92,6 +92,24 @@ TEST_F(SocketCanWire, CountsAndReportsErrorFramesAndBusOff) {
   EXPECT_EQ(to_string(bus_->condition()), "bus-off (no acknowledgement)");
 }
 
+TEST_F(SocketCanWire, CountsFramesThatTheControllerLost) {
+  can_frame lost = data_frame(CAN_ERR_FLAG | CAN_ERR_CRTL, CAN_ERR_DLC);
+  lost.data[1] = CAN_ERR_CRTL_RX_OVERFLOW;
+  put(lost);
+  put(lost);
+  put(data_frame(CAN_ERR_FLAG | CAN_ERR_ACK, CAN_ERR_DLC));
+  EXPECT_FALSE(bus_->receive());
+  EXPECT_EQ(bus_->counters().receive_overrun, 2u);
+  EXPECT_EQ(bus_->condition().state, BusState::kActive);
+}
+
+TEST(BusCondition, SaysThatTheInterfaceIsAClassicOne) {
+  BusCondition condition{.state = BusState::kDown};
+  condition.add(BusFault::kNoFd);
+  EXPECT_TRUE(condition.has(BusFault::kNoFd));
+  EXPECT_EQ(to_string(condition), "down (interface without CAN FD)");
+}
+
 /// A socket pair that is filled with frames until there is no room, because the far end reads none.
 class FullSocketCanWire : public SocketCanWire {
  protected:

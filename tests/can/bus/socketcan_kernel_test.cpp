@@ -128,6 +128,38 @@ TEST(SocketCanInterface, AListenerNoticesThatItIsUpAgain) {
   EXPECT_EQ(std::system("ip link del bevloc0"), 0);
 }
 
+TEST(SocketCanInterface, ThatComesBackAsAClassicOneIsNamed) {
+  if (std::system((kAddInterface + std::string(" 2> /dev/null")).c_str()) != 0) {
+    GTEST_SKIP() << "SocketCan: needs ip, vcan and CAP_NET_ADMIN";
+  }
+  const std::string down = "ip link set bevloc0 down && ip link set bevloc0 mtu ";
+  const std::string up = " && ip link set bevloc0 up";
+  ASSERT_EQ(std::system((down + std::to_string(CANFD_MTU) + up).c_str()), 0);
+  const auto sender = SocketCanBus::open("bevloc0", {.fd = true});
+  const auto listener = SocketCanBus::open("bevloc0", {.fd = true});
+  const auto classic = SocketCanBus::open("bevloc0");
+  ASSERT_TRUE(sender && listener && classic);
+  const Frame frame{.id = 0x510, .length = 64, .format = FrameFormat::kFd};
+  ASSERT_EQ((*sender)->send(frame, Time{}), SendResult::kSent);
+  const auto change = [&](int mtu) {
+    ASSERT_EQ(std::system((down + std::to_string(mtu) + up).c_str()), 0);
+    for (SocketCanBus* bus : {sender->get(), listener->get(), classic->get()}) {
+      while (bus->receive()) continue;
+      bus->wait(milliseconds(0));
+    }
+  };
+  change(CAN_MTU);
+  EXPECT_EQ((*sender)->send(frame, Time{}), SendResult::kBusDown);
+  EXPECT_EQ(to_string((*sender)->condition()), "down (interface without CAN FD)");
+  EXPECT_EQ(to_string((*listener)->condition()), "ok (interface without CAN FD)");
+  EXPECT_EQ(to_string((*classic)->condition()), "ok");
+  change(CANFD_MTU);
+  EXPECT_EQ((*sender)->send(frame, Time{}), SendResult::kSent);
+  EXPECT_EQ((*sender)->condition(), BusCondition{});
+  EXPECT_EQ((*listener)->condition(), BusCondition{});
+  EXPECT_EQ(std::system("ip link del bevloc0"), 0);
+}
+
 TEST(SocketCanInterface, IsFoundAgainByItsNameAfterALoss) {
   const std::string add = kAddInterface;
   if (std::system((add + " 2> /dev/null").c_str()) != 0) {

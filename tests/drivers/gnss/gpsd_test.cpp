@@ -1,4 +1,5 @@
 // Tests the reader of gpsd's reports and the client.
+#include <cerrno>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -203,6 +204,7 @@ TEST_F(GpsdClientTest, WaitsLongerAfterEachFailure) {
     now_ += milliseconds(100);
   }
   EXPECT_EQ(tries_ms, (std::vector<int>{0, 200, 600, 1400, 3000, 6200, 11200, 16200}));
+  EXPECT_EQ(client_.counters().failure, ECONNREFUSED);
 }
 
 TEST_F(GpsdClientTest, SkipsALineThatIsTooLong) {
@@ -233,6 +235,7 @@ TEST_F(GpsdClientTest, CountsAnAddressThatIsNone) {
   GpsdClient client({.address = "localhost", .port = 2947, .device = ""});
   client.wait(now_, Duration::zero());
   EXPECT_EQ(client.counters().failed, 1U);
+  EXPECT_EQ(client.counters().failure, EINVAL);
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #include "firmware/config/vehicle_bus_config.h"
 
+#include <algorithm>
 #include <regex>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "can/dbc/dbc.h"
 #include "firmware/devices/can_bus.h"
 #include "tests/firmware/config/config_fixture.h"
 
@@ -72,14 +74,14 @@ TEST_F(VehicleBusConfigTest, SpeedsWhoseRangeBeginsAtZeroHaveNoSign) {
   ASSERT_NE(dbc.find("-60) [0|250]"), std::string::npos);
   write("vehicle_demo.dbc", dbc);
   EXPECT_NE(error_with("      backward: {signal: TCU_Gear.GE_Position, values: [R]}\n", "")
-                .find("found speeds that are never negative"),
+                .find("found speeds that do not reach -1 m/s"),
             std::string::npos);
 }
 
 /// Otherwise a vehicle that reverses would seem to drive forward.
 TEST_F(VehicleBusConfigTest, SpeedsAndYawRatesNeedASign) {
   EXPECT_NE(error_with("      backward: {signal: TCU_Gear.GE_Position, values: [R]}\n", "")
-                .find("can.vehicle.wheel_speed.signals: found speeds that are never negative, "
+                .find("can.vehicle.wheel_speed.signals: found speeds that do not reach -1 m/s, "
                       "wanted backward, which says when the vehicle reverses"),
             std::string::npos);
   std::string dbc = read_text(folder_ / "vehicle_demo.dbc");
@@ -91,7 +93,7 @@ TEST_F(VehicleBusConfigTest, SpeedsAndYawRatesNeedASign) {
   replace("SIG_VALTYPE_ 290 MO_YawRate : 1;\n", "");
   write("vehicle_demo.dbc", dbc);
   EXPECT_NE(error_with("mock", "mock")
-                .find("can.vehicle.yaw_rate.signal: found a yaw rate that is never negative"),
+                .find("can.vehicle.yaw_rate.signal: found a yaw rate that does not reach -0.3"),
             std::string::npos);
 }
 
@@ -122,6 +124,11 @@ TEST_F(VehicleBusConfigTest, NamesTheKeyThatIsWrong) {
                        "        algorithm: crc8_sae_j1850\n        data_id: 300")
                 .find("protection[0].data_id: found data id 300, wanted at most 255"),
             std::string::npos);
+  EXPECT_NE(error_with("counter: WR_Counter", "counter: ''").find("protection[0].counter: found"),
+            std::string::npos);
+  EXPECT_NE(error_with("        counter: WR_Counter\n", "")
+                .find("protection[0].highest_counter: found highest_counter without a counter"),
+            std::string::npos);
 }
 
 TEST_F(VehicleBusConfigTest, RefusesWrongUnitsRangesAndCycles) {
@@ -147,8 +154,18 @@ TEST_F(VehicleBusConfigTest, RefusesWhatBevlocCannotReceive) {
                 .find("can.vehicle.dbc: found message ESP_WheelsRear with identifier 0x120 of "
                       "LOC_Status"),
             std::string::npos);
-  EXPECT_NE(error_with("dbc: vehicle_demo.dbc", "dbc: no.dbc").find("can.vehicle.dbc"),
-            std::string::npos);
+}
+
+/// Its message says itself what was found and wanted.
+TEST_F(VehicleBusConfigTest, PassesTheMistakeOfTheDbcFileOn) {
+  EXPECT_EQ(error_with("dbc: vehicle_demo.dbc", "dbc: no.dbc"),
+            can::read_dbc_file(folder_ / "no.dbc").error().message);
+  const std::string dbc = read_text(folder_ / "vehicle_demo.dbc");
+  write("vehicle_demo.dbc", dbc + "VAL_ 288 WR_Deleted 1 \"ON\" ;\n");
+  EXPECT_EQ(error_with("mock", "mock"),
+            (folder_ / "vehicle_demo.dbc").string() + ":" +
+                std::to_string(std::ranges::count(dbc, '\n') + 1) +
+                ": found WR_Deleted, wanted the name of a signal of message ESP_WheelsRear");
 }
 
 TEST_F(VehicleBusConfigTest, WantsOneStatementOfEachFact) {

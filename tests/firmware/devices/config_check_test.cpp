@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+#include "firmware/devices/camera_factory.h"
 #include "tests/firmware/config/config_fixture.h"
 
 namespace bevloc::firmware {
@@ -120,6 +121,17 @@ TEST_F(WrittenFilesTest, TheirFoldersAreLookedFor) {
   EXPECT_THAT(check_config(*config).error().message,
               StartsWith("calibration.online.file: " + in_a_file.string() + ": cannot be written"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "new")) << "a check writes nothing";
+}
+
+TEST(ReadoutWarning, NamesTheCamerasThatDoNotUseIt) {
+  std::vector<drivers::CameraDescription> cameras(3);
+  for (int camera = 0; camera < 3; ++camera) cameras[static_cast<size_t>(camera)].camera = camera;
+  EXPECT_EQ(readout_warning(cameras), "");
+  cameras[0].ignores_readout = true;
+  cameras[2].ignores_readout = true;
+  EXPECT_THAT(readout_warning(cameras),
+              testing::AllOf(StartsWith("cameras.readout_ms: "),
+                             HasSubstr("front_left, front_right"), HasSubstr("remove the key")));
 }
 
 /// A configuration of real cameras, none of which is connected here.

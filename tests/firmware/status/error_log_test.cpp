@@ -1,6 +1,7 @@
 #include "firmware/status/error_log.h"
 
 #include <algorithm>
+#include <cerrno>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -63,10 +64,13 @@ TEST_F(ErrorLogTest, LogsEachCauseOfItsOwn) {
   snapshot_.estimation.odometry[static_cast<size_t>(TrackerUpdate::kImplausible)] = 1;
   snapshot_.estimation.gnss[static_cast<size_t>(TrackerUpdate::kNotFinite)] = 1;
   snapshot_.bus.receive_dropped = 1;
+  snapshot_.bus.receive_overrun = 1;
+  snapshot_.bus.send_expired = 1;
+  snapshot_.bus.send_replaced = 1;
   snapshot_.queue_drops = {.samples = 1, .reports = 1, .predictions = 1};
   note();
   note();
-  EXPECT_EQ(lines(), 13);
+  EXPECT_EQ(lines(), 16);
   for (const char* text :
        {"camera front: unreadable image", "camera front_right: unreadable image",
         "camera front_right: damaged frame", "camera back_left: frame came after its frameset",
@@ -74,9 +78,29 @@ TEST_F(ErrorLogTest, LogsEachCauseOfItsOwn) {
         "tracker: GNSS refused: not a number", "CAN in: frames lost",
         "CAN in: found odometry less often", "CAN in: found wheel speeds that contradict",
         "CAN in: found a change of odometry", "samples of odometry or GNSS dropped",
-        "reports of vision dropped"}) {
+        "reports of vision dropped", "CAN in: the controller lost frames",
+        "CAN out: frames dropped because they were too old",
+        "CAN out: frames replaced by newer ones"}) {
     EXPECT_THAT(log_.text(), HasSubstr(text));
   }
+}
+
+TEST_F(ErrorLogTest, TellsWhyGpsdCannotBeReachedAndNamesTheDropIns) {
+  snapshot_.gnss.emplace();
+  snapshot_.gnss->gpsd.failed = 1;
+  snapshot_.gnss->gpsd.failure = EAFNOSUPPORT;
+  note();
+  EXPECT_THAT(log_.text(), HasSubstr("gpsd: cannot be reached (Address family not supported"));
+  EXPECT_THAT(log_.text(), HasSubstr("the drop-in gnss.conf is installed"));
+  snapshot_.gnss->gpsd.failed = 2;
+  snapshot_.gnss->gpsd.failure = ECONNREFUSED;
+  note();
+  EXPECT_EQ(lines(), 2) << "another cause";
+  EXPECT_THAT(log_.text(), HasSubstr("gpsd: cannot be reached (Connection refused)"));
+  snapshot_.gnss->fixes[static_cast<size_t>(drivers::FixVerdict::kUnsynchronized)] = 1;
+  note();
+  EXPECT_EQ(lines(), 3);
+  EXPECT_THAT(log_.text(), HasSubstr("the drop-in clock.conf is installed"));
 }
 
 TEST_F(ErrorLogTest, TellsWhenAuthenticationFails) {
