@@ -4,15 +4,13 @@ include(GNUInstallDirs)
 set(BEVLOC_DATA_DIR ${CMAKE_INSTALL_DATADIR}/bevloc)
 
 if(NOT BEVLOC_SIMULATION)
-  # What the command bevloc says of itself.
+  # Manual pages and schemas, which the command bevloc writes.
   set(said ${CMAKE_BINARY_DIR}/said)
   add_custom_command(
-    OUTPUT ${said}/bevloc.1 ${said}/bevlocd.8 ${said}/bevloc.yaml.5 ${said}/bevloc ${said}/_bevloc
-           ${said}/bevlocd.schema.json ${said}/rig.schema.json
+    OUTPUT ${said}/bevloc.1 ${said}/bevlocd.8 ${said}/bevloc.yaml.5 ${said}/bevlocd.schema.json
+           ${said}/rig.schema.json
     COMMAND ${CMAKE_COMMAND} -E make_directory ${said}
     COMMAND bevloc manual --out ${said}
-    COMMAND bevloc completion bash > ${said}/bevloc
-    COMMAND bevloc completion zsh > ${said}/_bevloc
     COMMAND bevloc schema > ${said}/bevlocd.schema.json
     COMMAND bevloc schema --rig > ${said}/rig.schema.json
     DEPENDS bevloc VERBATIM)
@@ -20,10 +18,13 @@ if(NOT BEVLOC_SIMULATION)
   install(FILES ${said}/bevloc.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT bevloc)
   install(FILES ${said}/bevloc.yaml.5 DESTINATION ${CMAKE_INSTALL_MANDIR}/man5 COMPONENT bevloc)
   install(FILES ${said}/bevlocd.8 DESTINATION ${CMAKE_INSTALL_MANDIR}/man8 COMPONENT bevloc)
-  install(FILES ${said}/bevloc DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
-          COMPONENT bevloc)
-  install(FILES ${said}/_bevloc DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
-          COMPONENT bevloc)
+  # bash looks for a file with the name of the program.
+  foreach(program bevloc bevlocd)
+    install(FILES command/manual/installed/bevloc RENAME ${program}
+            DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT bevloc)
+  endforeach()
+  install(FILES command/manual/installed/_bevloc
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT bevloc)
   install(FILES ${said}/bevlocd.schema.json ${said}/rig.schema.json
           DESTINATION ${BEVLOC_DATA_DIR}/schema COMPONENT bevloc)
 

@@ -1,9 +1,10 @@
 // The command bevloc of a vehicle. It contains no simulator. The program with the simulator is
 // evaluation/bevloc.cpp. If that one is installed, too (package bevloc-sim), this one passes on the
-// commands that it does not have.
+// commands that it does not have, and `completion`, which has to know the commands of both.
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "command/vehicle_commands.h"
@@ -23,12 +24,14 @@ bool is_installed(const std::filesystem::path& program) {
 
 int main(int argc, char** argv) {
   CLI::App app("Sets up and checks the appliance");
+  app.footer("The package bevloc-sim adds commands that simulate, evaluate and draw.");
   bevloc::command::CommandList commands;
   bevloc::command::add_vehicle_commands(app, commands, nullptr);
   const auto simulator = bevloc::folder_of_this_program() / kSimulatorProgram;
   const bool names_command = argc >= 2 && argv[1][0] != '-';
   const bool is_own = argc < 2 || (names_command && bevloc::command::has_command(app, argv[1]));
-  if (!is_own && is_installed(simulator)) {
+  const bool completes = names_command && argv[1] == std::string_view("completion");
+  if ((!is_own || completes) && is_installed(simulator)) {
     const auto failed = bevloc::replace_process(simulator, {argv + 1, argv + argc});
     std::fprintf(stderr, "bevloc: %s\n", failed.error().message.c_str());
     return bevloc::kBadInput;

@@ -40,15 +40,22 @@ Finding check_rig_file(const Config& config) {
 
 /// How a user gets access to a device.
 struct Access {
-  const char* group;
-  const char* fix;
+  std::string group;
+  std::string fix;
 };
 
-constexpr Access kCameraAccess{"video", "sudo usermod -aG video $USER   # then log in again"};
-constexpr Access kGpioAccess{
-    "bevloc",
-    "bevloc udev-rules --config FILE | sudo tee /etc/udev/rules.d/60-bevloc.rules && sudo udevadm "
-    "control --reload && sudo udevadm trigger --subsystem-match=gpio"};
+Access camera_access() {
+  return {"video", "sudo usermod -aG video $USER   # then log in again"};
+}
+
+Access gpio_access(const Config& config) {
+  return {"bevloc",
+          fmt::format("sudo bevloc udev-rules --config {} --out "
+                      "/etc/udev/rules.d/60-bevloc.rules && sudo udevadm control --reload && sudo "
+                      "udevadm trigger --settle --subsystem-match=gpio   # then run the doctor as "
+                      "the user bevloc, or: sudo usermod -aG bevloc $USER, and log in again",
+                      shell_word(config.file.string()))};
+}
 
 /// Checks whether this user may open a device.
 Finding check_access(const Machine& machine, const std::string& part,
@@ -68,7 +75,7 @@ Findings check_v4l2_cameras(const Machine& machine, const Config& config) {
     const auto node = drivers::v4l2::find_video_node(id, tree);
     findings.push_back(node ? check_access(machine, part, *node,
                                            fmt::format("{} ({})", id, node->filename().string()),
-                                           kCameraAccess)
+                                           camera_access())
                             : Finding{Level::kProblem, part, node.error().message,
                                       "the device of cameras.ids", "ls -l /dev/v4l/by-id"});
   }
@@ -110,12 +117,13 @@ Findings check_recordings(const Config& config) {
 
 /// Checks whether this user may open any chip. A vehicle needs only some of them, which
 /// systemd/udev/60-bevloc.rules opens.
-Finding check_gpio_access(const Machine& machine) {
+Finding check_gpio_access(const Machine& machine, const Config& config) {
   Findings findings;
   for (const std::string& name : machine.names_in("/dev")) {
     if (!name.starts_with("gpiochip")) continue;
     const std::string node = "/dev/" + name;
-    findings.push_back(check_access(machine, "gpio", machine.real(node), node, kGpioAccess));
+    findings.push_back(
+        check_access(machine, "gpio", machine.real(node), node, gpio_access(config)));
   }
   const auto usable = std::ranges::find(findings, Level::kOk, &Finding::level);
   if (usable != findings.end()) return *usable;
@@ -125,7 +133,7 @@ Finding check_gpio_access(const Machine& machine) {
 }
 
 Findings check_gpio_lines(const Machine& machine, const Config& config) {
-  if (const Finding access = check_gpio_access(machine); access.level != Level::kOk) {
+  if (const Finding access = check_gpio_access(machine, config); access.level != Level::kOk) {
     return {access};
   }
   Findings findings;
@@ -171,11 +179,20 @@ std::optional<CanLink> parse_link(const std::string& text) {
   return can;
 }
 
+/// Returns the command that starts an interface. The kernel keeps the bit rate of an interface that
+/// is down. A guessed one would disturb the bus.
+std::string start_command(const std::string& name, const CanLink& link) {
+  const bool is_ready = link.is_virtual || link.bit_rate > 0;
+  return fmt::format("sudo ip link set {} up{}", name,
+                     is_ready ? ""
+                              : " type can bitrate BITRATE restart-ms 100   # BITRATE is that of "
+                                "the vehicle's bus");
+}
+
 Findings judge_link(const std::string& name, const CanLink& link) {
   if (!link.up) {
-    const std::string how = link.is_virtual ? "" : " type can bitrate 500000 restart-ms 100";
-    return {{Level::kProblem, name, "found the interface down", "it up",
-             fmt::format("sudo ip link set {} up{}", name, how)}};
+    return {
+        {Level::kProblem, name, "found the interface down", "it up", start_command(name, link)}};
   }
   if (link.is_virtual) return {ok(name, "up, virtual: no other machine hears it")};
   Findings findings;
@@ -183,8 +200,9 @@ Findings judge_link(const std::string& name, const CanLink& link) {
       fmt::format("{} bit/s, {}, error counters tx {} rx {}", link.bit_rate, link.state,
                   link.tx_errors, link.rx_errors);
   if (link.state == "BUS-OFF" || link.state == "STOPPED") {
+    // `type can restart` is refused where restart-ms is set.
     findings.push_back({Level::kProblem, name, "found " + counters, "ERROR-ACTIVE",
-                        fmt::format("sudo ip link set {} type can restart", name)});
+                        fmt::format("sudo ip link set {0} down && sudo ip link set {0} up", name)});
   } else if (link.state != "ERROR-ACTIVE" || link.tx_errors > 0 || link.rx_errors > 0) {
     findings.push_back({Level::kWarning, name, "found " + counters,
                         "ERROR-ACTIVE without errors: check bit rate, wiring and termination",

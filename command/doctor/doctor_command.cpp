@@ -51,10 +51,11 @@ void DoctorCommand::declare(CLI::App& app) {
       ->check(CLI::ExistingFile);
   doctor->add_flag("--json", json_, "Print the findings as JSON");
   doctor->footer(
-      "Exit code: 0 all ok, 1 warnings, 2 problems.\n"
-      "Examples:\n"
-      "  bevloc doctor --config config/demo.yaml\n"
-      "  bevloc doctor --json");
+      fmt::format("Exit code: 0 all ok, 1 warnings, 2 problems.\n"
+                  "Examples:\n"
+                  "  bevloc doctor --config {}\n"
+                  "  bevloc doctor --json",
+                  simulation_ != nullptr ? "config/demo.yaml" : "my_config.yaml"));
   doctor->callback([this] { chosen_ = true; });
 }
 

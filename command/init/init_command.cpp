@@ -39,9 +39,10 @@ Result<std::string> file_of(Dialog& dialog, const std::string& given, const std:
   return given;
 }
 
-std::string list_of_cameras(const std::vector<OfferedCamera>& cameras) {
-  if (cameras.empty()) return "none";
-  std::string text;
+/// Returns a numbered list of a driver's cameras.
+std::string list_of_cameras(const std::string& driver, const std::vector<OfferedCamera>& cameras) {
+  std::string text = driver + " cameras:";
+  if (cameras.empty()) return text + " none";
   for (size_t i = 0; i < cameras.size(); ++i) {
     text += fmt::format("\n  {}: {} ({})", i + 1, cameras[i].id, cameras[i].name);
   }
@@ -77,20 +78,22 @@ void InitCommand::declare(CLI::App& app) {
   init->add_option("--rig", rig_, "Rig file")->check(CLI::ExistingFile);
   init->add_option("--map", map_, "HD map")->check(CLI::ExistingFile);
   init->add_option("--model", model_, "Network")->check(CLI::ExistingFile);
-  init->add_option("--can", can_, "CAN interface, or mock");
-  init->footer(
+  init->add_option("--can", can_,
+                   simulation_ != nullptr ? "CAN interface, or mock" : "CAN interface");
+  init->footer(fmt::format(
       "Exit code: 0 written and good, 1 written but the check found a mistake, 2 not written.\n"
       "Examples:\n"
       "  bevloc init\n"
-      "  bevloc init --yes --out my_config.yaml\n"
-      "  bevloc init --cameras v4l2 --rig rig.yaml --map town.osm --can can0");
+      "{}"
+      "  bevloc init --cameras v4l2 --rig rig.yaml --map town.osm --can can0",
+      simulation_ != nullptr ? "  bevloc init --yes --out my_config.yaml\n" : ""));
   init->callback([this] { chosen_ = true; });
 }
 
 Result<std::string> InitCommand::driver(const Offers& offers, Dialog& dialog) const {
   if (!driver_.empty()) return driver_;
-  dialog.say(fmt::format("V4L2 cameras: {}", list_of_cameras(offers.v4l2)));
-  dialog.say(fmt::format("libcamera cameras: {}", list_of_cameras(offers.libcamera)));
+  dialog.say(list_of_cameras(kV4l2Cameras, offers.v4l2));
+  dialog.say(list_of_cameras(kLibcameraCameras, offers.libcamera));
   std::vector<std::string> known{kV4l2Cameras, kLibcameraCameras};
   if (simulation_ != nullptr) known.emplace_back(kMockCameras);
   std::string proposal = simulation_ != nullptr ? kMockCameras : kV4l2Cameras;
@@ -106,6 +109,8 @@ Result<std::string> InitCommand::driver(const Offers& offers, Dialog& dialog) co
 
 Status InitCommand::cameras(const std::vector<OfferedCamera>& offered, Dialog& dialog,
                             Answers& answers) const {
+  // driver() has shown the lists, unless the command line gave the driver.
+  if (ids_.empty() && !driver_.empty()) dialog.say(list_of_cameras(driver_, offered));
   for (size_t camera = 0; camera < kCameraCount; ++camera) {
     if (!ids_.empty()) {
       answers.ids[camera] = ids_[camera];
@@ -150,7 +155,7 @@ Result<std::string> InitCommand::can(const Offers& offers, Dialog& dialog,
   dialog.say(fmt::format("CAN interfaces: {}",
                          found.empty() ? "none" : fmt::format("{}", fmt::join(found, ", "))));
   const std::string proposal = mock ? kMockCameras : found.empty() ? "" : found.front();
-  return dialog.ask("CAN interface, or mock", proposal, check);
+  return dialog.ask(mock ? "CAN interface, or mock" : "CAN interface", proposal, check);
 }
 
 Result<Answers> InitCommand::answers(const Offers& offers, Dialog& dialog) const {
@@ -159,6 +164,12 @@ Result<Answers> InitCommand::answers(const Offers& offers, Dialog& dialog) const
   if (!chosen) return tl::unexpected(chosen.error());
   answers.driver = *chosen;
   const bool mock = answers.driver == kMockCameras;
+  if (mock && !ids_.empty()) {
+    return fail(
+        "--id: found ids beside mock cameras, which have none; leave out --id, or choose "
+        "--cameras {}",
+        kV4l2Cameras);
+  }
   if (!mock) {
     const auto& offered = answers.driver == kLibcameraCameras ? offers.libcamera : offers.v4l2;
     if (Status status = cameras(offered, dialog, answers); !status) {

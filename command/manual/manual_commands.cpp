@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include "command/manual/completion.h"
+#include "command/manual/installed_table.h"
 #include "command/manual/man_page.h"
 #include "command/manual/option_table.h"
 #include "command/schema/schema_command.h"
 #include "common/files.h"
+#include "common/replace_process.h"
 #include "firmware/daemon/program.h"
 
 namespace bevloc::command {
@@ -34,11 +36,14 @@ void ManualCommand::declare(CLI::App& app) {
 }
 
 Status ManualCommand::run() const {
+  const bool simulates = simulation_ != nullptr;
+  std::vector<std::string> see_also{"bevlocd(8)", "bevloc.yaml(5)"};
+  if (!simulates) see_also.emplace_back("bevloc-sim(1)");
   const std::string program = man_page_of_program(
       {.name = "bevloc",
        .section = 1,
-       .what = "sets up, checks and evaluates bevloc",
-       .see_also = {"bevlocd(8)", "bevloc.yaml(5)"},
+       .what = simulates ? "sets up, checks and evaluates bevloc" : "sets up and checks bevloc",
+       .see_also = see_also,
        .exit_codes = "0  good\n1  what was judged is bad\n2  wrong use or input"},
       table_of(*app_));
   const std::string daemon =
@@ -76,7 +81,7 @@ void CompletionCommand::declare(CLI::App& app) {
 
 Status CompletionCommand::run() const {
   const auto write = shell_ == "zsh" ? zsh_completion : bash_completion;
-  CommandEntry program = table_of(*app_);
+  const CommandEntry program = installed_table(*app_, folder_of_this_program());
   fmt::print("{}{}", write("bevloc", program), write("bevlocd", daemon_table()));
   return {};
 }

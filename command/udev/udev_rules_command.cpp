@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "common/option_checks.h"
+#include "common/replace_file.h"
 #include "drivers/gpio/libgpiod_gpio.h"
 
 namespace bevloc::command {
@@ -99,18 +101,26 @@ void UdevRulesCommand::declare(CLI::App& app) {
   auto* rules = app.add_subcommand(
       "udev-rules", "Print the udev rules for the GPIO chips that a configuration names");
   rules->add_option("--config", config_file_, "Configuration of bevlocd")->required();
+  rules
+      ->add_option("--out", out_,
+                   "File to write if there is no mistake; without it, they are printed")
+      ->check(output_file());
   rules->footer(
       "Examples:\n"
-      "  bevloc udev-rules --config /etc/bevloc/bevlocd.yaml > /etc/udev/rules.d/60-bevloc.rules");
+      "  bevloc udev-rules --config my_config.yaml\n"
+      "  bevloc udev-rules --config /etc/bevloc/bevlocd.yaml --out "
+      "/etc/udev/rules.d/60-bevloc.rules");
   rules->callback([this] { chosen_ = true; });
 }
 
 Status UdevRulesCommand::run() const {
+  if (Status status = check_output(out_, {config_file_}); !status) return status;
   const auto config = firmware::load_config(config_file_, simulation_);
   if (!config) return tl::unexpected(config.error());
   const auto rules =
       udev_rules(drivers::LibgpiodGpio::chips(), firmware::lines_of(config->gpio), "/sys");
   if (!rules) return tl::unexpected(rules.error());
+  if (!out_.empty()) return replace_file(out_, *rules);
   fmt::print("{}", *rules);
   return {};
 }

@@ -1,4 +1,4 @@
-// `bevloc udev-rules`: prints rules that give bevlocd the GPIO chips of its configuration, and no
+// `bevloc udev-rules`: writes rules that give bevlocd the GPIO chips of its configuration, and no
 // other ones.
 #pragma once
 
@@ -35,6 +35,7 @@ class UdevRulesCommand {
   const firmware::SimulationReader* simulation_;
   bool chosen_ = false;
   std::string config_file_;
+  std::string out_;
 };
 
 }  // namespace bevloc::command

@@ -126,11 +126,27 @@ TEST_F(DoctorTest, JudgesTheCanController) {
   EXPECT_EQ(can0().level, Level::kWarning);
   machine_.programs["ip"] = ip_answer("BUS-OFF", 248, 100);
   EXPECT_EQ(can0().level, Level::kProblem);
-  EXPECT_EQ(can0().fix, "sudo ip link set can0 type can restart");
+  EXPECT_EQ(can0().fix, "sudo ip link set can0 down && sudo ip link set can0 up");
   machine_.programs["ip"] = "not JSON";
   EXPECT_EQ(can0().level, Level::kWarning);
   machine_.programs["ip"] = R"([{"flags":[]}])";
   EXPECT_THAT(can0().found, HasSubstr("down"));
+}
+
+/// A wrong bit rate disturbs the bus. The kernel keeps that of an interface that is down.
+TEST_F(DoctorTest, KeepsTheBitRateOfAnInterfaceThatIsDown) {
+  const auto fix_of = [this](const std::string& kind, const std::string& timing) {
+    machine_.programs["ip"] = R"([{"flags":["NOARP"],"linkinfo":{"info_kind":")" + kind +
+                              R"(","info_data":{"state":"STOPPED","restart_ms":0)" + timing +
+                              "}}}]";
+    return can0().fix;
+  };
+  EXPECT_EQ(fix_of("can", R"(,"bittiming":{"bitrate":250000})"), "sudo ip link set can0 up");
+  EXPECT_EQ(fix_of("vcan", ""), "sudo ip link set can0 up");
+  const std::string unknown = fix_of("can", "");
+  EXPECT_THAT(unknown,
+              StartsWith("sudo ip link set can0 up type can bitrate BITRATE restart-ms 100"));
+  EXPECT_THAT(unknown, HasSubstr("vehicle"));
 }
 
 TEST_F(DoctorTest, WarnsOfAControllerThatStaysOff) {
@@ -216,8 +232,12 @@ TEST_F(DoctorTest, LooksForTheConfiguredGpioLines) {
   EXPECT_EQ(findings[1].level, Level::kProblem) << "a usable chip is not that of the fault line";
   EXPECT_THAT(findings[1].found, HasSubstr("expander"));
   machine_.permitted = false;
-  EXPECT_THAT(check_devices(machine_, config).front().fix,
-              StartsWith("bevloc udev-rules --config"));
+  config.file = "/etc/my config.yaml";
+  const Finding refused = check_devices(machine_, config).front();
+  EXPECT_THAT(refused.fix, StartsWith("sudo bevloc udev-rules --config '/etc/my config.yaml' "
+                                      "--out /etc/udev/rules.d/60-bevloc.rules && "));
+  // Afterwards the group may open the chips, and this user is not in it.
+  EXPECT_THAT(refused.fix, HasSubstr("sudo usermod -aG bevloc $USER"));
 }
 
 TEST_F(DoctorTest, JudgesMemoryDiskAndClock) {

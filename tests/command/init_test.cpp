@@ -14,6 +14,7 @@ namespace bevloc::command {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 const std::filesystem::path kTree = BEVLOC_SOURCE_DIR;
 
@@ -134,6 +135,30 @@ TEST_F(InitTest, AsksUntilAnAnswerIsGood) {
   EXPECT_EQ(config->cameras.devices.ids[1], "one");
   EXPECT_EQ(config->cameras.devices.ids[5], "six");
   EXPECT_EQ(config->can.interface, "can0");
+}
+
+TEST_F(InitTest, ShowsTheListWhoseNumbersItAsksFor) {
+  for (const char* id : {"one", "two", "three", "four", "five", "six"}) {
+    offers_.v4l2.push_back({id, "Camera of " + std::string(id)});
+    offers_.libcamera.push_back({"/base/" + std::string(id), "libcamera"});
+  }
+  EXPECT_FALSE(init({"--cameras", "v4l2"}, ""));
+  EXPECT_THAT(said_.str(), HasSubstr("\n  2: two (Camera of two)\n"));
+  EXPECT_THAT(said_.str(), Not(HasSubstr("/base/")));
+  EXPECT_LT(said_.str().find("6: six"), said_.str().find("front_left"));
+  said_.str("");
+  EXPECT_FALSE(init({"--cameras", "libcamera"}, ""));
+  EXPECT_THAT(said_.str(), HasSubstr("\n  1: /base/one (libcamera)\n"));
+  said_.str("");
+  EXPECT_FALSE(init({"--cameras", "v4l2", "--id", "a", "b", "c", "d", "e", "f"}, ""));
+  EXPECT_THAT(said_.str(), Not(HasSubstr("1: one")));
+}
+
+TEST_F(InitTest, RefusesIdsOfMockCameras) {
+  const auto refused = init({"--cameras", "mock", "--yes", "--id", "a", "b", "c", "d", "e", "f"});
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("--id: found ids beside mock cameras"));
+  EXPECT_FALSE(std::filesystem::exists(file_));
 }
 
 TEST_F(InitTest, EndsWhenTheInputEnds) {

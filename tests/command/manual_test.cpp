@@ -1,4 +1,5 @@
 // Tests option tables, manual pages and completion with a small program of their own.
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fstream>
@@ -7,8 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "command/manual/completion.h"
+#include "command/manual/installed_table.h"
 #include "command/manual/man_page.h"
 #include "command/manual/option_table.h"
+#include "command/vehicle_commands.h"
+#include "evaluation/drive/drive_config.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::command {
@@ -118,6 +122,51 @@ TEST_F(ManualTest, TextIsNeverARequestOfRoff) {
                            .commands = {}};
   const std::string page = man_page_of_program({.name = "tool", .what = "x"}, table);
   EXPECT_THAT(page, HasSubstr("\\&.dot first\n\\&'quote and \\eback"));
+}
+
+const OptionEntry& option_of(const CommandEntry& table, const std::string& command,
+                             const std::string& option) {
+  const auto entry = std::ranges::find(table.commands, command, &CommandEntry::name);
+  const auto found = std::ranges::find_if(entry->options, [&](const OptionEntry& candidate) {
+    return std::ranges::find(candidate.names, option) != candidate.names.end();
+  });
+  return *found;
+}
+
+TEST(VehicleCommands, NameNothingOfTheSimulator) {
+  CLI::App app;
+  CommandList commands;
+  add_vehicle_commands(app, commands, nullptr);
+  const CommandEntry table = table_of(app);
+  for (const CommandEntry* command : all_commands(table)) {
+    EXPECT_THAT(command->footer, Not(HasSubstr("config/demo.yaml"))) << command->name;
+    for (const OptionEntry& option : command->options) {
+      EXPECT_THAT(option.description, Not(HasSubstr("mock"))) << command->name;
+    }
+  }
+  EXPECT_THAT(option_of(table, "init", "--cameras").choices, ElementsAre("v4l2", "libcamera"));
+}
+
+TEST(InstalledTable, HasTheCommandsOfTheVehicleAndThoseThatTheSimulatorAdds) {
+  std::optional<evaluation::SimulationConfig> simulation;
+  const firmware::SimulationReader reader = evaluation::simulation_reader(simulation);
+  CLI::App app;
+  CommandList commands;
+  add_vehicle_commands(app, commands, &reader);
+  app.add_subcommand("demo", "Drive");
+  const test::TemporaryFolder folder;
+  const std::filesystem::path here = folder / "libexec/bevloc-sim";
+  // In a folder of a build there is no program for vehicles beside it.
+  const CommandEntry alone = installed_table(app, here);
+  EXPECT_THAT(option_of(alone, "init", "--cameras").choices,
+              ElementsAre("mock", "v4l2", "libcamera"));
+  std::filesystem::create_directories(here);
+  std::filesystem::create_directories(folder / "bin");
+  std::ofstream(folder / "bin/bevloc") << "the program for vehicles";
+  const CommandEntry installed = installed_table(app, here);
+  EXPECT_EQ(installed.commands.size(), alone.commands.size());
+  EXPECT_EQ(installed.commands.back().name, "demo");
+  EXPECT_THAT(option_of(installed, "init", "--cameras").choices, ElementsAre("v4l2", "libcamera"));
 }
 
 TEST(ManPageOfSchema, SaysWhatIsRequired) {

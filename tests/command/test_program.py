@@ -102,6 +102,19 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(shell.stderr, "")
         self.assertEqual(shell.stdout.splitlines()[:2], ["doctor", "--config"])
 
+    def test_the_installed_completion_asks_the_program(self) -> None:
+        line = "source command/manual/installed/bevloc; complete -p bevloc bevlocd"
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "bevloc").symlink_to(PROGRAM)
+            environment = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}"}
+            command = ["bash", "--norc", "-uc", line]
+            shell = subprocess.run(
+                command, capture_output=True, text=True, cwd=ROOT, env=environment
+            )
+        self.assertEqual(shell.stderr, "")
+        completed = ["complete -F _bevloc_complete bevloc", "complete -F _bevlocd_complete bevlocd"]
+        self.assertEqual(shell.stdout.splitlines(), completed)
+
     def test_zsh_accepts_the_completion(self) -> None:
         if shutil.which("zsh") is None:
             self.skipTest("zsh is not installed")

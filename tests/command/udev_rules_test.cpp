@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "command/init/answers.h"
 #include "command/udev/udev_rules_command.h"
+#include "common/files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::command {
@@ -86,6 +88,48 @@ TEST_F(UdevRulesTest, RefusesUnknownLinesAndChipsWithoutDevice) {
   const auto without = udev_rules(chips_, {{"without-device", "X"}}, sysfs_);
   ASSERT_FALSE(without);
   EXPECT_THAT(without.error().message, HasSubstr("found no device of this chip"));
+}
+
+/// Runs the command with a configuration that has this section `gpio`.
+Status run_with_gpio(const std::filesystem::path& folder, const std::string& gpio,
+                     const std::filesystem::path& out) {
+  const std::filesystem::path tree = BEVLOC_SOURCE_DIR;
+  const Answers answers{.driver = kV4l2Cameras,
+                        .ids = {"a", "b", "c", "d", "e", "f"},
+                        .rig = tree / "config/rig_demo.yaml",
+                        .map = tree / "tests/pipeline/map/fixtures/street.osm",
+                        .model = tree / "models/nano.onnx",
+                        .can = "can0"};
+  std::ofstream(folder / "bevlocd.yaml") << configuration_text(answers, folder) << gpio;
+  CLI::App app;
+  UdevRulesCommand command(nullptr);
+  command.declare(app);
+  std::vector<std::string> arguments{"udev-rules", "--config", (folder / "bevlocd.yaml").string(),
+                                     "--out", out.string()};
+  std::ranges::reverse(arguments);  // as CLI11 takes them
+  app.parse(arguments);
+  return command.run();
+}
+
+TEST(UdevRulesFile, IsWrittenOnSuccessOnly) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "60-bevloc.rules";
+  std::ofstream(file) << "rules from before";
+  const Status unknown =
+      run_with_gpio(folder.path(), "gpio:\n  status_led: {chip: no chip, line: LED}\n", file);
+  ASSERT_FALSE(unknown);
+  EXPECT_THAT(unknown.error().message, HasSubstr("found no such GPIO chip"));
+  EXPECT_EQ(read_file(file).value(), "rules from before");
+  const Status written = run_with_gpio(folder.path(), "", file);
+  ASSERT_TRUE(written) << written.error().message;
+  EXPECT_THAT(read_file(file).value(), HasSubstr("names no GPIO line"));
+}
+
+TEST(UdevRulesFile, IsNotTheConfiguration) {
+  const test::TemporaryFolder folder;
+  const Status refused = run_with_gpio(folder.path(), "", folder / "bevlocd.yaml");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("is also read"));
 }
 
 }  // namespace

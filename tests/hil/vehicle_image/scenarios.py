@@ -97,6 +97,7 @@ def update(parts: Parts, _: int, __: int) -> Outcome:
         _mount_repositories(machine)
         for name in (Repositories.GOOD, Repositories.BAD):
             print(machine.agent.check(f"bevloc-update file:/run/repositories/{name}"), flush=True)
+            _refuse(machine, name, "waits for a restart")
             machine.restart()
             trials = _await_verdict(machine)
             machine.wait_for_tracking()
@@ -106,10 +107,12 @@ def update(parts: Parts, _: int, __: int) -> Outcome:
             if root != "b" or version != Repositories.GOOD_VERSION:
                 raise LabError(f"{seen[-1]}, wanted root b with {Repositories.GOOD_VERSION}")
             _mount_repositories(machine)
-            for useless in ("none", Repositories.GOOD):
-                _refuse(machine, useless)
+            _refuse(machine, "none", "found no apt repository")
+            _refuse(machine, Repositories.GOOD, "found no packages that are newer")
+        _refuse(machine, Repositories.BAD, f"{Repositories.BAD_VERSION} failed its trial")
     return Outcome(
-        injected="updates: a good one, it again, an unreadable one, one whose daemon does not run",
+        injected="updates: a good one, it again, an unreadable one, one whose daemon does not run, "
+        "it again",
         seen="; ".join(seen),
         recovery_s=None,
         passed=True,
@@ -172,12 +175,13 @@ def _sizes(listing: str) -> dict[str, int]:
     return {name: int(size) for size, name in lines}
 
 
-def _refuse(machine: Machine, repository: str) -> None:
-    """An update without a repository, or to the installed version, must leave all as it is."""
+def _refuse(machine: Machine, repository: str, reason: str) -> None:
+    """An update that must not be made is refused for this reason, and leaves all as it is."""
     entries = "ls /efi/loader/entries"
     before = machine.agent.check(entries)
-    if machine.agent.run(f"bevloc-update file:/run/repositories/{repository}").status == 0:
-        raise LabError(f"bevloc-update: accepted {repository}, wanted an error")
+    reply = machine.agent.run(f"bevloc-update file:/run/repositories/{repository}")
+    if reply.status == 0 or reason not in reply.output:
+        raise LabError(f"bevloc-update {repository}: found '{reply.output}', wanted '{reason}'")
     if (after := machine.agent.check(entries)) != before:
         raise LabError(f"/efi/loader/entries: found {after} after a failure, wanted {before}")
 
