@@ -321,8 +321,8 @@ static inline bool bevloc_take_solution(struct bevloc_receiver* receiver, const 
   return true;
 }
 
-/* Takes any frame. `now_us` is the time of arrival, not of reading, on your clock. Returns whether
-   the frame completes a pose. */
+/* Takes any frame. `now_us` says when it arrived, not when you read it, on your clock. Returns
+   whether the frame completes a pose. */
 static inline bool bevloc_receive(struct bevloc_receiver* receiver, uint32_t id,
                                   const uint8_t* data, size_t length, uint64_t now_us) {
   int part;

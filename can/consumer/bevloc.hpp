@@ -25,7 +25,7 @@ class Receiver {
     bevloc_init(&receiver_, base_id, limits);
   }
 
-  /// Takes any frame of the bus. `now` is the time of its arrival, not of reading. True when it
+  /// Takes any frame of the bus. `now` says when it arrived, not when you read it. True when it
   /// completes a pose.
   bool receive(uint32_t id, std::span<const uint8_t> data, std::chrono::microseconds now) {
     return bevloc_receive(&receiver_, id, data.data(), data.size(), count(now));

@@ -175,8 +175,8 @@ class Receiver:
         self._frames: dict[str, bytes] = {}
 
     def receive(self, identifier: int, data: bytes, time_s: float) -> bool:
-        """Takes any frame of the bus. `time_s` is the time of arrival, not of reading. True when it
-        completes a pose."""
+        """Takes any frame of the bus. `time_s` says when it arrived, not when you read it. True
+        when it completes a pose."""
         name = self._names.get(identifier - self.base_id)
         known = ("LOC_Status", "LOC_Clock", "LOC_Solution", *PARTS)
         if name not in known or not self._check(name, data):

@@ -1,4 +1,4 @@
-// Which values of a signal are available.
+// The values of a signal that are available.
 #pragma once
 
 #include <algorithm>

@@ -23,7 +23,7 @@ std::vector<std::string> names_in(const std::vector<Named>& all) {
   return names;
 }
 
-/// What a plausible signal of a quantity can hold, in the unit of the quantity.
+/// The values that a plausible signal of a quantity reaches, in the unit of the quantity.
 struct Sanity {
   double reaches;         ///< a value that the signal reaches; not checked if 0
   double step;            ///< the largest step

@@ -9,10 +9,11 @@
 
 namespace bevloc::command {
 
-/// Returns the commands of a program. `folder` is where the program lies. In the packages, the
-/// program with the simulator lies in libexec/bevloc-sim, and users call bin/bevloc, which passes
-/// on the commands that it does not have (command/bevloc.cpp). There the entries of the commands
-/// that both have are those of bin/bevloc, which knows no mock cameras.
+/// Returns the commands that a user can call. `folder` is the folder of the running program. The
+/// packages install two programs: bin/bevloc, and one with the simulator in libexec/bevloc-sim.
+/// Users call bin/bevloc, which passes on the commands that it does not have (command/bevloc.cpp).
+/// If both programs have a command, the table describes the one of bin/bevloc, which knows no mock
+/// cameras.
 CommandEntry installed_table(const CLI::App& app, const std::filesystem::path& folder);
 
 }  // namespace bevloc::command

@@ -68,7 +68,7 @@ std::string place_of(const Se2& pose) {
   return fmt::format("x {:.0f} m, y {:.0f} m", pose.x_m, pose.y_m);
 }
 
-/// Says why the numbers cannot be a place on earth of which the map frame is known.
+/// Says why the numbers cannot be read as latitude and longitude on this map.
 Error no_geodetic_place(const Numbers& numbers, const GeoOrigin& origin) {
   if (!is_known(origin)) {
     return {

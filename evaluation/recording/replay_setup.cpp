@@ -92,7 +92,7 @@ Status restore_learned(const Recording& recording, const ScratchFolder& scratch,
   return write_file(config.learned_calibration_file, learned->data);
 }
 
-/// Fails if the positions come from a source that no recording holds.
+/// Fails if the configuration takes positions from gpsd, because no recording holds them.
 Status prepare(const ReplayOverrides& overrides, firmware::Config& config) {
   if (config.gnss) {
     return fail(
